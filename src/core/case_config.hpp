@@ -1,0 +1,142 @@
+#pragma once
+// What every case states, whatever its method: how long, what to watch, what to write, what must
+// hold.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/keys.hpp"
+#include "math/vec.hpp"
+
+namespace breccia {
+
+/// [time]
+struct TimeConfig {
+  double end = 1e-3;       ///< simulated time at which the run is done  [s]
+  double safety = 0.7;     ///< share of the critical time step that is used  [-]
+  double max_step = 1e-3;  ///< never longer than this  [s]
+  int evaluate_every = 1;  ///< steps between evaluations of the critical step  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("end", end, "s", positive, "simulated time at which the run is done");
+    key.required("end");
+    key("safety", safety, "-", Range{0.0, 1.0, Open::low},
+        "share of the critical time step that is used; 0.7071 is the rule of Durand et al. 2012");
+    key("max_step", max_step, "s", positive, "no time step is longer than this");
+    key("evaluate_every", evaluate_every, "-", Range{1, 1000},
+        "steps from one evaluation of the critical time step to the next");
+  }
+};
+
+/// [output]
+struct OutputConfig {
+  int frames = 20;       ///< frames over the whole run, besides the one at the start  [-]
+  double history = 0.0;  ///< time between history rows; 0: 1000 rows over the run  [s]
+  bool fields = true;    ///< write ParaView files
+  bool pictures = true;  ///< write a PNG a frame
+  std::string color = "damage";
+  std::string view = "iso";
+  int width = 1280, height = 960;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("frames", frames, "-", Range{0, 100000}, "frames over the whole run, besides the first");
+    key("history", history, "s", not_negative,
+        "time between two rows of history.csv; 0 writes 1000 rows over the run");
+    key("fields", fields, "write the frames as ParaView files");
+    key("pictures", pictures, "write one PNG picture a frame");
+    key("color", color, "field that colours the pictures");
+    key("view", view, OneOf{"iso", "x", "y", "z"}, "camera of the pictures");
+    key("width", width, "-", Range{64, 16384}, "width of the pictures in pixels");
+    key("height", height, "-", Range{64, 16384}, "height of the pictures in pixels");
+  }
+};
+
+/// [checkpoint]
+struct CheckpointConfig {
+  double wall = 600.0;  ///< wall-clock time between checkpoints  [s]
+  int steps = 0;        ///< steps between checkpoints; 0: by wall time only  [-]
+  int keep = 2;         ///< newest checkpoints kept  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("wall", wall, "s", positive, "wall-clock time from one checkpoint to the next");
+    key("steps", steps, "-", Range{0, 1e9},
+        "steps from one checkpoint to the next, besides the wall-clock rule; 0 switches it off");
+    key("keep", keep, "-", Range{1, 1000}, "how many of the newest checkpoints are kept");
+  }
+};
+
+/// [[probe]]: one column of history.csv
+struct ProbeConfig {
+  std::string name;
+  std::string on;  ///< group or support; empty: all elements
+  std::string quantity = "velocity_z";
+  std::string reduce = "mean";
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "column of history.csv");
+    key.required("name");
+    key("on", on, "group or support whose elements are read; empty reads all");
+    key("quantity", quantity,
+        OneOf{"position_x", "position_y", "position_z", "velocity_x", "velocity_y", "velocity_z",
+              "force_x", "force_y", "force_z", "momentum_x", "momentum_y", "momentum_z", "speed",
+              "kinetic", "damage"},
+        "what is read from each element");
+    key("reduce", reduce, OneOf{"mean", "sum", "min", "max"}, "how the elements' values combine");
+  }
+};
+
+/// [[check]]: a number that the case must show at the end of its run
+struct CheckConfig {
+  std::string name;
+  std::string value;  ///< path into summary.json, or probe.<name>.<last|min|max>
+  double expected = 0.0;
+  double tolerance = 0.0;  ///< largest allowed |value - expected|
+  std::string unit = "-";
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the check");
+    key.required("name");
+    key("value", value,
+        "what is checked: a path into summary.json such as energy.error_relative, or "
+        "probe.<name>.last, .min or .max");
+    key.required("value");
+    key("expected", expected, "-", any_number, "the number it must be, in SI units");
+    key("tolerance", tolerance, "-", not_negative, "largest allowed distance from it");
+    key("unit", unit, "unit of the three numbers, for the reader");
+  }
+};
+
+/// The part of a case that every method shares.
+struct CaseConfig {
+  int breccia = 1;
+  std::string method = "dem3d";
+  std::string title;
+  std::int64_t seed = 1;
+  TimeConfig time;
+  OutputConfig output;
+  CheckpointConfig checkpoint;
+  std::vector<ProbeConfig> probes;
+  std::vector<CheckConfig> checks;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("breccia", breccia, "-", Range{1, 1}, "version of the case-file format");
+    key("method", method, OneOf{"dem3d"}, "which method runs the case");
+    key("title", title, "one line for people");
+    key("seed", seed, "-", Range{0, 9e15}, "seed of every random choice");
+    key.table("time", time, "how long and how fast");
+    key.table("output", output, "what is written, how often");
+    key.table("checkpoint", checkpoint, "when the state is saved");
+    key.list("probe", probes, "columns of history.csv");
+    key.list("check", checks, "numbers the case must show");
+  }
+};
+
+}  // namespace breccia

@@ -1,0 +1,70 @@
+#pragma once
+// The ledger: where every joule is. Sums are exact, so their order cannot matter.
+
+#include <cstdint>
+
+#include "exec/types.hpp"
+
+namespace breccia {
+
+/// A sum of doubles in fixed point, 128 bit with a quantum of 2^-64: each term is rounded once, by
+/// itself, so the sum is the same for any order, thread count, rank count and device.
+/// Holds |sum| < 2^63 of the unit, to 5e-20.
+class ExactSum {
+  __extension__ using Quanta = unsigned __int128;
+
+ public:
+  ExactSum() = default;
+  BR_HD explicit ExactSum(double value) { add(value); }
+
+  BR_HD void add(double value) {
+    const double scaled_high = value < 0.0 ? -value : value;
+    const double whole = static_cast<double>(static_cast<std::int64_t>(scaled_high));
+    const double fraction = (scaled_high - whole) * 18446744073709551616.0;  // 2^64
+    Quanta quanta = static_cast<Quanta>(static_cast<std::uint64_t>(whole)) << 64;
+    quanta += static_cast<std::uint64_t>(fraction);
+    if (value < 0.0)
+      quanta_ -= quanta;
+    else
+      quanta_ += quanta;
+  }
+  BR_HD void add(const ExactSum& other) { quanta_ += other.quanta_; }
+
+  BR_HD double value() const {
+    const bool negative = (quanta_ >> 127) != 0;
+    const Quanta size = negative ? -quanta_ : quanta_;
+    const double high = static_cast<double>(static_cast<std::uint64_t>(size >> 64));
+    const double low = static_cast<double>(static_cast<std::uint64_t>(size));
+    const double result = high + low / 18446744073709551616.0;
+    return negative ? -result : result;
+  }
+
+ private:
+  Quanta quanta_ = 0;
+};
+
+BR_HD inline ExactSum operator+(ExactSum a, const ExactSum& b) {
+  a.add(b);
+  return a;
+}
+
+/// Where the energy of a model is at one moment, and what went in and out since the start  [J].
+struct EnergyBalance {
+  double kinetic = 0.0;         ///< of translation and rotation
+  double elastic = 0.0;         ///< stored in links and contacts
+  double fracture = 0.0;        ///< spent on softening and breaking
+  double plastic = 0.0;         ///< spent on yielding of steel and on plastic moments
+  double friction = 0.0;        ///< spent on sliding
+  double damping = 0.0;         ///< taken by local damping
+  double contact = 0.0;         ///< taken by the dashpots of contacts
+  double work = 0.0;            ///< put in by gravity, walls and prescribed motion
+  double start = 0.0;           ///< kinetic and elastic at the start
+  double error_relative = 0.0;  ///< |what is missing| / the largest energy there was  [-]
+
+  double total() const {
+    return kinetic + elastic + fracture + plastic + friction + damping + contact;
+  }
+  double missing() const { return total() - start - work; }
+};
+
+}  // namespace breccia

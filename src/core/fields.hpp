@@ -1,0 +1,37 @@
+#pragma once
+// Walking a state's `each_field(visit)`: the one list of what a state carries.
+//
+// A visitor is called as visit(name, unit, array) for every array. Arrays are Buffer<T> (one item
+// per element, link or pair) or Vec3Planes (three planes of doubles). What grows, reorders, saves
+// or sends a state is written once, here and in io/checkpoint, and never lists members again.
+
+#include "core/planes.hpp"
+#include "exec/buffer.hpp"
+
+namespace breccia {
+
+/// Gives every array of the state `count` items; new ones are zero.
+template <class State>
+void resize_fields(State& state, Index count) {
+  state.each_field([count](const char*, const char*, auto& array) { array.resize(count); });
+}
+
+/// Replaces every array by one in `space`, holding the same items.
+template <class State>
+void move_fields(State& state, Space space) {
+  state.each_field([space](const char*, const char*, auto& array) {
+    std::remove_reference_t<decltype(array)> there(space);
+    copy_to(there, array);
+    array = std::move(there);
+  });
+}
+
+/// A copy in the host's memory, for output and checks.
+template <class State>
+State host_copy(const State& state) {
+  State copy = state;
+  move_fields(copy, Space::host);
+  return copy;
+}
+
+}  // namespace breccia

@@ -1,0 +1,66 @@
+#pragma once
+// Vectors stored by component: three planes of doubles, read and written in order by links and
+// pairs.
+//
+// Neighbouring links are processed together (a warp, or the lanes of a processor's vector), so each
+// component lies contiguous. Elements, which are gathered at random, keep whole vectors instead.
+
+#include "exec/buffer.hpp"
+#include "math/vec.hpp"
+
+namespace breccia {
+
+template <class T>
+struct PlanesView {
+  View<T> items;  ///< the x plane, then y, then z
+  Index stride = 0;
+
+  BR_HD Vec3 operator[](Index i) const {
+    return {items[i], items[stride + i], items[2 * stride + i]};
+  }
+  BR_HD void store(Index i, const Vec3& v) const {
+    items[i] = v.x;
+    items[stride + i] = v.y;
+    items[2 * stride + i] = v.z;
+  }
+};
+
+/// An array of vectors, by component.
+class Vec3Planes {
+ public:
+  using value_type = Vec3;
+  explicit Vec3Planes(Space space = Space::host) : items_(space) {}
+
+  Space space() const { return items_.space(); }
+  Index size() const { return stride_; }
+
+  /// Keeps the first min(old, new) vectors; vectors beyond them are zero.
+  void resize(Index size) {
+    if (size == stride_) return;
+    Buffer<double> items(items_.space(), 3 * size);
+    const Index kept = size < stride_ ? size : stride_;
+    for (Index plane = 0; plane < 3; ++plane)
+      if (kept > 0)
+        copy_bytes(items.data() + plane * size, items.space(), items_.data() + plane * stride_,
+                   items_.space(), static_cast<std::size_t>(kept) * sizeof(double));
+    items_.swap(items);
+    stride_ = size;
+  }
+
+  PlanesView<double> view() { return {items_.view(), stride_}; }
+  PlanesView<const double> view() const { return {items_.view(), stride_}; }
+
+  const Buffer<double>& items() const { return items_; }
+  Buffer<double>& items() { return items_; }
+
+  friend void copy_to(Vec3Planes& to, const Vec3Planes& from) {
+    copy_to(to.items_, from.items_);
+    to.stride_ = from.stride_;
+  }
+
+ private:
+  Buffer<double> items_;
+  Index stride_ = 0;
+};
+
+}  // namespace breccia

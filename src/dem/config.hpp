@@ -1,0 +1,278 @@
+#pragma once
+// The case file of the DEM: every key with its unit, range and meaning.
+
+#include <cmath>
+
+#include "core/case_config.hpp"
+
+namespace breccia::dem {
+
+/// [material.<name>]
+struct MaterialConfig {
+  std::string name;
+  std::string law = "concrete";
+  double density = 2400.0;  ///< of the bulk, voids included  [kg/m3]
+  double young = 30e9;      ///< E, macroscopic  [Pa]
+  double poisson = 0.2;     ///< nu, macroscopic  [-]
+  // concrete (docs/theory.md, cohesive links)
+  double tensile_strength = 2.2e6;                ///< T, local  [Pa]
+  double cohesion = 5.5e6;                        ///< C, local  [Pa]
+  double softening = 5.0;                         ///< zeta: initial over softening stiffness  [-]
+  double friction_angle = 0.5235987755982988;     ///< phi_i of intact links  [rad]
+  double rolling_stiffness = 1.0;                 ///< beta_r  [-]
+  double rolling_limit = 0.17;                    ///< eta  [-]
+  double alpha = 3.9, beta = 3.125, gamma = 5.0;  ///< macro-micro constants  [-]
+  std::string shear = "plastic";
+  // steel
+  double yield = 500e6;          ///< f_y  [Pa]
+  double hardening = 1e9;        ///< H  [Pa]
+  double failure_strain = 0.08;  ///< plastic strain at rupture  [-]
+  // interface (steel to concrete)
+  std::string bond = "mc90";
+  double bond_strength = 13.7e6;                    ///< tau_max  [Pa]
+  double bond_residual = 5.5e6;                     ///< tau_f  [Pa]
+  double slip1 = 1e-3, slip2 = 3e-3, slip3 = 8e-3;  ///< s_1, s_2, s_3  [m]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("law", law, OneOf{"concrete", "steel", "interface", "grain"},
+        "concrete: cohesive links; steel: bars; interface: between bars and concrete; grain: "
+        "contacts only");
+    key("density", density, "kg/m3", positive, "mass per volume of the bulk material");
+    key("young", young, "Pa", positive, "Young's modulus of the bulk material");
+    key("poisson", poisson, "-", Range{-1.0, 0.5, Open::both},
+        "Poisson's ratio of the bulk material; links need at most 1 / alpha");
+    key("tensile_strength", tensile_strength, "Pa", not_negative,
+        "local tensile strength T of a link");
+    key("cohesion", cohesion, "Pa", not_negative, "local cohesion C of a link");
+    key("softening", softening, "-", not_negative,
+        "zeta, initial stiffness over softening stiffness in tension; 0 is brittle");
+    key("friction_angle", friction_angle, "rad", Range{0.0, 1.5707, Open::high},
+        "internal friction angle of intact links");
+    key("rolling_stiffness", rolling_stiffness, "-", not_negative,
+        "beta_r, rolling stiffness over shear stiffness times radius squared; 0 switches moments "
+        "off");
+    key("rolling_limit", rolling_limit, "-", not_negative, "eta, plastic limit of the moments");
+    key("alpha", alpha, "-", positive, "macro-micro constant of Poisson's ratio");
+    key("beta", beta, "-", positive, "macro-micro constant of the stiffness");
+    key("gamma", gamma, "-", positive, "macro-micro constant of the stiffness");
+    key("shear", shear, OneOf{"plastic", "brittle"}, "what a link does at its shear strength");
+    key("yield", yield, "Pa", positive, "yield stress of steel");
+    key("hardening", hardening, "Pa", not_negative, "plastic hardening modulus of steel");
+    key("failure_strain", failure_strain, "-", positive, "plastic strain at which steel ruptures");
+    key("bond", bond, OneOf{"perfect", "plastic", "mc90"},
+        "bond-slip law: no limit, constant limit, or the curve of the CEB-FIP Model Code 1990");
+    key("bond_strength", bond_strength, "Pa", not_negative, "largest bond stress tau_max");
+    key("bond_residual", bond_residual, "Pa", not_negative, "bond stress after slip3, mc90 only");
+    key("slip1", slip1, "m", positive, "slip at which tau_max is reached, mc90 only");
+    key("slip2", slip2, "m", positive, "slip at which the bond starts to fall, mc90 only");
+    key("slip3", slip3, "m", positive, "slip at which the bond is residual, mc90 only");
+  }
+};
+
+/// [body.pack]: a disordered packing
+struct PackConfig {
+  int count = 0;              ///< elements  [-]
+  double size_ratio = 2.0;    ///< largest over smallest radius, uniformly spread  [-]
+  double compactness = 0.60;  ///< share of the volume that elements fill  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("count", count, "-", Range{1, 2e9}, "how many elements fill the body");
+    key.required("count");
+    key("size_ratio", size_ratio, "-", Range{1.0, 10.0}, "largest over smallest radius");
+    key("compactness", compactness, "-", Range{0.05, 0.64},
+        "share of the volume that elements fill");
+  }
+};
+
+/// [body.rebar]: mats of bars through a box-shaped body
+struct RebarConfig {
+  std::string in;             ///< body that the bars reinforce
+  std::string interface_law;  ///< material of the bond
+  double diameter = 8e-3;     ///< d_b  [m]
+  double cover = 0.02;        ///< from the face to the outer bar's axis  [m]
+  int layers = 2;             ///< mats: 1 bottom, 2 bottom and top  [-]
+  int bars = 7;               ///< bars in each direction of a mat  [-]
+  int elements = 28;          ///< elements along each bar  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("in", in, "body that the bars reinforce; it must be a box");
+    key.required("in");
+    key("interface", interface_law, "material (law interface) that bonds bars and concrete");
+    key.required("interface");
+    key("diameter", diameter, "m", positive, "bar diameter");
+    key("cover", cover, "m", positive, "distance from the face to the axes of the outer bars");
+    key("layers", layers, "-", Range{1, 2}, "1: a mat near the bottom; 2: also one near the top");
+    key("bars", bars, "-", Range{1, 10000}, "bars in each of the two directions of a mat");
+    key("elements", elements, "-", Range{2, 100000}, "elements along each bar");
+  }
+};
+
+/// [[body]]
+struct BodyConfig {
+  std::string name;
+  std::string shape = "box";
+  std::string material;
+  Vec3 center{};        ///<  [m]
+  Vec3 size{};          ///< edge lengths of a box  [m]
+  double radius = 0.0;  ///< of a sphere or cylinder  [m]
+  double length = 0.0;  ///< of a cylinder, along z  [m]
+  PackConfig pack;
+  RebarConfig rebar;
+  Vec3 velocity{};   ///< at the start  [m/s]
+  Vec3 spin{};       ///< at the start, of every element about the body's centre  [rad/s]
+  std::string file;  ///< CSV of x, y, z, radius in metres
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the body: its elements form a group of this name");
+    key.required("name");
+    key("shape", shape, OneOf{"box", "sphere", "cylinder", "element", "rebar", "file"},
+        "box, sphere, cylinder: a packing; element: one sphere; rebar: mats of bars; file: spheres "
+        "from a CSV");
+    key("material", material, "name of a material");
+    key.required("material");
+    key("center", center, "m", any_number, "centre of the body");
+    key("size", size, "m", not_negative, "edge lengths of a box");
+    key("radius", radius, "m", not_negative, "radius of a sphere, cylinder or single element");
+    key("length", length, "m", not_negative, "length of a cylinder, along z");
+    key.table("pack", pack, "the packing of a box, sphere or cylinder");
+    key.table("rebar", rebar, "the mats of bars of a rebar body");
+    key("velocity", velocity, "m/s", any_number, "velocity at the start");
+    key("spin", spin, "rad/s", any_number,
+        "angular velocity of the body about its centre at the start");
+    key("file", file, "CSV file of x,y,z,radius in metres, beside the case file");
+  }
+};
+
+/// [links]
+struct LinksConfig {
+  double per_element = 0.0;  ///< z; the interaction range is solved for  [-]
+  double range = 1.4;        ///< gamma_int, used when per_element is 0  [-]
+  int count = 0;             ///< links in the whole model; 0: by per_element or range  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("per_element", per_element, "-", not_negative,
+        "links per element (2 x links / elements); the interaction range is solved for; 0: use "
+        "range");
+    key("range", range, "-", Range{1.0, 3.0},
+        "elements are linked up to this many times the sum of their radii");
+    key("count", count, "-", Range{0, 2e9},
+        "links in the whole model; the interaction range is solved for; 0: use per_element or "
+        "range");
+  }
+};
+
+/// [contact]
+struct ContactConfig {
+  std::string law = "linear";
+  double friction = 0.5773502691896257;  ///< tan phi_c  [-]
+  double restitution = 1.0;              ///< e  [-]
+  double rolling_limit = 0.0;            ///< eta of contacts  [-]
+  double rolling_stiffness = 0.0;        ///< beta_r of contacts  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("law", law, OneOf{"linear", "hertz"},
+        "linear springs with the links' stiffness, or Hertz and Mindlin");
+    key("friction", friction, "-", not_negative,
+        "coefficient of friction of contacts and broken links");
+    key("restitution", restitution, "-", Range{0.0, 1.0, Open::low},
+        "coefficient of restitution of new contacts; 1 switches their dashpots off");
+    key("rolling_limit", rolling_limit, "-", not_negative, "eta, plastic limit of rolling moments");
+    key("rolling_stiffness", rolling_stiffness, "-", not_negative,
+        "beta_r, rolling stiffness over shear stiffness times radius squared; 0: contacts roll "
+        "freely");
+  }
+};
+
+/// [[wall]]: a rigid half-space
+struct WallConfig {
+  std::string name;
+  Vec3 point{};                ///< on the face  [m]
+  Vec3 normal{0.0, 0.0, 1.0};  ///< out of the wall, towards the elements  [-]
+  Vec3 velocity{};             ///<  [m/s]
+  double stiffness = 1.0;      ///< over the contact stiffness of an element with its like  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the wall");
+    key.required("name");
+    key("point", point, "m", any_number, "a point of the wall's face");
+    key("normal", normal, "-", any_number, "direction out of the wall, towards the elements");
+    key("velocity", velocity, "m/s", any_number, "velocity of the wall");
+    key("stiffness", stiffness, "-", positive,
+        "stiffness of its linear contacts over that of two like elements");
+  }
+};
+
+/// [[support]]: prescribed motion of the elements in a region
+struct SupportConfig {
+  std::string name;
+  std::string on;  ///< group; empty: all
+  Vec3 min{-no_limit, -no_limit, -no_limit}, max{no_limit, no_limit, no_limit};  ///<  [m]
+  std::vector<std::string> fix{"x", "y", "z"};
+  Vec3 velocity{};    ///< of the fixed directions  [m/s]
+  double ramp = 0.0;  ///< time from rest to that velocity  [s]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the support");
+    key.required("name");
+    key("on", on, "body whose elements are held; empty: of all bodies");
+    key("min", min, "m", any_number, "lower corner of the region that holds the elements' centres");
+    key("max", max, "m", any_number, "upper corner of that region");
+    key("fix", fix,
+        "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all");
+    key("velocity", velocity, "m/s", any_number, "prescribed velocity of the fixed directions");
+    key("ramp", ramp, "s", not_negative, "time in which that velocity grows from zero, linearly");
+  }
+};
+
+/// [search]
+struct SearchConfig {
+  double margin = 0.2;  ///< over the mean radius  [-]
+  int every = 0;        ///< steps; 0: by travel  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("margin", margin, "-", Range{0.0, 1.0, Open::low},
+        "how far two elements may approach before a new search, over the mean radius");
+    key("every", every, "-", Range{0, 100},
+        "search every so many steps, as Durand et al. 2012 do (10); 0 searches when travel uses "
+        "the margin up");
+  }
+};
+
+/// A whole DEM case.
+struct Config : CaseConfig {
+  Vec3 gravity{};              ///<  [m/s2]
+  double local_damping = 0.0;  ///< lambda_d, quasi-static runs only  [-]
+  std::vector<MaterialConfig> materials;
+  std::vector<BodyConfig> bodies;
+  LinksConfig links;
+  ContactConfig contact;
+  std::vector<WallConfig> walls;
+  std::vector<SupportConfig> supports;
+  SearchConfig search;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    CaseConfig::each_key(key);
+    key("gravity", gravity, "m/s2", any_number, "acceleration of gravity");
+    key("local_damping", local_damping, "-", Range{0.0, 1.0, Open::high},
+        "share of each force that opposes motion (Cundall), for quasi-static runs only");
+    key.named("material", materials, "the materials");
+    key.list("body", bodies, "what there is");
+    key.table("links", links, "which elements are linked at the start");
+    key.table("contact", contact, "what happens where elements touch");
+    key.list("wall", walls, "rigid planes");
+    key.list("support", supports, "prescribed motion");
+    key.table("search", search, "when new contacts are searched for");
+  }
+};
+
+}  // namespace breccia::dem

@@ -1,0 +1,63 @@
+#pragma once
+// What a discrete element carries.
+
+#include "exec/buffer.hpp"
+#include "math/vec.hpp"
+
+namespace breccia::dem {
+
+/// Degrees of freedom that a support prescribes: bits of Elements::fixed.
+enum Fixed : std::uint8_t {
+  fixed_none = 0,
+  fixed_x = 1,
+  fixed_y = 2,
+  fixed_z = 4,
+  fixed_spin_x = 8,
+  fixed_spin_y = 16,
+  fixed_spin_z = 32,
+};
+
+/// Rigid spheres with six degrees of freedom. Positions are at the time of the step, velocities and
+/// spins half a step earlier (leapfrog). Bars are spheres too, with the mass of their piece of bar.
+struct Elements {
+  Buffer<GlobalId> id;             ///< number of the element, kept for ever  [-]
+  Buffer<std::int16_t> group;      ///< body it belongs to, index into Model::groups  [-]
+  Buffer<std::int16_t> material;   ///< index into the case's materials  [-]
+  Buffer<double> radius;           ///<  [m]
+  Buffer<double> mass;             ///<  [kg]
+  Buffer<double> inertia;          ///< the same about every axis  [kg m2]
+  Buffer<Vec3> position;           ///< centre, world frame  [m]
+  Buffer<Vec3> velocity;           ///< of the centre, half a step back  [m/s]
+  Buffer<Vec3> spin;               ///< angular velocity, half a step back  [rad/s]
+  Buffer<Quaternion> orientation;  ///< since the start  [-]
+  Buffer<Vec3> force;              ///< sum of all interactions at this time  [N]
+  Buffer<Vec3> torque;             ///< about the centre  [N m]
+  Buffer<std::uint8_t> fixed;      ///< prescribed degrees of freedom, bits of Fixed  [-]
+  Buffer<std::int16_t> motion;     ///< index of the prescribed motion, -1: stands still  [-]
+  Buffer<double> damping_work;     ///< taken out by local damping so far  [J]
+  Buffer<double> load_work;        ///< put in by prescribed motion so far  [J]
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("id", "-", id);
+    field("group", "-", group);
+    field("material", "-", material);
+    field("radius", "m", radius);
+    field("mass", "kg", mass);
+    field("inertia", "kg m2", inertia);
+    field("position", "m", position);
+    field("velocity", "m/s", velocity);
+    field("spin", "rad/s", spin);
+    field("orientation", "-", orientation);
+    field("force", "N", force);
+    field("torque", "N m", torque);
+    field("fixed", "-", fixed);
+    field("motion", "-", motion);
+    field("damping_work", "J", damping_work);
+    field("load_work", "J", load_work);
+  }
+
+  Index size() const { return id.size(); }
+};
+
+}  // namespace breccia::dem

@@ -1,0 +1,43 @@
+#pragma once
+// A model on the host, ready to be set up: elements and the links they start with.
+
+#include <string>
+#include <vector>
+
+#include "exec/types.hpp"
+#include "math/vec.hpp"
+
+namespace breccia::dem {
+
+/// What joins two elements from the start.
+enum class LinkKind : std::uint8_t { concrete, steel, interface };
+
+/// What prepare makes of a case and dem/setup turns into a world. Element i has global id i.
+struct Model {
+  std::vector<std::string> groups;     ///< names of the bodies
+  std::vector<std::int16_t> group;     ///< of each element, index into groups
+  std::vector<std::int16_t> material;  ///< of each element, index into Config::materials
+  std::vector<double> radius;          ///<  [m]
+  std::vector<double> mass;            ///<  [kg]
+  std::vector<double> inertia;         ///<  [kg m2]
+  std::vector<Vec3> position;          ///<  [m]
+  std::vector<Vec3> velocity;          ///<  [m/s]
+  std::vector<Vec3> spin;              ///<  [rad/s]
+
+  /// Elements a < b, stress-free at their distance in `position`.
+  struct Link {
+    Index a, b;
+    LinkKind kind;
+    std::int16_t material;  ///< law of the link: the concrete's, steel's or interface's material
+  };
+  std::vector<Link> links;  ///< sorted by a, then b
+
+  std::vector<Index> bar_previous;  ///< neighbour of a bar's element along its bar, -1 elsewhere
+  std::vector<Index> bar_next;      ///< likewise, towards the other end
+
+  double interaction_range = 0.0;  ///< gamma_int that was used  [-]
+
+  Index size() const { return static_cast<Index>(position.size()); }
+};
+
+}  // namespace breccia::dem

@@ -1,0 +1,154 @@
+#pragma once
+// Arrays that live in one space (Buffer) and what kernels see of them (View).
+
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "exec/memory.hpp"
+#include "exec/space.hpp"
+
+namespace breccia {
+
+/// What a kernel sees of an array: pointer and length. Reading is checked in checked builds.
+template <class T>
+struct View {
+  T* data = nullptr;
+  Index size = 0;
+#if defined(BR_CHECKED)
+  Space space = Space::host;
+#endif
+
+  BR_HD T& operator[](Index i) const {
+    BR_ASSERT(i >= 0 && i < size);
+#if defined(BR_CHECKED) && !defined(__CUDA_ARCH__)
+    BR_ASSERT(space == Space::host || inside_kernel());
+#endif
+    return data[i];
+  }
+  BR_HD operator View<const T>() const {  // NOLINT: a writable view reads as well
+    View<const T> view;
+    view.data = data;
+    view.size = size;
+#if defined(BR_CHECKED)
+    view.space = space;
+#endif
+    return view;
+  }
+};
+
+/// A growing array of plain values in one space. New items are zero. Never shrinks its memory.
+template <class T>
+class Buffer {
+  static_assert(std::is_trivially_copyable_v<T>, "arrays cross spaces by copying bytes");
+
+ public:
+  using value_type = T;
+
+  explicit Buffer(Space space = Space::host) : space_(space) {}
+  Buffer(Space space, Index size) : space_(space) { resize(size); }
+  Buffer(const Buffer& other) : space_(other.space_) { assign(other); }
+  Buffer(Buffer&& other) noexcept { swap(other); }
+  Buffer& operator=(const Buffer& other) {
+    if (this != &other) {
+      Buffer copy(other);
+      swap(copy);
+    }
+    return *this;
+  }
+  Buffer& operator=(Buffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Buffer() { release(space_, data_); }
+
+  void swap(Buffer& other) noexcept {
+    std::swap(space_, other.space_);
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+  Space space() const { return space_; }
+  Index size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+
+  /// Keeps the first min(old, new) items; items beyond them are zero.
+  void resize(Index size) {
+    reserve(size);
+    if (size > size_)
+      clear_bytes(data_ + size_, space_, static_cast<std::size_t>(size - size_) * sizeof(T));
+    size_ = size;
+  }
+  void reserve(Index capacity) {
+    if (capacity <= capacity_) return;
+    const Index grown = capacity > capacity_ + capacity_ / 2 ? capacity : capacity_ + capacity_ / 2;
+    T* larger = static_cast<T*>(allocate(space_, static_cast<std::size_t>(grown) * sizeof(T)));
+    copy_bytes(larger, space_, data_, space_, static_cast<std::size_t>(size_) * sizeof(T));
+    release(space_, data_);
+    data_ = larger;
+    capacity_ = grown;
+  }
+  void clear() { size_ = 0; }
+
+  View<T> view() { return make<T>(data_); }
+  View<const T> view() const { return make<const T>(data_); }
+
+  /// The items of an array of the host space; a kernel's array must be copied first.
+  std::span<T> host() {
+    BR_ASSERT(space_ == Space::host);
+    return {data_, static_cast<std::size_t>(size_)};
+  }
+  std::span<const T> host() const {
+    BR_ASSERT(space_ == Space::host);
+    return {data_, static_cast<std::size_t>(size_)};
+  }
+
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+
+ private:
+  void assign(const Buffer& other) {
+    reserve(other.size_);
+    size_ = other.size_;
+    copy_bytes(data_, space_, other.data_, other.space_,
+               static_cast<std::size_t>(size_) * sizeof(T));
+  }
+  template <class U>
+  View<U> make(U* data) const {
+    View<U> view;
+    view.data = data;
+    view.size = size_;
+#if defined(BR_CHECKED)
+    view.space = space_;
+#endif
+    return view;
+  }
+
+  Space space_ = Space::host;
+  T* data_ = nullptr;
+  Index size_ = 0;
+  Index capacity_ = 0;
+};
+
+/// The visible crossing between spaces: `to` gets the size and items of `from`, in its own space.
+template <class T>
+void copy_to(Buffer<T>& to, const Buffer<T>& from) {
+  to.resize(from.size());
+  copy_bytes(to.data(), to.space(), from.data(), from.space(),
+             static_cast<std::size_t>(from.size()) * sizeof(T));
+}
+template <class T>
+void copy_to(Buffer<T>& to, const std::vector<T>& from) {
+  to.resize(static_cast<Index>(from.size()));
+  copy_bytes(to.data(), to.space(), from.data(), Space::host, from.size() * sizeof(T));
+}
+template <class T>
+void copy_to(std::vector<T>& to, const Buffer<T>& from) {
+  to.resize(static_cast<std::size_t>(from.size()));
+  copy_bytes(to.data(), Space::host, from.data(), from.space(), to.size() * sizeof(T));
+}
+
+}  // namespace breccia

@@ -1,0 +1,89 @@
+#include "exec/memory.hpp"
+
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+#if defined(BR_CUDA)
+#include <cuda_runtime.h>
+#endif
+
+namespace breccia {
+namespace {
+
+constexpr std::size_t alignment =
+    64;  // one cache line; the size is kept in the line before the array
+std::atomic<std::size_t> alive_bytes{0}, peak_bytes{0};
+
+void book(std::size_t bytes) {
+  const std::size_t now = alive_bytes += bytes;
+  std::size_t peak = peak_bytes.load();
+  while (now > peak && !peak_bytes.compare_exchange_weak(peak, now)) {
+  }
+}
+
+}  // namespace
+
+void* allocate(Space space, std::size_t bytes) {
+  if (space == Space::cuda) {
+#if defined(BR_CUDA)
+    void* memory = nullptr;
+    if (cudaMalloc(&memory, bytes) != cudaSuccess) throw std::bad_alloc();
+    book(bytes);
+    return memory;
+#else
+    throw std::bad_alloc();
+#endif
+  }
+  const std::size_t padded = (bytes + 2 * alignment - 1) / alignment * alignment + alignment;
+  auto* block = static_cast<std::byte*>(std::aligned_alloc(alignment, padded));
+  if (block == nullptr) throw std::bad_alloc();
+  std::memcpy(block, &padded, sizeof padded);
+  book(padded);
+  return block + alignment;
+}
+
+void release(Space space, void* memory) noexcept {
+  if (memory == nullptr) return;
+  if (space == Space::cuda) {
+#if defined(BR_CUDA)
+    cudaFree(memory);
+#endif
+    return;
+  }
+  auto* block = static_cast<std::byte*>(memory) - alignment;
+  std::size_t padded = 0;
+  std::memcpy(&padded, block, sizeof padded);
+  alive_bytes -= padded;
+  std::free(block);
+}
+
+void copy_bytes(void* to, [[maybe_unused]] Space to_space, const void* from,
+                [[maybe_unused]] Space from_space, std::size_t bytes) {
+  if (bytes == 0) return;
+#if defined(BR_CUDA)
+  if (to_space == Space::cuda || from_space == Space::cuda) {
+    if (cudaMemcpy(to, from, bytes, cudaMemcpyDefault) != cudaSuccess) throw std::bad_alloc();
+    return;
+  }
+#endif
+  std::memcpy(to, from, bytes);
+}
+
+void clear_bytes(void* memory, [[maybe_unused]] Space space, std::size_t bytes) {
+  if (bytes == 0) return;
+#if defined(BR_CUDA)
+  if (space == Space::cuda) {
+    cudaMemset(memory, 0, bytes);
+    return;
+  }
+#endif
+  std::memset(memory, 0, bytes);
+}
+
+std::size_t peak_array_bytes() {
+  return peak_bytes.load();
+}
+
+}  // namespace breccia

@@ -1,0 +1,20 @@
+#pragma once
+// Raw memory of a space: the one place that allocates arrays and copies between spaces.
+
+#include <cstddef>
+
+#include "exec/space.hpp"
+
+namespace breccia {
+
+/// `bytes` of memory in `space`, aligned to 64 bytes. @throws std::bad_alloc
+void* allocate(Space space, std::size_t bytes);
+void release(Space space, void* memory) noexcept;
+/// Copies between any two spaces; complete on return.
+void copy_bytes(void* to, Space to_space, const void* from, Space from_space, std::size_t bytes);
+/// Sets every byte to zero.
+void clear_bytes(void* memory, Space space, std::size_t bytes);
+/// The largest sum of array memory that was alive at one time in this process.
+std::size_t peak_array_bytes();
+
+}  // namespace breccia

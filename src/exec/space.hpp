@@ -1,0 +1,28 @@
+#pragma once
+// Where arrays live and loops run.
+
+#include "exec/types.hpp"
+
+namespace breccia {
+
+class StageTimers;
+
+/// host: the processor's memory. shadow: also the processor's, but only kernels may read it, as if
+/// it were a device's (finds forgotten copies without a GPU, in checked builds). cuda: device
+/// memory.
+enum class Space { host, shadow, cuda };
+
+/// How a run executes: the space of its arrays and the threads of its host loops.
+struct Exec {
+  Space space = Space::host;
+  int threads = 1;                ///< host threads, >= 1
+  StageTimers* timers = nullptr;  ///< where stages book their wall time; may be absent
+};
+
+/// True on a thread that is inside a kernel: the only place where shadow arrays may be read.
+inline bool& inside_kernel() {
+  static thread_local bool inside = false;
+  return inside;
+}
+
+}  // namespace breccia

@@ -1,0 +1,123 @@
+#pragma once
+// A state on disk: sections of raw items, each with a digest, written so that a kill loses nothing.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/fields.hpp"
+
+namespace breccia {
+
+/// Collects the sections of a checkpoint and writes them at once.
+class CheckpointWriter {
+ public:
+  /// A section of `count` items of `item_bytes` each; the bytes are copied.
+  void section(const std::string& name, const void* items, std::size_t count,
+               std::size_t item_bytes);
+
+  template <class T>
+  void value(const std::string& name, const T& item) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    section(name, &item, 1, sizeof(T));
+  }
+  void text(const std::string& name, const std::string& characters) {
+    section(name, characters.data(), characters.size(), 1);
+  }
+
+  /// Every array of a state, as sections "<prefix>.<array>", in the order of its each_field.
+  template <class State>
+  void fields(const std::string& prefix, State& state) {
+    state.each_field([&](const char* name, const char*, auto& array) {
+      write_array(prefix + "." + name, array);
+    });
+  }
+
+  /// Writes to a temporary name beside `path`, syncs, reads back, verifies, renames and syncs the
+  /// folder.
+  /// @throws IoError naming path and reason; an older file at `path` is then untouched
+  void write(const std::string& path) const;
+
+ private:
+  template <class T>
+  void write_array(const std::string& name, const Buffer<T>& array) {
+    Buffer<T> host;
+    copy_to(host, array);
+    section(name, host.data(), static_cast<std::size_t>(host.size()), sizeof(T));
+  }
+  void write_array(const std::string& name, const Vec3Planes& array) {
+    write_array(name, array.items());
+  }
+
+  struct Section {
+    std::string name;
+    std::vector<std::byte> bytes;
+    std::uint64_t count = 0;
+    std::uint64_t item_bytes = 0;
+  };
+  std::vector<Section> sections_;
+};
+
+/// A checkpoint that has been read and fully verified.
+class CheckpointReader {
+ public:
+  /// @throws IoError if the file cannot be read, CheckpointError naming the section if it is
+  /// damaged,
+  ///         truncated or of another version
+  explicit CheckpointReader(const std::string& path);
+
+  struct Section {
+    std::string name;
+    std::uint64_t count = 0;
+    std::uint64_t item_bytes = 0;
+    std::span<const std::byte> bytes;
+  };
+  const std::vector<Section>& sections() const { return sections_; }
+  bool has(const std::string& name) const;
+  /// @throws CheckpointError if it is missing
+  const Section& section(const std::string& name) const;
+  /// @throws CheckpointError if it is missing or its items are not of `item_bytes`
+  const Section& section(const std::string& name, std::size_t item_bytes) const;
+
+  template <class T>
+  T value(const std::string& name) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const Section& found = section(name, sizeof(T));
+    T item{};
+    copy_items(&item, found, 1, name);
+    return item;
+  }
+  std::string text(const std::string& name) const;
+
+  /// Fills every array of a state from the sections that CheckpointWriter::fields wrote.
+  template <class State>
+  void fields(const std::string& prefix, State& state) const {
+    state.each_field([&](const char* name, const char*, auto& array) {
+      read_array(prefix + "." + name, array);
+    });
+  }
+
+ private:
+  static void copy_items(void* to, const Section& from, std::uint64_t count,
+                         const std::string& name);
+  template <class T>
+  void read_array(const std::string& name, Buffer<T>& array) const {
+    const Section& found = section(name, sizeof(T));
+    Buffer<T> host;
+    host.resize(static_cast<Index>(found.count));
+    copy_items(host.data(), found, found.count, name);
+    copy_to(array, host);
+  }
+  void read_array(const std::string& name, Vec3Planes& array) const {
+    array.resize(static_cast<Index>(section(name, sizeof(double)).count / 3));
+    read_array(name, array.items());
+  }
+
+  std::string path_;
+  std::vector<std::byte> file_;
+  std::vector<Section> sections_;
+};
+
+}  // namespace breccia

@@ -1,0 +1,34 @@
+#pragma once
+// One moment of a run as output sees it: spheres, lines and, in two dimensions, triangles, with
+// fields.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "math/vec.hpp"
+
+namespace breccia {
+
+/// A named quantity, one value or vector an item.
+struct FrameField {
+  std::string name;  ///< "damage", "velocity", ...
+  std::string unit;
+  int components = 1;         ///< 1 or 3
+  std::vector<float> values;  ///< components of item 0, then of item 1, ...
+};
+
+/// What a frame shows. Lines and triangles index `position`.
+struct Frame {
+  std::int64_t step = 0;
+  double time = 0.0;                        ///<  [s]
+  std::vector<Vec3> position;               ///< centres of spheres, or nodes of triangles  [m]
+  std::vector<double> radius;               ///< of the spheres; empty: none are drawn  [m]
+  std::vector<FrameField> point_fields;     ///< one item a position
+  std::vector<std::int32_t> lines;          ///< two indices a line
+  std::vector<FrameField> line_fields;      ///< one item a line
+  std::vector<std::int32_t> triangles;      ///< three indices a triangle
+  std::vector<FrameField> triangle_fields;  ///< one item a triangle
+};
+
+}  // namespace breccia

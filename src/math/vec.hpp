@@ -1,0 +1,106 @@
+#pragma once
+// Small value types. `R` is double in scalar code and a pack of doubles in vectorised host code.
+
+#include <cmath>
+#include <cstdint>
+
+#include "exec/types.hpp"
+
+namespace breccia {
+
+/// A vector of three components.
+template <class R>
+struct Vec3Of {
+  R x{}, y{}, z{};
+
+  BR_HD Vec3Of& operator+=(const Vec3Of& b) {
+    x += b.x;
+    y += b.y;
+    z += b.z;
+    return *this;
+  }
+  BR_HD Vec3Of& operator-=(const Vec3Of& b) {
+    x -= b.x;
+    y -= b.y;
+    z -= b.z;
+    return *this;
+  }
+};
+
+using Vec3 = Vec3Of<double>;
+
+template <class R>
+BR_HD Vec3Of<R> operator+(const Vec3Of<R>& a, const Vec3Of<R>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class R>
+BR_HD Vec3Of<R> operator-(const Vec3Of<R>& a, const Vec3Of<R>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class R>
+BR_HD Vec3Of<R> operator-(const Vec3Of<R>& a) {
+  return {-a.x, -a.y, -a.z};
+}
+template <class R>
+BR_HD Vec3Of<R> operator*(const R& s, const Vec3Of<R>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+template <class R>
+BR_HD R dot(const Vec3Of<R>& a, const Vec3Of<R>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class R>
+BR_HD Vec3Of<R> cross(const Vec3Of<R>& a, const Vec3Of<R>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// What scalar code and packs both answer to; packs overload these in math/lanes.hpp.
+BR_HD inline double root(double a) {
+  return sqrt(a);
+}
+BR_HD inline double absolute(double a) {
+  return fabs(a);
+}
+BR_HD inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
+BR_HD inline double smaller(double a, double b) {
+  return a < b ? a : b;
+}
+BR_HD inline double choose(bool condition, double yes, double no) {
+  return condition ? yes : no;
+}
+BR_HD inline bool any(bool condition) {
+  return condition;
+}
+
+template <class R>
+BR_HD R norm(const Vec3Of<R>& a) {
+  return root(dot(a, a));
+}
+template <class M, class R>
+BR_HD Vec3Of<R> choose(const M& condition, const Vec3Of<R>& yes, const Vec3Of<R>& no) {
+  return {choose(condition, yes.x, no.x), choose(condition, yes.y, no.y),
+          choose(condition, yes.z, no.z)};
+}
+
+/// A unit quaternion w + xi + yj + zk: the orientation of an element.
+struct Quaternion {
+  double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
+};
+BR_HD inline Quaternion operator*(const Quaternion& a, const Quaternion& b) {
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
+/// The orientation after turning by the rotation vector `angle` (small): Cayley's rational form of
+/// the rotation, which needs no sine and stays a unit quaternion. The turned angle is 2
+/// atan(|angle| / 2).
+BR_HD inline Quaternion turned(const Quaternion& q, const Vec3& angle) {
+  const Quaternion t = Quaternion{1.0, 0.5 * angle.x, 0.5 * angle.y, 0.5 * angle.z} * q;
+  const double scale = 1.0 / sqrt(t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z);
+  return {scale * t.w, scale * t.x, scale * t.y, scale * t.z};
+}
+
+}  // namespace breccia

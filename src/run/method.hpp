@@ -1,0 +1,51 @@
+#pragma once
+// What the outer loop asks of a method: the only virtual calls of the program.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/energy.hpp"
+#include "io/checkpoint.hpp"
+#include "io/frame.hpp"
+
+namespace breccia {
+
+/// A named count or number for summary.json, in a section of it ("model", "fracture", "searches",
+/// ...).
+struct Fact {
+  std::string
+      path;  ///< e.g. "model.elements", "model.links_by_kind.concrete", "fracture.broken_links"
+  double value;
+};
+
+/// A running simulation, whatever its method.
+class Method {
+ public:
+  Method() = default;
+  Method(const Method&) = delete;
+  Method& operator=(const Method&) = delete;
+  virtual ~Method() = default;
+
+  /// One time step. @throws NumericsError naming step, time and element
+  virtual void step() = 0;
+  virtual std::int64_t steps() const = 0;  ///< done so far
+  virtual double time() const = 0;         ///< simulated  [s]
+  virtual double time_step() const = 0;    ///< the one last taken  [s]
+
+  virtual EnergyBalance energy() = 0;
+  /// Values of the case's probes, in their order.  [SI]
+  virtual std::vector<double> probes() = 0;
+  /// Order-free hash of all element states by global id: equal on any thread or rank count.
+  virtual std::uint64_t state_hash() = 0;
+  /// Looks for numbers that went wrong. @throws NumericsError naming step, time and element
+  virtual void verify() = 0;
+  virtual Frame frame() = 0;
+  virtual std::vector<Fact> facts() = 0;
+
+  /// Everything the run needs to go on, to and from a checkpoint.
+  virtual void save(CheckpointWriter& writer) = 0;
+  virtual void load(const CheckpointReader& reader) = 0;
+};
+
+}  // namespace breccia
