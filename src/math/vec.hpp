@@ -1,10 +1,9 @@
 #pragma once
 // Small value types. `R` is double in scalar code and a pack of doubles in vectorised host code.
 
-#include <cmath>
 #include <cstdint>
 
-#include "exec/types.hpp"
+#include "math/pack.hpp"
 
 namespace breccia {
 
@@ -52,26 +51,6 @@ BR_HD R dot(const Vec3Of<R>& a, const Vec3Of<R>& b) {
 template <class R>
 BR_HD Vec3Of<R> cross(const Vec3Of<R>& a, const Vec3Of<R>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-// What scalar code and packs both answer to; packs overload these in math/lanes.hpp.
-BR_HD inline double root(double a) {
-  return sqrt(a);
-}
-BR_HD inline double absolute(double a) {
-  return fabs(a);
-}
-BR_HD inline double larger(double a, double b) {
-  return a > b ? a : b;
-}
-BR_HD inline double smaller(double a, double b) {
-  return a < b ? a : b;
-}
-BR_HD inline double choose(bool condition, double yes, double no) {
-  return condition ? yes : no;
-}
-BR_HD inline bool any(bool condition) {
-  return condition;
 }
 
 template <class R>

@@ -1,0 +1,73 @@
+#pragma once
+// How a pair of elements has moved in the last step, as every law of the DEM sees it.
+
+#include "math/lanes.hpp"
+
+namespace breccia::dem {
+
+/// One end of a pair.
+template <class R>
+struct PairEnd {
+  Vec3Of<R> position;  ///<  [m]
+  Vec3Of<R> velocity;  ///< that moved it to its position  [m/s]
+  Vec3Of<R> spin;      ///< likewise  [rad/s]
+};
+
+/// Kinematics of a pair a, b over the step that brought it here (docs/theory.md, pair kinematics).
+///
+/// The normal n points from a to b. The contact point divides the distance into the arms of a and
+/// b, arm_a + arm_b = distance exactly, so that the pair's torques conserve angular momentum.
+template <class R>
+struct PairMotion {
+  Vec3Of<R> normal;     ///< n  [-]
+  R distance;           ///< D  [m]
+  R arm_a, arm_b;       ///< from the centres to the contact point, along n  [m]
+  Vec3Of<R> slip;       ///< of b against a at the contact point, across n, in this step  [m]
+  Vec3Of<R> turn;       ///< rotation of b against a in this step  [rad]
+  Vec3Of<R> half_turn;  ///< h = tan(angle / 2) axis: how the pair's frame turned in this step  [-]
+  R turn_scale;         ///< 2 / (1 + h.h)  [-]
+
+  /// A vector kept by the pair (shear force, moment), turned with the pair: Cayley's form of the
+  /// rotation that brings the old normal to the new one and spins about it by the mean spin. It
+  /// keeps the length.
+  BR_HD Vec3Of<R> carried(const Vec3Of<R>& v) const {
+    const Vec3Of<R> w = cross(half_turn, v);
+    return v + turn_scale * (w + cross(half_turn, w));
+  }
+  /// What is left of a vector across the normal.
+  BR_HD Vec3Of<R> across(const Vec3Of<R>& v) const { return v - dot(v, normal) * normal; }
+};
+
+/// @param excess  radius of a minus radius of b: puts the contact point into the middle of the gap
+/// [m]
+/// @param dt      the step that moved the ends to where they are; 0 at the start  [s]
+///
+/// The old normal follows from velocities: d_old = d - dt (v_b - v_a), so none is stored, and
+/// tan(angle) axis = (d_old x n) / (d_old . n) = dt (n x dv) / (D - dt dv.n) holds exactly.
+template <class R>
+BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const R& excess,
+                                double dt) {
+  PairMotion<R> m;
+  const Vec3Of<R> d = b.position - a.position;
+  m.distance = norm(d);
+  m.normal = (1.0 / m.distance) * d;
+  m.arm_a = 0.5 * (m.distance + excess);
+  m.arm_b = 0.5 * (m.distance - excess);
+
+  const R step = constant<R>(dt);
+  const Vec3Of<R> dv = b.velocity - a.velocity;
+  const Vec3Of<R> sliding = dv - cross(m.arm_b * b.spin + m.arm_a * a.spin, m.normal);
+  m.slip = step * m.across(sliding);
+  m.turn = step * (b.spin - a.spin);
+
+  const R tangent_scale = step / (m.distance - step * dot(dv, m.normal));
+  const Vec3Of<R> tangent = tangent_scale * cross(m.normal, dv);
+  const R half = constant<R>(0.5), quarter = constant<R>(0.25);
+  const R half_tangent = half * (1.0 - quarter * dot(tangent, tangent));  // tan(t/2) from tan t
+  const R spin = quarter * step * dot(m.normal, a.spin + b.spin);  // half the mean spin's angle
+  m.half_turn = half_tangent * tangent + spin * m.normal;
+  m.turn_scale = 2.0 / (1.0 + dot(m.half_turn, m.half_turn));
+  return m;
+}
+
+}  // namespace breccia::dem
