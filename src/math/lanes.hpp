@@ -53,9 +53,6 @@ BR_HD inline Vec3 gather(const View<const Vec3>& array, Indices<double> i) {
 
 #if !defined(__CUDACC__) && defined(__AVX512F__)
 
-return ~a;
-}
-
 template <>
 struct Indices<Pack8> {
   __m256i at;
@@ -75,9 +72,6 @@ inline Vec3Of<Pack8> gather(const View<const Vec3>& array, Indices<Pack8> i) {
 }
 
 #elif !defined(__CUDACC__) && defined(__AVX2__)
-
-return ~a;
-}
 
 template <>
 struct Indices<Pack4> {

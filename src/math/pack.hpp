@@ -74,7 +74,9 @@ inline Mask8 either(Mask8 a, Mask8 b) {
   return a | b;
 }
 inline Mask8 opposite(Mask8 a) {
-  using WidestPack = Pack8;
+  return ~a;
+}
+using WidestPack = Pack8;
 
 #elif !defined(__CUDACC__) && defined(__AVX2__)
 
@@ -106,18 +108,20 @@ inline Mask4 either(Mask4 a, Mask4 b) {
   return a | b;
 }
 inline Mask4 opposite(Mask4 a) {
-  using WidestPack = Pack4;
+  return ~a;
+}
+using WidestPack = Pack4;
 
 #endif
 
-  /// How many items a number of type R stands for.
-  template <class R>
-  inline constexpr Index width_of = static_cast<Index>(sizeof(R) / sizeof(double));
+/// How many items a number of type R stands for.
+template <class R>
+inline constexpr Index width_of = static_cast<Index>(sizeof(R) / sizeof(double));
 
-  /// The same constant for every item of a number.
-  template <class R>
-  BR_HD inline R constant(double value) {
-    return R{} + value;
-  }
+/// The same constant for every item of a number.
+template <class R>
+BR_HD inline R constant(double value) {
+  return R{} + value;
+}
 
 }  // namespace breccia
