@@ -29,6 +29,7 @@ struct Frame {
   std::vector<FrameField> line_fields;      ///< one item a line
   std::vector<std::int32_t> triangles;      ///< three indices a triangle
   std::vector<FrameField> triangle_fields;  ///< one item a triangle
+  std::vector<std::string> groups;          ///< names for the point field "group"; may be empty
 };
 
 }  // namespace breccia

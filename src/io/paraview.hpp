@@ -1,0 +1,42 @@
+#pragma once
+// A series of frames that a stock ParaView opens with its times.
+
+#include <string>
+#include <vector>
+
+#include "io/frame.hpp"
+
+namespace breccia {
+
+/// Writes frames into a result folder:
+///
+///   fields/elements_0000.vtu  points with every point field and `radius`; vertices, or triangles
+///   fields/links_0000.vtu     the lines with every line field
+///   elements.pvd, links.pvd   each series with its times; result.pvd: both in one
+///
+/// VTK XML, appended raw, zlib blocks; numbers as Float32. The .pvd files are replaced as a whole
+/// after each frame, so a run that is killed leaves a series that opens.
+class ParaviewSeries {
+ public:
+  /// Starts a new series in the folder, which is made if it does not exist. @throws IoError
+  explicit ParaviewSeries(const std::string& folder);
+
+  /// Continues the series of a folder: frames later than `time` [s] are dropped. @throws IoError
+  static ParaviewSeries resumed(const std::string& folder, double time);
+
+  /// Adds a frame. One that is not later than the last replaces all from its time on. @throws
+  /// IoError
+  void write(const Frame& frame);
+
+  /// Times of the frames written so far.  [s]
+  const std::vector<double>& times() const { return times_; }
+
+ private:
+  void write_collections() const;
+  void drop_from(std::size_t first);
+
+  std::string folder_;
+  std::vector<double> times_;
+};
+
+}  // namespace breccia

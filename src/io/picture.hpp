@@ -1,0 +1,70 @@
+#pragma once
+// Pictures of a frame: drawn in software, without a display or a GPU, with the same bits
+// everywhere.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/frame.hpp"
+
+namespace breccia {
+
+/// Eight bits a channel; rows from the top, pixels from the left, red green blue.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< 3 width height bytes
+};
+
+/// The box of space that a picture shows.
+struct Extent {
+  Vec3 low, high;  ///<  [m]
+};
+
+/// The values at the two ends of the colour bar, in the unit of the field.
+struct ValueRange {
+  double low, high;
+};
+
+/// What to draw and how. Angles and presets: `view` is one of
+///   iso  from above, front and right, z up        x  from +x, y to the right, z up
+///   y    from the front (-y), x right, z up       z  from above, x right, y up
+/// `clip` is empty or a plane such as "x=0": what lies between it and the viewer is dropped and the
+/// cut is shown (seen along the plane: what lies beyond in the direction of the axis is dropped).
+/// "x<0.1" and "x>0.1" say which side stays.
+struct RenderOptions {
+  std::string field = "damage";  ///< of points, lines or triangles; "velocity": its length,
+                                 ///< "velocity_z": a component; "": one colour a group
+  std::string view = "iso";
+  std::string clip;
+  int width = 1280, height = 960;   ///<  [pixels]
+  bool show_spheres = true;         ///< draw the elements
+  bool show_links = false;          ///< draw the lines, with smaller spheres; on for a line field
+  std::optional<ValueRange> range;  ///< default: the values of this frame, rounded outwards
+  std::optional<Extent> extent;     ///< default: bulk_extent(frame); fix it for a series
+  std::string title;                ///< stands before the time in the first line
+};
+
+/// The box around the bulk of a frame: a few fragments that flew far do not widen it.
+Extent bulk_extent(const Frame& frame);
+
+/// Whether `field` of RenderOptions names something this frame has.
+bool has_field(const Frame& frame, const std::string& field);
+
+/// Draws the frame: parallel projection, shaded spheres, lines and triangles, colour bar, scale
+/// bar, title with time. The first frame of a run gives the extent of its whole series:
+///
+///   RenderOptions options{.field = "damage", .extent = bulk_extent(first)};
+///   write_png("picture.png", render(frame, options));
+///
+/// @throws InputError if field, view, clip or size make no sense (names what is allowed)
+///
+/// Cost: about 25 ms for 14,274 spheres at 1280 x 960 on one core.
+Image render(const Frame& frame, const RenderOptions& options);
+
+/// Writes the image under a temporary name, then renames it: a reader never sees half a picture.
+/// @throws IoError with path and reason
+void write_png(const std::string& path, const Image& image);
+
+}  // namespace breccia
