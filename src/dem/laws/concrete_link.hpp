@@ -2,6 +2,7 @@
 // The cohesive link of concrete: modified Mohr-Coulomb with softening and moment transfer.
 
 #include "dem/laws/pair_motion.hpp"
+#include "dem/laws/tension_softening.hpp"
 
 namespace breccia::dem {
 
@@ -64,23 +65,6 @@ struct ConcreteLink {
   double rolling_limit;     ///< eta  [-]
   double brittle_shear;     ///< 1: a link breaks at its shear strength; 0: it slides on  [-]
 
-  /// Damage after a largest opening: 1 - secant stiffness / K_n, of an intact link.
-  template <class R>
-  BR_HD R damage(const R& opening, const R& onset) const {
-    // N_k = K_n (u_1 - (u - u_1) / zeta)
-    const R secant = (onset - (opening - onset) * (1.0 / larger(softening, 1e-12))) / opening;
-    return choose(opening > onset, smaller(constant<R>(1.0), 1.0 - secant), constant<R>(0.0));
-  }
-  /// Energy that softening has spent up to a largest opening: area under the envelope minus what
-  /// the secant still stores.  [J]
-  template <class R>
-  BR_HD R softened(const R& opening, const R& onset, const R& stiffness) const {
-    const R beyond = larger(opening - onset, constant<R>(0.0));
-    // area u_1^2/2 + u_1 b - b^2/(2 zeta), stored (u_1 - b/zeta)(u_1 + b)/2, both times K_n
-    const R inverse = constant<R>(1.0 / larger(softening, 1e-12));
-    return 0.5 * stiffness * beyond * onset * (1.0 + inverse);
-  }
-
   template <class R>
   BR_HD LinkResponse<R> answer(const LinkConstants<R>& link, const PairMotion<R>& motion,
                                LinkState<R>& state) const {
@@ -88,8 +72,7 @@ struct ConcreteLink {
     const R kn = link.stiffness, kt = shear_ratio * kn;
     const R kr = rolling_ratio * kt * link.radius * link.radius;
     const R strength = tensile_strength * link.area;  // S T
-    const R onset = strength / kn;                    // u_1
-    const R rupture = onset * (1.0 + softening);      // u_2
+    const TensionSoftening<R> tension{kn, strength, softening};
     const R u = motion.distance - link.length;
     const R opening_before = state.opening;
     const auto intact = opening_before >= 0.0;
@@ -97,10 +80,10 @@ struct ConcreteLink {
 
     // 1. Normal force.
     const R opening = larger(opening_before, u);
-    const auto torn = both(intact, opening >= rupture);
+    const auto torn = both(intact, opening >= tension.rupture());
     R health = one;  // 1 - damage
-    const auto softened_now = both(intact, opening > onset);
-    if (any(softened_now)) health = choose(softened_now, one - damage(opening, onset), one);
+    const auto softened_now = both(intact, opening > tension.onset());
+    if (any(softened_now)) health = choose(softened_now, one - tension.damage(opening), one);
     const auto pressed = u < 0.0;
     const auto holds = both(intact, opposite(torn));
     const auto parted =
@@ -162,9 +145,9 @@ struct ConcreteLink {
     const auto ends = either(torn, sheared);
     state.opening = choose(intact, opening, opening_before);
     if (any(ends)) {
-      const R spent = choose(torn, 0.5 * strength * rupture,
-                             softened(opening, onset, kn) +
-                                 choose(pressed, zero, constant<R>(0.5) * health * kn * u * u));
+      const R spent = choose(
+          torn, tension.toughness(),
+          tension.spent(opening) + choose(pressed, zero, constant<R>(0.5) * health * kn * u * u));
       r.broke = choose(ends, spent + r.slid + r.yielded, zero);
       r.slid = choose(ends, zero, r.slid);
       r.yielded = choose(ends, zero, r.yielded);
@@ -176,6 +159,9 @@ struct ConcreteLink {
     return r;
   }
 
+  BR_HD TensionSoftening<double> tension(const LinkConstants<double>& link) const {
+    return {link.stiffness, tensile_strength * link.area, softening};
+  }
   /// Energy a link stores at a stretch u.  [J]
   BR_HD double stored(const LinkConstants<double>& link, double stretch,
                       const LinkState<double>& state) const {
@@ -187,8 +173,7 @@ struct ConcreteLink {
     if (stretch < 0.0)
       energy = 0.5 * kn * stretch * stretch;
     else if (intact)
-      energy = 0.5 * kn * (1.0 - damage(state.opening, tensile_strength * link.area / kn)) *
-               stretch * stretch;
+      energy = 0.5 * kn * (1.0 - tension(link).damage(state.opening)) * stretch * stretch;
     if (kt > 0.0) energy += dot(state.shear, state.shear) / (2.0 * kt);
     if (kr > 0.0) energy += dot(state.moment, state.moment) / (2.0 * kr);
     return energy;

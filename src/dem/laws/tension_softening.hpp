@@ -1,0 +1,43 @@
+#pragma once
+// The falling branch in tension that concrete links and the steel-concrete interface share.
+
+#include "math/pack.hpp"
+
+namespace breccia::dem {
+
+/// Linear up to the strength, then linear softening; unloading along the secant (u > 0: opened).
+///
+///   F = K u                        u <= u_1 = F_t / K
+///   F = F_t - (K / zeta)(u - u_1)  u_1 < u < u_2 = u_1 (1 + zeta), then rupture
+///
+/// Source: docs/theory.md, cohesive links; envelope of Durand 2012's reference law (Rousseau 2008).
+template <class R>
+struct TensionSoftening {
+  R stiffness;       ///< K  [N/m]
+  R strength;        ///< F_t  [N]
+  double softening;  ///< zeta >= 0, elastic over softening stiffness; 0 is brittle  [-]
+
+  BR_HD R onset() const { return strength / stiffness; }
+  BR_HD R rupture() const { return onset() * (1.0 + softening); }
+
+  /// 1 - secant stiffness / K after a largest opening.  [-]
+  BR_HD R damage(const R& opening) const {
+    const R u1 = onset();
+    const R envelope = u1 - (opening - u1) * inverse();  // over K
+    const R lost = smaller(constant<R>(1.0), 1.0 - envelope / opening);
+    return choose(opening > u1, lost, constant<R>(0.0));
+  }
+  /// Energy spent up to a largest opening: the area under the envelope less what the secant stores.
+  /// With b = u - u_1 it is K b u_1 (1 + 1/zeta) / 2.  [J]
+  BR_HD R spent(const R& opening) const {
+    const R beyond = larger(opening - onset(), constant<R>(0.0));
+    return 0.5 * strength * beyond * (1.0 + inverse());
+  }
+  /// Energy of a whole rupture, F_t u_2 / 2.  [J]
+  BR_HD R toughness() const { return 0.5 * strength * rupture(); }
+
+ private:
+  BR_HD double inverse() const { return softening > 1e-12 ? 1.0 / softening : 1e12; }
+};
+
+}  // namespace breccia::dem
