@@ -6,7 +6,7 @@
 // component lies contiguous. Elements, which are gathered at random, keep whole vectors instead.
 
 #include "exec/buffer.hpp"
-#include "math/vec.hpp"
+#include "math/lanes.hpp"
 
 namespace breccia {
 
@@ -24,6 +24,20 @@ struct PlanesView {
     items[2 * stride + i] = v.z;
   }
 };
+
+/// Vectors first, first + 1, ... of planes.
+template <class R, class T>
+BR_HD inline Vec3Of<R> load(const PlanesView<T>& planes, Index first) {
+  const View<T>& items = planes.items;
+  return {load<R>(items, first), load<R>(items, planes.stride + first),
+          load<R>(items, 2 * planes.stride + first)};
+}
+template <class R>
+BR_HD inline void store(const PlanesView<double>& planes, Index first, const Vec3Of<R>& v) {
+  store(planes.items, first, v.x);
+  store(planes.items, planes.stride + first, v.y);
+  store(planes.items, 2 * planes.stride + first, v.z);
+}
 
 /// An array of vectors, by component.
 class Vec3Planes {

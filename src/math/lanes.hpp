@@ -29,6 +29,18 @@ BR_HD inline void store(const View<double>& array, Index first, const R& value) 
   }
 }
 
+/// Rounded to single precision.
+template <class R>
+BR_HD inline void store_rounded(const View<float>& array, Index first, const R& value) {
+  if constexpr (width_of<R> == 1) {
+    array[first] = static_cast<float>(value);
+  } else {
+    BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
+    const auto floats = rounded(value);
+    __builtin_memcpy(array.data + first, &floats, sizeof floats);
+  }
+}
+
 /// Indices of the elements that the items of a pack meet.
 template <class R>
 struct Indices;

@@ -76,6 +76,9 @@ inline Mask8 either(Mask8 a, Mask8 b) {
 inline Mask8 opposite(Mask8 a) {
   return ~a;
 }
+inline __m256 rounded(Pack8 a) {
+  return _mm512_cvtpd_ps(a);
+}
 using WidestPack = Pack8;
 
 #elif !defined(__CUDACC__) && defined(__AVX2__)
@@ -109,6 +112,9 @@ inline Mask4 either(Mask4 a, Mask4 b) {
 }
 inline Mask4 opposite(Mask4 a) {
   return ~a;
+}
+inline __m128 rounded(Pack4 a) {
+  return _mm256_cvtpd_ps(a);
 }
 using WidestPack = Pack4;
 

@@ -76,12 +76,11 @@ struct SteelLink {
     const double excess = absolute(stress) - (yield + hardening * state.hardening);
     if (excess > 0.0) {
       const double increment = excess / (young + hardening);
-      const double before = stress;
       const double flow = stress > 0.0 ? increment : -increment;
       state.plastic_strain += flow;
       state.hardening += increment;
       stress = young * (strain - state.plastic_strain);
-      r.yielded += 0.5 * (stress + before - young * flow) * flow * area * length;
+      r.yielded += stress * flow * area * length;
     }
     r.normal = stress * area;
     r.active = 1.0;

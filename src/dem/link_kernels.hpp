@@ -1,0 +1,127 @@
+#pragma once
+// One kernel for each kind of link (Durand 2012, 4.2): reads, one law call, one write.
+
+#include "dem/elements.hpp"
+#include "dem/links.hpp"
+
+namespace breccia::dem {
+
+/// What pair kernels read of the elements.
+struct ElementsView {
+  View<const Vec3> position, velocity, spin;
+  View<const double> radius, mass;
+
+  template <class R>
+  BR_HD PairEnd<R> end(const Indices<R>& i) const {
+    return {gather(position, i), gather(velocity, i), gather(spin, i)};
+  }
+  BR_HD PairEnd<double> end(Index i) const { return {position[i], velocity[i], spin[i]}; }
+};
+
+inline ElementsView view(const Elements& elements) {
+  return {elements.position.view(), elements.velocity.view(), elements.spin.view(),
+          elements.radius.view(), elements.mass.view()};
+}
+
+/// Cohesive links of one material, one link (R = double) or a pack of neighbours at a time.
+struct ConcreteLinkForces {
+  static constexpr const char* name = "dem.concrete_links";
+  ConcreteLink law;
+  double dt;  ///< the step that moved the elements to where they are  [s]
+  ElementsView elements;
+  View<const Index> a, b;
+  View<const double> length, stiffness;
+  View<double> opening;
+  PlanesView<double> shear, moment;
+  View<double> slid, yielded, broke;
+  ActionsView actions;
+
+  template <class R>
+  BR_HD void at(Index i) const {
+    constexpr double pi = 3.14159265358979323846;
+    const Indices<R> ia = load_indices<R>(a, i), ib = load_indices<R>(b, i);
+    const R radius_a = gather(elements.radius, ia), radius_b = gather(elements.radius, ib);
+    const PairMotion<R> motion =
+        pair_motion<R>(elements.end<R>(ia), elements.end<R>(ib), radius_a - radius_b, dt);
+    const R least = smaller(radius_a, radius_b), touching = radius_a + radius_b;
+    const LinkConstants<R> link{load<R>(length, i), load<R>(stiffness, i), pi * least * least,
+                                0.5 * touching, touching};
+    LinkState<R> state{load<R>(opening, i), load<R>(shear, i), load<R>(moment, i)};
+    const LinkResponse<R> r = law.answer(link, motion, state);
+
+    store(opening, i, state.opening);
+    store(shear, i, state.shear);
+    store(moment, i, state.moment);
+    if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);
+    if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
+    if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
+
+    const R kn = r.active * link.stiffness, kt = law.shear_ratio * kn;
+    const R kr = law.rolling_ratio * kt * link.radius * link.radius;
+    actions.book(i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt, kr, kr);
+  }
+  BR_HD void operator()(Index i) const { at<double>(i); }
+};
+
+/// Pieces of bar.
+struct SteelLinkForces {
+  static constexpr const char* name = "dem.steel_links";
+  SteelLink law;
+  double dt;
+  ElementsView elements;
+  View<const Index> a, b;
+  View<const double> length;
+  View<SteelState> state;
+  View<double> yielded, broke;
+  ActionsView actions;
+
+  BR_HD void operator()(Index i) const {
+    const PairMotion<double> motion =
+        pair_motion<double>(elements.end(a[i]), elements.end(b[i]), 0.0, dt);
+    const double radius = smaller(elements.radius[a[i]], elements.radius[b[i]]);
+    SteelState kept = state[i];
+    const SteelResponse r = law.answer(length[i], radius, motion, kept);
+    state[i] = kept;
+    yielded[i] += r.yielded;
+    broke[i] += r.broke;
+    const SteelLink::Stiffness k = law.stiffness(length[i], radius);
+    const bool whole = kept.hardening >= 0.0;
+    actions.book(i, motion, r.shear - r.normal * motion.normal, r.moment, r.active * k.axial,
+                 whole ? k.shear : 0.0, whole ? k.bending : 0.0, whole ? k.twist : 0.0);
+  }
+};
+
+/// Bonds between bars and concrete.
+struct InterfaceLinkForces {
+  static constexpr const char* name = "dem.interface_links";
+  InterfaceLink law;
+  double dt;
+  ElementsView elements;
+  View<const Index> a, b, before, after;
+  View<const double> stiffness, area, rest;
+  View<InterfaceState> state;
+  View<double> slid, broke;
+  ActionsView actions;
+
+  BR_HD void operator()(Index i) const {
+    const PairEnd<double> bar = elements.end(a[i]), concrete = elements.end(b[i]);
+    const Vec3 chord = elements.position[after[i]] - elements.position[before[i]];
+    const Vec3 axis = (1.0 / norm(chord)) * chord;
+    // The contact point divides the distance like the radii: a bar is thin beside its concrete.
+    const double share = (elements.radius[a[i]] - elements.radius[b[i]]) /
+                         (elements.radius[a[i]] + elements.radius[b[i]]);
+    const double distance = norm(concrete.position - bar.position);
+    const PairMotion<double> motion = pair_motion<double>(bar, concrete, share * distance, dt);
+    const double approach = dt * dot(concrete.velocity - bar.velocity, motion.normal);
+    InterfaceState kept = state[i];
+    const InterfaceResponse r =
+        law.answer(stiffness[i], area[i], rest[i], axis, motion, approach, kept);
+    state[i] = kept;
+    slid[i] += r.slid;
+    broke[i] += r.broke;
+    const double k = r.active * stiffness[i];
+    actions.book(i, motion, r.force, Vec3{}, k, k, 0.0, 0.0);
+  }
+};
+
+}  // namespace breccia::dem
