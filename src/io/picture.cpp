@@ -1,17 +1,152 @@
 #include "io/picture.hpp"
 
-namespace breccia {
+#include <algorithm>
+#include <cmath>
 
-Extent bulk_extent(const Frame&) {
-  return {{0, 0, 0}, {1, 1, 1}};
+#include "exec/error.hpp"
+#include "io/annotation.hpp"
+#include "io/field_colors.hpp"
+#include "io/shading.hpp"
+
+namespace breccia {
+namespace {
+
+constexpr double sphere_share_beside_links = 0.4;  ///< of the radius, so that links are seen
+
+/// The items to draw, in the order of their numbers: spheres, then lines, then triangles.
+struct Scene {
+  Camera camera;
+  std::optional<ScreenClip> clip;
+  std::vector<ScreenPoint> points;
+  std::vector<ItemLook> looks;
+};
+
+void check(const Frame& frame, const RenderOptions& options) {
+  if (options.width < 16 || options.height < 16 || options.width > 16384 ||
+      options.height > 16384) {
+    throw InputError("a picture of " + std::to_string(options.width) + " x " +
+                     std::to_string(options.height) + " pixels; 16 to 16384 are possible");
+  }
+  const auto count = static_cast<std::int64_t>(frame.position.size());
+  const auto known = [count](std::int32_t point) { return point >= 0 && point < count; };
+  const bool good = frame.lines.size() % 2 == 0 && frame.triangles.size() % 3 == 0 &&
+                    (frame.radius.empty() || frame.radius.size() == frame.position.size()) &&
+                    std::all_of(frame.lines.begin(), frame.lines.end(), known) &&
+                    std::all_of(frame.triangles.begin(), frame.triangles.end(), known);
+  if (!good) throw InputError("a frame whose lines, triangles or radii do not fit its points");
 }
-bool has_field(const Frame&, const std::string&) {
-  return true;
+
+/// A flat frame has nothing to show from the side: there the slanted view looks from above.
+Axes axes_for(const Extent& extent, const RenderOptions& options) {
+  const bool flat = extent.low.z == extent.high.z;
+  return axes_of_view(flat && options.view == "iso" ? "z" : options.view);
 }
-Image render(const Frame&, const RenderOptions& options) {
-  return {options.width, options.height,
-          std::vector<std::uint8_t>(std::size_t(3 * options.width * options.height), 255)};
+
+/// Spheres from front to back, so that most hidden pixels fail the first test.
+std::vector<std::int32_t> front_to_back(const std::vector<ScreenPoint>& points) {
+  std::vector<std::int32_t> order(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
+  std::sort(order.begin(), order.end(), [&points](std::int32_t a, std::int32_t b) {
+    const double depth_a = points[static_cast<std::size_t>(a)].depth;
+    const double depth_b = points[static_cast<std::size_t>(b)].depth;
+    return depth_a != depth_b ? depth_a > depth_b : a < b;
+  });
+  return order;
 }
-void write_png(const std::string&, const Image&) {}
+
+void draw_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scene) {
+  constexpr double smallest = 0.75;  // pixels: nothing that flies about is lost
+  for (const std::int32_t item : front_to_back(scene.points)) {
+    const auto i = static_cast<std::size_t>(item);
+    const ScreenPoint& point = scene.points[i];
+    const double radius = std::max(smallest, share * scene.camera.resolution * frame.radius[i]);
+    scene.looks[i].sphere = {static_cast<float>(point.u), static_cast<float>(point.v),
+                             static_cast<float>(point.depth), static_cast<float>(radius)};
+    draw_sphere(canvas, scene.looks[i].sphere, item, scene.clip);
+  }
+}
+
+void draw_lines(Canvas& canvas, const Frame& frame, const std::vector<Color>& colors,
+                Scene& scene) {
+  const int thickness = std::max(2, canvas.height / 480);
+  const double lift = frame.triangles.empty() ? 0.0 : 2.0;  // lines on the edges of triangles show
+  const Vec3 lamp = lamp_direction();
+  for (std::size_t line = 0; line < colors.size(); ++line) {
+    ScreenPoint a = scene.points[static_cast<std::size_t>(frame.lines[2 * line])];
+    ScreenPoint b = scene.points[static_cast<std::size_t>(frame.lines[2 * line + 1])];
+    a.depth += lift;
+    b.depth += lift;
+    // A thin cylinder is as bright as its steepest side towards the lamp.
+    const Vec3 axis{b.u - a.u, a.v - b.v, b.depth - a.depth};
+    const double along = dot(axis, lamp), square = dot(axis, axis);
+    const double across = square > 0.0 ? std::max(0.0, 1.0 - along * along / square) : 1.0;
+    const auto light = static_cast<float>(0.55 + 0.45 * std::sqrt(across));
+    const auto item = static_cast<std::int32_t>(scene.looks.size());
+    scene.looks.push_back({shaded(colors[line], light), {}});
+    draw_line(canvas, a, b, thickness, item, scene.clip);
+  }
+}
+
+void draw_triangles(Canvas& canvas, const Frame& frame, const std::vector<Color>& colors,
+                    Scene& scene) {
+  const Vec3 lamp = lamp_direction();
+  for (std::size_t triangle = 0; triangle < colors.size(); ++triangle) {
+    ScreenPoint corner[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] = scene.points[static_cast<std::size_t>(frame.triangles[3 * triangle + k])];
+    }
+    const auto& [a, b, c] = corner;
+    const Vec3 normal = cross(Vec3{b.u - a.u, a.v - b.v, b.depth - a.depth},
+                              Vec3{c.u - a.u, a.v - c.v, c.depth - a.depth});
+    const double size = norm(normal);
+    const double facing = size > 0.0 ? std::fabs(dot(normal, lamp)) / size / lamp.z : 1.0;
+    const auto light = static_cast<float>(0.5 + 0.5 * std::min(1.0, facing));
+    const auto item = static_cast<std::int32_t>(scene.looks.size());
+    scene.looks.push_back({shaded(colors[triangle], light), {}});
+    draw_triangle(canvas, a, b, c, item, scene.clip);
+  }
+}
+
+/// Depth that looks deep: about a radius of the usual sphere.  [pixels]
+float relief_of(const Frame& frame, double resolution) {
+  if (frame.radius.empty()) return 10.0F;
+  std::vector<double> radius = frame.radius;
+  const auto middle = radius.begin() + static_cast<std::ptrdiff_t>(radius.size() / 2);
+  std::nth_element(radius.begin(), middle, radius.end());
+  return static_cast<float>(std::clamp(1.5 * resolution * *middle, 2.0, 1e4));
+}
+
+}  // namespace
+
+Image render(const Frame& frame, const RenderOptions& options) {
+  check(frame, options);
+  const Coloring coloring = color_frame(frame, options.field, options.range);
+  const Extent extent = options.extent.value_or(bulk_extent(frame));
+  const Axes axes = axes_for(extent, options);
+  Scene scene{
+      fitted_camera(axes, extent, scene_window(options, coloring.legend)), std::nullopt, {}, {}};
+  if (const std::optional<Clip> clip = clip_of(options.clip, axes)) {
+    scene.clip = on_screen(*clip, scene.camera);
+  }
+  for (const Vec3& point : frame.position) scene.points.push_back(scene.camera.project(point));
+  scene.looks.reserve(frame.position.size() + frame.lines.size() / 2 + frame.triangles.size() / 3);
+  for (const Color& color : coloring.points) scene.looks.push_back({color, {}});
+
+  Canvas canvas(options.width, options.height);
+  const bool links = options.show_links || coloring.of_lines;
+  if (options.show_spheres && !frame.radius.empty()) {
+    draw_spheres(canvas, frame, links ? sphere_share_beside_links : 1.0, scene);
+  }
+  if (links) draw_lines(canvas, frame, coloring.lines, scene);
+  draw_triangles(canvas, frame, coloring.triangles, scene);
+
+  Image image = shade(canvas, scene.looks, scene.clip, relief_of(frame, scene.camera.resolution));
+  const int scale = text_scale(options);
+  draw_title(image, options.title, frame, scale);
+  draw_legend(image, coloring.legend, scale);
+  draw_scale_bar(image, scene.camera.resolution, scale);
+  draw_axes(image, axes, scale);
+  return image;
+}
 
 }  // namespace breccia

@@ -37,13 +37,13 @@ struct RenderOptions {
   std::string field = "damage";  ///< of points, lines or triangles; "velocity": its length,
                                  ///< "velocity_z": a component; "": one colour a group
   std::string view = "iso";
-  std::string clip;
-  int width = 1280, height = 960;   ///<  [pixels]
-  bool show_spheres = true;         ///< draw the elements
-  bool show_links = false;          ///< draw the lines, with smaller spheres; on for a line field
-  std::optional<ValueRange> range;  ///< default: the values of this frame, rounded outwards
-  std::optional<Extent> extent;     ///< default: bulk_extent(frame); fix it for a series
-  std::string title;                ///< stands before the time in the first line
+  std::string clip = {};
+  int width = 1280, height = 960;  ///<  [pixels]
+  bool show_spheres = true;        ///< draw the elements
+  bool show_links = false;         ///< draw the lines, with smaller spheres; on for a line field
+  std::optional<ValueRange> range = {};  ///< default: the values of this frame, rounded outwards
+  std::optional<Extent> extent = {};     ///< default: bulk_extent(frame); fix it for a series
+  std::string title = {};                ///< stands before the time in the first line
 };
 
 /// The box around the bulk of a frame: a few fragments that flew far do not widen it.

@@ -8,8 +8,8 @@
 
 namespace breccia {
 
-/// Times of the frames in a result folder; empty if it has none.  [s]
-/// @throws IoError if the folder or its elements.pvd cannot be read
+/// Times of the frames in a result folder, from its elements.pvd.  [s]
+/// @throws IoError if that file cannot be read
 std::vector<double> frame_times(const std::string& folder);
 
 /// Frame number `index` of frame_times(folder); numbers as precise as the files (Float32).

@@ -1,0 +1,133 @@
+#include "io/camera.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+bool is_finite(const Vec3& point) {
+  return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
+}
+
+/// Where one coordinate of the bulk lies: the middle 98 in 100 items and what is near them.
+struct Span {
+  double low, high;
+};
+Span bulk_span(std::vector<double> values) {
+  constexpr double outside = 0.01;  // share on either side that may have flown off
+  constexpr double near = 0.25;     // of the bulk's width: still counts as part of it
+  const auto count = static_cast<double>(values.size() - 1);
+  const auto first = static_cast<std::ptrdiff_t>(outside * count);
+  const auto last = static_cast<std::ptrdiff_t>((1.0 - outside) * count + 0.999);
+  std::nth_element(values.begin(), values.begin() + first, values.end());
+  const double low = values[static_cast<std::size_t>(first)];
+  std::nth_element(values.begin(), values.begin() + last, values.end());
+  const double high = values[static_cast<std::size_t>(last)];
+  return {low - near * (high - low), high + near * (high - low)};
+}
+
+}  // namespace
+
+Extent bulk_extent(const Frame& frame) {
+  std::vector<double> x, y, z;
+  for (const Vec3& point : frame.position) {
+    if (!is_finite(point)) continue;
+    x.push_back(point.x);
+    y.push_back(point.y);
+    z.push_back(point.z);
+  }
+  if (x.empty()) return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
+  const Span in_x = bulk_span(std::move(x)), in_y = bulk_span(std::move(y)),
+             in_z = bulk_span(std::move(z));
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Extent extent{{far, far, far}, {-far, -far, -far}};
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    const Vec3& p = frame.position[i];
+    const bool inside = p.x >= in_x.low && p.x <= in_x.high && p.y >= in_y.low &&
+                        p.y <= in_y.high && p.z >= in_z.low && p.z <= in_z.high;
+    if (!inside) continue;
+    const double r = i < frame.radius.size() ? frame.radius[i] : 0.0;
+    extent.low = {std::min(extent.low.x, p.x - r), std::min(extent.low.y, p.y - r),
+                  std::min(extent.low.z, p.z - r)};
+    extent.high = {std::max(extent.high.x, p.x + r), std::max(extent.high.y, p.y + r),
+                   std::max(extent.high.z, p.z + r)};
+  }
+  if (extent.low.x > extent.high.x)
+    return {{in_x.low, in_y.low, in_z.low}, {in_x.high, in_y.high, in_z.high}};
+  return extent;
+}
+
+Axes axes_of_view(const std::string& view) {
+  if (view == "x") return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+  if (view == "y") return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+  if (view == "z") return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  if (view != "iso") {
+    throw InputError("view = \"" + view + "\" is not one of iso, x, y, z");
+  }
+  const Vec3 direction{0.5, -0.8, 0.58};  // 32 degrees above the horizon
+  const Vec3 toward = (1.0 / norm(direction)) * direction;
+  const Vec3 sideways = cross(Vec3{0, 0, 1}, toward);
+  const Vec3 right = (1.0 / norm(sideways)) * sideways;
+  return {right, cross(toward, right), toward};
+}
+
+Camera fitted_camera(const Axes& axes, const Extent& extent, const Window& window) {
+  const Vec3 centre = 0.5 * (extent.low + extent.high);
+  double half_width = 0.0, half_height = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 offset = Vec3{(corner & 1) != 0 ? extent.high.x : extent.low.x,
+                             (corner & 2) != 0 ? extent.high.y : extent.low.y,
+                             (corner & 4) != 0 ? extent.high.z : extent.low.z} -
+                        centre;
+    half_width = std::max(half_width, std::fabs(dot(offset, axes.right)));
+    half_height = std::max(half_height, std::fabs(dot(offset, axes.up)));
+  }
+  const double by_width = half_width > 0.0 ? 0.5 * (window.right - window.left) / half_width : 1e30;
+  const double by_height =
+      half_height > 0.0 ? 0.5 * (window.bottom - window.top) / half_height : 1e30;
+  const double resolution = std::min(by_width, by_height);
+  return {axes, centre, 0.5 * (window.left + window.right), 0.5 * (window.top + window.bottom),
+          resolution < 1e30 ? resolution : 1.0};
+}
+
+std::optional<Clip> clip_of(const std::string& text, const Axes& axes) {
+  std::string plane;
+  for (const char c : text) {
+    if (c != ' ') plane.push_back(c);
+  }
+  if (plane.empty()) return std::nullopt;
+  double value = 0.0;
+  bool good = plane.size() >= 3 && plane[0] >= 'x' && plane[0] <= 'z' &&
+              (plane[1] == '=' || plane[1] == '<' || plane[1] == '>');
+  if (good) {
+    const char* end = plane.data() + plane.size();
+    const auto [stop, error] = std::from_chars(plane.data() + 2, end, value);
+    good = error == std::errc() && stop == end && std::isfinite(value);
+  }
+  if (!good) {
+    throw InputError("clip = \"" + text +
+                     "\" is not a plane; write an axis, one of = < > and a number in m, such as "
+                     "\"x=0\" or \"z<0.05\"");
+  }
+  const Vec3 axis{plane[0] == 'x' ? 1.0 : 0.0, plane[0] == 'y' ? 1.0 : 0.0,
+                  plane[0] == 'z' ? 1.0 : 0.0};
+  const bool viewer_is_below = dot(axis, axes.toward) < -1e-9;
+  const bool drop_below = plane[1] == '>' || (plane[1] == '=' && viewer_is_below);
+  if (drop_below) return Clip{-axis, -value};
+  return Clip{axis, value};
+}
+
+ScreenClip on_screen(const Clip& clip, const Camera& camera) {
+  const double nu = dot(clip.normal, camera.axes.right);
+  const double nv = -dot(clip.normal, camera.axes.up);
+  const double at_centre = camera.resolution * (dot(clip.normal, camera.centre) - clip.offset);
+  return {nu, nv, dot(clip.normal, camera.axes.toward), at_centre - nu * camera.u - nv * camera.v};
+}
+
+}  // namespace breccia

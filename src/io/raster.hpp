@@ -1,0 +1,45 @@
+#pragma once
+// Which item shows in which pixel: a depth buffer for spheres, lines and triangles.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "io/camera.hpp"
+
+namespace breccia {
+
+/// Per pixel the depth of the nearest surface and the item it belongs to. Rows are padded to a
+/// whole number of blocks, so that a loop over a row needs no remainder.
+struct Canvas {
+  static constexpr int block = 8;           ///< pixels
+  static constexpr float empty = -1e30F;    ///< depth where nothing is
+  static constexpr std::int32_t none = -1;  ///< item where nothing is
+
+  Canvas(int wide, int high);
+  std::size_t row(int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(stride);
+  }
+
+  int width, height, stride;
+  std::vector<float> depth;        ///< towards the viewer  [pixels]
+  std::vector<std::int32_t> item;  ///< number given to draw_...
+};
+
+/// A sphere on the picture.  [pixels]
+struct ScreenSphere {
+  float u, v, depth, radius;
+};
+
+/// Spheres that a clip plane crosses show the cut.
+void draw_sphere(Canvas& canvas, const ScreenSphere& sphere, std::int32_t item,
+                 const std::optional<ScreenClip>& clip);
+
+/// A line `thickness` pixels wide.
+void draw_line(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, int thickness,
+               std::int32_t item, const std::optional<ScreenClip>& clip);
+
+void draw_triangle(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c,
+                   std::int32_t item, const std::optional<ScreenClip>& clip);
+
+}  // namespace breccia

@@ -1,0 +1,251 @@
+#include "io/paraview.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "exec/error.hpp"
+#include "io/vtu_reader.hpp"
+#include "io/whole_file.hpp"
+#include "unit/io/slab_scene.hpp"
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own for each test, removed at the end.
+class ParaviewSeriesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder =
+        (fs::temp_directory_path() / fmt::format("breccia_series_{}_{}", info->name(), getpid()))
+            .string();
+    fs::remove_all(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+  std::string folder;
+};
+
+Frame small_frame(double time, int count) {
+  Frame frame;
+  frame.time = time;
+  frame.step = static_cast<std::int64_t>(1e6 * time);
+  frame.groups = {"slab & <rock>", "ball"};
+  FrameField damage{"damage", "-", 1, {}}, velocity{"velocity", "m/s", 3, {}};
+  for (int i = 0; i < count; ++i) {
+    frame.position.push_back({0.25 * i, -0.5 * i, 0.125});
+    frame.radius.push_back(0.0625);
+    damage.values.push_back(0.5F * static_cast<float>(i));
+    for (const float v : {1.0F, -2.0F, static_cast<float>(i)}) velocity.values.push_back(v);
+  }
+  FrameField kind{"kind", "-", 1, {}}, force{"force", "N", 1, {}};
+  for (int i = 0; i + 1 < count; ++i) {
+    frame.lines.insert(frame.lines.end(), {i, i + 1});
+    kind.values.push_back(static_cast<float>(i % 3));
+    force.values.push_back(-100.0F * static_cast<float>(i));
+  }
+  frame.point_fields = {damage, velocity};
+  frame.line_fields = {kind, force};
+  return frame;
+}
+
+Frame triangle_frame(double time) {
+  Frame frame = small_frame(time, 4);
+  frame.radius.clear();
+  frame.triangles = {0, 1, 2, 1, 2, 3};
+  frame.triangle_fields = {{"stress", "Pa", 3, {1, 2, 3, 4, 5, 6}}};
+  return frame;
+}
+
+nlohmann::json fields_json(const std::vector<FrameField>& fields) {
+  nlohmann::json result = nlohmann::json::object();
+  for (const FrameField& field : fields) {
+    float low = 0.0F, high = 0.0F;
+    for (std::size_t i = 0; i < field.values.size();
+         i += static_cast<std::size_t>(field.components)) {
+      low = i == 0 ? field.values[i] : std::min(low, field.values[i]);
+      high = i == 0 ? field.values[i] : std::max(high, field.values[i]);
+    }
+    result[field.name] = {field.components, field.unit, low, high};
+  }
+  return result;
+}
+
+/// What VTK must find in a series of these frames.
+std::string expectation(const std::vector<Frame>& frames) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Frame& frame : frames) {
+    std::vector<FrameField> point_fields = frame.point_fields;
+    if (!frame.radius.empty()) {
+      point_fields.push_back({"radius", "m", 1, {frame.radius.begin(), frame.radius.end()}});
+    }
+    const bool triangles = !frame.triangles.empty();
+    list.push_back({{"time", frame.time},
+                    {"step", frame.step},
+                    {"groups", frame.groups},
+                    {"points", frame.position.size()},
+                    {"cells", triangles ? frame.triangles.size() / 3 : frame.position.size()},
+                    {"cell_type", triangles ? 5 : 1},
+                    {"links", frame.lines.size() / 2},
+                    {"point_fields", fields_json(point_fields)},
+                    {"line_fields", fields_json(frame.line_fields)}});
+  }
+  return list.dump();
+}
+
+void expect_vtk_reads(const std::string& folder, const std::vector<Frame>& frames) {
+  replace_file(folder + "/expected.json", expectation(frames));
+  const std::string command = fmt::format(
+      "/usr/bin/python3 '{0}/tests/unit/io/read_with_vtk.py' '{1}' '{1}/expected.json' 2>&1",
+      BR_SOURCE_DIR, folder);
+  std::string said;
+  FILE* pipe = popen(command.c_str(), "r");
+  ASSERT_NE(pipe, nullptr);
+  char buffer[512];
+  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) said += buffer;
+  EXPECT_EQ(pclose(pipe), 0) << said << "(package python3-vtk9 must be installed)";
+}
+
+void expect_same_fields(const std::vector<FrameField>& a, const std::vector<FrameField>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].name, b[i].name);
+    EXPECT_EQ(a[i].unit, b[i].unit);
+    EXPECT_EQ(a[i].components, b[i].components);
+    EXPECT_EQ(a[i].values, b[i].values);
+  }
+}
+
+void expect_same(const Frame& a, const Frame& b) {
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.groups, b.groups);
+  EXPECT_EQ(a.lines, b.lines);
+  EXPECT_EQ(a.triangles, b.triangles);
+  ASSERT_EQ(a.position.size(), b.position.size());
+  ASSERT_EQ(a.radius.size(), b.radius.size());
+  for (std::size_t i = 0; i < a.position.size(); ++i) {
+    EXPECT_EQ(static_cast<float>(a.position[i].x), static_cast<float>(b.position[i].x));
+    EXPECT_EQ(static_cast<float>(a.position[i].y), static_cast<float>(b.position[i].y));
+    EXPECT_EQ(static_cast<float>(a.position[i].z), static_cast<float>(b.position[i].z));
+  }
+  for (std::size_t i = 0; i < a.radius.size(); ++i) {
+    EXPECT_EQ(static_cast<float>(a.radius[i]), static_cast<float>(b.radius[i]));
+  }
+  expect_same_fields(a.point_fields, b.point_fields);
+  expect_same_fields(a.line_fields, b.line_fields);
+  expect_same_fields(a.triangle_fields, b.triangle_fields);
+}
+
+TEST_F(ParaviewSeriesTest, vtk_reads_every_field_count_and_time_with_and_without_links) {
+  Frame without_links = small_frame(3e-4, 5);
+  without_links.lines.clear();
+  for (FrameField& field : without_links.line_fields) field.values.clear();
+  const std::vector<Frame> frames{small_frame(0.0, 7), without_links, small_frame(1.0 / 3.0, 1),
+                                  small_frame(0.5, 0)};
+  ParaviewSeries series(folder);
+  for (const Frame& frame : frames) series.write(frame);
+  expect_vtk_reads(folder, frames);
+}
+
+TEST_F(ParaviewSeriesTest, vtk_reads_the_full_slab_and_frames_of_triangles) {
+  const std::vector<Frame> frames{triangle_frame(0.0), test::slab_scene()};
+  ParaviewSeries series(folder);
+  for (const Frame& frame : frames) series.write(frame);
+  expect_vtk_reads(folder, frames);
+}
+
+TEST_F(ParaviewSeriesTest, what_was_written_is_read_back) {
+  const std::vector<Frame> frames{small_frame(0.0, 9), small_frame(0.1, 0), triangle_frame(0.2),
+                                  test::slab_scene()};
+  for (const Frame& frame : frames) {
+    fs::remove_all(folder);
+    ParaviewSeries series(folder);
+    series.write(frame);
+    EXPECT_EQ(frame_times(folder), std::vector<double>{frame.time});
+    expect_same(read_frame(folder, 0), frame);
+  }
+}
+
+TEST_F(ParaviewSeriesTest, a_resumed_series_drops_what_came_after_and_goes_on) {
+  {
+    ParaviewSeries series(folder);
+    for (const double time : {0.0, 0.1, 0.2, 0.3}) series.write(small_frame(time, 3));
+  }
+  ParaviewSeries series = ParaviewSeries::resumed(folder, 0.15);
+  EXPECT_EQ(frame_times(folder), (std::vector<double>{0.0, 0.1}));
+  EXPECT_FALSE(fs::exists(folder + "/fields/elements_0003.vtu"));
+  series.write(small_frame(0.25, 4));
+  expect_vtk_reads(folder, {small_frame(0.0, 3), small_frame(0.1, 3), small_frame(0.25, 4)});
+  EXPECT_EQ(read_frame(folder, 2).position.size(), 4U);
+}
+
+TEST_F(ParaviewSeriesTest, a_frame_at_a_time_already_written_replaces_it) {
+  ParaviewSeries series(folder);
+  series.write(small_frame(0.0, 3));
+  series.write(small_frame(0.1, 3));
+  ParaviewSeries again = ParaviewSeries::resumed(folder, 0.1);
+  again.write(small_frame(0.1, 5));
+  EXPECT_EQ(frame_times(folder), (std::vector<double>{0.0, 0.1}));
+  EXPECT_EQ(read_frame(folder, 1).position.size(), 5U);
+}
+
+TEST_F(ParaviewSeriesTest, resuming_a_folder_without_a_series_starts_one) {
+  ParaviewSeries series = ParaviewSeries::resumed(folder, 1.0);
+  series.write(small_frame(2.0, 2));
+  EXPECT_EQ(frame_times(folder), std::vector<double>{2.0});
+}
+
+TEST_F(ParaviewSeriesTest, a_frame_that_does_not_exist_is_bad_input) {
+  ParaviewSeries series(folder);
+  series.write(small_frame(0.0, 2));
+  EXPECT_THROW(read_frame(folder, 1), InputError);
+  EXPECT_THROW(read_frame(folder, -1), InputError);
+  EXPECT_THROW(frame_times(folder + "/nowhere"), IoError);
+}
+
+TEST_F(ParaviewSeriesTest, a_damaged_or_shortened_file_is_refused_with_its_path) {
+  ParaviewSeries series(folder);
+  series.write(small_frame(0.0, 200));
+  const std::string path = folder + "/fields/elements_0000.vtu";
+  const std::string whole = read_whole_file(path);
+  int refused = 0, unharmed = 0;
+  for (std::size_t place = 0; place < whole.size(); place += 37) {
+    std::string damaged = whole;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x10);
+    std::ofstream(path, std::ios::binary) << damaged;
+    try {
+      read_frame(folder, 0);
+      ++unharmed;  // a name or a unit
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, unharmed);
+  for (const std::size_t size : {std::size_t{0}, whole.size() / 3, whole.size() / 2}) {
+    std::ofstream(path, std::ios::binary) << whole.substr(0, size);
+    EXPECT_THROW(read_frame(folder, 0), IoError) << size;
+  }
+}
+
+TEST_F(ParaviewSeriesTest, a_folder_that_cannot_be_made_is_an_error_with_its_path) {
+  replace_file(folder, "a file stands here");
+  try {
+    ParaviewSeries series(folder);
+    FAIL();
+  } catch (const IoError& error) {
+    EXPECT_NE(std::string(error.what()).find(folder), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace breccia

@@ -1,0 +1,402 @@
+#include "io/picture.hpp"
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "exec/error.hpp"
+#include "unit/io/slab_scene.hpp"
+
+namespace breccia {
+namespace {
+
+using Pixel = std::array<int, 3>;
+
+Pixel pixel(const Image& image, int x, int y) {
+  const auto place = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                          static_cast<std::size_t>(x));
+  return {image.rgb[place], image.rgb[place + 1], image.rgb[place + 2]};
+}
+
+/// The part of a picture that holds pixels of a kind.
+struct Patch {
+  double pixels = 0.0;  ///< number of them
+  int left = 1 << 20, right = -1, top = 1 << 20, bottom = -1;
+
+  void add(int x, int y) {
+    pixels += 1.0;
+    left = std::min(left, x);
+    right = std::max(right, x);
+    top = std::min(top, y);
+    bottom = std::max(bottom, y);
+  }
+  double centre_x() const { return 0.5 * (left + right + 1); }
+  double centre_y() const { return 0.5 * (top + bottom + 1); }
+};
+
+Patch patch_of(const Image& image, const std::function<bool(const Pixel&)>& belongs) {
+  Patch patch;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      if (belongs(pixel(image, x, y))) patch.add(x, y);
+    }
+  }
+  return patch;
+}
+
+bool is_blue(const Pixel& p) {
+  return p[2] > p[0] + 30 && p[2] > p[1] + 15;
+}
+bool is_concrete(const Pixel& p) {
+  return p[0] < 250 && p[0] > 70 && p[0] >= p[2] + 5 && std::abs(p[0] - p[1]) < 25;
+}
+bool is_red(const Pixel& p) {
+  return p[0] > p[1] + 40 && p[0] > p[2] + 40;
+}
+/// Spheres of no field, far from annotations; group 1 is blue beside a larger group 0.
+Frame spheres(const std::vector<Vec3>& centres, double radius) {
+  Frame frame;
+  frame.position = centres;
+  frame.radius.assign(centres.size(), radius);
+  return frame;
+}
+
+/// A picture of the cube from -1 to 1 m without a legend.
+RenderOptions cube_options() {
+  RenderOptions options;
+  options.field = "";
+  options.view = "y";
+  options.extent = Extent{{-1, -1, -1}, {1, 1, 1}};
+  options.width = 800;
+  options.height = 800;
+  return options;
+}
+
+/// Where a frame without fields shows: what differs from the picture of nothing.
+Patch scene_patch(const Frame& frame, const RenderOptions& options) {
+  const Image image = render(frame, options), nothing = render(Frame{}, options);
+  Patch patch;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const Pixel with = pixel(image, x, y), without = pixel(nothing, x, y);
+      const int change = std::abs(with[0] - without[0]) + std::abs(with[1] - without[1]) +
+                         std::abs(with[2] - without[2]);
+      if (change > 60) patch.add(x, y);
+    }
+  }
+  return patch;
+}
+
+double pixels_per_metre(const RenderOptions& options) {
+  const Patch patch = scene_patch(spheres({{-0.5, 0, 0}, {0.5, 0, 0}}, 0.02), options);
+  return (patch.right + 1 - patch.left) / 1.04;
+}
+
+TEST(picture, a_sphere_of_radius_r_covers_pi_r_squared_pixels) {
+  const RenderOptions options = cube_options();
+  const double resolution = pixels_per_metre(options);
+  for (const double radius : {0.2, 0.5, 0.9}) {
+    const Patch patch = scene_patch(spheres({{0.05, 0.3, 0.02}}, radius), options);
+    const double area = 3.14159265 * radius * radius * resolution * resolution;
+    EXPECT_NEAR(patch.pixels, area, 0.02 * area) << radius;
+  }
+}
+
+TEST(picture, the_nearer_sphere_hides_the_farther_from_every_side) {
+  struct Side {
+    const char* view;
+    Vec3 near;
+  };
+  for (const Side& side : {Side{"y", {0, -0.5, 0}}, Side{"x", {0.5, 0, 0}}, Side{"z", {0, 0, 0.5}},
+                           Side{"iso", {0.25, -0.4, 0.29}}}) {
+    Frame frame = spheres({side.near, -side.near}, 0.3);
+    frame.point_fields = {{"damage", "-", 1, {1.0F, 0.0F}}};
+    RenderOptions options = cube_options();
+    options.view = side.view;
+    options.field = "damage";
+    options.extent = Extent{{-0.6, -0.6, -0.6}, {0.6, 0.6, 0.6}};
+    const auto centre = [](const Image& image) {
+      return pixel(image, image.width * 9 / 20, image.height / 2);
+    };
+    EXPECT_TRUE(is_red(centre(render(frame, options)))) << side.view;
+    std::swap(frame.position[0], frame.position[1]);
+    EXPECT_FALSE(is_red(centre(render(frame, options)))) << side.view;
+  }
+}
+
+TEST(picture, up_is_up_and_right_is_right_in_every_view) {
+  struct Place {
+    const char* view;
+    Vec3 right, up;
+  };
+  for (const Place& place :
+       {Place{"x", {0, 1, 0}, {0, 0, 1}}, Place{"y", {1, 0, 0}, {0, 0, 1}},
+        Place{"z", {1, 0, 0}, {0, 1, 0}}, Place{"iso", {0.5, 0.2, 0}, {0, 0, 1}}}) {
+    RenderOptions options = cube_options();
+    options.view = place.view;
+    const auto seen = [&](const Vec3& centre) {
+      return scene_patch(spheres({centre}, 0.1), options);
+    };
+    const Patch middle = seen({0, 0, 0});
+    EXPECT_GT(seen(0.8 * place.right).centre_x(), middle.centre_x() + 50) << place.view;
+    EXPECT_LT(seen(0.8 * place.up).centre_y(), middle.centre_y() - 50) << place.view;
+  }
+}
+
+TEST(picture, a_clip_plane_drops_the_right_half) {
+  RenderOptions options = cube_options();
+  const Frame frame = spheres({{0, 0, 0}}, 0.6);
+  const Patch whole = scene_patch(frame, options);
+  options.clip = "x=0";
+  const Patch left = scene_patch(frame, options);
+  EXPECT_NEAR(left.pixels, 0.5 * whole.pixels, 0.01 * whole.pixels);
+  EXPECT_EQ(left.left, whole.left);
+  EXPECT_NEAR(left.right, whole.centre_x(), 1.5);
+  options.clip = "x>0";
+  EXPECT_NEAR(scene_patch(frame, options).left, whole.centre_x(), 1.5);
+}
+
+TEST(picture, a_clip_towards_the_viewer_shows_the_face_of_the_cut) {
+  RenderOptions options = cube_options();
+  const double resolution = pixels_per_metre(options);
+  options.clip = "y=0.36";  // what lies before it goes; the circle left has a radius of 0.48
+  const Frame frame = spheres({{0, 0, 0}}, 0.6);
+  const Patch cut = scene_patch(frame, options);
+  EXPECT_NEAR(cut.pixels, 3.14159265 * 0.48 * 0.48 * resolution * resolution,
+              0.03 * 0.73 * resolution * resolution);
+  options.clip = "y=0.7";
+  EXPECT_EQ(scene_patch(frame, options).pixels, 0.0);
+  options.clip = "y=-0.7";
+  EXPECT_GT(scene_patch(frame, options).pixels, cut.pixels);
+}
+
+TEST(picture, links_and_triangles_are_drawn_and_clipped) {
+  Frame frame;
+  frame.position = {{-0.8, 0, 0}, {0.8, 0, 0}, {0, 0, 0.8}};
+  frame.lines = {0, 1};
+  frame.line_fields = {{"force", "N", 1, {5.0F}}};
+  RenderOptions options = cube_options();
+  options.show_links = true;
+  const auto is_ink = [](const Pixel& p) { return p[0] < 200; };
+  const auto ink_in_middle = [&](const Image& image) {
+    double count = 0;
+    for (int y = 300; y < 500; ++y) {
+      for (int x = 0; x < 800; ++x) count += is_ink(pixel(image, x, y)) ? 1.0 : 0.0;
+    }
+    return count;
+  };
+  const double line = ink_in_middle(render(frame, options));
+  EXPECT_GT(line, 400.0);
+  options.clip = "x=0";
+  EXPECT_NEAR(ink_in_middle(render(frame, options)), 0.5 * line, 0.02 * line);
+  options.clip = "";
+  options.show_links = false;
+  EXPECT_EQ(ink_in_middle(render(frame, options)), 0.0);
+  frame.triangles = {0, 1, 2};
+  frame.triangle_fields = {{"stress", "Pa", 1, {2.5e6F}}};
+  options.field = "stress";
+  options.range = ValueRange{0.0, 2.5e6};
+  const auto is_yellow = [](const Pixel& p) { return p[0] > 150 && p[1] > 140 && p[2] < 90; };
+  const Patch triangle = patch_of(render(frame, options), is_yellow);
+  EXPECT_GT(triangle.pixels, 0.45 * (triangle.bottom - triangle.top) * 500.0);
+}
+
+TEST(picture, a_field_brings_a_legend_with_its_range_and_no_field_none) {
+  Frame frame = spheres({{-0.4, 0, 0}, {0.4, 0, 0}}, 0.3);
+  frame.point_fields = {{"velocity", "m/s", 3, {0, 0, 0, 3, 4, 0}}};
+  RenderOptions options = cube_options();
+  const auto colours_at_right = [](const Image& image) {
+    double coloured = 0;
+    for (int y = 0; y < image.height * 3 / 4; ++y) {
+      for (int x = image.width * 8 / 10; x < image.width; ++x) {
+        const Pixel p = pixel(image, x, y);
+        coloured +=
+            *std::max_element(p.begin(), p.end()) - *std::min_element(p.begin(), p.end()) > 60
+                ? 1.0
+                : 0.0;
+      }
+    }
+    return coloured;
+  };
+  EXPECT_EQ(colours_at_right(render(frame, options)), 0.0);
+  options.field = "velocity";
+  const Image automatic = render(frame, options);
+  EXPECT_GT(colours_at_right(automatic), 2000.0);
+  options.range = ValueRange{0.0, 5.0};  // the length of (3, 4, 0) is the end of the range
+  EXPECT_EQ(automatic.rgb, render(frame, options).rgb);
+  options.range = ValueRange{0.0, 50.0};
+  EXPECT_NE(automatic.rgb, render(frame, options).rgb);
+}
+
+TEST(picture, a_component_of_a_vector_can_be_chosen) {
+  Frame frame = spheres({{-0.4, 0, 0}, {0.4, 0, 0}}, 0.3);
+  frame.point_fields = {{"velocity", "m/s", 3, {9, 9, -1, 9, 9, 1}}};
+  RenderOptions options = cube_options();
+  options.field = "velocity_z";
+  const Image image = render(frame, options);
+  const Patch blue = patch_of(image, is_blue), red = patch_of(image, is_red);
+  EXPECT_GT(blue.pixels, 5000.0);
+  EXPECT_GT(red.pixels, 5000.0);
+  EXPECT_LT(blue.left, red.left);
+  EXPECT_TRUE(has_field(frame, "velocity_x"));
+  EXPECT_FALSE(has_field(frame, "velocity_w"));
+  EXPECT_FALSE(has_field(frame, "stress"));
+  EXPECT_TRUE(has_field(frame, ""));
+}
+
+TEST(picture, damage_reddens_concrete_and_steel_stays_blue) {
+  Frame frame = spheres({{-0.7, 0, 0}, {-0.2, 0, 0}, {0.3, 0, 0}}, 0.2);
+  frame.point_fields = {{"group", "-", 1, {0, 0, 1}}, {"damage", "-", 1, {0.0F, 0.9F, 0.0F}}};
+  RenderOptions options = cube_options();
+  options.field = "damage";
+  const Image image = render(frame, options);
+  const auto row = [&image](int x) { return pixel(image, x, image.height / 2); };
+  int concrete = 0, red = 0, blue = 0;
+  for (int x = 0; x < image.width * 3 / 4; ++x) {
+    concrete += is_concrete(row(x)) ? 1 : 0;
+    red += is_red(row(x)) ? 1 : 0;
+    blue += is_blue(row(x)) ? 1 : 0;
+  }
+  EXPECT_GT(concrete, 60);
+  EXPECT_GT(red, 60);
+  EXPECT_GT(blue, 60);
+}
+
+TEST(picture, a_few_fragments_that_flew_far_do_not_shrink_the_rest) {
+  Frame frame = test::slab_scene();
+  const Extent extent = bulk_extent(frame);
+  EXPECT_GT(extent.low.x, -0.55);
+  EXPECT_LT(extent.high.x, 0.55);
+  EXPECT_GT(extent.high.z, 0.30);  // the ball belongs to the scene
+  EXPECT_LT(extent.high.z, 0.50);
+}
+
+TEST(picture, the_extent_of_the_first_frame_keeps_the_camera_of_a_series) {
+  RenderOptions options = cube_options();
+  options.extent = bulk_extent(spheres({{-0.5, 0, 0}, {0.5, 0, 0}}, 0.1));
+  const Patch before = scene_patch(spheres({{-0.5, 0, 0}, {0.5, 0, 0}}, 0.1), options);
+  const Patch after = scene_patch(spheres({{-0.5, 0, 0}, {9.0, 3.0, 5.0}}, 0.1), options);
+  EXPECT_EQ(before.left, after.left);
+  EXPECT_EQ(before.top, after.top);
+}
+
+TEST(picture, the_same_frame_gives_the_same_bits) {
+  const Frame frame = test::slab_scene();
+  RenderOptions options;
+  options.clip = "x=0.1";
+  options.show_links = true;
+  EXPECT_EQ(render(frame, options).rgb, render(frame, options).rgb);
+}
+
+TEST(picture, frames_with_nothing_or_nonsense_in_them_are_drawn) {
+  RenderOptions options;
+  options.field = "";
+  EXPECT_EQ(render(Frame{}, options).rgb.size(), 3U * 1280U * 960U);
+  Frame frame = spheres({{0, 0, 0}, {NAN, 0, 0}, {1e300, 0, 0}, {1, 1, 1}}, 0.1);
+  frame.point_fields = {{"damage", "-", 1, {0.5F, NAN, INFINITY, 0.0F}}};
+  options.field = "damage";
+  EXPECT_EQ(render(frame, options).rgb.size(), 3U * 1280U * 960U);
+  options.width = 64;
+  options.height = 64;
+  EXPECT_EQ(render(frame, options).rgb.size(), 3U * 64U * 64U);
+}
+
+TEST(picture, options_that_make_no_sense_are_named) {
+  const auto message = [](RenderOptions options) -> std::string {
+    Frame frame = spheres({{0, 0, 0}}, 0.1);
+    frame.point_fields = {{"damage", "-", 1, {0.5F}}, {"velocity", "m/s", 3, {1, 2, 3}}};
+    try {
+      render(frame, options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message({}), "");
+  EXPECT_NE(message({.field = "damge"}).find("damage, velocity"), std::string::npos);
+  EXPECT_NE(message({.view = "top"}).find("iso, x, y, z"), std::string::npos);
+  EXPECT_NE(message({.clip = "x:0"}).find("\"x=0\""), std::string::npos);
+  EXPECT_NE(message({.clip = "w=0"}).find("\"w=0\""), std::string::npos);
+  EXPECT_NE(message({.width = 0}).find("0 x 960"), std::string::npos);
+}
+
+/// Decodes with libpng's simplified interface.
+Image read_png(const std::string& path) {
+  png_image file{};
+  file.version = PNG_IMAGE_VERSION;
+  Image image;
+  if (png_image_begin_read_from_file(&file, path.c_str()) == 0) return image;
+  file.format = PNG_FORMAT_RGB;
+  image.width = static_cast<int>(file.width);
+  image.height = static_cast<int>(file.height);
+  image.rgb.resize(PNG_IMAGE_SIZE(file));
+  png_image_finish_read(&file, nullptr, image.rgb.data(), 0, nullptr);
+  return image;
+}
+
+TEST(png_file, libpng_reads_back_the_same_pixels) {
+  const std::string path = (std::filesystem::temp_directory_path() /
+                            ("breccia_png_" + std::to_string(getpid()) + ".png"))
+                               .string();
+  RenderOptions options;
+  options.width = 641;
+  const Image image = render(test::slab_scene(), options);
+  write_png(path, image);
+  const Image read = read_png(path);
+  EXPECT_EQ(read.width, 641);
+  EXPECT_EQ(read.height, 960);
+  EXPECT_EQ(read.rgb, image.rgb);
+  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+  std::filesystem::remove(path);
+}
+
+TEST(png_file, a_path_that_cannot_be_written_is_named_with_the_reason) {
+  try {
+    write_png("/nowhere/picture.png", {1, 1, {0, 0, 0}});
+    FAIL();
+  } catch (const IoError& error) {
+    EXPECT_NE(std::string(error.what()).find("/nowhere/picture.png"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("No such file"), std::string::npos);
+  }
+  EXPECT_THROW(write_png("/tmp/never.png", {2, 2, {0, 0, 0}}), IoError);
+  EXPECT_THROW(write_png("/dev/full/x.png", {1, 1, {0, 0, 0}}), IoError);
+}
+
+/// Prints what a picture costs; the limit is wide, since other programs may run beside.
+TEST(picture, the_full_slab_is_drawn_within_a_blink) {
+  const Frame frame = test::slab_scene();
+  const std::string path = (std::filesystem::temp_directory_path() /
+                            ("breccia_time_" + std::to_string(getpid()) + ".png"))
+                               .string();
+  const auto best_of_five = [](const std::function<void()>& work) {
+    double best = 1e9;
+    for (int k = 0; k < 5; ++k) {
+      const auto start = std::chrono::steady_clock::now();
+      work();
+      const std::chrono::duration<double, std::milli> passed =
+          std::chrono::steady_clock::now() - start;
+      best = std::min(best, passed.count());
+    }
+    return best;
+  };
+  Image image;
+  const double drawing = best_of_five([&] { image = render(frame, {}); });
+  const double writing = best_of_five([&] { write_png(path, image); });
+  std::printf("picture of %zu spheres at 1280 x 960: render %.1f ms, PNG %.1f ms, %ju kB\n",
+              frame.position.size(), drawing, writing,
+              static_cast<std::uintmax_t>(std::filesystem::file_size(path) / 1000));
+  std::filesystem::remove(path);
+  EXPECT_LT(drawing, 300.0);
+  EXPECT_LT(writing, 400.0);
+}
+
+}  // namespace
+}  // namespace breccia
