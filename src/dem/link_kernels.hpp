@@ -6,21 +6,33 @@
 
 namespace breccia::dem {
 
-/// What pair kernels read of the elements.
-struct ElementsView {
-  View<const Vec3> position, velocity, spin;
-  View<const double> radius, mass;
-
-  template <class R>
-  BR_HD PairEnd<R> end(const Indices<R>& i) const {
-    return {gather(position, i), gather(velocity, i), gather(spin, i)};
-  }
-  BR_HD PairEnd<double> end(Index i) const { return {position[i], velocity[i], spin[i]}; }
+/// What pairs read of an element, side by side in memory: they meet elements at random.
+struct ElementState {
+  Vec3 position;  ///<  [m]
+  Vec3 velocity;  ///<  [m/s]
+  Vec3 spin;      ///<  [rad/s]
+  double radius;  ///<  [m]
 };
 
-inline ElementsView view(const Elements& elements) {
-  return {elements.position.view(), elements.velocity.view(), elements.spin.view(),
-          elements.radius.view(), elements.mass.view()};
+/// What pair kernels read of the elements.
+struct ElementsView {
+  View<const ElementState> state;
+  View<const double> mass, inertia;
+
+  BR_HD PairEnd<double> end(Index i) const {
+    const ElementState& s = state[i];
+    return {s.position, s.velocity, s.spin};
+  }
+  BR_HD double radius(Index i) const { return state[i].radius; }
+};
+
+/// The end of every link of a pack and its radius.
+template <class R>
+BR_HD PairEnd<R> gather_end(const View<const ElementState>& state, const Indices<R>& i, R& radius) {
+  R c[10];
+  gather_records(state, i, c);
+  radius = c[9];
+  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}};
 }
 
 /// Cohesive links of one material, one link (R = double) or a pack of neighbours at a time.
@@ -34,15 +46,17 @@ struct ConcreteLinkForces {
   View<double> opening;
   PlanesView<double> shear, moment;
   View<double> slid, yielded, broke;
-  ActionsView actions;
+  View<Action> actions;
+  Index first_action;  ///< action of link 0
 
   template <class R>
   BR_HD void at(Index i) const {
     constexpr double pi = 3.14159265358979323846;
     const Indices<R> ia = load_indices<R>(a, i), ib = load_indices<R>(b, i);
-    const R radius_a = gather(elements.radius, ia), radius_b = gather(elements.radius, ib);
-    const PairMotion<R> motion =
-        pair_motion<R>(elements.end<R>(ia), elements.end<R>(ib), radius_a - radius_b, dt);
+    R radius_a, radius_b;
+    const PairEnd<R> end_a = gather_end(elements.state, ia, radius_a);
+    const PairEnd<R> end_b = gather_end(elements.state, ib, radius_b);
+    const PairMotion<R> motion = pair_motion<R>(end_a, end_b, radius_a - radius_b, dt);
     const R least = smaller(radius_a, radius_b), touching = radius_a + radius_b;
     const LinkConstants<R> link{load<R>(length, i), load<R>(stiffness, i), pi * least * least,
                                 0.5 * touching, touching};
@@ -58,7 +72,8 @@ struct ConcreteLinkForces {
 
     const R kn = r.active * link.stiffness, kt = law.shear_ratio * kn;
     const R kr = law.rolling_ratio * kt * link.radius * link.radius;
-    actions.book(i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt, kr, kr);
+    book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt,
+         kr, kr);
   }
   BR_HD void operator()(Index i) const { at<double>(i); }
 };
@@ -73,12 +88,13 @@ struct SteelLinkForces {
   View<const double> length;
   View<SteelState> state;
   View<double> yielded, broke;
-  ActionsView actions;
+  View<Action> actions;
+  Index first_action;  ///< action of link 0
 
   BR_HD void operator()(Index i) const {
     const PairMotion<double> motion =
         pair_motion<double>(elements.end(a[i]), elements.end(b[i]), 0.0, dt);
-    const double radius = smaller(elements.radius[a[i]], elements.radius[b[i]]);
+    const double radius = smaller(elements.radius(a[i]), elements.radius(b[i]));
     SteelState kept = state[i];
     const SteelResponse r = law.answer(length[i], radius, motion, kept);
     state[i] = kept;
@@ -86,8 +102,8 @@ struct SteelLinkForces {
     broke[i] += r.broke;
     const SteelLink::Stiffness k = law.stiffness(length[i], radius);
     const bool whole = kept.hardening >= 0.0;
-    actions.book(i, motion, r.shear - r.normal * motion.normal, r.moment, r.active * k.axial,
-                 whole ? k.shear : 0.0, whole ? k.bending : 0.0, whole ? k.twist : 0.0);
+    book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment,
+         r.active * k.axial, whole ? k.shear : 0.0, whole ? k.bending : 0.0, whole ? k.twist : 0.0);
   }
 };
 
@@ -101,15 +117,16 @@ struct InterfaceLinkForces {
   View<const double> stiffness, area, rest;
   View<InterfaceState> state;
   View<double> slid, broke;
-  ActionsView actions;
+  View<Action> actions;
+  Index first_action;  ///< action of link 0
 
   BR_HD void operator()(Index i) const {
     const PairEnd<double> bar = elements.end(a[i]), concrete = elements.end(b[i]);
-    const Vec3 chord = elements.position[after[i]] - elements.position[before[i]];
+    const Vec3 chord = elements.state[after[i]].position - elements.state[before[i]].position;
     const Vec3 axis = (1.0 / norm(chord)) * chord;
     // The contact point divides the distance like the radii: a bar is thin beside its concrete.
-    const double share = (elements.radius[a[i]] - elements.radius[b[i]]) /
-                         (elements.radius[a[i]] + elements.radius[b[i]]);
+    const double share = (elements.radius(a[i]) - elements.radius(b[i])) /
+                         (elements.radius(a[i]) + elements.radius(b[i]));
     const double distance = norm(concrete.position - bar.position);
     const PairMotion<double> motion = pair_motion<double>(bar, concrete, share * distance, dt);
     const double approach = dt * dot(concrete.velocity - bar.velocity, motion.normal);
@@ -120,7 +137,7 @@ struct InterfaceLinkForces {
     slid[i] += r.slid;
     broke[i] += r.broke;
     const double k = r.active * stiffness[i];
-    actions.book(i, motion, r.force, Vec3{}, k, k, 0.0, 0.0);
+    book(actions, first_action + i, motion, r.force, Vec3{}, k, k, 0.0, 0.0);
   }
 };
 

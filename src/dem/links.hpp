@@ -85,61 +85,99 @@ struct InterfaceLinks {
   Index size() const { return a.size(); }
 };
 
-/// What each interaction does to its two ends in this step, and how stiff it is; written once by
-/// the laws, gathered by the elements.
-struct Actions {
-  Vec3Planes force;     ///< on b; a gets the opposite  [N]
-  Vec3Planes torque_a;  ///< about the centre of a  [N m]
-  Vec3Planes torque_b;  ///< about the centre of b  [N m]
-  Buffer<float>
-      stiffness;  ///< nine planes: K_xx K_yy K_zz, then K^theta of a, then of b  [N/m], [N m]
+/// What an interaction does to its two ends in this step, and how stiff it is: written once by its
+/// law, read by both ends. What an end adds up lies side by side: six numbers from 0 for a, from 3
+/// for b.
+struct Action {
+  double numbers[9];  ///< torque on a  [N m], force on b (a gets the opposite)  [N], torque on b [N
+                      ///< m]
+  float stiffness[9];  ///< K^theta of a  [N m], K  [N/m], K^theta of b  [N m], each xx yy zz
+  float unused;
 
-  void resize(Index count) {
-    force.resize(count);
-    torque_a.resize(count);
-    torque_b.resize(count);
-    stiffness.resize(9 * count);
-  }
-  Index size() const { return force.size(); }
+  BR_HD Vec3 force_on_b() const { return {numbers[3], numbers[4], numbers[5]}; }
 };
+static_assert(sizeof(Action) == 112);
 
-/// A kernel's view of Actions, from a first interaction on.
-struct ActionsView {
-  PlanesView<double> force, torque_a, torque_b;
-  View<float> stiffness;
-  Index stride = 0;
-  Index first = 0;  ///< interaction 0 of the kernel is this one
+BR_HD inline void write_actions(const View<Action>& actions, Index at, const double (&numbers)[9],
+                                const double (&stiffness)[9]) {
+  Action& action = actions[at];
+  for (int k = 0; k < 9; ++k) action.numbers[k] = numbers[k];
+  for (int k = 0; k < 9; ++k) action.stiffness[k] = static_cast<float>(stiffness[k]);
+}
 
-  /// Books force f and moment M on b of interaction i at arms along n, with tangent stiffnesses
-  /// (Durand 2012, 4.4; docs/theory.md, time step).
-  template <class R>
-  BR_HD void book(Index i, const PairMotion<R>& motion, const Vec3Of<R>& f, const Vec3Of<R>& moment,
-                  const R& normal, const R& shear, const R& bending, const R& twist) const {
-    const Index at = first + i;
-    const Vec3Of<R> lever = cross(motion.normal, f);
-    store(force, at, f);
-    store(torque_a, at, -(motion.arm_a * lever) - moment);
-    store(torque_b, at, moment - motion.arm_b * lever);
-
-    const Vec3Of<R> q{motion.normal.x * motion.normal.x, motion.normal.y * motion.normal.y,
-                      motion.normal.z * motion.normal.z};
-    const R stretch = normal - shear, screw = twist - bending;
-    store_rounded(stiffness, at, shear + stretch * q.x);
-    store_rounded(stiffness, stride + at, shear + stretch * q.y);
-    store_rounded(stiffness, 2 * stride + at, shear + stretch * q.z);
-    const R a = shear * motion.arm_a * motion.arm_a, b = shear * motion.arm_b * motion.arm_b;
-    store_rounded(stiffness, 3 * stride + at, a + bending + (screw - a) * q.x);
-    store_rounded(stiffness, 4 * stride + at, a + bending + (screw - a) * q.y);
-    store_rounded(stiffness, 5 * stride + at, a + bending + (screw - a) * q.z);
-    store_rounded(stiffness, 6 * stride + at, b + bending + (screw - b) * q.x);
-    store_rounded(stiffness, 7 * stride + at, b + bending + (screw - b) * q.y);
-    store_rounded(stiffness, 8 * stride + at, b + bending + (screw - b) * q.z);
+#if !defined(__CUDACC__) && defined(__AVX512F__)
+inline void write_actions(const View<Action>& actions, Index at, const Pack8 (&numbers)[9],
+                          const Pack8 (&stiffness)[9]) {
+  Pack8 rows[8];
+  for (int k = 0; k < 8; ++k) rows[k] = numbers[k];
+  transpose(rows);
+  __m256 halves[8];
+  for (int k = 0; k < 8; ++k) halves[k] = rounded(stiffness[k]);
+  transpose(halves);
+  alignas(64) double last_number[8];
+  alignas(32) float last_stiffness[8];
+  _mm512_store_pd(last_number, numbers[8]);
+  _mm256_store_ps(last_stiffness, rounded(stiffness[8]));
+  for (int k = 0; k < 8; ++k) {
+    Action& action = actions.data[at + k];
+    _mm512_storeu_pd(action.numbers, rows[k]);
+    action.numbers[8] = last_number[k];
+    _mm256_storeu_ps(action.stiffness, halves[k]);
+    action.stiffness[8] = last_stiffness[k];
   }
-};
+}
+#elif !defined(__CUDACC__) && defined(__AVX2__)
+inline void write_actions(const View<Action>& actions, Index at, const Pack4 (&numbers)[9],
+                          const Pack4 (&stiffness)[9]) {
+  Pack4 rows[2][4];
+  __m128 floats[2][4];
+  for (int part = 0; part < 2; ++part) {
+    for (int k = 0; k < 4; ++k) {
+      rows[part][k] = numbers[4 * part + k];
+      floats[part][k] = rounded(stiffness[4 * part + k]);
+    }
+    transpose(rows[part]);
+    _MM_TRANSPOSE4_PS(floats[part][0], floats[part][1], floats[part][2], floats[part][3]);
+  }
+  alignas(32) double last_number[4];
+  alignas(16) float last_stiffness[4];
+  _mm256_store_pd(last_number, numbers[8]);
+  _mm_store_ps(last_stiffness, rounded(stiffness[8]));
+  for (int k = 0; k < 4; ++k) {
+    Action& action = actions.data[at + k];
+    _mm256_storeu_pd(action.numbers, rows[0][k]);
+    _mm256_storeu_pd(action.numbers + 4, rows[1][k]);
+    action.numbers[8] = last_number[k];
+    _mm_storeu_ps(action.stiffness, floats[0][k]);
+    _mm_storeu_ps(action.stiffness + 4, floats[1][k]);
+    action.stiffness[8] = last_stiffness[k];
+  }
+}
+#endif
 
-inline ActionsView view(Actions& actions, Index first) {
-  return {actions.force.view(),     actions.torque_a.view(), actions.torque_b.view(),
-          actions.stiffness.view(), actions.size(),          first};
+/// Books force f and moment M on b of interaction `at`, and of its neighbours in a pack, with
+/// tangent stiffnesses (Durand 2012, 4.4; docs/theory.md, time step).
+template <class R>
+BR_HD void book(const View<Action>& actions, Index at, const PairMotion<R>& motion,
+                const Vec3Of<R>& f, const Vec3Of<R>& moment, const R& normal, const R& shear,
+                const R& bending, const R& twist) {
+  const Vec3Of<R> lever = cross(motion.normal, f);
+  const Vec3Of<R> torque_a = -(motion.arm_a * lever) - moment;
+  const Vec3Of<R> torque_b = moment - motion.arm_b * lever;
+  const R numbers[9] = {torque_a.x, torque_a.y, torque_a.z, f.x,       f.y,
+                        f.z,        torque_b.x, torque_b.y, torque_b.z};
+
+  const Vec3Of<R>& n = motion.normal;
+  const R q[3] = {n.x * n.x, n.y * n.y, n.z * n.z};
+  const R stretch = normal - shear, screw = twist - bending;
+  const R a = shear * motion.arm_a * motion.arm_a, b = shear * motion.arm_b * motion.arm_b;
+  R stiffness[9];
+  for (int c = 0; c < 3; ++c) {
+    stiffness[c] = a + bending + (screw - a) * q[c];
+    stiffness[3 + c] = shear + stretch * q[c];
+    stiffness[6 + c] = b + bending + (screw - b) * q[c];
+  }
+  write_actions(actions, at, numbers, stiffness);
 }
 
 }  // namespace breccia::dem

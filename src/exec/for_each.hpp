@@ -39,6 +39,14 @@ __global__ void launch_kernel(Index count, Kernel kernel) {
 }
 #endif
 
+/// A kernel over part of its arrays: item i of the loop is item first + i of the kernel.
+template <class Kernel>
+struct Shifted {
+  Kernel kernel;
+  Index first;
+  BR_HD void operator()(Index i) const { kernel(first + i); }
+};
+
 /// kernel(i) for every i in [0, count), in any order, static schedule.
 template <class Kernel>
 void for_each(const Exec& exec, Index count, const Kernel& kernel) {

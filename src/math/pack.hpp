@@ -44,6 +44,53 @@ BR_HD inline bool opposite(bool a) {
   return !a;
 }
 
+/// Six sums that grow together.
+struct SixSums {
+#if defined(__CUDACC__)
+  double sum[6] = {};
+  BR_HD void add(const double* numbers) {
+    for (int k = 0; k < 6; ++k) sum[k] += numbers[k];
+  }
+  BR_HD double operator[](int k) const {
+    return sum[k];
+  }
+#else
+  using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
+  Two sum[3] = {};
+  void add(const double* numbers) {
+    const auto* twos = reinterpret_cast<const Two*>(numbers);
+    for (int k = 0; k < 3; ++k) sum[k] += twos[k];
+  }
+  double operator[](int k) const {
+    return sum[k / 2][k % 2];
+  }
+#endif
+};
+/// Likewise in single precision.
+struct SixFloatSums {
+#if defined(__CUDACC__)
+  float sum[6] = {};
+  BR_HD void add(const float* numbers) {
+    for (int k = 0; k < 6; ++k) sum[k] += numbers[k];
+  }
+  BR_HD float operator[](int k) const {
+    return sum[k];
+  }
+#else
+  using Four = float __attribute__((vector_size(16), aligned(4), may_alias));
+  using Two = float __attribute__((vector_size(8), aligned(4), may_alias));
+  Four four{};
+  Two two{};
+  void add(const float* numbers) {
+    four += *reinterpret_cast<const Four*>(numbers);
+    two += *reinterpret_cast<const Two*>(numbers + 4);
+  }
+  float operator[](int k) const {
+    return k < 4 ? four[k] : two[k - 4];
+  }
+#endif
+};
+
 #if !defined(__CUDACC__) && defined(__AVX512F__)
 
 using Pack8 = double __attribute__((vector_size(64)));
@@ -78,6 +125,42 @@ inline Mask8 opposite(Mask8 a) {
 }
 inline __m256 rounded(Pack8 a) {
   return _mm512_cvtpd_ps(a);
+}
+/// Number i of pack k becomes number k of pack i.
+inline void transpose(Pack8 (&r)[8]) {
+  __m512d pairs[8], quads[8];
+  for (int k = 0; k < 8; k += 2) {
+    pairs[k] = _mm512_unpacklo_pd(r[k], r[k + 1]);
+    pairs[k + 1] = _mm512_unpackhi_pd(r[k], r[k + 1]);
+  }
+  for (int k = 0; k < 8; k += 4)
+    for (int j = 0; j < 2; ++j) {
+      quads[k + j] = _mm512_shuffle_f64x2(pairs[k + j], pairs[k + 2 + j], 0x88);
+      quads[k + 2 + j] = _mm512_shuffle_f64x2(pairs[k + j], pairs[k + 2 + j], 0xdd);
+    }
+  for (int j = 0; j < 2; ++j)
+    for (int half = 0; half < 2; ++half) {
+      const __m512d low = quads[2 * half + j], high = quads[4 + 2 * half + j];
+      r[2 * half + j] = _mm512_shuffle_f64x2(low, high, 0x88);
+      r[4 + 2 * half + j] = _mm512_shuffle_f64x2(low, high, 0xdd);
+    }
+}
+/// Likewise for eight rows of eight in single precision.
+inline void transpose(__m256 (&r)[8]) {
+  __m256 pairs[8], quads[8];
+  for (int k = 0; k < 8; k += 2) {
+    pairs[k] = _mm256_unpacklo_ps(r[k], r[k + 1]);
+    pairs[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
+  }
+  for (int k = 0; k < 8; k += 4)
+    for (int j = 0; j < 2; ++j) {
+      quads[k + 2 * j] = _mm256_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0x44);
+      quads[k + 2 * j + 1] = _mm256_shuffle_ps(pairs[k + j], pairs[k + 2 + j], 0xee);
+    }
+  for (int k = 0; k < 4; ++k) {
+    r[k] = _mm256_permute2f128_ps(quads[k], quads[k + 4], 0x20);
+    r[k + 4] = _mm256_permute2f128_ps(quads[k], quads[k + 4], 0x31);
+  }
 }
 using WidestPack = Pack8;
 
@@ -115,6 +198,15 @@ inline Mask4 opposite(Mask4 a) {
 }
 inline __m128 rounded(Pack4 a) {
   return _mm256_cvtpd_ps(a);
+}
+/// Number i of pack k becomes number k of pack i.
+inline void transpose(Pack4 (&r)[4]) {
+  const __m256d low01 = _mm256_unpacklo_pd(r[0], r[1]), high01 = _mm256_unpackhi_pd(r[0], r[1]);
+  const __m256d low23 = _mm256_unpacklo_pd(r[2], r[3]), high23 = _mm256_unpackhi_pd(r[2], r[3]);
+  r[0] = _mm256_permute2f128_pd(low01, low23, 0x20);
+  r[1] = _mm256_permute2f128_pd(high01, high23, 0x20);
+  r[2] = _mm256_permute2f128_pd(low01, low23, 0x31);
+  r[3] = _mm256_permute2f128_pd(high01, high23, 0x31);
 }
 using WidestPack = Pack4;
 

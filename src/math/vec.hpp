@@ -74,11 +74,11 @@ BR_HD inline Quaternion operator*(const Quaternion& a, const Quaternion& b) {
 }
 
 /// The orientation after turning by the rotation vector `angle` (small): Cayley's rational form of
-/// the rotation, which needs no sine and stays a unit quaternion. The turned angle is 2
-/// atan(|angle| / 2).
+/// the rotation, which needs no sine; the turned angle is 2 atan(|angle| / 2). One Newton step of 1
+/// / |q| keeps it a unit quaternion.
 BR_HD inline Quaternion turned(const Quaternion& q, const Vec3& angle) {
   const Quaternion t = Quaternion{1.0, 0.5 * angle.x, 0.5 * angle.y, 0.5 * angle.z} * q;
-  const double scale = 1.0 / sqrt(t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z);
+  const double scale = 1.5 - 0.5 * (t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z);
   return {scale * t.w, scale * t.x, scale * t.y, scale * t.z};
 }
 

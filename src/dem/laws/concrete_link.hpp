@@ -80,9 +80,9 @@ struct ConcreteLink {
 
     // 1. Normal force.
     const R opening = larger(opening_before, u);
-    const auto torn = both(intact, opening >= tension.rupture());
+    const auto torn = both(intact, kn * opening >= strength * (1.0 + softening));
     R health = one;  // 1 - damage
-    const auto softened_now = both(intact, opening > tension.onset());
+    const auto softened_now = both(intact, kn * opening > strength);
     if (any(softened_now)) health = choose(softened_now, one - tension.damage(opening), one);
     const auto pressed = u < 0.0;
     const auto holds = both(intact, opposite(torn));

@@ -38,6 +38,13 @@ struct PairMotion {
   BR_HD Vec3Of<R> across(const Vec3Of<R>& v) const { return v - dot(v, normal) * normal; }
 };
 
+/// 2 / (1 + h.h) by its series: h is half the angle of one step, h^8 below rounding.
+template <class R>
+BR_HD R turn_scale(const Vec3Of<R>& half_turn) {
+  const R h = dot(half_turn, half_turn);
+  return 2.0 * (1.0 - h * (1.0 - h * (1.0 - h)));
+}
+
 /// @param excess  radius of a minus radius of b: puts the contact point into the middle of the gap
 /// [m]
 /// @param dt      the step that moved the ends to where they are; 0 at the start  [s]
@@ -50,7 +57,8 @@ BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const 
   PairMotion<R> m;
   const Vec3Of<R> d = b.position - a.position;
   m.distance = norm(d);
-  m.normal = (1.0 / m.distance) * d;
+  const R inverse = 1.0 / m.distance;
+  m.normal = inverse * d;
   m.arm_a = 0.5 * (m.distance + excess);
   m.arm_b = 0.5 * (m.distance - excess);
 
@@ -60,13 +68,15 @@ BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const 
   m.slip = step * m.across(sliding);
   m.turn = step * (b.spin - a.spin);
 
-  const R tangent_scale = step / (m.distance - step * dot(dv, m.normal));
+  // 1 / (D - e D) with the stretch e of one step, by its series: e^4 is below rounding
+  const R stretch = step * inverse * dot(dv, m.normal);
+  const R tangent_scale = step * inverse * (1.0 + stretch * (1.0 + stretch * (1.0 + stretch)));
   const Vec3Of<R> tangent = tangent_scale * cross(m.normal, dv);
   const R half = constant<R>(0.5), quarter = constant<R>(0.25);
   const R half_tangent = half * (1.0 - quarter * dot(tangent, tangent));  // tan(t/2) from tan t
   const R spin = quarter * step * dot(m.normal, a.spin + b.spin);  // half the mean spin's angle
   m.half_turn = half_tangent * tangent + spin * m.normal;
-  m.turn_scale = 2.0 / (1.0 + dot(m.half_turn, m.half_turn));
+  m.turn_scale = turn_scale(m.half_turn);
   return m;
 }
 

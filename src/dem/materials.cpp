@@ -1,0 +1,88 @@
+#include "dem/materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/restitution.hpp"
+
+namespace breccia::dem {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+double harmonic(double a, double b) {
+  return a + b > 0.0 ? 2.0 * a * b / (a + b) : 0.0;
+}
+double shear_modulus(const MaterialConfig& m) {
+  return m.young / (2.0 * (1.0 + m.poisson));
+}
+
+}  // namespace
+
+LocalElasticity local_elasticity(const MaterialConfig& m) {
+  const double shear = 1.0 - m.alpha * m.poisson;
+  return {m.young * (1.0 + m.alpha) / (m.beta * (1.0 + m.poisson) + m.gamma * std::max(0.0, shear)),
+          std::max(0.0, shear / (1.0 + m.poisson))};
+}
+
+LocalElasticity local_elasticity(const MaterialConfig& a, const MaterialConfig& b) {
+  MaterialConfig mean = a;
+  mean.young = harmonic(a.young, b.young);
+  mean.poisson = harmonic(a.poisson, b.poisson);
+  return local_elasticity(mean);
+}
+
+ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact) {
+  return {m.tensile_strength,         m.cohesion,       m.softening,
+          std::tan(m.friction_angle), contact.friction, local_elasticity(m).ratio,
+          m.rolling_stiffness,        m.rolling_limit,  m.shear == "brittle" ? 1.0 : 0.0};
+}
+
+SteelLink steel_law(const MaterialConfig& m) {
+  return {m.young, shear_modulus(m), m.yield, m.hardening, m.failure_strain};
+}
+
+InterfaceLink interface_law(const MaterialConfig& m, const ContactConfig& contact) {
+  InterfaceLink law{};
+  BondSlip& bond = law.bond;
+  bond = {m.bond_strength, m.bond_residual, m.slip1, m.slip2, m.slip3, {}};
+  if (m.bond != "mc90") {
+    bond.strength = bond.residual = m.bond == "perfect" ? 1e300 : m.bond_strength;
+    bond.slip1 = bond.slip2 = bond.slip3 = 0.0;
+  }
+  // tau / tau_max = (s / s_1)^0.4 = t^0.8 with t = sqrt(s / s_1)
+  for (int k = 0; k <= BondSlip::intervals; ++k)
+    bond.rise[k] = std::pow(static_cast<double>(k) / BondSlip::intervals, 0.8);
+  law.slip_ratio = 0.4;  // G_b / E_c: bond layer as stiff in shear as concrete
+  law.tensile_strength = m.tensile_strength;
+  law.softening = m.softening;
+  law.friction = contact.friction;
+  return law;
+}
+
+ContactLaw contact_law(const ContactConfig& c) {
+  const bool hertz = c.law == "hertz";
+  return {hertz, c.friction,
+          hertz ? damping_ratio_hertz(c.restitution) : damping_ratio_linear(c.restitution),
+          c.rolling_stiffness, c.rolling_limit};
+}
+
+ContactPair contact_pair(const ContactConfig& c, const MaterialConfig& a, const MaterialConfig& b) {
+  if (c.law == "hertz") {
+    const double compliance =
+        (1.0 - a.poisson * a.poisson) / a.young + (1.0 - b.poisson * b.poisson) / b.young;
+    const double shear =
+        (2.0 - a.poisson) / shear_modulus(a) + (2.0 - b.poisson) / shear_modulus(b);
+    return {1.0 / compliance, 1.0 / shear};
+  }
+  const LocalElasticity local = local_elasticity(a, b);
+  return {local.modulus * pi, local.ratio};
+}
+
+ContactPair wall_pair(const ContactConfig& c, const MaterialConfig& m) {
+  if (c.law == "hertz")
+    return {m.young / (1.0 - m.poisson * m.poisson), shear_modulus(m) / (2.0 - m.poisson)};
+  return contact_pair(c, m, m);
+}
+
+}  // namespace breccia::dem
