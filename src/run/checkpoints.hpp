@@ -1,0 +1,54 @@
+#pragma once
+// The checkpoints of a run: when one is due, how many are kept, which one a run goes on from.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/case_config.hpp"
+#include "io/checkpoint.hpp"
+
+namespace breccia {
+
+/// The files checkpoints/step_<number>.br of a result folder.
+class Checkpoints {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// @throws IoError if the folder cannot be made
+  Checkpoints(const std::string& folder, const CheckpointConfig& config);
+
+  /// Whether the state after `step` is to be saved, by steps or by wall time.
+  bool due(std::int64_t step, Clock::time_point now) const;
+
+  /// Writes the state, verifies it, then removes the oldest beyond those to keep. Returns its path.
+  /// @throws IoError; the older checkpoints are then all there
+  std::string write(std::int64_t step, const CheckpointWriter& state);
+
+  /// The step of the newest checkpoint this object wrote, -1 if none.
+  std::int64_t last_step() const { return last_step_; }
+
+ private:
+  std::string folder_;
+  CheckpointConfig config_;
+  std::int64_t last_step_ = -1;
+  Clock::time_point last_time_ = Clock::now();
+};
+
+/// A checkpoint file and the step its name tells.
+struct CheckpointFile {
+  std::string path;
+  std::int64_t step;
+};
+
+/// Those of a folder `checkpoints`, newest first.
+std::vector<CheckpointFile> list_checkpoints(const std::string& folder);
+
+/// Reads the newest checkpoint that is whole; tells `warn` about each damaged one it passes by.
+/// @throws CheckpointError if there is none
+CheckpointReader newest_good_checkpoint(const std::string& folder,
+                                        const std::function<void(const std::string&)>& warn);
+
+}  // namespace breccia

@@ -1,0 +1,79 @@
+#include "run/messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "io/round_numbers.hpp"
+#include "run/progress.hpp"
+
+namespace breccia {
+namespace {
+
+std::optional<double> fact(const Summary& summary, const std::string& path) {
+  for (const Fact& candidate : summary.facts)
+    if (candidate.path == path) return candidate.value;
+  return std::nullopt;
+}
+
+/// The shares of the stages in the time spent, largest first.
+std::string stage_shares(const Summary& s) {
+  const double all = s.loop + s.output;
+  if (all <= 0.0) return "";
+  std::vector<std::pair<double, std::string>> shares{{s.output, "output"}};
+  double other = s.loop;
+  for (const auto& [name, seconds] : s.stages) {
+    if (name == "output") continue;
+    shares.emplace_back(seconds, name);
+    other -= seconds;
+  }
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  shares.emplace_back(other, "other");
+  std::string text;
+  for (const auto& [seconds, name] : shares)
+    if (seconds >= 0.005 * all) text += fmt::format("{} {:.0f} %  ", name, 100.0 * seconds / all);
+  return text;
+}
+
+}  // namespace
+
+std::string opening_text(const Summary& s, double end, const std::string& folder) {
+  std::string text = fmt::format("breccia {}  {} x{} {}\n", this_build().version, s.machine.device,
+                                 s.machine.threads, s.machine.threads == 1 ? "thread" : "threads");
+  text += fmt::format("case    {}   {}", s.case_name, s.method);
+  for (const char* kind : {"elements", "links", "triangles", "joints"})
+    if (const auto count = fact(s, std::string("model.") + kind); count && *count > 0.0)
+      text += fmt::format("   {} {}", count_text(*count), kind);
+  text += fmt::format("   memory {:.0f} MB\n", static_cast<double>(s.peak_memory) / 1e6);
+  if (s.dt_last > 0.0)
+    text += fmt::format("step    dt {:.3g} s   about {} steps to {}\n", s.dt_last,
+                        count_text(std::max(0.0, end - s.time) / s.dt_last), time_text(end));
+  else
+    text += fmt::format("step    to {}\n", time_text(end));
+  if (s.steps > 0)
+    text += fmt::format("from    step {}, {}\n", count_text(static_cast<double>(s.steps)),
+                        time_text(s.time));
+  return text + fmt::format("folder  {}\n", folder);
+}
+
+std::string closing_text(const Summary& s, std::int64_t frames, const std::string& folder) {
+  std::string text =
+      fmt::format("{:<7} {} in {}   {} steps   {} frames", s.status, time_text(s.time),
+                  duration_text(s.total), count_text(static_cast<double>(s.steps)), frames);
+  if (const auto broken = fact(s, "fracture.broken_links"))
+    text += fmt::format("   broken links {}", count_text(*broken));
+  if (s.energy) text += fmt::format("   energy error {:.2g} %", 100.0 * s.energy->error_relative);
+  text += '\n';
+  if (const std::string shares = stage_shares(s); !shares.empty()) {
+    text += fmt::format("stage   {}", shares);
+    if (s.step_median > 0.0) text += fmt::format("{:.4g} us a step", s.step_median);
+    if (const auto links = fact(s, "model.links"); links && s.step_median > 0.0 && *links > 0.0)
+      text += fmt::format("   {:.1f} M link-steps/s", *links / s.step_median);
+    text += '\n';
+  }
+  return text + fmt::format("result  {}\n", folder);
+}
+
+}  // namespace breccia

@@ -1,0 +1,17 @@
+#pragma once
+// The opening and closing lines of a run.
+
+#include <string>
+
+#include "run/summary.hpp"
+
+namespace breccia {
+
+/// What was read and what is to come.
+/// @param end  simulated time at which the run ends  [s]
+std::string opening_text(const Summary& summary, double end, const std::string& folder);
+
+/// What came out, and where it lies.
+std::string closing_text(const Summary& summary, std::int64_t frames, const std::string& folder);
+
+}  // namespace breccia

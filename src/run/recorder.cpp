@@ -1,0 +1,184 @@
+#include "run/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+Schedule row_schedule(const CaseConfig& config) {
+  if (config.output.history > 0.0) return {config.output.history, 1.0};
+  return {config.time.end, 1000.0};
+}
+
+Schedule frame_schedule(const CaseConfig& config) {
+  if (config.output.frames == 0) return {};
+  return {config.time.end, static_cast<double>(config.output.frames)};
+}
+
+/// Removes the pictures numbered `first` and later.
+void drop_pictures(const std::string& folder, std::int64_t first) {
+  std::error_code error;
+  std::vector<fs::path> later;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string stem = entry.path().stem().string();
+    std::int64_t number = 0;
+    const auto [end, problem] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+    if (problem == std::errc{} && *end == '\0' && number >= first) later.push_back(entry.path());
+  }
+  for (const fs::path& path : later) fs::remove(path, error);
+}
+
+ProbeRange fresh_range(const std::string& name) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {name, 0.0, infinity, -infinity};
+}
+
+}  // namespace
+
+void Schedule::pass(double time) {
+  if (time < next_) return;
+  if (std::isinf(end_)) {
+    next_ = end_;
+    return;
+  }
+  const auto moment = [this](double k) { return k / count_ * end_; };
+  // The quotient may be off by a rounding, so the search starts below it.
+  double k = std::max(0.0, std::floor(time / end_ * count_) - 2.0);
+  while (moment(k) <= time) k += 1.0;
+  next_ = moment(k);
+}
+
+void RecordState::save(CheckpointWriter& writer) const {
+  writer.value("run.row_step", row_step);
+  writer.value("run.frame_step", frame_step);
+  writer.value("run.frame_time", frame_time);
+  writer.value("run.frames", frames);
+  if (extent) writer.value("run.extent", *extent);
+  std::vector<double> ranges;
+  for (const ProbeRange& probe : probes)
+    ranges.insert(ranges.end(), {probe.last, probe.min, probe.max});
+  writer.section("run.probes", ranges.data(), ranges.size(), sizeof(double));
+}
+
+void RecordState::load(const CheckpointReader& reader) {
+  row_step = reader.value<std::int64_t>("run.row_step");
+  frame_step = reader.value<std::int64_t>("run.frame_step");
+  frame_time = reader.value<double>("run.frame_time");
+  frames = reader.value<std::int64_t>("run.frames");
+  if (reader.has("run.extent")) extent = reader.value<Extent>("run.extent");
+  const CheckpointReader::Section& ranges = reader.section("run.probes", sizeof(double));
+  probes.resize(ranges.count / 3);
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    std::array<double, 3> range{};
+    std::copy_n(ranges.bytes.data() + i * sizeof(range), sizeof(range),
+                reinterpret_cast<std::byte*>(range.data()));
+    probes[i].last = range[0];
+    probes[i].min = range[1];
+    probes[i].max = range[2];
+  }
+}
+
+Recorder::Recorder(const ResultFolder& folder, const CaseConfig& config, Log& log)
+    : pictures_(folder.file("pictures")),
+      config_(config),
+      log_(log),
+      history_(folder.file("history.csv"), config.probes),
+      rows_(row_schedule(config)),
+      frames_(frame_schedule(config)) {
+  for (const ProbeConfig& probe : config_.probes) state_.probes.push_back(fresh_range(probe.name));
+  if (config_.output.fields) series_.emplace(folder.path());
+  if (config_.output.pictures) make_folder(pictures_);
+}
+
+Recorder::Recorder(const ResultFolder& folder, const CaseConfig& config, Log& log,
+                   const RecordState& state, double time)
+    : pictures_(folder.file("pictures")),
+      config_(config),
+      log_(log),
+      state_(state),
+      history_(
+          (History::cut_to(folder.file("history.csv"), state.row_step), folder.file("history.csv")),
+          config.probes),
+      rows_(row_schedule(config)),
+      frames_(frame_schedule(config)),
+      frame_count_(state.frames) {
+  state_.probes.resize(config_.probes.size());
+  for (std::size_t i = 0; i < config_.probes.size(); ++i)
+    state_.probes[i].name = config_.probes[i].name;
+  if (state_.row_step >= 0) rows_.pass(time);
+  if (state_.frame_step >= 0) frames_.pass(time);
+  if (config_.output.fields && state_.frames > 0)
+    series_ = ParaviewSeries::resumed(folder.path(), state_.frame_time);
+  else if (config_.output.fields)
+    series_.emplace(folder.path());
+  if (config_.output.pictures) {
+    make_folder(pictures_);
+    drop_pictures(pictures_, state_.frames);
+  }
+}
+
+void Recorder::record(Method& method) {
+  const double time = method.time();
+  if (time >= rows_.next()) {
+    write_row(method);
+    rows_.pass(time);
+    state_.row_step = method.steps();
+  }
+  if (time >= frames_.next()) {
+    if (wants_frames()) write_frame(method);
+    frames_.pass(time);
+    state_.frame_step = method.steps();
+    state_.frame_time = time;
+    state_.frames = frame_count_;
+  }
+}
+
+void Recorder::record_last(Method& method) {
+  if (state_.row_step != method.steps()) write_row(method);
+  if (wants_frames() && config_.output.frames > 0 && state_.frame_step != method.steps())
+    write_frame(method);
+}
+
+void Recorder::sync() {
+  history_.sync();
+}
+
+void Recorder::write_row(Method& method) {
+  const std::vector<double> probes = method.probes();
+  history_.write({method.steps(), method.time(), method.time_step(), method.energy(), probes});
+  for (std::size_t i = 0; i < std::min(probes.size(), state_.probes.size()); ++i) {
+    ProbeRange& range = state_.probes[i];
+    range.last = probes[i];
+    range.min = std::min(range.min, probes[i]);
+    range.max = std::max(range.max, probes[i]);
+  }
+}
+
+void Recorder::write_frame(Method& method) {
+  const Frame frame = method.frame();
+  if (series_) series_->write(frame);
+  if (config_.output.pictures) {
+    if (!state_.extent) state_.extent = bulk_extent(frame);
+    RenderOptions options;
+    options.field = has_field(frame, config_.output.color) ? config_.output.color : "";
+    options.view = config_.output.view;
+    options.width = config_.output.width;
+    options.height = config_.output.height;
+    options.extent = state_.extent;
+    if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
+    options.title = config_.title;
+    write_png(fmt::format("{}/{:04}.png", pictures_, frame_count_), render(frame, options));
+  }
+  log_.write(Level::info, "frame", method.steps(),
+             fmt::format("frame {} at {:.9g} s", frame_count_, method.time()));
+  ++frame_count_;
+}
+
+}  // namespace breccia

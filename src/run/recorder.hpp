@@ -1,0 +1,87 @@
+#pragma once
+// What a run shows of itself while it goes on: rows of history.csv, frames and pictures.
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "io/paraview.hpp"
+#include "io/picture.hpp"
+#include "run/history.hpp"
+#include "run/log.hpp"
+#include "run/method.hpp"
+#include "run/result_folder.hpp"
+#include "run/summary.hpp"
+
+namespace breccia {
+
+/// The moments k end / count, k = 0, 1, 2, ...: something is due at the first step at or past one.
+/// Which one is next follows from the time alone, so a resumed run meets the same steps.
+class Schedule {
+ public:
+  /// Never, but for k = 0.
+  Schedule() = default;
+  Schedule(double end, double count) : end_(end), count_(count) {}
+
+  double next() const { return next_; }
+  /// The next moment becomes the first one later than `time`.
+  void pass(double time);
+
+ private:
+  double end_ = std::numeric_limits<double>::infinity(), count_ = 1.0;
+  double next_ = 0.0;  ///<  [s]
+};
+
+/// How far the record has come: what a checkpoint needs so that a resumed run leaves the same one.
+struct RecordState {
+  std::int64_t row_step = -1;      ///< of the last row that the schedule asked for
+  std::int64_t frame_step = -1;    ///< of the last frame that the schedule asked for
+  double frame_time = 0.0;         ///< likewise  [s]
+  std::int64_t frames = 0;         ///< in the folder, that the schedule asked for
+  std::optional<Extent> extent;    ///< of the pictures, from the first frame  [m]
+  std::vector<ProbeRange> probes;  ///< over the rows that the schedule asked for
+
+  void save(CheckpointWriter& writer) const;
+  void load(const CheckpointReader& reader);
+};
+
+/// Writes what the case's [output] asks for. It only reads the method: no output changes a bit of
+/// the run.
+class Recorder {
+ public:
+  /// A new record, from `time` on; or, with a state, what is left of an older one after it has been
+  /// cut to that state.
+  Recorder(const ResultFolder& folder, const CaseConfig& config, Log& log);
+  Recorder(const ResultFolder& folder, const CaseConfig& config, Log& log, const RecordState& state,
+           double time);
+
+  /// Whether a row or a frame is due. Cheap: asked every step.
+  bool due(double time) const { return time >= rows_.next() || time >= frames_.next(); }
+  /// Writes the rows and frames that are due.
+  void record(Method& method);
+  /// Writes a row and a frame of the last state, if the schedule did not ask for them.
+  void record_last(Method& method);
+  void sync();
+
+  /// To be saved after record() and before record_last().
+  const RecordState& state() const { return state_; }
+  /// Frames written to the folder so far.
+  std::int64_t frame_count() const { return frame_count_; }
+
+ private:
+  void write_row(Method& method);
+  void write_frame(Method& method);
+  bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
+
+  std::string pictures_;
+  CaseConfig config_;
+  Log& log_;
+  RecordState state_;
+  History history_;
+  std::optional<ParaviewSeries> series_;
+  Schedule rows_, frames_;
+  std::int64_t frame_count_ = 0;
+};
+
+}  // namespace breccia

@@ -1,0 +1,329 @@
+#include "run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <new>
+
+#include "exec/error.hpp"
+#include "run/checks.hpp"
+#include "run/messages.hpp"
+#include "run/signals.hpp"
+#include "run/text_file.hpp"
+
+namespace breccia {
+namespace {
+
+/// Steps from one look at the numbers to the next.
+constexpr std::int64_t verify_every = 1000;
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Loads the state and returns how far its record had come.
+RecordState loaded(Method& method, const RunPlan& plan, const CheckpointReader& checkpoint) {
+  refuse_other_case(checkpoint, plan);
+  method.load(checkpoint);
+  RecordState state;
+  state.load(checkpoint);
+  return state;
+}
+
+std::FILE* echo_of(const RunPlan& plan) {
+  return plan.speech == Speech::verbose ? stdout : nullptr;
+}
+
+const std::string& cut_log(const std::string& path, const CheckpointReader& checkpoint) {
+  Log::cut_to(path, checkpoint.value<std::int64_t>("run.step"));
+  return path;
+}
+
+}  // namespace
+
+void refuse_other_case(const CheckpointReader& checkpoint, const RunPlan& plan) {
+  if (checkpoint.text("run.model_digest") == plan.model_digest) return;
+  throw CheckpointError(
+      fmt::format("the checkpoint is of another case than {}: bodies, materials, links, loads and "
+                  "[time] safety must be the same",
+                  plan.case_name));
+}
+
+Run::Run(Method& method, const RunPlan& plan, const ResultFolder& folder)
+    : method_(method),
+      plan_(plan),
+      folder_(folder),
+      end_time_(plan.limits.time.value_or(plan.config.time.end)),
+      end_steps_(plan.limits.steps.value_or(std::numeric_limits<std::int64_t>::max())),
+      log_(folder.file("log.jsonl"), echo_of(plan)),
+      recorder_(folder, plan.config, log_),
+      checkpoints_(folder.file("checkpoints"), plan.config.checkpoint),
+      progress_(stdout, plan.progress) {}
+
+Run::Run(Method& method, const RunPlan& plan, const ResultFolder& folder,
+         const CheckpointReader& checkpoint)
+    : method_(method),
+      plan_(plan),
+      folder_(folder),
+      end_time_(plan.limits.time.value_or(plan.config.time.end)),
+      end_steps_(plan.limits.steps.value_or(std::numeric_limits<std::int64_t>::max())),
+      dt_min_(checkpoint.value<double>("run.dt_min")),
+      dt_max_(checkpoint.value<double>("run.dt_max")),
+      log_(cut_log(folder.file("log.jsonl"), checkpoint), echo_of(plan)),
+      recorder_(folder, plan.config, log_, loaded(method, plan, checkpoint),
+                checkpoint.value<double>("run.time")),
+      checkpoints_(folder.file("checkpoints"), plan.config.checkpoint),
+      progress_(stdout, plan.progress) {
+  // A run that was cut short goes on to where it was sent; one that got there goes on to the end of
+  // its case.
+  const auto former_time = checkpoint.value<double>("run.end_time");
+  const auto former_steps = checkpoint.value<std::int64_t>("run.end_steps");
+  const bool cut_short = method.time() < former_time && method.steps() < former_steps;
+  if (cut_short && !plan.limits.time && !plan.limits.steps) {
+    end_time_ = former_time;
+    end_steps_ = former_steps;
+  }
+}
+
+int Run::execute() {
+  try {
+    start();
+    const int signal = advance();
+    return signal != 0 ? interrupted(signal) : done();
+  } catch (const NumericsError& error) {
+    const std::string message = fmt::format("{}\n  {}", error.what(), save_crash());
+    failed(error.exit_code(), message);
+    throw NumericsError(message);
+  } catch (const CheckFailed&) {
+    throw;  // the run itself ended well and told so
+  } catch (const Error& error) {
+    failed(error.exit_code(), error.what());
+    throw;
+  } catch (const std::bad_alloc&) {
+    const DeviceError error(fmt::format("not enough memory at step {}", method_.steps()));
+    failed(error.exit_code(), error.what());
+    throw error;
+  }
+}
+
+void Run::start() {
+  setup_ = seconds_since(plan_.begin);
+  const Summary now = summary();
+  write_summary(now);
+  replace_durably(folder_.file("case.toml"), plan_.case_text);
+  log_.write(Level::info, "setup", method_.steps(),
+             fmt::format("{} starts at step {}, {:.9g} s", plan_.case_name, method_.steps(),
+                         method_.time()));
+  say(opening_text(now, end_time_, folder_.path()));
+  method_.verify();
+  if (recorder_.due(method_.time())) observe();
+  progress_.start(standing());
+}
+
+/// Returns the signal that ended the loop, 0 if it got to its end.
+int Run::advance() {
+  while (!finished()) {
+    take_step();
+    if (recorder_.due(method_.time())) observe();
+    if (const int signal = StopSignals::received(); signal != 0 && !finished()) return signal;
+    const Clock::time_point now = Clock::now();
+    if (checkpoints_.due(method_.steps(), now) && !finished()) save_checkpoint();
+    if (progress_.due(share(), now)) progress_.show(standing(), now);
+  }
+  return 0;
+}
+
+void Run::take_step() {
+  const Clock::time_point begin = Clock::now();
+  method_.step();
+  const double spent = seconds_since(begin);
+  step_times_.add(spent);
+  loop_ += spent;
+  const double dt = method_.time_step();
+  dt_min_ = dt_min_ > 0.0 ? std::min(dt_min_, dt) : dt;
+  dt_max_ = std::max(dt_max_, dt);
+  if (method_.steps() % verify_every == 0) method_.verify();
+}
+
+void Run::observe() {
+  const Clock::time_point begin = Clock::now();
+  method_.verify();
+  recorder_.record(method_);
+  output_ += seconds_since(begin);
+}
+
+bool Run::finished() const {
+  return method_.time() >= end_time_ || method_.steps() >= end_steps_;
+}
+
+double Run::share() const {
+  const double by_time = end_time_ > 0.0 ? method_.time() / end_time_ : 1.0;
+  const double by_steps = static_cast<double>(method_.steps()) / static_cast<double>(end_steps_);
+  return std::clamp(std::max(by_time, by_steps), 0.0, 1.0);
+}
+
+CheckpointWriter Run::state() const {
+  CheckpointWriter writer;
+  writer.value("run.step", method_.steps());
+  writer.value("run.time", method_.time());
+  writer.value("run.dt_min", dt_min_);
+  writer.value("run.dt_max", dt_max_);
+  writer.value("run.end_time", end_time_);
+  writer.value("run.end_steps", end_steps_);
+  writer.text("run.method", plan_.config.method);
+  writer.text("run.case_name", plan_.case_name);
+  writer.text("run.case_folder", plan_.case_folder);
+  writer.text("run.model_digest", plan_.model_digest);
+  writer.text("run.case", plan_.case_text);
+  recorder_.state().save(writer);
+  method_.save(writer);
+  return writer;
+}
+
+void Run::save_checkpoint() {
+  if (checkpoints_.last_step() == method_.steps()) return;
+  const Clock::time_point begin = Clock::now();
+  method_.verify();
+  recorder_.sync();
+  const std::string path = checkpoints_.write(method_.steps(), state());
+  log_.write(Level::info, "checkpoint", method_.steps(), path);
+  log_.sync();
+  output_ += seconds_since(begin);
+  write_summary(summary());
+}
+
+int Run::interrupted(int signal) {
+  save_checkpoint();
+  Summary now = summary();
+  now.status = "interrupted";
+  now.exit_code = 128 + signal;
+  now.message = fmt::format("{} at step {}; state saved", signal_name(signal), method_.steps());
+  log_.write(Level::warning, "end", method_.steps(), now.message);
+  write_summary(now);
+  progress_.end_line();
+  say(fmt::format("{}\n  go on with: breccia resume {}\n", now.message, folder_.path()));
+  return now.exit_code;
+}
+
+int Run::done() {
+  save_checkpoint();
+  const Clock::time_point begin = Clock::now();
+  recorder_.record_last(method_);
+  recorder_.sync();
+  output_ += seconds_since(begin);
+  Summary now = summary();
+  now.status = "done";
+  const bool whole_case = method_.time() >= plan_.config.time.end;
+  if (whole_case) now.checks = evaluate_checks(plan_.config.checks, now);
+  const std::string table = now.checks.empty() ? "" : check_table(now.checks);
+  if (!all_pass(now.checks)) {
+    now.status = "failed";
+    now.exit_code = CheckFailed("").exit_code();
+    now.message = "a check of the case failed";
+  }
+  log_.write(now.exit_code == 0 ? Level::info : Level::error, "end", method_.steps(),
+             now.exit_code == 0 ? "done" : now.message);
+  write_summary(now);
+  if (progress_.due(1.0, Clock::time_point::max())) progress_.show(standing(), Clock::now());
+  progress_.end_line();
+  say(closing_text(now, recorder_.frame_count(), folder_.path()));
+  if (now.exit_code != 0)
+    throw CheckFailed(fmt::format("{} ({})\n{}", now.message, folder_.path(), table));
+  if (!plan_.config.checks.empty())
+    say(whole_case ? table : "checks  not made: the run ends before the end of its case\n");
+  return 0;
+}
+
+void Run::failed(int exit_code, const std::string& message) {
+  progress_.end_line();
+  // The first failure is the one to tell; a disk that takes no summary any more changes nothing.
+  try {
+    log_.write(Level::error, "end", method_.steps(), message);
+  } catch (const Error&) {
+  }
+  Summary now = measured();
+  try {
+    describe_state(now);
+  } catch (const Error&) {
+    // Numbers that went wrong may have no energy; the summary then leaves it out.
+  }
+  now.status = "failed";
+  now.exit_code = exit_code;
+  now.message = message;
+  try {
+    write_summary(now);
+  } catch (const Error&) {
+  }
+}
+
+/// Saves the state with the wrong numbers; returns a sentence about it.
+std::string Run::save_crash() {
+  const std::string path = folder_.file("crash.br");
+  try {
+    state().write(path);
+    return fmt::format("state written to {0} (open with 'breccia info {0}')", path);
+  } catch (const std::exception& error) {
+    return fmt::format("the state could not be saved: {}", error.what());
+  }
+}
+
+Summary Run::summary() const {
+  Summary s = measured();
+  describe_state(s);
+  return s;
+}
+
+Summary Run::measured() const {
+  Summary s;
+  s.case_name = plan_.case_name;
+  s.case_sha256 = plan_.case_digest;
+  s.method = plan_.config.method;
+  s.seed = plan_.config.seed;
+  s.machine = plan_.machine;
+  s.steps = method_.steps();
+  s.time = method_.time();
+  s.dt_min = dt_min_;
+  s.dt_max = dt_max_;
+  s.dt_last = method_.time_step();
+  s.total = seconds_since(plan_.begin);
+  s.setup = setup_;
+  s.loop = loop_;
+  s.output = output_;
+  s.step_median = 1e6 * step_times_.quantile(0.5);
+  s.step_p95 = 1e6 * step_times_.quantile(0.95);
+  if (plan_.timers != nullptr)
+    for (const auto& [name, entry] : plan_.timers->stages()) s.stages[name] = entry.seconds;
+  s.peak_memory = peak_memory();
+  if (recorder_.state().row_step >= 0) s.probes = recorder_.state().probes;
+  return s;
+}
+
+void Run::describe_state(Summary& s) const {
+  s.facts = method_.facts();
+  s.energy = method_.energy();
+  s.state_hash = method_.state_hash();
+}
+
+void Run::write_summary(const Summary& summary) const {
+  replace_durably(folder_.file("summary.json"), to_json(summary));
+}
+
+void Run::say(const std::string& text) {
+  if (plan_.speech == Speech::quiet) return;
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+Standing Run::standing() {
+  // Counting may cost more than many steps: spend at most a hundredth of the time on it.
+  const Clock::time_point begin = Clock::now();
+  if (begin >= next_facts_) {
+    for (const Fact& fact : method_.facts())
+      if (fact.path == "fracture.broken_links") broken_links_ = fact.value;
+    next_facts_ = Clock::now() + 100 * (Clock::now() - begin);
+  }
+  return {method_.steps(), method_.time(), share(), broken_links_};
+}
+
+}  // namespace breccia

@@ -1,0 +1,62 @@
+#include "run/signals.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <array>
+
+namespace breccia {
+namespace {
+
+constexpr std::array handled{SIGTERM, SIGINT, SIGUSR1};
+constexpr std::array ignored{SIGXFSZ, SIGPIPE};
+
+volatile sig_atomic_t first_signal = 0;
+std::array<struct sigaction, handled.size()> former_handled;
+std::array<struct sigaction, ignored.size()> former_ignored;
+
+extern "C" void note_signal(int signal) {
+  if (first_signal != 0) ::_exit(128 + signal);
+  first_signal = signal;
+}
+
+}  // namespace
+
+StopSignals::StopSignals() {
+  first_signal = 0;
+  struct sigaction action {};
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  action.sa_handler = note_signal;
+  for (std::size_t i = 0; i < handled.size(); ++i)
+    ::sigaction(handled[i], &action, &former_handled[i]);
+  action.sa_handler = SIG_IGN;
+  for (std::size_t i = 0; i < ignored.size(); ++i)
+    ::sigaction(ignored[i], &action, &former_ignored[i]);
+}
+
+StopSignals::~StopSignals() {
+  for (std::size_t i = 0; i < handled.size(); ++i)
+    ::sigaction(handled[i], &former_handled[i], nullptr);
+  for (std::size_t i = 0; i < ignored.size(); ++i)
+    ::sigaction(ignored[i], &former_ignored[i], nullptr);
+}
+
+int StopSignals::received() {
+  return first_signal;
+}
+
+const char* signal_name(int signal) {
+  switch (signal) {
+    case SIGTERM:
+      return "SIGTERM";
+    case SIGINT:
+      return "SIGINT";
+    case SIGUSR1:
+      return "SIGUSR1";
+    default:
+      return "a signal";
+  }
+}
+
+}  // namespace breccia

@@ -1,0 +1,23 @@
+#pragma once
+// Signals that end a run: noted by a flag, answered at the next step boundary.
+
+namespace breccia {
+
+/// While it lives, SIGTERM, SIGINT and SIGUSR1 only set a flag; a second one ends the process at
+/// once with 128 + its number. SIGXFSZ and SIGPIPE are ignored, so that a full quota or a closed
+/// terminal becomes an error of the write call. The former handlers return with its end.
+class StopSignals {
+ public:
+  StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+  ~StopSignals();
+
+  /// The number of the first signal that came, 0 if none did.
+  static int received();
+};
+
+/// "SIGTERM", ... of a signal number.
+const char* signal_name(int signal);
+
+}  // namespace breccia
