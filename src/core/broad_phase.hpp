@@ -1,0 +1,66 @@
+#pragma once
+// The one search: pairs of boxes that overlap, found with sorted uniform grids.
+
+#include <cstdint>
+
+#include "core/pair_list.hpp"
+#include "exec/sort_scan.hpp"
+#include "math/vec.hpp"
+
+namespace breccia {
+
+/// An axis-aligned box, closed: boxes that share only a border overlap.
+struct Box {
+  Vec3 low, high;  ///< corners  [m]
+};
+
+/// Finds all pairs of boxes that overlap, of spheres in 3D as of triangles in 2D or 3D.
+///
+/// Source: Durand et al. 2012, section 4.3 (grid, sort by cell, half of the neighbour cells), with
+/// these departures:
+/// - One grid for each power of two of the sizes. An element looks for others of its own size in
+///   half of the neighbour cells (13 and its own, 4 and its own in 2D), and for larger ones in the
+///   larger ones' grid: one large element does not make the cells of all others large.
+/// - Cells are numbered modulo 2^21 x 2^19 x 2^19, so no array grows with empty space. Boxes that
+///   overlap lie at most one cell apart, so the wrong cell that shares a number never holds a box
+///   that overlaps: the test of the boxes makes the search exact, the grid only makes it fast.
+/// - The x neighbours of a cell lie next to it in the sorted order, so a cell and its neighbours
+///   are five runs of elements (two in 2D), found by walking along the sorted numbers.
+///
+/// Cost: one sort of the elements, then time and memory linear in elements and overlapping pairs.
+/// Boxes that all start at the same z are searched in two dimensions.
+class BroadPhase {
+ public:
+  explicit BroadPhase(Space space = Space::host);
+
+  /// All pairs whose boxes overlap, each once, by ascending key: the same on every machine, for
+  /// any order of the elements in memory.
+  ///
+  /// @param boxes  one an element, already grown by the element's own margin  [m]
+  /// @param ids    global ids of the same elements, no two alike
+  /// @param pairs  gets the pairs; its memory is used again
+  /// @throws NumericsError if a box is not finite, InputError if its corners are swapped or two
+  ///         elements share an id (all name the element)
+  void search(const Exec& exec, const Buffer<Box>& boxes, const Buffer<GlobalId>& ids,
+              Pairs& pairs);
+
+  /// Pairs of boxes that the last search compared: its cost.
+  std::int64_t tested() const { return tested_; }
+
+ private:
+  void rank_elements(const Exec& exec, const Buffer<GlobalId>& ids);
+
+  Buffer<KeyedIndex> cells_;    ///< number of the cell and element, sorted
+  Buffer<std::uint64_t> keys_;  ///< the numbers alone
+  Buffer<Box> boxes_;           ///< in that order
+  Buffer<Index> ranks_;         ///< place by global id, in that order
+  Buffer<KeyedIndex> by_id_;    ///< element at each place by global id
+  Buffer<Index> rank_of_;       ///< place by global id of each element
+  Buffer<Index> starts_;        ///< first pair of each place
+  Buffer<Index> next_;          ///< where the next pair of each place goes
+  Buffer<Index> partners_;      ///< the higher place of each pair
+  Buffer<std::int64_t> tests_;  ///< comparisons of each run of elements
+  std::int64_t tested_ = 0;
+};
+
+}  // namespace breccia
