@@ -17,18 +17,24 @@ enum Fixed : std::uint8_t {
   fixed_spin_z = 32,
 };
 
-/// Rigid spheres with six degrees of freedom. Positions are at the time of the step, velocities and
-/// spins half a step earlier (leapfrog). Bars are spheres too, with the mass of their piece of bar.
+/// What pairs read of an element, side by side in memory: they meet elements at random. The
+/// position is at the time of the step, velocity and spin are half a step earlier (leapfrog).
+struct ElementState {
+  Vec3 position;  ///< centre, world frame  [m]
+  Vec3 velocity;  ///< of the centre  [m/s]
+  Vec3 spin;      ///< angular velocity  [rad/s]
+  double radius;  ///<  [m]
+};
+
+/// Rigid spheres with six degrees of freedom. Bars are spheres too, with the mass of their piece of
+/// bar.
 struct Elements {
   Buffer<GlobalId> id;             ///< number of the element, kept for ever  [-]
   Buffer<std::int16_t> group;      ///< body it belongs to, index into Model::groups  [-]
   Buffer<std::int16_t> material;   ///< index into the case's materials  [-]
-  Buffer<double> radius;           ///<  [m]
   Buffer<double> mass;             ///<  [kg]
   Buffer<double> inertia;          ///< the same about every axis  [kg m2]
-  Buffer<Vec3> position;           ///< centre, world frame  [m]
-  Buffer<Vec3> velocity;           ///< of the centre, half a step back  [m/s]
-  Buffer<Vec3> spin;               ///< angular velocity, half a step back  [rad/s]
+  Buffer<ElementState> state;      ///< position, velocity, spin, radius
   Buffer<Quaternion> orientation;  ///< since the start  [-]
   Buffer<Vec3> force;              ///< sum of all interactions at this time  [N]
   Buffer<Vec3> torque;             ///< about the centre  [N m]
@@ -42,12 +48,9 @@ struct Elements {
     field("id", "-", id);
     field("group", "-", group);
     field("material", "-", material);
-    field("radius", "m", radius);
     field("mass", "kg", mass);
     field("inertia", "kg m2", inertia);
-    field("position", "m", position);
-    field("velocity", "m/s", velocity);
-    field("spin", "rad/s", spin);
+    field("state", "SI", state);
     field("orientation", "-", orientation);
     field("force", "N", force);
     field("torque", "N m", torque);

@@ -6,14 +6,6 @@
 
 namespace breccia::dem {
 
-/// What pairs read of an element, side by side in memory: they meet elements at random.
-struct ElementState {
-  Vec3 position;  ///<  [m]
-  Vec3 velocity;  ///<  [m/s]
-  Vec3 spin;      ///<  [rad/s]
-  double radius;  ///<  [m]
-};
-
 /// What pair kernels read of the elements.
 struct ElementsView {
   View<const ElementState> state;

@@ -1,0 +1,141 @@
+#pragma once
+// Pairs that touch without a link: between elements, and between elements and walls.
+
+#include "core/pair_list.hpp"
+#include "dem/laws/contact.hpp"
+#include "dem/link_kernels.hpp"
+
+namespace breccia::dem {
+
+/// What the contact of a pair of elements, or of an element and a wall, keeps between searches.
+struct ContactHistory {
+  Buffer<ContactState> state;
+  Buffer<double> slid;    ///< energy spent on sliding and rolling so far  [J]
+  Buffer<double> damped;  ///< energy taken by the dashpot so far  [J]
+  Buffer<double> driven;  ///< energy that a moving wall put in so far  [J]
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("state", "-", state);
+    field("slid", "J", slid);
+    field("damped", "J", damped);
+    field("driven", "J", driven);
+  }
+};
+
+/// Pairs that may touch until the next search. At a wall b is the wall and the key is of wall and
+/// element.
+using Contacts = PairList<ContactHistory>;
+
+/// A rigid half-space.
+struct Wall {
+  Vec3 point;        ///< at the present time  [m]
+  Vec3 normal;       ///< unit, out of the wall
+  Vec3 velocity;     ///<  [m/s]
+  double stiffness;  ///< factor on linear contacts  [-]
+  double travelled;  ///< since the last search  [m]
+};
+
+/// Contacts between elements.
+struct ContactForces {
+  static constexpr const char* name = "dem.contacts";
+  ContactLaw law;
+  double dt;
+  ElementsView elements;
+  View<const std::int16_t> material;
+  View<const ContactPair> pairs;  ///< of materials p, q at p * materials + q
+  Index materials;
+  View<const Index> a, b;
+  View<ContactState> state;
+  View<double> slid, damped;
+  View<Action> actions;
+
+  BR_HD void operator()(Index i) const {
+    const Index ia = a[i], ib = b[i];
+    const PairEnd<double> end_a = elements.end(ia), end_b = elements.end(ib);
+    const double radius_a = elements.radius(ia), radius_b = elements.radius(ib);
+    const double sum = radius_a + radius_b;
+    const PairMotion<double> motion = pair_motion<double>(end_a, end_b, radius_a - radius_b, dt);
+    const double mass_a = elements.mass[ia], mass_b = elements.mass[ib];
+    const ContactLaw::Pair pair{radius_a * radius_b / sum, smaller(radius_a, radius_b), sum,
+                                mass_a * mass_b / (mass_a + mass_b), 0.5 * sum};
+    const double approach = -dot(end_b.velocity - end_a.velocity, motion.normal);
+    ContactState kept = state[i];
+    const bool touched = kept.overlap > 0.0;
+    const double overlap = sum - motion.distance;
+    if (!touched && overlap <= 0.0) {
+      book(actions, i, motion, Vec3{}, Vec3{}, 0.0, 0.0, 0.0, 0.0);
+      return;
+    }
+    const ContactResponse r = law.answer(pairs[material[ia] * materials + material[ib]], pair,
+                                         overlap, approach, motion, kept);
+    state[i] = kept;
+    slid[i] += r.slid;
+    damped[i] += r.damped;
+    book(actions, i, motion, r.shear + r.pressure * motion.normal, r.moment, r.normal_stiffness,
+         r.shear_stiffness, r.rolling_stiffness, r.rolling_stiffness);
+  }
+};
+
+/// Contacts of elements with walls, one wall at a time: adds to force and torque of its own
+/// element.
+struct WallForces {
+  static constexpr const char* name = "dem.walls";
+  ContactLaw law;
+  double dt;
+  Wall wall;
+  ElementsView elements;
+  View<const std::int16_t> material;
+  View<const ContactPair> pairs;  ///< of a material with a rigid wall
+  View<const Index> a;
+  Index first;  ///< contact 0 of this wall
+  View<ContactState> state;
+  View<double> slid, damped, driven;
+  View<Vec3> force, torque;
+  View<double> critical;
+
+  BR_HD void operator()(Index k) const {
+    const Index i = first + k, e = a[i];
+    const PairEnd<double> end = elements.end(e);
+    const double radius = elements.radius(e), mass = elements.mass[e];
+    const double height = dot(end.position - wall.point, wall.normal);
+    ContactState kept = state[i];
+    const double overlap = radius - height;
+    if (kept.overlap <= 0.0 && overlap <= 0.0) return;
+
+    PairMotion<double> motion{};
+    motion.normal = -wall.normal;
+    motion.distance = motion.arm_a = height;
+    const Vec3 dv = wall.velocity - end.velocity;
+    motion.slip = dt * motion.across(dv - cross(height * end.spin, motion.normal));
+    motion.turn = -(dt * end.spin);
+    motion.half_turn = (0.25 * dt * dot(motion.normal, end.spin)) * motion.normal;
+    motion.turn_scale = turn_scale(motion.half_turn);
+
+    const ContactLaw::Pair pair{radius, radius, 2.0 * radius, mass, radius};
+    ContactPair constants = pairs[material[e]];
+    if (!law.hertz) constants.normal *= wall.stiffness;
+    const ContactResponse r =
+        law.answer(constants, pair, overlap, -dot(dv, motion.normal), motion, kept);
+    state[i] = kept;
+    slid[i] += r.slid;
+    damped[i] += r.damped;
+
+    const Vec3 on_wall = r.shear + r.pressure * motion.normal;
+    force[e] -= on_wall;
+    torque[e] += -(height * cross(motion.normal, on_wall)) - r.moment;
+    driven[i] -= dt * dot(on_wall, wall.velocity);
+    // Stiffnesses add, so their critical times squared add like resistances in parallel; the wall's
+    // largest stiffness stands for all its directions.
+    const double stiffest = larger(r.normal_stiffness, r.shear_stiffness);
+    if (stiffest > 0.0) {
+      const double rolling = r.shear_stiffness * height * height + r.rolling_stiffness;
+      const double own = mass / stiffest;
+      const double turning = rolling > 0.0 ? elements.inertia[e] / rolling : own;
+      const double least = smaller(own, turning);
+      critical[e] = critical[e] * least / (critical[e] + least);
+    }
+  }
+};
+
+}  // namespace breccia::dem

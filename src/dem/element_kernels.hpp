@@ -1,0 +1,167 @@
+#pragma once
+// What is done to each element by itself: its sum of forces, its critical step, its motion.
+
+#include "core/incidence.hpp"
+#include "dem/contacts.hpp"
+#include "dem/elements.hpp"
+
+namespace breccia::dem {
+
+/// Prescribed motion of a support: a velocity that grows from zero, linearly.
+struct Motion {
+  Vec3 velocity;  ///<  [m/s]
+  double ramp;    ///< time to reach it  [s]
+
+  BR_HD Vec3 at(double time) const {
+    const double share = ramp > 0.0 ? smaller(1.0, larger(0.0, time / ramp)) : 1.0;
+    return share * velocity;
+  }
+};
+
+/// addForce of Durand 2012, 4.2: each element sums over its own interactions in the order of the
+/// partners' global ids, so no memory order, thread or device changes a bit. Also the element's
+/// smallest inertia over stiffness (section 4.4).
+struct GatherForces {
+  static constexpr const char* name = "dem.gather";
+  IncidenceView links, contacts;
+  View<const Action> link_actions, contact_actions;
+  View<const double> mass, inertia;
+  View<const std::uint8_t> fixed;
+  View<Vec3> force, torque;
+  View<double> critical;  ///< min over free coordinates of inertia / stiffness  [s2]
+
+  /// Sums of what lies side by side in an Action: torque and force where the element is a, force
+  /// and torque where it is b; each side in the order of the partners' ids.
+  struct Sums {
+    SixSums as_a, as_b;
+    SixFloatSums stiffness_a, stiffness_b;
+  };
+
+  BR_HD static void add(Sums& sums, const IncidenceView& incidence,
+                        const View<const Action>& actions, Index element) {
+    for (Index k = incidence.first(element); k < incidence.last(element); ++k) {
+      const Entry entry = incidence.entries[k];
+      const Action& action = actions[pair_of(entry)];
+      if (side_of(entry) == 0) {
+        sums.as_a.add(action.numbers);
+        sums.stiffness_a.add(action.stiffness);
+      } else {
+        sums.as_b.add(action.numbers + 3);
+        sums.stiffness_b.add(action.stiffness + 3);
+      }
+    }
+  }
+
+  BR_HD void operator()(Index e) const {
+    Sums s;
+    add(s, links, link_actions, e);
+    add(s, contacts, contact_actions, e);
+    force[e] = {s.as_b[0] - s.as_a[3], s.as_b[1] - s.as_a[4], s.as_b[2] - s.as_a[5]};
+    torque[e] = {s.as_b[3] + s.as_a[0], s.as_b[4] + s.as_a[1], s.as_b[5] + s.as_a[2]};
+    double slowest = 0.0;  // largest stiffness / inertia
+    for (int c = 0; c < 3; ++c) {
+      const auto straight = static_cast<double>(s.stiffness_a[3 + c] + s.stiffness_b[c]);
+      const auto turning = static_cast<double>(s.stiffness_a[c] + s.stiffness_b[3 + c]);
+      if ((fixed[e] >> c & 1) == 0) slowest = larger(slowest, straight / mass[e]);
+      if ((fixed[e] >> (3 + c) & 1) == 0) slowest = larger(slowest, turning / inertia[e]);
+    }
+    critical[e] = slowest > 0.0 ? 1.0 / slowest : 1e300;
+  }
+};
+
+/// How the forces of this time change velocities (leapfrog with a variable step, Durand 2012, 3.3).
+struct Kick {
+  double time;              ///< of the forces  [s]
+  double last_dt, next_dt;  ///< steps before and after  [s]
+  Vec3 gravity;             ///<  [m/s2]
+  double damping;           ///< lambda of Cundall's local damping  [-]
+  View<const Motion> motions;
+  View<const double> mass, inertia;
+  View<const ElementState> state;
+  View<const Vec3> force, torque;
+  View<const std::uint8_t> fixed;
+  View<const std::int16_t> motion;
+
+  struct Result {
+    Vec3 velocity, spin;               ///< half a step later
+    Vec3 damped_force, damped_torque;  ///< what damping took off
+  };
+
+  BR_HD static double opposed(double force, double velocity) {
+    return velocity > 0.0 ? absolute(force) : velocity < 0.0 ? -absolute(force) : 0.0;
+  }
+  /// Share of a force that opposes the motion it is about to drive.
+  BR_HD Vec3 local_damping(const Vec3& f, const Vec3& v, double over_inertia) const {
+    const double half = 0.5 * next_dt * over_inertia;
+    return {damping * opposed(f.x, v.x + half * f.x), damping * opposed(f.y, v.y + half * f.y),
+            damping * opposed(f.z, v.z + half * f.z)};
+  }
+
+  BR_HD Result operator()(Index e) const {
+    Result r{};
+    const Vec3 velocity = state[e].velocity, spin = state[e].spin;
+    const double span = 0.5 * (last_dt + next_dt);
+    Vec3 f = force[e] + mass[e] * gravity, t = torque[e];
+    if (damping > 0.0) {
+      r.damped_force = local_damping(f, velocity, 1.0 / mass[e]);
+      r.damped_torque = local_damping(t, spin, 1.0 / inertia[e]);
+      f -= r.damped_force;
+      t -= r.damped_torque;
+    }
+    r.velocity = velocity + (span / mass[e]) * f;
+    r.spin = spin + (span / inertia[e]) * t;
+    const int held = fixed[e];
+    if (held != 0) {
+      const Vec3 given = motion[e] >= 0 ? motions[motion[e]].at(time + 0.5 * next_dt) : Vec3{};
+      if ((held & fixed_x) != 0) r.velocity.x = given.x;
+      if ((held & fixed_y) != 0) r.velocity.y = given.y;
+      if ((held & fixed_z) != 0) r.velocity.z = given.z;
+      if ((held & fixed_spin_x) != 0) r.spin.x = 0.0;
+      if ((held & fixed_spin_y) != 0) r.spin.y = 0.0;
+      if ((held & fixed_spin_z) != 0) r.spin.z = 0.0;
+    }
+    return r;
+  }
+};
+
+/// accelerationsFromForces, velocitiesFromAccelerations and positionsFromVelocities of Durand
+/// 2012, 4.4.
+struct MoveElements {
+  static constexpr const char* name = "dem.move";
+  Kick kick;
+  View<ElementState> state;
+  View<Quaternion> orientation;
+  View<double> damping_work, load_work;
+
+  BR_HD void operator()(Index e) const {
+    const Kick::Result r = kick(e);
+    ElementState& moved = state[e];
+    const Vec3 before = kick.last_dt * moved.velocity, after = kick.next_dt * r.velocity;
+    if (kick.damping > 0.0)
+      damping_work[e] +=
+          0.5 * dot(r.damped_force, before + after) +
+          0.5 * dot(r.damped_torque, kick.last_dt * moved.spin + kick.next_dt * r.spin);
+    if (kick.fixed[e] != 0) load_work[e] += reaction_work(e, r, before + after);
+    moved.velocity = r.velocity;
+    moved.spin = r.spin;
+    moved.position += after;
+    orientation[e] = turned(orientation[e], kick.next_dt * r.spin);
+  }
+
+ private:
+  /// Work of the force that holds an element to its prescribed motion.
+  BR_HD double reaction_work(Index e, const Kick::Result& r, const Vec3& twice_moved) const {
+    const double span = 0.5 * (kick.last_dt + kick.next_dt);
+    if (!(span > 0.0)) return 0.0;
+    const Vec3 gained = (kick.mass[e] / span) * (r.velocity - state[e].velocity);
+    const Vec3 given = kick.force[e] + kick.mass[e] * kick.gravity - r.damped_force;
+    const Vec3 held = gained - given;  // zero in free directions, up to rounding
+    double work = 0.0;
+    if ((kick.fixed[e] & fixed_x) != 0) work += 0.5 * held.x * twice_moved.x;
+    if ((kick.fixed[e] & fixed_y) != 0) work += 0.5 * held.y * twice_moved.y;
+    if ((kick.fixed[e] & fixed_z) != 0) work += 0.5 * held.z * twice_moved.z;
+    return work;
+  }
+};
+
+}  // namespace breccia::dem

@@ -1,0 +1,244 @@
+// The ledger of a DEM run: every joule, summed exactly.
+
+#include <cmath>
+
+#include "dem/world.hpp"
+#include "exec/for_each.hpp"
+
+namespace breccia::dem {
+namespace {
+
+ExactSum sum_of(const ExactSum& a, const ExactSum& b) {
+  return a + b;
+}
+
+/// Kinetic energy at the time of the forces, v(-1/2).v(+1/2): with it the leapfrog scheme's own
+/// balance closes to rounding for elastic forces (docs/theory.md, ledger).
+struct KineticEnergy {
+  Kick kick;
+  BR_HD ExactSum operator()(Index e) const {
+    const Kick::Result next = kick(e);
+    return ExactSum(0.5 * kick.mass[e] * dot(kick.state[e].velocity, next.velocity) +
+                    0.5 * kick.inertia[e] * dot(kick.state[e].spin, next.spin));
+  }
+};
+
+struct GravityPotential {
+  Vec3 gravity;
+  View<const ElementState> state_of;
+  View<const double> mass;
+  BR_HD ExactSum operator()(Index e) const {
+    return ExactSum(mass[e] * dot(gravity, state_of[e].position));
+  }
+};
+
+/// Energies of one interaction, in the ledger's columns.
+struct Shares {
+  ExactSum elastic, fracture, plastic, friction, contact, work;
+};
+Shares sum_shares(Shares a, const Shares& b) {
+  a.elastic.add(b.elastic);
+  a.fracture.add(b.fracture);
+  a.plastic.add(b.plastic);
+  a.friction.add(b.friction);
+  a.contact.add(b.contact);
+  a.work.add(b.work);
+  return a;
+}
+
+struct ConcreteShares {
+  ConcreteLink law;
+  Index first;
+  View<const ElementState> state_of;
+  View<const Index> a, b;
+  View<const double> length, stiffness, opening;
+  PlanesView<const double> shear, moment;
+  View<const double> slid, yielded, broke;
+
+  BR_HD Shares operator()(Index k) const {
+    constexpr double pi = 3.14159265358979323846;
+    const Index i = first + k;
+    const double ra = state_of[a[i]].radius, rb = state_of[b[i]].radius, least = smaller(ra, rb);
+    const LinkConstants<double> link{length[i], stiffness[i], pi * least * least, 0.5 * (ra + rb),
+                                     ra + rb};
+    const double stretch = norm(state_of[b[i]].position - state_of[a[i]].position) - length[i];
+    const LinkState<double> state{opening[i], shear[i], moment[i]};
+    Shares s;
+    s.elastic.add(law.stored(link, stretch, state));
+    s.fracture.add(broke[i]);
+    if (state.opening >= 0.0) s.fracture.add(law.tension(link).spent(state.opening));
+    s.plastic.add(yielded[i]);
+    s.friction.add(slid[i]);
+    return s;
+  }
+};
+
+struct SteelShares {
+  SteelLink law;
+  Index first;
+  View<const ElementState> state_of;
+  View<const Index> a, b;
+  View<const double> length;
+  View<const SteelState> state;
+  View<const double> yielded, broke;
+
+  BR_HD Shares operator()(Index k) const {
+    const Index i = first + k;
+    const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
+    const double distance = norm(d), r = smaller(state_of[a[i]].radius, state_of[b[i]].radius);
+    Shares s;
+    s.elastic.add(law.stored(length[i], r, distance - length[i], state[i]));
+    if (state[i].hardening >= 0.0)
+      s.elastic.add(law.stored_moment(length[i], r, (1.0 / distance) * d, state[i]));
+    s.fracture.add(broke[i]);
+    s.plastic.add(yielded[i]);
+    return s;
+  }
+};
+
+struct InterfaceShares {
+  InterfaceLink law;
+  Index first;
+  View<const ElementState> state_of;
+  View<const Index> a, b, before, after;
+  View<const double> stiffness, area, rest;
+  View<const InterfaceState> state;
+  View<const double> slid, broke;
+
+  BR_HD Shares operator()(Index k) const {
+    const Index i = first + k;
+    const Vec3 chord = state_of[after[i]].position - state_of[before[i]].position;
+    const Vec3 axis = (1.0 / norm(chord)) * chord;
+    const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
+    const double reach = norm(d - dot(d, axis) * axis);
+    Shares s;
+    s.elastic.add(law.stored(stiffness[i], area[i], reach - rest[i], state[i]));
+    s.fracture.add(broke[i]);
+    s.fracture.add(law.spent(stiffness[i], area[i], state[i]));
+    s.friction.add(slid[i]);
+    return s;
+  }
+};
+
+/// What contacts hold; `stored_normal` comes from the overlap of the last step.
+struct ContactShares {
+  ContactLaw law;
+  View<const std::int16_t> material;
+  View<const ElementState> state_of;
+  View<const ContactPair> pairs;
+  Index materials;                    ///< 0: contacts with walls, one pair a material
+  View<const double> wall_stiffness;  ///< of each wall; empty between elements
+  View<const Index> a, b;
+  View<const ContactState> state;
+  View<const double> slid, damped, driven;
+
+  BR_HD Shares operator()(Index i) const {
+    Shares s;
+    const double overlap = state[i].overlap;
+    if (overlap > 0.0) {
+      const double ra = state_of[a[i]].radius;
+      if (materials > 0) {
+        const double rb = state_of[b[i]].radius;
+        const ContactLaw::Pair pair{ra * rb / (ra + rb), smaller(ra, rb), ra + rb, 0.0, 0.0};
+        s.elastic.add(
+            law.stored_normal(pairs[material[a[i]] * materials + material[b[i]]], pair, overlap));
+      } else {
+        ContactPair constants = pairs[material[a[i]]];
+        if (!law.hertz) constants.normal *= wall_stiffness[b[i]];
+        s.elastic.add(law.stored_normal(constants, {ra, ra, 2.0 * ra, 0.0, 0.0}, overlap));
+      }
+      s.elastic.add(state[i].stored);
+    }
+    s.friction.add(slid[i]);
+    s.contact.add(damped[i]);
+    s.work.add(driven[i]);
+    return s;
+  }
+};
+
+struct ElementShares {
+  View<const double> damping_work, load_work;
+  BR_HD Shares operator()(Index e) const {
+    Shares s;
+    s.contact.add(damping_work[e]);  // booked under damping by the caller
+    s.work.add(load_work[e]);
+    return s;
+  }
+};
+
+Shares contact_shares(const World& w, const Contacts& c, const Buffer<ContactPair>& pairs,
+                      Index materials, const Buffer<double>& wall_stiffness) {
+  return fold(
+      w.exec, c.size(), Shares{},
+      ContactShares{w.parameters.contact, w.elements.material.view(), w.elements.state.view(),
+                    pairs.view(), materials, wall_stiffness.view(), c.pairs.a.view(),
+                    c.pairs.b.view(), c.history.state.view(), c.history.slid.view(),
+                    c.history.damped.view(), c.history.driven.view()},
+      sum_shares);
+}
+
+}  // namespace
+
+EnergyBalance balance(World& w) {
+  const StageTime timed(w.exec, "ledger");
+  const Elements& e = w.elements;
+  const ExactSum kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{kick(w)}, sum_of);
+  Shares all;
+  const ConcreteLinks& c = w.concrete;
+  for (const auto& g : w.concrete_groups)
+    all = sum_shares(all, fold(w.exec, g.end - g.begin, Shares{},
+                               ConcreteShares{g.law, g.begin, e.state.view(), c.a.view(),
+                                              c.b.view(), c.length.view(), c.stiffness.view(),
+                                              c.opening.view(), c.shear.view(), c.moment.view(),
+                                              c.slid.view(), c.yielded.view(), c.broke.view()},
+                               sum_shares));
+  const SteelLinks& s = w.steel;
+  for (const auto& g : w.steel_groups)
+    all = sum_shares(
+        all, fold(w.exec, g.end - g.begin, Shares{},
+                  SteelShares{g.law, g.begin, e.state.view(), s.a.view(), s.b.view(),
+                              s.length.view(), s.state.view(), s.yielded.view(), s.broke.view()},
+                  sum_shares));
+  const InterfaceLinks& b = w.interface;
+  for (const auto& g : w.interface_groups)
+    all = sum_shares(all, fold(w.exec, g.end - g.begin, Shares{},
+                               InterfaceShares{g.law, g.begin, e.state.view(), b.a.view(),
+                                               b.b.view(), b.before.view(), b.after.view(),
+                                               b.stiffness.view(), b.area.view(), b.rest.view(),
+                                               b.state.view(), b.slid.view(), b.broke.view()},
+                               sum_shares));
+  std::vector<double> factors;
+  for (const Wall& wall : w.walls) factors.push_back(wall.stiffness);
+  Buffer<double> wall_stiffness(w.exec.space);
+  copy_to(wall_stiffness, factors);
+  all = sum_shares(
+      all, contact_shares(w, w.contacts, w.contact_pairs, w.parameters.materials, wall_stiffness));
+  all = sum_shares(all, contact_shares(w, w.wall_contacts, w.wall_pairs, 0, wall_stiffness));
+  const Shares held = fold(w.exec, e.size(), Shares{},
+                           ElementShares{e.damping_work.view(), e.load_work.view()}, sum_shares);
+
+  EnergyBalance r;
+  r.kinetic = kinetic.value();
+  r.elastic = all.elastic.value();
+  r.fracture = all.fracture.value();
+  r.plastic = all.plastic.value();
+  r.friction = (all.friction + w.ledger.slid).value();
+  r.contact = (all.contact + w.ledger.damped).value();
+  r.damping = held.contact.value();
+  r.work = (all.work + w.ledger.driven + held.work).value();
+  if (dot(w.parameters.gravity, w.parameters.gravity) > 0.0) {
+    const ExactSum potential =
+        fold(w.exec, e.size(), ExactSum(),
+             GravityPotential{w.parameters.gravity, e.state.view(), e.mass.view()}, sum_of);
+    if (w.step == 0) w.ledger.start_potential = potential;
+    r.work += potential.value() - w.ledger.start_potential.value();
+  }
+  r.start = w.ledger.start;
+  w.ledger.largest =
+      std::max({w.ledger.largest, r.kinetic + r.elastic, std::fabs(r.work), r.total()});
+  r.error_relative =
+      w.step == 0 || w.ledger.largest <= 0.0 ? 0.0 : std::fabs(r.missing()) / w.ledger.largest;
+  return r;
+}
+
+}  // namespace breccia::dem

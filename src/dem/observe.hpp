@@ -1,0 +1,30 @@
+#pragma once
+// What a DEM run shows: hash, probes, counts, and whether its numbers are sound.
+
+#include "dem/world.hpp"
+
+namespace breccia::dem {
+
+/// Hash of positions, velocities, spins and orientations of all elements by global id.
+std::uint64_t state_hash(const World& w);
+
+/// @throws NumericsError naming the first element whose state is not finite or that moves more than
+/// its
+///         radius in a step
+void verify(const World& w);
+
+/// Share of each element's initial cohesive and interface links that are damaged or broken.  [-]
+std::vector<double> damage(const World& w);
+
+double probe(const World& w, const ProbeConfig& probe);
+
+/// Counts of broken links and the like.
+struct Counts {
+  Index broken_concrete = 0, broken_steel = 0, broken_interface = 0;
+  Index touching = 0;             ///< contacts that press now
+  Index fragments = 0;            ///< pieces held together by links
+  double largest_fragment = 0.0;  ///< share of the mass  [-]
+};
+Counts count(const World& w);
+
+}  // namespace breccia::dem

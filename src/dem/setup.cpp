@@ -1,0 +1,301 @@
+// From a model and its case to a world: laws, links, contacts' constants, supports, first forces.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "dem/materials.hpp"
+#include "dem/world.hpp"
+#include "exec/error.hpp"
+
+namespace breccia::dem {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+template <class T>
+Buffer<T> filled(const World& w, const std::vector<T>& items) {
+  Buffer<T> buffer(w.exec.space);
+  copy_to(buffer, items);
+  return buffer;
+}
+
+void set_elements(World& w, const Model& m) {
+  Elements& e = w.elements;
+  resize_fields(e, m.size());
+  std::vector<GlobalId> ids(static_cast<std::size_t>(m.size()));
+  std::iota(ids.begin(), ids.end(), 0);
+  copy_to(e.id, ids);
+  copy_to(e.group, m.group);
+  copy_to(e.material, m.material);
+  copy_to(e.mass, m.mass);
+  copy_to(e.inertia, m.inertia);
+  std::vector<ElementState> states;
+  for (std::size_t i = 0; i < m.radius.size(); ++i)
+    states.push_back({m.position[i], m.velocity[i], m.spin[i], m.radius[i]});
+  copy_to(e.state, states);
+  copy_to(e.orientation, std::vector<Quaternion>(ids.size()));
+  double sum = 0.0;
+  for (const double r : m.radius) sum += r;
+  w.parameters.mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
+}
+
+/// The links of one kind, sorted into groups of one material, each in the model's order.
+template <class Law, class MakeLaw>
+std::vector<Model::Link> grouped(const Model& m, LinkKind kind, const Config& config,
+                                 std::vector<LinkGroup<Law>>& groups, const MakeLaw& make_law) {
+  std::vector<Model::Link> links;
+  for (const Model::Link& link : m.links)
+    if (link.kind == kind) links.push_back(link);
+  std::stable_sort(links.begin(), links.end(), [](const Model::Link& p, const Model::Link& q) {
+    return p.material < q.material;
+  });
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const std::int16_t material = links[i].material;
+    if (groups.empty() || groups.back().material != material)
+      groups.push_back({make_law(config.materials.at(static_cast<std::size_t>(material))),
+                        static_cast<Index>(i), static_cast<Index>(i), material});
+    groups.back().end = static_cast<Index>(i + 1);
+  }
+  return links;
+}
+
+double distance(const Model& m, Index a, Index b) {
+  return norm(m.position[static_cast<std::size_t>(b)] - m.position[static_cast<std::size_t>(a)]);
+}
+double radius_of(const Model& m, Index e) {
+  return m.radius[static_cast<std::size_t>(e)];
+}
+
+void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>& links) {
+  std::vector<Index> first, second;
+  for (const Model::Link& link : links) {
+    first.push_back(link.a);
+    second.push_back(link.b);
+  }
+  copy_to(a, first);
+  copy_to(b, second);
+}
+
+void set_concrete_links(World& w, const Config& config, const Model& m) {
+  const auto links =
+      grouped(m, LinkKind::concrete, config, w.concrete_groups,
+              [&](const MaterialConfig& c) { return concrete_law(c, config.contact); });
+  resize_fields(w.concrete, static_cast<Index>(links.size()));
+  set_ends(w.concrete.a, w.concrete.b, links);
+  std::vector<double> length, stiffness;
+  for (const Model::Link& link : links) {
+    const double d = distance(m, link.a, link.b);
+    const double least = std::min(radius_of(m, link.a), radius_of(m, link.b));
+    const MaterialConfig& material = config.materials[static_cast<std::size_t>(link.material)];
+    length.push_back(d);
+    stiffness.push_back(local_elasticity(material).modulus * pi * least * least / d);
+  }
+  copy_to(w.concrete.length, length);
+  copy_to(w.concrete.stiffness, stiffness);
+}
+
+/// A released pair is D > 1.5 (R_a + R_b) apart. If margins of two elements never exceed half of
+/// R_a + R_b, a new search comes before such a pair can meet again, whenever it was released.
+void limit_margins(World& w, const Model& m) {
+  double least = no_limit;
+  for (const Model::Link& link : m.links)
+    if (link.kind == LinkKind::concrete)
+      least = std::min({least, radius_of(m, link.a), radius_of(m, link.b)});
+  if (least == no_limit) least = *std::max_element(m.radius.begin(), m.radius.end());
+  w.parameters.largest_margin = 0.5 * least;
+}
+
+void set_steel_links(World& w, const Config& config, const Model& m) {
+  const auto links = grouped(m, LinkKind::steel, config, w.steel_groups, steel_law);
+  resize_fields(w.steel, static_cast<Index>(links.size()));
+  set_ends(w.steel.a, w.steel.b, links);
+  std::vector<double> length;
+  for (const Model::Link& link : links) length.push_back(distance(m, link.a, link.b));
+  copy_to(w.steel.length, length);
+}
+
+bool is_steel(const Config& config, const Model& m, Index e) {
+  const auto material = static_cast<std::size_t>(m.material[static_cast<std::size_t>(e)]);
+  return config.materials[material].law == "steel";
+}
+
+void set_interface_links(World& w, const Config& config, const Model& m) {
+  auto links = grouped(m, LinkKind::interface, config, w.interface_groups,
+                       [&](const MaterialConfig& c) { return interface_law(c, config.contact); });
+  std::map<Index, int> shares;  // links of each bar element
+  for (Model::Link& link : links) {
+    if (!is_steel(config, m, link.a)) std::swap(link.a, link.b);
+    ++shares[link.a];
+  }
+  InterfaceLinks& b = w.interface;
+  resize_fields(b, static_cast<Index>(links.size()));
+  set_ends(b.a, b.b, links);
+  std::vector<Index> before, after;
+  std::vector<double> stiffness, area, rest;
+  for (const Model::Link& link : links) {
+    const auto s = static_cast<std::size_t>(link.a);
+    const Index previous = m.bar_previous[s], next = m.bar_next[s];
+    if (previous < 0 && next < 0)
+      throw InputError(
+          fmt::format("element {} is bonded as a bar but has no neighbour along it", s));
+    before.push_back(previous >= 0 ? previous : link.a);
+    after.push_back(next >= 0 ? next : link.a);
+    const double piece = 0.5 * ((previous >= 0 ? distance(m, link.a, previous) : 0.0) +
+                                (next >= 0 ? distance(m, link.a, next) : 0.0));
+    const double share = pi * 2.0 * m.radius[s] * piece / shares[link.a];  // pi d_b L_s / n_s
+    const double d = distance(m, link.a, link.b);
+    const double layer = std::max(d, 0.5 * (m.radius[s] + radius_of(m, link.b)));
+    const auto concrete = static_cast<std::size_t>(m.material[static_cast<std::size_t>(link.b)]);
+    area.push_back(share);
+    stiffness.push_back(config.materials[concrete].young * share / layer);
+    const Vec3 chord = m.position[static_cast<std::size_t>(after.back())] -
+                       m.position[static_cast<std::size_t>(before.back())];
+    const Vec3 axis = (1.0 / norm(chord)) * chord;
+    const Vec3 to = m.position[static_cast<std::size_t>(link.b)] - m.position[s];
+    rest.push_back(norm(to - dot(to, axis) * axis));
+  }
+  copy_to(b.before, before);
+  copy_to(b.after, after);
+  copy_to(b.stiffness, stiffness);
+  copy_to(b.area, area);
+  copy_to(b.rest, rest);
+}
+
+void set_linked_pairs(World& w, const Model& m) {
+  std::vector<std::pair<PairKey, Index>> linked;
+  const ConcreteLinks concrete = host_copy(w.concrete);
+  for (Index i = 0; i < concrete.size(); ++i)
+    linked.emplace_back(pair_key(concrete.a.data()[i], concrete.b.data()[i]), i);
+  for (const Model::Link& link : m.links)
+    if (link.kind != LinkKind::concrete) linked.emplace_back(pair_key(link.a, link.b), -1);
+  std::sort(linked.begin(), linked.end());
+  std::vector<PairKey> keys;
+  std::vector<Index> links;
+  for (const auto& [key, link] : linked) {
+    keys.push_back(key);
+    links.push_back(link);
+  }
+  copy_to(w.linked, keys);
+  copy_to(w.linked_concrete, links);
+}
+
+std::uint8_t fixed_bits(const SupportConfig& support) {
+  static const std::map<std::string, int> words{
+      {"x", fixed_x},           {"y", fixed_y},           {"z", fixed_z}, {"spin_x", fixed_spin_x},
+      {"spin_y", fixed_spin_y}, {"spin_z", fixed_spin_z}, {"all", 63}};
+  int bits = 0;
+  for (const std::string& word : support.fix) {
+    const auto found = words.find(word);
+    if (found == words.end())
+      throw InputError(
+          "support " + support.name + ": '" + word +
+          "' is no degree of freedom; allowed are x, y, z, spin_x, spin_y, spin_z, all");
+    bits |= found->second;
+  }
+  return static_cast<std::uint8_t>(bits);
+}
+
+void set_supports(World& w, const Config& config, const Model& m) {
+  const auto count = static_cast<std::size_t>(m.size());
+  std::vector<std::uint8_t> fixed(count, fixed_none);
+  std::vector<std::int16_t> motion(count, -1);
+  std::vector<Motion> motions;
+  for (std::size_t g = 0; g < m.groups.size(); ++g) {
+    std::vector<Index> members;
+    for (std::size_t e = 0; e < count; ++e)
+      if (m.group[e] == static_cast<std::int16_t>(g)) members.push_back(static_cast<Index>(e));
+    w.sets.push_back({m.groups[g], filled(w, members)});
+  }
+  for (const SupportConfig& s : config.supports) {
+    const std::uint8_t bits = fixed_bits(s);
+    const bool moves = dot(s.velocity, s.velocity) > 0.0;
+    if (moves) motions.push_back({s.velocity, s.ramp});
+    std::vector<Index> members;
+    for (std::size_t e = 0; e < count; ++e) {
+      if (!s.on.empty() && m.groups[static_cast<std::size_t>(m.group[e])] != s.on) continue;
+      const Vec3& x = m.position[e];
+      const bool inside = x.x >= s.min.x && x.y >= s.min.y && x.z >= s.min.z && x.x <= s.max.x &&
+                          x.y <= s.max.y && x.z <= s.max.z;
+      if (!inside) continue;
+      members.push_back(static_cast<Index>(e));
+      fixed[e] = static_cast<std::uint8_t>(fixed[e] | bits);
+      if (moves) motion[e] = static_cast<std::int16_t>(motions.size() - 1);
+    }
+    if (members.empty()) throw InputError("support " + s.name + " holds no element");
+    w.sets.push_back({s.name, filled(w, members)});
+  }
+  copy_to(w.elements.fixed, fixed);
+  copy_to(w.elements.motion, motion);
+  w.motions = filled(w, motions);
+}
+
+void set_contacts(World& w, const Config& config, const Model& m) {
+  w.parameters.contact = contact_law(config.contact);
+  w.parameters.materials = static_cast<Index>(config.materials.size());
+  std::vector<ContactPair> pairs, walls;
+  for (const MaterialConfig& a : config.materials) {
+    for (const MaterialConfig& b : config.materials)
+      pairs.push_back(contact_pair(config.contact, a, b));
+    walls.push_back(wall_pair(config.contact, a));
+  }
+  w.contact_pairs = filled(w, pairs);
+  w.wall_pairs = filled(w, walls);
+  for (const WallConfig& wall : config.walls) {
+    const double size = norm(wall.normal);
+    if (!(size > 0.0)) throw InputError("wall " + wall.name + " has a normal of length 0");
+    w.walls.push_back({wall.point, (1.0 / size) * wall.normal, wall.velocity, wall.stiffness, 0.0});
+  }
+  // A step that resolves the contact of two like elements, for those that nothing else slows down.
+  for (std::size_t e = 0; e < m.radius.size(); ++e) {
+    const auto material = static_cast<std::size_t>(m.material[e]);
+    const MaterialConfig& c = config.materials[material];
+    const double r = m.radius[e];
+    double step = 0.0;
+    if (config.contact.law == "hertz") {  // a fifth of the Rayleigh time
+      const double density = m.mass[e] / (4.0 / 3.0 * pi * r * r * r);
+      step = 0.2 * pi * r * std::sqrt(density * 2.0 * (1.0 + c.poisson) / c.young) /
+             (0.1631 * c.poisson + 0.8766);
+    } else {
+      const ContactPair& pair = pairs[material * config.materials.size() + material];
+      step = std::sqrt(m.mass[e] / (pair.normal * 0.5 * r));
+    }
+    w.parameters.contact_step = std::min(w.parameters.contact_step, config.time.safety * step);
+  }
+}
+
+}  // namespace
+
+World make_world(const Config& config, const Model& model, const Exec& exec) {
+  if (model.size() == 0) throw InputError("the case has no elements");
+  World w(exec);
+  w.parameters.time = config.time;
+  w.parameters.search = config.search;
+  w.parameters.gravity = config.gravity;
+  w.parameters.local_damping = config.local_damping;
+  set_elements(w, model);
+  set_concrete_links(w, config, model);
+  set_steel_links(w, config, model);
+  set_interface_links(w, config, model);
+  set_linked_pairs(w, model);
+  limit_margins(w, model);
+  set_supports(w, config, model);
+  set_contacts(w, config, model);
+  if (exec.space != Space::host) {
+    move_fields(w.elements, exec.space);
+    move_fields(w.concrete, exec.space);
+    move_fields(w.steel, exec.space);
+    move_fields(w.interface, exec.space);
+  }
+  derive(w);
+  find_contacts(w);
+  evaluate_forces(w);
+  const EnergyBalance start = balance(w);
+  w.ledger.start = start.kinetic + start.elastic;
+  return w;
+}
+
+}  // namespace breccia::dem

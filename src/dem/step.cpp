@@ -1,0 +1,27 @@
+#include "dem/world.hpp"
+
+namespace breccia::dem {
+
+void step(World& w) {
+  // 1. Newton's laws: accelerations, velocities, positions              (Durand 2012, section 4.4)
+  move_elements(w);
+
+  // 2. New contacts, when travel has used the margin up: grid, sort, search         (section 4.3)
+  if (contacts_are_due(w)) find_contacts(w);
+
+  // 3. One force per interaction, then one sum per element: no atomics              (section 4.2)
+  //    Links and contacts that end here mark themselves.
+  // 4. The next step: min over elements of sqrt(inertia / stiffness)                (section 4.4)
+  evaluate_forces(w);
+  w.step += 1;
+}
+
+void evaluate_forces(World& w) {
+  link_forces(w);
+  contact_forces(w);
+  gather_forces(w);
+  wall_forces(w);
+  if (w.step % w.parameters.time.evaluate_every == 0) w.next_dt = choose_time_step(w);
+}
+
+}  // namespace breccia::dem

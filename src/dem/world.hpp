@@ -1,0 +1,128 @@
+#pragma once
+// Everything a DEM run consists of between two steps.
+
+#include <string>
+#include <vector>
+
+#include "core/energy.hpp"
+#include "core/incidence.hpp"
+#include "core/travel.hpp"
+#include "dem/config.hpp"
+#include "dem/element_kernels.hpp"
+#include "dem/link_lanes.hpp"
+#include "dem/model.hpp"
+#include "exec/timers.hpp"
+
+namespace breccia::dem {
+
+/// Neighbouring links of one law: one launch.
+template <class Law>
+struct LinkGroup {
+  Law law;
+  Index begin = 0, end = 0;
+  std::int16_t material = 0;
+};
+
+/// A named set of elements that probes read: a body or a support.
+struct ElementSet {
+  std::string name;
+  Buffer<Index> members;
+};
+
+/// What has been booked for good: energies of contacts that ended, and the start of the ledger.
+struct Ledger {
+  ExactSum slid, damped, driven;  ///< of contacts dropped at a search  [J]
+  ExactSum start_potential;       ///< sum of m g.x at the start  [J]
+  double start = 0.0;             ///< kinetic and elastic energy at the start  [J]
+  double largest = 0.0;           ///< largest sum of energies and work seen  [J]
+};
+
+/// Numbers that stay as the case gave them.
+struct Parameters {
+  TimeConfig time;
+  SearchConfig search;
+  Vec3 gravity{};
+  double local_damping = 0.0;
+  double mean_radius = 0.0;  ///< of all elements  [m]
+  ContactLaw contact{};
+  double contact_step = no_limit;  ///< that resolves a contact of two like elements  [s]
+  Index materials = 0;
+};
+
+struct World {
+  explicit World(const Exec& how) : exec(how), lanes(widest_lanes()) {}
+
+  Exec exec;
+  Lanes lanes;
+  Parameters parameters;
+
+  // State: what a checkpoint holds.
+  Elements elements;
+  ConcreteLinks concrete;
+  SteelLinks steel;
+  InterfaceLinks interface;
+  Contacts contacts;       ///< between elements
+  Contacts wall_contacts;  ///< with walls
+  Travel travel;           ///< since the last search
+  std::vector<Wall> walls;
+  Ledger ledger;
+  double time = 0.0;     ///< of positions and forces  [s]
+  double last_dt = 0.0;  ///< the step that led here  [s]
+  double next_dt = 0.0;  ///< the step to come  [s]
+  std::int64_t step = 0;
+  std::int64_t searches = 0;
+
+  // What follows from the case.
+  std::vector<LinkGroup<ConcreteLink>> concrete_groups;
+  std::vector<LinkGroup<SteelLink>> steel_groups;
+  std::vector<LinkGroup<InterfaceLink>> interface_groups;
+  std::vector<ElementSet> sets;
+  Buffer<ContactPair> contact_pairs;  ///< by two materials
+  Buffer<ContactPair> wall_pairs;     ///< by one material
+  Buffer<Motion> motions;
+  Buffer<PairKey> linked;         ///< keys of all links, sorted
+  Buffer<Index> linked_concrete;  ///< of each, its index among the concrete links, or -1
+
+  // What follows from the state.
+  Incidence link_incidence, contact_incidence;
+  BroadPhase broad_phase;
+  std::vector<Index> wall_begin;  ///< first contact of each wall, and the end
+  Buffer<Action> link_actions, contact_actions;
+  Buffer<double> critical;  ///< [s2]
+};
+
+/// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
+/// fit
+World make_world(const Config& config, const Model& model, const Exec& exec);
+
+/// Fills what follows from the state: incidence lists, scratch arrays. After set-up and loading.
+void derive(World& w);
+/// The same for contacts alone, after a search.
+void derive_contacts(World& w);
+
+/// One step of the scheme of Durand et al. 2012, Figure 1 and section 3.3.
+void step(World& w);
+
+/// The parts of a step, in its order.
+void move_elements(World& w);
+bool contacts_are_due(const World& w);
+void find_contacts(World& w);
+void link_forces(World& w);
+void contact_forces(World& w);
+void gather_forces(World& w);
+void wall_forces(World& w);
+/// The step that follows: share of the critical one, rounded down to six bits.  [s]
+double choose_time_step(const World& w);
+
+/// Forces and time step at the time of the positions: once, before the first step.
+void evaluate_forces(World& w);
+
+/// What pair kernels read of the elements.
+ElementsView elements_view(const World& w);
+/// Kick of the elements at the time of the forces.
+Kick kick(const World& w);
+
+/// Where every joule is; keeps the largest energy for the relative error.
+EnergyBalance balance(World& w);
+
+}  // namespace breccia::dem

@@ -1,0 +1,121 @@
+#include "run/dem_method.hpp"
+
+#include "dem/observe.hpp"
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+class DemMethod final : public Method {
+ public:
+  DemMethod(const dem::Config& config, const dem::Model& model, const Exec& exec)
+      : world_(dem::make_world(config, model, exec)),
+        probes_(config.probes),
+        range_(model.interaction_range) {}
+
+  void step() override { dem::step(world_); }
+  std::int64_t steps() const override { return world_.step; }
+  double time() const override { return world_.time; }
+  double time_step() const override { return world_.last_dt; }
+
+  EnergyBalance energy() override { return dem::balance(world_); }
+  std::vector<double> probes() override {
+    std::vector<double> values;
+    for (const ProbeConfig& probe : probes_) values.push_back(dem::probe(world_, probe));
+    return values;
+  }
+  std::uint64_t state_hash() override { return dem::state_hash(world_); }
+  void verify() override { dem::verify(world_); }
+  Frame frame() override { return dem_frame(world_); }
+
+  std::vector<Fact> facts() override {
+    const dem::World& w = world_;
+    std::vector<Fact> facts;
+    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
+    add("model.elements", w.elements.size());
+    const std::size_t groups = group_count();
+    for (std::size_t g = 0; g < groups; ++g)
+      add("model.elements_by_group." + w.sets[g].name, w.sets[g].members.size());
+    add("model.links", w.link_actions.size());
+    add("model.links_by_kind.concrete", w.concrete.size());
+    add("model.links_by_kind.steel", w.steel.size());
+    add("model.links_by_kind.interface", w.interface.size());
+    add("model.interaction_range", range_);
+    add("searches", static_cast<double>(w.searches));
+    add("contacts.candidates", w.contacts.size());
+    const dem::Counts n = dem::count(w);
+    add("contacts.touching", n.touching);
+    add("fracture.broken_links", n.broken_concrete + n.broken_steel + n.broken_interface);
+    add("fracture.broken_by_kind.concrete", n.broken_concrete);
+    add("fracture.broken_by_kind.steel", n.broken_steel);
+    add("fracture.broken_by_kind.interface", n.broken_interface);
+    add("fracture.fragments", n.fragments);
+    add("fracture.largest_fragment_fraction", n.largest_fragment);
+    return facts;
+  }
+
+  void save(CheckpointWriter& writer) override {
+    dem::World& w = world_;
+    writer.value("step", w.step);
+    writer.value("time", w.time);
+    writer.value("last_dt", w.last_dt);
+    writer.value("next_dt", w.next_dt);
+    writer.value("searches", w.searches);
+    writer.value("ledger", w.ledger);
+    writer.fields("elements", w.elements);
+    writer.fields("concrete", w.concrete);
+    writer.fields("steel", w.steel);
+    writer.fields("interface", w.interface);
+    writer.fields("contacts", w.contacts);
+    writer.fields("wall_contacts", w.wall_contacts);
+    writer.fields("travel", w.travel);
+    for (std::size_t k = 0; k < w.walls.size(); ++k)
+      writer.value("walls." + std::to_string(k), w.walls[k]);
+  }
+
+  void load(const CheckpointReader& reader) override {
+    dem::World& w = world_;
+    const Index elements = w.elements.size(), links = w.link_actions.size();
+    w.step = reader.value<std::int64_t>("step");
+    w.time = reader.value<double>("time");
+    w.last_dt = reader.value<double>("last_dt");
+    w.next_dt = reader.value<double>("next_dt");
+    w.searches = reader.value<std::int64_t>("searches");
+    w.ledger = reader.value<dem::Ledger>("ledger");
+    reader.fields("elements", w.elements);
+    reader.fields("concrete", w.concrete);
+    reader.fields("steel", w.steel);
+    reader.fields("interface", w.interface);
+    reader.fields("contacts", w.contacts);
+    reader.fields("wall_contacts", w.wall_contacts);
+    reader.fields("travel", w.travel);
+    for (std::size_t k = 0; k < w.walls.size(); ++k)
+      w.walls[k] = reader.value<dem::Wall>("walls." + std::to_string(k));
+    if (w.elements.size() != elements ||
+        w.concrete.size() + w.steel.size() + w.interface.size() != links)
+      throw CheckpointError("the checkpoint holds another model than the case builds");
+    dem::derive(w);
+  }
+
+ private:
+  std::size_t group_count() const {
+    std::size_t groups = 0;
+    Buffer<std::int16_t> group;
+    copy_to(group, world_.elements.group);
+    for (const std::int16_t g : group.host()) groups = std::max(groups, std::size_t(g) + 1);
+    return groups;
+  }
+
+  dem::World world_;
+  std::vector<ProbeConfig> probes_;
+  double range_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_dem_method(const dem::Config& config, const dem::Model& model,
+                                        const Exec& exec) {
+  return std::make_unique<DemMethod>(config, model, exec);
+}
+
+}  // namespace breccia

@@ -1,0 +1,19 @@
+#pragma once
+// The DEM as the outer loop runs it.
+
+#include <memory>
+
+#include "dem/world.hpp"
+#include "run/method.hpp"
+
+namespace breccia {
+
+/// @throws InputError if model and case do not fit
+std::unique_ptr<Method> make_dem_method(const dem::Config& config, const dem::Model& model,
+                                        const Exec& exec);
+
+/// Elements as spheres with velocity, spin, group and damage; links as lines with kind, state and
+/// force.
+Frame dem_frame(const dem::World& w);
+
+}  // namespace breccia
