@@ -43,7 +43,8 @@ struct Parameters {
   SearchConfig search;
   Vec3 gravity{};
   double local_damping = 0.0;
-  double mean_radius = 0.0;  ///< of all elements  [m]
+  double mean_radius = 0.0;     ///< of all elements  [m]
+  double largest_margin = 0.0;  ///< half the smallest radius of linked concrete  [m]
   ContactLaw contact{};
   double contact_step = no_limit;  ///< that resolves a contact of two like elements  [s]
   Index materials = 0;
