@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "io/round_numbers.hpp"
@@ -39,7 +42,8 @@ std::string stage_shares(const Summary& s) {
 
 }  // namespace
 
-std::string opening_text(const Summary& s, double end, const std::string& folder) {
+std::string opening_text(const Summary& s, double end_time, std::int64_t end_steps,
+                         const std::string& folder) {
   std::string text = fmt::format("breccia {}  {} x{} {}\n", this_build().version, s.machine.device,
                                  s.machine.threads, s.machine.threads == 1 ? "thread" : "threads");
   text += fmt::format("case    {}   {}", s.case_name, s.method);
@@ -47,11 +51,17 @@ std::string opening_text(const Summary& s, double end, const std::string& folder
     if (const auto count = fact(s, std::string("model.") + kind); count && *count > 0.0)
       text += fmt::format("   {} {}", count_text(*count), kind);
   text += fmt::format("   memory {:.0f} MB\n", static_cast<double>(s.peak_memory) / 1e6);
-  if (s.dt_last > 0.0)
-    text += fmt::format("step    dt {:.3g} s   about {} steps to {}\n", s.dt_last,
-                        count_text(std::max(0.0, end - s.time) / s.dt_last), time_text(end));
+  const double left_by_steps = static_cast<double>(std::max<std::int64_t>(end_steps - s.steps, 0));
+  const double left_by_time =
+      s.dt_last > 0.0 ? std::max(0.0, std::ceil((end_time - s.time) / s.dt_last)) : left_by_steps;
+  text += "step    ";
+  if (s.dt_last > 0.0) text += fmt::format("dt {:.3g} s   ", s.dt_last);
+  if (left_by_steps <= left_by_time && end_steps != std::numeric_limits<std::int64_t>::max())
+    text += fmt::format("{} steps\n", count_text(left_by_steps));
+  else if (s.dt_last > 0.0)
+    text += fmt::format("about {} steps to {}\n", count_text(left_by_time), time_text(end_time));
   else
-    text += fmt::format("step    to {}\n", time_text(end));
+    text += fmt::format("to {}\n", time_text(end_time));
   if (s.steps > 0)
     text += fmt::format("from    step {}, {}\n", count_text(static_cast<double>(s.steps)),
                         time_text(s.time));

@@ -1,6 +1,7 @@
 #pragma once
 // The opening and closing lines of a run.
 
+#include <cstdint>
 #include <string>
 
 #include "run/summary.hpp"
@@ -8,8 +9,10 @@
 namespace breccia {
 
 /// What was read and what is to come.
-/// @param end  simulated time at which the run ends  [s]
-std::string opening_text(const Summary& summary, double end, const std::string& folder);
+/// @param end_time   simulated time at which the run ends  [s]
+/// @param end_steps  steps after which it ends at the latest
+std::string opening_text(const Summary& summary, double end_time, std::int64_t end_steps,
+                         const std::string& folder);
 
 /// What came out, and where it lies.
 std::string closing_text(const Summary& summary, std::int64_t frames, const std::string& folder);

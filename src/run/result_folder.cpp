@@ -24,7 +24,8 @@ constexpr const char* lock_name = ".lock";
 /// Everything a run writes into its folder.
 constexpr std::array written_by_runs{"summary.json", "case.toml", "history.csv", "log.jsonl",
                                      "pictures",     "fields",    "checkpoints", "result.pvd",
-                                     "elements.pvd", "links.pvd", "report.html", "crash.br"};
+                                     "elements.pvd", "links.pvd", "report.html", "render.png",
+                                     "crash.br"};
 
 bool holds_run(const std::string& path) {
   for (const char* name : {"summary.json", "history.csv", "checkpoints"})
@@ -118,6 +119,7 @@ ResultFolder ResultFolder::create(const std::string& path, Existing existing) {
 ResultFolder ResultFolder::open(const std::string& path) {
   if (!fs::is_directory(path))
     throw IoError(fmt::format("{}: cannot be read: there is no such folder", path));
+  if (!holds_run(path)) throw InputError(path + ": this folder holds no run; nothing was run");
   const int file = lock(path, O_RDWR | O_CREAT);
   note_owner(file);
   return ResultFolder(path, file);

@@ -22,7 +22,7 @@ class ResultFolder {
   static ResultFolder create(const std::string& path, Existing existing);
 
   /// Locks the folder of a run that is to go on.
-  /// @throws IoError if there is none, InputError if another process runs in it
+  /// @throws IoError if there is none, InputError if it holds no run or another process runs in it
   static ResultFolder open(const std::string& path);
 
   ResultFolder(ResultFolder&& other) noexcept;

@@ -115,7 +115,7 @@ void Run::start() {
   log_.write(Level::info, "setup", method_.steps(),
              fmt::format("{} starts at step {}, {:.9g} s", plan_.case_name, method_.steps(),
                          method_.time()));
-  say(opening_text(now, end_time_, folder_.path()));
+  say(opening_text(now, end_time_, end_steps_, folder_.path()));
   method_.verify();
   if (recorder_.due(method_.time())) observe();
   progress_.start(standing());
