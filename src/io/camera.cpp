@@ -1,6 +1,7 @@
 #include "io/camera.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,49 @@
 
 namespace breccia {
 namespace {
+
+/// How far an extent reaches on the picture, from the origin of space.  [m]
+struct Reach {
+  double left = 1e300, right = -1e300, bottom = 1e300, top = -1e300;
+
+  void add(const Vec3& point, const Axes& axes) {
+    const double u = dot(point, axes.right), v = dot(point, axes.up);
+    left = std::min(left, u);
+    right = std::max(right, u);
+    bottom = std::min(bottom, v);
+    top = std::max(top, v);
+  }
+};
+
+Vec3 corner(const Extent& extent, int number) {
+  return {(number & 1) != 0 ? extent.high.x : extent.low.x,
+          (number & 2) != 0 ? extent.high.y : extent.low.y,
+          (number & 4) != 0 ? extent.high.z : extent.low.z};
+}
+
+/// Of the spheres within the box, the farthest places in the four directions of the slanted view;
+/// in those of the other views the box itself is as tight.
+std::vector<Vec3> outline_of(const Frame& frame, const Extent& extent) {
+  const Axes axes = axes_of_view("iso");
+  const std::array directions{axes.right, -axes.right, axes.up, -axes.up};
+  std::array<double, 4> reach{-1e300, -1e300, -1e300, -1e300};
+  std::vector<Vec3> outline(4, 0.5 * (extent.low + extent.high));
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    const Vec3& p = frame.position[i];
+    const double r = i < frame.radius.size() ? frame.radius[i] : 0.0;
+    const bool inside = p.x - r >= extent.low.x && p.x + r <= extent.high.x &&
+                        p.y - r >= extent.low.y && p.y + r <= extent.high.y &&
+                        p.z - r >= extent.low.z && p.z + r <= extent.high.z;
+    if (!inside) continue;
+    for (std::size_t d = 0; d < directions.size(); ++d) {
+      const double there = dot(p, directions[d]) + r;
+      if (there <= reach[d]) continue;
+      reach[d] = there;
+      outline[d] = p + r * directions[d];
+    }
+  }
+  return outline;
+}
 
 bool is_finite(const Vec3& point) {
   return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
@@ -60,6 +104,7 @@ Extent bulk_extent(const Frame& frame) {
   }
   if (extent.low.x > extent.high.x)
     return {{in_x.low, in_y.low, in_z.low}, {in_x.high, in_y.high, in_z.high}};
+  extent.outline = outline_of(frame, extent);
   return extent;
 }
 
@@ -78,22 +123,23 @@ Axes axes_of_view(const std::string& view) {
 }
 
 Camera fitted_camera(const Axes& axes, const Extent& extent, const Window& window) {
-  const Vec3 centre = 0.5 * (extent.low + extent.high);
-  double half_width = 0.0, half_height = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 offset = Vec3{(corner & 1) != 0 ? extent.high.x : extent.low.x,
-                             (corner & 2) != 0 ? extent.high.y : extent.low.y,
-                             (corner & 4) != 0 ? extent.high.z : extent.low.z} -
-                        centre;
-    half_width = std::max(half_width, std::fabs(dot(offset, axes.right)));
-    half_height = std::max(half_height, std::fabs(dot(offset, axes.up)));
+  const bool along_axes = axes.toward.x == 0.0 || axes.toward.y == 0.0 || axes.toward.z == 0.0;
+  Reach reach;
+  if (along_axes || extent.outline.empty()) {
+    for (int number = 0; number < 8; ++number) reach.add(corner(extent, number), axes);
+  } else {
+    for (const Vec3& point : extent.outline) reach.add(point, axes);
   }
-  const double by_width = half_width > 0.0 ? 0.5 * (window.right - window.left) / half_width : 1e30;
-  const double by_height =
-      half_height > 0.0 ? 0.5 * (window.bottom - window.top) / half_height : 1e30;
+  const double width = reach.right - reach.left, height = reach.top - reach.bottom;
+  constexpr double none = 1e30;
+  const double by_width = width > 0.0 ? (window.right - window.left) / width : none;
+  const double by_height = height > 0.0 ? (window.bottom - window.top) / height : none;
   const double resolution = std::min(by_width, by_height);
+  const Vec3 centre = 0.5 * (reach.left + reach.right) * axes.right +
+                      0.5 * (reach.bottom + reach.top) * axes.up +
+                      0.5 * dot(extent.low + extent.high, axes.toward) * axes.toward;
   return {axes, centre, 0.5 * (window.left + window.right), 0.5 * (window.top + window.bottom),
-          resolution < 1e30 ? resolution : 1.0};
+          resolution < none ? resolution : 1.0};
 }
 
 std::optional<Clip> clip_of(const std::string& text, const Axes& axes) {

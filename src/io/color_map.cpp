@@ -22,10 +22,10 @@ constexpr std::array viridis{from_bytes(0x440154), from_bytes(0x482878), from_by
 constexpr std::array diverging{from_bytes(0x3b4cc0), from_bytes(0x6282ea), from_bytes(0x8db0fe),
                                from_bytes(0xb8d0f9), from_bytes(0xdddddd), from_bytes(0xf5c4ad),
                                from_bytes(0xf49a7b), from_bytes(0xde604d), from_bytes(0xb40426)};
-constexpr std::array damage{from_bytes(0xd9d3c7), from_bytes(0xe6c79c), from_bytes(0xf0a85a),
+constexpr std::array damage{from_bytes(0xded6c6), from_bytes(0xe9ca9a), from_bytes(0xf0a85a),
                             from_bytes(0xe67a2e), from_bytes(0xcf4620), from_bytes(0xa81c18),
                             from_bytes(0x6e0a14)};
-constexpr std::array categories{from_bytes(0xcfc8b8), from_bytes(0x4a78a8), from_bytes(0x5c5f66),
+constexpr std::array categories{from_bytes(0xded6c6), from_bytes(0x4a78a8), from_bytes(0x5c5f66),
                                 from_bytes(0x6aa56b), from_bytes(0xd98c3f), from_bytes(0x8d6bb1),
                                 from_bytes(0x46a3a8), from_bytes(0xc25b6e), from_bytes(0x9a8a3c),
                                 from_bytes(0xd0a2c4)};

@@ -11,7 +11,8 @@
 namespace breccia {
 namespace {
 
-constexpr double sphere_share_beside_links = 0.4;  ///< of the radius, so that links are seen
+constexpr double sphere_share_beside_links = 0.4;    ///< of the radius, so that links show
+constexpr double sphere_share_beside_colours = 0.2;  ///< likewise, where links carry the field
 
 /// The items to draw, in the order of their numbers: spheres, then lines, then triangles.
 struct Scene {
@@ -42,28 +43,18 @@ Axes axes_for(const Extent& extent, const RenderOptions& options) {
   return axes_of_view(flat && options.view == "iso" ? "z" : options.view);
 }
 
-/// Spheres from front to back, so that most hidden pixels fail the first test.
-std::vector<std::int32_t> front_to_back(const std::vector<ScreenPoint>& points) {
-  std::vector<std::int32_t> order(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
-  std::sort(order.begin(), order.end(), [&points](std::int32_t a, std::int32_t b) {
-    const double depth_a = points[static_cast<std::size_t>(a)].depth;
-    const double depth_b = points[static_cast<std::size_t>(b)].depth;
-    return depth_a != depth_b ? depth_a > depth_b : a < b;
-  });
-  return order;
-}
-
-void draw_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scene) {
+/// Spheres come first, so that their place in the list is their item.
+void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scene) {
   constexpr double smallest = 0.75;  // pixels: nothing that flies about is lost
-  for (const std::int32_t item : front_to_back(scene.points)) {
-    const auto i = static_cast<std::size_t>(item);
+  std::vector<ScreenSphere> spheres(frame.position.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
     const ScreenPoint& point = scene.points[i];
     const double radius = std::max(smallest, share * scene.camera.resolution * frame.radius[i]);
-    scene.looks[i].sphere = {static_cast<float>(point.u), static_cast<float>(point.v),
-                             static_cast<float>(point.depth), static_cast<float>(radius)};
-    draw_sphere(canvas, scene.looks[i].sphere, item, scene.clip);
+    spheres[i] = {static_cast<float>(point.u), static_cast<float>(point.v),
+                  static_cast<float>(point.depth), static_cast<float>(radius)};
+    scene.looks[i].sphere = spheres[i];
   }
+  draw_spheres(canvas, spheres, scene.clip);
 }
 
 void draw_lines(Canvas& canvas, const Frame& frame, const std::vector<Color>& colors,
@@ -135,12 +126,15 @@ Image render(const Frame& frame, const RenderOptions& options) {
   Canvas canvas(options.width, options.height);
   const bool links = options.show_links || coloring.of_lines;
   if (options.show_spheres && !frame.radius.empty()) {
-    draw_spheres(canvas, frame, links ? sphere_share_beside_links : 1.0, scene);
+    const double beside_links =
+        coloring.of_lines ? sphere_share_beside_colours : sphere_share_beside_links;
+    place_spheres(canvas, frame, links ? beside_links : 1.0, scene);
   }
   if (links) draw_lines(canvas, frame, coloring.lines, scene);
   draw_triangles(canvas, frame, coloring.triangles, scene);
 
   Image image = shade(canvas, scene.looks, scene.clip, relief_of(frame, scene.camera.resolution));
+  smooth_outlines(image, canvas, scene.looks);
   const int scale = text_scale(options);
   draw_title(image, options.title, frame, scale);
   draw_legend(image, coloring.legend, scale);

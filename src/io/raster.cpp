@@ -25,21 +25,21 @@ void put(Canvas& canvas, int x, int y, double depth, std::int32_t item) {
   canvas.item[place] = item;
 }
 
-/// One row of a whole sphere, block by block: pixels off the sphere get a depth that never shows.
-void draw_row(float* depth, std::int32_t* item, int first_block, int last_block,
-              const ScreenSphere& sphere, float half_chord_squared, std::int32_t number) {
-  for (int b = first_block; b <= last_block; ++b) {
-    float* const depth_here = depth + b * Canvas::block;
-    std::int32_t* const item_here = item + b * Canvas::block;
-    const float start = static_cast<float>(b * Canvas::block) + 0.5F - sphere.u;
-    for (int k = 0; k < Canvas::block; ++k) {
-      const float offset = start + static_cast<float>(k);
-      const float height_squared = half_chord_squared - offset * offset;
-      const float surface = sphere.depth + std::sqrt(std::max(height_squared, 0.0F));
-      const bool shows = (height_squared >= 0.0F) & (surface > depth_here[k]);
-      depth_here[k] = shows ? surface : depth_here[k];
-      item_here[k] = shows ? number : item_here[k];
-    }
+/// One row of a whole sphere, in whole blocks: pixels off the sphere never show.
+void draw_row(float* depth, std::int32_t* item, int first, int last, const ScreenSphere& sphere,
+              float half_chord_squared, std::int32_t number) {
+  const int start = first / Canvas::block * Canvas::block;
+  const int end = (last / Canvas::block + 1) * Canvas::block;
+  const float centre = sphere.u - 0.5F, middle = sphere.depth;
+  for (int x = start; x < end; ++x) {
+    const float offset = static_cast<float>(x) - centre;
+    const float height_squared = half_chord_squared - offset * offset;
+    const float off = height_squared < 0.0F ? Canvas::empty : 0.0F;
+    const float surface = middle + std::sqrt(std::max(0.0F, height_squared)) + off;
+    const float before = depth[x];
+    const std::int32_t wins = surface > before ? -1 : 0;  // a mask: branches would stop the lanes
+    item[x] = (number & wins) | (item[x] & ~wins);
+    depth[x] = std::max(before, surface);
   }
 }
 
@@ -61,6 +61,69 @@ void draw_cut_row(Canvas& canvas, int y, int first, int last, const ScreenSphere
   }
 }
 
+/// A sphere that can be seen, and the pixels it may cover.
+struct Visible {
+  std::int32_t item;
+  float front;   ///< depth of its nearest point
+  bool crossed;  ///< by the clip plane
+  int left, right, top, bottom;
+};
+
+std::optional<Visible> visible(const Canvas& canvas, const ScreenSphere& sphere, std::int32_t item,
+                               const std::optional<ScreenClip>& clip) {
+  const auto [u, v, depth, r] = sphere;
+  if (!(r > 0.0F) || !(std::fabs(depth) < 1e20F)) return std::nullopt;
+  Visible box{item, depth + r, false, 0, 0, 0, 0};
+  box.left = std::max(0, first_pixel(u - r));
+  box.right = std::min(canvas.width - 1, last_pixel(u + r));
+  box.top = std::max(0, first_pixel(v - r));
+  box.bottom = std::min(canvas.height - 1, last_pixel(v + r));
+  if (!(u == u && v == v) || box.left > box.right || box.top > box.bottom) return std::nullopt;
+  if (clip) {
+    const double beyond = clip->beyond(u, v, depth);
+    if (beyond >= r) return std::nullopt;
+    box.crossed = beyond > -r;
+  }
+  return box;
+}
+
+/// A rectangle of pixels small enough to stay in the fastest cache.
+struct Tile {
+  static constexpr int width = 64, height = 32;  // pixels; width is a multiple of Canvas::block
+  int left, right, top, bottom;                  ///< the last ones included
+};
+
+/// Whether no pixel of a tile is farther than `front`: nothing behind it can show.
+bool is_filled(const Canvas& canvas, const Tile& tile, float front) {
+  for (int y = tile.top; y <= tile.bottom; ++y) {
+    const float* const depth = &canvas.depth[canvas.row(y)];
+    int farther = 0;
+    for (int x = tile.left; x <= tile.right; ++x) farther |= depth[x] < front ? 1 : 0;
+    if (farther != 0) return false;
+  }
+  return true;
+}
+
+void draw_in_tile(Canvas& canvas, const Tile& tile, const ScreenSphere& sphere, const Visible& seen,
+                  const std::optional<ScreenClip>& clip) {
+  const int bottom = std::min(tile.bottom, seen.bottom);
+  for (int y = std::max(tile.top, seen.top); y <= bottom; ++y) {
+    const float dv = static_cast<float>(y) + 0.5F - sphere.v;
+    const float half_chord_squared = sphere.radius * sphere.radius - dv * dv;
+    if (half_chord_squared <= 0.0F) continue;
+    const float half_chord = std::sqrt(half_chord_squared);
+    const int first = std::max(tile.left, first_pixel(sphere.u - half_chord));
+    const int last = std::min(tile.right, last_pixel(sphere.u + half_chord));
+    if (first > last) continue;
+    if (seen.crossed) {
+      draw_cut_row(canvas, y, first, last, sphere, half_chord_squared, seen.item, *clip);
+    } else {
+      draw_row(&canvas.depth[canvas.row(y)], &canvas.item[canvas.row(y)], first, last, sphere,
+               half_chord_squared, seen.item);
+    }
+  }
+}
+
 }  // namespace
 
 Canvas::Canvas(int wide, int high)
@@ -70,33 +133,45 @@ Canvas::Canvas(int wide, int high)
   item.assign(size, none);
 }
 
-void draw_sphere(Canvas& canvas, const ScreenSphere& sphere, std::int32_t item,
-                 const std::optional<ScreenClip>& clip) {
-  const auto [u, v, depth, r] = sphere;
-  if (!(r > 0.0F) || !(std::fabs(depth) < 1e20F)) return;
-  if (!(u + r > 0.0F && u - r < static_cast<float>(canvas.width))) return;
-  if (!(v + r > 0.0F && v - r < static_cast<float>(canvas.height))) return;
-  bool crossed = false;
-  if (clip) {
-    const double beyond = clip->beyond(u, v, depth);
-    if (beyond >= r) return;
-    crossed = beyond > -r;
+void draw_spheres(Canvas& canvas, std::span<const ScreenSphere> spheres,
+                  const std::optional<ScreenClip>& clip) {
+  std::vector<Visible> order;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const auto item = static_cast<std::int32_t>(i);
+    if (const auto seen = visible(canvas, spheres[i], item, clip)) order.push_back(*seen);
   }
-  const int top = std::max(0, first_pixel(v - r));
-  const int bottom = std::min(canvas.height - 1, last_pixel(v + r));
-  for (int y = top; y <= bottom; ++y) {
-    const float dv = static_cast<float>(y) + 0.5F - v;
-    const float half_chord_squared = r * r - dv * dv;
-    if (half_chord_squared <= 0.0F) continue;
-    const float half_chord = std::sqrt(half_chord_squared);
-    const int first = std::max(0, first_pixel(u - half_chord));
-    const int last = std::min(canvas.width - 1, last_pixel(u + half_chord));
-    if (first > last) continue;
-    if (crossed) {
-      draw_cut_row(canvas, y, first, last, sphere, half_chord_squared, item, *clip);
-    } else {
-      draw_row(&canvas.depth[canvas.row(y)], &canvas.item[canvas.row(y)], first / Canvas::block,
-               last / Canvas::block, sphere, half_chord_squared, item);
+  std::sort(order.begin(), order.end(), [](const Visible& a, const Visible& b) {
+    return a.front != b.front ? a.front > b.front : a.item < b.item;
+  });
+  // Spheres by tile, in that order: count, sum, fill.
+  const int across = (canvas.width + Tile::width - 1) / Tile::width;
+  const int down = (canvas.height + Tile::height - 1) / Tile::height;
+  std::vector<std::size_t> start(static_cast<std::size_t>(across * down) + 1, 0);
+  const auto each_tile = [across](const Visible& seen, auto&& visit) {
+    for (int y = seen.top / Tile::height; y <= seen.bottom / Tile::height; ++y) {
+      for (int x = seen.left / Tile::width; x <= seen.right / Tile::width; ++x) {
+        visit(static_cast<std::size_t>(y * across + x));
+      }
+    }
+  };
+  for (const Visible& seen : order) each_tile(seen, [&](std::size_t tile) { ++start[tile + 1]; });
+  for (std::size_t tile = 1; tile < start.size(); ++tile) start[tile] += start[tile - 1];
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  std::vector<std::uint32_t> in_tile(start.back());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    each_tile(order[i],
+              [&](std::size_t tile) { in_tile[next[tile]++] = static_cast<std::uint32_t>(i); });
+  }
+  for (std::size_t number = 0; number + 1 < start.size(); ++number) {
+    const int left = static_cast<int>(number) % across * Tile::width;
+    const int top = static_cast<int>(number) / across * Tile::height;
+    const Tile tile{left, std::min(left + Tile::width, canvas.width) - 1, top,
+                    std::min(top + Tile::height, canvas.height) - 1};
+    for (std::size_t k = start[number]; k < start[number + 1]; ++k) {
+      const Visible& seen = order[in_tile[k]];
+      const bool look = (k - start[number]) % 4 == 0;
+      if (look && is_filled(canvas, tile, seen.front)) break;
+      draw_in_tile(canvas, tile, spheres[static_cast<std::size_t>(seen.item)], seen, clip);
     }
   }
 }

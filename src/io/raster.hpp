@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "io/camera.hpp"
@@ -31,9 +32,11 @@ struct ScreenSphere {
   float u, v, depth, radius;
 };
 
-/// Spheres that a clip plane crosses show the cut.
-void draw_sphere(Canvas& canvas, const ScreenSphere& sphere, std::int32_t item,
-                 const std::optional<ScreenClip>& clip);
+/// Draws all spheres; the item of each is its place in the list, a radius of 0 leaves it out. Those
+/// that a clip plane crosses show the cut. Work is done tile by tile from front to back, and a tile
+/// is left as soon as nothing farther can show in it: cost grows with what is seen.
+void draw_spheres(Canvas& canvas, std::span<const ScreenSphere> spheres,
+                  const std::optional<ScreenClip>& clip);
 
 /// A line `thickness` pixels wide.
 void draw_line(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, int thickness,

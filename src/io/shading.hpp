@@ -24,4 +24,8 @@ Vec3 lamp_direction();
 Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
             const std::optional<ScreenClip>& clip, float relief);
 
+/// Softens the steps on the outlines of spheres: a pixel that an outline crosses takes part of the
+/// colour of either side, by the distance of its centre from the outline.
+void smooth_outlines(Image& image, const Canvas& canvas, std::span<const ItemLook> looks);
+
 }  // namespace breccia

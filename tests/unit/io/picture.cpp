@@ -89,7 +89,7 @@ Patch scene_patch(const Frame& frame, const RenderOptions& options) {
       const Pixel with = pixel(image, x, y), without = pixel(nothing, x, y);
       const int change = std::abs(with[0] - without[0]) + std::abs(with[1] - without[1]) +
                          std::abs(with[2] - without[2]);
-      if (change > 60) patch.add(x, y);
+      if (change > 30) patch.add(x, y);
     }
   }
   return patch;
