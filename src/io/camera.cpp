@@ -33,11 +33,12 @@ Vec3 corner(const Extent& extent, int number) {
 
 /// Of the spheres within the box, the farthest places in the four directions of the slanted view;
 /// in those of the other views the box itself is as tight.
-std::vector<Vec3> outline_of(const Frame& frame, const Extent& extent) {
+std::array<Vec3, 4> outline_of(const Frame& frame, const Extent& extent) {
   const Axes axes = axes_of_view("iso");
   const std::array directions{axes.right, -axes.right, axes.up, -axes.up};
   std::array<double, 4> reach{-1e300, -1e300, -1e300, -1e300};
-  std::vector<Vec3> outline(4, 0.5 * (extent.low + extent.high));
+  std::array<Vec3, 4> outline;
+  outline.fill(0.5 * (extent.low + extent.high));
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     const Vec3& p = frame.position[i];
     const double r = i < frame.radius.size() ? frame.radius[i] : 0.0;
@@ -105,6 +106,7 @@ Extent bulk_extent(const Frame& frame) {
   if (extent.low.x > extent.high.x)
     return {{in_x.low, in_y.low, in_z.low}, {in_x.high, in_y.high, in_z.high}};
   extent.outline = outline_of(frame, extent);
+  extent.outline_points = static_cast<std::int64_t>(extent.outline.size());
   return extent;
 }
 
@@ -125,7 +127,7 @@ Axes axes_of_view(const std::string& view) {
 Camera fitted_camera(const Axes& axes, const Extent& extent, const Window& window) {
   const bool along_axes = axes.toward.x == 0.0 || axes.toward.y == 0.0 || axes.toward.z == 0.0;
   Reach reach;
-  if (along_axes || extent.outline.empty()) {
+  if (along_axes || extent.outline_points == 0) {
     for (int number = 0; number < 8; ++number) reach.add(corner(extent, number), axes);
   } else {
     for (const Vec3& point : extent.outline) reach.add(point, axes);

@@ -217,6 +217,21 @@ std::vector<Color> mapped_colors(const Legend::Bar& bar, const std::vector<float
   return colors;
 }
 
+/// What a legend calls a category: groups have names, and so have kinds and states of links.
+std::string category_name(const Frame& frame, const Selected& selected, double value) {
+  constexpr std::array kinds{"concrete", "steel", "interface"};
+  constexpr std::array states{"whole", "softened", "broken"};
+  const auto number = static_cast<std::size_t>(std::clamp(value, 0.0, 1e6));
+  const bool known = value == static_cast<double>(number);
+  const std::string& name = selected.field->name;
+  if (known && name == "group") return group_name(frame, number);
+  if (known && number < 3 && selected.carrier == Carrier::lines) {
+    if (name == "kind") return kinds[number];
+    if (name == "state") return states[number];
+  }
+  return fmt::format("{:g}", value);
+}
+
 /// One colour a distinct value, in the order of the values.
 std::vector<Color> category_colors(const Frame& frame, const Selected& selected,
                                    const std::vector<float>& values, Legend& legend) {
@@ -230,10 +245,8 @@ std::vector<Color> category_colors(const Frame& frame, const Selected& selected,
     place = number++;
     if (place == most_swatches) legend.swatches.push_back({{1.0F, 1.0F, 1.0F}, "..."});
     if (place >= most_swatches) continue;
-    const bool is_group = selected.field->name == "group" && value >= 0.0F;
     legend.swatches.push_back(
-        {category_color(place), is_group ? group_name(frame, static_cast<std::size_t>(value))
-                                         : fmt::format("{:g}", value)});
+        {category_color(place), category_name(frame, selected, static_cast<double>(value))});
   }
   std::vector<Color> colors(values.size(), Color{1.0F, 0.0F, 1.0F});
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -266,6 +279,10 @@ void fill_default_colors(const Frame& frame, Coloring& coloring) {
         coloring.lines[i] = category_color(static_cast<std::size_t>(kind->values[i]));
       }
     }
+  }
+  const FrameField* state = field_named(frame.line_fields, "state");
+  if (state != nullptr && state->values.size() == coloring.lines.size()) {
+    for (const float value : state->values) coloring.broken_lines.push_back(value == 2.0F);
   }
   const std::vector<std::size_t> groups = point_groups(frame);
   const GroupTints tints = group_tints(frame, groups);
@@ -330,6 +347,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
       break;
     case Carrier::lines:
       coloring.lines = std::move(colors);
+      if (field == "state") coloring.broken_lines.clear();
       std::fill(coloring.points.begin(), coloring.points.end(), pale);
       break;
     case Carrier::triangles:

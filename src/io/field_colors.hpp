@@ -31,7 +31,8 @@ struct Legend {
 /// A colour an item.
 struct Coloring {
   std::vector<Color> points, lines, triangles;
-  bool of_lines = false;  ///< the field is one of the lines
+  bool of_lines = false;           ///< the field is one of the lines
+  std::vector<bool> broken_lines;  ///< not to be drawn; empty: all are
   Legend legend;
 };
 

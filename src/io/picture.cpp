@@ -57,12 +57,13 @@ void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scen
   draw_spheres(canvas, spheres, scene.clip);
 }
 
-void draw_lines(Canvas& canvas, const Frame& frame, const std::vector<Color>& colors,
-                Scene& scene) {
+void draw_lines(Canvas& canvas, const Frame& frame, const Coloring& coloring, Scene& scene) {
+  const std::vector<Color>& colors = coloring.lines;
   const int thickness = std::max(2, canvas.height / 480);
   const double lift = frame.triangles.empty() ? 0.0 : 2.0;  // lines on the edges of triangles show
   const Vec3 lamp = lamp_direction();
   for (std::size_t line = 0; line < colors.size(); ++line) {
+    if (!coloring.broken_lines.empty() && coloring.broken_lines[line]) continue;
     ScreenPoint a = scene.points[static_cast<std::size_t>(frame.lines[2 * line])];
     ScreenPoint b = scene.points[static_cast<std::size_t>(frame.lines[2 * line + 1])];
     a.depth += lift;
@@ -130,7 +131,7 @@ Image render(const Frame& frame, const RenderOptions& options) {
         coloring.of_lines ? sphere_share_beside_colours : sphere_share_beside_links;
     place_spheres(canvas, frame, links ? beside_links : 1.0, scene);
   }
-  if (links) draw_lines(canvas, frame, coloring.lines, scene);
+  if (links) draw_lines(canvas, frame, coloring, scene);
   draw_triangles(canvas, frame, coloring.triangles, scene);
 
   Image image = shade(canvas, scene.looks, scene.clip, relief_of(frame, scene.camera.resolution));

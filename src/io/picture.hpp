@@ -2,6 +2,7 @@
 // Pictures of a frame: drawn in software, without a display or a GPU, with the same bits
 // everywhere.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,10 +19,11 @@ struct Image {
 };
 
 /// The part of space that a picture shows: a box, cut off at the corners where points on the
-/// outline of its content are known.
+/// outline of its content are known. Plain data, so that a checkpoint can hold it.
 struct Extent {
-  Vec3 low, high;                  ///<  [m]
-  std::vector<Vec3> outline = {};  ///< as far as the content reaches; empty: the whole box  [m]
+  Vec3 low, high;                    ///<  [m]
+  std::array<Vec3, 4> outline = {};  ///< as far as the content reaches  [m]
+  std::int64_t outline_points = 0;   ///< of them that are known; 0: the whole box is shown
 };
 
 /// The values at the two ends of the colour bar, in the unit of the field.

@@ -209,6 +209,26 @@ TEST(picture, links_and_triangles_are_drawn_and_clipped) {
   EXPECT_GT(triangle.pixels, 0.45 * (triangle.bottom - triangle.top) * 500.0);
 }
 
+TEST(picture, a_broken_link_is_drawn_only_where_the_state_is_shown) {
+  Frame frame;
+  frame.position = {{-0.8, 0, 0}, {0.8, 0, 0}};
+  frame.lines = {0, 1};
+  frame.line_fields = {{"state", "-", 1, {0.0F}}};
+  RenderOptions options = cube_options();
+  options.show_links = true;
+  EXPECT_GT(scene_patch(frame, options).pixels, 400.0);
+  frame.line_fields[0].values[0] = 2.0F;
+  EXPECT_EQ(scene_patch(frame, options).pixels, 0.0);
+  options.field = "state";
+  const Image image = render(frame, options);
+  const Image without = [&] {
+    Frame apart = frame;
+    apart.position = {{-0.8, 0, 7}, {0.8, 0, 7}};
+    return render(apart, options);
+  }();
+  EXPECT_NE(image.rgb, without.rgb);
+}
+
 TEST(picture, a_field_brings_a_legend_with_its_range_and_no_field_none) {
   Frame frame = spheres({{-0.4, 0, 0}, {0.4, 0, 0}}, 0.3);
   frame.point_fields = {{"velocity", "m/s", 3, {0, 0, 0, 3, 4, 0}}};
