@@ -99,20 +99,14 @@ struct SteelShares {
 struct InterfaceShares {
   InterfaceLink law;
   Index first;
-  View<const ElementState> state_of;
-  View<const Index> a, b, before, after;
-  View<const double> stiffness, area, rest;
+  View<const double> stiffness, area;
   View<const InterfaceState> state;
   View<const double> slid, broke;
 
   BR_HD Shares operator()(Index k) const {
     const Index i = first + k;
-    const Vec3 chord = state_of[after[i]].position - state_of[before[i]].position;
-    const Vec3 axis = (1.0 / norm(chord)) * chord;
-    const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
-    const double reach = norm(d - dot(d, axis) * axis);
     Shares s;
-    s.elastic.add(law.stored(stiffness[i], area[i], reach - rest[i], state[i]));
+    s.elastic.add(law.stored(stiffness[i], area[i], state[i]));
     s.fracture.add(broke[i]);
     s.fracture.add(law.spent(stiffness[i], area[i], state[i]));
     s.friction.add(slid[i]);
@@ -202,9 +196,7 @@ EnergyBalance balance(World& w) {
   const InterfaceLinks& b = w.interface;
   for (const auto& g : w.interface_groups)
     all = sum_shares(all, fold(w.exec, g.end - g.begin, Shares{},
-                               InterfaceShares{g.law, g.begin, e.state.view(), b.a.view(),
-                                               b.b.view(), b.before.view(), b.after.view(),
-                                               b.stiffness.view(), b.area.view(), b.rest.view(),
+                               InterfaceShares{g.law, g.begin, b.stiffness.view(), b.area.view(),
                                                b.state.view(), b.slid.view(), b.broke.view()},
                                sum_shares));
   std::vector<double> factors;

@@ -88,8 +88,8 @@ void link_forces(World& w) {
     for_each(w.exec, group.end - group.begin,
              Shifted<InterfaceLinkForces>{
                  {group.law, w.last_dt, elements, b.a.view(), b.b.view(), b.before.view(),
-                  b.after.view(), b.stiffness.view(), b.area.view(), b.rest.view(), b.state.view(),
-                  b.slid.view(), b.broke.view(), w.link_actions.view(), c.size() + s.size()},
+                  b.after.view(), b.stiffness.view(), b.area.view(), b.state.view(), b.slid.view(),
+                  b.broke.view(), w.link_actions.view(), c.size() + s.size()},
                  group.begin});
 }
 

@@ -106,7 +106,7 @@ struct InterfaceLinkForces {
   double dt;
   ElementsView elements;
   View<const Index> a, b, before, after;
-  View<const double> stiffness, area, rest;
+  View<const double> stiffness, area;
   View<InterfaceState> state;
   View<double> slid, broke;
   View<Action> actions;
@@ -117,14 +117,14 @@ struct InterfaceLinkForces {
     const Vec3 chord = elements.state[after[i]].position - elements.state[before[i]].position;
     const Vec3 axis = (1.0 / norm(chord)) * chord;
     // The contact point divides the distance like the radii: a bar is thin beside its concrete.
-    const double share = (elements.radius(a[i]) - elements.radius(b[i])) /
-                         (elements.radius(a[i]) + elements.radius(b[i]));
+    const double touching = elements.radius(a[i]) + elements.radius(b[i]);
+    const double share = (elements.radius(a[i]) - elements.radius(b[i])) / touching;
     const double distance = norm(concrete.position - bar.position);
     const PairMotion<double> motion = pair_motion<double>(bar, concrete, share * distance, dt);
     const double approach = dt * dot(concrete.velocity - bar.velocity, motion.normal);
     InterfaceState kept = state[i];
     const InterfaceResponse r =
-        law.answer(stiffness[i], area[i], rest[i], axis, motion, approach, kept);
+        law.answer(stiffness[i], area[i], touching, axis, motion, approach, kept);
     state[i] = kept;
     slid[i] += r.slid;
     broke[i] += r.broke;

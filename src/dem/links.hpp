@@ -77,7 +77,6 @@ struct InterfaceLinks {
     field("after", "-", after);
     field("stiffness", "N/m", stiffness);
     field("area", "m2", area);
-    field("rest", "m", rest);
     field("state", "-", state);
     field("slid", "J", slid);
     field("broke", "J", broke);

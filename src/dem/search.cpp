@@ -35,21 +35,28 @@ struct UnpackState {
 
 /// Keys of the links that still hold their pair: all but released ones. Sorted.
 Buffer<PairKey> holding_links(const World& w) {
-  Buffer<double> opening;
-  Buffer<PairKey> linked;
-  Buffer<Index> concrete;
-  copy_to(opening, w.concrete.opening);
-  copy_to(linked, w.linked);
-  copy_to(concrete, w.linked_concrete);
+  std::vector<double> concrete;
+  std::vector<InterfaceState> interface;
   std::vector<PairKey> keys;
-  keys.reserve(static_cast<std::size_t>(linked.size()));
-  for (Index i = 0; i < linked.size(); ++i) {
-    const Index link = concrete.data()[i];
-    const bool released = link >= 0 && opening.data()[link] < 0.5 * (link_broken + link_released);
-    if (!released) keys.push_back(linked.data()[i]);
-  }
+  std::vector<Index> links;
+  copy_to(concrete, w.concrete.opening);
+  copy_to(interface, w.interface.state);
+  copy_to(keys, w.linked);
+  copy_to(links, w.linked_links);
+  const auto concretes = static_cast<Index>(concrete.size());
+  const Index bonds = concretes + w.steel.size();  // first interface link
+  const auto released = [&](Index link) {
+    double opening = 0.0;
+    if (link < concretes) opening = concrete[static_cast<std::size_t>(link)];
+    if (link >= bonds) opening = interface[static_cast<std::size_t>(link - bonds)].opening;
+    return opening < 0.5 * (link_broken + link_released);
+  };
+  std::vector<PairKey> holding;
+  holding.reserve(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (!released(links[i])) holding.push_back(keys[i]);
   Buffer<PairKey> held(w.exec.space);
-  copy_to(held, keys);
+  copy_to(held, holding);
   return held;
 }
 

@@ -135,7 +135,7 @@ void set_interface_links(World& w, const Config& config, const Model& m) {
   resize_fields(b, static_cast<Index>(links.size()));
   set_ends(b.a, b.b, links);
   std::vector<Index> before, after;
-  std::vector<double> stiffness, area, rest;
+  std::vector<double> stiffness, area;
   for (const Model::Link& link : links) {
     const auto s = static_cast<std::size_t>(link.a);
     const Index previous = m.bar_previous[s], next = m.bar_next[s];
@@ -152,26 +152,28 @@ void set_interface_links(World& w, const Config& config, const Model& m) {
     const auto concrete = static_cast<std::size_t>(m.material[static_cast<std::size_t>(link.b)]);
     area.push_back(share);
     stiffness.push_back(config.materials[concrete].young * share / layer);
-    const Vec3 chord = m.position[static_cast<std::size_t>(after.back())] -
-                       m.position[static_cast<std::size_t>(before.back())];
-    const Vec3 axis = (1.0 / norm(chord)) * chord;
-    const Vec3 to = m.position[static_cast<std::size_t>(link.b)] - m.position[s];
-    rest.push_back(norm(to - dot(to, axis) * axis));
   }
   copy_to(b.before, before);
   copy_to(b.after, after);
   copy_to(b.stiffness, stiffness);
   copy_to(b.area, area);
-  copy_to(b.rest, rest);
 }
 
-void set_linked_pairs(World& w, const Model& m) {
+/// All links by the key of their pair, so that a search can leave them out while they hold.
+void set_linked_pairs(World& w) {
   std::vector<std::pair<PairKey, Index>> linked;
-  const ConcreteLinks concrete = host_copy(w.concrete);
-  for (Index i = 0; i < concrete.size(); ++i)
-    linked.emplace_back(pair_key(concrete.a.data()[i], concrete.b.data()[i]), i);
-  for (const Model::Link& link : m.links)
-    if (link.kind != LinkKind::concrete) linked.emplace_back(pair_key(link.a, link.b), -1);
+  Index first = 0;
+  const auto append = [&](const Buffer<Index>& a, const Buffer<Index>& b) {
+    std::vector<Index> ends_a, ends_b;
+    copy_to(ends_a, a);
+    copy_to(ends_b, b);
+    for (std::size_t i = 0; i < ends_a.size(); ++i)
+      linked.emplace_back(pair_key(ends_a[i], ends_b[i]), first + static_cast<Index>(i));
+    first += static_cast<Index>(ends_a.size());
+  };
+  append(w.concrete.a, w.concrete.b);
+  append(w.steel.a, w.steel.b);
+  append(w.interface.a, w.interface.b);
   std::sort(linked.begin(), linked.end());
   std::vector<PairKey> keys;
   std::vector<Index> links;
@@ -180,7 +182,7 @@ void set_linked_pairs(World& w, const Model& m) {
     links.push_back(link);
   }
   copy_to(w.linked, keys);
-  copy_to(w.linked_concrete, links);
+  copy_to(w.linked_links, links);
 }
 
 std::uint8_t fixed_bits(const SupportConfig& support) {
@@ -280,7 +282,7 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   set_concrete_links(w, config, model);
   set_steel_links(w, config, model);
   set_interface_links(w, config, model);
-  set_linked_pairs(w, model);
+  set_linked_pairs(w);
   limit_margins(w, model);
   set_supports(w, config, model);
   set_contacts(w, config, model);

@@ -81,8 +81,8 @@ struct World {
   Buffer<ContactPair> contact_pairs;  ///< by two materials
   Buffer<ContactPair> wall_pairs;     ///< by one material
   Buffer<Motion> motions;
-  Buffer<PairKey> linked;         ///< keys of all links, sorted
-  Buffer<Index> linked_concrete;  ///< of each, its index among the concrete links, or -1
+  Buffer<PairKey> linked;      ///< keys of all links, sorted
+  Buffer<Index> linked_links;  ///< of each, its place among concrete, steel and interface links
 
   // What follows from the state.
   Incidence link_incidence, contact_incidence;

@@ -27,7 +27,8 @@ struct BondSlip {
 
 /// What an interface link keeps from step to step; all along directions that move with the bar.
 struct InterfaceState {
-  double opening;    ///< largest radial opening, >= 0; link_broken after rupture  [m]
+  double gap;        ///< radial displacement since the start, opening positive  [m]
+  double opening;    ///< largest gap so far, >= 0; link_broken or link_released afterwards  [m]
   double slip;       ///< s, along the bar  [m]
   double slip_peak;  ///< largest |s| so far  [m]
   double along;      ///< bond force on the concrete along the bar  [N]
@@ -56,26 +57,27 @@ struct InterfaceLink {
 
   /// @param transverse  K_tr = E_c S / D_B  [N/m]
   /// @param area        S, share of the bar's surface  [m2]
-  /// @param rest        radial distance at the start  [m]
+  /// @param touching    R_a + R_b  [m]
   /// @param axis        unit vector along the bar at a
   /// @param motion      of the pair; slip and normal parts together make the motion at the contact
   /// point
   /// @param approach    relative displacement of b along n in this step  [m]
-  BR_HD InterfaceResponse answer(double transverse, double area, double rest, const Vec3& axis,
+  BR_HD InterfaceResponse answer(double transverse, double area, double touching, const Vec3& axis,
                                  const PairMotion<double>& motion, double approach,
                                  InterfaceState& state) const {
     InterfaceResponse r{};
-    const Vec3 d = motion.distance * motion.normal;
-    const Vec3 radial = d - dot(d, axis) * axis;
-    const double reach = norm(radial);
-    const bool has_side = reach > 1e-3 * motion.distance;
-    const Vec3 out = has_side ? (1.0 / reach) * radial : Vec3{};
+    if (state.opening < 0.5 * (link_broken + link_released)) return r;
+    const Vec3 radial = motion.normal - dot(motion.normal, axis) * axis;
+    const double sine = norm(radial);
+    const bool has_side = sine > 1e-3;  // b lies beside the bar, not on its axis
+    const Vec3 out = has_side ? (1.0 / sine) * radial : Vec3{};
     const Vec3 round = cross(axis, out);
     const Vec3 moved = motion.slip + approach * motion.normal;
 
     // Radial.
     const TensionSoftening<double> tension{transverse, tensile_strength * area, softening};
-    const double u = has_side ? reach - rest : 0.0;
+    state.gap += dot(moved, out);
+    const double u = state.gap;
     bool intact = state.opening >= 0.0;
     double radial_force = transverse * u;  // tension positive
     if (intact) {
@@ -89,6 +91,11 @@ struct InterfaceLink {
       }
     }
     if (!intact && u > 0.0) radial_force = 0.0;
+    if (!intact && u > 0.0 && motion.distance > 2.25 * touching) {
+      r.slid = stored(transverse, area, state);
+      state = {0.0, link_released, 0.0, 0.0, 0.0, 0.0};
+      return r;
+    }
 
     // Along and around the bar.
     const double slip_stiffness = slip_ratio * transverse;
@@ -106,8 +113,9 @@ struct InterfaceLink {
     return r;
   }
 
-  /// Energy a link stores at a radial opening u.  [J]
-  BR_HD double stored(double transverse, double area, double u, const InterfaceState& state) const {
+  /// Energy a link stores.  [J]
+  BR_HD double stored(double transverse, double area, const InterfaceState& state) const {
+    const double u = state.gap;
     const TensionSoftening<double> tension{transverse, tensile_strength * area, softening};
     double energy = 0.0;
     if (u < 0.0)
