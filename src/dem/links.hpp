@@ -64,7 +64,6 @@ struct InterfaceLinks {
       after;  ///< neighbours of a along its bar (a itself at an end): they give the axis
   Buffer<double> stiffness;  ///< K_tr  [N/m]
   Buffer<double> area;       ///< S, share of the bar's surface  [m2]
-  Buffer<double> rest;       ///< radial distance at the start  [m]
   Buffer<InterfaceState> state;
   Buffer<double> slid;   ///< energy spent on bond slip and friction so far  [J]
   Buffer<double> broke;  ///< energy that its rupture spent  [J]
