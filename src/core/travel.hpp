@@ -27,7 +27,7 @@ struct MarginRule {
 
   BR_HD double margin(const Vec3& velocity) const {
     const double wanted = 0.5 * base + norm(velocity) * horizon;
-    return wanted < largest ? wanted : largest;
+    return wanted > largest ? largest : wanted;
   }
 };
 

@@ -1,0 +1,363 @@
+#include "core/broad_phase.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/cell_grid.hpp"
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+constexpr Index none = std::numeric_limits<Index>::max();
+
+struct LowerIndex {
+  BR_HD Index operator()(Index a, Index b) const { return a < b ? a : b; }
+};
+
+/// What must be known of all boxes before the first cell.
+struct Extent {
+  double plane = -1.0;                                   ///< longest edge in x or y  [m]
+  double size = -1.0;                                    ///< longest edge  [m]
+  double reach = 0.0;                                    ///< largest coordinate  [m]
+  double lowest = std::numeric_limits<double>::max();    ///< first start in z  [m]
+  double highest = -std::numeric_limits<double>::max();  ///< last start in z  [m]
+  Index infinite = none;                                 ///< first box that is not finite
+  Index swapped = none;                                  ///< first box with low above high
+};
+
+struct MeasureBox {
+  static constexpr const char* name = "core.measure_box";
+  View<const Box> boxes;
+
+  BR_HD Extent operator()(Index i) const {
+    const Vec3 low = boxes[i].low, high = boxes[i].high;
+    Extent extent;
+    if (!finite(low) || !finite(high)) {
+      extent.infinite = i;
+      return extent;
+    }
+    if (low.x > high.x || low.y > high.y || low.z > high.z) extent.swapped = i;
+    extent.plane = larger(high.x - low.x, high.y - low.y);
+    extent.size = larger(extent.plane, high.z - low.z);
+    extent.reach = larger(reach(low), reach(high));
+    extent.lowest = extent.highest = low.z;
+    return extent;
+  }
+
+ private:
+  BR_HD static bool finite(const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  }
+  BR_HD static double reach(const Vec3& v) {
+    return larger(absolute(v.x), larger(absolute(v.y), absolute(v.z)));
+  }
+};
+
+struct JoinExtents {
+  BR_HD Extent operator()(const Extent& a, const Extent& b) const {
+    Extent both;
+    both.plane = larger(a.plane, b.plane);
+    both.size = larger(a.size, b.size);
+    both.reach = larger(a.reach, b.reach);
+    both.lowest = smaller(a.lowest, b.lowest);
+    both.highest = larger(a.highest, b.highest);
+    both.infinite = LowerIndex{}(a.infinite, b.infinite);
+    both.swapped = LowerIndex{}(a.swapped, b.swapped);
+    return both;
+  }
+};
+
+/// The largest box of each level.
+struct LevelSizes {
+  double size[finest_level + 1];
+};
+
+/// Those of one chunk of boxes.
+struct MeasureLevels {
+  static constexpr const char* name = "core.measure_levels";
+  CellGrid grid;
+  View<const Box> boxes;
+
+  BR_HD LevelSizes operator()(Index chunk) const {
+    LevelSizes sizes = no_sizes();
+    const Index first = chunk * fold_chunk;
+    const Index end = first + fold_chunk < boxes.size ? first + fold_chunk : boxes.size;
+    for (Index i = first; i < end; ++i) {
+      double& size = sizes.size[grid.level(boxes[i])];
+      size = larger(size, grid.size(boxes[i]));
+    }
+    return sizes;
+  }
+  BR_HD static LevelSizes no_sizes() {
+    LevelSizes sizes;
+    for (double& size : sizes.size) size = -1.0;
+    return sizes;
+  }
+};
+
+struct JoinLevels {
+  BR_HD LevelSizes operator()(const LevelSizes& a, const LevelSizes& b) const {
+    LevelSizes both;
+    for (Index level = 0; level <= finest_level; ++level)
+      both.size[level] = larger(a.size[level], b.size[level]);
+    return both;
+  }
+};
+
+struct NumberCell {
+  static constexpr const char* name = "core.number_cell";
+  CellGrid grid;
+  View<const Box> boxes;
+  View<KeyedIndex> cells;
+
+  BR_HD void operator()(Index i) const { cells[i] = {grid.key(boxes[i]), i}; }
+};
+
+/// Boxes and ranks side by side in the order of the cells, so that neighbours are read in a row.
+struct SortElements {
+  static constexpr const char* name = "core.sort_elements";
+  View<const KeyedIndex> cells;
+  View<const Box> boxes;
+  View<const Index> rank_of;
+  View<std::uint64_t> keys;
+  View<Box> sorted_boxes;
+  View<Index> ranks;
+
+  BR_HD void operator()(Index p) const {
+    const KeyedIndex cell = cells[p];
+    keys[p] = cell.key;
+    sorted_boxes[p] = boxes[cell.item];
+    ranks[p] = rank_of[cell.item];
+  }
+};
+
+/// Counts each pair in the row of its lower id.
+struct CountPair {
+  View<const Index> ranks;
+  View<Index> counts;
+
+  BR_HD void operator()(Index p, Index q) const {
+    const Index a = ranks[p], b = ranks[q];
+    count_up(counts[a < b ? a : b]);
+  }
+};
+
+/// Puts the higher id of each pair into the row of the lower.
+struct PlacePair {
+  View<const Index> ranks;
+  View<Index> next;
+  View<Index> partners;
+
+  BR_HD void operator()(Index p, Index q) const {
+    const Index a = ranks[p], b = ranks[q];
+    partners[count_up(next[a < b ? a : b])] = a < b ? b : a;
+  }
+};
+
+struct CountPairs {
+  static constexpr const char* name = "core.count_pairs";
+  CellWalk cells;
+  CountPair count;
+  View<std::int64_t> tests;
+
+  BR_HD void operator()(Index run) const { tests[run] = cells.walk(run, count); }
+};
+
+struct PlacePairs {
+  static constexpr const char* name = "core.place_pairs";
+  CellWalk cells;
+  PlacePair place;
+
+  BR_HD void operator()(Index run) const { cells.walk(run, place); }
+};
+
+struct Ascending {
+  BR_HD bool operator()(Index a, Index b) const { return a < b; }
+};
+
+/// Sorts the row of one lower id and writes its pairs.
+struct WritePairs {
+  static constexpr const char* name = "core.write_pairs";
+  View<const Index> starts;
+  View<const KeyedIndex> by_id;
+  View<Index> partners;
+  View<PairKey> key;
+  View<Index> a, b;
+
+  BR_HD void operator()(Index rank) const {
+    const Index first = starts[rank], count = starts[rank + 1] - first;
+    if (count == 0) return;
+    sort_row(&partners[first], count, Ascending{});
+    const KeyedIndex low = by_id[rank];
+    for (Index i = first; i < first + count; ++i) {
+      const KeyedIndex high = by_id[partners[i]];
+      key[i] = low.key << 32 | high.key;
+      a[i] = low.item;
+      b[i] = high.item;
+    }
+  }
+};
+
+struct NoteId {
+  static constexpr const char* name = "core.note_id";
+  View<const GlobalId> ids;
+  View<KeyedIndex> by_id;
+
+  BR_HD void operator()(Index i) const {
+    BR_ASSERT(ids[i] >= 0);
+    by_id[i] = {static_cast<std::uint32_t>(ids[i]), i};
+  }
+};
+
+/// The first place where the next id is not larger.
+struct NotAscending {
+  View<const KeyedIndex> by_id;
+
+  BR_HD Index operator()(Index i) const { return by_id[i].key < by_id[i + 1].key ? none : i; }
+};
+
+struct RankElement {
+  static constexpr const char* name = "core.rank_element";
+  View<const KeyedIndex> by_id;
+  View<Index> rank_of;
+
+  BR_HD void operator()(Index rank) const { rank_of[by_id[rank].item] = rank; }
+};
+
+struct AddTests {
+  View<const std::int64_t> tests;
+  BR_HD std::int64_t operator()(Index run) const { return tests[run]; }
+};
+struct Add {
+  BR_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
+};
+
+template <class T>
+T item_of(const Buffer<T>& items, Index i) {
+  T item;
+  copy_bytes(&item, Space::host, items.data() + i, items.space(), sizeof(T));
+  return item;
+}
+
+CellGrid grid_for(const Exec& exec, const Extent& extent, View<const Box> boxes) {
+  CellGrid grid;
+  grid.planar = extent.lowest == extent.highest;
+  const double size = grid.planar ? extent.plane : extent.size;
+  if (size > 0.0) grid.largest = size;
+  const LevelSizes sizes =
+      fold(exec, (boxes.size + fold_chunk - 1) / fold_chunk, MeasureLevels::no_sizes(),
+           MeasureLevels{grid, boxes}, JoinLevels{});
+
+  // Among points any width will do; points among boxes are on the finest level.
+  const double for_points = size > 0.0 ? size / 2147483648.0 : extent.reach / 1048576.0;
+  constexpr double smallest = 1e-290;  // its inverse is still a number
+  for (Index level = 0; level <= finest_level; ++level) {
+    if (sizes.size[level] < 0.0) continue;
+    const double width = sizes.size[level] > 0.0 ? sizes.size[level] : for_points;
+    grid.occupied |= 1U << level;
+    grid.inverse[level] = 1.0 / larger((1.0 + 1.0 / 256.0) * width, smallest);
+  }
+  return grid;
+}
+
+/// Long enough to walk on from element to element, short enough for all threads to have some.
+Index run_length(const Exec& exec, Index count) {
+  if (exec.space == Space::cuda) return 1;
+  const Index share = count / 1024;
+  return share < 16 ? 16 : (share > 256 ? 256 : share);
+}
+
+void check(const Extent& extent, const Buffer<GlobalId>& ids) {
+  if (extent.infinite != none)
+    throw NumericsError("element " + std::to_string(item_of(ids, extent.infinite)) +
+                        " has a position or size that is not a finite number");
+  if (extent.swapped != none)
+    throw InputError("element " + std::to_string(item_of(ids, extent.swapped)) +
+                     " has a negative size");
+}
+
+template <class T>
+void clear_items(Buffer<T>& items) {
+  clear_bytes(items.data(), items.space(), static_cast<std::size_t>(items.size()) * sizeof(T));
+}
+
+}  // namespace
+
+BroadPhase::BroadPhase(Space space)
+    : cells_(space),
+      keys_(space),
+      boxes_(space),
+      ranks_(space),
+      by_id_(space),
+      rank_of_(space),
+      starts_(space),
+      next_(space),
+      partners_(space),
+      tests_(space) {}
+
+void BroadPhase::rank_elements(const Exec& exec, const Buffer<GlobalId>& ids) {
+  const Index count = ids.size();
+  by_id_.resize(count);
+  rank_of_.resize(count);
+  for_each(exec, count, NoteId{ids.view(), by_id_.view()});
+  const NotAscending not_ascending{by_id_.view()};
+  if (fold(exec, count - 1, none, not_ascending, LowerIndex{}) != none) {
+    sort_by_key(exec, by_id_);
+    const Index twin = fold(exec, count - 1, none, not_ascending, LowerIndex{});
+    if (twin != none)
+      throw InputError("two elements have the global id " +
+                       std::to_string(item_of(by_id_, twin).key));
+  }
+  for_each(exec, count, RankElement{by_id_.view(), rank_of_.view()});
+}
+
+void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer<GlobalId>& ids,
+                        Pairs& pairs) {
+  BR_ASSERT(boxes.size() == ids.size());
+  const Index count = boxes.size();
+  tested_ = 0;
+  if (count == 0) {
+    resize_fields(pairs, 0);
+    return;
+  }
+
+  // Bounding values, and the width of the cells.
+  const Extent extent = fold(exec, count, Extent{}, MeasureBox{boxes.view()}, JoinExtents{});
+  check(extent, ids);
+  const CellGrid grid = grid_for(exec, extent, boxes.view());
+  rank_elements(exec, ids);
+
+  // Elements in the order of their cells.
+  cells_.resize(count);
+  keys_.resize(count);
+  boxes_.resize(count);
+  ranks_.resize(count);
+  for_each(exec, count, NumberCell{grid, boxes.view(), cells_.view()});
+  sort_by_key(exec, cells_);
+  for_each(exec, count,
+           SortElements{cells_.view(), boxes.view(), rank_of_.view(), keys_.view(), boxes_.view(),
+                        ranks_.view()});
+
+  // Count, scan, fill: a row for each lower id.
+  const CellWalk walk{grid, run_length(exec, count), keys_.view(), boxes_.view()};
+  const Index runs = (count + walk.run_length - 1) / walk.run_length;
+  tests_.resize(runs);
+  starts_.resize(count + 1);
+  clear_items(starts_);
+  for_each(exec, runs, CountPairs{walk, {ranks_.view(), starts_.view()}, tests_.view()});
+  tested_ = fold(exec, runs, std::int64_t{0}, AddTests{tests_.view()}, Add{});
+  const Index found = exclusive_scan(exec, starts_);
+  partners_.resize(found);
+  copy_to(next_, starts_);
+  for_each(exec, runs, PlacePairs{walk, {ranks_.view(), next_.view(), partners_.view()}});
+
+  // Each row in order; the rows are in order already.
+  resize_fields(pairs, found);
+  for_each(exec, count,
+           WritePairs{starts_.view(), by_id_.view(), partners_.view(), pairs.key.view(),
+                      pairs.a.view(), pairs.b.view()});
+}
+
+}  // namespace breccia

@@ -1,0 +1,75 @@
+#include "core/pair_list.hpp"
+
+#include "core/rows.hpp"
+#include "exec/sort_scan.hpp"
+
+namespace breccia {
+namespace {
+
+/// The place of each key of one sorted list in another, or -1.
+struct FindKey {
+  static constexpr const char* name = "core.find_key";
+  View<const PairKey> sought;
+  View<const PairKey> among;
+  View<Index> place;
+
+  BR_HD void operator()(Index i) const {
+    const PairKey key = sought[i];
+    const Index at = lower_bound(among.data, 0, among.size, key);
+    place[i] = at < among.size && among[at] == key ? at : -1;
+  }
+};
+
+/// One for every item without a place.
+struct MarkMissing {
+  static constexpr const char* name = "core.mark_missing";
+  View<const Index> place;
+  View<Index> mark;
+
+  BR_HD void operator()(Index i) const { mark[i] = place[i] < 0 ? 1 : 0; }
+};
+
+/// Lists the items without a place, in ascending order.
+struct ListMissing {
+  static constexpr const char* name = "core.list_missing";
+  View<const Index> place;
+  View<const Index> starts;
+  View<Index> missing;
+
+  BR_HD void operator()(Index i) const {
+    if (place[i] < 0) missing[starts[i]] = i;
+  }
+};
+
+/// The places of the keys of `sought` that are not in `among`, ascending.
+Buffer<Index> missing_from(const Exec& exec, const Buffer<PairKey>& sought,
+                           const Buffer<PairKey>& among) {
+  const Index count = sought.size();
+  Buffer<Index> place(sought.space()), starts(sought.space(), count), missing(sought.space());
+  match_keys(exec, among, sought, place);
+  for_each(exec, count, MarkMissing{place.view(), starts.view()});
+  missing.resize(exclusive_scan(exec, starts));
+  for_each(exec, count, ListMissing{place.view(), starts.view(), missing.view()});
+  return missing;
+}
+
+}  // namespace
+
+void match_keys(const Exec& exec, const Buffer<PairKey>& old_keys, const Buffer<PairKey>& new_keys,
+                Buffer<Index>& source) {
+  source.resize(new_keys.size());
+  for_each(exec, new_keys.size(), FindKey{new_keys.view(), old_keys.view(), source.view()});
+}
+
+void find_dropped(const Exec& exec, const Buffer<PairKey>& old_keys,
+                  const Buffer<PairKey>& new_keys, Buffer<Index>& dropped) {
+  dropped = missing_from(exec, old_keys, new_keys);
+}
+
+void exclude_pairs(const Exec& exec, Pairs& pairs, const Buffer<PairKey>& excluded) {
+  if (excluded.empty()) return;
+  const Buffer<Index> kept = missing_from(exec, pairs.key, excluded);
+  if (kept.size() < pairs.size()) gather_fields(exec, kept, pairs);
+}
+
+}  // namespace breccia

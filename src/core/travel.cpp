@@ -1,0 +1,96 @@
+#include "core/travel.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+constexpr Index none = std::numeric_limits<Index>::max();
+
+struct LowerIndex {
+  BR_HD Index operator()(Index a, Index b) const { return a < b ? a : b; }
+};
+struct Either {
+  BR_HD bool operator()(bool a, bool b) const { return a || b; }
+};
+
+struct ChooseMargin {
+  static constexpr const char* name = "core.choose_margin";
+  MarginRule rule;
+  View<const Vec3> velocity;
+  View<double> margin;
+
+  BR_HD void operator()(Index i) const { margin[i] = rule.margin(velocity[i]); }
+};
+
+struct LostMargin {
+  View<const double> margin;
+  BR_HD Index operator()(Index i) const { return std::isfinite(margin[i]) ? none : i; }
+};
+
+/// True for what has left its margin; a NaN has.
+struct BeyondMargin {
+  static constexpr const char* name = "core.beyond_margin";
+  View<const Vec3> reference, position;
+  View<const double> margin;
+
+  BR_HD bool operator()(Index i) const {
+    const Vec3 travelled = position[i] - reference[i];
+    return !(dot(travelled, travelled) <= margin[i] * margin[i]);
+  }
+};
+
+struct BoxSphere {
+  static constexpr const char* name = "core.box_sphere";
+  View<const Vec3> centre;
+  View<const double> radius, margin;
+  View<Box> boxes;
+
+  BR_HD void operator()(Index i) const {
+    // 32 times the rounding of one operation: the sums here, the test of the travel and the test
+    // of the contact round about 12 times together.
+    constexpr double rounding = 1.0 / 281474976710656.0;  // 2^-48
+    const Vec3 c = centre[i];
+    const double reach = radius[i] + margin[i];
+    const Vec3 half{reach + rounding * (reach + absolute(c.x)),
+                    reach + rounding * (reach + absolute(c.y)),
+                    reach + rounding * (reach + absolute(c.z))};
+    boxes[i] = {c - half, c + half};
+  }
+};
+
+}  // namespace
+
+void begin_travel(const Exec& exec, const MarginRule& rule, const Buffer<Vec3>& position,
+                  const Buffer<Vec3>& velocity, Travel& travel) {
+  BR_ASSERT(position.size() == velocity.size());
+  copy_to(travel.reference, position);
+  travel.margin.resize(position.size());
+  for_each(exec, position.size(), ChooseMargin{rule, velocity.view(), travel.margin.view()});
+  const Index lost =
+      fold(exec, position.size(), none, LostMargin{travel.margin.view()}, LowerIndex{});
+  if (lost != none)
+    throw NumericsError("the element at place " + std::to_string(lost) +
+                        " in memory has a velocity that is not a finite number");
+}
+
+bool exceeded(const Exec& exec, const Travel& travel, const Buffer<Vec3>& position) {
+  if (position.size() != travel.reference.size()) return true;
+  return fold(exec, position.size(), false,
+              BeyondMargin{travel.reference.view(), position.view(), travel.margin.view()},
+              Either{});
+}
+
+void sphere_boxes(const Exec& exec, const Buffer<Vec3>& centre, const Buffer<double>& radius,
+                  const Buffer<double>& margin, Buffer<Box>& boxes) {
+  BR_ASSERT(centre.size() == radius.size() && centre.size() == margin.size());
+  boxes.resize(centre.size());
+  for_each(exec, centre.size(),
+           BoxSphere{centre.view(), radius.view(), margin.view(), boxes.view()});
+}
+
+}  // namespace breccia
