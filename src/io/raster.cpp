@@ -202,6 +202,7 @@ void draw_line(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, int t
 
 void draw_triangle(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c,
                    std::int32_t item, const std::optional<ScreenClip>& clip) {
+  constexpr double edge = 1e-9;  // neighbours share their border: no pixel on it stays empty
   const double area = (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
   if (!std::isfinite(area) || area == 0.0) return;
   const int left = std::max(0, first_pixel(std::min({a.u, b.u, c.u})));
@@ -215,7 +216,7 @@ void draw_triangle(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, c
       const double of_a = ((b.u - u) * (c.v - v) - (b.v - v) * (c.u - u)) / area;
       const double of_b = ((c.u - u) * (a.v - v) - (c.v - v) * (a.u - u)) / area;
       const double of_c = 1.0 - of_a - of_b;
-      if (of_a < 0.0 || of_b < 0.0 || of_c < 0.0) continue;
+      if (of_a < -edge || of_b < -edge || of_c < -edge) continue;
       const double depth = of_a * a.depth + of_b * b.depth + of_c * c.depth;
       if (clip && clip->beyond(u, v, depth) > 0.0) continue;
       put(canvas, x, y, depth, item);
