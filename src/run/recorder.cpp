@@ -152,7 +152,8 @@ void Recorder::sync() {
 
 void Recorder::write_row(Method& method) {
   const std::vector<double> probes = method.probes();
-  history_.write({method.steps(), method.time(), method.time_step(), method.energy(), probes});
+  last_energy_ = method.energy();
+  history_.write({method.steps(), method.time(), method.time_step(), *last_energy_, probes});
   for (std::size_t i = 0; i < std::min(probes.size(), state_.probes.size()); ++i) {
     ProbeRange& range = state_.probes[i];
     range.last = probes[i];

@@ -66,6 +66,8 @@ class Recorder {
 
   /// To be saved after record() and before record_last().
   const RecordState& state() const { return state_; }
+  /// The energies of the newest row; none before the first.
+  const std::optional<EnergyBalance>& last_energy() const { return last_energy_; }
   /// Frames written to the folder so far.
   std::int64_t frame_count() const { return frame_count_; }
 
@@ -82,6 +84,7 @@ class Recorder {
   std::optional<ParaviewSeries> series_;
   Schedule rows_, frames_;
   std::int64_t frame_count_ = 0;
+  std::optional<EnergyBalance> last_energy_;
 };
 
 }  // namespace breccia

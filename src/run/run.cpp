@@ -196,6 +196,7 @@ void Run::save_checkpoint() {
 int Run::interrupted(int signal) {
   save_checkpoint();
   Summary now = summary();
+  now.energy = method_.energy();
   now.status = "interrupted";
   now.exit_code = 128 + signal;
   now.message = fmt::format("{} at step {}; state saved", signal_name(signal), method_.steps());
@@ -245,6 +246,7 @@ void Run::failed(int exit_code, const std::string& message) {
   Summary now = measured();
   try {
     describe_state(now);
+    now.energy = method_.energy();
   } catch (const Error&) {
     // Numbers that went wrong may have no energy; the summary then leaves it out.
   }
@@ -271,6 +273,9 @@ std::string Run::save_crash() {
 Summary Run::summary() const {
   Summary s = measured();
   describe_state(s);
+  // Asking the ledger may note a new largest energy in it, so it is asked at rows only: when a
+  // checkpoint falls due by wall time must not show in the history.
+  s.energy = recorder_.last_energy();
   return s;
 }
 
@@ -301,7 +306,6 @@ Summary Run::measured() const {
 
 void Run::describe_state(Summary& s) const {
   s.facts = method_.facts();
-  s.energy = method_.energy();
   s.state_hash = method_.state_hash();
 }
 
