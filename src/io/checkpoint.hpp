@@ -120,4 +120,7 @@ class CheckpointReader {
   std::vector<Section> sections_;
 };
 
+/// What a checkpoint holds, for people.
+std::string describe_checkpoint(const CheckpointReader& reader);
+
 }  // namespace breccia
