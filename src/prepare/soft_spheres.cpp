@@ -38,19 +38,30 @@ SoftSpheres::SoftSpheres(const PackingTask& task, std::vector<Vec3> position,
       velocity_(position_.size()),
       force_(position_.size()),
       radius_(std::move(radius)),
-      margin_(0.35 * mean(radius_)),
-      travel_(margin_),
+      margin_(0.4 * mean(radius_)),
       dt_(first_step),
       mixing_(first_mixing) {}
 
 double SoftSpheres::push() {
-  if (2.0 * travel_ >= margin_) find_neighbours();
+  if (!neighbours_hold()) find_neighbours();
   energy_ = worst_ = 0.0;
   for (Vec3& f : force_) f = {};
   push_pairs();
   push_walls();
   push_obstacles();
   return worst_;
+}
+
+/// Two spheres that were further apart than the margin cannot touch before one of them has
+/// travelled half of it.
+bool SoftSpheres::neighbours_hold() const {
+  if (searched_.empty()) return false;
+  double furthest = 0.0;
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    const Vec3 travel = position_[i] - searched_[i];
+    furthest = std::max(furthest, dot(travel, travel));
+  }
+  return 4.0 * furthest < margin_ * margin_;
 }
 
 void SoftSpheres::find_neighbours() {
@@ -90,7 +101,7 @@ void SoftSpheres::find_neighbours() {
         near_obstacle_.push_back({static_cast<Index>(i), static_cast<Index>(k)});
     }
   }
-  travel_ = 0.0;
+  searched_ = position_;
 }
 
 void SoftSpheres::push_pairs() {
@@ -189,13 +200,10 @@ void SoftSpheres::move() {
     mixing_ = first_mixing;
     downhill_ = 0;
   }
-  double fastest = 0.0;
   for (std::size_t i = 0; i < position_.size(); ++i) {
     velocity_[i] = keep * velocity_[i] + (turn + dt_) * force_[i];
     position_[i] += dt_ * velocity_[i];
-    fastest = std::max(fastest, dot(velocity_[i], velocity_[i]));
   }
-  travel_ += dt_ * std::sqrt(fastest);
 }
 
 }  // namespace breccia::prepare

@@ -25,6 +25,7 @@ class SoftSpheres {
   const std::vector<double>& radius() const { return radius_; }
 
  private:
+  bool neighbours_hold() const;
   void find_neighbours();
   void push_pairs();
   void push_walls();
@@ -33,8 +34,8 @@ class SoftSpheres {
   const PackingTask& task_;
   std::vector<Vec3> position_, velocity_, force_;
   std::vector<double> radius_;
-  double margin_;                         ///< pairs closer than this are neighbours  [m]
-  double travel_;                         ///< since the neighbours were found, at most  [m]
+  double margin_;               ///< pairs closer than this are neighbours  [m]
+  std::vector<Vec3> searched_;  ///< where the spheres were when neighbours were found  [m]
   std::vector<Index> first_, neighbour_;  ///< of each sphere, each pair once
   struct NearObstacle {
     Index sphere, obstacle;

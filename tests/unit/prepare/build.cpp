@@ -20,11 +20,6 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-const Model& paper_model() {
-  static const Model model = build_model(slab_of_the_paper(), ".");
-  return model;
-}
-
 int count_of(const Model& m, int group) {
   return static_cast<int>(std::count(m.group.begin(), m.group.end(), group));
 }
@@ -50,8 +45,7 @@ bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(PaperModel, HasTheCountsOfThePaper) {
-  const Model& m = paper_model();
+void expect_counts_of_the_paper(const Model& m) {
   EXPECT_EQ(m.groups, (std::vector<std::string>{"slab", "steel", "impactor"}));
   EXPECT_EQ(m.size(), 14274);
   EXPECT_EQ(count_of(m, 0), 12718);
@@ -62,23 +56,20 @@ TEST(PaperModel, HasTheCountsOfThePaper) {
   EXPECT_LT(m.interaction_range, 1.46);
 }
 
-TEST(PaperModel, WeighsAsMuchAsItsBulk) {
-  const Model& m = paper_model();
+void expect_mass_of_the_bulk(const Model& m) {
   const double bar_area = pi * 0.008 * 0.008 / 4.0, bar_length = 28 * (1.0 - 0.008);
   EXPECT_NEAR(mass_of(m, 0), 2400.0 * (0.1 - bar_area * bar_length), 1e-9);
   EXPECT_NEAR(mass_of(m, 1), 7850.0 * bar_area * bar_length, 1e-9);
   EXPECT_NEAR(mass_of(m, 2), 2400.0 * 4.0 / 3.0 * pi * 0.113 * 0.113 * 0.113, 1e-9);
 }
 
-TEST(PaperModel, ImpactorAndSlabHaveElementsOfOneSize) {
-  const Model& m = paper_model();
+void expect_elements_of_one_size(const Model& m) {
   double sum[3] = {};
   for (std::size_t i = 0; i < m.radius.size(); ++i) sum[m.group[i]] += m.radius[i];
   EXPECT_NEAR(sum[2] / 772 / (sum[0] / 12718), 1.0, 0.02);
 }
 
-TEST(PaperModel, NoTwoElementsOverlapAndBarsAreFreeOfConcrete) {
-  const Model& m = paper_model();
+void expect_free_bars_and_no_overlap(const Model& m) {
   const auto bars = prepare::bars_through(slab_of_the_paper().bodies[1].rebar, {1.0, 1.0, 0.1});
   ASSERT_EQ(bars.size(), 28U);
   double deepest = 0.0, outside = 0.0;
@@ -103,8 +94,7 @@ TEST(PaperModel, NoTwoElementsOverlapAndBarsAreFreeOfConcrete) {
   EXPECT_LE(worst, prepare::overlap_tolerance);
 }
 
-TEST(PaperModel, EveryBarIsAChainOfEquallySpacedElements) {
-  const Model& m = paper_model();
+void expect_chains_of_equal_spacing(const Model& m) {
   const double spacing = (1.0 - 0.008) / 27.0;
   const double whole = 7850.0 * pi * 0.008 * 0.008 / 4.0 * spacing;
   int chains = 0;
@@ -134,14 +124,13 @@ TEST(PaperModel, EveryBarIsAChainOfEquallySpacedElements) {
   EXPECT_EQ(chains, 28);
 }
 
-TEST(PaperModel, CrossingBarsTouchWithoutOverlap) {
+void expect_crossing_bars_to_touch(const Model& m) {
   const auto bars = prepare::bars_through(slab_of_the_paper().bodies[1].rebar, {1.0, 1.0, 0.1});
   const double depth[4] = {-0.030, -0.022, 0.030, 0.022};  // outer and inner, bottom and top
   for (std::size_t k = 0; k < bars.size(); ++k) {
     EXPECT_NEAR(bars[k].a.z, depth[k / 7], 1e-15);
     EXPECT_EQ(bars[k].a.z, bars[k].b.z);
   }
-  const Model& m = paper_model();
   double least = 1.0;
   for (std::size_t i = 0; i < m.position.size(); ++i)
     for (std::size_t j = 0; j < i && m.group[i] == 1; ++j)
@@ -149,8 +138,7 @@ TEST(PaperModel, CrossingBarsTouchWithoutOverlap) {
   EXPECT_GE(least, 0.008 * (1.0 - 1e-12));
 }
 
-TEST(PaperModel, LinkedElementsAreCloseInMemory) {
-  const Model& m = paper_model();
+void expect_linked_elements_close_in_memory(const Model& m) {
   double sum = 0.0;
   Index widest = 0;
   for (const Model::Link& link : m.links) {
@@ -161,6 +149,17 @@ TEST(PaperModel, LinkedElementsAreCloseInMemory) {
   // slices come on top near the middle. In random order the mean would be 14274 / 3.
   EXPECT_LT(sum / static_cast<double>(m.links.size()), 200.0);
   EXPECT_LT(widest, 1000);
+}
+
+TEST(PaperModel, HasTheCountsMassBarsAndLinksOfThePaper) {
+  const Model m = build_model(slab_of_the_paper(), ".");
+  expect_counts_of_the_paper(m);
+  expect_mass_of_the_bulk(m);
+  expect_elements_of_one_size(m);
+  expect_free_bars_and_no_overlap(m);
+  expect_chains_of_equal_spacing(m);
+  expect_crossing_bars_to_touch(m);
+  expect_linked_elements_close_in_memory(m);
 }
 
 TEST(Build, TheSameSeedGivesTheSameBitsAndAnotherSeedAnotherModel) {
