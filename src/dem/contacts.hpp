@@ -48,25 +48,23 @@ struct ContactForces {
   View<const Index> a, b;
   View<ContactState> state;
   View<double> slid, damped;
-  View<Action> actions;
+  View<Action> actions;  ///< zero for pairs that were apart when last seen
 
   BR_HD void operator()(Index i) const {
     const Index ia = a[i], ib = b[i];
     const PairEnd<double> end_a = elements.end(ia), end_b = elements.end(ib);
     const double radius_a = elements.radius(ia), radius_b = elements.radius(ib);
     const double sum = radius_a + radius_b;
+    const Vec3 d = end_b.position - end_a.position;
+    const bool apart = dot(d, d) >= sum * sum;
+    if (apart && state[i].overlap <= 0.0) return;  // was apart, too: its action is zero already
     const PairMotion<double> motion = pair_motion<double>(end_a, end_b, radius_a - radius_b, dt);
     const double mass_a = elements.mass[ia], mass_b = elements.mass[ib];
     const ContactLaw::Pair pair{radius_a * radius_b / sum, smaller(radius_a, radius_b), sum,
                                 mass_a * mass_b / (mass_a + mass_b), 0.5 * sum};
     const double approach = -dot(end_b.velocity - end_a.velocity, motion.normal);
+    const double overlap = apart ? 0.0 : sum - motion.distance;
     ContactState kept = state[i];
-    const bool touched = kept.overlap > 0.0;
-    const double overlap = sum - motion.distance;
-    if (!touched && overlap <= 0.0) {
-      book(actions, i, motion, Vec3{}, Vec3{}, 0.0, 0.0, 0.0, 0.0);
-      return;
-    }
     const ContactResponse r = law.answer(pairs[material[ia] * materials + material[ib]], pair,
                                          overlap, approach, motion, kept);
     state[i] = kept;

@@ -60,6 +60,32 @@ Buffer<PairKey> holding_links(const World& w) {
   return held;
 }
 
+/// Takes away pairs whose boxes overlap but whose grown spheres do not.
+void keep_near(World& w, Pairs& pairs) {
+  std::vector<PairKey> key, near_key;
+  std::vector<Index> a, b, near_a, near_b;
+  std::vector<ElementState> state;
+  std::vector<double> margin;
+  copy_to(key, pairs.key);
+  copy_to(a, pairs.a);
+  copy_to(b, pairs.b);
+  copy_to(state, w.elements.state);
+  copy_to(margin, w.travel.margin);
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const auto p = static_cast<std::size_t>(a[i]), q = static_cast<std::size_t>(b[i]);
+    const Vec3 d = state[q].position - state[p].position;
+    const double reach =
+        (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12);
+    if (dot(d, d) > reach * reach) continue;
+    near_key.push_back(key[i]);
+    near_a.push_back(a[i]);
+    near_b.push_back(b[i]);
+  }
+  copy_to(pairs.key, near_key);
+  copy_to(pairs.a, near_a);
+  copy_to(pairs.b, near_b);
+}
+
 /// Books what the pairs that leave the list have spent.
 void book_dropped(World& w, const Contacts& contacts, const Pairs& found) {
   Buffer<Index> dropped(w.exec.space);
@@ -165,6 +191,7 @@ void find_contacts(World& w) {
   Pairs found(w.exec.space);
   w.broad_phase.search(w.exec, boxes, w.elements.id, found);
   exclude_pairs(w.exec, found, holding_links(w));
+  keep_near(w, found);
   book_dropped(w, w.contacts, found);
   w.contacts.replace(w.exec, std::move(found));
   find_wall_contacts(w);
@@ -175,7 +202,8 @@ void find_contacts(World& w) {
 void derive_contacts(World& w) {
   build_incidence(w.exec, w.contacts.pairs.a, w.contacts.pairs.b, w.elements.id,
                   w.contact_incidence);
-  w.contact_actions.resize(w.contacts.size());
+  w.contact_actions.clear();
+  w.contact_actions.resize(w.contacts.size());  // all zero: ContactForces writes what touches
   divide_by_wall(w);
 }
 
