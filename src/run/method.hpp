@@ -31,7 +31,7 @@ class Method {
   virtual void step() = 0;
   virtual std::int64_t steps() const = 0;  ///< done so far
   virtual double time() const = 0;         ///< simulated  [s]
-  virtual double time_step() const = 0;    ///< the one last taken  [s]
+  virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]
 
   virtual EnergyBalance energy() = 0;
   /// Values of the case's probes, in their order.  [SI]

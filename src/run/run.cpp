@@ -22,6 +22,27 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+/// Books the time from its construction to its end as output, and only as output: what the method
+/// books in its stages meanwhile is not part of a step.
+class OutputTime {
+ public:
+  OutputTime(StageTimers* timers, double& output) : timers_(timers), output_(output) {
+    if (timers_ != nullptr) stages_ = *timers_;
+  }
+  OutputTime(const OutputTime&) = delete;
+  OutputTime& operator=(const OutputTime&) = delete;
+  ~OutputTime() {
+    if (timers_ != nullptr) *timers_ = stages_;
+    output_ += seconds_since(begin_);
+  }
+
+ private:
+  StageTimers* timers_;
+  StageTimers stages_;
+  double& output_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 /// Loads the state and returns how far its record had come.
 RecordState loaded(Method& method, const RunPlan& plan, const CheckpointReader& checkpoint) {
   refuse_other_case(checkpoint, plan);
@@ -147,10 +168,9 @@ void Run::take_step() {
 }
 
 void Run::observe() {
-  const Clock::time_point begin = Clock::now();
+  const OutputTime time(plan_.timers, output_);
   method_.verify();
   recorder_.record(method_);
-  output_ += seconds_since(begin);
 }
 
 bool Run::finished() const {
@@ -183,13 +203,12 @@ CheckpointWriter Run::state() const {
 
 void Run::save_checkpoint() {
   if (checkpoints_.last_step() == method_.steps()) return;
-  const Clock::time_point begin = Clock::now();
+  const OutputTime time(plan_.timers, output_);
   method_.verify();
   recorder_.sync();
   const std::string path = checkpoints_.write(method_.steps(), state());
   log_.write(Level::info, "checkpoint", method_.steps(), path);
   log_.sync();
-  output_ += seconds_since(begin);
   write_summary(summary());
 }
 
@@ -209,10 +228,11 @@ int Run::interrupted(int signal) {
 
 int Run::done() {
   save_checkpoint();
-  const Clock::time_point begin = Clock::now();
-  recorder_.record_last(method_);
-  recorder_.sync();
-  output_ += seconds_since(begin);
+  {
+    const OutputTime time(plan_.timers, output_);
+    recorder_.record_last(method_);
+    recorder_.sync();
+  }
   Summary now = summary();
   now.status = "done";
   const bool whole_case = method_.time() >= plan_.config.time.end;

@@ -35,7 +35,7 @@ struct RunPlan {
   std::string model_digest;
   Limits limits;
   Machine machine;
-  const StageTimers* timers = nullptr;  ///< what the method books its stages in
+  StageTimers* timers = nullptr;  ///< what the method books its stages in
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   Speech speech = Speech::normal;
   Progress::Form progress = Progress::Form::none;
