@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include "run/checks.hpp"
+#include "run/recorder.hpp"
+#include "run/step_times.hpp"
+#include "unit/run/fake_run.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+TEST(StepTimes, MedianAndPercentileAreExactToHalfAPercent) {
+  StepTimes times;
+  for (int i = 1; i <= 1000; ++i) times.add(1e-6 * i);
+  EXPECT_NEAR(times.quantile(0.5), 500e-6, 0.006 * 500e-6);
+  EXPECT_NEAR(times.quantile(0.95), 950e-6, 0.006 * 950e-6);
+  EXPECT_EQ(StepTimes().quantile(0.5), 0.0);
+}
+
+TEST(Schedule, NextMomentFollowsFromTheTimeAlone) {
+  const double end = 0.3;
+  Schedule walked(end, 7.0);
+  for (int step = 0; step <= 400; ++step) {
+    const double time = 1e-3 * step;
+    walked.pass(time);
+    Schedule fresh(end, 7.0);
+    fresh.pass(time);
+    EXPECT_EQ(walked.next(), fresh.next());
+    EXPECT_GT(walked.next(), time);
+  }
+}
+
+TEST(Schedule, MeetsTheEndItself) {
+  Schedule schedule(0.3, 7.0);
+  schedule.pass(0.29);
+  EXPECT_EQ(schedule.next(), 0.3);
+}
+
+TEST(History, NamesAreInItsFirstLineAndUnitsInItsSecond) {
+  const ScratchFolder scratch;
+  {
+    History history(scratch / "history.csv", {ProbeConfig{"rock", "", "velocity_z", "mean"},
+                                              ProbeConfig{"a,b", "", "damage", "max"}});
+    Sample sample;
+    sample.step = 3;
+    sample.time = 0.1;
+    sample.probes = {1.0 / 3.0, 0.5};
+    history.write(sample);
+  }
+  EXPECT_EQ(read_whole_file(scratch / "history.csv"),
+            "step,time,dt,kinetic,elastic,fracture,plastic,friction,damping,contact,work,"
+            "error_relative,rock,\"a,b\"\n"
+            "-,s,s,J,J,J,J,J,J,J,J,-,m/s,-\n"
+            "3,0.10000000000000001,0,0,0,0,0,0,0,0,0,0,0.33333333333333331,0.5\n");
+}
+
+TEST(Record, FramesComeAtTheFirstStepAtOrPastTheirTime) {
+  const ScratchFolder scratch;
+  run_fake(fake_plan(), scratch / "out");
+  const std::string log = read_whole_file(scratch / "out/log.jsonl");
+  int frames = 0;
+  for (std::size_t at = log.find("\"frame\""); at != std::string::npos;
+       at = log.find("\"frame\"", at + 1))
+    ++frames;
+  EXPECT_EQ(frames, 5) << "four over the run and the one at the start";
+}
+
+TEST(Summary, NumbersReadBackToTheSameBits) {
+  Summary summary;
+  summary.time = 0.1 + 0.2;
+  summary.dt_last = 1.0 / 3.0 * 1e-7;
+  const nlohmann::json read = nlohmann::json::parse(to_json(summary));
+  EXPECT_EQ(read["time"].get<double>(), summary.time);
+  EXPECT_EQ(read["dt"]["last"].get<double>(), summary.dt_last);
+}
+
+TEST(Summary, NumbersAreFoundByTheirPath) {
+  Summary summary;
+  summary.facts = {{"fracture.broken_links", 12.0}};
+  summary.energy = EnergyBalance{};
+  summary.energy->error_relative = 2e-4;
+  summary.probes = {{"rock.left", 1.0, -2.0, 3.0}};
+  EXPECT_EQ(number_at(summary, "fracture.broken_links"), 12.0);
+  EXPECT_EQ(number_at(summary, "energy.error_relative"), 2e-4);
+  EXPECT_EQ(number_at(summary, "probe.rock.left.min"), -2.0);
+  EXPECT_EQ(number_at(summary, "energy.no_such"), std::nullopt);
+  EXPECT_EQ(number_at(summary, "status"), std::nullopt);
+}
+
+TEST(Checks, FailForANumberTheRunDoesNotHaveOrThatIsNone) {
+  Summary summary;
+  summary.energy = EnergyBalance{};
+  summary.energy->kinetic = std::numeric_limits<double>::quiet_NaN();
+  const auto results = evaluate_checks({CheckConfig{"missing", "no.such", 0.0, 1e9, "-"},
+                                        CheckConfig{"nan", "energy.kinetic", 0.0, 1e9, "J"}},
+                                       summary);
+  EXPECT_FALSE(results[0].pass);
+  EXPECT_FALSE(results[1].pass);
+}
+
+}  // namespace
+}  // namespace breccia

@@ -1,0 +1,301 @@
+#include "run/run.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "exec/error.hpp"
+#include "unit/run/fake_run.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Starts the function in a process of its own; its exit code is what the function returns or the
+/// code of the error it throws.
+pid_t start_process(const std::function<int()>& function) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  int code = 99;
+  try {
+    code = function();
+  } catch (const Error& error) {
+    code = error.exit_code();
+  }
+  ::_exit(code);
+}
+
+/// The exit code, or minus the number of the signal that killed it.
+int wait_for(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+std::vector<std::string> temporary_files(const std::string& path) {
+  std::vector<std::string> found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path))
+    if (entry.path().extension() == ".tmp" || entry.path().extension() == ".part")
+      found.push_back(entry.path());
+  return found;
+}
+
+TEST(Run, EndsAtTheFirstStepAtOrPastItsEnd) {
+  const ScratchFolder scratch;
+  EXPECT_EQ(run_fake(fake_plan(), scratch / "out"), 0);
+  const nlohmann::json summary = summary_of(scratch / "out");
+  EXPECT_EQ(summary["status"], "done");
+  EXPECT_EQ(summary["exit_code"], 0);
+  EXPECT_GE(summary["time"].get<double>(), 2.0);
+  EXPECT_LT(summary["time"].get<double>() - summary["dt"]["last"].get<double>(), 2.0);
+  EXPECT_EQ(summary["model"]["elements_by_group"]["bars"], 4);
+  EXPECT_EQ(summary["searches"], 2);
+  EXPECT_GT(summary["step_us"]["median"].get<double>(), 0.0);
+  EXPECT_EQ(read_whole_file(scratch / "out/case.toml"), fake_plan().case_text);
+}
+
+TEST(Run, StateDoesNotDependOnWhatIsWritten) {
+  const ScratchFolder scratch;
+  RunPlan busy = fake_plan();
+  busy.config.output.frames = 37;
+  busy.config.output.history = 0.013;
+  busy.config.checkpoint.steps = 7;
+  run_fake(fake_plan(), scratch / "calm");
+  run_fake(busy, scratch / "busy");
+  EXPECT_EQ(summary_of(scratch / "calm")["state_hash"], summary_of(scratch / "busy")["state_hash"]);
+  EXPECT_EQ(summary_of(scratch / "calm")["steps"], summary_of(scratch / "busy")["steps"]);
+}
+
+TEST(Run, InterruptedAndResumedLeavesWhatAnUnbrokenRunLeaves) {
+  const ScratchFolder scratch;
+  run_fake(fake_plan(), scratch / "whole");
+  const std::string history = read_whole_file(scratch / "whole/history.csv");
+  const nlohmann::json whole = summary_of(scratch / "whole");
+  for (const std::int64_t step : {1, 50, 51, 137}) {
+    const std::string path = scratch / std::to_string(step);
+    Trouble trouble;
+    trouble.signal_at = step;
+    EXPECT_EQ(run_fake(fake_plan(), path, trouble), 128 + SIGTERM);
+    EXPECT_EQ(summary_of(path)["status"], "interrupted");
+    EXPECT_EQ(summary_of(path)["steps"], step);
+    EXPECT_EQ(resume_fake(fake_plan(), path), 0);
+    const nlohmann::json resumed = summary_of(path);
+    for (const char* key : {"status", "steps", "time", "dt", "state_hash", "energy", "probe"})
+      EXPECT_EQ(resumed[key], whole[key]) << key << " after step " << step;
+    EXPECT_EQ(read_whole_file(path + "/history.csv"), history);
+  }
+}
+
+TEST(Run, KilledBetweenCheckpointsResumesWithoutDoubledRows) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.checkpoint.steps = 40;
+  run_fake(plan, scratch / "whole");
+  Trouble trouble;
+  trouble.signal_at = 113;
+  trouble.signal = SIGKILL;
+  EXPECT_EQ(wait_for(start_process([&] { return run_fake(plan, scratch / "killed", trouble); })),
+            -SIGKILL);
+  std::ofstream(scratch / "killed/history.csv", std::ios::app) << "113,1.2";  // half a row
+  EXPECT_EQ(resume_fake(plan, scratch / "killed"), 0);
+  EXPECT_EQ(read_whole_file(scratch / "killed/history.csv"),
+            read_whole_file(scratch / "whole/history.csv"));
+  EXPECT_EQ(summary_of(scratch / "killed")["state_hash"],
+            summary_of(scratch / "whole")["state_hash"]);
+}
+
+TEST(Run, SentOnlyPartOfTheWayGoesOnToTheEndOfItsCase) {
+  const ScratchFolder scratch;
+  run_fake(fake_plan(), scratch / "whole");
+  RunPlan part = fake_plan();
+  part.limits.steps = 77;
+  EXPECT_EQ(run_fake(part, scratch / "part"), 0);
+  EXPECT_EQ(summary_of(scratch / "part")["steps"], 77);
+  EXPECT_EQ(resume_fake(fake_plan(), scratch / "part"), 0);
+  EXPECT_EQ(summary_of(scratch / "part")["state_hash"],
+            summary_of(scratch / "whole")["state_hash"]);
+  EXPECT_EQ(read_whole_file(scratch / "part/history.csv"),
+            read_whole_file(scratch / "whole/history.csv"));
+}
+
+TEST(Run, CutShortGoesOnToWhereItWasSent) {
+  const ScratchFolder scratch;
+  RunPlan part = fake_plan();
+  part.limits.steps = 77;
+  Trouble trouble;
+  trouble.signal_at = 30;
+  run_fake(part, scratch / "part", trouble);
+  EXPECT_EQ(resume_fake(fake_plan(), scratch / "part"), 0);
+  EXPECT_EQ(summary_of(scratch / "part")["steps"], 77);
+}
+
+TEST(Run, KeepsTheNewestCheckpoints) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.checkpoint.steps = 25;
+  plan.config.checkpoint.keep = 3;
+  plan.limits.steps = 110;
+  run_fake(plan, scratch / "out");
+  const auto files = list_checkpoints(scratch / "out/checkpoints");
+  ASSERT_EQ(files.size(), 3U);
+  EXPECT_EQ(files[0].step, 110);
+  EXPECT_EQ(files[1].step, 100);
+  EXPECT_EQ(files[2].step, 75);
+}
+
+TEST(Run, GoesBackToAnOlderCheckpointIfTheNewestIsDamaged) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.checkpoint.steps = 40;
+  run_fake(plan, scratch / "whole");
+  Trouble trouble;
+  trouble.signal_at = 90;
+  run_fake(plan, scratch / "out", trouble);
+  const std::string newest = list_checkpoints(scratch / "out/checkpoints")[0].path;
+  fs::resize_file(newest, fs::file_size(newest) - 5);
+  std::string warnings;
+  EXPECT_EQ(resume_fake(plan, scratch / "out", &warnings), 0);
+  EXPECT_NE(warnings.find(newest), std::string::npos) << warnings;
+  EXPECT_EQ(read_whole_file(scratch / "out/history.csv"),
+            read_whole_file(scratch / "whole/history.csv"));
+  EXPECT_EQ(summary_of(scratch / "out")["state_hash"], summary_of(scratch / "whole")["state_hash"]);
+}
+
+TEST(Run, IsRefusedWithoutAnyGoodCheckpoint) {
+  const ScratchFolder scratch;
+  run_fake(fake_plan(), scratch / "out");
+  for (const CheckpointFile& file : list_checkpoints(scratch / "out/checkpoints"))
+    fs::resize_file(file.path, 10);
+  EXPECT_THROW(resume_fake(fake_plan(), scratch / "out"), CheckpointError);
+}
+
+TEST(Run, RefusesACheckpointOfAnotherCase) {
+  const ScratchFolder scratch;
+  run_fake(fake_plan(), scratch / "out");
+  RunPlan other = fake_plan();
+  other.model_digest = "digest of another";
+  EXPECT_THROW(resume_fake(other, scratch / "out"), CheckpointError);
+}
+
+TEST(Run, StopsAtWrongNumbersAndSavesTheState) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.spoil_at = 60;
+  EXPECT_THROW(run_fake(fake_plan(), scratch / "out", trouble), NumericsError);
+  const nlohmann::json summary = summary_of(scratch / "out");
+  EXPECT_EQ(summary["status"], "failed");
+  EXPECT_EQ(summary["exit_code"], 4);
+  EXPECT_NE(summary["message"].get<std::string>().find("element 3"), std::string::npos);
+  EXPECT_TRUE(CheckpointReader(scratch / "out/crash.br").has("fake.position"));
+}
+
+TEST(Run, NeverSavesWrongNumbersAsACheckpoint) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.output.frames = 0;
+  plan.config.output.history = 10.0;
+  plan.config.checkpoint.steps = 40;
+  Trouble trouble;
+  trouble.spoil_at = 60;
+  EXPECT_THROW(run_fake(plan, scratch / "out", trouble), NumericsError);
+  EXPECT_EQ(list_checkpoints(scratch / "out/checkpoints").at(0).step, 40);
+}
+
+TEST(Run, FailsIfACheckOfTheCaseFails) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.checks = {CheckConfig{"elements", "model.elements", 4.0, 0.0, "-"},
+                        CheckConfig{"peak", "probe.first.max", 1.0, 1e-12, "m"}};
+  EXPECT_EQ(run_fake(plan, scratch / "good"), 0);
+  EXPECT_EQ(summary_of(scratch / "good")["checks"].size(), 2U);
+  plan.config.checks[1].expected = 1.1;
+  EXPECT_THROW(run_fake(plan, scratch / "bad"), CheckFailed);
+  const nlohmann::json summary = summary_of(scratch / "bad");
+  EXPECT_EQ(summary["exit_code"], 9);
+  EXPECT_EQ(summary["checks"][0]["pass"], true);
+  EXPECT_EQ(summary["checks"][1]["pass"], false);
+  plan.limits.steps = 5;
+  EXPECT_EQ(run_fake(plan, scratch / "short"), 0) << "a run cut short makes no checks";
+}
+
+TEST(Run, AnswersASignalFromOutsideWithACheckpoint) {
+  const ScratchFolder scratch;
+  for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
+    const std::string path = scratch / std::to_string(signal);
+    Trouble trouble;
+    trouble.pause = 0.01;
+    RunPlan plan = fake_plan();
+    const pid_t child = start_process([&] { return run_fake(plan, path, trouble); });
+    while (!fs::exists(path + "/summary.json") || !fs::exists(path + "/case.toml"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::kill(child, signal);
+    EXPECT_EQ(wait_for(child), 128 + signal);
+    EXPECT_EQ(summary_of(path)["status"], "interrupted");
+    EXPECT_EQ(list_checkpoints(path + "/checkpoints").size(), 1U);
+  }
+}
+
+TEST(Run, StopsAtOnceAtASecondSignal) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.pause = 30.0;
+  const pid_t child =
+      start_process([&] { return run_fake(fake_plan(), scratch / "out", trouble); });
+  while (!fs::exists(scratch / "out/case.toml"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ::kill(child, SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ::kill(child, SIGTERM);
+  EXPECT_EQ(wait_for(child), 128 + SIGTERM);
+}
+
+TEST(Run, OnAFullDiskKeepsOlderCheckpointsAndNoHalfFiles) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.checkpoint.steps = 10;
+  plan.config.output.fields = false;
+  plan.config.output.history = 0.005;
+  // The history outgrows the limit; files of the size of a checkpoint do not.
+  const pid_t child = start_process([&] {
+    const struct rlimit limit { 8192, 8192 };
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    return run_fake(plan, scratch / "out");
+  });
+  EXPECT_EQ(wait_for(child), 3);
+  EXPECT_EQ(summary_of(scratch / "out")["exit_code"], 3);
+  const std::string history = read_whole_file(scratch / "out/history.csv");
+  EXPECT_EQ(history.back(), '\n');
+  EXPECT_LE(history.size(), 8192U);
+  EXPECT_TRUE(temporary_files(scratch / "out").empty());
+  const auto files = list_checkpoints(scratch / "out/checkpoints");
+  ASSERT_EQ(files.size(), 2U);
+  for (const CheckpointFile& file : files) EXPECT_NO_THROW(CheckpointReader{file.path});
+}
+
+TEST(Run, ThatCannotWriteACheckpointKeepsTheOlderOnes) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.limits.steps = 20;
+  run_fake(plan, scratch / "out");
+  plan.limits.steps = 40;
+  const pid_t child = start_process([&] {
+    const struct rlimit limit { 1100, 1100 };  // case.toml fits, a checkpoint does not
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    return resume_fake(plan, scratch / "out");
+  });
+  EXPECT_EQ(wait_for(child), 3);
+  EXPECT_TRUE(temporary_files(scratch / "out").empty());
+  EXPECT_EQ(resume_fake(plan, scratch / "out"), 0);
+}
+
+}  // namespace
+}  // namespace breccia
