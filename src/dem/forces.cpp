@@ -10,21 +10,6 @@
 namespace breccia::dem {
 namespace {
 
-/// Concrete links [begin, end), shared among threads in whole packs.
-void run_shared(const World& w, const ConcreteLinkForces& kernel, Index begin, Index end) {
-  const int threads = end - begin < smallest_shared_loop ? 1 : w.exec.threads;
-  constexpr Index pack = 8;
-  const Index packs = (end - begin + pack - 1) / pack;
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-  for (int t = 0; t < threads; ++t) {
-    const KernelScope scope;
-    const auto share = [&](int part) {
-      return static_cast<Index>(static_cast<std::int64_t>(packs) * part / threads) * pack;
-    };
-    run_links(w.lanes, kernel, begin + share(t), std::min(end, begin + share(t + 1)));
-  }
-}
-
 struct LeastCritical {
   View<const double> critical;
   BR_HD double operator()(Index e) const { return critical[e]; }
@@ -66,22 +51,16 @@ void move_elements(World& w) {
   w.last_dt = w.next_dt;
 }
 
-void link_forces(World& w) {
-  const StageTime timed(w.exec, "link_forces");
+void bar_forces(World& w) {
+  const StageTime timed(w.exec, "bar_forces");
   const ElementsView elements = elements_view(w);
-  ConcreteLinks& c = w.concrete;
-  for (const auto& group : w.concrete_groups)
-    run_shared(w,
-               {group.law, w.last_dt, elements, c.a.view(), c.b.view(), c.length.view(),
-                c.stiffness.view(), c.opening.view(), c.shear.view(), c.moment.view(),
-                c.slid.view(), c.yielded.view(), c.broke.view(), w.link_actions.view(), 0},
-               group.begin, group.end);
+  const Index concretes = w.concrete.size();
   SteelLinks& s = w.steel;
   for (const auto& group : w.steel_groups)
     for_each(w.exec, group.end - group.begin,
              Shifted<SteelLinkForces>{{group.law, w.last_dt, elements, s.a.view(), s.b.view(),
                                        s.length.view(), s.state.view(), s.yielded.view(),
-                                       s.broke.view(), w.link_actions.view(), c.size()},
+                                       s.broke.view(), w.link_actions.view(), concretes},
                                       group.begin});
   InterfaceLinks& b = w.interface;
   for (const auto& group : w.interface_groups)
@@ -89,7 +68,7 @@ void link_forces(World& w) {
              Shifted<InterfaceLinkForces>{
                  {group.law, w.last_dt, elements, b.a.view(), b.b.view(), b.before.view(),
                   b.after.view(), b.stiffness.view(), b.area.view(), b.state.view(), b.slid.view(),
-                  b.broke.view(), w.link_actions.view(), c.size() + s.size()},
+                  b.broke.view(), w.link_actions.view(), concretes + s.size()},
                  group.begin});
 }
 
@@ -103,13 +82,49 @@ void contact_forces(World& w) {
                          c.history.slid.view(), c.history.damped.view(), w.contact_actions.view()});
 }
 
-void gather_forces(World& w) {
-  const StageTime timed(w.exec, "gather");
+void concrete_forces_and_sums(World& w) {
+  const StageTime timed(w.exec, "link_forces");
+  const ElementsView elements = elements_view(w);
+  ConcreteLinks& c = w.concrete;
+  std::vector<ConcreteLinkForces> kernels;
+  for (const auto& group : w.concrete_groups)
+    kernels.push_back({group.law, w.last_dt, elements, c.a.view(), c.b.view(), c.length.view(),
+                       c.stiffness.view(), c.opening.view(), c.shear.view(), c.moment.view(),
+                       c.slid.view(), c.yielded.view(), c.broke.view(), w.link_actions.view(), 0});
   Elements& e = w.elements;
-  for_each(w.exec, e.size(),
-           GatherForces{w.link_incidence.view(), w.contact_incidence.view(), w.link_actions.view(),
-                        w.contact_actions.view(), e.mass.view(), e.inertia.view(), e.fixed.view(),
-                        e.force.view(), e.torque.view(), w.critical.view()});
+  const GatherForces gather{w.link_incidence.view(), w.contact_incidence.view(),
+                            w.link_actions.view(),   w.contact_actions.view(),
+                            e.mass.view(),           e.inertia.view(),
+                            e.fixed.view(),          e.force.view(),
+                            e.torque.view(),         w.critical.view()};
+  // Tile by tile: what the links of a tile write is still in the cache when its elements add it up.
+  constexpr Index tile = 512;
+  const Sweep& sweep = w.sweep;
+  const auto threads = static_cast<int>(sweep.settled.size());
+#pragma omp parallel num_threads(threads) if (threads > 1)
+  {
+    const KernelScope scope;
+#pragma omp for schedule(static, 1)
+    for (int t = 0; t < threads; ++t) {
+      const auto run = static_cast<std::size_t>(t);
+      for (Index from = sweep.begin[run]; from < sweep.begin[run + 1]; from += tile) {
+        const Index to = std::min(from + tile, sweep.begin[run + 1]);
+        for (std::size_t g = 0; g < kernels.size(); ++g) {
+          const std::vector<Index>& starts = w.concrete_groups[g].starts;
+          run_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
+                    starts[static_cast<std::size_t>(to)]);
+        }
+        for (Index i = std::max(from, sweep.settled[run]); i < to; ++i) gather(i);
+      }
+    }
+    // The end of the loop above is a barrier: every link is done.
+#pragma omp for schedule(static, 1)
+    for (int t = 0; t < threads; ++t) {
+      const auto run = static_cast<std::size_t>(t);
+      const Index end = std::min(sweep.settled[run], sweep.begin[run + 1]);
+      for (Index i = sweep.begin[run]; i < end; ++i) gather(i);
+    }
+  }
 }
 
 void wall_forces(World& w) {

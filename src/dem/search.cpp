@@ -160,6 +160,49 @@ void divide_by_wall(World& w) {
         std::lower_bound(wall_of.begin(), wall_of.end(), static_cast<Index>(k)) - wall_of.begin());
 }
 
+/// First link of each element among a group's links, which are sorted by a.
+void find_starts(const std::vector<Index>& a, Index elements, LinkGroup<ConcreteLink>& group) {
+  group.starts.assign(static_cast<std::size_t>(elements) + 1, group.end);
+  Index element = 0;
+  for (Index i = group.begin; i < group.end; ++i)
+    for (; element <= a[static_cast<std::size_t>(i)]; ++element)
+      group.starts[static_cast<std::size_t>(element)] = i;
+}
+
+/// Runs of elements with about as many links each.
+void plan_sweep(World& w) {
+  std::vector<Index> a, b;
+  copy_to(a, w.concrete.a);
+  copy_to(b, w.concrete.b);
+  const Index count = w.elements.size();
+  std::vector<Index> links_before(static_cast<std::size_t>(count) + 1, 0);
+  std::vector<Index> reached(static_cast<std::size_t>(count) + 1,
+                             0);  // by links of elements before
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const auto next = static_cast<std::size_t>(a[i]) + 1;
+    ++links_before[next];
+    reached[next] = std::max(reached[next], b[i] + 1);
+  }
+  for (std::size_t e = 1; e < links_before.size(); ++e) {
+    links_before[e] += links_before[e - 1] + 1;  // an element weighs about as much as a link
+    reached[e] = std::max(reached[e], reached[e - 1]);
+  }
+  for (auto& group : w.concrete_groups) find_starts(a, count, group);
+  const int threads = count < smallest_shared_loop ? 1 : w.exec.threads;
+  w.sweep = {};
+  for (int t = 0; t <= threads; ++t) {
+    const auto share =
+        static_cast<Index>(static_cast<std::int64_t>(links_before.back()) * t / threads);
+    w.sweep.begin.push_back(static_cast<Index>(
+        std::lower_bound(links_before.begin(), links_before.end(), share) - links_before.begin()));
+  }
+  w.sweep.begin.back() = count;
+  for (int t = 0; t < threads; ++t) {
+    const Index begin = w.sweep.begin[static_cast<std::size_t>(t)];
+    w.sweep.settled.push_back(std::max(begin, reached[static_cast<std::size_t>(begin)]));
+  }
+}
+
 }  // namespace
 
 bool contacts_are_due(const World& w) {
@@ -225,6 +268,7 @@ void derive(World& w) {
   build_incidence(w.exec, all_a, all_b, w.elements.id, w.link_incidence);
   w.link_actions.resize(all_a.size());
   w.critical.resize(w.elements.size());
+  plan_sweep(w);
   derive_contacts(w);
 }
 

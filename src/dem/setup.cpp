@@ -57,7 +57,10 @@ std::vector<Model::Link> grouped(const Model& m, LinkKind kind, const Config& co
     const std::int16_t material = links[i].material;
     if (groups.empty() || groups.back().material != material)
       groups.push_back({make_law(config.materials.at(static_cast<std::size_t>(material))),
-                        static_cast<Index>(i), static_cast<Index>(i), material});
+                        static_cast<Index>(i),
+                        static_cast<Index>(i),
+                        material,
+                        {}});
     groups.back().end = static_cast<Index>(i + 1);
   }
   return links;

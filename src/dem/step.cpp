@@ -17,9 +17,9 @@ void step(World& w) {
 }
 
 void evaluate_forces(World& w) {
-  link_forces(w);
+  bar_forces(w);
   contact_forces(w);
-  gather_forces(w);
+  concrete_forces_and_sums(w);
   wall_forces(w);
   if (w.step % w.parameters.time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }

@@ -21,6 +21,17 @@ struct LinkGroup {
   Law law;
   Index begin = 0, end = 0;
   std::int16_t material = 0;
+  std::vector<Index>
+      starts;  ///< first link of each element a, and the end; concrete on the host only
+};
+
+/// How the threads of the host share concrete links and elements: each takes a run of elements with
+/// the links that start there. Links lead from lower to higher elements, so once a thread has done
+/// the links of a run, the sums of its elements are complete, but for those that an earlier run
+/// reaches.
+struct Sweep {
+  std::vector<Index> begin;    ///< first element of each thread's run, and the end
+  std::vector<Index> settled;  ///< first element of each run that no link of an earlier run reaches
 };
 
 /// A named set of elements that probes read: a body or a support.
@@ -86,6 +97,7 @@ struct World {
 
   // What follows from the state.
   Incidence link_incidence, contact_incidence;
+  Sweep sweep;
   BroadPhase broad_phase;
   std::vector<Index> wall_begin;  ///< first contact of each wall, and the end
   Buffer<Action> link_actions, contact_actions;
@@ -108,9 +120,9 @@ void step(World& w);
 void move_elements(World& w);
 bool contacts_are_due(const World& w);
 void find_contacts(World& w);
-void link_forces(World& w);
+void bar_forces(World& w);
 void contact_forces(World& w);
-void gather_forces(World& w);
+void concrete_forces_and_sums(World& w);
 void wall_forces(World& w);
 /// The step that follows: share of the critical one, rounded down to six bits.  [s]
 double choose_time_step(const World& w);
