@@ -1,5 +1,6 @@
 #include "core/broad_phase.hpp"
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -11,6 +12,10 @@ namespace breccia {
 namespace {
 
 constexpr Index none = std::numeric_limits<Index>::max();
+
+/// Partners that an element notes when it first meets them: enough for nearly all elements of a
+/// packing, which find about five each.
+constexpr Index slots_each = 12;
 
 struct LowerIndex {
   BR_HD Index operator()(Index a, Index b) const { return a < b ? a : b; }
@@ -133,70 +138,88 @@ struct SortElements {
   }
 };
 
-/// Counts each pair in the row of its lower id.
-struct CountPair {
-  View<const Index> ranks;
-  View<Index> counts;
+/// Notes what the elements of a run find: their number, and the first few of them.
+struct NotePair {
+  View<Index> counts;  ///< zero before
+  View<Index> slots;
 
   BR_HD void operator()(Index p, Index q) const {
-    const Index a = ranks[p], b = ranks[q];
-    count_up(counts[a < b ? a : b]);
+    const Index count = counts[p]++;
+    if (count < slots_each) slots[p * slots_each + count] = q;
   }
 };
 
-/// Puts the higher id of each pair into the row of the lower.
-struct PlacePair {
-  View<const Index> ranks;
-  View<Index> next;
-  View<Index> partners;
-
-  BR_HD void operator()(Index p, Index q) const {
-    const Index a = ranks[p], b = ranks[q];
-    partners[count_up(next[a < b ? a : b])] = a < b ? b : a;
-  }
-};
-
-struct CountPairs {
-  static constexpr const char* name = "core.count_pairs";
+struct FindPairs {
+  static constexpr const char* name = "core.find_pairs";
   CellWalk cells;
-  CountPair count;
+  NotePair note;
   View<std::int64_t> tests;
 
-  BR_HD void operator()(Index run) const { tests[run] = cells.walk(run, count); }
+  BR_HD void operator()(Index run) const {
+    tests[run] = cells.walk(cells.first(run), cells.last(run), note);
+  }
 };
 
-struct PlacePairs {
-  static constexpr const char* name = "core.place_pairs";
-  CellWalk cells;
-  PlacePair place;
+/// A pair as one number that sorts like its key: the ranks of its ids.
+struct PackPair {
+  View<const Index> ranks;
+  int rank_bits;
 
-  BR_HD void operator()(Index run) const { cells.walk(run, place); }
+  BR_HD std::uint64_t operator()(Index p, Index q) const {
+    const Index a = ranks[p], b = ranks[q];
+    const auto low = static_cast<std::uint64_t>(a < b ? a : b);
+    return low << rank_bits | static_cast<std::uint64_t>(a < b ? b : a);
+  }
 };
 
-struct Ascending {
-  BR_HD bool operator()(Index a, Index b) const { return a < b; }
-};
-
-/// Sorts the row of one lower id and writes its pairs.
+/// Writes all pairs of one element.
 struct WritePairs {
-  static constexpr const char* name = "core.write_pairs";
+  PackPair pack;
   View<const Index> starts;
+  View<Index> written;  ///< so far, by the element's first slot
+  View<std::uint64_t> packed;
+
+  BR_HD void operator()(Index p, Index q) const {
+    packed[starts[p] + written[p * slots_each]++] = pack(p, q);
+  }
+};
+
+/// Writes the pairs of a run of elements from their slots; one that has found more walks again.
+struct PackPairs {
+  static constexpr const char* name = "core.pack_pairs";
+  CellWalk cells;
+  WritePairs write;
+  View<Index> slots;
+
+  BR_HD void operator()(Index run) const {
+    for (Index p = cells.first(run); p < cells.last(run); ++p) {
+      const Index start = write.starts[p], count = write.starts[p + 1] - start;
+      if (count > slots_each) {
+        slots[p * slots_each] = 0;
+        cells.walk(p, p + 1, write);
+      } else {
+        for (Index i = 0; i < count; ++i)
+          write.packed[start + i] = write.pack(p, slots[p * slots_each + i]);
+      }
+    }
+  }
+};
+
+struct UnpackPairs {
+  static constexpr const char* name = "core.unpack_pairs";
+  View<const std::uint64_t> packed;
   View<const KeyedIndex> by_id;
-  View<Index> partners;
+  int rank_bits;
   View<PairKey> key;
   View<Index> a, b;
 
-  BR_HD void operator()(Index rank) const {
-    const Index first = starts[rank], count = starts[rank + 1] - first;
-    if (count == 0) return;
-    sort_row(&partners[first], count, Ascending{});
-    const KeyedIndex low = by_id[rank];
-    for (Index i = first; i < first + count; ++i) {
-      const KeyedIndex high = by_id[partners[i]];
-      key[i] = low.key << 32 | high.key;
-      a[i] = low.item;
-      b[i] = high.item;
-    }
+  BR_HD void operator()(Index i) const {
+    const std::uint64_t pair = packed[i];
+    const KeyedIndex low = by_id[static_cast<Index>(pair >> rank_bits)];
+    const KeyedIndex high = by_id[static_cast<Index>(pair & ((1ULL << rank_bits) - 1))];
+    key[i] = low.key << 32 | high.key;
+    a[i] = low.item;
+    b[i] = high.item;
   }
 };
 
@@ -278,11 +301,6 @@ void check(const Extent& extent, const Buffer<GlobalId>& ids) {
                      " has a negative size");
 }
 
-template <class T>
-void clear_items(Buffer<T>& items) {
-  clear_bytes(items.data(), items.space(), static_cast<std::size_t>(items.size()) * sizeof(T));
-}
-
 }  // namespace
 
 BroadPhase::BroadPhase(Space space)
@@ -293,8 +311,9 @@ BroadPhase::BroadPhase(Space space)
       by_id_(space),
       rank_of_(space),
       starts_(space),
-      next_(space),
-      partners_(space),
+      slots_(space),
+      packed_(space),
+      scratch_(space),
       tests_(space) {}
 
 void BroadPhase::rank_elements(const Exec& exec, const Buffer<GlobalId>& ids) {
@@ -322,6 +341,8 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
     resize_fields(pairs, 0);
     return;
   }
+  if (count > std::numeric_limits<Index>::max() / slots_each)
+    throw DeviceError("one search holds at most 178 million elements; use more ranks");
 
   // Bounding values, and the width of the cells.
   const Extent extent = fold(exec, count, Extent{}, MeasureBox{boxes.view()}, JoinExtents{});
@@ -340,24 +361,28 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
            SortElements{cells_.view(), boxes.view(), rank_of_.view(), keys_.view(), boxes_.view(),
                         ranks_.view()});
 
-  // Count, scan, fill: a row for each lower id.
+  // Count, scan, fill.
   const CellWalk walk{grid, run_length(exec, count), keys_.view(), boxes_.view()};
   const Index runs = (count + walk.run_length - 1) / walk.run_length;
   tests_.resize(runs);
+  starts_.clear();
   starts_.resize(count + 1);
-  clear_items(starts_);
-  for_each(exec, runs, CountPairs{walk, {ranks_.view(), starts_.view()}, tests_.view()});
+  slots_.resize(count * slots_each);
+  for_each(exec, runs, FindPairs{walk, {starts_.view(), slots_.view()}, tests_.view()});
   tested_ = fold(exec, runs, std::int64_t{0}, AddTests{tests_.view()}, Add{});
   const Index found = exclusive_scan(exec, starts_);
-  partners_.resize(found);
-  copy_to(next_, starts_);
-  for_each(exec, runs, PlacePairs{walk, {ranks_.view(), next_.view(), partners_.view()}});
+  packed_.resize(found);
+  const int rank_bits = std::bit_width(static_cast<std::uint32_t>(count));
+  const PackPair pack{ranks_.view(), rank_bits};
+  for_each(exec, runs,
+           PackPairs{walk, {pack, starts_.view(), slots_.view(), packed_.view()}, slots_.view()});
 
-  // Each row in order; the rows are in order already.
+  // By ascending key.
+  sort_keys(exec, packed_, scratch_, 2 * rank_bits);
   resize_fields(pairs, found);
-  for_each(exec, count,
-           WritePairs{starts_.view(), by_id_.view(), partners_.view(), pairs.key.view(),
-                      pairs.a.view(), pairs.b.view()});
+  for_each(exec, found,
+           UnpackPairs{packed_.view(), by_id_.view(), rank_bits, pairs.key.view(), pairs.a.view(),
+                       pairs.b.view()});
 }
 
 }  // namespace breccia

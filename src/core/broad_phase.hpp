@@ -27,8 +27,8 @@ struct Box {
 /// - The x neighbours of a cell lie next to it in the sorted order, so a cell and its neighbours
 ///   are five runs of elements (two in 2D), found by walking along the sorted numbers.
 ///
-/// Cost: one sort of the elements, then time and memory linear in elements and overlapping pairs.
-/// Boxes that all start at the same z are searched in two dimensions.
+/// Cost: one sort of the elements and one of the pairs, both by digits; all of it linear in time
+/// and memory. Boxes that all start at the same z are searched in two dimensions.
 class BroadPhase {
  public:
   explicit BroadPhase(Space space = Space::host);
@@ -50,16 +50,16 @@ class BroadPhase {
  private:
   void rank_elements(const Exec& exec, const Buffer<GlobalId>& ids);
 
-  Buffer<KeyedIndex> cells_;    ///< number of the cell and element, sorted
-  Buffer<std::uint64_t> keys_;  ///< the numbers alone
-  Buffer<Box> boxes_;           ///< in that order
-  Buffer<Index> ranks_;         ///< place by global id, in that order
-  Buffer<KeyedIndex> by_id_;    ///< element at each place by global id
-  Buffer<Index> rank_of_;       ///< place by global id of each element
-  Buffer<Index> starts_;        ///< first pair of each place
-  Buffer<Index> next_;          ///< where the next pair of each place goes
-  Buffer<Index> partners_;      ///< the higher place of each pair
-  Buffer<std::int64_t> tests_;  ///< comparisons of each run of elements
+  Buffer<KeyedIndex> cells_;                ///< number of the cell and element, sorted
+  Buffer<std::uint64_t> keys_;              ///< the numbers alone
+  Buffer<Box> boxes_;                       ///< in that order
+  Buffer<Index> ranks_;                     ///< place by global id, in that order
+  Buffer<KeyedIndex> by_id_;                ///< element at each place by global id
+  Buffer<Index> rank_of_;                   ///< place by global id of each element
+  Buffer<Index> starts_;                    ///< first pair that each finds
+  Buffer<Index> slots_;                     ///< the first few partners that each finds
+  Buffer<std::uint64_t> packed_, scratch_;  ///< pairs of ranks, each in one number
+  Buffer<std::int64_t> tests_;              ///< comparisons of each run of elements
   std::int64_t tested_ = 0;
 };
 

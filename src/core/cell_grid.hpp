@@ -85,17 +85,21 @@ struct CellWalk {
   View<const std::uint64_t> keys;  ///< ascending
   View<const Box> boxes;           ///< in that order
 
-  /// Calls found(p, q) for every overlapping pair; returns the number of comparisons.
+  BR_HD Index first(Index run) const { return run * run_length; }
+  BR_HD Index last(Index run) const {
+    return keys.size - first(run) < run_length ? keys.size : first(run) + run_length;
+  }
+
+  /// Calls found(p, q) for every overlapping pair that elements begin to end - 1 find; returns the
+  /// number of comparisons.
   template <class Found>
-  BR_HD std::int64_t walk(Index run, const Found& found) const {
-    const Index first = run * run_length;
-    const Index end = first + run_length < keys.size ? first + run_length : keys.size;
+  BR_HD std::int64_t walk(Index begin, Index end, const Found& found) const {
     const Index finest = CellGrid::level_of(keys[end - 1]);
     std::int64_t tests = 0;
     for (Index level = 0; level <= finest; ++level) {
       if ((grid.occupied >> level & 1U) == 0) continue;
       Index cursors[9] = {-1, -1, -1, -1, -1, -1, -1, -1, -1};
-      for (Index p = first; p < end; ++p)
+      for (Index p = begin; p < end; ++p)
         if (CellGrid::level_of(keys[p]) >= level) tests += walk_level(level, p, cursors, found);
     }
     return tests;

@@ -1,24 +1,95 @@
 #include "exec/sort_scan.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
-#include <parallel/algorithm>
 #include <stdexcept>
+#include <vector>
 
 namespace breccia {
 
-void sort_by_key(const Exec& exec, Buffer<KeyedIndex>& items) {
-  const auto before = [](const KeyedIndex& a, const KeyedIndex& b) {
-    return a.key != b.key ? a.key < b.key : a.item < b.item;
+namespace {
+
+constexpr int digit_bits = 8;
+constexpr std::size_t digits = std::size_t{1} << digit_bits;
+using Histogram = std::array<Index, digits>;
+
+std::uint64_t key_of(std::uint64_t key) {
+  return key;
+}
+std::uint64_t key_of(const KeyedIndex& item) {
+  return item.key;
+}
+
+/// Stable: items with equal keys keep their order. Each of `blocks` contiguous blocks is counted
+/// and then distributed by one thread; which items make a block does not change the result.
+template <class Item>
+void sort_by_digits(const Exec& exec, Buffer<Item>& items, Buffer<Item>& scratch, int bits) {
+  const Index count = items.size();
+  const int blocks = count < 20'000 ? 1 : std::max(1, exec.threads);
+  scratch.resize(count);
+  std::vector<Histogram> places(static_cast<std::size_t>(blocks));
+  const auto first_of = [&](int block) {
+    return static_cast<Index>(static_cast<std::int64_t>(count) * block / blocks);
   };
+  for (int shift = 0; shift < bits; shift += digit_bits) {
+    const Item* const from = items.data();
+    Item* const to = scratch.data();
+    const auto digit = [&](Index i) { return (key_of(from[i]) >> shift) & (digits - 1); };
+
+#pragma omp parallel for schedule(static, 1) num_threads(blocks) if (blocks > 1)
+    for (int block = 0; block < blocks; ++block) {
+      Histogram counts{};
+      for (Index i = first_of(block), end = first_of(block + 1); i < end; ++i) ++counts[digit(i)];
+      places[static_cast<std::size_t>(block)] = counts;
+    }
+
+    Index place = 0;
+    bool all_alike = false;
+    for (std::size_t d = 0; d < digits; ++d) {
+      const Index before = place;
+      for (Histogram& histogram : places) {
+        const Index here = histogram[d];
+        histogram[d] = place;
+        place += here;
+      }
+      if (place - before == count) all_alike = true;
+    }
+    if (all_alike) continue;
+
+#pragma omp parallel for schedule(static, 1) num_threads(blocks) if (blocks > 1)
+    for (int block = 0; block < blocks; ++block) {
+      Histogram next = places[static_cast<std::size_t>(block)];
+      for (Index i = first_of(block), end = first_of(block + 1); i < end; ++i)
+        to[next[digit(i)]++] = from[i];
+    }
+    items.swap(scratch);
+  }
+}
+
+}  // namespace
+
+void sort_by_key(const Exec& exec, Buffer<KeyedIndex>& items) {
   KeyedIndex* const begin = items.data();
   KeyedIndex* const end = begin + items.size();
-  if (exec.threads <= 1 || items.size() < 20'000) {
-    std::sort(begin, end, before);
-  } else {
-    __gnu_parallel::sort(begin, end, before,
-                         __gnu_parallel::multiway_mergesort_tag(
-                             static_cast<__gnu_parallel::_ThreadIndex>(exec.threads)));
+  const auto item_before = [](const KeyedIndex& a, const KeyedIndex& b) { return a.item < b.item; };
+  if (items.size() > 1000 && std::is_sorted(begin, end, item_before)) {
+    Buffer<KeyedIndex> scratch(items.space());
+    sort_by_digits(exec, items, scratch, 64);
+    if (items.data() != begin) {  // views of the array stay good
+      copy_to(scratch, items);
+      items.swap(scratch);
+    }
+    return;
   }
+  std::sort(begin, end, [](const KeyedIndex& a, const KeyedIndex& b) {
+    return a.key != b.key ? a.key < b.key : a.item < b.item;
+  });
+}
+
+void sort_keys(const Exec& exec, Buffer<std::uint64_t>& keys, Buffer<std::uint64_t>& scratch,
+               int bits) {
+  sort_by_digits(exec, keys, scratch, bits);
 }
 
 Index exclusive_scan(const Exec&, Buffer<Index>& counts) {

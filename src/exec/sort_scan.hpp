@@ -1,6 +1,6 @@
 #pragma once
-// Sorting and prefix sums: a well-kept library on each side (libstdc++'s parallel mode on the
-// host).
+// Sorting and prefix sums, on the host by digits (radix): linear in the items, and the same order
+// for any number of threads.
 
 #include <cstdint>
 
@@ -14,8 +14,13 @@ struct KeyedIndex {
   Index item;
 };
 
-/// Sorts by key, then by item: one order on every machine.
+/// Sorts by key, then by item: one order on every machine. Views of the array stay good.
 void sort_by_key(const Exec& exec, Buffer<KeyedIndex>& items);
+
+/// Sorts numbers that are below 2^bits. The two arrays may exchange their memory: take views after.
+/// @param scratch  of the same space; holds nothing of use after
+void sort_keys(const Exec& exec, Buffer<std::uint64_t>& keys, Buffer<std::uint64_t>& scratch,
+               int bits);
 
 /// Replaces counts by the sum of all counts before them; returns the total.
 /// @throws std::length_error if the total does not fit an Index

@@ -168,8 +168,8 @@ TEST(BroadPhase, SearchesBoxesOfOnePlaneInTwoDimensions) {
     shuffle_ids(scene, random);
     ASSERT_EQ(search(scene), all_against_all(scene)) << "seed " << seed;
   }
-  // Squares as wide as a cell, one in each: their own, two in the next row and one more, and half
-  // of what lies in reach of the cell's border, as against three rows of layers.
+  // Squares as wide as a cell, one in each on average: half of 5 to 9 neighbour cells, as against
+  // three layers of them.
   RandomStream random(5);
   Scene flat;
   for (Index i = 0; i < 10'000; ++i)
