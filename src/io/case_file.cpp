@@ -1,0 +1,432 @@
+#include "io/case_file.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include "exec/error.hpp"
+#include "io/units.hpp"
+
+namespace breccia {
+namespace {
+
+struct Problem {
+  std::uint32_t line;  ///< 0: from an override
+  std::string text;
+};
+
+/// Letters to add, drop, change or swap to make one word of the other.
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i)
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] =
+          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+std::string suggestion(const std::string& word, const std::set<std::string>& known) {
+  std::string best;
+  std::size_t least = 3 + word.size() / 4;
+  for (const std::string& candidate : known)
+    if (const std::size_t d = distance(word, candidate); d < least) {
+      least = d;
+      best = candidate;
+    }
+  if (!best.empty()) return "; did you mean " + best + "?";
+  std::string all;
+  for (const std::string& candidate : known) all += (all.empty() ? "" : ", ") + candidate;
+  return known.size() <= 12 ? "; allowed are " + all : "";
+}
+
+const char* type_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::string:
+      return "a text";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or time";
+  }
+}
+
+toml::table parse_file(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw InputError(path + ": there is no such case file; nothing was run.");
+  if (!std::filesystem::is_regular_file(path, ignored))
+    throw InputError(path + ": is not a file; nothing was run.");
+  try {
+    return toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw InputError(fmt::format("1 problem in {}; nothing was run.\n  line {}, column {}: {}",
+                                 path, at.line, at.column, error.description()));
+  }
+}
+
+/// The value of an override: TOML if it is, else the text itself.
+void insert_value(toml::table& table, const std::string& key, const std::string& text) {
+  try {
+    toml::table parsed = toml::parse("value = " + text);
+    if (parsed.size() == 1) {
+      parsed["value"].visit([&](auto& node) { table.insert_or_assign(key, std::move(node)); });
+      return;
+    }
+  } catch (const toml::parse_error&) {
+  }
+  table.insert_or_assign(key, text);
+}
+
+toml::table* item_of(toml::array& list, const std::string& name) {
+  for (toml::node& node : list)
+    if (toml::table* table = node.as_table();
+        table && (*table)["name"].value_or(std::string()) == name)
+      return table;
+  std::size_t number = 0;
+  const auto parsed = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (parsed.ec == std::errc{} && parsed.ptr == name.data() + name.size() && number < list.size())
+    return list[number].as_table();
+  return nullptr;
+}
+
+void apply_override(toml::table& root, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError("--set " + text + " is not of the form KEY=VALUE; nothing was run.");
+  std::string rest = text.substr(0, equals);
+  toml::table* table = &root;
+  for (std::size_t dot = rest.find('.'); dot != std::string::npos; dot = rest.find('.')) {
+    const std::string part = rest.substr(0, dot);
+    rest = rest.substr(dot + 1);
+    toml::node* below = table->get(part);
+    if (below == nullptr) {
+      table->insert(part, toml::table{});
+      below = table->get(part);
+    }
+    if (toml::array* list = below->as_array()) {
+      const std::size_t next = std::min(rest.find('.'), rest.size());
+      table = item_of(*list, rest.substr(0, next));
+      if (table == nullptr || next == rest.size())
+        throw InputError("--set " + text + ": " + part + " has no item '" + rest.substr(0, next) +
+                         "'; name one of its items, or give its number from 0; nothing was run.");
+      rest = rest.substr(next + 1);
+    } else if (!(table = below->as_table())) {
+      throw InputError("--set " + text + ": " + part + " has no keys below it; nothing was run.");
+    }
+  }
+  insert_value(*table, rest, text.substr(equals + 1));
+}
+
+std::string resolved_file(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return (std::filesystem::path(path) / "case.toml").string();
+  return path;
+}
+
+}  // namespace
+
+struct CaseReader::State {
+  struct Level {
+    const toml::table* table;
+    std::string path;             ///< with a dot behind it; empty at the top
+    std::set<std::string> known;  ///< keys that were asked for
+    bool in_item;                 ///< at or below an item of a list
+  };
+
+  std::string path;
+  toml::table root;
+  std::vector<Level> levels;
+  std::vector<Problem> problems;
+  inline static const toml::table nothing{};
+
+  Level& top() { return levels.back(); }
+
+  /// The value under a key, or null.
+  const toml::node* find(const char* name) {
+    top().known.insert(name);
+    return top().table->get(name);
+  }
+  void add(const toml::node* node, const std::string& text, const char* meaning = "") {
+    const bool from_file = node != nullptr && node->source().path != nullptr;
+    const std::uint32_t line = from_file ? node->source().begin.line : 0;
+    problems.push_back({line, (node != nullptr && !from_file ? "--set " : "") + text +
+                                  (*meaning != '\0' ? "\n    " + std::string(meaning) : "")});
+  }
+  std::string full(const char* name) { return top().path + name; }
+
+  /// A number, or a text with a unit, in SI. False if there is a problem, which is then noted.
+  bool quantity(const toml::node& node, const std::string& key, const char* unit, double& value) {
+    if (const auto number = node.value_exact<double>()) {
+      value = *number;
+    } else if (const auto integer = node.value_exact<std::int64_t>()) {
+      value = static_cast<double>(*integer);
+    } else if (const auto text = node.value_exact<std::string>()) {
+      std::string problem;
+      const double parsed = parse_quantity(*text, unit, problem);
+      if (!problem.empty()) {
+        add(&node, key + ": " + problem);
+        return false;
+      }
+      value = parsed;
+    } else {
+      add(&node, fmt::format("{} wants a number in {} or a text with a unit, not {}", key, unit,
+                             type_of(node)));
+      return false;
+    }
+    return true;
+  }
+  bool in_range(const toml::node& node, const std::string& key, double value, double usual,
+                const Range& range, const char* meaning) {
+    if (std::isnan(value) || (std::isinf(value) && !std::isinf(usual))) {
+      add(&node, key + " is not a finite number", meaning);
+      return false;
+    }
+    if (range.holds(value)) return true;
+    add(&node, key + " = " + number_text(value) + " is outside " + range_text(range), meaning);
+    return false;
+  }
+};
+
+CaseReader::CaseReader(const std::string& path, const std::vector<std::string>& overrides)
+    : state_(std::make_unique<State>()) {
+  state_->path = resolved_file(path);
+  state_->root = parse_file(state_->path);
+  for (const std::string& text : overrides) apply_override(state_->root, text);
+  state_->levels.push_back({&state_->root, "", {}, false});
+}
+CaseReader::~CaseReader() = default;
+
+void CaseReader::read(const char* name, double& value, const char* unit, const Range& range,
+                      const char* meaning) {
+  const toml::node* node = state_->find(name);
+  double given = 0.0;
+  if (node == nullptr || !state_->quantity(*node, state_->full(name), unit, given)) return;
+  if (state_->in_range(*node, state_->full(name), given, value, range, meaning)) value = given;
+}
+
+void CaseReader::read(const char* name, std::int64_t& value, const char*, const Range& range,
+                      const char* meaning) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
+  const auto integer = node->value_exact<std::int64_t>();
+  if (!integer) {
+    state_->add(node,
+                fmt::format("{} wants an integer, not {}", state_->full(name), type_of(*node)));
+    return;
+  }
+  if (state_->in_range(*node, state_->full(name), static_cast<double>(*integer), 0.0, range,
+                       meaning))
+    value = *integer;
+}
+
+void CaseReader::read(const char* name, int& value, const char* unit, const Range& range,
+                      const char* meaning) {
+  std::int64_t wide = value;
+  const Range fits{std::max(range.low, -2147483648.0), std::min(range.high, 2147483647.0),
+                   range.open};
+  read(name, wide, unit, fits, meaning);
+  value = static_cast<int>(wide);
+}
+
+void CaseReader::read(const char* name, Vec3& value, const char* unit, const Range& range,
+                      const char* meaning) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() != 3) {
+    state_->add(node, state_->full(name) + " wants three numbers, as in [0.0, 0.0, 1.0]");
+    return;
+  }
+  std::array<double*, 3> parts{&value.x, &value.y, &value.z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string key = fmt::format("{}[{}]", state_->full(name), k);
+    double given = 0.0;
+    if (!state_->quantity((*array)[k], key, unit, given)) continue;
+    if (state_->in_range((*array)[k], key, given, *parts[k], range, meaning)) *parts[k] = given;
+  }
+}
+
+void CaseReader::read(const char* name, bool& value, const char*) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
+  if (const auto given = node->value_exact<bool>())
+    value = *given;
+  else
+    state_->add(node,
+                fmt::format("{} wants true or false, not {}", state_->full(name), type_of(*node)));
+}
+
+void CaseReader::read(const char* name, std::string& value, const char*) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
+  if (const auto given = node->value_exact<std::string>())
+    value = *given;
+  else
+    state_->add(node, fmt::format("{} wants a text, not {}", state_->full(name), type_of(*node)));
+}
+
+void CaseReader::read(const char* name, std::string& value, const OneOf& words,
+                      const char* meaning) {
+  std::string given = value;
+  read(name, given, meaning);
+  const toml::node* node = state_->top().table->get(name);
+  if (node == nullptr || !node->is_string()) return;
+  if (std::find(words.words.begin(), words.words.end(), given) != words.words.end()) {
+    value = given;
+    return;
+  }
+  const std::set<std::string> known(words.words.begin(), words.words.end());
+  state_->add(node,
+              state_->full(name) + " = \"" + given + "\" is not one of " + words_text(words) +
+                  (known.size() > 12 ? suggestion(given, known) : ""),
+              meaning);
+}
+
+void CaseReader::read(const char* name, std::vector<std::string>& value, const char*) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  std::vector<std::string> given;
+  if (array != nullptr)
+    for (const toml::node& item : *array)
+      if (const auto text = item.value_exact<std::string>()) given.push_back(*text);
+  if (array == nullptr || given.size() != array->size())
+    state_->add(node, state_->full(name) + " wants a list of texts, as in [\"x\", \"y\"]");
+  else
+    value = given;
+}
+
+void CaseReader::require(const char* name) {
+  State::Level& level = state_->top();
+  if (level.table->contains(name)) return;
+  const bool is_item = !level.path.empty() && level.table != &State::nothing;
+  state_->add(is_item ? level.table : nullptr,
+              level.path + name + " is missing; it has no default");
+}
+
+bool CaseReader::enter(const char* name) {
+  const toml::node* node = state_->find(name);
+  const bool in_item = state_->top().in_item;
+  const std::string path = state_->full(name) + ".";
+  if (node != nullptr && !node->is_table()) {
+    state_->add(node, fmt::format("{} wants a table, not {}", state_->full(name), type_of(*node)));
+    node = nullptr;
+    return false;
+  }
+  if (node == nullptr && in_item) return false;
+  state_->levels.push_back(
+      {node != nullptr ? node->as_table() : &State::nothing, path, {}, in_item});
+  return true;
+}
+
+std::size_t CaseReader::count(const char* name) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return 0;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || (!array->empty() && !array->is_homogeneous<toml::table>())) {
+    state_->add(node,
+                fmt::format("{0} wants a list of tables, each headed [[{0}]]", state_->full(name)));
+    return 0;
+  }
+  std::set<std::string> seen;
+  for (const toml::node& item : *array) {
+    const auto given = (*item.as_table())["name"].value<std::string>();
+    if (given && !seen.insert(*given).second)
+      state_->add(&item, fmt::format("{} has two items named {}", state_->full(name), *given));
+  }
+  return array->size();
+}
+
+void CaseReader::enter_item(const char* name, std::size_t item) {
+  const toml::table* table = state_->top().table->get(name)->as_array()->get(item)->as_table();
+  const auto given = (*table)["name"].value<std::string>();
+  const std::string path =
+      state_->full(name) + (given ? "." + *given : fmt::format("[{}]", item)) + ".";
+  state_->levels.push_back({table, path, {}, true});
+}
+
+std::vector<std::string> CaseReader::names(const char* name) {
+  const toml::node* node = state_->find(name);
+  std::vector<std::string> names;
+  if (node == nullptr) return names;
+  const toml::table* table = node->as_table();
+  if (table == nullptr) {
+    state_->add(node, fmt::format("{0} wants tables, each headed [{0}.NAME]", state_->full(name)));
+    return names;
+  }
+  std::vector<std::pair<std::uint32_t, std::string>> by_line;
+  for (const auto& [key, item] : *table) {
+    if (item.is_table())
+      by_line.emplace_back(item.source().begin.line, std::string(key.str()));
+    else
+      state_->add(&item, fmt::format("{0}.{1} wants a table headed [{0}.{1}]", state_->full(name),
+                                     key.str()));
+  }
+  std::sort(by_line.begin(), by_line.end());
+  for (const auto& [line, key] : by_line) names.push_back(key);
+  return names;
+}
+
+void CaseReader::enter_named(const char* name, const std::string& item) {
+  const toml::table* table = state_->top().table->get(name)->as_table()->get(item)->as_table();
+  state_->levels.push_back({table, state_->full(name) + "." + item + ".", {}, true});
+}
+
+void CaseReader::leave() {
+  const State::Level& level = state_->top();
+  for (const auto& [key, node] : *level.table)
+    if (const std::string word(key.str()); !level.known.contains(word))
+      state_->add(&node, level.path + word + " is not a key" + suggestion(word, level.known));
+  state_->levels.pop_back();
+}
+
+void CaseReader::finish() {
+  leave();
+  std::vector<Problem>& problems = state_->problems;
+  if (problems.empty()) return;
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const Problem& a, const Problem& b) { return a.line < b.line; });
+  std::string text = fmt::format("{} problem{} in {}; nothing was run.", problems.size(),
+                                 problems.size() == 1 ? "" : "s", state_->path);
+  for (const Problem& problem : problems)
+    text +=
+        "\n  " + (problem.line > 0 ? fmt::format("line {}, ", problem.line) : "") + problem.text;
+  throw InputError(text);
+}
+
+std::string case_name(const std::string& path) {
+  const std::filesystem::path file =
+      std::filesystem::absolute(resolved_file(path)).lexically_normal();
+  const std::string folder = file.parent_path().filename().string(), stem = file.stem().string();
+  if (stem == "case") return folder;
+  return folder.empty() ? stem : folder + "_" + stem;
+}
+
+std::string case_folder(const std::string& path) {
+  const std::string folder = std::filesystem::path(resolved_file(path)).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+}  // namespace breccia

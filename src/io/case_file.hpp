@@ -1,0 +1,268 @@
+#pragma once
+// Case files: read, checked, completed and documented from the one list of keys that a
+// configuration gives of itself (core/keys.hpp).
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/keys.hpp"
+#include "math/vec.hpp"
+
+namespace breccia {
+
+/// Reads values from a TOML file, key by key, and collects all that is wrong with them.
+class CaseReader {
+ public:
+  /// @throws InputError if the file cannot be read or is no TOML, or an override makes no sense
+  CaseReader(const std::string& path, const std::vector<std::string>& overrides);
+  CaseReader(const CaseReader&) = delete;
+  CaseReader& operator=(const CaseReader&) = delete;
+  ~CaseReader();
+
+  void read(const char* name, double& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, std::int64_t& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, int& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, Vec3& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, bool& value, const char* meaning);
+  void read(const char* name, std::string& value, const char* meaning);
+  void read(const char* name, std::string& value, const OneOf& words, const char* meaning);
+  void read(const char* name, std::vector<std::string>& value, const char* meaning);
+  void require(const char* name);
+
+  /// Goes into a table; false (and nothing is entered) if it is inside a list's item and not there.
+  bool enter(const char* name);
+  /// Items of a list of tables, and into one of them.
+  std::size_t count(const char* name);
+  void enter_item(const char* name, std::size_t item);
+  /// Names of the tables below a table, and into one of them.
+  std::vector<std::string> names(const char* name);
+  void enter_named(const char* name, const std::string& item);
+  /// Back out; keys of the table that nobody has asked for are problems.
+  void leave();
+
+  /// @throws InputError with all problems, if there are any
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Visitor of each_key that reads.
+struct ReadKeys {
+  CaseReader& reader;
+
+  template <class T>
+  void operator()(const char* name, T& value, const char* unit, const Range& range,
+                  const char* meaning) {
+    reader.read(name, value, unit, range, meaning);
+  }
+  template <class T>
+  void operator()(const char* name, T& value, const char* meaning) {
+    reader.read(name, value, meaning);
+  }
+  void operator()(const char* name, std::string& value, const OneOf& words, const char* meaning) {
+    reader.read(name, value, words, meaning);
+  }
+  void required(const char* name) { reader.require(name); }
+  template <class Config>
+  void table(const char* name, Config& config, const char*) {
+    if (!reader.enter(name)) return;
+    config.each_key(*this);
+    reader.leave();
+  }
+  template <class Config>
+  void list(const char* name, std::vector<Config>& configs, const char*) {
+    configs.resize(reader.count(name));
+    for (std::size_t i = 0; i < configs.size(); ++i) {
+      reader.enter_item(name, i);
+      configs[i].each_key(*this);
+      reader.leave();
+    }
+  }
+  template <class Config>
+  void named(const char* name, std::vector<Config>& configs, const char*) {
+    for (const std::string& item : reader.names(name)) {
+      Config& config = configs.emplace_back();
+      config.name = item;
+      reader.enter_named(name, item);
+      config.each_key(*this);
+      reader.leave();
+    }
+  }
+};
+
+/// One key, for people.
+struct KeyInfo {
+  std::string path, type, unit, default_text, range, meaning;
+};
+
+// How values and ranges are written, in files and on terminals.
+std::string number_text(double value);
+std::string value_text(double value);
+std::string value_text(int value);
+std::string value_text(std::int64_t value);
+std::string value_text(const Vec3& value);
+std::string value_text(bool value);
+std::string value_text(const std::string& value);
+std::string value_text(const std::vector<std::string>& value);
+std::string range_text(const Range& range);
+std::string words_text(const OneOf& words);
+inline const char* type_name(const double&) {
+  return "number";
+}
+inline const char* type_name(const int&) {
+  return "integer";
+}
+inline const char* type_name(const std::int64_t&) {
+  return "integer";
+}
+inline const char* type_name(const Vec3&) {
+  return "3 numbers";
+}
+inline const char* type_name(const bool&) {
+  return "true/false";
+}
+inline const char* type_name(const std::string&) {
+  return "text";
+}
+inline const char* type_name(const std::vector<std::string>&) {
+  return "texts";
+}
+
+/// Visitor of each_key that writes TOML: first a table's own keys, then the tables below it.
+struct WriteKeys {
+  explicit WriteKeys(std::string where = {}) : path(std::move(where)) {}
+
+  std::string path;        ///< of the table, with a dot behind it; empty at the top
+  std::string own, below;  ///< text so far
+  bool has_unset = false;  ///< a required key still has its default: the table was not given
+  std::string last_value;  ///< of the key visited last
+
+  template <class T>
+  void operator()(const char* name, T& value, const char* unit, const Range&, const char* meaning) {
+    put(name, value_text(value), std::string("[") + unit + "] " + meaning);
+  }
+  template <class T>
+  void operator()(const char* name, T& value, const char* meaning) {
+    put(name, value_text(value), meaning);
+  }
+  void operator()(const char* name, std::string& value, const OneOf& words, const char* meaning) {
+    put(name, value_text(value), words_text(words) + ": " + meaning);
+  }
+  void required(const char*) { has_unset = has_unset || last_value == "0" || last_value == "\"\""; }
+  template <class Config>
+  void table(const char* name, Config& config, const char* meaning) {
+    WriteKeys inner(path + name + ".");
+    config.each_key(inner);
+    if (inner.has_unset && !path.empty()) return;
+    below += "\n# " + std::string(meaning) + "\n[" + path + name + "]\n" + inner.own + inner.below;
+  }
+  template <class Config>
+  void list(const char* name, std::vector<Config>& configs, const char* meaning) {
+    for (Config& config : configs) {
+      WriteKeys inner(path + name + ".");
+      config.each_key(inner);
+      below +=
+          "\n# " + std::string(meaning) + "\n[[" + path + name + "]]\n" + inner.own + inner.below;
+    }
+  }
+  template <class Config>
+  void named(const char* name, std::vector<Config>& configs, const char* meaning) {
+    for (Config& config : configs) {
+      const std::string inner_path = path + name + "." + config.name;
+      WriteKeys inner(inner_path + ".");
+      config.each_key(inner);
+      below += "\n# " + std::string(meaning) + "\n[" + inner_path + "]\n" + inner.own + inner.below;
+    }
+  }
+
+ private:
+  void put(const std::string& name, const std::string& value, const std::string& comment) {
+    own += name + " = " + value + "  # " + comment + "\n";
+    last_value = value;
+  }
+};
+
+/// Visitor of each_key that lists.
+struct ListKeys {
+  std::string path;
+  std::vector<KeyInfo>& keys;
+
+  template <class T>
+  void operator()(const char* name, T& value, const char* unit, const Range& range,
+                  const char* meaning) {
+    keys.push_back(
+        {path + name, type_name(value), unit, value_text(value), range_text(range), meaning});
+  }
+  template <class T>
+  void operator()(const char* name, T& value, const char* meaning) {
+    keys.push_back({path + name, type_name(value), "", value_text(value), "", meaning});
+  }
+  void operator()(const char* name, std::string& value, const OneOf& words, const char* meaning) {
+    keys.push_back({path + name, "word", "", value_text(value), words_text(words), meaning});
+  }
+  void required(const char*) { keys.back().default_text = "(required)"; }
+  template <class Config>
+  void table(const char* name, Config& config, const char*) {
+    config.each_key(ListKeys{path + name + ".", keys});
+  }
+  template <class Config>
+  void list(const char* name, std::vector<Config>&, const char*) {
+    Config config;
+    config.each_key(ListKeys{path + name + "[].", keys});
+  }
+  template <class Config>
+  void named(const char* name, std::vector<Config>&, const char*) {
+    Config config;
+    config.each_key(ListKeys{path + name + ".<name>.", keys});
+  }
+};
+
+/// A case from a TOML file, or from case.toml in a folder; overrides "key.path=value" count last.
+/// @throws InputError with every problem at once; nothing was run
+template <class Config>
+Config read_case(const std::string& path, const std::vector<std::string>& overrides) {
+  Config config;
+  CaseReader reader(path, overrides);
+  config.each_key(ReadKeys{reader});
+  reader.finish();
+  return config;
+}
+
+/// The completed input: every key with the value used, in SI. Reading it gives the same case again.
+template <class Config>
+std::string completed_case(const Config& config) {
+  Config copy = config;
+  WriteKeys text;
+  copy.each_key(text);
+  return text.own + text.below;
+}
+
+/// Every key whose path begins with `prefix`.
+template <class Config>
+std::vector<KeyInfo> list_keys(const std::string& prefix) {
+  Config config;
+  std::vector<KeyInfo> all, wanted;
+  config.each_key(ListKeys{"", all});
+  for (KeyInfo& key : all)
+    if (key.path.starts_with(prefix)) wanted.push_back(std::move(key));
+  return wanted;
+}
+/// For a terminal of 100 columns.
+std::string format_keys(const std::vector<KeyInfo>& keys);
+
+/// cases/rc_slab and cases/rc_slab/case.toml: rc_slab; cases/rc_slab/small.toml: rc_slab_small.
+std::string case_name(const std::string& path);
+/// The folder that the files a case names are looked for in.
+std::string case_folder(const std::string& path);
+/// SHA-256 of a text, in hexadecimal digits.
+std::string case_digest(const std::string& text);
+
+}  // namespace breccia

@@ -1,0 +1,286 @@
+#include "io/case_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "dem/config.hpp"
+#include "exec/error.hpp"
+#include "io/units.hpp"
+#include "prepare/check_case.hpp"
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A case file that goes when the test ends.
+class CaseText {
+ public:
+  explicit CaseText(const std::string& text) {
+    std::string pattern = fs::temp_directory_path() / "breccia_case_XXXXXX";
+    folder_ = ::mkdtemp(pattern.data());
+    std::ofstream(path()) << text;
+  }
+  CaseText(const CaseText&) = delete;
+  CaseText& operator=(const CaseText&) = delete;
+  ~CaseText() { fs::remove_all(folder_); }
+  std::string path() const { return folder_ / "case.toml"; }
+
+ private:
+  fs::path folder_;
+};
+
+/// A whole small case whose lines the tests change.
+const std::string good = R"([time]
+end = "1 ms"
+[material.c30]
+law = "concrete"
+young = "30 GPa"
+[[body]]
+name = "slab"
+material = "c30"
+size = ["1 m", 1.0, "100 mm"]
+pack = { count = 100 }
+)";
+
+dem::Config read_text(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const CaseText file(text);
+  dem::Config config = read_case<dem::Config>(file.path(), overrides);
+  dem::check_case(config);
+  return config;
+}
+
+std::string message_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    read_text(text, overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no problem";
+}
+
+TEST(CaseFile, values_arrive_in_si) {
+  const dem::Config config = read_text(good);
+  EXPECT_EQ(config.time.end, 1e-3);
+  EXPECT_EQ(config.materials.at(0).name, "c30");
+  EXPECT_EQ(config.materials.at(0).young, 30e9);
+  EXPECT_EQ(config.bodies.at(0).size.z, 0.1);
+  EXPECT_EQ(config.bodies.at(0).pack.size_ratio, 2.0);
+}
+
+TEST(CaseFile, overrides_count_last_and_find_items_by_name_or_number) {
+  const dem::Config config =
+      read_text(good, {"time.end=2e-3", "material.c30.young=28 GPa", "body.slab.pack.count=7",
+                       "body.0.velocity=[0.0, 0.0, \"-30 m/s\"]", "title=two words"});
+  EXPECT_EQ(config.time.end, 2e-3);
+  EXPECT_EQ(config.materials.at(0).young, 28e9);
+  EXPECT_EQ(config.bodies.at(0).pack.count, 7);
+  EXPECT_EQ(config.bodies.at(0).velocity.z, -30.0);
+  EXPECT_EQ(config.title, "two words");
+}
+
+TEST(CaseFile, the_completed_case_reads_back_to_the_same_case) {
+  for (const char* name : {"/cases/rc_slab/case.toml", "/cases/rc_slab/small.toml"}) {
+    const std::string text =
+        completed_case(read_case<dem::Config>(BR_SOURCE_DIR + std::string(name), {}));
+    const CaseText file(text);
+    EXPECT_EQ(completed_case(read_case<dem::Config>(file.path(), {})), text) << name;
+  }
+}
+
+struct Wrong {
+  const char* from;  ///< what of the good case is replaced; empty: appended
+  const char* to;
+  const char* message;
+};
+
+class WrongCase : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongCase, is_refused_by_name) {
+  const Wrong& wrong = GetParam();
+  std::string text = good;
+  if (*wrong.from == '\0')
+    text += wrong.to;
+  else
+    text.replace(text.find(wrong.from), std::string(wrong.from).size(), wrong.to);
+  const std::string message = message_of(text);
+  EXPECT_NE(message.find(wrong.message), std::string::npos) << message;
+  EXPECT_NE(message.find("nothing was run"), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, WrongCase,
+    testing::Values(
+        Wrong{"end = \"1 ms\"", "", "time.end is missing; it has no default"},
+        Wrong{"[time]\nend = \"1 ms\"\n", "", "time.end is missing"},
+        Wrong{"end = \"1 ms\"", "end = 0.0", "line 2, time.end = 0 is outside > 0"},
+        Wrong{"end = \"1 ms\"", "end = -1.0", "time.end = -1 is outside > 0"},
+        Wrong{"end = \"1 ms\"", "end = nan", "time.end is not a finite number"},
+        Wrong{"end = \"1 ms\"", "end = inf", "time.end is not a finite number"},
+        Wrong{"end = \"1 ms\"", "end = 1e999", "line 2, column"},
+        Wrong{"end = \"1 ms\"", "end = \"1 mm\"", "\"1 mm\" is a length, a time is wanted, in s"},
+        Wrong{"end = \"1 ms\"", "end = \"1\"", "\"1\" has no unit"},
+        Wrong{"end = \"1 ms\"", "end = \"ms\"", "\"ms\" does not start with a number"},
+        Wrong{"end = \"1 ms\"", "end = \"1 furlong\"", "'furlong' is not a unit"},
+        Wrong{"end = \"1 ms\"", "end = true",
+              "time.end wants a number in s or a text with a unit, not true"},
+        Wrong{"end = \"1 ms\"", "end = \"1 ms\"\nend = 2.0", "line 3"},
+        Wrong{"end = \"1 ms\"", "end = \"1 ms\"\nsafety = 1.5",
+              "time.safety = 1.5 is outside (0, 1]"},
+        Wrong{"end = \"1 ms\"", "end = \"1 ms\"\nsafty = 0.5",
+              "line 3, time.safty is not a key; did you mean safety?"},
+        Wrong{"end = \"1 ms\"", "end = \"1 ms\"\nevaluate_every = 1.5",
+              "time.evaluate_every wants an integer"},
+        Wrong{"end = \"1 ms\"", "end = \"1 ms\"\nevaluate_every = 0",
+              "time.evaluate_every = 0 is outside [1, 1000]"},
+        Wrong{"end = \"1 ms\"", "end = \"1 ms", "line 2, column"},
+        Wrong{"[time]", "method = \"fdem9d\"\n[time]", "method = \"fdem9d\" is not one of dem3d"},
+        Wrong{"[time]", "breccia = 2\n[time]", "breccia = 2 is outside [1, 1]"},
+        Wrong{"[time]", "gravity = 9.81\n[time]", "gravity wants three numbers"},
+        Wrong{"[time]", "gravity = [0.0, 0.0, \"9.81 m/s\"]\n[time]",
+              "gravity[2]: \"9.81 m/s\" is a velocity, an acceleration is wanted"},
+        Wrong{"[time]", "time = 3\n[tim]", "time wants a table, not an integer"},
+        Wrong{"[time]", "[tiem]\nx = 1\n[time]", "tiem is not a key; did you mean time?"},
+        Wrong{"law = \"concrete\"", "law = \"beton\"",
+              "material.c30.law = \"beton\" is not one of concrete"},
+        Wrong{"young = \"30 GPa\"", "young = \"30 GN\"",
+              "material.c30.young: \"30 GN\" is a force, a pressure is wanted, in Pa"},
+        Wrong{"young = \"30 GPa\"", "density = 0.0",
+              "line 5, material.c30.density = 0 is outside > 0"},
+        Wrong{"young = \"30 GPa\"", "poisson = 0.5",
+              "material.c30.poisson = 0.5 is outside (-1, 0.5)"},
+        Wrong{"young = \"30 GPa\"", "poisson = 0.3", "above 1 / alpha"},
+        Wrong{"young = \"30 GPa\"", "tensile_strenght = 1e6", "did you mean tensile_strength?"},
+        Wrong{"young = \"30 GPa\"", "friction_angle = \"30 mm\"",
+              "is a length, an angle is wanted"},
+        Wrong{"young = \"30 GPa\"", "shear = \"ductile\"", "is not one of plastic | brittle"},
+        Wrong{"name = \"slab\"", "", "body[0].name is missing"},
+        Wrong{"material = \"c30\"", "", "body.slab.material is missing"},
+        Wrong{"material = \"c30\"", "material = \"c35\"",
+              "body.slab.material = \"c35\" is not a material; there are: c30"},
+        Wrong{"material = \"c30\"", "material = \"c30\"\nshape = \"sphere\"\nradius = -0.1",
+              "body.slab.radius = -0.1 is outside >= 0"},
+        Wrong{"material = \"c30\"", "material = \"c30\"\nshape = \"sphere\"",
+              "body.slab.radius must be above 0"},
+        Wrong{"material = \"c30\"", "material = \"c30\"\nshape = \"file\"",
+              "body.slab.file is missing"},
+        Wrong{"size = [\"1 m\", 1.0, \"100 mm\"]", "",
+              "body.slab.size needs three lengths above 0"},
+        Wrong{"size = [\"1 m\", 1.0, \"100 mm\"]", "size = [1.0, 1.0]",
+              "body.slab.size wants three numbers"},
+        Wrong{"pack = { count = 100 }", "", "body.slab.pack.count is missing"},
+        Wrong{"pack = { count = 100 }", "pack = {}", "body.slab.pack.count is missing"},
+        Wrong{"pack = { count = 100 }", "pack = { count = 0 }",
+              "body.slab.pack.count = 0 is outside [1, "},
+        Wrong{"pack = { count = 100 }", "pack = { count = 100, compactness = 0.9 }",
+              "compactness = 0.9 is outside [0.05, 0.64]"},
+        Wrong{"[[body]]", "[body]", "body wants a list of tables, each headed [[body]]"},
+        Wrong{"", "[[body]]\nname = \"slab\"\nmaterial = \"c30\"\n",
+              "body has two items named slab"},
+        Wrong{"",
+              "[[body]]\nname = \"rock\"\nmaterial = \"c30\"\nshape = \"sphere\"\nradius = "
+              "0.1\ncenter = [0.0, 0.0, 0.1]\npack = { count = 9 }\n",
+              "body.slab and body.rock overlap at the start"},
+        Wrong{"", "[[support]]\nname = \"s\"\non = \"slap\"\n",
+              "support.s.on = \"slap\" is not a body; there are: slab"},
+        Wrong{"", "[[support]]\nname = \"s\"\nfix = [\"w\"]\n", "\"w\" is no degree of freedom"},
+        Wrong{"", "[[support]]\nname = \"s\"\nfix = \"x\"\n",
+              "support.s.fix wants a list of texts"},
+        Wrong{"", "[[wall]]\nname = \"w\"\nnormal = [0.0, 0.0, 0.0]\n",
+              "wall.w.normal has length 0"},
+        Wrong{"", "[[probe]]\nname = \"p\"\non = \"rock\"\n",
+              "probe.p.on = \"rock\" is neither a body (slab) nor a support"},
+        Wrong{"", "[[probe]]\nname = \"p\"\nquantity = \"velocityz\"\n",
+              "did you mean velocity_z?"}));
+
+TEST(CaseFile, a_case_without_bodies_has_no_elements) {
+  EXPECT_NE(message_of("[time]\nend = 1.0\n").find("the case has no elements"), std::string::npos);
+}
+
+TEST(CaseFile, a_missing_file_and_a_wrong_override_are_named) {
+  EXPECT_THROW(read_case<dem::Config>("/nowhere/case.toml", {}), InputError);
+  EXPECT_NE(message_of(good, {"time.end"}).find("--set time.end is not of the form KEY=VALUE"),
+            std::string::npos);
+  EXPECT_NE(message_of(good, {"time.safety=2"}).find("--set time.safety = 2 is outside"),
+            std::string::npos);
+  EXPECT_NE(message_of(good, {"body.rock.radius=2"}).find("body has no item 'rock'"),
+            std::string::npos);
+}
+
+TEST(CaseFile, all_problems_are_told_at_once_in_the_order_of_lines) {
+  std::string text = good;
+  text.replace(text.find("30 GPa"), 6, "30 GN");
+  const std::string message = message_of(text + "[[probe]]\nnam = 3\n[serch]\n");
+  EXPECT_TRUE(message.starts_with("4 problems in ")) << message;
+  EXPECT_LT(message.find("line 5"), message.find("line 12"));
+}
+
+TEST(CaseFile, a_letter_typed_wrong_leads_to_the_right_key) {
+  std::mt19937 random(11);
+  const std::vector<KeyInfo> keys = list_keys<dem::Config>("material.");
+  int right = 0, tried = 0;
+  for (int n = 0; n < 200; ++n) {
+    std::string key =
+        keys[random() % keys.size()].path.substr(std::string("material.<name>.").size());
+    if (key.size() < 4) continue;
+    std::string typo = key;
+    const std::size_t at = random() % typo.size();
+    const char letter = static_cast<char>('a' + random() % 26);
+    switch (n % 3) {
+      case 0:
+        typo[at] = letter;
+        break;
+      case 1:
+        typo.erase(at, 1);
+        break;
+      default:
+        typo.insert(at, 1, letter);
+    }
+    std::string text = good;
+    text.replace(text.find("young = \"30 GPa\""), 16, typo + " = 1.0");
+    const std::string message = message_of(text);
+    if (typo == key || message.find("is not a key") == std::string::npos) continue;
+    ++tried;
+    if (message.find("did you mean " + key + "?") != std::string::npos) ++right;
+  }
+  EXPECT_GE(right, 95 * tried / 100) << right << " of " << tried;
+}
+
+TEST(CaseFile, cases_are_named_by_folder_and_file) {
+  EXPECT_EQ(case_name("cases/rc_slab/case.toml"), "rc_slab");
+  EXPECT_EQ(case_name("cases/rc_slab/small.toml"), "rc_slab_small");
+  EXPECT_EQ(case_name(BR_SOURCE_DIR "/cases/rc_slab"), "rc_slab");
+  EXPECT_EQ(case_folder("cases/rc_slab/small.toml"), "cases/rc_slab");
+}
+
+TEST(CaseFile, the_digest_is_sha_256) {
+  EXPECT_EQ(case_digest("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(case_digest(std::string(1000, 'a')),
+            "41edece42d63e8d9bf515a9ba6932e1c20cbc9f5a5d134645adb5db1b9737ea3");
+}
+
+TEST(Units, prefixes_products_and_powers_convert_to_si) {
+  const auto si = [](const char* text, const char* wanted) {
+    std::string problem;
+    const double value = parse_quantity(text, wanted, problem);
+    EXPECT_EQ(problem, "") << text;
+    return value;
+  };
+  EXPECT_DOUBLE_EQ(si("40 mm", "m"), 0.04);
+  EXPECT_DOUBLE_EQ(si("11 GPa", "Pa"), 11e9);
+  EXPECT_DOUBLE_EQ(si("0.5 mm/s", "m/s"), 5e-4);
+  EXPECT_DOUBLE_EQ(si("180 deg", "rad"), 3.14159265358979323846);
+  EXPECT_DOUBLE_EQ(si("2.4 g/cm3", "kg/m3"), 2400.0);
+  EXPECT_DOUBLE_EQ(si("100 J/m2", "J/m2"), 100.0);
+  EXPECT_DOUBLE_EQ(si("1 kN/mm^2", "Pa"), 1e9);
+  EXPECT_DOUBLE_EQ(si("9.81 m s-2", "m/s2"), 9.81);
+  EXPECT_DOUBLE_EQ(si("8 %", "-"), 0.08);
+  EXPECT_DOUBLE_EQ(si("-1e3 us", "s"), -1e-3);
+  EXPECT_DOUBLE_EQ(si("2 min", "s"), 120.0);
+}
+
+}  // namespace
+}  // namespace breccia
