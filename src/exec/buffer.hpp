@@ -28,7 +28,8 @@ struct View {
 #endif
     return data[i];
   }
-  BR_HD operator View<const T>() const {  // NOLINT: a writable view reads as well
+  BR_HD operator View<const T>() const  // NOLINT: a writable view reads as well
+      requires(!std::is_const_v<T>) {
     View<const T> view;
     view.data = data;
     view.size = size;

@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""Holds #include lines to the direction of the layers, and files to one job.
+
+Usage: check_includes.py [SOURCE_FOLDER]   (default: src beside this script's folder)
+Exit status 0 if all is well, 1 with a line for each violation.
+"""
+import pathlib
+import re
+import sys
+
+ALLOWED = {
+    "exec": set(),
+    "math": {"exec"},
+    "core": {"exec", "math"},
+    "domain": {"exec", "math", "core"},
+    "dem": {"exec", "math", "core", "domain"},
+    "fdem": {"exec", "math", "core", "domain"},
+    "io": {"exec", "math", "core"},
+    "prepare": {"exec", "math", "core", "io", "dem", "fdem"},
+    "run": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare"},
+    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run"},
+}
+LONGEST = 500
+INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
+
+
+def violations(source):
+    for path in sorted(source.rglob("*")):
+        if path.suffix not in (".hpp", ".cpp"):
+            continue
+        layer = path.relative_to(source).parts[0]
+        if layer not in ALLOWED:
+            yield f"{path}: {layer} is not a layer; allowed are {', '.join(ALLOWED)}"
+            continue
+        lines = path.read_text().splitlines()
+        if len(lines) > LONGEST:
+            yield f"{path}: {len(lines)} lines; over {LONGEST} a file has two jobs"
+        for number, line in enumerate(lines, 1):
+            found = INCLUDE.match(line)
+            if not found:
+                continue
+            target = found.group(1).split("/")[0]
+            if target in ALLOWED and target != layer and target not in ALLOWED[layer]:
+                yield f"{path}:{number}: {layer} must not see {target}"
+
+
+def main():
+    source = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent / "src"
+    found = list(violations(source))
+    print("\n".join(found) if found else "includes point one way")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
