@@ -1,0 +1,72 @@
+// breccia bench: how fast this machine is.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/benchmarks.hpp"
+#include "app/commands.hpp"
+#include "app/run_options.hpp"
+#include "exec/error.hpp"
+#include "io/whole_file.hpp"
+
+namespace breccia::app {
+namespace {
+
+struct BenchCommand {
+  std::vector<std::string> names;
+  std::string file;
+  RunOptions options;
+
+  void refuse_unknown() const {
+    std::string known;
+    for (const Benchmark& benchmark : benchmarks())
+      known += fmt::format("\n  {:<24} {}", benchmark.name, benchmark.meaning);
+    for (const std::string& name : names)
+      if (std::none_of(benchmarks().begin(), benchmarks().end(),
+                       [&](const Benchmark& benchmark) { return benchmark.name == name; }))
+        throw InputError(fmt::format("{} is not a benchmark; there are:{}", name,
+                                     known.empty() ? " none" : known));
+  }
+
+  void execute() const {
+    refuse_unknown();
+    const Exec exec = exec_of(options);
+    nlohmann::ordered_json json;
+    json["machine"] = {
+        {"cpu", processor_name()}, {"device", options.device}, {"threads", exec.threads}};
+    json["benchmarks"] = nlohmann::ordered_json::object();
+    for (const Benchmark& benchmark : benchmarks()) {
+      if (!names.empty() && std::find(names.begin(), names.end(), benchmark.name) == names.end())
+        continue;
+      for (const Measurement& measured : benchmark.measure(exec)) {
+        fmt::print("{:<24} {:<24} {:>12.5g} {}\n", benchmark.name, measured.name, measured.value,
+                   measured.unit);
+        json["benchmarks"][benchmark.name][measured.name] = {{"value", measured.value},
+                                                             {"unit", measured.unit}};
+      }
+      std::fflush(stdout);
+    }
+    if (!file.empty()) replace_file(file, json.dump(2) + "\n");
+  }
+};
+
+}  // namespace
+
+void add_bench(CLI::App& program) {
+  const auto bench = std::make_shared<BenchCommand>();
+  CLI::App* const command = program.add_subcommand("bench", "measure how fast this machine is");
+  command->add_option("NAME", bench->names, "which benchmarks; default: all");
+  command->add_option("--json", bench->file, "write the numbers to this file")->type_name("FILE");
+  command->add_option("--device", bench->options.device, "where to compute: cpu, cuda or cuda:N")
+      ->capture_default_str();
+  command->add_option("--threads", bench->options.threads, "host threads; default: all")
+      ->check(CLI::Range(1, 4096));
+  command->callback([bench] { bench->execute(); });
+}
+
+}  // namespace breccia::app

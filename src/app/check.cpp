@@ -1,0 +1,54 @@
+// breccia check CASE...: says every problem of the cases without running them.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/case.hpp"
+#include "app/commands.hpp"
+#include "exec/error.hpp"
+#include "io/round_numbers.hpp"
+
+namespace breccia::app {
+namespace {
+
+struct CheckCommand {
+  std::vector<std::string> paths, overrides;
+
+  int execute() const {
+    int exit_code = 0;
+    for (const std::string& path : paths) {
+      try {
+        const Case read = load_case(path, overrides);
+        fmt::print("{}: good: {}, {} bodies, {} materials, ends at {}\n", path, read.config.method,
+                   read.config.bodies.size(), read.config.materials.size(),
+                   time_text(read.config.time.end));
+      } catch (const Error& error) {
+        std::fflush(stdout);
+        std::fputs(fmt::format("error: {}\n", error.what()).c_str(), stderr);
+        if (exit_code == 0) exit_code = error.exit_code();
+      }
+    }
+    return exit_code;
+  }
+};
+
+}  // namespace
+
+void add_check(CLI::App& program, int& exit_code) {
+  const auto check = std::make_shared<CheckCommand>();
+  CLI::App* const command =
+      program.add_subcommand("check", "say every problem of cases without running them");
+  command->add_option("CASE", check->paths, "case files, or folders that hold case.toml")
+      ->required();
+  command->add_option("--set", check->overrides, "override a key of the cases")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  command->callback([check, &exit_code] { exit_code = check->execute(); });
+}
+
+}  // namespace breccia::app

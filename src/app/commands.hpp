@@ -1,0 +1,20 @@
+#pragma once
+// The commands of the program: one file each.
+
+namespace CLI {
+class App;
+}
+
+namespace breccia::app {
+
+/// Each adds one command; when it is called it does its work and sets the exit code of the program.
+/// Errors leave as the classes of exec/error.hpp.
+void add_run(CLI::App& program, int& exit_code);
+void add_resume(CLI::App& program, int& exit_code);
+void add_check(CLI::App& program, int& exit_code);
+void add_keys(CLI::App& program);
+void add_info(CLI::App& program);
+void add_render(CLI::App& program);
+void add_bench(CLI::App& program);
+
+}  // namespace breccia::app

@@ -1,0 +1,76 @@
+// breccia resume DIR: goes on from the newest good checkpoint of a result folder.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/run_options.hpp"
+#include "exec/error.hpp"
+#include "prepare/build.hpp"
+#include "run/dem_method.hpp"
+#include "run/run.hpp"
+#include "run/signals.hpp"
+
+namespace breccia::app {
+namespace {
+
+/// A run that goes on may end, save and draw differently; all else belongs to its states.
+void refuse_fixed_keys(const std::vector<std::string>& overrides) {
+  constexpr std::array changeable{"time.end=", "output.", "checkpoint.", "title="};
+  for (const std::string& text : overrides)
+    if (std::none_of(changeable.begin(), changeable.end(),
+                     [&](const char* start) { return text.starts_with(start); }))
+      throw InputError(
+          fmt::format("--set {}: a run that goes on takes time.end, output.*, checkpoint.* and "
+                      "title only; nothing was run",
+                      text));
+}
+
+struct ResumeCommand {
+  RunOptions options;
+  std::string path;
+
+  int execute() const {
+    const auto begin = std::chrono::steady_clock::now();
+    const StopSignals signals;
+    StageTimers timers;
+    Exec exec = exec_of(options);
+    exec.timers = &timers;
+    refuse_fixed_keys(options.overrides);
+
+    const ResultFolder folder = ResultFolder::open(path);
+    Case read = load_case(folder.file("case.toml"), options.overrides);
+    const CheckpointReader checkpoint =
+        newest_good_checkpoint(folder.file("checkpoints"), [](const std::string& warning) {
+          std::fputs(fmt::format("warning: {}\n", warning).c_str(), stderr);
+        });
+    read.name = checkpoint.text("run.case_name");
+    read.folder = checkpoint.text("run.case_folder");
+
+    RunPlan plan = plan_of(read, options, exec);
+    plan.begin = begin;
+    refuse_other_case(checkpoint, plan);
+    const dem::Model model = build_model(read.config, read.folder);
+    const std::unique_ptr<Method> method = make_dem_method(read.config, model, exec);
+    timers.clear();
+    return Run(*method, plan, folder, checkpoint).execute();
+  }
+};
+
+}  // namespace
+
+void add_resume(CLI::App& program, int& exit_code) {
+  const auto resume = std::make_shared<ResumeCommand>();
+  CLI::App* const command =
+      program.add_subcommand("resume", "go on from the newest good checkpoint of a run");
+  command->add_option("DIR", resume->path, "the result folder of the run")->required();
+  add_run_options(*command, resume->options);
+  command->callback([resume, &exit_code] { exit_code = resume->execute(); });
+}
+
+}  // namespace breccia::app

@@ -1,0 +1,66 @@
+// breccia run CASE: from the start of a case, or from a checkpoint of it.
+
+#include "run/run.hpp"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/run_options.hpp"
+#include "prepare/build.hpp"
+#include "run/dem_method.hpp"
+#include "run/signals.hpp"
+
+namespace breccia::app {
+namespace {
+
+struct RunCommand {
+  RunOptions options;
+  std::string path, folder, restart;
+  bool force = false;
+
+  int execute() const {
+    const auto begin = std::chrono::steady_clock::now();
+    const StopSignals signals;
+    StageTimers timers;
+    Exec exec = exec_of(options);
+    exec.timers = &timers;
+
+    const Case read = load_case(path, options.overrides);
+    const std::string out = folder.empty() ? "out/" + read.name : folder;
+    const Existing existing = force ? Existing::replace : Existing::refuse;
+    ResultFolder::check_free(out, existing);
+
+    const dem::Model model = build_model(read.config, read.folder);
+    const std::unique_ptr<Method> method = make_dem_method(read.config, model, exec);
+    RunPlan plan = plan_of(read, options, exec);
+    plan.begin = begin;
+    if (!restart.empty()) {
+      const CheckpointReader checkpoint(restart);
+      refuse_other_case(checkpoint, plan);
+      method->load(checkpoint);
+    }
+    timers.clear();
+    const ResultFolder result = ResultFolder::create(out, existing);
+    return Run(*method, plan, result).execute();
+  }
+};
+
+}  // namespace
+
+void add_run(CLI::App& program, int& exit_code) {
+  const auto run = std::make_shared<RunCommand>();
+  CLI::App* const command = program.add_subcommand("run", "run a case");
+  command->add_option("CASE", run->path, "a case file, or a folder that holds case.toml")
+      ->required();
+  command->add_option("-o,--out", run->folder, "result folder; default: out/<case name>")
+      ->type_name("DIR");
+  command->add_option("--restart", run->restart, "begin from this checkpoint of the same case")
+      ->type_name("FILE");
+  command->add_flag("--force", run->force, "replace the run that the result folder holds");
+  add_run_options(*command, run->options);
+  command->callback([run, &exit_code] { exit_code = run->execute(); });
+}
+
+}  // namespace breccia::app

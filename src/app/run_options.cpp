@@ -1,0 +1,86 @@
+#include "app/run_options.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "exec/error.hpp"
+
+namespace breccia::app {
+namespace {
+
+/// The problem of a text that must be a number not below zero, empty if there is none.
+template <class Number>
+std::string problem_of(const std::string& text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool good = error == std::errc{} && end == text.data() + text.size() && number >= 0;
+  return good ? ""
+              : text + (std::is_integral_v<Number> ? " is not a count" : " is not a time in s");
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--device", options.device, "where to compute: cpu, cuda or cuda:N")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "host threads; default: all of the machine")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+  command.add_option("--steps", options.steps, "end after N steps since the start of the case")
+      ->type_name("N")
+      ->check(problem_of<std::int64_t>);
+  command.add_option("--until", options.until, "end at this simulated time instead of time.end")
+      ->type_name("SECONDS")
+      ->check(problem_of<double>);
+  command
+      .add_option("--set", options.overrides, "override a key of the case; may be given repeatedly")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  CLI::Option* const quiet =
+      command.add_flag("-q,--quiet", options.quiet, "say nothing but errors");
+  command.add_flag("-v,--verbose", options.verbose, "tell of each frame and checkpoint")
+      ->excludes(quiet);
+  command.add_flag("--no-progress", options.no_progress, "no progress bar or lines");
+}
+
+Exec exec_of(const RunOptions& options) {
+  Exec exec;
+  exec.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  if (options.device == "cpu") return exec;
+  if (options.device != "cuda" && !options.device.starts_with("cuda:"))
+    throw InputError(fmt::format("--device {}: there are cpu, cuda and cuda:N", options.device));
+#if defined(BR_CUDA)
+  exec.space = Space::cuda;
+  return exec;
+#else
+  throw DeviceError(
+      fmt::format("--device {}: this build of breccia has no CUDA; nothing was run\n"
+                  "  build it with 'cmake --preset cuda', or use --device cpu",
+                  options.device));
+#endif
+}
+
+RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec) {
+  RunPlan plan;
+  plan.config = read.config;
+  plan.case_name = read.name;
+  plan.case_text = read.text;
+  plan.case_digest = read.digest;
+  plan.case_folder = read.folder;
+  plan.model_digest = read.model_digest;
+  plan.limits = {options.until, options.steps};
+  plan.machine = {processor_name(), options.device, exec.threads, 1};
+  plan.timers = exec.timers;
+  plan.speech = options.quiet ? Speech::quiet : options.verbose ? Speech::verbose : Speech::normal;
+  plan.progress =
+      options.quiet || options.no_progress ? Progress::Form::none : Progress::form_for(stdout);
+  return plan;
+}
+
+}  // namespace breccia::app

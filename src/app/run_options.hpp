@@ -1,0 +1,35 @@
+#pragma once
+// The options that `run` and `resume` share, and what they mean.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/case.hpp"
+#include "exec/space.hpp"
+#include "run/run.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace breccia::app {
+
+struct RunOptions {
+  std::string device = "cpu";
+  int threads = 0;  ///< 0: all there are
+  std::optional<std::int64_t> steps;
+  std::optional<double> until;  ///<  [s]
+  std::vector<std::string> overrides;
+  bool quiet = false, verbose = false, no_progress = false;
+};
+
+void add_run_options(CLI::App& command, RunOptions& options);
+
+/// @throws InputError for a device that is none, DeviceError if this build or machine has it not
+Exec exec_of(const RunOptions& options);
+
+/// The plan of a run of the case; `timers` are those the method books its stages in.
+RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec);
+
+}  // namespace breccia::app

@@ -1,0 +1,242 @@
+// The program itself, as scripts see it: exit codes, what it writes and what it leaves alone.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "io/whole_file.hpp"
+#include "run/checkpoints.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Two balls that collide head-on.
+const std::string two_balls = R"(
+breccia = 1
+method = "dem3d"
+[time]
+end = "2 ms"
+[output]
+frames = 2
+width = 64
+height = 64
+[material.rock]
+law = "grain"
+young = "1 GPa"
+[[body]]
+name = "left"
+shape = "element"
+material = "rock"
+center = [-0.011, 0.0, 0.0]
+radius = "10 mm"
+velocity = [2.0, 0.0, 0.0]
+[[body]]
+name = "right"
+shape = "element"
+material = "rock"
+center = [0.011, 0.0, 0.0]
+radius = "10 mm"
+velocity = [-2.0, 0.0, 0.0]
+[[probe]]
+name = "left_x"
+on = "left"
+quantity = "position_x"
+[[check]]
+name = "elements"
+value = "model.elements"
+expected = 2
+)";
+
+/// Starts `breccia` by a shell with these arguments; both streams go to `output`.
+pid_t start(const std::string& arguments, const std::string& output = "/dev/null") {
+  const std::string command =
+      std::string("exec '") + BR_PROGRAM + "' " + arguments + " > " + output + " 2>&1";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+    ::_exit(127);
+  }
+  return child;
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+class Program : public testing::Test {
+ protected:
+  Program() {
+    replace_file(scratch / "balls.toml", two_balls);
+    std::string long_case = two_balls;
+    replace_file(scratch / "long.toml", long_case.replace(long_case.find("2 ms"), 4, "900 s"));
+  }
+
+  /// The exit code; what it said is in output().
+  int run(const std::string& arguments) {
+    return wait_for(start(arguments, scratch / "output.txt"));
+  }
+  std::string output() const { return read_whole_file(scratch / "output.txt"); }
+  std::string path(const std::string& name) const { return scratch / name; }
+  nlohmann::json summary(const std::string& name) const {
+    return nlohmann::json::parse(read_whole_file(path(name) + "/summary.json"));
+  }
+  /// Waits until the run in the folder has begun to step.
+  void wait_until_running(const std::string& name) const {
+    for (int i = 0; i < 2000 && !fs::exists(path(name) + "/history.csv"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+
+  ScratchFolder scratch;
+};
+
+TEST_F(Program, RunsACaseAndLeavesItsResultFolder) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
+  for (const char* name : {"case.toml", "summary.json", "history.csv", "log.jsonl", "checkpoints",
+                           "fields", "elements.pvd", "pictures/0000.png", "pictures/0002.png"})
+    EXPECT_TRUE(fs::exists(path("out/") + name)) << name;
+  EXPECT_EQ(summary("out")["status"], "done");
+  EXPECT_EQ(summary("out")["model"]["elements"], 2);
+  EXPECT_EQ(summary("out")["checks"][0]["pass"], true);
+  EXPECT_EQ(summary("out")["case"]["sha256"].get<std::string>().size(), 64U);
+}
+
+TEST_F(Program, CompletedCaseRunsToTheSameState) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("first")), 0) << output();
+  ASSERT_EQ(run("run " + path("first/case.toml") + " -o " + path("again")), 0) << output();
+  EXPECT_EQ(summary("first")["state_hash"], summary("again")["state_hash"]);
+  EXPECT_EQ(summary("first")["case"]["sha256"], summary("again")["case"]["sha256"]);
+}
+
+TEST_F(Program, RefusesBadInputAndWritesNothing) {
+  replace_file(path("bad.toml"), two_balls + "\n[tme]\nend = 1.0\n");
+  EXPECT_EQ(run("run " + path("bad.toml") + " -o " + path("out")), 2);
+  EXPECT_NE(output().find("tme"), std::string::npos) << output();
+  EXPECT_EQ(run("run " + path("balls.toml") + " --set time.end=-1 -o " + path("out")), 2);
+  EXPECT_EQ(run("run " + path("balls.toml") + " --no-such-option -o " + path("out")), 2);
+  EXPECT_EQ(run("run " + path("balls.toml") + " --threads 0 -o " + path("out")), 2);
+  EXPECT_EQ(run("check " + path("bad.toml") + " " + path("balls.toml")), 2);
+  EXPECT_EQ(run("check " + path("balls.toml")), 0) << output();
+  EXPECT_EQ(run(""), 2);
+  EXPECT_FALSE(fs::exists(path("out")));
+}
+
+TEST_F(Program, NamesAFileItCannotReadOrAFolderItCannotWrite) {
+  EXPECT_EQ(run("run " + path("none.toml")), 3);
+  EXPECT_NE(output().find("none.toml"), std::string::npos) << output();
+  EXPECT_EQ(run("run " + path("balls.toml") + " -o " + path("balls.toml/out")), 3) << output();
+  EXPECT_EQ(run("run " + path("balls.toml") + " -o /proc/out"), 3);
+  EXPECT_NE(output().find("/proc/out"), std::string::npos) << output();
+}
+
+TEST_F(Program, HasNoDeviceThatItWasNotBuiltFor) {
+#if !defined(BR_CUDA)
+  EXPECT_EQ(run("run " + path("balls.toml") + " --device cuda -o " + path("out")), 5);
+  EXPECT_FALSE(fs::exists(path("out")));
+#endif
+}
+
+TEST_F(Program, RefusesAFolderThatHoldsARunUnlessForced) {
+  const std::string command = "run " + path("balls.toml") + " -o " + path("out");
+  ASSERT_EQ(run(command), 0) << output();
+  EXPECT_EQ(run(command), 2);
+  EXPECT_NE(output().find("--force"), std::string::npos) << output();
+  EXPECT_EQ(run(command + " --force"), 0) << output();
+}
+
+TEST_F(Program, FailsWithNineIfACheckFails) {
+  std::string wrong = two_balls;
+  wrong.replace(wrong.find("expected = 2"), 12, "expected = 3");
+  replace_file(path("wrong.toml"), wrong);
+  EXPECT_EQ(run("run " + path("wrong.toml") + " -o " + path("out")), 9);
+  EXPECT_NE(output().find("FAIL"), std::string::npos) << output();
+  EXPECT_EQ(summary("out")["exit_code"], 9);
+}
+
+TEST_F(Program, SavesItsStateAtASignalAndResumesToTheSameBits) {
+  ASSERT_EQ(run("run " + path("long.toml") + " --steps 400000 -o " + path("whole")), 0) << output();
+  int tried = 0;
+  for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
+    const std::string name = "broken" + std::to_string(++tried);
+    const pid_t child = start("run " + path("long.toml") + " -o " + path(name));
+    wait_until_running(name);
+    ::kill(child, signal);
+    EXPECT_EQ(wait_for(child), 128 + signal);
+    EXPECT_EQ(summary(name)["status"], "interrupted");
+    ASSERT_LT(summary(name)["steps"].get<int>(), 400000);
+    EXPECT_EQ(run("resume " + path(name) + " --threads 1 --steps 400000"), 0) << output();
+    EXPECT_EQ(summary(name)["steps"], 400000);
+    EXPECT_EQ(summary(name)["state_hash"], summary("whole")["state_hash"]);
+    EXPECT_EQ(read_whole_file(path(name) + "/history.csv"),
+              read_whole_file(path("whole/history.csv")));
+  }
+}
+
+TEST_F(Program, RestartsFromACheckpointInANewFolder) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("whole")), 0) << output();
+  ASSERT_EQ(run("run " + path("balls.toml") + " --steps 50 -o " + path("part")), 0) << output();
+  const std::string checkpoint = list_checkpoints(path("part/checkpoints")).at(0).path;
+  ASSERT_EQ(run("run " + path("balls.toml") + " --restart " + checkpoint + " -o " + path("rest")),
+            0)
+      << output();
+  EXPECT_EQ(summary("rest")["state_hash"], summary("whole")["state_hash"]);
+  EXPECT_EQ(run("run " + path("balls.toml") + " --set material.rock.young=2e9 --restart " +
+                checkpoint + " -o " + path("other")),
+            7)
+      << output();
+}
+
+TEST_F(Program, RefusesAFolderWhoseCheckpointsAreAllDamaged) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
+  for (const CheckpointFile& file : list_checkpoints(path("out/checkpoints")))
+    fs::resize_file(file.path, fs::file_size(file.path) / 2);
+  EXPECT_EQ(run("resume " + path("out")), 7) << output();
+}
+
+TEST_F(Program, RefusesASecondRunInTheSameFolder) {
+  const pid_t child = start("run " + path("long.toml") + " -o " + path("out"));
+  wait_until_running("out");
+  EXPECT_EQ(run("run " + path("long.toml") + " --force -o " + path("out")), 2);
+  EXPECT_EQ(run("resume " + path("out")), 2);
+  EXPECT_NE(output().find("another run"), std::string::npos) << output();
+  ::kill(child, SIGKILL);
+  EXPECT_EQ(wait_for(child), -SIGKILL);
+}
+
+TEST_F(Program, WritesNoCarriageReturnIntoAFile) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
+  EXPECT_EQ(output().find('\r'), std::string::npos);
+  EXPECT_NE(output().find("done"), std::string::npos);
+  ASSERT_EQ(run("run " + path("balls.toml") + " -q -o " + path("quiet")), 0);
+  EXPECT_EQ(output(), "");
+}
+
+TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
+  EXPECT_EQ(run("info " + path("out")), 0) << output();
+  EXPECT_EQ(run("info " + list_checkpoints(path("out/checkpoints")).at(0).path), 0) << output();
+  EXPECT_NE(output().find("elements.orientation"), std::string::npos) << output();
+  EXPECT_EQ(run("render " + path("out") + " -o " + path("picture.png") + " --color velocity"), 0)
+      << output();
+  EXPECT_TRUE(fs::exists(path("picture.png")));
+  EXPECT_EQ(run("render " + path("out") + " --color no_such_field"), 2);
+  EXPECT_EQ(run("keys time"), 0) << output();
+  EXPECT_NE(output().find("time.end"), std::string::npos) << output();
+  EXPECT_EQ(run("keys no_such_prefix"), 2);
+  EXPECT_EQ(run("--version"), 0);
+  EXPECT_EQ(run("run --help"), 0);
+}
+
+}  // namespace
+}  // namespace breccia
