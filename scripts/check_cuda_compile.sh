@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Compiles every file with kernels by nvcc, where it is installed: the kernels must stay device code.
+# Set-up and material constants are host work and hold no kernels.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -8,7 +9,7 @@ if [ -z "$nvcc" ]; then
   echo "nvcc is not installed: kernels were not compiled for a GPU"
   exit 0
 fi
-files=$(ls src/core/*.cpp src/dem/*.cpp | grep -v -E 'src/dem/(materials|restitution|link_lanes)\.cpp')
+files=$(ls src/core/*.cpp src/dem/*.cpp | grep -v -E 'src/dem/(materials|restitution|link_lanes|setup)\.cpp')
 flags=(-x cu -std=c++20 -Isrc -arch=sm_90 -fmad=false -prec-div=true -prec-sqrt=true -ftz=false
   -diag-suppress 20012,20014,177 -Xcompiler -fopenmp -c -o /dev/null)
 echo "$files" | xargs -P 2 -I{} sh -c 'echo "nvcc {}"; "$0" "$@" {}' "$nvcc" "${flags[@]}"

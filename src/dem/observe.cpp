@@ -101,11 +101,13 @@ void verify(const World& w) {
   const auto i = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
   const std::string group = w.sets.at(static_cast<std::size_t>(host.group.data()[i])).name;
   throw NumericsError(
-      fmt::format("step {}, t = {:.6e} s: element {} ({}) moves at {:.3e} m/s, more than its "
-                  "radius {:.3e} m in a "
-                  "step of {:.3e} s, or is not finite; a smaller time.safety (now {}) may help",
-                  w.step, w.time, bad, group, norm(host.state.data()[i].velocity),
-                  host.state.data()[i].radius, w.last_dt, w.parameters.time.safety));
+      // fmt::runtime, because nvcc cannot check format strings
+      fmt::format(
+          fmt::runtime("step {}, t = {:.6e} s: element {} ({}) moves at {:.3e} m/s, more than its "
+                       "radius {:.3e} m in a step of {:.3e} s, or is not finite; a smaller "
+                       "time.safety (now {}) may help"),
+          w.step, w.time, bad, group, norm(host.state.data()[i].velocity),
+          host.state.data()[i].radius, w.last_dt, w.parameters.time.safety));
 }
 
 std::vector<double> damage(const World& w) {

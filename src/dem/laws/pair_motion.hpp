@@ -51,6 +51,7 @@ BR_HD R turn_scale(const Vec3Of<R>& half_turn) {
 ///
 /// The old normal follows from velocities: d_old = d - dt (v_b - v_a), so none is stored, and
 /// tan(angle) axis = (d_old x n) / (d_old . n) = dt (n x dv) / (D - dt dv.n) holds exactly.
+/// Rotations are Cayley's: a spin w turns by 2 atan(|w| dt / 2) in a step (math/vec.hpp, turned).
 template <class R>
 BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const R& excess,
                                 double dt) {
@@ -64,18 +65,27 @@ BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const 
 
   const R step = constant<R>(dt);
   const Vec3Of<R> dv = b.velocity - a.velocity;
-  const Vec3Of<R> sliding = dv - cross(m.arm_b * b.spin + m.arm_a * a.spin, m.normal);
-  m.slip = step * m.across(sliding);
-  m.turn = step * (b.spin - a.spin);
-
   // 1 / (D - e D) with the stretch e of one step, by its series: e^4 is below rounding
   const R stretch = step * inverse * dot(dv, m.normal);
   const R tangent_scale = step * inverse * (1.0 + stretch * (1.0 + stretch * (1.0 + stretch)));
-  const Vec3Of<R> tangent = tangent_scale * cross(m.normal, dv);
+  const Vec3Of<R> tangent = tangent_scale * cross(m.normal, dv);  // tan(angle) axis
   const R half = constant<R>(0.5), quarter = constant<R>(0.25);
-  const R half_tangent = half * (1.0 - quarter * dot(tangent, tangent));  // tan(t/2) from tan t
-  const R spin = quarter * step * dot(m.normal, a.spin + b.spin);  // half the mean spin's angle
-  m.half_turn = half_tangent * tangent + spin * m.normal;
+  const R square = dot(tangent, tangent);
+  // tan(angle / 2) from tan(angle): t / (1 + sqrt(1 + t^2)) by its series
+  const Vec3Of<R> swing =
+      half * (1.0 - quarter * square * (1.0 - square * (half - 0.3125 * square))) * tangent;
+  const Vec3Of<R> middle = m.normal + cross(m.normal, swing);  // along old + new normal
+  const R spin =
+      quarter * step * dot(m.normal, a.spin + b.spin);  // tan of half the mean spin's angle
+  m.half_turn = swing + spin * middle;                  // the spin first, then the swing
+
+  // Slip with the levers of the middle of the step: a rigid turn of the pair slips by exactly
+  // nothing.
+  const R bend = dot(swing, swing);
+  const Vec3Of<R> lever = (1.0 - bend * (1.0 - bend)) * middle;  // (old + new normal) / 2
+  const Vec3Of<R> sliding = dv - cross(m.arm_b * b.spin + m.arm_a * a.spin, lever);
+  m.slip = step * m.across(sliding);
+  m.turn = step * (b.spin - a.spin);
   m.turn_scale = turn_scale(m.half_turn);
   return m;
 }
