@@ -1,9 +1,8 @@
 #include "dem/observe.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "core/state_hash.hpp"
@@ -100,14 +99,15 @@ void verify(const World& w) {
   const auto ids = host.id.host();
   const auto i = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
   const std::string group = w.sets.at(static_cast<std::size_t>(host.group.data()[i])).name;
-  throw NumericsError(
-      // fmt::runtime, because nvcc cannot check format strings
-      fmt::format(
-          fmt::runtime("step {}, t = {:.6e} s: element {} ({}) moves at {:.3e} m/s, more than its "
-                       "radius {:.3e} m in a step of {:.3e} s, or is not finite; a smaller "
-                       "time.safety (now {}) may help"),
-          w.step, w.time, bad, group, norm(host.state.data()[i].velocity),
-          host.state.data()[i].radius, w.last_dt, w.parameters.time.safety));
+  char message[400];  // snprintf, because nvcc does not take fmt's headers
+  std::snprintf(
+      message, sizeof message,
+      "step %lld, t = %.6e s: element %d (%s) moves at %.3e m/s, more than its radius %.3e m in a "
+      "step of %.3e s, or is not finite; a smaller time.safety (now %g) may help",
+      static_cast<long long>(w.step), w.time, bad, group.c_str(),
+      norm(host.state.data()[i].velocity), host.state.data()[i].radius, w.last_dt,
+      w.parameters.time.safety);
+  throw NumericsError(message);
 }
 
 std::vector<double> damage(const World& w) {
