@@ -5,7 +5,9 @@
 #include "exec/error.hpp"
 #include "io/case_file.hpp"
 #include "io/whole_file.hpp"
+#include "prepare/build.hpp"
 #include "prepare/check_case.hpp"
+#include "prepare/model_file.hpp"
 
 namespace breccia::app {
 namespace {
@@ -29,19 +31,59 @@ std::string model_digest(dem::Config config) {
   return case_digest(completed_case(config));
 }
 
+/// Fills in what follows from the configuration.
+Case completed(Case read) {
+  dem::check_case(read.config);
+  read.text = completed_case(read.config);
+  read.digest = case_digest(read.text);
+  read.model_digest = model_digest(read.config);
+  return read;
+}
+
+/// The keys that a model was built from, and their values.
+std::string model_keys(const dem::Config& config) {
+  dem::Config part;
+  part.seed = config.seed;
+  part.materials = config.materials;
+  part.bodies = config.bodies;
+  part.links = config.links;
+  return completed_case(part);
+}
+
+Case load_prepared(const std::string& path, const std::vector<std::string>& overrides) {
+  const CheckpointReader reader(path);
+  if (!holds_model(reader))
+    throw InputError(path +
+                     ": holds the state of a run, not a model; nothing was run\n"
+                     "  'breccia run CASE --restart " +
+                     path + "' begins from it");
+  const CaseText text{reader.text("case.text"), path};
+  Case read;
+  read.config = read_case<dem::Config>(text, overrides);
+  if (model_keys(read.config) != model_keys(read_case<dem::Config>(text, {})))
+    throw InputError(path +
+                     ": --set cannot change the seed, materials, bodies or links of a "
+                     "prepared model; nothing was run");
+  read.name = reader.text("case.name");
+  read.folder = reader.text("case.folder");
+  read.model = load_model(reader);
+  return completed(std::move(read));
+}
+
 }  // namespace
 
 Case load_case(const std::string& path, const std::vector<std::string>& overrides) {
+  if (path.ends_with(".br")) return load_prepared(path, overrides);
   refuse_unreadable(path);
-  Case loaded;
-  loaded.config = read_case<dem::Config>(path, overrides);
-  dem::check_case(loaded.config);
-  loaded.name = case_name(path);
-  loaded.text = completed_case(loaded.config);
-  loaded.digest = case_digest(loaded.text);
-  loaded.folder = std::filesystem::absolute(case_folder(path)).lexically_normal().string();
-  loaded.model_digest = model_digest(loaded.config);
-  return loaded;
+  Case read;
+  read.config = read_case<dem::Config>(path, overrides);
+  read.name = case_name(path);
+  read.folder = std::filesystem::absolute(case_folder(path)).lexically_normal().string();
+  return completed(std::move(read));
+}
+
+dem::Model model_of(const Case& read) {
+  return read.model ? *read.model : build_model(read.config, read.folder);
 }
 
 }  // namespace breccia::app

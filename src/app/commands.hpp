@@ -11,6 +11,7 @@ namespace breccia::app {
 /// Errors leave as the classes of exec/error.hpp.
 void add_run(CLI::App& program, int& exit_code);
 void add_resume(CLI::App& program, int& exit_code);
+void add_prepare(CLI::App& program);
 void add_check(CLI::App& program, int& exit_code);
 void add_keys(CLI::App& program);
 void add_info(CLI::App& program);

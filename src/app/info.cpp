@@ -29,6 +29,7 @@ void describe_state(const std::string& path) {
                reader.text("run.method"),
                count_text(static_cast<double>(reader.value<std::int64_t>("run.step"))),
                time_text(reader.value<double>("run.time")));
+  if (reader.has("case.name")) fmt::print("  the model of case {}\n", reader.text("case.name"));
   fmt::print("  {:<32} {:>12} {:>12}\n", "section", "items", "bytes");
   for (const CheckpointReader::Section& section : reader.sections())
     fmt::print("  {:<32} {:>12} {:>12}\n", section.name, section.count, section.bytes.size());

@@ -41,6 +41,7 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   breccia::app::add_run(program, exit_code);
   breccia::app::add_resume(program, exit_code);
+  breccia::app::add_prepare(program);
   breccia::app::add_check(program, exit_code);
   breccia::app::add_keys(program);
   breccia::app::add_info(program);

@@ -8,7 +8,6 @@
 
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
-#include "prepare/build.hpp"
 #include "run/dem_method.hpp"
 #include "run/signals.hpp"
 
@@ -32,7 +31,7 @@ struct RunCommand {
     const Existing existing = force ? Existing::replace : Existing::refuse;
     ResultFolder::check_free(out, existing);
 
-    const dem::Model model = build_model(read.config, read.folder);
+    const dem::Model model = model_of(read);
     const std::unique_ptr<Method> method = make_dem_method(read.config, model, exec);
     RunPlan plan = plan_of(read, options, exec);
     plan.begin = begin;
@@ -52,7 +51,9 @@ struct RunCommand {
 void add_run(CLI::App& program, int& exit_code) {
   const auto run = std::make_shared<RunCommand>();
   CLI::App* const command = program.add_subcommand("run", "run a case");
-  command->add_option("CASE", run->path, "a case file, or a folder that holds case.toml")
+  command
+      ->add_option("CASE", run->path,
+                   "a case file, a folder that holds case.toml, or a prepared model")
       ->required();
   command->add_option("-o,--out", run->folder, "result folder; default: out/<case name>")
       ->type_name("DIR");

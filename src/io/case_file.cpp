@@ -70,19 +70,25 @@ const char* type_of(const toml::node& node) {
   }
 }
 
+/// What `read` gives; what is no TOML becomes an InputError.
+template <class Read>
+toml::table parse(const Read& read, const std::string& path) {
+  try {
+    return read();
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw InputError(fmt::format("1 problem in {}; nothing was run.\n  line {}, column {}: {}",
+                                 path, at.line, at.column, error.description()));
+  }
+}
+
 toml::table parse_file(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw InputError(path + ": there is no such case file; nothing was run.");
   if (!std::filesystem::is_regular_file(path, ignored))
     throw InputError(path + ": is not a file; nothing was run.");
-  try {
-    return toml::parse_file(path);
-  } catch (const toml::parse_error& error) {
-    const auto at = error.source().begin;
-    throw InputError(fmt::format("1 problem in {}; nothing was run.\n  line {}, column {}: {}",
-                                 path, at.line, at.column, error.description()));
-  }
+  return parse([&] { return toml::parse_file(path); }, path);
 }
 
 /// The value of an override: TOML if it is, else the text itself.
@@ -214,6 +220,13 @@ CaseReader::CaseReader(const std::string& path, const std::vector<std::string>& 
   state_->path = resolved_file(path);
   state_->root = parse_file(state_->path);
   for (const std::string& text : overrides) apply_override(state_->root, text);
+  state_->levels.push_back({&state_->root, "", {}, false});
+}
+CaseReader::CaseReader(const CaseText& text, const std::vector<std::string>& overrides)
+    : state_(std::make_unique<State>()) {
+  state_->path = text.origin;
+  state_->root = parse([&] { return toml::parse(text.text, text.origin); }, text.origin);
+  for (const std::string& override : overrides) apply_override(state_->root, override);
   state_->levels.push_back({&state_->root, "", {}, false});
 }
 CaseReader::~CaseReader() = default;

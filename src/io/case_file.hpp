@@ -12,11 +12,18 @@
 
 namespace breccia {
 
+/// The text of a case that lies in another file.
+struct CaseText {
+  std::string text;
+  std::string origin;  ///< that file, for messages
+};
+
 /// Reads values from a TOML file, key by key, and collects all that is wrong with them.
 class CaseReader {
  public:
   /// @throws InputError if the file cannot be read or is no TOML, or an override makes no sense
   CaseReader(const std::string& path, const std::vector<std::string>& overrides);
+  CaseReader(const CaseText& text, const std::vector<std::string>& overrides);
   CaseReader(const CaseReader&) = delete;
   CaseReader& operator=(const CaseReader&) = delete;
   ~CaseReader();
@@ -225,12 +232,13 @@ struct ListKeys {
   }
 };
 
-/// A case from a TOML file, or from case.toml in a folder; overrides "key.path=value" count last.
+/// A case from a TOML file, from case.toml in a folder, or from a CaseText; overrides
+/// "key.path=value" count last.
 /// @throws InputError with every problem at once; nothing was run
-template <class Config>
-Config read_case(const std::string& path, const std::vector<std::string>& overrides) {
+template <class Config, class Source>
+Config read_case(const Source& source, const std::vector<std::string>& overrides) {
   Config config;
-  CaseReader reader(path, overrides);
+  CaseReader reader(source, overrides);
   config.each_key(ReadKeys{reader});
   reader.finish();
   return config;

@@ -197,6 +197,19 @@ TEST_F(Program, RestartsFromACheckpointInANewFolder) {
       << output();
 }
 
+TEST_F(Program, RunsAPreparedModelToTheStateOfItsCase) {
+  ASSERT_EQ(run("prepare " + path("balls.toml") + " -o " + path("balls.br")), 0) << output();
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("case")), 0) << output();
+  ASSERT_EQ(run("run " + path("balls.br") + " -o " + path("model")), 0) << output();
+  EXPECT_EQ(summary("model")["state_hash"], summary("case")["state_hash"]);
+  EXPECT_EQ(summary("model")["case"], summary("case")["case"]);
+  EXPECT_EQ(run("run " + path("balls.br") + " --set material.rock.young=2e9 -o " + path("other")),
+            2)
+      << output();
+  fs::resize_file(path("balls.br"), 200);
+  EXPECT_EQ(run("run " + path("balls.br") + " -o " + path("other")), 7) << output();
+}
+
 TEST_F(Program, RefusesAFolderWhoseCheckpointsAreAllDamaged) {
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
   for (const CheckpointFile& file : list_checkpoints(path("out/checkpoints")))

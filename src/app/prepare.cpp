@@ -1,0 +1,55 @@
+// breccia prepare CASE: builds the model of a case and saves it, so that a run need not.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/case.hpp"
+#include "app/commands.hpp"
+#include "io/checkpoint.hpp"
+#include "prepare/model_file.hpp"
+#include "run/progress.hpp"
+
+namespace breccia::app {
+namespace {
+
+struct PrepareCommand {
+  std::string path, file;
+  std::vector<std::string> overrides;
+
+  void execute() const {
+    const Case read = load_case(path, overrides);
+    const dem::Model model = model_of(read);
+    const std::string target = file.empty() ? read.name + ".br" : file;
+    CheckpointWriter writer;
+    writer.text("case.name", read.name);
+    writer.text("case.folder", read.folder);
+    writer.text("case.text", read.text);
+    save_model(writer, model);
+    writer.write(target);
+    fmt::print("{}  {} elements  {} links\n", target, count_text(static_cast<double>(model.size())),
+               count_text(static_cast<double>(model.links.size())));
+  }
+};
+
+}  // namespace
+
+void add_prepare(CLI::App& program) {
+  const auto prepare = std::make_shared<PrepareCommand>();
+  CLI::App* const command =
+      program.add_subcommand("prepare", "build the model of a case; run accepts it as CASE");
+  command->add_option("CASE", prepare->path, "a case file, or a folder that holds case.toml")
+      ->required();
+  command->add_option("-o,--out", prepare->file, "the model; default: <case name>.br")
+      ->type_name("MODEL.br");
+  command->add_option("--set", prepare->overrides, "override a key of the case")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  command->callback([prepare] { prepare->execute(); });
+}
+
+}  // namespace breccia::app

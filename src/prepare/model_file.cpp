@@ -1,0 +1,128 @@
+#include "prepare/model_file.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+template <class T>
+void save_array(CheckpointWriter& writer, const std::string& name, const std::vector<T>& items) {
+  writer.section("model." + name, items.data(), items.size(), sizeof(T));
+}
+
+template <class T>
+std::vector<T> load_array(const CheckpointReader& reader, const std::string& name) {
+  const CheckpointReader::Section& section = reader.section("model." + name, sizeof(T));
+  std::vector<T> items(section.count);
+  if (!items.empty()) std::memcpy(items.data(), section.bytes.data(), section.bytes.size());
+  return items;
+}
+
+/// Every array of a model with one item an element.
+template <class Model, class Visit>
+void each_element_array(Model& model, Visit&& array) {
+  array("group", model.group);
+  array("material", model.material);
+  array("radius", model.radius);
+  array("mass", model.mass);
+  array("inertia", model.inertia);
+  array("position", model.position);
+  array("velocity", model.velocity);
+  array("spin", model.spin);
+  array("bar_previous", model.bar_previous);
+  array("bar_next", model.bar_next);
+}
+
+/// Links by member, so that no padding reaches the file.
+struct LinkArrays {
+  std::vector<Index> a, b;
+  std::vector<std::uint8_t> kind;
+  std::vector<std::int16_t> material;
+};
+
+template <class Arrays, class Visit>
+void each_link_array(Arrays& links, Visit&& array) {
+  array("link_a", links.a);
+  array("link_b", links.b);
+  array("link_kind", links.kind);
+  array("link_material", links.material);
+}
+
+void refuse_misfits(const dem::Model& model) {
+  const auto fail = [] {
+    throw CheckpointError("the model's elements and links do not fit each other");
+  };
+  each_element_array(model, [&](const char*, const auto& items) {
+    if (items.size() != model.position.size()) fail();
+  });
+  const auto is_element = [&](Index i) { return i >= 0 && i < model.size(); };
+  for (const dem::Model::Link& link : model.links)
+    if (!is_element(link.a) || !is_element(link.b) || link.kind > dem::LinkKind::interface) fail();
+  for (const std::vector<Index>* ends : {&model.bar_previous, &model.bar_next})
+    for (const Index i : *ends)
+      if (i != -1 && !is_element(i)) fail();
+  const auto groups = static_cast<std::int16_t>(model.groups.size());
+  if (std::any_of(model.group.begin(), model.group.end(),
+                  [&](std::int16_t g) { return g < 0 || g >= groups; }))
+    fail();
+}
+
+}  // namespace
+
+void save_model(CheckpointWriter& writer, const dem::Model& model) {
+  std::string groups;
+  for (const std::string& name : model.groups) groups += name + '\n';
+  writer.text("model.groups", groups);
+  writer.value("model.interaction_range", model.interaction_range);
+  each_element_array(model,
+                     [&](const char* name, const auto& items) { save_array(writer, name, items); });
+  LinkArrays links;
+  for (const dem::Model::Link& link : model.links) {
+    links.a.push_back(link.a);
+    links.b.push_back(link.b);
+    links.kind.push_back(static_cast<std::uint8_t>(link.kind));
+    links.material.push_back(link.material);
+  }
+  each_link_array(links,
+                  [&](const char* name, const auto& items) { save_array(writer, name, items); });
+}
+
+bool holds_model(const CheckpointReader& reader) {
+  return reader.has("model.position");
+}
+
+dem::Model load_model(const CheckpointReader& reader) {
+  dem::Model model;
+  std::string name;
+  for (const char c : reader.text("model.groups")) {
+    if (c != '\n') {
+      name += c;
+      continue;
+    }
+    model.groups.push_back(name);
+    name.clear();
+  }
+  model.interaction_range = reader.value<double>("model.interaction_range");
+  each_element_array(model, [&](const char* array, auto& items) {
+    items =
+        load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
+  });
+  LinkArrays links;
+  each_link_array(links, [&](const char* array, auto& items) {
+    items =
+        load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
+  });
+  if (links.b.size() != links.a.size() || links.kind.size() != links.a.size() ||
+      links.material.size() != links.a.size())
+    throw CheckpointError("the model's links are not whole");
+  for (std::size_t i = 0; i < links.a.size(); ++i)
+    model.links.push_back(
+        {links.a[i], links.b[i], static_cast<dem::LinkKind>(links.kind[i]), links.material[i]});
+  refuse_misfits(model);
+  return model;
+}
+
+}  // namespace breccia

@@ -1,0 +1,47 @@
+#include "prepare/model_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exec/error.hpp"
+#include "prepare/build.hpp"
+#include "unit/prepare/models.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+std::string bytes_of(const dem::Model& model, const std::string& path) {
+  CheckpointWriter writer;
+  save_model(writer, model);
+  writer.write(path);
+  std::string bytes;
+  const CheckpointReader reader(path);
+  for (const CheckpointReader::Section& section : reader.sections())
+    for (const std::byte b : section.bytes) bytes += static_cast<char>(b);
+  return bytes;
+}
+
+TEST(ModelFile, GivesBackTheModelThatWasBuilt) {
+  const ScratchFolder scratch;
+  const dem::Model built = build_model(dem::small_slab(), "");
+  const std::string bytes = bytes_of(built, scratch / "built.br");
+  const CheckpointReader reader(scratch / "built.br");
+  ASSERT_TRUE(holds_model(reader));
+  const dem::Model read = load_model(reader);
+  EXPECT_EQ(read.groups, built.groups);
+  EXPECT_EQ(read.position.size(), built.position.size());
+  EXPECT_EQ(read.links.size(), built.links.size());
+  EXPECT_EQ(bytes_of(read, scratch / "read.br"), bytes);
+}
+
+TEST(ModelFile, RefusesLinksToElementsThatAreNotThere) {
+  const ScratchFolder scratch;
+  dem::Model model = build_model(dem::small_slab(), "");
+  model.links.back().b = model.size();
+  bytes_of(model, scratch / "bad.br");
+  const CheckpointReader reader(scratch / "bad.br");
+  EXPECT_THROW(load_model(reader), CheckpointError);
+}
+
+}  // namespace
+}  // namespace breccia
