@@ -9,6 +9,7 @@
 
 #include "app/commands.hpp"
 #include "exec/error.hpp"
+#include "exec/threads.hpp"
 #include "run/machine.hpp"
 
 namespace {
@@ -58,6 +59,7 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  breccia::let_waiting_threads_sleep(argv);
   int exit_code = 0;
   try {
     exit_code = run_program(argc, argv);
