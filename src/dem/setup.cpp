@@ -266,7 +266,7 @@ void set_contacts(World& w, const Config& config, const Model& m) {
              (0.1631 * c.poisson + 0.8766);
     } else {
       const ContactPair& pair = pairs[material * config.materials.size() + material];
-      step = std::sqrt(m.mass[e] / (pair.normal * 0.5 * r));
+      step = std::sqrt(2.0 * m.mass[e] / (pair.normal * 0.5 * r));
     }
     w.parameters.contact_step = std::min(w.parameters.contact_step, config.time.safety * step);
   }

@@ -23,7 +23,8 @@ const double onset = strength / stiffness;  // u_1
 const double rupture = 11.0 * onset;        // u_2
 
 /// Moves b along x to a stretch, in steps; returns the work done on the link by the trapezoid of N.
-double pull(const ConcreteLink& l, LinkState<double>& state, Pair& pair, double stretch, int steps) {
+double pull(const ConcreteLink& l, LinkState<double>& state, Pair& pair, double stretch,
+            int steps) {
   double work = 0.0;
   double before = norm(pair.b.position - pair.a.position) - length;
   const double each = (stretch - before) / steps;
@@ -83,13 +84,15 @@ TEST(ConcreteLink, compression_is_elastic_without_limit_even_after_damage_and_ru
   for (const double opened : {0.0, 4.0 * onset, 1.1 * rupture}) {
     pull(law(), state, pair, opened, 2'000);
     pair.b.position.x = length - 20.0 * onset;
-    EXPECT_NEAR(law().answer(link, pair.move_b({}), state).normal, -20.0 * strength, 1e-6 * strength);
+    EXPECT_NEAR(law().answer(link, pair.move_b({}), state).normal, -20.0 * strength,
+                1e-6 * strength);
   }
 }
 
-/// Slides b along y under a fixed stretch; returns the last response and adds up what sliding spent.
-LinkResponse<double> slide(const ConcreteLink& l, LinkState<double>& state, Pair& pair, double stretch,
-                           double path, double& spent) {
+/// Slides b along y under a fixed stretch; returns the last response and adds up what sliding
+/// spent.
+LinkResponse<double> slide(const ConcreteLink& l, LinkState<double>& state, Pair& pair,
+                           double stretch, double path, double& spent) {
   LinkResponse<double> r{};
   const int steps = 2'000;
   for (int i = 0; i < steps; ++i) {
@@ -133,8 +136,8 @@ TEST(ConcreteLink, no_force_ever_leaves_the_strength_surface) {
     Pair pair;
     const double speed = 2.0 * rupture / 2'000 / pair.dt;
     for (int i = 0; i < 2'000; ++i) {
-      const LinkResponse<double> r =
-          law().answer(link, pair.move_b({speed * std::cos(angle), speed * std::sin(angle), 0.0}), state);
+      const LinkResponse<double> r = law().answer(
+          link, pair.move_b({speed * std::cos(angle), speed * std::sin(angle), 0.0}), state);
       const double cohesion = state.opening >= 0.0 ? 5.5e6 * area : 0.0;
       const double slope = state.opening >= 0.0 ? std::tan(0.5) : std::tan(0.6);
       ASSERT_LE(r.normal, strength * (1.0 + 1e-12));
@@ -152,7 +155,8 @@ TEST(ConcreteLink, moments_are_elastic_up_to_their_limit) {
   LinkResponse<double> r = law().answer(link, pair.move_b({}, {small / pair.dt, 0.0, 0.0}), state);
   EXPECT_NEAR(r.moment.x, -kr * small, 1e-9 * limit);  // twist; the moment on b resists its turn
   EXPECT_EQ(r.yielded, 0.0);
-  for (int i = 0; i < 10; ++i) r = law().answer(link, pair.move_b({}, {small / pair.dt, 0.0, 0.0}), state);
+  for (int i = 0; i < 10; ++i)
+    r = law().answer(link, pair.move_b({}, {small / pair.dt, 0.0, 0.0}), state);
   EXPECT_NEAR(norm(r.moment), limit, 1e-9 * limit);
   EXPECT_NEAR(r.yielded, limit * small, 1e-6 * limit * small);
 }
@@ -171,7 +175,8 @@ TEST(ConcreteLink, a_rigid_turn_changes_no_force_and_no_moment) {
           elastic.answer(link, pair.turn(axis, 2.0 * 3.14159265358979323846 / steps), state);
       ASSERT_NEAR(r.normal, 0.5 * strength, 1e-6 * strength);
     }
-    // positions round at 1e-16 of the length: 1e-12 of the force of that stretch is all that can be asked
+    // positions round at 1e-16 of the length: 1e-12 of the force of that stretch is all that can be
+    // asked
     EXPECT_NEAR(norm(state.shear), 500.0, 1e-12 * 0.18 * stiffness * length);
     EXPECT_NEAR(norm(state.shear - Vec3{0.0, 300.0, 400.0}), 0.0, 500.0 * 1e-8);
     EXPECT_NEAR(norm(state.moment - Vec3{0.05, 0.1, -0.02}), 0.0, 0.11 * 1e-8);
@@ -218,8 +223,8 @@ TEST(ConcreteLink, what_a_random_path_puts_in_is_stored_or_spent) {
     const PairMotion<double> m = pair.move_b(velocity, spin);
     const LinkResponse<double> r = l.answer(link, m, state);
     const double approach = dot(pair.dt * pair.b.velocity, m.normal);
-    work += 0.5 * (before.normal + r.normal) * approach - 0.5 * dot(before.shear + r.shear, m.slip) -
-            0.5 * dot(before.moment + r.moment, m.turn);
+    work += 0.5 * (before.normal + r.normal) * approach -
+            0.5 * dot(before.shear + r.shear, m.slip) - 0.5 * dot(before.moment + r.moment, m.turn);
     spent += r.slid + r.yielded + r.broke;
     before = r;
     double held = l.stored(link, m.distance - length, state) + spent;
@@ -245,8 +250,8 @@ TEST(ConcreteLink, parted_ends_are_released_for_good) {
 }
 
 TEST(ConcreteLink, arms_that_change_leave_a_known_shear_after_a_closed_path) {
-  // Open by u, roll j by a, close, roll back: the arm of b is longer by u/2 on the way out, so K_t a u/2
-  // stays. A property of contact points in the middle of the gap, not of rounding.
+  // Open by u, roll j by a, close, roll back: the arm of b is longer by u/2 on the way out, so K_t
+  // a u/2 stays. A property of contact points in the middle of the gap, not of rounding.
   ConcreteLink elastic = law();
   elastic.cohesion = elastic.tensile_strength = 1e12;
   LinkState<double> state{};

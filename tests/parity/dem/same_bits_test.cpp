@@ -1,0 +1,93 @@
+// The same bits for any thread count, width of vector, search margin, and across a checkpoint.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "dem/observe.hpp"
+#include "io/case_file.hpp"
+#include "prepare/build.hpp"
+#include "run/dem_method.hpp"
+
+namespace breccia {
+namespace {
+
+const std::string small_case = BR_SOURCE_DIR "/cases/rc_slab/small.toml";
+
+dem::Config small_config(const std::vector<std::string>& overrides = {}) {
+  return read_case<dem::Config>(small_case, overrides);
+}
+const dem::Model& small_model() {
+  static const dem::Model model = build_model(small_config(), BR_SOURCE_DIR "/cases/rc_slab");
+  return model;
+}
+dem::World small_world(int threads, const std::vector<std::string>& overrides = {}) {
+  Exec exec;
+  exec.threads = threads;
+  return dem::make_world(small_config(overrides), small_model(), exec);
+}
+/// Hash after the impact has begun to break the slab.
+std::uint64_t hash_after(dem::World w, int steps = 900) {
+  for (int i = 0; i < steps; ++i) dem::step(w);
+  EXPECT_GT(dem::count(w).broken_concrete, 100);
+  return dem::state_hash(w);
+}
+
+std::uint64_t reference() {
+  static const std::uint64_t hash = hash_after(small_world(1));
+  return hash;
+}
+
+TEST(SameBits, for_any_number_of_threads) {
+  for (const int threads : {2, 3, 7})
+    EXPECT_EQ(hash_after(small_world(threads)), reference()) << threads;
+}
+
+TEST(SameBits, for_any_width_of_vector) {
+  for (const dem::Lanes lanes : {dem::Lanes::one, dem::Lanes::four, dem::Lanes::eight}) {
+    if (lanes > dem::widest_lanes()) continue;  // this processor has no wider ones
+    dem::World w = small_world(1);
+    w.lanes = lanes;
+    EXPECT_EQ(hash_after(std::move(w)), reference()) << static_cast<int>(lanes);
+  }
+}
+
+TEST(SameBits, for_any_margin_and_moment_of_search) {
+  EXPECT_EQ(hash_after(small_world(1, {"search.margin=0.05"})), reference());
+  EXPECT_EQ(hash_after(small_world(2, {"search.margin=1.0"})), reference());
+  EXPECT_EQ(hash_after(small_world(2, {"search.every=10"})), reference());
+}
+
+TEST(SameBits, across_a_checkpoint_on_other_threads) {
+  const std::string folder = std::filesystem::temp_directory_path() / "breccia_same_bits";
+  std::filesystem::create_directories(folder);
+  const dem::Config config = small_config();
+  Exec one, three;
+  three.threads = 3;
+  const auto before = make_dem_method(config, small_model(), one);
+  for (int i = 0; i < 500; ++i) before->step();
+  CheckpointWriter writer;
+  before->save(writer);
+  writer.write(folder + "/state.br");
+  for (int i = 0; i < 400; ++i) before->step();
+
+  const auto after = make_dem_method(config, small_model(), three);
+  after->load(CheckpointReader(folder + "/state.br"));
+  EXPECT_EQ(after->steps(), 500);
+  for (int i = 0; i < 400; ++i) after->step();
+  EXPECT_EQ(after->state_hash(), before->state_hash());
+  EXPECT_EQ(after->energy().friction, before->energy().friction);
+  EXPECT_EQ(after->energy().error_relative, before->energy().error_relative);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(SameBits, one_changed_bit_changes_the_hash) {
+  dem::World w = small_world(1);
+  const std::uint64_t hash = dem::state_hash(w);
+  double& x = w.elements.state.data()[7].position.x;
+  x = std::nextafter(x, 1e9);
+  EXPECT_NE(dem::state_hash(w), hash);
+}
+
+}  // namespace
+}  // namespace breccia
