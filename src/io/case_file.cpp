@@ -12,6 +12,7 @@
 #include <set>
 
 #include "exec/error.hpp"
+#include "io/case_source.hpp"
 #include "io/units.hpp"
 
 namespace breccia {
@@ -70,25 +71,15 @@ const char* type_of(const toml::node& node) {
   }
 }
 
-/// What `read` gives; what is no TOML becomes an InputError.
-template <class Read>
-toml::table parse(const Read& read, const std::string& path) {
+toml::table parse(const std::string& text, const std::string& path) {
+  check_case_source(text, path);
   try {
-    return read();
+    return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
     throw InputError(fmt::format("1 problem in {}; nothing was run.\n  line {}, column {}: {}",
                                  path, at.line, at.column, error.description()));
   }
-}
-
-toml::table parse_file(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
-    throw InputError(path + ": there is no such case file; nothing was run.");
-  if (!std::filesystem::is_regular_file(path, ignored))
-    throw InputError(path + ": is not a file; nothing was run.");
-  return parse([&] { return toml::parse_file(path); }, path);
 }
 
 /// The value of an override: TOML if it is, else the text itself.
@@ -117,6 +108,7 @@ toml::table* item_of(toml::array& list, const std::string& name) {
 }
 
 void apply_override(toml::table& root, const std::string& text) {
+  check_case_source(text, "--set");
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
     throw InputError("--set " + text + " is not of the form KEY=VALUE; nothing was run.");
@@ -218,14 +210,14 @@ struct CaseReader::State {
 CaseReader::CaseReader(const std::string& path, const std::vector<std::string>& overrides)
     : state_(std::make_unique<State>()) {
   state_->path = resolved_file(path);
-  state_->root = parse_file(state_->path);
+  state_->root = parse(read_case_source(state_->path), state_->path);
   for (const std::string& text : overrides) apply_override(state_->root, text);
   state_->levels.push_back({&state_->root, "", {}, false});
 }
 CaseReader::CaseReader(const CaseText& text, const std::vector<std::string>& overrides)
     : state_(std::make_unique<State>()) {
   state_->path = text.origin;
-  state_->root = parse([&] { return toml::parse(text.text, text.origin); }, text.origin);
+  state_->root = parse(text.text, text.origin);
   for (const std::string& override : overrides) apply_override(state_->root, override);
   state_->levels.push_back({&state_->root, "", {}, false});
 }
