@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "app/benchmarks.hpp"
 #include "app/commands.hpp"
@@ -20,6 +20,7 @@ namespace {
 struct BenchCommand {
   std::vector<std::string> names;
   std::string file;
+  bool paced = false;
   RunOptions options;
 
   void refuse_unknown() const {
@@ -36,22 +37,20 @@ struct BenchCommand {
   void execute() const {
     refuse_unknown();
     const Exec exec = exec_of(options);
-    nlohmann::ordered_json json;
-    json["machine"] = {
-        {"cpu", processor_name()}, {"device", options.device}, {"threads", exec.threads}};
-    json["benchmarks"] = nlohmann::ordered_json::object();
+    if (paced) {
+      pace_slab(std::cin, std::cout, exec);
+      return;
+    }
+    std::vector<std::pair<std::string, std::vector<Measurement>>> all;
+    fmt::print("{}, {} threads\n", processor_name(), exec.threads);
     for (const Benchmark& benchmark : benchmarks()) {
       if (!names.empty() && std::find(names.begin(), names.end(), benchmark.name) == names.end())
         continue;
-      for (const Measurement& measured : benchmark.measure(exec)) {
-        fmt::print("{:<24} {:<24} {:>12.5g} {}\n", benchmark.name, measured.name, measured.value,
-                   measured.unit);
-        json["benchmarks"][benchmark.name][measured.name] = {{"value", measured.value},
-                                                             {"unit", measured.unit}};
-      }
+      all.emplace_back(benchmark.name, benchmark.measure(exec));
+      fmt::print("\n{}", benchmark_table(all.back().first, all.back().second));
       std::fflush(stdout);
     }
-    if (!file.empty()) replace_file(file, json.dump(2) + "\n");
+    if (!file.empty()) replace_file(file, benchmark_json(all, exec, options.device));
   }
 };
 
@@ -66,6 +65,9 @@ void add_bench(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--threads", bench->options.threads, "host threads; default: all")
       ->check(CLI::Range(1, 4096));
+  command->add_flag(
+      "--paced", bench->paced,
+      "run the slab as told on standard input: 'steps N', 'until T', 'export FOLDER'");
   command->callback([bench] { bench->execute(); });
 }
 

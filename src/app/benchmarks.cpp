@@ -3,7 +3,12 @@
 namespace breccia::app {
 
 const std::vector<Benchmark>& benchmarks() {
-  static const std::vector<Benchmark> list{};
+  static const std::vector<Benchmark> list{
+      {"slab", "steps of the rock on the slab, before and during the impact", measure_slab},
+      {"threads", "the slab on one thread and on all, in alternating windows", measure_threads},
+      {"search", "the contact search alone, up to a million spheres", measure_search},
+      {"packing", "disordered packings of a box", measure_packing},
+      {"slab100k", "the slab with 99,262 elements", measure_large_slab}};
   return list;
 }
 

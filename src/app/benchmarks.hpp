@@ -1,19 +1,11 @@
 #pragma once
-// The built-in benchmarks: fixed work whose speed is measured on this machine.
+// The built-in benchmarks by name.
 
-#include <string>
 #include <vector>
 
-#include "exec/space.hpp"
+#include "run/benchmark.hpp"
 
 namespace breccia::app {
-
-/// A number a benchmark measured.
-struct Measurement {
-  std::string name;  ///< "ns_per_link_step", ...
-  double value;
-  std::string unit;
-};
 
 /// One benchmark. To add one: a line in benchmarks.cpp.
 struct Benchmark {

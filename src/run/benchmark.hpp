@@ -1,0 +1,48 @@
+#pragma once
+// The built-in benchmarks: fixed work whose speed is measured on the machine at hand.
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "exec/space.hpp"
+
+namespace breccia {
+
+/// A number a benchmark measured: over several windows of equal work, or once.
+struct Measurement {
+  std::string part;  ///< of the benchmark: "scene", "before impact", ...
+  std::string name;  ///< "ns_per_link_step", ...
+  std::string unit;
+  double median, least, most;  ///< over the windows; all equal if there is only one
+};
+
+/// The slab of Durand et al. 2012, section 5: whole steps before and during the impact, by stage;
+/// memory an element. 14,274 elements.
+std::vector<Measurement> measure_slab(const Exec& exec);
+/// The same slab 2.7 times as long and wide: 99,262 elements.
+std::vector<Measurement> measure_large_slab(const Exec& exec);
+/// The slab on one thread and on all threads of `exec`, in alternating windows.
+std::vector<Measurement> measure_threads(const Exec& exec);
+/// The search alone, on random spheres at the density of a packing.
+std::vector<Measurement> measure_search(const Exec& exec);
+/// Packings of a box at the compactness of the slab.
+std::vector<Measurement> measure_packing(const Exec& exec);
+
+/// Runs the slab as told line by line, so that another program can be measured in alternating
+/// windows. Each line is answered by one line of JSON.
+///
+///   steps N          N whole steps: {"seconds", "processor_seconds", "steps", "time", ...}
+///   until T          steps until the simulated time T in s: the same
+///   export FOLDER    elements.csv and links.csv in that folder: {"elements", "links", "dt", ...}
+///
+/// @throws InputError for any other line
+void pace_slab(std::istream& commands, std::ostream& answers, const Exec& exec);
+
+/// The machine, its threads and all measurements, for --json.
+std::string benchmark_json(const std::vector<std::pair<std::string, std::vector<Measurement>>>& all,
+                           const Exec& exec, const std::string& device);
+/// A table for a terminal.
+std::string benchmark_table(const std::string& name, const std::vector<Measurement>& measurements);
+
+}  // namespace breccia

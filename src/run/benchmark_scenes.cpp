@@ -1,0 +1,82 @@
+#include "run/benchmark_scenes.hpp"
+
+#include <cmath>
+
+namespace breccia {
+namespace {
+
+std::vector<dem::MaterialConfig> slab_materials() {
+  dem::MaterialConfig concrete;
+  concrete.name = "c30";
+  concrete.softening = 10.0;
+  concrete.rolling_limit = 0.15;
+  dem::MaterialConfig steel;
+  steel.name = "b500";
+  steel.law = "steel";
+  steel.density = 7850.0;
+  steel.young = 200e9;
+  steel.poisson = 0.3;
+  dem::MaterialConfig bond;
+  bond.name = "bond";
+  bond.law = "interface";
+  bond.softening = 10.0;
+  return {steel, bond, concrete};
+}
+
+dem::SupportConfig held_edge(const char* name, const Vec3& low, const Vec3& high) {
+  dem::SupportConfig support;
+  support.name = name;
+  support.min = low;
+  support.max = high;
+  support.fix = {"all"};
+  return support;
+}
+
+dem::BodyConfig packed_body(const char* name, int count) {
+  dem::BodyConfig body;
+  body.name = name;
+  body.material = "c30";
+  body.pack = {.count = count, .size_ratio = 2.0, .compactness = 0.56};
+  return body;
+}
+
+}  // namespace
+
+dem::Config slab_scene(double scale) {
+  const auto times = [&](int count, double factor) {
+    return static_cast<int>(std::lround(count * factor));
+  };
+  dem::Config config;
+  config.time.end = 5e-3;
+  config.materials = slab_materials();
+
+  const double half = 0.5 * scale, thick = 0.05, inside = half - 0.02;
+  dem::BodyConfig slab = packed_body("slab", times(12718, scale * scale));
+  slab.size = {scale, scale, 0.1};
+  dem::BodyConfig steel;
+  steel.name = "steel";
+  steel.shape = "rebar";
+  steel.material = "b500";
+  steel.rebar.in = "slab";
+  steel.rebar.interface_law = "bond";
+  steel.rebar.bars = times(7, scale);
+  steel.rebar.elements = times(28, scale);
+  dem::BodyConfig rock = packed_body("impactor", 772);
+  rock.shape = "sphere";
+  rock.center = {0.0, 0.0, 0.164};
+  rock.radius = 0.113;
+  rock.velocity = {0.0, 0.0, -30.0};
+  config.bodies = {slab, steel, rock};
+
+  const int bar_elements = 4 * steel.rebar.bars * steel.rebar.elements;
+  const int elements = slab.pack.count + bar_elements + rock.pack.count;
+  config.links.count = times(79211, elements / 14274.0);
+
+  config.supports = {held_edge("west", {-half, -half, -thick}, {-inside, half, thick}),
+                     held_edge("east", {inside, -half, -thick}, {half, half, thick}),
+                     held_edge("south", {-inside, -half, -thick}, {inside, -inside, thick}),
+                     held_edge("north", {-inside, inside, -thick}, {inside, half, thick})};
+  return config;
+}
+
+}  // namespace breccia

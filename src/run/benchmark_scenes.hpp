@@ -1,0 +1,15 @@
+#pragma once
+// The slab that benchmarks run, built without a file.
+
+#include "dem/config.hpp"
+
+namespace breccia {
+
+/// The scene of cases/rc_slab (Durand et al. 2012, section 5) with a slab `scale` times as long and
+/// wide: elements, bars and links grow so that their sizes and densities stay. The rock is always
+/// the same and strikes at 30 m/s, 0.1 ms after the start. Laws and speed stay as they are here,
+/// whatever the case becomes, so that numbers compare over time.
+/// @param scale  1: 14,274 elements; 2.7: 99,262  [-]
+dem::Config slab_scene(double scale);
+
+}  // namespace breccia
