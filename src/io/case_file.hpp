@@ -253,6 +253,9 @@ std::string completed_case(const Config& config) {
   return text.own + text.below;
 }
 
+/// Whether a key is one of those that a prefix asks for: body.pack and body[].pack both do for
+/// body[].pack.count.
+bool begins_with(const KeyInfo& key, const std::string& prefix);
 /// Every key whose path begins with `prefix`.
 template <class Config>
 std::vector<KeyInfo> list_keys(const std::string& prefix) {
@@ -260,10 +263,11 @@ std::vector<KeyInfo> list_keys(const std::string& prefix) {
   std::vector<KeyInfo> all, wanted;
   config.each_key(ListKeys{"", all});
   for (KeyInfo& key : all)
-    if (key.path.starts_with(prefix)) wanted.push_back(std::move(key));
+    if (begins_with(key, prefix)) wanted.push_back(std::move(key));
   return wanted;
 }
-/// For a terminal of 100 columns.
+/// A table of key, type, default and allowed values, each key with its meaning below it, in 100
+/// columns.
 std::string format_keys(const std::vector<KeyInfo>& keys);
 
 /// cases/rc_slab and cases/rc_slab/case.toml: rc_slab; cases/rc_slab/small.toml: rc_slab_small.

@@ -65,29 +65,6 @@ std::string words_text(const OneOf& words) {
   return text;
 }
 
-std::string format_keys(const std::vector<KeyInfo>& keys) {
-  std::string text;
-  for (const KeyInfo& key : keys) {
-    std::string head = fmt::format("{:<34} {} = {}", key.path, key.type, key.default_text);
-    if (!key.unit.empty() && key.unit != "-") head += " " + key.unit;
-    if (!key.range.empty()) head += "   " + key.range;
-    text += head + "\n";
-    std::string line = "   ";
-    std::size_t at = 0;
-    while (at < key.meaning.size()) {  // words of the meaning, wrapped
-      const std::size_t end = std::min(key.meaning.find(' ', at), key.meaning.size());
-      if (line.size() + 1 + end - at > 98) {
-        text += line + "\n";
-        line = "   ";
-      }
-      line += " " + key.meaning.substr(at, end - at);
-      at = end + 1;
-    }
-    text += line + "\n";
-  }
-  return text;
-}
-
 namespace {
 
 /// One block of SHA-256 (FIPS 180-4, 6.2.2).
