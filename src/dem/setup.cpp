@@ -274,6 +274,28 @@ void set_contacts(World& w, const Config& config, const Model& m) {
 
 }  // namespace
 
+World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
+  const Space space = exec.space;
+  move_fields(elements, space);
+  move_fields(concrete, space);
+  move_fields(steel, space);
+  move_fields(interface, space);
+  move_fields(contacts, space);
+  move_fields(wall_contacts, space);
+  move_fields(travel, space);
+  contact_pairs = Buffer<ContactPair>(space);
+  wall_pairs = Buffer<ContactPair>(space);
+  motions = Buffer<Motion>(space);
+  linked = Buffer<PairKey>(space);
+  linked_links = Buffer<Index>(space);
+  link_incidence = Incidence(space);
+  contact_incidence = Incidence(space);
+  broad_phase = BroadPhase(space);
+  link_actions = Buffer<Action>(space);
+  contact_actions = Buffer<Action>(space);
+  critical = Buffer<double>(space);
+}
+
 World make_world(const Config& config, const Model& model, const Exec& exec) {
   if (model.size() == 0) throw InputError("the case has no elements");
   World w(exec);
@@ -289,12 +311,6 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   limit_margins(w, model);
   set_supports(w, config, model);
   set_contacts(w, config, model);
-  if (exec.space != Space::host) {
-    move_fields(w.elements, exec.space);
-    move_fields(w.concrete, exec.space);
-    move_fields(w.steel, exec.space);
-    move_fields(w.interface, exec.space);
-  }
   derive(w);
   find_contacts(w);
   evaluate_forces(w);

@@ -62,7 +62,8 @@ struct Parameters {
 };
 
 struct World {
-  explicit World(const Exec& how) : exec(how), lanes(widest_lanes()) {}
+  /// Empty, every array in the space of `how`.
+  explicit World(const Exec& how);
 
   Exec exec;
   Lanes lanes;

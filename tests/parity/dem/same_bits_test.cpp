@@ -58,6 +58,15 @@ TEST(SameBits, for_any_margin_and_moment_of_search) {
   EXPECT_EQ(hash_after(small_world(2, {"search.every=10"})), reference());
 }
 
+TEST(SameBits, in_the_shadow_space_that_refuses_host_reads) {
+  Exec exec;
+  exec.space = Space::shadow;
+  dem::World w = dem::make_world(small_config(), small_model(), exec);
+  EXPECT_EQ(w.contacts.history.state.space(), Space::shadow);
+  EXPECT_EQ(w.link_actions.space(), Space::shadow);
+  EXPECT_EQ(hash_after(std::move(w)), reference());
+}
+
 TEST(SameBits, across_a_checkpoint_on_other_threads) {
   const std::string folder = std::filesystem::temp_directory_path() / "breccia_same_bits";
   std::filesystem::create_directories(folder);
