@@ -32,8 +32,8 @@ Frame dem_frame(const dem::World& w) {
     f.position.push_back(state.position);
     f.radius.push_back(state.radius);
   }
-  const auto groups = static_cast<std::size_t>(
-      *std::max_element(e.group.host().begin(), e.group.host().end()) + 1);
+  const auto groups =
+      static_cast<std::size_t>(*std::max_element(e.group.host().begin(), e.group.host().end()) + 1);
   for (std::size_t g = 0; g < groups; ++g) f.groups.push_back(w.sets[g].name);
   f.point_fields.push_back(vector_field("velocity", "m/s", e, &ElementState::velocity));
   f.point_fields.push_back(vector_field("spin", "rad/s", e, &ElementState::spin));

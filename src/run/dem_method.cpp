@@ -16,9 +16,7 @@ class DemMethod final : public Method {
   void step() override { dem::step(world_); }
   std::int64_t steps() const override { return world_.step; }
   double time() const override { return world_.time; }
-  double time_step() const override {
-    return world_.step > 0 ? world_.last_dt : world_.next_dt;
-  }
+  double time_step() const override { return world_.step > 0 ? world_.last_dt : world_.next_dt; }
 
   EnergyBalance energy() override { return dem::balance(world_); }
   std::vector<double> probes() override {
