@@ -145,7 +145,9 @@ TEST(InterfaceLink, pulling_the_bar_out_meets_the_bond_stress_on_its_surface) {
     spent += r.slid;
     work -= 0.5 * (before + r.force.x) * 0.2 * pair.dt;
     before = r.force.x;
-    if (slip > 2e-5) ASSERT_NEAR(-r.force.x, share * law.bond.stress(slip), 1e-2 * share * 13.7e6);
+    if (slip > 2e-5) {
+      ASSERT_NEAR(-r.force.x, share * law.bond.stress(slip), 1e-2 * share * 13.7e6);
+    }
   }
   const double stored = law.stored(30e9 * share / 0.014, share, state);
   EXPECT_NEAR(work, spent + stored, 1e-3 * work);
