@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,38 +18,49 @@ struct NamedUnit {
 constexpr double pi = 3.14159265358979323846;
 
 const std::vector<NamedUnit>& named_units() {
-  static const std::vector<NamedUnit> units{
-      {"m", {{0, 1, 0, 0}, 1.0}, true},           {"g", {{1, 0, 0, 0}, 1e-3}, true},
-      {"s", {{0, 0, 1, 0}, 1.0}, true},           {"N", {{1, 1, -2, 0}, 1.0}, true},
-      {"Pa", {{1, -1, -2, 0}, 1.0}, true},        {"J", {{1, 2, -2, 0}, 1.0}, true},
-      {"W", {{1, 2, -3, 0}, 1.0}, true},          {"Hz", {{0, 0, -1, 0}, 1.0}, true},
-      {"t", {{1, 0, 0, 0}, 1e3}, false},          {"min", {{0, 0, 1, 0}, 60.0}, false},
-      {"h", {{0, 0, 1, 0}, 3600.0}, false},       {"rad", {{0, 0, 0, 1}, 1.0}, true},
-      {"deg", {{0, 0, 0, 1}, pi / 180.0}, false}, {"%", {{0, 0, 0, 0}, 0.01}, false},
-      {"-", {{0, 0, 0, 0}, 1.0}, false},          {"1", {{0, 0, 0, 0}, 1.0}, false}};
+  static const std::vector<NamedUnit> units{{"m", {{0, 1, 0, 0}}, true},
+                                            {"g", {{1, 0, 0, 0}, -3}, true},
+                                            {"s", {{0, 0, 1, 0}}, true},
+                                            {"N", {{1, 1, -2, 0}}, true},
+                                            {"Pa", {{1, -1, -2, 0}}, true},
+                                            {"J", {{1, 2, -2, 0}}, true},
+                                            {"W", {{1, 2, -3, 0}}, true},
+                                            {"Hz", {{0, 0, -1, 0}}, true},
+                                            {"rad", {{0, 0, 0, 1}}, true},
+                                            {"t", {{1, 0, 0, 0}, 3}, false},
+                                            {"min", {{0, 0, 1, 0}, 0, 60.0}, false},
+                                            {"h", {{0, 0, 1, 0}, 0, 3600.0}, false},
+                                            {"deg", {{0, 0, 0, 1}, 0, pi / 180.0}, false},
+                                            {"%", {{0, 0, 0, 0}, -2}, false},
+                                            {"-", {}, false},
+                                            {"1", {}, false}};
   return units;
 }
 
-constexpr std::array<std::pair<std::string_view, double>, 11> prefixes{{{"n", 1e-9},
-                                                                        {"u", 1e-6},
-                                                                        {"\u00b5", 1e-6},
-                                                                        {"m", 1e-3},
-                                                                        {"c", 1e-2},
-                                                                        {"d", 1e-1},
-                                                                        {"h", 1e2},
-                                                                        {"k", 1e3},
-                                                                        {"M", 1e6},
-                                                                        {"G", 1e9},
-                                                                        {"T", 1e12}}};
+struct Prefix {
+  std::string_view symbol;
+  int tens;
+};
+constexpr std::array<Prefix, 11> prefixes{{{"n", -9},
+                                           {"u", -6},
+                                           {"\u00b5", -6},
+                                           {"m", -3},
+                                           {"c", -2},
+                                           {"d", -1},
+                                           {"h", 2},
+                                           {"k", 3},
+                                           {"M", 6},
+                                           {"G", 9},
+                                           {"T", 12}}};
 
 std::optional<Unit> find_symbol(std::string_view symbol) {
   for (const NamedUnit& named : named_units())
     if (named.symbol == symbol) return named.unit;
-  for (const auto& [prefix, factor] : prefixes) {
+  for (const auto& [prefix, tens] : prefixes) {
     if (!symbol.starts_with(prefix)) continue;
     for (const NamedUnit& named : named_units())
       if (named.takes_prefix && named.symbol == symbol.substr(prefix.size()))
-        return Unit{named.unit.powers, factor * named.unit.factor};
+        return Unit{named.unit.powers, tens + named.unit.tens, named.unit.factor};
   }
   return std::nullopt;
 }
@@ -64,12 +76,13 @@ std::optional<Unit> parse_power(std::string_view text) {
     if (parsed.ec != std::errc{} || parsed.ptr != text.data() + text.size()) return std::nullopt;
   }
   std::string_view symbol = text.substr(0, end);
-  if (symbol.ends_with('^')) symbol.remove_suffix(1);
+  if (end < text.size() && symbol.ends_with('^')) symbol.remove_suffix(1);
   std::optional<Unit> unit = find_symbol(symbol);
   if (!unit || power < -9 || power > 9) return std::nullopt;
   double factor = 1.0;
   for (int k = 0; k < std::abs(power); ++k) factor *= unit->factor;
   unit->factor = power < 0 ? 1.0 / factor : factor;
+  unit->tens *= power;
   for (int& p : unit->powers) p *= power;
   return unit;
 }
@@ -80,32 +93,53 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+/// The double nearest to a decimal number times a power of ten: the power goes into its exponent.
+double times_power_of_ten(std::string_view digits, int tens) {
+  const std::size_t e = std::min(digits.find_first_of("eE"), digits.size());
+  int exponent = 0;
+  if (e < digits.size()) {
+    const std::size_t start = digits[e + 1] == '+' ? e + 2 : e + 1;
+    std::from_chars(digits.data() + start, digits.data() + digits.size(), exponent);
+  }
+  const std::string text = std::string(digits.substr(0, e)) + "e" + std::to_string(exponent + tens);
+  double value = 0.0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (read.ec == std::errc::result_out_of_range) return std::numeric_limits<double>::quiet_NaN();
+  return value;
+}
+
+/// The wanted unit with the prefix of the first symbol of another: "GN", "Pa" give "GPa".
+std::string with_prefix_of(std::string_view given, const std::string& wanted) {
+  const std::string_view first = given.substr(0, given.find_first_of("/* ^-0123456789"));
+  for (const NamedUnit& named : named_units())
+    if (named.symbol == first) return wanted;  // "m" is a metre, not a prefix
+  for (const Prefix& prefix : prefixes) {
+    const std::string prefixed = std::string(prefix.symbol) + wanted;
+    if (first.starts_with(prefix.symbol) && find_symbol(first) && find_symbol(wanted) &&
+        find_symbol(prefixed))
+      return prefixed;
+  }
+  return wanted;
+}
+
 }  // namespace
 
 std::optional<Unit> parse_unit(std::string_view text) {
   text = trimmed(text);
-  if (text.empty()) return std::nullopt;
   Unit product;
-  bool below = false;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find_first_of("/* ", 1), text.size());
+  for (bool below = false;;) {
+    const std::size_t end = std::min(text.find_first_of("/* "), text.size());
     const std::optional<Unit> factor = parse_power(text.substr(0, end));
     if (!factor) return std::nullopt;
     for (std::size_t k = 0; k < 4; ++k)
       product.powers[k] += below ? -factor->powers[k] : factor->powers[k];
+    product.tens += below ? -factor->tens : factor->tens;
     product.factor = below ? product.factor / factor->factor : product.factor * factor->factor;
-    text.remove_prefix(end);
-    if (text.empty()) break;
+    text = trimmed(text.substr(end));
+    if (text.empty()) return product;
     below = text.front() == '/';
-    text = text.front() == ' ' ? trimmed(text) : text.substr(1);
-    if (text.empty()) return std::nullopt;
-    if (text.front() == '/') {
-      below = true;
-      text.remove_prefix(1);
-    }
-    text = trimmed(text);
+    if (below || text.front() == '*') text = trimmed(text.substr(1));
   }
-  return product;
 }
 
 std::string describe_dimension(const Unit& unit) {
@@ -139,20 +173,21 @@ std::string describe_dimension(const Unit& unit) {
 
 double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem) {
   problem.clear();
-  const std::string_view whole = trimmed(text);
+  const std::string quoted = "\"" + std::string(text) + "\"";
+  std::string_view whole = trimmed(text);
+  if (whole.starts_with('+')) whole.remove_prefix(1);
+  const char* const whole_end = whole.data() + whole.size();
   double value = 0.0;
-  const char* const start = whole.data() + (whole.starts_with('+') ? 1 : 0);
-  const auto number = std::from_chars(start, whole.data() + whole.size(), value);
+  const auto number = std::from_chars(whole.data(), whole_end, value);
   if (number.ec != std::errc{} || !std::isfinite(value)) {
-    problem = "\"" + std::string(text) + "\" does not start with a number";
+    problem = quoted + " does not start with a number";
     return 0.0;
   }
-  const std::string_view rest =
-      trimmed(whole.substr(static_cast<std::size_t>(number.ptr - whole.data())));
+  const std::size_t length = static_cast<std::size_t>(number.ptr - whole.data());
+  const std::string_view digits = whole.substr(0, length), rest = trimmed(whole.substr(length));
   const Unit target = parse_unit(wanted).value_or(Unit{});
   if (rest.empty()) {
-    problem = "\"" + std::string(text) + "\" has no unit; write it as a number for " + wanted +
-              ", or with a unit";
+    problem = quoted + " has no unit; write it as a number for " + wanted + ", or with a unit";
     return 0.0;
   }
   const std::optional<Unit> unit = parse_unit(rest);
@@ -161,11 +196,12 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
     return 0.0;
   }
   if (unit->powers != target.powers) {
-    problem = "\"" + std::string(text) + "\" is " + describe_dimension(*unit) + ", " +
-              describe_dimension(target) + " is wanted, in " + wanted + " or the like";
+    problem = quoted + " is " + describe_dimension(*unit) + ", " + describe_dimension(target) +
+              " is wanted, in " + wanted + " or the like; try \"" + std::string(digits) + " " +
+              with_prefix_of(rest, wanted) + "\"";
     return 0.0;
   }
-  return value * unit->factor / target.factor;
+  return times_power_of_ten(digits, unit->tens - target.tens) * (unit->factor / target.factor);
 }
 
 }  // namespace breccia

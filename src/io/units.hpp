@@ -8,10 +8,12 @@
 
 namespace breccia {
 
-/// Powers of mass, length, time and angle, and the factor to SI.
+/// Powers of mass, length, time and angle, and the factor to SI: factor x 10^tens. The power of ten
+/// stays apart so that "9 mm" is the double nearest to 0.009, as 9e-3 is.
 struct Unit {
   std::array<int, 4> powers{};  ///< of kg, m, s, rad
-  double factor = 1.0;          ///< times this is SI
+  int tens = 0;                 ///< power of ten  [-]
+  double factor = 1.0;          ///< what no power of ten states, such as 60 of a minute  [-]
 };
 
 /// "kg/m3", "mm/s", "N m", "J/m2", "-", "%": SI prefixes, products, quotients and integer powers.
@@ -21,7 +23,8 @@ std::optional<Unit> parse_unit(std::string_view text);
 /// What a unit measures, for people: "a pressure", "a length"; "[kg m-1 s-2]" if it has no name.
 std::string describe_dimension(const Unit& unit);
 
-/// A number and its unit, as text, in SI.
+/// A number and its unit, as text, in SI. Units that are powers of ten of SI give the double
+/// nearest to the exact value.
 /// @param wanted  the unit the value must be convertible to, such as "Pa"
 /// @param problem gets what is wrong, empty if all is well
 double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem);

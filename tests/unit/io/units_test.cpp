@@ -1,0 +1,84 @@
+#include "io/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include <charconv>
+
+namespace breccia {
+namespace {
+
+double in_si(const std::string& text, const std::string& wanted) {
+  std::string problem;
+  const double value = parse_quantity(text, wanted, problem);
+  EXPECT_EQ(problem, "") << text;
+  return value;
+}
+
+std::string problem_of(const std::string& text, const std::string& wanted) {
+  std::string problem;
+  parse_quantity(text, wanted, problem);
+  return problem;
+}
+
+TEST(Units, prefixes_products_quotients_and_powers_convert_to_si) {
+  EXPECT_EQ(in_si("40 mm", "m"), 0.04);
+  EXPECT_EQ(in_si("40mm", "m"), 0.04);
+  EXPECT_EQ(in_si(" +40  mm ", "m"), 0.04);
+  EXPECT_EQ(in_si("11 GPa", "Pa"), 11e9);
+  EXPECT_EQ(in_si("0.5 mm/s", "m/s"), 5e-4);
+  EXPECT_EQ(in_si("2400 kg/m3", "kg/m3"), 2400.0);
+  EXPECT_EQ(in_si("2.4 g/cm3", "kg/m3"), 2400.0);
+  EXPECT_EQ(in_si("2.4 t / m^3", "kg/m3"), 2400.0);
+  EXPECT_EQ(in_si("100 J/m2", "J/m2"), 100.0);
+  EXPECT_EQ(in_si("100 N/m", "J/m2"), 100.0);
+  EXPECT_EQ(in_si("9.81 m/s2", "m/s2"), 9.81);
+  EXPECT_EQ(in_si("9.81 m s-2", "m/s2"), 9.81);
+  EXPECT_EQ(in_si("9.81 m/s/s", "m/s2"), 9.81);
+  EXPECT_EQ(in_si("1 kN/mm^2", "Pa"), 1e9);
+  EXPECT_EQ(in_si("3 N*m", "J"), 3.0);
+  EXPECT_EQ(in_si("5 1/s", "Hz"), 5.0);
+  EXPECT_EQ(in_si("8 %", "-"), 0.08);
+  EXPECT_EQ(in_si("-1e3 us", "s"), -1e-3);
+  EXPECT_EQ(in_si("7 \u00b5m", "m"), 7e-6);
+  EXPECT_EQ(in_si("2 min", "s"), 120.0);
+  EXPECT_EQ(in_si("1.5 h", "s"), 5400.0);
+  EXPECT_DOUBLE_EQ(in_si("180 deg", "rad"), 3.14159265358979323846);
+  EXPECT_DOUBLE_EQ(in_si("36 km/h", "m/s"), 10.0);
+}
+
+TEST(Units, a_decimal_unit_gives_the_double_that_its_number_in_si_gives) {
+  // 9 * 1e-3 is not 0.009: a case must not change its bits with the way it is written.
+  for (int n = 1; n <= 2000; ++n) {
+    for (const auto& [unit, exponent] : {std::pair{"mm", "e-3"}, {"us", "e-6"}, {"GPa", "e9"}}) {
+      const std::string digits = std::to_string(n / 10) + "." + std::to_string(n % 10);
+      const std::string in_si_units = digits + exponent;
+      double literal = 0.0;
+      std::from_chars(in_si_units.data(), in_si_units.data() + in_si_units.size(), literal);
+      const std::string wanted = unit[0] == 'm' ? "m" : unit[0] == 'u' ? "s" : "Pa";
+      ASSERT_EQ(in_si(digits + " " + unit, wanted), literal) << digits << " " << unit;
+    }
+  }
+}
+
+TEST(Units, what_is_no_quantity_is_refused) {
+  for (const char* text :
+       {"mm",     "",       "ten mm", "nan mm",  "inf m",   "1,5 mm", "1 furlong",
+        "1 m//s", "1 m/",   "1 /s",   "1 m*/s",  "1 m^",    "1 m^x",  "1 m--2",
+        "1 kmm",  "1 mdeg", "1 m2.5", "+-1 m\n", "1e999 m", "1 m)"})
+    EXPECT_NE(problem_of(text, "m"), "") << text;
+  EXPECT_NE(problem_of("1", "m"), "");
+}
+
+TEST(Units, a_wrong_dimension_is_named_with_the_unit_to_try) {
+  EXPECT_EQ(problem_of("30 GN", "Pa"),
+            "\"30 GN\" is a force, a pressure is wanted, in Pa or the like; try \"30 GPa\"");
+  EXPECT_EQ(problem_of("1 ms", "m"),
+            "\"1 ms\" is a time, a length is wanted, in m or the like; try \"1 mm\"");
+  EXPECT_EQ(problem_of("30 m", "Pa"),
+            "\"30 m\" is a length, a pressure is wanted, in Pa or the like; try \"30 Pa\"");
+  EXPECT_EQ(problem_of("2 kg", "m/s"),
+            "\"2 kg\" is a mass, a velocity is wanted, in m/s or the like; try \"2 m/s\"");
+}
+
+}  // namespace
+}  // namespace breccia
