@@ -26,6 +26,7 @@ class Check {
         add("wall." + w.name + ".normal has length 0; it must point somewhere");
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
+    for (const CheckConfig& c : config_.checks) check(c);
     if (problems_.empty()) return;
     std::string text = fmt::format("{} problem{} in the case; nothing was run.", problems_.size(),
                                    problems_.size() == 1 ? "" : "s");
@@ -65,7 +66,7 @@ class Check {
     const std::string path = "body." + b.name;
     const MaterialConfig* material = find(config_.materials, b.material);
     if (material == nullptr)
-      add(fmt::format("{}.material = \"{}\" is not a material; there are: {}", path, b.material,
+      add(fmt::format("{}.material = {:?} is not a material; there are: {}", path, b.material,
                       names_of(config_.materials)));
     else if (b.shape == "rebar" && material->law != "steel")
       add(fmt::format("{}: bars need a material of law steel, {} has {}", path, b.material,
@@ -88,51 +89,61 @@ class Check {
   void check_rebar(const std::string& path, const BodyConfig& b) {
     const BodyConfig* host = find(config_.bodies, b.rebar.in);
     if (host == nullptr || host->shape != "box")
-      add(fmt::format("{}.rebar.in = \"{}\" is not a box body; there are: {}", path, b.rebar.in,
+      add(fmt::format("{}.rebar.in = {:?} is not a box body; there are: {}", path, b.rebar.in,
                       names_of(config_.bodies)));
     const MaterialConfig* bond = find(config_.materials, b.rebar.interface_law);
     if (bond == nullptr || bond->law != "interface")
-      add(fmt::format(
-          "{}.rebar.interface = \"{}\" is not a material of law interface; there are: {}", path,
-          b.rebar.interface_law, names_of(config_.materials)));
+      add(fmt::format("{}.rebar.interface = {:?} is not a material of law interface; there are: {}",
+                      path, b.rebar.interface_law, names_of(config_.materials)));
   }
 
-  struct Extent {
-    Vec3 low, high;
-  };
-  static Extent extent(const BodyConfig& b) {
-    Vec3 half = 0.5 * b.size;
-    if (b.shape == "sphere" || b.shape == "element") half = {b.radius, b.radius, b.radius};
-    if (b.shape == "cylinder") half = {b.radius, b.radius, 0.5 * b.length};
-    return {b.center - half, b.center + half};
+  /// The distance of x from an interval; 0 inside.  [m]
+  static double beyond(double x, double low, double high) {
+    return x < low ? low - x : x > high ? x - high : 0.0;
   }
   static bool round(const BodyConfig& b) { return b.shape == "sphere" || b.shape == "element"; }
-  /// True only if the shapes surely share space: a sphere against what its box touches is measured.
-  static bool overlap(const BodyConfig& a, const BodyConfig& b) {
-    if (round(b) && !round(a)) return overlap(b, a);
-    if (round(a) && round(b))
-      return norm(b.center - a.center) < (a.radius + b.radius) * (1.0 - 1e-9);
-    const Extent p = extent(a), q = extent(b);
-    if (round(a) && b.shape == "box") {
-      const auto beyond = [](double x, double low, double high) {
-        return x < low ? low - x : x > high ? x - high : 0.0;
-      };
-      const Vec3 gap{beyond(a.center.x, q.low.x, q.high.x), beyond(a.center.y, q.low.y, q.high.y),
-                     beyond(a.center.z, q.low.z, q.high.z)};
-      return norm(gap) < a.radius * (1.0 - 1e-9);
+  static bool has_shape(const BodyConfig& b) {
+    return round(b) || b.shape == "box" || b.shape == "cylinder";
+  }
+  /// Half of the height of a box or cylinder.  [m]
+  static double half_height(const BodyConfig& b) {
+    return 0.5 * (b.shape == "box" ? b.size.z : b.length);
+  }
+  /// The space between two upright bodies, each a rectangle or a disc times a height, or between
+  /// one of them and a ball; below 0 they share space by so much.  [m]
+  static double gap(const BodyConfig& a, const BodyConfig& b) {
+    if (round(b) && !round(a)) return gap(b, a);
+    const Vec3 apart = b.center - a.center;
+    if (round(b)) return norm(apart) - a.radius - b.radius;
+    // In the plane: corners of rectangles are sharp, so a disc's radius is taken off last.
+    const double half_x =
+        (a.shape == "box" ? 0.5 * a.size.x : 0.0) + (b.shape == "box" ? 0.5 * b.size.x : 0.0);
+    const double half_y =
+        (a.shape == "box" ? 0.5 * a.size.y : 0.0) + (b.shape == "box" ? 0.5 * b.size.y : 0.0);
+    const double dx = beyond(apart.x, -half_x, half_x), dy = beyond(apart.y, -half_y, half_y);
+    const double across = std::sqrt(dx * dx + dy * dy);
+    const double disc_b = b.shape == "cylinder" ? b.radius : 0.0;
+    if (round(a)) {
+      const double aside = std::max(across - disc_b, 0.0);
+      const double above = beyond(apart.z, -half_height(b), half_height(b));
+      return std::sqrt(aside * aside + above * above) - a.radius;
     }
-    if (a.shape != "box" || b.shape != "box") return false;  // elements are compared after packing
-    const double slack = 1e-9 * norm(p.high - p.low);
-    return p.low.x < q.high.x - slack && q.low.x < p.high.x - slack && p.low.y < q.high.y - slack &&
-           q.low.y < p.high.y - slack && p.low.z < q.high.z - slack && q.low.z < p.high.z - slack;
+    const double along = std::abs(apart.z) - half_height(a) - half_height(b);
+    if (a.shape == "box" && b.shape == "box")
+      return std::max({std::abs(apart.x) - half_x, std::abs(apart.y) - half_y, along});
+    const double disc_a = a.shape == "cylinder" ? a.radius : 0.0;
+    return std::max(across - disc_a - disc_b, along);
+  }
+  static double extent(const BodyConfig& b) {
+    return norm(b.size) + b.radius + b.length + norm(b.center);
   }
   void check_overlaps() {
     for (std::size_t i = 0; i < config_.bodies.size(); ++i)
       for (std::size_t j = i + 1; j < config_.bodies.size(); ++j) {
         const BodyConfig &a = config_.bodies[i], &b = config_.bodies[j];
-        if (a.shape == "rebar" || b.shape == "rebar" || a.shape == "file" || b.shape == "file")
-          continue;
-        if (overlap(a, b))
+        // Bars lie in their host; the spheres of a file are compared when they have been read.
+        if (!has_shape(a) || !has_shape(b)) continue;
+        if (gap(a, b) < -1e-9 * (extent(a) + extent(b)))
           add(fmt::format("body.{} and body.{} overlap at the start; move one of them", a.name,
                           b.name));
       }
@@ -140,13 +151,16 @@ class Check {
 
   void check(const SupportConfig& s) {
     static const std::set<std::string> words{"x", "y", "z", "spin_x", "spin_y", "spin_z", "all"};
+    if (find(config_.bodies, s.name) != nullptr)
+      add(fmt::format("support.{0} and body.{0} have one name; a probe could not tell them apart",
+                      s.name));
     if (!s.on.empty() && find(config_.bodies, s.on) == nullptr)
-      add(fmt::format("support.{}.on = \"{}\" is not a body; there are: {}", s.name, s.on,
+      add(fmt::format("support.{}.on = {:?} is not a body; there are: {}", s.name, s.on,
                       names_of(config_.bodies)));
     for (const std::string& word : s.fix)
       if (!words.contains(word))
         add(fmt::format(
-            "support.{}.fix: \"{}\" is no degree of freedom; allowed are x, y, z, spin_x, spin_y, "
+            "support.{}.fix: {:?} is no degree of freedom; allowed are x, y, z, spin_x, spin_y, "
             "spin_z, all",
             s.name, word));
     if (!(s.min.x <= s.max.x && s.min.y <= s.max.y && s.min.z <= s.max.z))
@@ -157,8 +171,21 @@ class Check {
     if (p.on.empty() || find(config_.bodies, p.on) != nullptr ||
         find(config_.supports, p.on) != nullptr)
       return;
-    add(fmt::format("probe.{}.on = \"{}\" is neither a body ({}) nor a support ({})", p.name, p.on,
+    add(fmt::format("probe.{}.on = {:?} is neither a body ({}) nor a support ({})", p.name, p.on,
                     names_of(config_.bodies), names_of(config_.supports)));
+  }
+
+  /// A check that can never be looked up would fail only after the whole run.
+  void check(const CheckConfig& c) {
+    if (!c.value.starts_with("probe.")) return;
+    const std::size_t dot = c.value.rfind('.');
+    const std::string name = dot > 5 ? c.value.substr(6, dot - 6) : "",
+                      which = c.value.substr(dot + 1);
+    if (find(config_.probes, name) == nullptr)
+      add(fmt::format("check.{}.value = {:?} is not of a probe; there are: {}", c.name, c.value,
+                      names_of(config_.probes)));
+    else if (which != "last" && which != "min" && which != "max")
+      add(fmt::format("check.{}.value = {:?} must end in .last, .min or .max", c.name, c.value));
   }
 
   const Config& config_;
