@@ -119,6 +119,8 @@ std::string value_text(const Vec3& value);
 std::string value_text(bool value);
 std::string value_text(const std::string& value);
 std::string value_text(const std::vector<std::string>& value);
+/// The name of a table as TOML wants it: quoted unless it holds letters, digits, _ and - only.
+std::string key_text(const std::string& name);
 std::string range_text(const Range& range);
 std::string words_text(const OneOf& words);
 inline const char* type_name(const double&) {
@@ -183,7 +185,7 @@ struct WriteKeys {
   template <class Config>
   void named(const char* name, std::vector<Config>& configs, const char* meaning) {
     for (Config& config : configs) {
-      const std::string inner_path = path + name + "." + config.name;
+      const std::string inner_path = path + name + "." + key_text(config.name);
       WriteKeys inner(inner_path + ".");
       config.each_key(inner);
       below += "\n# " + std::string(meaning) + "\n[" + inner_path + "]\n" + inner.own + inner.below;

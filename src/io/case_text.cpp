@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -36,7 +37,7 @@ std::string value_text(const std::string& value) {
   for (const char c : value) {
     if (c == '"' || c == '\\')
       text += std::string("\\") + c;
-    else if (static_cast<unsigned char>(c) < 0x20)
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
       text += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
     else
       text += c;
@@ -47,6 +48,14 @@ std::string value_text(const std::vector<std::string>& value) {
   std::string text = "[";
   for (const std::string& item : value) text += (text.size() > 1 ? ", " : "") + value_text(item);
   return text + "]";
+}
+
+std::string key_text(const std::string& name) {
+  const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  });
+  return bare ? name : value_text(name);
 }
 
 std::string range_text(const Range& range) {

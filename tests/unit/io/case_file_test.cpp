@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
 
 #include "dem/config.hpp"
 #include "exec/error.hpp"
-#include "io/units.hpp"
 #include "prepare/check_case.hpp"
 
 namespace breccia {
@@ -88,6 +88,76 @@ TEST(CaseFile, the_completed_case_reads_back_to_the_same_case) {
         completed_case(read_case<dem::Config>(BR_SOURCE_DIR + std::string(name), {}));
     const CaseText file(text);
     EXPECT_EQ(completed_case(read_case<dem::Config>(file.path(), {})), text) << name;
+  }
+}
+
+/// Visitor of each_key that gives every key a random value it may have.
+struct AnyValues {
+  std::mt19937& random;
+
+  double between(double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967295.0);
+  }
+  double number(const Range& range) {
+    if (!std::isinf(range.low) && !std::isinf(range.high))
+      return between(range.low + 0.1 * (range.high - range.low),
+                     range.high - 0.1 * (range.high - range.low));
+    const double size = between(0.1, 1.0) * std::pow(10.0, static_cast<int>(random() % 40) - 20);
+    return std::isinf(range.low) && random() % 2 == 0 ? -size : size;
+  }
+  std::string word() {
+    static const std::vector<std::string> parts{"c30", " ",      "\"", "\\", "[x]", ".",
+                                                "#",   "\u00b5", "=",  "'",  "-",   "A_1"};
+    std::string text = "w";
+    for (std::size_t k = random() % 4; k > 0; --k) text += parts[random() % parts.size()];
+    return text + "w" + std::to_string(random());
+  }
+  void operator()(const char*, double& value, const char*, const Range& range, const char*) {
+    value = number(range);
+  }
+  template <class Integer>
+  void operator()(const char*, Integer& value, const char*, const Range& range,
+                  const char*) requires std::is_integral_v<Integer> {
+    value =
+        static_cast<Integer>(between(std::max(range.low, 1.0), std::min(range.high, 2147483647.0)));
+  }
+  void operator()(const char*, Vec3& value, const char*, const Range& range, const char*) {
+    for (double* part : {&value.x, &value.y, &value.z})
+      if (random() % 4 != 0) *part = number(range);
+  }
+  void operator()(const char*, bool& value, const char*) { value = random() % 2 == 0; }
+  void operator()(const char*, std::string& value, const char*) { value = word(); }
+  void operator()(const char*, std::vector<std::string>& value, const char*) {
+    value.assign(random() % 3, word());
+  }
+  void operator()(const char*, std::string& value, const OneOf& words, const char*) {
+    value = words.words[random() % words.words.size()];
+  }
+  void required(const char*) {}
+  template <class Config>
+  void table(const char*, Config& config, const char*) {
+    config.each_key(*this);
+  }
+  template <class Config>
+  void list(const char*, std::vector<Config>& configs, const char*) {
+    configs.resize(random() % 4);
+    for (Config& config : configs) config.each_key(*this);
+  }
+  template <class Config>
+  void named(const char* name, std::vector<Config>& configs, const char* meaning) {
+    list(name, configs, meaning);
+    for (Config& config : configs) config.name = word();
+  }
+};
+
+TEST(CaseFile, the_completed_text_of_any_case_reads_back_to_the_same_case) {
+  std::mt19937 random(5);
+  for (int n = 0; n < 50; ++n) {
+    dem::Config config;
+    config.each_key(AnyValues{random});
+    const std::string text = completed_case(config);
+    const CaseText file(text);
+    ASSERT_EQ(completed_case(read_case<dem::Config>(file.path(), {})), text);
   }
 }
 
@@ -184,6 +254,22 @@ INSTANTIATE_TEST_SUITE_P(
               "[[body]]\nname = \"rock\"\nmaterial = \"c30\"\nshape = \"sphere\"\nradius = "
               "0.1\ncenter = [0.0, 0.0, 0.1]\npack = { count = 9 }\n",
               "body.slab and body.rock overlap at the start"},
+        Wrong{"name = \"slab\"", "name = \"\"", "body: \"\" cannot be a name"},
+        Wrong{"name = \"slab\"", "name = \"a\\u001b[31m\"",
+              "body: \"a\\x1b[31m\" cannot be a name"},
+        Wrong{"[material.c30]", "[material.\" c30\"]", "material: \" c30\" cannot be a name"},
+        Wrong{"[time]", "\"a\\u001b\" = 1\n[time]", "line 1, a\\x1b is not a key"},
+        Wrong{"young = \"30 GPa\"", "young = \"30 GN\"", "; try \"30 GPa\""},
+        Wrong{"",
+              "[[body]]\nname = \"rod\"\nmaterial = \"c30\"\nshape = \"cylinder\"\nradius = 0.1\n"
+              "length = 1.0\ncenter = [0.59, 0.0, 0.5]\npack = { count = 9 }\n",
+              "body.slab and body.rod overlap at the start"},
+        Wrong{"", "[[support]]\nname = \"slab\"\n", "support.slab and body.slab have one name"},
+        Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"probe.rok.last\"\n",
+              "check.c.value = \"probe.rok.last\" is not of a probe; there are: none"},
+        Wrong{"", "[[probe]]\nname = \"p\"\n[[check]]\nname = \"c\"\nvalue = \"probe.p.mean\"\n",
+              "check.c.value = \"probe.p.mean\" must end in .last, .min or .max"},
+        Wrong{"", "[[[support]]]\nname = \"s\"\n", "line 11, column 3"},
         Wrong{"", "[[support]]\nname = \"s\"\non = \"slap\"\n",
               "support.s.on = \"slap\" is not a body; there are: slab"},
         Wrong{"", "[[support]]\nname = \"s\"\nfix = [\"w\"]\n", "\"w\" is no degree of freedom"},
@@ -210,6 +296,42 @@ TEST(CaseFile, a_missing_file_and_a_wrong_override_are_named) {
             std::string::npos);
 }
 
+TEST(CaseFile, an_override_changes_what_the_case_states_and_adds_nothing_unseen) {
+  EXPECT_NE(message_of(good, {"material.c3O.young=28 GPa"})
+                .find("--set material.c3O is not in the case; did you mean c30?"),
+            std::string::npos);
+  EXPECT_NE(
+      message_of(good, {"body.slab=3"}).find("name one of its keys, as in body.slab.KEY=VALUE"),
+      std::string::npos);
+  EXPECT_NE(message_of(good, {"title=\xff"}).find("--set title: "), std::string::npos);
+  const dem::Config config = read_text(good, {"material.c35={ young = \"33 GPa\" }"});
+  EXPECT_EQ(config.materials.size(), 2u);
+}
+
+/// A body beside the slab's corner at (0.5, 0.5), as high as the slab.
+std::string slab_and(const std::string& body) {
+  return good + "[[body]]\nname = \"other\"\nmaterial = \"c30\"\npack = { count = 9 }\n" + body;
+}
+
+TEST(CaseFile, bodies_that_only_touch_do_not_overlap) {
+  for (const char* body :
+       {"shape = \"cylinder\"\nradius = 0.1\nlength = 1.0\ncenter = [0.6, 0.0, 0.0]\n",
+        "shape = \"cylinder\"\nradius = 0.1\nlength = 1.0\ncenter = [0.0, 0.0, 0.55]\n",
+        "shape = \"cylinder\"\nradius = 0.1\nlength = 1.0\ncenter = [0.58, 0.58, 0.0]\n",
+        "shape = \"sphere\"\nradius = 0.1\ncenter = [0.0, 0.0, 0.15]\n",
+        "shape = \"sphere\"\nradius = 0.1\ncenter = [0.56, 0.56, 0.11]\n",
+        "size = [1.0, 1.0, 0.1]\ncenter = [1.0, 0.0, 0.0]\n"})
+    EXPECT_EQ(message_of(slab_and(body)), "no problem") << body;
+  for (const char* body :
+       {"shape = \"cylinder\"\nradius = 0.1\nlength = 1.0\ncenter = [0.599, 0.0, 0.0]\n",
+        "shape = \"cylinder\"\nradius = 0.1\nlength = 1.0\ncenter = [0.0, 0.0, 0.549]\n",
+        "shape = \"cylinder\"\nradius = 0.1\nlength = 1.0\ncenter = [0.57, 0.57, 0.0]\n",
+        "shape = \"sphere\"\nradius = 0.1\ncenter = [0.0, 0.0, 0.149]\n",
+        "shape = \"sphere\"\nradius = 0.1\ncenter = [0.55, 0.55, 0.11]\n",
+        "size = [1.0, 1.0, 0.1]\ncenter = [0.999, 0.0, 0.0]\n"})
+    EXPECT_NE(message_of(slab_and(body)).find("overlap at the start"), std::string::npos) << body;
+}
+
 TEST(CaseFile, all_problems_are_told_at_once_in_the_order_of_lines) {
   std::string text = good;
   text.replace(text.find("30 GPa"), 6, "30 GN");
@@ -218,34 +340,41 @@ TEST(CaseFile, all_problems_are_told_at_once_in_the_order_of_lines) {
   EXPECT_LT(message.find("line 5"), message.find("line 12"));
 }
 
+/// A word with one letter changed, dropped or added.
+std::string mistyped(std::string word, std::mt19937& random) {
+  const std::size_t at = random() % word.size();
+  const char letter = static_cast<char>('a' + random() % 26);
+  switch (random() % 3) {
+    case 0:
+      word[at] = letter;
+      return word;
+    case 1:
+      return word.erase(at, 1);
+    default:
+      return word.insert(at, 1, letter);
+  }
+}
+
 TEST(CaseFile, a_letter_typed_wrong_leads_to_the_right_key) {
   std::mt19937 random(11);
-  const std::vector<KeyInfo> keys = list_keys<dem::Config>("material.");
   int right = 0, tried = 0;
-  for (int n = 0; n < 200; ++n) {
-    std::string key =
-        keys[random() % keys.size()].path.substr(std::string("material.<name>.").size());
-    if (key.size() < 4) continue;
-    std::string typo = key;
-    const std::size_t at = random() % typo.size();
-    const char letter = static_cast<char>('a' + random() % 26);
-    switch (n % 3) {
-      case 0:
-        typo[at] = letter;
-        break;
-      case 1:
-        typo.erase(at, 1);
-        break;
-      default:
-        typo.insert(at, 1, letter);
+  for (const char* table : {"material.c30.", "time.", "output.", "body.slab.", "contact."}) {
+    const std::string head = table, list = head.substr(0, head.find('.'));
+    const std::string prefix = list == "material" ? "material.<name>."
+                               : list == "body"   ? "body[]."
+                                                  : head;
+    for (const KeyInfo& info : list_keys<dem::Config>(prefix)) {
+      const std::string key = info.path.substr(prefix.size());
+      if (key.size() < 4 || key.find('.') != std::string::npos) continue;
+      for (int n = 0; n < 4; ++n) {
+        const std::string message = message_of(good, {head + mistyped(key, random) + "=1"});
+        if (message.find("is not a key") == std::string::npos) continue;
+        ++tried;
+        if (message.find("did you mean " + key + "?") != std::string::npos) ++right;
+      }
     }
-    std::string text = good;
-    text.replace(text.find("young = \"30 GPa\""), 16, typo + " = 1.0");
-    const std::string message = message_of(text);
-    if (typo == key || message.find("is not a key") == std::string::npos) continue;
-    ++tried;
-    if (message.find("did you mean " + key + "?") != std::string::npos) ++right;
   }
+  EXPECT_GT(tried, 100);
   EXPECT_GE(right, 95 * tried / 100) << right << " of " << tried;
 }
 
@@ -260,26 +389,6 @@ TEST(CaseFile, the_digest_is_sha_256) {
   EXPECT_EQ(case_digest("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(case_digest(std::string(1000, 'a')),
             "41edece42d63e8d9bf515a9ba6932e1c20cbc9f5a5d134645adb5db1b9737ea3");
-}
-
-TEST(Units, prefixes_products_and_powers_convert_to_si) {
-  const auto si = [](const char* text, const char* wanted) {
-    std::string problem;
-    const double value = parse_quantity(text, wanted, problem);
-    EXPECT_EQ(problem, "") << text;
-    return value;
-  };
-  EXPECT_DOUBLE_EQ(si("40 mm", "m"), 0.04);
-  EXPECT_DOUBLE_EQ(si("11 GPa", "Pa"), 11e9);
-  EXPECT_DOUBLE_EQ(si("0.5 mm/s", "m/s"), 5e-4);
-  EXPECT_DOUBLE_EQ(si("180 deg", "rad"), 3.14159265358979323846);
-  EXPECT_DOUBLE_EQ(si("2.4 g/cm3", "kg/m3"), 2400.0);
-  EXPECT_DOUBLE_EQ(si("100 J/m2", "J/m2"), 100.0);
-  EXPECT_DOUBLE_EQ(si("1 kN/mm^2", "Pa"), 1e9);
-  EXPECT_DOUBLE_EQ(si("9.81 m s-2", "m/s2"), 9.81);
-  EXPECT_DOUBLE_EQ(si("8 %", "-"), 0.08);
-  EXPECT_DOUBLE_EQ(si("-1e3 us", "s"), -1e-3);
-  EXPECT_DOUBLE_EQ(si("2 min", "s"), 120.0);
 }
 
 }  // namespace
