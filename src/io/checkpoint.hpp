@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/fields.hpp"
+#include "io/digest.hpp"
 
 namespace breccia {
 
@@ -35,8 +36,7 @@ class CheckpointWriter {
     });
   }
 
-  /// Writes to a temporary name beside `path`, syncs, reads back, verifies, renames and syncs the
-  /// folder.
+  /// Writes by replace_durably of io/file.hpp: to a temporary name, synced, read back, renamed.
   /// @throws IoError naming path and reason; an older file at `path` is then untouched
   void write(const std::string& path) const;
 
@@ -63,16 +63,20 @@ class CheckpointWriter {
 /// A checkpoint that has been read and fully verified.
 class CheckpointReader {
  public:
-  /// @throws IoError if the file cannot be read, CheckpointError naming the section if it is
-  /// damaged,
-  ///         truncated or of another version
+  /// Memory: the size of the file, asked for only after its frame and table have been verified.
+  /// @throws IoError if the file cannot be read, CheckpointError naming what is wrong and the
+  ///         section if it is damaged, truncated or of another version
   explicit CheckpointReader(const std::string& path);
+  // The sections' bytes lie in the reader: it can be moved, not copied.
+  CheckpointReader(CheckpointReader&&) = default;
+  CheckpointReader& operator=(CheckpointReader&&) = default;
 
   struct Section {
     std::string name;
     std::uint64_t count = 0;
     std::uint64_t item_bytes = 0;
-    std::span<const std::byte> bytes;
+    Bytes bytes;
+    Digest digest{};
   };
   const std::vector<Section>& sections() const { return sections_; }
   bool has(const std::string& name) const;
@@ -86,32 +90,42 @@ class CheckpointReader {
     static_assert(std::is_trivially_copyable_v<T>);
     const Section& found = section(name, sizeof(T));
     T item{};
-    copy_items(&item, found, 1, name);
+    copy_items(&item, found, 1);
     return item;
   }
   std::string text(const std::string& name) const;
 
   /// Fills every array of a state from the sections that CheckpointWriter::fields wrote.
+  /// @throws CheckpointError if one is missing, or they are not equally long
   template <class State>
   void fields(const std::string& prefix, State& state) const {
+    Index size = -1;
     state.each_field([&](const char* name, const char*, auto& array) {
       read_array(prefix + "." + name, array);
+      if (size >= 0 && array.size() != size) refuse_size(prefix, name, array.size(), size);
+      size = array.size();
     });
   }
 
  private:
-  static void copy_items(void* to, const Section& from, std::uint64_t count,
-                         const std::string& name);
+  struct Frame;
+  void read_table(const std::vector<std::byte>& bytes, const Frame& frame);
+  void copy_items(void* to, const Section& from, std::uint64_t count) const;
+  [[noreturn]] void refuse(const std::string& why) const;
+  [[noreturn]] void refuse_size(const std::string& prefix, const std::string& name, Index size,
+                                Index expected) const;
   template <class T>
   void read_array(const std::string& name, Buffer<T>& array) const {
     const Section& found = section(name, sizeof(T));
     Buffer<T> host;
     host.resize(static_cast<Index>(found.count));
-    copy_items(host.data(), found, found.count, name);
+    copy_items(host.data(), found, found.count);
     copy_to(array, host);
   }
   void read_array(const std::string& name, Vec3Planes& array) const {
-    array.resize(static_cast<Index>(section(name, sizeof(double)).count / 3));
+    const Section& found = section(name, sizeof(double));
+    if (found.count % 3 != 0) refuse("section " + name + " is not of whole vectors");
+    array.resize(static_cast<Index>(found.count / 3));
     read_array(name, array.items());
   }
 
@@ -119,8 +133,5 @@ class CheckpointReader {
   std::vector<std::byte> file_;
   std::vector<Section> sections_;
 };
-
-/// What a checkpoint holds, for people.
-std::string describe_checkpoint(const CheckpointReader& reader);
 
 }  // namespace breccia

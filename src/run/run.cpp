@@ -7,10 +7,10 @@
 #include <new>
 
 #include "exec/error.hpp"
+#include "io/whole_file.hpp"
 #include "run/checks.hpp"
 #include "run/messages.hpp"
 #include "run/signals.hpp"
-#include "run/text_file.hpp"
 
 namespace breccia {
 namespace {

@@ -1,26 +1,20 @@
 #pragma once
-// Text on disk that a kill or a full disk leaves whole: files replaced at once, files grown by
-// lines.
+// Text on disk that grows by lines, and that a kill or a full disk leaves whole.
 
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
 
-namespace breccia {
+#include "io/file.hpp"
 
-/// As replace_file, and what stands there survives a power cut: synced before and after the rename.
-/// @throws IoError naming path and reason; an older file at `path` is then untouched
-void replace_durably(const std::string& path, std::string_view text);
+namespace breccia {
 
 /// A text file that grows line by line and never keeps a part of a line.
 class LineFile {
  public:
   /// Opens the file at `path` to append; makes it if there is none. @throws IoError
   explicit LineFile(const std::string& path);
-  LineFile(const LineFile&) = delete;
-  LineFile& operator=(const LineFile&) = delete;
-  ~LineFile();
 
   /// Adds the line and a line end, at once.
   /// @throws IoError naming path and reason; the file then ends after its last whole line
@@ -29,9 +23,8 @@ class LineFile {
   void sync();
 
  private:
-  std::string path_;
-  int file_ = -1;
-  std::int64_t size_ = 0;  ///< up to the end of the last whole line  [bytes]
+  File file_;
+  std::uint64_t size_;  ///< up to the end of the last whole line  [bytes]
 };
 
 /// Keeps only the whole lines for which keep(line) is true; a last line without its end is dropped.

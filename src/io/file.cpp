@@ -1,0 +1,178 @@
+#include "io/file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+[[noreturn]] void fail_at(const std::string& path, const std::string& what) {
+  throw IoError(fmt::format("{}: cannot {}: {}", path, what, std::strerror(errno)));
+}
+
+int flags_of(File::Use use) {
+  switch (use) {
+    case File::Use::read:
+      return O_RDONLY | O_NONBLOCK;  // or a pipe without a writer would be waited for
+    case File::Use::replace:
+      return O_RDWR | O_CREAT | O_TRUNC;
+    case File::Use::append:
+      return O_WRONLY | O_CREAT | O_APPEND;
+  }
+  return O_RDONLY;
+}
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "." : path.substr(0, slash + 1);
+}
+
+void sync_folder(const std::string& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) fail_at(folder, "open");
+  const bool synced = ::fsync(file) == 0 || errno == EINVAL;  // some systems have no such call
+  const int reason = errno;
+  ::close(file);
+  errno = reason;
+  if (!synced) fail_at(folder, "sync");
+}
+
+std::uint64_t length_of(std::span<const Bytes> pieces) {
+  std::uint64_t length = 0;
+  for (const Bytes piece : pieces) length += piece.size();
+  return length;
+}
+
+/// A disk that is written full harms everybody who uses it, so what cannot fit is not begun.
+void refuse_without_room(const std::string& path, std::uint64_t bytes) {
+  struct statvfs disk {};
+  if (::statvfs(folder_of(path).c_str(), &disk) != 0 || disk.f_blocks == 0) return;  // not told
+  const std::uint64_t blocks = ::geteuid() == 0 ? disk.f_bfree : disk.f_bavail;
+  const std::uint64_t room = blocks * disk.f_frsize;
+  if (room < bytes)
+    throw IoError(fmt::format("{}: cannot write: it needs {} bytes, {} are free on its disk", path,
+                              bytes, room));
+}
+
+void compare(const File& file, std::span<const Bytes> pieces, const std::string& path) {
+  constexpr std::size_t chunk = std::size_t{1} << 20;
+  std::vector<std::byte> read(chunk);
+  std::uint64_t offset = 0;
+  for (Bytes piece : pieces) {
+    while (!piece.empty()) {
+      const Bytes part = piece.first(std::min(chunk, piece.size()));
+      const std::size_t count = file.read(std::span(read).first(part.size()), offset);
+      if (count != part.size() || std::memcmp(read.data(), part.data(), count) != 0)
+        throw IoError(path + ": cannot write: what was read back is not what was written");
+      offset += count;
+      piece = piece.subspan(count);
+    }
+  }
+}
+
+/// Calls write(file) on a temporary file, which then takes the name `path` or is gone.
+template <class Write>
+void replace_by(const std::string& path, const Write& write) {
+  const std::string temporary = path + ".tmp";
+  File file(temporary, File::Use::replace);
+  try {
+    write(file, temporary);
+    file.close();
+    if (std::rename(temporary.c_str(), path.c_str()) != 0)
+      fail_at(path, "rename " + temporary + " to it");
+  } catch (...) {
+    std::remove(temporary.c_str());
+    throw;
+  }
+}
+
+}  // namespace
+
+File::File(const std::string& path, Use use) : path_(path) {
+  file_ = ::open(path.c_str(), flags_of(use) | O_CLOEXEC, 0666);
+  if (file_ < 0) fail(use == Use::read ? "read" : "write");
+  struct stat about {};
+  if (use != Use::read || (::fstat(file_, &about) == 0 && S_ISREG(about.st_mode))) return;
+  ::close(file_);
+  throw IoError(path_ + ": cannot read: it is not a regular file");
+}
+
+File::~File() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void File::fail(const char* what) const {
+  fail_at(path_, what);
+}
+
+std::uint64_t File::size() const {
+  struct stat about {};
+  if (::fstat(file_, &about) != 0) fail("read the size");
+  return static_cast<std::uint64_t>(about.st_size);
+}
+
+std::size_t File::read(std::span<std::byte> to, std::uint64_t offset) const {
+  std::size_t done = 0;
+  while (done < to.size()) {
+    const ssize_t count =
+        ::pread(file_, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail("read");
+    if (count == 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  return done;
+}
+
+void File::write(Bytes bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail("write");
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+}
+
+void File::sync() {
+  // Pipes and the like cannot be synced and need not be.
+  if (::fsync(file_) != 0 && errno != EINVAL && errno != EROFS) fail("sync");
+}
+
+void File::cut(std::uint64_t size) {
+  if (::ftruncate(file_, static_cast<off_t>(size)) != 0) fail("cut");
+}
+
+void File::close() {
+  const int file = file_;
+  file_ = -1;
+  if (::close(file) != 0 && errno != EINTR) fail("close");
+}
+
+void replace_file(const std::string& path, std::span<const Bytes> pieces) {
+  replace_by(path, [&](File& file, const std::string&) {
+    for (const Bytes piece : pieces) file.write(piece);
+  });
+}
+
+void replace_durably(const std::string& path, std::span<const Bytes> pieces) {
+  refuse_without_room(path, length_of(pieces));
+  replace_by(path, [&](File& file, const std::string& name) {
+    for (const Bytes piece : pieces) file.write(piece);
+    file.sync();
+    compare(file, pieces, name);
+  });
+  sync_folder(folder_of(path));
+}
+
+}  // namespace breccia

@@ -1,0 +1,63 @@
+#pragma once
+// The one door to files: every call to open, read, write, sync and rename a file is made here.
+//
+// Each failure is an IoError "path: cannot <what>: <reason>". Calls that a signal interrupts are
+// continued; a failed sync is never tried again, since the system forgets what it could not write.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace breccia {
+
+using Bytes = std::span<const std::byte>;
+
+inline Bytes bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+/// An open regular file.
+class File {
+ public:
+  enum class Use {
+    read,
+    replace,  ///< empties what was there
+    append,   ///< makes it if there is none
+  };
+
+  /// @throws IoError if it cannot be opened; to read, also if it is a folder, a pipe or a device
+  File(const std::string& path, Use use);
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  ~File();
+
+  std::uint64_t size() const;
+  /// Fills `to` from `offset` on. Returns how many bytes there were: fewer only at the end.
+  std::size_t read(std::span<std::byte> to, std::uint64_t offset) const;
+  void write(Bytes bytes);
+  /// Waits until the disk has everything.
+  void sync();
+  void cut(std::uint64_t size);
+  /// Tells of failures that a destructor would hide.
+  void close();
+
+ private:
+  [[noreturn]] void fail(const char* what) const;
+
+  std::string path_;
+  int file_ = -1;
+};
+
+/// Writes the pieces, one after the other, under a temporary name in the same folder, then renames
+/// it: under its name stands either the old file or the new one, whatever happens to the program.
+/// @throws IoError; an older file at `path` is then untouched and nothing else is left
+void replace_file(const std::string& path, std::span<const Bytes> pieces);
+
+/// As replace_file, and what stands there survives a power cut: the disk has it, it was read back
+/// and compared before it took its name, and the folder is synced. Refuses at once what the disk
+/// has no room for.
+void replace_durably(const std::string& path, std::span<const Bytes> pieces);
+
+}  // namespace breccia
