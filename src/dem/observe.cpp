@@ -45,20 +45,57 @@ struct FindUnsound {
   }
 };
 
-double pick(const std::string& quantity, const Elements& e, std::size_t i) {
-  const Vec3& x = e.state.data()[i].position;
-  const Vec3& v = e.state.data()[i].velocity;
-  const Vec3& f = e.force.data()[i];
-  const double m = e.mass.data()[i];
+/// What a probe reads of one element.
+double pick(const std::string& quantity, const ElementState& state, const Vec3& force, double mass,
+            double inertia) {
   const char axis = quantity.back();
   const auto part = [axis](const Vec3& a) { return axis == 'x' ? a.x : axis == 'y' ? a.y : a.z; };
-  if (quantity.starts_with("position")) return part(x);
-  if (quantity.starts_with("velocity")) return part(v);
-  if (quantity.starts_with("force")) return part(f);
-  if (quantity.starts_with("momentum")) return m * part(v);
-  if (quantity == "speed") return norm(v);
-  const Vec3& s = e.state.data()[i].spin;
-  return 0.5 * m * dot(v, v) + 0.5 * e.inertia.data()[i] * dot(s, s);  // kinetic
+  if (quantity.starts_with("position")) return part(state.position);
+  if (quantity.starts_with("velocity")) return part(state.velocity);
+  if (quantity.starts_with("force")) return part(force);
+  if (quantity.starts_with("momentum")) return mass * part(state.velocity);
+  if (quantity == "speed") return norm(state.velocity);
+  return 0.5 * mass * dot(state.velocity, state.velocity) +
+         0.5 * inertia * dot(state.spin, state.spin);  // kinetic
+}
+
+/// An array for reading on the host: itself where it lies there, else a copy.
+template <class T>
+class HostItems {
+ public:
+  explicit HostItems(const Buffer<T>& array) : items_(&array) {
+    if (array.space() == Space::host) return;
+    copy_to(copy_, array);
+    items_ = &copy_;
+  }
+  HostItems(const HostItems&) = delete;
+  HostItems& operator=(const HostItems&) = delete;
+  const T& operator[](Index i) const { return items_->data()[i]; }
+  Index size() const { return items_->size(); }
+
+ private:
+  Buffer<T> copy_;
+  const Buffer<T>* items_;
+};
+
+/// Both ends of each link and whether it is broken.
+template <class Visit>
+void each_link(const World& w, const Visit& visit) {
+  {
+    const HostItems a(w.concrete.a), b(w.concrete.b);
+    const HostItems opening(w.concrete.opening);
+    for (Index i = 0; i < a.size(); ++i) visit(LinkKind::concrete, a[i], b[i], opening[i] < 0.0);
+  }
+  {
+    const HostItems a(w.steel.a), b(w.steel.b);
+    const HostItems state(w.steel.state);
+    for (Index i = 0; i < a.size(); ++i)
+      visit(LinkKind::steel, a[i], b[i], state[i].hardening < 0.0);
+  }
+  const HostItems a(w.interface.a), b(w.interface.b);
+  const HostItems state(w.interface.state);
+  for (Index i = 0; i < a.size(); ++i)
+    visit(LinkKind::interface, a[i], b[i], state[i].opening < 0.0);
 }
 
 /// Pieces held together by unbroken links: each element's lowest reachable member.
@@ -113,21 +150,12 @@ void verify(const World& w) {
 std::vector<double> damage(const World& w) {
   const auto count = static_cast<std::size_t>(w.elements.size());
   std::vector<double> lost(count, 0.0), links(count, 0.0);
-  const ConcreteLinks c = host_copy(w.concrete);
-  const auto book = [&](Index a, Index b, double share) {
+  each_link(w, [&](LinkKind, Index a, Index b, bool broken) {
     for (const Index e : {a, b}) {
-      lost[static_cast<std::size_t>(e)] += share;
+      lost[static_cast<std::size_t>(e)] += broken ? 1.0 : 0.0;
       links[static_cast<std::size_t>(e)] += 1.0;
     }
-  };
-  for (Index i = 0; i < c.size(); ++i)
-    book(c.a.data()[i], c.b.data()[i], c.opening.data()[i] < 0.0 ? 1.0 : 0.0);
-  const InterfaceLinks b = host_copy(w.interface);
-  for (Index i = 0; i < b.size(); ++i)
-    book(b.a.data()[i], b.b.data()[i], b.state.data()[i].opening < 0.0 ? 1.0 : 0.0);
-  const SteelLinks s = host_copy(w.steel);
-  for (Index i = 0; i < s.size(); ++i)
-    book(s.a.data()[i], s.b.data()[i], s.state.data()[i].hardening < 0.0 ? 1.0 : 0.0);
+  });
   for (std::size_t e = 0; e < count; ++e)
     if (links[e] > 0.0) lost[e] /= links[e];
   return lost;
@@ -145,12 +173,15 @@ double probe(const World& w, const ProbeConfig& p) {
     copy_to(members, set->members);
   }
   const std::vector<double> lost = p.quantity == "damage" ? damage(w) : std::vector<double>{};
-  const Elements e = host_copy(w.elements);
+  const HostItems state(w.elements.state);
+  const HostItems force(w.elements.force);
+  const HostItems mass(w.elements.mass), inertia(w.elements.inertia);
   ExactSum sum;
   double low = no_limit, high = -no_limit;
   for (const Index member : members) {
-    const auto i = static_cast<std::size_t>(member);
-    const double value = lost.empty() ? pick(p.quantity, e, i) : lost[i];
+    const double value =
+        lost.empty() ? pick(p.quantity, state[member], force[member], mass[member], inertia[member])
+                     : lost[static_cast<std::size_t>(member)];
     sum.add(value);
     low = std::min(low, value);
     high = std::max(high, value);
@@ -163,37 +194,23 @@ double probe(const World& w, const ProbeConfig& p) {
 Counts count(const World& w) {
   Counts n;
   Pieces pieces(static_cast<std::size_t>(w.elements.size()));
-  const ConcreteLinks c = host_copy(w.concrete);
-  for (Index i = 0; i < c.size(); ++i) {
-    if (c.opening.data()[i] < 0.0)
-      ++n.broken_concrete;
+  each_link(w, [&](LinkKind kind, Index a, Index b, bool broken) {
+    if (!broken)
+      pieces.join(a, b);
     else
-      pieces.join(c.a.data()[i], c.b.data()[i]);
-  }
-  const SteelLinks s = host_copy(w.steel);
-  for (Index i = 0; i < s.size(); ++i) {
-    if (s.state.data()[i].hardening < 0.0)
-      ++n.broken_steel;
-    else
-      pieces.join(s.a.data()[i], s.b.data()[i]);
-  }
-  const InterfaceLinks b = host_copy(w.interface);
-  for (Index i = 0; i < b.size(); ++i) {
-    if (b.state.data()[i].opening < 0.0)
-      ++n.broken_interface;
-    else
-      pieces.join(b.a.data()[i], b.b.data()[i]);
-  }
-  Buffer<ContactState> contacts;
-  copy_to(contacts, w.contacts.history.state);
-  for (const ContactState& contact : contacts.host())
-    if (contact.overlap > 0.0) ++n.touching;
-  const Elements e = host_copy(w.elements);
-  std::vector<double> mass(static_cast<std::size_t>(e.size()), 0.0);
+      ++(kind == LinkKind::concrete ? n.broken_concrete
+         : kind == LinkKind::steel  ? n.broken_steel
+                                    : n.broken_interface);
+  });
+  const HostItems contacts(w.contacts.history.state);
+  for (Index i = 0; i < contacts.size(); ++i)
+    if (contacts[i].overlap > 0.0) ++n.touching;
+  const HostItems masses(w.elements.mass);
+  std::vector<double> mass(static_cast<std::size_t>(masses.size()), 0.0);
   double total = 0.0;
-  for (Index i = 0; i < e.size(); ++i) {
-    mass[static_cast<std::size_t>(pieces.root(i))] += e.mass.data()[i];
-    total += e.mass.data()[i];
+  for (Index i = 0; i < masses.size(); ++i) {
+    mass[static_cast<std::size_t>(pieces.root(i))] += masses[i];
+    total += masses[i];
   }
   for (const double m : mass) {
     if (m > 0.0) ++n.fragments;
