@@ -77,13 +77,16 @@ template <class Value, class Kernel, class Combine>
 Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
            const Combine& combine) {
   const Index chunks = (count + fold_chunk - 1) / fold_chunk;
-  std::vector<Value> partial(static_cast<std::size_t>(chunks), neutral);
+  struct Partial {  // by itself in memory: std::vector<bool> would share words among threads
+    Value value;
+  };
+  std::vector<Partial> partial(static_cast<std::size_t>(chunks), Partial{neutral});
   const auto fold_one = [&](Index chunk) {
     const KernelScope scope;
     Value value = neutral;
     const Index end = std::min(count, (chunk + 1) * fold_chunk);
     for (Index i = chunk * fold_chunk; i < end; ++i) value = combine(value, kernel(i));
-    partial[static_cast<std::size_t>(chunk)] = value;
+    partial[static_cast<std::size_t>(chunk)].value = value;
   };
   if (exec.threads <= 1 || chunks < 2) {
     for (Index chunk = 0; chunk < chunks; ++chunk) fold_one(chunk);
@@ -92,7 +95,7 @@ Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
     for (Index chunk = 0; chunk < chunks; ++chunk) fold_one(chunk);
   }
   Value value = neutral;
-  for (const Value& part : partial) value = combine(value, part);
+  for (const Partial& part : partial) value = combine(value, part.value);
   return value;
 }
 

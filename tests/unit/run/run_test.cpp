@@ -44,8 +44,7 @@ int wait_for(pid_t child) {
 std::vector<std::string> temporary_files(const std::string& path) {
   std::vector<std::string> found;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path))
-    if (entry.path().extension() == ".tmp")
-      found.push_back(entry.path());
+    if (entry.path().extension() == ".tmp") found.push_back(entry.path());
   return found;
 }
 
