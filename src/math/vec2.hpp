@@ -1,0 +1,85 @@
+#pragma once
+// Vectors and 2 x 2 matrices of the plane.
+
+#include "exec/types.hpp"
+#include "math/pack.hpp"
+
+namespace breccia {
+
+/// A vector of two components.
+struct Vec2 {
+  double x{}, y{};
+
+  BR_HD Vec2& operator+=(const Vec2& b) {
+    x += b.x;
+    y += b.y;
+    return *this;
+  }
+  BR_HD Vec2& operator-=(const Vec2& b) {
+    x -= b.x;
+    y -= b.y;
+    return *this;
+  }
+};
+
+BR_HD inline Vec2 operator+(const Vec2& a, const Vec2& b) {
+  return {a.x + b.x, a.y + b.y};
+}
+BR_HD inline Vec2 operator-(const Vec2& a, const Vec2& b) {
+  return {a.x - b.x, a.y - b.y};
+}
+BR_HD inline Vec2 operator-(const Vec2& a) {
+  return {-a.x, -a.y};
+}
+BR_HD inline Vec2 operator*(double s, const Vec2& a) {
+  return {s * a.x, s * a.y};
+}
+BR_HD inline double dot(const Vec2& a, const Vec2& b) {
+  return a.x * b.x + a.y * b.y;
+}
+/// z of the cross product: twice the area of the triangle 0, a, b, positive counter-clockwise.
+BR_HD inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
+BR_HD inline double norm(const Vec2& a) {
+  return root(dot(a, a));
+}
+
+/// A 2 x 2 matrix by rows.
+struct Mat2 {
+  double xx{}, xy{}, yx{}, yy{};
+};
+
+/// Columns a and b.
+BR_HD inline Mat2 columns(const Vec2& a, const Vec2& b) {
+  return {a.x, b.x, a.y, b.y};
+}
+BR_HD inline double determinant(const Mat2& m) {
+  return m.xx * m.yy - m.xy * m.yx;
+}
+/// @param m  with a determinant other than 0
+BR_HD inline Mat2 inverse(const Mat2& m) {
+  const double scale = 1.0 / determinant(m);
+  return {scale * m.yy, -scale * m.xy, -scale * m.yx, scale * m.xx};
+}
+BR_HD inline Mat2 operator*(const Mat2& a, const Mat2& b) {
+  return {a.xx * b.xx + a.xy * b.yx, a.xx * b.xy + a.xy * b.yy, a.yx * b.xx + a.yy * b.yx,
+          a.yx * b.xy + a.yy * b.yy};
+}
+BR_HD inline Vec2 operator*(const Mat2& m, const Vec2& v) {
+  return {m.xx * v.x + m.xy * v.y, m.yx * v.x + m.yy * v.y};
+}
+
+/// A symmetric 2 x 2 tensor: stress, strain.
+struct Sym2 {
+  double xx{}, yy{}, xy{};
+};
+BR_HD inline Vec2 operator*(const Sym2& s, const Vec2& v) {
+  return {s.xx * v.x + s.xy * v.y, s.xy * v.x + s.yy * v.y};
+}
+/// Double contraction a : b.
+BR_HD inline double contract(const Sym2& a, const Sym2& b) {
+  return a.xx * b.xx + a.yy * b.yy + 2.0 * (a.xy * b.xy);
+}
+
+}  // namespace breccia
