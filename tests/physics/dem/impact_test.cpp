@@ -1,0 +1,64 @@
+// The impact on the reinforced slab, small: momentum that the rock loses is the impulse it gets,
+// and that of the slab and its supports.
+
+#include <gtest/gtest.h>
+
+#include "io/case_file.hpp"
+#include "prepare/build.hpp"
+#include "scene.hpp"
+
+namespace breccia::dem {
+namespace {
+
+const std::string folder = BR_SOURCE_DIR "/cases/rc_slab";
+
+/// Sum of a quantity over a body, a support, or everything, as a probe of a case reads it.
+double sum(const World& w, const char* on, const char* quantity) {
+  return probe(w, {"", on, quantity, "sum"});
+}
+
+/// Impulses along z over the span between the velocities before and after the forces of now.
+struct Impulses {
+  double rock = 0.0, slab = 0.0, steel = 0.0, supports = 0.0;
+};
+
+TEST(Impact, the_rock_s_loss_of_momentum_is_the_impulse_on_slab_bars_and_supports) {
+  const auto config = read_case<Config>(folder + "/small.toml", {"time.end=1"});
+  World w = make_world(config, build_model(config, folder), {});
+  const double before = sum(w, "impactor", "momentum_z");
+  const double slab_before = sum(w, "slab", "momentum_z"),
+               steel_before = sum(w, "steel", "momentum_z");
+  ASSERT_NEAR(before, -30.0 * 2400.0 * 4.0 / 3.0 * testing::pi * std::pow(0.057, 3), 1e-9);
+
+  Impulses given;
+  double unbalanced = 0.0, largest = 0.0;
+  while (w.time < 1e-3) {
+    const double span = 0.5 * (w.last_dt + w.next_dt);
+    const double rock = sum(w, "impactor", "force_z");
+    given.rock += span * rock;
+    given.slab += span * sum(w, "slab", "force_z");
+    given.steel += span * sum(w, "steel", "force_z");
+    for (const char* support : {"west", "east", "south", "north"})
+      given.supports += span * sum(w, support, "force_z");
+    unbalanced = std::max(unbalanced, std::fabs(sum(w, "", "force_z")));
+    largest = std::max(largest, std::fabs(rock));
+    step(w);
+  }
+  const double lost = before - sum(w, "impactor", "momentum_z");
+  EXPECT_LT(lost, 0.3 * before) << "the rock has hardly been slowed";
+  EXPECT_GT(count(w).broken_concrete, 100);
+  const double tolerance = 1e-10 * std::fabs(before);
+  EXPECT_NEAR(lost, -given.rock, tolerance);
+  EXPECT_NEAR(given.rock, -(given.slab + given.steel), tolerance);
+  // What the supports hold does not move: the rest of the impulse is momentum of slab and bars.
+  const double gained =
+      sum(w, "slab", "momentum_z") - slab_before + sum(w, "steel", "momentum_z") - steel_before;
+  EXPECT_NEAR(gained, given.slab + given.steel - given.supports, tolerance);
+  EXPECT_NEAR(lost, gained + given.supports, tolerance);
+  EXPECT_GT(std::fabs(given.supports), 1e-3 * std::fabs(before)) << "no support felt the impact";
+  // Forces between elements cancel at every step.
+  EXPECT_LT(unbalanced, 1e-11 * largest);
+}
+
+}  // namespace
+}  // namespace breccia::dem
