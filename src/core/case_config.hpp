@@ -128,7 +128,9 @@ struct CaseConfig {
   template <class Visit>
   void each_key(Visit&& key) {
     key("breccia", breccia, "-", Range{1, 1}, "version of the case-file format");
-    key("method", method, OneOf{"dem3d"}, "which method runs the case");
+    key("method", method, OneOf{"dem3d", "fdem2d"},
+        "which method runs the case: spheres in space (Durand et al. 2012), triangles in the plane "
+        "(Lukas et al. 2014)");
     key("title", title, "one line for people");
     key("seed", seed, "-", Range{0, 9e15}, "seed of every random choice");
     key.table("time", time, "how long and how fast");

@@ -6,42 +6,52 @@
 
 namespace breccia {
 
-/// A vector of two components.
-struct Vec2 {
-  double x{}, y{};
+/// A vector of two components; R is double, or a pack of doubles in vectorised host code.
+template <class R>
+struct Vec2Of {
+  R x{}, y{};
 
-  BR_HD Vec2& operator+=(const Vec2& b) {
+  BR_HD Vec2Of& operator+=(const Vec2Of& b) {
     x += b.x;
     y += b.y;
     return *this;
   }
-  BR_HD Vec2& operator-=(const Vec2& b) {
+  BR_HD Vec2Of& operator-=(const Vec2Of& b) {
     x -= b.x;
     y -= b.y;
     return *this;
   }
 };
 
-BR_HD inline Vec2 operator+(const Vec2& a, const Vec2& b) {
+using Vec2 = Vec2Of<double>;
+
+template <class R>
+BR_HD Vec2Of<R> operator+(const Vec2Of<R>& a, const Vec2Of<R>& b) {
   return {a.x + b.x, a.y + b.y};
 }
-BR_HD inline Vec2 operator-(const Vec2& a, const Vec2& b) {
+template <class R>
+BR_HD Vec2Of<R> operator-(const Vec2Of<R>& a, const Vec2Of<R>& b) {
   return {a.x - b.x, a.y - b.y};
 }
-BR_HD inline Vec2 operator-(const Vec2& a) {
+template <class R>
+BR_HD Vec2Of<R> operator-(const Vec2Of<R>& a) {
   return {-a.x, -a.y};
 }
-BR_HD inline Vec2 operator*(double s, const Vec2& a) {
+template <class R>
+BR_HD Vec2Of<R> operator*(const R& s, const Vec2Of<R>& a) {
   return {s * a.x, s * a.y};
 }
-BR_HD inline double dot(const Vec2& a, const Vec2& b) {
+template <class R>
+BR_HD R dot(const Vec2Of<R>& a, const Vec2Of<R>& b) {
   return a.x * b.x + a.y * b.y;
 }
 /// z of the cross product: twice the area of the triangle 0, a, b, positive counter-clockwise.
-BR_HD inline double cross(const Vec2& a, const Vec2& b) {
+template <class R>
+BR_HD R cross(const Vec2Of<R>& a, const Vec2Of<R>& b) {
   return a.x * b.y - a.y * b.x;
 }
-BR_HD inline double norm(const Vec2& a) {
+template <class R>
+BR_HD R norm(const Vec2Of<R>& a) {
   return root(dot(a, a));
 }
 

@@ -19,6 +19,13 @@ struct Fact {
   double value;
 };
 
+/// A table of what a run found, for DIR/<name>.csv.
+struct Table {
+  std::string name;
+  std::vector<std::string> columns, units;
+  std::vector<std::vector<double>> rows;
+};
+
 /// A running simulation, whatever its method.
 class Method {
  public:
@@ -42,6 +49,8 @@ class Method {
   virtual void verify() = 0;
   virtual Frame frame() = 0;
   virtual std::vector<Fact> facts() = 0;
+  /// What else the end of a run shows.
+  virtual std::vector<Table> tables() { return {}; }
 
   /// Everything the run needs to go on, to and from a checkpoint.
   virtual void save(CheckpointWriter& writer) = 0;

@@ -232,6 +232,8 @@ int Run::done() {
     const OutputTime time(plan_.timers, output_);
     recorder_.record_last(method_);
     recorder_.sync();
+    for (const Table& table : method_.tables())
+      replace_durably(folder_.file(table.name + ".csv"), to_csv(table));
   }
   Summary now = summary();
   now.status = "done";

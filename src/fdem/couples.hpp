@@ -1,0 +1,175 @@
+#pragma once
+// Triangles in contact: what a couple remembers, and the kernel of one launch.
+
+#include "core/incidence.hpp"
+#include "core/pair_list.hpp"
+#include "fdem/laws/potential_contact.hpp"
+#include "fdem/triangles.hpp"
+
+namespace breccia::fdem {
+
+/// Contact of two materials.
+struct ContactPair {
+  double penalty;     ///< p_n  [Pa]
+  double tangential;  ///< p_t  [Pa]
+  double friction;    ///< mu  [-]
+};
+
+/// What a couple of triangles remembers.
+struct CoupleState {
+  double drag[6];  ///< tangential force of a's edges through b, then of b's through a  [N/m]
+  double scale;    ///< of its penalty; 0: not yet met  [-]
+  double work;     ///< taken up since it began to touch, friction included  [J/m]
+  double slid;     ///< the part of it that friction has spent  [J/m]
+  double lost;     ///< what was left of both when it parted: errors of integration  [J/m]
+  double rubbed;   ///< what friction spent in touches that have ended  [J/m]
+};
+
+/// Forces of a couple on the corners of both triangles.  [N/m]
+struct CoupleForce {
+  Corners on_a, on_b;
+};
+
+struct CoupleHistory {
+  Buffer<CoupleState> state;
+  Buffer<CoupleForce> force;
+
+  explicit CoupleHistory(Space space = Space::host) : state(space), force(space) {}
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("state", "-", state);
+    field("force", "N/m", force);
+  }
+};
+using Couples = PairList<CoupleHistory>;
+
+/// Normal force by potential, both ways; Coulomb friction on each edge with a spring that remembers
+/// (docs/theory.md, contact of triangles).
+struct CoupleForces {
+  static constexpr const char* name = "fdem.couples";
+  double dt;          ///< the step that led here  [s]
+  bool conservative;  ///< adds the shape forces that make it the gradient of an energy
+  View<const TriangleNodes> nodes;
+  View<const std::int16_t> material;
+  View<const ContactPair> laws;  ///< of materials a and b at a * materials + b
+  Index materials;
+  View<const Index> a, b;
+  View<const double> born;  ///< force that a broken joint carried between them, 0: none  [N/m]
+  View<CoupleState> state;
+  View<CoupleForce> force;
+
+  BR_HD void operator()(Index i) const {
+    CoupleState& kept = state[i];
+    Vec2 xa[3], va[3], xb[3], vb[3];
+    split(nodes[a[i]], xa, va);
+    split(nodes[b[i]], xb, vb);
+    CoupleForce sum{};
+    bool touching = false;
+    if (boxes_meet(xa, xb)) {
+      const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
+      const Target of_a = Target::of(xa), of_b = Target::of(xb);
+      if (kept.scale == 0.0) kept.scale = first_scale(i, law, xa, of_a, xb, of_b);
+      touching = pass(law, kept, kept.drag, xa, va, of_b, vb, sum.on_a.at, sum.on_b.at);
+      touching =
+          pass(law, kept, kept.drag + 3, xb, vb, of_a, va, sum.on_b.at, sum.on_a.at) || touching;
+      if (touching && conservative) {
+        const Polygon over = overlap_of(of_a, of_b);
+        add_shape_forces(of_a, over, kept.scale * law.penalty, sum.on_a.at);
+        add_shape_forces(of_b, over, kept.scale * law.penalty, sum.on_b.at);
+      }
+    }
+    if (!touching && kept.work == 0.0 && kept.slid == 0.0) return;
+    CoupleForce& last = force[i];
+    for (int k = 0; k < 3; ++k) {
+      kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.on_a.at[k], va[k]);
+      kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.on_b.at[k], vb[k]);
+    }
+    last = sum;
+    if (!touching) {
+      kept.lost += kept.work - kept.slid;
+      kept.rubbed += kept.slid;
+      kept.work = kept.slid = 0.0;
+      kept.scale = 1.0;
+      for (double& drag : kept.drag) drag = 0.0;
+    }
+  }
+
+ private:
+  BR_HD static bool boxes_meet(const Vec2 (&p)[3], const Vec2 (&q)[3]) {
+    for (int k = 0; k < 2; ++k) {
+      const auto part = [k](const Vec2& v) { return k == 0 ? v.x : v.y; };
+      const double p_low = smaller(part(p[0]), smaller(part(p[1]), part(p[2])));
+      const double p_high = larger(part(p[0]), larger(part(p[1]), part(p[2])));
+      const double q_low = smaller(part(q[0]), smaller(part(q[1]), part(q[2])));
+      const double q_high = larger(part(q[0]), larger(part(q[1]), part(q[2])));
+      if (p_high < q_low || q_high < p_low) return false;
+    }
+    return true;
+  }
+
+  /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
+  /// force: the force does not jump, and to first order neither does the energy.
+  BR_HD double first_scale(Index i, const ContactPair& law, const Vec2 (&xa)[3], const Target& of_a,
+                           const Vec2 (&xb)[3], const Target& of_b) const {
+    if (!(born[i] > 0.0)) return 1.0;
+    Vec2 on_a{};
+    for (int k = 0; k < 3; ++k) {
+      EdgeOverlap o;
+      Vec2 first, second;
+      if (overlap_of_edge(xa[k], xa[(k + 1) % 3], of_b, o)) {
+        normal_forces(o, xa[k], xa[(k + 1) % 3], law.penalty, first, second);
+        on_a += first + second;
+      }
+      if (overlap_of_edge(xb[k], xb[(k + 1) % 3], of_a, o)) {
+        normal_forces(o, xb[k], xb[(k + 1) % 3], law.penalty, first, second);
+        on_a -= first + second;
+      }
+    }
+    const double size = norm(on_a);
+    return size > 0.0 ? smaller(2.0, larger(0.01, born[i] / size)) : 1.0;
+  }
+
+  /// The edges of one triangle through the other. True if any of them touches.
+  BR_HD bool pass(const ContactPair& law, CoupleState& kept, double* drag, const Vec2 (&x)[3],
+                  const Vec2 (&v)[3], const Target& target, const Vec2 (&target_v)[3],
+                  Vec2 (&on_x)[3], Vec2 (&on_target)[3]) const {
+    bool touching = false;
+    for (int k = 0; k < 3; ++k) {
+      const int next = k == 2 ? 0 : k + 1;
+      EdgeOverlap o;
+      if (!overlap_of_edge(x[k], x[next], target, o)) {
+        drag[k] = 0.0;
+        continue;
+      }
+      touching = true;
+      Vec2 first, second;
+      const double penalty = kept.scale * law.penalty;
+      normal_forces(o, x[k], x[next], penalty, first, second);
+      push(o, k, first, second, on_x, on_target);
+      if (!(law.friction > 0.0)) continue;
+
+      const Vec2 edge = x[next] - x[k];
+      const double size = norm(edge);
+      const Vec2 along = (1.0 / size) * edge;
+      const double middle = 0.5 * (o.begin + o.end);
+      Vec2 rate = -((1.0 - middle) * v[k] + middle * v[next]);
+      for (int m = 0; m < 3; ++m)
+        rate += (o.at_a[m] + middle * (o.at_b[m] - o.at_a[m])) * target_v[m];
+      const double stiffness = kept.scale * law.tangential * (o.end - o.begin);
+      const double limit = law.friction * penalty * o.whole * size;
+      double pull = drag[k] + stiffness * dt * dot(rate, along);
+      const double over = absolute(pull) - limit;
+      if (over > 0.0) {
+        kept.slid += limit * over / stiffness;
+        pull = pull < 0.0 ? -limit : limit;
+      }
+      drag[k] = pull;
+      const double share = o.moment / o.whole;
+      push(o, k, (pull * (1.0 - share)) * along, (pull * share) * along, on_x, on_target);
+    }
+    return touching;
+  }
+};
+
+}  // namespace breccia::fdem

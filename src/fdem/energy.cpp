@@ -1,0 +1,174 @@
+// The ledger of an FDEM run: every joule, summed exactly, per unit thickness.
+
+#include <algorithm>
+#include <cmath>
+
+#include "exec/for_each.hpp"
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+/// Energies of one item, in the ledger's columns.
+struct Shares {
+  ExactSum kinetic, elastic, open, slide, friction, damping, contact, work;
+};
+Shares sum_shares(Shares a, const Shares& b) {
+  a.kinetic.add(b.kinetic);
+  a.elastic.add(b.elastic);
+  a.open.add(b.open);
+  a.slide.add(b.slide);
+  a.friction.add(b.friction);
+  a.damping.add(b.damping);
+  a.contact.add(b.contact);
+  a.work.add(b.work);
+  return a;
+}
+
+struct TriangleShares {
+  Kick kick;
+  View<const std::int16_t> material;
+  View<const ElasticTriangle> laws;
+  View<const Mat2> shape_inverse;
+  View<const double> viscous_work, damping_work, load_work;
+
+  Shares operator()(Index t) const {
+    Shares s;
+    const Kick::Result next = kick(t);
+    const double span = 0.5 * (kick.last_dt + kick.next_dt);
+    for (int k = 0; k < 3; ++k) {
+      // m/2 (v.v - dt_- dt_+ a.a / 4): the leapfrog's own balance closes with it
+      const Vec2 before = kick.nodes[t].at[k].velocity;
+      const Vec2 a = span > 0.0 ? (1.0 / span) * (next.velocity[k] - before) : Vec2{};
+      const Vec2 now = before + (0.5 * kick.last_dt) * a;
+      s.kinetic.add(0.5 * kick.mass[t] *
+                    (dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a)));
+    }
+    Vec2 x[3], v[3];
+    split(kick.nodes[t], x, v);
+    const Mat2& inverse_shape = shape_inverse[t];
+    const double area = 0.5 / determinant(inverse_shape);
+    s.elastic.add(area * laws[material[t]].energy(deformation(inverse_shape, x, v)));
+    s.damping.add(viscous_work[t]);
+    s.damping.add(damping_work[t]);
+    s.work.add(load_work[t]);
+    return s;
+  }
+};
+
+struct GravityPotential {
+  Vec2 gravity;
+  View<const TriangleNodes> nodes;
+  View<const double> mass;
+  ExactSum operator()(Index t) const {
+    ExactSum sum;
+    for (const NodeState& n : nodes[t].at) sum.add(mass[t] * dot(gravity, n.position));
+    return sum;
+  }
+};
+
+struct JointShares {
+  View<const TriangleNodes> nodes;
+  View<const JointBond> bonds;
+  View<const Index> edge_a, edge_b;
+  View<const std::int16_t> law;
+  View<const double> length, strength;
+  View<const Vec2> preset;
+  View<const JointStage> stage;
+  View<const JointPoints> points;
+  View<const JointWork> work;
+
+  Shares operator()(Index i) const {
+    Shares s;
+    s.open.add(work[i].open);
+    s.slide.add(work[i].slide);
+    if (stage[i] == JointStage::broken) return s;
+    const JointOpening o = opening_of(JointNodes(nodes, edge_a[i], edge_b[i]), length[i]);
+    if (o.collapsed) return s;
+    const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
+    double open = 0.0, slide = 0.0;
+    for (int q = 0; q < 3; ++q) {
+      const StoredEnergy e = stored(bonds[law[i]], strength[i], length[i], o.open[q] + offset.x,
+                                    o.slide[q] + offset.y, points[i].point[q]);
+      const double weight = (q == 1 ? 4.0 : 1.0) * length[i] / 6.0;
+      open += weight * e.open;
+      slide += weight * e.slide;
+    }
+    s.elastic.add(open);
+    s.elastic.add(slide);
+    s.open.add(-open);
+    s.slide.add(-slide);
+    return s;
+  }
+};
+
+struct CoupleShares {
+  View<const CoupleState> state;
+  Shares operator()(Index i) const {
+    Shares s;
+    s.elastic.add(state[i].work - state[i].slid);
+    s.friction.add(state[i].slid);
+    s.friction.add(state[i].rubbed);
+    s.contact.add(state[i].lost);
+    return s;
+  }
+};
+
+Shares all_shares(const World& w) {
+  const Triangles& t = w.triangles;
+  Shares sum =
+      fold(w.exec, t.size(), Shares{},
+           TriangleShares{kick(w), t.material.view(), w.laws.view(), t.shape_inverse.view(),
+                          t.viscous_work.view(), t.damping_work.view(), t.load_work.view()},
+           sum_shares);
+  const Joints& j = w.joints;
+  sum = sum_shares(
+      sum, fold(w.exec, j.size(), Shares{},
+                JointShares{t.nodes.view(), w.bonds.view(), j.edge_a.view(), j.edge_b.view(),
+                            j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
+                            j.stage.view(), j.points.view(), j.work.view()},
+                sum_shares));
+  return sum_shares(sum, fold(w.exec, w.couples.size(), Shares{},
+                              CoupleShares{w.couples.history.state.view()}, sum_shares));
+}
+
+ExactSum potential(const World& w) {
+  return fold(
+      w.exec, w.triangles.size(), ExactSum{},
+      GravityPotential{w.parameters.gravity, w.triangles.nodes.view(), w.triangles.mass.view()},
+      [](const ExactSum& a, const ExactSum& b) { return a + b; });
+}
+
+}  // namespace
+
+void begin_ledger(World& w) {
+  w.ledger = {};
+  w.ledger.start_potential = potential(w);
+  // Joints have done no work yet: what an in-situ stress stores in them counts from here.
+  const Shares s = all_shares(w);
+  w.ledger.start = s.kinetic.value() + s.elastic.value();
+  w.ledger.preset_open = -s.open.value();
+  w.ledger.preset_slide = -s.slide.value();
+}
+
+EnergySplit energies(World& w) {
+  const Shares s = all_shares(w);
+  EnergySplit split;
+  split.fracture_open = s.open.value() + w.ledger.preset_open;
+  split.fracture_slide = s.slide.value() + w.ledger.preset_slide;
+  EnergyBalance& b = split.balance;
+  b.kinetic = s.kinetic.value();
+  b.elastic = s.elastic.value();
+  b.fracture = split.fracture_open + split.fracture_slide;
+  b.friction = s.friction.value() + w.ledger.rubbed.value();
+  b.damping = s.damping.value();
+  b.contact = s.contact.value() + w.ledger.lost.value();
+  b.work = s.work.value() + potential(w).value() - w.ledger.start_potential.value();
+  b.start = w.ledger.start;
+  w.ledger.largest = std::max({w.ledger.largest, b.total(), b.start + std::abs(b.work),
+                               std::abs(b.start) + std::abs(b.work)});
+  b.error_relative = w.ledger.largest > 0.0 ? std::abs(b.missing()) / w.ledger.largest : 0.0;
+  return split;
+}
+
+}  // namespace breccia::fdem

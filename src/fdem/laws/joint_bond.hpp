@@ -1,0 +1,158 @@
+#pragma once
+// The cohesive joint between two triangles: combined single and smeared crack model.
+
+#include "math/vec2.hpp"
+
+namespace breccia::fdem {
+
+/// 1 over the integral of the softening curve: with it a joint dissipates exactly its fracture
+/// energy. The literature's 3 gives 15.9 % more (docs/theory.md, joints).
+inline constexpr double exact_softening_factor = 2.58861340;
+
+/// exp(-t) for 0 <= t <= 4, to 1e-15: only + and *, so that every machine gives the same bits.
+template <class R>
+BR_HD R decay(const R& t) {
+  const R x = -0.125 * t;  // |x| <= 1/2
+  R series = constant<R>(1.0);
+  // Taylor's series by Horner: 0.5^14 / 14! < 1e-15
+  for (int k = 13; k >= 1; --k) series = 1.0 + (1.0 / static_cast<double>(k)) * (x * series);
+  const R two = series * series, four = two * two;
+  return four * four;
+}
+
+/// z(D): share of its strength that a joint keeps at damage D in [0, 1] (Munjiza 2004, 7.12; fit of
+/// Evans and Marathe 1968): 1 at 0, exactly 0 at 1.
+template <class R>
+BR_HD R softening(const R& damage) {
+  constexpr double a = 0.63, b = 1.8, c = 6.0;
+  constexpr double ratio = (a + b - 1.0) / (a + b);
+  constexpr double rate = (a + c * b) / ((a + b) * (a + b - 1.0));  // of the decay
+  const R left = 1.0 - damage, square = left * left;
+  return (1.0 - ratio * decay(rate * damage)) * (a * left + b * square * square * square);
+}
+
+/// What unloading follows.
+enum class Unloading : std::int8_t {
+  secant,     ///< straight to the origin from the largest opening and slip so far: dissipates
+  reversible  ///< back along the curve, as the classical codes do: heals and can create energy
+};
+
+/// Strength of the joints of a pair of materials.
+struct JointBond {
+  double stiffness;         ///< p_f, initial tangent times length  [Pa]
+  double tension;           ///< f_t  [Pa]
+  double cohesion;          ///< c  [Pa]
+  double friction;          ///< tan phi_i  [-]
+  double energy_open;       ///< G_I  [J/m2]
+  double energy_slide;      ///< G_II  [J/m2]
+  double softening_factor;  ///< o_t f_t / G_I, usually exact_softening_factor  [-]
+  Unloading unloading = Unloading::secant;
+};
+
+/// What an integration point keeps.
+template <class R>
+struct BondState {
+  R damage;   ///< largest D so far  [-]
+  R opening;  ///< largest opening so far; 0 until it exceeds the elastic limit  [m]
+  R slip;     ///< largest |slip| so far; 0 until it exceeds the elastic limit  [m]
+};
+
+/// Tractions at an integration point.
+template <class R>
+struct BondTraction {
+  R normal;  ///< sigma, tension positive  [Pa]
+  R shear;   ///< tau, with the sign of the slip  [Pa]
+};
+
+/// Law of one integration point (docs/theory.md, joints):
+///
+///   opening o < 0     sigma = p_f o / h, without limit and never degraded
+///   o <= o_p          sigma = z f_t (2 r - r^2), r = o / o_p, o_p = 2 h f_t / p_f
+///   beyond            sigma = z f_t, and on the secant to the largest opening when it closes
+///   shear             the same with f_s = c - min(sigma, 0) tan phi and s_p = 2 h f_s / p_f
+///   damage            D = |((o - o_p) / o_t, (|s| - s_p) / s_t)| of the positive parts,
+///                     o_t = factor G_I / f_t, s_t = factor G_II / f_s; broken at D = 1
+///
+/// f_s is that of the same point and step. @param strength  of this joint over its law's: scales
+/// f_t, c and, so that lengths stay, both energies  [-]. @param h  initial length  [m]
+template <class R>
+BR_HD BondTraction<R> answer(const JointBond& law, const R& strength, const R& h, const R& opening,
+                             const R& slip, BondState<R>& state) {
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
+  const R tension = law.tension * strength;
+  const auto pressed = opening < 0.0;
+  const R pressure = (law.stiffness / h) * opening;  // sigma where pressed
+  const R shear_strength = law.cohesion * strength - choose(pressed, law.friction * pressure, zero);
+  const R o_p = (2.0 / law.stiffness) * h * tension;
+  const R s_p = (2.0 / law.stiffness) * h * shear_strength;
+  const R slid = absolute(slip);
+  const R over_o = larger(zero, opening - o_p), over_s = larger(zero, slid - s_p);
+
+  // Damage.
+  R health = one;
+  const bool reversible = law.unloading == Unloading::reversible;
+  const auto beyond = either(over_o > 0.0, over_s > 0.0);
+  if (any(either(beyond, state.damage > 0.0))) {
+    const R open = over_o * (tension / (law.softening_factor * law.energy_open * strength));
+    const R slide =
+        over_s * (shear_strength / (law.softening_factor * law.energy_slide * strength));
+    const R now = smaller(one, root(open * open + slide * slide));
+    state.damage = larger(state.damage, now);
+    const R counted = reversible ? now : state.damage;
+    health = softening(counted);
+  }
+  if (!reversible) {
+    state.opening = choose(over_o > 0.0, larger(state.opening, opening), state.opening);
+    state.slip = choose(over_s > 0.0, larger(state.slip, slid), state.slip);
+  }
+
+  // Tractions.
+  BondTraction<R> t;
+  const R r = opening / choose(o_p > zero, o_p, one);
+  R pull = choose(opening <= o_p, 2.0 * r - r * r, one);
+  pull =
+      choose(state.opening > 0.0, opening / choose(state.opening > 0.0, state.opening, one), pull);
+  t.normal = choose(pressed, pressure, health * tension * pull);
+  const R q = slid / choose(s_p > zero, s_p, one);
+  R drag = choose(slid <= s_p, 2.0 * q - q * q, one);
+  const R reach = larger(state.slip, s_p);
+  drag = choose(state.slip > 0.0, smaller(one, slid / choose(reach > zero, reach, one)), drag);
+  const R size = health * shear_strength * drag;
+  t.shear = choose(slip < 0.0, -size, size);
+  return t;
+}
+
+/// Energy that a point would give back if it were unloaded now, by direction.  [J/m2]
+struct StoredEnergy {
+  double open, slide;
+};
+inline StoredEnergy stored(const JointBond& law, double strength, double h, double opening,
+                           double slip, const BondState<double>& state) {
+  const double tension = law.tension * strength, o_p = 2.0 * h * tension / law.stiffness;
+  const double pressure = opening < 0.0 ? law.stiffness * opening / h : 0.0;
+  const double shear = law.cohesion * strength - law.friction * pressure;
+  const double s_p = 2.0 * h * shear / law.stiffness;
+  const double z = softening(state.damage), slid = absolute(slip);
+  // of (2 r - r^2) f up to the elastic limit p, and of f beyond it
+  const auto parabola = [](double f, double x, double p) {
+    if (!(p > 0.0)) return 0.0;
+    const double r = smaller(x, p) / p;
+    return f * p * (r * r - r * r * r / 3.0);
+  };
+  StoredEnergy energy{};
+  if (opening < 0.0)
+    energy.open = 0.5 * pressure * opening;
+  else if (state.opening > 0.0)
+    energy.open = 0.5 * z * tension * opening * opening / state.opening;
+  else
+    energy.open = z * parabola(tension, opening, o_p);
+  if (state.slip > 0.0) {
+    const double reach = larger(state.slip, s_p), used = smaller(slid, reach);
+    energy.slide = 0.5 * z * shear * used * used / reach;
+  } else {
+    energy.slide = z * parabola(shear, slid, s_p);
+  }
+  return energy;
+}
+
+}  // namespace breccia::fdem

@@ -1,0 +1,84 @@
+#pragma once
+// Forces on edges, and velocities and forces that follow a table over time.
+
+#include <vector>
+
+#include "fdem/triangle_kernels.hpp"
+
+namespace breccia::fdem {
+
+/// A factor over time: a table, linear in between and constant beyond, times a ramp from zero.
+struct Amplitude {
+  double ramp = 0.0;                   ///<  [s]
+  std::vector<double> times, factors;  ///< ascending  [s], [-]
+
+  double at(double time) const;
+};
+
+/// A support's velocity over time; the host puts its value of each step into World::motions.
+struct PrescribedMotion {
+  Vec2 velocity{};  ///<  [m/s]
+  Amplitude amplitude;
+};
+
+/// What acts on an edge.
+enum class LoadKind : std::uint8_t { pressure, traction, absorbing };
+
+/// A load with its value at this moment.
+struct LoadLaw {
+  LoadKind kind;
+  double factor;                    ///< of the amplitude, now  [-]
+  double pressure;                  ///<  [Pa]
+  Vec2 traction;                    ///<  [Pa]
+  double impedance_p, impedance_s;  ///< rho c_p and rho c_s of absorbing edges  [Pa s/m]
+};
+
+/// A loaded edge: edge k of a triangle.
+struct LoadedEdge {
+  Index triangle;
+  std::int16_t edge;
+  std::int16_t load;  ///< index into the laws
+};
+
+/// Adds the loads of one triangle's edges, half to each end.
+struct LoadForces {
+  static constexpr const char* name = "fdem.loads";
+  View<const Index> starts;  ///< first loaded edge of each loaded triangle, and the end
+  View<const LoadedEdge> edges;
+  View<const LoadLaw> laws;
+  View<const TriangleNodes> nodes;
+  View<Corners> external, force;
+
+  BR_HD void operator()(Index i) const {
+    const Index t = edges[starts[i]].triangle;
+    Corners sum{};
+    for (Index e = starts[i]; e < starts[i + 1]; ++e) {
+      const int k = edges[e].edge, next = (k + 1) % 3;
+      const NodeState &a = nodes[t].at[k], &b = nodes[t].at[next];
+      const LoadLaw& law = laws[edges[e].load];
+      const Vec2 along = b.position - a.position, outward{along.y, -along.x};  // times the length
+      if (law.kind == LoadKind::absorbing) {
+        const double size = norm(along), half = 0.5 * size * law.factor;
+        const Vec2 normal = (1.0 / size) * outward;
+        sum.at[k] += half * resisted(law, normal, a.velocity);
+        sum.at[next] += half * resisted(law, normal, b.velocity);
+        continue;
+      }
+      Vec2 half = law.kind == LoadKind::pressure ? (-0.5 * law.factor * law.pressure) * outward
+                                                 : (0.5 * law.factor * norm(along)) * law.traction;
+      sum.at[k] += half;
+      sum.at[next] += half;
+    }
+    external[t] = sum;
+    for (int k = 0; k < 3; ++k) force[t].at[k] += sum.at[k];
+  }
+
+ private:
+  /// t = -rho (c_p n n + c_s (1 - n n)) v (Lysmer and Kuhlemeyer 1969).
+  BR_HD static Vec2 resisted(const LoadLaw& law, const Vec2& normal, const Vec2& velocity) {
+    const Vec2 straight = dot(velocity, normal) * normal;
+    return -(law.impedance_p * straight + law.impedance_s * (velocity - straight));
+  }
+};
+
+}  // namespace breccia::fdem

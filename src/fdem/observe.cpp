@@ -1,0 +1,248 @@
+#include "fdem/observe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "core/state_hash.hpp"
+#include "exec/error.hpp"
+#include "exec/for_each.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+struct HashTriangle {
+  View<const GlobalId> id;
+  View<const TriangleNodes> nodes;
+  BR_HD std::uint64_t operator()(Index t) const {
+    ItemHash hash(id[t]);
+    for (const NodeState& n : nodes[t].at) {
+      hash.add(n.position.x);
+      hash.add(n.position.y);
+      hash.add(n.velocity.x);
+      hash.add(n.velocity.y);
+    }
+    return hash.value();
+  }
+};
+
+/// The lowest global id whose numbers are unsound, or the largest id there can be.
+struct FindUnsound {
+  static constexpr GlobalId none = 0x7fffffff;
+  double dt;
+  View<const GlobalId> id;
+  View<const TriangleNodes> nodes;
+  View<const Mat2> shape_inverse;
+  BR_HD GlobalId operator()(Index t) const {
+    Vec2 x[3], v[3];
+    split(nodes[t], x, v);
+    const double area = cross(x[1] - x[0], x[2] - x[0]);
+    const double jacobian = area * determinant(shape_inverse[t]);
+    double fastest = 0.0, sum = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      fastest = larger(fastest, dot(v[k], v[k]));
+      sum += x[k].x + x[k].y + v[k].x + v[k].y;
+    }
+    const bool finite = sum - sum == 0.0;
+    return finite && jacobian > 0.0 && dt * dt * fastest <= area ? none : id[t];
+  }
+};
+
+/// Pieces of something: each item's lowest reachable member.
+class Pieces {
+ public:
+  explicit Pieces(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0); }
+  Index root(Index e) {
+    while (root_[at(e)] != e) e = root_[at(e)] = root_[at(root_[at(e)])];
+    return e;
+  }
+  void join(Index a, Index b) {
+    a = root(a);
+    b = root(b);
+    root_[at(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<Index> root_;
+};
+
+double pick(const std::string& quantity, const NodeState& n, const Vec2& force, double mass) {
+  const auto part = [&](const Vec2& a) { return quantity.back() == 'x' ? a.x : a.y; };
+  if (quantity.starts_with("position")) return part(n.position);
+  if (quantity.starts_with("velocity")) return part(n.velocity);
+  if (quantity.starts_with("force")) return part(force);
+  if (quantity.starts_with("momentum")) return mass * part(n.velocity);
+  if (quantity == "speed") return norm(n.velocity);
+  return 0.5 * mass * dot(n.velocity, n.velocity);  // kinetic
+}
+
+}  // namespace
+
+std::uint64_t state_hash(const World& w) {
+  const Triangles& t = w.triangles;
+  return fold(w.exec, t.size(), std::uint64_t{0}, HashTriangle{t.id.view(), t.nodes.view()},
+              [](std::uint64_t a, std::uint64_t b) { return a + b; });
+}
+
+void verify(const World& w) {
+  const Triangles& t = w.triangles;
+  const GlobalId bad =
+      fold(w.exec, t.size(), FindUnsound::none,
+           FindUnsound{w.last_dt, t.id.view(), t.nodes.view(), t.shape_inverse.view()},
+           [](GlobalId a, GlobalId b) { return a < b ? a : b; });
+  if (bad == FindUnsound::none) return;
+  const Triangles host = host_copy(t);
+  const auto ids = host.id.host();
+  const auto i = static_cast<Index>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
+  Vec2 x[3], v[3];
+  split(host.nodes.data()[i], x, v);
+  const double area = cross(x[1] - x[0], x[2] - x[0]);
+  const double jacobian = area * determinant(host.shape_inverse.data()[i]);
+  char message[400];  // snprintf, because nvcc does not take fmt's headers
+  std::snprintf(
+      message, sizeof message,
+      "step %lld, t = %.6e s: triangle %d (%s) is %s: %.3g of its area is left, it moves at %.3e "
+      "m/s in steps of %.3e s; a smaller time.safety (now %g) may help",
+      static_cast<long long>(w.step), w.time, bad,
+      w.groups[static_cast<std::size_t>(host.group.data()[i])].c_str(),
+      jacobian > 0.0 ? "too fast or not finite" : "inside out", jacobian, norm(v[0]), w.last_dt,
+      w.parameters.time.safety);
+  throw NumericsError(message);
+}
+
+std::vector<double> damage(const World& w) {
+  std::vector<double> worst(at(w.triangles.size()), 0.0);
+  const Joints j = host_copy(w.joints);
+  for (Index i = 0; i < j.size(); ++i) {
+    if (j.stage.data()[i] == JointStage::whole) continue;
+    double d = j.stage.data()[i] == JointStage::broken ? 1.0 : 0.0;
+    for (const auto& point : j.points.data()[i].point) d = std::max(d, point.damage);
+    for (const Index edge : {j.edge_a.data()[i], j.edge_b.data()[i]})
+      worst[at(edge / 3)] = std::max(worst[at(edge / 3)], d);
+  }
+  return worst;
+}
+
+std::vector<Sym2> stresses(const World& w) {
+  const Triangles t = host_copy(w.triangles);
+  std::vector<ElasticTriangle> laws;
+  copy_to(laws, w.laws);
+  std::vector<Sym2> all;
+  for (Index i = 0; i < t.size(); ++i) {
+    Vec2 x[3], v[3];
+    split(t.nodes.data()[i], x, v);
+    all.push_back(laws[static_cast<std::size_t>(t.material.data()[i])].stress(
+        deformation(t.shape_inverse.data()[i], x, v), 0.0));
+  }
+  return all;
+}
+
+double probe(const World& w, const ProbeConfig& p) {
+  if (p.quantity.ends_with("_z"))
+    throw InputError("probe " + p.name + ".quantity: a plane case has no z; allowed: x and y");
+  std::vector<Index> all;
+  const std::vector<Index>* members = &all;
+  if (p.on.empty()) {
+    all.resize(at(3 * w.triangles.size()));
+    std::iota(all.begin(), all.end(), 0);
+  } else {
+    const auto set = std::find_if(w.sets.begin(), w.sets.end(),
+                                  [&](const NodeSet& s) { return s.name == p.on; });
+    if (set == w.sets.end())
+      throw InputError("probe " + p.name + ".on: there is no body or support \"" + p.on + "\"");
+    members = &set->nodes;
+  }
+  const std::vector<double> lost = p.quantity == "damage" ? damage(w) : std::vector<double>{};
+  std::vector<TriangleNodes> nodes;
+  std::vector<Corners> force;
+  std::vector<double> mass;
+  copy_to(nodes, w.triangles.nodes);
+  copy_to(force, w.triangles.force);
+  copy_to(mass, w.triangles.mass);
+  ExactSum sum;
+  double low = no_limit, high = -no_limit;
+  for (const Index n : *members) {
+    const auto t = at(n / 3);
+    const double value =
+        lost.empty() ? pick(p.quantity, nodes[t].at[n % 3], force[t].at[n % 3], mass[t]) : lost[t];
+    sum.add(value);
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (p.reduce == "min") return low;
+  if (p.reduce == "max") return high;
+  return p.reduce == "sum" ? sum.value() : sum.value() / static_cast<double>(members->size());
+}
+
+std::vector<Crack> cracks(const World& w) {
+  const Joints j = host_copy(w.joints);
+  Buffer<TriangleNodes> nodes;
+  copy_to(nodes, w.triangles.nodes);
+  std::vector<Crack> all;
+  for (Index i = 0; i < j.size(); ++i) {
+    if (j.stage.data()[i] != JointStage::broken) continue;
+    const JointNodes n(std::as_const(nodes).view(), j.edge_a.data()[i], j.edge_b.data()[i]);
+    const JointWork& work = j.work.data()[i];
+    const double open = std::max(work.open, 0.0), slide = std::max(work.slide, 0.0);
+    all.push_back({i, j.broke_at.data()[i], 0.5 * (n.a0.position + n.b0.position),
+                   0.5 * (n.a1.position + n.b1.position),
+                   open + slide > 0.0 ? slide / (open + slide) : 0.0, work.open + work.slide});
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Crack& a, const Crack& b) { return a.time < b.time; });
+  return all;
+}
+
+Fragments fragments(const World& w) {
+  const Joints j = host_copy(w.joints);
+  std::vector<double> mass;
+  std::vector<Index> starts, bundled;
+  copy_to(mass, w.triangles.mass);
+  copy_to(starts, w.bundles.starts);
+  copy_to(bundled, w.bundles.nodes);
+  Pieces pieces(mass.size());
+  for (Index i = 0; i < j.size(); ++i)
+    if (j.stage.data()[i] != JointStage::broken)
+      pieces.join(j.edge_a.data()[i] / 3, j.edge_b.data()[i] / 3);
+  for (std::size_t b = 0; b + 1 < starts.size(); ++b)
+    for (Index k = starts[b] + 1; k < starts[b + 1]; ++k)
+      pieces.join(bundled[at(starts[b])] / 3, bundled[at(k)] / 3);
+  std::vector<double> of_root(mass.size(), 0.0);
+  for (std::size_t t = 0; t < mass.size(); ++t)
+    of_root[at(pieces.root(static_cast<Index>(t)))] += 3.0 * mass[t];
+  std::vector<Index> order;
+  for (std::size_t t = 0; t < mass.size(); ++t)
+    if (of_root[t] > 0.0) order.push_back(static_cast<Index>(t));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return of_root[at(a)] > of_root[at(b)]; });
+  Fragments f;
+  std::vector<Index> number(mass.size(), 0);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    number[at(order[i])] = static_cast<Index>(i);
+    f.mass.push_back(of_root[at(order[i])]);
+  }
+  for (std::size_t t = 0; t < mass.size(); ++t)
+    f.of.push_back(number[at(pieces.root(static_cast<Index>(t)))]);
+  return f;
+}
+
+const char* ruling_term(const World& w) {
+  const StableStep stable = stable_step(w);
+  StableStep::Parts least;
+  const KernelScope scope;
+  for (Index t = 0; t < w.triangles.size(); ++t) {
+    const StableStep::Parts p = stable.parts(t);
+    if (t == 0 || p.step < least.step) least = p;
+  }
+  const double undamped = 2.0 / std::sqrt(least.square);
+  if (least.step < 0.5 * undamped) return "viscosity";
+  if (least.element >= least.joint && least.element >= least.contact) return "elements";
+  return least.joint >= least.contact ? "joints" : "contact";
+}
+
+}  // namespace breccia::fdem

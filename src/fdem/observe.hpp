@@ -1,0 +1,46 @@
+#pragma once
+// What an FDEM run shows: hash, probes, counts, cracks, fragments, and whether its numbers are
+// sound.
+
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+
+/// Hash of positions and velocities of all triangles' corners by global id.
+std::uint64_t state_hash(const World& w);
+
+/// @throws NumericsError naming the first triangle that is inside out, not finite, or moves more
+/// than its size in a step
+void verify(const World& w);
+
+/// Largest damage of the joints of each triangle.  [-]
+std::vector<double> damage(const World& w);
+
+/// Cauchy stress of each triangle, without viscosity.  [Pa]
+std::vector<Sym2> stresses(const World& w);
+
+double probe(const World& w, const ProbeConfig& probe);
+
+/// A joint that broke.
+struct Crack {
+  Index joint;
+  double time;      ///<  [s]
+  Vec2 begin, end;  ///< of its middle line now  [m]
+  double mode;      ///< share of sliding in its work: 0 opening, 1 sliding  [-]
+  double energy;    ///< work that it took  [J/m]
+};
+/// By time of break, then by number.
+std::vector<Crack> cracks(const World& w);
+
+/// Pieces held together by joints and bonds: of each triangle the number of its piece, pieces by
+/// falling mass.
+struct Fragments {
+  std::vector<Index> of;     ///< of each triangle
+  std::vector<double> mass;  ///< of each piece, falling  [kg/m]
+};
+Fragments fragments(const World& w);
+
+/// Which term rules the time step now: elements, joints, contact or viscosity.
+const char* ruling_term(const World& w);
+
+}  // namespace breccia::fdem

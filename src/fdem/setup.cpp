@@ -1,0 +1,330 @@
+// From a model to a world: split corners, joints, bundles, supports, loads, first forces.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "exec/error.hpp"
+#include "fdem/materials.hpp"
+#include "fdem/mesh_edges.hpp"
+#include "fdem/regions.hpp"
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+void set_up_triangles(World& w, const Config& config, const Model& model) {
+  std::vector<GlobalId> id(model.triangle.size());
+  std::iota(id.begin(), id.end(), 0);
+  std::vector<TriangleNodes> nodes;
+  std::vector<Mat2> shape_inverse;
+  std::vector<double> mass, viscosity;
+  double edges = 0.0;
+  for (std::size_t t = 0; t < model.triangle.size(); ++t) {
+    Vec2 x[3];
+    TriangleNodes corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      x[k] = model.point[at(model.triangle[t][k])];
+      corners.at[k] = {x[k], model.velocity[t]};
+      w.vertex.push_back(model.triangle[t][k]);
+    }
+    const Mat2 shape = columns(x[1] - x[0], x[2] - x[0]);
+    const double area = 0.5 * determinant(shape);
+    if (!(area > 0.0))
+      throw InputError("triangle " + std::to_string(t) +
+                       ": its corners do not run counter-clockwise, or it has no area");
+    const MaterialConfig& m = config.materials[static_cast<std::size_t>(model.material[t])];
+    nodes.push_back(corners);
+    shape_inverse.push_back(inverse(shape));
+    mass.push_back(m.density * area / 3.0);
+    const double edge = std::sqrt(4.0 * area / std::sqrt(3.0));  // of the equilateral one as large
+    edges += edge;
+    viscosity.push_back(m.damping * 2.0 * edge * std::sqrt(m.young * m.density));
+  }
+  w.parameters.mean_edge = edges / static_cast<double>(model.triangle.size());
+  w.parameters.skin = config.search.margin * w.parameters.mean_edge;
+  Triangles& triangles = w.triangles;
+  copy_to(triangles.id, id);
+  copy_to(triangles.group, model.group);
+  copy_to(triangles.material, model.material);
+  copy_to(triangles.nodes, nodes);
+  copy_to(triangles.shape_inverse, shape_inverse);
+  copy_to(triangles.mass, mass);
+  copy_to(triangles.viscosity, viscosity);
+  triangles.force.resize(model.size());
+  triangles.viscous_work.resize(model.size());
+  triangles.damping_work.resize(model.size());
+  triangles.load_work.resize(model.size());
+}
+
+/// Corners that bonded edges make one: union by the lowest number.
+class Merged {
+ public:
+  explicit Merged(std::size_t nodes) : lowest_(nodes) {
+    std::iota(lowest_.begin(), lowest_.end(), 0);
+  }
+  Index root(Index n) {
+    while (lowest_[at(n)] != n) n = lowest_[at(n)] = lowest_[at(lowest_[at(n)])];
+    return n;
+  }
+  void merge(Index a, Index b) {
+    a = root(a);
+    b = root(b);
+    lowest_[at(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<Index> lowest_;
+};
+
+void set_up_bundles(World& w, Merged& merged) {
+  std::map<Index, std::vector<Index>> members;
+  for (Index n = 0; n < 3 * w.triangles.size(); ++n) members[merged.root(n)].push_back(n);
+  std::vector<Index> starts{0}, nodes;
+  for (const auto& [root, bundle] : members) {
+    if (bundle.size() < 2) continue;
+    nodes.insert(nodes.end(), bundle.begin(), bundle.end());
+    starts.push_back(static_cast<Index>(nodes.size()));
+  }
+  if (nodes.empty()) return;
+  copy_to(w.bundles.starts, starts);
+  copy_to(w.bundles.nodes, nodes);
+}
+
+/// Joins neighbours: a joint, a bond, or nothing.
+void set_up_joints(World& w, const Config& config, const Model& model) {
+  const BondTable table = bond_table(config);
+  std::map<std::pair<Index, Index>, std::int16_t> discontinuities;  // law, or -1 where open
+  for (const Model::Discontinuity& d : model.discontinuities)
+    discontinuities[std::minmax(d.edge[0], d.edge[1])] =
+        d.material < 0 ? BondTable::nothing : table.of_joint[static_cast<std::size_t>(d.material)];
+
+  std::vector<EdgeJoints> edges(model.triangle.size(), {{edge_free, edge_free, edge_free}});
+  std::vector<Index> edge_a, edge_b;
+  std::vector<std::int16_t> law;
+  std::vector<double> length, strength;
+  std::vector<Vec2> preset;
+  w.open_vertex.assign(model.point.size(), 0);
+  Merged merged(3 * model.triangle.size());
+  const auto slot = [&](Index edge) -> Index& { return edges[at(edge / 3)].at[edge % 3]; };
+  const auto next = [](Index edge) { return 3 * (edge / 3) + (edge + 1) % 3; };
+  for (const MeshEdge& e : mesh_edges(model)) {
+    const auto open = [&](std::uint8_t bits) {
+      w.open_vertex[at(e.low)] |= bits;
+      w.open_vertex[at(e.high)] |= bits;
+    };
+    if (e.b < 0) {
+      open(1);
+      continue;
+    }
+    const auto a = at(e.a / 3), b = at(e.b / 3);
+    const auto weak = discontinuities.find({e.low, e.high});
+    const std::int16_t found =
+        weak != discontinuities.end()
+            ? weak->second
+            : table.of_pair[static_cast<std::size_t>(model.material[a]) * config.materials.size() +
+                            static_cast<std::size_t>(model.material[b])];
+    if (found == BondTable::nothing) {
+      open(3);
+      continue;
+    }
+    if (found == BondTable::bonded) {
+      slot(e.a) = slot(e.b) = edge_bonded;
+      merged.merge(e.a, next(e.b));
+      merged.merge(next(e.a), e.b);
+      continue;
+    }
+    const auto joint = static_cast<Index>(edge_a.size());
+    slot(e.a) = 2 * joint;
+    slot(e.b) = 2 * joint + 1;
+    edge_a.push_back(e.a);
+    edge_b.push_back(e.b);
+    law.push_back(found);
+    const Vec2 along =
+        model.point[at(w.vertex[at(next(e.a))])] - model.point[at(w.vertex[at(e.a)])];
+    length.push_back(norm(along));
+    strength.push_back(
+        std::min(static_cast<double>(model.strength[a]), static_cast<double>(model.strength[b])));
+    if (!config.in_situ.any()) continue;
+    const Vec2 unit = (1.0 / length.back()) * along, across{-unit.y, unit.x};
+    const Vec2 traction = Sym2{config.in_situ.xx, config.in_situ.yy, config.in_situ.xy} * across;
+    Vec2 opening;
+    if (!preset_opening(table.bonds[static_cast<std::size_t>(found)], strength.back(),
+                        length.back(), dot(traction, across), dot(traction, unit), opening))
+      throw InputError("in_situ: the joint between triangles " + std::to_string(a) + " and " +
+                       std::to_string(b) + " is too weak for this stress");
+    preset.push_back(opening);
+  }
+  const auto count = static_cast<Index>(edge_a.size());
+  Joints& j = w.joints;
+  copy_to(w.bonds, table.bonds);
+  copy_to(w.edges, edges);
+  copy_to(j.edge_a, edge_a);
+  copy_to(j.edge_b, edge_b);
+  copy_to(j.law, law);
+  copy_to(j.length, length);
+  copy_to(j.strength, strength);
+  copy_to(j.preset, preset);
+  copy_to(j.broke_at, std::vector<double>(edge_a.size(), -1.0));
+  j.stage.resize(count);
+  j.points.resize(count);
+  j.force.resize(count);
+  j.work.resize(count);
+  j.pressing.resize(count);
+  set_up_bundles(w, merged);
+}
+
+Amplitude amplitude(const HistoryConfig& history, const std::string& where) {
+  if (history.times.size() != history.factors.size())
+    throw InputError(where + ": times and factors must be equally many");
+  if (!std::is_sorted(history.times.begin(), history.times.end(), std::less_equal<>()))
+    throw InputError(where + ".times: must grow from one to the next");
+  return {history.ramp, history.times, history.factors};
+}
+
+/// Supports: each corner follows the sum of those that hold it, each in its own directions.
+void set_up_supports(World& w, const Config& config, const Model& model) {
+  std::vector<Hold> holds;
+  std::vector<Index> hold(model.triangle.size(), -1);
+  for (const SupportConfig& support : config.supports) {
+    const std::string where = "support " + support.name;
+    int bits = 0;
+    for (const std::string& direction : support.fix) {
+      if (direction != "x" && direction != "y")
+        throw InputError(where + ".fix: \"" + direction + "\" is no direction; allowed: x, y");
+      bits |= direction == "x" ? 1 : 2;
+    }
+    const Vec2 velocity{(bits & 1) != 0 ? support.velocity.x : 0.0,
+                        (bits & 2) != 0 ? support.velocity.y : 0.0};
+    std::int16_t motion = -1;
+    if (velocity.x != 0.0 || velocity.y != 0.0) {
+      motion = static_cast<std::int16_t>(w.prescribed.size());
+      w.prescribed.push_back({velocity, amplitude(support.history, where)});
+    }
+    NodeSet set{support.name, corners_in(model, support.region, where)};
+    for (const Index n : set.nodes) {
+      Index& own = hold[at(n / 3)];
+      if (own < 0) {
+        own = static_cast<Index>(holds.size());
+        holds.emplace_back();
+      }
+      Hold& h = holds[at(own)];
+      const int corner = n % 3;
+      if ((h.fixed >> (2 * corner) & bits) != 0)
+        throw InputError(where + ": prescribes a direction of triangle " + std::to_string(n / 3) +
+                         " that another support prescribes, too");
+      if (motion >= 0 && h.motion[corner] >= 0)
+        throw InputError(where + ": triangle " + std::to_string(n / 3) +
+                         " has a corner that another support moves, too");
+      h.fixed = static_cast<std::uint8_t>(h.fixed | bits << (2 * corner));
+      if (motion >= 0) h.motion[corner] = motion;
+    }
+    w.sets.push_back(std::move(set));
+  }
+  copy_to(w.holds, holds);
+  copy_to(w.triangles.hold, hold);
+  w.motions.resize(static_cast<Index>(w.prescribed.size()));
+}
+
+void set_up_loads(World& w, const Config& config, const Model& model) {
+  std::vector<LoadedEdge> loaded;
+  for (const LoadConfig& load : config.loads) {
+    const std::string where = "load " + load.name;
+    const auto index = static_cast<std::int16_t>(w.loads.size());
+    double length = 0.0;
+    std::int16_t material = 0;
+    for (const Index edge : edges_in(model, load.region, where)) {
+      loaded.push_back({edge / 3, static_cast<std::int16_t>(edge % 3), index});
+      const auto& corners = model.triangle[at(edge / 3)];
+      length += norm(model.point[at(corners[at((edge + 1) % 3)])] -
+                     model.point[at(corners[at(edge % 3)])]);
+      material = model.material[at(edge / 3)];
+    }
+    const MaterialConfig& m = config.materials[static_cast<std::size_t>(material)];
+    const ElasticTriangle law = elastic_table(config)[static_cast<std::size_t>(material)];
+    LoadLaw l{LoadKind::traction, 1.0, load.pressure, load.traction, 0.0, 0.0};
+    if (load.kind == "pressure") l.kind = LoadKind::pressure;
+    if (load.kind == "force") l.traction = (1.0 / length) * load.force;
+    if (load.kind == "absorbing") {
+      l.kind = LoadKind::absorbing;
+      l.impedance_p = std::sqrt(m.density * (law.lambda + 2.0 * law.shear));
+      l.impedance_s = std::sqrt(m.density * law.shear);
+    }
+    w.loads.push_back(l);
+    w.load_amplitudes.push_back(amplitude(load.history, where));
+  }
+  if (loaded.empty()) return;
+  std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedEdge& a, const LoadedEdge& b) {
+    return a.triangle < b.triangle;
+  });
+  std::vector<Index> starts;
+  for (std::size_t i = 0; i < loaded.size(); ++i)
+    if (i == 0 || loaded[i].triangle != loaded[i - 1].triangle)
+      starts.push_back(static_cast<Index>(i));
+  starts.push_back(static_cast<Index>(loaded.size()));
+  copy_to(w.load_starts, starts);
+  copy_to(w.loaded_edges, loaded);
+  w.triangles.external.resize(w.triangles.size());
+}
+
+void set_up_bodies(World& w, const Model& model) {
+  w.groups = model.groups;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    NodeSet set{model.groups[g], {}};
+    for (Index t = 0; t < model.size(); ++t)
+      if (static_cast<std::size_t>(model.group[at(t)]) == g)
+        for (Index k = 0; k < 3; ++k) set.nodes.push_back(3 * t + k);
+    w.sets.push_back(std::move(set));
+  }
+}
+
+}  // namespace
+
+World::World(const Exec& how)
+    : exec(how),
+      couples{Pairs(how.space), CoupleHistory(how.space)},
+      couple_incidence(how.space),
+      broad_phase(how.space) {
+  const auto settle = [&](auto& state) { move_fields(state, how.space); };
+  settle(triangles);
+  settle(joints);
+  settle(reach);
+  const auto place = [&](auto&... arrays) {
+    ((arrays = std::remove_reference_t<decltype(arrays)>(how.space)), ...);
+  };
+  place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, bundles.starts, bundles.nodes,
+        edges, motions, load_laws, changed, born);
+}
+
+World make_world(const Config& config, const Model& model, const Exec& exec) {
+  if (model.size() == 0) throw InputError("the model holds no triangles");
+  World w(exec);
+  w.parameters.time = config.time;
+  w.parameters.gravity = config.gravity;
+  w.parameters.local_damping = config.local_damping;
+  w.parameters.conservative = config.contact.conservative;
+  w.parameters.materials = static_cast<Index>(config.materials.size());
+  copy_to(w.laws, elastic_table(config));
+  copy_to(w.contact_pairs, contact_table(config));
+  set_up_bodies(w, model);
+  set_up_triangles(w, config, model);
+  set_up_joints(w, config, model);
+  set_up_supports(w, config, model);
+  set_up_loads(w, config, model);
+  copy_to(w.changed, std::vector<std::uint8_t>{0});
+  find_couples(w);
+  evaluate_forces(w);
+  begin_ledger(w);
+  return w;
+}
+
+void derive(World& w) {
+  derive_couples(w);
+}
+
+}  // namespace breccia::fdem

@@ -1,0 +1,26 @@
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+
+void step(World& w) {
+  // 1. Newton's second law: velocities and positions of all corners      (Lukas 2014, section 2)
+  move_triangles(w);
+
+  // 2. Contact detection, when travel has used the margin up or a joint has opened
+  if (couples_are_due(w)) find_couples(w);
+
+  // 3. Joints crack, couples push and rub, triangles deform; one sum per corner, no atomics
+  // 4. The next step: Gershgorin's bound
+  evaluate_forces(w);
+  w.step += 1;
+}
+
+void evaluate_forces(World& w) {
+  joint_forces(w);
+  couple_forces(w);
+  triangle_forces(w);
+  load_forces(w);
+  if (w.step % w.parameters.time.evaluate_every == 0) w.next_dt = choose_time_step(w);
+}
+
+}  // namespace breccia::fdem

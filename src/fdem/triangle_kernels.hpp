@@ -1,0 +1,287 @@
+#pragma once
+// What is done to each triangle by itself: its sum of forces, its motion, its stable step.
+
+#include "fdem/couples.hpp"
+#include "fdem/joints.hpp"
+
+namespace breccia::fdem {
+
+/// The joints on the three edges of a triangle: entries as of an Incidence (pair 2 i + side), or a
+/// reason why there is none.
+struct EdgeJoints {
+  Index at[3];
+};
+inline constexpr Index edge_free = -1;    ///< on the border, or no law joins the two materials
+inline constexpr Index edge_bonded = -2;  ///< the neighbours move as one body: no joint, no contact
+
+/// Internal force of the triangle, plus its joints by slot, plus its couples by the partners'
+/// global ids: no order of memory, threads or ranks changes a bit.
+struct TriangleForces {
+  static constexpr const char* name = "fdem.triangles";
+  double span;  ///< time that the forces of this moment act  [s]
+  View<const TriangleNodes> nodes;
+  View<const std::int16_t> material;
+  View<const ElasticTriangle> laws;
+  View<const Mat2> shape_inverse;
+  View<const double> viscosity;
+  View<const EdgeJoints> edges;
+  View<const JointForce> joint_force;
+  IncidenceView couples;
+  View<const CoupleForce> couple_force;
+  View<Corners> force;
+  View<double> viscous_work;
+
+  BR_HD void operator()(Index t) const {
+    Vec2 x[3], v[3];
+    split(nodes[t], x, v);
+    const Deformation d = deformation(shape_inverse[t], x, v);
+    const double eta = viscosity[t];
+    Corners sum;
+    corner_forces(laws[material[t]].stress(d, eta), x, sum.at);
+    if (eta > 0.0) viscous_work[t] += span * viscous_power(d, eta, x);
+
+    const EdgeJoints joints = edges[t];
+    for (int k = 0; k < 3; ++k) {
+      const Index entry = joints.at[k];
+      if (entry < 0) continue;
+      const JointForce& f = joint_force[pair_of(entry)];
+      const int next = k == 2 ? 0 : k + 1;
+      if (side_of(entry) == 0) {
+        sum.at[k] += f.first;
+        sum.at[next] += f.second;
+      } else {
+        sum.at[k] -= f.second;
+        sum.at[next] -= f.first;
+      }
+    }
+    for (Index c = couples.first(t); c < couples.last(t); ++c) {
+      const Entry entry = couples.entries[c];
+      const CoupleForce& f = couple_force[pair_of(entry)];
+      const Corners& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
+      for (int k = 0; k < 3; ++k) sum.at[k] += mine.at[k];
+    }
+    force[t] = sum;
+  }
+
+ private:
+  BR_HD static double viscous_power(const Deformation& d, double eta, const Vec2 (&x)[3]) {
+    const Mat2& l = d.velocity_gradient;
+    const Sym2 rate{l.xx, l.yy, 0.5 * (l.xy + l.yx)};
+    const double area = 0.5 * cross(x[1] - x[0], x[2] - x[0]);
+    return eta * area * contract(rate, rate);
+  }
+};
+
+/// Corners that move as one: all that lie at one vertex between bonded neighbours.
+struct Bundles {
+  Buffer<Index> starts;  ///< first member of each bundle, and the end
+  Buffer<Index> nodes;   ///< members, ascending by global number
+};
+
+/// Shares the sum of a bundle's forces by mass: all its corners get one acceleration.
+struct BundleForces {
+  static constexpr const char* name = "fdem.bundles";
+  View<const Index> starts, nodes;
+  View<const double> mass;
+  View<Corners> force;
+
+  BR_HD void operator()(Index bundle) const {
+    Vec2 sum{};
+    double total = 0.0;
+    for (Index k = starts[bundle]; k < starts[bundle + 1]; ++k) {
+      const Index n = nodes[k];
+      sum += force[n / 3].at[n % 3];
+      total += mass[n / 3];
+    }
+    const Vec2 acceleration = (1.0 / total) * sum;
+    for (Index k = starts[bundle]; k < starts[bundle + 1]; ++k) {
+      const Index n = nodes[k];
+      force[n / 3].at[n % 3] = mass[n / 3] * acceleration;
+    }
+  }
+};
+
+/// Prescribed motion of a triangle's corners: bits 2 k and 2 k + 1 fix x and y of corner k, whose
+/// motion is motion[k].
+struct Hold {
+  std::uint8_t fixed = 0;
+  std::int16_t motion[3] = {-1, -1, -1};
+};
+
+/// A velocity that follows a table of factors over time, here and now.
+struct Motion {
+  Vec2 velocity;  ///< over the step to come  [m/s]
+};
+
+/// Newton's second law for every corner, by leapfrog with a variable step (Munjiza 2004, 5.12).
+struct Kick {
+  double last_dt, next_dt;  ///< steps before and after the forces  [s]
+  Vec2 gravity;             ///<  [m/s2]
+  double damping;           ///< of Cundall's local damping  [-]
+  View<const Hold> holds;
+  View<const Motion> motions;
+  View<const double> mass;
+  View<const TriangleNodes> nodes;
+  View<const Corners> force;
+  View<const Index> hold;
+
+  struct Result {
+    Vec2 velocity[3];  ///< half a step later
+    Vec2 damped[3];    ///< force that damping took off
+  };
+
+  BR_HD static double opposed(double force, double velocity) {
+    return velocity > 0.0 ? absolute(force) : velocity < 0.0 ? -absolute(force) : 0.0;
+  }
+  BR_HD Result operator()(Index t) const {
+    Result r{};
+    const double m = mass[t], span = 0.5 * (last_dt + next_dt), scale = span / m;
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 before = nodes[t].at[k].velocity;
+      Vec2 f = force[t].at[k] + m * gravity;
+      if (damping > 0.0) {
+        const Vec2 drift = before + (0.5 * scale) * f;
+        r.damped[k] = {damping * opposed(f.x, drift.x), damping * opposed(f.y, drift.y)};
+        f -= r.damped[k];
+      }
+      r.velocity[k] = before + scale * f;
+    }
+    if (hold[t] >= 0) {
+      const Hold& h = holds[hold[t]];
+      for (int k = 0; k < 3; ++k) {
+        const Vec2 given = h.motion[k] >= 0 ? motions[h.motion[k]].velocity : Vec2{};
+        if ((h.fixed >> (2 * k) & 1) != 0) r.velocity[k].x = given.x;
+        if ((h.fixed >> (2 * k + 1) & 1) != 0) r.velocity[k].y = given.y;
+      }
+    }
+    return r;
+  }
+};
+
+/// Moves the corners and books the work of loads, supports and local damping.
+struct MoveTriangles {
+  static constexpr const char* name = "fdem.move";
+  Kick kick;
+  View<const Corners> external;
+  View<TriangleNodes> nodes;
+  View<double> damping_work, load_work;
+
+  BR_HD void operator()(Index t) const {
+    const Kick::Result r = kick(t);
+    TriangleNodes& moved = nodes[t];
+    const bool held = kick.hold[t] >= 0;
+    double damped = 0.0, loaded = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      NodeState& n = moved.at[k];
+      const Vec2 after = kick.next_dt * r.velocity[k];
+      const Vec2 both = kick.last_dt * n.velocity + after;
+      if (kick.damping > 0.0) damped += 0.5 * dot(r.damped[k], both);
+      if (external.size > 0) loaded += 0.5 * dot(external[t].at[k], both);
+      if (held) loaded += 0.5 * dot(reaction(t, k, r), both);
+      n.velocity = r.velocity[k];
+      n.position += after;
+    }
+    if (kick.damping > 0.0) damping_work[t] += damped;
+    if (held || external.size > 0) load_work[t] += loaded;
+  }
+
+  /// Force that holds a corner to its prescribed motion; zero in free directions.  [N/m]
+  BR_HD Vec2 reaction(Index t, int k, const Kick::Result& r) const {
+    const double span = 0.5 * (kick.last_dt + kick.next_dt);
+    if (!(span > 0.0)) return {};
+    const int bits = kick.holds[kick.hold[t]].fixed >> (2 * k);
+    const Vec2 gained = (kick.mass[t] / span) * (r.velocity[k] - kick.nodes[t].at[k].velocity);
+    const Vec2 given = kick.force[t].at[k] + kick.mass[t] * kick.gravity - r.damped[k];
+    const Vec2 held = gained - given;
+    return {(bits & 1) != 0 ? held.x : 0.0, (bits & 2) != 0 ? held.y : 0.0};
+  }
+};
+
+/// What rules the stable step of a triangle.
+enum class StepRule : std::uint8_t { elements, joints, contact, viscosity };
+
+/// The stable step of a triangle by Gershgorin's bound: every eigenfrequency is at most the largest
+/// sum of a row's |stiffness| over its mass (docs/theory.md, time step).
+struct StableStep {
+  View<const TriangleNodes> nodes;
+  View<const std::int16_t> material;
+  View<const ElasticTriangle> laws;
+  View<const double> viscosity, mass;
+  View<const ContactPair> contacts;
+  Index materials;
+  View<const EdgeJoints> edges;
+  View<const JointBond> bonds;
+  View<const std::int16_t> bond_of;
+  View<const JointStage> stage;
+
+  /// Shares of the largest row sum.
+  struct Parts {
+    double element = 0.0, joint = 0.0, contact = 0.0;  ///<  [Pa], per unit thickness
+    double viscous = 0.0;                              ///<  [Pa s]
+    double square = 0.0;                               ///< omega^2 bound  [1/s2]
+    double step = 0.0;                                 ///<  [s]
+  };
+
+  BR_HD double operator()(Index t) const { return parts(t).step; }
+
+  BR_HD Parts parts(Index t) const {
+    Vec2 x[3], v[3];
+    split(nodes[t], x, v);
+    const ElasticTriangle& law = laws[material[t]];
+    const Target shape = Target::of(x);
+    const double area = 0.5 / shape.over_double;
+    const Vec2 slope[3] = {shape.slope(0), shape.slope(1), shape.slope(2)};
+    double on_edge[3][2];  // joint and contact stiffness of each edge
+    for (int k = 0; k < 3; ++k) edge_stiffness(t, k, x, area, on_edge[k]);
+    Parts largest;
+    for (int i = 0; i < 3; ++i) {
+      Parts p;
+      for (int c = 0; c < 2; ++c) {
+        p.element = larger(p.element, row(slope, i, c, area, law.lambda, law.shear));
+        p.viscous = larger(p.viscous, row(slope, i, c, area, 0.0, 0.5 * viscosity[t]));
+      }
+      const int before = i == 0 ? 2 : i - 1;
+      p.joint = on_edge[i][0] + on_edge[before][0];
+      p.contact = on_edge[i][1] + on_edge[before][1];
+      p.square = (p.element + p.joint + p.contact) / mass[t];
+      const double omega = root(p.square), xi = 0.5 * p.viscous / (mass[t] * omega);
+      p.step = 2.0 / omega * (root(1.0 + xi * xi) - xi);
+      if (i == 0 || p.step < largest.step) largest = p;
+    }
+    return largest;
+  }
+
+ private:
+  /// Sum of the absolute stiffnesses in the row of component c of corner i.
+  BR_HD static double row(const Vec2 (&slope)[3], int i, int c, double area, double lambda,
+                          double shear) {
+    double sum = 0.0;
+    for (int j = 0; j < 3; ++j) {
+      const double dots = dot(slope[i], slope[j]);
+      const double gi[2] = {slope[i].x, slope[i].y}, gj[2] = {slope[j].x, slope[j].y};
+      for (int d = 0; d < 2; ++d) {
+        const double k =
+            lambda * (gi[c] * gj[d]) + shear * (gi[d] * gj[c]) + (c == d ? shear * dots : 0.0);
+        sum += area * absolute(k);
+      }
+    }
+    return sum;
+  }
+  /// A live joint adds p_f to the row of each of its nodes; an edge that can touch adds the
+  /// stiffness of two faces pressed together, 3 p L (1/H + 1/H).
+  BR_HD void edge_stiffness(Index t, int k, const Vec2 (&x)[3], double area,
+                            double (&stiffness)[2]) const {
+    stiffness[0] = stiffness[1] = 0.0;
+    const Index entry = edges[t].at[k];
+    if (entry == edge_bonded) return;
+    if (entry >= 0 && stage[pair_of(entry)] != JointStage::broken) {
+      stiffness[0] = bonds[bond_of[pair_of(entry)]].stiffness;
+      return;
+    }
+    const Vec2 edge = x[(k + 1) % 3] - x[k];
+    const double over_height = dot(edge, edge) / (2.0 * area);  // L / H
+    stiffness[1] = 6.0 * contacts[material[t] * materials + material[t]].penalty * over_height;
+  }
+};
+
+}  // namespace breccia::fdem

@@ -1,0 +1,73 @@
+#pragma once
+// What a deformable triangle carries.
+
+#include "exec/buffer.hpp"
+#include "fdem/laws/elastic_triangle.hpp"
+
+namespace breccia::fdem {
+
+/// A corner of a triangle. Every triangle owns its three: what ties coincident ones are joints,
+/// bonds, or nothing. The position is at the time of the step, the velocity half a step earlier.
+struct NodeState {
+  Vec2 position;  ///<  [m]
+  Vec2 velocity;  ///<  [m/s]
+};
+
+/// The corners of a triangle, counter-clockwise. Corner k of triangle t is node 3 t + k.
+struct TriangleNodes {
+  NodeState at[3];
+};
+
+/// One vector for each corner.
+struct Corners {
+  Vec2 at[3];
+};
+
+/// Deformable triangles, three nodes each.
+struct Triangles {
+  Buffer<GlobalId> id;            ///< number of the triangle, kept for ever  [-]
+  Buffer<std::int16_t> group;     ///< body it belongs to  [-]
+  Buffer<std::int16_t> material;  ///< index into the case's materials  [-]
+  Buffer<TriangleNodes> nodes;    ///< positions and velocities
+  Buffer<Mat2> shape_inverse;     ///< of the reference edges as columns  [1/m]
+  Buffer<double> mass;            ///< of each corner, per unit thickness  [kg/m]
+  Buffer<double> viscosity;       ///< eta  [Pa s]
+  Buffer<Corners> force;          ///< sum of all that acts at this time  [N/m]
+  Buffer<Corners> external;       ///< the part of it that loads put in; empty without loads  [N/m]
+  Buffer<Index> hold;             ///< prescribed motion, index into World::holds, -1: free  [-]
+  Buffer<double> viscous_work;    ///< taken out by viscosity so far  [J/m]
+  Buffer<double> damping_work;    ///< taken out by local damping so far  [J/m]
+  Buffer<double> load_work;       ///< put in by loads and prescribed motion so far  [J/m]
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("id", "-", id);
+    field("group", "-", group);
+    field("material", "-", material);
+    field("nodes", "SI", nodes);
+    field("shape_inverse", "1/m", shape_inverse);
+    field("mass", "kg/m", mass);
+    field("viscosity", "Pa s", viscosity);
+    field("force", "N/m", force);
+    field("external", "N/m", external);
+    field("hold", "-", hold);
+    field("viscous_work", "J/m", viscous_work);
+    field("damping_work", "J/m", damping_work);
+    field("load_work", "J/m", load_work);
+  }
+  Index size() const { return id.size(); }
+};
+
+/// Nodes by number: node 3 t + k.
+BR_HD inline const NodeState& node(const View<const TriangleNodes>& nodes, Index number) {
+  return nodes[number / 3].at[number % 3];
+}
+
+BR_HD inline void split(const TriangleNodes& nodes, Vec2 (&x)[3], Vec2 (&v)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    x[k] = nodes.at[k].position;
+    v[k] = nodes.at[k].velocity;
+  }
+}
+
+}  // namespace breccia::fdem

@@ -1,0 +1,140 @@
+#pragma once
+// Everything an FDEM run consists of between two steps.
+
+#include <string>
+#include <vector>
+
+#include "core/broad_phase.hpp"
+#include "core/energy.hpp"
+#include "exec/timers.hpp"
+#include "fdem/config.hpp"
+#include "fdem/loads.hpp"
+#include "fdem/model.hpp"
+
+namespace breccia::fdem {
+
+/// A named set of corners that probes read: a body, a support or a line of the mesh.
+struct NodeSet {
+  std::string name;
+  std::vector<Index> nodes;  ///< 3 triangle + corner, ascending
+};
+
+/// Where the triangles that can touch stood at the last search, and how far each may go.
+struct Reach {
+  Buffer<Index> triangle;     ///< those that can touch, ascending by global id
+  Buffer<Corners> reference;  ///< their corners at the search  [m]
+  Buffer<double> margin;      ///<  [m]
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("triangle", "-", triangle);
+    field("reference", "m", reference);
+    field("margin", "m", margin);
+  }
+};
+
+/// What has been booked for good.
+struct Ledger {
+  ExactSum rubbed, lost;                         ///< of couples dropped at a search  [J/m]
+  ExactSum start_potential;                      ///< sum of m g.x at the start  [J/m]
+  double start = 0.0;                            ///< kinetic and elastic energy at the start  [J/m]
+  double preset_open = 0.0, preset_slide = 0.0;  ///< stored in joints at the start  [J/m]
+  double largest = 0.0;                          ///< largest sum of energies and work seen  [J/m]
+};
+
+/// Numbers that stay as the case gave them.
+struct Parameters {
+  TimeConfig time;
+  Vec2 gravity{};
+  double local_damping = 0.0;
+  double mean_edge = 0.0;  ///<  [m]
+  double skin = 0.0;       ///< margin of the search between two triangles at rest  [m]
+  bool conservative = false;
+  Index materials = 0;
+};
+
+struct World {
+  explicit World(const Exec& how);
+
+  Exec exec;
+  Parameters parameters;
+
+  // State: what a checkpoint holds.
+  Triangles triangles;
+  Joints joints;
+  Couples couples;
+  Reach reach;
+  Ledger ledger;
+  double time = 0.0;     ///< of positions and forces  [s]
+  double last_dt = 0.0;  ///< the step that led here  [s]
+  double next_dt = 0.0;  ///< the step to come  [s]
+  std::int64_t step = 0;
+  std::int64_t searches = 0;
+
+  // What follows from the case.
+  std::vector<std::string> groups;
+  std::vector<NodeSet> sets;  ///< bodies first
+  Buffer<ElasticTriangle> laws;
+  Buffer<JointBond> bonds;
+  Buffer<ContactPair> contact_pairs;
+  Buffer<Hold> holds;
+  std::vector<PrescribedMotion> prescribed;
+  std::vector<LoadLaw> loads;
+  std::vector<Amplitude> load_amplitudes;
+  Buffer<Index> load_starts;
+  Buffer<LoadedEdge> loaded_edges;
+  Bundles bundles;
+  Buffer<EdgeJoints> edges;   ///< joints of each triangle by slot
+  std::vector<Index> vertex;  ///< vertex of the mesh at each node
+  /// What a vertex of the mesh touches: bit 0 the border or an edge that nothing joins, bit 1 such
+  /// an edge between two triangles.
+  std::vector<std::uint8_t> open_vertex;
+
+  // What follows from the state.
+  Buffer<Motion> motions;
+  Buffer<LoadLaw> load_laws;
+  Buffer<std::uint8_t> changed;  ///< 1: a joint softened or broke since the last search
+  Buffer<double> born;           ///< of each couple, see CoupleForces
+  Incidence couple_incidence;
+  BroadPhase broad_phase;
+};
+
+/// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
+/// fit
+World make_world(const Config& config, const Model& model, const Exec& exec);
+
+/// Fills what follows from the state, after loading.
+void derive(World& w);
+void derive_couples(World& w);
+
+/// One step: the points of Lukas 2014, section 2.
+void step(World& w);
+
+/// The parts of a step, in its order.
+void move_triangles(World& w);
+bool couples_are_due(const World& w);
+void find_couples(World& w);
+void joint_forces(World& w);
+void couple_forces(World& w);
+void triangle_forces(World& w);
+void load_forces(World& w);
+/// Safe share of the stable step of all triangles, rounded down to six bits.  [s]
+double choose_time_step(const World& w);
+/// The step to come, or less where triangles that can touch allow less: after joints have changed.
+double shortened_time_step(const World& w);
+void evaluate_forces(World& w);
+
+Kick kick(const World& w);
+StableStep stable_step(const World& w);
+
+/// Starts the ledger at the present state.
+void begin_ledger(World& w);
+
+/// Where every joule is, per unit thickness; keeps the largest energy for the relative error.
+struct EnergySplit {
+  EnergyBalance balance;
+  double fracture_open = 0.0, fracture_slide = 0.0;  ///< of fracture, by mode  [J/m]
+};
+EnergySplit energies(World& w);
+
+}  // namespace breccia::fdem

@@ -1,0 +1,196 @@
+#include "run/fdem_method.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exec/error.hpp"
+#include "fdem/observe.hpp"
+
+namespace breccia {
+namespace {
+
+class FdemMethod final : public Method {
+ public:
+  FdemMethod(const fdem::Config& config, const fdem::Model& model, const Exec& exec)
+      : world_(fdem::make_world(config, model, exec)), probes_(config.probes) {
+    fdem::energies(world_);
+    for (const ProbeConfig& p : probes_) fdem::probe(world_, p);  // refuses what cannot be read
+  }
+
+  void step() override { fdem::step(world_); }
+  std::int64_t steps() const override { return world_.step; }
+  double time() const override { return world_.time; }
+  double time_step() const override { return world_.step > 0 ? world_.last_dt : world_.next_dt; }
+
+  EnergyBalance energy() override { return fdem::energies(world_).balance; }
+  std::vector<double> probes() override {
+    std::vector<double> values;
+    for (const ProbeConfig& p : probes_) values.push_back(fdem::probe(world_, p));
+    return values;
+  }
+  std::uint64_t state_hash() override { return fdem::state_hash(world_); }
+  void verify() override { fdem::verify(world_); }
+  Frame frame() override { return fdem_frame(world_); }
+
+  std::vector<Fact> facts() override {
+    const fdem::World& w = world_;
+    std::vector<Fact> facts;
+    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
+    add("model.triangles", w.triangles.size());
+    for (std::size_t g = 0; g < w.groups.size(); ++g)
+      add("model.triangles_by_group." + w.groups[g],
+          static_cast<double>(w.sets[g].nodes.size() / 3));
+    add("model.joints", w.joints.size());
+    add("model.nodes", 3 * w.triangles.size());
+    add("searches", static_cast<double>(w.searches));
+    add("contacts.candidates", w.couples.size());
+    const std::vector<fdem::Crack> cracks = fdem::cracks(w);
+    const auto sliding = std::count_if(cracks.begin(), cracks.end(),
+                                       [](const fdem::Crack& c) { return c.mode > 0.5; });
+    add("fracture.broken_joints", static_cast<double>(cracks.size()));
+    add("fracture.broken_by_mode.opening",
+        static_cast<double>(cracks.size()) - static_cast<double>(sliding));
+    add("fracture.broken_by_mode.sliding", static_cast<double>(sliding));
+    const fdem::EnergySplit split = fdem::energies(world_);
+    add("fracture.energy_by_mode.opening", split.fracture_open);
+    add("fracture.energy_by_mode.sliding", split.fracture_slide);
+    const fdem::Fragments pieces = fdem::fragments(w);
+    double total = 0.0;
+    for (const double m : pieces.mass) total += m;
+    add("fracture.fragments", static_cast<double>(pieces.mass.size()));
+    add("fracture.largest_fragment_fraction", pieces.mass.front() / total);
+    return facts;
+  }
+
+  std::vector<Table> tables() override {
+    Table cracks{"cracks",
+                 {"time", "x", "y", "length", "mode", "energy"},
+                 {"s", "m", "m", "m", "-", "J/m"},
+                 {}};
+    for (const fdem::Crack& c : fdem::cracks(world_)) {
+      const Vec2 middle = 0.5 * (c.begin + c.end);
+      cracks.rows.push_back({c.time, middle.x, middle.y, norm(c.end - c.begin), c.mode, c.energy});
+    }
+    Table pieces{"fragments", {"fragment", "mass", "share"}, {"-", "kg/m", "-"}, {}};
+    const fdem::Fragments all = fdem::fragments(world_);
+    double total = 0.0;
+    for (const double m : all.mass) total += m;
+    for (std::size_t i = 0; i < all.mass.size(); ++i)
+      pieces.rows.push_back({static_cast<double>(i), all.mass[i], all.mass[i] / total});
+    return {cracks, pieces};
+  }
+
+  void save(CheckpointWriter& writer) override {
+    fdem::World& w = world_;
+    writer.value("step", w.step);
+    writer.value("time", w.time);
+    writer.value("last_dt", w.last_dt);
+    writer.value("next_dt", w.next_dt);
+    writer.value("searches", w.searches);
+    writer.value("ledger", w.ledger);
+    writer.fields("triangles", w.triangles);
+    writer.fields("joints", w.joints);
+    writer.fields("couples", w.couples);
+    writer.fields("reach", w.reach);
+    writer.section("changed", w.changed.data(), 1, 1);
+  }
+
+  void load(const CheckpointReader& reader) override {
+    fdem::World& w = world_;
+    const Index triangles = w.triangles.size(), joints = w.joints.size();
+    w.step = reader.value<std::int64_t>("step");
+    w.time = reader.value<double>("time");
+    w.last_dt = reader.value<double>("last_dt");
+    w.next_dt = reader.value<double>("next_dt");
+    w.searches = reader.value<std::int64_t>("searches");
+    w.ledger = reader.value<fdem::Ledger>("ledger");
+    reader.fields("triangles", w.triangles);
+    reader.fields("joints", w.joints);
+    reader.fields("couples", w.couples);
+    reader.fields("reach", w.reach);
+    std::vector<std::uint8_t> changed(1);
+    changed[0] = static_cast<std::uint8_t>(reader.section("changed", 1).bytes[0]);
+    copy_to(w.changed, changed);
+    if (w.triangles.size() != triangles || w.joints.size() != joints)
+      throw CheckpointError("the checkpoint holds another model than the case builds");
+    fdem::derive(w);
+  }
+
+ private:
+  fdem::World world_;
+  std::vector<ProbeConfig> probes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_fdem_method(const fdem::Config& config, const fdem::Model& model,
+                                         const Exec& exec) {
+  return std::make_unique<FdemMethod>(config, model, exec);
+}
+
+Frame fdem_frame(const fdem::World& w) {
+  const fdem::Triangles t = host_copy(w.triangles);
+  Frame f;
+  f.step = w.step;
+  f.time = w.time;
+  f.groups = w.groups;
+  FrameField velocity{"velocity", "m/s", 3, {}};
+  const auto point = [&](const fdem::NodeState& n) {
+    f.position.push_back({n.position.x, n.position.y, 0.0});
+    for (const double c : {n.velocity.x, n.velocity.y, 0.0})
+      velocity.values.push_back(static_cast<float>(c));
+  };
+  const std::vector<Sym2> stress = fdem::stresses(w);
+  const std::vector<double> lost = fdem::damage(w);
+  const fdem::Fragments pieces = fdem::fragments(w);
+  const char* const names[] = {"stress_xx", "stress_yy", "stress_xy", "pressure",
+                               "damage",    "group",     "material",  "fragment"};
+  for (const char* name : names) {
+    const std::string text = name;
+    const bool is_stress = text.starts_with("stress") || text == "pressure";
+    f.triangle_fields.push_back({name, is_stress ? "Pa" : "-", 1, {}});
+  }
+  for (Index i = 0; i < t.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    for (const fdem::NodeState& n : t.nodes.data()[i].at) {
+      f.triangles.push_back(static_cast<std::int32_t>(f.position.size()));
+      point(n);
+    }
+    const double values[] = {stress[k].xx,
+                             stress[k].yy,
+                             stress[k].xy,
+                             -0.5 * (stress[k].xx + stress[k].yy),
+                             lost[k],
+                             static_cast<double>(t.group.data()[i]),
+                             static_cast<double>(t.material.data()[i]),
+                             static_cast<double>(pieces.of[k])};
+    for (std::size_t q = 0; q < f.triangle_fields.size(); ++q)
+      f.triangle_fields[q].values.push_back(static_cast<float>(values[q]));
+  }
+
+  FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
+  const fdem::Joints j = host_copy(w.joints);
+  for (Index i = 0; i < j.size(); ++i) {
+    const fdem::JointStage stage = j.stage.data()[i];
+    if (stage == fdem::JointStage::whole) continue;
+    const fdem::JointNodes n(std::as_const(t.nodes).view(), j.edge_a.data()[i], j.edge_b.data()[i]);
+    for (const auto& [a, b] : {std::pair{n.a0, n.b0}, std::pair{n.a1, n.b1}}) {
+      f.lines.push_back(static_cast<std::int32_t>(f.position.size()));
+      point({0.5 * (a.position + b.position), 0.5 * (a.velocity + b.velocity)});
+    }
+    const fdem::JointWork& work = j.work.data()[i];
+    const double open = std::max(work.open, 0.0), slide = std::max(work.slide, 0.0);
+    mode.values.push_back(open + slide > 0.0 ? static_cast<float>(slide / (open + slide)) : 0.0F);
+    double worst = stage == fdem::JointStage::broken ? 1.0 : 0.0;
+    for (const auto& p : j.points.data()[i].point) worst = std::max(worst, p.damage);
+    damage.values.push_back(static_cast<float>(worst));
+    time.values.push_back(static_cast<float>(j.broke_at.data()[i]));
+  }
+  f.point_fields.push_back(std::move(velocity));
+  f.line_fields.push_back(std::move(mode));
+  f.line_fields.push_back(std::move(damage));
+  f.line_fields.push_back(std::move(time));
+  return f;
+}
+
+}  // namespace breccia

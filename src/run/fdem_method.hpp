@@ -1,0 +1,19 @@
+#pragma once
+// The FDEM as the outer loop runs it.
+
+#include <memory>
+
+#include "fdem/world.hpp"
+#include "run/method.hpp"
+
+namespace breccia {
+
+/// @throws InputError if model and case do not fit
+std::unique_ptr<Method> make_fdem_method(const fdem::Config& config, const fdem::Model& model,
+                                         const Exec& exec);
+
+/// Triangles with stress, damage, body, material and fragment; softened and broken joints as lines
+/// with mode, damage and time of break.
+Frame fdem_frame(const fdem::World& w);
+
+}  // namespace breccia
