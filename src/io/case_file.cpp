@@ -17,6 +17,7 @@
 
 #include "exec/error.hpp"
 #include "io/case_source.hpp"
+#include "io/suggestion.hpp"
 #include "io/units.hpp"
 
 namespace breccia {
@@ -26,35 +27,6 @@ struct Problem {
   std::uint32_t line;  ///< 0: from an override
   std::string text;
 };
-
-/// Letters to add, drop, change or swap to make one word of the other.
-std::size_t distance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i)
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      d[i][j] =
-          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
-
-std::string suggestion(const std::string& word, const std::set<std::string>& known) {
-  std::string best;
-  std::size_t least = 3 + word.size() / 4;
-  for (const std::string& candidate : known)
-    if (const std::size_t d = distance(word, candidate); d < least) {
-      least = d;
-      best = candidate;
-    }
-  if (!best.empty()) return "; did you mean " + best + "?";
-  std::string all;
-  for (const std::string& candidate : known) all += (all.empty() ? "" : ", ") + candidate;
-  return known.size() <= 12 && !known.empty() ? "; allowed are " + all : "";
-}
 
 const char* type_of(const toml::node& node) {
   switch (node.type()) {
@@ -229,6 +201,28 @@ struct CaseReader::State {
     }
     return true;
   }
+  /// As many numbers as there are parts. False if there is a problem, which is then noted.
+  template <std::size_t count>
+  bool numbers(const toml::node& node, const std::string& key, const std::array<double*, count>& to,
+               const char* unit, const Range& range, const char* meaning) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() != count) {
+      add(&node, key + (count == 2 ? " wants two numbers, as in [0.0, 1.0]"
+                                   : " wants three numbers, as in [0.0, 0.0, 1.0]"));
+      return false;
+    }
+    bool good = true;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::string part = fmt::format("{}[{}]", key, k);
+      double given = 0.0;
+      if (quantity((*array)[k], part, unit, given) &&
+          in_range((*array)[k], part, given, *to[k], range, meaning))
+        *to[k] = given;
+      else
+        good = false;
+    }
+    return good;
+  }
   bool in_range(const toml::node& node, const std::string& key, double value, double usual,
                 const Range& range, const char* meaning) {
     if (std::isnan(value) || (std::isinf(value) && !std::isinf(usual))) {
@@ -293,18 +287,33 @@ void CaseReader::read(const char* name, Vec3& value, const char* unit, const Ran
                       const char* meaning) {
   const toml::node* node = state_->find(name);
   if (node == nullptr) return;
+  state_->numbers<3>(*node, state_->full(name), {&value.x, &value.y, &value.z}, unit, range,
+                     meaning);
+}
+
+void CaseReader::read(const char* name, Vec2& value, const char* unit, const Range& range,
+                      const char* meaning) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
+  state_->numbers<2>(*node, state_->full(name), {&value.x, &value.y}, unit, range, meaning);
+}
+
+void CaseReader::read(const char* name, std::vector<Vec2>& value, const char* unit,
+                      const Range& range, const char* meaning) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
   const toml::array* array = node->as_array();
-  if (array == nullptr || array->size() != 3) {
-    state_->add(node, state_->full(name) + " wants three numbers, as in [0.0, 0.0, 1.0]");
+  if (array == nullptr) {
+    state_->add(node, state_->full(name) + " wants points, as in [[0.0, 0.0], [1.0, 0.5]]");
     return;
   }
-  std::array<double*, 3> parts{&value.x, &value.y, &value.z};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::string key = fmt::format("{}[{}]", state_->full(name), k);
-    double given = 0.0;
-    if (!state_->quantity((*array)[k], key, unit, given)) continue;
-    if (state_->in_range((*array)[k], key, given, *parts[k], range, meaning)) *parts[k] = given;
-  }
+  std::vector<Vec2> given(array->size());
+  bool good = true;
+  for (std::size_t k = 0; k < given.size(); ++k)
+    good = state_->numbers<2>((*array)[k], fmt::format("{}[{}]", state_->full(name), k),
+                              {&given[k].x, &given[k].y}, unit, range, meaning) &&
+           good;
+  if (good) value = given;
 }
 
 void CaseReader::read(const char* name, bool& value, const char*) {

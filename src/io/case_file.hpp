@@ -9,6 +9,7 @@
 
 #include "core/keys.hpp"
 #include "math/vec.hpp"
+#include "math/vec2.hpp"
 
 namespace breccia {
 
@@ -35,6 +36,10 @@ class CaseReader {
   void read(const char* name, int& value, const char* unit, const Range& range,
             const char* meaning);
   void read(const char* name, Vec3& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, Vec2& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, std::vector<Vec2>& value, const char* unit, const Range& range,
             const char* meaning);
   void read(const char* name, bool& value, const char* meaning);
   void read(const char* name, std::string& value, const char* meaning);
@@ -116,6 +121,8 @@ std::string value_text(double value);
 std::string value_text(int value);
 std::string value_text(std::int64_t value);
 std::string value_text(const Vec3& value);
+std::string value_text(const Vec2& value);
+std::string value_text(const std::vector<Vec2>& value);
 std::string value_text(bool value);
 std::string value_text(const std::string& value);
 std::string value_text(const std::vector<std::string>& value);
@@ -134,6 +141,12 @@ inline const char* type_name(const std::int64_t&) {
 }
 inline const char* type_name(const Vec3&) {
   return "3 numbers";
+}
+inline const char* type_name(const Vec2&) {
+  return "2 numbers";
+}
+inline const char* type_name(const std::vector<Vec2>&) {
+  return "points";
 }
 inline const char* type_name(const bool&) {
   return "true/false";
@@ -165,7 +178,9 @@ struct WriteKeys {
   void operator()(const char* name, std::string& value, const OneOf& words, const char* meaning) {
     put(name, value_text(value), words_text(words) + ": " + meaning);
   }
-  void required(const char*) { has_unset = has_unset || last_value == "0" || last_value == "\"\""; }
+  void required(const char*) {
+    has_unset = has_unset || last_value == "0" || last_value == "0.0" || last_value == "\"\"";
+  }
   template <class Config>
   void table(const char* name, Config& config, const char* meaning) {
     WriteKeys inner(path + name + ".");

@@ -29,6 +29,14 @@ std::string value_text(std::int64_t value) {
 std::string value_text(const Vec3& v) {
   return "[" + value_text(v.x) + ", " + value_text(v.y) + ", " + value_text(v.z) + "]";
 }
+std::string value_text(const Vec2& v) {
+  return "[" + value_text(v.x) + ", " + value_text(v.y) + "]";
+}
+std::string value_text(const std::vector<Vec2>& value) {
+  std::string text = "[";
+  for (const Vec2& item : value) text += (text.size() > 1 ? ", " : "") + value_text(item);
+  return text + "]";
+}
 std::string value_text(bool value) {
   return value ? "true" : "false";
 }

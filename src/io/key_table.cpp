@@ -9,7 +9,7 @@
 namespace breccia {
 namespace {
 
-constexpr std::size_t columns = 100;
+constexpr std::size_t page_width = 100;
 
 /// The words of a text in lines of at most `width` letters, unless a word alone is longer.
 std::vector<std::string> lines_of(const std::string& text, std::size_t width) {
@@ -56,11 +56,11 @@ std::string format_keys(const std::vector<KeyInfo>& keys) {
   };
   std::string text = row("key", "type", "default", "allowed");
   for (const KeyInfo& key : keys) {
-    const std::size_t rest = before + 20 < columns ? columns - before : 20;
+    const std::size_t rest = before + 20 < page_width ? page_width - before : 20;
     const std::vector<std::string> allowed = lines_of(key.range, rest);
     text += row(key.path, key.type, default_with_unit(key), allowed.front());
     for (std::size_t k = 1; k < allowed.size(); ++k) text += row("", "", "", allowed[k]);
-    for (const std::string& line : lines_of(key.meaning, columns - 4)) text += "    " + line + "\n";
+    for (const std::string& line : lines_of(key.meaning, page_width - 4)) text += "    " + line + "\n";
   }
   return text;
 }

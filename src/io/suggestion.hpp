@@ -1,0 +1,12 @@
+#pragma once
+// What a misspelt word may have meant.
+
+#include <set>
+#include <string>
+
+namespace breccia {
+
+/// "; did you mean density?", or the allowed words if none is near and they are few, or nothing.
+std::string suggestion(const std::string& word, const std::set<std::string>& known);
+
+}  // namespace breccia
