@@ -1,13 +1,20 @@
 #include "app/case.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "exec/error.hpp"
+#include "fdem/check_case.hpp"
 #include "io/case_file.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
+#include "prepare/build_fdem.hpp"
 #include "prepare/check_case.hpp"
 #include "prepare/model_file.hpp"
+#include "run/dem_method.hpp"
+#include "run/fdem_method.hpp"
+#include "run/progress.hpp"
 
 namespace breccia::app {
 namespace {
@@ -21,7 +28,8 @@ void refuse_unreadable(const std::string& path) {
   read_whole_file(file.string());
 }
 
-std::string model_digest(dem::Config config) {
+template <class Config>
+std::string model_digest(Config config) {
   config.title.clear();
   config.time.end = TimeConfig{}.end;
   config.output = {};
@@ -33,10 +41,14 @@ std::string model_digest(dem::Config config) {
 
 /// Fills in what follows from the configuration.
 Case completed(Case read) {
-  dem::check_case(read.config);
-  read.text = completed_case(read.config);
+  std::visit(
+      [&](const auto& config) {
+        check_case(config);
+        read.text = completed_case(config);
+        read.model_digest = model_digest(config);
+      },
+      read.config);
   read.digest = case_digest(read.text);
-  read.model_digest = model_digest(read.config);
   return read;
 }
 
@@ -49,6 +61,56 @@ std::string model_keys(const dem::Config& config) {
   part.links = config.links;
   return completed_case(part);
 }
+std::string model_keys(const fdem::Config& config) {
+  fdem::Config part;
+  part.seed = config.seed;
+  part.materials = config.materials;
+  part.joint_laws = config.joint_laws;
+  part.bodies = config.bodies;
+  part.discontinuities = config.discontinuities;
+  return completed_case(part);
+}
+
+template <class Source>
+std::variant<dem::Config, fdem::Config> read_config(const Source& source,
+                                                    const std::vector<std::string>& overrides) {
+  if (case_method(source, overrides) == "fdem2d") return read_case<fdem::Config>(source, overrides);
+  return read_case<dem::Config>(source, overrides);
+}
+
+dem::Model built(const dem::Config& config, const std::string& folder) {
+  return build_model(config, folder);
+}
+fdem::Model built(const fdem::Config& config, const std::string& folder) {
+  FdemNames names;
+  for (const fdem::MaterialConfig& m : config.materials) names.materials.push_back(m.name);
+  for (const fdem::JointConfig& j : config.joint_laws) names.joints.push_back(j.name);
+  return build_fdem_model(config.bodies, config.discontinuities, names, config.seed, folder);
+}
+
+/// The model of a case: the prepared one, or built now.
+template <class Config>
+auto model_of(const Case& read, const Config& config) {
+  using Model = decltype(built(config, read.folder));
+  return read.model ? std::get<Model>(*read.model) : built(config, read.folder);
+}
+
+std::unique_ptr<Method> method_over(const dem::Config& config, const dem::Model& model,
+                                    const Exec& exec) {
+  return make_dem_method(config, model, exec);
+}
+std::unique_ptr<Method> method_over(const fdem::Config& config, const fdem::Model& model,
+                                    const Exec& exec) {
+  return make_fdem_method(config, model, exec);
+}
+
+std::string size_text(const dem::Model& model) {
+  return fmt::format("{} elements  {} links", count_text(static_cast<double>(model.size())),
+                     count_text(static_cast<double>(model.links.size())));
+}
+std::string size_text(const fdem::Model& model) {
+  return fmt::format("{} triangles", count_text(static_cast<double>(model.size())));
+}
 
 Case load_prepared(const std::string& path, const std::vector<std::string>& overrides) {
   const CheckpointReader reader(path);
@@ -59,14 +121,18 @@ Case load_prepared(const std::string& path, const std::vector<std::string>& over
                      path + "' begins from it");
   const CaseText text{reader.text("case.text"), path};
   Case read;
-  read.config = read_case<dem::Config>(text, overrides);
-  if (model_keys(read.config) != model_keys(read_case<dem::Config>(text, {})))
+  read.config = read_config(text, overrides);
+  const auto keys = [](const auto& config) { return model_keys(config); };
+  if (std::visit(keys, read.config) != std::visit(keys, read_config(text, {})))
     throw InputError(path +
                      ": --set cannot change the seed, materials, bodies or links of a "
                      "prepared model; nothing was run");
   read.name = reader.text("case.name");
   read.folder = reader.text("case.folder");
-  read.model = load_model(reader);
+  if (std::holds_alternative<dem::Config>(read.config))
+    read.model = load_model(reader);
+  else
+    read.model = load_fdem_model(reader);
   return completed(std::move(read));
 }
 
@@ -76,14 +142,30 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
   if (path.ends_with(".br")) return load_prepared(path, overrides);
   refuse_unreadable(path);
   Case read;
-  read.config = read_case<dem::Config>(path, overrides);
+  read.config = read_config(path, overrides);
   read.name = case_name(path);
   read.folder = std::filesystem::absolute(case_folder(path)).lexically_normal().string();
   return completed(std::move(read));
 }
 
-dem::Model model_of(const Case& read) {
-  return read.model ? *read.model : build_model(read.config, read.folder);
+const CaseConfig& Case::common() const {
+  return std::visit([](const auto& c) -> const CaseConfig& { return c; }, config);
+}
+
+std::unique_ptr<Method> make_method(const Case& read, const Exec& exec) {
+  return std::visit(
+      [&](const auto& config) { return method_over(config, model_of(read, config), exec); },
+      read.config);
+}
+
+std::string save_model_of(const Case& read, CheckpointWriter& writer) {
+  return std::visit(
+      [&](const auto& config) {
+        const auto model = model_of(read, config);
+        save_model(writer, model);
+        return size_text(model);
+      },
+      read.config);
 }
 
 }  // namespace breccia::app

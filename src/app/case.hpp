@@ -1,24 +1,33 @@
 #pragma once
-// A case as the commands use it: read, checked, completed and named.
+// A case as the commands use it: read, checked, completed and named, whatever its method.
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "dem/config.hpp"
 #include "dem/model.hpp"
+#include "exec/space.hpp"
+#include "fdem/config.hpp"
+#include "fdem/model.hpp"
+#include "io/checkpoint.hpp"
+#include "run/method.hpp"
 
 namespace breccia::app {
 
 struct Case {
-  dem::Config config;
+  std::variant<dem::Config, fdem::Config> config;
   std::string name;
   std::string text;    ///< completed: every key with the value used
   std::string digest;  ///< of text
   std::string folder;  ///< where files that the case names are
   /// Of what decides the states of a run: the case without its end, output, checkpoints and checks.
   std::string model_digest;
-  std::optional<dem::Model> model;  ///< if it was prepared
+  std::optional<std::variant<dem::Model, fdem::Model>> model;  ///< if it was prepared
+
+  const CaseConfig& common() const;
 };
 
 /// Reads a case file, the case.toml of a folder, or a prepared model (*.br).
@@ -28,7 +37,11 @@ struct Case {
 ///         prepared model is damaged
 Case load_case(const std::string& path, const std::vector<std::string>& overrides);
 
-/// The model of the case: the prepared one, or built now.
-dem::Model model_of(const Case& read);
+/// The case's method over its model: the prepared one, or built now.
+/// @throws InputError if the model cannot be built, or does not fit
+std::unique_ptr<Method> make_method(const Case& read, const Exec& exec);
+
+/// Builds the model and adds it to a file. Returns a few words about its size.
+std::string save_model_of(const Case& read, CheckpointWriter& writer);
 
 }  // namespace breccia::app

@@ -22,9 +22,12 @@ struct CheckCommand {
     for (const std::string& path : paths) {
       try {
         const Case read = load_case(path, overrides);
-        fmt::print("{}: good: {}, {} bodies, {} materials, ends at {}\n", path, read.config.method,
-                   read.config.bodies.size(), read.config.materials.size(),
-                   time_text(read.config.time.end));
+        std::visit(
+            [&](const auto& config) {
+              fmt::print("{}: good: {}, {} bodies, {} materials, ends at {}\n", path, config.method,
+                         config.bodies.size(), config.materials.size(), time_text(config.time.end));
+            },
+            read.config);
       } catch (const Error& error) {
         std::fflush(stdout);
         std::fputs(fmt::format("error: {}\n", error.what()).c_str(), stderr);

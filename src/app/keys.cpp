@@ -9,6 +9,7 @@
 #include "app/commands.hpp"
 #include "dem/config.hpp"
 #include "exec/error.hpp"
+#include "fdem/config.hpp"
 #include "io/case_file.hpp"
 
 namespace breccia::app {
@@ -19,9 +20,16 @@ void add_keys(CLI::App& program) {
       "keys", "every key of a case file: type, unit, default, range, meaning");
   command->add_option("PREFIX", *prefix, "only keys that begin with this");
   command->callback([prefix] {
-    const std::vector<KeyInfo> keys = list_keys<dem::Config>(*prefix);
-    if (keys.empty()) throw InputError(fmt::format("no key begins with {}", *prefix));
-    fmt::print("{}", format_keys(keys));
+    const std::vector<KeyInfo> dem = list_keys<dem::Config>(*prefix);
+    const std::vector<KeyInfo> fdem = list_keys<fdem::Config>(*prefix);
+    if (dem.empty() && fdem.empty())
+      throw InputError(fmt::format("no key begins with {}", *prefix));
+    const auto show = [](const char* method, const std::vector<KeyInfo>& keys) {
+      if (!keys.empty()) fmt::print("method = \"{}\"\n{}", method, format_keys(keys));
+    };
+    show("dem3d", dem);
+    if (!dem.empty() && !fdem.empty()) fmt::print("\n");
+    show("fdem2d", fdem);
   });
 }
 

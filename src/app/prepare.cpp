@@ -9,8 +9,6 @@
 #include "app/case.hpp"
 #include "app/commands.hpp"
 #include "io/checkpoint.hpp"
-#include "prepare/model_file.hpp"
-#include "run/progress.hpp"
 
 namespace breccia::app {
 namespace {
@@ -21,16 +19,14 @@ struct PrepareCommand {
 
   void execute() const {
     const Case read = load_case(path, overrides);
-    const dem::Model model = model_of(read);
     const std::string target = file.empty() ? read.name + ".br" : file;
     CheckpointWriter writer;
     writer.text("case.name", read.name);
     writer.text("case.folder", read.folder);
     writer.text("case.text", read.text);
-    save_model(writer, model);
+    const std::string size = save_model_of(read, writer);
     writer.write(target);
-    fmt::print("{}  {} elements  {} links\n", target, count_text(static_cast<double>(model.size())),
-               count_text(static_cast<double>(model.links.size())));
+    fmt::print("{}  {}\n", target, size);
   }
 };
 

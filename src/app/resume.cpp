@@ -11,7 +11,6 @@
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
 #include "exec/error.hpp"
-#include "run/dem_method.hpp"
 #include "run/run.hpp"
 #include "run/signals.hpp"
 
@@ -54,8 +53,7 @@ struct ResumeCommand {
     RunPlan plan = plan_of(read, options, exec);
     plan.begin = begin;
     refuse_other_case(checkpoint, plan);
-    const dem::Model model = model_of(read);
-    const std::unique_ptr<Method> method = make_dem_method(read.config, model, exec);
+    const std::unique_ptr<Method> method = make_method(read, exec);
     timers.clear();
     return Run(*method, plan, folder, checkpoint).execute();
   }

@@ -8,7 +8,6 @@
 
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
-#include "run/dem_method.hpp"
 #include "run/signals.hpp"
 
 namespace breccia::app {
@@ -31,8 +30,7 @@ struct RunCommand {
     const Existing existing = force ? Existing::replace : Existing::refuse;
     ResultFolder::check_free(out, existing);
 
-    const dem::Model model = model_of(read);
-    const std::unique_ptr<Method> method = make_dem_method(read.config, model, exec);
+    const std::unique_ptr<Method> method = make_method(read, exec);
     RunPlan plan = plan_of(read, options, exec);
     plan.begin = begin;
     if (!restart.empty()) {

@@ -68,7 +68,7 @@ Exec exec_of(const RunOptions& options) {
 
 RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec) {
   RunPlan plan;
-  plan.config = read.config;
+  plan.config = read.common();
   plan.case_name = read.name;
   plan.case_text = read.text;
   plan.case_digest = read.digest;

@@ -298,6 +298,25 @@ void CaseReader::read(const char* name, Vec2& value, const char* unit, const Ran
   state_->numbers<2>(*node, state_->full(name), {&value.x, &value.y}, unit, range, meaning);
 }
 
+void CaseReader::read(const char* name, std::vector<double>& value, const char* unit,
+                      const Range& range, const char* meaning) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) {
+    state_->add(node, state_->full(name) + " wants numbers, as in [0.0, 0.5, 1.0]");
+    return;
+  }
+  std::vector<double> given(array->size());
+  bool good = true;
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const std::string part = fmt::format("{}[{}]", state_->full(name), k);
+    good = state_->quantity((*array)[k], part, unit, given[k]) &&
+           state_->in_range((*array)[k], part, given[k], 0.0, range, meaning) && good;
+  }
+  if (good) value = given;
+}
+
 void CaseReader::read(const char* name, std::vector<Vec2>& value, const char* unit,
                       const Range& range, const char* meaning) {
   const toml::node* node = state_->find(name);

@@ -39,6 +39,8 @@ class CaseReader {
             const char* meaning);
   void read(const char* name, Vec2& value, const char* unit, const Range& range,
             const char* meaning);
+  void read(const char* name, std::vector<double>& value, const char* unit, const Range& range,
+            const char* meaning);
   void read(const char* name, std::vector<Vec2>& value, const char* unit, const Range& range,
             const char* meaning);
   void read(const char* name, bool& value, const char* meaning);
@@ -122,6 +124,7 @@ std::string value_text(int value);
 std::string value_text(std::int64_t value);
 std::string value_text(const Vec3& value);
 std::string value_text(const Vec2& value);
+std::string value_text(const std::vector<double>& value);
 std::string value_text(const std::vector<Vec2>& value);
 std::string value_text(bool value);
 std::string value_text(const std::string& value);
@@ -144,6 +147,9 @@ inline const char* type_name(const Vec3&) {
 }
 inline const char* type_name(const Vec2&) {
   return "2 numbers";
+}
+inline const char* type_name(const std::vector<double>&) {
+  return "numbers";
 }
 inline const char* type_name(const std::vector<Vec2>&) {
   return "points";
@@ -259,6 +265,16 @@ Config read_case(const Source& source, const std::vector<std::string>& overrides
   config.each_key(ReadKeys{reader});
   reader.finish();
   return config;
+}
+
+/// The method that a case asks for, before anything else of it is looked at.
+/// @throws InputError if the file cannot be read or is no TOML, or an override makes no sense
+template <class Source>
+std::string case_method(const Source& source, const std::vector<std::string>& overrides) {
+  CaseReader reader(source, overrides);
+  std::string method = "dem3d";
+  reader.read("method", method, "");
+  return method;
 }
 
 /// The completed input: every key with the value used, in SI. Reading it gives the same case again.

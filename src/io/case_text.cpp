@@ -32,6 +32,11 @@ std::string value_text(const Vec3& v) {
 std::string value_text(const Vec2& v) {
   return "[" + value_text(v.x) + ", " + value_text(v.y) + "]";
 }
+std::string value_text(const std::vector<double>& value) {
+  std::string text = "[";
+  for (const double item : value) text += (text.size() > 1 ? ", " : "") + value_text(item);
+  return text + "]";
+}
 std::string value_text(const std::vector<Vec2>& value) {
   std::string text = "[";
   for (const Vec2& item : value) text += (text.size() > 1 ? ", " : "") + value_text(item);

@@ -70,12 +70,109 @@ void refuse_misfits(const dem::Model& model) {
     fail();
 }
 
+std::string lines_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += name + '\n';
+  return text;
+}
+
+std::vector<std::string> lines_in(const std::string& text) {
+  std::vector<std::string> names;
+  std::string name;
+  for (const char c : text) {
+    if (c != '\n') {
+      name += c;
+      continue;
+    }
+    names.push_back(name);
+    name.clear();
+  }
+  return names;
+}
+
+/// Every array of a model of triangles that holds plain items.
+template <class Model, class Visit>
+void each_triangle_array(Model& model, Visit&& array) {
+  array("point", model.point);
+  array("triangle", model.triangle);
+  array("group", model.group);
+  array("material", model.material);
+  array("velocity", model.velocity);
+  array("strength", model.strength);
+}
+
+/// Discontinuities by member, so that no padding reaches the file.
+struct DiscontinuityArrays {
+  std::vector<std::array<Index, 2>> edge;
+  std::vector<std::int16_t> material;
+};
+
+void refuse_misfits(const fdem::Model& model) {
+  const auto fail = [] {
+    throw CheckpointError("the model's triangles and vertices do not fit each other");
+  };
+  each_triangle_array(model, [&](const char* name, const auto& items) {
+    if (std::string(name) != "point" && items.size() != model.triangle.size()) fail();
+  });
+  const auto points = static_cast<Index>(model.point.size());
+  const auto is_point = [&](Index i) { return i >= 0 && i < points; };
+  for (const auto& corners : model.triangle)
+    if (!std::all_of(corners.begin(), corners.end(), is_point)) fail();
+  for (const fdem::Model::EdgeSet& set : model.edge_sets)
+    for (const auto& edge : set.edges)
+      if (!is_point(edge[0]) || !is_point(edge[1])) fail();
+  for (const fdem::Model::Discontinuity& d : model.discontinuities)
+    if (!is_point(d.edge[0]) || !is_point(d.edge[1])) fail();
+  const auto groups = static_cast<std::int16_t>(model.groups.size());
+  if (std::any_of(model.group.begin(), model.group.end(),
+                  [&](std::int16_t g) { return g < 0 || g >= groups; }))
+    fail();
+}
+
 }  // namespace
 
+void save_model(CheckpointWriter& writer, const fdem::Model& model) {
+  writer.text("model.groups", lines_of(model.groups));
+  each_triangle_array(
+      model, [&](const char* name, const auto& items) { save_array(writer, name, items); });
+  std::vector<std::string> names;
+  for (const fdem::Model::EdgeSet& set : model.edge_sets) {
+    save_array(writer, "edges." + std::to_string(names.size()), set.edges);
+    names.push_back(set.name);
+  }
+  writer.text("model.edge_sets", lines_of(names));
+  DiscontinuityArrays discontinuities;
+  for (const fdem::Model::Discontinuity& d : model.discontinuities) {
+    discontinuities.edge.push_back(d.edge);
+    discontinuities.material.push_back(d.material);
+  }
+  save_array(writer, "discontinuity_edge", discontinuities.edge);
+  save_array(writer, "discontinuity_material", discontinuities.material);
+}
+
+fdem::Model load_fdem_model(const CheckpointReader& reader) {
+  fdem::Model model;
+  model.groups = lines_in(reader.text("model.groups"));
+  each_triangle_array(model, [&](const char* array, auto& items) {
+    items =
+        load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
+  });
+  for (const std::string& name : lines_in(reader.text("model.edge_sets")))
+    model.edge_sets.push_back(
+        {name, load_array<std::array<Index, 2>>(
+                   reader, "edges." + std::to_string(model.edge_sets.size()))});
+  const auto edges = load_array<std::array<Index, 2>>(reader, "discontinuity_edge");
+  const auto materials = load_array<std::int16_t>(reader, "discontinuity_material");
+  if (edges.size() != materials.size())
+    throw CheckpointError("the model's discontinuities are not whole");
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    model.discontinuities.push_back({edges[i], materials[i]});
+  refuse_misfits(model);
+  return model;
+}
+
 void save_model(CheckpointWriter& writer, const dem::Model& model) {
-  std::string groups;
-  for (const std::string& name : model.groups) groups += name + '\n';
-  writer.text("model.groups", groups);
+  writer.text("model.groups", lines_of(model.groups));
   writer.value("model.interaction_range", model.interaction_range);
   each_element_array(model,
                      [&](const char* name, const auto& items) { save_array(writer, name, items); });
@@ -91,20 +188,12 @@ void save_model(CheckpointWriter& writer, const dem::Model& model) {
 }
 
 bool holds_model(const CheckpointReader& reader) {
-  return reader.has("model.position");
+  return reader.has("model.position") || reader.has("model.triangle");
 }
 
 dem::Model load_model(const CheckpointReader& reader) {
   dem::Model model;
-  std::string name;
-  for (const char c : reader.text("model.groups")) {
-    if (c != '\n') {
-      name += c;
-      continue;
-    }
-    model.groups.push_back(name);
-    name.clear();
-  }
+  model.groups = lines_in(reader.text("model.groups"));
   model.interaction_range = reader.value<double>("model.interaction_range");
   each_element_array(model, [&](const char* array, auto& items) {
     items =

@@ -4,17 +4,20 @@
 #include <string>
 
 #include "dem/model.hpp"
+#include "fdem/model.hpp"
 #include "io/checkpoint.hpp"
 
 namespace breccia {
 
 /// Adds the model as sections "model.*".
 void save_model(CheckpointWriter& writer, const dem::Model& model);
+void save_model(CheckpointWriter& writer, const fdem::Model& model);
 
 /// Whether the file holds a model rather than the state of a run.
 bool holds_model(const CheckpointReader& reader);
 
 /// @throws CheckpointError if a section is missing or the arrays do not fit each other
 dem::Model load_model(const CheckpointReader& reader);
+fdem::Model load_fdem_model(const CheckpointReader& reader);
 
 }  // namespace breccia

@@ -11,6 +11,7 @@
 #include "run/checks.hpp"
 #include "run/messages.hpp"
 #include "run/signals.hpp"
+#include "run/tables.hpp"
 
 namespace breccia {
 namespace {
