@@ -15,6 +15,7 @@
 #include "run/dem_method.hpp"
 #include "run/fdem_method.hpp"
 #include "run/progress.hpp"
+#include "run/shown.hpp"
 
 namespace breccia::app {
 namespace {
@@ -44,6 +45,7 @@ Case completed(Case read) {
   std::visit(
       [&](const auto& config) {
         check_case(config);
+        check_shown(config);
         read.text = completed_case(config);
         read.model_digest = model_digest(config);
       },

@@ -1,9 +1,9 @@
 #include "core/incidence.hpp"
 
 #include <limits>
-#include <stdexcept>
 
 #include "core/rows.hpp"
+#include "exec/error.hpp"
 #include "exec/for_each.hpp"
 #include "exec/sort_scan.hpp"
 
@@ -66,7 +66,9 @@ void build_incidence(const Exec& exec, const Buffer<Index>& a, const Buffer<Inde
   BR_ASSERT(a.size() == b.size());
   const Index elements = ids.size(), pairs = a.size();
   if (pairs > std::numeric_limits<Index>::max() / 2)
-    throw std::length_error("more ends of pairs than a 32-bit index can count");
+    throw DeviceError(
+        "the model needs more than the 1,073,741,823 pairs of elements whose ends fit a 32-bit "
+        "index; use fewer elements, or a smaller search.margin or links.range");
   Buffer<Index>& starts = incidence.starts;
   starts.resize(elements + 1);
   clear_bytes(starts.data(), starts.space(),

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <stdexcept>
 #include <vector>
+
+#include "exec/error.hpp"
 
 namespace breccia {
 
@@ -99,7 +100,9 @@ Index exclusive_scan(const Exec&, Buffer<Index>& counts) {
     counts.data()[i] = static_cast<Index>(total);
     total += count;
     if (total > std::numeric_limits<Index>::max())
-      throw std::length_error("more pairs than a 32-bit index can count");
+      throw DeviceError(
+          "the model needs more than the 2,147,483,647 pairs of elements that fit a 32-bit index; "
+          "use fewer elements, or a smaller search.margin or links.range");
   }
   return static_cast<Index>(total);
 }

@@ -23,7 +23,7 @@ void sort_keys(const Exec& exec, Buffer<std::uint64_t>& keys, Buffer<std::uint64
                int bits);
 
 /// Replaces counts by the sum of all counts before them; returns the total.
-/// @throws std::length_error if the total does not fit an Index
+/// @throws DeviceError if the total does not fit an Index
 Index exclusive_scan(const Exec& exec, Buffer<Index>& counts);
 
 }  // namespace breccia

@@ -26,7 +26,6 @@ class Check {
         add("wall." + w.name + ".normal has length 0; it must point somewhere");
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
-    for (const CheckConfig& c : config_.checks) check(c);
     if (problems_.empty()) return;
     std::string text = fmt::format("{} problem{} in the case; nothing was run.", problems_.size(),
                                    problems_.size() == 1 ? "" : "s");
@@ -173,19 +172,6 @@ class Check {
       return;
     add(fmt::format("probe.{}.on = {:?} is neither a body ({}) nor a support ({})", p.name, p.on,
                     names_of(config_.bodies), names_of(config_.supports)));
-  }
-
-  /// A check that can never be looked up would fail only after the whole run.
-  void check(const CheckConfig& c) {
-    if (!c.value.starts_with("probe.")) return;
-    const std::size_t dot = c.value.rfind('.');
-    const std::string name = dot > 5 ? c.value.substr(6, dot - 6) : "",
-                      which = c.value.substr(dot + 1);
-    if (find(config_.probes, name) == nullptr)
-      add(fmt::format("check.{}.value = {:?} is not of a probe; there are: {}", c.name, c.value,
-                      names_of(config_.probes)));
-    else if (which != "last" && which != "min" && which != "max")
-      add(fmt::format("check.{}.value = {:?} must end in .last, .min or .max", c.name, c.value));
   }
 
   const Config& config_;

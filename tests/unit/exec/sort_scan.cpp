@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "exec/error.hpp"
+
 namespace breccia {
 namespace {
 
@@ -64,6 +66,18 @@ TEST(SortKeys, OrdersNumbersOfAnyLength) {
             << bits << " bits, " << count << " numbers, " << threads << " threads";
       }
     }
+  }
+}
+
+TEST(ExclusiveScan, OfMoreThanAnIndexCanCountIsRefusedAsAModelTooLarge) {
+  Buffer<Index> counts(Space::host, 3);
+  for (Index& count : counts.host()) count = 1 << 30;
+  try {
+    exclusive_scan({}, counts);
+    FAIL();
+  } catch (const DeviceError& error) {
+    EXPECT_EQ(error.exit_code(), 5);
+    EXPECT_NE(std::string(error.what()).find("fewer elements"), std::string::npos);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "dem/config.hpp"
 #include "exec/error.hpp"
 #include "prepare/check_case.hpp"
+#include "run/shown.hpp"
 
 namespace breccia {
 namespace {
@@ -50,6 +51,7 @@ dem::Config read_text(const std::string& text, const std::vector<std::string>& o
   const CaseText file(text);
   dem::Config config = read_case<dem::Config>(file.path(), overrides);
   dem::check_case(config);
+  check_shown(config);
   return config;
 }
 
@@ -269,6 +271,16 @@ INSTANTIATE_TEST_SUITE_P(
               "check.c.value = \"probe.rok.last\" is not of a probe; there are: none"},
         Wrong{"", "[[probe]]\nname = \"p\"\n[[check]]\nname = \"c\"\nvalue = \"probe.p.mean\"\n",
               "check.c.value = \"probe.p.mean\" must end in .last, .min or .max"},
+        Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"energy.eror_relative\"\n",
+              "check.c.value = \"energy.eror_relative\" is no number of summary.json; did you mean "
+              "energy.error_relative?"},
+        Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"model.elements_by_group.slap\"\n",
+              "did you mean model.elements_by_group.slab?"},
+        Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"status\"\n",
+              "check.c.value = \"status\" is no number of summary.json"},
+        Wrong{"", "[output]\ncolor = \"damgae\"\n",
+              "output.color = \"damgae\" is no field of the frames; allowed are damage, force, "
+              "group, id, kind, spin, state, velocity, and \"\" for none"},
         Wrong{"", "[[[support]]]\nname = \"s\"\n", "line 11, column 3"},
         Wrong{"", "[[support]]\nname = \"s\"\non = \"slap\"\n",
               "support.s.on = \"slap\" is not a body; there are: slab"},

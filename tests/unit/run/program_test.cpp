@@ -1,9 +1,9 @@
 // The program itself, as scripts see it: exit codes, what it writes and what it leaves alone.
 
+#include "unit/run/program.hpp"
+
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -56,24 +56,6 @@ value = "model.elements"
 expected = 2
 )";
 
-/// Starts `breccia` by a shell with these arguments; both streams go to `output`.
-pid_t start(const std::string& arguments, const std::string& output = "/dev/null") {
-  const std::string command =
-      std::string("exec '") + BR_PROGRAM + "' " + arguments + " > " + output + " 2>&1";
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-    ::_exit(127);
-  }
-  return child;
-}
-
-int wait_for(pid_t child) {
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-}
-
 class Program : public testing::Test {
  protected:
   Program() {
@@ -84,7 +66,7 @@ class Program : public testing::Test {
 
   /// The exit code; what it said is in output().
   int run(const std::string& arguments) {
-    return wait_for(start(arguments, scratch / "output.txt"));
+    return wait_for(start_program(arguments, scratch / "output.txt"));
   }
   std::string output() const { return read_whole_file(scratch / "output.txt"); }
   std::string path(const std::string& name) const { return scratch / name; }
@@ -126,6 +108,10 @@ TEST_F(Program, RefusesBadInputAndWritesNothing) {
   EXPECT_EQ(run("run " + path("balls.toml") + " --set time.end=-1 -o " + path("out")), 2);
   EXPECT_EQ(run("run " + path("balls.toml") + " --no-such-option -o " + path("out")), 2);
   EXPECT_EQ(run("run " + path("balls.toml") + " --threads 0 -o " + path("out")), 2);
+  EXPECT_EQ(run("run " + path("balls.toml") + " --set output.color=damgae -o " + path("out")), 2);
+  EXPECT_NE(output().find("damage, force, group"), std::string::npos) << output();
+  EXPECT_EQ(run("check " + path("balls.toml") + " --set check.elements.value=model.elemnts"), 2);
+  EXPECT_NE(output().find("did you mean model.elements?"), std::string::npos) << output();
   EXPECT_EQ(run("check " + path("bad.toml") + " " + path("balls.toml")), 2);
   EXPECT_EQ(run("check " + path("balls.toml")), 0) << output();
   EXPECT_EQ(run(""), 2);
@@ -169,7 +155,7 @@ TEST_F(Program, SavesItsStateAtASignalAndResumesToTheSameBits) {
   int tried = 0;
   for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
     const std::string name = "broken" + std::to_string(++tried);
-    const pid_t child = start("run " + path("long.toml") + " -o " + path(name));
+    const pid_t child = start_program("run " + path("long.toml") + " -o " + path(name));
     wait_until_running(name);
     ::kill(child, signal);
     EXPECT_EQ(wait_for(child), 128 + signal);
@@ -218,7 +204,7 @@ TEST_F(Program, RefusesAFolderWhoseCheckpointsAreAllDamaged) {
 }
 
 TEST_F(Program, RefusesASecondRunInTheSameFolder) {
-  const pid_t child = start("run " + path("long.toml") + " -o " + path("out"));
+  const pid_t child = start_program("run " + path("long.toml") + " -o " + path("out"));
   wait_until_running("out");
   EXPECT_EQ(run("run " + path("long.toml") + " --force -o " + path("out")), 2);
   EXPECT_EQ(run("resume " + path("out")), 2);
