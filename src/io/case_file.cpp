@@ -201,6 +201,24 @@ struct CaseReader::State {
     }
     return true;
   }
+  bool in_range(const toml::node& node, const std::string& key, double value, double usual,
+                const Range& range, const char* meaning) {
+    if (std::isnan(value) || (std::isinf(value) && !std::isinf(usual))) {
+      add(&node, key + " is not a finite number", meaning);
+      return false;
+    }
+    if (range.holds(value)) return true;
+    add(&node, key + " = " + number_text(value) + " is outside " + range_text(range), meaning);
+    return false;
+  }
+  bool number(const toml::node& node, const std::string& key, double& to, const char* unit,
+              const Range& range, const char* meaning) {
+    double given = 0.0;
+    if (!quantity(node, key, unit, given) || !in_range(node, key, given, to, range, meaning))
+      return false;
+    to = given;
+    return true;
+  }
   /// As many numbers as there are parts. False if there is a problem, which is then noted.
   template <std::size_t count>
   bool numbers(const toml::node& node, const std::string& key, const std::array<double*, count>& to,
@@ -212,26 +230,24 @@ struct CaseReader::State {
       return false;
     }
     bool good = true;
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::string part = fmt::format("{}[{}]", key, k);
-      double given = 0.0;
-      if (quantity((*array)[k], part, unit, given) &&
-          in_range((*array)[k], part, given, *to[k], range, meaning))
-        *to[k] = given;
-      else
-        good = false;
-    }
+    for (std::size_t k = 0; k < count; ++k)
+      good =
+          number((*array)[k], fmt::format("{}[{}]", key, k), *to[k], unit, range, meaning) && good;
     return good;
   }
-  bool in_range(const toml::node& node, const std::string& key, double value, double usual,
-                const Range& range, const char* meaning) {
-    if (std::isnan(value) || (std::isinf(value) && !std::isinf(usual))) {
-      add(&node, key + " is not a finite number", meaning);
-      return false;
-    }
-    if (range.holds(value)) return true;
-    add(&node, key + " = " + number_text(value) + " is outside " + range_text(range), meaning);
-    return false;
+  /// A list, item by item; it stays as it was if there is a problem.
+  template <class Item, class Read>
+  void list(const char* name, std::vector<Item>& value, const char* example,
+            const Read& read_item) {
+    const toml::node* node = find(name);
+    if (node == nullptr) return;
+    const toml::array* array = node->as_array();
+    if (array == nullptr) return add(node, full(name) + " wants " + example);
+    std::vector<Item> given(array->size());
+    bool good = true;
+    for (std::size_t k = 0; k < given.size(); ++k)
+      good = read_item((*array)[k], fmt::format("{}[{}]", full(name), k), given[k]) && good;
+    if (good) value = given;
   }
 };
 
@@ -253,10 +269,8 @@ CaseReader::~CaseReader() = default;
 
 void CaseReader::read(const char* name, double& value, const char* unit, const Range& range,
                       const char* meaning) {
-  const toml::node* node = state_->find(name);
-  double given = 0.0;
-  if (node == nullptr || !state_->quantity(*node, state_->full(name), unit, given)) return;
-  if (state_->in_range(*node, state_->full(name), given, value, range, meaning)) value = given;
+  if (const toml::node* node = state_->find(name))
+    state_->number(*node, state_->full(name), value, unit, range, meaning);
 }
 
 void CaseReader::read(const char* name, std::int64_t& value, const char*, const Range& range,
@@ -285,54 +299,31 @@ void CaseReader::read(const char* name, int& value, const char* unit, const Rang
 
 void CaseReader::read(const char* name, Vec3& value, const char* unit, const Range& range,
                       const char* meaning) {
-  const toml::node* node = state_->find(name);
-  if (node == nullptr) return;
-  state_->numbers<3>(*node, state_->full(name), {&value.x, &value.y, &value.z}, unit, range,
-                     meaning);
+  if (const toml::node* node = state_->find(name))
+    state_->numbers<3>(*node, state_->full(name), {&value.x, &value.y, &value.z}, unit, range,
+                       meaning);
 }
 
 void CaseReader::read(const char* name, Vec2& value, const char* unit, const Range& range,
                       const char* meaning) {
-  const toml::node* node = state_->find(name);
-  if (node == nullptr) return;
-  state_->numbers<2>(*node, state_->full(name), {&value.x, &value.y}, unit, range, meaning);
-}
-
-void CaseReader::read(const char* name, std::vector<double>& value, const char* unit,
-                      const Range& range, const char* meaning) {
-  const toml::node* node = state_->find(name);
-  if (node == nullptr) return;
-  const toml::array* array = node->as_array();
-  if (array == nullptr) {
-    state_->add(node, state_->full(name) + " wants numbers, as in [0.0, 0.5, 1.0]");
-    return;
-  }
-  std::vector<double> given(array->size());
-  bool good = true;
-  for (std::size_t k = 0; k < given.size(); ++k) {
-    const std::string part = fmt::format("{}[{}]", state_->full(name), k);
-    good = state_->quantity((*array)[k], part, unit, given[k]) &&
-           state_->in_range((*array)[k], part, given[k], 0.0, range, meaning) && good;
-  }
-  if (good) value = given;
+  if (const toml::node* node = state_->find(name))
+    state_->numbers<2>(*node, state_->full(name), {&value.x, &value.y}, unit, range, meaning);
 }
 
 void CaseReader::read(const char* name, std::vector<Vec2>& value, const char* unit,
                       const Range& range, const char* meaning) {
-  const toml::node* node = state_->find(name);
-  if (node == nullptr) return;
-  const toml::array* array = node->as_array();
-  if (array == nullptr) {
-    state_->add(node, state_->full(name) + " wants points, as in [[0.0, 0.0], [1.0, 0.5]]");
-    return;
-  }
-  std::vector<Vec2> given(array->size());
-  bool good = true;
-  for (std::size_t k = 0; k < given.size(); ++k)
-    good = state_->numbers<2>((*array)[k], fmt::format("{}[{}]", state_->full(name), k),
-                              {&given[k].x, &given[k].y}, unit, range, meaning) &&
-           good;
-  if (good) value = given;
+  state_->list(name, value, "points, as in [[0.0, 0.0], [1.0, 0.5]]",
+               [&](const toml::node& node, const std::string& key, Vec2& to) {
+                 return state_->numbers<2>(node, key, {&to.x, &to.y}, unit, range, meaning);
+               });
+}
+
+void CaseReader::read(const char* name, std::vector<double>& value, const char* unit,
+                      const Range& range, const char* meaning) {
+  state_->list(name, value, "a list of numbers, as in [0.0, 1.5]",
+               [&](const toml::node& node, const std::string& key, double& to) {
+                 return state_->number(node, key, to, unit, range, meaning);
+               });
 }
 
 void CaseReader::read(const char* name, bool& value, const char*) {

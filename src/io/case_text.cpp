@@ -32,16 +32,6 @@ std::string value_text(const Vec3& v) {
 std::string value_text(const Vec2& v) {
   return "[" + value_text(v.x) + ", " + value_text(v.y) + "]";
 }
-std::string value_text(const std::vector<double>& value) {
-  std::string text = "[";
-  for (const double item : value) text += (text.size() > 1 ? ", " : "") + value_text(item);
-  return text + "]";
-}
-std::string value_text(const std::vector<Vec2>& value) {
-  std::string text = "[";
-  for (const Vec2& item : value) text += (text.size() > 1 ? ", " : "") + value_text(item);
-  return text + "]";
-}
 std::string value_text(bool value) {
   return value ? "true" : "false";
 }
@@ -57,10 +47,24 @@ std::string value_text(const std::string& value) {
   }
   return text + "\"";
 }
-std::string value_text(const std::vector<std::string>& value) {
+
+namespace {
+template <class Item>
+std::string list_text(const std::vector<Item>& items) {
   std::string text = "[";
-  for (const std::string& item : value) text += (text.size() > 1 ? ", " : "") + value_text(item);
+  for (const Item& item : items) text += (text.size() > 1 ? ", " : "") + value_text(item);
   return text + "]";
+}
+}  // namespace
+
+std::string value_text(const std::vector<std::string>& value) {
+  return list_text(value);
+}
+std::string value_text(const std::vector<Vec2>& value) {
+  return list_text(value);
+}
+std::string value_text(const std::vector<double>& value) {
+  return list_text(value);
 }
 
 std::string key_text(const std::string& name) {
