@@ -71,4 +71,9 @@ Image render(const Frame& frame, const RenderOptions& options);
 /// @throws IoError with path and reason
 void write_png(const std::string& path, const Image& image);
 
+/// Any PNG, as eight bits a channel; what is transparent is white.
+/// @throws IoError    if the file cannot be read
+/// @throws InputError if it is no PNG, damaged, or has more than 2^28 pixels
+Image read_png(const std::string& path);
+
 }  // namespace breccia

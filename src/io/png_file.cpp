@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include <cstring>
 #include <string>
 
 #include "exec/error.hpp"
@@ -52,6 +53,28 @@ void write_png(const std::string& path, const Image& image) {
     throw IoError(path + ": cannot write: the image cannot be encoded as PNG");
   }
   replace_file(path, content);
+}
+
+Image read_png(const std::string& path) {
+  const std::string content = read_whole_file(path);
+  png_image png;
+  std::memset(&png, 0, sizeof png);
+  png.version = PNG_IMAGE_VERSION;
+  const auto fail = [&](const std::string& text) {
+    png_image_free(&png);
+    throw InputError(path + ": " + text);
+  };
+  if (png_image_begin_read_from_memory(&png, content.data(), content.size()) == 0)
+    fail(std::string("cannot be read as PNG: ") + png.message);
+  if (std::uint64_t{png.width} * png.height > (std::uint64_t{1} << 28))
+    fail("the picture has more than 2^28 pixels");
+  png.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
+  image.rgb.resize(PNG_IMAGE_SIZE(png));
+  const png_color white{255, 255, 255};
+  if (png_image_finish_read(&png, &white, image.rgb.data(), 0, nullptr) == 0)
+    fail(std::string("cannot be read as PNG: ") + png.message);
+  return image;
 }
 
 }  // namespace breccia

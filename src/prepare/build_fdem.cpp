@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "exec/error.hpp"
 #include "prepare/body_mesh.hpp"
 #include "prepare/check_bodies.hpp"
+#include "prepare/crack_path.hpp"
+#include "prepare/heterogeneity.hpp"
 #include "prepare/mesh_check.hpp"
 #include "prepare/mesh_order.hpp"
+#include "prepare/mesh_overlap.hpp"
 
 namespace breccia {
 namespace {
@@ -150,6 +155,150 @@ class Assembly {
   std::vector<std::string> problems_;
 };
 
+/// Streams of random numbers: packings of the DEM use those below the first, one for each body.
+constexpr std::uint32_t grain_stream = 0x20000, strength_stream = 0x30000;
+
+/// One body of a model that is whole and in order.
+class BodyInModel {
+ public:
+  BodyInModel(Model& model, const std::vector<BodyConfig>& bodies, std::size_t number)
+      : model_(model), body_(bodies[number]), number_(number) {
+    for (std::size_t t = 0; t < model.triangle.size(); ++t) {
+      if (static_cast<std::size_t>(model.group[t]) != number) continue;
+      triangles_.push_back(t);
+      places_.push_back(prepare::centroid(model.point, model.triangle[t]));
+    }
+  }
+
+  void give_minerals(const FdemNames& names, std::int64_t seed, const std::string& folder) {
+    const fdem::GrainsConfig& grains = body_.grains;
+    if (grains.kind.empty()) return;
+    std::vector<int> minerals;
+    if (grains.kind == "picture") {
+      minerals = from_picture((std::filesystem::path(folder) / grains.file).string());
+    } else {
+      const Random random = random_of(seed, grain_stream);
+      std::vector<std::uint64_t> keys(triangles_.size());
+      for (std::size_t k = 0; k < keys.size(); ++k) keys[k] = k;
+      if (grains.kind == "voronoi") keys = prepare::voronoi_grains(places_, grains.size, random);
+      minerals = by_share(keys, random);
+    }
+    for (std::size_t k = 0; k < triangles_.size(); ++k)
+      model_.material[triangles_[k]] = index_of(
+          names.materials, grains.minerals[static_cast<std::size_t>(minerals[k])].material);
+  }
+
+  void give_strength(std::int64_t seed) {
+    if (body_.weibull.modulus <= 0.0) return;
+    const auto factors = prepare::weibull_factors(
+        places_, body_.weibull.modulus, body_.weibull.length, random_of(seed, strength_stream));
+    for (std::size_t k = 0; k < triangles_.size(); ++k) model_.strength[triangles_[k]] = factors[k];
+  }
+
+  /// The open cracks of the body.
+  std::vector<prepare::Edge> open_edges(std::vector<std::string>& problems) const {
+    std::vector<prepare::Edge> edges;
+    std::vector<prepare::Triangle> own;
+    for (std::size_t k = 0; k < body_.notches.size(); ++k) {
+      const fdem::NotchConfig& notch = body_.notches[k];
+      if (notch.width > 0.0) continue;
+      if (own.empty())
+        for (const std::size_t t : triangles_) own.push_back(model_.triangle[t]);
+      const auto found = prepare::edges_along({notch.from, notch.to}, model_.point, own);
+      if (found.empty())
+        problems.push_back(fmt::format(
+            "body.{}: notch[{}] meets no edge between two triangles of the body", body_.name, k));
+      edges.insert(edges.end(), found.begin(), found.end());
+    }
+    return edges;
+  }
+
+ private:
+  Random random_of(std::int64_t seed, std::uint32_t stream) const {
+    return {static_cast<std::uint64_t>(seed), stream + static_cast<std::uint32_t>(number_)};
+  }
+
+  /// Triangles of one key get one mineral.
+  std::vector<int> by_share(const std::vector<std::uint64_t>& keys, const Random& random) const {
+    std::map<std::uint64_t, double> area_of;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      area_of[keys[k]] += prepare::signed_area(model_.point, model_.triangle[triangles_[k]]);
+    std::vector<double> areas, shares;
+    std::vector<std::uint64_t> pieces;
+    for (const auto& [key, area] : area_of) {
+      pieces.push_back(key);
+      areas.push_back(area);
+    }
+    for (const fdem::MineralConfig& mineral : body_.grains.minerals)
+      shares.push_back(mineral.fraction);
+    const std::vector<int> given = prepare::minerals_by_share(areas, pieces, shares, random);
+    std::vector<int> minerals;
+    for (const std::uint64_t key : keys)
+      minerals.push_back(given[static_cast<std::size_t>(
+          std::lower_bound(pieces.begin(), pieces.end(), key) - pieces.begin())]);
+    return minerals;
+  }
+
+  std::vector<int> from_picture(const std::string& path) const {
+    std::vector<std::array<int, 3>> colors;
+    for (const fdem::MineralConfig& mineral : body_.grains.minerals) {
+      const int rgb = std::stoi(mineral.color, nullptr, 16);
+      colors.push_back({rgb >> 16, (rgb >> 8) & 255, rgb & 255});
+    }
+    Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
+    for (const std::size_t t : triangles_)
+      for (const Index v : model_.triangle[t]) {
+        const Vec2 p = prepare::at(model_.point, v);
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      }
+    return prepare::minerals_by_picture(places_, read_png(path), low, high, colors);
+  }
+
+  Model& model_;
+  const BodyConfig& body_;
+  std::size_t number_;
+  std::vector<std::size_t> triangles_;
+  std::vector<Vec2> places_;  ///< of the triangles' centroids  [m]
+};
+
+/// Cracks at the start: notches first, then discontinuities; on an edge of several, the last
+/// counts.
+void crack(Model& model, const std::vector<prepare::Edge>& notches,
+           const std::vector<DiscontinuityConfig>& discontinuities, const FdemNames& names,
+           std::vector<std::string>& problems) {
+  std::map<prepare::Edge, std::int16_t> material;
+  for (const prepare::Edge& edge : notches) material[edge] = -1;
+  for (const DiscontinuityConfig& d : discontinuities) {
+    const auto edges = prepare::edges_along(d.points, model.point, model.triangle);
+    if (edges.empty())
+      problems.push_back("discontinuity." + d.name + ": meets no edge between two triangles");
+    for (const prepare::Edge& edge : edges)
+      material[edge] = d.kind == "open" ? std::int16_t{-1} : index_of(names.joints, d.material);
+  }
+  for (const auto& [edge, given] : material) model.discontinuities.push_back({edge, given});
+}
+
+/// One sentence for each pair of bodies that lie in each other.
+void check_overlaps(const Model& model, std::vector<std::string>& problems) {
+  std::set<std::pair<int, int>> seen;
+  for (const prepare::Overlap& pair : prepare::overlaps_of(model.point, model.triangle)) {
+    const int a = model.group[static_cast<std::size_t>(pair.a)],
+              b = model.group[static_cast<std::size_t>(pair.b)];
+    if (!seen.insert({std::min(a, b), std::max(a, b)}).second) continue;
+    const Vec2 place =
+        prepare::centroid(model.point, model.triangle[static_cast<std::size_t>(pair.a)]);
+    const std::string& name = model.groups[static_cast<std::size_t>(std::min(a, b))];
+    problems.push_back(
+        a == b ? fmt::format("body.{}: two of its triangles overlap near ({:.6g}, {:.6g}) m", name,
+                             place.x, place.y)
+               : fmt::format("body.{} and body.{} overlap at the start near ({:.6g}, {:.6g}) m; "
+                             "move one of them",
+                             name, model.groups[static_cast<std::size_t>(std::max(a, b))], place.x,
+                             place.y));
+  }
+}
+
 }  // namespace
 
 fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
@@ -161,6 +310,19 @@ fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
   Assembly assembly(bodies, discontinuities, names, seed, case_folder);
   Model& model = assembly.model();
   prepare::order_along_curve(model);
+
+  std::vector<std::string> problems;
+  std::vector<prepare::Edge> notches;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    BodyInModel body(model, bodies, b);
+    body.give_minerals(names, seed, case_folder);
+    body.give_strength(seed);
+    const auto edges = body.open_edges(problems);
+    notches.insert(notches.end(), edges.begin(), edges.end());
+  }
+  crack(model, notches, discontinuities, names, problems);
+  check_overlaps(model, problems);
+  if (!problems.empty()) refuse(problems);
   return std::move(model);
 }
 
