@@ -138,13 +138,13 @@ std::vector<Vec2> read_outline(const std::string& path) {
       throw InputError(fmt::format("{}: corner {} at ({:.6g}, {:.6g}) m is there twice in a row",
                                    path, k + 1, s[0].x, s[0].y));
   }
-  if (!(std::abs(area) > 1e-9 * longest * longest))
-    throw InputError(fmt::format("{}: the outline encloses no area", path));
   for (std::size_t j = 0; j < corners.size(); ++j)
     for (std::size_t k = j + 1; k < corners.size(); ++k)
       if (cross_each_other(line(j), line(k)))
         throw InputError(fmt::format("{}: the outline crosses itself between corners {} and {}",
                                      path, j + 1, k + 1));
+  if (!(std::abs(area) > 1e-9 * longest * longest))
+    throw InputError(fmt::format("{}: the outline encloses no area", path));
   return corners;
 }
 

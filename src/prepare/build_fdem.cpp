@@ -315,7 +315,11 @@ fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
   std::vector<prepare::Edge> notches;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     BodyInModel body(model, bodies, b);
-    body.give_minerals(names, seed, case_folder);
+    try {
+      body.give_minerals(names, seed, case_folder);
+    } catch (const InputError& error) {
+      problems.push_back("body." + bodies[b].name + ".grains: " + error.what());
+    }
     body.give_strength(seed);
     const auto edges = body.open_edges(problems);
     notches.insert(notches.end(), edges.begin(), edges.end());

@@ -261,10 +261,11 @@ class GmshReader {
       in_.integer();
       const bool parametric = in_.integer() != 0;
       const std::size_t count = in_.count("nodes", 8), first = raw_.nodes.size();
-      for (std::size_t n = 0; n < count; ++n) raw_.nodes.push_back({in_.tag(), {}, in_.line()});
+      for (std::size_t n = 0; n < count; ++n) raw_.nodes.push_back({in_.tag(), {}, 0});
       for (std::size_t n = first; n < raw_.nodes.size(); ++n) {
         const double x = in_.real(), y = in_.real(), z = in_.real();
         raw_.nodes[n].position = {x, y, z};
+        raw_.nodes[n].line = in_.line();
         for (int k = 0; parametric && k < dimension; ++k) in_.real();
         if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
           in_.fail(fmt::format("node {} has a coordinate that is no number", raw_.nodes[n].number));
