@@ -2,16 +2,6 @@
 
 namespace breccia::dem {
 
-Lanes widest_lanes() {
-#if defined(BR_WIDE_LANES)
-  if (__builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
-      __builtin_cpu_supports("avx512vl") != 0)
-    return Lanes::eight;
-  if (__builtin_cpu_supports("avx2") != 0) return Lanes::four;
-#endif
-  return Lanes::one;
-}
-
 void run_links([[maybe_unused]] Lanes lanes, const ConcreteLinkForces& kernel, Index begin,
                Index end) {
 #if defined(BR_WIDE_LANES)

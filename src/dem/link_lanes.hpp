@@ -3,14 +3,9 @@
 // all.
 
 #include "dem/link_kernels.hpp"
+#include "exec/lanes.hpp"
 
 namespace breccia::dem {
-
-/// How many links the processor takes side by side: 1, 4 (AVX2) or 8 (AVX-512).
-enum class Lanes { one = 1, four = 4, eight = 8 };
-
-/// The widest that was built and that this processor has.
-Lanes widest_lanes();
 
 /// kernel for the links [begin, end) on the calling thread.
 void run_links(Lanes lanes, const ConcreteLinkForces& kernel, Index begin, Index end);

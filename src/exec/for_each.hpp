@@ -71,6 +71,23 @@ void for_each(const Exec& exec, Index count, const Kernel& kernel) {
   }
 }
 
+/// run(begin, end) for runs of `grain` items that make up [0, count), on the host: for kernels that
+/// take several items at once.
+template <class Run>
+void for_each_run(const Exec& exec, Index count, Index grain, const Run& run) {
+  const Index runs = (count + grain - 1) / grain;
+  const auto one = [&](Index r) {
+    const KernelScope scope;
+    run(r * grain, std::min(count, (r + 1) * grain));
+  };
+  if (exec.threads <= 1 || runs < 2) {
+    for (Index r = 0; r < runs; ++r) one(r);
+    return;
+  }
+#pragma omp parallel for schedule(static) num_threads(exec.threads)
+  for (Index r = 0; r < runs; ++r) one(r);
+}
+
 /// combine(...combine(combine(neutral, kernel(0)), kernel(1))...), in fixed chunks of `fold_chunk`
 /// whose partial results are combined in ascending order: the same bits for any thread count.
 template <class Value, class Kernel, class Combine>

@@ -51,7 +51,7 @@ struct CoupleForces {
   double dt;          ///< the step that led here  [s]
   bool conservative;  ///< adds the shape forces that make it the gradient of an energy
   View<const TriangleNodes> nodes;
-  View<const std::int16_t> material;
+  View<const Index> material;
   View<const ContactPair> laws;  ///< of materials a and b at a * materials + b
   Index materials;
   View<const Index> a, b;

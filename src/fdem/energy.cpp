@@ -27,7 +27,7 @@ Shares sum_shares(Shares a, const Shares& b) {
 
 struct TriangleShares {
   Kick kick;
-  View<const std::int16_t> material;
+  View<const Index> material;
   View<const ElasticTriangle> laws;
   View<const Mat2> shape_inverse;
   View<const double> viscous_work, damping_work, load_work;
@@ -68,10 +68,10 @@ struct GravityPotential {
 };
 
 struct JointShares {
-  View<const TriangleNodes> nodes;
+  View<const NodeState> nodes;
   View<const JointBond> bonds;
-  View<const Index> edge_a, edge_b;
-  View<const std::int16_t> law;
+  View<const JointEnds> ends;
+  View<const Index> law;
   View<const double> length, strength;
   View<const Vec2> preset;
   View<const JointStage> stage;
@@ -80,24 +80,22 @@ struct JointShares {
 
   Shares operator()(Index i) const {
     Shares s;
-    s.open.add(work[i].open);
-    s.slide.add(work[i].slide);
-    if (stage[i] == JointStage::broken) return s;
-    const JointOpening o = opening_of(JointNodes(nodes, edge_a[i], edge_b[i]), length[i]);
-    if (o.collapsed) return s;
-    const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
-    double open = 0.0, slide = 0.0;
-    for (int q = 0; q < 3; ++q) {
-      const StoredEnergy e = stored(bonds[law[i]], strength[i], length[i], o.open[q] + offset.x,
-                                    o.slide[q] + offset.y, points[i].point[q]);
-      const double weight = (q == 1 ? 4.0 : 1.0) * length[i] / 6.0;
-      open += weight * e.open;
-      slide += weight * e.slide;
+    if (stage[i] != JointStage::whole) {
+      s.open.add(work[i].open);
+      s.slide.add(work[i].slide);
     }
-    s.elastic.add(open);
-    s.elastic.add(slide);
-    s.open.add(-open);
-    s.slide.add(-slide);
+    if (stage[i] == JointStage::broken) return s;
+    const JointEnds& e = ends[i];
+    const JointOpening<double> o = opening_of(nodes[e.a0].position, nodes[e.a1].position,
+                                              nodes[e.b0].position, nodes[e.b1].position);
+    const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
+    const StoredEnergy held =
+        stored_in(bonds[law[i]], strength[i], length[i], offset, o, points[i]);
+    s.elastic.add(held.open);
+    s.elastic.add(held.slide);
+    if (stage[i] == JointStage::whole) return s;
+    s.open.add(-held.open);
+    s.slide.add(-held.slide);
     return s;
   }
 };
@@ -124,7 +122,7 @@ Shares all_shares(const World& w) {
   const Joints& j = w.joints;
   sum = sum_shares(
       sum, fold(w.exec, j.size(), Shares{},
-                JointShares{t.nodes.view(), w.bonds.view(), j.edge_a.view(), j.edge_b.view(),
+                JointShares{by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
                             j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
                             j.stage.view(), j.points.view(), j.work.view()},
                 sum_shares));
@@ -144,18 +142,15 @@ ExactSum potential(const World& w) {
 void begin_ledger(World& w) {
   w.ledger = {};
   w.ledger.start_potential = potential(w);
-  // Joints have done no work yet: what an in-situ stress stores in them counts from here.
   const Shares s = all_shares(w);
   w.ledger.start = s.kinetic.value() + s.elastic.value();
-  w.ledger.preset_open = -s.open.value();
-  w.ledger.preset_slide = -s.slide.value();
 }
 
 EnergySplit energies(World& w) {
   const Shares s = all_shares(w);
   EnergySplit split;
-  split.fracture_open = s.open.value() + w.ledger.preset_open;
-  split.fracture_slide = s.slide.value() + w.ledger.preset_slide;
+  split.fracture_open = s.open.value();
+  split.fracture_slide = s.slide.value();
   EnergyBalance& b = split.balance;
   b.kinetic = s.kinetic.value();
   b.elastic = s.elastic.value();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exec/for_each.hpp"
+#include "fdem/kernel_lanes.hpp"
 #include "fdem/world.hpp"
 
 namespace breccia::fdem {
@@ -13,6 +14,16 @@ namespace {
 /// Six bits: noise in the stiffest triangle's last bits must not change every step after it.
 double rounded_down(double dt) {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(dt) & ~((std::uint64_t{1} << 47) - 1));
+}
+
+/// A kernel over all its items: on the host in packs as wide as the processor's, shared by the
+/// threads in runs that packs fill.
+template <class Kernel>
+void run(const World& w, Index count, const Kernel& kernel) {
+  if (w.exec.space == Space::cuda || w.lanes == Lanes::one) return for_each(w.exec, count, kernel);
+  constexpr Index grain = 512;
+  for_each_run(w.exec, count, grain,
+               [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
 }
 
 double least_of(double a, double b) {
@@ -43,7 +54,8 @@ StableStep stable_step(const World& w) {
   const Triangles& t = w.triangles;
   return {t.nodes.view(), t.material.view(),      w.laws.view(),          t.viscosity.view(),
           t.mass.view(),  w.contact_pairs.view(), w.parameters.materials, w.edges.view(),
-          w.bonds.view(), w.joints.law.view(),    w.joints.stage.view()};
+          w.bonds.view(), w.joints.law.view(),    w.joints.stage.view(),  t.hold.view(),
+          w.holds.view()};
 }
 
 void move_triangles(World& w) {
@@ -56,9 +68,9 @@ void move_triangles(World& w) {
     copy_to(w.motions, now);
   }
   Triangles& t = w.triangles;
-  for_each(w.exec, t.size(),
-           MoveTriangles{kick(w), std::as_const(t.external).view(), t.nodes.view(),
-                         t.damping_work.view(), t.load_work.view()});
+  run(w, t.size(),
+      MoveTriangles{kick(w), std::as_const(t.external).view(), t.nodes.view(),
+                    t.damping_work.view(), t.load_work.view()});
   w.time += w.next_dt;
   w.last_dt = w.next_dt;
 }
@@ -66,12 +78,12 @@ void move_triangles(World& w) {
 void joint_forces(World& w) {
   const StageTime timed(w.exec, "joint_forces");
   Joints& j = w.joints;
-  for_each(w.exec, j.size(),
-           JointForces{w.time, w.last_dt, std::as_const(w.triangles.nodes).view(), w.bonds.view(),
-                       j.edge_a.view(), j.edge_b.view(), j.law.view(), j.length.view(),
-                       j.strength.view(), j.preset.view(), j.stage.view(), j.points.view(),
-                       j.force.view(), j.work.view(), j.broke_at.view(), j.pressing.view(),
-                       w.changed.view()});
+  run(w, j.size(),
+      JointForces{w.time, w.last_dt, by_number(std::as_const(w.triangles.nodes).view()),
+                  w.bonds.view(), w.joint_ends.view(), j.law.view(), j.length.view(),
+                  j.strength.view(), j.preset.view(), j.stage.view(), j.points.view(),
+                  j.force.view(), j.work.view(), j.broke_at.view(), j.pressing.view(),
+                  w.changed.view()});
 }
 
 void couple_forces(World& w) {
@@ -88,12 +100,12 @@ void couple_forces(World& w) {
 void triangle_forces(World& w) {
   const StageTime timed(w.exec, "triangle_forces");
   Triangles& t = w.triangles;
-  for_each(w.exec, t.size(),
-           TriangleForces{w.last_dt, std::as_const(t.nodes).view(), t.material.view(),
-                          w.laws.view(), t.shape_inverse.view(), t.viscosity.view(), w.edges.view(),
-                          std::as_const(w.joints.force).view(), w.couple_incidence.view(),
-                          std::as_const(w.couples.history.force).view(), t.force.view(),
-                          t.viscous_work.view()});
+  run(w, t.size(),
+      TriangleForces{w.last_dt, std::as_const(t.nodes).view(), t.material.view(), w.laws.view(),
+                     t.shape_inverse.view(), t.viscosity.view(), w.edges.view(),
+                     std::as_const(w.joints.force).view(), w.couple_incidence.view(),
+                     std::as_const(w.couples.history.force).view(), t.force.view(),
+                     t.viscous_work.view()});
 }
 
 void load_forces(World& w) {

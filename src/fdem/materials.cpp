@@ -9,15 +9,14 @@ namespace breccia::fdem {
 namespace {
 
 JointBond bond_of(const StrengthConfig& s, double young, const JointsConfig& common) {
-  JointBond b;
+  JointBond b{};
   b.stiffness = s.stiffness * young;
   b.tension = s.tension;
   b.cohesion = s.cohesion;
   b.friction = std::tan(s.friction_angle);
-  b.energy_open = s.energy_open;
-  b.energy_slide = s.energy_slide;
-  b.softening_factor = common.softening_factor;
-  b.unloading = common.unloading == "reversible" ? Unloading::reversible : Unloading::secant;
+  b.softening_open = common.softening_factor * s.energy_open;
+  b.softening_slide = common.softening_factor * s.energy_slide;
+  b.reversible = common.unloading == "reversible" ? 1.0 : 0.0;
   return b;
 }
 
@@ -27,8 +26,8 @@ JointBond weaker(const JointBond& a, const JointBond& b) {
   w.tension = std::min(a.tension, b.tension);
   w.cohesion = std::min(a.cohesion, b.cohesion);
   w.friction = std::min(a.friction, b.friction);
-  w.energy_open = std::min(a.energy_open, b.energy_open);
-  w.energy_slide = std::min(a.energy_slide, b.energy_slide);
+  w.softening_open = std::min(a.softening_open, b.softening_open);
+  w.softening_slide = std::min(a.softening_slide, b.softening_slide);
   return w;
 }
 
@@ -115,11 +114,10 @@ std::vector<ElasticTriangle> elastic_table(const Config& config) {
       throw InputError(
           "material." + m.name +
           ".poisson: must be below 0.5 in plane strain; plane = \"stress\" takes more");
-    ElasticTriangle law;
+    ElasticTriangle law{};
     law.lambda = plane_lambda(m.young, m.poisson, stress);
     law.shear = shear_modulus(m.young, m.poisson);
     law.preset = {config.in_situ.xx, config.in_situ.yy, config.in_situ.xy};
-    law.has_preset = config.in_situ.any();
     laws.push_back(law);
   }
   return laws;

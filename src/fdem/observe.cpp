@@ -181,16 +181,17 @@ double probe(const World& w, const ProbeConfig& p) {
 
 std::vector<Crack> cracks(const World& w) {
   const Joints j = host_copy(w.joints);
-  Buffer<TriangleNodes> nodes;
+  std::vector<TriangleNodes> nodes;
   copy_to(nodes, w.triangles.nodes);
+  const auto corner = [&](Index n) { return nodes[at(n / 3)].at[n % 3].position; };
   std::vector<Crack> all;
   for (Index i = 0; i < j.size(); ++i) {
     if (j.stage.data()[i] != JointStage::broken) continue;
-    const JointNodes n(std::as_const(nodes).view(), j.edge_a.data()[i], j.edge_b.data()[i]);
+    const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     const JointWork& work = j.work.data()[i];
     const double open = std::max(work.open, 0.0), slide = std::max(work.slide, 0.0);
-    all.push_back({i, j.broke_at.data()[i], 0.5 * (n.a0.position + n.b0.position),
-                   0.5 * (n.a1.position + n.b1.position),
+    all.push_back({i, j.broke_at.data()[i], 0.5 * (corner(e.a0) + corner(e.b0)),
+                   0.5 * (corner(e.a1) + corner(e.b1)),
                    open + slide > 0.0 ? slide / (open + slide) : 0.0, work.open + work.slide});
   }
   std::stable_sort(all.begin(), all.end(),

@@ -51,7 +51,7 @@ void set_up_triangles(World& w, const Config& config, const Model& model) {
   Triangles& triangles = w.triangles;
   copy_to(triangles.id, id);
   copy_to(triangles.group, model.group);
-  copy_to(triangles.material, model.material);
+  copy_to(triangles.material, std::vector<Index>(model.material.begin(), model.material.end()));
   copy_to(triangles.nodes, nodes);
   copy_to(triangles.shape_inverse, shape_inverse);
   copy_to(triangles.mass, mass);
@@ -106,7 +106,7 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
 
   std::vector<EdgeJoints> edges(model.triangle.size(), {{edge_free, edge_free, edge_free}});
   std::vector<Index> edge_a, edge_b;
-  std::vector<std::int16_t> law;
+  std::vector<Index> law;
   std::vector<double> length, strength;
   std::vector<Vec2> preset;
   w.open_vertex.assign(model.point.size(), 0);
@@ -160,6 +160,10 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
                        std::to_string(b) + " is too weak for this stress");
     preset.push_back(opening);
   }
+  std::vector<JointEnds> ends;
+  for (std::size_t i = 0; i < edge_a.size(); ++i)
+    ends.push_back(JointEnds::of(edge_a[i], edge_b[i]));
+  copy_to(w.joint_ends, ends);
   const auto count = static_cast<Index>(edge_a.size());
   Joints& j = w.joints;
   copy_to(w.bonds, table.bonds);
@@ -173,7 +177,7 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   copy_to(j.broke_at, std::vector<double>(edge_a.size(), -1.0));
   j.stage.resize(count);
   j.points.resize(count);
-  j.force.resize(count);
+  j.force.resize(count + 1);
   j.work.resize(count);
   j.pressing.resize(count);
   set_up_bundles(w, merged);
@@ -281,6 +285,7 @@ void set_up_bodies(World& w, const Model& model) {
 
 World::World(const Exec& how)
     : exec(how),
+      lanes(widest_lanes()),
       couples{Pairs(how.space), CoupleHistory(how.space)},
       couple_incidence(how.space),
       broad_phase(how.space) {
@@ -292,7 +297,7 @@ World::World(const Exec& how)
     ((arrays = std::remove_reference_t<decltype(arrays)>(how.space)), ...);
   };
   place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, bundles.starts, bundles.nodes,
-        edges, motions, load_laws, changed, born);
+        edges, joint_ends, motions, load_laws, changed, born);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {

@@ -2,7 +2,7 @@
 // What is done to each triangle by itself: its sum of forces, its motion, its stable step.
 
 #include "fdem/couples.hpp"
-#include "fdem/joints.hpp"
+#include "fdem/joint_kernels.hpp"
 
 namespace breccia::fdem {
 
@@ -14,61 +14,95 @@ struct EdgeJoints {
 inline constexpr Index edge_free = -1;    ///< on the border, or no law joins the two materials
 inline constexpr Index edge_bonded = -2;  ///< the neighbours move as one body: no joint, no contact
 
+/// Corners of a triangle by component.
+template <class R>
+struct CornersOf {
+  Vec2Of<R> x[3], v[3];
+
+  /// Of triangles first, first + 1, ...
+  BR_HD CornersOf(const View<const TriangleNodes>& nodes, Index first) {
+    R c[12];
+    gather_records(nodes, consecutive<R>(first), c);
+    for (int k = 0; k < 3; ++k) {
+      x[k] = {c[4 * k], c[4 * k + 1]};
+      v[k] = {c[4 * k + 2], c[4 * k + 3]};
+    }
+  }
+};
+
 /// Internal force of the triangle, plus its joints by slot, plus its couples by the partners'
 /// global ids: no order of memory, threads or ranks changes a bit.
 struct TriangleForces {
   static constexpr const char* name = "fdem.triangles";
   double span;  ///< time that the forces of this moment act  [s]
   View<const TriangleNodes> nodes;
-  View<const std::int16_t> material;
+  View<const Index> material;
   View<const ElasticTriangle> laws;
   View<const Mat2> shape_inverse;
   View<const double> viscosity;
   View<const EdgeJoints> edges;
-  View<const JointForce> joint_force;
+  View<const JointForce> joint_force;  ///< the last one is zero: that of an edge without a joint
   IncidenceView couples;
   View<const CoupleForce> couple_force;
   View<Corners> force;
   View<double> viscous_work;
 
-  BR_HD void operator()(Index t) const {
-    Vec2 x[3], v[3];
-    split(nodes[t], x, v);
-    const Deformation d = deformation(shape_inverse[t], x, v);
-    const double eta = viscosity[t];
-    Corners sum;
-    corner_forces(laws[material[t]].stress(d, eta), x, sum.at);
-    if (eta > 0.0) viscous_work[t] += span * viscous_power(d, eta, x);
-
-    const EdgeJoints joints = edges[t];
-    for (int k = 0; k < 3; ++k) {
-      const Index entry = joints.at[k];
-      if (entry < 0) continue;
-      const JointForce& f = joint_force[pair_of(entry)];
-      const int next = k == 2 ? 0 : k + 1;
-      if (side_of(entry) == 0) {
-        sum.at[k] += f.first;
-        sum.at[next] += f.second;
-      } else {
-        sum.at[k] -= f.second;
-        sum.at[next] -= f.first;
-      }
+  /// Triangle t, or t and its neighbours in a pack.
+  template <class R>
+  BR_HD void at(Index t) const {
+    const CornersOf<R> c(nodes, t);
+    R inverse_of[4], numbers[8];
+    gather_records(shape_inverse, consecutive<R>(t), inverse_of);
+    gather_records(laws, load_indices<R>(material, t), numbers);
+    const ElasticLaw<R> law{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
+    const Deformation<R> d = deformation(
+        Mat2Of<R>{inverse_of[0], inverse_of[1], inverse_of[2], inverse_of[3]}, c.x, c.v);
+    const R eta = load<R>(viscosity, t);
+    Vec2Of<R> sum[3];
+    corner_forces(law.stress(d, eta), c.x, sum);
+    if (any(eta > 0.0)) {
+      const Mat2Of<R>& l = d.velocity_gradient;
+      const Sym2Of<R> rate{l.xx, l.yy, 0.5 * (l.xy + l.yx)};
+      const R area = 0.5 * cross(c.x[1] - c.x[0], c.x[2] - c.x[0]);
+      store(viscous_work, t, load<R>(viscous_work, t) + span * (eta * area * contract(rate, rate)));
     }
-    for (Index c = couples.first(t); c < couples.last(t); ++c) {
+    for (int k = 0; k < 3; ++k) add_joint(t, k, sum[k], sum[k == 2 ? 0 : k + 1]);
+    const R total[6] = {sum[0].x, sum[0].y, sum[1].x, sum[1].y, sum[2].x, sum[2].y};
+    store_records(force, t, total);
+    for (Index k = 0; k < width_of<R>; ++k) add_couples(t + k);
+  }
+  BR_HD void operator()(Index t) const { at<double>(t); }
+
+ private:
+  template <class R>
+  BR_HD void add_joint(Index t, int k, Vec2Of<R>& from, Vec2Of<R>& to) const {
+    Index joint[width_of<R>];
+    double side[width_of<R>];
+    for (Index i = 0; i < width_of<R>; ++i) {
+      const Index entry = edges[t + i].at[k];
+      joint[i] = entry < 0 ? joint_force.size - 1 : pair_of(entry);
+      side[i] = entry < 0 ? 0.0 : static_cast<double>(side_of(entry));
+    }
+    R f[4], other;
+    gather_records(joint_force, indices<R>(joint), f);
+    __builtin_memcpy(&other, side, sizeof other);
+    const auto on_b = other > 0.0;  // b's edge runs the other way, and its forces are opposite
+    from.x += choose(on_b, -f[2], f[0]);
+    from.y += choose(on_b, -f[3], f[1]);
+    to.x += choose(on_b, -f[0], f[2]);
+    to.y += choose(on_b, -f[1], f[3]);
+  }
+  BR_HD void add_couples(Index t) const {
+    const Index first = couples.first(t), last = couples.last(t);
+    if (first == last) return;
+    Corners sum = force[t];
+    for (Index c = first; c < last; ++c) {
       const Entry entry = couples.entries[c];
       const CoupleForce& f = couple_force[pair_of(entry)];
       const Corners& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
       for (int k = 0; k < 3; ++k) sum.at[k] += mine.at[k];
     }
     force[t] = sum;
-  }
-
- private:
-  BR_HD static double viscous_power(const Deformation& d, double eta, const Vec2 (&x)[3]) {
-    const Mat2& l = d.velocity_gradient;
-    const Sym2 rate{l.xx, l.yy, 0.5 * (l.xy + l.yx)};
-    const double area = 0.5 * cross(x[1] - x[0], x[2] - x[0]);
-    return eta * area * contract(rate, rate);
   }
 };
 
@@ -130,12 +164,13 @@ struct Kick {
     Vec2 damped[3];    ///< force that damping took off
   };
 
+  BR_HD double span() const { return 0.5 * (last_dt + next_dt); }
   BR_HD static double opposed(double force, double velocity) {
     return velocity > 0.0 ? absolute(force) : velocity < 0.0 ? -absolute(force) : 0.0;
   }
   BR_HD Result operator()(Index t) const {
     Result r{};
-    const double m = mass[t], span = 0.5 * (last_dt + next_dt), scale = span / m;
+    const double m = mass[t], scale = span() / m;
     for (int k = 0; k < 3; ++k) {
       const Vec2 before = nodes[t].at[k].velocity;
       Vec2 f = force[t].at[k] + m * gravity;
@@ -166,7 +201,30 @@ struct MoveTriangles {
   View<TriangleNodes> nodes;
   View<double> damping_work, load_work;
 
+  /// Triangle t and its neighbours in a pack, if nothing but forces acts on them.
+  template <class R>
+  BR_HD bool free_at(Index t) const {
+    if (kick.damping > 0.0 || external.size > 0) return false;
+    for (Index k = 0; k < width_of<R>; ++k)
+      if (kick.hold[t + k] >= 0) return false;
+    R c[12], f[6];
+    gather_records(kick.nodes, consecutive<R>(t), c);
+    gather_records(kick.force, consecutive<R>(t), f);
+    const R m = load<R>(kick.mass, t), scale = kick.span() / m;
+    const R next = constant<R>(kick.next_dt);
+    const R gravity[2] = {kick.gravity.x * m, kick.gravity.y * m};
+    for (int k = 0; k < 3; ++k)
+      for (int axis = 0; axis < 2; ++axis) {
+        R& velocity = c[4 * k + 2 + axis];
+        velocity = velocity + scale * (f[2 * k + axis] + gravity[axis]);
+        c[4 * k + axis] = c[4 * k + axis] + next * velocity;
+      }
+    store_records(nodes, t, c);
+    return true;
+  }
+
   BR_HD void operator()(Index t) const {
+    if (free_at<double>(t)) return;
     const Kick::Result r = kick(t);
     TriangleNodes& moved = nodes[t];
     const bool held = kick.hold[t] >= 0;
@@ -187,7 +245,7 @@ struct MoveTriangles {
 
   /// Force that holds a corner to its prescribed motion; zero in free directions.  [N/m]
   BR_HD Vec2 reaction(Index t, int k, const Kick::Result& r) const {
-    const double span = 0.5 * (kick.last_dt + kick.next_dt);
+    const double span = kick.span();
     if (!(span > 0.0)) return {};
     const int bits = kick.holds[kick.hold[t]].fixed >> (2 * k);
     const Vec2 gained = (kick.mass[t] / span) * (r.velocity[k] - kick.nodes[t].at[k].velocity);
@@ -204,15 +262,17 @@ enum class StepRule : std::uint8_t { elements, joints, contact, viscosity };
 /// sum of a row's |stiffness| over its mass (docs/theory.md, time step).
 struct StableStep {
   View<const TriangleNodes> nodes;
-  View<const std::int16_t> material;
+  View<const Index> material;
   View<const ElasticTriangle> laws;
   View<const double> viscosity, mass;
   View<const ContactPair> contacts;
   Index materials;
   View<const EdgeJoints> edges;
   View<const JointBond> bonds;
-  View<const std::int16_t> bond_of;
+  View<const Index> bond_of;
   View<const JointStage> stage;
+  View<const Index> hold;
+  View<const Hold> holds;
 
   /// Shares of the largest row sum.
   struct Parts {
@@ -234,7 +294,10 @@ struct StableStep {
     double on_edge[3][2];  // joint and contact stiffness of each edge
     for (int k = 0; k < 3; ++k) edge_stiffness(t, k, x, area, on_edge[k]);
     Parts largest;
+    largest.step = 1e300;
+    const int fixed = hold[t] >= 0 ? holds[hold[t]].fixed : 0;
     for (int i = 0; i < 3; ++i) {
+      if ((fixed >> (2 * i) & 3) == 3) continue;  // goes where it is told, whatever its mass
       Parts p;
       for (int c = 0; c < 2; ++c) {
         p.element = larger(p.element, row(slope, i, c, area, law.lambda, law.shear));
@@ -246,7 +309,7 @@ struct StableStep {
       p.square = (p.element + p.joint + p.contact) / mass[t];
       const double omega = root(p.square), xi = 0.5 * p.viscous / (mass[t] * omega);
       p.step = 2.0 / omega * (root(1.0 + xi * xi) - xi);
-      if (i == 0 || p.step < largest.step) largest = p;
+      if (p.step < largest.step) largest = p;
     }
     return largest;
   }

@@ -25,19 +25,19 @@ struct Corners {
 
 /// Deformable triangles, three nodes each.
 struct Triangles {
-  Buffer<GlobalId> id;            ///< number of the triangle, kept for ever  [-]
-  Buffer<std::int16_t> group;     ///< body it belongs to  [-]
-  Buffer<std::int16_t> material;  ///< index into the case's materials  [-]
-  Buffer<TriangleNodes> nodes;    ///< positions and velocities
-  Buffer<Mat2> shape_inverse;     ///< of the reference edges as columns  [1/m]
-  Buffer<double> mass;            ///< of each corner, per unit thickness  [kg/m]
-  Buffer<double> viscosity;       ///< eta  [Pa s]
-  Buffer<Corners> force;          ///< sum of all that acts at this time  [N/m]
-  Buffer<Corners> external;       ///< the part of it that loads put in; empty without loads  [N/m]
-  Buffer<Index> hold;             ///< prescribed motion, index into World::holds, -1: free  [-]
-  Buffer<double> viscous_work;    ///< taken out by viscosity so far  [J/m]
-  Buffer<double> damping_work;    ///< taken out by local damping so far  [J/m]
-  Buffer<double> load_work;       ///< put in by loads and prescribed motion so far  [J/m]
+  Buffer<GlobalId> id;          ///< number of the triangle, kept for ever  [-]
+  Buffer<std::int16_t> group;   ///< body it belongs to  [-]
+  Buffer<Index> material;       ///< index into the case's materials  [-]
+  Buffer<TriangleNodes> nodes;  ///< positions and velocities
+  Buffer<Mat2> shape_inverse;   ///< of the reference edges as columns  [1/m]
+  Buffer<double> mass;          ///< of each corner, per unit thickness  [kg/m]
+  Buffer<double> viscosity;     ///< eta  [Pa s]
+  Buffer<Corners> force;        ///< sum of all that acts at this time  [N/m]
+  Buffer<Corners> external;     ///< the part of it that loads put in; empty without loads  [N/m]
+  Buffer<Index> hold;           ///< prescribed motion, index into World::holds, -1: free  [-]
+  Buffer<double> viscous_work;  ///< taken out by viscosity so far  [J/m]
+  Buffer<double> damping_work;  ///< taken out by local damping so far  [J/m]
+  Buffer<double> load_work;     ///< put in by loads and prescribed motion so far  [J/m]
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -58,9 +58,15 @@ struct Triangles {
   Index size() const { return id.size(); }
 };
 
-/// Nodes by number: node 3 t + k.
-BR_HD inline const NodeState& node(const View<const TriangleNodes>& nodes, Index number) {
-  return nodes[number / 3].at[number % 3];
+/// The nodes of all triangles by number: 3 t + k.
+BR_HD inline View<const NodeState> by_number(const View<const TriangleNodes>& nodes) {
+  View<const NodeState> view;
+  view.data = nodes.data == nullptr ? nullptr : nodes.data[0].at;
+  view.size = 3 * nodes.size;
+#if defined(BR_CHECKED)
+  view.space = nodes.space;
+#endif
+  return view;
 }
 
 BR_HD inline void split(const TriangleNodes& nodes, Vec2 (&x)[3], Vec2 (&v)[3]) {

@@ -6,6 +6,7 @@
 
 #include "core/broad_phase.hpp"
 #include "core/energy.hpp"
+#include "exec/lanes.hpp"
 #include "exec/timers.hpp"
 #include "fdem/config.hpp"
 #include "fdem/loads.hpp"
@@ -35,11 +36,10 @@ struct Reach {
 
 /// What has been booked for good.
 struct Ledger {
-  ExactSum rubbed, lost;                         ///< of couples dropped at a search  [J/m]
-  ExactSum start_potential;                      ///< sum of m g.x at the start  [J/m]
-  double start = 0.0;                            ///< kinetic and elastic energy at the start  [J/m]
-  double preset_open = 0.0, preset_slide = 0.0;  ///< stored in joints at the start  [J/m]
-  double largest = 0.0;                          ///< largest sum of energies and work seen  [J/m]
+  ExactSum rubbed, lost;     ///< of couples dropped at a search  [J/m]
+  ExactSum start_potential;  ///< sum of m g.x at the start  [J/m]
+  double start = 0.0;        ///< kinetic and elastic energy at the start  [J/m]
+  double largest = 0.0;      ///< largest sum of energies and work seen  [J/m]
 };
 
 /// Numbers that stay as the case gave them.
@@ -57,6 +57,7 @@ struct World {
   explicit World(const Exec& how);
 
   Exec exec;
+  Lanes lanes;
   Parameters parameters;
 
   // State: what a checkpoint holds.
@@ -84,6 +85,7 @@ struct World {
   Buffer<Index> load_starts;
   Buffer<LoadedEdge> loaded_edges;
   Bundles bundles;
+  Buffer<JointEnds> joint_ends;
   Buffer<EdgeJoints> edges;   ///< joints of each triangle by slot
   std::vector<Index> vertex;  ///< vertex of the mesh at each node
   /// What a vertex of the mesh touches: bit 0 the border or an edge that nothing joins, bit 1 such

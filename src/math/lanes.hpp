@@ -53,6 +53,15 @@ BR_HD inline void gather_records(const View<const Record>& records, Indices<doub
   for (int k = 0; k < count; ++k) columns[k] = numbers[k];
 }
 
+/// Writes numbers k of records first, first + 1, ... from columns[k].
+template <int count, class Record>
+BR_HD inline void store_records(const View<Record>& records, Index first,
+                                const double (&columns)[count]) {
+  static_assert(sizeof(Record) == count * sizeof(double));
+  auto* numbers = reinterpret_cast<double*>(&records[first]);
+  for (int k = 0; k < count; ++k) numbers[k] = columns[k];
+}
+
 #if !defined(__CUDACC__) && defined(__AVX512F__)
 
 template <>
@@ -68,25 +77,57 @@ inline Indices<Pack8> load_indices<Pack8>(const View<const Index>& array, Index 
 template <int count, class Record>
 inline void gather_records(const View<const Record>& records, const Indices<Pack8>& i,
                            Pack8 (&columns)[count]) {
-  static_assert(sizeof(Record) == count * sizeof(double));
-  static_assert(count == 10, "eight numbers by a full transposition, two more by pairs");
+  static_assert(sizeof(Record) == count * sizeof(double) && count % 2 == 0);
   const double* row[8];
-  Pack8 rows[8];
-  for (int k = 0; k < 8; ++k) {
-    row[k] = reinterpret_cast<const double*>(records.data + i.at[k]);
-    __builtin_memcpy(&rows[k], row[k], sizeof rows[k]);
+  for (int k = 0; k < 8; ++k) row[k] = reinterpret_cast<const double*>(records.data + i.at[k]);
+  constexpr int eights = count / 8 * 8, fours = count / 4 * 4;
+  for (int first = 0; first < eights; first += 8) {
+    Pack8 rows[8];
+    for (int k = 0; k < 8; ++k) __builtin_memcpy(&rows[k], row[k] + first, sizeof rows[k]);
+    transpose(rows);
+    for (int k = 0; k < 8; ++k) columns[first + k] = rows[k];
   }
-  transpose(rows);
-  for (int k = 0; k < 8; ++k) columns[k] = rows[k];
-  const auto tail = [&](int first) {  // the last two numbers of every other record
-    __m512d pairs = _mm512_castpd128_pd512(_mm_loadu_pd(row[first] + 8));
-    pairs = _mm512_insertf64x2(pairs, _mm_loadu_pd(row[first + 2] + 8), 1);
-    pairs = _mm512_insertf64x2(pairs, _mm_loadu_pd(row[first + 4] + 8), 2);
-    return _mm512_insertf64x2(pairs, _mm_loadu_pd(row[first + 6] + 8), 3);
-  };
-  const __m512d even = tail(0), odd = tail(1);
-  columns[8] = _mm512_unpacklo_pd(even, odd);
-  columns[9] = _mm512_unpackhi_pd(even, odd);
+  if constexpr (fours > eights) {  // rows k and k + 2 side by side
+    const auto beside = [&](int k) {
+      return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(row[k] + eights)),
+                                _mm256_loadu_pd(row[k + 2] + eights), 1);
+    };
+    const __m512d r02 = beside(0), r13 = beside(1), r46 = beside(4), r57 = beside(5);
+    const __m512d low = _mm512_unpacklo_pd(r02, r13), high = _mm512_unpackhi_pd(r02, r13);
+    const __m512d low_b = _mm512_unpacklo_pd(r46, r57), high_b = _mm512_unpackhi_pd(r46, r57);
+    columns[eights] = _mm512_shuffle_f64x2(low, low_b, 0x88);
+    columns[eights + 1] = _mm512_shuffle_f64x2(high, high_b, 0x88);
+    columns[eights + 2] = _mm512_shuffle_f64x2(low, low_b, 0xdd);
+    columns[eights + 3] = _mm512_shuffle_f64x2(high, high_b, 0xdd);
+  }
+  if constexpr (count > fours) {
+    const auto tail = [&](int first) {  // the last two numbers of every other record
+      __m512d pairs = _mm512_castpd128_pd512(_mm_loadu_pd(row[first] + fours));
+      pairs = _mm512_insertf64x2(pairs, _mm_loadu_pd(row[first + 2] + fours), 1);
+      pairs = _mm512_insertf64x2(pairs, _mm_loadu_pd(row[first + 4] + fours), 2);
+      return _mm512_insertf64x2(pairs, _mm_loadu_pd(row[first + 6] + fours), 3);
+    };
+    const __m512d even = tail(0), odd = tail(1);
+    columns[fours] = _mm512_unpacklo_pd(even, odd);
+    columns[fours + 1] = _mm512_unpackhi_pd(even, odd);
+  }
+}
+template <int count, class Record>
+inline void store_records(const View<Record>& records, Index first, const Pack8 (&columns)[count]) {
+  static_assert(sizeof(Record) == count * sizeof(double) && count % 2 == 0);
+  auto* to = reinterpret_cast<double*>(records.data + first);
+  for (int k = 0; k < count; k += 2) {
+    const __m512d even = _mm512_unpacklo_pd(columns[k], columns[k + 1]);
+    const __m512d odd = _mm512_unpackhi_pd(columns[k], columns[k + 1]);
+    _mm_storeu_pd(to + k, _mm512_extractf64x2_pd(even, 0));
+    _mm_storeu_pd(to + count + k, _mm512_extractf64x2_pd(odd, 0));
+    _mm_storeu_pd(to + 2 * count + k, _mm512_extractf64x2_pd(even, 1));
+    _mm_storeu_pd(to + 3 * count + k, _mm512_extractf64x2_pd(odd, 1));
+    _mm_storeu_pd(to + 4 * count + k, _mm512_extractf64x2_pd(even, 2));
+    _mm_storeu_pd(to + 5 * count + k, _mm512_extractf64x2_pd(odd, 2));
+    _mm_storeu_pd(to + 6 * count + k, _mm512_extractf64x2_pd(even, 3));
+    _mm_storeu_pd(to + 7 * count + k, _mm512_extractf64x2_pd(odd, 3));
+  }
 }
 
 #elif !defined(__CUDACC__) && defined(__AVX2__)
@@ -104,25 +145,55 @@ inline Indices<Pack4> load_indices<Pack4>(const View<const Index>& array, Index 
 template <int count, class Record>
 inline void gather_records(const View<const Record>& records, const Indices<Pack4>& i,
                            Pack4 (&columns)[count]) {
-  static_assert(sizeof(Record) == count * sizeof(double));
-  static_assert(count == 10, "twice four numbers by transpositions, two more by pairs");
+  static_assert(sizeof(Record) == count * sizeof(double) && count % 2 == 0);
   const double* row[4];
   for (int k = 0; k < 4; ++k) row[k] = reinterpret_cast<const double*>(records.data + i.at[k]);
-  for (int part = 0; part < 2; ++part) {
+  constexpr int fours = count / 4 * 4;
+  for (int first = 0; first < fours; first += 4) {
     Pack4 rows[4];
-    for (int k = 0; k < 4; ++k) __builtin_memcpy(&rows[k], row[k] + 4 * part, sizeof rows[k]);
+    for (int k = 0; k < 4; ++k) __builtin_memcpy(&rows[k], row[k] + first, sizeof rows[k]);
     transpose(rows);
-    for (int k = 0; k < 4; ++k) columns[4 * part + k] = rows[k];
+    for (int k = 0; k < 4; ++k) columns[first + k] = rows[k];
   }
-  const auto tail = [&](int first) {
-    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(row[first] + 8)),
-                                _mm_loadu_pd(row[first + 2] + 8), 1);
-  };
-  const __m256d even = tail(0), odd = tail(1);
-  columns[8] = _mm256_unpacklo_pd(even, odd);
-  columns[9] = _mm256_unpackhi_pd(even, odd);
+  if constexpr (count > fours) {
+    const auto tail = [&](int first) {
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(row[first] + fours)),
+                                  _mm_loadu_pd(row[first + 2] + fours), 1);
+    };
+    const __m256d even = tail(0), odd = tail(1);
+    columns[fours] = _mm256_unpacklo_pd(even, odd);
+    columns[fours + 1] = _mm256_unpackhi_pd(even, odd);
+  }
+}
+template <int count, class Record>
+inline void store_records(const View<Record>& records, Index first, const Pack4 (&columns)[count]) {
+  static_assert(sizeof(Record) == count * sizeof(double) && count % 2 == 0);
+  auto* to = reinterpret_cast<double*>(records.data + first);
+  for (int k = 0; k < count; k += 2) {
+    const __m256d even = _mm256_unpacklo_pd(columns[k], columns[k + 1]);
+    const __m256d odd = _mm256_unpackhi_pd(columns[k], columns[k + 1]);
+    _mm_storeu_pd(to + k, _mm256_castpd256_pd128(even));
+    _mm_storeu_pd(to + count + k, _mm256_castpd256_pd128(odd));
+    _mm_storeu_pd(to + 2 * count + k, _mm256_extractf128_pd(even, 1));
+    _mm_storeu_pd(to + 3 * count + k, _mm256_extractf128_pd(odd, 1));
+  }
 }
 
 #endif
+
+/// Indices given one by one.
+template <class R>
+BR_HD inline Indices<R> indices(const Index (&at)[width_of<R>]) {
+  Indices<R> i;
+  __builtin_memcpy(&i, at, sizeof i);
+  return i;
+}
+/// first, first + 1, ...
+template <class R>
+BR_HD inline Indices<R> consecutive(Index first) {
+  Index at[width_of<R>];
+  for (Index k = 0; k < width_of<R>; ++k) at[k] = first + k;
+  return indices<R>(at);
+}
 
 }  // namespace breccia

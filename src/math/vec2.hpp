@@ -56,39 +56,51 @@ BR_HD R norm(const Vec2Of<R>& a) {
 }
 
 /// A 2 x 2 matrix by rows.
-struct Mat2 {
-  double xx{}, xy{}, yx{}, yy{};
+template <class R>
+struct Mat2Of {
+  R xx{}, xy{}, yx{}, yy{};
 };
+using Mat2 = Mat2Of<double>;
 
 /// Columns a and b.
-BR_HD inline Mat2 columns(const Vec2& a, const Vec2& b) {
+template <class R>
+BR_HD Mat2Of<R> columns(const Vec2Of<R>& a, const Vec2Of<R>& b) {
   return {a.x, b.x, a.y, b.y};
 }
-BR_HD inline double determinant(const Mat2& m) {
+template <class R>
+BR_HD R determinant(const Mat2Of<R>& m) {
   return m.xx * m.yy - m.xy * m.yx;
 }
 /// @param m  with a determinant other than 0
-BR_HD inline Mat2 inverse(const Mat2& m) {
-  const double scale = 1.0 / determinant(m);
+template <class R>
+BR_HD Mat2Of<R> inverse(const Mat2Of<R>& m) {
+  const R scale = 1.0 / determinant(m);
   return {scale * m.yy, -scale * m.xy, -scale * m.yx, scale * m.xx};
 }
-BR_HD inline Mat2 operator*(const Mat2& a, const Mat2& b) {
+template <class R>
+BR_HD Mat2Of<R> operator*(const Mat2Of<R>& a, const Mat2Of<R>& b) {
   return {a.xx * b.xx + a.xy * b.yx, a.xx * b.xy + a.xy * b.yy, a.yx * b.xx + a.yy * b.yx,
           a.yx * b.xy + a.yy * b.yy};
 }
-BR_HD inline Vec2 operator*(const Mat2& m, const Vec2& v) {
+template <class R>
+BR_HD Vec2Of<R> operator*(const Mat2Of<R>& m, const Vec2Of<R>& v) {
   return {m.xx * v.x + m.xy * v.y, m.yx * v.x + m.yy * v.y};
 }
 
 /// A symmetric 2 x 2 tensor: stress, strain.
-struct Sym2 {
-  double xx{}, yy{}, xy{};
+template <class R>
+struct Sym2Of {
+  R xx{}, yy{}, xy{};
 };
-BR_HD inline Vec2 operator*(const Sym2& s, const Vec2& v) {
+using Sym2 = Sym2Of<double>;
+
+template <class R>
+BR_HD Vec2Of<R> operator*(const Sym2Of<R>& s, const Vec2Of<R>& v) {
   return {s.xx * v.x + s.xy * v.y, s.xy * v.x + s.yy * v.y};
 }
 /// Double contraction a : b.
-BR_HD inline double contract(const Sym2& a, const Sym2& b) {
+template <class R>
+BR_HD R contract(const Sym2Of<R>& a, const Sym2Of<R>& b) {
   return a.xx * b.xx + a.yy * b.yy + 2.0 * (a.xy * b.xy);
 }
 

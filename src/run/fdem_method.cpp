@@ -22,6 +22,7 @@ class FdemMethod final : public Method {
   double time() const override { return world_.time; }
   double time_step() const override { return world_.step > 0 ? world_.last_dt : world_.next_dt; }
 
+  std::string step_rule() override { return fdem::ruling_term(world_); }
   EnergyBalance energy() override { return fdem::energies(world_).balance; }
   std::vector<double> probes() override {
     std::vector<double> values;
@@ -170,11 +171,13 @@ Frame fdem_frame(const fdem::World& w) {
 
   FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
   const fdem::Joints j = host_copy(w.joints);
+  const View<const fdem::NodeState> nodes = fdem::by_number(std::as_const(t.nodes).view());
   for (Index i = 0; i < j.size(); ++i) {
     const fdem::JointStage stage = j.stage.data()[i];
     if (stage == fdem::JointStage::whole) continue;
-    const fdem::JointNodes n(std::as_const(t.nodes).view(), j.edge_a.data()[i], j.edge_b.data()[i]);
-    for (const auto& [a, b] : {std::pair{n.a0, n.b0}, std::pair{n.a1, n.b1}}) {
+    const fdem::JointEnds e = fdem::JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
+    for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}}) {
+      const fdem::NodeState &a = nodes[on_a], &b = nodes[on_b];
       f.lines.push_back(static_cast<std::int32_t>(f.position.size()));
       point({0.5 * (a.position + b.position), 0.5 * (a.velocity + b.velocity)});
     }

@@ -55,7 +55,9 @@ std::string opening_text(const Summary& s, double end_time, std::int64_t end_ste
   const double left_by_time =
       s.dt_last > 0.0 ? std::max(0.0, std::ceil((end_time - s.time) / s.dt_last)) : left_by_steps;
   text += "step    ";
-  if (s.dt_last > 0.0) text += fmt::format("dt {:.3g} s   ", s.dt_last);
+  if (s.dt_last > 0.0)
+    text += fmt::format("dt {:.3g} s{}   ", s.dt_last,
+                        s.dt_rule.empty() ? "" : " ruled by " + s.dt_rule);
   if (left_by_steps <= left_by_time && end_steps != std::numeric_limits<std::int64_t>::max())
     text += fmt::format("{} steps\n", count_text(left_by_steps));
   else if (s.dt_last > 0.0)

@@ -40,6 +40,9 @@ class Method {
   virtual double time() const = 0;         ///< simulated  [s]
   virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]
 
+  /// What rules the time step now, in a word; empty if the method does not tell.
+  virtual std::string step_rule() { return {}; }
+
   virtual EnergyBalance energy() = 0;
   /// Values of the case's probes, in their order.  [SI]
   virtual std::vector<double> probes() = 0;

@@ -330,6 +330,7 @@ Summary Run::measured() const {
 void Run::describe_state(Summary& s) const {
   s.facts = method_.facts();
   s.state_hash = method_.state_hash();
+  s.dt_rule = method_.step_rule();
 }
 
 void Run::write_summary(const Summary& summary) const {

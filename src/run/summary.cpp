@@ -75,6 +75,7 @@ Json json_of(const Summary& s) {
   json["steps"] = s.steps;
   json["time"] = s.time;
   json["dt"] = {{"min", s.dt_min}, {"max", s.dt_max}, {"last", s.dt_last}};
+  if (!s.dt_rule.empty()) json["dt"]["ruled_by"] = s.dt_rule;
   json["wall_s"] = {{"total", s.total}, {"setup", s.setup}, {"loop", s.loop}, {"output", s.output}};
   json["step_us"] = {{"median", s.step_median}, {"p95", s.step_p95}};
   if (!s.stages.empty()) json["stages_s"] = s.stages;

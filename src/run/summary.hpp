@@ -41,6 +41,7 @@ struct Summary {
   std::int64_t steps = 0;
   double time = 0.0;                                          ///<  [s]
   double dt_min = 0.0, dt_max = 0.0, dt_last = 0.0;           ///<  [s]
+  std::string dt_rule;                                        ///< what rules it; may be empty
   double total = 0.0, setup = 0.0, loop = 0.0, output = 0.0;  ///< wall time  [s]
   double step_median = 0.0, step_p95 = 0.0;                   ///<  [us]
   std::map<std::string, double> stages;                       ///<  [s]

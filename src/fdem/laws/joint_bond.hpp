@@ -31,22 +31,17 @@ BR_HD R softening(const R& damage) {
   return (1.0 - ratio * decay(rate * damage)) * (a * left + b * square * square * square);
 }
 
-/// What unloading follows.
-enum class Unloading : std::int8_t {
-  secant,     ///< straight to the origin from the largest opening and slip so far: dissipates
-  reversible  ///< back along the curve, as the classical codes do: heals and can create energy
-};
-
-/// Strength of the joints of a pair of materials.
+/// Strength of the joints of a pair of materials. Eight numbers side by side: packs gather them.
 struct JointBond {
-  double stiffness;         ///< p_f, initial tangent times length  [Pa]
-  double tension;           ///< f_t  [Pa]
-  double cohesion;          ///< c  [Pa]
-  double friction;          ///< tan phi_i  [-]
-  double energy_open;       ///< G_I  [J/m2]
-  double energy_slide;      ///< G_II  [J/m2]
-  double softening_factor;  ///< o_t f_t / G_I, usually exact_softening_factor  [-]
-  Unloading unloading = Unloading::secant;
+  double stiffness;        ///< p_f, initial tangent times length  [Pa]
+  double tension;          ///< f_t  [Pa]
+  double cohesion;         ///< c  [Pa]
+  double friction;         ///< tan phi_i  [-]
+  double softening_open;   ///< o_t f_t = factor G_I  [J/m2]
+  double softening_slide;  ///< s_t f_s = factor G_II  [J/m2]
+  double reversible;  ///< 1: unloading goes back along the curve, as in the classical codes, which
+                      ///< heals and can create energy; 0: along the secant  [-]
+  double unused;
 };
 
 /// What an integration point keeps.
@@ -73,11 +68,29 @@ struct BondTraction {
 ///   damage            D = |((o - o_p) / o_t, (|s| - s_p) / s_t)| of the positive parts,
 ///                     o_t = factor G_I / f_t, s_t = factor G_II / f_s; broken at D = 1
 ///
-/// f_s is that of the same point and step. @param strength  of this joint over its law's: scales
-/// f_t, c and, so that lengths stay, both energies  [-]. @param h  initial length  [m]
-template <class R>
-BR_HD BondTraction<R> answer(const JointBond& law, const R& strength, const R& h, const R& opening,
-                             const R& slip, BondState<R>& state) {
+/// f_s is that of the same point and step. Until a point goes beyond o_p or s_p it answers by this:
+///
+/// @param slope  p_f / h  [Pa/m]  @param tension, cohesion  of this joint  [Pa]
+/// @param beyond  set where the point leaves its elastic branch, so that the answer does not hold
+template <class R, class Mask>
+BR_HD BondTraction<R> elastic_answer(const R& slope, const R& tension, const R& cohesion,
+                                     const R& friction, const R& opening, const R& slip,
+                                     Mask& beyond) {
+  const R straight = slope * opening, sideways = slope * slip;
+  const auto pressed = straight < 0.0;
+  const R strength = cohesion - choose(pressed, friction * straight, constant<R>(0.0));
+  const R size = absolute(sideways);
+  beyond = either(beyond, either(straight > 2.0 * tension, size > 2.0 * strength));
+  // f (2 r - r^2) with r = slope x / (2 f)
+  return {choose(pressed, straight, straight * (1.0 - 0.25 * (straight / tension))),
+          sideways * (1.0 - 0.25 * (size / strength))};
+}
+
+/// The law in full. @param strength  of this joint over its law's: scales f_t, c and, so that
+/// lengths stay, both energies  [-]. @param h  initial length  [m]
+BR_HD inline BondTraction<double> answer(const JointBond& law, double strength, double h,
+                                         double opening, double slip, BondState<double>& state) {
+  using R = double;
   const R zero = constant<R>(0.0), one = constant<R>(1.0);
   const R tension = law.tension * strength;
   const auto pressed = opening < 0.0;
@@ -90,12 +103,11 @@ BR_HD BondTraction<R> answer(const JointBond& law, const R& strength, const R& h
 
   // Damage.
   R health = one;
-  const bool reversible = law.unloading == Unloading::reversible;
+  const bool reversible = law.reversible > 0.5;
   const auto beyond = either(over_o > 0.0, over_s > 0.0);
   if (any(either(beyond, state.damage > 0.0))) {
-    const R open = over_o * (tension / (law.softening_factor * law.energy_open * strength));
-    const R slide =
-        over_s * (shear_strength / (law.softening_factor * law.energy_slide * strength));
+    const R open = over_o * (tension / (law.softening_open * strength));
+    const R slide = over_s * (shear_strength / (law.softening_slide * strength));
     const R now = smaller(one, root(open * open + slide * slide));
     state.damage = larger(state.damage, now);
     const R counted = reversible ? now : state.damage;
@@ -126,31 +138,31 @@ BR_HD BondTraction<R> answer(const JointBond& law, const R& strength, const R& h
 struct StoredEnergy {
   double open, slide;
 };
-inline StoredEnergy stored(const JointBond& law, double strength, double h, double opening,
-                           double slip, const BondState<double>& state) {
+/// Of (2 r - r^2) f, r = x / p, up to p.
+BR_HD inline double stored_on_parabola(double f, double x, double p) {
+  if (!(p > 0.0)) return 0.0;
+  const double r = smaller(x, p) / p;
+  return f * p * (r * r - r * r * r / 3.0);
+}
+BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h, double opening,
+                                 double slip, const BondState<double>& state) {
   const double tension = law.tension * strength, o_p = 2.0 * h * tension / law.stiffness;
   const double pressure = opening < 0.0 ? law.stiffness * opening / h : 0.0;
   const double shear = law.cohesion * strength - law.friction * pressure;
   const double s_p = 2.0 * h * shear / law.stiffness;
   const double z = softening(state.damage), slid = absolute(slip);
-  // of (2 r - r^2) f up to the elastic limit p, and of f beyond it
-  const auto parabola = [](double f, double x, double p) {
-    if (!(p > 0.0)) return 0.0;
-    const double r = smaller(x, p) / p;
-    return f * p * (r * r - r * r * r / 3.0);
-  };
   StoredEnergy energy{};
   if (opening < 0.0)
     energy.open = 0.5 * pressure * opening;
   else if (state.opening > 0.0)
     energy.open = 0.5 * z * tension * opening * opening / state.opening;
   else
-    energy.open = z * parabola(tension, opening, o_p);
+    energy.open = z * stored_on_parabola(tension, opening, o_p);
   if (state.slip > 0.0) {
     const double reach = larger(state.slip, s_p), used = smaller(slid, reach);
     energy.slide = 0.5 * z * shear * used * used / reach;
   } else {
-    energy.slide = z * parabola(shear, slid, s_p);
+    energy.slide = z * stored_on_parabola(shear, slid, s_p);
   }
   return energy;
 }

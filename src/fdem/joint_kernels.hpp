@@ -1,0 +1,160 @@
+#pragma once
+// The kernel of all joints: reads, one law call, one write.
+
+#include "fdem/joints.hpp"
+#include "math/lanes.hpp"
+
+namespace breccia::fdem {
+
+/// Says so to the host, whichever item does it first.
+BR_HD inline void raise(const View<std::uint8_t>& flag) {
+#if defined(__CUDA_ARCH__)
+  flag[0] = 1;
+#else
+  __atomic_store_n(&flag[0], std::uint8_t{1}, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Tractions at three points, damage and break of every joint (Lukas 2014, section 2). Joints that
+/// are whole and stay so, nearly all, are taken side by side.
+struct JointForces {
+  static constexpr const char* name = "fdem.joints";
+  double time, dt;  ///< of the positions, and the step that led there  [s]
+  View<const NodeState> nodes;
+  View<const JointBond> bonds;
+  View<const JointEnds> ends;
+  View<const Index> law;
+  View<const double> length, strength;
+  View<const Vec2> preset;
+  View<JointStage> stage;
+  View<JointPoints> points;
+  View<JointForce> force;
+  View<JointWork> work;
+  View<double> broke_at, pressing;
+  View<std::uint8_t> changed;  ///< raised when a joint softens or breaks: contacts must be searched
+
+  /// Joint i, or i and its neighbours in a pack. False, with nothing written, unless all of them
+  /// are whole and stay so.
+  template <class R>
+  BR_HD bool whole_at(Index i) const {
+    Index at[4][width_of<R>];
+    for (Index k = 0; k < width_of<R>; ++k) {
+      if (stage[i + k] != JointStage::whole) return false;
+      const JointEnds& e = ends[i + k];
+      at[0][k] = e.a0;
+      at[1][k] = e.a1;
+      at[2][k] = e.b0;
+      at[3][k] = e.b1;
+    }
+    R corner[4][4];  // position and velocity of a0, a1, b0, b1
+    for (int k = 0; k < 4; ++k) gather_records(nodes, indices<R>(at[k]), corner[k]);
+    const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
+    const JointOpening<R> o = opening_of(position(0), position(1), position(2), position(3));
+    R bond[8];
+    gather_records(bonds, load_indices<R>(law, i), bond);
+    const R share = load<R>(strength, i), h = load<R>(length, i);
+    const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
+    R offset[2] = {};
+    if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
+    auto beyond = opposite(o.size > 1e-12 * h);
+    Vec2Of<R> traction[3];
+    for (int q = 0; q < 3; ++q) {
+      const BondTraction<R> t = elastic_answer(
+          slope, tension, cohesion, bond[3], o.open[q] + offset[0], o.slide[q] + offset[1], beyond);
+      traction[q] = t.shear * o.along + t.normal * o.across;
+    }
+    if (any(beyond)) return false;
+    const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
+    const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
+    const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
+    const R numbers[4] = {first.x, first.y, second.x, second.y};
+    store_records(force, i, numbers);
+    return true;
+  }
+
+  BR_HD void operator()(Index i) const {
+    if (!whole_at<double>(i)) damaged_at(i);
+  }
+
+  BR_HD void damaged_at(Index i) const {
+    const JointStage before = stage[i];
+    const bool acted =
+        dot(force[i].first, force[i].first) + dot(force[i].second, force[i].second) > 0.0;
+    if (before == JointStage::broken && !acted) return;
+    const JointEnds& e = ends[i];
+    const NodeState &a0 = nodes[e.a0], &a1 = nodes[e.a1], &b0 = nodes[e.b0], &b1 = nodes[e.b1];
+    const Vec2 first = dt * (a0.velocity - b0.velocity), second = dt * (a1.velocity - b1.velocity);
+    const JointOpening<double> o = opening_of(a0.position, a1.position, b0.position, b1.position);
+    const double h = length[i];
+    const bool collapsed = !(o.size > 1e-12 * h);  // of the middle line no length is left
+    if (before == JointStage::broken || collapsed) {
+      if (!collapsed) book_work(i, o, first, second, JointForce{});
+      if (before != JointStage::broken) finish(i);
+      force[i] = {};
+      return;
+    }
+    const JointBond& bond = bonds[law[i]];
+    const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
+    JointPoints state{};
+    if (before != JointStage::whole) state = points[i];
+    Vec2 traction[3];
+    double pressure = 0.0;
+    int failed = 0;
+    bool damaged = false;
+    for (int q = 0; q < 3; ++q) {
+      const BondTraction<double> t =
+          answer(bond, strength[i], h, o.open[q] + offset.x, o.slide[q] + offset.y, state.point[q]);
+      traction[q] = t.shear * o.along + t.normal * o.across;
+      pressure -= (q == 1 ? 4.0 : 1.0) * t.normal;
+      failed += state.point[q].damage >= 1.0 ? 1 : 0;
+      damaged = damaged || state.point[q].damage > 0.0;
+    }
+    const double weight = (-1.0 / 6.0) * h;
+    const JointForce now{weight * (traction[0] + 2.0 * traction[1]),
+                         weight * (traction[2] + 2.0 * traction[1])};
+    if (damaged) {
+      if (before == JointStage::whole) begin_work(i, bond, offset, a0, a1, b0, b1);
+      book_work(i, o, first, second, now);
+      points[i] = state;
+      if (before == JointStage::whole) {
+        stage[i] = JointStage::softened;
+        raise(changed);
+      }
+    }
+    force[i] = now;
+    if (failed >= 2) {
+      pressing[i] = larger(0.0, pressure * h / 6.0);
+      finish(i);
+    }
+  }
+
+ private:
+  /// A joint that softens in this step had stored this much before it: all it had taken up.
+  BR_HD void begin_work(Index i, const JointBond& bond, const Vec2& offset, const NodeState& a0,
+                        const NodeState& a1, const NodeState& b0, const NodeState& b1) const {
+    const JointOpening<double> o =
+        opening_of(a0.position - dt * a0.velocity, a1.position - dt * a1.velocity,
+                   b0.position - dt * b0.velocity, b1.position - dt * b1.velocity);
+    const StoredEnergy e = stored_in(bond, strength[i], length[i], offset, o, JointPoints{});
+    work[i] = {e.open, e.slide};
+  }
+  /// Work of this step by the trapezoidal rule: with leapfrog velocities it sums to exactly what
+  /// the nodes lose.
+  BR_HD void book_work(Index i, const JointOpening<double>& o, const Vec2& first,
+                       const Vec2& second, const JointForce& now) const {
+    const JointForce& last = force[i];
+    const Vec2 f = last.first + now.first, s = last.second + now.second;
+    JointWork& w = work[i];
+    w.open -=
+        0.5 * (dot(f, o.across) * dot(first, o.across) + dot(s, o.across) * dot(second, o.across));
+    w.slide -=
+        0.5 * (dot(f, o.along) * dot(first, o.along) + dot(s, o.along) * dot(second, o.along));
+  }
+  BR_HD void finish(Index i) const {
+    stage[i] = JointStage::broken;
+    broke_at[i] = time;
+    raise(changed);
+  }
+};
+
+}  // namespace breccia::fdem

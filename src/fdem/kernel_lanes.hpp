@@ -1,0 +1,27 @@
+#pragma once
+// The widest form of the kernels that this processor can run, found at run time; same bits in all.
+
+#include "exec/lanes.hpp"
+#include "fdem/triangle_kernels.hpp"
+
+namespace breccia::fdem {
+
+/// kernel for the items [begin, end) on the calling thread.
+void run_packs(Lanes lanes, const JointForces& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const TriangleForces& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
+
+/// Builds of lanes/kernel_lanes.cpp for one width each; what does not fill a pack is left to the
+/// caller. Return where.
+struct PacksAvx2 {
+  static Index run(const JointForces& kernel, Index begin, Index end);
+  static Index run(const TriangleForces& kernel, Index begin, Index end);
+  static Index run(const MoveTriangles& kernel, Index begin, Index end);
+};
+struct PacksAvx512 {
+  static Index run(const JointForces& kernel, Index begin, Index end);
+  static Index run(const TriangleForces& kernel, Index begin, Index end);
+  static Index run(const MoveTriangles& kernel, Index begin, Index end);
+};
+
+}  // namespace breccia::fdem
