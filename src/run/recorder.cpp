@@ -168,7 +168,7 @@ void Recorder::write_frame(Method& method) {
   if (config_.output.pictures) {
     if (!state_.extent) state_.extent = bulk_extent(frame);
     RenderOptions options;
-    options.field = has_field(frame, config_.output.color) ? config_.output.color : "";
+    options.field = config_.output.color;
     options.view = config_.output.view;
     options.width = config_.output.width;
     options.height = config_.output.height;

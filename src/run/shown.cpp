@@ -7,6 +7,7 @@
 #include <set>
 
 #include "exec/error.hpp"
+#include "io/picture.hpp"
 #include "io/suggestion.hpp"
 #include "run/dem_method.hpp"
 #include "run/fdem_method.hpp"
@@ -18,7 +19,7 @@ namespace {
 /// What checks and pictures may name.
 struct Shown {
   std::set<std::string> numbers;  ///< paths into summary.json, without those of probes
-  std::set<std::string> fields;   ///< of frames
+  Frame frame;
 };
 
 void add_numbers(const nlohmann::json& json, const std::string& path,
@@ -36,10 +37,16 @@ Shown shown_by(Method& specimen) {
   summary.energy = specimen.energy();
   Shown shown;
   add_numbers(nlohmann::json::parse(to_json(summary)), "", shown.numbers);
-  const Frame frame = specimen.frame();
-  for (const auto* fields : {&frame.point_fields, &frame.line_fields, &frame.triangle_fields})
-    for (const FrameField& field : *fields) shown.fields.insert(field.name);
+  shown.frame = specimen.frame();
   return shown;
+}
+
+std::set<std::string> field_names(const Frame& frame) {
+  std::set<std::string> names;
+  for (const auto* fields : {&frame.point_fields, &frame.line_fields, &frame.triangle_fields})
+    for (const FrameField& field : *fields)
+      names.insert(field.name + (field.components == 3 ? "[_x, _y, _z]" : ""));
+  return names;
 }
 
 /// The problem of a check that no run can evaluate; empty: none.
@@ -70,12 +77,11 @@ void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
   std::vector<std::string> problems;
   for (const CheckConfig& check : config.checks)
     problems.push_back(problem_of(check, config.probes, shown));
-  if (const std::string& color = config.output.color;
-      !color.empty() && !shown.fields.contains(color))
+  if (!has_field(shown.frame, config.output.color))
     problems.push_back(
         fmt::format("output.color = {:?} is no field of the frames; allowed are {}, and \"\" for "
                     "none",
-                    color, fmt::join(shown.fields, ", ")));
+                    config.output.color, fmt::join(field_names(shown.frame), ", ")));
   std::erase(problems, "");
   if (problems.empty()) return;
   throw InputError(fmt::format("{} problem{} in the case; nothing was run.\n  {}", problems.size(),

@@ -73,6 +73,12 @@ TEST(CaseFile, values_arrive_in_si) {
   EXPECT_EQ(config.bodies.at(0).pack.size_ratio, 2.0);
 }
 
+TEST(CaseFile, pictures_may_show_any_field_a_component_of_one_or_none) {
+  for (const char* color : {"damage", "force", "velocity", "velocity_z", ""})
+    EXPECT_EQ(message_of(good, {std::string("output.color=\"") + color + "\""}), "no problem");
+  EXPECT_NE(message_of(good, {"output.color=velocity_w"}), "no problem");
+}
+
 TEST(CaseFile, overrides_count_last_and_find_items_by_name_or_number) {
   const dem::Config config =
       read_text(good, {"time.end=2e-3", "material.c30.young=28 GPa", "body.slab.pack.count=7",
@@ -280,7 +286,7 @@ INSTANTIATE_TEST_SUITE_P(
               "check.c.value = \"status\" is no number of summary.json"},
         Wrong{"", "[output]\ncolor = \"damgae\"\n",
               "output.color = \"damgae\" is no field of the frames; allowed are damage, force, "
-              "group, id, kind, spin, state, velocity, and \"\" for none"},
+              "group, id, kind, spin[_x, _y, _z], state, velocity[_x, _y, _z], and \"\" for none"},
         Wrong{"", "[[[support]]]\nname = \"s\"\n", "line 11, column 3"},
         Wrong{"", "[[support]]\nname = \"s\"\non = \"slap\"\n",
               "support.s.on = \"slap\" is not a body; there are: slab"},
