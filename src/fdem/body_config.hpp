@@ -146,7 +146,7 @@ struct BodyConfig {
     key("jitter", jitter, "-", Range{0.0, 0.3},
         "inner vertices are moved by up to this share of an edge; hexagons by this share of their "
         "distance");
-    key("structured", structured, "a regular mesh, made without gmsh: plate and beam only");
+    key("structured", structured, "a regular mesh, made without gmsh: of plate, beam or disc");
     key("pattern", pattern, OneOf{"equilateral", "crossed"},
         "regular mesh of rows of nearly equilateral triangles, or of squares with both diagonals");
     key("velocity", velocity, "m/s", any_number, "velocity at the start");
