@@ -13,6 +13,7 @@ using fdem::BodyConfig;
 using fdem::DiscontinuityConfig;
 
 constexpr double most_triangles = 2e8;
+constexpr std::size_t most_names = 32767;  ///< a model numbers them in 16 bits
 
 std::string list_of(const std::vector<std::string>& names) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
@@ -25,6 +26,11 @@ class BodyChecks {
       : names_(names) {
     if (bodies.empty())
       problems_.push_back("body: the case has no elements; at least one [[body]] is needed");
+    if (bodies.size() > most_names || names.materials.size() > most_names ||
+        names.joints.size() > most_names)
+      problems_.push_back(fmt::format(
+          "the case has {} bodies, {} materials and {} joint laws; at most {} of each are allowed",
+          bodies.size(), names.materials.size(), names.joints.size(), most_names));
     std::set<std::string> seen;
     for (const BodyConfig& b : bodies) {
       path_ = "body." + b.name;
