@@ -83,7 +83,7 @@ void joint_forces(World& w) {
                   w.bonds.view(), w.joint_ends.view(), j.law.view(), j.length.view(),
                   j.strength.view(), j.preset.view(), j.stage.view(), j.points.view(),
                   j.force.view(), j.work.view(), j.broke_at.view(), j.pressing.view(),
-                  w.changed.view()});
+                  w.opened.changed.view()});
 }
 
 void couple_forces(World& w) {

@@ -6,12 +6,15 @@
 
 namespace breccia::fdem {
 
-/// Says so to the host, whichever item does it first.
-BR_HD inline void raise(const View<std::uint8_t>& flag) {
+/// What joints tell the host: flag 0, one has softened; flag 1, one has broken.
+enum Change : Index { change_softened = 0, change_broken = 1 };
+
+/// Whichever item does it first.
+BR_HD inline void raise(const View<std::uint8_t>& flags, Change change) {
 #if defined(__CUDA_ARCH__)
-  flag[0] = 1;
+  flags[change] = 1;
 #else
-  __atomic_store_n(&flag[0], std::uint8_t{1}, __ATOMIC_RELAXED);
+  __atomic_store_n(&flags[change], std::uint8_t{1}, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -31,7 +34,7 @@ struct JointForces {
   View<JointForce> force;
   View<JointWork> work;
   View<double> broke_at, pressing;
-  View<std::uint8_t> changed;  ///< raised when a joint softens or breaks: contacts must be searched
+  View<std::uint8_t> changed;  ///< flags of Change: contacts must be searched
 
   /// Joint i, or i and its neighbours in a pack. False, with nothing written, unless all of them
   /// are whole and stay so.
@@ -118,7 +121,7 @@ struct JointForces {
       points[i] = state;
       if (before == JointStage::whole) {
         stage[i] = JointStage::softened;
-        raise(changed);
+        raise(changed, change_softened);
       }
     }
     force[i] = now;
@@ -153,7 +156,7 @@ struct JointForces {
   BR_HD void finish(Index i) const {
     stage[i] = JointStage::broken;
     broke_at[i] = time;
-    raise(changed);
+    raise(changed, change_broken);
   }
 };
 

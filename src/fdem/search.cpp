@@ -62,6 +62,31 @@ struct BeginReach {
   }
 };
 
+/// Marks the vertices of damaged joints.
+void mark_opened(World& w) {
+  std::vector<JointStage> stage;
+  std::vector<Index> edge_a;
+  copy_to(stage, w.joints.stage);
+  copy_to(edge_a, w.joints.edge_a);
+  std::vector<std::uint8_t> vertex(w.open_vertex.size(), 0);
+  for (std::size_t i = 0; i < stage.size(); ++i) {
+    if (stage[i] == JointStage::whole) continue;
+    for (const Index node : {edge_a[i], JointEnds::next_corner(edge_a[i])})
+      vertex[static_cast<std::size_t>(w.vertex[static_cast<std::size_t>(node)])] = 1;
+  }
+  copy_to(w.opened.vertex, vertex);
+  copy_to(w.opened.changed, std::vector<std::uint8_t>{0, 0});
+}
+
+/// Whether vertices must be marked now: at once when a joint breaks, since its triangles touch from
+/// the next step on; when one softens, at the next of these steps.
+bool marking_is_due(const World& w) {
+  constexpr std::int64_t every = 32;
+  std::vector<std::uint8_t> changed;
+  copy_to(changed, w.opened.changed);
+  return changed[change_broken] != 0 || (changed[change_softened] != 0 && w.step % every == 0);
+}
+
 /// What a search reads of the mesh on the host.
 struct Topology {
   std::vector<EdgeJoints> edges;
@@ -71,14 +96,10 @@ struct Topology {
   explicit Topology(const World& w) : open(w.open_vertex) {
     copy_to(edges, w.edges);
     copy_to(stage, w.joints.stage);
-    std::vector<Index> edge_a;
-    copy_to(edge_a, w.joints.edge_a);
-    for (std::size_t i = 0; i < stage.size(); ++i) {
-      if (stage[i] == JointStage::whole) continue;
-      const Index first = edge_a[i], triangle = first / 3;
-      open[vertex(w, first)] |= 4;
-      open[vertex(w, 3 * triangle + (first + 1) % 3)] |= 4;
-    }
+    std::vector<std::uint8_t> damaged;
+    copy_to(damaged, w.opened.vertex);
+    for (std::size_t v = 0; v < open.size(); ++v)
+      if (damaged[v] != 0) open[v] |= 4;
   }
   static std::size_t vertex(const World& w, Index node) {
     return static_cast<std::size_t>(w.vertex[static_cast<std::size_t>(node)]);
@@ -140,9 +161,7 @@ void book_dropped(World& w, const Pairs& found) {
 
 bool couples_are_due(const World& w) {
   const StageTime timed(w.exec, "travel");
-  std::vector<std::uint8_t> changed;
-  copy_to(changed, w.changed);
-  if (changed[0] != 0) return true;
+  if (marking_is_due(w)) return true;
   const double used = fold(w.exec, w.reach.triangle.size(), 0.0,
                            UsedMargin{w.reach.triangle.view(), w.reach.reference.view(),
                                       w.reach.margin.view(), w.triangles.nodes.view()},
@@ -152,6 +171,8 @@ bool couples_are_due(const World& w) {
 
 void find_couples(World& w) {
   const StageTime timed(w.exec, "contact_detection");
+  const bool joints_changed = marking_is_due(w);
+  if (joints_changed) mark_opened(w);
   const Topology topology(w);
   const std::vector<Index> triangles = touchable(w, topology);
   const auto count = static_cast<Index>(triangles.size());
@@ -190,11 +211,7 @@ void find_couples(World& w) {
   derive_couples(w);
   ++w.searches;
 
-  std::vector<std::uint8_t> changed;
-  copy_to(changed, w.changed);
-  if (changed[0] == 0) return;
-  copy_to(w.changed, std::vector<std::uint8_t>{0});
-  if (w.next_dt > 0.0) w.next_dt = shortened_time_step(w);
+  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w);
 }
 
 void derive_couples(World& w) {

@@ -293,11 +293,12 @@ World::World(const Exec& how)
   settle(triangles);
   settle(joints);
   settle(reach);
+  settle(opened);
   const auto place = [&](auto&... arrays) {
     ((arrays = std::remove_reference_t<decltype(arrays)>(how.space)), ...);
   };
   place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, bundles.starts, bundles.nodes,
-        edges, joint_ends, motions, load_laws, changed, born);
+        edges, joint_ends, motions, load_laws, born);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {
@@ -315,7 +316,8 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   set_up_joints(w, config, model);
   set_up_supports(w, config, model);
   set_up_loads(w, config, model);
-  copy_to(w.changed, std::vector<std::uint8_t>{0});
+  w.opened.changed.resize(2);
+  w.opened.vertex.resize(static_cast<Index>(model.point.size()));
   find_couples(w);
   evaluate_forces(w);
   begin_ledger(w);

@@ -34,6 +34,19 @@ struct Reach {
   }
 };
 
+/// Where joints have opened. Vertices take part in contact from fixed moments on, not from whatever
+/// search comes next: when travel asks for one must not change a bit.
+struct Opened {
+  Buffer<std::uint8_t> changed;  ///< flags of Change since the vertices were marked last
+  Buffer<std::uint8_t> vertex;   ///< 1: a joint at this vertex of the mesh is damaged
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("changed", "-", changed);
+    field("vertex", "-", vertex);
+  }
+};
+
 /// What has been booked for good.
 struct Ledger {
   ExactSum rubbed, lost;     ///< of couples dropped at a search  [J/m]
@@ -65,6 +78,7 @@ struct World {
   Joints joints;
   Couples couples;
   Reach reach;
+  Opened opened;
   Ledger ledger;
   double time = 0.0;     ///< of positions and forces  [s]
   double last_dt = 0.0;  ///< the step that led here  [s]
@@ -95,8 +109,7 @@ struct World {
   // What follows from the state.
   Buffer<Motion> motions;
   Buffer<LoadLaw> load_laws;
-  Buffer<std::uint8_t> changed;  ///< 1: a joint softened or broke since the last search
-  Buffer<double> born;           ///< of each couple, see CoupleForces
+  Buffer<double> born;  ///< of each couple, see CoupleForces
   Incidence couple_incidence;
   BroadPhase broad_phase;
 };

@@ -93,7 +93,7 @@ class FdemMethod final : public Method {
     writer.fields("joints", w.joints);
     writer.fields("couples", w.couples);
     writer.fields("reach", w.reach);
-    writer.section("changed", w.changed.data(), 1, 1);
+    writer.fields("opened", w.opened);
   }
 
   void load(const CheckpointReader& reader) override {
@@ -109,9 +109,7 @@ class FdemMethod final : public Method {
     reader.fields("joints", w.joints);
     reader.fields("couples", w.couples);
     reader.fields("reach", w.reach);
-    std::vector<std::uint8_t> changed(1);
-    changed[0] = static_cast<std::uint8_t>(reader.section("changed", 1).bytes[0]);
-    copy_to(w.changed, changed);
+    reader.fields("opened", w.opened);
     if (w.triangles.size() != triangles || w.joints.size() != joints)
       throw CheckpointError("the checkpoint holds another model than the case builds");
     fdem::derive(w);
