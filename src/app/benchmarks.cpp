@@ -8,6 +8,8 @@ const std::vector<Benchmark>& benchmarks() {
       {"threads", "the slab on one thread and on all, in alternating windows", measure_threads},
       {"search", "the contact search alone, up to a million spheres", measure_search},
       {"packing", "disordered packings of a box", measure_packing},
+      {"triangles", "FDEM: plates of 10,000 to a million joined triangles", measure_triangles},
+      {"contact", "FDEM: hexagons that pile up on a floor", measure_contact},
       {"slab100k", "the slab with 99,262 elements", measure_large_slab}};
   return list;
 }

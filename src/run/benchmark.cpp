@@ -14,31 +14,13 @@
 #include "prepare/packing.hpp"
 #include "run/benchmark_scenes.hpp"
 #include "run/machine.hpp"
+#include "run/measurements.hpp"
 
 namespace breccia {
 namespace {
 
-constexpr int window_count = 7;
 constexpr int steps_before_impact = 100;  // the rock meets the slab after 0.1 ms
 constexpr double impact_at = 0.2e-3;      // the rock has met the slab and links break  [s]
-
-double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-Measurement once(const std::string& part, const std::string& name, double value, const char* unit) {
-  return {part, name, unit, value, value, value};
-}
-
-Measurement over_windows(const std::string& part, const std::string& name, const char* unit,
-                         std::vector<double> values, double factor) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  const double median = 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-  return {part, name, unit, factor * median, factor * values.front(), factor * values.back()};
-}
 
 void take_steps(dem::World& w, int steps) {
   for (int i = 0; i < steps; ++i) dem::step(w);

@@ -29,6 +29,11 @@ std::vector<Measurement> measure_search(const Exec& exec);
 /// Packings of a box at the compactness of the slab.
 std::vector<Measurement> measure_packing(const Exec& exec);
 
+/// Whole FDEM steps of plates of 10^4 to 10^6 joined triangles, by stage.
+std::vector<Measurement> measure_triangles(const Exec& exec);
+/// Whole FDEM steps of flying hexagons, before they meet a floor and while they pile up on it.
+std::vector<Measurement> measure_contact(const Exec& exec);
+
 /// Runs the slab as told line by line, so that another program can be measured in alternating
 /// windows. Each line is answered by one line of JSON.
 ///

@@ -1,0 +1,152 @@
+// Benchmarks of the FDEM: cost against the number of triangles, and against the density of
+// contacts.
+
+#include <cmath>
+#include <map>
+
+#include "exec/memory.hpp"
+#include "fdem/world.hpp"
+#include "prepare/build_fdem.hpp"
+#include "run/benchmark.hpp"
+#include "run/machine.hpp"
+#include "run/measurements.hpp"
+
+namespace breccia {
+namespace {
+
+/// Granite, as in cases/brazilian_disc. Laws stay as they are here, so that numbers compare over
+/// time.
+fdem::Config granite() {
+  fdem::Config config;
+  config.method = "fdem2d";
+  config.time.evaluate_every = 100;
+  fdem::MaterialConfig rock;
+  rock.name = "rock";
+  rock.damping = 0.1;
+  config.materials.push_back(rock);
+  return config;
+}
+
+/// A plate of about `count` triangles, all joined, that rings: it starts at 1 m/s between supports.
+fdem::Config ringing_plate(int count) {
+  fdem::Config config = granite();
+  fdem::BodyConfig plate;
+  plate.name = "plate";
+  plate.material = "rock";
+  plate.shape = "plate";
+  plate.structured = true;
+  plate.mesh_size = 1e-3;
+  const double edge = std::sqrt(0.433 * count) * plate.mesh_size;
+  plate.size = {edge, edge};
+  plate.velocity = {0.3, 1.0};
+  config.bodies.push_back(plate);
+  fdem::SupportConfig floor;
+  floor.name = "floor";
+  floor.region.max = {no_limit, -0.5 * edge + 0.1 * plate.mesh_size};
+  config.supports.push_back(floor);
+  return config;
+}
+
+/// Hexagons of six triangles that fly against a wall: dense contact soon.
+fdem::Config flying_hexagons(int count) {
+  fdem::Config config = granite();
+  config.materials[0].joints = "none";
+  fdem::BodyConfig blocks;
+  blocks.name = "blocks";
+  blocks.material = "rock";
+  blocks.shape = "hexagons";
+  blocks.hexagons.count = count;
+  blocks.hexagons.side = 1e-3;
+  blocks.hexagons.gap = 1e-5;
+  const double edge = 1.8e-3 * std::sqrt(static_cast<double>(count));
+  blocks.size = {edge, edge};
+  blocks.velocity = {0.0, -5.0};
+  config.bodies.push_back(blocks);
+  fdem::BodyConfig floor;
+  floor.name = "floor";
+  floor.material = "rock";
+  floor.shape = "plate";
+  floor.structured = true;
+  floor.mesh_size = 2e-3;
+  floor.size = {1.2 * edge, 4e-3};
+  floor.center = {0.0, -0.5 * edge - 2.2e-3};
+  config.bodies.push_back(floor);
+  fdem::SupportConfig support;
+  support.name = "held";
+  support.region.on = "floor";
+  config.supports.push_back(support);
+  return config;
+}
+
+fdem::Model model_of(const fdem::Config& config) {
+  return build_fdem_model(config.bodies, config.discontinuities, {{"rock"}, {}}, config.seed, "");
+}
+
+void report_steps(fdem::World& w, StageTimers& timers, const std::string& part, int steps,
+                  std::vector<Measurement>& result) {
+  std::vector<double> wall;
+  std::map<std::string, std::vector<double>> stages;
+  const std::int64_t searched = w.searches;
+  for (int window = 0; window < window_count; ++window) {
+    timers.clear();
+    wall.push_back(seconds_of([&] {
+                     for (int i = 0; i < steps; ++i) fdem::step(w);
+                   }) /
+                   steps);
+    for (const auto& [stage, entry] : timers.stages()) {
+      stages[stage].resize(wall.size() - 1, 0.0);
+      stages[stage].push_back(entry.seconds / steps);
+    }
+  }
+  const double triangles = w.triangles.size(), joints = w.joints.size();
+  result.push_back(once(part, "triangles", triangles, "-"));
+  result.push_back(once(part, "joints", joints, "-"));
+  result.push_back(once(part, "couples", w.couples.size(), "-"));
+  result.push_back(over_windows(part, "step", "us", wall, 1e6));
+  result.push_back(over_windows(part, "ns_per_triangle_step", "ns", wall, 1e9 / triangles));
+  if (joints > 0)
+    result.push_back(
+        over_windows(part, "ns_per_joint_step", "ns", stages["joint_forces"], 1e9 / joints));
+  if (w.couples.size() > 0)
+    result.push_back(over_windows(part, "ns_per_couple_step", "ns", stages["contact_forces"],
+                                  1e9 / w.couples.size()));
+  for (auto [stage, values] : stages) {
+    values.resize(wall.size(), 0.0);
+    result.push_back(over_windows(part, "stage " + stage, "us a step", values, 1e6));
+  }
+  result.push_back(once(part, "searches", static_cast<double>(w.searches - searched), "-"));
+}
+
+}  // namespace
+
+std::vector<Measurement> measure_triangles(const Exec& exec) {
+  std::vector<Measurement> result;
+  for (const int count : {10'000, 52'000, 100'000, 1'000'000}) {
+    StageTimers timers;
+    Exec timed = exec;
+    timed.timers = &timers;
+    const fdem::Config config = ringing_plate(count);
+    fdem::World w = fdem::make_world(config, model_of(config), timed);
+    const std::string part = "plate of " + std::to_string(count);
+    report_steps(w, timers, part, count > 200'000 ? 5 : 2'000'000 / count, result);
+    result.push_back(once(part, "resident_per_triangle",
+                          static_cast<double>(peak_memory()) / w.triangles.size(), "B"));
+  }
+  return result;
+}
+
+std::vector<Measurement> measure_contact(const Exec& exec) {
+  std::vector<Measurement> result;
+  StageTimers timers;
+  Exec timed = exec;
+  timed.timers = &timers;
+  const fdem::Config config = flying_hexagons(8'000);
+  fdem::World w = fdem::make_world(config, model_of(config), timed);
+  for (int part = 0; part < 3; ++part) {
+    report_steps(w, timers, "after " + std::to_string(w.step) + " steps", 40, result);
+    for (int i = 0; i < 600; ++i) fdem::step(w);
+  }
+  return result;
+}
+
+}  // namespace breccia

@@ -1,0 +1,23 @@
+#pragma once
+// What benchmarks are made of: windows of equal work, and their median.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "run/benchmark.hpp"
+
+namespace breccia {
+
+inline constexpr int window_count = 7;
+
+/// Wall time of some work.  [s]
+double seconds_of(const std::function<void()>& work);
+
+Measurement once(const std::string& part, const std::string& name, double value, const char* unit);
+
+/// Median, least and most of the windows' values, times `factor`.
+Measurement over_windows(const std::string& part, const std::string& name, const char* unit,
+                         std::vector<double> values, double factor);
+
+}  // namespace breccia
