@@ -28,11 +28,6 @@ void check_case(const Config& config) {
   attempt([&] { elastic_table(config); });
   attempt([&] { bond_table(config); });
   attempt([&] { contact_table(config); });
-  for (const MaterialConfig& m : config.materials)
-    if (m.joints == "extrinsic")
-      add("material." + m.name +
-          ".joints: extrinsic joints are not there yet; allowed: "
-          "intrinsic, none");
   std::set<std::string> places;
   for (const BodyConfig& b : config.bodies)
     if (!places.insert(b.name).second) add("body " + b.name + ": the name is taken twice");

@@ -80,6 +80,7 @@ struct JointShares {
 
   Shares operator()(Index i) const {
     Shares s;
+    if (stage[i] == JointStage::dormant) return s;
     if (stage[i] != JointStage::whole) {
       s.open.add(work[i].open);
       s.slide.add(work[i].slide);
@@ -159,7 +160,7 @@ EnergySplit energies(World& w) {
   b.damping = s.damping.value();
   b.contact = s.contact.value() + w.ledger.lost.value();
   b.work = s.work.value() + potential(w).value() - w.ledger.start_potential.value();
-  b.start = w.ledger.start;
+  b.start = w.ledger.start + w.ledger.inserted.value();
   w.ledger.largest = std::max({w.ledger.largest, b.total(), b.start + std::abs(b.work),
                                std::abs(b.start) + std::abs(b.work)});
   b.error_relative = w.ledger.largest > 0.0 ? std::abs(b.missing()) / w.ledger.largest : 0.0;

@@ -119,10 +119,11 @@ void load_forces(World& w) {
              LoadForces{w.load_starts.view(), w.loaded_edges.view(), w.load_laws.view(),
                         std::as_const(t.nodes).view(), t.external.view(), t.force.view()});
   }
-  if (w.bundles.starts.size() > 1)
-    for_each(w.exec, w.bundles.starts.size() - 1,
-             BundleForces{w.bundles.starts.view(), w.bundles.nodes.view(), t.mass.view(),
-                          t.force.view()});
+  if (w.bundles.starts.size() < 2) return;
+  const StageTime timed(w.exec, "bundles");
+  for_each(w.exec, w.bundles.starts.size() - 1,
+           BundleForces{w.bundles.starts.view(), w.bundles.nodes.view(), w.bundles.leader.view(),
+                        t.mass.view(), t.force.view()});
 }
 
 namespace {
@@ -145,10 +146,10 @@ double choose_time_step(const World& w) {
   return allowed_step(w, fold(w.exec, w.triangles.size(), 1e300, stable_step(w), least_of));
 }
 
-double shortened_time_step(const World& w) {
+double shortened_time_step(const World& w, const Buffer<Index>& triangles) {
   const StageTime timed(w.exec, "time_step");
-  const double stable = fold(w.exec, w.reach.triangle.size(), 1e300,
-                             StableStepOf{stable_step(w), w.reach.triangle.view()}, least_of);
+  const double stable = fold(w.exec, triangles.size(), 1e300,
+                             StableStepOf{stable_step(w), triangles.view()}, least_of);
   return std::min(w.next_dt, allowed_step(w, stable));
 }
 

@@ -81,6 +81,7 @@ struct JointForces {
 
   BR_HD void damaged_at(Index i) const {
     const JointStage before = stage[i];
+    if (before == JointStage::dormant) return;
     const bool acted =
         dot(force[i].first, force[i].first) + dot(force[i].second, force[i].second) > 0.0;
     if (before == JointStage::broken && !acted) return;

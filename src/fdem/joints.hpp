@@ -8,7 +8,13 @@
 namespace breccia::fdem {
 
 /// How far a joint has gone.
-enum class JointStage : std::uint8_t { whole, softened, broken };
+/// dormant: its triangles move as one until the stress between them reaches its strength.
+enum class JointStage : std::uint8_t { whole, softened, broken, dormant };
+
+/// Whether a joint has lost some of its strength.
+BR_HD constexpr bool is_damaged(JointStage stage) {
+  return stage == JointStage::softened || stage == JointStage::broken;
+}
 
 /// Integration points: at the first end, in the middle, at the second end; weights 1/6, 4/6, 1/6.
 struct JointPoints {
@@ -33,13 +39,13 @@ struct Joints {
   Buffer<Index> law;             ///< index into World::bonds  [-]
   Buffer<double> length;         ///< at the start  [m]
   Buffer<double> strength;       ///< over its law's  [-]
-  Buffer<Vec2> preset;         ///< opening and slip that carry the in-situ stress; empty: none  [m]
-  Buffer<JointStage> stage;    ///<  [-]
-  Buffer<JointPoints> points;  ///< damage and largest opening and slip
-  Buffer<JointForce> force;    ///< of this time  [N/m]
-  Buffer<JointWork> work;      ///< taken up so far  [J/m]
-  Buffer<double> broke_at;     ///< time of its break, -1: whole, -2: broken from the start  [s]
-  Buffer<double> pressing;     ///< compressive force when it broke  [N/m]
+  Buffer<Vec2> preset;           ///< opening and slip at which it was joined; empty: none  [m]
+  Buffer<JointStage> stage;      ///<  [-]
+  Buffer<JointPoints> points;    ///< damage and largest opening and slip
+  Buffer<JointForce> force;      ///< of this time  [N/m]
+  Buffer<JointWork> work;        ///< taken up so far  [J/m]
+  Buffer<double> broke_at;       ///< time of its break, -1: whole, -2: broken from the start  [s]
+  Buffer<double> pressing;       ///< compressive force when it broke  [N/m]
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -51,6 +51,7 @@ BondTable bond_table(const Config& config) {
     table.bonds.push_back(bond);
     return static_cast<std::int16_t>(table.bonds.size() - 1);
   };
+  for (const MaterialConfig& m : config.materials) table.dormant.push_back(m.joints == "extrinsic");
   const auto own = [&](const MaterialConfig& m) {
     return bond_of(m.joint, m.young, config.joints);
   };

@@ -12,6 +12,7 @@ struct BondTable {
   std::vector<JointBond> bonds;
   std::vector<std::int16_t> of_pair;  ///< at a * materials + b: index into bonds, or a reason below
   std::vector<std::int16_t> of_joint;  ///< of each [joint.<name>]
+  std::vector<bool> dormant;  ///< of each material: its joints appear where they are needed
   static constexpr std::int16_t nothing = -1, bonded = -2;
 };
 

@@ -119,7 +119,7 @@ std::vector<double> damage(const World& w) {
   std::vector<double> worst(at(w.triangles.size()), 0.0);
   const Joints j = host_copy(w.joints);
   for (Index i = 0; i < j.size(); ++i) {
-    if (j.stage.data()[i] == JointStage::whole) continue;
+    if (!is_damaged(j.stage.data()[i])) continue;
     double d = j.stage.data()[i] == JointStage::broken ? 1.0 : 0.0;
     for (const auto& point : j.points.data()[i].point) d = std::max(d, point.damage);
     for (const Index edge : {j.edge_a.data()[i], j.edge_b.data()[i]})
@@ -202,17 +202,16 @@ std::vector<Crack> cracks(const World& w) {
 Fragments fragments(const World& w) {
   const Joints j = host_copy(w.joints);
   std::vector<double> mass;
-  std::vector<Index> starts, bundled;
   copy_to(mass, w.triangles.mass);
-  copy_to(starts, w.bundles.starts);
-  copy_to(bundled, w.bundles.nodes);
+  std::vector<EdgeJoints> edges;
+  copy_to(edges, w.edges);
   Pieces pieces(mass.size());
   for (Index i = 0; i < j.size(); ++i)
     if (j.stage.data()[i] != JointStage::broken)
       pieces.join(j.edge_a.data()[i] / 3, j.edge_b.data()[i] / 3);
-  for (std::size_t b = 0; b + 1 < starts.size(); ++b)
-    for (Index k = starts[b] + 1; k < starts[b + 1]; ++k)
-      pieces.join(bundled[at(starts[b])] / 3, bundled[at(k)] / 3);
+  for (std::size_t edge = 0; edge < w.across.size(); ++edge)
+    if (edges[edge / 3].at[edge % 3] == edge_bonded)
+      pieces.join(static_cast<Index>(edge / 3), w.across[edge] / 3);
   std::vector<double> of_root(mass.size(), 0.0);
   for (std::size_t t = 0; t < mass.size(); ++t)
     of_root[at(pieces.root(static_cast<Index>(t)))] += 3.0 * mass[t];

@@ -70,7 +70,7 @@ void mark_opened(World& w) {
   copy_to(edge_a, w.joints.edge_a);
   std::vector<std::uint8_t> vertex(w.open_vertex.size(), 0);
   for (std::size_t i = 0; i < stage.size(); ++i) {
-    if (stage[i] == JointStage::whole) continue;
+    if (!is_damaged(stage[i])) continue;
     for (const Index node : {edge_a[i], JointEnds::next_corner(edge_a[i])})
       vertex[static_cast<std::size_t>(w.vertex[static_cast<std::size_t>(node)])] = 1;
   }
@@ -211,7 +211,7 @@ void find_couples(World& w) {
   derive_couples(w);
   ++w.searches;
 
-  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w);
+  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, w.reach.triangle);
 }
 
 void derive_couples(World& w) {

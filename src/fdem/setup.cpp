@@ -62,38 +62,21 @@ void set_up_triangles(World& w, const Config& config, const Model& model) {
   triangles.load_work.resize(model.size());
 }
 
-/// Corners that bonded edges make one: union by the lowest number.
-class Merged {
- public:
-  explicit Merged(std::size_t nodes) : lowest_(nodes) {
-    std::iota(lowest_.begin(), lowest_.end(), 0);
-  }
-  Index root(Index n) {
-    while (lowest_[at(n)] != n) n = lowest_[at(n)] = lowest_[at(lowest_[at(n)])];
-    return n;
-  }
-  void merge(Index a, Index b) {
-    a = root(a);
-    b = root(b);
-    lowest_[at(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> lowest_;
-};
-
-void set_up_bundles(World& w, Merged& merged) {
-  std::map<Index, std::vector<Index>> members;
-  for (Index n = 0; n < 3 * w.triangles.size(); ++n) members[merged.root(n)].push_back(n);
+/// Vertices with several corners, some of which move as one, at least at the start.
+void set_up_bundles(World& w, const std::vector<std::uint8_t>& tied) {
+  std::vector<std::vector<Index>> corners(tied.size());
+  for (Index n = 0; n < 3 * w.triangles.size(); ++n)
+    if (tied[at(w.vertex[at(n)])] != 0) corners[at(w.vertex[at(n)])].push_back(n);
   std::vector<Index> starts{0}, nodes;
-  for (const auto& [root, bundle] : members) {
-    if (bundle.size() < 2) continue;
-    nodes.insert(nodes.end(), bundle.begin(), bundle.end());
+  for (const std::vector<Index>& ring : corners) {
+    if (ring.empty()) continue;
+    nodes.insert(nodes.end(), ring.begin(), ring.end());
     starts.push_back(static_cast<Index>(nodes.size()));
   }
   if (nodes.empty()) return;
   copy_to(w.bundles.starts, starts);
   copy_to(w.bundles.nodes, nodes);
+  derive_bundles(w);
 }
 
 /// Joins neighbours: a joint, a bond, or nothing.
@@ -110,7 +93,9 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   std::vector<double> length, strength;
   std::vector<Vec2> preset;
   w.open_vertex.assign(model.point.size(), 0);
-  Merged merged(3 * model.triangle.size());
+  w.across.assign(3 * model.triangle.size(), -1);
+  std::vector<std::uint8_t> tied(model.point.size(), 0);  // 1: corners here move as one
+  std::vector<JointStage> stage;
   const auto slot = [&](Index edge) -> Index& { return edges[at(edge / 3)].at[edge % 3]; };
   const auto next = [](Index edge) { return 3 * (edge / 3) + (edge + 1) % 3; };
   for (const MeshEdge& e : mesh_edges(model)) {
@@ -122,6 +107,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
       open(1);
       continue;
     }
+    w.across[at(e.a)] = e.b;
+    w.across[at(e.b)] = e.a;
     const auto a = at(e.a / 3), b = at(e.b / 3);
     const auto weak = discontinuities.find({e.low, e.high});
     const std::int16_t found =
@@ -135,9 +122,16 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     }
     if (found == BondTable::bonded) {
       slot(e.a) = slot(e.b) = edge_bonded;
-      merged.merge(e.a, next(e.b));
-      merged.merge(next(e.a), e.b);
+      tied[at(e.low)] = tied[at(e.high)] = 1;
       continue;
+    }
+    const bool dormant = weak == discontinuities.end() &&
+                         table.dormant[static_cast<std::size_t>(model.material[a])] &&
+                         table.dormant[static_cast<std::size_t>(model.material[b])];
+    stage.push_back(dormant ? JointStage::dormant : JointStage::whole);
+    if (dormant) {
+      tied[at(e.low)] = tied[at(e.high)] = 1;
+      w.extrinsic = true;
     }
     const auto joint = static_cast<Index>(edge_a.size());
     slot(e.a) = 2 * joint;
@@ -150,7 +144,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     length.push_back(norm(along));
     strength.push_back(
         std::min(static_cast<double>(model.strength[a]), static_cast<double>(model.strength[b])));
-    if (!config.in_situ.any()) continue;
+    preset.emplace_back();
+    if (dormant || !config.in_situ.any()) continue;
     const Vec2 unit = (1.0 / length.back()) * along, across{-unit.y, unit.x};
     const Vec2 traction = Sym2{config.in_situ.xx, config.in_situ.yy, config.in_situ.xy} * across;
     Vec2 opening;
@@ -158,7 +153,7 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
                         length.back(), dot(traction, across), dot(traction, unit), opening))
       throw InputError("in_situ: the joint between triangles " + std::to_string(a) + " and " +
                        std::to_string(b) + " is too weak for this stress");
-    preset.push_back(opening);
+    preset.back() = opening;
   }
   std::vector<JointEnds> ends;
   for (std::size_t i = 0; i < edge_a.size(); ++i)
@@ -173,14 +168,19 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   copy_to(j.law, law);
   copy_to(j.length, length);
   copy_to(j.strength, strength);
-  copy_to(j.preset, preset);
+  if (w.extrinsic || config.in_situ.any()) copy_to(j.preset, preset);
   copy_to(j.broke_at, std::vector<double>(edge_a.size(), -1.0));
-  j.stage.resize(count);
+  copy_to(j.stage, stage);
   j.points.resize(count);
   j.force.resize(count + 1);
   j.work.resize(count);
   j.pressing.resize(count);
-  set_up_bundles(w, merged);
+  if (w.extrinsic) {
+    w.stress.resize(w.triangles.size());
+    w.overshoot.resize(count);
+    w.reached.resize(1);
+  }
+  set_up_bundles(w, tied);
 }
 
 Amplitude amplitude(const HistoryConfig& history) {
@@ -298,7 +298,7 @@ World::World(const Exec& how)
     ((arrays = std::remove_reference_t<decltype(arrays)>(how.space)), ...);
   };
   place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, bundles.starts, bundles.nodes,
-        edges, joint_ends, motions, load_laws, born);
+        bundles.leader, edges, joint_ends, motions, load_laws, born, stress, overshoot, reached);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {
@@ -326,6 +326,7 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
 
 void derive(World& w) {
   derive_couples(w);
+  derive_bundles(w);
 }
 
 }  // namespace breccia::fdem

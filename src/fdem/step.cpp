@@ -9,13 +9,15 @@ void step(World& w) {
   // 2. Contact detection, when travel has used the margin up or a joint has opened
   if (couples_are_due(w)) find_couples(w);
 
-  // 3. Joints crack, couples push and rub, triangles deform; one sum per corner, no atomics
+  // 3. Joints appear and crack, couples push and rub, triangles deform; one sum per corner, no
+  // atomics
   // 4. The next step: Gershgorin's bound
   evaluate_forces(w);
   w.step += 1;
 }
 
 void evaluate_forces(World& w) {
+  insert_joints(w);
   joint_forces(w);
   couple_forces(w);
   triangle_forces(w);

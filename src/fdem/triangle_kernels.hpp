@@ -106,31 +106,36 @@ struct TriangleForces {
   }
 };
 
-/// Corners that move as one: all that lie at one vertex between bonded neighbours.
+/// Corners that move as one: at each vertex where some do, all corners, and who goes with whom.
 struct Bundles {
-  Buffer<Index> starts;  ///< first member of each bundle, and the end
-  Buffer<Index> nodes;   ///< members, ascending by global number
+  Buffer<Index> starts;  ///< first corner of each vertex, and the end
+  Buffer<Index> nodes;   ///< corners, ascending by global number
+  Buffer<Index> leader;  ///< place in `nodes` of the first corner of the same bundle
 };
 
 /// Shares the sum of a bundle's forces by mass: all its corners get one acceleration.
 struct BundleForces {
   static constexpr const char* name = "fdem.bundles";
-  View<const Index> starts, nodes;
+  View<const Index> starts, nodes, leader;
   View<const double> mass;
   View<Corners> force;
 
-  BR_HD void operator()(Index bundle) const {
-    Vec2 sum{};
-    double total = 0.0;
-    for (Index k = starts[bundle]; k < starts[bundle + 1]; ++k) {
-      const Index n = nodes[k];
-      sum += force[n / 3].at[n % 3];
-      total += mass[n / 3];
-    }
-    const Vec2 acceleration = (1.0 / total) * sum;
-    for (Index k = starts[bundle]; k < starts[bundle + 1]; ++k) {
-      const Index n = nodes[k];
-      force[n / 3].at[n % 3] = mass[n / 3] * acceleration;
+  BR_HD void operator()(Index vertex) const {
+    const Index end = starts[vertex + 1];
+    for (Index first = starts[vertex]; first < end; ++first) {
+      if (leader[first] != first) continue;
+      Vec2 sum{};
+      double total = 0.0;
+      for (Index k = first; k < end; ++k) {
+        if (leader[k] != first) continue;
+        const Index n = nodes[k];
+        sum += force[n / 3].at[n % 3];
+        total += mass[n / 3];
+      }
+      const Vec2 acceleration = (1.0 / total) * sum;
+      for (Index k = first; k < end; ++k)
+        if (leader[k] == first)
+          force[nodes[k] / 3].at[nodes[k] % 3] = mass[nodes[k] / 3] * acceleration;
     }
   }
 };
@@ -338,7 +343,8 @@ struct StableStep {
     const Index entry = edges[t].at[k];
     if (entry == edge_bonded) return;
     if (entry >= 0 && stage[pair_of(entry)] != JointStage::broken) {
-      stiffness[0] = bonds[bond_of[pair_of(entry)]].stiffness;
+      if (stage[pair_of(entry)] != JointStage::dormant)
+        stiffness[0] = bonds[bond_of[pair_of(entry)]].stiffness;
       return;
     }
     const Vec2 edge = x[(k + 1) % 3] - x[k];

@@ -50,6 +50,7 @@ struct Opened {
 /// What has been booked for good.
 struct Ledger {
   ExactSum rubbed, lost;     ///< of couples dropped at a search  [J/m]
+  ExactSum inserted;         ///< stored in joints when they were inserted  [J/m]
   ExactSum start_potential;  ///< sum of m g.x at the start  [J/m]
   double start = 0.0;        ///< kinetic and elastic energy at the start  [J/m]
   double largest = 0.0;      ///< largest sum of energies and work seen  [J/m]
@@ -101,6 +102,8 @@ struct World {
   Bundles bundles;
   Buffer<JointEnds> joint_ends;
   Buffer<EdgeJoints> edges;   ///< joints of each triangle by slot
+  bool extrinsic = false;     ///< some joints are dormant, or were
+  std::vector<Index> across;  ///< the same edge of the neighbour, -1: there is none
   std::vector<Index> vertex;  ///< vertex of the mesh at each node
   /// What a vertex of the mesh touches: bit 0 the border or an edge that nothing joins, bit 1 such
   /// an edge between two triangles.
@@ -109,7 +112,10 @@ struct World {
   // What follows from the state.
   Buffer<Motion> motions;
   Buffer<LoadLaw> load_laws;
-  Buffer<double> born;  ///< of each couple, see CoupleForces
+  Buffer<Sym2> stress;           ///< of each triangle, where joints are extrinsic  [Pa]
+  Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
+  Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached
+  Buffer<double> born;           ///< of each couple, see CoupleForces
   Incidence couple_incidence;
   BroadPhase broad_phase;
 };
@@ -121,6 +127,8 @@ World make_world(const Config& config, const Model& model, const Exec& exec);
 /// Fills what follows from the state, after loading.
 void derive(World& w);
 void derive_couples(World& w);
+/// Who moves with whom, from the stages of the joints.
+void derive_bundles(World& w);
 
 /// One step: the points of Lukas 2014, section 2.
 void step(World& w);
@@ -129,14 +137,15 @@ void step(World& w);
 void move_triangles(World& w);
 bool couples_are_due(const World& w);
 void find_couples(World& w);
+void insert_joints(World& w);
 void joint_forces(World& w);
 void couple_forces(World& w);
 void triangle_forces(World& w);
 void load_forces(World& w);
 /// Safe share of the stable step of all triangles, rounded down to six bits.  [s]
 double choose_time_step(const World& w);
-/// The step to come, or less where triangles that can touch allow less: after joints have changed.
-double shortened_time_step(const World& w);
+/// The step to come, or less where these triangles allow less: after their joints have changed.
+double shortened_time_step(const World& w, const Buffer<Index>& triangles);
 void evaluate_forces(World& w);
 
 Kick kick(const World& w);

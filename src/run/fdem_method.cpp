@@ -172,7 +172,7 @@ Frame fdem_frame(const fdem::World& w) {
   const View<const fdem::NodeState> nodes = fdem::by_number(std::as_const(t.nodes).view());
   for (Index i = 0; i < j.size(); ++i) {
     const fdem::JointStage stage = j.stage.data()[i];
-    if (stage == fdem::JointStage::whole) continue;
+    if (!fdem::is_damaged(stage)) continue;
     const fdem::JointEnds e = fdem::JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}}) {
       const fdem::NodeState &a = nodes[on_a], &b = nodes[on_b];

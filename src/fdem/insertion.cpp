@@ -1,0 +1,207 @@
+// Extrinsic joints: where the stress between two triangles that move as one reaches their joint's
+// strength, the joint wakes and carries from then on just what was transmitted.
+
+#include <algorithm>
+#include <array>
+
+#include "exec/for_each.hpp"
+#include "fdem/materials.hpp"
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+struct TriangleStress {
+  View<const TriangleNodes> nodes;
+  View<const Index> material;
+  View<const ElasticTriangle> laws;
+  View<const Mat2> shape_inverse;
+  View<Sym2> stress;
+  BR_HD void operator()(Index t) const {
+    const CornersOf<double> c(nodes, t);
+    stress[t] = laws[material[t]].stress(deformation(shape_inverse[t], c.x, c.v), 0.0);
+  }
+};
+
+/// Traction across an edge from the mean stress of its two triangles.
+struct EdgeTraction {
+  View<const NodeState> nodes;
+  View<const JointEnds> ends;
+  View<const Sym2> stress;
+
+  /// @returns normal and shear, as the law of the joint counts them  [Pa]
+  BR_HD Vec2 operator()(Index i) const {
+    const JointEnds& e = ends[i];
+    const Vec2 line = nodes[e.a1].position - nodes[e.a0].position;
+    const Vec2 along = (1.0 / norm(line)) * line, across{-along.y, along.x};
+    const Sym2 &a = stress[e.a0 / 3], &b = stress[e.b0 / 3];
+    const Sym2 mean{0.5 * (a.xx + b.xx), 0.5 * (a.yy + b.yy), 0.5 * (a.xy + b.xy)};
+    const Vec2 traction = mean * across;
+    return {dot(traction, across), dot(traction, along)};
+  }
+};
+
+/// Stress over strength of dormant joints: tension, or shear by Mohr and Coulomb.
+struct Overshoot {
+  EdgeTraction traction;
+  View<const JointBond> bonds;
+  View<const Index> law;
+  View<const double> strength;
+  View<const JointStage> stage;
+  View<double> overshoot;
+  View<std::uint8_t> reached;
+  BR_HD void operator()(Index i) const {
+    overshoot[i] = 0.0;
+    if (stage[i] != JointStage::dormant) return;
+    const Vec2 t = traction(i);
+    const JointBond& bond = bonds[law[i]];
+    const double shear = bond.cohesion * strength[i] - bond.friction * smaller(t.x, 0.0);
+    overshoot[i] = larger(t.x / (bond.tension * strength[i]), absolute(t.y) / shear);
+    if (overshoot[i] >= 1.0) raise(reached, Change{});
+  }
+};
+
+/// Of the joints whose strength is reached the most loaded ones, no two at one vertex: its waking
+/// unloads the others around.
+std::vector<Index> chosen(const World& w, const std::vector<double>& overshoot) {
+  std::vector<Index> joints;
+  for (std::size_t i = 0; i < overshoot.size(); ++i)
+    if (overshoot[i] >= 1.0) joints.push_back(static_cast<Index>(i));
+  std::stable_sort(joints.begin(), joints.end(), [&](Index a, Index b) {
+    return overshoot[static_cast<std::size_t>(a)] > overshoot[static_cast<std::size_t>(b)];
+  });
+  std::vector<JointEnds> ends;
+  copy_to(ends, w.joint_ends);
+  std::vector<Index> taken, accepted;
+  for (const Index i : joints) {
+    const JointEnds& e = ends[static_cast<std::size_t>(i)];
+    const Index first = w.vertex[static_cast<std::size_t>(e.a0)];
+    const Index second = w.vertex[static_cast<std::size_t>(e.a1)];
+    const auto is_taken = [&](Index v) {
+      return std::find(taken.begin(), taken.end(), v) != taken.end();
+    };
+    if (is_taken(first) || is_taken(second)) continue;
+    taken.insert(taken.end(), {first, second});
+    accepted.push_back(i);
+  }
+  return accepted;
+}
+
+/// Wakes joints at the opening and slip at which they carry what was transmitted; books what they
+/// then store.
+void wake(World& w, const std::vector<Index>& joints, const std::vector<double>& overshoot) {
+  std::vector<JointStage> stage;
+  std::vector<Vec2> preset;
+  std::vector<double> strength, length;
+  std::vector<Index> law;
+  std::vector<JointBond> bonds;
+  copy_to(stage, w.joints.stage);
+  copy_to(preset, w.joints.preset);
+  copy_to(strength, w.joints.strength);
+  copy_to(length, w.joints.length);
+  copy_to(law, w.joints.law);
+  copy_to(bonds, w.bonds);
+  Buffer<TriangleNodes> nodes;
+  Buffer<JointEnds> ends;
+  Buffer<Sym2> stress;
+  copy_to(nodes, w.triangles.nodes);
+  copy_to(ends, w.joint_ends);
+  copy_to(stress, w.stress);
+  const EdgeTraction traction{by_number(std::as_const(nodes).view()), std::as_const(ends).view(),
+                              std::as_const(stress).view()};
+  for (const Index joint : joints) {
+    const auto i = static_cast<std::size_t>(joint);
+    const JointBond& bond = bonds[static_cast<std::size_t>(law[i])];
+    const double share = (1.0 - 1e-6) / overshoot[i];  // just below its strength
+    const Vec2 t = share * traction(joint);
+    preset_opening(bond, strength[i], length[i], t.x, t.y, preset[i]);
+    stage[i] = JointStage::whole;
+    const JointOpening<double> closed{};
+    const StoredEnergy held =
+        stored_in(bond, strength[i], length[i], preset[i], closed, JointPoints{});
+    w.ledger.inserted.add(held.open + held.slide);
+  }
+  copy_to(w.joints.stage, stage);
+  copy_to(w.joints.preset, preset);
+}
+
+}  // namespace
+
+void insert_joints(World& w) {
+  if (!w.extrinsic) return;
+  const StageTime timed(w.exec, "joint_insertion");
+  const Triangles& t = w.triangles;
+  for_each(w.exec, t.size(),
+           TriangleStress{t.nodes.view(), t.material.view(), w.laws.view(), t.shape_inverse.view(),
+                          w.stress.view()});
+  for_each(
+      w.exec, w.joints.size(),
+      Overshoot{{by_number(t.nodes.view()), w.joint_ends.view(), std::as_const(w.stress).view()},
+                w.bonds.view(),
+                w.joints.law.view(),
+                w.joints.strength.view(),
+                std::as_const(w.joints.stage).view(),
+                w.overshoot.view(),
+                w.reached.view()});
+  std::vector<std::uint8_t> reached;
+  copy_to(reached, w.reached);
+  if (reached[0] == 0) return;
+  copy_to(w.reached, std::vector<std::uint8_t>{0});
+  std::vector<double> overshoot;
+  copy_to(overshoot, w.overshoot);
+  const std::vector<Index> joints = chosen(w, overshoot);
+  wake(w, joints, overshoot);
+  derive_bundles(w);
+
+  // Their penalty shortens the step of the two triangles that each of them joins.
+  Buffer<Index> triangles(w.exec.space);
+  std::vector<JointEnds> ends;
+  std::vector<Index> changed;
+  copy_to(ends, w.joint_ends);
+  for (const Index i : joints)
+    changed.insert(changed.end(), {ends[static_cast<std::size_t>(i)].a0 / 3,
+                                   ends[static_cast<std::size_t>(i)].b0 / 3});
+  copy_to(triangles, changed);
+  if (w.next_dt > 0.0) w.next_dt = shortened_time_step(w, triangles);
+}
+
+void derive_bundles(World& w) {
+  if (w.bundles.starts.empty()) return;
+  std::vector<Index> starts, nodes;
+  std::vector<EdgeJoints> edges;
+  std::vector<JointStage> stage;
+  copy_to(starts, w.bundles.starts);
+  copy_to(nodes, w.bundles.nodes);
+  copy_to(edges, w.edges);
+  copy_to(stage, w.joints.stage);
+  const auto tied = [&](Index edge) {
+    const Index entry = edges[static_cast<std::size_t>(edge / 3)].at[edge % 3];
+    return entry == edge_bonded ||
+           (entry >= 0 && stage[static_cast<std::size_t>(pair_of(entry))] == JointStage::dormant);
+  };
+  std::vector<Index> leader(nodes.size());
+  for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
+    const Index begin = starts[v], end = starts[v + 1];
+    const auto place = [&](Index node) {
+      const auto first = nodes.begin() + begin, last = nodes.begin() + end;
+      return static_cast<Index>(std::lower_bound(first, last, node) - nodes.begin());
+    };
+    for (Index k = begin; k < end; ++k) leader[static_cast<std::size_t>(k)] = k;
+    const auto root = [&](Index k) {
+      while (leader[static_cast<std::size_t>(k)] != k) k = leader[static_cast<std::size_t>(k)];
+      return k;
+    };
+    for (Index k = begin; k < end; ++k) {
+      // The edge that leaves this corner: across it the same vertex ends the neighbour's edge.
+      const Index edge = nodes[static_cast<std::size_t>(k)];
+      if (!tied(edge)) continue;
+      const Index other = JointEnds::next_corner(w.across[static_cast<std::size_t>(edge)]);
+      const Index a = root(k), b = root(place(other));
+      leader[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+    for (Index k = begin; k < end; ++k) leader[static_cast<std::size_t>(k)] = root(k);
+  }
+  copy_to(w.bundles.leader, leader);
+}
+
+}  // namespace breccia::fdem
