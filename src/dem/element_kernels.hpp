@@ -18,26 +18,29 @@ struct Motion {
   }
 };
 
-/// addForce of Durand 2012, 4.2: each element sums over its own interactions in the order of the
-/// partners' global ids, so no memory order, thread or device changes a bit. Also the element's
-/// smallest inertia over stiffness (section 4.4).
+/// What the concrete links of an element have added up to so far. Zero between two steps.
+struct LinkSums {
+  SixSums as_b;              ///< force, then torque, of links that end at the element  [N, N m]
+  SixFloatSums stiffness_b;  ///< K, then K^theta  [N/m, N m]
+  SixSums as_a;              ///< torque, then minus the force, of links that start there
+  SixFloatSums stiffness_a;  ///< K^theta, then K
+};
+
+/// addForce of Durand 2012, 4.2: each element sums over its own interactions: concrete links in
+/// their order (already in `sums`), then bars and contacts in the order of the partners' global
+/// ids, so no thread or device changes a bit. Also the element's smallest inertia over stiffness
+/// (section 4.4).
 struct GatherForces {
   static constexpr const char* name = "dem.gather";
-  IncidenceView links, contacts;
-  View<const Action> link_actions, contact_actions;
+  View<LinkSums> sums;
+  IncidenceView bars, contacts;
+  View<const Action> bar_actions, contact_actions;
   View<const double> mass, inertia;
   View<const std::uint8_t> fixed;
   View<Vec3> force, torque;
   View<double> critical;  ///< min over free coordinates of inertia / stiffness  [s2]
 
-  /// Sums of what lies side by side in an Action: torque and force where the element is a, force
-  /// and torque where it is b; each side in the order of the partners' ids.
-  struct Sums {
-    SixSums as_a, as_b;
-    SixFloatSums stiffness_a, stiffness_b;
-  };
-
-  BR_HD static void add(Sums& sums, const IncidenceView& incidence,
+  BR_HD static void add(LinkSums& sums, const IncidenceView& incidence,
                         const View<const Action>& actions, Index element) {
     for (Index k = incidence.first(element); k < incidence.last(element); ++k) {
       const Entry entry = incidence.entries[k];
@@ -52,20 +55,24 @@ struct GatherForces {
     }
   }
 
-  BR_HD void operator()(Index e) const {
-    Sums s;
-    add(s, links, link_actions, e);
+  BR_WHOLE BR_HD void operator()(Index e) const {
+    LinkSums& s = sums[e];
+    add(s, bars, bar_actions, e);
     add(s, contacts, contact_actions, e);
     force[e] = {s.as_b[0] - s.as_a[3], s.as_b[1] - s.as_a[4], s.as_b[2] - s.as_a[5]};
     torque[e] = {s.as_b[3] + s.as_a[0], s.as_b[4] + s.as_a[1], s.as_b[5] + s.as_a[2]};
-    double slowest = 0.0;  // largest stiffness / inertia
+    float straight = 0.0F, turning = 0.0F;  // largest stiffness of a free coordinate
     for (int c = 0; c < 3; ++c) {
-      const auto straight = static_cast<double>(s.stiffness_a[3 + c] + s.stiffness_b[c]);
-      const auto turning = static_cast<double>(s.stiffness_a[c] + s.stiffness_b[3 + c]);
-      if ((fixed[e] >> c & 1) == 0) slowest = larger(slowest, straight / mass[e]);
-      if ((fixed[e] >> (3 + c) & 1) == 0) slowest = larger(slowest, turning / inertia[e]);
+      const float k = s.stiffness_a[3 + c] + s.stiffness_b[c];
+      const float k_theta = s.stiffness_a[c] + s.stiffness_b[3 + c];
+      if ((fixed[e] >> c & 1) == 0 && k > straight) straight = k;
+      if ((fixed[e] >> (3 + c) & 1) == 0 && k_theta > turning) turning = k_theta;
     }
+    const double slowest =
+        larger(static_cast<double>(straight) / mass[e], static_cast<double>(turning) / inertia[e]);
     critical[e] = slowest > 0.0 ? 1.0 / slowest : 1e300;
+    s.as_b = s.as_a = {};
+    s.stiffness_b = s.stiffness_a = {};
   }
 };
 
@@ -133,7 +140,7 @@ struct MoveElements {
   View<Quaternion> orientation;
   View<double> damping_work, load_work;
 
-  BR_HD void operator()(Index e) const {
+  BR_WHOLE BR_HD void operator()(Index e) const {
     const Kick::Result r = kick(e);
     ElementState& moved = state[e];
     const Vec3 before = kick.last_dt * moved.velocity, after = kick.next_dt * r.velocity;

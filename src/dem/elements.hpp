@@ -4,6 +4,14 @@
 #include "exec/buffer.hpp"
 #include "math/vec.hpp"
 
+/// A kernel compiled as one function: as functions of their own the parts of a law would hand their
+/// vectors over through memory.
+#if defined(__CUDACC__)
+#define BR_WHOLE
+#else
+#define BR_WHOLE [[gnu::flatten]]
+#endif
+
 namespace breccia::dem {
 
 /// Degrees of freedom that a support prescribes: bits of Elements::fixed.

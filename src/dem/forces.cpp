@@ -10,10 +10,89 @@
 namespace breccia::dem {
 namespace {
 
+BR_HD void add_to_b(LinkSums& sums, const Action& action) {
+  sums.as_b.add(action.numbers + 3);
+  sums.stiffness_b.add(action.stiffness + 3);
+}
+
 struct LeastCritical {
   View<const double> critical;
   BR_HD double operator()(Index e) const { return critical[e]; }
 };
+
+/// Sums the actions of links as they come. What another run's element, or one that an earlier run
+/// reaches too, gets as b is passed on: that element adds it up in the order of all links.
+struct AddLinks {
+  View<LinkSums> sums;
+  Index settled, end;  ///< elements that get sums at once
+  Index reach;         ///< no link leads further
+  std::vector<PassedAction>& passed;
+
+  /// Links [from, to); action 0 is of link `from`.
+  void operator()(const ConcreteLinkForces& links, Index from, Index to,
+                  const Action* actions) const {
+    for (Index i = from; i < to;) {
+      const Index a = links.a[i];
+      SixSums as_a = sums[a].as_a;
+      SixFloatSums stiffness_a = sums[a].stiffness_a;
+      fetch(std::min(a + reach, sums.size - 1), links.elements.state);
+      for (; i < to && links.a[i] == a; ++i) {
+        const Action& action = actions[i - from];
+        as_a.add(action.numbers);
+        stiffness_a.add(action.stiffness);
+        const Index b = links.b[i], soon = links.b[std::min(i + 8, to - 1)];
+        __builtin_prefetch(&sums[soon].as_b, 1);
+        __builtin_prefetch(&sums[soon].stiffness_b, 1);
+        if (b >= settled && b < end)
+          add_to_b(sums[b], action);
+        else
+          passed.push_back({action, b});
+      }
+      sums[a].as_a = as_a;
+      sums[a].stiffness_a = stiffness_a;
+    }
+  }
+  /// Asks the memory for an element before the first link comes to it.
+  void fetch(Index element, const View<const ElementState>& state) const {
+    const auto* sum = reinterpret_cast<const char*>(sums.data + element);
+    const auto* record = reinterpret_cast<const char*>(state.data + element);
+    for (int line = 0; line < 3; ++line) __builtin_prefetch(sum + 64 * line, 1);
+    for (int line = 0; line < 2; ++line) __builtin_prefetch(record + 64 * line);
+  }
+};
+
+/// Asks the memory for what the links [from, to) keep: too many arrays for the processor to
+/// foresee.
+void fetch(const ConcreteLinkForces& links, Index from, Index to) {
+  const View<double>&shear = links.shear.items, &moment = links.moment.items;
+  const Index plane = links.shear.stride;
+  for (Index i = from; i < to; i += 8) {
+    __builtin_prefetch(links.length.data + i);
+    __builtin_prefetch(links.stiffness.data + i);
+    __builtin_prefetch(links.opening.data + i, 1);
+    for (int c = 0; c < 3; ++c) {
+      __builtin_prefetch(shear.data + c * plane + i, 1);
+      __builtin_prefetch(moment.data + c * plane + i, 1);
+    }
+  }
+}
+
+/// Forces of links [begin, end) and their sums, in portions whose actions stay in the nearest
+/// cache.
+void add_links(Lanes lanes, ConcreteLinkForces links, Index begin, Index end, const AddLinks& add) {
+  constexpr Index portion = 64;
+  alignas(64) Action actions[portion];
+  links.actions.data = actions;
+  links.actions.size = portion;
+  for (Index from = begin; from < end;) {
+    const Index to = std::min(from / portion * portion + portion, end);  // whole packs, aligned
+    links.first_action = -from;
+    fetch(links, to, std::min(to + portion, end));
+    run_links(lanes, links, from, to);
+    add(links, from, to, actions);
+    from = to;
+  }
+}
 
 }  // namespace
 
@@ -54,21 +133,20 @@ void move_elements(World& w) {
 void bar_forces(World& w) {
   const StageTime timed(w.exec, "bar_forces");
   const ElementsView elements = elements_view(w);
-  const Index concretes = w.concrete.size();
   SteelLinks& s = w.steel;
   for (const auto& group : w.steel_groups)
     for_each(w.exec, group.end - group.begin,
-             Shifted<SteelLinkForces>{{group.law, w.last_dt, elements, s.a.view(), s.b.view(),
-                                       s.length.view(), s.state.view(), s.yielded.view(),
-                                       s.broke.view(), w.link_actions.view(), concretes},
-                                      group.begin});
+             Shifted<SteelLinkForces>{
+                 {group.law, w.last_dt, elements, s.a.view(), s.b.view(), s.length.view(),
+                  s.state.view(), s.yielded.view(), s.broke.view(), w.bar_actions.view(), 0},
+                 group.begin});
   InterfaceLinks& b = w.interface;
   for (const auto& group : w.interface_groups)
     for_each(w.exec, group.end - group.begin,
              Shifted<InterfaceLinkForces>{
                  {group.law, w.last_dt, elements, b.a.view(), b.b.view(), b.before.view(),
                   b.after.view(), b.stiffness.view(), b.area.view(), b.state.view(), b.slid.view(),
-                  b.broke.view(), w.link_actions.view(), concretes + s.size()},
+                  b.broke.view(), w.bar_actions.view(), s.size()},
                  group.begin});
 }
 
@@ -88,18 +166,28 @@ void concrete_forces_and_sums(World& w) {
   ConcreteLinks& c = w.concrete;
   std::vector<ConcreteLinkForces> kernels;
   for (const auto& group : w.concrete_groups)
-    kernels.push_back({group.law, w.last_dt, elements, c.a.view(), c.b.view(), c.length.view(),
-                       c.stiffness.view(), c.opening.view(), c.shear.view(), c.moment.view(),
-                       c.slid.view(), c.yielded.view(), c.broke.view(), w.link_actions.view(), 0});
+    kernels.push_back({group.law,
+                       w.last_dt,
+                       elements,
+                       c.a.view(),
+                       c.b.view(),
+                       c.length.view(),
+                       c.stiffness.view(),
+                       c.opening.view(),
+                       c.shear.view(),
+                       c.moment.view(),
+                       c.slid.view(),
+                       c.yielded.view(),
+                       c.broke.view(),
+                       {},
+                       0});
   Elements& e = w.elements;
-  const GatherForces gather{w.link_incidence.view(), w.contact_incidence.view(),
-                            w.link_actions.view(),   w.contact_actions.view(),
-                            e.mass.view(),           e.inertia.view(),
-                            e.fixed.view(),          e.force.view(),
-                            e.torque.view(),         w.critical.view()};
-  // Tile by tile: what the links of a tile write is still in the cache when its elements add it up.
-  constexpr Index tile = 512;
-  const Sweep& sweep = w.sweep;
+  const GatherForces gather{
+      w.link_sums.view(),   w.bar_incidence.view(),   w.contact_incidence.view(),
+      w.bar_actions.view(), w.contact_actions.view(), e.mass.view(),
+      e.inertia.view(),     e.fixed.view(),           e.force.view(),
+      e.torque.view(),      w.critical.view()};
+  Sweep& sweep = w.sweep;
   const auto threads = static_cast<int>(sweep.settled.size());
 #pragma omp parallel num_threads(threads) if (threads > 1)
   {
@@ -107,12 +195,15 @@ void concrete_forces_and_sums(World& w) {
 #pragma omp for schedule(static, 1)
     for (int t = 0; t < threads; ++t) {
       const auto run = static_cast<std::size_t>(t);
-      for (Index from = sweep.begin[run]; from < sweep.begin[run + 1]; from += tile) {
-        const Index to = std::min(from + tile, sweep.begin[run + 1]);
+      AddLinks add{gather.sums, sweep.settled[run], sweep.begin[run + 1], sweep.reach,
+                   sweep.passed[run]};
+      add.passed.clear();
+      for (Index from = sweep.begin[run]; from < sweep.begin[run + 1]; from += sweep_tile) {
+        const Index to = std::min(from + sweep_tile, sweep.begin[run + 1]);
         for (std::size_t g = 0; g < kernels.size(); ++g) {
           const std::vector<Index>& starts = w.concrete_groups[g].starts;
-          run_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
-                    starts[static_cast<std::size_t>(to)]);
+          add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
+                    starts[static_cast<std::size_t>(to)], add);
         }
         for (Index i = std::max(from, sweep.settled[run]); i < to; ++i) gather(i);
       }
@@ -121,8 +212,13 @@ void concrete_forces_and_sums(World& w) {
 #pragma omp for schedule(static, 1)
     for (int t = 0; t < threads; ++t) {
       const auto run = static_cast<std::size_t>(t);
+      const Index begin = sweep.begin[run];
       const Index end = std::min(sweep.settled[run], sweep.begin[run + 1]);
-      for (Index i = sweep.begin[run]; i < end; ++i) gather(i);
+      if (begin == end) continue;
+      for (std::size_t before = 0; before <= run; ++before)
+        for (const PassedAction& p : sweep.passed[before])
+          if (p.b >= begin && p.b < end) add_to_b(gather.sums[p.b], p.action);
+      for (Index i = begin; i < end; ++i) gather(i);
     }
   }
 }

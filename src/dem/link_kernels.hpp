@@ -67,7 +67,7 @@ struct ConcreteLinkForces {
     book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt,
          kr, kr);
   }
-  BR_HD void operator()(Index i) const { at<double>(i); }
+  BR_WHOLE BR_HD void operator()(Index i) const { at<double>(i); }
 };
 
 /// Pieces of bar.
@@ -83,7 +83,7 @@ struct SteelLinkForces {
   View<Action> actions;
   Index first_action;  ///< action of link 0
 
-  BR_HD void operator()(Index i) const {
+  BR_WHOLE BR_HD void operator()(Index i) const {
     const PairMotion<double> motion =
         pair_motion<double>(elements.end(a[i]), elements.end(b[i]), 0.0, dt);
     const double radius = smaller(elements.radius(a[i]), elements.radius(b[i]));
@@ -112,7 +112,7 @@ struct InterfaceLinkForces {
   View<Action> actions;
   Index first_action;  ///< action of link 0
 
-  BR_HD void operator()(Index i) const {
+  BR_WHOLE BR_HD void operator()(Index i) const {
     const PairEnd<double> bar = elements.end(a[i]), concrete = elements.end(b[i]);
     const Vec3 chord = elements.state[after[i]].position - elements.state[before[i]].position;
     const Vec3 axis = (1.0 / norm(chord)) * chord;

@@ -219,4 +219,19 @@ Counts count(const World& w) {
   return n;
 }
 
+Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Elements& elements,
+                Index i) {
+  const ElementState& a = elements.state.data()[links.a.data()[i]];
+  const ElementState& b = elements.state.data()[links.b.data()[i]];
+  const double least = std::min(a.radius, b.radius), touching = a.radius + b.radius;
+  const LinkConstants<double> link{links.length.data()[i], links.stiffness.data()[i],
+                                   3.14159265358979323846 * least * least, 0.5 * touching,
+                                   touching};
+  const Vec3 d = b.position - a.position;
+  const double distance = norm(d);
+  const double pull =
+      law.normal_force(link, distance - link.length, links.opening.data()[i]) / distance;
+  return links.shear.view()[i] - pull * d;
+}
+
 }  // namespace breccia::dem

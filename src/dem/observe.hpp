@@ -27,4 +27,8 @@ struct Counts {
 };
 Counts count(const World& w);
 
+/// Force of concrete link i on its end b, from what the link keeps. All arrays on the host.  [N]
+Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Elements& elements,
+                Index i);
+
 }  // namespace breccia::dem

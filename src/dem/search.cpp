@@ -193,14 +193,17 @@ void plan_sweep(World& w) {
   for (int t = 0; t <= threads; ++t) {
     const auto share =
         static_cast<Index>(static_cast<std::int64_t>(links_before.back()) * t / threads);
-    w.sweep.begin.push_back(static_cast<Index>(
-        std::lower_bound(links_before.begin(), links_before.end(), share) - links_before.begin()));
+    const auto begin = static_cast<Index>(
+        std::lower_bound(links_before.begin(), links_before.end(), share) - links_before.begin());
+    w.sweep.begin.push_back(std::min(begin / sweep_tile * sweep_tile, count));
   }
   w.sweep.begin.back() = count;
   for (int t = 0; t < threads; ++t) {
     const Index begin = w.sweep.begin[static_cast<std::size_t>(t)];
     w.sweep.settled.push_back(std::max(begin, reached[static_cast<std::size_t>(begin)]));
   }
+  for (std::size_t i = 0; i < a.size(); ++i) w.sweep.reach = std::max(w.sweep.reach, b[i] - a[i]);
+  w.sweep.passed.resize(static_cast<std::size_t>(threads));
 }
 
 }  // namespace
@@ -256,17 +259,16 @@ void derive(World& w) {
     copy_to(more, ends);
     all.insert(all.end(), more.begin(), more.end());
   };
-  append(a, w.concrete.a);
   append(a, w.steel.a);
   append(a, w.interface.a);
-  append(b, w.concrete.b);
   append(b, w.steel.b);
   append(b, w.interface.b);
   Buffer<Index> all_a(w.exec.space), all_b(w.exec.space);
   copy_to(all_a, a);
   copy_to(all_b, b);
-  build_incidence(w.exec, all_a, all_b, w.elements.id, w.link_incidence);
-  w.link_actions.resize(all_a.size());
+  build_incidence(w.exec, all_a, all_b, w.elements.id, w.bar_incidence);
+  w.bar_actions.resize(all_a.size());
+  w.link_sums.resize(w.elements.size());
   w.critical.resize(w.elements.size());
   plan_sweep(w);
   derive_contacts(w);

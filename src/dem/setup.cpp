@@ -288,11 +288,12 @@ World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
   motions = Buffer<Motion>(space);
   linked = Buffer<PairKey>(space);
   linked_links = Buffer<Index>(space);
-  link_incidence = Incidence(space);
+  bar_incidence = Incidence(space);
   contact_incidence = Incidence(space);
   broad_phase = BroadPhase(space);
-  link_actions = Buffer<Action>(space);
+  bar_actions = Buffer<Action>(space);
   contact_actions = Buffer<Action>(space);
+  link_sums = Buffer<LinkSums>(space);
   critical = Buffer<double>(space);
 }
 

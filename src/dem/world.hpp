@@ -25,6 +25,12 @@ struct LinkGroup {
       starts;  ///< first link of each element a, and the end; concrete on the host only
 };
 
+/// The action of a link that a later run adds to element b.
+struct PassedAction {
+  Action action;
+  Index b;
+};
+
 /// How the threads of the host share concrete links and elements: each takes a run of elements with
 /// the links that start there. Links lead from lower to higher elements, so once a thread has done
 /// the links of a run, the sums of its elements are complete, but for those that an earlier run
@@ -32,7 +38,12 @@ struct LinkGroup {
 struct Sweep {
   std::vector<Index> begin;    ///< first element of each thread's run, and the end
   std::vector<Index> settled;  ///< first element of each run that no link of an earlier run reaches
+  Index reach = 0;             ///< from the lower to the higher end of a link, at most
+  std::vector<std::vector<PassedAction>> passed;  ///< of each run, in the order of its links
 };
+/// Elements whose links of all groups are done before the next ones: runs begin at multiples of it,
+/// so that the order of sums is the same for any number of threads.
+inline constexpr Index sweep_tile = 256;
 
 /// A named set of elements that probes read: a body or a support.
 struct ElementSet {
@@ -85,6 +96,9 @@ struct World {
   std::int64_t step = 0;
   std::int64_t searches = 0;
 
+  /// Of all kinds, broken ones included.
+  Index links() const { return concrete.size() + steel.size() + interface.size(); }
+
   // What follows from the case.
   std::vector<LinkGroup<ConcreteLink>> concrete_groups;
   std::vector<LinkGroup<SteelLink>> steel_groups;
@@ -97,12 +111,13 @@ struct World {
   Buffer<Index> linked_links;  ///< of each, its place among concrete, steel and interface links
 
   // What follows from the state.
-  Incidence link_incidence, contact_incidence;
+  Incidence bar_incidence, contact_incidence;  ///< bars: steel, then interface links
   Sweep sweep;
   BroadPhase broad_phase;
   std::vector<Index> wall_begin;  ///< first contact of each wall, and the end
-  Buffer<Action> link_actions, contact_actions;
-  Buffer<double> critical;  ///< [s2]
+  Buffer<Action> bar_actions, contact_actions;
+  Buffer<LinkSums> link_sums;  ///< of each element, zero between steps
+  Buffer<double> critical;     ///< [s2]
 };
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not

@@ -50,7 +50,7 @@ struct Windows {
   }
 
   void report(const dem::World& w, std::vector<Measurement>& result) const {
-    const double links = w.link_actions.size(), elements = w.elements.size();
+    const double links = w.links(), elements = w.elements.size();
     result.push_back(once(part, "steps", taken, "-"));
     result.push_back(over_windows(part, "step", "us", wall, 1e6));
     result.push_back(over_windows(part, "ns_per_link_step", "ns", wall, 1e9 / links));
@@ -85,7 +85,7 @@ std::vector<Measurement> measure_scene(const Exec& exec, double scale) {
   const double build = seconds_of([&] { model = build_model(config, ""); });
   const double setup = seconds_of([&] { w = dem::make_world(config, model, timed); });
   std::vector<Measurement> result{once("scene", "elements", w.elements.size(), "-"),
-                                  once("scene", "links", w.link_actions.size(), "-"),
+                                  once("scene", "links", w.links(), "-"),
                                   once("scene", "links_concrete", w.concrete.size(), "-"),
                                   once("scene", "links_steel", w.steel.size(), "-"),
                                   once("scene", "links_interface", w.interface.size(), "-"),

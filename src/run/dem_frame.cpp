@@ -47,15 +47,10 @@ Frame dem_frame(const dem::World& w) {
 
   // Links: kind 0 concrete, 1 steel, 2 interface; state 0 whole, 1 softened or yielded, 2 broken.
   FrameField kind{"kind", "-", 1, {}}, state{"state", "-", 1, {}}, force{"force", "N", 1, {}};
-  std::vector<float> pull;  // of each interaction: |force on b|
-  Buffer<Action> actions;
-  copy_to(actions, w.link_actions);
-  for (const Action& action : actions.host())
-    pull.push_back(static_cast<float>(norm(action.force_on_b())));
-  const auto line = [&](Index a, Index b, float k, float s) {
+  const auto line = [&](Index a, Index b, float k, float s, double pull) {
     f.lines.push_back(a);
     f.lines.push_back(b);
-    force.values.push_back(pull[kind.values.size()]);
+    force.values.push_back(static_cast<float>(pull));  // |force on b|
     kind.values.push_back(k);
     state.values.push_back(s);
   };
@@ -70,19 +65,25 @@ Frame dem_frame(const dem::World& w) {
       line(c.a.data()[i], c.b.data()[i], 0.0F,
            opening < 0.0     ? 2.0F
            : opening > onset ? 1.0F
-                             : 0.0F);
+                             : 0.0F,
+           norm(link_force(g.law, c, e, i)));
     }
+  Buffer<Action> actions;
+  copy_to(actions, w.bar_actions);
+  const auto bar_pull = [&](Index i) { return norm(actions.data()[i].force_on_b()); };
   const SteelLinks s = host_copy(w.steel);
   for (Index i = 0; i < s.size(); ++i) {
     const double hardening = s.state.data()[i].hardening;
     line(s.a.data()[i], s.b.data()[i], 1.0F,
          hardening < 0.0   ? 2.0F
          : hardening > 0.0 ? 1.0F
-                           : 0.0F);
+                           : 0.0F,
+         bar_pull(i));
   }
   const InterfaceLinks b = host_copy(w.interface);
   for (Index i = 0; i < b.size(); ++i)
-    line(b.a.data()[i], b.b.data()[i], 2.0F, b.state.data()[i].opening < 0.0 ? 2.0F : 0.0F);
+    line(b.a.data()[i], b.b.data()[i], 2.0F, b.state.data()[i].opening < 0.0 ? 2.0F : 0.0F,
+         bar_pull(s.size() + i));
   f.line_fields.push_back(std::move(kind));
   f.line_fields.push_back(std::move(state));
   f.line_fields.push_back(std::move(force));

@@ -36,7 +36,7 @@ class DemMethod final : public Method {
     const std::size_t groups = group_count();
     for (std::size_t g = 0; g < groups; ++g)
       add("model.elements_by_group." + w.sets[g].name, w.sets[g].members.size());
-    add("model.links", w.link_actions.size());
+    add("model.links", w.links());
     add("model.links_by_kind.concrete", w.concrete.size());
     add("model.links_by_kind.steel", w.steel.size());
     add("model.links_by_kind.interface", w.interface.size());
@@ -75,7 +75,7 @@ class DemMethod final : public Method {
 
   void load(const CheckpointReader& reader) override {
     dem::World& w = world_;
-    const Index elements = w.elements.size(), links = w.link_actions.size();
+    const Index elements = w.elements.size(), links = w.links();
     w.step = reader.value<std::int64_t>("step");
     w.time = reader.value<double>("time");
     w.last_dt = reader.value<double>("last_dt");

@@ -4,7 +4,7 @@
 
 namespace breccia::dem {
 
-Index BR_LANES(const ConcreteLinkForces& kernel, Index begin, Index end) {
+BR_WHOLE Index BR_LANES(const ConcreteLinkForces& kernel, Index begin, Index end) {
   constexpr Index width = width_of<WidestPack>;
   Index i = begin;
   for (; i + width <= end; i += width) kernel.at<WidestPack>(i);

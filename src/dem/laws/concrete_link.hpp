@@ -162,6 +162,14 @@ struct ConcreteLink {
   BR_HD TensionSoftening<double> tension(const LinkConstants<double>& link) const {
     return {link.stiffness, tensile_strength * link.area, softening};
   }
+  /// N of a link at a stretch u, tension positive.  [N]
+  BR_HD double normal_force(const LinkConstants<double>& link, double stretch,
+                            double opening) const {
+    const double elastic = link.stiffness * stretch;
+    if (opening < 0.5 * (link_broken + link_released)) return 0.0;
+    if (stretch < 0.0) return elastic;
+    return opening >= 0.0 ? (1.0 - tension(link).damage(opening)) * elastic : 0.0;
+  }
   /// Energy a link stores at a stretch u.  [J]
   BR_HD double stored(const LinkConstants<double>& link, double stretch,
                       const LinkState<double>& state) const {

@@ -82,12 +82,14 @@ struct InterfaceLink {
     double radial_force = transverse * u;  // tension positive
     if (intact) {
       state.opening = larger(state.opening, u);
-      if (state.opening >= tension.rupture()) {
-        intact = false;
-        r.broke += tension.toughness();
-        state.opening = link_broken;
-      } else if (u > 0.0) {
-        radial_force *= 1.0 - tension.damage(state.opening);
+      if (transverse * state.opening >= tension.strength) {  // at the onset or beyond
+        if (state.opening >= tension.rupture()) {
+          intact = false;
+          r.broke += tension.toughness();
+          state.opening = link_broken;
+        } else if (u > 0.0) {
+          radial_force *= 1.0 - tension.damage(state.opening);
+        }
       }
     }
     if (!intact && u > 0.0) radial_force = 0.0;
@@ -137,6 +139,7 @@ struct InterfaceLink {
     const double before = force;
     const double trial = before - stiffness * step;
     force = larger(-limit, smaller(limit, trial));
+    if (force == trial) return 0.0;
     return 0.5 * (before + force) * (trial - force) / stiffness;
   }
 };

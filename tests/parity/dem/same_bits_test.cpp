@@ -44,8 +44,8 @@ TEST(SameBits, for_any_number_of_threads) {
 }
 
 TEST(SameBits, for_any_width_of_vector) {
-  for (const dem::Lanes lanes : {dem::Lanes::one, dem::Lanes::four, dem::Lanes::eight}) {
-    if (lanes > dem::widest_lanes()) continue;  // this processor has no wider ones
+  for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight}) {
+    if (lanes > widest_lanes()) continue;  // this processor has no wider ones
     dem::World w = small_world(1);
     w.lanes = lanes;
     EXPECT_EQ(hash_after(std::move(w)), reference()) << static_cast<int>(lanes);
@@ -63,7 +63,7 @@ TEST(SameBits, in_the_shadow_space_that_refuses_host_reads) {
   exec.space = Space::shadow;
   dem::World w = dem::make_world(small_config(), small_model(), exec);
   EXPECT_EQ(w.contacts.history.state.space(), Space::shadow);
-  EXPECT_EQ(w.link_actions.space(), Space::shadow);
+  EXPECT_EQ(w.link_sums.space(), Space::shadow);
   EXPECT_EQ(hash_after(std::move(w)), reference());
 }
 

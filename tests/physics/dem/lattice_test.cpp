@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dem/observe.hpp"
 #include "scene.hpp"
 
 namespace breccia::dem {
@@ -67,7 +68,7 @@ Plane stress_at(const World& w, Index element) {
     const Index a = w.concrete.a.data()[i], b = w.concrete.b.data()[i];
     if (a != element && b != element) continue;
     const Vec3 branch = state(w, b).position - state(w, a).position;
-    const Vec3 pull = -1.0 * w.link_actions.data()[i].force_on_b();  // of b on a
+    const Vec3 pull = -1.0 * link_force(w.concrete_groups[0].law, w.concrete, w.elements, i);
     sum.xx += 0.5 / area * pull.x * branch.x;
     sum.yy += 0.5 / area * pull.y * branch.y;
     sum.xy += 0.25 / area * (pull.x * branch.y + pull.y * branch.x);
@@ -119,7 +120,8 @@ TEST(Lattice, stores_half_of_stress_times_strain) {
   for (Index i = 0; i < now.world.concrete.size(); ++i) {
     const Index a = now.world.concrete.a.data()[i], b = now.world.concrete.b.data()[i];
     if (a != now.middle && b != now.middle) continue;
-    const Vec3 f = now.world.link_actions.data()[i].force_on_b();
+    const World& w = now.world;
+    const Vec3 f = link_force(w.concrete_groups[0].law, w.concrete, w.elements, i);
     const Vec3 n = (1.0 / spacing) * (state(now.world, b).position - state(now.world, a).position);
     const double pull = dot(f, n), slide = dot(f, f) - pull * pull;
     // half a link belongs to this element
