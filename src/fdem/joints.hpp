@@ -54,10 +54,8 @@ struct Joints {
     field("law", "-", law);
     field("length", "m", length);
     field("strength", "-", strength);
-    field("preset", "m", preset);
     field("stage", "-", stage);
     field("points", "-", points);
-    field("force", "N/m", force);
     field("work", "J/m", work);
     field("broke_at", "s", broke_at);
     field("pressing", "N/m", pressing);

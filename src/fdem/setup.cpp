@@ -293,12 +293,12 @@ World::World(const Exec& how)
   settle(triangles);
   settle(joints);
   settle(reach);
-  settle(opened);
   const auto place = [&](auto&... arrays) {
     ((arrays = std::remove_reference_t<decltype(arrays)>(how.space)), ...);
   };
   place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, bundles.starts, bundles.nodes,
-        bundles.leader, edges, joint_ends, motions, load_laws, born, stress, overshoot, reached);
+        bundles.leader, triangles.external, joints.force, joints.preset, opened.changed,
+        opened.vertex, edges, joint_ends, motions, load_laws, born, stress, overshoot, reached);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {

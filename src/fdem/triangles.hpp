@@ -49,7 +49,6 @@ struct Triangles {
     field("mass", "kg/m", mass);
     field("viscosity", "Pa s", viscosity);
     field("force", "N/m", force);
-    field("external", "N/m", external);
     field("hold", "-", hold);
     field("viscous_work", "J/m", viscous_work);
     field("damping_work", "J/m", damping_work);

@@ -39,12 +39,6 @@ struct Reach {
 struct Opened {
   Buffer<std::uint8_t> changed;  ///< flags of Change since the vertices were marked last
   Buffer<std::uint8_t> vertex;   ///< 1: a joint at this vertex of the mesh is damaged
-
-  template <class Visit>
-  void each_field(Visit&& field) {
-    field("changed", "-", changed);
-    field("vertex", "-", vertex);
-  }
 };
 
 /// What has been booked for good.

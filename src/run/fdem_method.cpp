@@ -9,6 +9,26 @@
 namespace breccia {
 namespace {
 
+/// An array of another length than its neighbours'.
+template <class T>
+struct Loose {
+  const char* name;
+  Buffer<T>& array;
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field(name, "SI", array);
+  }
+};
+/// What triangles and joints carry besides one item each.
+template <class Visit>
+void each_loose(fdem::World& w, Visit&& visit) {
+  visit("external", Loose<fdem::Corners>{"force", w.triangles.external});
+  visit("joint_force", Loose<fdem::JointForce>{"force", w.joints.force});
+  visit("changed", Loose<std::uint8_t>{"flags", w.opened.changed});
+  visit("opened", Loose<std::uint8_t>{"vertex", w.opened.vertex});
+  visit("joint_preset", Loose<Vec2>{"opening", w.joints.preset});
+}
+
 class FdemMethod final : public Method {
  public:
   FdemMethod(const fdem::Config& config, const fdem::Model& model, const Exec& exec)
@@ -91,9 +111,9 @@ class FdemMethod final : public Method {
     writer.value("ledger", w.ledger);
     writer.fields("triangles", w.triangles);
     writer.fields("joints", w.joints);
+    each_loose(w, [&](const char* name, auto array) { writer.fields(name, array); });
     writer.fields("couples", w.couples);
     writer.fields("reach", w.reach);
-    writer.fields("opened", w.opened);
   }
 
   void load(const CheckpointReader& reader) override {
@@ -107,9 +127,9 @@ class FdemMethod final : public Method {
     w.ledger = reader.value<fdem::Ledger>("ledger");
     reader.fields("triangles", w.triangles);
     reader.fields("joints", w.joints);
+    each_loose(w, [&](const char* name, auto array) { reader.fields(name, array); });
     reader.fields("couples", w.couples);
     reader.fields("reach", w.reach);
-    reader.fields("opened", w.opened);
     if (w.triangles.size() != triangles || w.joints.size() != joints)
       throw CheckpointError("the checkpoint holds another model than the case builds");
     fdem::derive(w);
