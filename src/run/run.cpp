@@ -237,6 +237,7 @@ int Run::done() {
       replace_durably(folder_.file(table.name + ".csv"), to_csv(table));
   }
   Summary now = summary();
+  if (!now.energy) now.energy = method_.energy();  // resumed at its end: no row was written
   now.status = "done";
   const bool whole_case = method_.time() >= plan_.config.time.end;
   if (whole_case) now.checks = evaluate_checks(plan_.config.checks, now);
