@@ -60,7 +60,8 @@ std::string format_keys(const std::vector<KeyInfo>& keys) {
     const std::vector<std::string> allowed = lines_of(key.range, rest);
     text += row(key.path, key.type, default_with_unit(key), allowed.front());
     for (std::size_t k = 1; k < allowed.size(); ++k) text += row("", "", "", allowed[k]);
-    for (const std::string& line : lines_of(key.meaning, page_width - 4)) text += "    " + line + "\n";
+    for (const std::string& line : lines_of(key.meaning, page_width - 4))
+      text += "    " + line + "\n";
   }
   return text;
 }
