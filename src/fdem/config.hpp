@@ -197,7 +197,7 @@ struct JointsConfig {
   template <class Visit>
   void each_key(Visit&& key) {
     key("softening_factor", softening_factor, "-", positive,
-        "softening length times strength over fracture energy: 2.5886134 dissipates exactly the "
+        "softening length times strength over fracture energy: 2.5886128 dissipates exactly the "
         "fracture energy, 3 is the classical codes' and 15.9 % too much");
     key("unloading", unloading, OneOf{"secant", "reversible"},
         "secant: damage stays; reversible: joints heal as in the classical codes");

@@ -79,8 +79,11 @@ struct CoupleForces {
         add_shape_forces(of_b, over, kept.scale * law.penalty, sum.on_b.at);
       }
     }
-    if (!touching && kept.work == 0.0 && kept.slid == 0.0) return;
     CoupleForce& last = force[i];
+    if (!touching && kept.work == 0.0 && kept.slid == 0.0) {
+      last = {};  // it may have touched while nothing moved
+      return;
+    }
     for (int k = 0; k < 3; ++k) {
       kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.on_a.at[k], va[k]);
       kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.on_b.at[k], vb[k]);

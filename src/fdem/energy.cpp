@@ -26,7 +26,7 @@ Shares sum_shares(Shares a, const Shares& b) {
 }
 
 struct TriangleShares {
-  Kick kick;
+  MoveTriangles move;
   View<const Index> material;
   View<const ElasticTriangle> laws;
   View<const Mat2> shape_inverse;
@@ -34,6 +34,7 @@ struct TriangleShares {
 
   Shares operator()(Index t) const {
     Shares s;
+    const Kick& kick = move.kick;
     const Kick::Result next = kick(t);
     const double span = 0.5 * (kick.last_dt + kick.next_dt);
     for (int k = 0; k < 3; ++k) {
@@ -43,6 +44,11 @@ struct TriangleShares {
       const Vec2 now = before + (0.5 * kick.last_dt) * a;
       s.kinetic.add(0.5 * kick.mass[t] *
                     (dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a)));
+      // Moving books the work of these forces in the last and the next step; half is done.
+      const Vec2 came = (0.5 * kick.last_dt) * before;
+      s.damping.add(dot(next.damped[k], came));
+      if (move.external.size > 0) s.work.add(dot(move.external[t].at[k], came));
+      if (kick.hold[t] >= 0) s.work.add(dot(move.reaction(t, k, next), came));
     }
     Vec2 x[3], v[3];
     split(kick.nodes[t], x, v);
@@ -115,11 +121,15 @@ struct CoupleShares {
 
 Shares all_shares(const World& w) {
   const Triangles& t = w.triangles;
-  Shares sum =
-      fold(w.exec, t.size(), Shares{},
-           TriangleShares{kick(w), t.material.view(), w.laws.view(), t.shape_inverse.view(),
-                          t.viscous_work.view(), t.damping_work.view(), t.load_work.view()},
-           sum_shares);
+  Shares sum = fold(w.exec, t.size(), Shares{},
+                    TriangleShares{{kick(w), t.external.view(), {}, {}, {}},
+                                   t.material.view(),
+                                   w.laws.view(),
+                                   t.shape_inverse.view(),
+                                   t.viscous_work.view(),
+                                   t.damping_work.view(),
+                                   t.load_work.view()},
+                    sum_shares);
   const Joints& j = w.joints;
   sum = sum_shares(
       sum, fold(w.exec, j.size(), Shares{},

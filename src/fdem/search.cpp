@@ -219,11 +219,14 @@ void derive_couples(World& w) {
   build_incidence(w.exec, pairs.a, pairs.b, w.triangles.id, w.couple_incidence);
   std::vector<Index> a, b;
   std::vector<EdgeJoints> edges;
-  std::vector<double> pressing;
+  std::vector<double> pressing, broke_at;
   copy_to(a, pairs.a);
   copy_to(b, pairs.b);
   copy_to(edges, w.edges);
   copy_to(pressing, w.joints.pressing);
+  copy_to(broke_at, w.joints.broke_at);
+  // Faces that meet again later begin anew: only a joint that broke in the last step counts.
+  const double lately = w.time - 1.5 * w.last_dt;
   std::vector<Index> edge_a, edge_b;
   copy_to(edge_a, w.joints.edge_a);
   copy_to(edge_b, w.joints.edge_b);
@@ -233,7 +236,7 @@ void derive_couples(World& w) {
       if (entry < 0) continue;
       const auto joint = static_cast<std::size_t>(pair_of(entry));
       const Index other = (side_of(entry) == 0 ? edge_b[joint] : edge_a[joint]) / 3;
-      if (other == b[i]) born[i] = pressing[joint];
+      if (other == b[i] && broke_at[joint] >= lately) born[i] = pressing[joint];
     }
   copy_to(w.born, born);
 }

@@ -7,7 +7,7 @@ namespace breccia::fdem {
 
 /// 1 over the integral of the softening curve: with it a joint dissipates exactly its fracture
 /// energy. The literature's 3 gives 15.9 % more (docs/theory.md, joints).
-inline constexpr double exact_softening_factor = 2.58861340;
+inline constexpr double exact_softening_factor = 2.588612779530447;
 
 /// exp(-t) for 0 <= t <= 4, to 1e-15: only + and *, so that every machine gives the same bits.
 template <class R>
