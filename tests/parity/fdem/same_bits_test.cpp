@@ -1,0 +1,111 @@
+// The same bits for any thread count, width of vector, search margin, and across a checkpoint.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "physics/fdem/scene.hpp"
+#include "run/fdem_method.hpp"
+
+namespace breccia {
+namespace {
+
+using fdem::testing::Scene;
+
+/// A brittle disc that breaks on a plate, both with joints.
+Scene impact(double margin = 0.1) {
+  Scene scene;
+  fdem::MaterialConfig& m = scene.material(30e9, 0.2, 2500.0);
+  m.joints = "intrinsic";
+  m.friction = 0.5;
+  m.damping = 0.02;
+  m.joint.tension = 2e6;
+  m.joint.cohesion = 6e6;
+  m.joint.energy_open = 2.0;
+  m.joint.energy_slide = 6.0;
+  scene.config.time.evaluate_every = 50;
+  scene.config.search.margin = margin;
+  scene.body("disc", prepare::ringed_disc({0.0, 0.0202}, 0.02, 4e-3), 0, {2.0, -60.0});
+  scene.body("plate", prepare::equilateral_rectangle({{0.0, -0.01}, {0.06, 0.02}}, 5e-3));
+  scene.support("ground", {-1.0, -1.0}, {1.0, -0.0199}, {"y"});
+  return scene;
+}
+fdem::World world(int threads, double margin = 0.1) {
+  return impact(margin).world(threads);
+}
+/// Hash after the disc has begun to break.
+std::uint64_t hash_after(fdem::World w, int steps = 250) {
+  for (int i = 0; i < steps; ++i) fdem::step(w);
+  EXPECT_GT(fdem::cracks(w).size(), 20U);
+  return fdem::state_hash(w);
+}
+std::uint64_t reference() {
+  static const std::uint64_t hash = hash_after(world(1));
+  return hash;
+}
+
+TEST(FdemSameBits, for_any_number_of_threads) {
+  for (const int threads : {2, 3, 7}) EXPECT_EQ(hash_after(world(threads)), reference()) << threads;
+}
+
+TEST(FdemSameBits, for_any_width_of_vector) {
+  for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight}) {
+    if (lanes > widest_lanes()) continue;  // this processor has no wider ones
+    fdem::World w = world(1);
+    w.lanes = lanes;
+    EXPECT_EQ(hash_after(std::move(w)), reference()) << static_cast<int>(lanes);
+  }
+}
+
+TEST(FdemSameBits, for_any_margin_of_search) {
+  EXPECT_EQ(hash_after(world(1, 0.02)), reference());
+  EXPECT_EQ(hash_after(world(1, 0.8)), reference());
+}
+
+TEST(FdemSameBits, in_the_shadow_space_that_refuses_host_reads) {
+  Exec exec;
+  exec.space = Space::shadow;
+  const Scene scene = impact();
+  fdem::World w = fdem::make_world(scene.config, scene.model, exec);
+  EXPECT_EQ(w.couples.history.state.space(), Space::shadow);
+  EXPECT_EQ(w.joints.force.space(), Space::shadow);
+  EXPECT_EQ(hash_after(std::move(w)), reference());
+}
+
+TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
+  const std::string folder = std::filesystem::temp_directory_path() / "breccia_fdem_same_bits";
+  std::filesystem::create_directories(folder);
+  const Scene scene = impact();
+  Exec one, three;
+  three.threads = 3;
+  // one of these moments is bound to lie between a break and the search that follows
+  for (const int moment : {120, 163, 201}) {
+    const auto before = make_fdem_method(scene.config, scene.model, one);
+    for (int i = 0; i < moment; ++i) before->step();
+    CheckpointWriter writer;
+    before->save(writer);
+    writer.write(folder + "/state.br");
+    for (int i = moment; i < 250; ++i) before->step();
+    const auto after = make_fdem_method(scene.config, scene.model, three);
+    after->load(CheckpointReader(folder + "/state.br"));
+    EXPECT_EQ(after->steps(), moment);
+    for (int i = moment; i < 250; ++i) after->step();
+    EXPECT_EQ(after->state_hash(), before->state_hash());
+    EXPECT_EQ(after->energy().friction, before->energy().friction);
+    EXPECT_EQ(after->energy().fracture, before->energy().fracture);
+    EXPECT_EQ(after->energy().error_relative, before->energy().error_relative);
+    EXPECT_EQ(before->state_hash(), reference());
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(FdemSameBits, one_changed_bit_changes_the_hash) {
+  fdem::World w = world(1);
+  const std::uint64_t hash = fdem::state_hash(w);
+  double& x = w.triangles.nodes.data()[7].at[1].position.x;
+  x = std::nextafter(x, 1e9);
+  EXPECT_NE(fdem::state_hash(w), hash);
+}
+
+}  // namespace
+}  // namespace breccia
