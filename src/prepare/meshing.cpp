@@ -140,7 +140,7 @@ class GeoWriter {
 
   std::string run() {
     text_ =
-        "SetFactory(\"OpenCASCADE\");\nMesh.Algorithm = 6;\nGeometry.Tolerance = 1e-9;\n"
+        "SetFactory(\"OpenCASCADE\");\nMesh.Algorithm = 1;\nGeometry.Tolerance = 1e-9;\n"
         "Mesh.MeshSizeFromCurvature = 0;\nMesh.Optimize = 1;\n";
     write_outer();
     std::vector<int> cuts;
