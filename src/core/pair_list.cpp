@@ -1,7 +1,7 @@
 #include "core/pair_list.hpp"
 
 #include "core/rows.hpp"
-#include "exec/sort_scan.hpp"
+#include "core/select.hpp"
 
 namespace breccia {
 namespace {
@@ -20,37 +20,17 @@ struct FindKey {
   }
 };
 
-/// One for every item without a place.
-struct MarkMissing {
-  static constexpr const char* name = "core.mark_missing";
+struct HasNoPlace {
   View<const Index> place;
-  View<Index> mark;
-
-  BR_HD void operator()(Index i) const { mark[i] = place[i] < 0 ? 1 : 0; }
-};
-
-/// Lists the items without a place, in ascending order.
-struct ListMissing {
-  static constexpr const char* name = "core.list_missing";
-  View<const Index> place;
-  View<const Index> starts;
-  View<Index> missing;
-
-  BR_HD void operator()(Index i) const {
-    if (place[i] < 0) missing[starts[i]] = i;
-  }
+  BR_HD bool operator()(Index i) const { return place[i] < 0; }
 };
 
 /// The places of the keys of `sought` that are not in `among`, ascending.
 Buffer<Index> missing_from(const Exec& exec, const Buffer<PairKey>& sought,
                            const Buffer<PairKey>& among) {
-  const Index count = sought.size();
-  Buffer<Index> place(sought.space()), starts(sought.space(), count), missing(sought.space());
+  Buffer<Index> place(sought.space());
   match_keys(exec, among, sought, place);
-  for_each(exec, count, MarkMissing{place.view(), starts.view()});
-  missing.resize(exclusive_scan(exec, starts));
-  for_each(exec, count, ListMissing{place.view(), starts.view(), missing.view()});
-  return missing;
+  return items_where(exec, sought.size(), HasNoPlace{std::as_const(place).view()});
 }
 
 }  // namespace

@@ -18,6 +18,19 @@ struct Motion {
   }
 };
 
+/// 1 where an element has used its margin up: the list of pairs is no longer valid.
+struct UsedMargin {
+  View<const ElementState> state;
+  View<const Vec3> reference;
+  View<const double> margin;
+  BR_HD double operator()(Index e) const {
+    const Vec3 moved = state[e].position - reference[e];
+    const double allowed = margin[e] * margin[e];
+    const double square = dot(moved, moved);
+    return square <= allowed ? 0.0 : 1.0;  // NaN counts as beyond
+  }
+};
+
 /// What the concrete links of an element have added up to so far. Zero between two steps.
 struct LinkSums {
   SixSums as_b;              ///< force, then torque, of links that end at the element  [N, N m]
@@ -59,6 +72,13 @@ struct GatherForces {
     LinkSums& s = sums[e];
     add(s, bars, bar_actions, e);
     add(s, contacts, contact_actions, e);
+    finish(e, s);
+    s.as_b = s.as_a = {};
+    s.stiffness_b = s.stiffness_a = {};
+  }
+
+  /// What follows for an element from all its sums.
+  BR_HD void finish(Index e, const LinkSums& s) const {
     force[e] = {s.as_b[0] - s.as_a[3], s.as_b[1] - s.as_a[4], s.as_b[2] - s.as_a[5]};
     torque[e] = {s.as_b[3] + s.as_a[0], s.as_b[4] + s.as_a[1], s.as_b[5] + s.as_a[2]};
     float straight = 0.0F, turning = 0.0F;  // largest stiffness of a free coordinate
@@ -71,8 +91,6 @@ struct GatherForces {
     const double slowest =
         larger(static_cast<double>(straight) / mass[e], static_cast<double>(turning) / inertia[e]);
     critical[e] = slowest > 0.0 ? 1.0 / slowest : 1e300;
-    s.as_b = s.as_a = {};
-    s.stiffness_b = s.stiffness_a = {};
   }
 };
 

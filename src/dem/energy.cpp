@@ -8,10 +8,6 @@
 namespace breccia::dem {
 namespace {
 
-ExactSum sum_of(const ExactSum& a, const ExactSum& b) {
-  return a + b;
-}
-
 /// Kinetic energy at the time of the forces, m/2 (v.v - dt_- dt_+ a.a / 4) with v = v_- + a dt_-/2:
 /// for equal steps m/2 v_-.v_+, with which the scheme's own balance closes to rounding
 /// (docs/theory.md, ledger).
@@ -44,7 +40,7 @@ struct GravityPotential {
 struct Shares {
   ExactSum elastic, fracture, plastic, friction, contact, work;
 };
-Shares sum_shares(Shares a, const Shares& b) {
+BR_HD Shares operator+(Shares a, const Shares& b) {
   a.elastic.add(b.elastic);
   a.fracture.add(b.fracture);
   a.plastic.add(b.plastic);
@@ -176,7 +172,7 @@ Shares contact_shares(const World& w, const Contacts& c, const Buffer<ContactPai
                     pairs.view(), materials, wall_stiffness.view(), c.pairs.a.view(),
                     c.pairs.b.view(), c.history.state.view(), c.history.slid.view(),
                     c.history.damped.view(), c.history.driven.view()},
-      sum_shares);
+      Sum{});
 }
 
 }  // namespace
@@ -184,38 +180,37 @@ Shares contact_shares(const World& w, const Contacts& c, const Buffer<ContactPai
 EnergyBalance balance(World& w) {
   const StageTime timed(w.exec, "ledger");
   const Elements& e = w.elements;
-  const ExactSum kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{kick(w)}, sum_of);
+  const ExactSum kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{kick(w)}, Sum{});
   Shares all;
   const ConcreteLinks& c = w.concrete;
   for (const auto& g : w.concrete_groups)
-    all = sum_shares(all, fold(w.exec, g.end - g.begin, Shares{},
-                               ConcreteShares{g.law, g.begin, e.state.view(), c.a.view(),
-                                              c.b.view(), c.length.view(), c.stiffness.view(),
-                                              c.opening.view(), c.shear.view(), c.moment.view(),
-                                              c.slid.view(), c.yielded.view(), c.broke.view()},
-                               sum_shares));
+    all = all +
+          fold(w.exec, g.end - g.begin, Shares{},
+               ConcreteShares{g.law, g.begin, e.state.view(), c.a.view(), c.b.view(),
+                              c.length.view(), c.stiffness.view(), c.opening.view(), c.shear.view(),
+                              c.moment.view(), c.slid.view(), c.yielded.view(), c.broke.view()},
+               Sum{});
   const SteelLinks& s = w.steel;
   for (const auto& g : w.steel_groups)
-    all = sum_shares(
-        all, fold(w.exec, g.end - g.begin, Shares{},
-                  SteelShares{g.law, g.begin, e.state.view(), s.a.view(), s.b.view(),
-                              s.length.view(), s.state.view(), s.yielded.view(), s.broke.view()},
-                  sum_shares));
+    all = all + fold(w.exec, g.end - g.begin, Shares{},
+                     SteelShares{g.law, g.begin, e.state.view(), s.a.view(), s.b.view(),
+                                 s.length.view(), s.state.view(), s.yielded.view(), s.broke.view()},
+                     Sum{});
   const InterfaceLinks& b = w.interface;
   for (const auto& g : w.interface_groups)
-    all = sum_shares(all, fold(w.exec, g.end - g.begin, Shares{},
-                               InterfaceShares{g.law, g.begin, b.stiffness.view(), b.area.view(),
-                                               b.state.view(), b.slid.view(), b.broke.view()},
-                               sum_shares));
+    all = all + fold(w.exec, g.end - g.begin, Shares{},
+                     InterfaceShares{g.law, g.begin, b.stiffness.view(), b.area.view(),
+                                     b.state.view(), b.slid.view(), b.broke.view()},
+                     Sum{});
   std::vector<double> factors;
   for (const Wall& wall : w.walls) factors.push_back(wall.stiffness);
   Buffer<double> wall_stiffness(w.exec.space);
   copy_to(wall_stiffness, factors);
-  all = sum_shares(
-      all, contact_shares(w, w.contacts, w.contact_pairs, w.parameters.materials, wall_stiffness));
-  all = sum_shares(all, contact_shares(w, w.wall_contacts, w.wall_pairs, 0, wall_stiffness));
+  all =
+      all + contact_shares(w, w.contacts, w.contact_pairs, w.parameters.materials, wall_stiffness);
+  all = all + contact_shares(w, w.wall_contacts, w.wall_pairs, 0, wall_stiffness);
   const Shares held = fold(w.exec, e.size(), Shares{},
-                           ElementShares{e.damping_work.view(), e.load_work.view()}, sum_shares);
+                           ElementShares{e.damping_work.view(), e.load_work.view()}, Sum{});
 
   EnergyBalance r;
   r.kinetic = kinetic.value();
@@ -229,7 +224,7 @@ EnergyBalance balance(World& w) {
   if (dot(w.parameters.gravity, w.parameters.gravity) > 0.0) {
     const ExactSum potential =
         fold(w.exec, e.size(), ExactSum(),
-             GravityPotential{w.parameters.gravity, e.state.view(), e.mass.view()}, sum_of);
+             GravityPotential{w.parameters.gravity, e.state.view(), e.mass.view()}, Sum{});
     if (w.step == 0) w.ledger.start_potential = potential;
     r.work += potential.value() - w.ledger.start_potential.value();
   }

@@ -238,8 +238,8 @@ void wall_forces(World& w) {
 
 double choose_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
-  const double least = fold(w.exec, w.elements.size(), 1e300, LeastCritical{w.critical.view()},
-                            [](double a, double b) { return smaller(a, b); });
+  const double least =
+      fold(w.exec, w.elements.size(), 1e300, LeastCritical{w.critical.view()}, Least{});
   // sqrt(2): two neighbours in opposite motion (docs/theory.md, time step).
   double dt = w.parameters.time.safety * std::sqrt(2.0 * least);
   dt = std::min({dt, w.parameters.time.max_step, w.parameters.contact_step});

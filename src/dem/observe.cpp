@@ -122,15 +122,13 @@ class Pieces {
 std::uint64_t state_hash(const World& w) {
   const Elements& e = w.elements;
   return fold(w.exec, e.size(), std::uint64_t{0},
-              HashElement{e.id.view(), e.state.view(), e.orientation.view()},
-              [](std::uint64_t a, std::uint64_t b) { return a + b; });
+              HashElement{e.id.view(), e.state.view(), e.orientation.view()}, Sum{});
 }
 
 void verify(const World& w) {
   const Elements& e = w.elements;
-  const GlobalId bad =
-      fold(w.exec, e.size(), FindUnsound::none, FindUnsound{w.last_dt, e.id.view(), e.state.view()},
-           [](GlobalId a, GlobalId b) { return a < b ? a : b; });
+  const GlobalId bad = fold(w.exec, e.size(), FindUnsound::none,
+                            FindUnsound{w.last_dt, e.id.view(), e.state.view()}, Least{});
   if (bad == FindUnsound::none) return;
   const Elements host = host_copy(e);
   const auto ids = host.id.host();

@@ -3,24 +3,11 @@
 
 #include <algorithm>
 
+#include "core/select.hpp"
 #include "dem/world.hpp"
-#include "exec/for_each.hpp"
 
 namespace breccia::dem {
 namespace {
-
-/// How far an element has used its margin up: above 1 the list of pairs is no longer valid.
-struct UsedMargin {
-  View<const ElementState> state;
-  View<const Vec3> reference;
-  View<const double> margin;
-  BR_HD double operator()(Index e) const {
-    const Vec3 moved = state[e].position - reference[e];
-    const double allowed = margin[e] * margin[e];
-    const double square = dot(moved, moved);
-    return square <= allowed ? 0.0 : 1.0;  // NaN counts as beyond
-  }
-};
 
 struct UnpackState {
   View<const ElementState> state;
@@ -33,112 +20,126 @@ struct UnpackState {
   }
 };
 
-/// Keys of the links that still hold their pair: all but released ones. Sorted.
+/// Whether a link still holds its pair: all but released ones do.
+struct LinkHolds {
+  View<const double> opening;            ///< of concrete links
+  View<const InterfaceState> interface;  ///< of interface links
+  Index bonds;                           ///< first interface link among all
+  View<const Index> links;               ///< by the key of their pair
+  BR_HD bool operator()(Index i) const {
+    const Index link = links[i];
+    double widest = 0.0;
+    if (link < opening.size) widest = opening[link];
+    if (link >= bonds) widest = interface[link - bonds].opening;
+    return !(widest < 0.5 * (link_broken + link_released));
+  }
+};
+
+/// Keys of the links that hold their pair. Sorted.
 Buffer<PairKey> holding_links(const World& w) {
-  std::vector<double> concrete;
-  std::vector<InterfaceState> interface;
-  std::vector<PairKey> keys;
-  std::vector<Index> links;
-  copy_to(concrete, w.concrete.opening);
-  copy_to(interface, w.interface.state);
-  copy_to(keys, w.linked);
-  copy_to(links, w.linked_links);
-  const auto concretes = static_cast<Index>(concrete.size());
-  const Index bonds = concretes + w.steel.size();  // first interface link
-  const auto released = [&](Index link) {
-    double opening = 0.0;
-    if (link < concretes) opening = concrete[static_cast<std::size_t>(link)];
-    if (link >= bonds) opening = interface[static_cast<std::size_t>(link - bonds)].opening;
-    return opening < 0.5 * (link_broken + link_released);
-  };
-  std::vector<PairKey> holding;
-  holding.reserve(keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    if (!released(links[i])) holding.push_back(keys[i]);
-  Buffer<PairKey> held(w.exec.space);
-  copy_to(held, holding);
-  return held;
+  const Index bonds = w.concrete.size() + w.steel.size();
+  const Buffer<Index> holding = items_where(
+      w.exec, w.linked.size(),
+      LinkHolds{w.concrete.opening.view(), w.interface.state.view(), bonds, w.linked_links.view()});
+  Buffer<PairKey> keys(w.linked);
+  gather(w.exec, holding, keys);
+  return keys;
 }
 
-/// Takes away pairs whose boxes overlap but whose grown spheres do not.
-void keep_near(World& w, Pairs& pairs) {
-  std::vector<PairKey> key, near_key;
-  std::vector<Index> a, b, near_a, near_b;
-  std::vector<ElementState> state;
-  std::vector<double> margin;
-  copy_to(key, pairs.key);
-  copy_to(a, pairs.a);
-  copy_to(b, pairs.b);
-  copy_to(state, w.elements.state);
-  copy_to(margin, w.travel.margin);
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    const auto p = static_cast<std::size_t>(a[i]), q = static_cast<std::size_t>(b[i]);
+/// Whether the grown spheres of a pair overlap, not only their boxes.
+struct SpheresNear {
+  View<const Index> a, b;
+  View<const ElementState> state;
+  View<const double> margin;
+  BR_HD bool operator()(Index i) const {
+    const Index p = a[i], q = b[i];
     const Vec3 d = state[q].position - state[p].position;
     const double reach =
         (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12);
-    if (dot(d, d) > reach * reach) continue;
-    near_key.push_back(key[i]);
-    near_a.push_back(a[i]);
-    near_b.push_back(b[i]);
+    return !(dot(d, d) > reach * reach);
   }
-  copy_to(pairs.key, near_key);
-  copy_to(pairs.a, near_a);
-  copy_to(pairs.b, near_b);
+};
+
+/// What contacts that leave the list have spent.
+struct Spent {
+  ExactSum slid, damped, driven;
+};
+BR_HD Spent operator+(Spent a, const Spent& b) {
+  a.slid.add(b.slid);
+  a.damped.add(b.damped);
+  a.driven.add(b.driven);
+  return a;
 }
+struct SpentBy {
+  View<const Index> contact;
+  View<const double> slid, damped, driven;
+  BR_HD Spent operator()(Index k) const {
+    const Index i = contact[k];
+    return {ExactSum(slid[i]), ExactSum(damped[i]), ExactSum(driven[i])};
+  }
+};
 
 /// Books what the pairs that leave the list have spent.
 void book_dropped(World& w, const Contacts& contacts, const Pairs& found) {
   Buffer<Index> dropped(w.exec.space);
   find_dropped(w.exec, contacts.pairs.key, found.key, dropped);
   if (dropped.empty()) return;
-  std::vector<Index> places;
-  std::vector<double> slid, damped, driven;
-  copy_to(places, dropped);
-  copy_to(slid, contacts.history.slid);
-  copy_to(damped, contacts.history.damped);
-  copy_to(driven, contacts.history.driven);
-  for (const Index place : places) {
-    const auto i = static_cast<std::size_t>(place);
-    w.ledger.slid.add(slid[i]);
-    w.ledger.damped.add(damped[i]);
-    w.ledger.driven.add(driven[i]);
-  }
+  const ContactHistory& h = contacts.history;
+  const Spent spent =
+      fold(w.exec, dropped.size(), Spent{},
+           SpentBy{std::as_const(dropped).view(), h.slid.view(), h.damped.view(), h.driven.view()},
+           Sum{});
+  w.ledger.slid.add(spent.slid);
+  w.ledger.damped.add(spent.damped);
+  w.ledger.driven.add(spent.driven);
 }
 
-/// Elements whose grown sphere reaches a wall, by wall, then by global id.
+/// Whether the grown sphere of an element reaches a wall.
+struct WallNear {
+  Wall wall;
+  double reach;  ///< of the wall's own travel  [m]
+  View<const ElementState> state;
+  View<const double> margin;
+  BR_HD bool operator()(Index e) const {
+    const double height = dot(state[e].position - wall.point, wall.normal);
+    return height <= state[e].radius + margin[e] + reach;
+  }
+};
+
+struct ListWallPairs {
+  static constexpr const char* name = "dem.list_wall_pairs";
+  Index wall, first;  ///< the wall, and its first pair
+  View<const Index> element;
+  View<const GlobalId> id;
+  View<PairKey> key;
+  View<Index> a, b;
+  BR_HD void operator()(Index i) const {
+    const Index e = element[i];
+    key[first + i] = (static_cast<PairKey>(wall) << 32) | static_cast<std::uint32_t>(id[e]);
+    a[first + i] = e;
+    b[first + i] = wall;
+  }
+};
+
+/// Elements whose grown sphere reaches a wall, by wall, then by global id: the order of memory.
 Pairs near_walls(const World& w) {
-  Buffer<ElementState> state;
-  Buffer<double> margin;
-  Buffer<GlobalId> id;
-  copy_to(state, w.elements.state);
-  copy_to(margin, w.travel.margin);
-  copy_to(id, w.elements.id);
-  std::vector<PairKey> key;
-  std::vector<Index> a, b;
-  for (std::size_t k = 0; k < w.walls.size(); ++k) {
-    const Wall& wall = w.walls[k];
+  Pairs pairs(w.exec.space);
+  Index wall_number = 0;
+  for (const Wall& wall : w.walls) {
     // A moving wall uses margins up, too: it may cover one largest margin until it asks for a
     // search.
     const double reach =
         dot(wall.velocity, wall.velocity) > 0.0 ? w.parameters.largest_margin : 0.0;
-    std::vector<std::pair<PairKey, Index>> near;
-    for (Index e = 0; e < state.size(); ++e) {
-      const ElementState& s = state.data()[e];
-      if (dot(s.position - wall.point, wall.normal) <= s.radius + margin.data()[e] + reach)
-        near.emplace_back(
-            (static_cast<PairKey>(k) << 32) | static_cast<std::uint32_t>(id.data()[e]), e);
-    }
-    std::sort(near.begin(), near.end());
-    for (const auto& [pair, element] : near) {
-      key.push_back(pair);
-      a.push_back(element);
-      b.push_back(static_cast<Index>(k));
-    }
+    const Buffer<Index> near =
+        items_where(w.exec, w.elements.size(),
+                    WallNear{wall, reach, w.elements.state.view(), w.travel.margin.view()});
+    const Index first = pairs.size();
+    resize_fields(pairs, first + near.size());
+    for_each(w.exec, near.size(),
+             ListWallPairs{wall_number, first, near.view(), w.elements.id.view(), pairs.key.view(),
+                           pairs.a.view(), pairs.b.view()});
+    ++wall_number;
   }
-  Pairs pairs(w.exec.space);
-  copy_to(pairs.key, key);
-  copy_to(pairs.a, a);
-  copy_to(pairs.b, b);
   return pairs;
 }
 
@@ -217,7 +218,7 @@ bool contacts_are_due(const World& w) {
   return fold(
              w.exec, w.elements.size(), 0.0,
              UsedMargin{w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
-             [](double a, double b) { return larger(a, b); }) > 0.0;
+             Largest{}) > 0.0;
 }
 
 void find_contacts(World& w) {
@@ -237,7 +238,11 @@ void find_contacts(World& w) {
   Pairs found(w.exec.space);
   w.broad_phase.search(w.exec, boxes, w.elements.id, found);
   exclude_pairs(w.exec, found, holding_links(w));
-  keep_near(w, found);
+  const Buffer<Index> near =
+      items_where(w.exec, found.size(),
+                  SpheresNear{std::as_const(found.a).view(), std::as_const(found.b).view(),
+                              w.elements.state.view(), std::as_const(w.travel.margin).view()});
+  gather_fields(w.exec, near, found);
   book_dropped(w, w.contacts, found);
   w.contacts.replace(w.exec, std::move(found));
   find_wall_contacts(w);

@@ -10,6 +10,9 @@
 
 #include "exec/buffer.hpp"
 #include "exec/space.hpp"
+#if defined(__CUDACC__)
+#include "exec/cuda.hpp"
+#endif
 
 namespace breccia {
 
@@ -31,13 +34,25 @@ class KernelScope {
   bool outer_;
 };
 
-#if defined(__CUDACC__)
-template <class Kernel>
-__global__ void launch_kernel(Index count, Kernel kernel) {
-  const Index i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < count) kernel(i);
-}
-#endif
+/// Combinations for fold.
+struct Least {
+  template <class T>
+  BR_HD T operator()(const T& a, const T& b) const {
+    return b < a ? b : a;
+  }
+};
+struct Largest {
+  template <class T>
+  BR_HD T operator()(const T& a, const T& b) const {
+    return a < b ? b : a;
+  }
+};
+struct Sum {
+  template <class T>
+  BR_HD T operator()(const T& a, const T& b) const {
+    return a + b;
+  }
+};
 
 /// A kernel over part of its arrays: item i of the loop is item first + i of the kernel.
 template <class Kernel>
@@ -47,17 +62,57 @@ struct Shifted {
   BR_HD void operator()(Index i) const { kernel(first + i); }
 };
 
+#if defined(__CUDACC__)
+/// Threads of a block, for kernels whose registers leave room for several blocks.
+inline constexpr Index block_size = 128;
+
+template <class Kernel>
+__global__ void __launch_bounds__(block_size) launch_kernel(Index count, Kernel kernel) {
+  const auto i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (i < count) kernel(i);
+}
+
+/// One value a block: each thread folds every n-th item, then the block its threads.
+template <class Value, class Kernel, class Combine>
+__global__ void __launch_bounds__(block_size)
+    fold_blocks(Index count, Value neutral, Kernel kernel, Combine combine, Value* partial) {
+  __shared__ alignas(16) unsigned char memory[block_size * sizeof(Value)];
+  auto* shared = reinterpret_cast<Value*>(memory);
+  Value value = neutral;
+  for (std::int64_t i = blockIdx.x * std::int64_t{block_size} + threadIdx.x; i < count;
+       i += gridDim.x * std::int64_t{block_size})
+    value = combine(value, kernel(static_cast<Index>(i)));
+  shared[threadIdx.x] = value;
+  for (unsigned half = block_size / 2; half > 0; half /= 2) {
+    __syncthreads();
+    if (threadIdx.x < half)
+      shared[threadIdx.x] = combine(shared[threadIdx.x], shared[threadIdx.x + half]);
+  }
+  if (threadIdx.x == 0) partial[blockIdx.x] = shared[0];
+}
+#endif
+
+// In a CUDA build the same text makes two kinds of loops: one that can launch, in files that nvcc
+// compiles, and one for the host alone in all others. They must not pass for one another.
+#if defined(BR_CUDA) && !defined(__CUDACC__)
+inline namespace host_loops {
+#else
+inline namespace loops {
+#endif
+
 /// kernel(i) for every i in [0, count), in any order, static schedule.
 template <class Kernel>
 void for_each(const Exec& exec, Index count, const Kernel& kernel) {
   if (count <= 0) return;
 #if defined(__CUDACC__)
   if (exec.space == Space::cuda) {
-    constexpr Index block = 128;
-    launch_kernel<<<(count + block - 1) / block, block>>>(count, kernel);
+    const auto blocks = static_cast<unsigned>((count + block_size - 1) / block_size);
+    launch_kernel<<<blocks, block_size, 0, device_stream()>>>(count, kernel);
+    check_device(cudaGetLastError(), "a launch");
     return;
   }
 #endif
+  BR_ASSERT(exec.space != Space::cuda);
   if (exec.threads <= 1 || count < smallest_shared_loop) {
     const KernelScope scope;
     for (Index i = 0; i < count; ++i) kernel(i);
@@ -88,15 +143,33 @@ void for_each_run(const Exec& exec, Index count, Index grain, const Run& run) {
   for (Index r = 0; r < runs; ++r) one(r);
 }
 
-/// combine(...combine(combine(neutral, kernel(0)), kernel(1))...), in fixed chunks of `fold_chunk`
-/// whose partial results are combined in ascending order: the same bits for any thread count.
+/// neutral, kernel(0), kernel(1), ... combined into one value, on the host in fixed chunks of
+/// `fold_chunk`. The combination must not depend on order (least, largest, sums of whole numbers,
+/// ExactSum), so that threads and devices all give the same bits.
 template <class Value, class Kernel, class Combine>
 Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
            const Combine& combine) {
-  const Index chunks = (count + fold_chunk - 1) / fold_chunk;
   struct Partial {  // by itself in memory: std::vector<bool> would share words among threads
     Value value;
   };
+#if defined(__CUDACC__)
+  if (exec.space == Space::cuda) {
+    if (count <= 0) return neutral;
+    const Index blocks = std::min((count + block_size - 1) / block_size, Index{528});
+    Buffer<std::byte> partial(Space::cuda, static_cast<Index>(sizeof(Value)) * blocks);
+    fold_blocks<<<static_cast<unsigned>(blocks), block_size, 0, device_stream()>>>(
+        count, neutral, kernel, combine, reinterpret_cast<Value*>(partial.data()));
+    check_device(cudaGetLastError(), "a launch");
+    std::vector<Partial> of_block(static_cast<std::size_t>(blocks), Partial{neutral});
+    copy_bytes(of_block.data(), Space::host, partial.data(), Space::cuda,
+               of_block.size() * sizeof(Value));
+    Value value = neutral;
+    for (const Partial& part : of_block) value = combine(value, part.value);
+    return value;
+  }
+#endif
+  BR_ASSERT(exec.space != Space::cuda);
+  const Index chunks = (count + fold_chunk - 1) / fold_chunk;
   std::vector<Partial> partial(static_cast<std::size_t>(chunks), Partial{neutral});
   const auto fold_one = [&](Index chunk) {
     const KernelScope scope;
@@ -116,4 +189,5 @@ Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
   return value;
 }
 
+}  // namespace loops
 }  // namespace breccia

@@ -5,8 +5,10 @@
 #include <cstring>
 #include <new>
 
+#include "exec/device.hpp"
+
 #if defined(BR_CUDA)
-#include <cuda_runtime.h>
+#include "exec/cuda.hpp"
 #endif
 
 namespace breccia {
@@ -29,8 +31,12 @@ void* allocate(Space space, std::size_t bytes) {
   if (space == Space::cuda) {
 #if defined(BR_CUDA)
     void* memory = nullptr;
-    if (cudaMalloc(&memory, bytes) != cudaSuccess) throw std::bad_alloc();
-    book(bytes);
+    const cudaError_t result = cudaMallocAsync(&memory, bytes, device_stream());
+    if (result == cudaErrorMemoryAllocation) {
+      cudaGetLastError();  // the failure is told here, not by the next call
+      throw std::bad_alloc();
+    }
+    check_device(result, "taking memory");
     return memory;
 #else
     throw std::bad_alloc();
@@ -48,7 +54,7 @@ void release(Space space, void* memory) noexcept {
   if (memory == nullptr) return;
   if (space == Space::cuda) {
 #if defined(BR_CUDA)
-    cudaFree(memory);
+    cudaFreeAsync(memory, device_stream());
 #endif
     return;
   }
@@ -64,7 +70,8 @@ void copy_bytes(void* to, [[maybe_unused]] Space to_space, const void* from,
   if (bytes == 0) return;
 #if defined(BR_CUDA)
   if (to_space == Space::cuda || from_space == Space::cuda) {
-    if (cudaMemcpy(to, from, bytes, cudaMemcpyDefault) != cudaSuccess) throw std::bad_alloc();
+    check_device(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, device_stream()), "a copy");
+    if (to_space != from_space) wait_for_device();
     return;
   }
 #endif
@@ -75,7 +82,7 @@ void clear_bytes(void* memory, [[maybe_unused]] Space space, std::size_t bytes) 
   if (bytes == 0) return;
 #if defined(BR_CUDA)
   if (space == Space::cuda) {
-    cudaMemset(memory, 0, bytes);
+    check_device(cudaMemsetAsync(memory, 0, bytes, device_stream()), "clearing memory");
     return;
   }
 #endif

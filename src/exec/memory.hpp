@@ -10,7 +10,7 @@ namespace breccia {
 /// `bytes` of memory in `space`, aligned to 64 bytes. @throws std::bad_alloc
 void* allocate(Space space, std::size_t bytes);
 void release(Space space, void* memory) noexcept;
-/// Copies between any two spaces; complete on return.
+/// Copies between any two spaces; complete on return, or within a device before the next kernel.
 void copy_bytes(void* to, Space to_space, const void* from, Space from_space, std::size_t bytes);
 /// Sets every byte to zero.
 void clear_bytes(void* memory, Space space, std::size_t bytes);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exec/error.hpp"
+#include "exec/sort_scan_device.hpp"
 
 namespace breccia {
 
@@ -71,6 +72,7 @@ void sort_by_digits(const Exec& exec, Buffer<Item>& items, Buffer<Item>& scratch
 }  // namespace
 
 void sort_by_key(const Exec& exec, Buffer<KeyedIndex>& items) {
+  if (items.space() == Space::cuda) return sort_by_key_on_device(items);
   KeyedIndex* const begin = items.data();
   KeyedIndex* const end = begin + items.size();
   const auto item_before = [](const KeyedIndex& a, const KeyedIndex& b) { return a.item < b.item; };
@@ -90,20 +92,23 @@ void sort_by_key(const Exec& exec, Buffer<KeyedIndex>& items) {
 
 void sort_keys(const Exec& exec, Buffer<std::uint64_t>& keys, Buffer<std::uint64_t>& scratch,
                int bits) {
+  if (keys.space() == Space::cuda) return sort_keys_on_device(keys, scratch, bits);
   sort_by_digits(exec, keys, scratch, bits);
 }
 
 Index exclusive_scan(const Exec&, Buffer<Index>& counts) {
   std::int64_t total = 0;
-  for (Index i = 0; i < counts.size(); ++i) {
+  if (counts.space() == Space::cuda) total = exclusive_scan_on_device(counts);
+  const Index on_host = counts.space() == Space::cuda ? 0 : counts.size();
+  for (Index i = 0; i < on_host; ++i) {
     const Index count = counts.data()[i];
     counts.data()[i] = static_cast<Index>(total);
     total += count;
-    if (total > std::numeric_limits<Index>::max())
-      throw DeviceError(
-          "the model needs more than the 2,147,483,647 pairs of elements that fit a 32-bit index; "
-          "use fewer elements, or a smaller search.margin or links.range");
   }
+  if (total > std::numeric_limits<Index>::max())
+    throw DeviceError(
+        "the model needs more than the 2,147,483,647 pairs of elements that fit a 32-bit index; "
+        "use fewer elements, or a smaller search.margin or links.range");
   return static_cast<Index>(total);
 }
 

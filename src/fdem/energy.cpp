@@ -13,7 +13,7 @@ namespace {
 struct Shares {
   ExactSum kinetic, elastic, open, slide, friction, damping, contact, work;
 };
-Shares sum_shares(Shares a, const Shares& b) {
+BR_HD Shares operator+(Shares a, const Shares& b) {
   a.kinetic.add(b.kinetic);
   a.elastic.add(b.elastic);
   a.open.add(b.open);
@@ -129,23 +129,22 @@ Shares all_shares(const World& w) {
                                    t.viscous_work.view(),
                                    t.damping_work.view(),
                                    t.load_work.view()},
-                    sum_shares);
+                    Sum{});
   const Joints& j = w.joints;
-  sum = sum_shares(
-      sum, fold(w.exec, j.size(), Shares{},
-                JointShares{by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
-                            j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
-                            j.stage.view(), j.points.view(), j.work.view()},
-                sum_shares));
-  return sum_shares(sum, fold(w.exec, w.couples.size(), Shares{},
-                              CoupleShares{w.couples.history.state.view()}, sum_shares));
+  sum = sum + fold(w.exec, j.size(), Shares{},
+                   JointShares{by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
+                               j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
+                               j.stage.view(), j.points.view(), j.work.view()},
+                   Sum{});
+  return sum + fold(w.exec, w.couples.size(), Shares{},
+                    CoupleShares{w.couples.history.state.view()}, Sum{});
 }
 
 ExactSum potential(const World& w) {
   return fold(
       w.exec, w.triangles.size(), ExactSum{},
       GravityPotential{w.parameters.gravity, w.triangles.nodes.view(), w.triangles.mass.view()},
-      [](const ExactSum& a, const ExactSum& b) { return a + b; });
+      Sum{});
 }
 
 }  // namespace

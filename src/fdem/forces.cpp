@@ -26,10 +26,6 @@ void run(const World& w, Index count, const Kernel& kernel) {
                [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
 }
 
-double least_of(double a, double b) {
-  return smaller(a, b);
-}
-
 }  // namespace
 
 double Amplitude::at(double time) const {
@@ -143,13 +139,13 @@ double allowed_step(const World& w, double stable) {
 
 double choose_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
-  return allowed_step(w, fold(w.exec, w.triangles.size(), 1e300, stable_step(w), least_of));
+  return allowed_step(w, fold(w.exec, w.triangles.size(), 1e300, stable_step(w), Least{}));
 }
 
 double shortened_time_step(const World& w, const Buffer<Index>& triangles) {
   const StageTime timed(w.exec, "time_step");
   const double stable = fold(w.exec, triangles.size(), 1e300,
-                             StableStepOf{stable_step(w), triangles.view()}, least_of);
+                             StableStepOf{stable_step(w), triangles.view()}, Least{});
   return std::min(w.next_dt, allowed_step(w, stable));
 }
 

@@ -85,16 +85,14 @@ double pick(const std::string& quantity, const NodeState& n, const Vec2& force, 
 
 std::uint64_t state_hash(const World& w) {
   const Triangles& t = w.triangles;
-  return fold(w.exec, t.size(), std::uint64_t{0}, HashTriangle{t.id.view(), t.nodes.view()},
-              [](std::uint64_t a, std::uint64_t b) { return a + b; });
+  return fold(w.exec, t.size(), std::uint64_t{0}, HashTriangle{t.id.view(), t.nodes.view()}, Sum{});
 }
 
 void verify(const World& w) {
   const Triangles& t = w.triangles;
   const GlobalId bad =
       fold(w.exec, t.size(), FindUnsound::none,
-           FindUnsound{w.last_dt, t.id.view(), t.nodes.view(), t.shape_inverse.view()},
-           [](GlobalId a, GlobalId b) { return a < b ? a : b; });
+           FindUnsound{w.last_dt, t.id.view(), t.nodes.view(), t.shape_inverse.view()}, Least{});
   if (bad == FindUnsound::none) return;
   const Triangles host = host_copy(t);
   const auto ids = host.id.host();

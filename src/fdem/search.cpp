@@ -165,7 +165,7 @@ bool couples_are_due(const World& w) {
   const double used = fold(w.exec, w.reach.triangle.size(), 0.0,
                            UsedMargin{w.reach.triangle.view(), w.reach.reference.view(),
                                       w.reach.margin.view(), w.triangles.nodes.view()},
-                           [](double a, double b) { return larger(a, b); });
+                           Largest{});
   return used > 0.0;
 }
 

@@ -1,0 +1,15 @@
+#pragma once
+// What files that launch on a GPU share: the stream of the run and the check of every call. Only
+// files that a CUDA build compiles include this.
+
+#include <cuda_runtime.h>
+
+namespace breccia {
+
+/// The stream that all kernels and copies of this process run on, in order.
+cudaStream_t device_stream();
+
+/// @throws DeviceError with the driver's reason and what was tried
+void check_device(cudaError_t result, const char* what);
+
+}  // namespace breccia

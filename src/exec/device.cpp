@@ -1,0 +1,79 @@
+#include "exec/device.hpp"
+
+#include "exec/error.hpp"
+
+#if defined(BR_CUDA)
+#include "exec/cuda.hpp"
+
+namespace breccia {
+
+void check_device(cudaError_t result, const char* what) {
+  if (result == cudaSuccess) return;
+  const std::string reason = cudaGetErrorString(result);
+  throw DeviceError("the GPU failed in " + std::string(what) + ": " + reason);
+}
+
+cudaStream_t device_stream() {
+  static const cudaStream_t stream = [] {
+    cudaStream_t made = nullptr;
+    check_device(cudaStreamCreateWithFlags(&made, cudaStreamNonBlocking), "making a stream");
+    return made;
+  }();
+  return stream;
+}
+
+void use_device(int number) {
+  int count = 0;
+  if (const cudaError_t result = cudaGetDeviceCount(&count); result != cudaSuccess)
+    throw DeviceError(std::string("no GPU can be used: ") + cudaGetErrorString(result) +
+                      "; nothing was run\n  use --device cpu, or look at nvidia-smi");
+  if (number < 0 || number >= count)
+    throw DeviceError("there is no GPU " + std::to_string(number) + "; this machine has " +
+                      std::to_string(count) + ", from 0; nothing was run");
+  check_device(cudaSetDevice(number), "choosing it");
+  // Freed memory stays with the process: searches take and give arrays every few steps.
+  cudaMemPool_t pool = nullptr;
+  check_device(cudaDeviceGetDefaultMemPool(&pool, number), "finding its memory pool");
+  std::uint64_t kept = ~std::uint64_t{0};
+  check_device(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept),
+               "setting its memory pool up");
+}
+
+DeviceInfo device_info() {
+  int number = 0;
+  check_device(cudaGetDevice(&number), "asking for its number");
+  cudaDeviceProp properties{};
+  check_device(cudaGetDeviceProperties(&properties, number), "asking for its properties");
+  DeviceInfo info;
+  info.name = properties.name;
+  check_device(cudaMemGetInfo(&info.free_memory, &info.memory), "asking for its memory");
+  return info;
+}
+
+void wait_for_device() {
+  check_device(cudaStreamSynchronize(device_stream()), "a kernel");
+}
+
+}  // namespace breccia
+
+#else
+
+namespace breccia {
+namespace {
+[[noreturn]] void refuse() {
+  throw DeviceError(
+      "this build of breccia has no CUDA; nothing was run\n"
+      "  build it with 'cmake --preset cuda', or use --device cpu");
+}
+}  // namespace
+
+void use_device(int) {
+  refuse();
+}
+DeviceInfo device_info() {
+  refuse();
+}
+void wait_for_device() {}
+
+}  // namespace breccia
+#endif

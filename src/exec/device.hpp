@@ -1,0 +1,26 @@
+#pragma once
+// The GPU of this process: which one, how much memory, whether it still answers.
+
+#include <cstddef>
+#include <string>
+
+namespace breccia {
+
+/// A GPU as its driver describes it.
+struct DeviceInfo {
+  std::string name;
+  std::size_t memory = 0;       ///< of the device  [B]
+  std::size_t free_memory = 0;  ///< of it, not taken by anyone  [B]
+};
+
+/// Computes on GPU `number` from now on. @throws DeviceError if this build has no CUDA, or if there
+/// is no such GPU (tells how many there are)
+void use_device(int number);
+
+/// Of the GPU in use. @throws DeviceError
+DeviceInfo device_info();
+
+/// Waits until the GPU has done all that was asked of it. @throws DeviceError if it went wrong
+void wait_for_device();
+
+}  // namespace breccia

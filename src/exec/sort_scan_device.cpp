@@ -1,0 +1,127 @@
+// The only file that sees CUB, the sorts and scans of the CUDA toolkit.
+
+#include "exec/sort_scan_device.hpp"
+
+#include "exec/error.hpp"
+
+#if defined(__CUDACC__)
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+
+#include "exec/for_each.hpp"
+
+namespace breccia {
+namespace {
+
+/// Calls one of CUB's functions twice, as they want it: for the size of its work space, then with
+/// it.
+template <class Call>
+void with_work_space(const Call& call) {
+  std::size_t bytes = 0;
+  check_device(call(nullptr, bytes), "planning a sort or scan");
+  void* work = allocate(Space::cuda, bytes);
+  const cudaError_t result = call(work, bytes);
+  release(Space::cuda, work);
+  check_device(result, "a sort or scan");
+}
+
+struct SplitItem {
+  View<const KeyedIndex> items;
+  View<std::uint64_t> key;
+  View<std::uint32_t> item;
+  BR_HD void operator()(Index i) const {
+    key[i] = items[i].key;
+    item[i] = static_cast<std::uint32_t>(items[i].item);
+  }
+};
+struct JoinItem {
+  View<const std::uint64_t> key;
+  View<const std::uint32_t> item;
+  View<KeyedIndex> items;
+  BR_HD void operator()(Index i) const { items[i] = {key[i], static_cast<Index>(item[i])}; }
+};
+struct NotAscending {
+  View<const KeyedIndex> items;
+  BR_HD Index operator()(Index i) const { return items[i].item >= items[i + 1].item ? 1 : 0; }
+};
+struct CountOf {
+  View<const Index> counts;
+  BR_HD std::int64_t operator()(Index i) const { return counts[i]; }
+};
+
+constexpr Exec on_device{Space::cuda, 1, nullptr};
+
+/// Sorts two arrays by the numbers in the first, stable.
+template <class Key, class Carried>
+void sort_pairs(Buffer<Key>& key, Buffer<Carried>& carried) {
+  Buffer<Key> sorted_key(Space::cuda, key.size());
+  Buffer<Carried> sorted_carried(Space::cuda, key.size());
+  with_work_space([&](void* work, std::size_t& bytes) {
+    return cub::DeviceRadixSort::SortPairs(work, bytes, key.data(), sorted_key.data(),
+                                           carried.data(), sorted_carried.data(), key.size(), 0,
+                                           static_cast<int>(8 * sizeof(Key)), device_stream());
+  });
+  key.swap(sorted_key);
+  carried.swap(sorted_carried);
+}
+
+}  // namespace
+
+void sort_by_key_on_device(Buffer<KeyedIndex>& items) {
+  const Index count = items.size();
+  if (count < 2) return;
+  Buffer<std::uint64_t> key(Space::cuda, count);
+  Buffer<std::uint32_t> item(Space::cuda, count);
+  const View<const KeyedIndex> view = std::as_const(items).view();
+  for_each(on_device, count, SplitItem{view, key.view(), item.view()});
+  // A stable sort leaves equal keys in the order of their items if that is how they come.
+  if (fold(on_device, count - 1, Index{0}, NotAscending{view}, Largest{}) != 0)
+    sort_pairs(item, key);
+  sort_pairs(key, item);
+  for_each(on_device, count,
+           JoinItem{std::as_const(key).view(), std::as_const(item).view(), items.view()});
+}
+
+void sort_keys_on_device(Buffer<std::uint64_t>& keys, Buffer<std::uint64_t>& scratch, int bits) {
+  scratch.resize(keys.size());
+  if (keys.size() < 2) return;
+  with_work_space([&](void* work, std::size_t& bytes) {
+    return cub::DeviceRadixSort::SortKeys(work, bytes, keys.data(), scratch.data(), keys.size(), 0,
+                                          bits, device_stream());
+  });
+  keys.swap(scratch);
+}
+
+std::int64_t exclusive_scan_on_device(Buffer<Index>& counts) {
+  const std::int64_t total =
+      fold(on_device, counts.size(), std::int64_t{0}, CountOf{std::as_const(counts).view()}, Sum{});
+  with_work_space([&](void* work, std::size_t& bytes) {
+    return cub::DeviceScan::ExclusiveSum(work, bytes, counts.data(), counts.data(), counts.size(),
+                                         device_stream());
+  });
+  return total;
+}
+
+}  // namespace breccia
+
+#else
+
+namespace breccia {
+namespace {
+[[noreturn]] void refuse() {
+  throw DeviceError("this build of breccia has no CUDA");
+}
+}  // namespace
+
+void sort_by_key_on_device(Buffer<KeyedIndex>&) {
+  refuse();
+}
+void sort_keys_on_device(Buffer<std::uint64_t>&, Buffer<std::uint64_t>&, int) {
+  refuse();
+}
+std::int64_t exclusive_scan_on_device(Buffer<Index>&) {
+  refuse();
+}
+
+}  // namespace breccia
+#endif
