@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
+#include "exec/device.hpp"
 #include "exec/error.hpp"
 
 namespace breccia::app {
@@ -55,15 +56,17 @@ Exec exec_of(const RunOptions& options) {
   if (options.device == "cpu") return exec;
   if (options.device != "cuda" && !options.device.starts_with("cuda:"))
     throw InputError(fmt::format("--device {}: there are cpu, cuda and cuda:N", options.device));
-#if defined(BR_CUDA)
+  int number = 0;
+  if (const std::size_t colon = options.device.find(':'); colon != std::string::npos) {
+    const char* const end = options.device.data() + options.device.size();
+    const auto [stop, error] = std::from_chars(options.device.data() + colon + 1, end, number);
+    if (error != std::errc{} || stop != end || number < 0)
+      throw InputError(
+          fmt::format("--device {}: N is the number of a GPU, from 0", options.device));
+  }
+  use_device(number);
   exec.space = Space::cuda;
   return exec;
-#else
-  throw DeviceError(
-      fmt::format("--device {}: this build of breccia has no CUDA; nothing was run\n"
-                  "  build it with 'cmake --preset cuda', or use --device cpu",
-                  options.device));
-#endif
 }
 
 RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec) {

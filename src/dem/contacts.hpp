@@ -50,6 +50,7 @@ struct ContactForces {
   View<double> slid, damped;
   View<Action> actions;  ///< zero for pairs that were apart when last seen
 
+  BR_HD void set(const Moment& now) { dt = now.last_dt; }
   BR_HD void operator()(Index i) const {
     const Index ia = a[i], ib = b[i];
     const PairEnd<double> end_a = elements.end(ia), end_b = elements.end(ib);
@@ -81,7 +82,8 @@ struct WallForces {
   static constexpr const char* name = "dem.walls";
   ContactLaw law;
   double dt;
-  Wall wall;
+  View<const Wall> walls;
+  Index number;  ///< of the wall
   ElementsView elements;
   View<const std::int16_t> material;
   View<const ContactPair> pairs;  ///< of a material with a rigid wall
@@ -92,7 +94,9 @@ struct WallForces {
   View<Vec3> force, torque;
   View<double> critical;
 
+  BR_HD void set(const Moment& now) { dt = now.last_dt; }
   BR_HD void operator()(Index k) const {
+    const Wall& wall = walls[number];
     const Index i = first + k, e = a[i];
     const PairEnd<double> end = elements.end(e);
     const double radius = elements.radius(e), mass = elements.mass[e];

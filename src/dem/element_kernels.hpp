@@ -2,6 +2,7 @@
 // What is done to each element by itself: its sum of forces, its critical step, its motion.
 
 #include "core/incidence.hpp"
+#include "core/step_clock.hpp"
 #include "dem/contacts.hpp"
 #include "dem/elements.hpp"
 
@@ -94,6 +95,42 @@ struct GatherForces {
   }
 };
 
+/// For each element the concrete links that it is one end of, in the order of their sums.
+struct LinkRows {
+  Buffer<Index> starts, links;
+
+  struct Seen {
+    View<const Index> starts, links;
+  };
+  Seen view() const { return {starts.view(), links.view()}; }
+};
+
+/// GatherForces where every link has an action: on a device.
+struct GatherRows {
+  static constexpr const char* name = "dem.gather_rows";
+  GatherForces gather;
+  LinkRows::Seen rows_a, rows_b;
+  View<const Action> actions;
+
+  BR_HD void operator()(Index e) const {
+    LinkSums s{};
+    for (Index k = rows_a.starts[e]; k < rows_a.starts[e + 1]; ++k) {
+      const Action& action = actions[rows_a.links[k]];
+      s.as_a.add(action.numbers);
+      s.stiffness_a.add(action.stiffness);
+    }
+    for (Index k = rows_b.starts[e]; k < rows_b.starts[e + 1]; ++k) {
+      const Action& action = actions[rows_b.links[k]];
+      s.as_b.add(action.numbers + 3);
+      s.stiffness_b.add(action.stiffness + 3);
+    }
+    GatherForces::add(s, gather.bars, gather.bar_actions, e);
+    GatherForces::add(s, gather.contacts, gather.contact_actions, e);
+    gather.finish(e, s);
+  }
+  BR_HD void set(const Moment&) {}
+};
+
 /// How the forces of this time change velocities (leapfrog with a variable step, Durand 2012, 3.3).
 struct Kick {
   double time;              ///< of the forces  [s]
@@ -112,6 +149,11 @@ struct Kick {
     Vec3 damped_force, damped_torque;  ///< what damping took off
   };
 
+  BR_HD void set(const Moment& now) {
+    time = now.time;
+    last_dt = now.last_dt;
+    next_dt = now.next_dt;
+  }
   BR_HD static double opposed(double force, double velocity) {
     return velocity > 0.0 ? absolute(force) : velocity < 0.0 ? -absolute(force) : 0.0;
   }
@@ -158,6 +200,7 @@ struct MoveElements {
   View<Quaternion> orientation;
   View<double> damping_work, load_work;
 
+  BR_HD void set(const Moment& now) { kick.set(now); }
   BR_WHOLE BR_HD void operator()(Index e) const {
     const Kick::Result r = kick(e);
     ElementState& moved = state[e];

@@ -1,10 +1,8 @@
 // The launches of a step's loops over elements, links and contacts.
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
-#include "dem/world.hpp"
+#include "dem/launches.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia::dem {
@@ -116,12 +114,21 @@ Kick kick(const World& w) {
           w.elements.motion.view()};
 }
 
+StepRule step_rule(const World& w) {
+  return {w.parameters.time.safety, w.parameters.time.max_step, w.parameters.contact_step};
+}
+
+View<const Wall> walls_view(const World& w) {
+  if (w.exec.space == Space::cuda) return w.device_walls.view();
+  View<const Wall> view;
+  view.data = w.walls.data();
+  view.size = static_cast<Index>(w.walls.size());
+  return view;
+}
+
 void move_elements(World& w) {
   const StageTime timed(w.exec, "integration");
-  Elements& e = w.elements;
-  for_each(w.exec, e.size(),
-           MoveElements{kick(w), e.state.view(), e.orientation.view(), e.damping_work.view(),
-                        e.load_work.view()});
+  for_each(w.exec, w.elements.size(), move_kernel(w));
   for (Wall& wall : w.walls) {
     wall.point += w.next_dt * wall.velocity;
     wall.travelled += w.next_dt * norm(wall.velocity);
@@ -132,61 +139,30 @@ void move_elements(World& w) {
 
 void bar_forces(World& w) {
   const StageTime timed(w.exec, "bar_forces");
-  const ElementsView elements = elements_view(w);
-  SteelLinks& s = w.steel;
   for (const auto& group : w.steel_groups)
     for_each(w.exec, group.end - group.begin,
-             Shifted<SteelLinkForces>{
-                 {group.law, w.last_dt, elements, s.a.view(), s.b.view(), s.length.view(),
-                  s.state.view(), s.yielded.view(), s.broke.view(), w.bar_actions.view(), 0},
-                 group.begin});
-  InterfaceLinks& b = w.interface;
+             Shifted<SteelLinkForces>{steel_kernel(w, group), group.begin});
   for (const auto& group : w.interface_groups)
     for_each(w.exec, group.end - group.begin,
-             Shifted<InterfaceLinkForces>{
-                 {group.law, w.last_dt, elements, b.a.view(), b.b.view(), b.before.view(),
-                  b.after.view(), b.stiffness.view(), b.area.view(), b.state.view(), b.slid.view(),
-                  b.broke.view(), w.bar_actions.view(), s.size()},
-                 group.begin});
+             Shifted<InterfaceLinkForces>{interface_kernel(w, group), group.begin});
 }
 
 void contact_forces(World& w) {
   const StageTime timed(w.exec, "contact_forces");
-  Contacts& c = w.contacts;
-  for_each(w.exec, c.size(),
-           ContactForces{w.parameters.contact, w.last_dt, elements_view(w),
-                         w.elements.material.view(), w.contact_pairs.view(), w.parameters.materials,
-                         c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
-                         c.history.slid.view(), c.history.damped.view(), w.contact_actions.view()});
+  for_each(w.exec, w.contacts.size(), contact_kernel(w));
 }
 
 void concrete_forces_and_sums(World& w) {
   const StageTime timed(w.exec, "link_forces");
-  const ElementsView elements = elements_view(w);
-  ConcreteLinks& c = w.concrete;
+  if (w.exec.space == Space::cuda) {
+    for (const auto& group : w.concrete_groups)
+      for_each(w.exec, group.end - group.begin,
+               Shifted<ConcreteLinkForces>{concrete_kernel(w, group), group.begin});
+    return for_each(w.exec, w.elements.size(), gather_rows_kernel(w));
+  }
   std::vector<ConcreteLinkForces> kernels;
-  for (const auto& group : w.concrete_groups)
-    kernels.push_back({group.law,
-                       w.last_dt,
-                       elements,
-                       c.a.view(),
-                       c.b.view(),
-                       c.length.view(),
-                       c.stiffness.view(),
-                       c.opening.view(),
-                       c.shear.view(),
-                       c.moment.view(),
-                       c.slid.view(),
-                       c.yielded.view(),
-                       c.broke.view(),
-                       {},
-                       0});
-  Elements& e = w.elements;
-  const GatherForces gather{
-      w.link_sums.view(),   w.bar_incidence.view(),   w.contact_incidence.view(),
-      w.bar_actions.view(), w.contact_actions.view(), e.mass.view(),
-      e.inertia.view(),     e.fixed.view(),           e.force.view(),
-      e.torque.view(),      w.critical.view()};
+  for (const auto& group : w.concrete_groups) kernels.push_back(concrete_kernel(w, group));
+  const GatherForces gather = gather_kernel(w);
   Sweep& sweep = w.sweep;
   const auto threads = static_cast<int>(sweep.settled.size());
 #pragma omp parallel num_threads(threads) if (threads > 1)
@@ -226,26 +202,16 @@ void concrete_forces_and_sums(World& w) {
 void wall_forces(World& w) {
   if (w.wall_contacts.size() == 0) return;
   const StageTime timed(w.exec, "wall_forces");
-  Contacts& c = w.wall_contacts;
+  if (w.exec.space == Space::cuda) copy_to(w.device_walls, w.walls);
   for (std::size_t k = 0; k < w.walls.size(); ++k)
-    for_each(w.exec, w.wall_begin[k + 1] - w.wall_begin[k],
-             WallForces{w.parameters.contact, w.last_dt, w.walls[k], elements_view(w),
-                        w.elements.material.view(), w.wall_pairs.view(), c.pairs.a.view(),
-                        w.wall_begin[k], c.history.state.view(), c.history.slid.view(),
-                        c.history.damped.view(), c.history.driven.view(), w.elements.force.view(),
-                        w.elements.torque.view(), w.critical.view()});
+    for_each(w.exec, w.wall_begin[k + 1] - w.wall_begin[k], wall_kernel(w, static_cast<Index>(k)));
 }
 
 double choose_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
   const double least =
-      fold(w.exec, w.elements.size(), 1e300, LeastCritical{w.critical.view()}, Least{});
-  // sqrt(2): two neighbours in opposite motion (docs/theory.md, time step).
-  double dt = w.parameters.time.safety * std::sqrt(2.0 * least);
-  dt = std::min({dt, w.parameters.time.max_step, w.parameters.contact_step});
-  if (w.last_dt > 0.0) dt = std::min(dt, 1.05 * w.last_dt);  // falls at once, grows slowly
-  // Six bits: noise in the stiffest element's last bits must not change every step after it.
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(dt) & ~((std::uint64_t{1} << 47) - 1));
+      fold(w.exec, w.elements.size(), largest_least, LeastCritical{w.critical.view()}, Least{});
+  return step_rule(w)(least, w.last_dt);
 }
 
 }  // namespace breccia::dem

@@ -1,6 +1,7 @@
 #pragma once
 // One kernel for each kind of link (Durand 2012, 4.2): reads, one law call, one write.
 
+#include "core/step_clock.hpp"
 #include "dem/elements.hpp"
 #include "dem/links.hpp"
 
@@ -67,6 +68,7 @@ struct ConcreteLinkForces {
     book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt,
          kr, kr);
   }
+  BR_HD void set(const Moment& now) { dt = now.last_dt; }
   BR_WHOLE BR_HD void operator()(Index i) const { at<double>(i); }
 };
 
@@ -83,6 +85,7 @@ struct SteelLinkForces {
   View<Action> actions;
   Index first_action;  ///< action of link 0
 
+  BR_HD void set(const Moment& now) { dt = now.last_dt; }
   BR_WHOLE BR_HD void operator()(Index i) const {
     const PairMotion<double> motion =
         pair_motion<double>(elements.end(a[i]), elements.end(b[i]), 0.0, dt);
@@ -112,6 +115,7 @@ struct InterfaceLinkForces {
   View<Action> actions;
   Index first_action;  ///< action of link 0
 
+  BR_HD void set(const Moment& now) { dt = now.last_dt; }
   BR_WHOLE BR_HD void operator()(Index i) const {
     const PairEnd<double> bar = elements.end(a[i]), concrete = elements.end(b[i]);
     const Vec3 chord = elements.state[after[i]].position - elements.state[before[i]].position;

@@ -2,6 +2,7 @@
 // stay.
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/select.hpp"
 #include "dem/world.hpp"
@@ -153,6 +154,7 @@ void find_wall_contacts(World& w) {
 
 /// First contact of each wall, and the end.
 void divide_by_wall(World& w) {
+  if (w.walls.empty()) return;
   std::vector<Index> wall_of;
   copy_to(wall_of, w.wall_contacts.pairs.b);
   w.wall_begin.assign(w.walls.size() + 1, static_cast<Index>(wall_of.size()));
@@ -168,6 +170,40 @@ void find_starts(const std::vector<Index>& a, Index elements, LinkGroup<Concrete
   for (Index i = group.begin; i < group.end; ++i)
     for (; element <= a[static_cast<std::size_t>(i)]; ++element)
       group.starts[static_cast<std::size_t>(element)] = i;
+}
+
+/// Links at one of their ends, by element, each row in the order of `order`.
+LinkRows rows_of(Space space, const std::vector<Index>& end, Index elements,
+                 const std::vector<Index>& order) {
+  std::vector<Index> starts(static_cast<std::size_t>(elements) + 1, 0), links(order.size());
+  for (const Index e : end) ++starts[static_cast<std::size_t>(e) + 1];
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<Index> next = starts;
+  for (const Index link : order) {
+    Index& place = next[static_cast<std::size_t>(end[static_cast<std::size_t>(link)])];
+    links[static_cast<std::size_t>(place++)] = link;
+  }
+  LinkRows rows{Buffer<Index>(space), Buffer<Index>(space)};
+  copy_to(rows.starts, starts);
+  copy_to(rows.links, links);
+  return rows;
+}
+
+/// The order in which the host's sweep adds links up, as lists for a device: tile by tile of
+/// elements a, group by group.
+void list_rows(World& w, const std::vector<Index>& a, const std::vector<Index>& b) {
+  const Index count = w.elements.size();
+  std::vector<Index> order;
+  order.reserve(a.size());
+  for (Index from = 0; from < count; from += sweep_tile) {
+    const auto begin = static_cast<std::size_t>(from);
+    const auto end = static_cast<std::size_t>(std::min(from + sweep_tile, count));
+    for (const auto& group : w.concrete_groups)
+      for (Index i = group.starts[begin]; i < group.starts[end]; ++i) order.push_back(i);
+  }
+  w.rows_a = rows_of(w.exec.space, a, count, order);
+  w.rows_b = rows_of(w.exec.space, b, count, order);
+  w.link_actions.resize(static_cast<Index>(a.size()));
 }
 
 /// Runs of elements with about as many links each.
@@ -205,6 +241,7 @@ void plan_sweep(World& w) {
   }
   for (std::size_t i = 0; i < a.size(); ++i) w.sweep.reach = std::max(w.sweep.reach, b[i] - a[i]);
   w.sweep.passed.resize(static_cast<std::size_t>(threads));
+  if (w.exec.space == Space::cuda) list_rows(w, a, b);
 }
 
 }  // namespace
@@ -247,6 +284,7 @@ void find_contacts(World& w) {
   w.contacts.replace(w.exec, std::move(found));
   find_wall_contacts(w);
   derive_contacts(w);
+  w.graph.clear();
   ++w.searches;
 }
 

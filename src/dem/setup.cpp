@@ -295,6 +295,10 @@ World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
   contact_actions = Buffer<Action>(space);
   link_sums = Buffer<LinkSums>(space);
   critical = Buffer<double>(space);
+  rows_a = rows_b = LinkRows{Buffer<Index>(space), Buffer<Index>(space)};
+  link_actions = Buffer<Action>(space);
+  device_walls = Buffer<Wall>(space);
+  clock = Buffer<StepClock>(space);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {

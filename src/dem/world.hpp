@@ -6,11 +6,13 @@
 
 #include "core/energy.hpp"
 #include "core/incidence.hpp"
+#include "core/step_clock.hpp"
 #include "core/travel.hpp"
 #include "dem/config.hpp"
 #include "dem/element_kernels.hpp"
 #include "dem/link_lanes.hpp"
 #include "dem/model.hpp"
+#include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
 
 namespace breccia::dem {
@@ -118,6 +120,13 @@ struct World {
   Buffer<Action> bar_actions, contact_actions;
   Buffer<LinkSums> link_sums;  ///< of each element, zero between steps
   Buffer<double> critical;     ///< [s2]
+
+  // On a device.
+  LinkRows rows_a, rows_b;      ///< concrete links that start, and that end, at each element
+  Buffer<Action> link_actions;  ///< of concrete links
+  Buffer<Wall> device_walls;
+  Buffer<StepClock> clock;
+  StepGraph graph;  ///< of some steps
 };
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
@@ -131,6 +140,12 @@ void derive_contacts(World& w);
 
 /// One step of the scheme of Durand et al. 2012, Figure 1 and section 3.3.
 void step(World& w);
+
+/// One step on the host; on a device as many as a few hundredths of a second hold, ending at
+/// `stop`.
+Advanced advance(World& w, const StopAt& stop);
+/// The same text as step(), launched ahead by the device's clock.
+Advanced advance_on_device(World& w, const StopAt& stop);
 
 /// The parts of a step, in its order.
 void move_elements(World& w);
@@ -150,6 +165,23 @@ void evaluate_forces(World& w);
 ElementsView elements_view(const World& w);
 /// Kick of the elements at the time of the forces.
 Kick kick(const World& w);
+
+/// Walls where kernels can read them.
+View<const Wall> walls_view(const World& w);
+
+/// The time step from the least inertia over stiffness of all elements (Durand 2012, section 4.4).
+struct StepRule {
+  double safety, max_step, contact_step;  ///< share of the critical step  [-], limits  [s]
+
+  BR_HD double operator()(double least, double last_dt) const {
+    // sqrt(2): two neighbours in opposite motion (docs/theory.md, time step).
+    double dt = safety * root(2.0 * least);
+    dt = smaller(dt, smaller(max_step, contact_step));
+    if (last_dt > 0.0) dt = smaller(dt, 1.05 * last_dt);  // falls at once, grows slowly
+    return rounded_down(dt);
+  }
+};
+StepRule step_rule(const World& w);
 
 /// Where every joule is; keeps the largest energy for the relative error.
 EnergyBalance balance(World& w);

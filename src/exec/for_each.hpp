@@ -60,6 +60,10 @@ struct Shifted {
   Kernel kernel;
   Index first;
   BR_HD void operator()(Index i) const { kernel(first + i); }
+  template <class Times>
+  BR_HD void set(const Times& now) {
+    kernel.set(now);
+  }
 };
 
 #if defined(__CUDACC__)

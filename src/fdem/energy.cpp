@@ -32,7 +32,7 @@ struct TriangleShares {
   View<const Mat2> shape_inverse;
   View<const double> viscous_work, damping_work, load_work;
 
-  Shares operator()(Index t) const {
+  BR_HD Shares operator()(Index t) const {
     Shares s;
     const Kick& kick = move.kick;
     const Kick::Result next = kick(t);
@@ -66,7 +66,7 @@ struct GravityPotential {
   Vec2 gravity;
   View<const TriangleNodes> nodes;
   View<const double> mass;
-  ExactSum operator()(Index t) const {
+  BR_HD ExactSum operator()(Index t) const {
     ExactSum sum;
     for (const NodeState& n : nodes[t].at) sum.add(mass[t] * dot(gravity, n.position));
     return sum;
@@ -84,7 +84,7 @@ struct JointShares {
   View<const JointPoints> points;
   View<const JointWork> work;
 
-  Shares operator()(Index i) const {
+  BR_HD Shares operator()(Index i) const {
     Shares s;
     if (stage[i] == JointStage::dormant) return s;
     if (stage[i] != JointStage::whole) {
@@ -109,7 +109,7 @@ struct JointShares {
 
 struct CoupleShares {
   View<const CoupleState> state;
-  Shares operator()(Index i) const {
+  BR_HD Shares operator()(Index i) const {
     Shares s;
     s.elastic.add(state[i].work - state[i].slid);
     s.friction.add(state[i].slid);

@@ -1,7 +1,6 @@
 // The launches of a step's loops over triangles, joints and couples.
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "exec/for_each.hpp"
@@ -10,11 +9,6 @@
 
 namespace breccia::fdem {
 namespace {
-
-/// Six bits: noise in the stiffest triangle's last bits must not change every step after it.
-double rounded_down(double dt) {
-  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(dt) & ~((std::uint64_t{1} << 47) - 1));
-}
 
 /// A kernel over all its items: on the host in packs as wide as the processor's, shared by the
 /// threads in runs that packs fill.

@@ -6,6 +6,7 @@
 
 #include "core/broad_phase.hpp"
 #include "core/energy.hpp"
+#include "core/step_clock.hpp"
 #include "exec/lanes.hpp"
 #include "exec/timers.hpp"
 #include "fdem/config.hpp"
@@ -126,6 +127,9 @@ void derive_bundles(World& w);
 
 /// One step: the points of Lukas 2014, section 2.
 void step(World& w);
+/// One step on the host; on a device as many as a few hundredths of a second hold, ending at
+/// `stop`.
+Advanced advance(World& w, const StopAt& stop);
 
 /// The parts of a step, in its order.
 void move_triangles(World& w);

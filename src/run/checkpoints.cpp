@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <limits>
 
 #include "exec/error.hpp"
 #include "run/result_folder.hpp"
@@ -21,6 +22,11 @@ Checkpoints::Checkpoints(const std::string& folder, const CheckpointConfig& conf
 bool Checkpoints::due(std::int64_t step, Clock::time_point now) const {
   if (config_.steps > 0 && step % config_.steps == 0) return true;
   return now - last_time_ >= std::chrono::duration<double>(config_.wall);
+}
+
+std::int64_t Checkpoints::next_step(std::int64_t step) const {
+  if (config_.steps <= 0) return std::numeric_limits<std::int64_t>::max();
+  return (step / config_.steps + 1) * config_.steps;
 }
 
 std::string Checkpoints::write(std::int64_t step, const CheckpointWriter& state) {

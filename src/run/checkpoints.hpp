@@ -23,6 +23,9 @@ class Checkpoints {
   /// Whether the state after `step` is to be saved, by steps or by wall time.
   bool due(std::int64_t step, Clock::time_point now) const;
 
+  /// The first step after `step` at which one is due by steps.
+  std::int64_t next_step(std::int64_t step) const;
+
   /// Writes the state, verifies it, then removes the oldest beyond those to keep. Returns its path.
   /// @throws IoError; the older checkpoints are then all there
   std::string write(std::int64_t step, const CheckpointWriter& state);

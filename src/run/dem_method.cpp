@@ -13,7 +13,7 @@ class DemMethod final : public Method {
         probes_(config.probes),
         range_(model.interaction_range) {}
 
-  void step() override { dem::step(world_); }
+  Advanced advance(const StopAt& stop) override { return dem::advance(world_, stop); }
   std::int64_t steps() const override { return world_.step; }
   double time() const override { return world_.time; }
   double time_step() const override { return world_.step > 0 ? world_.last_dt : world_.next_dt; }

@@ -37,7 +37,7 @@ class FdemMethod final : public Method {
     for (const ProbeConfig& p : probes_) fdem::probe(world_, p);  // refuses what cannot be read
   }
 
-  void step() override { fdem::step(world_); }
+  Advanced advance(const StopAt& stop) override { return fdem::advance(world_, stop); }
   std::int64_t steps() const override { return world_.step; }
   double time() const override { return world_.time; }
   double time_step() const override { return world_.step > 0 ? world_.last_dt : world_.next_dt; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/energy.hpp"
+#include "core/step_clock.hpp"
 #include "io/checkpoint.hpp"
 #include "io/frame.hpp"
 
@@ -34,8 +35,9 @@ class Method {
   Method& operator=(const Method&) = delete;
   virtual ~Method() = default;
 
-  /// One time step. @throws NumericsError naming step, time and element
-  virtual void step() = 0;
+  /// One time step or, on a device, as many as fit a few hundredths of a second: to the first one
+  /// at or past `stop`. @throws NumericsError naming step, time and element
+  virtual Advanced advance(const StopAt& stop) = 0;
   virtual std::int64_t steps() const = 0;  ///< done so far
   virtual double time() const = 0;         ///< simulated  [s]
   virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]

@@ -1,6 +1,7 @@
 #pragma once
 // What a run shows of itself while it goes on: rows of history.csv, frames and pictures.
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -57,7 +58,9 @@ class Recorder {
            double time);
 
   /// Whether a row or a frame is due. Cheap: asked every step.
-  bool due(double time) const { return time >= rows_.next() || time >= frames_.next(); }
+  bool due(double time) const { return time >= next(); }
+  /// When the next row or frame is due.  [s]
+  double next() const { return std::min(rows_.next(), frames_.next()); }
   /// Writes the rows and frames that are due.
   void record(Method& method);
   /// Writes a row and a frame of the last state, if the schedule did not ask for them.

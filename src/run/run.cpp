@@ -146,7 +146,7 @@ void Run::start() {
 /// Returns the signal that ended the loop, 0 if it got to its end.
 int Run::advance() {
   while (!finished()) {
-    take_step();
+    take_steps();
     if (recorder_.due(method_.time())) observe();
     if (const int signal = StopSignals::received(); signal != 0 && !finished()) return signal;
     const Clock::time_point now = Clock::now();
@@ -156,15 +156,22 @@ int Run::advance() {
   return 0;
 }
 
-void Run::take_step() {
+/// The next moment at which someone looks at the state.
+StopAt Run::next_stop() const {
+  const std::int64_t next_look = (method_.steps() / verify_every + 1) * verify_every;
+  return {std::min(end_time_, recorder_.next()),
+          std::min({end_steps_, next_look, checkpoints_.next_step(method_.steps())})};
+}
+
+void Run::take_steps() {
   const Clock::time_point begin = Clock::now();
-  method_.step();
+  const Advanced taken = method_.advance(next_stop());
   const double spent = seconds_since(begin);
-  step_times_.add(spent);
+  if (taken.steps == 0) return;
+  step_times_.add(spent / static_cast<double>(taken.steps), taken.steps);
   loop_ += spent;
-  const double dt = method_.time_step();
-  dt_min_ = dt_min_ > 0.0 ? std::min(dt_min_, dt) : dt;
-  dt_max_ = std::max(dt_max_, dt);
+  dt_min_ = dt_min_ > 0.0 ? std::min(dt_min_, taken.dt_min) : taken.dt_min;
+  dt_max_ = std::max(dt_max_, taken.dt_max);
   if (method_.steps() % verify_every == 0) method_.verify();
 }
 

@@ -61,7 +61,8 @@ class Run {
 
   void start();
   int advance();
-  void take_step();
+  StopAt next_stop() const;
+  void take_steps();
   void observe();
   bool finished() const;
   double share() const;

@@ -5,10 +5,10 @@
 
 namespace breccia {
 
-void StepTimes::add(double seconds) {
+void StepTimes::add(double seconds, std::int64_t steps) {
   const double position = std::log(std::max(seconds, shortest) / shortest) / std::log(growth);
-  ++counts_[static_cast<std::size_t>(std::min(position, classes - 1.0))];
-  ++count_;
+  counts_[static_cast<std::size_t>(std::min(position, classes - 1.0))] += steps;
+  count_ += steps;
 }
 
 double StepTimes::quantile(double share) const {

@@ -10,7 +10,8 @@ namespace breccia {
 /// is exact to 0.5 %.
 class StepTimes {
  public:
-  void add(double seconds);
+  /// So many steps that took so long each.
+  void add(double seconds, std::int64_t steps = 1);
   /// The duration that `share` (0 to 1) of all steps do not exceed; 0 if there are none.  [s]
   double quantile(double share) const;
   std::int64_t count() const { return count_; }

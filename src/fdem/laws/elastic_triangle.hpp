@@ -62,7 +62,7 @@ struct ElasticLaw {
 /// A material's law, and its energy.
 struct ElasticTriangle : ElasticLaw<double> {
   /// Energy per reference area. Host only: it needs a logarithm.  [J/m2 per unit thickness]
-  double energy(const Deformation<double>& d) const {
+  BR_HD double energy(const Deformation<double>& d) const {
     const Mat2& f = d.gradient;
     const double trace = f.xx * f.xx + f.xy * f.xy + f.yx * f.yx + f.yy * f.yy;
     const double j = d.jacobian;

@@ -74,16 +74,16 @@ TEST(SameBits, across_a_checkpoint_on_other_threads) {
   Exec one, three;
   three.threads = 3;
   const auto before = make_dem_method(config, small_model(), one);
-  for (int i = 0; i < 500; ++i) before->step();
+  for (int i = 0; i < 500; ++i) before->advance({});
   CheckpointWriter writer;
   before->save(writer);
   writer.write(folder + "/state.br");
-  for (int i = 0; i < 400; ++i) before->step();
+  for (int i = 0; i < 400; ++i) before->advance({});
 
   const auto after = make_dem_method(config, small_model(), three);
   after->load(CheckpointReader(folder + "/state.br"));
   EXPECT_EQ(after->steps(), 500);
-  for (int i = 0; i < 400; ++i) after->step();
+  for (int i = 0; i < 400; ++i) after->advance({});
   EXPECT_EQ(after->state_hash(), before->state_hash());
   EXPECT_EQ(after->energy().friction, before->energy().friction);
   EXPECT_EQ(after->energy().error_relative, before->energy().error_relative);

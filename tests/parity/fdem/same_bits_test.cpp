@@ -81,15 +81,15 @@ TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
   // one of these moments is bound to lie between a break and the search that follows
   for (const int moment : {120, 163, 201}) {
     const auto before = make_fdem_method(scene.config, scene.model, one);
-    for (int i = 0; i < moment; ++i) before->step();
+    for (int i = 0; i < moment; ++i) before->advance({});
     CheckpointWriter writer;
     before->save(writer);
     writer.write(folder + "/state.br");
-    for (int i = moment; i < 250; ++i) before->step();
+    for (int i = moment; i < 250; ++i) before->advance({});
     const auto after = make_fdem_method(scene.config, scene.model, three);
     after->load(CheckpointReader(folder + "/state.br"));
     EXPECT_EQ(after->steps(), moment);
-    for (int i = moment; i < 250; ++i) after->step();
+    for (int i = moment; i < 250; ++i) after->advance({});
     EXPECT_EQ(after->state_hash(), before->state_hash());
     EXPECT_EQ(after->energy().friction, before->energy().friction);
     EXPECT_EQ(after->energy().fracture, before->energy().fracture);

@@ -30,7 +30,7 @@ class FakeMethod : public Method {
 
   static constexpr double dt = 0.01;  ///<  [s]
 
-  void step() override {
+  Advanced advance(const StopAt&) override {
     if (trouble_.pause > 0.0)
       std::this_thread::sleep_for(std::chrono::duration<double>(trouble_.pause));
     // dt changes from step to step, so that a schedule that moved it would be seen.
@@ -42,6 +42,7 @@ class FakeMethod : public Method {
     time_ += last_step_;
     ++steps_;
     if (steps_ == trouble_.signal_at) ::raise(trouble_.signal);
+    return {1, last_step_, last_step_};
   }
   std::int64_t steps() const override { return steps_; }
   double time() const override { return time_; }

@@ -1,0 +1,97 @@
+#pragma once
+// The kernels of a step with the arrays of a world: the same for loops on the host and for launches
+// ahead on a device.
+
+#include "dem/world.hpp"
+
+namespace breccia::dem {
+
+inline SteelLinkForces steel_kernel(World& w, const LinkGroup<SteelLink>& group) {
+  SteelLinks& s = w.steel;
+  return {group.law,
+          w.last_dt,
+          elements_view(w),
+          s.a.view(),
+          s.b.view(),
+          s.length.view(),
+          s.state.view(),
+          s.yielded.view(),
+          s.broke.view(),
+          w.bar_actions.view(),
+          0};
+}
+
+inline InterfaceLinkForces interface_kernel(World& w, const LinkGroup<InterfaceLink>& group) {
+  InterfaceLinks& b = w.interface;
+  return {group.law,       w.last_dt,      elements_view(w),     b.a.view(),    b.b.view(),
+          b.before.view(), b.after.view(), b.stiffness.view(),   b.area.view(), b.state.view(),
+          b.slid.view(),   b.broke.view(), w.bar_actions.view(), w.steel.size()};
+}
+
+inline ContactForces contact_kernel(World& w) {
+  Contacts& c = w.contacts;
+  return {w.parameters.contact,    w.last_dt,
+          elements_view(w),        w.elements.material.view(),
+          w.contact_pairs.view(),  w.parameters.materials,
+          c.pairs.a.view(),        c.pairs.b.view(),
+          c.history.state.view(),  c.history.slid.view(),
+          c.history.damped.view(), w.contact_actions.view()};
+}
+
+inline ConcreteLinkForces concrete_kernel(World& w, const LinkGroup<ConcreteLink>& group) {
+  ConcreteLinks& c = w.concrete;
+  return {group.law,
+          w.last_dt,
+          elements_view(w),
+          c.a.view(),
+          c.b.view(),
+          c.length.view(),
+          c.stiffness.view(),
+          c.opening.view(),
+          c.shear.view(),
+          c.moment.view(),
+          c.slid.view(),
+          c.yielded.view(),
+          c.broke.view(),
+          w.link_actions.view(),
+          0};
+}
+
+inline GatherForces gather_kernel(World& w) {
+  Elements& e = w.elements;
+  return {w.link_sums.view(),   w.bar_incidence.view(),   w.contact_incidence.view(),
+          w.bar_actions.view(), w.contact_actions.view(), e.mass.view(),
+          e.inertia.view(),     e.fixed.view(),           e.force.view(),
+          e.torque.view(),      w.critical.view()};
+}
+
+inline GatherRows gather_rows_kernel(World& w) {
+  return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), w.link_actions.view()};
+}
+
+inline WallForces wall_kernel(World& w, Index wall) {
+  Contacts& c = w.wall_contacts;
+  return {w.parameters.contact,
+          w.last_dt,
+          walls_view(w),
+          wall,
+          elements_view(w),
+          w.elements.material.view(),
+          w.wall_pairs.view(),
+          c.pairs.a.view(),
+          w.wall_begin[static_cast<std::size_t>(wall)],
+          c.history.state.view(),
+          c.history.slid.view(),
+          c.history.damped.view(),
+          c.history.driven.view(),
+          w.elements.force.view(),
+          w.elements.torque.view(),
+          w.critical.view()};
+}
+
+inline MoveElements move_kernel(World& w) {
+  Elements& e = w.elements;
+  return {kick(w), e.state.view(), e.orientation.view(), e.damping_work.view(), e.load_work.view()};
+}
+
+}  // namespace breccia::dem

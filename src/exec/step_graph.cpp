@@ -1,0 +1,70 @@
+#include "exec/step_graph.hpp"
+
+#if defined(BR_CUDA)
+#include "exec/cuda.hpp"
+
+namespace breccia {
+
+struct StepGraph::Recorded {
+  cudaGraphExec_t executable = nullptr;
+  Recorded() = default;
+  Recorded(const Recorded&) = delete;
+  Recorded& operator=(const Recorded&) = delete;
+  ~Recorded() {
+    if (executable != nullptr) cudaGraphExecDestroy(executable);
+  }
+};
+
+void StepGraph::begin() {
+  check_device(cudaStreamBeginCapture(device_stream(), cudaStreamCaptureModeThreadLocal),
+               "recording steps");
+}
+
+void StepGraph::end() {
+  cudaGraph_t graph = nullptr;
+  check_device(cudaStreamEndCapture(device_stream(), &graph), "recording steps");
+  if (!recorded_) recorded_ = std::make_unique<Recorded>();
+  cudaGraphExec_t& executable = recorded_->executable;
+  // The same launches with other arrays and counts: changing them costs less than making them anew.
+  if (executable != nullptr) {
+    cudaGraphExecUpdateResultInfo changed{};
+    if (cudaGraphExecUpdate(executable, graph, &changed) != cudaSuccess) {
+      cudaGetLastError();
+      cudaGraphExecDestroy(executable);
+      executable = nullptr;
+    }
+  }
+  if (executable == nullptr)
+    check_device(cudaGraphInstantiate(&executable, graph, 0), "preparing steps");
+  cudaGraphDestroy(graph);
+  stale_ = false;
+}
+
+void StepGraph::replay() const {
+  check_device(cudaGraphLaunch(recorded_->executable, device_stream()), "launching steps");
+}
+
+#else
+
+namespace breccia {
+
+struct StepGraph::Recorded {};
+void StepGraph::begin() {}
+void StepGraph::end() {}
+void StepGraph::replay() const {}
+
+#endif
+
+StepGraph::StepGraph() = default;
+StepGraph::StepGraph(StepGraph&&) noexcept = default;
+StepGraph& StepGraph::operator=(StepGraph&&) noexcept = default;
+StepGraph::~StepGraph() = default;
+
+bool StepGraph::empty() const {
+  return stale_;
+}
+void StepGraph::clear() {
+  stale_ = true;
+}
+
+}  // namespace breccia
