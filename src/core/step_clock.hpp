@@ -77,6 +77,15 @@ BR_HD inline void note_least([[maybe_unused]] StepClock& clock, [[maybe_unused]]
 #endif
 }
 
+/// The least number that all threads have noted.
+BR_HD inline double least_noted(const StepClock& clock) {
+#if defined(__CUDA_ARCH__)
+  return number_of(__ldcg(reinterpret_cast<const unsigned long long*>(&clock.least)));  // past L1
+#else
+  return number_of(clock.least);
+#endif
+}
+
 /// A kernel of the part of a step before the elements have moved, or after it, by the device's
 /// clock. `Kernel::set(Moment)` gives it the time.
 template <class Kernel, bool moved>
@@ -118,7 +127,7 @@ struct FinishStep {
       c.halted = 1;
       return;
     }
-    if (c.step % evaluate_every == 0) c.now.next_dt = rule(number_of(c.least), c.now.last_dt);
+    if (c.step % evaluate_every == 0) c.now.next_dt = rule(least_noted(c), c.now.last_dt);
     c.least = ordered_bits(largest_least);
     c.step += 1;
     c.dt_min = smaller(c.dt_min, c.now.last_dt);

@@ -1,7 +1,6 @@
 // The step of dem/step.cpp on a device: the same kernels in the same order, launched ahead by the
 // device's clock.
 
-#include "core/device_run.hpp"
 #include "dem/launches.hpp"
 #include "exec/for_each.hpp"
 
@@ -63,49 +62,86 @@ struct NoteCritical {
   BR_HD void operator()(Index e) const { note_least(clock[0], critical[e]); }
 };
 
-constexpr bool moved = true;
+/// Links of all groups in one launch.
+template <class Kernel, class Law>
+struct Grouped {
+  static constexpr int most = 8;
+  Kernel kernel;
+  Index end[most];  ///< of each group
+  View<const Law> laws;
+
+  Grouped(const Kernel& all, const std::vector<LinkGroup<Law>>& groups,
+          const Buffer<Law>& group_laws)
+      : kernel(all), laws(group_laws.view()) {
+    for (std::size_t g = 0; g < most; ++g) end[g] = g < groups.size() ? groups[g].end : 0;
+  }
+  BR_HD void set(const Moment& now) { kernel.set(now); }
+  BR_HD void operator()(Index i) const {
+    int group = 0;
+    while (i >= end[group]) ++group;
+    Kernel own = kernel;
+    own.law = laws[group];
+    own(i);
+  }
+};
+
+#if defined(__CUDACC__)
+/// All links and contacts.
+void launch_interactions(World& w) {
+  const auto after = [&](const auto& kernel) { return timed<true>(kernel, w.clock); };
+  const LinkGroup<ConcreteLink> no_concrete{};
+  const LinkGroup<SteelLink> no_steel{};
+  const LinkGroup<InterfaceLink> no_interface{};
+  const Grouped<ConcreteLinkForces, ConcreteLink> concrete(concrete_kernel(w, no_concrete),
+                                                           w.concrete_groups, w.concrete_laws);
+  const Grouped<SteelLinkForces, SteelLink> steel(steel_kernel(w, no_steel), w.steel_groups,
+                                                  w.steel_laws);
+  const Grouped<InterfaceLinkForces, InterfaceLink> interface(interface_kernel(w, no_interface),
+                                                              w.interface_groups, w.interface_laws);
+  for_each_part(part(w.steel.size(), after(steel),
+                     part(w.interface.size(), after(interface),
+                          part(w.contacts.size(), after(contact_kernel(w)),
+                               part(w.concrete.size(), after(concrete), Parts<>{})))));
+}
 
 void launch_step(World& w) {
   const Exec& exec = w.exec;
   const Index elements = w.elements.size();
-  const auto before = [&](Index count, const auto& kernel) {
-    for_each(exec, count, timed<!moved>(kernel, w.clock));
-  };
-  const auto after = [&](Index count, const auto& kernel) {
-    for_each(exec, count, timed<moved>(kernel, w.clock));
-  };
   const int every = w.parameters.search.every;
   if (!w.walls.empty())
-    before(w.device_walls.size(), MoveWalls{0.0, w.parameters.largest_margin, every,
-                                            w.device_walls.view(), w.clock.view()});
-  before(elements,
-         MoveAndWatch{move_kernel(w),
-                      {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
-                      every,
-                      w.clock.view()});
-
-  for (const auto& group : w.steel_groups)
-    after(group.end - group.begin, Shifted<SteelLinkForces>{steel_kernel(w, group), group.begin});
-  for (const auto& group : w.interface_groups)
-    after(group.end - group.begin,
-          Shifted<InterfaceLinkForces>{interface_kernel(w, group), group.begin});
-  after(w.contacts.size(), contact_kernel(w));
-  for (const auto& group : w.concrete_groups)
-    after(group.end - group.begin,
-          Shifted<ConcreteLinkForces>{concrete_kernel(w, group), group.begin});
+    for_each(exec, w.device_walls.size(),
+             timed<false>(MoveWalls{0.0, w.parameters.largest_margin, every, w.device_walls.view(),
+                                    w.clock.view()},
+                          w.clock));
+  for_each(exec, elements,
+           timed<false>(MoveAndWatch{move_kernel(w),
+                                     {w.elements.state.view(), w.travel.reference.view(),
+                                      w.travel.margin.view()},
+                                     every,
+                                     w.clock.view()},
+                        w.clock));
+  launch_interactions(w);
+  const FinishStep<StepRule> finish{step_rule(w), w.parameters.time.evaluate_every, w.clock.view()};
   if (w.walls.empty()) {
-    after(elements, GatherAndNote{gather_rows_kernel(w), w.clock.view()});
-  } else {
-    after(elements, gather_rows_kernel(w));
-    for (Index k = 0; k < w.device_walls.size(); ++k) {
-      const auto wall = static_cast<std::size_t>(k);
-      after(w.wall_begin[wall + 1] - w.wall_begin[wall], wall_kernel(w, k));
-    }
-    after(elements, NoteCritical{std::as_const(w.critical).view(), w.clock.view()});
+    for_each_then(elements,
+                  timed<true>(GatherAndNote{gather_rows_kernel(w), w.clock.view()}, w.clock),
+                  w.blocks_done, finish);
+    return;
   }
-  for_each(exec, 1,
-           FinishStep<StepRule>{step_rule(w), w.parameters.time.evaluate_every, w.clock.view()});
+  for_each(exec, elements, timed<true>(gather_rows_kernel(w), w.clock));
+  for (Index k = 0; k < w.device_walls.size(); ++k) {
+    const auto wall = static_cast<std::size_t>(k);
+    for_each(exec, w.wall_begin[wall + 1] - w.wall_begin[wall],
+             timed<true>(wall_kernel(w, k), w.clock));
+  }
+  for_each_then(
+      elements,
+      timed<true>(NoteCritical{std::as_const(w.critical).view(), w.clock.view()}, w.clock),
+      w.blocks_done, finish);
 }
+#else
+void launch_step(World&) {}
+#endif
 
 }  // namespace
 
@@ -114,7 +150,7 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
   const bool walls = !w.walls.empty();
   if (walls) copy_to(w.device_walls, w.walls);
   const Advanced taken = run_ahead(
-      w.clock, w.graph, host, stop, [&] { launch_step(w); },
+      w.clock, w.graphs, host, stop, [&] { launch_step(w); },
       [&] {
         if (walls) copy_to(w.walls, w.device_walls);
         find_contacts(w);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/rows.hpp"
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
@@ -45,18 +46,136 @@ struct FindUnsound {
   }
 };
 
-/// What a probe reads of one element.
-double pick(const std::string& quantity, const ElementState& state, const Vec3& force, double mass,
-            double inertia) {
-  const char axis = quantity.back();
-  const auto part = [axis](const Vec3& a) { return axis == 'x' ? a.x : axis == 'y' ? a.y : a.z; };
-  if (quantity.starts_with("position")) return part(state.position);
-  if (quantity.starts_with("velocity")) return part(state.velocity);
-  if (quantity.starts_with("force")) return part(force);
-  if (quantity.starts_with("momentum")) return mass * part(state.velocity);
-  if (quantity == "speed") return norm(state.velocity);
-  return 0.5 * mass * dot(state.velocity, state.velocity) +
-         0.5 * inertia * dot(state.spin, state.spin);  // kinetic
+/// What a probe reads of one element, by the words of the case.
+struct Quantity {
+  enum class Kind { position, velocity, force, momentum, speed, kinetic, damage };
+  Kind kind;
+  int axis;
+
+  explicit Quantity(const std::string& word)
+      : kind(word.starts_with("position")   ? Kind::position
+             : word.starts_with("velocity") ? Kind::velocity
+             : word.starts_with("force")    ? Kind::force
+             : word.starts_with("momentum") ? Kind::momentum
+             : word == "speed"              ? Kind::speed
+             : word == "damage"             ? Kind::damage
+                                            : Kind::kinetic),
+        axis(word.back() == 'x'   ? 0
+             : word.back() == 'y' ? 1
+                                  : 2) {}
+};
+
+/// A probe's sum and range over elements.
+struct Readings {
+  ExactSum sum;
+  double low = no_limit, high = -no_limit;
+};
+BR_HD Readings operator+(Readings a, const Readings& b) {
+  a.sum.add(b.sum);
+  a.low = smaller(a.low, b.low);
+  a.high = larger(a.high, b.high);
+  return a;
+}
+
+struct ReadProbe {
+  Quantity quantity;
+  View<const Index> members;  ///< empty: all elements
+  View<const ElementState> state;
+  View<const Vec3> force;
+  View<const double> mass, inertia, damage;
+
+  BR_HD double part(const Vec3& v) const {
+    return quantity.axis == 0 ? v.x : quantity.axis == 1 ? v.y : v.z;
+  }
+  BR_HD double value(Index e) const {
+    const ElementState& s = state[e];
+    switch (quantity.kind) {
+      case Quantity::Kind::position:
+        return part(s.position);
+      case Quantity::Kind::velocity:
+        return part(s.velocity);
+      case Quantity::Kind::force:
+        return part(force[e]);
+      case Quantity::Kind::momentum:
+        return mass[e] * part(s.velocity);
+      case Quantity::Kind::speed:
+        return norm(s.velocity);
+      case Quantity::Kind::damage:
+        return damage[e];
+      case Quantity::Kind::kinetic:
+        break;
+    }
+    return 0.5 * mass[e] * dot(s.velocity, s.velocity) + 0.5 * inertia[e] * dot(s.spin, s.spin);
+  }
+  BR_HD Readings operator()(Index i) const {
+    Readings r;
+    r.low = r.high = value(members.size > 0 ? members[i] : i);
+    r.sum.add(r.low);
+    return r;
+  }
+};
+
+/// Counts the links of each element, and the broken ones.
+struct CountLinks {
+  View<const Index> a, b;
+  View<const double> opening;            ///< of concrete links; else empty
+  View<const SteelState> steel;          ///< likewise
+  View<const InterfaceState> interface;  ///< likewise
+  View<Index> links, broken;
+
+  BR_HD bool is_broken(Index i) const {
+    if (opening.size > 0) return opening[i] < 0.0;
+    if (steel.size > 0) return steel[i].hardening < 0.0;
+    return interface[i].opening < 0.0;
+  }
+  BR_HD void operator()(Index i) const {
+    const bool is = is_broken(i);
+    for (const Index e : {a[i], b[i]}) {
+      count_up(links[e]);
+      if (is) count_up(broken[e]);
+    }
+  }
+};
+struct Damage {
+  View<const Index> links, broken;
+  View<double> damage;
+  BR_HD void operator()(Index e) const {
+    damage[e] = links[e] > 0 ? static_cast<double>(broken[e]) / links[e] : 0.0;
+  }
+};
+
+/// Share of broken links of each element.
+Buffer<double> damage_of(const World& w) {
+  const Index count = w.elements.size();
+  Buffer<Index> links(w.exec.space, count), broken(w.exec.space, count);
+  Buffer<double> damage(w.exec.space, count);
+  for_each(w.exec, w.concrete.size(),
+           CountLinks{w.concrete.a.view(),
+                      w.concrete.b.view(),
+                      w.concrete.opening.view(),
+                      {},
+                      {},
+                      links.view(),
+                      broken.view()});
+  for_each(w.exec, w.steel.size(),
+           CountLinks{w.steel.a.view(),
+                      w.steel.b.view(),
+                      {},
+                      w.steel.state.view(),
+                      {},
+                      links.view(),
+                      broken.view()});
+  for_each(w.exec, w.interface.size(),
+           CountLinks{w.interface.a.view(),
+                      w.interface.b.view(),
+                      {},
+                      {},
+                      w.interface.state.view(),
+                      links.view(),
+                      broken.view()});
+  for_each(w.exec, count,
+           Damage{std::as_const(links).view(), std::as_const(broken).view(), damage.view()});
+  return damage;
 }
 
 /// An array for reading on the host: itself where it lies there, else a copy.
@@ -146,47 +265,31 @@ void verify(const World& w) {
 }
 
 std::vector<double> damage(const World& w) {
-  const auto count = static_cast<std::size_t>(w.elements.size());
-  std::vector<double> lost(count, 0.0), links(count, 0.0);
-  each_link(w, [&](LinkKind, Index a, Index b, bool broken) {
-    for (const Index e : {a, b}) {
-      lost[static_cast<std::size_t>(e)] += broken ? 1.0 : 0.0;
-      links[static_cast<std::size_t>(e)] += 1.0;
-    }
-  });
-  for (std::size_t e = 0; e < count; ++e)
-    if (links[e] > 0.0) lost[e] /= links[e];
-  return lost;
+  std::vector<double> values;
+  copy_to(values, damage_of(w));
+  return values;
 }
 
 double probe(const World& w, const ProbeConfig& p) {
-  std::vector<Index> members;
-  if (p.on.empty()) {
-    members.resize(static_cast<std::size_t>(w.elements.size()));
-    std::iota(members.begin(), members.end(), 0);
-  } else {
+  const Elements& e = w.elements;
+  View<const Index> members{};
+  if (!p.on.empty()) {
     const auto set = std::find_if(w.sets.begin(), w.sets.end(),
                                   [&](const ElementSet& s) { return s.name == p.on; });
     if (set == w.sets.end()) throw InputError("probe " + p.name + ": there is no group " + p.on);
-    copy_to(members, set->members);
+    members = set->members.view();
   }
-  const std::vector<double> lost = p.quantity == "damage" ? damage(w) : std::vector<double>{};
-  const HostItems state(w.elements.state);
-  const HostItems force(w.elements.force);
-  const HostItems mass(w.elements.mass), inertia(w.elements.inertia);
-  ExactSum sum;
-  double low = no_limit, high = -no_limit;
-  for (const Index member : members) {
-    const double value =
-        lost.empty() ? pick(p.quantity, state[member], force[member], mass[member], inertia[member])
-                     : lost[static_cast<std::size_t>(member)];
-    sum.add(value);
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  if (p.reduce == "min") return low;
-  if (p.reduce == "max") return high;
-  return p.reduce == "sum" ? sum.value() : sum.value() / static_cast<double>(members.size());
+  const Quantity quantity(p.quantity);
+  Buffer<double> lost(w.exec.space);
+  if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
+  const Index count = p.on.empty() ? e.size() : members.size;
+  const Readings read = fold(w.exec, count, Readings{},
+                             ReadProbe{quantity, members, e.state.view(), e.force.view(),
+                                       e.mass.view(), e.inertia.view(), std::as_const(lost).view()},
+                             Sum{});
+  if (p.reduce == "min") return read.low;
+  if (p.reduce == "max") return read.high;
+  return p.reduce == "sum" ? read.sum.value() : read.sum.value() / static_cast<double>(count);
 }
 
 Counts count(const World& w) {

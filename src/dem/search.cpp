@@ -284,7 +284,7 @@ void find_contacts(World& w) {
   w.contacts.replace(w.exec, std::move(found));
   find_wall_contacts(w);
   derive_contacts(w);
-  w.graph.clear();
+  w.graphs.clear();
   ++w.searches;
 }
 

@@ -162,6 +162,14 @@ void set_interface_links(World& w, const Config& config, const Model& m) {
   copy_to(b.area, area);
 }
 
+/// The laws of all groups in one array.
+template <class Law>
+void list_laws(const std::vector<LinkGroup<Law>>& groups, Buffer<Law>& laws) {
+  std::vector<Law> all;
+  for (const LinkGroup<Law>& group : groups) all.push_back(group.law);
+  copy_to(laws, all);
+}
+
 /// All links by the key of their pair, so that a search can leave them out while they hold.
 void set_linked_pairs(World& w) {
   std::vector<std::pair<PairKey, Index>> linked;
@@ -298,7 +306,11 @@ World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
   rows_a = rows_b = LinkRows{Buffer<Index>(space), Buffer<Index>(space)};
   link_actions = Buffer<Action>(space);
   device_walls = Buffer<Wall>(space);
+  concrete_laws = Buffer<ConcreteLink>(space);
+  steel_laws = Buffer<SteelLink>(space);
+  interface_laws = Buffer<InterfaceLink>(space);
   clock = Buffer<StepClock>(space);
+  blocks_done = Buffer<unsigned>(space, 1);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {
@@ -313,6 +325,9 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   set_steel_links(w, config, model);
   set_interface_links(w, config, model);
   set_linked_pairs(w);
+  list_laws(w.concrete_groups, w.concrete_laws);
+  list_laws(w.steel_groups, w.steel_laws);
+  list_laws(w.interface_groups, w.interface_laws);
   limit_margins(w, model);
   set_supports(w, config, model);
   set_contacts(w, config, model);

@@ -4,15 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "core/device_run.hpp"
 #include "core/energy.hpp"
 #include "core/incidence.hpp"
-#include "core/step_clock.hpp"
 #include "core/travel.hpp"
 #include "dem/config.hpp"
 #include "dem/element_kernels.hpp"
 #include "dem/link_lanes.hpp"
 #include "dem/model.hpp"
-#include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
 
 namespace breccia::dem {
@@ -125,8 +124,12 @@ struct World {
   LinkRows rows_a, rows_b;      ///< concrete links that start, and that end, at each element
   Buffer<Action> link_actions;  ///< of concrete links
   Buffer<Wall> device_walls;
+  Buffer<ConcreteLink> concrete_laws;  ///< of each group
+  Buffer<SteelLink> steel_laws;
+  Buffer<InterfaceLink> interface_laws;
   Buffer<StepClock> clock;
-  StepGraph graph;  ///< of some steps
+  Buffer<unsigned> blocks_done;
+  StepGraphs graphs;
 };
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not

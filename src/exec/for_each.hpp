@@ -76,6 +76,48 @@ __global__ void __launch_bounds__(block_size) launch_kernel(Index count, Kernel 
   if (i < count) kernel(i);
 }
 
+/// Kernels side by side in one launch: each has blocks of its own.
+template <class... Kernels>
+struct Parts;
+template <>
+struct Parts<> {
+  Index blocks() const { return 0; }
+  __device__ void run(Index) const {}
+};
+template <class First, class... Rest>
+struct Parts<First, Rest...> {
+  Index count;
+  First kernel;
+  Parts<Rest...> rest;
+
+  __host__ __device__ Index own_blocks() const { return (count + block_size - 1) / block_size; }
+  Index blocks() const { return own_blocks() + rest.blocks(); }
+  __device__ void run(Index block) const {
+    if (block >= own_blocks()) return rest.run(block - own_blocks());
+    const Index i = block * block_size + static_cast<Index>(threadIdx.x);
+    if (i < count) kernel(i);
+  }
+};
+template <class All>
+__global__ void __launch_bounds__(block_size) launch_parts(All all) {
+  all.run(static_cast<Index>(blockIdx.x));
+}
+
+/// A kernel, and what the last thread of all does when all others are done.
+template <class Kernel, class Last>
+__global__ void __launch_bounds__(block_size)
+    launch_and_finish(Index count, Kernel kernel, unsigned* blocks_done, Last last) {
+  const auto i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (i < count) kernel(i);
+  __threadfence();
+  __syncthreads();
+  if (threadIdx.x != 0) return;
+  if (atomicAdd(blocks_done, 1U) != gridDim.x - 1) return;
+  *blocks_done = 0;
+  __threadfence();
+  last(0);
+}
+
 /// One value a block: each thread folds every n-th item, then the block its threads.
 template <class Value, class Kernel, class Combine>
 __global__ void __launch_bounds__(block_size)
@@ -129,6 +171,32 @@ void for_each(const Exec& exec, Index count, const Kernel& kernel) {
     for (Index i = 0; i < count; ++i) kernel(i);
   }
 }
+
+#if defined(__CUDACC__)
+/// Several loops in one launch on a device: `parts` is made with `part(count, kernel, rest)`.
+template <class... Kernels>
+void for_each_part(const Parts<Kernels...>& parts) {
+  const Index blocks = parts.blocks();
+  if (blocks == 0) return;
+  launch_parts<<<static_cast<unsigned>(blocks), block_size, 0, device_stream()>>>(parts);
+  check_device(cudaGetLastError(), "a launch");
+}
+template <class First, class... Rest>
+Parts<First, Rest...> part(Index count, const First& kernel, const Parts<Rest...>& rest) {
+  return {count, kernel, rest};
+}
+
+/// kernel(i) for every i in [0, count), then last(0), on a device.
+/// @param blocks_done  zero before and after
+template <class Kernel, class Last>
+void for_each_then(Index count, const Kernel& kernel, Buffer<unsigned>& blocks_done,
+                   const Last& last) {
+  const auto blocks = static_cast<unsigned>((count + block_size - 1) / block_size);
+  launch_and_finish<<<blocks, block_size, 0, device_stream()>>>(count, kernel, blocks_done.data(),
+                                                                last);
+  check_device(cudaGetLastError(), "a launch");
+}
+#endif
 
 /// run(begin, end) for runs of `grain` items that make up [0, count), on the host: for kernels that
 /// take several items at once.
