@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/cell_grid.hpp"
+#include "core/step_clock.hpp"
 #include "exec/error.hpp"
 
 namespace breccia {
@@ -110,6 +111,36 @@ struct JoinLevels {
     return both;
   }
 };
+
+/// The same noted by all threads of a device: bits of the size plus one, zero where no box is.
+struct NoteLevelSize {
+  static constexpr const char* name = "core.note_level_size";
+  CellGrid grid;
+  View<const Box> boxes;
+  View<std::uint64_t> noted;
+
+  BR_HD void operator()([[maybe_unused]] Index i) const {
+#if defined(__CUDA_ARCH__)
+    auto* const size = reinterpret_cast<unsigned long long*>(&noted[grid.level(boxes[i])]);
+    const unsigned long long own = ordered_bits(grid.size(boxes[i])) + 1;
+    if (__ldcg(size) < own) atomicMax(size, own);
+#endif
+  }
+};
+
+LevelSizes level_sizes(const Exec& exec, const CellGrid& grid, View<const Box> boxes) {
+  if (exec.space != Space::cuda)
+    return fold(exec, (boxes.size + fold_chunk - 1) / fold_chunk, MeasureLevels::no_sizes(),
+                MeasureLevels{grid, boxes}, JoinLevels{});
+  Buffer<std::uint64_t> noted(exec.space, finest_level + 1);
+  for_each(exec, boxes.size, NoteLevelSize{grid, boxes, noted.view()});
+  std::vector<std::uint64_t> bits;
+  copy_to(bits, noted);
+  LevelSizes sizes = MeasureLevels::no_sizes();
+  for (std::size_t level = 0; level < bits.size(); ++level)
+    if (bits[level] != 0) sizes.size[level] = number_of(bits[level] - 1);
+  return sizes;
+}
 
 struct NumberCell {
   static constexpr const char* name = "core.number_cell";
@@ -269,9 +300,7 @@ CellGrid grid_for(const Exec& exec, const Extent& extent, View<const Box> boxes)
   grid.planar = extent.lowest == extent.highest;
   const double size = grid.planar ? extent.plane : extent.size;
   if (size > 0.0) grid.largest = size;
-  const LevelSizes sizes =
-      fold(exec, (boxes.size + fold_chunk - 1) / fold_chunk, MeasureLevels::no_sizes(),
-           MeasureLevels{grid, boxes}, JoinLevels{});
+  const LevelSizes sizes = level_sizes(exec, grid, boxes);
 
   // Among points any width will do; points among boxes are on the finest level.
   const double for_points = size > 0.0 ? size / 2147483648.0 : extent.reach / 1048576.0;

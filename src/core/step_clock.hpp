@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "exec/buffer.hpp"
 #include "math/vec.hpp"
@@ -61,22 +62,6 @@ BR_HD inline double rounded_down(double dt) {
   return number_of(ordered_bits(dt) & ~((std::uint64_t{1} << 47) - 1));
 }
 
-/// Notes a number that is not negative; the clock keeps the least of all threads.
-BR_HD inline void note_least([[maybe_unused]] StepClock& clock, [[maybe_unused]] double number) {
-#if defined(__CUDA_ARCH__)
-  const std::uint64_t bits = ordered_bits(number);
-  const unsigned active = __activemask();
-  const auto high = static_cast<unsigned>(bits >> 32);
-  const unsigned least_high = __reduce_min_sync(active, high);
-  const unsigned low = high == least_high ? static_cast<unsigned>(bits) : ~0U;
-  const unsigned least_low = __reduce_min_sync(active, low);
-  const unsigned long long least = static_cast<unsigned long long>(least_high) << 32 | least_low;
-  const unsigned lane = threadIdx.x % 32;
-  if (lane == static_cast<unsigned>(__ffs(static_cast<int>(active)) - 1))
-    atomicMin(reinterpret_cast<unsigned long long*>(&clock.least), least);
-#endif
-}
-
 /// The least number that all threads have noted.
 BR_HD inline double least_noted(const StepClock& clock) {
 #if defined(__CUDA_ARCH__)
@@ -93,15 +78,21 @@ struct Timed {
   Kernel kernel;
   View<const StepClock> clock;
 
-  BR_HD void operator()(Index i) const {
+  BR_HD auto operator()(Index i) const {
+    using Result = decltype(kernel(i));
     const StepClock& c = clock[0];
-    if (c.halted != 0 || (moved && c.wanted != 0)) return;
+    if (c.halted != 0 || (moved && c.wanted != 0)) {
+      if constexpr (std::is_void_v<Result>)
+        return;
+      else
+        return Result{largest_least};
+    }
     Kernel timed = kernel;
     if constexpr (moved)
       timed.set(Moment{c.now.time + c.now.next_dt, c.now.next_dt, c.now.next_dt});
     else
       timed.set(c.now);
-    timed(i);
+    return timed(i);
   }
 };
 template <bool moved, class Kernel>
@@ -118,6 +109,15 @@ struct FinishStep {
   int evaluate_every;
   View<StepClock> clock;
 
+  static constexpr double neutral = largest_least;
+  /// The clock keeps the least of all that threads note.
+  BR_HD void note([[maybe_unused]] double number) const {
+#if defined(__CUDA_ARCH__)
+    auto* const least = reinterpret_cast<unsigned long long*>(&clock[0].least);
+    const unsigned long long bits = ordered_bits(number);
+    if (bits < __ldcg(least)) atomicMin(least, bits);
+#endif
+  }
   BR_HD void operator()(Index) const {
     StepClock& c = clock[0];
     if (c.halted != 0) return;

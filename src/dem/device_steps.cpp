@@ -43,23 +43,80 @@ struct MoveWalls {
   }
 };
 
-/// GatherRows, noting the least inertia over stiffness where nothing is added to it later.
-struct GatherAndNote {
-  static constexpr const char* name = "dem.gather_and_note";
-  GatherRows gather;
-  View<StepClock> clock;
+/// GatherRows by sixteen threads an element, of which twelve each add up one number and one
+/// stiffness, in the same order; six then write force and torque.
+struct GatherWide {
+  static constexpr const char* name = "dem.gather_wide";
+  static constexpr Index width = 16;
+  GatherRows all;
+
   BR_HD void set(const Moment&) {}
-  BR_HD void operator()(Index e) const {
-    gather(e);
-    note_least(clock[0], gather.gather.critical[e]);
+#if defined(__CUDA_ARCH__)
+  struct Sums {
+    double number = 0.0;
+    float stiffness = 0.0F;
+    __device__ void add(const Action& action, int column) {
+      number += action.numbers[column];
+      stiffness += action.stiffness[column];
+    }
+  };
+  __device__ static void add(Sums& sums, const IncidenceView& rows,
+                             const View<const Action>& actions, Index e, int side, int column) {
+    const Index end = rows.last(e);
+    for (Index k = rows.first(e); k < end; ++k) {
+      const Entry entry = rows.entries[k];
+      if (side_of(entry) == side) sums.add(actions[pair_of(entry)], column);
+    }
   }
+  /// @returns the critical number of the element, once
+  __device__ double operator()(Index i) const {
+    const GatherForces& gather = all.gather;
+    const Index e = i / width;
+    const int part = i % width, side = part < 6 ? 0 : 1, column = side == 0 ? part : part - 3;
+    Sums sums;
+    if (part < 12) {
+      // Pointers are chosen, not structs: a struct with an address would move to local memory.
+      const Index* const starts = side == 0 ? all.rows_a.starts.data : all.rows_b.starts.data;
+      const Index* const links = side == 0 ? all.rows_a.links.data : all.rows_b.links.data;
+      const Index end = starts[e + 1];
+#pragma unroll 4
+      for (Index k = starts[e]; k < end; ++k) sums.add(all.actions.data[links[k]], column);
+      add(sums, gather.bars, gather.bar_actions, e, side, column);
+      add(sums, gather.contacts, gather.contact_actions, e, side, column);
+    }
+    // Force x y z, then torque: what the element gets as b, and as a (with the opposite force).
+    const unsigned group = 0xffffU << (threadIdx.x / width * width % 32);
+    const int as_b = 6 + part % 6, as_a = part % 6 < 3 ? 3 + part % 6 : part % 6 - 3;
+    const double from_b = __shfl_sync(group, sums.number, as_b, width);
+    const double from_a = __shfl_sync(group, sums.number, as_a, width);
+    const float stiffness_b = __shfl_sync(group, sums.stiffness, as_b, width);
+    float stiffness = __shfl_sync(group, sums.stiffness, as_a, width) + stiffness_b;
+    if (part < 3) reinterpret_cast<double*>(&gather.force[e])[part] = from_b - from_a;
+    if (part >= 3 && part < 6)
+      reinterpret_cast<double*>(&gather.torque[e])[part - 3] = from_b + from_a;
+    if (part >= 6 || (gather.fixed[e] >> part & 1) != 0 || !(stiffness > 0.0F)) stiffness = 0.0F;
+    float largest = stiffness;  // of three neighbours
+    largest = fmaxf(largest, __shfl_down_sync(group, stiffness, 1, width));
+    largest = fmaxf(largest, __shfl_down_sync(group, stiffness, 2, width));
+    const float turning = __shfl_sync(group, largest, 3, width);
+    if (part != 0) return largest_least;
+    const double slowest = larger(static_cast<double>(largest) / gather.mass[e],
+                                  static_cast<double>(turning) / gather.inertia[e]);
+    const double critical = slowest > 0.0 ? 1.0 / slowest : largest_least;
+    gather.critical[e] = critical;
+    return critical;
+  }
+#else
+  double operator()(Index) const {
+    return largest_least;
+  }
+#endif
 };
 struct NoteCritical {
   static constexpr const char* name = "dem.note_critical";
   View<const double> critical;
-  View<StepClock> clock;
   BR_HD void set(const Moment&) {}
-  BR_HD void operator()(Index e) const { note_least(clock[0], critical[e]); }
+  BR_HD double operator()(Index e) const { return critical[e]; }
 };
 
 /// Links of all groups in one launch.
@@ -77,8 +134,8 @@ struct Grouped {
   }
   BR_HD void set(const Moment& now) { kernel.set(now); }
   BR_HD void operator()(Index i) const {
-    int group = 0;
-    while (i >= end[group]) ++group;
+    int group = 0;  // counted, not sought: an index into a parameter would move it to local memory
+    for (int g = 0; g < most - 1; ++g) group += i >= end[g] && end[g] > 0 ? 1 : 0;
     Kernel own = kernel;
     own.law = laws[group];
     own(i);
@@ -123,21 +180,19 @@ void launch_step(World& w) {
   launch_interactions(w);
   const FinishStep<StepRule> finish{step_rule(w), w.parameters.time.evaluate_every, w.clock.view()};
   if (w.walls.empty()) {
-    for_each_then(elements,
-                  timed<true>(GatherAndNote{gather_rows_kernel(w), w.clock.view()}, w.clock),
-                  w.blocks_done, finish);
+    for_each_then(elements * GatherWide::width,
+                  timed<true>(GatherWide{gather_rows_kernel(w)}, w.clock), w.blocks_done, finish);
     return;
   }
-  for_each(exec, elements, timed<true>(gather_rows_kernel(w), w.clock));
+  for_each(exec, elements * GatherWide::width,
+           timed<true>(GatherWide{gather_rows_kernel(w)}, w.clock));
   for (Index k = 0; k < w.device_walls.size(); ++k) {
     const auto wall = static_cast<std::size_t>(k);
     for_each(exec, w.wall_begin[wall + 1] - w.wall_begin[wall],
              timed<true>(wall_kernel(w, k), w.clock));
   }
-  for_each_then(
-      elements,
-      timed<true>(NoteCritical{std::as_const(w.critical).view(), w.clock.view()}, w.clock),
-      w.blocks_done, finish);
+  for_each_then(elements, timed<true>(NoteCritical{std::as_const(w.critical).view()}, w.clock),
+                w.blocks_done, finish);
 }
 #else
 void launch_step(World&) {}

@@ -96,11 +96,38 @@ struct Action {
 };
 static_assert(sizeof(Action) == 112);
 
+#if defined(__CUDACC__)
+/// On a device: the lanes of a warp, whose items are neighbours, put their actions together and
+/// write them as one run of memory. Each on its own would write in steps of 112 bytes.
+/// @param actions  of the items of lane 0 and its neighbours
+__device__ inline void write_together(Action* actions, const Action& own) {
+  constexpr unsigned pieces = sizeof(Action) / sizeof(uint4);  // of each action
+  __shared__ uint4 staged[block_size * pieces];
+  const unsigned lane = threadIdx.x % 32, active = __activemask();
+  uint4* const warp = staged + (threadIdx.x - lane) * pieces;
+  *reinterpret_cast<Action*>(warp + lane * pieces) = own;
+  __syncwarp(active);
+  auto* const to = reinterpret_cast<uint4*>(actions);
+  const unsigned stride = __popc(active);
+  for (unsigned k = __popc(active & ((1U << lane) - 1)); k < 32 * pieces; k += stride)
+    if ((active >> (k / pieces) & 1U) != 0) to[k] = warp[k];
+  __syncwarp(active);
+}
+#endif
+
 BR_HD inline void write_actions(const View<Action>& actions, Index at, const double (&numbers)[9],
                                 const double (&stiffness)[9]) {
+#if defined(__CUDA_ARCH__)
+  Action action;
+#else
   Action& action = actions[at];
+#endif
   for (int k = 0; k < 9; ++k) action.numbers[k] = numbers[k];
   for (int k = 0; k < 9; ++k) action.stiffness[k] = static_cast<float>(stiffness[k]);
+#if defined(__CUDA_ARCH__)
+  action.unused = 0.0F;
+  write_together(actions.data + at - static_cast<Index>(threadIdx.x % 32), action);
+#endif
 }
 
 #if !defined(__CUDACC__) && defined(__AVX512F__)

@@ -67,9 +67,6 @@ struct Shifted {
 };
 
 #if defined(__CUDACC__)
-/// Threads of a block, for kernels whose registers leave room for several blocks.
-inline constexpr Index block_size = 128;
-
 template <class Kernel>
 __global__ void __launch_bounds__(block_size) launch_kernel(Index count, Kernel kernel) {
   const auto i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -103,15 +100,28 @@ __global__ void __launch_bounds__(block_size) launch_parts(All all) {
   all.run(static_cast<Index>(blockIdx.x));
 }
 
-/// A kernel, and what the last thread of all does when all others are done.
-template <class Kernel, class Last>
-__global__ void __launch_bounds__(block_size)
+/// The least of a number over the threads of a block, for its thread 0. The number is not negative.
+template <int threads>
+__device__ double least_of_block(double number) {
+  __shared__ double of_warp[threads / 32];
+  for (int half = 16; half > 0; half /= 2)
+    number = fmin(number, __shfl_down_sync(~0U, number, half));
+  if (threadIdx.x % 32 == 0) of_warp[threadIdx.x / 32] = number;
+  __syncthreads();
+  for (int warp = 1; warp < threads / 32; ++warp) number = fmin(number, of_warp[warp]);
+  return number;
+}
+
+/// A kernel that returns a number, of which the least is noted; the last block of all finishes.
+template <int threads, class Kernel, class Last>
+__global__ void __launch_bounds__(threads)
     launch_and_finish(Index count, Kernel kernel, unsigned* blocks_done, Last last) {
   const auto i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < count) kernel(i);
-  __threadfence();
-  __syncthreads();
+  const double own = i < count ? kernel(i) : Last::neutral;
+  const double least = least_of_block<threads>(own);
   if (threadIdx.x != 0) return;
+  last.note(least);
+  __threadfence();
   if (atomicAdd(blocks_done, 1U) != gridDim.x - 1) return;
   *blocks_done = 0;
   __threadfence();
@@ -186,14 +196,16 @@ Parts<First, Rest...> part(Index count, const First& kernel, const Parts<Rest...
   return {count, kernel, rest};
 }
 
-/// kernel(i) for every i in [0, count), then last(0), on a device.
+/// kernel(i) for every i in [0, count), last.note() of the least that they return, then last(0), on
+/// a device.
 /// @param blocks_done  zero before and after
 template <class Kernel, class Last>
 void for_each_then(Index count, const Kernel& kernel, Buffer<unsigned>& blocks_done,
                    const Last& last) {
-  const auto blocks = static_cast<unsigned>((count + block_size - 1) / block_size);
-  launch_and_finish<<<blocks, block_size, 0, device_stream()>>>(count, kernel, blocks_done.data(),
-                                                                last);
+  constexpr int threads = 256;
+  const auto blocks = static_cast<unsigned>((count + threads - 1) / threads);
+  launch_and_finish<threads>
+      <<<blocks, threads, 0, device_stream()>>>(count, kernel, blocks_done.data(), last);
   check_device(cudaGetLastError(), "a launch");
 }
 #endif

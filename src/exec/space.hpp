@@ -12,6 +12,9 @@ class StageTimers;
 /// memory.
 enum class Space { host, shadow, cuda };
 
+/// Threads of a block on a device: registers leave room for several blocks of the largest kernels.
+inline constexpr Index block_size = 128;
+
 /// How a run executes: the space of its arrays and the threads of its host loops.
 struct Exec {
   Space space = Space::host;
