@@ -48,6 +48,7 @@ struct StepGraphs {
   StepGraph one, many;
   static constexpr std::int64_t many_steps = 16;
 
+  bool stale() const { return one.empty() && many.empty(); }
   void clear() {
     one.clear();
     many.clear();
@@ -57,8 +58,9 @@ struct StepGraphs {
 /// Takes steps on a device until `stop`, or until about `slice` has passed.
 ///
 /// @param launch_step  launches all kernels of one step, the last of them FinishStep
-/// @param finish_step  what the host does when the clock halts in the middle of a step: the rest of
-///                     that step; it clears `graphs` if arrays have moved
+/// @param finish_step  what the host does when the clock halts in the middle of a step, told why:
+/// the
+///                     rest of that step; it clears `graphs` if arrays have moved
 template <class LaunchStep, class FinishOnHost>
 Advanced run_ahead(Buffer<StepClock>& clock, StepGraphs& graphs, const HostTimes& host,
                    const StopAt& stop, const LaunchStep& launch_step,
@@ -84,7 +86,7 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraphs& graphs, const HostTimes
     for (; steps > 0; --steps) graphs.one.replay();
     const StepClock now = read_clock(clock, host, taken);
     if (now.wanted != 0) {
-      finish_step();
+      finish_step(now.wanted);
       host.step += 1;
       taken.dt_min = taken.steps > 0 ? smaller(taken.dt_min, host.last_dt) : host.last_dt;
       taken.dt_max = larger(taken.dt_max, host.last_dt);

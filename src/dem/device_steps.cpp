@@ -206,7 +206,7 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
   if (walls) copy_to(w.device_walls, w.walls);
   const Advanced taken = run_ahead(
       w.clock, w.graphs, host, stop, [&] { launch_step(w); },
-      [&] {
+      [&](std::int32_t) {
         if (walls) copy_to(w.walls, w.device_walls);
         find_contacts(w);
         if (walls) copy_to(w.device_walls, w.walls);

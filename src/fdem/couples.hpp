@@ -3,6 +3,7 @@
 
 #include "core/incidence.hpp"
 #include "core/pair_list.hpp"
+#include "core/step_clock.hpp"
 #include "fdem/laws/potential_contact.hpp"
 #include "fdem/triangles.hpp"
 
@@ -59,6 +60,7 @@ struct CoupleForces {
   View<CoupleState> state;
   View<CoupleForce> force;
 
+  BR_HD void set(const Moment& now) { dt = now.last_dt; }
   BR_HD void operator()(Index i) const {
     CoupleState& kept = state[i];
     Vec2 xa[3], va[3], xb[3], vb[3];

@@ -5,7 +5,7 @@
 
 #include "exec/for_each.hpp"
 #include "fdem/kernel_lanes.hpp"
-#include "fdem/world.hpp"
+#include "fdem/launches.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -23,14 +23,11 @@ void run(const World& w, Index count, const Kernel& kernel) {
 }  // namespace
 
 double Amplitude::at(double time) const {
-  const double grown = ramp > 0.0 ? std::clamp(time / ramp, 0.0, 1.0) : 1.0;
-  if (times.empty()) return grown;
-  const auto next = std::upper_bound(times.begin(), times.end(), time);
-  if (next == times.begin()) return grown * factors.front();
-  if (next == times.end()) return grown * factors.back();
-  const auto i = static_cast<std::size_t>(next - times.begin());
-  const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
-  return grown * (factors[i - 1] + share * (factors[i] - factors[i - 1]));
+  View<const double> seen_times, seen_factors;
+  seen_times.data = times.data();
+  seen_factors.data = factors.data();
+  seen_times.size = seen_factors.size = static_cast<Index>(times.size());
+  return AmplitudeTable{ramp, 0, seen_times.size}.at(time, seen_times, seen_factors);
 }
 
 Kick kick(const World& w) {
@@ -57,63 +54,37 @@ void move_triangles(World& w) {
       now.push_back({p.amplitude.at(middle) * p.velocity});
     copy_to(w.motions, now);
   }
-  Triangles& t = w.triangles;
-  run(w, t.size(),
-      MoveTriangles{kick(w), std::as_const(t.external).view(), t.nodes.view(),
-                    t.damping_work.view(), t.load_work.view()});
+  run(w, w.triangles.size(), move_kernel(w));
   w.time += w.next_dt;
   w.last_dt = w.next_dt;
 }
 
 void joint_forces(World& w) {
   const StageTime timed(w.exec, "joint_forces");
-  Joints& j = w.joints;
-  run(w, j.size(),
-      JointForces{w.time, w.last_dt, by_number(std::as_const(w.triangles.nodes).view()),
-                  w.bonds.view(), w.joint_ends.view(), j.law.view(), j.length.view(),
-                  j.strength.view(), j.preset.view(), j.stage.view(), j.points.view(),
-                  j.force.view(), j.work.view(), j.broke_at.view(), j.pressing.view(),
-                  w.opened.changed.view()});
+  run(w, w.joints.size(), joint_kernel(w));
 }
 
 void couple_forces(World& w) {
   const StageTime timed(w.exec, "contact_forces");
-  Couples& c = w.couples;
-  for_each(
-      w.exec, c.size(),
-      CoupleForces{w.last_dt, w.parameters.conservative, std::as_const(w.triangles.nodes).view(),
-                   w.triangles.material.view(), w.contact_pairs.view(), w.parameters.materials,
-                   c.pairs.a.view(), c.pairs.b.view(), std::as_const(w.born).view(),
-                   c.history.state.view(), c.history.force.view()});
+  for_each(w.exec, w.couples.size(), couple_kernel(w));
 }
 
 void triangle_forces(World& w) {
   const StageTime timed(w.exec, "triangle_forces");
-  Triangles& t = w.triangles;
-  run(w, t.size(),
-      TriangleForces{w.last_dt, std::as_const(t.nodes).view(), t.material.view(), w.laws.view(),
-                     t.shape_inverse.view(), t.viscosity.view(), w.edges.view(),
-                     std::as_const(w.joints.force).view(), w.couple_incidence.view(),
-                     std::as_const(w.couples.history.force).view(), t.force.view(),
-                     t.viscous_work.view()});
+  run(w, w.triangles.size(), triangle_kernel(w));
 }
 
 void load_forces(World& w) {
-  Triangles& t = w.triangles;
   if (w.load_starts.size() > 1) {
     const StageTime timed(w.exec, "load_forces");
     std::vector<LoadLaw> now = w.loads;
     for (std::size_t i = 0; i < now.size(); ++i) now[i].factor = w.load_amplitudes[i].at(w.time);
     copy_to(w.load_laws, now);
-    for_each(w.exec, w.load_starts.size() - 1,
-             LoadForces{w.load_starts.view(), w.loaded_edges.view(), w.load_laws.view(),
-                        std::as_const(t.nodes).view(), t.external.view(), t.force.view()});
+    for_each(w.exec, w.load_starts.size() - 1, load_kernel(w));
   }
   if (w.bundles.starts.size() < 2) return;
   const StageTime timed(w.exec, "bundles");
-  for_each(w.exec, w.bundles.starts.size() - 1,
-           BundleForces{w.bundles.starts.view(), w.bundles.nodes.view(), w.bundles.leader.view(),
-                        t.mass.view(), t.force.view()});
+  for_each(w.exec, w.bundles.starts.size() - 1, bundle_kernel(w));
 }
 
 namespace {
@@ -125,22 +96,23 @@ struct StableStepOf {
   BR_HD double operator()(Index i) const { return stable(triangle[i]); }
 };
 
-double allowed_step(const World& w, double stable) {
-  return rounded_down(std::min(w.parameters.time.safety * stable, w.parameters.time.max_step));
-}
-
 }  // namespace
+
+AllowedStep allowed_step(const World& w) {
+  return {w.parameters.time.safety, w.parameters.time.max_step};
+}
 
 double choose_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
-  return allowed_step(w, fold(w.exec, w.triangles.size(), 1e300, stable_step(w), Least{}));
+  return allowed_step(w)(fold(w.exec, w.triangles.size(), largest_least, stable_step(w), Least{}),
+                         w.last_dt);
 }
 
 double shortened_time_step(const World& w, const Buffer<Index>& triangles) {
   const StageTime timed(w.exec, "time_step");
-  const double stable = fold(w.exec, triangles.size(), 1e300,
+  const double stable = fold(w.exec, triangles.size(), largest_least,
                              StableStepOf{stable_step(w), triangles.view()}, Least{});
-  return std::min(w.next_dt, allowed_step(w, stable));
+  return std::min(w.next_dt, allowed_step(w)(stable, w.last_dt));
 }
 
 }  // namespace breccia::fdem

@@ -1,6 +1,7 @@
 #pragma once
 // The kernel of all joints: reads, one law call, one write.
 
+#include "core/step_clock.hpp"
 #include "fdem/joints.hpp"
 #include "math/lanes.hpp"
 
@@ -8,6 +9,12 @@ namespace breccia::fdem {
 
 /// What joints tell the host: flag 0, one has softened; flag 1, one has broken.
 enum Change : Index { change_softened = 0, change_broken = 1 };
+
+/// Whether the vertices that touch must be marked anew in this step.
+BR_HD inline bool marking_due(std::uint8_t softened, std::uint8_t broken, std::int64_t step) {
+  constexpr std::int64_t every = 32;
+  return broken != 0 || (softened != 0 && step % every == 0);
+}
 
 /// Whichever item does it first.
 BR_HD inline void raise(const View<std::uint8_t>& flags, Change change) {
@@ -75,6 +82,10 @@ struct JointForces {
     return true;
   }
 
+  BR_HD void set(const Moment& now) {
+    time = now.time;
+    dt = now.last_dt;
+  }
   BR_HD void operator()(Index i) const {
     if (!whole_at<double>(i)) damaged_at(i);
   }

@@ -15,6 +15,32 @@ struct Amplitude {
   double at(double time) const;
 };
 
+/// The same where kernels can read it: entries first to end - 1 of all amplitudes' tables.
+struct AmplitudeTable {
+  double ramp;  ///<  [s]
+  Index first, end;
+
+  BR_HD double at(double time, const View<const double>& times,
+                  const View<const double>& factors) const {
+    const double grown = ramp > 0.0 ? smaller(larger(time / ramp, 0.0), 1.0) : 1.0;
+    if (first == end) return grown;
+    Index next = first;  // the first entry later than `time`
+    for (Index step = end - first; step > 0;) {
+      const Index half = step / 2;
+      if (times[next + half] <= time) {
+        next += half + 1;
+        step -= half + 1;
+      } else {
+        step = half;
+      }
+    }
+    if (next == first) return grown * factors[first];
+    if (next == end) return grown * factors[end - 1];
+    const double share = (time - times[next - 1]) / (times[next] - times[next - 1]);
+    return grown * (factors[next - 1] + share * (factors[next] - factors[next - 1]));
+  }
+};
+
 /// A support's velocity over time; the host puts its value of each step into World::motions.
 struct PrescribedMotion {
   Vec2 velocity{};  ///<  [m/s]
@@ -49,6 +75,7 @@ struct LoadForces {
   View<const TriangleNodes> nodes;
   View<Corners> external, force;
 
+  BR_HD void set(const Moment&) {}
   BR_HD void operator()(Index i) const {
     const Index t = edges[starts[i]].triangle;
     Corners sum{};

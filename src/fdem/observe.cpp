@@ -71,15 +71,85 @@ class Pieces {
   std::vector<Index> root_;
 };
 
-double pick(const std::string& quantity, const NodeState& n, const Vec2& force, double mass) {
-  const auto part = [&](const Vec2& a) { return quantity.back() == 'x' ? a.x : a.y; };
-  if (quantity.starts_with("position")) return part(n.position);
-  if (quantity.starts_with("velocity")) return part(n.velocity);
-  if (quantity.starts_with("force")) return part(force);
-  if (quantity.starts_with("momentum")) return mass * part(n.velocity);
-  if (quantity == "speed") return norm(n.velocity);
-  return 0.5 * mass * dot(n.velocity, n.velocity);  // kinetic
+/// What a probe reads of one corner, by the words of the case.
+struct Quantity {
+  enum class Kind : std::uint8_t { position, velocity, force, momentum, speed, kinetic, damage };
+  Kind kind;
+  bool along_x;
+
+  explicit Quantity(const std::string& word)
+      : kind(word.starts_with("position")   ? Kind::position
+             : word.starts_with("velocity") ? Kind::velocity
+             : word.starts_with("force")    ? Kind::force
+             : word.starts_with("momentum") ? Kind::momentum
+             : word == "speed"              ? Kind::speed
+             : word == "damage"             ? Kind::damage
+                                            : Kind::kinetic),
+        along_x(word.back() == 'x') {}
+};
+
+/// A probe's sum and range over corners.
+struct Readings {
+  ExactSum sum;
+  double low = no_limit, high = -no_limit;
+};
+BR_HD Readings operator+(Readings a, const Readings& b) {
+  a.sum.add(b.sum);
+  a.low = smaller(a.low, b.low);
+  a.high = larger(a.high, b.high);
+  return a;
 }
+
+struct ReadProbe {
+  Quantity quantity;
+  View<const Index> members;  ///< corners; empty: all
+  View<const TriangleNodes> nodes;
+  View<const Corners> force;
+  View<const double> mass, damage;
+
+  BR_HD double part(const Vec2& v) const { return quantity.along_x ? v.x : v.y; }
+  BR_HD double value(Index n) const {
+    const NodeState& node = nodes[n / 3].at[n % 3];
+    switch (quantity.kind) {
+      case Quantity::Kind::position:
+        return part(node.position);
+      case Quantity::Kind::velocity:
+        return part(node.velocity);
+      case Quantity::Kind::force:
+        return part(force[n / 3].at[n % 3]);
+      case Quantity::Kind::momentum:
+        return mass[n / 3] * part(node.velocity);
+      case Quantity::Kind::speed:
+        return norm(node.velocity);
+      case Quantity::Kind::damage:
+        return damage[n / 3];
+      case Quantity::Kind::kinetic:
+        break;
+    }
+    return 0.5 * mass[n / 3] * dot(node.velocity, node.velocity);
+  }
+  BR_HD Readings operator()(Index i) const {
+    Readings r;
+    r.low = r.high = value(members.size > 0 ? members[i] : i);
+    r.sum.add(r.low);
+    return r;
+  }
+};
+
+/// What rules a triangle's step, and the triangle.
+struct Ruling {
+  StableStep::Parts parts{};
+  Index triangle = 0x7fffffff;
+
+  BR_HD bool operator<(const Ruling& other) const {
+    if (parts.step != other.parts.step) return parts.step < other.parts.step;
+    return triangle < other.triangle;
+  }
+};
+struct RulingOf {
+  StableStep stable;
+  BR_HD Ruling operator()(Index t) const { return {stable.parts(t), t}; }
+};
 
 }  // namespace
 
@@ -143,38 +213,26 @@ std::vector<Sym2> stresses(const World& w) {
 double probe(const World& w, const ProbeConfig& p) {
   if (p.quantity.ends_with("_z"))
     throw InputError("probe " + p.name + ".quantity: a plane case has no z; allowed: x and y");
-  std::vector<Index> all;
-  const std::vector<Index>* members = &all;
-  if (p.on.empty()) {
-    all.resize(at(3 * w.triangles.size()));
-    std::iota(all.begin(), all.end(), 0);
-  } else {
+  Buffer<Index> members(w.exec.space);
+  if (!p.on.empty()) {
     const auto set = std::find_if(w.sets.begin(), w.sets.end(),
                                   [&](const NodeSet& s) { return s.name == p.on; });
     if (set == w.sets.end())
       throw InputError("probe " + p.name + ".on: there is no body or support \"" + p.on + "\"");
-    members = &set->nodes;
+    copy_to(members, set->nodes);
   }
-  const std::vector<double> lost = p.quantity == "damage" ? damage(w) : std::vector<double>{};
-  std::vector<TriangleNodes> nodes;
-  std::vector<Corners> force;
-  std::vector<double> mass;
-  copy_to(nodes, w.triangles.nodes);
-  copy_to(force, w.triangles.force);
-  copy_to(mass, w.triangles.mass);
-  ExactSum sum;
-  double low = no_limit, high = -no_limit;
-  for (const Index n : *members) {
-    const auto t = at(n / 3);
-    const double value =
-        lost.empty() ? pick(p.quantity, nodes[t].at[n % 3], force[t].at[n % 3], mass[t]) : lost[t];
-    sum.add(value);
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  if (p.reduce == "min") return low;
-  if (p.reduce == "max") return high;
-  return p.reduce == "sum" ? sum.value() : sum.value() / static_cast<double>(members->size());
+  Buffer<double> lost(w.exec.space);
+  const Quantity quantity(p.quantity);
+  if (quantity.kind == Quantity::Kind::damage) copy_to(lost, damage(w));
+  const Triangles& t = w.triangles;
+  const Index count = p.on.empty() ? 3 * t.size() : members.size();
+  const Readings read = fold(w.exec, count, Readings{},
+                             ReadProbe{quantity, std::as_const(members).view(), t.nodes.view(),
+                                       t.force.view(), t.mass.view(), std::as_const(lost).view()},
+                             Sum{});
+  if (p.reduce == "min") return read.low;
+  if (p.reduce == "max") return read.high;
+  return p.reduce == "sum" ? read.sum.value() : read.sum.value() / static_cast<double>(count);
 }
 
 std::vector<Crack> cracks(const World& w) {
@@ -230,13 +288,10 @@ Fragments fragments(const World& w) {
 }
 
 const char* ruling_term(const World& w) {
-  const StableStep stable = stable_step(w);
-  StableStep::Parts least;
-  const KernelScope scope;
-  for (Index t = 0; t < w.triangles.size(); ++t) {
-    const StableStep::Parts p = stable.parts(t);
-    if (t == 0 || p.step < least.step) least = p;
-  }
+  Ruling none;
+  none.parts.step = no_limit;
+  const StableStep::Parts least =
+      fold(w.exec, w.triangles.size(), none, RulingOf{stable_step(w)}, Least{}).parts;
   const double undamped = 2.0 / std::sqrt(least.square);
   if (least.step < 0.5 * undamped) return "viscosity";
   if (least.element >= least.joint && least.element >= least.contact) return "elements";

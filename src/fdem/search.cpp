@@ -10,24 +10,6 @@
 namespace breccia::fdem {
 namespace {
 
-/// 1 where a triangle has used its margin up, or has gone nowhere (NaN).
-struct UsedMargin {
-  View<const Index> triangle;
-  View<const Corners> reference;
-  View<const double> margin;
-  View<const TriangleNodes> nodes;
-  BR_HD double operator()(Index i) const {
-    const TriangleNodes& now = nodes[triangle[i]];
-    const double allowed = margin[i] * margin[i];
-    bool inside = true;
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 moved = now.at[k].position - reference[i].at[k];
-      inside = inside && dot(moved, moved) <= allowed;
-    }
-    return inside ? 0.0 : 1.0;
-  }
-};
-
 /// Starts the travel of a triangle anew and boxes it with its margin.
 struct BeginReach {
   double skin, horizon, largest;  ///<  [m], [s], [m]
@@ -81,10 +63,9 @@ void mark_opened(World& w) {
 /// Whether vertices must be marked now: at once when a joint breaks, since its triangles touch from
 /// the next step on; when one softens, at the next of these steps.
 bool marking_is_due(const World& w) {
-  constexpr std::int64_t every = 32;
   std::vector<std::uint8_t> changed;
   copy_to(changed, w.opened.changed);
-  return changed[change_broken] != 0 || (changed[change_softened] != 0 && w.step % every == 0);
+  return marking_due(changed[change_softened], changed[change_broken], w.step);
 }
 
 /// What a search reads of the mesh on the host.
@@ -209,6 +190,7 @@ void find_couples(World& w) {
   book_dropped(w, found);
   w.couples.replace(w.exec, std::move(found));
   derive_couples(w);
+  w.graphs.clear();
   ++w.searches;
 
   if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, w.reach.triangle);

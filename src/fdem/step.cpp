@@ -16,7 +16,8 @@ void step(World& w) {
   w.step += 1;
 }
 
-Advanced advance(World& w, const StopAt&) {
+Advanced advance(World& w, const StopAt& stop) {
+  if (w.exec.space == Space::cuda) return advance_on_device(w, stop);
   step(w);
   return {1, w.last_dt, w.last_dt};
 }

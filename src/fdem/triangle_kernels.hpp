@@ -1,6 +1,7 @@
 #pragma once
 // What is done to each triangle by itself: its sum of forces, its motion, its stable step.
 
+#include "core/step_clock.hpp"
 #include "fdem/couples.hpp"
 #include "fdem/joint_kernels.hpp"
 
@@ -72,6 +73,7 @@ struct TriangleForces {
     for (Index k = 0; k < width_of<R>; ++k) add_couples(t + k);
   }
   BR_HD void operator()(Index t) const { at<double>(t); }
+  BR_HD void set(const Moment& now) { span = now.last_dt; }
 
  private:
   template <class R>
@@ -120,6 +122,7 @@ struct BundleForces {
   View<const double> mass;
   View<Corners> force;
 
+  BR_HD void set(const Moment&) {}
   BR_HD void operator()(Index vertex) const {
     const Index end = starts[vertex + 1];
     for (Index first = starts[vertex]; first < end; ++first) {
@@ -169,6 +172,10 @@ struct Kick {
     Vec2 damped[3];    ///< force that damping took off
   };
 
+  BR_HD void set(const Moment& now) {
+    last_dt = now.last_dt;
+    next_dt = now.next_dt;
+  }
   BR_HD double span() const { return 0.5 * (last_dt + next_dt); }
   BR_HD static double opposed(double force, double velocity) {
     return velocity > 0.0 ? absolute(force) : velocity < 0.0 ? -absolute(force) : 0.0;
@@ -228,6 +235,7 @@ struct MoveTriangles {
     return true;
   }
 
+  BR_HD void set(const Moment& now) { kick.set(now); }
   BR_HD void operator()(Index t) const {
     if (free_at<double>(t)) return;
     const Kick::Result r = kick(t);
@@ -257,6 +265,24 @@ struct MoveTriangles {
     const Vec2 given = kick.force[t].at[k] + kick.mass[t] * kick.gravity - r.damped[k];
     const Vec2 held = gained - given;
     return {(bits & 1) != 0 ? held.x : 0.0, (bits & 2) != 0 ? held.y : 0.0};
+  }
+};
+
+/// 1 where a triangle has used its margin up, or has gone nowhere (NaN).
+struct UsedMargin {
+  View<const Index> triangle;
+  View<const Corners> reference;
+  View<const double> margin;
+  View<const TriangleNodes> nodes;
+  BR_HD double operator()(Index i) const {
+    const TriangleNodes& now = nodes[triangle[i]];
+    const double allowed = margin[i] * margin[i];
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 moved = now.at[k].position - reference[i].at[k];
+      inside = inside && dot(moved, moved) <= allowed;
+    }
+    return inside ? 0.0 : 1.0;
   }
 };
 

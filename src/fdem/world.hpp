@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/broad_phase.hpp"
+#include "core/device_run.hpp"
 #include "core/energy.hpp"
-#include "core/step_clock.hpp"
 #include "exec/lanes.hpp"
 #include "exec/timers.hpp"
 #include "fdem/config.hpp"
@@ -113,6 +113,15 @@ struct World {
   Buffer<double> born;           ///< of each couple, see CoupleForces
   Incidence couple_incidence;
   BroadPhase broad_phase;
+
+  // On a device.
+  Buffer<AmplitudeTable> amplitudes;  ///< of prescribed motions, then of loads
+  Buffer<double> amplitude_times, amplitude_factors;
+  Buffer<Vec2> prescribed_velocity;
+  Buffer<Index> reach_place;  ///< of each triangle in `reach`, -1: it cannot touch
+  Buffer<StepClock> clock;
+  Buffer<unsigned> blocks_done;
+  StepGraphs graphs;
 };
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
@@ -130,6 +139,8 @@ void step(World& w);
 /// One step on the host; on a device as many as a few hundredths of a second hold, ending at
 /// `stop`.
 Advanced advance(World& w, const StopAt& stop);
+/// The same text as step(), launched ahead by the device's clock.
+Advanced advance_on_device(World& w, const StopAt& stop);
 
 /// The parts of a step, in its order.
 void move_triangles(World& w);
@@ -148,6 +159,16 @@ void evaluate_forces(World& w);
 
 Kick kick(const World& w);
 StableStep stable_step(const World& w);
+
+/// The time step from the least stable step of all triangles.
+struct AllowedStep {
+  double safety, max_step;  ///< share of the stable step  [-], limit  [s]
+
+  BR_HD double operator()(double least, double) const {
+    return rounded_down(smaller(safety * least, max_step));
+  }
+};
+AllowedStep allowed_step(const World& w);
 
 /// Starts the ledger at the present state.
 void begin_ledger(World& w);
