@@ -155,11 +155,12 @@ struct LoadConfig {
     key.required("name");
     region.each_key(key);
     key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing"},
-        "pressure: against the edge; traction: along fixed axes; force: a sum, spread over the "
-        "edges by length; absorbing: takes waves up (Lysmer and Kuhlemeyer)");
+        "pressure: against the edge, and traction: along fixed axes, both per present length; "
+        "force: a sum, spread over the edges by their length at the start, that stays as given "
+        "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer)");
     key("pressure", pressure, "Pa", any_number, "pressure, positive pushes");
     key("traction", traction, "Pa", any_number, "force per area");
-    key("force", force, "N/m", any_number, "force per unit thickness, in all");
+    key("force", force, "N/m", any_number, "force per unit thickness, of all edges together");
     history.each_key(key);
   }
 };

@@ -30,6 +30,12 @@ double Amplitude::at(double time) const {
   return AmplitudeTable{ramp, 0, seen_times.size}.at(time, seen_times, seen_factors);
 }
 
+double Amplitude::largest() const {
+  double most = factors.empty() ? 1.0 : 0.0;
+  for (const double f : factors) most = std::max(most, std::abs(f));
+  return most;
+}
+
 Kick kick(const World& w) {
   const Triangles& t = w.triangles;
   return {w.last_dt,      w.next_dt,        w.parameters.gravity, w.parameters.local_damping,
@@ -42,7 +48,7 @@ StableStep stable_step(const World& w) {
   return {t.nodes.view(), t.material.view(),      w.laws.view(),          t.viscosity.view(),
           t.mass.view(),  w.contact_pairs.view(), w.parameters.materials, w.edges.view(),
           w.bonds.view(), w.joints.law.view(),    w.joints.stage.view(),  t.hold.view(),
-          w.holds.view()};
+          w.holds.view(), w.dashpots.view()};
 }
 
 void move_triangles(World& w) {

@@ -13,6 +13,8 @@ struct Amplitude {
   std::vector<double> times, factors;  ///< ascending  [s], [-]
 
   double at(double time) const;
+  /// Largest size of its factors.  [-]
+  double largest() const;
 };
 
 /// The same where kernels can read it: entries first to end - 1 of all amplitudes' tables.
@@ -47,23 +49,26 @@ struct PrescribedMotion {
   Amplitude amplitude;
 };
 
-/// What acts on an edge.
-enum class LoadKind : std::uint8_t { pressure, traction, absorbing };
+/// What acts on an edge. Pressure and traction act per present length; a force is dead: it stays as
+/// given however its edges deform.
+enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing };
 
 /// A load with its value at this moment.
 struct LoadLaw {
   LoadKind kind;
-  double factor;                    ///< of the amplitude, now  [-]
-  double pressure;                  ///<  [Pa]
-  Vec2 traction;                    ///<  [Pa]
-  double impedance_p, impedance_s;  ///< rho c_p and rho c_s of absorbing edges  [Pa s/m]
+  double factor;    ///< of the amplitude, now  [-]
+  double pressure;  ///<  [Pa]
+  Vec2 traction;    ///<  [Pa]
+  Vec2 force;       ///<  [N/m]
 };
 
 /// A loaded edge: edge k of a triangle.
 struct LoadedEdge {
   Index triangle;
   std::int16_t edge;
-  std::int16_t load;  ///< index into the laws
+  std::int16_t load;                ///< index into the laws
+  double share;                     ///< of the load's edges, by length at the start  [-]
+  double impedance_p, impedance_s;  ///< rho c_p and rho c_s of its triangle  [Pa s/m]
 };
 
 /// Adds the loads of one triangle's edges, half to each end.
@@ -87,12 +92,14 @@ struct LoadForces {
       if (law.kind == LoadKind::absorbing) {
         const double size = norm(along), half = 0.5 * size * law.factor;
         const Vec2 normal = (1.0 / size) * outward;
-        sum.at[k] += half * resisted(law, normal, a.velocity);
-        sum.at[next] += half * resisted(law, normal, b.velocity);
+        sum.at[k] += half * resisted(edges[e], normal, a.velocity);
+        sum.at[next] += half * resisted(edges[e], normal, b.velocity);
         continue;
       }
-      Vec2 half = law.kind == LoadKind::pressure ? (-0.5 * law.factor * law.pressure) * outward
-                                                 : (0.5 * law.factor * norm(along)) * law.traction;
+      const Vec2 whole = law.kind == LoadKind::pressure   ? -law.pressure * outward
+                         : law.kind == LoadKind::traction ? norm(along) * law.traction
+                                                          : edges[e].share * law.force;
+      const Vec2 half = (0.5 * law.factor) * whole;
       sum.at[k] += half;
       sum.at[next] += half;
     }
@@ -102,9 +109,9 @@ struct LoadForces {
 
  private:
   /// t = -rho (c_p n n + c_s (1 - n n)) v (Lysmer and Kuhlemeyer 1969).
-  BR_HD static Vec2 resisted(const LoadLaw& law, const Vec2& normal, const Vec2& velocity) {
+  BR_HD static Vec2 resisted(const LoadedEdge& edge, const Vec2& normal, const Vec2& velocity) {
     const Vec2 straight = dot(velocity, normal) * normal;
-    return -(law.impedance_p * straight + law.impedance_s * (velocity - straight));
+    return -(edge.impedance_p * straight + edge.impedance_s * (velocity - straight));
   }
 };
 

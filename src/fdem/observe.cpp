@@ -293,7 +293,8 @@ const char* ruling_term(const World& w) {
   const StableStep::Parts least =
       fold(w.exec, w.triangles.size(), none, RulingOf{stable_step(w)}, Least{}).parts;
   const double undamped = 2.0 / std::sqrt(least.square);
-  if (least.step < 0.5 * undamped) return "viscosity";
+  if (least.step < 0.5 * undamped)
+    return least.absorbed > least.viscous ? "absorbing edges" : "viscosity";
   if (least.element >= least.joint && least.element >= least.contact) return "elements";
   return least.joint >= least.contact ? "joints" : "contact";
 }

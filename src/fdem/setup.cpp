@@ -229,32 +229,39 @@ void set_up_supports(World& w, const Config& config, const Model& model) {
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
 }
 
+LoadKind kind_of(const LoadConfig& load) {
+  if (load.kind == "pressure") return LoadKind::pressure;
+  if (load.kind == "traction") return LoadKind::traction;
+  return load.kind == "force" ? LoadKind::force : LoadKind::absorbing;
+}
+
 void set_up_loads(World& w, const Config& config, const Model& model) {
+  const std::vector<ElasticTriangle> laws = elastic_table(config);
   std::vector<LoadedEdge> loaded;
+  std::vector<EdgeDashpots> dashpots;
   for (const LoadConfig& load : config.loads) {
-    const std::string where = "load " + load.name;
     const auto index = static_cast<std::int16_t>(w.loads.size());
-    double length = 0.0;
-    std::int16_t material = 0;
-    for (const Index edge : edges_in(model, load.region, where)) {
-      loaded.push_back({edge / 3, static_cast<std::int16_t>(edge % 3), index});
-      const auto& corners = model.triangle[at(edge / 3)];
-      length += norm(model.point[at(corners[at((edge + 1) % 3)])] -
-                     model.point[at(corners[at(edge % 3)])]);
-      material = model.material[at(edge / 3)];
-    }
-    const MaterialConfig& m = config.materials[static_cast<std::size_t>(material)];
-    const ElasticTriangle law = elastic_table(config)[static_cast<std::size_t>(material)];
-    LoadLaw l{LoadKind::traction, 1.0, load.pressure, load.traction, 0.0, 0.0};
-    if (load.kind == "pressure") l.kind = LoadKind::pressure;
-    if (load.kind == "force") l.traction = (1.0 / length) * load.force;
-    if (load.kind == "absorbing") {
-      l.kind = LoadKind::absorbing;
-      l.impedance_p = std::sqrt(m.density * (law.lambda + 2.0 * law.shear));
-      l.impedance_s = std::sqrt(m.density * law.shear);
-    }
-    w.loads.push_back(l);
+    const LoadKind kind = kind_of(load);
+    w.loads.push_back({kind, 1.0, load.pressure, load.traction, load.force});
     w.load_amplitudes.push_back(amplitude(load.history));
+    if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
+    const std::size_t first = loaded.size();
+    double length = 0.0;
+    for (const Index edge : edges_in(model, load.region, "load " + load.name)) {
+      const auto t = at(edge / 3), k = at(edge % 3);
+      const auto material = static_cast<std::size_t>(model.material[t]);
+      const double density = config.materials[material].density;
+      const double own = norm(model.point[at(model.triangle[t][(k + 1) % 3])] -
+                              model.point[at(model.triangle[t][k])]);
+      const double impedance_p =
+          std::sqrt(density * (laws[material].lambda + 2.0 * laws[material].shear));
+      loaded.push_back({edge / 3, static_cast<std::int16_t>(k), index, own, impedance_p,
+                        std::sqrt(density * laws[material].shear)});
+      length += own;
+      if (kind == LoadKind::absorbing)
+        dashpots[t].at[k] += impedance_p * w.load_amplitudes.back().largest();
+    }
+    for (std::size_t i = first; i < loaded.size(); ++i) loaded[i].share /= length;
   }
   if (loaded.empty()) return;
   std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedEdge& a, const LoadedEdge& b) {
@@ -267,6 +274,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
   starts.push_back(static_cast<Index>(loaded.size()));
   copy_to(w.load_starts, starts);
   copy_to(w.loaded_edges, loaded);
+  copy_to(w.dashpots, dashpots);
   w.triangles.external.resize(w.triangles.size());
 }
 
@@ -296,11 +304,11 @@ World::World(const Exec& how)
   const auto place = [&](auto&... arrays) {
     ((arrays = std::remove_reference_t<decltype(arrays)>(how.space)), ...);
   };
-  place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, bundles.starts, bundles.nodes,
-        bundles.leader, triangles.external, joints.force, joints.preset, opened.changed,
-        opened.vertex, edges, joint_ends, motions, load_laws, born, stress, overshoot, reached,
-        amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-        blocks_done);
+  place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, dashpots, bundles.starts,
+        bundles.nodes, bundles.leader, triangles.external, joints.force, joints.preset,
+        opened.changed, opened.vertex, edges, joint_ends, motions, load_laws, born, stress,
+        overshoot, reached, amplitudes, amplitude_times, amplitude_factors, prescribed_velocity,
+        reach_place, clock, blocks_done);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {

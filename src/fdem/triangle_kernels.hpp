@@ -197,8 +197,14 @@ struct Kick {
       const Hold& h = holds[hold[t]];
       for (int k = 0; k < 3; ++k) {
         const Vec2 given = h.motion[k] >= 0 ? motions[h.motion[k]].velocity : Vec2{};
-        if ((h.fixed >> (2 * k) & 1) != 0) r.velocity[k].x = given.x;
-        if ((h.fixed >> (2 * k + 1) & 1) != 0) r.velocity[k].y = given.y;
+        if ((h.fixed >> (2 * k) & 1) != 0) {
+          r.velocity[k].x = given.x;
+          r.damped[k].x = 0.0;  // what is held is not damped
+        }
+        if ((h.fixed >> (2 * k + 1) & 1) != 0) {
+          r.velocity[k].y = given.y;
+          r.damped[k].y = 0.0;
+        }
       }
     }
     return r;
@@ -286,8 +292,10 @@ struct UsedMargin {
   }
 };
 
-/// What rules the stable step of a triangle.
-enum class StepRule : std::uint8_t { elements, joints, contact, viscosity };
+/// Impedance rho c_p of absorbing edges of a triangle, times their largest factor; 0 elsewhere.
+struct EdgeDashpots {
+  double at[3] = {0.0, 0.0, 0.0};  ///<  [Pa s/m]
+};
 
 /// The stable step of a triangle by Gershgorin's bound: every eigenfrequency is at most the largest
 /// sum of a row's |stiffness| over its mass (docs/theory.md, time step).
@@ -304,11 +312,12 @@ struct StableStep {
   View<const JointStage> stage;
   View<const Index> hold;
   View<const Hold> holds;
+  View<const EdgeDashpots> dashpots;  ///< empty: nothing absorbs
 
   /// Shares of the largest row sum.
   struct Parts {
     double element = 0.0, joint = 0.0, contact = 0.0;  ///<  [Pa], per unit thickness
-    double viscous = 0.0;                              ///<  [Pa s]
+    double viscous = 0.0, absorbed = 0.0;              ///<  [Pa s]
     double square = 0.0;                               ///< omega^2 bound  [1/s2]
     double step = 0.0;                                 ///<  [s]
   };
@@ -335,10 +344,12 @@ struct StableStep {
         p.viscous = larger(p.viscous, row(slope, i, c, area, 0.0, 0.5 * viscosity[t]));
       }
       const int before = i == 0 ? 2 : i - 1;
+      if (dashpots.size > 0) p.absorbed = dashpot(t, i, x) + dashpot(t, before, x);
       p.joint = on_edge[i][0] + on_edge[before][0];
       p.contact = on_edge[i][1] + on_edge[before][1];
       p.square = (p.element + p.joint + p.contact) / mass[t];
-      const double omega = root(p.square), xi = 0.5 * p.viscous / (mass[t] * omega);
+      const double omega = root(p.square), lost = p.viscous + p.absorbed;
+      const double xi = 0.5 * lost / (mass[t] * omega);
       p.step = 2.0 / omega * (root(1.0 + xi * xi) - xi);
       if (p.step < largest.step) largest = p;
     }
@@ -360,6 +371,11 @@ struct StableStep {
       }
     }
     return sum;
+  }
+  /// What an absorbing edge takes from each of its ends, half its length times the impedance: both
+  /// of its impedances are at most the larger one.
+  BR_HD double dashpot(Index t, int k, const Vec2 (&x)[3]) const {
+    return 0.5 * norm(x[(k + 1) % 3] - x[k]) * dashpots[t].at[k];
   }
   /// A live joint adds p_f to the row of each of its nodes; an edge that can touch adds the
   /// stiffness of two faces pressed together, 3 p L (1/H + 1/H).

@@ -94,6 +94,7 @@ struct World {
   std::vector<Amplitude> load_amplitudes;
   Buffer<Index> load_starts;
   Buffer<LoadedEdge> loaded_edges;
+  Buffer<EdgeDashpots> dashpots;  ///< of each triangle, where some edge absorbs
   Bundles bundles;
   Buffer<JointEnds> joint_ends;
   Buffer<EdgeJoints> edges;   ///< joints of each triangle by slot
