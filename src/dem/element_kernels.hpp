@@ -164,9 +164,10 @@ struct Kick {
             damping * opposed(f.z, v.z + half * f.z)};
   }
 
-  BR_HD Result operator()(Index e) const {
+  BR_HD Result operator()(Index e) const { return (*this)(e, read_record(state, e)); }
+  BR_HD Result operator()(Index e, const ElementState& now) const {
     Result r{};
-    const Vec3 velocity = state[e].velocity, spin = state[e].spin;
+    const Vec3 velocity = now.velocity, spin = now.spin;
     const double span = 0.5 * (last_dt + next_dt);
     Vec3 f = force[e] + mass[e] * gravity, t = torque[e];
     if (damping > 0.0) {
@@ -202,8 +203,8 @@ struct MoveElements {
 
   BR_HD void set(const Moment& now) { kick.set(now); }
   BR_WHOLE BR_HD void operator()(Index e) const {
-    const Kick::Result r = kick(e);
-    ElementState& moved = state[e];
+    ElementState moved = read_record(kick.state, e);
+    const Kick::Result r = kick(e, moved);
     const Vec3 before = kick.last_dt * moved.velocity, after = kick.next_dt * r.velocity;
     if (kick.damping > 0.0)
       damping_work[e] +=
@@ -213,7 +214,9 @@ struct MoveElements {
     moved.velocity = r.velocity;
     moved.spin = r.spin;
     moved.position += after;
-    orientation[e] = turned(orientation[e], kick.next_dt * r.spin);
+    write_record(state, e, moved);
+    const Quaternion before_turn = read_record(View<const Quaternion>(orientation), e);
+    write_record(orientation, e, turned(before_turn, kick.next_dt * r.spin));
   }
 
  private:

@@ -74,14 +74,24 @@ struct NoteStable {
   static constexpr const char* name = "fdem.note_stable";
   StableStep stable;
   Index triangles, threads;
-  int every;
-  View<const StepClock> clock;
+  FinishStep<AllowedStep> finish;
   BR_HD void set(const Moment&) {}
-  BR_HD double operator()(Index i) const {
+  BR_HD void operator()(Index i) const {
+    if (finish.clock[0].step % finish.evaluate_every != 0) return;
     double least = largest_least;
-    if (clock[0].step % every != 0) return least;
     for (Index t = i; t < triangles; t += threads) least = smaller(least, stable(t));
-    return least;
+    finish.note(least);
+  }
+};
+
+/// A kernel that notes nothing, before the end of the step.
+template <class Kernel>
+struct NotingNothing {
+  Kernel kernel;
+  BR_HD void set(const Moment& now) { kernel.set(now); }
+  BR_HD double operator()(Index i) const {
+    kernel(i);
+    return largest_least;
   }
 };
 
@@ -123,20 +133,22 @@ void launch_step(World& w) {
   }
   for_each_part(part(w.couples.size(), after(couple_kernel(w)),
                      part(w.joints.size(), after(joint_kernel(w)), Parts<>{})));
-  for_each(exec, triangles, after(triangle_kernel(w)));
+  const FinishStep<AllowedStep> finish{allowed_step(w), w.parameters.time.evaluate_every,
+                                       w.clock.view()};
+  constexpr Index most_threads = 132 * 128;
+  const Index threads = triangles < most_threads ? triangles : most_threads;
+  for_each_part(part(threads, after(NoteStable{stable_step(w), triangles, threads, finish}),
+                     part(triangles, after(triangle_kernel(w)), Parts<>{})));
   if (w.load_starts.size() > 1) {
     for_each(exec, w.load_laws.size(),
              after(ScaleLoads{{}, motions, tables, times, factors, w.load_laws.view()}));
     for_each(exec, w.load_starts.size() - 1, after(load_kernel(w)));
   }
   if (w.bundles.starts.size() > 1)
-    for_each(exec, w.bundles.starts.size() - 1, after(bundle_kernel(w)));
-  constexpr Index most_threads = 2 * 132 * 256;
-  const Index threads = triangles < most_threads ? triangles : most_threads;
-  const int every = w.parameters.time.evaluate_every;
-  for_each_then(threads,
-                after(NoteStable{stable_step(w), triangles, threads, every, w.clock.view()}),
-                w.blocks_done, FinishStep<AllowedStep>{allowed_step(w), every, w.clock.view()});
+    for_each_then(w.bundles.starts.size() - 1, after(NotingNothing<BundleForces>{bundle_kernel(w)}),
+                  w.blocks_done, finish);
+  else
+    for_each(exec, 1, finish);
 }
 #else
 void launch_step(World&) {}

@@ -49,8 +49,18 @@ template <int count, class Record>
 BR_HD inline void gather_records(const View<const Record>& records, Indices<double> i,
                                  double (&columns)[count]) {
   static_assert(sizeof(Record) == count * sizeof(double));
+#if defined(__CUDA_ARCH__)
+  static_assert(count % 2 == 0);  // and arrays are aligned: two numbers a load
+  const auto* twos = reinterpret_cast<const double2*>(&records[i.at]);
+  for (int k = 0; k < count / 2; ++k) {
+    const double2 two = twos[k];
+    columns[2 * k] = two.x;
+    columns[2 * k + 1] = two.y;
+  }
+#else
   const auto* numbers = reinterpret_cast<const double*>(&records[i.at]);
   for (int k = 0; k < count; ++k) columns[k] = numbers[k];
+#endif
 }
 
 /// Writes numbers k of records first, first + 1, ... from columns[k].
@@ -58,8 +68,38 @@ template <int count, class Record>
 BR_HD inline void store_records(const View<Record>& records, Index first,
                                 const double (&columns)[count]) {
   static_assert(sizeof(Record) == count * sizeof(double));
+#if defined(__CUDA_ARCH__)
+  static_assert(count % 2 == 0);
+  auto* twos = reinterpret_cast<double2*>(&records[first]);
+  for (int k = 0; k < count / 2; ++k) twos[k] = make_double2(columns[2 * k], columns[2 * k + 1]);
+#else
   auto* numbers = reinterpret_cast<double*>(&records[first]);
   for (int k = 0; k < count; ++k) numbers[k] = columns[k];
+#endif
+}
+
+/// A whole record of doubles, read and written two numbers at a time on a device.
+template <class Record>
+BR_HD inline Record read_record(const View<const Record>& records, Index i) {
+#if defined(__CUDA_ARCH__)
+  double numbers[sizeof(Record) / sizeof(double)];
+  gather_records(records, Indices<double>{i}, numbers);
+  Record record;
+  __builtin_memcpy(&record, numbers, sizeof record);
+  return record;
+#else
+  return records[i];
+#endif
+}
+template <class Record>
+BR_HD inline void write_record(const View<Record>& records, Index i, const Record& record) {
+#if defined(__CUDA_ARCH__)
+  double numbers[sizeof(Record) / sizeof(double)];
+  __builtin_memcpy(numbers, &record, sizeof record);
+  store_records(records, i, numbers);
+#else
+  records[i] = record;
+#endif
 }
 
 #if !defined(__CUDACC__) && defined(__AVX512F__)

@@ -9,6 +9,7 @@
 
 #include "core/travel.hpp"
 #include "dem/observe.hpp"
+#include "exec/device.hpp"
 #include "exec/memory.hpp"
 #include "prepare/build.hpp"
 #include "prepare/packing.hpp"
@@ -23,11 +24,13 @@ constexpr int steps_before_impact = 100;  // the rock meets the slab after 0.1 m
 constexpr double impact_at = 0.2e-3;      // the rock has met the slab and links break  [s]
 
 void take_steps(dem::World& w, int steps) {
-  for (int i = 0; i < steps; ++i) dem::step(w);
+  StopAt stop;
+  for (stop.step = w.step + steps; w.step < stop.step;) dem::advance(w, stop);
 }
 
 void reach_impact(dem::World& w) {
-  while (w.time < impact_at) dem::step(w);
+  StopAt stop;
+  for (stop.time = impact_at; w.time < stop.time;) dem::advance(w, stop);
 }
 
 /// What windows of whole steps took.
@@ -144,6 +147,34 @@ std::vector<Measurement> measure_slab(const Exec& exec) {
 
 std::vector<Measurement> measure_large_slab(const Exec& exec) {
   return measure_scene(exec, 2.7);
+}
+
+std::vector<Measurement> measure_slabs(const Exec& exec) {
+  dem::Config config = slab_scene(1.0);
+  config.supports.clear();
+  const dem::Model one = build_model(config, "");
+  std::vector<Measurement> result;
+  for (const int copies : {7, 70, 700}) {
+    if (copies > 70 && exec.space != Space::cuda) continue;  // minutes and 30 GB
+    dem::World w = dem::make_world(config, side_by_side(one, copies), exec);
+    reach_impact(w);
+    std::vector<double> wall;
+    const int steps = copies > 70 ? 20 : 50;
+    for (int window = 0; window < window_count; ++window)
+      wall.push_back(seconds_of([&] { take_steps(w, steps); }) / steps);
+    const std::string part = std::to_string(copies) + " slabs";
+    result.push_back(once(part, "elements", w.elements.size(), "-"));
+    result.push_back(once(part, "links", w.links(), "-"));
+    result.push_back(over_windows(part, "step", "us", wall, 1e6));
+    result.push_back(over_windows(part, "ns_per_link_step", "ns", wall, 1e9 / w.links()));
+    if (exec.space == Space::cuda) {
+      const DeviceInfo device = device_info();
+      result.push_back(
+          once(part, "device_memory_per_element",
+               static_cast<double>(device.memory - device.free_memory) / w.elements.size(), "B"));
+    }
+  }
+  return result;
 }
 
 std::vector<Measurement> measure_threads(const Exec& exec) {

@@ -22,6 +22,9 @@ struct Measurement {
 std::vector<Measurement> measure_slab(const Exec& exec);
 /// The same slab 2.7 times as long and wide: 99,262 elements.
 std::vector<Measurement> measure_large_slab(const Exec& exec);
+/// Many of the paper's slabs side by side, during the impact: 100,000 to 1 million elements, on a
+/// GPU to 10 million.
+std::vector<Measurement> measure_slabs(const Exec& exec);
 /// The slab on one thread and on all threads of `exec`, in alternating windows.
 std::vector<Measurement> measure_threads(const Exec& exec);
 /// The search alone, on random spheres at the density of a packing.

@@ -79,4 +79,36 @@ dem::Config slab_scene(double scale) {
   return config;
 }
 
+dem::Model side_by_side(const dem::Model& one, int copies) {
+  constexpr double pitch = 2.0;
+  const auto row = static_cast<int>(std::lround(std::sqrt(copies)));
+  dem::Model all = one;
+  const auto append = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (int copy = 1; copy < copies; ++copy) {
+    const Index first = all.size();
+    const Vec3 shift{pitch * (copy % row), pitch * (copy / row), 0.0};
+    append(all.group, one.group);
+    append(all.material, one.material);
+    append(all.radius, one.radius);
+    append(all.mass, one.mass);
+    append(all.inertia, one.inertia);
+    append(all.velocity, one.velocity);
+    append(all.spin, one.spin);
+    for (const Vec3& x : one.position) all.position.push_back(x + shift);
+    for (dem::Model::Link link : one.links) {
+      link.a += first;
+      link.b += first;
+      all.links.push_back(link);
+    }
+    const auto follow = [&](std::vector<Index>& to, const std::vector<Index>& from) {
+      for (const Index e : from) to.push_back(e >= 0 ? e + first : -1);
+    };
+    follow(all.bar_previous, one.bar_previous);
+    follow(all.bar_next, one.bar_next);
+  }
+  return all;
+}
+
 }  // namespace breccia

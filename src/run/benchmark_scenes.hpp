@@ -2,6 +2,7 @@
 // The slab that benchmarks run, built without a file.
 
 #include "dem/config.hpp"
+#include "dem/model.hpp"
 
 namespace breccia {
 
@@ -11,5 +12,8 @@ namespace breccia {
 /// whatever the case becomes, so that numbers compare over time.
 /// @param scale  1: 14,274 elements; 2.7: 99,262  [-]
 dem::Config slab_scene(double scale);
+
+/// So many copies of a model in rows, 2 m apart.
+dem::Model side_by_side(const dem::Model& one, int copies);
 
 }  // namespace breccia

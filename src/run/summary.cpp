@@ -78,7 +78,7 @@ Json json_of(const Summary& s) {
   if (!s.dt_rule.empty()) json["dt"]["ruled_by"] = s.dt_rule;
   json["wall_s"] = {{"total", s.total}, {"setup", s.setup}, {"loop", s.loop}, {"output", s.output}};
   json["step_us"] = {{"median", s.step_median}, {"p95", s.step_p95}};
-  if (!s.stages.empty()) json["stages_s"] = s.stages;
+  json["stages_s"] = s.stages;
   for (const Fact& fact : s.facts)
     if (fact.path.find('.') == std::string::npos) put(json, fact);
   json["peak_memory_bytes"] = s.peak_memory;
