@@ -36,7 +36,7 @@ struct BenchCommand {
 
   void execute() const {
     refuse_unknown();
-    const Exec exec = exec_of(options);
+    const Exec exec = exec_of(options, nullptr);
     if (paced) {
       pace_slab(std::cin, std::cout, exec);
       return;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "domain/domain.hpp"
 #include "exec/error.hpp"
 #include "fdem/check_case.hpp"
 #include "io/case_file.hpp"
@@ -35,6 +36,7 @@ std::string model_digest(Config config) {
   config.time.end = TimeConfig{}.end;
   config.output = {};
   config.checkpoint = {};
+  config.domain = {};
   config.probes.clear();
   config.checks.clear();
   return case_digest(completed_case(config));
@@ -98,12 +100,12 @@ auto model_of(const Case& read, const Config& config) {
 }
 
 std::unique_ptr<Method> method_over(const dem::Config& config, const dem::Model& model,
-                                    const Exec& exec) {
-  return make_dem_method(config, model, exec);
+                                    const Exec& exec, Communicator* ranks) {
+  return make_dem_method(config, model, exec, ranks);
 }
 std::unique_ptr<Method> method_over(const fdem::Config& config, const fdem::Model& model,
-                                    const Exec& exec) {
-  return make_fdem_method(config, model, exec);
+                                    const Exec& exec, Communicator* ranks) {
+  return make_fdem_method(config, model, exec, ranks);
 }
 
 std::string size_text(const dem::Model& model) {
@@ -154,9 +156,13 @@ const CaseConfig& Case::common() const {
   return std::visit([](const auto& c) -> const CaseConfig& { return c; }, config);
 }
 
-std::unique_ptr<Method> make_method(const Case& read, const Exec& exec) {
+std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks) {
   return std::visit(
-      [&](const auto& config) { return method_over(config, model_of(read, config), exec); },
+      [&](const auto& config) {
+        decltype(built(config, read.folder)) model;
+        together_or_not(ranks, [&] { model = model_of(read, config); });
+        return method_over(config, model, exec, ranks);
+      },
       read.config);
 }
 

@@ -9,6 +9,7 @@
 
 #include "dem/config.hpp"
 #include "dem/model.hpp"
+#include "domain/communicator.hpp"
 #include "exec/space.hpp"
 #include "fdem/config.hpp"
 #include "fdem/model.hpp"
@@ -38,8 +39,9 @@ struct Case {
 Case load_case(const std::string& path, const std::vector<std::string>& overrides);
 
 /// The case's method over its model: the prepared one, or built now.
+/// @param ranks  those that share the work; null: none. Every rank calls it alike.
 /// @throws InputError if the model cannot be built, or does not fit
-std::unique_ptr<Method> make_method(const Case& read, const Exec& exec);
+std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks);
 
 /// Builds the model and adds it to a file. Returns a few words about its size.
 std::string save_model_of(const Case& read, CheckpointWriter& writer);

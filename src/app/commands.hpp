@@ -5,12 +5,16 @@ namespace CLI {
 class App;
 }
 
+namespace breccia {
+class Communicator;
+}
+
 namespace breccia::app {
 
 /// Each adds one command; when it is called it does its work and sets the exit code of the program.
-/// Errors leave as the classes of exec/error.hpp.
-void add_run(CLI::App& program, int& exit_code);
-void add_resume(CLI::App& program, int& exit_code);
+/// Errors leave as the classes of exec/error.hpp. `ranks` are those that share a run; null: none.
+void add_run(CLI::App& program, int& exit_code, Communicator* ranks);
+void add_resume(CLI::App& program, int& exit_code, Communicator* ranks);
 void add_prepare(CLI::App& program);
 void add_check(CLI::App& program, int& exit_code);
 void add_keys(CLI::App& program);

@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <new>
 
 #include "app/commands.hpp"
+#include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
 #include "exec/threads.hpp"
 #include "run/machine.hpp"
@@ -18,8 +20,14 @@ constexpr int usage_error = 2;
 constexpr int file_error = 3;
 constexpr int memory_error = 5;
 
-int tell(int exit_code, const std::string& message) {
+void write_error(const std::string& message) {
   std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
+}
+
+int tell_and_end(breccia::Communicator& ranks, int exit_code, const std::string& message) {
+  write_error(fmt::format("rank {}: {}", ranks.rank(), message));
+  std::fflush(stderr);
+  ranks.abort(exit_code);
   return exit_code;
 }
 
@@ -30,7 +38,7 @@ std::string version_text() {
                      build.cuda ? ", CUDA" : "");
 }
 
-int run_program(int argc, char** argv) {
+int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   int exit_code = 0;
   CLI::App program{
       "How concrete and rock break: discrete elements with links that soften and fail."};
@@ -40,8 +48,8 @@ int run_program(int argc, char** argv) {
       "7 checkpoint refused, 9 a check of the case failed, 128+n ended by signal n.");
   program.set_version_flag("--version", version_text());
   program.require_subcommand(1);
-  breccia::app::add_run(program, exit_code);
-  breccia::app::add_resume(program, exit_code);
+  breccia::app::add_run(program, exit_code, ranks);
+  breccia::app::add_resume(program, exit_code, ranks);
   breccia::app::add_prepare(program);
   breccia::app::add_check(program, exit_code);
   breccia::app::add_keys(program);
@@ -51,18 +59,24 @@ int run_program(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (ranks != nullptr && ranks->rank() != 0) return error.get_exit_code() == 0 ? 0 : usage_error;
     return program.exit(error) == 0 ? 0 : usage_error;
   }
   return exit_code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  breccia::let_waiting_threads_sleep(argv);
+/// Runs one command; errors become messages and exit codes.
+int guarded(int argc, char** argv, breccia::Communicator* ranks) {
+  // What all ranks fail at is told once. A rank that fails alone tells, and ends the others.
+  const auto tell = [&](int exit_code, const std::string& message) {
+    const bool alone = ranks != nullptr && !ranks->in_step();
+    if (alone) return tell_and_end(*ranks, exit_code, message);
+    if (ranks == nullptr || ranks->rank() == 0) write_error(message);
+    return exit_code;
+  };
   int exit_code = 0;
   try {
-    exit_code = run_program(argc, argv);
+    exit_code = run_program(argc, argv, ranks);
   } catch (const breccia::Error& error) {
     exit_code = tell(error.exit_code(), error.what());
   } catch (const std::bad_alloc&) {
@@ -75,4 +89,21 @@ int main(int argc, char** argv) {
   if (std::fflush(stdout) != 0 && exit_code == 0)
     exit_code = tell(file_error, "standard output: cannot be written");
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  breccia::let_waiting_threads_sleep(argv);
+  try {
+    const std::unique_ptr<breccia::Communicator> ranks = breccia::launched_ranks();
+    const std::string command = argc > 1 ? argv[1] : "";
+    const bool several = ranks && ranks->size() > 1;
+    const bool shared = several && (command == "run" || command == "resume");
+    if (several && ranks->rank() != 0 && !shared) return 0;  // the first rank does it
+    return guarded(argc, argv, shared ? ranks.get() : nullptr);
+  } catch (const breccia::Error& error) {  // of MPI itself
+    write_error(error.what());
+    return error.exit_code();
+  }
 }

@@ -7,9 +7,11 @@
 #include <array>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
+#include "domain/domain.hpp"
 #include "exec/error.hpp"
 #include "run/run.hpp"
 #include "run/signals.hpp"
@@ -19,13 +21,13 @@ namespace {
 
 /// A run that goes on may end, save and draw differently; all else belongs to its states.
 void refuse_fixed_keys(const std::vector<std::string>& overrides) {
-  constexpr std::array changeable{"time.end=", "output.", "checkpoint.", "title="};
+  constexpr std::array changeable{"time.end=", "output.", "checkpoint.", "domain.", "title="};
   for (const std::string& text : overrides)
     if (std::none_of(changeable.begin(), changeable.end(),
                      [&](const char* start) { return text.starts_with(start); }))
       throw InputError(
-          fmt::format("--set {}: a run that goes on takes time.end, output.*, checkpoint.* and "
-                      "title only; nothing was run",
+          fmt::format("--set {}: a run that goes on takes time.end, output.*, checkpoint.*, "
+                      "domain.* and title only; nothing was run",
                       text));
 }
 
@@ -33,41 +35,50 @@ struct ResumeCommand {
   RunOptions options;
   std::string path;
 
-  int execute() const {
+  int execute(Communicator* ranks) const {
     const auto begin = std::chrono::steady_clock::now();
     const StopSignals signals;
     StageTimers timers;
-    Exec exec = exec_of(options);
-    exec.timers = &timers;
-    refuse_fixed_keys(options.overrides);
-
-    const ResultFolder folder = ResultFolder::open(path);
-    Case read = load_case(folder.file("case.toml"), options.overrides);
-    const CheckpointReader checkpoint =
-        newest_good_checkpoint(folder.file("checkpoints"), [](const std::string& warning) {
-          std::fputs(fmt::format("warning: {}\n", warning).c_str(), stderr);
-        });
-    read.name = checkpoint.text("run.case_name");
-    read.folder = checkpoint.text("run.case_folder");
-
-    RunPlan plan = plan_of(read, options, exec);
-    plan.begin = begin;
-    refuse_other_case(checkpoint, plan);
-    const std::unique_ptr<Method> method = make_method(read, exec);
-    timers.clear();
-    return Run(*method, plan, folder, checkpoint).execute();
+    Exec exec;
+    Case read;
+    RunPlan plan;
+    std::optional<ResultFolder> folder;
+    std::optional<CheckpointReader> checkpoint;  // every rank needs the folder of the case
+    together_or_not(ranks, [&] {
+      exec = exec_of(options, ranks);
+      exec.timers = &timers;
+      refuse_fixed_keys(options.overrides);
+      if (leads(ranks)) folder.emplace(ResultFolder::open(path));
+      read = load_case(path + "/case.toml", options.overrides);
+      checkpoint.emplace(
+          newest_good_checkpoint(path + "/checkpoints", [&](const std::string& warning) {
+            if (leads(ranks)) std::fputs(fmt::format("warning: {}\n", warning).c_str(), stderr);
+          }));
+      read.name = checkpoint->text("run.case_name");
+      read.folder = checkpoint->text("run.case_folder");
+      plan = plan_of(read, options, exec, ranks);
+      plan.begin = begin;
+      refuse_other_case(*checkpoint, plan);
+      if (!leads(ranks)) checkpoint.reset();
+    });
+    const std::unique_ptr<Method> method = make_method(read, exec, ranks);
+    if (!leads(ranks)) return method->follow();
+    return led(*method, [&] {
+      timers.clear();
+      return Run(*method, plan, *folder, *checkpoint).execute();
+    });
   }
 };
 
 }  // namespace
 
-void add_resume(CLI::App& program, int& exit_code) {
+void add_resume(CLI::App& program, int& exit_code, Communicator* ranks) {
   const auto resume = std::make_shared<ResumeCommand>();
   CLI::App* const command =
       program.add_subcommand("resume", "go on from the newest good checkpoint of a run");
   command->add_option("DIR", resume->path, "the result folder of the run")->required();
   add_run_options(*command, resume->options);
-  command->callback([resume, &exit_code] { exit_code = resume->execute(); });
+  command->callback([resume, &exit_code, ranks] { exit_code = resume->execute(ranks); });
 }
 
 }  // namespace breccia::app

@@ -8,6 +8,7 @@
 
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
+#include "domain/domain.hpp"
 #include "run/signals.hpp"
 
 namespace breccia::app {
@@ -18,35 +19,41 @@ struct RunCommand {
   std::string path, folder, restart;
   bool force = false;
 
-  int execute() const {
+  int execute(Communicator* ranks) const {
     const auto begin = std::chrono::steady_clock::now();
     const StopSignals signals;
     StageTimers timers;
-    Exec exec = exec_of(options);
-    exec.timers = &timers;
-
-    const Case read = load_case(path, options.overrides);
-    const std::string out = folder.empty() ? "out/" + read.name : folder;
     const Existing existing = force ? Existing::replace : Existing::refuse;
-    ResultFolder::check_free(out, existing);
-
-    const std::unique_ptr<Method> method = make_method(read, exec);
-    RunPlan plan = plan_of(read, options, exec);
-    plan.begin = begin;
-    if (!restart.empty()) {
-      const CheckpointReader checkpoint(restart);
-      refuse_other_case(checkpoint, plan);
-      method->load(checkpoint);
-    }
-    timers.clear();
-    const ResultFolder result = ResultFolder::create(out, existing);
-    return Run(*method, plan, result).execute();
+    Exec exec;
+    Case read;
+    std::string out;
+    together_or_not(ranks, [&] {
+      exec = exec_of(options, ranks);
+      exec.timers = &timers;
+      read = load_case(path, options.overrides);
+      out = folder.empty() ? "out/" + read.name : folder;
+      if (leads(ranks)) ResultFolder::check_free(out, existing);
+    });
+    const std::unique_ptr<Method> method = make_method(read, exec, ranks);
+    if (!leads(ranks)) return method->follow();
+    return led(*method, [&] {
+      RunPlan plan = plan_of(read, options, exec, ranks);
+      plan.begin = begin;
+      if (!restart.empty()) {
+        const CheckpointReader checkpoint(restart);
+        refuse_other_case(checkpoint, plan);
+        method->load(checkpoint);
+      }
+      timers.clear();
+      const ResultFolder result = ResultFolder::create(out, existing);
+      return Run(*method, plan, result).execute();
+    });
   }
 };
 
 }  // namespace
 
-void add_run(CLI::App& program, int& exit_code) {
+void add_run(CLI::App& program, int& exit_code, Communicator* ranks) {
   const auto run = std::make_shared<RunCommand>();
   CLI::App* const command = program.add_subcommand("run", "run a case");
   command
@@ -59,7 +66,7 @@ void add_run(CLI::App& program, int& exit_code) {
       ->type_name("FILE");
   command->add_flag("--force", run->force, "replace the run that the result folder holds");
   add_run_options(*command, run->options);
-  command->callback([run, &exit_code] { exit_code = run->execute(); });
+  command->callback([run, &exit_code, ranks] { exit_code = run->execute(ranks); });
 }
 
 }  // namespace breccia::app

@@ -4,8 +4,10 @@
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 
+#include "domain/mpi_ranks.hpp"
 #include "exec/device.hpp"
 #include "exec/error.hpp"
 
@@ -28,7 +30,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--device", options.device, "where to compute: cpu, cuda or cuda:N")
       ->type_name("NAME")
       ->capture_default_str();
-  command.add_option("--threads", options.threads, "host threads; default: all of the machine")
+  command
+      .add_option("--threads", options.threads,
+                  "host threads of each rank; default: its share of the machine")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   command.add_option("--steps", options.steps, "end after N steps since the start of the case")
@@ -50,9 +54,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--no-progress", options.no_progress, "no progress bar or lines");
 }
 
-Exec exec_of(const RunOptions& options) {
+Exec exec_of(const RunOptions& options, Communicator* ranks) {
   Exec exec;
-  exec.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  const int share = std::max(1, omp_get_num_procs() / ranks_on_this_machine(ranks));
+  exec.threads = options.threads > 0 ? options.threads : share;
   if (options.device == "cpu") return exec;
   if (options.device != "cuda" && !options.device.starts_with("cuda:"))
     throw InputError(fmt::format("--device {}: there are cpu, cuda and cuda:N", options.device));
@@ -64,12 +69,15 @@ Exec exec_of(const RunOptions& options) {
       throw InputError(
           fmt::format("--device {}: N is the number of a GPU, from 0", options.device));
   }
+  if (ranks != nullptr)
+    throw DeviceError("--device cuda: a run on a GPU takes one rank; nothing was run");
   use_device(number);
   exec.space = Space::cuda;
   return exec;
 }
 
-RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec) {
+RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec,
+                Communicator* ranks) {
   RunPlan plan;
   plan.config = read.common();
   plan.case_name = read.name;
@@ -78,7 +86,8 @@ RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec) {
   plan.case_folder = read.folder;
   plan.model_digest = read.model_digest;
   plan.limits = {options.until, options.steps};
-  plan.machine = {processor_name(), options.device, exec.threads, 1};
+  plan.machine = {processor_name(), options.device, exec.threads,
+                  ranks == nullptr ? 1 : ranks->size()};
   plan.timers = exec.timers;
   plan.speech = options.quiet ? Speech::quiet : options.verbose ? Speech::verbose : Speech::normal;
   plan.progress =

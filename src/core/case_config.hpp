@@ -70,6 +70,28 @@ struct CheckpointConfig {
   }
 };
 
+/// [domain]: how a case is shared out among ranks; no key of it changes a bit of the results
+struct DomainConfig {
+  bool balance = true;
+  double imbalance = 0.1;  ///< largest load over the mean, less one, that is left alone  [-]
+  int refinement = 4;      ///< I_LB of Lukas et al. 2014, section 4  [-]
+  double buffer = 0.25;    ///< over the mean size of an element  [-]
+  bool show = false;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("balance", balance, "move the borders between ranks when their loads have become uneven");
+    key("imbalance", imbalance, "-", Range{0.0, 100.0},
+        "how far the largest load of a rank may exceed the mean before borders move");
+    key("refinement", refinement, "-", Range{1, 100},
+        "cells of the load grid along the size of an element: borders move by whole cells");
+    key("buffer", buffer, "-", Range{0.0, 100.0},
+        "how far elements travel, over their mean size, before they are shared out anew; more "
+        "makes that rarer, and ranks hold more copies");
+    key("show", show, "frames tell the rank of each element, as the field rank");
+  }
+};
+
 /// [[probe]]: one column of history.csv
 struct ProbeConfig {
   std::string name;
@@ -122,6 +144,7 @@ struct CaseConfig {
   TimeConfig time;
   OutputConfig output;
   CheckpointConfig checkpoint;
+  DomainConfig domain;
   std::vector<ProbeConfig> probes;
   std::vector<CheckConfig> checks;
 
@@ -136,6 +159,7 @@ struct CaseConfig {
     key.table("time", time, "how long and how fast");
     key.table("output", output, "what is written, how often");
     key.table("checkpoint", checkpoint, "when the state is saved");
+    key.table("domain", domain, "how ranks share the work; never changes a result");
     key.list("probe", probes, "columns of history.csv");
     key.list("check", checks, "numbers the case must show");
   }

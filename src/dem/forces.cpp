@@ -15,7 +15,8 @@ BR_HD void add_to_b(LinkSums& sums, const Action& action) {
 
 struct LeastCritical {
   View<const double> critical;
-  BR_HD double operator()(Index e) const { return critical[e]; }
+  OwnedView owned;
+  BR_HD double operator()(Index e) const { return owned(e) ? critical[e] : largest_least; }
 };
 
 /// Sums the actions of links as they come. What another run's element, or one that an earlier run
@@ -174,8 +175,9 @@ void concrete_forces_and_sums(World& w) {
       AddLinks add{gather.sums, sweep.settled[run], sweep.begin[run + 1], sweep.reach,
                    sweep.passed[run]};
       add.passed.clear();
-      for (Index from = sweep.begin[run]; from < sweep.begin[run + 1]; from += sweep_tile) {
-        const Index to = std::min(from + sweep_tile, sweep.begin[run + 1]);
+      auto tile = std::lower_bound(sweep.tiles.begin(), sweep.tiles.end(), sweep.begin[run]);
+      for (; *tile < sweep.begin[run + 1]; ++tile) {
+        const Index from = *tile, to = *(tile + 1);
         for (std::size_t g = 0; g < kernels.size(); ++g) {
           const std::vector<Index>& starts = w.concrete_groups[g].starts;
           add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
@@ -210,7 +212,8 @@ void wall_forces(World& w) {
 double choose_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
   const double least =
-      fold(w.exec, w.elements.size(), largest_least, LeastCritical{w.critical.view()}, Least{});
+      w.domain.least(fold(w.exec, w.elements.size(), largest_least,
+                          LeastCritical{w.critical.view(), w.domain.owned_view()}, Least{}));
   return step_rule(w)(least, w.last_dt);
 }
 

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/select.hpp"
-#include "dem/world.hpp"
+#include "dem/ranks.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -47,13 +47,15 @@ Buffer<PairKey> holding_links(const World& w) {
   return keys;
 }
 
-/// Whether the grown spheres of a pair overlap, not only their boxes.
+/// Whether the grown spheres of a pair overlap, not only their boxes, and it is not of others.
 struct SpheresNear {
+  OwnedView owned;
   View<const Index> a, b;
   View<const ElementState> state;
   View<const double> margin;
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
+    if (!owned(p) && !owned(q)) return false;
     const Vec3 d = state[q].position - state[p].position;
     const double reach =
         (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12);
@@ -72,10 +74,12 @@ BR_HD Spent operator+(Spent a, const Spent& b) {
   return a;
 }
 struct SpentBy {
-  View<const Index> contact;
+  OwnedView owned;  ///< the owner of a books
+  View<const Index> contact, a;
   View<const double> slid, damped, driven;
   BR_HD Spent operator()(Index k) const {
     const Index i = contact[k];
+    if (!owned(a[i])) return {};
     return {ExactSum(slid[i]), ExactSum(damped[i]), ExactSum(driven[i])};
   }
 };
@@ -88,7 +92,8 @@ void book_dropped(World& w, const Contacts& contacts, const Pairs& found) {
   const ContactHistory& h = contacts.history;
   const Spent spent =
       fold(w.exec, dropped.size(), Spent{},
-           SpentBy{std::as_const(dropped).view(), h.slid.view(), h.damped.view(), h.driven.view()},
+           SpentBy{w.domain.owned_view(), std::as_const(dropped).view(), contacts.pairs.a.view(),
+                   h.slid.view(), h.damped.view(), h.driven.view()},
            Sum{});
   w.ledger.slid.add(spent.slid);
   w.ledger.damped.add(spent.damped);
@@ -99,11 +104,12 @@ void book_dropped(World& w, const Contacts& contacts, const Pairs& found) {
 struct WallNear {
   Wall wall;
   double reach;  ///< of the wall's own travel  [m]
+  OwnedView owned;
   View<const ElementState> state;
   View<const double> margin;
   BR_HD bool operator()(Index e) const {
     const double height = dot(state[e].position - wall.point, wall.normal);
-    return height <= state[e].radius + margin[e] + reach;
+    return owned(e) && height <= state[e].radius + margin[e] + reach;
   }
 };
 
@@ -133,7 +139,8 @@ Pairs near_walls(const World& w) {
         dot(wall.velocity, wall.velocity) > 0.0 ? w.parameters.largest_margin : 0.0;
     const Buffer<Index> near =
         items_where(w.exec, w.elements.size(),
-                    WallNear{wall, reach, w.elements.state.view(), w.travel.margin.view()});
+                    WallNear{wall, reach, w.domain.owned_view(), w.elements.state.view(),
+                             w.travel.margin.view()});
     const Index first = pairs.size();
     resize_fields(pairs, first + near.size());
     for_each(w.exec, near.size(),
@@ -212,6 +219,8 @@ void plan_sweep(World& w) {
   copy_to(a, w.concrete.a);
   copy_to(b, w.concrete.b);
   const Index count = w.elements.size();
+  std::vector<GlobalId> id;
+  copy_to(id, w.elements.id);
   std::vector<Index> links_before(static_cast<std::size_t>(count) + 1, 0);
   std::vector<Index> reached(static_cast<std::size_t>(count) + 1,
                              0);  // by links of elements before
@@ -227,12 +236,19 @@ void plan_sweep(World& w) {
   for (auto& group : w.concrete_groups) find_starts(a, count, group);
   const int threads = count < smallest_shared_loop ? 1 : w.exec.threads;
   w.sweep = {};
+  std::vector<Index>& tiles = w.sweep.tiles;
+  for (Index e = 0; e < count; ++e)
+    if (e == 0 || id[static_cast<std::size_t>(e)] / sweep_tile !=
+                      id[static_cast<std::size_t>(e) - 1] / sweep_tile)
+      tiles.push_back(e);
+  tiles.push_back(count);
   for (int t = 0; t <= threads; ++t) {
     const auto share =
         static_cast<Index>(static_cast<std::int64_t>(links_before.back()) * t / threads);
     const auto begin = static_cast<Index>(
         std::lower_bound(links_before.begin(), links_before.end(), share) - links_before.begin());
-    w.sweep.begin.push_back(std::min(begin / sweep_tile * sweep_tile, count));
+    const auto tile = std::upper_bound(tiles.begin(), tiles.end(), std::min(begin, count));
+    w.sweep.begin.push_back(*(tile - 1));
   }
   w.sweep.begin.back() = count;
   for (int t = 0; t < threads; ++t) {
@@ -244,32 +260,15 @@ void plan_sweep(World& w) {
   if (w.exec.space == Space::cuda) list_rows(w, a, b);
 }
 
-}  // namespace
-
-bool contacts_are_due(const World& w) {
-  const StageTime timed(w.exec, "travel");
-  if (w.parameters.search.every > 0)  // the paper's rule
-    return w.step % w.parameters.search.every == 0;
-  for (const Wall& wall : w.walls)
-    if (wall.travelled > w.parameters.largest_margin) return true;
-  return fold(
-             w.exec, w.elements.size(), 0.0,
-             UsedMargin{w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
-             Largest{}) > 0.0;
-}
-
-void find_contacts(World& w) {
-  const StageTime timed(w.exec, "contact_detection");
+/// The pairs that may touch until the next search.
+void search(World& w) {
   const Index count = w.elements.size();
   Buffer<Vec3> position(w.exec.space, count), velocity(w.exec.space, count);
   Buffer<double> radius(w.exec.space, count);
   for_each(w.exec, count,
            UnpackState{std::as_const(w.elements.state).view(), position.view(), velocity.view(),
                        radius.view()});
-  constexpr double horizon = 30.0;  // steps for which a fast element's margin shall last
-  const MarginRule rule{w.parameters.search.margin * w.parameters.mean_radius, horizon * w.next_dt,
-                        w.parameters.largest_margin};
-  begin_travel(w.exec, rule, position, velocity, w.travel);
+  begin_travel(w.exec, margin_rule(w), position, velocity, w.travel);
   Buffer<Box> boxes(w.exec.space);
   sphere_boxes(w.exec, position, radius, w.travel.margin, boxes);
   Pairs found(w.exec.space);
@@ -277,8 +276,9 @@ void find_contacts(World& w) {
   exclude_pairs(w.exec, found, holding_links(w));
   const Buffer<Index> near =
       items_where(w.exec, found.size(),
-                  SpheresNear{std::as_const(found.a).view(), std::as_const(found.b).view(),
-                              w.elements.state.view(), std::as_const(w.travel.margin).view()});
+                  SpheresNear{w.domain.owned_view(), std::as_const(found.a).view(),
+                              std::as_const(found.b).view(), w.elements.state.view(),
+                              std::as_const(w.travel.margin).view()});
   gather_fields(w.exec, near, found);
   book_dropped(w, w.contacts, found);
   w.contacts.replace(w.exec, std::move(found));
@@ -286,6 +286,32 @@ void find_contacts(World& w) {
   derive_contacts(w);
   w.graphs.clear();
   ++w.searches;
+}
+
+}  // namespace
+
+MarginRule margin_rule(const World& w) {
+  constexpr double horizon = 30.0;  // steps for which a fast element's margin shall last
+  return {w.parameters.search.margin * w.parameters.mean_radius, horizon * w.next_dt,
+          w.parameters.largest_margin};
+}
+
+bool contacts_are_due(const World& w) {
+  const StageTime timed(w.exec, "travel");
+  if (w.parameters.search.every > 0)  // the paper's rule
+    return w.step % w.parameters.search.every == 0;
+  for (const Wall& wall : w.walls)
+    if (wall.travelled > w.parameters.largest_margin) return true;
+  return w.domain.any(
+      fold(w.exec, w.elements.size(), 0.0,
+           UsedMargin{w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
+           Largest{}) > 0.0);
+}
+
+void find_contacts(World& w) {
+  migrate(w);
+  const StageTime timed(w.exec, "contact_detection");
+  together_or_not(w.domain.ranks, [&w] { search(w); });
 }
 
 void derive_contacts(World& w) {

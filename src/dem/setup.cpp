@@ -170,32 +170,6 @@ void list_laws(const std::vector<LinkGroup<Law>>& groups, Buffer<Law>& laws) {
   copy_to(laws, all);
 }
 
-/// All links by the key of their pair, so that a search can leave them out while they hold.
-void set_linked_pairs(World& w) {
-  std::vector<std::pair<PairKey, Index>> linked;
-  Index first = 0;
-  const auto append = [&](const Buffer<Index>& a, const Buffer<Index>& b) {
-    std::vector<Index> ends_a, ends_b;
-    copy_to(ends_a, a);
-    copy_to(ends_b, b);
-    for (std::size_t i = 0; i < ends_a.size(); ++i)
-      linked.emplace_back(pair_key(ends_a[i], ends_b[i]), first + static_cast<Index>(i));
-    first += static_cast<Index>(ends_a.size());
-  };
-  append(w.concrete.a, w.concrete.b);
-  append(w.steel.a, w.steel.b);
-  append(w.interface.a, w.interface.b);
-  std::sort(linked.begin(), linked.end());
-  std::vector<PairKey> keys;
-  std::vector<Index> links;
-  for (const auto& [key, link] : linked) {
-    keys.push_back(key);
-    links.push_back(link);
-  }
-  copy_to(w.linked, keys);
-  copy_to(w.linked_links, links);
-}
-
 std::uint8_t fixed_bits(const SupportConfig& support) {
   static const std::map<std::string, int> words{
       {"x", fixed_x},           {"y", fixed_y},           {"z", fixed_z}, {"spin_x", fixed_spin_x},
@@ -311,6 +285,35 @@ World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
   interface_laws = Buffer<InterfaceLink>(space);
   clock = Buffer<StepClock>(space);
   blocks_done = Buffer<unsigned>(space, 1);
+}
+
+void set_linked_pairs(World& w) {
+  std::vector<std::pair<PairKey, Index>> linked;
+  std::vector<GlobalId> id;
+  copy_to(id, w.elements.id);
+  Index first = 0;
+  const auto append = [&](const Buffer<Index>& a, const Buffer<Index>& b) {
+    std::vector<Index> ends_a, ends_b;
+    copy_to(ends_a, a);
+    copy_to(ends_b, b);
+    for (std::size_t i = 0; i < ends_a.size(); ++i)
+      linked.emplace_back(pair_key(id[static_cast<std::size_t>(ends_a[i])],
+                                   id[static_cast<std::size_t>(ends_b[i])]),
+                          first + static_cast<Index>(i));
+    first += static_cast<Index>(ends_a.size());
+  };
+  append(w.concrete.a, w.concrete.b);
+  append(w.steel.a, w.steel.b);
+  append(w.interface.a, w.interface.b);
+  std::sort(linked.begin(), linked.end());
+  std::vector<PairKey> keys;
+  std::vector<Index> links;
+  for (const auto& [key, link] : linked) {
+    keys.push_back(key);
+    links.push_back(link);
+  }
+  copy_to(w.linked, keys);
+  copy_to(w.linked_links, links);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {

@@ -1,10 +1,11 @@
-#include "dem/world.hpp"
+#include "dem/ranks.hpp"
 
 namespace breccia::dem {
 
 void step(World& w) {
   // 1. Newton's laws: accelerations, velocities, positions              (Durand 2012, section 4.4)
   move_elements(w);
+  refresh_copies(w);  // on other ranks
 
   // 2. New contacts, when travel has used the margin up: grid, sort, search         (section 4.3)
   if (contacts_are_due(w)) find_contacts(w);

@@ -12,6 +12,7 @@
 #include "dem/element_kernels.hpp"
 #include "dem/link_lanes.hpp"
 #include "dem/model.hpp"
+#include "domain/domain.hpp"
 #include "exec/timers.hpp"
 
 namespace breccia::dem {
@@ -24,6 +25,12 @@ struct LinkGroup {
   std::int16_t material = 0;
   std::vector<Index>
       starts;  ///< first link of each element a, and the end; concrete on the host only
+  Index first_number = 0, end_number = 0;  ///< of its links in the whole model; ranks only
+};
+
+/// What links are called in the whole model, ascending. Empty on one rank, which holds all.
+struct LinkNumbers {
+  Buffer<Index> concrete, steel, interface;
 };
 
 /// The action of a link that a later run adds to element b.
@@ -40,10 +47,11 @@ struct Sweep {
   std::vector<Index> begin;    ///< first element of each thread's run, and the end
   std::vector<Index> settled;  ///< first element of each run that no link of an earlier run reaches
   Index reach = 0;             ///< from the lower to the higher end of a link, at most
+  std::vector<Index> tiles;    ///< first element of each tile, and the end
   std::vector<std::vector<PassedAction>> passed;  ///< of each run, in the order of its links
 };
-/// Elements whose links of all groups are done before the next ones: runs begin at multiples of it,
-/// so that the order of sums is the same for any number of threads.
+/// Elements whose links of all groups are done before the next ones, by global id: runs begin at
+/// tiles, so that the order of sums is the same for any number of threads and ranks.
 inline constexpr Index sweep_tile = 256;
 
 /// A named set of elements that probes read: a body or a support.
@@ -111,6 +119,10 @@ struct World {
   Buffer<PairKey> linked;      ///< keys of all links, sorted
   Buffer<Index> linked_links;  ///< of each, its place among concrete, steel and interface links
 
+  // Which part of the whole it is.
+  Domain domain;
+  LinkNumbers numbers;
+
   // What follows from the state.
   Incidence bar_incidence, contact_incidence;  ///< bars: steel, then interface links
   Sweep sweep;
@@ -136,6 +148,9 @@ struct World {
 /// fit
 World make_world(const Config& config, const Model& model, const Exec& exec);
 
+/// All links by the key of their pair, so that a search can leave them out while they hold.
+void set_linked_pairs(World& w);
+
 /// Fills what follows from the state: incidence lists, scratch arrays. After set-up and loading.
 void derive(World& w);
 /// The same for contacts alone, after a search.
@@ -153,6 +168,7 @@ Advanced advance_on_device(World& w, const StopAt& stop);
 /// The parts of a step, in its order.
 void move_elements(World& w);
 bool contacts_are_due(const World& w);
+MarginRule margin_rule(const World& w);
 void find_contacts(World& w);
 void bar_forces(World& w);
 void contact_forces(World& w);

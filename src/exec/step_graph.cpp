@@ -58,6 +58,12 @@ void StepGraph::replay() const {}
 StepGraph::StepGraph() = default;
 StepGraph::StepGraph(StepGraph&&) noexcept = default;
 StepGraph& StepGraph::operator=(StepGraph&&) noexcept = default;
+StepGraph::StepGraph(const StepGraph&) : StepGraph() {}
+StepGraph& StepGraph::operator=(const StepGraph&) {
+  recorded_.reset();
+  stale_ = true;
+  return *this;
+}
 StepGraph::~StepGraph() = default;
 
 bool StepGraph::empty() const {

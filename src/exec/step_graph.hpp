@@ -11,6 +11,9 @@ class StepGraph {
   StepGraph();
   StepGraph(StepGraph&&) noexcept;
   StepGraph& operator=(StepGraph&&) noexcept;
+  /// A copy has nothing recorded: the arrays of what it belongs to are others.
+  StepGraph(const StepGraph& other);
+  StepGraph& operator=(const StepGraph& other);
   ~StepGraph();
 
   /// Records what `launch()` launches, instead of running it. It must not take memory, copy or

@@ -88,6 +88,10 @@ void load_forces(World& w) {
     copy_to(w.load_laws, now);
     for_each(w.exec, w.load_starts.size() - 1, load_kernel(w));
   }
+  if (w.mesh.bundled && !w.domain.alone()) {  // also on ranks that have none
+    const StageTime timed(w.exec, "halo");
+    w.domain.refresh(w.triangles.force);
+  }
   if (w.bundles.starts.size() < 2) return;
   const StageTime timed(w.exec, "bundles");
   for_each(w.exec, w.bundles.starts.size() - 1, bundle_kernel(w));
@@ -95,9 +99,15 @@ void load_forces(World& w) {
 
 namespace {
 
+struct OwnedStableStep {
+  StableStep stable;
+  OwnedView owned;
+  BR_HD double operator()(Index t) const { return owned(t) ? stable(t) : largest_least; }
+};
+
 /// The stable step of the triangles that can touch: those where a joint may just have broken.
 struct StableStepOf {
-  StableStep stable;
+  OwnedStableStep stable;
   View<const Index> triangle;
   BR_HD double operator()(Index i) const { return stable(triangle[i]); }
 };
@@ -110,14 +120,17 @@ AllowedStep allowed_step(const World& w) {
 
 double choose_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
-  return allowed_step(w)(fold(w.exec, w.triangles.size(), largest_least, stable_step(w), Least{}),
-                         w.last_dt);
+  const OwnedStableStep stable{stable_step(w), w.domain.owned_view()};
+  const double least =
+      w.domain.least(fold(w.exec, w.triangles.size(), largest_least, stable, Least{}));
+  return allowed_step(w)(least, w.last_dt);
 }
 
 double shortened_time_step(const World& w, const Buffer<Index>& triangles) {
   const StageTime timed(w.exec, "time_step");
-  const double stable = fold(w.exec, triangles.size(), largest_least,
-                             StableStepOf{stable_step(w), triangles.view()}, Least{});
+  const double stable = w.domain.least(
+      fold(w.exec, triangles.size(), largest_least,
+           StableStepOf{{stable_step(w), w.domain.owned_view()}, triangles.view()}, Least{}));
   return std::min(w.next_dt, allowed_step(w)(stable, w.last_dt));
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "exec/for_each.hpp"
 #include "fdem/insertion_kernels.hpp"
@@ -12,28 +13,52 @@
 namespace breccia::fdem {
 namespace {
 
+/// A joint whose strength is reached, by its number in the whole mesh.
+struct Candidate {
+  double overshoot;
+  Index joint, first, second;  ///< and its two vertices
+};
+
+/// Of all ranks; each tells of the joints whose side a it owns.
+std::vector<Candidate> candidates(const World& w, const std::vector<double>& overshoot) {
+  std::vector<JointEnds> ends;
+  copy_to(ends, w.joint_ends);
+  std::vector<Candidate> own;
+  for (std::size_t i = 0; i < overshoot.size(); ++i) {
+    if (overshoot[i] < 1.0 || !w.domain.owns(ends[i].a0 / 3)) continue;
+    const auto place = static_cast<Index>(i);
+    own.push_back({overshoot[i], w.domain.alone() ? place : w.mesh.joint_number.data()[place],
+                   w.vertex[static_cast<std::size_t>(ends[i].a0)],
+                   w.vertex[static_cast<std::size_t>(ends[i].a1)]});
+  }
+  if (w.domain.alone()) return own;
+  Message message(own.size() * sizeof(Candidate));
+  if (!own.empty()) std::memcpy(message.data(), own.data(), message.size());
+  std::vector<Candidate> all;
+  for (const Message& came : w.domain.ranks->from_all(message)) {
+    const std::size_t before = all.size();
+    all.resize(before + came.size() / sizeof(Candidate));
+    if (!came.empty()) std::memcpy(all.data() + before, came.data(), came.size());
+  }
+  return all;
+}
+
 /// Of the joints whose strength is reached the most loaded ones, no two at one vertex: its waking
 /// unloads the others around.
 std::vector<Index> chosen(const World& w, const std::vector<double>& overshoot) {
-  std::vector<Index> joints;
-  for (std::size_t i = 0; i < overshoot.size(); ++i)
-    if (overshoot[i] >= 1.0) joints.push_back(static_cast<Index>(i));
-  std::stable_sort(joints.begin(), joints.end(), [&](Index a, Index b) {
-    return overshoot[static_cast<std::size_t>(a)] > overshoot[static_cast<std::size_t>(b)];
+  std::vector<Candidate> joints = candidates(w, overshoot);
+  std::sort(joints.begin(), joints.end(), [](const Candidate& a, const Candidate& b) {
+    return a.overshoot != b.overshoot ? a.overshoot > b.overshoot : a.joint < b.joint;
   });
-  std::vector<JointEnds> ends;
-  copy_to(ends, w.joint_ends);
   std::vector<Index> taken, accepted;
-  for (const Index i : joints) {
-    const JointEnds& e = ends[static_cast<std::size_t>(i)];
-    const Index first = w.vertex[static_cast<std::size_t>(e.a0)];
-    const Index second = w.vertex[static_cast<std::size_t>(e.a1)];
+  for (const Candidate& c : joints) {
     const auto is_taken = [&](Index v) {
       return std::find(taken.begin(), taken.end(), v) != taken.end();
     };
-    if (is_taken(first) || is_taken(second)) continue;
-    taken.insert(taken.end(), {first, second});
-    accepted.push_back(i);
+    if (is_taken(c.first) || is_taken(c.second)) continue;
+    taken.insert(taken.end(), {c.first, c.second});
+    const Index here = w.domain.alone() ? c.joint : find_place(w.mesh.joint_number, c.joint);
+    if (here >= 0) accepted.push_back(here);
   }
   return accepted;
 }
@@ -70,7 +95,7 @@ void wake(World& w, const std::vector<Index>& joints, const std::vector<double>&
     const JointOpening<double> closed{};
     const StoredEnergy held =
         stored_in(bond, strength[i], length[i], preset[i], closed, JointPoints{});
-    w.ledger.inserted.add(held.open + held.slide);
+    if (w.domain.owns(ends.data()[joint].a0 / 3)) w.ledger.inserted.add(held.open + held.slide);
   }
   copy_to(w.joints.stage, stage);
   copy_to(w.joints.preset, preset);
@@ -85,7 +110,7 @@ void insert_joints(World& w) {
   for_each(w.exec, w.joints.size(), overshoot_kernel(w));
   std::vector<std::uint8_t> reached;
   copy_to(reached, w.reached);
-  if (reached[0] == 0) return;
+  if (!w.domain.any(reached[0] != 0)) return;
   copy_to(w.reached, std::vector<std::uint8_t>{0});
   std::vector<double> overshoot;
   copy_to(overshoot, w.overshoot);

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "exec/for_each.hpp"
-#include "fdem/world.hpp"
+#include "fdem/ranks.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -44,6 +44,27 @@ struct BeginReach {
   }
 };
 
+/// Marks the vertices that some rank has marked and this one has not.
+void share_marks(const World& w, std::vector<std::uint8_t>& vertex) {
+  if (w.domain.alone()) return;
+  std::vector<std::uint8_t> known;
+  copy_to(known, w.opened.vertex);
+  Message news;
+  for (std::size_t v = 0; v < vertex.size(); ++v) {
+    if (vertex[v] == 0 || known[v] != 0) continue;
+    const auto number = static_cast<Index>(v);
+    const auto* bytes = reinterpret_cast<const std::byte*>(&number);
+    news.insert(news.end(), bytes, bytes + sizeof number);
+  }
+  for (std::size_t v = 0; v < vertex.size(); ++v) vertex[v] |= known[v];  // damage stays
+  for (const Message& message : w.domain.ranks->from_all(news))
+    for (std::size_t at = 0; at < message.size(); at += sizeof(Index)) {
+      Index number = 0;
+      std::memcpy(&number, message.data() + at, sizeof number);
+      vertex[static_cast<std::size_t>(number)] = 1;
+    }
+}
+
 /// Marks the vertices of damaged joints.
 void mark_opened(World& w) {
   std::vector<JointStage> stage;
@@ -56,6 +77,7 @@ void mark_opened(World& w) {
     for (const Index node : {edge_a[i], JointEnds::next_corner(edge_a[i])})
       vertex[static_cast<std::size_t>(w.vertex[static_cast<std::size_t>(node)])] = 1;
   }
+  share_marks(w, vertex);
   copy_to(w.opened.vertex, vertex);
   copy_to(w.opened.changed, std::vector<std::uint8_t>{0, 0});
 }
@@ -129,20 +151,19 @@ void book_dropped(World& w, const Pairs& found) {
   if (dropped.empty()) return;
   std::vector<Index> places;
   std::vector<CoupleState> states;
+  std::vector<Index> a;
   copy_to(places, dropped);
+  copy_to(a, w.couples.pairs.a);
   copy_to(states, w.couples.history.state);
   for (const Index place : places) {
+    if (!w.domain.owns(a[static_cast<std::size_t>(place)])) continue;  // the owner of a books it
     const CoupleState& s = states[static_cast<std::size_t>(place)];
     w.ledger.rubbed.add(s.rubbed + s.slid);
     w.ledger.lost.add(s.lost + s.work - s.slid);
   }
 }
 
-}  // namespace
-
-bool couples_are_due(const World& w) {
-  const StageTime timed(w.exec, "travel");
-  if (marking_is_due(w)) return true;
+bool margin_is_used(const World& w) {
   const double used = fold(w.exec, w.reach.triangle.size(), 0.0,
                            UsedMargin{w.reach.triangle.view(), w.reach.reference.view(),
                                       w.reach.margin.view(), w.triangles.nodes.view()},
@@ -150,10 +171,21 @@ bool couples_are_due(const World& w) {
   return used > 0.0;
 }
 
-void find_couples(World& w) {
-  const StageTime timed(w.exec, "contact_detection");
-  const bool joints_changed = marking_is_due(w);
-  if (joints_changed) mark_opened(w);
+/// Whether a search is due on some rank; what joints tell becomes known to all.
+bool any_rank_is_due(World& w) {
+  std::vector<std::uint8_t> changed;
+  copy_to(changed, w.opened.changed);
+  std::uint64_t bits = margin_is_used(w) ? 4 : 0;
+  for (std::size_t i = 0; i < changed.size(); ++i)
+    if (changed[i] != 0) bits |= std::uint64_t{1} << i;
+  bits = w.domain.any_of(bits);
+  for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = (bits >> i & 1) != 0 ? 1 : 0;
+  copy_to(w.opened.changed, changed);
+  return marking_is_due(w) || (bits & 4) != 0;
+}
+
+/// The couples that may touch until the next search.
+void search(World& w) {
   const Topology topology(w);
   const std::vector<Index> triangles = touchable(w, topology);
   const auto count = static_cast<Index>(triangles.size());
@@ -162,10 +194,9 @@ void find_couples(World& w) {
   w.reach.margin.resize(count);
   Buffer<Box> boxes(w.exec.space, count);
   Buffer<GlobalId> ids(w.exec.space, count);
-  constexpr double horizon = 30.0;  // steps for which a fast triangle's margin shall last
+  const MarginRule rule = margin_rule(w);
   for_each(w.exec, count,
-           BeginReach{w.parameters.skin, horizon * w.next_dt, 0.5 * w.parameters.mean_edge,
-                      std::as_const(w.reach.triangle).view(),
+           BeginReach{rule.base, rule.horizon, rule.largest, std::as_const(w.reach.triangle).view(),
                       std::as_const(w.triangles.nodes).view(), std::as_const(w.triangles.id).view(),
                       w.reach.reference.view(), w.reach.margin.view(), boxes.view(), ids.view()});
   Pairs found(w.exec.space);
@@ -179,6 +210,7 @@ void find_couples(World& w) {
   for (std::size_t i = 0; i < key.size(); ++i) {
     const Index first = triangles[static_cast<std::size_t>(a[i])];
     const Index second = triangles[static_cast<std::size_t>(b[i])];
+    if (!w.domain.owns(first) && !w.domain.owns(second)) continue;
     if (!may_touch(w, topology, first, second)) continue;
     kept_key.push_back(key[i]);
     kept_a.push_back(first);
@@ -192,7 +224,27 @@ void find_couples(World& w) {
   derive_couples(w);
   w.graphs.clear();
   ++w.searches;
+}
 
+}  // namespace
+
+MarginRule margin_rule(const World& w) {
+  constexpr double horizon = 30.0;  // steps for which a fast triangle's margin shall last
+  return {w.parameters.skin, horizon * w.next_dt, 0.5 * w.parameters.mean_edge};
+}
+
+bool couples_are_due(World& w) {
+  const StageTime timed(w.exec, "travel");
+  if (!w.domain.alone()) return any_rank_is_due(w);
+  return marking_is_due(w) || margin_is_used(w);
+}
+
+void find_couples(World& w) {
+  migrate(w);
+  const StageTime timed(w.exec, "contact_detection");
+  const bool joints_changed = marking_is_due(w);
+  if (joints_changed) mark_opened(w);
+  together_or_not(w.domain.ranks, [&w] { search(w); });
   if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, w.reach.triangle);
 }
 

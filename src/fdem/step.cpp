@@ -1,10 +1,11 @@
-#include "fdem/world.hpp"
+#include "fdem/ranks.hpp"
 
 namespace breccia::fdem {
 
 void step(World& w) {
   // 1. Newton's second law: velocities and positions of all corners      (Lukas 2014, section 2)
   move_triangles(w);
+  refresh_copies(w);  // on other ranks
 
   // 2. Contact detection, when travel has used the margin up or a joint has opened
   if (couples_are_due(w)) find_couples(w);

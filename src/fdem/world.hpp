@@ -7,6 +7,8 @@
 #include "core/broad_phase.hpp"
 #include "core/device_run.hpp"
 #include "core/energy.hpp"
+#include "core/travel.hpp"
+#include "domain/domain.hpp"
 #include "exec/lanes.hpp"
 #include "exec/timers.hpp"
 #include "fdem/config.hpp"
@@ -49,6 +51,16 @@ struct Ledger {
   ExactSum start_potential;  ///< sum of m g.x at the start  [J/m]
   double start = 0.0;        ///< kinetic and elastic energy at the start  [J/m]
   double largest = 0.0;      ///< largest sum of energies and work seen  [J/m]
+};
+
+/// What a rank knows of the whole mesh besides its part of it.
+struct WholeMesh {
+  Buffer<Index> joint_number;      ///< of the local joints in the whole mesh, ascending
+  std::vector<std::uint8_t> tied;  ///< 1: some corners at this vertex move as one, or did
+  std::vector<LoadedEdge> loaded;  ///< by global id
+  bool bundled = false;            ///< there are such vertices
+  bool absorbs = false;            ///< some edges take waves up
+  bool preset = false;             ///< joints keep an opening at which they were joined
 };
 
 /// Numbers that stay as the case gave them.
@@ -105,6 +117,10 @@ struct World {
   /// an edge between two triangles.
   std::vector<std::uint8_t> open_vertex;
 
+  // Which part of the whole it is.
+  Domain domain;
+  WholeMesh mesh;
+
   // What follows from the state.
   Buffer<Motion> motions;
   Buffer<LoadLaw> load_laws;
@@ -145,7 +161,8 @@ Advanced advance_on_device(World& w, const StopAt& stop);
 
 /// The parts of a step, in its order.
 void move_triangles(World& w);
-bool couples_are_due(const World& w);
+bool couples_are_due(World& w);
+MarginRule margin_rule(const World& w);
 void find_couples(World& w);
 void insert_joints(World& w);
 void joint_forces(World& w);

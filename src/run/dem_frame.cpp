@@ -44,6 +44,12 @@ Frame dem_frame(const dem::World& w) {
   f.point_fields.push_back(std::move(group));
   f.point_fields.push_back(std::move(lost));
   f.point_fields.push_back(std::move(id));
+  if (w.domain.config.show) {
+    FrameField rank{"rank", "-", 1, {}};
+    for (const ElementState& s : e.state.host())
+      rank.values.push_back(static_cast<float>(w.domain.partition.owner(s.position)));
+    f.point_fields.push_back(std::move(rank));
+  }
 
   // Links: kind 0 concrete, 1 steel, 2 interface; state 0 whole, 1 softened or yielded, 2 broken.
   FrameField kind{"kind", "-", 1, {}}, state{"state", "-", 1, {}}, force{"force", "N", 1, {}};

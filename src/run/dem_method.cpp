@@ -1,35 +1,41 @@
 #include "run/dem_method.hpp"
 
 #include "dem/observe.hpp"
+#include "dem/ranks.hpp"
 #include "exec/error.hpp"
+#include "run/shared_world.hpp"
 
 namespace breccia {
 namespace {
 
 class DemMethod final : public Method {
  public:
-  DemMethod(const dem::Config& config, const dem::Model& model, const Exec& exec)
-      : world_(dem::make_world(config, model, exec)),
+  DemMethod(const dem::Config& config, const dem::Model& model, const Exec& exec,
+            Communicator* ranks)
+      : world_([&] { return dem::make_world(config, model, exec); }, ranks, config.domain),
         probes_(config.probes),
         range_(model.interaction_range) {}
 
-  Advanced advance(const StopAt& stop) override { return dem::advance(world_, stop); }
-  std::int64_t steps() const override { return world_.step; }
-  double time() const override { return world_.time; }
-  double time_step() const override { return world_.step > 0 ? world_.last_dt : world_.next_dt; }
+  Advanced advance(const StopAt& stop) override { return world_.advance_to(stop); }
+  std::int64_t steps() const override { return world_.part().step; }
+  double time() const override { return world_.part().time; }
+  double time_step() const override {
+    const dem::World& w = world_.part();
+    return w.step > 0 ? w.last_dt : w.next_dt;
+  }
 
-  EnergyBalance energy() override { return dem::balance(world_); }
+  EnergyBalance energy() override { return dem::balance(world_.whole()); }
   std::vector<double> probes() override {
     std::vector<double> values;
-    for (const ProbeConfig& probe : probes_) values.push_back(dem::probe(world_, probe));
+    for (const ProbeConfig& probe : probes_) values.push_back(dem::probe(world_.whole(), probe));
     return values;
   }
-  std::uint64_t state_hash() override { return dem::state_hash(world_); }
-  void verify() override { dem::verify(world_); }
-  Frame frame() override { return dem_frame(world_); }
+  std::uint64_t state_hash() override { return dem::state_hash(world_.whole()); }
+  void verify() override { dem::verify(world_.whole()); }
+  Frame frame() override { return dem_frame(world_.whole()); }
 
   std::vector<Fact> facts() override {
-    const dem::World& w = world_;
+    const dem::World& w = world_.whole();
     std::vector<Fact> facts;
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     add("model.elements", w.elements.size());
@@ -43,6 +49,7 @@ class DemMethod final : public Method {
     add("model.interaction_range", range_);
     add("searches", static_cast<double>(w.searches));
     add("contacts.candidates", w.contacts.size());
+    world_.add_facts(add);
     const dem::Counts n = dem::count(w);
     add("contacts.touching", n.touching);
     add("fracture.broken_links", n.broken_concrete + n.broken_steel + n.broken_interface);
@@ -55,7 +62,7 @@ class DemMethod final : public Method {
   }
 
   void save(CheckpointWriter& writer) override {
-    dem::World& w = world_;
+    dem::World& w = world_.whole();
     writer.value("step", w.step);
     writer.value("time", w.time);
     writer.value("last_dt", w.last_dt);
@@ -74,7 +81,7 @@ class DemMethod final : public Method {
   }
 
   void load(const CheckpointReader& reader) override {
-    dem::World& w = world_;
+    dem::World& w = world_.whole();
     const Index elements = w.elements.size(), links = w.links();
     w.step = reader.value<std::int64_t>("step");
     w.time = reader.value<double>("time");
@@ -95,18 +102,22 @@ class DemMethod final : public Method {
         w.concrete.size() + w.steel.size() + w.interface.size() != links)
       throw CheckpointError("the checkpoint holds another model than the case builds");
     dem::derive(w);
+    world_.share_again();
   }
 
+  int follow() override { return world_.follow(); }
+  void dismiss(int exit_code) override { world_.dismiss(exit_code); }
+
  private:
-  std::size_t group_count() const {
+  std::size_t group_count() {
     std::size_t groups = 0;
     Buffer<std::int16_t> group;
-    copy_to(group, world_.elements.group);
+    copy_to(group, world_.whole().elements.group);
     for (const std::int16_t g : group.host()) groups = std::max(groups, std::size_t(g) + 1);
     return groups;
   }
 
-  dem::World world_;
+  SharedWorld<dem::World> world_;
   std::vector<ProbeConfig> probes_;
   double range_;
 };
@@ -114,8 +125,8 @@ class DemMethod final : public Method {
 }  // namespace
 
 std::unique_ptr<Method> make_dem_method(const dem::Config& config, const dem::Model& model,
-                                        const Exec& exec) {
-  return std::make_unique<DemMethod>(config, model, exec);
+                                        const Exec& exec, Communicator* ranks) {
+  return std::make_unique<DemMethod>(config, model, exec, ranks);
 }
 
 }  // namespace breccia

@@ -5,6 +5,8 @@
 
 #include "exec/error.hpp"
 #include "fdem/observe.hpp"
+#include "fdem/ranks.hpp"
+#include "run/shared_world.hpp"
 
 namespace breccia {
 namespace {
@@ -31,30 +33,32 @@ void each_loose(fdem::World& w, Visit&& visit) {
 
 class FdemMethod final : public Method {
  public:
-  FdemMethod(const fdem::Config& config, const fdem::Model& model, const Exec& exec)
-      : world_(fdem::make_world(config, model, exec)), probes_(config.probes) {
-    fdem::energies(world_);
-    for (const ProbeConfig& p : probes_) fdem::probe(world_, p);  // refuses what cannot be read
+  FdemMethod(const fdem::Config& config, const fdem::Model& model, const Exec& exec,
+             Communicator* ranks)
+      : probes_(config.probes),
+        world_([&] { return made(config, model, exec); }, ranks, config.domain) {}
+
+  Advanced advance(const StopAt& stop) override { return world_.advance_to(stop); }
+  std::int64_t steps() const override { return world_.part().step; }
+  double time() const override { return world_.part().time; }
+  double time_step() const override {
+    const fdem::World& w = world_.part();
+    return w.step > 0 ? w.last_dt : w.next_dt;
   }
 
-  Advanced advance(const StopAt& stop) override { return fdem::advance(world_, stop); }
-  std::int64_t steps() const override { return world_.step; }
-  double time() const override { return world_.time; }
-  double time_step() const override { return world_.step > 0 ? world_.last_dt : world_.next_dt; }
-
-  std::string step_rule() override { return fdem::ruling_term(world_); }
-  EnergyBalance energy() override { return fdem::energies(world_).balance; }
+  std::string step_rule() override { return fdem::ruling_term(world_.whole()); }
+  EnergyBalance energy() override { return fdem::energies(world_.whole()).balance; }
   std::vector<double> probes() override {
     std::vector<double> values;
-    for (const ProbeConfig& p : probes_) values.push_back(fdem::probe(world_, p));
+    for (const ProbeConfig& p : probes_) values.push_back(fdem::probe(world_.whole(), p));
     return values;
   }
-  std::uint64_t state_hash() override { return fdem::state_hash(world_); }
-  void verify() override { fdem::verify(world_); }
-  Frame frame() override { return fdem_frame(world_); }
+  std::uint64_t state_hash() override { return fdem::state_hash(world_.whole()); }
+  void verify() override { fdem::verify(world_.whole()); }
+  Frame frame() override { return fdem_frame(world_.whole()); }
 
   std::vector<Fact> facts() override {
-    const fdem::World& w = world_;
+    const fdem::World& w = world_.whole();
     std::vector<Fact> facts;
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     add("model.triangles", w.triangles.size());
@@ -65,6 +69,7 @@ class FdemMethod final : public Method {
     add("model.nodes", 3 * w.triangles.size());
     add("searches", static_cast<double>(w.searches));
     add("contacts.candidates", w.couples.size());
+    world_.add_facts(add);
     const std::vector<fdem::Crack> cracks = fdem::cracks(w);
     const auto sliding = std::count_if(cracks.begin(), cracks.end(),
                                        [](const fdem::Crack& c) { return c.mode > 0.5; });
@@ -72,7 +77,7 @@ class FdemMethod final : public Method {
     add("fracture.broken_by_mode.opening",
         static_cast<double>(cracks.size()) - static_cast<double>(sliding));
     add("fracture.broken_by_mode.sliding", static_cast<double>(sliding));
-    const fdem::EnergySplit split = fdem::energies(world_);
+    const fdem::EnergySplit split = fdem::energies(world_.whole());
     add("fracture.energy_by_mode.opening", split.fracture_open);
     add("fracture.energy_by_mode.sliding", split.fracture_slide);
     const fdem::Fragments pieces = fdem::fragments(w);
@@ -88,12 +93,12 @@ class FdemMethod final : public Method {
                  {"time", "x", "y", "length", "mode", "energy"},
                  {"s", "m", "m", "m", "-", "J/m"},
                  {}};
-    for (const fdem::Crack& c : fdem::cracks(world_)) {
+    for (const fdem::Crack& c : fdem::cracks(world_.whole())) {
       const Vec2 middle = 0.5 * (c.begin + c.end);
       cracks.rows.push_back({c.time, middle.x, middle.y, norm(c.end - c.begin), c.mode, c.energy});
     }
     Table pieces{"fragments", {"fragment", "mass", "share"}, {"-", "kg/m", "-"}, {}};
-    const fdem::Fragments all = fdem::fragments(world_);
+    const fdem::Fragments all = fdem::fragments(world_.whole());
     double total = 0.0;
     for (const double m : all.mass) total += m;
     for (std::size_t i = 0; i < all.mass.size(); ++i)
@@ -102,7 +107,7 @@ class FdemMethod final : public Method {
   }
 
   void save(CheckpointWriter& writer) override {
-    fdem::World& w = world_;
+    fdem::World& w = world_.whole();
     writer.value("step", w.step);
     writer.value("time", w.time);
     writer.value("last_dt", w.last_dt);
@@ -117,7 +122,7 @@ class FdemMethod final : public Method {
   }
 
   void load(const CheckpointReader& reader) override {
-    fdem::World& w = world_;
+    fdem::World& w = world_.whole();
     const Index triangles = w.triangles.size(), joints = w.joints.size();
     w.step = reader.value<std::int64_t>("step");
     w.time = reader.value<double>("time");
@@ -133,18 +138,29 @@ class FdemMethod final : public Method {
     if (w.triangles.size() != triangles || w.joints.size() != joints)
       throw CheckpointError("the checkpoint holds another model than the case builds");
     fdem::derive(w);
+    world_.share_again();
   }
 
+  int follow() override { return world_.follow(); }
+  void dismiss(int exit_code) override { world_.dismiss(exit_code); }
+
  private:
-  fdem::World world_;
+  static fdem::World made(const fdem::Config& config, const fdem::Model& model, const Exec& exec) {
+    fdem::World w = fdem::make_world(config, model, exec);
+    fdem::energies(w);
+    for (const ProbeConfig& p : config.probes) fdem::probe(w, p);  // refuses what cannot be read
+    return w;
+  }
+
   std::vector<ProbeConfig> probes_;
+  SharedWorld<fdem::World> world_;
 };
 
 }  // namespace
 
 std::unique_ptr<Method> make_fdem_method(const fdem::Config& config, const fdem::Model& model,
-                                         const Exec& exec) {
-  return std::make_unique<FdemMethod>(config, model, exec);
+                                         const Exec& exec, Communicator* ranks) {
+  return std::make_unique<FdemMethod>(config, model, exec, ranks);
 }
 
 Frame fdem_frame(const fdem::World& w) {
@@ -185,6 +201,12 @@ Frame fdem_frame(const fdem::World& w) {
                              static_cast<double>(pieces.of[k])};
     for (std::size_t q = 0; q < f.triangle_fields.size(); ++q)
       f.triangle_fields[q].values.push_back(static_cast<float>(values[q]));
+  }
+  if (w.domain.config.show) {
+    FrameField rank{"rank", "-", 1, {}};
+    for (const fdem::TriangleNodes& nodes : t.nodes.host())
+      rank.values.push_back(static_cast<float>(w.domain.partition.owner(fdem::centroid(nodes))));
+    f.triangle_fields.push_back(std::move(rank));
   }
 
   FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, time{"time", "s", 1, {}};

@@ -4,6 +4,8 @@
 
 #include <fstream>
 
+#include "domain/mpi_ranks.hpp"
+
 namespace breccia {
 
 std::string processor_name() {
@@ -33,7 +35,7 @@ const Build& this_build() {
 #else
   constexpr bool cuda = false;
 #endif
-  static const Build build{BR_VERSION, BR_COMMIT, BR_BUILD_TYPE, compiler, cuda, false};
+  static const Build build{BR_VERSION, BR_COMMIT, BR_BUILD_TYPE, compiler, cuda, built_with_mpi()};
   return build;
 }
 

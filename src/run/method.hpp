@@ -60,6 +60,11 @@ class Method {
   /// Everything the run needs to go on, to and from a checkpoint.
   virtual void save(CheckpointWriter& writer) = 0;
   virtual void load(const CheckpointReader& reader) = 0;
+
+  /// On ranks other than 0: does what rank 0 commands until it ends; returns its exit code.
+  virtual int follow() { return 0; }
+  /// On rank 0, at the end: the others end with this exit code.
+  virtual void dismiss(int /*exit_code*/) {}
 };
 
 }  // namespace breccia

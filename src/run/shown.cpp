@@ -93,6 +93,7 @@ void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
 void check_shown(const dem::Config& config) {
   dem::Config one;
   one.materials.emplace_back();
+  one.domain.show = config.domain.show;
   dem::Model model;  // one element a body
   for (const dem::BodyConfig& body : config.bodies) {
     model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
@@ -110,6 +111,7 @@ void check_shown(const dem::Config& config) {
 void check_shown(const fdem::Config& config) {
   fdem::Config one;
   one.materials.emplace_back();
+  one.domain.show = config.domain.show;
   fdem::Model model;  // one triangle a body
   for (const fdem::BodyConfig& body : config.bodies) {
     const auto first = static_cast<Index>(model.point.size());

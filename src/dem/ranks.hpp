@@ -1,0 +1,32 @@
+#pragma once
+// A world shared out among ranks: owner computes (docs/theory-domain.md).
+//
+// Each rank's World holds the elements that it owns and copies of all others that these may touch
+// or are linked with, in ascending order of their global ids, so that every sum keeps its order.
+// Links and contacts with an owned end are evaluated on each rank that owns one of their elements,
+// with equal history; each rank sums for its own elements.
+
+#include "dem/world.hpp"
+
+namespace breccia::dem {
+
+/// Makes a rank's part of a world. Every rank calls it with the world that the case builds; rank
+/// 0's state is shared out, the others' is dropped.
+World share_out(const World& whole, Communicator& ranks, const DomainConfig& config);
+
+/// Shares elements out anew, if some have left the buffer since it was done last, with all that
+/// they own: links, contacts and their history (Lukas 2014, 3.5); first moves the borders if loads
+/// have become uneven (section 4). Only before a search, which finds the contacts of new copies.
+void migrate(World& w);
+
+/// After the elements have moved: copies follow their owners.
+void refresh_copies(World& w);
+
+/// Brings the state of all ranks together in `whole` on rank 0; it may lack contact lists and sums,
+/// which the observers do not read. Every rank calls it.
+void collect(World& part, World& whole);
+
+/// Gives up a world's state and keeps what follows from the case.
+void drop_state(World& w);
+
+}  // namespace breccia::dem

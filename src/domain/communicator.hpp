@@ -1,0 +1,68 @@
+#pragma once
+// What ranks say to each other: the one interface that all messages pass through.
+//
+// Every rank calls the same operations in the same order. Results are listed by rank and combined
+// in that order, or by operations whose order cannot matter, so that no result depends on when a
+// message arrives.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace breccia {
+
+/// The bytes that one rank sends to another.
+using Message = std::vector<std::byte>;
+
+/// Memory of a rank and the other rank that it goes to, or comes from.
+struct Post {
+  int rank;
+  void* data;
+  std::size_t bytes;
+};
+
+class Communicator {
+ public:
+  Communicator() = default;
+  Communicator(const Communicator&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+  virtual ~Communicator() = default;
+
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
+
+  /// Starts messages of known size to and from other ranks; their memory stays untouched until
+  /// finish(). Every rank calls it, if only with empty lists.
+  virtual void start(std::span<const Post> to, std::span<const Post> from) = 0;
+  virtual void finish() = 0;
+
+  /// Message r goes to rank r, the one for this rank itself included; returns what came, by rank.
+  virtual std::vector<Message> exchange(std::vector<Message> messages) = 0;
+
+  /// The least of all ranks' values.
+  virtual double least(double value);
+  /// The bits that are set on some rank.
+  virtual std::uint64_t any_of(std::uint64_t bits);
+  /// Each number becomes the sum of all ranks' numbers.
+  virtual void add_up(std::span<std::int64_t> numbers);
+  /// Every rank gets the message of rank 0.
+  virtual Message from_first(Message message);
+
+  /// Every rank gets every rank's message, by rank.
+  std::vector<Message> from_all(const Message& message);
+
+  /// Whether all ranks are at the same point of the program: what happens on one happens on all.
+  /// Not so while a rank does something that only it may fail at.
+  bool in_step() const { return in_step_; }
+  void set_in_step(bool in_step) { in_step_ = in_step; }
+
+  /// Ends all ranks with this exit code, at once: when some of them can no longer be reached
+  /// otherwise. Does not return where ranks are processes.
+  virtual void abort(int exit_code) = 0;
+
+ private:
+  bool in_step_ = true;
+};
+
+}  // namespace breccia

@@ -1,0 +1,161 @@
+#pragma once
+// Sending items of a state to other ranks: whatever its each_field lists goes along.
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "core/pair_list.hpp"
+#include "domain/communicator.hpp"
+
+namespace breccia {
+
+/// The items that go to each rank.
+class Deliveries {
+ public:
+  explicit Deliveries(int ranks) : to_(static_cast<std::size_t>(ranks)) {}
+
+  void add(int rank, Index item) {
+    std::vector<Index>& items = to_[static_cast<std::size_t>(rank)];
+    if (items.empty() || items.back() != item) items.push_back(item);
+  }
+  /// Each item once for each rank, ascending.
+  void settle() {
+    for (std::vector<Index>& items : to_) {
+      std::sort(items.begin(), items.end());
+      items.erase(std::unique(items.begin(), items.end()), items.end());
+    }
+  }
+  const std::vector<Index>& of(std::size_t rank) const { return to_[rank]; }
+
+ private:
+  std::vector<std::vector<Index>> to_;
+};
+
+/// Several states with one item each for the same things.
+template <class... States>
+struct Together {
+  std::tuple<States&...> states;
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    std::apply([&](auto&... state) { (state.each_field(field), ...); }, states);
+  }
+};
+template <class... States>
+Together<States...> together(States&... states) {
+  return {{states...}};
+}
+
+/// One array as a state.
+template <class T>
+struct OneField {
+  Buffer<T>& array;
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("", "-", array);
+  }
+};
+template <class T>
+OneField<T> one_field(Buffer<T>& array) {
+  return {array};
+}
+
+namespace deal_detail {
+
+template <class T>
+void put(Message& message, const Buffer<T>& array, const std::vector<Index>& items) {
+  const std::size_t before = message.size();
+  message.resize(before + items.size() * sizeof(T));
+  std::byte* to = message.data() + before;
+  for (const Index i : items) {
+    std::memcpy(to, array.data() + i, sizeof(T));
+    to += sizeof(T);
+  }
+}
+inline void put(Message& message, const Vec3Planes& planes, const std::vector<Index>& items) {
+  std::vector<Index> each(items);
+  for (int plane = 0; plane < 3; ++plane) {
+    put(message, planes.items(), each);
+    for (Index& i : each) i += planes.size();
+  }
+}
+
+template <class T>
+const std::byte* take(const std::byte* from, Buffer<T>& array, Index first, Index count) {
+  const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(T);
+  if (bytes > 0) std::memcpy(array.data() + first, from, bytes);
+  return from + bytes;
+}
+inline const std::byte* take(const std::byte* from, Vec3Planes& planes, Index first, Index count) {
+  for (int plane = 0; plane < 3; ++plane)
+    from = take(from, planes.items(), plane * planes.size() + first, count);
+  return from;
+}
+
+}  // namespace deal_detail
+
+/// Each rank's items go to the ranks that `to` lists; the state then holds what came, by rank.
+/// Its arrays lie on the host, and every one has an item for each index that `to` names.
+template <class State>
+void deal(Communicator& ranks, State&& state, const Deliveries& to) {
+  std::vector<Message> messages(static_cast<std::size_t>(ranks.size()));
+  for (std::size_t r = 0; r < messages.size(); ++r) {
+    const auto count = static_cast<Index>(to.of(r).size());
+    messages[r].resize(sizeof count);
+    std::memcpy(messages[r].data(), &count, sizeof count);
+    if (count == 0) continue;
+    state.each_field([&](const char*, const char*, auto& array) {
+      BR_ASSERT(array.space() == Space::host);
+      deal_detail::put(messages[r], array, to.of(r));
+    });
+  }
+  const std::vector<Message> came = ranks.exchange(std::move(messages));
+  std::vector<Index> counts;
+  Index total = 0;
+  for (const Message& message : came) {
+    counts.push_back(0);
+    std::memcpy(&counts.back(), message.data(), sizeof(Index));
+    total += counts.back();
+  }
+  resize_fields(state, total);
+  Index first = 0;
+  for (std::size_t r = 0; r < came.size(); ++r) {
+    const std::byte* from = came[r].data() + sizeof(Index);
+    state.each_field([&](const char*, const char*, auto& array) {
+      from = deal_detail::take(from, array, first, counts[r]);
+    });
+    first += counts[r];
+  }
+}
+
+/// Puts the items of a state in ascending order of one of its arrays, whose numbers are unlike.
+template <class State, class T>
+void sort_by(State&& state, const Buffer<T>& keys) {
+  Buffer<Index> order(Space::host, keys.size());
+  std::iota(order.host().begin(), order.host().end(), 0);
+  const T* const key = keys.data();
+  if (std::is_sorted(key, key + keys.size())) return;
+  std::sort(order.host().begin(), order.host().end(),
+            [key](Index a, Index b) { return key[a] < key[b]; });
+  gather_fields(Exec{}, order, state);
+}
+
+/// The place of a number in an ascending array that holds it.
+inline Index place_of(const Buffer<Index>& sorted, Index number) {
+  const Index* const begin = sorted.data();
+  const Index* const found = std::lower_bound(begin, begin + sorted.size(), number);
+  BR_ASSERT(found != begin + sorted.size() && *found == number);
+  return static_cast<Index>(found - begin);
+}
+/// The same, or -1 if it does not.
+inline Index find_place(const Buffer<Index>& sorted, Index number) {
+  const Index* const begin = sorted.data();
+  const Index* const found = std::lower_bound(begin, begin + sorted.size(), number);
+  return found != begin + sorted.size() && *found == number ? static_cast<Index>(found - begin)
+                                                            : -1;
+}
+
+}  // namespace breccia

@@ -1,0 +1,80 @@
+#pragma once
+// A rank's share of a model: what it owns, what it holds copies of, and what it asks the others.
+
+#include <functional>
+#include <string>
+
+#include "core/case_config.hpp"
+#include "domain/halo.hpp"
+#include "domain/partition.hpp"
+
+namespace breccia {
+
+/// How a rank fared: for scaling tables.
+struct DomainCounts {
+  std::int64_t migrations = 0;  ///< times that elements were shared out anew
+  std::int64_t cuts = 0;        ///< of them with new borders
+  std::int64_t moved = 0;       ///< elements that came to this rank from another owner
+  std::int64_t copies = 0;      ///< elements of others that it holds now
+  std::int64_t owned = 0;       ///< elements of its own, now
+  std::int64_t load = 0;        ///< when they were shared out last  [-]
+};
+/// The same of all ranks together.
+struct DomainFacts {
+  int ranks = 1;
+  std::int64_t migrations = 0, cuts = 0, moved = 0;
+  double copies = 0.0;     ///< over all elements  [-]
+  double imbalance = 0.0;  ///< largest load over the mean, less one  [-]
+};
+DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own);
+
+/// Which elements a rank owns, as kernels see it.
+struct OwnedView {
+  View<const std::uint8_t> owned;  ///< none: all of them
+  BR_HD bool operator()(Index element) const { return owned.size == 0 || owned[element] != 0; }
+};
+
+/// The decomposition as a method sees it. A world on one rank has none: it is alone, owns all, and
+/// every question is answered by its own numbers.
+struct Domain {
+  Communicator* ranks = nullptr;  ///< null: alone
+  DomainConfig config;
+  Partition partition;
+  double buffer = 0.0;         ///< how far an element goes before they are shared out anew  [m]
+  double margin = 0.0;         ///< largest of the search that copies are held for  [m]
+  Buffer<std::uint8_t> owned;  ///< 1: this rank owns the element; empty when alone
+  Halo halo;
+  std::vector<Vec3> placed;  ///< where each stood when they were shared out last  [m]
+  DomainCounts counts;
+
+  bool alone() const { return ranks == nullptr; }
+  bool owns(Index element) const { return alone() || owned.data()[element] != 0; }
+
+  OwnedView owned_view() const { return {owned.view()}; }
+
+  double least(double value) const { return alone() ? value : ranks->least(value); }
+  std::uint64_t any_of(std::uint64_t bits) const { return alone() ? bits : ranks->any_of(bits); }
+  bool any(bool one) const { return any_of(one ? 1 : 0) != 0; }
+
+  /// Copies of other ranks' items become what their owners have.
+  template <class T>
+  void refresh(Buffer<T>& items) {
+    if (!alone()) halo.refresh(*ranks, items);
+  }
+};
+
+/// Every rank gets the value that rank 0 has.
+template <class T>
+void take_from_first(Communicator& ranks, T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  Message message(sizeof value);
+  std::memcpy(message.data(), &value, sizeof value);
+  message = ranks.from_first(std::move(message));
+  std::memcpy(&value, message.data(), sizeof value);
+}
+
+/// Does something on every rank that may fail on some. If it does, all ranks throw the error of the
+/// lowest one that failed, so that none waits for another for ever.
+void together_or_not(Communicator* ranks, const std::function<void()>& work);
+
+}  // namespace breccia

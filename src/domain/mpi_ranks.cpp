@@ -1,0 +1,186 @@
+#include "domain/mpi_ranks.hpp"
+
+#if defined(BR_MPI)
+#define OMPI_SKIP_MPICXX 1  // the C++ interface that MPI has given up
+#define MPICH_SKIP_MPICXX 1
+#include <mpi.h>
+#endif
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+
+#if defined(BR_MPI)
+namespace {
+
+/// @throws DeviceError naming the call that failed
+void must(int code, const char* call) {
+  if (code == MPI_SUCCESS) return;
+  char text[MPI_MAX_ERROR_STRING] = "";
+  int length = 0;
+  MPI_Error_string(code, text, &length);
+  throw DeviceError(std::string(call) + ": " + text);
+}
+
+class MpiRanks final : public Communicator {
+ public:
+  MpiRanks() {
+    // Ranks that wait let others have the processor, unless the user has chosen: on a machine that
+    // is shared a rank that spins keeps the one that it waits for from running. Open MPI only.
+    ::setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
+    int provided = 0;
+    must(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+    must(MPI_Comm_dup(MPI_COMM_WORLD, &all_), "MPI_Comm_dup");
+    must(MPI_Comm_set_errhandler(all_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+    must(MPI_Comm_rank(all_, &rank_), "MPI_Comm_rank");
+    must(MPI_Comm_size(all_, &size_), "MPI_Comm_size");
+    MPI_Comm here = MPI_COMM_NULL;
+    must(MPI_Comm_split_type(all_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here),
+         "MPI_Comm_split_type");
+    must(MPI_Comm_size(here, &here_), "MPI_Comm_size");
+    MPI_Comm_free(&here);
+  }
+  ~MpiRanks() override {
+    MPI_Comm_free(&all_);
+    MPI_Finalize();
+  }
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+  int on_this_machine() const { return here_; }
+
+  void start(std::span<const Post> to, std::span<const Post> from) override {
+    requests_.clear();
+    for (const Post& post : from) receive(post);
+    for (const Post& post : to) send(post);
+  }
+  void finish() override {
+    must(MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE),
+         "MPI_Waitall");
+    requests_.clear();
+  }
+
+  std::vector<Message> exchange(std::vector<Message> messages) override {
+    const auto count = static_cast<std::size_t>(size_);
+    std::vector<std::int64_t> sent(count), coming(count);
+    for (std::size_t r = 0; r < count; ++r) sent[r] = static_cast<std::int64_t>(messages[r].size());
+    must(MPI_Alltoall(sent.data(), 1, MPI_INT64_T, coming.data(), 1, MPI_INT64_T, all_),
+         "MPI_Alltoall");
+    std::vector<Message> came(count);
+    requests_.clear();
+    for (std::size_t r = 0; r < count; ++r) {
+      if (static_cast<int>(r) == rank_) continue;
+      came[r].resize(static_cast<std::size_t>(coming[r]));
+      receive({static_cast<int>(r), came[r].data(), came[r].size()});
+    }
+    for (std::size_t r = 0; r < count; ++r)
+      if (static_cast<int>(r) != rank_)
+        send({static_cast<int>(r), messages[r].data(), messages[r].size()});
+    finish();
+    came[static_cast<std::size_t>(rank_)] = std::move(messages[static_cast<std::size_t>(rank_)]);
+    return came;
+  }
+
+  double least(double value) override {
+    double result = value;
+    must(MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, MPI_MIN, all_), "MPI_Allreduce");
+    return result;
+  }
+  std::uint64_t any_of(std::uint64_t bits) override {
+    std::uint64_t result = bits;
+    must(MPI_Allreduce(&bits, &result, 1, MPI_UINT64_T, MPI_BOR, all_), "MPI_Allreduce");
+    return result;
+  }
+  void add_up(std::span<std::int64_t> numbers) override {
+    must(MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_INT64_T,
+                       MPI_SUM, all_),
+         "MPI_Allreduce");
+  }
+  Message from_first(Message message) override {
+    auto bytes = static_cast<std::int64_t>(message.size());
+    must(MPI_Bcast(&bytes, 1, MPI_INT64_T, 0, all_), "MPI_Bcast");
+    message.resize(static_cast<std::size_t>(bytes));
+    must(MPI_Bcast(message.data(), static_cast<int>(bytes), MPI_BYTE, 0, all_), "MPI_Bcast");
+    return message;
+  }
+  void abort(int exit_code) override { MPI_Abort(MPI_COMM_WORLD, exit_code); }
+
+ private:
+  static constexpr int tag = 1;
+  /// MPI counts in int: longer messages go in parts.
+  static constexpr std::size_t longest = std::size_t{1} << 30;
+
+  void receive(const Post& post) {
+    each_part(post, [&](void* data, int bytes) {
+      must(MPI_Irecv(data, bytes, MPI_BYTE, post.rank, tag, all_, &requests_.emplace_back()),
+           "MPI_Irecv");
+    });
+  }
+  void send(const Post& post) {
+    each_part(post, [&](void* data, int bytes) {
+      must(MPI_Isend(data, bytes, MPI_BYTE, post.rank, tag, all_, &requests_.emplace_back()),
+           "MPI_Isend");
+    });
+  }
+  /// Messages between two ranks do not overtake each other, so parts arrive in their order.
+  template <class Visit>
+  static void each_part(const Post& post, const Visit& visit) {
+    for (std::size_t done = 0; done < post.bytes; done += longest)
+      visit(static_cast<std::byte*>(post.data) + done,
+            static_cast<int>(std::min(longest, post.bytes - done)));
+  }
+
+  MPI_Comm all_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1, here_ = 1;
+  std::vector<MPI_Request> requests_;
+};
+
+/// Whether a launcher has started this process: of Open MPI, MPICH, or a cluster's own.
+bool launched() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS", "PMIX_RANK"})
+    if (std::getenv(name) != nullptr) return true;
+  return false;
+}
+
+}  // namespace
+
+bool built_with_mpi() {
+  return true;
+}
+std::unique_ptr<Communicator> launched_ranks() {
+  if (!launched()) return nullptr;
+  auto ranks = std::make_unique<MpiRanks>();
+  return ranks;
+}
+int ranks_on_this_machine(Communicator* ranks) {
+  const auto* mpi = dynamic_cast<const MpiRanks*>(ranks);
+  return mpi == nullptr ? 1 : mpi->on_this_machine();
+}
+
+#else
+
+bool built_with_mpi() {
+  return false;
+}
+std::unique_ptr<Communicator> launched_ranks() {
+  // Every rank would run the whole case and fight for the same folder.
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    const char* const size = std::getenv(name);
+    if (size != nullptr && std::string(size) != "1")
+      throw DeviceError(
+          "started on several ranks, but this build of breccia has no MPI; nothing was run\n"
+          "  install libopenmpi-dev or libmpich-dev and build again");
+  }
+  return nullptr;
+}
+int ranks_on_this_machine(Communicator*) {
+  return 1;
+}
+
+#endif
+
+}  // namespace breccia

@@ -1,0 +1,138 @@
+#include "domain/simulated_ranks.hpp"
+
+#include <condition_variable>
+#include <cstring>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <tuple>
+
+#include "core/state_hash.hpp"
+
+namespace breccia {
+namespace {
+
+struct RanksLost : std::runtime_error {
+  RanksLost() : std::runtime_error("another simulated rank has failed") {}
+};
+
+/// Carries the messages: they lie in flight until someone who waits lets a random one arrive.
+class Carrier {
+ public:
+  explicit Carrier(std::uint64_t seed) : random_(seed) {}
+
+  using Address = std::tuple<int, int, std::int64_t>;  // from, to, number of the operation
+
+  void post(const Address& address, Message message) {
+    const std::lock_guard lock(mutex_);
+    in_flight_.emplace_back(address, std::move(message));
+    changed_.notify_all();
+  }
+  Message wait_for(const Address& address) {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      const auto found = arrived_.find(address);
+      if (found != arrived_.end()) {
+        Message message = std::move(found->second);
+        arrived_.erase(found);
+        return message;
+      }
+      if (failed_) throw RanksLost();
+      if (in_flight_.empty())
+        changed_.wait(lock);
+      else
+        deliver_one();
+    }
+  }
+  void fail() {
+    const std::lock_guard lock(mutex_);
+    failed_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  void deliver_one() {
+    random_ += 0x9e3779b97f4a7c15ULL;
+    const std::size_t i = mixed(random_) % in_flight_.size();
+    arrived_.insert(std::move(in_flight_[i]));
+    in_flight_[i] = std::move(in_flight_.back());
+    in_flight_.pop_back();
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::pair<Address, Message>> in_flight_;
+  std::map<Address, Message> arrived_;
+  std::uint64_t random_;
+  bool failed_ = false;
+};
+
+class SimulatedRank final : public Communicator {
+ public:
+  SimulatedRank(Carrier& carrier, int rank, int size)
+      : carrier_(carrier), rank_(rank), size_(size) {}
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+
+  void start(std::span<const Post> to, std::span<const Post> from) override {
+    ++operation_;
+    for (const Post& post : to) {
+      const auto* bytes = static_cast<const std::byte*>(post.data);
+      carrier_.post({rank_, post.rank, operation_}, Message(bytes, bytes + post.bytes));
+    }
+    awaited_.assign(from.begin(), from.end());
+  }
+  void finish() override {
+    for (const Post& post : awaited_) {
+      const Message message = carrier_.wait_for({post.rank, rank_, operation_});
+      if (message.size() != post.bytes)
+        throw std::logic_error("a message has another size than its receiver expects");
+      if (post.bytes > 0) std::memcpy(post.data, message.data(), post.bytes);
+    }
+    awaited_.clear();
+  }
+  std::vector<Message> exchange(std::vector<Message> messages) override {
+    ++operation_;
+    for (int r = 0; r < size_; ++r)
+      carrier_.post({rank_, r, operation_}, std::move(messages[static_cast<std::size_t>(r)]));
+    std::vector<Message> came;
+    for (int r = 0; r < size_; ++r) came.push_back(carrier_.wait_for({r, rank_, operation_}));
+    return came;
+  }
+  void abort(int) override { throw std::runtime_error("a simulated rank ends all"); }
+
+ private:
+  Carrier& carrier_;
+  int rank_, size_;
+  std::int64_t operation_ = 0;
+  std::vector<Post> awaited_;
+};
+
+}  // namespace
+
+void simulate_ranks(int count, std::uint64_t seed,
+                    const std::function<void(Communicator&)>& rank_main) {
+  Carrier carrier(seed);
+  std::exception_ptr first;
+  std::mutex mutex;
+  std::vector<std::thread> threads;
+  for (int r = 0; r < count; ++r)
+    threads.emplace_back([&, r] {
+      SimulatedRank rank(carrier, r, count);
+      try {
+        rank_main(rank);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!first) first = std::current_exception();
+        carrier.fail();
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  if (first) std::rethrow_exception(first);
+}
+
+}  // namespace breccia

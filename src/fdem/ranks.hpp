@@ -1,0 +1,35 @@
+#pragma once
+// A mesh shared out among ranks: owner computes (docs/theory-domain.md).
+//
+// Each rank's World holds the triangles whose centroids it owns and copies of all others that these
+// may touch, are joined with, or move with as one, in ascending order of their global ids, so that
+// every sum keeps its order. Joints and couples with an owned triangle are evaluated on each rank
+// that owns one of theirs, with equal history. Vertices keep their numbers in the whole mesh.
+
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+
+/// Makes a rank's part of a world. Every rank calls it with the world that the case builds; rank
+/// 0's state is shared out, the others' is dropped. Notes in `whole` what is told of it all.
+World share_out(World& whole, Communicator& ranks, const DomainConfig& config);
+
+/// Shares triangles out anew, if some have left the buffer since it was done last, with all that
+/// they own (Lukas 2014, 3.5); first moves the borders if loads have become uneven (section 4).
+/// Only before a search, which finds the couples of new copies.
+void migrate(World& w);
+
+/// After the triangles have moved: copies follow their owners.
+void refresh_copies(World& w);
+
+/// Brings the state of all ranks together in `whole` on rank 0; it may lack couple lists and sums,
+/// which the observers do not read. Every rank calls it.
+void collect(World& part, World& whole);
+
+/// Where a triangle counts as being.  [m]
+Vec3 centroid(const TriangleNodes& nodes);
+
+/// Gives up a world's state and keeps what follows from the case.
+void drop_state(World& w);
+
+}  // namespace breccia::fdem

@@ -1,0 +1,163 @@
+#pragma once
+// A world that a run steps and observes, on one rank or shared out among many.
+//
+// Rank 0 leads: it alone runs the outer loop, and tells the others what to do with it. What is
+// observed or saved is brought together on it first, so that everything a run writes comes from one
+// whole world, in the same bytes for any number of ranks.
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <optional>
+
+#include "core/step_clock.hpp"
+#include "domain/domain.hpp"
+#include "exec/error.hpp"
+
+namespace breccia {
+
+/// @tparam World  with advance, share_out and collect beside it
+template <class World>
+class SharedWorld {
+ public:
+  /// @param make   builds the whole world; may fail
+  /// @param ranks  null: alone. Otherwise every rank makes one of these from the same case.
+  template <class Make>
+  SharedWorld(const Make& make, Communicator* ranks, const DomainConfig& config)
+      : ranks_(ranks), config_(config), whole_(made(make, ranks)) {
+    whole_.domain.config = config;  // frames read it
+    if (ranks_ != nullptr) at_once([&] { share(); });
+  }
+
+  /// The world that steps: a rank's part of it.
+  const World& part() const { return part_ ? *part_ : whole_; }
+  /// All of it, as of now. Rank 0 only.
+  World& whole() {
+    if (ranks_ != nullptr && stale_) {
+      command(Command::collect);
+      at_once([&] { bring_together(); });
+      stale_ = false;
+    }
+    return whole_;
+  }
+  /// How the ranks fare, as of the last look at the whole; nothing to tell of one.
+  template <class Add>
+  void add_facts(const Add& add) const {
+    if (ranks_ == nullptr) return;
+    add("domain.sharings", static_cast<double>(facts_.migrations));
+    add("domain.cuts", static_cast<double>(facts_.cuts));
+    add("domain.moved", static_cast<double>(facts_.moved));
+    add("domain.copies", facts_.copies);
+    add("domain.imbalance", facts_.imbalance);
+  }
+
+  /// On the host of several ranks a few steps at a time: what they are told costs a message.
+  Advanced advance_to(StopAt stop) {
+    if (ranks_ == nullptr) return advance(whole_, stop);
+    constexpr double attention = 0.02;  // time between two looks at signals and progress  [s]
+    const auto begin = std::chrono::steady_clock::now();
+    stop.step = std::min(stop.step, part_->step + steps_at_once_);
+    command(Command::advance, &stop);
+    stale_ = true;
+    Advanced taken;
+    at_once([&] { taken = advance_part(stop); });
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    if (spent.count() < 0.5 * attention)
+      steps_at_once_ = std::min<std::int64_t>(2 * steps_at_once_, 1000);
+    if (spent.count() > attention) steps_at_once_ = std::max<std::int64_t>(steps_at_once_ / 2, 1);
+    return taken;
+  }
+  /// After the whole world has got another state: the others get their parts of it.
+  void share_again() {
+    command(Command::share);
+    if (ranks_ != nullptr) at_once([&] { share(); });
+    stale_ = false;
+  }
+
+  /// Ranks other than 0: does what rank 0 commands. Returns the exit code that it ends with.
+  int follow() {
+    while (true) {
+      const Message message = ranks_->from_first({});
+      const auto command = static_cast<Command>(message.at(0));
+      if (command == Command::stop) return static_cast<int>(message.at(1));
+      try {
+        at_once([&] {
+          if (command == Command::advance) {
+            StopAt stop;
+            std::memcpy(&stop, message.data() + 1, sizeof stop);
+            advance_part(stop);
+          }
+          if (command == Command::collect) bring_together();
+          if (command == Command::share) share();
+        });
+      } catch (const Error&) {
+        // If all ranks have thrown it, rank 0 tells of it and decides what comes next.
+        if (!ranks_->in_step()) throw;
+      }
+    }
+  }
+  /// Rank 0: the others end with this exit code, if they can still be reached.
+  void dismiss(int exit_code) {
+    if (ranks_ == nullptr || !ranks_->in_step()) return;
+    ranks_->from_first({static_cast<std::byte>(Command::stop), static_cast<std::byte>(exit_code)});
+  }
+
+ private:
+  template <class Make>
+  static World made(const Make& make, Communicator* ranks) {
+    std::optional<World> world;
+    together_or_not(ranks, [&] { world.emplace(make()); });
+    return std::move(*world);
+  }
+  /// Work that all ranks do: one that fails alone leaves the others waiting.
+  template <class Work>
+  void at_once(const Work& work) {
+    if (ranks_ == nullptr) return work();
+    ranks_->set_in_step(false);
+    work();
+    ranks_->set_in_step(true);
+  }
+
+  enum class Command : std::uint8_t { advance, collect, share, stop };
+
+  void command(Command command, const StopAt* stop = nullptr) {
+    if (ranks_ == nullptr) return;
+    Message message{static_cast<std::byte>(command)};
+    if (stop != nullptr) {
+      message.resize(1 + sizeof *stop);
+      std::memcpy(message.data() + 1, stop, sizeof *stop);
+    }
+    ranks_->from_first(std::move(message));
+  }
+  Advanced advance_part(const StopAt& stop) {
+    World& w = *part_;
+    Advanced taken;
+    do {
+      const Advanced more = advance(w, stop);
+      taken.dt_min = taken.steps == 0 ? more.dt_min : std::min(taken.dt_min, more.dt_min);
+      taken.dt_max = std::max(taken.dt_max, more.dt_max);
+      taken.steps += more.steps;
+    } while (w.step < stop.step && w.time < stop.time);
+    return taken;
+  }
+  void bring_together() {
+    collect(*part_, whole_);
+    facts_ = domain_facts(*ranks_, part_->domain.counts);
+  }
+  void share() {
+    part_.emplace(share_out(whole_, *ranks_, config_));
+    whole_.domain.partition = part_->domain.partition;
+    facts_ = domain_facts(*ranks_, part_->domain.counts);
+    if (ranks_->rank() != 0) drop_state(whole_);
+  }
+
+  Communicator* ranks_;
+  DomainConfig config_;
+  World whole_;
+  std::optional<World> part_;
+  bool stale_ = false;
+  DomainFacts facts_;
+  std::int64_t steps_at_once_ = 1;
+};
+
+}  // namespace breccia

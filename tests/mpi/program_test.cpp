@@ -1,0 +1,167 @@
+// The program itself on ranks that mpirun starts: same bytes in the result folder, exit codes,
+// ends.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file.good()) << path;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What starts `ranks` ranks, as Open MPI and MPICH understand it.
+std::string mpirun(int ranks) {
+  return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+         "OMPI_MCA_rmaps_base_oversubscribe=1 timeout -k 5 100 " BR_MPIRUN " -n " +
+         std::to_string(ranks) + " ";
+}
+
+/// Runs `breccia ARGUMENTS` on `ranks` ranks (1: without mpirun); returns its exit code.
+int run(int ranks, const std::string& arguments, const std::string& to = "/dev/null") {
+  const std::string command =
+      (ranks > 1 ? mpirun(ranks) : "") + BR_PROGRAM " " + arguments + " > " + to + " 2>&1";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+class ProgramOnRanks : public testing::Test {
+ protected:
+  ProgramOnRanks()
+      : folder_(fs::temp_directory_path() / ("breccia_mpi_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~ProgramOnRanks() override { fs::remove_all(folder_); }
+
+  std::string out(const std::string& name) const { return (folder_ / name).string(); }
+  /// The hash in a run's summary.
+  static std::string hash_in(const std::string& folder) {
+    const std::string text = bytes_of(folder + "/summary.json");
+    const std::size_t at = text.find("\"state_hash\": \"");
+    EXPECT_NE(at, std::string::npos);
+    return at == std::string::npos ? "" : text.substr(at + 15, 16);
+  }
+  /// The bytes of all files in a folder of a run, by name.
+  static std::string files_in(const std::string& folder) {
+    std::map<std::string, std::string> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+      files[entry.path().filename()] = bytes_of(entry.path());
+    std::string all;
+    for (const auto& [name, bytes] : files) all += name + ": " + bytes;
+    EXPECT_FALSE(all.empty()) << folder;
+    return all;
+  }
+
+  /// The same files from one process and from several, and from one that was continued on others.
+  void compare(const std::string& name, int steps, const std::string& history) {
+    const std::string shared = std::string(BR_SOURCE_DIR) + "/cases/" + name +
+                               "/small.toml --threads 1 --no-progress "
+                               "--set output.pictures=false --set output.frames=1 --set "
+                               "checkpoint.keep=1 --set output.history=" +
+                               history + " ";
+    const std::string end = "--steps " + std::to_string(steps) + " ";
+    ASSERT_EQ(run(1, "run " + shared + end + "-o " + out("one")), 0);
+    for (const int ranks : {2, 3, 5}) {
+      const std::string there = out("on_" + std::to_string(ranks));
+      ASSERT_EQ(run(ranks, "run " + shared + end + "-o " + there), 0) << ranks;
+      EXPECT_EQ(hash_in(there), hash_in(out("one"))) << ranks << " ranks";
+      EXPECT_EQ(bytes_of(there + "/history.csv"), bytes_of(out("one") + "/history.csv"));
+      for (const char* files : {"/fields", "/checkpoints"})  // no diff of binary files
+        EXPECT_TRUE(files_in(there + files) == files_in(out("one") + files)) << files << ranks;
+    }
+    const std::string half = "--steps " + std::to_string(steps / 2) + " ";
+    ASSERT_EQ(run(2, "run " + shared + half + "-o " + out("half")), 0);
+    ASSERT_EQ(run(3, "resume " + out("half") + " --threads 1 --no-progress " + end), 0);
+    EXPECT_EQ(hash_in(out("half")), hash_in(out("one")));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ProgramOnRanks, slab_leaves_the_same_files) {
+  compare("rc_slab", 300, "1e-5");
+}
+TEST_F(ProgramOnRanks, disc_leaves_the_same_files) {
+  compare("brazilian_disc", 800, "2e-6");
+}
+TEST_F(ProgramOnRanks, box_leaves_the_same_files) {
+  compare("moving_box", 250, "5e-3");
+}
+
+TEST_F(ProgramOnRanks, a_bad_case_is_told_once_with_exit_code_2) {
+  EXPECT_EQ(
+      run(3, "run " BR_SOURCE_DIR "/cases/rc_slab/small.toml --set time.safty=1 -o " + out("bad"),
+          out("told")),
+      2);
+  const std::string told = bytes_of(out("told"));
+  const std::size_t first = told.find("error: ");
+  EXPECT_NE(first, std::string::npos);
+  EXPECT_EQ(told.find("error: ", first + 1), std::string::npos) << told;
+  EXPECT_FALSE(fs::exists(out("bad")));
+}
+
+TEST_F(ProgramOnRanks, a_folder_that_holds_a_run_is_refused_by_all) {
+  fs::create_directories(out("held"));
+  std::ofstream(out("held") + "/summary.json") << "{}";
+  EXPECT_EQ(run(2, "run " BR_SOURCE_DIR "/cases/rc_slab/small.toml --steps 1 -o " + out("held")),
+            2);
+}
+
+TEST_F(ProgramOnRanks, numbers_that_go_wrong_end_all_with_exit_code_4_and_a_saved_state) {
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(run(3,
+                "run " BR_SOURCE_DIR "/cases/moving_box/small.toml --set time.max_step=0.02 "
+                "--set time.evaluate_every=1000 --set time.safety=1 --set "
+                "'gravity=[1e9,0]' --threads 1 --no-progress --set output.pictures=false -o " +
+                    out("wrong"),
+                out("told")),
+            4)
+      << bytes_of(out("told"));
+  EXPECT_TRUE(fs::exists(out("wrong") + "/crash.br"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
+TEST_F(ProgramOnRanks, a_killed_rank_ends_the_job_within_seconds_and_resume_goes_on) {
+  const std::string shared = BR_SOURCE_DIR
+      "/cases/rc_slab/small.toml --threads 1 --no-progress --set output.frames=0 "
+      "--set checkpoint.steps=100 --set output.history=1 ";
+  // The second rank dies, as if by a fault of its machine, once there is a state to go on from.
+  std::ofstream(out("rank.sh")) << "#!/bin/sh\n"
+                                   "if [ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = 1 ]; then\n"
+                                   "  (while ! ls " +
+                                       out("killed") +
+                                       "/checkpoints/step_*.br; do sleep 0.02; done\n"
+                                       "   date +%s > " +
+                                       out("when") +
+                                       "; kill -9 $$) &\n"
+                                       "fi\n"
+                                       "exec " BR_PROGRAM " \"$@\"\n";
+  fs::permissions(out("rank.sh"), fs::perms::owner_all);
+  const std::string command = mpirun(3) + out("rank.sh") + " run " + shared + "-o " +
+                              out("killed") + " > " + out("told") +
+                              " 2>&1; code=$?; echo $(($(date +%s) - $(cat " + out("when") +
+                              "))) > " + out("took") + "; exit $code";
+  const int status = std::system(command.c_str());
+  EXPECT_NE(WEXITSTATUS(status), 0) << bytes_of(out("told"));
+  EXPECT_NE(WEXITSTATUS(status), 124) << "timed out";
+  EXPECT_LE(std::stoi(bytes_of(out("took"))), 5);
+  const std::string end = "--steps 800 ";
+  ASSERT_EQ(run(2, "resume " + out("killed") + " --threads 1 --no-progress " + end, out("told")), 0)
+      << bytes_of(out("told"));
+  ASSERT_EQ(run(1, "run " + shared + end + "-o " + out("whole")), 0);
+  EXPECT_EQ(hash_in(out("killed")), hash_in(out("whole")));
+}
+
+}  // namespace
+}  // namespace breccia

@@ -1,0 +1,161 @@
+// Messages between ranks, halos, and elements that change hands.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <numeric>
+
+#include "core/state_hash.hpp"
+#include "domain/domain.hpp"
+#include "domain/simulated_ranks.hpp"
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+Message bytes_of(int number) {
+  Message message(sizeof number);
+  std::memcpy(message.data(), &number, sizeof number);
+  return message;
+}
+int number_of(const Message& message) {
+  int number = 0;
+  std::memcpy(&number, message.data(), sizeof number);
+  return number;
+}
+
+TEST(SimulatedRanks, messages_reach_their_rank_and_operation_in_any_order_of_delivery) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed)
+    simulate_ranks(5, seed, [](Communicator& ranks) {
+      for (int round = 0; round < 10; ++round) {
+        std::vector<Message> messages;
+        for (int r = 0; r < 5; ++r)
+          messages.push_back(bytes_of(100 * round + 10 * ranks.rank() + r));
+        const std::vector<Message> came = ranks.exchange(std::move(messages));
+        for (int r = 0; r < 5; ++r)
+          EXPECT_EQ(number_of(came[static_cast<std::size_t>(r)]),
+                    100 * round + 10 * r + ranks.rank());
+      }
+    });
+}
+
+TEST(SimulatedRanks, combine_numbers_of_all) {
+  simulate_ranks(4, 1, [](Communicator& ranks) {
+    EXPECT_EQ(ranks.least(10.0 - ranks.rank()), 7.0);
+    EXPECT_EQ(ranks.any_of(std::uint64_t{1} << ranks.rank()), 15U);
+    std::vector<std::int64_t> numbers{ranks.rank(), 1};
+    ranks.add_up(numbers);
+    EXPECT_EQ(numbers, (std::vector<std::int64_t>{6, 4}));
+    EXPECT_EQ(number_of(ranks.from_first(bytes_of(5 + ranks.rank()))), 5);
+  });
+}
+
+TEST(SimulatedRanks, an_error_on_one_rank_becomes_the_same_error_on_all) {
+  std::atomic<int> refused = 0;
+  simulate_ranks(6, 2, [&](Communicator& ranks) {
+    try {
+      together_or_not(&ranks, [&] {
+        if (ranks.rank() == 3) throw NumericsError("three");
+        if (ranks.rank() == 5) throw InputError("five");
+      });
+    } catch (const NumericsError& error) {
+      EXPECT_STREQ(error.what(), "three");
+      ++refused;
+    }
+    EXPECT_EQ(ranks.any_of(1), 1U);  // all are still in step
+  });
+  EXPECT_EQ(refused, 6);
+}
+
+TEST(SimulatedRanks, a_rank_that_is_lost_does_not_leave_the_others_waiting) {
+  EXPECT_THROW(simulate_ranks(4, 3,
+                              [](Communicator& ranks) {
+                                if (ranks.rank() == 2) throw std::runtime_error("lost");
+                                ranks.any_of(1);
+                              }),
+               std::runtime_error);
+}
+
+/// What wanders about in the test below.
+struct Wanderers {
+  Buffer<GlobalId> id;
+  Buffer<Vec3> place;
+  Vec3Planes memory;
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("id", "-", id);
+    field("place", "m", place);
+    field("memory", "-", memory);
+  }
+};
+
+TEST(Deal, no_element_is_lost_or_doubled_over_a_hundred_thousand_migrations) {
+  constexpr Index count = 500;
+  simulate_ranks(7, 4, [](Communicator& ranks) {
+    Partition partition(7, {}, {1.0, 1.0, 0.0}, 0.05, 2);
+    Wanderers own;
+    if (ranks.rank() == 0) {
+      resize_fields(own, count);
+      std::iota(own.id.host().begin(), own.id.host().end(), 0);
+    }
+    std::uint64_t round = 0;
+    for (std::int64_t moved = 0; moved < 100000; ++round) {
+      std::vector<Load> loads;
+      for (Index i = 0; i < own.id.size(); ++i) {
+        const auto id = static_cast<std::uint64_t>(own.id.data()[i]);
+        const auto random = [&](std::uint64_t k) {
+          return static_cast<double>(mixed(1000003 * id + 7 * round + k) >> 11) * 0x1p-53;
+        };
+        own.place.data()[i] = {random(1), random(2) * random(3), 0.0};
+        own.memory.view().store(i, {static_cast<double>(id), static_cast<double>(round), 0.5});
+        loads.push_back({own.place.data()[i], 1});
+      }
+      if (round % 5 == 0) partition.cut(ranks, loads);
+      Deliveries to(7);
+      std::int64_t left = 0;
+      for (Index i = 0; i < own.id.size(); ++i) {
+        to.add(partition.owner(own.place.data()[i]), i);
+        left += partition.owner(own.place.data()[i]) != ranks.rank() ? 1 : 0;
+      }
+      deal(ranks, own, to);
+      sort_by(own, own.id);
+      std::vector<std::int64_t> seen(count + 1, 0);
+      for (Index i = 0; i < own.id.size(); ++i) {
+        ++seen[static_cast<std::size_t>(own.id.data()[i])];
+        EXPECT_EQ(own.memory.view()[i].x, own.id.data()[i]);
+        EXPECT_EQ(own.memory.view()[i].y, static_cast<double>(round));
+        EXPECT_EQ(partition.owner(own.place.data()[i]), ranks.rank());
+      }
+      seen[count] = left;
+      ranks.add_up(seen);
+      moved += seen[count];
+      for (Index id = 0; id < count; ++id) ASSERT_EQ(seen[static_cast<std::size_t>(id)], 1);
+    }
+  });
+}
+
+TEST(Halo, copies_become_what_their_owners_have) {
+  simulate_ranks(3, 5, [](Communicator& ranks) {
+    // Rank r owns 10 r to 10 r + 9 and holds copies of two of each other rank's.
+    Buffer<GlobalId> ids;
+    std::vector<int> owner;
+    for (int of = 0; of < 3; ++of)
+      for (Index k = 0; k < 10; ++k) {
+        if (of != ranks.rank() && k != ranks.rank() && k != 7) continue;
+        ids.resize(ids.size() + 1);
+        ids.data()[ids.size() - 1] = 10 * of + k;
+        owner.push_back(of);
+      }
+    Halo halo;
+    halo.build(ranks, ids, owner);
+    EXPECT_EQ(halo.copies(), 4);
+    Buffer<double> numbers(Space::host, ids.size());
+    for (Index i = 0; i < ids.size(); ++i)
+      numbers.data()[i] = owner[static_cast<std::size_t>(i)] == ranks.rank() ? ids.data()[i] : -1.0;
+    for (int round = 0; round < 5; ++round) halo.refresh(ranks, numbers);
+    for (Index i = 0; i < ids.size(); ++i) EXPECT_EQ(numbers.data()[i], ids.data()[i]);
+  });
+}
+
+}  // namespace
+}  // namespace breccia
