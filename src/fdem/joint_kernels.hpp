@@ -16,13 +16,17 @@ BR_HD inline bool marking_due(std::uint8_t softened, std::uint8_t broken, std::i
   return broken != 0 || (softened != 0 && step % every == 0);
 }
 
+/// Sets a flag that several items may set.
+BR_HD inline void set_flag(const View<std::uint8_t>& flags, Index flag) {
+#if defined(__CUDA_ARCH__)
+  flags[flag] = 1;
+#else
+  __atomic_store_n(&flags[flag], std::uint8_t{1}, __ATOMIC_RELAXED);
+#endif
+}
 /// Whichever item does it first.
 BR_HD inline void raise(const View<std::uint8_t>& flags, Change change) {
-#if defined(__CUDA_ARCH__)
-  flags[change] = 1;
-#else
-  __atomic_store_n(&flags[change], std::uint8_t{1}, __ATOMIC_RELAXED);
-#endif
+  set_flag(flags, change);
 }
 
 /// Tractions at three points, damage and break of every joint (Lukas 2014, section 2). Joints that

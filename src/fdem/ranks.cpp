@@ -207,6 +207,7 @@ class Journey {
     if (w_.mesh.absorbs) w_.dashpots.resize(count);
     w_.across.resize(at(3 * count));
     w_.vertex.resize(at(3 * count));
+    w_.node_vertex.clear();
     for (Index t = 0; t < count; ++t) {
       const Neighbourhood& n = lies_.data()[t];
       if (w_.mesh.absorbs) w_.dashpots.data()[t] = n.dashpots;
@@ -399,6 +400,7 @@ void drop_state(World& w) {
   w.dashpots.resize(0);
   w.across.clear();
   w.vertex.clear();
+  w.node_vertex.clear();
 }
 
 void refresh_copies(World& w) {

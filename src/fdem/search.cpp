@@ -2,10 +2,10 @@
 // still joined, with the history of those that stay.
 
 #include <algorithm>
-#include <array>
 
-#include "exec/for_each.hpp"
+#include "core/select.hpp"
 #include "fdem/ranks.hpp"
+#include "fdem/search_kernels.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -65,20 +65,29 @@ void share_marks(const World& w, std::vector<std::uint8_t>& vertex) {
     }
 }
 
+/// The mesh where kernels can read it; it changes only where triangles move between ranks.
+OpenVertices open_vertices(World& w) {
+  if (static_cast<std::size_t>(w.node_vertex.size()) != w.vertex.size())
+    copy_to(w.node_vertex, w.vertex);
+  if (static_cast<std::size_t>(w.border_vertex.size()) != w.open_vertex.size())
+    copy_to(w.border_vertex, w.open_vertex);
+  return {w.node_vertex.view(), w.border_vertex.view(), std::as_const(w.opened.vertex).view()};
+}
+
 /// Marks the vertices of damaged joints.
 void mark_opened(World& w) {
-  std::vector<JointStage> stage;
-  std::vector<Index> edge_a;
-  copy_to(stage, w.joints.stage);
-  copy_to(edge_a, w.joints.edge_a);
-  std::vector<std::uint8_t> vertex(w.open_vertex.size(), 0);
-  for (std::size_t i = 0; i < stage.size(); ++i) {
-    if (!is_damaged(stage[i])) continue;
-    for (const Index node : {edge_a[i], JointEnds::next_corner(edge_a[i])})
-      vertex[static_cast<std::size_t>(w.vertex[static_cast<std::size_t>(node)])] = 1;
+  const OpenVertices vertices = open_vertices(w);
+  Buffer<std::uint8_t> marked(w.exec.space, static_cast<Index>(w.open_vertex.size()));
+  for_each(w.exec, w.joints.size(),
+           MarkDamaged{std::as_const(w.joints.stage).view(), w.joints.edge_a.view(),
+                       vertices.vertex_of, marked.view()});
+  if (!w.domain.alone()) {
+    std::vector<std::uint8_t> vertex;
+    copy_to(vertex, marked);
+    share_marks(w, vertex);
+    copy_to(marked, vertex);
   }
-  share_marks(w, vertex);
-  copy_to(w.opened.vertex, vertex);
+  w.opened.vertex.swap(marked);
   copy_to(w.opened.changed, std::vector<std::uint8_t>{0, 0});
 }
 
@@ -90,77 +99,17 @@ bool marking_is_due(const World& w) {
   return marking_due(changed[change_softened], changed[change_broken], w.step);
 }
 
-/// What a search reads of the mesh on the host.
-struct Topology {
-  std::vector<EdgeJoints> edges;
-  std::vector<JointStage> stage;
-  std::vector<std::uint8_t> open;  ///< World::open_vertex, and bit 2: a joint here is damaged
-
-  explicit Topology(const World& w) : open(w.open_vertex) {
-    copy_to(edges, w.edges);
-    copy_to(stage, w.joints.stage);
-    std::vector<std::uint8_t> damaged;
-    copy_to(damaged, w.opened.vertex);
-    for (std::size_t v = 0; v < open.size(); ++v)
-      if (damaged[v] != 0) open[v] |= 4;
-  }
-  static std::size_t vertex(const World& w, Index node) {
-    return static_cast<std::size_t>(w.vertex[static_cast<std::size_t>(node)]);
-  }
-};
-
-/// Triangles with a corner at the border, at an edge that nothing joins, or at a damaged joint.
-std::vector<Index> touchable(const World& w, const Topology& topology) {
-  std::vector<Index> triangles;
-  for (Index t = 0; t < w.triangles.size(); ++t)
-    for (Index k = 0; k < 3; ++k)
-      if (topology.open[Topology::vertex(w, 3 * t + k)] != 0) {
-        triangles.push_back(t);
-        break;
-      }
-  return triangles;
-}
-
-/// Whether a couple can touch. Neighbours across an edge do once nothing joins them; neighbours at
-/// a vertex do once a joint around it is damaged.
-bool may_touch(const World& w, const Topology& topology, Index a, Index b) {
-  int shared = 0, edge = 0;
-  std::uint8_t open = 0;
-  std::array<bool, 3> common{};
-  for (Index k = 0; k < 3; ++k)
-    for (Index m = 0; m < 3; ++m) {
-      const std::size_t v = Topology::vertex(w, 3 * a + k);
-      if (v != Topology::vertex(w, 3 * b + m)) continue;
-      ++shared;
-      open |= topology.open[v];
-      common[static_cast<std::size_t>(k)] = true;
-    }
-  if (shared == 0) return true;
-  if (shared == 1) return (open & 6) != 0;
-  while (
-      !(common[static_cast<std::size_t>(edge)] && common[static_cast<std::size_t>((edge + 1) % 3)]))
-    ++edge;
-  const Index entry = topology.edges[static_cast<std::size_t>(a)].at[edge];
-  if (entry < 0) return entry == edge_free;
-  return topology.stage[static_cast<std::size_t>(pair_of(entry))] == JointStage::broken;
-}
-
 void book_dropped(World& w, const Pairs& found) {
   Buffer<Index> dropped(w.exec.space);
   find_dropped(w.exec, w.couples.pairs.key, found.key, dropped);
   if (dropped.empty()) return;
-  std::vector<Index> places;
-  std::vector<CoupleState> states;
-  std::vector<Index> a;
-  copy_to(places, dropped);
-  copy_to(a, w.couples.pairs.a);
-  copy_to(states, w.couples.history.state);
-  for (const Index place : places) {
-    if (!w.domain.owns(a[static_cast<std::size_t>(place)])) continue;  // the owner of a books it
-    const CoupleState& s = states[static_cast<std::size_t>(place)];
-    w.ledger.rubbed.add(s.rubbed + s.slid);
-    w.ledger.lost.add(s.lost + s.work - s.slid);
-  }
+  const Spent spent =
+      fold(w.exec, dropped.size(), Spent{},
+           SpentBy{std::as_const(dropped).view(), w.couples.pairs.a.view(),
+                   std::as_const(w.couples.history.state).view(), w.domain.owned_view()},
+           Sum{});
+  w.ledger.rubbed.add(spent.rubbed);
+  w.ledger.lost.add(spent.lost);
 }
 
 bool margin_is_used(const World& w) {
@@ -186,10 +135,9 @@ bool any_rank_is_due(World& w) {
 
 /// The couples that may touch until the next search.
 void search(World& w) {
-  const Topology topology(w);
-  const std::vector<Index> triangles = touchable(w, topology);
-  const auto count = static_cast<Index>(triangles.size());
-  copy_to(w.reach.triangle, triangles);
+  const OpenVertices vertices = open_vertices(w);
+  w.reach.triangle = items_where(w.exec, w.triangles.size(), Touchable{vertices});
+  const Index count = w.reach.triangle.size();
   w.reach.reference.resize(count);
   w.reach.margin.resize(count);
   Buffer<Box> boxes(w.exec.space, count);
@@ -202,23 +150,14 @@ void search(World& w) {
   Pairs found(w.exec.space);
   if (count > 0) w.broad_phase.search(w.exec, boxes, ids, found);
 
-  std::vector<PairKey> key, kept_key;
-  std::vector<Index> a, b, kept_a, kept_b;
-  copy_to(key, found.key);
-  copy_to(a, found.a);
-  copy_to(b, found.b);
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    const Index first = triangles[static_cast<std::size_t>(a[i])];
-    const Index second = triangles[static_cast<std::size_t>(b[i])];
-    if (!w.domain.owns(first) && !w.domain.owns(second)) continue;
-    if (!may_touch(w, topology, first, second)) continue;
-    kept_key.push_back(key[i]);
-    kept_a.push_back(first);
-    kept_b.push_back(second);
-  }
-  copy_to(found.key, kept_key);
-  copy_to(found.a, kept_a);
-  copy_to(found.b, kept_b);
+  for_each(w.exec, found.size(),
+           NameTriangles{std::as_const(w.reach.triangle).view(), found.a.view(), found.b.view()});
+  const Buffer<Index> kept =
+      items_where(w.exec, found.size(),
+                  MayTouch{vertices, w.edges.view(), std::as_const(w.joints.stage).view(),
+                           w.domain.owned_view(), std::as_const(found.a).view(),
+                           std::as_const(found.b).view()});
+  gather_fields(w.exec, kept, found);
   book_dropped(w, found);
   w.couples.replace(w.exec, std::move(found));
   derive_couples(w);
@@ -251,28 +190,12 @@ void find_couples(World& w) {
 void derive_couples(World& w) {
   const Pairs& pairs = w.couples.pairs;
   build_incidence(w.exec, pairs.a, pairs.b, w.triangles.id, w.couple_incidence);
-  std::vector<Index> a, b;
-  std::vector<EdgeJoints> edges;
-  std::vector<double> pressing, broke_at;
-  copy_to(a, pairs.a);
-  copy_to(b, pairs.b);
-  copy_to(edges, w.edges);
-  copy_to(pressing, w.joints.pressing);
-  copy_to(broke_at, w.joints.broke_at);
-  // Faces that meet again later begin anew: only a joint that broke in the last step counts.
-  const double lately = w.time - 1.5 * w.last_dt;
-  std::vector<Index> edge_a, edge_b;
-  copy_to(edge_a, w.joints.edge_a);
-  copy_to(edge_b, w.joints.edge_b);
-  std::vector<double> born(a.size(), 0.0);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (const Index entry : edges[static_cast<std::size_t>(a[i])].at) {
-      if (entry < 0) continue;
-      const auto joint = static_cast<std::size_t>(pair_of(entry));
-      const Index other = (side_of(entry) == 0 ? edge_b[joint] : edge_a[joint]) / 3;
-      if (other == b[i] && broke_at[joint] >= lately) born[i] = pressing[joint];
-    }
-  copy_to(w.born, born);
+  w.born.resize(pairs.size());
+  const Joints& j = w.joints;
+  for_each(w.exec, pairs.size(),
+           BornOf{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(), w.edges.view(),
+                  j.edge_a.view(), j.edge_b.view(), j.broke_at.view(), j.pressing.view(),
+                  w.born.view()});
 }
 
 }  // namespace breccia::fdem

@@ -307,8 +307,8 @@ World::World(const Exec& how)
   place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, dashpots, bundles.starts,
         bundles.nodes, bundles.leader, triangles.external, joints.force, joints.preset,
         opened.changed, opened.vertex, edges, joint_ends, motions, load_laws, born, stress,
-        overshoot, reached, amplitudes, amplitude_times, amplitude_factors, prescribed_velocity,
-        reach_place, clock, blocks_done);
+        overshoot, reached, node_vertex, border_vertex, amplitudes, amplitude_times,
+        amplitude_factors, prescribed_velocity, reach_place, clock, blocks_done);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {

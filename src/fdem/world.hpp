@@ -122,6 +122,8 @@ struct World {
   WholeMesh mesh;
 
   // What follows from the state.
+  Buffer<Index> node_vertex;           ///< `vertex`, where kernels can read it
+  Buffer<std::uint8_t> border_vertex;  ///< `open_vertex`, likewise
   Buffer<Motion> motions;
   Buffer<LoadLaw> load_laws;
   Buffer<Sym2> stress;           ///< of each triangle, where joints are extrinsic  [Pa]
