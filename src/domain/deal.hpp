@@ -66,6 +66,14 @@ OneField<T> one_field(Buffer<T>& array) {
 namespace deal_detail {
 
 template <class T>
+std::size_t item_bytes(const Buffer<T>&) {
+  return sizeof(T);
+}
+inline std::size_t item_bytes(const Vec3Planes&) {
+  return 3 * sizeof(double);
+}
+
+template <class T>
 void put(Message& message, const Buffer<T>& array, const std::vector<Index>& items) {
   const std::size_t before = message.size();
   message.resize(before + items.size() * sizeof(T));
@@ -107,6 +115,11 @@ void deal(Communicator& ranks, State&& state, const Deliveries& to) {
     messages[r].resize(sizeof count);
     std::memcpy(messages[r].data(), &count, sizeof count);
     if (count == 0) continue;
+    std::size_t bytes = sizeof count;
+    state.each_field([&](const char*, const char*, auto& array) {
+      bytes += to.of(r).size() * deal_detail::item_bytes(array);
+    });
+    messages[r].reserve(bytes);
     state.each_field([&](const char*, const char*, auto& array) {
       BR_ASSERT(array.space() == Space::host);
       deal_detail::put(messages[r], array, to.of(r));
