@@ -400,7 +400,6 @@ void drop_state(World& w) {
   w.dashpots.resize(0);
   w.across.clear();
   w.vertex.clear();
-  w.node_vertex.clear();
 }
 
 void refresh_copies(World& w) {
