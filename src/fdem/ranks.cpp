@@ -1,7 +1,6 @@
 #include "fdem/ranks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace breccia::fdem {
@@ -95,14 +94,14 @@ class Journey {
     auto lie = one_field(lies_);
     auto external = one_field(t.external);
     triangles_.settle();
+    const auto send_triangles = [&](auto&& state) {
+      deal(*w_.domain.ranks, state, triangles_);
+      sort_by(state, t.id);
+    };
     if (w_.mesh.loaded.empty())
-      deal(*w_.domain.ranks, together(t, lie), triangles_);
+      send_triangles(together(t, lie));
     else
-      deal(*w_.domain.ranks, together(t, lie, external), triangles_);
-    if (w_.mesh.loaded.empty())
-      sort_by(together(t, lie), t.id);
-    else
-      sort_by(together(t, lie, external), t.id);
+      send_triangles(together(t, lie, external));
 
     Joints& j = w_.joints;
     Buffer<Index>& number = w_.mesh.joint_number;
@@ -361,15 +360,12 @@ void take_common(World& w, Communicator& ranks) {
   for (double* time : {&w.time, &w.last_dt, &w.next_dt}) take_from_first(ranks, *time);
   take_from_first(ranks, w.step);
   take_from_first(ranks, w.searches);
-  for (Buffer<std::uint8_t>* flags : {&w.opened.changed, &w.opened.vertex})
-    for (Index begin = 0; begin < flags->size();) {
-      std::array<std::uint8_t, 4096> part{};
-      const Index count = std::min<Index>(flags->size() - begin, part.size());
-      std::copy_n(flags->data() + begin, count, part.begin());
-      take_from_first(ranks, part);
-      std::copy_n(part.begin(), count, flags->data() + begin);
-      begin += count;
-    }
+  for (Buffer<std::uint8_t>* flags : {&w.opened.changed, &w.opened.vertex}) {
+    Message message(static_cast<std::size_t>(flags->size()));
+    std::memcpy(message.data(), flags->data(), message.size());
+    message = ranks.from_first(std::move(message));
+    std::memcpy(flags->data(), message.data(), message.size());
+  }
 }
 
 void note_mesh(World& whole) {
