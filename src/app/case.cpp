@@ -14,6 +14,7 @@
 #include "prepare/check_case.hpp"
 #include "prepare/model_file.hpp"
 #include "run/dem_method.hpp"
+#include "run/device_plan.hpp"
 #include "run/fdem_method.hpp"
 #include "run/progress.hpp"
 #include "run/shown.hpp"
@@ -156,11 +157,15 @@ const CaseConfig& Case::common() const {
   return std::visit([](const auto& c) -> const CaseConfig& { return c; }, config);
 }
 
-std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks) {
+std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks,
+                                    bool quiet) {
   return std::visit(
       [&](const auto& config) {
         decltype(built(config, read.folder)) model;
-        together_or_not(ranks, [&] { model = model_of(read, config); });
+        together_or_not(ranks, [&] {
+          model = model_of(read, config);
+          if (exec.space == Space::cuda) plan_device(device_bytes(model), quiet);
+        });
         return method_over(config, model, exec, ranks);
       },
       read.config);

@@ -41,7 +41,8 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
 /// The case's method over its model: the prepared one, or built now.
 /// @param ranks  those that share the work; null: none. Every rank calls it alike.
 /// @throws InputError if the model cannot be built, or does not fit
-std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks);
+std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks,
+                                    bool quiet = true);
 
 /// Builds the model and adds it to a file. Returns a few words about its size.
 std::string save_model_of(const Case& read, CheckpointWriter& writer);

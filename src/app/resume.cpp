@@ -61,7 +61,7 @@ struct ResumeCommand {
       refuse_other_case(*checkpoint, plan);
       if (!leads(ranks)) checkpoint.reset();
     });
-    const std::unique_ptr<Method> method = make_method(read, exec, ranks);
+    const std::unique_ptr<Method> method = make_method(read, exec, ranks, options.quiet);
     if (!leads(ranks)) return method->follow();
     return led(*method, [&] {
       timers.clear();

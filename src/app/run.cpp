@@ -34,7 +34,7 @@ struct RunCommand {
       out = folder.empty() ? "out/" + read.name : folder;
       if (leads(ranks)) ResultFolder::check_free(out, existing);
     });
-    const std::unique_ptr<Method> method = make_method(read, exec, ranks);
+    const std::unique_ptr<Method> method = make_method(read, exec, ranks, options.quiet);
     if (!leads(ranks)) return method->follow();
     return led(*method, [&] {
       RunPlan plan = plan_of(read, options, exec, ranks);
