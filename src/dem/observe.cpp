@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/probe.hpp"
 #include "core/rows.hpp"
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
@@ -46,37 +47,7 @@ struct FindUnsound {
   }
 };
 
-/// What a probe reads of one element, by the words of the case.
-struct Quantity {
-  enum class Kind { position, velocity, force, momentum, speed, kinetic, damage };
-  Kind kind;
-  int axis;
-
-  explicit Quantity(const std::string& word)
-      : kind(word.starts_with("position")   ? Kind::position
-             : word.starts_with("velocity") ? Kind::velocity
-             : word.starts_with("force")    ? Kind::force
-             : word.starts_with("momentum") ? Kind::momentum
-             : word == "speed"              ? Kind::speed
-             : word == "damage"             ? Kind::damage
-                                            : Kind::kinetic),
-        axis(word.back() == 'x'   ? 0
-             : word.back() == 'y' ? 1
-                                  : 2) {}
-};
-
-/// A probe's sum and range over elements.
-struct Readings {
-  ExactSum sum;
-  double low = no_limit, high = -no_limit;
-};
-BR_HD Readings operator+(Readings a, const Readings& b) {
-  a.sum.add(b.sum);
-  a.low = smaller(a.low, b.low);
-  a.high = larger(a.high, b.high);
-  return a;
-}
-
+/// What a probe reads.
 struct ReadProbe {
   Quantity quantity;
   View<const Index> members;  ///< empty: all elements
@@ -108,10 +79,7 @@ struct ReadProbe {
     return 0.5 * mass[e] * dot(s.velocity, s.velocity) + 0.5 * inertia[e] * dot(s.spin, s.spin);
   }
   BR_HD Readings operator()(Index i) const {
-    Readings r;
-    r.low = r.high = value(members.size > 0 ? members[i] : i);
-    r.sum.add(r.low);
-    return r;
+    return Readings(value(members.size > 0 ? members[i] : i));
   }
 };
 
@@ -287,9 +255,7 @@ double probe(const World& w, const ProbeConfig& p) {
                              ReadProbe{quantity, members, e.state.view(), e.force.view(),
                                        e.mass.view(), e.inertia.view(), std::as_const(lost).view()},
                              Sum{});
-  if (p.reduce == "min") return read.low;
-  if (p.reduce == "max") return read.high;
-  return p.reduce == "sum" ? read.sum.value() : read.sum.value() / static_cast<double>(count);
+  return read.reduced(p.reduce, count);
 }
 
 Counts count(const World& w) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/probe.hpp"
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
@@ -71,35 +72,7 @@ class Pieces {
   std::vector<Index> root_;
 };
 
-/// What a probe reads of one corner, by the words of the case.
-struct Quantity {
-  enum class Kind : std::uint8_t { position, velocity, force, momentum, speed, kinetic, damage };
-  Kind kind;
-  bool along_x;
-
-  explicit Quantity(const std::string& word)
-      : kind(word.starts_with("position")   ? Kind::position
-             : word.starts_with("velocity") ? Kind::velocity
-             : word.starts_with("force")    ? Kind::force
-             : word.starts_with("momentum") ? Kind::momentum
-             : word == "speed"              ? Kind::speed
-             : word == "damage"             ? Kind::damage
-                                            : Kind::kinetic),
-        along_x(word.back() == 'x') {}
-};
-
-/// A probe's sum and range over corners.
-struct Readings {
-  ExactSum sum;
-  double low = no_limit, high = -no_limit;
-};
-BR_HD Readings operator+(Readings a, const Readings& b) {
-  a.sum.add(b.sum);
-  a.low = smaller(a.low, b.low);
-  a.high = larger(a.high, b.high);
-  return a;
-}
-
+/// What a probe reads.
 struct ReadProbe {
   Quantity quantity;
   View<const Index> members;  ///< corners; empty: all
@@ -107,7 +80,7 @@ struct ReadProbe {
   View<const Corners> force;
   View<const double> mass, damage;
 
-  BR_HD double part(const Vec2& v) const { return quantity.along_x ? v.x : v.y; }
+  BR_HD double part(const Vec2& v) const { return quantity.axis == 0 ? v.x : v.y; }
   BR_HD double value(Index n) const {
     const NodeState& node = nodes[n / 3].at[n % 3];
     switch (quantity.kind) {
@@ -129,10 +102,7 @@ struct ReadProbe {
     return 0.5 * mass[n / 3] * dot(node.velocity, node.velocity);
   }
   BR_HD Readings operator()(Index i) const {
-    Readings r;
-    r.low = r.high = value(members.size > 0 ? members[i] : i);
-    r.sum.add(r.low);
-    return r;
+    return Readings(value(members.size > 0 ? members[i] : i));
   }
 };
 
@@ -230,9 +200,7 @@ double probe(const World& w, const ProbeConfig& p) {
                              ReadProbe{quantity, std::as_const(members).view(), t.nodes.view(),
                                        t.force.view(), t.mass.view(), std::as_const(lost).view()},
                              Sum{});
-  if (p.reduce == "min") return read.low;
-  if (p.reduce == "max") return read.high;
-  return p.reduce == "sum" ? read.sum.value() : read.sum.value() / static_cast<double>(count);
+  return read.reduced(p.reduce, count);
 }
 
 std::vector<Crack> cracks(const World& w) {

@@ -1,0 +1,52 @@
+#pragma once
+// What probes read, whatever the method: a quantity of each item, and its sum and range over items.
+
+#include <string>
+
+#include "core/energy.hpp"
+#include "math/vec.hpp"
+
+namespace breccia {
+
+/// A quantity by the word of the case.
+struct Quantity {
+  enum class Kind : std::uint8_t { position, velocity, force, momentum, speed, kinetic, damage };
+  Kind kind;
+  int axis;  ///< 0, 1, 2: x, y, z; of a quantity that has a direction
+
+  explicit Quantity(const std::string& word)
+      : kind(word.starts_with("position")   ? Kind::position
+             : word.starts_with("velocity") ? Kind::velocity
+             : word.starts_with("force")    ? Kind::force
+             : word.starts_with("momentum") ? Kind::momentum
+             : word == "speed"              ? Kind::speed
+             : word == "damage"             ? Kind::damage
+                                            : Kind::kinetic),
+        axis(word.back() == 'x'   ? 0
+             : word.back() == 'y' ? 1
+                                  : 2) {}
+};
+
+/// Sum and range of a quantity; nothing read yet.
+struct Readings {
+  ExactSum sum;
+  double low = 1e300, high = -1e300;
+
+  Readings() = default;
+  BR_HD explicit Readings(double value) : sum(value), low(value), high(value) {}
+
+  /// By the word of the case: min, max, sum or mean of so many readings.
+  double reduced(const std::string& word, Index count) const {
+    if (word == "min") return low;
+    if (word == "max") return high;
+    return word == "sum" ? sum.value() : sum.value() / static_cast<double>(count);
+  }
+};
+BR_HD inline Readings operator+(Readings a, const Readings& b) {
+  a.sum.add(b.sum);
+  a.low = smaller(a.low, b.low);
+  a.high = larger(a.high, b.high);
+  return a;
+}
+
+}  // namespace breccia
