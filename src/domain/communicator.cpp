@@ -1,28 +1,36 @@
 #include "domain/communicator.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace breccia {
 namespace {
 
-template <class T>
-Message message_of(std::span<const T> items) {
-  Message message(items.size_bytes());
-  if (!items.empty()) std::memcpy(message.data(), items.data(), items.size_bytes());
-  return message;
-}
-
-/// Combines the numbers of all ranks in the order of the ranks.
+/// Rank 0 combines the numbers of all ranks in the order of the ranks, and tells.
 template <class T, class Combine>
 void combine_all(Communicator& ranks, std::span<T> numbers, const Combine& combine) {
-  const std::vector<Message> all = ranks.from_all(message_of(std::span<const T>(numbers)));
-  for (std::size_t r = 0; r < all.size(); ++r)
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      T number;
-      std::memcpy(&number, all[r].data() + i * sizeof(T), sizeof(T));
-      numbers[i] = r == 0 ? number : combine(numbers[i], number);
-    }
+  std::vector<Post> others, none;
+  if (ranks.rank() != 0) {
+    const Post post{0, numbers.data(), numbers.size_bytes()};
+    ranks.start({&post, 1}, none);
+    ranks.finish();
+    ranks.start(none, {&post, 1});
+    ranks.finish();
+    return;
+  }
+  const auto count = static_cast<std::size_t>(ranks.size()) - 1;
+  std::vector<T> came(count * numbers.size());
+  for (std::size_t r = 0; r < count; ++r)
+    others.push_back({static_cast<int>(r) + 1, came.data() + r * numbers.size(),
+                      numbers.size_bytes()});
+  ranks.start(none, others);
+  ranks.finish();
+  for (std::size_t i = 0; i < came.size(); ++i) {
+    T& number = numbers[i % numbers.size()];
+    number = combine(number, came[i]);
+  }
+  for (Post& post : others) post.data = numbers.data();
+  ranks.start(others, none);
+  ranks.finish();
 }
 
 }  // namespace

@@ -21,14 +21,14 @@ struct RanksLost : std::runtime_error {
 /// Carries the messages: they lie in flight until someone who waits lets a random one arrive.
 class Carrier {
  public:
-  explicit Carrier(std::uint64_t seed) : random_(seed) {}
+  Carrier(std::uint64_t seed, int ranks) : waits_(static_cast<std::size_t>(ranks)), random_(seed) {}
 
   using Address = std::tuple<int, int, std::int64_t>;  // from, to, number of the operation
 
   void post(const Address& address, Message message) {
     const std::lock_guard lock(mutex_);
     in_flight_.emplace_back(address, std::move(message));
-    changed_.notify_all();
+    wake(address);
   }
   Message wait_for(const Address& address) {
     std::unique_lock lock(mutex_);
@@ -41,7 +41,7 @@ class Carrier {
       }
       if (failed_) throw RanksLost();
       if (in_flight_.empty())
-        changed_.wait(lock);
+        waits_[static_cast<std::size_t>(std::get<1>(address))].wait(lock);
       else
         deliver_one();
     }
@@ -49,21 +49,25 @@ class Carrier {
   void fail() {
     const std::lock_guard lock(mutex_);
     failed_ = true;
-    changed_.notify_all();
+    for (std::condition_variable& wait : waits_) wait.notify_one();
   }
 
  private:
   void deliver_one() {
     random_ += 0x9e3779b97f4a7c15ULL;
     const std::size_t i = mixed(random_) % in_flight_.size();
+    wake(in_flight_[i].first);
     arrived_.insert(std::move(in_flight_[i]));
     in_flight_[i] = std::move(in_flight_.back());
     in_flight_.pop_back();
-    changed_.notify_all();
+  }
+  /// The receiver alone: whoever waits delivers until its own message is there.
+  void wake(const Address& address) {
+    waits_[static_cast<std::size_t>(std::get<1>(address))].notify_one();
   }
 
   std::mutex mutex_;
-  std::condition_variable changed_;
+  std::vector<std::condition_variable> waits_;  ///< of each rank
   std::vector<std::pair<Address, Message>> in_flight_;
   std::map<Address, Message> arrived_;
   std::uint64_t random_;
@@ -116,7 +120,7 @@ class SimulatedRank final : public Communicator {
 
 void simulate_ranks(int count, std::uint64_t seed,
                     const std::function<void(Communicator&)>& rank_main) {
-  Carrier carrier(seed);
+  Carrier carrier(seed, count);
   std::exception_ptr first;
   std::mutex mutex;
   std::vector<std::thread> threads;
