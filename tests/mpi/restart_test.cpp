@@ -1,0 +1,59 @@
+// A run is saved at any step on some ranks and threads and goes on from there on others: random
+// pairs, the end of each equal to that of the uninterrupted run.
+
+#include <gtest/gtest.h>
+
+#include "core/state_hash.hpp"
+#include "mpi/on_ranks.hpp"
+
+namespace breccia {
+namespace {
+
+using namespace mpi_testing;
+
+/// How many processors a part of a run gets.
+struct Team {
+  int ranks, threads;
+};
+
+template <class AScene>
+void expect_equal_ends(const AScene& scene, int pairs, int end, std::uint64_t seed) {
+  const Folder folder("restart");
+  const std::string state = folder.file("state.br");
+  const Outcome whole = alone(scene, end);
+  EXPECT_GT(whole.cracks, 20U);
+  const auto draw = [&seed](int least, int most) {
+    seed += 0x9e3779b97f4a7c15ULL;
+    return least + static_cast<int>(mixed(seed) % static_cast<std::uint64_t>(most - least + 1));
+  };
+  for (int pair = 0; pair < pairs; ++pair) {
+    const Team before{draw(1, 12), draw(1, 3)}, after{draw(1, 12), draw(1, 3)};
+    const int middle = draw(1, end - 1);
+    led_on_ranks(before.ranks, before.threads, scene, [&](Method& method) {
+      while (method.steps() < middle) method.advance({1e300, middle});
+      save(method, state);
+    });
+    led_on_ranks(after.ranks, after.threads, scene, [&](Method& method) {
+      method.load(CheckpointReader(state));
+      EXPECT_EQ(method.steps(), middle);
+      while (method.steps() < end) method.advance({1e300, end});
+      EXPECT_EQ(method.state_hash(), whole.hash)
+          << "pair " << pair << ": saved at step " << middle << " on " << before.ranks
+          << " ranks of " << before.threads << " threads, continued on " << after.ranks << " of "
+          << after.threads;
+    });
+  }
+}
+
+TEST(RestartOnRanks, spheres_end_alike_for_forty_pairs) {
+  expect_equal_ends(slab_piece(), 40, 150, 1);
+}
+TEST(RestartOnRanks, triangles_that_crack_end_alike_for_forty_pairs) {
+  expect_equal_ends(impact("intrinsic"), 40, 200, 2);
+}
+TEST(RestartOnRanks, triangles_that_move_as_one_end_alike_for_twenty_pairs) {
+  expect_equal_ends(impact("extrinsic"), 20, 200, 3);
+}
+
+}  // namespace
+}  // namespace breccia
