@@ -20,8 +20,8 @@ void combine_all(Communicator& ranks, std::span<T> numbers, const Combine& combi
   const auto count = static_cast<std::size_t>(ranks.size()) - 1;
   std::vector<T> came(count * numbers.size());
   for (std::size_t r = 0; r < count; ++r)
-    others.push_back({static_cast<int>(r) + 1, came.data() + r * numbers.size(),
-                      numbers.size_bytes()});
+    others.push_back(
+        {static_cast<int>(r) + 1, came.data() + r * numbers.size(), numbers.size_bytes()});
   ranks.start(none, others);
   ranks.finish();
   for (std::size_t i = 0; i < came.size(); ++i) {

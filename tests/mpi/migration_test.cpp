@@ -14,8 +14,8 @@ using namespace mpi_testing;
 
 /// In [-1, 1), by a thing and a round.
 double drawn(std::int64_t thing, std::int64_t round, std::uint64_t k) {
-  const auto mix = static_cast<std::uint64_t>(thing) * 1000003U +
-                   static_cast<std::uint64_t>(round) * 7919U + k;
+  const auto mix =
+      static_cast<std::uint64_t>(thing) * 1000003U + static_cast<std::uint64_t>(round) * 7919U + k;
   return static_cast<double>(mixed(mix * 0x9e3779b97f4a7c15ULL) >> 11) * 0x1p-52 - 1.0;
 }
 
