@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "domain/sharing.hpp"
+
 namespace breccia::dem {
 namespace {
 
@@ -25,7 +27,7 @@ class Journey {
  public:
   /// @param owner  rank that each local element will belong to
   Journey(World& w, const std::vector<int>& owner)
-      : w_(w), owner_(owner), elements_(w.domain.ranks->size()) {}
+      : w_(w), elements_(w.domain.ranks->size()), ties_(w.domain, owner, elements_) {}
 
   /// Besides the owner, the ranks whose rectangle is within `width` of an element get a copy.
   void add_copies(double width) {
@@ -39,60 +41,44 @@ class Journey {
 
   void go() {
     for (Index e = 0; e < w_.elements.size(); ++e)
-      if (w_.domain.owns(e)) elements_.add(owner_of(e), e);
+      if (w_.domain.owns(e)) elements_.add(ties_.owner_of(e), e);
     const int ranks = w_.domain.ranks->size();
     Deliveries concrete(ranks), steel(ranks), interface(ranks), contacts(ranks), walls(ranks);
-    const ConcreteLinks& c = w_.concrete;
-    for (Index i = 0; i < c.size(); ++i) tie(std::array{c.a.data()[i], c.b.data()[i]}, i, concrete);
-    const SteelLinks& s = w_.steel;
-    for (Index i = 0; i < s.size(); ++i) tie(std::array{s.a.data()[i], s.b.data()[i]}, i, steel);
     const InterfaceLinks& b = w_.interface;
     for (Index i = 0; i < b.size(); ++i)
-      tie(std::array{b.a.data()[i], b.b.data()[i], b.before.data()[i], b.after.data()[i]}, i,
-          interface);
-    const Pairs &pairs = w_.contacts.pairs, &at_walls = w_.wall_contacts.pairs;
-    for (Index i = 0; i < pairs.size(); ++i)
-      tie(std::array{pairs.a.data()[i], pairs.b.data()[i]}, i, contacts);
-    for (Index i = 0; i < at_walls.size(); ++i) tie(std::array{at_walls.a.data()[i]}, i, walls);
+      ties_.tie(std::array{b.a.data()[i], b.b.data()[i], b.before.data()[i], b.after.data()[i]}, i,
+                interface);
+    tie_all(w_.concrete, concrete);
+    tie_all(w_.steel, steel);
+    tie_all(w_.contacts.pairs, contacts);
+    const Pairs& at_walls = w_.wall_contacts.pairs;
+    for (Index i = 0; i < at_walls.size(); ++i)
+      ties_.tie(std::array{at_walls.a.data()[i]}, i, walls);
 
     renumber_all(w_, [this](Index e) { return w_.elements.id.data()[e]; });
-    send(together(w_.elements, w_.travel), elements_, w_.elements.id);
+    Communicator& all = *w_.domain.ranks;
+    send_sorted(all, together(w_.elements, w_.travel), elements_, w_.elements.id);
     auto concrete_number = one_field(w_.numbers.concrete),
          steel_number = one_field(w_.numbers.steel),
          interface_number = one_field(w_.numbers.interface);
     Buffer<Action> on_steel, on_interface;
     split_actions(on_steel, on_interface);
     auto steel_actions = one_field(on_steel), interface_actions = one_field(on_interface);
-    send(together(w_.concrete, concrete_number), concrete, w_.numbers.concrete);
-    send(together(w_.steel, steel_number, steel_actions), steel, w_.numbers.steel);
-    send(together(w_.interface, interface_number, interface_actions), interface,
-         w_.numbers.interface);
-    send(w_.contacts, contacts, w_.contacts.pairs.key);
-    send(w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
+    send_sorted(all, together(w_.concrete, concrete_number), concrete, w_.numbers.concrete);
+    send_sorted(all, together(w_.steel, steel_number, steel_actions), steel, w_.numbers.steel);
+    send_sorted(all, together(w_.interface, interface_number, interface_actions), interface,
+                w_.numbers.interface);
+    send_sorted(all, w_.contacts, contacts, w_.contacts.pairs.key);
+    send_sorted(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
     join_actions(on_steel, on_interface);
     renumber_all(w_, [this](Index id) { return place_of(w_.elements.id, id); });
   }
 
  private:
-  int owner_of(Index e) const { return owner_[static_cast<std::size_t>(e)]; }
-
-  /// What refers to several elements lives wherever one of them is owned, and so do all of them.
-  template <std::size_t n>
-  void tie(const std::array<Index, n>& elements, Index item, Deliveries& items) {
-    for (const Index e : elements) {
-      if (!w_.domain.owns(e)) continue;
-      for (const Index other : elements) {
-        if (e == elements[0]) items.add(owner_of(other), item);
-        if (owner_of(other) != owner_of(e)) elements_.add(owner_of(other), e);
-      }
-    }
-  }
-
-  template <class State, class Key>
-  void send(State&& state, Deliveries& to, const Buffer<Key>& key) {
-    to.settle();
-    deal(*w_.domain.ranks, state, to);
-    sort_by(state, key);
+  template <class Links>
+  void tie_all(const Links& links, Deliveries& items) {
+    for (Index i = 0; i < links.size(); ++i)
+      ties_.tie(std::array{links.a.data()[i], links.b.data()[i]}, i, items);
   }
 
   /// What bars do is observed between steps, so it goes along.
@@ -112,19 +98,9 @@ class Journey {
   }
 
   World& w_;
-  const std::vector<int>& owner_;
   Deliveries elements_;
+  Ties ties_;
 };
-
-/// The largest margin that a search now would give an element that this rank owns.  [m]
-double margin_now(const World& w) {
-  const MarginRule rule = margin_rule(w);
-  double largest = 0.0;
-  for (Index e = 0; e < w.elements.size(); ++e)
-    if (w.domain.owns(e))
-      largest = std::max(largest, rule.margin(w.elements.state.data()[e].velocity));
-  return largest;
-}
 
 /// How far beyond their own radius elements reach others of the same rank, until they are shared
 /// out again (docs/theory-domain.md, section 2).
@@ -134,23 +110,6 @@ double halo_width(const World& w) {
   largest = -w.domain.least(-largest);
   const double width = largest + 2.0 * w.domain.margin + 2.0 * w.domain.buffer;
   return width * (1.0 + 1e-6);
-}
-
-/// What an element costs: itself, and each of its links and contacts; shared ones by half.
-std::vector<Load> loads_of(const World& w) {
-  std::vector<std::int64_t> weight(static_cast<std::size_t>(w.elements.size()), 2);
-  const auto count = [&](const Buffer<Index>& ends) {
-    for (const Index e : ends.host()) ++weight[static_cast<std::size_t>(e)];
-  };
-  for (const Buffer<Index>* ends :
-       {&w.concrete.a, &w.concrete.b, &w.steel.a, &w.steel.b, &w.interface.a, &w.interface.b,
-        &w.contacts.pairs.a, &w.contacts.pairs.b, &w.wall_contacts.pairs.a})
-    count(*ends);
-  std::vector<Load> loads;
-  for (Index e = 0; e < w.elements.size(); ++e)
-    if (w.domain.owns(e))
-      loads.push_back({w.elements.state.data()[e].position, weight[static_cast<std::size_t>(e)]});
-  return loads;
 }
 
 /// Links of each group lie together in memory, as in the whole model.
@@ -173,66 +132,51 @@ void note_numbers(std::vector<LinkGroup<Law>>& groups) {
   }
 }
 
-std::vector<int> owners(const World& w) {
-  std::vector<int> owner;
-  for (const ElementState& s : w.elements.state.host())
-    owner.push_back(w.domain.partition.owner(s.position));
-  return owner;
-}
+class Spheres final : public Shareable {
+ public:
+  explicit Spheres(World& w) : w_(w) {}
 
-void share_anew(World& w, bool first) {
-  Domain& d = w.domain;
-  const std::vector<Load> loads = loads_of(w);
-  std::int64_t load = 0;
-  for (const Load& l : loads) load += l.weight;
-  if (first || (d.config.balance && imbalance(*d.ranks, load) > d.config.imbalance)) {
-    d.partition.cut(*d.ranks, loads);
-    ++d.counts.cuts;
+  const Buffer<GlobalId>& ids() const override { return w_.elements.id; }
+  Vec3 centre(Index e) const override { return w_.elements.state.data()[e].position; }
+  void each_point(const std::function<void(const Vec3&)>& visit) const override {
+    for (const ElementState& s : w_.elements.state.host()) visit(s.position);
   }
-  // Elements may become faster until they are shared out again.
-  d.margin = std::min(w.parameters.largest_margin, -1.5 * d.least(-margin_now(w)));
-  const std::vector<int> next_owner = owners(w);
-  Journey journey(w, next_owner);
-  journey.add_copies(halo_width(w));
-  std::vector<GlobalId> mine;  // before
-  for (Index e = 0; e < w.elements.size(); ++e)
-    if (d.owns(e)) mine.push_back(w.elements.id.data()[e]);
-  journey.go();
+  std::vector<Load> loads() const override {
+    std::vector<std::int64_t> weight(static_cast<std::size_t>(w_.elements.size()), 2);
+    for (const Buffer<Index>* ends :
+         {&w_.concrete.a, &w_.concrete.b, &w_.steel.a, &w_.steel.b, &w_.interface.a,
+          &w_.interface.b, &w_.contacts.pairs.a, &w_.contacts.pairs.b, &w_.wall_contacts.pairs.a})
+      for (const Index e : ends->host()) ++weight[static_cast<std::size_t>(e)];
+    std::vector<Load> loads;
+    for (Index e = 0; e < w_.elements.size(); ++e)
+      if (w_.domain.owns(e)) loads.push_back({centre(e), weight[static_cast<std::size_t>(e)]});
+    return loads;
+  }
+  double margin() const override {
+    const MarginRule rule = margin_rule(w_);
+    double largest = 0.0;
+    for (Index e = 0; e < w_.elements.size(); ++e)
+      if (w_.domain.owns(e))
+        largest = std::max(largest, rule.margin(w_.elements.state.data()[e].velocity));
+    return largest;
+  }
+  double largest_margin() const override { return w_.parameters.largest_margin; }
+  void send(const std::vector<int>& owner) override {
+    Journey journey(w_, owner);
+    journey.add_copies(halo_width(w_));
+    journey.go();
+  }
+  void settle_in() override {
+    divide(w_.concrete_groups, w_.numbers.concrete);
+    divide(w_.steel_groups, w_.numbers.steel);
+    divide(w_.interface_groups, w_.numbers.interface);
+    set_linked_pairs(w_);
+    derive(w_);
+  }
 
-  const std::vector<int> owner = owners(w);
-  const Index count = w.elements.size();
-  d.owned.resize(count);
-  d.placed.resize(static_cast<std::size_t>(count));
-  for (Index e = 0; e < count; ++e) {
-    const bool own = owner[static_cast<std::size_t>(e)] == d.ranks->rank();
-    d.owned.data()[e] = own ? 1 : 0;
-    d.placed[static_cast<std::size_t>(e)] = w.elements.state.data()[e].position;
-    if (own && !std::binary_search(mine.begin(), mine.end(), w.elements.id.data()[e]))
-      ++d.counts.moved;
-  }
-  d.halo.build(*d.ranks, w.elements.id, owner);
-  d.counts.copies = d.halo.copies();
-  d.counts.owned = count - d.halo.copies();
-  d.counts.load = 0;
-  for (const Load& l : loads_of(w)) d.counts.load += l.weight;
-  ++d.counts.migrations;
-  divide(w.concrete_groups, w.numbers.concrete);
-  divide(w.steel_groups, w.numbers.steel);
-  divide(w.interface_groups, w.numbers.interface);
-  set_linked_pairs(w);
-  derive(w);
-}
-
-/// Whether some element has left the buffer; nowhere (NaN) counts as left.
-bool has_left(const World& w) {
-  const double allowed = w.domain.buffer * w.domain.buffer;
-  for (Index e = 0; e < w.elements.size(); ++e) {
-    const Vec3 moved =
-        w.elements.state.data()[e].position - w.domain.placed[static_cast<std::size_t>(e)];
-    if (w.domain.owns(e) && !(dot(moved, moved) <= allowed)) return true;
-  }
-  return false;
-}
+ private:
+  World& w_;
+};
 
 void number(Buffer<Index>& numbers, Index count) {
   numbers.resize(count);
@@ -260,45 +204,27 @@ void refresh_copies(World& w) {
 
 World share_out(const World& whole, Communicator& ranks, const DomainConfig& config) {
   World w = whole;
-  Domain& d = w.domain;
-  d.ranks = &ranks;
-  d.config = config;
-  d.buffer = config.buffer * 2.0 * w.parameters.mean_radius;
   note_numbers(w.concrete_groups);
   note_numbers(w.steel_groups);
   note_numbers(w.interface_groups);
   if (ranks.rank() != 0) drop_state(w);
-  for (double* time : {&w.time, &w.last_dt, &w.next_dt}) take_from_first(ranks, *time);
-  take_from_first(ranks, w.step);
-  take_from_first(ranks, w.searches);
+  take_time_from_first(ranks, w);
   for (Wall& wall : w.walls) take_from_first(ranks, wall);
   w.ledger = {};  // what this rank books from here on
-  d.owned.resize(w.elements.size());
-  std::fill(d.owned.host().begin(), d.owned.host().end(), std::uint8_t{1});
   number(w.numbers.concrete, w.concrete.size());
   number(w.numbers.steel, w.steel.size());
   number(w.numbers.interface, w.interface.size());
-
-  Vec3 low{no_limit, no_limit, no_limit}, minus_high = low;
-  for (const ElementState& s : w.elements.state.host()) {
-    const Vec3& x = s.position;
-    low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
-    minus_high = {std::min(minus_high.x, -x.x), std::min(minus_high.y, -x.y),
-                  std::min(minus_high.z, -x.z)};
-  }
-  low = {ranks.least(low.x), ranks.least(low.y), ranks.least(low.z)};
-  minus_high = {ranks.least(minus_high.x), ranks.least(minus_high.y), ranks.least(minus_high.z)};
-  d.partition = Partition(ranks.size(), low, -minus_high - low,
-                          2.0 * w.parameters.mean_radius / config.refinement, 3);
-  share_anew(w, true);
+  Spheres spheres(w);
+  begin_sharing(w.domain, ranks, config, spheres, 2.0 * w.parameters.mean_radius, 3);
+  share_anew(w.domain, spheres, true);
   return w;
 }
 
 void migrate(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "migration");
-  const bool beyond = has_left(w) || !(margin_now(w) <= w.domain.margin);
-  if (w.domain.any(beyond)) share_anew(w, false);
+  Spheres spheres(w);
+  share_if_needed(w.domain, spheres);
 }
 
 void collect(World& part, World& whole) {
@@ -316,14 +242,10 @@ void collect(World& part, World& whole) {
   copy.domain.owned = part.domain.owned;
   Journey(copy, std::vector<int>(static_cast<std::size_t>(part.elements.size()), 0)).go();
 
-  Message booked(sizeof part.ledger);
-  std::memcpy(booked.data(), &part.ledger, sizeof part.ledger);
-  const std::vector<Message> all = part.domain.ranks->from_all(booked);
+  const std::vector<Ledger> booked = from_each(*part.domain.ranks, part.ledger);
   part.ledger = {};
   if (part.domain.ranks->rank() != 0) return;
-  for (const Message& message : all) {
-    Ledger ledger;
-    std::memcpy(&ledger, message.data(), sizeof ledger);
+  for (const Ledger& ledger : booked) {
     whole.ledger.slid.add(ledger.slid);
     whole.ledger.damped.add(ledger.damped);
     whole.ledger.driven.add(ledger.driven);
@@ -338,11 +260,7 @@ void collect(World& part, World& whole) {
   whole.bar_actions = std::move(copy.bar_actions);
   whole.walls = part.walls;
   whole.domain.partition = part.domain.partition;
-  whole.time = part.time;
-  whole.last_dt = part.last_dt;
-  whole.next_dt = part.next_dt;
-  whole.step = part.step;
-  whole.searches = part.searches;
+  copy_time(part, whole);
 }
 
 }  // namespace breccia::dem

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "domain/sharing.hpp"
+
 namespace breccia::fdem {
 namespace {
 
@@ -55,19 +57,12 @@ double radius(const TriangleNodes& nodes) {
   return far;
 }
 
-std::vector<int> owners(const World& w) {
-  std::vector<int> owner;
-  for (const TriangleNodes& nodes : w.triangles.nodes.host())
-    owner.push_back(w.domain.partition.owner(centroid(nodes)));
-  return owner;
-}
-
 /// Sends everything to the ranks that need it: triangles and what ties them together.
 class Journey {
  public:
   /// @param owner  rank that each local triangle will belong to
   Journey(World& w, const std::vector<int>& owner)
-      : w_(w), owner_(owner), triangles_(w.domain.ranks->size()) {}
+      : w_(w), triangles_(w.domain.ranks->size()), ties_(w.domain, owner, triangles_) {}
 
   /// Besides the owner, the ranks whose rectangle is within `width` of a triangle get a copy.
   void add_copies(double width) {
@@ -80,28 +75,23 @@ class Journey {
   }
 
   void go() {
-    const int ranks = w_.domain.ranks->size();
-    Deliveries joints(ranks), couples(ranks), reach(ranks);
+    Communicator& all = *w_.domain.ranks;
+    Deliveries joints(all.size()), couples(all.size()), reach(all.size());
     for (Index t = 0; t < w_.triangles.size(); ++t)
-      if (w_.domain.owns(t)) triangles_.add(owner_of(t), t);
+      if (w_.domain.owns(t)) triangles_.add(ties_.owner_of(t), t);
     tie_all(joints, couples);
     const auto can_touch = w_.reach.triangle.host();
     for (Index i = 0; i < w_.reach.triangle.size(); ++i)
-      if (w_.domain.owns(can_touch[at(i)])) reach.add(owner_of(can_touch[at(i)]), i);
+      if (w_.domain.owns(can_touch[at(i)])) reach.add(ties_.owner_of(can_touch[at(i)]), i);
 
     leave();
     Triangles& t = w_.triangles;
     auto lie = one_field(lies_);
     auto external = one_field(t.external);
-    triangles_.settle();
-    const auto send_triangles = [&](auto&& state) {
-      deal(*w_.domain.ranks, state, triangles_);
-      sort_by(state, t.id);
-    };
     if (w_.mesh.loaded.empty())
-      send_triangles(together(t, lie));
+      send_sorted(all, together(t, lie), triangles_, t.id);
     else
-      send_triangles(together(t, lie, external));
+      send_sorted(all, together(t, lie, external), triangles_, t.id);
 
     Joints& j = w_.joints;
     Buffer<Index>& number = w_.mesh.joint_number;
@@ -109,36 +99,25 @@ class Journey {
     auto force = one_field(j.force);
     auto preset = one_field(j.preset);
     j.force.resize(j.size());
-    joints.settle();
-    const auto send_joints = [&](auto&& state) {
-      deal(*w_.domain.ranks, state, joints);
-      sort_by(state, number);
-    };
     if (w_.mesh.preset)
-      send_joints(together(j, numbers, force, preset));
+      send_sorted(all, together(j, numbers, force, preset), joints, number);
     else
-      send_joints(together(j, numbers, force));
+      send_sorted(all, together(j, numbers, force), joints, number);
     j.force.resize(j.size() + 1);  // the last one is zero
 
-    couples.settle();
-    deal(*w_.domain.ranks, w_.couples, couples);
-    sort_by(w_.couples, w_.couples.pairs.key);
-    reach.settle();
-    deal(*w_.domain.ranks, w_.reach, reach);
-    sort_by(w_.reach, w_.reach.triangle);
+    send_sorted(all, w_.couples, couples, w_.couples.pairs.key);
+    send_sorted(all, w_.reach, reach, w_.reach.triangle);
     arrive();
   }
 
  private:
-  int owner_of(Index t) const { return owner_[at(t)]; }
-
   void tie_all(Deliveries& joints, Deliveries& couples) {
     const Rings rings(w_);
     std::vector<Index> members;
     rings.each([&](const std::pair<Index, Index>* first, const std::pair<Index, Index>* end) {
       members.clear();
       for (; first != end; ++first) members.push_back(first->second / 3);
-      tie(members);
+      ties_.tie(members);
     });
     for (Index i = 0; i < w_.joints.size(); ++i) {
       const Index a = w_.joints.edge_a.data()[i], b = w_.joints.edge_b.data()[i];
@@ -147,26 +126,11 @@ class Journey {
       for (const Index node : {a, JointEnds::next_corner(a)})
         if (w_.mesh.tied[at(w_.vertex[at(node)])] != 0)
           rings.add_triangles(w_.vertex[at(node)], members);
-      tie(members);
-      if (w_.domain.owns(a / 3))
-        for (const Index t : members) joints.add(owner_of(t), i);
+      ties_.tie(members, i, joints);
     }
     const Pairs& pairs = w_.couples.pairs;
-    for (Index i = 0; i < pairs.size(); ++i) {
-      members = {pairs.a.data()[i], pairs.b.data()[i]};
-      tie(members);
-      if (w_.domain.owns(members[0]))
-        for (const Index t : members) couples.add(owner_of(t), i);
-    }
-  }
-
-  /// What refers to several triangles lives wherever one of them is owned, and so do all of them.
-  void tie(const std::vector<Index>& members) {
-    for (const Index t : members) {
-      if (!w_.domain.owns(t)) continue;
-      for (const Index other : members)
-        if (owner_of(other) != owner_of(t)) triangles_.add(owner_of(other), t);
-    }
+    for (Index i = 0; i < pairs.size(); ++i)
+      ties_.tie(std::array{pairs.a.data()[i], pairs.b.data()[i]}, i, couples);
   }
 
   Index id_of(Index t) const { return w_.triangles.id.data()[t]; }
@@ -225,21 +189,10 @@ class Journey {
   }
 
   World& w_;
-  const std::vector<int>& owner_;
   Deliveries triangles_;
+  Ties ties_;
   Buffer<Neighbourhood> lies_;
 };
-
-/// The largest margin that a search now would give a triangle that this rank owns.  [m]
-double margin_now(const World& w) {
-  double fastest = 0.0;
-  for (Index t = 0; t < w.triangles.size(); ++t) {
-    if (!w.domain.owns(t)) continue;
-    for (const NodeState& n : w.triangles.nodes.data()[t].at)
-      fastest = std::max(fastest, norm(n.velocity));
-  }
-  return margin_rule(w).margin({fastest, 0.0, 0.0});
-}
 
 /// How far beyond their own corners triangles reach others of the same rank, until they are shared
 /// out again (docs/theory-domain.md, section 2).
@@ -249,19 +202,6 @@ double halo_width(const World& w) {
     largest = std::max(largest, radius(nodes));
   largest = -w.domain.least(-largest);
   return (largest + 2.0 * w.domain.margin + 2.0 * w.domain.buffer) * (1.0 + 1e-6);
-}
-
-/// What a triangle costs: itself, and each of its joints and couples; shared ones by half.
-std::vector<Load> loads_of(const World& w) {
-  std::vector<std::int64_t> weight(at(w.triangles.size()), 2);
-  for (const Buffer<Index>* edges : {&w.joints.edge_a, &w.joints.edge_b})
-    for (const Index edge : edges->host()) ++weight[at(edge / 3)];
-  for (const Buffer<Index>* ends : {&w.couples.pairs.a, &w.couples.pairs.b})
-    for (const Index t : ends->host()) ++weight[at(t)];
-  std::vector<Load> loads;
-  for (Index t = 0; t < w.triangles.size(); ++t)
-    if (w.domain.owns(t)) loads.push_back({centroid(w.triangles.nodes.data()[t]), weight[at(t)]});
-  return loads;
 }
 
 /// What follows from the triangles and joints that are here.
@@ -301,65 +241,51 @@ void settle_in(World& w) {
   derive(w);
 }
 
-void share_anew(World& w, bool first) {
-  Domain& d = w.domain;
-  const std::vector<Load> loads = loads_of(w);
-  std::int64_t load = 0;
-  for (const Load& l : loads) load += l.weight;
-  if (first || (d.config.balance && imbalance(*d.ranks, load) > d.config.imbalance)) {
-    d.partition.cut(*d.ranks, loads);
-    ++d.counts.cuts;
-  }
-  std::vector<GlobalId> mine;  // before
-  for (Index t = 0; t < w.triangles.size(); ++t)
-    if (d.owns(t)) mine.push_back(w.triangles.id.data()[t]);
-  // Elements may become faster until they are shared out again.
-  d.margin = std::min(margin_rule(w).largest, -1.5 * d.least(-margin_now(w)));
-  const std::vector<int> next_owner = owners(w);
-  Journey journey(w, next_owner);
-  journey.add_copies(halo_width(w));
-  journey.go();
+class Mesh final : public Shareable {
+ public:
+  explicit Mesh(World& w) : w_(w) {}
 
-  const std::vector<int> owner = owners(w);
-  const Index count = w.triangles.size();
-  d.owned.resize(count);
-  d.placed.clear();
-  for (Index t = 0; t < count; ++t) {
-    const bool own = owner[at(t)] == d.ranks->rank();
-    d.owned.data()[t] = own ? 1 : 0;
-    for (const NodeState& n : w.triangles.nodes.data()[t].at)
-      d.placed.push_back({n.position.x, n.position.y, 0.0});
-    if (own && !std::binary_search(mine.begin(), mine.end(), w.triangles.id.data()[t]))
-      ++d.counts.moved;
+  const Buffer<GlobalId>& ids() const override { return w_.triangles.id; }
+  Vec3 centre(Index t) const override { return centroid(w_.triangles.nodes.data()[t]); }
+  void each_point(const std::function<void(const Vec3&)>& visit) const override {
+    for (const TriangleNodes& nodes : w_.triangles.nodes.host())
+      for (const NodeState& n : nodes.at) visit({n.position.x, n.position.y, 0.0});
   }
-  d.halo.build(*d.ranks, w.triangles.id, owner);
-  d.counts.copies = d.halo.copies();
-  d.counts.owned = count - d.halo.copies();
-  d.counts.load = 0;
-  for (const Load& l : loads_of(w)) d.counts.load += l.weight;
-  ++d.counts.migrations;
-  settle_in(w);
-}
-
-/// Whether some corner has left the buffer; nowhere (NaN) counts as left.
-bool has_left(const World& w) {
-  const double allowed = w.domain.buffer * w.domain.buffer;
-  for (Index t = 0; t < w.triangles.size(); ++t) {
-    if (!w.domain.owns(t)) continue;
-    for (Index k = 0; k < 3; ++k) {
-      const Vec2& x = w.triangles.nodes.data()[t].at[k].position;
-      const Vec3 moved = Vec3{x.x, x.y, 0.0} - w.domain.placed[at(3 * t + k)];
-      if (!(dot(moved, moved) <= allowed)) return true;
+  std::vector<Load> loads() const override {
+    std::vector<std::int64_t> weight(at(w_.triangles.size()), 2);
+    for (const Buffer<Index>* edges : {&w_.joints.edge_a, &w_.joints.edge_b})
+      for (const Index edge : edges->host()) ++weight[at(edge / 3)];
+    for (const Buffer<Index>* ends : {&w_.couples.pairs.a, &w_.couples.pairs.b})
+      for (const Index t : ends->host()) ++weight[at(t)];
+    std::vector<Load> loads;
+    for (Index t = 0; t < w_.triangles.size(); ++t)
+      if (w_.domain.owns(t)) loads.push_back({centre(t), weight[at(t)]});
+    return loads;
+  }
+  double margin() const override {
+    double fastest = 0.0;
+    for (Index t = 0; t < w_.triangles.size(); ++t) {
+      if (!w_.domain.owns(t)) continue;
+      for (const NodeState& n : w_.triangles.nodes.data()[t].at)
+        fastest = std::max(fastest, norm(n.velocity));
     }
+    return margin_rule(w_).margin({fastest, 0.0, 0.0});
   }
-  return false;
-}
+  double largest_margin() const override { return margin_rule(w_).largest; }
+  void send(const std::vector<int>& owner) override {
+    Journey journey(w_, owner);
+    journey.add_copies(halo_width(w_));
+    journey.go();
+  }
+  void settle_in() override { fdem::settle_in(w_); }
+
+ private:
+  World& w_;
+};
 
 /// What all ranks know alike, as rank 0 has it.
 void take_common(World& w, Communicator& ranks) {
-  for (double* time : {&w.time, &w.last_dt, &w.next_dt}) take_from_first(ranks, *time);
-  take_from_first(ranks, w.step);
-  take_from_first(ranks, w.searches);
+  take_time_from_first(ranks, w);
   for (Buffer<std::uint8_t>* flags : {&w.opened.changed, &w.opened.vertex}) {
     Message message(static_cast<std::size_t>(flags->size()));
     std::memcpy(message.data(), flags->data(), message.size());
@@ -407,10 +333,6 @@ void refresh_copies(World& w) {
 World share_out(World& whole, Communicator& ranks, const DomainConfig& config) {
   if (whole.mesh.tied.empty()) note_mesh(whole);
   World w = whole;
-  Domain& d = w.domain;
-  d.ranks = &ranks;
-  d.config = config;
-  d.buffer = config.buffer * w.parameters.mean_edge;
   w.mesh.joint_number.resize(w.joints.size());
   for (Index i = 0; i < w.joints.size(); ++i) w.mesh.joint_number.data()[i] = i;
   if (ranks.rank() != 0) {
@@ -419,28 +341,17 @@ World share_out(World& whole, Communicator& ranks, const DomainConfig& config) {
   }
   take_common(w, ranks);
   w.ledger = {};  // what this rank books from here on
-  d.owned.resize(w.triangles.size());
-  std::fill(d.owned.host().begin(), d.owned.host().end(), std::uint8_t{1});
-
-  Vec3 low{no_limit, no_limit, 0.0}, minus_high = low;
-  for (const TriangleNodes& nodes : w.triangles.nodes.host()) {
-    const Vec3 x = centroid(nodes);
-    low = {std::min(low.x, x.x), std::min(low.y, x.y), 0.0};
-    minus_high = {std::min(minus_high.x, -x.x), std::min(minus_high.y, -x.y), 0.0};
-  }
-  low = {ranks.least(low.x), ranks.least(low.y), 0.0};
-  minus_high = {ranks.least(minus_high.x), ranks.least(minus_high.y), 0.0};
-  d.partition = Partition(ranks.size(), low, -minus_high - low,
-                          w.parameters.mean_edge / config.refinement, 2);
-  share_anew(w, true);
+  Mesh mesh(w);
+  begin_sharing(w.domain, ranks, config, mesh, w.parameters.mean_edge, 2);
+  share_anew(w.domain, mesh, true);
   return w;
 }
 
 void migrate(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "migration");
-  const bool beyond = has_left(w) || !(margin_now(w) <= w.domain.margin);
-  if (w.domain.any(beyond)) share_anew(w, false);
+  Mesh mesh(w);
+  share_if_needed(w.domain, mesh);
 }
 
 void collect(World& part, World& whole) {
@@ -460,18 +371,14 @@ void collect(World& part, World& whole) {
   Journey(copy, std::vector<int>(at(part.triangles.size()), 0)).go();
 
   Communicator& ranks = *part.domain.ranks;
-  Message booked(sizeof part.ledger);
-  std::memcpy(booked.data(), &part.ledger, sizeof part.ledger);
-  const std::vector<Message> all = ranks.from_all(booked);
+  const std::vector<Ledger> booked = from_each(ranks, part.ledger);
   part.ledger = {};
   std::uint64_t changed = 0;
   for (Index i = 0; i < part.opened.changed.size(); ++i)
     if (part.opened.changed.data()[i] != 0) changed |= std::uint64_t{1} << i;
   changed = ranks.any_of(changed);
   if (ranks.rank() != 0) return;
-  for (const Message& message : all) {
-    Ledger ledger;
-    std::memcpy(&ledger, message.data(), sizeof ledger);
+  for (const Ledger& ledger : booked) {
     whole.ledger.rubbed.add(ledger.rubbed);
     whole.ledger.lost.add(ledger.lost);
     whole.ledger.inserted.add(ledger.inserted);
@@ -486,11 +393,7 @@ void collect(World& part, World& whole) {
   whole.motions = part.motions;
   whole.load_laws = part.load_laws;
   whole.domain.partition = part.domain.partition;
-  whole.time = part.time;
-  whole.last_dt = part.last_dt;
-  whole.next_dt = part.next_dt;
-  whole.step = part.step;
-  whole.searches = part.searches;
+  copy_time(part, whole);
 }
 
 }  // namespace breccia::fdem

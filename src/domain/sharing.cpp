@@ -1,0 +1,98 @@
+#include "domain/sharing.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace breccia {
+namespace {
+
+/// Whether a point of an own element has left the buffer; nowhere (NaN) counts as left.
+bool has_left(const Domain& d, const Shareable& elements) {
+  const double allowed = d.buffer * d.buffer;
+  const auto points = static_cast<Index>(d.placed.size());
+  const Index per_element = elements.ids().size() > 0 ? points / elements.ids().size() : 1;
+  Index i = 0;
+  bool left = false;
+  elements.each_point([&](const Vec3& point) {
+    const Vec3 moved = point - d.placed[static_cast<std::size_t>(i)];
+    if (d.owns(i / per_element) && !(dot(moved, moved) <= allowed)) left = true;
+    ++i;
+  });
+  return left;
+}
+
+std::int64_t sum_of(const std::vector<Load>& loads) {
+  std::int64_t sum = 0;
+  for (const Load& load : loads) sum += load.weight;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<int> owners(const Partition& partition, const Shareable& elements) {
+  std::vector<int> owner;
+  for (Index e = 0; e < elements.ids().size(); ++e)
+    owner.push_back(partition.owner(elements.centre(e)));
+  return owner;
+}
+
+void begin_sharing(Domain& d, Communicator& ranks, const DomainConfig& config,
+                   const Shareable& elements, double mean_size, int depth) {
+  d.ranks = &ranks;
+  d.config = config;
+  d.buffer = config.buffer * mean_size;
+  const Index count = elements.ids().size();
+  d.owned.resize(count);
+  std::fill(d.owned.host().begin(), d.owned.host().end(), std::uint8_t{1});
+  constexpr double far = std::numeric_limits<double>::max();
+  Vec3 low{far, far, far}, minus_high = low;
+  for (Index e = 0; e < count; ++e) {
+    const Vec3 x = elements.centre(e);
+    low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+    minus_high = {std::min(minus_high.x, -x.x), std::min(minus_high.y, -x.y),
+                  std::min(minus_high.z, -x.z)};
+  }
+  low = {ranks.least(low.x), ranks.least(low.y), ranks.least(low.z)};
+  minus_high = {ranks.least(minus_high.x), ranks.least(minus_high.y), ranks.least(minus_high.z)};
+  d.partition =
+      Partition(ranks.size(), low, -minus_high - low, mean_size / config.refinement, depth);
+}
+
+void share_anew(Domain& d, Shareable& elements, bool first) {
+  const std::vector<Load> loads = elements.loads();
+  if (first || (d.config.balance && imbalance(*d.ranks, sum_of(loads)) > d.config.imbalance)) {
+    d.partition.cut(*d.ranks, loads);
+    ++d.counts.cuts;
+  }
+  // Elements may become faster until they are shared out again.
+  d.margin = std::min(elements.largest_margin(), -1.5 * d.least(-elements.margin()));
+  std::vector<GlobalId> mine;  // before
+  for (Index e = 0; e < elements.ids().size(); ++e)
+    if (d.owns(e)) mine.push_back(elements.ids().data()[e]);
+  elements.send(owners(d.partition, elements));
+
+  const std::vector<int> owner = owners(d.partition, elements);
+  const Index count = elements.ids().size();
+  d.owned.resize(count);
+  for (Index e = 0; e < count; ++e) {
+    const bool own = owner[static_cast<std::size_t>(e)] == d.ranks->rank();
+    d.owned.data()[e] = own ? 1 : 0;
+    if (own && !std::binary_search(mine.begin(), mine.end(), elements.ids().data()[e]))
+      ++d.counts.moved;
+  }
+  d.placed.clear();
+  elements.each_point([&](const Vec3& point) { d.placed.push_back(point); });
+  d.halo.build(*d.ranks, elements.ids(), owner);
+  d.counts.copies = d.halo.copies();
+  d.counts.owned = count - d.halo.copies();
+  d.counts.load = sum_of(elements.loads());
+  ++d.counts.migrations;
+  elements.settle_in();
+}
+
+void share_if_needed(Domain& d, Shareable& elements) {
+  const bool beyond = has_left(d, elements) || !(elements.margin() <= d.margin);
+  if (d.any(beyond)) share_anew(d, elements, false);
+}
+
+}  // namespace breccia

@@ -1,0 +1,118 @@
+#pragma once
+// Sharing elements out among ranks, whatever they are: who owns what, when that changes, and what
+// all ranks must know alike (docs/theory-domain.md).
+
+#include <array>
+#include <functional>
+
+#include "domain/domain.hpp"
+
+namespace breccia {
+
+/// What sharing out must know of a method's elements: those that a rank holds, its own and copies.
+class Shareable {
+ public:
+  virtual ~Shareable() = default;
+
+  virtual const Buffer<GlobalId>& ids() const = 0;  ///< ascending
+  virtual Vec3 centre(Index element) const = 0;     ///< where it counts as being  [m]
+  /// The points whose travel the buffer bounds, one after the other; as many for each element.  [m]
+  virtual void each_point(const std::function<void(const Vec3&)>& visit) const = 0;
+  /// What each of its own elements costs: itself, and each end of what ties it to others.
+  virtual std::vector<Load> loads() const = 0;
+  /// The largest margin that a search now would give an element of its own.  [m]
+  virtual double margin() const = 0;
+  virtual double largest_margin() const = 0;  ///< that any search gives  [m]
+  /// Sends elements with all they own to their new owners; besides these, ranks whose rectangle is
+  /// near enough get a copy.
+  virtual void send(const std::vector<int>& owner) = 0;
+  /// Fills what follows from the elements that are here now, and from whose they are.
+  virtual void settle_in() = 0;
+};
+
+/// Makes all elements those of rank 0 and gives the domain its rectangles, not yet cut.
+/// @param mean_size  of an element  [m]
+/// @param depth      dimensions of the model
+void begin_sharing(Domain& domain, Communicator& ranks, const DomainConfig& config,
+                   const Shareable& elements, double mean_size, int depth);
+
+/// Shares elements out anew: first moves borders where loads have become uneven, or for the first
+/// time. Every rank calls it.
+void share_anew(Domain& domain, Shareable& elements, bool first);
+
+/// Does so if on some rank an element has left its buffer or become too fast.
+void share_if_needed(Domain& domain, Shareable& elements);
+
+/// The ranks that own the elements by the borders of now.
+std::vector<int> owners(const Partition& partition, const Shareable& elements);
+
+/// Items that tie elements together: each is held by every rank that owns one of its elements, and
+/// so are all its elements.
+class Ties {
+ public:
+  /// @param owner     rank that each local element will belong to
+  /// @param elements  gets the elements that ranks need for their ties
+  Ties(const Domain& domain, const std::vector<int>& owner, Deliveries& elements)
+      : domain_(domain), owner_(owner), elements_(elements) {}
+
+  /// The members of an item go wherever one of them is owned.
+  template <class Members>
+  void tie(const Members& members) {
+    for (const Index e : members) {
+      if (!domain_.owns(e)) continue;
+      for (const Index other : members)
+        if (owner_of(other) != owner_of(e)) elements_.add(owner_of(other), e);
+    }
+  }
+  /// So does the item itself, from the owner of the first one.
+  template <class Members>
+  void tie(const Members& members, Index item, Deliveries& items) {
+    tie(members);
+    if (!domain_.owns(members[0])) return;
+    for (const Index e : members) items.add(owner_of(e), item);
+  }
+  int owner_of(Index e) const { return owner_[static_cast<std::size_t>(e)]; }
+
+ private:
+  const Domain& domain_;
+  const std::vector<int>& owner_;
+  Deliveries& elements_;
+};
+
+/// Sends items with all their fields and puts those that came in the order of `key`, one of them.
+template <class State, class Key>
+void send_sorted(Communicator& ranks, State&& state, Deliveries& to, const Buffer<Key>& key) {
+  to.settle();
+  deal(ranks, state, to);
+  sort_by(state, key);
+}
+
+/// A value of each rank, by rank.
+template <class T>
+std::vector<T> from_each(Communicator& ranks, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  Message message(sizeof value);
+  std::memcpy(message.data(), &value, sizeof value);
+  std::vector<T> values;
+  for (const Message& came : ranks.from_all(message))
+    std::memcpy(&values.emplace_back(), came.data(), sizeof value);
+  return values;
+}
+
+/// Where a world is in time: equal on all ranks. Worlds name it alike.
+template <class World>
+void copy_time(const World& from, World& to) {
+  to.time = from.time;
+  to.last_dt = from.last_dt;
+  to.next_dt = from.next_dt;
+  to.step = from.step;
+  to.searches = from.searches;
+}
+template <class World>
+void take_time_from_first(Communicator& ranks, World& w) {
+  for (double* time : {&w.time, &w.last_dt, &w.next_dt}) take_from_first(ranks, *time);
+  take_from_first(ranks, w.step);
+  take_from_first(ranks, w.searches);
+}
+
+}  // namespace breccia
