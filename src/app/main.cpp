@@ -45,7 +45,8 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   program.name("breccia");
   program.footer(
       "Exit codes: 0 done, 2 bad input, 3 input/output, 4 numerics, 5 memory or device,\n"
-      "7 checkpoint refused, 9 a check of the case failed, 128+n ended by signal n.");
+      "7 checkpoint refused, 8 a rank was lost, 9 a check of the case failed,\n"
+      "128+n ended by signal n.");
   program.set_version_flag("--version", version_text());
   program.require_subcommand(1);
   breccia::app::add_run(program, exit_code, ranks);

@@ -76,6 +76,7 @@ struct DomainConfig {
   double imbalance = 0.1;  ///< largest load over the mean, less one, that is left alone  [-]
   int refinement = 4;      ///< I_LB of Lukas et al. 2014, section 4  [-]
   double buffer = 0.25;    ///< over the mean size of an element  [-]
+  double patience = 60.0;  ///< how long a rank may be silent  [s]
   bool show = false;
 
   template <class Visit>
@@ -88,6 +89,9 @@ struct DomainConfig {
     key("buffer", buffer, "-", Range{0.0, 100.0},
         "how far elements travel, over their mean size, before they are shared out anew; more "
         "makes that rarer, and ranks hold more copies");
+    key("patience", patience, "s", not_negative,
+        "a rank whose process gives no sign of life for so long, or no answer for ten times as "
+        "long, is lost: all end with exit code 8; 0 waits for ever");
     key("show", show, "frames tell the rank of each element, as the field rank");
   }
 };

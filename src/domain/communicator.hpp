@@ -57,6 +57,9 @@ class Communicator {
   bool in_step() const { return in_step_; }
   void set_in_step(bool in_step) { in_step_ = in_step; }
 
+  /// How long a rank may be silent before all end with exit code 8; 0: for ever.  [s]
+  virtual void set_patience(double /*seconds*/) {}
+
   /// Ends all ranks with this exit code, at once: when some of them can no longer be reached
   /// otherwise. Does not return where ranks are processes.
   virtual void abort(int exit_code) = 0;

@@ -6,10 +6,18 @@
 #include <mpi.h>
 #endif
 
-#include <algorithm>
-#include <cstdlib>
-#include <string>
+#include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "core/case_config.hpp"
+#include "domain/watchdog.hpp"
 #include "exec/error.hpp"
 
 namespace breccia {
@@ -25,6 +33,50 @@ void must(int code, const char* call) {
   MPI_Error_string(code, text, &length);
   throw DeviceError(std::string(call) + ": " + text);
 }
+
+/// Memory that the ranks of one machine share: a sign of life of each.
+class SharedSigns {
+ public:
+  explicit SharedSigns(MPI_Comm here) {
+    int size = 0, rank = 0, unit = 0;
+    must(MPI_Comm_size(here, &size), "MPI_Comm_size");
+    must(MPI_Comm_rank(here, &rank), "MPI_Comm_rank");
+    const MPI_Aint own = rank == 0 ? size * static_cast<MPI_Aint>(sizeof(LifeSign)) : 0;
+    void* memory = nullptr;
+    must(MPI_Win_allocate_shared(own, 1, MPI_INFO_NULL, here, &memory, &window_),
+         "MPI_Win_allocate_shared");
+    MPI_Aint bytes = 0;
+    must(MPI_Win_shared_query(window_, 0, &bytes, &unit, &memory), "MPI_Win_shared_query");
+    auto* const first = static_cast<LifeSign*>(memory);
+    signs_ = {first, static_cast<std::size_t>(size)};
+    if (rank == 0)
+      for (LifeSign& sign : signs_) new (&sign) LifeSign{};
+    must(MPI_Barrier(here), "MPI_Barrier");
+    world_rank_.resize(signs_.size());
+    int self = 0;
+    must(MPI_Comm_rank(MPI_COMM_WORLD, &self), "MPI_Comm_rank");
+    must(MPI_Allgather(&self, 1, MPI_INT, world_rank_.data(), 1, MPI_INT, here), "MPI_Allgather");
+    self_ = static_cast<std::size_t>(rank);
+  }
+  SharedSigns(const SharedSigns&) = delete;
+  SharedSigns& operator=(const SharedSigns&) = delete;
+  ~SharedSigns() { MPI_Win_free(&window_); }
+
+  std::span<LifeSign> all() const { return signs_; }
+  std::size_t self() const { return self_; }
+  std::string name_of(std::size_t place) const {
+    return place < world_rank_.size() ? "rank " + std::to_string(world_rank_[place])
+                                      : "a rank on another machine";
+  }
+  /// True for the first one on this machine that asks.
+  bool may_tell() const { return signs_[0].told.exchange(1) == 0; }
+
+ private:
+  MPI_Win window_ = MPI_WIN_NULL;
+  std::span<LifeSign> signs_;
+  std::vector<int> world_rank_;
+  std::size_t self_ = 0;
+};
 
 class MpiRanks final : public Communicator {
  public:
@@ -42,9 +94,14 @@ class MpiRanks final : public Communicator {
     must(MPI_Comm_split_type(all_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here),
          "MPI_Comm_split_type");
     must(MPI_Comm_size(here, &here_), "MPI_Comm_size");
+    signs_.emplace(here);
     MPI_Comm_free(&here);
+    watchdog_.emplace(signs_->all(), signs_->self(), [this](std::size_t place) { lose(place); });
+    watchdog_->set_patience(DomainConfig{}.patience);
   }
   ~MpiRanks() override {
+    watchdog_.reset();
+    signs_.reset();
     MPI_Comm_free(&all_);
     MPI_Finalize();
   }
@@ -52,6 +109,7 @@ class MpiRanks final : public Communicator {
   int rank() const override { return rank_; }
   int size() const override { return size_; }
   int on_this_machine() const { return here_; }
+  void set_patience(double seconds) override { watchdog_->set_patience(seconds); }
 
   void start(std::span<const Post> to, std::span<const Post> from) override {
     requests_.clear();
@@ -59,6 +117,7 @@ class MpiRanks final : public Communicator {
     for (const Post& post : to) send(post);
   }
   void finish() override {
+    const Waiting waiting(*watchdog_);
     must(MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE),
          "MPI_Waitall");
     requests_.clear();
@@ -67,9 +126,11 @@ class MpiRanks final : public Communicator {
   std::vector<Message> exchange(std::vector<Message> messages) override {
     const auto count = static_cast<std::size_t>(size_);
     std::vector<std::int64_t> sent(count), coming(count);
+    std::optional<Waiting> waiting(*watchdog_);
     for (std::size_t r = 0; r < count; ++r) sent[r] = static_cast<std::int64_t>(messages[r].size());
     must(MPI_Alltoall(sent.data(), 1, MPI_INT64_T, coming.data(), 1, MPI_INT64_T, all_),
          "MPI_Alltoall");
+    waiting.reset();
     std::vector<Message> came(count);
     requests_.clear();
     for (std::size_t r = 0; r < count; ++r) {
@@ -86,21 +147,25 @@ class MpiRanks final : public Communicator {
   }
 
   double least(double value) override {
+    const Waiting waiting(*watchdog_);
     double result = value;
     must(MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, MPI_MIN, all_), "MPI_Allreduce");
     return result;
   }
   std::uint64_t any_of(std::uint64_t bits) override {
+    const Waiting waiting(*watchdog_);
     std::uint64_t result = bits;
     must(MPI_Allreduce(&bits, &result, 1, MPI_UINT64_T, MPI_BOR, all_), "MPI_Allreduce");
     return result;
   }
   void add_up(std::span<std::int64_t> numbers) override {
+    const Waiting waiting(*watchdog_);
     must(MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_INT64_T,
                        MPI_SUM, all_),
          "MPI_Allreduce");
   }
   Message from_first(Message message) override {
+    const Waiting waiting(*watchdog_);
     auto bytes = static_cast<std::int64_t>(message.size());
     must(MPI_Bcast(&bytes, 1, MPI_INT64_T, 0, all_), "MPI_Bcast");
     message.resize(static_cast<std::size_t>(bytes));
@@ -111,6 +176,39 @@ class MpiRanks final : public Communicator {
 
  private:
   static constexpr int tag = 1;
+  static constexpr int rank_lost = 8;  // exit code
+
+  /// While this rank needs an answer.
+  class Waiting {
+   public:
+    explicit Waiting(Watchdog& watchdog) : watchdog_(watchdog) { watchdog_.begin_waiting(); }
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+    ~Waiting() { watchdog_.end_waiting(); }
+
+   private:
+    Watchdog& watchdog_;
+  };
+
+  /// On the watchdog's thread: one rank tells, and all end.
+  void lose(std::size_t place) {
+    if (!signs_->may_tell())
+      std::this_thread::sleep_for(std::chrono::seconds(3));
+    else
+      std::fprintf(stderr,
+                   "error: %s has not answered for %g s or more; all ranks end\n"
+                   "  go on from the last checkpoint with breccia resume\n"
+                   "  [domain] patience says how long ranks wait for each other\n",
+                   signs_->name_of(place).c_str(), watchdog_->patience());
+    std::fflush(stderr);
+    // Should MPI itself hang, too.
+    std::thread([] {
+      std::this_thread::sleep_for(std::chrono::seconds(2));
+      ::_exit(rank_lost);
+    }).detach();
+    abort(rank_lost);
+  }
+
   /// MPI counts in int: longer messages go in parts.
   static constexpr std::size_t longest = std::size_t{1} << 30;
 
@@ -137,6 +235,8 @@ class MpiRanks final : public Communicator {
   MPI_Comm all_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1, here_ = 1;
   std::vector<MPI_Request> requests_;
+  std::optional<SharedSigns> signs_;
+  std::optional<Watchdog> watchdog_;
 };
 
 /// Whether a launcher has started this process: of Open MPI, MPICH, or a cluster's own.

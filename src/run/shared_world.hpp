@@ -24,7 +24,7 @@ class SharedWorld {
   /// @param ranks  null: alone. Otherwise every rank makes one of these from the same case.
   template <class Make>
   SharedWorld(const Make& make, Communicator* ranks, const DomainConfig& config)
-      : ranks_(ranks), config_(config), whole_(made(make, ranks)) {
+      : ranks_(ranks), config_(config), whole_(made(make, ranks, config)) {
     whole_.domain.config = config;  // frames read it
     if (ranks_ != nullptr) at_once([&] { share(); });
   }
@@ -104,7 +104,8 @@ class SharedWorld {
 
  private:
   template <class Make>
-  static World made(const Make& make, Communicator* ranks) {
+  static World made(const Make& make, Communicator* ranks, const DomainConfig& config) {
+    if (ranks != nullptr) ranks->set_patience(config.patience);
     std::optional<World> world;
     together_or_not(ranks, [&] { world.emplace(make()); });
     return std::move(*world);

@@ -2,6 +2,7 @@
 // ends.
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
 
 #include <chrono>
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <thread>
 
 namespace breccia {
 namespace {
@@ -132,35 +134,95 @@ TEST_F(ProgramOnRanks, numbers_that_go_wrong_end_all_with_exit_code_4_and_a_save
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
 }
 
-TEST_F(ProgramOnRanks, a_killed_rank_ends_the_job_within_seconds_and_resume_goes_on) {
-  const std::string shared = BR_SOURCE_DIR
+/// Time from an event on a rank to the end of the job, and what the job said.
+struct Ending {
+  int exit_code = 0;
+  int took = 0;  ///<  [s]
+  std::string told;
+  int errors() const {
+    int count = 0;
+    for (std::size_t at = 0; (at = told.find("error: ", at)) != std::string::npos; ++at) ++count;
+    return count;
+  }
+};
+
+/// Runs the slab on three ranks, until one of them suffers `fate`, a command of the shell that
+/// knows its process as $pid, once there is a state to go on from.
+class FateOfRank : public ProgramOnRanks {
+ protected:
+  static constexpr const char* slab = BR_SOURCE_DIR
       "/cases/rc_slab/small.toml --threads 1 --no-progress --set output.frames=0 "
-      "--set checkpoint.steps=100 --set output.history=1 ";
-  // The second rank dies, as if by a fault of its machine, once there is a state to go on from.
-  std::ofstream(out("rank.sh")) << "#!/bin/sh\n"
-                                   "if [ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = 1 ]; then\n"
-                                   "  (while ! ls " +
-                                       out("killed") +
-                                       "/checkpoints/step_*.br; do sleep 0.02; done\n"
-                                       "   date +%s > " +
-                                       out("when") +
-                                       "; kill -9 $$) &\n"
-                                       "fi\n"
-                                       "exec " BR_PROGRAM " \"$@\"\n";
-  fs::permissions(out("rank.sh"), fs::perms::owner_all);
-  const std::string command = mpirun(3) + out("rank.sh") + " run " + shared + "-o " +
-                              out("killed") + " > " + out("told") +
-                              " 2>&1; code=$?; echo $(($(date +%s) - $(cat " + out("when") +
-                              "))) > " + out("took") + "; exit $code";
-  const int status = std::system(command.c_str());
-  EXPECT_NE(WEXITSTATUS(status), 0) << bytes_of(out("told"));
-  EXPECT_NE(WEXITSTATUS(status), 124) << "timed out";
-  EXPECT_LE(std::stoi(bytes_of(out("took"))), 5);
+      "--set checkpoint.steps=100 --set output.history=1 --set domain.patience=2 ";
+
+  Ending suffer(int rank, const std::string& fate, const std::string& more = "") {
+    std::ofstream(out("rank.sh"))
+        << "#!/bin/sh\nexport MALLOC_MMAP_THRESHOLD_=4096\npid=$$\necho $pid >> " << out("pids")
+        << "\nif [ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = " << rank << " ]; then\n  (while ! ls "
+        << out("run") << "/checkpoints/step_*.br; do sleep 0.02; done\n   date +%s > "
+        << out("when") << "; " << fate << ") > /dev/null 2>&1 &\nfi\nexec " BR_PROGRAM " \"$@\"\n";
+    fs::permissions(out("rank.sh"), fs::perms::owner_all);
+    const std::string command = mpirun(3) + out("rank.sh") + " run " + slab + more + "-o " +
+                                out("run") + " > " + out("told") +
+                                " 2>&1; code=$?; echo $(($(date +%s) - $(cat " + out("when") +
+                                "))) > " + out("took") + "; exit $code";
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), std::stoi(bytes_of(out("took"))), bytes_of(out("told"))};
+  }
+  /// Processes of the job that are still there, after a moment.
+  int left_over() const {
+    int count = 1;
+    for (int i = 0; i < 50 && count > 0; ++i) {
+      count = 0;
+      std::ifstream file(out("pids"));
+      for (int pid = 0; file >> pid;) count += ::kill(pid, 0) == 0 ? 1 : 0;
+      if (count > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return count;
+  }
+};
+
+TEST_F(FateOfRank, killed_ends_the_job_within_seconds_and_resume_goes_on) {
+  const Ending ending = suffer(1, "kill -9 $pid");
+  EXPECT_NE(ending.exit_code, 0) << ending.told;
+  EXPECT_NE(ending.exit_code, 124) << "timed out";
+  EXPECT_LE(ending.took, 5);
   const std::string end = "--steps 800 ";
-  ASSERT_EQ(run(2, "resume " + out("killed") + " --threads 1 --no-progress " + end, out("told")), 0)
+  ASSERT_EQ(run(2, "resume " + out("run") + " --threads 1 --no-progress " + end, out("told")), 0)
       << bytes_of(out("told"));
-  ASSERT_EQ(run(1, "run " + shared + end + "-o " + out("whole")), 0);
-  EXPECT_EQ(hash_in(out("killed")), hash_in(out("whole")));
+  ASSERT_EQ(run(1, std::string("run ") + slab + end + "-o " + out("whole")), 0);
+  EXPECT_EQ(hash_in(out("run")), hash_in(out("whole")));
+}
+
+TEST_F(FateOfRank, stopped_ends_all_with_exit_code_8_soon_after_the_others_lose_patience) {
+  for (const int rank : {0, 1}) {
+    const Ending ending = suffer(rank, "kill -STOP $pid");
+    EXPECT_EQ(ending.exit_code, 8) << ending.told;
+    EXPECT_LE(ending.took, 2 + 5);
+    EXPECT_EQ(ending.errors(), 1) << ending.told;
+    EXPECT_NE(ending.told.find("error: rank " + std::to_string(rank) + " has not answered"),
+              std::string::npos)
+        << ending.told;
+    EXPECT_EQ(left_over(), 0);
+    fs::remove_all(out("run"));
+  }
+}
+
+TEST_F(FateOfRank, stopped_for_less_than_the_others_patience_changes_nothing) {
+  const Ending ending = suffer(1, "kill -STOP $pid; sleep 0.7; kill -CONT $pid", "--steps 400 ");
+  EXPECT_EQ(ending.exit_code, 0) << ending.told;
+  ASSERT_EQ(run(1, std::string("run ") + slab + "--steps 400 -o " + out("whole")), 0);
+  EXPECT_EQ(hash_in(out("run")), hash_in(out("whole")));
+}
+
+TEST_F(FateOfRank, without_memory_ends_all_with_exit_code_5_and_one_message) {
+  // From here on the process gets no more than it has; arrays are not taken from a heap (above).
+  const Ending ending = suffer(
+      1, "prlimit --pid $pid --as=$(($(awk '/VmSize/ {print $2}' /proc/$pid/status) * 1024))");
+  EXPECT_EQ(ending.exit_code, 5) << ending.told;
+  EXPECT_LE(ending.took, 5);
+  EXPECT_EQ(ending.errors(), 1) << ending.told;
+  EXPECT_NE(ending.told.find("error: rank 1: not enough memory"), std::string::npos) << ending.told;
+  EXPECT_EQ(left_over(), 0);
 }
 
 }  // namespace
