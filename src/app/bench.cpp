@@ -62,8 +62,10 @@ void add_bench(CLI::App& program) {
   command->add_option("NAME", bench->names, "which benchmarks; default: all");
   command->add_option("--json", bench->file, "write the numbers to this file")->type_name("FILE");
   command->add_option("--device", bench->options.device, "where to compute: cpu, cuda or cuda:N")
+      ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--threads", bench->options.threads, "host threads; default: all")
+      ->type_name("N")
       ->check(CLI::Range(1, 4096));
   command->add_flag(
       "--paced", bench->paced,

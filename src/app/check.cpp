@@ -14,6 +14,10 @@
 namespace breccia::app {
 namespace {
 
+std::string counted(std::size_t count, const char* one, const char* several) {
+  return fmt::format("{} {}", count, count == 1 ? one : several);
+}
+
 struct CheckCommand {
   std::vector<std::string> paths, overrides;
 
@@ -24,8 +28,10 @@ struct CheckCommand {
         const Case read = load_case(path, overrides);
         std::visit(
             [&](const auto& config) {
-              fmt::print("{}: good: {}, {} bodies, {} materials, ends at {}\n", path, config.method,
-                         config.bodies.size(), config.materials.size(), time_text(config.time.end));
+              fmt::print("{}: good: {}, {}, {}, ends at {}\n", path, config.method,
+                         counted(config.bodies.size(), "body", "bodies"),
+                         counted(config.materials.size(), "material", "materials"),
+                         time_text(config.time.end));
             },
             read.config);
       } catch (const Error& error) {

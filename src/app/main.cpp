@@ -7,11 +7,14 @@
 #include <filesystem>
 #include <memory>
 #include <new>
+#include <set>
+#include <system_error>
 
 #include "app/commands.hpp"
 #include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
 #include "exec/threads.hpp"
+#include "io/suggestion.hpp"
 #include "run/machine.hpp"
 
 namespace {
@@ -20,8 +23,32 @@ constexpr int usage_error = 2;
 constexpr int file_error = 3;
 constexpr int memory_error = 5;
 
+/// A text from files without what would steer a terminal.
+std::string harmless(const std::string& text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool steers = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+    shown += steers ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
+  }
+  return shown;
+}
+
 void write_error(const std::string& message) {
-  std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
+  std::fputs(fmt::format("error: {}\n", harmless(message)).c_str(), stderr);
+}
+
+/// Tells of a wrong command line; a first word that is no command is named.
+void tell_usage(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "-";
+  std::set<std::string> commands;
+  for (const CLI::App* command : program.get_subcommands({})) commands.insert(command->get_name());
+  if (error.get_exit_code() == 0 || first.starts_with('-') || commands.contains(first)) {
+    program.exit(error);
+    return;
+  }
+  write_error(fmt::format("{} is not a command{}\nRun with --help for more information.", first,
+                          breccia::suggestion(first, commands)));
 }
 
 int tell_and_end(breccia::Communicator& ranks, int exit_code, const std::string& message) {
@@ -41,7 +68,8 @@ std::string version_text() {
 int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   int exit_code = 0;
   CLI::App program{
-      "How concrete and rock break: discrete elements with links that soften and fail."};
+      "How concrete and rock break: spheres with links that soften and fail in 3D, triangles with "
+      "joints that crack in 2D."};
   program.name("breccia");
   program.footer(
       "Exit codes: 0 done, 2 bad input, 3 input/output, 4 numerics, 5 memory or device,\n"
@@ -61,7 +89,8 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (ranks != nullptr && ranks->rank() != 0) return error.get_exit_code() == 0 ? 0 : usage_error;
-    return program.exit(error) == 0 ? 0 : usage_error;
+    tell_usage(program, error, argc, argv);
+    return error.get_exit_code() == 0 ? 0 : usage_error;
   }
   return exit_code;
 }
@@ -83,7 +112,9 @@ int guarded(int argc, char** argv, breccia::Communicator* ranks) {
   } catch (const std::bad_alloc&) {
     exit_code = tell(memory_error, "not enough memory");
   } catch (const std::filesystem::filesystem_error& error) {
-    exit_code = tell(file_error, error.what());
+    exit_code = tell(file_error, error.path1().string() + ": " + error.code().message());
+  } catch (const std::system_error& error) {  // of fmt::print
+    exit_code = tell(file_error, fmt::format("standard output: {}", error.what()));
   } catch (const std::exception& error) {
     exit_code = tell(1, fmt::format("a fault of the program itself: {}", error.what()));
   }

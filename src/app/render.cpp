@@ -23,6 +23,8 @@ struct RenderCommand {
   RenderOptions options;
 
   void execute() {
+    if (!file.empty() && !file.ends_with(".png"))
+      throw InputError(file + ": pictures are PNG files; end the name with .png");
     const int count = static_cast<int>(frame_times(folder).size());
     if (count == 0) throw InputError(folder + ": this folder holds no frames");
     const int number = frame.value_or(count - 1);
@@ -48,13 +50,18 @@ void add_render(CLI::App& program) {
   command->add_option("--color", render->color, "field that colours it; default: damage")
       ->type_name("FIELD");
   command->add_option("--view", render->options.view, "camera: iso, x, y or z")
+      ->type_name("VIEW")
       ->capture_default_str();
   command->add_option("--clip", render->options.clip, "cut away one side of a plane such as x=0")
       ->type_name("PLANE");
   command->add_option("--frame", render->frame, "number of the frame; default: the last")
       ->type_name("N");
-  command->add_option("--width", render->options.width, "in pixels")->capture_default_str();
-  command->add_option("--height", render->options.height, "in pixels")->capture_default_str();
+  command->add_option("--width", render->options.width, "in pixels")
+      ->type_name("PIXELS")
+      ->capture_default_str();
+  command->add_option("--height", render->options.height, "in pixels")
+      ->type_name("PIXELS")
+      ->capture_default_str();
   command->add_flag("--links", render->options.show_links, "draw the links as well");
   command->callback([render] { render->execute(); });
 }

@@ -17,15 +17,19 @@ class Region {
     if (!config.on.empty()) {
       const auto found = std::find(model.groups.begin(), model.groups.end(), config.on);
       if (found == model.groups.end())
-        throw InputError(where + ".on: there is no body \"" + config.on + "\"");
+        throw InputError(where + ".on = \"" + config.on + "\" is not a body");
       group_ = static_cast<std::int16_t>(found - model.groups.begin());
     }
     if (config.edges.empty()) return;
     const auto found =
         std::find_if(model.edge_sets.begin(), model.edge_sets.end(),
                      [&](const Model::EdgeSet& s) { return s.name == config.edges; });
-    if (found == model.edge_sets.end())
-      throw InputError(where + ".edges: the mesh has no line named \"" + config.edges + "\"");
+    if (found == model.edge_sets.end()) {
+      std::string known;
+      for (const Model::EdgeSet& s : model.edge_sets) known += (known.empty() ? "" : ", ") + s.name;
+      throw InputError(where + ".edges = \"" + config.edges +
+                       "\" is no line of a mesh; there are: " + (known.empty() ? "none" : known));
+    }
     for (const auto& edge : found->edges) {
       lines_.insert(std::minmax(edge[0], edge[1]));
       on_lines_.insert(edge.begin(), edge.end());

@@ -192,7 +192,7 @@ void set_up_supports(World& w, const Config& config, const Model& model) {
   std::vector<Hold> holds;
   std::vector<Index> hold(model.triangle.size(), -1);
   for (const SupportConfig& support : config.supports) {
-    const std::string where = "support " + support.name;
+    const std::string where = "support." + support.name;
     int bits = 0;
     for (const std::string& direction : support.fix) {
       bits |= direction == "x" ? 1 : 2;
@@ -247,7 +247,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
     const std::size_t first = loaded.size();
     double length = 0.0;
-    for (const Index edge : edges_in(model, load.region, "load " + load.name)) {
+    for (const Index edge : edges_in(model, load.region, "load." + load.name)) {
       const auto t = at(edge / 3), k = at(edge % 3);
       const auto material = static_cast<std::size_t>(model.material[t]);
       const double density = config.materials[material].density;

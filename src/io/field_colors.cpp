@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "exec/error.hpp"
 
@@ -62,9 +63,10 @@ std::optional<Selected> find(const Frame& frame, const std::string& name) {
 
 std::string names_of_fields(const Frame& frame) {
   std::string names;
+  std::set<std::string> told;
   for (const Carrier carrier : {Carrier::points, Carrier::triangles, Carrier::lines}) {
     for (const FrameField& field : fields_of(frame, carrier)) {
-      names += (names.empty() ? "" : ", ") + field.name;
+      if (told.insert(field.name).second) names += (names.empty() ? "" : ", ") + field.name;
     }
   }
   return names.empty() ? "none" : names;

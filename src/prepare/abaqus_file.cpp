@@ -44,6 +44,9 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 const std::set<std::string> triangle_types{"CPS3", "CPE3", "S3", "S3R", "M3D3", "STRI3"};
 const std::set<std::string> line_types{"T2D2", "T3D2", "B21", "B31"};
+/// Keywords that bring nodes or elements, or move them: a mesh read without them would be another.
+const std::set<std::string> refused{"INCLUDE", "NGEN",   "NFILL",  "NCOPY",    "NMAP",
+                                    "ELGEN",   "ELCOPY", "SYSTEM", "TRANSFORM"};
 
 class AbaqusReader {
  public:
@@ -62,7 +65,9 @@ class AbaqusReader {
       else
         read_data(text);
     }
-    if (!has_keywords_) fail("there is no line that begins with *; is it an Abaqus input file?");
+    if (!has_keywords_)
+      throw InputError(name_ +
+                       ": there is no line that begins with *; is it an Abaqus input file?");
     resolve_element_sets();
     resolve_node_sets();
     return std::move(raw_);
@@ -84,6 +89,11 @@ class AbaqusReader {
     has_keywords_ = true;
     const auto words = words_of(text.substr(1));
     keyword_ = words.empty() ? "" : upper(words[0]);
+    if (refused.contains(keyword_))
+      fail(
+          fmt::format("*{} cannot be read; write all nodes and elements out in one file, in global "
+                      "coordinates",
+                      keyword_));
     type_.clear();
     set_.clear();
     generate_ = false;
@@ -133,6 +143,8 @@ class AbaqusReader {
       read_set(words_of(text), element_sets_[set_]);
     else if (keyword_ == "NSET")
       read_set(words_of(text), node_sets_[set_]);
+    else if (keyword_ == "INSTANCE")
+      fail("*INSTANCE moves its part; write the nodes in global coordinates");
     else if (!has_keywords_)
       fail(fmt::format("\"{}\" stands before the first keyword", text.substr(0, 40)));
   }

@@ -126,7 +126,11 @@ Mesh run_gmsh(const std::string& program, const std::string& geo, const std::str
         fmt::format("{}: {} failed with status {}{}", what, program, status, complaint(said)));
   if (said.find("Error") != std::string::npos)
     throw InputError(fmt::format("{}: {} met an error{}", what, program, complaint(said)));
-  return parse_gmsh(read_whole_file(mesh), "the mesh that gmsh made of " + what);
+  const std::string content = read_whole_file(mesh);
+  if (content.find("$Nodes") == std::string::npos)
+    throw InputError(
+        fmt::format("{}: {} made no mesh of it; does it draw a surface?", what, program));
+  return parse_gmsh(content, "the mesh that gmsh made of " + what);
 }
 
 std::string point_text(const Vec2& p) {

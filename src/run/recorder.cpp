@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 namespace breccia {
 namespace {
@@ -51,6 +52,11 @@ void Schedule::pass(double time) {
   const auto moment = [this](double k) { return k / count_ * end_; };
   // The quotient may be off by a rounding, so the search starts below it.
   double k = std::max(0.0, std::floor(time / end_ * count_) - 2.0);
+  constexpr double most_counted = 1e15;  // beyond, k + 1 may be k
+  if (!(k < most_counted)) {
+    next_ = std::nextafter(time, std::numeric_limits<double>::infinity());
+    return;
+  }
   while (moment(k) <= time) k += 1.0;
   next_ = moment(k);
 }

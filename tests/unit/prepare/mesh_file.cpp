@@ -243,11 +243,20 @@ INSTANTIATE_TEST_SUITE_P(
               "the node set \"right\" names node 30, which is not there"},
         Wrong{"\n2, 3\n*ELSET", "\n2, 3000000000\n*ELSET", "makes no sense"},
         Wrong{", TYPE=CPS3", "", "line 9: *ELEMENT needs TYPE="},
-        Wrong{", NSET=right", "", "line 19: *NSET needs a name"}));
+        Wrong{", NSET=right", "", "line 19: *NSET needs a name"},
+        Wrong{"*NSET", "*INCLUDE, INPUT=rest.inp\n*NSET", "line 19: *INCLUDE cannot be read"},
+        Wrong{"*NSET", "*Elgen, elset=rock\n2, 5\n*NSET", "line 19: *ELGEN cannot be read"},
+        Wrong{"*NSET", "*Instance, name=a, part=p\n1., 0., 0.\n*End Instance\n*NSET",
+              "line 20: *INSTANCE moves its part; write the nodes in global coordinates"}));
+
+TEST(MeshFile, AbaqusInstanceThatStaysInPlaceIsRead) {
+  const std::string text = with(abaqus_square, "*NSET", "*Instance, name=a, part=p\n*NSET");
+  EXPECT_EQ(parse_abaqus(text, "m.inp").triangle.size(), 2U);
+}
 
 TEST(MeshFile, AbaqusWithoutKeywordsIsRefused) {
   EXPECT_TRUE(mentions(abaqus_refusal("1, 2, 3\n"), "line 1: \"1, 2, 3\" stands before the first"));
-  EXPECT_TRUE(mentions(abaqus_refusal(""), "is it an Abaqus input file?"));
+  EXPECT_TRUE(mentions(abaqus_refusal(""), "m.inp: there is no line that begins with *"));
 }
 
 TEST(MeshFile, OtherEndingsAreRefused) {
@@ -379,6 +388,8 @@ TEST(Meshing, MissingAndFailingGmshAreExplained) {
   EXPECT_TRUE(mentions(message, "bad.geo: gmsh")) << message;
   EXPECT_TRUE(mentions(message, "syntax error")) << message;
   EXPECT_TRUE(mentions(geo_refusal("gmsh", folder.path() + "/none.geo"), "none.geo is no file"));
+  EXPECT_TRUE(mentions(geo_refusal("gmsh", folder.write("nothing.geo", "\n")),
+                       "made no mesh of it; does it draw a surface?"));
   const std::string empty = folder.write("empty.geo", "Point(1) = {0, 0, 0};\n");
   EXPECT_TRUE(mentions(geo_refusal("gmsh", empty), "there are no triangles"))
       << geo_refusal("gmsh", empty);

@@ -115,6 +115,9 @@ TEST_F(Program, RefusesBadInputAndWritesNothing) {
   EXPECT_EQ(run("check " + path("bad.toml") + " " + path("balls.toml")), 2);
   EXPECT_EQ(run("check " + path("balls.toml")), 0) << output();
   EXPECT_EQ(run(""), 2);
+  EXPECT_EQ(run("chekc " + path("balls.toml")), 2);
+  EXPECT_NE(output().find("chekc is not a command; did you mean check?"), std::string::npos)
+      << output();
   EXPECT_FALSE(fs::exists(path("out")));
 }
 
@@ -124,6 +127,62 @@ TEST_F(Program, NamesAFileItCannotReadOrAFolderItCannotWrite) {
   EXPECT_EQ(run("run " + path("balls.toml") + " -o " + path("balls.toml/out")), 3) << output();
   EXPECT_EQ(run("run " + path("balls.toml") + " -o /proc/out"), 3);
   EXPECT_NE(output().find("/proc/out"), std::string::npos) << output();
+}
+
+TEST_F(Program, FailsWithThreeIfNobodyTakesWhatItSays) {
+  for (const std::string command : {"keys", "check balls.toml"}) {
+    const std::string line = "cd " + path("") + " && '" BR_PROGRAM "' " + command +
+                             " > /dev/full 2> " + path("said.txt");
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 3) << command;
+    EXPECT_NE(read_whole_file(path("said.txt")).find("standard output"), std::string::npos);
+  }
+}
+
+TEST_F(Program, LetsNoNameFromAFileSteerTheTerminal) {
+  std::string steering = two_balls;
+  steering.replace(steering.find("on = \"left\""), 11, "on = \"\\u001b[31m\"");
+  replace_file(path("steering.toml"), steering);
+  EXPECT_EQ(run("check " + path("steering.toml")), 2);
+  EXPECT_EQ(output().find('\x1b'), std::string::npos) << output();
+}
+
+TEST_F(Program, EndsACaseShorterThanAnyStep) {
+  for (const char* key : {"time.end", "output.history"})
+    EXPECT_EQ(run("run " + path("balls.toml") + " --steps 3 --set " + key + "=1e-300 --force -o " +
+                  path("out")),
+              0)
+        << output();
+}
+
+TEST_F(Program, NamesTheBodiesThatAPlaneCaseCouldMean) {
+  replace_file(path("plate.toml"), R"(
+method = "fdem2d"
+time.end = 1e-6
+material.rock.young = 1e10
+[[body]]
+name = "plate"
+material = "rock"
+size = [1.0, 1.0]
+mesh_size = 0.5
+structured = true
+[[support]]
+name = "held"
+on = "floor"
+[[load]]
+name = "push"
+on = "top"
+[[probe]]
+name = "y"
+on = "plat"
+quantity = "position_y"
+)");
+  EXPECT_EQ(run("check " + path("plate.toml")), 2);
+  for (const char* part : {"support.held.on = \"floor\" is not a body; there are: plate",
+                           "load.push.on = \"top\" is not a body; there are: plate",
+                           "probe.y.on = \"plat\" is neither a body (plate) nor a support (held)",
+                           "3 problems in the case; nothing was run."})
+    EXPECT_NE(output().find(part), std::string::npos) << output();
 }
 
 TEST_F(Program, HasNoDeviceThatItWasNotBuiltFor) {
@@ -230,6 +289,8 @@ TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
       << output();
   EXPECT_TRUE(fs::exists(path("picture.png")));
   EXPECT_EQ(run("render " + path("out") + " --color no_such_field"), 2);
+  EXPECT_EQ(run("render " + path("out") + " -o " + path("picture.jpg")), 2);
+  EXPECT_FALSE(fs::exists(path("picture.jpg")));
   EXPECT_EQ(run("keys time"), 0) << output();
   EXPECT_NE(output().find("time.end"), std::string::npos) << output();
   EXPECT_EQ(run("keys no_such_prefix"), 2);

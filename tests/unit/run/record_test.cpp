@@ -36,6 +36,17 @@ TEST(Schedule, MeetsTheEndItself) {
   EXPECT_EQ(schedule.next(), 0.3);
 }
 
+TEST(Schedule, GoesOnWhenItsMomentsLieCloserThanNumbersDo) {
+  for (const double end : {1e-300, 1e-15}) {
+    Schedule schedule(end, 1000.0);
+    for (const double time : {0.0, 2e-5, 4e-5}) {
+      schedule.pass(time);
+      EXPECT_GT(schedule.next(), time);
+      EXPECT_LT(schedule.next(), time + 1e-9);
+    }
+  }
+}
+
 TEST(History, NamesAreInItsFirstLineAndUnitsInItsSecond) {
   const ScratchFolder scratch;
   {
