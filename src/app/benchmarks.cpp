@@ -9,7 +9,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"search", "the contact search alone, up to a million spheres", measure_search},
       {"packing", "disordered packings of a box", measure_packing},
       {"triangles", "FDEM: plates of 10,000 to a million joined triangles", measure_triangles},
-      {"contact", "FDEM: hexagons that pile up on a floor", measure_contact},
+      {"contact", "FDEM: hexagons from far apart to pressed together", measure_contact},
       {"slabs", "many of the paper's slabs, to a million elements, on a GPU to ten", measure_slabs},
       {"slab100k", "the slab with 99,262 elements", measure_large_slab}};
   return list;

@@ -90,8 +90,9 @@ RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec,
                   ranks == nullptr ? 1 : ranks->size()};
   plan.timers = exec.timers;
   plan.speech = options.quiet ? Speech::quiet : options.verbose ? Speech::verbose : Speech::normal;
-  plan.progress =
-      options.quiet || options.no_progress ? Progress::Form::none : Progress::form_for(stdout);
+  // mpirun gives its ranks a terminal of their own, wherever it sends what they say.
+  const Progress::Form form = ranks == nullptr ? Progress::form_for(stdout) : Progress::Form::lines;
+  plan.progress = options.quiet || options.no_progress ? Progress::Form::none : form;
   return plan;
 }
 

@@ -48,7 +48,10 @@ struct MoveAndWatch {
   View<const std::uint8_t> changed;
   View<StepClock> clock;
 
-  BR_HD void set(const Moment& now) { move.set(now); }
+  BR_HD void set(const Moment& now) {
+    move.set(now);
+    used.set_time(now.time + now.next_dt);
+  }
   BR_HD void operator()(Index t) const {
     move(t);
     StepClock& c = clock[0];
@@ -121,7 +124,8 @@ void launch_step(World& w) {
   for_each(exec, triangles,
            timed<false>(MoveAndWatch{move_kernel(w),
                                      {w.reach.triangle.view(), w.reach.reference.view(),
-                                      w.reach.margin.view(), w.triangles.nodes.view()},
+                                      w.reach.margin.view(), w.triangles.nodes.view(),
+                                      w.reach.drift, Vec2{}},
                                      w.reach_place.view(),
                                      w.opened.changed.view(),
                                      w.clock.view()},

@@ -147,6 +147,12 @@ ExactSum potential(const World& w) {
       Sum{});
 }
 
+/// The largest sum of energies and work seen, now included.  [J/m]
+double largest_with(const World& w, const EnergyBalance& b) {
+  return std::max({w.ledger.largest, b.total(), b.start + std::abs(b.work),
+                   std::abs(b.start) + std::abs(b.work)});
+}
+
 }  // namespace
 
 void begin_ledger(World& w) {
@@ -156,7 +162,7 @@ void begin_ledger(World& w) {
   w.ledger.start = s.kinetic.value() + s.elastic.value();
 }
 
-EnergySplit energies(World& w) {
+EnergySplit energy_split(const World& w) {
   const Shares s = all_shares(w);
   EnergySplit split;
   split.fracture_open = s.open.value();
@@ -170,9 +176,14 @@ EnergySplit energies(World& w) {
   b.contact = s.contact.value() + w.ledger.lost.value();
   b.work = s.work.value() + potential(w).value() - w.ledger.start_potential.value();
   b.start = w.ledger.start + w.ledger.inserted.value();
-  w.ledger.largest = std::max({w.ledger.largest, b.total(), b.start + std::abs(b.work),
-                               std::abs(b.start) + std::abs(b.work)});
-  b.error_relative = w.ledger.largest > 0.0 ? std::abs(b.missing()) / w.ledger.largest : 0.0;
+  const double largest = largest_with(w, b);
+  b.error_relative = largest > 0.0 ? std::abs(b.missing()) / largest : 0.0;
+  return split;
+}
+
+EnergySplit energies(World& w) {
+  const EnergySplit split = energy_split(w);
+  w.ledger.largest = largest_with(w, split.balance);
   return split;
 }
 

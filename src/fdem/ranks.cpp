@@ -267,7 +267,7 @@ class Mesh final : public Shareable {
     for (Index t = 0; t < w_.triangles.size(); ++t) {
       if (!w_.domain.owns(t)) continue;
       for (const NodeState& n : w_.triangles.nodes.data()[t].at)
-        fastest = std::max(fastest, norm(n.velocity));
+        fastest = std::max(fastest, norm(n.velocity - w_.reach.drift.velocity));
     }
     return margin_rule(w_).margin({fastest, 0.0, 0.0});
   }
@@ -286,6 +286,7 @@ class Mesh final : public Shareable {
 /// What all ranks know alike, as rank 0 has it.
 void take_common(World& w, Communicator& ranks) {
   take_time_from_first(ranks, w);
+  take_from_first(ranks, w.reach.drift);
   for (Buffer<std::uint8_t>* flags : {&w.opened.changed, &w.opened.vertex}) {
     Message message(static_cast<std::size_t>(flags->size()));
     std::memcpy(message.data(), flags->data(), message.size());

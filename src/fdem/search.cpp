@@ -2,6 +2,7 @@
 // still joined, with the history of those that stay.
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/select.hpp"
 #include "fdem/ranks.hpp"
@@ -13,6 +14,7 @@ namespace {
 /// Starts the travel of a triangle anew and boxes it with its margin.
 struct BeginReach {
   double skin, horizon, largest;  ///<  [m], [s], [m]
+  Drift drift;
   View<const Index> triangle;
   View<const TriangleNodes> nodes;
   View<const GlobalId> id_of;
@@ -24,12 +26,13 @@ struct BeginReach {
     const TriangleNodes& now = nodes[triangle[i]];
     double fastest = 0.0, extent = 0.0;
     for (const NodeState& n : now.at) {
-      fastest = larger(fastest, norm(n.velocity));
+      fastest = larger(fastest, norm(n.velocity - drift.velocity));
       extent = larger(extent, larger(absolute(n.position.x), absolute(n.position.y)));
     }
     const double own = smaller(0.5 * skin + fastest * horizon, largest);
     Box box{{1e300, 1e300, 0.0}, {-1e300, -1e300, 0.0}};
-    const double grown = own * (1.0 + 1e-12) + 1e-15 * extent;  // covers rounding
+    // covers rounding
+    const double grown = own * (1.0 + 1e-12) + 1e-15 * (extent + drift.farthest);
     for (int k = 0; k < 3; ++k) {
       const Vec2& x = now.at[k].position;
       reference[i].at[k] = x;
@@ -113,11 +116,33 @@ void book_dropped(World& w, const Pairs& found) {
 }
 
 bool margin_is_used(const World& w) {
-  const double used = fold(w.exec, w.reach.triangle.size(), 0.0,
-                           UsedMargin{w.reach.triangle.view(), w.reach.reference.view(),
-                                      w.reach.margin.view(), w.triangles.nodes.view()},
-                           Largest{});
-  return used > 0.0;
+  UsedMargin used{w.reach.triangle.view(), w.reach.reference.view(),
+                  w.reach.margin.view(),   w.triangles.nodes.view(),
+                  w.reach.drift,           Vec2{}};
+  used.set_time(w.time);
+  return fold(w.exec, w.reach.triangle.size(), 0.0, used, Largest{}) > 0.0;
+}
+
+/// The drift from now on: the mean velocity, where it makes up most of all motion. Otherwise there
+/// are some that fly and many at rest, and each is served best by its own speed.
+Drift choose_drift(const World& w) {
+  CommonMotion motion = fold(w.exec, w.triangles.size(), CommonMotion{},
+                             MotionOf{w.triangles.nodes.view(), w.domain.owned_view()}, Sum{});
+  if (!w.domain.alone()) {
+    const auto* bytes = reinterpret_cast<const std::byte*>(&motion);
+    const std::vector<Message> all = w.domain.ranks->from_all({bytes, bytes + sizeof motion});
+    motion = {};
+    for (const Message& message : all) {
+      CommonMotion of_rank;
+      std::memcpy(&of_rank, message.data(), sizeof of_rank);
+      motion = motion + of_rank;
+    }
+  }
+  if (motion.count == 0) return {};
+  const double share = 1.0 / static_cast<double>(motion.count);
+  const Vec2 mean{share * motion.x.value(), share * motion.y.value()};
+  if (!(dot(mean, mean) > 0.75 * share * motion.squares.value())) return {};
+  return {mean, w.time, 1000.0 * w.parameters.mean_edge};
 }
 
 /// Whether a search is due on some rank; what joints tell becomes known to all.
@@ -144,7 +169,8 @@ void search(World& w) {
   Buffer<GlobalId> ids(w.exec.space, count);
   const MarginRule rule = margin_rule(w);
   for_each(w.exec, count,
-           BeginReach{rule.base, rule.horizon, rule.largest, std::as_const(w.reach.triangle).view(),
+           BeginReach{rule.base, rule.horizon, rule.largest, w.reach.drift,
+                      std::as_const(w.reach.triangle).view(),
                       std::as_const(w.triangles.nodes).view(), std::as_const(w.triangles.id).view(),
                       w.reach.reference.view(), w.reach.margin.view(), boxes.view(), ids.view()});
   Pairs found(w.exec.space);
@@ -179,6 +205,7 @@ bool couples_are_due(World& w) {
 }
 
 void find_couples(World& w) {
+  w.reach.drift = choose_drift(w);
   migrate(w);
   const StageTime timed(w.exec, "contact_detection");
   const bool joints_changed = marking_is_due(w);

@@ -1,6 +1,7 @@
 #pragma once
 // What a search of couples asks of the mesh: which triangles can touch, and which pairs of them.
 
+#include "core/energy.hpp"
 #include "domain/domain.hpp"
 #include "fdem/world.hpp"
 
@@ -77,6 +78,38 @@ struct MayTouch {
     const Index entry = edges[p].at[edge];
     if (entry < 0) return entry == edge_free;
     return stage[pair_of(entry)] == JointStage::broken;
+  }
+};
+
+/// What corners do together. Sums are exact: the same on any number of ranks and threads.
+struct CommonMotion {
+  ExactSum x, y, squares;  ///< of velocities  [m/s], [m2/s2]
+  std::int64_t count = 0;
+
+  BR_HD void add(const Vec2& velocity) {
+    constexpr double fastest = 1e4;  // the sums hold no more; what is faster has gone wrong
+    if (!(dot(velocity, velocity) < fastest * fastest)) return;
+    x.add(velocity.x);
+    y.add(velocity.y);
+    squares.add(dot(velocity, velocity));
+    ++count;
+  }
+};
+BR_HD inline CommonMotion operator+(CommonMotion a, const CommonMotion& b) {
+  a.x.add(b.x);
+  a.y.add(b.y);
+  a.squares.add(b.squares);
+  a.count += b.count;
+  return a;
+}
+struct MotionOf {
+  View<const TriangleNodes> nodes;
+  OwnedView owned;
+  BR_HD CommonMotion operator()(Index t) const {
+    CommonMotion motion;
+    if (!owned(t)) return motion;
+    for (const NodeState& n : nodes[t].at) motion.add(n.velocity);
+    return motion;
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include "core/step_clock.hpp"
 #include "fdem/couples.hpp"
+#include "fdem/drift.hpp"
 #include "fdem/joint_kernels.hpp"
 
 namespace breccia::fdem {
@@ -280,12 +281,17 @@ struct UsedMargin {
   View<const Corners> reference;
   View<const double> margin;
   View<const TriangleNodes> nodes;
+  Drift drift;
+  Vec2 drifted;  ///< since the search  [m]
+
+  /// @param time  of the positions  [s]
+  BR_HD void set_time(double time) { drifted = drift.way(time); }
   BR_HD double operator()(Index i) const {
     const TriangleNodes& now = nodes[triangle[i]];
     const double allowed = margin[i] * margin[i];
-    bool inside = true;
+    bool inside = dot(drifted, drifted) <= drift.farthest * drift.farthest;
     for (int k = 0; k < 3; ++k) {
-      const Vec2 moved = now.at[k].position - reference[i].at[k];
+      const Vec2 moved = (now.at[k].position - reference[i].at[k]) - drifted;
       inside = inside && dot(moved, moved) <= allowed;
     }
     return inside ? 0.0 : 1.0;

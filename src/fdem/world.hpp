@@ -12,6 +12,7 @@
 #include "exec/lanes.hpp"
 #include "exec/timers.hpp"
 #include "fdem/config.hpp"
+#include "fdem/drift.hpp"
 #include "fdem/loads.hpp"
 #include "fdem/model.hpp"
 
@@ -23,11 +24,13 @@ struct NodeSet {
   std::vector<Index> nodes;  ///< 3 triangle + corner, ascending
 };
 
-/// Where the triangles that can touch stood at the last search, and how far each may go.
+/// Where the triangles that can touch stood at the last search, and how far each may go from there,
+/// the drift taken off.
 struct Reach {
   Buffer<Index> triangle;     ///< those that can touch, ascending by global id
   Buffer<Corners> reference;  ///< their corners at the search  [m]
   Buffer<double> margin;      ///<  [m]
+  Drift drift;
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -193,11 +196,13 @@ AllowedStep allowed_step(const World& w);
 /// Starts the ledger at the present state.
 void begin_ledger(World& w);
 
-/// Where every joule is, per unit thickness; keeps the largest energy for the relative error.
+/// Where every joule is, per unit thickness.
 struct EnergySplit {
   EnergyBalance balance;
   double fracture_open = 0.0, fracture_slide = 0.0;  ///< of fracture, by mode  [J/m]
 };
+EnergySplit energy_split(const World& w);
+/// The same, and keeps the largest energy seen, for the relative error.
 EnergySplit energies(World& w);
 
 }  // namespace breccia::fdem

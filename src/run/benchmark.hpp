@@ -34,7 +34,7 @@ std::vector<Measurement> measure_packing(const Exec& exec);
 
 /// Whole FDEM steps of plates of 10^4 to 10^6 joined triangles, by stage.
 std::vector<Measurement> measure_triangles(const Exec& exec);
-/// Whole FDEM steps of flying hexagons, before they meet a floor and while they pile up on it.
+/// Whole FDEM steps of 8,000 hexagons that fly together, from far apart to pressed together.
 std::vector<Measurement> measure_contact(const Exec& exec);
 
 /// Runs the slab as told line by line, so that another program can be measured in alternating

@@ -1,6 +1,7 @@
 // Benchmarks of the FDEM: cost against the number of triangles, and against the density of
 // contacts.
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -47,7 +48,10 @@ fdem::Config ringing_plate(int count) {
   return config;
 }
 
-/// Hexagons of six triangles that fly against a wall: dense contact soon.
+constexpr double hexagon_side = 1e-3;  ///<  [m]
+constexpr double built_gap = 1e-5;     ///< between hexagons as they are built  [m]
+
+/// Hexagons of six free triangles that fly together.
 fdem::Config flying_hexagons(int count) {
   fdem::Config config = granite();
   config.materials[0].joints = "none";
@@ -56,30 +60,53 @@ fdem::Config flying_hexagons(int count) {
   blocks.material = "rock";
   blocks.shape = "hexagons";
   blocks.hexagons.count = count;
-  blocks.hexagons.side = 1e-3;
-  blocks.hexagons.gap = 1e-5;
-  const double edge = 1.8e-3 * std::sqrt(static_cast<double>(count));
-  blocks.size = {edge, edge};
+  blocks.hexagons.side = hexagon_side;
+  blocks.hexagons.gap = built_gap;
   blocks.velocity = {0.0, -5.0};
   config.bodies.push_back(blocks);
-  fdem::BodyConfig floor;
-  floor.name = "floor";
-  floor.material = "rock";
-  floor.shape = "plate";
-  floor.structured = true;
-  floor.mesh_size = 2e-3;
-  floor.size = {1.2 * edge, 4e-3};
-  floor.center = {0.0, -0.5 * edge - 2.2e-3};
-  config.bodies.push_back(floor);
-  fdem::SupportConfig support;
-  support.name = "held";
-  support.region.on = "floor";
-  config.supports.push_back(support);
   return config;
 }
 
 fdem::Model model_of(const fdem::Config& config) {
   return build_fdem_model(config.bodies, config.discontinuities, {{"rock"}, {}}, config.seed, "");
+}
+
+/// How hexagons lie: the flat sides of a row face each other.
+struct Spacing {
+  const char* name;
+  double gap;   ///< between two of a row; below 0 they overlap  [m]
+  double rows;  ///< from one row to the next, over what the gap asks  [-]
+};
+
+/// Moves each hexagon as a whole, from the built gap to the spacing's.
+void spread(fdem::Model& model, const Spacing& spacing) {
+  const double built = std::sqrt(3.0) * hexagon_side + built_gap;
+  const double x = (std::sqrt(3.0) * hexagon_side + spacing.gap) / built;
+  std::vector<int> triangles(model.point.size());
+  for (const auto& corners : model.triangle)
+    for (const Index v : corners) ++triangles[static_cast<std::size_t>(v)];
+  std::vector<Vec2> moved = model.point;
+  for (const auto& corners : model.triangle) {
+    // All six triangles of a hexagon share its centre.
+    const auto centre = std::find_if(corners.begin(), corners.end(), [&](Index v) {
+      return triangles[static_cast<std::size_t>(v)] == 6;
+    });
+    const Vec2 from = model.point[static_cast<std::size_t>(*centre)];
+    const Vec2 shift{(x - 1.0) * from.x, (x * spacing.rows - 1.0) * from.y};
+    for (const Index v : corners)
+      moved[static_cast<std::size_t>(v)] = model.point[static_cast<std::size_t>(v)] + shift;
+  }
+  model.point = moved;
+}
+
+/// Couples that push each other now.
+Index touching(const fdem::World& w) {
+  std::vector<fdem::CoupleForce> forces;
+  copy_to(forces, w.couples.history.force);
+  return static_cast<Index>(
+      std::count_if(forces.begin(), forces.end(), [](const fdem::CoupleForce& f) {
+        return norm(f.on_a.at[0]) + norm(f.on_a.at[1]) + norm(f.on_a.at[2]) > 0.0;
+      }));
 }
 
 void take_steps(fdem::World& w, int steps) {
@@ -104,6 +131,7 @@ void report_steps(fdem::World& w, StageTimers& timers, const std::string& part, 
   result.push_back(once(part, "triangles", triangles, "-"));
   result.push_back(once(part, "joints", joints, "-"));
   result.push_back(once(part, "couples", w.couples.size(), "-"));
+  if (w.couples.size() > 0) result.push_back(once(part, "touching", touching(w), "-"));
   result.push_back(over_windows(part, "step", "us", wall, 1e6));
   result.push_back(over_windows(part, "ns_per_triangle_step", "ns", wall, 1e9 / triangles));
   if (joints > 0 && stages.contains("joint_forces"))
@@ -142,14 +170,21 @@ std::vector<Measurement> measure_triangles(const Exec& exec) {
 
 std::vector<Measurement> measure_contact(const Exec& exec) {
   std::vector<Measurement> result;
-  StageTimers timers;
-  Exec timed = exec;
-  timed.timers = &timers;
   const fdem::Config config = flying_hexagons(8'000);
-  fdem::World w = fdem::make_world(config, model_of(config), timed);
-  for (int part = 0; part < 3; ++part) {
-    report_steps(w, timers, "after " + std::to_string(w.step) + " steps", 40, result);
-    take_steps(w, 600);
+  for (const Spacing& spacing :
+       {Spacing{"apart, gap 0.5 mm", 5e-4, 1.0},
+        Spacing{"rows, gap 50 um in a row, 0.35 mm between", 5e-5, 1.2},
+        Spacing{"near, gap 50 um", 5e-5, 1.0}, Spacing{"close, gap 10 um", 1e-5, 1.0},
+        Spacing{"touching, overlap 1 um", -1e-6, 1.0},
+        Spacing{"pressed, overlap 20 um", -2e-5, 1.0},
+        Spacing{"crushed, overlap 0.1 mm", -1e-4, 1.0}}) {
+    StageTimers timers;
+    Exec timed = exec;
+    timed.timers = &timers;
+    fdem::Model model = model_of(config);
+    spread(model, spacing);
+    fdem::World w = fdem::make_world(config, model, timed);
+    report_steps(w, timers, spacing.name, 40, result);
   }
   return result;
 }

@@ -77,7 +77,7 @@ class FdemMethod final : public Method {
     add("fracture.broken_by_mode.opening",
         static_cast<double>(cracks.size()) - static_cast<double>(sliding));
     add("fracture.broken_by_mode.sliding", static_cast<double>(sliding));
-    const fdem::EnergySplit split = fdem::energies(world_.whole());
+    const fdem::EnergySplit split = fdem::energy_split(w);
     add("fracture.energy_by_mode.opening", split.fracture_open);
     add("fracture.energy_by_mode.sliding", split.fracture_slide);
     const fdem::Fragments pieces = fdem::fragments(w);
@@ -119,6 +119,7 @@ class FdemMethod final : public Method {
     each_loose(w, [&](const char* name, auto array) { writer.fields(name, array); });
     writer.fields("couples", w.couples);
     writer.fields("reach", w.reach);
+    writer.value("reach.drift", w.reach.drift);
   }
 
   void load(const CheckpointReader& reader) override {
@@ -135,6 +136,7 @@ class FdemMethod final : public Method {
     each_loose(w, [&](const char* name, auto array) { reader.fields(name, array); });
     reader.fields("couples", w.couples);
     reader.fields("reach", w.reach);
+    w.reach.drift = reader.value<fdem::Drift>("reach.drift");
     if (w.triangles.size() != triangles || w.joints.size() != joints)
       throw CheckpointError("the checkpoint holds another model than the case builds");
     fdem::derive(w);

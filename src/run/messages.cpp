@@ -14,10 +14,13 @@
 namespace breccia {
 namespace {
 
-std::optional<double> fact(const Summary& summary, const std::string& path) {
-  for (const Fact& candidate : summary.facts)
+std::optional<double> fact(const std::vector<Fact>& facts, const std::string& path) {
+  for (const Fact& candidate : facts)
     if (candidate.path == path) return candidate.value;
   return std::nullopt;
+}
+std::optional<double> fact(const Summary& summary, const std::string& path) {
+  return fact(summary.facts, path);
 }
 
 /// The shares of the stages in the time spent, largest first.
@@ -70,12 +73,20 @@ std::string opening_text(const Summary& s, double end_time, std::int64_t end_ste
   return text + fmt::format("folder  {}\n", folder);
 }
 
+std::string broken_text(const std::vector<Fact>& facts) {
+  if (const auto links = fact(facts, "fracture.broken_links"))
+    return "broken links " + count_text(*links);
+  const auto joints = fact(facts, "fracture.broken_joints");
+  if (joints && fact(facts, "model.joints").value_or(0.0) > 0.0)
+    return "broken joints " + count_text(*joints);
+  return "";
+}
+
 std::string closing_text(const Summary& s, std::int64_t frames, const std::string& folder) {
   std::string text =
       fmt::format("{:<7} {} in {}   {} steps   {} frames", s.status, time_text(s.time),
                   duration_text(s.total), count_text(static_cast<double>(s.steps)), frames);
-  if (const auto broken = fact(s, "fracture.broken_links"))
-    text += fmt::format("   broken links {}", count_text(*broken));
+  if (const std::string broken = broken_text(s.facts); !broken.empty()) text += "   " + broken;
   if (s.energy) text += fmt::format("   energy error {:.2g} %", 100.0 * s.energy->error_relative);
   text += '\n';
   if (const std::string shares = stage_shares(s); !shares.empty()) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "run/summary.hpp"
 
@@ -13,6 +14,9 @@ namespace breccia {
 /// @param end_steps  steps after which it ends at the latest
 std::string opening_text(const Summary& summary, double end_time, std::int64_t end_steps,
                          const std::string& folder);
+
+/// How many links or joints have broken, in words; empty if there are none to break.
+std::string broken_text(const std::vector<Fact>& facts);
 
 /// What came out, and where it lies.
 std::string closing_text(const Summary& summary, std::int64_t frames, const std::string& folder);

@@ -53,8 +53,7 @@ std::string Progress::text(const Standing& standing, Clock::time_point now) cons
       fmt::format(" {:>8}  {:3.0f} %", time_text(standing.time), 100.0 * standing.share);
   line += rate < 100.0 ? fmt::format("  {:.1f} steps/s", rate)
                        : fmt::format("  {} steps/s", count_text(rate));
-  if (standing.broken_links)
-    line += fmt::format("  broken links {}", count_text(*standing.broken_links));
+  if (!standing.broken.empty()) line += "  " + standing.broken;
   const double gained = standing.share - first_.share;
   if (gained > 0.0 && standing.share < 1.0)
     line += fmt::format("  left {}", duration_text(wall * (1.0 - standing.share) / gained));

@@ -15,9 +15,9 @@ enum class Speech { quiet, normal, verbose };
 /// Where the run stands.
 struct Standing {
   std::int64_t step = 0;
-  double time = 0.0;                   ///<  [s]
-  double share = 0.0;                  ///< of the whole run  [0, 1]
-  std::optional<double> broken_links;  ///< if the method counts them
+  double time = 0.0;   ///<  [s]
+  double share = 0.0;  ///< of the whole run  [0, 1]
+  std::string broken;  ///< how many links or joints are, in words; empty: there are none to break
 };
 
 /// On a terminal: one line that is redrawn up to five times a second. Elsewhere: a line each tenth

@@ -355,11 +355,10 @@ Standing Run::standing() {
   // Counting may cost more than many steps: spend at most a hundredth of the time on it.
   const Clock::time_point begin = Clock::now();
   if (begin >= next_facts_) {
-    for (const Fact& fact : method_.facts())
-      if (fact.path == "fracture.broken_links") broken_links_ = fact.value;
+    broken_ = broken_text(method_.facts());
     next_facts_ = Clock::now() + 100 * (Clock::now() - begin);
   }
-  return {method_.steps(), method_.time(), share(), broken_links_};
+  return {method_.steps(), method_.time(), share(), broken_};
 }
 
 }  // namespace breccia

@@ -91,7 +91,7 @@ class Run {
   StepTimes step_times_;
   Progress progress_;
   double setup_ = 0.0, loop_ = 0.0, output_ = 0.0;  ///< wall time  [s]
-  std::optional<double> broken_links_;
+  std::string broken_;
   Clock::time_point next_facts_{};
 };
 

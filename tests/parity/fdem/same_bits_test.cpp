@@ -62,6 +62,50 @@ TEST(FdemSameBits, for_any_margin_of_search) {
   EXPECT_EQ(hash_after(world(1, 0.8)), reference());
 }
 
+/// Hexagons in a swarm that flies against a wall at rest, and past a hexagon that comes towards it.
+Scene swarm(double margin) {
+  Scene scene;
+  scene.material(990e6, 0.3, 2700.0);
+  scene.config.search.margin = margin;
+  scene.config.time.evaluate_every = 20;
+  prepare::HexagonField field;
+  field.count = 100;
+  field.side = 1.0;
+  field.gap = 0.02;
+  scene.body("swarm", prepare::hexagons(field), 0, {90.0, 40.0});
+  field.center = {13.5, 12.0};
+  field.count = 1;
+  scene.body("other", prepare::hexagons(field), 0, {-60.0, -60.0});
+  scene.body("wall", prepare::equilateral_rectangle({{24.0, 10.0}, {4.0, 40.0}}, 2.0));
+  scene.support("held", {21.0, -100.0}, {100.0, 100.0}, {"x", "y"}, {}, "wall");
+  return scene;
+}
+
+TEST(FdemSameBits, for_any_margin_in_a_swarm_that_meets_a_wall) {
+  const auto flown = [](double margin, int threads) {
+    fdem::World w = swarm(margin).world(threads);
+    for (int i = 0; i < 2000; ++i) fdem::step(w);
+    return w;
+  };
+  const fdem::World usual = flown(0.1, 1);
+  EXPECT_GT(fdem::energy_split(usual).balance.elastic, 0.0);
+  for (const double margin : {0.01, 1.0})
+    EXPECT_EQ(fdem::state_hash(flown(margin, 1)), fdem::state_hash(usual)) << margin;
+}
+
+TEST(FdemSearch, is_rare_while_all_fly_together) {
+  Scene scene;
+  scene.material(990e6, 0.3, 2700.0);
+  prepare::HexagonField field;
+  field.count = 50;
+  field.side = 1.0;
+  field.gap = 0.02;
+  scene.body("swarm", prepare::hexagons(field), 0, {90.0, 40.0});
+  fdem::World w = scene.world();
+  for (int i = 0; i < 500; ++i) fdem::step(w);
+  EXPECT_LE(w.searches, 2);  // by absolute travel: one in 35 steps
+}
+
 TEST(FdemSameBits, in_the_shadow_space_that_refuses_host_reads) {
   Exec exec;
   exec.space = Space::shadow;
