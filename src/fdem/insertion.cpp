@@ -1,5 +1,6 @@
 // Extrinsic joints: where the stress between two triangles that move as one reaches their joint's
-// strength, the joint wakes and carries from then on just what was transmitted.
+// strength, the joint and those around its two vertices wake, and carry from then on just what was
+// transmitted.
 
 #include <algorithm>
 #include <array>
@@ -44,23 +45,35 @@ std::vector<Candidate> candidates(const World& w, const std::vector<double>& ove
 }
 
 /// Of the joints whose strength is reached the most loaded ones, no two at one vertex: its waking
-/// unloads the others around.
+/// unloads the others around. With each of them wake all that share a vertex with it: while the
+/// corners around a vertex are tied, no joint opens there.
 std::vector<Index> chosen(const World& w, const std::vector<double>& overshoot) {
   std::vector<Candidate> joints = candidates(w, overshoot);
   std::sort(joints.begin(), joints.end(), [](const Candidate& a, const Candidate& b) {
     return a.overshoot != b.overshoot ? a.overshoot > b.overshoot : a.joint < b.joint;
   });
-  std::vector<Index> taken, accepted;
+  std::vector<Index> parted;
   for (const Candidate& c : joints) {
-    const auto is_taken = [&](Index v) {
-      return std::find(taken.begin(), taken.end(), v) != taken.end();
+    const auto is_parted = [&](Index v) {
+      return std::find(parted.begin(), parted.end(), v) != parted.end();
     };
-    if (is_taken(c.first) || is_taken(c.second)) continue;
-    taken.insert(taken.end(), {c.first, c.second});
-    const Index here = w.domain.alone() ? c.joint : find_place(w.mesh.joint_number, c.joint);
-    if (here >= 0) accepted.push_back(here);
+    if (!is_parted(c.first) && !is_parted(c.second))
+      parted.insert(parted.end(), {c.first, c.second});
   }
-  return accepted;
+  std::sort(parted.begin(), parted.end());
+  std::vector<JointEnds> ends;
+  std::vector<JointStage> stage;
+  copy_to(ends, w.joint_ends);
+  copy_to(stage, w.joints.stage);
+  const auto parts_at = [&](Index node) {
+    return std::binary_search(parted.begin(), parted.end(),
+                              w.vertex[static_cast<std::size_t>(node)]);
+  };
+  std::vector<Index> waking;
+  for (std::size_t i = 0; i < stage.size(); ++i)
+    if (stage[i] == JointStage::dormant && (parts_at(ends[i].a0) || parts_at(ends[i].a1)))
+      waking.push_back(static_cast<Index>(i));
+  return waking;
 }
 
 /// Wakes joints at the opening and slip at which they carry what was transmitted; books what they
@@ -88,7 +101,8 @@ void wake(World& w, const std::vector<Index>& joints, const std::vector<double>&
   for (const Index joint : joints) {
     const auto i = static_cast<std::size_t>(joint);
     const JointBond& bond = bonds[static_cast<std::size_t>(law[i])];
-    const double share = (1.0 - 1e-6) / overshoot[i];  // just below its strength
+    // just below its strength, where that is reached
+    const double share = std::min(1.0, (1.0 - 1e-6) / overshoot[i]);
     const Vec2 t = share * traction(joint);
     preset_opening(bond, strength[i], length[i], t.x, t.y, preset[i]);
     stage[i] = JointStage::whole;
