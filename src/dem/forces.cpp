@@ -13,6 +13,16 @@ BR_HD void add_to_b(LinkSums& sums, const Action& action) {
   sums.stiffness_b.add(action.stiffness + 3);
 }
 
+/// Copies follow their owners.
+struct MoveOwn {
+  static constexpr const char* name = "dem.move_own";
+  MoveElements move;
+  OwnedView owned;
+  BR_HD void operator()(Index e) const {
+    if (owned(e)) move(e);
+  }
+};
+
 struct LeastCritical {
   View<const double> critical;
   OwnedView owned;
@@ -129,7 +139,11 @@ View<const Wall> walls_view(const World& w) {
 
 void move_elements(World& w) {
   const StageTime timed(w.exec, "integration");
-  for_each(w.exec, w.elements.size(), move_kernel(w));
+  const MoveElements move = move_kernel(w);
+  if (w.domain.alone())
+    for_each(w.exec, w.elements.size(), move);
+  else
+    for_each(w.exec, w.elements.size(), MoveOwn{move, w.domain.owned_view()});
   for (Wall& wall : w.walls) {
     wall.point += w.next_dt * wall.velocity;
     wall.travelled += w.next_dt * norm(wall.velocity);

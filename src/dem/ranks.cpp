@@ -196,10 +196,15 @@ void drop_state(World& w) {
   w.bar_actions.resize(0);
 }
 
-void refresh_copies(World& w) {
+void start_copies(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "halo");
-  w.domain.refresh(w.elements.state);
+  w.domain.start_refresh(w.elements.state);
+}
+void finish_copies(World& w) {
+  if (w.domain.alone()) return;
+  const StageTime timed(w.exec, "halo");
+  w.domain.finish_refresh(w.elements.state);
 }
 
 World share_out(const World& whole, Communicator& ranks, const DomainConfig& config) {

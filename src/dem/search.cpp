@@ -296,16 +296,28 @@ MarginRule margin_rule(const World& w) {
           w.parameters.largest_margin};
 }
 
+namespace {
+
+/// Copies are their owners' to tell of.
+struct OwnUsedMargin {
+  UsedMargin used;
+  OwnedView owned;
+  BR_HD double operator()(Index e) const { return owned(e) ? used(e) : 0.0; }
+};
+
+}  // namespace
+
 bool contacts_are_due(const World& w) {
   const StageTime timed(w.exec, "travel");
   if (w.parameters.search.every > 0)  // the paper's rule
     return w.step % w.parameters.search.every == 0;
   for (const Wall& wall : w.walls)
     if (wall.travelled > w.parameters.largest_margin) return true;
-  return w.domain.any(
-      fold(w.exec, w.elements.size(), 0.0,
-           UsedMargin{w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
-           Largest{}) > 0.0);
+  return w.domain.any(fold(w.exec, w.elements.size(), 0.0,
+                           OwnUsedMargin{{w.elements.state.view(), w.travel.reference.view(),
+                                          w.travel.margin.view()},
+                                         w.domain.owned_view()},
+                           Largest{}) > 0.0);
 }
 
 void find_contacts(World& w) {

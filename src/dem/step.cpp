@@ -5,10 +5,12 @@ namespace breccia::dem {
 void step(World& w) {
   // 1. Newton's laws: accelerations, velocities, positions              (Durand 2012, section 4.4)
   move_elements(w);
-  refresh_copies(w);  // on other ranks
+  start_copies(w);  // on other ranks: they follow while all vote
 
   // 2. New contacts, when travel has used the margin up: grid, sort, search         (section 4.3)
-  if (contacts_are_due(w)) find_contacts(w);
+  const bool due = contacts_are_due(w);
+  finish_copies(w);
+  if (due) find_contacts(w);
 
   // 3. One force per interaction, then one sum per element: no atomics              (section 4.2)
   //    Links and contacts that end here mark themselves.

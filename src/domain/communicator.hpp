@@ -33,7 +33,8 @@ class Communicator {
   virtual int size() const = 0;
 
   /// Starts messages of known size to and from other ranks; their memory stays untouched until
-  /// finish(). Every rank calls it, if only with empty lists.
+  /// finish(). Every rank calls it, if only with empty lists. Meanwhile numbers may be combined
+  /// (least, any_of, add_up), nothing else be exchanged.
   virtual void start(std::span<const Post> to, std::span<const Post> from) = 0;
   virtual void finish() = 0;
 

@@ -1,6 +1,7 @@
 #pragma once
 // A rank's share of a model: what it owns, what it holds copies of, and what it asks the others.
 
+#include <algorithm>
 #include <functional>
 #include <string>
 
@@ -34,6 +35,11 @@ struct OwnedView {
   BR_HD bool operator()(Index element) const { return owned.size == 0 || owned[element] != 0; }
 };
 
+/// Elements [begin, end).
+struct ElementRun {
+  Index begin = 0, end = 0;
+};
+
 /// The decomposition as a method sees it. A world on one rank has none: it is alone, owns all, and
 /// every question is answered by its own numbers.
 struct Domain {
@@ -45,6 +51,8 @@ struct Domain {
   Buffer<std::uint8_t> owned;  ///< 1: this rank owns the element; empty when alone
   Halo halo;
   std::vector<Vec3> placed;  ///< where each stood when they were shared out last  [m]
+  std::vector<ElementRun>
+      runs;  ///< of elements that loops over own ones take, few copies among them
   DomainCounts counts;
 
   bool alone() const { return ranks == nullptr; }
@@ -56,10 +64,31 @@ struct Domain {
   std::uint64_t any_of(std::uint64_t bits) const { return alone() ? bits : ranks->any_of(bits); }
   bool any(bool one) const { return any_of(one ? 1 : 0) != 0; }
 
-  /// Copies of other ranks' items become what their owners have.
+  /// Copies of other ranks' items become what their owners have. Between start and finish numbers
+  /// may be combined, and copies are not yet to be read.
+  template <class T>
+  void start_refresh(Buffer<T>& items) {
+    if (!alone()) halo.start(*ranks, items);
+  }
+  template <class T>
+  void finish_refresh(Buffer<T>& items) {
+    if (!alone()) halo.finish(*ranks, items);
+  }
   template <class T>
   void refresh(Buffer<T>& items) {
-    if (!alone()) halo.refresh(*ranks, items);
+    start_refresh(items);
+    finish_refresh(items);
+  }
+
+  /// Calls visit(begin, end) for the parts of [begin, end) that hold own elements: all of it when
+  /// alone.
+  template <class Visit>
+  void each_own_run(Index begin, Index end, const Visit& visit) const {
+    if (alone()) return visit(begin, end);
+    auto run = std::partition_point(runs.begin(), runs.end(),
+                                    [begin](const ElementRun& r) { return r.end <= begin; });
+    for (; run != runs.end() && run->begin < end; ++run)
+      visit(std::max(begin, run->begin), std::min(end, run->end));
   }
 };
 

@@ -21,6 +21,20 @@ bool has_left(const Domain& d, const Shareable& elements) {
   return left;
 }
 
+/// Runs of own elements, in whole packs: copies among them cost less than what is left over.
+std::vector<ElementRun> own_runs(const Domain& d) {
+  constexpr Index pack = 8, shortest_break = 4 * pack;
+  const Index count = d.owned.size();
+  std::vector<ElementRun> runs;
+  for (Index e = 0; e < count; ++e) {
+    if (!d.owns(e)) continue;
+    const Index begin = e / pack * pack;
+    if (runs.empty() || begin >= runs.back().end + shortest_break) runs.push_back({begin, begin});
+    runs.back().end = std::min(begin + pack, count);
+  }
+  return runs;
+}
+
 std::int64_t sum_of(const std::vector<Load>& loads) {
   std::int64_t sum = 0;
   for (const Load& load : loads) sum += load.weight;
@@ -80,6 +94,7 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
     if (own && !std::binary_search(mine.begin(), mine.end(), elements.ids().data()[e]))
       ++d.counts.moved;
   }
+  d.runs = own_runs(d);
   d.placed.clear();
   elements.each_point([&](const Vec3& point) { d.placed.push_back(point); });
   d.halo.build(*d.ranks, elements.ids(), owner);

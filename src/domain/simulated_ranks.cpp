@@ -88,16 +88,17 @@ class SimulatedRank final : public Communicator {
       const auto* bytes = static_cast<const std::byte*>(post.data);
       carrier_.post({rank_, post.rank, operation_}, Message(bytes, bytes + post.bytes));
     }
-    awaited_.assign(from.begin(), from.end());
+    awaited_.push_back({operation_, {from.begin(), from.end()}});
   }
   void finish() override {
-    for (const Post& post : awaited_) {
-      const Message message = carrier_.wait_for({post.rank, rank_, operation_});
+    const Awaited last = std::move(awaited_.back());
+    awaited_.pop_back();
+    for (const Post& post : last.from) {
+      const Message message = carrier_.wait_for({post.rank, rank_, last.operation});
       if (message.size() != post.bytes)
         throw std::logic_error("a message has another size than its receiver expects");
       if (post.bytes > 0) std::memcpy(post.data, message.data(), post.bytes);
     }
-    awaited_.clear();
   }
   std::vector<Message> exchange(std::vector<Message> messages) override {
     ++operation_;
@@ -110,10 +111,16 @@ class SimulatedRank final : public Communicator {
   void abort(int) override { throw std::runtime_error("a simulated rank ends all"); }
 
  private:
+  /// What a start expects.
+  struct Awaited {
+    std::int64_t operation;
+    std::vector<Post> from;
+  };
+
   Carrier& carrier_;
   int rank_, size_;
   std::int64_t operation_ = 0;
-  std::vector<Post> awaited_;
+  std::vector<Awaited> awaited_;  ///< numbers are combined between a start and its finish
 };
 
 }  // namespace

@@ -20,6 +20,18 @@ void run(const World& w, Index count, const Kernel& kernel) {
                [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
 }
 
+/// The same over the triangles that this rank owns.
+template <class Kernel>
+void run_own(const World& w, const Kernel& kernel) {
+  const Index count = w.triangles.size();
+  if (w.domain.alone()) return run(w, count, kernel);
+  constexpr Index grain = 512;
+  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
+    w.domain.each_own_run(begin, end,
+                          [&](Index from, Index to) { run_packs(w.lanes, kernel, from, to); });
+  });
+}
+
 }  // namespace
 
 double Amplitude::at(double time) const {
@@ -60,7 +72,7 @@ void move_triangles(World& w) {
       now.push_back({p.amplitude.at(middle) * p.velocity});
     copy_to(w.motions, now);
   }
-  run(w, w.triangles.size(), move_kernel(w));
+  run_own(w, move_kernel(w));
   w.time += w.next_dt;
   w.last_dt = w.next_dt;
 }
@@ -77,7 +89,7 @@ void couple_forces(World& w) {
 
 void triangle_forces(World& w) {
   const StageTime timed(w.exec, "triangle_forces");
-  run(w, w.triangles.size(), triangle_kernel(w));
+  run_own(w, triangle_kernel(w));
 }
 
 void load_forces(World& w) {

@@ -325,10 +325,15 @@ void drop_state(World& w) {
   w.vertex.clear();
 }
 
-void refresh_copies(World& w) {
+void start_copies(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "halo");
-  w.domain.refresh(w.triangles.nodes);
+  w.domain.start_refresh(w.triangles.nodes);
+}
+void finish_copies(World& w) {
+  if (w.domain.alone()) return;
+  const StageTime timed(w.exec, "halo");
+  w.domain.finish_refresh(w.triangles.nodes);
 }
 
 World share_out(World& whole, Communicator& ranks, const DomainConfig& config) {

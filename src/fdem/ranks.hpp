@@ -19,8 +19,9 @@ World share_out(World& whole, Communicator& ranks, const DomainConfig& config);
 /// Only before a search, which finds the couples of new copies.
 void migrate(World& w);
 
-/// After the triangles have moved: copies follow their owners.
-void refresh_copies(World& w);
+/// After the triangles have moved: copies follow their owners. Meanwhile ranks vote on a search.
+void start_copies(World& w);
+void finish_copies(World& w);
 
 /// Brings the state of all ranks together in `whole` on rank 0; it may lack couple lists and sums,
 /// which the observers do not read. Every rank calls it.

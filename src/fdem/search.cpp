@@ -115,12 +115,20 @@ void book_dropped(World& w, const Pairs& found) {
   w.ledger.lost.add(spent.lost);
 }
 
+/// Copies are their owners' to tell of.
+struct OwnUsedMargin {
+  UsedMargin used;
+  OwnedView owned;
+  BR_HD double operator()(Index i) const { return owned(used.triangle[i]) ? used(i) : 0.0; }
+};
+
 bool margin_is_used(const World& w) {
   UsedMargin used{w.reach.triangle.view(), w.reach.reference.view(),
                   w.reach.margin.view(),   w.triangles.nodes.view(),
                   w.reach.drift,           Vec2{}};
   used.set_time(w.time);
-  return fold(w.exec, w.reach.triangle.size(), 0.0, used, Largest{}) > 0.0;
+  const OwnUsedMargin own{used, w.domain.owned_view()};
+  return fold(w.exec, w.reach.triangle.size(), 0.0, own, Largest{}) > 0.0;
 }
 
 /// The drift from now on: the mean velocity, where it makes up most of all motion. Otherwise there

@@ -5,10 +5,12 @@ namespace breccia::fdem {
 void step(World& w) {
   // 1. Newton's second law: velocities and positions of all corners      (Lukas 2014, section 2)
   move_triangles(w);
-  refresh_copies(w);  // on other ranks
+  start_copies(w);  // on other ranks: they follow while all vote
 
   // 2. Contact detection, when travel has used the margin up or a joint has opened
-  if (couples_are_due(w)) find_couples(w);
+  const bool due = couples_are_due(w);
+  finish_copies(w);
+  if (due) find_couples(w);
 
   // 3. Joints appear and crack, couples push and rub, triangles deform; one sum per corner, no
   // atomics
