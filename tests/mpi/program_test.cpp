@@ -152,14 +152,17 @@ class FateOfRank : public ProgramOnRanks {
  protected:
   static constexpr const char* slab = BR_SOURCE_DIR
       "/cases/rc_slab/small.toml --threads 1 --no-progress --set output.frames=0 "
-      "--set checkpoint.steps=100 --set output.history=1 --set domain.patience=2 ";
+      "--set checkpoint.steps=100 --set output.history=1 --set domain.patience=3 ";
 
-  Ending suffer(int rank, const std::string& fate, const std::string& more = "") {
-    std::ofstream(out("rank.sh"))
-        << "#!/bin/sh\nexport MALLOC_MMAP_THRESHOLD_=4096\npid=$$\necho $pid >> " << out("pids")
-        << "\nif [ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = " << rank << " ]; then\n  (while ! ls "
-        << out("run") << "/checkpoints/step_*.br; do sleep 0.02; done\n   date +%s > "
-        << out("when") << "; " << fate << ") > /dev/null 2>&1 &\nfi\nexec " BR_PROGRAM " \"$@\"\n";
+  Ending suffer(int rank, const std::string& fate, const std::string& more = "",
+                const std::string& environment = "") {
+    std::ofstream(out("rank.sh")) << "#!/bin/sh\n"
+                                  << environment << "\npid=$$\necho $pid >> " << out("pids")
+                                  << "\nif [ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = " << rank
+                                  << " ]; then\n  (while ! ls " << out("run")
+                                  << "/checkpoints/step_*.br; do sleep 0.02; done\n   date +%s > "
+                                  << out("when") << "; " << fate
+                                  << ") > /dev/null 2>&1 &\nfi\nexec " BR_PROGRAM " \"$@\"\n";
     fs::permissions(out("rank.sh"), fs::perms::owner_all);
     const std::string command = mpirun(3) + out("rank.sh") + " run " + slab + more + "-o " +
                                 out("run") + " > " + out("told") +
@@ -197,7 +200,7 @@ TEST_F(FateOfRank, stopped_ends_all_with_exit_code_8_soon_after_the_others_lose_
   for (const int rank : {0, 1}) {
     const Ending ending = suffer(rank, "kill -STOP $pid");
     EXPECT_EQ(ending.exit_code, 8) << ending.told;
-    EXPECT_LE(ending.took, 2 + 5);
+    EXPECT_LE(ending.took, 3 + 5);
     EXPECT_EQ(ending.errors(), 1) << ending.told;
     EXPECT_NE(ending.told.find("error: rank " + std::to_string(rank) + " has not answered"),
               std::string::npos)
@@ -215,9 +218,10 @@ TEST_F(FateOfRank, stopped_for_less_than_the_others_patience_changes_nothing) {
 }
 
 TEST_F(FateOfRank, without_memory_ends_all_with_exit_code_5_and_one_message) {
-  // From here on the process gets no more than it has; arrays are not taken from a heap (above).
+  // From here on the process gets no more than it has; arrays are not taken from a heap.
   const Ending ending = suffer(
-      1, "prlimit --pid $pid --as=$(($(awk '/VmSize/ {print $2}' /proc/$pid/status) * 1024))");
+      1, "prlimit --pid $pid --as=$(($(awk '/VmSize/ {print $2}' /proc/$pid/status) * 1024))", "",
+      "export MALLOC_MMAP_THRESHOLD_=4096");
   EXPECT_EQ(ending.exit_code, 5) << ending.told;
   EXPECT_LE(ending.took, 5);
   EXPECT_EQ(ending.errors(), 1) << ending.told;
