@@ -29,6 +29,18 @@ for case in "${cases[@]}"; do
   echo "$case: cpu $cpu, cuda $first and $again: $verdict"
 done
 
+if command -v mpirun > /dev/null; then
+  for case in "${cases[@]}"; do
+    alone=$(hash_of cuda "$case" --device cuda --steps 600)
+    mpirun --oversubscribe --allow-run-as-root -n 2 "$breccia" run "$case" --device cuda --steps 600 -o "$out/ranks" --force \
+      --no-progress -q --set output.frames=0
+    ranks=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1] + "/summary.json"))["state_hash"])' "$out/ranks")
+    verdict=same
+    [ "$alone" = "$ranks" ] || { verdict=DIFFERENT; failed=1; }
+    echo "$case: one rank $alone, two ranks on the GPU $ranks: $verdict"
+  done
+fi
+
 if command -v compute-sanitizer > /dev/null; then
   for tool in memcheck initcheck synccheck; do
     for case in "${cases[@]}"; do

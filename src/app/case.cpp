@@ -164,7 +164,9 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
         decltype(built(config, read.folder)) model;
         together_or_not(ranks, [&] {
           model = model_of(read, config);
-          if (exec.space == Space::cuda) plan_device(device_bytes(model), quiet);
+          if (exec.space == Space::cuda)
+            plan_device(device_bytes(model) / (ranks == nullptr ? 1 : ranks->size()),
+                        quiet || (ranks != nullptr && ranks->rank() > 0));
         });
         return method_over(config, model, exec, ranks);
       },

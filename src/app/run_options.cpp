@@ -68,9 +68,8 @@ Exec exec_of(const RunOptions& options, Communicator* ranks) {
     if (error != std::errc{} || stop != end || number < 0)
       throw InputError(
           fmt::format("--device {}: N is the number of a GPU, from 0", options.device));
-  }
-  if (ranks != nullptr)
-    throw DeviceError("--device cuda: a run on a GPU takes one rank; nothing was run");
+  } else if (const int there = device_count(); there > 0)  // a GPU each, in turn
+    number = number_on_this_machine(ranks) % there;
   use_device(number);
   exec.space = Space::cuda;
   return exec;

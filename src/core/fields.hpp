@@ -16,14 +16,17 @@ void resize_fields(State& state, Index count) {
   state.each_field([count](const char*, const char*, auto& array) { array.resize(count); });
 }
 
-/// Replaces every array by one in `space`, holding the same items.
+/// Replaces an array by one in `space`, holding the same items.
+template <class Array>
+void move_array(Array& array, Space space) {
+  Array there(space);
+  copy_to(there, array);
+  array = std::move(there);
+}
+/// The same for every array of a state.
 template <class State>
 void move_fields(State& state, Space space) {
-  state.each_field([space](const char*, const char*, auto& array) {
-    std::remove_reference_t<decltype(array)> there(space);
-    copy_to(there, array);
-    array = std::move(there);
-  });
+  state.each_field([space](const char*, const char*, auto& array) { move_array(array, space); });
 }
 
 /// A copy in the host's memory, for output and checks.

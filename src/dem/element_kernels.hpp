@@ -99,6 +99,8 @@ struct GatherForces {
 struct LinkRows {
   Buffer<Index> starts, links;
 
+  explicit LinkRows(Space space = Space::host) : starts(space), links(space) {}
+
   struct Seen {
     View<const Index> starts, links;
   };

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "domain/sharing.hpp"
+#include "exec/for_each.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -132,9 +133,32 @@ void note_numbers(std::vector<LinkGroup<Law>>& groups) {
   }
 }
 
+struct MarginNow {
+  MarginRule rule;
+  OwnedView owned;
+  View<const ElementState> state;
+  BR_HD double operator()(Index e) const { return owned(e) ? rule.margin(state[e].velocity) : 0.0; }
+};
+
+/// 1 where an element has left the buffer.
+struct HasLeft {
+  double allowed;  ///< square of the way that it may go  [m2]
+  OwnedView owned;
+  View<const ElementState> state;
+  View<const Vec3> placed;
+  BR_HD double operator()(Index e) const {
+    const Vec3 moved = state[e].position - placed[e];
+    return owned(e) && !(dot(moved, moved) <= allowed) ? 1.0 : 0.0;
+  }
+};
+
 class Spheres final : public Shareable {
  public:
-  explicit Spheres(World& w) : w_(w) {}
+  /// @param space  where the elements go when they have settled in
+  Spheres(World& w, Space space) : w_(w), space_(space) {}
+
+  Space space() const override { return space_; }
+  void come_to_host() override { move_to(w_, Space::host); }
 
   const Buffer<GlobalId>& ids() const override { return w_.elements.id; }
   Vec3 centre(Index e) const override { return w_.elements.state.data()[e].position; }
@@ -153,12 +177,17 @@ class Spheres final : public Shareable {
     return loads;
   }
   double margin() const override {
-    const MarginRule rule = margin_rule(w_);
-    double largest = 0.0;
-    for (Index e = 0; e < w_.elements.size(); ++e)
-      if (w_.domain.owns(e))
-        largest = std::max(largest, rule.margin(w_.elements.state.data()[e].velocity));
-    return largest;
+    return fold(
+        w_.exec, w_.elements.size(), 0.0,
+        MarginNow{margin_rule(w_), w_.domain.owned_view(), std::as_const(w_.elements.state).view()},
+        Largest{});
+  }
+  bool has_left() const override {
+    return fold(w_.exec, w_.elements.size(), 0.0,
+                HasLeft{w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
+                        std::as_const(w_.elements.state).view(),
+                        std::as_const(w_.domain.placed).view()},
+                Largest{}) > 0.0;
   }
   double largest_margin() const override { return w_.parameters.largest_margin; }
   void send(const std::vector<int>& owner) override {
@@ -170,12 +199,14 @@ class Spheres final : public Shareable {
     divide(w_.concrete_groups, w_.numbers.concrete);
     divide(w_.steel_groups, w_.numbers.steel);
     divide(w_.interface_groups, w_.numbers.interface);
+    move_to(w_, space_);
     set_linked_pairs(w_);
     derive(w_);
   }
 
  private:
   World& w_;
+  Space space_;
 };
 
 void number(Buffer<Index>& numbers, Index count) {
@@ -199,15 +230,15 @@ void drop_state(World& w) {
 void start_copies(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "halo");
-  w.domain.start_refresh(w.elements.state);
+  w.domain.start_refresh(w.exec, w.elements.state);
 }
 void finish_copies(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "halo");
-  w.domain.finish_refresh(w.elements.state);
+  w.domain.finish_refresh(w.exec, w.elements.state);
 }
 
-World share_out(const World& whole, Communicator& ranks, const DomainConfig& config) {
+World share_out(const World& whole, Communicator& ranks, const DomainConfig& config, Space space) {
   World w = whole;
   note_numbers(w.concrete_groups);
   note_numbers(w.steel_groups);
@@ -219,7 +250,7 @@ World share_out(const World& whole, Communicator& ranks, const DomainConfig& con
   number(w.numbers.concrete, w.concrete.size());
   number(w.numbers.steel, w.steel.size());
   number(w.numbers.interface, w.interface.size());
-  Spheres spheres(w);
+  Spheres spheres(w, space);
   begin_sharing(w.domain, ranks, config, spheres, 2.0 * w.parameters.mean_radius, 3);
   share_anew(w.domain, spheres, true);
   return w;
@@ -228,21 +259,21 @@ World share_out(const World& whole, Communicator& ranks, const DomainConfig& con
 void migrate(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "migration");
-  Spheres spheres(w);
+  Spheres spheres(w, w.exec.space);
   share_if_needed(w.domain, spheres);
 }
 
 void collect(World& part, World& whole) {
-  World copy(part.exec);
-  copy.elements = part.elements;
-  copy.travel = part.travel;
-  copy.concrete = part.concrete;
-  copy.steel = part.steel;
-  copy.interface = part.interface;
-  copy.contacts = part.contacts;
-  copy.wall_contacts = part.wall_contacts;
+  World copy(Exec{});
+  copy.elements = host_copy(part.elements);
+  copy.travel = host_copy(part.travel);
+  copy.concrete = host_copy(part.concrete);
+  copy.steel = host_copy(part.steel);
+  copy.interface = host_copy(part.interface);
+  copy.contacts = host_copy(part.contacts);
+  copy.wall_contacts = host_copy(part.wall_contacts);
   copy.numbers = part.numbers;
-  copy.bar_actions = part.bar_actions;
+  copy_to(copy.bar_actions, part.bar_actions);
   copy.domain.ranks = part.domain.ranks;
   copy.domain.owned = part.domain.owned;
   Journey(copy, std::vector<int>(static_cast<std::size_t>(part.elements.size()), 0)).go();

@@ -10,9 +10,11 @@
 
 namespace breccia::dem {
 
-/// Makes a rank's part of a world. Every rank calls it with the world that the case builds; rank
-/// 0's state is shared out, the others' is dropped.
-World share_out(const World& whole, Communicator& ranks, const DomainConfig& config);
+/// Makes a rank's part of a world. Every rank calls it with the world that the case builds, on the
+/// host; rank 0's state is shared out, the others' is dropped.
+/// @param space  of the part
+World share_out(const World& whole, Communicator& ranks, const DomainConfig& config,
+                Space space = Space::host);
 
 /// Shares elements out anew, if some have left the buffer since it was done last, with all that
 /// they own: links, contacts and their history (Lukas 2014, 3.5); first moves the borders if loads

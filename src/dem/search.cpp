@@ -190,7 +190,7 @@ LinkRows rows_of(Space space, const std::vector<Index>& end, Index elements,
     Index& place = next[static_cast<std::size_t>(end[static_cast<std::size_t>(link)])];
     links[static_cast<std::size_t>(place++)] = link;
   }
-  LinkRows rows{Buffer<Index>(space), Buffer<Index>(space)};
+  LinkRows rows(space);
   copy_to(rows.starts, starts);
   copy_to(rows.links, links);
   return rows;

@@ -257,34 +257,21 @@ void set_contacts(World& w, const Config& config, const Model& m) {
 }  // namespace
 
 World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
-  const Space space = exec.space;
-  move_fields(elements, space);
-  move_fields(concrete, space);
-  move_fields(steel, space);
-  move_fields(interface, space);
-  move_fields(contacts, space);
-  move_fields(wall_contacts, space);
-  move_fields(travel, space);
-  contact_pairs = Buffer<ContactPair>(space);
-  wall_pairs = Buffer<ContactPair>(space);
-  motions = Buffer<Motion>(space);
-  linked = Buffer<PairKey>(space);
-  linked_links = Buffer<Index>(space);
-  bar_incidence = Incidence(space);
-  contact_incidence = Incidence(space);
-  broad_phase = BroadPhase(space);
-  bar_actions = Buffer<Action>(space);
-  contact_actions = Buffer<Action>(space);
-  link_sums = Buffer<LinkSums>(space);
-  critical = Buffer<double>(space);
-  rows_a = rows_b = LinkRows{Buffer<Index>(space), Buffer<Index>(space)};
-  link_actions = Buffer<Action>(space);
-  device_walls = Buffer<Wall>(space);
-  concrete_laws = Buffer<ConcreteLink>(space);
-  steel_laws = Buffer<SteelLink>(space);
-  interface_laws = Buffer<InterfaceLink>(space);
-  clock = Buffer<StepClock>(space);
-  blocks_done = Buffer<unsigned>(space, 1);
+  const auto place = [&](auto& array) {
+    array = std::remove_reference_t<decltype(array)>(exec.space);
+  };
+  each_kept(place);
+  each_derived(place);
+  blocks_done.resize(1);
+}
+
+void move_to(World& w, Space space) {
+  if (w.exec.space == space) return;
+  w.each_kept([space](auto& array) { move_array(array, space); });
+  w.each_derived([space](auto& array) { array = std::remove_reference_t<decltype(array)>(space); });
+  w.graphs.clear();
+  w.blocks_done.resize(1);
+  w.exec.space = space;
 }
 
 void set_linked_pairs(World& w) {

@@ -20,7 +20,7 @@ void step(World& w) {
 }
 
 Advanced advance(World& w, const StopAt& stop) {
-  if (w.exec.space == Space::cuda) return advance_on_device(w, stop);
+  if (w.exec.space == Space::cuda && w.domain.alone()) return advance_on_device(w, stop);
   step(w);
   return {1, w.last_dt, w.last_dt};
 }

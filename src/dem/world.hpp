@@ -105,6 +105,31 @@ struct World {
   std::int64_t step = 0;
   std::int64_t searches = 0;
 
+  /// Visits the arrays that kernels read: state, and what follows from the case.
+  template <class Visit>
+  void each_kept(Visit&& visit) {
+    const auto state = [&](auto& s) {
+      s.each_field([&](const char*, const char*, auto& array) { visit(array); });
+    };
+    state(elements);
+    state(concrete);
+    state(steel);
+    state(interface);
+    state(contacts);
+    state(wall_contacts);
+    state(travel);
+    const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
+    each(contact_pairs, wall_pairs, motions, linked, linked_links, bar_actions, concrete_laws,
+         steel_laws, interface_laws, domain.owned_there, domain.placed);
+  }
+  /// Those that derive() and a search fill.
+  template <class Visit>
+  void each_derived(Visit&& visit) {
+    const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
+    each(bar_incidence, contact_incidence, broad_phase, contact_actions, link_sums, critical,
+         rows_a, rows_b, link_actions, device_walls, clock, blocks_done);
+  }
+
   /// Of all kinds, broken ones included.
   Index links() const { return concrete.size() + steel.size() + interface.size(); }
 
@@ -155,6 +180,9 @@ void set_linked_pairs(World& w);
 void derive(World& w);
 /// The same for contacts alone, after a search.
 void derive_contacts(World& w);
+
+/// Moves a world's arrays to another space; derive() must follow.
+void move_to(World& w, Space space);
 
 /// One step of the scheme of Durand et al. 2012, Figure 1 and section 3.3.
 void step(World& w);

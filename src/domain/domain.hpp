@@ -48,9 +48,10 @@ struct Domain {
   Partition partition;
   double buffer = 0.0;         ///< how far an element goes before they are shared out anew  [m]
   double margin = 0.0;         ///< largest of the search that copies are held for  [m]
-  Buffer<std::uint8_t> owned;  ///< 1: this rank owns the element; empty when alone
+  Buffer<std::uint8_t> owned;  ///< 1: this rank owns the element; empty when alone; on the host
+  Buffer<std::uint8_t> owned_there;  ///< the same where kernels can read it
+  Buffer<Vec3> placed;  ///< where each stood when they were shared out last; likewise  [m]
   Halo halo;
-  std::vector<Vec3> placed;  ///< where each stood when they were shared out last  [m]
   std::vector<ElementRun>
       runs;  ///< of elements that loops over own ones take, few copies among them
   DomainCounts counts;
@@ -58,7 +59,7 @@ struct Domain {
   bool alone() const { return ranks == nullptr; }
   bool owns(Index element) const { return alone() || owned.data()[element] != 0; }
 
-  OwnedView owned_view() const { return {owned.view()}; }
+  OwnedView owned_view() const { return {owned_there.view()}; }
 
   double least(double value) const { return alone() ? value : ranks->least(value); }
   std::uint64_t any_of(std::uint64_t bits) const { return alone() ? bits : ranks->any_of(bits); }
@@ -67,17 +68,17 @@ struct Domain {
   /// Copies of other ranks' items become what their owners have. Between start and finish numbers
   /// may be combined, and copies are not yet to be read.
   template <class T>
-  void start_refresh(Buffer<T>& items) {
-    if (!alone()) halo.start(*ranks, items);
+  void start_refresh(const Exec& exec, Buffer<T>& items) {
+    if (!alone()) halo.start(exec, *ranks, items);
   }
   template <class T>
-  void finish_refresh(Buffer<T>& items) {
-    if (!alone()) halo.finish(*ranks, items);
+  void finish_refresh(const Exec& exec, Buffer<T>& items) {
+    if (!alone()) halo.finish(exec, *ranks, items);
   }
   template <class T>
-  void refresh(Buffer<T>& items) {
-    start_refresh(items);
-    finish_refresh(items);
+  void refresh(const Exec& exec, Buffer<T>& items) {
+    start_refresh(exec, items);
+    finish_refresh(exec, items);
   }
 
   /// Calls visit(begin, end) for the parts of [begin, end) that hold own elements: all of it when

@@ -2,41 +2,70 @@
 
 namespace breccia {
 
-void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<int>& owner) {
+void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<int>& owner,
+                 Space space) {
   const auto count = static_cast<std::size_t>(ranks.size());
-  const int self = ranks.rank();
   std::vector<std::vector<Index>> receive(count);
   std::vector<Message> wanted(count);
-  copies_ = 0;
   for (Index e = 0; e < ids.size(); ++e) {
     const int of = owner[static_cast<std::size_t>(e)];
-    if (of == self) continue;
-    receive[static_cast<std::size_t>(of)].push_back(e);
-    ++copies_;
+    if (of != ranks.rank()) receive[static_cast<std::size_t>(of)].push_back(e);
   }
   for (std::size_t r = 0; r < count; ++r) deal_detail::put(wanted[r], ids, receive[r]);
   const std::vector<Message> asked = ranks.exchange(std::move(wanted));
 
   peers_.clear();
+  std::vector<Index> all_sent, all_received;
   for (std::size_t r = 0; r < count; ++r) {
-    Peer peer{static_cast<int>(r), {}, std::move(receive[r]), {}, {}};
+    const Peer peer{static_cast<int>(r), asked[r].size() / sizeof(GlobalId), receive[r].size()};
     for (std::size_t at = 0; at < asked[r].size(); at += sizeof(GlobalId)) {
       GlobalId id = 0;
       std::memcpy(&id, asked[r].data() + at, sizeof id);
-      peer.send.push_back(place_of(ids, id));
+      all_sent.push_back(place_of(ids, id));
     }
-    if (!peer.send.empty() || !peer.receive.empty()) peers_.push_back(std::move(peer));
+    all_received.insert(all_received.end(), receive[r].begin(), receive[r].end());
+    if (peer.send + peer.receive > 0) peers_.push_back(peer);
   }
+  send_ = receive_ = Buffer<Index>(space);
+  copy_to(send_, all_sent);
+  copy_to(receive_, all_received);
 }
 
-void Halo::post(Communicator& ranks) {
+void Halo::make_room(Space space, std::size_t item_bytes) {
+  const auto grow = [&](Buffer<std::byte>& bytes, Index items) {
+    if (bytes.space() != space) bytes = Buffer<std::byte>(space);
+    const auto need = static_cast<Index>(static_cast<std::size_t>(items) * item_bytes);
+    if (bytes.size() < need) bytes.resize(need);
+  };
+  grow(out_, send_.size());
+  grow(in_, receive_.size());
+}
+
+void Halo::post(Communicator& ranks, std::size_t item_bytes) {
+  std::byte *from = out_.data(), *to = in_.data();
+  if (out_.space() != Space::host) {
+    sent_.resize(static_cast<std::size_t>(send_.size()) * item_bytes);
+    came_.resize(static_cast<std::size_t>(receive_.size()) * item_bytes);
+    copy_bytes(sent_.data(), Space::host, out_.data(), out_.space(), sent_.size());
+    from = sent_.data();
+    to = came_.data();
+  }
   to_.clear();
   from_.clear();
-  for (Peer& peer : peers_) {
-    if (!peer.sent.empty()) to_.push_back({peer.rank, peer.sent.data(), peer.sent.size()});
-    if (!peer.came.empty()) from_.push_back({peer.rank, peer.came.data(), peer.came.size()});
+  for (const Peer& peer : peers_) {
+    const std::size_t sent = peer.send * item_bytes, came = peer.receive * item_bytes;
+    if (sent > 0) to_.push_back({peer.rank, from, sent});
+    if (came > 0) from_.push_back({peer.rank, to, came});
+    from += sent;
+    to += came;
   }
   ranks.start(to_, from_);
+}
+
+void Halo::take_in(std::size_t item_bytes) {
+  if (in_.space() != Space::host)
+    copy_bytes(in_.data(), in_.space(), came_.data(), Space::host,
+               static_cast<std::size_t>(receive_.size()) * item_bytes);
 }
 
 }  // namespace breccia

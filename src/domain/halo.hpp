@@ -4,58 +4,86 @@
 #include <vector>
 
 #include "domain/deal.hpp"
+#include "exec/for_each.hpp"
 
 namespace breccia {
+
+template <class T>
+struct PackItems {
+  static constexpr const char* name = "domain.pack_items";
+  View<const Index> which;
+  View<const T> items;
+  View<T> packed;
+  BR_HD void operator()(Index i) const { packed[i] = items[which[i]]; }
+};
+template <class T>
+struct UnpackItems {
+  static constexpr const char* name = "domain.unpack_items";
+  View<const Index> which;
+  View<const T> packed;
+  View<T> items;
+  BR_HD void operator()(Index i) const { items[which[i]] = packed[i]; }
+};
 
 /// What a rank exchanges with each of its neighbours: items that it owns and they hold copies of,
 /// and the other way round.
 class Halo {
  public:
-  /// @param ids    of the local elements, ascending
+  /// @param ids    of the local elements, ascending, on the host
   /// @param owner  rank that owns each
-  void build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<int>& owner);
+  /// @param space  where the items lie that will be exchanged
+  void build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<int>& owner,
+             Space space = Space::host);
 
-  /// Sends the items of owned elements to the ranks that hold copies of them; returns at once.
-  /// finish() then writes those that came. Every rank calls both.
+  /// Sends the items of owned elements to the ranks that hold copies of them. finish() then writes
+  /// those that came. Every rank calls both.
   template <class T>
-  void start(Communicator& ranks, const Buffer<T>& items) {
-    for (Peer& peer : peers_) {
-      peer.sent.clear();
-      deal_detail::put(peer.sent, items, peer.send);
-      peer.came.resize(peer.receive.size() * sizeof(T));
-    }
-    post(ranks);
+  void start(const Exec& exec, Communicator& ranks, const Buffer<T>& items) {
+    make_room(items.space(), sizeof(T));
+    for_each(exec, send_.size(),
+             PackItems<T>{std::as_const(send_).view(), items.view(), as_items<T>(out_)});
+    post(ranks, sizeof(T));
   }
   template <class T>
-  void finish(Communicator& ranks, Buffer<T>& items) {
+  void finish(const Exec& exec, Communicator& ranks, Buffer<T>& items) {
     ranks.finish();
-    for (const Peer& peer : peers_) {
-      const std::byte* from = peer.came.data();
-      for (const Index i : peer.receive) {
-        std::memcpy(items.data() + i, from, sizeof(T));
-        from += sizeof(T);
-      }
-    }
+    take_in(sizeof(T));
+    for_each(exec, receive_.size(),
+             UnpackItems<T>{std::as_const(receive_).view(), as_items<T>(in_), items.view()});
   }
   template <class T>
-  void refresh(Communicator& ranks, Buffer<T>& items) {
-    start(ranks, items);
-    finish(ranks, items);
+  void refresh(const Exec& exec, Communicator& ranks, Buffer<T>& items) {
+    start(exec, ranks, items);
+    finish(exec, ranks, items);
   }
 
-  Index copies() const { return copies_; }  ///< elements of other ranks that this one holds
+  Index copies() const { return receive_.size(); }  ///< of other ranks' elements held here
 
  private:
+  /// A neighbour and how many items go to it and come from it.
   struct Peer {
     int rank;
-    std::vector<Index> send, receive;  ///< local elements, ascending by global id
-    Message sent, came;
+    std::size_t send, receive;
   };
-  void post(Communicator& ranks);
+  template <class T>
+  static View<T> as_items(Buffer<std::byte>& bytes) {
+    View<T> view;
+    view.data = reinterpret_cast<T*>(bytes.data());
+    view.size = static_cast<Index>(static_cast<std::size_t>(bytes.size()) / sizeof(T));
+#if defined(BR_CHECKED)
+    view.space = bytes.space();
+#endif
+    return view;
+  }
+  void make_room(Space space, std::size_t item_bytes);
+  void post(Communicator& ranks, std::size_t item_bytes);
+  void take_in(std::size_t item_bytes);
 
   std::vector<Peer> peers_;
+  Buffer<Index> send_, receive_;  ///< local elements of each peer, ascending by global id
+  Buffer<std::byte> out_, in_;    ///< their items, packed peer by peer, where the elements lie
+  Message sent_, came_;           ///< the same on the host, if the elements are elsewhere
   std::vector<Post> to_, from_;
-  Index copies_ = 0;
 };
 
 }  // namespace breccia

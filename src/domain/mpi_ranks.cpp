@@ -95,6 +95,7 @@ class MpiRanks final : public Communicator {
          "MPI_Comm_split_type");
     must(MPI_Comm_size(here, &here_), "MPI_Comm_size");
     signs_.emplace(here);
+    must(MPI_Comm_rank(here, &number_here_), "MPI_Comm_rank");
     MPI_Comm_free(&here);
     watchdog_.emplace(signs_->all(), signs_->self(), [this](std::size_t place) { lose(place); });
     watchdog_->set_patience(DomainConfig{}.patience);
@@ -110,6 +111,7 @@ class MpiRanks final : public Communicator {
   int size() const override { return size_; }
   int on_this_machine() const { return here_; }
   void set_patience(double seconds) override { watchdog_->set_patience(seconds); }
+  int number_on_this_machine() const { return number_here_; }
 
   void start(std::span<const Post> to, std::span<const Post> from) override {
     requests_.clear();
@@ -233,7 +235,7 @@ class MpiRanks final : public Communicator {
   }
 
   MPI_Comm all_ = MPI_COMM_NULL;
-  int rank_ = 0, size_ = 1, here_ = 1;
+  int rank_ = 0, size_ = 1, here_ = 1, number_here_ = 0;
   std::vector<MPI_Request> requests_;
   std::optional<SharedSigns> signs_;
   std::optional<Watchdog> watchdog_;
@@ -260,6 +262,10 @@ int ranks_on_this_machine(Communicator* ranks) {
   const auto* mpi = dynamic_cast<const MpiRanks*>(ranks);
   return mpi == nullptr ? 1 : mpi->on_this_machine();
 }
+int number_on_this_machine(Communicator* ranks) {
+  const auto* mpi = dynamic_cast<const MpiRanks*>(ranks);
+  return mpi == nullptr ? 0 : mpi->number_on_this_machine();
+}
 
 #else
 
@@ -279,6 +285,9 @@ std::unique_ptr<Communicator> launched_ranks() {
 }
 int ranks_on_this_machine(Communicator*) {
   return 1;
+}
+int number_on_this_machine(Communicator*) {
+  return 0;
 }
 
 #endif

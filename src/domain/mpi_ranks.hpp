@@ -16,5 +16,7 @@ std::unique_ptr<Communicator> launched_ranks();
 
 /// How many of the ranks share this machine with the calling one; 1 when alone.
 int ranks_on_this_machine(Communicator* ranks);
+/// This rank's number among them, from 0.
+int number_on_this_machine(Communicator* ranks);
 
 }  // namespace breccia

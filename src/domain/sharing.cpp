@@ -6,21 +6,6 @@
 namespace breccia {
 namespace {
 
-/// Whether a point of an own element has left the buffer; nowhere (NaN) counts as left.
-bool has_left(const Domain& d, const Shareable& elements) {
-  const double allowed = d.buffer * d.buffer;
-  const auto points = static_cast<Index>(d.placed.size());
-  const Index per_element = elements.ids().size() > 0 ? points / elements.ids().size() : 1;
-  Index i = 0;
-  bool left = false;
-  elements.each_point([&](const Vec3& point) {
-    const Vec3 moved = point - d.placed[static_cast<std::size_t>(i)];
-    if (d.owns(i / per_element) && !(dot(moved, moved) <= allowed)) left = true;
-    ++i;
-  });
-  return left;
-}
-
 /// Runs of own elements, in whole packs: copies among them cost less than what is left over.
 std::vector<ElementRun> own_runs(const Domain& d) {
   constexpr Index pack = 8, shortest_break = 4 * pack;
@@ -58,6 +43,7 @@ void begin_sharing(Domain& d, Communicator& ranks, const DomainConfig& config,
   const Index count = elements.ids().size();
   d.owned.resize(count);
   std::fill(d.owned.host().begin(), d.owned.host().end(), std::uint8_t{1});
+  d.owned_there = d.owned;
   constexpr double far = std::numeric_limits<double>::max();
   Vec3 low{far, far, far}, minus_high = low;
   for (Index e = 0; e < count; ++e) {
@@ -95,9 +81,11 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
       ++d.counts.moved;
   }
   d.runs = own_runs(d);
-  d.placed.clear();
-  elements.each_point([&](const Vec3& point) { d.placed.push_back(point); });
-  d.halo.build(*d.ranks, elements.ids(), owner);
+  std::vector<Vec3> placed;
+  elements.each_point([&](const Vec3& point) { placed.push_back(point); });
+  copy_to(d.placed, placed);
+  copy_to(d.owned_there, d.owned);
+  d.halo.build(*d.ranks, elements.ids(), owner, elements.space());
   d.counts.copies = d.halo.copies();
   d.counts.owned = count - d.halo.copies();
   d.counts.load = sum_of(elements.loads());
@@ -106,8 +94,10 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
 }
 
 void share_if_needed(Domain& d, Shareable& elements) {
-  const bool beyond = has_left(d, elements) || !(elements.margin() <= d.margin);
-  if (d.any(beyond)) share_anew(d, elements, false);
+  const bool beyond = elements.has_left() || !(elements.margin() <= d.margin);
+  if (!d.any(beyond)) return;
+  elements.come_to_host();
+  share_anew(d, elements, false);
 }
 
 }  // namespace breccia

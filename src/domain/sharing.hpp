@@ -16,12 +16,19 @@ class Shareable {
 
   virtual const Buffer<GlobalId>& ids() const = 0;  ///< ascending
   virtual Vec3 centre(Index element) const = 0;     ///< where it counts as being  [m]
+  /// Where kernels see the elements.
+  virtual Space space() const = 0;
+  /// Brings them to the host, where all but margin() and has_left() need them; settle_in() takes
+  /// them back.
+  virtual void come_to_host() = 0;
   /// The points whose travel the buffer bounds, one after the other; as many for each element.  [m]
   virtual void each_point(const std::function<void(const Vec3&)>& visit) const = 0;
   /// What each of its own elements costs: itself, and each end of what ties it to others.
   virtual std::vector<Load> loads() const = 0;
   /// The largest margin that a search now would give an element of its own.  [m]
   virtual double margin() const = 0;
+  /// Whether a point of an own element has left the buffer; nowhere (NaN) counts as left.
+  virtual bool has_left() const = 0;
   virtual double largest_margin() const = 0;  ///< that any search gives  [m]
   /// Sends elements with all they own to their new owners; besides these, ranks whose rectangle is
   /// near enough get a copy.

@@ -22,6 +22,12 @@ cudaStream_t device_stream() {
   return stream;
 }
 
+int device_count() {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) != cudaSuccess) cudaGetLastError();  // use_device() tells why
+  return count;
+}
+
 void use_device(int number) {
   int count = 0;
   if (const cudaError_t result = cudaGetDeviceCount(&count); result != cudaSuccess)
@@ -67,6 +73,9 @@ namespace {
 }
 }  // namespace
 
+int device_count() {
+  return 0;
+}
 void use_device(int) {
   refuse();
 }

@@ -13,6 +13,9 @@ struct DeviceInfo {
   std::size_t free_memory = 0;  ///< of it, not taken by anyone  [B]
 };
 
+/// GPUs that this process can use; 0 without CUDA.
+int device_count();
+
 /// Computes on GPU `number` from now on. @throws DeviceError if this build has no CUDA, or if there
 /// is no such GPU (tells how many there are)
 void use_device(int number);

@@ -24,7 +24,8 @@ void run(const World& w, Index count, const Kernel& kernel) {
 template <class Kernel>
 void run_own(const World& w, const Kernel& kernel) {
   const Index count = w.triangles.size();
-  if (w.domain.alone()) return run(w, count, kernel);
+  if (w.domain.alone() || w.exec.space == Space::cuda || w.lanes == Lanes::one)
+    return run(w, count, kernel);
   constexpr Index grain = 512;
   for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
     w.domain.each_own_run(begin, end,
@@ -102,7 +103,7 @@ void load_forces(World& w) {
   }
   if (w.mesh.bundled && !w.domain.alone()) {  // also on ranks that have none
     const StageTime timed(w.exec, "halo");
-    w.domain.refresh(w.triangles.force);
+    w.domain.refresh(w.exec, w.triangles.force);
   }
   if (w.bundles.starts.size() < 2) return;
   const StageTime timed(w.exec, "bundles");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "domain/sharing.hpp"
+#include "exec/for_each.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -238,12 +239,44 @@ void settle_in(World& w) {
   });
   copy_to(w.bundles.starts, first);
   copy_to(w.bundles.nodes, nodes);
-  derive(w);
 }
+
+struct Fastest {
+  Vec2 drift;  ///<  [m/s]
+  OwnedView owned;
+  View<const TriangleNodes> nodes;
+  BR_HD double operator()(Index t) const {
+    double fastest = 0.0;
+    if (owned(t))
+      for (const NodeState& n : nodes[t].at) fastest = larger(fastest, norm(n.velocity - drift));
+    return fastest;
+  }
+};
+
+/// 1 where a corner has left the buffer.
+struct HasLeft {
+  double allowed;  ///< square of the way that it may go  [m2]
+  OwnedView owned;
+  View<const TriangleNodes> nodes;
+  View<const Vec3> placed;
+  BR_HD double operator()(Index t) const {
+    bool left = false;
+    for (int k = 0; k < 3; ++k) {
+      const Vec2& x = nodes[t].at[k].position;
+      const Vec3 moved = Vec3{x.x, x.y, 0.0} - placed[3 * t + k];
+      if (!(dot(moved, moved) <= allowed)) left = true;
+    }
+    return owned(t) && left ? 1.0 : 0.0;
+  }
+};
 
 class Mesh final : public Shareable {
  public:
-  explicit Mesh(World& w) : w_(w) {}
+  /// @param space  where the triangles go when they have settled in
+  Mesh(World& w, Space space) : w_(w), space_(space) {}
+
+  Space space() const override { return space_; }
+  void come_to_host() override { move_to(w_, Space::host); }
 
   const Buffer<GlobalId>& ids() const override { return w_.triangles.id; }
   Vec3 centre(Index t) const override { return centroid(w_.triangles.nodes.data()[t]); }
@@ -263,13 +296,18 @@ class Mesh final : public Shareable {
     return loads;
   }
   double margin() const override {
-    double fastest = 0.0;
-    for (Index t = 0; t < w_.triangles.size(); ++t) {
-      if (!w_.domain.owns(t)) continue;
-      for (const NodeState& n : w_.triangles.nodes.data()[t].at)
-        fastest = std::max(fastest, norm(n.velocity - w_.reach.drift.velocity));
-    }
+    const double fastest = fold(w_.exec, w_.triangles.size(), 0.0,
+                                Fastest{w_.reach.drift.velocity, w_.domain.owned_view(),
+                                        std::as_const(w_.triangles.nodes).view()},
+                                Largest{});
     return margin_rule(w_).margin({fastest, 0.0, 0.0});
+  }
+  bool has_left() const override {
+    return fold(w_.exec, w_.triangles.size(), 0.0,
+                HasLeft{w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
+                        std::as_const(w_.triangles.nodes).view(),
+                        std::as_const(w_.domain.placed).view()},
+                Largest{}) > 0.0;
   }
   double largest_margin() const override { return margin_rule(w_).largest; }
   void send(const std::vector<int>& owner) override {
@@ -277,10 +315,15 @@ class Mesh final : public Shareable {
     journey.add_copies(halo_width(w_));
     journey.go();
   }
-  void settle_in() override { fdem::settle_in(w_); }
+  void settle_in() override {
+    fdem::settle_in(w_);
+    move_to(w_, space_);
+    derive(w_);
+  }
 
  private:
   World& w_;
+  Space space_;
 };
 
 /// What all ranks know alike, as rank 0 has it.
@@ -328,15 +371,15 @@ void drop_state(World& w) {
 void start_copies(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "halo");
-  w.domain.start_refresh(w.triangles.nodes);
+  w.domain.start_refresh(w.exec, w.triangles.nodes);
 }
 void finish_copies(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "halo");
-  w.domain.finish_refresh(w.triangles.nodes);
+  w.domain.finish_refresh(w.exec, w.triangles.nodes);
 }
 
-World share_out(World& whole, Communicator& ranks, const DomainConfig& config) {
+World share_out(World& whole, Communicator& ranks, const DomainConfig& config, Space space) {
   if (whole.mesh.tied.empty()) note_mesh(whole);
   World w = whole;
   w.mesh.joint_number.resize(w.joints.size());
@@ -347,7 +390,7 @@ World share_out(World& whole, Communicator& ranks, const DomainConfig& config) {
   }
   take_common(w, ranks);
   w.ledger = {};  // what this rank books from here on
-  Mesh mesh(w);
+  Mesh mesh(w, space);
   begin_sharing(w.domain, ranks, config, mesh, w.parameters.mean_edge, 2);
   share_anew(w.domain, mesh, true);
   return w;
@@ -356,23 +399,13 @@ World share_out(World& whole, Communicator& ranks, const DomainConfig& config) {
 void migrate(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "migration");
-  Mesh mesh(w);
+  Mesh mesh(w, w.exec.space);
   share_if_needed(w.domain, mesh);
 }
 
 void collect(World& part, World& whole) {
-  World copy(part.exec);
-  copy.triangles = part.triangles;
-  copy.joints = part.joints;
-  copy.couples = part.couples;
-  copy.reach = part.reach;
-  copy.edges = part.edges;
-  copy.dashpots = part.dashpots;
-  copy.across = part.across;
-  copy.vertex = part.vertex;
-  copy.mesh = part.mesh;
-  copy.domain.ranks = part.domain.ranks;
-  copy.domain.owned = part.domain.owned;
+  World copy = part;
+  move_to(copy, Space::host);
   // What lies around a triangle stays: rank 0 knows the whole mesh.
   Journey(copy, std::vector<int>(at(part.triangles.size()), 0)).go();
 
@@ -380,8 +413,8 @@ void collect(World& part, World& whole) {
   const std::vector<Ledger> booked = from_each(ranks, part.ledger);
   part.ledger = {};
   std::uint64_t changed = 0;
-  for (Index i = 0; i < part.opened.changed.size(); ++i)
-    if (part.opened.changed.data()[i] != 0) changed |= std::uint64_t{1} << i;
+  for (Index i = 0; i < copy.opened.changed.size(); ++i)
+    if (copy.opened.changed.data()[i] != 0) changed |= std::uint64_t{1} << i;
   changed = ranks.any_of(changed);
   if (ranks.rank() != 0) return;
   for (const Ledger& ledger : booked) {
@@ -393,11 +426,11 @@ void collect(World& part, World& whole) {
   whole.joints = std::move(copy.joints);
   whole.couples = std::move(copy.couples);
   whole.reach = std::move(copy.reach);
-  whole.opened = part.opened;
+  whole.opened = std::move(copy.opened);
   for (Index i = 0; i < whole.opened.changed.size(); ++i)
     whole.opened.changed.data()[i] = (changed >> i & 1) != 0 ? 1 : 0;
-  whole.motions = part.motions;
-  whole.load_laws = part.load_laws;
+  whole.motions = std::move(copy.motions);
+  whole.load_laws = std::move(copy.load_laws);
   whole.domain.partition = part.domain.partition;
   copy_time(part, whole);
 }

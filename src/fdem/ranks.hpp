@@ -10,9 +10,12 @@
 
 namespace breccia::fdem {
 
-/// Makes a rank's part of a world. Every rank calls it with the world that the case builds; rank
-/// 0's state is shared out, the others' is dropped. Notes in `whole` what is told of it all.
-World share_out(World& whole, Communicator& ranks, const DomainConfig& config);
+/// Makes a rank's part of a world. Every rank calls it with the world that the case builds, on the
+/// host; rank 0's state is shared out, the others' is dropped. Notes in `whole` what is told of it
+/// all.
+/// @param space  of the part
+World share_out(World& whole, Communicator& ranks, const DomainConfig& config,
+                Space space = Space::host);
 
 /// Shares triangles out anew, if some have left the buffer since it was done last, with all that
 /// they own (Lukas 2014, 3.5); first moves the borders if loads have become uneven (section 4).

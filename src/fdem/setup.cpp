@@ -291,24 +291,20 @@ void set_up_bodies(World& w, const Model& model) {
 
 }  // namespace
 
-World::World(const Exec& how)
-    : exec(how),
-      lanes(widest_lanes()),
-      couples{Pairs(how.space), CoupleHistory(how.space)},
-      couple_incidence(how.space),
-      broad_phase(how.space) {
-  const auto settle = [&](auto& state) { move_fields(state, how.space); };
-  settle(triangles);
-  settle(joints);
-  settle(reach);
-  const auto place = [&](auto&... arrays) {
-    ((arrays = std::remove_reference_t<decltype(arrays)>(how.space)), ...);
+World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
+  const auto place = [&](auto& array) {
+    array = std::remove_reference_t<decltype(array)>(exec.space);
   };
-  place(laws, bonds, contact_pairs, holds, load_starts, loaded_edges, dashpots, bundles.starts,
-        bundles.nodes, bundles.leader, triangles.external, joints.force, joints.preset,
-        opened.changed, opened.vertex, edges, joint_ends, motions, load_laws, born, stress,
-        overshoot, reached, node_vertex, border_vertex, amplitudes, amplitude_times,
-        amplitude_factors, prescribed_velocity, reach_place, clock, blocks_done);
+  each_kept(place);
+  each_derived(place);
+}
+
+void move_to(World& w, Space space) {
+  if (w.exec.space == space) return;
+  w.each_kept([space](auto& array) { move_array(array, space); });
+  w.each_derived([space](auto& array) { array = std::remove_reference_t<decltype(array)>(space); });
+  w.graphs.clear();
+  w.exec.space = space;
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {

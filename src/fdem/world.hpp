@@ -84,6 +84,30 @@ struct World {
   Lanes lanes;
   Parameters parameters;
 
+  /// Visits the arrays that kernels read: state, and what follows from the case.
+  template <class Visit>
+  void each_kept(Visit&& visit) {
+    const auto state = [&](auto& s) {
+      s.each_field([&](const char*, const char*, auto& array) { visit(array); });
+    };
+    state(triangles);
+    state(joints);
+    state(couples);
+    state(reach);
+    const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
+    each(triangles.external, joints.force, joints.preset, opened.changed, opened.vertex, laws,
+         bonds, contact_pairs, holds, load_starts, loaded_edges, dashpots, bundles.starts,
+         bundles.nodes, bundles.leader, joint_ends, edges, motions, load_laws, stress, overshoot,
+         reached, domain.owned_there, domain.placed);
+  }
+  /// Those that derive() and a search fill.
+  template <class Visit>
+  void each_derived(Visit&& visit) {
+    const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
+    each(couple_incidence, broad_phase, born, node_vertex, border_vertex, amplitudes,
+         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock, blocks_done);
+  }
+
   // State: what a checkpoint holds.
   Triangles triangles;
   Joints joints;
@@ -145,6 +169,9 @@ struct World {
   Buffer<unsigned> blocks_done;
   StepGraphs graphs;
 };
+
+/// Moves a world's arrays to another space; derive() must follow.
+void move_to(World& w, Space space);
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
 /// fit

@@ -12,7 +12,8 @@ class DemMethod final : public Method {
  public:
   DemMethod(const dem::Config& config, const dem::Model& model, const Exec& exec,
             Communicator* ranks)
-      : world_([&] { return dem::make_world(config, model, exec); }, ranks, config.domain),
+      : world_([&](const Exec& where) { return dem::make_world(config, model, where); }, exec,
+               ranks, config.domain),
         probes_(config.probes),
         range_(model.interaction_range) {}
 

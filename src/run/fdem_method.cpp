@@ -36,7 +36,8 @@ class FdemMethod final : public Method {
   FdemMethod(const fdem::Config& config, const fdem::Model& model, const Exec& exec,
              Communicator* ranks)
       : probes_(config.probes),
-        world_([&] { return made(config, model, exec); }, ranks, config.domain) {}
+        world_([&](const Exec& where) { return made(config, model, where); }, exec, ranks,
+               config.domain) {}
 
   Advanced advance(const StopAt& stop) override { return world_.advance_to(stop); }
   std::int64_t steps() const override { return world_.part().step; }

@@ -20,11 +20,15 @@ namespace breccia {
 template <class World>
 class SharedWorld {
  public:
-  /// @param make   builds the whole world; may fail
+  /// @param make   builds the whole world where it is told to; may fail
+  /// @param exec   of the world that steps; the whole of many parts lies on the host
   /// @param ranks  null: alone. Otherwise every rank makes one of these from the same case.
   template <class Make>
-  SharedWorld(const Make& make, Communicator* ranks, const DomainConfig& config)
-      : ranks_(ranks), config_(config), whole_(made(make, ranks, config)) {
+  SharedWorld(const Make& make, const Exec& exec, Communicator* ranks, const DomainConfig& config)
+      : ranks_(ranks),
+        config_(config),
+        space_(exec.space),
+        whole_(made(make, exec, ranks, config)) {
     whole_.domain.config = config;  // frames read it
     if (ranks_ != nullptr) at_once([&] { share(); });
   }
@@ -104,10 +108,11 @@ class SharedWorld {
 
  private:
   template <class Make>
-  static World made(const Make& make, Communicator* ranks, const DomainConfig& config) {
+  static World made(const Make& make, Exec exec, Communicator* ranks, const DomainConfig& config) {
     if (ranks != nullptr) ranks->set_patience(config.patience);
+    if (ranks != nullptr) exec.space = Space::host;
     std::optional<World> world;
-    together_or_not(ranks, [&] { world.emplace(make()); });
+    together_or_not(ranks, [&] { world.emplace(make(exec)); });
     return std::move(*world);
   }
   /// Work that all ranks do: one that fails alone leaves the others waiting.
@@ -146,7 +151,7 @@ class SharedWorld {
     facts_ = domain_facts(*ranks_, part_->domain.counts);
   }
   void share() {
-    part_.emplace(share_out(whole_, *ranks_, config_));
+    part_.emplace(share_out(whole_, *ranks_, config_, space_));
     whole_.domain.partition = part_->domain.partition;
     facts_ = domain_facts(*ranks_, part_->domain.counts);
     if (ranks_->rank() != 0) drop_state(whole_);
@@ -154,6 +159,7 @@ class SharedWorld {
 
   Communicator* ranks_;
   DomainConfig config_;
+  Space space_;  ///< of the part that steps
   World whole_;
   std::optional<World> part_;
   bool stale_ = false;

@@ -48,6 +48,17 @@ TEST(FdemRanks, leave_the_same_state_on_any_number_of_threads_each) {
   }
 }
 
+// Stands for ranks that compute on GPUs: their arrays are out of the host's reach.
+TEST(FdemRanks, leave_the_same_state_where_arrays_lie_in_another_space) {
+  for (const char* joints : {"intrinsic", "extrinsic"}) {
+    const Scene scene = impact(joints);
+    EXPECT_EQ(on_ranks(3, scene, 300, {}, 1, Space::shadow).outcome, alone(scene, 300)) << joints;
+  }
+  const Shared flying = on_ranks(3, box(), 700, {}, 1, Space::shadow);
+  EXPECT_EQ(flying.outcome, alone(box(), 700));
+  EXPECT_GT(flying.counts.migrations, 8);
+}
+
 TEST(FdemRanks, leave_the_same_state_however_borders_and_copies_are_kept) {
   const Scene scene = impact("intrinsic");
   const Outcome expected = alone(scene, 300);

@@ -23,11 +23,11 @@ struct Shared {
 };
 template <class AScene>
 Shared on_ranks(int count, const AScene& scene, int steps, const DomainConfig& config = {},
-                int threads = 1) {
+                int threads = 1, Space space = Space::host) {
   Shared shared;
   simulate_ranks(count, static_cast<std::uint64_t>(count), [&](Communicator& ranks) {
     auto whole = scene.world(threads);
-    auto part = share_out(whole, ranks, config);
+    auto part = share_out(whole, ranks, config, space);
     for (int i = 0; i < steps; ++i) step(part);
     collect(part, whole);
     if (ranks.rank() == 0) shared = {outcome_of(whole), part.domain.counts};

@@ -152,7 +152,7 @@ TEST(Halo, copies_become_what_their_owners_have) {
     Buffer<double> numbers(Space::host, ids.size());
     for (Index i = 0; i < ids.size(); ++i)
       numbers.data()[i] = owner[static_cast<std::size_t>(i)] == ranks.rank() ? ids.data()[i] : -1.0;
-    for (int round = 0; round < 5; ++round) halo.refresh(ranks, numbers);
+    for (int round = 0; round < 5; ++round) halo.refresh(Exec{}, ranks, numbers);
     for (Index i = 0; i < ids.size(); ++i) EXPECT_EQ(numbers.data()[i], ids.data()[i]);
   });
 }
