@@ -120,6 +120,7 @@ struct BodyConfig {
   Vec2 velocity{};  ///< at the start  [m/s]
   std::string file;
   std::vector<std::string> parts;  ///< physical groups of the file
+  std::string seams = "refuse";
   std::vector<HoleConfig> holes;
   std::vector<NotchConfig> notches;
   HexagonsConfig hexagons;
@@ -154,6 +155,10 @@ struct BodyConfig {
     key("parts", parts,
         "physical surfaces (.msh, .geo) or element sets (.inp) that are this body; empty: all. "
         "Bodies from the same file, moved by the same center, share their vertices");
+    key("seams", seams, OneOf{"refuse", "open"},
+        "of a mesh from a file: whether two nodes may lie at one place, so that the triangles "
+        "beside "
+        "them are not joined, and triangles share no edge with any other");
     key.list("hole", holes, "round holes");
     key.list("notch", notches, "slots and open cracks");
     key.table("hexagons", hexagons, "how many hexagons and how large");

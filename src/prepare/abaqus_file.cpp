@@ -261,8 +261,8 @@ class AbaqusReader {
 
 }  // namespace
 
-Mesh parse_abaqus(std::string_view content, const std::string& name) {
-  return finished_mesh(AbaqusReader(content, name).run(), name);
+Mesh parse_abaqus(std::string_view content, const std::string& name, bool seams) {
+  return finished_mesh(AbaqusReader(content, name).run(), name, seams);
 }
 
 }  // namespace breccia::prepare

@@ -96,8 +96,8 @@ Mesh mesh_of(const BodyConfig& body, const MeshingContext& context) {
   Mesh mesh;
   if (body.shape == "geo" || body.shape == "mesh") {
     const std::string path = (std::filesystem::path(context.folder) / body.file).string();
-    mesh =
-        body.shape == "mesh" ? read_mesh(path) : mesh_geo_file(path, body.mesh_size, context.seed);
+    mesh = body.shape == "mesh" ? read_mesh(path, body.seams == "open")
+                                : mesh_geo_file(path, body.mesh_size, context.seed);
     for (Vec2& p : mesh.point) p += body.center;
   } else {
     mesh = body.structured ? regular(body) : meshed_by_gmsh(body, context);

@@ -327,8 +327,8 @@ class GmshReader {
 
 }  // namespace
 
-Mesh parse_gmsh(std::string_view content, const std::string& name) {
-  return finished_mesh(GmshReader(content, name).run(), name);
+Mesh parse_gmsh(std::string_view content, const std::string& name, bool seams) {
+  return finished_mesh(GmshReader(content, name).run(), name, seams);
 }
 
 }  // namespace breccia::prepare

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 
 #include "exec/error.hpp"
@@ -20,7 +21,8 @@ std::string in_line(int line) {
 
 class Finisher {
  public:
-  Finisher(const RawMesh& raw, const std::string& name) : raw_(raw), name_(name) {}
+  Finisher(const RawMesh& raw, const std::string& name, bool seams)
+      : raw_(raw), name_(name), seams_(seams) {}
 
   Mesh run() {
     number_nodes();
@@ -32,6 +34,10 @@ class Finisher {
                     [this](Index v) { return node_name(kept_[static_cast<std::size_t>(v)]); }};
     for (const std::string& problem : mesh_problems(mesh_, names)) add(problem);
     refuse_if_any();
+    if (!seams_) {
+      check_seams(names);
+      refuse_if_any();
+    }
     take_sets();
     return std::move(mesh_);
   }
@@ -54,6 +60,38 @@ class Finisher {
   }
   std::string node_name(std::size_t n) const {
     return fmt::format("node {}", raw_.nodes[n].number);
+  }
+
+  /// Where triangles are not joined though they look so.
+  void check_seams(const MeshNames& names) {
+    const std::string remedy = "; if that is meant, set seams = \"open\" in the body";
+    const std::vector<Vec2>& point = mesh_.point;
+    std::vector<Index> order(point.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto place = [&](Index v) { return point[static_cast<std::size_t>(v)]; };
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return place(a).x != place(b).x ? place(a).x < place(b).x : a < b;
+    });
+    const double near = 1e-9 * (place(order.back()).x - place(order.front()).x);
+    for (std::size_t i = 0; i < order.size(); ++i)
+      for (std::size_t k = i + 1; k < order.size() && place(order[k]).x - place(order[i]).x <= near;
+           ++k)
+        if (std::abs(place(order[k]).y - place(order[i]).y) <= near)
+          add(fmt::format(
+              "{} and {} lie at one place, ({:.6g}, {:.6g}) m: triangles beside them are not "
+              "joined{}",
+              names.vertex(std::min(order[i], order[k])),
+              names.vertex(std::max(order[i], order[k])), place(order[i]).x, place(order[i]).y,
+              remedy));
+    if (mesh_.triangle.size() < 2) return;
+    std::vector<bool> joined(mesh_.triangle.size());
+    for (const MeshEdge& edge : edges_of(mesh_.triangle))
+      if (edge.triangles[1] >= 0)
+        for (const Index t : edge.triangles) joined[static_cast<std::size_t>(t)] = true;
+    for (std::size_t t = 0; t < joined.size(); ++t)
+      if (!joined[t])
+        add(names.triangle(static_cast<Index>(t)) +
+            " shares no edge with any other: it is not joined" + remedy);
   }
 
   void number_nodes() {
@@ -183,6 +221,7 @@ class Finisher {
 
   const RawMesh& raw_;
   const std::string& name_;
+  bool seams_;
   std::unordered_map<std::int64_t, std::size_t> position_;  ///< of a number, in raw_.nodes
   std::vector<bool> used_;                                  ///< node is a corner
   std::vector<Index> index_;                                ///< vertex of a node; -1: dropped
@@ -194,18 +233,18 @@ class Finisher {
 
 }  // namespace
 
-Mesh finished_mesh(const RawMesh& raw, const std::string& name) {
-  return Finisher(raw, name).run();
+Mesh finished_mesh(const RawMesh& raw, const std::string& name, bool seams) {
+  return Finisher(raw, name, seams).run();
 }
 
-Mesh read_mesh(const std::string& path) {
+Mesh read_mesh(const std::string& path, bool seams) {
   const std::string ending = std::filesystem::path(path).extension().string();
   if (ending != ".msh" && ending != ".inp")
     throw InputError(path +
                      " is no mesh that can be read; allowed are .msh (Gmsh 4.1) and .inp "
                      "(Abaqus)");
   const std::string content = read_whole_file(path);
-  return ending == ".msh" ? parse_gmsh(content, path) : parse_abaqus(content, path);
+  return ending == ".msh" ? parse_gmsh(content, path, seams) : parse_abaqus(content, path, seams);
 }
 
 }  // namespace breccia::prepare

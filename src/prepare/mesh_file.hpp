@@ -17,14 +17,15 @@ namespace breccia::prepare {
 /// Physical surfaces and element sets become parts; physical lines, sets of line elements and node
 /// sets become edge sets (of a node set: edges of the mesh with both ends in it). Lengths are
 /// metres.
+/// @param seams  nodes may lie at one place and triangles share no edge with any other
 /// @throws IoError    if the file cannot be read
 /// @throws InputError names file, line and element of what is wrong: all problems of the mesh at
 ///                    once, or the first thing that cannot be read
-Mesh read_mesh(const std::string& path);
+Mesh read_mesh(const std::string& path, bool seams = false);
 
 /// The same from a text in memory; `name` stands for the file in messages.
-Mesh parse_gmsh(std::string_view content, const std::string& name);
-Mesh parse_abaqus(std::string_view content, const std::string& name);
+Mesh parse_gmsh(std::string_view content, const std::string& name, bool seams = false);
+Mesh parse_abaqus(std::string_view content, const std::string& name, bool seams = false);
 
 /// What a file says, with its own numbers, before anything of it is looked up.
 struct RawMesh {
@@ -46,6 +47,6 @@ struct RawMesh {
   std::map<std::string, std::vector<std::int64_t>> node_sets;  ///< numbers
 };
 /// Looks everything up and checks it. @throws InputError with all problems, each with its line
-Mesh finished_mesh(const RawMesh& raw, const std::string& name);
+Mesh finished_mesh(const RawMesh& raw, const std::string& name, bool seams);
 
 }  // namespace breccia::prepare

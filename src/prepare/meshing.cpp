@@ -130,7 +130,7 @@ Mesh run_gmsh(const std::string& program, const std::string& geo, const std::str
   if (content.find("$Nodes") == std::string::npos)
     throw InputError(
         fmt::format("{}: {} made no mesh of it; does it draw a surface?", what, program));
-  return parse_gmsh(content, "the mesh that gmsh made of " + what);
+  return parse_gmsh(content, "the mesh that gmsh made of " + what, true);
 }
 
 std::string point_text(const Vec2& p) {

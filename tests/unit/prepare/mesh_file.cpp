@@ -199,6 +199,21 @@ TEST(MeshFile, EdgeOfThreeTrianglesIsNamed) {
       << gmsh_refusal(text);
 }
 
+TEST(MeshFile, TrianglesThatAreNotJoinedAreNamed) {
+  std::string text = with(square, "1 4 1 4\n2 1 0 4\n", "1 5 1 5\n2 1 0 5\n");
+  text = with(text, "3\n4\n0 0 0", "3\n4\n5\n0 0 0");
+  text = with(text, "0 1 0\n$EndNodes", "0 1 0\n1 1 0\n$EndNodes");
+  text = with(text, "3 1 3 4\n", "3 1 5 4\n");
+  const std::string message = gmsh_refusal(text);
+  EXPECT_TRUE(mentions(message,
+                       "node 3 and node 5 lie at one place, (1, 1) m: triangles beside "
+                       "them are not joined"))
+      << message;
+  EXPECT_TRUE(mentions(message, "line 37, element 3 shares no edge with any other")) << message;
+  EXPECT_TRUE(mentions(message, "seams = \"open\"")) << message;
+  EXPECT_EQ(parse_gmsh(text, "m.msh", true).triangle.size(), 2U);  // where it is meant
+}
+
 TEST(MeshFile, NoTriangleIsNamed) {
   std::string text = with(square, "3 3 1 3\n1 1 1 1\n1 1 2\n2 1 2 1\n2 1 2 3\n2 2 2 1\n3 1 3 4\n",
                           "1 1 1 1\n1 1 1 1\n1 1 2\n");
