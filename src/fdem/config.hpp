@@ -12,6 +12,7 @@ struct StrengthConfig {
   double tension = 5e6;                        ///< f_t  [Pa]
   double cohesion = 15e6;                      ///< c  [Pa]
   double friction_angle = 0.6108652381980153;  ///< phi_i of whole joints  [rad]
+  double residual_angle = 0.0;                 ///< phi_r  [rad]
   double energy_open = 30.0;                   ///< G_I  [J/m2]
   double energy_slide = 100.0;                 ///< G_II  [J/m2]
   double stiffness = 20.0;                     ///< p_f over Young's modulus  [-]
@@ -22,6 +23,10 @@ struct StrengthConfig {
     key("cohesion", cohesion, "Pa", positive, "cohesion c");
     key("friction_angle", friction_angle, "rad", Range{0.0, 1.5707, Open::high},
         "internal friction angle of a whole joint; a broken one rubs by the contact's friction");
+    key("residual_angle", residual_angle, "rad", Range{0.0, 1.5707, Open::high},
+        "friction angle that a pressed joint keeps while it softens, at most friction_angle; 0: "
+        "none, "
+        "as in Lukas et al. 2014; the codes whose contact rubs between joined triangles keep it");
     key("energy_open", energy_open, "J/m2", positive, "fracture energy of opening, G_I");
     key("energy_slide", energy_slide, "J/m2", positive, "fracture energy of sliding, G_II");
     key("stiffness", stiffness, "-", positive,

@@ -14,6 +14,7 @@ JointBond bond_of(const StrengthConfig& s, double young, const JointsConfig& com
   b.tension = s.tension;
   b.cohesion = s.cohesion;
   b.friction = std::tan(s.friction_angle);
+  b.residual = std::min(std::tan(s.residual_angle), b.friction);
   b.softening_open = common.softening_factor * s.energy_open;
   b.softening_slide = common.softening_factor * s.energy_slide;
   b.reversible = common.unloading == "reversible" ? 1.0 : 0.0;
@@ -26,6 +27,7 @@ JointBond weaker(const JointBond& a, const JointBond& b) {
   w.tension = std::min(a.tension, b.tension);
   w.cohesion = std::min(a.cohesion, b.cohesion);
   w.friction = std::min(a.friction, b.friction);
+  w.residual = std::min({a.residual, b.residual, w.friction});
   w.softening_open = std::min(a.softening_open, b.softening_open);
   w.softening_slide = std::min(a.softening_slide, b.softening_slide);
   return w;

@@ -41,7 +41,7 @@ struct JointBond {
   double softening_slide;  ///< s_t f_s = factor G_II  [J/m2]
   double reversible;  ///< 1: unloading goes back along the curve, as in the classical codes, which
                       ///< heals and can create energy; 0: along the secant  [-]
-  double unused;
+  double residual;    ///< tan phi_r <= tan phi_i: friction kept while a pressed joint softens  [-]
 };
 
 /// What an integration point keeps.
@@ -64,7 +64,8 @@ struct BondTraction {
 ///   opening o < 0     sigma = p_f o / h, without limit and never degraded
 ///   o <= o_p          sigma = z f_t (2 r - r^2), r = o / o_p, o_p = 2 h f_t / p_f
 ///   beyond            sigma = z f_t, and on the secant to the largest opening when it closes
-///   shear             the same with f_s = c - min(sigma, 0) tan phi and s_p = 2 h f_s / p_f
+///   shear             the same with f_s = c - min(sigma, 0) tan phi and s_p = 2 h f_s / p_f, but
+///                     z f_s - (1 - z) min(sigma, 0) tan phi_r in place of z f_s
 ///   damage            D = |((o - o_p) / o_t, (|s| - s_p) / s_t)| of the positive parts,
 ///                     o_t = factor G_I / f_t, s_t = factor G_II / f_s; broken at D = 1
 ///
@@ -129,7 +130,8 @@ BR_HD inline BondTraction<double> answer(const JointBond& law, double strength, 
   R drag = choose(slid <= s_p, 2.0 * q - q * q, one);
   const R reach = larger(state.slip, s_p);
   drag = choose(state.slip > 0.0, smaller(one, slid / choose(reach > zero, reach, one)), drag);
-  const R size = health * shear_strength * drag;
+  const R rubbing = choose(pressed, -law.residual * pressure, zero);
+  const R size = (health * shear_strength + (one - health) * rubbing) * drag;
   t.shear = choose(slip < 0.0, -size, size);
   return t;
 }
@@ -151,6 +153,7 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
   const double shear = law.cohesion * strength - law.friction * pressure;
   const double s_p = 2.0 * h * shear / law.stiffness;
   const double z = softening(state.damage), slid = absolute(slip);
+  const double kept = z * shear - (1.0 - z) * law.residual * pressure;
   StoredEnergy energy{};
   if (opening < 0.0)
     energy.open = 0.5 * pressure * opening;
@@ -160,9 +163,9 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
     energy.open = z * stored_on_parabola(tension, opening, o_p);
   if (state.slip > 0.0) {
     const double reach = larger(state.slip, s_p), used = smaller(slid, reach);
-    energy.slide = 0.5 * z * shear * used * used / reach;
+    energy.slide = 0.5 * kept * used * used / reach;
   } else {
-    energy.slide = z * stored_on_parabola(shear, slid, s_p);
+    energy.slide = stored_on_parabola(kept, slid, s_p);
   }
   return energy;
 }

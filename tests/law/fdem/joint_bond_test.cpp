@@ -57,6 +57,28 @@ TEST(JointBond, decay_is_the_exponential) {
   for (double t = 0.0; t <= 4.0; t += 1.0 / 64.0) EXPECT_NEAR(decay(t), std::exp(-t), 1e-15);
 }
 
+TEST(JointBond, pressed_keeps_its_residual_friction_while_it_softens) {
+  JointBond b = bond();
+  b.residual = 0.5;
+  const double pressure = 10e6, opening = -pressure * h / b.stiffness;
+  const double peak = 15e6 + 0.7 * pressure, s_p = 2.0 * h * peak / b.stiffness;
+  const double s_t = b.softening_slide / peak;
+  BondState<double> s{};
+  EXPECT_NEAR(at(b, opening, s_p, s).shear, peak, 1e-6 * peak);
+  for (const double damage : {0.25, 0.5, 0.75, 1.0}) {
+    const double z = softening(damage);
+    EXPECT_NEAR(at(b, opening, s_p + damage * s_t, s).shear, z * peak + (1.0 - z) * 0.5 * pressure,
+                1e-6 * peak);
+  }
+  // Pulled apart there is nothing left to rub, and on the way back it unloads along the secant.
+  EXPECT_EQ(at(b, 1e-9, s_p + s_t, s).shear, 0.0);
+  EXPECT_NEAR(at(b, opening, 0.5 * (s_p + s_t), s).shear, 0.25 * pressure, 1e-6 * peak);
+  // What it took over friction is the share of its fracture energy that friction leaves.
+  BondState<double> fresh{};
+  const double whole = work(b, {opening, s_p}, {opening, s_p + s_t}, fresh);
+  EXPECT_NEAR(whole - 0.5 * pressure * s_t, (peak - 0.5 * pressure) / peak * 50.0, 1e-4);
+}
+
 TEST(JointBond, opened_until_it_breaks_takes_its_fracture_energy_and_the_elastic_part) {
   for (const auto& [factor, expected] :
        {std::pair{3.0, 0.080 + 3.0 * 10.0 * 0.386307294745}, {exact_softening_factor, 10.080}}) {
