@@ -7,10 +7,13 @@ const std::vector<Benchmark>& benchmarks() {
       {"slab", "steps of the rock on the slab, before and during the impact", measure_slab},
       {"threads", "the slab on one thread and on all, in alternating windows", measure_threads},
       {"search", "the contact search alone, up to a million spheres", measure_search},
+      {"burst", "the search when fragments fly far apart", measure_burst},
       {"packing", "disordered packings of a box", measure_packing},
       {"triangles", "FDEM: plates of 10,000 to a million joined triangles", measure_triangles},
       {"contact", "FDEM: hexagons from far apart to pressed together", measure_contact},
       {"slabs", "many of the paper's slabs, to a million elements, on a GPU to ten", measure_slabs},
+      {"most_slabs", "28.5 million elements on a GPU", measure_most_slabs},
+      {"largest_plate", "FDEM: 50 million joined triangles on a GPU", measure_largest_plate},
       {"slab100k", "the slab with 99,262 elements", measure_large_slab}};
   return list;
 }

@@ -284,9 +284,6 @@ struct AddTests {
   View<const std::int64_t> tests;
   BR_HD std::int64_t operator()(Index run) const { return tests[run]; }
 };
-struct Add {
-  BR_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
-};
 
 template <class T>
 T item_of(const Buffer<T>& items, Index i) {
@@ -365,8 +362,8 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
                         Pairs& pairs) {
   BR_ASSERT(boxes.size() == ids.size());
   const Index count = boxes.size();
-  tested_ = 0;
   if (count == 0) {
+    tests_.clear();
     resize_fields(pairs, 0);
     return;
   }
@@ -398,7 +395,6 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
   starts_.resize(count + 1);
   slots_.resize(count * slots_each);
   for_each(exec, runs, FindPairs{walk, {starts_.view(), slots_.view()}, tests_.view()});
-  tested_ = fold(exec, runs, std::int64_t{0}, AddTests{tests_.view()}, Add{});
   const Index found = exclusive_scan(exec, starts_);
   packed_.resize(found);
   const int rank_bits = std::bit_width(static_cast<std::uint32_t>(count));
@@ -412,6 +408,10 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
   for_each(exec, found,
            UnpackPairs{packed_.view(), by_id_.view(), rank_bits, pairs.key.view(), pairs.a.view(),
                        pairs.b.view()});
+}
+
+std::int64_t BroadPhase::tested(const Exec& exec) const {
+  return fold(exec, tests_.size(), std::int64_t{0}, AddTests{tests_.view()}, Sum{});
 }
 
 }  // namespace breccia

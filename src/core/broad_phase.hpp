@@ -45,7 +45,7 @@ class BroadPhase {
               Pairs& pairs);
 
   /// Pairs of boxes that the last search compared: its cost.
-  std::int64_t tested() const { return tested_; }
+  std::int64_t tested(const Exec& exec) const;
 
  private:
   void rank_elements(const Exec& exec, const Buffer<GlobalId>& ids);
@@ -60,7 +60,6 @@ class BroadPhase {
   Buffer<Index> slots_;                     ///< the first few partners that each finds
   Buffer<std::uint64_t> packed_, scratch_;  ///< pairs of ranks, each in one number
   Buffer<std::int64_t> tests_;              ///< comparisons of each run of elements
-  std::int64_t tested_ = 0;
 };
 
 }  // namespace breccia

@@ -1,10 +1,10 @@
 #pragma once
-// Running a device ahead of the host: batches of recorded steps until its clock halts.
+// Running a device ahead of the host: steps are launched a few at a time until its clock halts.
 
 #include <chrono>
 #include <cmath>
 
-#include "core/step_clock.hpp"
+#include "core/timed.hpp"
 #include "exec/step_graph.hpp"
 
 namespace breccia {
@@ -15,86 +15,111 @@ struct HostTimes {
   std::int64_t& step;
 };
 
-/// Starts the device's clock at the host's time.
-inline void start_clock(Buffer<StepClock>& clock, const HostTimes& host, const StopAt& stop) {
-  StepClock start;
-  start.now = {host.time, host.last_dt, host.next_dt};
-  start.step = host.step;
-  start.stop = stop;
-  start.least = ordered_bits(largest_least);
-  clock.resize(1);
-  copy_bytes(clock.data(), clock.space(), &start, Space::host, sizeof start);
-}
+/// The clocks of one step of a recorded few.
+struct StepClocks {
+  const StepClock* before;
+  StepClock* now;
 
-/// Reads it back; adds the steps it has counted.
-inline StepClock read_clock(const Buffer<StepClock>& clock, const HostTimes& host,
-                            Advanced& taken) {
-  StepClock c;
-  copy_bytes(&c, Space::host, clock.data(), clock.space(), sizeof c);
-  host.time = c.now.time;
-  host.last_dt = c.now.last_dt;
-  host.next_dt = c.now.next_dt;
-  if (c.step > host.step) {
-    taken.dt_min = taken.steps > 0 ? smaller(taken.dt_min, c.dt_min) : c.dt_min;
-    taken.dt_max = larger(taken.dt_max, c.dt_max);
-    taken.steps += c.step - host.step;
+  template <class Kernel, class Rule>
+  Opening<Kernel, Rule> opening(const Kernel& kernel, const EndOfStep<Rule>& end,
+                                bool keeps) const {
+    return {kernel, end, before, now, keeps};
   }
-  host.step = c.step;
-  return c;
-}
-
-/// Steps that are launched one by one and many at a time.
-struct StepGraphs {
-  StepGraph one, many;
-  static constexpr std::int64_t many_steps = 16;
-
-  bool stale() const { return one.empty() && many.empty(); }
-  void clear() {
-    one.clear();
-    many.clear();
+  template <Stand stand, class Kernel>
+  Timed<Kernel, stand> timed(const Kernel& kernel) const {
+    return {kernel, now};
   }
 };
 
+/// Starts the device's clocks at the host's time, before a step or after its move.
+template <class Rule>
+void start_clock(Buffer<StepClock>& clock, const EndOfStep<Rule>& end, const HostTimes& host,
+                 const StopAt& stop, std::int32_t open) {
+  StepClock start[2];
+  start[0].open = open;
+  start[0].to_evaluation = start[1].to_evaluation = end.to_evaluation(host.step);
+  start[0].now = start[1].now = {host.time, host.last_dt, host.next_dt, host.step};
+  start[0].stop = start[1].stop = stop;
+  start[0].least = start[1].least = ordered_bits(largest_least);
+  clock.resize(2);
+  copy_bytes(clock.data(), clock.space(), start, Space::host, sizeof start);
+}
+
+/// Reads the first clock back; adds the steps it has counted.
+template <class Rule>
+StepClock read_clock(const Buffer<StepClock>& clock, const EndOfStep<Rule>& end,
+                     const HostTimes& host, Advanced& taken) {
+  StepClock c;
+  copy_bytes(&c, Space::host, clock.data(), clock.space(), sizeof c);
+  end(c);
+  host.time = c.now.time;
+  host.last_dt = c.now.last_dt;
+  host.next_dt = c.now.next_dt;
+  if (c.now.step > host.step) {
+    taken.dt_min = taken.steps > 0 ? smaller(taken.dt_min, c.dt_min) : c.dt_min;
+    taken.dt_max = larger(taken.dt_max, c.dt_max);
+    taken.steps += c.now.step - host.step;
+  }
+  host.step = c.now.step;
+  return c;
+}
+
 /// Takes steps on a device until `stop`, or until about `slice` has passed.
 ///
-/// @param launch_step  launches all kernels of one step, the last of them FinishStep
-/// @param finish_step  what the host does when the clock halts in the middle of a step, told why:
-/// the
-///                     rest of that step; it clears `graphs` if arrays have moved
-template <class LaunchStep, class FinishOnHost>
-Advanced run_ahead(Buffer<StepClock>& clock, StepGraphs& graphs, const HostTimes& host,
-                   const StopAt& stop, const LaunchStep& launch_step,
-                   const FinishOnHost& finish_step) {
+/// @param launch_step  launches all kernels of one step by its StepClocks; the first one is Opening
+/// @param launch_rest  launches those after the move, wrapped as before it: the clock starts there
+/// @param on_halt      what the host does when the clock halts in the middle of a step, told why:
+///                     the rest of that step too if it returns true; it clears `graph` if arrays
+///                     have moved
+template <class Rule, class LaunchStep, class LaunchRest, class OnHalt>
+Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<Rule>& end,
+                   const HostTimes& host, const StopAt& stop, const LaunchStep& launch_step,
+                   const LaunchRest& launch_rest, const OnHalt& on_halt) {
   constexpr std::chrono::milliseconds slice{50};
-  constexpr double longest_batch = 3.0 * StepGraphs::many_steps;
+  constexpr std::int64_t few = 4;     // steps of a graph: even, so that the first clock is the last
+  constexpr std::int64_t ahead = 12;  // steps launched before the device has begun them
   const auto begin = std::chrono::steady_clock::now();
+  const auto late = [&] { return std::chrono::steady_clock::now() - begin > slice; };
   Advanced taken;
-  start_clock(clock, host, stop);
+  std::int32_t open = 0;
   for (;;) {
-    const double to_time = std::ceil((stop.time - host.time) / host.next_dt);
-    const double to_step = static_cast<double>(stop.step - host.step);
-    auto steps =
-        static_cast<std::int64_t>(smaller(longest_batch, larger(1.0, smaller(to_time, to_step))));
-    for (; steps >= StepGraphs::many_steps; steps -= StepGraphs::many_steps) {
-      if (graphs.many.empty())
-        graphs.many.record([&] {
-          for (int i = 0; i < StepGraphs::many_steps; ++i) launch_step();
-        });
-      graphs.many.replay();
+    start_clock(clock, end, host, stop, open);
+    if (open != 0) launch_rest(StepClocks{nullptr, clock.data()});
+    const double needed = smaller(std::ceil((stop.time - host.time) / host.next_dt),
+                                  static_cast<double>(stop.step - host.step));
+    for (std::int64_t launched = 0, seen = 0; static_cast<double>(launched) < needed;) {
+      if (launched - seen < ahead) {
+        if (graph.empty())
+          graph.record([&] {
+            StepClock* const c = clock.data();
+            for (std::int64_t i = 0; i < few; i += 2) {
+              launch_step(StepClocks{c, c + 1});
+              launch_step(StepClocks{c + 1, c});
+            }
+          });
+        graph.replay();
+        launched += few;
+        continue;
+      }
+      StepClock c;
+      peek_bytes(&c, clock.data(), clock.space(), sizeof c);
+      seen = c.now.step - host.step;
+      if (c.halted != 0 || late()) break;
     }
-    if (steps > 0 && graphs.one.empty()) graphs.one.record(launch_step);
-    for (; steps > 0; --steps) graphs.one.replay();
-    const StepClock now = read_clock(clock, host, taken);
+    const StepClock now = read_clock(clock, end, host, taken);
+    open = 0;
     if (now.wanted != 0) {
-      finish_step(now.wanted);
-      host.step += 1;
-      taken.dt_min = taken.steps > 0 ? smaller(taken.dt_min, host.last_dt) : host.last_dt;
-      taken.dt_max = larger(taken.dt_max, host.last_dt);
-      ++taken.steps;
-      start_clock(clock, host, stop);
+      if (on_halt(now.wanted)) {
+        host.step += 1;
+        taken.dt_min = taken.steps > 0 ? smaller(taken.dt_min, host.last_dt) : host.last_dt;
+        taken.dt_max = larger(taken.dt_max, host.last_dt);
+        ++taken.steps;
+      } else {
+        open = step_open_after_move;
+        continue;
+      }
     }
-    if (host.time >= stop.time || host.step >= stop.step) return taken;
-    if (std::chrono::steady_clock::now() - begin > slice) return taken;
+    if (host.time >= stop.time || host.step >= stop.step || late()) return taken;
   }
 }
 

@@ -46,10 +46,4 @@ void find_dropped(const Exec& exec, const Buffer<PairKey>& old_keys,
   dropped = missing_from(exec, old_keys, new_keys);
 }
 
-void exclude_pairs(const Exec& exec, Pairs& pairs, const Buffer<PairKey>& excluded) {
-  if (excluded.empty()) return;
-  const Buffer<Index> kept = missing_from(exec, pairs.key, excluded);
-  if (kept.size() < pairs.size()) gather_fields(exec, kept, pairs);
-}
-
 }  // namespace breccia

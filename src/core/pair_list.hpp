@@ -27,10 +27,6 @@ struct Pairs {
   Index size() const { return key.size(); }
 };
 
-/// Takes away every pair whose key is in `excluded` (sorted, ascending): linked pairs, while the
-/// link lives.
-void exclude_pairs(const Exec& exec, Pairs& pairs, const Buffer<PairKey>& excluded);
-
 /// For each new key its place among the old keys, or -1. Both lists are sorted and without repeats.
 void match_keys(const Exec& exec, const Buffer<PairKey>& old_keys, const Buffer<PairKey>& new_keys,
                 Buffer<Index>& source);

@@ -1,7 +1,9 @@
 // The step of dem/step.cpp on a device: the same kernels in the same order, launched ahead by the
 // device's clock.
 
+#include "core/device_run.hpp"
 #include "dem/launches.hpp"
+#include "exec/early.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia::dem {
@@ -13,18 +15,50 @@ struct MoveAndWatch {
   MoveElements move;
   UsedMargin used;
   int search_every;  ///< the paper's rule: steps between searches; 0: by travel
-  View<StepClock> clock;
+  std::int32_t* wanted;
+  std::int64_t step = 0;
 
-  BR_HD void set(const Moment& now) { move.set(now); }
-  BR_HD void operator()(Index e) const {
-    move(e);
-    StepClock& c = clock[0];
+  BR_HD void set(const Moment& now) {
+    move.set(now);
+    step = now.step;
+  }
+#if defined(__CUDACC__)
+  /// What the sums of forces, which end while these are read, do not write; and then those sums.
+  struct Ready {
+    ElementState state;
+    Quaternion turn;
+    Kick::Given given;
+    Vec3 reference;
+    double margin;
+  };
+  __device__ void prepare(Index e, Ready& ready) const {
+    ready.state = read_record_now(&move.kick.state[e]);
+    ready.turn = read_record_now(&move.orientation[e]);
+    ready.given.mass = read_now(&move.kick.mass[e]);
+    ready.given.inertia = read_now(&move.kick.inertia[e]);
+    ready.given.fixed = move.kick.fixed[e];
+    ready.reference = read_vector(used.reference, e);
+    ready.margin = read_now(&used.margin[e]);
+  }
+  __device__ void fetch(Index e, Ready& ready) const {
+    ready.given.force = read_vector(move.kick.force, e);
+    ready.given.torque = read_vector(move.kick.torque, e);
+  }
+  __device__ void operator()(Index e, const Ready& ready) const {
+    const Vec3 position = move.moved(e, ready.state, ready.turn, ready.given);
     if (search_every > 0) {
-      if (e == 0 && c.step % search_every == 0) c.wanted = 1;
-    } else if (used(e) > 0.0) {
-      c.wanted = 1;
+      if (e == 0 && step % search_every == 0) *wanted = 1;
+    } else if (UsedMargin::beyond(position, ready.reference, ready.margin)) {
+      *wanted = 1;
     }
   }
+
+ private:
+  __device__ static Vec3 read_vector(const View<const Vec3>& vectors, Index e) {
+    const Vec3& v = vectors[e];
+    return {read_now(&v.x), read_now(&v.y), read_now(&v.z)};
+  }
+#endif
 };
 
 struct MoveWalls {
@@ -32,83 +66,154 @@ struct MoveWalls {
   double dt, largest_travel;
   int search_every;
   View<Wall> walls;
-  View<StepClock> clock;
+  std::int32_t* wanted;
 
   BR_HD void set(const Moment& now) { dt = now.next_dt; }
   BR_HD void operator()(Index k) const {
     Wall& wall = walls[k];
     wall.point += dt * wall.velocity;
     wall.travelled += dt * norm(wall.velocity);
-    if (search_every == 0 && wall.travelled > largest_travel) clock[0].wanted = 1;
+    if (search_every == 0 && wall.travelled > largest_travel) *wanted = 1;
   }
 };
 
-/// GatherRows by sixteen threads an element, of which twelve each add up one number and one
-/// stiffness, in the same order; six then write force and torque.
+/// GatherRows by eight threads an element, of which six each add up one number and one stiffness of
+/// what it gets as a, and as b, in the same order, and write one number of force and torque.
 struct GatherWide {
   static constexpr const char* name = "dem.gather_wide";
-  static constexpr Index width = 16;
+  static constexpr Index width = 8;
+  static constexpr int at_once = 4;  ///< actions of a row that are read before the first is added
   GatherRows all;
 
   BR_HD void set(const Moment&) {}
-#if defined(__CUDA_ARCH__)
-  struct Sums {
-    double number = 0.0;
-    float stiffness = 0.0F;
-    __device__ void add(const Action& action, int column) {
-      number += action.numbers[column];
-      stiffness += action.stiffness[column];
+#if defined(__CUDACC__)
+  struct Sum {
+    double number;
+    float stiffness;
+    __device__ void add(const Sum& other) {
+      number += other.number;
+      stiffness += other.stiffness;
     }
   };
-  __device__ static void add(Sums& sums, const IncidenceView& rows,
-                             const View<const Action>& actions, Index e, int side, int column) {
-    const Index end = rows.last(e);
-    for (Index k = rows.first(e); k < end; ++k) {
-      const Entry entry = rows.entries[k];
-      if (side_of(entry) == side) sums.add(actions[pair_of(entry)], column);
+  __device__ static Sum read(const Action* action, int column) {
+    return {action->numbers[column], action->stiffness[column]};
+  }
+  struct Row {
+    Index next, end;
+    __device__ void find(const View<const Index>& starts, Index e) {
+      next = read_now(starts.data + e);
+      end = read_now(starts.data + e + 1);
+    }
+  };
+  /// The next few links of a row, and what they do.
+  struct Few {
+    Index link[at_once];
+    Sum part[at_once];
+  };
+  /// Past the end of a row its last link is read again: a branch would cost more.
+  __device__ static void list(Few& few, const Row& row, const Index* links) {
+    const Index last = row.end > 0 ? row.end - 1 : 0;
+#pragma unroll
+    for (int k = 0; k < at_once; ++k) {
+      const Index place = row.next + k < last ? row.next + k : last;
+      few.link[k] = read_now(links + place);
     }
   }
+  __device__ void read(Few& few, int column) const {
+#pragma unroll
+    for (int k = 0; k < at_once; ++k) {
+      const Action& action = all.actions.data[few.link[k]];
+      few.part[k] = {read_now(action.numbers + column), read_now(action.stiffness + column)};
+    }
+  }
+  __device__ static void add(Sum& sum, const Few& few, Row& row) {
+#pragma unroll
+    for (int k = 0; k < at_once; ++k)
+      if (row.next + k < row.end) sum.add(few.part[k]);
+    row.next += at_once;
+  }
+  /// A row of bars or contacts.
+  __device__ static void add_pairs(Sum& as_a, Sum& as_b, Row row, const Entry* entries,
+                                   const Action* actions, int column) {
+    for (; row.next < row.end; row.next += at_once) {
+      Entry entry[at_once];
+      Sum part[at_once];
+#pragma unroll
+      for (int k = 0; k < at_once; ++k)
+        if (row.next + k < row.end) entry[k] = entries[row.next + k];
+#pragma unroll
+      for (int k = 0; k < at_once; ++k)
+        if (row.next + k < row.end)
+          part[k] = read(actions + pair_of(entry[k]), column + 3 * side_of(entry[k]));
+#pragma unroll
+      for (int k = 0; k < at_once; ++k)
+        if (row.next + k < row.end) side_of(entry[k]) == 0 ? as_a.add(part[k]) : as_b.add(part[k]);
+    }
+  }
+  /// Rows are as the last search left them; actions come from the launch before.
+  struct Ready {
+    Row links_a, links_b, bars, contacts;
+    Few as_a, as_b;
+    double inertia;
+    int fixed;
+  };
+  __device__ static int column_of(Index i) {
+    const int part = i % width;
+    return part < 6 ? part : 5;  // two threads repeat the sixth
+  }
+  __device__ void prepare(Index i, Ready& ready) const {
+    const Index e = i / width;
+    ready.links_a.find(all.rows_a.starts, e);
+    ready.links_b.find(all.rows_b.starts, e);
+    ready.bars.find(all.gather.bars.starts, e);
+    ready.contacts.find(all.gather.contacts.starts, e);
+    ready.inertia = read_now(i % width < 3 ? &all.gather.mass[e] : &all.gather.inertia[e]);
+    ready.fixed = all.gather.fixed[e];
+    if (all.actions.size == 0) return;
+    list(ready.as_a, ready.links_a, all.rows_a.links.data);
+    list(ready.as_b, ready.links_b, all.rows_b.links.data);
+  }
+  __device__ void fetch(Index i, Ready& ready) const {
+    if (all.actions.size == 0) return;
+    read(ready.as_a, column_of(i));
+    read(ready.as_b, column_of(i) + 3);
+  }
   /// @returns the critical number of the element, once
-  __device__ double operator()(Index i) const {
+  __device__ double operator()(Index i, Ready& ready) const {
     const GatherForces& gather = all.gather;
     const Index e = i / width;
-    const int part = i % width, side = part < 6 ? 0 : 1, column = side == 0 ? part : part - 3;
-    Sums sums;
-    if (part < 12) {
-      // Pointers are chosen, not structs: a struct with an address would move to local memory.
-      const Index* const starts = side == 0 ? all.rows_a.starts.data : all.rows_b.starts.data;
-      const Index* const links = side == 0 ? all.rows_a.links.data : all.rows_b.links.data;
-      const Index end = starts[e + 1];
-#pragma unroll 4
-      for (Index k = starts[e]; k < end; ++k) sums.add(all.actions.data[links[k]], column);
-      add(sums, gather.bars, gather.bar_actions, e, side, column);
-      add(sums, gather.contacts, gather.contact_actions, e, side, column);
+    const int part = i % width, column = column_of(i), fixed = ready.fixed;
+    Sum as_a{0.0, 0.0F}, as_b{0.0, 0.0F};
+    for (;;) {
+      add(as_a, ready.as_a, ready.links_a);
+      add(as_b, ready.as_b, ready.links_b);
+      if (ready.links_a.next >= ready.links_a.end && ready.links_b.next >= ready.links_b.end) break;
+      list(ready.as_a, ready.links_a, all.rows_a.links.data);
+      list(ready.as_b, ready.links_b, all.rows_b.links.data);
+      read(ready.as_a, column);
+      read(ready.as_b, column + 3);
     }
+    add_pairs(as_a, as_b, ready.bars, gather.bars.entries.data, gather.bar_actions.data, column);
+    add_pairs(as_a, as_b, ready.contacts, gather.contacts.entries.data, gather.contact_actions.data,
+              column);
     // Force x y z, then torque: what the element gets as b, and as a (with the opposite force).
-    const unsigned group = 0xffffU << (threadIdx.x / width * width % 32);
-    const int as_b = 6 + part % 6, as_a = part % 6 < 3 ? 3 + part % 6 : part % 6 - 3;
-    const double from_b = __shfl_sync(group, sums.number, as_b, width);
-    const double from_a = __shfl_sync(group, sums.number, as_a, width);
-    const float stiffness_b = __shfl_sync(group, sums.stiffness, as_b, width);
-    float stiffness = __shfl_sync(group, sums.stiffness, as_a, width) + stiffness_b;
-    if (part < 3) reinterpret_cast<double*>(&gather.force[e])[part] = from_b - from_a;
+    const unsigned group = 0xffU << (threadIdx.x / width * width % 32);
+    const int other = part < 3 ? part + 3 : part - 3;
+    const double from_a = __shfl_sync(group, as_a.number, other, width);
+    float stiffness = __shfl_sync(group, as_a.stiffness, other, width) + as_b.stiffness;
+    if (part < 3) reinterpret_cast<double*>(&gather.force[e])[part] = as_b.number - from_a;
     if (part >= 3 && part < 6)
-      reinterpret_cast<double*>(&gather.torque[e])[part - 3] = from_b + from_a;
-    if (part >= 6 || (gather.fixed[e] >> part & 1) != 0 || !(stiffness > 0.0F)) stiffness = 0.0F;
+      reinterpret_cast<double*>(&gather.torque[e])[part - 3] = as_b.number + from_a;
+    if (part >= 6 || (fixed >> part & 1) != 0 || !(stiffness > 0.0F)) stiffness = 0.0F;
     float largest = stiffness;  // of three neighbours
     largest = fmaxf(largest, __shfl_down_sync(group, stiffness, 1, width));
     largest = fmaxf(largest, __shfl_down_sync(group, stiffness, 2, width));
-    const float turning = __shfl_sync(group, largest, 3, width);
+    const double slow = static_cast<double>(largest) / ready.inertia;
+    const double slowest = larger(slow, __shfl_sync(group, slow, 3, width));
     if (part != 0) return largest_least;
-    const double slowest = larger(static_cast<double>(largest) / gather.mass[e],
-                                  static_cast<double>(turning) / gather.inertia[e]);
     const double critical = slowest > 0.0 ? 1.0 / slowest : largest_least;
     gather.critical[e] = critical;
     return critical;
-  }
-#else
-  double operator()(Index) const {
-    return largest_least;
   }
 #endif
 };
@@ -124,78 +229,138 @@ template <class Kernel, class Law>
 struct Grouped {
   static constexpr int most = 8;
   Kernel kernel;
-  Index end[most];  ///< of each group
+  Index ends[most];  ///< of each group
   View<const Law> laws;
 
   Grouped(const Kernel& all, const std::vector<LinkGroup<Law>>& groups,
           const Buffer<Law>& group_laws)
       : kernel(all), laws(group_laws.view()) {
-    for (std::size_t g = 0; g < most; ++g) end[g] = g < groups.size() ? groups[g].end : 0;
+    for (std::size_t g = 0; g < most; ++g) ends[g] = g < groups.size() ? groups[g].end : 0;
   }
   BR_HD void set(const Moment& now) { kernel.set(now); }
-  BR_HD void operator()(Index i) const {
+  BR_HD const Law& law_of(Index i) const {
     int group = 0;  // counted, not sought: an index into a parameter would move it to local memory
-    for (int g = 0; g < most - 1; ++g) group += i >= end[g] && end[g] > 0 ? 1 : 0;
-    Kernel own = kernel;
-    own.law = laws[group];
-    own(i);
+    for (int g = 0; g < most - 1; ++g) group += i >= ends[g] && ends[g] > 0 ? 1 : 0;
+    return laws[group];
+  }
+  BR_HD void operator()(Index i) const {
+    if constexpr (std::is_same_v<Kernel, InterfaceLinkForces>) {
+      kernel.with(law_of(i), i);
+    } else {
+      Kernel own = kernel;
+      own.law = law_of(i);
+      own(i);
+    }
   }
 };
 
 #if defined(__CUDACC__)
-/// All links and contacts.
-void launch_interactions(World& w) {
-  const auto after = [&](const auto& kernel) { return timed<true>(kernel, w.clock); };
+/// Concrete links of all groups: what they keep is read ahead, motion ends while it comes.
+struct ConcreteAhead : Grouped<ConcreteLinkForces, ConcreteLink> {
+  using Grouped::Grouped;
+
+  struct Ready {
+    Index a, b;
+    double length, stiffness;
+    LinkState<double> state;
+    ElementState end_a, end_b;
+  };
+  __device__ static Vec3 read_vector(const PlanesView<double>& planes, Index i) {
+    const double* const x = planes.items.data + i;
+    return {read_now(x), read_now(x + planes.stride), read_now(x + 2 * planes.stride)};
+  }
+  __device__ void prepare(Index i, Ready& ready) const {
+    ready.a = read_now(&kernel.a[i]);
+    ready.b = read_now(&kernel.b[i]);
+    ready.length = read_now(&kernel.length[i]);
+    ready.stiffness = read_now(&kernel.stiffness[i]);
+    ready.state.opening = read_now(&kernel.opening[i]);
+    ready.state.shear = read_vector(kernel.shear, i);
+    ready.state.moment = read_vector(kernel.moment, i);
+  }
+  __device__ void fetch(Index, Ready& ready) const {
+    ready.end_a = read_record_now(&kernel.elements.state[ready.a]);
+    ready.end_b = read_record_now(&kernel.elements.state[ready.b]);
+  }
+  __device__ void operator()(Index i, const Ready& ready) const {
+    ConcreteLinkForces own = kernel;
+    own.law = law_of(i);
+    own.answer<double>(i, end(ready.end_a), ready.end_a.radius, end(ready.end_b),
+                       ready.end_b.radius, ready.length, ready.stiffness, ready.state);
+  }
+
+ private:
+  __device__ static PairEnd<double> end(const ElementState& s) {
+    return {s.position, s.velocity, s.spin};
+  }
+};
+#endif
+
+EndOfStep<StepRule> end_of_step(const World& w) {
+  return {step_rule(w), w.parameters.time.evaluate_every};
+}
+
+#if defined(__CUDACC__)
+void launch_move(World& w, const StepClocks& clocks) {
+  const int every = w.parameters.search.every;
+  std::int32_t* const wanted = &clocks.now->wanted;
+  const EndOfStep<StepRule> end = end_of_step(w);
+  const MoveAndWatch move{
+      move_kernel(w),
+      {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
+      every,
+      wanted};
+  const MoveWalls walls{0.0, w.parameters.largest_margin, every, w.device_walls.view(), wanted};
+  for_each_part(part(w.device_walls.size(), clocks.opening(walls, end, false),
+                     part(w.elements.size(), clocks.opening(move, end, true), Parts<>{})));
+}
+
+/// All links and contacts. `by` wraps a kernel by the clock.
+template <class By>
+void launch_interactions(World& w, const By& by) {
   const LinkGroup<ConcreteLink> no_concrete{};
   const LinkGroup<SteelLink> no_steel{};
   const LinkGroup<InterfaceLink> no_interface{};
-  const Grouped<ConcreteLinkForces, ConcreteLink> concrete(concrete_kernel(w, no_concrete),
-                                                           w.concrete_groups, w.concrete_laws);
+  const ConcreteAhead concrete(concrete_kernel(w, no_concrete), w.concrete_groups, w.concrete_laws);
   const Grouped<SteelLinkForces, SteelLink> steel(steel_kernel(w, no_steel), w.steel_groups,
                                                   w.steel_laws);
   const Grouped<InterfaceLinkForces, InterfaceLink> interface(interface_kernel(w, no_interface),
                                                               w.interface_groups, w.interface_laws);
-  for_each_part(part(w.steel.size(), after(steel),
-                     part(w.interface.size(), after(interface),
-                          part(w.contacts.size(), after(contact_kernel(w)),
-                               part(w.concrete.size(), after(concrete), Parts<>{})))));
+  for_each_part(part(w.steel.size(), by(steel),
+                     part(w.interface.size(), by(interface),
+                          part(w.contacts.size(), by(contact_kernel(w)),
+                               part(w.concrete.size(), by(concrete), Parts<>{})))));
 }
 
-void launch_step(World& w) {
+/// Forces and sums, and the least critical number.
+template <class By>
+void launch_forces(World& w, StepClock* clock, const By& by) {
   const Exec& exec = w.exec;
-  const Index elements = w.elements.size();
-  const int every = w.parameters.search.every;
-  if (!w.walls.empty())
-    for_each(exec, w.device_walls.size(),
-             timed<false>(MoveWalls{0.0, w.parameters.largest_margin, every, w.device_walls.view(),
-                                    w.clock.view()},
-                          w.clock));
-  for_each(exec, elements,
-           timed<false>(MoveAndWatch{move_kernel(w),
-                                     {w.elements.state.view(), w.travel.reference.view(),
-                                      w.travel.margin.view()},
-                                     every,
-                                     w.clock.view()},
-                        w.clock));
-  launch_interactions(w);
-  const FinishStep<StepRule> finish{step_rule(w), w.parameters.time.evaluate_every, w.clock.view()};
-  if (w.walls.empty()) {
-    for_each_then(elements * GatherWide::width,
-                  timed<true>(GatherWide{gather_rows_kernel(w)}, w.clock), w.blocks_done, finish);
-    return;
-  }
-  for_each(exec, elements * GatherWide::width,
-           timed<true>(GatherWide{gather_rows_kernel(w)}, w.clock));
+  const Index threads = w.elements.size() * GatherWide::width;
+  launch_interactions(w, by);
+  const auto gather = by(GatherWide{gather_rows_kernel(w)});
+  if (w.walls.empty()) return for_each_noting(threads, gather, NoteLeast{clock});
+  for_each_part(part(threads, gather, Parts<>{}));
   for (Index k = 0; k < w.device_walls.size(); ++k) {
     const auto wall = static_cast<std::size_t>(k);
-    for_each(exec, w.wall_begin[wall + 1] - w.wall_begin[wall],
-             timed<true>(wall_kernel(w, k), w.clock));
+    for_each(exec, w.wall_begin[wall + 1] - w.wall_begin[wall], by(wall_kernel(w, k)));
   }
-  for_each_then(elements, timed<true>(NoteCritical{std::as_const(w.critical).view()}, w.clock),
-                w.blocks_done, finish);
+  for_each_noting(w.elements.size(), by(NoteCritical{std::as_const(w.critical).view()}),
+                  NoteLeast{clock});
+}
+
+void launch_step(World& w, const StepClocks& clocks) {
+  launch_move(w, clocks);
+  launch_forces(w, clocks.now,
+                [&](const auto& kernel) { return clocks.timed<Stand::after_move>(kernel); });
+}
+void launch_rest(World& w, const StepClocks& clocks) {
+  launch_forces(w, clocks.now,
+                [&](const auto& kernel) { return clocks.timed<Stand::in_rest>(kernel); });
 }
 #else
-void launch_step(World&) {}
+void launch_step(World&, const StepClocks&) {}
+void launch_rest(World&, const StepClocks&) {}
 #endif
 
 }  // namespace
@@ -205,12 +370,14 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
   const bool walls = !w.walls.empty();
   if (walls) copy_to(w.device_walls, w.walls);
   const Advanced taken = run_ahead(
-      w.clock, w.graphs, host, stop, [&] { launch_step(w); },
+      w.clock, w.graph, end_of_step(w), host, stop,
+      [&](const StepClocks& clocks) { launch_step(w, clocks); },
+      [&](const StepClocks& clocks) { launch_rest(w, clocks); },
       [&](std::int32_t) {
         if (walls) copy_to(w.walls, w.device_walls);
         find_contacts(w);
         if (walls) copy_to(w.device_walls, w.walls);
-        evaluate_forces(w);
+        return false;
       });
   if (walls) copy_to(w.walls, w.device_walls);
   return taken;

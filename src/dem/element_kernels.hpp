@@ -25,10 +25,11 @@ struct UsedMargin {
   View<const Vec3> reference;
   View<const double> margin;
   BR_HD double operator()(Index e) const {
-    const Vec3 moved = state[e].position - reference[e];
-    const double allowed = margin[e] * margin[e];
-    const double square = dot(moved, moved);
-    return square <= allowed ? 0.0 : 1.0;  // NaN counts as beyond
+    return beyond(state[e].position, reference[e], margin[e]) ? 1.0 : 0.0;
+  }
+  BR_HD static bool beyond(const Vec3& position, const Vec3& from, double allowed) {
+    const Vec3 moved = position - from;
+    return !(dot(moved, moved) <= allowed * allowed);  // NaN counts as beyond
   }
 };
 
@@ -166,21 +167,29 @@ struct Kick {
             damping * opposed(f.z, v.z + half * f.z)};
   }
 
-  BR_HD Result operator()(Index e) const { return (*this)(e, read_record(state, e)); }
-  BR_HD Result operator()(Index e, const ElementState& now) const {
+  /// What acts on an element, and what it is.
+  struct Given {
+    Vec3 force, torque;
+    double mass, inertia;
+    int fixed;
+  };
+  BR_HD Given given(Index e) const { return {force[e], torque[e], mass[e], inertia[e], fixed[e]}; }
+
+  BR_HD Result operator()(Index e) const { return (*this)(e, read_record(state, e), given(e)); }
+  BR_HD Result operator()(Index e, const ElementState& now, const Given& of) const {
     Result r{};
     const Vec3 velocity = now.velocity, spin = now.spin;
     const double span = 0.5 * (last_dt + next_dt);
-    Vec3 f = force[e] + mass[e] * gravity, t = torque[e];
+    Vec3 f = of.force + of.mass * gravity, t = of.torque;
     if (damping > 0.0) {
-      r.damped_force = local_damping(f, velocity, 1.0 / mass[e]);
-      r.damped_torque = local_damping(t, spin, 1.0 / inertia[e]);
+      r.damped_force = local_damping(f, velocity, 1.0 / of.mass);
+      r.damped_torque = local_damping(t, spin, 1.0 / of.inertia);
       f -= r.damped_force;
       t -= r.damped_torque;
     }
-    r.velocity = velocity + (span / mass[e]) * f;
-    r.spin = spin + (span / inertia[e]) * t;
-    const int held = fixed[e];
+    r.velocity = velocity + (span / of.mass) * f;
+    r.spin = spin + (span / of.inertia) * t;
+    const int held = of.fixed;
     if (held != 0) {
       const Vec3 given = motion[e] >= 0 ? motions[motion[e]].at(time + 0.5 * next_dt) : Vec3{};
       if ((held & fixed_x) != 0) r.velocity.x = given.x;
@@ -204,21 +213,27 @@ struct MoveElements {
   View<double> damping_work, load_work;
 
   BR_HD void set(const Moment& now) { kick.set(now); }
-  BR_WHOLE BR_HD void operator()(Index e) const {
-    ElementState moved = read_record(kick.state, e);
-    const Kick::Result r = kick(e, moved);
+  BR_WHOLE BR_HD void operator()(Index e) const { moved(e); }
+  /// @returns where it is then
+  BR_HD Vec3 moved(Index e) const {
+    return moved(e, read_record(kick.state, e), read_record(View<const Quaternion>(orientation), e),
+                 kick.given(e));
+  }
+  BR_HD Vec3 moved(Index e, ElementState moved, const Quaternion& before_turn,
+                   const Kick::Given& of) const {
+    const Kick::Result r = kick(e, moved, of);
     const Vec3 before = kick.last_dt * moved.velocity, after = kick.next_dt * r.velocity;
     if (kick.damping > 0.0)
       damping_work[e] +=
           0.5 * dot(r.damped_force, before + after) +
           0.5 * dot(r.damped_torque, kick.last_dt * moved.spin + kick.next_dt * r.spin);
-    if (kick.fixed[e] != 0) load_work[e] += reaction_work(e, r, before + after);
+    if (of.fixed != 0) load_work[e] += reaction_work(e, r, before + after);
     moved.velocity = r.velocity;
     moved.spin = r.spin;
     moved.position += after;
     write_record(state, e, moved);
-    const Quaternion before_turn = read_record(View<const Quaternion>(orientation), e);
     write_record(orientation, e, turned(before_turn, kick.next_dt * r.spin));
+    return moved.position;
   }
 
  private:

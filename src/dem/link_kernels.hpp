@@ -44,16 +44,23 @@ struct ConcreteLinkForces {
 
   template <class R>
   BR_HD void at(Index i) const {
-    constexpr double pi = 3.14159265358979323846;
     const Indices<R> ia = load_indices<R>(a, i), ib = load_indices<R>(b, i);
     R radius_a, radius_b;
     const PairEnd<R> end_a = gather_end(elements.state, ia, radius_a);
     const PairEnd<R> end_b = gather_end(elements.state, ib, radius_b);
+    answer(i, end_a, radius_a, end_b, radius_b, load<R>(length, i), load<R>(stiffness, i),
+           LinkState<R>{load<R>(opening, i), load<R>(shear, i), load<R>(moment, i)});
+  }
+  /// What link i does with its ends, its length and stiffness, and what it kept.
+  template <class R>
+  BR_HD void answer(Index i, const PairEnd<R>& end_a, const R& radius_a, const PairEnd<R>& end_b,
+                    const R& radius_b, const R& free_length, const R& own_stiffness,
+                    LinkState<R> state) const {
+    constexpr double pi = 3.14159265358979323846;
     const PairMotion<R> motion = pair_motion<R>(end_a, end_b, radius_a - radius_b, dt);
     const R least = smaller(radius_a, radius_b), touching = radius_a + radius_b;
-    const LinkConstants<R> link{load<R>(length, i), load<R>(stiffness, i), pi * least * least,
-                                0.5 * touching, touching};
-    LinkState<R> state{load<R>(opening, i), load<R>(shear, i), load<R>(moment, i)};
+    const LinkConstants<R> link{free_length, own_stiffness, pi * least * least, 0.5 * touching,
+                                touching};
     const LinkResponse<R> r = law.answer(link, motion, state);
 
     store(opening, i, state.opening);
@@ -116,7 +123,9 @@ struct InterfaceLinkForces {
   Index first_action;  ///< action of link 0
 
   BR_HD void set(const Moment& now) { dt = now.last_dt; }
-  BR_WHOLE BR_HD void operator()(Index i) const {
+  BR_WHOLE BR_HD void operator()(Index i) const { with(law, i); }
+  /// By a law that stays where it is: it holds a table.
+  BR_HD void with(const InterfaceLink& bond, Index i) const {
     const PairEnd<double> bar = elements.end(a[i]), concrete = elements.end(b[i]);
     const Vec3 chord = elements.state[after[i]].position - elements.state[before[i]].position;
     const Vec3 axis = (1.0 / norm(chord)) * chord;
@@ -128,7 +137,7 @@ struct InterfaceLinkForces {
     const double approach = dt * dot(concrete.velocity - bar.velocity, motion.normal);
     InterfaceState kept = state[i];
     const InterfaceResponse r =
-        law.answer(stiffness[i], area[i], touching, axis, motion, approach, kept);
+        bond.answer(stiffness[i], area[i], touching, axis, motion, approach, kept);
     state[i] = kept;
     slid[i] += r.slid;
     broke[i] += r.broke;

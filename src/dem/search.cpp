@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/rows.hpp"
 #include "core/select.hpp"
 #include "dem/ranks.hpp"
 
@@ -36,30 +37,26 @@ struct LinkHolds {
   }
 };
 
-/// Keys of the links that hold their pair. Sorted.
-Buffer<PairKey> holding_links(const World& w) {
-  const Index bonds = w.concrete.size() + w.steel.size();
-  const Buffer<Index> holding = items_where(
-      w.exec, w.linked.size(),
-      LinkHolds{w.concrete.opening.view(), w.interface.state.view(), bonds, w.linked_links.view()});
-  Buffer<PairKey> keys(w.linked);
-  gather(w.exec, holding, keys);
-  return keys;
-}
-
-/// Whether the grown spheres of a pair overlap, not only their boxes, and it is not of others.
-struct SpheresNear {
+/// Whether a pair may touch and is not held by a link: the grown spheres overlap, not only their
+/// boxes. And it is not of others.
+struct MayTouch {
   OwnedView owned;
+  View<const PairKey> key;
   View<const Index> a, b;
   View<const ElementState> state;
   View<const double> margin;
+  View<const PairKey> linked;  ///< sorted
+  LinkHolds holds;             ///< by place among `linked`
+
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
     if (!owned(p) && !owned(q)) return false;
     const Vec3 d = state[q].position - state[p].position;
     const double reach =
         (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12);
-    return !(dot(d, d) > reach * reach);
+    if (dot(d, d) > reach * reach) return false;
+    const Index place = lower_bound(linked.data, 0, linked.size, key[i]);
+    return place >= linked.size || linked[place] != key[i] || !holds(place);
   }
 };
 
@@ -86,6 +83,7 @@ struct SpentBy {
 
 /// Books what the pairs that leave the list have spent.
 void book_dropped(World& w, const Contacts& contacts, const Pairs& found) {
+  if (contacts.size() == 0) return;
   Buffer<Index> dropped(w.exec.space);
   find_dropped(w.exec, contacts.pairs.key, found.key, dropped);
   if (dropped.empty()) return;
@@ -273,18 +271,21 @@ void search(World& w) {
   sphere_boxes(w.exec, position, radius, w.travel.margin, boxes);
   Pairs found(w.exec.space);
   w.broad_phase.search(w.exec, boxes, w.elements.id, found);
-  exclude_pairs(w.exec, found, holding_links(w));
+  const Index bonds = w.concrete.size() + w.steel.size();
+  const LinkHolds holds{std::as_const(w.concrete.opening).view(),
+                        std::as_const(w.interface.state).view(), bonds, w.linked_links.view()};
   const Buffer<Index> near =
       items_where(w.exec, found.size(),
-                  SpheresNear{w.domain.owned_view(), std::as_const(found.a).view(),
-                              std::as_const(found.b).view(), w.elements.state.view(),
-                              std::as_const(w.travel.margin).view()});
+                  MayTouch{w.domain.owned_view(), std::as_const(found.key).view(),
+                           std::as_const(found.a).view(), std::as_const(found.b).view(),
+                           w.elements.state.view(), std::as_const(w.travel.margin).view(),
+                           std::as_const(w.linked).view(), holds});
   gather_fields(w.exec, near, found);
   book_dropped(w, w.contacts, found);
   w.contacts.replace(w.exec, std::move(found));
   find_wall_contacts(w);
   derive_contacts(w);
-  w.graphs.clear();
+  w.graph.clear();
   ++w.searches;
 }
 

@@ -262,15 +262,13 @@ World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
   };
   each_kept(place);
   each_derived(place);
-  blocks_done.resize(1);
 }
 
 void move_to(World& w, Space space) {
   if (w.exec.space == space) return;
   w.each_kept([space](auto& array) { move_array(array, space); });
   w.each_derived([space](auto& array) { array = std::remove_reference_t<decltype(array)>(space); });
-  w.graphs.clear();
-  w.blocks_done.resize(1);
+  w.graph.clear();
   w.exec.space = space;
 }
 

@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "core/device_run.hpp"
 #include "core/energy.hpp"
 #include "core/incidence.hpp"
+#include "core/step_clock.hpp"
 #include "core/travel.hpp"
 #include "dem/config.hpp"
 #include "dem/element_kernels.hpp"
 #include "dem/link_lanes.hpp"
 #include "dem/model.hpp"
 #include "domain/domain.hpp"
+#include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
 
 namespace breccia::dem {
@@ -127,7 +128,7 @@ struct World {
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(bar_incidence, contact_incidence, broad_phase, contact_actions, link_sums, critical,
-         rows_a, rows_b, link_actions, device_walls, clock, blocks_done);
+         rows_a, rows_b, link_actions, device_walls, clock);
   }
 
   /// Of all kinds, broken ones included.
@@ -165,8 +166,7 @@ struct World {
   Buffer<SteelLink> steel_laws;
   Buffer<InterfaceLink> interface_laws;
   Buffer<StepClock> clock;
-  Buffer<unsigned> blocks_done;
-  StepGraphs graphs;
+  StepGraph graph;  ///< of a few steps
 };
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not

@@ -9,6 +9,9 @@ namespace breccia {
 /// The stream that all kernels and copies of this process run on, in order.
 cudaStream_t device_stream();
 
+/// Whether a launch may get ready while the one before it ends: from Hopper on.
+bool launches_overlap();
+
 /// @throws DeviceError with the driver's reason and what was tried
 void check_device(cudaError_t result, const char* what);
 

@@ -1,5 +1,7 @@
 #include "exec/device.hpp"
 
+#include <cstdint>
+
 #include "exec/error.hpp"
 
 #if defined(BR_CUDA)
@@ -26,6 +28,17 @@ int device_count() {
   int count = 0;
   if (cudaGetDeviceCount(&count) != cudaSuccess) cudaGetLastError();  // use_device() tells why
   return count;
+}
+
+bool launches_overlap() {
+  static const bool can = [] {
+    int number = 0, major = 0;
+    check_device(cudaGetDevice(&number), "asking for its number");
+    check_device(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, number),
+                 "asking for its properties");
+    return major >= 9;
+  }();
+  return can;
 }
 
 void use_device(int number) {

@@ -6,6 +6,7 @@
 // text. It writes only what it owns, so any number of threads gives the same bits.
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "exec/buffer.hpp"
@@ -67,10 +68,64 @@ struct Shifted {
 };
 
 #if defined(__CUDACC__)
+/// The first words of a kernel that launch() starts: it may be on the device before the launch
+/// before has ended, whose work it sees from here on. The one after it may come, too.
+__device__ inline void follow_previous() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+
+/// Launches a kernel that begins with follow_previous().
+template <class... Parameters>
+void launch(void (*kernel)(Parameters...), Index blocks, Index threads,
+            const std::type_identity_t<Parameters>&... arguments) {
+  cudaLaunchAttribute early{};
+  early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  early.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t how{};
+  how.gridDim = dim3(static_cast<unsigned>(blocks));
+  how.blockDim = dim3(static_cast<unsigned>(threads));
+  how.stream = device_stream();
+  how.attrs = &early;
+  how.numAttrs = launches_overlap() ? 1 : 0;
+  check_device(cudaLaunchKernelEx(&how, kernel, arguments...), "a launch");
+}
+
+/// A kernel that reads ahead: prepare(i, ready) what the launch before does not write, while that
+/// still runs; then it is called with what it has read.
+template <class Kernel>
+concept ReadsAhead = requires {
+  typename Kernel::Ready;
+};
+
+/// Item i of a kernel, or nothing if there is none, once the launch before has ended.
+template <class Kernel, class Result>
+__device__ Result run_item(const Kernel& kernel, Index i, Index count, Result result) {
+  if constexpr (ReadsAhead<Kernel>) {
+    typename Kernel::Ready ready;
+    if (i < count) kernel.prepare(i, ready);
+    follow_previous();
+    if (i >= count) return result;
+    if constexpr (std::is_void_v<decltype(kernel(i, ready))>)
+      kernel(i, ready);
+    else
+      result = kernel(i, ready);
+  } else {
+    follow_previous();
+    if (i >= count) return result;
+    if constexpr (std::is_void_v<decltype(kernel(i))>)
+      kernel(i);
+    else
+      result = kernel(i);
+  }
+  return result;
+}
+
 template <class Kernel>
 __global__ void __launch_bounds__(block_size) launch_kernel(Index count, Kernel kernel) {
-  const auto i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < count) kernel(i);
+  run_item(kernel, static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x), count, 0);
 }
 
 /// Kernels side by side in one launch: each has blocks of its own.
@@ -91,8 +146,7 @@ struct Parts<First, Rest...> {
   Index blocks() const { return own_blocks() + rest.blocks(); }
   __device__ void run(Index block) const {
     if (block >= own_blocks()) return rest.run(block - own_blocks());
-    const Index i = block * block_size + static_cast<Index>(threadIdx.x);
-    if (i < count) kernel(i);
+    run_item(kernel, block * block_size + static_cast<Index>(threadIdx.x), count, 0);
   }
 };
 template <class All>
@@ -112,26 +166,19 @@ __device__ double least_of_block(double number) {
   return number;
 }
 
-/// A kernel that returns a number, of which the least is noted; the last block of all finishes.
-template <int threads, class Kernel, class Last>
-__global__ void __launch_bounds__(threads)
-    launch_and_finish(Index count, Kernel kernel, unsigned* blocks_done, Last last) {
+/// A kernel that returns a number; the least of each block is noted.
+template <int threads, class Kernel, class Note>
+__global__ void __launch_bounds__(threads) launch_and_note(Index count, Kernel kernel, Note note) {
   const auto i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
-  const double own = i < count ? kernel(i) : Last::neutral;
-  const double least = least_of_block<threads>(own);
-  if (threadIdx.x != 0) return;
-  last.note(least);
-  __threadfence();
-  if (atomicAdd(blocks_done, 1U) != gridDim.x - 1) return;
-  *blocks_done = 0;
-  __threadfence();
-  last(0);
+  const double least = least_of_block<threads>(run_item(kernel, i, count, Note::neutral));
+  if (threadIdx.x == 0) note(least);
 }
 
 /// One value a block: each thread folds every n-th item, then the block its threads.
 template <class Value, class Kernel, class Combine>
 __global__ void __launch_bounds__(block_size)
     fold_blocks(Index count, Value neutral, Kernel kernel, Combine combine, Value* partial) {
+  follow_previous();
   __shared__ alignas(16) unsigned char memory[block_size * sizeof(Value)];
   auto* shared = reinterpret_cast<Value*>(memory);
   Value value = neutral;
@@ -162,9 +209,7 @@ void for_each(const Exec& exec, Index count, const Kernel& kernel) {
   if (count <= 0) return;
 #if defined(__CUDACC__)
   if (exec.space == Space::cuda) {
-    const auto blocks = static_cast<unsigned>((count + block_size - 1) / block_size);
-    launch_kernel<<<blocks, block_size, 0, device_stream()>>>(count, kernel);
-    check_device(cudaGetLastError(), "a launch");
+    launch(launch_kernel<Kernel>, (count + block_size - 1) / block_size, block_size, count, kernel);
     return;
   }
 #endif
@@ -187,26 +232,19 @@ void for_each(const Exec& exec, Index count, const Kernel& kernel) {
 template <class... Kernels>
 void for_each_part(const Parts<Kernels...>& parts) {
   const Index blocks = parts.blocks();
-  if (blocks == 0) return;
-  launch_parts<<<static_cast<unsigned>(blocks), block_size, 0, device_stream()>>>(parts);
-  check_device(cudaGetLastError(), "a launch");
+  if (blocks > 0) launch(launch_parts<Parts<Kernels...>>, blocks, block_size, parts);
 }
 template <class First, class... Rest>
 Parts<First, Rest...> part(Index count, const First& kernel, const Parts<Rest...>& rest) {
   return {count, kernel, rest};
 }
 
-/// kernel(i) for every i in [0, count), last.note() of the least that they return, then last(0), on
-/// a device.
-/// @param blocks_done  zero before and after
-template <class Kernel, class Last>
-void for_each_then(Index count, const Kernel& kernel, Buffer<unsigned>& blocks_done,
-                   const Last& last) {
-  constexpr int threads = 256;
-  const auto blocks = static_cast<unsigned>((count + threads - 1) / threads);
-  launch_and_finish<threads>
-      <<<blocks, threads, 0, device_stream()>>>(count, kernel, blocks_done.data(), last);
-  check_device(cudaGetLastError(), "a launch");
+/// kernel(i) for every i in [0, count), and note() of the least that they return, on a device.
+template <class Kernel, class Note>
+void for_each_noting(Index count, const Kernel& kernel, const Note& note) {
+  constexpr int threads = 128;
+  launch(launch_and_note<threads, Kernel, Note>, (count + threads - 1) / threads, threads, count,
+         kernel, note);
 }
 #endif
 
@@ -241,9 +279,8 @@ Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
     if (count <= 0) return neutral;
     const Index blocks = std::min((count + block_size - 1) / block_size, Index{528});
     Buffer<std::byte> partial(Space::cuda, static_cast<Index>(sizeof(Value)) * blocks);
-    fold_blocks<<<static_cast<unsigned>(blocks), block_size, 0, device_stream()>>>(
-        count, neutral, kernel, combine, reinterpret_cast<Value*>(partial.data()));
-    check_device(cudaGetLastError(), "a launch");
+    launch(fold_blocks<Value, Kernel, Combine>, blocks, block_size, count, neutral, kernel, combine,
+           reinterpret_cast<Value*>(partial.data()));
     std::vector<Partial> of_block(static_cast<std::size_t>(blocks), Partial{neutral});
     copy_bytes(of_block.data(), Space::host, partial.data(), Space::cuda,
                of_block.size() * sizeof(Value));

@@ -78,6 +78,22 @@ void copy_bytes(void* to, [[maybe_unused]] Space to_space, const void* from,
   std::memcpy(to, from, bytes);
 }
 
+void peek_bytes(void* to, const void* from, [[maybe_unused]] Space from_space, std::size_t bytes) {
+#if defined(BR_CUDA)
+  if (from_space == Space::cuda) {
+    static const cudaStream_t beside = [] {
+      cudaStream_t made = nullptr;
+      check_device(cudaStreamCreateWithFlags(&made, cudaStreamNonBlocking), "making a stream");
+      return made;
+    }();
+    check_device(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, beside), "a look at memory");
+    check_device(cudaStreamSynchronize(beside), "a look at memory");
+    return;
+  }
+#endif
+  std::memcpy(to, from, bytes);
+}
+
 void clear_bytes(void* memory, [[maybe_unused]] Space space, std::size_t bytes) {
   if (bytes == 0) return;
 #if defined(BR_CUDA)
@@ -89,7 +105,19 @@ void clear_bytes(void* memory, [[maybe_unused]] Space space, std::size_t bytes) 
   std::memset(memory, 0, bytes);
 }
 
-std::size_t peak_array_bytes() {
+std::size_t peak_array_bytes([[maybe_unused]] Space space) {
+#if defined(BR_CUDA)
+  if (space == Space::cuda) {
+    int number = 0;
+    cudaMemPool_t pool = nullptr;
+    std::uint64_t bytes = 0;
+    check_device(cudaGetDevice(&number), "asking for its number");
+    check_device(cudaDeviceGetDefaultMemPool(&pool, number), "finding its memory pool");
+    check_device(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemHigh, &bytes),
+                 "asking for its memory");
+    return bytes;
+  }
+#endif
   return peak_bytes.load();
 }
 

@@ -12,9 +12,11 @@ void* allocate(Space space, std::size_t bytes);
 void release(Space space, void* memory) noexcept;
 /// Copies between any two spaces; complete on return, or within a device before the next kernel.
 void copy_bytes(void* to, Space to_space, const void* from, Space from_space, std::size_t bytes);
+/// Reads what kernels are writing, without waiting for them: beside all other work of a device.
+void peek_bytes(void* to, const void* from, Space from_space, std::size_t bytes);
 /// Sets every byte to zero.
 void clear_bytes(void* memory, Space space, std::size_t bytes);
-/// The largest sum of array memory that was alive at one time in this process.
-std::size_t peak_array_bytes();
+/// The largest sum of array memory of a space that was alive at one time in this process.
+std::size_t peak_array_bytes(Space space = Space::host);
 
 }  // namespace breccia

@@ -40,10 +40,6 @@ struct JoinItem {
   View<KeyedIndex> items;
   BR_HD void operator()(Index i) const { items[i] = {key[i], static_cast<Index>(item[i])}; }
 };
-struct NotAscending {
-  View<const KeyedIndex> items;
-  BR_HD Index operator()(Index i) const { return items[i].item >= items[i + 1].item ? 1 : 0; }
-};
 struct CountOf {
   View<const Index> counts;
   BR_HD std::int64_t operator()(Index i) const { return counts[i]; }
@@ -74,10 +70,7 @@ void sort_by_key_on_device(Buffer<KeyedIndex>& items) {
   Buffer<std::uint32_t> item(Space::cuda, count);
   const View<const KeyedIndex> view = std::as_const(items).view();
   for_each(on_device, count, SplitItem{view, key.view(), item.view()});
-  // A stable sort leaves equal keys in the order of their items if that is how they come.
-  if (fold(on_device, count - 1, Index{0}, NotAscending{view}, Largest{}) != 0)
-    sort_pairs(item, key);
-  sort_pairs(key, item);
+  sort_pairs(key, item);  // stable: equal keys stay in the order of their items
   for_each(on_device, count,
            JoinItem{std::as_const(key).view(), std::as_const(item).view(), items.view()});
 }
@@ -93,13 +86,20 @@ void sort_keys_on_device(Buffer<std::uint64_t>& keys, Buffer<std::uint64_t>& scr
 }
 
 std::int64_t exclusive_scan_on_device(Buffer<Index>& counts) {
-  const std::int64_t total =
-      fold(on_device, counts.size(), std::int64_t{0}, CountOf{std::as_const(counts).view()}, Sum{});
+  constexpr Index surely_fits = 46'340;  // so many elements have less than 2^31 pairs
+  if (counts.empty()) return 0;
+  std::int64_t total = 0;
+  if (counts.size() > surely_fits)
+    total = fold(on_device, counts.size(), std::int64_t{0}, CountOf{std::as_const(counts).view()},
+                 Sum{});
   with_work_space([&](void* work, std::size_t& bytes) {
     return cub::DeviceScan::ExclusiveSum(work, bytes, counts.data(), counts.data(), counts.size(),
                                          device_stream());
   });
-  return total;
+  if (counts.size() > surely_fits) return total;
+  Index last = 0;
+  copy_bytes(&last, Space::host, counts.data() + counts.size() - 1, Space::cuda, sizeof last);
+  return last;
 }
 
 }  // namespace breccia

@@ -1,6 +1,8 @@
 // The step of fdem/step.cpp on a device: the same kernels in the same order, launched ahead by the
 // device's clock.
 
+#include "core/device_run.hpp"
+#include "exec/early.hpp"
 #include "exec/for_each.hpp"
 #include "fdem/insertion_kernels.hpp"
 #include "fdem/launches.hpp"
@@ -46,29 +48,109 @@ struct MoveAndWatch {
   UsedMargin used;
   View<const Index> reach_place;
   View<const std::uint8_t> changed;
-  View<StepClock> clock;
+  std::int32_t* wanted;
+  std::int64_t step = 0;
 
   BR_HD void set(const Moment& now) {
     move.set(now);
     used.set_time(now.time + now.next_dt);
+    step = now.step;
   }
-  BR_HD void operator()(Index t) const {
-    move(t);
-    StepClock& c = clock[0];
-    const Index place = reach_place[t];
-    if (place >= 0 && used(place) > 0.0) c.wanted = wanted_search;
-    if (t == 0 && marking_due(changed[change_softened], changed[change_broken], c.step))
-      c.wanted = wanted_search;
+#if defined(__CUDACC__)
+  /// What the sums of forces, which end while these are read, do not write; and then those sums.
+  struct Ready {
+    Kick::Given given;
+    Corners from;
+    double margin;
+    Index place;
+  };
+  __device__ void prepare(Index t, Ready& ready) const {
+    ready.place = read_now(&reach_place[t]);
+    ready.given.hold = read_now(&move.kick.hold[t]);
+    ready.given.mass = read_now(&move.kick.mass[t]);
+    ready.given.nodes = read_record_now(&move.kick.nodes[t]);
+    ready.margin = 0.0;
+    if (ready.place >= 0) {
+      ready.from = read_record_now(&used.reference[ready.place]);
+      ready.margin = read_now(&used.margin[ready.place]);
+    }
+  }
+  __device__ void fetch(Index t, Ready& ready) const {
+    ready.given.force = read_record_now(&move.kick.force[t]);
+  }
+  __device__ void operator()(Index t, Ready& ready) const {
+    Kick::Given& given = ready.given;
+    if (move.kick.damping > 0.0 || move.external.size > 0 || given.hold >= 0) {
+      given.nodes = move.move_driven(t, given);
+    } else {
+      double c[12], f[6];
+      __builtin_memcpy(c, &given.nodes, sizeof c);
+      __builtin_memcpy(f, &given.force, sizeof f);
+      move.move_free(t, c, f, given.mass);
+      __builtin_memcpy(&given.nodes, c, sizeof c);
+    }
+    if (ready.place >= 0 && used.beyond(given.nodes, ready.from, ready.margin))
+      *wanted = wanted_search;
+    if (t == 0 && marking_due(changed[change_softened], changed[change_broken], step))
+      *wanted = wanted_search;
+  }
+#endif
+};
+
+#if defined(__CUDACC__)
+/// TriangleForces that read ahead what joints and couples do not write.
+struct TrianglesAhead {
+  static constexpr const char* name = "fdem.triangles_ahead";
+  TriangleForces all;
+
+  struct Ready {
+    TriangleNodes nodes;
+    Mat2 inverse;
+    double viscosity;
+    Index material, couples, couples_end;
+    Index edge[3];
+    JointForce joint[3];
+  };
+  BR_HD void set(const Moment& now) { all.set(now); }
+  __device__ void prepare(Index t, Ready& ready) const {
+    for (int k = 0; k < 3; ++k) ready.edge[k] = read_now(&all.edges[t].at[k]);
+    ready.material = read_now(&all.material[t]);
+    ready.viscosity = read_now(&all.viscosity[t]);
+    ready.couples = read_now(&all.couples.starts[t]);
+    ready.couples_end = read_now(&all.couples.starts[t + 1]);
+    ready.nodes = read_record_now(&all.nodes[t]);
+    ready.inverse = read_record_now(&all.shape_inverse[t]);
+  }
+  __device__ void fetch(Index, Ready& ready) const {
+    for (int k = 0; k < 3; ++k)
+      ready.joint[k] = read_record_now(&all.joint_force[all.joint_of(ready.edge[k])]);
+  }
+  __device__ void operator()(Index t, const Ready& ready) const {
+    double c[12], inverse[4];
+    __builtin_memcpy(c, &ready.nodes, sizeof c);
+    __builtin_memcpy(inverse, &ready.inverse, sizeof inverse);
+    Vec2 sum[3];
+    all.deform<double>(t, CornersOf<double>(c), inverse, Indices<double>{ready.material},
+                       ready.viscosity, sum);
+    for (int k = 0; k < 3; ++k) {
+      double f[4];
+      __builtin_memcpy(f, &ready.joint[k], sizeof f);
+      const Index entry = ready.edge[k];
+      all.add_force(entry >= 0 && side_of(entry) != 0, f, sum[k], sum[k == 2 ? 0 : k + 1]);
+    }
+    all.store_sum<double>(t, sum);
+    all.add_couples(t, ready.couples, ready.couples_end);
   }
 };
+#endif
 
 struct WatchReached {
   static constexpr const char* name = "fdem.watch_reached";
   View<const std::uint8_t> reached;
-  View<StepClock> clock;
+  std::int32_t* wanted;
   BR_HD void set(const Moment&) {}
   BR_HD void operator()(Index) const {
-    if (reached[0] != 0) clock[0].wanted = wanted_insertion;
+    if (reached[0] != 0) *wanted = wanted_insertion;
   }
 };
 
@@ -77,24 +159,55 @@ struct NoteStable {
   static constexpr const char* name = "fdem.note_stable";
   StableStep stable;
   Index triangles, threads;
-  FinishStep<AllowedStep> finish;
-  BR_HD void set(const Moment&) {}
+  int evaluate_every;
+  NoteLeast note;
+  std::int64_t step = 0;
+  BR_HD void set(const Moment& now) { step = now.step; }
   BR_HD void operator()(Index i) const {
-    if (finish.clock[0].step % finish.evaluate_every != 0) return;
+    if (step % evaluate_every != 0) return;
     double least = largest_least;
     for (Index t = i; t < triangles; t += threads) least = smaller(least, stable(t));
-    finish.note(least);
+    note(least);
   }
 };
 
-/// A kernel that notes nothing, before the end of the step.
-template <class Kernel>
-struct NotingNothing {
-  Kernel kernel;
-  BR_HD void set(const Moment& now) { kernel.set(now); }
-  BR_HD double operator()(Index i) const {
-    kernel(i);
-    return largest_least;
+/// BundleForces by sixteen threads a vertex, each with a corner: all see every corner's force and
+/// add those of their own bundle up, in the same order.
+struct BundlesWide {
+  static constexpr const char* name = "fdem.bundles_wide";
+  static constexpr Index width = 16;
+  BundleForces all;
+  BR_HD void set(const Moment&) {}
+  BR_HD void operator()([[maybe_unused]] Index i) const {
+#if defined(__CUDA_ARCH__)
+    const Index vertex = i / width, part = i % width;
+    const Index first = all.starts[vertex], count = all.starts[vertex + 1] - first;
+    if (count > width) {
+      if (part == 0) all(vertex);
+      return;
+    }
+    Index leader = -1, node = 0;
+    Vec2 force{};
+    double mass = 0.0;
+    if (part < count) {
+      leader = all.leader[first + part];
+      node = all.nodes[first + part];
+      force = all.force[node / 3].at[node % 3];
+      mass = all.mass[node / 3];
+    }
+    const unsigned group = 0xffffU << (threadIdx.x / width * width % 32);
+    Vec2 sum{};
+    double total = 0.0;
+    for (int k = 0; k < count; ++k) {
+      const Vec2 other{__shfl_sync(group, force.x, k, width),
+                       __shfl_sync(group, force.y, k, width)};
+      const double other_mass = __shfl_sync(group, mass, k, width);
+      if (__shfl_sync(group, leader, k, width) != leader) continue;
+      sum += other;
+      total += other_mass;
+    }
+    if (part < count) all.force[node / 3].at[node % 3] = mass * ((1.0 / total) * sum);
+#endif
   }
 };
 
@@ -108,54 +221,78 @@ struct FillNone {
   BR_HD void operator()(Index t) const { place[t] = -1; }
 };
 
+EndOfStep<AllowedStep> end_of_step(const World& w) {
+  return {allowed_step(w), w.parameters.time.evaluate_every};
+}
+
 #if defined(__CUDACC__)
-void launch_step(World& w) {
+void launch_move(World& w, const StepClocks& clocks) {
+  const auto motions = static_cast<Index>(w.prescribed.size());
+  const EndOfStep<AllowedStep> end = end_of_step(w);
+  const MoveAndWatch move{move_kernel(w),
+                          {w.reach.triangle.view(), w.reach.reference.view(), w.reach.margin.view(),
+                           w.triangles.nodes.view(), w.reach.drift, Vec2{}},
+                          w.reach_place.view(),
+                          w.opened.changed.view(),
+                          &clocks.now->wanted};
+  const Index triangles = w.triangles.size();
+  if (motions == 0)
+    return for_each_part(part(triangles, clocks.opening(move, end, true), Parts<>{}));
+  const ScaleMotions scale{{},
+                           w.amplitudes.view(),
+                           w.amplitude_times.view(),
+                           w.amplitude_factors.view(),
+                           w.prescribed_velocity.view(),
+                           w.motions.view()};
+  for_each(w.exec, motions, clocks.opening(scale, end, true));
+  for_each_part(part(triangles, clocks.timed<Stand::in_move>(move), Parts<>{}));
+}
+
+/// All forces and their sums, and the stable step. `by` wraps a kernel by the clock.
+template <class By>
+void launch_forces(World& w, StepClock* clock, const By& by) {
   const Exec& exec = w.exec;
   const Index triangles = w.triangles.size();
-  const auto motions = static_cast<Index>(w.prescribed.size());
-  const auto after = [&](const auto& kernel) { return timed<true>(kernel, w.clock); };
-  const View<const AmplitudeTable> tables = w.amplitudes.view();
-  const View<const double> times = w.amplitude_times.view(), factors = w.amplitude_factors.view();
-  for_each(
-      exec, motions,
-      timed<false>(
-          ScaleMotions{{}, tables, times, factors, w.prescribed_velocity.view(), w.motions.view()},
-          w.clock));
-  for_each(exec, triangles,
-           timed<false>(MoveAndWatch{move_kernel(w),
-                                     {w.reach.triangle.view(), w.reach.reference.view(),
-                                      w.reach.margin.view(), w.triangles.nodes.view(),
-                                      w.reach.drift, Vec2{}},
-                                     w.reach_place.view(),
-                                     w.opened.changed.view(),
-                                     w.clock.view()},
-                        w.clock));
   if (w.extrinsic) {
-    for_each(exec, triangles, after(stress_kernel(w)));
-    for_each(exec, w.joints.size(), after(overshoot_kernel(w)));
-    for_each(exec, 1, after(WatchReached{w.reached.view(), w.clock.view()}));
+    for_each(exec, triangles, by(stress_kernel(w)));
+    for_each(exec, w.joints.size(), by(overshoot_kernel(w)));
+    for_each(exec, 1, by(WatchReached{w.reached.view(), &clock->wanted}));
   }
-  for_each_part(part(w.couples.size(), after(couple_kernel(w)),
-                     part(w.joints.size(), after(joint_kernel(w)), Parts<>{})));
-  const FinishStep<AllowedStep> finish{allowed_step(w), w.parameters.time.evaluate_every,
-                                       w.clock.view()};
+  for_each_part(part(w.couples.size(), by(couple_kernel(w)),
+                     part(w.joints.size(), by(joint_kernel(w)), Parts<>{})));
   constexpr Index most_threads = 132 * 128;
   const Index threads = triangles < most_threads ? triangles : most_threads;
-  for_each_part(part(threads, after(NoteStable{stable_step(w), triangles, threads, finish}),
-                     part(triangles, after(triangle_kernel(w)), Parts<>{})));
+  for_each_part(part(
+      threads,
+      by(NoteStable{stable_step(w), triangles, threads, w.parameters.time.evaluate_every, {clock}}),
+      part(triangles, by(TrianglesAhead{triangle_kernel(w)}), Parts<>{})));
   if (w.load_starts.size() > 1) {
     for_each(exec, w.load_laws.size(),
-             after(ScaleLoads{{}, motions, tables, times, factors, w.load_laws.view()}));
-    for_each(exec, w.load_starts.size() - 1, after(load_kernel(w)));
+             by(ScaleLoads{{},
+                           static_cast<Index>(w.prescribed.size()),
+                           w.amplitudes.view(),
+                           w.amplitude_times.view(),
+                           w.amplitude_factors.view(),
+                           w.load_laws.view()}));
+    for_each(exec, w.load_starts.size() - 1, by(load_kernel(w)));
   }
   if (w.bundles.starts.size() > 1)
-    for_each_then(w.bundles.starts.size() - 1, after(NotingNothing<BundleForces>{bundle_kernel(w)}),
-                  w.blocks_done, finish);
-  else
-    for_each(exec, 1, finish);
+    for_each(exec, (w.bundles.starts.size() - 1) * BundlesWide::width,
+             by(BundlesWide{bundle_kernel(w)}));
+}
+
+void launch_step(World& w, const StepClocks& clocks) {
+  launch_move(w, clocks);
+  launch_forces(w, clocks.now,
+                [&](const auto& kernel) { return clocks.timed<Stand::after_move>(kernel); });
+}
+void launch_rest(World& w, const StepClocks& clocks) {
+  launch_forces(w, clocks.now,
+                [&](const auto& kernel) { return clocks.timed<Stand::in_rest>(kernel); });
 }
 #else
-void launch_step(World&) {}
+void launch_step(World&, const StepClocks&) {}
+void launch_rest(World&, const StepClocks&) {}
 #endif
 
 /// What the launches read besides the state.
@@ -180,7 +317,6 @@ void list_amplitudes(World& w) {
   copy_to(w.prescribed_velocity, velocity);
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
   if (w.load_starts.size() > 1) copy_to(w.load_laws, w.loads);
-  w.blocks_done.resize(1);
 }
 
 void place_reach(World& w) {
@@ -193,16 +329,19 @@ void place_reach(World& w) {
 }  // namespace
 
 Advanced advance_on_device(World& w, const StopAt& stop) {
-  if (w.amplitudes.empty() && w.blocks_done.empty()) list_amplitudes(w);
-  if (w.graphs.stale()) place_reach(w);
+  if (w.amplitudes.empty() && w.clock.empty()) list_amplitudes(w);
+  if (w.graph.empty()) place_reach(w);
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
   return run_ahead(
-      w.clock, w.graphs, host, stop, [&] { launch_step(w); },
+      w.clock, w.graph, end_of_step(w), host, stop,
+      [&](const StepClocks& clocks) { launch_step(w, clocks); },
+      [&](const StepClocks& clocks) { launch_rest(w, clocks); },
       [&](std::int32_t wanted) {
-        if (wanted == wanted_search) find_couples(w);
-        evaluate_forces(w);
-        w.graphs.clear();
+        const bool insertion = wanted == wanted_insertion;
+        insertion ? evaluate_forces(w) : find_couples(w);
+        w.graph.clear();
         place_reach(w);
+        return insertion;
       });
 }
 

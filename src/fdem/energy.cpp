@@ -48,7 +48,7 @@ struct TriangleShares {
       const Vec2 came = (0.5 * kick.last_dt) * before;
       s.damping.add(dot(next.damped[k], came));
       if (move.external.size > 0) s.work.add(dot(move.external[t].at[k], came));
-      if (kick.hold[t] >= 0) s.work.add(dot(move.reaction(t, k, next), came));
+      if (kick.hold[t] >= 0) s.work.add(dot(move.reaction(kick.given(t), k, next), came));
     }
     Vec2 x[3], v[3];
     split(kick.nodes[t], x, v);

@@ -62,11 +62,16 @@ struct JointForces {
     }
     R corner[4][4];  // position and velocity of a0, a1, b0, b1
     for (int k = 0; k < 4; ++k) gather_records(nodes, indices<R>(at[k]), corner[k]);
+    return elastic_at(i, corner, load_indices<R>(law, i), load<R>(strength, i), load<R>(length, i));
+  }
+  /// The same with what was read of it.
+  template <class R>
+  BR_HD bool elastic_at(Index i, const R (&corner)[4][4], const Indices<R>& own_law, const R& share,
+                        const R& h) const {
     const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
     const JointOpening<R> o = opening_of(position(0), position(1), position(2), position(3));
     R bond[8];
-    gather_records(bonds, load_indices<R>(law, i), bond);
-    const R share = load<R>(strength, i), h = load<R>(length, i);
+    gather_records(bonds, own_law, bond);
     const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
     R offset[2] = {};
     if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);

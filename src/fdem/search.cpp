@@ -195,7 +195,7 @@ void search(World& w) {
   book_dropped(w, found);
   w.couples.replace(w.exec, std::move(found));
   derive_couples(w);
-  w.graphs.clear();
+  w.graph.clear();
   ++w.searches;
 }
 

@@ -303,7 +303,7 @@ void move_to(World& w, Space space) {
   if (w.exec.space == space) return;
   w.each_kept([space](auto& array) { move_array(array, space); });
   w.each_derived([space](auto& array) { array = std::remove_reference_t<decltype(array)>(space); });
-  w.graphs.clear();
+  w.graph.clear();
   w.exec.space = space;
 }
 

@@ -25,6 +25,12 @@ struct CornersOf {
   BR_HD CornersOf(const View<const TriangleNodes>& nodes, Index first) {
     R c[12];
     gather_records(nodes, consecutive<R>(first), c);
+    take(c);
+  }
+  BR_HD explicit CornersOf(const R (&c)[12]) { take(c); }
+
+ private:
+  BR_HD void take(const R (&c)[12]) {
     for (int k = 0; k < 3; ++k) {
       x[k] = {c[4 * k], c[4 * k + 1]};
       v[k] = {c[4 * k + 2], c[4 * k + 3]};
@@ -52,15 +58,28 @@ struct TriangleForces {
   /// Triangle t, or t and its neighbours in a pack.
   template <class R>
   BR_HD void at(Index t) const {
-    const CornersOf<R> c(nodes, t);
-    R inverse_of[4], numbers[8];
+    R inverse_of[4];
     gather_records(shape_inverse, consecutive<R>(t), inverse_of);
-    gather_records(laws, load_indices<R>(material, t), numbers);
+    Vec2Of<R> sum[3];
+    deform(t, CornersOf<R>(nodes, t), inverse_of, load_indices<R>(material, t),
+           load<R>(viscosity, t), sum);
+    for (int k = 0; k < 3; ++k) add_joint(t, k, sum[k], sum[k == 2 ? 0 : k + 1]);
+    store_sum(t, sum);
+    for (Index k = 0; k < width_of<R>; ++k)
+      add_couples(t + k, couples.first(t + k), couples.last(t + k));
+  }
+  BR_HD void operator()(Index t) const { at<double>(t); }
+  BR_HD void set(const Moment& now) { span = now.last_dt; }
+
+  /// Internal forces on the corners, and the work of viscosity.
+  template <class R>
+  BR_HD void deform(Index t, const CornersOf<R>& c, const R (&inverse_of)[4],
+                    const Indices<R>& own_material, const R& eta, Vec2Of<R> (&sum)[3]) const {
+    R numbers[8];
+    gather_records(laws, own_material, numbers);
     const ElasticLaw<R> law{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
     const Deformation<R> d = deformation(
         Mat2Of<R>{inverse_of[0], inverse_of[1], inverse_of[2], inverse_of[3]}, c.x, c.v);
-    const R eta = load<R>(viscosity, t);
-    Vec2Of<R> sum[3];
     corner_forces(law.stress(d, eta), c.x, sum);
     if (any(eta > 0.0)) {
       const Mat2Of<R>& l = d.velocity_gradient;
@@ -68,35 +87,40 @@ struct TriangleForces {
       const R area = 0.5 * cross(c.x[1] - c.x[0], c.x[2] - c.x[0]);
       store(viscous_work, t, load<R>(viscous_work, t) + span * (eta * area * contract(rate, rate)));
     }
-    for (int k = 0; k < 3; ++k) add_joint(t, k, sum[k], sum[k == 2 ? 0 : k + 1]);
+  }
+  template <class R>
+  BR_HD void store_sum(Index t, const Vec2Of<R> (&sum)[3]) const {
     const R total[6] = {sum[0].x, sum[0].y, sum[1].x, sum[1].y, sum[2].x, sum[2].y};
     store_records(force, t, total);
-    for (Index k = 0; k < width_of<R>; ++k) add_couples(t + k);
   }
-  BR_HD void operator()(Index t) const { at<double>(t); }
-  BR_HD void set(const Moment& now) { span = now.last_dt; }
+  /// Adds a joint's forces to the two corners of its edge: on b the edge runs the other way, and
+  /// forces are opposite.
+  template <class R, class Mask>
+  BR_HD static void add_force(const Mask& on_b, const R (&f)[4], Vec2Of<R>& from, Vec2Of<R>& to) {
+    from.x += choose(on_b, -f[2], f[0]);
+    from.y += choose(on_b, -f[3], f[1]);
+    to.x += choose(on_b, -f[0], f[2]);
+    to.y += choose(on_b, -f[1], f[3]);
+  }
+  BR_HD Index joint_of(Index entry) const {
+    return entry < 0 ? joint_force.size - 1 : pair_of(entry);
+  }
 
- private:
   template <class R>
   BR_HD void add_joint(Index t, int k, Vec2Of<R>& from, Vec2Of<R>& to) const {
     Index joint[width_of<R>];
     double side[width_of<R>];
     for (Index i = 0; i < width_of<R>; ++i) {
       const Index entry = edges[t + i].at[k];
-      joint[i] = entry < 0 ? joint_force.size - 1 : pair_of(entry);
+      joint[i] = joint_of(entry);
       side[i] = entry < 0 ? 0.0 : static_cast<double>(side_of(entry));
     }
     R f[4], other;
     gather_records(joint_force, indices<R>(joint), f);
     __builtin_memcpy(&other, side, sizeof other);
-    const auto on_b = other > 0.0;  // b's edge runs the other way, and its forces are opposite
-    from.x += choose(on_b, -f[2], f[0]);
-    from.y += choose(on_b, -f[3], f[1]);
-    to.x += choose(on_b, -f[0], f[2]);
-    to.y += choose(on_b, -f[1], f[3]);
+    add_force(other > 0.0, f, from, to);
   }
-  BR_HD void add_couples(Index t) const {
-    const Index first = couples.first(t), last = couples.last(t);
+  BR_HD void add_couples(Index t, Index first, Index last) const {
     if (first == last) return;
     Corners sum = force[t];
     for (Index c = first; c < last; ++c) {
@@ -181,12 +205,22 @@ struct Kick {
   BR_HD static double opposed(double force, double velocity) {
     return velocity > 0.0 ? absolute(force) : velocity < 0.0 ? -absolute(force) : 0.0;
   }
-  BR_HD Result operator()(Index t) const {
+  /// A triangle, and what acts on it.
+  struct Given {
+    TriangleNodes nodes;
+    Corners force;
+    double mass;
+    Index hold;
+  };
+  BR_HD Given given(Index t) const { return {nodes[t], force[t], mass[t], hold[t]}; }
+
+  BR_HD Result operator()(Index t) const { return (*this)(given(t)); }
+  BR_HD Result operator()(const Given& of) const {
     Result r{};
-    const double m = mass[t], scale = span() / m;
+    const double m = of.mass, scale = span() / m;
     for (int k = 0; k < 3; ++k) {
-      const Vec2 before = nodes[t].at[k].velocity;
-      Vec2 f = force[t].at[k] + m * gravity;
+      const Vec2 before = of.nodes.at[k].velocity;
+      Vec2 f = of.force.at[k] + m * gravity;
       if (damping > 0.0) {
         const Vec2 drift = before + (0.5 * scale) * f;
         r.damped[k] = {damping * opposed(f.x, drift.x), damping * opposed(f.y, drift.y)};
@@ -194,8 +228,8 @@ struct Kick {
       }
       r.velocity[k] = before + scale * f;
     }
-    if (hold[t] >= 0) {
-      const Hold& h = holds[hold[t]];
+    if (of.hold >= 0) {
+      const Hold& h = holds[of.hold];
       for (int k = 0; k < 3; ++k) {
         const Vec2 given = h.motion[k] >= 0 ? motions[h.motion[k]].velocity : Vec2{};
         if ((h.fixed >> (2 * k) & 1) != 0) {
@@ -229,7 +263,13 @@ struct MoveTriangles {
     R c[12], f[6];
     gather_records(kick.nodes, consecutive<R>(t), c);
     gather_records(kick.force, consecutive<R>(t), f);
-    const R m = load<R>(kick.mass, t), scale = kick.span() / m;
+    move_free(t, c, f, load<R>(kick.mass, t));
+    return true;
+  }
+  /// Moves corners c that forces f alone act on.
+  template <class R>
+  BR_HD void move_free(Index t, R (&c)[12], const R (&f)[6], const R& m) const {
+    const R scale = kick.span() / m;
     const R next = constant<R>(kick.next_dt);
     const R gravity[2] = {kick.gravity.x * m, kick.gravity.y * m};
     for (int k = 0; k < 3; ++k)
@@ -239,15 +279,17 @@ struct MoveTriangles {
         c[4 * k + axis] = c[4 * k + axis] + next * velocity;
       }
     store_records(nodes, t, c);
-    return true;
   }
 
   BR_HD void set(const Moment& now) { kick.set(now); }
   BR_HD void operator()(Index t) const {
-    if (free_at<double>(t)) return;
-    const Kick::Result r = kick(t);
-    TriangleNodes& moved = nodes[t];
-    const bool held = kick.hold[t] >= 0;
+    if (!free_at<double>(t)) move_driven(t, kick.given(t));
+  }
+  /// Moves a triangle that is held, loaded or damped. @returns where it is then
+  BR_HD TriangleNodes move_driven(Index t, const Kick::Given& of) const {
+    const Kick::Result r = kick(of);
+    TriangleNodes moved = of.nodes;
+    const bool held = of.hold >= 0;
     double damped = 0.0, loaded = 0.0;
     for (int k = 0; k < 3; ++k) {
       NodeState& n = moved.at[k];
@@ -255,21 +297,23 @@ struct MoveTriangles {
       const Vec2 both = kick.last_dt * n.velocity + after;
       if (kick.damping > 0.0) damped += 0.5 * dot(r.damped[k], both);
       if (external.size > 0) loaded += 0.5 * dot(external[t].at[k], both);
-      if (held) loaded += 0.5 * dot(reaction(t, k, r), both);
+      if (held) loaded += 0.5 * dot(reaction(of, k, r), both);
       n.velocity = r.velocity[k];
       n.position += after;
     }
+    nodes[t] = moved;
     if (kick.damping > 0.0) damping_work[t] += damped;
     if (held || external.size > 0) load_work[t] += loaded;
+    return moved;
   }
 
   /// Force that holds a corner to its prescribed motion; zero in free directions.  [N/m]
-  BR_HD Vec2 reaction(Index t, int k, const Kick::Result& r) const {
+  BR_HD Vec2 reaction(const Kick::Given& of, int k, const Kick::Result& r) const {
     const double span = kick.span();
     if (!(span > 0.0)) return {};
-    const int bits = kick.holds[kick.hold[t]].fixed >> (2 * k);
-    const Vec2 gained = (kick.mass[t] / span) * (r.velocity[k] - kick.nodes[t].at[k].velocity);
-    const Vec2 given = kick.force[t].at[k] + kick.mass[t] * kick.gravity - r.damped[k];
+    const int bits = kick.holds[of.hold].fixed >> (2 * k);
+    const Vec2 gained = (of.mass / span) * (r.velocity[k] - of.nodes.at[k].velocity);
+    const Vec2 given = of.force.at[k] + of.mass * kick.gravity - r.damped[k];
     const Vec2 held = gained - given;
     return {(bits & 1) != 0 ? held.x : 0.0, (bits & 2) != 0 ? held.y : 0.0};
   }
@@ -287,14 +331,15 @@ struct UsedMargin {
   /// @param time  of the positions  [s]
   BR_HD void set_time(double time) { drifted = drift.way(time); }
   BR_HD double operator()(Index i) const {
-    const TriangleNodes& now = nodes[triangle[i]];
-    const double allowed = margin[i] * margin[i];
+    return beyond(nodes[triangle[i]], reference[i], margin[i]) ? 1.0 : 0.0;
+  }
+  BR_HD bool beyond(const TriangleNodes& now, const Corners& from, double allowed) const {
     bool inside = dot(drifted, drifted) <= drift.farthest * drift.farthest;
     for (int k = 0; k < 3; ++k) {
-      const Vec2 moved = (now.at[k].position - reference[i].at[k]) - drifted;
-      inside = inside && dot(moved, moved) <= allowed;
+      const Vec2 moved = (now.at[k].position - from.at[k]) - drifted;
+      inside = inside && dot(moved, moved) <= allowed * allowed;
     }
-    return inside ? 0.0 : 1.0;
+    return !inside;
   }
 };
 

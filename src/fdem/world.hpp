@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "core/broad_phase.hpp"
-#include "core/device_run.hpp"
 #include "core/energy.hpp"
+#include "core/step_clock.hpp"
 #include "core/travel.hpp"
 #include "domain/domain.hpp"
 #include "exec/lanes.hpp"
+#include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
 #include "fdem/config.hpp"
 #include "fdem/drift.hpp"
@@ -105,7 +106,7 @@ struct World {
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, born, node_vertex, border_vertex, amplitudes,
-         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock, blocks_done);
+         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock);
   }
 
   // State: what a checkpoint holds.
@@ -166,8 +167,7 @@ struct World {
   Buffer<Vec2> prescribed_velocity;
   Buffer<Index> reach_place;  ///< of each triangle in `reach`, -1: it cannot touch
   Buffer<StepClock> clock;
-  Buffer<unsigned> blocks_done;
-  StepGraphs graphs;
+  StepGraph graph;  ///< of a few steps
 };
 
 /// Moves a world's arrays to another space; derive() must follow.

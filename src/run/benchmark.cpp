@@ -96,7 +96,7 @@ std::vector<Measurement> measure_scene(const Exec& exec, double scale) {
                                   once("scene", "make_world", setup, "s")};
   const double elements = w.elements.size();
   result.push_back(once("memory", "peak_arrays_per_element",
-                        static_cast<double>(peak_array_bytes()) / elements, "B"));
+                        static_cast<double>(peak_array_bytes(exec.space)) / elements, "B"));
   result.push_back(once("memory", "peak_resident_per_element",
                         static_cast<double>(peak_memory()) / elements, "B"));
   Windows before("before impact"), during("during impact");
@@ -109,6 +109,32 @@ std::vector<Measurement> measure_scene(const Exec& exec, double scale) {
   for (int window = 0; window < window_count; ++window) during.measure(w, timers, 40);
   during.report(w, result);
   return result;
+}
+
+/// Slabs side by side during the impact.
+void report_slabs(const Exec& exec, int copies, int steps, std::vector<Measurement>& result) {
+  dem::Config config = slab_scene(1.0);
+  config.supports.clear();
+  dem::World w(exec);
+  const double setup = seconds_of(
+      [&] { w = dem::make_world(config, side_by_side(build_model(config, ""), copies), exec); });
+  reach_impact(w);
+  std::vector<double> wall;
+  for (int window = 0; window < window_count; ++window)
+    wall.push_back(seconds_of([&] { take_steps(w, steps); }) / steps);
+  const std::string part = std::to_string(copies) + " slabs";
+  const double elements = w.elements.size();
+  result.push_back(once(part, "elements", elements, "-"));
+  result.push_back(once(part, "links", w.links(), "-"));
+  result.push_back(once(part, "setup", setup, "s"));
+  result.push_back(over_windows(part, "step", "us", wall, 1e6));
+  result.push_back(over_windows(part, "ns_per_link_step", "ns", wall, 1e9 / w.links()));
+  if (exec.space != Space::cuda) return;
+  const DeviceInfo device = device_info();
+  result.push_back(once(part, "device_memory_per_element",
+                        static_cast<double>(device.memory - device.free_memory) / elements, "B"));
+  result.push_back(
+      once(part, "peak_resident_per_element", static_cast<double>(peak_memory()) / elements, "B"));
 }
 
 /// Spheres of radii 0.8 to 1.2 m filling 60 % of a cube.
@@ -150,30 +176,17 @@ std::vector<Measurement> measure_large_slab(const Exec& exec) {
 }
 
 std::vector<Measurement> measure_slabs(const Exec& exec) {
-  dem::Config config = slab_scene(1.0);
-  config.supports.clear();
-  const dem::Model one = build_model(config, "");
   std::vector<Measurement> result;
   for (const int copies : {7, 70, 700}) {
     if (copies > 70 && exec.space != Space::cuda) continue;  // minutes and 30 GB
-    dem::World w = dem::make_world(config, side_by_side(one, copies), exec);
-    reach_impact(w);
-    std::vector<double> wall;
-    const int steps = copies > 70 ? 20 : 50;
-    for (int window = 0; window < window_count; ++window)
-      wall.push_back(seconds_of([&] { take_steps(w, steps); }) / steps);
-    const std::string part = std::to_string(copies) + " slabs";
-    result.push_back(once(part, "elements", w.elements.size(), "-"));
-    result.push_back(once(part, "links", w.links(), "-"));
-    result.push_back(over_windows(part, "step", "us", wall, 1e6));
-    result.push_back(over_windows(part, "ns_per_link_step", "ns", wall, 1e9 / w.links()));
-    if (exec.space == Space::cuda) {
-      const DeviceInfo device = device_info();
-      result.push_back(
-          once(part, "device_memory_per_element",
-               static_cast<double>(device.memory - device.free_memory) / w.elements.size(), "B"));
-    }
+    report_slabs(exec, copies, copies > 70 ? 20 : 50, result);
   }
+  return result;
+}
+
+std::vector<Measurement> measure_most_slabs(const Exec& exec) {
+  std::vector<Measurement> result;
+  if (exec.space == Space::cuda) report_slabs(exec, 2000, 15, result);
   return result;
 }
 
@@ -220,7 +233,7 @@ std::vector<Measurement> measure_search(const Exec& exec) {
     result.push_back(over_windows(part, "ns_per_element", "ns", spent, 1e9 / count));
     result.push_back(once(part, "pairs", pairs.size(), "-"));
     result.push_back(once(part, "comparisons_per_element",
-                          static_cast<double>(broad_phase.tested()) / count, "-"));
+                          static_cast<double>(broad_phase.tested(exec)) / count, "-"));
   }
   return result;
 }

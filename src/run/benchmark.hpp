@@ -25,15 +25,21 @@ std::vector<Measurement> measure_large_slab(const Exec& exec);
 /// Many of the paper's slabs side by side, during the impact: 100,000 to 1 million elements, on a
 /// GPU to 10 million.
 std::vector<Measurement> measure_slabs(const Exec& exec);
+/// The most slabs that a GPU was tried with: 28.5 million elements, 100 steps. Nothing on a host.
+std::vector<Measurement> measure_most_slabs(const Exec& exec);
 /// The slab on one thread and on all threads of `exec`, in alternating windows.
 std::vector<Measurement> measure_threads(const Exec& exec);
 /// The search alone, on random spheres at the density of a packing.
 std::vector<Measurement> measure_search(const Exec& exec);
+/// The search when elements of the slab fly apart and its bounding box grows a thousandfold.
+std::vector<Measurement> measure_burst(const Exec& exec);
 /// Packings of a box at the compactness of the slab.
 std::vector<Measurement> measure_packing(const Exec& exec);
 
 /// Whole FDEM steps of plates of 10^4 to 10^6 joined triangles, by stage.
 std::vector<Measurement> measure_triangles(const Exec& exec);
+/// Whole FDEM steps of a plate of 50 million triangles. Nothing on a host.
+std::vector<Measurement> measure_largest_plate(const Exec& exec);
 /// Whole FDEM steps of 8,000 hexagons that fly together, from far apart to pressed together.
 std::vector<Measurement> measure_contact(const Exec& exec);
 

@@ -115,20 +115,6 @@ TEST(PairList, CarriesHistoryWithAnyNumberOfThreads) {
   for (const int threads : {2, 3, 7}) rebuild_at_random(5, {.threads = threads}, 3000, 4000);
 }
 
-TEST(PairList, LeavesOutExactlyTheExcludedPairs) {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    RandomStream random(seed);
-    const std::set<PairKey> keys = random_keys(random, 20, 60);
-    const std::set<PairKey> excluded = random_keys(random, 20, random.below(60));
-    std::set<PairKey> expected = keys;
-    for (const PairKey key : excluded) expected.erase(key);
-    Pairs pairs = pairs_of(keys);
-    exclude_pairs({}, pairs, buffer_of(std::vector<PairKey>(excluded.begin(), excluded.end())));
-    ASSERT_EQ(keys_of(pairs), expected);
-    ASSERT_EQ(scenes::listed(pairs), scenes::listed(pairs_of(expected))) << "seed " << seed;
-  }
-}
-
 TEST(PairList, WorksOnArraysThatOnlyKernelsMayRead) {
   const Exec exec{.space = Space::shadow};
   Memory memory;

@@ -100,7 +100,7 @@ inline std::vector<Expected> search(const Scene& scene, const Exec& exec = {},
   Pairs pairs(exec.space);
   broad_phase.search(exec, buffer_of(scene.boxes, exec.space), buffer_of(scene.ids, exec.space),
                      pairs);
-  if (tested != nullptr) *tested = broad_phase.tested();
+  if (tested != nullptr) *tested = broad_phase.tested(exec);
   return listed(pairs);
 }
 

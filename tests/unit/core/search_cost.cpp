@@ -41,8 +41,8 @@ std::int64_t search_packing(Index count) {
   std::printf(
       "search of %d spheres: %.2f ms, %.1f ns an element, %d pairs, %.1f comparisons each\n", count,
       1e3 * best, 1e9 * best / count, pairs.size(),
-      static_cast<double>(broad_phase.tested()) / count);
-  return broad_phase.tested();
+      static_cast<double>(broad_phase.tested({})) / count);
+  return broad_phase.tested({});
 }
 
 TEST(SearchCost, IsLinearInTheElements) {

@@ -1,10 +1,9 @@
 // The clock of a device, driven by hand on the host, and the choice of items that searches use.
 
-#include "core/step_clock.hpp"
-
 #include <gtest/gtest.h>
 
 #include "core/select.hpp"
+#include "core/timed.hpp"
 
 namespace breccia {
 namespace {
@@ -13,58 +12,131 @@ struct TwiceTheLeast {
   BR_HD double operator()(double least, double) const { return 2.0 * least; }
 };
 
-/// One step whose least number is `least`.
-void finish(Buffer<StepClock>& clock, double least, int evaluate_every = 1) {
-  if (clock.data()->halted == 0) clock.data()->least = ordered_bits(least);
-  FinishStep<TwiceTheLeast>{{}, evaluate_every, clock.view()}(0);
+/// One step whose least number is `least`, and its end.
+void take(StepClock& clock, double least, int evaluate_every = 1) {
+  if (clock.halted == 0 && clock.open == 0) clock.open = step_open;
+  clock.least = ordered_bits(least);
+  EndOfStep<TwiceTheLeast>{{}, evaluate_every}(clock);
 }
 
-Buffer<StepClock> started(const StopAt& stop) {
-  Buffer<StepClock> clock(Space::host, 1);
+StepClock started(const StopAt& stop) {
   StepClock start;
   start.now = {1.0, 0.0, 0.5};
   start.stop = stop;
-  *clock.data() = start;
-  return clock;
+  return start;
 }
 
 TEST(StepClock, HaltsAtTheFirstStepAtOrPastItsEnd) {
   StopAt stop;
   stop.time = 2.0;
-  Buffer<StepClock> clock = started(stop);
-  const StepClock& c = *clock.data();
-  finish(clock, 0.25);
+  StepClock c = started(stop);
+  take(c, 0.25);
   EXPECT_EQ(c.now.time, 1.5);
   EXPECT_EQ(c.now.last_dt, 0.5);
   EXPECT_EQ(c.now.next_dt, 0.5);
   EXPECT_EQ(c.halted, 0);
-  finish(clock, 0.125);
+  take(c, 0.125);
   EXPECT_EQ(c.now.time, 2.0);
   EXPECT_EQ(c.now.next_dt, 0.25);
   EXPECT_EQ(c.halted, 1);
-  finish(clock, 0.125);  // launched ahead: nothing
-  EXPECT_EQ(c.step, 2);
+  take(c, 0.125);  // launched ahead: nothing
+  EXPECT_EQ(c.now.step, 2);
   EXPECT_EQ(c.now.time, 2.0);
 }
 
-TEST(StepClock, WaitsForTheHostInTheMiddleOfAStep) {
-  Buffer<StepClock> clock = started({});
-  clock.data()->wanted = 1;
-  finish(clock, 0.25);
-  EXPECT_EQ(clock.data()->halted, 1);
-  EXPECT_EQ(clock.data()->now.time, 1.5);     // elements have moved
-  EXPECT_EQ(clock.data()->now.next_dt, 0.5);  // forces and the next step are the host's
-  EXPECT_EQ(clock.data()->step, 0);
+TEST(StepClock, WaitsForTheHostInTheMiddleOfAStepAndGoesOnThere) {
+  StepClock c = started({});
+  c.wanted = 1;
+  take(c, 0.25);
+  EXPECT_EQ(c.halted, 1);
+  EXPECT_EQ(c.now.time, 1.5);     // elements have moved
+  EXPECT_EQ(c.now.next_dt, 0.5);  // forces and the next step are still to come
+  EXPECT_EQ(c.now.step, 0);
+  c.wanted = c.halted = 0;
+  c.open = step_open_after_move;
+  take(c, 0.15);
+  EXPECT_EQ(c.now.time, 1.5);
+  EXPECT_EQ(c.now.last_dt, 0.5);
+  EXPECT_EQ(c.now.next_dt, 0.3);
+  EXPECT_EQ(c.now.step, 1);
+}
+
+TEST(StepClock, EndsNoStepTwice) {
+  StepClock c = started({});
+  take(c, 0.25);
+  EndOfStep<TwiceTheLeast>{{}, 1}(c);
+  EXPECT_EQ(c.now.step, 1);
+  EXPECT_EQ(c.now.time, 1.5);
 }
 
 TEST(StepClock, EvaluatesTheStepAsOftenAsTheCaseSays) {
-  Buffer<StepClock> clock = started({});
-  finish(clock, 0.1, 2);
-  EXPECT_EQ(clock.data()->now.next_dt, 0.2);
-  finish(clock, 0.3, 2);
-  EXPECT_EQ(clock.data()->now.next_dt, 0.2);
-  EXPECT_EQ(clock.data()->dt_min, 0.2);
-  EXPECT_EQ(clock.data()->dt_max, 0.5);
+  StepClock c = started({});
+  take(c, 0.1, 2);
+  EXPECT_EQ(c.now.next_dt, 0.2);
+  take(c, 0.3, 2);
+  EXPECT_EQ(c.now.next_dt, 0.2);
+  EXPECT_EQ(c.dt_min, 0.2);
+  EXPECT_EQ(c.dt_max, 0.5);
+}
+
+/// Writes down when it was called.
+struct Called {
+  Moment* last;
+  Moment now;
+  BR_HD void set(const Moment& moment) { now = moment; }
+  BR_HD void operator()(Index) const { *last = now; }
+};
+
+TEST(StepClock, OpensAStepInOneClockFromTheOther) {
+  StepClock clocks[2] = {started({}), started({})};
+  Moment last{};
+  const EndOfStep<TwiceTheLeast> end{{}, 1};
+  const auto open = [&](int from) {
+    Opening<Called, TwiceTheLeast>({&last, {}}, end, &clocks[from], &clocks[1 - from], true)(0);
+  };
+  open(0);
+  EXPECT_EQ(last.time, 1.0);
+  EXPECT_EQ(clocks[1].open, step_open);
+  Timed<Called, Stand::after_move>({&last, {}}, &clocks[1])(0);
+  EXPECT_EQ(last.time, 1.5);
+  EXPECT_EQ(last.last_dt, 0.5);
+  clocks[1].least = ordered_bits(0.125);
+  open(1);
+  EXPECT_EQ(last.time, 1.5);
+  EXPECT_EQ(last.next_dt, 0.25);
+  EXPECT_EQ(last.step, 1);
+  clocks[0].wanted = 1;  // a search is due after this move
+  Timed<Called, Stand::after_move>({&last, {}}, &clocks[0])(0);
+  EXPECT_EQ(last.step, 1) << "what follows the move is left to the host";
+  EXPECT_EQ(last.time, 1.5);
+  last = {};
+  open(0);
+  EXPECT_EQ(clocks[1].halted, 1);
+  EXPECT_EQ(clocks[1].wanted, 1);
+  EXPECT_EQ(clocks[1].now.time, 1.75);
+  EXPECT_EQ(last.time, 0.0) << "nothing runs once the clock has halted";
+}
+
+TEST(StepClock, CountsToTheSameEvaluationsWhereverItStarts) {
+  const EndOfStep<TwiceTheLeast> end{{}, 3};
+  for (const std::int64_t first : {0, 1, 2, 3, 7}) {
+    StepClock clocks[2] = {started({}), started({})};
+    for (StepClock& c : clocks) {
+      c.now.step = first;
+      c.to_evaluation = end.to_evaluation(first);
+    }
+    Moment last{};
+    for (int taken = 0; taken < 8; ++taken) {
+      const int from = taken % 2;
+      Opening<Called, TwiceTheLeast>({&last, {}}, end, &clocks[from], &clocks[1 - from], true)(0);
+      clocks[1 - from].least = ordered_bits(1.0 + taken);
+      StepClock after = clocks[1 - from];
+      end(after);
+      const bool evaluated = (first + taken) % 3 == 0;
+      EXPECT_EQ(after.now.next_dt, evaluated ? 2.0 * (1.0 + taken) : last.next_dt) << first;
+      EXPECT_EQ(after.now.step, first + taken + 1);
+    }
+  }
 }
 
 TEST(StepClock, BitsOfNumbersAreOrderedLikeThem) {
