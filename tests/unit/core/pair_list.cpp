@@ -49,12 +49,6 @@ std::set<PairKey> random_keys(RandomStream& random, Index elements, Index count)
   return keys;
 }
 
-std::set<PairKey> keys_of(const Pairs& pairs) {
-  std::set<PairKey> keys;
-  for (const PairKey key : pairs.key.host()) keys.insert(key);
-  return keys;
-}
-
 struct Remembered {
   double slid;
   double x, y, z;
