@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/world_space.hpp"
 #include "dem/materials.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
@@ -257,19 +258,11 @@ void set_contacts(World& w, const Config& config, const Model& m) {
 }  // namespace
 
 World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
-  const auto place = [&](auto& array) {
-    array = std::remove_reference_t<decltype(array)>(exec.space);
-  };
-  each_kept(place);
-  each_derived(place);
+  place_arrays(*this);
 }
 
 void move_to(World& w, Space space) {
-  if (w.exec.space == space) return;
-  w.each_kept([space](auto& array) { move_array(array, space); });
-  w.each_derived([space](auto& array) { array = std::remove_reference_t<decltype(array)>(space); });
-  w.graph.clear();
-  w.exec.space = space;
+  move_world(w, space);
 }
 
 void set_linked_pairs(World& w) {

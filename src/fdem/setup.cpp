@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/world_space.hpp"
 #include "exec/error.hpp"
 #include "fdem/materials.hpp"
 #include "fdem/mesh_edges.hpp"
@@ -292,19 +293,11 @@ void set_up_bodies(World& w, const Model& model) {
 }  // namespace
 
 World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
-  const auto place = [&](auto& array) {
-    array = std::remove_reference_t<decltype(array)>(exec.space);
-  };
-  each_kept(place);
-  each_derived(place);
+  place_arrays(*this);
 }
 
 void move_to(World& w, Space space) {
-  if (w.exec.space == space) return;
-  w.each_kept([space](auto& array) { move_array(array, space); });
-  w.each_derived([space](auto& array) { array = std::remove_reference_t<decltype(array)>(space); });
-  w.graph.clear();
-  w.exec.space = space;
+  move_world(w, space);
 }
 
 World make_world(const Config& config, const Model& model, const Exec& exec) {
