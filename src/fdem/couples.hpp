@@ -4,6 +4,7 @@
 #include "core/incidence.hpp"
 #include "core/pair_list.hpp"
 #include "core/step_clock.hpp"
+#include "fdem/joints.hpp"
 #include "fdem/laws/potential_contact.hpp"
 #include "fdem/triangles.hpp"
 
@@ -19,7 +20,7 @@ struct ContactPair {
 /// What a couple of triangles remembers.
 struct CoupleState {
   double drag[6];  ///< tangential force of a's edges through b, then of b's through a  [N/m]
-  double scale;    ///< of its penalty; 0: not yet met  [-]
+  double scale;    ///< of its penalty; 0: it is new  [-]
   double work;     ///< taken up since it began to touch, friction included  [J/m]
   double slid;     ///< the part of it that friction has spent  [J/m]
   double lost;     ///< what was left of both when it parted: errors of integration  [J/m]
@@ -45,6 +46,13 @@ struct CoupleHistory {
 };
 using Couples = PairList<CoupleHistory>;
 
+/// What broken joints leave to the contact of their faces.
+struct JointLegacy {
+  View<const Index> edge_a, edge_b;
+  View<const double> pressing, rubbing;  ///<  [N/m]
+  View<JointWork> handed;                ///<  [J/m]
+};
+
 /// Normal force by potential, both ways; Coulomb friction on each edge with a spring that remembers
 /// (docs/theory.md, contact of triangles).
 struct CoupleForces {
@@ -56,7 +64,8 @@ struct CoupleForces {
   View<const ContactPair> laws;  ///< of materials a and b at a * materials + b
   Index materials;
   View<const Index> a, b;
-  View<const double> born;  ///< force that a broken joint carried between them, 0: none  [N/m]
+  View<const Index> born;  ///< the joint between them where it broke in the step before, or -1
+  JointLegacy joints;
   View<CoupleState> state;
   View<CoupleForce> force;
 
@@ -68,10 +77,12 @@ struct CoupleForces {
     split(nodes[b[i]], xb, vb);
     CoupleForce sum{};
     bool touching = false;
+    const bool is_new = kept.scale == 0.0;
+    if (is_new) kept.scale = 1.0;
     if (boxes_meet(xa, xb)) {
       const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
       const Target of_a = Target::of(xa), of_b = Target::of(xb);
-      if (kept.scale == 0.0) kept.scale = first_scale(i, law, xa, of_a, xb, of_b);
+      if (is_new && born[i] >= 0) inherit(born[i], law, kept, xa, of_a, xb, of_b);
       touching = pass(law, kept, kept.drag, xa, va, of_b, vb, sum.on_a.at, sum.on_b.at);
       touching =
           pass(law, kept, kept.drag + 3, xb, vb, of_a, va, sum.on_b.at, sum.on_a.at) || touching;
@@ -114,10 +125,45 @@ struct CoupleForces {
   }
 
   /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
-  /// force: the force does not jump, and to first order neither does the energy.
-  BR_HD double first_scale(Index i, const ContactPair& law, const Vec2 (&xa)[3], const Target& of_a,
-                           const Vec2 (&xb)[3], const Target& of_b) const {
-    if (!(born[i] > 0.0)) return 1.0;
+  /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
+  /// part of the joint's work.
+  BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Vec2 (&xa)[3],
+                     const Target& of_a, const Vec2 (&xb)[3], const Target& of_b) const {
+    if (!(joints.pressing[joint] > 0.0)) return;
+    kept.scale = first_scale(joints.pressing[joint], law, xa, of_a, xb, of_b);
+    const double penalty = kept.scale * law.penalty;
+    const Polygon over = overlap_of(of_a, of_b);
+    JointWork given{penalty * (potential_integral(of_a, over) + potential_integral(of_b, over)),
+                    0.0};
+
+    const int of_joint[2] = {joints.edge_a[joint] % 3, joints.edge_b[joint] % 3};
+    double limit[2] = {}, stiffness[2] = {};
+    for (int side = 0; side < 2; ++side) {
+      const Vec2(&x)[3] = side == 0 ? xa : xb;
+      const Vec2 &from = x[of_joint[side]], &to = x[(of_joint[side] + 1) % 3];
+      EdgeOverlap o;
+      if (!overlap_of_edge(from, to, side == 0 ? of_b : of_a, o)) continue;
+      limit[side] = law.friction * penalty * o.whole * norm(to - from);
+      stiffness[side] = kept.scale * law.tangential * (o.end - o.begin);
+    }
+    // Along either edge, in its own direction, it is the same: both turn.
+    const double most = limit[0] + limit[1];
+    if (most > 0.0) {
+      const double share = larger(-1.0, smaller(1.0, joints.rubbing[joint] / most));
+      for (int side = 0; side < 2; ++side) {
+        if (!(stiffness[side] > 0.0)) continue;
+        const double drag = share * limit[side];
+        kept.drag[3 * side + of_joint[side]] = drag;
+        given.slide += 0.5 * drag * drag / stiffness[side];
+      }
+    }
+    kept.work = given.open + given.slide;
+    joints.handed[joint] = given;
+  }
+
+  /// Of the penalty, so that the couple presses as hard as this.  [N/m]
+  BR_HD static double first_scale(double force, const ContactPair& law, const Vec2 (&xa)[3],
+                                  const Target& of_a, const Vec2 (&xb)[3], const Target& of_b) {
     Vec2 on_a{};
     for (int k = 0; k < 3; ++k) {
       EdgeOverlap o;
@@ -132,7 +178,7 @@ struct CoupleForces {
       }
     }
     const double size = norm(on_a);
-    return size > 0.0 ? smaller(2.0, larger(0.01, born[i] / size)) : 1.0;
+    return size > 0.0 ? smaller(2.0, larger(0.01, force / size)) : 1.0;
   }
 
   /// The edges of one triangle through the other. True if any of them touches.

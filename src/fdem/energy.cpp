@@ -82,7 +82,7 @@ struct JointShares {
   View<const Vec2> preset;
   View<const JointStage> stage;
   View<const JointPoints> points;
-  View<const JointWork> work;
+  View<const JointWork> work, handed;
 
   BR_HD Shares operator()(Index i) const {
     Shares s;
@@ -91,7 +91,11 @@ struct JointShares {
       s.open.add(work[i].open);
       s.slide.add(work[i].slide);
     }
-    if (stage[i] == JointStage::broken) return s;
+    if (stage[i] == JointStage::broken) {
+      s.open.add(-handed[i].open);
+      s.slide.add(-handed[i].slide);
+      return s;
+    }
     const JointEnds& e = ends[i];
     const JointOpening<double> o = opening_of(nodes[e.a0].position, nodes[e.a1].position,
                                               nodes[e.b0].position, nodes[e.b1].position);
@@ -134,7 +138,7 @@ Shares all_shares(const World& w) {
   sum = sum + fold(w.exec, j.size(), Shares{},
                    JointShares{by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
                                j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
-                               j.stage.view(), j.points.view(), j.work.view()},
+                               j.stage.view(), j.points.view(), j.work.view(), j.handed.view()},
                    Sum{});
   return sum + fold(w.exec, w.couples.size(), Shares{},
                     CoupleShares{w.couples.history.state.view()}, Sum{});

@@ -44,7 +44,7 @@ struct JointForces {
   View<JointPoints> points;
   View<JointForce> force;
   View<JointWork> work;
-  View<double> broke_at, pressing;
+  View<double> broke_at, pressing, rubbing;
   View<std::uint8_t> changed;  ///< flags of Change: contacts must be searched
 
   /// Joint i, or i and its neighbours in a pack. False, with nothing written, unless all of them
@@ -122,14 +122,16 @@ struct JointForces {
     JointPoints state{};
     if (before != JointStage::whole) state = points[i];
     Vec2 traction[3];
-    double pressure = 0.0;
+    double pressure = 0.0, drag = 0.0;
     int failed = 0;
     bool damaged = false;
     for (int q = 0; q < 3; ++q) {
       const BondTraction<double> t =
           answer(bond, strength[i], h, o.open[q] + offset.x, o.slide[q] + offset.y, state.point[q]);
       traction[q] = t.shear * o.along + t.normal * o.across;
-      pressure -= (q == 1 ? 4.0 : 1.0) * t.normal;
+      const double weight = (q == 1 ? -4.0 : -1.0) * h / 6.0;
+      pressure += weight * t.normal;
+      drag += weight * t.shear;
       failed += state.point[q].damage >= 1.0 ? 1 : 0;
       damaged = damaged || state.point[q].damage > 0.0;
     }
@@ -147,7 +149,8 @@ struct JointForces {
     }
     force[i] = now;
     if (failed >= 2) {
-      pressing[i] = larger(0.0, pressure * h / 6.0);
+      pressing[i] = larger(0.0, pressure);
+      rubbing[i] = drag;
       finish(i);
     }
   }

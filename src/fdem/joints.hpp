@@ -46,6 +46,8 @@ struct Joints {
   Buffer<JointWork> work;        ///< taken up so far  [J/m]
   Buffer<double> broke_at;       ///< time of its break, -1: whole, -2: broken from the start  [s]
   Buffer<double> pressing;       ///< compressive force when it broke  [N/m]
+  Buffer<double> rubbing;        ///< force on side a along its edge when it broke  [N/m]
+  Buffer<JointWork> handed;      ///< of its work, what the contact of its faces began with  [J/m]
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -59,6 +61,8 @@ struct Joints {
     field("work", "J/m", work);
     field("broke_at", "s", broke_at);
     field("pressing", "N/m", pressing);
+    field("rubbing", "N/m", rubbing);
+    field("handed", "J/m", handed);
   }
   Index size() const { return edge_a.size(); }
 };

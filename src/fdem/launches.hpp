@@ -29,11 +29,13 @@ inline JointForces joint_kernel(World& w) {
           j.work.view(),
           j.broke_at.view(),
           j.pressing.view(),
+          j.rubbing.view(),
           w.opened.changed.view()};
 }
 
 inline CoupleForces couple_kernel(World& w) {
   Couples& c = w.couples;
+  Joints& j = w.joints;
   return {w.last_dt,
           w.parameters.conservative,
           std::as_const(w.triangles.nodes).view(),
@@ -43,6 +45,8 @@ inline CoupleForces couple_kernel(World& w) {
           c.pairs.a.view(),
           c.pairs.b.view(),
           std::as_const(w.born).view(),
+          {std::as_const(j.edge_a).view(), std::as_const(j.edge_b).view(),
+           std::as_const(j.pressing).view(), std::as_const(j.rubbing).view(), j.handed.view()},
           c.history.state.view(),
           c.history.force.view()};
 }

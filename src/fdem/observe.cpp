@@ -213,10 +213,13 @@ std::vector<Crack> cracks(const World& w) {
     if (j.stage.data()[i] != JointStage::broken) continue;
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     const JointWork& work = j.work.data()[i];
-    const double open = std::max(work.open, 0.0), slide = std::max(work.slide, 0.0);
+    const JointWork& handed = j.handed.data()[i];
+    const double open = std::max(work.open - handed.open, 0.0);
+    const double slide = std::max(work.slide - handed.slide, 0.0);
     all.push_back({i, j.broke_at.data()[i], 0.5 * (corner(e.a0) + corner(e.b0)),
                    0.5 * (corner(e.a1) + corner(e.b1)),
-                   open + slide > 0.0 ? slide / (open + slide) : 0.0, work.open + work.slide});
+                   open + slide > 0.0 ? slide / (open + slide) : 0.0,
+                   work.open + work.slide - handed.open - handed.slide});
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Crack& a, const Crack& b) { return a.time < b.time; });

@@ -229,8 +229,7 @@ void derive_couples(World& w) {
   const Joints& j = w.joints;
   for_each(w.exec, pairs.size(),
            BornOf{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(), w.edges.view(),
-                  j.edge_a.view(), j.edge_b.view(), j.broke_at.view(), j.pressing.view(),
-                  w.born.view()});
+                  j.edge_a.view(), j.edge_b.view(), j.broke_at.view(), w.born.view()});
 }
 
 }  // namespace breccia::fdem

@@ -136,24 +136,24 @@ struct SpentBy {
   }
 };
 
-/// Force that a joint carried between the triangles of a couple when it broke, if that was lately:
-/// faces that meet again later begin anew.
+/// The joint between the triangles of a couple, if it broke lately, or -1: faces that meet again
+/// later begin anew.
 struct BornOf {
   static constexpr const char* name = "fdem.born_of";
   double lately;  ///< the time from which on a break counts  [s]
   View<const Index> a, b;
   View<const EdgeJoints> edges;
   View<const Index> edge_a, edge_b;
-  View<const double> broke_at, pressing;
-  View<double> born;
+  View<const double> broke_at;
+  View<Index> born;
   BR_HD void operator()(Index i) const {
-    born[i] = 0.0;
+    born[i] = -1;
     for (int k = 0; k < 3; ++k) {
       const Index entry = edges[a[i]].at[k];
       if (entry < 0) continue;
       const Index joint = pair_of(entry);
       const Index other = (side_of(entry) == 0 ? edge_b[joint] : edge_a[joint]) / 3;
-      if (other == b[i] && broke_at[joint] >= lately) born[i] = pressing[joint];
+      if (other == b[i] && broke_at[joint] >= lately) born[i] = joint;
     }
   }
 };

@@ -176,6 +176,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   j.force.resize(count + 1);
   j.work.resize(count);
   j.pressing.resize(count);
+  j.rubbing.resize(count);
+  j.handed.resize(count);
   if (w.extrinsic) {
     w.stress.resize(w.triangles.size());
     w.overshoot.resize(count);

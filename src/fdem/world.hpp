@@ -157,7 +157,7 @@ struct World {
   Buffer<Sym2> stress;           ///< of each triangle, where joints are extrinsic  [Pa]
   Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
   Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached
-  Buffer<double> born;           ///< of each couple, see CoupleForces
+  Buffer<Index> born;            ///< of each couple, see CoupleForces
   Incidence couple_incidence;
   BroadPhase broad_phase;
 

@@ -31,7 +31,8 @@ struct Touching {
     law.data()[0] = {1.0, 0.1, friction};
     Buffer<Index> first(Space::host, 1), second(Space::host, 1);
     second.data()[0] = 1;
-    Buffer<double> born(Space::host, 1);
+    Buffer<Index> born(Space::host, 1);
+    born.data()[0] = -1;
     Buffer<CoupleState> state(Space::host, 1);
     Buffer<CoupleForce> force(Space::host, 1);
     const CoupleForces kernel{0.0,
@@ -43,6 +44,7 @@ struct Touching {
                               std::as_const(first).view(),
                               std::as_const(second).view(),
                               std::as_const(born).view(),
+                              {},
                               state.view(),
                               force.view()};
     kernel(0);

@@ -1,0 +1,236 @@
+// A joint pressed and sheared until it breaks: the contact that is born goes on with its forces.
+
+#include <gtest/gtest.h>
+
+#include "physics/fdem/scene.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+using testing::nodes;
+using testing::Scene;
+using testing::turned;
+
+/// Two triangles with one joint that are moved by hand: the lower one rests. The directions are
+/// those of the joint's edge, turned with the scene.
+struct Pair {
+  static constexpr double dt = 1e-8, edge = 1e-3;
+  double angle;  ///< of the scene  [rad]
+  World w;
+  double taken = 0.0;  ///< work that moving has put in  [J/m]
+  Vec2 last{};         ///< force on the upper triangle, of joint and contact  [N/m]
+
+  /// @param first  corner of each triangle that its list begins with
+  explicit Pair(const MaterialConfig& material, double turn = 0.0, int first = 0,
+                bool upper_first = true)
+      : angle(turn), w(make(material, turn, first, upper_first)), upper_(upper_first ? 0 : 1) {
+    w.last_dt = w.next_dt = dt;
+  }
+  void move(const Vec2& along) {
+    const Vec2 by = turned(along, angle);
+    for (NodeState& n : nodes(w, upper_).at) {
+      n.position += by;
+      n.velocity = (1.0 / dt) * by;
+    }
+    w.time += dt;
+    if (couples_are_due(w)) find_couples(w);
+    w.next_dt = dt;
+    joint_forces(w);
+    couple_forces(w);
+    const Vec2 now = force();
+    taken -= 0.5 * dot(last + now, along);
+    last = now;
+  }
+  /// On the upper triangle, along the joint and across it.  [N/m]
+  Vec2 force() const {
+    const JointForce& f = w.joints.force.data()[0];
+    Vec2 sum = f.first + f.second;
+    if (w.couples.size() > 0)
+      for (const Vec2& g : w.couples.history.force.data()[0].on_a.at) sum += g;
+    return turned(upper_ == 0 ? sum : -sum, -angle);
+  }
+  bool broken() const { return w.joints.stage.data()[0] == JointStage::broken; }
+  /// Slides by this a step until the joint breaks.
+  void break_by(double slip) {
+    for (int steps = 0; !broken() && steps < 20000; ++steps) move({slip, 0.0});
+    ASSERT_TRUE(broken());
+  }
+
+ private:
+  static World make(const MaterialConfig& material, double turn, int first, bool upper_first) {
+    Scene scene;
+    scene.config.materials.push_back(material);
+    prepare::Mesh mesh;
+    mesh.point = {{0.0, 0.0}, {edge, 0.0}, {0.5 * edge, 0.8 * edge}, {0.5 * edge, -0.8 * edge}};
+    for (Vec2& x : mesh.point) x = turned(x, turn);
+    prepare::Triangle upper{0, 1, 2}, lower{0, 3, 1};
+    std::rotate(upper.begin(), upper.begin() + first, upper.end());
+    std::rotate(lower.begin(), lower.begin() + (2 * first) % 3, lower.end());
+    mesh.triangle = {upper_first ? upper : lower, upper_first ? lower : upper};
+    scene.body("pair", mesh);
+    return scene.world();
+  }
+  int upper_;
+};
+
+MaterialConfig rock(double friction, double residual) {
+  MaterialConfig m;
+  m.name = "rock";
+  m.young = 30e9;
+  m.poisson = 0.2;
+  m.density = 2500.0;
+  m.joints = "intrinsic";
+  m.joint.tension = 3e6;
+  m.joint.cohesion = 30e6;
+  m.joint.energy_open = 5.0;
+  m.joint.energy_slide = 50.0;
+  m.joint.friction_angle = m.joint.residual_angle = std::atan(residual);
+  m.friction = friction;
+  return m;
+}
+
+/// When the faces meet again later, they meet as any others do.
+TEST(Handover, pressure_goes_on_in_the_contact) {
+  for (const double penalty : {5.0, 20.0, 50.0}) {
+    MaterialConfig m = rock(0.0, 0.0);
+    m.joint.stiffness = penalty;
+    Pair pair(m);
+    for (int i = 0; i < 20; ++i) pair.move({0.0, -1e-9});
+    const double pressed = pair.force().y;
+    EXPECT_NEAR(pressed, penalty * 30e9 * 2e-8, 1e-6 * pressed);
+    pair.break_by(5e-9);
+    EXPECT_NEAR(pair.force().y, pressed, 1e-6 * pressed);
+    for (int i = 0; i < 3; ++i) {
+      pair.move({5e-9, 0.0});
+      ASSERT_EQ(pair.w.couples.size(), 1);
+      EXPECT_EQ(norm(pair.w.joints.force.data()[0].first), 0.0);
+      EXPECT_NEAR(pair.force().y, pressed, 0.01 * pressed) << penalty;
+    }
+    EXPECT_NE(pair.w.couples.history.state.data()[0].scale, 1.0);
+    pair.move({0.0, 2e-3});
+    find_couples(pair.w);
+    EXPECT_EQ(pair.w.couples.size(), 0);
+    pair.move({0.0, -2e-3});
+    ASSERT_EQ(pair.w.couples.size(), 1);
+    EXPECT_EQ(pair.w.couples.history.state.data()[0].scale, 1.0);
+  }
+}
+
+/// A joint whose residual friction is that of its faces: nothing changes when it breaks while it
+/// slides on. The faces' own friction carries all but what lies at the two ends of the edge, a
+/// share of the overlap over the edge.
+TEST(Handover, shear_goes_on_in_the_friction_of_the_faces) {
+  constexpr double mu = 0.6, slip = 5e-9, depth = 2e-8;
+  for (const double sign : {1.0, -1.0})
+    for (const double angle : {0.0, 0.7, 2.5, -1.9})
+      for (const int first : {0, 1, 2})
+        for (const bool upper_first : {true, false}) {
+          Pair pair(rock(mu, mu), angle, first, upper_first);
+          for (int i = 0; i < 20; ++i) pair.move({0.0, -depth / 20});
+          pair.break_by(sign * slip);
+          const Vec2 before = pair.force();
+          EXPECT_NEAR(before.x, -sign * mu * before.y, 1e-3 * before.y);
+          for (int i = 0; i < 3; ++i) {
+            pair.move({sign * slip, 0.0});
+            EXPECT_EQ(norm(pair.w.joints.force.data()[0].first), 0.0);
+            EXPECT_NEAR(pair.force().x, before.x, 1e-3 * std::abs(before.x))
+                << sign << ' ' << angle << ' ' << first << ' ' << upper_first;
+          }
+        }
+}
+
+/// What slides back unloads the springs of both faces, p_t each times the part of the edge that is
+/// inside: the force changes from the joint's by no more than that.
+TEST(Handover, shear_unloads_with_the_stiffness_of_the_contact) {
+  constexpr double mu = 0.6, slip = 5e-9;
+  Pair pair(rock(mu, mu));
+  for (int i = 0; i < 20; ++i) pair.move({0.0, -1e-9});
+  pair.break_by(slip);
+  const double before = pair.force().x;
+  constexpr double back = 1e-9;
+  double gone = 0.0;
+  for (int i = 1; i <= 5; ++i) {
+    pair.move({-back, 0.0});
+    gone += back;
+    const double scale = pair.w.couples.history.state.data()[0].scale;
+    const double stiffness = 2.0 * scale * 30e9;  // p_t = E
+    EXPECT_NEAR(pair.force().x, before + stiffness * gone, 0.01 * stiffness * gone);
+  }
+}
+
+/// More than the friction of the faces bears is not handed over, nor is friction without any.
+TEST(Handover, shear_is_cut_at_the_friction_of_the_faces) {
+  for (const double mu : {0.0, 0.2}) {
+    Pair pair(rock(mu, 0.6));
+    for (int i = 0; i < 20; ++i) pair.move({0.0, -1e-9});
+    pair.break_by(5e-9);
+    const Vec2 before = pair.force();
+    EXPECT_NEAR(before.x, -0.6 * before.y, 1e-3 * before.y);
+    pair.move({5e-9, 0.0});
+    EXPECT_NEAR(pair.force().x, -mu * before.y, 1e-3 * before.y);
+  }
+}
+
+/// What the contact holds when it begins is the part of the joint's work that is not spent: it
+/// gives just that back when the faces part, and every joule that moving took is fracture or
+/// friction.
+TEST(Handover, energy_goes_on_too) {
+  constexpr double slip = 1e-9, depth = 2e-8, young = 30e9, p_f = 20.0 * young;
+  for (const double mu : {0.0, 0.6}) {
+    Pair pair(rock(0.6, mu));
+    for (int i = 0; i < 20; ++i) pair.move({0.0, -depth / 20});
+    pair.break_by(slip);
+    const double at_break = pair.taken;
+    pair.move({1e-13, 0.0});  // so little that nothing but the handover happens
+    const EnergyBalance born = energies(pair.w).balance;
+    // that of linear springs: p_f across, p_t = E at each of both edges along
+    const Vec2 force = pair.force();
+    const double scale = pair.w.couples.history.state.data()[0].scale;
+    const double held = 0.5 * force.y * depth + force.x * force.x / (4.0 * scale * young);
+    EXPECT_NEAR(born.elastic, held, 0.01 * held);
+    EXPECT_EQ(born.contact, 0.0);
+    // the trapezoidal rule by which the test sums work, on the elastic parabola of the joint
+    const double off = slip * slip * p_f / 12.0;
+    EXPECT_NEAR(born.elastic + born.fracture, at_break, 2.0 * off);
+
+    constexpr int parts = 1000;
+    for (int i = 0; i < 2 * parts; ++i) pair.move({0.0, depth / parts});
+    const EnergyBalance b = energies(pair.w).balance;
+    EXPECT_EQ(b.elastic, 0.0);
+    EXPECT_NEAR(b.fracture, born.fracture, 1e-9 * born.fracture);
+    EXPECT_NEAR(b.fracture + b.friction + b.contact, pair.taken, 2.0 * off);
+    EXPECT_LT(std::abs(b.contact), 0.01 * held);
+  }
+}
+
+/// A block sheared off under pressure, its joints as rough as their faces.
+TEST(Handover, keeps_the_ledger_and_the_bits) {
+  Scene scene;
+  scene.config.materials.push_back(rock(std::tan(testing::pi / 6.0), std::tan(testing::pi / 6.0)));
+  scene.config.materials[0].joint.tension = 20e6;
+  scene.config.materials[0].joint.cohesion = 15e6;
+  scene.config.materials[0].damping = 0.5;
+  scene.config.time.evaluate_every = 100;
+  scene.body("block", prepare::equilateral_rectangle({{0.0, 0.0}, {8e-3, 8e-3}}, 1e-3));
+  scene.support("top", {-testing::far, 4e-3 - 1e-9}, {testing::far, testing::far}, {"y"},
+                {0.0, -0.2});
+  scene.support("bottom", {-testing::far, -testing::far}, {testing::far, -4e-3 + 1e-9}, {"y"},
+                {0.0, 0.2});
+  scene.config.supports[0].history.ramp = scene.config.supports[1].history.ramp = 20e-6;
+  std::uint64_t reference = 0;
+  for (const int threads : {1, 2, 3, 7}) {
+    World w = scene.world(threads);
+    testing::run_to(w, 9e-5);
+    if (threads == 1) {
+      reference = state_hash(w);
+      double handed = 0.0;
+      for (const JointWork& h : w.joints.handed.host()) handed += h.slide;
+      EXPECT_GT(handed, 0.0);
+      EXPECT_LT(energies(w).balance.error_relative, 1e-3);
+    }
+    EXPECT_EQ(state_hash(w), reference) << threads;
+  }
+}
+
+}  // namespace
+}  // namespace breccia::fdem
