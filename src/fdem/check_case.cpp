@@ -17,7 +17,37 @@ std::string names_of(const std::vector<Config>& configs) {
   return names.empty() ? "none" : names;
 }
 
+/// Minerals of which one breaks and one does not need a joint between them: grains would lie loose.
+void look_for_loose_grains(const Config& config, const BodyConfig& body,
+                           const std::function<void(const std::string&)>& add) {
+  if (body.grains.kind.empty()) return;
+  const auto breaks = [&](const std::string& name) {
+    const auto m = std::find_if(config.materials.begin(), config.materials.end(),
+                                [&](const MaterialConfig& each) { return each.name == name; });
+    return m == config.materials.end() || m->joints != "none";
+  };
+  const auto joined = [&](const std::string& a, const std::string& b) {
+    return std::any_of(config.joint_laws.begin(), config.joint_laws.end(), [&](const auto& j) {
+      return j.between == std::vector{a, b} || j.between == std::vector{b, a};
+    });
+  };
+  std::set<std::string> names;
+  for (const MineralConfig& m : body.grains.minerals) names.insert(m.material);
+  for (const std::string& firm : names)
+    for (const std::string& weak : names)
+      if (!breaks(firm) && breaks(weak) && !joined(firm, weak))
+        add("body." + body.name + ".grains: nothing joins " + firm + " (joints = \"none\") and " +
+            weak + "; a [joint.<name>] with between = [\"" + firm + "\", \"" + weak + "\"] does");
+}
+
 }  // namespace
+
+std::string no_z(const std::string& quantity) {
+  return "\"" + quantity +
+         "\" (it is also taken if none is given) has a z, which a plane case lacks; allowed: "
+         "position_x, position_y, velocity_x, velocity_y, force_x, force_y, momentum_x, "
+         "momentum_y, speed, kinetic, damage";
+}
 
 void check_case(const Config& config) {
   std::string problems;
@@ -54,6 +84,7 @@ void check_case(const Config& config) {
                                     [&](const BodyConfig& b) { return b.name == on; }))
       add(where + ".on = \"" + on + "\" is not a body; there are: " + names_of(config.bodies));
   };
+  for (const BodyConfig& b : config.bodies) look_for_loose_grains(config, b, add);
   for (const SupportConfig& s : config.supports) {
     look_up_body("support." + s.name, s.region.on);
     history("support." + s.name, s.history);
@@ -66,8 +97,7 @@ void check_case(const Config& config) {
     history("load." + l.name, l.history);
   }
   for (const ProbeConfig& p : config.probes) {
-    if (p.quantity.ends_with("_z"))
-      add("probe." + p.name + ".quantity: a plane case has no z; allowed: x and y");
+    if (p.quantity.ends_with("_z")) add("probe." + p.name + ".quantity: " + no_z(p.quantity));
     if (!p.on.empty() && places.count(p.on) == 0)
       add("probe." + p.name + ".on = \"" + p.on + "\" is neither a body (" +
           names_of(config.bodies) + ") nor a support (" + names_of(config.supports) + ")");

@@ -8,4 +8,7 @@ namespace breccia::fdem {
 /// @throws InputError with all problems at once
 void check_case(const Config& config);
 
+/// Why a probe cannot read this, and what it can read.
+std::string no_z(const std::string& quantity);
+
 }  // namespace breccia::fdem

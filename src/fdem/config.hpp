@@ -49,15 +49,16 @@ struct MaterialConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("density", density, "kg/m3", positive, "mass per volume");
-    key("young", young, "Pa", positive, "Young's modulus");
+    key("density", density, "kg/m3", Range{1e-3, 1e6}, "mass per volume");
+    key("young", young, "Pa", Range{1.0, 1e15}, "Young's modulus");
     key("poisson", poisson, "-", Range{-1.0, 1.0, Open::both},
         "Poisson's ratio; below 0.5 in plane strain");
     key("damping", damping, "-", not_negative,
         "viscosity over 2 h sqrt(E rho): 0.5 for quasi-static runs, 0.02 for dynamic ones");
     key("joints", joints, OneOf{"intrinsic", "extrinsic", "none"},
         "intrinsic: joints from the start; extrinsic: joints appear where strength is reached; "
-        "none: it does not break");
+        "none: it does not break; two such materials that share an edge move as one there, while "
+        "to others only a [joint.<name>] between both joins it");
     key.table("joint", joint, "strength of its joints");
     key("contact_stiffness", contact_stiffness, "-", positive,
         "contact penalty p_n over Young's modulus");

@@ -61,7 +61,7 @@ BondTable bond_table(const Config& config) {
     for (std::size_t j = i; j < n; ++j) {
       const MaterialConfig &a = config.materials[i], &b = config.materials[j];
       std::int16_t law = BondTable::nothing;
-      if (i == j && a.joints == "none")
+      if (a.joints == "none" && b.joints == "none")
         law = BondTable::bonded;
       else if (a.joints != "none" && b.joints != "none")
         law = add(i == j ? own(a) : weaker(own(a), own(b)));

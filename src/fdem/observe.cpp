@@ -9,6 +9,7 @@
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
+#include "fdem/check_case.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -182,7 +183,7 @@ std::vector<Sym2> stresses(const World& w) {
 
 double probe(const World& w, const ProbeConfig& p) {
   if (p.quantity.ends_with("_z"))
-    throw InputError("probe " + p.name + ".quantity: a plane case has no z; allowed: x and y");
+    throw InputError("probe " + p.name + ".quantity: " + no_z(p.quantity));
   Buffer<Index> members(w.exec.space);
   if (!p.on.empty()) {
     const auto set = std::find_if(w.sets.begin(), w.sets.end(),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numeric>
 
@@ -9,6 +10,7 @@
 #include "exec/error.hpp"
 #include "fdem/materials.hpp"
 #include "fdem/mesh_edges.hpp"
+#include "fdem/observe.hpp"
 #include "fdem/regions.hpp"
 #include "fdem/world.hpp"
 
@@ -292,6 +294,18 @@ void set_up_bodies(World& w, const Model& model) {
   }
 }
 
+/// No machine takes more steps than this, and time, a sum of them, would stop.
+void refuse_endless(const World& w) {
+  constexpr double most = 1e15;
+  if (w.next_dt * most > w.parameters.time.end) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the stable time step is %.3g s, ruled by %s: time.end = %.3g s is more than 1e15 "
+                "steps away; see the densities, moduli and stiffnesses of the materials",
+                w.next_dt, ruling_term(w), w.parameters.time.end);
+  throw InputError(text);
+}
+
 }  // namespace
 
 World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
@@ -321,6 +335,7 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   w.opened.vertex.resize(static_cast<Index>(model.point.size()));
   find_couples(w);
   evaluate_forces(w);
+  refuse_endless(w);
   begin_ledger(w);
   return w;
 }

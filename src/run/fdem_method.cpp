@@ -75,6 +75,7 @@ class FdemMethod final : public Method {
     const auto sliding = std::count_if(cracks.begin(), cracks.end(),
                                        [](const fdem::Crack& c) { return c.mode > 0.5; });
     add("fracture.broken_joints", static_cast<double>(cracks.size()));
+    add("fracture.first_break", cracks.empty() ? -1.0 : cracks.front().time);
     add("fracture.broken_by_mode.opening",
         static_cast<double>(cracks.size()) - static_cast<double>(sliding));
     add("fracture.broken_by_mode.sliding", static_cast<double>(sliding));
@@ -91,12 +92,14 @@ class FdemMethod final : public Method {
 
   std::vector<Table> tables() override {
     Table cracks{"cracks",
-                 {"time", "x", "y", "length", "mode", "energy"},
-                 {"s", "m", "m", "m", "-", "J/m"},
+                 {"time", "x", "y", "length", "mode", "energy", "x0", "y0", "x1", "y1"},
+                 {"s", "m", "m", "m", "-", "J/m", "m", "m", "m", "m"},
                  {}};
     for (const fdem::Crack& c : fdem::cracks(world_.whole())) {
       const Vec2 middle = 0.5 * (c.begin + c.end);
-      cracks.rows.push_back({c.time, middle.x, middle.y, norm(c.end - c.begin), c.mode, c.energy});
+      const Line& line = lines_[static_cast<std::size_t>(c.joint)];
+      cracks.rows.push_back({c.time, middle.x, middle.y, norm(c.end - c.begin), c.mode, c.energy,
+                             line.begin.x, line.begin.y, line.end.x, line.end.y});
     }
     Table pieces{"fragments", {"fragment", "mass", "share"}, {"-", "kg/m", "-"}, {}};
     const fdem::Fragments all = fdem::fragments(world_.whole());
@@ -148,14 +151,29 @@ class FdemMethod final : public Method {
   void dismiss(int exit_code) override { world_.dismiss(exit_code); }
 
  private:
-  static fdem::World made(const fdem::Config& config, const fdem::Model& model, const Exec& exec) {
+  /// Where a joint lay at the start.
+  struct Line {
+    Vec2 begin, end;  ///<  [m]
+  };
+
+  fdem::World made(const fdem::Config& config, const fdem::Model& model, const Exec& exec) {
     fdem::World w = fdem::make_world(config, model, exec);
     fdem::energies(w);
     for (const ProbeConfig& p : config.probes) fdem::probe(w, p);  // refuses what cannot be read
+    std::vector<Index> edges;
+    copy_to(edges, w.joints.edge_a);
+    for (const Index edge : edges) {
+      const auto& corners = model.triangle[static_cast<std::size_t>(edge / 3)];
+      const auto point = [&](Index k) {
+        return model.point[static_cast<std::size_t>(corners[static_cast<std::size_t>(k % 3)])];
+      };
+      lines_.push_back({point(edge % 3), point(edge % 3 + 1)});
+    }
     return w;
   }
 
   std::vector<ProbeConfig> probes_;
+  std::vector<Line> lines_;  ///< of all joints
   SharedWorld<fdem::World> world_;
 };
 

@@ -206,6 +206,26 @@ TEST(Solid, pulled_plate_has_the_same_stress_everywhere) {
   }
 }
 
+/// Two materials that do not break hold together: of the same constants, they move as one of them.
+TEST(Solid, two_materials_without_joints_are_one_body) {
+  std::uint64_t hash[2];
+  for (const int materials : {1, 2}) {
+    Scene scene;
+    scene.material(60e9, 0.25);
+    if (materials == 2) scene.material(60e9, 0.25);
+    scene.body("bar", prepare::crossed_rectangle({{0.0, 0.0}, {8e-3, 2e-3}}, 1e-3));
+    for (std::size_t t = 0; t < scene.model.triangle.size(); t += 3)
+      scene.model.material[t] = static_cast<std::int16_t>(materials - 1);
+    scene.support("left", {-far, -far}, {-4e-3 + 1e-9, far}, {"x"}, {-1.0, 0.0});
+    scene.support("right", {4e-3 - 1e-9, -far}, {far, far}, {"x"}, {1.0, 0.0});
+    World w = scene.world();
+    run_to(w, 10e-6);
+    EXPECT_EQ(fragments(w).mass.size(), 1U);
+    hash[materials - 1] = state_hash(w);
+  }
+  EXPECT_EQ(hash[0], hash[1]);
+}
+
 /// A short cantilever of triangles without joints under a force at its end, brought to rest.
 double deflection(double edge) {
   Scene scene;
