@@ -84,6 +84,12 @@ void check_case(const Config& config) {
                                     [&](const BodyConfig& b) { return b.name == on; }))
       add(where + ".on = \"" + on + "\" is not a body; there are: " + names_of(config.bodies));
   };
+  const auto angles = [&](const std::string& where, const StrengthConfig& s) {
+    if (s.residual_angle > s.friction_angle)
+      add(where + ".residual_angle: must not be above friction_angle");
+  };
+  for (const MaterialConfig& m : config.materials) angles("material." + m.name + ".joint", m.joint);
+  for (const JointConfig& j : config.joint_laws) angles("joint." + j.name, j.strength);
   for (const BodyConfig& b : config.bodies) look_for_loose_grains(config, b, add);
   for (const SupportConfig& s : config.supports) {
     look_up_body("support." + s.name, s.region.on);

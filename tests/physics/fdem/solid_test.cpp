@@ -182,6 +182,54 @@ TEST(Solid, joints_take_stiffness_away_as_in_closed_form) {
   }
 }
 
+/// Near their strength joints have less than their first stiffness: (2 r - r^2) f at r = o/o_p.
+/// Each carries its share of one stress, so the stretch of the plate is a sum over the joints. At
+/// f_t the level ones, two thirds of the compliance, have half of it left, and the slanted ones
+/// nearly all.
+TEST(Solid, joints_under_tension_give_way_as_in_closed_form) {
+  constexpr double young = 60e9, tension = 3e6, cohesion = 30e6, stiffness = 10.0 * young;
+  Scene scene;
+  MaterialConfig& m = scene.material(young, 0.2);
+  m.joints = "intrinsic";
+  m.joint.stiffness = 10.0;
+  m.joint.tension = tension;
+  m.joint.cohesion = cohesion;
+  scene.config.local_damping = 0.7;
+  scene.config.time.evaluate_every = 100;
+  const double size = 12e-3, half = 0.5 * size - 1e-9, rise = 100e-6, stress = 0.9 * tension;
+  scene.body("plate", prepare::equilateral_rectangle({{0.0, 0.0}, {size, size}}, 1e-3));
+  const World before = scene.world();
+  double stretch = stress * size / young;
+  for (Index i = 0; i < before.joints.size(); ++i) {
+    const JointEnds& e = before.joint_ends.data()[i];
+    const auto at = [&](Index n) { return nodes(before, n / 3).at[n % 3].position; };
+    const Vec2 edge = at(e.a1) - at(e.a0);
+    const double h = norm(edge);
+    const auto share = [](double t, double f) { return 1.0 - std::sqrt(1.0 - t / f); };
+    const double normal = stress * edge.x * edge.x / (h * h);
+    const double shear = stress * std::abs(edge.x * edge.y) / (h * h);
+    const double open = share(normal, tension) * 2.0 * h * tension / stiffness;
+    const double slide = share(shear, cohesion) * 2.0 * h * cohesion / stiffness;
+    stretch += h / size * (open * edge.x * edge.x + slide * std::abs(edge.x * edge.y)) / (h * h);
+  }
+  for (const double side : {1.0, -1.0}) {
+    SupportConfig& s =
+        scene.support(side > 0.0 ? "top" : "bottom", {-far, side > 0.0 ? half : -far},
+                      {far, side > 0.0 ? far : -half}, {"y"}, {0.0, side * 0.5 * stretch / rise});
+    s.history.times = {0.0, rise, rise * 1.000001};
+    s.history.factors = {1.0, 1.0, 0.0};
+  }
+  World w = scene.world();
+  run_to(w, 2.0 * rise);
+  const double found =
+      0.5 / size *
+      (testing::value(w, "bottom", "force_y", "sum") - testing::value(w, "top", "force_y", "sum"));
+  std::printf("at 0.9 f_t a secant of %.4f E, stress %.4f of the closed form\n",
+              stress / (stretch / size) / young, found / stress);
+  EXPECT_NEAR(found, stress, 0.01 * stress);
+  for (const JointStage stage : w.joints.stage.host()) EXPECT_EQ(stage, JointStage::whole);
+}
+
 /// Constant stress through a jointed patch: each triangle and each joint carries it.
 TEST(Solid, pulled_plate_has_the_same_stress_everywhere) {
   Scene scene;

@@ -235,6 +235,13 @@ TEST_F(Program, NamesWhatAProbeInThePlaneCanRead) {
       << output();
 }
 
+TEST_F(Program, RefusesMoreFrictionInABrokenJointThanInAWholeOne) {
+  replace_file(path("plate.toml"), torn_plate);
+  EXPECT_EQ(run("check " + path("plate.toml") + " --set material.rock.joint.residual_angle=0.8"),
+            2);
+  EXPECT_NE(output().find("residual_angle: must not be above friction_angle"), std::string::npos);
+}
+
 TEST_F(Program, RefusesGrainsThatNothingJoins) {
   std::string grains = torn_plate;
   grains.insert(grains.find("[[support]]"), R"(
