@@ -24,12 +24,13 @@ struct UsedMargin {
   View<const ElementState> state;
   View<const Vec3> reference;
   View<const double> margin;
+  template <class R>
+  BR_HD static auto beyond(const Vec3Of<R>& position, const Vec3Of<R>& from, const R& allowed) {
+    const Vec3Of<R> moved = position - from;
+    return opposite(dot(moved, moved) <= allowed * allowed);  // NaN counts as beyond
+  }
   BR_HD double operator()(Index e) const {
     return beyond(state[e].position, reference[e], margin[e]) ? 1.0 : 0.0;
-  }
-  BR_HD static bool beyond(const Vec3& position, const Vec3& from, double allowed) {
-    const Vec3 moved = position - from;
-    return !(dot(moved, moved) <= allowed * allowed);  // NaN counts as beyond
   }
 };
 
@@ -147,59 +148,100 @@ struct Kick {
   View<const std::uint8_t> fixed;
   View<const std::int16_t> motion;
 
-  struct Result {
-    Vec3 velocity, spin;               ///< half a step later
-    Vec3 damped_force, damped_torque;  ///< what damping took off
+  template <class R>
+  struct ResultOf {
+    Vec3Of<R> velocity, spin;               ///< half a step later
+    Vec3Of<R> damped_force, damped_torque;  ///< what damping took off
   };
+  using Result = ResultOf<double>;
 
   BR_HD void set(const Moment& now) {
     time = now.time;
     last_dt = now.last_dt;
     next_dt = now.next_dt;
   }
-  BR_HD static double opposed(double force, double velocity) {
-    return velocity > 0.0 ? absolute(force) : velocity < 0.0 ? -absolute(force) : 0.0;
+  template <class R>
+  BR_HD static R opposed(const R& force, const R& velocity) {
+    const R size = absolute(force);
+    return choose(velocity > 0.0, size, choose(velocity < 0.0, -size, constant<R>(0.0)));
   }
   /// Share of a force that opposes the motion it is about to drive.
-  BR_HD Vec3 local_damping(const Vec3& f, const Vec3& v, double over_inertia) const {
-    const double half = 0.5 * next_dt * over_inertia;
-    return {damping * opposed(f.x, v.x + half * f.x), damping * opposed(f.y, v.y + half * f.y),
-            damping * opposed(f.z, v.z + half * f.z)};
+  template <class R>
+  BR_HD Vec3Of<R> local_damping(const Vec3Of<R>& f, const Vec3Of<R>& v,
+                                const R& over_inertia) const {
+    const R half = 0.5 * next_dt * over_inertia;
+    return {damping * opposed<R>(f.x, v.x + half * f.x),
+            damping * opposed<R>(f.y, v.y + half * f.y),
+            damping * opposed<R>(f.z, v.z + half * f.z)};
   }
 
-  /// What acts on an element, and what it is.
-  struct Given {
-    Vec3 force, torque;
-    double mass, inertia;
-    int fixed;
+  /// What acts on an element or on each of a pack, and what it is.
+  template <class R>
+  struct GivenOf {
+    Vec3Of<R> force, torque;
+    R mass, inertia;
+    int fixed;  ///< of any of them, bits of Fixed
   };
-  BR_HD Given given(Index e) const { return {force[e], torque[e], mass[e], inertia[e], fixed[e]}; }
+  using Given = GivenOf<double>;
+  template <class R>
+  BR_HD GivenOf<R> given(Index e) const {
+    int any_fixed = 0;
+    for (Index k = 0; k < width_of<R>; ++k) any_fixed |= fixed[e + k];
+    return {load_vectors<R>(force, e), load_vectors<R>(torque, e), load<R>(mass, e),
+            load<R>(inertia, e), any_fixed};
+  }
+  template <class R>
+  BR_HD Vec3Of<R> weight(const R& of_mass) const {
+    return {of_mass * gravity.x, of_mass * gravity.y, of_mass * gravity.z};
+  }
 
-  BR_HD Result operator()(Index e) const { return (*this)(e, read_record(state, e), given(e)); }
-  BR_HD Result operator()(Index e, const ElementState& now, const Given& of) const {
-    Result r{};
-    const Vec3 velocity = now.velocity, spin = now.spin;
+  BR_HD Result operator()(Index e) const {
+    return (*this)(e, read_record(state, e), given<double>(e));
+  }
+  template <class R>
+  BR_HD ResultOf<R> operator()(Index e, const ElementStateOf<R>& now, const GivenOf<R>& of) const {
+    ResultOf<R> r{};
     const double span = 0.5 * (last_dt + next_dt);
-    Vec3 f = of.force + of.mass * gravity, t = of.torque;
+    Vec3Of<R> f = of.force + weight(of.mass), t = of.torque;
     if (damping > 0.0) {
-      r.damped_force = local_damping(f, velocity, 1.0 / of.mass);
-      r.damped_torque = local_damping(t, spin, 1.0 / of.inertia);
+      r.damped_force = local_damping<R>(f, now.velocity, 1.0 / of.mass);
+      r.damped_torque = local_damping<R>(t, now.spin, 1.0 / of.inertia);
       f -= r.damped_force;
       t -= r.damped_torque;
     }
-    r.velocity = velocity + (span / of.mass) * f;
-    r.spin = spin + (span / of.inertia) * t;
-    const int held = of.fixed;
-    if (held != 0) {
-      const Vec3 given = motion[e] >= 0 ? motions[motion[e]].at(time + 0.5 * next_dt) : Vec3{};
-      if ((held & fixed_x) != 0) r.velocity.x = given.x;
-      if ((held & fixed_y) != 0) r.velocity.y = given.y;
-      if ((held & fixed_z) != 0) r.velocity.z = given.z;
-      if ((held & fixed_spin_x) != 0) r.spin.x = 0.0;
-      if ((held & fixed_spin_y) != 0) r.spin.y = 0.0;
-      if ((held & fixed_spin_z) != 0) r.spin.z = 0.0;
-    }
+    r.velocity = now.velocity + (span / of.mass) * f;
+    r.spin = now.spin + (span / of.inertia) * t;
+    if (of.fixed != 0) hold(e, r);
     return r;
+  }
+
+  /// Where bit `which` of Fixed is set, of element e and its neighbours in a pack.
+  template <class R>
+  BR_HD auto holds(Index e, int which) const {
+    double set[width_of<R>];
+    for (Index k = 0; k < width_of<R>; ++k) set[k] = (fixed[e + k] & which) != 0 ? 1.0 : 0.0;
+    return pack_of<R>(set) > 0.5;
+  }
+
+ private:
+  /// Prescribed degrees of freedom move as they must.
+  template <class R>
+  BR_HD void hold(Index e, ResultOf<R>& r) const {
+    double x[width_of<R>], y[width_of<R>], z[width_of<R>];
+    for (Index k = 0; k < width_of<R>; ++k) {
+      const Index way = motion[e + k];
+      const Vec3 v = way >= 0 ? motions[way].at(time + 0.5 * next_dt) : Vec3{};
+      x[k] = v.x;
+      y[k] = v.y;
+      z[k] = v.z;
+    }
+    const R still = constant<R>(0.0);
+    r.velocity.x = choose(holds<R>(e, fixed_x), pack_of<R>(x), r.velocity.x);
+    r.velocity.y = choose(holds<R>(e, fixed_y), pack_of<R>(y), r.velocity.y);
+    r.velocity.z = choose(holds<R>(e, fixed_z), pack_of<R>(z), r.velocity.z);
+    r.spin.x = choose(holds<R>(e, fixed_spin_x), still, r.spin.x);
+    r.spin.y = choose(holds<R>(e, fixed_spin_y), still, r.spin.y);
+    r.spin.z = choose(holds<R>(e, fixed_spin_z), still, r.spin.z);
   }
 };
 
@@ -213,43 +255,70 @@ struct MoveElements {
   View<double> damping_work, load_work;
 
   BR_HD void set(const Moment& now) { kick.set(now); }
-  BR_WHOLE BR_HD void operator()(Index e) const { moved(e); }
-  /// @returns where it is then
-  BR_HD Vec3 moved(Index e) const {
-    return moved(e, read_record(kick.state, e), read_record(View<const Quaternion>(orientation), e),
-                 kick.given(e));
+  BR_WHOLE BR_HD void operator()(Index e) const { at<double>(e); }
+  /// Moves element e and its neighbours in a pack. @returns where they are then
+  template <class R>
+  BR_HD Vec3Of<R> at(Index e) const {
+    R s[10], q[4];
+    gather_records(kick.state, consecutive<R>(e), s);
+    gather_records(View<const Quaternion>(orientation), consecutive<R>(e), q);
+    const ElementStateOf<R> now{{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, {s[6], s[7], s[8]}, s[9]};
+    return moved<R>(e, now, {q[0], q[1], q[2], q[3]}, kick.given<R>(e));
   }
-  BR_HD Vec3 moved(Index e, ElementState moved, const Quaternion& before_turn,
-                   const Kick::Given& of) const {
-    const Kick::Result r = kick(e, moved, of);
-    const Vec3 before = kick.last_dt * moved.velocity, after = kick.next_dt * r.velocity;
+  template <class R>
+  BR_HD Vec3Of<R> moved(Index e, const ElementStateOf<R>& now, const QuaternionOf<R>& turn,
+                        const Kick::GivenOf<R>& of) const {
+    const Kick::ResultOf<R> r = kick(e, now, of);
+    const R last = constant<R>(kick.last_dt), next = constant<R>(kick.next_dt);
+    const Vec3Of<R> before = last * now.velocity, after = next * r.velocity;
+    const Vec3Of<R> turned_by = next * r.spin;
     if (kick.damping > 0.0)
-      damping_work[e] +=
-          0.5 * dot(r.damped_force, before + after) +
-          0.5 * dot(r.damped_torque, kick.last_dt * moved.spin + kick.next_dt * r.spin);
-    if (of.fixed != 0) load_work[e] += reaction_work(e, r, before + after);
-    moved.velocity = r.velocity;
-    moved.spin = r.spin;
-    moved.position += after;
-    write_record(state, e, moved);
-    write_record(orientation, e, turned(before_turn, kick.next_dt * r.spin));
-    return moved.position;
+      store(damping_work, e,
+            load<R>(damping_work, e) + (0.5 * dot(r.damped_force, before + after) +
+                                        0.5 * dot(r.damped_torque, last * now.spin + turned_by)));
+    if (of.fixed != 0) add_reaction(e, now.velocity, r, before + after, of);
+    const Vec3Of<R> position = now.position + after;
+    const R s[10] = {position.x,   position.y, position.z, r.velocity.x, r.velocity.y,
+                     r.velocity.z, r.spin.x,   r.spin.y,   r.spin.z,     now.radius};
+    store_records(state, e, s);
+    const QuaternionOf<R> q = turned(turn, turned_by);
+    const R numbers[4] = {q.w, q.x, q.y, q.z};
+    store_records(orientation, e, numbers);
+    return position;
   }
 
  private:
-  /// Work of the force that holds an element to its prescribed motion.
-  BR_HD double reaction_work(Index e, const Kick::Result& r, const Vec3& twice_moved) const {
+  /// Books the work of the force that holds an element to its prescribed motion.
+  template <class R>
+  BR_HD void add_reaction(Index e, const Vec3Of<R>& before, const Kick::ResultOf<R>& r,
+                          const Vec3Of<R>& twice_moved, const Kick::GivenOf<R>& of) const {
     const double span = 0.5 * (kick.last_dt + kick.next_dt);
-    if (!(span > 0.0)) return 0.0;
-    const Vec3 gained = (kick.mass[e] / span) * (r.velocity - state[e].velocity);
-    const Vec3 given = kick.force[e] + kick.mass[e] * kick.gravity - r.damped_force;
-    const Vec3 held = gained - given;  // zero in free directions, up to rounding
-    double work = 0.0;
-    if ((kick.fixed[e] & fixed_x) != 0) work += 0.5 * held.x * twice_moved.x;
-    if ((kick.fixed[e] & fixed_y) != 0) work += 0.5 * held.y * twice_moved.y;
-    if ((kick.fixed[e] & fixed_z) != 0) work += 0.5 * held.z * twice_moved.z;
-    return work;
+    if (!(span > 0.0)) return;
+    const Vec3Of<R> gained = (of.mass / span) * (r.velocity - before);
+    const Vec3Of<R> given = of.force + kick.weight(of.mass) - r.damped_force;
+    const Vec3Of<R> held = gained - given;  // zero in free directions, up to rounding
+    const R none = constant<R>(0.0);
+    R work = none;
+    work = choose(kick.holds<R>(e, fixed_x), work + 0.5 * held.x * twice_moved.x, work);
+    work = choose(kick.holds<R>(e, fixed_y), work + 0.5 * held.y * twice_moved.y, work);
+    work = choose(kick.holds<R>(e, fixed_z), work + 0.5 * held.z * twice_moved.z, work);
+    store(load_work, e, load<R>(load_work, e) + work);
   }
+};
+
+/// MoveElements, and the question whether the margins still hold.
+struct MoveWithin {
+  MoveElements move;
+  UsedMargin used;
+
+  /// @returns whether element e or one of its neighbours in a pack has used its margin up
+  template <class R>
+  BR_HD bool at(Index e) const {
+    const Vec3Of<R> position = move.at<R>(e);
+    return any(UsedMargin::beyond<R>(position, load_vectors<R>(used.reference, e),
+                                     load<R>(used.margin, e)));
+  }
+  BR_WHOLE BR_HD bool operator()(Index e) const { return at<double>(e); }
 };
 
 }  // namespace breccia::dem

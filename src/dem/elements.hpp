@@ -27,12 +27,14 @@ enum Fixed : std::uint8_t {
 
 /// What pairs read of an element, side by side in memory: they meet elements at random. The
 /// position is at the time of the step, velocity and spin are half a step earlier (leapfrog).
-struct ElementState {
-  Vec3 position;  ///< centre, world frame  [m]
-  Vec3 velocity;  ///< of the centre  [m/s]
-  Vec3 spin;      ///< angular velocity  [rad/s]
-  double radius;  ///<  [m]
+template <class R>
+struct ElementStateOf {
+  Vec3Of<R> position;  ///< centre, world frame  [m]
+  Vec3Of<R> velocity;  ///< of the centre  [m/s]
+  Vec3Of<R> spin;      ///< angular velocity  [rad/s]
+  R radius;            ///<  [m]
 };
+using ElementState = ElementStateOf<double>;
 
 /// Rigid spheres with six degrees of freedom. Bars are spheres too, with the mass of their piece of
 /// bar.

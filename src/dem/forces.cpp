@@ -23,6 +23,54 @@ struct MoveOwn {
   }
 };
 
+/// MoveElements on a device. The test of the margins follows.
+void move_there(const World& w, const MoveElements& move) {
+  if (w.domain.alone())
+    for_each(w.exec, w.elements.size(), move);
+  else
+    for_each(w.exec, w.elements.size(), MoveOwn{move, w.domain.owned_view()});
+}
+
+/// Calls visit(begin, end) for what this rank owns of the elements [begin, end).
+template <class Visit>
+void each_owned(const Domain& domain, Index begin, Index end, const Visit& visit) {
+  if (domain.alone()) return visit(begin, end);
+  const OwnedView owned = domain.owned_view();
+  domain.each_own_run(begin, end, [&](Index from, Index to) {
+    while (from < to) {
+      Index last = from;
+      while (last < to && owned(last)) ++last;
+      if (last > from) visit(from, last);
+      from = last + 1;
+    }
+  });
+}
+
+/// Moves all elements of this rank. @returns whether one of them has used its margin up
+bool move_here(const World& w, const MoveWithin& move) {
+  constexpr Index grain = 512;
+  const Index count = w.elements.size();
+  std::vector<std::uint8_t> beyond(static_cast<std::size_t>((count + grain - 1) / grain), 0);
+  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
+    each_owned(w.domain, begin, end, [&](Index from, Index to) {
+      if (run_packs(w.lanes, move, from, to)) beyond[static_cast<std::size_t>(begin / grain)] = 1;
+    });
+  });
+  return std::find(beyond.begin(), beyond.end(), 1) != beyond.end();
+}
+
+/// A kernel for all links of a group.
+template <class Law, class Kernel>
+void run_group(const World& w, const LinkGroup<Law>& group, const Kernel& kernel) {
+  const Index count = group.end - group.begin;
+  if (w.exec.space == Space::cuda)
+    return for_each(w.exec, count, Shifted<Kernel>{kernel, group.begin});
+  constexpr Index grain = 512;
+  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
+    run_packs(w.lanes, kernel, group.begin + begin, group.begin + end);
+  });
+}
+
 struct LeastCritical {
   View<const double> critical;
   OwnedView owned;
@@ -97,7 +145,7 @@ void add_links(Lanes lanes, ConcreteLinkForces links, Index begin, Index end, co
     const Index to = std::min(from / portion * portion + portion, end);  // whole packs, aligned
     links.first_action = -from;
     fetch(links, to, std::min(to + portion, end));
-    run_links(lanes, links, from, to);
+    run_packs(lanes, links, from, to);
     add(links, from, to, actions);
     from = to;
   }
@@ -139,11 +187,12 @@ View<const Wall> walls_view(const World& w) {
 
 void move_elements(World& w) {
   const StageTime timed(w.exec, "integration");
-  const MoveElements move = move_kernel(w);
-  if (w.domain.alone())
-    for_each(w.exec, w.elements.size(), move);
+  if (w.exec.space == Space::cuda)
+    move_there(w, move_kernel(w));
   else
-    for_each(w.exec, w.elements.size(), MoveOwn{move, w.domain.owned_view()});
+    w.margin_used = move_here(
+        w, {move_kernel(w),
+            {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()}});
   for (Wall& wall : w.walls) {
     wall.point += w.next_dt * wall.velocity;
     wall.travelled += w.next_dt * norm(wall.velocity);
@@ -154,12 +203,8 @@ void move_elements(World& w) {
 
 void bar_forces(World& w) {
   const StageTime timed(w.exec, "bar_forces");
-  for (const auto& group : w.steel_groups)
-    for_each(w.exec, group.end - group.begin,
-             Shifted<SteelLinkForces>{steel_kernel(w, group), group.begin});
-  for (const auto& group : w.interface_groups)
-    for_each(w.exec, group.end - group.begin,
-             Shifted<InterfaceLinkForces>{interface_kernel(w, group), group.begin});
+  for (const auto& group : w.steel_groups) run_group(w, group, steel_kernel(w, group));
+  for (const auto& group : w.interface_groups) run_group(w, group, interface_kernel(w, group));
 }
 
 void contact_forces(World& w) {

@@ -79,6 +79,32 @@ struct ConcreteLinkForces {
   BR_WHOLE BR_HD void operator()(Index i) const { at<double>(i); }
 };
 
+/// Numbers of links first, first + 1, ... as their state.
+template <class R>
+BR_HD SteelStateOf<R> load_state(const View<const SteelState>& states, Index first) {
+  R s[8];
+  gather_records(states, consecutive<R>(first), s);
+  return {s[0], s[1], {s[2], s[3], s[4]}, {s[5], s[6], s[7]}};
+}
+template <class R>
+BR_HD void store_state(const View<SteelState>& states, Index first, const SteelStateOf<R>& state) {
+  const Vec3Of<R>&f = state.shear, &m = state.moment;
+  const R s[8] = {state.plastic_strain, state.hardening, f.x, f.y, f.z, m.x, m.y, m.z};
+  store_records(states, first, s);
+}
+template <class R>
+BR_HD InterfaceStateOf<R> load_state(const View<const InterfaceState>& states, Index first) {
+  R s[6];
+  gather_records(states, consecutive<R>(first), s);
+  return {s[0], s[1], s[2], s[3], s[4], s[5]};
+}
+template <class R>
+BR_HD void store_state(const View<InterfaceState>& states, Index first,
+                       const InterfaceStateOf<R>& state) {
+  const R s[6] = {state.gap, state.opening, state.slip, state.slip_peak, state.along, state.around};
+  store_records(states, first, s);
+}
+
 /// Pieces of bar.
 struct SteelLinkForces {
   static constexpr const char* name = "dem.steel_links";
@@ -93,19 +119,32 @@ struct SteelLinkForces {
   Index first_action;  ///< action of link 0
 
   BR_HD void set(const Moment& now) { dt = now.last_dt; }
-  BR_WHOLE BR_HD void operator()(Index i) const {
-    const PairMotion<double> motion =
-        pair_motion<double>(elements.end(a[i]), elements.end(b[i]), 0.0, dt);
-    const double radius = smaller(elements.radius(a[i]), elements.radius(b[i]));
-    SteelState kept = state[i];
-    const SteelResponse r = law.answer(length[i], radius, motion, kept);
-    state[i] = kept;
-    yielded[i] += r.yielded;
-    broke[i] += r.broke;
-    const SteelLink::Stiffness k = law.stiffness(length[i], radius);
-    const bool whole = kept.hardening >= 0.0;
+  BR_WHOLE BR_HD void operator()(Index i) const { at<double>(i); }
+  /// Link i and its neighbours in a pack. @returns false, having done nothing, if they are to be
+  /// taken one by one
+  template <class R>
+  BR_HD bool at(Index i) const {
+    R radius_a, radius_b;
+    const PairEnd<R> end_a = gather_end(elements.state, load_indices<R>(a, i), radius_a);
+    const PairEnd<R> end_b = gather_end(elements.state, load_indices<R>(b, i), radius_b);
+    const PairMotion<R> motion = pair_motion<R>(end_a, end_b, constant<R>(0.0), dt);
+    const R own_length = load<R>(length, i), radius = smaller(radius_a, radius_b);
+    const SteelLink::StiffnessOf<R> k = law.stiffness(own_length, radius);
+    SteelStateOf<R> kept = load_state<R>(View<const SteelState>(state), i);
+    SteelResponseOf<R> r;
+    if constexpr (width_of<R> == 1)
+      r = law.answer(own_length, radius, motion, kept);
+    else if (!law.stays_elastic(k, own_length, radius, motion, kept, r))
+      return false;
+    store_state(state, i, kept);
+    if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
+    if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
+    const auto whole = kept.hardening >= 0.0;
+    const R none = constant<R>(0.0);
     book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment,
-         r.active * k.axial, whole ? k.shear : 0.0, whole ? k.bending : 0.0, whole ? k.twist : 0.0);
+         r.active * k.axial, choose(whole, k.shear, none), choose(whole, k.bending, none),
+         choose(whole, k.twist, none));
+    return true;
   }
 };
 
@@ -125,24 +164,41 @@ struct InterfaceLinkForces {
   BR_HD void set(const Moment& now) { dt = now.last_dt; }
   BR_WHOLE BR_HD void operator()(Index i) const { with(law, i); }
   /// By a law that stays where it is: it holds a table.
-  BR_HD void with(const InterfaceLink& bond, Index i) const {
-    const PairEnd<double> bar = elements.end(a[i]), concrete = elements.end(b[i]);
-    const Vec3 chord = elements.state[after[i]].position - elements.state[before[i]].position;
-    const Vec3 axis = (1.0 / norm(chord)) * chord;
+  BR_HD void with(const InterfaceLink& bond, Index i) const { at<double>(bond, i); }
+  /// Link i and its neighbours in a pack. @returns false, having done nothing, if they are to be
+  /// taken one by one
+  template <class R>
+  BR_HD bool at(const InterfaceLink& bond, Index i) const {
+    R radius_a, radius_b;
+    const PairEnd<R> bar = gather_end(elements.state, load_indices<R>(a, i), radius_a);
+    const PairEnd<R> concrete = gather_end(elements.state, load_indices<R>(b, i), radius_b);
+    const Vec3Of<R> chord =
+        place_of(load_indices<R>(after, i)) - place_of(load_indices<R>(before, i));
+    const Vec3Of<R> axis = (1.0 / norm(chord)) * chord;
     // The contact point divides the distance like the radii: a bar is thin beside its concrete.
-    const double touching = elements.radius(a[i]) + elements.radius(b[i]);
-    const double share = (elements.radius(a[i]) - elements.radius(b[i])) / touching;
-    const double distance = norm(concrete.position - bar.position);
-    const PairMotion<double> motion = pair_motion<double>(bar, concrete, share * distance, dt);
-    const double approach = dt * dot(concrete.velocity - bar.velocity, motion.normal);
-    InterfaceState kept = state[i];
-    const InterfaceResponse r =
-        bond.answer(stiffness[i], area[i], touching, axis, motion, approach, kept);
-    state[i] = kept;
-    slid[i] += r.slid;
-    broke[i] += r.broke;
-    const double k = r.active * stiffness[i];
-    book(actions, first_action + i, motion, r.force, Vec3{}, k, k, 0.0, 0.0);
+    const R touching = radius_a + radius_b, share = (radius_a - radius_b) / touching;
+    const R distance = norm(concrete.position - bar.position);
+    const PairMotion<R> motion = pair_motion<R>(bar, concrete, share * distance, dt);
+    const R approach = dt * dot(concrete.velocity - bar.velocity, motion.normal);
+    InterfaceStateOf<R> kept = load_state<R>(View<const InterfaceState>(state), i);
+    const R transverse = load<R>(stiffness, i);
+    InterfaceResponseOf<R> r;
+    if (!bond.respond(transverse, load<R>(area, i), touching, axis, motion, approach, kept, r))
+      return false;
+    store_state(state, i, kept);
+    if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);
+    if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
+    const R k = r.active * transverse, none = constant<R>(0.0);
+    book(actions, first_action + i, motion, r.force, Vec3Of<R>{}, k, k, none, none);
+    return true;
+  }
+
+ private:
+  template <class R>
+  BR_HD Vec3Of<R> place_of(const Indices<R>& i) const {
+    R numbers[4];
+    gather_records(elements.state, i, numbers);
+    return {numbers[0], numbers[1], numbers[2]};
   }
 };
 

@@ -306,6 +306,13 @@ struct OwnUsedMargin {
   BR_HD double operator()(Index e) const { return owned(e) ? used(e) : 0.0; }
 };
 
+/// Whether an element of this rank has used its margin up, on a device.
+bool margin_used_there(const World& w) {
+  const UsedMargin used{w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()};
+  return fold(w.exec, w.elements.size(), 0.0, OwnUsedMargin{used, w.domain.owned_view()},
+              Largest{}) > 0.0;
+}
+
 }  // namespace
 
 bool contacts_are_due(const World& w) {
@@ -314,11 +321,7 @@ bool contacts_are_due(const World& w) {
     return w.step % w.parameters.search.every == 0;
   for (const Wall& wall : w.walls)
     if (wall.travelled > w.parameters.largest_margin) return true;
-  return w.domain.any(fold(w.exec, w.elements.size(), 0.0,
-                           OwnUsedMargin{{w.elements.state.view(), w.travel.reference.view(),
-                                          w.travel.margin.view()},
-                                         w.domain.owned_view()},
-                           Largest{}) > 0.0);
+  return w.domain.any(w.exec.space == Space::cuda ? margin_used_there(w) : w.margin_used);
 }
 
 void find_contacts(World& w) {

@@ -10,7 +10,7 @@
 #include "core/travel.hpp"
 #include "dem/config.hpp"
 #include "dem/element_kernels.hpp"
-#include "dem/link_lanes.hpp"
+#include "dem/kernel_lanes.hpp"
 #include "dem/model.hpp"
 #include "domain/domain.hpp"
 #include "exec/step_graph.hpp"
@@ -157,6 +157,7 @@ struct World {
   Buffer<Action> bar_actions, contact_actions;
   Buffer<LinkSums> link_sums;  ///< of each element, zero between steps
   Buffer<double> critical;     ///< [s2]
+  bool margin_used = false;    ///< some element has used its margin up; host only
 
   // On a device.
   LinkRows rows_a, rows_b;      ///< concrete links that start, and that end, at each element

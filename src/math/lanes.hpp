@@ -43,12 +43,12 @@ BR_HD inline Indices<double> load_indices<double>(const View<const Index>& array
   return {array[first]};
 }
 
-/// Reads record i of an array of records of `count` doubles, for each index of a pack: columns[k]
-/// is number k of every record.
+/// Reads the first `count` doubles of record i of an array, for each index of a pack: columns[k] is
+/// number k of every record.
 template <int count, class Record>
 BR_HD inline void gather_records(const View<const Record>& records, Indices<double> i,
                                  double (&columns)[count]) {
-  static_assert(sizeof(Record) == count * sizeof(double));
+  static_assert(sizeof(Record) >= count * sizeof(double));
 #if defined(__CUDA_ARCH__)
   static_assert(count % 2 == 0);  // and arrays are aligned: two numbers a load
   const auto* twos = reinterpret_cast<const double2*>(&records[i.at]);
@@ -76,6 +76,14 @@ BR_HD inline void store_records(const View<Record>& records, Index first,
   auto* numbers = reinterpret_cast<double*>(&records[first]);
   for (int k = 0; k < count; ++k) numbers[k] = columns[k];
 #endif
+}
+
+/// Vectors first, first + 1, ... of an array.
+template <class R>
+BR_HD inline Vec3Of<R> load_vectors(const View<const Vec3>& vectors, Index first);
+template <>
+BR_HD inline Vec3 load_vectors<double>(const View<const Vec3>& vectors, Index first) {
+  return vectors[first];
 }
 
 /// A whole record of doubles, read and written two numbers at a time on a device.
@@ -114,10 +122,26 @@ inline Indices<Pack8> load_indices<Pack8>(const View<const Index>& array, Index 
   __builtin_memcpy(indices.at, array.data + first, sizeof indices.at);
   return indices;
 }
+template <>
+inline Vec3Of<Pack8> load_vectors<Pack8>(const View<const Vec3>& vectors, Index first) {
+  BR_ASSERT(first >= 0 && first + 8 <= vectors.size);
+  const auto* numbers = reinterpret_cast<const double*>(vectors.data + first);
+  const __m512d a = _mm512_loadu_pd(numbers), b = _mm512_loadu_pd(numbers + 8),
+                c = _mm512_loadu_pd(numbers + 16);
+  const auto every_third = [&](__m512i of_ab, __m512i with_c) {
+    return _mm512_permutex2var_pd(_mm512_permutex2var_pd(a, of_ab, b), with_c, c);
+  };
+  return {every_third(_mm512_setr_epi64(0, 3, 6, 9, 12, 15, 0, 0),
+                      _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 10, 13)),
+          every_third(_mm512_setr_epi64(1, 4, 7, 10, 13, 0, 0, 0),
+                      _mm512_setr_epi64(0, 1, 2, 3, 4, 8, 11, 14)),
+          every_third(_mm512_setr_epi64(2, 5, 8, 11, 14, 0, 0, 0),
+                      _mm512_setr_epi64(0, 1, 2, 3, 4, 9, 12, 15))};
+}
 template <int count, class Record>
 inline void gather_records(const View<const Record>& records, const Indices<Pack8>& i,
                            Pack8 (&columns)[count]) {
-  static_assert(sizeof(Record) == count * sizeof(double) && count % 2 == 0);
+  static_assert(sizeof(Record) >= count * sizeof(double) && count % 2 == 0);
   const double* row[8];
   for (int k = 0; k < 8; ++k) row[k] = reinterpret_cast<const double*>(records.data + i.at[k]);
   constexpr int eights = count / 8 * 8, fours = count / 4 * 4;
@@ -182,10 +206,18 @@ inline Indices<Pack4> load_indices<Pack4>(const View<const Index>& array, Index 
   __builtin_memcpy(indices.at, array.data + first, sizeof indices.at);
   return indices;
 }
+template <>
+inline Vec3Of<Pack4> load_vectors<Pack4>(const View<const Vec3>& vectors, Index first) {
+  const auto pack = [&](double Vec3::*component) {
+    return Pack4{vectors[first].*component, vectors[first + 1].*component,
+                 vectors[first + 2].*component, vectors[first + 3].*component};
+  };
+  return {pack(&Vec3::x), pack(&Vec3::y), pack(&Vec3::z)};
+}
 template <int count, class Record>
 inline void gather_records(const View<const Record>& records, const Indices<Pack4>& i,
                            Pack4 (&columns)[count]) {
-  static_assert(sizeof(Record) == count * sizeof(double) && count % 2 == 0);
+  static_assert(sizeof(Record) >= count * sizeof(double) && count % 2 == 0);
   const double* row[4];
   for (int k = 0; k < 4; ++k) row[k] = reinterpret_cast<const double*>(records.data + i.at[k]);
   constexpr int fours = count / 4 * 4;
@@ -221,6 +253,13 @@ inline void store_records(const View<Record>& records, Index first, const Pack4 
 
 #endif
 
+/// Numbers given one by one.
+template <class R>
+BR_HD inline R pack_of(const double (&numbers)[width_of<R>]) {
+  R pack;
+  __builtin_memcpy(&pack, numbers, sizeof pack);
+  return pack;
+}
 /// Indices given one by one.
 template <class R>
 BR_HD inline Indices<R> indices(const Index (&at)[width_of<R>]) {

@@ -3,7 +3,7 @@
 // (R = Pack<W>), with the same arithmetic per item and so the same bits.
 //
 // A pack is the compiler's own vector type; only root and the masks need the processor's names,
-// chosen by what the including file is compiled for (see dem/link_lanes.cpp).
+// chosen by what the including file is compiled for (see dem/lanes/kernel_lanes.cpp).
 
 #include <cmath>
 

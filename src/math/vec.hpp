@@ -64,10 +64,14 @@ BR_HD Vec3Of<R> choose(const M& condition, const Vec3Of<R>& yes, const Vec3Of<R>
 }
 
 /// A unit quaternion w + xi + yj + zk: the orientation of an element.
-struct Quaternion {
-  double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
+template <class R>
+struct QuaternionOf {
+  R w = constant<R>(1.0), x{}, y{}, z{};
 };
-BR_HD inline Quaternion operator*(const Quaternion& a, const Quaternion& b) {
+using Quaternion = QuaternionOf<double>;
+
+template <class R>
+BR_HD QuaternionOf<R> operator*(const QuaternionOf<R>& a, const QuaternionOf<R>& b) {
   return {
       a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
       a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
@@ -76,9 +80,11 @@ BR_HD inline Quaternion operator*(const Quaternion& a, const Quaternion& b) {
 /// The orientation after turning by the rotation vector `angle` (small): Cayley's rational form of
 /// the rotation, which needs no sine; the turned angle is 2 atan(|angle| / 2). One Newton step of 1
 /// / |q| keeps it a unit quaternion.
-BR_HD inline Quaternion turned(const Quaternion& q, const Vec3& angle) {
-  const Quaternion t = Quaternion{1.0, 0.5 * angle.x, 0.5 * angle.y, 0.5 * angle.z} * q;
-  const double scale = 1.5 - 0.5 * (t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z);
+template <class R>
+BR_HD QuaternionOf<R> turned(const QuaternionOf<R>& q, const Vec3Of<R>& angle) {
+  const QuaternionOf<R> t =
+      QuaternionOf<R>{constant<R>(1.0), 0.5 * angle.x, 0.5 * angle.y, 0.5 * angle.z} * q;
+  const R scale = 1.5 - 0.5 * (t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z);
   return {scale * t.w, scale * t.x, scale * t.y, scale * t.z};
 }
 

@@ -15,33 +15,53 @@ struct BondSlip {
   double rise[intervals + 1];  ///< tau / tau_max at sqrt(s / s_1) = k / intervals  [-]
 
   /// tau at a slip s >= 0.  [Pa]
-  BR_HD double stress(double slip) const {
-    if (slip >= slip3) return residual;
-    if (slip > slip2) return strength - (strength - residual) * (slip - slip2) / (slip3 - slip2);
-    if (slip >= slip1) return strength;
-    const double place = intervals * root(slip / slip1);
-    const int k = static_cast<int>(place) < intervals ? static_cast<int>(place) : intervals - 1;
-    return strength * (rise[k] + (place - k) * (rise[k + 1] - rise[k]));
+  template <class R>
+  BR_HD R stress(const R& slip) const {
+    R tau = constant<R>(strength);
+    const auto rising = slip < slip1;
+    if (any(rising)) {
+      const R place = static_cast<double>(intervals) * root(slip / slip1);
+      double at[width_of<R>], from[width_of<R>], to[width_of<R>];
+      __builtin_memcpy(at, &place, sizeof place);
+      for (Index k = 0; k < width_of<R>; ++k) {
+        const int below = at[k] < intervals ? static_cast<int>(at[k]) : intervals - 1;
+        at[k] = below;
+        from[k] = rise[below];
+        to[k] = rise[below + 1];
+      }
+      const R low = pack_of<R>(from), high = pack_of<R>(to);
+      tau = choose(rising, strength * (low + (place - pack_of<R>(at)) * (high - low)), tau);
+    }
+    const auto falling = slip > slip2, fallen = slip >= slip3;
+    if (any(either(falling, fallen))) {
+      const R fall = strength - (strength - residual) * (slip - slip2) / (slip3 - slip2);
+      tau = choose(fallen, constant<R>(residual), choose(falling, fall, tau));
+    }
+    return tau;
   }
 };
 
 /// What an interface link keeps from step to step; all along directions that move with the bar.
-struct InterfaceState {
-  double gap;        ///< radial displacement since the start, opening positive  [m]
-  double opening;    ///< largest gap so far, >= 0; link_broken or link_released afterwards  [m]
-  double slip;       ///< s, along the bar  [m]
-  double slip_peak;  ///< largest |s| so far  [m]
-  double along;      ///< bond force on the concrete along the bar  [N]
-  double around;     ///< force on the concrete around the bar  [N]
+template <class R>
+struct InterfaceStateOf {
+  R gap;        ///< radial displacement since the start, opening positive  [m]
+  R opening;    ///< largest gap so far, >= 0; link_broken or link_released afterwards  [m]
+  R slip;       ///< s, along the bar  [m]
+  R slip_peak;  ///< largest |s| so far  [m]
+  R along;      ///< bond force on the concrete along the bar  [N]
+  R around;     ///< force on the concrete around the bar  [N]
 };
+using InterfaceState = InterfaceStateOf<double>;
 
 /// What an interface link answers in one step.
-struct InterfaceResponse {
-  Vec3 force;     ///< on b, the concrete  [N]
-  double active;  ///< 1 where it resists, 0 where not  [-]
-  double slid;    ///< energy spent on bond slip and friction in this step  [J]
-  double broke;   ///< energy that a rupture spent in this step  [J]
+template <class R>
+struct InterfaceResponseOf {
+  Vec3Of<R> force;  ///< on b, the concrete  [N]
+  R active;         ///< 1 where it resists, 0 where not  [-]
+  R slid;           ///< energy spent on bond slip and friction in this step  [J]
+  R broke;          ///< energy that a rupture spent in this step  [J]
 };
+using InterfaceResponse = InterfaceResponseOf<double>;
 
 /// Steel-concrete interface (docs/theory.md, interface): a is the bar's element, b the concrete.
 ///
@@ -55,6 +75,7 @@ struct InterfaceLink {
   double softening;         ///< zeta  [-]
   double friction;          ///< tan phi_sc after rupture  [-]
 
+  /// One link, or a pack of them (R) of which none breaks or parts in this step or has parted.
   /// @param transverse  K_tr = E_c S / D_B  [N/m]
   /// @param area        S, share of the bar's surface  [m2]
   /// @param touching    R_a + R_b  [m]
@@ -62,56 +83,76 @@ struct InterfaceLink {
   /// @param motion      of the pair; slip and normal parts together make the motion at the contact
   /// point
   /// @param approach    relative displacement of b along n in this step  [m]
-  BR_HD InterfaceResponse answer(double transverse, double area, double touching, const Vec3& axis,
-                                 const PairMotion<double>& motion, double approach,
-                                 InterfaceState& state) const {
-    InterfaceResponse r{};
-    if (state.opening < 0.5 * (link_broken + link_released)) return r;
-    const Vec3 radial = motion.normal - dot(motion.normal, axis) * axis;
-    const double sine = norm(radial);
-    const bool has_side = sine > 1e-3;  // b lies beside the bar, not on its axis
-    const Vec3 out = has_side ? (1.0 / sine) * radial : Vec3{};
-    const Vec3 round = cross(axis, out);
-    const Vec3 moved = motion.slip + approach * motion.normal;
+  /// @returns whether that holds; if not, the links are to be taken one by one
+  template <class R>
+  BR_HD bool respond(const R& transverse, const R& area, const R& touching, const Vec3Of<R>& axis,
+                     const PairMotion<R>& motion, const R& approach, InterfaceStateOf<R>& state,
+                     InterfaceResponseOf<R>& r) const {
+    constexpr bool alone = width_of<R> == 1;
+    const R zero = constant<R>(0.0);
+    r = InterfaceResponseOf<R>{};
+    if (any(state.opening < 0.5 * (link_broken + link_released))) return alone;
+    const Vec3Of<R> radial = motion.normal - dot(motion.normal, axis) * axis;
+    const R sine = norm(radial);
+    const auto has_side = sine > 1e-3;  // b lies beside the bar, not on its axis
+    const Vec3Of<R> out = choose(has_side, (1.0 / sine) * radial, Vec3Of<R>{});
+    const Vec3Of<R> round = cross(axis, out);
+    const Vec3Of<R> moved = motion.slip + approach * motion.normal;
 
     // Radial.
-    const TensionSoftening<double> tension{transverse, tensile_strength * area, softening};
+    const TensionSoftening<R> tension{transverse, tensile_strength * area, softening};
     state.gap += dot(moved, out);
-    const double u = state.gap;
-    bool intact = state.opening >= 0.0;
-    double radial_force = transverse * u;  // tension positive
-    if (intact) {
-      state.opening = larger(state.opening, u);
-      if (transverse * state.opening >= tension.strength) {  // at the onset or beyond
-        if (state.opening >= tension.rupture()) {
+    const R u = state.gap;
+    auto intact = state.opening >= 0.0;
+    R radial_force = transverse * u;  // tension positive
+    state.opening = choose(intact, larger(state.opening, u), state.opening);
+    const auto strained = both(intact, transverse * state.opening >= tension.strength);
+    if (any(strained)) {  // at the onset or beyond
+      const auto torn = both(strained, state.opening >= tension.rupture());
+      if (any(torn)) {
+        if constexpr (alone) {
           intact = false;
-          r.broke += tension.toughness();
+          r.broke = tension.toughness();
           state.opening = link_broken;
-        } else if (u > 0.0) {
-          radial_force *= 1.0 - tension.damage(state.opening);
+        } else {
+          return false;
         }
       }
+      const R softened = radial_force * (1.0 - tension.damage(state.opening));
+      radial_force = choose(both(both(strained, intact), u > 0.0), softened, radial_force);
     }
-    if (!intact && u > 0.0) radial_force = 0.0;
-    if (!intact && u > 0.0 && motion.distance > 2.25 * touching) {
-      r.slid = stored(transverse, area, state);
-      state = {0.0, link_released, 0.0, 0.0, 0.0, 0.0};
-      return r;
+    const auto apart = both(opposite(intact), u > 0.0);
+    radial_force = choose(apart, zero, radial_force);
+    if (any(both(apart, motion.distance > 2.25 * touching))) {
+      if constexpr (alone) {
+        r.slid = stored(transverse, area, state);
+        state = {0.0, link_released, 0.0, 0.0, 0.0, 0.0};
+      }
+      return alone;
     }
 
     // Along and around the bar.
-    const double slip_stiffness = slip_ratio * transverse;
-    const double step = dot(moved, axis);
+    const R slip_stiffness = slip_ratio * transverse;
+    const R step = dot(moved, axis);
     state.slip += step;
     state.slip_peak = larger(state.slip_peak, absolute(state.slip));
-    const double grip = larger(0.0, -friction * radial_force);
-    const double bond_limit = intact ? area * bond.stress(state.slip_peak) : grip;
-    r.slid += advance(state.along, slip_stiffness, step, bond_limit);
-    const double around_limit = intact ? 1e300 : grip;
-    r.slid += advance(state.around, transverse, has_side ? dot(moved, round) : 0.0, around_limit);
+    const R grip = larger(zero, -friction * radial_force);
+    R bond_limit = grip;
+    if (any(intact)) bond_limit = choose(intact, area * bond.stress(state.slip_peak), grip);
+    r.slid = advance(state.along, slip_stiffness, step, bond_limit);
+    const R around_limit = choose(intact, constant<R>(1e300), grip);
+    r.slid +=
+        advance(state.around, transverse, choose(has_side, dot(moved, round), zero), around_limit);
 
     r.force = state.along * axis + state.around * round - radial_force * out;
-    r.active = intact || u < 0.0 ? 1.0 : 0.0;
+    r.active = choose(either(intact, u < 0.0), constant<R>(1.0), zero);
+    return true;
+  }
+  BR_HD InterfaceResponse answer(double transverse, double area, double touching, const Vec3& axis,
+                                 const PairMotion<double>& motion, double approach,
+                                 InterfaceState& state) const {
+    InterfaceResponse r;
+    respond(transverse, area, touching, axis, motion, approach, state, r);
     return r;
   }
 
@@ -135,12 +176,15 @@ struct InterfaceLink {
 
  private:
   /// Elastic step of a force on b, cut at its limit; returns the energy spent.
-  BR_HD static double advance(double& force, double stiffness, double step, double limit) {
-    const double before = force;
-    const double trial = before - stiffness * step;
+  template <class R>
+  BR_HD static R advance(R& force, const R& stiffness, const R& step, const R& limit) {
+    const R before = force;
+    const R trial = before - stiffness * step;
     force = larger(-limit, smaller(limit, trial));
-    if (force == trial) return 0.0;
-    return 0.5 * (before + force) * (trial - force) / stiffness;
+    const auto cut = force != trial;
+    const R none = constant<R>(0.0);
+    if (!any(cut)) return none;
+    return choose(cut, 0.5 * (before + force) * (trial - force) / stiffness, none);
   }
 };
 

@@ -6,23 +6,27 @@
 namespace breccia::dem {
 
 /// What a steel link keeps from step to step.
-struct SteelState {
-  double plastic_strain;  ///< eps_p, axial  [-]
-  double hardening;  ///< alpha_p, accumulated plastic strain; steel_ruptured after rupture  [-]
-  Vec3 shear;        ///< on b, world frame  [N]
-  Vec3 moment;       ///< on b, world frame  [N m]
+template <class R>
+struct SteelStateOf {
+  R plastic_strain;  ///< eps_p, axial  [-]
+  R hardening;       ///< alpha_p, accumulated plastic strain; steel_ruptured after rupture  [-]
+  Vec3Of<R> shear;   ///< on b, world frame  [N]
+  Vec3Of<R> moment;  ///< on b, world frame  [N m]
 };
+using SteelState = SteelStateOf<double>;
 inline constexpr double steel_ruptured = -1.0;
 
 /// What a steel link answers in one step.
-struct SteelResponse {
-  double normal;   ///< N, tension positive  [N]
-  Vec3 shear;      ///< on b  [N]
-  Vec3 moment;     ///< on b  [N m]
-  double active;   ///< 1 where it resists, 0 where not  [-]
-  double yielded;  ///< energy spent on yielding in this step  [J]
-  double broke;    ///< energy spent by rupture in this step  [J]
+template <class R>
+struct SteelResponseOf {
+  R normal;          ///< N, tension positive  [N]
+  Vec3Of<R> shear;   ///< on b  [N]
+  Vec3Of<R> moment;  ///< on b  [N m]
+  R active;          ///< 1 where it resists, 0 where not  [-]
+  R yielded;         ///< energy spent on yielding in this step  [J]
+  R broke;           ///< energy spent by rupture in this step  [J]
 };
+using SteelResponse = SteelResponseOf<double>;
 
 /// Two-node Timoshenko beam of circular section in the variables of a pair, its contact point in
 /// the middle: exact for bending and shear, so a chain converges to beam theory (docs/theory.md,
@@ -43,15 +47,17 @@ struct SteelLink {
   static constexpr double root3 = 1.7320508075688772;
 
   /// Elastic stiffnesses of a piece of bar of length L and radius r.
-  struct Stiffness {
-    double axial, shear, bending, twist;  ///< [N/m], [N/m], [N m], [N m]
+  template <class R>
+  struct StiffnessOf {
+    R axial, shear, bending, twist;  ///< [N/m], [N/m], [N m], [N m]
   };
-  BR_HD Stiffness stiffness(double length, double radius) const {
-    const double area = pi * radius * radius;
-    const double second_moment = 0.25 * area * radius * radius;  // I = pi r^4 / 4, J = 2 I
-    const double bending = young * second_moment / length;
-    const double phi =
-        12.0 * young * second_moment / (0.9 * shear_modulus * area * length * length);
+  using Stiffness = StiffnessOf<double>;
+  template <class R>
+  BR_HD StiffnessOf<R> stiffness(const R& length, const R& radius) const {
+    const R area = pi * radius * radius;
+    const R second_moment = 0.25 * area * radius * radius;  // I = pi r^4 / 4, J = 2 I
+    const R bending = young * second_moment / length;
+    const R phi = 12.0 * young * second_moment / (0.9 * shear_modulus * area * length * length);
     return {young * area / length, 12.0 * bending / (length * length * (1.0 + phi)), bending,
             2.0 * shear_modulus * second_moment / length};
   }
@@ -59,62 +65,62 @@ struct SteelLink {
   BR_HD SteelResponse answer(double length, double radius, const PairMotion<double>& motion,
                              SteelState& state) const {
     const Stiffness k = stiffness(length, radius);
-    const double area = pi * radius * radius;
     const double stretch = motion.distance - length;
     SteelResponse r{};
 
     if (state.hardening < 0.0) {  // ruptured: the ends may still be pressed together
-      const bool pressed = stretch < 0.0;
-      r.normal = pressed ? k.axial * stretch : 0.0;
-      r.active = pressed ? 1.0 : 0.0;
+      press(k, stretch, r);
       return r;
     }
+    Trial<double> t = trial(k, length, radius, motion, state);
 
     // Axial: return mapping in one dimension.
-    const double strain = stretch / length;
-    double stress = young * (strain - state.plastic_strain);
-    const double excess = absolute(stress) - (yield + hardening * state.hardening);
-    if (excess > 0.0) {
-      const double increment = excess / (young + hardening);
-      const double flow = stress > 0.0 ? increment : -increment;
+    if (t.excess > 0.0) {
+      const double increment = t.excess / (young + hardening);
+      const double flow = t.stress > 0.0 ? increment : -increment;
       state.plastic_strain += flow;
       state.hardening += increment;
-      stress = young * (strain - state.plastic_strain);
-      r.yielded += stress * flow * area * length;
+      t.stress = young * (stretch / length - state.plastic_strain);
+      r.yielded += t.stress * flow * t.area * length;
     }
-    r.normal = stress * area;
+    r.normal = t.stress * t.area;
     r.active = 1.0;
 
-    // Shear, bending and twist: carried with the pair, elastic, cut at the plastic hinge.
-    const Vec3 shear_before = motion.across(motion.carried(state.shear));
-    Vec3 shear = shear_before - k.shear * motion.slip;
-    const Vec3 moment_before = motion.carried(state.moment);
-    const Vec3 twist_turn = dot(motion.turn, motion.normal) * motion.normal;
-    Vec3 bending = motion.across(moment_before) - k.bending * (motion.turn - twist_turn);
-    Vec3 twist = dot(moment_before, motion.normal) * motion.normal - k.twist * twist_turn;
-
-    const double axial_share = r.normal / (yield * area);
-    const double cube = 8.0 * radius * radius * radius;  // d^3
-    const double reserve = 1.0 - axial_share * axial_share;
-    const double bending_limit = yield * cube / 6.0 * (reserve > 0.0 ? reserve : 0.0);
-    r.yielded += cut(bending, motion.across(moment_before), bending_limit, k.bending);
-    r.yielded += cut(twist, moment_before - motion.across(moment_before),
-                     yield / root3 * pi * cube / 12.0, k.twist);
-    r.yielded += cut(shear, shear_before, yield / root3 * area, k.shear);
+    // The plastic hinge.
+    const Limits<double> limits = hinge(radius, t.area, r.normal);
+    r.yielded += cut(t.bending, motion.across(t.moment_before), limits.bending, k.bending);
+    r.yielded +=
+        cut(t.twist, t.moment_before - motion.across(t.moment_before), limits.twist, k.twist);
+    r.yielded += cut(t.shear, t.shear_before, limits.shear, k.shear);
 
     if (state.hardening > failure_strain) {
       r.broke = stored(length, radius, stretch, state);
       state = {0.0, steel_ruptured, {}, {}};
-      const bool pressed = stretch < 0.0;
-      r.normal = pressed ? k.axial * stretch : 0.0;
-      r.active = pressed ? 1.0 : 0.0;
+      press(k, stretch, r);
       return r;
     }
-    state.shear = shear;
-    state.moment = bending + twist;
-    r.shear = state.shear;
-    r.moment = state.moment;
+    keep(t, state, r);
     return r;
+  }
+
+  /// The same for a pack of links of which none is ruptured, yields or breaks.
+  /// @returns false, having done nothing, if one is or does
+  template <class R>
+  BR_HD bool stays_elastic(const StiffnessOf<R>& k, const R& length, const R& radius,
+                           const PairMotion<R>& motion, SteelStateOf<R>& state,
+                           SteelResponseOf<R>& r) const {
+    const Trial<R> t = trial(k, length, radius, motion, state);
+    r.normal = t.stress * t.area;
+    r.active = constant<R>(1.0);
+    r.yielded = r.broke = constant<R>(0.0);
+    const Limits<R> limits = hinge(radius, t.area, r.normal);
+    const auto elastic =
+        both(both(state.hardening >= 0.0, opposite(t.excess > 0.0)),
+             both(norm(t.bending) <= limits.bending,
+                  both(norm(t.twist) <= limits.twist, norm(t.shear) <= limits.shear)));
+    if (any(either(opposite(elastic), state.hardening > failure_strain))) return false;
+    keep(t, state, r);
+    return true;
   }
 
   /// Energy a link stores.  [J]
@@ -134,6 +140,58 @@ struct SteelLink {
   }
 
  private:
+  /// What a step of elastic motion brings about.
+  template <class R>
+  struct Trial {
+    R area;                                 ///< of the section  [m2]
+    R stress, excess;                       ///< axial, and above the yield stress  [Pa]
+    Vec3Of<R> shear_before, moment_before;  ///< carried with the pair  [N], [N m]
+    Vec3Of<R> shear, bending, twist;        ///< and with this step's increment
+  };
+  template <class R>
+  BR_HD Trial<R> trial(const StiffnessOf<R>& k, const R& length, const R& radius,
+                       const PairMotion<R>& motion, const SteelStateOf<R>& state) const {
+    Trial<R> t;
+    t.area = pi * radius * radius;
+    const R strain = (motion.distance - length) / length;
+    t.stress = young * (strain - state.plastic_strain);
+    t.excess = absolute(t.stress) - (yield + hardening * state.hardening);
+
+    t.shear_before = motion.across(motion.carried(state.shear));
+    t.shear = t.shear_before - k.shear * motion.slip;
+    t.moment_before = motion.carried(state.moment);
+    const Vec3Of<R> twist_turn = dot(motion.turn, motion.normal) * motion.normal;
+    t.bending = motion.across(t.moment_before) - k.bending * (motion.turn - twist_turn);
+    t.twist = dot(t.moment_before, motion.normal) * motion.normal - k.twist * twist_turn;
+    return t;
+  }
+  /// What the plastic hinge bears at most.
+  template <class R>
+  struct Limits {
+    R bending, twist, shear;  ///< [N m], [N m], [N]
+  };
+  template <class R>
+  BR_HD Limits<R> hinge(const R& radius, const R& area, const R& normal) const {
+    const R axial_share = normal / (yield * area);
+    const R cube = 8.0 * radius * radius * radius;  // d^3
+    const R reserve = 1.0 - axial_share * axial_share;
+    const R zero = constant<R>(0.0);
+    return {yield * cube / 6.0 * choose(reserve > 0.0, reserve, zero),
+            yield / root3 * pi * cube / 12.0, yield / root3 * area};
+  }
+  template <class R>
+  BR_HD static void keep(const Trial<R>& t, SteelStateOf<R>& state, SteelResponseOf<R>& r) {
+    state.shear = t.shear;
+    state.moment = t.bending + t.twist;
+    r.shear = state.shear;
+    r.moment = state.moment;
+  }
+  /// What is left of a ruptured link.
+  BR_HD static void press(const Stiffness& k, double stretch, SteelResponse& r) {
+    const bool pressed = stretch < 0.0;
+    r.normal = pressed ? k.axial * stretch : 0.0;
+    r.active = pressed ? 1.0 : 0.0;
+  }
   /// Shortens a force or moment to its limit; returns the energy that took.
   BR_HD static double cut(Vec3& value, const Vec3& before, double limit, double stiffness) {
     const double size = norm(value);

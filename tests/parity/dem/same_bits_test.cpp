@@ -52,6 +52,34 @@ TEST(SameBits, for_any_width_of_vector) {
   }
 }
 
+TEST(SameBits, for_any_width_where_supports_move_and_motion_is_damped) {
+  dem::Config config = small_config();
+  config.local_damping = 0.3;
+  config.gravity = {0.0, 0.0, -9.81};
+  ASSERT_GE(config.supports.size(), 2U);
+  config.supports[0].velocity = {0.1, 0.0, 2.0};
+  config.supports[0].ramp = 2e-5;
+  config.supports[1].fix = {"y", "spin_x"};
+  std::uint64_t hash = 0;
+  EnergyBalance energy{};
+  for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight}) {
+    if (lanes > widest_lanes()) continue;
+    dem::World w = dem::make_world(config, small_model(), {});
+    w.lanes = lanes;
+    for (int i = 0; i < 200; ++i) dem::step(w);
+    const EnergyBalance now = dem::balance(w);
+    if (lanes == Lanes::one) {
+      hash = dem::state_hash(w);
+      energy = now;
+      EXPECT_GT(energy.work, 0.0);
+      EXPECT_GT(energy.damping, 0.0);
+    }
+    EXPECT_EQ(dem::state_hash(w), hash) << static_cast<int>(lanes);
+    EXPECT_EQ(now.work, energy.work) << static_cast<int>(lanes);
+    EXPECT_EQ(now.damping, energy.damping) << static_cast<int>(lanes);
+  }
+}
+
 TEST(SameBits, for_any_margin_and_moment_of_search) {
   EXPECT_EQ(hash_after(small_world(1, {"search.margin=0.05"})), reference());
   EXPECT_EQ(hash_after(small_world(2, {"search.margin=1.0"})), reference());

@@ -1,0 +1,50 @@
+#include "dem/kernel_lanes.hpp"
+
+namespace breccia::dem {
+namespace {
+
+/// Packs where they can be taken whole, the others link by link.
+template <class Kernel>
+void run_bars([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end) {
+#if defined(BR_WIDE_LANES)
+  for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
+    begin = lanes == Lanes::eight ? PacksAvx512::run(kernel, begin, end)
+                                  : PacksAvx2::run(kernel, begin, end);
+    if (end - begin < width) break;
+    for (const Index next = begin + width; begin < next; ++begin) kernel(begin);
+  }
+#endif
+  for (; begin < end; ++begin) kernel(begin);
+}
+
+}  // namespace
+
+void run_packs([[maybe_unused]] Lanes lanes, const ConcreteLinkForces& kernel, Index begin,
+               Index end) {
+#if defined(BR_WIDE_LANES)
+  // One by one to where packs lie in whole cache lines.
+  for (; begin < end && begin % static_cast<Index>(lanes) != 0; ++begin) kernel(begin);
+  if (lanes == Lanes::eight) begin = PacksAvx512::run(kernel, begin, end);
+  if (lanes == Lanes::four) begin = PacksAvx2::run(kernel, begin, end);
+#endif
+  for (Index i = begin; i < end; ++i) kernel(i);
+}
+
+void run_packs(Lanes lanes, const SteelLinkForces& kernel, Index begin, Index end) {
+  run_bars(lanes, kernel, begin, end);
+}
+void run_packs(Lanes lanes, const InterfaceLinkForces& kernel, Index begin, Index end) {
+  run_bars(lanes, kernel, begin, end);
+}
+
+bool run_packs([[maybe_unused]] Lanes lanes, const MoveWithin& kernel, Index begin, Index end) {
+  MovedTo moved{begin, false};
+#if defined(BR_WIDE_LANES)
+  if (lanes == Lanes::eight) moved = PacksAvx512::run(kernel, begin, end);
+  if (lanes == Lanes::four) moved = PacksAvx2::run(kernel, begin, end);
+#endif
+  for (Index e = moved.end; e < end; ++e) moved.beyond = kernel(e) || moved.beyond;
+  return moved.beyond;
+}
+
+}  // namespace breccia::dem

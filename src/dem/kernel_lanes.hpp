@@ -1,0 +1,38 @@
+#pragma once
+// The widest form of the kernels that this processor can run, found at run time; same bits in all.
+
+#include "dem/element_kernels.hpp"
+#include "dem/link_kernels.hpp"
+#include "exec/lanes.hpp"
+
+namespace breccia::dem {
+
+/// kernel for the links [begin, end) on the calling thread.
+void run_packs(Lanes lanes, const ConcreteLinkForces& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const SteelLinkForces& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const InterfaceLinkForces& kernel, Index begin, Index end);
+/// Likewise for elements. @returns whether one of them has used its margin up
+bool run_packs(Lanes lanes, const MoveWithin& kernel, Index begin, Index end);
+
+/// How far a kernel came, and whether an element on the way has used its margin up.
+struct MovedTo {
+  Index end;
+  bool beyond;
+};
+
+/// Builds of lanes/kernel_lanes.cpp for one width each; what does not fill a pack is left to the
+/// caller, and so is a pack of bars in which something breaks or has broken. Return where.
+struct PacksAvx2 {
+  static Index run(const ConcreteLinkForces& kernel, Index begin, Index end);
+  static Index run(const SteelLinkForces& kernel, Index begin, Index end);
+  static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
+  static MovedTo run(const MoveWithin& kernel, Index begin, Index end);
+};
+struct PacksAvx512 {
+  static Index run(const ConcreteLinkForces& kernel, Index begin, Index end);
+  static Index run(const SteelLinkForces& kernel, Index begin, Index end);
+  static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
+  static MovedTo run(const MoveWithin& kernel, Index begin, Index end);
+};
+
+}  // namespace breccia::dem

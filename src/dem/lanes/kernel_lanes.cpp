@@ -1,0 +1,59 @@
+// Built once for each width of vector; BR_PACKS names the build (see CMakeLists.txt).
+
+#include "dem/kernel_lanes.hpp"
+
+namespace breccia::dem {
+namespace {
+
+constexpr Index width = width_of<WidestPack>;
+
+/// Asks the memory for a pack of items of an array.
+template <class T>
+void fetch(const View<T>& array, Index first) {
+  const auto* items = reinterpret_cast<const char*>(array.data + first);
+  constexpr auto bytes = static_cast<Index>(width * sizeof(T));
+  for (Index byte = 0; byte < bytes; byte += 64) __builtin_prefetch(items + byte);
+}
+/// Likewise for all that a motion reads: more arrays than the processor foresees.
+void fetch(const MoveWithin& kernel, Index first) {
+  const Kick& kick = kernel.move.kick;
+  fetch(kick.state, first);
+  fetch(kernel.move.orientation, first);
+  fetch(kick.force, first);
+  fetch(kick.torque, first);
+  fetch(kick.mass, first);
+  fetch(kick.inertia, first);
+  fetch(kernel.used.reference, first);
+  fetch(kernel.used.margin, first);
+}
+
+}  // namespace
+
+BR_WHOLE Index BR_PACKS::run(const ConcreteLinkForces& kernel, Index begin, Index end) {
+  Index i = begin;
+  for (; i + width <= end; i += width) kernel.at<WidestPack>(i);
+  return i;
+}
+
+BR_WHOLE Index BR_PACKS::run(const SteelLinkForces& kernel, Index begin, Index end) {
+  Index i = begin;
+  while (i + width <= end && kernel.at<WidestPack>(i)) i += width;
+  return i;
+}
+
+BR_WHOLE Index BR_PACKS::run(const InterfaceLinkForces& kernel, Index begin, Index end) {
+  Index i = begin;
+  while (i + width <= end && kernel.at<WidestPack>(kernel.law, i)) i += width;
+  return i;
+}
+
+BR_WHOLE MovedTo BR_PACKS::run(const MoveWithin& kernel, Index begin, Index end) {
+  MovedTo moved{begin, false};
+  for (; moved.end + width <= end; moved.end += width) {
+    fetch(kernel, moved.end + 3 * width);
+    if (kernel.at<WidestPack>(moved.end)) moved.beyond = true;
+  }
+  return moved;
+}
+
+}  // namespace breccia::dem
