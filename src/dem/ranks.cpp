@@ -166,11 +166,17 @@ class Spheres final : public Shareable {
     for (const ElementState& s : w_.elements.state.host()) visit(s.position);
   }
   std::vector<Load> loads() const override {
-    std::vector<std::int64_t> weight(static_cast<std::size_t>(w_.elements.size()), 2);
+    // By what they cost, in units of some 12 ns on one core (bench/NOTES.md).
+    constexpr std::int64_t element = 3, end_of_link = 1, other_end = 3;
+    std::vector<std::int64_t> weight(static_cast<std::size_t>(w_.elements.size()), element);
+    const auto add = [&weight](const Buffer<Index>& ends, std::int64_t cost) {
+      for (const Index e : ends.host()) weight[static_cast<std::size_t>(e)] += cost;
+    };
+    for (const Buffer<Index>* ends : {&w_.concrete.a, &w_.concrete.b}) add(*ends, end_of_link);
     for (const Buffer<Index>* ends :
-         {&w_.concrete.a, &w_.concrete.b, &w_.steel.a, &w_.steel.b, &w_.interface.a,
-          &w_.interface.b, &w_.contacts.pairs.a, &w_.contacts.pairs.b, &w_.wall_contacts.pairs.a})
-      for (const Index e : ends->host()) ++weight[static_cast<std::size_t>(e)];
+         {&w_.steel.a, &w_.steel.b, &w_.interface.a, &w_.interface.b, &w_.contacts.pairs.a,
+          &w_.contacts.pairs.b, &w_.wall_contacts.pairs.a})
+      add(*ends, other_end);
     std::vector<Load> loads;
     for (Index e = 0; e < w_.elements.size(); ++e)
       if (w_.domain.owns(e)) loads.push_back({centre(e), weight[static_cast<std::size_t>(e)]});
@@ -199,9 +205,16 @@ class Spheres final : public Shareable {
     divide(w_.concrete_groups, w_.numbers.concrete);
     divide(w_.steel_groups, w_.numbers.steel);
     divide(w_.interface_groups, w_.numbers.interface);
+    w_.domain.tied.assign(static_cast<std::size_t>(w_.elements.size()), 0);
+    for (const Buffer<Index>* ends :
+         {&w_.concrete.a, &w_.concrete.b, &w_.steel.a, &w_.steel.b, &w_.interface.a,
+          &w_.interface.b, &w_.interface.before, &w_.interface.after})
+      for (const Index e : ends->host())
+        if (e >= 0) w_.domain.tied[static_cast<std::size_t>(e)] = 1;
     move_to(w_, space_);
     set_linked_pairs(w_);
     derive(w_);
+    feel_contacts(w_);
   }
 
  private:
@@ -236,6 +249,17 @@ void finish_copies(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.finish_refresh(w.exec, w.elements.state);
+}
+void refresh_copies(World& w) {
+  if (w.domain.alone()) return;
+  const StageTime timed(w.exec, "halo");
+  w.domain.refresh_all(w.exec, w.elements.state);
+}
+
+void feel_contacts(World& w) {
+  // On a device the list costs more than it saves.
+  if (w.domain.alone() || w.exec.space != Space::host) return;
+  w.domain.feel(w.elements.id, w.contacts.pairs.a, w.contacts.pairs.b);
 }
 
 World share_out(const World& whole, Communicator& ranks, const DomainConfig& config, Space space) {

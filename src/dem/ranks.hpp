@@ -21,9 +21,15 @@ World share_out(const World& whole, Communicator& ranks, const DomainConfig& con
 /// have become uneven (section 4). Only before a search, which finds the contacts of new copies.
 void migrate(World& w);
 
-/// After the elements have moved: copies follow their owners. Meanwhile ranks vote on a search.
+/// After the elements have moved: copies that own ones feel follow their owners.
+/// Meanwhile ranks vote on a search.
 void start_copies(World& w);
 void finish_copies(World& w);
+/// And now all of them: a search is due.
+void refresh_copies(World& w);
+
+/// After a search: which copies own elements feel until the next one.
+void feel_contacts(World& w);
 
 /// Brings the state of all ranks together in `whole` on rank 0; it may lack contact lists and sums,
 /// which the observers do not read. Every rank calls it.

@@ -328,6 +328,7 @@ void find_contacts(World& w) {
   migrate(w);
   const StageTime timed(w.exec, "contact_detection");
   together_or_not(w.domain.ranks, [&w] { search(w); });
+  feel_contacts(w);
 }
 
 void derive_contacts(World& w) {

@@ -10,7 +10,10 @@ void step(World& w) {
   // 2. New contacts, when travel has used the margin up: grid, sort, search         (section 4.3)
   const bool due = contacts_are_due(w);
   finish_copies(w);
-  if (due) find_contacts(w);
+  if (due) {
+    refresh_copies(w);
+    find_contacts(w);
+  }
 
   // 3. One force per interaction, then one sum per element: no atomics              (section 4.2)
   //    Links and contacts that end here mark themselves.

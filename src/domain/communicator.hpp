@@ -58,6 +58,9 @@ class Communicator {
   bool in_step() const { return in_step_; }
   void set_in_step(bool in_step) { in_step_ = in_step; }
 
+  /// How long this rank has waited for others so far, where that is measured.  [s]
+  virtual double waited() const { return 0.0; }
+
   /// How long a rank may be silent before all end with exit code 8; 0: for ever.  [s]
   virtual void set_patience(double /*seconds*/) {}
 

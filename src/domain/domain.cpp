@@ -1,19 +1,36 @@
 #include "domain/domain.hpp"
 
+#include <cmath>
 #include <new>
 
 #include "exec/error.hpp"
 
 namespace breccia {
 
-DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own) {
-  std::vector<std::int64_t> sums{own.moved, own.copies, own.owned, own.load};
+DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own, double waited) {
+  std::vector<std::int64_t> sums{own.moved, own.copies, own.owned, own.load,
+                                 std::llround(1e9 * waited)};
   ranks.add_up(sums);
   const double largest = -ranks.least(-static_cast<double>(own.load));
-  DomainFacts facts{ranks.size(), own.migrations, own.cuts, sums[0], 0.0, 0.0};
+  DomainFacts facts{ranks.size(), own.migrations, own.cuts, sums[0]};
+  facts.waited_least = ranks.least(waited);
+  facts.waited_most = -ranks.least(-waited);
+  facts.waited_mean = 1e-9 * static_cast<double>(sums[4]) / ranks.size();
   if (sums[2] > 0) facts.copies = static_cast<double>(sums[1]) / static_cast<double>(sums[2]);
   if (sums[3] > 0) facts.imbalance = largest * ranks.size() / static_cast<double>(sums[3]) - 1.0;
   return facts;
+}
+
+void Domain::feel(const Buffer<GlobalId>& ids, const Buffer<Index>& a, const Buffer<Index>& b) {
+  if (alone()) return;
+  std::vector<std::uint8_t> wanted = tied;
+  for (const Buffer<Index>* ends : {&a, &b})
+    for (const Index e : ends->host()) wanted[static_cast<std::size_t>(e)] = 1;
+  std::vector<Copy> followed;
+  for (const Copy& copy : copies)
+    if (wanted[static_cast<std::size_t>(copy.element)] != 0) followed.push_back(copy);
+  felt.build(*ranks, ids, followed);
+  knows_felt = true;
 }
 
 void together_or_not(Communicator* ranks, const std::function<void()>& work) {

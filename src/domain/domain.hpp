@@ -26,8 +26,10 @@ struct DomainFacts {
   std::int64_t migrations = 0, cuts = 0, moved = 0;
   double copies = 0.0;     ///< over all elements  [-]
   double imbalance = 0.0;  ///< largest load over the mean, less one  [-]
+  double waited_least = 0.0, waited_mean = 0.0, waited_most = 0.0;  ///< of a rank, for others  [s]
 };
-DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own);
+/// @param waited  by this rank for others  [s]
+DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own, double waited);
 
 /// Which elements a rank owns, as kernels see it.
 struct OwnedView {
@@ -50,8 +52,16 @@ struct Domain {
   double margin = 0.0;         ///< largest of the search that copies are held for  [m]
   Buffer<std::uint8_t> owned;  ///< 1: this rank owns the element; empty when alone; on the host
   Buffer<std::uint8_t> owned_there;  ///< the same where kernels can read it
-  Buffer<Vec3> placed;  ///< where each stood when they were shared out last; likewise  [m]
-  Halo halo;
+  Buffer<Vec3> placed;       ///< where each stood when they were shared out last; likewise  [m]
+  std::vector<Copy> copies;  ///< of others' elements that this rank holds
+  Halo halo;                 ///< of all copies
+  /// Of the copies that own elements feel: all that must follow their owners in every step. The
+  /// others do before a search.
+  Halo felt;
+  bool knows_felt = false;         ///< otherwise all are taken to be
+  std::vector<std::uint8_t> tied;  ///< 1: felt as long as elements are not shared out anew
+  Vec3 drifted;                    ///< common way of all elements since then  [m]
+  double drifted_until = 0.0;      ///< time up to which it is counted  [s]
   std::vector<ElementRun>
       runs;  ///< of elements that loops over own ones take, few copies among them
   DomainCounts counts;
@@ -65,20 +75,27 @@ struct Domain {
   std::uint64_t any_of(std::uint64_t bits) const { return alone() ? bits : ranks->any_of(bits); }
   bool any(bool one) const { return any_of(one ? 1 : 0) != 0; }
 
-  /// Copies of other ranks' items become what their owners have. Between start and finish numbers
-  /// may be combined, and copies are not yet to be read.
+  /// Copies of other ranks' items become what their owners have: those that are felt, or all.
+  /// Between start and finish numbers may be combined, and copies are not yet to be read.
   template <class T>
   void start_refresh(const Exec& exec, Buffer<T>& items) {
-    if (!alone()) halo.start(exec, *ranks, items);
+    if (!alone()) (knows_felt ? felt : halo).start(exec, *ranks, items);
   }
   template <class T>
   void finish_refresh(const Exec& exec, Buffer<T>& items) {
-    if (!alone()) halo.finish(exec, *ranks, items);
+    if (!alone()) (knows_felt ? felt : halo).finish(exec, *ranks, items);
   }
   template <class T>
-  void refresh(const Exec& exec, Buffer<T>& items) {
-    start_refresh(exec, items);
-    finish_refresh(exec, items);
+  void refresh_all(const Exec& exec, Buffer<T>& items) {
+    if (!alone() && knows_felt) halo.refresh(exec, *ranks, items);
+  }
+  /// Finds the copies that are felt: tied ones, and the ends of pairs. Only on the host.
+  void feel(const Buffer<GlobalId>& ids, const Buffer<Index>& a, const Buffer<Index>& b);
+
+  /// All elements move together, as far as they are watched, with this velocity until that time.
+  void drift(const Vec3& velocity, double until) {
+    drifted += (until - drifted_until) * velocity;
+    drifted_until = until;
   }
 
   /// Calls visit(begin, end) for the parts of [begin, end) that hold own elements: all of it when

@@ -2,15 +2,13 @@
 
 namespace breccia {
 
-void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<int>& owner,
+void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<Copy>& copies,
                  Space space) {
   const auto count = static_cast<std::size_t>(ranks.size());
   std::vector<std::vector<Index>> receive(count);
   std::vector<Message> wanted(count);
-  for (Index e = 0; e < ids.size(); ++e) {
-    const int of = owner[static_cast<std::size_t>(e)];
-    if (of != ranks.rank()) receive[static_cast<std::size_t>(of)].push_back(e);
-  }
+  for (const Copy& copy : copies)
+    receive[static_cast<std::size_t>(copy.owner)].push_back(copy.element);
   for (std::size_t r = 0; r < count; ++r) deal_detail::put(wanted[r], ids, receive[r]);
   const std::vector<Message> asked = ranks.exchange(std::move(wanted));
 

@@ -25,14 +25,20 @@ struct UnpackItems {
   BR_HD void operator()(Index i) const { items[which[i]] = packed[i]; }
 };
 
+/// A local element that another rank owns.
+struct Copy {
+  Index element;
+  int owner;
+};
+
 /// What a rank exchanges with each of its neighbours: items that it owns and they hold copies of,
 /// and the other way round.
 class Halo {
  public:
-  /// @param ids    of the local elements, ascending, on the host
-  /// @param owner  rank that owns each
-  /// @param space  where the items lie that will be exchanged
-  void build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<int>& owner,
+  /// @param ids     of the local elements, ascending, on the host
+  /// @param copies  that will follow their owners, ascending
+  /// @param space   where the items lie that will be exchanged
+  void build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<Copy>& copies,
              Space space = Space::host);
 
   /// Sends the items of owned elements to the ranks that hold copies of them. finish() then writes

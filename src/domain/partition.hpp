@@ -44,6 +44,9 @@ class Partition {
     each_part(0, place, width, 0, visit);
   }
 
+  /// Moves all rectangles: with elements that fly together.
+  void move(const Vec3& by) { origin_ += by; }
+
   int ranks() const { return ranks_; }
   /// The lower and upper border of a rank's rectangle along an axis; infinite at the rim.  [m]
   std::array<double, 2> borders(int rank, int axis) const;

@@ -6,15 +6,15 @@
 namespace breccia {
 namespace {
 
-/// Runs of own elements, in whole packs: copies among them cost less than what is left over.
+/// Runs of packs with own elements: copies among them cost less than what is left over.
 std::vector<ElementRun> own_runs(const Domain& d) {
-  constexpr Index pack = 8, shortest_break = 4 * pack;
+  constexpr Index pack = 8;
   const Index count = d.owned.size();
   std::vector<ElementRun> runs;
   for (Index e = 0; e < count; ++e) {
     if (!d.owns(e)) continue;
     const Index begin = e / pack * pack;
-    if (runs.empty() || begin >= runs.back().end + shortest_break) runs.push_back({begin, begin});
+    if (runs.empty() || begin > runs.back().end) runs.push_back({begin, begin});
     runs.back().end = std::min(begin + pack, count);
   }
   return runs;
@@ -59,6 +59,8 @@ void begin_sharing(Domain& d, Communicator& ranks, const DomainConfig& config,
 }
 
 void share_anew(Domain& d, Shareable& elements, bool first) {
+  d.partition.move(d.drifted);
+  d.drifted = {};
   const std::vector<Load> loads = elements.loads();
   if (first || (d.config.balance && imbalance(*d.ranks, sum_of(loads)) > d.config.imbalance)) {
     d.partition.cut(*d.ranks, loads);
@@ -80,12 +82,16 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
     if (own && !std::binary_search(mine.begin(), mine.end(), elements.ids().data()[e]))
       ++d.counts.moved;
   }
+  d.copies.clear();
+  for (Index e = 0; e < count; ++e)
+    if (!d.owns(e)) d.copies.push_back({e, owner[static_cast<std::size_t>(e)]});
+  d.knows_felt = false;
   d.runs = own_runs(d);
   std::vector<Vec3> placed;
   elements.each_point([&](const Vec3& point) { placed.push_back(point); });
   copy_to(d.placed, placed);
   copy_to(d.owned_there, d.owned);
-  d.halo.build(*d.ranks, elements.ids(), owner, elements.space());
+  d.halo.build(*d.ranks, elements.ids(), d.copies, elements.space());
   d.counts.copies = d.halo.copies();
   d.counts.owned = count - d.halo.copies();
   d.counts.load = sum_of(elements.loads());

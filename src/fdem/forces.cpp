@@ -103,7 +103,7 @@ void load_forces(World& w) {
   }
   if (w.mesh.bundled && !w.domain.alone()) {  // also on ranks that have none
     const StageTime timed(w.exec, "halo");
-    w.domain.refresh(w.exec, w.triangles.force);
+    w.tied_forces.refresh(w.exec, *w.domain.ranks, w.triangles.force);
   }
   if (w.bundles.starts.size() < 2) return;
   const StageTime timed(w.exec, "bundles");

@@ -206,7 +206,8 @@ double halo_width(const World& w) {
 }
 
 /// What follows from the triangles and joints that are here.
-void settle_in(World& w) {
+/// @param space  where the triangles go when they have settled in
+void settle_in(World& w, Space space) {
   const Index count = w.triangles.size(), joints = w.joints.size();
   std::vector<JointEnds> ends;
   for (Index i = 0; i < joints; ++i)
@@ -239,6 +240,18 @@ void settle_in(World& w) {
   });
   copy_to(w.bundles.starts, first);
   copy_to(w.bundles.nodes, nodes);
+
+  Domain& d = w.domain;
+  d.tied.assign(at(count), 0);
+  if (w.mesh.bundled) {
+    for (const Index node : nodes) d.tied[at(node / 3)] = 1;
+    std::vector<Copy> in_rings;
+    for (const Copy& copy : d.copies)
+      if (d.tied[at(copy.element)] != 0) in_rings.push_back(copy);
+    w.tied_forces.build(*d.ranks, w.triangles.id, in_rings, space);
+  }
+  for (const Buffer<Index>* edges : {&w.joints.edge_a, &w.joints.edge_b})
+    for (const Index edge : edges->host()) d.tied[at(edge / 3)] = 1;
 }
 
 struct Fastest {
@@ -257,13 +270,14 @@ struct Fastest {
 struct HasLeft {
   double allowed;  ///< square of the way that it may go  [m2]
   OwnedView owned;
+  Vec3 drifted;  ///< common to all since they were placed  [m]
   View<const TriangleNodes> nodes;
   View<const Vec3> placed;
   BR_HD double operator()(Index t) const {
     bool left = false;
     for (int k = 0; k < 3; ++k) {
       const Vec2& x = nodes[t].at[k].position;
-      const Vec3 moved = Vec3{x.x, x.y, 0.0} - placed[3 * t + k];
+      const Vec3 moved = (Vec3{x.x, x.y, 0.0} - placed[3 * t + k]) - drifted;
       if (!(dot(moved, moved) <= allowed)) left = true;
     }
     return owned(t) && left ? 1.0 : 0.0;
@@ -285,11 +299,15 @@ class Mesh final : public Shareable {
       for (const NodeState& n : nodes.at) visit({n.position.x, n.position.y, 0.0});
   }
   std::vector<Load> loads() const override {
-    std::vector<std::int64_t> weight(at(w_.triangles.size()), 2);
+    // By what they cost, in units of some 3 ns on one core (bench/NOTES.md).
+    constexpr std::int64_t triangle = 8, end_of_joint = 3, end_of_couple = 16, tied_corner = 3;
+    std::vector<std::int64_t> weight(at(w_.triangles.size()), triangle);
     for (const Buffer<Index>* edges : {&w_.joints.edge_a, &w_.joints.edge_b})
-      for (const Index edge : edges->host()) ++weight[at(edge / 3)];
+      for (const Index edge : edges->host()) weight[at(edge / 3)] += end_of_joint;
     for (const Buffer<Index>* ends : {&w_.couples.pairs.a, &w_.couples.pairs.b})
-      for (const Index t : ends->host()) ++weight[at(t)];
+      for (const Index t : ends->host()) weight[at(t)] += end_of_couple;
+    for (std::size_t corner = 0; corner < w_.vertex.size(); ++corner)
+      if (w_.mesh.tied[at(w_.vertex[corner])] != 0) weight[corner / 3] += tied_corner;
     std::vector<Load> loads;
     for (Index t = 0; t < w_.triangles.size(); ++t)
       if (w_.domain.owns(t)) loads.push_back({centre(t), weight[at(t)]});
@@ -305,7 +323,7 @@ class Mesh final : public Shareable {
   bool has_left() const override {
     return fold(w_.exec, w_.triangles.size(), 0.0,
                 HasLeft{w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
-                        std::as_const(w_.triangles.nodes).view(),
+                        w_.domain.drifted, std::as_const(w_.triangles.nodes).view(),
                         std::as_const(w_.domain.placed).view()},
                 Largest{}) > 0.0;
   }
@@ -316,9 +334,10 @@ class Mesh final : public Shareable {
     journey.go();
   }
   void settle_in() override {
-    fdem::settle_in(w_);
+    fdem::settle_in(w_, space_);
     move_to(w_, space_);
     derive(w_);
+    feel_couples(w_);
   }
 
  private:
@@ -378,6 +397,18 @@ void finish_copies(World& w) {
   const StageTime timed(w.exec, "halo");
   w.domain.finish_refresh(w.exec, w.triangles.nodes);
 }
+void refresh_copies(World& w) {
+  if (w.domain.alone()) return;
+  const StageTime timed(w.exec, "halo");
+  w.domain.refresh_all(w.exec, w.triangles.nodes);
+}
+
+void feel_couples(World& w) {
+  // Waking joints look at triangles that nothing ties yet; on a device the list costs more than
+  // it saves.
+  if (w.domain.alone() || w.extrinsic || w.exec.space != Space::host) return;
+  w.domain.feel(w.triangles.id, w.couples.pairs.a, w.couples.pairs.b);
+}
 
 World share_out(World& whole, Communicator& ranks, const DomainConfig& config, Space space) {
   if (whole.mesh.tied.empty()) note_mesh(whole);
@@ -392,6 +423,7 @@ World share_out(World& whole, Communicator& ranks, const DomainConfig& config, S
   w.ledger = {};  // what this rank books from here on
   Mesh mesh(w, space);
   begin_sharing(w.domain, ranks, config, mesh, w.parameters.mean_edge, 2);
+  w.domain.drifted_until = w.time;
   share_anew(w.domain, mesh, true);
   return w;
 }
@@ -431,7 +463,10 @@ void collect(World& part, World& whole) {
     whole.opened.changed.data()[i] = (changed >> i & 1) != 0 ? 1 : 0;
   whole.motions = std::move(copy.motions);
   whole.load_laws = std::move(copy.load_laws);
-  whole.domain.partition = part.domain.partition;
+  Domain moved = part.domain;
+  moved.drift({whole.reach.drift.velocity.x, whole.reach.drift.velocity.y, 0.0}, part.time);
+  moved.partition.move(moved.drifted);
+  whole.domain.partition = moved.partition;
   copy_time(part, whole);
 }
 

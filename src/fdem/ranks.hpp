@@ -22,9 +22,15 @@ World share_out(World& whole, Communicator& ranks, const DomainConfig& config,
 /// Only before a search, which finds the couples of new copies.
 void migrate(World& w);
 
-/// After the triangles have moved: copies follow their owners. Meanwhile ranks vote on a search.
+/// After the triangles have moved: copies that own ones feel follow their owners.
+/// Meanwhile ranks vote on a search.
 void start_copies(World& w);
 void finish_copies(World& w);
+/// And now all of them: a search is due.
+void refresh_copies(World& w);
+
+/// After a search: which copies own triangles feel until the next one.
+void feel_couples(World& w);
 
 /// Brings the state of all ranks together in `whole` on rank 0; it may lack couple lists and sums,
 /// which the observers do not read. Every rank calls it.

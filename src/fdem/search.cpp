@@ -213,12 +213,15 @@ bool couples_are_due(World& w) {
 }
 
 void find_couples(World& w) {
+  const Vec2 drift = w.reach.drift.velocity;  // up to now
+  w.domain.drift({drift.x, drift.y, 0.0}, w.time);
   w.reach.drift = choose_drift(w);
   migrate(w);
   const StageTime timed(w.exec, "contact_detection");
   const bool joints_changed = marking_is_due(w);
   if (joints_changed) mark_opened(w);
   together_or_not(w.domain.ranks, [&w] { search(w); });
+  feel_couples(w);
   if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, w.reach.triangle);
 }
 

@@ -10,7 +10,10 @@ void step(World& w) {
   // 2. Contact detection, when travel has used the margin up or a joint has opened
   const bool due = couples_are_due(w);
   finish_copies(w);
-  if (due) find_couples(w);
+  if (due) {
+    refresh_copies(w);
+    find_couples(w);
+  }
 
   // 3. Joints appear and crack, couples push and rub, triangles deform; one sum per corner, no
   // atomics

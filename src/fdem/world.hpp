@@ -148,6 +148,7 @@ struct World {
   // Which part of the whole it is.
   Domain domain;
   WholeMesh mesh;
+  Halo tied_forces;  ///< copies whose corners move as one with own ones
 
   // What follows from the state.
   Buffer<Index> node_vertex;           ///< `vertex`, where kernels can read it

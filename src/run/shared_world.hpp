@@ -53,6 +53,9 @@ class SharedWorld {
     add("domain.moved", static_cast<double>(facts_.moved));
     add("domain.copies", facts_.copies);
     add("domain.imbalance", facts_.imbalance);
+    add("domain.waited_s.least", facts_.waited_least);
+    add("domain.waited_s.mean", facts_.waited_mean);
+    add("domain.waited_s.most", facts_.waited_most);
   }
 
   /// On the host of several ranks a few steps at a time: what they are told costs a message.
@@ -137,6 +140,7 @@ class SharedWorld {
   }
   Advanced advance_part(const StopAt& stop) {
     World& w = *part_;
+    const double waited_before = ranks_->waited();
     Advanced taken;
     do {
       const Advanced more = advance(w, stop);
@@ -144,16 +148,17 @@ class SharedWorld {
       taken.dt_max = std::max(taken.dt_max, more.dt_max);
       taken.steps += more.steps;
     } while (w.step < stop.step && w.time < stop.time);
+    waited_ += ranks_->waited() - waited_before;
     return taken;
   }
   void bring_together() {
     collect(*part_, whole_);
-    facts_ = domain_facts(*ranks_, part_->domain.counts);
+    facts_ = domain_facts(*ranks_, part_->domain.counts, waited_);
   }
   void share() {
     part_.emplace(share_out(whole_, *ranks_, config_, space_));
     whole_.domain.partition = part_->domain.partition;
-    facts_ = domain_facts(*ranks_, part_->domain.counts);
+    facts_ = domain_facts(*ranks_, part_->domain.counts, waited_);
     if (ranks_->rank() != 0) drop_state(whole_);
   }
 
@@ -164,6 +169,7 @@ class SharedWorld {
   std::optional<World> part_;
   bool stale_ = false;
   DomainFacts facts_;
+  double waited_ = 0.0;  ///< for other ranks, in steps  [s]
   std::int64_t steps_at_once_ = 1;
 };
 

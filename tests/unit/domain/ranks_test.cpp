@@ -139,15 +139,17 @@ TEST(Halo, copies_become_what_their_owners_have) {
     // Rank r owns 10 r to 10 r + 9 and holds copies of two of each other rank's.
     Buffer<GlobalId> ids;
     std::vector<int> owner;
+    std::vector<Copy> copies;
     for (int of = 0; of < 3; ++of)
       for (Index k = 0; k < 10; ++k) {
         if (of != ranks.rank() && k != ranks.rank() && k != 7) continue;
         ids.resize(ids.size() + 1);
         ids.data()[ids.size() - 1] = 10 * of + k;
         owner.push_back(of);
+        if (of != ranks.rank()) copies.push_back({ids.size() - 1, of});
       }
     Halo halo;
-    halo.build(ranks, ids, owner);
+    halo.build(ranks, ids, copies);
     EXPECT_EQ(halo.copies(), 4);
     Buffer<double> numbers(Space::host, ids.size());
     for (Index i = 0; i < ids.size(); ++i)
