@@ -169,12 +169,21 @@ struct SortElements {
   }
 };
 
+/// Pairs to leave out, by places in the order of the cells.
+struct LeftOut {
+  KnownPairs known;
+  View<const Index> ranks;
+  BR_HD bool operator()(Index p, Index q) const { return known(ranks[p], ranks[q]); }
+};
+
 /// Notes what the elements of a run find: their number, and the first few of them.
 struct NotePair {
+  LeftOut left_out;
   View<Index> counts;  ///< zero before
   View<Index> slots;
 
   BR_HD void operator()(Index p, Index q) const {
+    if (left_out(p, q)) return;
     const Index count = counts[p]++;
     if (count < slots_each) slots[p * slots_each + count] = q;
   }
@@ -205,12 +214,14 @@ struct PackPair {
 
 /// Writes all pairs of one element.
 struct WritePairs {
+  LeftOut left_out;
   PackPair pack;
   View<const Index> starts;
   View<Index> written;  ///< so far, by the element's first slot
   View<std::uint64_t> packed;
 
   BR_HD void operator()(Index p, Index q) const {
+    if (left_out(p, q)) return;
     packed[starts[p] + written[p * slots_each]++] = pack(p, q);
   }
 };
@@ -359,7 +370,7 @@ void BroadPhase::rank_elements(const Exec& exec, const Buffer<GlobalId>& ids) {
 }
 
 void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer<GlobalId>& ids,
-                        Pairs& pairs) {
+                        Pairs& pairs, const KnownPairs& known) {
   BR_ASSERT(boxes.size() == ids.size());
   const Index count = boxes.size();
   if (count == 0) {
@@ -394,13 +405,16 @@ void BroadPhase::search(const Exec& exec, const Buffer<Box>& boxes, const Buffer
   starts_.clear();
   starts_.resize(count + 1);
   slots_.resize(count * slots_each);
-  for_each(exec, runs, FindPairs{walk, {starts_.view(), slots_.view()}, tests_.view()});
+  const LeftOut left_out{known, ranks_.view()};
+  for_each(exec, runs, FindPairs{walk, {left_out, starts_.view(), slots_.view()}, tests_.view()});
   const Index found = exclusive_scan(exec, starts_);
   packed_.resize(found);
   const int rank_bits = std::bit_width(static_cast<std::uint32_t>(count));
   const PackPair pack{ranks_.view(), rank_bits};
-  for_each(exec, runs,
-           PackPairs{walk, {pack, starts_.view(), slots_.view(), packed_.view()}, slots_.view()});
+  for_each(
+      exec, runs,
+      PackPairs{
+          walk, {left_out, pack, starts_.view(), slots_.view(), packed_.view()}, slots_.view()});
 
   // By ascending key.
   sort_keys(exec, packed_, scratch_, 2 * rank_bits);

@@ -14,6 +14,21 @@ struct Box {
   Vec3 low, high;  ///< corners  [m]
 };
 
+/// Pairs that a search leaves out, in rows of compressed form. Elements are named by their place in
+/// the order of global ids.
+struct KnownPairs {
+  View<const Index> starts;    ///< first partner of each element, and the end; empty: none
+  View<const Index> partners;  ///< elements with higher ids
+
+  BR_HD bool operator()(Index one, Index other) const {
+    if (starts.size == 0) return false;
+    const Index low = one < other ? one : other, high = one < other ? other : one;
+    for (Index k = starts[low]; k < starts[low + 1]; ++k)
+      if (partners[k] == high) return true;
+    return false;
+  }
+};
+
 /// Finds all pairs of boxes that overlap, of spheres in 3D as of triangles in 2D or 3D.
 ///
 /// Source: Durand et al. 2012, section 4.3 (grid, sort by cell, half of the neighbour cells), with
@@ -39,10 +54,11 @@ class BroadPhase {
   /// @param boxes  one an element, already grown by the element's own margin  [m]
   /// @param ids    global ids of the same elements, no two alike
   /// @param pairs  gets the pairs; its memory is used again
+  /// @param known  pairs that it does not get
   /// @throws NumericsError if a box is not finite, InputError if its corners are swapped or two
   ///         elements share an id (all name the element)
-  void search(const Exec& exec, const Buffer<Box>& boxes, const Buffer<GlobalId>& ids,
-              Pairs& pairs);
+  void search(const Exec& exec, const Buffer<Box>& boxes, const Buffer<GlobalId>& ids, Pairs& pairs,
+              const KnownPairs& known = {});
 
   /// Pairs of boxes that the last search compared: its cost.
   std::int64_t tested(const Exec& exec) const;

@@ -22,31 +22,40 @@ struct UnpackState {
   }
 };
 
-/// Whether a link still holds its pair: all but released ones do.
-struct LinkHolds {
+/// Pairs that a link still holds: all but released ones do.
+struct ListHeld {
+  static constexpr const char* name = "dem.list_held";
   View<const double> opening;            ///< of concrete links
   View<const InterfaceState> interface;  ///< of interface links
   Index bonds;                           ///< first interface link among all
-  View<const Index> links;               ///< by the key of their pair
-  BR_HD bool operator()(Index i) const {
+  View<const Index> links, partners;     ///< by the ends of the link
+  View<Index> held;
+  BR_HD void operator()(Index i) const {
     const Index link = links[i];
     double widest = 0.0;
     if (link < opening.size) widest = opening[link];
     if (link >= bonds) widest = interface[link - bonds].opening;
-    return !(widest < 0.5 * (link_broken + link_released));
+    held[i] = widest < 0.5 * (link_broken + link_released) ? -1 : partners[i];
   }
 };
 
-/// Whether a pair may touch and is not held by a link: the grown spheres overlap, not only their
-/// boxes. And it is not of others.
+/// The links that a search leaves out.
+KnownPairs held_pairs(World& w) {
+  w.held_partners.resize(w.linked_partners.size());
+  for_each(w.exec, w.linked_partners.size(),
+           ListHeld{std::as_const(w.concrete.opening).view(),
+                    std::as_const(w.interface.state).view(), w.concrete.size() + w.steel.size(),
+                    w.linked_links.view(), w.linked_partners.view(), w.held_partners.view()});
+  return {w.linked_starts.view(), w.held_partners.view()};
+}
+
+/// Whether a pair may touch: the grown spheres overlap, not only their boxes. And it is not of
+/// others.
 struct MayTouch {
   OwnedView owned;
-  View<const PairKey> key;
   View<const Index> a, b;
   View<const ElementState> state;
   View<const double> margin;
-  View<const PairKey> linked;  ///< sorted
-  LinkHolds holds;             ///< by place among `linked`
 
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
@@ -54,9 +63,7 @@ struct MayTouch {
     const Vec3 d = state[q].position - state[p].position;
     const double reach =
         (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12);
-    if (dot(d, d) > reach * reach) return false;
-    const Index place = lower_bound(linked.data, 0, linked.size, key[i]);
-    return place >= linked.size || linked[place] != key[i] || !holds(place);
+    return !(dot(d, d) > reach * reach);
   }
 };
 
@@ -270,16 +277,11 @@ void search(World& w) {
   Buffer<Box> boxes(w.exec.space);
   sphere_boxes(w.exec, position, radius, w.travel.margin, boxes);
   Pairs found(w.exec.space);
-  w.broad_phase.search(w.exec, boxes, w.elements.id, found);
-  const Index bonds = w.concrete.size() + w.steel.size();
-  const LinkHolds holds{std::as_const(w.concrete.opening).view(),
-                        std::as_const(w.interface.state).view(), bonds, w.linked_links.view()};
-  const Buffer<Index> near =
-      items_where(w.exec, found.size(),
-                  MayTouch{w.domain.owned_view(), std::as_const(found.key).view(),
-                           std::as_const(found.a).view(), std::as_const(found.b).view(),
-                           w.elements.state.view(), std::as_const(w.travel.margin).view(),
-                           std::as_const(w.linked).view(), holds});
+  w.broad_phase.search(w.exec, boxes, w.elements.id, found, held_pairs(w));
+  const Buffer<Index> near = items_where(
+      w.exec, found.size(),
+      MayTouch{w.domain.owned_view(), std::as_const(found.a).view(), std::as_const(found.b).view(),
+               w.elements.state.view(), std::as_const(w.travel.margin).view()});
   gather_fields(w.exec, near, found);
   book_dropped(w, w.contacts, found);
   w.contacts.replace(w.exec, std::move(found));
@@ -292,7 +294,7 @@ void search(World& w) {
 }  // namespace
 
 MarginRule margin_rule(const World& w) {
-  constexpr double horizon = 30.0;  // steps for which a fast element's margin shall last
+  constexpr double horizon = 50.0;  // steps for which a fast element's margin shall last
   return {w.parameters.search.margin * w.parameters.mean_radius, horizon * w.next_dt,
           w.parameters.largest_margin};
 }

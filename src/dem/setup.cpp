@@ -266,31 +266,29 @@ void move_to(World& w, Space space) {
 }
 
 void set_linked_pairs(World& w) {
-  std::vector<std::pair<PairKey, Index>> linked;
-  std::vector<GlobalId> id;
-  copy_to(id, w.elements.id);
+  std::vector<std::pair<PairKey, Index>> linked;  // key by places: the order by ids
   Index first = 0;
   const auto append = [&](const Buffer<Index>& a, const Buffer<Index>& b) {
     std::vector<Index> ends_a, ends_b;
     copy_to(ends_a, a);
     copy_to(ends_b, b);
     for (std::size_t i = 0; i < ends_a.size(); ++i)
-      linked.emplace_back(pair_key(id[static_cast<std::size_t>(ends_a[i])],
-                                   id[static_cast<std::size_t>(ends_b[i])]),
-                          first + static_cast<Index>(i));
+      linked.emplace_back(pair_key(ends_a[i], ends_b[i]), first + static_cast<Index>(i));
     first += static_cast<Index>(ends_a.size());
   };
   append(w.concrete.a, w.concrete.b);
   append(w.steel.a, w.steel.b);
   append(w.interface.a, w.interface.b);
   std::sort(linked.begin(), linked.end());
-  std::vector<PairKey> keys;
-  std::vector<Index> links;
+  std::vector<Index> starts(static_cast<std::size_t>(w.elements.size()) + 1, 0), partners, links;
   for (const auto& [key, link] : linked) {
-    keys.push_back(key);
+    ++starts[static_cast<std::size_t>(low_id(key)) + 1];
+    partners.push_back(high_id(key));
     links.push_back(link);
   }
-  copy_to(w.linked, keys);
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  copy_to(w.linked_starts, starts);
+  copy_to(w.linked_partners, partners);
   copy_to(w.linked_links, links);
 }
 

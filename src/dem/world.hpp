@@ -120,15 +120,15 @@ struct World {
     state(wall_contacts);
     state(travel);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(contact_pairs, wall_pairs, motions, linked, linked_links, bar_actions, concrete_laws,
-         steel_laws, interface_laws, domain.owned_there, domain.placed);
+    each(contact_pairs, wall_pairs, motions, linked_starts, linked_partners, linked_links,
+         bar_actions, concrete_laws, steel_laws, interface_laws, domain.owned_there, domain.placed);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(bar_incidence, contact_incidence, broad_phase, contact_actions, link_sums, critical,
-         rows_a, rows_b, link_actions, device_walls, clock);
+    each(bar_incidence, contact_incidence, broad_phase, held_partners, contact_actions, link_sums,
+         critical, rows_a, rows_b, link_actions, device_walls, clock);
   }
 
   /// Of all kinds, broken ones included.
@@ -142,14 +142,18 @@ struct World {
   Buffer<ContactPair> contact_pairs;  ///< by two materials
   Buffer<ContactPair> wall_pairs;     ///< by one material
   Buffer<Motion> motions;
-  Buffer<PairKey> linked;      ///< keys of all links, sorted
-  Buffer<Index> linked_links;  ///< of each, its place among concrete, steel and interface links
+  // All links by their ends, rows of compressed form: an element's place and global id ascend
+  // alike.
+  Buffer<Index> linked_starts;    ///< first link of each lower end, and the number of links
+  Buffer<Index> linked_partners;  ///< the higher end of each
+  Buffer<Index> linked_links;     ///< its place among concrete, steel and interface links
 
   // Which part of the whole it is.
   Domain domain;
   LinkNumbers numbers;
 
   // What follows from the state.
+  Buffer<Index> held_partners;  ///< linked_partners, -1 where the link has let go; for a search
   Incidence bar_incidence, contact_incidence;  ///< bars: steel, then interface links
   Sweep sweep;
   BroadPhase broad_phase;
@@ -174,7 +178,7 @@ struct World {
 /// fit
 World make_world(const Config& config, const Model& model, const Exec& exec);
 
-/// All links by the key of their pair, so that a search can leave them out while they hold.
+/// All links by their ends, so that a search can leave them out while they hold.
 void set_linked_pairs(World& w);
 
 /// Fills what follows from the state: incidence lists, scratch arrays. After set-up and loading.

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "exec/error.hpp"
@@ -240,6 +242,35 @@ TEST(BroadPhase, UsesItsMemoryAgainAfterALargerScene) {
     const Scene scene = cloud(random, count, 2.0, 0.1, 0.3);
     broad_phase.search({}, scenes::buffer_of(scene.boxes), scenes::buffer_of(scene.ids), pairs);
     EXPECT_EQ(scenes::listed(pairs), all_against_all(scene));
+  }
+}
+
+TEST(BroadPhase, LeavesKnownPairsOut) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    RandomStream random(seed);
+    Scene scene = cloud(random, 120, seed % 2 == 0 ? 0.5 : 2.0, 0.1, 0.5);  // crowded, and less so
+    shuffle_ids(scene, random);
+    std::vector<GlobalId> ids = scene.ids;
+    std::sort(ids.begin(), ids.end());
+    const auto rank = [&](GlobalId id) {
+      return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+    };
+    std::vector<Index> starts(ids.size() + 1, 0), partners;
+    std::vector<scenes::Expected> expected;
+    for (const scenes::Expected& pair : all_against_all(scene)) {  // by lower, then by higher id
+      const Index kind = random.below(3);
+      if (kind != 0) expected.push_back(pair);
+      if (kind == 2) continue;
+      ++starts[static_cast<std::size_t>(rank(low_id(pair.key))) + 1];
+      partners.push_back(kind == 0 ? rank(high_id(pair.key)) : -1);  // -1: not known after all
+    }
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    const Buffer<Index> rows = scenes::buffer_of(starts), ends = scenes::buffer_of(partners);
+    BroadPhase broad_phase;
+    Pairs pairs;
+    broad_phase.search({}, scenes::buffer_of(scene.boxes), scenes::buffer_of(scene.ids), pairs,
+                       {rows.view(), ends.view()});
+    ASSERT_EQ(scenes::listed(pairs), expected) << "seed " << seed;
   }
 }
 
