@@ -204,6 +204,13 @@ double probe(const World& w, const ProbeConfig& p) {
   return read.reduced(p.reduce, count);
 }
 
+double mode_of(const Joints& joints, Index i) {
+  const JointWork &work = joints.work.data()[i], &handed = joints.handed.data()[i];
+  const double open = std::max(work.open - handed.open, 0.0);
+  const double slide = std::max(work.slide - handed.slide, 0.0);
+  return open + slide > 0.0 ? slide / (open + slide) : 0.0;
+}
+
 std::vector<Crack> cracks(const World& w) {
   const Joints j = host_copy(w.joints);
   std::vector<TriangleNodes> nodes;
@@ -215,11 +222,8 @@ std::vector<Crack> cracks(const World& w) {
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     const JointWork& work = j.work.data()[i];
     const JointWork& handed = j.handed.data()[i];
-    const double open = std::max(work.open - handed.open, 0.0);
-    const double slide = std::max(work.slide - handed.slide, 0.0);
     all.push_back({i, j.broke_at.data()[i], 0.5 * (corner(e.a0) + corner(e.b0)),
-                   0.5 * (corner(e.a1) + corner(e.b1)),
-                   open + slide > 0.0 ? slide / (open + slide) : 0.0,
+                   0.5 * (corner(e.a1) + corner(e.b1)), mode_of(j, i),
                    work.open + work.slide - handed.open - handed.slide});
   }
   std::stable_sort(all.begin(), all.end(),

@@ -21,6 +21,9 @@ std::vector<Sym2> stresses(const World& w);
 
 double probe(const World& w, const ProbeConfig& probe);
 
+/// Share of sliding in what a joint has spent: 0 opening, 1 sliding  [-]
+double mode_of(const Joints& joints, Index i);
+
 /// A joint that broke.
 struct Crack {
   Index joint;

@@ -242,9 +242,7 @@ Frame fdem_frame(const fdem::World& w) {
       f.lines.push_back(static_cast<std::int32_t>(f.position.size()));
       point({0.5 * (a.position + b.position), 0.5 * (a.velocity + b.velocity)});
     }
-    const fdem::JointWork& work = j.work.data()[i];
-    const double open = std::max(work.open, 0.0), slide = std::max(work.slide, 0.0);
-    mode.values.push_back(open + slide > 0.0 ? static_cast<float>(slide / (open + slide)) : 0.0F);
+    mode.values.push_back(static_cast<float>(fdem::mode_of(j, i)));
     double worst = stage == fdem::JointStage::broken ? 1.0 : 0.0;
     for (const auto& p : j.points.data()[i].point) worst = std::max(worst, p.damage);
     damage.values.push_back(static_cast<float>(worst));

@@ -189,6 +189,8 @@ TEST(Handover, energy_goes_on_too) {
     const double held = 0.5 * force.y * depth + force.x * force.x / (4.0 * scale * young);
     EXPECT_NEAR(born.elastic, held, 0.01 * held);
     EXPECT_EQ(born.contact, 0.0);
+    // all that is spent is spent on sliding; pressing is stored, before and after
+    EXPECT_NEAR(cracks(pair.w)[0].mode, 1.0, 1e-3);
     // the trapezoidal rule by which the test sums work, on the elastic parabola of the joint
     const double off = slip * slip * p_f / 12.0;
     EXPECT_NEAR(born.elastic + born.fracture, at_break, 2.0 * off);
