@@ -20,7 +20,7 @@ struct ContactPair {
 /// What a couple of triangles remembers.
 struct CoupleState {
   double drag[6];  ///< tangential force of a's edges through b, then of b's through a  [N/m]
-  double scale;    ///< of its penalty; 0: it is new  [-]
+  double scale;    ///< of its normal penalty; 0: it is new  [-]
   double work;     ///< taken up since it began to touch, friction included  [J/m]
   double slid;     ///< the part of it that friction has spent  [J/m]
   double lost;     ///< what was left of both when it parted: errors of integration  [J/m]
@@ -144,7 +144,7 @@ struct CoupleForces {
       EdgeOverlap o;
       if (!overlap_of_edge(from, to, side == 0 ? of_b : of_a, o)) continue;
       limit[side] = law.friction * penalty * o.whole * norm(to - from);
-      stiffness[side] = kept.scale * law.tangential * (o.end - o.begin);
+      stiffness[side] = law.tangential * (o.end - o.begin);
     }
     // Along either edge, in its own direction, it is the same: both turn.
     const double most = limit[0] + limit[1];
@@ -207,7 +207,7 @@ struct CoupleForces {
       Vec2 rate = -((1.0 - middle) * v[k] + middle * v[next]);
       for (int m = 0; m < 3; ++m)
         rate += (o.at_a[m] + middle * (o.at_b[m] - o.at_a[m])) * target_v[m];
-      const double stiffness = kept.scale * law.tangential * (o.end - o.begin);
+      const double stiffness = law.tangential * (o.end - o.begin);
       const double limit = law.friction * penalty * o.whole * size;
       double pull = drag[k] + stiffness * dt * dot(rate, along);
       const double over = absolute(pull) - limit;
