@@ -5,6 +5,7 @@
 #include "core/step_clock.hpp"
 #include "dem/contacts.hpp"
 #include "dem/elements.hpp"
+#include "dem/link_sums.hpp"
 
 namespace breccia::dem {
 
@@ -32,14 +33,6 @@ struct UsedMargin {
   BR_HD double operator()(Index e) const {
     return beyond(state[e].position, reference[e], margin[e]) ? 1.0 : 0.0;
   }
-};
-
-/// What the concrete links of an element have added up to so far. Zero between two steps.
-struct LinkSums {
-  SixSums as_b;              ///< force, then torque, of links that end at the element  [N, N m]
-  SixFloatSums stiffness_b;  ///< K, then K^theta  [N/m, N m]
-  SixSums as_a;              ///< torque, then minus the force, of links that start there
-  SixFloatSums stiffness_a;  ///< K^theta, then K
 };
 
 /// addForce of Durand 2012, 4.2: each element sums over its own interactions: concrete links in
@@ -71,29 +64,29 @@ struct GatherForces {
     }
   }
 
-  BR_WHOLE BR_HD void operator()(Index e) const {
-    LinkSums& s = sums[e];
-    add(s, bars, bar_actions, e);
-    add(s, contacts, contact_actions, e);
-    finish(e, s);
-    s.as_b = s.as_a = {};
-    s.stiffness_b = s.stiffness_a = {};
+  BR_WHOLE BR_HD void operator()(Index e) const { at<double>(e); }
+  /// Element e and its neighbours in a pack.
+  template <class R>
+  BR_HD void at(Index e) const {
+    add_all<R>(bars, bar_actions, e);
+    add_all<R>(contacts, contact_actions, e);
+    finish(e, totals<R>(sums, fixed, e));
+    for (Index k = 0; k < width_of<R>; ++k) sums[e + k] = LinkSums{};
+  }
+  template <class R>
+  BR_HD void add_all(const IncidenceView& incidence, const View<const Action>& actions,
+                     Index e) const {
+    if (incidence.first(e) == incidence.first(e + width_of<R>)) return;
+    for (Index k = 0; k < width_of<R>; ++k) add(sums[e + k], incidence, actions, e + k);
   }
 
-  /// What follows for an element from all its sums.
-  BR_HD void finish(Index e, const LinkSums& s) const {
-    force[e] = {s.as_b[0] - s.as_a[3], s.as_b[1] - s.as_a[4], s.as_b[2] - s.as_a[5]};
-    torque[e] = {s.as_b[3] + s.as_a[0], s.as_b[4] + s.as_a[1], s.as_b[5] + s.as_a[2]};
-    float straight = 0.0F, turning = 0.0F;  // largest stiffness of a free coordinate
-    for (int c = 0; c < 3; ++c) {
-      const float k = s.stiffness_a[3 + c] + s.stiffness_b[c];
-      const float k_theta = s.stiffness_a[c] + s.stiffness_b[3 + c];
-      if ((fixed[e] >> c & 1) == 0 && k > straight) straight = k;
-      if ((fixed[e] >> (3 + c) & 1) == 0 && k_theta > turning) turning = k_theta;
-    }
-    const double slowest =
-        larger(static_cast<double>(straight) / mass[e], static_cast<double>(turning) / inertia[e]);
-    critical[e] = slowest > 0.0 ? 1.0 / slowest : 1e300;
+  /// What follows for an element, or a pack, from all its sums.
+  template <class R>
+  BR_HD void finish(Index e, const TotalsOf<R>& of) const {
+    store_vectors(force, e, of.force);
+    store_vectors(torque, e, of.torque);
+    const R slowest = larger(of.straight / load<R>(mass, e), of.turning / load<R>(inertia, e));
+    store(critical, e, choose(slowest > 0.0, 1.0 / slowest, constant<R>(largest_least)));
   }
 };
 
@@ -130,7 +123,7 @@ struct GatherRows {
     }
     GatherForces::add(s, gather.bars, gather.bar_actions, e);
     GatherForces::add(s, gather.contacts, gather.contact_actions, e);
-    gather.finish(e, s);
+    gather.finish(e, totals_of(s, gather.fixed[e]));
   }
   BR_HD void set(const Moment&) {}
 };

@@ -76,6 +76,25 @@ struct LeastCritical {
   OwnedView owned;
   BR_HD double operator()(Index e) const { return owned(e) ? critical[e] : largest_least; }
 };
+/// Of the elements of this rank, on a device.
+double least_there(const World& w) {
+  return fold(w.exec, w.elements.size(), largest_least,
+              LeastCritical{w.critical.view(), w.domain.owned_view()}, Least{});
+}
+/// The same on the host.
+double least_here(const World& w) {
+  constexpr Index grain = 4096;
+  const Index count = w.elements.size();
+  std::vector<double> least_of(static_cast<std::size_t>((count + grain - 1) / grain + 1),
+                               largest_least);
+  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
+    double& own = least_of[static_cast<std::size_t>(begin / grain)];
+    each_owned(w.domain, begin, end, [&](Index from, Index to) {
+      own = std::min(own, least(w.lanes, w.critical.view(), from, to));
+    });
+  });
+  return *std::min_element(least_of.begin(), least_of.end());
+}
 
 /// Sums the actions of links as they come. What another run's element, or one that an earlier run
 /// reaches too, gets as b is passed on: that element adds it up in the order of all links.
@@ -242,7 +261,7 @@ void concrete_forces_and_sums(World& w) {
           add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
                     starts[static_cast<std::size_t>(to)], add);
         }
-        for (Index i = std::max(from, sweep.settled[run]); i < to; ++i) gather(i);
+        run_packs(w.lanes, gather, std::max(from, sweep.settled[run]), to);
       }
     }
     // The end of the loop above is a barrier: every link is done.
@@ -255,7 +274,7 @@ void concrete_forces_and_sums(World& w) {
       for (std::size_t before = 0; before <= run; ++before)
         for (const PassedAction& p : sweep.passed[before])
           if (p.b >= begin && p.b < end) add_to_b(gather.sums[p.b], p.action);
-      for (Index i = begin; i < end; ++i) gather(i);
+      run_packs(w.lanes, gather, begin, end);
     }
   }
 }
@@ -270,10 +289,8 @@ void wall_forces(World& w) {
 
 double choose_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
-  const double least =
-      w.domain.least(fold(w.exec, w.elements.size(), largest_least,
-                          LeastCritical{w.critical.view(), w.domain.owned_view()}, Least{}));
-  return step_rule(w)(least, w.last_dt);
+  const double least = w.exec.space == Space::cuda ? least_there(w) : least_here(w);
+  return step_rule(w)(w.domain.least(least), w.last_dt);
 }
 
 }  // namespace breccia::dem

@@ -37,6 +37,25 @@ void run_packs(Lanes lanes, const InterfaceLinkForces& kernel, Index begin, Inde
   run_bars(lanes, kernel, begin, end);
 }
 
+void run_packs([[maybe_unused]] Lanes lanes, const GatherForces& kernel, Index begin, Index end) {
+#if defined(BR_WIDE_LANES)
+  if (lanes == Lanes::eight) begin = PacksAvx512::run(kernel, begin, end);
+  if (lanes == Lanes::four) begin = PacksAvx2::run(kernel, begin, end);
+#endif
+  for (Index e = begin; e < end; ++e) kernel(e);
+}
+
+double least([[maybe_unused]] Lanes lanes, const View<const double>& numbers, Index begin,
+             Index end) {
+  LeastOf least{begin, largest_least};
+#if defined(BR_WIDE_LANES)
+  if (lanes == Lanes::eight) least = PacksAvx512::run(numbers, begin, end);
+  if (lanes == Lanes::four) least = PacksAvx2::run(numbers, begin, end);
+#endif
+  for (Index i = least.end; i < end; ++i) least.number = smaller(numbers[i], least.number);
+  return least.number;
+}
+
 bool run_packs([[maybe_unused]] Lanes lanes, const MoveWithin& kernel, Index begin, Index end) {
   MovedTo moved{begin, false};
 #if defined(BR_WIDE_LANES)

@@ -11,7 +11,11 @@ namespace breccia::dem {
 void run_packs(Lanes lanes, const ConcreteLinkForces& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const SteelLinkForces& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const InterfaceLinkForces& kernel, Index begin, Index end);
-/// Likewise for elements. @returns whether one of them has used its margin up
+/// Likewise for elements.
+void run_packs(Lanes lanes, const GatherForces& kernel, Index begin, Index end);
+/// @returns the least of the numbers [begin, end), none of which is negative
+double least(Lanes lanes, const View<const double>& numbers, Index begin, Index end);
+/// Likewise for elements that move. @returns whether one of them has used its margin up
 bool run_packs(Lanes lanes, const MoveWithin& kernel, Index begin, Index end);
 
 /// How far a kernel came, and whether an element on the way has used its margin up.
@@ -20,18 +24,28 @@ struct MovedTo {
   bool beyond;
 };
 
+/// How far a search for the least number came, and what it is.
+struct LeastOf {
+  Index end;
+  double number;
+};
+
 /// Builds of lanes/kernel_lanes.cpp for one width each; what does not fill a pack is left to the
 /// caller, and so is a pack of bars in which something breaks or has broken. Return where.
 struct PacksAvx2 {
   static Index run(const ConcreteLinkForces& kernel, Index begin, Index end);
   static Index run(const SteelLinkForces& kernel, Index begin, Index end);
   static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
+  static Index run(const GatherForces& kernel, Index begin, Index end);
+  static LeastOf run(const View<const double>& numbers, Index begin, Index end);
   static MovedTo run(const MoveWithin& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
   static Index run(const ConcreteLinkForces& kernel, Index begin, Index end);
   static Index run(const SteelLinkForces& kernel, Index begin, Index end);
   static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
+  static Index run(const GatherForces& kernel, Index begin, Index end);
+  static LeastOf run(const View<const double>& numbers, Index begin, Index end);
   static MovedTo run(const MoveWithin& kernel, Index begin, Index end);
 };
 

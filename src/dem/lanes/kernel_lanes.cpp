@@ -47,6 +47,21 @@ BR_WHOLE Index BR_PACKS::run(const InterfaceLinkForces& kernel, Index begin, Ind
   return i;
 }
 
+BR_WHOLE Index BR_PACKS::run(const GatherForces& kernel, Index begin, Index end) {
+  Index e = begin;
+  for (; e + width <= end; e += width) kernel.at<WidestPack>(e);
+  return e;
+}
+
+BR_WHOLE LeastOf BR_PACKS::run(const View<const double>& numbers, Index begin, Index end) {
+  WidestPack least = constant<WidestPack>(largest_least);
+  Index i = begin;
+  for (; i + width <= end; i += width) least = smaller(load<WidestPack>(numbers, i), least);
+  double number = largest_least;
+  for (Index k = 0; k < width; ++k) number = smaller(least[k], number);
+  return {i, number};
+}
+
 BR_WHOLE MovedTo BR_PACKS::run(const MoveWithin& kernel, Index begin, Index end) {
   MovedTo moved{begin, false};
   for (; moved.end + width <= end; moved.end += width) {
