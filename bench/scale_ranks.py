@@ -3,7 +3,9 @@
 
 Usage: scale_ranks.py CASE [--ranks 1,2,4,8,16,32] [--steps N] [--threads N] [--breccia PROGRAM] [--mpirun PROGRAM]
                       [--set KEY=VALUE]...
-Speed-up counts the wall time of the steps alone, without set-up and output. Every line must show the same hash.
+Speed-up counts the wall time of the steps alone, without set-up and output. Communication is the share of rank 0's stages in which
+ranks hear from each other; waited is the share that ranks wait, of the busiest, on average, and of the idlest. Every line must
+show the same hash.
 """
 import argparse
 import json
@@ -43,7 +45,7 @@ def main():
     parser.add_argument("--set", action="append", default=[])
     options = parser.parse_args()
     print(f"{options.case}, {options.steps} steps, {options.threads} threads a rank, {os.cpu_count()} processors")
-    print("ranks    loop s   speed-up  efficiency  communication  migration  imbalance  copies  sharings  cuts  hash")
+    print("ranks    loop s   speed-up  efficiency  communication  waited: least  mean  most  migration  imbalance  copies  sharings  hash")
     first = hashes = None
     with tempfile.TemporaryDirectory() as folder:
         for ranks in map(int, options.ranks.split(",")):
@@ -52,10 +54,12 @@ def main():
             first = first or loop * ranks
             hashes = hashes or s["state_hash"]
             waiting = sum(stages.get(name, 0.0) for name in WAITING) if ranks > 1 else 0.0
+            waited = domain.get("waited_s", {})
+            shares = "".join(f"{waited.get(which, 0.0) / loop:6.0%}" for which in ("least", "mean", "most"))
             print(f"{ranks:5d} {loop:9.2f} {first / loop:10.2f} {first / loop / ranks:10.0%}"
-                  f" {waiting / loop:13.0%} {stages.get('migration', 0.0) / loop:10.1%}"
+                  f" {waiting / loop:13.0%}        {shares} {stages.get('migration', 0.0) / loop:10.1%}"
                   f" {domain.get('imbalance', 0.0):10.1%} {domain.get('copies', 0.0):7.1%}"
-                  f" {domain.get('sharings', 0):9.0f} {domain.get('cuts', 0):5.0f}  {s['state_hash']}", flush=True)
+                  f" {domain.get('sharings', 0):9.0f}  {s['state_hash']}", flush=True)
             if s["state_hash"] != hashes:
                 sys.exit("the hash depends on the number of ranks")
 

@@ -30,8 +30,9 @@ class Journey {
   Journey(World& w, const std::vector<int>& owner)
       : w_(w), elements_(w.domain.ranks->size()), ties_(w.domain, owner, elements_) {}
 
-  /// Besides the owner, the ranks whose rectangle is within `width` of an element get a copy.
-  void add_copies(double width) {
+  /// Besides the owner, the ranks whose rectangle is within the width of an element get a copy.
+  void add_copies() {
+    const double width = w_.domain.width;
     const Partition& partition = w_.domain.partition;
     for (Index e = 0; e < w_.elements.size(); ++e) {
       if (!w_.domain.owns(e)) continue;
@@ -162,6 +163,7 @@ class Spheres final : public Shareable {
 
   const Buffer<GlobalId>& ids() const override { return w_.elements.id; }
   Vec3 centre(Index e) const override { return w_.elements.state.data()[e].position; }
+  double radius(Index e) const override { return w_.elements.state.data()[e].radius; }
   void each_point(const std::function<void(const Vec3&)>& visit) const override {
     for (const ElementState& s : w_.elements.state.host()) visit(s.position);
   }
@@ -189,16 +191,14 @@ class Spheres final : public Shareable {
         Largest{});
   }
   bool has_left() const override {
-    return fold(w_.exec, w_.elements.size(), 0.0,
-                HasLeft{w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
-                        std::as_const(w_.elements.state).view(),
-                        std::as_const(w_.domain.placed).view()},
-                Largest{}) > 0.0;
+    return fold(w_.exec, w_.elements.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
   }
+  bool has_left(Index e) const override { return has_left_kernel()(e) > 0.0; }
   double largest_margin() const override { return w_.parameters.largest_margin; }
   void send(const std::vector<int>& owner) override {
     Journey journey(w_, owner);
-    journey.add_copies(halo_width(w_));
+    w_.domain.width = halo_width(w_);
+    journey.add_copies();
     journey.go();
   }
   void settle_in() override {
@@ -218,6 +218,11 @@ class Spheres final : public Shareable {
   }
 
  private:
+  HasLeft has_left_kernel() const {
+    return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
+            std::as_const(w_.elements.state).view(), std::as_const(w_.domain.placed).view()};
+  }
+
   World& w_;
   Space space_;
 };

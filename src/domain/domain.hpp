@@ -37,6 +37,12 @@ struct OwnedView {
   BR_HD bool operator()(Index element) const { return owned.size == 0 || owned[element] != 0; }
 };
 
+/// A centre and how far a thing reaches from there.  [m]
+struct Sphere {
+  Vec3 centre;
+  double radius = 0.0;
+};
+
 /// Elements [begin, end).
 struct ElementRun {
   Index begin = 0, end = 0;
@@ -52,9 +58,14 @@ struct Domain {
   double margin = 0.0;         ///< largest of the search that copies are held for  [m]
   Buffer<std::uint8_t> owned;  ///< 1: this rank owns the element; empty when alone; on the host
   Buffer<std::uint8_t> owned_there;  ///< the same where kernels can read it
-  Buffer<Vec3> placed;       ///< where each stood when they were shared out last; likewise  [m]
-  std::vector<Copy> copies;  ///< of others' elements that this rank holds
-  Halo halo;                 ///< of all copies
+  Buffer<Vec3> placed;  ///< where each stood when they were shared out last; likewise  [m]
+  /// Then: how far beyond their own radius elements reached others of the same rank, with the way
+  /// that both may go until the next time.  [m]
+  double width = 0.0;
+  std::vector<Sphere> placed_around;  ///< then: around each element, on the host
+  std::int64_t mean_load = 0;         ///< then, of all ranks  [-]
+  std::vector<Copy> copies;           ///< of others' elements that this rank holds
+  Halo halo;                          ///< of all copies
   /// Of the copies that own elements feel: all that must follow their owners in every step. The
   /// others do before a search.
   Halo felt;

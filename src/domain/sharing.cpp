@@ -26,6 +26,41 @@ std::int64_t sum_of(const std::vector<Load>& loads) {
   return sum;
 }
 
+/// Whether copies of an own element, or of what is near it, may be missing somewhere: it has left
+/// the buffer and matters now to ranks that do not hold it, or is no longer at home
+/// (docs/theory-domain.md, section 2).
+bool strays(const Domain& d, const Shareable& elements, Index e, double largest) {
+  const Sphere& then = d.placed_around[static_cast<std::size_t>(e)];
+  const Vec3 centre = elements.centre(e) - d.drifted;
+  const double radius = elements.radius(e);
+  if (!(radius <= largest)) return true;
+  bool at_home = false, held = true;
+  d.partition.each_near(centre, d.buffer, [&](int r) { at_home |= r == d.ranks->rank(); });
+  d.partition.each_near(centre, radius + d.width - d.buffer, [&](int now) {
+    bool before = false;
+    d.partition.each_near(then.centre, then.radius + d.width, [&](int r) { before |= r == now; });
+    held = held && before;
+  });
+  return !at_home || !held;
+}
+
+/// Whether this rank's load has become too much. On devices elements must be fetched to know.
+bool has_grown(const Domain& d, const Shareable& elements) {
+  if (!d.config.balance || elements.space() != Space::host) return false;
+  const auto then = static_cast<double>(std::max(d.counts.load, d.mean_load));
+  return static_cast<double>(sum_of(elements.loads())) > (1.0 + 2.0 * d.config.imbalance) * then;
+}
+
+bool some_stray(const Domain& d, const Shareable& elements) {
+  if (!elements.has_left()) return false;
+  if (elements.space() != Space::host) return true;  // not looked at one by one
+  double largest = 0.0;
+  for (const Sphere& then : d.placed_around) largest = std::max(largest, then.radius);
+  for (Index e = 0; e < elements.ids().size(); ++e)
+    if (d.owns(e) && elements.has_left(e) && strays(d, elements, e, largest)) return true;
+  return false;
+}
+
 }  // namespace
 
 std::vector<int> owners(const Partition& partition, const Shareable& elements) {
@@ -90,17 +125,24 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
   std::vector<Vec3> placed;
   elements.each_point([&](const Vec3& point) { placed.push_back(point); });
   copy_to(d.placed, placed);
+  d.placed_around.clear();
+  for (Index e = 0; e < count; ++e)
+    d.placed_around.push_back({elements.centre(e), elements.radius(e)});
   copy_to(d.owned_there, d.owned);
   d.halo.build(*d.ranks, elements.ids(), d.copies, elements.space());
   d.counts.copies = d.halo.copies();
   d.counts.owned = count - d.halo.copies();
   d.counts.load = sum_of(elements.loads());
+  std::vector<std::int64_t> all{d.counts.load};
+  d.ranks->add_up(all);
+  d.mean_load = all[0] / d.ranks->size();
   ++d.counts.migrations;
   elements.settle_in();
 }
 
 void share_if_needed(Domain& d, Shareable& elements) {
-  const bool beyond = elements.has_left() || !(elements.margin() <= d.margin);
+  const bool beyond =
+      some_stray(d, elements) || !(elements.margin() <= d.margin) || has_grown(d, elements);
   if (!d.any(beyond)) return;
   elements.come_to_host();
   share_anew(d, elements, false);

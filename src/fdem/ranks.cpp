@@ -65,8 +65,9 @@ class Journey {
   Journey(World& w, const std::vector<int>& owner)
       : w_(w), triangles_(w.domain.ranks->size()), ties_(w.domain, owner, triangles_) {}
 
-  /// Besides the owner, the ranks whose rectangle is within `width` of a triangle get a copy.
-  void add_copies(double width) {
+  /// Besides the owner, the ranks whose rectangle is within the width of a triangle get a copy.
+  void add_copies() {
+    const double width = w_.domain.width;
     for (Index t = 0; t < w_.triangles.size(); ++t) {
       if (!w_.domain.owns(t)) continue;
       const TriangleNodes& nodes = w_.triangles.nodes.data()[t];
@@ -294,6 +295,7 @@ class Mesh final : public Shareable {
 
   const Buffer<GlobalId>& ids() const override { return w_.triangles.id; }
   Vec3 centre(Index t) const override { return centroid(w_.triangles.nodes.data()[t]); }
+  double radius(Index t) const override { return fdem::radius(w_.triangles.nodes.data()[t]); }
   void each_point(const std::function<void(const Vec3&)>& visit) const override {
     for (const TriangleNodes& nodes : w_.triangles.nodes.host())
       for (const NodeState& n : nodes.at) visit({n.position.x, n.position.y, 0.0});
@@ -321,16 +323,14 @@ class Mesh final : public Shareable {
     return margin_rule(w_).margin({fastest, 0.0, 0.0});
   }
   bool has_left() const override {
-    return fold(w_.exec, w_.triangles.size(), 0.0,
-                HasLeft{w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
-                        w_.domain.drifted, std::as_const(w_.triangles.nodes).view(),
-                        std::as_const(w_.domain.placed).view()},
-                Largest{}) > 0.0;
+    return fold(w_.exec, w_.triangles.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
   }
+  bool has_left(Index e) const override { return has_left_kernel()(e) > 0.0; }
   double largest_margin() const override { return margin_rule(w_).largest; }
   void send(const std::vector<int>& owner) override {
     Journey journey(w_, owner);
-    journey.add_copies(halo_width(w_));
+    w_.domain.width = halo_width(w_);
+    journey.add_copies();
     journey.go();
   }
   void settle_in() override {
@@ -341,6 +341,11 @@ class Mesh final : public Shareable {
   }
 
  private:
+  HasLeft has_left_kernel() const {
+    return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(), w_.domain.drifted,
+            std::as_const(w_.triangles.nodes).view(), std::as_const(w_.domain.placed).view()};
+  }
+
   World& w_;
   Space space_;
 };
