@@ -168,8 +168,8 @@ class Spheres final : public Shareable {
     for (const ElementState& s : w_.elements.state.host()) visit(s.position);
   }
   std::vector<Load> loads() const override {
-    // By what they cost, in units of some 12 ns on one core (bench/NOTES.md).
-    constexpr std::int64_t element = 3, end_of_link = 1, other_end = 3;
+    // By what they cost, in units of some 6 ns on one core (bench/NOTES.md).
+    constexpr std::int64_t element = 5, end_of_link = 2, other_end = 3;
     std::vector<std::int64_t> weight(static_cast<std::size_t>(w_.elements.size()), element);
     const auto add = [&weight](const Buffer<Index>& ends, std::int64_t cost) {
       for (const Index e : ends.host()) weight[static_cast<std::size_t>(e)] += cost;
