@@ -3,13 +3,18 @@
 namespace breccia::fdem {
 namespace {
 
+/// Packs where they can be taken whole, the others one by one.
 template <class Kernel>
 void run_widest([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end) {
 #if defined(BR_WIDE_LANES)
-  if (lanes == Lanes::eight) begin = PacksAvx512::run(kernel, begin, end);
-  if (lanes == Lanes::four) begin = PacksAvx2::run(kernel, begin, end);
+  for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
+    begin = lanes == Lanes::eight ? PacksAvx512::run(kernel, begin, end)
+                                  : PacksAvx2::run(kernel, begin, end);
+    if (end - begin < width) break;
+    for (const Index next = begin + width; begin < next; ++begin) kernel(begin);
+  }
 #endif
-  for (Index i = begin; i < end; ++i) kernel(i);
+  for (; begin < end; ++begin) kernel(begin);
 }
 
 }  // namespace

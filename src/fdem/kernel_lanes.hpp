@@ -11,8 +11,9 @@ void run_packs(Lanes lanes, const JointForces& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const TriangleForces& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
 
-/// Builds of lanes/kernel_lanes.cpp for one width each; what does not fill a pack is left to the
-/// caller. Return where.
+/// Builds of lanes/kernel_lanes.cpp for one width each. Return where they stop: at what does not
+/// fill a pack, or at a pack that is not as most are. Both are left to the caller, whose build runs
+/// on every processor.
 struct PacksAvx2 {
   static Index run(const JointForces& kernel, Index begin, Index end);
   static Index run(const TriangleForces& kernel, Index begin, Index end);

@@ -40,6 +40,20 @@ TEST(FdemRanks, leave_the_same_state_where_all_flies_through_the_borders) {
   }
 }
 
+// Nothing but the disc itself, far from where it was shared out, asks for it to be done anew.
+TEST(FdemRanks, leave_the_same_state_where_one_strays_far_and_hits) {
+  const Scene scene = shot();
+  const Outcome expected = alone(scene, 7000);
+  EXPECT_LT(expected.energies[0], 0.9 * alone(scene, 100).energies[0]);  // it has hit
+  DomainConfig config;
+  config.balance = false;
+  for (const int count : {3, 5, 7}) {
+    const Shared shared = on_ranks(count, scene, 7000, config);
+    EXPECT_EQ(shared.outcome, expected) << count << " ranks";
+    EXPECT_GT(shared.counts.migrations, 1) << count << " ranks";
+  }
+}
+
 TEST(FdemRanks, leave_the_same_state_on_any_number_of_threads_each) {
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     const Scene scene = impact(joints);

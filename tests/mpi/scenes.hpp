@@ -94,6 +94,28 @@ inline Scene box() {
   return scene;
 }
 
+/// A small disc that flies far, from one plate past others to the last.
+inline Scene shot() {
+  Scene scene;
+  fdem::MaterialConfig& m = scene.material(30e9, 0.2, 2500.0);
+  m.joints = "intrinsic";
+  m.friction = 0.5;
+  m.joint.tension = 20e6;
+  m.joint.cohesion = 60e6;
+  m.joint.energy_open = 20.0;
+  m.joint.energy_slide = 60.0;
+  scene.config.time.evaluate_every = 50;
+  const auto block = [&](const char* name, const Vec2& middle, const Vec2& size) {
+    scene.body(name, prepare::equilateral_rectangle({middle, size}, 5e-3));
+  };
+  scene.body("disc", prepare::ringed_disc({-0.045, 0.0}, 4e-3, 4e-3), 0, {100.0, 0.0});
+  block("muzzle", {-0.065, 0.0}, {0.02, 0.04});
+  block("above", {-0.03, 0.016}, {0.02, 0.02});
+  block("below", {-0.03, -0.016}, {0.02, 0.02});
+  block("plate", {0.0, 0.0}, {0.02, 0.04});
+  return scene;
+}
+
 inline std::unique_ptr<Method> method_of(const Slab& slab, const Exec& exec, Communicator* ranks) {
   return make_dem_method(slab.config, *slab.model, exec, ranks);
 }

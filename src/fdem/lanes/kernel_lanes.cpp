@@ -11,10 +11,7 @@ constexpr Index width = width_of<WidestPack>;
 
 Index BR_PACKS::run(const JointForces& kernel, Index begin, Index end) {
   Index i = begin;
-  for (; i + width <= end; i += width) {
-    if (kernel.whole_at<WidestPack>(i)) continue;
-    for (Index k = i; k < i + width; ++k) kernel(k);
-  }
+  while (i + width <= end && kernel.whole_at<WidestPack>(i)) i += width;
   return i;
 }
 
@@ -26,10 +23,7 @@ Index BR_PACKS::run(const TriangleForces& kernel, Index begin, Index end) {
 
 Index BR_PACKS::run(const MoveTriangles& kernel, Index begin, Index end) {
   Index t = begin;
-  for (; t + width <= end; t += width) {
-    if (kernel.free_at<WidestPack>(t)) continue;
-    for (Index k = t; k < t + width; ++k) kernel(k);
-  }
+  while (t + width <= end && kernel.free_at<WidestPack>(t)) t += width;
   return t;
 }
 
