@@ -1,23 +1,8 @@
 #include "dem/kernel_lanes.hpp"
 
+#include "exec/whole_packs.hpp"
+
 namespace breccia::dem {
-namespace {
-
-/// Packs where they can be taken whole, the others link by link.
-template <class Kernel>
-void run_bars([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end) {
-#if defined(BR_WIDE_LANES)
-  for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
-    begin = lanes == Lanes::eight ? PacksAvx512::run(kernel, begin, end)
-                                  : PacksAvx2::run(kernel, begin, end);
-    if (end - begin < width) break;
-    for (const Index next = begin + width; begin < next; ++begin) kernel(begin);
-  }
-#endif
-  for (; begin < end; ++begin) kernel(begin);
-}
-
-}  // namespace
 
 void run_packs([[maybe_unused]] Lanes lanes, const ConcreteLinkForces& kernel, Index begin,
                Index end) {
@@ -31,10 +16,10 @@ void run_packs([[maybe_unused]] Lanes lanes, const ConcreteLinkForces& kernel, I
 }
 
 void run_packs(Lanes lanes, const SteelLinkForces& kernel, Index begin, Index end) {
-  run_bars(lanes, kernel, begin, end);
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
 void run_packs(Lanes lanes, const InterfaceLinkForces& kernel, Index begin, Index end) {
-  run_bars(lanes, kernel, begin, end);
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
 
 void run_packs([[maybe_unused]] Lanes lanes, const GatherForces& kernel, Index begin, Index end) {
