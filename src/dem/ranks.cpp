@@ -30,14 +30,12 @@ class Journey {
   Journey(World& w, const std::vector<int>& owner)
       : w_(w), elements_(w.domain.ranks->size()), ties_(w.domain, owner, elements_) {}
 
-  /// Besides the owner, the ranks whose rectangle is within the width of an element get a copy.
+  /// Besides the owner, the ranks whose elements may touch one get a copy.
   void add_copies() {
-    const double width = w_.domain.width;
-    const Partition& partition = w_.domain.partition;
     for (Index e = 0; e < w_.elements.size(); ++e) {
       if (!w_.domain.owns(e)) continue;
       const ElementState& s = w_.elements.state.data()[e];
-      partition.each_near(s.position, s.radius + width, [&](int r) { elements_.add(r, e); });
+      w_.domain.each_sharer({s.position, s.radius}, [&](int r) { elements_.add(r, e); });
     }
   }
 
@@ -103,16 +101,6 @@ class Journey {
   Deliveries elements_;
   Ties ties_;
 };
-
-/// How far beyond their own radius elements reach others of the same rank, until they are shared
-/// out again (docs/theory-domain.md, section 2).
-double halo_width(const World& w) {
-  double largest = 0.0;
-  for (const ElementState& s : w.elements.state.host()) largest = std::max(largest, s.radius);
-  largest = -w.domain.least(-largest);
-  const double width = largest + 2.0 * w.domain.margin + 2.0 * w.domain.buffer;
-  return width * (1.0 + 1e-6);
-}
 
 /// Links of each group lie together in memory, as in the whole model.
 template <class Law>
@@ -197,7 +185,6 @@ class Spheres final : public Shareable {
   double largest_margin() const override { return w_.parameters.largest_margin; }
   void send(const std::vector<int>& owner) override {
     Journey journey(w_, owner);
-    w_.domain.width = halo_width(w_);
     journey.add_copies();
     journey.go();
   }

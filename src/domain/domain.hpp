@@ -8,6 +8,7 @@
 #include "core/case_config.hpp"
 #include "domain/halo.hpp"
 #include "domain/partition.hpp"
+#include "domain/sharing_sets.hpp"
 
 namespace breccia {
 
@@ -37,12 +38,6 @@ struct OwnedView {
   BR_HD bool operator()(Index element) const { return owned.size == 0 || owned[element] != 0; }
 };
 
-/// A centre and how far a thing reaches from there.  [m]
-struct Sphere {
-  Vec3 centre;
-  double radius = 0.0;
-};
-
 /// Elements [begin, end).
 struct ElementRun {
   Index begin = 0, end = 0;
@@ -58,10 +53,8 @@ struct Domain {
   double margin = 0.0;         ///< largest of the search that copies are held for  [m]
   Buffer<std::uint8_t> owned;  ///< 1: this rank owns the element; empty when alone; on the host
   Buffer<std::uint8_t> owned_there;  ///< the same where kernels can read it
-  Buffer<Vec3> placed;  ///< where each stood when they were shared out last; likewise  [m]
-  /// Then: how far beyond their own radius elements reached others of the same rank, with the way
-  /// that both may go until the next time.  [m]
-  double width = 0.0;
+  Buffer<Vec3> placed;       ///< where each stood when they were shared out last; likewise  [m]
+  SharingSets sharing_sets;  ///< then
   std::vector<Sphere> placed_around;  ///< then: around each element, on the host
   std::int64_t mean_load = 0;         ///< then, of all ranks  [-]
   std::vector<Copy> copies;           ///< of others' elements that this rank holds
@@ -79,6 +72,12 @@ struct Domain {
 
   bool alone() const { return ranks == nullptr; }
   bool owns(Index element) const { return alone() || owned.data()[element] != 0; }
+
+  /// While elements are shared out: calls visit(rank) for each rank that needs the one there.
+  template <class Visit>
+  void each_sharer(const Sphere& element, const Visit& visit) const {
+    sharing_sets.each_sharer(partition, element, sharing_sets.buffer(element.radius), visit);
+  }
 
   OwnedView owned_view() const { return {owned_there.view()}; }
 

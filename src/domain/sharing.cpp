@@ -29,16 +29,20 @@ std::int64_t sum_of(const std::vector<Load>& loads) {
 /// Whether copies of an own element, or of what is near it, may be missing somewhere: it has left
 /// the buffer and matters now to ranks that do not hold it, or is no longer at home
 /// (docs/theory-domain.md, section 2).
-bool strays(const Domain& d, const Shareable& elements, Index e, double largest) {
+bool strays(const Domain& d, const Shareable& elements, Index e) {
+  const SharingSets& sets = d.sharing_sets;
   const Sphere& then = d.placed_around[static_cast<std::size_t>(e)];
-  const Vec3 centre = elements.centre(e) - d.drifted;
-  const double radius = elements.radius(e);
-  if (!(radius <= largest)) return true;
+  const Sphere now{elements.centre(e) - d.drifted, elements.radius(e)};
   bool at_home = false, held = true;
-  d.partition.each_near(centre, d.buffer, [&](int r) { at_home |= r == d.ranks->rank(); });
-  d.partition.each_near(centre, radius + d.width - d.buffer, [&](int now) {
+  if (sets.is_large(then.radius)) {
+    at_home = sets.is_within(now, then);
+  } else if (!sets.is_large(now.radius)) {
+    d.partition.each_near(now.centre, d.buffer, [&](int r) { at_home |= r == d.ranks->rank(); });
+  }
+  sets.each_sharer(d.partition, now, 0.0, [&](int wanted) {
     bool before = false;
-    d.partition.each_near(then.centre, then.radius + d.width, [&](int r) { before |= r == now; });
+    sets.each_sharer(d.partition, then, sets.buffer(then.radius),
+                     [&](int r) { before |= r == wanted; });
     held = held && before;
   });
   return !at_home || !held;
@@ -54,10 +58,8 @@ bool has_grown(const Domain& d, const Shareable& elements) {
 bool some_stray(const Domain& d, const Shareable& elements) {
   if (!elements.has_left()) return false;
   if (elements.space() != Space::host) return true;  // not looked at one by one
-  double largest = 0.0;
-  for (const Sphere& then : d.placed_around) largest = std::max(largest, then.radius);
   for (Index e = 0; e < elements.ids().size(); ++e)
-    if (d.owns(e) && elements.has_left(e) && strays(d, elements, e, largest)) return true;
+    if (d.owns(e) && elements.has_left(e) && strays(d, elements, e)) return true;
   return false;
 }
 
@@ -93,6 +95,21 @@ void begin_sharing(Domain& d, Communicator& ranks, const DomainConfig& config,
       Partition(ranks.size(), low, -minus_high - low, mean_size / config.refinement, depth);
 }
 
+namespace {
+
+void build_sharing_sets(Domain& d, const Shareable& elements, const std::vector<int>& owner) {
+  std::vector<Sphere> own;
+  std::vector<int> owner_of_own;
+  for (Index e = 0; e < elements.ids().size(); ++e) {
+    if (!d.owns(e)) continue;
+    own.push_back({elements.centre(e), elements.radius(e)});
+    owner_of_own.push_back(owner[static_cast<std::size_t>(e)]);
+  }
+  d.sharing_sets.build(*d.ranks, own, owner_of_own, {d.margin, d.buffer, d.config.buffer});
+}
+
+}  // namespace
+
 void share_anew(Domain& d, Shareable& elements, bool first) {
   d.partition.move(d.drifted);
   d.drifted = {};
@@ -106,9 +123,11 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
   std::vector<GlobalId> mine;  // before
   for (Index e = 0; e < elements.ids().size(); ++e)
     if (d.owns(e)) mine.push_back(elements.ids().data()[e]);
-  elements.send(owners(d.partition, elements));
+  std::vector<int> owner = owners(d.partition, elements);
+  build_sharing_sets(d, elements, owner);
+  elements.send(owner);
 
-  const std::vector<int> owner = owners(d.partition, elements);
+  owner = owners(d.partition, elements);
   const Index count = elements.ids().size();
   d.owned.resize(count);
   for (Index e = 0; e < count; ++e) {

@@ -65,14 +65,12 @@ class Journey {
   Journey(World& w, const std::vector<int>& owner)
       : w_(w), triangles_(w.domain.ranks->size()), ties_(w.domain, owner, triangles_) {}
 
-  /// Besides the owner, the ranks whose rectangle is within the width of a triangle get a copy.
+  /// Besides the owner, the ranks whose triangles may touch one get a copy.
   void add_copies() {
-    const double width = w_.domain.width;
     for (Index t = 0; t < w_.triangles.size(); ++t) {
       if (!w_.domain.owns(t)) continue;
       const TriangleNodes& nodes = w_.triangles.nodes.data()[t];
-      w_.domain.partition.each_near(centroid(nodes), radius(nodes) + width,
-                                    [&](int r) { triangles_.add(r, t); });
+      w_.domain.each_sharer({centroid(nodes), radius(nodes)}, [&](int r) { triangles_.add(r, t); });
     }
   }
 
@@ -195,16 +193,6 @@ class Journey {
   Ties ties_;
   Buffer<Neighbourhood> lies_;
 };
-
-/// How far beyond their own corners triangles reach others of the same rank, until they are shared
-/// out again (docs/theory-domain.md, section 2).
-double halo_width(const World& w) {
-  double largest = 0.0;
-  for (const TriangleNodes& nodes : w.triangles.nodes.host())
-    largest = std::max(largest, radius(nodes));
-  largest = -w.domain.least(-largest);
-  return (largest + 2.0 * w.domain.margin + 2.0 * w.domain.buffer) * (1.0 + 1e-6);
-}
 
 /// What follows from the triangles and joints that are here.
 /// @param space  where the triangles go when they have settled in
@@ -329,7 +317,6 @@ class Mesh final : public Shareable {
   double largest_margin() const override { return margin_rule(w_).largest; }
   void send(const std::vector<int>& owner) override {
     Journey journey(w_, owner);
-    w_.domain.width = halo_width(w_);
     journey.add_copies();
     journey.go();
   }

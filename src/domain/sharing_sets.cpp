@@ -1,0 +1,70 @@
+#include "domain/sharing_sets.hpp"
+
+#include <array>
+#include <cstring>
+
+namespace breccia {
+namespace {
+
+/// The largest radius that most elements are below: no more than one of 64 is above it, and those
+/// at the top are at least half as large again. Otherwise the largest of all.  [m]
+double common_radius(Communicator& ranks, const std::vector<Sphere>& elements) {
+  constexpr std::size_t rungs = 48;
+  constexpr double rung = 1.189207115002721, fewer = 1.0 / 64.0, much = 1.5;  // 2^(1/4)
+  double largest = 0.0;
+  for (const Sphere& e : elements) largest = std::max(largest, e.radius);
+  largest = -ranks.least(-largest);
+  if (!(largest > 0.0)) return largest;
+  std::array<double, rungs> bound;
+  for (std::size_t i = 0; i < rungs; ++i) bound[i] = i == 0 ? largest : bound[i - 1] / rung;
+  std::array<std::int64_t, rungs + 1> above{};  // each bound, and all elements
+  for (const Sphere& e : elements)
+    for (std::size_t i = rungs; i-- > 0 && e.radius > bound[i];) ++above[i];
+  above[rungs] = static_cast<std::int64_t>(elements.size());
+  ranks.add_up(above);
+  std::size_t lowest = 0;
+  while (lowest + 1 < rungs &&
+         static_cast<double>(above[lowest + 1]) <= fewer * static_cast<double>(above[rungs]))
+    ++lowest;
+  double common = 0.0;
+  for (const Sphere& e : elements)
+    if (e.radius <= bound[lowest]) common = std::max(common, e.radius);
+  common = -ranks.least(-common);
+  return largest > much * common ? common : largest;
+}
+
+}  // namespace
+
+double SharingSets::buffer(double radius) const {
+  return is_large(radius) ? std::max(leeway_.buffer, leeway_.per_size * 2.0 * radius)
+                          : leeway_.buffer;
+}
+
+void SharingSets::build(Communicator& ranks, const std::vector<Sphere>& elements,
+                        const std::vector<int>& owners, const Leeway& leeway) {
+  leeway_ = leeway;
+  constexpr double stretched = 1.05;  // an element may be, meanwhile
+  common_ = stretched * common_radius(ranks, elements);
+  Message own;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const Sphere& s = elements[e];
+    if (!is_large(s.radius)) continue;
+    const Large l{0.0, s.centre, (s.radius + buffer(s.radius)) * (1.0 + 1e-6), owners[e]};
+    const auto* const bytes = reinterpret_cast<const std::byte*>(&l);
+    own.insert(own.end(), bytes, bytes + sizeof l);
+  }
+  large_.clear();
+  for (const Message& came : ranks.from_all(own))
+    for (std::size_t at = 0; at < came.size(); at += sizeof(Large))
+      std::memcpy(&large_.emplace_back(), came.data() + at, sizeof(Large));
+  widest_ = 0.0;
+  for (const Large& l : large_) widest_ = std::max(widest_, l.width);
+  row_width_ = 2.0 * (common_ + widest_ + reach());
+  if (!(row_width_ > 0.0)) row_width_ = 1.0;
+  for (Large& l : large_) l.row = std::floor(l.centre.x / row_width_);
+  std::sort(large_.begin(), large_.end(), [](const Large& a, const Large& b) {
+    return a.row < b.row || (a.row == b.row && a.centre.y < b.centre.y);
+  });
+}
+
+}  // namespace breccia

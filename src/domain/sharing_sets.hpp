@@ -1,0 +1,96 @@
+#pragma once
+// Which ranks hold an element: the sharing sets P(e) of Lukas et al. 2014, section 3.1.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "domain/partition.hpp"
+
+namespace breccia {
+
+/// A centre and how far a thing reaches from there.  [m]
+struct Sphere {
+  Vec3 centre;
+  double radius = 0.0;
+};
+
+/// How far elements may go until they are shared out anew.
+struct Leeway {
+  double margin = 0.0;    ///< largest of a search  [m]
+  double buffer = 0.0;    ///< way of an element of the mean size  [m]
+  double per_size = 0.0;  ///< way of a larger one, over its size  [-]
+};
+
+/// An element is held by each rank that owns one which may touch it before elements are shared out
+/// anew (docs/theory-domain.md, section 2). Most elements are of about one size: these are taken to
+/// be everywhere in the rectangle of their rank. The few that are much larger are told of to all
+/// ranks, one by one: they would widen what all others need.
+class SharingSets {
+ public:
+  /// Every rank calls it with what it owns until now.
+  /// @param elements  where they are
+  /// @param owners    whose they will be
+  void build(Communicator& ranks, const std::vector<Sphere>& elements,
+             const std::vector<int>& owners, const Leeway& leeway);
+
+  /// Way from its place that an element of this radius may go.  [m]
+  double buffer(double radius) const;
+  bool is_large(double radius) const { return radius > common_; }
+  /// Whether a large element has stayed within its buffer, with all its surface.
+  bool is_within(const Sphere& now, const Sphere& then) const {
+    const double grown = std::max(0.0, now.radius - then.radius);
+    return largest(now.centre - then.centre) + grown <= buffer(then.radius);
+  }
+
+  /// Calls visit(rank), once or more, for each rank that owns an element which may touch this one
+  /// after this one has gone `way` further, along each axis.
+  /// @param partition  where rectangles were when the sets were built
+  template <class Visit>
+  void each_sharer(const Partition& partition, const Sphere& e, double way,
+                   const Visit& visit) const {
+    partition.each_near(e.centre, e.radius + common_ + reach() + leeway_.buffer + way, visit);
+    const double near = e.radius + reach() + way;
+    each_row(e.centre.x, near + widest_, [&](auto l, auto end) {
+      const double low = e.centre.y - near - widest_, high = e.centre.y + near + widest_;
+      l = std::partition_point(l, end, [low](const Large& f) { return f.centre.y < low; });
+      for (; l != end && l->centre.y <= high; ++l)
+        if (largest(l->centre - e.centre) <= near + l->width) visit(l->owner);
+    });
+  }
+
+  Index large_count() const { return static_cast<Index>(large_.size()); }
+
+ private:
+  struct Large {
+    double row;  ///< of the plane, parallel to y
+    Vec3 centre;
+    double width;  ///< radius and buffer  [m]
+    int owner;
+  };
+  double reach() const { return 2.0 * leeway_.margin; }
+  static double largest(const Vec3& v) {
+    return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+  }
+  /// Calls visit(first, end) for the large elements of each row that is near.
+  template <class Visit>
+  void each_row(double x, double near, const Visit& visit) const {
+    const auto before = [](const Large& l, double row) { return l.row < row; };
+    const auto after = [](double row, const Large& l) { return row < l.row; };
+    const double last = std::floor((x + near) / row_width_);
+    auto l =
+        std::lower_bound(large_.begin(), large_.end(), std::floor((x - near) / row_width_), before);
+    while (l != large_.end() && l->row <= last) {
+      const auto end = std::upper_bound(l, large_.end(), l->row, after);
+      visit(l, end);
+      l = end;
+    }
+  }
+
+  Leeway leeway_;
+  double common_ = 0.0;  ///< largest radius of those that are not told of one by one  [m]
+  double widest_ = 0.0, row_width_ = 1.0;
+  std::vector<Large> large_;  ///< by row, then by y
+};
+
+}  // namespace breccia
