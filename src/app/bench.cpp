@@ -11,6 +11,7 @@
 #include "app/benchmarks.hpp"
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
+#include "domain/domain.hpp"
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 
@@ -21,56 +22,92 @@ struct BenchCommand {
   std::vector<std::string> names;
   std::string file;
   bool paced = false;
+  RankScale scale;
   RunOptions options;
 
-  void refuse_unknown() const {
+  template <class List>
+  static bool holds(const List& list, const std::string& name) {
+    return std::any_of(list.begin(), list.end(),
+                       [&](const auto& benchmark) { return benchmark.name == name; });
+  }
+  template <class Benchmark>
+  bool wanted(const Benchmark& benchmark) const {
+    return std::find(names.begin(), names.end(), benchmark.name) != names.end();
+  }
+
+  void refuse_unknown(const Communicator* ranks) const {
     std::string known;
     for (const Benchmark& benchmark : benchmarks())
       known += fmt::format("\n  {:<24} {}", benchmark.name, benchmark.meaning);
+    for (const RankBenchmark& benchmark : rank_benchmarks())
+      known += fmt::format("\n  {:<24} {}", benchmark.name, benchmark.meaning);
     for (const std::string& name : names)
-      if (std::none_of(benchmarks().begin(), benchmarks().end(),
-                       [&](const Benchmark& benchmark) { return benchmark.name == name; }))
-        throw InputError(fmt::format("{} is not a benchmark; there are:{}", name,
-                                     known.empty() ? " none" : known));
+      if (!holds(benchmarks(), name) && !holds(rank_benchmarks(), name))
+        throw InputError(fmt::format("{} is not a benchmark; there are:{}", name, known));
+    if (ranks == nullptr) return;
+    for (const std::string& name : names)
+      if (!holds(rank_benchmarks(), name))
+        throw InputError(name + " is no benchmark of several ranks; start it without mpirun");
+    if (names.empty() || paced)
+      throw InputError("name the benchmarks that several ranks make together: weak_slabs, ...");
   }
 
-  void execute() const {
-    refuse_unknown();
-    const Exec exec = exec_of(options, nullptr);
+  void execute(Communicator* ranks) const {
+    refuse_unknown(ranks);
+    Exec exec;
+    together_or_not(ranks, [&] { exec = exec_of(options, ranks); });
     if (paced) {
       pace_slab(std::cin, std::cout, exec);
       return;
     }
     std::vector<std::pair<std::string, std::vector<Measurement>>> all;
-    fmt::print("{}, {} threads\n", processor_name(), exec.threads);
-    for (const Benchmark& benchmark : benchmarks()) {
-      if (!names.empty() && std::find(names.begin(), names.end(), benchmark.name) == names.end())
-        continue;
-      all.emplace_back(benchmark.name, benchmark.measure(exec));
-      fmt::print("\n{}", benchmark_table(all.back().first, all.back().second));
+    if (leads(ranks)) fmt::print("{}, {} threads\n", processor_name(), exec.threads);
+    const auto add = [&](const char* name, std::vector<Measurement> measured) {
+      all.emplace_back(name, std::move(measured));
+      if (leads(ranks)) fmt::print("\n{}", benchmark_table(all.back().first, all.back().second));
       std::fflush(stdout);
-    }
-    if (!file.empty()) replace_file(file, benchmark_json(all, exec, options.device));
+    };
+    for (const Benchmark& benchmark : benchmarks())
+      if (names.empty() || wanted(benchmark)) add(benchmark.name, benchmark.measure(exec));
+    for (const RankBenchmark& benchmark : rank_benchmarks())
+      if (wanted(benchmark)) add(benchmark.name, benchmark.measure(exec, ranks, scale));
+    together_or_not(ranks, [&] {
+      if (!file.empty() && leads(ranks))
+        replace_file(file, benchmark_json(all, exec, options.device));
+    });
   }
 };
 
 }  // namespace
 
-void add_bench(CLI::App& program) {
+void add_bench(CLI::App& program, Communicator* ranks) {
   const auto bench = std::make_shared<BenchCommand>();
   CLI::App* const command = program.add_subcommand("bench", "measure how fast this machine is");
-  command->add_option("NAME", bench->names, "which benchmarks; default: all");
+  command->add_option("NAME", bench->names, "which benchmarks; default: all of one rank");
   command->add_option("--json", bench->file, "write the numbers to this file")->type_name("FILE");
   command->add_option("--device", bench->options.device, "where to compute: cpu, cuda or cuda:N")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--threads", bench->options.threads, "host threads; default: all")
+  command
+      ->add_option("--threads", bench->options.threads,
+                   "host threads of each rank; default: its share of the machine")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   command->add_flag(
       "--paced", bench->paced,
       "run the slab as told on standard input: 'steps N', 'until T', 'export FOLDER'");
-  command->callback([bench] { bench->execute(); });
+  command
+      ->add_option("--elements", bench->scale.elements,
+                   "of each rank in weak_..., of all in strong_...")
+      ->type_name("N")
+      ->check(CLI::Range(1, 2'000'000'000));
+  command
+      ->add_option("--window-steps", bench->scale.steps,
+                   "steps of a window of weak_... and strong_...")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command->callback([bench, ranks] { bench->execute(ranks); });
 }
 
 }  // namespace breccia::app

@@ -18,4 +18,13 @@ const std::vector<Benchmark>& benchmarks() {
   return list;
 }
 
+const std::vector<RankBenchmark>& rank_benchmarks() {
+  static const std::vector<RankBenchmark> list{
+      {"weak_slabs", "as many of the paper's slabs for each rank", measure_weak_slabs},
+      {"strong_slabs", "the same slabs shared by all ranks", measure_strong_slabs},
+      {"weak_plate", "FDEM: as many joined triangles for each rank", measure_weak_plate},
+      {"strong_plate", "FDEM: the same triangles shared by all ranks", measure_strong_plate}};
+  return list;
+}
+
 }  // namespace breccia::app

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "run/benchmark.hpp"
+#include "run/benchmark_ranks.hpp"
 
 namespace breccia::app {
 
@@ -15,5 +16,15 @@ struct Benchmark {
 };
 
 const std::vector<Benchmark>& benchmarks();
+
+/// One that ranks make together. They run only when they are named.
+struct RankBenchmark {
+  const char* name;
+  const char* meaning;  ///< one line for people
+  std::vector<Measurement> (*measure)(const Exec& exec, Communicator* ranks,
+                                      const RankScale& scale);
+};
+
+const std::vector<RankBenchmark>& rank_benchmarks();
 
 }  // namespace breccia::app

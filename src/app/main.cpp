@@ -84,7 +84,7 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   breccia::app::add_keys(program);
   breccia::app::add_info(program);
   breccia::app::add_render(program);
-  breccia::app::add_bench(program);
+  breccia::app::add_bench(program, ranks);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
     const std::unique_ptr<breccia::Communicator> ranks = breccia::launched_ranks();
     const std::string command = argc > 1 ? argv[1] : "";
     const bool several = ranks && ranks->size() > 1;
-    const bool shared = several && (command == "run" || command == "resume");
+    const bool shared = several && (command == "run" || command == "resume" || command == "bench");
     if (several && ranks->rank() != 0 && !shared) return 0;  // the first rank does it
     return guarded(argc, argv, shared ? ranks.get() : nullptr);
   } catch (const breccia::Error& error) {  // of MPI itself

@@ -15,10 +15,12 @@ namespace breccia::dem {
 namespace {
 
 struct HashElement {
+  OwnedView owned;
   View<const GlobalId> id;
   View<const ElementState> state;
   View<const Quaternion> orientation;
   BR_HD std::uint64_t operator()(Index e) const {
+    if (!owned(e)) return 0;
     ItemHash hash(id[e]);
     hash.add(state[e].position);
     hash.add(state[e].velocity);
@@ -209,7 +211,8 @@ class Pieces {
 std::uint64_t state_hash(const World& w) {
   const Elements& e = w.elements;
   return fold(w.exec, e.size(), std::uint64_t{0},
-              HashElement{e.id.view(), e.state.view(), e.orientation.view()}, Sum{});
+              HashElement{w.domain.owned_view(), e.id.view(), e.state.view(), e.orientation.view()},
+              Sum{});
 }
 
 void verify(const World& w) {

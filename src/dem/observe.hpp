@@ -6,6 +6,7 @@
 namespace breccia::dem {
 
 /// Hash of positions, velocities, spins and orientations of all elements by global id.
+/// A rank's is that of its own; the sum over all ranks is that of the whole.
 std::uint64_t state_hash(const World& w);
 
 /// @throws NumericsError naming the first element whose state is not finite or that moves more than

@@ -260,16 +260,20 @@ World share_out(const World& whole, Communicator& ranks, const DomainConfig& con
   note_numbers(w.steel_groups);
   note_numbers(w.interface_groups);
   if (ranks.rank() != 0) drop_state(w);
-  take_time_from_first(ranks, w);
-  for (Wall& wall : w.walls) take_from_first(ranks, wall);
-  w.ledger = {};  // what this rank books from here on
   number(w.numbers.concrete, w.concrete.size());
   number(w.numbers.steel, w.steel.size());
   number(w.numbers.interface, w.interface.size());
-  Spheres spheres(w, space);
-  begin_sharing(w.domain, ranks, config, spheres, 2.0 * w.parameters.mean_radius, 3);
-  share_anew(w.domain, spheres, true);
-  return w;
+  return share_parts(std::move(w), ranks, config, space);
+}
+
+World share_parts(World part, Communicator& ranks, const DomainConfig& config, Space space) {
+  take_time_from_first(ranks, part);
+  for (Wall& wall : part.walls) take_from_first(ranks, wall);
+  part.ledger = {};  // what this rank books from here on
+  Spheres spheres(part, space);
+  begin_sharing(part.domain, ranks, config, spheres, 2.0 * part.parameters.mean_radius, 3);
+  share_anew(part.domain, spheres, true);
+  return part;
 }
 
 void migrate(World& w) {

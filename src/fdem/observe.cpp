@@ -19,9 +19,11 @@ std::size_t at(Index i) {
 }
 
 struct HashTriangle {
+  OwnedView owned;
   View<const GlobalId> id;
   View<const TriangleNodes> nodes;
   BR_HD std::uint64_t operator()(Index t) const {
+    if (!owned(t)) return 0;
     ItemHash hash(id[t]);
     for (const NodeState& n : nodes[t].at) {
       hash.add(n.position.x);
@@ -126,7 +128,8 @@ struct RulingOf {
 
 std::uint64_t state_hash(const World& w) {
   const Triangles& t = w.triangles;
-  return fold(w.exec, t.size(), std::uint64_t{0}, HashTriangle{t.id.view(), t.nodes.view()}, Sum{});
+  return fold(w.exec, t.size(), std::uint64_t{0},
+              HashTriangle{w.domain.owned_view(), t.id.view(), t.nodes.view()}, Sum{});
 }
 
 void verify(const World& w) {

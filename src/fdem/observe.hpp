@@ -7,6 +7,7 @@
 namespace breccia::fdem {
 
 /// Hash of positions and velocities of all triangles' corners by global id.
+/// A rank's is that of its own; the sum over all ranks is that of the whole.
 std::uint64_t state_hash(const World& w);
 
 /// @throws NumericsError naming the first triangle that is inside out, not finite, or moves more

@@ -411,13 +411,21 @@ World share_out(World& whole, Communicator& ranks, const DomainConfig& config, S
     drop_state(w);
     w.mesh.joint_number.resize(0);
   }
-  take_common(w, ranks);
-  w.ledger = {};  // what this rank books from here on
-  Mesh mesh(w, space);
-  begin_sharing(w.domain, ranks, config, mesh, w.parameters.mean_edge, 2);
-  w.domain.drifted_until = w.time;
-  share_anew(w.domain, mesh, true);
-  return w;
+  const std::vector<std::uint8_t> all(at(w.triangles.size()), 1);
+  return share_parts(std::move(w), all, ranks, config, space);
+}
+
+World share_parts(World part, const std::vector<std::uint8_t>& own, Communicator& ranks,
+                  const DomainConfig& config, Space space) {
+  if (part.mesh.tied.empty()) note_mesh(part);
+  take_common(part, ranks);
+  part.ledger = {};  // what this rank books from here on
+  Mesh mesh(part, space);
+  begin_sharing(part.domain, ranks, config, mesh, part.parameters.mean_edge, 2);
+  copy_to(part.domain.owned, own);
+  part.domain.drifted_until = part.time;
+  share_anew(part.domain, mesh, true);
+  return part;
 }
 
 void migrate(World& w) {

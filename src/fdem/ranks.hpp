@@ -16,6 +16,12 @@ namespace breccia::fdem {
 /// @param space  of the part
 World share_out(World& whole, Communicator& ranks, const DomainConfig& config,
                 Space space = Space::host);
+/// The same where each rank has made a part of its own, on the host: the triangles that `own` marks
+/// and copies of those across their edges. Ids, vertices and joint_number are those of the whole
+/// mesh, and so are the parameters, holds, marks of vertices and bundles. Couples are yet to be
+/// found.
+World share_parts(World part, const std::vector<std::uint8_t>& own, Communicator& ranks,
+                  const DomainConfig& config, Space space);
 
 /// Shares triangles out anew, if some have left the buffer since it was done last, with all that
 /// they own (Lukas 2014, 3.5); first moves the borders if loads have become uneven (section 4).

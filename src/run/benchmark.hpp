@@ -15,6 +15,7 @@ struct Measurement {
   std::string name;  ///< "ns_per_link_step", ...
   std::string unit;
   double median, least, most;  ///< over the windows; all equal if there is only one
+  std::string text = {};       ///< instead of the numbers: a hash
 };
 
 /// The slab of Durand et al. 2012, section 5: whole steps before and during the impact, by stage;

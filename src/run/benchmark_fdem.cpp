@@ -9,24 +9,12 @@
 #include "fdem/world.hpp"
 #include "prepare/build_fdem.hpp"
 #include "run/benchmark.hpp"
+#include "run/benchmark_scenes.hpp"
 #include "run/machine.hpp"
 #include "run/measurements.hpp"
 
 namespace breccia {
 namespace {
-
-/// Granite, as in cases/brazilian_disc. Laws stay as they are here, so that numbers compare over
-/// time.
-fdem::Config granite() {
-  fdem::Config config;
-  config.method = "fdem2d";
-  config.time.evaluate_every = 100;
-  fdem::MaterialConfig rock;
-  rock.name = "rock";
-  rock.damping = 0.1;
-  config.materials.push_back(rock);
-  return config;
-}
 
 /// A plate of about `count` triangles, all joined, that rings: it starts at 1 m/s between supports.
 fdem::Config ringing_plate(int count) {

@@ -88,9 +88,13 @@ std::string benchmark_json(const std::vector<std::pair<std::string, std::vector<
                      {"build", {{"type", build.type}, {"compiler", build.compiler}}}};
   json["benchmarks"] = Json::object();
   for (const auto& [name, measurements] : all)
-    for (const Measurement& m : measurements)
-      json["benchmarks"][name][m.part][m.name] = {
-          {"value", m.median}, {"min", m.least}, {"max", m.most}, {"unit", m.unit}};
+    for (const Measurement& m : measurements) {
+      Json& entry = json["benchmarks"][name][m.part][m.name];
+      if (m.text.empty())
+        entry = {{"value", m.median}, {"min", m.least}, {"max", m.most}, {"unit", m.unit}};
+      else
+        entry = m.text;
+    }
   return json.dump(2) + "\n";
 }
 
@@ -100,6 +104,10 @@ std::string benchmark_table(const std::string& name, const std::vector<Measureme
   for (const Measurement& m : measurements) {
     if (m.part != part) table += fmt::format(" {}\n", m.part);
     part = m.part;
+    if (!m.text.empty()) {
+      table += fmt::format("  {:<32} {:>12}\n", m.name, m.text);
+      continue;
+    }
     table += fmt::format("  {:<32} {:>12.6g}", m.name, m.median);
     table += m.least == m.most ? fmt::format(" {:>25}", "")
                                : fmt::format(" {:>12.6g} {:>12.6g}", m.least, m.most);

@@ -79,14 +79,31 @@ dem::Config slab_scene(double scale) {
   return config;
 }
 
+fdem::Config granite() {
+  fdem::Config config;
+  config.method = "fdem2d";
+  config.time.evaluate_every = 100;
+  fdem::MaterialConfig rock;
+  rock.name = "rock";
+  rock.damping = 0.1;
+  config.materials.push_back(rock);
+  return config;
+}
+
 dem::Model side_by_side(const dem::Model& one, int copies) {
+  return side_by_side(one, TileRun{0, copies, copies});
+}
+
+dem::Model side_by_side(const dem::Model& one, const TileRun& copies) {
   constexpr double pitch = 2.0;
-  const auto row = static_cast<int>(std::lround(std::sqrt(copies)));
-  dem::Model all = one;
+  const auto row = static_cast<int>(std::lround(std::sqrt(copies.count)));
+  dem::Model all;
+  all.groups = one.groups;
+  all.interaction_range = one.interaction_range;
   const auto append = [](auto& to, const auto& from) {
     to.insert(to.end(), from.begin(), from.end());
   };
-  for (int copy = 1; copy < copies; ++copy) {
+  for (int copy = copies.first; copy < copies.last; ++copy) {
     const Index first = all.size();
     const Vec3 shift{pitch * (copy % row), pitch * (copy / row), 0.0};
     append(all.group, one.group);

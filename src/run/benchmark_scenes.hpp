@@ -1,8 +1,9 @@
 #pragma once
-// The slab that benchmarks run, built without a file.
+// Scenes that benchmarks run, built without a file.
 
 #include "dem/config.hpp"
 #include "dem/model.hpp"
+#include "fdem/config.hpp"
 
 namespace breccia {
 
@@ -13,7 +14,18 @@ namespace breccia {
 /// @param scale  1: 14,274 elements; 2.7: 99,262  [-]
 dem::Config slab_scene(double scale);
 
+/// Tiles [first, last) of `count` equal ones.
+struct TileRun {
+  int first = 0, last = 1, count = 1;
+};
+
 /// So many copies of a model in rows, 2 m apart.
 dem::Model side_by_side(const dem::Model& one, int copies);
+/// Only those of them that a rank builds.
+dem::Model side_by_side(const dem::Model& one, const TileRun& copies);
+
+/// Granite, as in cases/brazilian_disc. Laws stay as they are here, so that numbers compare over
+/// time.
+fdem::Config granite();
 
 }  // namespace breccia

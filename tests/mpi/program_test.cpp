@@ -101,6 +101,26 @@ TEST_F(ProgramOnRanks, box_leaves_the_same_files) {
   compare("moving_box", 250, "5e-3");
 }
 
+TEST_F(ProgramOnRanks, strong_benchmark_ends_in_the_state_of_one_process) {
+  const auto hash_of = [&](int ranks, const std::string& name) {
+    const std::string file = out(name + std::to_string(ranks) + ".json");
+    EXPECT_EQ(run(ranks, "bench " + name +
+                             " --elements 2000 --window-steps 10 --threads 1 --json " + file),
+              0);
+    const std::string text = bytes_of(file), key = "\"hash\": \"";
+    const std::size_t at = text.find(key);
+    EXPECT_NE(at, std::string::npos) << text;
+    return at == std::string::npos ? std::string() : text.substr(at + key.size(), 16);
+  };
+  EXPECT_EQ(hash_of(2, "strong_plate"), hash_of(1, "strong_plate"));
+  EXPECT_NE(hash_of(2, "weak_plate"), hash_of(1, "weak_plate"));  // twice the plate
+}
+
+TEST_F(ProgramOnRanks, a_benchmark_of_one_rank_is_refused) {
+  EXPECT_EQ(run(2, "bench search", out("told")), 2);
+  EXPECT_NE(bytes_of(out("told")).find("without mpirun"), std::string::npos);
+}
+
 TEST_F(ProgramOnRanks, a_bad_case_is_told_once_with_exit_code_2) {
   EXPECT_EQ(
       run(3, "run " BR_SOURCE_DIR "/cases/rc_slab/small.toml --set time.safty=1 -o " + out("bad"),
