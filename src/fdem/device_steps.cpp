@@ -97,6 +97,67 @@ struct MoveAndWatch {
 #endif
 };
 
+/// Of so many joints on, whole ones have a launch of their own: the rare work on the others needs
+/// so many registers that few whole ones run at once beside it. With fewer a launch more costs
+/// more.
+constexpr Index fewest_joints_apart = 250'000;
+
+/// Joints that are whole and stay so; the others are listed for DamagedJoints, in any order.
+struct WholeJoints {
+  static constexpr const char* name = "fdem.whole_joints";
+  JointForces all;
+  View<Index> listed;
+  Index *count, *next_count;  ///< listed in this step, and in the next, which begins with none
+
+  BR_HD void set(const Moment& now) { all.set(now); }
+#if defined(__CUDACC__)
+  struct Ready {
+    JointEnds ends;
+    Index law;
+    double length, strength;
+    JointStage stage;
+    double corner[4][4];
+  };
+  __device__ void prepare(Index i, Ready& ready) const {
+    ready.ends = all.ends[i];
+    ready.stage = all.stage[i];
+    ready.law = read_now(&all.law[i]);
+    ready.length = read_now(&all.length[i]);
+    ready.strength = read_now(&all.strength[i]);
+  }
+  __device__ void fetch(Index, Ready& ready) const {
+    const JointEnds& e = ready.ends;
+    const Index at[4] = {e.a0, e.a1, e.b0, e.b1};
+    for (int k = 0; k < 4; ++k) {
+      const NodeState node = read_record_now(&all.nodes[at[k]]);
+      __builtin_memcpy(ready.corner[k], &node, sizeof node);
+    }
+  }
+  __device__ void operator()(Index i, const Ready& ready) const {
+    if (i == 0) *next_count = 0;
+    if (ready.stage == JointStage::dormant) return;
+    if (ready.stage == JointStage::whole &&
+        all.elastic_at(i, ready.corner, Indices<double>{ready.law}, ready.strength, ready.length))
+      return;
+    listed[atomicAdd(count, 1)] = i;
+  }
+#endif
+};
+
+/// The listed joints, by so many threads in all.
+struct DamagedJoints {
+  static constexpr const char* name = "fdem.damaged_joints";
+  static constexpr Index threads = 132 * 128;
+  JointForces all;
+  View<const Index> listed;
+  const Index* count;
+
+  BR_HD void set(const Moment& now) { all.set(now); }
+  BR_HD void operator()(Index i) const {
+    for (Index k = i; k < *count; k += threads) all.damaged_at(listed[k]);
+  }
+};
+
 #if defined(__CUDACC__)
 /// TriangleForces that read ahead what joints and couples do not write.
 struct TrianglesAhead {
@@ -258,8 +319,21 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
     for_each(exec, w.joints.size(), by(overshoot_kernel(w)));
     for_each(exec, 1, by(WatchReached{w.reached.view(), &clock->wanted}));
   }
-  for_each_part(part(w.couples.size(), by(couple_kernel(w)),
-                     part(w.joints.size(), by(joint_kernel(w)), Parts<>{})));
+  const Index joints = w.joints.size();
+  if (joints < fewest_joints_apart) {
+    for_each_part(
+        part(w.couples.size(), by(couple_kernel(w)), part(joints, by(joint_kernel(w)), Parts<>{})));
+  } else {
+    const Index turn = clock == w.clock.data() ? 0 : 1;
+    Index* const counts = w.damaged_count.data();
+    for_each_part(
+        part(joints,
+             by(WholeJoints{joint_kernel(w), w.damaged.view(), counts + turn, counts + 1 - turn}),
+             Parts<>{}));
+    const DamagedJoints damaged{joint_kernel(w), std::as_const(w.damaged).view(), counts + turn};
+    for_each_part(part(w.couples.size(), by(couple_kernel(w)),
+                       part(DamagedJoints::threads, by(damaged), Parts<>{})));
+  }
   constexpr Index most_threads = 132 * 128;
   const Index threads = triangles < most_threads ? triangles : most_threads;
   for_each_part(part(
@@ -331,6 +405,12 @@ void place_reach(World& w) {
 Advanced advance_on_device(World& w, const StopAt& stop) {
   if (w.amplitudes.empty() && w.clock.empty()) list_amplitudes(w);
   if (w.graph.empty()) place_reach(w);
+  w.damaged.resize(w.joints.size() < fewest_joints_apart ? 0 : w.joints.size());
+  w.damaged_count.resize(2);
+  const auto forget_damaged = [&] {
+    clear_bytes(w.damaged_count.data(), w.exec.space, 2 * sizeof(Index));
+  };
+  forget_damaged();
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
   return run_ahead(
       w.clock, w.graph, end_of_step(w), host, stop,
@@ -341,6 +421,7 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
         insertion ? evaluate_forces(w) : find_couples(w);
         w.graph.clear();
         place_reach(w);
+        forget_damaged();
         return insertion;
       });
 }
