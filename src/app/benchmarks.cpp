@@ -11,8 +11,10 @@ const std::vector<Benchmark>& benchmarks() {
       {"packing", "disordered packings of a box", measure_packing},
       {"triangles", "FDEM: plates of 10,000 to a million joined triangles", measure_triangles},
       {"contact", "FDEM: hexagons from far apart to pressed together", measure_contact},
+      {"heap", "FDEM: as many hexagons as the moving box, on a GPU a hundred times", measure_heap},
       {"slabs", "many of the paper's slabs, to a million elements, on a GPU to ten", measure_slabs},
-      {"most_slabs", "28.5 million elements on a GPU", measure_most_slabs},
+      {"roofline", "each kernel on a GPU against the bytes that it moves", measure_roofline},
+      {"most_slabs", "62.8 million elements on a GPU", measure_most_slabs},
       {"largest_plate", "FDEM: 50 million joined triangles on a GPU", measure_largest_plate},
       {"slab100k", "the slab with 99,262 elements", measure_large_slab}};
   return list;

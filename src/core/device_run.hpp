@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/timed.hpp"
+#include "exec/device.hpp"
+#include "exec/launch_times.hpp"
 #include "exec/step_graph.hpp"
 
 namespace breccia {
@@ -76,10 +78,15 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
                    const HostTimes& host, const StopAt& stop, const LaunchStep& launch_step,
                    const LaunchRest& launch_rest, const OnHalt& on_halt) {
   constexpr std::chrono::milliseconds slice{50};
-  constexpr std::int64_t few = 4;     // steps of a graph: even, so that the first clock is the last
-  constexpr std::int64_t ahead = 12;  // steps launched before the device has begun them
+  constexpr std::int64_t few = 4;  // steps of a graph: even, so that the first clock is the last
   const auto begin = std::chrono::steady_clock::now();
+  const std::int64_t ahead = LaunchTimes::wanted() ? 2 : 12;  // launched before they have begun
   const auto late = [&] { return std::chrono::steady_clock::now() - begin > slice; };
+  const auto launch_two = [&] {
+    StepClock* const c = clock.data();
+    launch_step(StepClocks{c, c + 1});
+    launch_step(StepClocks{c + 1, c});
+  };
   Advanced taken;
   std::int32_t open = 0;
   for (;;) {
@@ -89,13 +96,15 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
                                   static_cast<double>(stop.step - host.step));
     for (std::int64_t launched = 0, seen = 0; static_cast<double>(launched) < needed;) {
       if (launched - seen < ahead) {
+        if (LaunchTimes::wanted()) {
+          launch_two();
+          wait_for_device();
+          launched += 2;
+          continue;
+        }
         if (graph.empty())
           graph.record([&] {
-            StepClock* const c = clock.data();
-            for (std::int64_t i = 0; i < few; i += 2) {
-              launch_step(StepClocks{c, c + 1});
-              launch_step(StepClocks{c + 1, c});
-            }
+            for (std::int64_t i = 0; i < few; i += 2) launch_two();
           });
         graph.replay();
         launched += few;

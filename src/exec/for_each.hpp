@@ -6,6 +6,8 @@
 // text. It writes only what it owns, so any number of threads gives the same bits.
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "exec/space.hpp"
 #if defined(__CUDACC__)
 #include "exec/cuda.hpp"
+#include "exec/launch_times.hpp"
 #endif
 
 namespace breccia {
@@ -77,10 +80,23 @@ __device__ inline void follow_previous() {
 #endif
 }
 
-/// Launches a kernel that begins with follow_previous().
-template <class... Parameters>
-void launch(void (*kernel)(Parameters...), Index blocks, Index threads,
+/// What profilers call a kernel: its own name, or that of the one it wraps.
+template <class Kernel>
+std::string name_of(const Kernel& kernel) {
+  if constexpr (requires { Kernel::name; })
+    return Kernel::name;
+  else if constexpr (requires { kernel.kernel; })
+    return name_of(kernel.kernel);
+  else
+    return "a loop";
+}
+
+/// Launches a kernel that begins with follow_previous(). `named` is what it runs.
+template <class Named, class... Parameters>
+void launch(const Named& named, void (*kernel)(Parameters...), Index blocks, Index threads,
             const std::type_identity_t<Parameters>&... arguments) {
+  std::optional<TimedLaunch> timed;
+  if (LaunchTimes::wanted()) timed.emplace(name_of(named));
   cudaLaunchAttribute early{};
   early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
   early.val.programmaticStreamSerializationAllowed = 1;
@@ -89,7 +105,7 @@ void launch(void (*kernel)(Parameters...), Index blocks, Index threads,
   how.blockDim = dim3(static_cast<unsigned>(threads));
   how.stream = device_stream();
   how.attrs = &early;
-  how.numAttrs = launches_overlap() ? 1 : 0;
+  how.numAttrs = launches_overlap() && !timed ? 1 : 0;
   check_device(cudaLaunchKernelEx(&how, kernel, arguments...), "a launch");
 }
 
@@ -149,6 +165,16 @@ struct Parts<First, Rest...> {
     run_item(kernel, block * block_size + static_cast<Index>(threadIdx.x), count, 0);
   }
 };
+/// Those of its parts that have items.
+inline std::string name_of(const Parts<>&) {
+  return "";
+}
+template <class First, class... Rest>
+std::string name_of(const Parts<First, Rest...>& parts) {
+  const std::string rest = name_of(parts.rest);
+  if (parts.count <= 0) return rest;
+  return name_of(parts.kernel) + (rest.empty() ? "" : " + ") + rest;
+}
 template <class All>
 __global__ void __launch_bounds__(block_size) launch_parts(All all) {
   all.run(static_cast<Index>(blockIdx.x));
@@ -209,7 +235,8 @@ void for_each(const Exec& exec, Index count, const Kernel& kernel) {
   if (count <= 0) return;
 #if defined(__CUDACC__)
   if (exec.space == Space::cuda) {
-    launch(launch_kernel<Kernel>, (count + block_size - 1) / block_size, block_size, count, kernel);
+    launch(kernel, launch_kernel<Kernel>, (count + block_size - 1) / block_size, block_size, count,
+           kernel);
     return;
   }
 #endif
@@ -232,7 +259,7 @@ void for_each(const Exec& exec, Index count, const Kernel& kernel) {
 template <class... Kernels>
 void for_each_part(const Parts<Kernels...>& parts) {
   const Index blocks = parts.blocks();
-  if (blocks > 0) launch(launch_parts<Parts<Kernels...>>, blocks, block_size, parts);
+  if (blocks > 0) launch(parts, launch_parts<Parts<Kernels...>>, blocks, block_size, parts);
 }
 template <class First, class... Rest>
 Parts<First, Rest...> part(Index count, const First& kernel, const Parts<Rest...>& rest) {
@@ -243,8 +270,8 @@ Parts<First, Rest...> part(Index count, const First& kernel, const Parts<Rest...
 template <class Kernel, class Note>
 void for_each_noting(Index count, const Kernel& kernel, const Note& note) {
   constexpr int threads = 128;
-  launch(launch_and_note<threads, Kernel, Note>, (count + threads - 1) / threads, threads, count,
-         kernel, note);
+  launch(kernel, launch_and_note<threads, Kernel, Note>, (count + threads - 1) / threads, threads,
+         count, kernel, note);
 }
 #endif
 
@@ -279,8 +306,8 @@ Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
     if (count <= 0) return neutral;
     const Index blocks = std::min((count + block_size - 1) / block_size, Index{528});
     Buffer<std::byte> partial(Space::cuda, static_cast<Index>(sizeof(Value)) * blocks);
-    launch(fold_blocks<Value, Kernel, Combine>, blocks, block_size, count, neutral, kernel, combine,
-           reinterpret_cast<Value*>(partial.data()));
+    launch(kernel, fold_blocks<Value, Kernel, Combine>, blocks, block_size, count, neutral, kernel,
+           combine, reinterpret_cast<Value*>(partial.data()));
     std::vector<Partial> of_block(static_cast<std::size_t>(blocks), Partial{neutral});
     copy_bytes(of_block.data(), Space::host, partial.data(), Space::cuda,
                of_block.size() * sizeof(Value));

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "exec/launch_times.hpp"
 #include "exec/space.hpp"
 
 namespace breccia {
@@ -28,10 +29,11 @@ class StageTimers {
   std::map<std::string, Entry, std::less<>> stages_;
 };
 
-/// Books the time from its construction to its end under one stage name.
+/// Books the time from its construction to its end under one stage name, which profilers see too.
 class StageTime {
  public:
-  StageTime(const Exec& exec, const char* stage) : timers_(exec.timers), stage_(stage) {
+  StageTime(const Exec& exec, const char* stage)
+      : range_(stage), timers_(exec.timers), stage_(stage) {
     if (timers_ != nullptr) start_ = std::chrono::steady_clock::now();
   }
   StageTime(const StageTime&) = delete;
@@ -43,6 +45,7 @@ class StageTime {
   }
 
  private:
+  ProfileRange range_;
   StageTimers* timers_;
   const char* stage_;
   std::chrono::steady_clock::time_point start_;

@@ -186,7 +186,7 @@ std::vector<Measurement> measure_slabs(const Exec& exec) {
 
 std::vector<Measurement> measure_most_slabs(const Exec& exec) {
   std::vector<Measurement> result;
-  if (exec.space == Space::cuda) report_slabs(exec, 2000, 15, result);
+  if (exec.space == Space::cuda) report_slabs(exec, 4400, 15, result);
   return result;
 }
 

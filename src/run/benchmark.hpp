@@ -26,7 +26,7 @@ std::vector<Measurement> measure_large_slab(const Exec& exec);
 /// Many of the paper's slabs side by side, during the impact: 100,000 to 1 million elements, on a
 /// GPU to 10 million.
 std::vector<Measurement> measure_slabs(const Exec& exec);
-/// The most slabs that a GPU was tried with: 28.5 million elements, 100 steps. Nothing on a host.
+/// As many slabs as an H200 holds: 62.8 million elements, 105 steps. Nothing on a host.
 std::vector<Measurement> measure_most_slabs(const Exec& exec);
 /// The slab on one thread and on all threads of `exec`, in alternating windows.
 std::vector<Measurement> measure_threads(const Exec& exec);
@@ -43,6 +43,12 @@ std::vector<Measurement> measure_triangles(const Exec& exec);
 std::vector<Measurement> measure_largest_plate(const Exec& exec);
 /// Whole FDEM steps of 8,000 hexagons that fly together, from far apart to pressed together.
 std::vector<Measurement> measure_contact(const Exec& exec);
+/// The same near each other, as many as in cases/moving_box, and on a GPU a hundred times as many.
+std::vector<Measurement> measure_heap(const Exec& exec);
+
+/// Time of each kernel on a GPU and the share of the copy's speed at which it moves its bytes.
+/// Nothing on a host.
+std::vector<Measurement> measure_roofline(const Exec& exec);
 
 /// Runs the slab as told line by line, so that another program can be measured in alternating
 /// windows. Each line is answered by one line of JSON.

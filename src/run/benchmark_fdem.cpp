@@ -139,9 +139,8 @@ void report_plate(const Exec& exec, int count, int steps, std::vector<Measuremen
   StageTimers timers;
   Exec timed = exec;
   timed.timers = &timers;
-  const fdem::Config config = ringing_plate(count);
   fdem::World w(timed);
-  const double setup = seconds_of([&] { w = fdem::make_world(config, model_of(config), timed); });
+  const double setup = seconds_of([&] { w = plate_world(timed, count); });
   const std::string part = "plate of " + std::to_string(count);
   report_steps(w, timers, part, steps, result);
   result.push_back(once(part, "setup", setup, "s"));
@@ -150,6 +149,18 @@ void report_plate(const Exec& exec, int count, int steps, std::vector<Measuremen
 }
 
 }  // namespace
+
+fdem::World plate_world(const Exec& exec, int count) {
+  const fdem::Config config = ringing_plate(count);
+  return fdem::make_world(config, model_of(config), exec);
+}
+
+fdem::World heap_world(const Exec& exec, int count) {
+  const fdem::Config config = flying_hexagons(count);
+  fdem::Model model = model_of(config);
+  spread(model, {"near, gap 50 um", 5e-5, 1.0});
+  return fdem::make_world(config, model, exec);
+}
 
 std::vector<Measurement> measure_triangles(const Exec& exec) {
   std::vector<Measurement> result;
@@ -164,6 +175,19 @@ std::vector<Measurement> measure_triangles(const Exec& exec) {
 std::vector<Measurement> measure_largest_plate(const Exec& exec) {
   std::vector<Measurement> result;
   if (exec.space == Space::cuda) report_plate(exec, 50'000'000, 30, result);
+  return result;
+}
+
+std::vector<Measurement> measure_heap(const Exec& exec) {
+  std::vector<Measurement> result;
+  for (const int count : {32'400, 3'240'000}) {
+    if (count > 100'000 && exec.space != Space::cuda) continue;  // minutes
+    StageTimers timers;
+    Exec timed = exec;
+    timed.timers = &timers;
+    fdem::World w = heap_world(timed, count);
+    report_steps(w, timers, std::to_string(count) + " hexagons", 40, result);
+  }
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include "dem/config.hpp"
 #include "dem/model.hpp"
 #include "fdem/config.hpp"
+#include "fdem/world.hpp"
 
 namespace breccia {
 
@@ -27,5 +28,11 @@ dem::Model side_by_side(const dem::Model& one, const TileRun& copies);
 /// Granite, as in cases/brazilian_disc. Laws stay as they are here, so that numbers compare over
 /// time.
 fdem::Config granite();
+
+/// A plate of about so many triangles, all joined, that rings.
+fdem::World plate_world(const Exec& exec, int count);
+
+/// So many hexagons of six free triangles that fly together, 4.4 couples within reach a triangle.
+fdem::World heap_world(const Exec& exec, int count);
 
 }  // namespace breccia
