@@ -33,6 +33,17 @@ void fill_rectangle(Image& image, int left, int top, int right, int bottom, cons
   }
 }
 
+/// Fades what lies under annotations, so that they can be read; on the white ground nothing
+/// changes.
+void draw_veil(Image& image, int left, int top, int right, int bottom, int scale) {
+  constexpr Color white{1.0F, 1.0F, 1.0F};
+  constexpr float share = 0.8F;
+  const int edge = 4 * scale;  // around it
+  for (int y = top - edge; y < bottom + edge; ++y) {
+    for (int x = left - edge; x < right + edge; ++x) set_pixel(image, x, y, white, share);
+  }
+}
+
 /// A smooth straight stroke: a pixel takes the colour by its distance from the line.
 void draw_stroke(Image& image, double from_x, double from_y, double to_x, double to_y, double width,
                  const Color& color) {
@@ -70,6 +81,15 @@ int legend_width(const Legend& legend, int scale) {
 
 int bar_length(const Image& image) {
   return image.height * 2 / 5;
+}
+
+/// Height of the legend without margins.  [pixels]
+int legend_height(const Image& image, const Legend& legend, int scale) {
+  const int line = (font_height + 4) * scale;
+  int lines = static_cast<int>(legend.swatches.size()) + (legend.title.empty() ? 0 : 1);
+  if (!legend.bar) return lines * line;
+  if (!legend.bar->note.empty()) ++lines;
+  return (lines + 1) * line + 4 * scale + bar_length(image);
 }
 
 /// The bar with frame, ticks and numbers; (left, top) is its upper corner.
@@ -114,22 +134,23 @@ Window scene_window(const RenderOptions& options, const Legend& legend) {
 }
 
 void draw_title(Image& image, const std::string& title, const Frame& frame, int scale) {
-  int x = margin * scale;
-  const int y = margin * scale;
-  if (!title.empty()) {
-    draw_text(image, x, y, title, scale, ink);
-    x += text_width(title, scale) + 12 * scale;
-  }
-  const std::string time = "t = " + time_text(frame.time);
-  draw_text(image, x, y, time, scale, ink);
-  x += text_width(time, scale) + 12 * scale;
-  draw_text(image, x, y, fmt::format("step {}", frame.step), scale, faint);
+  const int left = margin * scale, top = margin * scale, gap = 12 * scale;
+  const std::string time = "t = " + time_text(frame.time),
+                    step = fmt::format("step {}", frame.step);
+  const int time_at = title.empty() ? left : left + text_width(title, scale) + gap;
+  const int step_at = time_at + text_width(time, scale) + gap;
+  draw_veil(image, left, top, step_at + text_width(step, scale), top + font_height * scale, scale);
+  draw_text(image, left, top, title, scale, ink);
+  draw_text(image, time_at, top, time, scale, ink);
+  draw_text(image, step_at, top, step, scale, faint);
 }
 
 void draw_legend(Image& image, const Legend& legend, int scale) {
   const int left = image.width - legend_width(legend, scale) + margin * scale;
   const int line = (font_height + 4) * scale;
   int y = image.height / 7;
+  const int height = legend_height(image, legend, scale);
+  if (height > 0) draw_veil(image, left, y, image.width - margin * scale, y + height, scale);
   if (!legend.title.empty()) {
     draw_text(image, left, y, legend.title, scale, ink);
     y += line;
@@ -156,6 +177,7 @@ void draw_scale_bar(Image& image, double resolution, int scale) {
   const double length = round_step_below(0.22 * image.width / resolution);
   const int left = margin * scale, bottom = image.height - margin * scale;
   const int right = left + static_cast<int>(length * resolution + 0.5);
+  draw_veil(image, left, bottom - (font_height + 5) * scale, right, bottom, scale);
   fill_rectangle(image, left, bottom - scale, right, bottom, ink);
   fill_rectangle(image, left, bottom - 4 * scale, left + scale, bottom, ink);
   fill_rectangle(image, right - scale, bottom - 4 * scale, right, bottom, ink);
@@ -179,15 +201,23 @@ void draw_axes(Image& image, const Axes& axes, int scale) {
   const double length = 22.0 * scale;
   const double u = image.width - margin * scale - 1.6 * length;
   const double v = image.height - margin * scale - 0.9 * length;
-  for (const Arrow& arrow : arrows) {
-    const double du = length * dot(arrow.direction, axes.right);
-    const double dv = -length * dot(arrow.direction, axes.up);
-    if (du * du + dv * dv < 4.0 * scale * scale) continue;  // it points at the viewer
+  const auto each_arrow = [&](const auto& draw) {
+    for (const Arrow& arrow : arrows) {
+      const double du = length * dot(arrow.direction, axes.right);
+      const double dv = -length * dot(arrow.direction, axes.up);
+      if (du * du + dv * dv < 4.0 * scale * scale) continue;  // it points at the viewer
+      const double far = 1.0 + 6.0 * scale / std::sqrt(du * du + dv * dv);
+      draw(arrow, du, dv, far);
+    }
+  };
+  each_arrow([&](const Arrow&, double du, double dv, double far) {  // light ground
+    draw_stroke(image, u, v, u + far * du, v + far * dv, 11.0 * scale, {1.0F, 1.0F, 1.0F});
+  });
+  each_arrow([&](const Arrow& arrow, double du, double dv, double far) {
     draw_stroke(image, u, v, u + du, v + dv, 1.5 * scale, arrow.color);
-    const double far = 1.0 + 6.0 * scale / std::sqrt(du * du + dv * dv);
     draw_text(image, static_cast<int>(u + far * du - 2.5 * scale),
               static_cast<int>(v + far * dv - 4.5 * scale), arrow.name, scale, arrow.color);
-  }
+  });
 }
 
 }  // namespace breccia

@@ -77,34 +77,76 @@ Span bulk_span(std::vector<double> values) {
   return {low - near * (high - low), high + near * (high - low)};
 }
 
-}  // namespace
+/// The body of each item of a field "group", in whole numbers; nothing if there is none.
+std::vector<std::size_t> groups_in(const std::vector<FrameField>& fields, std::size_t items) {
+  std::vector<std::size_t> groups;
+  for (const FrameField& field : fields) {
+    if (field.name != "group" || field.components != 1 || field.values.size() != items) continue;
+    for (const float value : field.values)
+      groups.push_back(value >= 0.0F && value < 1e6F ? static_cast<std::size_t>(value) : 0);
+    return groups;
+  }
+  return groups;
+}
 
-Extent bulk_extent(const Frame& frame) {
+/// The points of each body; those of all triangles' corners, or all, where the frame tells of none.
+std::vector<std::vector<std::size_t>> bodies_of(const Frame& frame) {
+  std::vector<std::vector<std::size_t>> bodies;
+  const auto add = [&bodies](std::size_t body, std::size_t point) {
+    if (body >= bodies.size()) bodies.resize(body + 1);
+    bodies[body].push_back(point);
+  };
+  const std::vector<std::size_t> of_triangle =
+      groups_in(frame.triangle_fields, frame.triangles.size() / 3);
+  for (std::size_t t = 0; t < of_triangle.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      add(of_triangle[t], static_cast<std::size_t>(frame.triangles[3 * t + k]));
+  if (!bodies.empty()) return bodies;
+  const std::vector<std::size_t> of_point = groups_in(frame.point_fields, frame.position.size());
+  for (std::size_t i = 0; i < frame.position.size(); ++i)
+    add(of_point.empty() ? 0 : of_point[i], i);
+  return bodies;
+}
+
+/// Widens an extent by the bulk of a body. A body of few points is bulk as a whole.
+void add_bulk(Extent& extent, const Frame& frame, const std::vector<std::size_t>& body) {
   std::vector<double> x, y, z;
-  for (const Vec3& point : frame.position) {
+  for (const std::size_t i : body) {
+    const Vec3& point = frame.position[i];
     if (!is_finite(point)) continue;
     x.push_back(point.x);
     y.push_back(point.y);
     z.push_back(point.z);
   }
-  if (x.empty()) return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
+  if (x.empty()) return;
   const Span in_x = bulk_span(std::move(x)), in_y = bulk_span(std::move(y)),
              in_z = bulk_span(std::move(z));
-  constexpr double far = std::numeric_limits<double>::infinity();
-  Extent extent{{far, far, far}, {-far, -far, -far}};
-  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+  const auto widen = [&extent](const Vec3& low, const Vec3& high) {
+    extent.low = {std::min(extent.low.x, low.x), std::min(extent.low.y, low.y),
+                  std::min(extent.low.z, low.z)};
+    extent.high = {std::max(extent.high.x, high.x), std::max(extent.high.y, high.y),
+                   std::max(extent.high.z, high.z)};
+  };
+  bool any = false;
+  for (const std::size_t i : body) {
     const Vec3& p = frame.position[i];
     const bool inside = p.x >= in_x.low && p.x <= in_x.high && p.y >= in_y.low &&
                         p.y <= in_y.high && p.z >= in_z.low && p.z <= in_z.high;
     if (!inside) continue;
     const double r = i < frame.radius.size() ? frame.radius[i] : 0.0;
-    extent.low = {std::min(extent.low.x, p.x - r), std::min(extent.low.y, p.y - r),
-                  std::min(extent.low.z, p.z - r)};
-    extent.high = {std::max(extent.high.x, p.x + r), std::max(extent.high.y, p.y + r),
-                   std::max(extent.high.z, p.z + r)};
+    widen(p - Vec3{r, r, r}, p + Vec3{r, r, r});
+    any = true;
   }
-  if (extent.low.x > extent.high.x)
-    return {{in_x.low, in_y.low, in_z.low}, {in_x.high, in_y.high, in_z.high}};
+  if (!any) widen({in_x.low, in_y.low, in_z.low}, {in_x.high, in_y.high, in_z.high});
+}
+
+}  // namespace
+
+Extent bulk_extent(const Frame& frame) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Extent extent{{far, far, far}, {-far, -far, -far}};
+  for (const std::vector<std::size_t>& body : bodies_of(frame)) add_bulk(extent, frame, body);
+  if (extent.low.x > extent.high.x) return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
   extent.outline = outline_of(frame, extent);
   extent.outline_points = static_cast<std::int64_t>(extent.outline.size());
   return extent;

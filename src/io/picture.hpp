@@ -50,7 +50,8 @@ struct RenderOptions {
   std::string title = {};                ///< stands before the time in the first line
 };
 
-/// The box around the bulk of a frame: a few fragments that flew far do not widen it.
+/// The box around the bulk of each body of a frame, by its field "group": a small body far from a
+/// large one is shown, while a few fragments of a body that flew far do not widen the box.
 Extent bulk_extent(const Frame& frame);
 
 /// Whether `field` of RenderOptions names something this frame has.

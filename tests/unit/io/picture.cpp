@@ -328,6 +328,82 @@ TEST(picture, a_few_fragments_that_flew_far_do_not_shrink_the_rest) {
   EXPECT_LT(extent.high.z, 0.50);
 }
 
+/// A heap of many triangles in the lower left of a room with four walls of two triangles each; one
+/// triangle of the heap has flown off.
+Frame heap_in_a_room() {
+  Frame frame;
+  FrameField group{"group", "-", 1, {}};
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, float body) {
+    for (const Vec3& corner : {a, b, c}) {
+      frame.triangles.push_back(static_cast<std::int32_t>(frame.position.size()));
+      frame.position.push_back(corner);
+    }
+    group.values.push_back(body);
+  };
+  for (int i = 0; i < 2500; ++i) {
+    const double x = -290.0 + 6.0 * (i % 50), y = -290.0 + 6.0 * (i / 50);
+    add({x, y, 0}, {x + 4, y, 0}, {x, y + 4, 0}, 0.0F);
+  }
+  add({9e4, 9e4, 0}, {9e4 + 4, 9e4, 0}, {9e4, 9e4 + 4, 0}, 0.0F);
+  const auto wall = [&](double left, double low, double right, double high, float body) {
+    add({left, low, 0}, {right, low, 0}, {right, high, 0}, body);
+    add({left, low, 0}, {right, high, 0}, {left, high, 0}, body);
+  };
+  wall(-310, -310, 310, -300, 1.0F);
+  wall(-310, 300, 310, 310, 2.0F);
+  wall(-310, -300, -300, 300, 3.0F);
+  wall(300, -300, 310, 300, 4.0F);
+  frame.triangle_fields = {group};
+  return frame;
+}
+
+TEST(picture, every_body_is_shown_however_small_and_far_from_the_largest) {
+  Frame frame = heap_in_a_room();
+  for (const char* items : {"triangles", "points"}) {
+    const Extent extent = bulk_extent(frame);
+    EXPECT_EQ(extent.low.x, -310) << items;
+    EXPECT_EQ(extent.low.y, -310) << items;
+    EXPECT_EQ(extent.high.x, 310) << items;
+    EXPECT_EQ(extent.high.y, 310) << items;
+    FrameField of_points{"group", "-", 1, {}};
+    for (const float body : frame.triangle_fields.front().values)
+      of_points.values.insert(of_points.values.end(), 3, body);
+    frame.triangle_fields.clear();
+    frame.point_fields = {of_points};
+  }
+}
+
+TEST(picture, texts_over_elements_stand_on_light_ground) {
+  Frame frame;
+  frame.position = {{-9, 0, -9}, {9, 0, -9}, {9, 0, 9}, {-9, 0, 9}};
+  frame.triangles = {0, 1, 2, 0, 2, 3, 0, 0, 0, 0, 0, 0};
+  frame.triangle_fields = {{"rank", "-", 1, {2.0F, 2.0F, 0.0F, 1.0F}}};  // the third is dark
+  RenderOptions options = cube_options();
+  options.field = "rank";
+  options.title = "A title over elements";
+  const Image image = render(frame, options);
+  const Pixel dark = pixel(image, 400, 400);
+  ASSERT_LT(dark[0], 120);
+  struct Place {
+    const char* what;
+    int left, top, right, bottom;  ///< pixels
+  };
+  for (const Place& place : {Place{"title", 14, 14, 120, 20}, Place{"legend", 770, 116, 785, 122},
+                             Place{"scale bar", 10, 775, 100, 789}}) {
+    double light = 0.0, most = 0.0, least = 255.0;
+    for (int y = place.top; y < place.bottom; ++y)
+      for (int x = place.left; x < place.right; ++x) {
+        const int red = pixel(image, x, y)[0];
+        light += red > 200 ? 1.0 : 0.0;
+        most = std::max(most, 1.0 * red);
+        least = std::min(least, 1.0 * red);
+      }
+    const double area = (place.right - place.left) * (place.bottom - place.top);
+    EXPECT_GT(light, 0.5 * area) << place.what << " " << most;
+    EXPECT_LT(least, 100.0) << place.what;  // ink
+  }
+}
+
 TEST(picture, the_extent_of_the_first_frame_keeps_the_camera_of_a_series) {
   RenderOptions options = cube_options();
   options.extent = bulk_extent(spheres({{-0.5, 0, 0}, {0.5, 0, 0}}, 0.1));
