@@ -11,6 +11,7 @@
 #include "app/benchmarks.hpp"
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
+#include "core/precision.hpp"
 #include "domain/domain.hpp"
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 struct BenchCommand {
   std::vector<std::string> names;
-  std::string file;
+  std::string file, precision = "double";
   bool paced = false;
   RankScale scale;
   RunOptions options;
@@ -55,13 +56,14 @@ struct BenchCommand {
   void execute(Communicator* ranks) const {
     refuse_unknown(ranks);
     Exec exec;
-    together_or_not(ranks, [&] { exec = exec_of(options, ranks); });
+    together_or_not(ranks, [&] { exec = in_precision(exec_of(options, ranks), precision); });
     if (paced) {
       pace_slab(std::cin, std::cout, exec);
       return;
     }
     std::vector<std::pair<std::string, std::vector<Measurement>>> all;
-    if (leads(ranks)) fmt::print("{}, {} threads\n", processor_name(), exec.threads);
+    if (leads(ranks))
+      fmt::print("{}, {} threads, {} precision\n", processor_name(), exec.threads, precision);
     const auto add = [&](const char* name, std::vector<Measurement> measured) {
       all.emplace_back(name, std::move(measured));
       if (leads(ranks)) fmt::print("\n{}", benchmark_table(all.back().first, all.back().second));
@@ -93,6 +95,11 @@ void add_bench(CLI::App& program, Communicator* ranks) {
                    "host threads of each rank; default: its share of the machine")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
+  command
+      ->add_option("--precision", bench->precision,
+                   "what numbers are stored in: double or mixed, as the key `precision` of a case")
+      ->check(CLI::IsMember({"double", "mixed"}))
+      ->capture_default_str();
   command->add_flag(
       "--paced", bench->paced,
       "run the slab as told on standard input: 'steps N', 'until T', 'export FOLDER'");

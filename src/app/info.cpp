@@ -25,8 +25,9 @@ void describe_state(const std::string& path) {
   const CheckpointReader reader(path);
   fmt::print("{}\n", path);
   if (reader.has("run.case_name"))
-    fmt::print("  a state of case {} ({}), step {}, {}\n", reader.text("run.case_name"),
-               reader.text("run.method"),
+    fmt::print("  a state of case {} ({}, {} precision), step {}, {}\n",
+               reader.text("run.case_name"), reader.text("run.method"),
+               reader.has("run.precision") ? reader.text("run.precision") : "double",
                count_text(static_cast<double>(reader.value<std::int64_t>("run.step"))),
                time_text(reader.value<double>("run.time")));
   if (reader.has("case.name")) fmt::print("  the model of case {}\n", reader.text("case.name"));

@@ -143,6 +143,7 @@ struct CheckConfig {
 struct CaseConfig {
   int breccia = 1;
   std::string method = "dem3d";
+  std::string precision = "double";
   std::string title;
   std::int64_t seed = 1;
   TimeConfig time;
@@ -158,6 +159,9 @@ struct CaseConfig {
     key("method", method, OneOf{"dem3d", "fdem2d"},
         "which method runs the case: spheres in space (Durand et al. 2012), triangles in the plane "
         "(Lukas et al. 2014)");
+    key("precision", precision, OneOf{"double", "mixed"},
+        "what numbers are stored in; mixed keeps positions and sums in double, and what links keep "
+        "and do in single precision: fewer bytes, for GPUs");
     key("title", title, "one line for people");
     key("seed", seed, "-", Range{0, 9e15}, "seed of every random choice");
     key.table("time", time, "how long and how fast");

@@ -2,7 +2,7 @@
 // Walking a state's `each_field(visit)`: the one list of what a state carries.
 //
 // A visitor is called as visit(name, unit, array) for every array. Arrays are Buffer<T> (one item
-// per element, link or pair) or Vec3Planes (three planes of doubles). What grows, reorders, saves
+// per element, link or pair) or PlanesOf<Number> (three planes). What grows, reorders, saves
 // or sends a state is written once, here and in io/checkpoint, and never lists members again.
 
 #include "core/planes.hpp"

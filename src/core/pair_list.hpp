@@ -50,11 +50,12 @@ struct GatherItems {
 };
 
 /// The same for vectors stored by component.
+template <class Number>
 struct GatherVectors {
   static constexpr const char* name = "core.gather_vectors";
   View<const Index> source;
-  PlanesView<const double> from;
-  PlanesView<double> to;  ///< zero before
+  PlanesView<const Number> from;
+  PlanesView<Number> to;  ///< zero before
 
   BR_HD void operator()(Index i) const {
     if (source[i] >= 0) to.store(i, from[source[i]]);
@@ -68,10 +69,11 @@ void gather(const Exec& exec, const Buffer<Index>& source, Buffer<T>& items) {
   for_each(exec, source.size(), kernel);
   items.swap(gathered);
 }
-inline void gather(const Exec& exec, const Buffer<Index>& source, Vec3Planes& vectors) {
-  Vec3Planes gathered(vectors.space());
+template <class Number>
+void gather(const Exec& exec, const Buffer<Index>& source, PlanesOf<Number>& vectors) {
+  PlanesOf<Number> gathered(vectors.space());
   gathered.resize(source.size());
-  const GatherVectors kernel{source.view(), std::as_const(vectors).view(), gathered.view()};
+  const GatherVectors<Number> kernel{source.view(), std::as_const(vectors).view(), gathered.view()};
   for_each(exec, source.size(), kernel);
   vectors = std::move(gathered);
 }

@@ -79,11 +79,12 @@ struct MoveWalls {
 
 /// GatherRows by eight threads an element, of which six each add up one number and one stiffness of
 /// what it gets as a, and as b, in the same order, and write one number of force and torque.
+template <class Number>
 struct GatherWide {
   static constexpr const char* name = "dem.gather_wide";
   static constexpr Index width = 8;
   static constexpr int at_once = 4;  ///< actions of a row that are read before the first is added
-  GatherRows all;
+  GatherRows<Number> all;
 
   BR_HD void set(const Moment&) {}
 #if defined(__CUDACC__)
@@ -122,7 +123,7 @@ struct GatherWide {
   __device__ void read(Few& few, int column) const {
 #pragma unroll
     for (int k = 0; k < at_once; ++k) {
-      const Action& action = all.actions.data[few.link[k]];
+      const ActionOf<Number>& action = all.actions.data[few.link[k]];
       few.part[k] = {read_now(action.numbers + column), read_now(action.stiffness + column)};
     }
   }
@@ -256,8 +257,11 @@ struct Grouped {
 
 #if defined(__CUDACC__)
 /// Concrete links of all groups: what they keep is read ahead, motion ends while it comes.
-struct ConcreteAhead : Grouped<ConcreteLinkForces, ConcreteLink> {
-  using Grouped::Grouped;
+template <class Number>
+struct ConcreteAhead : Grouped<ConcreteLinkForces<Number>, ConcreteLink> {
+  using Base = Grouped<ConcreteLinkForces<Number>, ConcreteLink>;
+  using Base::Base;
+  using Base::kernel;
 
   struct Ready {
     Index a, b;
@@ -265,8 +269,8 @@ struct ConcreteAhead : Grouped<ConcreteLinkForces, ConcreteLink> {
     LinkState<double> state;
     ElementState end_a, end_b;
   };
-  __device__ static Vec3 read_vector(const PlanesView<double>& planes, Index i) {
-    const double* const x = planes.items.data + i;
+  __device__ static Vec3 read_vector(const PlanesView<Number>& planes, Index i) {
+    const Number* const x = planes.items.data + i;
     return {read_now(x), read_now(x + planes.stride), read_now(x + 2 * planes.stride)};
   }
   __device__ void prepare(Index i, Ready& ready) const {
@@ -283,10 +287,10 @@ struct ConcreteAhead : Grouped<ConcreteLinkForces, ConcreteLink> {
     ready.end_b = read_record_now(&kernel.elements.state[ready.b]);
   }
   __device__ void operator()(Index i, const Ready& ready) const {
-    ConcreteLinkForces own = kernel;
-    own.law = law_of(i);
-    own.answer<double>(i, end(ready.end_a), ready.end_a.radius, end(ready.end_b),
-                       ready.end_b.radius, ready.length, ready.stiffness, ready.state);
+    ConcreteLinkForces<Number> own = kernel;
+    own.law = this->law_of(i);
+    own.template answer<double>(i, end(ready.end_a), ready.end_a.radius, end(ready.end_b),
+                                ready.end_b.radius, ready.length, ready.stiffness, ready.state);
   }
 
  private:
@@ -316,12 +320,13 @@ void launch_move(World& w, const StepClocks& clocks) {
 }
 
 /// All links and contacts. `by` wraps a kernel by the clock.
-template <class By>
+template <class Number, class By>
 void launch_interactions(World& w, const By& by) {
   const LinkGroup<ConcreteLink> no_concrete{};
   const LinkGroup<SteelLink> no_steel{};
   const LinkGroup<InterfaceLink> no_interface{};
-  const ConcreteAhead concrete(concrete_kernel(w, no_concrete), w.concrete_groups, w.concrete_laws);
+  const ConcreteAhead<Number> concrete(concrete_kernel<Number>(w, no_concrete), w.concrete_groups,
+                                       w.concrete_laws);
   const Grouped<SteelLinkForces, SteelLink> steel(steel_kernel(w, no_steel), w.steel_groups,
                                                   w.steel_laws);
   const Grouped<InterfaceLinkForces, InterfaceLink> interface(interface_kernel(w, no_interface),
@@ -333,12 +338,12 @@ void launch_interactions(World& w, const By& by) {
 }
 
 /// Forces and sums, and the least critical number.
-template <class By>
+template <class Number, class By>
 void launch_forces(World& w, StepClock* clock, const By& by) {
   const Exec& exec = w.exec;
-  const Index threads = w.elements.size() * GatherWide::width;
-  launch_interactions(w, by);
-  const auto gather = by(GatherWide{gather_rows_kernel(w)});
+  const Index threads = w.elements.size() * GatherWide<Number>::width;
+  launch_interactions<Number>(w, by);
+  const auto gather = by(GatherWide<Number>{gather_rows_kernel<Number>(w)});
   if (w.walls.empty()) return for_each_noting(threads, gather, NoteLeast{clock});
   for_each_part(part(threads, gather, Parts<>{}));
   for (Index k = 0; k < w.device_walls.size(); ++k) {
@@ -351,12 +356,16 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
 
 void launch_step(World& w, const StepClocks& clocks) {
   launch_move(w, clocks);
-  launch_forces(w, clocks.now,
-                [&](const auto& kernel) { return clocks.timed<Stand::after_move>(kernel); });
+  with_number(w.exec.precision, [&](auto number) {
+    launch_forces<decltype(number)>(
+        w, clocks.now, [&](const auto& kernel) { return clocks.timed<Stand::after_move>(kernel); });
+  });
 }
 void launch_rest(World& w, const StepClocks& clocks) {
-  launch_forces(w, clocks.now,
-                [&](const auto& kernel) { return clocks.timed<Stand::in_rest>(kernel); });
+  with_number(w.exec.precision, [&](auto number) {
+    launch_forces<decltype(number)>(
+        w, clocks.now, [&](const auto& kernel) { return clocks.timed<Stand::in_rest>(kernel); });
+  });
 }
 #else
 void launch_step(World&, const StepClocks&) {}

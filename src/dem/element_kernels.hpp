@@ -103,21 +103,23 @@ struct LinkRows {
 };
 
 /// GatherForces where every link has an action: on a device.
+/// @tparam Number  what actions of links are stored in
+template <class Number>
 struct GatherRows {
   static constexpr const char* name = "dem.gather_rows";
   GatherForces gather;
   LinkRows::Seen rows_a, rows_b;
-  View<const Action> actions;
+  View<const ActionOf<Number>> actions;
 
   BR_HD void operator()(Index e) const {
     LinkSums s{};
     for (Index k = rows_a.starts[e]; k < rows_a.starts[e + 1]; ++k) {
-      const Action& action = actions[rows_a.links[k]];
+      const ActionOf<Number>& action = actions[rows_a.links[k]];
       s.as_a.add(action.numbers);
       s.stiffness_a.add(action.stiffness);
     }
     for (Index k = rows_b.starts[e]; k < rows_b.starts[e + 1]; ++k) {
-      const Action& action = actions[rows_b.links[k]];
+      const ActionOf<Number>& action = actions[rows_b.links[k]];
       s.as_b.add(action.numbers + 3);
       s.stiffness_b.add(action.stiffness + 3);
     }

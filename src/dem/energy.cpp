@@ -50,13 +50,15 @@ BR_HD Shares operator+(Shares a, const Shares& b) {
   return a;
 }
 
+template <class Number>
 struct ConcreteShares {
   ConcreteLink law;
   Index first;
   View<const ElementState> state_of;
   View<const Index> a, b;
-  View<const double> length, stiffness, opening;
-  PlanesView<const double> shear, moment;
+  View<const double> length, stiffness;
+  View<const Number> opening;
+  PlanesView<const Number> shear, moment;
   View<const double> slid, yielded, broke;
 
   BR_HD Shares operator()(Index k) const {
@@ -76,6 +78,22 @@ struct ConcreteShares {
     return s;
   }
 };
+
+template <class Number>
+Shares concrete_shares(const World& w) {
+  const ConcreteLinks& c = w.concrete;
+  const LinkHistory<Number>& kept = c.kept.as<Number>();
+  Shares all;
+  for (const auto& g : w.concrete_groups)
+    all = all +
+          fold(w.exec, g.end - g.begin, Shares{},
+               ConcreteShares<Number>{g.law, g.begin, w.elements.state.view(), c.a.view(),
+                                      c.b.view(), c.length.view(), c.stiffness.view(),
+                                      kept.opening.view(), kept.shear.view(), kept.moment.view(),
+                                      c.slid.view(), c.yielded.view(), c.broke.view()},
+               Sum{});
+  return all;
+}
 
 struct SteelShares {
   SteelLink law;
@@ -182,14 +200,8 @@ EnergyBalance balance(World& w) {
   const Elements& e = w.elements;
   const ExactSum kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{kick(w)}, Sum{});
   Shares all;
-  const ConcreteLinks& c = w.concrete;
-  for (const auto& g : w.concrete_groups)
-    all = all +
-          fold(w.exec, g.end - g.begin, Shares{},
-               ConcreteShares{g.law, g.begin, e.state.view(), c.a.view(), c.b.view(),
-                              c.length.view(), c.stiffness.view(), c.opening.view(), c.shear.view(),
-                              c.moment.view(), c.slid.view(), c.yielded.view(), c.broke.view()},
-               Sum{});
+  with_number(w.exec.precision,
+              [&](auto number) { all = all + concrete_shares<decltype(number)>(w); });
   const SteelLinks& s = w.steel;
   for (const auto& g : w.steel_groups)
     all = all + fold(w.exec, g.end - g.begin, Shares{},

@@ -8,7 +8,8 @@
 namespace breccia::dem {
 namespace {
 
-BR_HD void add_to_b(LinkSums& sums, const Action& action) {
+template <class Number>
+BR_HD void add_to_b(LinkSums& sums, const ActionOf<Number>& action) {
   sums.as_b.add(action.numbers + 3);
   sums.stiffness_b.add(action.stiffness + 3);
 }
@@ -105,15 +106,16 @@ struct AddLinks {
   std::vector<PassedAction>& passed;
 
   /// Links [from, to); action 0 is of link `from`.
-  void operator()(const ConcreteLinkForces& links, Index from, Index to,
-                  const Action* actions) const {
+  template <class Number>
+  void operator()(const ConcreteLinkForces<Number>& links, Index from, Index to,
+                  const ActionOf<Number>* actions) const {
     for (Index i = from; i < to;) {
       const Index a = links.a[i];
       SixSums as_a = sums[a].as_a;
       SixFloatSums stiffness_a = sums[a].stiffness_a;
       fetch(std::min(a + reach, sums.size - 1), links.elements.state);
       for (; i < to && links.a[i] == a; ++i) {
-        const Action& action = actions[i - from];
+        const ActionOf<Number>& action = actions[i - from];
         as_a.add(action.numbers);
         stiffness_a.add(action.stiffness);
         const Index b = links.b[i], soon = links.b[std::min(i + 8, to - 1)];
@@ -122,11 +124,18 @@ struct AddLinks {
         if (b >= settled && b < end)
           add_to_b(sums[b], action);
         else
-          passed.push_back({action, b});
+          passed.push_back({in_double(action), b});
       }
       sums[a].as_a = as_a;
       sums[a].stiffness_a = stiffness_a;
     }
+  }
+  static const Action& in_double(const Action& action) { return action; }
+  static Action in_double(const ActionOf<float>& action) {
+    Action same{};
+    std::copy_n(action.numbers, 9, same.numbers);
+    std::copy_n(action.stiffness, 9, same.stiffness);
+    return same;
   }
   /// Asks the memory for an element before the first link comes to it.
   void fetch(Index element, const View<const ElementState>& state) const {
@@ -139,12 +148,14 @@ struct AddLinks {
 
 /// Asks the memory for what the links [from, to) keep: too many arrays for the processor to
 /// foresee.
-void fetch(const ConcreteLinkForces& links, Index from, Index to) {
-  const View<double>&shear = links.shear.items, &moment = links.moment.items;
+template <class Number>
+void fetch(const ConcreteLinkForces<Number>& links, Index from, Index to) {
+  const View<Number>&shear = links.shear.items, &moment = links.moment.items;
   const Index plane = links.shear.stride;
   for (Index i = from; i < to; i += 8) {
     __builtin_prefetch(links.length.data + i);
     __builtin_prefetch(links.stiffness.data + i);
+    if (sizeof(Number) < sizeof(double) && i % 16 != 0) continue;  // of a cache line that is asked
     __builtin_prefetch(links.opening.data + i, 1);
     for (int c = 0; c < 3; ++c) {
       __builtin_prefetch(shear.data + c * plane + i, 1);
@@ -155,9 +166,11 @@ void fetch(const ConcreteLinkForces& links, Index from, Index to) {
 
 /// Forces of links [begin, end) and their sums, in portions whose actions stay in the nearest
 /// cache.
-void add_links(Lanes lanes, ConcreteLinkForces links, Index begin, Index end, const AddLinks& add) {
+template <class Number>
+void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index end,
+               const AddLinks& add) {
   constexpr Index portion = 64;
-  alignas(64) Action actions[portion];
+  alignas(64) ActionOf<Number> actions[portion];
   links.actions.data = actions;
   links.actions.size = portion;
   for (Index from = begin; from < end;) {
@@ -167,6 +180,54 @@ void add_links(Lanes lanes, ConcreteLinkForces links, Index begin, Index end, co
     run_packs(lanes, links, from, to);
     add(links, from, to, actions);
     from = to;
+  }
+}
+
+template <class Number>
+void link_forces_and_sums(World& w) {
+  if (w.exec.space == Space::cuda) {
+    for (const auto& group : w.concrete_groups)
+      for_each(w.exec, group.end - group.begin,
+               Shifted<ConcreteLinkForces<Number>>{concrete_kernel<Number>(w, group), group.begin});
+    return for_each(w.exec, w.elements.size(), gather_rows_kernel<Number>(w));
+  }
+  std::vector<ConcreteLinkForces<Number>> kernels;
+  for (const auto& group : w.concrete_groups) kernels.push_back(concrete_kernel<Number>(w, group));
+  const GatherForces gather = gather_kernel(w);
+  Sweep& sweep = w.sweep;
+  const auto threads = static_cast<int>(sweep.settled.size());
+#pragma omp parallel num_threads(threads) if (threads > 1)
+  {
+    const KernelScope scope;
+#pragma omp for schedule(static, 1)
+    for (int t = 0; t < threads; ++t) {
+      const auto run = static_cast<std::size_t>(t);
+      AddLinks add{gather.sums, sweep.settled[run], sweep.begin[run + 1], sweep.reach,
+                   sweep.passed[run]};
+      add.passed.clear();
+      auto tile = std::lower_bound(sweep.tiles.begin(), sweep.tiles.end(), sweep.begin[run]);
+      for (; *tile < sweep.begin[run + 1]; ++tile) {
+        const Index from = *tile, to = *(tile + 1);
+        for (std::size_t g = 0; g < kernels.size(); ++g) {
+          const std::vector<Index>& starts = w.concrete_groups[g].starts;
+          add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
+                    starts[static_cast<std::size_t>(to)], add);
+        }
+        run_packs(w.lanes, gather, std::max(from, sweep.settled[run]), to);
+      }
+    }
+    // The end of the loop above is a barrier: every link is done.
+#pragma omp for schedule(static, 1)
+    for (int t = 0; t < threads; ++t) {
+      const auto run = static_cast<std::size_t>(t);
+      const Index begin = sweep.begin[run];
+      const Index end = std::min(sweep.settled[run], sweep.begin[run + 1]);
+      if (begin == end) continue;
+      for (std::size_t before = 0; before <= run; ++before)
+        for (const PassedAction& p : sweep.passed[before])
+          if (p.b >= begin && p.b < end) add_to_b(gather.sums[p.b], p.action);
+      run_packs(w.lanes, gather, begin, end);
+    }
   }
 }
 
@@ -233,50 +294,7 @@ void contact_forces(World& w) {
 
 void concrete_forces_and_sums(World& w) {
   const StageTime timed(w.exec, "link_forces");
-  if (w.exec.space == Space::cuda) {
-    for (const auto& group : w.concrete_groups)
-      for_each(w.exec, group.end - group.begin,
-               Shifted<ConcreteLinkForces>{concrete_kernel(w, group), group.begin});
-    return for_each(w.exec, w.elements.size(), gather_rows_kernel(w));
-  }
-  std::vector<ConcreteLinkForces> kernels;
-  for (const auto& group : w.concrete_groups) kernels.push_back(concrete_kernel(w, group));
-  const GatherForces gather = gather_kernel(w);
-  Sweep& sweep = w.sweep;
-  const auto threads = static_cast<int>(sweep.settled.size());
-#pragma omp parallel num_threads(threads) if (threads > 1)
-  {
-    const KernelScope scope;
-#pragma omp for schedule(static, 1)
-    for (int t = 0; t < threads; ++t) {
-      const auto run = static_cast<std::size_t>(t);
-      AddLinks add{gather.sums, sweep.settled[run], sweep.begin[run + 1], sweep.reach,
-                   sweep.passed[run]};
-      add.passed.clear();
-      auto tile = std::lower_bound(sweep.tiles.begin(), sweep.tiles.end(), sweep.begin[run]);
-      for (; *tile < sweep.begin[run + 1]; ++tile) {
-        const Index from = *tile, to = *(tile + 1);
-        for (std::size_t g = 0; g < kernels.size(); ++g) {
-          const std::vector<Index>& starts = w.concrete_groups[g].starts;
-          add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
-                    starts[static_cast<std::size_t>(to)], add);
-        }
-        run_packs(w.lanes, gather, std::max(from, sweep.settled[run]), to);
-      }
-    }
-    // The end of the loop above is a barrier: every link is done.
-#pragma omp for schedule(static, 1)
-    for (int t = 0; t < threads; ++t) {
-      const auto run = static_cast<std::size_t>(t);
-      const Index begin = sweep.begin[run];
-      const Index end = std::min(sweep.settled[run], sweep.begin[run + 1]);
-      if (begin == end) continue;
-      for (std::size_t before = 0; before <= run; ++before)
-        for (const PassedAction& p : sweep.passed[before])
-          if (p.b >= begin && p.b < end) add_to_b(gather.sums[p.b], p.action);
-      run_packs(w.lanes, gather, begin, end);
-    }
-  }
+  with_number(w.exec.precision, [&w](auto number) { link_forces_and_sums<decltype(number)>(w); });
 }
 
 void wall_forces(World& w) {

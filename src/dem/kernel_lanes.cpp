@@ -3,8 +3,10 @@
 #include "exec/whole_packs.hpp"
 
 namespace breccia::dem {
+namespace {
 
-void run_packs([[maybe_unused]] Lanes lanes, const ConcreteLinkForces& kernel, Index begin,
+template <class Number>
+void run_links([[maybe_unused]] Lanes lanes, const ConcreteLinkForces<Number>& kernel, Index begin,
                Index end) {
 #if defined(BR_WIDE_LANES)
   // One by one to where packs lie in whole cache lines.
@@ -13,6 +15,15 @@ void run_packs([[maybe_unused]] Lanes lanes, const ConcreteLinkForces& kernel, I
   if (lanes == Lanes::four) begin = PacksAvx2::run(kernel, begin, end);
 #endif
   for (Index i = begin; i < end; ++i) kernel(i);
+}
+
+}  // namespace
+
+void run_packs(Lanes lanes, const ConcreteLinkForces<double>& kernel, Index begin, Index end) {
+  run_links(lanes, kernel, begin, end);
+}
+void run_packs(Lanes lanes, const ConcreteLinkForces<float>& kernel, Index begin, Index end) {
+  run_links(lanes, kernel, begin, end);
 }
 
 void run_packs(Lanes lanes, const SteelLinkForces& kernel, Index begin, Index end) {

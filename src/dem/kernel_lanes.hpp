@@ -8,7 +8,8 @@
 namespace breccia::dem {
 
 /// kernel for the links [begin, end) on the calling thread.
-void run_packs(Lanes lanes, const ConcreteLinkForces& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const ConcreteLinkForces<double>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const ConcreteLinkForces<float>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const SteelLinkForces& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const InterfaceLinkForces& kernel, Index begin, Index end);
 /// Likewise for elements.
@@ -33,7 +34,8 @@ struct LeastOf {
 /// Builds of lanes/kernel_lanes.cpp for one width each; what does not fill a pack is left to the
 /// caller, and so is a pack of bars in which something breaks or has broken. Return where.
 struct PacksAvx2 {
-  static Index run(const ConcreteLinkForces& kernel, Index begin, Index end);
+  static Index run(const ConcreteLinkForces<double>& kernel, Index begin, Index end);
+  static Index run(const ConcreteLinkForces<float>& kernel, Index begin, Index end);
   static Index run(const SteelLinkForces& kernel, Index begin, Index end);
   static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
   static Index run(const GatherForces& kernel, Index begin, Index end);
@@ -41,7 +43,8 @@ struct PacksAvx2 {
   static MovedTo run(const MoveWithin& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
-  static Index run(const ConcreteLinkForces& kernel, Index begin, Index end);
+  static Index run(const ConcreteLinkForces<double>& kernel, Index begin, Index end);
+  static Index run(const ConcreteLinkForces<float>& kernel, Index begin, Index end);
   static Index run(const SteelLinkForces& kernel, Index begin, Index end);
   static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
   static Index run(const GatherForces& kernel, Index begin, Index end);

@@ -38,8 +38,10 @@ inline ContactForces contact_kernel(World& w) {
           c.history.damped.view(), w.contact_actions.view()};
 }
 
-inline ConcreteLinkForces concrete_kernel(World& w, const LinkGroup<ConcreteLink>& group) {
+template <class Number>
+ConcreteLinkForces<Number> concrete_kernel(World& w, const LinkGroup<ConcreteLink>& group) {
   ConcreteLinks& c = w.concrete;
+  LinkHistory<Number>& kept = c.kept.as<Number>();
   return {group.law,
           w.last_dt,
           elements_view(w),
@@ -47,14 +49,15 @@ inline ConcreteLinkForces concrete_kernel(World& w, const LinkGroup<ConcreteLink
           c.b.view(),
           c.length.view(),
           c.stiffness.view(),
-          c.opening.view(),
-          c.shear.view(),
-          c.moment.view(),
+          kept.opening.view(),
+          kept.shear.view(),
+          kept.moment.view(),
           c.slid.view(),
           c.yielded.view(),
           c.broke.view(),
-          w.link_actions.view(),
-          0};
+          w.link_actions.as<Number>().view(),
+          0,
+          w.step};
 }
 
 inline GatherForces gather_kernel(World& w) {
@@ -65,8 +68,9 @@ inline GatherForces gather_kernel(World& w) {
           e.torque.view(),      w.critical.view()};
 }
 
-inline GatherRows gather_rows_kernel(World& w) {
-  return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), w.link_actions.view()};
+template <class Number>
+GatherRows<Number> gather_rows_kernel(World& w) {
+  return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), w.link_actions.as<Number>().view()};
 }
 
 inline WallForces wall_kernel(World& w, Index wall) {

@@ -4,6 +4,7 @@
 #include "core/step_clock.hpp"
 #include "dem/elements.hpp"
 #include "dem/links.hpp"
+#include "math/rounding.hpp"
 
 namespace breccia::dem {
 
@@ -29,6 +30,8 @@ BR_HD PairEnd<R> gather_end(const View<const ElementState>& state, const Indices
 }
 
 /// Cohesive links of one material, one link (R = double) or a pack of neighbours at a time.
+/// @tparam Number  what the links' history and actions are stored in
+template <class Number>
 struct ConcreteLinkForces {
   static constexpr const char* name = "dem.concrete_links";
   ConcreteLink law;
@@ -36,11 +39,12 @@ struct ConcreteLinkForces {
   ElementsView elements;
   View<const Index> a, b;
   View<const double> length, stiffness;
-  View<double> opening;
-  PlanesView<double> shear, moment;
+  View<Number> opening;
+  PlanesView<Number> shear, moment;
   View<double> slid, yielded, broke;
-  View<Action> actions;
+  View<ActionOf<Number>> actions;
   Index first_action;  ///< action of link 0
+  std::int64_t step;   ///< steps taken before
 
   template <class R>
   BR_HD void at(Index i) const {
@@ -63,6 +67,11 @@ struct ConcreteLinkForces {
                                 touching};
     const LinkResponse<R> r = law.answer(link, motion, state);
 
+    if constexpr (std::is_same_v<Number, float>) {
+      const BitsOf<R> chance = chance_of(motion.distance, step);
+      state.shear = rounded_by(chance, 0, state.shear);
+      state.moment = rounded_by(chance, 18, state.moment);
+    }
     store(opening, i, state.opening);
     store(shear, i, state.shear);
     store(moment, i, state.moment);
@@ -75,7 +84,10 @@ struct ConcreteLinkForces {
     book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt,
          kr, kr);
   }
-  BR_HD void set(const Moment& now) { dt = now.last_dt; }
+  BR_HD void set(const Moment& now) {
+    dt = now.last_dt;
+    step = now.step;
+  }
   BR_WHOLE BR_HD void operator()(Index i) const { at<double>(i); }
 };
 

@@ -3,23 +3,31 @@
 // their ends.
 
 #include "core/fields.hpp"
+#include "core/precision.hpp"
 #include "dem/laws/concrete_link.hpp"
 #include "dem/laws/interface_link.hpp"
 #include "dem/laws/steel_link.hpp"
 
 namespace breccia::dem {
 
+/// What cohesive links keep from step to step.
+template <class Number>
+struct LinkHistory {
+  Buffer<Number> opening;   ///< largest so far, or link_broken, link_released  [m]
+  PlanesOf<Number> shear;   ///< F_s on b  [N]
+  PlanesOf<Number> moment;  ///< M on b  [N m]
+};
+
 /// Cohesive links. Never removed: a broken one answers as the contact that is left of it.
 struct ConcreteLinks {
-  Buffer<Index> a, b;        ///< the ends, a's global id below b's
-  Buffer<double> length;     ///< D_eq  [m]
-  Buffer<double> stiffness;  ///< K_n  [N/m]
-  Buffer<double> opening;    ///< largest so far, or link_broken, link_released  [m]
-  Vec3Planes shear;          ///< F_s on b  [N]
-  Vec3Planes moment;         ///< M on b  [N m]
-  Buffer<double> slid;       ///< energy spent on sliding so far  [J]
-  Buffer<double> yielded;    ///< energy spent on plastic moments so far  [J]
-  Buffer<double> broke;      ///< energy that its rupture spent  [J]
+  Precision precision = Precision::full;  ///< of `kept`
+  Buffer<Index> a, b;                     ///< the ends, a's global id below b's
+  Buffer<double> length;                  ///< D_eq  [m]
+  Buffer<double> stiffness;               ///< K_n  [N/m]
+  Stored<LinkHistory> kept;
+  Buffer<double> slid;     ///< energy spent on sliding so far  [J]
+  Buffer<double> yielded;  ///< energy spent on plastic moments so far  [J]
+  Buffer<double> broke;    ///< energy that its rupture spent  [J]
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -27,9 +35,12 @@ struct ConcreteLinks {
     field("b", "-", b);
     field("length", "m", length);
     field("stiffness", "N/m", stiffness);
-    field("opening", "m", opening);
-    field("shear", "N", shear);
-    field("moment", "N m", moment);
+    with_number(precision, [&](auto number) {
+      auto& history = kept.as<decltype(number)>();
+      field("opening", "m", history.opening);
+      field("shear", "N", history.shear);
+      field("moment", "N m", history.moment);
+    });
     field("slid", "J", slid);
     field("yielded", "J", yielded);
     field("broke", "J", broke);
@@ -86,28 +97,35 @@ struct InterfaceLinks {
 /// What an interaction does to its two ends in this step, and how stiff it is: written once by its
 /// law, read by both ends. What an end adds up lies side by side: six numbers from 0 for a, from 3
 /// for b.
-struct Action {
-  double numbers[9];  ///< torque on a  [N m], force on b (a gets the opposite)  [N], torque on b [N
+template <class Number>
+struct ActionOf {
+  Number numbers[9];  ///< torque on a  [N m], force on b (a gets the opposite)  [N], torque on b [N
                       ///< m]
-  float stiffness[9];  ///< K^theta of a  [N m], K  [N/m], K^theta of b  [N m], each xx yy zz
-  float unused;
+  float stiffness[sizeof(Number) == 8 ? 10 : 9];  ///< K^theta of a  [N m], K  [N/m], K^theta of b
+                                                  ///< [N m], each xx yy zz; a tenth fills up
 
   BR_HD Vec3 force_on_b() const { return {numbers[3], numbers[4], numbers[5]}; }
 };
-static_assert(sizeof(Action) == 112);
+using Action = ActionOf<double>;
+template <class Number>
+using ActionsOf = Buffer<ActionOf<Number>>;
+static_assert(sizeof(Action) == 112 && sizeof(ActionOf<float>) == 72);
 
 #if defined(__CUDACC__)
 /// On a device: the lanes of a warp, whose items are neighbours, put their actions together and
-/// write them as one run of memory. Each on its own would write in steps of 112 bytes.
+/// write them as one run of memory. Each on its own would write in steps of 112 or 72 bytes.
 /// @param actions  of the items of lane 0 and its neighbours
-__device__ inline void write_together(Action* actions, const Action& own) {
-  constexpr unsigned pieces = sizeof(Action) / sizeof(uint4);  // of each action
-  __shared__ uint4 staged[block_size * pieces];
+template <class Number>
+__device__ inline void write_together(ActionOf<Number>* actions, const ActionOf<Number>& own) {
+  using Action = ActionOf<Number>;
+  using Piece = std::conditional_t<sizeof(Action) % sizeof(uint4) == 0, uint4, uint2>;
+  constexpr unsigned pieces = sizeof(Action) / sizeof(Piece);  // of each action
+  __shared__ Piece staged[block_size * pieces];
   const unsigned lane = threadIdx.x % 32, active = __activemask();
-  uint4* const warp = staged + (threadIdx.x - lane) * pieces;
+  Piece* const warp = staged + (threadIdx.x - lane) * pieces;
   *reinterpret_cast<Action*>(warp + lane * pieces) = own;
   __syncwarp(active);
-  auto* const to = reinterpret_cast<uint4*>(actions);
+  auto* const to = reinterpret_cast<Piece*>(actions);
   const unsigned stride = __popc(active);
   for (unsigned k = __popc(active & ((1U << lane) - 1)); k < 32 * pieces; k += stride)
     if ((active >> (k / pieces) & 1U) != 0) to[k] = warp[k];
@@ -115,75 +133,112 @@ __device__ inline void write_together(Action* actions, const Action& own) {
 }
 #endif
 
-BR_HD inline void write_actions(const View<Action>& actions, Index at, const double (&numbers)[9],
-                                const double (&stiffness)[9]) {
+template <class Number>
+BR_HD inline void write_actions(const View<ActionOf<Number>>& actions, Index at,
+                                const double (&numbers)[9], const double (&stiffness)[9]) {
 #if defined(__CUDA_ARCH__)
-  Action action;
+  ActionOf<Number> action;
 #else
-  Action& action = actions[at];
+  ActionOf<Number>& action = actions[at];
 #endif
-  for (int k = 0; k < 9; ++k) action.numbers[k] = numbers[k];
+  for (int k = 0; k < 9; ++k) action.numbers[k] = static_cast<Number>(numbers[k]);
   for (int k = 0; k < 9; ++k) action.stiffness[k] = static_cast<float>(stiffness[k]);
 #if defined(__CUDA_ARCH__)
-  action.unused = 0.0F;
+  if constexpr (sizeof action.stiffness > 9 * sizeof(float)) action.stiffness[9] = 0.0F;
   write_together(actions.data + at - static_cast<Index>(threadIdx.x % 32), action);
 #endif
 }
 
 #if !defined(__CUDACC__) && defined(__AVX512F__)
+/// Nine numbers of eight actions, by number, as rows in single precision.
+struct SingleRows {
+  __m256 rows[8];
+  alignas(32) float last[8];
+
+  explicit SingleRows(const Pack8 (&numbers)[9]) {
+    for (int k = 0; k < 8; ++k) rows[k] = rounded(numbers[k]);
+    transpose(rows);
+    _mm256_store_ps(last, rounded(numbers[8]));
+  }
+  void write(int action, float* to) const {
+    _mm256_storeu_ps(to, rows[action]);
+    to[8] = last[action];
+  }
+};
 inline void write_actions(const View<Action>& actions, Index at, const Pack8 (&numbers)[9],
                           const Pack8 (&stiffness)[9]) {
   Pack8 rows[8];
   for (int k = 0; k < 8; ++k) rows[k] = numbers[k];
   transpose(rows);
-  __m256 halves[8];
-  for (int k = 0; k < 8; ++k) halves[k] = rounded(stiffness[k]);
-  transpose(halves);
-  alignas(64) double last_number[8];
-  alignas(32) float last_stiffness[8];
-  _mm512_store_pd(last_number, numbers[8]);
-  _mm256_store_ps(last_stiffness, rounded(stiffness[8]));
+  const SingleRows stiff(stiffness);
+  alignas(64) double last[8];
+  _mm512_store_pd(last, numbers[8]);
   for (int k = 0; k < 8; ++k) {
     Action& action = actions.data[at + k];
     _mm512_storeu_pd(action.numbers, rows[k]);
-    action.numbers[8] = last_number[k];
-    _mm256_storeu_ps(action.stiffness, halves[k]);
-    action.stiffness[8] = last_stiffness[k];
+    action.numbers[8] = last[k];
+    stiff.write(k, action.stiffness);
+  }
+}
+inline void write_actions(const View<ActionOf<float>>& actions, Index at, const Pack8 (&numbers)[9],
+                          const Pack8 (&stiffness)[9]) {
+  const SingleRows rows(numbers), stiff(stiffness);
+  for (int k = 0; k < 8; ++k) {
+    rows.write(k, actions.data[at + k].numbers);
+    stiff.write(k, actions.data[at + k].stiffness);
   }
 }
 #elif !defined(__CUDACC__) && defined(__AVX2__)
+/// Nine numbers of four actions, by number, as rows in single precision.
+struct SingleRows {
+  __m128 rows[2][4];
+  alignas(16) float last[4];
+
+  explicit SingleRows(const Pack4 (&numbers)[9]) {
+    for (int part = 0; part < 2; ++part) {
+      for (int k = 0; k < 4; ++k) rows[part][k] = rounded(numbers[4 * part + k]);
+      _MM_TRANSPOSE4_PS(rows[part][0], rows[part][1], rows[part][2], rows[part][3]);
+    }
+    _mm_store_ps(last, rounded(numbers[8]));
+  }
+  void write(int action, float* to) const {
+    _mm_storeu_ps(to, rows[0][action]);
+    _mm_storeu_ps(to + 4, rows[1][action]);
+    to[8] = last[action];
+  }
+};
 inline void write_actions(const View<Action>& actions, Index at, const Pack4 (&numbers)[9],
                           const Pack4 (&stiffness)[9]) {
   Pack4 rows[2][4];
-  __m128 floats[2][4];
   for (int part = 0; part < 2; ++part) {
-    for (int k = 0; k < 4; ++k) {
-      rows[part][k] = numbers[4 * part + k];
-      floats[part][k] = rounded(stiffness[4 * part + k]);
-    }
+    for (int k = 0; k < 4; ++k) rows[part][k] = numbers[4 * part + k];
     transpose(rows[part]);
-    _MM_TRANSPOSE4_PS(floats[part][0], floats[part][1], floats[part][2], floats[part][3]);
   }
-  alignas(32) double last_number[4];
-  alignas(16) float last_stiffness[4];
-  _mm256_store_pd(last_number, numbers[8]);
-  _mm_store_ps(last_stiffness, rounded(stiffness[8]));
+  const SingleRows stiff(stiffness);
+  alignas(32) double last[4];
+  _mm256_store_pd(last, numbers[8]);
   for (int k = 0; k < 4; ++k) {
     Action& action = actions.data[at + k];
     _mm256_storeu_pd(action.numbers, rows[0][k]);
     _mm256_storeu_pd(action.numbers + 4, rows[1][k]);
-    action.numbers[8] = last_number[k];
-    _mm_storeu_ps(action.stiffness, floats[0][k]);
-    _mm_storeu_ps(action.stiffness + 4, floats[1][k]);
-    action.stiffness[8] = last_stiffness[k];
+    action.numbers[8] = last[k];
+    stiff.write(k, action.stiffness);
+  }
+}
+inline void write_actions(const View<ActionOf<float>>& actions, Index at, const Pack4 (&numbers)[9],
+                          const Pack4 (&stiffness)[9]) {
+  const SingleRows rows(numbers), stiff(stiffness);
+  for (int k = 0; k < 4; ++k) {
+    rows.write(k, actions.data[at + k].numbers);
+    stiff.write(k, actions.data[at + k].stiffness);
   }
 }
 #endif
 
 /// Books force f and moment M on b of interaction `at`, and of its neighbours in a pack, with
 /// tangent stiffnesses (Durand 2012, 4.4; docs/theory.md, time step).
-template <class R>
-BR_HD void book(const View<Action>& actions, Index at, const PairMotion<R>& motion,
+template <class R, class Number>
+BR_HD void book(const View<ActionOf<Number>>& actions, Index at, const PairMotion<R>& motion,
                 const Vec3Of<R>& f, const Vec3Of<R>& moment, const R& normal, const R& shear,
                 const R& bending, const R& twist) {
   const Vec3Of<R> lever = cross(motion.normal, f);

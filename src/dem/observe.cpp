@@ -86,9 +86,10 @@ struct ReadProbe {
 };
 
 /// Counts the links of each element, and the broken ones.
+template <class Number>
 struct CountLinks {
   View<const Index> a, b;
-  View<const double> opening;            ///< of concrete links; else empty
+  View<const Number> opening;            ///< of concrete links; else empty
   View<const SteelState> steel;          ///< likewise
   View<const InterfaceState> interface;  ///< likewise
   View<Index> links, broken;
@@ -119,30 +120,33 @@ Buffer<double> damage_of(const World& w) {
   const Index count = w.elements.size();
   Buffer<Index> links(w.exec.space, count), broken(w.exec.space, count);
   Buffer<double> damage(w.exec.space, count);
-  for_each(w.exec, w.concrete.size(),
-           CountLinks{w.concrete.a.view(),
-                      w.concrete.b.view(),
-                      w.concrete.opening.view(),
-                      {},
-                      {},
-                      links.view(),
-                      broken.view()});
+  with_number(w.exec.precision, [&](auto number) {
+    using Number = decltype(number);
+    for_each(w.exec, w.concrete.size(),
+             CountLinks<Number>{w.concrete.a.view(),
+                                w.concrete.b.view(),
+                                w.concrete.kept.as<Number>().opening.view(),
+                                {},
+                                {},
+                                links.view(),
+                                broken.view()});
+  });
   for_each(w.exec, w.steel.size(),
-           CountLinks{w.steel.a.view(),
-                      w.steel.b.view(),
-                      {},
-                      w.steel.state.view(),
-                      {},
-                      links.view(),
-                      broken.view()});
+           CountLinks<double>{w.steel.a.view(),
+                              w.steel.b.view(),
+                              {},
+                              w.steel.state.view(),
+                              {},
+                              links.view(),
+                              broken.view()});
   for_each(w.exec, w.interface.size(),
-           CountLinks{w.interface.a.view(),
-                      w.interface.b.view(),
-                      {},
-                      {},
-                      w.interface.state.view(),
-                      links.view(),
-                      broken.view()});
+           CountLinks<double>{w.interface.a.view(),
+                              w.interface.b.view(),
+                              {},
+                              {},
+                              w.interface.state.view(),
+                              links.view(),
+                              broken.view()});
   for_each(w.exec, count,
            Damage{std::as_const(links).view(), std::as_const(broken).view(), damage.view()});
   return damage;
@@ -172,8 +176,10 @@ template <class Visit>
 void each_link(const World& w, const Visit& visit) {
   {
     const HostItems a(w.concrete.a), b(w.concrete.b);
-    const HostItems opening(w.concrete.opening);
-    for (Index i = 0; i < a.size(); ++i) visit(LinkKind::concrete, a[i], b[i], opening[i] < 0.0);
+    with_number(w.exec.precision, [&](auto number) {
+      const HostItems opening(w.concrete.kept.as<decltype(number)>().opening);
+      for (Index i = 0; i < a.size(); ++i) visit(LinkKind::concrete, a[i], b[i], opening[i] < 0);
+    });
   }
   {
     const HostItems a(w.steel.a), b(w.steel.b);
@@ -289,6 +295,12 @@ Counts count(const World& w) {
   return n;
 }
 
+double link_opening(const ConcreteLinks& links, Index i) {
+  return with_number(links.precision, [&](auto number) -> double {
+    return links.kept.as<decltype(number)>().opening.data()[i];
+  });
+}
+
 Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Elements& elements,
                 Index i) {
   const ElementState& a = elements.state.data()[links.a.data()[i]];
@@ -300,8 +312,11 @@ Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Eleme
   const Vec3 d = b.position - a.position;
   const double distance = norm(d);
   const double pull =
-      law.normal_force(link, distance - link.length, links.opening.data()[i]) / distance;
-  return links.shear.view()[i] - pull * d;
+      law.normal_force(link, distance - link.length, link_opening(links, i)) / distance;
+  const Vec3 shear = with_number(links.precision, [&](auto number) {
+    return links.kept.as<decltype(number)>().shear.view()[i];
+  });
+  return shear - pull * d;
 }
 
 }  // namespace breccia::dem

@@ -28,6 +28,9 @@ struct Counts {
 };
 Counts count(const World& w);
 
+/// Largest opening of concrete link i so far, or link_broken, link_released. On the host.  [m]
+double link_opening(const ConcreteLinks& links, Index i);
+
 /// Force of concrete link i on its end b, from what the link keeps. All arrays on the host.  [N]
 Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Elements& elements,
                 Index i);

@@ -23,9 +23,10 @@ struct UnpackState {
 };
 
 /// Pairs that a link still holds: all but released ones do.
+template <class Number>
 struct ListHeld {
   static constexpr const char* name = "dem.list_held";
-  View<const double> opening;            ///< of concrete links
+  View<const Number> opening;            ///< of concrete links
   View<const InterfaceState> interface;  ///< of interface links
   Index bonds;                           ///< first interface link among all
   View<const Index> links, partners;     ///< by the ends of the link
@@ -42,10 +43,14 @@ struct ListHeld {
 /// The links that a search leaves out.
 KnownPairs held_pairs(World& w) {
   w.held_partners.resize(w.linked_partners.size());
-  for_each(w.exec, w.linked_partners.size(),
-           ListHeld{std::as_const(w.concrete.opening).view(),
-                    std::as_const(w.interface.state).view(), w.concrete.size() + w.steel.size(),
-                    w.linked_links.view(), w.linked_partners.view(), w.held_partners.view()});
+  with_number(w.exec.precision, [&w](auto number) {
+    using Number = decltype(number);
+    for_each(w.exec, w.linked_partners.size(),
+             ListHeld<Number>{std::as_const(w.concrete.kept.as<Number>().opening).view(),
+                              std::as_const(w.interface.state).view(),
+                              w.concrete.size() + w.steel.size(), w.linked_links.view(),
+                              w.linked_partners.view(), w.held_partners.view()});
+  });
   return {w.linked_starts.view(), w.held_partners.view()};
 }
 
@@ -215,7 +220,9 @@ void list_rows(World& w, const std::vector<Index>& a, const std::vector<Index>& 
   }
   w.rows_a = rows_of(w.exec.space, a, count, order);
   w.rows_b = rows_of(w.exec.space, b, count, order);
-  w.link_actions.resize(static_cast<Index>(a.size()));
+  with_number(w.exec.precision, [&](auto number) {
+    w.link_actions.as<decltype(number)>().resize(static_cast<Index>(a.size()));
+  });
 }
 
 /// Runs of elements with about as many links each.

@@ -258,6 +258,7 @@ void set_contacts(World& w, const Config& config, const Model& m) {
 }  // namespace
 
 World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
+  concrete.precision = how.precision;
   place_arrays(*this);
 }
 

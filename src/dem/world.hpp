@@ -128,7 +128,8 @@ struct World {
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(bar_incidence, contact_incidence, broad_phase, held_partners, contact_actions, link_sums,
-         critical, rows_a, rows_b, link_actions, device_walls, clock);
+         critical, rows_a, rows_b, link_actions.in_double, link_actions.in_single, device_walls,
+         clock);
   }
 
   /// Of all kinds, broken ones included.
@@ -164,8 +165,8 @@ struct World {
   bool margin_used = false;    ///< some element has used its margin up; host only
 
   // On a device.
-  LinkRows rows_a, rows_b;      ///< concrete links that start, and that end, at each element
-  Buffer<Action> link_actions;  ///< of concrete links
+  LinkRows rows_a, rows_b;         ///< concrete links that start, and that end, at each element
+  Stored<ActionsOf> link_actions;  ///< of concrete links
   Buffer<Wall> device_walls;
   Buffer<ConcreteLink> concrete_laws;  ///< of each group
   Buffer<SteelLink> steel_laws;

@@ -69,8 +69,9 @@ template <class T>
 std::size_t item_bytes(const Buffer<T>&) {
   return sizeof(T);
 }
-inline std::size_t item_bytes(const Vec3Planes&) {
-  return 3 * sizeof(double);
+template <class Number>
+std::size_t item_bytes(const PlanesOf<Number>&) {
+  return 3 * sizeof(Number);
 }
 
 template <class T>
@@ -83,7 +84,8 @@ void put(Message& message, const Buffer<T>& array, const std::vector<Index>& ite
     to += sizeof(T);
   }
 }
-inline void put(Message& message, const Vec3Planes& planes, const std::vector<Index>& items) {
+template <class Number>
+void put(Message& message, const PlanesOf<Number>& planes, const std::vector<Index>& items) {
   std::vector<Index> each(items);
   for (int plane = 0; plane < 3; ++plane) {
     put(message, planes.items(), each);
@@ -97,7 +99,8 @@ const std::byte* take(const std::byte* from, Buffer<T>& array, Index first, Inde
   if (bytes > 0) std::memcpy(array.data() + first, from, bytes);
   return from + bytes;
 }
-inline const std::byte* take(const std::byte* from, Vec3Planes& planes, Index first, Index count) {
+template <class Number>
+const std::byte* take(const std::byte* from, PlanesOf<Number>& planes, Index first, Index count) {
   for (int plane = 0; plane < 3; ++plane)
     from = take(from, planes.items(), plane * planes.size() + first, count);
   return from;

@@ -15,11 +15,16 @@ enum class Space { host, shadow, cuda };
 /// Threads of a block on a device: registers leave room for several blocks of the largest kernels.
 inline constexpr Index block_size = 128;
 
+/// What numbers are stored in. full: all in double. mixed: what links keep and do in single, all
+/// else in double; laws and sums compute in double (docs/theory.md, mixed precision).
+enum class Precision { full, mixed };
+
 /// How a run executes: the space of its arrays and the threads of its host loops.
 struct Exec {
   Space space = Space::host;
   int threads = 1;                ///< host threads, >= 1
   StageTimers* timers = nullptr;  ///< where stages book their wall time; may be absent
+  Precision precision = Precision::full;
 };
 
 /// True on a thread that is inside a kernel: the only place where shadow arrays may be read.

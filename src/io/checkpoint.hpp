@@ -47,7 +47,8 @@ class CheckpointWriter {
     copy_to(host, array);
     section(name, host.data(), static_cast<std::size_t>(host.size()), sizeof(T));
   }
-  void write_array(const std::string& name, const Vec3Planes& array) {
+  template <class Number>
+  void write_array(const std::string& name, const PlanesOf<Number>& array) {
     write_array(name, array.items());
   }
 
@@ -122,8 +123,9 @@ class CheckpointReader {
     copy_items(host.data(), found, found.count);
     copy_to(array, host);
   }
-  void read_array(const std::string& name, Vec3Planes& array) const {
-    const Section& found = section(name, sizeof(double));
+  template <class Number>
+  void read_array(const std::string& name, PlanesOf<Number>& array) const {
+    const Section& found = section(name, sizeof(Number));
     if (found.count % 3 != 0) refuse("section " + name + " is not of whole vectors");
     array.resize(static_cast<Index>(found.count / 3));
     read_array(name, array.items());

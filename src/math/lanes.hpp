@@ -7,11 +7,16 @@
 
 namespace breccia {
 
-/// Items first, first + 1, ... of an array.
+/// Items first, first + 1, ... of an array of doubles or floats.
 template <class R, class T>
 BR_HD inline R load(const View<T>& array, Index first) {
   if constexpr (width_of<R> == 1) {
     return array[first];
+  } else if constexpr (sizeof(T) == sizeof(float)) {
+    BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
+    typename TypesOf<R>::Single single;
+    __builtin_memcpy(&single, array.data + first, sizeof single);
+    return __builtin_convertvector(single, R);
   } else {
     BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
     R pack;
@@ -26,6 +31,17 @@ BR_HD inline void store(const View<double>& array, Index first, const R& value) 
   } else {
     BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
     __builtin_memcpy(array.data + first, &value, sizeof value);
+  }
+}
+/// Rounded to the nearest.
+template <class R>
+BR_HD inline void store(const View<float>& array, Index first, const R& value) {
+  if constexpr (width_of<R> == 1) {
+    array[first] = static_cast<float>(value);
+  } else {
+    BR_ASSERT(first >= 0 && first + width_of<R> <= array.size);
+    const auto single = __builtin_convertvector(value, typename TypesOf<R>::Single);
+    __builtin_memcpy(array.data + first, &single, sizeof single);
   }
 }
 

@@ -48,7 +48,8 @@ BR_HD inline bool opposite(bool a) {
 struct SixSums {
 #if defined(__CUDACC__)
   double sum[6] = {};
-  BR_HD void add(const double* numbers) {
+  template <class Number>
+  BR_HD void add(const Number* numbers) {
     for (int k = 0; k < 6; ++k) sum[k] += numbers[k];
   }
   BR_HD double operator[](int k) const {
@@ -60,6 +61,9 @@ struct SixSums {
   void add(const double* numbers) {
     const auto* twos = reinterpret_cast<const Two*>(numbers);
     for (int k = 0; k < 3; ++k) sum[k] += twos[k];
+  }
+  void add(const float* numbers) {
+    for (int k = 0; k < 3; ++k) sum[k] += Two{numbers[2 * k], numbers[2 * k + 1]};
   }
   double operator[](int k) const {
     return sum[k / 2][k % 2];
@@ -210,6 +214,28 @@ inline void transpose(Pack4 (&r)[4]) {
 }
 using WidestPack = Pack4;
 
+#endif
+
+/// The same numbers in single precision, and words of as many bits as theirs.
+template <class R>
+struct TypesOf;
+template <>
+struct TypesOf<double> {
+  using Single = float;
+  using Bits = std::uint64_t;
+};
+#if !defined(__CUDACC__) && defined(__AVX512F__)
+template <>
+struct TypesOf<Pack8> {
+  using Single = float __attribute__((vector_size(32)));
+  using Bits = std::uint64_t __attribute__((vector_size(64)));
+};
+#elif !defined(__CUDACC__) && defined(__AVX2__)
+template <>
+struct TypesOf<Pack4> {
+  using Single = float __attribute__((vector_size(16)));
+  using Bits = std::uint64_t __attribute__((vector_size(32)));
+};
 #endif
 
 /// How many items a number of type R stands for.

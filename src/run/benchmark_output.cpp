@@ -83,6 +83,7 @@ std::string benchmark_json(const std::vector<std::pair<std::string, std::vector<
   const Build& build = this_build();
   Json json;
   json["machine"] = {{"cpu", processor_name()}, {"device", device}, {"threads", exec.threads}};
+  json["precision"] = exec.precision == Precision::mixed ? "mixed" : "double";
   json["breccia"] = {{"version", build.version},
                      {"commit", build.commit},
                      {"build", {{"type", build.type}, {"compiler", build.compiler}}}};

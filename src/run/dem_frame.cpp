@@ -63,7 +63,7 @@ Frame dem_frame(const dem::World& w) {
   const ConcreteLinks c = host_copy(w.concrete);
   for (const auto& g : w.concrete_groups)
     for (Index i = g.begin; i < g.end; ++i) {
-      const double opening = c.opening.data()[i];
+      const double opening = link_opening(c, i);
       const double r =
           std::min(e.state.data()[c.a.data()[i]].radius, e.state.data()[c.b.data()[i]].radius);
       const double onset =

@@ -1,5 +1,6 @@
 #include "run/dem_method.hpp"
 
+#include "core/precision.hpp"
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "exec/error.hpp"
@@ -12,8 +13,8 @@ class DemMethod final : public Method {
  public:
   DemMethod(const dem::Config& config, const dem::Model& model, const Exec& exec,
             Communicator* ranks)
-      : world_([&](const Exec& where) { return dem::make_world(config, model, where); }, exec,
-               ranks, config.domain),
+      : world_([&](const Exec& where) { return dem::make_world(config, model, where); },
+               in_precision(exec, config.precision), ranks, config.domain),
         probes_(config.probes),
         range_(model.interaction_range) {}
 

@@ -50,6 +50,7 @@ std::string opening_text(const Summary& s, double end_time, std::int64_t end_ste
   std::string text = fmt::format("breccia {}  {} x{} {}\n", this_build().version, s.machine.device,
                                  s.machine.threads, s.machine.threads == 1 ? "thread" : "threads");
   text += fmt::format("case    {}   {}", s.case_name, s.method);
+  if (s.precision != "double") text += fmt::format("   {} precision", s.precision);
   for (const char* kind : {"elements", "links", "triangles", "joints"})
     if (const auto count = fact(s, std::string("model.") + kind); count && *count > 0.0)
       text += fmt::format("   {} {}", count_text(*count), kind);

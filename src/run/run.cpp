@@ -65,6 +65,12 @@ const std::string& cut_log(const std::string& path, const CheckpointReader& chec
 }  // namespace
 
 void refuse_other_case(const CheckpointReader& checkpoint, const RunPlan& plan) {
+  const std::string precision =
+      checkpoint.has("run.precision") ? checkpoint.text("run.precision") : "double";
+  if (precision != plan.config.precision)
+    throw CheckpointError(
+        fmt::format("the checkpoint is of a run with precision = \"{}\", {} asks for \"{}\"",
+                    precision, plan.case_name, plan.config.precision));
   if (checkpoint.text("run.model_digest") == plan.model_digest) return;
   throw CheckpointError(
       fmt::format("the checkpoint is of another case than {}: bodies, materials, links, loads and "
@@ -200,6 +206,7 @@ CheckpointWriter Run::state() const {
   writer.value("run.end_time", end_time_);
   writer.value("run.end_steps", end_steps_);
   writer.text("run.method", plan_.config.method);
+  writer.text("run.precision", plan_.config.precision);
   writer.text("run.case_name", plan_.case_name);
   writer.text("run.case_folder", plan_.case_folder);
   writer.text("run.model_digest", plan_.model_digest);
@@ -315,6 +322,7 @@ Summary Run::measured() const {
   s.case_name = plan_.case_name;
   s.case_sha256 = plan_.case_digest;
   s.method = plan_.config.method;
+  s.precision = plan_.config.precision;
   s.seed = plan_.config.seed;
   s.machine = plan_.machine;
   s.steps = method_.steps();

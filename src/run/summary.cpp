@@ -66,6 +66,7 @@ Json json_of(const Summary& s) {
                        {"mpi", build.mpi}}}};
   json["case"] = {{"name", s.case_name}, {"sha256", s.case_sha256}, {"seed", s.seed}};
   json["method"] = s.method;
+  json["precision"] = s.precision;
   json["machine"] = {{"cpu", s.machine.cpu},
                      {"device", s.machine.device},
                      {"threads", s.machine.threads},

@@ -34,7 +34,7 @@ struct Summary {
   int exit_code = 0;
   std::string message;
 
-  std::string case_name, case_sha256, method;
+  std::string case_name, case_sha256, method, precision;
   std::int64_t seed = 0;
   Machine machine;
 

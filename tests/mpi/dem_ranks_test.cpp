@@ -69,6 +69,19 @@ TEST(DemRanks, leave_the_same_state_however_borders_and_copies_are_kept) {
   EXPECT_EQ(on_ranks(2, slab(), steps, config).outcome, slab_alone());
 }
 
+TEST(DemRanks, leave_the_same_state_in_mixed_precision) {
+  Slab piece = slab_piece();
+  const std::uint64_t in_double = alone(piece, 300).hash;
+  piece.config.precision = "mixed";
+  const Outcome expected = alone(piece, 300);
+  EXPECT_GT(expected.cracks, 50U);
+  EXPECT_NE(expected.hash, in_double);
+  for (const auto& [count, threads] : {std::pair{1, 3}, {2, 1}, {5, 2}, {8, 1}, {32, 1}})
+    EXPECT_EQ(on_ranks(count, piece, 300, {}, threads).outcome, expected)
+        << count << " ranks of " << threads << " threads";
+  EXPECT_EQ(on_ranks(3, piece, 300, {}, 1, Space::shadow).outcome, expected);
+}
+
 TEST(DemRanks, leave_the_same_state_for_any_margin_of_search) {
   EXPECT_EQ(on_ranks(3, slab({"search.margin=0.05"}), steps).outcome.hash, slab_alone().hash);
   EXPECT_EQ(on_ranks(4, slab({"search.margin=1.0"}), steps).outcome.hash, slab_alone().hash);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/precision.hpp"
 #include "dem/observe.hpp"
 #include "domain/domain.hpp"
 #include "io/case_file.hpp"
@@ -22,7 +23,7 @@ struct Slab {
   std::shared_ptr<const dem::Model> model;
 
   dem::World world(int threads = 1) const {
-    Exec exec;
+    Exec exec = in_precision({}, config.precision);
     exec.threads = threads;
     return dem::make_world(config, *model, exec);
   }

@@ -29,7 +29,12 @@ void fetch(const MoveWithin& kernel, Index first) {
 
 }  // namespace
 
-BR_WHOLE Index BR_PACKS::run(const ConcreteLinkForces& kernel, Index begin, Index end) {
+BR_WHOLE Index BR_PACKS::run(const ConcreteLinkForces<double>& kernel, Index begin, Index end) {
+  Index i = begin;
+  for (; i + width <= end; i += width) kernel.at<WidestPack>(i);
+  return i;
+}
+BR_WHOLE Index BR_PACKS::run(const ConcreteLinkForces<float>& kernel, Index begin, Index end) {
   Index i = begin;
   for (; i + width <= end; i += width) kernel.at<WidestPack>(i);
   return i;

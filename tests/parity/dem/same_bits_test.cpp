@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "dem/observe.hpp"
+#include "exec/error.hpp"
 #include "io/case_file.hpp"
 #include "prepare/build.hpp"
 #include "run/dem_method.hpp"
@@ -115,6 +116,46 @@ TEST(SameBits, across_a_checkpoint_on_other_threads) {
   EXPECT_EQ(after->state_hash(), before->state_hash());
   EXPECT_EQ(after->energy().friction, before->energy().friction);
   EXPECT_EQ(after->energy().error_relative, before->energy().error_relative);
+  std::filesystem::remove_all(folder);
+}
+
+/// The whole impact in mixed precision.
+std::uint64_t mixed_hash(int threads, Lanes lanes, Space space = Space::host) {
+  Exec exec;
+  exec.threads = threads;
+  exec.space = space;
+  exec.precision = Precision::mixed;
+  dem::World w = dem::make_world(small_config(), small_model(), exec);
+  w.lanes = std::min(lanes, widest_lanes());
+  EXPECT_EQ(w.concrete.kept.in_double.opening.size(), 0);
+  return hash_after(std::move(w));
+}
+
+TEST(SameBits, in_mixed_precision_for_any_threads_width_of_vector_and_space) {
+  const std::uint64_t expected = mixed_hash(1, Lanes::one);
+  EXPECT_NE(expected, reference());
+  EXPECT_EQ(mixed_hash(1, Lanes::four), expected);
+  EXPECT_EQ(mixed_hash(1, Lanes::eight), expected);
+  EXPECT_EQ(mixed_hash(3, Lanes::eight), expected);
+  EXPECT_EQ(mixed_hash(2, Lanes::eight, Space::shadow), expected);
+}
+
+TEST(SameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
+  const std::string folder = std::filesystem::temp_directory_path() / "breccia_same_bits_mixed";
+  std::filesystem::create_directories(folder);
+  const dem::Config config = small_config({"precision=mixed"});
+  const auto before = make_dem_method(config, small_model(), {});
+  for (int i = 0; i < 500; ++i) before->advance({});
+  CheckpointWriter writer;
+  before->save(writer);
+  writer.write(folder + "/state.br");
+  for (int i = 0; i < 200; ++i) before->advance({});
+  const CheckpointReader state(folder + "/state.br");
+  const auto after = make_dem_method(config, small_model(), {});
+  after->load(state);
+  for (int i = 0; i < 200; ++i) after->advance({});
+  EXPECT_EQ(after->state_hash(), before->state_hash());
+  EXPECT_THROW(make_dem_method(small_config(), small_model(), {})->load(state), CheckpointError);
   std::filesystem::remove_all(folder);
 }
 

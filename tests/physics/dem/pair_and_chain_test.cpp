@@ -80,8 +80,9 @@ TEST(LinkedPair, of_unequal_spheres_twists_with_the_reduced_inertia) {
   const double spin = 1e-3;
   p.scene.model.spin = {{-spin * p.ib / p.ia, 0.0, 0.0}, {spin, 0.0, 0.0}};
   const double omega = std::sqrt(p.kr * (1.0 / p.ia + 1.0 / p.ib));
-  expect_swing(p.scene.world(), omega, spin * (1.0 + p.ib / p.ia), 2000, 1e-6,
-               [&](const World& w) { return -w.concrete.moment.view()[0].x / p.kr; });
+  expect_swing(p.scene.world(), omega, spin * (1.0 + p.ib / p.ia), 2000, 1e-6, [&](const World& w) {
+    return -w.concrete.kept.in_double.moment.view()[0].x / p.kr;
+  });
 }
 
 /// Shear s = u_b - u_a - l_a theta_a - l_b theta_b and bend phi = theta_b - theta_a obey
@@ -107,10 +108,11 @@ TEST(LinkedPair, of_unequal_spheres_has_two_modes_that_mix_shear_and_bending) {
     p.scene.model.spin = {{0.0, 0.0, (p.arm_a * f + c) / p.ia},
                           {0.0, 0.0, (p.arm_b * f - c) / p.ib}};
     const double omega = std::sqrt(square);
-    expect_swing(p.scene.world(), omega, rate_s, 2000, 1e-6,
-                 [&](const World& w) { return -w.concrete.shear.view()[0].y / p.kt; });
+    expect_swing(p.scene.world(), omega, rate_s, 2000, 1e-6, [&](const World& w) {
+      return -w.concrete.kept.in_double.shear.view()[0].y / p.kt;
+    });
     expect_swing(p.scene.world(), omega, std::fabs(rate_phi), 2000, 1e-6, [&](const World& w) {
-      return -std::copysign(1.0, rate_phi) * w.concrete.moment.view()[0].z / p.kr;
+      return -std::copysign(1.0, rate_phi) * w.concrete.kept.in_double.moment.view()[0].z / p.kr;
     });
   }
 }

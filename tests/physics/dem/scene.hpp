@@ -56,9 +56,10 @@ struct Scene {
   void wall(const Vec3& point, const Vec3& normal, const Vec3& velocity = {}) {
     config.walls.push_back({"wall", point, normal, velocity, 1.0});
   }
-  World world(int threads = 1) const {
+  World world(int threads = 1, Precision precision = Precision::full) const {
     Exec exec;
     exec.threads = threads;
+    exec.precision = precision;
     return make_world(config, model, exec);
   }
 };

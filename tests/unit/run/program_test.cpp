@@ -347,6 +347,23 @@ TEST_F(Program, RestartsFromACheckpointInANewFolder) {
       << output();
 }
 
+TEST_F(Program, TellsThePrecisionAndRefusesAStateOfAnother) {
+  EXPECT_EQ(run("run " + path("balls.toml") + " --set precision=half -o " + path("out")), 2);
+  EXPECT_NE(output().find("double | mixed"), std::string::npos) << output();
+  ASSERT_EQ(
+      run("run " + path("balls.toml") + " --set precision=mixed --steps 50 -o " + path("mixed")),
+      0);
+  EXPECT_NE(output().find("mixed precision"), std::string::npos) << output();
+  EXPECT_EQ(summary("mixed")["precision"], "mixed");
+  const std::string checkpoint = list_checkpoints(path("mixed/checkpoints")).at(0).path;
+  EXPECT_EQ(run("info " + checkpoint), 0);
+  EXPECT_NE(output().find("mixed precision"), std::string::npos) << output();
+  EXPECT_EQ(run("run " + path("balls.toml") + " --restart " + checkpoint + " -o " + path("rest")),
+            7);
+  EXPECT_NE(output().find("precision = \"mixed\""), std::string::npos) << output();
+  EXPECT_EQ(run("resume " + path("mixed")), 0) << output();
+}
+
 TEST_F(Program, RunsAPreparedModelToTheStateOfItsCase) {
   ASSERT_EQ(run("prepare " + path("balls.toml") + " -o " + path("balls.br")), 0) << output();
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("case")), 0) << output();

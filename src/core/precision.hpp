@@ -1,0 +1,50 @@
+#pragma once
+// What a run stores in double or in single precision, as its case says.
+
+#include <string>
+#include <type_traits>
+
+#include "exec/space.hpp"
+
+namespace breccia {
+
+/// The word of a case for it.
+inline Precision precision_of(const std::string& word) {
+  return word == "mixed" ? Precision::mixed : Precision::full;
+}
+
+inline Exec in_precision(Exec exec, const std::string& word) {
+  exec.precision = precision_of(word);
+  return exec;
+}
+
+/// A state in the one or the other precision: one of the two is empty.
+template <template <class> class StateOf>
+struct Stored {
+  StateOf<double> in_double;
+  StateOf<float> in_single;
+
+  template <class Number>
+  auto& as() {
+    if constexpr (std::is_same_v<Number, float>)
+      return in_single;
+    else
+      return in_double;
+  }
+  template <class Number>
+  const auto& as() const {
+    if constexpr (std::is_same_v<Number, float>)
+      return in_single;
+    else
+      return in_double;
+  }
+};
+
+/// visit(0.0) or visit(0.0F): the type tells what numbers are stored in.
+template <class Visit>
+decltype(auto) with_number(Precision precision, const Visit& visit) {
+  if (precision == Precision::mixed) return visit(0.0F);
+  return visit(0.0);
+}
+
+}  // namespace breccia
