@@ -25,19 +25,23 @@ constexpr double size = sizeof(T);
 
 /// Elements, links: as many as there are, their sizes as they are stored.
 std::vector<CountedKernel> counted(const dem::World& w) {
+  const bool mixed = w.exec.precision == Precision::mixed;
   const double elements = w.elements.size(), links = w.links();
+  const double number = mixed ? size<float> : size<double>;
+  const double action = size<dem::Action>;
+  const double actions = w.concrete.size() * (mixed ? size<dem::ActionOf<float>> : action) +
+                         (w.steel.size() + w.interface.size()) * action;
   const double ends = 2 * size<Index>, state = size<dem::ElementState>;
-  const double concrete = w.concrete.size() * (ends + 2 * size<double> + 2 * 7 * size<double>);
+  const double concrete = w.concrete.size() * (ends + 2 * size<double> + 2 * 7 * number);
   const double steel = w.steel.size() * (ends + size<double> + 2 * size<dem::SteelState>);
   const double interface =
       w.interface.size() * (2 * ends + 2 * size<double> + 2 * size<dem::InterfaceState>);
   const double given = 2 * size<double> + size<std::uint8_t>;  // mass, inertia, what is held
   return {{"dem.move_and_watch",
            elements * (2 * state + 2 * size<Quaternion> + given + 3 * size<Vec3> + size<double>)},
-          {"dem.concrete_links",
-           concrete + steel + interface + links * size<dem::Action> + elements * state},
+          {"dem.concrete_links", concrete + steel + interface + actions + elements * state},
           {"dem.gather_wide",
-           links * (size<dem::Action> + ends) +
+           actions + links * ends +
                elements * (4 * size<Index> + given + 2 * size<Vec3> + size<double>)}};
 }
 
