@@ -6,7 +6,8 @@
 
 namespace breccia {
 
-/// The stream that all kernels and copies of this process run on, in order.
+/// The stream that all kernels and copies of this thread run on, in order: that of the run, or the
+/// second one (SecondStream).
 cudaStream_t device_stream();
 
 /// Whether a launch may get ready while the one before it ends: from Hopper on.

@@ -15,13 +15,31 @@ void check_device(cudaError_t result, const char* what) {
   throw DeviceError("the GPU failed in " + std::string(what) + ": " + reason);
 }
 
+namespace {
+int used_device = -1;  ///< none yet
+thread_local bool on_second_stream = false;
+
+cudaStream_t made_stream() {
+  cudaStream_t made = nullptr;
+  check_device(cudaStreamCreateWithFlags(&made, cudaStreamNonBlocking), "making a stream");
+  return made;
+}
+}  // namespace
+
 cudaStream_t device_stream() {
-  static const cudaStream_t stream = [] {
-    cudaStream_t made = nullptr;
-    check_device(cudaStreamCreateWithFlags(&made, cudaStreamNonBlocking), "making a stream");
-    return made;
-  }();
-  return stream;
+  static const cudaStream_t run = made_stream();
+  if (!on_second_stream) return run;
+  static const cudaStream_t second = made_stream();
+  return second;
+}
+
+SecondStream::SecondStream() {
+  if (used_device < 0) return;
+  check_device(cudaSetDevice(used_device), "choosing it");  // each thread has to
+  on_second_stream = true;
+}
+SecondStream::~SecondStream() {
+  on_second_stream = false;
 }
 
 int device_count() {
@@ -50,6 +68,7 @@ void use_device(int number) {
     throw DeviceError("there is no GPU " + std::to_string(number) + "; this machine has " +
                       std::to_string(count) + ", from 0; nothing was run");
   check_device(cudaSetDevice(number), "choosing it");
+  used_device = number;
   // Freed memory stays with the process: searches take and give arrays every few steps.
   cudaMemPool_t pool = nullptr;
   check_device(cudaDeviceGetDefaultMemPool(&pool, number), "finding its memory pool");
@@ -96,6 +115,8 @@ DeviceInfo device_info() {
   refuse();
 }
 void wait_for_device() {}
+SecondStream::SecondStream() = default;
+SecondStream::~SecondStream() = default;
 
 }  // namespace breccia
 #endif

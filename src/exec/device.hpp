@@ -23,7 +23,18 @@ void use_device(int number);
 /// Of the GPU in use. @throws DeviceError
 DeviceInfo device_info();
 
-/// Waits until the GPU has done all that was asked of it. @throws DeviceError if it went wrong
+/// While one lives, launches and copies of this thread go on a second stream, beside those of the
+/// run. Nothing where no GPU is in use.
+class SecondStream {
+ public:
+  SecondStream();
+  SecondStream(const SecondStream&) = delete;
+  SecondStream& operator=(const SecondStream&) = delete;
+  ~SecondStream();
+};
+
+/// Waits until the GPU has done all that this thread asked of it. @throws DeviceError if it went
+/// wrong
 void wait_for_device();
 
 }  // namespace breccia

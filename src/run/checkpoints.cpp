@@ -29,11 +29,18 @@ std::int64_t Checkpoints::next_step(std::int64_t step) const {
   return (step / config_.steps + 1) * config_.steps;
 }
 
-std::string Checkpoints::write(std::int64_t step, const CheckpointWriter& state) {
-  const std::string path = fmt::format("{}/step_{:012}.br", folder_, step);
-  state.write(path);
+std::string Checkpoints::path(std::int64_t step) const {
+  return fmt::format("{}/step_{:012}.br", folder_, step);
+}
+
+std::string Checkpoints::begin(std::int64_t step) {
   last_step_ = step;
   last_time_ = Clock::now();
+  return path(step);
+}
+
+void Checkpoints::write(std::int64_t step, const CheckpointWriter& state) const {
+  state.write(path(step));
   int kept = 0;
   for (const CheckpointFile& file : list_checkpoints(folder_)) {
     // Later ones are of a run that went back to an older state because they were damaged.
@@ -41,7 +48,6 @@ std::string Checkpoints::write(std::int64_t step, const CheckpointWriter& state)
     std::error_code ignored;  // an old checkpoint that stays does no harm
     fs::remove(file.path, ignored);
   }
-  return path;
 }
 
 std::vector<CheckpointFile> list_checkpoints(const std::string& folder) {

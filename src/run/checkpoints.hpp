@@ -26,14 +26,18 @@ class Checkpoints {
   /// The first step after `step` at which one is due by steps.
   std::int64_t next_step(std::int64_t step) const;
 
-  /// Writes the state, verifies it, then removes the oldest beyond those to keep. Returns its path.
+  /// The next file is of this step. Returns its path.
+  std::string begin(std::int64_t step);
+  /// Writes that state, verifies it, then removes the oldest beyond those to keep.
   /// @throws IoError; the older checkpoints are then all there
-  std::string write(std::int64_t step, const CheckpointWriter& state);
+  void write(std::int64_t step, const CheckpointWriter& state) const;
 
-  /// The step of the newest checkpoint this object wrote, -1 if none.
+  /// The step of the newest checkpoint that was begun, -1 if none.
   std::int64_t last_step() const { return last_step_; }
 
  private:
+  std::string path(std::int64_t step) const;
+
   std::string folder_;
   CheckpointConfig config_;
   std::int64_t last_step_ = -1;

@@ -35,6 +35,9 @@ class DemMethod final : public Method {
   std::uint64_t state_hash() override { return dem::state_hash(world_.whole()); }
   void verify() override { dem::verify(world_.whole()); }
   Frame frame() override { return dem_frame(world_.whole()); }
+  std::unique_ptr<Method> snapshot() override {
+    return world_.apart([this] { return std::unique_ptr<Method>(new DemMethod(*this)); });
+  }
 
   std::vector<Fact> facts() override {
     const dem::World& w = world_.whole();
@@ -111,6 +114,10 @@ class DemMethod final : public Method {
   void dismiss(int exit_code) override { world_.dismiss(exit_code); }
 
  private:
+  DemMethod(const DemMethod& other)
+      : Method(), world_(other.world_), probes_(other.probes_), range_(other.range_) {
+    world_.forget_timers();
+  }
   std::size_t group_count() {
     std::size_t groups = 0;
     Buffer<std::int16_t> group;

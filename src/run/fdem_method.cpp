@@ -57,6 +57,9 @@ class FdemMethod final : public Method {
   std::uint64_t state_hash() override { return fdem::state_hash(world_.whole()); }
   void verify() override { fdem::verify(world_.whole()); }
   Frame frame() override { return fdem_frame(world_.whole()); }
+  std::unique_ptr<Method> snapshot() override {
+    return world_.apart([this] { return std::unique_ptr<Method>(new FdemMethod(*this)); });
+  }
 
   std::vector<Fact> facts() override {
     const fdem::World& w = world_.whole();
@@ -151,6 +154,10 @@ class FdemMethod final : public Method {
   void dismiss(int exit_code) override { world_.dismiss(exit_code); }
 
  private:
+  FdemMethod(const FdemMethod& other)
+      : Method(), probes_(other.probes_), lines_(other.lines_), world_(other.world_) {
+    world_.forget_timers();
+  }
   /// Where a joint lay at the start.
   struct Line {
     Vec2 begin, end;  ///<  [m]

@@ -2,6 +2,7 @@
 // What the outer loop asks of a method: the only virtual calls of the program.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,9 @@ class Method {
   /// Looks for numbers that went wrong. @throws NumericsError naming step, time and element
   virtual void verify() = 0;
   virtual Frame frame() = 0;
+  /// A copy of the state as it is now, for another thread to look at while this one goes on. Null
+  /// if one must look now: on the host, on several ranks, or for want of memory.
+  virtual std::unique_ptr<Method> snapshot() { return nullptr; }
   virtual std::vector<Fact> facts() = 0;
   /// What else the end of a run shows.
   virtual std::vector<Table> tables() { return {}; }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 
 namespace breccia {
 namespace {
@@ -130,7 +131,7 @@ Recorder::Recorder(const ResultFolder& folder, const CaseConfig& config, Log& lo
   }
 }
 
-void Recorder::record(Method& method) {
+void Recorder::record(Method& method, Background& background) {
   const double time = method.time();
   if (time >= rows_.next()) {
     write_row(method);
@@ -138,7 +139,7 @@ void Recorder::record(Method& method) {
     state_.row_step = method.steps();
   }
   if (time >= frames_.next()) {
-    if (wants_frames()) write_frame(method);
+    if (wants_frames()) write_frame(method, background);
     frames_.pass(time);
     state_.frame_step = method.steps();
     state_.frame_time = time;
@@ -146,10 +147,10 @@ void Recorder::record(Method& method) {
   }
 }
 
-void Recorder::record_last(Method& method) {
+void Recorder::record_last(Method& method, Background& background) {
   if (state_.row_step != method.steps()) write_row(method);
   if (wants_frames() && config_.output.frames > 0 && state_.frame_step != method.steps())
-    write_frame(method);
+    write_frame(method, background);
 }
 
 void Recorder::sync() {
@@ -168,24 +169,34 @@ void Recorder::write_row(Method& method) {
   }
 }
 
-void Recorder::write_frame(Method& method) {
-  const Frame frame = method.frame();
-  if (series_) series_->write(frame);
-  if (config_.output.pictures) {
-    if (!state_.extent) state_.extent = bulk_extent(frame);
-    RenderOptions options;
-    options.field = config_.output.color;
-    options.view = config_.output.view;
-    options.width = config_.output.width;
-    options.height = config_.output.height;
-    options.extent = state_.extent;
-    if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
-    options.title = config_.title;
-    write_png(fmt::format("{}/{:04}.png", pictures_, frame_count_), render(frame, options));
-  }
+void Recorder::write_frame(Method& method, Background& background) {
+  background.finish();
+  const std::int64_t number = frame_count_;
+  std::shared_ptr<Method> later;
+  if (state_.extent || !config_.output.pictures)  // else it belongs to the record's state
+    later = method.snapshot();
+  if (later != nullptr)
+    background.add([this, later, number] { write(later->frame(), number); });
+  else
+    write(method.frame(), number);
   log_.write(Level::info, "frame", method.steps(),
-             fmt::format("frame {} at {:.9g} s", frame_count_, method.time()));
+             fmt::format("frame {} at {:.9g} s", number, method.time()));
   ++frame_count_;
+}
+
+void Recorder::write(const Frame& frame, std::int64_t number) {
+  if (series_) series_->write(frame);
+  if (!config_.output.pictures) return;
+  if (!state_.extent) state_.extent = bulk_extent(frame);
+  RenderOptions options;
+  options.field = config_.output.color;
+  options.view = config_.output.view;
+  options.width = config_.output.width;
+  options.height = config_.output.height;
+  options.extent = state_.extent;
+  if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
+  options.title = config_.title;
+  write_png(fmt::format("{}/{:04}.png", pictures_, number), render(frame, options));
 }
 
 }  // namespace breccia

@@ -9,6 +9,7 @@
 
 #include "io/paraview.hpp"
 #include "io/picture.hpp"
+#include "run/background.hpp"
 #include "run/history.hpp"
 #include "run/log.hpp"
 #include "run/method.hpp"
@@ -61,10 +62,11 @@ class Recorder {
   bool due(double time) const { return time >= next(); }
   /// When the next row or frame is due.  [s]
   double next() const { return std::min(rows_.next(), frames_.next()); }
-  /// Writes the rows and frames that are due.
-  void record(Method& method);
+  /// Writes the rows and frames that are due; frames in the background where the method can be
+  /// looked at there.
+  void record(Method& method, Background& background);
   /// Writes a row and a frame of the last state, if the schedule did not ask for them.
-  void record_last(Method& method);
+  void record_last(Method& method, Background& background);
   void sync();
 
   /// To be saved after record() and before record_last().
@@ -76,7 +78,8 @@ class Recorder {
 
  private:
   void write_row(Method& method);
-  void write_frame(Method& method);
+  void write_frame(Method& method, Background& background);
+  void write(const Frame& frame, std::int64_t number);
   bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
 
   std::string pictures_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <new>
 
 #include "exec/error.hpp"
@@ -184,7 +185,7 @@ void Run::take_steps() {
 void Run::observe() {
   const OutputTime time(plan_.timers, output_);
   method_.verify();
-  recorder_.record(method_);
+  recorder_.record(method_, background_);
 }
 
 bool Run::finished() const {
@@ -197,7 +198,7 @@ double Run::share() const {
   return std::clamp(std::max(by_time, by_steps), 0.0, 1.0);
 }
 
-CheckpointWriter Run::state() const {
+CheckpointWriter Run::record_state() const {
   CheckpointWriter writer;
   writer.value("run.step", method_.steps());
   writer.value("run.time", method_.time());
@@ -212,7 +213,6 @@ CheckpointWriter Run::state() const {
   writer.text("run.model_digest", plan_.model_digest);
   writer.text("run.case", plan_.case_text);
   recorder_.state().save(writer);
-  method_.save(writer);
   return writer;
 }
 
@@ -221,14 +221,26 @@ void Run::save_checkpoint() {
   const OutputTime time(plan_.timers, output_);
   method_.verify();
   recorder_.sync();
-  const std::string path = checkpoints_.write(method_.steps(), state());
-  log_.write(Level::info, "checkpoint", method_.steps(), path);
+  const std::int64_t step = method_.steps();
+  const auto state = std::make_shared<CheckpointWriter>(record_state());
+  background_.finish();
+  log_.write(Level::info, "checkpoint", step, checkpoints_.begin(step));
+  if (const std::shared_ptr<Method> later = method_.snapshot()) {
+    background_.add([this, later, state, step] {
+      later->save(*state);
+      checkpoints_.write(step, *state);
+    });
+  } else {
+    method_.save(*state);
+    checkpoints_.write(step, *state);
+  }
   log_.sync();
   write_summary(summary());
 }
 
 int Run::interrupted(int signal) {
   save_checkpoint();
+  background_.finish();
   Summary now = summary();
   now.energy = method_.energy();
   now.status = "interrupted";
@@ -245,7 +257,8 @@ int Run::done() {
   save_checkpoint();
   {
     const OutputTime time(plan_.timers, output_);
-    recorder_.record_last(method_);
+    recorder_.record_last(method_, background_);
+    background_.finish();
     recorder_.sync();
     for (const Table& table : method_.tables())
       replace_durably(folder_.file(table.name + ".csv"), to_csv(table));
@@ -301,7 +314,9 @@ void Run::failed(int exit_code, const std::string& message) {
 std::string Run::save_crash() {
   const std::string path = folder_.file("crash.br");
   try {
-    state().write(path);
+    CheckpointWriter state = record_state();
+    method_.save(state);
+    state.write(path);
     return fmt::format("state written to {0} (open with 'breccia info {0}')", path);
   } catch (const std::exception& error) {
     return fmt::format("the state could not be saved: {}", error.what());

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "exec/timers.hpp"
+#include "run/background.hpp"
 #include "run/checkpoints.hpp"
 #include "run/log.hpp"
 #include "run/method.hpp"
@@ -67,7 +68,8 @@ class Run {
   bool finished() const;
   double share() const;
   void save_checkpoint();
-  CheckpointWriter state() const;
+  /// All of a checkpoint but the method's own.
+  CheckpointWriter record_state() const;
   int interrupted(int signal);
   int done();
   void failed(int exit_code, const std::string& message);
@@ -93,6 +95,7 @@ class Run {
   double setup_ = 0.0, loop_ = 0.0, output_ = 0.0;  ///< wall time  [s]
   std::string broken_;
   Clock::time_point next_facts_{};
+  Background background_;  ///< last: it uses the others
 };
 
 /// The state that a run of `plan` would go on from. @throws CheckpointError if it is of another

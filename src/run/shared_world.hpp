@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <new>
 #include <optional>
 
 #include "core/step_clock.hpp"
 #include "domain/domain.hpp"
+#include "exec/device.hpp"
 #include "exec/error.hpp"
 
 namespace breccia {
@@ -32,6 +34,22 @@ class SharedWorld {
     whole_.domain.config = config;  // frames read it
     if (ranks_ != nullptr) at_once([&] { share(); });
   }
+
+  /// Makes a copy of something that holds this, where that may be looked at while this one goes on:
+  /// on a device, alone, with memory left. Otherwise null.
+  template <class Copy>
+  auto apart(const Copy& copy) const -> decltype(copy()) {
+    if (ranks_ != nullptr || space_ == Space::host) return nullptr;
+    try {
+      auto made = copy();
+      wait_for_device();
+      return made;
+    } catch (const std::bad_alloc&) {
+      return nullptr;
+    }
+  }
+  /// Of a copy: what it does is not booked.
+  void forget_timers() { whole_.exec.timers = nullptr; }
 
   /// The world that steps: a rank's part of it.
   const World& part() const { return part_ ? *part_ : whole_; }
