@@ -254,6 +254,8 @@ void number_triangles(fdem::World& w, const Plate& plate, const std::vector<Inde
   copy_to(w.triangles.id, triangles);
   for (Index& v : w.vertex) v = vertex[at(v)];
   w.open_vertex = plate.rim();
+  w.node_vertex.clear();  // both follow from these
+  w.border_vertex.clear();
   w.opened.vertex.resize(plate.vertices());
   resize_fields(w.couples, 0);
   resize_fields(w.reach, 0);

@@ -69,6 +69,12 @@ TEST(TiledPlate, is_whole_across_the_sides_of_tiles) {
       ++joined;
   }
   EXPECT_EQ(rim, w.open_vertex);
+  for (const Index t : w.reach.triangle.host()) {
+    const std::size_t first = 3 * static_cast<std::size_t>(t);
+    EXPECT_TRUE(std::any_of(w.vertex.begin() + first, w.vertex.begin() + first + 3,
+                            [&](Index v) { return rim[static_cast<std::size_t>(v)] != 0; }))
+        << "triangle " << t << " is taken to touch others";
+  }
   EXPECT_EQ(w.joints.size(), joined / 2);
 
   // The rim is a rectangle's: no more of it than the sides are long.
