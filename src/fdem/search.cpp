@@ -47,25 +47,46 @@ struct BeginReach {
   }
 };
 
-/// Marks the vertices that some rank has marked and this one has not.
-void share_marks(const World& w, std::vector<std::uint8_t>& vertex) {
-  if (w.domain.alone()) return;
-  std::vector<std::uint8_t> known;
-  copy_to(known, w.opened.vertex);
-  Message news;
-  for (std::size_t v = 0; v < vertex.size(); ++v) {
-    if (vertex[v] == 0 || known[v] != 0) continue;
-    const auto number = static_cast<Index>(v);
-    const auto* bytes = reinterpret_cast<const std::byte*>(&number);
-    news.insert(news.end(), bytes, bytes + sizeof number);
+/// Vertices that this rank has marked just now.
+struct IsNews {
+  View<const std::uint8_t> marked, known;
+  BR_HD bool operator()(Index v) const { return marked[v] != 0 && known[v] == 0; }
+};
+/// Damage stays, also where its joint has gone to another rank.
+struct KeepMarks {
+  static constexpr const char* name = "fdem.keep_marks";
+  View<const std::uint8_t> known;
+  View<std::uint8_t> marked;
+  BR_HD void operator()(Index v) const {
+    if (known[v] != 0) marked[v] = 1;
   }
-  for (std::size_t v = 0; v < vertex.size(); ++v) vertex[v] |= known[v];  // damage stays
-  for (const Message& message : w.domain.ranks->from_all(news))
-    for (std::size_t at = 0; at < message.size(); at += sizeof(Index)) {
-      Index number = 0;
-      std::memcpy(&number, message.data() + at, sizeof number);
-      vertex[static_cast<std::size_t>(number)] = 1;
-    }
+};
+struct TakeMarks {
+  static constexpr const char* name = "fdem.take_marks";
+  View<const Index> vertex;
+  View<std::uint8_t> marked;
+  BR_HD void operator()(Index i) const { marked[vertex[i]] = 1; }
+};
+
+/// Marks the vertices that some rank has marked. Only what is new crosses to the host: the mesh may
+/// have a hundred million vertices.
+void share_marks(const World& w, Buffer<std::uint8_t>& marked) {
+  if (w.domain.alone()) return;
+  const auto known = std::as_const(w.opened.vertex).view();
+  std::vector<Index> news;
+  copy_to(news, items_where(w.exec, marked.size(), IsNews{std::as_const(marked).view(), known}));
+  Message message(news.size() * sizeof(Index));
+  if (!news.empty()) std::memcpy(message.data(), news.data(), message.size());
+  std::vector<Index> of_all;
+  for (const Message& came : w.domain.ranks->from_all(message)) {
+    const std::size_t before = of_all.size();
+    of_all.resize(before + came.size() / sizeof(Index));
+    if (!came.empty()) std::memcpy(of_all.data() + before, came.data(), came.size());
+  }
+  Buffer<Index> vertex(w.exec.space);
+  copy_to(vertex, of_all);
+  for_each(w.exec, marked.size(), KeepMarks{known, marked.view()});
+  for_each(w.exec, vertex.size(), TakeMarks{std::as_const(vertex).view(), marked.view()});
 }
 
 /// The mesh where kernels can read it; it changes only where triangles move between ranks.
@@ -84,12 +105,7 @@ void mark_opened(World& w) {
   for_each(w.exec, w.joints.size(),
            MarkDamaged{std::as_const(w.joints.stage).view(), w.joints.edge_a.view(),
                        vertices.vertex_of, marked.view()});
-  if (!w.domain.alone()) {
-    std::vector<std::uint8_t> vertex;
-    copy_to(vertex, marked);
-    share_marks(w, vertex);
-    copy_to(marked, vertex);
-  }
+  share_marks(w, marked);
   w.opened.vertex.swap(marked);
   copy_to(w.opened.changed, std::vector<std::uint8_t>{0, 0});
 }
