@@ -161,7 +161,7 @@ struct CaseConfig {
         "(Lukas et al. 2014)");
     key("precision", precision, OneOf{"double", "mixed"},
         "what numbers are stored in; mixed keeps positions and sums in double, and what links keep "
-        "and do in single precision: fewer bytes, for GPUs");
+        "and do and forces of joints and couples in single precision: fewer bytes, for GPUs");
     key("title", title, "one line for people");
     key("seed", seed, "-", Range{0, 9e15}, "seed of every random choice");
     key.table("time", time, "how long and how fast");

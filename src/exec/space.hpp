@@ -15,8 +15,9 @@ enum class Space { host, shadow, cuda };
 /// Threads of a block on a device: registers leave room for several blocks of the largest kernels.
 inline constexpr Index block_size = 128;
 
-/// What numbers are stored in. full: all in double. mixed: what links keep and do in single, all
-/// else in double; laws and sums compute in double (docs/theory.md, mixed precision).
+/// What numbers are stored in. full: all in double. mixed: what links keep and do, and forces of
+/// joints and couples, in single, all else in double; laws and sums compute in double
+/// (docs/theory.md, mixed precision).
 enum class Precision { full, mixed };
 
 /// How a run executes: the space of its arrays and the threads of its host loops.

@@ -88,8 +88,6 @@ void check_case(const Config& config) {
     if (s.residual_angle > s.friction_angle)
       add(where + ".residual_angle: must not be above friction_angle");
   };
-  if (config.precision != "double")
-    add("precision = \"" + config.precision + "\": is of method dem3d; fdem2d has double only");
   for (const MaterialConfig& m : config.materials) angles("material." + m.name + ".joint", m.joint);
   for (const JointConfig& j : config.joint_laws) angles("joint." + j.name, j.strength);
   for (const BodyConfig& b : config.bodies) look_for_loose_grains(config, b, add);

@@ -28,20 +28,36 @@ struct CoupleState {
 };
 
 /// Forces of a couple on the corners of both triangles.  [N/m]
-struct CoupleForce {
-  Corners on_a, on_b;
+template <class Number>
+struct CoupleForceOf {
+  CornerVectors<Number> on_a, on_b;
 };
+using CoupleForce = CoupleForceOf<double>;
+template <class To, class From>
+BR_HD CoupleForceOf<To> converted(const CoupleForceOf<From>& f) {
+  CoupleForceOf<To> same;
+  for (int k = 0; k < 3; ++k) {
+    same.on_a.at[k] = converted<To>(f.on_a.at[k]);
+    same.on_b.at[k] = converted<To>(f.on_b.at[k]);
+  }
+  return same;
+}
+template <class Number>
+using CoupleForcesOf = Buffer<CoupleForceOf<Number>>;
 
 struct CoupleHistory {
+  Precision precision = Precision::full;  ///< of `force`
   Buffer<CoupleState> state;
-  Buffer<CoupleForce> force;
+  Stored<CoupleForcesOf> force;
 
-  explicit CoupleHistory(Space space = Space::host) : state(space), force(space) {}
+  explicit CoupleHistory(Space space = Space::host)
+      : state(space), force{CoupleForcesOf<double>(space), CoupleForcesOf<float>(space)} {}
 
   template <class Visit>
   void each_field(Visit&& field) {
     field("state", "-", state);
-    field("force", "N/m", force);
+    with_number(precision,
+                [&](auto number) { field("force", "N/m", force.as<decltype(number)>()); });
   }
 };
 using Couples = PairList<CoupleHistory>;
@@ -55,6 +71,8 @@ struct JointLegacy {
 
 /// Normal force by potential, both ways; Coulomb friction on each edge with a spring that remembers
 /// (docs/theory.md, contact of triangles).
+/// @tparam Number  what forces are stored in
+template <class Number>
 struct CoupleForces {
   static constexpr const char* name = "fdem.couples";
   double dt;          ///< the step that led here  [s]
@@ -67,7 +85,7 @@ struct CoupleForces {
   View<const Index> born;  ///< the joint between them where it broke in the step before, or -1
   JointLegacy joints;
   View<CoupleState> state;
-  View<CoupleForce> force;
+  View<CoupleForceOf<Number>> force;
 
   BR_HD void set(const Moment& now) { dt = now.last_dt; }
   BR_HD void operator()(Index i) const {
@@ -92,16 +110,19 @@ struct CoupleForces {
         add_shape_forces(of_b, over, kept.scale * law.penalty, sum.on_b.at);
       }
     }
-    CoupleForce& last = force[i];
+    CoupleForceOf<Number>& stored = force[i];
     if (!touching && kept.work == 0.0 && kept.slid == 0.0) {
-      last = {};  // it may have touched while nothing moved
+      stored = {};  // it may have touched while nothing moved
       return;
     }
+    // Work is booked of the forces that act: as they are stored.
+    const CoupleForce last = converted<double>(stored);
+    stored = converted<Number>(sum);
+    sum = converted<double>(stored);
     for (int k = 0; k < 3; ++k) {
       kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.on_a.at[k], va[k]);
       kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.on_b.at[k], vb[k]);
     }
-    last = sum;
     if (!touching) {
       kept.lost += kept.work - kept.slid;
       kept.rubbed += kept.slid;

@@ -103,9 +103,10 @@ struct MoveAndWatch {
 constexpr Index fewest_joints_apart = 250'000;
 
 /// Joints that are whole and stay so; the others are listed for DamagedJoints, in any order.
+template <class Number>
 struct WholeJoints {
   static constexpr const char* name = "fdem.whole_joints";
-  JointForces all;
+  JointForces<Number> all;
   View<Index> listed;
   Index *count, *next_count;  ///< listed in this step, and in the next, which begins with none
 
@@ -145,10 +146,11 @@ struct WholeJoints {
 };
 
 /// The listed joints, by so many threads in all.
+template <class Number>
 struct DamagedJoints {
   static constexpr const char* name = "fdem.damaged_joints";
   static constexpr Index threads = 132 * 128;
-  JointForces all;
+  JointForces<Number> all;
   View<const Index> listed;
   const Index* count;
 
@@ -160,9 +162,10 @@ struct DamagedJoints {
 
 #if defined(__CUDACC__)
 /// TriangleForces that read ahead what joints and couples do not write.
+template <class Number>
 struct TrianglesAhead {
   static constexpr const char* name = "fdem.triangles_ahead";
-  TriangleForces all;
+  TriangleForces<Number> all;
 
   struct Ready {
     TriangleNodes nodes;
@@ -170,7 +173,7 @@ struct TrianglesAhead {
     double viscosity;
     Index material, couples, couples_end;
     Index edge[3];
-    JointForce joint[3];
+    JointForceOf<Number> joint[3];
   };
   BR_HD void set(const Moment& now) { all.set(now); }
   __device__ void prepare(Index t, Ready& ready) const {
@@ -191,15 +194,16 @@ struct TrianglesAhead {
     __builtin_memcpy(c, &ready.nodes, sizeof c);
     __builtin_memcpy(inverse, &ready.inverse, sizeof inverse);
     Vec2 sum[3];
-    all.deform<double>(t, CornersOf<double>(c), inverse, Indices<double>{ready.material},
-                       ready.viscosity, sum);
+    all.template deform<double>(t, CornersOf<double>(c), inverse, Indices<double>{ready.material},
+                                ready.viscosity, sum);
     for (int k = 0; k < 3; ++k) {
       double f[4];
-      __builtin_memcpy(f, &ready.joint[k], sizeof f);
+      const JointForce own = converted<double>(ready.joint[k]);
+      __builtin_memcpy(f, &own, sizeof f);
       const Index entry = ready.edge[k];
       all.add_force(entry >= 0 && side_of(entry) != 0, f, sum[k], sum[k == 2 ? 0 : k + 1]);
     }
-    all.store_sum<double>(t, sum);
+    all.template store_sum<double>(t, sum);
     all.add_couples(t, ready.couples, ready.couples_end);
   }
 };
@@ -310,7 +314,7 @@ void launch_move(World& w, const StepClocks& clocks) {
 }
 
 /// All forces and their sums, and the stable step. `by` wraps a kernel by the clock.
-template <class By>
+template <class Number, class By>
 void launch_forces(World& w, StepClock* clock, const By& by) {
   const Exec& exec = w.exec;
   const Index triangles = w.triangles.size();
@@ -321,25 +325,26 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
   }
   const Index joints = w.joints.size();
   if (joints < fewest_joints_apart) {
-    for_each_part(
-        part(w.couples.size(), by(couple_kernel(w)), part(joints, by(joint_kernel(w)), Parts<>{})));
+    for_each_part(part(w.couples.size(), by(couple_kernel<Number>(w)),
+                       part(joints, by(joint_kernel<Number>(w)), Parts<>{})));
   } else {
     const Index turn = clock == w.clock.data() ? 0 : 1;
     Index* const counts = w.damaged_count.data();
-    for_each_part(
-        part(joints,
-             by(WholeJoints{joint_kernel(w), w.damaged.view(), counts + turn, counts + 1 - turn}),
-             Parts<>{}));
-    const DamagedJoints damaged{joint_kernel(w), std::as_const(w.damaged).view(), counts + turn};
-    for_each_part(part(w.couples.size(), by(couple_kernel(w)),
-                       part(DamagedJoints::threads, by(damaged), Parts<>{})));
+    for_each_part(part(joints,
+                       by(WholeJoints<Number>{joint_kernel<Number>(w), w.damaged.view(),
+                                              counts + turn, counts + 1 - turn}),
+                       Parts<>{}));
+    const DamagedJoints<Number> damaged{joint_kernel<Number>(w), std::as_const(w.damaged).view(),
+                                        counts + turn};
+    for_each_part(part(w.couples.size(), by(couple_kernel<Number>(w)),
+                       part(DamagedJoints<Number>::threads, by(damaged), Parts<>{})));
   }
   constexpr Index most_threads = 132 * 128;
   const Index threads = triangles < most_threads ? triangles : most_threads;
   for_each_part(part(
       threads,
       by(NoteStable{stable_step(w), triangles, threads, w.parameters.time.evaluate_every, {clock}}),
-      part(triangles, by(TrianglesAhead{triangle_kernel(w)}), Parts<>{})));
+      part(triangles, by(TrianglesAhead<Number>{triangle_kernel<Number>(w)}), Parts<>{})));
   if (w.load_starts.size() > 1) {
     for_each(exec, w.load_laws.size(),
              by(ScaleLoads{{},
@@ -357,12 +362,16 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
 
 void launch_step(World& w, const StepClocks& clocks) {
   launch_move(w, clocks);
-  launch_forces(w, clocks.now,
-                [&](const auto& kernel) { return clocks.timed<Stand::after_move>(kernel); });
+  with_number(w.exec.precision, [&](auto number) {
+    launch_forces<decltype(number)>(
+        w, clocks.now, [&](const auto& kernel) { return clocks.timed<Stand::after_move>(kernel); });
+  });
 }
 void launch_rest(World& w, const StepClocks& clocks) {
-  launch_forces(w, clocks.now,
-                [&](const auto& kernel) { return clocks.timed<Stand::in_rest>(kernel); });
+  with_number(w.exec.precision, [&](auto number) {
+    launch_forces<decltype(number)>(
+        w, clocks.now, [&](const auto& kernel) { return clocks.timed<Stand::in_rest>(kernel); });
+  });
 }
 #else
 void launch_step(World&, const StepClocks&) {}

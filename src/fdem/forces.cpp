@@ -80,17 +80,21 @@ void move_triangles(World& w) {
 
 void joint_forces(World& w) {
   const StageTime timed(w.exec, "joint_forces");
-  run(w, w.joints.size(), joint_kernel(w));
+  with_number(w.exec.precision,
+              [&](auto number) { run(w, w.joints.size(), joint_kernel<decltype(number)>(w)); });
 }
 
 void couple_forces(World& w) {
   const StageTime timed(w.exec, "contact_forces");
-  for_each(w.exec, w.couples.size(), couple_kernel(w));
+  with_number(w.exec.precision, [&](auto number) {
+    for_each(w.exec, w.couples.size(), couple_kernel<decltype(number)>(w));
+  });
 }
 
 void triangle_forces(World& w) {
   const StageTime timed(w.exec, "triangle_forces");
-  run_own(w, triangle_kernel(w));
+  with_number(w.exec.precision,
+              [&](auto number) { run_own(w, triangle_kernel<decltype(number)>(w)); });
 }
 
 void load_forces(World& w) {

@@ -31,6 +31,8 @@ BR_HD inline void raise(const View<std::uint8_t>& flags, Change change) {
 
 /// Tractions at three points, damage and break of every joint (Lukas 2014, section 2). Joints that
 /// are whole and stay so, nearly all, are taken side by side.
+/// @tparam Number  what their forces are stored in
+template <class Number>
 struct JointForces {
   static constexpr const char* name = "fdem.joints";
   double time, dt;  ///< of the positions, and the step that led there  [s]
@@ -42,7 +44,7 @@ struct JointForces {
   View<const Vec2> preset;
   View<JointStage> stage;
   View<JointPoints> points;
-  View<JointForce> force;
+  View<JointForceOf<Number>> force;
   View<JointWork> work;
   View<double> broke_at, pressing, rubbing;
   View<std::uint8_t> changed;  ///< flags of Change: contacts must be searched
@@ -87,7 +89,7 @@ struct JointForces {
     const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
     const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
     const R numbers[4] = {first.x, first.y, second.x, second.y};
-    store_records(force, i, numbers);
+    store_four<Number>(force, i, numbers);
     return true;
   }
 
@@ -102,8 +104,8 @@ struct JointForces {
   BR_HD void damaged_at(Index i) const {
     const JointStage before = stage[i];
     if (before == JointStage::dormant) return;
-    const bool acted =
-        dot(force[i].first, force[i].first) + dot(force[i].second, force[i].second) > 0.0;
+    const JointForce last = converted<double>(force[i]);
+    const bool acted = dot(last.first, last.first) + dot(last.second, last.second) > 0.0;
     if (before == JointStage::broken && !acted) return;
     const JointEnds& e = ends[i];
     const NodeState &a0 = nodes[e.a0], &a1 = nodes[e.a1], &b0 = nodes[e.b0], &b1 = nodes[e.b1];
@@ -136,11 +138,12 @@ struct JointForces {
       damaged = damaged || state.point[q].damage > 0.0;
     }
     const double weight = (-1.0 / 6.0) * h;
-    const JointForce now{weight * (traction[0] + 2.0 * traction[1]),
-                         weight * (traction[2] + 2.0 * traction[1])};
+    // Work is booked of the forces that act: as they are stored.
+    const JointForceOf<Number> now = converted<Number>(JointForce{
+        weight * (traction[0] + 2.0 * traction[1]), weight * (traction[2] + 2.0 * traction[1])});
     if (damaged) {
       if (before == JointStage::whole) begin_work(i, bond, offset, a0, a1, b0, b1);
-      book_work(i, o, first, second, now);
+      book_work(i, o, first, second, converted<double>(now));
       points[i] = state;
       if (before == JointStage::whole) {
         stage[i] = JointStage::softened;
@@ -169,7 +172,7 @@ struct JointForces {
   /// the nodes lose.
   BR_HD void book_work(Index i, const JointOpening<double>& o, const Vec2& first,
                        const Vec2& second, const JointForce& now) const {
-    const JointForce& last = force[i];
+    const JointForce last = converted<double>(force[i]);
     const Vec2 f = last.first + now.first, s = last.second + now.second;
     JointWork& w = work[i];
     w.open -=

@@ -1,6 +1,7 @@
 #pragma once
 // What ties triangles along their common edges: their arrays and geometry.
 
+#include "core/precision.hpp"
 #include "exec/buffer.hpp"
 #include "fdem/laws/joint_bond.hpp"
 #include "fdem/triangles.hpp"
@@ -22,9 +23,17 @@ struct JointPoints {
 };
 
 /// Forces of a joint on the two nodes of its side a; those of side b get the opposite.  [N/m]
-struct JointForce {
-  Vec2 first, second;
+template <class Number>
+struct JointForceOf {
+  Vec2Of<Number> first, second;
 };
+using JointForce = JointForceOf<double>;
+template <class To, class From>
+BR_HD JointForceOf<To> converted(const JointForceOf<From>& f) {
+  return {converted<To>(f.first), converted<To>(f.second)};
+}
+template <class Number>
+using JointForcesOf = Buffer<JointForceOf<Number>>;
 
 /// Work that a joint has taken up since it began to soften, and what it held then, by direction.
 /// [J/m]
@@ -42,7 +51,7 @@ struct Joints {
   Buffer<Vec2> preset;           ///< opening and slip at which it was joined; empty: none  [m]
   Buffer<JointStage> stage;      ///<  [-]
   Buffer<JointPoints> points;    ///< damage and largest opening and slip
-  Buffer<JointForce> force;      ///< of this time  [N/m]
+  Stored<JointForcesOf> force;   ///< of this time  [N/m]
   Buffer<JointWork> work;        ///< taken up so far  [J/m]
   Buffer<double> broke_at;       ///< time of its break, -1: whole, -2: broken from the start  [s]
   Buffer<double> pressing;       ///< compressive force when it broke  [N/m]

@@ -7,21 +7,27 @@
 namespace breccia::fdem {
 
 /// kernel for the items [begin, end) on the calling thread.
-void run_packs(Lanes lanes, const JointForces& kernel, Index begin, Index end);
-void run_packs(Lanes lanes, const TriangleForces& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
 
 /// Builds of lanes/kernel_lanes.cpp for one width each. Return where they stop: at what does not
 /// fill a pack, or at a pack that is not as most are. Both are left to the caller, whose build runs
 /// on every processor.
 struct PacksAvx2 {
-  static Index run(const JointForces& kernel, Index begin, Index end);
-  static Index run(const TriangleForces& kernel, Index begin, Index end);
+  static Index run(const JointForces<double>& kernel, Index begin, Index end);
+  static Index run(const JointForces<float>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
   static Index run(const MoveTriangles& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
-  static Index run(const JointForces& kernel, Index begin, Index end);
-  static Index run(const TriangleForces& kernel, Index begin, Index end);
+  static Index run(const JointForces<double>& kernel, Index begin, Index end);
+  static Index run(const JointForces<float>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
   static Index run(const MoveTriangles& kernel, Index begin, Index end);
 };
 

@@ -12,7 +12,8 @@ inline MoveTriangles move_kernel(World& w) {
           t.load_work.view()};
 }
 
-inline JointForces joint_kernel(World& w) {
+template <class Number>
+JointForces<Number> joint_kernel(World& w) {
   Joints& j = w.joints;
   return {w.time,
           w.last_dt,
@@ -25,7 +26,7 @@ inline JointForces joint_kernel(World& w) {
           j.preset.view(),
           j.stage.view(),
           j.points.view(),
-          j.force.view(),
+          j.force.as<Number>().view(),
           j.work.view(),
           j.broke_at.view(),
           j.pressing.view(),
@@ -33,7 +34,8 @@ inline JointForces joint_kernel(World& w) {
           w.opened.changed.view()};
 }
 
-inline CoupleForces couple_kernel(World& w) {
+template <class Number>
+CoupleForces<Number> couple_kernel(World& w) {
   Couples& c = w.couples;
   Joints& j = w.joints;
   return {w.last_dt,
@@ -48,10 +50,11 @@ inline CoupleForces couple_kernel(World& w) {
           {std::as_const(j.edge_a).view(), std::as_const(j.edge_b).view(),
            std::as_const(j.pressing).view(), std::as_const(j.rubbing).view(), j.handed.view()},
           c.history.state.view(),
-          c.history.force.view()};
+          c.history.force.as<Number>().view()};
 }
 
-inline TriangleForces triangle_kernel(World& w) {
+template <class Number>
+TriangleForces<Number> triangle_kernel(World& w) {
   Triangles& t = w.triangles;
   return {w.last_dt,
           std::as_const(t.nodes).view(),
@@ -60,9 +63,9 @@ inline TriangleForces triangle_kernel(World& w) {
           t.shape_inverse.view(),
           t.viscosity.view(),
           w.edges.view(),
-          std::as_const(w.joints.force).view(),
+          std::as_const(w.joints.force.as<Number>()).view(),
           w.couple_incidence.view(),
-          std::as_const(w.couples.history.force).view(),
+          std::as_const(w.couples.history.force.as<Number>()).view(),
           t.force.view(),
           t.viscous_work.view()};
 }

@@ -96,14 +96,17 @@ class Journey {
     Joints& j = w_.joints;
     Buffer<Index>& number = w_.mesh.joint_number;
     auto numbers = one_field(number);
-    auto force = one_field(j.force);
     auto preset = one_field(j.preset);
-    j.force.resize(j.size());
-    if (w_.mesh.preset)
-      send_sorted(all, together(j, numbers, force, preset), joints, number);
-    else
-      send_sorted(all, together(j, numbers, force), joints, number);
-    j.force.resize(j.size() + 1);  // the last one is zero
+    with_number(w_.exec.precision, [&](auto of) {
+      auto& forces = j.force.as<decltype(of)>();
+      auto force = one_field(forces);
+      forces.resize(j.size());
+      if (w_.mesh.preset)
+        send_sorted(all, together(j, numbers, force, preset), joints, number);
+      else
+        send_sorted(all, together(j, numbers, force), joints, number);
+      forces.resize(j.size() + 1);  // the last one is zero
+    });
 
     send_sorted(all, w_.couples, couples, w_.couples.pairs.key);
     send_sorted(all, w_.reach, reach, w_.reach.triangle);
@@ -371,7 +374,8 @@ void drop_state(World& w) {
   resize_fields(w.couples, 0);
   resize_fields(w.reach, 0);
   w.triangles.external.resize(0);
-  w.joints.force.resize(0);
+  w.joints.force.in_double.resize(0);
+  w.joints.force.in_single.resize(0);
   w.joints.preset.resize(0);
   w.edges.resize(0);
   w.dashpots.resize(0);

@@ -175,7 +175,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   copy_to(j.broke_at, std::vector<double>(edge_a.size(), -1.0));
   copy_to(j.stage, stage);
   j.points.resize(count);
-  j.force.resize(count + 1);
+  with_number(w.exec.precision,
+              [&](auto number) { j.force.as<decltype(number)>().resize(count + 1); });
   j.work.resize(count);
   j.pressing.resize(count);
   j.rubbing.resize(count);
@@ -309,6 +310,7 @@ void refuse_endless(const World& w) {
 }  // namespace
 
 World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
+  couples.history.precision = how.precision;
   place_arrays(*this);
 }
 

@@ -40,6 +40,8 @@ struct CornersOf {
 
 /// Internal force of the triangle, plus its joints by slot, plus its couples by the partners'
 /// global ids: no order of memory, threads or ranks changes a bit.
+/// @tparam Number  what forces of joints and couples are stored in
+template <class Number>
 struct TriangleForces {
   static constexpr const char* name = "fdem.triangles";
   double span;  ///< time that the forces of this moment act  [s]
@@ -49,9 +51,10 @@ struct TriangleForces {
   View<const Mat2> shape_inverse;
   View<const double> viscosity;
   View<const EdgeJoints> edges;
-  View<const JointForce> joint_force;  ///< the last one is zero: that of an edge without a joint
+  View<const JointForceOf<Number>>
+      joint_force;  ///< the last one is zero: that of an edge without a joint
   IncidenceView couples;
-  View<const CoupleForce> couple_force;
+  View<const CoupleForceOf<Number>> couple_force;
   View<Corners> force;
   View<double> viscous_work;
 
@@ -116,7 +119,7 @@ struct TriangleForces {
       side[i] = entry < 0 ? 0.0 : static_cast<double>(side_of(entry));
     }
     R f[4], other;
-    gather_records(joint_force, indices<R>(joint), f);
+    gather_four<Number>(joint_force, indices<R>(joint), f);
     __builtin_memcpy(&other, side, sizeof other);
     add_force(other > 0.0, f, from, to);
   }
@@ -125,9 +128,9 @@ struct TriangleForces {
     Corners sum = force[t];
     for (Index c = first; c < last; ++c) {
       const Entry entry = couples.entries[c];
-      const CoupleForce& f = couple_force[pair_of(entry)];
-      const Corners& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
-      for (int k = 0; k < 3; ++k) sum.at[k] += mine.at[k];
+      const CoupleForceOf<Number>& f = couple_force[pair_of(entry)];
+      const CornerVectors<Number>& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
+      for (int k = 0; k < 3; ++k) sum.at[k] += converted<double>(mine.at[k]);
     }
     force[t] = sum;
   }

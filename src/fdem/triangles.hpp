@@ -19,9 +19,11 @@ struct TriangleNodes {
 };
 
 /// One vector for each corner.
-struct Corners {
-  Vec2 at[3];
+template <class Number>
+struct CornerVectors {
+  Vec2Of<Number> at[3];
 };
+using Corners = CornerVectors<double>;
 
 /// Deformable triangles, three nodes each.
 struct Triangles {

@@ -96,10 +96,10 @@ struct World {
     state(couples);
     state(reach);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(triangles.external, joints.force, joints.preset, opened.changed, opened.vertex, laws,
-         bonds, contact_pairs, holds, load_starts, loaded_edges, dashpots, bundles.starts,
-         bundles.nodes, bundles.leader, joint_ends, edges, motions, load_laws, stress, overshoot,
-         reached, domain.owned_there, domain.placed);
+    each(triangles.external, joints.force.in_double, joints.force.in_single, joints.preset,
+         opened.changed, opened.vertex, laws, bonds, contact_pairs, holds, load_starts,
+         loaded_edges, dashpots, bundles.starts, bundles.nodes, bundles.leader, joint_ends, edges,
+         motions, load_laws, stress, overshoot, reached, domain.owned_there, domain.placed);
   }
   /// Those that derive() and a search fill.
   template <class Visit>

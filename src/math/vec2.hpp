@@ -25,6 +25,12 @@ struct Vec2Of {
 
 using Vec2 = Vec2Of<double>;
 
+/// In another precision, rounded to the nearest.
+template <class To, class From>
+BR_HD Vec2Of<To> converted(const Vec2Of<From>& v) {
+  return {static_cast<To>(v.x), static_cast<To>(v.y)};
+}
+
 template <class R>
 BR_HD Vec2Of<R> operator+(const Vec2Of<R>& a, const Vec2Of<R>& b) {
   return {a.x + b.x, a.y + b.y};

@@ -89,12 +89,15 @@ void spread(fdem::Model& model, const Spacing& spacing) {
 
 /// Couples that push each other now.
 Index touching(const fdem::World& w) {
-  std::vector<fdem::CoupleForce> forces;
-  copy_to(forces, w.couples.history.force);
-  return static_cast<Index>(
-      std::count_if(forces.begin(), forces.end(), [](const fdem::CoupleForce& f) {
-        return norm(f.on_a.at[0]) + norm(f.on_a.at[1]) + norm(f.on_a.at[2]) > 0.0;
-      }));
+  return with_number(w.exec.precision, [&](auto number) {
+    using Force = fdem::CoupleForceOf<decltype(number)>;
+    std::vector<Force> forces;
+    copy_to(forces, w.couples.history.force.as<decltype(number)>());
+    return static_cast<Index>(std::count_if(forces.begin(), forces.end(), [](const Force& stored) {
+      const auto f = fdem::converted<double>(stored);
+      return norm(f.on_a.at[0]) + norm(f.on_a.at[1]) + norm(f.on_a.at[2]) > 0.0;
+    }));
+  });
 }
 
 void take_steps(fdem::World& w, int steps) {

@@ -46,12 +46,15 @@ std::vector<CountedKernel> counted(const dem::World& w) {
 }
 
 std::vector<CountedKernel> counted(const fdem::World& w) {
+  const bool mixed = w.exec.precision == Precision::mixed;
+  const double joint_force = mixed ? size<fdem::JointForceOf<float>> : size<fdem::JointForce>;
+  const double couple_force = mixed ? size<fdem::CoupleForceOf<float>> : size<fdem::CoupleForce>;
   const double triangles = w.triangles.size(), joints = w.joints.size();
   const double couples = w.couples.size(), near = w.reach.triangle.size();
   const double nodes = size<fdem::TriangleNodes>, corners = size<fdem::Corners>;
   const double of_joints = joints * (size<fdem::JointStage> + size<fdem::JointEnds> + size<Index> +
-                                     2 * size<double> + size<fdem::JointForce>);
-  const double of_couples = couples * (4 * size<Index> + size<fdem::CoupleForce>);
+                                     2 * size<double> + joint_force);
+  const double of_couples = couples * (4 * size<Index> + couple_force);
   return {{"fdem.move_and_watch", triangles *
                                       (2 * nodes + corners + size<double> + 2 * size<Index>)+near *
                                       (corners + size<double>)},
@@ -60,7 +63,7 @@ std::vector<CountedKernel> counted(const fdem::World& w) {
           {"fdem.couples", of_couples + triangles * nodes},
           {"fdem.triangles",
            triangles * (5 * size<Index> + 3 * size<double> + nodes + size<Mat2> + corners) +
-               joints * size<fdem::JointForce> + couples * size<fdem::CoupleForce>}};
+               joints * joint_force + couples * couple_force}};
 }
 
 /// Bytes a second that this GPU copies, read and written.

@@ -25,7 +25,10 @@ struct Loose {
 template <class Visit>
 void each_loose(fdem::World& w, Visit&& visit) {
   visit("external", Loose<fdem::Corners>{"force", w.triangles.external});
-  visit("joint_force", Loose<fdem::JointForce>{"force", w.joints.force});
+  with_number(w.exec.precision, [&](auto number) {
+    using Number = decltype(number);
+    visit("joint_force", Loose<fdem::JointForceOf<Number>>{"force", w.joints.force.as<Number>()});
+  });
   visit("changed", Loose<std::uint8_t>{"flags", w.opened.changed});
   visit("opened", Loose<std::uint8_t>{"vertex", w.opened.vertex});
   visit("joint_preset", Loose<Vec2>{"opening", w.joints.preset});
@@ -36,8 +39,8 @@ class FdemMethod final : public Method {
   FdemMethod(const fdem::Config& config, const fdem::Model& model, const Exec& exec,
              Communicator* ranks)
       : probes_(config.probes),
-        world_([&](const Exec& where) { return made(config, model, where); }, exec, ranks,
-               config.domain) {}
+        world_([&](const Exec& where) { return made(config, model, where); },
+               in_precision(exec, config.precision), ranks, config.domain) {}
 
   Advanced advance(const StopAt& stop) override { return world_.advance_to(stop); }
   std::int64_t steps() const override { return world_.part().step; }

@@ -54,6 +54,20 @@ TEST(FdemRanks, leave_the_same_state_where_one_strays_far_and_hits) {
   }
 }
 
+TEST(FdemRanks, leave_the_same_state_in_mixed_precision) {
+  for (const char* joints : {"intrinsic", "extrinsic"}) {
+    Scene scene = impact(joints);
+    const std::uint64_t in_double = alone(scene, 300).hash;
+    scene.config.precision = "mixed";
+    const Outcome expected = alone(scene, 300);
+    EXPECT_GT(expected.cracks, 10U);
+    EXPECT_NE(expected.hash, in_double);
+    for (const auto& [count, threads] : {std::pair{1, 2}, {2, 1}, {3, 2}, {8, 1}, {32, 1}})
+      EXPECT_EQ(on_ranks(count, scene, 300, {}, threads).outcome, expected)
+          << count << " ranks of " << threads << " threads";
+  }
+}
+
 TEST(FdemRanks, leave_the_same_state_on_any_number_of_threads_each) {
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     const Scene scene = impact(joints);

@@ -7,18 +7,33 @@ namespace {
 
 constexpr Index width = width_of<WidestPack>;
 
-}  // namespace
-
-Index BR_PACKS::run(const JointForces& kernel, Index begin, Index end) {
+template <class Kernel>
+Index run_whole(const Kernel& joints, Index begin, Index end) {
   Index i = begin;
-  while (i + width <= end && kernel.whole_at<WidestPack>(i)) i += width;
+  while (i + width <= end && joints.template whole_at<WidestPack>(i)) i += width;
   return i;
 }
-
-Index BR_PACKS::run(const TriangleForces& kernel, Index begin, Index end) {
+template <class Kernel>
+Index run_all(const Kernel& triangles, Index begin, Index end) {
   Index t = begin;
-  for (; t + width <= end; t += width) kernel.at<WidestPack>(t);
+  for (; t + width <= end; t += width) triangles.template at<WidestPack>(t);
   return t;
+}
+
+}  // namespace
+
+Index BR_PACKS::run(const JointForces<double>& kernel, Index begin, Index end) {
+  return run_whole(kernel, begin, end);
+}
+Index BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index end) {
+  return run_whole(kernel, begin, end);
+}
+
+Index BR_PACKS::run(const TriangleForces<double>& kernel, Index begin, Index end) {
+  return run_all(kernel, begin, end);
+}
+Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end) {
+  return run_all(kernel, begin, end);
 }
 
 Index BR_PACKS::run(const MoveTriangles& kernel, Index begin, Index end) {

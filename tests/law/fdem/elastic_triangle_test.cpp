@@ -162,7 +162,7 @@ TEST(ElasticTriangle, and_joints_feel_nothing_of_a_full_turn) {
     evaluate_forces(w);
     for (const Sym2& s : stresses(w))
       EXPECT_LT(std::abs(s.xx) + std::abs(s.yy) + std::abs(s.xy), 1e-10 * young);
-    for (const JointForce& f : w.joints.force.host())
+    for (const JointForce& f : w.joints.force.in_double.host())
       EXPECT_LT(norm(f.first) + norm(f.second), 1e-10 * young * 1e-3);
   }
   for (Index t = 0; t < w.triangles.size(); ++t)

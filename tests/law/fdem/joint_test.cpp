@@ -75,7 +75,7 @@ TEST(Joint, has_the_reference_forces_and_damage) {
     World w = two_triangles().world();
     ASSERT_EQ(w.joints.size(), 1);
     displace(w, 0, r);
-    const JointForce& f = w.joints.force.data()[0];
+    const JointForce& f = w.joints.force.in_double.data()[0];
     // They count the length of the middle line now, this program the one at the start: apart by
     // half the square of its turn, 1e-3 at most.
     const double tolerance = 1e-6;
@@ -94,7 +94,8 @@ TEST(Joint, is_the_same_from_either_side) {
     World one = two_triangles(true).world(), other = two_triangles(false).world();
     displace(one, 0, r);
     displace(other, 1, r);
-    const JointForce &f = one.joints.force.data()[0], &g = other.joints.force.data()[0];
+    const JointForce &f = one.joints.force.in_double.data()[0],
+                     &g = other.joints.force.in_double.data()[0];
     const double size = norm(f.first) + norm(f.second);
     EXPECT_LT(norm(f.first + g.second), 1e-12 * size) << r.name;
     EXPECT_LT(norm(f.second + g.first), 1e-12 * size) << r.name;
@@ -135,7 +136,7 @@ TEST(Joint, pulled_apart_books_its_fracture_energy_and_breaks) {
       EXPECT_NEAR(steps * dt * 0.05, 4e-8 + factor * 10.0 / 3e6, 6e-10);
       EXPECT_NEAR(w.joints.broke_at.data()[0], w.time, 1e-12);
       joint_forces(w);
-      EXPECT_EQ(norm(w.joints.force.data()[0].first), 0.0);
+      EXPECT_EQ(norm(w.joints.force.in_double.data()[0].first), 0.0);
     }
   }
 }

@@ -35,18 +35,18 @@ struct Touching {
     born.data()[0] = -1;
     Buffer<CoupleState> state(Space::host, 1);
     Buffer<CoupleForce> force(Space::host, 1);
-    const CoupleForces kernel{0.0,
-                              conservative,
-                              std::as_const(nodes).view(),
-                              std::as_const(material).view(),
-                              std::as_const(law).view(),
-                              1,
-                              std::as_const(first).view(),
-                              std::as_const(second).view(),
-                              std::as_const(born).view(),
-                              {},
-                              state.view(),
-                              force.view()};
+    const CoupleForces<double> kernel{0.0,
+                                      conservative,
+                                      std::as_const(nodes).view(),
+                                      std::as_const(material).view(),
+                                      std::as_const(law).view(),
+                                      1,
+                                      std::as_const(first).view(),
+                                      std::as_const(second).view(),
+                                      std::as_const(born).view(),
+                                      {},
+                                      state.view(),
+                                      force.view()};
     kernel(0);
     return force.data()[0];
   }
@@ -220,10 +220,11 @@ TEST(PotentialContact, nothing_is_left_when_triangles_part) {
   scene.triangle("b", {0.99, 0.0}, {1.6, 0.4}, {0.9, 1.1});
   World w = scene.world();
   ASSERT_EQ(w.couples.size(), 1);
-  EXPECT_GT(norm(w.couples.history.force.data()[0].on_a.at[1]), 0.0);
+  EXPECT_GT(norm(w.couples.history.force.in_double.data()[0].on_a.at[1]), 0.0);
   for (NodeState& n : testing::nodes(w, 1).at) n.position.x += 1.0;
   couple_forces(w);
-  for (int k = 0; k < 3; ++k) EXPECT_EQ(norm(w.couples.history.force.data()[0].on_a.at[k]), 0.0);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_EQ(norm(w.couples.history.force.in_double.data()[0].on_a.at[k]), 0.0);
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST(FdemSameBits, in_the_shadow_space_that_refuses_host_reads) {
   const Scene scene = impact();
   fdem::World w = fdem::make_world(scene.config, scene.model, exec);
   EXPECT_EQ(w.couples.history.state.space(), Space::shadow);
-  EXPECT_EQ(w.joints.force.space(), Space::shadow);
+  EXPECT_EQ(w.joints.force.in_double.space(), Space::shadow);
   EXPECT_EQ(hash_after(std::move(w)), reference());
 }
 
@@ -140,6 +140,49 @@ TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
     EXPECT_EQ(after->energy().error_relative, before->energy().error_relative);
     EXPECT_EQ(before->state_hash(), reference());
   }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(FdemSameBits, in_mixed_precision_for_any_threads_width_of_vector_and_space) {
+  Scene scene = impact();
+  scene.config.precision = "mixed";
+  std::uint64_t expected = 0;
+  for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight})
+    for (const int threads : {1, 2}) {
+      fdem::World w = scene.world(threads);
+      EXPECT_EQ(w.joints.force.in_double.size(), 0);
+      w.lanes = std::min(lanes, widest_lanes());
+      const std::uint64_t hash = hash_after(std::move(w));
+      if (expected == 0) expected = hash;
+      EXPECT_EQ(hash, expected) << static_cast<int>(lanes) << ", " << threads;
+    }
+  EXPECT_NE(expected, reference());
+  Exec shadow = in_precision({}, "mixed");
+  shadow.space = Space::shadow;
+  EXPECT_EQ(hash_after(fdem::make_world(scene.config, scene.model, shadow)), expected);
+}
+
+TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
+  const std::string folder = std::filesystem::temp_directory_path() / "breccia_fdem_mixed";
+  std::filesystem::create_directories(folder);
+  Scene scene = impact();
+  scene.config.precision = "mixed";
+  const auto before = make_fdem_method(scene.config, scene.model, {});
+  for (int i = 0; i < 163; ++i) before->advance({});
+  CheckpointWriter writer;
+  before->save(writer);
+  writer.write(folder + "/state.br");
+  const CheckpointReader state(folder + "/state.br");
+  const auto after = make_fdem_method(scene.config, scene.model, {});
+  after->load(state);
+  for (int i = 163; i < 250; ++i) {
+    before->advance({});
+    after->advance({});
+  }
+  EXPECT_EQ(after->state_hash(), before->state_hash());
+  EXPECT_EQ(after->energy().friction, before->energy().friction);
+  scene.config.precision = "double";
+  EXPECT_THROW(make_fdem_method(scene.config, scene.model, {})->load(state), CheckpointError);
   std::filesystem::remove_all(folder);
 }
 

@@ -43,10 +43,10 @@ struct Pair {
   }
   /// On the upper triangle, along the joint and across it.  [N/m]
   Vec2 force() const {
-    const JointForce& f = w.joints.force.data()[0];
+    const JointForce& f = w.joints.force.in_double.data()[0];
     Vec2 sum = f.first + f.second;
     if (w.couples.size() > 0)
-      for (const Vec2& g : w.couples.history.force.data()[0].on_a.at) sum += g;
+      for (const Vec2& g : w.couples.history.force.in_double.data()[0].on_a.at) sum += g;
     return turned(upper_ == 0 ? sum : -sum, -angle);
   }
   bool broken() const { return w.joints.stage.data()[0] == JointStage::broken; }
@@ -103,7 +103,7 @@ TEST(Handover, pressure_goes_on_in_the_contact) {
     for (int i = 0; i < 3; ++i) {
       pair.move({5e-9, 0.0});
       ASSERT_EQ(pair.w.couples.size(), 1);
-      EXPECT_EQ(norm(pair.w.joints.force.data()[0].first), 0.0);
+      EXPECT_EQ(norm(pair.w.joints.force.in_double.data()[0].first), 0.0);
       EXPECT_NEAR(pair.force().y, pressed, 0.01 * pressed) << penalty;
     }
     EXPECT_NE(pair.w.couples.history.state.data()[0].scale, 1.0);
@@ -132,7 +132,7 @@ TEST(Handover, shear_goes_on_in_the_friction_of_the_faces) {
           EXPECT_NEAR(before.x, -sign * mu * before.y, 1e-3 * before.y);
           for (int i = 0; i < 3; ++i) {
             pair.move({sign * slip, 0.0});
-            EXPECT_EQ(norm(pair.w.joints.force.data()[0].first), 0.0);
+            EXPECT_EQ(norm(pair.w.joints.force.in_double.data()[0].first), 0.0);
             EXPECT_NEAR(pair.force().x, before.x, 1e-3 * std::abs(before.x))
                 << sign << ' ' << angle << ' ' << first << ' ' << upper_first;
           }

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "core/precision.hpp"
 #include "exec/error.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/world.hpp"
@@ -77,7 +78,7 @@ struct Scene {
     return config.loads.emplace_back(l);
   }
   World world(int threads = 1) const {
-    Exec exec;
+    Exec exec = in_precision({}, config.precision);
     exec.threads = threads;
     return make_world(config, model, exec);
   }
