@@ -32,12 +32,13 @@ void move_there(const World& w, const MoveElements& move) {
     for_each(w.exec, w.elements.size(), MoveOwn{move, w.domain.owned_view()});
 }
 
-/// Calls visit(begin, end) for what this rank owns of the elements [begin, end).
+/// Calls visit(begin, end) for what this rank owns of the elements [begin, end) in some runs.
 template <class Visit>
-void each_owned(const Domain& domain, Index begin, Index end, const Visit& visit) {
+void each_owned(const Domain& domain, const std::vector<ElementRun>& runs, Index begin, Index end,
+                const Visit& visit) {
   if (domain.alone()) return visit(begin, end);
   const OwnedView owned = domain.owned_view();
-  domain.each_own_run(begin, end, [&](Index from, Index to) {
+  Domain::each_run_of(runs, begin, end, [&](Index from, Index to) {
     while (from < to) {
       Index last = from;
       while (last < to && owned(last)) ++last;
@@ -47,13 +48,13 @@ void each_owned(const Domain& domain, Index begin, Index end, const Visit& visit
   });
 }
 
-/// Moves all elements of this rank. @returns whether one of them has used its margin up
-bool move_here(const World& w, const MoveWithin& move) {
+/// Moves elements of this rank. @returns whether one of them has used its margin up
+bool move_here(const World& w, const std::vector<ElementRun>& runs, const MoveWithin& move) {
   constexpr Index grain = 512;
   const Index count = w.elements.size();
   std::vector<std::uint8_t> beyond(static_cast<std::size_t>((count + grain - 1) / grain), 0);
   for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
-    each_owned(w.domain, begin, end, [&](Index from, Index to) {
+    each_owned(w.domain, runs, begin, end, [&](Index from, Index to) {
       if (run_packs(w.lanes, move, from, to)) beyond[static_cast<std::size_t>(begin / grain)] = 1;
     });
   });
@@ -90,7 +91,7 @@ double least_here(const World& w) {
                                largest_least);
   for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
     double& own = least_of[static_cast<std::size_t>(begin / grain)];
-    each_owned(w.domain, begin, end, [&](Index from, Index to) {
+    each_owned(w.domain, w.domain.runs, begin, end, [&](Index from, Index to) {
       own = std::min(own, least(w.lanes, w.critical.view(), from, to));
     });
   });
@@ -265,14 +266,27 @@ View<const Wall> walls_view(const World& w) {
   return view;
 }
 
-void move_elements(World& w) {
+namespace {
+
+MoveWithin move_within(World& w) {
+  return {move_kernel(w),
+          {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()}};
+}
+
+}  // namespace
+
+void move_awaited(World& w) {
   const StageTime timed(w.exec, "integration");
   if (w.exec.space == Space::cuda)
     move_there(w, move_kernel(w));
   else
-    w.margin_used = move_here(
-        w, {move_kernel(w),
-            {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()}});
+    w.margin_used = move_here(w, w.domain.awaited_runs, move_within(w));
+}
+
+void move_others(World& w) {
+  const StageTime timed(w.exec, "integration");
+  if (w.exec.space != Space::cuda && !w.domain.alone())
+    w.margin_used |= move_here(w, w.domain.other_runs, move_within(w));
   for (Wall& wall : w.walls) {
     wall.point += w.next_dt * wall.velocity;
     wall.travelled += w.next_dt * norm(wall.velocity);

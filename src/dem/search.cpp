@@ -324,13 +324,20 @@ bool margin_used_there(const World& w) {
 
 }  // namespace
 
+void ask_for_search(World& w) {
+  const StageTime timed(w.exec, "travel");
+  if (w.exec.space == Space::cuda) w.margin_used = margin_used_there(w);
+  if (!w.domain.alone()) w.domain.ranks->ask_for_bits(w.margin_used ? 1 : 0);
+}
+
 bool contacts_are_due(const World& w) {
   const StageTime timed(w.exec, "travel");
+  const bool used = w.domain.alone() ? w.margin_used : w.domain.ranks->told_bits() != 0;
   if (w.parameters.search.every > 0)  // the paper's rule
     return w.step % w.parameters.search.every == 0;
   for (const Wall& wall : w.walls)
     if (wall.travelled > w.parameters.largest_margin) return true;
-  return w.domain.any(w.exec.space == Space::cuda ? margin_used_there(w) : w.margin_used);
+  return used;
 }
 
 void find_contacts(World& w) {

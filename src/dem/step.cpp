@@ -4,13 +4,14 @@ namespace breccia::dem {
 
 void step(World& w) {
   // 1. Newton's laws: accelerations, velocities, positions              (Durand 2012, section 4.4)
-  move_elements(w);
-  start_copies(w);  // on other ranks: they follow while all vote
+  move_awaited(w);
+  start_copies(w);  // on other ranks: they follow while all others move,
+  move_others(w);
+  ask_for_search(w);  // and all ranks vote
 
   // 2. New contacts, when travel has used the margin up: grid, sort, search         (section 4.3)
-  const bool due = contacts_are_due(w);
   finish_copies(w);
-  if (due) {
+  if (contacts_are_due(w)) {
     refresh_copies(w);
     find_contacts(w);
   }

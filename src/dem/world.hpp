@@ -200,7 +200,11 @@ Advanced advance(World& w, const StopAt& stop);
 Advanced advance_on_device(World& w, const StopAt& stop);
 
 /// The parts of a step, in its order.
-void move_elements(World& w);
+/// Moves the elements: first those that other ranks wait for, then all others.
+void move_awaited(World& w);
+void move_others(World& w);
+/// Asks all ranks whether contacts must be searched for, and hears what they say.
+void ask_for_search(World& w);
 bool contacts_are_due(const World& w);
 MarginRule margin_rule(const World& w);
 void find_contacts(World& w);

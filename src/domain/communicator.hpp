@@ -45,6 +45,10 @@ class Communicator {
   virtual double least(double value);
   /// The bits that are set on some rank.
   virtual std::uint64_t any_of(std::uint64_t bits);
+  /// The same in two parts: messages may be started and finished between them, and nothing else be
+  /// combined. A rank that has asked may do other things while the others are not yet there.
+  virtual void ask_for_bits(std::uint64_t bits) { asked_ = bits; }
+  virtual std::uint64_t told_bits() { return any_of(asked_); }
   /// Each number becomes the sum of all ranks' numbers.
   virtual void add_up(std::span<std::int64_t> numbers);
   /// Every rank gets the message of rank 0.
@@ -70,6 +74,7 @@ class Communicator {
 
  private:
   bool in_step_ = true;
+  std::uint64_t asked_ = 0;
 };
 
 }  // namespace breccia

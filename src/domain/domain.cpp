@@ -21,6 +21,26 @@ DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own, double wa
   return facts;
 }
 
+namespace {
+
+/// Parts the runs of packs: those with one of these elements, and the others.
+void part_runs(Domain& d, const Buffer<Index>& elements) {
+  constexpr Index pack = 8;
+  std::vector<std::uint8_t> awaited(static_cast<std::size_t>(d.owned.size() / pack + 1), 0);
+  for (const Index e : elements.host()) awaited[static_cast<std::size_t>(e / pack)] = 1;
+  d.awaited_runs.clear();
+  d.other_runs.clear();
+  for (const ElementRun& run : d.runs)
+    for (Index begin = run.begin; begin < run.end; begin += pack) {
+      std::vector<ElementRun>& part =
+          awaited[static_cast<std::size_t>(begin / pack)] != 0 ? d.awaited_runs : d.other_runs;
+      if (part.empty() || part.back().end != begin) part.push_back({begin, begin});
+      part.back().end = std::min(begin + pack, run.end);
+    }
+}
+
+}  // namespace
+
 void Domain::feel(const Buffer<GlobalId>& ids, const Buffer<Index>& a, const Buffer<Index>& b) {
   if (alone()) return;
   std::vector<std::uint8_t> wanted = tied;
@@ -30,6 +50,7 @@ void Domain::feel(const Buffer<GlobalId>& ids, const Buffer<Index>& a, const Buf
   for (const Copy& copy : copies)
     if (wanted[static_cast<std::size_t>(copy.element)] != 0) followed.push_back(copy);
   felt.build(*ranks, ids, followed);
+  part_runs(*this, felt.sent());
   knows_felt = true;
 }
 

@@ -68,6 +68,8 @@ struct Domain {
   double drifted_until = 0.0;      ///< time up to which it is counted  [s]
   std::vector<ElementRun>
       runs;  ///< of elements that loops over own ones take, few copies among them
+  /// The same in two parts: those that copies follow in every step, and all others.
+  std::vector<ElementRun> awaited_runs, other_runs;
   DomainCounts counts;
 
   bool alone() const { return ranks == nullptr; }
@@ -82,8 +84,7 @@ struct Domain {
   OwnedView owned_view() const { return {owned_there.view()}; }
 
   double least(double value) const { return alone() ? value : ranks->least(value); }
-  std::uint64_t any_of(std::uint64_t bits) const { return alone() ? bits : ranks->any_of(bits); }
-  bool any(bool one) const { return any_of(one ? 1 : 0) != 0; }
+  bool any(bool one) const { return alone() ? one : ranks->any_of(one ? 1 : 0) != 0; }
 
   /// Copies of other ranks' items become what their owners have: those that are felt, or all.
   /// Between start and finish numbers may be combined, and copies are not yet to be read.
@@ -113,6 +114,12 @@ struct Domain {
   template <class Visit>
   void each_own_run(Index begin, Index end, const Visit& visit) const {
     if (alone()) return visit(begin, end);
+    each_run_of(runs, begin, end, visit);
+  }
+  /// The same for one of the lists of runs.
+  template <class Visit>
+  static void each_run_of(const std::vector<ElementRun>& runs, Index begin, Index end,
+                          const Visit& visit) {
     auto run = std::partition_point(runs.begin(), runs.end(),
                                     [begin](const ElementRun& r) { return r.end <= begin; });
     for (; run != runs.end() && run->begin < end; ++run)

@@ -64,6 +64,8 @@ class Halo {
   }
 
   Index copies() const { return receive_.size(); }  ///< of other ranks' elements held here
+  /// Own elements that other ranks hold copies of, once for each.
+  const Buffer<Index>& sent() const { return send_; }
 
  private:
   /// A neighbour and how many items go to it and come from it.

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +18,7 @@
 #include <thread>
 
 #include "core/case_config.hpp"
+#include "domain/vote_board.hpp"
 #include "domain/watchdog.hpp"
 #include "exec/error.hpp"
 
@@ -34,14 +36,15 @@ void must(int code, const char* call) {
   throw DeviceError(std::string(call) + ": " + text);
 }
 
-/// Memory that the ranks of one machine share: a sign of life of each.
+/// Memory that the ranks of one machine share: a sign of life of each, and what each votes for.
 class SharedSigns {
  public:
   explicit SharedSigns(MPI_Comm here) {
     int size = 0, rank = 0, unit = 0;
     must(MPI_Comm_size(here, &size), "MPI_Comm_size");
     must(MPI_Comm_rank(here, &rank), "MPI_Comm_rank");
-    const MPI_Aint own = rank == 0 ? size * static_cast<MPI_Aint>(sizeof(LifeSign)) : 0;
+    const MPI_Aint own =
+        rank == 0 ? size * static_cast<MPI_Aint>(sizeof(LifeSign) + sizeof(VoteSlot)) : 0;
     void* memory = nullptr;
     must(MPI_Win_allocate_shared(own, 1, MPI_INFO_NULL, here, &memory, &window_),
          "MPI_Win_allocate_shared");
@@ -49,8 +52,11 @@ class SharedSigns {
     must(MPI_Win_shared_query(window_, 0, &bytes, &unit, &memory), "MPI_Win_shared_query");
     auto* const first = static_cast<LifeSign*>(memory);
     signs_ = {first, static_cast<std::size_t>(size)};
-    if (rank == 0)
+    votes_ = {reinterpret_cast<VoteSlot*>(first + size), static_cast<std::size_t>(size)};
+    if (rank == 0) {
       for (LifeSign& sign : signs_) new (&sign) LifeSign{};
+      for (VoteSlot& vote : votes_) new (&vote) VoteSlot{};
+    }
     must(MPI_Barrier(here), "MPI_Barrier");
     world_rank_.resize(signs_.size());
     int self = 0;
@@ -63,6 +69,7 @@ class SharedSigns {
   ~SharedSigns() { MPI_Win_free(&window_); }
 
   std::span<LifeSign> all() const { return signs_; }
+  std::span<VoteSlot> votes() const { return votes_; }
   std::size_t self() const { return self_; }
   std::string name_of(std::size_t place) const {
     return place < world_rank_.size() ? "rank " + std::to_string(world_rank_[place])
@@ -74,6 +81,7 @@ class SharedSigns {
  private:
   MPI_Win window_ = MPI_WIN_NULL;
   std::span<LifeSign> signs_;
+  std::span<VoteSlot> votes_;
   std::vector<int> world_rank_;
   std::size_t self_ = 0;
 };
@@ -100,6 +108,8 @@ class MpiRanks final : public Communicator {
     must(MPI_Comm_size(here, &here_), "MPI_Comm_size");
     signs_.emplace(here);
     must(MPI_Comm_rank(here, &number_here_), "MPI_Comm_rank");
+    // Few enough to be read one by one; ranks of one machine are numbered as all are.
+    if (here_ == size_ && size_ <= 64) board_.emplace(signs_->votes(), signs_->self());
     MPI_Comm_free(&here);
     watchdog_.emplace(signs_->all(), signs_->self(), [this](std::size_t place) { lose(place); });
     watchdog_->set_patience(DomainConfig{}.patience);
@@ -155,11 +165,39 @@ class MpiRanks final : public Communicator {
 
   double least(double value) override {
     const Waiting waiting(*this);
+    if (board_) {
+      board_->tell(std::bit_cast<std::uint64_t>(value));
+      hear([&value](std::uint64_t told) {
+        const auto other = std::bit_cast<double>(told);
+        if (other < value) value = other;
+      });
+      return value;
+    }
     double result = value;
     must(MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, MPI_MIN, all_), "MPI_Allreduce");
     return result;
   }
+  void ask_for_bits(std::uint64_t bits) override {
+    if (board_) return board_->tell(bits);
+    asked_bits_ = bits;
+    must(MPI_Iallreduce(&asked_bits_, &told_bits_, 1, MPI_UINT64_T, MPI_BOR, all_, &vote_),
+         "MPI_Iallreduce");
+  }
+  std::uint64_t told_bits() override {
+    const Waiting waiting(*this);
+    if (!board_) {
+      must(MPI_Wait(&vote_, MPI_STATUS_IGNORE), "MPI_Wait");
+      return told_bits_;
+    }
+    std::uint64_t bits = 0;
+    hear([&bits](std::uint64_t told) { bits |= told; });
+    return bits;
+  }
   std::uint64_t any_of(std::uint64_t bits) override {
+    if (board_) {
+      ask_for_bits(bits);
+      return told_bits();
+    }
     const Waiting waiting(*this);
     std::uint64_t result = bits;
     must(MPI_Allreduce(&bits, &result, 1, MPI_UINT64_T, MPI_BOR, all_), "MPI_Allreduce");
@@ -200,6 +238,26 @@ class MpiRanks final : public Communicator {
     MpiRanks& ranks_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   };
+
+  /// While it waits, this rank brings its own messages on their way and, in time, lets others have
+  /// the processor: there may be fewer of them than ranks.
+  template <class Visit>
+  void hear(const Visit& visit) {
+    constexpr int patient = 200;
+    int rounds = 0;
+    const auto idle = [&] {
+      if (++rounds < patient) return pause_processor();
+      int any = 0;
+      must(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, all_, &any, MPI_STATUS_IGNORE), "MPI_Iprobe");
+      std::this_thread::yield();
+    };
+    board_->hear(idle, visit);
+  }
+  static void pause_processor() {
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+  }
 
   /// On the watchdog's thread: one rank tells, and all end.
   void lose(std::size_t place) {
@@ -247,7 +305,10 @@ class MpiRanks final : public Communicator {
   int rank_ = 0, size_ = 1, here_ = 1, number_here_ = 0;
   std::chrono::steady_clock::duration waited_{};
   std::vector<MPI_Request> requests_;
+  MPI_Request vote_ = MPI_REQUEST_NULL;
+  std::uint64_t asked_bits_ = 0, told_bits_ = 0;
   std::optional<SharedSigns> signs_;
+  std::optional<VoteBoard> board_;  ///< if all ranks are on this machine
   std::optional<Watchdog> watchdog_;
 };
 

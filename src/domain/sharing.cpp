@@ -140,7 +140,8 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
   for (Index e = 0; e < count; ++e)
     if (!d.owns(e)) d.copies.push_back({e, owner[static_cast<std::size_t>(e)]});
   d.knows_felt = false;
-  d.runs = own_runs(d);
+  d.runs = d.awaited_runs = own_runs(d);
+  d.other_runs.clear();
   std::vector<Vec3> placed;
   elements.each_point([&](const Vec3& point) { placed.push_back(point); });
   copy_to(d.placed, placed);

@@ -20,17 +20,25 @@ void run(const World& w, Index count, const Kernel& kernel) {
                [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
 }
 
+bool takes_all(const World& w) {
+  return w.domain.alone() || w.exec.space == Space::cuda || w.lanes == Lanes::one;
+}
+
+/// The same over some of the triangles.
+template <class Kernel>
+void run_of(const World& w, const std::vector<ElementRun>& runs, const Kernel& kernel) {
+  constexpr Index grain = 512;
+  for_each_run(w.exec, w.triangles.size(), grain, [&](Index begin, Index end) {
+    Domain::each_run_of(runs, begin, end,
+                        [&](Index from, Index to) { run_packs(w.lanes, kernel, from, to); });
+  });
+}
+
 /// The same over the triangles that this rank owns.
 template <class Kernel>
 void run_own(const World& w, const Kernel& kernel) {
-  const Index count = w.triangles.size();
-  if (w.domain.alone() || w.exec.space == Space::cuda || w.lanes == Lanes::one)
-    return run(w, count, kernel);
-  constexpr Index grain = 512;
-  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
-    w.domain.each_own_run(begin, end,
-                          [&](Index from, Index to) { run_packs(w.lanes, kernel, from, to); });
-  });
+  if (takes_all(w)) return run(w, w.triangles.size(), kernel);
+  run_of(w, w.domain.runs, kernel);
 }
 
 }  // namespace
@@ -64,7 +72,7 @@ StableStep stable_step(const World& w) {
           w.holds.view(), w.dashpots.view()};
 }
 
-void move_triangles(World& w) {
+void move_awaited(World& w) {
   const StageTime timed(w.exec, "integration");
   if (!w.prescribed.empty()) {
     std::vector<Motion> now;
@@ -73,7 +81,15 @@ void move_triangles(World& w) {
       now.push_back({p.amplitude.at(middle) * p.velocity});
     copy_to(w.motions, now);
   }
-  run_own(w, move_kernel(w));
+  if (takes_all(w))
+    run(w, w.triangles.size(), move_kernel(w));
+  else
+    run_of(w, w.domain.awaited_runs, move_kernel(w));
+}
+
+void move_others(World& w) {
+  const StageTime timed(w.exec, "integration");
+  if (!takes_all(w)) run_of(w, w.domain.other_runs, move_kernel(w));
   w.time += w.next_dt;
   w.last_dt = w.next_dt;
 }

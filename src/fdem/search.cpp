@@ -171,12 +171,8 @@ Drift choose_drift(const World& w) {
 
 /// Whether a search is due on some rank; what joints tell becomes known to all.
 bool any_rank_is_due(World& w) {
-  std::vector<std::uint8_t> changed;
-  copy_to(changed, w.opened.changed);
-  std::uint64_t bits = margin_is_used(w) ? 4 : 0;
-  for (std::size_t i = 0; i < changed.size(); ++i)
-    if (changed[i] != 0) bits |= std::uint64_t{1} << i;
-  bits = w.domain.any_of(bits);
+  const std::uint64_t bits = w.domain.ranks->told_bits();
+  std::vector<std::uint8_t> changed(static_cast<std::size_t>(w.opened.changed.size()));
   for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = (bits >> i & 1) != 0 ? 1 : 0;
   copy_to(w.opened.changed, changed);
   return marking_is_due(w) || (bits & 4) != 0;
@@ -220,6 +216,17 @@ void search(World& w) {
 MarginRule margin_rule(const World& w) {
   constexpr double horizon = 30.0;  // steps for which a fast triangle's margin shall last
   return {w.parameters.skin, horizon * w.next_dt, 0.5 * w.parameters.mean_edge};
+}
+
+void ask_for_search(World& w) {
+  if (w.domain.alone()) return;
+  const StageTime timed(w.exec, "travel");
+  std::vector<std::uint8_t> changed;
+  copy_to(changed, w.opened.changed);
+  std::uint64_t bits = margin_is_used(w) ? 4 : 0;
+  for (std::size_t i = 0; i < changed.size(); ++i)
+    if (changed[i] != 0) bits |= std::uint64_t{1} << i;
+  w.domain.ranks->ask_for_bits(bits);
 }
 
 bool couples_are_due(World& w) {

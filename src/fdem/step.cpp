@@ -4,13 +4,14 @@ namespace breccia::fdem {
 
 void step(World& w) {
   // 1. Newton's second law: velocities and positions of all corners      (Lukas 2014, section 2)
-  move_triangles(w);
-  start_copies(w);  // on other ranks: they follow while all vote
+  move_awaited(w);
+  start_copies(w);  // on other ranks: they follow while all others move,
+  move_others(w);
+  ask_for_search(w);  // and all ranks vote
 
   // 2. Contact detection, when travel has used the margin up or a joint has opened
-  const bool due = couples_are_due(w);
   finish_copies(w);
-  if (due) {
+  if (couples_are_due(w)) {
     refresh_copies(w);
     find_couples(w);
   }

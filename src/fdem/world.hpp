@@ -196,7 +196,11 @@ Advanced advance(World& w, const StopAt& stop);
 Advanced advance_on_device(World& w, const StopAt& stop);
 
 /// The parts of a step, in its order.
-void move_triangles(World& w);
+/// Moves the triangles: first those that other ranks wait for, then all others.
+void move_awaited(World& w);
+void move_others(World& w);
+/// Asks all ranks whether couples must be searched for, and hears what they say.
+void ask_for_search(World& w);
 bool couples_are_due(World& w);
 MarginRule margin_rule(const World& w);
 void find_couples(World& w);
