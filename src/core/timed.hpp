@@ -131,6 +131,31 @@ struct Timed : Ahead<Kernel> {
   }
 };
 
+/// A launch that does nothing: what reads ahead after it comes when all before it have ended.
+struct Fence {
+  static constexpr const char* name = "core.fence";
+  BR_HD void set(const Moment&) {}
+  BR_HD void operator()(Index) const {}
+};
+
+/// A kernel of a step that the host takes by itself, with the times that it was made with.
+template <class Kernel>
+struct AtOnce : Ahead<Kernel> {
+  Kernel kernel;
+
+  explicit AtOnce(const Kernel& of) : kernel(of) {}
+
+  template <class Read>
+  BR_HD void prepare(Index i, Read& ready) const {
+    kernel.prepare(i, ready);
+  }
+  template <class... Read>
+  BR_HD auto operator()(Index i, Read&... ready) const {
+    (kernel.fetch(i, ready), ...);
+    return kernel(i, ready...);
+  }
+};
+
 /// The clock keeps the least of all numbers that threads note. None is negative.
 struct NoteLeast {
   StepClock* clock;

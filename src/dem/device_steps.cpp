@@ -374,6 +374,22 @@ void launch_rest(World&, const StepClocks&) {}
 
 }  // namespace
 
+#if defined(__CUDACC__)
+void forces_on_device(World& w) {
+  const StageTime timed(w.exec, "forces");
+  for_each(w.exec, 1, Fence{});
+  with_number(w.exec.precision, [&w](auto number) {
+    using Gather = GatherWide<decltype(number)>;
+    const auto at_once = [](const auto& kernel) { return AtOnce(kernel); };
+    launch_interactions<decltype(number)>(w, at_once);
+    for_each_part(part(w.elements.size() * Gather::width,
+                       at_once(Gather{gather_rows_kernel<decltype(number)>(w)}), Parts<>{}));
+  });
+}
+#else
+void forces_on_device(World&) {}
+#endif
+
 Advanced advance_on_device(World& w, const StopAt& stop) {
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
   const bool walls = !w.walls.empty();

@@ -61,12 +61,10 @@ bool move_here(const World& w, const std::vector<ElementRun>& runs, const MoveWi
   return std::find(beyond.begin(), beyond.end(), 1) != beyond.end();
 }
 
-/// A kernel for all links of a group.
+/// A kernel for all links of a group, on the host.
 template <class Law, class Kernel>
 void run_group(const World& w, const LinkGroup<Law>& group, const Kernel& kernel) {
   const Index count = group.end - group.begin;
-  if (w.exec.space == Space::cuda)
-    return for_each(w.exec, count, Shifted<Kernel>{kernel, group.begin});
   constexpr Index grain = 512;
   for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
     run_packs(w.lanes, kernel, group.begin + begin, group.begin + end);
@@ -186,12 +184,6 @@ void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index
 
 template <class Number>
 void link_forces_and_sums(World& w) {
-  if (w.exec.space == Space::cuda) {
-    for (const auto& group : w.concrete_groups)
-      for_each(w.exec, group.end - group.begin,
-               Shifted<ConcreteLinkForces<Number>>{concrete_kernel<Number>(w, group), group.begin});
-    return for_each(w.exec, w.elements.size(), gather_rows_kernel<Number>(w));
-  }
   std::vector<ConcreteLinkForces<Number>> kernels;
   for (const auto& group : w.concrete_groups) kernels.push_back(concrete_kernel<Number>(w, group));
   const GatherForces gather = gather_kernel(w);

@@ -30,9 +30,13 @@ Advanced advance(World& w, const StopAt& stop) {
 }
 
 void evaluate_forces(World& w) {
-  bar_forces(w);
-  contact_forces(w);
-  concrete_forces_and_sums(w);
+  if (w.exec.space == Space::cuda) {
+    forces_on_device(w);
+  } else {
+    bar_forces(w);
+    contact_forces(w);
+    concrete_forces_and_sums(w);
+  }
   wall_forces(w);
   if (w.step % w.parameters.time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }

@@ -58,18 +58,6 @@ struct Sum {
   }
 };
 
-/// A kernel over part of its arrays: item i of the loop is item first + i of the kernel.
-template <class Kernel>
-struct Shifted {
-  Kernel kernel;
-  Index first;
-  BR_HD void operator()(Index i) const { kernel(first + i); }
-  template <class Times>
-  BR_HD void set(const Times& now) {
-    kernel.set(now);
-  }
-};
-
 #if defined(__CUDACC__)
 /// The first words of a kernel that launch() starts: it may be on the device before the launch
 /// before has ended, whose work it sees from here on. The one after it may come, too.

@@ -291,15 +291,19 @@ EndOfStep<AllowedStep> end_of_step(const World& w) {
 }
 
 #if defined(__CUDACC__)
+MoveAndWatch move_and_watch(World& w, std::int32_t* wanted) {
+  return {move_kernel(w),
+          {w.reach.triangle.view(), w.reach.reference.view(), w.reach.margin.view(),
+           w.triangles.nodes.view(), w.reach.drift, Vec2{}},
+          w.reach_place.view(),
+          w.opened.changed.view(),
+          wanted};
+}
+
 void launch_move(World& w, const StepClocks& clocks) {
   const auto motions = static_cast<Index>(w.prescribed.size());
   const EndOfStep<AllowedStep> end = end_of_step(w);
-  const MoveAndWatch move{move_kernel(w),
-                          {w.reach.triangle.view(), w.reach.reference.view(), w.reach.margin.view(),
-                           w.triangles.nodes.view(), w.reach.drift, Vec2{}},
-                          w.reach_place.view(),
-                          w.opened.changed.view(),
-                          &clocks.now->wanted};
+  const MoveAndWatch move = move_and_watch(w, &clocks.now->wanted);
   const Index triangles = w.triangles.size();
   if (motions == 0)
     return for_each_part(part(triangles, clocks.opening(move, end, true), Parts<>{}));
@@ -313,22 +317,16 @@ void launch_move(World& w, const StepClocks& clocks) {
   for_each_part(part(triangles, clocks.timed<Stand::in_move>(move), Parts<>{}));
 }
 
-/// All forces and their sums, and the stable step. `by` wraps a kernel by the clock.
+/// Joints and couples. Damaged joints are counted in turn 0 or 1.
 template <class Number, class By>
-void launch_forces(World& w, StepClock* clock, const By& by) {
-  const Exec& exec = w.exec;
-  const Index triangles = w.triangles.size();
-  if (w.extrinsic) {
-    for_each(exec, triangles, by(stress_kernel(w)));
-    for_each(exec, w.joints.size(), by(overshoot_kernel(w)));
-    for_each(exec, 1, by(WatchReached{w.reached.view(), &clock->wanted}));
-  }
+void launch_pairs(World& w, Index turn, const By& by) {
   const Index joints = w.joints.size();
-  if (joints < fewest_joints_apart) {
+  if (joints + w.couples.size() == 0) {  // triangles read corners ahead, which the move writes
+    for_each(w.exec, 1, by(Fence{}));
+  } else if (joints < fewest_joints_apart) {
     for_each_part(part(w.couples.size(), by(couple_kernel<Number>(w)),
                        part(joints, by(joint_kernel<Number>(w)), Parts<>{})));
   } else {
-    const Index turn = clock == w.clock.data() ? 0 : 1;
     Index* const counts = w.damaged_count.data();
     for_each_part(part(joints,
                        by(WholeJoints<Number>{joint_kernel<Number>(w), w.damaged.view(),
@@ -339,6 +337,19 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
     for_each_part(part(w.couples.size(), by(couple_kernel<Number>(w)),
                        part(DamagedJoints<Number>::threads, by(damaged), Parts<>{})));
   }
+}
+
+/// All forces and their sums, and the stable step. `by` wraps a kernel by the clock.
+template <class Number, class By>
+void launch_forces(World& w, StepClock* clock, const By& by) {
+  const Exec& exec = w.exec;
+  const Index triangles = w.triangles.size();
+  if (w.extrinsic) {
+    for_each(exec, triangles, by(stress_kernel(w)));
+    for_each(exec, w.joints.size(), by(overshoot_kernel(w)));
+    for_each(exec, 1, by(WatchReached{w.reached.view(), &clock->wanted}));
+  }
+  launch_pairs<Number>(w, clock == w.clock.data() ? 0 : 1, by);
   constexpr Index most_threads = 132 * 128;
   const Index threads = triangles < most_threads ? triangles : most_threads;
   for_each_part(part(
@@ -409,17 +420,32 @@ void place_reach(World& w) {
            PlaceReach{std::as_const(w.reach.triangle).view(), w.reach_place.view()});
 }
 
+/// Before launches outside those of the clock, and after.
+void forget_damaged(World& w) {
+  w.damaged.resize(w.joints.size() < fewest_joints_apart ? 0 : w.joints.size());
+  w.damaged_count.resize(2);
+  clear_bytes(w.damaged_count.data(), w.exec.space, 2 * sizeof(Index));
+}
+
 }  // namespace
+
+#if defined(__CUDACC__)
+void forces_on_device(World& w) {
+  const StageTime timed(w.exec, "forces");
+  const auto at_once = [](const auto& kernel) { return AtOnce(kernel); };
+  forget_damaged(w);
+  for_each(w.exec, 1, Fence{});
+  launch_pairs(w, 0, at_once);
+  for_each_part(part(w.triangles.size(), at_once(TrianglesAhead{triangle_kernel(w)}), Parts<>{}));
+}
+#else
+void forces_on_device(World&) {}
+#endif
 
 Advanced advance_on_device(World& w, const StopAt& stop) {
   if (w.amplitudes.empty() && w.clock.empty()) list_amplitudes(w);
   if (w.graph.empty()) place_reach(w);
-  w.damaged.resize(w.joints.size() < fewest_joints_apart ? 0 : w.joints.size());
-  w.damaged_count.resize(2);
-  const auto forget_damaged = [&] {
-    clear_bytes(w.damaged_count.data(), w.exec.space, 2 * sizeof(Index));
-  };
-  forget_damaged();
+  forget_damaged(w);
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
   return run_ahead(
       w.clock, w.graph, end_of_step(w), host, stop,
@@ -430,7 +456,7 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
         insertion ? evaluate_forces(w) : find_couples(w);
         w.graph.clear();
         place_reach(w);
-        forget_damaged();
+        forget_damaged(w);
         return insertion;
       });
 }

@@ -31,9 +31,13 @@ Advanced advance(World& w, const StopAt& stop) {
 
 void evaluate_forces(World& w) {
   insert_joints(w);
-  joint_forces(w);
-  couple_forces(w);
-  triangle_forces(w);
+  if (w.exec.space == Space::cuda) {
+    forces_on_device(w);
+  } else {
+    joint_forces(w);
+    couple_forces(w);
+    triangle_forces(w);
+  }
   load_forces(w);
   if (w.step % w.parameters.time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }

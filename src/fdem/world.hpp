@@ -194,6 +194,8 @@ void step(World& w);
 Advanced advance(World& w, const StopAt& stop);
 /// The same text as step(), launched ahead by the device's clock.
 Advanced advance_on_device(World& w, const StopAt& stop);
+/// Forces of joints, couples and triangles by those launches, at once.
+void forces_on_device(World& w);
 
 /// The parts of a step, in its order.
 /// Moves the triangles: first those that other ranks wait for, then all others.
