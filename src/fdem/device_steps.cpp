@@ -435,8 +435,12 @@ void forces_on_device(World& w) {
   const auto at_once = [](const auto& kernel) { return AtOnce(kernel); };
   forget_damaged(w);
   for_each(w.exec, 1, Fence{});
-  launch_pairs(w, 0, at_once);
-  for_each_part(part(w.triangles.size(), at_once(TrianglesAhead{triangle_kernel(w)}), Parts<>{}));
+  with_number(w.exec.precision, [&](auto number) {
+    using Number = decltype(number);
+    launch_pairs<Number>(w, 0, at_once);
+    for_each_part(part(w.triangles.size(),
+                       at_once(TrianglesAhead<Number>{triangle_kernel<Number>(w)}), Parts<>{}));
+  });
 }
 #else
 void forces_on_device(World&) {}
