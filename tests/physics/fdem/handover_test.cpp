@@ -175,8 +175,10 @@ TEST(Handover, shear_is_cut_at_the_friction_of_the_faces) {
 /// friction.
 TEST(Handover, energy_goes_on_too) {
   constexpr double slip = 1e-9, depth = 2e-8, young = 30e9, p_f = 20.0 * young;
-  for (const double mu : {0.0, 0.6}) {
-    Pair pair(rock(0.6, mu));
+  // friction of the faces, and of the joint as it breaks: the last brings more than its faces bear
+  for (const auto& [mu, of_joint] :
+       {std::pair{0.6, 0.0}, std::pair{0.6, 0.6}, std::pair{0.2, 0.6}}) {
+    Pair pair(rock(mu, of_joint));
     for (int i = 0; i < 20; ++i) pair.move({0.0, -depth / 20});
     pair.break_by(slip);
     const double at_break = pair.taken;
