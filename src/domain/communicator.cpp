@@ -5,32 +5,34 @@
 namespace breccia {
 namespace {
 
+void send_once(Communicator& ranks, const std::vector<Post>& to, const std::vector<Post>& from) {
+  const std::unique_ptr<RepeatedMessages> messages = ranks.prepare(to, from);
+  messages->start();
+  messages->finish();
+}
+
 /// Rank 0 combines the numbers of all ranks in the order of the ranks, and tells.
 template <class T, class Combine>
 void combine_all(Communicator& ranks, std::span<T> numbers, const Combine& combine) {
-  std::vector<Post> others, none;
   if (ranks.rank() != 0) {
-    const Post post{0, numbers.data(), numbers.size_bytes()};
-    ranks.start({&post, 1}, none);
-    ranks.finish();
-    ranks.start(none, {&post, 1});
-    ranks.finish();
+    const std::vector<Post> first{{0, numbers.data(), numbers.size_bytes()}};
+    send_once(ranks, first, {});
+    send_once(ranks, {}, first);
     return;
   }
+  std::vector<Post> others;
   const auto count = static_cast<std::size_t>(ranks.size()) - 1;
   std::vector<T> came(count * numbers.size());
   for (std::size_t r = 0; r < count; ++r)
     others.push_back(
         {static_cast<int>(r) + 1, came.data() + r * numbers.size(), numbers.size_bytes()});
-  ranks.start(none, others);
-  ranks.finish();
+  send_once(ranks, {}, others);
   for (std::size_t i = 0; i < came.size(); ++i) {
     T& number = numbers[i % numbers.size()];
     number = combine(number, came[i]);
   }
   for (Post& post : others) post.data = numbers.data();
-  ranks.start(others, none);
-  ranks.finish();
+  send_once(ranks, others, {});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,21 @@ struct Post {
   std::size_t bytes;
 };
 
+/// Messages of known size that go again and again from and to the same places in memory.
+class RepeatedMessages {
+ public:
+  RepeatedMessages() = default;
+  RepeatedMessages(const RepeatedMessages&) = delete;
+  RepeatedMessages& operator=(const RepeatedMessages&) = delete;
+  virtual ~RepeatedMessages() = default;
+
+  /// Sends what lies there now; the memory stays untouched until finish(). Every rank calls both,
+  /// if it has only empty lists. Meanwhile numbers may be combined (least, any_of, add_up), nothing
+  /// else be exchanged.
+  virtual void start() = 0;
+  virtual void finish() = 0;
+};
+
 class Communicator {
  public:
   Communicator() = default;
@@ -32,11 +48,10 @@ class Communicator {
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
-  /// Starts messages of known size to and from other ranks; their memory stays untouched until
-  /// finish(). Every rank calls it, if only with empty lists. Meanwhile numbers may be combined
-  /// (least, any_of, add_up), nothing else be exchanged.
-  virtual void start(std::span<const Post> to, std::span<const Post> from) = 0;
-  virtual void finish() = 0;
+  /// Messages to and from other ranks, to be started as often as is wished. They are given up
+  /// before their memory and before this object.
+  virtual std::unique_ptr<RepeatedMessages> prepare(const std::vector<Post>& to,
+                                                    const std::vector<Post>& from) = 0;
 
   /// Message r goes to rank r, the one for this rank itself included; returns what came, by rank.
   virtual std::vector<Message> exchange(std::vector<Message> messages) = 0;

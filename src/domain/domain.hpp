@@ -94,7 +94,7 @@ struct Domain {
   }
   template <class T>
   void finish_refresh(const Exec& exec, Buffer<T>& items) {
-    if (!alone()) (knows_felt ? felt : halo).finish(exec, *ranks, items);
+    if (!alone()) (knows_felt ? felt : halo).finish(exec, items);
   }
   template <class T>
   void refresh_all(const Exec& exec, Buffer<T>& items) {

@@ -12,6 +12,7 @@ void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::ve
   for (std::size_t r = 0; r < count; ++r) deal_detail::put(wanted[r], ids, receive[r]);
   const std::vector<Message> asked = ranks.exchange(std::move(wanted));
 
+  messages_.reset();
   peers_.clear();
   std::vector<Index> all_sent, all_received;
   for (std::size_t r = 0; r < count; ++r) {
@@ -31,9 +32,11 @@ void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::ve
 
 void Halo::make_room(Space space, std::size_t item_bytes) {
   const auto grow = [&](Buffer<std::byte>& bytes, Index items) {
-    if (bytes.space() != space) bytes = Buffer<std::byte>(space);
     const auto need = static_cast<Index>(static_cast<std::size_t>(items) * item_bytes);
-    if (bytes.size() < need) bytes.resize(need);
+    if (bytes.space() == space && bytes.size() >= need) return;
+    messages_.reset();
+    if (bytes.space() != space) bytes = Buffer<std::byte>(space);
+    bytes.resize(need);
   };
   grow(out_, send_.size());
   grow(in_, receive_.size());
@@ -48,16 +51,26 @@ void Halo::post(Communicator& ranks, std::size_t item_bytes) {
     from = sent_.data();
     to = came_.data();
   }
-  to_.clear();
-  from_.clear();
+  // A copy of this halo has buffers elsewhere, and so messages of its own.
+  if (!messages_ || item_bytes != item_bytes_ || from != from_ || to != to_)
+    prepare(ranks, item_bytes, from, to);
+  messages_->start();
+}
+
+void Halo::prepare(Communicator& ranks, std::size_t item_bytes, std::byte* from, std::byte* to) {
+  messages_.reset();
+  item_bytes_ = item_bytes;
+  from_ = from;
+  to_ = to;
+  std::vector<Post> sends, receives;
   for (const Peer& peer : peers_) {
     const std::size_t sent = peer.send * item_bytes, came = peer.receive * item_bytes;
-    if (sent > 0) to_.push_back({peer.rank, from, sent});
-    if (came > 0) from_.push_back({peer.rank, to, came});
+    if (sent > 0) sends.push_back({peer.rank, from, sent});
+    if (came > 0) receives.push_back({peer.rank, to, came});
     from += sent;
     to += came;
   }
-  ranks.start(to_, from_);
+  messages_ = ranks.prepare(sends, receives);
 }
 
 void Halo::take_in(std::size_t item_bytes) {

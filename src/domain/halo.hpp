@@ -51,8 +51,8 @@ class Halo {
     post(ranks, sizeof(T));
   }
   template <class T>
-  void finish(const Exec& exec, Communicator& ranks, Buffer<T>& items) {
-    ranks.finish();
+  void finish(const Exec& exec, Buffer<T>& items) {
+    messages_->finish();
     take_in(sizeof(T));
     for_each(exec, receive_.size(),
              UnpackItems<T>{std::as_const(receive_).view(), as_items<T>(in_), items.view()});
@@ -60,7 +60,7 @@ class Halo {
   template <class T>
   void refresh(const Exec& exec, Communicator& ranks, Buffer<T>& items) {
     start(exec, ranks, items);
-    finish(exec, ranks, items);
+    finish(exec, items);
   }
 
   Index copies() const { return receive_.size(); }  ///< of other ranks' elements held here
@@ -85,13 +85,17 @@ class Halo {
   }
   void make_room(Space space, std::size_t item_bytes);
   void post(Communicator& ranks, std::size_t item_bytes);
+  void prepare(Communicator& ranks, std::size_t item_bytes, std::byte* from, std::byte* to);
   void take_in(std::size_t item_bytes);
 
   std::vector<Peer> peers_;
   Buffer<Index> send_, receive_;  ///< local elements of each peer, ascending by global id
   Buffer<std::byte> out_, in_;    ///< their items, packed peer by peer, where the elements lie
   Message sent_, came_;           ///< the same on the host, if the elements are elsewhere
-  std::vector<Post> to_, from_;
+  /// Kept from one exchange to the next, as long as items are as large and lie there.
+  std::shared_ptr<RepeatedMessages> messages_;
+  std::size_t item_bytes_ = 0;
+  std::byte *from_ = nullptr, *to_ = nullptr;
 };
 
 }  // namespace breccia

@@ -128,16 +128,9 @@ class MpiRanks final : public Communicator {
   double waited() const override { return std::chrono::duration<double>(waited_).count(); }
   int number_on_this_machine() const { return number_here_; }
 
-  void start(std::span<const Post> to, std::span<const Post> from) override {
-    requests_.clear();
-    for (const Post& post : from) receive(post);
-    for (const Post& post : to) send(post);
-  }
-  void finish() override {
-    const Waiting waiting(*this);
-    must(MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE),
-         "MPI_Waitall");
-    requests_.clear();
+  std::unique_ptr<RepeatedMessages> prepare(const std::vector<Post>& to,
+                                            const std::vector<Post>& from) override {
+    return std::make_unique<Repeated>(*this, to, from);
   }
 
   std::vector<Message> exchange(std::vector<Message> messages) override {
@@ -149,16 +142,16 @@ class MpiRanks final : public Communicator {
          "MPI_Alltoall");
     waiting.reset();
     std::vector<Message> came(count);
-    requests_.clear();
+    std::vector<Post> to, from;
     for (std::size_t r = 0; r < count; ++r) {
       if (static_cast<int>(r) == rank_) continue;
       came[r].resize(static_cast<std::size_t>(coming[r]));
-      receive({static_cast<int>(r), came[r].data(), came[r].size()});
+      from.push_back({static_cast<int>(r), came[r].data(), came[r].size()});
+      to.push_back({static_cast<int>(r), messages[r].data(), messages[r].size()});
     }
-    for (std::size_t r = 0; r < count; ++r)
-      if (static_cast<int>(r) != rank_)
-        send({static_cast<int>(r), messages[r].data(), messages[r].size()});
-    finish();
+    Repeated once(*this, to, from);
+    once.start();
+    once.finish();
     came[static_cast<std::size_t>(rank_)] = std::move(messages[static_cast<std::size_t>(rank_)]);
     return came;
   }
@@ -278,33 +271,47 @@ class MpiRanks final : public Communicator {
     abort(rank_lost);
   }
 
-  /// MPI counts in int: longer messages go in parts.
-  static constexpr std::size_t longest = std::size_t{1} << 30;
+  /// Requests that MPI keeps ready.
+  class Repeated final : public RepeatedMessages {
+   public:
+    Repeated(MpiRanks& ranks, const std::vector<Post>& to, const std::vector<Post>& from)
+        : ranks_(ranks) {
+      for (const Post& post : from) each_part(post, "MPI_Recv_init", MPI_Recv_init);
+      for (const Post& post : to) each_part(post, "MPI_Send_init", MPI_Send_init);
+    }
+    ~Repeated() override {
+      for (MPI_Request& request : requests_) MPI_Request_free(&request);
+    }
+    void start() override {
+      // One by one: parts of a message must not overtake each other.
+      for (MPI_Request& request : requests_) must(MPI_Start(&request), "MPI_Start");
+    }
+    void finish() override {
+      const Waiting waiting(ranks_);
+      must(MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE),
+           "MPI_Waitall");
+    }
 
-  void receive(const Post& post) {
-    each_part(post, [&](void* data, int bytes) {
-      must(MPI_Irecv(data, bytes, MPI_BYTE, post.rank, tag, all_, &requests_.emplace_back()),
-           "MPI_Irecv");
-    });
-  }
-  void send(const Post& post) {
-    each_part(post, [&](void* data, int bytes) {
-      must(MPI_Isend(data, bytes, MPI_BYTE, post.rank, tag, all_, &requests_.emplace_back()),
-           "MPI_Isend");
-    });
-  }
-  /// Messages between two ranks do not overtake each other, so parts arrive in their order.
-  template <class Visit>
-  static void each_part(const Post& post, const Visit& visit) {
-    for (std::size_t done = 0; done < post.bytes; done += longest)
-      visit(static_cast<std::byte*>(post.data) + done,
-            static_cast<int>(std::min(longest, post.bytes - done)));
-  }
+   private:
+    /// MPI counts in int: longer messages go in parts.
+    static constexpr std::size_t longest = std::size_t{1} << 30;
+
+    template <class Prepare>
+    void each_part(const Post& post, const char* call, const Prepare& prepare) {
+      for (std::size_t done = 0; done < post.bytes; done += longest)
+        must(prepare(static_cast<std::byte*>(post.data) + done,
+                     static_cast<int>(std::min(longest, post.bytes - done)), MPI_BYTE, post.rank,
+                     tag, ranks_.all_, &requests_.emplace_back()),
+             call);
+    }
+
+    MpiRanks& ranks_;
+    std::vector<MPI_Request> requests_;
+  };
 
   MPI_Comm all_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1, here_ = 1, number_here_ = 0;
   std::chrono::steady_clock::duration waited_{};
-  std::vector<MPI_Request> requests_;
   MPI_Request vote_ = MPI_REQUEST_NULL;
   std::uint64_t asked_bits_ = 0, told_bits_ = 0;
   std::optional<SharedSigns> signs_;

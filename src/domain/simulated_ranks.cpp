@@ -82,23 +82,9 @@ class SimulatedRank final : public Communicator {
   int rank() const override { return rank_; }
   int size() const override { return size_; }
 
-  void start(std::span<const Post> to, std::span<const Post> from) override {
-    ++operation_;
-    for (const Post& post : to) {
-      const auto* bytes = static_cast<const std::byte*>(post.data);
-      carrier_.post({rank_, post.rank, operation_}, Message(bytes, bytes + post.bytes));
-    }
-    awaited_.push_back({operation_, {from.begin(), from.end()}});
-  }
-  void finish() override {
-    const Awaited last = std::move(awaited_.back());
-    awaited_.pop_back();
-    for (const Post& post : last.from) {
-      const Message message = carrier_.wait_for({post.rank, rank_, last.operation});
-      if (message.size() != post.bytes)
-        throw std::logic_error("a message has another size than its receiver expects");
-      if (post.bytes > 0) std::memcpy(post.data, message.data(), post.bytes);
-    }
+  std::unique_ptr<RepeatedMessages> prepare(const std::vector<Post>& to,
+                                            const std::vector<Post>& from) override {
+    return std::make_unique<Repeated>(*this, to, from);
   }
   std::vector<Message> exchange(std::vector<Message> messages) override {
     ++operation_;
@@ -111,16 +97,36 @@ class SimulatedRank final : public Communicator {
   void abort(int) override { throw std::runtime_error("a simulated rank ends all"); }
 
  private:
-  /// What a start expects.
-  struct Awaited {
-    std::int64_t operation;
-    std::vector<Post> from;
+  class Repeated final : public RepeatedMessages {
+   public:
+    Repeated(SimulatedRank& rank, const std::vector<Post>& to, const std::vector<Post>& from)
+        : self_(rank), to_(to), from_(from) {}
+    void start() override {
+      operation_ = ++self_.operation_;
+      for (const Post& post : to_) {
+        const auto* bytes = static_cast<const std::byte*>(post.data);
+        self_.carrier_.post({self_.rank_, post.rank, operation_},
+                            Message(bytes, bytes + post.bytes));
+      }
+    }
+    void finish() override {
+      for (const Post& post : from_) {
+        const Message message = self_.carrier_.wait_for({post.rank, self_.rank_, operation_});
+        if (message.size() != post.bytes)
+          throw std::logic_error("a message has another size than its receiver expects");
+        if (post.bytes > 0) std::memcpy(post.data, message.data(), post.bytes);
+      }
+    }
+
+   private:
+    SimulatedRank& self_;
+    std::vector<Post> to_, from_;
+    std::int64_t operation_ = 0;  ///< the last that was started
   };
 
   Carrier& carrier_;
   int rank_, size_;
   std::int64_t operation_ = 0;
-  std::vector<Awaited> awaited_;  ///< numbers are combined between a start and its finish
 };
 
 }  // namespace

@@ -134,6 +134,61 @@ TEST(Deal, no_element_is_lost_or_doubled_over_a_hundred_thousand_migrations) {
   });
 }
 
+/// Counts what is prepared.
+class Counting final : public Communicator {
+ public:
+  explicit Counting(Communicator& ranks) : ranks_(ranks) {}
+  int rank() const override { return ranks_.rank(); }
+  int size() const override { return ranks_.size(); }
+  std::unique_ptr<RepeatedMessages> prepare(const std::vector<Post>& to,
+                                            const std::vector<Post>& from) override {
+    ++prepared;
+    return ranks_.prepare(to, from);
+  }
+  std::vector<Message> exchange(std::vector<Message> messages) override {
+    return ranks_.exchange(std::move(messages));
+  }
+  void abort(int exit_code) override { ranks_.abort(exit_code); }
+
+  int prepared = 0;
+
+ private:
+  Communicator& ranks_;
+};
+
+TEST(Halo, messages_are_prepared_once_for_each_place_that_they_come_from) {
+  simulate_ranks(2, 6, [](Communicator& simulated) {
+    Counting ranks(simulated);
+    // Each of two ranks has one element of its own and a copy of the other's.
+    const Index own = ranks.rank(), other = 1 - own;
+    Buffer<GlobalId> ids(Space::host, 2);
+    ids.data()[1] = 1;
+    const std::vector<Copy> copies{{other, static_cast<int>(other)}};
+    Buffer<double> numbers(Space::host, 2);
+    double told = 0.0;
+    const auto follow = [&](Halo& halo) {
+      numbers.data()[own] = ++told + 0.5 * own;
+      halo.refresh(Exec{}, ranks, numbers);
+      return numbers.data()[other] == told + 0.5 * other;
+    };
+    Halo halo;
+    halo.build(ranks, ids, copies);
+    for (int round = 0; round < 5; ++round) EXPECT_TRUE(follow(halo));
+    EXPECT_EQ(ranks.prepared, 1);
+    Halo copy = halo;
+    EXPECT_TRUE(follow(copy));
+    EXPECT_TRUE(follow(halo));
+    EXPECT_EQ(ranks.prepared, 2);
+    Buffer<Vec3> larger(Space::host, 2);
+    larger.data()[own].z = own + 1.0;
+    halo.refresh(Exec{}, ranks, larger);
+    EXPECT_EQ(larger.data()[other].z, other + 1.0);
+    halo.build(ranks, ids, {});  // nothing is to follow any more
+    EXPECT_FALSE(follow(halo));
+    EXPECT_EQ(ranks.prepared, 4);
+  });
+}
+
 TEST(Halo, copies_become_what_their_owners_have) {
   simulate_ranks(3, 5, [](Communicator& ranks) {
     // Rank r owns 10 r to 10 r + 9 and holds copies of two of each other rank's.
