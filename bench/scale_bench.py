@@ -2,15 +2,19 @@
 """Weak and strong scaling over MPI ranks: a table of times, efficiency, waiting, copies and memory.
 
 Usage: scale_bench.py weak_slabs|weak_plate|strong_slabs|strong_plate... [--ranks 1,2,4,8,16] [--device cuda] [--threads N]
-                      [--elements N] [--window-steps N] [--repeat N] [--json FILE] [--breccia PROGRAM] [--mpirun PROGRAM]
+                      [--elements N] [--window-steps N] [--repeat N] [--json FILE] [--breccia PROGRAM] [--mpirun PROGRAM] [--apart]
 Each line is `mpirun -n R breccia bench NAME`. A step is the median of seven windows (least to most); with --repeat the rank counts
 take turns, and the run of the least median counts. Efficiency is t(1)/t(R) for weak, t(1)/(R t(R)) for strong benchmarks; the first
 rank count of the list stands for one. Waited and memory are of the idlest, on average, and of the busiest rank. A strong benchmark
 must end with the same hash on any number of ranks, and any benchmark with the same one when repeated.
+With --apart R programs of one rank run side by side and know nothing of each other: their efficiency is what processors, caches and
+memory of the machine leave of R times one, and no job of R ranks can be better than that.
 """
 import argparse
+import concurrent.futures
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -33,6 +37,31 @@ def measure(options, name, ranks, file):
         sys.exit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
     with open(file) as text:
         return json.load(text)["benchmarks"][name]
+
+
+def apart(options, name, count, folder):
+    """Median steps of programs that run side by side, ascending.  [us]"""
+    files = [os.path.join(folder, f"apart{i}.json") for i in range(count)]
+    with concurrent.futures.ThreadPoolExecutor(count) as programs:
+        results = programs.map(lambda file: measure(options, name, 1, file), files)
+        return sorted(result["steps"]["step"]["value"] for result in results)
+
+
+def apart_table(options, name, folder, kept):
+    print(f"\n{name}, programs side by side, {os.cpu_count()} processors")
+    print("programs   us a step: least   median     most  efficiency")
+    counts = [int(text) for text in options.ranks.split(",")]
+    best = {}
+    for _ in range(options.repeat):
+        for count in counts:
+            steps = apart(options, name, count, folder)
+            kept.append({"benchmark": name, "programs": count, "steps": steps})
+            if count not in best or statistics.median(steps) < statistics.median(best[count]):
+                best[count] = steps
+    for count in counts:
+        middle = statistics.median(best[count])
+        print(f"{count:8d} {best[count][0]:18.1f} {middle:8.1f} {best[count][-1]:8.1f}"
+              f" {statistics.median(best[counts[0]]) / middle:11.0%}", flush=True)
 
 
 def value(entry, which="value"):
@@ -94,11 +123,12 @@ def main():
     parser.add_argument("--json")
     parser.add_argument("--breccia", default="build/release/breccia")
     parser.add_argument("--mpirun", default="mpirun")
+    parser.add_argument("--apart", action="store_true")
     options = parser.parse_args()
     kept = []
     with tempfile.TemporaryDirectory() as folder:
         for name in options.names:
-            table(options, name, folder, kept)
+            (apart_table if options.apart else table)(options, name, folder, kept)
     if options.json:
         with open(options.json, "w") as file:
             json.dump(kept, file, indent=1)

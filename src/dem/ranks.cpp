@@ -283,6 +283,14 @@ void migrate(World& w) {
   share_if_needed(w.domain, spheres);
 }
 
+void rebalance(World& w) {
+  if (!is_uneven(w.domain)) return;
+  const StageTime timed(w.exec, "migration");
+  Spheres spheres(w, w.exec.space);
+  spheres.come_to_host();
+  share_anew(w.domain, spheres, false);
+}
+
 void collect(World& part, World& whole) {
   World copy(Exec{});
   copy.elements = host_copy(part.elements);

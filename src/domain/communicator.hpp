@@ -80,6 +80,9 @@ class Communicator {
   /// How long this rank has waited for others so far, where that is measured.  [s]
   virtual double waited() const { return 0.0; }
 
+  /// How long it has worked so far without waiting for others, where that is measured.  [s]
+  virtual double worked() const { return 0.0; }
+
   /// How long a rank may be silent before all end with exit code 8; 0: for ever.  [s]
   virtual void set_patience(double /*seconds*/) {}
 

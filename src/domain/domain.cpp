@@ -8,10 +8,10 @@
 namespace breccia {
 
 DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own, double waited) {
-  std::vector<std::int64_t> sums{own.moved, own.copies, own.owned, own.load,
+  std::vector<std::int64_t> sums{own.moved, own.copies, own.owned, own.weighed,
                                  std::llround(1e9 * waited)};
   ranks.add_up(sums);
-  const double largest = -ranks.least(-static_cast<double>(own.load));
+  const double largest = -ranks.least(-static_cast<double>(own.weighed));
   DomainFacts facts{ranks.size(), own.migrations, own.cuts, sums[0]};
   facts.waited_least = ranks.least(waited);
   facts.waited_most = -ranks.least(-waited);

@@ -7,6 +7,7 @@
 
 #include "core/case_config.hpp"
 #include "domain/halo.hpp"
+#include "domain/pace.hpp"
 #include "domain/partition.hpp"
 #include "domain/sharing_sets.hpp"
 
@@ -20,13 +21,14 @@ struct DomainCounts {
   std::int64_t copies = 0;      ///< elements of others that it holds now
   std::int64_t owned = 0;       ///< elements of its own, now
   std::int64_t load = 0;        ///< when they were shared out last  [-]
+  std::int64_t weighed = 0;     ///< the same by the rank's pace  [-]
 };
 /// The same of all ranks together.
 struct DomainFacts {
   int ranks = 1;
   std::int64_t migrations = 0, cuts = 0, moved = 0;
   double copies = 0.0;     ///< over all elements  [-]
-  double imbalance = 0.0;  ///< largest load over the mean, less one  [-]
+  double imbalance = 0.0;  ///< largest load, by paces, over the mean, less one  [-]
   double waited_least = 0.0, waited_mean = 0.0, waited_most = 0.0;  ///< of a rank, for others  [s]
 };
 /// @param waited  by this rank for others  [s]
@@ -71,6 +73,7 @@ struct Domain {
   /// The same in two parts: those that copies follow in every step, and all others.
   std::vector<ElementRun> awaited_runs, other_runs;
   DomainCounts counts;
+  Pace pace;
 
   bool alone() const { return ranks == nullptr; }
   bool owns(Index element) const { return alone() || owned.data()[element] != 0; }

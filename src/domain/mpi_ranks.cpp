@@ -126,6 +126,10 @@ class MpiRanks final : public Communicator {
   int on_this_machine() const { return here_; }
   void set_patience(double seconds) override { watchdog_->set_patience(seconds); }
   double waited() const override { return std::chrono::duration<double>(waited_).count(); }
+  double worked() const override {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_ - waited_)
+        .count();
+  }
   int number_on_this_machine() const { return number_here_; }
 
   std::unique_ptr<RepeatedMessages> prepare(const std::vector<Post>& to,
@@ -311,6 +315,7 @@ class MpiRanks final : public Communicator {
 
   MPI_Comm all_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1, here_ = 1, number_here_ = 0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::duration waited_{};
   MPI_Request vote_ = MPI_REQUEST_NULL;
   std::uint64_t asked_bits_ = 0, told_bits_ = 0;

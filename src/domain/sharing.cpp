@@ -1,6 +1,7 @@
 #include "domain/sharing.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 namespace breccia {
@@ -111,9 +112,12 @@ void build_sharing_sets(Domain& d, const Shareable& elements, const std::vector<
 }  // namespace
 
 void share_anew(Domain& d, Shareable& elements, bool first) {
+  const auto begin = std::chrono::steady_clock::now();
   d.partition.move(d.drifted);
   d.drifted = {};
-  const std::vector<Load> loads = elements.loads();
+  if (!first && d.config.balance) d.pace.measure(*d.ranks, d.counts.load);
+  std::vector<Load> loads = elements.loads();
+  for (Load& load : loads) load.weight = d.pace.weighed(load.weight);
   if (first || (d.config.balance && imbalance(*d.ranks, sum_of(loads)) > d.config.imbalance)) {
     d.partition.cut(*d.ranks, loads);
     ++d.counts.cuts;
@@ -156,8 +160,11 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
   std::vector<std::int64_t> all{d.counts.load};
   d.ranks->add_up(all);
   d.mean_load = all[0] / d.ranks->size();
+  d.counts.weighed = d.pace.weighed(d.counts.load);
   ++d.counts.migrations;
   elements.settle_in();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  d.pace.begin_again(*d.ranks, first ? 0.0 : took.count());
 }
 
 void share_if_needed(Domain& d, Shareable& elements) {
@@ -166,6 +173,10 @@ void share_if_needed(Domain& d, Shareable& elements) {
   if (!d.any(beyond)) return;
   elements.come_to_host();
   share_anew(d, elements, false);
+}
+
+bool is_uneven(const Domain& d) {
+  return !d.alone() && d.config.balance && d.pace.spent(*d.ranks).is_uneven(d.config.imbalance);
 }
 
 }  // namespace breccia

@@ -53,6 +53,10 @@ void share_anew(Domain& domain, Shareable& elements, bool first);
 /// Does so if on some rank an element has left its buffer or become too fast.
 void share_if_needed(Domain& domain, Shareable& elements);
 
+/// Whether ranks have waited for the slowest one for longer than it takes to share elements out
+/// anew. Every rank calls it.
+bool is_uneven(const Domain& domain);
+
 /// The ranks that own the elements by the borders of now.
 std::vector<int> owners(const Partition& partition, const Shareable& elements);
 

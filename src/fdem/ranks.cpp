@@ -439,6 +439,16 @@ void migrate(World& w) {
   share_if_needed(w.domain, mesh);
 }
 
+void rebalance(World& w) {
+  if (!is_uneven(w.domain)) return;
+  const StageTime timed(w.exec, "migration");
+  const Vec2 drift = w.reach.drift.velocity;
+  w.domain.drift({drift.x, drift.y, 0.0}, w.time);
+  Mesh mesh(w, w.exec.space);
+  mesh.come_to_host();
+  share_anew(w.domain, mesh, false);
+}
+
 void collect(World& part, World& whole) {
   World copy = part;
   move_to(copy, Space::host);

@@ -27,6 +27,9 @@ World share_parts(World part, const std::vector<std::uint8_t>& own, Communicator
 /// they own (Lukas 2014, 3.5); first moves the borders if loads have become uneven (section 4).
 /// Only before a search, which finds the couples of new copies.
 void migrate(World& w);
+/// Between two steps: elements are shared out anew if some ranks take longer than others, so that
+/// these take less. Pairs go with their elements; the next search comes when it would have come.
+void rebalance(World& w);
 
 /// After the triangles have moved: copies that own ones feel follow their owners.
 /// Meanwhile ranks vote on a search.

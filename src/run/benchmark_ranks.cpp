@@ -7,10 +7,12 @@
 #include <map>
 
 #include "dem/observe.hpp"
+#include "dem/ranks.hpp"
 #include "exec/device.hpp"
 #include "exec/error.hpp"
 #include "exec/memory.hpp"
 #include "fdem/observe.hpp"
+#include "fdem/ranks.hpp"
 #include "run/benchmark_tiles.hpp"
 #include "run/machine.hpp"
 #include "run/measurements.hpp"
@@ -52,8 +54,11 @@ Index size_of(const fdem::World& w) {
 /// Ends with all work of a device done.
 template <class World>
 void take_steps(World& w, int steps) {
+  if (!w.domain.alone()) w.domain.pace.resume(*w.domain.ranks);
   StopAt stop;
   for (stop.step = w.step + steps; w.step < stop.step;) advance(w, stop);
+  if (!w.domain.alone()) w.domain.pace.pause(*w.domain.ranks);
+  rebalance(w);
   if (w.exec.space == Space::cuda) wait_for_device();
 }
 

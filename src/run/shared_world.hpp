@@ -18,7 +18,7 @@
 
 namespace breccia {
 
-/// @tparam World  with advance, share_out and collect beside it
+/// @tparam World  with advance, rebalance, share_out and collect beside it
 template <class World>
 class SharedWorld {
  public:
@@ -159,6 +159,7 @@ class SharedWorld {
   Advanced advance_part(const StopAt& stop) {
     World& w = *part_;
     const double waited_before = ranks_->waited();
+    w.domain.pace.resume(*ranks_);
     Advanced taken;
     do {
       const Advanced more = advance(w, stop);
@@ -166,6 +167,8 @@ class SharedWorld {
       taken.dt_max = std::max(taken.dt_max, more.dt_max);
       taken.steps += more.steps;
     } while (w.step < stop.step && w.time < stop.time);
+    w.domain.pace.pause(*ranks_);
+    rebalance(w);
     waited_ += ranks_->waited() - waited_before;
     return taken;
   }

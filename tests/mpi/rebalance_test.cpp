@@ -1,0 +1,79 @@
+// Ranks that take longer get less, between two searches, and the bits stay.
+
+#include <gtest/gtest.h>
+
+#include "dem/ranks.hpp"
+#include "fdem/ranks.hpp"
+#include "mpi/on_ranks.hpp"
+#include "mpi/timed_rank.hpp"
+
+namespace breccia {
+namespace {
+
+using namespace mpi_testing;
+
+/// As on_ranks, on ranks of which one after the other is slow; their balance is looked after every
+/// few steps.
+template <class AScene>
+Shared on_uneven_ranks(int count, const AScene& scene, int steps, const DomainConfig& config = {},
+                       Space space = Space::host) {
+  Shared shared;
+  simulate_ranks(count, static_cast<std::uint64_t>(count), [&](Communicator& simulated) {
+    TimedRank ranks(simulated);
+    auto whole = scene.world(1);
+    auto part = share_out(whole, ranks, config, space);
+    for (int i = 0; i < steps; ++i) {
+      part.domain.pace.resume(ranks);
+      step(part);
+      ranks.work((i / 30) % count == ranks.rank() ? 30.0 : 10.0);
+      part.domain.pace.pause(ranks);
+      if (i % 11 == 10) rebalance(part);
+    }
+    collect(part, whole);
+    if (ranks.rank() == 0) shared = {outcome_of(whole), part.domain.counts};
+  });
+  return shared;
+}
+
+TEST(Rebalance, leaves_the_same_state_of_a_slab) {
+  const Slab piece = slab_piece();
+  const Outcome expected = alone(piece, 300);
+  EXPECT_GT(expected.cracks, 50U);
+  for (const int count : {2, 3, 8, 16}) {
+    const Shared uneven = on_uneven_ranks(count, piece, 300);
+    EXPECT_EQ(uneven.outcome, expected) << count << " ranks";
+    EXPECT_GT(uneven.counts.cuts, 10) << count << " ranks";
+  }
+  EXPECT_EQ(on_uneven_ranks(3, piece, 300, {}, Space::shadow).outcome, expected);
+}
+
+TEST(Rebalance, leaves_the_same_state_of_joined_triangles) {
+  for (const char* joints : {"intrinsic", "extrinsic"}) {
+    const Scene scene = impact(joints);
+    const Outcome expected = alone(scene, 300);
+    for (const int count : {2, 3, 8}) {
+      const Shared uneven = on_uneven_ranks(count, scene, 300);
+      EXPECT_EQ(uneven.outcome, expected) << joints << ", " << count << " ranks";
+      EXPECT_GT(uneven.counts.cuts, 10) << joints << ", " << count << " ranks";
+    }
+  }
+}
+
+TEST(Rebalance, leaves_the_same_state_of_bodies_that_fly) {
+  const Outcome expected = alone(box(), 700);
+  for (const int count : {3, 8}) {
+    const Shared uneven = on_uneven_ranks(count, box(), 700);
+    EXPECT_EQ(uneven.outcome, expected) << count << " ranks";
+    EXPECT_GT(uneven.counts.moved, 100) << count << " ranks";
+  }
+}
+
+TEST(Rebalance, is_left_out_where_borders_are_to_stay) {
+  DomainConfig config;
+  config.balance = false;
+  const Shared still = on_uneven_ranks(3, slab_piece(), 100, config);
+  EXPECT_EQ(still.counts.cuts, 1);
+}
+
+}  // namespace
+}  // namespace breccia

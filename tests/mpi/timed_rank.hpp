@@ -1,0 +1,32 @@
+#pragma once
+// A simulated rank whose own work takes as long as the test says.
+
+#include <utility>
+
+#include "domain/communicator.hpp"
+
+namespace breccia::mpi_testing {
+
+class TimedRank final : public Communicator {
+ public:
+  explicit TimedRank(Communicator& ranks) : ranks_(ranks) {}
+  int rank() const override { return ranks_.rank(); }
+  int size() const override { return ranks_.size(); }
+  void start(std::span<const Post> to, std::span<const Post> from) override {
+    ranks_.start(to, from);
+  }
+  void finish() override { ranks_.finish(); }
+  std::vector<Message> exchange(std::vector<Message> messages) override {
+    return ranks_.exchange(std::move(messages));
+  }
+  void abort(int exit_code) override { ranks_.abort(exit_code); }
+  double worked() const override { return worked_; }
+
+  void work(double seconds) { worked_ += seconds; }
+
+ private:
+  Communicator& ranks_;
+  double worked_ = 0.0;
+};
+
+}  // namespace breccia::mpi_testing
