@@ -70,7 +70,7 @@ class Communicator {
   virtual Message from_first(Message message);
 
   /// Every rank gets every rank's message, by rank.
-  std::vector<Message> from_all(const Message& message);
+  virtual std::vector<Message> from_all(const Message& message);
 
   /// Whether all ranks are at the same point of the program: what happens on one happens on all.
   /// Not so while a rank does something that only it may fail at.

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <string>
 #include <thread>
@@ -213,6 +214,34 @@ class MpiRanks final : public Communicator {
     message.resize(static_cast<std::size_t>(bytes));
     must(MPI_Bcast(message.data(), static_cast<int>(bytes), MPI_BYTE, 0, all_), "MPI_Bcast");
     return message;
+  }
+  std::vector<Message> from_all(const Message& message) override {
+    const auto count = static_cast<std::size_t>(size_);
+    const auto own = static_cast<std::int64_t>(message.size());
+    std::vector<std::int64_t> bytes(count);
+    std::optional<Waiting> waiting(*this);
+    must(MPI_Allgather(&own, 1, MPI_INT64_T, bytes.data(), 1, MPI_INT64_T, all_), "MPI_Allgather");
+    std::vector<int> counts, begins;
+    std::int64_t total = 0;
+    for (const std::int64_t each : bytes) {
+      counts.push_back(static_cast<int>(each));
+      begins.push_back(static_cast<int>(total));
+      total += each;
+    }
+    if (total > std::numeric_limits<int>::max()) {  // MPI counts in int
+      waiting.reset();
+      return Communicator::from_all(message);
+    }
+    Message all(static_cast<std::size_t>(total));
+    must(MPI_Allgatherv(message.data(), counts[static_cast<std::size_t>(rank_)], MPI_BYTE,
+                        all.data(), counts.data(), begins.data(), MPI_BYTE, all_),
+         "MPI_Allgatherv");
+    std::vector<Message> came;
+    for (std::size_t r = 0; r < count; ++r) {
+      const auto* const begin = all.data() + begins[r];
+      came.emplace_back(begin, begin + counts[r]);
+    }
+    return came;
   }
   void abort(int exit_code) override { MPI_Abort(MPI_COMM_WORLD, exit_code); }
 
