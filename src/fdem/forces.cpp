@@ -94,10 +94,56 @@ void move_others(World& w) {
   w.last_dt = w.next_dt;
 }
 
+namespace {
+
+/// Calls visit(begin, end) for runs of joints whose packs take(pack) chooses.
+template <class Take, class Visit>
+void each_run_of_packs(const World& w, const Take& take, const Visit& visit) {
+  constexpr Index grain = 64 * joint_pack;
+  for_each_run(w.exec, w.joints.size(), grain, [&](Index begin, Index end) {
+    const auto taken = [&](Index i) {
+      return take(w.joint_packs[static_cast<std::size_t>(i / joint_pack)]);
+    };
+    for (Index from = begin; from < end; from += joint_pack) {
+      if (!taken(from)) continue;
+      Index to = from;
+      while (to < end && taken(to)) to += joint_pack;
+      visit(from, std::min(to, end));
+      from = to;
+    }
+  });
+}
+
+}  // namespace
+
+void inner_joint_forces(World& w) {
+  if (w.joint_packs.empty()) return;
+  const StageTime timed(w.exec, "joint_forces");
+  with_number(w.exec.precision, [&w](auto number) {
+    const auto kernel = joint_kernel<decltype(number)>(w);
+    each_run_of_packs(
+        w, [](JointPack pack) { return pack == JointPack::inner; },
+        [&](Index begin, Index end) {
+          while (begin < end) {
+            const Index stop = run_whole(w.lanes, kernel, begin, end);
+            for (; begin < stop && (begin + joint_pack <= stop || stop == end); begin += joint_pack)
+              w.joint_packs[static_cast<std::size_t>(begin / joint_pack)] = JointPack::done;
+            if (stop < end) begin += joint_pack;  // the pack where it stopped: in its turn
+          }
+        });
+  });
+}
+
 void joint_forces(World& w) {
   const StageTime timed(w.exec, "joint_forces");
-  with_number(w.exec.precision,
-              [&](auto number) { run(w, w.joints.size(), joint_kernel<decltype(number)>(w)); });
+  with_number(w.exec.precision, [&w](auto number) {
+    const auto kernel = joint_kernel<decltype(number)>(w);
+    if (w.joint_packs.empty()) return run(w, w.joints.size(), kernel);
+    each_run_of_packs(
+        w, [](JointPack pack) { return pack != JointPack::done; },
+        [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
+  });
+  std::replace(w.joint_packs.begin(), w.joint_packs.end(), JointPack::done, JointPack::inner);
 }
 
 void couple_forces(World& w) {

@@ -3,6 +3,20 @@
 #include "exec/whole_packs.hpp"
 
 namespace breccia::fdem {
+namespace {
+
+template <class Number>
+Index while_whole([[maybe_unused]] Lanes lanes, const JointForces<Number>& joints, Index begin,
+                  Index end) {
+#if defined(BR_WIDE_LANES)
+  if (lanes == Lanes::eight) begin = PacksAvx512::run(joints, begin, end);
+  if (lanes == Lanes::four) begin = PacksAvx2::run(joints, begin, end);
+#endif
+  while (begin < end && joints.template whole_at<double>(begin)) ++begin;
+  return begin;
+}
+
+}  // namespace
 
 void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end) {
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
@@ -18,6 +32,13 @@ void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, In
 }
 void run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end) {
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+
+Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end) {
+  return while_whole(lanes, kernel, begin, end);
+}
+Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end) {
+  return while_whole(lanes, kernel, begin, end);
 }
 
 }  // namespace breccia::fdem

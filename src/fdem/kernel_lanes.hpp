@@ -13,6 +13,11 @@ void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, I
 void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
 
+/// Joints from `begin` on as long as they are whole and stay so. @returns where that ends; from
+/// there on nothing is written
+Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end);
+Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
+
 /// Builds of lanes/kernel_lanes.cpp for one width each. Return where they stop: at what does not
 /// fill a pack, or at a pack that is not as most are. Both are left to the caller, whose build runs
 /// on every processor.

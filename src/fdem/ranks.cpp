@@ -242,8 +242,15 @@ void settle_in(World& w, Space space) {
       if (d.tied[at(copy.element)] != 0) in_rings.push_back(copy);
     w.tied_forces.build(*d.ranks, w.triangles.id, in_rings, space);
   }
+  w.joint_packs.clear();
+  if (space == Space::host)
+    w.joint_packs.assign(at((joints + joint_pack - 1) / joint_pack), JointPack::inner);
   for (const Buffer<Index>* edges : {&w.joints.edge_a, &w.joints.edge_b})
-    for (const Index edge : edges->host()) d.tied[at(edge / 3)] = 1;
+    for (Index i = 0; i < joints; ++i) {
+      const Index t = edges->data()[i] / 3;
+      d.tied[at(t)] = 1;
+      if (space == Space::host && !d.owns(t)) w.joint_packs[at(i / joint_pack)] = JointPack::outer;
+    }
 }
 
 struct Fastest {

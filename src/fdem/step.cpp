@@ -7,7 +7,8 @@ void step(World& w) {
   move_awaited(w);
   start_copies(w);  // on other ranks: they follow while all others move,
   move_others(w);
-  ask_for_search(w);  // and all ranks vote
+  ask_for_search(w);      // all ranks vote,
+  inner_joint_forces(w);  // and what needs no copies goes ahead
 
   // 2. Contact detection, when travel has used the margin up or a joint has opened
   finish_copies(w);

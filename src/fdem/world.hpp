@@ -67,6 +67,14 @@ struct WholeMesh {
   bool preset = false;             ///< joints keep an opening at which they were joined
 };
 
+/// Joints side by side, and whether they can do without copies of other ranks' triangles.
+inline constexpr Index joint_pack = 8;
+enum class JointPack : std::uint8_t {
+  outer,  ///< some of them act on a copy
+  inner,  ///< all of them between two own triangles
+  done    ///< and evaluated in this step: they are whole and stay so
+};
+
 /// Numbers that stay as the case gave them.
 struct Parameters {
   TimeConfig time;
@@ -150,6 +158,8 @@ struct World {
   Domain domain;
   WholeMesh mesh;
   Halo tied_forces;  ///< copies whose corners move as one with own ones
+  /// Of each joint_pack joints; empty: all of them wait for copies. On the host.
+  std::vector<JointPack> joint_packs;
 
   // What follows from the state.
   Buffer<Index> node_vertex;           ///< `vertex`, where kernels can read it
@@ -204,9 +214,13 @@ void move_others(World& w);
 /// Asks all ranks whether couples must be searched for, and hears what they say.
 void ask_for_search(World& w);
 bool couples_are_due(World& w);
+/// While copies travel: forces of joints that act on none of them. Only of those that are whole and
+/// stay so, since a search reads how joints are damaged and may be due.
+void inner_joint_forces(World& w);
 MarginRule margin_rule(const World& w);
 void find_couples(World& w);
 void insert_joints(World& w);
+/// All others, or all.
 void joint_forces(World& w);
 void couple_forces(World& w);
 void triangle_forces(World& w);

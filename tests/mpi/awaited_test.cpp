@@ -43,5 +43,48 @@ TEST(Awaited, each_own_element_moves_once_and_those_with_copies_move_first) {
   EXPECT_GT(later, first);
 }
 
+/// Whether joint i lies between two own triangles.
+bool is_inner(const fdem::World& w, Index i) {
+  return w.domain.owns(w.joints.edge_a.data()[i] / 3) &&
+         w.domain.owns(w.joints.edge_b.data()[i] / 3);
+}
+
+TEST(Awaited, whole_joints_between_own_triangles_go_ahead_and_leave_nothing_but_their_forces) {
+  std::int64_t ahead = 0, all = 0;
+  simulate_ranks(4, 9, [&](Communicator& ranks) {
+    auto whole = impact("intrinsic").world();
+    auto part = share_out(whole, ranks, {});
+    for (int i = 0; i < 200; ++i) step(part);
+    const Index count = part.joints.size();
+    // Once more at the same positions: what is evaluated is what was.
+    auto again = part;
+    again.joints.force.in_double.clear();
+    again.joints.force.in_double.resize(count + 1);
+    const auto state = [](auto& joints) {
+      std::string bytes;
+      joints.each_field([&](const char*, const char*, auto& array) {
+        bytes.append(reinterpret_cast<const char*>(array.data()),
+                     static_cast<std::size_t>(array.size()) * sizeof *array.data());
+      });
+      return bytes;
+    };
+    inner_joint_forces(again);
+    EXPECT_EQ(state(again.joints), state(part.joints));
+    std::vector<std::int64_t> sums{0, count};
+    for (Index i = 0; i < count; ++i) {
+      const auto pack = again.joint_packs[static_cast<std::size_t>(i / fdem::joint_pack)];
+      EXPECT_TRUE(pack == fdem::JointPack::outer || is_inner(part, i));
+      if (pack != fdem::JointPack::done) continue;
+      ++sums[0];
+      EXPECT_EQ(part.joints.stage.data()[i], fdem::JointStage::whole);
+      EXPECT_EQ(0, std::memcmp(&part.joints.force.in_double.data()[i],
+                               &again.joints.force.in_double.data()[i], sizeof(fdem::JointForce)));
+    }
+    ranks.add_up(sums);
+    if (ranks.rank() == 0) ahead = sums[0], all = sums[1];
+  });
+  EXPECT_GT(4 * ahead, all) << ahead << " of " << all;
+}
+
 }  // namespace
 }  // namespace breccia
