@@ -12,10 +12,10 @@ class TimedRank final : public Communicator {
   explicit TimedRank(Communicator& ranks) : ranks_(ranks) {}
   int rank() const override { return ranks_.rank(); }
   int size() const override { return ranks_.size(); }
-  void start(std::span<const Post> to, std::span<const Post> from) override {
-    ranks_.start(to, from);
+  std::unique_ptr<RepeatedMessages> prepare(const std::vector<Post>& to,
+                                            const std::vector<Post>& from) override {
+    return ranks_.prepare(to, from);
   }
-  void finish() override { ranks_.finish(); }
   std::vector<Message> exchange(std::vector<Message> messages) override {
     return ranks_.exchange(std::move(messages));
   }
