@@ -35,7 +35,9 @@ class Journey {
     for (Index e = 0; e < w_.elements.size(); ++e) {
       if (!w_.domain.owns(e)) continue;
       const ElementState& s = w_.elements.state.data()[e];
-      w_.domain.each_sharer({s.position, s.radius}, [&](int r) { elements_.add(r, e); });
+      w_.domain.each_sharer({s.position, s.radius}, [&](int r) {
+        if (r != ties_.owner_of(e)) elements_.add(r, e);
+      });
     }
   }
 
@@ -57,19 +59,19 @@ class Journey {
 
     renumber_all(w_, [this](Index e) { return w_.elements.id.data()[e]; });
     Communicator& all = *w_.domain.ranks;
-    send_sorted(all, together(w_.elements, w_.travel), elements_, w_.elements.id);
+    deal(all, together(w_.elements, w_.travel), elements_, w_.elements.id);
     auto concrete_number = one_field(w_.numbers.concrete),
          steel_number = one_field(w_.numbers.steel),
          interface_number = one_field(w_.numbers.interface);
     Buffer<Action> on_steel, on_interface;
     split_actions(on_steel, on_interface);
     auto steel_actions = one_field(on_steel), interface_actions = one_field(on_interface);
-    send_sorted(all, together(w_.concrete, concrete_number), concrete, w_.numbers.concrete);
-    send_sorted(all, together(w_.steel, steel_number, steel_actions), steel, w_.numbers.steel);
-    send_sorted(all, together(w_.interface, interface_number, interface_actions), interface,
-                w_.numbers.interface);
-    send_sorted(all, w_.contacts, contacts, w_.contacts.pairs.key);
-    send_sorted(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
+    deal(all, together(w_.concrete, concrete_number), concrete, w_.numbers.concrete);
+    deal(all, together(w_.steel, steel_number, steel_actions), steel, w_.numbers.steel);
+    deal(all, together(w_.interface, interface_number, interface_actions), interface,
+         w_.numbers.interface);
+    deal(all, w_.contacts, contacts, w_.contacts.pairs.key);
+    deal(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
     join_actions(on_steel, on_interface);
     renumber_all(w_, [this](Index id) { return place_of(w_.elements.id, id); });
   }

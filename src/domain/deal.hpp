@@ -24,7 +24,7 @@ class Deliveries {
   /// Each item once for each rank, ascending.
   void settle() {
     for (std::vector<Index>& items : to_) {
-      std::sort(items.begin(), items.end());
+      if (!std::is_sorted(items.begin(), items.end())) std::sort(items.begin(), items.end());
       items.erase(std::unique(items.begin(), items.end()), items.end());
     }
   }
@@ -106,56 +106,75 @@ const std::byte* take(const std::byte* from, PlanesOf<Number>& planes, Index fir
   return from;
 }
 
-}  // namespace deal_detail
-
-/// Each rank's items go to the ranks that `to` lists; the state then holds what came, by rank.
-/// Its arrays lie on the host, and every one has an item for each index that `to` names.
+/// How many items, and all their fields. Of none nothing.
 template <class State>
-void deal(Communicator& ranks, State&& state, const Deliveries& to) {
-  std::vector<Message> messages(static_cast<std::size_t>(ranks.size()));
-  for (std::size_t r = 0; r < messages.size(); ++r) {
-    const auto count = static_cast<Index>(to.of(r).size());
-    messages[r].resize(sizeof count);
-    std::memcpy(messages[r].data(), &count, sizeof count);
-    if (count == 0) continue;
-    std::size_t bytes = sizeof count;
-    state.each_field([&](const char*, const char*, auto& array) {
-      bytes += to.of(r).size() * deal_detail::item_bytes(array);
-    });
-    messages[r].reserve(bytes);
-    state.each_field([&](const char*, const char*, auto& array) {
-      BR_ASSERT(array.space() == Space::host);
-      deal_detail::put(messages[r], array, to.of(r));
-    });
-  }
-  const std::vector<Message> came = ranks.exchange(std::move(messages));
+Message packed(State& state, const std::vector<Index>& items) {
+  if (items.empty()) return {};
+  const auto count = static_cast<Index>(items.size());
+  std::size_t bytes = sizeof count;
+  state.each_field(
+      [&](const char*, const char*, auto& array) { bytes += items.size() * item_bytes(array); });
+  Message message;
+  message.reserve(bytes);
+  message.resize(sizeof count);
+  std::memcpy(message.data(), &count, sizeof count);
+  state.each_field([&](const char*, const char*, auto& array) {
+    BR_ASSERT(array.space() == Space::host);
+    put(message, array, items);
+  });
+  return message;
+}
+
+/// Puts what came behind the items that were here.
+template <class State>
+void append(State& state, const std::vector<Message>& came, Index here) {
   std::vector<Index> counts;
-  Index total = 0;
+  Index total = here;
   for (const Message& message : came) {
     counts.push_back(0);
-    std::memcpy(&counts.back(), message.data(), sizeof(Index));
+    if (!message.empty()) std::memcpy(&counts.back(), message.data(), sizeof(Index));
     total += counts.back();
   }
   resize_fields(state, total);
-  Index first = 0;
+  Index first = here;
   for (std::size_t r = 0; r < came.size(); ++r) {
+    if (counts[r] == 0) continue;
     const std::byte* from = came[r].data() + sizeof(Index);
-    state.each_field([&](const char*, const char*, auto& array) {
-      from = deal_detail::take(from, array, first, counts[r]);
-    });
+    state.each_field(
+        [&](const char*, const char*, auto& array) { from = take(from, array, first, counts[r]); });
     first += counts[r];
   }
 }
 
-/// Puts the items of a state in ascending order of one of its arrays, whose numbers are unlike.
-template <class State, class T>
-void sort_by(State&& state, const Buffer<T>& keys) {
-  Buffer<Index> order(Space::host, keys.size());
-  std::iota(order.host().begin(), order.host().end(), 0);
-  const T* const key = keys.data();
-  if (std::is_sorted(key, key + keys.size())) return;
-  std::sort(order.host().begin(), order.host().end(),
-            [key](Index a, Index b) { return key[a] < key[b]; });
+}  // namespace deal_detail
+
+/// Each rank's items go to the ranks that `to` lists; the state then holds what stays and what
+/// came, ascending by `keys`, one of its arrays, whose numbers are unlike. What stays is not
+/// packed, and not sorted where it is in order. The arrays lie on the host, with an item for each
+/// key.
+template <class State, class Key>
+void deal(Communicator& ranks, State&& state, Deliveries& to, const Buffer<Key>& keys) {
+  to.settle();
+  const Index here = keys.size();
+  const auto self = static_cast<std::size_t>(ranks.rank());
+  std::vector<Message> messages(static_cast<std::size_t>(ranks.size()));
+  for (std::size_t r = 0; r < messages.size(); ++r)
+    if (r != self) messages[r] = deal_detail::packed(state, to.of(r));
+  deal_detail::append(state, ranks.exchange(std::move(messages)), here);
+
+  const std::vector<Index>& stay = to.of(self);
+  const Key* const key = keys.data();
+  if (static_cast<Index>(stay.size()) == keys.size() && std::is_sorted(key, key + keys.size()))
+    return;  // nothing left and nothing came
+  Buffer<Index> order(Space::host, static_cast<Index>(stay.size()) + keys.size() - here);
+  Index* const begin = order.data();
+  Index* const middle = std::copy(stay.begin(), stay.end(), begin);
+  Index* const end = begin + order.size();
+  std::iota(middle, end, here);
+  const auto before = [key](Index a, Index b) { return key[a] < key[b]; };
+  if (!std::is_sorted(begin, middle, before)) std::sort(begin, middle, before);
+  std::sort(middle, end, before);
+  std::inplace_merge(begin, middle, end, before);
   gather_fields(Exec{}, order, state);
 }
 

@@ -93,14 +93,6 @@ class Ties {
   Deliveries& elements_;
 };
 
-/// Sends items with all their fields and puts those that came in the order of `key`, one of them.
-template <class State, class Key>
-void send_sorted(Communicator& ranks, State&& state, Deliveries& to, const Buffer<Key>& key) {
-  to.settle();
-  deal(ranks, state, to);
-  sort_by(state, key);
-}
-
 /// A value of each rank, by rank.
 template <class T>
 std::vector<T> from_each(Communicator& ranks, const T& value) {

@@ -70,7 +70,9 @@ class Journey {
     for (Index t = 0; t < w_.triangles.size(); ++t) {
       if (!w_.domain.owns(t)) continue;
       const TriangleNodes& nodes = w_.triangles.nodes.data()[t];
-      w_.domain.each_sharer({centroid(nodes), radius(nodes)}, [&](int r) { triangles_.add(r, t); });
+      w_.domain.each_sharer({centroid(nodes), radius(nodes)}, [&](int r) {
+        if (r != ties_.owner_of(t)) triangles_.add(r, t);
+      });
     }
   }
 
@@ -89,9 +91,9 @@ class Journey {
     auto lie = one_field(lies_);
     auto external = one_field(t.external);
     if (w_.mesh.loaded.empty())
-      send_sorted(all, together(t, lie), triangles_, t.id);
+      deal(all, together(t, lie), triangles_, t.id);
     else
-      send_sorted(all, together(t, lie, external), triangles_, t.id);
+      deal(all, together(t, lie, external), triangles_, t.id);
 
     Joints& j = w_.joints;
     Buffer<Index>& number = w_.mesh.joint_number;
@@ -102,14 +104,14 @@ class Journey {
       auto force = one_field(forces);
       forces.resize(j.size());
       if (w_.mesh.preset)
-        send_sorted(all, together(j, numbers, force, preset), joints, number);
+        deal(all, together(j, numbers, force, preset), joints, number);
       else
-        send_sorted(all, together(j, numbers, force), joints, number);
+        deal(all, together(j, numbers, force), joints, number);
       forces.resize(j.size() + 1);  // the last one is zero
     });
 
-    send_sorted(all, w_.couples, couples, w_.couples.pairs.key);
-    send_sorted(all, w_.reach, reach, w_.reach.triangle);
+    deal(all, w_.couples, couples, w_.couples.pairs.key);
+    deal(all, w_.reach, reach, w_.reach.triangle);
     arrive();
   }
 
