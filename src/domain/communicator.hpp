@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "exec/space.hpp"
+
 namespace breccia {
 
 /// The bytes that one rank sends to another.
@@ -47,6 +49,9 @@ class Communicator {
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
+
+  /// Whether messages that are started may lie in that space.
+  virtual bool reaches(Space space) const { return space == Space::host; }
 
   /// Messages to and from other ranks, to be started as often as is wished. They are given up
   /// before their memory and before this object.

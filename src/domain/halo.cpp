@@ -1,5 +1,7 @@
 #include "domain/halo.hpp"
 
+#include "exec/device.hpp"
+
 namespace breccia {
 
 void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<Copy>& copies,
@@ -44,12 +46,17 @@ void Halo::make_room(Space space, std::size_t item_bytes) {
 
 void Halo::post(Communicator& ranks, std::size_t item_bytes) {
   std::byte *from = out_.data(), *to = in_.data();
-  if (out_.space() != Space::host) {
-    sent_.resize(static_cast<std::size_t>(send_.size()) * item_bytes);
-    came_.resize(static_cast<std::size_t>(receive_.size()) * item_bytes);
-    copy_bytes(sent_.data(), Space::host, out_.data(), out_.space(), sent_.size());
+  const Space space = out_.space();
+  staged_ = !ranks.reaches(space);
+  if (staged_) {
+    const std::size_t bytes = static_cast<std::size_t>(send_.size()) * item_bytes;
+    sent_.make_room(space, bytes);
+    came_.make_room(space, static_cast<std::size_t>(receive_.size()) * item_bytes);
+    copy_bytes(sent_.data(), Space::host, out_.data(), space, bytes);
     from = sent_.data();
     to = came_.data();
+  } else if (space == Space::cuda) {
+    wait_for_device();  // until items are packed, and those that came last are unpacked
   }
   // A copy of this halo has buffers elsewhere, and so messages of its own.
   if (!messages_ || item_bytes != item_bytes_ || from != from_ || to != to_)
@@ -74,7 +81,7 @@ void Halo::prepare(Communicator& ranks, std::size_t item_bytes, std::byte* from,
 }
 
 void Halo::take_in(std::size_t item_bytes) {
-  if (in_.space() != Space::host)
+  if (staged_)
     copy_bytes(in_.data(), in_.space(), came_.data(), Space::host,
                static_cast<std::size_t>(receive_.size()) * item_bytes);
 }

@@ -5,6 +5,7 @@
 
 #include "domain/deal.hpp"
 #include "exec/for_each.hpp"
+#include "exec/staging.hpp"
 
 namespace breccia {
 
@@ -91,7 +92,8 @@ class Halo {
   std::vector<Peer> peers_;
   Buffer<Index> send_, receive_;  ///< local elements of each peer, ascending by global id
   Buffer<std::byte> out_, in_;    ///< their items, packed peer by peer, where the elements lie
-  Message sent_, came_;           ///< the same on the host, if the elements are elsewhere
+  Staging sent_, came_;           ///< the same on the host, if messages do not reach there
+  bool staged_ = false;
   /// Kept from one exchange to the next, as long as items are as large and lie there.
   std::shared_ptr<RepeatedMessages> messages_;
   std::size_t item_bytes_ = 0;

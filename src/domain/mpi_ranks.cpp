@@ -4,6 +4,9 @@
 #define OMPI_SKIP_MPICXX 1  // the C++ interface that MPI has given up
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
+#if __has_include(<mpi-ext.h>)
+#include <mpi-ext.h>  // Open MPI's own calls
+#endif
 #endif
 
 #include <unistd.h>
@@ -35,6 +38,23 @@ void must(int code, const char* call) {
   int length = 0;
   MPI_Error_string(code, text, &length);
   throw DeviceError(std::string(call) + ": " + text);
+}
+
+/// Whether this MPI sends from a GPU's memory and receives there.
+bool reaches_gpus() {
+#if defined(MPIX_CUDA_AWARE_SUPPORT) && MPIX_CUDA_AWARE_SUPPORT
+  static const bool yes = MPIX_Query_cuda_support() == 1;
+  return yes;
+#elif defined(MPIX_GPU_SUPPORT_CUDA)
+  static const bool yes = [] {
+    int supported = 0;
+    return MPIX_GPU_query_support(MPIX_GPU_SUPPORT_CUDA, &supported) == MPI_SUCCESS &&
+           supported != 0;
+  }();
+  return yes;
+#else
+  return false;
+#endif
 }
 
 /// Memory that the ranks of one machine share: a sign of life of each, and what each votes for.
@@ -125,6 +145,9 @@ class MpiRanks final : public Communicator {
   int rank() const override { return rank_; }
   int size() const override { return size_; }
   int on_this_machine() const { return here_; }
+  bool reaches(Space space) const override {
+    return space == Space::host || (space == Space::cuda && reaches_gpus());
+  }
   void set_patience(double seconds) override { watchdog_->set_patience(seconds); }
   double waited() const override { return std::chrono::duration<double>(waited_).count(); }
   double worked() const override {

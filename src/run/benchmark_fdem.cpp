@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/state_hash.hpp"
 #include "exec/memory.hpp"
 #include "fdem/world.hpp"
 #include "prepare/build_fdem.hpp"
@@ -66,25 +67,57 @@ struct Spacing {
   double rows;  ///< from one row to the next, over what the gap asks  [-]
 };
 
-/// Moves each hexagon as a whole, from the built gap to the spacing's.
-void spread(fdem::Model& model, const Spacing& spacing) {
-  const double built = std::sqrt(3.0) * hexagon_side + built_gap;
-  const double x = (std::sqrt(3.0) * hexagon_side + spacing.gap) / built;
+/// The centre of the hexagon that each triangle is of: all six share it.
+std::vector<Index> centres(const fdem::Model& model) {
   std::vector<int> triangles(model.point.size());
   for (const auto& corners : model.triangle)
     for (const Index v : corners) ++triangles[static_cast<std::size_t>(v)];
-  std::vector<Vec2> moved = model.point;
-  for (const auto& corners : model.triangle) {
-    // All six triangles of a hexagon share its centre.
-    const auto centre = std::find_if(corners.begin(), corners.end(), [&](Index v) {
+  std::vector<Index> centre;
+  for (const auto& corners : model.triangle)
+    centre.push_back(*std::find_if(corners.begin(), corners.end(), [&](Index v) {
       return triangles[static_cast<std::size_t>(v)] == 6;
-    });
-    const Vec2 from = model.point[static_cast<std::size_t>(*centre)];
-    const Vec2 shift{(x - 1.0) * from.x, (x * spacing.rows - 1.0) * from.y};
-    for (const Index v : corners)
+    }));
+  return centre;
+}
+
+/// Moves each hexagon as a whole, by a function of its centre.
+template <class ShiftOf>
+void move_hexagons(fdem::Model& model, const ShiftOf& shift_of) {
+  const std::vector<Index> centre = centres(model);
+  std::vector<Vec2> moved = model.point;
+  for (std::size_t t = 0; t < model.triangle.size(); ++t) {
+    const Vec2 shift = shift_of(centre[t]);
+    for (const Index v : model.triangle[t])
       moved[static_cast<std::size_t>(v)] = model.point[static_cast<std::size_t>(v)] + shift;
   }
   model.point = moved;
+}
+
+/// From the built gap to the spacing's.
+void spread(fdem::Model& model, const Spacing& spacing) {
+  const double built = std::sqrt(3.0) * hexagon_side + built_gap;
+  const double x = (std::sqrt(3.0) * hexagon_side + spacing.gap) / built;
+  move_hexagons(model, [&](Index centre) {
+    const Vec2 from = model.point[static_cast<std::size_t>(centre)];
+    return Vec2{(x - 1.0) * from.x, (x * spacing.rows - 1.0) * from.y};
+  });
+}
+
+/// Hexagons change places, so that those beside each other in space lie anywhere in memory.
+void mingle(fdem::Model& model) {
+  std::vector<Index> from = centres(model);
+  std::sort(from.begin(), from.end());
+  from.erase(std::unique(from.begin(), from.end()), from.end());
+  std::vector<Index> to = from;
+  std::sort(to.begin(), to.end(), [](Index a, Index b) {
+    return mixed(static_cast<std::uint64_t>(a)) < mixed(static_cast<std::uint64_t>(b));
+  });
+  std::map<Index, Index> place;
+  for (std::size_t i = 0; i < from.size(); ++i) place[from[i]] = to[i];
+  move_hexagons(model, [&](Index centre) {
+    return model.point[static_cast<std::size_t>(place.at(centre))] -
+           model.point[static_cast<std::size_t>(centre)];
+  });
 }
 
 /// Couples that push each other now.
@@ -158,10 +191,11 @@ fdem::World plate_world(const Exec& exec, int count) {
   return fdem::make_world(config, model_of(config), exec);
 }
 
-fdem::World heap_world(const Exec& exec, int count) {
+fdem::World heap_world(const Exec& exec, int count, bool mingled) {
   const fdem::Config config = flying_hexagons(count);
   fdem::Model model = model_of(config);
   spread(model, {"near, gap 50 um", 5e-5, 1.0});
+  if (mingled) mingle(model);
   return fdem::make_world(config, model, exec);
 }
 
@@ -183,14 +217,18 @@ std::vector<Measurement> measure_largest_plate(const Exec& exec) {
 
 std::vector<Measurement> measure_heap(const Exec& exec) {
   std::vector<Measurement> result;
-  for (const int count : {32'400, 3'240'000}) {
-    if (count > 100'000 && exec.space != Space::cuda) continue;  // minutes
-    StageTimers timers;
-    Exec timed = exec;
-    timed.timers = &timers;
-    fdem::World w = heap_world(timed, count);
-    report_steps(w, timers, std::to_string(count) + " hexagons", 40, result);
-  }
+  for (const int count : {32'400, 324'000, 3'240'000})
+    for (const bool mingled : {false, true}) {
+      if (count > 100'000 && exec.space != Space::cuda) continue;  // minutes
+      if (count > 1'000'000 && mingled) continue;
+      StageTimers timers;
+      Exec timed = exec;
+      timed.timers = &timers;
+      fdem::World w = heap_world(timed, count, mingled);
+      const std::string part =
+          std::to_string(count) + (mingled ? " hexagons in any order" : " hexagons");
+      report_steps(w, timers, part, 40, result);
+    }
   return result;
 }
 

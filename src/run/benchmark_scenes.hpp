@@ -33,6 +33,7 @@ fdem::Config granite();
 fdem::World plate_world(const Exec& exec, int count);
 
 /// So many hexagons of six free triangles that fly together, 4.4 couples within reach a triangle.
-fdem::World heap_world(const Exec& exec, int count);
+/// @param mingled  hexagons beside each other lie anywhere in memory
+fdem::World heap_world(const Exec& exec, int count, bool mingled = false);
 
 }  // namespace breccia

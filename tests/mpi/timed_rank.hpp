@@ -1,5 +1,5 @@
 #pragma once
-// A simulated rank whose own work takes as long as the test says.
+// A simulated rank whose own work takes as long as the test says, and whose messages reach any memory.
 
 #include <utility>
 
@@ -20,6 +20,7 @@ class TimedRank final : public Communicator {
     return ranks_.exchange(std::move(messages));
   }
   void abort(int exit_code) override { ranks_.abort(exit_code); }
+  bool reaches(Space) const override { return true; }  // also what is out of the host's reach
   double worked() const override { return worked_; }
 
   void work(double seconds) { worked_ += seconds; }
