@@ -164,8 +164,6 @@ void deal(Communicator& ranks, State&& state, Deliveries& to, const Buffer<Key>&
 
   const std::vector<Index>& stay = to.of(self);
   const Key* const key = keys.data();
-  if (static_cast<Index>(stay.size()) == keys.size() && std::is_sorted(key, key + keys.size()))
-    return;  // nothing left and nothing came
   Buffer<Index> order(Space::host, static_cast<Index>(stay.size()) + keys.size() - here);
   Index* const begin = order.data();
   Index* const middle = std::copy(stay.begin(), stay.end(), begin);
@@ -175,7 +173,9 @@ void deal(Communicator& ranks, State&& state, Deliveries& to, const Buffer<Key>&
   if (!std::is_sorted(begin, middle, before)) std::sort(begin, middle, before);
   std::sort(middle, end, before);
   std::inplace_merge(begin, middle, end, before);
-  gather_fields(Exec{}, order, state);
+  bool in_place = order.size() == keys.size();
+  for (Index i = 0; in_place && i < order.size(); ++i) in_place = begin[i] == i;
+  if (!in_place) gather_fields(Exec{}, order, state);
 }
 
 /// The place of a number in an ascending array that holds it.
