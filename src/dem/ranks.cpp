@@ -152,8 +152,11 @@ class Spheres final : public Shareable {
   void come_to_host() override { move_to(w_, Space::host); }
 
   const Buffer<GlobalId>& ids() const override { return w_.elements.id; }
-  Vec3 centre(Index e) const override { return w_.elements.state.data()[e].position; }
-  double radius(Index e) const override { return w_.elements.state.data()[e].radius; }
+  void look() override {
+    if (w_.elements.state.space() != Space::host) copy_to(seen_, w_.elements.state);
+  }
+  Vec3 centre(Index e) const override { return states().data()[e].position; }
+  double radius(Index e) const override { return states().data()[e].radius; }
   void each_point(const std::function<void(const Vec3&)>& visit) const override {
     for (const ElementState& s : w_.elements.state.host()) visit(s.position);
   }
@@ -183,7 +186,6 @@ class Spheres final : public Shareable {
   bool has_left() const override {
     return fold(w_.exec, w_.elements.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
   }
-  bool has_left(Index e) const override { return has_left_kernel()(e) > 0.0; }
   double largest_margin() const override { return w_.parameters.largest_margin; }
   void send(const std::vector<int>& owner) override {
     Journey journey(w_, owner);
@@ -207,6 +209,9 @@ class Spheres final : public Shareable {
   }
 
  private:
+  const Buffer<ElementState>& states() const {
+    return w_.elements.state.space() == Space::host ? w_.elements.state : seen_;
+  }
   HasLeft has_left_kernel() const {
     return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
             std::as_const(w_.elements.state).view(), std::as_const(w_.domain.placed).view()};
@@ -214,6 +219,7 @@ class Spheres final : public Shareable {
 
   World& w_;
   Space space_;
+  Buffer<ElementState> seen_;  ///< on the host, while elements are elsewhere
 };
 
 void number(Buffer<Index>& numbers, Index count) {

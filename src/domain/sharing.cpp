@@ -34,6 +34,11 @@ bool strays(const Domain& d, const Shareable& elements, Index e) {
   const SharingSets& sets = d.sharing_sets;
   const Sphere& then = d.placed_around[static_cast<std::size_t>(e)];
   const Sphere now{elements.centre(e) - d.drifted, elements.radius(e)};
+  const Vec3 moved = now.centre - then.centre;
+  const double half = 0.5 * d.buffer;
+  if (dot(moved, moved) <= half * half && now.radius <= then.radius + half &&
+      sets.is_large(now.radius) == sets.is_large(then.radius))
+    return false;  // near where it was, whatever that is near to
   bool at_home = false, held = true;
   if (sets.is_large(then.radius)) {
     at_home = sets.is_within(now, then);
@@ -56,11 +61,11 @@ bool has_grown(const Domain& d, const Shareable& elements) {
   return static_cast<double>(sum_of(elements.loads())) > (1.0 + 2.0 * d.config.imbalance) * then;
 }
 
-bool some_stray(const Domain& d, const Shareable& elements) {
+bool some_stray(const Domain& d, Shareable& elements) {
   if (!elements.has_left()) return false;
-  if (elements.space() != Space::host) return true;  // not looked at one by one
+  elements.look();
   for (Index e = 0; e < elements.ids().size(); ++e)
-    if (d.owns(e) && elements.has_left(e) && strays(d, elements, e)) return true;
+    if (d.owns(e) && strays(d, elements, e)) return true;
   return false;
 }
 

@@ -15,12 +15,14 @@ class Shareable {
   virtual ~Shareable() = default;
 
   virtual const Buffer<GlobalId>& ids() const = 0;  ///< ascending
-  virtual Vec3 centre(Index element) const = 0;     ///< where it counts as being  [m]
-  virtual double radius(Index element) const = 0;   ///< how far it reaches from there  [m]
+  /// Brings where elements are to the host, for centre() and radius().
+  virtual void look() = 0;
+  virtual Vec3 centre(Index element) const = 0;    ///< where it counts as being  [m]
+  virtual double radius(Index element) const = 0;  ///< how far it reaches from there  [m]
   /// Where kernels see the elements.
   virtual Space space() const = 0;
-  /// Brings them to the host, where all but margin() and has_left() need them; settle_in() takes
-  /// them back.
+  /// Brings them to the host, where all but look(), margin() and has_left() need them; settle_in()
+  /// takes them back.
   virtual void come_to_host() = 0;
   /// The points whose travel the buffer bounds, one after the other; as many for each element.  [m]
   virtual void each_point(const std::function<void(const Vec3&)>& visit) const = 0;
@@ -30,8 +32,6 @@ class Shareable {
   virtual double margin() const = 0;
   /// Whether a point of an own element has left the buffer; nowhere (NaN) counts as left.
   virtual bool has_left() const = 0;
-  /// The same of one element. On the host.
-  virtual bool has_left(Index element) const = 0;
   virtual double largest_margin() const = 0;  ///< that any search gives  [m]
   /// Sends elements with all they own to their new owners; besides these, ranks whose rectangle is
   /// near enough get a copy.

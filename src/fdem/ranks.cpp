@@ -294,8 +294,11 @@ class Mesh final : public Shareable {
   void come_to_host() override { move_to(w_, Space::host); }
 
   const Buffer<GlobalId>& ids() const override { return w_.triangles.id; }
-  Vec3 centre(Index t) const override { return centroid(w_.triangles.nodes.data()[t]); }
-  double radius(Index t) const override { return fdem::radius(w_.triangles.nodes.data()[t]); }
+  void look() override {
+    if (w_.triangles.nodes.space() != Space::host) copy_to(seen_, w_.triangles.nodes);
+  }
+  Vec3 centre(Index t) const override { return centroid(nodes().data()[t]); }
+  double radius(Index t) const override { return fdem::radius(nodes().data()[t]); }
   void each_point(const std::function<void(const Vec3&)>& visit) const override {
     for (const TriangleNodes& nodes : w_.triangles.nodes.host())
       for (const NodeState& n : nodes.at) visit({n.position.x, n.position.y, 0.0});
@@ -325,7 +328,6 @@ class Mesh final : public Shareable {
   bool has_left() const override {
     return fold(w_.exec, w_.triangles.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
   }
-  bool has_left(Index e) const override { return has_left_kernel()(e) > 0.0; }
   double largest_margin() const override { return margin_rule(w_).largest; }
   void send(const std::vector<int>& owner) override {
     Journey journey(w_, owner);
@@ -340,6 +342,9 @@ class Mesh final : public Shareable {
   }
 
  private:
+  const Buffer<TriangleNodes>& nodes() const {
+    return w_.triangles.nodes.space() == Space::host ? w_.triangles.nodes : seen_;
+  }
   HasLeft has_left_kernel() const {
     return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(), w_.domain.drifted,
             std::as_const(w_.triangles.nodes).view(), std::as_const(w_.domain.placed).view()};
@@ -347,6 +352,7 @@ class Mesh final : public Shareable {
 
   World& w_;
   Space space_;
+  Buffer<TriangleNodes> seen_;  ///< on the host, while triangles are elsewhere
 };
 
 /// What all ranks know alike, as rank 0 has it.

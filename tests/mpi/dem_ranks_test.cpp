@@ -46,7 +46,7 @@ TEST(DemRanks, leave_the_same_state_on_any_number_of_threads_each) {
 
 // Stands for ranks that compute on GPUs: their arrays are out of the host's reach.
 TEST(DemRanks, leave_the_same_state_where_arrays_lie_in_another_space) {
-  const Shared shared = on_ranks(3, slab(), steps, {}, 1, Space::shadow);
+  const Shared shared = on_ranks(5, slab(), steps, {}, 1, Space::shadow);
   EXPECT_EQ(shared.outcome, slab_alone());
   EXPECT_GT(shared.counts.migrations, 1);
 }
