@@ -1,5 +1,6 @@
 #pragma once
-// A simulated rank whose own work takes as long as the test says, and whose messages reach any memory.
+// A simulated rank whose own work takes as long as the test says, and whose messages reach any
+// memory.
 
 #include <utility>
 
