@@ -1,8 +1,9 @@
 // The ledger of a DEM run: every joule, summed exactly.
 
+#include "dem/energy.hpp"
+
 #include <cmath>
 
-#include "dem/world.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia::dem {
@@ -12,6 +13,7 @@ namespace {
 /// for equal steps m/2 v_-.v_+, with which the scheme's own balance closes to rounding
 /// (docs/theory.md, ledger).
 struct KineticEnergy {
+  OwnedView owned;
   Kick kick;
   BR_HD double square(const Vec3& before, const Vec3& after) const {
     const double span = 0.5 * (kick.last_dt + kick.next_dt);
@@ -20,6 +22,7 @@ struct KineticEnergy {
     return dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a);
   }
   BR_HD ExactSum operator()(Index e) const {
+    if (!owned(e)) return ExactSum();
     const Kick::Result next = kick(e);
     const ElementState& s = kick.state[e];
     return ExactSum(0.5 * kick.mass[e] * square(s.velocity, next.velocity) +
@@ -28,15 +31,17 @@ struct KineticEnergy {
 };
 
 struct GravityPotential {
+  OwnedView owned;
   Vec3 gravity;
   View<const ElementState> state_of;
   View<const double> mass;
   BR_HD ExactSum operator()(Index e) const {
+    if (!owned(e)) return ExactSum();
     return ExactSum(mass[e] * dot(gravity, state_of[e].position));
   }
 };
 
-/// Energies of one interaction, in the ledger's columns.
+/// Energies of one interaction, in the ledger's columns; the owner of its end a books them.
 struct Shares {
   ExactSum elastic, fracture, plastic, friction, contact, work;
 };
@@ -52,6 +57,7 @@ BR_HD Shares operator+(Shares a, const Shares& b) {
 
 template <class Number>
 struct ConcreteShares {
+  OwnedView owned;
   ConcreteLink law;
   Index first;
   View<const ElementState> state_of;
@@ -64,12 +70,13 @@ struct ConcreteShares {
   BR_HD Shares operator()(Index k) const {
     constexpr double pi = 3.14159265358979323846;
     const Index i = first + k;
+    Shares s;
+    if (!owned(a[i])) return s;
     const double ra = state_of[a[i]].radius, rb = state_of[b[i]].radius, least = smaller(ra, rb);
     const LinkConstants<double> link{length[i], stiffness[i], pi * least * least, 0.5 * (ra + rb),
                                      ra + rb};
     const double stretch = norm(state_of[b[i]].position - state_of[a[i]].position) - length[i];
     const LinkState<double> state{opening[i], shear[i], moment[i]};
-    Shares s;
     s.elastic.add(law.stored(link, stretch, state));
     s.fracture.add(broke[i]);
     if (state.opening >= 0.0) s.fracture.add(law.tension(link).spent(state.opening));
@@ -85,17 +92,18 @@ Shares concrete_shares(const World& w) {
   const LinkHistory<Number>& kept = c.kept.as<Number>();
   Shares all;
   for (const auto& g : w.concrete_groups)
-    all = all +
-          fold(w.exec, g.end - g.begin, Shares{},
-               ConcreteShares<Number>{g.law, g.begin, w.elements.state.view(), c.a.view(),
-                                      c.b.view(), c.length.view(), c.stiffness.view(),
-                                      kept.opening.view(), kept.shear.view(), kept.moment.view(),
-                                      c.slid.view(), c.yielded.view(), c.broke.view()},
-               Sum{});
+    all = all + fold(w.exec, g.end - g.begin, Shares{},
+                     ConcreteShares<Number>{
+                         w.domain.owned_view(), g.law, g.begin, w.elements.state.view(), c.a.view(),
+                         c.b.view(), c.length.view(), c.stiffness.view(), kept.opening.view(),
+                         kept.shear.view(), kept.moment.view(), c.slid.view(), c.yielded.view(),
+                         c.broke.view()},
+                     Sum{});
   return all;
 }
 
 struct SteelShares {
+  OwnedView owned;
   SteelLink law;
   Index first;
   View<const ElementState> state_of;
@@ -106,9 +114,10 @@ struct SteelShares {
 
   BR_HD Shares operator()(Index k) const {
     const Index i = first + k;
+    Shares s;
+    if (!owned(a[i])) return s;
     const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
     const double distance = norm(d), r = smaller(state_of[a[i]].radius, state_of[b[i]].radius);
-    Shares s;
     s.elastic.add(law.stored(length[i], r, distance - length[i], state[i]));
     if (state[i].hardening >= 0.0)
       s.elastic.add(law.stored_moment(length[i], r, (1.0 / distance) * d, state[i]));
@@ -119,8 +128,10 @@ struct SteelShares {
 };
 
 struct InterfaceShares {
+  OwnedView owned;
   InterfaceLink law;
   Index first;
+  View<const Index> a;
   View<const double> stiffness, area;
   View<const InterfaceState> state;
   View<const double> slid, broke;
@@ -128,6 +139,7 @@ struct InterfaceShares {
   BR_HD Shares operator()(Index k) const {
     const Index i = first + k;
     Shares s;
+    if (!owned(a[i])) return s;
     s.elastic.add(law.stored(stiffness[i], area[i], state[i]));
     s.fracture.add(broke[i]);
     s.fracture.add(law.spent(stiffness[i], area[i], state[i]));
@@ -138,6 +150,7 @@ struct InterfaceShares {
 
 /// What contacts hold; `stored_normal` comes from the overlap of the last step.
 struct ContactShares {
+  OwnedView owned;
   ContactLaw law;
   View<const std::int16_t> material;
   View<const ElementState> state_of;
@@ -150,6 +163,7 @@ struct ContactShares {
 
   BR_HD Shares operator()(Index i) const {
     Shares s;
+    if (!owned(a[i])) return s;
     const double overlap = state[i].overlap;
     if (overlap > 0.0) {
       const double ra = state_of[a[i]].radius;
@@ -173,9 +187,11 @@ struct ContactShares {
 };
 
 struct ElementShares {
+  OwnedView owned;
   View<const double> damping_work, load_work;
   BR_HD Shares operator()(Index e) const {
     Shares s;
+    if (!owned(e)) return s;
     s.contact.add(damping_work[e]);  // booked under damping by the caller
     s.work.add(load_work[e]);
     return s;
@@ -186,33 +202,48 @@ Shares contact_shares(const World& w, const Contacts& c, const Buffer<ContactPai
                       Index materials, const Buffer<double>& wall_stiffness) {
   return fold(
       w.exec, c.size(), Shares{},
-      ContactShares{w.parameters.contact, w.elements.material.view(), w.elements.state.view(),
-                    pairs.view(), materials, wall_stiffness.view(), c.pairs.a.view(),
-                    c.pairs.b.view(), c.history.state.view(), c.history.slid.view(),
-                    c.history.damped.view(), c.history.driven.view()},
+      ContactShares{w.domain.owned_view(), w.parameters.contact, w.elements.material.view(),
+                    w.elements.state.view(), pairs.view(), materials, wall_stiffness.view(),
+                    c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
+                    c.history.slid.view(), c.history.damped.view(), c.history.driven.view()},
       Sum{});
 }
 
 }  // namespace
 
-EnergyBalance balance(World& w) {
+Held operator+(Held a, const Held& b) {
+  a.kinetic.add(b.kinetic);
+  a.elastic.add(b.elastic);
+  a.fracture.add(b.fracture);
+  a.plastic.add(b.plastic);
+  a.friction.add(b.friction);
+  a.damping.add(b.damping);
+  a.contact.add(b.contact);
+  a.work.add(b.work);
+  a.potential.add(b.potential);
+  return a;
+}
+
+Held held(const World& w) {
   const StageTime timed(w.exec, "ledger");
+  const OwnedView owned = w.domain.owned_view();
   const Elements& e = w.elements;
-  const ExactSum kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{kick(w)}, Sum{});
+  Held r;
+  r.kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{owned, kick(w)}, Sum{});
   Shares all;
   with_number(w.exec.precision,
               [&](auto number) { all = all + concrete_shares<decltype(number)>(w); });
   const SteelLinks& s = w.steel;
   for (const auto& g : w.steel_groups)
     all = all + fold(w.exec, g.end - g.begin, Shares{},
-                     SteelShares{g.law, g.begin, e.state.view(), s.a.view(), s.b.view(),
+                     SteelShares{owned, g.law, g.begin, e.state.view(), s.a.view(), s.b.view(),
                                  s.length.view(), s.state.view(), s.yielded.view(), s.broke.view()},
                      Sum{});
   const InterfaceLinks& b = w.interface;
   for (const auto& g : w.interface_groups)
     all = all + fold(w.exec, g.end - g.begin, Shares{},
-                     InterfaceShares{g.law, g.begin, b.stiffness.view(), b.area.view(),
-                                     b.state.view(), b.slid.view(), b.broke.view()},
+                     InterfaceShares{owned, g.law, g.begin, b.a.view(), b.stiffness.view(),
+                                     b.area.view(), b.state.view(), b.slid.view(), b.broke.view()},
                      Sum{});
   std::vector<double> factors;
   for (const Wall& wall : w.walls) factors.push_back(wall.stiffness);
@@ -221,31 +252,48 @@ EnergyBalance balance(World& w) {
   all =
       all + contact_shares(w, w.contacts, w.contact_pairs, w.parameters.materials, wall_stiffness);
   all = all + contact_shares(w, w.wall_contacts, w.wall_pairs, 0, wall_stiffness);
-  const Shares held = fold(w.exec, e.size(), Shares{},
-                           ElementShares{e.damping_work.view(), e.load_work.view()}, Sum{});
+  const Shares own = fold(w.exec, e.size(), Shares{},
+                          ElementShares{owned, e.damping_work.view(), e.load_work.view()}, Sum{});
+  r.elastic = all.elastic;
+  r.fracture = all.fracture;
+  r.plastic = all.plastic;
+  r.friction = all.friction;
+  r.damping = own.contact;
+  r.contact = all.contact;
+  r.work = all.work + own.work;
+  if (dot(w.parameters.gravity, w.parameters.gravity) > 0.0)
+    r.potential =
+        fold(w.exec, e.size(), ExactSum(),
+             GravityPotential{owned, w.parameters.gravity, e.state.view(), e.mass.view()}, Sum{});
+  return r;
+}
 
+void add(Ledger& ledger, const Ledger& booked) {
+  ledger.slid.add(booked.slid);
+  ledger.damped.add(booked.damped);
+  ledger.driven.add(booked.driven);
+}
+
+EnergyBalance balance(Ledger& ledger, const Held& all, std::int64_t step) {
   EnergyBalance r;
-  r.kinetic = kinetic.value();
+  r.kinetic = all.kinetic.value();
   r.elastic = all.elastic.value();
   r.fracture = all.fracture.value();
   r.plastic = all.plastic.value();
-  r.friction = (all.friction + w.ledger.slid).value();
-  r.contact = (all.contact + w.ledger.damped).value();
-  r.damping = held.contact.value();
-  r.work = (all.work + w.ledger.driven + held.work).value();
-  if (dot(w.parameters.gravity, w.parameters.gravity) > 0.0) {
-    const ExactSum potential =
-        fold(w.exec, e.size(), ExactSum(),
-             GravityPotential{w.parameters.gravity, e.state.view(), e.mass.view()}, Sum{});
-    if (w.step == 0) w.ledger.start_potential = potential;
-    r.work += potential.value() - w.ledger.start_potential.value();
-  }
-  r.start = w.ledger.start;
-  w.ledger.largest =
-      std::max({w.ledger.largest, r.kinetic + r.elastic, std::fabs(r.work), r.total()});
+  r.friction = (all.friction + ledger.slid).value();
+  r.contact = (all.contact + ledger.damped).value();
+  r.damping = all.damping.value();
+  r.work = (all.work + ledger.driven).value();
+  if (step == 0) ledger.start_potential = all.potential;
+  r.work += all.potential.value() - ledger.start_potential.value();
+  r.start = ledger.start;
+  ledger.largest = std::max({ledger.largest, r.kinetic + r.elastic, std::fabs(r.work), r.total()});
   r.error_relative =
-      w.step == 0 || w.ledger.largest <= 0.0 ? 0.0 : std::fabs(r.missing()) / w.ledger.largest;
+      step == 0 || ledger.largest <= 0.0 ? 0.0 : std::fabs(r.missing()) / ledger.largest;
   return r;
+}
+EnergyBalance balance(World& w) {
+  return balance(w.ledger, held(w), w.step);
 }
 
 }  // namespace breccia::dem

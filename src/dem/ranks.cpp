@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "dem/energy.hpp"
 #include "domain/sharing.hpp"
 #include "exec/for_each.hpp"
 
@@ -317,11 +318,7 @@ void collect(World& part, World& whole) {
   const std::vector<Ledger> booked = from_each(*part.domain.ranks, part.ledger);
   part.ledger = {};
   if (part.domain.ranks->rank() != 0) return;
-  for (const Ledger& ledger : booked) {
-    whole.ledger.slid.add(ledger.slid);
-    whole.ledger.damped.add(ledger.damped);
-    whole.ledger.driven.add(ledger.driven);
-  }
+  for (const Ledger& ledger : booked) add(whole.ledger, ledger);
   whole.elements = std::move(copy.elements);
   whole.travel = std::move(copy.travel);
   whole.concrete = std::move(copy.concrete);

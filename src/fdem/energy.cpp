@@ -1,31 +1,17 @@
 // The ledger of an FDEM run: every joule, summed exactly, per unit thickness.
 
+#include "fdem/energy.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "exec/for_each.hpp"
-#include "fdem/world.hpp"
 
 namespace breccia::fdem {
 namespace {
 
-/// Energies of one item, in the ledger's columns.
-struct Shares {
-  ExactSum kinetic, elastic, open, slide, friction, damping, contact, work;
-};
-BR_HD Shares operator+(Shares a, const Shares& b) {
-  a.kinetic.add(b.kinetic);
-  a.elastic.add(b.elastic);
-  a.open.add(b.open);
-  a.slide.add(b.slide);
-  a.friction.add(b.friction);
-  a.damping.add(b.damping);
-  a.contact.add(b.contact);
-  a.work.add(b.work);
-  return a;
-}
-
 struct TriangleShares {
+  OwnedView owned;
   MoveTriangles move;
   View<const Index> material;
   View<const ElasticTriangle> laws;
@@ -34,6 +20,7 @@ struct TriangleShares {
 
   BR_HD Shares operator()(Index t) const {
     Shares s;
+    if (!owned(t)) return s;
     const Kick& kick = move.kick;
     const Kick::Result next = kick(t);
     const double span = 0.5 * (kick.last_dt + kick.next_dt);
@@ -63,17 +50,20 @@ struct TriangleShares {
 };
 
 struct GravityPotential {
+  OwnedView owned;
   Vec2 gravity;
   View<const TriangleNodes> nodes;
   View<const double> mass;
   BR_HD ExactSum operator()(Index t) const {
     ExactSum sum;
+    if (!owned(t)) return sum;
     for (const NodeState& n : nodes[t].at) sum.add(mass[t] * dot(gravity, n.position));
     return sum;
   }
 };
 
 struct JointShares {
+  OwnedView owned;  ///< the owner of side a books it
   View<const NodeState> nodes;
   View<const JointBond> bonds;
   View<const JointEnds> ends;
@@ -86,7 +76,7 @@ struct JointShares {
 
   BR_HD Shares operator()(Index i) const {
     Shares s;
-    if (stage[i] == JointStage::dormant) return s;
+    if (stage[i] == JointStage::dormant || !owned(ends[i].a0 / 3)) return s;
     if (stage[i] != JointStage::whole) {
       s.open.add(work[i].open);
       s.slide.add(work[i].slide);
@@ -112,9 +102,12 @@ struct JointShares {
 };
 
 struct CoupleShares {
+  OwnedView owned;  ///< the owner of a books it
+  View<const Index> a;
   View<const CoupleState> state;
   BR_HD Shares operator()(Index i) const {
     Shares s;
+    if (!owned(a[i])) return s;
     s.elastic.add(state[i].work - state[i].slid);
     s.friction.add(state[i].slid);
     s.friction.add(state[i].rubbed);
@@ -123,10 +116,40 @@ struct CoupleShares {
   }
 };
 
-Shares all_shares(const World& w) {
+/// The largest sum of energies and work seen, now included.  [J/m]
+double largest_with(const Ledger& ledger, const EnergyBalance& b) {
+  return std::max({ledger.largest, b.total(), b.start + std::abs(b.work),
+                   std::abs(b.start) + std::abs(b.work)});
+}
+
+EnergySplit split_of(const Ledger& ledger, const Held& all) {
+  const Shares& s = all.shares;
+  EnergySplit split;
+  split.fracture_open = s.open.value();
+  split.fracture_slide = s.slide.value();
+  EnergyBalance& b = split.balance;
+  b.kinetic = s.kinetic.value();
+  b.elastic = s.elastic.value();
+  b.fracture = split.fracture_open + split.fracture_slide;
+  b.friction = s.friction.value() + ledger.rubbed.value();
+  b.damping = s.damping.value();
+  b.contact = s.contact.value() + ledger.lost.value();
+  b.work = s.work.value() + all.potential.value() - ledger.start_potential.value();
+  b.start = ledger.start + ledger.inserted.value();
+  const double largest = largest_with(ledger, b);
+  b.error_relative = largest > 0.0 ? std::abs(b.missing()) / largest : 0.0;
+  return split;
+}
+
+}  // namespace
+
+Held held(const World& w) {
+  const OwnedView owned = w.domain.owned_view();
   const Triangles& t = w.triangles;
-  Shares sum = fold(w.exec, t.size(), Shares{},
-                    TriangleShares{{kick(w), t.external.view(), {}, {}, {}},
+  Held all;
+  all.shares = fold(w.exec, t.size(), Shares{},
+                    TriangleShares{owned,
+                                   {kick(w), t.external.view(), {}, {}, {}},
                                    t.material.view(),
                                    w.laws.view(),
                                    t.shape_inverse.view(),
@@ -135,60 +158,46 @@ Shares all_shares(const World& w) {
                                    t.load_work.view()},
                     Sum{});
   const Joints& j = w.joints;
-  sum = sum + fold(w.exec, j.size(), Shares{},
-                   JointShares{by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
-                               j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
-                               j.stage.view(), j.points.view(), j.work.view(), j.handed.view()},
-                   Sum{});
-  return sum + fold(w.exec, w.couples.size(), Shares{},
-                    CoupleShares{w.couples.history.state.view()}, Sum{});
+  all.shares = all.shares + fold(w.exec, j.size(), Shares{},
+                                 JointShares{owned, by_number(t.nodes.view()), w.bonds.view(),
+                                             w.joint_ends.view(), j.law.view(), j.length.view(),
+                                             j.strength.view(), j.preset.view(), j.stage.view(),
+                                             j.points.view(), j.work.view(), j.handed.view()},
+                                 Sum{});
+  all.shares =
+      all.shares +
+      fold(w.exec, w.couples.size(), Shares{},
+           CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()}, Sum{});
+  all.potential =
+      fold(w.exec, t.size(), ExactSum{},
+           GravityPotential{owned, w.parameters.gravity, t.nodes.view(), t.mass.view()}, Sum{});
+  return all;
 }
 
-ExactSum potential(const World& w) {
-  return fold(
-      w.exec, w.triangles.size(), ExactSum{},
-      GravityPotential{w.parameters.gravity, w.triangles.nodes.view(), w.triangles.mass.view()},
-      Sum{});
+void add(Ledger& ledger, const Ledger& booked) {
+  ledger.rubbed.add(booked.rubbed);
+  ledger.lost.add(booked.lost);
+  ledger.inserted.add(booked.inserted);
 }
-
-/// The largest sum of energies and work seen, now included.  [J/m]
-double largest_with(const World& w, const EnergyBalance& b) {
-  return std::max({w.ledger.largest, b.total(), b.start + std::abs(b.work),
-                   std::abs(b.start) + std::abs(b.work)});
-}
-
-}  // namespace
 
 void begin_ledger(World& w) {
   w.ledger = {};
-  w.ledger.start_potential = potential(w);
-  const Shares s = all_shares(w);
-  w.ledger.start = s.kinetic.value() + s.elastic.value();
+  const Held all = held(w);
+  w.ledger.start_potential = all.potential;
+  w.ledger.start = all.shares.kinetic.value() + all.shares.elastic.value();
 }
 
 EnergySplit energy_split(const World& w) {
-  const Shares s = all_shares(w);
-  EnergySplit split;
-  split.fracture_open = s.open.value();
-  split.fracture_slide = s.slide.value();
-  EnergyBalance& b = split.balance;
-  b.kinetic = s.kinetic.value();
-  b.elastic = s.elastic.value();
-  b.fracture = split.fracture_open + split.fracture_slide;
-  b.friction = s.friction.value() + w.ledger.rubbed.value();
-  b.damping = s.damping.value();
-  b.contact = s.contact.value() + w.ledger.lost.value();
-  b.work = s.work.value() + potential(w).value() - w.ledger.start_potential.value();
-  b.start = w.ledger.start + w.ledger.inserted.value();
-  const double largest = largest_with(w, b);
-  b.error_relative = largest > 0.0 ? std::abs(b.missing()) / largest : 0.0;
-  return split;
+  return split_of(w.ledger, held(w));
 }
 
-EnergySplit energies(World& w) {
-  const EnergySplit split = energy_split(w);
-  w.ledger.largest = largest_with(w, split.balance);
+EnergySplit energies(Ledger& ledger, const Held& all) {
+  const EnergySplit split = split_of(ledger, all);
+  ledger.largest = largest_with(ledger, split.balance);
   return split;
+}
+EnergySplit energies(World& w) {
+  return energies(w.ledger, held(w));
 }
 
 }  // namespace breccia::fdem

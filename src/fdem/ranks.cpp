@@ -5,6 +5,7 @@
 
 #include "domain/sharing.hpp"
 #include "exec/for_each.hpp"
+#include "fdem/energy.hpp"
 #include "fdem/rings.hpp"
 
 namespace breccia::fdem {
@@ -450,11 +451,7 @@ void collect(World& part, World& whole) {
     if (copy.opened.changed.data()[i] != 0) changed |= std::uint64_t{1} << i;
   changed = ranks.any_of(changed);
   if (ranks.rank() != 0) return;
-  for (const Ledger& ledger : booked) {
-    whole.ledger.rubbed.add(ledger.rubbed);
-    whole.ledger.lost.add(ledger.lost);
-    whole.ledger.inserted.add(ledger.inserted);
-  }
+  for (const Ledger& ledger : booked) add(whole.ledger, ledger);
   whole.triangles = std::move(copy.triangles);
   whole.joints = std::move(copy.joints);
   whole.couples = std::move(copy.couples);

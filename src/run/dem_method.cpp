@@ -1,10 +1,11 @@
 #include "run/dem_method.hpp"
 
 #include "core/precision.hpp"
+#include "dem/energy.hpp"
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "exec/error.hpp"
-#include "run/shared_world.hpp"
+#include "run/looks.hpp"
 
 namespace breccia {
 namespace {
@@ -26,7 +27,11 @@ class DemMethod final : public Method {
     return w.step > 0 ? w.last_dt : w.next_dt;
   }
 
-  EnergyBalance energy() override { return dem::balance(world_.whole()); }
+  EnergyBalance energy() override {
+    if (world_.alone()) return dem::balance(world_.whole());
+    const dem::Held all = held_by_all(world_, answer());
+    return dem::balance(world_.ledger(), all, steps());
+  }
   std::vector<double> probes() override {
     std::vector<double> values;
     for (const ProbeConfig& probe : probes_) values.push_back(dem::probe(world_.whole(), probe));
@@ -110,13 +115,23 @@ class DemMethod final : public Method {
     world_.share_again();
   }
 
-  int follow() override { return world_.follow(); }
+  int follow() override { return world_.follow(answer()); }
   void dismiss(int exit_code) override { world_.dismiss(exit_code); }
 
  private:
   DemMethod(const DemMethod& other)
       : Method(), world_(other.world_), probes_(other.probes_), range_(other.range_) {
     world_.forget_timers();
+  }
+  /// Answers for a rank's part.
+  SharedWorld<dem::World>::Answer answer() const {
+    return [](dem::World& part, const Message& question) -> Message {
+      switch (look_of(question)) {
+        case Look::energy:
+          return as_message(energies_of_part(part));
+      }
+      return {};
+    };
   }
   std::size_t group_count() {
     std::size_t groups = 0;

@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "exec/error.hpp"
+#include "fdem/energy.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
-#include "run/shared_world.hpp"
+#include "run/looks.hpp"
 
 namespace breccia {
 namespace {
@@ -51,7 +52,11 @@ class FdemMethod final : public Method {
   }
 
   std::string step_rule() override { return fdem::ruling_term(world_.whole()); }
-  EnergyBalance energy() override { return fdem::energies(world_.whole()).balance; }
+  EnergyBalance energy() override {
+    if (world_.alone()) return fdem::energies(world_.whole()).balance;
+    const fdem::Held all = held_by_all(world_, answer());
+    return fdem::energies(world_.ledger(), all).balance;
+  }
   std::vector<double> probes() override {
     std::vector<double> values;
     for (const ProbeConfig& p : probes_) values.push_back(fdem::probe(world_.whole(), p));
@@ -153,7 +158,7 @@ class FdemMethod final : public Method {
     world_.share_again();
   }
 
-  int follow() override { return world_.follow(); }
+  int follow() override { return world_.follow(answer()); }
   void dismiss(int exit_code) override { world_.dismiss(exit_code); }
 
  private:
@@ -165,6 +170,17 @@ class FdemMethod final : public Method {
   struct Line {
     Vec2 begin, end;  ///<  [m]
   };
+
+  /// Answers for a rank's part.
+  SharedWorld<fdem::World>::Answer answer() const {
+    return [](fdem::World& part, const Message& question) -> Message {
+      switch (look_of(question)) {
+        case Look::energy:
+          return as_message(energies_of_part(part));
+      }
+      return {};
+    };
+  }
 
   fdem::World made(const fdem::Config& config, const fdem::Model& model, const Exec& exec) {
     fdem::World w = fdem::make_world(config, model, exec);

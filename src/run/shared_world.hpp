@@ -1,13 +1,14 @@
 #pragma once
 // A world that a run steps and observes, on one rank or shared out among many.
 //
-// Rank 0 leads: it alone runs the outer loop, and tells the others what to do with it. What is
-// observed or saved is brought together on it first, so that everything a run writes comes from one
-// whole world, in the same bytes for any number of ranks.
+// Rank 0 leads: it alone runs the outer loop, and tells the others what to do with it. What is seen
+// often it asks of all ranks, each of which answers for its part. What is saved is brought together
+// on it first. Either way everything that a run writes has the same bytes for any number of ranks.
 
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <new>
 #include <optional>
 
@@ -22,6 +23,9 @@ namespace breccia {
 template <class World>
 class SharedWorld {
  public:
+  /// What a rank has to say of its part when it is asked.
+  using Answer = std::function<Message(World& part, const Message& question)>;
+
   /// @param make   builds the whole world where it is told to; may fail
   /// @param exec   of the world that steps; the whole of many parts lies on the host
   /// @param ranks  null: alone. Otherwise every rank makes one of these from the same case.
@@ -51,6 +55,7 @@ class SharedWorld {
   /// Of a copy: what it does is not booked.
   void forget_timers() { whole_.exec.timers = nullptr; }
 
+  bool alone() const { return ranks_ == nullptr; }
   /// The world that steps: a rank's part of it.
   const World& part() const { return part_ ? *part_ : whole_; }
   /// All of it, as of now. Rank 0 only.
@@ -61,6 +66,18 @@ class SharedWorld {
       stale_ = false;
     }
     return whole_;
+  }
+  /// What has been booked for good, but for what parts have booked since they told last. Rank 0
+  /// only.
+  auto& ledger() { return whole_.ledger; }
+  /// What each rank has to say of its part as it is now, by rank. Rank 0 of several only.
+  /// @param question  goes to all ranks; no longer than it need be
+  /// @param answer    the same as follow() takes on the others
+  std::vector<Message> ask(const Message& question, const Answer& answer) {
+    command(Command::answer, question);
+    std::vector<Message> answers;
+    at_once([&] { answers = told_to_first(answer(*part_, question)); });
+    return answers;
   }
   /// How the ranks fare, as of the last look at the whole; nothing to tell of one.
   template <class Add>
@@ -82,7 +99,9 @@ class SharedWorld {
     constexpr double attention = 0.02;  // time between two looks at signals and progress  [s]
     const auto begin = std::chrono::steady_clock::now();
     stop.step = std::min(stop.step, part_->step + steps_at_once_);
-    command(Command::advance, &stop);
+    Message until(sizeof stop);
+    std::memcpy(until.data(), &stop, sizeof stop);
+    command(Command::advance, until);
     stale_ = true;
     Advanced taken;
     at_once([&] { taken = advance_part(stop); });
@@ -100,18 +119,20 @@ class SharedWorld {
   }
 
   /// Ranks other than 0: does what rank 0 commands. Returns the exit code that it ends with.
-  int follow() {
+  int follow(const Answer& answer) {
     while (true) {
-      const Message message = ranks_->from_first({});
+      Message message = ranks_->from_first({});
       const auto command = static_cast<Command>(message.at(0));
       if (command == Command::stop) return static_cast<int>(message.at(1));
+      message.erase(message.begin());
       try {
         at_once([&] {
           if (command == Command::advance) {
             StopAt stop;
-            std::memcpy(&stop, message.data() + 1, sizeof stop);
+            std::memcpy(&stop, message.data(), sizeof stop);
             advance_part(stop);
           }
+          if (command == Command::answer) told_to_first(answer(*part_, message));
           if (command == Command::collect) bring_together();
           if (command == Command::share) share();
         });
@@ -145,16 +166,19 @@ class SharedWorld {
     ranks_->set_in_step(true);
   }
 
-  enum class Command : std::uint8_t { advance, collect, share, stop };
+  enum class Command : std::uint8_t { advance, answer, collect, share, stop };
 
-  void command(Command command, const StopAt* stop = nullptr) {
+  void command(Command command, const Message& more = {}) {
     if (ranks_ == nullptr) return;
     Message message{static_cast<std::byte>(command)};
-    if (stop != nullptr) {
-      message.resize(1 + sizeof *stop);
-      std::memcpy(message.data() + 1, stop, sizeof *stop);
-    }
+    message.insert(message.end(), more.begin(), more.end());
     ranks_->from_first(std::move(message));
+  }
+  /// The messages of all ranks on rank 0, on others none.
+  std::vector<Message> told_to_first(Message message) {
+    std::vector<Message> messages(static_cast<std::size_t>(ranks_->size()));
+    messages[0] = std::move(message);
+    return ranks_->exchange(std::move(messages));
   }
   Advanced advance_part(const StopAt& stop) {
     World& w = *part_;

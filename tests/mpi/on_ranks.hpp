@@ -37,10 +37,12 @@ Shared on_ranks(int count, const AScene& scene, int steps, const DomainConfig& c
 
 /// A method on simulated ranks; `lead` is what rank 0 does with it.
 template <class AScene, class Lead>
-void led_on_ranks(int count, int threads, const AScene& scene, const Lead& lead) {
+void led_on_ranks(int count, int threads, const AScene& scene, const Lead& lead,
+                  Space space = Space::host) {
   simulate_ranks(count, 77, [&](Communicator& ranks) {
     Exec exec;
     exec.threads = threads;
+    exec.space = space;
     const auto method = method_of(scene, exec, count > 1 ? &ranks : nullptr);
     if (ranks.rank() != 0) {
       method->follow();
