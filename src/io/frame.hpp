@@ -32,4 +32,16 @@ struct Frame {
   std::vector<std::string> groups;          ///< names for the point field "group"; may be empty
 };
 
+/// Where the items of a part of a frame stand in the whole. Such a part has the items of one rank;
+/// its lines and triangles index the points of the whole, and all parts have fields alike.
+struct FramePlaces {
+  bool whole = false;        ///< it has all items, and no places are listed
+  bool has_spheres = false;  ///< the whole frame has radii
+  std::int64_t points = 0, lines = 0, triangles = 0;  ///< in the whole
+  std::vector<std::int32_t> point, line, triangle;    ///< of each item here, ascending
+};
+
+/// Places of a frame that is whole.
+FramePlaces places_in(const Frame& whole);
+
 }  // namespace breccia

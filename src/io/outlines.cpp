@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "exec/tasks.hpp"
 #include "io/shading.hpp"
 
 namespace breccia {
@@ -48,30 +49,39 @@ Mix mix_at(const Canvas& canvas, std::span<const ItemLook> looks, int x, int y) 
   return mix;
 }
 
-}  // namespace
-
-void smooth_outlines(Image& image, const Canvas& canvas, std::span<const ItemLook> looks) {
-  const std::vector<std::uint8_t> before = image.rgb;
-  for (int y = 1; y + 1 < canvas.height; ++y) {
-    const std::int32_t* const item = &canvas.item[canvas.row(y)];
-    for (int x = 1; x + 1 < canvas.width; ++x) {
-      const std::int32_t own = item[x];
-      const bool edge = (item[x - 1] != own) | (item[x + 1] != own) |
-                        (item[x - canvas.stride] != own) | (item[x + canvas.stride] != own);
-      if (!edge) continue;
-      const Mix mix = mix_at(canvas, looks, x, y);
-      if (mix.share <= 0.0F) continue;
-      const std::ptrdiff_t rows = mix.neighbour / canvas.stride;
-      const std::ptrdiff_t here = static_cast<std::ptrdiff_t>(y) * canvas.width + x;
-      const std::ptrdiff_t there = here + rows * canvas.width + (rows == 0 ? mix.neighbour : 0);
-      for (std::ptrdiff_t c = 0; c < 3; ++c) {
-        const float mine = before[static_cast<std::size_t>(3 * here + c)];
-        const float theirs = before[static_cast<std::size_t>(3 * there + c)];
-        image.rgb[static_cast<std::size_t>(3 * here + c)] =
-            static_cast<std::uint8_t>(mine + mix.share * (theirs - mine) + 0.5F);
-      }
+void smooth_row(Image& image, const std::vector<std::uint8_t>& before, const Canvas& canvas,
+                std::span<const ItemLook> looks, int y) {
+  const std::int32_t* const item = &canvas.item[canvas.row(y)];
+  for (int x = 1; x + 1 < canvas.width; ++x) {
+    const std::int32_t own = item[x];
+    const bool edge = (item[x - 1] != own) | (item[x + 1] != own) |
+                      (item[x - canvas.stride] != own) | (item[x + canvas.stride] != own);
+    if (!edge) continue;
+    const Mix mix = mix_at(canvas, looks, x, y);
+    if (mix.share <= 0.0F) continue;
+    const std::ptrdiff_t rows = mix.neighbour / canvas.stride;
+    const std::ptrdiff_t here = static_cast<std::ptrdiff_t>(y) * canvas.width + x;
+    const std::ptrdiff_t there = here + rows * canvas.width + (rows == 0 ? mix.neighbour : 0);
+    for (std::ptrdiff_t c = 0; c < 3; ++c) {
+      const float mine = before[static_cast<std::size_t>(3 * here + c)];
+      const float theirs = before[static_cast<std::size_t>(3 * there + c)];
+      image.rgb[static_cast<std::size_t>(3 * here + c)] =
+          static_cast<std::uint8_t>(mine + mix.share * (theirs - mine) + 0.5F);
     }
   }
+}
+
+}  // namespace
+
+void smooth_outlines(Image& image, const Canvas& canvas, std::span<const ItemLook> looks,
+                     int threads) {
+  constexpr int band = 16;  // rows that one thread takes
+  const std::vector<std::uint8_t> before = image.rgb;
+  for_each_task(threads, (canvas.height + band - 1) / band, [&](int number) {
+    const int end = std::min(canvas.height - 1, band * (number + 1));
+    for (int y = std::max(1, band * number); y < end; ++y)
+      smooth_row(image, before, canvas, looks, y);
+  });
 }
 
 }  // namespace breccia

@@ -8,7 +8,6 @@
 
 #include "exec/error.hpp"
 #include "io/vtu_reader.hpp"
-#include "io/vtu_writer.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia {
@@ -52,13 +51,12 @@ ParaviewSeries ParaviewSeries::resumed(const std::string& folder, double time) {
   return series;
 }
 
-void ParaviewSeries::write(const Frame& frame) {
+void ParaviewSeries::write(const FrameContents& frame) {
   const auto same = std::lower_bound(times_.begin(), times_.end(), frame.time);
   drop_from(static_cast<std::size_t>(same - times_.begin()));
-  const VtuCells shape = frame.triangles.empty() ? VtuCells::vertices : VtuCells::triangles;
   const std::string start = folder_ + "/";
-  replace_file(start + file_of(kinds[0], times_.size()), vtu_content(frame, shape));
-  replace_file(start + file_of(kinds[1], times_.size()), vtu_content(frame, VtuCells::lines));
+  replace_file(start + file_of(kinds[0], times_.size()), frame.points);
+  replace_file(start + file_of(kinds[1], times_.size()), frame.lines);
   times_.push_back(frame.time);
   write_collections();
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/frame.hpp"
+#include "io/vtu_writer.hpp"
 
 namespace breccia {
 
@@ -26,7 +26,8 @@ class ParaviewSeries {
 
   /// Adds a frame. One that is not later than the last replaces all from its time on. @throws
   /// IoError
-  void write(const Frame& frame);
+  void write(const FrameContents& frame);
+  void write(const Frame& frame) { write(contents_of(frame)); }
 
   /// Times of the frames written so far.  [s]
   const std::vector<double>& times() const { return times_; }

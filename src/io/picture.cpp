@@ -1,9 +1,11 @@
 #include "io/picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "exec/error.hpp"
+#include "exec/tasks.hpp"
 #include "io/annotation.hpp"
 #include "io/field_colors.hpp"
 #include "io/shading.hpp"
@@ -44,7 +46,7 @@ Axes axes_for(const Extent& extent, const RenderOptions& options) {
 }
 
 /// Spheres come first, so that their place in the list is their item.
-void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scene) {
+void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scene, int threads) {
   constexpr double smallest = 0.75;  // pixels: nothing that flies about is lost
   std::vector<ScreenSphere> spheres(frame.position.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
@@ -54,49 +56,104 @@ void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scen
                   static_cast<float>(point.depth), static_cast<float>(radius)};
     scene.looks[i].sphere = spheres[i];
   }
-  draw_spheres(canvas, spheres, scene.clip);
+  draw_spheres(canvas, spheres, scene.clip, threads);
 }
 
-void draw_lines(Canvas& canvas, const Frame& frame, const Coloring& coloring, Scene& scene) {
+/// Flat items by the bands of rows that they may cover, and each band drawn by one thread, its
+/// items in their order.
+class Bands {
+ public:
+  Bands(const Canvas& canvas, int threads)
+      : height_(canvas.height),
+        threads_(threads),
+        items_(static_cast<std::size_t>(threads > 1 ? (canvas.height + band - 1) / band : 1)) {}
+
+  /// Notes an item between two heights of the picture, give or take `reach`.  [pixels]
+  void add(std::size_t item, double top, double bottom, double reach) {
+    if (!(bottom + reach >= 0.0 && top - reach <= height_)) return;
+    const auto band_of = [this](double v) {
+      const double row = std::clamp(v, 0.0, height_ - 1.0);
+      return items_.size() == 1 ? 0 : static_cast<std::size_t>(row) / band;
+    };
+    for (std::size_t b = band_of(top - reach); b <= band_of(bottom + reach); ++b)
+      items_[b].push_back(item);
+  }
+  /// draw(item, rows) for all
+  template <class Draw>
+  void draw(const Draw& draw_item) const {
+    for_each_task(threads_, static_cast<int>(items_.size()), [&](int b) {
+      Rows rows{0, height_ - 1};
+      if (items_.size() > 1) rows = {b * band, std::min(height_, (b + 1) * band) - 1};
+      for (const std::size_t item : items_[static_cast<std::size_t>(b)]) draw_item(item, rows);
+    });
+  }
+
+ private:
+  static constexpr int band = 32;  // pixels
+  int height_, threads_;
+  std::vector<std::vector<std::size_t>> items_;
+};
+
+void draw_lines(Canvas& canvas, const Frame& frame, const Coloring& coloring, Scene& scene,
+                int threads) {
   const std::vector<Color>& colors = coloring.lines;
   const int thickness = std::max(2, canvas.height / 480);
   const double lift = frame.triangles.empty() ? 0.0 : 2.0;  // lines on the edges of triangles show
   const Vec3 lamp = lamp_direction();
-  for (std::size_t line = 0; line < colors.size(); ++line) {
-    if (!coloring.broken_lines.empty() && coloring.broken_lines[line]) continue;
+  const std::size_t first = scene.looks.size();
+  Bands bands(canvas, threads);
+  const auto ends = [&](std::size_t line) {
     ScreenPoint a = scene.points[static_cast<std::size_t>(frame.lines[2 * line])];
     ScreenPoint b = scene.points[static_cast<std::size_t>(frame.lines[2 * line + 1])];
     a.depth += lift;
     b.depth += lift;
+    return std::pair{a, b};
+  };
+  for (std::size_t line = 0; line < colors.size(); ++line) {
+    scene.looks.push_back({});
+    if (!coloring.broken_lines.empty() && coloring.broken_lines[line]) continue;
+    const auto [a, b] = ends(line);
     // A thin cylinder is as bright as its steepest side towards the lamp.
     const Vec3 axis{b.u - a.u, a.v - b.v, b.depth - a.depth};
     const double along = dot(axis, lamp), square = dot(axis, axis);
     const double across = square > 0.0 ? std::max(0.0, 1.0 - along * along / square) : 1.0;
     const auto light = static_cast<float>(0.55 + 0.45 * std::sqrt(across));
-    const auto item = static_cast<std::int32_t>(scene.looks.size());
-    scene.looks.push_back({shaded(colors[line], light), {}});
-    draw_line(canvas, a, b, thickness, item, scene.clip);
+    scene.looks.back().color = shaded(colors[line], light);
+    bands.add(line, std::min(a.v, b.v), std::max(a.v, b.v), thickness + 1.0);
   }
+  bands.draw([&](std::size_t line, Rows rows) {
+    const auto [a, b] = ends(line);
+    const auto item = static_cast<std::int32_t>(first + line);
+    draw_line(canvas, rows, a, b, thickness, item, scene.clip);
+  });
 }
 
 void draw_triangles(Canvas& canvas, const Frame& frame, const std::vector<Color>& colors,
-                    Scene& scene) {
+                    Scene& scene, int threads) {
   const Vec3 lamp = lamp_direction();
+  const std::size_t first = scene.looks.size();
+  Bands bands(canvas, threads);
+  const auto corners = [&](std::size_t triangle) {
+    const auto corner = [&](std::size_t k) {
+      return scene.points[static_cast<std::size_t>(frame.triangles[3 * triangle + k])];
+    };
+    return std::array{corner(0), corner(1), corner(2)};
+  };
   for (std::size_t triangle = 0; triangle < colors.size(); ++triangle) {
-    ScreenPoint corner[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      corner[k] = scene.points[static_cast<std::size_t>(frame.triangles[3 * triangle + k])];
-    }
-    const auto& [a, b, c] = corner;
+    const auto [a, b, c] = corners(triangle);
     const Vec3 normal = cross(Vec3{b.u - a.u, a.v - b.v, b.depth - a.depth},
                               Vec3{c.u - a.u, a.v - c.v, c.depth - a.depth});
     const double size = norm(normal);
     const double facing = size > 0.0 ? std::fabs(dot(normal, lamp)) / size / lamp.z : 1.0;
     const auto light = static_cast<float>(0.5 + 0.5 * std::min(1.0, facing));
-    const auto item = static_cast<std::int32_t>(scene.looks.size());
     scene.looks.push_back({shaded(colors[triangle], light), {}});
-    draw_triangle(canvas, a, b, c, item, scene.clip);
+    bands.add(triangle, std::min({a.v, b.v, c.v}), std::max({a.v, b.v, c.v}), 1.0);
   }
+  bands.draw([&](std::size_t triangle, Rows rows) {
+    const auto [a, b, c] = corners(triangle);
+    const auto item = static_cast<std::int32_t>(first + triangle);
+    draw_triangle(canvas, rows, a, b, c, item, scene.clip);
+  });
 }
 
 /// Depth that looks deep: about a radius of the usual sphere.  [pixels]
@@ -110,16 +167,17 @@ float relief_of(const Frame& frame, double resolution) {
 
 }  // namespace
 
-Image render(const Frame& frame, const RenderOptions& options) {
+Image render(const Frame& frame, const RenderOptions& options, int threads) {
   check(frame, options);
   const Coloring coloring = color_frame(frame, options.field, options.range);
-  const Extent extent = options.extent.value_or(bulk_extent(frame));
+  const Extent extent = options.extent ? *options.extent : bulk_extent(frame);
   const Axes axes = axes_for(extent, options);
   Scene scene{
       fitted_camera(axes, extent, scene_window(options, coloring.legend)), std::nullopt, {}, {}};
   if (const std::optional<Clip> clip = clip_of(options.clip, axes)) {
     scene.clip = on_screen(*clip, scene.camera);
   }
+  scene.points.reserve(frame.position.size());
   for (const Vec3& point : frame.position) scene.points.push_back(scene.camera.project(point));
   scene.looks.reserve(frame.position.size() + frame.lines.size() / 2 + frame.triangles.size() / 3);
   for (const Color& color : coloring.points) scene.looks.push_back({color, {}});
@@ -129,13 +187,14 @@ Image render(const Frame& frame, const RenderOptions& options) {
   if (options.show_spheres && !frame.radius.empty()) {
     const double beside_links =
         coloring.of_lines ? sphere_share_beside_colours : sphere_share_beside_links;
-    place_spheres(canvas, frame, links ? beside_links : 1.0, scene);
+    place_spheres(canvas, frame, links ? beside_links : 1.0, scene, threads);
   }
-  if (links) draw_lines(canvas, frame, coloring, scene);
-  draw_triangles(canvas, frame, coloring.triangles, scene);
+  if (links) draw_lines(canvas, frame, coloring, scene, threads);
+  draw_triangles(canvas, frame, coloring.triangles, scene, threads);
 
-  Image image = shade(canvas, scene.looks, scene.clip, relief_of(frame, scene.camera.resolution));
-  smooth_outlines(image, canvas, scene.looks);
+  Image image =
+      shade(canvas, scene.looks, scene.clip, relief_of(frame, scene.camera.resolution), threads);
+  smooth_outlines(image, canvas, scene.looks, threads);
   const int scale = text_scale(options);
   draw_title(image, options.title, frame, scale);
   draw_legend(image, coloring.legend, scale);

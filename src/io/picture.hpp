@@ -65,12 +65,18 @@ bool has_field(const Frame& frame, const std::string& field);
 ///
 /// @throws InputError if field, view, clip or size make no sense (names what is allowed)
 ///
+/// Any number of threads draws the same bits.
+///
 /// Cost: about 20 ms for 14,274 spheres at 1280 x 960 on one core.
-Image render(const Frame& frame, const RenderOptions& options);
+Image render(const Frame& frame, const RenderOptions& options, int threads = 1);
+
+/// The image as PNG; empty if it cannot be encoded.
+std::string png_content(const Image& image);
 
 /// Writes the image under a temporary name, then renames it: a reader never sees half a picture.
 /// @throws IoError with path and reason
 void write_png(const std::string& path, const Image& image);
+void write_png(const std::string& path, const std::string& content);
 
 /// Any PNG, as eight bits a channel; what is transparent is white.
 /// @throws IoError    if the file cannot be read

@@ -43,15 +43,23 @@ bool encode(const Image& image, std::string& content) {
 
 }  // namespace
 
-void write_png(const std::string& path, const Image& image) {
+std::string png_content(const Image& image) {
   const auto pixels =
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   std::string content;
   content.reserve(image.rgb.size() / 2 + 1024);
   if (image.width < 1 || image.height < 1 || image.rgb.size() != 3 * pixels ||
-      !encode(image, content)) {
-    throw IoError(path + ": cannot write: the image cannot be encoded as PNG");
-  }
+      !encode(image, content))
+    return {};
+  return content;
+}
+
+void write_png(const std::string& path, const Image& image) {
+  write_png(path, png_content(image));
+}
+
+void write_png(const std::string& path, const std::string& content) {
+  if (content.empty()) throw IoError(path + ": cannot write: the image cannot be encoded as PNG");
   replace_file(path, content);
 }
 

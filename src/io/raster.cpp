@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exec/tasks.hpp"
+
 namespace breccia {
 namespace {
 
@@ -18,7 +20,7 @@ double centre_of(int pixel) {
 }
 
 void put(Canvas& canvas, int x, int y, double depth, std::int32_t item) {
-  if (x < 0 || y < 0 || x >= canvas.width || y >= canvas.height) return;
+  if (x < 0 || x >= canvas.width) return;
   const std::size_t place = canvas.row(y) + static_cast<std::size_t>(x);
   if (static_cast<float>(depth) <= canvas.depth[place]) return;
   canvas.depth[place] = static_cast<float>(depth);
@@ -134,7 +136,7 @@ Canvas::Canvas(int wide, int high)
 }
 
 void draw_spheres(Canvas& canvas, std::span<const ScreenSphere> spheres,
-                  const std::optional<ScreenClip>& clip) {
+                  const std::optional<ScreenClip>& clip, int threads) {
   std::vector<Visible> order;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const auto item = static_cast<std::int32_t>(i);
@@ -162,9 +164,10 @@ void draw_spheres(Canvas& canvas, std::span<const ScreenSphere> spheres,
     each_tile(order[i],
               [&](std::size_t tile) { in_tile[next[tile]++] = static_cast<std::uint32_t>(i); });
   }
-  for (std::size_t number = 0; number + 1 < start.size(); ++number) {
-    const int left = static_cast<int>(number) % across * Tile::width;
-    const int top = static_cast<int>(number) / across * Tile::height;
+  for_each_task(threads, across * down, [&](int number_of_tile) {
+    const auto number = static_cast<std::size_t>(number_of_tile);
+    const int left = number_of_tile % across * Tile::width;
+    const int top = number_of_tile / across * Tile::height;
     const Tile tile{left, std::min(left + Tile::width, canvas.width) - 1, top,
                     std::min(top + Tile::height, canvas.height) - 1};
     for (std::size_t k = start[number]; k < start[number + 1]; ++k) {
@@ -173,10 +176,10 @@ void draw_spheres(Canvas& canvas, std::span<const ScreenSphere> spheres,
       if (look && is_filled(canvas, tile, seen.front)) break;
       draw_in_tile(canvas, tile, spheres[static_cast<std::size_t>(seen.item)], seen, clip);
     }
-  }
+  });
 }
 
-void draw_line(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, int thickness,
+void draw_line(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b, int thickness,
                std::int32_t item, const std::optional<ScreenClip>& clip) {
   const double du = b.u - a.u, dv = b.v - a.v;
   const double length = std::max(std::fabs(du), std::fabs(dv));
@@ -195,20 +198,21 @@ void draw_line(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, int t
     const int first = static_cast<int>(std::floor(across + 0.5));
     const int along = static_cast<int>(std::floor(steep ? v : u));
     for (int k = first; k < first + thickness; ++k) {
-      put(canvas, steep ? k : along, steep ? along : k, depth, item);
+      const int y = steep ? along : k;
+      if (y >= rows.top && y <= rows.bottom) put(canvas, steep ? k : along, y, depth, item);
     }
   }
 }
 
-void draw_triangle(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c,
-                   std::int32_t item, const std::optional<ScreenClip>& clip) {
+void draw_triangle(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b,
+                   const ScreenPoint& c, std::int32_t item, const std::optional<ScreenClip>& clip) {
   constexpr double edge = 1e-9;  // neighbours share their border: no pixel on it stays empty
   const double area = (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
   if (!std::isfinite(area) || area == 0.0) return;
   const int left = std::max(0, first_pixel(std::min({a.u, b.u, c.u})));
   const int right = std::min(canvas.width - 1, last_pixel(std::max({a.u, b.u, c.u})));
-  const int top = std::max(0, first_pixel(std::min({a.v, b.v, c.v})));
-  const int bottom = std::min(canvas.height - 1, last_pixel(std::max({a.v, b.v, c.v})));
+  const int top = std::max(rows.top, first_pixel(std::min({a.v, b.v, c.v})));
+  const int bottom = std::min(rows.bottom, last_pixel(std::max({a.v, b.v, c.v})));
   for (int y = top; y <= bottom; ++y) {
     const double v = centre_of(y);
     for (int x = left; x <= right; ++x) {

@@ -32,17 +32,23 @@ struct ScreenSphere {
   float u, v, depth, radius;
 };
 
+/// Rows of the picture, the last one included: what one thread draws into.
+struct Rows {
+  int top, bottom;
+};
+
 /// Draws all spheres; the item of each is its place in the list, a radius of 0 leaves it out. Those
 /// that a clip plane crosses show the cut. Work is done tile by tile from front to back, and a tile
 /// is left as soon as nothing farther can show in it: cost grows with what is seen.
 void draw_spheres(Canvas& canvas, std::span<const ScreenSphere> spheres,
-                  const std::optional<ScreenClip>& clip);
+                  const std::optional<ScreenClip>& clip, int threads);
 
-/// A line `thickness` pixels wide.
-void draw_line(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, int thickness,
+/// As much of a line `thickness` pixels wide as lies in the rows.
+void draw_line(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b, int thickness,
                std::int32_t item, const std::optional<ScreenClip>& clip);
 
-void draw_triangle(Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c,
-                   std::int32_t item, const std::optional<ScreenClip>& clip);
+/// As much of a triangle as lies in the rows.
+void draw_triangle(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b,
+                   const ScreenPoint& c, std::int32_t item, const std::optional<ScreenClip>& clip);
 
 }  // namespace breccia

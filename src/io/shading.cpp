@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "exec/tasks.hpp"
+
 namespace breccia {
 namespace {
 
@@ -114,7 +116,7 @@ Vec3 lamp_direction() {
 }
 
 Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
-            const std::optional<ScreenClip>& clip, float relief) {
+            const std::optional<ScreenClip>& clip, float relief, int threads) {
   const Vec3 lamp = lamp_direction();
   Lighting lighting{static_cast<float>(lamp.x), static_cast<float>(lamp.y),
                     static_cast<float>(lamp.z), 1.0F};
@@ -125,26 +127,29 @@ Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
   const auto width = static_cast<std::size_t>(canvas.width);
   Image image{canvas.width, canvas.height, {}};
   image.rgb.assign(3 * width * static_cast<std::size_t>(canvas.height), 255);
-  std::vector<float> light(width), gloss(width);
-  Directions directions(width);
-  for (int y = 0; y < canvas.height; ++y) {
-    const Stretch stretch = covered(canvas, y);
-    if (stretch.first > stretch.last) continue;
-    open_sky(canvas, y, stretch, relief, light);
-    find_directions(canvas, looks, y, stretch, directions);
-    add_lamp(lighting, stretch, directions, light, gloss);
-    const std::int32_t* const item = &canvas.item[canvas.row(y)];
-    std::uint8_t* const row = &image.rgb[3 * width * static_cast<std::size_t>(y)];
-    for (int x = stretch.first; x <= stretch.last; ++x) {
-      if (item[x] == Canvas::none) continue;
-      const Color& color = looks[static_cast<std::size_t>(item[x])].color;
-      const float factor = light[static_cast<std::size_t>(x)];
-      const float shine = gloss[static_cast<std::size_t>(x)];
-      row[3 * x] = byte_of(factor * color.red + shine);
-      row[3 * x + 1] = byte_of(factor * color.green + shine);
-      row[3 * x + 2] = byte_of(factor * color.blue + shine);
+  constexpr int band = 16;  // rows that one thread takes
+  for_each_task(threads, (canvas.height + band - 1) / band, [&](int number) {
+    std::vector<float> light(width), gloss(width);
+    Directions directions(width);
+    for (int y = band * number; y < std::min(canvas.height, band * (number + 1)); ++y) {
+      const Stretch stretch = covered(canvas, y);
+      if (stretch.first > stretch.last) continue;
+      open_sky(canvas, y, stretch, relief, light);
+      find_directions(canvas, looks, y, stretch, directions);
+      add_lamp(lighting, stretch, directions, light, gloss);
+      const std::int32_t* const item = &canvas.item[canvas.row(y)];
+      std::uint8_t* const row = &image.rgb[3 * width * static_cast<std::size_t>(y)];
+      for (int x = stretch.first; x <= stretch.last; ++x) {
+        if (item[x] == Canvas::none) continue;
+        const Color& color = looks[static_cast<std::size_t>(item[x])].color;
+        const float factor = light[static_cast<std::size_t>(x)];
+        const float shine = gloss[static_cast<std::size_t>(x)];
+        row[3 * x] = byte_of(factor * color.red + shine);
+        row[3 * x + 1] = byte_of(factor * color.green + shine);
+        row[3 * x + 2] = byte_of(factor * color.blue + shine);
+      }
     }
-  }
+  });
   return image;
 }
 

@@ -22,10 +22,11 @@ Vec3 lamp_direction();
 /// around a pixel (after C. Boucheny's eye-dome lighting, 2009), white where nothing is.
 /// `relief` is the difference in depth that counts as deep  [pixels]
 Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
-            const std::optional<ScreenClip>& clip, float relief);
+            const std::optional<ScreenClip>& clip, float relief, int threads);
 
 /// Softens the steps on the outlines of spheres: a pixel that an outline crosses takes part of the
 /// colour of either side, by the distance of its centre from the outline.
-void smooth_outlines(Image& image, const Canvas& canvas, std::span<const ItemLook> looks);
+void smooth_outlines(Image& image, const Canvas& canvas, std::span<const ItemLook> looks,
+                     int threads);
 
 }  // namespace breccia

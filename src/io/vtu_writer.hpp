@@ -1,19 +1,99 @@
 #pragma once
-// One unstructured grid as a VTK XML file: appended raw data, UInt64 headers, zlib blocks.
+// Frames as unstructured grids in VTK XML files: appended raw data, UInt64 headers, zlib blocks.
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "io/frame.hpp"
 
 namespace breccia {
 
-/// What the cells of a file are.
-enum class VtuCells : std::uint8_t { vertices = 1, lines = 3, triangles = 5 };  // VTK's numbers
+/// The files of one frame.
+struct FrameContents {
+  double time = 0.0;   ///<  [s]
+  std::string points;  ///< vertices or triangles, with every field of points and `radius`
+  std::string lines;   ///< lines with their fields
+};
 
-/// Content of a .vtu file with the frame's points and the cells asked for, their fields with units
-/// (vtkDataArray's UNITS_LABEL), and TIME [s], CYCLE and the names of groups as field data.
-/// Vertices and triangles bring the fields of points along, and `radius`.
-std::string vtu_content(const Frame& frame, VtuCells cells);
+/// What a block is made of.
+enum class Carrier : std::uint8_t { points, lines, triangles, none };
+
+/// The files of a frame as blocks, each of which is compressed by itself: by any thread, on any
+/// rank. Their list follows from what the whole frame has, not from the part that is here.
+class FrameBlocks {
+ public:
+  /// One array of a file.
+  struct Array {
+    Carrier carrier;
+    std::size_t width;               ///< bytes an item
+    std::size_t bytes;               ///< in the whole
+    std::span<const std::byte> own;  ///< values of the items of this part
+    /// Without a carrier: what stands there from byte `begin` on.
+    std::function<void(std::size_t begin, std::span<std::byte> to)> make;
+    std::size_t first_block;
+  };
+  /// A piece of an array, before compression.
+  struct Block {
+    std::size_t array, begin, size;  ///<  [bytes]
+  };
+
+  /// Keeps views of the part. @throws InputError if fields do not fit its items
+  FrameBlocks(const Frame& part, const FramePlaces& places);
+  FrameBlocks(const FrameBlocks&) = delete;
+  FrameBlocks& operator=(const FrameBlocks&) = delete;
+
+  const std::vector<Block>& blocks() const { return blocks_; }
+  const Array& array_of(const Block& block) const { return arrays_[block.array]; }
+
+  /// The block of a whole frame, or of an array without a carrier, compressed.
+  /// @throws DeviceError for want of memory
+  std::string packed(const Block& block) const;
+  /// The files, from all blocks compressed.
+  FrameContents contents(const std::vector<std::string>& packed) const;
+
+ private:
+  /// The XML head of a file: texts and, after each but the last, the place of an array.
+  struct Document {
+    std::vector<std::string> text{""};
+    std::vector<std::size_t> array;
+  };
+  enum class Cells : std::uint8_t { vertices = 1, lines = 3, triangles = 5 };  // VTK's numbers
+
+  void list(Document& document, Cells cells);
+  void list_field_data(Document& document);
+  void list_fields(Document& document, const std::vector<FrameField>& fields, Carrier carrier);
+  void list_field(Document& document, const std::string& name, const std::string& unit,
+                  std::size_t width, const std::vector<float>& values, Carrier carrier);
+  void list_cells(Document& document, Cells cells);
+  /// Notes an array in a document.
+  void place(Document& document, std::size_t array, const char* type, const std::string& attributes,
+             const std::string& unit);
+  std::size_t add(Array array);
+  template <class Number>
+  std::size_t add_carried(Carrier carrier, std::size_t width, std::span<const Number> own);
+  template <class Number, class Value>
+  std::size_t add_made(std::size_t count, const Value& value);
+  std::size_t items(Carrier carrier) const;
+  std::size_t own_items(Carrier carrier) const;
+  std::string content(const Document& document, const std::vector<std::string>& packed) const;
+
+  const Frame& part_;
+  const FramePlaces& places_;
+  std::vector<float> coordinates_, radius_;
+  std::vector<Array> arrays_;
+  std::vector<Block> blocks_;
+  std::size_t points_ = 0, time_ = 0, step_ = 0;  ///< arrays that both files have
+  Document elements_, links_;
+};
+
+/// One block as zlib packs it. @throws DeviceError for want of memory
+std::string packed_block(std::span<const std::byte> bytes);
+
+/// The files of a frame that is whole, by so many threads.
+FrameContents contents_of(const Frame& whole, int threads = 1);
 
 }  // namespace breccia

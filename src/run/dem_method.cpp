@@ -40,6 +40,9 @@ class DemMethod final : public Method {
   std::uint64_t state_hash() override { return dem::state_hash(world_.whole()); }
   void verify() override { dem::verify(world_.whole()); }
   Frame frame() override { return dem_frame(world_.whole()); }
+  FrameOutput frame_output(const FrameWish& wish) override {
+    return breccia::frame_output(frame(), wish, world_.part().exec.threads);
+  }
   std::unique_ptr<Method> snapshot() override {
     return world_.apart([this] { return std::unique_ptr<Method>(new DemMethod(*this)); });
   }

@@ -9,7 +9,7 @@
 #include "core/energy.hpp"
 #include "core/step_clock.hpp"
 #include "io/checkpoint.hpp"
-#include "io/frame.hpp"
+#include "run/frame_output.hpp"
 
 namespace breccia {
 
@@ -54,6 +54,10 @@ class Method {
   /// Looks for numbers that went wrong. @throws NumericsError naming step, time and element
   virtual void verify() = 0;
   virtual Frame frame() = 0;
+  /// The files and the picture of this moment.
+  virtual FrameOutput frame_output(const FrameWish& wish) {
+    return breccia::frame_output(frame(), wish, 1);
+  }
   /// A copy of the state as it is now, for another thread to look at while this one goes on. Null
   /// if one must look now: on the host, on several ranks, or for want of memory.
   virtual std::unique_ptr<Method> snapshot() { return nullptr; }

@@ -176,27 +176,31 @@ void Recorder::write_frame(Method& method, Background& background) {
   if (state_.extent || !config_.output.pictures)  // else it belongs to the record's state
     later = method.snapshot();
   if (later != nullptr)
-    background.add([this, later, number] { write(later->frame(), number); });
+    background.add([this, later, number] { write_frame_of(*later, number); });
   else
-    write(method.frame(), number);
+    write_frame_of(method, number);
   log_.write(Level::info, "frame", method.steps(),
              fmt::format("frame {} at {:.9g} s", number, method.time()));
   ++frame_count_;
 }
 
-void Recorder::write(const Frame& frame, std::int64_t number) {
-  if (series_) series_->write(frame);
+void Recorder::write_frame_of(Method& method, std::int64_t number) {
+  FrameWish wish{config_.output.fields, std::nullopt};
+  if (config_.output.pictures) {
+    RenderOptions& options = wish.picture.emplace();
+    options.field = config_.output.color;
+    options.view = config_.output.view;
+    options.width = config_.output.width;
+    options.height = config_.output.height;
+    options.extent = state_.extent;
+    if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
+    options.title = config_.title;
+  }
+  const FrameOutput output = method.frame_output(wish);
+  if (series_) series_->write(output.files);
   if (!config_.output.pictures) return;
-  if (!state_.extent) state_.extent = bulk_extent(frame);
-  RenderOptions options;
-  options.field = config_.output.color;
-  options.view = config_.output.view;
-  options.width = config_.output.width;
-  options.height = config_.output.height;
-  options.extent = state_.extent;
-  if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
-  options.title = config_.title;
-  write_png(fmt::format("{}/{:04}.png", pictures_, number), render(frame, options));
+  if (!state_.extent) state_.extent = output.extent;
+  write_png(fmt::format("{}/{:04}.png", pictures_, number), output.png);
 }
 
 }  // namespace breccia

@@ -79,7 +79,7 @@ class Recorder {
  private:
   void write_row(Method& method);
   void write_frame(Method& method, Background& background);
-  void write(const Frame& frame, std::int64_t number);
+  void write_frame_of(Method& method, std::int64_t number);
   bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
 
   std::string pictures_;

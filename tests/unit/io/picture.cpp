@@ -411,12 +411,19 @@ TEST(picture, the_extent_of_the_first_frame_keeps_the_camera_of_a_series) {
   EXPECT_EQ(before.top, after.top);
 }
 
-TEST(picture, the_same_frame_gives_the_same_bits) {
-  const Frame frame = test::slab_scene();
+TEST(picture, the_same_frame_gives_the_same_bits_on_any_number_of_threads) {
+  Frame frame = test::slab_scene();
   RenderOptions options;
   options.clip = "x=0.1";
   options.show_links = true;
-  EXPECT_EQ(render(frame, options).rgb, render(frame, options).rgb);
+  for (const int threads : {1, 2, 5})
+    EXPECT_EQ(render(frame, options).rgb, render(frame, options, threads).rgb) << threads;
+  // Large triangles that lie across each other, among lines.
+  frame.radius.clear();
+  for (std::int32_t i = 0; i + 2000 < 12000; i += 7)
+    frame.triangles.insert(frame.triangles.end(), {i, i + 900, i + 2000});
+  for (const int threads : {2, 5})
+    EXPECT_EQ(render(frame, options).rgb, render(frame, options, threads).rgb) << threads;
 }
 
 TEST(picture, frames_with_nothing_or_nonsense_in_them_are_drawn) {
