@@ -27,16 +27,20 @@ struct Quantity {
                                   : 2) {}
 };
 
-/// Sum and range of a quantity; nothing read yet.
+/// Sum and range of a quantity; nothing read yet. The same bits in any order.
 struct Readings {
   ExactSum sum;
   double low = 1e300, high = -1e300;
+  Index low_at = -1, high_at = -1;  ///< where they were read; of equal numbers the last one
+  Index count = 0;
 
   Readings() = default;
-  BR_HD explicit Readings(double value) : sum(value), low(value), high(value) {}
+  /// @param at  number of the item in the whole model
+  BR_HD Readings(double value, Index at)
+      : sum(value), low(value), high(value), low_at(at), high_at(at), count(1) {}
 
-  /// By the word of the case: min, max, sum or mean of so many readings.
-  double reduced(const std::string& word, Index count) const {
+  /// By the word of the case: min, max, sum or mean.
+  double reduced(const std::string& word) const {
     if (word == "min") return low;
     if (word == "max") return high;
     return word == "sum" ? sum.value() : sum.value() / static_cast<double>(count);
@@ -44,8 +48,15 @@ struct Readings {
 };
 BR_HD inline Readings operator+(Readings a, const Readings& b) {
   a.sum.add(b.sum);
-  a.low = smaller(a.low, b.low);
-  a.high = larger(a.high, b.high);
+  if (!(a.low < b.low || (a.low == b.low && a.low_at > b.low_at))) {
+    a.low = b.low;
+    a.low_at = b.low_at;
+  }
+  if (!(a.high > b.high || (a.high == b.high && a.high_at > b.high_at))) {
+    a.high = b.high;
+    a.high_at = b.high_at;
+  }
+  a.count += b.count;
   return a;
 }
 

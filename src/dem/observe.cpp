@@ -32,27 +32,30 @@ struct HashElement {
   }
 };
 
-/// The lowest global id whose numbers are unsound, or the largest id there can be.
+/// The lowest global id whose numbers are unsound, or none.
 struct FindUnsound {
-  static constexpr GlobalId none = 0x7fffffff;
+  OwnedView owned;
   double dt;
   View<const GlobalId> id;
   View<const ElementState> state;
   BR_HD GlobalId operator()(Index e) const {
+    if (!owned(e)) return Unsound::none;
     const Vec3 x = state[e].position, v = state[e].velocity, spin = state[e].spin;
     const double radius = state[e].radius;
     const double travelled = dt * dt * dot(v, v);
     const double sum = x.x + x.y + x.z + dot(spin, spin);
     const bool finite = sum - sum == 0.0;            // false for NaN and infinity
     const bool slow = travelled <= radius * radius;  // false for NaN, too
-    return finite && slow ? none : id[e];
+    return finite && slow ? Unsound::none : id[e];
   }
 };
 
 /// What a probe reads.
 struct ReadProbe {
+  OwnedView owned;
   Quantity quantity;
   View<const Index> members;  ///< empty: all elements
+  View<const GlobalId> id;
   View<const ElementState> state;
   View<const Vec3> force;
   View<const double> mass, inertia, damage;
@@ -81,7 +84,8 @@ struct ReadProbe {
     return 0.5 * mass[e] * dot(s.velocity, s.velocity) + 0.5 * inertia[e] * dot(s.spin, s.spin);
   }
   BR_HD Readings operator()(Index i) const {
-    return Readings(value(members.size > 0 ? members[i] : i));
+    const Index e = members.size > 0 ? members[i] : i;
+    return owned(e) ? Readings(value(e), id[e]) : Readings();
   }
 };
 
@@ -221,11 +225,12 @@ std::uint64_t state_hash(const World& w) {
               Sum{});
 }
 
-void verify(const World& w) {
+Unsound find_unsound(const World& w) {
   const Elements& e = w.elements;
-  const GlobalId bad = fold(w.exec, e.size(), FindUnsound::none,
-                            FindUnsound{w.last_dt, e.id.view(), e.state.view()}, Least{});
-  if (bad == FindUnsound::none) return;
+  const GlobalId bad =
+      fold(w.exec, e.size(), Unsound::none,
+           FindUnsound{w.domain.owned_view(), w.last_dt, e.id.view(), e.state.view()}, Least{});
+  if (bad == Unsound::none) return {};
   const Elements host = host_copy(e);
   const auto ids = host.id.host();
   const auto i = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
@@ -238,7 +243,12 @@ void verify(const World& w) {
       static_cast<long long>(w.step), w.time, bad, group.c_str(),
       norm(host.state.data()[i].velocity), host.state.data()[i].radius, w.last_dt,
       w.parameters.time.safety);
-  throw NumericsError(message);
+  return {bad, message};
+}
+
+void verify(const World& w) {
+  const Unsound bad = find_unsound(w);
+  if (bad.id != Unsound::none) throw NumericsError(bad.text);
 }
 
 std::vector<double> damage(const World& w) {
@@ -247,8 +257,23 @@ std::vector<double> damage(const World& w) {
   return values;
 }
 
-double probe(const World& w, const ProbeConfig& p) {
+namespace {
+
+Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
   const Elements& e = w.elements;
+  const Quantity quantity(p.quantity);
+  Buffer<double> lost(w.exec.space);
+  if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
+  return fold(
+      w.exec, p.on.empty() ? e.size() : members.size, Readings{},
+      ReadProbe{w.domain.owned_view(), quantity, members, e.id.view(), e.state.view(),
+                e.force.view(), e.mass.view(), e.inertia.view(), std::as_const(lost).view()},
+      Sum{});
+}
+
+}  // namespace
+
+double probe(const World& w, const ProbeConfig& p) {
   View<const Index> members{};
   if (!p.on.empty()) {
     const auto set = std::find_if(w.sets.begin(), w.sets.end(),
@@ -256,15 +281,16 @@ double probe(const World& w, const ProbeConfig& p) {
     if (set == w.sets.end()) throw InputError("probe " + p.name + ": there is no group " + p.on);
     members = set->members.view();
   }
-  const Quantity quantity(p.quantity);
-  Buffer<double> lost(w.exec.space);
-  if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
-  const Index count = p.on.empty() ? e.size() : members.size;
-  const Readings read = fold(w.exec, count, Readings{},
-                             ReadProbe{quantity, members, e.state.view(), e.force.view(),
-                                       e.mass.view(), e.inertia.view(), std::as_const(lost).view()},
-                             Sum{});
-  return read.reduced(p.reduce, count);
+  return read(w, p, members).reduced(p.reduce);
+}
+
+Readings read_own(World& part, const ProbeConfig& p) {
+  const auto set = std::find_if(part.sets.begin(), part.sets.end(),
+                                [&](const ElementSet& s) { return s.name == p.on; });
+  if (set == part.sets.end()) return read(part, p, {});
+  keep_here(set->here, part.domain, part.elements.id, std::as_const(set->members).host(), 1,
+            part.exec.space);
+  return read(part, p, std::as_const(set->here.places).view());
 }
 
 Counts count(const World& w) {

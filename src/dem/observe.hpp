@@ -1,6 +1,8 @@
 #pragma once
 // What a DEM run shows: hash, probes, counts, and whether its numbers are sound.
 
+#include "core/probe.hpp"
+#include "core/unsound.hpp"
 #include "dem/world.hpp"
 
 namespace breccia::dem {
@@ -9,15 +11,19 @@ namespace breccia::dem {
 /// A rank's is that of its own; the sum over all ranks is that of the whole.
 std::uint64_t state_hash(const World& w);
 
-/// @throws NumericsError naming the first element whose state is not finite or that moves more than
-/// its
-///         radius in a step
+/// The first element of its own whose state is not finite or that moves more than its radius in a
+/// step.
+Unsound find_unsound(const World& w);
+/// @throws NumericsError naming it
 void verify(const World& w);
 
 /// Share of each element's initial cohesive and interface links that are damaged or broken.  [-]
 std::vector<double> damage(const World& w);
 
 double probe(const World& w, const ProbeConfig& probe);
+/// What a probe reads of a rank's own elements; the sum over all ranks is what it reads of the
+/// whole.
+Readings read_own(World& part, const ProbeConfig& probe);
 
 /// Counts of broken links and the like.
 struct Counts {

@@ -13,6 +13,7 @@
 #include "dem/kernel_lanes.hpp"
 #include "dem/model.hpp"
 #include "domain/domain.hpp"
+#include "domain/set_here.hpp"
 #include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
 
@@ -58,7 +59,8 @@ inline constexpr Index sweep_tile = 256;
 /// A named set of elements that probes read: a body or a support.
 struct ElementSet {
   std::string name;
-  Buffer<Index> members;
+  Buffer<Index> members;  ///< in the whole model, ascending
+  SetHere here{};         ///< in a rank's part, for its probes
 };
 
 /// What has been booked for good: energies of contacts that ended, and the start of the ledger.

@@ -35,14 +35,15 @@ struct HashTriangle {
   }
 };
 
-/// The lowest global id whose numbers are unsound, or the largest id there can be.
+/// The lowest global id whose numbers are unsound, or none.
 struct FindUnsound {
-  static constexpr GlobalId none = 0x7fffffff;
+  OwnedView owned;
   double dt;
   View<const GlobalId> id;
   View<const TriangleNodes> nodes;
   View<const Mat2> shape_inverse;
   BR_HD GlobalId operator()(Index t) const {
+    if (!owned(t)) return Unsound::none;
     Vec2 x[3], v[3];
     split(nodes[t], x, v);
     const double area = cross(x[1] - x[0], x[2] - x[0]);
@@ -53,7 +54,7 @@ struct FindUnsound {
       sum += x[k].x + x[k].y + v[k].x + v[k].y;
     }
     const bool finite = sum - sum == 0.0;
-    return finite && jacobian > 0.0 && dt * dt * fastest <= area ? none : id[t];
+    return finite && jacobian > 0.0 && dt * dt * fastest <= area ? Unsound::none : id[t];
   }
 };
 
@@ -77,8 +78,10 @@ class Pieces {
 
 /// What a probe reads.
 struct ReadProbe {
+  OwnedView owned;
   Quantity quantity;
   View<const Index> members;  ///< corners; empty: all
+  View<const GlobalId> id;
   View<const TriangleNodes> nodes;
   View<const Corners> force;
   View<const double> mass, damage;
@@ -105,9 +108,22 @@ struct ReadProbe {
     return 0.5 * mass[n / 3] * dot(node.velocity, node.velocity);
   }
   BR_HD Readings operator()(Index i) const {
-    return Readings(value(members.size > 0 ? members[i] : i));
+    const Index n = members.size > 0 ? members[i] : i;
+    if (!owned(n / 3)) return Readings();
+    return Readings(value(n), 3 * id[n / 3] + n % 3);
   }
 };
+
+Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members) {
+  Buffer<double> lost(w.exec.space);
+  const Quantity quantity(p.quantity);
+  if (quantity.kind == Quantity::Kind::damage) copy_to(lost, damage(w));
+  const Triangles& t = w.triangles;
+  return fold(w.exec, p.on.empty() ? 3 * t.size() : members.size(), Readings{},
+              ReadProbe{w.domain.owned_view(), quantity, members.view(), t.id.view(),
+                        t.nodes.view(), t.force.view(), t.mass.view(), std::as_const(lost).view()},
+              Sum{});
+}
 
 /// What rules a triangle's step, and the triangle.
 struct Ruling {
@@ -132,12 +148,13 @@ std::uint64_t state_hash(const World& w) {
               HashTriangle{w.domain.owned_view(), t.id.view(), t.nodes.view()}, Sum{});
 }
 
-void verify(const World& w) {
+Unsound find_unsound(const World& w) {
   const Triangles& t = w.triangles;
-  const GlobalId bad =
-      fold(w.exec, t.size(), FindUnsound::none,
-           FindUnsound{w.last_dt, t.id.view(), t.nodes.view(), t.shape_inverse.view()}, Least{});
-  if (bad == FindUnsound::none) return;
+  const GlobalId bad = fold(w.exec, t.size(), Unsound::none,
+                            FindUnsound{w.domain.owned_view(), w.last_dt, t.id.view(),
+                                        t.nodes.view(), t.shape_inverse.view()},
+                            Least{});
+  if (bad == Unsound::none) return {};
   const Triangles host = host_copy(t);
   const auto ids = host.id.host();
   const auto i = static_cast<Index>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
@@ -154,7 +171,12 @@ void verify(const World& w) {
       w.groups[static_cast<std::size_t>(host.group.data()[i])].c_str(),
       jacobian > 0.0 ? "too fast or not finite" : "inside out", jacobian, norm(v[0]), w.last_dt,
       w.parameters.time.safety);
-  throw NumericsError(message);
+  return {bad, message};
+}
+
+void verify(const World& w) {
+  const Unsound bad = find_unsound(w);
+  if (bad.id != Unsound::none) throw NumericsError(bad.text);
 }
 
 std::vector<double> damage(const World& w) {
@@ -195,16 +217,15 @@ double probe(const World& w, const ProbeConfig& p) {
       throw InputError("probe " + p.name + ".on: there is no body or support \"" + p.on + "\"");
     copy_to(members, set->nodes);
   }
-  Buffer<double> lost(w.exec.space);
-  const Quantity quantity(p.quantity);
-  if (quantity.kind == Quantity::Kind::damage) copy_to(lost, damage(w));
-  const Triangles& t = w.triangles;
-  const Index count = p.on.empty() ? 3 * t.size() : members.size();
-  const Readings read = fold(w.exec, count, Readings{},
-                             ReadProbe{quantity, std::as_const(members).view(), t.nodes.view(),
-                                       t.force.view(), t.mass.view(), std::as_const(lost).view()},
-                             Sum{});
-  return read.reduced(p.reduce, count);
+  return read(w, p, members).reduced(p.reduce);
+}
+
+Readings read_own(World& part, const ProbeConfig& p) {
+  const auto set = std::find_if(part.sets.begin(), part.sets.end(),
+                                [&](const NodeSet& s) { return s.name == p.on; });
+  if (set == part.sets.end()) return read(part, p, Buffer<Index>(part.exec.space));
+  keep_here(set->here, part.domain, part.triangles.id, set->nodes, 3, part.exec.space);
+  return read(part, p, set->here.places);
 }
 
 double mode_of(const Joints& joints, Index i) {

@@ -2,6 +2,8 @@
 // What an FDEM run shows: hash, probes, counts, cracks, fragments, and whether its numbers are
 // sound.
 
+#include "core/probe.hpp"
+#include "core/unsound.hpp"
 #include "fdem/world.hpp"
 
 namespace breccia::fdem {
@@ -10,8 +12,10 @@ namespace breccia::fdem {
 /// A rank's is that of its own; the sum over all ranks is that of the whole.
 std::uint64_t state_hash(const World& w);
 
-/// @throws NumericsError naming the first triangle that is inside out, not finite, or moves more
-/// than its size in a step
+/// The first triangle of its own that is inside out, not finite, or moves more than its size in a
+/// step.
+Unsound find_unsound(const World& w);
+/// @throws NumericsError naming it
 void verify(const World& w);
 
 /// Largest damage of the joints of each triangle.  [-]
@@ -21,6 +25,9 @@ std::vector<double> damage(const World& w);
 std::vector<Sym2> stresses(const World& w);
 
 double probe(const World& w, const ProbeConfig& probe);
+/// What a probe reads of a rank's own triangles; the sum over all ranks is what it reads of the
+/// whole.
+Readings read_own(World& part, const ProbeConfig& probe);
 
 /// Share of sliding in what a joint has spent: 0 opening, 1 sliding  [-]
 double mode_of(const Joints& joints, Index i);

@@ -9,6 +9,7 @@
 #include "core/step_clock.hpp"
 #include "core/travel.hpp"
 #include "domain/domain.hpp"
+#include "domain/set_here.hpp"
 #include "exec/lanes.hpp"
 #include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
@@ -22,7 +23,8 @@ namespace breccia::fdem {
 /// A named set of corners that probes read: a body, a support or a line of the mesh.
 struct NodeSet {
   std::string name;
-  std::vector<Index> nodes;  ///< 3 triangle + corner, ascending
+  std::vector<Index> nodes;  ///< 3 triangle + corner, ascending, in the whole mesh
+  SetHere here{};            ///< in a rank's part, for its probes
 };
 
 /// Where the triangles that can touch stood at the last search, and how far each may go from there,

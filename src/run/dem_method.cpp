@@ -33,12 +33,16 @@ class DemMethod final : public Method {
     return dem::balance(world_.ledger(), all, steps());
   }
   std::vector<double> probes() override {
+    if (!world_.alone()) return read_by_all(world_, probes_, answer());
     std::vector<double> values;
     for (const ProbeConfig& probe : probes_) values.push_back(dem::probe(world_.whole(), probe));
     return values;
   }
   std::uint64_t state_hash() override { return dem::state_hash(world_.whole()); }
-  void verify() override { dem::verify(world_.whole()); }
+  void verify() override {
+    if (world_.alone()) return dem::verify(world_.whole());
+    verify_all(world_, answer());
+  }
   Frame frame() override { return dem_frame(world_.whole()); }
   FrameOutput frame_output(const FrameWish& wish) override {
     return breccia::frame_output(frame(), wish, world_.part().exec.threads);
@@ -128,10 +132,14 @@ class DemMethod final : public Method {
   }
   /// Answers for a rank's part.
   SharedWorld<dem::World>::Answer answer() const {
-    return [](dem::World& part, const Message& question) -> Message {
+    return [this](dem::World& part, const Message& question) -> Message {
       switch (look_of(question)) {
         case Look::energy:
           return as_message(energies_of_part(part));
+        case Look::probes:
+          return readings_of_part(part, probes_);
+        case Look::soundness:
+          return soundness_of_part(part);
       }
       return {};
     };

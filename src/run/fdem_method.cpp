@@ -58,12 +58,16 @@ class FdemMethod final : public Method {
     return fdem::energies(world_.ledger(), all).balance;
   }
   std::vector<double> probes() override {
+    if (!world_.alone()) return read_by_all(world_, probes_, answer());
     std::vector<double> values;
     for (const ProbeConfig& p : probes_) values.push_back(fdem::probe(world_.whole(), p));
     return values;
   }
   std::uint64_t state_hash() override { return fdem::state_hash(world_.whole()); }
-  void verify() override { fdem::verify(world_.whole()); }
+  void verify() override {
+    if (world_.alone()) return fdem::verify(world_.whole());
+    verify_all(world_, answer());
+  }
   Frame frame() override { return fdem_frame(world_.whole()); }
   FrameOutput frame_output(const FrameWish& wish) override {
     return breccia::frame_output(frame(), wish, world_.part().exec.threads);
@@ -176,10 +180,14 @@ class FdemMethod final : public Method {
 
   /// Answers for a rank's part.
   SharedWorld<fdem::World>::Answer answer() const {
-    return [](fdem::World& part, const Message& question) -> Message {
+    return [this](fdem::World& part, const Message& question) -> Message {
       switch (look_of(question)) {
         case Look::energy:
           return as_message(energies_of_part(part));
+        case Look::probes:
+          return readings_of_part(part, probes_);
+        case Look::soundness:
+          return soundness_of_part(part);
       }
       return {};
     };

@@ -3,13 +3,17 @@
 // that together. Nothing else travels.
 
 #include <utility>
+#include <vector>
 
+#include "core/probe.hpp"
+#include "core/unsound.hpp"
+#include "exec/error.hpp"
 #include "run/shared_world.hpp"
 
 namespace breccia {
 
 /// What rank 0 may ask of a part; the first byte of its question.
-enum class Look : std::uint8_t { energy };
+enum class Look : std::uint8_t { energy, probes, soundness };
 
 inline Message question(Look look) {
   return {static_cast<std::byte>(look)};
@@ -58,6 +62,59 @@ auto held_by_all(SharedWorld<World>& world, const typename SharedWorld<World>::A
     add(world.ledger(), part.booked);
   }
   return all;
+}
+
+/// What all probes read of a rank's part.
+template <class World>
+Message readings_of_part(World& part, const std::vector<ProbeConfig>& probes) {
+  Message message;
+  for (const ProbeConfig& probe : probes) {
+    const Message read = as_message(read_own(part, probe));
+    message.insert(message.end(), read.begin(), read.end());
+  }
+  return message;
+}
+/// And of all parts together: the values of the probes.
+template <class World>
+std::vector<double> read_by_all(SharedWorld<World>& world, const std::vector<ProbeConfig>& probes,
+                                const typename SharedWorld<World>::Answer& answer) {
+  std::vector<Readings> all(probes.size());
+  for (const Message& message : world.ask(question(Look::probes), answer))
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Readings read;
+      std::memcpy(&read, message.data() + i * sizeof read, sizeof read);
+      all[i] = all[i] + read;
+    }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < all.size(); ++i) values.push_back(all[i].reduced(probes[i].reduce));
+  return values;
+}
+
+/// The first unsound element of a rank's part, or nothing.
+template <class World>
+Message soundness_of_part(const World& part) {
+  const Unsound bad = find_unsound(part);
+  Message message;
+  if (bad.id == Unsound::none) return message;
+  message = as_message(bad.id);
+  const auto* const text = reinterpret_cast<const std::byte*>(bad.text.data());
+  message.insert(message.end(), text, text + bad.text.size());
+  return message;
+}
+/// @throws NumericsError naming the first of the whole
+template <class World>
+void verify_all(SharedWorld<World>& world, const typename SharedWorld<World>::Answer& answer) {
+  Unsound first;
+  for (const Message& message : world.ask(question(Look::soundness), answer)) {
+    if (message.empty()) continue;
+    GlobalId id = Unsound::none;
+    std::memcpy(&id, message.data(), sizeof id);
+    if (id >= first.id) continue;
+    first.id = id;
+    first.text.assign(reinterpret_cast<const char*>(message.data()) + sizeof id,
+                      message.size() - sizeof id);
+  }
+  if (first.id != Unsound::none) throw NumericsError(first.text);
 }
 
 }  // namespace breccia
