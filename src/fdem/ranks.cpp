@@ -430,6 +430,7 @@ void migrate(World& w) {
 void rebalance(World& w) {
   if (!is_uneven(w.domain)) return;
   const StageTime timed(w.exec, "migration");
+  // Otherwise the way since the last search would be taken off what comes next.
   const Vec2 drift = w.reach.drift.velocity;
   w.domain.drift({drift.x, drift.y, 0.0}, w.time);
   Mesh mesh(w, w.exec.space);

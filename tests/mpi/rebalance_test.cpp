@@ -68,6 +68,36 @@ TEST(Rebalance, leaves_the_same_state_of_bodies_that_fly) {
   }
 }
 
+// Borders fly with the bodies, up to the moment of sharing: a way counted later than that would
+// look like one that all have gone since, and at the next search they would be shared out again.
+TEST(Rebalance, leaves_nothing_to_share_out_among_bodies_that_only_fly) {
+  Scene scene;
+  scene.material(30e9, 0.2, 2500.0);
+  scene.body("disc", prepare::ringed_disc({0.0, 0.0}, 0.02, 4e-3), 0, {100.0, 30.0});
+  simulate_ranks(3, 9, [&](Communicator& simulated) {
+    TimedRank ranks(simulated);
+    auto whole = scene.world();
+    DomainConfig config;
+    config.buffer = 0.02;
+    auto part = share_out(whole, ranks, config);
+    const std::int64_t searches = part.searches;
+    part.domain.pace.resume(ranks);
+    for (int i = 0; i < 50; ++i) {
+      step(part);
+      ranks.work(ranks.rank() == 0 ? 30.0 : 10.0);
+    }
+    part.domain.pace.pause(ranks);
+    ASSERT_EQ(part.searches, searches);
+    const Vec2 drift = part.reach.drift.velocity;
+    ASSERT_GT(norm(part.time * drift), 2.0 * part.domain.buffer);
+    rebalance(part);
+    EXPECT_EQ(part.domain.counts.cuts, 2);
+    EXPECT_EQ(part.domain.counts.migrations, 2);
+    find_couples(part);
+    EXPECT_EQ(part.domain.counts.migrations, 2);
+  });
+}
+
 TEST(Rebalance, is_left_out_where_borders_are_to_stay) {
   DomainConfig config;
   config.balance = false;
