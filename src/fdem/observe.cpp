@@ -256,15 +256,24 @@ std::vector<Crack> cracks(const World& w) {
 }
 
 Fragments fragments(const World& w) {
-  const Joints j = host_copy(w.joints);
+  std::vector<JointStage> stage;
+  copy_to(stage, w.joints.stage);
+  std::vector<std::uint8_t> broken;
+  for (const JointStage now : stage) broken.push_back(now == JointStage::broken ? 1 : 0);
+  return fragments(w, broken);
+}
+
+Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
+  std::vector<Index> edge_a, edge_b;
+  copy_to(edge_a, w.joints.edge_a);
+  copy_to(edge_b, w.joints.edge_b);
   std::vector<double> mass;
   copy_to(mass, w.triangles.mass);
   std::vector<EdgeJoints> edges;
   copy_to(edges, w.edges);
   Pieces pieces(mass.size());
-  for (Index i = 0; i < j.size(); ++i)
-    if (j.stage.data()[i] != JointStage::broken)
-      pieces.join(j.edge_a.data()[i] / 3, j.edge_b.data()[i] / 3);
+  for (std::size_t i = 0; i < broken.size(); ++i)
+    if (broken[i] == 0) pieces.join(edge_a[i] / 3, edge_b[i] / 3);
   for (std::size_t edge = 0; edge < w.across.size(); ++edge)
     if (edges[edge / 3].at[edge % 3] == edge_bonded)
       pieces.join(static_cast<Index>(edge / 3), w.across[edge] / 3);

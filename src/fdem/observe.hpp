@@ -50,6 +50,9 @@ struct Fragments {
   std::vector<double> mass;  ///< of each piece, falling  [kg/m]
 };
 Fragments fragments(const World& w);
+/// The same, where other joints are broken than the world knows.
+/// @param broken  1: of each joint
+Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken);
 
 /// Which term rules the time step now: elements, joints, contact or viscosity.
 const char* ruling_term(const World& w);

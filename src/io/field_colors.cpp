@@ -16,8 +16,6 @@ namespace {
 constexpr Color pale{0.84F, 0.83F, 0.81F}, dark{0.32F, 0.33F, 0.35F};
 constexpr std::size_t most_swatches = 9;
 
-enum class Carrier { points, lines, triangles };
-
 /// A field, or one component of it, that an option names.
 struct Selected {
   Carrier carrier;
@@ -318,6 +316,11 @@ bool has_field(const Frame& frame, const std::string& field) {
   return field.empty() || find(frame, field).has_value();
 }
 
+bool colors_lines(const Frame& frame, const std::string& field) {
+  const std::optional<Selected> selected = find(frame, field);
+  return selected && selected->carrier == Carrier::lines;
+}
+
 Coloring color_frame(const Frame& frame, const std::string& field,
                      const std::optional<ValueRange>& range) {
   Coloring coloring;
@@ -351,6 +354,8 @@ Coloring color_frame(const Frame& frame, const std::string& field,
       coloring.lines = std::move(colors);
       if (field == "state") coloring.broken_lines.clear();
       std::fill(coloring.points.begin(), coloring.points.end(), pale);
+      break;
+    case Carrier::none:
       break;
     case Carrier::triangles:
       coloring.triangles = std::move(colors);

@@ -10,6 +10,9 @@
 
 namespace breccia {
 
+/// What a quantity is given for.
+enum class Carrier : std::uint8_t { points, lines, triangles, none };
+
 /// A named quantity, one value or vector an item.
 struct FrameField {
   std::string name;  ///< "damage", "velocity", ...
@@ -43,5 +46,11 @@ struct FramePlaces {
 
 /// Places of a frame that is whole.
 FramePlaces places_in(const Frame& whole);
+
+/// What one rank has of a frame; alone it is the whole.
+struct FramePart {
+  Frame frame;
+  FramePlaces places;
+};
 
 }  // namespace breccia

@@ -57,6 +57,9 @@ Extent bulk_extent(const Frame& frame);
 /// Whether `field` of RenderOptions names something this frame has.
 bool has_field(const Frame& frame, const std::string& field);
 
+/// Whether a picture by this field shows the lines for their colours.
+bool colors_lines(const Frame& frame, const std::string& field);
+
 /// Draws the frame: parallel projection, shaded spheres, lines and triangles, colour bar, scale
 /// bar, title with time. The first frame of a run gives the extent of its whole series:
 ///

@@ -19,9 +19,6 @@ struct FrameContents {
   std::string lines;   ///< lines with their fields
 };
 
-/// What a block is made of.
-enum class Carrier : std::uint8_t { points, lines, triangles, none };
-
 /// The files of a frame as blocks, each of which is compressed by itself: by any thread, on any
 /// rank. Their list follows from what the whole frame has, not from the part that is here.
 class FrameBlocks {

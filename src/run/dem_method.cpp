@@ -43,9 +43,9 @@ class DemMethod final : public Method {
     if (world_.alone()) return dem::verify(world_.whole());
     verify_all(world_, answer());
   }
-  Frame frame() override { return dem_frame(world_.whole()); }
+  Frame frame() override { return dem_frame(world_.whole()).frame; }
   FrameOutput frame_output(const FrameWish& wish) override {
-    return breccia::frame_output(frame(), wish, world_.part().exec.threads);
+    return seen_by_all(world_, wish, part_of_frame);
   }
   std::unique_ptr<Method> snapshot() override {
     return world_.apart([this] { return std::unique_ptr<Method>(new DemMethod(*this)); });
@@ -130,10 +130,13 @@ class DemMethod final : public Method {
       : Method(), world_(other.world_), probes_(other.probes_), range_(other.range_) {
     world_.forget_timers();
   }
+  static FramePart part_of_frame(const dem::World& part) { return dem_frame(part); }
   /// Answers for a rank's part.
   SharedWorld<dem::World>::Answer answer() const {
     return [this](dem::World& part, const Message& question) -> Message {
       switch (look_of(question)) {
+        case Look::frame:
+          return share_of_frame(part_of_frame(part), part, question);
         case Look::energy:
           return as_message(energies_of_part(part));
         case Look::probes:

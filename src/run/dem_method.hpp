@@ -16,6 +16,7 @@ std::unique_ptr<Method> make_dem_method(const dem::Config& config, const dem::Mo
 
 /// Elements as spheres with velocity, spin, group and damage; links as lines with kind, state and
 /// force.
-Frame dem_frame(const dem::World& w);
+/// Of a rank's part of a world, that part of the frame: all ranks make it at once.
+FramePart dem_frame(const dem::World& w);
 
 }  // namespace breccia

@@ -68,9 +68,10 @@ class FdemMethod final : public Method {
     if (world_.alone()) return fdem::verify(world_.whole());
     verify_all(world_, answer());
   }
-  Frame frame() override { return fdem_frame(world_.whole()); }
+  Frame frame() override { return fdem_frame(world_.whole()).frame; }
   FrameOutput frame_output(const FrameWish& wish) override {
-    return breccia::frame_output(frame(), wish, world_.part().exec.threads);
+    return seen_by_all(world_, wish,
+                       [this](const fdem::World& part) { return part_of_frame(part); });
   }
   std::unique_ptr<Method> snapshot() override {
     return world_.apart([this] { return std::unique_ptr<Method>(new FdemMethod(*this)); });
@@ -178,10 +179,16 @@ class FdemMethod final : public Method {
     Vec2 begin, end;  ///<  [m]
   };
 
+  FramePart part_of_frame(const fdem::World& part) const {
+    const bool first = !part.domain.alone() && part.domain.ranks->rank() == 0;
+    return fdem_frame(part, first ? &world_.mesh() : nullptr);
+  }
   /// Answers for a rank's part.
   SharedWorld<fdem::World>::Answer answer() const {
     return [this](fdem::World& part, const Message& question) -> Message {
       switch (look_of(question)) {
+        case Look::frame:
+          return share_of_frame(part_of_frame(part), part, question);
         case Look::energy:
           return as_message(energies_of_part(part));
         case Look::probes:
@@ -219,77 +226,6 @@ class FdemMethod final : public Method {
 std::unique_ptr<Method> make_fdem_method(const fdem::Config& config, const fdem::Model& model,
                                          const Exec& exec, Communicator* ranks) {
   return std::make_unique<FdemMethod>(config, model, exec, ranks);
-}
-
-Frame fdem_frame(const fdem::World& w) {
-  const fdem::Triangles t = host_copy(w.triangles);
-  Frame f;
-  f.step = w.step;
-  f.time = w.time;
-  f.groups = w.groups;
-  FrameField velocity{"velocity", "m/s", 3, {}};
-  const auto point = [&](const fdem::NodeState& n) {
-    f.position.push_back({n.position.x, n.position.y, 0.0});
-    for (const double c : {n.velocity.x, n.velocity.y, 0.0})
-      velocity.values.push_back(static_cast<float>(c));
-  };
-  const std::vector<Sym2> stress = fdem::stresses(w);
-  const std::vector<double> lost = fdem::damage(w);
-  const fdem::Fragments pieces = fdem::fragments(w);
-  const char* const names[] = {"stress_xx", "stress_yy", "stress_xy", "pressure",
-                               "damage",    "group",     "material",  "fragment"};
-  for (const char* name : names) {
-    const std::string text = name;
-    const bool is_stress = text.starts_with("stress") || text == "pressure";
-    f.triangle_fields.push_back({name, is_stress ? "Pa" : "-", 1, {}});
-  }
-  for (Index i = 0; i < t.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    for (const fdem::NodeState& n : t.nodes.data()[i].at) {
-      f.triangles.push_back(static_cast<std::int32_t>(f.position.size()));
-      point(n);
-    }
-    const double values[] = {stress[k].xx,
-                             stress[k].yy,
-                             stress[k].xy,
-                             -0.5 * (stress[k].xx + stress[k].yy),
-                             lost[k],
-                             static_cast<double>(t.group.data()[i]),
-                             static_cast<double>(t.material.data()[i]),
-                             static_cast<double>(pieces.of[k])};
-    for (std::size_t q = 0; q < f.triangle_fields.size(); ++q)
-      f.triangle_fields[q].values.push_back(static_cast<float>(values[q]));
-  }
-  if (w.domain.config.show) {
-    FrameField rank{"rank", "-", 1, {}};
-    for (const fdem::TriangleNodes& nodes : t.nodes.host())
-      rank.values.push_back(static_cast<float>(w.domain.partition.owner(fdem::centroid(nodes))));
-    f.triangle_fields.push_back(std::move(rank));
-  }
-
-  FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
-  const fdem::Joints j = host_copy(w.joints);
-  const View<const fdem::NodeState> nodes = fdem::by_number(std::as_const(t.nodes).view());
-  for (Index i = 0; i < j.size(); ++i) {
-    const fdem::JointStage stage = j.stage.data()[i];
-    if (!fdem::is_damaged(stage)) continue;
-    const fdem::JointEnds e = fdem::JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
-    for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}}) {
-      const fdem::NodeState &a = nodes[on_a], &b = nodes[on_b];
-      f.lines.push_back(static_cast<std::int32_t>(f.position.size()));
-      point({0.5 * (a.position + b.position), 0.5 * (a.velocity + b.velocity)});
-    }
-    mode.values.push_back(static_cast<float>(fdem::mode_of(j, i)));
-    double worst = stage == fdem::JointStage::broken ? 1.0 : 0.0;
-    for (const auto& p : j.points.data()[i].point) worst = std::max(worst, p.damage);
-    damage.values.push_back(static_cast<float>(worst));
-    time.values.push_back(static_cast<float>(j.broke_at.data()[i]));
-  }
-  f.point_fields.push_back(std::move(velocity));
-  f.line_fields.push_back(std::move(mode));
-  f.line_fields.push_back(std::move(damage));
-  f.line_fields.push_back(std::move(time));
-  return f;
 }
 
 }  // namespace breccia

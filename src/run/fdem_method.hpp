@@ -16,6 +16,8 @@ std::unique_ptr<Method> make_fdem_method(const fdem::Config& config, const fdem:
 
 /// Triangles with stress, damage, body, material and fragment; softened and broken joints as lines
 /// with mode, damage and time of break.
-Frame fdem_frame(const fdem::World& w);
+/// Of a rank's part of a world, that part of the frame: all ranks make it at once.
+/// @param mesh  on rank 0 of several: a whole world, for what does not change
+FramePart fdem_frame(const fdem::World& w, const fdem::World* mesh = nullptr);
 
 }  // namespace breccia

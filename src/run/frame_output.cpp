@@ -4,15 +4,16 @@
 
 namespace breccia {
 
+Image drawn(const Frame& whole, RenderOptions options, int threads, FrameOutput& output) {
+  if (!options.extent) options.extent = bulk_extent(whole);
+  output.extent = *options.extent;
+  return render(whole, options, threads);
+}
+
 FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads) {
   FrameOutput output;
   Image image;
-  if (wish.picture) {
-    RenderOptions options = *wish.picture;
-    if (!options.extent) options.extent = bulk_extent(whole);
-    output.extent = *options.extent;
-    image = render(whole, options, threads);
-  }
+  if (wish.picture) image = drawn(whole, *wish.picture, threads, output);
   const FramePlaces places = places_in(whole);
   std::optional<FrameBlocks> files;
   if (wish.files) files.emplace(whole, places);

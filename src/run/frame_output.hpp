@@ -25,4 +25,7 @@ struct FrameOutput {
 /// bytes for any number of them.
 FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads);
 
+/// The picture that is wished for; notes the extent.
+Image drawn(const Frame& whole, RenderOptions options, int threads, FrameOutput& output);
+
 }  // namespace breccia

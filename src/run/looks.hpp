@@ -8,12 +8,13 @@
 #include "core/probe.hpp"
 #include "core/unsound.hpp"
 #include "exec/error.hpp"
+#include "run/frame_parts.hpp"
 #include "run/shared_world.hpp"
 
 namespace breccia {
 
 /// What rank 0 may ask of a part; the first byte of its question.
-enum class Look : std::uint8_t { energy, probes, soundness };
+enum class Look : std::uint8_t { energy, frame, probes, soundness };
 
 inline Message question(Look look) {
   return {static_cast<std::byte>(look)};
@@ -115,6 +116,28 @@ void verify_all(SharedWorld<World>& world, const typename SharedWorld<World>::An
                       message.size() - sizeof id);
   }
   if (first.id != Unsound::none) throw NumericsError(first.text);
+}
+
+/// This rank's share of a frame that all make.
+template <class World>
+Message share_of_frame(FramePart part, const World& world, const Message& question) {
+  const FrameWish wish = wish_in(std::span(question).subspan(1));
+  return FrameOfParts(std::move(part), wish, *world.domain.ranks, world.exec.threads).share();
+}
+/// The frame of all parts together. Rank 0 only.
+/// @param make  a part's part of it
+template <class World, class Make>
+FrameOutput seen_by_all(SharedWorld<World>& world, const FrameWish& wish, const Make& make) {
+  const int threads = world.part().exec.threads;
+  if (world.part().domain.alone()) return frame_output(make(world.part()).frame, wish, threads);
+  Message frame = question(Look::frame);
+  put_wish(frame, wish);
+  std::optional<FrameOfParts> made;
+  const std::vector<Message> shares = world.ask(frame, [&](World& part, const Message&) {
+    made.emplace(make(part), wish, *part.domain.ranks, threads);
+    return made->share();
+  });
+  return made->output(shares);
 }
 
 }  // namespace breccia

@@ -67,6 +67,8 @@ class SharedWorld {
     }
     return whole_;
   }
+  /// All of it, where only what never changes is as it is now. Rank 0 only.
+  const World& mesh() const { return whole_; }
   /// What has been booked for good, but for what parts have booked since they told last. Rank 0
   /// only.
   auto& ledger() { return whole_.ledger; }

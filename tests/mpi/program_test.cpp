@@ -69,7 +69,7 @@ class ProgramOnRanks : public testing::Test {
   void compare(const std::string& name, int steps, const std::string& history) {
     const std::string shared = std::string(BR_SOURCE_DIR) + "/cases/" + name +
                                "/small.toml --threads 1 --no-progress "
-                               "--set output.pictures=false --set output.frames=1 --set "
+                               "--set output.frames=1 --set "
                                "checkpoint.keep=1 --set output.history=" +
                                history + " ";
     const std::string end = "--steps " + std::to_string(steps) + " ";
@@ -79,7 +79,7 @@ class ProgramOnRanks : public testing::Test {
       ASSERT_EQ(run(ranks, "run " + shared + end + "-o " + there), 0) << ranks;
       EXPECT_EQ(hash_in(there), hash_in(out("one"))) << ranks << " ranks";
       EXPECT_EQ(bytes_of(there + "/history.csv"), bytes_of(out("one") + "/history.csv"));
-      for (const char* files : {"/fields", "/checkpoints"})  // no diff of binary files
+      for (const char* files : {"/fields", "/pictures", "/checkpoints"})  // no diff of binary files
         EXPECT_TRUE(files_in(there + files) == files_in(out("one") + files)) << files << ranks;
     }
     const std::string half = "--steps " + std::to_string(steps / 2) + " ";
@@ -114,6 +114,21 @@ TEST_F(ProgramOnRanks, strong_benchmark_ends_in_the_state_of_one_process) {
   };
   EXPECT_EQ(hash_of(2, "strong_plate"), hash_of(1, "strong_plate"));
   EXPECT_NE(hash_of(2, "weak_plate"), hash_of(1, "weak_plate"));  // twice the plate
+}
+
+TEST_F(ProgramOnRanks, a_frame_that_cannot_be_written_ends_all_with_one_message) {
+  fs::create_directories(out("full") + "/pictures/0000.png.tmp");  // where a file should go
+  EXPECT_EQ(
+      run(3,
+          "run " + std::string(BR_SOURCE_DIR) +
+              "/cases/rc_slab/small.toml --threads 1 --no-progress --steps 5 -o " + out("full"),
+          out("told")),
+      3);
+  const std::string text = bytes_of(out("told"));
+  const std::size_t first = text.find("error: ");
+  ASSERT_NE(first, std::string::npos) << text;
+  EXPECT_NE(text.find("0000.png.tmp: cannot write"), std::string::npos) << text;
+  EXPECT_EQ(text.find("error: ", first + 1), std::string::npos) << text;
 }
 
 TEST_F(ProgramOnRanks, a_benchmark_of_one_rank_is_refused) {

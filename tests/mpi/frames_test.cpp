@@ -1,0 +1,233 @@
+// Frames that ranks make together have the bytes of those that one process makes.
+
+#include <gtest/gtest.h>
+
+#include "core/state_hash.hpp"
+#include "mpi/on_ranks.hpp"
+#include "run/frame_parts.hpp"
+
+namespace breccia {
+namespace {
+
+using namespace mpi_testing;
+
+FrameWish wish_for(const std::string& field) {
+  FrameWish wish;
+  RenderOptions& picture = wish.picture.emplace();
+  picture.field = field;
+  picture.width = 160;
+  picture.height = 120;
+  return wish;
+}
+
+/// Bytes of a frame's files and picture.
+struct Made {
+  std::string points, lines, png;
+  double time = 0.0;
+  Extent extent{};
+};
+Made made_of(FrameOutput output) {
+  return {output.files.points, output.files.lines, output.png, output.files.time, output.extent};
+}
+void expect_same(const std::vector<Made>& a, const std::vector<Made>& b, const std::string& where) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {  // no diff of binary files
+    EXPECT_TRUE(a[i].points == b[i].points) << where << ", elements of frame " << i;
+    EXPECT_TRUE(a[i].lines == b[i].lines) << where << ", lines of frame " << i;
+    EXPECT_TRUE(a[i].png == b[i].png) << where << ", picture of frame " << i;
+    EXPECT_EQ(a[i].time, b[i].time) << where;
+    EXPECT_EQ(a[i].extent.high.x, b[i].extent.high.x) << where;
+  }
+}
+
+std::int64_t broken_in(Method& method) {
+  for (const Fact& fact : method.facts())
+    if (fact.path.starts_with("fracture.broken_")) return static_cast<std::int64_t>(fact.value);
+  return 0;
+}
+
+/// A frame every so many steps, a field in the picture after the other. Whatever is made of the
+/// parts is what the whole world shows.
+template <class AScene>
+std::vector<Made> frames(int count, int threads, const AScene& scene, int steps, int every,
+                         const std::vector<std::string>& fields, bool breaks = false,
+                         Space space = Space::host) {
+  std::vector<Made> all;
+  led_on_ranks(
+      count, threads, scene,
+      [&](Method& method) {
+        for (std::size_t k = 0;; ++k) {
+          const FrameWish wish = wish_for(fields[k % fields.size()]);
+          all.push_back(made_of(method.frame_output(wish)));
+          const FrameContents whole = contents_of(method.frame());
+          EXPECT_TRUE(all.back().points == whole.points) << count << " ranks, frame " << k;
+          EXPECT_TRUE(all.back().lines == whole.lines) << count << " ranks, frame " << k;
+          if (method.steps() >= steps) {
+            if (breaks) {
+              EXPECT_GT(broken_in(method), 10) << "too few to tell";
+            }
+            return;
+          }
+          const std::int64_t next = method.steps() + every;
+          while (method.steps() < next) method.advance({1e300, next});
+        }
+      },
+      space);
+  return all;
+}
+
+template <class AScene>
+void compare(const AScene& scene, int steps, int every, const std::vector<std::string>& fields,
+             bool breaks) {
+  const std::vector<Made> expected = frames(1, 1, scene, steps, every, fields, breaks);
+  for (const int count : {2, 3, 5, 32})
+    expect_same(frames(count, 1 + count % 2, scene, steps, every, fields), expected,
+                std::to_string(count) + " ranks");
+}
+
+TEST(Frames, of_a_slab_that_breaks_are_the_same_by_parts) {
+  Slab piece = slab_piece();
+  compare(piece, 300, 60, {"damage", "force", "velocity_z", "id", "state", ""}, true);
+  piece.config.domain.show = true;  // partitions differ
+  EXPECT_NE(frames(2, 1, piece, 0, 1, {"rank"})[0].png, frames(3, 1, piece, 0, 1, {"rank"})[0].png);
+}
+
+TEST(Frames, of_triangles_that_break_are_the_same_by_parts) {
+  const std::vector<std::string> fields{"damage", "fragment", "velocity",
+                                        "mode",   "pressure", "time"};
+  for (const char* joints : {"intrinsic", "extrinsic"})
+    compare(impact(joints), 300, 60, fields, true);
+}
+
+TEST(Frames, of_triangles_that_fly_are_the_same_by_parts) {
+  compare(box(), 120, 40, {"group", "velocity_x"}, false);
+}
+
+TEST(Frames, are_the_same_where_kernels_have_memory_of_their_own) {
+  const Slab piece = slab_piece();
+  expect_same(frames(3, 2, piece, 120, 60, {"damage"}, false, Space::shadow),
+              frames(1, 1, piece, 120, 60, {"damage"}), "slab");
+  const Scene disc = impact("intrinsic");
+  expect_same(frames(3, 2, disc, 120, 60, {"damage"}, false, Space::shadow),
+              frames(1, 1, disc, 120, 60, {"damage"}), "triangles");
+}
+
+/// A frame with arrays of several blocks, items across their borders, and a last, shorter block.
+Frame large_frame(bool triangles) {
+  constexpr std::int32_t points = 70001;
+  Frame frame;
+  frame.step = 12;
+  frame.time = 3e-4;
+  frame.groups = {"slab", "rock"};
+  const auto number = [](std::uint64_t i) {  // between 0 and 1
+    return static_cast<double>(mixed(i) >> 11) / 9007199254740992.0;
+  };
+  FrameField velocity{"velocity", "m/s", 3, {}}, damage{"damage", "-", 1, {}};
+  for (std::int32_t i = 0; i < points; ++i) {
+    const auto k = static_cast<std::uint64_t>(4 * i);
+    frame.position.push_back({number(k), number(k + 1), number(k + 2)});
+    if (!triangles) frame.radius.push_back(0.01 + 1e-3 * number(k + 3));
+    damage.values.push_back(static_cast<float>(number(k + 3)));
+    for (int c = 0; c < 3; ++c) velocity.values.push_back(static_cast<float>(c * i % 1000));
+  }
+  FrameField force{"force", "N", 1, {}}, group{"group", "-", 1, {}};
+  for (std::int32_t i = 0; i + 20 < points; i += 2) {
+    frame.lines.insert(frame.lines.end(), {i, i + 20});
+    force.values.push_back(static_cast<float>(i));
+  }
+  for (std::int32_t i = 0; triangles && i + 2 < points; i += 3) {
+    frame.triangles.insert(frame.triangles.end(), {i, i + 1, i + 2});
+    group.values.push_back(static_cast<float>(i % 2));
+  }
+  frame.point_fields = {velocity, damage};
+  frame.line_fields = {force};
+  if (triangles) frame.triangle_fields = {group};
+  return frame;
+}
+
+/// The items that a rank has of a field.
+std::vector<float> taken(const FrameField& field, const std::vector<std::int32_t>& items) {
+  std::vector<float> values;
+  for (const std::int32_t i : items)
+    for (int c = 0; c < field.components; ++c)
+      values.push_back(field.values[static_cast<std::size_t>(i * field.components + c)]);
+  return values;
+}
+
+/// Items belong to ranks in any order; the last rank has none.
+FramePart part_of(const Frame& whole, int rank, int ranks) {
+  FramePart part;
+  FramePlaces& places = part.places = places_in(whole);
+  places.whole = false;
+  const auto owner = [ranks](std::int32_t item) {
+    return static_cast<int>(mixed(static_cast<std::uint64_t>(item) / 10) %
+                            static_cast<std::uint64_t>(ranks - 1));
+  };
+  const auto deal = [&](std::int64_t count, std::vector<std::int32_t>& own) {
+    for (std::int32_t i = 0; i < count; ++i)
+      if (owner(i) == rank) own.push_back(i);
+  };
+  deal(places.points, places.point);
+  deal(places.lines, places.line);
+  deal(places.triangles, places.triangle);
+  Frame& f = part.frame;
+  f.step = whole.step;
+  f.time = whole.time;
+  f.groups = whole.groups;
+  for (const std::int32_t i : places.point) {
+    f.position.push_back(whole.position[static_cast<std::size_t>(i)]);
+    if (places.has_spheres) f.radius.push_back(whole.radius[static_cast<std::size_t>(i)]);
+  }
+  for (const std::int32_t i : places.line)
+    for (int k = 0; k < 2; ++k) f.lines.push_back(whole.lines[static_cast<std::size_t>(2 * i + k)]);
+  for (const std::int32_t i : places.triangle)
+    for (int k = 0; k < 3; ++k)
+      f.triangles.push_back(whole.triangles[static_cast<std::size_t>(3 * i + k)]);
+  const auto deal_fields = [](const std::vector<FrameField>& all, std::vector<FrameField>& own,
+                              const std::vector<std::int32_t>& items) {
+    for (const FrameField& field : all)
+      own.push_back({field.name, field.unit, field.components, taken(field, items)});
+  };
+  deal_fields(whole.point_fields, f.point_fields, places.point);
+  deal_fields(whole.line_fields, f.line_fields, places.line);
+  deal_fields(whole.triangle_fields, f.triangle_fields, places.triangle);
+  return part;
+}
+
+TEST(Frames, of_many_blocks_are_the_same_by_parts) {
+  for (const bool triangles : {false, true}) {
+    const Frame whole = large_frame(triangles);
+    for (const char* field : {"damage", "force"}) {
+      const FrameWish wish = wish_for(field);
+      const Made expected = made_of(frame_output(whole, wish, 1));
+      for (const int count : {2, 3, 7}) {
+        Made made;
+        simulate_ranks(count, 5, [&](Communicator& ranks) {
+          FrameOfParts frame(part_of(whole, ranks.rank(), count), wish, ranks, 2);
+          std::vector<Message> shares(static_cast<std::size_t>(count));
+          shares[0] = frame.share();
+          shares = ranks.exchange(std::move(shares));
+          if (ranks.rank() == 0) made = made_of(frame.output(shares));
+        });
+        expect_same({made}, {expected}, std::to_string(count) + " ranks");
+      }
+    }
+  }
+}
+
+TEST(Frames, without_a_picture_or_without_files_have_the_other_alone) {
+  const Slab piece = slab_piece();
+  led_on_ranks(3, 1, piece, [&](Method& method) {
+    FrameWish wish = wish_for("damage");
+    wish.files = false;
+    FrameOutput output = method.frame_output(wish);
+    EXPECT_TRUE(output.files.points.empty());
+    EXPECT_FALSE(output.png.empty());
+    output = method.frame_output({});
+    EXPECT_TRUE(output.png.empty());
+    EXPECT_TRUE(output.files.points == contents_of(method.frame()).points);
+  });
+}
+
+}  // namespace
+}  // namespace breccia
