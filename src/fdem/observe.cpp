@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/on_host.hpp"
 #include "core/probe.hpp"
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
@@ -181,7 +182,8 @@ void verify(const World& w) {
 
 std::vector<double> damage(const World& w) {
   std::vector<double> worst(at(w.triangles.size()), 0.0);
-  const Joints j = host_copy(w.joints);
+  const OnHost<Joints> joints(w.joints, w.exec.space);
+  const Joints& j = *joints;
   for (Index i = 0; i < j.size(); ++i) {
     if (!is_damaged(j.stage.data()[i])) continue;
     double d = j.stage.data()[i] == JointStage::broken ? 1.0 : 0.0;
@@ -193,10 +195,12 @@ std::vector<double> damage(const World& w) {
 }
 
 std::vector<Sym2> stresses(const World& w) {
-  const Triangles t = host_copy(w.triangles);
+  const OnHost<Triangles> triangles(w.triangles, w.exec.space);
+  const Triangles& t = *triangles;
   std::vector<ElasticTriangle> laws;
   copy_to(laws, w.laws);
   std::vector<Sym2> all;
+  all.reserve(at(t.size()));
   for (Index i = 0; i < t.size(); ++i) {
     Vec2 x[3], v[3];
     split(t.nodes.data()[i], x, v);
@@ -259,6 +263,7 @@ Fragments fragments(const World& w) {
   std::vector<JointStage> stage;
   copy_to(stage, w.joints.stage);
   std::vector<std::uint8_t> broken;
+  broken.reserve(stage.size());
   for (const JointStage now : stage) broken.push_back(now == JointStage::broken ? 1 : 0);
   return fragments(w, broken);
 }
@@ -286,6 +291,7 @@ Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return of_root[at(a)] > of_root[at(b)]; });
   Fragments f;
+  f.of.reserve(mass.size());
   std::vector<Index> number(mass.size(), 0);
   for (std::size_t i = 0; i < order.size(); ++i) {
     number[at(order[i])] = static_cast<Index>(i);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "domain/parcel.hpp"
@@ -16,14 +17,33 @@ const std::vector<std::int32_t>& places_of(const FramePlaces& places, Carrier ca
                                      : places.triangle;
 }
 
-/// Which rank compresses which block: shares of about equal cost. Rank 0 draws the picture
-/// meanwhile, if there is one and there are others.
-std::vector<int> workers(const FrameBlocks& files, int ranks, bool draws) {
+/// work(width), with the usual widths of items as constants.  [bytes]
+template <class Work>
+void with_width(std::size_t width, const Work& work) {
+  switch (width) {
+    case 4:
+      return work(std::integral_constant<std::size_t, 4>{});
+    case 8:
+      return work(std::integral_constant<std::size_t, 8>{});
+    case 12:
+      return work(std::integral_constant<std::size_t, 12>{});
+    case 24:
+      return work(std::integral_constant<std::size_t, 24>{});
+    default:
+      return work(width);
+  }
+}
+
+/// Which rank compresses which block: shares of about equal cost. Rank 0 draws the picture, too.
+std::vector<int> workers(const FrameBlocks& files, int ranks, const FrameWish& wish) {
   std::vector<std::size_t> cost(static_cast<std::size_t>(ranks), 0);
-  const auto first = cost.begin() + (draws && ranks > 1 ? 1 : 0);
+  // A pixel takes as long as some nine bytes of a block.
+  if (wish.picture)
+    cost[0] = 9 * static_cast<std::size_t>(wish.picture->width) *
+              static_cast<std::size_t>(wish.picture->height);
   std::vector<int> worker;
   for (const FrameBlocks::Block& block : files.blocks()) {
-    const auto idlest = std::min_element(first, cost.end());
+    const auto idlest = std::min_element(cost.begin(), cost.end());
     // Bytes that are all alike are packed in no time.
     *idlest += files.array_of(block).width == 1 ? block.size / 8 : block.size;
     worker.push_back(static_cast<int>(idlest - cost.begin()));
@@ -66,9 +86,11 @@ class Sight {
     for (const Column& c : columns_) {
       const std::vector<std::int32_t>& to = places_of(places, c.carrier);
       const std::span<const std::byte> values = from.bytes(to.size() * c.width);
-      for (std::size_t i = 0; i < to.size(); ++i)
-        std::memcpy(c.whole + static_cast<std::size_t>(to[i]) * c.width,
-                    values.data() + i * c.width, c.width);
+      with_width(c.width, [&](auto width) {
+        for (std::size_t i = 0; i < to.size(); ++i)
+          std::memcpy(c.whole + static_cast<std::size_t>(to[i]) * width, values.data() + i * width,
+                      width);
+      });
     }
   }
 
@@ -112,7 +134,7 @@ FrameOfParts::FrameOfParts(FramePart part, const FrameWish& wish, Communicator& 
     : part_(std::move(part)), wish_(wish), ranks_(ranks), threads_(threads) {
   if (!wish_.files) return;
   files_.emplace(part_.frame, part_.places);
-  worker_ = workers(*files_, ranks_.size(), wish_.picture.has_value());
+  worker_ = workers(*files_, ranks_.size(), wish_);
 }
 
 /// Everything that the picture shows comes to rank 0.
@@ -151,18 +173,24 @@ void FrameOfParts::give_values(Message& message, const Block& block) const {
 /// The block, from what all ranks have of it.
 void FrameOfParts::take_values(const Block& block, const std::vector<Values>& from,
                                std::vector<std::byte>& to) const {
-  const std::size_t width = files_->array_of(block).width;
-  const std::size_t first = block.begin / width * width;
+  const std::size_t end = block.begin + block.size;
   to.resize(block.size);
-  for (const Values& values : from)
-    for (std::size_t i = 0; i < values.behind.size(); ++i) {
-      // An item may lie across the border of two blocks.
-      const std::size_t begin = first + values.behind[i] * width;
-      const std::size_t low = std::max(begin, block.begin);
-      const std::size_t high = std::min(begin + width, block.begin + block.size);
-      std::memcpy(to.data() + (low - block.begin), values.bytes.data() + i * width + (low - begin),
-                  high - low);
-    }
+  with_width(files_->array_of(block).width, [&](auto width) {
+    const std::size_t first = block.begin / width * width;
+    for (const Values& values : from)
+      for (std::size_t i = 0; i < values.behind.size(); ++i) {
+        const std::size_t begin = first + values.behind[i] * width;
+        const std::byte* const item = values.bytes.data() + i * width;
+        if (begin >= block.begin && begin + width <= end) {
+          std::memcpy(to.data() + (begin - block.begin), item, width);
+          continue;
+        }
+        // It lies across the border of two blocks.
+        const std::size_t low = std::max(begin, block.begin);
+        std::memcpy(to.data() + (low - block.begin), item + (low - begin),
+                    std::min(begin + width, end) - low);
+      }
+  });
 }
 
 Message FrameOfParts::share() {
@@ -220,6 +248,7 @@ Message FrameOfParts::share() {
 FrameOutput FrameOfParts::output(const std::vector<Message>& shares) {
   std::vector<Unpacking> from(shares.begin(), shares.end());
   std::vector<std::string> packed;
+  packed.reserve(worker_.size());
   for (const int worker : worker_) {
     Unpacking& share = from[static_cast<std::size_t>(worker)];
     const std::span<const std::byte> block = share.bytes(share.value<std::size_t>());
@@ -232,7 +261,11 @@ FrameOutput FrameOfParts::output(const std::vector<Message>& shares) {
 void put_wish(Message& message, const FrameWish& wish) {
   put_value(message, wish.files);
   put_value(message, wish.picture.has_value());
-  if (wish.picture) put_bytes(message, wish.picture->field.data(), wish.picture->field.size());
+  if (!wish.picture) return;
+  put_value(message, wish.picture->width);
+  put_value(message, wish.picture->height);
+  const std::string& field = wish.picture->field;
+  put_array(message, std::vector<char>(field.begin(), field.end()));
 }
 
 FrameWish wish_in(std::span<const std::byte> message) {
@@ -240,8 +273,11 @@ FrameWish wish_in(std::span<const std::byte> message) {
   FrameWish wish;
   wish.files = from.value<bool>();
   if (!from.value<bool>()) return wish;
-  const std::span<const std::byte> field = from.bytes(message.size() - 2 * sizeof(bool));
-  wish.picture.emplace().field.assign(reinterpret_cast<const char*>(field.data()), field.size());
+  RenderOptions& picture = wish.picture.emplace();
+  picture.width = from.value<int>();
+  picture.height = from.value<int>();
+  const auto field = from.array<char>();
+  picture.field.assign(field.begin(), field.end());
   return wish;
 }
 

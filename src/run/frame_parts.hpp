@@ -13,8 +13,8 @@ namespace breccia {
 
 class FrameOfParts {
  public:
-  /// On every rank, with its part of the frame. Ranks other than 0 need of the picture that wish is
-  /// for no more than its field.
+  /// On every rank, with its part of the frame. Ranks other than 0 need to know field and size of
+  /// the picture that is wished for.
   FrameOfParts(FramePart part, const FrameWish& wish, Communicator& ranks, int threads);
 
   /// Every rank at once: this rank's share of the work, for rank 0.
