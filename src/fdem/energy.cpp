@@ -168,9 +168,10 @@ Held held(const World& w) {
       all.shares +
       fold(w.exec, w.couples.size(), Shares{},
            CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()}, Sum{});
-  all.potential =
-      fold(w.exec, t.size(), ExactSum{},
-           GravityPotential{owned, w.parameters.gravity, t.nodes.view(), t.mass.view()}, Sum{});
+  const Vec2 gravity = w.parameters.gravity;
+  if (dot(gravity, gravity) > 0.0)
+    all.potential = fold(w.exec, t.size(), ExactSum{},
+                         GravityPotential{owned, gravity, t.nodes.view(), t.mass.view()}, Sum{});
   return all;
 }
 

@@ -152,7 +152,7 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
   const double pressure = opening < 0.0 ? law.stiffness * opening / h : 0.0;
   const double shear = law.cohesion * strength - law.friction * pressure;
   const double s_p = 2.0 * h * shear / law.stiffness;
-  const double z = softening(state.damage), slid = absolute(slip);
+  const double z = state.damage > 0.0 ? softening(state.damage) : 1.0, slid = absolute(slip);
   const double kept = z * shear - (1.0 - z) * law.residual * pressure;
   StoredEnergy energy{};
   if (opening < 0.0)

@@ -41,6 +41,7 @@ TEST(JointBond, softens_as_the_table_says) {
                           .238162909, .179111943, .120773541, .061081323, 0.0};
   for (int i = 0; i <= 10; ++i) EXPECT_NEAR(softening(0.1 * i), table[i], 6e-10) << i;
   EXPECT_EQ(softening(1.0), 0.0);
+  EXPECT_EQ(softening(0.0), 1.0);  // the ledger of whole joints relies on it
   double integral = 0.0, last = 1.0;
   constexpr int n = 1000;
   for (int i = 0; i < n; ++i) {
