@@ -59,6 +59,16 @@ void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scen
   draw_spheres(canvas, spheres, scene.clip, threads);
 }
 
+/// work(i) for every i in [0, count), a few thousand by one thread at a time.
+template <class Work>
+void for_chunks(int threads, std::size_t count, const Work& work) {
+  constexpr std::size_t chunk = 4096;
+  for_each_task(threads, static_cast<int>((count + chunk - 1) / chunk), [&](int number) {
+    const std::size_t begin = chunk * static_cast<std::size_t>(number);
+    for (std::size_t i = begin; i < std::min(count, begin + chunk); ++i) work(i);
+  });
+}
+
 /// Flat items by the bands of rows that they may cover, and each band drawn by one thread, its
 /// items in their order.
 class Bands {
@@ -139,14 +149,18 @@ void draw_triangles(Canvas& canvas, const Frame& frame, const std::vector<Color>
     };
     return std::array{corner(0), corner(1), corner(2)};
   };
-  for (std::size_t triangle = 0; triangle < colors.size(); ++triangle) {
+  scene.looks.resize(first + colors.size());
+  for_chunks(threads, colors.size(), [&](std::size_t triangle) {
     const auto [a, b, c] = corners(triangle);
     const Vec3 normal = cross(Vec3{b.u - a.u, a.v - b.v, b.depth - a.depth},
                               Vec3{c.u - a.u, a.v - c.v, c.depth - a.depth});
     const double size = norm(normal);
     const double facing = size > 0.0 ? std::fabs(dot(normal, lamp)) / size / lamp.z : 1.0;
     const auto light = static_cast<float>(0.5 + 0.5 * std::min(1.0, facing));
-    scene.looks.push_back({shaded(colors[triangle], light), {}});
+    scene.looks[first + triangle].color = shaded(colors[triangle], light);
+  });
+  for (std::size_t triangle = 0; triangle < colors.size(); ++triangle) {
+    const auto [a, b, c] = corners(triangle);
     bands.add(triangle, std::min({a.v, b.v, c.v}), std::max({a.v, b.v, c.v}), 1.0);
   }
   bands.draw([&](std::size_t triangle, Rows rows) {
@@ -177,8 +191,9 @@ Image render(const Frame& frame, const RenderOptions& options, int threads) {
   if (const std::optional<Clip> clip = clip_of(options.clip, axes)) {
     scene.clip = on_screen(*clip, scene.camera);
   }
-  scene.points.reserve(frame.position.size());
-  for (const Vec3& point : frame.position) scene.points.push_back(scene.camera.project(point));
+  scene.points.resize(frame.position.size());
+  for_chunks(threads, scene.points.size(),
+             [&](std::size_t i) { scene.points[i] = scene.camera.project(frame.position[i]); });
   scene.looks.reserve(frame.position.size() + frame.lines.size() / 2 + frame.triangles.size() / 3);
   for (const Color& color : coloring.points) scene.looks.push_back({color, {}});
 

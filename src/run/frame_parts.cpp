@@ -37,9 +37,9 @@ void with_width(std::size_t width, const Work& work) {
 /// Which rank compresses which block: shares of about equal cost. Rank 0 draws the picture, too.
 std::vector<int> workers(const FrameBlocks& files, int ranks, const FrameWish& wish) {
   std::vector<std::size_t> cost(static_cast<std::size_t>(ranks), 0);
-  // A pixel takes as long as some nine bytes of a block.
+  // A pixel takes as long as some fifteen bytes of a block.
   if (wish.picture)
-    cost[0] = 9 * static_cast<std::size_t>(wish.picture->width) *
+    cost[0] = 15 * static_cast<std::size_t>(wish.picture->width) *
               static_cast<std::size_t>(wish.picture->height);
   std::vector<int> worker;
   for (const FrameBlocks::Block& block : files.blocks()) {
