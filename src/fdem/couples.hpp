@@ -62,6 +62,49 @@ struct CoupleHistory {
 };
 using Couples = PairList<CoupleHistory>;
 
+/// What an edge of one triangle does in the other, in one step.
+struct EdgePush {
+  EdgeOverlap overlap;
+  bool touches = false;
+  Vec2 normal[2] = {}, friction[2] = {};  ///< forces on its ends  [N/m]
+  double drag = 0.0;                      ///< what friction pulls with now  [N/m]
+  double slid = 0.0;                      ///< what it has spent in this step  [J/m]
+};
+
+/// @param scale  of the penalty  @param drag  what friction pulled with before  [N/m]
+/// @param dt     the step that led here  [s]
+BR_HD inline EdgePush edge_push(const ContactPair& law, double scale, double drag, double dt,
+                                const NodeState& from, const NodeState& to, const Target& target,
+                                const Vec2 (&target_v)[3]) {
+  EdgePush p;
+  EdgeOverlap& o = p.overlap;
+  p.touches = overlap_of_edge(from.position, to.position, target, o);
+  if (!p.touches) return p;
+  const double penalty = scale * law.penalty;
+  normal_forces(o, from.position, to.position, penalty, p.normal[0], p.normal[1]);
+  p.drag = drag;
+  if (!(law.friction > 0.0)) return p;
+
+  const Vec2 edge = to.position - from.position;
+  const double size = norm(edge);
+  const Vec2 along = (1.0 / size) * edge;
+  const double middle = 0.5 * (o.begin + o.end);
+  Vec2 rate = -((1.0 - middle) * from.velocity + middle * to.velocity);
+  for (int m = 0; m < 3; ++m) rate += (o.at_a[m] + middle * (o.at_b[m] - o.at_a[m])) * target_v[m];
+  const double stiffness = law.tangential * (o.end - o.begin);
+  const double limit = law.friction * penalty * o.whole * size;
+  p.drag += stiffness * dt * dot(rate, along);
+  const double over = absolute(p.drag) - limit;
+  if (over > 0.0) {
+    p.slid = limit * over / stiffness;
+    p.drag = p.drag < 0.0 ? -limit : limit;
+  }
+  const double share = o.moment / o.whole;
+  p.friction[0] = (p.drag * (1.0 - share)) * along;
+  p.friction[1] = (p.drag * share) * along;
+  return p;
+}
+
 /// What broken joints leave to the contact of their faces.
 struct JointLegacy {
   View<const Index> edge_a, edge_b;
@@ -97,8 +140,8 @@ struct CoupleForces {
     bool touching = false;
     const bool is_new = kept.scale == 0.0;
     if (is_new) kept.scale = 1.0;
-    if (boxes_meet(xa, xb)) {
-      const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
+    if (meet(xa, xb)) {
+      const ContactPair& law = law_of(i);
       const Target of_a = Target::of(xa), of_b = Target::of(xb);
       if (is_new && born[i] >= 0) inherit(born[i], law, kept, xa, of_a, xb, of_b);
       touching = pass(law, kept, kept.drag, xa, va, of_b, vb, sum.on_a.at, sum.on_b.at);
@@ -132,7 +175,13 @@ struct CoupleForces {
     }
   }
 
- private:
+  BR_HD const ContactPair& law_of(Index i) const {
+    return laws[material[a[i]] * materials + material[b[i]]];
+  }
+  /// False only where nothing can touch. Without the second line forces would be the same.
+  BR_HD static bool meet(const Vec2 (&p)[3], const Vec2 (&q)[3]) {
+    return boxes_meet(p, q) && !outside(p, Target::of(q)) && !outside(q, Target::of(p));
+  }
   BR_HD static bool boxes_meet(const Vec2 (&p)[3], const Vec2 (&q)[3]) {
     for (int k = 0; k < 2; ++k) {
       const auto part = [k](const Vec2& v) { return k == 0 ? v.x : v.y; };
@@ -145,6 +194,26 @@ struct CoupleForces {
     return true;
   }
 
+  /// A new couple of which a joint is known that broke between them.
+  BR_HD void begin(Index i) const {
+    Vec2 xa[3], va[3], xb[3], vb[3];
+    split(nodes[a[i]], xa, va);
+    split(nodes[b[i]], xb, vb);
+    state[i].scale = 1.0;
+    inherit(born[i], law_of(i), state[i], xa, Target::of(xa), xb, Target::of(xb));
+  }
+  /// Force of `add_shape_forces` on a corner of one of the two.
+  BR_HD Vec2 shape_force(Index i, double penalty, bool of_a, int corner) const {
+    Vec2 x[2][3], v[2][3];
+    split(nodes[a[i]], x[0], v[0]);
+    split(nodes[b[i]], x[1], v[1]);
+    const Target targets[2] = {Target::of(x[0]), Target::of(x[1])};
+    Vec2 shape[3] = {};
+    add_shape_forces(targets[of_a ? 0 : 1], overlap_of(targets[0], targets[1]), penalty, shape);
+    return shape[corner];
+  }
+
+ private:
   /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
   /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
   /// part of the joint's work.
@@ -209,36 +278,14 @@ struct CoupleForces {
     bool touching = false;
     for (int k = 0; k < 3; ++k) {
       const int next = k == 2 ? 0 : k + 1;
-      EdgeOverlap o;
-      if (!overlap_of_edge(x[k], x[next], target, o)) {
-        drag[k] = 0.0;
-        continue;
-      }
+      const EdgePush p = edge_push(law, kept.scale, drag[k], dt, {x[k], v[k]}, {x[next], v[next]},
+                                   target, target_v);
+      drag[k] = p.drag;
+      if (!p.touches) continue;
       touching = true;
-      Vec2 first, second;
-      const double penalty = kept.scale * law.penalty;
-      normal_forces(o, x[k], x[next], penalty, first, second);
-      push(o, k, first, second, on_x, on_target);
-      if (!(law.friction > 0.0)) continue;
-
-      const Vec2 edge = x[next] - x[k];
-      const double size = norm(edge);
-      const Vec2 along = (1.0 / size) * edge;
-      const double middle = 0.5 * (o.begin + o.end);
-      Vec2 rate = -((1.0 - middle) * v[k] + middle * v[next]);
-      for (int m = 0; m < 3; ++m)
-        rate += (o.at_a[m] + middle * (o.at_b[m] - o.at_a[m])) * target_v[m];
-      const double stiffness = law.tangential * (o.end - o.begin);
-      const double limit = law.friction * penalty * o.whole * size;
-      double pull = drag[k] + stiffness * dt * dot(rate, along);
-      const double over = absolute(pull) - limit;
-      if (over > 0.0) {
-        kept.slid += limit * over / stiffness;
-        pull = pull < 0.0 ? -limit : limit;
-      }
-      drag[k] = pull;
-      const double share = o.moment / o.whole;
-      push(o, k, (pull * (1.0 - share)) * along, (pull * share) * along, on_x, on_target);
+      kept.slid += p.slid;
+      push(p.overlap, k, p.normal[0], p.normal[1], on_x, on_target);
+      if (law.friction > 0.0) push(p.overlap, k, p.friction[0], p.friction[1], on_x, on_target);
     }
     return touching;
   }

@@ -75,13 +75,15 @@ struct JointForces {
     R bond[8];
     gather_records(bonds, own_law, bond);
     const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
+    const R quarter = 0.25 / tension;
     R offset[2] = {};
     if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
     auto beyond = opposite(o.size > 1e-12 * h);
     Vec2Of<R> traction[3];
     for (int q = 0; q < 3; ++q) {
-      const BondTraction<R> t = elastic_answer(
-          slope, tension, cohesion, bond[3], o.open[q] + offset[0], o.slide[q] + offset[1], beyond);
+      const BondTraction<R> t =
+          elastic_answer(slope, tension, quarter, cohesion, bond[3], o.open[q] + offset[0],
+                         o.slide[q] + offset[1], beyond);
       traction[q] = t.shear * o.along + t.normal * o.across;
     }
     if (any(beyond)) return false;

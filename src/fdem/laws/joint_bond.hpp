@@ -72,19 +72,21 @@ struct BondTraction {
 /// f_s is that of the same point and step. Until a point goes beyond o_p or s_p it answers by this:
 ///
 /// @param slope  p_f / h  [Pa/m]  @param tension, cohesion  of this joint  [Pa]
+/// @param quarter  1 / (4 tension)  [1/Pa]
 /// @param beyond  set where the point leaves its elastic branch, so that the answer does not hold
 template <class R, class Mask>
-BR_HD BondTraction<R> elastic_answer(const R& slope, const R& tension, const R& cohesion,
-                                     const R& friction, const R& opening, const R& slip,
-                                     Mask& beyond) {
+BR_HD BondTraction<R> elastic_answer(const R& slope, const R& tension, const R& quarter,
+                                     const R& cohesion, const R& friction, const R& opening,
+                                     const R& slip, Mask& beyond) {
   const R straight = slope * opening, sideways = slope * slip;
   const auto pressed = straight < 0.0;
   const R strength = cohesion - choose(pressed, friction * straight, constant<R>(0.0));
   const R size = absolute(sideways);
   beyond = either(beyond, either(straight > 2.0 * tension, size > 2.0 * strength));
-  // f (2 r - r^2) with r = slope x / (2 f)
-  return {choose(pressed, straight, straight * (1.0 - 0.25 * (straight / tension))),
-          sideways * (1.0 - 0.25 * (size / strength))};
+  // f (2 r - r^2) with r = slope x / (2 f). Nothing that may be zero is divided: GPUs are slow at
+  // it
+  return {choose(pressed, straight, straight * (1.0 - straight * quarter)),
+          sideways * (1.0 - size * (0.25 / strength))};
 }
 
 /// The law in full. @param strength  of this joint over its law's: scales f_t, c and, so that

@@ -27,6 +27,18 @@ struct Target {
   }
 };
 
+/// Whether a line along an edge of the target has all these corners clearly outside: no edge of
+/// either overlaps the other then, however numbers round.
+BR_HD inline bool outside(const Vec2 (&corner)[3], const Target& target) {
+  constexpr double clearly = -1e-9;
+  double l[3][3];
+  for (int k = 0; k < 3; ++k) target.coordinates(corner[k], l[k]);
+  bool beyond = false;
+  for (int k = 0; k < 3; ++k)
+    beyond = beyond || (l[0][k] < clearly && l[1][k] < clearly && l[2][k] < clearly);
+  return beyond;
+}
+
 /// What an edge meets inside another triangle, with the potential phi = 3 min(l0, l1, l2): 0 on the
 /// border, 1 in the middle.
 struct EdgeOverlap {
@@ -52,24 +64,23 @@ BR_HD inline bool overlap_of_edge(const Vec2& a, const Vec2& b, const Target& ta
   }
   if (!(o.end > o.begin)) return false;
 
-  // Breaks, ascending: at most three besides the ends.
-  double s[5];
-  int count = 0;
-  s[count++] = o.begin;
+  // Breaks, ascending; where there are fewer than three, the end again.
+  double s[5] = {o.begin, o.end, o.end, o.end, o.end};
   for (int k = 0; k < 3; ++k) {
     const int m = (k + 1) % 3, other = (k + 2) % 3;
     const double difference_a = o.at_a[k] - o.at_a[m], difference_b = o.at_b[k] - o.at_b[m];
     const double change = difference_a - difference_b;
     if (change == 0.0) continue;
-    const double at = difference_a / change;
+    double at = difference_a / change;
     if (!(at > o.begin && at < o.end)) continue;
     const double least = o.at_a[k] + at * (o.at_b[k] - o.at_a[k]);
     if (least > o.at_a[other] + at * (o.at_b[other] - o.at_a[other])) continue;
-    int place = count++;
-    for (; place > 1 && s[place - 1] > at; --place) s[place] = s[place - 1];
-    s[place] = at;
+    for (int i = 1; i < 4; ++i) {  // an index that is not known in advance costs GPUs much
+      const double here = smaller(s[i], at);
+      at = larger(s[i], at);
+      s[i] = here;
+    }
   }
-  s[count++] = o.end;
 
   const auto phi = [&o](double at) {
     double least = 1.0;
@@ -79,10 +90,11 @@ BR_HD inline bool overlap_of_edge(const Vec2& a, const Vec2& b, const Target& ta
   o.whole = 0.0;
   o.moment = 0.0;
   double before = phi(s[0]);
-  for (int i = 0; i + 1 < count; ++i) {
+  for (int i = 0; i < 4; ++i) {
     const double after = phi(s[i + 1]), width = s[i + 1] - s[i];
     o.whole += 0.5 * width * (before + after);
-    o.moment += width * (before * (2.0 * s[i] + s[i + 1]) + after * (s[i] + 2.0 * s[i + 1])) / 6.0;
+    o.moment +=
+        (1.0 / 6.0) * width * (before * (2.0 * s[i] + s[i + 1]) + after * (s[i] + 2.0 * s[i + 1]));
     before = after;
   }
   return o.whole > 0.0;

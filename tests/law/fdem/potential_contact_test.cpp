@@ -227,5 +227,33 @@ TEST(PotentialContact, nothing_is_left_when_triangles_part) {
     EXPECT_EQ(norm(w.couples.history.force.in_double.data()[0].on_a.at[k]), 0.0);
 }
 
+TEST(PotentialContact, finds_which_triangles_do_not_meet) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> anywhere(-1.0, 1.0);
+  int apart = 0, together = 0;
+  for (int trial = 0; trial < 20'000; ++trial) {
+    Vec2 x[2][3];
+    for (Vec2(&corners)[3] : x) {
+      for (Vec2& corner : corners) corner = {anywhere(random), anywhere(random)};
+      if (cross(corners[1] - corners[0], corners[2] - corners[0]) < 0.0)
+        std::swap(corners[1], corners[2]);
+    }
+    const Target of_a = Target::of(x[0]), of_b = Target::of(x[1]);
+    const bool separate = outside(x[0], of_b) || outside(x[1], of_a);
+    const Polygon over = overlap_of(of_a, of_b);
+    const double area = integral(over, [](const Vec2&) { return 1.0; });
+    EXPECT_TRUE(separate == !(area > 0.0) || area < 1e-6) << "trial " << trial;
+    for (int k = 0; k < 3 && separate; ++k) {
+      EdgeOverlap o;
+      const int next = (k + 1) % 3;
+      EXPECT_FALSE(overlap_of_edge(x[0][k], x[0][next], of_b, o)) << "trial " << trial;
+      EXPECT_FALSE(overlap_of_edge(x[1][k], x[1][next], of_a, o)) << "trial " << trial;
+    }
+    (separate ? apart : together) += 1;
+  }
+  EXPECT_GT(apart, 1'000);
+  EXPECT_GT(together, 1'000);
+}
+
 }  // namespace
 }  // namespace breccia::fdem
