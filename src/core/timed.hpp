@@ -99,7 +99,21 @@ struct Opening : Ahead<Kernel> {
 /// wanted; or there with the move in the clock's time already.
 enum class Stand { in_move, after_move, in_rest };
 
-/// A kernel of a later launch than the first. `Kernel::set(Moment)` gives it the time.
+#if defined(__CUDACC__)
+/// work(kernel, i) as of `now`, in a function of its own: what few items need costs the others no
+/// registers.
+/// @param kernel  where the launch has its parameters: see Timed
+template <class Kernel, class Work>
+__device__ __noinline__ void rarely(const Kernel* kernel, Moment now, Index i, Work work) {
+  asm volatile("" : "+l"(kernel));  // or all of it would be passed by value
+  Kernel timed = *kernel;
+  timed.set(now);
+  work(timed, i);
+}
+#endif
+
+/// A kernel of a later launch than the first. `Kernel::set(Moment)` gives a copy of it the time;
+/// one that hands its own address on is told by `at_moment` and stays where the launch has it.
 template <class Kernel, Stand stand>
 struct Timed : Ahead<Kernel> {
   Kernel kernel;
@@ -122,12 +136,16 @@ struct Timed : Ahead<Kernel> {
       else
         return Result{largest_least};
     }
-    Kernel timed = kernel;
-    if constexpr (stand == Stand::after_move)
-      timed.set(Moment{c.now.time + c.now.next_dt, c.now.next_dt, c.now.next_dt, c.now.step});
-    else
-      timed.set(c.now);
-    return timed(i, ready...);
+    const Moment now = stand == Stand::after_move ? Moment{c.now.time + c.now.next_dt,
+                                                           c.now.next_dt, c.now.next_dt, c.now.step}
+                                                  : c.now;
+    if constexpr (requires { kernel.at_moment(now, i, ready...); }) {
+      return kernel.at_moment(now, i, ready...);
+    } else {
+      Kernel timed = kernel;
+      timed.set(now);
+      return timed(i, ready...);
+    }
   }
 };
 

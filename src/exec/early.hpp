@@ -2,6 +2,8 @@
 // Reads that a kernel starts where they stand: the compiler moves them past no other one, and past
 // no wait.
 
+#include "exec/buffer.hpp"
+#include "exec/space.hpp"
 #include "exec/types.hpp"
 
 namespace breccia {
@@ -37,6 +39,81 @@ __device__ inline Record read_record_now(const Record* from) {
   __builtin_memcpy(&record, numbers, sizeof record);
   return record;
 }
+
+/// Records of neighbours that the threads of a warp read or write together: their run of memory in
+/// whole lines, exchanged by way of the multiprocessor's own memory. If each thread took its own,
+/// every line would be asked for once for each 16 B. All items of the array have a thread.
+template <class Record>
+class WarpRecords {
+ public:
+  /// Record i of thread i: the reads begin,
+  __device__ void read(const View<const Record>& from, Index i) {
+    const Index first = i - lane();
+    if (first + 32 > from.size) return ask(from.data + i, 1);
+    const auto* const run = reinterpret_cast<const Part*>(from.data + first);
+    ask(reinterpret_cast<const Record*>(run + lane()), 32);
+    exchanged_ = true;
+  }
+  /// and have ended.
+  __device__ Record own() {
+    if (exchanged_) {
+      Part* const place = memory();
+#pragma unroll
+      for (int k = 0; k < parts; ++k) place[k * 32 + lane()] = part_[k];
+      __syncwarp();
+#pragma unroll
+      for (int k = 0; k < parts; ++k) part_[k] = place[lane() * parts + k];
+      __syncwarp();
+    }
+    Record record;
+    __builtin_memcpy(&record, part_, sizeof record);
+    return record;
+  }
+  __device__ static void write(const View<Record>& to, Index i, const Record& own) {
+    const Index first = i - lane();
+    if (first + 32 > to.size) {
+      to[i] = own;
+      return;
+    }
+    Part part[parts];
+    __builtin_memcpy(part, &own, sizeof own);
+    Part* const place = memory();
+#pragma unroll
+    for (int k = 0; k < parts; ++k) place[lane() * parts + k] = part[k];
+    __syncwarp();
+    auto* const run = reinterpret_cast<Part*>(to.data + first);
+#pragma unroll
+    for (int k = 0; k < parts; ++k) run[k * 32 + lane()] = place[k * 32 + lane()];
+    __syncwarp();
+  }
+
+ private:
+  static_assert(sizeof(Record) % 16 == 0);
+  static constexpr int parts = sizeof(Record) / 16;
+  struct alignas(16) Part {
+    double numbers[2];
+  };
+
+  __device__ static int lane() {
+    return static_cast<int>(threadIdx.x % 32);
+  }
+  __device__ static Part* memory() {
+    __shared__ Part all[block_size * parts];
+    return all + threadIdx.x / 32 * 32 * parts;
+  }
+  /// Parts of 16 B, `stride` parts from each to the next.
+  __device__ void ask(const Record* from, int stride) {
+    const auto* const first = reinterpret_cast<const double*>(from);
+#pragma unroll
+    for (int k = 0; k < parts; ++k)
+      asm volatile("ld.global.v2.f64 {%0, %1}, [%2];"
+                   : "=d"(part_[k].numbers[0]), "=d"(part_[k].numbers[1])
+                   : "l"(__cvta_generic_to_global(first + 2 * k * stride)));
+  }
+
+  Part part_[parts];
+  bool exchanged_ = false;
+};
 #endif
 
 }  // namespace breccia

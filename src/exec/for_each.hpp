@@ -132,11 +132,24 @@ __global__ void __launch_bounds__(block_size) launch_kernel(Index count, Kernel 
   run_item(kernel, static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x), count, 0);
 }
 
+/// Blocks that must fit a multiprocessor at once, a bound on the registers of a thread: what a
+/// kernel says, or what the one says that it wraps; 0: no bound.
+template <class Kernel>
+constexpr int least_blocks_of() {
+  if constexpr (requires { Kernel::least_blocks; })
+    return Kernel::least_blocks;
+  else if constexpr (requires(Kernel k) { k.kernel; })
+    return least_blocks_of<decltype(Kernel::kernel)>();
+  else
+    return 0;
+}
+
 /// Kernels side by side in one launch: each has blocks of its own.
 template <class... Kernels>
 struct Parts;
 template <>
 struct Parts<> {
+  static constexpr int least_blocks = 0;
   Index blocks() const { return 0; }
   __device__ void run(Index) const {}
 };
@@ -145,6 +158,8 @@ struct Parts<First, Rest...> {
   Index count;
   First kernel;
   Parts<Rest...> rest;
+  static constexpr int least_blocks =
+      std::max(least_blocks_of<First>(), Parts<Rest...>::least_blocks);
 
   __host__ __device__ Index own_blocks() const { return (count + block_size - 1) / block_size; }
   Index blocks() const { return own_blocks() + rest.blocks(); }
@@ -164,7 +179,8 @@ std::string name_of(const Parts<First, Rest...>& parts) {
   return name_of(parts.kernel) + (rest.empty() ? "" : " + ") + rest;
 }
 template <class All>
-__global__ void __launch_bounds__(block_size) launch_parts(All all) {
+__global__ void __launch_bounds__(block_size, All::least_blocks)
+    launch_parts(const __grid_constant__ All all) {
   all.run(static_cast<Index>(blockIdx.x));
 }
 

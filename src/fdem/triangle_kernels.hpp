@@ -126,13 +126,16 @@ struct TriangleForces {
   BR_HD void add_couples(Index t, Index first, Index last) const {
     if (first == last) return;
     Corners sum = force[t];
+    add_couples(first, last, sum.at);
+    force[t] = sum;
+  }
+  BR_HD void add_couples(Index first, Index last, Vec2 (&sum)[3]) const {
     for (Index c = first; c < last; ++c) {
       const Entry entry = couples.entries[c];
       const CoupleForceOf<Number>& f = couple_force[pair_of(entry)];
       const CornerVectors<Number>& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
-      for (int k = 0; k < 3; ++k) sum.at[k] += converted<double>(mine.at[k]);
+      for (int k = 0; k < 3; ++k) sum[k] += converted<double>(mine.at[k]);
     }
-    force[t] = sum;
   }
 };
 
@@ -266,12 +269,13 @@ struct MoveTriangles {
     R c[12], f[6];
     gather_records(kick.nodes, consecutive<R>(t), c);
     gather_records(kick.force, consecutive<R>(t), f);
-    move_free(t, c, f, load<R>(kick.mass, t));
+    move_free(c, f, load<R>(kick.mass, t));
+    store_records(nodes, t, c);
     return true;
   }
   /// Moves corners c that forces f alone act on.
   template <class R>
-  BR_HD void move_free(Index t, R (&c)[12], const R (&f)[6], const R& m) const {
+  BR_HD void move_free(R (&c)[12], const R (&f)[6], const R& m) const {
     const R scale = kick.span() / m;
     const R next = constant<R>(kick.next_dt);
     const R gravity[2] = {kick.gravity.x * m, kick.gravity.y * m};
@@ -281,15 +285,14 @@ struct MoveTriangles {
         velocity = velocity + scale * (f[2 * k + axis] + gravity[axis]);
         c[4 * k + axis] = c[4 * k + axis] + next * velocity;
       }
-    store_records(nodes, t, c);
   }
 
   BR_HD void set(const Moment& now) { kick.set(now); }
   BR_HD void operator()(Index t) const {
-    if (!free_at<double>(t)) move_driven(t, kick.given(t));
+    if (!free_at<double>(t)) nodes[t] = moved_driven(t, kick.given(t));
   }
-  /// Moves a triangle that is held, loaded or damped. @returns where it is then
-  BR_HD TriangleNodes move_driven(Index t, const Kick::Given& of) const {
+  /// Where a triangle goes that is held, loaded or damped; books the work.
+  BR_HD TriangleNodes moved_driven(Index t, const Kick::Given& of) const {
     const Kick::Result r = kick(of);
     TriangleNodes moved = of.nodes;
     const bool held = of.hold >= 0;
@@ -304,7 +307,6 @@ struct MoveTriangles {
       n.velocity = r.velocity[k];
       n.position += after;
     }
-    nodes[t] = moved;
     if (kick.damping > 0.0) damping_work[t] += damped;
     if (held || external.size > 0) load_work[t] += loaded;
     return moved;

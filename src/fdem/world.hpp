@@ -116,8 +116,7 @@ struct World {
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, born, node_vertex, border_vertex, amplitudes,
-         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, damaged,
-         damaged_count, clock);
+         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock);
   }
 
   // State: what a checkpoint holds.
@@ -179,9 +178,7 @@ struct World {
   Buffer<AmplitudeTable> amplitudes;  ///< of prescribed motions, then of loads
   Buffer<double> amplitude_times, amplitude_factors;
   Buffer<Vec2> prescribed_velocity;
-  Buffer<Index> reach_place;    ///< of each triangle in `reach`, -1: it cannot touch
-  Buffer<Index> damaged;        ///< joints that need more than their elastic law in a step
-  Buffer<Index> damaged_count;  ///< how many of them in this step, and in the next
+  Buffer<Index> reach_place;  ///< of each triangle in `reach`, -1: it cannot touch
   Buffer<StepClock> clock;
   StepGraph graph;  ///< of a few steps
 };

@@ -1,0 +1,361 @@
+#pragma once
+// Kernels that a device alone runs: they read ahead, or give several threads to one item. Forces
+// are those of the kernels of all machines, to the bit.
+
+#include "core/timed.hpp"
+#include "exec/early.hpp"
+#include "fdem/couples.hpp"
+#include "fdem/triangle_kernels.hpp"
+
+namespace breccia::fdem {
+
+/// BundleForces by sixteen threads a vertex, each with a corner: all see every corner's force and
+/// add those of their own bundle up, in the same order.
+struct BundlesWide {
+  static constexpr const char* name = "fdem.bundles_wide";
+  static constexpr Index width = 16;
+  BundleForces all;
+  BR_HD void set(const Moment&) {}
+#if defined(__CUDACC__)
+  struct Ready {
+    Index count, leader, node;
+    double mass;
+    Vec2 force;
+  };
+  __device__ void prepare(Index i, Ready& ready) const {
+    const Index vertex = i / width, part = i % width;
+    const Index first = read_now(&all.starts[vertex]);
+    ready.count = read_now(&all.starts[vertex + 1]) - first;
+    ready.leader = -1;
+    ready.mass = 0.0;
+    if (part >= ready.count) return;
+    ready.leader = read_now(&all.leader[first + part]) - first;
+    ready.node = read_now(&all.nodes[first + part]);
+    ready.mass = read_now(&all.mass[ready.node / 3]);
+  }
+  __device__ void fetch(Index i, Ready& ready) const {
+    ready.force = {};
+    if (i % width < ready.count)
+      ready.force = read_record_now(&all.force[ready.node / 3].at[ready.node % 3]);
+  }
+  __device__ void operator()(Index i, const Ready& ready) const {
+    if (ready.count > width) {
+      if (i % width == 0) all(i / width);
+      return;
+    }
+    const unsigned group = 0xffffU << (threadIdx.x / width * width % 32);
+    Vec2 sum{};
+    double total = 0.0;
+    for (int k = 0; k < ready.count; ++k) {
+      const Vec2 other{__shfl_sync(group, ready.force.x, k, width),
+                       __shfl_sync(group, ready.force.y, k, width)};
+      const double other_mass = __shfl_sync(group, ready.mass, k, width);
+      if (__shfl_sync(group, ready.leader, k, width) != ready.leader) continue;
+      sum += other;
+      total += other_mass;
+    }
+    if (i % width < ready.count)
+      all.force[ready.node / 3].at[ready.node % 3] = ready.mass * ((1.0 / total) * sum);
+  }
+#endif
+};
+
+#if defined(__CUDACC__)
+/// JointForces: the law of whole joints, and rarely that of the others.
+/// @tparam blocks  that fit a multiprocessor at once
+template <class Number, int blocks>
+struct JointsAhead {
+  static constexpr const char* name = "fdem.joints";
+  static constexpr int least_blocks = blocks;
+  JointForces<Number> all;
+
+  struct Ready {
+    JointEnds ends;
+    Index law;
+    double length, strength;
+    JointStage stage;
+    double corner[4][4];
+  };
+  __device__ void prepare(Index i, Ready& ready) const {
+    ready.ends = all.ends[i];
+    ready.stage = all.stage[i];
+    ready.law = read_now(&all.law[i]);
+    ready.length = read_now(&all.length[i]);
+    ready.strength = read_now(&all.strength[i]);
+  }
+  __device__ void fetch(Index, Ready& ready) const {
+    const JointEnds& e = ready.ends;
+    const Index at[4] = {e.a0, e.a1, e.b0, e.b1};
+    for (int k = 0; k < 4; ++k) {
+      const NodeState node = read_record_now(&all.nodes[at[k]]);
+      __builtin_memcpy(ready.corner[k], &node, sizeof node);
+    }
+  }
+  __device__ void at_moment(const Moment& now, Index i, const Ready& ready) const {
+    if (ready.stage == JointStage::dormant) return;
+    if (ready.stage == JointStage::whole &&
+        all.elastic_at(i, ready.corner, Indices<double>{ready.law}, ready.strength, ready.length))
+      return;
+    rarely(&all, now, i, [](const JointForces<Number>& k, Index joint) { k.damaged_at(joint); });
+  }
+  __device__ void operator()(Index i, const Ready& ready) const {
+    at_moment(Moment{all.time, all.dt, all.dt, 0}, i, ready);
+  }
+};
+
+/// What few couples need.
+template <class Number>
+__device__ __noinline__ void begin_rarely(const CoupleForces<Number>* couples, Index c) {
+  asm volatile("" : "+l"(couples));  // or all of it would be passed by value
+  couples->begin(c);
+}
+template <class Number>
+__device__ __noinline__ Vec2 shape_force_rarely(const CoupleForces<Number>* couples, Index c,
+                                                double penalty, bool of_a, int corner) {
+  asm volatile("" : "+l"(couples));
+  return couples->shape_force(c, penalty, of_a, corner);
+}
+
+/// CoupleForces by one thread a couple: most only find that the two do not meet.
+template <class Number>
+struct CouplesAhead {
+  static constexpr const char* name = "fdem.couples";
+  static constexpr int least_blocks = 5;
+  CoupleForces<Number> all;
+
+  struct Ready {
+    Index a, b;
+    double scale, work, slid;
+    Vec2 corner[2][3];
+  };
+  __device__ void prepare(Index i, Ready& ready) const {
+    const CoupleState& kept = all.state[i];
+    ready.a = read_now(&all.a[i]);
+    ready.b = read_now(&all.b[i]);
+    ready.scale = read_now(&kept.scale);
+    ready.work = read_now(&kept.work);
+    ready.slid = read_now(&kept.slid);
+  }
+  __device__ void fetch(Index, Ready& ready) const {
+    for (int k = 0; k < 3; ++k) {
+      ready.corner[0][k] = read_record_now(&all.nodes[ready.a].at[k].position);
+      ready.corner[1][k] = read_record_now(&all.nodes[ready.b].at[k].position);
+    }
+  }
+  __device__ void at_moment(const Moment& now, Index i, const Ready& ready) const {
+    const bool resting = ready.scale != 0.0 && ready.work == 0.0 && ready.slid == 0.0;
+    if (resting && !CoupleForces<Number>::meet(ready.corner[0], ready.corner[1]))
+      all.force[i] = {};
+    else
+      rarely(&all, now, i, [](const CoupleForces<Number>& k, Index couple) { k(couple); });
+  }
+  __device__ void operator()(Index i, const Ready& ready) const {
+    at_moment(Moment{0.0, all.dt, all.dt, 0}, i, ready);
+  }
+};
+
+/// CoupleForces by eight threads a couple, of which six each take an edge, and then a corner: every
+/// corner adds up what edges do to it in their order.
+template <class Number>
+struct CouplesWide {
+  static constexpr const char* name = "fdem.couples";
+  static constexpr Index width = 8;
+  CoupleForces<Number> all;
+
+  BR_HD void set(const Moment& now) { all.set(now); }
+
+  struct Ready {
+    Index a, b, born;
+    double scale, drag, work, slid;
+    NodeState corner[3];  ///< of the own triangle, from the own one on
+    NodeState other[3];
+  };
+  struct Place {
+    int edge;  ///< and corner: 0 to 2 of a, 3 to 5 of b; two threads repeat the last
+    int of;    ///< in its triangle
+    bool of_a, repeats;
+    __device__ explicit Place(Index i) {
+      const int lane = i % width;
+      edge = lane < 6 ? lane : 5;
+      repeats = lane >= 6;
+      of_a = edge < 3;
+      of = of_a ? edge : edge - 3;
+    }
+  };
+  __device__ void prepare(Index i, Ready& ready) const {
+    const Index c = i / width;
+    const CoupleState& kept = all.state[c];
+    ready.a = read_now(&all.a[c]);
+    ready.b = read_now(&all.b[c]);
+    ready.born = read_now(&all.born[c]);
+    ready.scale = read_now(&kept.scale);
+    ready.drag = read_now(&kept.drag[Place(i).edge]);
+    ready.work = read_now(&kept.work);
+    ready.slid = read_now(&kept.slid);
+  }
+  __device__ void fetch(Index i, Ready& ready) const {
+    const Place place(i);
+    const NodeState* const own = all.nodes[place.of_a ? ready.a : ready.b].at;
+    const NodeState* const others = all.nodes[place.of_a ? ready.b : ready.a].at;
+    for (int k = 0; k < 3; ++k) {
+      const int at = place.of + k;
+      ready.corner[k] = read_record_now(own + (at < 3 ? at : at - 3));
+      ready.other[k] = read_record_now(others + k);
+    }
+  }
+  __device__ void operator()(Index i, Ready& ready) const { at(all.dt, i, ready); }
+  __device__ void at_moment(const Moment& now, Index i, Ready& ready) const {
+    at(now.last_dt, i, ready);
+  }
+
+ private:
+  __device__ void at(double dt, Index i, Ready& ready) const {
+    const Index c = i / width;
+    const Place place(i);
+    const unsigned group = 0xffU << (threadIdx.x / width * width % 32);
+    const auto from = [group](int thread, double x) {
+      return __shfl_sync(group, x, thread, width);
+    };
+    const auto vector_from = [&](int thread, const Vec2& v) {
+      return Vec2{from(thread, v.x), from(thread, v.y)};
+    };
+    const bool leads = place.edge == 0;
+    CoupleState& kept = all.state[c];
+    const bool is_new = ready.scale == 0.0;
+    if (is_new) ready.scale = 1.0;
+
+    Vec2 own[3], other[3], other_v[3];
+    for (int k = 0; k < 3; ++k) {
+      own[k] = ready.corner[k].position;
+      other[k] = ready.other[k].position;
+      other_v[k] = ready.other[k].velocity;
+    }
+    EdgePush mine;
+    Vec2 sum{};
+    unsigned touching = 0;  // edges that do
+    if (CoupleForces<Number>::boxes_meet(own, other)) {
+      const ContactPair law = all.law_of(c);
+      if (is_new && ready.born >= 0) {
+        if (leads) begin_rarely(&all, c);
+        __syncwarp(group);
+        ready.scale = kept.scale;
+        ready.drag = kept.drag[place.edge];
+        ready.work = kept.work;
+        __syncwarp(group);
+      }
+      mine = edge_push(law, ready.scale, ready.drag, dt, ready.corner[0], ready.corner[1],
+                       Target::of(other), other_v);
+      kept.drag[place.edge] = mine.drag;
+      touching = __ballot_sync(group, mine.touches) >> (threadIdx.x / width * width % 32) & 0x3fU;
+      for (int s = 0; s < 6; ++s) {
+        if ((touching >> s & 1U) == 0) continue;
+        ready.slid += from(s, mine.slid);
+        const double at_a[3] = {from(s, mine.overlap.at_a[0]), from(s, mine.overlap.at_a[1]),
+                                from(s, mine.overlap.at_a[2])};
+        const double at_b[3] = {from(s, mine.overlap.at_b[0]), from(s, mine.overlap.at_b[1]),
+                                from(s, mine.overlap.at_b[2])};
+        const double share_a = at_a[place.of == 0 ? 0 : place.of == 1 ? 1 : 2];
+        const double share_b = at_b[place.of == 0 ? 0 : place.of == 1 ? 1 : 2];
+        const bool own = (s < 3) == place.of_a;
+        const int k = s < 3 ? s : s - 3, next = k == 2 ? 0 : k + 1;
+        const auto add = [&](const Vec2& first, const Vec2& second) {
+          if (!own)
+            sum -= share_a * first + share_b * second;
+          else if (place.of == k)
+            sum += first;
+          else if (place.of == next)
+            sum += second;
+        };
+        add(vector_from(s, mine.normal[0]), vector_from(s, mine.normal[1]));
+        if (law.friction > 0.0)
+          add(vector_from(s, mine.friction[0]), vector_from(s, mine.friction[1]));
+      }
+      if (touching != 0 && all.conservative)
+        sum += shape_force_rarely(&all, c, ready.scale * law.penalty, place.of_a, place.of);
+    }
+    if (is_new && leads) kept.scale = ready.scale;
+
+    CoupleForceOf<Number>& both = all.force[c];
+    Vec2Of<Number>& stored = (place.of_a ? both.on_a : both.on_b).at[place.of];
+    if (touching == 0 && ready.work == 0.0 && ready.slid == 0.0) {
+      stored = {};
+      return;
+    }
+    const Vec2 last = converted<double>(stored);
+    __syncwarp(group);  // two threads read and write the sixth corner
+    const Vec2Of<Number> now = converted<Number>(sum);
+    stored = now;
+    const double taken = 0.5 * dt * dot(last + converted<double>(now), ready.corner[0].velocity);
+    for (int k = 0; k < 3; ++k) {
+      ready.work -= from(k, taken);
+      ready.work -= from(k + 3, taken);
+    }
+    if (touching == 0) {
+      kept.drag[place.edge] = 0.0;
+      if (leads) {
+        kept.lost += ready.work - ready.slid;
+        kept.rubbed += ready.slid;
+        kept.scale = 1.0;
+      }
+      ready.work = ready.slid = 0.0;
+    }
+    if (leads) {
+      kept.work = ready.work;
+      kept.slid = ready.slid;
+    }
+  }
+};
+/// TriangleForces that read ahead what joints and couples do not write.
+template <class Number>
+struct TrianglesAhead {
+  static constexpr const char* name = "fdem.triangles_ahead";
+  TriangleForces<Number> all;
+
+  struct Ready {
+    TriangleNodes nodes;
+    Mat2 inverse;
+    double viscosity;
+    Index material, couples, couples_end;
+    Index edge[3];
+    JointForceOf<Number> joint[3];
+  };
+  BR_HD void set(const Moment& now) { all.set(now); }
+  __device__ void prepare(Index t, Ready& ready) const {
+    for (int k = 0; k < 3; ++k) ready.edge[k] = read_now(&all.edges[t].at[k]);
+    ready.material = read_now(&all.material[t]);
+    ready.viscosity = read_now(&all.viscosity[t]);
+    ready.couples = read_now(&all.couples.starts[t]);
+    ready.couples_end = read_now(&all.couples.starts[t + 1]);
+    WarpRecords<TriangleNodes> nodes;
+    WarpRecords<Mat2> inverse;
+    nodes.read(all.nodes, t);
+    inverse.read(all.shape_inverse, t);
+    ready.nodes = nodes.own();
+    ready.inverse = inverse.own();
+  }
+  __device__ void fetch(Index, Ready& ready) const {
+    for (int k = 0; k < 3; ++k)
+      ready.joint[k] = read_record_now(&all.joint_force[all.joint_of(ready.edge[k])]);
+  }
+  __device__ void operator()(Index t, const Ready& ready) const {
+    double c[12], inverse[4];
+    __builtin_memcpy(c, &ready.nodes, sizeof c);
+    __builtin_memcpy(inverse, &ready.inverse, sizeof inverse);
+    Vec2 sum[3];
+    all.template deform<double>(t, CornersOf<double>(c), inverse, Indices<double>{ready.material},
+                                ready.viscosity, sum);
+    for (int k = 0; k < 3; ++k) {
+      double f[4];
+      const JointForce own = converted<double>(ready.joint[k]);
+      __builtin_memcpy(f, &own, sizeof f);
+      const Index entry = ready.edge[k];
+      all.add_force(entry >= 0 && side_of(entry) != 0, f, sum[k], sum[k == 2 ? 0 : k + 1]);
+    }
+    all.add_couples(ready.couples, ready.couples_end, sum);
+    __syncwarp();
+    WarpRecords<Corners>::write(all.force, t, {{sum[0], sum[1], sum[2]}});
+  }
+};
+#endif
+
+}  // namespace breccia::fdem
