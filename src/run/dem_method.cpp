@@ -133,19 +133,7 @@ class DemMethod final : public Method {
   static FramePart part_of_frame(const dem::World& part) { return dem_frame(part); }
   /// Answers for a rank's part.
   SharedWorld<dem::World>::Answer answer() const {
-    return [this](dem::World& part, const Message& question) -> Message {
-      switch (look_of(question)) {
-        case Look::frame:
-          return share_of_frame(part_of_frame(part), part, question);
-        case Look::energy:
-          return as_message(energies_of_part(part));
-        case Look::probes:
-          return readings_of_part(part, probes_);
-        case Look::soundness:
-          return soundness_of_part(part);
-      }
-      return {};
-    };
+    return answers<dem::World>(probes_, part_of_frame);
   }
   std::size_t group_count() {
     std::size_t groups = 0;

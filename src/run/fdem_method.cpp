@@ -185,19 +185,8 @@ class FdemMethod final : public Method {
   }
   /// Answers for a rank's part.
   SharedWorld<fdem::World>::Answer answer() const {
-    return [this](fdem::World& part, const Message& question) -> Message {
-      switch (look_of(question)) {
-        case Look::frame:
-          return share_of_frame(part_of_frame(part), part, question);
-        case Look::energy:
-          return as_message(energies_of_part(part));
-        case Look::probes:
-          return readings_of_part(part, probes_);
-        case Look::soundness:
-          return soundness_of_part(part);
-      }
-      return {};
-    };
+    return answers<fdem::World>(probes_,
+                                [this](const fdem::World& part) { return part_of_frame(part); });
   }
 
   fdem::World made(const fdem::Config& config, const fdem::Model& model, const Exec& exec) {

@@ -140,4 +140,24 @@ FrameOutput seen_by_all(SharedWorld<World>& world, const FrameWish& wish, const 
   return made->output(shares);
 }
 
+/// Answers of a rank's part to all of these.
+/// @param make  the part's part of a frame
+template <class World, class Make>
+typename SharedWorld<World>::Answer answers(const std::vector<ProbeConfig>& probes,
+                                            const Make& make) {
+  return [&probes, make](World& part, const Message& question) -> Message {
+    switch (look_of(question)) {
+      case Look::frame:
+        return share_of_frame(make(part), part, question);
+      case Look::energy:
+        return as_message(energies_of_part(part));
+      case Look::probes:
+        return readings_of_part(part, probes);
+      case Look::soundness:
+        return soundness_of_part(part);
+    }
+    return {};
+  };
+}
+
 }  // namespace breccia
