@@ -28,6 +28,25 @@ struct ScaleMotions {
   }
 };
 
+/// ScaleMotions for the step to come, by a launch of the step before that comes when its least
+/// number has been noted: it ends the step as the next one will.
+struct ScaleMotionsAhead {
+  static constexpr const char* name = "fdem.scale_motions";
+  ScaleMotions scale;
+  View<Motion> last;  ///< gets what was for this step
+  EndOfStep<AllowedStep> end;
+  const StepClock* clock;
+  BR_HD void operator()(Index i) const {
+    StepClock c = *clock;
+    if (c.halted != 0 || c.wanted != 0) return;
+    end(c);
+    ScaleMotions next = scale;
+    next.set(c.now);
+    last[i] = next.motions[i];
+    next(i);
+  }
+};
+
 struct ScaleLoads {
   static constexpr const char* name = "fdem.scale_loads";
   Moment now;
@@ -158,20 +177,28 @@ MoveAndWatch move_and_watch(World& w, std::int32_t* wanted) {
           wanted};
 }
 
+ScaleMotions scale_motions(World& w) {
+  return {{},
+          w.amplitudes.view(),
+          w.amplitude_times.view(),
+          w.amplitude_factors.view(),
+          w.prescribed_velocity.view(),
+          w.motions.view()};
+}
+
+/// Whether supports know their velocities when a step begins: a launch less in each step.
+bool scales_ahead(const World& w) {
+  return !w.prescribed.empty() && w.bundles.starts.size() > 1;
+}
+
 void launch_move(World& w, const StepClocks& clocks) {
   const auto motions = static_cast<Index>(w.prescribed.size());
   const EndOfStep<AllowedStep> end = end_of_step(w);
   const MoveAndWatch move = move_and_watch(w, &clocks.now->wanted);
   const Index triangles = w.triangles.size();
-  if (motions == 0)
+  if (motions == 0 || scales_ahead(w))
     return for_each_part(part(triangles, clocks.opening(move, end, true), Parts<>{}));
-  const ScaleMotions scale{{},
-                           w.amplitudes.view(),
-                           w.amplitude_times.view(),
-                           w.amplitude_factors.view(),
-                           w.prescribed_velocity.view(),
-                           w.motions.view()};
-  for_each(w.exec, motions, clocks.opening(scale, end, true));
+  for_each(w.exec, motions, clocks.opening(scale_motions(w), end, true));
   for_each_part(part(triangles, clocks.timed<Stand::in_move>(move), Parts<>{}));
 }
 
@@ -221,8 +248,11 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
     for_each(exec, w.load_starts.size() - 1, by(load_kernel(w)));
   }
   if (w.bundles.starts.size() > 1)
-    for_each_part(part((w.bundles.starts.size() - 1) * BundlesWide::width,
-                       by(BundlesWide{bundle_kernel(w)}), Parts<>{}));
+    for_each_part(
+        part(scales_ahead(w) ? w.motions.size() : 0,
+             ScaleMotionsAhead{scale_motions(w), w.last_motions.view(), end_of_step(w), clock},
+             part((w.bundles.starts.size() - 1) * BundlesWide::width,
+                  by(BundlesWide{bundle_kernel(w)}), Parts<>{})));
 }
 
 void launch_step(World& w, const StepClocks& clocks) {
@@ -267,6 +297,13 @@ void list_amplitudes(World& w) {
   if (w.load_starts.size() > 1) copy_to(w.load_laws, w.loads);
 }
 
+/// Velocities of supports for the step to come.
+void scale_motions_now(World& w) {
+  if (!scales_ahead(w)) return;
+  copy_to(w.last_motions, w.motions);
+  list_motions(w);
+}
+
 void place_reach(World& w) {
   w.reach_place.resize(w.triangles.size());
   for_each(w.exec, w.triangles.size(), FillNone{w.reach_place.view()});
@@ -295,8 +332,9 @@ void forces_on_device(World&) {}
 Advanced advance_on_device(World& w, const StopAt& stop) {
   if (w.amplitudes.empty() && w.clock.empty()) list_amplitudes(w);
   if (w.graph.empty()) place_reach(w);
+  scale_motions_now(w);
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
-  return run_ahead(
+  const Advanced taken = run_ahead(
       w.clock, w.graph, end_of_step(w), host, stop,
       [&](const StepClocks& clocks) { launch_step(w, clocks); },
       [&](const StepClocks& clocks) { launch_rest(w, clocks); },
@@ -305,8 +343,11 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
         insertion ? evaluate_forces(w) : find_couples(w);
         w.graph.clear();
         place_reach(w);
+        if (insertion) scale_motions_now(w);
         return insertion;
       });
+  if (scales_ahead(w)) copy_to(w.motions, w.last_motions);
+  return taken;
 }
 
 }  // namespace breccia::fdem

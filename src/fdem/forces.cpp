@@ -72,15 +72,18 @@ StableStep stable_step(const World& w) {
           w.holds.view(), w.dashpots.view()};
 }
 
+void list_motions(World& w) {
+  if (w.prescribed.empty()) return;
+  std::vector<Motion> now;
+  const double middle = w.time + 0.5 * w.next_dt;
+  for (const PrescribedMotion& p : w.prescribed)
+    now.push_back({p.amplitude.at(middle) * p.velocity});
+  copy_to(w.motions, now);
+}
+
 void move_awaited(World& w) {
   const StageTime timed(w.exec, "integration");
-  if (!w.prescribed.empty()) {
-    std::vector<Motion> now;
-    const double middle = w.time + 0.5 * w.next_dt;
-    for (const PrescribedMotion& p : w.prescribed)
-      now.push_back({p.amplitude.at(middle) * p.velocity});
-    copy_to(w.motions, now);
-  }
+  list_motions(w);
   if (takes_all(w))
     run(w, w.triangles.size(), move_kernel(w));
   else

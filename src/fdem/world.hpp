@@ -109,7 +109,8 @@ struct World {
     each(triangles.external, joints.force.in_double, joints.force.in_single, joints.preset,
          opened.changed, opened.vertex, laws, bonds, contact_pairs, holds, load_starts,
          loaded_edges, dashpots, bundles.starts, bundles.nodes, bundles.leader, joint_ends, edges,
-         motions, load_laws, stress, overshoot, reached, domain.owned_there, domain.placed);
+         motions, last_motions, load_laws, stress, overshoot, reached, domain.owned_there,
+         domain.placed);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
@@ -175,6 +176,7 @@ struct World {
   BroadPhase broad_phase;
 
   // On a device.
+  Buffer<Motion> last_motions;        ///< while `motions` are those of the step to come
   Buffer<AmplitudeTable> amplitudes;  ///< of prescribed motions, then of loads
   Buffer<double> amplitude_times, amplitude_factors;
   Buffer<Vec2> prescribed_velocity;
@@ -205,6 +207,9 @@ Advanced advance(World& w, const StopAt& stop);
 Advanced advance_on_device(World& w, const StopAt& stop);
 /// Forces of joints, couples and triangles by those launches, at once.
 void forces_on_device(World& w);
+
+/// Velocities of supports at the middle of the step to come, into World::motions.
+void list_motions(World& w);
 
 /// The parts of a step, in its order.
 /// Moves the triangles: first those that other ranks wait for, then all others.
