@@ -15,6 +15,8 @@
 
 namespace breccia {
 
+class PeerLink;
+
 /// The bytes that one rank sends to another.
 using Message = std::vector<std::byte>;
 
@@ -52,6 +54,9 @@ class Communicator {
 
   /// Whether messages that are started may lie in that space.
   virtual bool reaches(Space space) const { return space == Space::host; }
+
+  /// How ranks read each other's memory; null where they cannot.
+  virtual PeerLink* link() { return nullptr; }
 
   /// Messages to and from other ranks, to be started as often as is wished. They are given up
   /// before their memory and before this object.

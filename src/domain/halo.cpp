@@ -30,6 +30,36 @@ void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::ve
   send_ = receive_ = Buffer<Index>(space);
   copy_to(send_, all_sent);
   copy_to(receive_, all_received);
+  if (ranks.link() != nullptr && ranks.link()->space() == space) find_sections(ranks);
+}
+
+/// Where others find theirs among what a rank packs for all.
+void Halo::find_sections(Communicator& ranks) {
+  readers_.clear();
+  owners_.clear();
+  std::vector<Message> begins(static_cast<std::size_t>(ranks.size()));
+  Index begin = 0;
+  for (const Peer& peer : peers_) {
+    Message& message = begins[static_cast<std::size_t>(peer.rank)];
+    message.resize(sizeof begin);
+    std::memcpy(message.data(), &begin, sizeof begin);
+    begin += static_cast<Index>(peer.send);
+    if (peer.send > 0) readers_.push_back(peer.rank);
+    if (peer.receive > 0) owners_.push_back(peer.rank);
+  }
+  begins = ranks.exchange(std::move(begins));
+  for (Peer& peer : peers_)
+    std::memcpy(&peer.begin, begins[static_cast<std::size_t>(peer.rank)].data(), sizeof peer.begin);
+  most_sent_ = static_cast<Index>(-ranks.least(-static_cast<double>(begin)));
+}
+
+/// Whether what is exchanged now is read from the owners' memory: so on all ranks, or on none.
+bool Halo::link(Communicator& ranks, Space space, std::size_t item_bytes) {
+  PeerLink* const link = ranks.link();
+  const bool linked = link != nullptr && link->space() == space &&
+                      link->make_room(static_cast<std::size_t>(most_sent_) * item_bytes);
+  link_ = linked ? link : nullptr;
+  return linked;
 }
 
 void Halo::make_room(Space space, std::size_t item_bytes) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "domain/deal.hpp"
+#include "domain/peer_link.hpp"
 #include "exec/for_each.hpp"
 #include "exec/staging.hpp"
 
@@ -26,6 +27,23 @@ struct UnpackItems {
   BR_HD void operator()(Index i) const { items[which[i]] = packed[i]; }
 };
 
+/// The same from another rank's memory: neighbouring threads read neighbouring numbers there.
+template <class T>
+struct PullItems {
+  static constexpr const char* name = "domain.pull_items";
+  using Part = std::conditional_t<sizeof(T) % sizeof(double) == 0, double, std::byte>;
+  static constexpr Index parts = sizeof(T) / sizeof(Part);
+  View<const Index> which;
+  Index first;  ///< of `which`
+  View<const T> packed;
+  View<T> items;
+  BR_HD void operator()(Index i) const {
+    const Index item = i / parts, part = i % parts;
+    const auto* const from = reinterpret_cast<const Part*>(&packed[item]);
+    reinterpret_cast<Part*>(&items[which[first + item]])[part] = from[part];
+  }
+};
+
 /// A local element that another rank owns.
 struct Copy {
   Index element;
@@ -46,13 +64,17 @@ class Halo {
   /// those that came. Every rank calls both.
   template <class T>
   void start(const Exec& exec, Communicator& ranks, const Buffer<T>& items) {
-    make_room(items.space(), sizeof(T));
+    const bool linked = link(ranks, items.space(), sizeof(T));
+    if (!linked) make_room(items.space(), sizeof(T));
     for_each(exec, send_.size(),
-             PackItems<T>{std::as_const(send_).view(), items.view(), as_items<T>(out_)});
-    post(ranks, sizeof(T));
+             PackItems<T>{std::as_const(send_).view(), items.view(),
+                          linked ? as_items<T>(link_->begin(readers_), send_.size(), items.space())
+                                 : as_items<T>(out_)});
+    linked ? link_->packed() : post(ranks, sizeof(T));
   }
   template <class T>
   void finish(const Exec& exec, Buffer<T>& items) {
+    if (link_ != nullptr) return pull(exec, items);
     messages_->finish();
     take_in(sizeof(T));
     for_each(exec, receive_.size(),
@@ -73,31 +95,59 @@ class Halo {
   struct Peer {
     int rank;
     std::size_t send, receive;
+    Index begin = 0;  ///< of what comes among all that it packs; only where it is read from there
   };
   template <class T>
-  static View<T> as_items(Buffer<std::byte>& bytes) {
+  static View<T> as_items(std::byte* bytes, Index count, [[maybe_unused]] Space space) {
     View<T> view;
-    view.data = reinterpret_cast<T*>(bytes.data());
-    view.size = static_cast<Index>(static_cast<std::size_t>(bytes.size()) / sizeof(T));
+    view.data = reinterpret_cast<T*>(bytes);
+    view.size = count;
 #if defined(BR_CHECKED)
-    view.space = bytes.space();
+    view.space = space;
 #endif
     return view;
   }
+  template <class T>
+  static View<T> as_items(Buffer<std::byte>& bytes) {
+    return as_items<T>(bytes.data(),
+                       static_cast<Index>(static_cast<std::size_t>(bytes.size()) / sizeof(T)),
+                       bytes.space());
+  }
+  template <class T>
+  void pull(const Exec& exec, Buffer<T>& items) {
+    link_->await(owners_);
+    Index first = 0;
+    for (const Peer& peer : peers_) {
+      const auto count = static_cast<Index>(peer.receive);
+      const auto* const packed = reinterpret_cast<const T*>(link_->half_of(peer.rank));
+      View<const T> view;
+      view.data = packed + peer.begin;
+      view.size = count;
+      for_each(exec, count * PullItems<T>::parts,
+               PullItems<T>{std::as_const(receive_).view(), first, view, items.view()});
+      first += count;
+    }
+    link_->taken();
+  }
+  void find_sections(Communicator& ranks);
+  bool link(Communicator& ranks, Space space, std::size_t item_bytes);
   void make_room(Space space, std::size_t item_bytes);
   void post(Communicator& ranks, std::size_t item_bytes);
   void prepare(Communicator& ranks, std::size_t item_bytes, std::byte* from, std::byte* to);
   void take_in(std::size_t item_bytes);
 
   std::vector<Peer> peers_;
-  Buffer<Index> send_, receive_;  ///< local elements of each peer, ascending by global id
-  Buffer<std::byte> out_, in_;    ///< their items, packed peer by peer, where the elements lie
-  Staging sent_, came_;           ///< the same on the host, if messages do not reach there
+  std::vector<int> readers_, owners_;  ///< those that get something, and that something comes from
+  Index most_sent_ = 0;                ///< items of one rank
+  Buffer<Index> send_, receive_;       ///< local elements of each peer, ascending by global id
+  Buffer<std::byte> out_, in_;         ///< their items, packed peer by peer, where the elements lie
+  Staging sent_, came_;                ///< the same on the host, if messages do not reach there
   bool staged_ = false;
   /// Kept from one exchange to the next, as long as items are as large and lie there.
   std::shared_ptr<RepeatedMessages> messages_;
   std::size_t item_bytes_ = 0;
   std::byte *from_ = nullptr, *to_ = nullptr;
+  PeerLink* link_ = nullptr;  ///< of the exchange that was started last, if it takes this way
 };
 
 }  // namespace breccia

@@ -22,6 +22,7 @@
 #include <thread>
 
 #include "core/case_config.hpp"
+#include "domain/peer_link.hpp"
 #include "domain/vote_board.hpp"
 #include "domain/watchdog.hpp"
 #include "exec/error.hpp"
@@ -132,14 +133,16 @@ class MpiRanks final : public Communicator {
     // Few enough to be read one by one; ranks of one machine are numbered as all are.
     if (here_ == size_ && size_ <= 64) board_.emplace(signs_->votes(), signs_->self());
     MPI_Comm_free(&here);
+    if (here_ == size_) link_.emplace(*this, Space::cuda);
     watchdog_.emplace(signs_->all(), signs_->self(), [this](std::size_t place) { lose(place); });
     watchdog_->set_patience(DomainConfig{}.patience);
   }
   ~MpiRanks() override {
+    if (link_) link_->close();
     watchdog_.reset();
     signs_.reset();
     MPI_Comm_free(&all_);
-    MPI_Finalize();
+    MPI_Finalize();  // all have come here before one ends its link
   }
 
   int rank() const override { return rank_; }
@@ -148,6 +151,7 @@ class MpiRanks final : public Communicator {
   bool reaches(Space space) const override {
     return space == Space::host || (space == Space::cuda && reaches_gpus());
   }
+  PeerLink* link() override { return link_ ? &*link_ : nullptr; }
   void set_patience(double seconds) override { watchdog_->set_patience(seconds); }
   double waited() const override { return std::chrono::duration<double>(waited_).count(); }
   double worked() const override {
@@ -373,6 +377,7 @@ class MpiRanks final : public Communicator {
   std::uint64_t asked_bits_ = 0, told_bits_ = 0;
   std::optional<SharedSigns> signs_;
   std::optional<VoteBoard> board_;  ///< if all ranks are on this machine
+  std::optional<PeerLink> link_;    ///< likewise
   std::optional<Watchdog> watchdog_;
 };
 

@@ -89,6 +89,8 @@ void report_ranks(const All& all, const DomainCounts& before, const DomainCounts
   result.push_back({part, "waited", "of the time", facts.waited_mean / spent,
                     facts.waited_least / spent, facts.waited_most / spent});
   result.push_back(once(part, "copies", facts.copies, "-"));
+  const PeerLink* const link = all.ranks->link();
+  result.push_back(once(part, "copies_read_directly", link && link->in_use() ? 1.0 : 0.0, "-"));
   result.push_back(once(part, "imbalance", facts.imbalance, "-"));
   result.push_back(
       once(part, "sharings", static_cast<double>(now.migrations - before.migrations), "-"));
