@@ -61,6 +61,16 @@ struct MoveAndWatch {
 #endif
 };
 
+/// The same for what this rank owns: copies follow their owners.
+struct MoveOwn : MoveAndWatch {
+  OwnedView owned;
+#if defined(__CUDACC__)
+  __device__ void operator()(Index e, const Ready& ready) const {
+    if (owned(e)) MoveAndWatch::operator()(e, ready);
+  }
+#endif
+};
+
 struct MoveWalls {
   static constexpr const char* name = "dem.move_walls";
   double dt, largest_travel;
@@ -375,6 +385,15 @@ void launch_rest(World&, const StepClocks&) {}
 }  // namespace
 
 #if defined(__CUDACC__)
+void move_on_device(World& w) {
+  w.beyond.resize(1);
+  const MoveAndWatch move{
+      move_kernel(w),
+      {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
+      0,
+      w.beyond.data()};
+  for_each_part(part(w.elements.size(), AtOnce(MoveOwn{move, w.domain.owned_view()}), Parts<>{}));
+}
 void forces_on_device(World& w) {
   const StageTime timed(w.exec, "forces");
   for_each(w.exec, 1, Fence{});
@@ -387,6 +406,7 @@ void forces_on_device(World& w) {
   });
 }
 #else
+void move_on_device(World&) {}
 void forces_on_device(World&) {}
 #endif
 

@@ -14,24 +14,6 @@ BR_HD void add_to_b(LinkSums& sums, const ActionOf<Number>& action) {
   sums.stiffness_b.add(action.stiffness + 3);
 }
 
-/// Copies follow their owners.
-struct MoveOwn {
-  static constexpr const char* name = "dem.move_own";
-  MoveElements move;
-  OwnedView owned;
-  BR_HD void operator()(Index e) const {
-    if (owned(e)) move(e);
-  }
-};
-
-/// MoveElements on a device. The test of the margins follows.
-void move_there(const World& w, const MoveElements& move) {
-  if (w.domain.alone())
-    for_each(w.exec, w.elements.size(), move);
-  else
-    for_each(w.exec, w.elements.size(), MoveOwn{move, w.domain.owned_view()});
-}
-
 /// Calls visit(begin, end) for what this rank owns of the elements [begin, end) in some runs.
 template <class Visit>
 void each_owned(const Domain& domain, const std::vector<ElementRun>& runs, Index begin, Index end,
@@ -270,7 +252,7 @@ MoveWithin move_within(World& w) {
 void move_awaited(World& w) {
   const StageTime timed(w.exec, "integration");
   if (w.exec.space == Space::cuda)
-    move_there(w, move_kernel(w));
+    move_on_device(w);
   else
     w.margin_used = move_here(w, w.domain.awaited_runs, move_within(w));
 }

@@ -306,27 +306,14 @@ MarginRule margin_rule(const World& w) {
           w.parameters.largest_margin};
 }
 
-namespace {
-
-/// Copies are their owners' to tell of.
-struct OwnUsedMargin {
-  UsedMargin used;
-  OwnedView owned;
-  BR_HD double operator()(Index e) const { return owned(e) ? used(e) : 0.0; }
-};
-
-/// Whether an element of this rank has used its margin up, on a device.
-bool margin_used_there(const World& w) {
-  const UsedMargin used{w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()};
-  return fold(w.exec, w.elements.size(), 0.0, OwnUsedMargin{used, w.domain.owned_view()},
-              Largest{}) > 0.0;
-}
-
-}  // namespace
-
 void ask_for_search(World& w) {
   const StageTime timed(w.exec, "travel");
-  if (w.exec.space == Space::cuda) w.margin_used = margin_used_there(w);
+  if (w.exec.space == Space::cuda) {  // the move has looked
+    std::int32_t beyond = 0;
+    copy_bytes(&beyond, Space::host, w.beyond.data(), w.exec.space, sizeof beyond);
+    w.margin_used = beyond != 0;
+    if (w.margin_used) clear_bytes(w.beyond.data(), w.exec.space, sizeof beyond);
+  }
   if (!w.domain.alone()) w.domain.ranks->ask_for_bits(w.margin_used ? 1 : 0);
 }
 

@@ -131,7 +131,7 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(bar_incidence, contact_incidence, broad_phase, held_partners, contact_actions, link_sums,
          critical, rows_a, rows_b, link_actions.in_double, link_actions.in_single, device_walls,
-         clock);
+         clock, beyond);
   }
 
   /// Of all kinds, broken ones included.
@@ -164,7 +164,7 @@ struct World {
   Buffer<Action> bar_actions, contact_actions;
   Buffer<LinkSums> link_sums;  ///< of each element, zero between steps
   Buffer<double> critical;     ///< [s2]
-  bool margin_used = false;    ///< some element has used its margin up; host only
+  bool margin_used = false;    ///< some element has used its margin up
 
   // On a device.
   LinkRows rows_a, rows_b;         ///< concrete links that start, and that end, at each element
@@ -174,7 +174,8 @@ struct World {
   Buffer<SteelLink> steel_laws;
   Buffer<InterfaceLink> interface_laws;
   Buffer<StepClock> clock;
-  StepGraph graph;  ///< of a few steps
+  Buffer<std::int32_t> beyond;  ///< one: 1 if an element has used its margin up; ranks only
+  StepGraph graph;              ///< of a few steps
 };
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
@@ -200,7 +201,10 @@ void step(World& w);
 Advanced advance(World& w, const StopAt& stop);
 /// The same text as step(), launched ahead by the device's clock.
 Advanced advance_on_device(World& w, const StopAt& stop);
-/// Forces of links and contacts and their sums by those launches, at once.
+/// Moves the elements of this rank by those launches, at once, and notes whether one of them has
+/// used its margin up.
+void move_on_device(World& w);
+/// Forces of links and contacts and their sums, likewise.
 void forces_on_device(World& w);
 
 /// The parts of a step, in its order.

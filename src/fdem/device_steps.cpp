@@ -100,7 +100,8 @@ struct MoveAndWatch {
   __device__ void fetch(Index t, Ready& ready) const {
     ready.force.read(move.kick.force, t);
   }
-  __device__ void operator()(Index t, Ready& ready) const {
+  /// @returns whether the triangle has used its margin up
+  __device__ bool moves(Index t, Ready& ready) const {
     Kick::Given& given = ready.given;
     given.force = ready.force.own();
     if (move.kick.damping > 0.0 || move.external.size > 0 || given.hold >= 0) {
@@ -114,10 +115,24 @@ struct MoveAndWatch {
     }
     __syncwarp();
     WarpRecords<TriangleNodes>::write(move.nodes, t, given.nodes);
-    if (ready.place >= 0 && used.beyond(given.nodes, ready.from, ready.margin))
-      *wanted = wanted_search;
+    return ready.place >= 0 && used.beyond(given.nodes, ready.from, ready.margin);
+  }
+  __device__ void operator()(Index t, Ready& ready) const {
+    if (moves(t, ready)) *wanted = wanted_search;
     if (t == 0 && marking_due(changed[change_softened], changed[change_broken], step))
       *wanted = wanted_search;
+  }
+#endif
+};
+
+/// The same on ranks, which vote. Copies are moved, too, and then follow their owners.
+struct MoveAndTell : MoveAndWatch {
+  OwnedView owned;
+  View<std::int32_t> news;
+#if defined(__CUDACC__)
+  __device__ void operator()(Index t, Ready& ready) const {
+    if (moves(t, ready) && owned(t)) news[0] = 1;
+    if (t == 0) news[1] = (changed[0] != 0 ? 1 : 0) | (changed[1] != 0 ? 2 : 0);
   }
 #endif
 };
@@ -304,6 +319,8 @@ void scale_motions_now(World& w) {
   list_motions(w);
 }
 
+}  // namespace
+
 void place_reach(World& w) {
   w.reach_place.resize(w.triangles.size());
   for_each(w.exec, w.triangles.size(), FillNone{w.reach_place.view()});
@@ -311,9 +328,13 @@ void place_reach(World& w) {
            PlaceReach{std::as_const(w.reach.triangle).view(), w.reach_place.view()});
 }
 
-}  // namespace
-
 #if defined(__CUDACC__)
+void move_on_device(World& w) {
+  w.news.resize(2);
+  MoveAndTell move{move_and_watch(w, nullptr), w.domain.owned_view(), w.news.view()};
+  move.used.set_time(w.time + w.next_dt);
+  for_each_part(part(w.triangles.size(), AtOnce(move), Parts<>{}));
+}
 void forces_on_device(World& w) {
   const StageTime timed(w.exec, "forces");
   const auto at_once = [](const auto& kernel) { return AtOnce(kernel); };
@@ -326,12 +347,12 @@ void forces_on_device(World& w) {
   });
 }
 #else
+void move_on_device(World&) {}
 void forces_on_device(World&) {}
 #endif
 
 Advanced advance_on_device(World& w, const StopAt& stop) {
   if (w.amplitudes.empty() && w.clock.empty()) list_amplitudes(w);
-  if (w.graph.empty()) place_reach(w);
   scale_motions_now(w);
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
   const Advanced taken = run_ahead(
@@ -342,7 +363,6 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
         const bool insertion = wanted == wanted_insertion;
         insertion ? evaluate_forces(w) : find_couples(w);
         w.graph.clear();
-        place_reach(w);
         if (insertion) scale_motions_now(w);
         return insertion;
       });

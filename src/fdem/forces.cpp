@@ -84,7 +84,9 @@ void list_motions(World& w) {
 void move_awaited(World& w) {
   const StageTime timed(w.exec, "integration");
   list_motions(w);
-  if (takes_all(w))
+  if (w.exec.space == Space::cuda)
+    move_on_device(w);
+  else if (takes_all(w))
     run(w, w.triangles.size(), move_kernel(w));
   else
     run_of(w, w.domain.awaited_runs, move_kernel(w));

@@ -169,6 +169,25 @@ Drift choose_drift(const World& w) {
   return {mean, w.time, 1000.0 * w.parameters.mean_edge};
 }
 
+/// What this rank votes: what joints tell, and bit 2 if a triangle has used its margin up.
+std::uint64_t own_news(const World& w) {
+  std::vector<std::uint8_t> changed;
+  copy_to(changed, w.opened.changed);
+  std::uint64_t bits = margin_is_used(w) ? 4 : 0;
+  for (std::size_t i = 0; i < changed.size(); ++i)
+    if (changed[i] != 0) bits |= std::uint64_t{1} << i;
+  return bits;
+}
+
+/// The same on a device, where the move has looked.
+std::uint64_t moves_news(World& w) {
+  std::int32_t news[2];
+  copy_bytes(news, Space::host, w.news.data(), w.exec.space, sizeof news);
+  if (news[0] == 0) return static_cast<std::uint64_t>(news[1]);
+  clear_bytes(w.news.data(), w.exec.space, sizeof news[0]);
+  return static_cast<std::uint64_t>(news[1] | 4);
+}
+
 /// Whether a search is due on some rank; what joints tell becomes known to all.
 bool any_rank_is_due(World& w) {
   const std::uint64_t bits = w.domain.ranks->told_bits();
@@ -221,12 +240,7 @@ MarginRule margin_rule(const World& w) {
 void ask_for_search(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "travel");
-  std::vector<std::uint8_t> changed;
-  copy_to(changed, w.opened.changed);
-  std::uint64_t bits = margin_is_used(w) ? 4 : 0;
-  for (std::size_t i = 0; i < changed.size(); ++i)
-    if (changed[i] != 0) bits |= std::uint64_t{1} << i;
-  w.domain.ranks->ask_for_bits(bits);
+  w.domain.ranks->ask_for_bits(w.exec.space == Space::cuda ? moves_news(w) : own_news(w));
 }
 
 bool couples_are_due(World& w) {
@@ -256,6 +270,7 @@ void derive_couples(World& w) {
   for_each(w.exec, pairs.size(),
            BornOf{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(), w.edges.view(),
                   j.edge_a.view(), j.edge_b.view(), j.broke_at.view(), w.born.view()});
+  if (w.exec.space == Space::cuda) place_reach(w);
 }
 
 }  // namespace breccia::fdem

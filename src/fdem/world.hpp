@@ -117,7 +117,7 @@ struct World {
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, born, node_vertex, border_vertex, amplitudes,
-         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock);
+         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock, news);
   }
 
   // State: what a checkpoint holds.
@@ -182,6 +182,9 @@ struct World {
   Buffer<Vec2> prescribed_velocity;
   Buffer<Index> reach_place;  ///< of each triangle in `reach`, -1: it cannot touch
   Buffer<StepClock> clock;
+  /// Ranks only: 1 if a triangle has used its margin up; and bit k if flag k of Opened::changed is
+  /// set.
+  Buffer<std::int32_t> news;
   StepGraph graph;  ///< of a few steps
 };
 
@@ -195,6 +198,8 @@ World make_world(const Config& config, const Model& model, const Exec& exec);
 /// Fills what follows from the state, after loading.
 void derive(World& w);
 void derive_couples(World& w);
+/// The place in `reach` of each triangle, for a device.
+void place_reach(World& w);
 /// Who moves with whom, from the stages of the joints.
 void derive_bundles(World& w);
 
@@ -205,7 +210,9 @@ void step(World& w);
 Advanced advance(World& w, const StopAt& stop);
 /// The same text as step(), launched ahead by the device's clock.
 Advanced advance_on_device(World& w, const StopAt& stop);
-/// Forces of joints, couples and triangles by those launches, at once.
+/// Moves the triangles by those launches, at once, and notes what ranks vote on.
+void move_on_device(World& w);
+/// Forces of joints, couples and triangles, likewise.
 void forces_on_device(World& w);
 
 /// Velocities of supports at the middle of the step to come, into World::motions.
