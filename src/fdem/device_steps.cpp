@@ -178,6 +178,11 @@ struct FillNone {
   BR_HD void operator()(Index t) const { place[t] = -1; }
 };
 
+/// Whether supports know their velocities when a step begins: a launch less in each step.
+bool scales_ahead(const World& w) {
+  return !w.prescribed.empty() && w.bundles.starts.size() > 1;
+}
+
 EndOfStep<AllowedStep> end_of_step(const World& w) {
   return {allowed_step(w), w.parameters.time.evaluate_every};
 }
@@ -199,11 +204,6 @@ ScaleMotions scale_motions(World& w) {
           w.amplitude_factors.view(),
           w.prescribed_velocity.view(),
           w.motions.view()};
-}
-
-/// Whether supports know their velocities when a step begins: a launch less in each step.
-bool scales_ahead(const World& w) {
-  return !w.prescribed.empty() && w.bundles.starts.size() > 1;
 }
 
 void launch_move(World& w, const StepClocks& clocks) {
