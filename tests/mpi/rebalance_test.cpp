@@ -98,6 +98,16 @@ TEST(Rebalance, leaves_nothing_to_share_out_among_bodies_that_only_fly) {
   });
 }
 
+TEST(Rebalance, counts_what_the_first_sharing_took_where_elements_lie_on_a_device) {
+  simulate_ranks(2, 1, [](Communicator& ranks) {
+    auto whole = slab_piece().world(1);
+    for (const Space space : {Space::host, Space::shadow}) {
+      const auto part = share_out(whole, ranks, {}, space);
+      EXPECT_EQ(part.domain.pace.spent(ranks).sharing > 0.0, space == Space::shadow);
+    }
+  });
+}
+
 TEST(Rebalance, is_left_out_where_borders_are_to_stay) {
   DomainConfig config;
   config.balance = false;
