@@ -393,6 +393,7 @@ void move_on_device(World& w) {
       0,
       w.beyond.data()};
   for_each_part(part(w.elements.size(), AtOnce(MoveOwn{move, w.domain.owned_view()}), Parts<>{}));
+  mark_launches(w.exec.space);
 }
 void forces_on_device(World& w) {
   const StageTime timed(w.exec, "forces");

@@ -310,7 +310,7 @@ void ask_for_search(World& w) {
   const StageTime timed(w.exec, "travel");
   if (w.exec.space == Space::cuda) {  // the move has looked
     std::int32_t beyond = 0;
-    copy_bytes(&beyond, Space::host, w.beyond.data(), w.exec.space, sizeof beyond);
+    peek_marked_bytes(&beyond, w.beyond.data(), w.exec.space, sizeof beyond);
     w.margin_used = beyond != 0;
     if (w.margin_used) clear_bytes(w.beyond.data(), w.exec.space, sizeof beyond);
   }

@@ -63,18 +63,15 @@ class Halo {
   /// Sends the items of owned elements to the ranks that hold copies of them. finish() then writes
   /// those that came. Every rank calls both.
   template <class T>
-  void start(const Exec& exec, Communicator& ranks, const Buffer<T>& items) {
-    const bool linked = link(ranks, items.space(), sizeof(T));
-    if (!linked) make_room(items.space(), sizeof(T));
-    for_each(exec, send_.size(),
-             PackItems<T>{std::as_const(send_).view(), items.view(),
-                          linked ? as_items<T>(link_->begin(readers_), send_.size(), items.space())
-                                 : as_items<T>(out_)});
-    linked ? link_->packed() : post(ranks, sizeof(T));
+  void start(const Exec& exec, Communicator& ranks, Buffer<T>& items) {
+    if (link(ranks, items.space(), sizeof(T))) return read_directly(exec, items);
+    make_room(items.space(), sizeof(T));
+    pack(exec, items, as_items<T>(out_));
+    post(ranks, sizeof(T));
   }
   template <class T>
   void finish(const Exec& exec, Buffer<T>& items) {
-    if (link_ != nullptr) return pull(exec, items);
+    if (link_ != nullptr) return;  // it is done
     messages_->finish();
     take_in(sizeof(T));
     for_each(exec, receive_.size(),
@@ -114,17 +111,24 @@ class Halo {
                        bytes.space());
   }
   template <class T>
-  void pull(const Exec& exec, Buffer<T>& items) {
+  void pack(const Exec& exec, const Buffer<T>& items, const View<T>& packed) const {
+    for_each(exec, send_.size(), PackItems<T>{send_.view(), items.view(), packed});
+  }
+  /// A whole exchange: GPUs wait for each other by themselves, so nothing is put off.
+  template <class T>
+  void read_directly(const Exec& exec, Buffer<T>& items) {
+    pack(exec, items, as_items<T>(link_->begin(readers_), send_.size(), items.space()));
+    link_->packed();
     link_->await(owners_);
     Index first = 0;
     for (const Peer& peer : peers_) {
       const auto count = static_cast<Index>(peer.receive);
-      const auto* const packed = reinterpret_cast<const T*>(link_->half_of(peer.rank));
-      View<const T> view;
-      view.data = packed + peer.begin;
-      view.size = count;
+      const auto* const theirs = reinterpret_cast<const T*>(link_->half_of(peer.rank));
+      View<const T> packed;
+      packed.data = theirs + peer.begin;
+      packed.size = count;
       for_each(exec, count * PullItems<T>::parts,
-               PullItems<T>{std::as_const(receive_).view(), first, view, items.view()});
+               PullItems<T>{std::as_const(receive_).view(), first, packed, items.view()});
       first += count;
     }
     link_->taken();

@@ -78,20 +78,54 @@ void copy_bytes(void* to, [[maybe_unused]] Space to_space, const void* from,
   std::memcpy(to, from, bytes);
 }
 
+#if defined(BR_CUDA)
+namespace {
+
+/// A stream beside those of the run.
+cudaStream_t beside() {
+  static const cudaStream_t stream = [] {
+    cudaStream_t made = nullptr;
+    check_device(cudaStreamCreateWithFlags(&made, cudaStreamNonBlocking), "making a stream");
+    return made;
+  }();
+  return stream;
+}
+/// The point that was marked last.
+cudaEvent_t mark() {
+  static const cudaEvent_t event = [] {
+    cudaEvent_t made = nullptr;
+    check_device(cudaEventCreateWithFlags(&made, cudaEventDisableTiming), "making an event");
+    return made;
+  }();
+  return event;
+}
+
+}  // namespace
+#endif
+
 void peek_bytes(void* to, const void* from, [[maybe_unused]] Space from_space, std::size_t bytes) {
 #if defined(BR_CUDA)
   if (from_space == Space::cuda) {
-    static const cudaStream_t beside = [] {
-      cudaStream_t made = nullptr;
-      check_device(cudaStreamCreateWithFlags(&made, cudaStreamNonBlocking), "making a stream");
-      return made;
-    }();
-    check_device(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, beside), "a look at memory");
-    check_device(cudaStreamSynchronize(beside), "a look at memory");
+    check_device(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, beside()), "a look at memory");
+    check_device(cudaStreamSynchronize(beside()), "a look at memory");
     return;
   }
 #endif
   std::memcpy(to, from, bytes);
+}
+
+void mark_launches([[maybe_unused]] Space space) {
+#if defined(BR_CUDA)
+  if (space == Space::cuda) check_device(cudaEventRecord(mark(), device_stream()), "a mark");
+#endif
+}
+
+void peek_marked_bytes(void* to, const void* from, Space from_space, std::size_t bytes) {
+#if defined(BR_CUDA)
+  if (from_space == Space::cuda)
+    check_device(cudaStreamWaitEvent(beside(), mark(), 0), "waiting for a mark");
+#endif
+  peek_bytes(to, from, from_space, bytes);
 }
 
 void clear_bytes(void* memory, [[maybe_unused]] Space space, std::size_t bytes) {

@@ -14,6 +14,10 @@ void release(Space space, void* memory) noexcept;
 void copy_bytes(void* to, Space to_space, const void* from, Space from_space, std::size_t bytes);
 /// Reads what kernels are writing, without waiting for them: beside all other work of a device.
 void peek_bytes(void* to, const void* from, Space from_space, std::size_t bytes);
+/// Marks this point of all launches,
+void mark_launches(Space space);
+/// and reads what those before it leave, without waiting for those after it.
+void peek_marked_bytes(void* to, const void* from, Space from_space, std::size_t bytes);
 /// Sets every byte to zero.
 void clear_bytes(void* memory, Space space, std::size_t bytes);
 /// The largest sum of array memory of a space that was alive at one time in this process.

@@ -334,6 +334,7 @@ void move_on_device(World& w) {
   MoveAndTell move{move_and_watch(w, nullptr), w.domain.owned_view(), w.news.view()};
   move.used.set_time(w.time + w.next_dt);
   for_each_part(part(w.triangles.size(), AtOnce(move), Parts<>{}));
+  mark_launches(w.exec.space);
 }
 void forces_on_device(World& w) {
   const StageTime timed(w.exec, "forces");

@@ -182,7 +182,7 @@ std::uint64_t own_news(const World& w) {
 /// The same on a device, where the move has looked.
 std::uint64_t moves_news(World& w) {
   std::int32_t news[2];
-  copy_bytes(news, Space::host, w.news.data(), w.exec.space, sizeof news);
+  peek_marked_bytes(news, w.news.data(), w.exec.space, sizeof news);
   if (news[0] == 0) return static_cast<std::uint64_t>(news[1]);
   clear_bytes(w.news.data(), w.exec.space, sizeof news[0]);
   return static_cast<std::uint64_t>(news[1] | 4);
