@@ -64,8 +64,10 @@ struct MoveAndWatch {
 /// The same for what this rank owns: copies follow their owners.
 struct MoveOwn : MoveAndWatch {
   OwnedView owned;
+  StepClock* clock;  ///< for the sums to note in
 #if defined(__CUDACC__)
   __device__ void operator()(Index e, const Ready& ready) const {
+    if (e == 0) clock->least = ordered_bits(largest_least);
     if (owned(e)) MoveAndWatch::operator()(e, ready);
   }
 #endif
@@ -387,12 +389,14 @@ void launch_rest(World&, const StepClocks&) {}
 #if defined(__CUDACC__)
 void move_on_device(World& w) {
   w.beyond.resize(1);
+  w.clock.resize(1);
   const MoveAndWatch move{
       move_kernel(w),
       {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
       0,
       w.beyond.data()};
-  for_each_part(part(w.elements.size(), AtOnce(MoveOwn{move, w.domain.owned_view()}), Parts<>{}));
+  for_each_part(part(w.elements.size(),
+                     AtOnce(MoveOwn{move, w.domain.owned_view(), w.clock.data()}), Parts<>{}));
   mark_launches(w.exec.space);
 }
 void forces_on_device(World& w) {
@@ -402,9 +406,14 @@ void forces_on_device(World& w) {
     using Gather = GatherWide<decltype(number)>;
     const auto at_once = [](const auto& kernel) { return AtOnce(kernel); };
     launch_interactions<decltype(number)>(w, at_once);
-    for_each_part(part(w.elements.size() * Gather::width,
-                       at_once(Gather{gather_rows_kernel<decltype(number)>(w)}), Parts<>{}));
+    const Index threads = w.elements.size() * Gather::width;
+    const auto gather = at_once(Gather{gather_rows_kernel<decltype(number)>(w)});
+    if (sums_note_least(w))
+      for_each_noting(threads, gather, NoteLeast{w.clock.data()});
+    else
+      for_each_part(part(threads, gather, Parts<>{}));
   });
+  mark_launches(w.exec.space);
 }
 #else
 void move_on_device(World&) {}

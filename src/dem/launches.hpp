@@ -6,6 +6,13 @@
 
 namespace breccia::dem {
 
+/// Whether the sums of a step on a device of several note their least critical number in `w.clock`,
+/// where the move has made room for it. Those of copies count, too: they lack some of the stiffness
+/// that the owner adds up, so none is below the owner's, which another rank notes.
+inline bool sums_note_least(const World& w) {
+  return !w.domain.alone() && w.walls.empty() && !w.clock.empty() && w.elements.size() > 0;
+}
+
 inline SteelLinkForces steel_kernel(World& w, const LinkGroup<SteelLink>& group) {
   SteelLinks& s = w.steel;
   return {group.law,

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "dem/ranks.hpp"
 #include "mpi/on_ranks.hpp"
 
@@ -96,6 +98,43 @@ TEST(DemRanks, write_the_same_bytes_and_go_on_from_those_of_any_other_number_of_
   EXPECT_EQ(journal(3, slab(), 450, steps, state, ""), expected);
   for (const int count : {5, 2, 1})
     EXPECT_EQ(journal(count, slab(), 450, steps, state, state), expected);
+}
+
+/// Of each element by global id, on the rank that owns it, and the others' copies.
+struct CriticalNumbers {
+  std::map<GlobalId, double> owned;
+  std::vector<std::pair<GlobalId, double>> copies;
+};
+
+// On GPUs the least of all elements that are here is noted, whoever owns them.
+TEST(DemRanks, hold_no_copy_whose_critical_number_is_below_its_owners) {
+  constexpr int count = 3;
+  std::vector<CriticalNumbers> of_rank(count);
+  const Slab piece = slab_piece();
+  simulate_ranks(count, 5, [&](Communicator& ranks) {
+    auto whole = piece.world(1);
+    auto part = share_out(whole, ranks, {});
+    for (int i = 0; i < 200; ++i) step(part);
+    CriticalNumbers& own = of_rank[static_cast<std::size_t>(ranks.rank())];
+    for (Index e = 0; e < part.elements.size(); ++e) {
+      const GlobalId id = part.elements.id.data()[e];
+      const double critical = part.critical.data()[e];
+      if (part.domain.owns(e))
+        own.owned[id] = critical;
+      else
+        own.copies.emplace_back(id, critical);
+    }
+  });
+  std::map<GlobalId, double> owned;
+  for (const CriticalNumbers& own : of_rank) owned.insert(own.owned.begin(), own.owned.end());
+  int equal = 0, above = 0;
+  for (const CriticalNumbers& own : of_rank)
+    for (const auto& [id, critical] : own.copies) {
+      EXPECT_GE(critical, owned.at(id)) << "element " << id;
+      ++(critical > owned.at(id) ? above : equal);
+    }
+  EXPECT_GT(equal, 0);
+  EXPECT_GT(above, 100);
 }
 
 }  // namespace
