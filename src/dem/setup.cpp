@@ -11,6 +11,7 @@
 #include "dem/materials.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
+#include "exec/sort_scan.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -267,25 +268,25 @@ void move_to(World& w, Space space) {
 }
 
 void set_linked_pairs(World& w) {
-  std::vector<std::pair<PairKey, Index>> linked;  // key by places: the order by ids
-  Index first = 0;
+  Buffer<KeyedIndex> linked(Space::host,
+                            w.concrete.a.size() + w.steel.a.size() + w.interface.a.size());
+  Index link = 0;
   const auto append = [&](const Buffer<Index>& a, const Buffer<Index>& b) {
     std::vector<Index> ends_a, ends_b;
     copy_to(ends_a, a);
     copy_to(ends_b, b);
-    for (std::size_t i = 0; i < ends_a.size(); ++i)
-      linked.emplace_back(pair_key(ends_a[i], ends_b[i]), first + static_cast<Index>(i));
-    first += static_cast<Index>(ends_a.size());
+    for (std::size_t i = 0; i < ends_a.size(); ++i, ++link)  // by places: the order by ids
+      linked.data()[link] = {pair_key(ends_a[i], ends_b[i]), link};
   };
   append(w.concrete.a, w.concrete.b);
   append(w.steel.a, w.steel.b);
   append(w.interface.a, w.interface.b);
-  std::sort(linked.begin(), linked.end());
+  sort_by_key(w.exec, linked);
   std::vector<Index> starts(static_cast<std::size_t>(w.elements.size()) + 1, 0), partners, links;
-  for (const auto& [key, link] : linked) {
-    ++starts[static_cast<std::size_t>(low_id(key)) + 1];
-    partners.push_back(high_id(key));
-    links.push_back(link);
+  for (const KeyedIndex& pair : linked.host()) {
+    ++starts[static_cast<std::size_t>(low_id(pair.key)) + 1];
+    partners.push_back(high_id(pair.key));
+    links.push_back(pair.item);
   }
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
   copy_to(w.linked_starts, starts);

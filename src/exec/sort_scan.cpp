@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <vector>
 
@@ -78,7 +79,9 @@ void sort_by_key(const Exec& exec, Buffer<KeyedIndex>& items) {
   const auto item_before = [](const KeyedIndex& a, const KeyedIndex& b) { return a.item < b.item; };
   if (items.size() > 1000 && std::is_sorted(begin, end, item_before)) {
     Buffer<KeyedIndex> scratch(items.space());
-    sort_by_digits(exec, items, scratch, 64);
+    std::uint64_t used = 0;
+    for (const KeyedIndex* item = begin; item != end; ++item) used |= item->key;
+    sort_by_digits(exec, items, scratch, static_cast<int>(std::bit_width(used)));
     if (items.data() != begin) {  // views of the array stay good
       copy_to(scratch, items);
       items.swap(scratch);

@@ -92,9 +92,9 @@ class Journey {
   void tie_all(Deliveries& joints, Deliveries& couples) {
     const Rings rings(w_);
     std::vector<Index> members;
-    rings.each([&](const std::pair<Index, Index>* first, const std::pair<Index, Index>* end) {
+    rings.each([&](const KeyedIndex* first, const KeyedIndex* end) {
       members.clear();
-      for (; first != end; ++first) members.push_back(first->second / 3);
+      for (; first != end; ++first) members.push_back(first->item / 3);
       ties_.tie(members);
     });
     for (Index i = 0; i < w_.joints.size(); ++i) {
@@ -199,10 +199,9 @@ void settle_in(World& w, Space space) {
 
   // Rings without an owned triangle may be incomplete; nobody here needs them.
   std::vector<Index> first{0}, nodes;
-  Rings(w).each([&](const std::pair<Index, Index>* begin, const std::pair<Index, Index>* end) {
-    if (std::none_of(begin, end, [&](const auto& c) { return w.domain.owns(c.second / 3); }))
-      return;
-    for (; begin != end; ++begin) nodes.push_back(begin->second);
+  Rings(w).each([&](const KeyedIndex* begin, const KeyedIndex* end) {
+    if (std::none_of(begin, end, [&](const auto& c) { return w.domain.owns(c.item / 3); })) return;
+    for (; begin != end; ++begin) nodes.push_back(begin->item);
     first.push_back(static_cast<Index>(nodes.size()));
   });
   copy_to(w.bundles.starts, first);

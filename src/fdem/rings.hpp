@@ -2,9 +2,9 @@
 // Which triangles lie around a vertex.
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
+#include "exec/sort_scan.hpp"
 #include "fdem/world.hpp"
 
 namespace breccia::fdem {
@@ -13,31 +13,45 @@ namespace breccia::fdem {
 class Rings {
  public:
   explicit Rings(const World& w) {
-    for (std::size_t n = 0; n < w.vertex.size(); ++n)
-      if (w.mesh.tied[static_cast<std::size_t>(w.vertex[n])] != 0)
-        corners_.push_back({w.vertex[n], static_cast<Index>(n)});
-    std::sort(corners_.begin(), corners_.end());
+    Index count = 0;
+    each_corner(w, [&](Index, Index) { ++count; });
+    corners_.resize(count);
+    KeyedIndex* next = corners_.data();
+    each_corner(w, [&](Index vertex, Index corner) {
+      *next++ = {static_cast<std::uint64_t>(vertex), corner};
+    });
+    sort_by_key(w.exec, corners_);
   }
   /// Calls visit(first corner, end) for each ring; corners ascend.
   template <class Visit>
   void each(const Visit& visit) const {
-    for (std::size_t i = 0; i < corners_.size();) {
-      std::size_t end = i;
-      while (end < corners_.size() && corners_[end].first == corners_[i].first) ++end;
-      visit(corners_.data() + i, corners_.data() + end);
-      i = end;
+    const KeyedIndex* const last = corners_.data() + corners_.size();
+    for (const KeyedIndex* begin = corners_.data(); begin != last;) {
+      const KeyedIndex* end = begin;
+      while (end != last && end->key == begin->key) ++end;
+      visit(begin, end);
+      begin = end;
     }
   }
   /// Those around one vertex, behind what is listed.
   void add_triangles(Index vertex, std::vector<Index>& triangles) const {
-    const auto first =
-        std::lower_bound(corners_.begin(), corners_.end(), std::pair<Index, Index>{vertex, -1});
-    for (auto c = first; c != corners_.end() && c->first == vertex; ++c)
-      triangles.push_back(c->second / 3);
+    const auto key = static_cast<std::uint64_t>(vertex);
+    const auto all = corners_.host();
+    auto c = std::partition_point(all.begin(), all.end(),
+                                  [key](const KeyedIndex& other) { return other.key < key; });
+    for (; c != all.end() && c->key == key; ++c) triangles.push_back(c->item / 3);
   }
 
  private:
-  std::vector<std::pair<Index, Index>> corners_;  ///< vertex and corner
+  template <class Visit>
+  static void each_corner(const World& w, const Visit& visit) {
+    if (!w.mesh.bundled) return;
+    for (std::size_t n = 0; n < w.vertex.size(); ++n)
+      if (w.mesh.tied[static_cast<std::size_t>(w.vertex[n])] != 0)
+        visit(w.vertex[n], static_cast<Index>(n));
+  }
+
+  Buffer<KeyedIndex> corners_;  ///< by vertex
 };
 
 }  // namespace breccia::fdem
