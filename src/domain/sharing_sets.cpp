@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <numeric>
 
 namespace breccia {
 namespace {
@@ -18,8 +19,12 @@ double common_radius(Communicator& ranks, const std::vector<Sphere>& elements) {
   std::array<double, rungs> bound;
   for (std::size_t i = 0; i < rungs; ++i) bound[i] = i == 0 ? largest : bound[i - 1] / rung;
   std::array<std::int64_t, rungs + 1> above{};  // each bound, and all elements
-  for (const Sphere& e : elements)
-    for (std::size_t i = rungs; i-- > 0 && e.radius > bound[i];) ++above[i];
+  for (const Sphere& e : elements) {
+    std::size_t i = 0;
+    while (i < rungs && !(e.radius > bound[i])) ++i;
+    if (i < rungs) ++above[i];
+  }
+  for (std::size_t i = 1; i < rungs; ++i) above[i] += above[i - 1];  // above higher ones, too
   above[rungs] = static_cast<std::int64_t>(elements.size());
   ranks.add_up(above);
   std::size_t lowest = 0;
@@ -49,7 +54,7 @@ void SharingSets::build(Communicator& ranks, const std::vector<Sphere>& elements
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const Sphere& s = elements[e];
     if (!is_large(s.radius)) continue;
-    const Large l{0.0, s.centre, (s.radius + buffer(s.radius)) * (1.0 + 1e-6), owners[e]};
+    const Large l{s.centre, (s.radius + buffer(s.radius)) * (1.0 + 1e-6), owners[e]};
     const auto* const bytes = reinterpret_cast<const std::byte*>(&l);
     own.insert(own.end(), bytes, bytes + sizeof l);
   }
@@ -59,12 +64,29 @@ void SharingSets::build(Communicator& ranks, const std::vector<Sphere>& elements
       std::memcpy(&large_.emplace_back(), came.data() + at, sizeof(Large));
   widest_ = 0.0;
   for (const Large& l : large_) widest_ = std::max(widest_, l.width);
-  row_width_ = 2.0 * (common_ + widest_ + reach());
+  sort_into_rows();
+}
+
+void SharingSets::sort_into_rows() {
+  row_starts_.clear();
+  if (large_.empty()) return;
+  double rows_end = rows_begin_ = large_.front().centre.x;
+  for (const Large& l : large_) {
+    rows_begin_ = std::min(rows_begin_, l.centre.x);
+    rows_end = std::max(rows_end, l.centre.x);
+  }
+  // Wide enough that a search meets few rows, and that few of them are empty.
+  const auto most = static_cast<double>(large_.size());
+  row_width_ = std::max(2.0 * (common_ + widest_ + reach()), (rows_end - rows_begin_) / most);
   if (!(row_width_ > 0.0)) row_width_ = 1.0;
-  for (Large& l : large_) l.row = std::floor(l.centre.x / row_width_);
-  std::sort(large_.begin(), large_.end(), [](const Large& a, const Large& b) {
-    return a.row < b.row || (a.row == b.row && a.centre.y < b.centre.y);
+  const double rows = std::min(std::floor((rows_end - rows_begin_) / row_width_) + 1.0, most);
+  row_starts_.assign(rows > 1.0 ? static_cast<std::size_t>(rows) + 1 : 2, 0);
+  std::sort(large_.begin(), large_.end(), [this](const Large& a, const Large& b) {
+    const std::size_t row = row_of(a.centre.x), other = row_of(b.centre.x);
+    return row < other || (row == other && a.centre.y < b.centre.y);
   });
+  for (const Large& l : large_) ++row_starts_[row_of(l.centre.x) + 1];
+  std::partial_sum(row_starts_.begin(), row_starts_.end(), row_starts_.begin());
 }
 
 }  // namespace breccia

@@ -63,34 +63,35 @@ class SharingSets {
 
  private:
   struct Large {
-    double row;  ///< of the plane, parallel to y
     Vec3 centre;
     double width;  ///< radius and buffer  [m]
     int owner;
   };
+  void sort_into_rows();
   double reach() const { return 2.0 * leeway_.margin; }
   static double largest(const Vec3& v) {
     return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
   }
+  /// Rows of the plane, parallel to y; what lies outside counts for the first or last one.
+  std::size_t row_of(double x) const {
+    const double row = (x - rows_begin_) / row_width_;
+    const auto last = static_cast<double>(row_starts_.size() - 2);
+    return row > 0.0 ? static_cast<std::size_t>(std::min(row, last)) : 0;
+  }
   /// Calls visit(first, end) for the large elements of each row that is near.
   template <class Visit>
   void each_row(double x, double near, const Visit& visit) const {
-    const auto before = [](const Large& l, double row) { return l.row < row; };
-    const auto after = [](double row, const Large& l) { return row < l.row; };
-    const double last = std::floor((x + near) / row_width_);
-    auto l =
-        std::lower_bound(large_.begin(), large_.end(), std::floor((x - near) / row_width_), before);
-    while (l != large_.end() && l->row <= last) {
-      const auto end = std::upper_bound(l, large_.end(), l->row, after);
-      visit(l, end);
-      l = end;
-    }
+    if (large_.empty()) return;
+    const std::size_t last = row_of(x + near);
+    for (std::size_t row = row_of(x - near); row <= last; ++row)
+      visit(large_.begin() + row_starts_[row], large_.begin() + row_starts_[row + 1]);
   }
 
   Leeway leeway_;
   double common_ = 0.0;  ///< largest radius of those that are not told of one by one  [m]
-  double widest_ = 0.0, row_width_ = 1.0;
-  std::vector<Large> large_;  ///< by row, then by y
+  double widest_ = 0.0, rows_begin_ = 0.0, row_width_ = 1.0;
+  std::vector<Large> large_;       ///< by row, then by y
+  std::vector<Index> row_starts_;  ///< first of each row, and the end
 };
 
 }  // namespace breccia
