@@ -146,6 +146,37 @@ void append(State& state, const std::vector<Message>& came, Index here) {
   }
 }
 
+/// Where the items of an array go when what came, behind those that were here, takes its places
+/// among those that stay.
+struct Merging {
+  const std::vector<Index>& stay;  ///< ascending
+  Index here;                      ///< items before those that came
+  const Buffer<Index>& order;      ///< of what stays, as in `stay`, and what came
+
+  /// In place: nearly all items lie near their new places.
+  template <class T>
+  void apply(T* items) const {
+    const auto kept = static_cast<Index>(stay.size());
+    const std::vector<T> came(items + here, items + here + (order.size() - kept));
+    Index i = 0;
+    while (i < kept && stay[static_cast<std::size_t>(i)] == i) ++i;
+    for (; i < kept; ++i) items[i] = items[stay[static_cast<std::size_t>(i)]];
+    Index next = kept;  // behind what stays and has not found its place
+    for (i = order.size(); next < i;) {
+      const Index from = order.data()[--i];
+      items[i] = from < here ? items[--next] : came[static_cast<std::size_t>(from - here)];
+    }
+  }
+  template <class T>
+  void apply(Buffer<T>& array) const {
+    apply(array.data());
+  }
+  template <class Number>
+  void apply(PlanesOf<Number>& planes) const {
+    for (int plane = 0; plane < 3; ++plane) apply(planes.items().data() + plane * planes.size());
+  }
+};
+
 }  // namespace deal_detail
 
 /// Each rank's items go to the ranks that `to` lists; the state then holds what stays and what
@@ -170,12 +201,19 @@ void deal(Communicator& ranks, State&& state, Deliveries& to, const Buffer<Key>&
   Index* const end = begin + order.size();
   std::iota(middle, end, here);
   const auto before = [key](Index a, Index b) { return key[a] < key[b]; };
-  if (!std::is_sorted(begin, middle, before)) std::sort(begin, middle, before);
+  const bool in_order = std::is_sorted(begin, middle, before);
+  if (!in_order) std::sort(begin, middle, before);
   std::sort(middle, end, before);
   std::inplace_merge(begin, middle, end, before);
   bool in_place = order.size() == keys.size();
   for (Index i = 0; in_place && i < order.size(); ++i) in_place = begin[i] == i;
-  if (!in_place) gather_fields(Exec{}, order, state);
+  if (in_place) return;
+  // Where most has gone its memory goes, too.
+  if (!in_order || 2 * static_cast<Index>(stay.size()) < here)
+    return gather_fields(Exec{}, order, state);
+  const deal_detail::Merging merging{stay, here, order};
+  state.each_field([&](const char*, const char*, auto& array) { merging.apply(array); });
+  resize_fields(state, order.size());
 }
 
 /// The place of a number in an ascending array that holds it.
