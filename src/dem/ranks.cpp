@@ -13,11 +13,11 @@ namespace {
 /// Numbers memory indices of a link's ends by `number`: to global ids before a journey, to places
 /// in memory after it.
 template <class Number>
-void renumber(Buffer<Index>& ends, const Number& number) {
+void renumber(Buffer<Index>& ends, Number& number) {
   for (Index& end : ends.host()) end = number(end);
 }
 template <class Number>
-void renumber_all(World& w, const Number& number) {
+void renumber_all(World& w, Number number) {
   for (Buffer<Index>* ends : {&w.concrete.a, &w.concrete.b, &w.steel.a, &w.steel.b, &w.interface.a,
                               &w.interface.b, &w.interface.before, &w.interface.after,
                               &w.contacts.pairs.a, &w.contacts.pairs.b, &w.wall_contacts.pairs.a})
@@ -74,7 +74,7 @@ class Journey {
     deal(all, w_.contacts, contacts, w_.contacts.pairs.key);
     deal(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
     join_actions(on_steel, on_interface);
-    renumber_all(w_, [this](Index id) { return place_of(w_.elements.id, id); });
+    renumber_all(w_, [places = Places(w_.elements.id)](Index id) mutable { return places.of(id); });
   }
 
  private:

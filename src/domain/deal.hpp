@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -216,19 +217,37 @@ void deal(Communicator& ranks, State&& state, Deliveries& to, const Buffer<Key>&
   resize_fields(state, order.size());
 }
 
-/// The place of a number in an ascending array that holds it.
-inline Index place_of(const Buffer<Index>& sorted, Index number) {
-  const Index* const begin = sorted.data();
-  const Index* const found = std::lower_bound(begin, begin + sorted.size(), number);
-  BR_ASSERT(found != begin + sorted.size() && *found == number);
-  return static_cast<Index>(found - begin);
-}
-/// The same, or -1 if it does not.
-inline Index find_place(const Buffer<Index>& sorted, Index number) {
-  const Index* const begin = sorted.data();
-  const Index* const found = std::lower_bound(begin, begin + sorted.size(), number);
-  return found != begin + sorted.size() && *found == number ? static_cast<Index>(found - begin)
-                                                            : -1;
-}
+/// Where numbers lie in an ascending array, asked for one after the other. Elements that are near
+/// each other mostly have all numbers between theirs on one rank: then the way from the place found
+/// last is known.
+class Places {
+ public:
+  explicit Places(const Buffer<Index>& sorted) : sorted_(sorted.host()) {}
+
+  /// The place of a number, or -1 if it is not there.
+  Index find(Index number) {
+    const auto size = static_cast<std::int64_t>(sorted_.size());
+    if (size == 0) return -1;
+    const std::int64_t guess = last_ + (std::int64_t{number} - sorted_[last_]);
+    if (guess >= 0 && guess < size && sorted_[static_cast<std::size_t>(guess)] == number) {
+      last_ = static_cast<std::size_t>(guess);
+      return static_cast<Index>(guess);
+    }
+    const auto found = std::lower_bound(sorted_.begin(), sorted_.end(), number);
+    if (found == sorted_.end() || *found != number) return -1;
+    last_ = static_cast<std::size_t>(found - sorted_.begin());
+    return static_cast<Index>(last_);
+  }
+  /// Of one that is there.
+  Index of(Index number) {
+    const Index place = find(number);
+    BR_ASSERT(place >= 0);
+    return place;
+  }
+
+ private:
+  std::span<const Index> sorted_;
+  std::size_t last_ = 0;
+};
 
 }  // namespace breccia

@@ -17,12 +17,13 @@ void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::ve
   messages_.reset();
   peers_.clear();
   std::vector<Index> all_sent, all_received;
+  Places places(ids);
   for (std::size_t r = 0; r < count; ++r) {
     const Peer peer{static_cast<int>(r), asked[r].size() / sizeof(GlobalId), receive[r].size()};
     for (std::size_t at = 0; at < asked[r].size(); at += sizeof(GlobalId)) {
       GlobalId id = 0;
       std::memcpy(&id, asked[r].data() + at, sizeof id);
-      all_sent.push_back(place_of(ids, id));
+      all_sent.push_back(places.of(id));
     }
     all_received.insert(all_received.end(), receive[r].begin(), receive[r].end());
     if (peer.send + peer.receive > 0) peers_.push_back(peer);

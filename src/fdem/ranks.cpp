@@ -134,15 +134,13 @@ class Journey {
       for (Index& t : ends->host()) t = id_of(t);
   }
 
-  Index place(Index id) const { return place_of(w_.triangles.id, id); }
-  Index local(Index edge) const { return 3 * place(edge / 3) + edge % 3; }
-
   /// And back again. Edges whose joint or neighbour is not here are those of copies.
   void arrive() {
+    Places triangles(w_.triangles.id), joints(w_.mesh.joint_number);
     for (Buffer<Index>* edges : {&w_.joints.edge_a, &w_.joints.edge_b})
-      for (Index& edge : edges->host()) edge = local(edge);
+      for (Index& edge : edges->host()) edge = 3 * triangles.of(edge / 3) + edge % 3;
     for (Buffer<Index>* ends : {&w_.couples.pairs.a, &w_.couples.pairs.b, &w_.reach.triangle})
-      for (Index& t : ends->host()) t = place(t);
+      for (Index& t : ends->host()) t = triangles.of(t);
     const Index count = w_.triangles.size();
     w_.edges.resize(count);
     if (w_.mesh.absorbs) w_.dashpots.resize(count);
@@ -155,11 +153,11 @@ class Journey {
       for (int k = 0; k < 3; ++k) {
         Index entry = n.edges.at[k];
         if (entry >= 0) {
-          const Index joint = find_place(w_.mesh.joint_number, pair_of(entry));
+          const Index joint = joints.find(pair_of(entry));
           entry = joint < 0 ? edge_free : 2 * joint + side_of(entry);
         }
         w_.edges.data()[t].at[k] = entry;
-        const Index other = n.across[k] < 0 ? -1 : find_place(w_.triangles.id, n.across[k] / 3);
+        const Index other = n.across[k] < 0 ? -1 : triangles.find(n.across[k] / 3);
         w_.across[at(3 * t + k)] = other < 0 ? -1 : 3 * other + n.across[k] % 3;
         w_.vertex[at(3 * t + k)] = n.vertex[k];
       }
@@ -186,8 +184,9 @@ void settle_in(World& w, Space space) {
   }
   std::vector<LoadedEdge> loaded;
   std::vector<Index> starts;
+  Places places(w.triangles.id);
   for (LoadedEdge edge : w.mesh.loaded) {
-    edge.triangle = find_place(w.triangles.id, edge.triangle);
+    edge.triangle = places.find(edge.triangle);
     if (edge.triangle < 0) continue;
     if (loaded.empty() || loaded.back().triangle != edge.triangle)
       starts.push_back(static_cast<Index>(loaded.size()));

@@ -134,6 +134,30 @@ TEST(Deal, no_element_is_lost_or_doubled_over_a_hundred_thousand_migrations) {
   });
 }
 
+TEST(Places, are_found_wherever_the_last_one_was) {
+  const auto drawn = [](std::uint64_t i) { return mixed(2654435761 * i); };
+  Buffer<Index> sorted;
+  Index next = -40;
+  for (std::uint64_t i = 0; i < 1000; ++i) {  // runs without gaps, and gaps
+    sorted.resize(sorted.size() + 1);
+    sorted.data()[i] = next += drawn(i) % 8 == 0 ? 30 : 1;
+  }
+  const auto all = sorted.host();
+  Places places(sorted);
+  int found = 0, missed = 0;
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    const auto near = static_cast<Index>(drawn(3 * i) % 9) - 4;
+    const Index number = all[drawn(2 * i) % 1000] + near;
+    const auto place = std::find(all.begin(), all.end(), number) - all.begin();
+    const bool is_there = place < sorted.size();
+    EXPECT_EQ(places.find(number), is_there ? place : -1);
+    ++(is_there ? found : missed);
+  }
+  EXPECT_GT(found, 5000);
+  EXPECT_GT(missed, 1000);
+  EXPECT_EQ(Places(Buffer<Index>()).find(0), -1);
+}
+
 /// Counts what is prepared.
 class Counting final : public Communicator {
  public:
