@@ -206,7 +206,6 @@ class Spheres final : public Shareable {
     move_to(w_, space_);
     set_linked_pairs(w_);
     derive(w_);
-    feel_contacts(w_);
   }
 
  private:
@@ -282,6 +281,7 @@ World share_parts(World part, Communicator& ranks, const DomainConfig& config, S
   Spheres spheres(part, space);
   begin_sharing(part.domain, ranks, config, spheres, 2.0 * part.parameters.mean_radius, 3);
   share_anew(part.domain, spheres, true);
+  feel_contacts(part);
   return part;
 }
 
@@ -298,6 +298,7 @@ void rebalance(World& w) {
   Spheres spheres(w, w.exec.space);
   spheres.come_to_host();
   share_anew(w.domain, spheres, false);
+  feel_contacts(w);
 }
 
 void collect(World& part, World& whole) {

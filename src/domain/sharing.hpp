@@ -36,7 +36,8 @@ class Shareable {
   /// Sends elements with all they own to their new owners; besides these, ranks whose rectangle is
   /// near enough get a copy.
   virtual void send(const std::vector<int>& owner) = 0;
-  /// Fills what follows from the elements that are here now, and from whose they are.
+  /// Fills what follows from the elements that are here now, and from whose they are; not what a
+  /// search fills.
   virtual void settle_in() = 0;
 };
 

@@ -308,8 +308,7 @@ class Mesh final : public Shareable {
   void settle_in() override {
     fdem::settle_in(w_, space_);
     move_to(w_, space_);
-    derive(w_);
-    feel_couples(w_);
+    derive_bundles(w_);
   }
 
  private:
@@ -325,6 +324,12 @@ class Mesh final : public Shareable {
   Space space_;
   Buffer<TriangleNodes> seen_;  ///< on the host, while triangles are elsewhere
 };
+
+/// What follows from couples that came with their triangles. A search finds it for its own.
+void go_on_with_couples(World& w) {
+  derive_couples(w);
+  feel_couples(w);
+}
 
 /// What all ranks know alike, as rank 0 has it.
 void take_common(World& w, Communicator& ranks) {
@@ -415,6 +420,7 @@ World share_parts(World part, const std::vector<std::uint8_t>& own, Communicator
   copy_to(part.domain.owned, own);
   part.domain.drifted_until = part.time;
   share_anew(part.domain, mesh, true);
+  go_on_with_couples(part);
   return part;
 }
 
@@ -434,6 +440,7 @@ void rebalance(World& w) {
   Mesh mesh(w, w.exec.space);
   mesh.come_to_host();
   share_anew(w.domain, mesh, false);
+  go_on_with_couples(w);
 }
 
 void collect(World& part, World& whole) {
