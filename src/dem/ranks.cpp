@@ -32,14 +32,12 @@ class Journey {
       : w_(w), elements_(w.domain.ranks->size()), ties_(w.domain, owner, elements_) {}
 
   /// Besides the owner, the ranks whose elements may touch one get a copy.
-  void add_copies() {
-    for (Index e = 0; e < w_.elements.size(); ++e) {
-      if (!w_.domain.owns(e)) continue;
-      const ElementState& s = w_.elements.state.data()[e];
-      w_.domain.each_sharer({s.position, s.radius}, [&](int r) {
-        if (r != ties_.owner_of(e)) elements_.add(r, e);
-      });
-    }
+  void add_copies(const std::vector<Sphere>& around) {
+    for (Index e = 0; e < w_.elements.size(); ++e)
+      if (w_.domain.owns(e))
+        w_.domain.each_sharer(around[static_cast<std::size_t>(e)], [&](int r) {
+          if (r != ties_.owner_of(e)) elements_.add(r, e);
+        });
   }
 
   void go() {
@@ -158,10 +156,13 @@ class Spheres final : public Shareable {
   }
   Vec3 centre(Index e) const override { return states().data()[e].position; }
   double radius(Index e) const override { return states().data()[e].radius; }
-  void each_point(const std::function<void(const Vec3&)>& visit) const override {
-    for (const ElementState& s : w_.elements.state.host()) visit(s.position);
+  std::vector<Vec3> points() const override {
+    std::vector<Vec3> points;
+    points.reserve(static_cast<std::size_t>(w_.elements.size()));
+    for (const ElementState& s : w_.elements.state.host()) points.push_back(s.position);
+    return points;
   }
-  std::vector<Load> loads() const override {
+  std::vector<std::int64_t> weights() const override {
     // By what they cost, in units of some 6 ns on one core (bench/NOTES.md).
     constexpr std::int64_t element = 5, end_of_link = 2, other_end = 3;
     std::vector<std::int64_t> weight(static_cast<std::size_t>(w_.elements.size()), element);
@@ -173,10 +174,7 @@ class Spheres final : public Shareable {
          {&w_.steel.a, &w_.steel.b, &w_.interface.a, &w_.interface.b, &w_.contacts.pairs.a,
           &w_.contacts.pairs.b, &w_.wall_contacts.pairs.a})
       add(*ends, other_end);
-    std::vector<Load> loads;
-    for (Index e = 0; e < w_.elements.size(); ++e)
-      if (w_.domain.owns(e)) loads.push_back({centre(e), weight[static_cast<std::size_t>(e)]});
-    return loads;
+    return weight;
   }
   double margin() const override {
     return fold(
@@ -188,9 +186,9 @@ class Spheres final : public Shareable {
     return fold(w_.exec, w_.elements.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
   }
   double largest_margin() const override { return w_.parameters.largest_margin; }
-  void send(const std::vector<int>& owner) override {
+  void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
     Journey journey(w_, owner);
-    journey.add_copies();
+    journey.add_copies(around);
     journey.go();
   }
   void settle_in() override {

@@ -21,9 +21,11 @@ std::vector<ElementRun> own_runs(const Domain& d) {
   return runs;
 }
 
-std::int64_t sum_of(const std::vector<Load>& loads) {
+/// What a rank's own elements cost.
+std::int64_t load_of(const Domain& d, const std::vector<std::int64_t>& weights) {
   std::int64_t sum = 0;
-  for (const Load& load : loads) sum += load.weight;
+  for (std::size_t e = 0; e < weights.size(); ++e)
+    if (d.owns(static_cast<Index>(e))) sum += weights[e];
   return sum;
 }
 
@@ -58,7 +60,8 @@ bool strays(const Domain& d, const Shareable& elements, Index e) {
 bool has_grown(const Domain& d, const Shareable& elements) {
   if (!d.config.balance || elements.space() != Space::host) return false;
   const auto then = static_cast<double>(std::max(d.counts.load, d.mean_load));
-  return static_cast<double>(sum_of(elements.loads())) > (1.0 + 2.0 * d.config.imbalance) * then;
+  return static_cast<double>(load_of(d, elements.weights())) >
+         (1.0 + 2.0 * d.config.imbalance) * then;
 }
 
 bool some_stray(const Domain& d, Shareable& elements) {
@@ -70,13 +73,6 @@ bool some_stray(const Domain& d, Shareable& elements) {
 }
 
 }  // namespace
-
-std::vector<int> owners(const Partition& partition, const Shareable& elements) {
-  std::vector<int> owner;
-  for (Index e = 0; e < elements.ids().size(); ++e)
-    owner.push_back(partition.owner(elements.centre(e)));
-  return owner;
-}
 
 void begin_sharing(Domain& d, Communicator& ranks, const DomainConfig& config,
                    const Shareable& elements, double mean_size, int depth) {
@@ -103,13 +99,38 @@ void begin_sharing(Domain& d, Communicator& ranks, const DomainConfig& config,
 
 namespace {
 
-void build_sharing_sets(Domain& d, const Shareable& elements, const std::vector<int>& owner) {
+std::vector<Sphere> around_each(const Shareable& elements) {
+  std::vector<Sphere> around;
+  around.reserve(static_cast<std::size_t>(elements.ids().size()));
+  for (Index e = 0; e < elements.ids().size(); ++e)
+    around.push_back({elements.centre(e), elements.radius(e)});
+  return around;
+}
+
+/// The ranks that own the elements by the borders of now.
+std::vector<int> owners(const Partition& partition, const std::vector<Sphere>& around) {
+  std::vector<int> owner;
+  owner.reserve(around.size());
+  for (const Sphere& e : around) owner.push_back(partition.owner(e.centre));
+  return owner;
+}
+
+void cut(Domain& d, const std::vector<Sphere>& around, const std::vector<std::int64_t>& weights) {
+  std::vector<Load> loads;
+  for (std::size_t e = 0; e < around.size(); ++e)
+    if (d.owns(static_cast<Index>(e))) loads.push_back({around[e].centre, weights[e]});
+  d.partition.cut(*d.ranks, loads);
+  ++d.counts.cuts;
+}
+
+void build_sharing_sets(Domain& d, const std::vector<Sphere>& around,
+                        const std::vector<int>& owner) {
   std::vector<Sphere> own;
   std::vector<int> owner_of_own;
-  for (Index e = 0; e < elements.ids().size(); ++e) {
-    if (!d.owns(e)) continue;
-    own.push_back({elements.centre(e), elements.radius(e)});
-    owner_of_own.push_back(owner[static_cast<std::size_t>(e)]);
+  for (std::size_t e = 0; e < around.size(); ++e) {
+    if (!d.owns(static_cast<Index>(e))) continue;
+    own.push_back(around[e]);
+    owner_of_own.push_back(owner[e]);
   }
   d.sharing_sets.build(*d.ranks, own, owner_of_own, {d.margin, d.buffer, d.config.buffer});
 }
@@ -121,29 +142,31 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
   d.partition.move(d.drifted);
   d.drifted = {};
   if (!first && d.config.balance) d.pace.measure(*d.ranks, d.counts.load);
-  std::vector<Load> loads = elements.loads();
-  for (Load& load : loads) load.weight = d.pace.weighed(load.weight);
-  if (first || (d.config.balance && imbalance(*d.ranks, sum_of(loads)) > d.config.imbalance)) {
-    d.partition.cut(*d.ranks, loads);
-    ++d.counts.cuts;
-  }
+  std::vector<Sphere> around = around_each(elements);
+  std::vector<std::int64_t> weights = elements.weights();
+  for (std::int64_t& weight : weights) weight = d.pace.weighed(weight);
+  if (first || (d.config.balance && imbalance(*d.ranks, load_of(d, weights)) > d.config.imbalance))
+    cut(d, around, weights);
   // Elements may become faster until they are shared out again.
   d.margin = std::min(elements.largest_margin(), -1.5 * d.least(-elements.margin()));
   std::vector<GlobalId> mine;  // before
   for (Index e = 0; e < elements.ids().size(); ++e)
     if (d.owns(e)) mine.push_back(elements.ids().data()[e]);
-  std::vector<int> owner = owners(d.partition, elements);
-  build_sharing_sets(d, elements, owner);
-  elements.send(owner);
+  std::vector<int> owner = owners(d.partition, around);
+  build_sharing_sets(d, around, owner);
+  elements.send(owner, around);
 
-  owner = owners(d.partition, elements);
+  around = around_each(elements);
+  owner = owners(d.partition, around);
   const Index count = elements.ids().size();
   d.owned.resize(count);
+  auto known = mine.begin();
   for (Index e = 0; e < count; ++e) {
     const bool own = owner[static_cast<std::size_t>(e)] == d.ranks->rank();
     d.owned.data()[e] = own ? 1 : 0;
-    if (own && !std::binary_search(mine.begin(), mine.end(), elements.ids().data()[e]))
-      ++d.counts.moved;
+    const GlobalId id = elements.ids().data()[e];
+    while (known != mine.end() && *known < id) ++known;
+    if (own && (known == mine.end() || *known != id)) ++d.counts.moved;
   }
   d.copies.clear();
   for (Index e = 0; e < count; ++e)
@@ -151,17 +174,13 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
   d.knows_felt = false;
   d.runs = d.awaited_runs = own_runs(d);
   d.other_runs.clear();
-  std::vector<Vec3> placed;
-  elements.each_point([&](const Vec3& point) { placed.push_back(point); });
-  copy_to(d.placed, placed);
-  d.placed_around.clear();
-  for (Index e = 0; e < count; ++e)
-    d.placed_around.push_back({elements.centre(e), elements.radius(e)});
+  copy_to(d.placed, elements.points());
+  d.placed_around = std::move(around);
   copy_to(d.owned_there, d.owned);
   d.halo.build(*d.ranks, elements.ids(), d.copies, elements.space());
   d.counts.copies = d.halo.copies();
   d.counts.owned = count - d.halo.copies();
-  d.counts.load = sum_of(elements.loads());
+  d.counts.load = load_of(d, elements.weights());
   std::vector<std::int64_t> all{d.counts.load};
   d.ranks->add_up(all);
   d.mean_load = all[0] / d.ranks->size();

@@ -2,8 +2,8 @@
 // Sharing elements out among ranks, whatever they are: who owns what, when that changes, and what
 // all ranks must know alike (docs/theory-domain.md).
 
+#include <algorithm>
 #include <array>
-#include <functional>
 
 #include "domain/domain.hpp"
 
@@ -25,9 +25,9 @@ class Shareable {
   /// takes them back.
   virtual void come_to_host() = 0;
   /// The points whose travel the buffer bounds, one after the other; as many for each element.  [m]
-  virtual void each_point(const std::function<void(const Vec3&)>& visit) const = 0;
-  /// What each of its own elements costs: itself, and each end of what ties it to others.
-  virtual std::vector<Load> loads() const = 0;
+  virtual std::vector<Vec3> points() const = 0;
+  /// What each element costs: itself, and each end of what ties it to others.
+  virtual std::vector<std::int64_t> weights() const = 0;
   /// The largest margin that a search now would give an element of its own.  [m]
   virtual double margin() const = 0;
   /// Whether a point of an own element has left the buffer; nowhere (NaN) counts as left.
@@ -35,7 +35,8 @@ class Shareable {
   virtual double largest_margin() const = 0;  ///< that any search gives  [m]
   /// Sends elements with all they own to their new owners; besides these, ranks whose rectangle is
   /// near enough get a copy.
-  virtual void send(const std::vector<int>& owner) = 0;
+  /// @param around  each element, where it counts as being
+  virtual void send(const std::vector<int>& owner, const std::vector<Sphere>& around) = 0;
   /// Fills what follows from the elements that are here now, and from whose they are; not what a
   /// search fills.
   virtual void settle_in() = 0;
@@ -58,9 +59,6 @@ void share_if_needed(Domain& domain, Shareable& elements);
 /// anew. Every rank calls it.
 bool is_uneven(const Domain& domain);
 
-/// The ranks that own the elements by the borders of now.
-std::vector<int> owners(const Partition& partition, const Shareable& elements);
-
 /// Items that tie elements together: each is held by every rank that owns one of its elements, and
 /// so are all its elements.
 class Ties {
@@ -73,6 +71,8 @@ class Ties {
   /// The members of an item go wherever one of them is owned.
   template <class Members>
   void tie(const Members& members) {
+    const auto goes_along = [&](Index e) { return owner_of(e) == owner_of(members[0]); };
+    if (std::all_of(std::begin(members), std::end(members), goes_along)) return;
     for (const Index e : members) {
       if (!domain_.owns(e)) continue;
       for (const Index other : members)

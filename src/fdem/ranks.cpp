@@ -26,9 +26,11 @@ struct Neighbourhood {
 double radius(const TriangleNodes& nodes) {
   const Vec3 middle = centroid(nodes);
   double far = 0.0;
-  for (const NodeState& n : nodes.at)
-    far = std::max(far, norm(n.position - Vec2{middle.x, middle.y}));
-  return far;
+  for (const NodeState& n : nodes.at) {
+    const Vec2 way = n.position - Vec2{middle.x, middle.y};
+    far = std::max(far, dot(way, way));
+  }
+  return std::sqrt(far);
 }
 
 /// Sends everything to the ranks that need it: triangles and what ties them together.
@@ -39,14 +41,12 @@ class Journey {
       : w_(w), triangles_(w.domain.ranks->size()), ties_(w.domain, owner, triangles_) {}
 
   /// Besides the owner, the ranks whose triangles may touch one get a copy.
-  void add_copies() {
-    for (Index t = 0; t < w_.triangles.size(); ++t) {
-      if (!w_.domain.owns(t)) continue;
-      const TriangleNodes& nodes = w_.triangles.nodes.data()[t];
-      w_.domain.each_sharer({centroid(nodes), radius(nodes)}, [&](int r) {
-        if (r != ties_.owner_of(t)) triangles_.add(r, t);
-      });
-    }
+  void add_copies(const std::vector<Sphere>& around) {
+    for (Index t = 0; t < w_.triangles.size(); ++t)
+      if (w_.domain.owns(t))
+        w_.domain.each_sharer(around[at(t)], [&](int r) {
+          if (r != ties_.owner_of(t)) triangles_.add(r, t);
+        });
   }
 
   void go() {
@@ -175,6 +175,7 @@ class Journey {
 void settle_in(World& w, Space space) {
   const Index count = w.triangles.size(), joints = w.joints.size();
   std::vector<JointEnds> ends;
+  ends.reserve(at(joints));
   for (Index i = 0; i < joints; ++i)
     ends.push_back(JointEnds::of(w.joints.edge_a.data()[i], w.joints.edge_b.data()[i]));
   copy_to(w.joint_ends, ends);
@@ -226,6 +227,7 @@ void settle_in(World& w, Space space) {
     }
 }
 
+/// Square of a triangle's largest speed.
 struct Fastest {
   Vec2 drift;  ///<  [m/s]
   OwnedView owned;
@@ -233,7 +235,10 @@ struct Fastest {
   BR_HD double operator()(Index t) const {
     double fastest = 0.0;
     if (owned(t))
-      for (const NodeState& n : nodes[t].at) fastest = larger(fastest, norm(n.velocity - drift));
+      for (const NodeState& n : nodes[t].at) {
+        const Vec2 velocity = n.velocity - drift;
+        fastest = larger(fastest, dot(velocity, velocity));
+      }
     return fastest;
   }
 };
@@ -270,11 +275,14 @@ class Mesh final : public Shareable {
   }
   Vec3 centre(Index t) const override { return centroid(nodes().data()[t]); }
   double radius(Index t) const override { return fdem::radius(nodes().data()[t]); }
-  void each_point(const std::function<void(const Vec3&)>& visit) const override {
+  std::vector<Vec3> points() const override {
+    std::vector<Vec3> points;
+    points.reserve(at(3 * w_.triangles.size()));
     for (const TriangleNodes& nodes : w_.triangles.nodes.host())
-      for (const NodeState& n : nodes.at) visit({n.position.x, n.position.y, 0.0});
+      for (const NodeState& n : nodes.at) points.push_back({n.position.x, n.position.y, 0.0});
+    return points;
   }
-  std::vector<Load> loads() const override {
+  std::vector<std::int64_t> weights() const override {
     // By what they cost, in units of some 3 ns on one core (bench/NOTES.md).
     constexpr std::int64_t triangle = 8, end_of_joint = 3, end_of_couple = 16, tied_corner = 3;
     std::vector<std::int64_t> weight(at(w_.triangles.size()), triangle);
@@ -282,27 +290,24 @@ class Mesh final : public Shareable {
       for (const Index edge : edges->host()) weight[at(edge / 3)] += end_of_joint;
     for (const Buffer<Index>* ends : {&w_.couples.pairs.a, &w_.couples.pairs.b})
       for (const Index t : ends->host()) weight[at(t)] += end_of_couple;
-    for (std::size_t corner = 0; corner < w_.vertex.size(); ++corner)
+    for (std::size_t corner = 0; w_.mesh.bundled && corner < w_.vertex.size(); ++corner)
       if (w_.mesh.tied[at(w_.vertex[corner])] != 0) weight[corner / 3] += tied_corner;
-    std::vector<Load> loads;
-    for (Index t = 0; t < w_.triangles.size(); ++t)
-      if (w_.domain.owns(t)) loads.push_back({centre(t), weight[at(t)]});
-    return loads;
+    return weight;
   }
   double margin() const override {
     const double fastest = fold(w_.exec, w_.triangles.size(), 0.0,
                                 Fastest{w_.reach.drift.velocity, w_.domain.owned_view(),
                                         std::as_const(w_.triangles.nodes).view()},
                                 Largest{});
-    return margin_rule(w_).margin({fastest, 0.0, 0.0});
+    return margin_rule(w_).margin({std::sqrt(fastest), 0.0, 0.0});
   }
   bool has_left() const override {
     return fold(w_.exec, w_.triangles.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
   }
   double largest_margin() const override { return margin_rule(w_).largest; }
-  void send(const std::vector<int>& owner) override {
+  void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
     Journey journey(w_, owner);
-    journey.add_copies();
+    journey.add_copies(around);
     journey.go();
   }
   void settle_in() override {
