@@ -363,7 +363,6 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
       [&](std::int32_t wanted) {
         const bool insertion = wanted == wanted_insertion;
         insertion ? evaluate_forces(w) : find_couples(w);
-        w.graph.clear();
         if (insertion) scale_motions_now(w);
         return insertion;
       });

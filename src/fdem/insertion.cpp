@@ -3,36 +3,34 @@
 // transmitted.
 
 #include <algorithm>
-#include <array>
 #include <cstring>
+#include <set>
 
-#include "exec/for_each.hpp"
+#include "core/select.hpp"
 #include "fdem/insertion_kernels.hpp"
 #include "fdem/launches.hpp"
-#include "fdem/materials.hpp"
 
 namespace breccia::fdem {
 namespace {
 
-/// A joint whose strength is reached, by its number in the whole mesh.
-struct Candidate {
-  double overshoot;
-  Index joint, first, second;  ///< and its two vertices
-};
+SomeVertices some_vertices(World& w, const Buffer<Index>& some) {
+  return {node_vertices(w), some.view()};
+}
 
-/// Of all ranks; each tells of the joints whose side a it owns.
-std::vector<Candidate> candidates(const World& w, const std::vector<double>& overshoot) {
-  std::vector<JointEnds> ends;
-  copy_to(ends, w.joint_ends);
+/// The joints of all ranks whose strength is reached, by their numbers in the whole mesh; each
+/// tells of those whose side a it owns.
+std::vector<Candidate> candidates(World& w) {
+  const auto overshoot = std::as_const(w.overshoot).view();
+  const auto ends = std::as_const(w.joint_ends).view();
+  const Buffer<Index> reached =
+      items_where(w.exec, w.joints.size(), IsReached{overshoot, ends, w.domain.owned_view()});
+  Buffer<Candidate> listed(w.exec.space, reached.size());
+  for_each(w.exec, reached.size(),
+           ListCandidates{reached.view(), overshoot, ends, node_vertices(w), listed.view()});
   std::vector<Candidate> own;
-  for (std::size_t i = 0; i < overshoot.size(); ++i) {
-    if (overshoot[i] < 1.0 || !w.domain.owns(ends[i].a0 / 3)) continue;
-    const auto place = static_cast<Index>(i);
-    own.push_back({overshoot[i], w.domain.alone() ? place : w.mesh.joint_number.data()[place],
-                   w.vertex[static_cast<std::size_t>(ends[i].a0)],
-                   w.vertex[static_cast<std::size_t>(ends[i].a1)]});
-  }
+  copy_to(own, listed);
   if (w.domain.alone()) return own;
+  for (Candidate& c : own) c.joint = w.mesh.joint_number.data()[c.joint];
   Message message(own.size() * sizeof(Candidate));
   if (!own.empty()) std::memcpy(message.data(), own.data(), message.size());
   std::vector<Candidate> all;
@@ -44,75 +42,66 @@ std::vector<Candidate> candidates(const World& w, const std::vector<double>& ove
   return all;
 }
 
-/// Of the joints whose strength is reached the most loaded ones, no two at one vertex: its waking
-/// unloads the others around. With each of them wake all that share a vertex with it: while the
-/// corners around a vertex are tied, no joint opens there.
-std::vector<Index> chosen(const World& w, const std::vector<double>& overshoot) {
-  std::vector<Candidate> joints = candidates(w, overshoot);
+/// The vertices, ascending, of the most loaded of those joints, no two at one vertex: its waking
+/// unloads the others around.
+std::vector<Index> parted_vertices(World& w) {
+  std::vector<Candidate> joints = candidates(w);
   std::sort(joints.begin(), joints.end(), [](const Candidate& a, const Candidate& b) {
     return a.overshoot != b.overshoot ? a.overshoot > b.overshoot : a.joint < b.joint;
   });
-  std::vector<Index> parted;
-  for (const Candidate& c : joints) {
-    const auto is_parted = [&](Index v) {
-      return std::find(parted.begin(), parted.end(), v) != parted.end();
-    };
-    if (!is_parted(c.first) && !is_parted(c.second))
-      parted.insert(parted.end(), {c.first, c.second});
-  }
-  std::sort(parted.begin(), parted.end());
-  std::vector<JointEnds> ends;
-  std::vector<JointStage> stage;
-  copy_to(ends, w.joint_ends);
-  copy_to(stage, w.joints.stage);
-  const auto parts_at = [&](Index node) {
-    return std::binary_search(parted.begin(), parted.end(),
-                              w.vertex[static_cast<std::size_t>(node)]);
-  };
-  std::vector<Index> waking;
-  for (std::size_t i = 0; i < stage.size(); ++i)
-    if (stage[i] == JointStage::dormant && (parts_at(ends[i].a0) || parts_at(ends[i].a1)))
-      waking.push_back(static_cast<Index>(i));
-  return waking;
+  std::set<Index> parted;
+  for (const Candidate& c : joints)
+    if (parted.count(c.first) == 0 && parted.count(c.second) == 0)
+      parted.insert({c.first, c.second});
+  return {parted.begin(), parted.end()};
 }
 
-/// Wakes joints at the opening and slip at which they carry what was transmitted; books what they
-/// then store.
-void wake(World& w, const std::vector<Index>& joints, const std::vector<double>& overshoot) {
-  std::vector<JointStage> stage;
-  std::vector<Vec2> preset;
-  std::vector<double> strength, length;
-  std::vector<Index> law;
-  std::vector<JointBond> bonds;
-  copy_to(stage, w.joints.stage);
-  copy_to(preset, w.joints.preset);
-  copy_to(strength, w.joints.strength);
-  copy_to(length, w.joints.length);
-  copy_to(law, w.joints.law);
-  copy_to(bonds, w.bonds);
-  Buffer<TriangleNodes> nodes;
-  Buffer<JointEnds> ends;
-  Buffer<Sym2> stress;
-  copy_to(nodes, w.triangles.nodes);
-  copy_to(ends, w.joint_ends);
-  copy_to(stress, w.stress);
-  const EdgeTraction traction{by_number(std::as_const(nodes).view()), std::as_const(ends).view(),
-                              std::as_const(stress).view()};
-  for (const Index joint : joints) {
-    const auto i = static_cast<std::size_t>(joint);
-    const JointBond& bond = bonds[static_cast<std::size_t>(law[i])];
-    // just below its strength, where that is reached
-    const double share = std::min(1.0, (1.0 - 1e-6) / overshoot[i]);
-    const Vec2 t = share * traction(joint);
-    preset_opening(bond, strength[i], length[i], t.x, t.y, preset[i]);
-    stage[i] = JointStage::whole;
-    const JointOpening<double> closed{};
-    const StoredEnergy held =
-        stored_in(bond, strength[i], length[i], preset[i], closed, JointPoints{});
-    if (w.domain.owns(ends.data()[joint].a0 / 3)) w.ledger.inserted.add(held.open + held.slide);
-  }
-  copy_to(w.joints.stage, stage);
-  copy_to(w.joints.preset, preset);
+/// Which joints wake: all that share a vertex with the chosen ones. While the corners around a
+/// vertex are tied, no joint opens there.
+Buffer<Index> waking_joints(World& w) {
+  Buffer<Index> parted(w.exec.space);
+  copy_to(parted, parted_vertices(w));
+  return items_where(w.exec, w.joints.size(),
+                     SleepsAt{std::as_const(w.joints.stage).view(),
+                              std::as_const(w.joint_ends).view(), some_vertices(w, parted)});
+}
+
+/// What waking has touched.
+struct Woken {
+  Buffer<Index> triangles;      ///< where kernels can read them, some more than once
+  std::vector<Index> vertices;  ///< ascending
+};
+
+/// Wakes joints and books what they then store.
+Woken wake(World& w, const Buffer<Index>& joints) {
+  const Index count = joints.size();
+  Buffer<double> held(w.exec.space, count);
+  Buffer<Index> triangles(w.exec.space, 2 * count), vertex(w.exec.space, 2 * count);
+  for_each(w.exec, count,
+           Wake{overshoot_kernel(w).traction, w.bonds.view(), w.joints.law.view(),
+                w.joints.strength.view(), w.joints.length.view(), std::as_const(w.overshoot).view(),
+                node_vertices(w), w.domain.owned_view(), joints.view(), w.joints.stage.view(),
+                w.joints.preset.view(), held.view(), triangles.view(), vertex.view()});
+  std::vector<double> stored;
+  copy_to(stored, held);
+  for (const double energy : stored) w.ledger.inserted.add(energy);
+  std::vector<Index> vertices;
+  copy_to(vertices, vertex);
+  std::sort(vertices.begin(), vertices.end());
+  return {std::move(triangles), std::move(vertices)};
+}
+
+void tie_corners(World& w, bool all, const std::vector<Index>& changed) {
+  if (w.bundles.starts.empty()) return;
+  if (static_cast<std::size_t>(w.edge_across.size()) != w.across.size())
+    copy_to(w.edge_across, w.across);
+  Buffer<Index> there(w.exec.space);
+  copy_to(there, changed);
+  w.bundles.leader.resize(w.bundles.nodes.size());
+  for_each(w.exec, w.bundles.starts.size() - 1,
+           TieCorners{w.bundles.starts.view(), w.bundles.nodes.view(), w.edge_across.view(),
+                      w.edges.view(), std::as_const(w.joints.stage).view(), all,
+                      some_vertices(w, there), w.bundles.leader.view()});
 }
 
 }  // namespace
@@ -126,61 +115,20 @@ void insert_joints(World& w) {
   copy_to(reached, w.reached);
   if (!w.domain.any(reached[0] != 0)) return;
   copy_to(w.reached, std::vector<std::uint8_t>{0});
-  std::vector<double> overshoot;
-  copy_to(overshoot, w.overshoot);
-  const std::vector<Index> joints = chosen(w, overshoot);
-  wake(w, joints, overshoot);
-  derive_bundles(w);
-
+  const Woken woken = wake(w, waking_joints(w));
+  tie_corners(w, false, woken.vertices);
   // Their penalty shortens the step of the two triangles that each of them joins.
-  Buffer<Index> triangles(w.exec.space);
-  std::vector<JointEnds> ends;
-  std::vector<Index> changed;
-  copy_to(ends, w.joint_ends);
-  for (const Index i : joints)
-    changed.insert(changed.end(), {ends[static_cast<std::size_t>(i)].a0 / 3,
-                                   ends[static_cast<std::size_t>(i)].b0 / 3});
-  copy_to(triangles, changed);
-  if (w.next_dt > 0.0) w.next_dt = shortened_time_step(w, triangles);
+  if (w.next_dt > 0.0) w.next_dt = shortened_time_step(w, woken.triangles);
 }
 
 void derive_bundles(World& w) {
-  if (w.bundles.starts.empty()) return;
-  std::vector<Index> starts, nodes;
-  std::vector<EdgeJoints> edges;
-  std::vector<JointStage> stage;
-  copy_to(starts, w.bundles.starts);
-  copy_to(nodes, w.bundles.nodes);
-  copy_to(edges, w.edges);
-  copy_to(stage, w.joints.stage);
-  const auto tied = [&](Index edge) {
-    const Index entry = edges[static_cast<std::size_t>(edge / 3)].at[edge % 3];
-    return entry == edge_bonded ||
-           (entry >= 0 && stage[static_cast<std::size_t>(pair_of(entry))] == JointStage::dormant);
-  };
-  std::vector<Index> leader(nodes.size());
-  for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
-    const Index begin = starts[v], end = starts[v + 1];
-    const auto place = [&](Index node) {
-      const auto first = nodes.begin() + begin, last = nodes.begin() + end;
-      return static_cast<Index>(std::lower_bound(first, last, node) - nodes.begin());
-    };
-    for (Index k = begin; k < end; ++k) leader[static_cast<std::size_t>(k)] = k;
-    const auto root = [&](Index k) {
-      while (leader[static_cast<std::size_t>(k)] != k) k = leader[static_cast<std::size_t>(k)];
-      return k;
-    };
-    for (Index k = begin; k < end; ++k) {
-      // The edge that leaves this corner: across it the same vertex ends the neighbour's edge.
-      const Index edge = nodes[static_cast<std::size_t>(k)];
-      if (!tied(edge)) continue;
-      const Index other = JointEnds::next_corner(w.across[static_cast<std::size_t>(edge)]);
-      const Index a = root(k), b = root(place(other));
-      leader[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-    for (Index k = begin; k < end; ++k) leader[static_cast<std::size_t>(k)] = root(k);
-  }
-  copy_to(w.bundles.leader, leader);
+  tie_corners(w, true, {});
+}
+
+View<const Index> node_vertices(World& w) {
+  if (static_cast<std::size_t>(w.node_vertex.size()) != w.vertex.size())
+    copy_to(w.node_vertex, w.vertex);
+  return std::as_const(w.node_vertex).view();
 }
 
 }  // namespace breccia::fdem

@@ -114,6 +114,23 @@ BR_HD JointOpening<R> opening_of(const Vec2Of<R>& a0, const Vec2Of<R>& a1, const
   return o;
 }
 
+/// Opening and slip at which a joint carries a traction, its strength permitting. False if not.
+/// @param normal, shear  traction, tension positive  [Pa]
+BR_HD inline bool preset_opening(const JointBond& bond, double strength, double length,
+                                 double normal, double shear, Vec2& opening_and_slip) {
+  const double tension = bond.tension * strength;
+  const double limit = bond.cohesion * strength - bond.friction * smaller(normal, 0.0);
+  if (normal >= tension || absolute(shear) >= limit) return false;
+  // (2 r - r^2) f = t on the rising branch
+  const auto share = [](double t, double f) { return 1.0 - root(1.0 - t / f); };
+  const double slip = share(absolute(shear), limit) * 2.0 * length * limit / bond.stiffness;
+  opening_and_slip = {normal < 0.0
+                          ? normal * length / bond.stiffness
+                          : share(normal, tension) * 2.0 * length * tension / bond.stiffness,
+                      copysign(slip, shear)};
+  return true;
+}
+
 /// Energy that a joint would give back if it were unloaded now, by direction.  [J/m]
 BR_HD inline StoredEnergy stored_in(const JointBond& bond, double strength, double length,
                                     const Vec2& offset, const JointOpening<double>& o,

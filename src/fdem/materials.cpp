@@ -126,19 +126,4 @@ std::vector<ElasticTriangle> elastic_table(const Config& config) {
   return laws;
 }
 
-bool preset_opening(const JointBond& bond, double strength, double length, double normal,
-                    double shear, Vec2& opening_and_slip) {
-  const double tension = bond.tension * strength;
-  const double limit = bond.cohesion * strength - bond.friction * std::min(normal, 0.0);
-  if (normal >= tension || std::abs(shear) >= limit) return false;
-  // (2 r - r^2) f = t on the rising branch
-  const auto share = [](double t, double f) { return 1.0 - std::sqrt(1.0 - t / f); };
-  opening_and_slip.x = normal < 0.0
-                           ? normal * length / bond.stiffness
-                           : share(normal, tension) * 2.0 * length * tension / bond.stiffness;
-  opening_and_slip.y =
-      std::copysign(share(std::abs(shear), limit) * 2.0 * length * limit / bond.stiffness, shear);
-  return true;
-}
-
 }  // namespace breccia::fdem

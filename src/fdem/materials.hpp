@@ -27,11 +27,6 @@ std::vector<ContactPair> contact_table(const Config& config);
 /// @throws InputError where plane strain meets a Poisson's ratio of 0.5 or more
 std::vector<ElasticTriangle> elastic_table(const Config& config);
 
-/// Opening and slip at which a joint carries a traction, its strength permitting. False if not.
-/// @param normal, shear  traction, tension positive  [Pa]
-bool preset_opening(const JointBond& bond, double strength, double length, double normal,
-                    double shear, Vec2& opening_and_slip);
-
 /// Index of a material. @throws InputError saying where the name was used
 std::int16_t material_index(const Config& config, const std::string& name,
                             const std::string& where);

@@ -147,6 +147,7 @@ class Journey {
     w_.across.resize(at(3 * count));
     w_.vertex.resize(at(3 * count));
     w_.node_vertex.clear();
+    w_.edge_across.clear();
     for (Index t = 0; t < count; ++t) {
       const Neighbourhood& n = lies_.data()[t];
       if (w_.mesh.absorbs) w_.dashpots.data()[t] = n.dashpots;

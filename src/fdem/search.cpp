@@ -89,13 +89,11 @@ void share_marks(const World& w, Buffer<std::uint8_t>& marked) {
   for_each(w.exec, vertex.size(), TakeMarks{std::as_const(vertex).view(), marked.view()});
 }
 
-/// The mesh where kernels can read it; it changes only where triangles move between ranks.
+/// The mesh where kernels can read it.
 OpenVertices open_vertices(World& w) {
-  if (static_cast<std::size_t>(w.node_vertex.size()) != w.vertex.size())
-    copy_to(w.node_vertex, w.vertex);
   if (static_cast<std::size_t>(w.border_vertex.size()) != w.open_vertex.size())
     copy_to(w.border_vertex, w.open_vertex);
-  return {w.node_vertex.view(), w.border_vertex.view(), std::as_const(w.opened.vertex).view()};
+  return {node_vertices(w), w.border_vertex.view(), std::as_const(w.opened.vertex).view()};
 }
 
 /// Marks the vertices of damaged joints.

@@ -116,7 +116,7 @@ struct World {
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(couple_incidence, broad_phase, born, node_vertex, border_vertex, amplitudes,
+    each(couple_incidence, broad_phase, born, node_vertex, edge_across, border_vertex, amplitudes,
          amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock, news);
   }
 
@@ -165,6 +165,7 @@ struct World {
 
   // What follows from the state.
   Buffer<Index> node_vertex;           ///< `vertex`, where kernels can read it
+  Buffer<Index> edge_across;           ///< `across`, likewise
   Buffer<std::uint8_t> border_vertex;  ///< `open_vertex`, likewise
   Buffer<Motion> motions;
   Buffer<LoadLaw> load_laws;
@@ -200,6 +201,9 @@ void derive(World& w);
 void derive_couples(World& w);
 /// The place in `reach` of each triangle, for a device.
 void place_reach(World& w);
+/// The vertex of each node where kernels can read it; it changes only where triangles move between
+/// ranks.
+View<const Index> node_vertices(World& w);
 /// Who moves with whom, from the stages of the joints.
 void derive_bundles(World& w);
 

@@ -116,6 +116,15 @@ TEST(FdemSameBits, in_the_shadow_space_that_refuses_host_reads) {
   EXPECT_EQ(hash_after(std::move(w)), reference());
 }
 
+TEST(FdemSameBits, of_joints_that_wake_in_the_shadow_space) {
+  Scene scene = impact();
+  scene.config.materials[0].joints = "extrinsic";
+  Exec shadow;
+  shadow.space = Space::shadow;
+  EXPECT_EQ(hash_after(fdem::make_world(scene.config, scene.model, shadow)),
+            hash_after(scene.world(2)));
+}
+
 TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
   const std::string folder = std::filesystem::temp_directory_path() / "breccia_fdem_same_bits";
   std::filesystem::create_directories(folder);
