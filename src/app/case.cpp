@@ -117,6 +117,19 @@ std::string size_text(const fdem::Model& model) {
   return fmt::format("{} triangles", count_text(static_cast<double>(model.size())));
 }
 
+/// The keys that the model of a case was built from.
+std::string keys_of_model(const std::variant<dem::Config, fdem::Config>& config) {
+  return std::visit([](const auto& c) { return model_keys(c); }, config);
+}
+
+void load_model_into(Case& read, const CheckpointReader& reader, const std::string& path) {
+  if (std::holds_alternative<dem::Config>(read.config))
+    read.model = load_model(reader);
+  else
+    read.model = load_fdem_model(reader);
+  read.prepared = std::filesystem::absolute(path).lexically_normal().string();
+}
+
 Case load_prepared(const std::string& path, const std::vector<std::string>& overrides) {
   const CheckpointReader reader(path);
   if (!holds_model(reader))
@@ -127,17 +140,13 @@ Case load_prepared(const std::string& path, const std::vector<std::string>& over
   const CaseText text{reader.text("case.text"), path};
   Case read;
   read.config = read_config(text, overrides);
-  const auto keys = [](const auto& config) { return model_keys(config); };
-  if (std::visit(keys, read.config) != std::visit(keys, read_config(text, {})))
+  if (keys_of_model(read.config) != keys_of_model(read_config(text, {})))
     throw InputError(path +
                      ": --set cannot change the seed, materials, bodies or links of a "
                      "prepared model; nothing was run");
   read.name = reader.text("case.name");
   read.folder = reader.text("case.folder");
-  if (std::holds_alternative<dem::Config>(read.config))
-    read.model = load_model(reader);
-  else
-    read.model = load_fdem_model(reader);
+  load_model_into(read, reader, path);
   return completed(std::move(read));
 }
 
@@ -151,6 +160,18 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
   read.name = case_name(path);
   read.folder = std::filesystem::absolute(case_folder(path)).lexically_normal().string();
   return completed(std::move(read));
+}
+
+void take_prepared(Case& read, const std::string& path) {
+  const CheckpointReader reader(path);
+  if (!holds_model(reader) ||
+      keys_of_model(read.config) !=
+          keys_of_model(read_config(CaseText{reader.text("case.text"), path}, {})))
+    throw InputError(
+        path +
+        ": the run began with a model that was prepared there, and this is another; nothing "
+        "was run");
+  load_model_into(read, reader, path);
 }
 
 const CaseConfig& Case::common() const {

@@ -27,6 +27,7 @@ struct Case {
   /// Of what decides the states of a run: the case without its end, output, checkpoints and checks.
   std::string model_digest;
   std::optional<std::variant<dem::Model, fdem::Model>> model;  ///< if it was prepared
+  std::string prepared;                                        ///< the file of that model
 
   const CaseConfig& common() const;
 };
@@ -37,6 +38,10 @@ struct Case {
 /// a
 ///         prepared model is damaged
 Case load_case(const std::string& path, const std::vector<std::string>& overrides);
+
+/// Takes the model of a case from where it was prepared.
+/// @throws InputError if the file holds the model of another case, IoError if it cannot be read
+void take_prepared(Case& read, const std::string& path);
 
 /// The case's method over its model: the prepared one, or built now.
 /// @param ranks  those that share the work; null: none. Every rank calls it alike.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -31,6 +33,17 @@ void refuse_fixed_keys(const std::vector<std::string>& overrides) {
                       text));
 }
 
+/// A run of a prepared model goes on with that model: what built it may not be here.
+void take_what_was_prepared(Case& read, const CheckpointReader& checkpoint,
+                            const std::function<void(const std::string&)>& warn) {
+  if (!checkpoint.has("run.prepared")) return;
+  const std::string path = checkpoint.text("run.prepared");
+  if (std::filesystem::exists(path))
+    take_prepared(read, path);
+  else
+    warn(path + " is no longer there: its model is built anew");
+}
+
 struct ResumeCommand {
   RunOptions options;
   std::string path;
@@ -50,12 +63,13 @@ struct ResumeCommand {
       refuse_fixed_keys(options.overrides);
       if (leads(ranks)) folder.emplace(ResultFolder::open(path));
       read = load_case(path + "/case.toml", options.overrides);
-      checkpoint.emplace(
-          newest_good_checkpoint(path + "/checkpoints", [&](const std::string& warning) {
-            if (leads(ranks)) std::fputs(fmt::format("warning: {}\n", warning).c_str(), stderr);
-          }));
+      const auto warn = [ranks](const std::string& warning) {
+        if (leads(ranks)) std::fputs(fmt::format("warning: {}\n", warning).c_str(), stderr);
+      };
+      checkpoint.emplace(newest_good_checkpoint(path + "/checkpoints", warn));
       read.name = checkpoint->text("run.case_name");
       read.folder = checkpoint->text("run.case_folder");
+      take_what_was_prepared(read, *checkpoint, warn);
       plan = plan_of(read, options, exec, ranks);
       plan.begin = begin;
       refuse_other_case(*checkpoint, plan);

@@ -83,6 +83,7 @@ RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec,
   plan.case_text = read.text;
   plan.case_digest = read.digest;
   plan.case_folder = read.folder;
+  plan.prepared = read.prepared;
   plan.model_digest = read.model_digest;
   plan.limits = {options.until, options.steps};
   plan.machine = {processor_name(), options.device, exec.threads,

@@ -210,6 +210,7 @@ CheckpointWriter Run::record_state() const {
   writer.text("run.precision", plan_.config.precision);
   writer.text("run.case_name", plan_.case_name);
   writer.text("run.case_folder", plan_.case_folder);
+  if (!plan_.prepared.empty()) writer.text("run.prepared", plan_.prepared);
   writer.text("run.model_digest", plan_.model_digest);
   writer.text("run.case", plan_.case_text);
   recorder_.state().save(writer);

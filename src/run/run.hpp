@@ -32,6 +32,7 @@ struct RunPlan {
   std::string case_text;    ///< the completed case file
   std::string case_digest;  ///< of case_text
   std::string case_folder;  ///< where files that the case names are
+  std::string prepared;     ///< file of the prepared model; empty: built from the case
   /// Of what decides the states of the run; a checkpoint of another one is refused.
   std::string model_digest;
   Limits limits;

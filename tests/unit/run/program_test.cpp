@@ -377,6 +377,38 @@ TEST_F(Program, RunsAPreparedModelToTheStateOfItsCase) {
   EXPECT_EQ(run("run " + path("balls.br") + " -o " + path("other")), 7) << output();
 }
 
+TEST_F(Program, GoesOnWithThePreparedModelWithoutWhatBuiltIt) {
+  std::string text = two_balls;
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("shape = \"element\"", "shape = \"file\"\nfile = \"spheres.csv\"");
+  replace("center = [-0.011, 0.0, 0.0]\nradius = \"10 mm\"\n", "");
+  replace("on = \"left\"", "on = \"right\"");
+  const auto spheres = [&](const std::string& rows) {
+    replace_file(scratch / "spheres.csv", "x,y,z,radius\n" + rows);
+  };
+  spheres("-0.011,0,0,0.01\n");
+  replace_file(scratch / "file.toml", text);
+  ASSERT_EQ(run("prepare " + path("file.toml") + " -o " + path("file.br")), 0) << output();
+  ASSERT_EQ(run("run " + path("file.br") + " -o " + path("whole")), 0) << output();
+  ASSERT_EQ(run("run " + path("file.br") + " --steps 3 -o " + path("parts")), 0) << output();
+  fs::remove(path("spheres.csv"));
+  ASSERT_EQ(run("resume " + path("parts") + " --steps 400000"), 0) << output();
+  EXPECT_EQ(summary("parts")["state_hash"], summary("whole")["state_hash"]);
+
+  // Without the model: built anew, if it can be. With another one: refused.
+  fs::rename(path("file.br"), path("moved.br"));
+  EXPECT_EQ(run("resume " + path("parts")), 3) << output();
+  EXPECT_NE(output().find("file.br is no longer there"), std::string::npos) << output();
+  replace("radius = \"10 mm\"", "radius = \"9 mm\"");
+  replace_file(scratch / "file.toml", text);
+  spheres("-0.011,0,0,0.01\n");
+  ASSERT_EQ(run("prepare " + path("file.toml") + " -o " + path("file.br")), 0) << output();
+  EXPECT_EQ(run("resume " + path("parts")), 2) << output();
+  EXPECT_NE(output().find("file.br"), std::string::npos) << output();
+}
+
 TEST_F(Program, RefusesAFolderWhoseCheckpointsAreAllDamaged) {
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
   for (const CheckpointFile& file : list_checkpoints(path("out/checkpoints")))
