@@ -40,7 +40,8 @@ struct Case {
 Case load_case(const std::string& path, const std::vector<std::string>& overrides);
 
 /// Takes the model of a case from where it was prepared.
-/// @throws InputError if the file holds the model of another case, IoError if it cannot be read
+/// @throws InputError if the file holds the model of another case, IoError if it cannot be read,
+/// CheckpointError if it is damaged
 void take_prepared(Case& read, const std::string& path);
 
 /// The case's method over its model: the prepared one, or built now.
