@@ -12,6 +12,8 @@
 #include <map>
 #include <thread>
 
+#include "paths.hpp"
+
 namespace breccia {
 namespace {
 
@@ -26,14 +28,14 @@ std::string bytes_of(const fs::path& path) {
 /// What starts `ranks` ranks, as Open MPI and MPICH understand it.
 std::string mpirun(int ranks) {
   return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-         "OMPI_MCA_rmaps_base_oversubscribe=1 timeout -k 5 100 " BR_MPIRUN " -n " +
-         std::to_string(ranks) + " ";
+         "OMPI_MCA_rmaps_base_oversubscribe=1 timeout -k 5 100 " +
+         std::string(mpirun_program) + " -n " + std::to_string(ranks) + " ";
 }
 
 /// Runs `breccia ARGUMENTS` on `ranks` ranks (1: without mpirun); returns its exit code.
 int run(int ranks, const std::string& arguments, const std::string& to = "/dev/null") {
   const std::string command =
-      (ranks > 1 ? mpirun(ranks) : "") + BR_PROGRAM " " + arguments + " > " + to + " 2>&1";
+      (ranks > 1 ? mpirun(ranks) : "") + program + " " + arguments + " > " + to + " 2>&1";
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
@@ -67,7 +69,7 @@ class ProgramOnRanks : public testing::Test {
 
   /// The same files from one process and from several, and from one that was continued on others.
   void compare(const std::string& name, int steps, const std::string& history) {
-    const std::string shared = std::string(BR_SOURCE_DIR) + "/cases/" + name +
+    const std::string shared = std::string(source_dir) + "/cases/" + name +
                                "/small.toml --threads 1 --no-progress "
                                "--set output.frames=1 --set "
                                "checkpoint.keep=1 --set output.history=" +
@@ -120,7 +122,7 @@ TEST_F(ProgramOnRanks, a_frame_that_cannot_be_written_ends_all_with_one_message)
   fs::create_directories(out("full") + "/pictures/0000.png.tmp");  // where a file should go
   EXPECT_EQ(
       run(3,
-          "run " + std::string(BR_SOURCE_DIR) +
+          "run " + std::string(source_dir) +
               "/cases/rc_slab/small.toml --threads 1 --no-progress --steps 5 -o " + out("full"),
           out("told")),
       3);
@@ -137,10 +139,11 @@ TEST_F(ProgramOnRanks, a_benchmark_of_one_rank_is_refused) {
 }
 
 TEST_F(ProgramOnRanks, a_bad_case_is_told_once_with_exit_code_2) {
-  EXPECT_EQ(
-      run(3, "run " BR_SOURCE_DIR "/cases/rc_slab/small.toml --set time.safty=1 -o " + out("bad"),
-          out("told")),
-      2);
+  EXPECT_EQ(run(3,
+                "run " + std::string(source_dir) +
+                    "/cases/rc_slab/small.toml --set time.safty=1 -o " + out("bad"),
+                out("told")),
+            2);
   const std::string told = bytes_of(out("told"));
   const std::size_t first = told.find("error: ");
   EXPECT_NE(first, std::string::npos);
@@ -151,16 +154,18 @@ TEST_F(ProgramOnRanks, a_bad_case_is_told_once_with_exit_code_2) {
 TEST_F(ProgramOnRanks, a_folder_that_holds_a_run_is_refused_by_all) {
   fs::create_directories(out("held"));
   std::ofstream(out("held") + "/summary.json") << "{}";
-  EXPECT_EQ(run(2, "run " BR_SOURCE_DIR "/cases/rc_slab/small.toml --steps 1 -o " + out("held")),
+  EXPECT_EQ(run(2, "run " + std::string(source_dir) + "/cases/rc_slab/small.toml --steps 1 -o " +
+                       out("held")),
             2);
 }
 
 TEST_F(ProgramOnRanks, numbers_that_go_wrong_end_all_with_exit_code_4_and_a_saved_state) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(run(3,
-                "run " BR_SOURCE_DIR "/cases/moving_box/small.toml --set time.max_step=0.02 "
-                "--set time.evaluate_every=1000 --set time.safety=1 --set "
-                "'gravity=[1e9,0]' --threads 1 --no-progress --set output.pictures=false -o " +
+                "run " + std::string(source_dir) +
+                    "/cases/moving_box/small.toml --set time.max_step=0.02 "
+                    "--set time.evaluate_every=1000 --set time.safety=1 --set "
+                    "'gravity=[1e9,0]' --threads 1 --no-progress --set output.pictures=false -o " +
                     out("wrong"),
                 out("told")),
             4)
@@ -185,7 +190,8 @@ struct Ending {
 /// knows its process as $pid, once there is a state to go on from.
 class FateOfRank : public ProgramOnRanks {
  protected:
-  static constexpr const char* slab = BR_SOURCE_DIR
+  static inline const std::string slab =
+      std::string(source_dir) +
       "/cases/rc_slab/small.toml --threads 1 --no-progress --set output.frames=0 "
       "--set checkpoint.steps=100 --set output.history=1 --set domain.patience=3 ";
 
@@ -197,7 +203,7 @@ class FateOfRank : public ProgramOnRanks {
                                   << " ]; then\n  (while ! ls " << out("run")
                                   << "/checkpoints/step_*.br; do sleep 0.02; done\n   date +%s > "
                                   << out("when") << "; " << fate
-                                  << ") > /dev/null 2>&1 &\nfi\nexec " BR_PROGRAM " \"$@\"\n";
+                                  << ") > /dev/null 2>&1 &\nfi\nexec " << program << " \"$@\"\n";
     fs::permissions(out("rank.sh"), fs::perms::owner_all);
     const std::string command = mpirun(3) + out("rank.sh") + " run " + slab + more + "-o " +
                                 out("run") + " > " + out("told") +

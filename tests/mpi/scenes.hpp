@@ -9,6 +9,7 @@
 #include "dem/observe.hpp"
 #include "domain/domain.hpp"
 #include "io/case_file.hpp"
+#include "paths.hpp"
 #include "physics/fdem/scene.hpp"
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
@@ -32,7 +33,7 @@ struct Slab {
 /// The small slab; its model is built once.
 inline Slab slab(const std::vector<std::string>& overrides = {}) {
   const auto config = [](const std::vector<std::string>& changed) {
-    return read_case<dem::Config>(BR_SOURCE_DIR "/cases/rc_slab/small.toml", changed);
+    return read_case<dem::Config>(std::string(source_dir) + "/cases/rc_slab/small.toml", changed);
   };
   static const auto model = std::make_shared<const dem::Model>(build_model(config({}), ""));
   return {config(overrides), model};
@@ -41,7 +42,7 @@ inline Slab slab(const std::vector<std::string>& overrides = {}) {
 /// A piece of it, free at its edges, with a bar each way.
 inline Slab slab_piece() {
   Slab piece;
-  piece.config = read_case<dem::Config>(BR_SOURCE_DIR "/cases/rc_slab/small.toml", {});
+  piece.config = read_case<dem::Config>(std::string(source_dir) + "/cases/rc_slab/small.toml", {});
   piece.config.supports.clear();
   piece.config.probes.clear();
   dem::BodyConfig &plate = piece.config.bodies[0], &bars = piece.config.bodies[1],
@@ -84,7 +85,8 @@ inline Scene impact(const char* joints) {
 /// Hexagons of six triangles that move as one, flying into the corner of a room.
 inline Scene box() {
   Scene scene;
-  scene.config = read_case<fdem::Config>(BR_SOURCE_DIR "/cases/moving_box/small.toml", {});
+  scene.config =
+      read_case<fdem::Config>(std::string(source_dir) + "/cases/moving_box/small.toml", {});
   fdem::BodyConfig& blocks = scene.config.bodies[0];
   blocks.hexagons.count = 100;
   blocks.size = {19.0, 19.0};

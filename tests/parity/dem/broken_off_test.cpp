@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "io/whole_file.hpp"
+#include "paths.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string small_slab = BR_SOURCE_DIR "/cases/rc_slab/small.toml";
+const std::string small_slab = std::string(source_dir) + "/cases/rc_slab/small.toml";
 
 class BrokenOff : public testing::Test {
  protected:

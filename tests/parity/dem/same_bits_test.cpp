@@ -7,19 +7,21 @@
 #include "dem/observe.hpp"
 #include "exec/error.hpp"
 #include "io/case_file.hpp"
+#include "paths.hpp"
 #include "prepare/build.hpp"
 #include "run/dem_method.hpp"
 
 namespace breccia {
 namespace {
 
-const std::string small_case = BR_SOURCE_DIR "/cases/rc_slab/small.toml";
+const std::string small_case = std::string(source_dir) + "/cases/rc_slab/small.toml";
 
 dem::Config small_config(const std::vector<std::string>& overrides = {}) {
   return read_case<dem::Config>(small_case, overrides);
 }
 const dem::Model& small_model() {
-  static const dem::Model model = build_model(small_config(), BR_SOURCE_DIR "/cases/rc_slab");
+  static const dem::Model model =
+      build_model(small_config(), std::string(source_dir) + "/cases/rc_slab");
   return model;
 }
 dem::World small_world(int threads, const std::vector<std::string>& overrides = {}) {

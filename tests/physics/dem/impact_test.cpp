@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "io/case_file.hpp"
+#include "paths.hpp"
 #include "prepare/build.hpp"
 #include "scene.hpp"
 
 namespace breccia::dem {
 namespace {
 
-const std::string folder = BR_SOURCE_DIR "/cases/rc_slab";
+const std::string folder = std::string(source_dir) + "/cases/rc_slab";
 
 /// Sum of a quantity over a body, a support, or everything, as a probe of a case reads it.
 double sum(const World& w, const char* on, const char* quantity) {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "io/case_file.hpp"
+#include "paths.hpp"
 #include "prepare/build.hpp"
 #include "scene.hpp"
 
@@ -184,7 +185,8 @@ TEST(MixedPrecision, keeps_the_energy_of_an_elastic_block) {
 }
 
 TEST(MixedPrecision, forces_of_a_breaking_slab_differ_by_less_than_3e_6_after_a_step) {
-  const Config config = read_case<Config>(BR_SOURCE_DIR "/cases/rc_slab/small.toml", {});
+  const Config config =
+      read_case<Config>(std::string(source_dir) + "/cases/rc_slab/small.toml", {});
   World full = make_world(config, build_model(config, ""), {});
   for (int i = 0; i < 600; ++i) step(full);
   ASSERT_GT(count(full).broken_concrete, 1000);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/case_file.hpp"
+#include "paths.hpp"
 #include "physics/fdem/scene.hpp"
 #include "prepare/build_fdem.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 /// that of a flaw at 45 degrees whose faces slide: K_I of the wing is 2/sqrt(3) K_II, with
 /// K_II = (1 - mu) stress/2 sqrt(pi a), and reaches sqrt(E G_I).
 TEST(FlawedPlate, cracks_first_at_the_flaw_in_the_window_of_fracture_mechanics) {
-  const std::string folder = BR_SOURCE_DIR "/cases/wing_crack";
+  const std::string folder = std::string(source_dir) + "/cases/wing_crack";
   const auto config = read_case<Config>(folder + "/small.toml", {});
   const MaterialConfig& rock = config.materials[0];
   World w =

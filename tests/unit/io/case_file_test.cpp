@@ -9,6 +9,7 @@
 
 #include "dem/config.hpp"
 #include "exec/error.hpp"
+#include "paths.hpp"
 #include "prepare/check_case.hpp"
 #include "run/shown.hpp"
 
@@ -93,7 +94,7 @@ TEST(CaseFile, overrides_count_last_and_find_items_by_name_or_number) {
 TEST(CaseFile, the_completed_case_reads_back_to_the_same_case) {
   for (const char* name : {"/cases/rc_slab/case.toml", "/cases/rc_slab/small.toml"}) {
     const std::string text =
-        completed_case(read_case<dem::Config>(BR_SOURCE_DIR + std::string(name), {}));
+        completed_case(read_case<dem::Config>(source_dir + std::string(name), {}));
     const CaseText file(text);
     EXPECT_EQ(completed_case(read_case<dem::Config>(file.path(), {})), text) << name;
   }
@@ -399,7 +400,7 @@ TEST(CaseFile, a_letter_typed_wrong_leads_to_the_right_key) {
 TEST(CaseFile, cases_are_named_by_folder_and_file) {
   EXPECT_EQ(case_name("cases/rc_slab/case.toml"), "rc_slab");
   EXPECT_EQ(case_name("cases/rc_slab/small.toml"), "rc_slab_small");
-  EXPECT_EQ(case_name(BR_SOURCE_DIR "/cases/rc_slab"), "rc_slab");
+  EXPECT_EQ(case_name(std::string(source_dir) + "/cases/rc_slab"), "rc_slab");
   EXPECT_EQ(case_folder("cases/rc_slab/small.toml"), "cases/rc_slab");
 }
 

@@ -13,6 +13,7 @@
 #include "exec/error.hpp"
 #include "io/vtu_reader.hpp"
 #include "io/whole_file.hpp"
+#include "paths.hpp"
 #include "unit/io/slab_scene.hpp"
 
 namespace breccia {
@@ -105,7 +106,7 @@ void expect_vtk_reads(const std::string& folder, const std::vector<Frame>& frame
   replace_file(folder + "/expected.json", expectation(frames));
   const std::string command = fmt::format(
       "/usr/bin/python3 '{0}/tests/unit/io/read_with_vtk.py' '{1}' '{1}/expected.json' 2>&1",
-      BR_SOURCE_DIR, folder);
+      source_dir, folder);
   std::string said;
   FILE* pipe = popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);

@@ -9,6 +9,7 @@
 
 #include "exec/error.hpp"
 #include "io/case_file.hpp"
+#include "paths.hpp"
 #include "run/benchmark_scenes.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -31,7 +32,7 @@ std::string geometry_of(const dem::Config& config) {
 
 TEST(BenchmarkScene, OfScaleOneHasTheElementsAndLinksOfTheShippedSlab) {
   const auto shipped =
-      read_case<dem::Config>(std::string(BR_SOURCE_DIR) + "/cases/rc_slab/case.toml", {});
+      read_case<dem::Config>(std::string(source_dir) + "/cases/rc_slab/case.toml", {});
   EXPECT_EQ(geometry_of(slab_scene(1.0)), geometry_of(shipped));
 }
 

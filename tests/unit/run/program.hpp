@@ -6,12 +6,14 @@
 
 #include <string>
 
+#include "paths.hpp"
+
 namespace breccia {
 
 /// Starts `breccia` by a shell with these arguments; both streams go to `output`.
 inline pid_t start_program(const std::string& arguments, const std::string& output = "/dev/null") {
   const std::string command =
-      std::string("exec '") + BR_PROGRAM + "' " + arguments + " > " + output + " 2>&1";
+      std::string("exec '") + program + "' " + arguments + " > " + output + " 2>&1";
   const pid_t child = ::fork();
   if (child == 0) {
     ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);

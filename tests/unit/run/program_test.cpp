@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "io/whole_file.hpp"
+#include "paths.hpp"
 #include "run/checkpoints.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -133,7 +134,7 @@ TEST_F(Program, NamesAFileItCannotReadOrAFolderItCannotWrite) {
 
 TEST_F(Program, FailsWithThreeIfNobodyTakesWhatItSays) {
   for (const std::string command : {"keys", "check balls.toml"}) {
-    const std::string line = "cd " + path("") + " && '" BR_PROGRAM "' " + command +
+    const std::string line = "cd " + path("") + " && '" + program + "' " + command +
                              " > /dev/full 2> " + path("said.txt");
     const int status = std::system(line.c_str());
     EXPECT_EQ(WEXITSTATUS(status), 3) << command;

@@ -1,0 +1,9 @@
+#include "paths.hpp"
+
+namespace breccia {
+
+const char* const source_dir = BR_SOURCE_DIR;
+const char* const program = BR_PROGRAM;
+const char* const mpirun_program = BR_MPIRUN;
+
+}  // namespace breccia

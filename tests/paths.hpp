@@ -1,0 +1,11 @@
+#pragma once
+// Places that only the build knows. One file holds them, so that all others compile alike in every
+// folder.
+
+namespace breccia {
+
+extern const char* const source_dir;      ///< of the project
+extern const char* const program;         ///< breccia, as built
+extern const char* const mpirun_program;  ///< empty without MPI
+
+}  // namespace breccia
