@@ -3,10 +3,12 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "core/timed.hpp"
 #include "exec/device.hpp"
 #include "exec/launch_times.hpp"
+#include "exec/shadow_launches.hpp"
 #include "exec/step_graph.hpp"
 
 namespace breccia {
@@ -82,6 +84,7 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
   const auto begin = std::chrono::steady_clock::now();
   const std::int64_t ahead = LaunchTimes::wanted() ? 2 : 12;  // launched before they have begun
   const auto late = [&] { return std::chrono::steady_clock::now() - begin > slice; };
+  const bool shadow = clock.space() == Space::shadow;
   const auto launch_two = [&] {
     StepClock* const c = clock.data();
     launch_step(StepClocks{c, c + 1});
@@ -91,14 +94,16 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
   std::int32_t open = 0;
   for (;;) {
     start_clock(clock, end, host, stop, open);
+    std::optional<ShadowLaunches> launches;
+    if (shadow) launches.emplace();
     if (open != 0) launch_rest(StepClocks{nullptr, clock.data()});
     const double needed = smaller(std::ceil((stop.time - host.time) / host.next_dt),
                                   static_cast<double>(stop.step - host.step));
     for (std::int64_t launched = 0, seen = 0; static_cast<double>(launched) < needed;) {
       if (launched - seen < ahead) {
-        if (LaunchTimes::wanted()) {
+        if (LaunchTimes::wanted() || shadow) {  // neither has a graph
           launch_two();
-          wait_for_device();
+          if (!shadow) wait_for_device();
           launched += 2;
           continue;
         }
@@ -115,6 +120,7 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
       seen = c.now.step - host.step;
       if (c.halted != 0 || late()) break;
     }
+    launches.reset();
     const StepClock now = read_clock(clock, end, host, taken);
     open = 0;
     if (now.wanted != 0) {

@@ -100,17 +100,29 @@ struct Opening : Ahead<Kernel> {
 enum class Stand { in_move, after_move, in_rest };
 
 #if defined(__CUDACC__)
+#define BR_RARELY __host__ __device__ __noinline__
+#else
+#define BR_RARELY __attribute__((noinline))
+#endif
+
+/// Keeps what a pointer leads to where the launch has it: otherwise all of it is passed by value.
+template <class T>
+BR_HD inline void stay_in_place([[maybe_unused]] const T*& parameters) {
+#if defined(__CUDA_ARCH__)
+  asm volatile("" : "+l"(parameters));
+#endif
+}
+
 /// work(kernel, i) as of `now`, in a function of its own: what few items need costs the others no
 /// registers.
 /// @param kernel  where the launch has its parameters: see Timed
 template <class Kernel, class Work>
-__device__ __noinline__ void rarely(const Kernel* kernel, Moment now, Index i, Work work) {
-  asm volatile("" : "+l"(kernel));  // or all of it would be passed by value
+BR_RARELY void rarely(const Kernel* kernel, Moment now, Index i, Work work) {
+  stay_in_place(kernel);
   Kernel timed = *kernel;
   timed.set(now);
   work(timed, i);
 }
-#endif
 
 /// A kernel of a later launch than the first. `Kernel::set(Moment)` gives a copy of it the time;
 /// one that hands its own address on is told by `at_moment` and stays where the launch has it.
@@ -179,11 +191,14 @@ struct NoteLeast {
   StepClock* clock;
   static constexpr double neutral = largest_least;
 
-  BR_HD void operator()([[maybe_unused]] double number) const {
+  BR_HD void operator()(double number) const {
 #if defined(__CUDA_ARCH__)
     auto* const least = reinterpret_cast<unsigned long long*>(&clock->least);
     const unsigned long long bits = ordered_bits(number);
     if (bits < __ldcg(least)) atomicMin(least, bits);
+#else
+    const std::uint64_t bits = ordered_bits(number);
+    if (bits < clock->least) clock->least = bits;
 #endif
   }
 };

@@ -1,10 +1,11 @@
-// The step of dem/step.cpp on a device: the same kernels in the same order, launched ahead by the
-// device's clock.
+// The step of dem/step.cpp on a device: the kernels of the host in the same order, launched ahead
+// by the device's clock. In Space::shadow the processor carries the launches out.
 
 #include "core/device_run.hpp"
 #include "dem/launches.hpp"
 #include "exec/early.hpp"
 #include "exec/for_each.hpp"
+#include "exec/lockstep.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -22,7 +23,6 @@ struct MoveAndWatch {
     move.set(now);
     step = now.step;
   }
-#if defined(__CUDACC__)
   /// What the sums of forces, which end while these are read, do not write; and then those sums.
   struct Ready {
     ElementState state;
@@ -31,7 +31,7 @@ struct MoveAndWatch {
     Vec3 reference;
     double margin;
   };
-  __device__ void prepare(Index e, Ready& ready) const {
+  BR_HD void prepare(Index e, Ready& ready) const {
     ready.state = read_record_now(&move.kick.state[e]);
     ready.turn = read_record_now(&move.orientation[e]);
     ready.given.mass = read_now(&move.kick.mass[e]);
@@ -40,11 +40,11 @@ struct MoveAndWatch {
     ready.reference = read_vector(used.reference, e);
     ready.margin = read_now(&used.margin[e]);
   }
-  __device__ void fetch(Index e, Ready& ready) const {
+  BR_HD void fetch(Index e, Ready& ready) const {
     ready.given.force = read_vector(move.kick.force, e);
     ready.given.torque = read_vector(move.kick.torque, e);
   }
-  __device__ void operator()(Index e, const Ready& ready) const {
+  BR_HD void operator()(Index e, const Ready& ready) const {
     const Vec3 position = move.moved(e, ready.state, ready.turn, ready.given);
     if (search_every > 0) {
       if (e == 0 && step % search_every == 0) *wanted = 1;
@@ -54,23 +54,20 @@ struct MoveAndWatch {
   }
 
  private:
-  __device__ static Vec3 read_vector(const View<const Vec3>& vectors, Index e) {
+  BR_HD static Vec3 read_vector(const View<const Vec3>& vectors, Index e) {
     const Vec3& v = vectors[e];
     return {read_now(&v.x), read_now(&v.y), read_now(&v.z)};
   }
-#endif
 };
 
 /// The same for what this rank owns: copies follow their owners.
 struct MoveOwn : MoveAndWatch {
   OwnedView owned;
   StepClock* clock;  ///< for the sums to note in
-#if defined(__CUDACC__)
-  __device__ void operator()(Index e, const Ready& ready) const {
+  BR_HD void operator()(Index e, const Ready& ready) const {
     if (e == 0) clock->least = ordered_bits(largest_least);
     if (owned(e)) MoveAndWatch::operator()(e, ready);
   }
-#endif
 };
 
 struct MoveWalls {
@@ -99,21 +96,20 @@ struct GatherWide {
   GatherRows<Number> all;
 
   BR_HD void set(const Moment&) {}
-#if defined(__CUDACC__)
   struct Sum {
     double number;
     float stiffness;
-    __device__ void add(const Sum& other) {
+    BR_HD void add(const Sum& other) {
       number += other.number;
       stiffness += other.stiffness;
     }
   };
-  __device__ static Sum read(const Action* action, int column) {
+  BR_HD static Sum read(const Action* action, int column) {
     return {action->numbers[column], action->stiffness[column]};
   }
   struct Row {
     Index next, end;
-    __device__ void find(const View<const Index>& starts, Index e) {
+    BR_HD void find(const View<const Index>& starts, Index e) {
       next = read_now(starts.data + e);
       end = read_now(starts.data + e + 1);
     }
@@ -124,41 +120,41 @@ struct GatherWide {
     Sum part[at_once];
   };
   /// Past the end of a row its last link is read again: a branch would cost more.
-  __device__ static void list(Few& few, const Row& row, const Index* links) {
+  BR_HD static void list(Few& few, const Row& row, const Index* links) {
     const Index last = row.end > 0 ? row.end - 1 : 0;
-#pragma unroll
+    BR_UNROLL
     for (int k = 0; k < at_once; ++k) {
       const Index place = row.next + k < last ? row.next + k : last;
       few.link[k] = read_now(links + place);
     }
   }
-  __device__ void read(Few& few, int column) const {
-#pragma unroll
+  BR_HD void read(Few& few, int column) const {
+    BR_UNROLL
     for (int k = 0; k < at_once; ++k) {
       const ActionOf<Number>& action = all.actions.data[few.link[k]];
       few.part[k] = {read_now(action.numbers + column), read_now(action.stiffness + column)};
     }
   }
-  __device__ static void add(Sum& sum, const Few& few, Row& row) {
-#pragma unroll
+  BR_HD static void add(Sum& sum, const Few& few, Row& row) {
+    BR_UNROLL
     for (int k = 0; k < at_once; ++k)
       if (row.next + k < row.end) sum.add(few.part[k]);
     row.next += at_once;
   }
   /// A row of bars or contacts.
-  __device__ static void add_pairs(Sum& as_a, Sum& as_b, Row row, const Entry* entries,
-                                   const Action* actions, int column) {
+  BR_HD static void add_pairs(Sum& as_a, Sum& as_b, Row row, const Entry* entries,
+                              const Action* actions, int column) {
     for (; row.next < row.end; row.next += at_once) {
       Entry entry[at_once];
       Sum part[at_once];
-#pragma unroll
+      BR_UNROLL
       for (int k = 0; k < at_once; ++k)
         if (row.next + k < row.end) entry[k] = entries[row.next + k];
-#pragma unroll
+      BR_UNROLL
       for (int k = 0; k < at_once; ++k)
         if (row.next + k < row.end)
           part[k] = read(actions + pair_of(entry[k]), column + 3 * side_of(entry[k]));
-#pragma unroll
+      BR_UNROLL
       for (int k = 0; k < at_once; ++k)
         if (row.next + k < row.end) side_of(entry[k]) == 0 ? as_a.add(part[k]) : as_b.add(part[k]);
     }
@@ -170,11 +166,11 @@ struct GatherWide {
     double inertia;
     int fixed;
   };
-  __device__ static int column_of(Index i) {
+  BR_HD static int column_of(Index i) {
     const int part = i % width;
     return part < 6 ? part : 5;  // two threads repeat the sixth
   }
-  __device__ void prepare(Index i, Ready& ready) const {
+  BR_HD void prepare(Index i, Ready& ready) const {
     const Index e = i / width;
     ready.links_a.find(all.rows_a.starts, e);
     ready.links_b.find(all.rows_b.starts, e);
@@ -186,13 +182,13 @@ struct GatherWide {
     list(ready.as_a, ready.links_a, all.rows_a.links.data);
     list(ready.as_b, ready.links_b, all.rows_b.links.data);
   }
-  __device__ void fetch(Index i, Ready& ready) const {
+  BR_HD void fetch(Index i, Ready& ready) const {
     if (all.actions.size == 0) return;
     read(ready.as_a, column_of(i));
     read(ready.as_b, column_of(i) + 3);
   }
   /// @returns the critical number of the element, once
-  __device__ double operator()(Index i, Ready& ready) const {
+  BR_HD double operator()(Index i, Ready& ready) const {
     const GatherForces& gather = all.gather;
     const Index e = i / width;
     const int part = i % width, column = column_of(i), fixed = ready.fixed;
@@ -210,25 +206,24 @@ struct GatherWide {
     add_pairs(as_a, as_b, ready.contacts, gather.contacts.entries.data, gather.contact_actions.data,
               column);
     // Force x y z, then torque: what the element gets as b, and as a (with the opposite force).
-    const unsigned group = 0xffU << (threadIdx.x / width * width % 32);
-    const int other = part < 3 ? part + 3 : part - 3;
-    const double from_a = __shfl_sync(group, as_a.number, other, width);
-    float stiffness = __shfl_sync(group, as_a.stiffness, other, width) + as_b.stiffness;
+    const LaneGroup<width> group;
+    const int other = part < 3 ? part + 3 : part < 6 ? part - 3 : part;
+    const double from_a = group.from(other, as_a.number);
+    float stiffness = group.from(other, as_a.stiffness) + as_b.stiffness;
     if (part < 3) reinterpret_cast<double*>(&gather.force[e])[part] = as_b.number - from_a;
     if (part >= 3 && part < 6)
       reinterpret_cast<double*>(&gather.torque[e])[part - 3] = as_b.number + from_a;
     if (part >= 6 || (fixed >> part & 1) != 0 || !(stiffness > 0.0F)) stiffness = 0.0F;
     float largest = stiffness;  // of three neighbours
-    largest = fmaxf(largest, __shfl_down_sync(group, stiffness, 1, width));
-    largest = fmaxf(largest, __shfl_down_sync(group, stiffness, 2, width));
+    largest = std::fmax(largest, group.from_next(1, stiffness));
+    largest = std::fmax(largest, group.from_next(2, stiffness));
     const double slow = static_cast<double>(largest) / ready.inertia;
-    const double slowest = larger(slow, __shfl_sync(group, slow, 3, width));
+    const double slowest = larger(slow, group.from(3, slow));
     if (part != 0) return largest_least;
     const double critical = slowest > 0.0 ? 1.0 / slowest : largest_least;
     gather.critical[e] = critical;
     return critical;
   }
-#endif
 };
 struct NoteCritical {
   static constexpr const char* name = "dem.note_critical";
@@ -240,22 +235,14 @@ struct NoteCritical {
 /// Links of all groups in one launch.
 template <class Kernel, class Law>
 struct Grouped {
-  static constexpr int most = 8;
   Kernel kernel;
-  Index ends[most];  ///< of each group
+  View<const Index> ends;  ///< of each group
   View<const Law> laws;
 
-  Grouped(const Kernel& all, const std::vector<LinkGroup<Law>>& groups,
-          const Buffer<Law>& group_laws)
-      : kernel(all), laws(group_laws.view()) {
-    for (std::size_t g = 0; g < most; ++g) ends[g] = g < groups.size() ? groups[g].end : 0;
-  }
+  Grouped(const Kernel& all, const GroupLaws<Law>& groups)
+      : kernel(all), ends(groups.ends.view()), laws(groups.laws.view()) {}
   BR_HD void set(const Moment& now) { kernel.set(now); }
-  BR_HD const Law& law_of(Index i) const {
-    int group = 0;  // counted, not sought: an index into a parameter would move it to local memory
-    for (int g = 0; g < most - 1; ++g) group += i >= ends[g] && ends[g] > 0 ? 1 : 0;
-    return laws[group];
-  }
+  BR_HD const Law& law_of(Index i) const { return laws[group_of(ends, i)]; }
   BR_HD void operator()(Index i) const {
     if constexpr (std::is_same_v<Kernel, InterfaceLinkForces>) {
       kernel.with(law_of(i), i);
@@ -267,7 +254,6 @@ struct Grouped {
   }
 };
 
-#if defined(__CUDACC__)
 /// Concrete links of all groups: what they keep is read ahead, motion ends while it comes.
 template <class Number>
 struct ConcreteAhead : Grouped<ConcreteLinkForces<Number>, ConcreteLink> {
@@ -276,47 +262,46 @@ struct ConcreteAhead : Grouped<ConcreteLinkForces<Number>, ConcreteLink> {
   using Base::kernel;
 
   struct Ready {
-    Index a, b;
+    Index a, b, group;
     double length, stiffness;
     LinkState<double> state;
     ElementState end_a, end_b;
   };
-  __device__ static Vec3 read_vector(const PlanesView<Number>& planes, Index i) {
+  BR_HD static Vec3 read_vector(const PlanesView<Number>& planes, Index i) {
     const Number* const x = planes.items.data + i;
     return {read_now(x), read_now(x + planes.stride), read_now(x + 2 * planes.stride)};
   }
-  __device__ void prepare(Index i, Ready& ready) const {
+  BR_HD void prepare(Index i, Ready& ready) const {
     ready.a = read_now(&kernel.a[i]);
     ready.b = read_now(&kernel.b[i]);
+    ready.group = group_of(this->ends, i);
     ready.length = read_now(&kernel.length[i]);
     ready.stiffness = read_now(&kernel.stiffness[i]);
     ready.state.opening = read_now(&kernel.opening[i]);
     ready.state.shear = read_vector(kernel.shear, i);
     ready.state.moment = read_vector(kernel.moment, i);
   }
-  __device__ void fetch(Index, Ready& ready) const {
+  BR_HD void fetch(Index, Ready& ready) const {
     ready.end_a = read_record_now(&kernel.elements.state[ready.a]);
     ready.end_b = read_record_now(&kernel.elements.state[ready.b]);
   }
-  __device__ void operator()(Index i, const Ready& ready) const {
+  BR_HD void operator()(Index i, const Ready& ready) const {
     ConcreteLinkForces<Number> own = kernel;
-    own.law = this->law_of(i);
+    own.law = this->laws[ready.group];
     own.template answer<double>(i, end(ready.end_a), ready.end_a.radius, end(ready.end_b),
                                 ready.end_b.radius, ready.length, ready.stiffness, ready.state);
   }
 
  private:
-  __device__ static PairEnd<double> end(const ElementState& s) {
+  BR_HD static PairEnd<double> end(const ElementState& s) {
     return {s.position, s.velocity, s.spin};
   }
 };
-#endif
 
 EndOfStep<StepRule> end_of_step(const World& w) {
   return {step_rule(w), w.parameters.time.evaluate_every};
 }
 
-#if defined(__CUDACC__)
 void launch_move(World& w, const StepClocks& clocks) {
   const int every = w.parameters.search.every;
   std::int32_t* const wanted = &clocks.now->wanted;
@@ -327,8 +312,8 @@ void launch_move(World& w, const StepClocks& clocks) {
       every,
       wanted};
   const MoveWalls walls{0.0, w.parameters.largest_margin, every, w.device_walls.view(), wanted};
-  for_each_part(part(w.device_walls.size(), clocks.opening(walls, end, false),
-                     part(w.elements.size(), clocks.opening(move, end, true), Parts<>{})));
+  for_each_part(w.exec, part(w.device_walls.size(), clocks.opening(walls, end, false),
+                             part(w.elements.size(), clocks.opening(move, end, true), Parts<>{})));
 }
 
 /// All links and contacts. `by` wraps a kernel by the clock.
@@ -337,16 +322,14 @@ void launch_interactions(World& w, const By& by) {
   const LinkGroup<ConcreteLink> no_concrete{};
   const LinkGroup<SteelLink> no_steel{};
   const LinkGroup<InterfaceLink> no_interface{};
-  const ConcreteAhead<Number> concrete(concrete_kernel<Number>(w, no_concrete), w.concrete_groups,
-                                       w.concrete_laws);
-  const Grouped<SteelLinkForces, SteelLink> steel(steel_kernel(w, no_steel), w.steel_groups,
-                                                  w.steel_laws);
+  const ConcreteAhead<Number> concrete(concrete_kernel<Number>(w, no_concrete), w.concrete_laws);
+  const Grouped<SteelLinkForces, SteelLink> steel(steel_kernel(w, no_steel), w.steel_laws);
   const Grouped<InterfaceLinkForces, InterfaceLink> interface(interface_kernel(w, no_interface),
-                                                              w.interface_groups, w.interface_laws);
-  for_each_part(part(w.steel.size(), by(steel),
-                     part(w.interface.size(), by(interface),
-                          part(w.contacts.size(), by(contact_kernel(w)),
-                               part(w.concrete.size(), by(concrete), Parts<>{})))));
+                                                              w.interface_laws);
+  for_each_part(w.exec, part(w.steel.size(), by(steel),
+                             part(w.interface.size(), by(interface),
+                                  part(w.contacts.size(), by(contact_kernel(w)),
+                                       part(w.concrete.size(), by(concrete), Parts<>{})))));
 }
 
 /// Forces and sums, and the least critical number.
@@ -356,13 +339,13 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
   const Index threads = w.elements.size() * GatherWide<Number>::width;
   launch_interactions<Number>(w, by);
   const auto gather = by(GatherWide<Number>{gather_rows_kernel<Number>(w)});
-  if (w.walls.empty()) return for_each_noting(threads, gather, NoteLeast{clock});
-  for_each_part(part(threads, gather, Parts<>{}));
+  if (w.walls.empty()) return for_each_noting(w.exec, threads, gather, NoteLeast{clock});
+  for_each_part(w.exec, part(threads, gather, Parts<>{}));
   for (Index k = 0; k < w.device_walls.size(); ++k) {
     const auto wall = static_cast<std::size_t>(k);
     for_each(exec, w.wall_begin[wall + 1] - w.wall_begin[wall], by(wall_kernel(w, k)));
   }
-  for_each_noting(w.elements.size(), by(NoteCritical{std::as_const(w.critical).view()}),
+  for_each_noting(w.exec, w.elements.size(), by(NoteCritical{std::as_const(w.critical).view()}),
                   NoteLeast{clock});
 }
 
@@ -379,15 +362,11 @@ void launch_rest(World& w, const StepClocks& clocks) {
         w, clocks.now, [&](const auto& kernel) { return clocks.timed<Stand::in_rest>(kernel); });
   });
 }
-#else
-void launch_step(World&, const StepClocks&) {}
-void launch_rest(World&, const StepClocks&) {}
-#endif
 
 }  // namespace
 
-#if defined(__CUDACC__)
 void move_on_device(World& w) {
+  const ShadowLaunches launches;
   w.beyond.resize(1);
   w.clock.resize(1);
   const MoveAndWatch move{
@@ -395,11 +374,13 @@ void move_on_device(World& w) {
       {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()},
       0,
       w.beyond.data()};
-  for_each_part(part(w.elements.size(),
-                     AtOnce(MoveOwn{move, w.domain.owned_view(), w.clock.data()}), Parts<>{}));
+  for_each_part(
+      w.exec, part(w.elements.size(), AtOnce(MoveOwn{move, w.domain.owned_view(), w.clock.data()}),
+                   Parts<>{}));
   mark_launches(w.exec.space);
 }
 void forces_on_device(World& w) {
+  const ShadowLaunches launches;
   const StageTime timed(w.exec, "forces");
   for_each(w.exec, 1, Fence{});
   with_number(w.exec.precision, [&w](auto number) {
@@ -409,16 +390,12 @@ void forces_on_device(World& w) {
     const Index threads = w.elements.size() * Gather::width;
     const auto gather = at_once(Gather{gather_rows_kernel<decltype(number)>(w)});
     if (sums_note_least(w))
-      for_each_noting(threads, gather, NoteLeast{w.clock.data()});
+      for_each_noting(w.exec, threads, gather, NoteLeast{w.clock.data()});
     else
-      for_each_part(part(threads, gather, Parts<>{}));
+      for_each_part(w.exec, part(threads, gather, Parts<>{}));
   });
   mark_launches(w.exec.space);
 }
-#else
-void move_on_device(World&) {}
-void forces_on_device(World&) {}
-#endif
 
 Advanced advance_on_device(World& w, const StopAt& stop) {
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};

@@ -238,7 +238,7 @@ StepRule step_rule(const World& w) {
 }
 
 View<const Wall> walls_view(const World& w) {
-  if (w.exec.space == Space::cuda) return w.device_walls.view();
+  if (w.exec.space != Space::host) return w.device_walls.view();
   View<const Wall> view;
   view.data = w.walls.data();
   view.size = static_cast<Index>(w.walls.size());
@@ -256,7 +256,7 @@ MoveWithin move_within(World& w) {
 
 void move_awaited(World& w) {
   const StageTime timed(w.exec, "integration");
-  if (w.exec.space == Space::cuda)
+  if (w.exec.space != Space::host)
     move_on_device(w);
   else
     w.margin_used = move_here(w, w.domain.awaited_runs, move_within(w));
@@ -264,7 +264,7 @@ void move_awaited(World& w) {
 
 void move_others(World& w) {
   const StageTime timed(w.exec, "integration");
-  if (w.exec.space != Space::cuda && !w.domain.alone())
+  if (w.exec.space == Space::host && !w.domain.alone())
     w.margin_used |= move_here(w, w.domain.other_runs, move_within(w));
   for (Wall& wall : w.walls) {
     wall.point += w.next_dt * wall.velocity;
@@ -293,14 +293,14 @@ void concrete_forces_and_sums(World& w) {
 void wall_forces(World& w) {
   if (w.wall_contacts.size() == 0) return;
   const StageTime timed(w.exec, "wall_forces");
-  if (w.exec.space == Space::cuda) copy_to(w.device_walls, w.walls);
+  if (w.exec.space != Space::host) copy_to(w.device_walls, w.walls);
   for (std::size_t k = 0; k < w.walls.size(); ++k)
     for_each(w.exec, w.wall_begin[k + 1] - w.wall_begin[k], wall_kernel(w, static_cast<Index>(k)));
 }
 
 double choose_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
-  const double least = w.exec.space == Space::cuda ? least_there(w) : least_here(w);
+  const double least = w.exec.space != Space::host ? least_there(w) : least_here(w);
   return step_rule(w)(w.domain.least(least), w.last_dt);
 }
 

@@ -269,7 +269,7 @@ void plan_sweep(World& w) {
   }
   for (std::size_t i = 0; i < a.size(); ++i) w.sweep.reach = std::max(w.sweep.reach, b[i] - a[i]);
   w.sweep.passed.resize(static_cast<std::size_t>(threads));
-  if (w.exec.space == Space::cuda) list_rows(w, a, b);
+  if (w.exec.space != Space::host) list_rows(w, a, b);
 }
 
 /// The pairs that may touch until the next search.
@@ -308,7 +308,7 @@ MarginRule margin_rule(const World& w) {
 
 void ask_for_search(World& w) {
   const StageTime timed(w.exec, "travel");
-  if (w.exec.space == Space::cuda) {  // the move has looked
+  if (w.exec.space != Space::host) {  // the move has looked
     std::int32_t beyond = 0;
     peek_marked_bytes(&beyond, w.beyond.data(), w.exec.space, sizeof beyond);
     w.margin_used = beyond != 0;
@@ -342,7 +342,26 @@ void derive_contacts(World& w) {
   divide_by_wall(w);
 }
 
+namespace {
+
+template <class Law>
+void list_laws(const std::vector<LinkGroup<Law>>& groups, GroupLaws<Law>& list) {
+  std::vector<Law> laws;
+  std::vector<Index> ends;
+  for (const LinkGroup<Law>& group : groups) {
+    laws.push_back(group.law);
+    ends.push_back(group.end);
+  }
+  copy_to(list.laws, laws);
+  copy_to(list.ends, ends);
+}
+
+}  // namespace
+
 void derive(World& w) {
+  list_laws(w.concrete_groups, w.concrete_laws);
+  list_laws(w.steel_groups, w.steel_laws);
+  list_laws(w.interface_groups, w.interface_laws);
   std::vector<Index> a, b, more;
   const auto append = [&](std::vector<Index>& all, const Buffer<Index>& ends) {
     copy_to(more, ends);

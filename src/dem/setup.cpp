@@ -164,14 +164,6 @@ void set_interface_links(World& w, const Config& config, const Model& m) {
   copy_to(b.area, area);
 }
 
-/// The laws of all groups in one array.
-template <class Law>
-void list_laws(const std::vector<LinkGroup<Law>>& groups, Buffer<Law>& laws) {
-  std::vector<Law> all;
-  for (const LinkGroup<Law>& group : groups) all.push_back(group.law);
-  copy_to(laws, all);
-}
-
 std::uint8_t fixed_bits(const SupportConfig& support) {
   static const std::map<std::string, int> words{
       {"x", fixed_x},           {"y", fixed_y},           {"z", fixed_z}, {"spin_x", fixed_spin_x},
@@ -306,9 +298,6 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   set_steel_links(w, config, model);
   set_interface_links(w, config, model);
   set_linked_pairs(w);
-  list_laws(w.concrete_groups, w.concrete_laws);
-  list_laws(w.steel_groups, w.steel_laws);
-  list_laws(w.interface_groups, w.interface_laws);
   limit_margins(w, model);
   set_supports(w, config, model);
   set_contacts(w, config, model);

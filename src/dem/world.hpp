@@ -14,6 +14,7 @@
 #include "dem/model.hpp"
 #include "domain/domain.hpp"
 #include "domain/set_here.hpp"
+#include "exec/early.hpp"
 #include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
 
@@ -29,6 +30,21 @@ struct LinkGroup {
       starts;  ///< first link of each element a, and the end; concrete on the host only
   Index first_number = 0, end_number = 0;  ///< of its links in the whole model; ranks only
 };
+
+/// The laws of all groups of a kind of link where kernels can read them, in the order of the
+/// groups.
+template <class Law>
+struct GroupLaws {
+  Buffer<Law> laws;
+  Buffer<Index> ends;  ///< of each group; equal to the one before where a group has no link here
+};
+
+/// The group of link i: the first that ends beyond it.
+BR_HD inline Index group_of(const View<const Index>& ends, Index i) {
+  Index group = 0;
+  while (i >= read_now(&ends[group])) ++group;
+  return group;
+}
 
 /// What links are called in the whole model, ascending. Empty on one rank, which holds all.
 struct LinkNumbers {
@@ -123,7 +139,7 @@ struct World {
     state(travel);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(contact_pairs, wall_pairs, motions, linked_starts, linked_partners, linked_links,
-         bar_actions, concrete_laws, steel_laws, interface_laws, domain.owned_there, domain.placed);
+         bar_actions, domain.owned_there, domain.placed);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
@@ -131,7 +147,8 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(bar_incidence, contact_incidence, broad_phase, held_partners, contact_actions, link_sums,
          critical, rows_a, rows_b, link_actions.in_double, link_actions.in_single, device_walls,
-         clock, beyond);
+         clock, beyond, concrete_laws.laws, concrete_laws.ends, steel_laws.laws, steel_laws.ends,
+         interface_laws.laws, interface_laws.ends);
   }
 
   /// Of all kinds, broken ones included.
@@ -170,9 +187,9 @@ struct World {
   LinkRows rows_a, rows_b;         ///< concrete links that start, and that end, at each element
   Stored<ActionsOf> link_actions;  ///< of concrete links
   Buffer<Wall> device_walls;
-  Buffer<ConcreteLink> concrete_laws;  ///< of each group
-  Buffer<SteelLink> steel_laws;
-  Buffer<InterfaceLink> interface_laws;
+  GroupLaws<ConcreteLink> concrete_laws;
+  GroupLaws<SteelLink> steel_laws;
+  GroupLaws<InterfaceLink> interface_laws;
   Buffer<StepClock> clock;
   Buffer<std::int32_t> beyond;  ///< one: 1 if an element has used its margin up; ranks only
   StepGraph graph;              ///< of a few steps

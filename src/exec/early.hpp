@@ -1,6 +1,6 @@
 #pragma once
-// Reads that a kernel starts where they stand: the compiler moves them past no other one, and past
-// no wait.
+// Volatile loads: on a device the compiler must not reorder them with each other or with a wait for
+// the launch before. On the host they are plain.
 
 #include "exec/buffer.hpp"
 #include "exec/space.hpp"
@@ -8,27 +8,39 @@
 
 namespace breccia {
 
-#if defined(__CUDACC__)
-/// A number.
-__device__ inline double read_now(const double* from) {
+/// Loads a number where this call stands.
+BR_HD inline double read_now(const double* from) {
+#if defined(__CUDA_ARCH__)
   double value;
   asm volatile("ld.global.f64 %0, [%1];" : "=d"(value) : "l"(__cvta_generic_to_global(from)));
   return value;
+#else
+  return *from;
+#endif
 }
-__device__ inline float read_now(const float* from) {
+BR_HD inline float read_now(const float* from) {
+#if defined(__CUDA_ARCH__)
   float value;
   asm volatile("ld.global.f32 %0, [%1];" : "=f"(value) : "l"(__cvta_generic_to_global(from)));
   return value;
+#else
+  return *from;
+#endif
 }
-__device__ inline Index read_now(const Index* from) {
+BR_HD inline Index read_now(const Index* from) {
+#if defined(__CUDA_ARCH__)
   Index value;
   asm volatile("ld.global.s32 %0, [%1];" : "=r"(value) : "l"(__cvta_generic_to_global(from)));
   return value;
+#else
+  return *from;
+#endif
 }
-/// A record of doubles at an address that is a multiple of 16 B.
+/// Loads a record of doubles at an address that is a multiple of 16 B.
 template <class Record>
-__device__ inline Record read_record_now(const Record* from) {
+BR_HD inline Record read_record_now(const Record* from) {
   static_assert(sizeof(Record) % 16 == 0);
+#if defined(__CUDA_ARCH__)
   double numbers[sizeof(Record) / 8];
 #pragma unroll
   for (std::size_t k = 0; k < sizeof(Record) / 8; k += 2)
@@ -38,8 +50,19 @@ __device__ inline Record read_record_now(const Record* from) {
   Record record;
   __builtin_memcpy(&record, numbers, sizeof record);
   return record;
+#else
+  return *from;
+#endif
 }
 
+/// The lanes of a warp see what each has written before.
+BR_HD inline void wait_for_warp() {
+#if defined(__CUDA_ARCH__)
+  __syncwarp();
+#endif
+}
+
+#if defined(__CUDA_ARCH__)
 /// Records of neighbours that the threads of a warp read or write together: their run of memory in
 /// whole lines, exchanged by way of the multiprocessor's own memory. If each thread took its own,
 /// every line would be asked for once for each 16 B. All items of the array have a thread.
@@ -113,6 +136,18 @@ class WarpRecords {
 
   Part part_[parts];
   bool exchanged_ = false;
+};
+#else
+/// On the host each lane reads and writes its own.
+template <class Record>
+class WarpRecords {
+ public:
+  BR_HD void read(const View<const Record>& from, Index i) { own_ = from[i]; }
+  BR_HD Record own() const { return own_; }
+  BR_HD static void write(const View<Record>& to, Index i, const Record& own) { to[i] = own; }
+
+ private:
+  Record own_{};
 };
 #endif
 

@@ -8,8 +8,8 @@ namespace breccia {
 class StageTimers;
 
 /// host: the processor's memory. shadow: also the processor's, but only kernels may read it, as if
-/// it were a device's (finds forgotten copies without a GPU, in checked builds). cuda: device
-/// memory.
+/// it were a device's (finds forgotten copies without a GPU, in checked builds), and steps are
+/// those of a device, launch by launch. cuda: device memory.
 enum class Space { host, shadow, cuda };
 
 /// Threads of a block on a device: registers leave room for several blocks of the largest kernels.
@@ -33,5 +33,17 @@ inline bool& inside_kernel() {
   static thread_local bool inside = false;
   return inside;
 }
+
+/// Runs on the host as the calling thread would inside a kernel of its own.
+class KernelScope {
+ public:
+  KernelScope() : outer_(inside_kernel()) { inside_kernel() = true; }
+  KernelScope(const KernelScope&) = delete;
+  KernelScope& operator=(const KernelScope&) = delete;
+  ~KernelScope() { inside_kernel() = outer_; }
+
+ private:
+  bool outer_;
+};
 
 }  // namespace breccia

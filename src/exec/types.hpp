@@ -8,8 +8,10 @@
 
 #if defined(__CUDACC__)
 #define BR_HD __host__ __device__
+#define BR_UNROLL _Pragma("unroll")
 #else
 #define BR_HD
+#define BR_UNROLL
 #endif
 
 /// A programmer's contract, tested in checked builds (BR_CHECKED) and free in all others.

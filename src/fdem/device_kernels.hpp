@@ -4,6 +4,7 @@
 
 #include "core/timed.hpp"
 #include "exec/early.hpp"
+#include "exec/lockstep.hpp"
 #include "fdem/couples.hpp"
 #include "fdem/triangle_kernels.hpp"
 
@@ -16,13 +17,12 @@ struct BundlesWide {
   static constexpr Index width = 16;
   BundleForces all;
   BR_HD void set(const Moment&) {}
-#if defined(__CUDACC__)
   struct Ready {
     Index count, leader, node;
     double mass;
     Vec2 force;
   };
-  __device__ void prepare(Index i, Ready& ready) const {
+  BR_HD void prepare(Index i, Ready& ready) const {
     const Index vertex = i / width, part = i % width;
     const Index first = read_now(&all.starts[vertex]);
     ready.count = read_now(&all.starts[vertex + 1]) - first;
@@ -33,34 +33,31 @@ struct BundlesWide {
     ready.node = read_now(&all.nodes[first + part]);
     ready.mass = read_now(&all.mass[ready.node / 3]);
   }
-  __device__ void fetch(Index i, Ready& ready) const {
+  BR_HD void fetch(Index i, Ready& ready) const {
     ready.force = {};
     if (i % width < ready.count)
       ready.force = read_record_now(&all.force[ready.node / 3].at[ready.node % 3]);
   }
-  __device__ void operator()(Index i, const Ready& ready) const {
+  BR_HD void operator()(Index i, const Ready& ready) const {
     if (ready.count > width) {
       if (i % width == 0) all(i / width);
       return;
     }
-    const unsigned group = 0xffffU << (threadIdx.x / width * width % 32);
+    const LaneGroup<width> group;
     Vec2 sum{};
     double total = 0.0;
     for (int k = 0; k < ready.count; ++k) {
-      const Vec2 other{__shfl_sync(group, ready.force.x, k, width),
-                       __shfl_sync(group, ready.force.y, k, width)};
-      const double other_mass = __shfl_sync(group, ready.mass, k, width);
-      if (__shfl_sync(group, ready.leader, k, width) != ready.leader) continue;
+      const Vec2 other{group.from(k, ready.force.x), group.from(k, ready.force.y)};
+      const double other_mass = group.from(k, ready.mass);
+      if (group.from(k, ready.leader) != ready.leader) continue;
       sum += other;
       total += other_mass;
     }
     if (i % width < ready.count)
       all.force[ready.node / 3].at[ready.node % 3] = ready.mass * ((1.0 / total) * sum);
   }
-#endif
 };
 
-#if defined(__CUDACC__)
 /// JointForces: the law of whole joints, and rarely that of the others.
 /// @tparam blocks  that fit a multiprocessor at once
 template <class Number, int blocks>
@@ -76,14 +73,14 @@ struct JointsAhead {
     JointStage stage;
     double corner[4][4];
   };
-  __device__ void prepare(Index i, Ready& ready) const {
+  BR_HD void prepare(Index i, Ready& ready) const {
     ready.ends = all.ends[i];
     ready.stage = all.stage[i];
     ready.law = read_now(&all.law[i]);
     ready.length = read_now(&all.length[i]);
     ready.strength = read_now(&all.strength[i]);
   }
-  __device__ void fetch(Index, Ready& ready) const {
+  BR_HD void fetch(Index, Ready& ready) const {
     const JointEnds& e = ready.ends;
     const Index at[4] = {e.a0, e.a1, e.b0, e.b1};
     for (int k = 0; k < 4; ++k) {
@@ -91,28 +88,28 @@ struct JointsAhead {
       __builtin_memcpy(ready.corner[k], &node, sizeof node);
     }
   }
-  __device__ void at_moment(const Moment& now, Index i, const Ready& ready) const {
+  BR_HD void at_moment(const Moment& now, Index i, const Ready& ready) const {
     if (ready.stage == JointStage::dormant) return;
     if (ready.stage == JointStage::whole &&
         all.elastic_at(i, ready.corner, Indices<double>{ready.law}, ready.strength, ready.length))
       return;
     rarely(&all, now, i, [](const JointForces<Number>& k, Index joint) { k.damaged_at(joint); });
   }
-  __device__ void operator()(Index i, const Ready& ready) const {
+  BR_HD void operator()(Index i, const Ready& ready) const {
     at_moment(Moment{all.time, all.dt, all.dt, 0}, i, ready);
   }
 };
 
 /// What few couples need.
 template <class Number>
-__device__ __noinline__ void begin_rarely(const CoupleForces<Number>* couples, Index c) {
-  asm volatile("" : "+l"(couples));  // or all of it would be passed by value
+BR_RARELY void begin_rarely(const CoupleForces<Number>* couples, Index c) {
+  stay_in_place(couples);
   couples->begin(c);
 }
 template <class Number>
-__device__ __noinline__ Vec2 shape_force_rarely(const CoupleForces<Number>* couples, Index c,
-                                                double penalty, bool of_a, int corner) {
-  asm volatile("" : "+l"(couples));
+BR_RARELY Vec2 shape_force_rarely(const CoupleForces<Number>* couples, Index c, double penalty,
+                                  bool of_a, int corner) {
+  stay_in_place(couples);
   return couples->shape_force(c, penalty, of_a, corner);
 }
 
@@ -128,7 +125,7 @@ struct CouplesAhead {
     double scale, work, slid;
     Vec2 corner[2][3];
   };
-  __device__ void prepare(Index i, Ready& ready) const {
+  BR_HD void prepare(Index i, Ready& ready) const {
     const CoupleState& kept = all.state[i];
     ready.a = read_now(&all.a[i]);
     ready.b = read_now(&all.b[i]);
@@ -136,20 +133,20 @@ struct CouplesAhead {
     ready.work = read_now(&kept.work);
     ready.slid = read_now(&kept.slid);
   }
-  __device__ void fetch(Index, Ready& ready) const {
+  BR_HD void fetch(Index, Ready& ready) const {
     for (int k = 0; k < 3; ++k) {
       ready.corner[0][k] = read_record_now(&all.nodes[ready.a].at[k].position);
       ready.corner[1][k] = read_record_now(&all.nodes[ready.b].at[k].position);
     }
   }
-  __device__ void at_moment(const Moment& now, Index i, const Ready& ready) const {
+  BR_HD void at_moment(const Moment& now, Index i, const Ready& ready) const {
     const bool resting = ready.scale != 0.0 && ready.work == 0.0 && ready.slid == 0.0;
     if (resting && !CoupleForces<Number>::meet(ready.corner[0], ready.corner[1]))
       all.force[i] = {};
     else
       rarely(&all, now, i, [](const CoupleForces<Number>& k, Index couple) { k(couple); });
   }
-  __device__ void operator()(Index i, const Ready& ready) const {
+  BR_HD void operator()(Index i, const Ready& ready) const {
     at_moment(Moment{0.0, all.dt, all.dt, 0}, i, ready);
   }
 };
@@ -174,7 +171,7 @@ struct CouplesWide {
     int edge;  ///< and corner: 0 to 2 of a, 3 to 5 of b; two threads repeat the last
     int of;    ///< in its triangle
     bool of_a, repeats;
-    __device__ explicit Place(Index i) {
+    BR_HD explicit Place(Index i) {
       const int lane = i % width;
       edge = lane < 6 ? lane : 5;
       repeats = lane >= 6;
@@ -182,7 +179,7 @@ struct CouplesWide {
       of = of_a ? edge : edge - 3;
     }
   };
-  __device__ void prepare(Index i, Ready& ready) const {
+  BR_HD void prepare(Index i, Ready& ready) const {
     const Index c = i / width;
     const CoupleState& kept = all.state[c];
     ready.a = read_now(&all.a[c]);
@@ -193,7 +190,7 @@ struct CouplesWide {
     ready.work = read_now(&kept.work);
     ready.slid = read_now(&kept.slid);
   }
-  __device__ void fetch(Index i, Ready& ready) const {
+  BR_HD void fetch(Index i, Ready& ready) const {
     const Place place(i);
     const NodeState* const own = all.nodes[place.of_a ? ready.a : ready.b].at;
     const NodeState* const others = all.nodes[place.of_a ? ready.b : ready.a].at;
@@ -203,19 +200,17 @@ struct CouplesWide {
       ready.other[k] = read_record_now(others + k);
     }
   }
-  __device__ void operator()(Index i, Ready& ready) const { at(all.dt, i, ready); }
-  __device__ void at_moment(const Moment& now, Index i, Ready& ready) const {
+  BR_HD void operator()(Index i, Ready& ready) const { at(all.dt, i, ready); }
+  BR_HD void at_moment(const Moment& now, Index i, Ready& ready) const {
     at(now.last_dt, i, ready);
   }
 
  private:
-  __device__ void at(double dt, Index i, Ready& ready) const {
+  BR_HD void at(double dt, Index i, Ready& ready) const {
     const Index c = i / width;
     const Place place(i);
-    const unsigned group = 0xffU << (threadIdx.x / width * width % 32);
-    const auto from = [group](int thread, double x) {
-      return __shfl_sync(group, x, thread, width);
-    };
+    const LaneGroup<width> group;
+    const auto from = [group](int lane, double x) { return group.from(lane, x); };
     const auto vector_from = [&](int thread, const Vec2& v) {
       return Vec2{from(thread, v.x), from(thread, v.y)};
     };
@@ -237,16 +232,16 @@ struct CouplesWide {
       const ContactPair law = all.law_of(c);
       if (is_new && ready.born >= 0) {
         if (leads) begin_rarely(&all, c);
-        __syncwarp(group);
+        group.wait();
         ready.scale = kept.scale;
         ready.drag = kept.drag[place.edge];
         ready.work = kept.work;
-        __syncwarp(group);
+        group.wait();
       }
       mine = edge_push(law, ready.scale, ready.drag, dt, ready.corner[0], ready.corner[1],
                        Target::of(other), other_v);
       kept.drag[place.edge] = mine.drag;
-      touching = __ballot_sync(group, mine.touches) >> (threadIdx.x / width * width % 32) & 0x3fU;
+      touching = group.ballot(mine.touches) & 0x3fU;
       for (int s = 0; s < 6; ++s) {
         if ((touching >> s & 1U) == 0) continue;
         ready.slid += from(s, mine.slid);
@@ -256,10 +251,10 @@ struct CouplesWide {
                                 from(s, mine.overlap.at_b[2])};
         const double share_a = at_a[place.of == 0 ? 0 : place.of == 1 ? 1 : 2];
         const double share_b = at_b[place.of == 0 ? 0 : place.of == 1 ? 1 : 2];
-        const bool own = (s < 3) == place.of_a;
+        const bool of_own = (s < 3) == place.of_a;
         const int k = s < 3 ? s : s - 3, next = k == 2 ? 0 : k + 1;
         const auto add = [&](const Vec2& first, const Vec2& second) {
-          if (!own)
+          if (!of_own)
             sum -= share_a * first + share_b * second;
           else if (place.of == k)
             sum += first;
@@ -282,7 +277,7 @@ struct CouplesWide {
       return;
     }
     const Vec2 last = converted<double>(stored);
-    __syncwarp(group);  // two threads read and write the sixth corner
+    group.wait();  // two threads read and write the sixth corner
     const Vec2Of<Number> now = converted<Number>(sum);
     stored = now;
     const double taken = 0.5 * dt * dot(last + converted<double>(now), ready.corner[0].velocity);
@@ -320,7 +315,7 @@ struct TrianglesAhead {
     JointForceOf<Number> joint[3];
   };
   BR_HD void set(const Moment& now) { all.set(now); }
-  __device__ void prepare(Index t, Ready& ready) const {
+  BR_HD void prepare(Index t, Ready& ready) const {
     for (int k = 0; k < 3; ++k) ready.edge[k] = read_now(&all.edges[t].at[k]);
     ready.material = read_now(&all.material[t]);
     ready.viscosity = read_now(&all.viscosity[t]);
@@ -333,11 +328,11 @@ struct TrianglesAhead {
     ready.nodes = nodes.own();
     ready.inverse = inverse.own();
   }
-  __device__ void fetch(Index, Ready& ready) const {
+  BR_HD void fetch(Index, Ready& ready) const {
     for (int k = 0; k < 3; ++k)
       ready.joint[k] = read_record_now(&all.joint_force[all.joint_of(ready.edge[k])]);
   }
-  __device__ void operator()(Index t, const Ready& ready) const {
+  BR_HD void operator()(Index t, const Ready& ready) const {
     double c[12], inverse[4];
     __builtin_memcpy(c, &ready.nodes, sizeof c);
     __builtin_memcpy(inverse, &ready.inverse, sizeof inverse);
@@ -352,10 +347,9 @@ struct TrianglesAhead {
       all.add_force(entry >= 0 && side_of(entry) != 0, f, sum[k], sum[k == 2 ? 0 : k + 1]);
     }
     all.add_couples(ready.couples, ready.couples_end, sum);
-    __syncwarp();
+    wait_for_warp();
     WarpRecords<Corners>::write(all.force, t, {{sum[0], sum[1], sum[2]}});
   }
 };
-#endif
 
 }  // namespace breccia::fdem

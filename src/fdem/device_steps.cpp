@@ -75,7 +75,6 @@ struct MoveAndWatch {
     used.set_time(now.time + now.next_dt);
     step = now.step;
   }
-#if defined(__CUDACC__)
   /// What the sums of forces, which end while these are read, do not write; and then those sums.
   struct Ready {
     Kick::Given given;
@@ -84,7 +83,7 @@ struct MoveAndWatch {
     double margin;
     Index place;
   };
-  __device__ void prepare(Index t, Ready& ready) const {
+  BR_HD void prepare(Index t, Ready& ready) const {
     ready.place = read_now(&reach_place[t]);
     ready.given.hold = read_now(&move.kick.hold[t]);
     ready.given.mass = read_now(&move.kick.mass[t]);
@@ -97,11 +96,9 @@ struct MoveAndWatch {
     }
     ready.given.nodes = nodes.own();
   }
-  __device__ void fetch(Index t, Ready& ready) const {
-    ready.force.read(move.kick.force, t);
-  }
+  BR_HD void fetch(Index t, Ready& ready) const { ready.force.read(move.kick.force, t); }
   /// @returns whether the triangle has used its margin up
-  __device__ bool moves(Index t, Ready& ready) const {
+  BR_HD bool moves(Index t, Ready& ready) const {
     Kick::Given& given = ready.given;
     given.force = ready.force.own();
     if (move.kick.damping > 0.0 || move.external.size > 0 || given.hold >= 0) {
@@ -113,28 +110,25 @@ struct MoveAndWatch {
       move.move_free(c, f, given.mass);
       __builtin_memcpy(&given.nodes, c, sizeof c);
     }
-    __syncwarp();
+    wait_for_warp();
     WarpRecords<TriangleNodes>::write(move.nodes, t, given.nodes);
     return ready.place >= 0 && used.beyond(given.nodes, ready.from, ready.margin);
   }
-  __device__ void operator()(Index t, Ready& ready) const {
+  BR_HD void operator()(Index t, Ready& ready) const {
     if (moves(t, ready)) *wanted = wanted_search;
     if (t == 0 && marking_due(changed[change_softened], changed[change_broken], step))
       *wanted = wanted_search;
   }
-#endif
 };
 
 /// The same on ranks, which vote. Copies are moved, too, and then follow their owners.
 struct MoveAndTell : MoveAndWatch {
   OwnedView owned;
   View<std::int32_t> news;
-#if defined(__CUDACC__)
-  __device__ void operator()(Index t, Ready& ready) const {
+  BR_HD void operator()(Index t, Ready& ready) const {
     if (moves(t, ready) && owned(t)) news[0] = 1;
     if (t == 0) news[1] = (changed[0] != 0 ? 1 : 0) | (changed[1] != 0 ? 2 : 0);
   }
-#endif
 };
 
 /// From so many joints or couples on, each have a launch of their own: they take longer then than a
@@ -187,7 +181,6 @@ EndOfStep<AllowedStep> end_of_step(const World& w) {
   return {allowed_step(w), w.parameters.time.evaluate_every};
 }
 
-#if defined(__CUDACC__)
 MoveAndWatch move_and_watch(World& w, std::int32_t* wanted) {
   return {move_kernel(w),
           {w.reach.triangle.view(), w.reach.reference.view(), w.reach.margin.view(),
@@ -212,9 +205,9 @@ void launch_move(World& w, const StepClocks& clocks) {
   const MoveAndWatch move = move_and_watch(w, &clocks.now->wanted);
   const Index triangles = w.triangles.size();
   if (motions == 0 || scales_ahead(w))
-    return for_each_part(part(triangles, clocks.opening(move, end, true), Parts<>{}));
+    return for_each_part(w.exec, part(triangles, clocks.opening(move, end, true), Parts<>{}));
   for_each(w.exec, motions, clocks.opening(scale_motions(w), end, true));
-  for_each_part(part(triangles, clocks.timed<Stand::in_move>(move), Parts<>{}));
+  for_each_part(w.exec, part(triangles, clocks.timed<Stand::in_move>(move), Parts<>{}));
 }
 
 /// Joints and couples.
@@ -226,13 +219,15 @@ void launch_pairs(World& w, const By& by) {
     return for_each(w.exec, 1, by(Fence{}));
   if (joints < fewest_joints_apart && couples < fewest_couples_apart)
     return for_each_part(
-        part(couples * CouplesWide<Number>::width, by(wide),
-             part(joints, by(JointsAhead<Number, 4>{joint_kernel<Number>(w)}), Parts<>{})));
-  for_each_part(part(joints, by(JointsAhead<Number, 8>{joint_kernel<Number>(w)}), Parts<>{}));
+        w.exec, part(couples * CouplesWide<Number>::width, by(wide),
+                     part(joints, by(JointsAhead<Number, 4>{joint_kernel<Number>(w)}), Parts<>{})));
+  for_each_part(w.exec,
+                part(joints, by(JointsAhead<Number, 8>{joint_kernel<Number>(w)}), Parts<>{}));
   if (couples < fewest_couples_apart)
-    for_each_part(part(couples * CouplesWide<Number>::width, by(wide), Parts<>{}));
+    for_each_part(w.exec, part(couples * CouplesWide<Number>::width, by(wide), Parts<>{}));
   else
-    for_each_part(part(couples, by(CouplesAhead<Number>{couple_kernel<Number>(w)}), Parts<>{}));
+    for_each_part(w.exec,
+                  part(couples, by(CouplesAhead<Number>{couple_kernel<Number>(w)}), Parts<>{}));
 }
 
 /// All forces and their sums, and the stable step. `by` wraps a kernel by the clock.
@@ -248,10 +243,12 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
   launch_pairs<Number>(w, by);
   constexpr Index most_threads = 132 * 128;
   const Index threads = triangles < most_threads ? triangles : most_threads;
-  for_each_part(part(
-      threads,
-      by(NoteStable{stable_step(w), triangles, threads, w.parameters.time.evaluate_every, {clock}}),
-      part(triangles, by(TrianglesAhead<Number>{triangle_kernel<Number>(w)}), Parts<>{})));
+  for_each_part(
+      w.exec,
+      part(threads,
+           by(NoteStable{
+               stable_step(w), triangles, threads, w.parameters.time.evaluate_every, {clock}}),
+           part(triangles, by(TrianglesAhead<Number>{triangle_kernel<Number>(w)}), Parts<>{})));
   if (w.load_starts.size() > 1) {
     for_each(exec, w.load_laws.size(),
              by(ScaleLoads{{},
@@ -263,11 +260,11 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
     for_each(exec, w.load_starts.size() - 1, by(load_kernel(w)));
   }
   if (w.bundles.starts.size() > 1)
-    for_each_part(
-        part(scales_ahead(w) ? w.motions.size() : 0,
-             ScaleMotionsAhead{scale_motions(w), w.last_motions.view(), end_of_step(w), clock},
-             part((w.bundles.starts.size() - 1) * BundlesWide::width,
-                  by(BundlesWide{bundle_kernel(w)}), Parts<>{})));
+    for_each_part(w.exec, part(scales_ahead(w) ? w.motions.size() : 0,
+                               ScaleMotionsAhead{scale_motions(w), w.last_motions.view(),
+                                                 end_of_step(w), clock},
+                               part((w.bundles.starts.size() - 1) * BundlesWide::width,
+                                    by(BundlesWide{bundle_kernel(w)}), Parts<>{})));
 }
 
 void launch_step(World& w, const StepClocks& clocks) {
@@ -283,10 +280,6 @@ void launch_rest(World& w, const StepClocks& clocks) {
         w, clocks.now, [&](const auto& kernel) { return clocks.timed<Stand::in_rest>(kernel); });
   });
 }
-#else
-void launch_step(World&, const StepClocks&) {}
-void launch_rest(World&, const StepClocks&) {}
-#endif
 
 /// What the launches read besides the state.
 void list_amplitudes(World& w) {
@@ -328,29 +321,27 @@ void place_reach(World& w) {
            PlaceReach{std::as_const(w.reach.triangle).view(), w.reach_place.view()});
 }
 
-#if defined(__CUDACC__)
 void move_on_device(World& w) {
+  const ShadowLaunches launches;
   w.news.resize(2);
   MoveAndTell move{move_and_watch(w, nullptr), w.domain.owned_view(), w.news.view()};
   move.used.set_time(w.time + w.next_dt);
-  for_each_part(part(w.triangles.size(), AtOnce(move), Parts<>{}));
+  for_each_part(w.exec, part(w.triangles.size(), AtOnce(move), Parts<>{}));
   mark_launches(w.exec.space);
 }
 void forces_on_device(World& w) {
+  const ShadowLaunches launches;
   const StageTime timed(w.exec, "forces");
   const auto at_once = [](const auto& kernel) { return AtOnce(kernel); };
   for_each(w.exec, 1, Fence{});
   with_number(w.exec.precision, [&](auto number) {
     using Number = decltype(number);
     launch_pairs<Number>(w, at_once);
-    for_each_part(part(w.triangles.size(),
+    for_each_part(w.exec,
+                  part(w.triangles.size(),
                        at_once(TrianglesAhead<Number>{triangle_kernel<Number>(w)}), Parts<>{}));
   });
 }
-#else
-void move_on_device(World&) {}
-void forces_on_device(World&) {}
-#endif
 
 Advanced advance_on_device(World& w, const StopAt& stop) {
   if (w.amplitudes.empty() && w.clock.empty()) list_amplitudes(w);

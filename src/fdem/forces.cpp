@@ -14,14 +14,14 @@ namespace {
 /// threads in runs that packs fill.
 template <class Kernel>
 void run(const World& w, Index count, const Kernel& kernel) {
-  if (w.exec.space == Space::cuda || w.lanes == Lanes::one) return for_each(w.exec, count, kernel);
+  if (w.exec.space != Space::host || w.lanes == Lanes::one) return for_each(w.exec, count, kernel);
   constexpr Index grain = 512;
   for_each_run(w.exec, count, grain,
                [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
 }
 
 bool takes_all(const World& w) {
-  return w.domain.alone() || w.exec.space == Space::cuda || w.lanes == Lanes::one;
+  return w.domain.alone() || w.exec.space != Space::host || w.lanes == Lanes::one;
 }
 
 /// The same over some of the triangles.
@@ -84,7 +84,7 @@ void list_motions(World& w) {
 void move_awaited(World& w) {
   const StageTime timed(w.exec, "integration");
   list_motions(w);
-  if (w.exec.space == Space::cuda)
+  if (w.exec.space != Space::host)
     move_on_device(w);
   else if (takes_all(w))
     run(w, w.triangles.size(), move_kernel(w));

@@ -238,7 +238,7 @@ MarginRule margin_rule(const World& w) {
 void ask_for_search(World& w) {
   if (w.domain.alone()) return;
   const StageTime timed(w.exec, "travel");
-  w.domain.ranks->ask_for_bits(w.exec.space == Space::cuda ? moves_news(w) : own_news(w));
+  w.domain.ranks->ask_for_bits(w.exec.space != Space::host ? moves_news(w) : own_news(w));
 }
 
 bool couples_are_due(World& w) {
@@ -268,7 +268,7 @@ void derive_couples(World& w) {
   for_each(w.exec, pairs.size(),
            BornOf{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(), w.edges.view(),
                   j.edge_a.view(), j.edge_b.view(), j.broke_at.view(), w.born.view()});
-  if (w.exec.space == Space::cuda) place_reach(w);
+  if (w.exec.space != Space::host) place_reach(w);
 }
 
 }  // namespace breccia::fdem

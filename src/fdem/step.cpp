@@ -25,14 +25,14 @@ void step(World& w) {
 }
 
 Advanced advance(World& w, const StopAt& stop) {
-  if (w.exec.space == Space::cuda && w.domain.alone()) return advance_on_device(w, stop);
+  if (w.exec.space != Space::host && w.domain.alone()) return advance_on_device(w, stop);
   step(w);
   return {1, w.last_dt, w.last_dt};
 }
 
 void evaluate_forces(World& w) {
   insert_joints(w);
-  if (w.exec.space == Space::cuda) {
+  if (w.exec.space != Space::host) {
     forces_on_device(w);
   } else {
     joint_forces(w);

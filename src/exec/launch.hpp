@@ -1,0 +1,340 @@
+#pragma once
+// Launches of a device: kernels that read ahead, several kernels side by side, the least of what
+// they return. In Space::shadow the processor carries the same launches out.
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "exec/buffer.hpp"
+#include "exec/lockstep.hpp"
+#include "exec/shadow_launches.hpp"
+#include "exec/space.hpp"
+#if defined(__CUDACC__)
+#include "exec/cuda.hpp"
+#include "exec/launch_times.hpp"
+#endif
+
+namespace breccia {
+
+/// What profilers call a kernel: its own name, or that of the one it wraps.
+template <class Kernel>
+std::string name_of(const Kernel& kernel) {
+  if constexpr (requires { Kernel::name; })
+    return Kernel::name;
+  else if constexpr (requires { kernel.kernel; })
+    return name_of(kernel.kernel);
+  else
+    return "a loop";
+}
+
+/// A kernel that reads ahead: prepare(i, ready) what the launch before does not write, while that
+/// still runs; then it is called with what it has read.
+template <class Kernel>
+concept ReadsAhead = requires {
+  typename Kernel::Ready;
+};
+
+#if defined(__CUDACC__)
+/// The first words of a kernel that launch() starts: it may be on the device before the launch
+/// before has ended, whose work it sees from here on. The one after it may come, too.
+__device__ inline void follow_previous() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+
+/// Launches a kernel that begins with follow_previous(). `named` is what it runs.
+template <class Named, class... Parameters>
+void launch(const Named& named, void (*kernel)(Parameters...), Index blocks, Index threads,
+            const std::type_identity_t<Parameters>&... arguments) {
+  std::optional<TimedLaunch> timed;
+  if (LaunchTimes::wanted()) timed.emplace(name_of(named));
+  cudaLaunchAttribute early{};
+  early.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  early.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t how{};
+  how.gridDim = dim3(static_cast<unsigned>(blocks));
+  how.blockDim = dim3(static_cast<unsigned>(threads));
+  how.stream = device_stream();
+  how.attrs = &early;
+  how.numAttrs = launches_overlap() && !timed ? 1 : 0;
+  check_device(cudaLaunchKernelEx(&how, kernel, arguments...), "a launch");
+}
+
+/// Item i of a kernel, or nothing if there is none, once the launch before has ended.
+template <class Kernel, class Result>
+__device__ Result run_item(const Kernel& kernel, Index i, Index count, Result result) {
+  if constexpr (ReadsAhead<Kernel>) {
+    typename Kernel::Ready ready;
+    if (i < count) kernel.prepare(i, ready);
+    follow_previous();
+    if (i >= count) return result;
+    if constexpr (std::is_void_v<decltype(kernel(i, ready))>)
+      kernel(i, ready);
+    else
+      result = kernel(i, ready);
+  } else {
+    follow_previous();
+    if (i >= count) return result;
+    if constexpr (std::is_void_v<decltype(kernel(i))>)
+      kernel(i);
+    else
+      result = kernel(i);
+  }
+  return result;
+}
+
+template <class Kernel>
+__global__ void __launch_bounds__(block_size) launch_kernel(Index count, Kernel kernel) {
+  run_item(kernel, static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x), count, 0);
+}
+
+#endif
+
+/// Blocks that must fit a multiprocessor at once, a bound on the registers of a thread: what a
+/// kernel says, or what the one says that it wraps; 0: no bound.
+template <class Kernel>
+constexpr int least_blocks_of() {
+  if constexpr (requires { Kernel::least_blocks; })
+    return Kernel::least_blocks;
+  else if constexpr (requires(Kernel k) { k.kernel; })
+    return least_blocks_of<decltype(Kernel::kernel)>();
+  else
+    return 0;
+}
+
+/// Kernels side by side in one launch: each has blocks of its own.
+template <class... Kernels>
+struct Parts;
+template <>
+struct Parts<> {
+  static constexpr int least_blocks = 0;
+  Index blocks() const { return 0; }
+  BR_HD void run(Index) const {}
+  template <class Visit>
+  void each(const Visit&) const {}
+};
+template <class First, class... Rest>
+struct Parts<First, Rest...> {
+  Index count;
+  First kernel;
+  Parts<Rest...> rest;
+  static constexpr int least_blocks =
+      std::max(least_blocks_of<First>(), Parts<Rest...>::least_blocks);
+
+  BR_HD Index own_blocks() const { return (count + block_size - 1) / block_size; }
+  Index blocks() const { return own_blocks() + rest.blocks(); }
+#if defined(__CUDACC__)
+  __device__ void run(Index block) const {
+    if (block >= own_blocks()) return rest.run(block - own_blocks());
+    run_item(kernel, block * block_size + static_cast<Index>(threadIdx.x), count, 0);
+  }
+#endif
+  /// Calls visit(count, kernel) for each part.
+  template <class Visit>
+  void each(const Visit& visit) const {
+    visit(count, kernel);
+    rest.each(visit);
+  }
+};
+/// Those of its parts that have items.
+inline std::string name_of(const Parts<>&) {
+  return "";
+}
+template <class First, class... Rest>
+std::string name_of(const Parts<First, Rest...>& parts) {
+  const std::string rest = name_of(parts.rest);
+  if (parts.count <= 0) return rest;
+  return name_of(parts.kernel) + (rest.empty() ? "" : " + ") + rest;
+}
+
+#if defined(__CUDACC__)
+template <class All>
+__global__ void __launch_bounds__(block_size, All::least_blocks)
+    launch_parts(const __grid_constant__ All all) {
+  all.run(static_cast<Index>(blockIdx.x));
+}
+
+/// The least of a number over the threads of a block, for its thread 0. The number is not negative.
+template <int threads>
+__device__ double least_of_block(double number) {
+  __shared__ double of_warp[threads / 32];
+  for (int half = 16; half > 0; half /= 2)
+    number = fmin(number, __shfl_down_sync(~0U, number, half));
+  if (threadIdx.x % 32 == 0) of_warp[threadIdx.x / 32] = number;
+  __syncthreads();
+  for (int warp = 1; warp < threads / 32; ++warp) number = fmin(number, of_warp[warp]);
+  return number;
+}
+
+/// A kernel that returns a number; the least of each block is noted.
+template <int threads, class Kernel, class Note>
+__global__ void __launch_bounds__(threads) launch_and_note(Index count, Kernel kernel, Note note) {
+  const auto i = static_cast<Index>(blockIdx.x * blockDim.x + threadIdx.x);
+  const double least = least_of_block<threads>(run_item(kernel, i, count, Note::neutral));
+  if (threadIdx.x == 0) note(least);
+}
+
+/// One value a block: each thread folds every n-th item, then the block its threads.
+template <class Value, class Kernel, class Combine>
+__global__ void __launch_bounds__(block_size)
+    fold_blocks(Index count, Value neutral, Kernel kernel, Combine combine, Value* partial) {
+  follow_previous();
+  __shared__ alignas(16) unsigned char memory[block_size * sizeof(Value)];
+  auto* shared = reinterpret_cast<Value*>(memory);
+  Value value = neutral;
+  for (std::int64_t i = blockIdx.x * std::int64_t{block_size} + threadIdx.x; i < count;
+       i += gridDim.x * std::int64_t{block_size})
+    value = combine(value, kernel(static_cast<Index>(i)));
+  shared[threadIdx.x] = value;
+  for (unsigned half = block_size / 2; half > 0; half /= 2) {
+    __syncthreads();
+    if (threadIdx.x < half)
+      shared[threadIdx.x] = combine(shared[threadIdx.x], shared[threadIdx.x + half]);
+  }
+  if (threadIdx.x == 0) partial[blockIdx.x] = shared[0];
+}
+#endif
+
+/// Lanes that work on one item of a kernel together: what a kernel says, or the one that it wraps.
+template <class Kernel>
+constexpr int lanes_of() {
+  if constexpr (requires { Kernel::width; })
+    return static_cast<int>(Kernel::width);
+  else if constexpr (requires(Kernel k) { k.kernel; })
+    return lanes_of<decltype(Kernel::kernel)>();
+  else
+    return 1;
+}
+
+#if defined(BR_CUDA) && !defined(__CUDACC__)
+inline namespace host_loops {
+#else
+inline namespace loops {
+#endif
+
+/// A launch of one kernel, carried out by the processor.
+/// @tparam Note  called with each number that the kernel returns
+template <class Kernel, class Note>
+class ShadowLaunch {
+ public:
+  ShadowLaunch(Index count, const Kernel& kernel, const Note& note)
+      : count_(count), kernel_(kernel), note_(note) {}
+
+  void read_ahead() {
+    if constexpr (ReadsAhead<Kernel>) {
+      const KernelScope scope;
+      ready_.resize(static_cast<std::size_t>(count_));
+      for (Index i = 0; i < count_; ++i) kernel_.prepare(i, ready_[static_cast<std::size_t>(i)]);
+    }
+  }
+  void work() {
+    const KernelScope scope;
+    constexpr int lanes = lanes_of<Kernel>();
+    for (first_ = 0; first_ < count_; first_ += lanes)
+      if constexpr (lanes == 1)
+        one(first_);
+      else
+        lockstep::run(
+            lanes,
+            [](void* self, int lane) {
+              auto* const launch = static_cast<ShadowLaunch*>(self);
+              launch->one(launch->first_ + lane);
+            },
+            this);
+  }
+
+ private:
+  void one(Index i) {
+    if constexpr (ReadsAhead<Kernel>)
+      finish(i, ready_[static_cast<std::size_t>(i)]);
+    else
+      finish(i);
+  }
+  template <class... Read>
+  void finish(Index i, Read&... ready) {
+    if constexpr (std::is_void_v<decltype(kernel_(i, ready...))>)
+      kernel_(i, ready...);
+    else
+      note_(kernel_(i, ready...));
+  }
+
+  template <class Of>
+  struct ReadyOf {
+    using type = char;
+  };
+  template <ReadsAhead Of>
+  struct ReadyOf<Of> {
+    using type = typename Of::Ready;
+  };
+
+  Index count_, first_ = 0;
+  Kernel kernel_;
+  Note note_;
+  std::vector<typename ReadyOf<Kernel>::type> ready_;
+};
+
+struct NoteNothing {
+  template <class Number>
+  void operator()(const Number&) const {}
+};
+
+/// kernels as one launch of Space::shadow.
+template <class Kernel, class Note>
+void launch_in_shadow(Index count, const Kernel& kernel, const Note& note) {
+  const auto launch = std::make_shared<ShadowLaunch<Kernel, Note>>(count, kernel, note);
+  ShadowLaunches::add([launch] { launch->read_ahead(); }, [launch] { launch->work(); });
+}
+
+/// Several loops in one launch on a device: `parts` is made with `part(count, kernel, rest)`.
+template <class... Kernels>
+void for_each_part([[maybe_unused]] const Exec& exec, const Parts<Kernels...>& parts) {
+  const Index blocks = parts.blocks();
+  if (blocks <= 0) return;
+#if defined(__CUDACC__)
+  if (exec.space == Space::cuda)
+    return launch(parts, launch_parts<Parts<Kernels...>>, blocks, block_size, parts);
+#endif
+  BR_ASSERT(exec.space == Space::shadow);
+  std::vector<std::function<void()>> ahead, work;
+  parts.each([&](Index count, const auto& kernel) {
+    using Launch = ShadowLaunch<std::remove_cvref_t<decltype(kernel)>, NoteNothing>;
+    const auto launch = std::make_shared<Launch>(count, kernel, NoteNothing{});
+    ahead.push_back([launch] { launch->read_ahead(); });
+    work.push_back([launch] { launch->work(); });
+  });
+  const auto all = [](const std::vector<std::function<void()>>& calls) {
+    return [calls] {
+      for (const auto& call : calls) call();
+    };
+  };
+  ShadowLaunches::add(all(ahead), all(work));
+}
+template <class First, class... Rest>
+Parts<First, Rest...> part(Index count, const First& kernel, const Parts<Rest...>& rest) {
+  return {count, kernel, rest};
+}
+
+/// kernel(i) for every i in [0, count), and note() of the least that they return, on a device.
+template <class Kernel, class Note>
+void for_each_noting([[maybe_unused]] const Exec& exec, Index count, const Kernel& kernel,
+                     const Note& note) {
+#if defined(__CUDACC__)
+  if (exec.space == Space::cuda) {
+    constexpr int threads = 128;
+    return launch(kernel, launch_and_note<threads, Kernel, Note>, (count + threads - 1) / threads,
+                  threads, count, kernel, note);
+  }
+#endif
+  BR_ASSERT(exec.space == Space::shadow);
+  launch_in_shadow(count, kernel, note);
+}
+
+}  // namespace loops
+}  // namespace breccia

@@ -1,0 +1,105 @@
+#include "exec/lockstep.hpp"
+
+#include <setjmp.h>
+#include <ucontext.h>
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+
+namespace breccia::lockstep {
+namespace {
+
+constexpr std::size_t stack_bytes = 64 * 1024;
+
+/// One lane: where it stands, on its own stack, which it keeps from one run to the next.
+struct Lane {
+  jmp_buf place;
+  bool started = false, ended = false;
+  int exchanges = 0;
+  std::unique_ptr<char[]> stack;
+};
+
+/// The lanes of one thread of the processor.
+struct Lanes {
+  std::array<Lane, most_lanes> all;
+  /// Two sets of numbers: a lane may be one exchange ahead of the others.
+  std::array<std::array<double, most_lanes>, 2> numbers{};
+  jmp_buf caller;
+  ucontext_t begun;
+  int count = 0, current = 0;
+  void (*work)(void*, int) = nullptr;
+  void* context = nullptr;
+
+  Lane& operator[](int lane) { return all[static_cast<std::size_t>(lane)]; }
+};
+thread_local std::unique_ptr<Lanes> lanes_here;
+
+void live();
+
+/// Goes on with a lane where it stands, or begins it. Does not return.
+[[noreturn]] void go_on(Lanes& lanes, int number) {
+  Lane& lane = lanes[number];
+  lanes.current = number;
+  if (lane.started) _longjmp(lane.place, 1);
+  lane.started = true;
+  lane.stack = std::make_unique<char[]>(stack_bytes);
+  getcontext(&lanes.begun);
+  lanes.begun.uc_stack.ss_sp = lane.stack.get();
+  lanes.begun.uc_stack.ss_size = stack_bytes;
+  lanes.begun.uc_link = nullptr;
+  makecontext(&lanes.begun, live, 0);
+  setcontext(&lanes.begun);
+  std::abort();  // setcontext has failed
+}
+
+/// A lane's work is done: another one goes on, or the caller if all have ended.
+[[noreturn]] void leave(Lanes& lanes) {
+  for (int next = 0; next < lanes.count; ++next)
+    if (!lanes[next].ended) go_on(lanes, next);
+  _longjmp(lanes.caller, 1);
+}
+
+/// The life of a lane: one work after the other.
+void live() {
+  for (;;) {
+    Lanes& lanes = *lanes_here;
+    lanes.work(lanes.context, lanes.current);
+    Lane& lane = lanes[lanes.current];
+    lane.ended = true;
+    if (_setjmp(lane.place) == 0) leave(lanes);
+  }
+}
+
+}  // namespace
+
+void run(int lanes, void (*work)(void*, int), void* context) {
+  if (!lanes_here) lanes_here = std::make_unique<Lanes>();
+  Lanes& here = *lanes_here;
+  here.count = lanes;
+  here.work = work;
+  here.context = context;
+  for (Lane& lane : here.all) {
+    lane.ended = false;
+    lane.exchanges = 0;
+  }
+  if (_setjmp(here.caller) == 0) go_on(here, 0);
+  lanes_here->current = 0;
+}
+
+int lane() {
+  return lanes_here ? lanes_here->current : 0;
+}
+
+const double* exchange(double own) {
+  Lanes& lanes = *lanes_here;
+  Lane& lane = lanes[lanes.current];
+  auto& numbers = lanes.numbers[static_cast<std::size_t>(lane.exchanges++ % 2)];
+  numbers[static_cast<std::size_t>(lanes.current)] = own;
+  const int next = (lanes.current + 1) % lanes.count;
+  BR_ASSERT(!lanes[next].ended);  // all lanes meet equally often
+  if (_setjmp(lane.place) == 0) go_on(lanes, next);
+  return numbers.data();
+}
+
+}  // namespace breccia::lockstep
