@@ -21,6 +21,14 @@ struct MaterialConfig {
   double friction_angle = 0.5235987755982988;     ///< phi_i of intact links  [rad]
   double rolling_stiffness = 1.0;                 ///< beta_r  [-]
   double rolling_limit = 0.17;                    ///< eta  [-]
+  double rolling_cap = 0.0;                       ///< s_M; 0: none  [Pa]
+  double broken_friction = -1.0;                  ///< mu_b; below 0: that of contacts  [-]
+  double broken_rolling_limit = -1.0;             ///< eta_b; below 0: eta  [-]
+  double slip_wear = 0.0, turn_wear = 0.0;        ///< w_s, w_m  [-]
+  double compaction_strength = 0.0;               ///< Y_c; 0: none  [Pa]
+  double compaction_slope = 0.4;                  ///< H_c  [-]
+  double crushing_strength = 0.0;                 ///< Y_b; 0: none  [Pa]
+  double crushing_slope = 0.4;                    ///< H_b  [-]
   double alpha = 3.9, beta = 3.125, gamma = 5.0;  ///< macro-micro constants  [-]
   std::string shear = "plastic";
   // steel
@@ -53,6 +61,25 @@ struct MaterialConfig {
         "beta_r, rolling stiffness over shear stiffness times radius squared; 0 switches moments "
         "off");
     key("rolling_limit", rolling_limit, "-", not_negative, "eta, plastic limit of the moments");
+    key("rolling_cap", rolling_cap, "Pa", not_negative,
+        "s_M, largest normal stress that the limit of the moments counts; 0: no bound");
+    key("broken_friction", broken_friction, "-", Range{-1.0, no_limit},
+        "mu_b, friction coefficient of broken links; below 0: contact.friction");
+    key("broken_rolling_limit", broken_rolling_limit, "-", Range{-1.0, no_limit},
+        "eta_b, plastic limit of the moments of broken links; below 0: rolling_limit");
+    key("slip_wear", slip_wear, "-", not_negative,
+        "w_s, opening that a link gains by plastic slip, over that slip; 0: none");
+    key("turn_wear", turn_wear, "-", not_negative,
+        "w_m, opening that a link gains by plastic turn, over that turn times the mean radius; 0: "
+        "none");
+    key("compaction_strength", compaction_strength, "Pa", not_negative,
+        "Y_c, compressive stress at which intact links and broken ones that touch yield; 0: never");
+    key("compaction_slope", compaction_slope, "-", Range{0.0, 1.0, Open::high},
+        "H_c, stiffness of a link beyond compaction_strength over the elastic one");
+    key("crushing_strength", crushing_strength, "Pa", not_negative,
+        "Y_b, compressive stress at which broken links yield until their ends touch; 0: never");
+    key("crushing_slope", crushing_slope, "-", Range{0.0, 1.0, Open::high},
+        "H_b, stiffness of a link beyond crushing_strength over the elastic one");
     key("alpha", alpha, "-", positive, "macro-micro constant of Poisson's ratio");
     key("beta", beta, "-", positive, "macro-micro constant of the stiffness");
     key("gamma", gamma, "-", positive, "macro-micro constant of the stiffness");
@@ -179,7 +206,7 @@ struct ContactConfig {
     key("law", law, OneOf{"linear", "hertz"},
         "linear springs with the links' stiffness, or Hertz and Mindlin");
     key("friction", friction, "-", not_negative,
-        "coefficient of friction of contacts and broken links");
+        "coefficient of friction of contacts, and of broken links unless broken_friction is given");
     key("restitution", restitution, "-", Range{0.0, 1.0, Open::low},
         "coefficient of restitution of new contacts; 1 switches their dashpots off");
     key("rolling_limit", rolling_limit, "-", not_negative, "eta, plastic limit of rolling moments");

@@ -38,7 +38,8 @@ struct ConcreteLinkForces {
   double dt;  ///< the step that moved the elements to where they are  [s]
   ElementsView elements;
   View<const Index> a, b;
-  View<const double> length, stiffness;
+  View<double> length;
+  View<const double> stiffness;
   View<Number> opening;
   PlanesView<Number> shear, moment;
   View<double> slid, yielded, broke;
@@ -71,10 +72,12 @@ struct ConcreteLinkForces {
       const BitsOf<R> chance = chance_of(motion.distance, step);
       state.shear = rounded_by(chance, 0, state.shear);
       state.moment = rounded_by(chance, 18, state.moment);
+      if (law.wears()) state.opening = rounded_by<R>(chance >> 35, state.opening);
     }
     store(opening, i, state.opening);
     store(shear, i, state.shear);
     store(moment, i, state.moment);
+    if (any(r.shortened != 0.0)) store(length, i, link.length - r.shortened);
     if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);
     if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
     if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
@@ -191,11 +194,11 @@ struct InterfaceLinkForces {
     const R touching = radius_a + radius_b, share = (radius_a - radius_b) / touching;
     const R distance = norm(concrete.position - bar.position);
     const PairMotion<R> motion = pair_motion<R>(bar, concrete, share * distance, dt);
-    const R approach = dt * dot(concrete.velocity - bar.velocity, motion.normal);
     InterfaceStateOf<R> kept = load_state<R>(View<const InterfaceState>(state), i);
     const R transverse = load<R>(stiffness, i);
     InterfaceResponseOf<R> r;
-    if (!bond.respond(transverse, load<R>(area, i), touching, axis, motion, approach, kept, r))
+    if (!bond.respond(transverse, load<R>(area, i), touching, axis, motion, motion.extension, kept,
+                      r))
       return false;
     store_state(state, i, kept);
     if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);

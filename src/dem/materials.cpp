@@ -33,9 +33,28 @@ LocalElasticity local_elasticity(const MaterialConfig& a, const MaterialConfig& 
 }
 
 ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact) {
-  return {m.tensile_strength,         m.cohesion,       m.softening,
-          std::tan(m.friction_angle), contact.friction, local_elasticity(m).ratio,
-          m.rolling_stiffness,        m.rolling_limit,  m.shear == "brittle" ? 1.0 : 0.0};
+  const LocalElasticity local = local_elasticity(m);
+  ConcreteLink law{};
+  law.tensile_strength = m.tensile_strength;
+  law.cohesion = m.cohesion;
+  law.softening = m.softening;
+  law.friction = std::tan(m.friction_angle);
+  law.broken_friction = m.broken_friction < 0.0 ? contact.friction : m.broken_friction;
+  law.shear_ratio = local.ratio;
+  law.rolling_ratio = m.rolling_stiffness;
+  law.rolling_limit = m.rolling_limit;
+  law.broken_rolling_limit =
+      m.broken_rolling_limit < 0.0 ? m.rolling_limit : m.broken_rolling_limit;
+  law.rolling_cap = m.rolling_cap;
+  law.brittle_shear = m.shear == "brittle" ? 1.0 : 0.0;
+  law.slip_wear = m.slip_wear;
+  law.turn_wear = m.turn_wear;
+  law.modulus = local.modulus;
+  law.compaction_strength = m.compaction_strength;
+  law.compaction_slope = m.compaction_slope;
+  law.crushing_strength = m.crushing_strength;
+  law.crushing_slope = m.crushing_slope;
+  return law;
 }
 
 SteelLink steel_law(const MaterialConfig& m) {

@@ -24,9 +24,10 @@ struct LinkResponse {
   Vec3Of<R> shear;   ///< F_s on b  [N]
   Vec3Of<R> moment;  ///< M on b  [N m]
   R active;          ///< 1 where the link resists, 0 where it does not: share of its stiffness  [-]
+  R shortened;       ///< what compaction took off D_eq in this step  [m]
   R slid;            ///< energy spent on sliding in this step  [J]
-  R yielded;         ///< energy spent on plastic moments in this step  [J]
-  R broke;           ///< energy that the rupture spent, 0 unless the link broke in this step  [J]
+  R yielded;         ///< energy spent on plastic moments and compaction in this step  [J]
+  R broke;           ///< energy spent on rupture in this step, and what wear corrects of it  [J]
 };
 
 /// Constants of one link.
@@ -44,54 +45,48 @@ struct LinkConstants {
 ///
 ///   tension      N = K_n u                     up to the opening u_1 = S T / K_n
 ///                N = S T - (K_n / zeta)(u-u_1) up to u_2 = u_1 (1 + zeta), then rupture
-///                unloading along the secant to the largest opening; compression K_n u without
-///                limit
+///                unloading along the secant to the largest opening kappa
+///   compression  N = K_n u >= -S (Y + K p H/(1 - H)), p = (D_0 - D_eq) / D_0; beyond it D_eq
+///                yields; Y = Y_c, H = H_c, of broken links that do not touch Y_b, H_b
 ///   shear        F_s += -K_t du_s, cut at S C (1 - damage) - N tan phi
-///   moment       M += -K_r dtheta, cut at eta r (|N| in compression + S T (1 - damage))
-///   after rupture compression against D_eq, friction tan phi_c, no cohesion; parted for good
-///   beyond
+///   moment       M += -K_r dtheta, cut at eta r min(|N| in compression + S T (1 - damage), S s_M)
+///   wear         plastic slip ds and turn dtheta_p: kappa += w_s |ds| + w_m r |dtheta_p|
+///   after rupture compression against D_eq, friction mu_b, no cohesion; parted for good beyond
 ///                1.5 times the larger of D_eq and R_a + R_b
 ///
 /// Tension and opening are positive. Shear force and moment act on b; a gets the opposite.
 /// Source: Durand 2012, section 2; law of the Rousseau 2008 family, completed in docs/theory.md.
 struct ConcreteLink {
-  double tensile_strength;  ///< T  [Pa]
-  double cohesion;          ///< C  [Pa]
-  double softening;         ///< zeta >= 0  [-]
-  double friction;          ///< tan phi_i of the intact link  [-]
-  double broken_friction;   ///< tan phi_c  [-]
-  double shear_ratio;       ///< K_t / K_n  [-]
-  double rolling_ratio;     ///< beta_r = K_r / (K_t r^2)  [-]
-  double rolling_limit;     ///< eta  [-]
-  double brittle_shear;     ///< 1: a link breaks at its shear strength; 0: it slides on  [-]
+  double tensile_strength;      ///< T  [Pa]
+  double cohesion;              ///< C  [Pa]
+  double softening;             ///< zeta >= 0  [-]
+  double friction;              ///< tan phi_i of the intact link  [-]
+  double broken_friction;       ///< mu_b  [-]
+  double shear_ratio;           ///< K_t / K_n  [-]
+  double rolling_ratio;         ///< beta_r = K_r / (K_t r^2)  [-]
+  double rolling_limit;         ///< eta of the intact link  [-]
+  double broken_rolling_limit;  ///< eta_b  [-]
+  double rolling_cap;           ///< s_M, 0: none  [Pa]
+  double brittle_shear;         ///< 1: a link breaks at its shear strength; 0: it slides on  [-]
+  double slip_wear;             ///< w_s  [-]
+  double turn_wear;             ///< w_m  [-]
+  double modulus;               ///< K = K_n D_0 / S  [Pa]
+  double compaction_strength;   ///< Y_c, 0: none  [Pa]
+  double compaction_slope;      ///< H_c < 1, tangent beyond it over K_n  [-]
+  double crushing_strength;     ///< Y_b, 0: none  [Pa]
+  double crushing_slope;        ///< H_b < 1  [-]
 
+  /// One step of a link (R = double) or of a pack of links.
   template <class R>
   BR_HD LinkResponse<R> answer(const LinkConstants<R>& link, const PairMotion<R>& motion,
                                LinkState<R>& state) const {
-    const R zero = constant<R>(0.0), one = constant<R>(1.0);
-    const R kn = link.stiffness, kt = shear_ratio * kn;
+    const R zero = constant<R>(0.0);
+    const R kt = shear_ratio * link.stiffness;
     const R kr = rolling_ratio * kt * link.radius * link.radius;
-    const R strength = tensile_strength * link.area;  // S T
-    const TensionSoftening<R> tension{kn, strength, softening};
-    const R u = motion.distance - link.length;
-    const R opening_before = state.opening;
-    const auto intact = opening_before >= 0.0;
-    const auto released_before = opening_before < 0.5 * (link_broken + link_released);
 
     // 1. Normal force.
-    const R opening = larger(opening_before, u);
-    const auto torn = both(intact, kn * opening >= strength * (1.0 + softening));
-    R health = one;  // 1 - damage
-    const auto softened_now = both(intact, kn * opening > strength);
-    if (any(softened_now)) health = choose(softened_now, one - tension.damage(opening), one);
-    const auto pressed = u < 0.0;
-    const auto holds = both(intact, opposite(torn));
-    const auto parted =
-        either(released_before,
-               both(opposite(intact), motion.distance > 1.5 * larger(link.length, link.touching)));
-    const auto resists = either(holds, both(pressed, opposite(parted)));
-    const R elastic = kn * u;
-    const R normal = choose(resists, choose(pressed, elastic, health * elastic), zero);
+    Stand<R> s = stretched(link, motion, state.opening);
+    if (compaction_strength > 0.0 || crushing_strength > 0.0) compact(s, link, motion);
 
     // 2. Shear force and moment: carried with the pair, then this step's increment.
     const Vec3Of<R> shear_before = motion.across(motion.carried(state.shear));
@@ -100,66 +95,42 @@ struct ConcreteLink {
     const Vec3Of<R> moment_trial = moment_before - kr * motion.turn;
 
     // 3. Their limits.
-    const R cohesive = choose(holds, health, zero);
-    const R slope = choose(holds, constant<R>(friction), constant<R>(broken_friction));
-    R shear_limit = larger(zero, cohesion * link.area * cohesive - normal * slope);
-    const R shear_squared = dot(shear_trial, shear_trial);
-    auto sheared = both(holds, shear_squared > zero);
-    sheared = both(sheared, shear_squared > shear_limit * shear_limit);
-    sheared = both(sheared, constant<R>(brittle_shear) > 0.5);
-    if (any(sheared))
-      shear_limit = choose(sheared, larger(zero, -1.0 * broken_friction * normal), shear_limit);
-    const auto survives = both(holds, opposite(sheared));
-    const auto acts = either(survives, both(pressed, opposite(parted)));
-    const R moment_limit = rolling_limit * link.radius *
-                           (choose(either(pressed, opposite(survives)), absolute(normal), zero) +
-                            choose(survives, strength * health, zero));
+    const R shear_limit = limit_shear(s, link, dot(shear_trial, shear_trial));
+    const auto survives = both(s.holds, opposite(s.sheared));
+    const auto acts = either(survives, both(s.pressed, opposite(s.parted)));
+    const R moment_limit = limit_moment(s, link, survives);
+    const Cut<R> slide = cut(shear_before, shear_trial, shear_limit, acts, kt);
+    const Cut<R> roll = cut(moment_before, moment_trial, moment_limit, acts, kr);
 
     LinkResponse<R> r;
-    r.normal = choose(acts, normal, zero);
-    r.slid = zero;
-    r.yielded = zero;
+    r.normal = choose(acts, s.normal, zero);
+    r.shear = slide.kept;
+    r.moment = roll.kept;
+    r.active = choose(acts, constant<R>(1.0), zero);
+    r.shortened = s.shortened;
+    r.slid = slide.spent;
+    r.yielded = roll.spent;
     r.broke = zero;
-    r.active = choose(acts, one, zero);
-    const auto slides = either(shear_squared > shear_limit * shear_limit, opposite(acts));
-    r.shear = shear_trial;
-    if (any(slides)) {
-      const R size = root(shear_squared);
-      const R scale = choose(acts, shear_limit / choose(size > zero, size, one), zero);
-      r.shear = choose(slides, scale * shear_trial, shear_trial);
-      const R per_stiffness = constant<R>(0.5) / choose(kt > zero, kt, one);
-      r.slid = per_stiffness * dot(shear_before + r.shear, shear_trial - r.shear);
-    }
-    const R moment_squared = dot(moment_trial, moment_trial);
-    const auto rolls = either(moment_squared > moment_limit * moment_limit, opposite(acts));
-    r.moment = moment_trial;
-    if (any(rolls)) {
-      const R size = root(moment_squared);
-      const R scale = choose(acts, moment_limit / choose(size > zero, size, one), zero);
-      r.moment = choose(rolls, scale * moment_trial, moment_trial);
-      const R per_stiffness = constant<R>(0.5) / choose(kr > zero, kr, one);
-      r.yielded = per_stiffness * dot(moment_before + r.moment, moment_trial - r.moment);
-    }
 
     // 4. What is kept.
-    const auto ends = either(torn, sheared);
-    state.opening = choose(intact, opening, opening_before);
-    if (any(ends)) {
-      const R spent = choose(
-          torn, tension.toughness(),
-          tension.spent(opening) + choose(pressed, zero, constant<R>(0.5) * health * kn * u * u));
-      r.broke = choose(ends, spent + r.slid + r.yielded, zero);
-      r.slid = choose(ends, zero, r.slid);
-      r.yielded = choose(ends, zero, r.yielded);
-      state.opening = choose(ends, constant<R>(link_broken), state.opening);
+    state.opening = choose(s.intact, s.opening, state.opening);
+    if (wears()) {
+      const R wear = slip_wear * slide.plastic + turn_wear * link.radius * roll.plastic;
+      wear_out(s, link, motion, choose(survives, wear, zero), state, r);
     }
-    state.opening = choose(parted, constant<R>(link_released), state.opening);
+    if (any(either(s.torn, s.sheared))) rupture(s, link, state, r);
+    r.yielded = r.yielded + s.crushed;
+    state.opening = choose(s.parted, constant<R>(link_released), state.opening);
     state.shear = r.shear;
     state.moment = r.moment;
     return r;
   }
 
-  BR_HD TensionSoftening<double> tension(const LinkConstants<double>& link) const {
+  /// Whether sliding and rolling use links up.
+  BR_HD bool wears() const { return slip_wear > 0.0 || turn_wear > 0.0; }
+
+  template <class R>
+  BR_HD TensionSoftening<R> tension(const LinkConstants<R>& link) const {
     return {link.stiffness, tensile_strength * link.area, softening};
   }
   /// N of a link at a stretch u, tension positive.  [N]
@@ -185,6 +156,157 @@ struct ConcreteLink {
     if (kt > 0.0) energy += dot(state.shear, state.shear) / (2.0 * kt);
     if (kr > 0.0) energy += dot(state.moment, state.moment) / (2.0 * kr);
     return energy;
+  }
+
+ private:
+  /// How a link stands in a step.
+  template <class R>
+  struct Stand {
+    using Truth = decltype(R{} < R{});
+    Truth intact;   ///< when the step began
+    Truth torn;     ///< in this step, by tension or wear
+    Truth sheared;  ///< broken in this step by shear
+    Truth holds;    ///< intact and not torn
+    Truth pressed, parted;
+    R stretch;    ///< u = D - D_eq, before compaction  [m]
+    R opening;    ///< kappa  [m]
+    R health;     ///< 1 - damage  [-]
+    R normal;     ///< N  [N]
+    R shortened;  ///< by compaction  [m]
+    R crushed;    ///< energy that compaction spent  [J]
+  };
+  /// A shear force or moment after its limit.
+  template <class R>
+  struct Cut {
+    Vec3Of<R> kept;
+    R spent;    ///< [J]
+    R plastic;  ///< slip, or turn, beyond the elastic one  [m or rad]
+  };
+
+  /// Tension with softening, compression without limit.
+  template <class R>
+  BR_HD Stand<R> stretched(const LinkConstants<R>& link, const PairMotion<R>& motion,
+                           const R& opening_before) const {
+    const R zero = constant<R>(0.0), one = constant<R>(1.0), kn = link.stiffness;
+    const TensionSoftening<R> t = tension(link);
+    Stand<R> s;
+    s.stretch = motion.distance - link.length;
+    s.intact = opening_before >= 0.0;
+    s.opening = larger(opening_before, s.stretch);
+    s.torn = both(s.intact, kn * s.opening >= t.strength * (1.0 + softening));
+    s.health = one;
+    const auto softened = both(s.intact, kn * s.opening > t.strength);
+    if (any(softened)) s.health = choose(softened, one - t.damage(s.opening), one);
+    s.pressed = s.stretch < 0.0;
+    s.holds = both(s.intact, opposite(s.torn));
+    const auto released = opening_before < 0.5 * (link_broken + link_released);
+    const R reach = 1.5 * larger(link.length, link.touching);
+    s.parted = either(released, both(opposite(s.intact), motion.distance > reach));
+    const auto resists = either(s.holds, both(s.pressed, opposite(s.parted)));
+    const R elastic = kn * s.stretch;
+    s.normal = choose(resists, choose(s.pressed, elastic, s.health * elastic), zero);
+    s.shortened = s.crushed = zero;
+    return s;
+  }
+
+  /// Compaction: pressed beyond its yield force, a link shortens D_eq until its force lies on the
+  /// line of slope H K_n. Energy in the trapezoidal form of the ledger, -dD_eq (N_before +
+  /// N_after)/2, N_before from the change of distance.
+  template <class R>
+  BR_HD void compact(Stand<R>& s, const LinkConstants<R>& link, const PairMotion<R>& motion) const {
+    const R zero = constant<R>(0.0), kn = link.stiffness;
+    const R first = modulus * link.area / kn;  // D_0
+    const R p = larger(zero, first - link.length) / first;
+    const auto filled = either(s.holds, link.touching >= link.length);
+    const R onset =
+        choose(filled, constant<R>(compaction_strength), constant<R>(crushing_strength));
+    const R slope = choose(filled, constant<R>(compaction_slope), constant<R>(crushing_slope));
+    const R excess = -s.normal - link.area * (onset + modulus * p * slope / (1.0 - slope));
+    const auto yields = both(both(s.pressed, opposite(s.parted)), both(excess > 0.0, onset > 0.0));
+    if (!any(yields)) return;
+    s.shortened = choose(yields, excess * (1.0 - slope) / kn, zero);
+    const R before = smaller(zero, s.normal - kn * motion.extension);
+    s.normal = s.normal + kn * s.shortened;
+    s.crushed = -0.5 * s.shortened * (before + s.normal);
+  }
+
+  /// Modified Mohr-Coulomb limit of the shear force; finds links that break at it.
+  template <class R>
+  BR_HD R limit_shear(Stand<R>& s, const LinkConstants<R>& link, const R& trial_squared) const {
+    const R zero = constant<R>(0.0);
+    const R cohesive = choose(s.holds, s.health, zero);
+    const R slope = choose(s.holds, constant<R>(friction), constant<R>(broken_friction));
+    R limit = larger(zero, cohesion * link.area * cohesive - s.normal * slope);
+    const auto beyond = both(trial_squared > zero, trial_squared > limit * limit);
+    s.sheared = both(both(s.holds, beyond), constant<R>(brittle_shear) > 0.5);
+    if (any(s.sheared))
+      limit = choose(s.sheared, larger(zero, -1.0 * broken_friction * s.normal), limit);
+    return limit;
+  }
+
+  template <class R>
+  BR_HD R limit_moment(const Stand<R>& s, const LinkConstants<R>& link,
+                       const typename Stand<R>::Truth& survives) const {
+    const R zero = constant<R>(0.0);
+    const auto counts = either(s.pressed, opposite(survives));
+    R force = choose(counts, absolute(s.normal), zero) +
+              choose(survives, tensile_strength * link.area * s.health, zero);
+    if (rolling_cap > 0.0) force = smaller(force, rolling_cap * link.area);
+    const R eta = choose(survives, constant<R>(rolling_limit), constant<R>(broken_rolling_limit));
+    return eta * link.radius * force;
+  }
+
+  /// Cuts a trial force or moment back to its limit, to nothing where the link does not act.
+  template <class R>
+  BR_HD static Cut<R> cut(const Vec3Of<R>& before, const Vec3Of<R>& trial, const R& limit,
+                          const typename Stand<R>::Truth& acts, const R& stiffness) {
+    const R zero = constant<R>(0.0), one = constant<R>(1.0);
+    Cut<R> c{trial, zero, zero};
+    const R squared = dot(trial, trial);
+    const auto beyond = either(squared > limit * limit, opposite(acts));
+    if (!any(beyond)) return c;
+    const R size = root(squared);
+    const R scale = choose(acts, limit / choose(size > zero, size, one), zero);
+    c.kept = choose(beyond, scale * trial, trial);
+    const R per_stiffness = constant<R>(0.5) / choose(stiffness > zero, stiffness, one);
+    c.spent = per_stiffness * dot(before + c.kept, trial - c.kept);
+    c.plastic = choose(beyond, 2.0 * per_stiffness * (size - scale * size), zero);
+    return c;
+  }
+
+  /// Wear opens a link, until it is torn in the next step. It spends nothing of its own: sliding
+  /// and rolling have been booked, so that `broke` takes back what the ledger reads off the opening
+  /// (TensionSoftening::spent), but for what a stretched link stored.
+  template <class R>
+  BR_HD void wear_out(const Stand<R>& s, const LinkConstants<R>& link, const PairMotion<R>& motion,
+                      const R& wear, LinkState<R>& state, LinkResponse<R>& r) const {
+    const auto worn = wear > 0.0;
+    if (!any(worn)) return;
+    const TensionSoftening<R> t = tension(link);
+    // a little beyond u_2, so that rounding cannot keep the link whole
+    const R last = (1.0 + 1e-6) * t.rupture();
+    const R after = larger(s.opening, smaller(s.opening + wear, last));
+    const R softer = s.health - (1.0 - t.damage(after));
+    const R next = larger(constant<R>(0.0), s.stretch + motion.extension);
+    const R released =
+        choose(s.pressed, constant<R>(0.0), 0.5 * link.stiffness * softer * s.stretch * next);
+    r.broke = choose(worn, t.spent(s.opening) - t.spent(after) + released, r.broke);
+    state.opening = choose(worn, after, state.opening);
+  }
+
+  template <class R>
+  BR_HD void rupture(const Stand<R>& s, const LinkConstants<R>& link, LinkState<R>& state,
+                     LinkResponse<R>& r) const {
+    const R zero = constant<R>(0.0);
+    const TensionSoftening<R> t = tension(link);
+    const auto ends = either(s.torn, s.sheared);
+    const R stored = constant<R>(0.5) * s.health * link.stiffness * s.stretch * s.stretch;
+    const R spent =
+        choose(s.torn, t.toughness(), t.spent(s.opening) + choose(s.pressed, zero, stored));
+    r.broke = choose(ends, spent + r.slid + r.yielded, r.broke);
+    r.slid = choose(ends, zero, r.slid);
+    r.yielded = choose(ends, zero, r.yielded);
+    state.opening = choose(ends, constant<R>(link_broken), state.opening);
   }
 };
 

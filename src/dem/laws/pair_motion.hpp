@@ -21,6 +21,7 @@ template <class R>
 struct PairMotion {
   Vec3Of<R> normal;     ///< n  [-]
   R distance;           ///< D  [m]
+  R extension;          ///< change of D in this step, to first order  [m]
   R arm_a, arm_b;       ///< from the centres to the contact point, along n  [m]
   Vec3Of<R> slip;       ///< of b against a at the contact point, across n, in this step  [m]
   Vec3Of<R> turn;       ///< rotation of b against a in this step  [rad]
@@ -65,6 +66,7 @@ BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const 
 
   const R step = constant<R>(dt);
   const Vec3Of<R> dv = b.velocity - a.velocity;
+  m.extension = step * dot(dv, m.normal);
   // 1 / (D - e D) with the stretch e of one step, by its series: e^4 is below rounding
   const R stretch = step * inverse * dot(dv, m.normal);
   const R tangent_scale = step * inverse * (1.0 + stretch * (1.0 + stretch * (1.0 + stretch)));

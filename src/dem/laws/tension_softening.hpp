@@ -28,10 +28,10 @@ struct TensionSoftening {
     return choose(opening > u1, lost, constant<R>(0.0));
   }
   /// Energy spent up to a largest opening: the area under the envelope less what the secant stores.
-  /// With b = u - u_1 it is K b u_1 (1 + 1/zeta) / 2.  [J]
+  /// With b = u - u_1 it is K b u_1 (1 + 1/zeta) / 2, at most that of a whole rupture.  [J]
   BR_HD R spent(const R& opening) const {
     const R beyond = larger(opening - onset(), constant<R>(0.0));
-    return 0.5 * strength * beyond * (1.0 + inverse());
+    return smaller(0.5 * strength * beyond * (1.0 + inverse()), toughness());
   }
   /// Energy of a whole rupture, F_t u_2 / 2.  [J]
   BR_HD R toughness() const { return 0.5 * strength * rupture(); }

@@ -16,7 +16,17 @@ constexpr double length = 0.02, stiffness = 2e8, area = 3e-4, radius = 0.01;
 const LinkConstants<double> link{length, stiffness, area, radius, 2.0 * radius};
 
 ConcreteLink law(double brittle = 0.0) {
-  return {2.2e6, 5.5e6, 10.0, std::tan(0.5), std::tan(0.6), 0.18, 1.0, 0.15, brittle};
+  ConcreteLink l{};
+  l.tensile_strength = 2.2e6;
+  l.cohesion = 5.5e6;
+  l.softening = 10.0;
+  l.friction = std::tan(0.5);
+  l.broken_friction = std::tan(0.6);
+  l.shear_ratio = 0.18;
+  l.rolling_ratio = 1.0;
+  l.rolling_limit = l.broken_rolling_limit = 0.15;
+  l.brittle_shear = brittle;
+  return l;
 }
 const double strength = 2.2e6 * area;       // S T
 const double onset = strength / stiffness;  // u_1
