@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "confined_concrete.hpp"
 #include "dem/ranks.hpp"
 #include "mpi/on_ranks.hpp"
 
@@ -82,6 +83,18 @@ TEST(DemRanks, leave_the_same_state_in_mixed_precision) {
     EXPECT_EQ(on_ranks(count, piece, 300, {}, threads).outcome, expected)
         << count << " ranks of " << threads << " threads";
   EXPECT_EQ(on_ranks(3, piece, 300, {}, 1, Space::shadow).outcome, expected);
+}
+
+TEST(DemRanks, leave_the_same_state_of_links_that_wear_and_crush) {
+  for (const char* precision : {"double", "mixed"}) {
+    Slab piece = slab_piece();
+    testing::confine(piece.config.materials[0]);
+    piece.config.precision = precision;
+    const Outcome expected = alone(piece, 300);
+    EXPECT_GT(expected.cracks, 50U);
+    for (const int count : {2, 5, 32})
+      EXPECT_EQ(on_ranks(count, piece, 300).outcome, expected) << count << " ranks";
+  }
 }
 
 TEST(DemRanks, leave_the_same_state_for_any_margin_of_search) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "confined_concrete.hpp"
 #include "dem/observe.hpp"
 #include "exec/error.hpp"
 #include "io/case_file.hpp"
@@ -159,6 +160,45 @@ TEST(SameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   EXPECT_EQ(after->state_hash(), before->state_hash());
   EXPECT_THROW(make_dem_method(small_config(), small_model(), {})->load(state), CheckpointError);
   std::filesystem::remove_all(folder);
+}
+
+/// Concrete that is bounded under pressure writes the free length of its links, too.
+TEST(SameBits, of_links_that_wear_and_crush) {
+  dem::Config config = small_config();
+  testing::confine(config.materials[0]);
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    std::uint64_t hash = 0;
+    EnergyBalance energy{};
+    const auto expect_same = [&](int threads, Lanes lanes, Space space) {
+      Exec exec;
+      exec.threads = threads;
+      exec.space = space;
+      exec.precision = precision;
+      dem::World w = dem::make_world(config, small_model(), exec);
+      const Buffer<double> before = w.concrete.length;
+      w.lanes = std::min(lanes, widest_lanes());
+      for (int i = 0; i < 600; ++i) dem::step(w);
+      const EnergyBalance now = dem::balance(w);
+      if (hash == 0) {
+        hash = dem::state_hash(w);
+        energy = now;
+        int shorter = 0;
+        for (Index i = 0; i < before.size(); ++i)
+          shorter += w.concrete.length.data()[i] < before.data()[i] ? 1 : 0;
+        EXPECT_GT(shorter, 100);
+        EXPECT_GT(dem::count(w).broken_concrete, 100);
+        EXPECT_LT(energy.error_relative, 1e-3);
+      }
+      EXPECT_EQ(dem::state_hash(w), hash) << threads << ", " << static_cast<int>(lanes);
+      EXPECT_EQ(now.plastic, energy.plastic);
+      EXPECT_EQ(now.fracture, energy.fracture);
+      EXPECT_EQ(now.friction, energy.friction);
+    };
+    expect_same(1, Lanes::one, Space::host);
+    expect_same(1, Lanes::four, Space::host);
+    expect_same(2, Lanes::eight, Space::host);
+    expect_same(1, Lanes::eight, Space::shadow);
+  }
 }
 
 TEST(SameBits, one_changed_bit_changes_the_hash) {

@@ -65,6 +65,42 @@ TEST(MixedPrecision, feels_a_load_that_grows_by_a_billionth_of_the_strength_a_st
   }
 }
 
+// So does the opening of a link that is worn: to the nearest it would never break.
+TEST(MixedPrecision, feels_wear_of_a_billionth_of_the_rupture_a_step) {
+  constexpr int steps = 400'000;
+  constexpr double share = 1e-9, wear = 0.5;
+  const auto pair = [](const Vec3& velocity) {
+    Scene s = held_pair(velocity);
+    MaterialConfig& m = s.config.materials[0];
+    m.cohesion = m.friction_angle = 0.0;  // all slip is plastic
+    m.slip_wear = wear;
+    return s;
+  };
+  const World still = pair({}).world();
+  const double kn = still.concrete.stiffness.data()[0];
+  const double rupture =
+      still.concrete_groups[0].law.tensile_strength * testing::pi * 1e-4 / kn * 6.0;
+  const double at_first = 0.6 * rupture, grown = share * rupture;
+  const Vec3 velocity{0.0, grown / wear / still.next_dt, 0.0};
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    World w = pair(velocity).world(1, precision);
+    with_number(precision, [&](auto number) {
+      using Number = decltype(number);
+      w.concrete.kept.as<Number>().opening.data()[0] = static_cast<Number>(at_first);
+    });
+    const double before = link_opening(w.concrete, 0);
+    for (int i = 0; i < steps; ++i) step(w);
+    ASSERT_EQ(w.last_dt, still.next_dt);
+    const double bit = std::exp2(std::ceil(std::log2(before)) - 24.0);
+    const double walk = std::sqrt(steps * grown * bit);
+    // the first step slips only with the mean of the speeds before and after it
+    const double error =
+        precision == Precision::full ? grown + steps * 0x1p-53 * rupture : 5.0 * walk;
+    EXPECT_LT(error, 0.1 * steps * grown);
+    EXPECT_NEAR(link_opening(w.concrete, 0) - before, steps * grown, error);
+  }
+}
+
 /// A link pulled until it breaks.
 struct Pulled {
   double peak = 0.0;      ///< largest force on its end  [N]
