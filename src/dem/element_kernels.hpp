@@ -231,12 +231,18 @@ struct Kick {
       z[k] = v.z;
     }
     const R still = constant<R>(0.0);
-    r.velocity.x = choose(holds<R>(e, fixed_x), pack_of<R>(x), r.velocity.x);
-    r.velocity.y = choose(holds<R>(e, fixed_y), pack_of<R>(y), r.velocity.y);
-    r.velocity.z = choose(holds<R>(e, fixed_z), pack_of<R>(z), r.velocity.z);
-    r.spin.x = choose(holds<R>(e, fixed_spin_x), still, r.spin.x);
-    r.spin.y = choose(holds<R>(e, fixed_spin_y), still, r.spin.y);
-    r.spin.z = choose(holds<R>(e, fixed_spin_z), still, r.spin.z);
+    prescribe(holds<R>(e, fixed_x), pack_of<R>(x), r.velocity.x, r.damped_force.x);
+    prescribe(holds<R>(e, fixed_y), pack_of<R>(y), r.velocity.y, r.damped_force.y);
+    prescribe(holds<R>(e, fixed_z), pack_of<R>(z), r.velocity.z, r.damped_force.z);
+    prescribe(holds<R>(e, fixed_spin_x), still, r.spin.x, r.damped_torque.x);
+    prescribe(holds<R>(e, fixed_spin_y), still, r.spin.y, r.damped_torque.y);
+    prescribe(holds<R>(e, fixed_spin_z), still, r.spin.z, r.damped_torque.z);
+  }
+  /// What is held is not damped.
+  template <class R, class Truth>
+  BR_HD static void prescribe(const Truth& held, const R& given, R& velocity, R& damped) {
+    velocity = choose(held, given, velocity);
+    damped = choose(held, constant<R>(0.0), damped);
   }
 };
 
