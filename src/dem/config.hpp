@@ -148,9 +148,13 @@ struct BodyConfig {
   double length = 0.0;  ///< of a cylinder, along z  [m]
   PackConfig pack;
   RebarConfig rebar;
-  Vec3 velocity{};   ///< at the start  [m/s]
-  Vec3 spin{};       ///< at the start, of every element about the body's centre  [rad/s]
-  std::string file;  ///< CSV of x, y, z, radius in metres
+  Vec3 velocity{};      ///< at the start  [m/s]
+  Vec3 spin{};          ///< at the start, of every element about the body's centre  [rad/s]
+  std::string file;     ///< CSV of x, y, z, radius in metres
+  double volume = 0.0;  ///< of the bulk that a file's spheres stand for; 0: of the box `size`  [m3]
+
+  /// Of what a file's spheres stand for; 0: of nothing but themselves.  [m3]
+  double bulk_volume() const { return volume > 0.0 ? volume : size.x * size.y * size.z; }
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -162,7 +166,8 @@ struct BodyConfig {
     key("material", material, "name of a material");
     key.required("material");
     key("center", center, "m", any_number, "centre of the body");
-    key("size", size, "m", not_negative, "edge lengths of a box");
+    key("size", size, "m", not_negative,
+        "edge lengths of a box, also of one that the spheres of a file fill");
     key("radius", radius, "m", not_negative, "radius of a sphere, cylinder or single element");
     key("length", length, "m", not_negative, "length of a cylinder, along z");
     key.table("pack", pack, "the packing of a box, sphere or cylinder");
@@ -171,6 +176,10 @@ struct BodyConfig {
     key("spin", spin, "rad/s", any_number,
         "angular velocity of the body about its centre at the start");
     key("file", file, "CSV file of x,y,z,radius in metres, beside the case file");
+    key("volume", volume, "m3", not_negative,
+        "volume of concrete that the spheres of a file stand for, voids included: it gives their "
+        "mass; 0: that of the box size. Grains of a file have their own volume unless either is "
+        "given");
   }
 };
 

@@ -90,7 +90,14 @@ class BodyCheck {
       check_material(body, body.material, {"concrete", "grain", "steel"});
     else
       check_material(body, body.material, {"concrete", "grain"});
-    if (body.shape == "file") require(!body.file.empty(), body, "shape file needs the key file");
+    if (body.shape == "file") {
+      require(!body.file.empty(), body, "shape file needs the key file");
+      const int material = find_named(config_.materials, body.material);
+      const bool bulk =
+          material >= 0 && config_.materials[static_cast<std::size_t>(material)].law == "concrete";
+      require(!bulk || body.bulk_volume() > 0.0, body,
+              "concrete from a file needs the key volume, or size");
+    }
     if (body.shape == "box")
       require(std::min({body.size.x, body.size.y, body.size.z}) > 0.0, body,
               "a box needs a positive size in each direction");
@@ -205,8 +212,8 @@ class Assembly {
     const prepare::Spheres spheres = prepare::read_spheres((folder / body_->file).string());
     double solid = 0.0;
     for (const double r : spheres.radius) solid += ball(r);
-    const double box = body_->size.x * body_->size.y * body_->size.z;
-    const double density = material().density * (box > 0.0 ? box / solid : 1.0);
+    const double volume = body_->bulk_volume();
+    const double density = material().density * (volume > 0.0 ? volume / solid : 1.0);
     for (std::size_t i = 0; i < spheres.radius.size(); ++i)
       add(spheres.position[i], spheres.radius[i], density * ball(spheres.radius[i]));
   }

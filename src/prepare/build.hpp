@@ -14,8 +14,8 @@ namespace breccia {
 ///              `pack.count` elements that fill `pack.compactness` of the body's volume; their
 ///              density is the material's density over that share, so that the body has the mass of
 ///              its bulk. Volume taken by bars does not count as the body's. Bars move with the
-///              body they reinforce. A file's spheres fill the box `size`, or only themselves when
-///              no size is given.
+///              body they reinforce. A file's spheres have the mass of the bulk `volume`, or of
+///              the box `size`; grains have their own when neither is given.
 ///   order      element i is global id i; ids follow space, so that linked elements are close in
 ///              memory.
 ///   links      pairs of one concrete body, neighbours along a bar, bars and the concrete around

@@ -82,6 +82,11 @@ class Check {
       add(path + ".radius must be above 0");
     if (b.shape == "cylinder" && !(b.length > 0.0)) add(path + ".length must be above 0");
     if (b.shape == "file" && b.file.empty()) add(path + ".file is missing: a CSV of x,y,z,radius");
+    if (b.shape == "file" && material != nullptr && material->law == "concrete" &&
+        !(b.bulk_volume() > 0.0))
+      add(path +
+          ".volume is missing: spheres of concrete do not fill space, so their mass is density "
+          "times the volume that they stand for; give volume in m3, or the size of a box");
     if (b.shape == "rebar") check_rebar(path, b);
   }
 

@@ -246,6 +246,8 @@ INSTANTIATE_TEST_SUITE_P(
               "body.slab.radius must be above 0"},
         Wrong{"material = \"c30\"", "material = \"c30\"\nshape = \"file\"",
               "body.slab.file is missing"},
+        Wrong{"size = [\"1 m\", 1.0, \"100 mm\"]", "shape = \"file\"\nfile = \"a.csv\"",
+              "body.slab.volume is missing"},
         Wrong{"size = [\"1 m\", 1.0, \"100 mm\"]", "",
               "body.slab.size needs three lengths above 0"},
         Wrong{"size = [\"1 m\", 1.0, \"100 mm\"]", "size = [1.0, 1.0]",

@@ -244,6 +244,7 @@ class SpheresFile : public testing::Test {
     body.shape = "file";
     body.material = "c30";
     body.file = "spheres.csv";
+    body.volume = 1e-3;
     config_.bodies = {body};
   }
   ~SpheresFile() override { std::filesystem::remove_all(folder_); }
@@ -264,9 +265,28 @@ TEST_F(SpheresFile, GivesElementsAndLinks) {
   ASSERT_EQ(m.size(), 3);
   ASSERT_EQ(m.links.size(), 1U);
   EXPECT_EQ(m.position[0].z, 5.0);
-  EXPECT_NEAR(m.mass[2], 2400.0 * 4.0 / 3.0 * pi * 8e-6, 1e-12);
-  config_.bodies[0].size = {0.1, 0.1, 0.1};
-  EXPECT_NEAR(mass_of(model_of(text), 0), 2.4, 1e-12);
+  EXPECT_NEAR(mass_of(m, 0), 2.4, 1e-12);
+  EXPECT_NEAR(m.mass[2], 8.0 * m.mass[0], 1e-12);
+}
+
+TEST_F(SpheresFile, HasTheMassOfTheBulkThatItStandsFor) {
+  const std::string text = "0,0,0,0.01\n1.0,0,0,2e-2\n";
+  const double own = 4.0 / 3.0 * pi * 9e-6;
+  config_.bodies[0].size = {0.1, 0.1, 0.2};
+  config_.bodies[0].volume = 0.0;
+  EXPECT_NEAR(mass_of(model_of(text), 0), 2400.0 * 2e-3, 1e-12);
+  config_.bodies[0].volume = 1.5e-3;  // a cylinder in that box, say
+  EXPECT_NEAR(mass_of(model_of(text), 0), 2400.0 * 1.5e-3, 1e-12);
+  // Concrete always stands for a volume; grains may be nothing but themselves.
+  config_.bodies[0].volume = config_.bodies[0].size.z = 0.0;
+  try {
+    model_of(text);
+    ADD_FAILURE() << "nothing was said about its mass";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(mentions(error.what(), "volume")) << error.what();
+  }
+  config_.materials[0].law = "grain";
+  EXPECT_NEAR(mass_of(model_of(text), 0), 2400.0 * own, 1e-12);
 }
 
 TEST_F(SpheresFile, WithABadLineIsRefusedWithItsNumber) {
