@@ -88,6 +88,9 @@ void check_case(const Config& config) {
     if (s.residual_angle > s.friction_angle)
       add(where + ".residual_angle: must not be above friction_angle");
   };
+  if (config.joints.criterion == "rock" && config.joints.unloading == "reversible")
+    add("joints.unloading = \"reversible\" needs joints.criterion = \"edge\": a joint that failed "
+        "with the rock unloads along the secant");
   for (const MaterialConfig& m : config.materials) angles("material." + m.name + ".joint", m.joint);
   for (const JointConfig& j : config.joint_laws) angles("joint." + j.name, j.strength);
   for (const BodyConfig& b : config.bodies) look_for_loose_grains(config, b, add);

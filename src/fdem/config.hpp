@@ -200,6 +200,7 @@ struct ContactConfig {
 struct JointsConfig {
   double softening_factor = exact_softening_factor;
   std::string unloading = "secant";
+  std::string criterion = "rock";
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -208,6 +209,14 @@ struct JointsConfig {
         "fracture energy, 3 is the classical codes' and 15.9 % too much");
     key("unloading", unloading, OneOf{"secant", "reversible"},
         "secant: damage stays; reversible: joints heal as in the classical codes");
+    key("criterion", criterion, OneOf{"rock", "edge"},
+        "rock: a joint within a material fails where the stress of the rock beside it reaches f_t, "
+        "or "
+        "c - sigma tan phi, on any plane near its edge, and keeps f_t and G_I on a free mesh; "
+        "edge: by "
+        "its own tractions, as in the classical codes: on a free mesh 10 % (tension) to 60 % "
+        "(discs) too "
+        "strong; [joint.<name>] is always edge");
   }
 };
 

@@ -19,27 +19,28 @@ struct TriangleStress {
   }
 };
 
-/// Traction across an edge from the mean stress of its two triangles.
-struct EdgeTraction {
+/// Stress at an edge: the mean of its two triangles'.
+struct EdgeStress {
   View<const NodeState> nodes;
   View<const JointEnds> ends;
   View<const Sym2> stress;
 
-  /// @returns normal and shear, as the law of the joint counts them  [Pa]
-  BR_HD Vec2 operator()(Index i) const {
+  /// @returns across and in the edge as the law of the joint counts them, and along it
+  BR_HD RockStress operator()(Index i) const {
     const JointEnds& e = ends[i];
     const Vec2 line = nodes[e.a1].position - nodes[e.a0].position;
     const Vec2 along = (1.0 / norm(line)) * line, across{-along.y, along.x};
     const Sym2 &a = stress[e.a0 / 3], &b = stress[e.b0 / 3];
     const Sym2 mean{0.5 * (a.xx + b.xx), 0.5 * (a.yy + b.yy), 0.5 * (a.xy + b.xy)};
     const Vec2 traction = mean * across;
-    return {dot(traction, across), dot(traction, along)};
+    return {dot(traction, across), dot(traction, along), dot(mean * along, along)};
   }
 };
 
-/// Stress over strength of dormant joints: tension, or shear by Mohr and Coulomb.
+/// Stress over strength of dormant joints: tension, or shear by Mohr and Coulomb, and that of the
+/// rock beside them.
 struct Overshoot {
-  EdgeTraction traction;
+  EdgeStress stress;
   View<const JointBond> bonds;
   View<const Index> law;
   View<const double> strength;
@@ -50,10 +51,12 @@ struct Overshoot {
   BR_HD void operator()(Index i) const {
     overshoot[i] = 0.0;
     if (stage[i] != JointStage::dormant) return;
-    const Vec2 t = traction(i);
+    const RockStress s = stress(i);
     const JointBond& bond = bonds[law[i]];
-    const double shear = bond.cohesion * strength[i] - bond.friction * smaller(t.x, 0.0);
-    overshoot[i] = larger(t.x / (bond.tension * strength[i]), absolute(t.y) / shear);
+    const double shear = bond.cohesion * strength[i] - bond.friction * smaller(s.normal, 0.0);
+    overshoot[i] = larger(s.normal / (bond.tension * strength[i]), absolute(s.shear) / shear);
+    if (bond.by_rock())
+      overshoot[i] = larger(overshoot[i], rock_failure(bond, strength[i], s).most());
     if (overshoot[i] >= 1.0) raise(reached, Change{});
   }
 };
@@ -109,7 +112,7 @@ struct SleepsAt {
 /// Wakes joints at the opening and slip at which they carry what was transmitted.
 struct Wake {
   static constexpr const char* name = "fdem.wake";
-  EdgeTraction traction;
+  EdgeStress stress;
   View<const JointBond> bonds;
   View<const Index> law;
   View<const double> strength, length, overshoot;
@@ -124,11 +127,11 @@ struct Wake {
   BR_HD void operator()(Index k) const {
     const Index i = joint[k];
     const JointBond& bond = bonds[law[i]];
-    const JointEnds& e = traction.ends[i];
+    const JointEnds& e = stress.ends[i];
     // just below its strength, where that is reached
     const double share = smaller(1.0, (1.0 - 1e-6) / overshoot[i]);
-    const Vec2 t = share * traction(i);
-    preset_opening(bond, strength[i], length[i], t.x, t.y, preset[i]);
+    const RockStress s = stress(i);
+    preset_opening(bond, strength[i], length[i], share * s.normal, share * s.shear, preset[i]);
     stage[i] = JointStage::whole;
     const StoredEnergy stored =
         stored_in(bond, strength[i], length[i], preset[i], JointOpening<double>{}, JointPoints{});

@@ -42,6 +42,7 @@ struct JointForces {
   View<const Index> law;
   View<const double> length, strength;
   View<const Vec2> preset;
+  Sym2 in_situ;  ///< stress at the start  [Pa]
   View<JointStage> stage;
   View<JointPoints> points;
   View<JointForceOf<Number>> force;
@@ -72,7 +73,7 @@ struct JointForces {
                         const R& h) const {
     const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
     const JointOpening<R> o = opening_of(position(0), position(1), position(2), position(3));
-    R bond[8];
+    R bond[10];
     gather_records(bonds, own_law, bond);
     const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
     const R quarter = 0.25 / tension;
@@ -80,12 +81,19 @@ struct JointForces {
     if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
     auto beyond = opposite(o.size > 1e-12 * h);
     Vec2Of<R> traction[3];
+    R normal = constant<R>(0.0), shear = normal;  // means
     for (int q = 0; q < 3; ++q) {
       const BondTraction<R> t =
           elastic_answer(slope, tension, quarter, cohesion, bond[3], o.open[q] + offset[0],
                          o.slide[q] + offset[1], beyond);
       traction[q] = t.shear * o.along + t.normal * o.across;
+      normal = normal + weight_of(q) * t.normal;
+      shear = shear + weight_of(q) * t.shear;
     }
+    const R stretch = o.size / h - 1.0;
+    const R along = stress_along(o.along, stretch, normal, bond[8], bond[9], in_situ);
+    const auto failing = may_fail(tension, cohesion, bond[3], normal, shear, along);
+    beyond = either(beyond, both(bond[8] > 0.0, failing));
     if (any(beyond)) return false;
     const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
     const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
@@ -125,6 +133,8 @@ struct JointForces {
     const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
     JointPoints state{};
     if (before != JointStage::whole) state = points[i];
+    if (bond.by_rock() && failure_of(state.point[1]) == Failure::none)
+      fail_with_rock(i, bond, o, offset, state);
     Vec2 traction[3];
     double pressure = 0.0, drag = 0.0;
     int failed = 0;
@@ -161,6 +171,33 @@ struct JointForces {
   }
 
  private:
+  /// Weight of an integration point in a mean.  [-]
+  BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
+
+  /// Lets all points of a joint fail where the mean stress of the rock there fails near its edge.
+  BR_HD void fail_with_rock(Index i, const JointBond& bond, const JointOpening<double>& o,
+                            const Vec2& offset, JointPoints& state) const {
+    const double h = length[i], share = strength[i];
+    JointPoints now = state;
+    BondTraction<double> carried[3];
+    double normal = 0.0, shear = 0.0;
+    for (int q = 0; q < 3; ++q) {
+      carried[q] =
+          answer(bond, share, h, o.open[q] + offset.x, o.slide[q] + offset.y, now.point[q]);
+      normal += weight_of(q) * carried[q].normal;
+      shear += weight_of(q) * carried[q].shear;
+      // Half soft it goes its own way to the end.
+      if (softening(now.point[q].damage) < 0.5) return;
+    }
+    const double along =
+        stress_along(o.along, o.size / h - 1.0, normal, bond.young, bond.poisson, in_situ);
+    const Failure how = failure_of(rock_failure(bond, share, {normal, shear, along}));
+    if (how == Failure::none) return;
+    for (int q = 0; q < 3; ++q)
+      fail(bond, share, h, how, o.open[q] + offset.x, o.slide[q] + offset.y, carried[q],
+           now.point[q]);
+    state = now;
+  }
   /// A joint that softens in this step had stored this much before it: all it had taken up.
   BR_HD void begin_work(Index i, const JointBond& bond, const Vec2& offset, const NodeState& a0,
                         const NodeState& a1, const NodeState& b0, const NodeState& b1) const {

@@ -3,7 +3,7 @@
 
 #include "core/precision.hpp"
 #include "exec/buffer.hpp"
-#include "fdem/laws/joint_bond.hpp"
+#include "fdem/laws/rock_failure.hpp"
 #include "fdem/triangles.hpp"
 
 namespace breccia::fdem {

@@ -24,6 +24,7 @@ JointForces<Number> joint_kernel(World& w) {
           j.length.view(),
           j.strength.view(),
           j.preset.view(),
+          w.parameters.in_situ,
           j.stage.view(),
           j.points.view(),
           j.force.as<Number>().view(),

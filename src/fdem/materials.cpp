@@ -21,6 +21,16 @@ JointBond bond_of(const StrengthConfig& s, double young, const JointsConfig& com
   return b;
 }
 
+/// A joint within rock: it fails with the rock if the case says so.
+JointBond bond_within(const MaterialConfig& m, const Config& config) {
+  JointBond b = bond_of(m.joint, m.young, config.joints);
+  if (config.joints.criterion != "rock") return b;
+  const bool stress = config.plane == "stress";
+  b.young = stress ? m.young : m.young / (1.0 - m.poisson * m.poisson);
+  b.poisson = stress ? m.poisson : m.poisson / (1.0 - m.poisson);
+  return b;
+}
+
 JointBond weaker(const JointBond& a, const JointBond& b) {
   JointBond w = a;
   w.stiffness = std::min(a.stiffness, b.stiffness);
@@ -30,6 +40,9 @@ JointBond weaker(const JointBond& a, const JointBond& b) {
   w.residual = std::min({a.residual, b.residual, w.friction});
   w.softening_open = std::min(a.softening_open, b.softening_open);
   w.softening_slide = std::min(a.softening_slide, b.softening_slide);
+  // The rock on its two sides stretches along the edge alike: its stress is the mean of both.
+  w.young = 0.5 * (a.young + b.young);
+  w.poisson = 0.5 * (a.poisson + b.poisson);
   return w;
 }
 
@@ -54,9 +67,7 @@ BondTable bond_table(const Config& config) {
     return static_cast<std::int16_t>(table.bonds.size() - 1);
   };
   for (const MaterialConfig& m : config.materials) table.dormant.push_back(m.joints == "extrinsic");
-  const auto own = [&](const MaterialConfig& m) {
-    return bond_of(m.joint, m.young, config.joints);
-  };
+  const auto own = [&](const MaterialConfig& m) { return bond_within(m, config); };
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i; j < n; ++j) {
       const MaterialConfig &a = config.materials[i], &b = config.materials[j];
@@ -69,7 +80,7 @@ BondTable bond_table(const Config& config) {
     }
   double stiffest = 0.0;
   for (const MaterialConfig& m : config.materials) stiffest = std::max(stiffest, m.young);
-  for (const JointConfig& joint : config.joint_laws) {
+  for (const JointConfig& joint : config.joint_laws) {  // planes: their edges fail by themselves
     const std::string where = "joint." + joint.name + ".between";
     if (joint.between.empty()) {
       table.of_joint.push_back(add(bond_of(joint.strength, stiffest, config.joints)));

@@ -323,6 +323,7 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   World w(exec);
   w.parameters.time = config.time;
   w.parameters.gravity = config.gravity;
+  w.parameters.in_situ = {config.in_situ.xx, config.in_situ.yy, config.in_situ.xy};
   w.parameters.local_damping = config.local_damping;
   w.parameters.conservative = config.contact.conservative;
   w.parameters.materials = static_cast<Index>(config.materials.size());

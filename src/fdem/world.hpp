@@ -81,6 +81,7 @@ enum class JointPack : std::uint8_t {
 struct Parameters {
   TimeConfig time;
   Vec2 gravity{};
+  Sym2 in_situ{};  ///< stress at the start  [Pa]
   double local_damping = 0.0;
   double mean_edge = 0.0;  ///<  [m]
   double skin = 0.0;       ///< margin of the search between two triangles at rest  [m]

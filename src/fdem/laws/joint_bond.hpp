@@ -1,12 +1,14 @@
 #pragma once
 // The cohesive joint between two triangles: combined single and smeared crack model.
 
+#include <cstdint>
+
 #include "math/vec2.hpp"
 
 namespace breccia::fdem {
 
 /// 1 over the integral of the softening curve: with it a joint dissipates exactly its fracture
-/// energy. The literature's 3 gives 15.9 % more (docs/theory.md, joints).
+/// energy. The literature's 3 gives 15.9 % more (docs/theory-fdem.md, 2).
 inline constexpr double exact_softening_factor = 2.588612779530447;
 
 /// exp(-t) for 0 <= t <= 4, to 1e-15: only + and *, so that every machine gives the same bits.
@@ -31,7 +33,7 @@ BR_HD R softening(const R& damage) {
   return (1.0 - ratio * decay(rate * damage)) * (a * left + b * square * square * square);
 }
 
-/// Strength of the joints of a pair of materials. Eight numbers side by side: packs gather them.
+/// Strength of the joints of a pair of materials. Ten numbers side by side: packs gather them.
 struct JointBond {
   double stiffness;        ///< p_f, initial tangent times length  [Pa]
   double tension;          ///< f_t  [Pa]
@@ -39,18 +41,34 @@ struct JointBond {
   double friction;         ///< tan phi_i  [-]
   double softening_open;   ///< o_t f_t = factor G_I  [J/m2]
   double softening_slide;  ///< s_t f_s = factor G_II  [J/m2]
-  double reversible;  ///< 1: unloading goes back along the curve, as in the classical codes, which
-                      ///< heals and can create energy; 0: along the secant  [-]
-  double residual;    ///< tan phi_r <= tan phi_i: friction kept while a pressed joint softens  [-]
+  double reversible;   ///< 1: unloading goes back along the curve, as in the classical codes, which
+                       ///< heals and can create energy; 0: along the secant  [-]
+  double residual;     ///< tan phi_r <= tan phi_i: friction kept while a pressed joint softens  [-]
+  double young = 0.0;  ///< E' of the rock beside it, in its plane; 0: the joint fails by its own
+                       ///< tractions alone, as edges do  [Pa]
+  double poisson = 0.0;  ///< nu' of that rock, in its plane  [-]
+
+  BR_HD bool by_rock() const { return young > 0.0; }
 };
 
-/// What an integration point keeps.
+/// How the rock failed at a joint (laws/rock_failure.hpp). none: it has not.
+enum class Failure : std::uint8_t { none, torn, sheared };
+
+/// What an integration point keeps. The last four are those of failure with the rock, 0 before: a
+/// joint may have softened by then, so that they do not follow from its law and the others.
 template <class R>
 struct BondState {
   R damage;   ///< largest D so far  [-]
   R opening;  ///< largest opening so far; 0 until it exceeds the elastic limit  [m]
   R slip;     ///< largest |slip| so far; 0 until it exceeds the elastic limit  [m]
+  R normal;   ///< torn: sigma_0, what it carried; sheared: 0  [Pa]
+  R shear;    ///< torn: tau_0, what it carried; sheared: c_0, without friction  [Pa]
+  R opened;   ///< torn: its opening then, o_0  [m]
+  R slid;     ///< torn: its |slip| then, s_0  [m]; sheared: |slip| of yield over strength  [m/Pa]
 };
+BR_HD inline Failure failure_of(const BondState<double>& state) {
+  return state.normal > 0.0 ? Failure::torn : state.shear > 0.0 ? Failure::sheared : Failure::none;
+}
 
 /// Tractions at an integration point.
 template <class R>
@@ -59,7 +77,7 @@ struct BondTraction {
   R shear;   ///< tau, with the sign of the slip  [Pa]
 };
 
-/// Law of one integration point (docs/theory.md, joints):
+/// Law of one integration point (docs/theory-fdem.md, 2):
 ///
 ///   opening o < 0     sigma = p_f o / h, without limit and never degraded
 ///   o <= o_p          sigma = z f_t (2 r - r^2), r = o / o_p, o_p = 2 h f_t / p_f
@@ -89,10 +107,11 @@ BR_HD BondTraction<R> elastic_answer(const R& slope, const R& tension, const R& 
           sideways * (1.0 - size * (0.25 / strength))};
 }
 
-/// The law in full. @param strength  of this joint over its law's: scales f_t, c and, so that
-/// lengths stay, both energies  [-]. @param h  initial length  [m]
-BR_HD inline BondTraction<double> answer(const JointBond& law, double strength, double h,
-                                         double opening, double slip, BondState<double>& state) {
+/// The law in full while the rock has not failed. @param strength  of this joint over its law's:
+/// scales f_t, c and, so that lengths stay, both energies  [-]. @param h  initial length  [m]
+BR_HD inline BondTraction<double> edge_answer(const JointBond& law, double strength, double h,
+                                              double opening, double slip,
+                                              BondState<double>& state) {
   using R = double;
   const R zero = constant<R>(0.0), one = constant<R>(1.0);
   const R tension = law.tension * strength;
@@ -138,7 +157,7 @@ BR_HD inline BondTraction<double> answer(const JointBond& law, double strength, 
   return t;
 }
 
-/// Energy that a point would give back if it were unloaded now, by direction.  [J/m2]
+/// Energy that a point would give back, by direction.  [J/m2]
 struct StoredEnergy {
   double open, slide;
 };
@@ -148,8 +167,9 @@ BR_HD inline double stored_on_parabola(double f, double x, double p) {
   const double r = smaller(x, p) / p;
   return f * p * (r * r - r * r * r / 3.0);
 }
-BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h, double opening,
-                                 double slip, const BondState<double>& state) {
+/// If it were unloaded now.
+BR_HD inline StoredEnergy edge_stored(const JointBond& law, double strength, double h,
+                                      double opening, double slip, const BondState<double>& state) {
   const double tension = law.tension * strength, o_p = 2.0 * h * tension / law.stiffness;
   const double pressure = opening < 0.0 ? law.stiffness * opening / h : 0.0;
   const double shear = law.cohesion * strength - law.friction * pressure;

@@ -1,10 +1,10 @@
 // The cohesive law at one integration point: softening, fracture energy, unloading.
 
-#include "fdem/laws/joint_bond.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "fdem/laws/rock_failure.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 constexpr double h = 1e-3;
 
 JointBond bond(double factor = exact_softening_factor) {
-  return {150e9, 3e6, 15e6, 0.7, factor * 10.0, factor * 50.0, 0.0, 0.0};
+  return {150e9, 3e6, 15e6, 0.7, factor * 10.0, factor * 50.0, 0.0, 0.0, 0.0, 0.0};
 }
 BondTraction<double> at(const JointBond& b, double opening, double slip, BondState<double>& s) {
   return answer(b, 1.0, h, opening, slip, s);

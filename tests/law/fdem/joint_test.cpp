@@ -23,6 +23,7 @@ Scene two_triangles(bool a_first = true) {
   m.joint.energy_open = 10.0;
   m.joint.energy_slide = 50.0;
   scene.config.joints.softening_factor = 3.0;
+  scene.config.joints.criterion = "edge";  // as in the classical codes
   prepare::Mesh mesh;
   mesh.point = {{0.0, 0.0}, {1e-3, 0.0}, {0.5e-3, 0.8e-3}, {0.5e-3, -0.8e-3}};
   mesh.triangle = {{0, 1, 2}, {0, 3, 1}};

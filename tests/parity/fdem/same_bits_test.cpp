@@ -48,6 +48,23 @@ TEST(FdemSameBits, for_any_number_of_threads) {
   for (const int threads : {2, 3, 7}) EXPECT_EQ(hash_after(world(threads)), reference()) << threads;
 }
 
+/// So that the tests here cover both ways in which the rock fails at a joint, and the edges' own.
+TEST(FdemSameBits, are_those_of_joints_that_fail_in_all_ways) {
+  fdem::World w = world(1);
+  for (int i = 0; i < 250; ++i) fdem::step(w);
+  EXPECT_EQ(fdem::state_hash(w), reference());
+  int failed[3] = {};
+  for (Index i = 0; i < w.joints.size(); ++i)
+    ++failed[static_cast<int>(fdem::failure_of(w.joints.points.data()[i].point[1]))];
+  EXPECT_GT(failed[static_cast<int>(fdem::Failure::torn)], 5);
+  EXPECT_GT(failed[static_cast<int>(fdem::Failure::sheared)], 5);
+  Scene edge = impact();
+  edge.config.joints.criterion = "edge";
+  const std::uint64_t by_edge = hash_after(edge.world(1));
+  EXPECT_NE(by_edge, reference());
+  EXPECT_EQ(hash_after(edge.world(3)), by_edge);
+}
+
 TEST(FdemSameBits, for_any_width_of_vector) {
   for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight}) {
     if (lanes > widest_lanes()) continue;  // this processor has no wider ones

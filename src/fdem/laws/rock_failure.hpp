@@ -1,0 +1,188 @@
+#pragma once
+// Failure of the rock at a joint (joints.criterion = "rock"): a joint of a free mesh fails where
+// the stress of the rock beside it fails on any plane near its edge, with the traction it then
+// carries.
+//
+// Derivation (docs/theory-fdem.md, 2.1; Breccia's own). By its own tractions alone an edge inclined
+// by theta to the plane of largest tension sigma_1 fails where sigma_1 cos^2 theta = f_t, and bears
+// shear up to c besides: on a free mesh strength is f_t/(0.9135 + 0.0865 sigma_2/sigma_1) and grows
+// with c. A crack that follows edges is, over its length, one in the plane of largest tension. So
+// the criterion is Rankine's and Mohr and Coulomb's for the rock, not for the edge, and the
+// traction vector fades as one:
+//   criterion  from sigma_n, tau (means over the joint) and sigma_l (along the edge, from its
+//   stretch) torn       sigma = z(D) sigma_0 o/o_m, |tau| = z(D) tau_0 |s|/s_m  [Pa],
+//              D = |(<o - o_0>, <|s| - s_0>)|/o_t  [-]
+//   sheared    as by its own tractions with c_0 = |tau_0| + min(sigma_0, 0) tan phi for c  [Pa]
+// In uniaxial tension (sigma_0, tau_0) = f_t cos theta (cos theta, sin theta): a vector of f_t per
+// length across the tension, along the tension; opened along it, it takes G_I per that length,
+// whatever theta.
+
+#include "fdem/laws/joint_bond.hpp"
+
+namespace breccia::fdem {
+
+/// cos^2 35 degrees. In a free mesh an edge lies within 30 degrees of any direction; 5 more for
+/// triangles that are not equilateral. So near, sigma_1 counts in full.
+inline constexpr double torn_in_full = 0.6710100716628344;
+/// cos^2 60 degrees. From 35 degrees on sigma_1 counts less, as cos^2 theta; beyond 60, where
+/// another edge of the triangle must lie nearer, the joint does not tear for it.
+inline constexpr double torn_at_all = 0.25;
+/// cos(2 x 25 degrees). Two planes can slide, 90 degrees - phi apart: of edges 60 degrees apart one
+/// lies within 25 of one of both nearly everywhere. 35 changed nothing in compression tests.
+inline constexpr double sheared_at_all = 0.6427876096865394;
+
+/// Stress of the rock at a joint, tension positive.  [Pa]
+struct RockStress {
+  double normal, shear, along;  ///< across the edge, in it, and along it
+};
+
+/// Stress along an edge from its stretch, which both sides share:
+///   sigma_l = E' (|e|/h - 1) + nu' (sigma_n - S0_nn) + S0_ll
+/// @param axis  e, unit vector  [-]  @param stretch  |e|/h - 1  [-]  @param normal  sigma_n  [Pa]
+/// @param in_situ  S_0, taken along the present axis  [Pa]
+template <class R>
+BR_HD R stress_along(const Vec2Of<R>& axis, const R& stretch, const R& normal, const R& young,
+                     const R& poisson, const Sym2& in_situ) {
+  const R &x = axis.x, &y = axis.y;
+  const R xx = x * x, yy = y * y, twice = 2.0 * in_situ.xy * x * y;
+  const R start_along = in_situ.xx * xx + in_situ.yy * yy + twice;
+  const R start_across = in_situ.xx * yy + in_situ.yy * xx - twice;
+  return young * stretch + poisson * (normal - start_across) + start_along;
+}
+
+/// Whether the rock can have failed on any plane at all: sigma_1 above f_t, or the circle beyond
+/// c - sigma tan phi. Cheap, for packs; rock_failure says on which.
+template <class R>
+BR_HD auto may_fail(const R& tension, const R& cohesion, const R& friction, const R& normal,
+                    const R& shear, const R& along) {
+  const R centre = 0.5 * (normal + along), half = 0.5 * (normal - along);
+  const R radius = root(half * half + shear * shear);
+  return either(centre + radius > tension,
+                friction * centre + radius * root(1.0 + friction * friction) > cohesion);
+}
+
+/// Stress over strength.  [-]
+struct RockFailure {
+  double torn, sheared;
+  BR_HD double most() const { return larger(torn, sheared); }
+};
+
+/// How far the rock is from failure on a plane near this edge. With theta between its normal and
+/// the direction of sigma_1, C and radius those of Mohr's circle:
+///   torn     sigma_n/f_t, or, if sigma_n > 0, sigma_1 min(1, cos^2 theta/cos^2 35 deg)/f_t
+///   sheared  (C tan phi + radius/cos phi)/c, if the edge is within 25 degrees of a plane that
+///   slides
+BR_HD inline RockFailure rock_failure(const JointBond& law, double strength, const RockStress& s) {
+  const double tension = law.tension * strength, cohesion = law.cohesion * strength;
+  const double centre = 0.5 * (s.normal + s.along), half = 0.5 * (s.normal - s.along);
+  const double radius = root(half * half + s.shear * s.shear);
+  RockFailure f{s.normal / tension, 0.0};
+  if (!(radius > 0.0)) return f;
+  const double cos2 = 0.5 + 0.5 * half / radius;  // of theta
+  if (s.normal > 0.0 && cos2 >= torn_at_all)
+    f.torn = larger(f.torn, (centre + radius) * smaller(1.0, cos2 / torn_in_full) / tension);
+  const double reach = radius * root(1.0 + law.friction * law.friction);
+  const double middle = centre * law.friction;
+  const double own =
+      absolute(s.shear) + s.normal * law.friction;  // less middle: reach cos(2 angle)
+  if (own > 0.0 && own - middle >= sheared_at_all * reach) f.sheared = (middle + reach) / cohesion;
+  return f;
+}
+
+/// @returns none while both are below 1
+BR_HD inline Failure failure_of(const RockFailure& f) {
+  return f.torn >= 1.0 ? Failure::torn : f.sheared >= 1.0 ? Failure::sheared : Failure::none;
+}
+
+/// A point of a joint that fails with the rock: from now on it answers from what it carries, and
+/// its force does not jump. If it had begun to soften it goes on with its z(D).
+/// @param carried  its tractions now, by the law of edges  [Pa]
+BR_HD inline void fail(const JointBond& law, double strength, double h, Failure how, double opening,
+                       double slip, const BondTraction<double>& carried, BondState<double>& state) {
+  const double unit = h / law.stiffness, slid = absolute(slip), shear = absolute(carried.shear);
+  const double pressure = larger(0.0, -carried.normal), z = softening(state.damage);
+  state.damage = larger(state.damage, 1e-12);  // it has begun
+  if (how == Failure::torn) {
+    // No less than a hundredth of f_t, so that nothing is divided by zero.
+    const double least = 0.01 * law.tension * strength;
+    const double rubbing = pressure * (z * law.friction + (1.0 - z) * law.residual);
+    state.normal = larger(carried.normal / z, least);
+    state.shear = larger(0.0, shear - smaller(rubbing, slid / unit)) / z;
+    state.opening = state.opened = larger(opening, unit * least);
+    state.slip = state.slid = larger(slid, 1e-4 * unit * least);
+    return;
+  }
+  const double rest = (1.0 - z) * law.residual * pressure, rubs = law.friction * pressure;
+  state.normal = 0.0;
+  state.shear = larger((shear - rest) / z - rubs, 0.02 * law.cohesion * strength);
+  // On the secant to where it yields: its slip and traction are on it.
+  const double resists = state.shear + rubs, share = (z * resists + rest) / resists;
+  state.slid = shear > 0.0 ? share * slid / shear : unit;
+  state.slip = 0.0;
+}
+
+/// Torn (above). Pressed again it rubs by phi, fading to phi_r.
+BR_HD inline BondTraction<double> torn_answer(const JointBond& law, double h, double opening,
+                                              double slip, BondState<double>& state) {
+  const double slid = absolute(slip), slope = law.stiffness / h;
+  const double open = larger(0.0, opening - state.opened), slide = larger(0.0, slid - state.slid);
+  const double per_length = law.tension / law.softening_open;  // 1/o_t
+  state.damage = larger(state.damage, smaller(1.0, per_length * root(open * open + slide * slide)));
+  state.opening = larger(state.opening, opening);
+  state.slip = larger(state.slip, slid);
+  const double z = softening(state.damage), pressure = slope * smaller(0.0, opening);
+  const double rubbing = -pressure * (z * law.friction + (1.0 - z) * law.residual);
+  const double kept = z * state.shear * smaller(1.0, slid / state.slip);
+  return {opening < 0.0 ? pressure : z * state.normal * smaller(1.0, opening / state.opening),
+          copysign(kept + smaller(rubbing, slope * slid), slip)};
+}
+
+/// Sheared (above).
+BR_HD inline BondTraction<double> sheared_answer(const JointBond& law, double strength, double h,
+                                                 double opening, double slip,
+                                                 BondState<double>& state) {
+  const double slid = absolute(slip), tension = law.tension * strength;
+  const double o_p = 2.0 * h * tension / law.stiffness;
+  const double pressure = law.stiffness / h * smaller(0.0, opening);
+  const double resists = state.shear - law.friction * pressure, yield = resists * state.slid;
+  const double over_o = larger(0.0, opening - o_p), over_s = larger(0.0, slid - yield);
+  if (over_o > 0.0) state.opening = larger(state.opening, opening);
+  if (over_s > 0.0) state.slip = larger(state.slip, slid);
+  const double x = over_o * law.tension / law.softening_open;
+  const double y = over_s * resists / (law.softening_slide * strength);
+  state.damage = larger(state.damage, smaller(1.0, root(x * x + y * y)));
+  const double z = softening(state.damage), r = opening / o_p;
+  double pull = r < 1.0 ? 2.0 * r - r * r : 1.0;
+  if (state.opening > 0.0) pull = opening / state.opening;
+  const double kept = z * state.shear - pressure * (z * law.friction + (1.0 - z) * law.residual);
+  return {opening < 0.0 ? pressure : z * tension * pull,
+          copysign(kept * smaller(1.0, slid / larger(state.slip, yield)), slip)};
+}
+
+/// The law in full, of an integration point of either criterion. @param strength  of this joint
+/// over its law's: scales f_t, c and, so that lengths stay, both energies  [-]. @param h  initial
+/// length [m]
+BR_HD inline BondTraction<double> answer(const JointBond& law, double strength, double h,
+                                         double opening, double slip, BondState<double>& state) {
+  switch (failure_of(state)) {
+    case Failure::torn:
+      return torn_answer(law, h, opening, slip, state);
+    case Failure::sheared:
+      return sheared_answer(law, strength, h, opening, slip, state);
+    case Failure::none:
+      break;
+  }
+  return edge_answer(law, strength, h, opening, slip, state);
+}
+
+/// Energy that a point would give back if it were unloaded now, by direction.  [J/m2]
+BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h, double opening,
+                                 double slip, const BondState<double>& state) {
+  if (failure_of(state) == Failure::none)
+    return edge_stored(law, strength, h, opening, slip, state);
+  BondState<double> same = state;
+  const BondTraction<double> t = answer(law, strength, h, opening, slip, same);
+  return {0.5 * t.normal * opening, 0.5 * t.shear * slip};
+}
+
+}  // namespace breccia::fdem
