@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <string_view>
 
 #include "exec/error.hpp"
 
 namespace breccia::prepare {
 namespace {
+
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  ///< of UTF-8; spreadsheets write it
 
 std::string trimmed(const std::string& text) {
   const char* blank = " \t\r";
@@ -38,6 +42,23 @@ std::optional<std::vector<double>> numbers(const std::string& line) {
   return values;
 }
 
+/// Whether each field begins as a name does, with a letter, and is no number. Where one begins as a
+/// number, the line is of numbers with a slip.
+bool is_names(const std::string& line) {
+  for (std::size_t at = 0; at <= line.size();) {
+    const std::size_t end = std::min(line.find(',', at), line.size());
+    const std::string word = trimmed(line.substr(at, end - at));
+    const char first = word[word.starts_with('"') ? 1 : 0];  // '\0' if there is none
+    double value = 0.0;
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool number = error != std::errc::invalid_argument && rest == word.data() + word.size();
+    const bool letter = std::isalpha(static_cast<unsigned char>(first)) || (first & 0x80) != 0;
+    if (!letter || number) return false;
+    at = end + 1;
+  }
+  return true;
+}
+
 }  // namespace
 
 void read_csv(const std::string& path, std::size_t count, const std::string& wanted,
@@ -47,12 +68,13 @@ void read_csv(const std::string& path, std::size_t count, const std::string& wan
   std::string text;
   bool names_may_come = true;
   for (int line = 1; std::getline(file, text); ++line) {
+    if (line == 1 && text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
     text = trimmed(text);
     if (text.empty() || text[0] == '#') continue;
-    const auto values = numbers(text);
-    const bool names = !values && names_may_come;
+    const bool names = names_may_come && is_names(text);
     names_may_come = false;
     if (names) continue;
+    const auto values = numbers(text);
     if (!values || values->size() != count || !take(*values))
       throw InputError(fmt::format("{}, line {}: \"{}\" is not {}", path, line, text, wanted));
   }
