@@ -16,6 +16,7 @@
 #include "exec/threads.hpp"
 #include "io/suggestion.hpp"
 #include "run/machine.hpp"
+#include "run/signals.hpp"
 
 namespace {
 
@@ -127,6 +128,7 @@ int guarded(int argc, char** argv, breccia::Communicator* ranks) {
 
 int main(int argc, char** argv) {
   breccia::let_waiting_threads_sleep(argv);
+  breccia::ignore_quota_signal();
   try {
     const std::unique_ptr<breccia::Communicator> ranks = breccia::launched_ranks();
     const std::string command = argc > 1 ? argv[1] : "";

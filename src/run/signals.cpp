@@ -9,11 +9,10 @@ namespace breccia {
 namespace {
 
 constexpr std::array handled{SIGTERM, SIGINT, SIGUSR1};
-constexpr std::array ignored{SIGXFSZ, SIGPIPE};
 
 volatile sig_atomic_t first_signal = 0;
 std::array<struct sigaction, handled.size()> former_handled;
-std::array<struct sigaction, ignored.size()> former_ignored;
+struct sigaction former_pipe;
 
 extern "C" void note_signal(int signal) {
   if (first_signal != 0) ::_exit(128 + signal);
@@ -21,6 +20,10 @@ extern "C" void note_signal(int signal) {
 }
 
 }  // namespace
+
+void ignore_quota_signal() {
+  ::signal(SIGXFSZ, SIG_IGN);
+}
 
 StopSignals::StopSignals() {
   first_signal = 0;
@@ -31,15 +34,13 @@ StopSignals::StopSignals() {
   for (std::size_t i = 0; i < handled.size(); ++i)
     ::sigaction(handled[i], &action, &former_handled[i]);
   action.sa_handler = SIG_IGN;
-  for (std::size_t i = 0; i < ignored.size(); ++i)
-    ::sigaction(ignored[i], &action, &former_ignored[i]);
+  ::sigaction(SIGPIPE, &action, &former_pipe);
 }
 
 StopSignals::~StopSignals() {
   for (std::size_t i = 0; i < handled.size(); ++i)
     ::sigaction(handled[i], &former_handled[i], nullptr);
-  for (std::size_t i = 0; i < ignored.size(); ++i)
-    ::sigaction(ignored[i], &former_ignored[i], nullptr);
+  ::sigaction(SIGPIPE, &former_pipe, nullptr);
 }
 
 int StopSignals::received() {

@@ -3,9 +3,13 @@
 
 namespace breccia {
 
+/// From now on a file that would grow past the quota (`ulimit -f`) is an error of the write call,
+/// not the end of the process.
+void ignore_quota_signal();
+
 /// While it lives, SIGTERM, SIGINT and SIGUSR1 only set a flag; a second one ends the process at
-/// once with 128 + its number. SIGXFSZ and SIGPIPE are ignored, so that a full quota or a closed
-/// terminal becomes an error of the write call. The former handlers return with its end.
+/// once with 128 + its number. SIGPIPE is ignored, so that a closed terminal becomes an error of
+/// the write call. The former handlers return with its end.
 class StopSignals {
  public:
   StopSignals();

@@ -11,9 +11,11 @@
 namespace breccia {
 
 /// Starts `breccia` by a shell with these arguments; both streams go to `output`.
-inline pid_t start_program(const std::string& arguments, const std::string& output = "/dev/null") {
+/// @param first  commands of the shell before it, as in "ulimit -f 8;"
+inline pid_t start_program(const std::string& arguments, const std::string& output = "/dev/null",
+                           const std::string& first = "") {
   const std::string command =
-      std::string("exec '") + program + "' " + arguments + " > " + output + " 2>&1";
+      first + " exec '" + program + "' " + arguments + " > " + output + " 2>&1";
   const pid_t child = ::fork();
   if (child == 0) {
     ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);

@@ -266,6 +266,7 @@ TEST(Run, OnAFullDiskKeepsOlderCheckpointsAndNoHalfFiles) {
   // The history outgrows the limit; files of the size of a checkpoint do not.
   const pid_t child = start_process([&] {
     const struct rlimit limit { 8192, 8192 };
+    ignore_quota_signal();
     ::setrlimit(RLIMIT_FSIZE, &limit);
     return run_fake(plan, scratch / "out");
   });
@@ -288,6 +289,7 @@ TEST(Run, ThatCannotWriteACheckpointKeepsTheOlderOnes) {
   plan.limits.steps = 40;
   const pid_t child = start_process([&] {
     const struct rlimit limit { 1100, 1100 };  // case.toml fits, a checkpoint does not
+    ignore_quota_signal();
     ::setrlimit(RLIMIT_FSIZE, &limit);
     return resume_fake(plan, scratch / "out");
   });
