@@ -81,9 +81,25 @@ void compare(const File& file, std::span<const Bytes> pieces, const std::string&
   }
 }
 
+const char* kind_text(mode_t mode) {
+  return S_ISLNK(mode)                    ? "a link"
+         : S_ISDIR(mode)                  ? "a folder"
+         : S_ISFIFO(mode)                 ? "a pipe"
+         : S_ISCHR(mode) || S_ISBLK(mode) ? "a device"
+                                          : "no regular file";
+}
+
+/// A rename would put a file in the place of a device, too, where the user may do that.
+void refuse_what_is_no_file(const std::string& path) {
+  struct stat about {};
+  if (::lstat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode))
+    throw IoError(fmt::format("{}: cannot write: it is {}", path, kind_text(about.st_mode)));
+}
+
 /// Calls write(file) on a temporary file, which then takes the name `path` or is gone.
 template <class Write>
 void replace_by(const std::string& path, const Write& write) {
+  refuse_what_is_no_file(path);
   const std::string temporary = path + ".tmp";
   File file(temporary, File::Use::replace);
   try {

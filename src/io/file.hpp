@@ -52,7 +52,8 @@ class File {
 
 /// Writes the pieces, one after the other, under a temporary name in the same folder, then renames
 /// it: under its name stands either the old file or the new one, whatever happens to the program.
-/// @throws IoError; an older file at `path` is then untouched and nothing else is left
+/// @throws IoError, also if something else than a regular file stands there: what was at `path` is
+///         then untouched and nothing else is left
 void replace_file(const std::string& path, std::span<const Bytes> pieces);
 
 /// As replace_file, and what stands there survives a power cut: the disk has it, it was read back

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -12,6 +14,8 @@
 namespace breccia {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::string reason(const std::string& path, std::uint64_t limit) {
   try {
     read_whole_file(path, limit);
@@ -19,6 +23,10 @@ std::string reason(const std::string& path, std::uint64_t limit) {
     return error.what();
   }
   return "";
+}
+
+std::ptrdiff_t entries_of(const ScratchFolder& folder) {
+  return std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator());
 }
 
 TEST(File, pieces_follow_each_other_and_replace_what_was_there) {
@@ -63,6 +71,33 @@ TEST(File, what_the_disk_has_no_room_for_is_not_begun) {
     EXPECT_NE(std::string(error.what()).find("are free on its disk"), std::string::npos);
   }
   EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+}
+
+std::string refusal_to_replace(const std::string& path) {
+  try {
+    replace_file(path, "new");
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(File, what_is_no_regular_file_is_never_replaced) {
+  const ScratchFolder folder;
+  const std::string pipe = folder / "pipe", link = folder / "link", inner = folder / "folder";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  ASSERT_EQ(::symlink("/dev/null", link.c_str()), 0);
+  fs::create_directory(inner);
+  EXPECT_EQ(refusal_to_replace(pipe), pipe + ": cannot write: it is a pipe");
+  EXPECT_EQ(refusal_to_replace(link), link + ": cannot write: it is a link");
+  EXPECT_EQ(refusal_to_replace(inner), inner + ": cannot write: it is a folder");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(entries_of(folder), 3);
+  const std::string device = folder / "device";  // made by those who may, as they may replace it
+  if (::mknod(device.c_str(), S_IFCHR | 0600, ::makedev(1, 3)) != 0) return;
+  EXPECT_EQ(refusal_to_replace(device), device + ": cannot write: it is a device");
+  EXPECT_TRUE(fs::is_character_file(device));
 }
 
 }  // namespace
