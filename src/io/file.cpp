@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
 #include "exec/error.hpp"
@@ -25,10 +27,10 @@ int flags_of(File::Use use) {
   switch (use) {
     case File::Use::read:
       return O_RDONLY | O_NONBLOCK;  // or a pipe without a writer would be waited for
-    case File::Use::replace:
-      return O_RDWR | O_CREAT | O_TRUNC;
+    case File::Use::create:
+      return O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW;
     case File::Use::append:
-      return O_WRONLY | O_CREAT | O_APPEND;
+      return O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK;
   }
   return O_RDONLY;
 }
@@ -96,14 +98,33 @@ void refuse_what_is_no_file(const std::string& path) {
     throw IoError(fmt::format("{}: cannot write: it is {}", path, kind_text(about.st_mode)));
 }
 
+constexpr std::size_t random_digits = 16;
+constexpr std::string_view temporary_end = ".tmp";
+
+/// NAME.0123456789abcdef.tmp. Where others may write, a name that could be guessed could be a link
+/// that waits there.
+std::string temporary_name(const std::string& path) {
+  std::uint64_t random = 0;
+  if (::getrandom(&random, sizeof random, 0) != sizeof random) fail_at(path, "name a copy of it");
+  return fmt::format("{}.{:0{}x}{}", path, random, random_digits, temporary_end);
+}
+
+bool is_temporary_name(std::string_view name) {
+  if (!name.ends_with(temporary_end)) return false;
+  name.remove_suffix(temporary_end.size());
+  if (name.size() < random_digits + 2 || name[name.size() - random_digits - 1] != '.') return false;
+  return name.substr(name.size() - random_digits).find_first_not_of("0123456789abcdef") ==
+         std::string_view::npos;
+}
+
 /// Calls write(file) on a temporary file, which then takes the name `path` or is gone.
 template <class Write>
 void replace_by(const std::string& path, const Write& write) {
   refuse_what_is_no_file(path);
-  const std::string temporary = path + ".tmp";
-  File file(temporary, File::Use::replace);
+  const std::string temporary = temporary_name(path);
+  File file(temporary, File::Use::create, path);
   try {
-    write(file, temporary);
+    write(file);
     file.close();
     if (std::rename(temporary.c_str(), path.c_str()) != 0)
       fail_at(path, "rename " + temporary + " to it");
@@ -115,13 +136,17 @@ void replace_by(const std::string& path, const Write& write) {
 
 }  // namespace
 
-File::File(const std::string& path, Use use) : path_(path) {
+File::File(const std::string& path, Use use, const std::string& called)
+    : path_(called.empty() ? path : called) {
   file_ = ::open(path.c_str(), flags_of(use) | O_CLOEXEC, 0666);
-  if (file_ < 0) fail(use == Use::read ? "read" : "write");
+  const char* const what = use == Use::read ? "read" : "write";
+  if (file_ < 0 && errno == ELOOP && use != Use::read)
+    throw IoError(fmt::format("{}: cannot write: it is a link", path_));
+  if (file_ < 0) fail(what);
   struct stat about {};
-  if (use != Use::read || (::fstat(file_, &about) == 0 && S_ISREG(about.st_mode))) return;
+  if (::fstat(file_, &about) == 0 && S_ISREG(about.st_mode)) return;
   ::close(file_);
-  throw IoError(path_ + ": cannot read: it is not a regular file");
+  throw IoError(fmt::format("{}: cannot {}: it is not a regular file", path_, what));
 }
 
 File::~File() {
@@ -176,19 +201,27 @@ void File::close() {
 }
 
 void replace_file(const std::string& path, std::span<const Bytes> pieces) {
-  replace_by(path, [&](File& file, const std::string&) {
+  replace_by(path, [&](File& file) {
     for (const Bytes piece : pieces) file.write(piece);
   });
 }
 
 void replace_durably(const std::string& path, std::span<const Bytes> pieces) {
   refuse_without_room(path, length_of(pieces));
-  replace_by(path, [&](File& file, const std::string& name) {
+  replace_by(path, [&](File& file) {
     for (const Bytes piece : pieces) file.write(piece);
     file.sync();
-    compare(file, pieces, name);
+    compare(file, pieces, path);
   });
   sync_folder(folder_of(path));
+}
+
+void remove_leftovers(const std::string& folder) {
+  std::error_code ignored;  // one that stays does no harm
+  for (const std::filesystem::directory_entry& entry :
+       std::filesystem::directory_iterator(folder, ignored))
+    if (is_temporary_name(entry.path().filename().string()))
+      std::filesystem::remove(entry.path(), ignored);
 }
 
 }  // namespace breccia

@@ -23,12 +23,14 @@ class File {
  public:
   enum class Use {
     read,
-    replace,  ///< empties what was there
-    append,   ///< makes it if there is none
+    create,  ///< there must be none
+    append,  ///< makes it if there is none
   };
 
-  /// @throws IoError if it cannot be opened; to read, also if it is a folder, a pipe or a device
-  File(const std::string& path, Use use);
+  /// Writes through no link that somebody has put in the place of the file.
+  /// @param called  the file's name in messages; empty: its path
+  /// @throws IoError if it cannot be opened, or is a folder, a pipe or a device
+  File(const std::string& path, Use use, const std::string& called = "");
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   ~File();
@@ -46,12 +48,13 @@ class File {
  private:
   [[noreturn]] void fail(const char* what) const;
 
-  std::string path_;
+  std::string path_;  ///< as messages call it
   int file_ = -1;
 };
 
-/// Writes the pieces, one after the other, under a temporary name in the same folder, then renames
-/// it: under its name stands either the old file or the new one, whatever happens to the program.
+/// Writes the pieces, one after the other, under a temporary name in the same folder that nobody
+/// can guess, then renames it: under its name stands either the old file or the new one, whatever
+/// happens to the program.
 /// @throws IoError, also if something else than a regular file stands there: what was at `path` is
 ///         then untouched and nothing else is left
 void replace_file(const std::string& path, std::span<const Bytes> pieces);
@@ -60,5 +63,9 @@ void replace_file(const std::string& path, std::span<const Bytes> pieces);
 /// and compared before it took its name, and the folder is synced. Refuses at once what the disk
 /// has no room for.
 void replace_durably(const std::string& path, std::span<const Bytes> pieces);
+
+/// Removes what a killed program left in the folder of files that it was replacing. Nobody else may
+/// be writing there.
+void remove_leftovers(const std::string& folder);
 
 }  // namespace breccia

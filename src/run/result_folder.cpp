@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "exec/error.hpp"
+#include "io/file.hpp"
 
 namespace breccia {
 namespace {
@@ -45,10 +46,10 @@ bool holds_input(const std::string& path) {
 /// The locked file. @throws InputError if another process holds it
 int lock(const std::string& path, int flags) {
   const std::string name = path + "/" + lock_name;
-  const int file = ::open(name.c_str(), flags | O_CLOEXEC, 0666);
+  const int file = ::open(name.c_str(), flags | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (file < 0) {
     if (errno == ENOENT && (flags & O_CREAT) == 0) return -1;
-    fail(name, std::strerror(errno));
+    fail(name, errno == ELOOP ? "it is a link" : std::strerror(errno));
   }
   if (::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return file;
   std::array<char, 256> text{};
@@ -66,6 +67,13 @@ void note_owner(int file) {
   const std::string owner = fmt::format("process {} on {}\n", ::getpid(), host.data());
   // A lock without its owner's name still locks.
   if (::ftruncate(file, 0) != 0 || ::pwrite(file, owner.data(), owner.size(), 0) < 0) return;
+}
+
+/// What runs that were killed here left behind.
+void remove_leftovers_of_runs(const std::string& path) {
+  remove_leftovers(path);
+  for (const char* folder : {"pictures", "fields", "checkpoints"})
+    remove_leftovers(path + "/" + folder);
 }
 
 }  // namespace
@@ -113,6 +121,7 @@ ResultFolder ResultFolder::create(const std::string& path, Existing existing) {
     if (existing == Existing::replace) fs::remove_all(fs::path(path) / name, error);
     if (error) fail(folder.file(name), error.message());
   }
+  remove_leftovers_of_runs(path);
   return folder;
 }
 
@@ -122,6 +131,7 @@ ResultFolder ResultFolder::open(const std::string& path) {
   if (!holds_run(path)) throw InputError(path + ": this folder holds no run; nothing was run");
   const int file = lock(path, O_RDWR | O_CREAT);
   note_owner(file);
+  remove_leftovers_of_runs(path);
   return ResultFolder(path, file);
 }
 

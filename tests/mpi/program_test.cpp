@@ -119,7 +119,7 @@ TEST_F(ProgramOnRanks, strong_benchmark_ends_in_the_state_of_one_process) {
 }
 
 TEST_F(ProgramOnRanks, a_frame_that_cannot_be_written_ends_all_with_one_message) {
-  fs::create_directories(out("full") + "/pictures/0000.png.tmp");  // where a file should go
+  fs::create_directories(out("full") + "/pictures/0000.png");  // where a file should go
   EXPECT_EQ(
       run(3,
           "run " + std::string(source_dir) +
@@ -129,7 +129,7 @@ TEST_F(ProgramOnRanks, a_frame_that_cannot_be_written_ends_all_with_one_message)
   const std::string text = bytes_of(out("told"));
   const std::size_t first = text.find("error: ");
   ASSERT_NE(first, std::string::npos) << text;
-  EXPECT_NE(text.find("0000.png.tmp: cannot write"), std::string::npos) << text;
+  EXPECT_NE(text.find("0000.png: cannot write"), std::string::npos) << text;
   EXPECT_EQ(text.find("error: ", first + 1), std::string::npos) << text;
 }
 

@@ -38,7 +38,7 @@ TEST(File, pieces_follow_each_other_and_replace_what_was_there) {
   EXPECT_EQ(read_whole_file(path), "one, two" + large);
   replace_file(path, std::span(pieces).first(1));
   EXPECT_EQ(read_whole_file(path), "one, ");
-  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+  EXPECT_EQ(entries_of(folder), 1);
 }
 
 TEST(File, a_file_longer_than_the_limit_is_refused) {
@@ -70,7 +70,7 @@ TEST(File, what_the_disk_has_no_room_for_is_not_begun) {
   } catch (const IoError& error) {
     EXPECT_NE(std::string(error.what()).find("are free on its disk"), std::string::npos);
   }
-  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+  EXPECT_EQ(entries_of(folder), 0);
 }
 
 std::string refusal_to_replace(const std::string& path) {

@@ -61,5 +61,35 @@ TEST_F(ProgramAndFiles, a_quota_on_file_sizes_ends_every_command_with_3) {
   EXPECT_EQ(entries_of("made"), 0U);
 }
 
+TEST_F(ProgramAndFiles, nothing_is_written_through_links_that_wait_in_the_folder) {
+  const std::string precious = path("precious");
+  replace_file(precious, "precious");
+  for (const char* name : {"history.csv", "log.jsonl", ".lock", "case.toml", "summary.json"}) {
+    const std::string out = path(std::string("out_") + name);
+    fs::create_directory(out);
+    fs::create_symlink(precious, out + "/" + name);
+    fs::create_symlink(precious, out + "/" + name + ".tmp");
+    EXPECT_NE(run("run " + path("ball.toml") + " -o " + out), 0) << name;
+    EXPECT_EQ(read_whole_file(precious), "precious") << name;
+  }
+  fs::create_directory(path("out"));
+  for (const char* name : {"case.toml", "summary.json", "elements.pvd"})
+    fs::create_symlink(precious, path("out/") + name + ".tmp");
+  EXPECT_EQ(run("run " + path("ball.toml") + " -o " + path("out")), 0) << output();
+  EXPECT_EQ(read_whole_file(precious), "precious");
+}
+
+TEST_F(ProgramAndFiles, what_a_killed_run_left_goes_when_it_is_resumed) {
+  ASSERT_EQ(run("run " + path("ball.toml") + " --steps 5 -o " + path("out")), 0) << output();
+  const std::string left = ".0123456789abcdef.tmp";
+  for (const char* name : {"summary.json", "checkpoints/a.br", "fields/a.vtu", "pictures/0000.png"})
+    replace_file(path("out/") + name + left, "half");
+  for (const char* name : {"out/notes.tmp", "out/a.0123.tmp"}) replace_file(path(name), "mine");
+  ASSERT_EQ(run("resume " + path("out")), 0) << output();
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path("out")))
+    EXPECT_FALSE(entry.path().string().ends_with(left)) << entry.path();
+  for (const char* name : {"out/notes.tmp", "out/a.0123.tmp"}) EXPECT_TRUE(fs::exists(path(name)));
+}
+
 }  // namespace
 }  // namespace breccia
