@@ -9,6 +9,7 @@
 #include "app/case.hpp"
 #include "app/commands.hpp"
 #include "exec/error.hpp"
+#include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
 
 namespace breccia::app {
@@ -28,7 +29,7 @@ struct CheckCommand {
         const Case read = load_case(path, overrides);
         std::visit(
             [&](const auto& config) {
-              fmt::print("{}: good: {}, {}, {}, ends at {}\n", path, config.method,
+              fmt::print("{}: good: {}, {}, {}, ends at {}\n", harmless(path), config.method,
                          counted(config.bodies.size(), "body", "bodies"),
                          counted(config.materials.size(), "material", "materials"),
                          time_text(config.time.end));
@@ -36,7 +37,7 @@ struct CheckCommand {
             read.config);
       } catch (const Error& error) {
         std::fflush(stdout);
-        std::fputs(fmt::format("error: {}\n", error.what()).c_str(), stderr);
+        std::fputs(fmt::format("error: {}\n", harmless(error.what())).c_str(), stderr);
         if (exit_code == 0) exit_code = error.exit_code();
       }
     }

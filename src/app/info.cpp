@@ -10,6 +10,7 @@
 #include "app/commands.hpp"
 #include "exec/error.hpp"
 #include "io/checkpoint.hpp"
+#include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
 #include "io/vtu_reader.hpp"
 #include "io/whole_file.hpp"
@@ -21,34 +22,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Prints what files say, which must not steer the terminal.
+template <class... Values>
+void show(fmt::format_string<Values...> form, Values&&... values) {
+  fmt::print("{}", harmless(fmt::format(form, std::forward<Values>(values)...)));
+}
+
 void describe_state(const std::string& path) {
   const CheckpointReader reader(path);
-  fmt::print("{}\n", path);
+  show("{}\n", path);
   if (reader.has("run.case_name"))
-    fmt::print("  a state of case {} ({}, {} precision), step {}, {}\n",
-               reader.text("run.case_name"), reader.text("run.method"),
-               reader.has("run.precision") ? reader.text("run.precision") : "double",
-               count_text(static_cast<double>(reader.value<std::int64_t>("run.step"))),
-               time_text(reader.value<double>("run.time")));
-  if (reader.has("case.name")) fmt::print("  the model of case {}\n", reader.text("case.name"));
-  fmt::print("  {:<32} {:>12} {:>12}\n", "section", "items", "bytes");
+    show("  a state of case {} ({}, {} precision), step {}, {}\n", reader.text("run.case_name"),
+         reader.text("run.method"),
+         reader.has("run.precision") ? reader.text("run.precision") : "double",
+         count_text(static_cast<double>(reader.value<std::int64_t>("run.step"))),
+         time_text(reader.value<double>("run.time")));
+  if (reader.has("case.name")) show("  the model of case {}\n", reader.text("case.name"));
+  show("  {:<32} {:>12} {:>12}\n", "section", "items", "bytes");
   for (const CheckpointReader::Section& section : reader.sections())
-    fmt::print("  {:<32} {:>12} {:>12}\n", section.name, section.count, section.bytes.size());
+    show("  {:<32} {:>12} {:>12}\n", section.name, section.count, section.bytes.size());
 }
 
 void describe_folder(const std::string& path) {
   const std::string summary = path + "/summary.json";
   if (!fs::exists(summary))
     throw InputError(path + ": this folder holds no run (there is no summary.json)");
-  fmt::print("{}", read_whole_file(summary));
+  show("{}", read_whole_file(summary));
   if (fs::exists(path + "/elements.pvd")) {
     const std::vector<double> times = frame_times(path);
     if (!times.empty())
-      fmt::print("frames: {}, from {} to {}\n", times.size(), time_text(times.front()),
-                 time_text(times.back()));
+      show("frames: {}, from {} to {}\n", times.size(), time_text(times.front()),
+           time_text(times.back()));
   }
   for (const CheckpointFile& file : list_checkpoints(path + "/checkpoints"))
-    fmt::print("checkpoint: {}, step {}\n", file.path, count_text(static_cast<double>(file.step)));
+    show("checkpoint: {}, step {}\n", file.path, count_text(static_cast<double>(file.step)));
 }
 
 void describe_table(const std::string& path) {
@@ -57,8 +64,8 @@ void describe_table(const std::string& path) {
   const std::size_t units_end = text.find('\n', names_end + 1);
   if (units_end == std::string::npos) throw InputError(path + ": this is no history of a run");
   const auto lines = std::count(text.begin(), text.end(), '\n');
-  fmt::print("{}\n  {} rows\n  columns: {}\n  units:   {}\n", path, lines - 2,
-             text.substr(0, names_end), text.substr(names_end + 1, units_end - names_end - 1));
+  show("{}\n  {} rows\n  columns: {}\n  units:   {}\n", path, lines - 2, text.substr(0, names_end),
+       text.substr(names_end + 1, units_end - names_end - 1));
 }
 
 void describe(const std::string& path) {
@@ -66,7 +73,7 @@ void describe(const std::string& path) {
   const std::string kind = fs::path(path).extension().string();
   if (kind == ".csv") return describe_table(path);
   if (kind == ".json" || kind == ".toml") {
-    fmt::print("{}", read_whole_file(path));
+    show("{}", read_whole_file(path));
     return;
   }
   describe_state(path);

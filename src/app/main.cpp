@@ -14,6 +14,7 @@
 #include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
 #include "exec/threads.hpp"
+#include "io/harmless.hpp"
 #include "io/suggestion.hpp"
 #include "run/machine.hpp"
 #include "run/signals.hpp"
@@ -24,19 +25,8 @@ constexpr int usage_error = 2;
 constexpr int file_error = 3;
 constexpr int memory_error = 5;
 
-/// A text from files without what would steer a terminal.
-std::string harmless(const std::string& text) {
-  std::string shown;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool steers = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
-    shown += steers ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
-  }
-  return shown;
-}
-
 void write_error(const std::string& message) {
-  std::fputs(fmt::format("error: {}\n", harmless(message)).c_str(), stderr);
+  std::fputs(fmt::format("error: {}\n", breccia::harmless(message)).c_str(), stderr);
 }
 
 /// Tells of a wrong command line; a first word that is no command is named.

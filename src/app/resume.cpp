@@ -15,6 +15,7 @@
 #include "app/run_options.hpp"
 #include "domain/domain.hpp"
 #include "exec/error.hpp"
+#include "io/harmless.hpp"
 #include "run/run.hpp"
 #include "run/signals.hpp"
 
@@ -64,7 +65,8 @@ struct ResumeCommand {
       if (leads(ranks)) folder.emplace(ResultFolder::open(path));
       read = load_case(path + "/case.toml", options.overrides);
       const auto warn = [ranks](const std::string& warning) {
-        if (leads(ranks)) std::fputs(fmt::format("warning: {}\n", warning).c_str(), stderr);
+        if (leads(ranks))
+          std::fputs(fmt::format("warning: {}\n", harmless(warning)).c_str(), stderr);
       };
       checkpoint.emplace(newest_good_checkpoint(path + "/checkpoints", warn));
       read.name = checkpoint->text("run.case_name");

@@ -17,6 +17,7 @@
 
 #include "exec/error.hpp"
 #include "io/case_source.hpp"
+#include "io/harmless.hpp"
 #include "io/suggestion.hpp"
 #include "io/units.hpp"
 
@@ -77,14 +78,9 @@ void insert_value(toml::table& table, const std::string& key, const std::string&
   table.insert_or_assign(key, text);
 }
 
-/// Bytes that could steer a terminal are spelled out.
+/// In a message a text from the case is one line.
 std::string printable(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    safe += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
-  }
-  return safe;
+  return harmless(text, "");
 }
 
 /// An empty name would stand for all elements where groups are named.

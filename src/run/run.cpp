@@ -8,6 +8,7 @@
 #include <new>
 
 #include "exec/error.hpp"
+#include "io/harmless.hpp"
 #include "io/whole_file.hpp"
 #include "run/checks.hpp"
 #include "run/messages.hpp"
@@ -371,7 +372,7 @@ void Run::write_summary(const Summary& summary) const {
 
 void Run::say(const std::string& text) {
   if (plan_.speech == Speech::quiet) return;
-  std::fputs(text.c_str(), stdout);
+  std::fputs(harmless(text).c_str(), stdout);
   std::fflush(stdout);
 }
 

@@ -148,6 +148,11 @@ TEST_F(Program, LetsNoNameFromAFileSteerTheTerminal) {
   replace_file(path("steering.toml"), steering);
   EXPECT_EQ(run("check " + path("steering.toml")), 2);
   EXPECT_EQ(output().find('\x1b'), std::string::npos) << output();
+  replace_file(path("table.csv"), "step\x1b[2J\n-\n0\n");
+  EXPECT_EQ(run("check '" + path("a\x1b[2J.toml") + "'"), 3);
+  EXPECT_EQ(output().find('\x1b'), std::string::npos) << output();
+  EXPECT_EQ(run("info " + path("table.csv")), 0);
+  EXPECT_EQ(output().find('\x1b'), std::string::npos) << output();
 }
 
 TEST_F(Program, EndsACaseShorterThanAnyStep) {
