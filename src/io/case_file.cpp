@@ -18,16 +18,13 @@
 #include "exec/error.hpp"
 #include "io/case_source.hpp"
 #include "io/harmless.hpp"
+#include "io/problems.hpp"
 #include "io/suggestion.hpp"
+#include "io/toml_error.hpp"
 #include "io/units.hpp"
 
 namespace breccia {
 namespace {
-
-struct Problem {
-  std::uint32_t line;  ///< 0: from an override
-  std::string text;
-};
 
 const char* type_of(const toml::node& node) {
   switch (node.type()) {
@@ -55,7 +52,7 @@ toml::table parse(const std::string& text, const std::string& path) {
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
     throw InputError(fmt::format("1 problem in {}; nothing was run.\n  line {}, column {}: {}",
-                                 path, at.line, at.column, error.description()));
+                                 path, at.line, at.column, plain_toml_error(error.description())));
   }
 }
 
@@ -72,7 +69,7 @@ void insert_value(toml::table& table, const std::string& key, const std::string&
   try {
     static_cast<void>(toml::parse("value = " + value_text(text)));
   } catch (const toml::parse_error& error) {
-    throw InputError("--set " + key + ": " + std::string(error.description()) +
+    throw InputError("--set " + key + ": " + plain_toml_error(error.description()) +
                      "; nothing was run.");
   }
   table.insert_or_assign(key, text);
@@ -467,16 +464,7 @@ void CaseReader::leave() {
 
 void CaseReader::finish() {
   leave();
-  std::vector<Problem>& problems = state_->problems;
-  if (problems.empty()) return;
-  std::stable_sort(problems.begin(), problems.end(),
-                   [](const Problem& a, const Problem& b) { return a.line < b.line; });
-  std::string text = fmt::format("{} problem{} in {}; nothing was run.", problems.size(),
-                                 problems.size() == 1 ? "" : "s", state_->path);
-  for (const Problem& problem : problems)
-    text +=
-        "\n  " + (problem.line > 0 ? fmt::format("line {}, ", problem.line) : "") + problem.text;
-  throw InputError(text);
+  if (!state_->problems.empty()) throw InputError(problems_text(state_->problems, state_->path));
 }
 
 std::string case_name(const std::string& path) {

@@ -1,5 +1,6 @@
 #include "io/units.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -108,7 +109,16 @@ double times_power_of_ten(std::string_view digits, int tens) {
   return value;
 }
 
-/// The wanted unit with the prefix of the first symbol of another: "GN", "Pa" give "GPa".
+/// Whether people write such a unit: nobody means "mPa" or "ks".
+bool is_usual(std::string_view unit) {
+  constexpr std::array<std::string_view, 17> usual{"nm", "um", "mm",  "cm",  "km",  "ns",
+                                                   "us", "ms", "kPa", "MPa", "GPa", "kN",
+                                                   "MN", "GN", "kJ",  "MJ",  "kHz"};
+  return std::find(usual.begin(), usual.end(), unit) != usual.end();
+}
+
+/// The wanted unit with the prefix of the first symbol of another: "GN", "Pa" give "GPa". Empty if
+/// nobody writes it so.
 std::string with_prefix_of(std::string_view given, const std::string& wanted) {
   const std::string_view first = given.substr(0, given.find_first_of("/* ^-0123456789"));
   for (const NamedUnit& named : named_units())
@@ -117,7 +127,7 @@ std::string with_prefix_of(std::string_view given, const std::string& wanted) {
     const std::string prefixed = std::string(prefix.symbol) + wanted;
     if (first.starts_with(prefix.symbol) && find_symbol(first) && find_symbol(wanted) &&
         find_symbol(prefixed))
-      return prefixed;
+      return is_usual(prefixed) ? prefixed : "";
   }
   return wanted;
 }
@@ -197,8 +207,9 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
   }
   if (unit->powers != target.powers) {
     problem = quoted + " is " + describe_dimension(*unit) + ", " + describe_dimension(target) +
-              " is wanted, in " + wanted + " or the like; try \"" + std::string(digits) + " " +
-              with_prefix_of(rest, wanted) + "\"";
+              " is wanted, in " + wanted + " or the like";
+    if (const std::string hint = with_prefix_of(rest, wanted); !hint.empty())
+      problem += "; try \"" + std::string(digits) + " " + hint + "\"";
     return 0.0;
   }
   return times_power_of_ten(digits, unit->tens - target.tens) * (unit->factor / target.factor);

@@ -59,6 +59,12 @@ bool is_names(const std::string& line) {
   return true;
 }
 
+/// A line in a message.
+std::string quoted(const std::string& line) {
+  constexpr std::size_t most = 80;
+  return "\"" + (line.size() > most ? line.substr(0, most) + "..." : line) + "\"";
+}
+
 }  // namespace
 
 void read_csv(const std::string& path, std::size_t count, const std::string& wanted,
@@ -67,6 +73,7 @@ void read_csv(const std::string& path, std::size_t count, const std::string& wan
   if (!file) throw IoError(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
   std::string text;
   bool names_may_come = true;
+  bool is_ours = false;  // a line of what is no such file at all is not for everybody's eyes
   for (int line = 1; std::getline(file, text); ++line) {
     if (line == 1 && text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
     text = trimmed(text);
@@ -76,7 +83,9 @@ void read_csv(const std::string& path, std::size_t count, const std::string& wan
     if (names) continue;
     const auto values = numbers(text);
     if (!values || values->size() != count || !take(*values))
-      throw InputError(fmt::format("{}, line {}: \"{}\" is not {}", path, line, text, wanted));
+      throw InputError(fmt::format("{}, line {}{} is not {}", path, line,
+                                   is_ours ? ": " + quoted(text) : "", wanted));
+    is_ours = true;
   }
   if (file.bad()) throw IoError(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -359,6 +360,29 @@ TEST(CaseFile, all_problems_are_told_at_once_in_the_order_of_lines) {
   const std::string message = message_of(text + "[[probe]]\nnam = 3\n[serch]\n");
   EXPECT_TRUE(message.starts_with("4 problems in ")) << message;
   EXPECT_LT(message.find("line 5"), message.find("line 12"));
+}
+
+TEST(CaseFile, a_slip_in_each_of_many_items_is_told_twenty_times) {
+  std::string text = good;
+  for (int n = 0; n < 5000; ++n) text += "[[body]]\n";
+  const std::string message = message_of(text + "[serch]\n");
+  EXPECT_TRUE(message.starts_with("10001 problems in ")) << message.substr(0, 100);
+  EXPECT_NE(message.find("... and 9960 more"), std::string::npos) << message;
+  EXPECT_NE(message.find("serch"), std::string::npos);
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 42);
+}
+
+TEST(CaseFile, what_is_no_toml_is_told_in_plain_words) {
+  const auto told = [](const std::string& text, const std::string& words) {
+    return message_of(text).find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(told("a = 1.0\na = 2.0\n", "line 2, column 5: a is given twice"));
+  EXPECT_TRUE(told("[time]\n[time]\n", "line 2, column 1: time is given twice"));
+  EXPECT_TRUE(told("a = [1, 2\n", "line 1, column 11: array: the file ends before it does"));
+  EXPECT_TRUE(told("[time\nend = 1.0\n", "expected ']', but the line ends"));
+  EXPECT_TRUE(told("a = 40 mm\n", "in quotes, as in \"40 mm\""));
+  EXPECT_TRUE(told("a = Rock\n", "in quotes, as in \"rock\""));
+  EXPECT_TRUE(told("a = \"rock\nb = 2\n", "ends with a quote in the line"));
 }
 
 /// A word with one letter changed, dropped or added.

@@ -80,5 +80,11 @@ TEST(Units, a_wrong_dimension_is_named_with_the_unit_to_try) {
             "\"2 kg\" is a mass, a velocity is wanted, in m/s or the like; try \"2 m/s\"");
 }
 
+TEST(Units, no_unit_is_proposed_that_nobody_means) {
+  EXPECT_EQ(problem_of("8 mm", "Pa"),
+            "\"8 mm\" is a length, a pressure is wanted, in Pa or the like");  // "8 mPa"
+  EXPECT_EQ(problem_of("5 kg", "s"), "\"5 kg\" is a mass, a time is wanted, in s or the like");
+}
+
 }  // namespace
 }  // namespace breccia

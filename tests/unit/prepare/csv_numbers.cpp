@@ -52,5 +52,15 @@ TEST_F(CsvNumbers, the_mark_that_spreadsheets_put_first_is_no_part_of_a_line) {
   EXPECT_EQ(lines_in("\xef\xbb\xbfx,y\n0,0\n1,0.5\n"), 2U);
 }
 
+TEST_F(CsvNumbers, a_line_is_quoted_only_after_one_of_numbers) {
+  EXPECT_NE(refusal_of("0,0\n1,b\n").find("line 2: \"1,b\" is not x,y"), std::string::npos);
+  for (const char* names : {"", "user:secret\n"}) {  // of a file that has nothing to do with it
+    const std::string message = refusal_of(names + std::string("3:secret\n"));
+    EXPECT_EQ(message.find("secret"), std::string::npos) << message;
+    EXPECT_NE(message.find(" is not x,y in metres"), std::string::npos) << message;
+  }
+  EXPECT_LT(refusal_of("0,0\n" + std::string(10'000, 'x')).size(), 300U);
+}
+
 }  // namespace
 }  // namespace breccia::prepare
