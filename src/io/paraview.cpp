@@ -46,6 +46,7 @@ ParaviewSeries ParaviewSeries::resumed(const std::string& folder, double time) {
   ParaviewSeries series(folder);
   if (!std::filesystem::exists(folder + "/elements.pvd")) return series;
   series.times_ = frame_times(folder);
+  series.listed_ = series.times_.size();
   const auto later = std::upper_bound(series.times_.begin(), series.times_.end(), time);
   series.drop_from(static_cast<std::size_t>(later - series.times_.begin()));
   return series;
@@ -58,14 +59,28 @@ void ParaviewSeries::write(const FrameContents& frame) {
   replace_file(start + file_of(kinds[0], times_.size()), frame.points);
   replace_file(start + file_of(kinds[1], times_.size()), frame.lines);
   times_.push_back(frame.time);
-  write_collections();
+  if (collections_are_due()) write_collections();
 }
 
-void ParaviewSeries::write_collections() const {
+void ParaviewSeries::finish() {
+  if (listed_ != times_.size()) write_collections();
+}
+
+bool ParaviewSeries::collections_are_due() const {
+  constexpr std::size_t few = 256;
+  constexpr int share = 20;
+  return times_.size() <= few || Clock::now() - listed_at_ >= share * listing_;
+}
+
+void ParaviewSeries::write_collections() {
+  const Clock::time_point begin = Clock::now();
   const std::span<const char* const> all(kinds);
   replace_file(folder_ + "/elements.pvd", collection(times_, all.first(1)));
   replace_file(folder_ + "/links.pvd", collection(times_, all.last(1)));
   replace_file(folder_ + "/result.pvd", collection(times_, all));
+  listed_ = times_.size();
+  listed_at_ = Clock::now();
+  listing_ = listed_at_ - begin;
 }
 
 void ParaviewSeries::drop_from(std::size_t first) {

@@ -1,6 +1,7 @@
 #pragma once
 // A series of frames that a stock ParaView opens with its times.
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,10 @@ namespace breccia {
 ///   fields/links_0000.vtu     the lines with every line field
 ///   elements.pvd, links.pvd   each series with its times; result.pvd: both in one
 ///
-/// VTK XML, appended raw, zlib blocks; numbers as Float32. The .pvd files are replaced as a whole
-/// after each frame, so a run that is killed leaves a series that opens.
+/// VTK XML, appended raw, zlib blocks; numbers as Float32. The .pvd files are replaced as a whole,
+/// so a run that is killed leaves a series that opens. A few hundred frames are in them as soon as
+/// they are written. Later the .pvd files take a twentieth of the time between frames at most, so
+/// that many frames cost as much each as few; what they lack is added by finish().
 class ParaviewSeries {
  public:
   /// Starts a new series in the folder, which is made if it does not exist. @throws IoError
@@ -28,16 +31,24 @@ class ParaviewSeries {
   /// IoError
   void write(const FrameContents& frame);
   void write(const Frame& frame) { write(contents_of(frame)); }
+  /// Brings the .pvd files up to the last frame. @throws IoError
+  void finish();
 
   /// Times of the frames written so far.  [s]
   const std::vector<double>& times() const { return times_; }
 
  private:
-  void write_collections() const;
+  using Clock = std::chrono::steady_clock;
+
+  void write_collections();
+  bool collections_are_due() const;
   void drop_from(std::size_t first);
 
   std::string folder_;
   std::vector<double> times_;
+  std::size_t listed_ = 0;         ///< frames in the .pvd files
+  Clock::time_point listed_at_{};  ///< when the .pvd files had been written last
+  Clock::duration listing_{};      ///< what that took
 };
 
 }  // namespace breccia

@@ -154,6 +154,7 @@ void Recorder::record_last(Method& method, Background& background) {
 }
 
 void Recorder::sync() {
+  if (series_) series_->finish();
   history_.sync();
 }
 

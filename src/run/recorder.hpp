@@ -67,6 +67,7 @@ class Recorder {
   void record(Method& method, Background& background);
   /// Writes a row and a frame of the last state, if the schedule did not ask for them.
   void record_last(Method& method, Background& background);
+  /// Brings all files up to what was recorded. The background must have finished.
   void sync();
 
   /// To be saved after record() and before record_last().

@@ -222,10 +222,10 @@ void Run::save_checkpoint() {
   if (checkpoints_.last_step() == method_.steps()) return;
   const OutputTime time(plan_.timers, output_);
   method_.verify();
+  background_.finish();
   recorder_.sync();
   const std::int64_t step = method_.steps();
   const auto state = std::make_shared<CheckpointWriter>(record_state());
-  background_.finish();
   log_.write(Level::info, "checkpoint", step, checkpoints_.begin(step));
   if (const std::shared_ptr<Method> later = method_.snapshot()) {
     background_.add([this, later, state, step] {
@@ -292,6 +292,11 @@ int Run::done() {
 void Run::failed(int exit_code, const std::string& message) {
   progress_.end_line();
   // The first failure is the one to tell; a disk that takes no summary any more changes nothing.
+  try {
+    background_.finish();
+    recorder_.sync();
+  } catch (const std::exception&) {
+  }
   try {
     log_.write(Level::error, "end", method_.steps(), message);
   } catch (const Error&) {

@@ -205,6 +205,30 @@ TEST_F(ParaviewSeriesTest, resuming_a_folder_without_a_series_starts_one) {
   EXPECT_EQ(frame_times(folder), std::vector<double>{2.0});
 }
 
+TEST_F(ParaviewSeriesTest, many_frames_are_listed_from_time_to_time_and_all_in_the_end) {
+  ParaviewSeries series(folder);
+  const Frame frame = small_frame(0.0, 1);
+  std::size_t listings = 0, listed = 0;
+  for (std::size_t n = 1; n <= 1500; ++n) {
+    Frame next = frame;
+    next.time = 1e-3 * static_cast<double>(n);
+    series.write(next);
+    const bool few = n <= 200, look = few || n % 100 == 0;
+    if (!look) continue;
+    const std::size_t now = frame_times(folder).size();
+    ASSERT_LE(now, n);
+    ASSERT_TRUE(now == n || !few);  // at once, as long as there are few
+    listings += now == n && !few;
+    listed = now;
+  }
+  EXPECT_LT(listings, 7U);  // of 13 looks; each frame rewrote the list of all
+  EXPECT_GT(listed, 200U);
+  series.finish();
+  EXPECT_EQ(frame_times(folder), series.times());
+  EXPECT_EQ(series.times().size(), 1500U);
+  EXPECT_EQ(read_frame(folder, 1499).time, 1.5);
+}
+
 TEST_F(ParaviewSeriesTest, a_frame_that_does_not_exist_is_bad_input) {
   ParaviewSeries series(folder);
   series.write(small_frame(0.0, 2));
