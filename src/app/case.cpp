@@ -189,7 +189,11 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
             plan_device(device_bytes(model) / (ranks == nullptr ? 1 : ranks->size()),
                         quiet || (ranks != nullptr && ranks->rank() > 0));
         });
-        return method_over(config, model, exec, ranks);
+        try {
+          return method_over(config, model, exec, ranks);
+        } catch (const NumericsError& error) {
+          throw NumericsError(fmt::format("step 0, t = 0 s: {}", error.what()));
+        }
       },
       read.config);
 }

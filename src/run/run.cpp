@@ -122,7 +122,7 @@ int Run::execute() {
     const int signal = advance();
     return signal != 0 ? interrupted(signal) : done();
   } catch (const NumericsError& error) {
-    const std::string message = fmt::format("{}\n  {}", error.what(), save_crash());
+    const std::string message = fmt::format("{}\n  {}", located(error.what()), save_crash());
     failed(error.exit_code(), message);
     throw NumericsError(message);
   } catch (const CheckFailed&) {
@@ -315,6 +315,17 @@ void Run::failed(int exit_code, const std::string& message) {
     write_summary(now);
   } catch (const Error&) {
   }
+}
+
+std::string Run::located(const std::string& error) {
+  if (error.starts_with("step ")) return error;
+  try {
+    if (plan_.machine.ranks == 1) method_.verify();  // of several, some may not be there to answer
+  } catch (const NumericsError& precise) {
+    return precise.what();
+  } catch (const Error&) {
+  }
+  return fmt::format("step {}, t = {:.6e} s: {}", method_.steps(), method_.time(), error);
 }
 
 /// Saves the state with the wrong numbers; returns a sentence about it.

@@ -74,6 +74,8 @@ class Run {
   int interrupted(int signal);
   int done();
   void failed(int exit_code, const std::string& message);
+  /// What went wrong, with step, time and element, where the search or a law that met it knew none.
+  std::string located(const std::string& error);
   std::string save_crash();
   Summary summary() const;
   Summary measured() const;

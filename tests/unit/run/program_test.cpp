@@ -234,6 +234,16 @@ TEST_F(Program, RefusesConstantsThatLeaveNoTimeStep) {
   EXPECT_FALSE(fs::exists(path("out")));
 }
 
+TEST_F(Program, NamesStepTimeAndBodyWhereNumbersGoWrong) {
+  replace_file(path("plate.toml"), torn_plate);
+  EXPECT_EQ(run("run " + path("plate.toml") + " -o " + path("out") +
+                " --set material.rock.damping=1e308"),
+            4);
+  for (const char* part : {"step ", ", t = ", "(plate)"})
+    EXPECT_NE(output().find(part), std::string::npos) << output();
+  EXPECT_TRUE(fs::exists(path("out/crash.br")));
+}
+
 TEST_F(Program, NamesWhatAProbeInThePlaneCanRead) {
   replace_file(path("plate.toml"), torn_plate + "[[probe]]\nname = \"p\"\n");
   EXPECT_EQ(run("check " + path("plate.toml")), 2);

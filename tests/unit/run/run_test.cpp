@@ -197,6 +197,22 @@ TEST(Run, StopsAtWrongNumbersAndSavesTheState) {
   EXPECT_TRUE(CheckpointReader(scratch / "out/crash.br").has("fake.position"));
 }
 
+TEST(Run, NamesStepAndElementOfAFailureThatKnowsNeither) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.lose_at = trouble.spoil_at = 60;
+  EXPECT_THROW(run_fake(fake_plan(), scratch / "found", trouble), NumericsError);
+  const auto message = [&](const std::string& name) {
+    return summary_of(scratch / name)["message"].get<std::string>();
+  };
+  EXPECT_TRUE(message("found").starts_with("step 60: element 3 is not a number\n"))
+      << message("found");
+  trouble.spoil_at = -1;
+  EXPECT_THROW(run_fake(fake_plan(), scratch / "unfound", trouble), NumericsError);
+  EXPECT_TRUE(message("unfound").starts_with("step 60, t = ")) << message("unfound");
+  EXPECT_NE(message("unfound").find(" s: the element at place 3 is lost\n"), std::string::npos);
+}
+
 TEST(Run, NeverSavesWrongNumbersAsACheckpoint) {
   const ScratchFolder scratch;
   RunPlan plan = fake_plan();
