@@ -31,6 +31,8 @@ int flags_of(File::Use use) {
       return O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW;
     case File::Use::append:
       return O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK;
+    case File::Use::change:
+      return O_WRONLY | O_NOFOLLOW | O_NONBLOCK;
   }
   return O_RDONLY;
 }
@@ -137,16 +139,16 @@ void replace_by(const std::string& path, const Write& write) {
 }  // namespace
 
 File::File(const std::string& path, Use use, const std::string& called)
-    : path_(called.empty() ? path : called) {
+    : path_(path), called_(called.empty() ? path : called) {
   file_ = ::open(path.c_str(), flags_of(use) | O_CLOEXEC, 0666);
   const char* const what = use == Use::read ? "read" : "write";
   if (file_ < 0 && errno == ELOOP && use != Use::read)
-    throw IoError(fmt::format("{}: cannot write: it is a link", path_));
+    throw IoError(fmt::format("{}: cannot write: it is a link", called_));
   if (file_ < 0) fail(what);
   struct stat about {};
   if (::fstat(file_, &about) == 0 && S_ISREG(about.st_mode)) return;
   ::close(file_);
-  throw IoError(fmt::format("{}: cannot {}: it is not a regular file", path_, what));
+  throw IoError(fmt::format("{}: cannot {}: it is not a regular file", called_, what));
 }
 
 File::~File() {
@@ -154,7 +156,7 @@ File::~File() {
 }
 
 void File::fail(const char* what) const {
-  fail_at(path_, what);
+  fail_at(called_, what);
 }
 
 std::uint64_t File::size() const {
@@ -194,6 +196,13 @@ void File::cut(std::uint64_t size) {
   if (::ftruncate(file_, static_cast<off_t>(size)) != 0) fail("cut");
 }
 
+bool File::in_place() const {
+  struct stat named {
+  }, open{};
+  return ::stat(path_.c_str(), &named) == 0 && ::fstat(file_, &open) == 0 &&
+         named.st_ino == open.st_ino && named.st_dev == open.st_dev;
+}
+
 void File::close() {
   const int file = file_;
   file_ = -1;
@@ -214,6 +223,18 @@ void replace_durably(const std::string& path, std::span<const Bytes> pieces) {
     compare(file, pieces, path);
   });
   sync_folder(folder_of(path));
+}
+
+void overwrite(const std::string& path, Bytes bytes) {
+  File file(path, File::Use::change);
+  struct stat about {};
+  constexpr std::uint64_t block = 512;  // of st_blocks, whatever the disk's are  [bytes]
+  if (::stat(path.c_str(), &about) != 0) fail_at(path, "write");
+  if (static_cast<std::uint64_t>(about.st_blocks) * block < bytes.size())
+    throw IoError(path + ": cannot write: it has no room on its disk");
+  file.write(bytes);
+  file.cut(bytes.size());
+  file.sync();
 }
 
 void remove_leftovers(const std::string& folder) {

@@ -25,6 +25,7 @@ class File {
     read,
     create,  ///< there must be none
     append,  ///< makes it if there is none
+    change,  ///< there must be one
   };
 
   /// Writes through no link that somebody has put in the place of the file.
@@ -42,13 +43,15 @@ class File {
   /// Waits until the disk has everything.
   void sync();
   void cut(std::uint64_t size);
+  /// Whether it still stands under the path that it was opened by.
+  bool in_place() const;
   /// Tells of failures that a destructor would hide.
   void close();
 
  private:
   [[noreturn]] void fail(const char* what) const;
 
-  std::string path_;  ///< as messages call it
+  std::string path_, called_;
   int file_ = -1;
 };
 
@@ -63,6 +66,11 @@ void replace_file(const std::string& path, std::span<const Bytes> pieces);
 /// and compared before it took its name, and the folder is synced. Refuses at once what the disk
 /// has no room for.
 void replace_durably(const std::string& path, std::span<const Bytes> pieces);
+
+/// Writes over the bytes of a file, in the room that it has on the disk: a last resort where the
+/// disk is too full for a second one. @throws IoError; what does not fit into that room is not
+/// begun
+void overwrite(const std::string& path, Bytes bytes);
 
 /// Removes what a killed program left in the folder of files that it was replacing. Nobody else may
 /// be writing there.

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "exec/error.hpp"
+#include "io/whole_file.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -69,8 +68,7 @@ std::string quoted(const std::string& line) {
 
 void read_csv(const std::string& path, std::size_t count, const std::string& wanted,
               const std::function<bool(const std::vector<double>&)>& take) {
-  std::ifstream file(path);
-  if (!file) throw IoError(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+  std::istringstream file(read_whole_file(path));
   std::string text;
   bool names_may_come = true;
   bool is_ours = false;  // a line of what is no such file at all is not for everybody's eyes
@@ -87,7 +85,6 @@ void read_csv(const std::string& path, std::size_t count, const std::string& wan
                                    is_ours ? ": " + quoted(text) : "", wanted));
     is_ours = true;
   }
-  if (file.bad()) throw IoError(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
 }
 
 }  // namespace breccia::prepare

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "exec/error.hpp"
+#include "io/file.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
 #include "run/checks.hpp"
@@ -313,6 +314,15 @@ void Run::failed(int exit_code, const std::string& message) {
   now.message = message;
   try {
     write_summary(now);
+  } catch (const Error&) {
+    tell_in_place(now);
+  }
+}
+
+/// A full disk has no room for a second summary, but the first must not say that all is well.
+void Run::tell_in_place(const Summary& now) const {
+  try {
+    overwrite(folder_.file("summary.json"), bytes_of(to_json(now)));
   } catch (const Error&) {
   }
 }

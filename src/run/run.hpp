@@ -81,6 +81,7 @@ class Run {
   Summary measured() const;
   void describe_state(Summary& summary) const;
   void write_summary(const Summary& summary) const;
+  void tell_in_place(const Summary& summary) const;
   void say(const std::string& text);
   Standing standing();
 

@@ -7,7 +7,8 @@
 
 namespace breccia {
 
-LineFile::LineFile(const std::string& path) : file_(path, File::Use::append), size_(file_.size()) {}
+LineFile::LineFile(const std::string& path)
+    : path_(path), file_(path, File::Use::append), size_(file_.size()) {}
 
 void LineFile::append(std::string_view line) {
   std::string whole(line);
@@ -23,6 +24,7 @@ void LineFile::append(std::string_view line) {
 
 void LineFile::sync() {
   file_.sync();
+  if (!file_.in_place()) throw IoError(path_ + ": cannot write: it was moved or removed");
 }
 
 void keep_lines(const std::string& path, const std::function<bool(std::string_view)>& keep) {

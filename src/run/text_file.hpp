@@ -19,10 +19,11 @@ class LineFile {
   /// Adds the line and a line end, at once.
   /// @throws IoError naming path and reason; the file then ends after its last whole line
   void append(std::string_view line);
-  /// Waits until the disk has everything. @throws IoError
+  /// Waits until the disk has everything. @throws IoError, also if somebody has moved or removed it
   void sync();
 
  private:
+  std::string path_;
   File file_;
   std::uint64_t size_;  ///< up to the end of the last whole line  [bytes]
 };

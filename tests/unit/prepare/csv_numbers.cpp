@@ -1,6 +1,7 @@
 #include "prepare/csv_numbers.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
@@ -60,6 +61,12 @@ TEST_F(CsvNumbers, a_line_is_quoted_only_after_one_of_numbers) {
     EXPECT_NE(message.find(" is not x,y in metres"), std::string::npos) << message;
   }
   EXPECT_LT(refusal_of("0,0\n" + std::string(10'000, 'x')).size(), 300U);
+}
+
+TEST_F(CsvNumbers, a_pipe_is_refused_at_once) {
+  ASSERT_EQ(::mkfifo(path().c_str(), 0600), 0);
+  const auto take = [](const std::vector<double>&) { return true; };
+  EXPECT_THROW(read_csv(path(), 2, "x,y in metres", take), IoError);
 }
 
 }  // namespace

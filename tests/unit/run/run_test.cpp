@@ -1,7 +1,9 @@
 #include "run/run.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -295,6 +297,49 @@ TEST(Run, OnAFullDiskKeepsOlderCheckpointsAndNoHalfFiles) {
   const auto files = list_checkpoints(scratch / "out/checkpoints");
   ASSERT_EQ(files.size(), 2U);
   for (const CheckpointFile& file : files) EXPECT_NO_THROW(CheckpointReader{file.path});
+}
+
+TEST(Run, TellsOfItsFailureOnADiskThatIsFull) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.output.frames = 0;
+  plan.config.output.history = 0.005;
+  plan.config.checkpoint.wall = 1e9;
+  // A disk of 128 KiB in a name space of the child's own; where mounting is not allowed there is
+  // none.
+  const pid_t child = start_process([&] {
+    if (::unshare(CLONE_NEWNS) != 0 ||
+        ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+        ::mount("tmpfs", scratch.path().c_str(), "tmpfs", 0, "size=128k") != 0)
+      return 0;
+    {
+      std::ofstream filler(scratch / "filler");
+      filler << std::string(96 << 10, 'x');
+    }
+    int code = 0;
+    try {
+      code = run_fake(plan, scratch / "out");
+    } catch (const Error& error) {
+      code = error.exit_code();
+    }
+    const nlohmann::json summary = summary_of(scratch / "out");
+    return code == 3 && summary["status"] == "failed" && summary["exit_code"] == 3 ? 0 : 1;
+  });
+  EXPECT_EQ(wait_for(child), 0);
+}
+
+TEST(Run, EndsWithAnErrorIfItsHistoryIsRemoved) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.pause = 2e-3;
+  const pid_t child =
+      start_process([&] { return run_fake(fake_plan(), scratch / "out", trouble); });
+  while (!fs::exists(scratch / "out/history.csv"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  fs::remove(scratch / "out/history.csv");
+  EXPECT_EQ(wait_for(child), 3);
+  EXPECT_NE(summary_of(scratch / "out")["message"].get<std::string>().find("history.csv"),
+            std::string::npos);
 }
 
 TEST(Run, ThatCannotWriteACheckpointKeepsTheOlderOnes) {
