@@ -14,9 +14,6 @@ constexpr Index none = std::numeric_limits<Index>::max();
 struct LowerIndex {
   BR_HD Index operator()(Index a, Index b) const { return a < b ? a : b; }
 };
-struct Either {
-  BR_HD bool operator()(bool a, bool b) const { return a || b; }
-};
 
 struct ChooseMargin {
   static constexpr const char* name = "core.choose_margin";
@@ -30,18 +27,6 @@ struct ChooseMargin {
 struct LostMargin {
   View<const double> margin;
   BR_HD Index operator()(Index i) const { return std::isfinite(margin[i]) ? none : i; }
-};
-
-/// True for what has left its margin; a NaN has.
-struct BeyondMargin {
-  static constexpr const char* name = "core.beyond_margin";
-  View<const Vec3> reference, position;
-  View<const double> margin;
-
-  BR_HD bool operator()(Index i) const {
-    const Vec3 travelled = position[i] - reference[i];
-    return !(dot(travelled, travelled) <= margin[i] * margin[i]);
-  }
 };
 
 struct BoxSphere {
@@ -76,13 +61,6 @@ void begin_travel(const Exec& exec, const MarginRule& rule, const Buffer<Vec3>& 
   if (lost != none)
     throw NumericsError("the element at place " + std::to_string(lost) +
                         " in memory has a velocity that is not a finite number");
-}
-
-bool exceeded(const Exec& exec, const Travel& travel, const Buffer<Vec3>& position) {
-  if (position.size() != travel.reference.size()) return true;
-  return fold(exec, position.size(), false,
-              BeyondMargin{travel.reference.view(), position.view(), travel.margin.view()},
-              Either{});
 }
 
 void sphere_boxes(const Exec& exec, const Buffer<Vec3>& centre, const Buffer<double>& radius,

@@ -50,10 +50,6 @@ struct Travel {
 void begin_travel(const Exec& exec, const MarginRule& rule, const Buffer<Vec3>& position,
                   const Buffer<Vec3>& velocity, Travel& travel);
 
-/// True if some element is further from its reference than its margin, or nowhere (NaN), or if the
-/// number of elements has changed: the list of pairs is no longer valid.
-bool exceeded(const Exec& exec, const Travel& travel, const Buffer<Vec3>& position);
-
 /// Boxes of spheres, grown by their margins and by a few roundings of the coordinates, so that the
 /// claim above holds in floating-point numbers too.
 /// @param radius  reach of each element: two touch within the sum of theirs  [m]

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exec/for_each.hpp"
+#include "math/constants.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -68,7 +69,6 @@ struct ConcreteShares {
   View<const double> slid, yielded, broke;
 
   BR_HD Shares operator()(Index k) const {
-    constexpr double pi = 3.14159265358979323846;
     const Index i = first + k;
     Shares s;
     if (!owned(a[i])) return s;

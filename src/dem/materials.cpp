@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "dem/restitution.hpp"
+#include "math/constants.hpp"
 
 namespace breccia::dem {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 double harmonic(double a, double b) {
   return a + b > 0.0 ? 2.0 * a * b / (a + b) : 0.0;

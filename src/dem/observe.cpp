@@ -10,6 +10,7 @@
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
+#include "math/constants.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -212,7 +213,6 @@ class Pieces {
   }
 
  private:
-  static std::size_t at(Index e) { return static_cast<std::size_t>(e); }
   std::vector<Index> root_;
 };
 
@@ -333,8 +333,7 @@ Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Eleme
   const ElementState& b = elements.state.data()[links.b.data()[i]];
   const double least = std::min(a.radius, b.radius), touching = a.radius + b.radius;
   const LinkConstants<double> link{links.length.data()[i], links.stiffness.data()[i],
-                                   3.14159265358979323846 * least * least, 0.5 * touching,
-                                   touching};
+                                   pi * least * least, 0.5 * touching, touching};
   const Vec3 d = b.position - a.position;
   const double distance = norm(d);
   const double pull =

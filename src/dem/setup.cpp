@@ -12,11 +12,10 @@
 #include "dem/world.hpp"
 #include "exec/error.hpp"
 #include "exec/sort_scan.hpp"
+#include "math/constants.hpp"
 
 namespace breccia::dem {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 template <class T>
 Buffer<T> filled(const World& w, const std::vector<T>& items) {

@@ -2,6 +2,7 @@
 // The words every kernel is written in: index types, the host-device mark, checked-build
 // assertions.
 
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +31,11 @@ namespace breccia {
 
 /// Position in an array. Signed, 32 bit: a model holds at most 2^31 - 1 elements or links a rank.
 using Index = std::int32_t;
+
+/// A position as containers of the standard library count.
+constexpr std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
 
 /// Number of an element that no sort, rank or device changes.
 using GlobalId = std::int32_t;

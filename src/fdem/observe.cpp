@@ -15,10 +15,6 @@
 namespace breccia::fdem {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 struct HashTriangle {
   OwnedView owned;
   View<const GlobalId> id;

@@ -11,10 +11,6 @@
 namespace breccia::fdem {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// How a triangle lies in the mesh: by numbers of the whole mesh while it is on its way.
 struct Neighbourhood {
   EdgeJoints edges;

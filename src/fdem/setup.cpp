@@ -17,10 +17,6 @@
 namespace breccia::fdem {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 void set_up_triangles(World& w, const Config& config, const Model& model) {
   std::vector<GlobalId> id(model.triangle.size());
   std::iota(id.begin(), id.end(), 0);

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "math/constants.hpp"
+
 namespace breccia {
 namespace {
 
@@ -15,8 +17,6 @@ struct NamedUnit {
   Unit unit;
   bool takes_prefix;
 };
-
-constexpr double pi = 3.14159265358979323846;
 
 const std::vector<NamedUnit>& named_units() {
   static const std::vector<NamedUnit> units{{"m", {{0, 1, 0, 0}}, true},

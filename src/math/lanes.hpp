@@ -115,16 +115,6 @@ BR_HD inline Record read_record(const View<const Record>& records, Index i) {
   return records[i];
 #endif
 }
-template <class Record>
-BR_HD inline void write_record(const View<Record>& records, Index i, const Record& record) {
-#if defined(__CUDA_ARCH__)
-  double numbers[sizeof(Record) / sizeof(double)];
-  __builtin_memcpy(numbers, &record, sizeof record);
-  store_records(records, i, numbers);
-#else
-  records[i] = record;
-#endif
-}
 
 #if !defined(__CUDACC__) && defined(__AVX512F__)
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "exec/error.hpp"
+#include "math/constants.hpp"
 #include "prepare/linking.hpp"
 #include "prepare/ordering.hpp"
 #include "prepare/packing.hpp"
@@ -22,8 +23,6 @@ using dem::Model;
 using prepare::Bar;
 using prepare::BodyLinks;
 using prepare::Container;
-
-constexpr double pi = 3.14159265358979323846;
 
 double ball(double radius) {
   return 4.0 / 3.0 * pi * radius * radius * radius;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "math/constants.hpp"
+
 namespace breccia::prepare {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// A number for a square of a lattice through the whole plane.
 std::uint64_t cell_key(std::int64_t i, std::int64_t j) {

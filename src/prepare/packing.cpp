@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "exec/error.hpp"
+#include "math/constants.hpp"
 #include "prepare/soft_spheres.hpp"
 
 namespace breccia::prepare {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Spheres are pushed apart a little further than they need be, so that they end without overlap
 /// after finitely many steps.  [-]

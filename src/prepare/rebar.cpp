@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "math/constants.hpp"
+
 namespace breccia::prepare {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 double along(double share, double edge) {
   return (share - 0.5) * edge;

@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "exec/error.hpp"
+#include "math/constants.hpp"
 #include "prepare/mesh_check.hpp"
 
 namespace breccia::prepare {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 const double half_root3 = 0.5 * std::sqrt(3.0);  ///< height of an equilateral triangle of edge 1
 
 Index at_least_one(double number) {

@@ -13,10 +13,6 @@
 namespace breccia {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 Exec on_host(Exec exec) {
   exec.space = Space::host;
   return exec;

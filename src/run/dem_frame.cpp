@@ -6,6 +6,7 @@
 
 #include "core/on_host.hpp"
 #include "dem/observe.hpp"
+#include "math/constants.hpp"
 #include "run/dem_method.hpp"
 
 namespace breccia {
@@ -120,8 +121,7 @@ class DemFrame {
         const ElementState* const state = elements_->state.data();
         const double opening = link_opening(c, i);
         const double r = std::min(state[c.a.data()[i]].radius, state[c.b.data()[i]].radius);
-        const double onset =
-            g.law.tensile_strength * 3.14159265358979323846 * r * r / c.stiffness.data()[i];
+        const double onset = g.law.tensile_strength * pi * r * r / c.stiffness.data()[i];
         add_line(c, i,
                  opening < 0.0     ? 2.0F
                  : opening > onset ? 1.0F

@@ -16,10 +16,6 @@ namespace {
 
 using namespace fdem;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// What a rank cannot know by itself.
 struct Placed {
   std::vector<Index> fragment;  ///< of each own triangle

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "math/constants.hpp"
 #include "pair_driver.hpp"
 
 namespace breccia::dem {
@@ -141,7 +142,7 @@ TEST(ConcreteLink, a_brittle_link_falls_to_friction) {
 
 TEST(ConcreteLink, no_force_ever_leaves_the_strength_surface) {
   for (int direction = 0; direction < 37; ++direction) {
-    const double angle = direction * 3.14159265358979 / 36.0;
+    const double angle = direction * pi / 36.0;
     LinkState<double> state{};
     Pair pair;
     const double speed = 2.0 * rupture / 2'000 / pair.dt;
@@ -181,8 +182,7 @@ TEST(ConcreteLink, a_rigid_turn_changes_no_force_and_no_moment) {
     pair.b.position.x = length + 0.5 * onset;
     const int steps = 1'000;
     for (int turn = 0; turn < steps; ++turn) {
-      const LinkResponse<double> r =
-          elastic.answer(link, pair.turn(axis, 2.0 * 3.14159265358979323846 / steps), state);
+      const LinkResponse<double> r = elastic.answer(link, pair.turn(axis, 2.0 * pi / steps), state);
       ASSERT_NEAR(r.normal, 0.5 * strength, 1e-6 * strength);
     }
     // positions round at 1e-16 of the length: 1e-12 of the force of that stretch is all that can be

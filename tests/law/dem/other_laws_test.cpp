@@ -10,6 +10,7 @@
 #include "dem/laws/steel_link.hpp"
 #include "dem/materials.hpp"
 #include "dem/restitution.hpp"
+#include "math/constants.hpp"
 #include "pair_driver.hpp"
 
 namespace breccia::dem {
@@ -17,7 +18,6 @@ namespace {
 
 using testing::Pair;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double length = 0.02, radius = 0.004;
 const SteelLink steel{200e9, 200e9 / 2.6, 500e6, 2e9, 0.08};
 const double area = pi * radius * radius;

@@ -5,10 +5,9 @@
 
 #include "dem/observe.hpp"
 #include "dem/world.hpp"
+#include "math/constants.hpp"
 
 namespace breccia::dem::testing {
-
-inline constexpr double pi = 3.14159265358979323846;
 
 /// A case and a model under construction.
 struct Scene {

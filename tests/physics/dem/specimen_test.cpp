@@ -10,6 +10,8 @@
 
 #include <cstdio>
 
+#include "math/constants.hpp"
+
 namespace breccia::dem {
 namespace {
 
@@ -17,8 +19,6 @@ using testing::Curve;
 using testing::pressed;
 using testing::pulled;
 using testing::Specimen;
-
-constexpr double pi = 3.14159265358979323846;
 
 struct Statistics {
   double mean = 0.0, variation = 0.0;  ///< variation: standard deviation over mean

@@ -9,11 +9,10 @@
 #include "exec/error.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/world.hpp"
+#include "math/constants.hpp"
 #include "prepare/structured.hpp"
 
 namespace breccia::fdem::testing {
-
-inline constexpr double pi = 3.14159265358979323846;
 
 /// A case and a model under construction.
 struct Scene {

@@ -52,7 +52,10 @@ struct Search {
     for (const PairKey key : pairs.key.host()) keys.insert(key);
   }
   bool valid(const Spheres& spheres) const {
-    return !exceeded({}, travel, buffer_of(spheres.centre));
+    for (std::size_t i = 0; i < spheres.centre.size(); ++i)
+      if (!(norm(spheres.centre[i] - travel.reference.host()[i]) <= travel.margin.host()[i]))
+        return false;
+    return true;
   }
 };
 

@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "exec/error.hpp"
+#include "math/constants.hpp"
 #include "unit/io/slab_scene.hpp"
 
 namespace breccia {
@@ -103,7 +104,7 @@ TEST(picture, a_sphere_of_radius_r_covers_pi_r_squared_pixels) {
   const double resolution = pixels_per_metre(options);
   for (const double radius : {0.2, 0.5, 0.9}) {
     const Patch patch = scene_patch(spheres({{0.05, 0.3, 0.02}}, radius), options);
-    const double area = 3.14159265 * radius * radius * resolution * resolution;
+    const double area = pi * radius * radius * resolution * resolution;
     EXPECT_NEAR(patch.pixels, area, 0.02 * area) << radius;
   }
 }
@@ -168,7 +169,7 @@ TEST(picture, a_clip_towards_the_viewer_shows_the_face_of_the_cut) {
   options.clip = "y=0.36";  // what lies before it goes; the circle left has a radius of 0.48
   const Frame frame = spheres({{0, 0, 0}}, 0.6);
   const Patch cut = scene_patch(frame, options);
-  EXPECT_NEAR(cut.pixels, 3.14159265 * 0.48 * 0.48 * resolution * resolution,
+  EXPECT_NEAR(cut.pixels, pi * 0.48 * 0.48 * resolution * resolution,
               0.03 * 0.73 * resolution * resolution);
   options.clip = "y=0.7";
   EXPECT_EQ(scene_patch(frame, options).pixels, 0.0);

@@ -4,6 +4,8 @@
 
 #include <charconv>
 
+#include "math/constants.hpp"
+
 namespace breccia {
 namespace {
 
@@ -42,7 +44,7 @@ TEST(Units, prefixes_products_quotients_and_powers_convert_to_si) {
   EXPECT_EQ(in_si("7 \u00b5m", "m"), 7e-6);
   EXPECT_EQ(in_si("2 min", "s"), 120.0);
   EXPECT_EQ(in_si("1.5 h", "s"), 5400.0);
-  EXPECT_DOUBLE_EQ(in_si("180 deg", "rad"), 3.14159265358979323846);
+  EXPECT_DOUBLE_EQ(in_si("180 deg", "rad"), pi);
   EXPECT_DOUBLE_EQ(in_si("36 km/h", "m/s"), 10.0);
 }
 

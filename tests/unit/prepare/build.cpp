@@ -11,14 +11,13 @@
 #include <fstream>
 
 #include "exec/error.hpp"
+#include "math/constants.hpp"
 #include "prepare/packing.hpp"
 #include "prepare/rebar.hpp"
 #include "unit/prepare/models.hpp"
 
 namespace breccia::dem {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 int count_of(const Model& m, int group) {
   return static_cast<int>(std::count(m.group.begin(), m.group.end(), group));

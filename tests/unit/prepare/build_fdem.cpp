@@ -6,12 +6,11 @@
 
 #include <set>
 
+#include "math/constants.hpp"
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::fdem {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 TEST(BuildFdem, RegularPlatesFillTheirRectangle) {
   for (const char* pattern : {"equilateral", "crossed"}) {

@@ -12,12 +12,11 @@
 #include <cstring>
 
 #include "exec/error.hpp"
+#include "math/constants.hpp"
 #include "prepare/cell_grid.hpp"
 
 namespace breccia::prepare {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 PackingTask task_of(const Container& container, int count, double compactness) {
   return {.container = container,
