@@ -12,7 +12,7 @@
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
 #include "core/precision.hpp"
-#include "domain/domain.hpp"
+#include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
-#include "domain/domain.hpp"
+#include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "run/run.hpp"
@@ -56,8 +56,9 @@ struct ResumeCommand {
     Exec exec;
     Case read;
     RunPlan plan;
-    std::optional<ResultFolder> folder;
+    std::optional<ResultFolder> folder;          // of rank 0
     std::optional<CheckpointReader> checkpoint;  // every rank needs the folder of the case
+    std::optional<RunState> former;
     together_or_not(ranks, [&] {
       exec = exec_of(options, ranks);
       exec.timers = &timers;
@@ -75,14 +76,13 @@ struct ResumeCommand {
       plan = plan_of(read, options, exec, ranks);
       plan.begin = begin;
       refuse_other_case(*checkpoint, plan);
+      former.emplace(*checkpoint);
       if (!leads(ranks)) checkpoint.reset();
     });
     const std::unique_ptr<Method> method = make_method(read, exec, ranks, options.quiet);
-    if (!leads(ranks)) return method->follow();
-    return led(*method, [&] {
-      timers.clear();
-      return Run(*method, plan, *folder, *checkpoint).execute();
-    });
+    timers.clear();
+    method->load(checkpoint ? &*checkpoint : nullptr);
+    return Run(*method, plan, folder ? &*folder : nullptr, &*former).execute();
   }
 };
 

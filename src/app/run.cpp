@@ -5,10 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
-#include "domain/domain.hpp"
+#include "domain/together.hpp"
 #include "run/signals.hpp"
 
 namespace breccia::app {
@@ -35,19 +36,22 @@ struct RunCommand {
       if (leads(ranks)) ResultFolder::check_free(out, existing);
     });
     const std::unique_ptr<Method> method = make_method(read, exec, ranks, options.quiet);
-    if (!leads(ranks)) return method->follow();
-    return led(*method, [&] {
-      RunPlan plan = plan_of(read, options, exec, ranks);
-      plan.begin = begin;
-      if (!restart.empty()) {
-        const CheckpointReader checkpoint(restart);
-        refuse_other_case(checkpoint, plan);
-        method->load(checkpoint);
-      }
-      timers.clear();
-      const ResultFolder result = ResultFolder::create(out, existing);
-      return Run(*method, plan, result).execute();
+    RunPlan plan = plan_of(read, options, exec, ranks);
+    plan.begin = begin;
+    if (!restart.empty()) load(*method, plan);
+    timers.clear();
+    std::optional<ResultFolder> result;  // of rank 0
+    on_first(ranks, [&] { result.emplace(ResultFolder::create(out, existing)); });
+    return Run(*method, plan, result ? &*result : nullptr).execute();
+  }
+
+  void load(Method& method, const RunPlan& plan) const {
+    std::optional<CheckpointReader> checkpoint;
+    on_first(plan.ranks, [&] {
+      checkpoint.emplace(restart);
+      refuse_other_case(*checkpoint, plan);
     });
+    method.load(checkpoint ? &*checkpoint : nullptr);
   }
 };
 

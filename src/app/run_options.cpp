@@ -8,6 +8,7 @@
 #include <charconv>
 
 #include "domain/mpi_ranks.hpp"
+#include "domain/together.hpp"
 #include "exec/device.hpp"
 #include "exec/error.hpp"
 
@@ -89,10 +90,12 @@ RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec,
   plan.machine = {processor_name(), options.device, exec.threads,
                   ranks == nullptr ? 1 : ranks->size()};
   plan.timers = exec.timers;
-  plan.speech = options.quiet ? Speech::quiet : options.verbose ? Speech::verbose : Speech::normal;
+  plan.ranks = ranks;
+  const bool quiet = options.quiet || !leads(ranks);
+  plan.speech = quiet ? Speech::quiet : options.verbose ? Speech::verbose : Speech::normal;
   // mpirun gives its ranks a terminal of their own, wherever it sends what they say.
   const Progress::Form form = ranks == nullptr ? Progress::form_for(stdout) : Progress::Form::lines;
-  plan.progress = options.quiet || options.no_progress ? Progress::Form::none : form;
+  plan.progress = quiet || options.no_progress ? Progress::Form::none : form;
   return plan;
 }
 

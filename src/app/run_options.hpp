@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/case.hpp"
-#include "exec/error.hpp"
 #include "exec/space.hpp"
 #include "run/run.hpp"
 
@@ -32,26 +31,5 @@ Exec exec_of(const RunOptions& options, Communicator* ranks);
 
 /// The plan of a run of the case; `timers` are those the method books its stages in.
 RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec, Communicator* ranks);
-
-/// Rank 0 leads a run, or does it alone.
-inline bool leads(const Communicator* ranks) {
-  return ranks == nullptr || ranks->rank() == 0;
-}
-
-/// What rank 0 does of a run, while the others follow; all end with its exit code.
-template <class Lead>
-int led(Method& method, const Lead& lead) {
-  try {
-    const int exit_code = lead();
-    method.dismiss(exit_code);
-    return exit_code;
-  } catch (const Error& error) {
-    method.dismiss(error.exit_code());
-    throw;
-  } catch (...) {
-    method.dismiss(1);
-    throw;
-  }
-}
 
 }  // namespace breccia::app

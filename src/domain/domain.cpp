@@ -1,9 +1,6 @@
 #include "domain/domain.hpp"
 
 #include <cmath>
-#include <new>
-
-#include "exec/error.hpp"
 
 namespace breccia {
 
@@ -52,45 +49,6 @@ void Domain::feel(const Buffer<GlobalId>& ids, const Buffer<Index>& a, const Buf
   felt.build(*ranks, ids, followed);
   part_runs(*this, felt.sent());
   knows_felt = true;
-}
-
-void together_or_not(Communicator* ranks, const std::function<void()>& work) {
-  if (ranks == nullptr) return work();
-  int code = 0;
-  std::string text;
-  ranks->set_in_step(false);
-  try {
-    work();
-  } catch (const Error& error) {
-    code = error.exit_code();
-    text = error.what();
-  } catch (const std::bad_alloc&) {
-    code = DeviceError("").exit_code();
-    text = "not enough memory on rank " + std::to_string(ranks->rank());
-  }
-  const double lowest = ranks->least(code == 0 ? ranks->size() : ranks->rank());
-  ranks->set_in_step(true);
-  if (lowest >= ranks->size()) return;
-  Message message(sizeof code + text.size());
-  std::memcpy(message.data(), &code, sizeof code);
-  if (!text.empty()) std::memcpy(message.data() + sizeof code, text.data(), text.size());
-  const Message told = ranks->from_all(message)[static_cast<std::size_t>(lowest)];
-  std::memcpy(&code, told.data(), sizeof code);
-  text.assign(reinterpret_cast<const char*>(told.data()) + sizeof code, told.size() - sizeof code);
-  switch (code) {  // the kind of an error decides what its catchers do
-    case 2:
-      throw InputError(text);
-    case 3:
-      throw IoError(text);
-    case 4:
-      throw NumericsError(text);
-    case 5:
-      throw DeviceError(text);
-    case 7:
-      throw CheckpointError(text);
-    default:
-      throw Error(code, text);
-  }
 }
 
 }  // namespace breccia

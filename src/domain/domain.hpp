@@ -2,7 +2,6 @@
 // A rank's share of a model: what it owns, what it holds copies of, and what it asks the others.
 
 #include <algorithm>
-#include <functional>
 #include <string>
 
 #include "core/case_config.hpp"
@@ -10,6 +9,7 @@
 #include "domain/pace.hpp"
 #include "domain/partition.hpp"
 #include "domain/sharing_sets.hpp"
+#include "domain/together.hpp"
 
 namespace breccia {
 
@@ -112,14 +112,7 @@ struct Domain {
     drifted_until = until;
   }
 
-  /// Calls visit(begin, end) for the parts of [begin, end) that hold own elements: all of it when
-  /// alone.
-  template <class Visit>
-  void each_own_run(Index begin, Index end, const Visit& visit) const {
-    if (alone()) return visit(begin, end);
-    each_run_of(runs, begin, end, visit);
-  }
-  /// The same for one of the lists of runs.
+  /// Calls visit(begin, end) for the parts of [begin, end) that lie in one of the lists of runs.
   template <class Visit>
   static void each_run_of(const std::vector<ElementRun>& runs, Index begin, Index end,
                           const Visit& visit) {
@@ -129,19 +122,5 @@ struct Domain {
       visit(std::max(begin, run->begin), std::min(end, run->end));
   }
 };
-
-/// Every rank gets the value that rank 0 has.
-template <class T>
-void take_from_first(Communicator& ranks, T& value) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  Message message(sizeof value);
-  std::memcpy(message.data(), &value, sizeof value);
-  message = ranks.from_first(std::move(message));
-  std::memcpy(&value, message.data(), sizeof value);
-}
-
-/// Does something on every rank that may fail on some. If it does, all ranks throw the error of the
-/// lowest one that failed, so that none waits for another for ever.
-void together_or_not(Communicator* ranks, const std::function<void()>& work);
 
 }  // namespace breccia

@@ -42,5 +42,8 @@ void add(Ledger& ledger, const Ledger& booked);
 /// Where every joule of the whole is; keeps the largest energy seen in its ledger.
 /// @param all  of all parts
 EnergySplit energies(Ledger& ledger, const Held& all);
+inline EnergyBalance balance(Ledger& ledger, const Held& all, std::int64_t /*step*/) {
+  return energies(ledger, all).balance;
+}
 
 }  // namespace breccia::fdem

@@ -14,8 +14,8 @@ namespace breccia {
 
 namespace fs = std::filesystem;
 
-Checkpoints::Checkpoints(const std::string& folder, const CheckpointConfig& config)
-    : folder_(folder), config_(config) {
+void Checkpoints::open(const std::string& folder) {
+  folder_ = folder;
   make_folder(folder_);
 }
 

@@ -17,8 +17,9 @@ class Checkpoints {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// @throws IoError if the folder cannot be made
-  Checkpoints(const std::string& folder, const CheckpointConfig& config);
+  explicit Checkpoints(const CheckpointConfig& config) : config_(config) {}
+  /// Where they are written. @throws IoError if the folder cannot be made
+  void open(const std::string& folder);
 
   /// Whether the state after `step` is to be saved, by steps or by wall time.
   bool due(std::int64_t step, Clock::time_point now) const;

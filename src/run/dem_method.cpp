@@ -5,58 +5,44 @@
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "exec/error.hpp"
-#include "run/looks.hpp"
+#include "run/world_method.hpp"
 
 namespace breccia {
 namespace {
 
-class DemMethod final : public Method {
+class DemMethod final : public WorldMethod<dem::World> {
  public:
   DemMethod(const dem::Config& config, const dem::Model& model, const Exec& exec,
             Communicator* ranks)
-      : world_([&](const Exec& where) { return dem::make_world(config, model, where); },
-               in_precision(exec, config.precision), ranks, config.domain),
-        probes_(config.probes),
+      : WorldMethod([&](const Exec& where) { return dem::make_world(config, model, where); },
+                    in_precision(exec, config.precision), ranks, config),
         range_(model.interaction_range) {}
 
-  Advanced advance(const StopAt& stop) override { return world_.advance_to(stop); }
-  std::int64_t steps() const override { return world_.part().step; }
-  double time() const override { return world_.part().time; }
-  double time_step() const override {
-    const dem::World& w = world_.part();
-    return w.step > 0 ? w.last_dt : w.next_dt;
-  }
-
-  EnergyBalance energy() override {
-    if (world_.alone()) return dem::balance(world_.whole());
-    const dem::Held all = held_by_all(world_, answer());
-    return dem::balance(world_.ledger(), all, steps());
-  }
-  std::vector<double> probes() override {
-    if (!world_.alone()) return read_by_all(world_, probes_, answer());
-    std::vector<double> values;
-    for (const ProbeConfig& probe : probes_) values.push_back(dem::probe(world_.whole(), probe));
-    return values;
-  }
-  std::uint64_t state_hash() override { return dem::state_hash(world_.whole()); }
-  void verify() override {
-    if (world_.alone()) return dem::verify(world_.whole());
-    verify_all(world_, answer());
-  }
-  Frame frame() override { return dem_frame(world_.whole()).frame; }
-  FrameOutput frame_output(const FrameWish& wish) override {
-    return seen_by_all(world_, wish, part_of_frame);
-  }
   std::unique_ptr<Method> snapshot() override {
     return world_.apart([this] { return std::unique_ptr<Method>(new DemMethod(*this)); });
   }
 
   std::vector<Fact> facts() override {
-    const dem::World& w = world_.whole();
+    return world_.of_whole([this](const dem::World& w) { return facts_of(w); });
+  }
+
+  void save(CheckpointWriter& writer) override {
+    world_.with_whole([&](dem::World& w) { save(w, writer); });
+  }
+  void load(const CheckpointReader* reader) override {
+    world_.renew([&](dem::World& w) { load(w, *reader); });
+  }
+
+ private:
+  DemMethod(const DemMethod& other) = default;
+
+  FramePart part_of_frame(const dem::World& part) const override { return dem_frame(part); }
+
+  std::vector<Fact> facts_of(const dem::World& w) const {
     std::vector<Fact> facts;
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     add("model.elements", w.elements.size());
-    const std::size_t groups = group_count();
+    const std::size_t groups = group_count(w);
     for (std::size_t g = 0; g < groups; ++g)
       add("model.elements_by_group." + w.sets[g].name, w.sets[g].members.size());
     add("model.links", w.links());
@@ -78,8 +64,7 @@ class DemMethod final : public Method {
     return facts;
   }
 
-  void save(CheckpointWriter& writer) override {
-    dem::World& w = world_.whole();
+  static void save(dem::World& w, CheckpointWriter& writer) {
     writer.value("step", w.step);
     writer.value("time", w.time);
     writer.value("last_dt", w.last_dt);
@@ -97,8 +82,7 @@ class DemMethod final : public Method {
       writer.value("walls." + std::to_string(k), w.walls[k]);
   }
 
-  void load(const CheckpointReader& reader) override {
-    dem::World& w = world_.whole();
+  static void load(dem::World& w, const CheckpointReader& reader) {
     const Index elements = w.elements.size(), links = w.links();
     w.step = reader.value<std::int64_t>("step");
     w.time = reader.value<double>("time");
@@ -119,32 +103,16 @@ class DemMethod final : public Method {
         w.concrete.size() + w.steel.size() + w.interface.size() != links)
       throw CheckpointError("the checkpoint holds another model than the case builds");
     dem::derive(w);
-    world_.share_again();
   }
 
-  int follow() override { return world_.follow(answer()); }
-  void dismiss(int exit_code) override { world_.dismiss(exit_code); }
-
- private:
-  DemMethod(const DemMethod& other)
-      : Method(), world_(other.world_), probes_(other.probes_), range_(other.range_) {
-    world_.forget_timers();
-  }
-  static FramePart part_of_frame(const dem::World& part) { return dem_frame(part); }
-  /// Answers for a rank's part.
-  SharedWorld<dem::World>::Answer answer() const {
-    return answers<dem::World>(probes_, part_of_frame);
-  }
-  std::size_t group_count() {
+  static std::size_t group_count(const dem::World& w) {
     std::size_t groups = 0;
     Buffer<std::int16_t> group;
-    copy_to(group, world_.whole().elements.group);
+    copy_to(group, w.elements.group);
     for (const std::int16_t g : group.host()) groups = std::max(groups, std::size_t(g) + 1);
     return groups;
   }
 
-  SharedWorld<dem::World> world_;
-  std::vector<ProbeConfig> probes_;
   double range_;
 };
 

@@ -7,7 +7,7 @@
 #include "fdem/energy.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
-#include "run/looks.hpp"
+#include "run/world_method.hpp"
 
 namespace breccia {
 namespace {
@@ -35,50 +35,55 @@ void each_loose(fdem::World& w, Visit&& visit) {
   visit("joint_preset", Loose<Vec2>{"opening", w.joints.preset});
 }
 
-class FdemMethod final : public Method {
+class FdemMethod final : public WorldMethod<fdem::World> {
  public:
   FdemMethod(const fdem::Config& config, const fdem::Model& model, const Exec& exec,
              Communicator* ranks)
-      : probes_(config.probes),
-        world_([&](const Exec& where) { return made(config, model, where); },
-               in_precision(exec, config.precision), ranks, config.domain) {}
-
-  Advanced advance(const StopAt& stop) override { return world_.advance_to(stop); }
-  std::int64_t steps() const override { return world_.part().step; }
-  double time() const override { return world_.part().time; }
-  double time_step() const override {
-    const fdem::World& w = world_.part();
-    return w.step > 0 ? w.last_dt : w.next_dt;
+      : WorldMethod([&](const Exec& where) { return made(config, model, where); },
+                    in_precision(exec, config.precision), ranks, config) {
+    std::vector<Index> edges;
+    copy_to(edges, world_.mesh().joints.edge_a);
+    for (const Index edge : edges) {
+      const auto& corners = model.triangle[at(edge / 3)];
+      const auto point = [&](Index k) { return model.point[at(corners[at(k % 3)])]; };
+      lines_.push_back({point(edge % 3), point(edge % 3 + 1)});
+    }
   }
 
-  std::string step_rule() override { return fdem::ruling_term(world_.whole()); }
-  EnergyBalance energy() override {
-    if (world_.alone()) return fdem::energies(world_.whole()).balance;
-    const fdem::Held all = held_by_all(world_, answer());
-    return fdem::energies(world_.ledger(), all).balance;
-  }
-  std::vector<double> probes() override {
-    if (!world_.alone()) return read_by_all(world_, probes_, answer());
-    std::vector<double> values;
-    for (const ProbeConfig& p : probes_) values.push_back(fdem::probe(world_.whole(), p));
-    return values;
-  }
-  std::uint64_t state_hash() override { return fdem::state_hash(world_.whole()); }
-  void verify() override {
-    if (world_.alone()) return fdem::verify(world_.whole());
-    verify_all(world_, answer());
-  }
-  Frame frame() override { return fdem_frame(world_.whole()).frame; }
-  FrameOutput frame_output(const FrameWish& wish) override {
-    return seen_by_all(world_, wish,
-                       [this](const fdem::World& part) { return part_of_frame(part); });
+  std::string step_rule() override {
+    return world_.of_whole([](const fdem::World& w) { return std::string(fdem::ruling_term(w)); });
   }
   std::unique_ptr<Method> snapshot() override {
     return world_.apart([this] { return std::unique_ptr<Method>(new FdemMethod(*this)); });
   }
-
   std::vector<Fact> facts() override {
-    const fdem::World& w = world_.whole();
+    return world_.of_whole([this](const fdem::World& w) { return facts_of(w); });
+  }
+  std::vector<Table> tables() override {
+    return world_.of_whole([this](const fdem::World& w) { return tables_of(w); });
+  }
+
+  void save(CheckpointWriter& writer) override {
+    world_.with_whole([&](fdem::World& w) { save(w, writer); });
+  }
+  void load(const CheckpointReader* reader) override {
+    world_.renew([&](fdem::World& w) { load(w, *reader); });
+  }
+
+ private:
+  FdemMethod(const FdemMethod& other) = default;
+
+  /// Where a joint lay at the start.
+  struct Line {
+    Vec2 begin, end;  ///<  [m]
+  };
+
+  FramePart part_of_frame(const fdem::World& part) const override {
+    const bool first = !part.domain.alone() && part.domain.ranks->rank() == 0;
+    return fdem_frame(part, first ? &world_.mesh() : nullptr);
+  }
+
+  std::vector<Fact> facts_of(const fdem::World& w) const {
     std::vector<Fact> facts;
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     add("model.triangles", w.triangles.size());
@@ -109,19 +114,19 @@ class FdemMethod final : public Method {
     return facts;
   }
 
-  std::vector<Table> tables() override {
+  std::vector<Table> tables_of(const fdem::World& w) const {
     Table cracks{"cracks",
                  {"time", "x", "y", "length", "mode", "energy", "x0", "y0", "x1", "y1"},
                  {"s", "m", "m", "m", "-", "J/m", "m", "m", "m", "m"},
                  {}};
-    for (const fdem::Crack& c : fdem::cracks(world_.whole())) {
+    for (const fdem::Crack& c : fdem::cracks(w)) {
       const Vec2 middle = 0.5 * (c.begin + c.end);
-      const Line& line = lines_[static_cast<std::size_t>(c.joint)];
+      const Line& line = lines_[at(c.joint)];
       cracks.rows.push_back({c.time, middle.x, middle.y, norm(c.end - c.begin), c.mode, c.energy,
                              line.begin.x, line.begin.y, line.end.x, line.end.y});
     }
     Table pieces{"fragments", {"fragment", "mass", "share"}, {"-", "kg/m", "-"}, {}};
-    const fdem::Fragments all = fdem::fragments(world_.whole());
+    const fdem::Fragments all = fdem::fragments(w);
     double total = 0.0;
     for (const double m : all.mass) total += m;
     for (std::size_t i = 0; i < all.mass.size(); ++i)
@@ -129,8 +134,7 @@ class FdemMethod final : public Method {
     return {cracks, pieces};
   }
 
-  void save(CheckpointWriter& writer) override {
-    fdem::World& w = world_.whole();
+  static void save(fdem::World& w, CheckpointWriter& writer) {
     writer.value("step", w.step);
     writer.value("time", w.time);
     writer.value("last_dt", w.last_dt);
@@ -145,8 +149,7 @@ class FdemMethod final : public Method {
     writer.value("reach.drift", w.reach.drift);
   }
 
-  void load(const CheckpointReader& reader) override {
-    fdem::World& w = world_.whole();
+  static void load(fdem::World& w, const CheckpointReader& reader) {
     const Index triangles = w.triangles.size(), joints = w.joints.size();
     w.step = reader.value<std::int64_t>("step");
     w.time = reader.value<double>("time");
@@ -163,51 +166,16 @@ class FdemMethod final : public Method {
     if (w.triangles.size() != triangles || w.joints.size() != joints)
       throw CheckpointError("the checkpoint holds another model than the case builds");
     fdem::derive(w);
-    world_.share_again();
   }
 
-  int follow() override { return world_.follow(answer()); }
-  void dismiss(int exit_code) override { world_.dismiss(exit_code); }
-
- private:
-  FdemMethod(const FdemMethod& other)
-      : Method(), probes_(other.probes_), lines_(other.lines_), world_(other.world_) {
-    world_.forget_timers();
-  }
-  /// Where a joint lay at the start.
-  struct Line {
-    Vec2 begin, end;  ///<  [m]
-  };
-
-  FramePart part_of_frame(const fdem::World& part) const {
-    const bool first = !part.domain.alone() && part.domain.ranks->rank() == 0;
-    return fdem_frame(part, first ? &world_.mesh() : nullptr);
-  }
-  /// Answers for a rank's part.
-  SharedWorld<fdem::World>::Answer answer() const {
-    return answers<fdem::World>(probes_,
-                                [this](const fdem::World& part) { return part_of_frame(part); });
-  }
-
-  fdem::World made(const fdem::Config& config, const fdem::Model& model, const Exec& exec) {
+  static fdem::World made(const fdem::Config& config, const fdem::Model& model, const Exec& exec) {
     fdem::World w = fdem::make_world(config, model, exec);
     fdem::energies(w);
     for (const ProbeConfig& p : config.probes) fdem::probe(w, p);  // refuses what cannot be read
-    std::vector<Index> edges;
-    copy_to(edges, w.joints.edge_a);
-    for (const Index edge : edges) {
-      const auto& corners = model.triangle[static_cast<std::size_t>(edge / 3)];
-      const auto point = [&](Index k) {
-        return model.point[static_cast<std::size_t>(corners[static_cast<std::size_t>(k % 3)])];
-      };
-      lines_.push_back({point(edge % 3), point(edge % 3 + 1)});
-    }
     return w;
   }
 
-  std::vector<ProbeConfig> probes_;
-  std::vector<Line> lines_;  ///< of all joints
-  SharedWorld<fdem::World> world_;
+  std::vector<Line> lines_;  ///< of all joints; on rank 0
 };
 
 }  // namespace

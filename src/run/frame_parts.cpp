@@ -5,7 +5,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "domain/parcel.hpp"
 #include "exec/tasks.hpp"
 
 namespace breccia {
@@ -141,9 +140,7 @@ FrameOfParts::FrameOfParts(FramePart part, const FrameWish& wish, Communicator& 
 void FrameOfParts::see() {
   const bool draws = ranks_.rank() == 0;
   const Sight sight(part_, wish_.picture->field, draws ? &seen_ : nullptr);
-  std::vector<Message> messages(static_cast<std::size_t>(ranks_.size()));
-  messages[0] = sight.packed();
-  messages = ranks_.exchange(std::move(messages));
+  const std::vector<Message> messages = told_to_first(ranks_, sight.packed());
   if (!draws) return;
   seen_.step = part_.frame.step;
   seen_.time = part_.frame.time;
@@ -245,7 +242,9 @@ Message FrameOfParts::share() {
   return share;
 }
 
-FrameOutput FrameOfParts::output(const std::vector<Message>& shares) {
+FrameOutput FrameOfParts::output() {
+  const std::vector<Message> shares = told_to_first(ranks_, share());
+  if (shares.empty()) return {};
   std::vector<Unpacking> from(shares.begin(), shares.end());
   std::vector<std::string> packed;
   packed.reserve(worker_.size());
@@ -256,29 +255,6 @@ FrameOutput FrameOfParts::output(const std::vector<Message>& shares) {
   }
   if (files_) output_.files = files_->contents(packed);
   return std::move(output_);
-}
-
-void put_wish(Message& message, const FrameWish& wish) {
-  put_value(message, wish.files);
-  put_value(message, wish.picture.has_value());
-  if (!wish.picture) return;
-  put_value(message, wish.picture->width);
-  put_value(message, wish.picture->height);
-  const std::string& field = wish.picture->field;
-  put_array(message, std::vector<char>(field.begin(), field.end()));
-}
-
-FrameWish wish_in(std::span<const std::byte> message) {
-  Unpacking from(message);
-  FrameWish wish;
-  wish.files = from.value<bool>();
-  if (!from.value<bool>()) return wish;
-  RenderOptions& picture = wish.picture.emplace();
-  picture.width = from.value<int>();
-  picture.height = from.value<int>();
-  const auto field = from.array<char>();
-  picture.field.assign(field.begin(), field.end());
-  return wish;
 }
 
 }  // namespace breccia

@@ -6,21 +6,19 @@
 #include <string>
 #include <vector>
 
-#include "domain/parcel.hpp"
+#include "domain/together.hpp"
 #include "run/frame_output.hpp"
 
 namespace breccia {
 
 class FrameOfParts {
  public:
-  /// On every rank, with its part of the frame. Ranks other than 0 need to know field and size of
-  /// the picture that is wished for.
+  /// On every rank, with its part of the frame. Of the picture that is wished for, ranks other than
+  /// 0 use field and size.
   FrameOfParts(FramePart part, const FrameWish& wish, Communicator& ranks, int threads);
 
-  /// Every rank at once: this rank's share of the work, for rank 0.
-  Message share();
-  /// Rank 0, with the shares of all, by rank.
-  FrameOutput output(const std::vector<Message>& shares);
+  /// Every rank at once. On ranks other than 0 the result is empty.
+  FrameOutput output();
 
  private:
   using Block = FrameBlocks::Block;
@@ -30,6 +28,8 @@ class FrameOfParts {
     std::span<const std::byte> bytes;
   };
 
+  /// This rank's share of the work, for rank 0.
+  Message share();
   void see();
   void give_values(Message& message, const Block& block) const;
   void take_values(const Block& block, const std::vector<Values>& from,
@@ -44,9 +44,5 @@ class FrameOfParts {
   Frame seen_;               ///< rank 0: what the picture shows
   FrameOutput output_;
 };
-
-/// A wish in a message, as far as other ranks need it.
-void put_wish(Message& message, const FrameWish& wish);
-FrameWish wish_in(std::span<const std::byte> message);
 
 }  // namespace breccia

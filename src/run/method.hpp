@@ -1,5 +1,5 @@
 #pragma once
-// What the outer loop asks of a method: the only virtual calls of the program.
+// What the outer loop asks of a method.
 
 #include <cstdint>
 #include <memory>
@@ -28,7 +28,8 @@ struct Table {
   std::vector<std::vector<double>> rows;
 };
 
-/// A running simulation, whatever its method.
+/// A running simulation, whatever its method. Of several ranks each makes the same calls; numbers,
+/// frames and states come out on rank 0 alone, empty ones on the others.
 class Method {
  public:
   Method() = default;
@@ -36,8 +37,9 @@ class Method {
   Method& operator=(const Method&) = delete;
   virtual ~Method() = default;
 
-  /// One time step or, on a device, as many as fit a few hundredths of a second: to the first one
-  /// at or past `stop`. @throws NumericsError naming step, time and element
+  /// One time step or, on a device, as many as fit a few hundredths of a second; on several ranks
+  /// all of them: to the first one at or past `stop`. @throws NumericsError naming step, time and
+  /// element
   virtual Advanced advance(const StopAt& stop) = 0;
   virtual std::int64_t steps() const = 0;  ///< done so far
   virtual double time() const = 0;         ///< simulated  [s]
@@ -67,12 +69,8 @@ class Method {
 
   /// Everything the run needs to go on, to and from a checkpoint.
   virtual void save(CheckpointWriter& writer) = 0;
-  virtual void load(const CheckpointReader& reader) = 0;
-
-  /// On ranks other than 0: does what rank 0 commands until it ends; returns its exit code.
-  virtual int follow() { return 0; }
-  /// On rank 0, at the end: the others end with this exit code.
-  virtual void dismiss(int /*exit_code*/) {}
+  /// @param reader  on ranks other than 0 it may be null
+  virtual void load(const CheckpointReader* reader) = 0;
 };
 
 }  // namespace breccia

@@ -9,6 +9,8 @@
 #include <limits>
 #include <memory>
 
+#include "domain/together.hpp"
+
 namespace breccia {
 namespace {
 
@@ -92,43 +94,35 @@ void RecordState::load(const CheckpointReader& reader) {
   }
 }
 
-Recorder::Recorder(const ResultFolder& folder, const CaseConfig& config, Log& log)
-    : pictures_(folder.file("pictures")),
-      config_(config),
-      log_(log),
-      history_(folder.file("history.csv"), config.probes),
-      rows_(row_schedule(config)),
-      frames_(frame_schedule(config)) {
+Recorder::Recorder(const CaseConfig& config, Communicator* ranks)
+    : config_(config), ranks_(ranks), rows_(row_schedule(config)), frames_(frame_schedule(config)) {
   for (const ProbeConfig& probe : config_.probes) state_.probes.push_back(fresh_range(probe.name));
-  if (config_.output.fields) series_.emplace(folder.path());
-  if (config_.output.pictures) make_folder(pictures_);
 }
 
-Recorder::Recorder(const ResultFolder& folder, const CaseConfig& config, Log& log,
-                   const RecordState& state, double time)
-    : pictures_(folder.file("pictures")),
-      config_(config),
-      log_(log),
-      state_(state),
-      history_(
-          (History::cut_to(folder.file("history.csv"), state.row_step), folder.file("history.csv")),
-          config.probes),
-      rows_(row_schedule(config)),
-      frames_(frame_schedule(config)),
-      frame_count_(state.frames) {
+void Recorder::resume(const RecordState& state, double time) {
+  state_ = state;
   state_.probes.resize(config_.probes.size());
   for (std::size_t i = 0; i < config_.probes.size(); ++i)
     state_.probes[i].name = config_.probes[i].name;
   if (state_.row_step >= 0) rows_.pass(time);
   if (state_.frame_step >= 0) frames_.pass(time);
+  frame_count_ = state_.frames;
+  resumed_ = true;
+}
+
+void Recorder::open(const ResultFolder& folder, Log& log) {
+  log_ = &log;
+  pictures_ = folder.file("pictures");
+  const std::string history = folder.file("history.csv");
+  if (resumed_) History::cut_to(history, state_.row_step);
+  history_.emplace(history, config_.probes);
   if (config_.output.fields && state_.frames > 0)
     series_ = ParaviewSeries::resumed(folder.path(), state_.frame_time);
   else if (config_.output.fields)
     series_.emplace(folder.path());
-  if (config_.output.pictures) {
-    make_folder(pictures_);
-    drop_pictures(pictures_, state_.frames);
-  }
+  if (!config_.output.pictures) return;
+  make_folder(pictures_);
+  if (resumed_) drop_pictures(pictures_, state_.frames);
 }
 
 void Recorder::record(Method& method, Background& background) {
@@ -155,19 +149,21 @@ void Recorder::record_last(Method& method, Background& background) {
 
 void Recorder::sync() {
   if (series_) series_->finish();
-  history_.sync();
+  history_->sync();
 }
 
 void Recorder::write_row(Method& method) {
   const std::vector<double> probes = method.probes();
   last_energy_ = method.energy();
-  history_.write({method.steps(), method.time(), method.time_step(), *last_energy_, probes});
-  for (std::size_t i = 0; i < std::min(probes.size(), state_.probes.size()); ++i) {
-    ProbeRange& range = state_.probes[i];
-    range.last = probes[i];
-    range.min = std::min(range.min, probes[i]);
-    range.max = std::max(range.max, probes[i]);
-  }
+  on_first(ranks_, [&] {
+    history_->write({method.steps(), method.time(), method.time_step(), *last_energy_, probes});
+    for (std::size_t i = 0; i < std::min(probes.size(), state_.probes.size()); ++i) {
+      ProbeRange& range = state_.probes[i];
+      range.last = probes[i];
+      range.min = std::min(range.min, probes[i]);
+      range.max = std::max(range.max, probes[i]);
+    }
+  });
 }
 
 void Recorder::write_frame(Method& method, Background& background) {
@@ -180,8 +176,10 @@ void Recorder::write_frame(Method& method, Background& background) {
     background.add([this, later, number] { write_frame_of(*later, number); });
   else
     write_frame_of(method, number);
-  log_.write(Level::info, "frame", method.steps(),
-             fmt::format("frame {} at {:.9g} s", number, method.time()));
+  on_first(ranks_, [&] {
+    log_->write(Level::info, "frame", method.steps(),
+                fmt::format("frame {} at {:.9g} s", number, method.time()));
+  });
   ++frame_count_;
 }
 
@@ -198,10 +196,12 @@ void Recorder::write_frame_of(Method& method, std::int64_t number) {
     options.title = config_.title;
   }
   const FrameOutput output = method.frame_output(wish);
-  if (series_) series_->write(output.files);
-  if (!config_.output.pictures) return;
-  if (!state_.extent) state_.extent = output.extent;
-  write_png(fmt::format("{}/{:04}.png", pictures_, number), output.png);
+  on_first(ranks_, [&] {
+    if (series_) series_->write(output.files);
+    if (!config_.output.pictures) return;
+    if (!state_.extent) state_.extent = output.extent;
+    write_png(fmt::format("{}/{:04}.png", pictures_, number), output.png);
+  });
 }
 
 }  // namespace breccia

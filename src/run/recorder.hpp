@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "domain/communicator.hpp"
 #include "io/paraview.hpp"
 #include "io/picture.hpp"
 #include "run/background.hpp"
@@ -49,14 +50,15 @@ struct RecordState {
 };
 
 /// Writes what the case's [output] asks for. It only reads the method: no output changes a bit of
-/// the run.
+/// the run. Of several ranks each has one; that of rank 0 writes.
 class Recorder {
  public:
-  /// A new record, from `time` on; or, with a state, what is left of an older one after it has been
-  /// cut to that state.
-  Recorder(const ResultFolder& folder, const CaseConfig& config, Log& log);
-  Recorder(const ResultFolder& folder, const CaseConfig& config, Log& log, const RecordState& state,
-           double time);
+  explicit Recorder(const CaseConfig& config, Communicator* ranks);
+  /// Goes on with an older record, which had come to that state.
+  /// @param time  then  [s]
+  void resume(const RecordState& state, double time);
+  /// Opens the files of a new record, or cuts those of an older one to its state. Rank 0 only.
+  void open(const ResultFolder& folder, Log& log);
 
   /// Whether a row or a frame is due. Cheap: asked every step.
   bool due(double time) const { return time >= next(); }
@@ -72,7 +74,7 @@ class Recorder {
 
   /// To be saved after record() and before record_last().
   const RecordState& state() const { return state_; }
-  /// The energies of the newest row; none before the first.
+  /// The energies of the newest row, on rank 0; none before the first.
   const std::optional<EnergyBalance>& last_energy() const { return last_energy_; }
   /// Frames written to the folder so far.
   std::int64_t frame_count() const { return frame_count_; }
@@ -83,14 +85,16 @@ class Recorder {
   void write_frame_of(Method& method, std::int64_t number);
   bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
 
-  std::string pictures_;
   CaseConfig config_;
-  Log& log_;
+  Communicator* ranks_;
   RecordState state_;
-  History history_;
+  std::string pictures_;
+  Log* log_ = nullptr;
+  std::optional<History> history_;
   std::optional<ParaviewSeries> series_;
   Schedule rows_, frames_;
   std::int64_t frame_count_ = 0;
+  bool resumed_ = false;
   std::optional<EnergyBalance> last_energy_;
 };
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 
+#include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "io/file.hpp"
 #include "io/harmless.hpp"
@@ -47,22 +48,8 @@ class OutputTime {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Loads the state and returns how far its record had come.
-RecordState loaded(Method& method, const RunPlan& plan, const CheckpointReader& checkpoint) {
-  refuse_other_case(checkpoint, plan);
-  method.load(checkpoint);
-  RecordState state;
-  state.load(checkpoint);
-  return state;
-}
-
 std::FILE* echo_of(const RunPlan& plan) {
   return plan.speech == Speech::verbose ? stdout : nullptr;
-}
-
-const std::string& cut_log(const std::string& path, const CheckpointReader& checkpoint) {
-  Log::cut_to(path, checkpoint.value<std::int64_t>("run.step"));
-  return path;
 }
 
 }  // namespace
@@ -81,43 +68,55 @@ void refuse_other_case(const CheckpointReader& checkpoint, const RunPlan& plan) 
                   plan.case_name));
 }
 
-Run::Run(Method& method, const RunPlan& plan, const ResultFolder& folder)
-    : method_(method),
-      plan_(plan),
-      folder_(folder),
-      end_time_(plan.limits.time.value_or(plan.config.time.end)),
-      end_steps_(plan.limits.steps.value_or(std::numeric_limits<std::int64_t>::max())),
-      log_(folder.file("log.jsonl"), echo_of(plan)),
-      recorder_(folder, plan.config, log_),
-      checkpoints_(folder.file("checkpoints"), plan.config.checkpoint),
-      progress_(stdout, plan.progress) {}
+RunState::RunState(const CheckpointReader& checkpoint)
+    : step(checkpoint.value<std::int64_t>("run.step")),
+      time(checkpoint.value<double>("run.time")),
+      dt_min(checkpoint.value<double>("run.dt_min")),
+      dt_max(checkpoint.value<double>("run.dt_max")),
+      end_time(checkpoint.value<double>("run.end_time")),
+      end_steps(checkpoint.value<std::int64_t>("run.end_steps")) {
+  record.load(checkpoint);
+}
 
-Run::Run(Method& method, const RunPlan& plan, const ResultFolder& folder,
-         const CheckpointReader& checkpoint)
+Run::Run(Method& method, const RunPlan& plan, const ResultFolder* folder, const RunState* former)
     : method_(method),
       plan_(plan),
       folder_(folder),
       end_time_(plan.limits.time.value_or(plan.config.time.end)),
       end_steps_(plan.limits.steps.value_or(std::numeric_limits<std::int64_t>::max())),
-      dt_min_(checkpoint.value<double>("run.dt_min")),
-      dt_max_(checkpoint.value<double>("run.dt_max")),
-      log_(cut_log(folder.file("log.jsonl"), checkpoint), echo_of(plan)),
-      recorder_(folder, plan.config, log_, loaded(method, plan, checkpoint),
-                checkpoint.value<double>("run.time")),
-      checkpoints_(folder.file("checkpoints"), plan.config.checkpoint),
+      recorder_(plan.config, plan.ranks),
+      checkpoints_(plan.config.checkpoint),
       progress_(stdout, plan.progress) {
+  if (former != nullptr) go_on_from(*former);
+  on_first(plan_.ranks, [&] {
+    const std::string log = folder_->file("log.jsonl");
+    if (former != nullptr) Log::cut_to(log, former->step);
+    log_.emplace(log, echo_of(plan_));
+    recorder_.open(*folder_, *log_);
+    checkpoints_.open(folder_->file("checkpoints"));
+  });
+}
+
+void Run::go_on_from(const RunState& former) {
+  dt_min_ = former.dt_min;
+  dt_max_ = former.dt_max;
+  recorder_.resume(former.record, former.time);
   // A run that was cut short goes on to where it was sent; one that got there goes on to the end of
   // its case.
-  const auto former_time = checkpoint.value<double>("run.end_time");
-  const auto former_steps = checkpoint.value<std::int64_t>("run.end_steps");
-  const bool cut_short = method.time() < former_time && method.steps() < former_steps;
-  if (cut_short && !plan.limits.time && !plan.limits.steps) {
-    end_time_ = former_time;
-    end_steps_ = former_steps;
-  }
+  const bool cut_short = former.time < former.end_time && former.step < former.end_steps;
+  if (!cut_short || plan_.limits.time || plan_.limits.steps) return;
+  end_time_ = former.end_time;
+  end_steps_ = former.end_steps;
 }
 
 int Run::execute() {
+  // Until its end each rank may fail alone, and then ends the others.
+  int exit_code = 0;
+  at_once(plan_.ranks, [&] { exit_code = execute_together(); });
+  return exit_code;
+}
+
+int Run::execute_together() {
   try {
     start();
     const int signal = advance();
@@ -134,6 +133,7 @@ int Run::execute() {
   } catch (const std::bad_alloc&) {
     const DeviceError error(fmt::format("not enough memory at step {}", method_.steps()));
     failed(error.exit_code(), error.what());
+    if (!thrown_by_all(plan_.ranks)) throw;
     throw error;
   }
 }
@@ -141,47 +141,74 @@ int Run::execute() {
 void Run::start() {
   setup_ = seconds_since(plan_.begin);
   const Summary now = summary();
-  write_summary(now);
-  replace_durably(folder_.file("case.toml"), plan_.case_text);
-  log_.write(Level::info, "setup", method_.steps(),
-             fmt::format("{} starts at step {}, {:.9g} s", plan_.case_name, method_.steps(),
-                         method_.time()));
-  say(opening_text(now, end_time_, end_steps_, folder_.path()));
+  on_first(plan_.ranks, [&] {
+    write_summary(now);
+    replace_durably(folder_->file("case.toml"), plan_.case_text);
+    log_->write(Level::info, "setup", method_.steps(),
+                fmt::format("{} starts at step {}, {:.9g} s", plan_.case_name, method_.steps(),
+                            method_.time()));
+    say(opening_text(now, end_time_, end_steps_, folder_->path()));
+  });
   method_.verify();
   if (recorder_.due(method_.time())) observe();
+  broken_ = broken_text(now.facts);
   progress_.start(standing());
 }
 
 /// Returns the signal that ended the loop, 0 if it got to its end.
 int Run::advance() {
   while (!finished()) {
-    take_steps();
+    const double spent = take_steps();
     if (recorder_.due(method_.time())) observe();
-    if (const int signal = StopSignals::received(); signal != 0 && !finished()) return signal;
-    const Clock::time_point now = Clock::now();
-    if (checkpoints_.due(method_.steps(), now) && !finished()) save_checkpoint();
-    if (progress_.due(share(), now)) progress_.show(standing(), now);
+    const Decision decision = decide(spent);
+    steps_at_once_ = decision.steps_at_once;
+    if (decision.signal != 0) return decision.signal;
+    if (decision.save != 0) save_checkpoint();
+    if (decision.count != 0) count_broken();
+    if (decision.show != 0) progress_.show(standing(), Clock::now());
   }
   return 0;
 }
 
-/// The next moment at which someone looks at the state.
-StopAt Run::next_stop() const {
-  const std::int64_t next_look = (method_.steps() / verify_every + 1) * verify_every;
-  return {std::min(end_time_, recorder_.next()),
-          std::min({end_steps_, next_look, checkpoints_.next_step(method_.steps())})};
+/// What comes next, as rank 0 finds: clocks and signals differ from rank to rank.
+/// @param spent  wall time of the last steps  [s]
+Run::Decision Run::decide(double spent) const {
+  constexpr double attention = 0.02;  // of several ranks, between two decisions  [s]
+  const Clock::time_point now = Clock::now();
+  Decision decision;
+  decision.steps_at_once = steps_at_once_;
+  if (spent < 0.5 * attention)
+    decision.steps_at_once = std::min<std::int64_t>(2 * steps_at_once_, 1000);
+  if (spent > attention) decision.steps_at_once = std::max<std::int64_t>(steps_at_once_ / 2, 1);
+  decision.signal = finished() ? 0 : StopSignals::received();
+  decision.save = !finished() && checkpoints_.due(method_.steps(), now) ? 1 : 0;
+  decision.show = progress_.due(share(), now) ? 1 : 0;
+  decision.count = decision.show != 0 && now >= next_facts_ ? 1 : 0;
+  if (plan_.ranks != nullptr) take_from_first(*plan_.ranks, decision);
+  return decision;
 }
 
-void Run::take_steps() {
+/// The next moment at which someone looks at the state, or at which ranks decide.
+StopAt Run::next_stop() const {
+  const std::int64_t next_look = (method_.steps() / verify_every + 1) * verify_every;
+  StopAt stop{std::min(end_time_, recorder_.next()),
+              std::min({end_steps_, next_look, checkpoints_.next_step(method_.steps())})};
+  if (plan_.ranks != nullptr) stop.step = std::min(stop.step, method_.steps() + steps_at_once_);
+  return stop;
+}
+
+/// Returns the wall time that they took.  [s]
+double Run::take_steps() {
   const Clock::time_point begin = Clock::now();
   const Advanced taken = method_.advance(next_stop());
   const double spent = seconds_since(begin);
-  if (taken.steps == 0) return;
+  if (taken.steps == 0) return spent;
   step_times_.add(spent / static_cast<double>(taken.steps), taken.steps);
   loop_ += spent;
   dt_min_ = dt_min_ > 0.0 ? std::min(dt_min_, taken.dt_min) : taken.dt_min;
   dt_max_ = std::max(dt_max_, taken.dt_max);
   if (method_.steps() % verify_every == 0) method_.verify();
+  return spent;
 }
 
 void Run::observe() {
@@ -223,11 +250,14 @@ void Run::save_checkpoint() {
   if (checkpoints_.last_step() == method_.steps()) return;
   const OutputTime time(plan_.timers, output_);
   method_.verify();
-  background_.finish();
-  recorder_.sync();
   const std::int64_t step = method_.steps();
+  const std::string path = checkpoints_.begin(step);
   const auto state = std::make_shared<CheckpointWriter>(record_state());
-  log_.write(Level::info, "checkpoint", step, checkpoints_.begin(step));
+  on_first(plan_.ranks, [&] {
+    background_.finish();
+    recorder_.sync();
+    log_->write(Level::info, "checkpoint", step, path);
+  });
   if (const std::shared_ptr<Method> later = method_.snapshot()) {
     background_.add([this, later, state, step] {
       later->save(*state);
@@ -235,10 +265,13 @@ void Run::save_checkpoint() {
     });
   } else {
     method_.save(*state);
-    checkpoints_.write(step, *state);
+    on_first(plan_.ranks, [&] { checkpoints_.write(step, *state); });
   }
-  log_.sync();
-  write_summary(summary());
+  const Summary now = summary();
+  on_first(plan_.ranks, [&] {
+    log_->sync();
+    write_summary(now);
+  });
 }
 
 int Run::interrupted(int signal) {
@@ -249,10 +282,12 @@ int Run::interrupted(int signal) {
   now.status = "interrupted";
   now.exit_code = 128 + signal;
   now.message = fmt::format("{} at step {}; state saved", signal_name(signal), method_.steps());
-  log_.write(Level::warning, "end", method_.steps(), now.message);
-  write_summary(now);
-  progress_.end_line();
-  say(fmt::format("{}\n  go on with: breccia resume {}\n", now.message, folder_.path()));
+  on_first(plan_.ranks, [&] {
+    log_->write(Level::warning, "end", method_.steps(), now.message);
+    write_summary(now);
+    progress_.end_line();
+    say(fmt::format("{}\n  go on with: breccia resume {}\n", now.message, folder_->path()));
+  });
   return now.exit_code;
 }
 
@@ -261,13 +296,22 @@ int Run::done() {
   {
     const OutputTime time(plan_.timers, output_);
     recorder_.record_last(method_, background_);
-    background_.finish();
-    recorder_.sync();
-    for (const Table& table : method_.tables())
-      replace_durably(folder_.file(table.name + ".csv"), to_csv(table));
+    const std::vector<Table> tables = method_.tables();
+    on_first(plan_.ranks, [&] {
+      background_.finish();
+      recorder_.sync();
+      for (const Table& table : tables)
+        replace_durably(folder_->file(table.name + ".csv"), to_csv(table));
+    });
   }
   Summary now = summary();
   if (!now.energy) now.energy = method_.energy();  // resumed at its end: no row was written
+  on_first(plan_.ranks, [&] { conclude(now); });
+  return 0;
+}
+
+/// Tells what came out. @throws CheckFailed
+void Run::conclude(Summary& now) {
   now.status = "done";
   const bool whole_case = method_.time() >= plan_.config.time.end;
   if (whole_case) now.checks = evaluate_checks(plan_.config.checks, now);
@@ -277,52 +321,60 @@ int Run::done() {
     now.exit_code = CheckFailed("").exit_code();
     now.message = "a check of the case failed";
   }
-  log_.write(now.exit_code == 0 ? Level::info : Level::error, "end", method_.steps(),
-             now.exit_code == 0 ? "done" : now.message);
+  log_->write(now.exit_code == 0 ? Level::info : Level::error, "end", method_.steps(),
+              now.exit_code == 0 ? "done" : now.message);
   write_summary(now);
+  broken_ = broken_text(now.facts);
   if (progress_.due(1.0, Clock::time_point::max())) progress_.show(standing(), Clock::now());
   progress_.end_line();
-  say(closing_text(now, recorder_.frame_count(), folder_.path()));
+  say(closing_text(now, recorder_.frame_count(), folder_->path()));
   if (now.exit_code != 0)
-    throw CheckFailed(fmt::format("{} ({})\n{}", now.message, folder_.path(), table));
+    throw CheckFailed(fmt::format("{} ({})\n{}", now.message, folder_->path(), table));
   if (!plan_.config.checks.empty())
     say(whole_case ? table : "checks  not made: the run ends before the end of its case\n");
-  return 0;
 }
 
+/// Rank 0 writes what it can of a failure; where that fails, too, the first one is the one to tell.
 void Run::failed(int exit_code, const std::string& message) {
-  progress_.end_line();
   // The first failure is the one to tell; a disk that takes no summary any more changes nothing.
-  try {
-    background_.finish();
-    recorder_.sync();
-  } catch (const std::exception&) {
-  }
-  try {
-    log_.write(Level::error, "end", method_.steps(), message);
-  } catch (const Error&) {
-  }
-  Summary now = measured();
-  try {
-    describe_state(now);
-    now.energy = method_.energy();
-  } catch (const Error&) {
-    // Numbers that went wrong may have no energy; the summary then leaves it out.
-  }
-  now.status = "failed";
-  now.exit_code = exit_code;
-  now.message = message;
-  try {
-    write_summary(now);
-  } catch (const Error&) {
-    tell_in_place(now);
-  }
+  const auto write = [this](const auto& work) {
+    if (folder_ == nullptr) return true;
+    try {
+      work();
+    } catch (const std::exception&) {
+      return false;
+    }
+    return true;
+  };
+  const bool of_all = thrown_by_all(plan_.ranks);
+  at_once(plan_.ranks, [&] {
+    progress_.end_line();
+    write([&] {
+      background_.finish();
+      recorder_.sync();
+    });
+    write([&] { log_->write(Level::error, "end", method_.steps(), message); });
+    Summary now = measured();
+    try {
+      if (of_all) {
+        describe_state(now);
+        now.energy = method_.energy();
+      }
+    } catch (const Error&) {
+      // Numbers that went wrong may have no energy; the summary then leaves it out.
+      if (!thrown_by_all(plan_.ranks)) throw;
+    }
+    now.status = "failed";
+    now.exit_code = exit_code;
+    now.message = message;
+    if (!write([&] { write_summary(now); })) tell_in_place(now);
+  });
 }
 
 /// A full disk has no room for a second summary, but the first must not say that all is well.
 void Run::tell_in_place(const Summary& now) const {
   try {
-    overwrite(folder_.file("summary.json"), bytes_of(to_json(now)));
+    overwrite(folder_->file("summary.json"), bytes_of(to_json(now)));
   } catch (const Error&) {
   }
 }
@@ -340,13 +392,18 @@ std::string Run::located(const std::string& error) {
 
 /// Saves the state with the wrong numbers; returns a sentence about it.
 std::string Run::save_crash() {
-  const std::string path = folder_.file("crash.br");
   try {
-    CheckpointWriter state = record_state();
-    method_.save(state);
+    CheckpointWriter state;
+    at_once(plan_.ranks, [&] {
+      state = record_state();
+      method_.save(state);
+    });
+    if (folder_ == nullptr) return "";
+    const std::string path = folder_->file("crash.br");
     state.write(path);
     return fmt::format("state written to {0} (open with 'breccia info {0}')", path);
   } catch (const std::exception& error) {
+    if (!thrown_by_all(plan_.ranks)) throw;
     return fmt::format("the state could not be saved: {}", error.what());
   }
 }
@@ -393,7 +450,7 @@ void Run::describe_state(Summary& s) const {
 }
 
 void Run::write_summary(const Summary& summary) const {
-  replace_durably(folder_.file("summary.json"), to_json(summary));
+  replace_durably(folder_->file("summary.json"), to_json(summary));
 }
 
 void Run::say(const std::string& text) {
@@ -402,13 +459,14 @@ void Run::say(const std::string& text) {
   std::fflush(stdout);
 }
 
-Standing Run::standing() {
+void Run::count_broken() {
   // Counting may cost more than many steps: spend at most a hundredth of the time on it.
   const Clock::time_point begin = Clock::now();
-  if (begin >= next_facts_) {
-    broken_ = broken_text(method_.facts());
-    next_facts_ = Clock::now() + 100 * (Clock::now() - begin);
-  }
+  broken_ = broken_text(method_.facts());
+  next_facts_ = Clock::now() + 100 * (Clock::now() - begin);
+}
+
+Standing Run::standing() const {
   return {method_.steps(), method_.time(), share(), broken_};
 }
 

@@ -38,33 +38,56 @@ struct RunPlan {
   Limits limits;
   Machine machine;
   StageTimers* timers = nullptr;  ///< what the method books its stages in
+  Communicator* ranks = nullptr;  ///< that share the work; null: none
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   Speech speech = Speech::normal;
   Progress::Form progress = Progress::Form::none;
 };
 
-/// One run of a method in a result folder.
+/// How far a run had come when a checkpoint was written; the method's state is apart from it.
+struct RunState {
+  std::int64_t step;
+  double time;             ///<  [s]
+  double dt_min, dt_max;   ///<  [s]
+  double end_time;         ///< where it was sent  [s]
+  std::int64_t end_steps;  ///< likewise
+  RecordState record;
+
+  explicit RunState(const CheckpointReader& checkpoint);
+};
+
+/// One run of a method in a result folder. Of several ranks each executes the same run: rank 0
+/// writes files, speaks, and decides what depends on its clock or on signals.
 class Run {
  public:
-  /// A new run of the method as it is, from its start or from a state it has loaded.
-  Run(Method& method, const RunPlan& plan, const ResultFolder& folder);
-  /// Goes on with the run of the folder: loads the checkpoint into the method, cuts the record to
-  /// it. @throws CheckpointError if it is of another case
-  Run(Method& method, const RunPlan& plan, const ResultFolder& folder,
-      const CheckpointReader& checkpoint);
+  /// A run of the method as it is, from its start or from a state that it has loaded.
+  /// @param folder  null on ranks other than 0
+  /// @param former  not null: goes on with the run of the folder, whose record is cut to that state
+  Run(Method& method, const RunPlan& plan, const ResultFolder* folder,
+      const RunState* former = nullptr);
 
   /// Steps to the end. Returns 0, or 128 + n after signal n, the state then being saved.
   /// @throws NumericsError after saving the state as crash.br; IoError; CheckFailed if a check of
-  ///         the case fails. summary.json then tells of it.
+  ///         the case fails. summary.json then tells of it. All ranks throw it, unless
+  ///         thrown_by_all() tells otherwise.
   int execute();
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// What rank 0 decides between two steps, for all ranks.
+  struct Decision {
+    std::int64_t steps_at_once = 1;              ///< of several ranks, to the next decision
+    std::int32_t signal = 0;                     ///< ends the run; 0: none
+    std::int32_t save = 0, show = 0, count = 0;  ///< checkpoint, progress, new facts for it
+  };
 
+  void go_on_from(const RunState& former);
+  int execute_together();
   void start();
   int advance();
   StopAt next_stop() const;
-  void take_steps();
+  double take_steps();
+  Decision decide(double spent) const;
   void observe();
   bool finished() const;
   double share() const;
@@ -73,6 +96,7 @@ class Run {
   CheckpointWriter record_state() const;
   int interrupted(int signal);
   int done();
+  void conclude(Summary& now);
   void failed(int exit_code, const std::string& message);
   /// What went wrong, with step, time and element, where the search or a law that met it knew none.
   std::string located(const std::string& error);
@@ -83,19 +107,21 @@ class Run {
   void write_summary(const Summary& summary) const;
   void tell_in_place(const Summary& summary) const;
   void say(const std::string& text);
-  Standing standing();
+  void count_broken();
+  Standing standing() const;
 
   Method& method_;
   const RunPlan& plan_;
-  const ResultFolder& folder_;
+  const ResultFolder* folder_;          ///< null on ranks other than 0
   double end_time_;                     ///< the run ends at the first step at or past it  [s]
   std::int64_t end_steps_;              ///< likewise
   double dt_min_ = 0.0, dt_max_ = 0.0;  ///<  [s]
-  Log log_;
+  std::optional<Log> log_;              ///< likewise
   Recorder recorder_;
   Checkpoints checkpoints_;
   StepTimes step_times_;
   Progress progress_;
+  std::int64_t steps_at_once_ = 1;
   double setup_ = 0.0, loop_ = 0.0, output_ = 0.0;  ///< wall time  [s]
   std::string broken_;
   Clock::time_point next_facts_{};

@@ -24,24 +24,25 @@ using Seen = std::vector<std::uint64_t>;
 /// A look every so many steps, a step at a time in between.
 template <class AScene>
 Seen seen(int count, const AScene& scene, int steps, int every, Space space = Space::host) {
-  Seen all;
-  const auto note = [&all](double number) { all.push_back(std::bit_cast<std::uint64_t>(number)); };
-  led_on_ranks(
+  return on_all_ranks(
       count, 1, scene,
-      [&](Method& method) {
+      [&](Method& method, bool) {
+        Seen all;
+        const auto note = [&all](double number) {
+          all.push_back(std::bit_cast<std::uint64_t>(number));
+        };
         while (true) {
           const EnergyBalance e = method.energy();
           for (const double part : {e.kinetic, e.elastic, e.fracture, e.plastic, e.friction,
                                     e.damping, e.contact, e.work, e.start, e.error_relative})
             note(part);
           for (const double value : method.probes()) note(value);
-          if (method.steps() >= steps) return;
+          if (method.steps() >= steps) return all;
           const std::int64_t next = method.steps() + every;
           while (method.steps() < next) method.advance({1e300, next});
         }
       },
       space);
-  return all;
 }
 
 /// Each quantity in each way of all items and of a body.
@@ -115,8 +116,8 @@ TEST(Looks, find_the_same_where_arrays_lie_in_another_space) {
 /// What verify() says after each of some steps.
 template <class AScene>
 std::vector<std::string> told(int count, const AScene& scene, int steps) {
-  std::vector<std::string> all;
-  led_on_ranks(count, 1, scene, [&](Method& method) {
+  return on_all_ranks(count, 1, scene, [&](Method& method, bool) {
+    std::vector<std::string> all;
     while (method.steps() < steps) {
       const std::int64_t next = method.steps() + 1;
       while (method.steps() < next) method.advance({1e300, next});
@@ -127,8 +128,8 @@ std::vector<std::string> told(int count, const AScene& scene, int steps) {
         all.push_back(error.what());
       }
     }
+    return all;
   });
-  return all;
 }
 
 TEST(Looks, at_numbers_that_go_wrong_name_the_same_triangle) {

@@ -35,28 +35,27 @@ Shared on_ranks(int count, const AScene& scene, int steps, const DomainConfig& c
   return shared;
 }
 
-/// A method on simulated ranks; `lead` is what rank 0 does with it.
-template <class AScene, class Lead>
-void led_on_ranks(int count, int threads, const AScene& scene, const Lead& lead,
+/// A method on simulated ranks, each of which calls work(method, whether it is rank 0); returns the
+/// result of rank 0.
+template <class AScene, class Work>
+auto on_all_ranks(int count, int threads, const AScene& scene, const Work& work,
                   Space space = Space::host) {
+  decltype(work(std::declval<Method&>(), true)) result{};
   simulate_ranks(count, 77, [&](Communicator& ranks) {
     Exec exec;
     exec.threads = threads;
     exec.space = space;
     const auto method = method_of(scene, exec, count > 1 ? &ranks : nullptr);
-    if (ranks.rank() != 0) {
-      method->follow();
-      return;
-    }
-    lead(*method);
-    method->dismiss(0);
+    auto own = work(*method, ranks.rank() == 0);
+    if (ranks.rank() == 0) result = std::move(own);
   });
+  return result;
 }
 
-inline void save(Method& method, const std::string& path) {
+inline void save(Method& method, bool first, const std::string& path) {
   CheckpointWriter writer;
   method.save(writer);
-  writer.write(path);
+  if (first) writer.write(path);
 }
 
 /// A folder that goes when the test ends.
@@ -84,16 +83,21 @@ struct Journal {
 template <class AScene>
 Journal journal(int count, const AScene& scene, int saved_at, int end, const std::string& path,
                 const std::string& from) {
-  Journal j;
-  led_on_ranks(count, 1, scene, [&](Method& method) {
-    if (!from.empty()) method.load(CheckpointReader(from));
+  return on_all_ranks(count, 1, scene, [&](Method& method, bool first) {
+    Journal j;
+    if (!from.empty()) {
+      const CheckpointReader state(from);
+      method.load(&state);
+    }
     while (method.steps() < saved_at) {
       method.advance({1e300, method.steps() + 1});
       if (method.steps() % 7 == 0) method.energy();  // looking changes nothing
     }
-    save(method, path);
-    std::ifstream file(path, std::ios::binary);
-    j.checkpoint.assign(std::istreambuf_iterator<char>(file), {});
+    save(method, first, path);
+    if (first) {
+      std::ifstream file(path, std::ios::binary);
+      j.checkpoint.assign(std::istreambuf_iterator<char>(file), {});
+    }
     while (method.steps() < end) method.advance({1e300, end});
     j.hash = method.state_hash();
     j.friction = method.energy().friction;
@@ -101,8 +105,8 @@ Journal journal(int count, const AScene& scene, int saved_at, int end, const std
     for (const FrameField& field : method.frame().line_fields)
       j.frame.append(reinterpret_cast<const char*>(field.values.data()),
                      field.values.size() * sizeof(float));
+    return j;
   });
-  return j;
 }
 
 }  // namespace breccia::mpi_testing

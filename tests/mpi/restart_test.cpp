@@ -29,19 +29,22 @@ void expect_equal_ends(const AScene& scene, int pairs, int end, std::uint64_t se
   for (int pair = 0; pair < pairs; ++pair) {
     const Team before{draw(1, 12), draw(1, 3)}, after{draw(1, 12), draw(1, 3)};
     const int middle = draw(1, end - 1);
-    led_on_ranks(before.ranks, before.threads, scene, [&](Method& method) {
+    on_all_ranks(before.ranks, before.threads, scene, [&](Method& method, bool first) {
       while (method.steps() < middle) method.advance({1e300, middle});
-      save(method, state);
+      save(method, first, state);
+      return true;
     });
-    led_on_ranks(after.ranks, after.threads, scene, [&](Method& method) {
-      method.load(CheckpointReader(state));
+    const auto hash = on_all_ranks(after.ranks, after.threads, scene, [&](Method& method, bool) {
+      const CheckpointReader saved(state);
+      method.load(&saved);
       EXPECT_EQ(method.steps(), middle);
       while (method.steps() < end) method.advance({1e300, end});
-      EXPECT_EQ(method.state_hash(), whole.hash)
-          << "pair " << pair << ": saved at step " << middle << " on " << before.ranks
-          << " ranks of " << before.threads << " threads, continued on " << after.ranks << " of "
-          << after.threads;
+      return method.state_hash();
     });
+    EXPECT_EQ(hash, whole.hash) << "pair " << pair << ": saved at step " << middle << " on "
+                                << before.ranks << " ranks of " << before.threads
+                                << " threads, continued on " << after.ranks << " of "
+                                << after.threads;
   }
 }
 

@@ -113,7 +113,8 @@ TEST(SameBits, across_a_checkpoint_on_other_threads) {
   for (int i = 0; i < 400; ++i) before->advance({});
 
   const auto after = make_dem_method(config, small_model(), three);
-  after->load(CheckpointReader(folder + "/state.br"));
+  const CheckpointReader state(folder + "/state.br");
+  after->load(&state);
   EXPECT_EQ(after->steps(), 500);
   for (int i = 0; i < 400; ++i) after->advance({});
   EXPECT_EQ(after->state_hash(), before->state_hash());
@@ -155,10 +156,10 @@ TEST(SameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   for (int i = 0; i < 200; ++i) before->advance({});
   const CheckpointReader state(folder + "/state.br");
   const auto after = make_dem_method(config, small_model(), {});
-  after->load(state);
+  after->load(&state);
   for (int i = 0; i < 200; ++i) after->advance({});
   EXPECT_EQ(after->state_hash(), before->state_hash());
-  EXPECT_THROW(make_dem_method(small_config(), small_model(), {})->load(state), CheckpointError);
+  EXPECT_THROW(make_dem_method(small_config(), small_model(), {})->load(&state), CheckpointError);
   std::filesystem::remove_all(folder);
 }
 

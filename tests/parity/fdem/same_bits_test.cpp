@@ -157,7 +157,8 @@ TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
     writer.write(folder + "/state.br");
     for (int i = moment; i < 250; ++i) before->advance({});
     const auto after = make_fdem_method(scene.config, scene.model, three);
-    after->load(CheckpointReader(folder + "/state.br"));
+    const CheckpointReader state(folder + "/state.br");
+    after->load(&state);
     EXPECT_EQ(after->steps(), moment);
     for (int i = moment; i < 250; ++i) after->advance({});
     EXPECT_EQ(after->state_hash(), before->state_hash());
@@ -200,7 +201,7 @@ TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   writer.write(folder + "/state.br");
   const CheckpointReader state(folder + "/state.br");
   const auto after = make_fdem_method(scene.config, scene.model, {});
-  after->load(state);
+  after->load(&state);
   for (int i = 163; i < 250; ++i) {
     before->advance({});
     after->advance({});
@@ -208,7 +209,7 @@ TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   EXPECT_EQ(after->state_hash(), before->state_hash());
   EXPECT_EQ(after->energy().friction, before->energy().friction);
   scene.config.precision = "double";
-  EXPECT_THROW(make_fdem_method(scene.config, scene.model, {})->load(state), CheckpointError);
+  EXPECT_THROW(make_fdem_method(scene.config, scene.model, {})->load(&state), CheckpointError);
   std::filesystem::remove_all(folder);
 }
 

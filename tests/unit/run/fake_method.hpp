@@ -96,12 +96,12 @@ class FakeMethod : public Method {
     writer.value("fake.last_step", last_step_);
     writer.value("fake.steps", steps_);
   }
-  void load(const CheckpointReader& reader) override {
-    position_ = reader.value<State>("fake.position");
-    velocity_ = reader.value<State>("fake.velocity");
-    time_ = reader.value<double>("fake.time");
-    last_step_ = reader.value<double>("fake.last_step");
-    steps_ = reader.value<std::int64_t>("fake.steps");
+  void load(const CheckpointReader* reader) override {
+    position_ = reader->value<State>("fake.position");
+    velocity_ = reader->value<State>("fake.velocity");
+    time_ = reader->value<double>("fake.time");
+    last_step_ = reader->value<double>("fake.last_step");
+    steps_ = reader->value<std::int64_t>("fake.steps");
   }
 
  private:

@@ -32,7 +32,7 @@ inline int run_fake(const RunPlan& plan, const std::string& path, const Trouble&
   const StopSignals signals;
   FakeMethod method(trouble);
   const ResultFolder folder = ResultFolder::create(path, Existing::refuse);
-  return Run(method, plan, folder).execute();
+  return Run(method, plan, &folder).execute();
 }
 
 /// Goes on with the run of the folder.
@@ -41,12 +41,14 @@ inline int resume_fake(const RunPlan& plan, const std::string& path,
   const StopSignals signals;
   const ResultFolder folder = ResultFolder::open(path);
   FakeMethod method;
-  return Run(method, plan, folder,
-             newest_good_checkpoint(folder.file("checkpoints"),
-                                    [&](const std::string& text) {
-                                      if (warnings != nullptr) *warnings += text;
-                                    }))
-      .execute();
+  const CheckpointReader checkpoint =
+      newest_good_checkpoint(folder.file("checkpoints"), [&](const std::string& text) {
+        if (warnings != nullptr) *warnings += text;
+      });
+  refuse_other_case(checkpoint, plan);
+  method.load(&checkpoint);
+  const RunState former(checkpoint);
+  return Run(method, plan, &folder, &former).execute();
 }
 
 inline nlohmann::json summary_of(const std::string& path) {
