@@ -36,5 +36,11 @@ State host_copy(const State& state) {
   move_fields(copy, Space::host);
   return copy;
 }
+template <class T>
+Buffer<T> host_copy(const Buffer<T>& array) {
+  Buffer<T> copy;
+  copy_to(copy, array);
+  return copy;
+}
 
 }  // namespace breccia

@@ -1,5 +1,5 @@
 #pragma once
-// States as the host reads them.
+// States and arrays as the host reads them.
 
 #include <optional>
 
@@ -7,7 +7,7 @@
 
 namespace breccia {
 
-/// A state for reading on the host: itself where it lies there, else a copy.
+/// A state or an array for reading on the host: itself where it lies there, else a copy.
 template <class State>
 class OnHost {
  public:

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
+#include "core/on_host.hpp"
+#include "core/pieces.hpp"
 #include "core/probe.hpp"
 #include "core/rows.hpp"
 #include "core/state_hash.hpp"
@@ -157,64 +158,24 @@ Buffer<double> damage_of(const World& w) {
   return damage;
 }
 
-/// An array for reading on the host: itself where it lies there, else a copy.
-template <class T>
-class HostItems {
- public:
-  explicit HostItems(const Buffer<T>& array) : items_(&array) {
-    if (array.space() == Space::host) return;
-    copy_to(copy_, array);
-    items_ = &copy_;
-  }
-  HostItems(const HostItems&) = delete;
-  HostItems& operator=(const HostItems&) = delete;
-  const T& operator[](Index i) const { return items_->data()[i]; }
-  Index size() const { return items_->size(); }
-
- private:
-  Buffer<T> copy_;
-  const Buffer<T>* items_;
-};
-
 /// Both ends of each link and whether it is broken.
 template <class Visit>
 void each_link(const World& w, const Visit& visit) {
-  {
-    const HostItems a(w.concrete.a), b(w.concrete.b);
-    with_number(w.exec.precision, [&](auto number) {
-      const HostItems opening(w.concrete.kept.as<decltype(number)>().opening);
-      for (Index i = 0; i < a.size(); ++i) visit(LinkKind::concrete, a[i], b[i], opening[i] < 0);
-    });
-  }
-  {
-    const HostItems a(w.steel.a), b(w.steel.b);
-    const HostItems state(w.steel.state);
-    for (Index i = 0; i < a.size(); ++i)
-      visit(LinkKind::steel, a[i], b[i], state[i].hardening < 0.0);
-  }
-  const HostItems a(w.interface.a), b(w.interface.b);
-  const HostItems state(w.interface.state);
-  for (Index i = 0; i < a.size(); ++i)
-    visit(LinkKind::interface, a[i], b[i], state[i].opening < 0.0);
+  const auto each = [&](LinkKind kind, const auto& links, const auto& state,
+                        const auto& is_broken) {
+    const OnHost a(links.a, w.exec.space), b(links.b, w.exec.space), s(state, w.exec.space);
+    for (Index i = 0; i < a->size(); ++i)
+      visit(kind, a->data()[i], b->data()[i], is_broken(s->data()[i]));
+  };
+  with_number(w.exec.precision, [&](auto number) {
+    each(LinkKind::concrete, w.concrete, w.concrete.kept.as<decltype(number)>().opening,
+         [](auto opening) { return opening < 0; });
+  });
+  each(LinkKind::steel, w.steel, w.steel.state,
+       [](const SteelState& s) { return s.hardening < 0.0; });
+  each(LinkKind::interface, w.interface, w.interface.state,
+       [](const InterfaceState& s) { return s.opening < 0.0; });
 }
-
-/// Pieces held together by unbroken links: each element's lowest reachable member.
-class Pieces {
- public:
-  explicit Pieces(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0); }
-  Index root(Index e) {
-    while (root_[at(e)] != e) e = root_[at(e)] = root_[at(root_[at(e)])];
-    return e;
-  }
-  void join(Index a, Index b) {
-    a = root(a);
-    b = root(b);
-    root_[at(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> root_;
-};
 
 }  // namespace
 
@@ -295,7 +256,7 @@ Readings read_own(World& part, const ProbeConfig& p) {
 
 Counts count(const World& w) {
   Counts n;
-  Pieces pieces(static_cast<std::size_t>(w.elements.size()));
+  Pieces pieces(at(w.elements.size()));
   each_link(w, [&](LinkKind kind, Index a, Index b, bool broken) {
     if (!broken)
       pieces.join(a, b);
@@ -304,15 +265,15 @@ Counts count(const World& w) {
          : kind == LinkKind::steel  ? n.broken_steel
                                     : n.broken_interface);
   });
-  const HostItems contacts(w.contacts.history.state);
-  for (Index i = 0; i < contacts.size(); ++i)
-    if (contacts[i].overlap > 0.0) ++n.touching;
-  const HostItems masses(w.elements.mass);
-  std::vector<double> mass(static_cast<std::size_t>(masses.size()), 0.0);
+  const OnHost contacts(w.contacts.history.state, w.exec.space);
+  for (const ContactState& contact : contacts->host())
+    if (contact.overlap > 0.0) ++n.touching;
+  const OnHost masses(w.elements.mass, w.exec.space);
+  std::vector<double> mass(at(masses->size()), 0.0);
   double total = 0.0;
-  for (Index i = 0; i < masses.size(); ++i) {
-    mass[static_cast<std::size_t>(pieces.root(i))] += masses[i];
-    total += masses[i];
+  for (Index i = 0; i < masses->size(); ++i) {
+    mass[at(pieces.root(i))] += masses->data()[i];
+    total += masses->data()[i];
   }
   for (const double m : mass) {
     if (m > 0.0) ++n.fragments;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 #include "core/on_host.hpp"
+#include "core/pieces.hpp"
 #include "core/probe.hpp"
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
@@ -53,24 +53,6 @@ struct FindUnsound {
     const bool finite = sum - sum == 0.0;
     return finite && jacobian > 0.0 && dt * dt * fastest <= area ? Unsound::none : id[t];
   }
-};
-
-/// Pieces of something: each item's lowest reachable member.
-class Pieces {
- public:
-  explicit Pieces(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0); }
-  Index root(Index e) {
-    while (root_[at(e)] != e) e = root_[at(e)] = root_[at(root_[at(e)])];
-    return e;
-  }
-  void join(Index a, Index b) {
-    a = root(a);
-    b = root(b);
-    root_[at(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> root_;
 };
 
 /// What a probe reads.
