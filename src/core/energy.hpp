@@ -48,6 +48,50 @@ BR_HD inline ExactSum operator+(ExactSum a, const ExactSum& b) {
   return a;
 }
 
+/// Energies of items, of a part or of all of a model, by the columns of the ledger  [J; in 2D J/m].
+struct Energies {
+  ExactSum kinetic, elastic;
+  ExactSum fracture;  ///< where modes are told apart: by opening
+  ExactSum sliding;   ///< fracture by sliding
+  ExactSum plastic, friction, damping, contact, work;
+  ExactSum potential;  ///< sum of m g.x: gravity has done work where it falls
+};
+BR_HD inline Energies operator+(Energies a, const Energies& b) {
+  a.kinetic.add(b.kinetic);
+  a.elastic.add(b.elastic);
+  a.fracture.add(b.fracture);
+  a.sliding.add(b.sliding);
+  a.plastic.add(b.plastic);
+  a.friction.add(b.friction);
+  a.damping.add(b.damping);
+  a.contact.add(b.contact);
+  a.work.add(b.work);
+  a.potential.add(b.potential);
+  return a;
+}
+
+/// What has been booked for good, and the start of the ledger  [J; in 2D J/m].
+struct Ledger {
+  ExactSum friction, contact;  ///< of contacts that were dropped at a search
+  ExactSum came_in;            ///< work of them; stored in joints when they were inserted
+  ExactSum start_potential;    ///< sum of m g.x at the start
+  double start = 0.0;          ///< kinetic and elastic energy at the start
+  double largest = 0.0;        ///< largest sum of energies and work seen
+
+  /// What contacts have spent that are dropped.
+  void book(const Energies& spent) {
+    friction.add(spent.friction);
+    contact.add(spent.contact);
+    came_in.add(spent.work);
+  }
+  /// What another part of the model has booked.
+  void add(const Ledger& booked) {
+    friction.add(booked.friction);
+    contact.add(booked.contact);
+    came_in.add(booked.came_in);
+  }
+};
+
 /// Where the energy of a model is at one moment, and what went in and out since the start  [J].
 struct EnergyBalance {
   double kinetic = 0.0;         ///< of translation and rotation

@@ -42,20 +42,6 @@ struct GravityPotential {
   }
 };
 
-/// Energies of one interaction, in the ledger's columns; the owner of its end a books them.
-struct Shares {
-  ExactSum elastic, fracture, plastic, friction, contact, work;
-};
-BR_HD Shares operator+(Shares a, const Shares& b) {
-  a.elastic.add(b.elastic);
-  a.fracture.add(b.fracture);
-  a.plastic.add(b.plastic);
-  a.friction.add(b.friction);
-  a.contact.add(b.contact);
-  a.work.add(b.work);
-  return a;
-}
-
 template <class Number>
 struct ConcreteShares {
   OwnedView owned;
@@ -68,9 +54,9 @@ struct ConcreteShares {
   PlanesView<const Number> shear, moment;
   View<const double> slid, yielded, broke;
 
-  BR_HD Shares operator()(Index k) const {
+  BR_HD Energies operator()(Index k) const {
     const Index i = first + k;
-    Shares s;
+    Energies s;
     if (!owned(a[i])) return s;
     const double ra = state_of[a[i]].radius, rb = state_of[b[i]].radius, least = smaller(ra, rb);
     const LinkConstants<double> link{length[i], stiffness[i], pi * least * least, 0.5 * (ra + rb),
@@ -87,12 +73,12 @@ struct ConcreteShares {
 };
 
 template <class Number>
-Shares concrete_shares(const World& w) {
+Energies concrete_shares(const World& w) {
   const ConcreteLinks& c = w.concrete;
   const LinkHistory<Number>& kept = c.kept.as<Number>();
-  Shares all;
+  Energies all;
   for (const auto& g : w.concrete_groups)
-    all = all + fold(w.exec, g.end - g.begin, Shares{},
+    all = all + fold(w.exec, g.end - g.begin, Energies{},
                      ConcreteShares<Number>{
                          w.domain.owned_view(), g.law, g.begin, w.elements.state.view(), c.a.view(),
                          c.b.view(), c.length.view(), c.stiffness.view(), kept.opening.view(),
@@ -112,9 +98,9 @@ struct SteelShares {
   View<const SteelState> state;
   View<const double> yielded, broke;
 
-  BR_HD Shares operator()(Index k) const {
+  BR_HD Energies operator()(Index k) const {
     const Index i = first + k;
-    Shares s;
+    Energies s;
     if (!owned(a[i])) return s;
     const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
     const double distance = norm(d), r = smaller(state_of[a[i]].radius, state_of[b[i]].radius);
@@ -136,9 +122,9 @@ struct InterfaceShares {
   View<const InterfaceState> state;
   View<const double> slid, broke;
 
-  BR_HD Shares operator()(Index k) const {
+  BR_HD Energies operator()(Index k) const {
     const Index i = first + k;
-    Shares s;
+    Energies s;
     if (!owned(a[i])) return s;
     s.elastic.add(law.stored(stiffness[i], area[i], state[i]));
     s.fracture.add(broke[i]);
@@ -161,8 +147,8 @@ struct ContactShares {
   View<const ContactState> state;
   View<const double> slid, damped, driven;
 
-  BR_HD Shares operator()(Index i) const {
-    Shares s;
+  BR_HD Energies operator()(Index i) const {
+    Energies s;
     if (!owned(a[i])) return s;
     const double overlap = state[i].overlap;
     if (overlap > 0.0) {
@@ -189,19 +175,19 @@ struct ContactShares {
 struct ElementShares {
   OwnedView owned;
   View<const double> damping_work, load_work;
-  BR_HD Shares operator()(Index e) const {
-    Shares s;
+  BR_HD Energies operator()(Index e) const {
+    Energies s;
     if (!owned(e)) return s;
-    s.contact.add(damping_work[e]);  // booked under damping by the caller
+    s.damping.add(damping_work[e]);
     s.work.add(load_work[e]);
     return s;
   }
 };
 
-Shares contact_shares(const World& w, const Contacts& c, const Buffer<ContactPair>& pairs,
-                      Index materials, const Buffer<double>& wall_stiffness) {
+Energies contact_shares(const World& w, const Contacts& c, const Buffer<ContactPair>& pairs,
+                        Index materials, const Buffer<double>& wall_stiffness) {
   return fold(
-      w.exec, c.size(), Shares{},
+      w.exec, c.size(), Energies{},
       ContactShares{w.domain.owned_view(), w.parameters.contact, w.elements.material.view(),
                     w.elements.state.view(), pairs.view(), materials, wall_stiffness.view(),
                     c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
@@ -211,37 +197,23 @@ Shares contact_shares(const World& w, const Contacts& c, const Buffer<ContactPai
 
 }  // namespace
 
-Held operator+(Held a, const Held& b) {
-  a.kinetic.add(b.kinetic);
-  a.elastic.add(b.elastic);
-  a.fracture.add(b.fracture);
-  a.plastic.add(b.plastic);
-  a.friction.add(b.friction);
-  a.damping.add(b.damping);
-  a.contact.add(b.contact);
-  a.work.add(b.work);
-  a.potential.add(b.potential);
-  return a;
-}
-
-Held held(const World& w) {
+Energies held(const World& w) {
   const StageTime timed(w.exec, "ledger");
   const OwnedView owned = w.domain.owned_view();
   const Elements& e = w.elements;
-  Held r;
-  r.kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{owned, kick(w)}, Sum{});
-  Shares all;
+  Energies all;
+  all.kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{owned, kick(w)}, Sum{});
   with_number(w.exec.precision,
               [&](auto number) { all = all + concrete_shares<decltype(number)>(w); });
   const SteelLinks& s = w.steel;
   for (const auto& g : w.steel_groups)
-    all = all + fold(w.exec, g.end - g.begin, Shares{},
+    all = all + fold(w.exec, g.end - g.begin, Energies{},
                      SteelShares{owned, g.law, g.begin, e.state.view(), s.a.view(), s.b.view(),
                                  s.length.view(), s.state.view(), s.yielded.view(), s.broke.view()},
                      Sum{});
   const InterfaceLinks& b = w.interface;
   for (const auto& g : w.interface_groups)
-    all = all + fold(w.exec, g.end - g.begin, Shares{},
+    all = all + fold(w.exec, g.end - g.begin, Energies{},
                      InterfaceShares{owned, g.law, g.begin, b.a.view(), b.stiffness.view(),
                                      b.area.view(), b.state.view(), b.slid.view(), b.broke.view()},
                      Sum{});
@@ -252,38 +224,25 @@ Held held(const World& w) {
   all =
       all + contact_shares(w, w.contacts, w.contact_pairs, w.parameters.materials, wall_stiffness);
   all = all + contact_shares(w, w.wall_contacts, w.wall_pairs, 0, wall_stiffness);
-  const Shares own = fold(w.exec, e.size(), Shares{},
-                          ElementShares{owned, e.damping_work.view(), e.load_work.view()}, Sum{});
-  r.elastic = all.elastic;
-  r.fracture = all.fracture;
-  r.plastic = all.plastic;
-  r.friction = all.friction;
-  r.damping = own.contact;
-  r.contact = all.contact;
-  r.work = all.work + own.work;
+  all = all + fold(w.exec, e.size(), Energies{},
+                   ElementShares{owned, e.damping_work.view(), e.load_work.view()}, Sum{});
   if (dot(w.parameters.gravity, w.parameters.gravity) > 0.0)
-    r.potential =
+    all.potential =
         fold(w.exec, e.size(), ExactSum(),
              GravityPotential{owned, w.parameters.gravity, e.state.view(), e.mass.view()}, Sum{});
-  return r;
+  return all;
 }
 
-void add(Ledger& ledger, const Ledger& booked) {
-  ledger.slid.add(booked.slid);
-  ledger.damped.add(booked.damped);
-  ledger.driven.add(booked.driven);
-}
-
-EnergyBalance balance(Ledger& ledger, const Held& all, std::int64_t step) {
+EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {
   EnergyBalance r;
   r.kinetic = all.kinetic.value();
   r.elastic = all.elastic.value();
   r.fracture = all.fracture.value();
   r.plastic = all.plastic.value();
-  r.friction = (all.friction + ledger.slid).value();
-  r.contact = (all.contact + ledger.damped).value();
+  r.friction = (all.friction + ledger.friction).value();
+  r.contact = (all.contact + ledger.contact).value();
   r.damping = all.damping.value();
-  r.work = (all.work + ledger.driven).value();
+  r.work = (all.work + ledger.came_in).value();
   if (step == 0) ledger.start_potential = all.potential;
   r.work += all.potential.value() - ledger.start_potential.value();
   r.start = ledger.start;

@@ -6,22 +6,12 @@
 
 namespace breccia::dem {
 
-/// Energies in the ledger's columns.  [J]
-struct Held {
-  ExactSum kinetic, elastic, fracture, plastic, friction, damping, contact, work;
-  ExactSum potential;  ///< sum of m g.x  [J]
-};
-Held operator+(Held a, const Held& b);
-
 /// Those of a rank's own elements, and of the links and contacts whose first element it owns.
-Held held(const World& w);
-
-/// Adds to a ledger what a part has booked.
-void add(Ledger& ledger, const Ledger& booked);
+Energies held(const World& w);
 
 /// Where every joule of the whole is; keeps the largest energy seen in its ledger.
 /// @param all   of all parts
 /// @param step  at which they were held
-EnergyBalance balance(Ledger& ledger, const Held& all, std::int64_t step);
+EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step);
 
 }  // namespace breccia::dem

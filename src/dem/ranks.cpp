@@ -317,7 +317,7 @@ void collect(World& part, World& whole) {
   const std::vector<Ledger> booked = from_each(*part.domain.ranks, part.ledger);
   part.ledger = {};
   if (part.domain.ranks->rank() != 0) return;
-  for (const Ledger& ledger : booked) add(whole.ledger, ledger);
+  for (const Ledger& ledger : booked) whole.ledger.add(ledger);
   whole.elements = std::move(copy.elements);
   whole.travel = std::move(copy.travel);
   whole.concrete = std::move(copy.concrete);

@@ -73,23 +73,18 @@ struct MayTouch {
 };
 
 /// What contacts that leave the list have spent.
-struct Spent {
-  ExactSum slid, damped, driven;
-};
-BR_HD Spent operator+(Spent a, const Spent& b) {
-  a.slid.add(b.slid);
-  a.damped.add(b.damped);
-  a.driven.add(b.driven);
-  return a;
-}
 struct SpentBy {
   OwnedView owned;  ///< the owner of a books
   View<const Index> contact, a;
   View<const double> slid, damped, driven;
-  BR_HD Spent operator()(Index k) const {
+  BR_HD Energies operator()(Index k) const {
     const Index i = contact[k];
-    if (!owned(a[i])) return {};
-    return {ExactSum(slid[i]), ExactSum(damped[i]), ExactSum(driven[i])};
+    Energies spent;
+    if (!owned(a[i])) return spent;
+    spent.friction.add(slid[i]);
+    spent.contact.add(damped[i]);
+    spent.work.add(driven[i]);
+    return spent;
   }
 };
 
@@ -100,14 +95,11 @@ void book_dropped(World& w, const Contacts& contacts, const Pairs& found) {
   find_dropped(w.exec, contacts.pairs.key, found.key, dropped);
   if (dropped.empty()) return;
   const ContactHistory& h = contacts.history;
-  const Spent spent =
-      fold(w.exec, dropped.size(), Spent{},
+  w.ledger.book(
+      fold(w.exec, dropped.size(), Energies{},
            SpentBy{w.domain.owned_view(), std::as_const(dropped).view(), contacts.pairs.a.view(),
                    h.slid.view(), h.damped.view(), h.driven.view()},
-           Sum{});
-  w.ledger.slid.add(spent.slid);
-  w.ledger.damped.add(spent.damped);
-  w.ledger.driven.add(spent.driven);
+           Sum{}));
 }
 
 /// Whether the grown sphere of an element reaches a wall.

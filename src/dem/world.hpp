@@ -79,14 +79,6 @@ struct ElementSet {
   SetHere here{};         ///< in a rank's part, for its probes
 };
 
-/// What has been booked for good: energies of contacts that ended, and the start of the ledger.
-struct Ledger {
-  ExactSum slid, damped, driven;  ///< of contacts dropped at a search  [J]
-  ExactSum start_potential;       ///< sum of m g.x at the start  [J]
-  double start = 0.0;             ///< kinetic and elastic energy at the start  [J]
-  double largest = 0.0;           ///< largest sum of energies and work seen  [J]
-};
-
 /// Numbers that stay as the case gave them.
 struct Parameters {
   TimeConfig time;

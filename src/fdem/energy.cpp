@@ -18,8 +18,8 @@ struct TriangleShares {
   View<const Mat2> shape_inverse;
   View<const double> viscous_work, damping_work, load_work;
 
-  BR_HD Shares operator()(Index t) const {
-    Shares s;
+  BR_HD Energies operator()(Index t) const {
+    Energies s;
     if (!owned(t)) return s;
     const Kick& kick = move.kick;
     const Kick::Result next = kick(t);
@@ -74,16 +74,16 @@ struct JointShares {
   View<const JointPoints> points;
   View<const JointWork> work, handed;
 
-  BR_HD Shares operator()(Index i) const {
-    Shares s;
+  BR_HD Energies operator()(Index i) const {
+    Energies s;
     if (stage[i] == JointStage::dormant || !owned(ends[i].a0 / 3)) return s;
     if (stage[i] != JointStage::whole) {
-      s.open.add(work[i].open);
-      s.slide.add(work[i].slide);
+      s.fracture.add(work[i].open);
+      s.sliding.add(work[i].slide);
     }
     if (stage[i] == JointStage::broken) {
-      s.open.add(-handed[i].open);
-      s.slide.add(-handed[i].slide);
+      s.fracture.add(-handed[i].open);
+      s.sliding.add(-handed[i].slide);
       return s;
     }
     const JointEnds& e = ends[i];
@@ -95,8 +95,8 @@ struct JointShares {
     s.elastic.add(held.open);
     s.elastic.add(held.slide);
     if (stage[i] == JointStage::whole) return s;
-    s.open.add(-held.open);
-    s.slide.add(-held.slide);
+    s.fracture.add(-held.open);
+    s.sliding.add(-held.slide);
     return s;
   }
 };
@@ -105,8 +105,8 @@ struct CoupleShares {
   OwnedView owned;  ///< the owner of a books it
   View<const Index> a;
   View<const CoupleState> state;
-  BR_HD Shares operator()(Index i) const {
-    Shares s;
+  BR_HD Energies operator()(Index i) const {
+    Energies s;
     if (!owned(a[i])) return s;
     s.elastic.add(state[i].work - state[i].slid);
     s.friction.add(state[i].slid);
@@ -122,20 +122,19 @@ double largest_with(const Ledger& ledger, const EnergyBalance& b) {
                    std::abs(b.start) + std::abs(b.work)});
 }
 
-EnergySplit split_of(const Ledger& ledger, const Held& all) {
-  const Shares& s = all.shares;
+EnergySplit split_of(const Ledger& ledger, const Energies& s) {
   EnergySplit split;
-  split.fracture_open = s.open.value();
-  split.fracture_slide = s.slide.value();
+  split.fracture_open = s.fracture.value();
+  split.fracture_slide = s.sliding.value();
   EnergyBalance& b = split.balance;
   b.kinetic = s.kinetic.value();
   b.elastic = s.elastic.value();
   b.fracture = split.fracture_open + split.fracture_slide;
-  b.friction = s.friction.value() + ledger.rubbed.value();
+  b.friction = s.friction.value() + ledger.friction.value();
   b.damping = s.damping.value();
-  b.contact = s.contact.value() + ledger.lost.value();
-  b.work = s.work.value() + all.potential.value() - ledger.start_potential.value();
-  b.start = ledger.start + ledger.inserted.value();
+  b.contact = s.contact.value() + ledger.contact.value();
+  b.work = s.work.value() + s.potential.value() - ledger.start_potential.value();
+  b.start = ledger.start + ledger.came_in.value();
   const double largest = largest_with(ledger, b);
   b.error_relative = largest > 0.0 ? std::abs(b.missing()) / largest : 0.0;
   return split;
@@ -143,31 +142,29 @@ EnergySplit split_of(const Ledger& ledger, const Held& all) {
 
 }  // namespace
 
-Held held(const World& w) {
+Energies held(const World& w) {
   const OwnedView owned = w.domain.owned_view();
   const Triangles& t = w.triangles;
-  Held all;
-  all.shares = fold(w.exec, t.size(), Shares{},
-                    TriangleShares{owned,
-                                   {kick(w), t.external.view(), {}, {}, {}},
-                                   t.material.view(),
-                                   w.laws.view(),
-                                   t.shape_inverse.view(),
-                                   t.viscous_work.view(),
-                                   t.damping_work.view(),
-                                   t.load_work.view()},
-                    Sum{});
+  Energies all = fold(w.exec, t.size(), Energies{},
+                      TriangleShares{owned,
+                                     {kick(w), t.external.view(), {}, {}, {}},
+                                     t.material.view(),
+                                     w.laws.view(),
+                                     t.shape_inverse.view(),
+                                     t.viscous_work.view(),
+                                     t.damping_work.view(),
+                                     t.load_work.view()},
+                      Sum{});
   const Joints& j = w.joints;
-  all.shares = all.shares + fold(w.exec, j.size(), Shares{},
-                                 JointShares{owned, by_number(t.nodes.view()), w.bonds.view(),
-                                             w.joint_ends.view(), j.law.view(), j.length.view(),
-                                             j.strength.view(), j.preset.view(), j.stage.view(),
-                                             j.points.view(), j.work.view(), j.handed.view()},
-                                 Sum{});
-  all.shares =
-      all.shares +
-      fold(w.exec, w.couples.size(), Shares{},
-           CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()}, Sum{});
+  all =
+      all + fold(w.exec, j.size(), Energies{},
+                 JointShares{owned, by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
+                             j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
+                             j.stage.view(), j.points.view(), j.work.view(), j.handed.view()},
+                 Sum{});
+  all = all + fold(w.exec, w.couples.size(), Energies{},
+                   CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()},
+                   Sum{});
   const Vec2 gravity = w.parameters.gravity;
   if (dot(gravity, gravity) > 0.0)
     all.potential = fold(w.exec, t.size(), ExactSum{},
@@ -175,24 +172,18 @@ Held held(const World& w) {
   return all;
 }
 
-void add(Ledger& ledger, const Ledger& booked) {
-  ledger.rubbed.add(booked.rubbed);
-  ledger.lost.add(booked.lost);
-  ledger.inserted.add(booked.inserted);
-}
-
 void begin_ledger(World& w) {
   w.ledger = {};
-  const Held all = held(w);
+  const Energies all = held(w);
   w.ledger.start_potential = all.potential;
-  w.ledger.start = all.shares.kinetic.value() + all.shares.elastic.value();
+  w.ledger.start = all.kinetic.value() + all.elastic.value();
 }
 
 EnergySplit energy_split(const World& w) {
   return split_of(w.ledger, held(w));
 }
 
-EnergySplit energies(Ledger& ledger, const Held& all) {
+EnergySplit energies(Ledger& ledger, const Energies& all) {
   const EnergySplit split = split_of(ledger, all);
   ledger.largest = largest_with(ledger, split.balance);
   return split;

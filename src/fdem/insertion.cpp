@@ -84,7 +84,7 @@ Woken wake(World& w, const Buffer<Index>& joints) {
                 w.joints.preset.view(), held.view(), triangles.view(), vertex.view()});
   std::vector<double> stored;
   copy_to(stored, held);
-  for (const double energy : stored) w.ledger.inserted.add(energy);
+  for (const double energy : stored) w.ledger.came_in.add(energy);
   std::vector<Index> vertices;
   copy_to(vertices, vertex);
   std::sort(vertices.begin(), vertices.end());

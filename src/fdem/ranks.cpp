@@ -459,7 +459,7 @@ void collect(World& part, World& whole) {
     if (copy.opened.changed.data()[i] != 0) changed |= std::uint64_t{1} << i;
   changed = ranks.any_of(changed);
   if (ranks.rank() != 0) return;
-  for (const Ledger& ledger : booked) add(whole.ledger, ledger);
+  for (const Ledger& ledger : booked) whole.ledger.add(ledger);
   whole.triangles = std::move(copy.triangles);
   whole.joints = std::move(copy.joints);
   whole.couples = std::move(copy.couples);

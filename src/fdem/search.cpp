@@ -120,13 +120,10 @@ void book_dropped(World& w, const Pairs& found) {
   Buffer<Index> dropped(w.exec.space);
   find_dropped(w.exec, w.couples.pairs.key, found.key, dropped);
   if (dropped.empty()) return;
-  const Spent spent =
-      fold(w.exec, dropped.size(), Spent{},
-           SpentBy{std::as_const(dropped).view(), w.couples.pairs.a.view(),
-                   std::as_const(w.couples.history.state).view(), w.domain.owned_view()},
-           Sum{});
-  w.ledger.rubbed.add(spent.rubbed);
-  w.ledger.lost.add(spent.lost);
+  w.ledger.book(fold(w.exec, dropped.size(), Energies{},
+                     SpentBy{std::as_const(dropped).view(), w.couples.pairs.a.view(),
+                             std::as_const(w.couples.history.state).view(), w.domain.owned_view()},
+                     Sum{}));
 }
 
 /// Copies are their owners' to tell of.

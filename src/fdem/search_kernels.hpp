@@ -114,24 +114,16 @@ struct MotionOf {
 };
 
 /// What couples that leave the list have spent.
-struct Spent {
-  ExactSum rubbed, lost;
-};
-BR_HD inline Spent operator+(Spent a, const Spent& b) {
-  a.rubbed.add(b.rubbed);
-  a.lost.add(b.lost);
-  return a;
-}
 struct SpentBy {
   View<const Index> couple, a;
   View<const CoupleState> state;
   OwnedView owned;  ///< the owner of a books it
-  BR_HD Spent operator()(Index k) const {
-    Spent spent;
+  BR_HD Energies operator()(Index k) const {
+    Energies spent;
     if (!owned(a[couple[k]])) return spent;
     const CoupleState& s = state[couple[k]];
-    spent.rubbed.add(s.rubbed + s.slid);
-    spent.lost.add(s.lost + s.work - s.slid);
+    spent.friction.add(s.rubbed + s.slid);
+    spent.contact.add(s.lost + s.work - s.slid);
     return spent;
   }
 };

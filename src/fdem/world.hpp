@@ -50,15 +50,6 @@ struct Opened {
   Buffer<std::uint8_t> vertex;   ///< 1: a joint at this vertex of the mesh is damaged
 };
 
-/// What has been booked for good.
-struct Ledger {
-  ExactSum rubbed, lost;     ///< of couples dropped at a search  [J/m]
-  ExactSum inserted;         ///< stored in joints when they were inserted  [J/m]
-  ExactSum start_potential;  ///< sum of m g.x at the start  [J/m]
-  double start = 0.0;        ///< kinetic and elastic energy at the start  [J/m]
-  double largest = 0.0;      ///< largest sum of energies and work seen  [J/m]
-};
-
 /// What a rank knows of the whole mesh besides its part of it.
 struct WholeMesh {
   Buffer<Index> joint_number;      ///< of the local joints in the whole mesh, ascending

@@ -36,6 +36,9 @@ class DemMethod final : public WorldMethod<dem::World> {
  private:
   DemMethod(const DemMethod& other) = default;
 
+  EnergyBalance balance_of(const Energies& all) override {
+    return dem::balance(world_.ledger(), all, steps());
+  }
   FramePart part_of_frame(const dem::World& part) const override { return dem_frame(part); }
 
   std::vector<Fact> facts_of(const dem::World& w) const {
@@ -89,7 +92,7 @@ class DemMethod final : public WorldMethod<dem::World> {
     w.last_dt = reader.value<double>("last_dt");
     w.next_dt = reader.value<double>("next_dt");
     w.searches = reader.value<std::int64_t>("searches");
-    w.ledger = reader.value<dem::Ledger>("ledger");
+    w.ledger = reader.value<Ledger>("ledger");
     reader.fields("elements", w.elements);
     reader.fields("concrete", w.concrete);
     reader.fields("steel", w.steel);

@@ -78,6 +78,9 @@ class FdemMethod final : public WorldMethod<fdem::World> {
     Vec2 begin, end;  ///<  [m]
   };
 
+  EnergyBalance balance_of(const Energies& all) override {
+    return fdem::energies(world_.ledger(), all).balance;
+  }
   FramePart part_of_frame(const fdem::World& part) const override {
     const bool first = !part.domain.alone() && part.domain.ranks->rank() == 0;
     return fdem_frame(part, first ? &world_.mesh() : nullptr);
@@ -156,7 +159,7 @@ class FdemMethod final : public WorldMethod<fdem::World> {
     w.last_dt = reader.value<double>("last_dt");
     w.next_dt = reader.value<double>("next_dt");
     w.searches = reader.value<std::int64_t>("searches");
-    w.ledger = reader.value<fdem::Ledger>("ledger");
+    w.ledger = reader.value<Ledger>("ledger");
     reader.fields("triangles", w.triangles);
     reader.fields("joints", w.joints);
     each_loose(w, [&](const char* name, auto array) { reader.fields(name, array); });

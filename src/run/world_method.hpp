@@ -39,7 +39,7 @@ class WorldMethod : public Method {
 
   EnergyBalance energy() override {
     World& w = world_.part();
-    auto all = held(w);
+    Energies all = held(w);
     if (!alone()) {
       Message message;
       put_value(message, all);
@@ -47,11 +47,11 @@ class WorldMethod : public Method {
       all = {};
       for (const Message& told : world_.told(std::move(message))) {
         Unpacking from(told);
-        all = all + from.value<decltype(all)>();
-        add(world_.ledger(), from.value<decltype(w.ledger)>());
+        all = all + from.value<Energies>();
+        world_.ledger().add(from.value<Ledger>());
       }
     }
-    return leads(world_.ranks()) ? balance(world_.ledger(), all, steps()) : EnergyBalance{};
+    return leads(world_.ranks()) ? balance_of(all) : EnergyBalance{};
   }
   std::vector<double> probes() override {
     World& w = world_.part();
@@ -111,6 +111,8 @@ class WorldMethod : public Method {
     world_.forget_timers();
   }
 
+  /// Where the energy of the whole is. Rank 0 only.
+  virtual EnergyBalance balance_of(const Energies& all) = 0;
   /// A frame of the whole, or what a part has of it.
   virtual FramePart part_of_frame(const World& part) const = 0;
 
