@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/keys.hpp"
+#include "core/quantity.hpp"
 #include "math/vec.hpp"
 
 namespace breccia {
@@ -108,11 +109,7 @@ struct ProbeConfig {
     key("name", name, "column of history.csv");
     key.required("name");
     key("on", on, "group or support whose elements are read; empty reads all");
-    key("quantity", quantity,
-        OneOf{"position_x", "position_y", "position_z", "velocity_x", "velocity_y", "velocity_z",
-              "force_x", "force_y", "force_z", "momentum_x", "momentum_y", "momentum_z", "speed",
-              "kinetic", "damage"},
-        "what is read from each element");
+    key("quantity", quantity, quantity_words(3), "what is read from each element");
     key("reduce", reduce, OneOf{"mean", "sum", "min", "max"}, "how the elements' values combine");
   }
 };

@@ -1,31 +1,12 @@
 #pragma once
-// What probes read, whatever the method: a quantity of each item, and its sum and range over items.
+// What probes find, whatever the method: sum and range over items of a quantity.
 
 #include <string>
 
 #include "core/energy.hpp"
-#include "math/vec.hpp"
+#include "core/quantity.hpp"
 
 namespace breccia {
-
-/// A quantity by the word of the case.
-struct Quantity {
-  enum class Kind : std::uint8_t { position, velocity, force, momentum, speed, kinetic, damage };
-  Kind kind;
-  int axis;  ///< 0, 1, 2: x, y, z; of a quantity that has a direction
-
-  explicit Quantity(const std::string& word)
-      : kind(word.starts_with("position")   ? Kind::position
-             : word.starts_with("velocity") ? Kind::velocity
-             : word.starts_with("force")    ? Kind::force
-             : word.starts_with("momentum") ? Kind::momentum
-             : word == "speed"              ? Kind::speed
-             : word == "damage"             ? Kind::damage
-                                            : Kind::kinetic),
-        axis(word.back() == 'x'   ? 0
-             : word.back() == 'y' ? 1
-                                  : 2) {}
-};
 
 /// Sum and range of a quantity; nothing read yet. The same bits in any order.
 struct Readings {

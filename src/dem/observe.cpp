@@ -222,7 +222,7 @@ namespace {
 
 Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
   const Elements& e = w.elements;
-  const Quantity quantity(p.quantity);
+  const Quantity quantity = quantity_named(p.quantity).quantity;
   Buffer<double> lost(w.exec.space);
   if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
   return fold(

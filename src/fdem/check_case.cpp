@@ -43,10 +43,12 @@ void look_for_loose_grains(const Config& config, const BodyConfig& body,
 }  // namespace
 
 std::string no_z(const std::string& quantity) {
+  std::string words;
+  for (const std::string& word : quantity_words(2).words)
+    words += (words.empty() ? "" : ", ") + word;
   return "\"" + quantity +
-         "\" (it is also taken if none is given) has a z, which a plane case lacks; allowed: "
-         "position_x, position_y, velocity_x, velocity_y, force_x, force_y, momentum_x, "
-         "momentum_y, speed, kinetic, damage";
+         "\" (it is also taken if none is given) has a z, which a plane case lacks; allowed: " +
+         words;
 }
 
 void check_case(const Config& config) {
@@ -106,7 +108,8 @@ void check_case(const Config& config) {
     history("load." + l.name, l.history);
   }
   for (const ProbeConfig& p : config.probes) {
-    if (p.quantity.ends_with("_z")) add("probe." + p.name + ".quantity: " + no_z(p.quantity));
+    if (quantity_named(p.quantity).quantity.axis == 2)
+      add("probe." + p.name + ".quantity: " + no_z(p.quantity));
     if (!p.on.empty() && places.count(p.on) == 0)
       add("probe." + p.name + ".on = \"" + p.on + "\" is neither a body (" +
           names_of(config.bodies) + ") nor a support (" + names_of(config.supports) + ")");

@@ -95,7 +95,7 @@ struct ReadProbe {
 
 Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members) {
   Buffer<double> lost(w.exec.space);
-  const Quantity quantity(p.quantity);
+  const Quantity quantity = quantity_named(p.quantity).quantity;
   if (quantity.kind == Quantity::Kind::damage) copy_to(lost, damage(w));
   const Triangles& t = w.triangles;
   return fold(w.exec, p.on.empty() ? 3 * t.size() : members.size(), Readings{},
@@ -189,7 +189,7 @@ std::vector<Sym2> stresses(const World& w) {
 }
 
 double probe(const World& w, const ProbeConfig& p) {
-  if (p.quantity.ends_with("_z"))
+  if (quantity_named(p.quantity).quantity.axis == 2)
     throw InputError("probe " + p.name + ".quantity: " + no_z(p.quantity));
   Buffer<Index> members(w.exec.space);
   if (!p.on.empty()) {

@@ -108,50 +108,49 @@ void put_point(Frame& f, std::size_t place, const NodeState& n) {
     f.point_fields[0].values[3 * place + c] = static_cast<float>(v[c]);
 }
 
+/// work(k) for all k < count, by threads.
+template <class Work>
+void each_of(std::size_t count, int threads, const Work& work) {
+  constexpr std::size_t chunk = 4096;
+  for_each_task(threads, static_cast<int>((count + chunk - 1) / chunk), [&](int task) {
+    const std::size_t begin = chunk * static_cast<std::size_t>(task);
+    for (std::size_t k = begin; k < std::min(count, begin + chunk); ++k) work(k);
+  });
+}
+
 void add_triangles(const World& w, const Triangles& t, const Own& own, const Placed& placed,
                    Frame& f) {
   const std::size_t count = own.triangles.size();
-  const char* const names[] = {"stress_xx", "stress_yy", "stress_xy", "pressure",
-                               "damage",    "group",     "material",  "fragment"};
-  for (const char* name : names) {
-    const std::string text = name;
-    const bool is_stress = text.starts_with("stress") || text == "pressure";
-    f.triangle_fields.push_back({name, is_stress ? "Pa" : "-", 1, std::vector<float>(count)});
-  }
-  std::optional<Partition> partition;
-  if (w.domain.config.show) {
-    partition = partition_now(w);
-    f.triangle_fields.push_back({"rank", "-", 1, std::vector<float>(count)});
-  }
   f.triangles.resize(3 * count);
-  const std::vector<Sym2> stress = stresses(w);
-  const std::vector<double> lost = damage(w);
-  const auto add = [&](std::size_t k) {
+  each_of(count, w.exec.threads, [&](std::size_t k) {
     const Index i = own.triangles[k];
-    const TriangleNodes& nodes = t.nodes.data()[i];
     for (std::size_t c = 0; c < 3; ++c) {
       f.triangles[3 * k + c] = static_cast<std::int32_t>(3 * at(t.id.data()[i]) + c);
-      put_point(f, 3 * k + c, nodes.at[c]);
+      put_point(f, 3 * k + c, t.nodes.data()[i].at[c]);
     }
-    const Sym2& s = stress[at(i)];
-    const double values[] = {s.xx,
-                             s.yy,
-                             s.xy,
-                             -0.5 * (s.xx + s.yy),
-                             lost[at(i)],
-                             static_cast<double>(t.group.data()[i]),
-                             static_cast<double>(t.material.data()[i]),
-                             static_cast<double>(placed.fragment[k])};
-    for (std::size_t q = 0; q < std::size(values); ++q)
-      f.triangle_fields[q].values[k] = static_cast<float>(values[q]);
-    if (partition)
-      f.triangle_fields.back().values[k] = static_cast<float>(partition->owner(centroid(nodes)));
-  };
-  constexpr std::size_t chunk = 4096;
-  for_each_task(w.exec.threads, static_cast<int>((count + chunk - 1) / chunk), [&](int task) {
-    const std::size_t begin = chunk * static_cast<std::size_t>(task);
-    for (std::size_t k = begin; k < std::min(count, begin + chunk); ++k) add(k);
   });
+  const auto field = [&](const char* name, const char* unit, const auto& value) {
+    FrameField& made =
+        f.triangle_fields.emplace_back(FrameField{name, unit, 1, std::vector<float>(count)});
+    each_of(count, w.exec.threads, [&](std::size_t k) {
+      made.values[k] = static_cast<float>(value(own.triangles[k], k));
+    });
+  };
+  const std::vector<Sym2> stress = stresses(w);
+  const std::vector<double> lost = damage(w);
+  field("stress_xx", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xx; });
+  field("stress_yy", "Pa", [&](Index i, std::size_t) { return stress[at(i)].yy; });
+  field("stress_xy", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xy; });
+  field("pressure", "Pa",
+        [&](Index i, std::size_t) { return -0.5 * (stress[at(i)].xx + stress[at(i)].yy); });
+  field("damage", "-", [&](Index i, std::size_t) { return lost[at(i)]; });
+  field("group", "-", [&](Index i, std::size_t) { return t.group.data()[i]; });
+  field("material", "-", [&](Index i, std::size_t) { return t.material.data()[i]; });
+  field("fragment", "-", [&](Index, std::size_t k) { return placed.fragment[k]; });
+  if (!w.domain.config.show) return;
+  const Partition partition = partition_now(w);
+  field("rank", "-",
+        [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
 }
 
 void add_lines(const Triangles& t, const Joints& j, const Own& own, const Placed& placed,

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <filesystem>
 
+#include "core/quantity.hpp"
+
 namespace breccia {
 namespace {
 
@@ -28,15 +30,6 @@ bool is_empty(const std::string& path) {
 
 }  // namespace
 
-std::string probe_unit(const std::string& quantity) {
-  if (quantity.starts_with("position")) return "m";
-  if (quantity.starts_with("velocity") || quantity == "speed") return "m/s";
-  if (quantity.starts_with("force")) return "N";
-  if (quantity.starts_with("momentum")) return "kg m/s";
-  if (quantity == "kinetic") return "J";
-  return "-";
-}
-
 History::History(const std::string& path, const std::vector<ProbeConfig>& probes) : file_(path) {
   if (!is_empty(path)) return;
   std::string names =
@@ -44,7 +37,7 @@ History::History(const std::string& path, const std::vector<ProbeConfig>& probes
   std::string units = "-,s,s,J,J,J,J,J,J,J,J,-";
   for (const ProbeConfig& probe : probes) {
     names.append(",").append(quoted(probe.name));
-    units.append(",").append(probe_unit(probe.quantity));
+    units.append(",").append(quantity_named(probe.quantity).unit);
   }
   file_.append(names);
   file_.append(units);

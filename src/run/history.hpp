@@ -37,7 +37,4 @@ class History {
   LineFile file_;
 };
 
-/// The SI unit of what a probe reads.
-std::string probe_unit(const std::string& quantity);
-
 }  // namespace breccia
