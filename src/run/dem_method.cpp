@@ -1,48 +1,39 @@
 #include "run/dem_method.hpp"
 
-#include "core/precision.hpp"
+#include <array>
+
 #include "dem/energy.hpp"
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
-#include "exec/error.hpp"
-#include "run/world_method.hpp"
+#include "run/sim_method.hpp"
 
 namespace breccia {
 namespace {
 
-class DemMethod final : public WorldMethod<dem::World> {
- public:
-  DemMethod(const dem::Config& config, const dem::Model& model, const Exec& exec,
-            Communicator* ranks)
-      : WorldMethod([&](const Exec& where) { return dem::make_world(config, model, where); },
-                    in_precision(exec, config.precision), ranks, config),
-        range_(model.interaction_range) {}
+std::size_t group_count(const dem::World& w) {
+  std::size_t groups = 0;
+  Buffer<std::int16_t> group;
+  copy_to(group, w.elements.group);
+  for (const std::int16_t g : group.host()) groups = std::max(groups, std::size_t(g) + 1);
+  return groups;
+}
 
-  std::unique_ptr<Method> snapshot() override {
-    return world_.apart([this] { return std::unique_ptr<Method>(new DemMethod(*this)); });
+struct DemSim {
+  using World = dem::World;
+  double interaction_range;
+
+  DemSim(const dem::Model& model, const World&) : interaction_range(model.interaction_range) {}
+
+  static World made(const dem::Config& config, const dem::Model& model, const Exec& exec) {
+    return dem::make_world(config, model, exec);
   }
-
-  std::vector<Fact> facts() override {
-    return world_.of_whole([this](const dem::World& w) { return facts_of(w); });
+  static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {
+    return dem::balance(ledger, all, step);
   }
+  static FramePart frame(const World& w, const World*) { return dem_frame(w); }
+  static std::array<Index, 2> size(const World& w) { return {w.elements.size(), w.links()}; }
 
-  void save(CheckpointWriter& writer) override {
-    world_.with_whole([&](dem::World& w) { save(w, writer); });
-  }
-  void load(const CheckpointReader* reader) override {
-    world_.renew([&](dem::World& w) { load(w, *reader); });
-  }
-
- private:
-  DemMethod(const DemMethod& other) = default;
-
-  EnergyBalance balance_of(const Energies& all) override {
-    return dem::balance(world_.ledger(), all, steps());
-  }
-  FramePart part_of_frame(const dem::World& part) const override { return dem_frame(part); }
-
-  std::vector<Fact> facts_of(const dem::World& w) const {
-    std::vector<Fact> facts;
+  void add_model(const World& w, std::vector<Fact>& facts) const {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     add("model.elements", w.elements.size());
     const std::size_t groups = group_count(w);
@@ -52,10 +43,12 @@ class DemMethod final : public WorldMethod<dem::World> {
     add("model.links_by_kind.concrete", w.concrete.size());
     add("model.links_by_kind.steel", w.steel.size());
     add("model.links_by_kind.interface", w.interface.size());
-    add("model.interaction_range", range_);
+    add("model.interaction_range", interaction_range);
     add("searches", static_cast<double>(w.searches));
     add("contacts.candidates", w.contacts.size());
-    world_.add_facts(add);
+  }
+  static void add_findings(const World& w, std::vector<Fact>& facts) {
+    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     const dem::Counts n = dem::count(w);
     add("contacts.touching", n.touching);
     add("fracture.broken_links", n.broken_concrete + n.broken_steel + n.broken_interface);
@@ -64,66 +57,27 @@ class DemMethod final : public WorldMethod<dem::World> {
     add("fracture.broken_by_kind.interface", n.broken_interface);
     add("fracture.fragments", n.fragments);
     add("fracture.largest_fragment_fraction", n.largest_fragment);
-    return facts;
   }
 
-  static void save(dem::World& w, CheckpointWriter& writer) {
-    writer.value("step", w.step);
-    writer.value("time", w.time);
-    writer.value("last_dt", w.last_dt);
-    writer.value("next_dt", w.next_dt);
-    writer.value("searches", w.searches);
-    writer.value("ledger", w.ledger);
-    writer.fields("elements", w.elements);
-    writer.fields("concrete", w.concrete);
-    writer.fields("steel", w.steel);
-    writer.fields("interface", w.interface);
-    writer.fields("contacts", w.contacts);
-    writer.fields("wall_contacts", w.wall_contacts);
-    writer.fields("travel", w.travel);
+  template <class Visit>
+  static void each_stored(World& w, const Visit& visit) {
+    visit.fields("elements", w.elements);
+    visit.fields("concrete", w.concrete);
+    visit.fields("steel", w.steel);
+    visit.fields("interface", w.interface);
+    visit.fields("contacts", w.contacts);
+    visit.fields("wall_contacts", w.wall_contacts);
+    visit.fields("travel", w.travel);
     for (std::size_t k = 0; k < w.walls.size(); ++k)
-      writer.value("walls." + std::to_string(k), w.walls[k]);
+      visit("walls." + std::to_string(k), w.walls[k]);
   }
-
-  static void load(dem::World& w, const CheckpointReader& reader) {
-    const Index elements = w.elements.size(), links = w.links();
-    w.step = reader.value<std::int64_t>("step");
-    w.time = reader.value<double>("time");
-    w.last_dt = reader.value<double>("last_dt");
-    w.next_dt = reader.value<double>("next_dt");
-    w.searches = reader.value<std::int64_t>("searches");
-    w.ledger = reader.value<Ledger>("ledger");
-    reader.fields("elements", w.elements);
-    reader.fields("concrete", w.concrete);
-    reader.fields("steel", w.steel);
-    reader.fields("interface", w.interface);
-    reader.fields("contacts", w.contacts);
-    reader.fields("wall_contacts", w.wall_contacts);
-    reader.fields("travel", w.travel);
-    for (std::size_t k = 0; k < w.walls.size(); ++k)
-      w.walls[k] = reader.value<dem::Wall>("walls." + std::to_string(k));
-    if (w.elements.size() != elements ||
-        w.concrete.size() + w.steel.size() + w.interface.size() != links)
-      throw CheckpointError("the checkpoint holds another model than the case builds");
-    dem::derive(w);
-  }
-
-  static std::size_t group_count(const dem::World& w) {
-    std::size_t groups = 0;
-    Buffer<std::int16_t> group;
-    copy_to(group, w.elements.group);
-    for (const std::int16_t g : group.host()) groups = std::max(groups, std::size_t(g) + 1);
-    return groups;
-  }
-
-  double range_;
 };
 
 }  // namespace
 
 std::unique_ptr<Method> make_dem_method(const dem::Config& config, const dem::Model& model,
                                         const Exec& exec, Communicator* ranks) {
-  return std::make_unique<DemMethod>(config, model, exec, ranks);
+  return std::make_unique<SimMethod<DemSim>>(config, model, exec, ranks);
 }
 
 }  // namespace breccia

@@ -13,6 +13,7 @@
 #include "core/step_clock.hpp"
 #include "domain/domain.hpp"
 #include "exec/device.hpp"
+#include "run/method.hpp"
 
 namespace breccia {
 
@@ -91,17 +92,16 @@ class SharedWorld {
     return messages;
   }
   /// How the ranks fare, as of the last look at the whole; nothing to tell of one.
-  template <class Add>
-  void add_facts(const Add& add) const {
+  void add_facts(std::vector<Fact>& facts) const {
     if (ranks_ == nullptr) return;
-    add("domain.sharings", static_cast<double>(facts_.migrations));
-    add("domain.cuts", static_cast<double>(facts_.cuts));
-    add("domain.moved", static_cast<double>(facts_.moved));
-    add("domain.copies", facts_.copies);
-    add("domain.imbalance", facts_.imbalance);
-    add("domain.waited_s.least", facts_.waited_least);
-    add("domain.waited_s.mean", facts_.waited_mean);
-    add("domain.waited_s.most", facts_.waited_most);
+    facts.insert(facts.end(), {{"domain.sharings", static_cast<double>(facts_.migrations)},
+                               {"domain.cuts", static_cast<double>(facts_.cuts)},
+                               {"domain.moved", static_cast<double>(facts_.moved)},
+                               {"domain.copies", facts_.copies},
+                               {"domain.imbalance", facts_.imbalance},
+                               {"domain.waited_s.least", facts_.waited_least},
+                               {"domain.waited_s.mean", facts_.waited_mean},
+                               {"domain.waited_s.most", facts_.waited_most}});
   }
 
   /// Alone as many steps as advance() takes at one go; on ranks all of them.
