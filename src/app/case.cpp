@@ -83,30 +83,11 @@ std::variant<dem::Config, fdem::Config> read_config(const Source& source,
   return read_case<dem::Config>(source, overrides);
 }
 
-dem::Model built(const dem::Config& config, const std::string& folder) {
-  return build_model(config, folder);
-}
-fdem::Model built(const fdem::Config& config, const std::string& folder) {
-  FdemNames names;
-  for (const fdem::MaterialConfig& m : config.materials) names.materials.push_back(m.name);
-  for (const fdem::JointConfig& j : config.joint_laws) names.joints.push_back(j.name);
-  return build_fdem_model(config.bodies, config.discontinuities, names, config.seed, folder);
-}
-
 /// The model of a case: the prepared one, or built now.
 template <class Config>
 auto model_of(const Case& read, const Config& config) {
-  using Model = decltype(built(config, read.folder));
-  return read.model ? std::get<Model>(*read.model) : built(config, read.folder);
-}
-
-std::unique_ptr<Method> method_over(const dem::Config& config, const dem::Model& model,
-                                    const Exec& exec, Communicator* ranks) {
-  return make_dem_method(config, model, exec, ranks);
-}
-std::unique_ptr<Method> method_over(const fdem::Config& config, const fdem::Model& model,
-                                    const Exec& exec, Communicator* ranks) {
-  return make_fdem_method(config, model, exec, ranks);
+  using Model = decltype(build_model(config, read.folder));
+  return read.model ? std::get<Model>(*read.model) : build_model(config, read.folder);
 }
 
 std::string size_text(const dem::Model& model) {
@@ -182,7 +163,7 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
                                     bool quiet) {
   return std::visit(
       [&](const auto& config) {
-        decltype(built(config, read.folder)) model;
+        decltype(model_of(read, config)) model;
         together_or_not(ranks, [&] {
           model = model_of(read, config);
           if (exec.space == Space::cuda)
@@ -190,7 +171,7 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
                         quiet || (ranks != nullptr && ranks->rank() > 0));
         });
         try {
-          return method_over(config, model, exec, ranks);
+          return breccia::make_method(config, model, exec, ranks);
         } catch (const NumericsError& error) {
           throw NumericsError(fmt::format("step 0, t = 0 s: {}", error.what()));
         }

@@ -330,4 +330,11 @@ fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
   return std::move(model);
 }
 
+fdem::Model build_model(const fdem::Config& config, const std::string& case_folder) {
+  FdemNames names;
+  for (const fdem::MaterialConfig& m : config.materials) names.materials.push_back(m.name);
+  for (const fdem::JointConfig& j : config.joint_laws) names.joints.push_back(j.name);
+  return build_fdem_model(config.bodies, config.discontinuities, names, config.seed, case_folder);
+}
+
 }  // namespace breccia

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fdem/body_config.hpp"
+#include "fdem/config.hpp"
 #include "fdem/model.hpp"
 
 namespace breccia {
@@ -30,5 +31,6 @@ fdem::Model build_fdem_model(const std::vector<fdem::BodyConfig>& bodies,
                              const std::vector<fdem::DiscontinuityConfig>& discontinuities,
                              const FdemNames& names, std::int64_t seed,
                              const std::string& case_folder);
+fdem::Model build_model(const fdem::Config& config, const std::string& case_folder);
 
 }  // namespace breccia

@@ -75,8 +75,8 @@ struct DemSim {
 
 }  // namespace
 
-std::unique_ptr<Method> make_dem_method(const dem::Config& config, const dem::Model& model,
-                                        const Exec& exec, Communicator* ranks) {
+std::unique_ptr<Method> make_method(const dem::Config& config, const dem::Model& model,
+                                    const Exec& exec, Communicator* ranks) {
   return std::make_unique<SimMethod<DemSim>>(config, model, exec, ranks);
 }
 

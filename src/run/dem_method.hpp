@@ -11,8 +11,8 @@ namespace breccia {
 
 /// @param ranks  those that share the work; null: none. Every rank makes the method alike.
 /// @throws InputError if model and case do not fit
-std::unique_ptr<Method> make_dem_method(const dem::Config& config, const dem::Model& model,
-                                        const Exec& exec, Communicator* ranks = nullptr);
+std::unique_ptr<Method> make_method(const dem::Config& config, const dem::Model& model,
+                                    const Exec& exec, Communicator* ranks = nullptr);
 
 /// Elements as spheres with velocity, spin, group and damage; links as lines with kind, state and
 /// force.

@@ -124,8 +124,8 @@ struct FdemSim {
 
 }  // namespace
 
-std::unique_ptr<Method> make_fdem_method(const fdem::Config& config, const fdem::Model& model,
-                                         const Exec& exec, Communicator* ranks) {
+std::unique_ptr<Method> make_method(const fdem::Config& config, const fdem::Model& model,
+                                    const Exec& exec, Communicator* ranks) {
   return std::make_unique<SimMethod<FdemSim>>(config, model, exec, ranks);
 }
 

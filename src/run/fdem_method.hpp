@@ -11,8 +11,8 @@ namespace breccia {
 
 /// @param ranks  those that share the work; null: none. Every rank makes the method alike.
 /// @throws InputError if model and case do not fit
-std::unique_ptr<Method> make_fdem_method(const fdem::Config& config, const fdem::Model& model,
-                                         const Exec& exec, Communicator* ranks = nullptr);
+std::unique_ptr<Method> make_method(const fdem::Config& config, const fdem::Model& model,
+                                    const Exec& exec, Communicator* ranks = nullptr);
 
 /// Triangles with stress, damage, body, material and fragment; softened and broken joints as lines
 /// with mode, damage and time of break.

@@ -105,7 +105,7 @@ void check_shown(const dem::Config& config) {
   model.radius = model.mass = model.inertia = std::vector<double>(count, 1.0);
   model.velocity = model.spin = std::vector<Vec3>(count);
   model.bar_previous = model.bar_next = std::vector<Index>(count, -1);
-  refuse_what_is_not_shown(config, *make_dem_method(one, model, {}));
+  refuse_what_is_not_shown(config, *make_method(one, model, {}));
 }
 
 void check_shown(const fdem::Config& config) {
@@ -126,7 +126,7 @@ void check_shown(const fdem::Config& config) {
   model.material.resize(count);
   model.velocity.resize(count);
   model.strength.assign(count, 1.0F);
-  refuse_what_is_not_shown(config, *make_fdem_method(one, model, {}));
+  refuse_what_is_not_shown(config, *make_method(one, model, {}));
 }
 
 }  // namespace breccia

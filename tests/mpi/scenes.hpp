@@ -120,11 +120,11 @@ inline Scene shot() {
 }
 
 inline std::unique_ptr<Method> method_of(const Slab& slab, const Exec& exec, Communicator* ranks) {
-  return make_dem_method(slab.config, *slab.model, exec, ranks);
+  return make_method(slab.config, *slab.model, exec, ranks);
 }
 inline std::unique_ptr<Method> method_of(const Scene& scene, const Exec& exec,
                                          Communicator* ranks) {
-  return make_fdem_method(scene.config, scene.model, exec, ranks);
+  return make_method(scene.config, scene.model, exec, ranks);
 }
 
 /// What a run leaves behind.

@@ -105,14 +105,14 @@ TEST(SameBits, across_a_checkpoint_on_other_threads) {
   const dem::Config config = small_config();
   Exec one, three;
   three.threads = 3;
-  const auto before = make_dem_method(config, small_model(), one);
+  const auto before = make_method(config, small_model(), one);
   for (int i = 0; i < 500; ++i) before->advance({});
   CheckpointWriter writer;
   before->save(writer);
   writer.write(folder + "/state.br");
   for (int i = 0; i < 400; ++i) before->advance({});
 
-  const auto after = make_dem_method(config, small_model(), three);
+  const auto after = make_method(config, small_model(), three);
   const CheckpointReader state(folder + "/state.br");
   after->load(&state);
   EXPECT_EQ(after->steps(), 500);
@@ -148,18 +148,18 @@ TEST(SameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   const std::string folder = std::filesystem::temp_directory_path() / "breccia_same_bits_mixed";
   std::filesystem::create_directories(folder);
   const dem::Config config = small_config({"precision=mixed"});
-  const auto before = make_dem_method(config, small_model(), {});
+  const auto before = make_method(config, small_model(), {});
   for (int i = 0; i < 500; ++i) before->advance({});
   CheckpointWriter writer;
   before->save(writer);
   writer.write(folder + "/state.br");
   for (int i = 0; i < 200; ++i) before->advance({});
   const CheckpointReader state(folder + "/state.br");
-  const auto after = make_dem_method(config, small_model(), {});
+  const auto after = make_method(config, small_model(), {});
   after->load(&state);
   for (int i = 0; i < 200; ++i) after->advance({});
   EXPECT_EQ(after->state_hash(), before->state_hash());
-  EXPECT_THROW(make_dem_method(small_config(), small_model(), {})->load(&state), CheckpointError);
+  EXPECT_THROW(make_method(small_config(), small_model(), {})->load(&state), CheckpointError);
   std::filesystem::remove_all(folder);
 }
 

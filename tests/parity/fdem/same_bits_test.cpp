@@ -150,13 +150,13 @@ TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
   three.threads = 3;
   // one of these moments is bound to lie between a break and the search that follows
   for (const int moment : {120, 163, 201}) {
-    const auto before = make_fdem_method(scene.config, scene.model, one);
+    const auto before = make_method(scene.config, scene.model, one);
     for (int i = 0; i < moment; ++i) before->advance({});
     CheckpointWriter writer;
     before->save(writer);
     writer.write(folder + "/state.br");
     for (int i = moment; i < 250; ++i) before->advance({});
-    const auto after = make_fdem_method(scene.config, scene.model, three);
+    const auto after = make_method(scene.config, scene.model, three);
     const CheckpointReader state(folder + "/state.br");
     after->load(&state);
     EXPECT_EQ(after->steps(), moment);
@@ -194,13 +194,13 @@ TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   std::filesystem::create_directories(folder);
   Scene scene = impact();
   scene.config.precision = "mixed";
-  const auto before = make_fdem_method(scene.config, scene.model, {});
+  const auto before = make_method(scene.config, scene.model, {});
   for (int i = 0; i < 163; ++i) before->advance({});
   CheckpointWriter writer;
   before->save(writer);
   writer.write(folder + "/state.br");
   const CheckpointReader state(folder + "/state.br");
-  const auto after = make_fdem_method(scene.config, scene.model, {});
+  const auto after = make_method(scene.config, scene.model, {});
   after->load(&state);
   for (int i = 163; i < 250; ++i) {
     before->advance({});
@@ -209,7 +209,7 @@ TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   EXPECT_EQ(after->state_hash(), before->state_hash());
   EXPECT_EQ(after->energy().friction, before->energy().friction);
   scene.config.precision = "double";
-  EXPECT_THROW(make_fdem_method(scene.config, scene.model, {})->load(&state), CheckpointError);
+  EXPECT_THROW(make_method(scene.config, scene.model, {})->load(&state), CheckpointError);
   std::filesystem::remove_all(folder);
 }
 

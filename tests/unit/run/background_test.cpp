@@ -64,7 +64,7 @@ std::unique_ptr<Method> flying(Space space) {
   scene.body("disc", prepare::ringed_disc({0.0, 0.0}, 0.02, 4e-3), 0, {2.0, -60.0});
   Exec exec;
   exec.space = space;
-  return make_fdem_method(scene.config, scene.model, exec, nullptr);
+  return make_method(scene.config, scene.model, exec, nullptr);
 }
 std::string saved(Method& method) {
   const std::string path = std::filesystem::temp_directory_path() / "breccia_snapshot.br";
