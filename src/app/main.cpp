@@ -75,7 +75,9 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   breccia::app::add_keys(program);
   breccia::app::add_info(program);
   breccia::app::add_render(program);
+#ifdef BR_BENCH
   breccia::app::add_bench(program, ranks);
+#endif
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,11 +1,10 @@
 // Scenes that ranks build part by part: the same model, and the same bits, as one rank builds.
 
-#include "run/benchmark_tiles.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "bench/tiles.hpp"
 #include "dem/observe.hpp"
 #include "domain/simulated_ranks.hpp"
 #include "fdem/observe.hpp"

@@ -1,6 +1,6 @@
-#include "app/benchmarks.hpp"
+#include "bench/list.hpp"
 
-namespace breccia::app {
+namespace breccia {
 
 const std::vector<Benchmark>& benchmarks() {
   static const std::vector<Benchmark> list{
@@ -29,4 +29,4 @@ const std::vector<RankBenchmark>& rank_benchmarks() {
   return list;
 }
 
-}  // namespace breccia::app
+}  // namespace breccia

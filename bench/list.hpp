@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "run/benchmark.hpp"
-#include "run/benchmark_ranks.hpp"
+#include "bench/benchmark.hpp"
+#include "bench/ranks.hpp"
 
-namespace breccia::app {
+namespace breccia {
 
-/// One benchmark. To add one: a line in benchmarks.cpp.
+/// One benchmark. To add one: a line in list.cpp.
 struct Benchmark {
   const char* name;
   const char* meaning;  ///< one line for people
@@ -27,4 +27,4 @@ struct RankBenchmark {
 
 const std::vector<RankBenchmark>& rank_benchmarks();
 
-}  // namespace breccia::app
+}  // namespace breccia

@@ -2,14 +2,14 @@
 
 #include <map>
 
+#include "bench/benchmark.hpp"
+#include "bench/measurements.hpp"
+#include "bench/scenes.hpp"
 #include "dem/world.hpp"
 #include "exec/device.hpp"
 #include "exec/launch_times.hpp"
 #include "fdem/world.hpp"
 #include "prepare/build.hpp"
-#include "run/benchmark.hpp"
-#include "run/benchmark_scenes.hpp"
-#include "run/measurements.hpp"
 
 namespace breccia {
 namespace {

@@ -1,4 +1,4 @@
-#include "run/benchmark_ranks.hpp"
+#include "bench/ranks.hpp"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "bench/measurements.hpp"
+#include "bench/tiles.hpp"
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "exec/device.hpp"
@@ -13,9 +15,7 @@
 #include "exec/memory.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
-#include "run/benchmark_tiles.hpp"
 #include "run/machine.hpp"
-#include "run/measurements.hpp"
 
 namespace breccia {
 namespace {

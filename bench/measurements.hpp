@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "run/benchmark.hpp"
+#include "bench/benchmark.hpp"
 
 namespace breccia {
 

@@ -1,4 +1,4 @@
-#include "run/benchmark.hpp"
+#include "bench/benchmark.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,15 +7,15 @@
 #include <functional>
 #include <map>
 
+#include "bench/measurements.hpp"
+#include "bench/scenes.hpp"
 #include "core/travel.hpp"
 #include "dem/observe.hpp"
 #include "exec/device.hpp"
 #include "exec/memory.hpp"
 #include "prepare/build.hpp"
 #include "prepare/packing.hpp"
-#include "run/benchmark_scenes.hpp"
 #include "run/machine.hpp"
-#include "run/measurements.hpp"
 
 namespace breccia {
 namespace {

@@ -2,8 +2,8 @@
 // Benchmarks that ranks make together: how a step's time grows with ranks of equal work, and
 // shrinks with ranks that share the work.
 
+#include "bench/benchmark.hpp"
 #include "domain/communicator.hpp"
-#include "run/benchmark.hpp"
 
 namespace breccia {
 

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "bench/benchmark.hpp"
+#include "bench/measurements.hpp"
+#include "bench/scenes.hpp"
 #include "core/travel.hpp"
 #include "exec/device.hpp"
 #include "prepare/build.hpp"
-#include "run/benchmark.hpp"
-#include "run/benchmark_scenes.hpp"
-#include "run/measurements.hpp"
 
 namespace breccia {
 namespace {

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <map>
 
+#include "bench/benchmark.hpp"
+#include "bench/measurements.hpp"
+#include "bench/scenes.hpp"
 #include "core/state_hash.hpp"
 #include "exec/memory.hpp"
 #include "fdem/world.hpp"
 #include "prepare/build_fdem.hpp"
-#include "run/benchmark.hpp"
-#include "run/benchmark_scenes.hpp"
 #include "run/machine.hpp"
-#include "run/measurements.hpp"
 
 namespace breccia {
 namespace {

@@ -1,16 +1,16 @@
 // What benchmarks run and say; their speed is not tested.
 
-#include "run/benchmark.hpp"
+#include "bench/benchmark.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "bench/scenes.hpp"
 #include "exec/error.hpp"
 #include "io/case_file.hpp"
 #include "paths.hpp"
-#include "run/benchmark_scenes.hpp"
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {

@@ -1,4 +1,4 @@
-#include "run/benchmark_tiles.hpp"
+#include "bench/tiles.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "run/measurements.hpp"
+#include "bench/measurements.hpp"
 
 #include <algorithm>
 #include <chrono>

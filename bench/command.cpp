@@ -8,9 +8,9 @@
 #include <iostream>
 #include <memory>
 
-#include "app/benchmarks.hpp"
 #include "app/commands.hpp"
 #include "app/run_options.hpp"
+#include "bench/list.hpp"
 #include "core/precision.hpp"
 #include "domain/together.hpp"
 #include "exec/error.hpp"

@@ -1,4 +1,4 @@
-#include "run/benchmark_scenes.hpp"
+#include "bench/scenes.hpp"
 
 #include <cmath>
 

@@ -9,12 +9,12 @@
 #include <ostream>
 #include <sstream>
 
+#include "bench/benchmark.hpp"
+#include "bench/scenes.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
-#include "run/benchmark.hpp"
-#include "run/benchmark_scenes.hpp"
 #include "run/machine.hpp"
 
 namespace breccia {

@@ -2,9 +2,9 @@
 // Benchmark scenes of equal tiles: each rank builds its own, so that a model may be larger than
 // what one rank could hold, and is the same, to the bit, for any number of ranks.
 
+#include "bench/scenes.hpp"
 #include "dem/world.hpp"
 #include "fdem/world.hpp"
-#include "run/benchmark_scenes.hpp"
 
 namespace breccia {
 
