@@ -163,7 +163,7 @@ class Spheres final : public Shareable {
     return points;
   }
   std::vector<std::int64_t> weights() const override {
-    // By what they cost, in units of some 6 ns on one core (bench/NOTES.md).
+    // By what they cost, in units of some 6 ns on one core (bench/notes/cpu.md).
     constexpr std::int64_t element = 5, end_of_link = 2, other_end = 3;
     std::vector<std::int64_t> weight(static_cast<std::size_t>(w_.elements.size()), element);
     const auto add = [&weight](const Buffer<Index>& ends, std::int64_t cost) {

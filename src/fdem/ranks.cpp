@@ -280,7 +280,7 @@ class Mesh final : public Shareable {
     return points;
   }
   std::vector<std::int64_t> weights() const override {
-    // By what they cost, in units of some 3 ns on one core (bench/NOTES.md).
+    // By what they cost, in units of some 3 ns on one core (bench/notes/cpu.md).
     constexpr std::int64_t triangle = 8, end_of_joint = 3, end_of_couple = 16, tied_corner = 3;
     std::vector<std::int64_t> weight(at(w_.triangles.size()), triangle);
     for (const Buffer<Index>* edges : {&w_.joints.edge_a, &w_.joints.edge_b})

@@ -13,7 +13,7 @@ constexpr std::size_t context = std::size_t{600} << 20;  // the driver's own sha
 
 }  // namespace
 
-// Measured on ten million elements (bench/NOTES.md): 2.4 kB each, links and search included. An
+// Measured on ten million elements (bench/notes/gpu.md): 2.4 kB each, links and search included. An
 // element and what a search keeps of it: 1,040 B; a link with its action and its place in two
 // lists: 240 B.
 std::size_t device_bytes(const dem::Model& model) {
