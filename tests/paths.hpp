@@ -6,6 +6,7 @@ namespace breccia {
 
 extern const char* const source_dir;      ///< of the project
 extern const char* const program;         ///< breccia, as built
+extern const char* const hundred_lines;   ///< docs/dem_in_100_lines.cpp, as built
 extern const char* const mpirun_program;  ///< empty without MPI
 
 }  // namespace breccia

@@ -1,5 +1,5 @@
 #pragma once
-// What the outer loop asks of a method.
+// The interface of a method, as the outer loop calls it.
 
 #include <cstdint>
 #include <memory>
