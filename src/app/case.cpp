@@ -6,7 +6,6 @@
 
 #include "domain/domain.hpp"
 #include "exec/error.hpp"
-#include "fdem/check_case.hpp"
 #include "io/case_file.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
@@ -157,6 +156,11 @@ void take_prepared(Case& read, const std::string& path) {
 
 const CaseConfig& Case::common() const {
   return std::visit([](const auto& c) -> const CaseConfig& { return c; }, config);
+}
+
+void check_files(const Case& read) {
+  if (read.model) return;  // all files have been read
+  std::visit([&](const auto& config) { prepare::check_files(config, read.folder); }, read.config);
 }
 
 std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks,

@@ -39,6 +39,10 @@ struct Case {
 ///         prepared model is damaged
 Case load_case(const std::string& path, const std::vector<std::string>& overrides);
 
+/// Reads the files that the case names, as building its model would.
+/// @throws InputError or IoError with every problem at once
+void check_files(const Case& read);
+
 /// Takes the model of a case from where it was prepared.
 /// @throws InputError if the file holds the model of another case, IoError if it cannot be read,
 /// CheckpointError if it is damaged

@@ -27,6 +27,7 @@ struct CheckCommand {
     for (const std::string& path : paths) {
       try {
         const Case read = load_case(path, overrides);
+        check_files(read);
         std::visit(
             [&](const auto& config) {
               fmt::print("{}: good: {}, {}, {}, ends at {}\n", harmless(path), config.method,

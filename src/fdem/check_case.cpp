@@ -51,13 +51,9 @@ std::string no_z(const std::string& quantity) {
          words;
 }
 
-void check_case(const Config& config) {
-  std::string problems;
-  int count = 0;
-  const auto add = [&](const std::string& text) {
-    problems += "\n  " + text;
-    ++count;
-  };
+std::vector<std::string> case_problems(const Config& config) {
+  std::vector<std::string> problems;
+  const auto add = [&](const std::string& text) { problems.push_back(text); };
   const auto attempt = [&](const std::function<void()>& part) {
     try {
       part();
@@ -66,13 +62,11 @@ void check_case(const Config& config) {
     }
   };
   if (config.materials.empty()) add("material: at least one [material.<name>] is needed");
-  if (config.bodies.empty()) add("body: the case has no elements; at least one [[body]] is needed");
   attempt([&] { elastic_table(config); });
   attempt([&] { bond_table(config); });
   attempt([&] { contact_table(config); });
   std::set<std::string> places;
-  for (const BodyConfig& b : config.bodies)
-    if (!places.insert(b.name).second) add("body." + b.name + ": the name is taken twice");
+  for (const BodyConfig& b : config.bodies) places.insert(b.name);
   for (const SupportConfig& s : config.supports)
     if (!places.insert(s.name).second)
       add("support." + s.name + ": the name is taken by a body or support");
@@ -114,9 +108,7 @@ void check_case(const Config& config) {
       add("probe." + p.name + ".on = \"" + p.on + "\" is neither a body (" +
           names_of(config.bodies) + ") nor a support (" + names_of(config.supports) + ")");
   }
-  if (count > 0)
-    throw InputError(std::to_string(count) + (count == 1 ? " problem" : " problems") +
-                     " in the case; nothing was run." + problems);
+  return problems;
 }
 
 }  // namespace breccia::fdem

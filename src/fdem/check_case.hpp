@@ -1,12 +1,15 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "fdem/config.hpp"
 
 namespace breccia::fdem {
 
-/// What keys by themselves cannot tell: names that lead nowhere, tables that do not fit.
-/// @throws InputError with all problems at once
-void check_case(const Config& config);
+/// Names that lead nowhere and tables that do not fit, one sentence each. Rules for bodies are in
+/// prepare/check_bodies.hpp.
+std::vector<std::string> case_problems(const Config& config);
 
 /// Why a probe cannot read this, and what it can read.
 std::string no_z(const std::string& quantity);

@@ -113,6 +113,26 @@ Mesh mesh_of(const BodyConfig& body, const MeshingContext& context) {
   return mesh;
 }
 
+std::vector<Index> triangles_of(const BodyConfig& body, const Mesh& mesh) {
+  std::vector<Index> triangles;
+  if (body.parts.empty())
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
+      triangles.push_back(static_cast<Index>(t));
+  for (const std::string& name : body.parts) {
+    const auto found = std::find_if(mesh.parts.begin(), mesh.parts.end(),
+                                    [&](const Part& part) { return part.name == name; });
+    if (found != mesh.parts.end()) {
+      triangles.insert(triangles.end(), found->triangles.begin(), found->triangles.end());
+      continue;
+    }
+    std::string there;
+    for (const Part& part : mesh.parts) there += (there.empty() ? "" : ", ") + part.name;
+    throw InputError(fmt::format("parts: {} has no part \"{}\"; it has: {}", body.file, name,
+                                 there.empty() ? "none" : there));
+  }
+  return triangles;
+}
+
 std::vector<Vec2> read_outline(const std::string& path) {
   std::vector<Vec2> corners;
   read_csv(path, 2, "x,y in metres", [&](const std::vector<double>& v) {

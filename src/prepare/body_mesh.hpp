@@ -23,6 +23,10 @@ struct MeshingContext {
 /// @throws InputError that does not name the body
 Mesh mesh_of(const fdem::BodyConfig& body, const MeshingContext& context);
 
+/// The triangles of a mesh that are a body: those of its parts, or all.
+/// @throws InputError if the mesh has no part of a name
+std::vector<Index> triangles_of(const fdem::BodyConfig& body, const Mesh& mesh);
+
 /// A polygon of x,y in metres, closed by itself. A last point that repeats the first is dropped.
 /// @throws InputError if it has fewer than three corners, no area, or crosses itself
 std::vector<Vec2> read_outline(const std::string& path);

@@ -1,16 +1,15 @@
 #include "prepare/build.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 
-#include "exec/error.hpp"
 #include "math/constants.hpp"
+#include "prepare/check_bodies.hpp"
 #include "prepare/linking.hpp"
 #include "prepare/ordering.hpp"
 #include "prepare/packing.hpp"
 #include "prepare/rebar.hpp"
+#include "prepare/refusal.hpp"
 #include "prepare/spheres_file.hpp"
 
 namespace breccia {
@@ -26,12 +25,6 @@ using prepare::Container;
 
 double ball(double radius) {
   return 4.0 / 3.0 * pi * radius * radius * radius;
-}
-
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
 }
 
 template <class Named>
@@ -50,86 +43,6 @@ Container container_of(const BodyConfig& body) {
                      : body.shape == "cylinder" ? Container::Shape::cylinder
                                                 : Container::Shape::box;
   return {.shape = shape, .size = body.size, .radius = body.radius, .length = body.length};
-}
-
-/// Everything that keeps a case's bodies from being built, one sentence each.
-class BodyCheck {
- public:
-  explicit BodyCheck(const Config& config) : config_(config) {
-    if (config.bodies.empty()) problems_.push_back("a case needs at least one [[body]]");
-    for (std::size_t i = 0; i < config.bodies.size(); ++i) check(i);
-  }
-  const std::vector<std::string>& problems() const { return problems_; }
-
- private:
-  template <class... Args>
-  void require(bool holds, const BodyConfig& body, fmt::format_string<Args...> text,
-               Args&&... args) {
-    if (!holds)
-      problems_.push_back(
-          fmt::format("body {}: {}", body.name, fmt::format(text, std::forward<Args>(args)...)));
-  }
-
-  void check_material(const BodyConfig& body, const std::string& name,
-                      const std::vector<std::string>& laws) {
-    const int index = find_named(config_.materials, name);
-    require(index >= 0, body, "\"{}\" is not a material of the case", name);
-    if (index < 0) return;
-    const std::string& law = config_.materials[static_cast<std::size_t>(index)].law;
-    require(std::find(laws.begin(), laws.end(), law) != laws.end(), body,
-            "material {} has law {}; needed is {}", name, law, joined(laws, " or "));
-  }
-
-  void check(std::size_t index) {
-    const BodyConfig& body = config_.bodies[index];
-    require(find_named(config_.bodies, body.name) == static_cast<int>(index), body,
-            "another body has this name");
-    if (body.shape == "rebar") return check_rebar(body);
-    if (body.shape == "element")
-      check_material(body, body.material, {"concrete", "grain", "steel"});
-    else
-      check_material(body, body.material, {"concrete", "grain"});
-    if (body.shape == "file") {
-      require(!body.file.empty(), body, "shape file needs the key file");
-      const int material = find_named(config_.materials, body.material);
-      const bool bulk =
-          material >= 0 && config_.materials[static_cast<std::size_t>(material)].law == "concrete";
-      require(!bulk || body.bulk_volume() > 0.0, body,
-              "concrete from a file needs the key volume, or size");
-    }
-    if (body.shape == "box")
-      require(std::min({body.size.x, body.size.y, body.size.z}) > 0.0, body,
-              "a box needs a positive size in each direction");
-    if (body.shape == "sphere" || body.shape == "cylinder" || body.shape == "element")
-      require(body.radius > 0.0, body, "shape {} needs a positive radius", body.shape);
-    if (body.shape == "cylinder")
-      require(body.length > 0.0, body, "a cylinder needs a positive length");
-    if (is_packed(body)) require(body.pack.count > 0, body, "pack.count must be at least 1");
-  }
-
-  void check_rebar(const BodyConfig& body) {
-    check_material(body, body.material, {"steel"});
-    check_material(body, body.rebar.interface_law, {"interface"});
-    require(norm(body.velocity) == 0.0 && norm(body.spin) == 0.0, body,
-            "bars move with the body they reinforce; give velocity and spin there");
-    const int host = find_named(config_.bodies, body.rebar.in);
-    require(host >= 0, body, "rebar.in = \"{}\" is not a body of the case", body.rebar.in);
-    if (host < 0) return;
-    const BodyConfig& box = config_.bodies[static_cast<std::size_t>(host)];
-    require(box.shape == "box", body, "{} is not a box", box.name);
-    if (box.shape != "box") return;
-    for (const std::string& problem : prepare::bar_problems(body.rebar, box.size))
-      require(false, body, "{}", problem);
-  }
-
-  const Config& config_;
-  std::vector<std::string> problems_;
-};
-
-[[noreturn]] void refuse(const std::vector<std::string>& problems) {
-  throw InputError(fmt::format("{} problem{} with the model; nothing was run.\n  {}",
-                               problems.size(), problems.size() == 1 ? "" : "s",
-                               joined(problems, "\n  ")));
 }
 
 /// Collects the elements of all bodies.
@@ -257,16 +170,14 @@ double mean_radius(const Model& model) {
 }  // namespace
 
 dem::Model build_model(const dem::Config& config, const std::string& case_folder) {
-  const BodyCheck check(config);
-  if (!check.problems().empty()) refuse(check.problems());
+  prepare::refuse(prepare::body_problems(config), "with the model");
 
   Assembly assembly(config, case_folder);
   Model& model = assembly.model();
   prepare::reorder(model, prepare::spatial_order(model.position, 2.0 * mean_radius(model)));
   prepare::link_elements(model, assembly.links(), config.links);
 
-  const auto overlaps = prepare::free_overlaps(model, assembly.links());
-  if (!overlaps.empty()) refuse(overlaps);
+  prepare::refuse(prepare::free_overlaps(model, assembly.links()), "with the model");
   return std::move(model);
 }
 

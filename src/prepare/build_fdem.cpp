@@ -16,6 +16,7 @@
 #include "prepare/mesh_check.hpp"
 #include "prepare/mesh_order.hpp"
 #include "prepare/mesh_overlap.hpp"
+#include "prepare/refusal.hpp"
 
 namespace breccia {
 namespace {
@@ -24,13 +25,6 @@ using fdem::BodyConfig;
 using fdem::DiscontinuityConfig;
 using fdem::Model;
 using prepare::Mesh;
-
-[[noreturn]] void refuse(const std::vector<std::string>& problems) {
-  std::string text = fmt::format("{} problem{} with the model; nothing was run.", problems.size(),
-                                 problems.size() == 1 ? "" : "s");
-  for (const std::string& problem : problems) text += "\n  " + problem;
-  throw InputError(text);
-}
 
 std::int16_t index_of(const std::vector<std::string>& names, const std::string& name) {
   return static_cast<std::int16_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -56,7 +50,7 @@ class Assembly {
         problems_.push_back("body." + bodies[b].name + ": " + error.what());
       }
     }
-    if (!problems_.empty()) refuse(problems_);
+    prepare::refuse(problems_, "with the model");
   }
   Model& model() { return model_; }
 
@@ -80,7 +74,7 @@ class Assembly {
       placed->vertex.assign(placed->mesh.point.size(), -1);
       placed->owner.assign(placed->mesh.triangle.size(), -1);
     }
-    for (const Index t : triangles_of(body, placed->mesh)) {
+    for (const Index t : prepare::triangles_of(body, placed->mesh)) {
       int& owner = placed->owner[static_cast<std::size_t>(t)];
       if (owner == group) continue;  // in two parts of this body
       if (owner >= 0)
@@ -108,27 +102,6 @@ class Assembly {
     model_.material.push_back(index_of(names_.materials, body.material));
     model_.velocity.push_back(body.velocity);
     model_.strength.push_back(1.0F);
-  }
-
-  /// The triangles of a mesh that are a body: those of its parts, or all.
-  static std::vector<Index> triangles_of(const BodyConfig& body, const Mesh& mesh) {
-    std::vector<Index> triangles;
-    if (body.parts.empty())
-      for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
-        triangles.push_back(static_cast<Index>(t));
-    for (const std::string& name : body.parts) {
-      const auto found = std::find_if(mesh.parts.begin(), mesh.parts.end(),
-                                      [&](const prepare::Part& part) { return part.name == name; });
-      if (found != mesh.parts.end()) {
-        triangles.insert(triangles.end(), found->triangles.begin(), found->triangles.end());
-        continue;
-      }
-      std::string there;
-      for (const prepare::Part& part : mesh.parts) there += (there.empty() ? "" : ", ") + part.name;
-      throw InputError(fmt::format("parts: {} has no part \"{}\"; it has: {}", body.file, name,
-                                   there.empty() ? "none" : there));
-    }
-    return triangles;
   }
 
   /// Edges whose two ends are in the model; each once in a set.
@@ -301,12 +274,18 @@ void check_overlaps(const Model& model, std::vector<std::string>& problems) {
 
 }  // namespace
 
+FdemNames names_of(const fdem::Config& config) {
+  FdemNames names;
+  for (const fdem::MaterialConfig& m : config.materials) names.materials.push_back(m.name);
+  for (const fdem::JointConfig& j : config.joint_laws) names.joints.push_back(j.name);
+  return names;
+}
+
 fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
                              const std::vector<DiscontinuityConfig>& discontinuities,
                              const FdemNames& names, std::int64_t seed,
                              const std::string& case_folder) {
-  const std::vector<std::string> wrong = prepare::body_problems(bodies, discontinuities, names);
-  if (!wrong.empty()) refuse(wrong);
+  prepare::refuse(prepare::body_problems(bodies, discontinuities, names), "with the model");
   Assembly assembly(bodies, discontinuities, names, seed, case_folder);
   Model& model = assembly.model();
   prepare::order_along_curve(model);
@@ -326,7 +305,7 @@ fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
   }
   crack(model, notches, discontinuities, names, problems);
   check_overlaps(model, problems);
-  if (!problems.empty()) refuse(problems);
+  prepare::refuse(problems, "with the model");
   return std::move(model);
 }
 

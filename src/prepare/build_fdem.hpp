@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "fdem/body_config.hpp"
 #include "fdem/config.hpp"
 #include "fdem/model.hpp"
 
@@ -15,6 +14,7 @@ namespace breccia {
 struct FdemNames {
   std::vector<std::string> materials, joints;  ///< in the order of the case
 };
+FdemNames names_of(const fdem::Config& config);
 
 /// The model of an FDEM case. A function of the case alone: same seed, same bits (for bodies that
 /// gmsh meshes: with the same version of gmsh).

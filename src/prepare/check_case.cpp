@@ -3,35 +3,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
-#include "exec/error.hpp"
+#include "fdem/check_case.hpp"
+#include "prepare/check_bodies.hpp"
+#include "prepare/refusal.hpp"
 
-namespace breccia::dem {
+namespace breccia {
+namespace dem {
 namespace {
 
 class Check {
  public:
-  explicit Check(const Config& config) : config_(config) {}
-
-  void run() {
-    if (config_.bodies.empty())
-      add("body: the case has no elements; at least one [[body]] is needed");
+  explicit Check(const Config& config) : config_(config) {
     for (const MaterialConfig& m : config_.materials) check(m);
-    for (const BodyConfig& b : config_.bodies) check(b);
-    check_overlaps();
+    for (const std::string& problem : prepare::body_problems(config)) add(problem);
+    for (const std::string& problem : prepare::overlap_problems(config.bodies)) add(problem);
     for (const WallConfig& w : config_.walls)
       if (!(norm(w.normal) > 0.0))
         add("wall." + w.name + ".normal has length 0; it must point somewhere");
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
-    if (problems_.empty()) return;
-    std::string text = fmt::format("{} problem{} in the case; nothing was run.", problems_.size(),
-                                   problems_.size() == 1 ? "" : "s");
-    for (const std::string& problem : problems_) text += "\n  " + problem;
-    throw InputError(text);
   }
+  std::vector<std::string> problems_;
 
  private:
   void add(const std::string& problem) { problems_.push_back(problem); }
@@ -61,98 +55,6 @@ class Check {
                       m.slip2, m.slip3));
   }
 
-  void check(const BodyConfig& b) {
-    const std::string path = "body." + b.name;
-    const MaterialConfig* material = find(config_.materials, b.material);
-    if (material == nullptr)
-      add(fmt::format("{}.material = {:?} is not a material; there are: {}", path, b.material,
-                      names_of(config_.materials)));
-    else if (b.shape == "rebar" && material->law != "steel")
-      add(fmt::format("{}: bars need a material of law steel, {} has {}", path, b.material,
-                      material->law));
-    else if (b.shape != "rebar" && material->law != "concrete" && material->law != "grain")
-      add(fmt::format("{}: elements need a material of law concrete or grain, {} has {}", path,
-                      b.material, material->law));
-    const bool packed = b.shape == "box" || b.shape == "sphere" || b.shape == "cylinder";
-    if (packed && b.pack.count < 1)
-      add(path + ".pack.count is missing: how many elements fill the body?");
-    if (b.shape == "box" && !(b.size.x > 0.0 && b.size.y > 0.0 && b.size.z > 0.0))
-      add(path + ".size needs three lengths above 0");
-    if ((b.shape == "sphere" || b.shape == "cylinder" || b.shape == "element") && !(b.radius > 0.0))
-      add(path + ".radius must be above 0");
-    if (b.shape == "cylinder" && !(b.length > 0.0)) add(path + ".length must be above 0");
-    if (b.shape == "file" && b.file.empty()) add(path + ".file is missing: a CSV of x,y,z,radius");
-    if (b.shape == "file" && material != nullptr && material->law == "concrete" &&
-        !(b.bulk_volume() > 0.0))
-      add(path +
-          ".volume is missing: spheres of concrete do not fill space, so their mass is density "
-          "times the volume that they stand for; give volume in m3, or the size of a box");
-    if (b.shape == "rebar") check_rebar(path, b);
-  }
-
-  void check_rebar(const std::string& path, const BodyConfig& b) {
-    const BodyConfig* host = find(config_.bodies, b.rebar.in);
-    if (host == nullptr || host->shape != "box")
-      add(fmt::format("{}.rebar.in = {:?} is not a box body; there are: {}", path, b.rebar.in,
-                      names_of(config_.bodies)));
-    const MaterialConfig* bond = find(config_.materials, b.rebar.interface_law);
-    if (bond == nullptr || bond->law != "interface")
-      add(fmt::format("{}.rebar.interface = {:?} is not a material of law interface; there are: {}",
-                      path, b.rebar.interface_law, names_of(config_.materials)));
-  }
-
-  /// The distance of x from an interval; 0 inside.  [m]
-  static double beyond(double x, double low, double high) {
-    return x < low ? low - x : x > high ? x - high : 0.0;
-  }
-  static bool round(const BodyConfig& b) { return b.shape == "sphere" || b.shape == "element"; }
-  static bool has_shape(const BodyConfig& b) {
-    return round(b) || b.shape == "box" || b.shape == "cylinder";
-  }
-  /// Half of the height of a box or cylinder.  [m]
-  static double half_height(const BodyConfig& b) {
-    return 0.5 * (b.shape == "box" ? b.size.z : b.length);
-  }
-  /// The space between two upright bodies, each a rectangle or a disc times a height, or between
-  /// one of them and a ball; below 0 they share space by so much.  [m]
-  static double gap(const BodyConfig& a, const BodyConfig& b) {
-    if (round(b) && !round(a)) return gap(b, a);
-    const Vec3 apart = b.center - a.center;
-    if (round(b)) return norm(apart) - a.radius - b.radius;
-    // In the plane: corners of rectangles are sharp, so a disc's radius is taken off last.
-    const double half_x =
-        (a.shape == "box" ? 0.5 * a.size.x : 0.0) + (b.shape == "box" ? 0.5 * b.size.x : 0.0);
-    const double half_y =
-        (a.shape == "box" ? 0.5 * a.size.y : 0.0) + (b.shape == "box" ? 0.5 * b.size.y : 0.0);
-    const double dx = beyond(apart.x, -half_x, half_x), dy = beyond(apart.y, -half_y, half_y);
-    const double across = std::sqrt(dx * dx + dy * dy);
-    const double disc_b = b.shape == "cylinder" ? b.radius : 0.0;
-    if (round(a)) {
-      const double aside = std::max(across - disc_b, 0.0);
-      const double above = beyond(apart.z, -half_height(b), half_height(b));
-      return std::sqrt(aside * aside + above * above) - a.radius;
-    }
-    const double along = std::abs(apart.z) - half_height(a) - half_height(b);
-    if (a.shape == "box" && b.shape == "box")
-      return std::max({std::abs(apart.x) - half_x, std::abs(apart.y) - half_y, along});
-    const double disc_a = a.shape == "cylinder" ? a.radius : 0.0;
-    return std::max(across - disc_a - disc_b, along);
-  }
-  static double extent(const BodyConfig& b) {
-    return norm(b.size) + b.radius + b.length + norm(b.center);
-  }
-  void check_overlaps() {
-    for (std::size_t i = 0; i < config_.bodies.size(); ++i)
-      for (std::size_t j = i + 1; j < config_.bodies.size(); ++j) {
-        const BodyConfig &a = config_.bodies[i], &b = config_.bodies[j];
-        // Bars lie in their host; the spheres of a file are compared when they have been read.
-        if (!has_shape(a) || !has_shape(b)) continue;
-        if (gap(a, b) < -1e-9 * (extent(a) + extent(b)))
-          add(fmt::format("body.{} and body.{} overlap at the start; move one of them", a.name,
-                          b.name));
-      }
-  }
-
   void check(const SupportConfig& s) {
     static const std::set<std::string> words{"x", "y", "z", "spin_x", "spin_y", "spin_z", "all"};
     if (find(config_.bodies, s.name) != nullptr)
@@ -180,13 +82,26 @@ class Check {
   }
 
   const Config& config_;
-  std::vector<std::string> problems_;
 };
 
 }  // namespace
 
 void check_case(const Config& config) {
-  Check(config).run();
+  prepare::refuse(Check(config).problems_, "in the case");
 }
 
-}  // namespace breccia::dem
+}  // namespace dem
+
+namespace fdem {
+
+void check_case(const Config& config) {
+  std::vector<std::string> problems = case_problems(config);
+  for (const auto& more :
+       {prepare::body_problems(config.bodies, config.discontinuities, names_of(config)),
+        prepare::overlap_problems(config.bodies)})
+    problems.insert(problems.end(), more.begin(), more.end());
+  prepare::refuse(problems, "in the case");
+}
+
+}  // namespace fdem
+}  // namespace breccia

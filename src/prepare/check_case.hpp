@@ -1,12 +1,32 @@
 #pragma once
+// The rules of a case that its keys cannot state one by one.
+
+#include <string>
 
 #include "dem/config.hpp"
+#include "fdem/config.hpp"
 
-namespace breccia::dem {
+namespace breccia {
+namespace dem {
 
-/// What keys by themselves cannot tell: names that lead nowhere, laws that do not fit, bodies in
-/// each other.
+/// Names that lead nowhere, laws that do not fit, bodies that cannot be built or lie in each other.
+/// The same rules before a run, before a model is prepared and for `check`. No file is read.
 /// @throws InputError with all problems at once
 void check_case(const Config& config);
 
-}  // namespace breccia::dem
+}  // namespace dem
+namespace fdem {
+
+void check_case(const Config& config);  ///< likewise
+
+}  // namespace fdem
+namespace prepare {
+
+/// Reads every file that bodies name, as building them would. Scripts for gmsh are not run.
+/// @throws InputError with all problems at once; IoError if files that cannot be read are all that
+///         is wrong
+void check_files(const dem::Config& config, const std::string& case_folder);
+void check_files(const fdem::Config& config, const std::string& case_folder);
+
+}  // namespace prepare
+}  // namespace breccia

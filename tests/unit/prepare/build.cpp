@@ -318,9 +318,11 @@ TEST(Refused, EveryBadBodyIsNamedAtOnce) {
   config.bodies.push_back(sphere_body("rock", {0.0, 0.0, 0.2}, 0.0, 10, 0.5));
   const std::string message = refusal(config);
   EXPECT_TRUE(mentions(message, "3 problems")) << message;
-  EXPECT_TRUE(mentions(message, "body slab: \"c45\"")) << message;
-  EXPECT_TRUE(mentions(message, "body steel: material c30 has law concrete")) << message;
-  EXPECT_TRUE(mentions(message, "body rock: shape sphere needs a positive radius")) << message;
+  EXPECT_TRUE(mentions(message, "body.slab.material = \"c45\" is not a material")) << message;
+  EXPECT_TRUE(
+      mentions(message, "body.steel.rebar.interface = \"c30\" is not a material of law interface"))
+      << message;
+  EXPECT_TRUE(mentions(message, "body.rock.radius must be above 0")) << message;
 }
 
 TEST(Refused, BarsThatDoNotFitTheirBody) {
@@ -333,7 +335,7 @@ TEST(Refused, BarsThatDoNotFitTheirBody) {
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.cover = 0.04; }), "layers"));
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.bars = 26; }), "beside each other"));
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.elements = 26; }), "along a bar"));
-  EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.in = "wall"; }), "not a body"));
+  EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.rebar.in = "wall"; }), "not a box body"));
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.velocity = {1.0, 0.0, 0.0}; }), "bars move"));
 }
 

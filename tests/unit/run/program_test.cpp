@@ -193,6 +193,18 @@ quantity = "position_y"
     EXPECT_NE(output().find(part), std::string::npos) << output();
 }
 
+TEST_F(Program, ChecksTheFilesThatACaseNames) {
+  std::string from_file = two_balls;
+  const std::size_t shape = from_file.find("shape = \"element\"");
+  from_file.replace(shape, 17, "shape = \"file\"\nfile = \"gone.csv\"");
+  replace_file(path("file.toml"), from_file);
+  EXPECT_EQ(run("check " + path("file.toml")), 3);
+  EXPECT_NE(output().find("body.left: cannot read " + path("gone.csv")), std::string::npos)
+      << output();
+  replace_file(path("gone.csv"), "0,0,0,0.01\n");
+  EXPECT_EQ(run("check " + path("file.toml")), 0) << output();
+}
+
 /// A plate that is torn, its middle row of another material.
 const std::string torn_plate = R"(
 method = "fdem2d"

@@ -1,10 +1,10 @@
-#include "prepare/check_bodies.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
+
+#include "prepare/check_bodies.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -13,10 +13,29 @@ using fdem::BodyConfig;
 using fdem::DiscontinuityConfig;
 
 constexpr double most_triangles = 2e8;
-constexpr std::size_t most_names = 32767;  ///< a model numbers them in 16 bits
 
 std::string list_of(const std::vector<std::string>& names) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool is_plain(const BodyConfig& b) {
+  const bool plain = b.shape == "plate" || b.shape == "beam" || b.shape == "disc";
+  const bool slotted = std::any_of(b.notches.begin(), b.notches.end(),
+                                   [](const fdem::NotchConfig& n) { return n.width > 0.0; });
+  return plain && b.holes.empty() && !slotted;
+}
+
+/// The space between two plain bodies; below 0 they share space by so much.  [m]
+double gap(const BodyConfig& a, const BodyConfig& b) {
+  const Vec2 apart = b.center - a.center;
+  if (a.shape == "disc" && b.shape == "disc") return norm(apart) - a.radius - b.radius;
+  Vec2 half{};  // of the rectangles
+  for (const BodyConfig* each : {&a, &b})
+    if (each->shape != "disc") half += 0.5 * each->size;
+  const Vec2 beyond{std::abs(apart.x) - half.x, std::abs(apart.y) - half.y};
+  if (a.shape != "disc" && b.shape != "disc") return std::max(beyond.x, beyond.y);
+  const double radius = a.shape == "disc" ? a.radius : b.radius;
+  return norm(Vec2{std::max(beyond.x, 0.0), std::max(beyond.y, 0.0)}) - radius;
 }
 
 class BodyChecks {
@@ -164,6 +183,20 @@ std::vector<std::string> body_problems(const std::vector<BodyConfig>& bodies,
                                        const std::vector<DiscontinuityConfig>& discontinuities,
                                        const FdemNames& names) {
   return BodyChecks(bodies, discontinuities, names).problems_;
+}
+
+std::vector<std::string> overlap_problems(const std::vector<BodyConfig>& bodies) {
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      const BodyConfig &a = bodies[i], &b = bodies[j];
+      if (!is_plain(a) || !is_plain(b)) continue;
+      double tolerance = 1e-9 * (norm(a.size) + norm(b.size) + norm(a.center) + norm(b.center));
+      for (const BodyConfig* each : {&a, &b})
+        if (each->shape == "disc") tolerance = std::max(tolerance, each->mesh_size);
+      if (gap(a, b) < -tolerance) problems.push_back(overlap_problem(a.name, b.name));
+    }
+  return problems;
 }
 
 }  // namespace breccia::prepare

@@ -1,0 +1,151 @@
+// One list of rules for the bodies of a case: `check`, `run` and `prepare` refuse alike.
+
+#include "prepare/check_case.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "exec/error.hpp"
+#include "io/whole_file.hpp"
+#include "prepare/build.hpp"
+#include "unit/prepare/fdem_scenes.hpp"
+#include "unit/prepare/models.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+/// The message of an InputError; empty if there is none.
+std::string refused(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The problems of a message, without its first line.
+std::string problems_of(const std::string& message) {
+  const std::size_t end = message.find('\n');
+  return end == std::string::npos ? "" : message.substr(end);
+}
+
+TEST(CheckDem, refuses_a_body_with_the_words_of_the_build) {
+  using dem::BodyConfig;
+  using dem::Config;
+  const std::function<void(Config&)> changes[] = {
+      [](Config& c) { c.bodies.clear(); },
+      [](Config& c) { c.bodies[0].material = "c45"; },
+      [](Config& c) { c.bodies[0].material = "b500"; },
+      [](Config& c) { c.bodies[0].size.y = 0.0; },
+      [](Config& c) { c.bodies[0].pack.count = 0; },
+      [](Config& c) { c.bodies[0].shape = "file"; },
+      [](Config& c) { c.bodies[0].shape = "element"; },
+      [](Config& c) { c.bodies[1].name = c.bodies[0].name; },
+      [](Config& c) { c.bodies[1].material = "c30"; },
+      [](Config& c) { c.bodies[1].rebar.interface_law = "c30"; },
+      [](Config& c) { c.bodies[1].rebar.in = "wall"; },
+      [](Config& c) { c.bodies[1].rebar.bars = 26; },
+      [](Config& c) { c.bodies[1].velocity.x = 1.0; },
+  };
+  for (const auto& change : changes) {
+    Config config = dem::small_slab();
+    change(config);
+    const std::string by_check = refused([&] { dem::check_case(config); });
+    const std::string by_build = refused([&] { build_model(config, "."); });
+    EXPECT_NE(problems_of(by_check), "");
+    EXPECT_EQ(problems_of(by_check), problems_of(by_build));
+  }
+  const Config good = dem::small_slab();
+  EXPECT_EQ(refused([&] { dem::check_case(good); }), "");
+}
+
+fdem::Config plate_case() {
+  fdem::Config config;
+  config.materials.emplace_back().name = "rock";
+  config.bodies = {fdem::regular_plate({0.1, 0.05}, 0.01)};
+  return config;
+}
+
+TEST(CheckFdem, refuses_a_body_with_the_words_of_the_build) {
+  using fdem::Config;
+  const std::function<void(Config&)> changes[] = {
+      [](Config& c) { c.bodies.clear(); },
+      [](Config& c) { c.bodies[0].material = "rokc"; },
+      [](Config& c) { c.bodies[0].mesh_size = 0.0; },
+      [](Config& c) { c.bodies[0].size.x = 0.0; },
+      [](Config& c) { c.bodies.push_back(c.bodies[0]); },
+      [](Config& c) {
+        c.bodies[0].grains.kind = "random";
+        c.bodies[0].grains.minerals = {{.material = "rock", .fraction = 0.5, .color = {}}};
+      },
+      [](Config& c) { c.discontinuities.emplace_back().name = "dyke"; },
+  };
+  for (const auto& change : changes) {
+    Config config = plate_case();
+    change(config);
+    const std::string by_check = refused([&] { fdem::check_case(config); });
+    const std::string by_build = refused(
+        [&] { build_fdem_model(config.bodies, config.discontinuities, names_of(config), 1, "."); });
+    EXPECT_NE(problems_of(by_build), "");
+    EXPECT_NE(by_check.find(problems_of(by_build)), std::string::npos) << by_check << by_build;
+  }
+  EXPECT_EQ(refused([] { fdem::check_case(plate_case()); }), "");
+}
+
+TEST(CheckFdem, finds_plain_bodies_in_each_other_as_the_build_does) {
+  const auto overlap = [](double x, const char* shape) {
+    fdem::Config config = plate_case();
+    fdem::BodyConfig other = fdem::disc_of(0.03, 0.01);
+    other.structured = true;
+    if (shape == std::string("plate")) other = fdem::regular_plate({0.1, 0.05}, 0.01);
+    other.name = "other";
+    other.center.x = x;
+    config.bodies.push_back(other);
+    const bool by_check = !refused([&] { fdem::check_case(config); }).empty();
+    const bool by_build =
+        !refused([&] { build_fdem_model(config.bodies, {}, names_of(config), 1, "."); }).empty();
+    EXPECT_EQ(by_check, by_build) << shape << " at " << x;
+    return by_check;
+  };
+  EXPECT_TRUE(overlap(0.06, "disc"));
+  EXPECT_FALSE(overlap(0.0801, "disc"));
+  EXPECT_TRUE(overlap(0.099, "plate"));
+  EXPECT_FALSE(overlap(0.1, "plate"));
+}
+
+TEST(CheckFiles, names_every_file_that_building_could_not_read) {
+  const ScratchFolder folder;
+  replace_file(folder.path() + "/bad.csv", "0,0,0,0.01\n1,2,three,0.01\n");
+  dem::Config config = dem::case_with_materials();
+  dem::BodyConfig& bad = config.bodies.emplace_back();
+  bad.name = "bad";
+  bad.shape = "file";
+  bad.material = "gravel";
+  bad.file = "bad.csv";
+  dem::BodyConfig gone = bad;
+  gone.name = "gone";
+  gone.file = "gone.csv";
+  config.bodies.push_back(gone);
+  const std::string text = refused([&] { prepare::check_files(config, folder.path()); });
+  EXPECT_NE(text.find("2 problems"), std::string::npos) << text;
+  EXPECT_NE(text.find("body.bad: "), std::string::npos) << text;
+  EXPECT_NE(text.find("line 2"), std::string::npos) << text;
+  EXPECT_NE(text.find("body.gone: "), std::string::npos) << text;
+  config.bodies.erase(config.bodies.begin());
+  EXPECT_THROW(prepare::check_files(config, folder.path()), IoError);
+  replace_file(folder.path() + "/gone.csv", "0,0,0,0.01\n");
+  EXPECT_NO_THROW(prepare::check_files(config, folder.path()));
+
+  fdem::Config plane = plate_case();
+  plane.bodies[0].shape = "mesh";
+  plane.bodies[0].file = "gone.msh";
+  EXPECT_THROW(prepare::check_files(plane, folder.path()), IoError);
+  replace_file(folder.path() + "/gone.msh", "no mesh\n");
+  EXPECT_THROW(prepare::check_files(plane, folder.path()), InputError);
+}
+
+}  // namespace
+}  // namespace breccia
