@@ -7,7 +7,6 @@
 namespace breccia::dem {
 namespace {
 
-using testing::pi;
 using testing::Scene;
 using testing::state;
 
@@ -82,7 +81,7 @@ Scene hertz(const Pair& m, double radius, double restitution, double friction) {
   s.material("m", "grain", m.young, m.poisson, m.density);
   s.config.contact = {"hertz", friction, restitution, 0.0, 0.0};
   // one hundredth of the Rayleigh time
-  s.config.time.max_step = 0.01 * testing::pi * radius *
+  s.config.time.max_step = 0.01 * pi * radius *
                            std::sqrt(m.density * 2.0 * (1.0 + m.poisson) / m.young) /
                            (0.1631 * m.poisson + 0.8766);
   return s;

@@ -29,7 +29,7 @@ TEST(Impact, the_rock_s_loss_of_momentum_is_the_impulse_on_slab_bars_and_support
   const double before = sum(w, "impactor", "momentum_z");
   const double slab_before = sum(w, "slab", "momentum_z"),
                steel_before = sum(w, "steel", "momentum_z");
-  ASSERT_NEAR(before, -30.0 * 2400.0 * 4.0 / 3.0 * testing::pi * std::pow(0.057, 3), 1e-9);
+  ASSERT_NEAR(before, -30.0 * 2400.0 * 4.0 / 3.0 * pi * std::pow(0.057, 3), 1e-9);
 
   Impulses given;
   double unbalanced = 0.0, largest = 0.0;

@@ -8,7 +8,6 @@
 namespace breccia::dem {
 namespace {
 
-using testing::pi;
 using testing::Scene;
 using testing::state;
 

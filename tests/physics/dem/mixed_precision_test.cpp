@@ -41,7 +41,7 @@ TEST(MixedPrecision, feels_a_load_that_grows_by_a_billionth_of_the_strength_a_st
   const World still = held_pair({}).world();
   const ConcreteLink& law = still.concrete_groups[0].law;
   const double kt = law.shear_ratio * still.concrete.stiffness.data()[0];
-  const double strength = law.cohesion * testing::pi * 1e-4, at_first = 0.6 * strength;
+  const double strength = law.cohesion * pi * 1e-4, at_first = 0.6 * strength;
   const Vec3 velocity{0.0, share * strength / kt / still.next_dt, 0.0};
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     World w = held_pair(velocity).world(1, precision);
@@ -78,8 +78,7 @@ TEST(MixedPrecision, feels_wear_of_a_billionth_of_the_rupture_a_step) {
   };
   const World still = pair({}).world();
   const double kn = still.concrete.stiffness.data()[0];
-  const double rupture =
-      still.concrete_groups[0].law.tensile_strength * testing::pi * 1e-4 / kn * 6.0;
+  const double rupture = still.concrete_groups[0].law.tensile_strength * pi * 1e-4 / kn * 6.0;
   const double at_first = 0.6 * rupture, grown = share * rupture;
   const Vec3 velocity{0.0, grown / wear / still.next_dt, 0.0};
   for (const Precision precision : {Precision::full, Precision::mixed}) {
@@ -112,7 +111,7 @@ Pulled pulled_apart(Precision precision) {
   World w = held_pair({0.02, 0.0, 0.0}).world(1, precision);
   Pulled r;
   const ConcreteLink& law = w.concrete_groups[0].law;
-  r.strength = law.tensile_strength * testing::pi * 1e-4;
+  r.strength = law.tensile_strength * pi * 1e-4;
   r.toughness = 0.5 * r.strength * r.strength / w.concrete.stiffness.data()[0] * 6.0;
   while (link_opening(w.concrete, 0) >= 0.0) {
     step(w);

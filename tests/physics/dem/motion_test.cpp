@@ -11,7 +11,6 @@ namespace breccia::dem {
 namespace {
 
 using testing::momentum;
-using testing::pi;
 using testing::run_until;
 using testing::Scene;
 using testing::state;

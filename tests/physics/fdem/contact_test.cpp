@@ -112,7 +112,7 @@ TEST(FdemContact, discs_bounce_back_alike) {
   testing::run_to(w, 3e-3);
   const double left = testing::value(w, "left", "momentum_x", "sum");
   const double right = testing::value(w, "right", "momentum_x", "sum");
-  const double area = testing::pi * 0.01;
+  const double area = pi * 0.01;
   EXPECT_NEAR(left + right, 0.0, 1e-9 * area * 2000.0);
   EXPECT_LT(left, -0.9 * area * 2000.0);
   EXPECT_GT(left, -1.0 * area * 2000.0);

@@ -32,7 +32,7 @@ TEST(FlawedPlate, cracks_first_at_the_flaw_in_the_window_of_fracture_mechanics) 
       (testing::value(w, "bottom", "force_y", "sum") - testing::value(w, "top", "force_y", "sum"));
   const double half = 2.5e-3, tip = half / std::sqrt(2.0), edge = 2e-3;
   const double sliding = std::sqrt(3.0) / (1.0 - rock.friction) *
-                         std::sqrt(rock.young * rock.joint.energy_open / (testing::pi * half));
+                         std::sqrt(rock.young * rock.joint.energy_open / (pi * half));
   std::printf("first crack at %.2f MPa; faces that slide, by fracture mechanics: %.2f MPa\n",
               1e-6 * std::abs(stress), 1e-6 * sliding);
   EXPECT_NEAR(sliding, 5.1e6, 0.1e6);

@@ -86,7 +86,7 @@ TEST(Fracture, direct_tension_has_its_strength_and_spends_its_energy) {
 /// Strength in compression between smooth ends, by planes that the mesh has: those under 45
 /// degrees without internal friction, those under 60 for an angle of 30 degrees.
 TEST(Fracture, compression_has_the_strength_of_mohr_and_coulomb) {
-  for (const double phi : {0.0, testing::pi / 6.0}) {
+  for (const double phi : {0.0, pi / 6.0}) {
     Scene scene = specimen();
     MaterialConfig& m = scene.config.materials[0];
     m.joint.tension = 20e6;
@@ -121,13 +121,13 @@ TEST(Fracture, disc_splits_in_the_middle) {
   m.joint.cohesion = 20e6;
   constexpr double radius = 20e-3;
   prepare::Mesh disc = prepare::ringed_disc({0.0, 0.0}, radius, 2.5e-3);
-  for (Vec2& x : disc.point) x = testing::turned(x, testing::pi / 6.0);  // edges along the diameter
+  for (Vec2& x : disc.point) x = testing::turned(x, pi / 6.0);  // edges along the diameter
   scene.body("disc", disc);
   pull_ends(scene, 0.985 * radius, -0.03);
   World w = scene.world();
   // eight of the sixteen joints on the diameter: it has split, its halves still bear
   const Curve c = run_test(w, -0.03, 1.0, 1e-3, 0.6, 8);
-  const double strength = 2.0 * c.peak / (testing::pi * 2.0 * radius);
+  const double strength = 2.0 * c.peak / (pi * 2.0 * radius);
   const std::vector<Crack> all = cracks(w);
   ASSERT_FALSE(all.empty());
   const Vec2 first = 0.5 * (all[0].begin + all[0].end);

@@ -126,7 +126,7 @@ Curve split(const char* criterion, double cohesion) {
 /// A disc splits by tension: its strength, 2P/(pi D) less 4 % for jaws of 20 degrees, must not
 /// depend on cohesion.
 TEST(FreeMesh, disc_between_jaws_splits_whatever_its_cohesion) {
-  const double unit = 0.5 * testing::pi * 40e-3 * tension;
+  const double unit = 0.5 * pi * 40e-3 * tension;
   const Curve weak = split("rock", 9e6), strong = split("rock", 45e6);
   const Curve edge = split("edge", 45e6);
   std::printf("disc: rock %.3f and %.3f f_t, edge %.3f f_t; kinetic %.4f, errors %.1e %.1e\n",
@@ -143,7 +143,7 @@ TEST(FreeMesh, disc_between_jaws_splits_whatever_its_cohesion) {
 /// Compression between smooth ends, phi 45 degrees: the planes of Mohr and Coulomb are 67.5 degrees
 /// steep, and no row of edges is.
 TEST(FreeMesh, specimen_in_compression_has_the_strength_of_mohr_and_coulomb) {
-  constexpr double phi = 0.25 * testing::pi, cohesion = 10e6, side = 20e-3;
+  constexpr double phi = 0.25 * pi, cohesion = 10e6, side = 20e-3;
   const auto pressed = [&](const char* criterion) {
     BodyConfig specimen = body_of("plate", 2e-3);
     specimen.size = {side, 2.0 * side};

@@ -223,7 +223,7 @@ TEST(Handover, gives_the_contact_no_more_than_the_joint_took) {
 /// A block sheared off under pressure, its joints as rough as their faces.
 TEST(Handover, keeps_the_ledger_and_the_bits) {
   Scene scene;
-  scene.config.materials.push_back(rock(std::tan(testing::pi / 6.0), std::tan(testing::pi / 6.0)));
+  scene.config.materials.push_back(rock(std::tan(pi / 6.0), std::tan(pi / 6.0)));
   scene.config.materials[0].joint.tension = 20e6;
   scene.config.materials[0].joint.cohesion = 15e6;
   scene.config.materials[0].damping = 0.5;

@@ -214,7 +214,7 @@ double reflected(double absorbed) {
     for (NodeState& n : nodes(w, t).at) {
       const double s = (n.position.x - middle) / width, bell = std::exp(-s * s);
       n.velocity.x = bell;
-      n.position.x -= width * 0.5 * std::sqrt(testing::pi) * (std::erf(s) + 1.0) / c;
+      n.position.x -= width * 0.5 * std::sqrt(pi) * (std::erf(s) + 1.0) / c;
     }
   evaluate_forces(w);
   run_to(w, (length - middle + 0.12) / c);  // there and back to x = 0.18
