@@ -129,20 +129,5 @@ TEST(Travel, EndsWhenOneElementPassesItsOwnMarginOnly) {
   EXPECT_FALSE(search.valid(spheres));
 }
 
-TEST(Travel, IsExceededByAnElementThatIsNowhereAndByOneMoreElement) {
-  Spheres spheres;
-  for (int i = 0; i < 2000; ++i) spheres.add({1.0 * i, 0.0, 0.0}, {}, 0.1);
-  const MarginRule rule{.base = 0.02, .horizon = 0.01, .largest = 0.5};
-  const Search search(spheres, rule);
-  EXPECT_TRUE(search.valid(spheres));
-  Spheres more = spheres;
-  more.add({}, {}, 0.1);
-  EXPECT_FALSE(search.valid(more));
-  spheres.centre[1900].y = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(search.valid(spheres));
-  spheres.velocity[3].x = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(Search(spheres, rule), NumericsError);
-}
-
 }  // namespace
 }  // namespace breccia

@@ -40,8 +40,8 @@ TEST(Keys, each_is_listed_with_type_unit_default_range_and_meaning) {
 TEST(Keys, a_prefix_needs_no_brackets_and_no_names) {
   EXPECT_EQ(count("body.pack"), 3U);
   EXPECT_EQ(count("body[].pack"), 3U);
-  EXPECT_EQ(count("material.slip"), 3U);
-  EXPECT_EQ(count("material.<name>.slip"), 3U);
+  EXPECT_EQ(count("material.slip"), 4U);
+  EXPECT_EQ(count("material.<name>.slip"), 4U);
   EXPECT_EQ(count("slip"), 0U);
 }
 
