@@ -262,7 +262,8 @@ struct SupportConfig {
     key("min", min, "m", any_number, "lower corner of the region that holds the elements' centres");
     key("max", max, "m", any_number, "upper corner of that region");
     key("fix", fix,
-        "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all");
+        "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
+        "that share elements prescribe other directions, or the same motion");
     key("velocity", velocity, "m/s", any_number, "prescribed velocity of the fixed directions");
     key("ramp", ramp, "s", not_negative, "time in which that velocity grows from zero, linearly");
   }

@@ -9,14 +9,19 @@
 
 namespace breccia::dem {
 
-/// Prescribed motion of a support: a velocity that grows from zero, linearly.
+/// Prescribed motion: in each direction a velocity that grows from zero, linearly.
 struct Motion {
   Vec3 velocity;  ///<  [m/s]
-  double ramp;    ///< time to reach it  [s]
+  Vec3 ramp;      ///< time to reach it  [s]
 
   BR_HD Vec3 at(double time) const {
-    const double share = ramp > 0.0 ? smaller(1.0, larger(0.0, time / ramp)) : 1.0;
-    return share * velocity;
+    return {share(time, ramp.x) * velocity.x, share(time, ramp.y) * velocity.y,
+            share(time, ramp.z) * velocity.z};
+  }
+
+ private:
+  BR_HD static double share(double time, double ramp) {
+    return ramp > 0.0 ? smaller(1.0, larger(0.0, time / ramp)) : 1.0;
   }
 };
 

@@ -9,6 +9,7 @@
 
 #include "core/world_space.hpp"
 #include "dem/materials.hpp"
+#include "dem/supports.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
 #include "exec/sort_scan.hpp"
@@ -24,7 +25,7 @@ Buffer<T> filled(const World& w, const std::vector<T>& items) {
   return buffer;
 }
 
-void set_elements(World& w, const Model& m) {
+void set_elements(World& w, const Model& m, const Prescribed& held) {
   Elements& e = w.elements;
   resize_fields(e, m.size());
   std::vector<GlobalId> ids(static_cast<std::size_t>(m.size()));
@@ -39,6 +40,9 @@ void set_elements(World& w, const Model& m) {
     states.push_back({m.position[i], m.velocity[i], m.spin[i], m.radius[i]});
   copy_to(e.state, states);
   copy_to(e.orientation, std::vector<Quaternion>(ids.size()));
+  copy_to(e.fixed, held.fixed);
+  copy_to(e.motion, held.motion);
+  w.motions = filled(w, held.motions);
   double sum = 0.0;
   for (const double r : m.radius) sum += r;
   w.parameters.mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
@@ -163,54 +167,16 @@ void set_interface_links(World& w, const Config& config, const Model& m) {
   copy_to(b.area, area);
 }
 
-std::uint8_t fixed_bits(const SupportConfig& support) {
-  static const std::map<std::string, int> words{
-      {"x", fixed_x},           {"y", fixed_y},           {"z", fixed_z}, {"spin_x", fixed_spin_x},
-      {"spin_y", fixed_spin_y}, {"spin_z", fixed_spin_z}, {"all", 63}};
-  int bits = 0;
-  for (const std::string& word : support.fix) {
-    const auto found = words.find(word);
-    if (found == words.end())
-      throw InputError(
-          "support " + support.name + ": '" + word +
-          "' is no degree of freedom; allowed are x, y, z, spin_x, spin_y, spin_z, all");
-    bits |= found->second;
-  }
-  return static_cast<std::uint8_t>(bits);
-}
-
-void set_supports(World& w, const Config& config, const Model& m) {
-  const auto count = static_cast<std::size_t>(m.size());
-  std::vector<std::uint8_t> fixed(count, fixed_none);
-  std::vector<std::int16_t> motion(count, -1);
-  std::vector<Motion> motions;
+/// Bodies and supports, for probes.
+void set_sets(World& w, const Config& config, const Model& m, const Prescribed& held) {
   for (std::size_t g = 0; g < m.groups.size(); ++g) {
     std::vector<Index> members;
-    for (std::size_t e = 0; e < count; ++e)
+    for (std::size_t e = 0; e < m.group.size(); ++e)
       if (m.group[e] == static_cast<std::int16_t>(g)) members.push_back(static_cast<Index>(e));
     w.sets.push_back({m.groups[g], filled(w, members)});
   }
-  for (const SupportConfig& s : config.supports) {
-    const std::uint8_t bits = fixed_bits(s);
-    const bool moves = dot(s.velocity, s.velocity) > 0.0;
-    if (moves) motions.push_back({s.velocity, s.ramp});
-    std::vector<Index> members;
-    for (std::size_t e = 0; e < count; ++e) {
-      if (!s.on.empty() && m.groups[static_cast<std::size_t>(m.group[e])] != s.on) continue;
-      const Vec3& x = m.position[e];
-      const bool inside = x.x >= s.min.x && x.y >= s.min.y && x.z >= s.min.z && x.x <= s.max.x &&
-                          x.y <= s.max.y && x.z <= s.max.z;
-      if (!inside) continue;
-      members.push_back(static_cast<Index>(e));
-      fixed[e] = static_cast<std::uint8_t>(fixed[e] | bits);
-      if (moves) motion[e] = static_cast<std::int16_t>(motions.size() - 1);
-    }
-    if (members.empty()) throw InputError("support " + s.name + " holds no element");
-    w.sets.push_back({s.name, filled(w, members)});
-  }
-  copy_to(w.elements.fixed, fixed);
-  copy_to(w.elements.motion, motion);
-  w.motions = filled(w, motions);
+  for (std::size_t s = 0; s < config.supports.size(); ++s)
+    w.sets.push_back({config.supports[s].name, filled(w, held.members[s])});
 }
 
 void set_contacts(World& w, const Config& config, const Model& m) {
@@ -292,13 +258,14 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   w.parameters.search = config.search;
   w.parameters.gravity = config.gravity;
   w.parameters.local_damping = config.local_damping;
-  set_elements(w, model);
+  const Prescribed held = prescribed(config, model);
+  set_elements(w, model, held);
   set_concrete_links(w, config, model);
   set_steel_links(w, config, model);
   set_interface_links(w, config, model);
   set_linked_pairs(w);
   limit_margins(w, model);
-  set_supports(w, config, model);
+  set_sets(w, config, model, held);
   set_contacts(w, config, model);
   derive(w);
   find_contacts(w);

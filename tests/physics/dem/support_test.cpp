@@ -48,5 +48,49 @@ TEST(Support, does_the_work_of_its_force_where_motion_is_damped) {
   EXPECT_NEAR(e.missing(), 0.0, 1.01 * last);
 }
 
+/// What make_world says against a case; empty: nothing.
+std::string refusal(const Scene& s) {
+  try {
+    s.world();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Support, joins_another_one_that_prescribes_other_directions) {
+  Scene s = pulled_chain({});
+  const Vec3 far{1.0, 1.0, 1.0}, from{0.039, -1.0, -1.0};
+  s.config.supports[1] = {"first", "", from, far, {"x", "y"}, {1.0, 0.0, 7.0}, 0.0};
+  s.config.supports.push_back({"second", "", from, far, {"z"}, {7.0, 7.0, 2.0}, 1e-4});
+  World w = s.world();
+  while (w.time < 2e-4) step(w);
+  EXPECT_EQ(state(w, 2).velocity.x, 1.0);
+  EXPECT_EQ(state(w, 2).velocity.y, 0.0);
+  EXPECT_EQ(state(w, 2).velocity.z, 2.0);
+  EXPECT_NEAR(state(w, 2).position.x, 0.04 + w.time, 1e-12);
+  EXPECT_NEAR(state(w, 2).position.z, 2.0 * (w.time - 0.5e-4), 1e-6);
+  // One that says the same of the same direction does no harm.
+  s.config.supports.push_back({"third", "", from, far, {"y", "z"}, {0.0, 0.0, 2.0}, 1e-4});
+  EXPECT_EQ(refusal(s), "");
+}
+
+TEST(Support, that_contradicts_another_one_is_refused_by_name) {
+  Scene s = pulled_chain({});
+  const Vec3 far{1.0, 1.0, 1.0};
+  s.config.supports.push_back(
+      {"other", "", {0.019, -1.0, -1.0}, far, {"x", "z"}, {1.0, 0.0, 0.0}, 0.0});
+  const std::string said = refusal(s);
+  EXPECT_NE(
+      said.find("supports moved and other both prescribe x of 1 element (the first is element 2)"),
+      std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("both prescribe z"), std::string::npos) << said;  // both hold it at rest
+  s.config.supports[1].velocity = s.config.supports[2].velocity;
+  EXPECT_EQ(refusal(s), "");
+  s.config.supports[1].ramp = 1e-4;  // the same end, but another way there
+  EXPECT_NE(refusal(s), "");
+}
+
 }  // namespace
 }  // namespace breccia::dem
