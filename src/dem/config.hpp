@@ -265,7 +265,9 @@ struct SupportConfig {
         "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
         "that share elements prescribe other directions, or the same motion");
     key("velocity", velocity, "m/s", any_number, "prescribed velocity of the fixed directions");
-    key("ramp", ramp, "s", not_negative, "time in which that velocity grows from zero, linearly");
+    key("ramp", ramp, "s", not_negative,
+        "time in which that velocity grows from zero, linearly; 0: the elements have it from the "
+        "start");
   }
 };
 

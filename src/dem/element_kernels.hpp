@@ -215,6 +215,19 @@ struct Kick {
     return r;
   }
 
+  /// Force that holds an element to its prescribed motion; zero in free directions.  [N]
+  template <class R>
+  BR_HD Vec3Of<R> reaction(Index e, const Vec3Of<R>& before, const ResultOf<R>& r,
+                           const GivenOf<R>& of) const {
+    const double span = 0.5 * (last_dt + next_dt);
+    if (!(span > 0.0)) return {};
+    const Vec3Of<R> gained = (of.mass / span) * (r.velocity - before);
+    const Vec3Of<R> given = of.force + weight(of.mass) - r.damped_force;
+    const Vec3Of<R> held = gained - given;
+    const R none = constant<R>(0.0);
+    return {choose(holds<R>(e, fixed_x), held.x, none), choose(holds<R>(e, fixed_y), held.y, none),
+            choose(holds<R>(e, fixed_z), held.z, none)};
+  }
   /// Where bit `which` of Fixed is set, of element e and its neighbours in a pack.
   template <class R>
   BR_HD auto holds(Index e, int which) const {
@@ -282,7 +295,10 @@ struct MoveElements {
       store(damping_work, e,
             load<R>(damping_work, e) + (0.5 * dot(r.damped_force, before + after) +
                                         0.5 * dot(r.damped_torque, last * now.spin + turned_by)));
-    if (of.fixed != 0) add_reaction(e, now.velocity, r, before + after, of);
+    if (of.fixed != 0)
+      store(
+          load_work, e,
+          load<R>(load_work, e) + 0.5 * dot(kick.reaction(e, now.velocity, r, of), before + after));
     const Vec3Of<R> position = now.position + after;
     const R s[10] = {position.x,   position.y, position.z, r.velocity.x, r.velocity.y,
                      r.velocity.z, r.spin.x,   r.spin.y,   r.spin.z,     now.radius};
@@ -291,24 +307,6 @@ struct MoveElements {
     const R numbers[4] = {q.w, q.x, q.y, q.z};
     store_records(orientation, e, numbers);
     return position;
-  }
-
- private:
-  /// Books the work of the force that holds an element to its prescribed motion.
-  template <class R>
-  BR_HD void add_reaction(Index e, const Vec3Of<R>& before, const Kick::ResultOf<R>& r,
-                          const Vec3Of<R>& twice_moved, const Kick::GivenOf<R>& of) const {
-    const double span = 0.5 * (kick.last_dt + kick.next_dt);
-    if (!(span > 0.0)) return;
-    const Vec3Of<R> gained = (of.mass / span) * (r.velocity - before);
-    const Vec3Of<R> given = of.force + kick.weight(of.mass) - r.damped_force;
-    const Vec3Of<R> held = gained - given;  // zero in free directions, up to rounding
-    const R none = constant<R>(0.0);
-    R work = none;
-    work = choose(kick.holds<R>(e, fixed_x), work + 0.5 * held.x * twice_moved.x, work);
-    work = choose(kick.holds<R>(e, fixed_y), work + 0.5 * held.y * twice_moved.y, work);
-    work = choose(kick.holds<R>(e, fixed_z), work + 0.5 * held.z * twice_moved.z, work);
-    store(load_work, e, load<R>(load_work, e) + work);
   }
 };
 

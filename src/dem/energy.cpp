@@ -174,12 +174,23 @@ struct ContactShares {
 
 struct ElementShares {
   OwnedView owned;
+  Kick kick;
   View<const double> damping_work, load_work;
+
   BR_HD Energies operator()(Index e) const {
     Energies s;
     if (!owned(e)) return s;
     s.damping.add(damping_work[e]);
     s.work.add(load_work[e]);
+    // Moving books the work of these forces in the last and the next step; half is done.
+    const Kick::Given of = kick.given<double>(e);
+    if (of.fixed == 0 && !(kick.damping > 0.0)) return s;
+    const ElementState now = read_record(kick.state, e);
+    const Kick::Result next = kick(e, now, of);
+    const Vec3 came = (0.5 * kick.last_dt) * now.velocity;
+    s.damping.add(dot(next.damped_force, came));
+    s.damping.add(dot(next.damped_torque, (0.5 * kick.last_dt) * now.spin));
+    if (of.fixed != 0) s.work.add(dot(kick.reaction(e, now.velocity, next, of), came));
     return s;
   }
 };
@@ -225,7 +236,7 @@ Energies held(const World& w) {
       all + contact_shares(w, w.contacts, w.contact_pairs, w.parameters.materials, wall_stiffness);
   all = all + contact_shares(w, w.wall_contacts, w.wall_pairs, 0, wall_stiffness);
   all = all + fold(w.exec, e.size(), Energies{},
-                   ElementShares{owned, e.damping_work.view(), e.load_work.view()}, Sum{});
+                   ElementShares{owned, kick(w), e.damping_work.view(), e.load_work.view()}, Sum{});
   if (dot(w.parameters.gravity, w.parameters.gravity) > 0.0)
     all.potential =
         fold(w.exec, e.size(), ExactSum(),

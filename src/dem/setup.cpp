@@ -37,7 +37,8 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
   copy_to(e.inertia, m.inertia);
   std::vector<ElementState> states;
   for (std::size_t i = 0; i < m.radius.size(); ++i)
-    states.push_back({m.position[i], m.velocity[i], m.spin[i], m.radius[i]});
+    states.push_back({m.position[i], held.velocity_at_start(i, m.velocity[i]),
+                      held.spin_at_start(i, m.spin[i]), m.radius[i]});
   copy_to(e.state, states);
   copy_to(e.orientation, std::vector<Quaternion>(ids.size()));
   copy_to(e.fixed, held.fixed);

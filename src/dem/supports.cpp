@@ -143,7 +143,22 @@ class Holding {
   Prescribed all_;
 };
 
+/// x, y and z of `given` where bits 0, 1 and 2 are set, else of `own`.
+Vec3 chosen(int bits, const Vec3& given, const Vec3& own) {
+  return {(bits & 1) != 0 ? given.x : own.x, (bits & 2) != 0 ? given.y : own.y,
+          (bits & 4) != 0 ? given.z : own.z};
+}
+
 }  // namespace
+
+Vec3 Prescribed::velocity_at_start(std::size_t element, const Vec3& own) const {
+  const std::int16_t way = motion[element];
+  const Vec3 given = way >= 0 ? motions[static_cast<std::size_t>(way)].at(0.0) : Vec3{};
+  return chosen(fixed[element], given, own);
+}
+Vec3 Prescribed::spin_at_start(std::size_t element, const Vec3& own) const {
+  return chosen(fixed[element] >> 3, {}, own);
+}
 
 Prescribed prescribed(const Config& config, const Model& model) {
   return Holding(config, model).prescribed();

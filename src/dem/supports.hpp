@@ -16,6 +16,11 @@ struct Prescribed {
   std::vector<std::int16_t> motion;         ///< index into motions, -1: stands still  [-]
   std::vector<Motion> motions;              ///< each combination of supports that there is
   std::vector<std::vector<Index>> members;  ///< of each support, ascending
+
+  /// Of an element, with one of its own: what is held starts with the motion of its support, so
+  /// that no jump of velocity at the start does work.  [m/s], [rad/s]
+  Vec3 velocity_at_start(std::size_t element, const Vec3& own) const;
+  Vec3 spin_at_start(std::size_t element, const Vec3& own) const;
 };
 
 /// Several supports may hold one element, if they prescribe different directions or the same

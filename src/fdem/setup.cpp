@@ -189,6 +189,27 @@ Amplitude amplitude(const HistoryConfig& history) {
   return {history.ramp, history.times, history.factors};
 }
 
+/// What is held starts with the motion of its support: no jump of velocity at the start does work.
+void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Index>& hold) {
+  std::vector<TriangleNodes> nodes;
+  copy_to(nodes, w.triangles.nodes);
+  for (std::size_t t = 0; t < hold.size(); ++t) {
+    if (hold[t] < 0) continue;
+    const Hold& h = holds[at(hold[t])];
+    for (int k = 0; k < 3; ++k) {
+      Vec2 given;
+      if (h.motion[k] >= 0) {
+        const PrescribedMotion& p = w.prescribed[at(h.motion[k])];
+        given = p.amplitude.at(0.0) * p.velocity;
+      }
+      Vec2& velocity = nodes[t].at[k].velocity;
+      if ((h.fixed >> (2 * k) & 1) != 0) velocity.x = given.x;
+      if ((h.fixed >> (2 * k + 1) & 1) != 0) velocity.y = given.y;
+    }
+  }
+  copy_to(w.triangles.nodes, nodes);
+}
+
 /// Supports: each corner follows the sum of those that hold it, each in its own directions.
 void set_up_supports(World& w, const Config& config, const Model& model) {
   std::vector<Hold> holds;
@@ -228,6 +249,7 @@ void set_up_supports(World& w, const Config& config, const Model& model) {
   }
   copy_to(w.holds, holds);
   copy_to(w.triangles.hold, hold);
+  start_held(w, holds, hold);
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
 }
 

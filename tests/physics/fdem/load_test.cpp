@@ -194,6 +194,21 @@ TEST(FdemLoads, local_damping_takes_nothing_from_what_is_held) {
   EXPECT_NEAR(b.work, b.elastic + b.kinetic, 1e-3 * b.work);
 }
 
+/// What a support moves at once moves from the start: no jump of its velocity is booked as work.
+TEST(FdemLoads, what_a_support_moves_at_once_moves_from_the_start) {
+  Scene scene;
+  scene.material(1e8);
+  scene.config.time.max_step = 1e-6;
+  scene.triangle("t", {0.0, 0.0}, {0.1, 0.0}, {0.0, 0.1}, 0, {0.0, 3.0});
+  scene.support("all", {-far, -far}, {far, far}, {"x", "y"}, {0.5, -1.0});
+  World w = scene.world();
+  run_to(w, 1e-5);
+  const EnergyBalance b = energies(w).balance;
+  EXPECT_NEAR(b.kinetic, 0.5 * 2650.0 * 0.005 * 1.25, 1e-12 * b.kinetic);
+  EXPECT_NEAR(b.start, b.kinetic, 1e-12 * b.kinetic);
+  EXPECT_NEAR(b.work, 0.0, 1e-9 * b.kinetic);
+}
+
 /// A pulse in a bar between rollers: share of its velocity that the right end throws back.
 /// @param absorbed  impedance of that end over the bar's
 double reflected(double absorbed) {
