@@ -23,6 +23,7 @@ struct CoupleState {
   double scale;    ///< of its normal penalty; 0: it is new  [-]
   double work;     ///< taken up since it began to touch, friction included  [J/m]
   double slid;     ///< the part of it that friction has spent  [J/m]
+  double sprung;   ///< the part of it that the springs of friction hold  [J/m]
   double lost;     ///< what was left of both when it parted: errors of integration  [J/m]
   double rubbed;   ///< what friction spent in touches that have ended  [J/m]
 };
@@ -68,7 +69,26 @@ struct EdgePush {
   bool touches = false;
   Vec2 normal[2] = {}, friction[2] = {};  ///< forces on its ends  [N/m]
   double drag = 0.0;                      ///< what friction pulls with now  [N/m]
-  double slid = 0.0;                      ///< what it has spent in this step  [J/m]
+  double taken = 0.0;                     ///< work that it has taken up in this step  [J/m]
+  double sprung = 0.0;                    ///< what its spring holds now  [J/m]
+};
+
+/// What friction of a couple's edges takes up in a step, T v_t dt by the trapezoidal rule where T
+/// acts, and what its springs hold after it: sum T^2/(2 k), k = p_t (share of the edge inside), but
+/// no more than they were given. The rest is spent. k goes with the edge: where it shrinks under a
+/// T that stays, T^2/(2 k) grows; slip counted by it, (T - mu N)/k, would spend what nobody put in.
+/// A spring that is forgotten has spent what it held.  [J/m]
+struct Rubbing {
+  double taken = 0.0, sprung = 0.0;
+  BR_HD void add(double more_taken, double more_sprung) {
+    taken += more_taken;
+    sprung += more_sprung;
+  }
+  BR_HD void book(double& spent, double& held) const {
+    const double given = held + taken;
+    held = larger(0.0, smaller(sprung, given));
+    spent += given - held;
+  }
 };
 
 /// @param scale  of the penalty  @param drag  what friction pulled with before  [N/m]
@@ -88,18 +108,18 @@ BR_HD inline EdgePush edge_push(const ContactPair& law, double scale, double dra
   const Vec2 edge = to.position - from.position;
   const double size = norm(edge);
   const Vec2 along = (1.0 / size) * edge;
-  const double middle = 0.5 * (o.begin + o.end);
-  Vec2 rate = -((1.0 - middle) * from.velocity + middle * to.velocity);
-  for (int m = 0; m < 3; ++m) rate += (o.at_a[m] + middle * (o.at_b[m] - o.at_a[m])) * target_v[m];
+  const auto rate_at = [&](double s) {  // of the target against a point of the edge
+    Vec2 rate = -((1.0 - s) * from.velocity + s * to.velocity);
+    for (int m = 0; m < 3; ++m) rate += (o.at_a[m] + s * (o.at_b[m] - o.at_a[m])) * target_v[m];
+    return dot(rate, along);
+  };
   const double stiffness = law.tangential * (o.end - o.begin);
   const double limit = law.friction * penalty * o.whole * size;
-  p.drag += stiffness * dt * dot(rate, along);
-  const double over = absolute(p.drag) - limit;
-  if (over > 0.0) {
-    p.slid = limit * over / stiffness;
-    p.drag = p.drag < 0.0 ? -limit : limit;
-  }
+  p.drag += stiffness * dt * rate_at(0.5 * (o.begin + o.end));
+  if (absolute(p.drag) > limit) p.drag = p.drag < 0.0 ? -limit : limit;
   const double share = o.moment / o.whole;
+  p.taken = 0.5 * dt * (drag + p.drag) * rate_at(share);
+  p.sprung = 0.5 * p.drag * p.drag / stiffness;
   p.friction[0] = (p.drag * (1.0 - share)) * along;
   p.friction[1] = (p.drag * share) * along;
   return p;
@@ -113,7 +133,7 @@ struct JointLegacy {
 };
 
 /// Normal force by potential, both ways; Coulomb friction on each edge with a spring that remembers
-/// (docs/theory.md, contact of triangles).
+/// (docs/theory-fdem.md, 4).
 /// @tparam Number  what forces are stored in
 template <class Number>
 struct CoupleForces {
@@ -137,6 +157,7 @@ struct CoupleForces {
     split(nodes[a[i]], xa, va);
     split(nodes[b[i]], xb, vb);
     CoupleForce sum{};
+    Rubbing rubbing;
     bool touching = false;
     const bool is_new = kept.scale == 0.0;
     if (is_new) kept.scale = 1.0;
@@ -144,9 +165,11 @@ struct CoupleForces {
       const ContactPair& law = law_of(i);
       const Target of_a = Target::of(xa), of_b = Target::of(xb);
       if (is_new && born[i] >= 0) inherit(born[i], law, kept, xa, of_a, xb, of_b);
-      touching = pass(law, kept, kept.drag, xa, va, of_b, vb, sum.on_a.at, sum.on_b.at);
       touching =
-          pass(law, kept, kept.drag + 3, xb, vb, of_a, va, sum.on_b.at, sum.on_a.at) || touching;
+          pass(law, kept.scale, kept.drag, rubbing, xa, va, of_b, vb, sum.on_a.at, sum.on_b.at);
+      touching = pass(law, kept.scale, kept.drag + 3, rubbing, xb, vb, of_a, va, sum.on_b.at,
+                      sum.on_a.at) ||
+                 touching;
       if (touching && conservative) {
         const Polygon over = overlap_of(of_a, of_b);
         add_shape_forces(of_a, over, kept.scale * law.penalty, sum.on_a.at);
@@ -166,6 +189,7 @@ struct CoupleForces {
       kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.on_a.at[k], va[k]);
       kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.on_b.at[k], vb[k]);
     }
+    rubbing.book(kept.slid, kept.sprung);
     if (!touching) {
       kept.lost += kept.work - kept.slid;
       kept.rubbed += kept.slid;
@@ -248,6 +272,7 @@ struct CoupleForces {
       }
     }
     kept.work = given.open + given.slide;
+    kept.sprung = given.slide;
     joints.handed[joint] = given;
   }
 
@@ -272,18 +297,18 @@ struct CoupleForces {
   }
 
   /// The edges of one triangle through the other. True if any of them touches.
-  BR_HD bool pass(const ContactPair& law, CoupleState& kept, double* drag, const Vec2 (&x)[3],
-                  const Vec2 (&v)[3], const Target& target, const Vec2 (&target_v)[3],
-                  Vec2 (&on_x)[3], Vec2 (&on_target)[3]) const {
+  BR_HD bool pass(const ContactPair& law, double scale, double* drag, Rubbing& rubbing,
+                  const Vec2 (&x)[3], const Vec2 (&v)[3], const Target& target,
+                  const Vec2 (&target_v)[3], Vec2 (&on_x)[3], Vec2 (&on_target)[3]) const {
     bool touching = false;
     for (int k = 0; k < 3; ++k) {
       const int next = k == 2 ? 0 : k + 1;
-      const EdgePush p = edge_push(law, kept.scale, drag[k], dt, {x[k], v[k]}, {x[next], v[next]},
-                                   target, target_v);
+      const EdgePush p =
+          edge_push(law, scale, drag[k], dt, {x[k], v[k]}, {x[next], v[next]}, target, target_v);
       drag[k] = p.drag;
       if (!p.touches) continue;
       touching = true;
-      kept.slid += p.slid;
+      rubbing.add(p.taken, p.sprung);
       push(p.overlap, k, p.normal[0], p.normal[1], on_x, on_target);
       if (law.friction > 0.0) push(p.overlap, k, p.friction[0], p.friction[1], on_x, on_target);
     }

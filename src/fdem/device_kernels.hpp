@@ -163,7 +163,7 @@ struct CouplesWide {
 
   struct Ready {
     Index a, b, born;
-    double scale, drag, work, slid;
+    double scale, drag, work, slid, sprung;
     NodeState corner[3];  ///< of the own triangle, from the own one on
     NodeState other[3];
   };
@@ -189,6 +189,7 @@ struct CouplesWide {
     ready.drag = read_now(&kept.drag[Place(i).edge]);
     ready.work = read_now(&kept.work);
     ready.slid = read_now(&kept.slid);
+    ready.sprung = read_now(&kept.sprung);
   }
   BR_HD void fetch(Index i, Ready& ready) const {
     const Place place(i);
@@ -226,6 +227,7 @@ struct CouplesWide {
       other_v[k] = ready.other[k].velocity;
     }
     EdgePush mine;
+    Rubbing rubbing;
     Vec2 sum{};
     unsigned touching = 0;  // edges that do
     if (CoupleForces<Number>::boxes_meet(own, other)) {
@@ -236,6 +238,7 @@ struct CouplesWide {
         ready.scale = kept.scale;
         ready.drag = kept.drag[place.edge];
         ready.work = kept.work;
+        ready.sprung = kept.sprung;
         group.wait();
       }
       mine = edge_push(law, ready.scale, ready.drag, dt, ready.corner[0], ready.corner[1],
@@ -244,7 +247,7 @@ struct CouplesWide {
       touching = group.ballot(mine.touches) & 0x3fU;
       for (int s = 0; s < 6; ++s) {
         if ((touching >> s & 1U) == 0) continue;
-        ready.slid += from(s, mine.slid);
+        rubbing.add(from(s, mine.taken), from(s, mine.sprung));
         const double at_a[3] = {from(s, mine.overlap.at_a[0]), from(s, mine.overlap.at_a[1]),
                                 from(s, mine.overlap.at_a[2])};
         const double at_b[3] = {from(s, mine.overlap.at_b[0]), from(s, mine.overlap.at_b[1]),
@@ -285,6 +288,7 @@ struct CouplesWide {
       ready.work -= from(k, taken);
       ready.work -= from(k + 3, taken);
     }
+    rubbing.book(ready.slid, ready.sprung);
     if (touching == 0) {
       kept.drag[place.edge] = 0.0;
       if (leads) {
@@ -297,6 +301,7 @@ struct CouplesWide {
     if (leads) {
       kept.work = ready.work;
       kept.slid = ready.slid;
+      kept.sprung = ready.sprung;
     }
   }
 };

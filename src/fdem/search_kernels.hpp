@@ -122,8 +122,8 @@ struct SpentBy {
     Energies spent;
     if (!owned(a[couple[k]])) return spent;
     const CoupleState& s = state[couple[k]];
-    spent.friction.add(s.rubbed + s.slid);
-    spent.contact.add(s.lost + s.work - s.slid);
+    spent.friction.add(s.rubbed + (s.slid + s.sprung));
+    spent.contact.add(s.lost + s.work - (s.slid + s.sprung));
     return spent;
   }
 };

@@ -169,6 +169,44 @@ TEST(FdemContact, block_stops_after_v_squared_over_two_mu_g) {
   }
 }
 
+/// A stone that falls on a corner turns, rubs, leaves and comes back; so do its edges. What
+/// friction spends must be what body and base lose: the contact of deformable triangles, whose work
+/// is booked apart, keeps its energy to 0.1 % without friction, and friction must not hide in it.
+TEST(FdemContact, stone_that_falls_on_a_corner_loses_what_friction_spends) {
+  for (const double mu : {0.0, 0.7}) {
+    Scene scene;
+    MaterialConfig& m = scene.material(1e9, 0.2, 2000.0);
+    m.friction = mu;
+    prepare::Mesh stone = prepare::crossed_rectangle({{0.0, 0.0}, {0.1, 0.06}}, 0.01);
+    double lowest = 0.0;
+    for (Vec2& x : stone.point) {
+      x = turned(x, 0.6);
+      lowest = std::min(lowest, x.y);
+    }
+    for (Vec2& x : stone.point) x.y -= lowest - 1e-4;
+    scene.body("stone", stone, 0, {2.0, -5.0});
+    scene.body("base", prepare::crossed_rectangle({{0.0, -0.02}, {0.6, 0.04}}, 0.02));
+    scene.support("ground", {-far, -far}, {far, -0.039}, {"x", "y"}, {}, "base");
+    World w = scene.world();
+    const double start = energies(w).balance.total();
+    double least = 0.0, hidden = 0.0;  // change of friction; energy that contact counts
+    for (double before = 0.0; w.time < 0.03;) {
+      for (int i = 0; i < 50; ++i) step(w);
+      const EnergyBalance b = energies(w).balance;
+      least = std::min(least, b.friction - before);
+      hidden = std::max(hidden, std::abs(b.contact));
+      before = b.friction;
+    }
+    const EnergyBalance b = energies(w).balance;
+    std::printf("mu %.1f: friction %.4f of the start, contact %.5f (at most %.5f), fell by %.6f\n",
+                mu, b.friction / start, b.contact / start, hidden / start, least / start);
+    EXPECT_LT(hidden, 0.005 * start);
+    EXPECT_GT(b.friction, mu > 0.0 ? 0.05 * start : -1e-300);
+    EXPECT_GT(least, -0.005 * start) << "friction gives nothing back";
+    EXPECT_LT(b.error_relative, 1e-6);
+  }
+}
+
 /// Below the angle of friction it moves by its weight over the tangential springs, and stays.
 TEST(FdemContact, block_stays_on_a_gentle_slope) {
   constexpr double angle = 0.3, mu = 0.5;
