@@ -207,11 +207,6 @@ Unsound find_unsound(const World& w) {
   return {bad, message};
 }
 
-void verify(const World& w) {
-  const Unsound bad = find_unsound(w);
-  if (bad.id != Unsound::none) throw NumericsError(bad.text);
-}
-
 std::vector<double> damage(const World& w) {
   std::vector<double> values;
   copy_to(values, damage_of(w));

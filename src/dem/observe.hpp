@@ -14,8 +14,6 @@ std::uint64_t state_hash(const World& w);
 /// The first element of its own whose state is not finite or that moves more than its radius in a
 /// step.
 Unsound find_unsound(const World& w);
-/// @throws NumericsError naming it
-void verify(const World& w);
 
 /// Share of each element's initial cohesive and interface links that are damaged or broken.  [-]
 std::vector<double> damage(const World& w);

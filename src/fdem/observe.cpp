@@ -153,11 +153,6 @@ Unsound find_unsound(const World& w) {
   return {bad, message};
 }
 
-void verify(const World& w) {
-  const Unsound bad = find_unsound(w);
-  if (bad.id != Unsound::none) throw NumericsError(bad.text);
-}
-
 std::vector<double> damage(const World& w) {
   std::vector<double> worst(at(w.triangles.size()), 0.0);
   const OnHost<Joints> joints(w.joints, w.exec.space);

@@ -15,8 +15,6 @@ std::uint64_t state_hash(const World& w);
 /// The first triangle of its own that is inside out, not finite, or moves more than its size in a
 /// step.
 Unsound find_unsound(const World& w);
-/// @throws NumericsError naming it
-void verify(const World& w);
 
 /// Largest damage of the joints of each triangle.  [-]
 std::vector<double> damage(const World& w);
