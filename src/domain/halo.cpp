@@ -1,5 +1,6 @@
 #include "domain/halo.hpp"
 
+#include "domain/parcel.hpp"
 #include "exec/device.hpp"
 
 namespace breccia {
@@ -20,11 +21,9 @@ void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::ve
   Places places(ids);
   for (std::size_t r = 0; r < count; ++r) {
     const Peer peer{static_cast<int>(r), asked[r].size() / sizeof(GlobalId), receive[r].size()};
-    for (std::size_t at = 0; at < asked[r].size(); at += sizeof(GlobalId)) {
-      GlobalId id = 0;
-      std::memcpy(&id, asked[r].data() + at, sizeof id);
-      all_sent.push_back(places.of(id));
-    }
+    Unpacking from(asked[r]);
+    for (std::size_t k = 0; k < peer.send; ++k)
+      all_sent.push_back(places.of(from.value<GlobalId>()));
     all_received.insert(all_received.end(), receive[r].begin(), receive[r].end());
     if (peer.send + peer.receive > 0) peers_.push_back(peer);
   }
@@ -41,16 +40,14 @@ void Halo::find_sections(Communicator& ranks) {
   std::vector<Message> begins(static_cast<std::size_t>(ranks.size()));
   Index begin = 0;
   for (const Peer& peer : peers_) {
-    Message& message = begins[static_cast<std::size_t>(peer.rank)];
-    message.resize(sizeof begin);
-    std::memcpy(message.data(), &begin, sizeof begin);
+    put_value(begins[static_cast<std::size_t>(peer.rank)], begin);
     begin += static_cast<Index>(peer.send);
     if (peer.send > 0) readers_.push_back(peer.rank);
     if (peer.receive > 0) owners_.push_back(peer.rank);
   }
   begins = ranks.exchange(std::move(begins));
   for (Peer& peer : peers_)
-    std::memcpy(&peer.begin, begins[static_cast<std::size_t>(peer.rank)].data(), sizeof peer.begin);
+    peer.begin = Unpacking(begins[static_cast<std::size_t>(peer.rank)]).value<Index>();
   most_sent_ = static_cast<Index>(-ranks.least(-static_cast<double>(begin)));
 }
 

@@ -1,8 +1,8 @@
 #include "domain/peer_link.hpp"
 
 #include <cstdlib>
-#include <cstring>
 
+#include "domain/together.hpp"
 #include "exec/device.hpp"
 
 namespace breccia {
@@ -20,16 +20,12 @@ bool PeerLink::make_room(std::size_t bytes) {
   if (std::getenv("BRECCIA_STAGED_COPIES") == nullptr) own_ = PeerMemory::make(space_, 2 * room_);
 
   const PeerPass pass = own_ ? own_->pass() : PeerPass{};
-  Message message(sizeof pass);
-  std::memcpy(message.data(), &pass, sizeof pass);
-  const std::vector<Message> passes = ranks_.from_all(message);
+  const std::vector<PeerPass> passes = from_each(ranks_, pass);
   bool all = own_ != nullptr;
   peers_.resize(passes.size());
   for (std::size_t r = 0; r < passes.size() && all; ++r) {
     if (static_cast<int>(r) == ranks_.rank()) continue;
-    PeerPass theirs;
-    std::memcpy(&theirs, passes[r].data(), sizeof theirs);
-    peers_[r] = PeerMemory::open(space_, theirs);
+    peers_[r] = PeerMemory::open(space_, passes[r]);
     all = peers_[r] != nullptr;
   }
   if (ranks_.least(all ? 1.0 : 0.0) < 1.0) {

@@ -94,18 +94,6 @@ class Ties {
   Deliveries& elements_;
 };
 
-/// A value of each rank, by rank.
-template <class T>
-std::vector<T> from_each(Communicator& ranks, const T& value) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  Message message(sizeof value);
-  std::memcpy(message.data(), &value, sizeof value);
-  std::vector<T> values;
-  for (const Message& came : ranks.from_all(message))
-    std::memcpy(&values.emplace_back(), came.data(), sizeof value);
-  return values;
-}
-
 /// Where a world is in time: equal on all ranks. Worlds name it alike.
 template <class World>
 void copy_time(const World& from, World& to) {

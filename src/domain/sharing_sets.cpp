@@ -1,8 +1,9 @@
 #include "domain/sharing_sets.hpp"
 
 #include <array>
-#include <cstring>
 #include <numeric>
+
+#include "domain/together.hpp"
 
 namespace breccia {
 namespace {
@@ -50,18 +51,13 @@ void SharingSets::build(Communicator& ranks, const std::vector<Sphere>& elements
   leeway_ = leeway;
   constexpr double stretched = 1.05;  // an element may be, meanwhile
   common_ = stretched * common_radius(ranks, elements);
-  Message own;
+  std::vector<Large> own;
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const Sphere& s = elements[e];
     if (!is_large(s.radius)) continue;
-    const Large l{s.centre, (s.radius + buffer(s.radius)) * (1.0 + 1e-6), owners[e]};
-    const auto* const bytes = reinterpret_cast<const std::byte*>(&l);
-    own.insert(own.end(), bytes, bytes + sizeof l);
+    own.push_back({s.centre, (s.radius + buffer(s.radius)) * (1.0 + 1e-6), owners[e]});
   }
-  large_.clear();
-  for (const Message& came : ranks.from_all(own))
-    for (std::size_t at = 0; at < came.size(); at += sizeof(Large))
-      std::memcpy(&large_.emplace_back(), came.data() + at, sizeof(Large));
+  large_ = joined(ranks, own);
   widest_ = 0.0;
   for (const Large& l : large_) widest_ = std::max(widest_, l.width);
   sort_into_rows();

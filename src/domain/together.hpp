@@ -51,6 +51,29 @@ void take_from_first(Communicator& ranks, T& value) {
   value = Unpacking(message).value<T>();
 }
 
+/// A value of each rank, by rank.
+template <class T>
+std::vector<T> from_each(Communicator& ranks, const T& value) {
+  Message message;
+  put_value(message, value);
+  std::vector<T> values;
+  for (const Message& came : ranks.from_all(message)) values.push_back(Unpacking(came).value<T>());
+  return values;
+}
+
+/// The arrays of all ranks, one behind the other, by rank.
+template <class T>
+std::vector<T> joined(Communicator& ranks, const std::vector<T>& own) {
+  Message message;
+  put_array(message, own);
+  std::vector<T> all;
+  for (const Message& came : ranks.from_all(message)) {
+    const std::vector<T> of_rank = Unpacking(came).array<T>();
+    all.insert(all.end(), of_rank.begin(), of_rank.end());
+  }
+  return all;
+}
+
 /// The messages of all ranks, by rank; on others than rank 0 none.
 inline std::vector<Message> told_to_first(Communicator& ranks, Message message) {
   std::vector<Message> messages(static_cast<std::size_t>(ranks.size()));

@@ -3,7 +3,6 @@
 // transmitted.
 
 #include <algorithm>
-#include <cstring>
 #include <set>
 
 #include "core/select.hpp"
@@ -31,15 +30,7 @@ std::vector<Candidate> candidates(World& w) {
   copy_to(own, listed);
   if (w.domain.alone()) return own;
   for (Candidate& c : own) c.joint = w.mesh.joint_number.data()[c.joint];
-  Message message(own.size() * sizeof(Candidate));
-  if (!own.empty()) std::memcpy(message.data(), own.data(), message.size());
-  std::vector<Candidate> all;
-  for (const Message& came : w.domain.ranks->from_all(message)) {
-    const std::size_t before = all.size();
-    all.resize(before + came.size() / sizeof(Candidate));
-    if (!came.empty()) std::memcpy(all.data() + before, came.data(), came.size());
-  }
-  return all;
+  return joined(*w.domain.ranks, own);
 }
 
 /// The vertices, ascending, of the most loaded of those joints, no two at one vertex: its waking

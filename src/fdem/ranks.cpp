@@ -338,10 +338,11 @@ void take_common(World& w, Communicator& ranks) {
   take_time_from_first(ranks, w);
   take_from_first(ranks, w.reach.drift);
   for (Buffer<std::uint8_t>* flags : {&w.opened.changed, &w.opened.vertex}) {
-    Message message(static_cast<std::size_t>(flags->size()));
-    std::memcpy(message.data(), flags->data(), message.size());
+    Message message;
+    put_bytes(message, flags->data(), at(flags->size()));
     message = ranks.from_first(std::move(message));
-    std::memcpy(flags->data(), message.data(), message.size());
+    std::copy_n(reinterpret_cast<const std::uint8_t*>(message.data()), message.size(),
+                flags->data());
   }
 }
 

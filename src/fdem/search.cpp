@@ -2,7 +2,6 @@
 // still joined, with the history of those that stay.
 
 #include <algorithm>
-#include <cstring>
 
 #include "core/select.hpp"
 #include "fdem/ranks.hpp"
@@ -75,16 +74,8 @@ void share_marks(const World& w, Buffer<std::uint8_t>& marked) {
   const auto known = std::as_const(w.opened.vertex).view();
   std::vector<Index> news;
   copy_to(news, items_where(w.exec, marked.size(), IsNews{std::as_const(marked).view(), known}));
-  Message message(news.size() * sizeof(Index));
-  if (!news.empty()) std::memcpy(message.data(), news.data(), message.size());
-  std::vector<Index> of_all;
-  for (const Message& came : w.domain.ranks->from_all(message)) {
-    const std::size_t before = of_all.size();
-    of_all.resize(before + came.size() / sizeof(Index));
-    if (!came.empty()) std::memcpy(of_all.data() + before, came.data(), came.size());
-  }
   Buffer<Index> vertex(w.exec.space);
-  copy_to(vertex, of_all);
+  copy_to(vertex, joined(*w.domain.ranks, news));
   for_each(w.exec, marked.size(), KeepMarks{known, marked.view()});
   for_each(w.exec, vertex.size(), TakeMarks{std::as_const(vertex).view(), marked.view()});
 }
@@ -148,14 +139,9 @@ Drift choose_drift(const World& w) {
   CommonMotion motion = fold(w.exec, w.triangles.size(), CommonMotion{},
                              MotionOf{w.triangles.nodes.view(), w.domain.owned_view()}, Sum{});
   if (!w.domain.alone()) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(&motion);
-    const std::vector<Message> all = w.domain.ranks->from_all({bytes, bytes + sizeof motion});
+    const std::vector<CommonMotion> all = from_each(*w.domain.ranks, motion);
     motion = {};
-    for (const Message& message : all) {
-      CommonMotion of_rank;
-      std::memcpy(&of_rank, message.data(), sizeof of_rank);
-      motion = motion + of_rank;
-    }
+    for (const CommonMotion& of_rank : all) motion = motion + of_rank;
   }
   if (motion.count == 0) return {};
   const double share = 1.0 / static_cast<double>(motion.count);
