@@ -163,7 +163,8 @@ template <class Visit>
 void each_link(const World& w, const Visit& visit) {
   const auto each = [&](LinkKind kind, const auto& links, const auto& state,
                         const auto& is_broken) {
-    const OnHost a(links.a, w.exec.space), b(links.b, w.exec.space), s(state, w.exec.space);
+    const OnHost a(links.a, w.exec.space), b(links.b, w.exec.space);
+    const OnHost s(state, w.exec.space);
     for (Index i = 0; i < a->size(); ++i)
       visit(kind, a->data()[i], b->data()[i], is_broken(s->data()[i]));
   };
