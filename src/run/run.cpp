@@ -382,10 +382,11 @@ void Run::tell_in_place(const Summary& now) const {
 std::string Run::located(const std::string& error) {
   if (error.starts_with("step ")) return error;
   try {
-    if (plan_.machine.ranks == 1) method_.verify();  // of several, some may not be there to answer
+    if (thrown_by_all(plan_.ranks)) at_once(plan_.ranks, [&] { method_.verify(); });
   } catch (const NumericsError& precise) {
     return precise.what();
   } catch (const Error&) {
+    if (!thrown_by_all(plan_.ranks)) throw;
   }
   return fmt::format("step {}, t = {:.6e} s: {}", method_.steps(), method_.time(), error);
 }

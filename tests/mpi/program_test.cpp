@@ -174,6 +174,25 @@ TEST_F(ProgramOnRanks, numbers_that_go_wrong_end_all_with_exit_code_4_and_a_save
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
 }
 
+TEST_F(ProgramOnRanks, numbers_that_go_wrong_in_a_search_are_named_as_by_one_process) {
+  std::string messages[2];
+  for (const int ranks : {1, 3}) {
+    const std::string there = out("lost");
+    EXPECT_EQ(run(ranks,
+                  "run " + std::string(source_dir) +
+                      "/cases/wing_crack/small.toml --set material.rock.damping=1e308 --threads 1 "
+                      "-q --set output.pictures=false -o " +
+                      there,
+                  out("told")),
+              4);
+    const std::string text = bytes_of(out("told"));
+    messages[ranks / 3] = text.substr(0, text.find('\n'));
+    fs::remove_all(there);
+  }
+  EXPECT_NE(messages[0].find("triangle "), std::string::npos) << messages[0];
+  EXPECT_EQ(messages[1], messages[0]);
+}
+
 /// Time from an event on a rank to the end of the job, and what the job said.
 struct Ending {
   int exit_code = 0;
