@@ -12,7 +12,7 @@
 
 namespace breccia {
 
-/// What a kernel sees of an array: pointer and length. Reading is checked in checked builds.
+/// An array as a kernel sees it: pointer and length. Reading is checked in checked builds.
 template <class T>
 struct View {
   T* data = nullptr;

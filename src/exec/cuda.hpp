@@ -1,6 +1,6 @@
 #pragma once
-// What files that launch on a GPU share: the stream of the run and the check of every call. Only
-// files that a CUDA build compiles include this.
+// Shared by all files that launch on a GPU: the stream of the run and the check of every call. Only
+// files that a CUDA build compiles include this header.
 
 #include <cuda_runtime.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What can go wrong, each kind with the exit code that scripts rely on.
+// The kinds of error, each with the exit code that scripts rely on.
 
 #include <stdexcept>
 #include <string>

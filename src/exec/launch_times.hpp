@@ -1,5 +1,5 @@
 #pragma once
-// What profilers see of a run (NVTX ranges), and the time of each launch for benchmarks.
+// Ranges of a run for profilers (NVTX), and the time of each launch for benchmarks.
 
 #include <map>
 #include <string>

@@ -8,7 +8,7 @@
 
 namespace breccia {
 
-/// What another process needs to reach a PeerMemory.
+/// Handles by which another process opens a PeerMemory.
 struct PeerPass {
   static constexpr int moments = 4;
   std::byte memory[64] = {};

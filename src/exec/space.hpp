@@ -15,8 +15,8 @@ enum class Space { host, shadow, cuda };
 /// Threads of a block on a device: registers leave room for several blocks of the largest kernels.
 inline constexpr Index block_size = 128;
 
-/// What numbers are stored in. full: all in double. mixed: what links keep and do, and forces of
-/// joints and couples, in single, all else in double; laws and sums compute in double
+/// Precision of stored numbers. full: double. mixed: states and forces of links, and forces of
+/// joints and couples, in single, all others in double; laws and sums compute in double
 /// (docs/theory.md, mixed precision).
 enum class Precision { full, mixed };
 

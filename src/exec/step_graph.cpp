@@ -25,7 +25,7 @@ void StepGraph::end() {
   check_device(cudaStreamEndCapture(device_stream(), &graph), "recording steps");
   if (!recorded_) recorded_ = std::make_unique<Recorded>();
   cudaGraphExec_t& executable = recorded_->executable;
-  // The same launches with other arrays and counts: changing them costs less than making them anew.
+  // Launches with other arrays and counts update the graph: cheaper than a new instance.
   if (executable != nullptr) {
     cudaGraphExecUpdateResultInfo changed{};
     if (cudaGraphExecUpdate(executable, graph, &changed) != cudaSuccess) {
