@@ -70,7 +70,7 @@ struct SixSums {
   }
 #endif
 };
-/// Likewise in single precision.
+/// Six sums side by side, in single precision.
 struct SixFloatSums {
 #if defined(__CUDACC__)
   float sum[6] = {};
@@ -149,7 +149,7 @@ inline void transpose(Pack8 (&r)[8]) {
       r[4 + 2 * half + j] = _mm512_shuffle_f64x2(low, high, 0xdd);
     }
 }
-/// Likewise for eight rows of eight in single precision.
+/// Transposes eight rows of eight numbers in single precision.
 inline void transpose(__m256 (&r)[8]) {
   __m256 pairs[8], quads[8];
   for (int k = 0; k < 8; k += 2) {
@@ -216,7 +216,7 @@ using WidestPack = Pack4;
 
 #endif
 
-/// The same numbers in single precision, and words of as many bits as theirs.
+/// For a number type: its single-precision counterpart, and an integer type of equal width.
 template <class R>
 struct TypesOf;
 template <>
@@ -242,7 +242,7 @@ struct TypesOf<Pack4> {
 template <class R>
 inline constexpr Index width_of = static_cast<Index>(sizeof(R) / sizeof(double));
 
-/// The same constant for every item of a number.
+/// A constant, equal in every item of a pack.
 template <class R>
 BR_HD inline R constant(double value) {
   return R{} + value;

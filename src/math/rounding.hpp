@@ -1,7 +1,7 @@
 #pragma once
 // Rounding to single precision by chance.
 //
-// What grows by many small steps must not be rounded to the nearest: a step below half the last bit
+// A sum of many small steps must not be rounded to the nearest: a step below half the last bit
 // would be lost, every time. Rounded up as often as the upper neighbour is near, sums are right on
 // average. Chance is a hash of numbers that every thread, rank and device has alike.
 
@@ -36,7 +36,7 @@ BR_HD R rounded_by(const BitsOf<R>& chance, const R& number) {
   __builtin_memcpy(&rounded, &bits, sizeof rounded);
   return rounded;
 }
-/// Likewise for a vector; three components share the bits from `first` on.
+/// Rounds a vector by chance; three components share the bits from `first` on.
 template <class R>
 BR_HD Vec3Of<R> rounded_by(const BitsOf<R>& chance, int first, const Vec3Of<R>& v) {
   return {rounded_by<R>(chance >> first, v.x), rounded_by<R>(chance >> (first + 6), v.y),
