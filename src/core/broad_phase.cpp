@@ -22,7 +22,7 @@ struct LowerIndex {
   BR_HD Index operator()(Index a, Index b) const { return a < b ? a : b; }
 };
 
-/// What must be known of all boxes before the first cell.
+/// Sizes of all boxes together, from which the cells follow.
 struct Extent {
   double plane = -1.0;                                   ///< longest edge in x or y  [m]
   double size = -1.0;                                    ///< longest edge  [m]
@@ -80,7 +80,7 @@ struct LevelSizes {
   double size[finest_level + 1];
 };
 
-/// Those of one chunk of boxes.
+/// Largest box of each level in one chunk of boxes.
 struct MeasureLevels {
   static constexpr const char* name = "core.measure_levels";
   CellGrid grid;
@@ -112,7 +112,7 @@ struct JoinLevels {
   }
 };
 
-/// The same noted by all threads of a device: bits of the size plus one, zero where no box is.
+/// Largest box of each level, by all threads of a device: bits of the size plus one; zero: no box.
 struct NoteLevelSize {
   static constexpr const char* name = "core.note_level_size";
   CellGrid grid;

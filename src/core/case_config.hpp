@@ -1,6 +1,6 @@
 #pragma once
-// What every case states, whatever its method: how long, what to watch, what to write, what must
-// hold.
+// Keys of every case, whatever its method: duration, probes, output, checkpoints, ranks and
+// checks.
 
 #include <cstdint>
 #include <optional>

@@ -13,7 +13,7 @@
 
 namespace breccia {
 
-/// What the host knows of time.
+/// Time as the host keeps it.
 struct HostTimes {
   double &time, &last_dt, &next_dt;
   std::int64_t& step;

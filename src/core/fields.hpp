@@ -23,7 +23,7 @@ void move_array(Array& array, Space space) {
   copy_to(there, array);
   array = std::move(there);
 }
-/// The same for every array of a state.
+/// Moves every array of a state.
 template <class State>
 void move_fields(State& state, Space space) {
   state.each_field([space](const char*, const char*, auto& array) { move_array(array, space); });

@@ -15,7 +15,7 @@ BR_HD constexpr Index side_of(Entry entry) {
   return entry & 1;
 }
 
-/// What kernels see of an Incidence: entries first(e) to last(e) - 1 belong to element e.
+/// An Incidence as kernels see it: entries first(e) to last(e) - 1 belong to element e.
 struct IncidenceView {
   View<const Index> starts;
   View<const Entry> entries;

@@ -49,7 +49,7 @@ struct GatherItems {
   }
 };
 
-/// The same for vectors stored by component.
+/// Gathers vectors that are stored by component.
 template <class Number>
 struct GatherVectors {
   static constexpr const char* name = "core.gather_vectors";

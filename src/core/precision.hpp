@@ -1,5 +1,5 @@
 #pragma once
-// What a run stores in double or in single precision, as its case says.
+// Types of numbers that a run stores in double or in single precision, as its case says.
 
 #include <string>
 #include <type_traits>

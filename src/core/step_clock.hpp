@@ -25,14 +25,15 @@ struct Advanced {
   double dt_min = 0.0, dt_max = 0.0;  ///< among them  [s]
 };
 
-/// What kernels see of time.
+/// Time as kernels see it.
 struct Moment {
   double time;              ///< of the positions  [s]
   double last_dt, next_dt;  ///< the step that led there, the step to come  [s]
   std::int64_t step = 0;    ///< steps taken before, since the start of the case
 };
 
-/// StepClock::open of a step that has not been counted yet: taken as a whole, or from its move on.
+/// Values of StepClock::open: the current step is not finalised; it began at the move / after the
+/// search.
 inline constexpr std::int32_t step_open = 1, step_open_after_move = 2;
 
 /// The clock of a device. It has two: each step reads one, as the step before left it, and keeps

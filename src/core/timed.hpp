@@ -43,7 +43,7 @@ struct EndOfStep {
   }
 };
 
-/// What a wrapped kernel reads ahead, if it does.
+/// The type that a wrapped kernel reads ahead, if it has one.
 template <class Kernel>
 struct Ahead {};
 template <class Kernel>
@@ -124,8 +124,8 @@ BR_RARELY void rarely(const Kernel* kernel, Moment now, Index i, Work work) {
   work(timed, i);
 }
 
-/// A kernel of a later launch than the first. `Kernel::set(Moment)` gives a copy of it the time;
-/// one that hands its own address on is told by `at_moment` and stays where the launch has it.
+/// A kernel of any launch but the first. `Kernel::set(Moment)` gives a copy of it the time. One
+/// that hands its own address on gets the time by `at_moment`: its parameters stay in place.
 template <class Kernel, Stand stand>
 struct Timed : Ahead<Kernel> {
   Kernel kernel;
@@ -161,7 +161,7 @@ struct Timed : Ahead<Kernel> {
   }
 };
 
-/// A launch that does nothing: what reads ahead after it comes when all before it have ended.
+/// Empty kernel as a barrier: later kernels may read ahead, as all earlier ones have completed.
 struct Fence {
   static constexpr const char* name = "core.fence";
   BR_HD void set(const Moment&) {}

@@ -1,5 +1,5 @@
 #pragma once
-// What went wrong with the numbers of a state.
+// Names of wrong numbers in a state.
 
 #include <string>
 
