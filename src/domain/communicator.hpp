@@ -1,5 +1,5 @@
 #pragma once
-// What ranks say to each other: the one interface that all messages pass through.
+// Messages between ranks: the one interface that all of them pass through.
 //
 // Every rank calls the same operations in the same order. Results are listed by rank and combined
 // in that order, or by operations whose order cannot matter, so that no result depends on when a
@@ -70,8 +70,8 @@ class Communicator {
   virtual double least(double value);
   /// The bits that are set on some rank.
   virtual std::uint64_t any_of(std::uint64_t bits);
-  /// The same in two parts: messages may be started and finished between them, and nothing else be
-  /// combined. A rank that has asked may do other things while the others are not yet there.
+  /// any_of in two parts: messages may be started and finished between them, no other reduction.
+  /// A rank that has asked may do other work until the other ranks have asked.
   virtual void ask_for_bits(std::uint64_t bits) { asked_ = bits; }
   virtual std::uint64_t told_bits() { return any_of(asked_); }
   /// Each number becomes the sum of all ranks' numbers.

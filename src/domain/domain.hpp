@@ -21,9 +21,9 @@ struct DomainCounts {
   std::int64_t copies = 0;      ///< elements of others that it holds now
   std::int64_t owned = 0;       ///< elements of its own, now
   std::int64_t load = 0;        ///< when they were shared out last  [-]
-  std::int64_t weighed = 0;     ///< the same by the rank's pace  [-]
+  std::int64_t weighed = 0;     ///< the load times the rank's pace  [-]
 };
-/// The same of all ranks together.
+/// Counts of all ranks together.
 struct DomainFacts {
   int ranks = 1;
   std::int64_t migrations = 0, cuts = 0, moved = 0;
@@ -54,7 +54,7 @@ struct Domain {
   double buffer = 0.0;         ///< how far an element goes before they are shared out anew  [m]
   double margin = 0.0;         ///< largest of the search that copies are held for  [m]
   Buffer<std::uint8_t> owned;  ///< 1: this rank owns the element; empty when alone; on the host
-  Buffer<std::uint8_t> owned_there;  ///< the same where kernels can read it
+  Buffer<std::uint8_t> owned_there;  ///< `owned` where kernels can read it
   Buffer<Vec3> placed;       ///< where each stood when they were shared out last; likewise  [m]
   SharingSets sharing_sets;  ///< then
   std::vector<Sphere> placed_around;  ///< then: around each element, on the host
@@ -70,7 +70,7 @@ struct Domain {
   double drifted_until = 0.0;      ///< time up to which it is counted  [s]
   std::vector<ElementRun>
       runs;  ///< of elements that loops over own ones take, few copies among them
-  /// The same in two parts: those that copies follow in every step, and all others.
+  /// `runs` in two parts: elements that other ranks hold as active ghosts, and all other ones.
   std::vector<ElementRun> awaited_runs, other_runs;
   DomainCounts counts;
   Pace pace;
@@ -89,8 +89,8 @@ struct Domain {
   double least(double value) const { return alone() ? value : ranks->least(value); }
   bool any(bool one) const { return alone() ? one : ranks->any_of(one ? 1 : 0) != 0; }
 
-  /// Copies of other ranks' items become what their owners have: those that are felt, or all.
-  /// Between start and finish numbers may be combined, and copies are not yet to be read.
+  /// Updates ghosts from their owners (active ghosts only, once they are selected). Between start
+  /// and finish only reductions may be called; ghosts must not be read.
   template <class T>
   void start_refresh(const Exec& exec, Buffer<T>& items) {
     if (!alone()) (knows_felt ? felt : halo).start(exec, *ranks, items);

@@ -27,7 +27,7 @@ struct UnpackItems {
   BR_HD void operator()(Index i) const { items[which[i]] = packed[i]; }
 };
 
-/// The same from another rank's memory: neighbouring threads read neighbouring numbers there.
+/// Unpacks items from another rank's memory: neighbouring threads read neighbouring numbers.
 template <class T>
 struct PullItems {
   static constexpr const char* name = "domain.pull_items";
@@ -50,8 +50,8 @@ struct Copy {
   int owner;
 };
 
-/// What a rank exchanges with each of its neighbours: items that it owns and they hold copies of,
-/// and the other way round.
+/// Exchange of a rank with each of its neighbours: items that it owns and they hold as ghosts, and
+/// the other way round.
 class Halo {
  public:
   /// @param ids     of the local elements, ascending, on the host
@@ -145,7 +145,7 @@ class Halo {
   Index most_sent_ = 0;                ///< items of one rank
   Buffer<Index> send_, receive_;       ///< local elements of each peer, ascending by global id
   Buffer<std::byte> out_, in_;         ///< their items, packed peer by peer, where the elements lie
-  Staging sent_, came_;                ///< the same on the host, if messages do not reach there
+  Staging sent_, came_;                ///< out_ and in_ on the host, if messages need that
   bool staged_ = false;
   /// Kept from one exchange to the next, as long as items are as large and lie there.
   std::shared_ptr<RepeatedMessages> messages_;

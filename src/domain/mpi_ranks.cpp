@@ -377,7 +377,7 @@ class MpiRanks final : public Communicator {
   std::uint64_t asked_bits_ = 0, told_bits_ = 0;
   std::optional<SharedSigns> signs_;
   std::optional<VoteBoard> board_;  ///< if all ranks are on this machine
-  std::optional<PeerLink> link_;    ///< likewise
+  std::optional<PeerLink> link_;    ///< if all ranks are on this machine
   std::optional<Watchdog> watchdog_;
 };
 

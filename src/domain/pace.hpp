@@ -7,14 +7,14 @@
 
 namespace breccia {
 
-/// What ranks have spent on their own work in steps since elements were shared out last, waiting
-/// for others left out. Equal on all ranks.
+/// Time that ranks have spent on their own work in steps since the last re-partition, without
+/// waiting. Equal on all ranks.
 struct Spent {
   double mean = 0.0, most = 0.0;  ///< of a rank; 0: not measured  [s]
   double sharing = 0.0;           ///< on sharing elements out, last time  [s]
 
-  /// What it costs that ranks wait for the slowest: is that much of the time, and in all twice what
-  /// it takes to share elements out again?
+  /// True if waiting for the slowest rank exceeds `imbalance` of the mean work and, in total, twice
+  /// the cost of a re-partition.
   bool is_uneven(double imbalance) const {
     constexpr double noise = 5e-3;  // what is shorter is not relied on  [s]
     const double lost = most - mean;
@@ -46,7 +46,7 @@ class Pace {
   /// @param seconds  that it took, or 0 if it will not take as long another time
   void begin_again(const Communicator& ranks, double seconds);
 
-  /// What a weight counts for, so that equal sums take equal times.
+  /// A weight times the pace of this rank: equal sums of weights take equal times.
   std::int64_t weighed(std::int64_t weight) const { return weight * pace_; }
 
  private:

@@ -47,7 +47,7 @@ class PeerLink {
   void packed();
   /// @param owners  ranks whose halves will be read
   void await(const std::vector<int>& owners);
-  /// What a rank has packed.
+  /// Items that a rank has packed.
   const std::byte* half_of(int rank) const { return half(*peers_[static_cast<std::size_t>(rank)]); }
   void taken() { own_->mark(taken_ + side_); }
 

@@ -21,7 +21,7 @@ std::vector<ElementRun> own_runs(const Domain& d) {
   return runs;
 }
 
-/// What a rank's own elements cost.
+/// The cost of a rank's own elements.
 std::int64_t load_of(const Domain& d, const std::vector<std::int64_t>& weights) {
   std::int64_t sum = 0;
   for (std::size_t e = 0; e < weights.size(); ++e)

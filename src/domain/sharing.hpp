@@ -9,7 +9,7 @@
 
 namespace breccia {
 
-/// What sharing out must know of a method's elements: those that a rank holds, its own and copies.
+/// The elements of a method as a re-partition sees them: those that a rank holds, own and ghosts.
 class Shareable {
  public:
   virtual ~Shareable() = default;
@@ -26,7 +26,7 @@ class Shareable {
   virtual void come_to_host() = 0;
   /// The points whose travel the buffer bounds, one after the other; as many for each element.  [m]
   virtual std::vector<Vec3> points() const = 0;
-  /// What each element costs: itself, and each end of what ties it to others.
+  /// The cost of each element: its own, and that of each end of a bond or contact.
   virtual std::vector<std::int64_t> weights() const = 0;
   /// The largest margin that a search now would give an element of its own.  [m]
   virtual double margin() const = 0;

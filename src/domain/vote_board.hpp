@@ -7,7 +7,7 @@
 
 namespace breccia {
 
-/// What a rank has told, in rounds: even and odd ones lie apart. All zero at first.
+/// The numbers that a rank has published, in rounds: even and odd ones apart. All zero at first.
 struct VoteSlot {
   struct alignas(64) Side {
     std::atomic<std::uint64_t> round;  ///< the last one told, counted from 1
@@ -16,9 +16,9 @@ struct VoteSlot {
   Side side[2];
 };
 
-/// Each rank tells one number a round and hears those of all. Telling never waits: a rank may do
-/// other things before it hears. A rank that tells the next round has heard this one, and nobody
-/// tells the round after the next before all have told the next: two sides are enough.
+/// Each rank publishes one number a round and collects those of all. Publishing never waits.
+/// Double buffering suffices: no rank can publish round n+2 before every rank has published n+1
+/// and therefore read n.
 class VoteBoard {
  public:
   /// @param slots  of all ranks; they outlive the board

@@ -12,7 +12,7 @@
 
 namespace breccia {
 
-/// What a rank shows to the others of its machine, in memory that they share. All zero at first.
+/// Signs of life of a rank, in memory that the ranks of a machine share. All zero at first.
 struct alignas(64) LifeSign {
   std::atomic<std::uint32_t> beat;     ///< goes on as long as the process runs
   std::atomic<std::uint32_t> ended;    ///< 1: nobody need watch it any more
