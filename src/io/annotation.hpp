@@ -1,5 +1,5 @@
 #pragma once
-// What stands around a scene: title, legend, scale bar, axes.
+// Annotation of a picture: title, legend, scale bar, axes.
 
 #include <string>
 

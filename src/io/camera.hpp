@@ -53,7 +53,7 @@ struct Clip {
 /// Reads RenderOptions::clip; nothing for an empty text. @throws InputError with what is allowed
 std::optional<Clip> clip_of(const std::string& text, const Axes& axes);
 
-/// The same plane on the picture: what has u nu + v nv + depth nd + n0 > 0 is dropped.
+/// A clip plane on the picture: points with u nu + v nv + depth nd + n0 > 0 are dropped.
 struct ScreenClip {
   double nu, nv, nd, n0;
 

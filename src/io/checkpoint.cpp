@@ -112,7 +112,7 @@ void CheckpointWriter::write(const std::string& path) const {
   replace_durably(path, pieces);
 }
 
-/// What head and foot say, after it has been found to fit the file.
+/// Head and foot of the file, once they have been found to fit it.
 struct CheckpointReader::Frame {
   std::uint64_t sections, table_bytes, body_end, length;
   Digest table, whole;

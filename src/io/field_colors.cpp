@@ -217,7 +217,7 @@ std::vector<Color> mapped_colors(const Legend::Bar& bar, const std::vector<float
   return colors;
 }
 
-/// What a legend calls a category: groups have names, and so have kinds and states of links.
+/// The name of a category in a legend: groups have names, and so have kinds and states of links.
 std::string category_name(const Frame& frame, const Selected& selected, double value) {
   constexpr std::array kinds{"concrete", "steel", "interface"};
   constexpr std::array states{"whole", "softened", "broken"};

@@ -11,7 +11,7 @@
 
 namespace breccia {
 
-/// What a legend says.
+/// Contents of a legend.
 struct Legend {
   struct Bar {
     ColorMap map;

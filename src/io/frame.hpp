@@ -10,7 +10,7 @@
 
 namespace breccia {
 
-/// What a quantity is given for.
+/// The items that a quantity is given for.
 enum class Carrier : std::uint8_t { points, lines, triangles, none };
 
 /// A named quantity, one value or vector an item.
@@ -21,7 +21,7 @@ struct FrameField {
   std::vector<float> values;  ///< components of item 0, then of item 1, ...
 };
 
-/// What a frame shows. Lines and triangles index `position`.
+/// Geometry and fields of one moment. Lines and triangles index `position`.
 struct Frame {
   std::int64_t step = 0;
   double time = 0.0;                        ///<  [s]
@@ -47,7 +47,7 @@ struct FramePlaces {
 /// Places of a frame that is whole.
 FramePlaces places_in(const Frame& whole);
 
-/// What one rank has of a frame; alone it is the whole.
+/// A rank's part of a frame; of a single rank the whole.
 struct FramePart {
   Frame frame;
   FramePlaces places;

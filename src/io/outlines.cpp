@@ -22,7 +22,7 @@ const ScreenSphere* sphere_of(std::span<const ItemLook> looks, std::int32_t item
   return sphere.radius > 0.0F ? &sphere : nullptr;
 }
 
-/// What a pixel takes from which neighbour.
+/// The share of a neighbour in the colour of a pixel.
 struct Mix {
   std::ptrdiff_t neighbour = 0;  ///< distance in the canvas
   float share = 0.0F;

@@ -14,7 +14,7 @@ namespace breccia {
 namespace {
 
 constexpr double sphere_share_beside_links = 0.4;    ///< of the radius, so that links show
-constexpr double sphere_share_beside_colours = 0.2;  ///< likewise, where links carry the field
+constexpr double sphere_share_beside_colours = 0.2;  ///< of the radius, where links carry the field
 
 /// The items to draw, in the order of their numbers: spheres, then lines, then triangles.
 struct Scene {

@@ -31,7 +31,7 @@ struct ValueRange {
   double low, high;
 };
 
-/// What to draw and how. Angles and presets: `view` is one of
+/// View, clip plane, field and size of a picture. `view` is one of
 ///   iso  from above, front and right, z up        x  from +x, y to the right, z up
 ///   y    from the front (-y), x right, z up       z  from above, x right, y up
 /// `clip` is empty or a plane such as "x=0": what lies between it and the viewer is dropped and the

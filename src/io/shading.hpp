@@ -9,7 +9,7 @@
 
 namespace breccia {
 
-/// What a pixel of an item looks like before light falls on it.
+/// Colour and shape of an item in a pixel, before lighting.
 struct ItemLook {
   Color color;
   ScreenSphere sphere;  ///< radius 0: a flat item, which its colour already shades

@@ -1,5 +1,5 @@
 #pragma once
-// What a misspelt word may have meant.
+// The known word nearest to a misspelt one.
 
 #include <set>
 #include <string>

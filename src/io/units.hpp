@@ -20,7 +20,7 @@ struct Unit {
 /// Empty if it is no unit.
 std::optional<Unit> parse_unit(std::string_view text);
 
-/// What a unit measures, for people: "a pressure", "a length"; "[kg m-1 s-2]" if it has no name.
+/// The dimension of a unit in words: "a pressure", "a length"; "[kg m-1 s-2]" if it has no name.
 std::string describe_dimension(const Unit& unit);
 
 /// A number and its unit, as text, in SI. Units that are powers of ten of SI give the double
