@@ -11,7 +11,7 @@
 
 namespace breccia::prepare {
 
-/// What a body's mesh depends on besides its keys.
+/// Data of the case, besides its own keys, that a body's mesh depends on.
 struct MeshingContext {
   std::int64_t seed = 1;
   std::uint32_t number = 0;                ///< of the body: streams of random numbers

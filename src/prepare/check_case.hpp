@@ -10,14 +10,16 @@ namespace breccia {
 namespace dem {
 
 /// Names that lead nowhere, laws that do not fit, bodies that cannot be built or lie in each other.
-/// The same rules before a run, before a model is prepared and for `check`. No file is read.
+/// `run`, `prepare` and `check` apply these rules alike. No file is read.
 /// @throws InputError with all problems at once
 void check_case(const Config& config);
 
 }  // namespace dem
 namespace fdem {
 
-void check_case(const Config& config);  ///< likewise
+/// Names that lead nowhere, tables that do not fit, bodies that cannot be meshed or lie in each
+/// other. @throws InputError with all problems at once
+void check_case(const Config& config);
 
 }  // namespace fdem
 namespace prepare {

@@ -1,5 +1,5 @@
 #pragma once
-// What must hold of every mesh, wherever it comes from.
+// Conditions that every mesh must meet, wherever it comes from.
 
 #include <functional>
 #include <string>

@@ -23,11 +23,11 @@ namespace breccia::prepare {
 ///                    once, or the first thing that cannot be read
 Mesh read_mesh(const std::string& path, bool seams = false);
 
-/// The same from a text in memory; `name` stands for the file in messages.
+/// Read a mesh from a text in memory; `name` stands for the file in messages.
 Mesh parse_gmsh(std::string_view content, const std::string& name, bool seams = false);
 Mesh parse_abaqus(std::string_view content, const std::string& name, bool seams = false);
 
-/// What a file says, with its own numbers, before anything of it is looked up.
+/// Contents of a file, with its own numbers, before references are resolved.
 struct RawMesh {
   struct Node {
     std::int64_t number;

@@ -8,7 +8,7 @@
 
 namespace breccia::prepare {
 
-/// What a packing fills; centred at the origin.
+/// The space that a packing fills; centred at the origin.
 struct Container {
   enum class Shape { box, sphere, cylinder } shape = Shape::box;
   Vec3 size{};          ///< edge lengths of a box  [m]

@@ -17,7 +17,7 @@ using Bar = Capsule;
 /// width evenly and end with round caps at the faces of the box (docs/theory.md, bars).
 std::vector<Bar> bars_through(const dem::RebarConfig& rebar, const Vec3& size);
 
-/// What keeps these bars from fitting the box, one sentence each; empty: they fit.
+/// Reasons why these bars do not fit the box, one sentence each; empty: they fit.
 std::vector<std::string> bar_problems(const dem::RebarConfig& rebar, const Vec3& size);
 
 /// The element of a bar as a chain: spacing L = length / (elements - 1).
