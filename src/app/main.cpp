@@ -90,7 +90,7 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
 
 /// Runs one command; errors become messages and exit codes.
 int guarded(int argc, char** argv, breccia::Communicator* ranks) {
-  // What all ranks fail at is told once. A rank that fails alone tells, and ends the others.
+  // An error on all ranks is told once. A rank that fails alone tells its own and ends the others.
   const auto tell = [&](int exit_code, const std::string& message) {
     const bool alone = ranks != nullptr && !ranks->in_step();
     if (alone) return tell_and_end(*ranks, exit_code, message);
