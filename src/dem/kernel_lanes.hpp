@@ -31,8 +31,8 @@ struct LeastOf {
   double number;
 };
 
-/// Builds of lanes/kernel_lanes.cpp for one width each; what does not fill a pack is left to the
-/// caller, and so is a pack of bars in which something breaks or has broken. Return where.
+/// Builds of lanes/kernel_lanes.cpp for one width each. They process whole packs only and return
+/// the first item not processed: of the remainder, or of a pack with a breaking bar.
 struct PacksAvx2 {
   static Index run(const ConcreteLinkForces<double>& kernel, Index begin, Index end);
   static Index run(const ConcreteLinkForces<float>& kernel, Index begin, Index end);

@@ -82,7 +82,7 @@ class Journey {
       ties_.tie(std::array{links.a.data()[i], links.b.data()[i]}, i, items);
   }
 
-  /// What bars do is observed between steps, so it goes along.
+  /// Bar forces are output between steps, so they migrate with their links.
   void split_actions(Buffer<Action>& on_steel, Buffer<Action>& on_interface) const {
     on_steel.resize(w_.steel.size());
     on_interface.resize(w_.interface.size());

@@ -11,8 +11,8 @@
 namespace breccia::fdem {
 
 /// Makes a rank's part of a world. Every rank calls it with the world that the case builds, on the
-/// host; rank 0's state is shared out, the others' is dropped. Notes in `whole` what is told of it
-/// all.
+/// host; rank 0's state is shared out, the others' is dropped. Stores mesh-wide data in
+/// `whole.mesh`.
 /// @param space  of the part
 World share_out(World& whole, Communicator& ranks, const DomainConfig& config,
                 Space space = Space::host);

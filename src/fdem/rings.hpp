@@ -9,7 +9,7 @@
 
 namespace breccia::fdem {
 
-/// Triangles around each vertex where corners move as one: what one of them does, all must know.
+/// All triangles around a vertex whose nodes are tied; a rank that owns one needs ghosts of all.
 class Rings {
  public:
   explicit Rings(const World& w) {

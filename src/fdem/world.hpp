@@ -43,8 +43,8 @@ struct Reach {
   }
 };
 
-/// Where joints have opened. Vertices take part in contact from fixed moments on, not from whatever
-/// search comes next: when travel asks for one must not change a bit.
+/// Where joints have opened. A vertex becomes contact-active at a step fixed by the physics, not at
+/// the next search, so results do not depend on when searches happen.
 struct Opened {
   Buffer<std::uint8_t> changed;  ///< flags of Change since the vertices were marked last
   Buffer<std::uint8_t> vertex;   ///< 1: a joint at this vertex of the mesh is damaged

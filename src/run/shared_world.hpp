@@ -56,7 +56,7 @@ class SharedWorld {
   const World& part() const { return part_ ? *part_ : whole_; }
   /// All of it, where only what never changes is as it is now. Rank 0 only.
   const World& mesh() const { return whole_; }
-  /// What has been booked for good, but for what parts have booked since they told last. Rank 0
+  /// The global ledger, without contributions that ranks have not reported yet. Rank 0
   /// only.
   auto& ledger() { return whole_.ledger; }
 
