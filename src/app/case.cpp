@@ -103,10 +103,13 @@ std::string keys_of_model(const std::variant<dem::Config, fdem::Config>& config)
 }
 
 void load_model_into(Case& read, const CheckpointReader& reader, const std::string& path) {
-  if (std::holds_alternative<dem::Config>(read.config))
-    read.model = load_model(reader);
-  else
-    read.model = load_fdem_model(reader);
+  if (const auto* const config = std::get_if<dem::Config>(&read.config)) {
+    const dem::Model& model = std::get<dem::Model>(read.model.emplace(load_model(reader)));
+    refuse_misfits(model, *config);
+  } else {
+    const fdem::Model& model = std::get<fdem::Model>(read.model.emplace(load_fdem_model(reader)));
+    refuse_misfits(model, std::get<fdem::Config>(read.config));
+  }
   read.prepared = std::filesystem::absolute(path).lexically_normal().string();
 }
 

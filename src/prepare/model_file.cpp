@@ -1,9 +1,13 @@
 #include "prepare/model_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 
 #include "exec/error.hpp"
+#include "prepare/mesh_check.hpp"
 
 namespace breccia {
 namespace {
@@ -59,8 +63,14 @@ void refuse_misfits(const dem::Model& model) {
     if (items.size() != model.position.size()) fail();
   });
   const auto is_element = [&](Index i) { return i >= 0 && i < model.size(); };
-  for (const dem::Model::Link& link : model.links)
-    if (!is_element(link.a) || !is_element(link.b) || link.kind > dem::LinkKind::interface) fail();
+  const dem::Model::Link* before = nullptr;
+  for (const dem::Model::Link& link : model.links) {
+    if (!is_element(link.a) || !is_element(link.b) || link.a >= link.b ||
+        link.kind > dem::LinkKind::interface)
+      fail();
+    if (before != nullptr && std::tie(link.a, link.b) < std::tie(before->a, before->b)) fail();
+    before = &link;
+  }
   for (const std::vector<Index>* ends : {&model.bar_previous, &model.bar_next})
     for (const Index i : *ends)
       if (i != -1 && !is_element(i)) fail();
@@ -68,6 +78,15 @@ void refuse_misfits(const dem::Model& model) {
   if (std::any_of(model.group.begin(), model.group.end(),
                   [&](std::int16_t g) { return g < 0 || g >= groups; }))
     fail();
+}
+
+/// A number of a model that the case must know.
+void refuse_unknown(const char* array, const std::vector<std::int16_t>& numbers, std::int16_t least,
+                    std::size_t known) {
+  for (const std::int16_t n : numbers)
+    if (n < least || n >= static_cast<std::int64_t>(known))
+      throw CheckpointError(
+          fmt::format("the model's {} holds {}, of which the case knows nothing", array, n));
 }
 
 std::string lines_of(const std::vector<std::string>& names) {
@@ -121,6 +140,10 @@ void refuse_misfits(const fdem::Model& model) {
   for (const fdem::Model::EdgeSet& set : model.edge_sets)
     for (const auto& edge : set.edges)
       if (!is_point(edge[0]) || !is_point(edge[1])) fail();
+  const prepare::Mesh mesh{
+      .point = model.point, .triangle = model.triangle, .parts = {}, .edge_sets = {}};
+  const auto problems = prepare::mesh_problems(mesh, prepare::plain_names(), 1);
+  if (!problems.empty()) throw CheckpointError("the model's mesh: " + problems.front());
   for (const fdem::Model::Discontinuity& d : model.discontinuities)
     if (!is_point(d.edge[0]) || !is_point(d.edge[1])) fail();
   const auto groups = static_cast<std::int16_t>(model.groups.size());
@@ -185,6 +208,20 @@ void save_model(CheckpointWriter& writer, const dem::Model& model) {
   }
   each_link_array(links,
                   [&](const char* name, const auto& items) { save_array(writer, name, items); });
+}
+
+void refuse_misfits(const dem::Model& model, const dem::Config& config) {
+  refuse_unknown("material", model.material, 0, config.materials.size());
+  std::vector<std::int16_t> laws;
+  for (const dem::Model::Link& link : model.links) laws.push_back(link.material);
+  refuse_unknown("link_material", laws, 0, config.materials.size());
+}
+
+void refuse_misfits(const fdem::Model& model, const fdem::Config& config) {
+  refuse_unknown("material", model.material, 0, config.materials.size());
+  std::vector<std::int16_t> laws;
+  for (const fdem::Model::Discontinuity& d : model.discontinuities) laws.push_back(d.material);
+  refuse_unknown("discontinuity_material", laws, -1, config.joint_laws.size());
 }
 
 bool holds_model(const CheckpointReader& reader) {

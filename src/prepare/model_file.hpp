@@ -3,7 +3,9 @@
 
 #include <string>
 
+#include "dem/config.hpp"
 #include "dem/model.hpp"
+#include "fdem/config.hpp"
 #include "fdem/model.hpp"
 #include "io/checkpoint.hpp"
 
@@ -19,5 +21,9 @@ bool holds_model(const CheckpointReader& reader);
 /// @throws CheckpointError if a section is missing or the arrays do not fit each other
 dem::Model load_model(const CheckpointReader& reader);
 fdem::Model load_fdem_model(const CheckpointReader& reader);
+
+/// @throws CheckpointError if the model names materials or joints that the case does not have
+void refuse_misfits(const dem::Model& model, const dem::Config& config);
+void refuse_misfits(const fdem::Model& model, const fdem::Config& config);
 
 }  // namespace breccia

@@ -31,7 +31,6 @@ struct DemSim {
     return dem::balance(ledger, all, step);
   }
   static FramePart frame(const World& w, const World*) { return dem_frame(w); }
-  static std::array<Index, 2> size(const World& w) { return {w.elements.size(), w.links()}; }
 
   void add_model(const World& w, std::vector<Fact>& facts) const {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };

@@ -50,7 +50,6 @@ struct FdemSim {
   }
   static const char* step_rule(const World& w) { return fdem::ruling_term(w); }
   static FramePart frame(const World& w, const World* mesh) { return fdem_frame(w, mesh); }
-  static std::array<Index, 2> size(const World& w) { return {w.triangles.size(), w.joints.size()}; }
 
   static void add_model(const World& w, std::vector<Fact>& facts) {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };

@@ -12,6 +12,7 @@
 #include "core/unsound.hpp"
 #include "exec/error.hpp"
 #include "run/frame_parts.hpp"
+#include "run/load_check.hpp"
 #include "run/method.hpp"
 #include "run/shared_world.hpp"
 
@@ -31,7 +32,6 @@ concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vecto
   sim.add_model(w, facts);
   sim.add_findings(w, facts);
   // Numbers that no checkpoint of the same model changes.
-  { Sim::size(w) } -> std::equality_comparable;
 };
 
 template <class World>
@@ -157,10 +157,9 @@ class SimMethod final : public Method {
   }
   void load(const CheckpointReader* reader) override {
     world_.renew([&](World& w) {
-      const auto size = Sim::size(w);
+      const LoadCheck<World> check(w);
       each_stored(w, Loading{*reader});
-      if (Sim::size(w) != size)
-        throw CheckpointError("the checkpoint holds another model than the case builds");
+      check.refuse_misfits(w);
       derive(w);
     });
   }
