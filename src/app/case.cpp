@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "domain/domain.hpp"
+#include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
 #include "io/case_file.hpp"
 #include "io/whole_file.hpp"
@@ -15,6 +16,7 @@
 #include "run/dem_method.hpp"
 #include "run/device_plan.hpp"
 #include "run/fdem_method.hpp"
+#include "run/memory_plan.hpp"
 #include "run/progress.hpp"
 #include "run/shown.hpp"
 
@@ -172,6 +174,8 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
       [&](const auto& config) {
         decltype(model_of(read, config)) model;
         together_or_not(ranks, [&] {
+          const MemoryPlan plan = memory_plan(config);
+          refuse_without_memory(plan, plan.run_bytes, ranks_on_this_machine(ranks));
           model = model_of(read, config);
           if (exec.space == Space::cuda)
             plan_device(device_bytes(model) / (ranks == nullptr ? 1 : ranks->size()),
@@ -189,6 +193,8 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
 std::string save_model_of(const Case& read, CheckpointWriter& writer) {
   return std::visit(
       [&](const auto& config) {
+        const MemoryPlan plan = memory_plan(config);
+        refuse_without_memory(plan, plan.build_bytes, 1);
         const auto model = model_of(read, config);
         save_model(writer, model);
         return size_text(model);

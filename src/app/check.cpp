@@ -11,6 +11,7 @@
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
+#include "run/memory_plan.hpp"
 
 namespace breccia::app {
 namespace {
@@ -30,10 +31,14 @@ struct CheckCommand {
         check_files(read);
         std::visit(
             [&](const auto& config) {
-              fmt::print("{}: good: {}, {}, {}, ends at {}\n", harmless(path), config.method,
+              const MemoryPlan plan = memory_plan(config);
+              refuse_without_memory(plan, plan.run_bytes, 1, path + ": the model");
+              fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
                          counted(config.bodies.size(), "body", "bodies"),
                          counted(config.materials.size(), "material", "materials"),
                          time_text(config.time.end));
+              if (plan.items > 0.0) fmt::print(", about {} of memory", memory_text(plan.run_bytes));
+              fmt::print("\n");
             },
             read.config);
       } catch (const Error& error) {

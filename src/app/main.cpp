@@ -17,6 +17,7 @@
 #include "io/harmless.hpp"
 #include "io/suggestion.hpp"
 #include "run/machine.hpp"
+#include "run/memory_plan.hpp"
 #include "run/signals.hpp"
 
 namespace {
@@ -103,7 +104,10 @@ int guarded(int argc, char** argv, breccia::Communicator* ranks) {
   } catch (const breccia::Error& error) {
     exit_code = tell(error.exit_code(), error.what());
   } catch (const std::bad_alloc&) {
-    exit_code = tell(memory_error, "not enough memory");
+    exit_code =
+        tell(memory_error,
+             fmt::format("not enough memory: {} were in use",
+                         breccia::memory_text(static_cast<double>(breccia::peak_memory()))));
   } catch (const std::filesystem::filesystem_error& error) {
     exit_code = tell(file_error, error.path1().string() + ": " + error.code().message());
   } catch (const std::system_error& error) {  // of fmt::print

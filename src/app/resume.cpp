@@ -51,7 +51,7 @@ struct ResumeCommand {
 
   int execute(Communicator* ranks) const {
     const auto begin = std::chrono::steady_clock::now();
-    const StopSignals signals;
+    StopSignals signals;
     StageTimers timers;
     Exec exec;
     Case read;
@@ -80,6 +80,7 @@ struct ResumeCommand {
       if (!leads(ranks)) checkpoint.reset();
     });
     const std::unique_ptr<Method> method = make_method(read, exec, ranks, options.quiet);
+    signals.answer_between_steps();
     timers.clear();
     method->load(checkpoint ? &*checkpoint : nullptr);
     return Run(*method, plan, folder ? &*folder : nullptr, &*former).execute();

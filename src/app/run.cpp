@@ -22,7 +22,7 @@ struct RunCommand {
 
   int execute(Communicator* ranks) const {
     const auto begin = std::chrono::steady_clock::now();
-    const StopSignals signals;
+    StopSignals signals;
     StageTimers timers;
     const Existing existing = force ? Existing::replace : Existing::refuse;
     Exec exec;
@@ -36,6 +36,7 @@ struct RunCommand {
       if (leads(ranks)) ResultFolder::check_free(out, existing);
     });
     const std::unique_ptr<Method> method = make_method(read, exec, ranks, options.quiet);
+    signals.answer_between_steps();
     RunPlan plan = plan_of(read, options, exec, ranks);
     plan.begin = begin;
     if (!restart.empty()) load(*method, plan);

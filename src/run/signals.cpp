@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::array handled{SIGTERM, SIGINT, SIGUSR1};
 
-volatile sig_atomic_t first_signal = 0;
+volatile sig_atomic_t first_signal = 0, between_steps = 0;
 std::array<struct sigaction, handled.size()> former_handled;
 struct sigaction former_pipe;
 
 extern "C" void note_signal(int signal) {
-  if (first_signal != 0) ::_exit(128 + signal);
+  if (first_signal != 0 || between_steps == 0) ::_exit(128 + signal);
   first_signal = signal;
 }
 
@@ -27,6 +27,7 @@ void ignore_quota_signal() {
 
 StopSignals::StopSignals() {
   first_signal = 0;
+  between_steps = 0;
   struct sigaction action {};
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
@@ -41,6 +42,10 @@ StopSignals::~StopSignals() {
   for (std::size_t i = 0; i < handled.size(); ++i)
     ::sigaction(handled[i], &former_handled[i], nullptr);
   ::sigaction(SIGPIPE, &former_pipe, nullptr);
+}
+
+void StopSignals::answer_between_steps() {
+  between_steps = 1;
 }
 
 int StopSignals::received() {

@@ -31,7 +31,6 @@ concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vecto
   // What the model has, and what has come of it.
   sim.add_model(w, facts);
   sim.add_findings(w, facts);
-  // Numbers that no checkpoint of the same model changes.
 };
 
 template <class World>

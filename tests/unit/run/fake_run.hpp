@@ -29,7 +29,8 @@ inline RunPlan fake_plan() {
 
 /// A new run in the folder.
 inline int run_fake(const RunPlan& plan, const std::string& path, const Trouble& trouble = {}) {
-  const StopSignals signals;
+  StopSignals signals;
+  signals.answer_between_steps();
   FakeMethod method(trouble);
   const ResultFolder folder = ResultFolder::create(path, Existing::refuse);
   return Run(method, plan, &folder).execute();
@@ -38,7 +39,8 @@ inline int run_fake(const RunPlan& plan, const std::string& path, const Trouble&
 /// Goes on with the run of the folder.
 inline int resume_fake(const RunPlan& plan, const std::string& path,
                        std::string* warnings = nullptr) {
-  const StopSignals signals;
+  StopSignals signals;
+  signals.answer_between_steps();
   const ResultFolder folder = ResultFolder::open(path);
   FakeMethod method;
   const CheckpointReader checkpoint =

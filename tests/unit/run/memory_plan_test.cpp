@@ -1,0 +1,128 @@
+#include "run/memory_plan.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "exec/error.hpp"
+#include "io/whole_file.hpp"
+#include "unit/run/program.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the kernel tells of a machine with 8 GB to spare.
+class Machine {
+ public:
+  Machine() { write("proc/meminfo", "MemTotal: 16000000 kB\nMemAvailable: 8000000 kB\n"); }
+  void write(const std::string& name, const std::string& content) {
+    fs::create_directories(fs::path(folder_ / name).parent_path());
+    replace_file(folder_ / name, content);
+  }
+  double available() const { return available_memory(folder_.path()); }
+
+ private:
+  ScratchFolder folder_;
+};
+
+TEST(MemoryPlan, the_tightest_of_machine_and_control_groups_counts) {
+  Machine machine;
+  EXPECT_EQ(machine.available(), 8.192e9);
+  machine.write("proc/self/cgroup", "0::/user/job\n");
+  machine.write("sys/fs/cgroup/user/job/memory.max", "max\n");
+  machine.write("sys/fs/cgroup/user/job/memory.current", "1000000\n");
+  EXPECT_EQ(machine.available(), 8.192e9);
+  machine.write("sys/fs/cgroup/user/memory.max", "3000000000\n");
+  machine.write("sys/fs/cgroup/user/memory.current", "2000000000\n");
+  EXPECT_EQ(machine.available(), 1e9);
+  machine.write("sys/fs/cgroup/user/memory.stat", "anon 1\ninactive_file 500000000\n");
+  EXPECT_EQ(machine.available(), 1.5e9);  // what is cached can be given back
+}
+
+TEST(MemoryPlan, older_control_groups_count_too) {
+  Machine machine;
+  machine.write("proc/self/cgroup", "5:cpu:/x\n4:memory:/batch/7\n");
+  machine.write("sys/fs/cgroup/memory/batch/7/memory.limit_in_bytes", "2000000000\n");
+  machine.write("sys/fs/cgroup/memory/batch/7/memory.usage_in_bytes", "500000000\n");
+  EXPECT_EQ(machine.available(), 1.5e9);
+}
+
+TEST(MemoryPlan, items_follow_from_counts_and_areas) {
+  dem::Config dem;
+  dem.bodies.resize(2);
+  dem.bodies[0].pack.count = 1000;
+  dem.bodies[1].shape = "element";
+  EXPECT_EQ(memory_plan(dem).items, 1000.0);
+  fdem::Config fdem;
+  fdem.bodies.resize(1);
+  fdem.bodies[0].shape = "disc";
+  fdem.bodies[0].radius = 0.04;
+  fdem.bodies[0].mesh_size = 0.501e-3;
+  EXPECT_NEAR(memory_plan(fdem).items, 50'312.0, 0.1 * 50'312.0);  // of gmsh
+}
+
+const std::string box = R"(
+time.end = "1 ms"
+[material.c30]
+law = "concrete"
+[[body]]
+name = "box"
+material = "c30"
+size = [1.0, 1.0, 1.0]
+pack = { count = 2000000 }
+)";
+
+TEST(MemoryPlan, what_cannot_fit_is_refused_before_it_is_packed) {
+  const ScratchFolder folder;
+  replace_file(folder / "box.toml", box);
+  const auto refused = [&](const std::string& command, const std::string& first = "") {
+    const auto begin = std::chrono::steady_clock::now();
+    const int code = wait_for(
+        start_program(command + " " + (folder / "box.toml"), folder / "output.txt", first));
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(spent.count(), 20.0);  // packing takes minutes
+    const std::string told = read_whole_file(folder / "output.txt");
+    EXPECT_NE(told.find("needs about"), std::string::npos) << told;
+    EXPECT_NE(told.find("are available"), std::string::npos) << told;
+    return code;
+  };
+  const std::string limit = "ulimit -v 1000000;", many = " --set body.box.pack.count=2000000000";
+  EXPECT_EQ(refused("check", limit), 5);
+  EXPECT_EQ(refused("run -o " + (folder / "out"), limit), 5);
+  EXPECT_EQ(refused("prepare -o " + (folder / "box.br"), limit), 5);
+  EXPECT_EQ(refused("check" + many), 5);
+  EXPECT_EQ(refused("run -o " + (folder / "out") + many), 5);
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(MemoryPlan, a_signal_ends_setting_up_at_once) {
+  const ScratchFolder folder;
+  replace_file(folder / "box.toml", box);
+  for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
+    const pid_t child = start_program("run " + (folder / "box.toml") + " -o " + (folder / "out") +
+                                      " --set body.box.pack.count=500000");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    ::kill(child, signal);
+    int status = 0;
+    pid_t ended = 0;
+    for (int i = 0; i < 1000 && ended == 0; ++i) {
+      ended = ::waitpid(child, &status, WNOHANG);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_EQ(ended, child) << "it still packs";
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 128 + signal);
+    if (ended == 0) ::kill(child, SIGKILL);
+    EXPECT_FALSE(fs::exists(folder / "out"));
+  }
+}
+
+}  // namespace
+}  // namespace breccia
