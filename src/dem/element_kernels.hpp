@@ -215,6 +215,11 @@ struct Kick {
     return r;
   }
 
+  /// A velocity or spin at the time of the forces, from those half a step before and after.
+  BR_HD Vec3 between(const Vec3& before, const Vec3& after) const {
+    const double span = 0.5 * (last_dt + next_dt);
+    return span > 0.0 ? before + (0.5 * last_dt / span) * (after - before) : before;
+  }
   /// Force that holds an element to its prescribed motion; zero in free directions.  [N]
   template <class R>
   BR_HD Vec3Of<R> reaction(Index e, const Vec3Of<R>& before, const ResultOf<R>& r,

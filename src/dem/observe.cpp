@@ -58,32 +58,34 @@ struct ReadProbe {
   Quantity quantity;
   View<const Index> members;  ///< empty: all elements
   View<const GlobalId> id;
-  View<const ElementState> state;
-  View<const Vec3> force;
-  View<const double> mass, inertia, damage;
+  Kick kick;  ///< velocities are read at the time of the positions
+  View<const double> damage;
 
   BR_HD double part(const Vec3& v) const {
     return quantity.axis == 0 ? v.x : quantity.axis == 1 ? v.y : v.z;
   }
   BR_HD double value(Index e) const {
-    const ElementState& s = state[e];
+    const ElementState& s = kick.state[e];
+    const Kick::Result next = kick(e);
+    const Vec3 velocity = kick.between(s.velocity, next.velocity);
     switch (quantity.kind) {
       case Quantity::Kind::position:
         return part(s.position);
       case Quantity::Kind::velocity:
-        return part(s.velocity);
+        return part(velocity);
       case Quantity::Kind::force:
-        return part(force[e]);
+        return part(kick.force[e]);
       case Quantity::Kind::momentum:
-        return mass[e] * part(s.velocity);
+        return kick.mass[e] * part(velocity);
       case Quantity::Kind::speed:
-        return norm(s.velocity);
+        return norm(velocity);
       case Quantity::Kind::damage:
         return damage[e];
       case Quantity::Kind::kinetic:
         break;
     }
-    return 0.5 * mass[e] * dot(s.velocity, s.velocity) + 0.5 * inertia[e] * dot(s.spin, s.spin);
+    const Vec3 spin = kick.between(s.spin, next.spin);
+    return 0.5 * kick.mass[e] * dot(velocity, velocity) + 0.5 * kick.inertia[e] * dot(spin, spin);
   }
   BR_HD Readings operator()(Index i) const {
     const Index e = members.size > 0 ? members[i] : i;
@@ -221,11 +223,10 @@ Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
   const Quantity quantity = quantity_named(p.quantity).quantity;
   Buffer<double> lost(w.exec.space);
   if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
-  return fold(
-      w.exec, p.on.empty() ? e.size() : members.size, Readings{},
-      ReadProbe{w.domain.owned_view(), quantity, members, e.id.view(), e.state.view(),
-                e.force.view(), e.mass.view(), e.inertia.view(), std::as_const(lost).view()},
-      Sum{});
+  return fold(w.exec, p.on.empty() ? e.size() : members.size, Readings{},
+              ReadProbe{w.domain.owned_view(), quantity, members, e.id.view(), kick(w),
+                        std::as_const(lost).view()},
+              Sum{});
 }
 
 }  // namespace

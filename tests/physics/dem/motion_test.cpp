@@ -28,6 +28,12 @@ TEST(Motion, free_flight_is_exact) {
   EXPECT_NEAR(state(w, 0).position.x, 1.0 + t, 1e-12);
   EXPECT_NEAR(state(w, 0).position.z, 3.0 + 5.0 * t - 0.5 * 9.81 * t * t, 1e-11);
   EXPECT_LT(balance(w).error_relative, 1e-8);  // the first half step, of order dt^2
+  // Probes read velocities at the time of the positions, not half a step before.
+  const double mass = w.elements.mass.data()[0], vz = 5.0 - 9.81 * t;
+  EXPECT_NEAR(probe(w, {"", "", "velocity_z", "mean"}), vz, 1e-11);
+  EXPECT_NEAR(probe(w, {"", "", "momentum_z", "sum"}), mass * vz, 1e-11 * mass);
+  EXPECT_NEAR(probe(w, {"", "", "speed", "max"}), std::sqrt(5.0 + vz * vz), 1e-11);
+  EXPECT_NEAR(probe(w, {"", "", "kinetic", "sum"}), 0.5 * mass * (5.0 + vz * vz), 1e-10 * mass);
 }
 
 TEST(Motion, a_sliding_sphere_ends_rolling_at_five_sevenths_of_its_speed) {
