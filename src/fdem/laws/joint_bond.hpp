@@ -54,7 +54,7 @@ struct JointBond {
 /// How the rock failed at a joint (laws/rock_failure.hpp). none: it has not.
 enum class Failure : std::uint8_t { none, torn, sheared };
 
-/// What an integration point keeps. The last four are those of failure with the rock, 0 before: a
+/// What an integration point keeps. The last five are those of failure with the rock, 0 before: a
 /// joint may have softened by then, so that they do not follow from its law and the others.
 template <class R>
 struct BondState {
@@ -65,6 +65,7 @@ struct BondState {
   R shear;    ///< torn: tau_0, what it carried; sheared: c_0, without friction  [Pa]
   R opened;   ///< torn: its opening then, o_0  [m]
   R slid;     ///< torn: its |slip| then, s_0  [m]; sheared: |slip| of yield over strength  [m/Pa]
+  R stuck;    ///< torn: slip at which its friction pulls with nothing  [m]
 };
 BR_HD inline Failure failure_of(const BondState<double>& state) {
   return state.normal > 0.0 ? Failure::torn : state.shear > 0.0 ? Failure::sheared : Failure::none;

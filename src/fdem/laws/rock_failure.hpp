@@ -105,9 +105,11 @@ BR_HD inline void fail(const JointBond& law, double strength, double h, Failure 
   if (how == Failure::torn) {
     // No less than a hundredth of f_t, so that nothing is divided by zero.
     const double least = 0.01 * law.tension * strength;
-    const double rubbing = pressure * (z * law.friction + (1.0 - z) * law.residual);
+    const double most = pressure * (z * law.friction + (1.0 - z) * law.residual);
+    const double rubs = smaller(most, shear);
     state.normal = larger(carried.normal / z, least);
-    state.shear = larger(0.0, shear - smaller(rubbing, slid / unit)) / z;
+    state.shear = (shear - rubs) / z;
+    state.stuck = slip - copysign(rubs * unit, slip);
     state.opening = state.opened = larger(opening, unit * least);
     state.slip = state.slid = larger(slid, 1e-4 * unit * least);
     return;
@@ -121,9 +123,14 @@ BR_HD inline void fail(const JointBond& law, double strength, double h, Failure 
   state.slip = 0.0;
 }
 
-/// Torn (above). Pressed again it rubs by phi, fading to phi_r.
-BR_HD inline BondTraction<double> torn_answer(const JointBond& law, double h, double opening,
-                                              double slip, BondState<double>& state) {
+/// Torn (above). Pressed again it rubs by phi, fading to phi_r, on a spring of its stiffness that
+/// sticks and slips: a friction that only followed |s| would give energy whenever pressure and slip
+/// take turns.
+struct TornTraction {
+  double normal, kept, rubbing;  ///< the last two along the slip  [Pa]
+};
+BR_HD inline TornTraction torn_traction(const JointBond& law, double h, double opening, double slip,
+                                        BondState<double>& state) {
   const double slid = absolute(slip), slope = law.stiffness / h;
   const double open = larger(0.0, opening - state.opened), slide = larger(0.0, slid - state.slid);
   const double per_length = law.tension / law.softening_open;  // 1/o_t
@@ -131,10 +138,13 @@ BR_HD inline BondTraction<double> torn_answer(const JointBond& law, double h, do
   state.opening = larger(state.opening, opening);
   state.slip = larger(state.slip, slid);
   const double z = softening(state.damage), pressure = slope * smaller(0.0, opening);
-  const double rubbing = -pressure * (z * law.friction + (1.0 - z) * law.residual);
-  const double kept = z * state.shear * smaller(1.0, slid / state.slip);
-  return {opening < 0.0 ? pressure : z * state.normal * smaller(1.0, opening / state.opening),
-          copysign(kept + smaller(rubbing, slope * slid), slip)};
+  const double most = -pressure * (z * law.friction + (1.0 - z) * law.residual);
+  TornTraction t{};
+  t.normal = opening < 0.0 ? pressure : z * state.normal * smaller(1.0, opening / state.opening);
+  t.kept = copysign(z * state.shear * smaller(1.0, slid / state.slip), slip);
+  t.rubbing = larger(-most, smaller(most, slope * (slip - state.stuck)));
+  state.stuck = slip - t.rubbing / slope;
+  return t;
 }
 
 /// Sheared (above).
@@ -165,8 +175,10 @@ BR_HD inline BondTraction<double> sheared_answer(const JointBond& law, double st
 BR_HD inline BondTraction<double> answer(const JointBond& law, double strength, double h,
                                          double opening, double slip, BondState<double>& state) {
   switch (failure_of(state)) {
-    case Failure::torn:
-      return torn_answer(law, h, opening, slip, state);
+    case Failure::torn: {
+      const TornTraction t = torn_traction(law, h, opening, slip, state);
+      return {t.normal, t.kept + t.rubbing};
+    }
     case Failure::sheared:
       return sheared_answer(law, strength, h, opening, slip, state);
     case Failure::none:
@@ -181,6 +193,11 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
   if (failure_of(state) == Failure::none)
     return edge_stored(law, strength, h, opening, slip, state);
   BondState<double> same = state;
+  if (failure_of(state) == Failure::torn) {
+    const TornTraction t = torn_traction(law, h, opening, slip, same);
+    return {0.5 * t.normal * opening,
+            0.5 * t.kept * slip + 0.5 * t.rubbing * t.rubbing * h / law.stiffness};
+  }
   const BondTraction<double> t = answer(law, strength, h, opening, slip, same);
   return {0.5 * t.normal * opening, 0.5 * t.shear * slip};
 }
