@@ -135,7 +135,7 @@ void forge_each(const Make& make, const std::vector<Field>& fields,
     method->save(writer);
     writer.write(good);
   }
-  const auto load = [&](const CheckpointReader& reader) { make()->load(reader); };
+  const auto load = [&](const CheckpointReader& reader) { make()->load(&reader); };
   EXPECT_NO_THROW(load(CheckpointReader(good)));
   for (const Field& f : fields) expect_refusals(good, bad, f.name, f.width, load);
   for (const char* name : sized) {
@@ -147,7 +147,7 @@ void forge_each(const Make& make, const std::vector<Field>& fields,
 TEST(Forged, dem_checkpoints_are_refused) {
   const dem::Config config = dem_case();
   const dem::Model model = build_model(config, "");
-  forge_each([&] { return make_dem_method(config, model, Exec{}, nullptr); },
+  forge_each([&] { return make_method(config, model, Exec{}, nullptr); },
              {{"elements.id", 4},
               {"elements.group", 2},
               {"elements.material", 2},
@@ -173,7 +173,7 @@ TEST(Forged, fdem_checkpoints_are_refused) {
   const auto config = read_case<fdem::Config>(fdem_text, {});
   const fdem::Model model = build_fdem_model(config.bodies, config.discontinuities,
                                              {{"rock"}, {"vein"}}, config.seed, "");
-  forge_each([&] { return make_fdem_method(config, model, Exec{}, nullptr); },
+  forge_each([&] { return make_method(config, model, Exec{}, nullptr); },
              {{"triangles.id", 4},
               {"triangles.group", 2},
               {"triangles.material", 4},
