@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "exec/error.hpp"
 #include "fdem/energy.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
@@ -18,9 +19,14 @@ struct Loose {
   Buffer<T>& array;
   template <class Visit>
   void each_field(Visit&& field) {
+    const Index built = array.size();
     field(name, "SI", array);
+    if (array.size() != built)
+      throw CheckpointError(std::string("the checkpoint's section ") + name +
+                            " is not as long as the case's");
   }
 };
+
 struct FdemSim {
   using World = fdem::World;
   /// Where a joint lay at the start.
