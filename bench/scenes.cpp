@@ -83,6 +83,7 @@ fdem::Config granite() {
   fdem::Config config;
   config.method = "fdem2d";
   config.time.evaluate_every = 100;
+  config.joints.criterion = "edge";
   fdem::MaterialConfig rock;
   rock.name = "rock";
   rock.damping = 0.1;

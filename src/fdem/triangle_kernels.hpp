@@ -354,7 +354,7 @@ struct EdgeDashpots {
 };
 
 /// The stable step of a triangle by Gershgorin's bound: every eigenfrequency is at most the largest
-/// sum of a row's |stiffness| over its mass (docs/theory.md, time step).
+/// sum of a row's |stiffness| over its mass (docs/theory-fdem.md, 5).
 struct StableStep {
   View<const TriangleNodes> nodes;
   View<const Index> material;

@@ -29,7 +29,7 @@ BR_HD Deformation<R> deformation(const Mat2Of<R>& shape_inverse, const Vec2Of<R>
   return d;
 }
 
-/// Compressible neo-Hookean solid with viscous damping (docs/theory.md, triangles):
+/// Compressible neo-Hookean solid with viscous damping (docs/theory-fdem.md, 1):
 ///
 ///   sigma = (mu / J) (B - I) + (lambda / 2) (J - 1 / J) I + F S_0 F^T / J + eta D
 ///
