@@ -39,6 +39,7 @@ std::string model_digest(Config config) {
   config.output = {};
   config.checkpoint = {};
   config.domain = {};
+  config.energy = {};
   config.probes.clear();
   config.checks.clear();
   return case_digest(completed_case(config));

@@ -24,13 +24,14 @@ namespace {
 
 /// A run that goes on may end, save and draw differently; all else belongs to its states.
 void refuse_fixed_keys(const std::vector<std::string>& overrides) {
-  constexpr std::array changeable{"time.end=", "output.", "checkpoint.", "domain.", "title="};
+  constexpr std::array changeable{"time.end=", "output.", "checkpoint.",
+                                  "domain.",   "energy.", "title="};
   for (const std::string& text : overrides)
     if (std::none_of(changeable.begin(), changeable.end(),
                      [&](const char* start) { return text.starts_with(start); }))
       throw InputError(
           fmt::format("--set {}: a run that goes on takes time.end, output.*, checkpoint.*, "
-                      "domain.* and title only; nothing was run",
+                      "domain.*, energy.* and title only; nothing was run",
                       text));
 }
 

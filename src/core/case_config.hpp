@@ -71,6 +71,22 @@ struct CheckpointConfig {
   }
 };
 
+/// [energy]: what may be missing before a run is no result; no key of it changes a bit of the
+/// states
+struct EnergyConfig {
+  double warn = 1e-3;  ///< of the largest energy or work so far  [-]
+  double stop = 1e-2;  ///< likewise  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("warn", warn, "-", not_negative,
+        "error_relative, what is missing over the largest energy or work so far, above which 25 "
+        "rows of history.csv in succession are a warning; 0 switches it off");
+    key("stop", stop, "-", not_negative,
+        "the same above which they, or the end of the case, are exit code 4; 0 switches it off");
+  }
+};
+
 /// [domain]: how a case is shared out among ranks; no key of it changes a bit of the results
 struct DomainConfig {
   bool balance = true;
@@ -147,6 +163,7 @@ struct CaseConfig {
   OutputConfig output;
   CheckpointConfig checkpoint;
   DomainConfig domain;
+  EnergyConfig energy;
   std::vector<ProbeConfig> probes;
   std::vector<CheckConfig> checks;
 
@@ -165,6 +182,7 @@ struct CaseConfig {
     key.table("output", output, "what is written, how often");
     key.table("checkpoint", checkpoint, "when the state is saved");
     key.table("domain", domain, "how ranks share the work; never changes a result");
+    key.table("energy", energy, "when energies that do not add up are a warning, and when an end");
     key.list("probe", probes, "columns of history.csv");
     key.list("check", checks, "numbers the case must show");
   }

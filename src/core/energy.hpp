@@ -1,6 +1,7 @@
 #pragma once
 // The ledger: where every joule is. Sums are exact, so their order cannot matter.
 
+#include <cmath>
 #include <cstdint>
 
 #include "exec/types.hpp"
@@ -9,9 +10,12 @@ namespace breccia {
 
 /// A sum of doubles in fixed point, 128 bit with a quantum of 2^-64: each term is rounded once, by
 /// itself, so the sum is the same for any order, thread count, rank count and device.
-/// Holds |sum| < 2^63 of the unit, to 5e-20.
+/// Holds |sum| < 2^63 of the unit, to 5e-20. A term that is beyond that, or no number, makes the
+/// sum infinite for good, in whatever order it comes.
 class ExactSum {
   __extension__ using Quanta = unsigned __int128;
+  static constexpr Quanta overflown = static_cast<Quanta>(1) << 127;
+  static constexpr double limit = 9223372036854775808.0;  // 2^63
 
  public:
   ExactSum() = default;
@@ -19,6 +23,10 @@ class ExactSum {
 
   BR_HD void add(double value) {
     const double scaled_high = value < 0.0 ? -value : value;
+    if (!(scaled_high < limit) || quanta_ == overflown) {
+      quanta_ = overflown;
+      return;
+    }
     const double whole = static_cast<double>(static_cast<std::int64_t>(scaled_high));
     const double fraction = (scaled_high - whole) * 18446744073709551616.0;  // 2^64
     Quanta quanta = static_cast<Quanta>(static_cast<std::uint64_t>(whole)) << 64;
@@ -28,9 +36,13 @@ class ExactSum {
     else
       quanta_ += quanta;
   }
-  BR_HD void add(const ExactSum& other) { quanta_ += other.quanta_; }
+  BR_HD void add(const ExactSum& other) {
+    const bool lost = quanta_ == overflown || other.quanta_ == overflown;
+    quanta_ = lost ? overflown : quanta_ + other.quanta_;
+  }
 
   BR_HD double value() const {
+    if (quanta_ == overflown) return INFINITY;
     const bool negative = (quanta_ >> 127) != 0;
     const Quanta size = negative ? -quanta_ : quanta_;
     const double high = static_cast<double>(static_cast<std::uint64_t>(size >> 64));

@@ -46,13 +46,13 @@ struct MaterialConfig {
     key("law", law, OneOf{"concrete", "steel", "interface", "grain"},
         "concrete: cohesive links; steel: bars; interface: between bars and concrete; grain: "
         "contacts only");
-    key("density", density, "kg/m3", positive, "mass per volume of the bulk material");
-    key("young", young, "Pa", positive, "Young's modulus of the bulk material");
+    key("density", density, "kg/m3", Range{10.0, 1e6}, "mass per volume of the bulk material");
+    key("young", young, "Pa", Range{1e3, 1e13}, "Young's modulus of the bulk material");
     key("poisson", poisson, "-", Range{-1.0, 0.5, Open::both},
         "Poisson's ratio of the bulk material; links need at most 1 / alpha");
-    key("tensile_strength", tensile_strength, "Pa", not_negative,
+    key("tensile_strength", tensile_strength, "Pa", Range{0.0, 1e15},
         "local tensile strength T of a link");
-    key("cohesion", cohesion, "Pa", not_negative, "local cohesion C of a link");
+    key("cohesion", cohesion, "Pa", Range{0.0, 1e15}, "local cohesion C of a link");
     key("softening", softening, "-", not_negative,
         "zeta, initial stiffness over softening stiffness in tension; 0 is brittle");
     key("friction_angle", friction_angle, "rad", Range{0.0, 1.5707, Open::high},
@@ -84,13 +84,14 @@ struct MaterialConfig {
     key("beta", beta, "-", positive, "macro-micro constant of the stiffness");
     key("gamma", gamma, "-", positive, "macro-micro constant of the stiffness");
     key("shear", shear, OneOf{"plastic", "brittle"}, "what a link does at its shear strength");
-    key("yield", yield, "Pa", positive, "yield stress of steel");
-    key("hardening", hardening, "Pa", not_negative, "plastic hardening modulus of steel");
+    key("yield", yield, "Pa", Range{0.0, 1e15, Open::low}, "yield stress of steel");
+    key("hardening", hardening, "Pa", Range{0.0, 1e15}, "plastic hardening modulus of steel");
     key("failure_strain", failure_strain, "-", positive, "plastic strain at which steel ruptures");
     key("bond", bond, OneOf{"perfect", "plastic", "mc90"},
         "bond-slip law: no limit, constant limit, or the curve of the CEB-FIP Model Code 1990");
-    key("bond_strength", bond_strength, "Pa", not_negative, "largest bond stress tau_max");
-    key("bond_residual", bond_residual, "Pa", not_negative, "bond stress after slip3, mc90 only");
+    key("bond_strength", bond_strength, "Pa", Range{0.0, 1e15}, "largest bond stress tau_max");
+    key("bond_residual", bond_residual, "Pa", Range{0.0, 1e15},
+        "bond stress after slip3, mc90 only");
     key("slip1", slip1, "m", positive, "slip at which tau_max is reached, mc90 only");
     key("slip2", slip2, "m", positive, "slip at which the bond starts to fall, mc90 only");
     key("slip3", slip3, "m", positive, "slip at which the bond is residual, mc90 only");
@@ -172,8 +173,8 @@ struct BodyConfig {
     key("length", length, "m", not_negative, "length of a cylinder, along z");
     key.table("pack", pack, "the packing of a box, sphere or cylinder");
     key.table("rebar", rebar, "the mats of bars of a rebar body");
-    key("velocity", velocity, "m/s", any_number, "velocity at the start");
-    key("spin", spin, "rad/s", any_number,
+    key("velocity", velocity, "m/s", Range{-1e6, 1e6}, "velocity at the start");
+    key("spin", spin, "rad/s", Range{-1e6, 1e6},
         "angular velocity of the body about its centre at the start");
     key("file", file, "CSV file of x,y,z,radius in metres, beside the case file");
     key("volume", volume, "m3", not_negative,
@@ -239,7 +240,7 @@ struct WallConfig {
     key.required("name");
     key("point", point, "m", any_number, "a point of the wall's face");
     key("normal", normal, "-", any_number, "direction out of the wall, towards the elements");
-    key("velocity", velocity, "m/s", any_number, "velocity of the wall");
+    key("velocity", velocity, "m/s", Range{-1e6, 1e6}, "velocity of the wall");
     key("stiffness", stiffness, "-", positive,
         "stiffness of its linear contacts over that of two like elements");
   }
@@ -264,7 +265,8 @@ struct SupportConfig {
     key("fix", fix,
         "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
         "that share elements prescribe other directions, or the same motion");
-    key("velocity", velocity, "m/s", any_number, "prescribed velocity of the fixed directions");
+    key("velocity", velocity, "m/s", Range{-1e6, 1e6},
+        "prescribed velocity of the fixed directions");
     key("ramp", ramp, "s", not_negative,
         "time in which that velocity grows from zero, linearly; 0: the elements have it from the "
         "start");
@@ -301,7 +303,7 @@ struct Config : CaseConfig {
   template <class Visit>
   void each_key(Visit&& key) {
     CaseConfig::each_key(key);
-    key("gravity", gravity, "m/s2", any_number, "acceleration of gravity");
+    key("gravity", gravity, "m/s2", Range{-1e6, 1e6}, "acceleration of gravity");
     key("local_damping", local_damping, "-", Range{0.0, 1.0, Open::high},
         "share of each force that opposes motion (Cundall), for quasi-static runs only");
     key.named("material", materials, "the materials");

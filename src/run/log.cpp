@@ -42,6 +42,11 @@ void Log::write(Level level, const std::string& stage, std::int64_t step,
   if (echo_ != nullptr) std::fputs(fmt::format("  {}: {}\n", stage, message).c_str(), echo_);
 }
 
+void Log::warn(const std::string& stage, std::int64_t step, const std::string& message) {
+  write(Level::warning, stage, step, message);
+  std::fputs(fmt::format("warning: step {}: {}\n", step, message).c_str(), stderr);
+}
+
 void Log::cut_to(const std::string& path, std::int64_t step) {
   keep_lines(path, [step](std::string_view line) {
     const auto parsed = nlohmann::json::parse(line, nullptr, false);

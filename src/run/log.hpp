@@ -22,6 +22,8 @@ class Log {
 
   /// @param stage  "setup", "step", "frame", "checkpoint", "end"
   void write(Level level, const std::string& stage, std::int64_t step, const std::string& message);
+  /// And tells people of it, whether messages are repeated for them or not.
+  void warn(const std::string& stage, std::int64_t step, const std::string& message);
   void sync() { file_.sync(); }
 
  private:

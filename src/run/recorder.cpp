@@ -70,6 +70,7 @@ void RecordState::save(CheckpointWriter& writer) const {
   writer.value("run.frame_time", frame_time);
   writer.value("run.frames", frames);
   if (extent) writer.value("run.extent", *extent);
+  writer.value("run.unbalanced", unbalanced);
   std::vector<double> ranges;
   for (const ProbeRange& probe : probes)
     ranges.insert(ranges.end(), {probe.last, probe.min, probe.max});
@@ -82,6 +83,7 @@ void RecordState::load(const CheckpointReader& reader) {
   frame_time = reader.value<double>("run.frame_time");
   frames = reader.value<std::int64_t>("run.frames");
   if (reader.has("run.extent")) extent = reader.value<Extent>("run.extent");
+  if (reader.has("run.unbalanced")) unbalanced = reader.value<EnergyWatch::Rows>("run.unbalanced");
   const CheckpointReader::Section& ranges = reader.section("run.probes", sizeof(double));
   probes.resize(ranges.count / 3);
   for (std::size_t i = 0; i < probes.size(); ++i) {
@@ -95,12 +97,17 @@ void RecordState::load(const CheckpointReader& reader) {
 }
 
 Recorder::Recorder(const CaseConfig& config, Communicator* ranks)
-    : config_(config), ranks_(ranks), rows_(row_schedule(config)), frames_(frame_schedule(config)) {
+    : config_(config),
+      ranks_(ranks),
+      rows_(row_schedule(config)),
+      frames_(frame_schedule(config)),
+      watch_(config.energy) {
   for (const ProbeConfig& probe : config_.probes) state_.probes.push_back(fresh_range(probe.name));
 }
 
 void Recorder::resume(const RecordState& state, double time) {
   state_ = state;
+  watch_ = EnergyWatch(config_.energy, state.unbalanced);
   state_.probes.resize(config_.probes.size());
   for (std::size_t i = 0; i < config_.probes.size(); ++i)
     state_.probes[i].name = config_.probes[i].name;
@@ -129,6 +136,15 @@ void Recorder::record(Method& method, Background& background) {
   const double time = method.time();
   if (time >= rows_.next()) {
     write_row(method);
+    on_first(ranks_, [&] {
+      if (watch_.look(*last_energy_, method.steps(), time))
+        log_->warn(
+            "step", method.steps(),
+            fmt::format("energies do not add up: error_relative has been above {} for {} rows, "
+                        "and is {:.2g}",
+                        config_.energy.warn, EnergyWatch::patience, last_energy_->error_relative));
+      state_.unbalanced = watch_.rows();
+    });
     rows_.pass(time);
     state_.row_step = method.steps();
   }
@@ -145,6 +161,12 @@ void Recorder::record_last(Method& method, Background& background) {
   if (state_.row_step != method.steps()) write_row(method);
   if (wants_frames() && config_.output.frames > 0 && state_.frame_step != method.steps())
     write_frame(method, background);
+}
+
+void Recorder::judge_end(const Method& method) const {
+  on_first(ranks_, [&] {
+    if (last_energy_) watch_.judge_end(*last_energy_, method.steps(), method.time());
+  });
 }
 
 void Recorder::sync() {

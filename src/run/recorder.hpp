@@ -11,6 +11,7 @@
 #include "io/paraview.hpp"
 #include "io/picture.hpp"
 #include "run/background.hpp"
+#include "run/energy_watch.hpp"
 #include "run/history.hpp"
 #include "run/log.hpp"
 #include "run/method.hpp"
@@ -44,6 +45,7 @@ struct RecordState {
   std::int64_t frames = 0;         ///< in the folder, that the schedule asked for
   std::optional<Extent> extent;    ///< of the pictures, from the first frame  [m]
   std::vector<ProbeRange> probes;  ///< over the rows that the schedule asked for
+  EnergyWatch::Rows unbalanced;    ///< likewise
 
   void save(CheckpointWriter& writer) const;
   void load(const CheckpointReader& reader);
@@ -69,6 +71,8 @@ class Recorder {
   void record(Method& method, Background& background);
   /// Writes a row and a frame of the last state, if the schedule did not ask for them.
   void record_last(Method& method, Background& background);
+  /// At the end of a case. @throws NumericsError if its energies do not add up
+  void judge_end(const Method& method) const;
   /// Brings all files up to what was recorded. The background must have finished.
   void sync();
 
@@ -96,6 +100,7 @@ class Recorder {
   std::int64_t frame_count_ = 0;
   bool resumed_ = false;
   std::optional<EnergyBalance> last_energy_;
+  EnergyWatch watch_;
 };
 
 }  // namespace breccia

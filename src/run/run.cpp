@@ -304,6 +304,7 @@ int Run::done() {
         replace_durably(folder_->file(table.name + ".csv"), to_csv(table));
     });
   }
+  if (method_.time() >= plan_.config.time.end) recorder_.judge_end(method_);
   Summary now = summary();
   if (!now.energy) now.energy = method_.energy();  // resumed at its end: no row was written
   on_first(plan_.ranks, [&] { conclude(now); });
@@ -359,6 +360,7 @@ void Run::failed(int exit_code, const std::string& message) {
       if (of_all) {
         describe_state(now);
         now.energy = method_.energy();
+        if (!is_finite(*now.energy)) now.energy.reset();
       }
     } catch (const Error&) {
       // Numbers that went wrong may have no energy; the summary then leaves it out.

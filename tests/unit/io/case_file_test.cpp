@@ -229,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"young = \"30 GPa\"", "young = \"30 GN\"",
               "material.c30.young: \"30 GN\" is a force, a pressure is wanted, in Pa"},
         Wrong{"young = \"30 GPa\"", "density = 0.0",
-              "line 5, material.c30.density = 0 is outside > 0"},
+              "line 5, material.c30.density = 0 is outside [10, 1000000]"},
         Wrong{"young = \"30 GPa\"", "poisson = 0.5",
               "material.c30.poisson = 0.5 is outside (-1, 0.5)"},
         Wrong{"young = \"30 GPa\"", "poisson = 0.3", "above 1 / alpha"},

@@ -1,0 +1,45 @@
+#pragma once
+// A run whose energies do not add up is no result.
+
+#include <cstdint>
+#include <string>
+
+#include "core/case_config.hpp"
+#include "core/energy.hpp"
+
+namespace breccia {
+
+/// Judges the rows of the history by their error_relative: what is missing over the largest energy
+/// or work so far. A row alone says nothing: at the start of a load both are as small as what the
+/// scheme rounds (15 % of 4e-10 J in the first row of a bending test that ends at 1 J), and such an
+/// error fades. One that stays for `patience` rows, a fortieth of the usual 1000, or to the end of
+/// the case, does not.
+class EnergyWatch {
+ public:
+  static constexpr std::int64_t patience = 25;  ///< rows
+
+  /// Rows in succession above a limit; part of the record's state.
+  struct Rows {
+    std::int64_t above_warn = 0, above_stop = 0;
+  };
+
+  explicit EnergyWatch(const EnergyConfig& limits) : limits_(limits) {}
+  EnergyWatch(const EnergyConfig& limits, const Rows& rows) : limits_(limits), rows_(rows) {}
+
+  /// Whether a row calls for a warning. @throws NumericsError if the run must end, or if an energy
+  /// is too large to be summed
+  bool look(const EnergyBalance& energy, std::int64_t step, double time);
+  /// The same at the end of a case, where one row is enough.
+  void judge_end(const EnergyBalance& energy, std::int64_t step, double time) const;
+
+  const Rows& rows() const { return rows_; }
+
+ private:
+  EnergyConfig limits_;
+  Rows rows_;
+};
+
+/// Whether all of them are numbers.
+bool is_finite(const EnergyBalance& energy);
+
+}  // namespace breccia

@@ -1,0 +1,61 @@
+#include "run/energy_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+EnergyBalance with_error(double error) {
+  EnergyBalance energy;
+  energy.work = 1.0;
+  energy.kinetic = 1.0 + error;
+  energy.error_relative = error;
+  return energy;
+}
+
+TEST(EnergyWatch, an_error_that_fades_after_the_start_is_no_fault) {
+  EnergyWatch watch(EnergyConfig{});
+  for (int row = 0; row < 1000; ++row)
+    EXPECT_FALSE(watch.look(with_error(row < 24 ? 0.5 : 1e-4), row, 0.0));
+  EXPECT_NO_THROW(watch.judge_end(with_error(1e-4), 1000, 1.0));
+}
+
+TEST(EnergyWatch, an_error_that_stays_is_a_warning_and_then_an_end) {
+  EnergyWatch watch(EnergyConfig{});
+  int warnings = 0;
+  for (int row = 0; row < 100; ++row) warnings += watch.look(with_error(2e-3), row, 0.0);
+  EXPECT_EQ(warnings, 1);
+  for (int row = 0; row < 24; ++row) watch.look(with_error(0.02), row, 0.0);
+  try {
+    watch.look(with_error(0.02), 777, 0.5);
+    FAIL() << "it goes on";
+  } catch (const NumericsError& error) {
+    const std::string told = error.what();
+    EXPECT_TRUE(told.starts_with("step 777, t = 5.000000e-01 s: 0.02 J of 1 J are missing"))
+        << told;
+  }
+}
+
+TEST(EnergyWatch, the_end_of_a_case_is_judged_by_its_last_row) {
+  const EnergyWatch watch(EnergyConfig{});
+  EXPECT_NO_THROW(watch.judge_end(with_error(0.009), 9, 1.0));
+  EXPECT_THROW(watch.judge_end(with_error(0.011), 9, 1.0), NumericsError);
+}
+
+TEST(EnergyWatch, limits_of_zero_switch_it_off) {
+  EnergyWatch watch(EnergyConfig{0.0, 0.0});
+  for (int row = 0; row < 100; ++row) EXPECT_FALSE(watch.look(with_error(0.5), row, 0.0));
+  EXPECT_NO_THROW(watch.judge_end(with_error(0.5), 9, 1.0));
+}
+
+TEST(EnergyWatch, what_cannot_be_summed_ends_the_run_at_once) {
+  EnergyWatch watch(EnergyConfig{0.0, 0.0});
+  EnergyBalance energy = with_error(0.0);
+  energy.fracture = ExactSum(1e300).value();
+  EXPECT_THROW(watch.look(energy, 1, 0.0), NumericsError);
+}
+
+}  // namespace
+}  // namespace breccia
