@@ -148,6 +148,25 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
   return completed(std::move(read));
 }
 
+std::vector<std::string> scripts_of(const Case& read) {
+  std::vector<std::string> files;
+  const auto* const config = std::get_if<fdem::Config>(&read.config);
+  if (config == nullptr || read.model) return files;
+  for (const fdem::BodyConfig& body : config->bodies)
+    if (body.shape == "geo") files.push_back(body.file);
+  return files;
+}
+
+void refuse_scripts(const Case& read) {
+  const std::vector<std::string> files = scripts_of(read);
+  if (files.empty()) return;
+  throw InputError(fmt::format(
+      "{}: gmsh runs .geo files ({}), which may write files and start programs; nothing was run\n"
+      "  --allow-scripts lets it, for cases you trust; a mesh of it needs no program: gmsh -2 "
+      "-format msh41 {}, then shape = \"mesh\"",
+      read.name, fmt::join(files, ", "), files.front()));
+}
+
 void take_prepared(Case& read, const std::string& path) {
   const CheckpointReader reader(path);
   if (!holds_model(reader) ||

@@ -43,6 +43,16 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
 /// @throws InputError or IoError with every problem at once
 void check_files(const Case& read);
 
+/// The files of a case that are programs: gmsh runs a .geo file, which may write files and start
+/// others. None if the model was prepared.
+std::vector<std::string> scripts_of(const Case& read);
+/// What `--allow-scripts` says, in the help of the commands that build models.
+inline constexpr const char* allow_scripts_help =
+    "let gmsh run the .geo files of the case, which may do whatever you may; only for cases you "
+    "trust";
+/// @throws InputError naming them
+void refuse_scripts(const Case& read);
+
 /// Takes the model of a case from where it was prepared.
 /// @throws InputError if the file holds the model of another case, IoError if it cannot be read,
 /// CheckpointError if it is damaged

@@ -38,6 +38,9 @@ struct CheckCommand {
                          counted(config.materials.size(), "material", "materials"),
                          time_text(config.time.end));
               if (plan.items > 0.0) fmt::print(", about {} of memory", memory_text(plan.run_bytes));
+              if (const auto files = scripts_of(read); !files.empty())
+                fmt::print(", needs --allow-scripts for {}",
+                           harmless(fmt::format("{}", fmt::join(files, ", "))));
               fmt::print("\n");
             },
             read.config);

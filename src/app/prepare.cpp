@@ -16,9 +16,11 @@ namespace {
 struct PrepareCommand {
   std::string path, file;
   std::vector<std::string> overrides;
+  bool allow_scripts = false;
 
   void execute() const {
     const Case read = load_case(path, overrides);
+    if (!allow_scripts) refuse_scripts(read);
     const std::string target = file.empty() ? read.name + ".br" : file;
     CheckpointWriter writer;
     writer.text("case.name", read.name);
@@ -45,6 +47,7 @@ void add_prepare(CLI::App& program) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
+  command->add_flag("--allow-scripts", prepare->allow_scripts, allow_scripts_help);
   command->callback([prepare] { prepare->execute(); });
 }
 

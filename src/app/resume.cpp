@@ -74,6 +74,7 @@ struct ResumeCommand {
       read.name = checkpoint->text("run.case_name");
       read.folder = checkpoint->text("run.case_folder");
       take_what_was_prepared(read, *checkpoint, warn);
+      if (!options.allow_scripts) refuse_scripts(read);
       plan = plan_of(read, options, exec, ranks);
       plan.begin = begin;
       refuse_other_case(*checkpoint, plan);

@@ -32,6 +32,7 @@ struct RunCommand {
       exec = exec_of(options, ranks);
       exec.timers = &timers;
       read = load_case(path, options.overrides);
+      if (!options.allow_scripts) refuse_scripts(read);
       out = folder.empty() ? "out/" + read.name : folder;
       if (leads(ranks)) ResultFolder::check_free(out, existing);
     });

@@ -48,6 +48,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
+  command.add_flag("--allow-scripts", options.allow_scripts, allow_scripts_help);
   CLI::Option* const quiet =
       command.add_flag("-q,--quiet", options.quiet, "say nothing but errors");
   command.add_flag("-v,--verbose", options.verbose, "tell of each frame and checkpoint")

@@ -79,6 +79,37 @@ TEST_F(ProgramAndFiles, nothing_is_written_through_links_that_wait_in_the_folder
   EXPECT_EQ(read_whole_file(precious), "precious");
 }
 
+TEST_F(ProgramAndFiles, a_script_of_a_case_runs_only_where_that_is_allowed) {
+  replace_file(path("plate.geo"), "SystemCall \"touch " + path("made") + "\";\n" + R"(
+SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 0, 0, 1, 1};
+)");
+  replace_file(path("geo.toml"), R"(
+method = "fdem2d"
+time.end = 1e-9
+output.pictures = false
+material.rock.young = 1e10
+[[body]]
+name = "plate"
+shape = "geo"
+file = "plate.geo"
+material = "rock"
+mesh_size = 0.5
+)");
+  EXPECT_EQ(run("check " + path("geo.toml")), 0) << output();
+  EXPECT_TRUE(told("needs --allow-scripts for plate.geo")) << output();
+  EXPECT_EQ(run("run " + path("geo.toml") + " -o " + path("out")), 2);
+  EXPECT_TRUE(told("--allow-scripts")) << output();
+  EXPECT_EQ(run("prepare " + path("geo.toml") + " -o " + path("geo.br")), 2);
+  EXPECT_FALSE(fs::exists(path("made")));
+  EXPECT_EQ(run("prepare " + path("geo.toml") + " --allow-scripts -o " + path("geo.br")), 0)
+      << output();
+  EXPECT_TRUE(fs::exists(path("made")));
+  fs::remove(path("made"));
+  EXPECT_EQ(run("run " + path("geo.br") + " --steps 1 -o " + path("out")), 0) << output();
+  EXPECT_FALSE(fs::exists(path("made")));
+}
+
 TEST_F(ProgramAndFiles, what_a_killed_run_left_goes_when_it_is_resumed) {
   ASSERT_EQ(run("run " + path("ball.toml") + " --steps 5 -o " + path("out")), 0) << output();
   const std::string left = ".0123456789abcdef.tmp";
