@@ -193,9 +193,11 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
   return std::visit(
       [&](const auto& config) {
         decltype(model_of(read, config)) model;
-        together_or_not(ranks, [&] {
+        together_or_not(ranks, [&] {  // before any of them takes some
           const MemoryPlan plan = memory_plan(config);
           refuse_without_memory(plan, plan.run_bytes, ranks_on_this_machine(ranks));
+        });
+        together_or_not(ranks, [&] {
           model = model_of(read, config);
           if (exec.space == Space::cuda)
             plan_device(device_bytes(model) / (ranks == nullptr ? 1 : ranks->size()),

@@ -80,8 +80,11 @@ std::string range_text(const Range& range) {
   const bool open_low = range.open == Open::low || range.open == Open::both;
   const bool open_high = range.open == Open::high || range.open == Open::both;
   if (low && high) return "";
-  if (high) return (open_low ? "> " : ">= ") + number_text(range.low);
-  return (open_low || low ? "(" : "[") + number_text(range.low) + ", " + number_text(range.high) +
+  const auto bound = [](double x) {  // many zeros are hard to count
+    return std::abs(x) >= 1e7 && !std::isinf(x) ? fmt::format("{:g}", x) : number_text(x);
+  };
+  if (high) return (open_low ? "> " : ">= ") + bound(range.low);
+  return (open_low || low ? "(" : "[") + bound(range.low) + ", " + bound(range.high) +
          (open_high ? ")" : "]");
 }
 

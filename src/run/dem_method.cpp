@@ -1,6 +1,6 @@
 #include "run/dem_method.hpp"
 
-#include <array>
+#include <algorithm>
 
 #include "dem/energy.hpp"
 #include "dem/observe.hpp"

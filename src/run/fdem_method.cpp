@@ -1,7 +1,6 @@
 #include "run/fdem_method.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "exec/error.hpp"
 #include "fdem/energy.hpp"

@@ -163,10 +163,8 @@ void Recorder::record_last(Method& method, Background& background) {
     write_frame(method, background);
 }
 
-void Recorder::judge_end(const Method& method) const {
-  on_first(ranks_, [&] {
-    if (last_energy_) watch_.judge_end(*last_energy_, method.steps(), method.time());
-  });
+void Recorder::judge_end(const Method& method, const EnergyBalance& energy) const {
+  on_first(ranks_, [&] { watch_.judge_end(energy, method.steps(), method.time()); });
 }
 
 void Recorder::sync() {

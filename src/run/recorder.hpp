@@ -72,7 +72,7 @@ class Recorder {
   /// Writes a row and a frame of the last state, if the schedule did not ask for them.
   void record_last(Method& method, Background& background);
   /// At the end of a case. @throws NumericsError if its energies do not add up
-  void judge_end(const Method& method) const;
+  void judge_end(const Method& method, const EnergyBalance& energy) const;
   /// Brings all files up to what was recorded. The background must have finished.
   void sync();
 

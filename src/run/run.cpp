@@ -304,9 +304,9 @@ int Run::done() {
         replace_durably(folder_->file(table.name + ".csv"), to_csv(table));
     });
   }
-  if (method_.time() >= plan_.config.time.end) recorder_.judge_end(method_);
   Summary now = summary();
   if (!now.energy) now.energy = method_.energy();  // resumed at its end: no row was written
+  if (method_.time() >= plan_.config.time.end) recorder_.judge_end(method_, *now.energy);
   on_first(plan_.ranks, [&] { conclude(now); });
   return 0;
 }
@@ -362,8 +362,8 @@ void Run::failed(int exit_code, const std::string& message) {
         now.energy = method_.energy();
         if (!is_finite(*now.energy)) now.energy.reset();
       }
-    } catch (const Error&) {
-      // Numbers that went wrong may have no energy; the summary then leaves it out.
+    } catch (const std::exception&) {
+      // Numbers that went wrong, or no memory, may leave no energy: the summary then lacks it.
       if (!thrown_by_all(plan_.ranks)) throw;
     }
     now.status = "failed";

@@ -108,8 +108,8 @@ class SharedWorld {
   Advanced advance_to(const StopAt& stop) {
     if (ranks_ == nullptr) return advance(whole_, stop);
     Advanced taken;
+    stale_ = true;  // also of a state with wrong numbers
     at_once(ranks_, [&] { taken = advance_part(stop); });
-    stale_ = true;
     return taken;
   }
 

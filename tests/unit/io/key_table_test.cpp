@@ -26,7 +26,7 @@ TEST(Keys, each_is_listed_with_type_unit_default_range_and_meaning) {
   EXPECT_EQ(young->type, "number");
   EXPECT_EQ(young->unit, "Pa");
   EXPECT_EQ(std::stod(young->default_text), 30e9);
-  EXPECT_EQ(young->range, "> 0");
+  EXPECT_EQ(young->range, "[1000, 1e+13]");
   EXPECT_EQ(young->meaning, "Young's modulus of the bulk material");
   const KeyInfo* const shape = find(keys, "body[].shape");
   ASSERT_NE(shape, nullptr);
