@@ -46,7 +46,7 @@ void check_files(const Case& read);
 /// The files of a case that are programs: gmsh runs a .geo file, which may write files and start
 /// others. None if the model was prepared.
 std::vector<std::string> scripts_of(const Case& read);
-/// What `--allow-scripts` says, in the help of the commands that build models.
+/// The text of `--allow-scripts` in the help of the commands that build models.
 inline constexpr const char* allow_scripts_help =
     "let gmsh run the .geo files of the case, which may do whatever you may; only for cases you "
     "trust";

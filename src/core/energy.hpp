@@ -82,7 +82,7 @@ BR_HD inline Energies operator+(Energies a, const Energies& b) {
   return a;
 }
 
-/// What has been booked for good, and the start of the ledger  [J; in 2D J/m].
+/// Energies booked for good, and the start of the ledger  [J; in 2D J/m].
 struct Ledger {
   ExactSum friction, contact;  ///< of contacts that were dropped at a search
   ExactSum came_in;            ///< work of them; stored in joints when they were inserted
@@ -90,13 +90,13 @@ struct Ledger {
   double start = 0.0;          ///< kinetic and elastic energy at the start
   double largest = 0.0;        ///< largest sum of energies and work seen
 
-  /// What contacts have spent that are dropped.
+  /// Books the energies that dropped contacts have spent.
   void book(const Energies& spent) {
     friction.add(spent.friction);
     contact.add(spent.contact);
     came_in.add(spent.work);
   }
-  /// What another part of the model has booked.
+  /// Adds the bookings of another part of the model.
   void add(const Ledger& booked) {
     friction.add(booked.friction);
     contact.add(booked.contact);

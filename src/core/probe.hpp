@@ -1,5 +1,5 @@
 #pragma once
-// What probes find, whatever the method: sum and range over items of a quantity.
+// Readings of probes for both methods: sum and range of a quantity over items.
 
 #include <string>
 

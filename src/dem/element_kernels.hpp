@@ -261,7 +261,7 @@ struct Kick {
     prescribe(holds<R>(e, fixed_spin_y), still, r.spin.y, r.damped_torque.y);
     prescribe(holds<R>(e, fixed_spin_z), still, r.spin.z, r.damped_torque.z);
   }
-  /// What is held is not damped.
+  /// Local damping leaves held directions out.
   template <class R, class Truth>
   BR_HD static void prescribe(const Truth& held, const R& given, R& velocity, R& damped) {
     velocity = choose(held, given, velocity);

@@ -83,8 +83,9 @@ double least_here(const World& w) {
   return *std::min_element(least_of.begin(), least_of.end());
 }
 
-/// Sums the actions of links as they come. What another run's element, or one that an earlier run
-/// reaches too, gets as b is passed on: that element adds it up in the order of all links.
+/// Sums the actions of links as they come. A force on an element outside this thread's private
+/// range is stored in `passed`; its owner thread adds it later, in the order of all links, so that
+/// the sum does not depend on the number of threads.
 struct AddLinks {
   View<LinkSums> sums;
   Index settled, end;  ///< elements that get sums at once

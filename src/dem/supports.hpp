@@ -10,7 +10,7 @@ namespace breccia::dem {
 
 struct Config;
 
-/// What the supports of a case prescribe of each element.
+/// Directions and motions that the supports of a case prescribe, by element.
 struct Prescribed {
   std::vector<std::uint8_t> fixed;          ///< bits of Fixed  [-]
   std::vector<std::int16_t> motion;         ///< index into motions, -1: stands still  [-]

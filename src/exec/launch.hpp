@@ -21,7 +21,7 @@
 
 namespace breccia {
 
-/// What profilers call a kernel: its own name, or that of the one it wraps.
+/// Name of a kernel in profilers: its own, or that of the kernel it wraps.
 template <class Kernel>
 std::string name_of(const Kernel& kernel) {
   if constexpr (requires { Kernel::name; })
@@ -143,7 +143,7 @@ struct Parts<First, Rest...> {
     rest.each(visit);
   }
 };
-/// Those of its parts that have items.
+/// Names of the parts that have items.
 inline std::string name_of(const Parts<>&) {
   return "";
 }

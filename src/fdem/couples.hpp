@@ -73,11 +73,11 @@ struct EdgePush {
   double sprung = 0.0;                    ///< what its spring holds now  [J/m]
 };
 
-/// What friction of a couple's edges takes up in a step, T v_t dt by the trapezoidal rule where T
-/// acts, and what its springs hold after it: sum T^2/(2 k), k = p_t (share of the edge inside), but
-/// no more than they were given. The rest is spent. k goes with the edge: where it shrinks under a
-/// T that stays, T^2/(2 k) grows; slip counted by it, (T - mu N)/k, would spend what nobody put in.
-/// A spring that is forgotten has spent what it held.  [J/m]
+/// Work that friction of a couple's edges takes up in a step, T v_t dt by the trapezoidal rule
+/// where T acts, and what its springs hold after it: sum T^2/(2 k), k = p_t (share of the edge
+/// inside), but no more than they were given. The rest is spent. k goes with the edge: where it
+/// shrinks under a T that stays, T^2/(2 k) grows; slip counted by it, (T - mu N)/k, would spend
+/// what nobody put in. A spring that is forgotten has spent what it held.  [J/m]
 struct Rubbing {
   double taken = 0.0, sprung = 0.0;
   BR_HD void add(double more_taken, double more_sprung) {

@@ -189,7 +189,7 @@ Amplitude amplitude(const HistoryConfig& history) {
   return {history.ramp, history.times, history.factors};
 }
 
-/// What is held starts with the motion of its support: no jump of velocity at the start does work.
+/// Held nodes start with the motion of their support: no jump of velocity at the start does work.
 void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Index>& hold) {
   std::vector<TriangleNodes> nodes;
   copy_to(nodes, w.triangles.nodes);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t most_of_a_kind = 20, most_told = 200;
 
-/// What problems that differ in their item or value alone have in common: the last part of the key
+/// The common part of problems that differ in their item or value alone: the last part of the key
 /// and what follows it, without digits.
 std::string kind_of(const std::string& problem) {
   const std::size_t dot = problem.rfind('.', problem.find(' '));

@@ -1,5 +1,5 @@
 #pragma once
-// What is wrong with a text that is no TOML, in the words of somebody who writes cases.
+// Tells why a text is no TOML, in the words of somebody who writes cases.
 
 #include <string>
 #include <string_view>

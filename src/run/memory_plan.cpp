@@ -31,7 +31,7 @@ std::optional<double> number_in(const std::string& path, const std::string& word
   return std::nullopt;
 }
 
-/// What a control group and those above it leave.  [bytes]
+/// Memory that a control group and those above it leave.  [bytes]
 /// @param limit, usage  names of the files of one version of control groups
 double left_in_groups(const std::string& folder, std::string group, const char* limit,
                       const char* usage) {

@@ -9,7 +9,7 @@
 
 namespace breccia {
 
-/// What building or running a case takes at least. Bodies from files are not counted.
+/// Memory that building or running a case takes at least. Bodies from files are not counted.
 struct MemoryPlan {
   double items = 0.0;     ///< elements or triangles
   const char* kind = "";  ///< "elements" or "triangles"
@@ -19,8 +19,8 @@ struct MemoryPlan {
 MemoryPlan memory_plan(const dem::Config& config);
 MemoryPlan memory_plan(const fdem::Config& config);
 
-/// What this process may still take: of the machine (MemAvailable), of its limit (`ulimit -v`), and
-/// of its control group.  [bytes]
+/// Memory that this process may still take: of the machine (MemAvailable), of its limit (`ulimit
+/// -v`), and of its control group.  [bytes]
 /// @param root  where /proc and /sys are found; others for tests
 double available_memory(const std::string& root = "");
 

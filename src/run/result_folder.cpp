@@ -69,7 +69,7 @@ void note_owner(int file) {
   if (::ftruncate(file, 0) != 0 || ::pwrite(file, owner.data(), owner.size(), 0) < 0) return;
 }
 
-/// What runs that were killed here left behind.
+/// Files that killed runs left behind here.
 void remove_leftovers_of_runs(const std::string& path) {
   remove_leftovers(path);
   for (const char* folder : {"pictures", "fields", "checkpoints"})

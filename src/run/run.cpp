@@ -170,7 +170,7 @@ int Run::advance() {
   return 0;
 }
 
-/// What comes next, as rank 0 finds: clocks and signals differ from rank to rank.
+/// The next thing to do, as rank 0 finds: clocks and signals differ from rank to rank.
 /// @param spent  wall time of the last steps  [s]
 Run::Decision Run::decide(double spent) const {
   constexpr double attention = 0.02;  // of several ranks, between two decisions  [s]

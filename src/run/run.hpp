@@ -74,7 +74,7 @@ class Run {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// What rank 0 decides between two steps, for all ranks.
+  /// Decisions of rank 0 between two steps, for all ranks.
   struct Decision {
     std::int64_t steps_at_once = 1;              ///< of several ranks, to the next decision
     std::int32_t signal = 0;                     ///< ends the run; 0: none
@@ -98,7 +98,7 @@ class Run {
   int done();
   void conclude(Summary& now);
   void failed(int exit_code, const std::string& message);
-  /// What went wrong, with step, time and element, where the search or a law that met it knew none.
+  /// The error with step, time and element, where the search or a law that met it knew none.
   std::string located(const std::string& error);
   std::string save_crash();
   Summary summary() const;

@@ -18,7 +18,7 @@
 
 namespace breccia {
 
-/// What differs from one kind of world to the next. It may also have `step_rule(world)` and
+/// The parts that differ between kinds of world. It may also have `step_rule(world)` and
 /// `tables(world)`, and has `each_stored(world, visit)`: the one list of what a checkpoint holds,
 /// as visit(name, value) and visit.fields(prefix, state). Beside the world are advance, held,
 /// probe, read_own, find_unsound, state_hash, derive, share_out, collect and rebalance.
@@ -28,7 +28,7 @@ concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vecto
   { Sim::balance(ledger, energies, std::int64_t{}) } -> std::same_as<EnergyBalance>;
   // The frame of a world, or what a part has of it; rank 0 knows the whole mesh, too.
   { Sim::frame(w, &w) } -> std::same_as<FramePart>;
-  // What the model has, and what has come of it.
+  // Counts of the model, and findings about its state.
   sim.add_model(w, facts);
   sim.add_findings(w, facts);
 };

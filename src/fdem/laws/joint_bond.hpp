@@ -54,7 +54,7 @@ struct JointBond {
 /// How the rock failed at a joint (laws/rock_failure.hpp). none: it has not.
 enum class Failure : std::uint8_t { none, torn, sheared };
 
-/// What an integration point keeps. The last five are those of failure with the rock, 0 before: a
+/// State of an integration point. The last five are those of failure with the rock, 0 before: a
 /// joint may have softened by then, so that they do not follow from its law and the others.
 template <class R>
 struct BondState {
