@@ -6,8 +6,8 @@
 
 namespace breccia::fdem {
 
-/// What a rank's own triangles hold and have spent, and the joints and couples whose first triangle
-/// it owns.
+/// Energies that a rank's own triangles hold and have spent, and the joints and couples whose first
+/// triangle it owns.
 Energies held(const World& w);
 
 /// Where every joule of the whole is; keeps the largest energy seen in its ledger.

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "fdem/check_case.hpp"
+#include "prepare/by_name.hpp"
 #include "prepare/check_bodies.hpp"
 #include "prepare/refusal.hpp"
 
@@ -30,19 +31,6 @@ class Check {
  private:
   void add(const std::string& problem) { problems_.push_back(problem); }
 
-  template <class Items>
-  static std::string names_of(const Items& items) {
-    std::string text;
-    for (const auto& item : items) text += (text.empty() ? "" : ", ") + item.name;
-    return text.empty() ? "none" : text;
-  }
-  template <class Items>
-  static auto find(const Items& items, const std::string& name) {
-    const auto found =
-        std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.name == name; });
-    return found == items.end() ? nullptr : &*found;
-  }
-
   void check(const MaterialConfig& m) {
     const std::string path = "material." + m.name;
     if (m.law == "concrete" && m.poisson > 1.0 / m.alpha)
@@ -57,12 +45,12 @@ class Check {
 
   void check(const SupportConfig& s) {
     static const std::set<std::string> words{"x", "y", "z", "spin_x", "spin_y", "spin_z", "all"};
-    if (find(config_.bodies, s.name) != nullptr)
+    if (prepare::item_named(config_.bodies, s.name) != nullptr)
       add(fmt::format("support.{0} and body.{0} have one name; a probe could not tell them apart",
                       s.name));
-    if (!s.on.empty() && find(config_.bodies, s.on) == nullptr)
+    if (!s.on.empty() && prepare::item_named(config_.bodies, s.on) == nullptr)
       add(fmt::format("support.{}.on = {:?} is not a body; there are: {}", s.name, s.on,
-                      names_of(config_.bodies)));
+                      prepare::all_names(config_.bodies)));
     for (const std::string& word : s.fix)
       if (!words.contains(word))
         add(fmt::format(
@@ -74,11 +62,11 @@ class Check {
   }
 
   void check(const ProbeConfig& p) {
-    if (p.on.empty() || find(config_.bodies, p.on) != nullptr ||
-        find(config_.supports, p.on) != nullptr)
+    if (p.on.empty() || prepare::item_named(config_.bodies, p.on) != nullptr ||
+        prepare::item_named(config_.supports, p.on) != nullptr)
       return;
     add(fmt::format("probe.{}.on = {:?} is neither a body ({}) nor a support ({})", p.name, p.on,
-                    names_of(config_.bodies), names_of(config_.supports)));
+                    prepare::all_names(config_.bodies), prepare::all_names(config_.supports)));
   }
 
   const Config& config_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "prepare/by_name.hpp"
 #include "prepare/check_bodies.hpp"
 #include "prepare/rebar.hpp"
 
@@ -80,19 +81,6 @@ class DemBodyChecks {
   void require(bool holds, fmt::format_string<Args...> text, Args&&... args) {
     if (!holds) problems_.push_back(path_ + fmt::format(text, std::forward<Args>(args)...));
   }
-  template <class Items>
-  static std::string names_of(const Items& items) {
-    std::string text;
-    for (const auto& item : items) text += (text.empty() ? "" : ", ") + item.name;
-    return text.empty() ? "none" : text;
-  }
-  template <class Items>
-  static auto find(const Items& items, const std::string& name) {
-    const auto found =
-        std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.name == name; });
-    return found == items.end() ? nullptr : &*found;
-  }
-
   void check(const BodyConfig& b) {
     check_material(b);
     if (b.shape == "rebar") return check_rebar(b);
@@ -104,7 +92,7 @@ class DemBodyChecks {
     require(b.shape == "box" || b.shape == "file" || b.radius > 0.0, ".radius must be above 0");
     require(b.shape != "cylinder" || b.length > 0.0, ".length must be above 0");
     require(b.shape != "file" || !b.file.empty(), ".file is missing: a CSV of x,y,z,radius");
-    const MaterialConfig* material = find(config_.materials, b.material);
+    const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
     const bool bulk = b.shape == "file" && material != nullptr && material->law == "concrete";
     require(!bulk || b.bulk_volume() > 0.0,
             ".volume is missing: spheres of concrete do not fill space, so their mass is density "
@@ -112,9 +100,9 @@ class DemBodyChecks {
   }
 
   void check_material(const BodyConfig& b) {
-    const MaterialConfig* material = find(config_.materials, b.material);
+    const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
     require(material != nullptr, ".material = {:?} is not a material; there are: {}", b.material,
-            names_of(config_.materials));
+            prepare::all_names(config_.materials));
     if (material == nullptr) return;
     if (b.shape == "rebar")
       require(material->law == "steel", ": bars need a material of law steel, {} has {}",
@@ -128,14 +116,14 @@ class DemBodyChecks {
   void check_rebar(const BodyConfig& b) {
     require(norm(b.velocity) == 0.0 && norm(b.spin) == 0.0,
             ": bars move with the body they reinforce; give velocity and spin there");
-    const MaterialConfig* bond = find(config_.materials, b.rebar.interface_law);
+    const MaterialConfig* bond = prepare::item_named(config_.materials, b.rebar.interface_law);
     require(bond != nullptr && bond->law == "interface",
             ".rebar.interface = {:?} is not a material of law interface; there are: {}",
-            b.rebar.interface_law, names_of(config_.materials));
-    const BodyConfig* host = find(config_.bodies, b.rebar.in);
+            b.rebar.interface_law, prepare::all_names(config_.materials));
+    const BodyConfig* host = prepare::item_named(config_.bodies, b.rebar.in);
     const bool in_box = host != nullptr && host->shape == "box";
     require(in_box, ".rebar.in = {:?} is not a box body; there are: {}", b.rebar.in,
-            names_of(config_.bodies));
+            prepare::all_names(config_.bodies));
     if (!in_box) return;
     for (const std::string& problem : bar_problems(b.rebar, host->size))
       require(false, ".rebar: {}", problem);

@@ -29,7 +29,7 @@ class EnergyWatch {
   /// Whether a row calls for a warning. @throws NumericsError if the run must end, or if an energy
   /// is too large to be summed
   bool look(const EnergyBalance& energy, std::int64_t step, double time);
-  /// The same at the end of a case, where one row is enough.
+  /// Judges the end of a case, where one row is enough.
   void judge_end(const EnergyBalance& energy, std::int64_t step, double time) const;
 
   const Rows& rows() const { return rows_; }
