@@ -26,7 +26,7 @@ struct Advanced {
 };
 
 /// Time as kernels see it.
-struct Moment {
+struct StepTime {
   double time;              ///< of the positions  [s]
   double last_dt, next_dt;  ///< the step that led there, the step to come  [s]
   std::int64_t step = 0;    ///< steps taken before, since the start of the case
@@ -39,7 +39,7 @@ inline constexpr std::int32_t step_open = 1, step_open_after_move = 2;
 /// The clock of a device. It has two: each step reads one, as the step before left it, and keeps
 /// the other, so that the first launch of a step can end the step before.
 struct StepClock {
-  Moment now{};
+  StepTime now{};
   StopAt stop;
   double dt_min = 1e300, dt_max = 0.0;  ///< of the steps since the clock was started  [s]
   std::uint64_t least = 0;              ///< bits of the smallest number noted in this step

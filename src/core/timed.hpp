@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "core/step_clock.hpp"
+#include "core/kernel.hpp"
 
 namespace breccia {
 
@@ -43,20 +43,9 @@ struct EndOfStep {
   }
 };
 
-/// The type that a wrapped kernel reads ahead, if it has one.
-template <class Kernel>
-struct Ahead {};
-template <class Kernel>
-requires requires {
-  typename Kernel::Ready;
-}
-struct Ahead<Kernel> {
-  using Ready = typename Kernel::Ready;
-};
-
 /// A kernel of the first launch of a step: ends the step before.
 template <class Kernel, class Rule>
-struct Opening : Ahead<Kernel> {
+struct Opening : LoadedBy<Kernel> {
   Kernel kernel;
   EndOfStep<Rule> end;
   const StepClock* before;  ///< the clock that the step before has kept
@@ -68,12 +57,12 @@ struct Opening : Ahead<Kernel> {
       : kernel(of), end(rule), before(from), clock(to), keeps(writes) {}
 
   template <class Read>
-  BR_HD void prepare(Index i, Read& ready) const {
-    kernel.prepare(i, ready);
+  BR_HD void load_early(Index i, Read& loaded) const {
+    kernel.load_early(i, loaded);
   }
   template <class... Read>
-  BR_HD void operator()(Index i, Read&... ready) const {
-    (kernel.fetch(i, ready), ...);  // before the clock is known
+  BR_HD void operator()(Index i, Read&... loaded) const {
+    (kernel.load_late(i, loaded), ...);  // before the clock is known
     StepClock c = *before;
     end(c);
     c.open = c.halted == 0 ? step_open : 0;
@@ -91,7 +80,7 @@ struct Opening : Ahead<Kernel> {
     if (c.halted != 0) return;
     Kernel timed = kernel;
     timed.set(c.now);
-    timed(i, ready...);
+    finish_item(timed, i, loaded...);
   }
 };
 
@@ -99,64 +88,44 @@ struct Opening : Ahead<Kernel> {
 /// wanted; or there with the move in the clock's time already.
 enum class Stand { in_move, after_move, in_rest };
 
-#if defined(__CUDACC__)
-#define BR_RARELY __host__ __device__ __noinline__
-#else
-#define BR_RARELY __attribute__((noinline))
-#endif
-
-/// Keeps what a pointer leads to where the launch has it: otherwise all of it is passed by value.
-template <class T>
-BR_HD inline void stay_in_place([[maybe_unused]] const T*& parameters) {
-#if defined(__CUDA_ARCH__)
-  asm volatile("" : "+l"(parameters));
-#endif
-}
-
-/// work(kernel, i) as of `now`, in a function of its own: what few items need costs the others no
-/// registers.
-/// @param kernel  where the launch has its parameters: see Timed
-template <class Kernel, class Work>
-BR_RARELY void rarely(const Kernel* kernel, Moment now, Index i, Work work) {
-  stay_in_place(kernel);
-  Kernel timed = *kernel;
-  timed.set(now);
-  work(timed, i);
-}
-
-/// A kernel of any launch but the first. `Kernel::set(Moment)` gives a copy of it the time. One
-/// that hands its own address on gets the time by `at_moment`: its parameters stay in place.
+/// A kernel of any launch but the first. A copy of it gets the time, unless it hands its own
+/// address on: the parameters of one with slow() or update_at(now, i, loaded) stay in place.
 template <class Kernel, Stand stand>
-struct Timed : Ahead<Kernel> {
+struct Timed : LoadedBy<Kernel> {
   Kernel kernel;
   const StepClock* clock;
 
   Timed(const Kernel& of, const StepClock* by) : kernel(of), clock(by) {}
 
   template <class Read>
-  BR_HD void prepare(Index i, Read& ready) const {
-    kernel.prepare(i, ready);
+  BR_HD void load_early(Index i, Read& loaded) const {
+    kernel.load_early(i, loaded);
   }
   template <class... Read>
-  BR_HD auto operator()(Index i, Read&... ready) const {
-    using Result = decltype(kernel(i, ready...));
-    (kernel.fetch(i, ready), ...);  // before the clock is known
+  BR_HD auto operator()(Index i, Read&... loaded) const {
+    (kernel.load_late(i, loaded), ...);  // before the clock is known
     const StepClock& c = *clock;
     if (c.halted != 0 || (stand != Stand::in_move && c.wanted != 0)) {
-      if constexpr (std::is_void_v<Result>)
-        return;
+      if constexpr (gives_number<Kernel, Read...>)
+        return largest_least;
       else
-        return Result{largest_least};
+        return;
     }
-    const Moment now = stand == Stand::after_move ? Moment{c.now.time + c.now.next_dt,
-                                                           c.now.next_dt, c.now.next_dt, c.now.step}
-                                                  : c.now;
-    if constexpr (requires { kernel.at_moment(now, i, ready...); }) {
-      return kernel.at_moment(now, i, ready...);
+    const StepTime now =
+        stand == Stand::after_move
+            ? StepTime{c.now.time + c.now.next_dt, c.now.next_dt, c.now.next_dt, c.now.step}
+            : c.now;
+    if constexpr (HasSlow<Kernel>) {
+      if (!kernel.update(i, loaded...)) run_slow(&kernel, now, i);
+    } else if constexpr (requires { kernel.update_at(now, i, loaded...); }) {
+      kernel.update_at(now, i, loaded...);
     } else {
       Kernel timed = kernel;
       timed.set(now);
-      return timed(i, ready...);
+      if constexpr (gives_number<Kernel, Read...>)
+        return finish_item(timed, i, loaded...);
+      else
+        finish_item(timed, i, loaded...);
     }
   }
 };
@@ -164,25 +133,31 @@ struct Timed : Ahead<Kernel> {
 /// Empty kernel as a barrier: later kernels may read ahead, as all earlier ones have completed.
 struct Fence {
   static constexpr const char* name = "core.fence";
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
   BR_HD void operator()(Index) const {}
 };
 
 /// A kernel of a step that the host takes by itself, with the times that it was made with.
 template <class Kernel>
-struct AtOnce : Ahead<Kernel> {
+struct AtOnce : LoadedBy<Kernel> {
   Kernel kernel;
 
   explicit AtOnce(const Kernel& of) : kernel(of) {}
 
   template <class Read>
-  BR_HD void prepare(Index i, Read& ready) const {
-    kernel.prepare(i, ready);
+  BR_HD void load_early(Index i, Read& loaded) const {
+    kernel.load_early(i, loaded);
   }
   template <class... Read>
-  BR_HD auto operator()(Index i, Read&... ready) const {
-    (kernel.fetch(i, ready), ...);
-    return kernel(i, ready...);
+  BR_HD auto operator()(Index i, Read&... loaded) const {
+    (kernel.load_late(i, loaded), ...);
+    if constexpr (HasSlow<Kernel>) {
+      if (!kernel.update(i, loaded...)) kernel.slow(i);
+    } else if constexpr (gives_number<Kernel, Read...>) {
+      return finish_item(kernel, i, loaded...);
+    } else {
+      finish_item(kernel, i, loaded...);
+    }
   }
 };
 

@@ -50,7 +50,7 @@ struct ContactForces {
   View<double> slid, damped;
   View<Action> actions;  ///< zero for pairs that were apart when last seen
 
-  BR_HD void set(const Moment& now) { dt = now.last_dt; }
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_HD void operator()(Index i) const {
     const Index ia = a[i], ib = b[i];
     const PairEnd<double> end_a = elements.end(ia), end_b = elements.end(ib);
@@ -94,7 +94,7 @@ struct WallForces {
   View<Vec3> force, torque;
   View<double> critical;
 
-  BR_HD void set(const Moment& now) { dt = now.last_dt; }
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_HD void operator()(Index k) const {
     const Wall& wall = walls[number];
     const Index i = first + k, e = a[i];

@@ -19,36 +19,36 @@ struct MoveAndWatch {
   std::int32_t* wanted;
   std::int64_t step = 0;
 
-  BR_HD void set(const Moment& now) {
+  BR_HD void set(const StepTime& now) {
     move.set(now);
     step = now.step;
   }
   /// What the sums of forces, which end while these are read, do not write; and then those sums.
-  struct Ready {
+  struct Loaded {
     ElementState state;
     Quaternion turn;
     Kick::Given given;
     Vec3 reference;
     double margin;
   };
-  BR_HD void prepare(Index e, Ready& ready) const {
-    ready.state = read_record_now(&move.kick.state[e]);
-    ready.turn = read_record_now(&move.orientation[e]);
-    ready.given.mass = read_now(&move.kick.mass[e]);
-    ready.given.inertia = read_now(&move.kick.inertia[e]);
-    ready.given.fixed = move.kick.fixed[e];
-    ready.reference = read_vector(used.reference, e);
-    ready.margin = read_now(&used.margin[e]);
+  BR_HD void load_early(Index e, Loaded& loaded) const {
+    loaded.state = read_record_now(&move.kick.state[e]);
+    loaded.turn = read_record_now(&move.orientation[e]);
+    loaded.given.mass = read_now(&move.kick.mass[e]);
+    loaded.given.inertia = read_now(&move.kick.inertia[e]);
+    loaded.given.fixed = move.kick.fixed[e];
+    loaded.reference = read_vector(used.reference, e);
+    loaded.margin = read_now(&used.margin[e]);
   }
-  BR_HD void fetch(Index e, Ready& ready) const {
-    ready.given.force = read_vector(move.kick.force, e);
-    ready.given.torque = read_vector(move.kick.torque, e);
+  BR_HD void load_late(Index e, Loaded& loaded) const {
+    loaded.given.force = read_vector(move.kick.force, e);
+    loaded.given.torque = read_vector(move.kick.torque, e);
   }
-  BR_HD void operator()(Index e, const Ready& ready) const {
-    const Vec3 position = move.moved(e, ready.state, ready.turn, ready.given);
+  BR_HD void update(Index e, const Loaded& loaded) const {
+    const Vec3 position = move.moved(e, loaded.state, loaded.turn, loaded.given);
     if (search_every > 0) {
       if (e == 0 && step % search_every == 0) *wanted = 1;
-    } else if (UsedMargin::beyond(position, ready.reference, ready.margin)) {
+    } else if (UsedMargin::beyond(position, loaded.reference, loaded.margin)) {
       *wanted = 1;
     }
   }
@@ -64,9 +64,9 @@ struct MoveAndWatch {
 struct MoveOwn : MoveAndWatch {
   OwnedView owned;
   StepClock* clock;  ///< for the sums to note in
-  BR_HD void operator()(Index e, const Ready& ready) const {
+  BR_HD void update(Index e, const Loaded& loaded) const {
     if (e == 0) clock->least = ordered_bits(largest_least);
-    if (owned(e)) MoveAndWatch::operator()(e, ready);
+    if (owned(e)) MoveAndWatch::update(e, loaded);
   }
 };
 
@@ -77,7 +77,7 @@ struct MoveWalls {
   View<Wall> walls;
   std::int32_t* wanted;
 
-  BR_HD void set(const Moment& now) { dt = now.next_dt; }
+  BR_HD void set(const StepTime& now) { dt = now.next_dt; }
   BR_HD void operator()(Index k) const {
     Wall& wall = walls[k];
     wall.point += dt * wall.velocity;
@@ -95,7 +95,7 @@ struct GatherWide {
   static constexpr int at_once = 4;  ///< actions of a row that are read before the first is added
   GatherRows<Number> all;
 
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
   struct Sum {
     double number;
     float stiffness;
@@ -160,7 +160,7 @@ struct GatherWide {
     }
   }
   /// Rows are as the last search left them; actions come from the launch before.
-  struct Ready {
+  struct Loaded {
     Row links_a, links_b, bars, contacts;
     Few as_a, as_b;
     double inertia;
@@ -170,41 +170,42 @@ struct GatherWide {
     const int part = i % width;
     return part < 6 ? part : 5;  // two threads repeat the sixth
   }
-  BR_HD void prepare(Index i, Ready& ready) const {
+  BR_HD void load_early(Index i, Loaded& loaded) const {
     const Index e = i / width;
-    ready.links_a.find(all.rows_a.starts, e);
-    ready.links_b.find(all.rows_b.starts, e);
-    ready.bars.find(all.gather.bars.starts, e);
-    ready.contacts.find(all.gather.contacts.starts, e);
-    ready.inertia = read_now(i % width < 3 ? &all.gather.mass[e] : &all.gather.inertia[e]);
-    ready.fixed = all.gather.fixed[e];
+    loaded.links_a.find(all.rows_a.starts, e);
+    loaded.links_b.find(all.rows_b.starts, e);
+    loaded.bars.find(all.gather.bars.starts, e);
+    loaded.contacts.find(all.gather.contacts.starts, e);
+    loaded.inertia = read_now(i % width < 3 ? &all.gather.mass[e] : &all.gather.inertia[e]);
+    loaded.fixed = all.gather.fixed[e];
     if (all.actions.size == 0) return;
-    list(ready.as_a, ready.links_a, all.rows_a.links.data);
-    list(ready.as_b, ready.links_b, all.rows_b.links.data);
+    list(loaded.as_a, loaded.links_a, all.rows_a.links.data);
+    list(loaded.as_b, loaded.links_b, all.rows_b.links.data);
   }
-  BR_HD void fetch(Index i, Ready& ready) const {
+  BR_HD void load_late(Index i, Loaded& loaded) const {
     if (all.actions.size == 0) return;
-    read(ready.as_a, column_of(i));
-    read(ready.as_b, column_of(i) + 3);
+    read(loaded.as_a, column_of(i));
+    read(loaded.as_b, column_of(i) + 3);
   }
   /// @returns the critical number of the element, once
-  BR_HD double operator()(Index i, Ready& ready) const {
+  BR_HD double update(Index i, Loaded& loaded) const {
     const GatherForces& gather = all.gather;
     const Index e = i / width;
-    const int part = i % width, column = column_of(i), fixed = ready.fixed;
+    const int part = i % width, column = column_of(i), fixed = loaded.fixed;
     Sum as_a{0.0, 0.0F}, as_b{0.0, 0.0F};
     for (;;) {
-      add(as_a, ready.as_a, ready.links_a);
-      add(as_b, ready.as_b, ready.links_b);
-      if (ready.links_a.next >= ready.links_a.end && ready.links_b.next >= ready.links_b.end) break;
-      list(ready.as_a, ready.links_a, all.rows_a.links.data);
-      list(ready.as_b, ready.links_b, all.rows_b.links.data);
-      read(ready.as_a, column);
-      read(ready.as_b, column + 3);
+      add(as_a, loaded.as_a, loaded.links_a);
+      add(as_b, loaded.as_b, loaded.links_b);
+      if (loaded.links_a.next >= loaded.links_a.end && loaded.links_b.next >= loaded.links_b.end)
+        break;
+      list(loaded.as_a, loaded.links_a, all.rows_a.links.data);
+      list(loaded.as_b, loaded.links_b, all.rows_b.links.data);
+      read(loaded.as_a, column);
+      read(loaded.as_b, column + 3);
     }
-    add_pairs(as_a, as_b, ready.bars, gather.bars.entries.data, gather.bar_actions.data, column);
-    add_pairs(as_a, as_b, ready.contacts, gather.contacts.entries.data, gather.contact_actions.data,
-              column);
+    add_pairs(as_a, as_b, loaded.bars, gather.bars.entries.data, gather.bar_actions.data, column);
+    add_pairs(as_a, as_b, loaded.contacts, gather.contacts.entries.data,
+              gather.contact_actions.data, column);
     // Force x y z, then torque: what the element gets as b, and as a (with the opposite force).
     const LaneGroup<width> group;
     const int other = part < 3 ? part + 3 : part < 6 ? part - 3 : part;
@@ -217,7 +218,7 @@ struct GatherWide {
     float largest = stiffness;  // of three neighbours
     largest = std::fmax(largest, group.from_next(1, stiffness));
     largest = std::fmax(largest, group.from_next(2, stiffness));
-    const double slow = static_cast<double>(largest) / ready.inertia;
+    const double slow = static_cast<double>(largest) / loaded.inertia;
     const double slowest = larger(slow, group.from(3, slow));
     if (part != 0) return largest_least;
     const double critical = slowest > 0.0 ? 1.0 / slowest : largest_least;
@@ -228,7 +229,7 @@ struct GatherWide {
 struct NoteCritical {
   static constexpr const char* name = "dem.note_critical";
   View<const double> critical;
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
   BR_HD double operator()(Index e) const { return critical[e]; }
 };
 
@@ -241,7 +242,7 @@ struct Grouped {
 
   Grouped(const Kernel& all, const GroupLaws<Law>& groups)
       : kernel(all), ends(groups.ends.view()), laws(groups.laws.view()) {}
-  BR_HD void set(const Moment& now) { kernel.set(now); }
+  BR_HD void set(const StepTime& now) { kernel.set(now); }
   BR_HD const Law& law_of(Index i) const { return laws[group_of(ends, i)]; }
   BR_HD void operator()(Index i) const {
     if constexpr (std::is_same_v<Kernel, InterfaceLinkForces>) {
@@ -261,7 +262,7 @@ struct ConcreteAhead : Grouped<ConcreteLinkForces<Number>, ConcreteLink> {
   using Base::Base;
   using Base::kernel;
 
-  struct Ready {
+  struct Loaded {
     Index a, b, group;
     double length, stiffness;
     LinkState<double> state;
@@ -271,25 +272,25 @@ struct ConcreteAhead : Grouped<ConcreteLinkForces<Number>, ConcreteLink> {
     const Number* const x = planes.items.data + i;
     return {read_now(x), read_now(x + planes.stride), read_now(x + 2 * planes.stride)};
   }
-  BR_HD void prepare(Index i, Ready& ready) const {
-    ready.a = read_now(&kernel.a[i]);
-    ready.b = read_now(&kernel.b[i]);
-    ready.group = group_of(this->ends, i);
-    ready.length = read_now(&kernel.length[i]);
-    ready.stiffness = read_now(&kernel.stiffness[i]);
-    ready.state.opening = read_now(&kernel.opening[i]);
-    ready.state.shear = read_vector(kernel.shear, i);
-    ready.state.moment = read_vector(kernel.moment, i);
+  BR_HD void load_early(Index i, Loaded& loaded) const {
+    loaded.a = read_now(&kernel.a[i]);
+    loaded.b = read_now(&kernel.b[i]);
+    loaded.group = group_of(this->ends, i);
+    loaded.length = read_now(&kernel.length[i]);
+    loaded.stiffness = read_now(&kernel.stiffness[i]);
+    loaded.state.opening = read_now(&kernel.opening[i]);
+    loaded.state.shear = read_vector(kernel.shear, i);
+    loaded.state.moment = read_vector(kernel.moment, i);
   }
-  BR_HD void fetch(Index, Ready& ready) const {
-    ready.end_a = read_record_now(&kernel.elements.state[ready.a]);
-    ready.end_b = read_record_now(&kernel.elements.state[ready.b]);
+  BR_HD void load_late(Index, Loaded& loaded) const {
+    loaded.end_a = read_record_now(&kernel.elements.state[loaded.a]);
+    loaded.end_b = read_record_now(&kernel.elements.state[loaded.b]);
   }
-  BR_HD void operator()(Index i, const Ready& ready) const {
+  BR_HD void update(Index i, const Loaded& loaded) const {
     ConcreteLinkForces<Number> own = kernel;
-    own.law = this->laws[ready.group];
-    own.template answer<double>(i, end(ready.end_a), ready.end_a.radius, end(ready.end_b),
-                                ready.end_b.radius, ready.length, ready.stiffness, ready.state);
+    own.law = this->laws[loaded.group];
+    own.template answer<double>(i, end(loaded.end_a), loaded.end_a.radius, end(loaded.end_b),
+                                loaded.end_b.radius, loaded.length, loaded.stiffness, loaded.state);
   }
 
  private:

@@ -132,7 +132,7 @@ struct GatherRows {
     GatherForces::add(s, gather.contacts, gather.contact_actions, e);
     gather.finish(e, totals_of(s, gather.fixed[e]));
   }
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
 };
 
 /// How the forces of this time change velocities (leapfrog with a variable step, Durand 2012, 3.3).
@@ -155,7 +155,7 @@ struct Kick {
   };
   using Result = ResultOf<double>;
 
-  BR_HD void set(const Moment& now) {
+  BR_HD void set(const StepTime& now) {
     time = now.time;
     last_dt = now.last_dt;
     next_dt = now.next_dt;
@@ -278,7 +278,7 @@ struct MoveElements {
   View<Quaternion> orientation;
   View<double> damping_work, load_work;
 
-  BR_HD void set(const Moment& now) { kick.set(now); }
+  BR_HD void set(const StepTime& now) { kick.set(now); }
   BR_WHOLE BR_HD void operator()(Index e) const { at<double>(e); }
   /// Moves element e and its neighbours in a pack. @returns where they are then
   template <class R>

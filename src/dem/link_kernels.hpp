@@ -87,7 +87,7 @@ struct ConcreteLinkForces {
     book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt,
          kr, kr);
   }
-  BR_HD void set(const Moment& now) {
+  BR_HD void set(const StepTime& now) {
     dt = now.last_dt;
     step = now.step;
   }
@@ -133,7 +133,7 @@ struct SteelLinkForces {
   View<Action> actions;
   Index first_action;  ///< action of link 0
 
-  BR_HD void set(const Moment& now) { dt = now.last_dt; }
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_WHOLE BR_HD void operator()(Index i) const { at<double>(i); }
   /// Link i and its neighbours in a pack. @returns false, having done nothing, if they are to be
   /// taken one by one
@@ -176,7 +176,7 @@ struct InterfaceLinkForces {
   View<Action> actions;
   Index first_action;  ///< action of link 0
 
-  BR_HD void set(const Moment& now) { dt = now.last_dt; }
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_WHOLE BR_HD void operator()(Index i) const { with(law, i); }
   /// By a law that stays where it is: it holds a table.
   BR_HD void with(const InterfaceLink& bond, Index i) const { at<double>(bond, i); }

@@ -32,11 +32,11 @@ std::string name_of(const Kernel& kernel) {
     return "a loop";
 }
 
-/// A kernel that reads ahead: prepare(i, ready) what the launch before does not write, while that
-/// still runs; then it is called with what it has read.
+/// A kernel that reads ahead: load_early(i, loaded) what the launch before does not write, while
+/// that still runs; then it is called with what it has read.
 template <class Kernel>
-concept ReadsAhead = requires {
-  typename Kernel::Ready;
+concept LoadsAhead = requires {
+  typename Kernel::Loaded;
 };
 
 #if defined(__CUDACC__)
@@ -70,15 +70,15 @@ void launch(const Named& named, void (*kernel)(Parameters...), Index blocks, Ind
 /// Item i of a kernel, or nothing if there is none, once the launch before has ended.
 template <class Kernel, class Result>
 __device__ Result run_item(const Kernel& kernel, Index i, Index count, Result result) {
-  if constexpr (ReadsAhead<Kernel>) {
-    typename Kernel::Ready ready;
-    if (i < count) kernel.prepare(i, ready);
+  if constexpr (LoadsAhead<Kernel>) {
+    typename Kernel::Loaded loaded;
+    if (i < count) kernel.load_early(i, loaded);
     follow_previous();
     if (i >= count) return result;
-    if constexpr (std::is_void_v<decltype(kernel(i, ready))>)
-      kernel(i, ready);
+    if constexpr (std::is_void_v<decltype(kernel(i, loaded))>)
+      kernel(i, loaded);
     else
-      result = kernel(i, ready);
+      result = kernel(i, loaded);
   } else {
     follow_previous();
     if (i >= count) return result;
@@ -228,10 +228,11 @@ class ShadowLaunch {
       : count_(count), kernel_(kernel), note_(note) {}
 
   void read_ahead() {
-    if constexpr (ReadsAhead<Kernel>) {
+    if constexpr (LoadsAhead<Kernel>) {
       const KernelScope scope;
-      ready_.resize(static_cast<std::size_t>(count_));
-      for (Index i = 0; i < count_; ++i) kernel_.prepare(i, ready_[static_cast<std::size_t>(i)]);
+      loaded_.resize(static_cast<std::size_t>(count_));
+      for (Index i = 0; i < count_; ++i)
+        kernel_.load_early(i, loaded_[static_cast<std::size_t>(i)]);
     }
   }
   void work() {
@@ -252,32 +253,32 @@ class ShadowLaunch {
 
  private:
   void one(Index i) {
-    if constexpr (ReadsAhead<Kernel>)
-      finish(i, ready_[static_cast<std::size_t>(i)]);
+    if constexpr (LoadsAhead<Kernel>)
+      finish(i, loaded_[static_cast<std::size_t>(i)]);
     else
       finish(i);
   }
   template <class... Read>
-  void finish(Index i, Read&... ready) {
-    if constexpr (std::is_void_v<decltype(kernel_(i, ready...))>)
-      kernel_(i, ready...);
+  void finish(Index i, Read&... loaded) {
+    if constexpr (std::is_void_v<decltype(kernel_(i, loaded...))>)
+      kernel_(i, loaded...);
     else
-      note_(kernel_(i, ready...));
+      note_(kernel_(i, loaded...));
   }
 
   template <class Of>
-  struct ReadyOf {
+  struct LoadedFor {
     using type = char;
   };
-  template <ReadsAhead Of>
-  struct ReadyOf<Of> {
-    using type = typename Of::Ready;
+  template <LoadsAhead Of>
+  struct LoadedFor<Of> {
+    using type = typename Of::Loaded;
   };
 
   Index count_, first_ = 0;
   Kernel kernel_;
   Note note_;
-  std::vector<typename ReadyOf<Kernel>::type> ready_;
+  std::vector<typename LoadedFor<Kernel>::type> loaded_;
 };
 
 struct NoteNothing {

@@ -150,7 +150,7 @@ struct CoupleForces {
   View<CoupleState> state;
   View<CoupleForceOf<Number>> force;
 
-  BR_HD void set(const Moment& now) { dt = now.last_dt; }
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_HD void operator()(Index i) const {
     CoupleState& kept = state[i];
     Vec2 xa[3], va[3], xb[3], vb[3];

@@ -16,45 +16,45 @@ struct BundlesWide {
   static constexpr const char* name = "fdem.bundles_wide";
   static constexpr Index width = 16;
   BundleForces all;
-  BR_HD void set(const Moment&) {}
-  struct Ready {
+  BR_HD void set(const StepTime&) {}
+  struct Loaded {
     Index count, leader, node;
     double mass;
     Vec2 force;
   };
-  BR_HD void prepare(Index i, Ready& ready) const {
+  BR_HD void load_early(Index i, Loaded& loaded) const {
     const Index vertex = i / width, part = i % width;
     const Index first = read_now(&all.starts[vertex]);
-    ready.count = read_now(&all.starts[vertex + 1]) - first;
-    ready.leader = -1;
-    ready.mass = 0.0;
-    if (part >= ready.count) return;
-    ready.leader = read_now(&all.leader[first + part]) - first;
-    ready.node = read_now(&all.nodes[first + part]);
-    ready.mass = read_now(&all.mass[ready.node / 3]);
+    loaded.count = read_now(&all.starts[vertex + 1]) - first;
+    loaded.leader = -1;
+    loaded.mass = 0.0;
+    if (part >= loaded.count) return;
+    loaded.leader = read_now(&all.leader[first + part]) - first;
+    loaded.node = read_now(&all.nodes[first + part]);
+    loaded.mass = read_now(&all.mass[loaded.node / 3]);
   }
-  BR_HD void fetch(Index i, Ready& ready) const {
-    ready.force = {};
-    if (i % width < ready.count)
-      ready.force = read_record_now(&all.force[ready.node / 3].at[ready.node % 3]);
+  BR_HD void load_late(Index i, Loaded& loaded) const {
+    loaded.force = {};
+    if (i % width < loaded.count)
+      loaded.force = read_record_now(&all.force[loaded.node / 3].at[loaded.node % 3]);
   }
-  BR_HD void operator()(Index i, const Ready& ready) const {
-    if (ready.count > width) {
+  BR_HD void update(Index i, const Loaded& loaded) const {
+    if (loaded.count > width) {
       if (i % width == 0) all(i / width);
       return;
     }
     const LaneGroup<width> group;
     Vec2 sum{};
     double total = 0.0;
-    for (int k = 0; k < ready.count; ++k) {
-      const Vec2 other{group.from(k, ready.force.x), group.from(k, ready.force.y)};
-      const double other_mass = group.from(k, ready.mass);
-      if (group.from(k, ready.leader) != ready.leader) continue;
+    for (int k = 0; k < loaded.count; ++k) {
+      const Vec2 other{group.from(k, loaded.force.x), group.from(k, loaded.force.y)};
+      const double other_mass = group.from(k, loaded.mass);
+      if (group.from(k, loaded.leader) != loaded.leader) continue;
       sum += other;
       total += other_mass;
     }
-    if (i % width < ready.count)
-      all.force[ready.node / 3].at[ready.node % 3] = ready.mass * ((1.0 / total) * sum);
+    if (i % width < loaded.count)
+      all.force[loaded.node / 3].at[loaded.node % 3] = loaded.mass * ((1.0 / total) * sum);
   }
 };
 
@@ -66,38 +66,36 @@ struct JointsAhead {
   static constexpr int least_blocks = blocks;
   JointForces<Number> all;
 
-  struct Ready {
+  struct Loaded {
     JointEnds ends;
     Index law;
     double length, strength;
     JointStage stage;
     double corner[4][4];
   };
-  BR_HD void prepare(Index i, Ready& ready) const {
-    ready.ends = all.ends[i];
-    ready.stage = all.stage[i];
-    ready.law = read_now(&all.law[i]);
-    ready.length = read_now(&all.length[i]);
-    ready.strength = read_now(&all.strength[i]);
+  BR_HD void load_early(Index i, Loaded& loaded) const {
+    loaded.ends = all.ends[i];
+    loaded.stage = all.stage[i];
+    loaded.law = read_now(&all.law[i]);
+    loaded.length = read_now(&all.length[i]);
+    loaded.strength = read_now(&all.strength[i]);
   }
-  BR_HD void fetch(Index, Ready& ready) const {
-    const JointEnds& e = ready.ends;
+  BR_HD void load_late(Index, Loaded& loaded) const {
+    const JointEnds& e = loaded.ends;
     const Index at[4] = {e.a0, e.a1, e.b0, e.b1};
     for (int k = 0; k < 4; ++k) {
       const NodeState node = read_record_now(&all.nodes[at[k]]);
-      __builtin_memcpy(ready.corner[k], &node, sizeof node);
+      __builtin_memcpy(loaded.corner[k], &node, sizeof node);
     }
   }
-  BR_HD void at_moment(const Moment& now, Index i, const Ready& ready) const {
-    if (ready.stage == JointStage::dormant) return;
-    if (ready.stage == JointStage::whole &&
-        all.elastic_at(i, ready.corner, Indices<double>{ready.law}, ready.strength, ready.length))
-      return;
-    rarely(&all, now, i, [](const JointForces<Number>& k, Index joint) { k.damaged_at(joint); });
+  BR_HD bool update(Index i, const Loaded& loaded) const {
+    return loaded.stage == JointStage::dormant ||
+           (loaded.stage == JointStage::whole &&
+            all.elastic_at(i, loaded.corner, Indices<double>{loaded.law}, loaded.strength,
+                           loaded.length));
   }
-  BR_HD void operator()(Index i, const Ready& ready) const {
-    at_moment(Moment{all.time, all.dt, all.dt, 0}, i, ready);
-  }
+  BR_HD void slow(Index i) const { all.damaged_at(i); }
+  BR_HD void set(const StepTime& now) { all.set(now); }
 };
 
 /// What few couples need.
@@ -120,35 +118,33 @@ struct CouplesAhead {
   static constexpr int least_blocks = 5;
   CoupleForces<Number> all;
 
-  struct Ready {
+  struct Loaded {
     Index a, b;
     double scale, work, slid;
     Vec2 corner[2][3];
   };
-  BR_HD void prepare(Index i, Ready& ready) const {
+  BR_HD void load_early(Index i, Loaded& loaded) const {
     const CoupleState& kept = all.state[i];
-    ready.a = read_now(&all.a[i]);
-    ready.b = read_now(&all.b[i]);
-    ready.scale = read_now(&kept.scale);
-    ready.work = read_now(&kept.work);
-    ready.slid = read_now(&kept.slid);
+    loaded.a = read_now(&all.a[i]);
+    loaded.b = read_now(&all.b[i]);
+    loaded.scale = read_now(&kept.scale);
+    loaded.work = read_now(&kept.work);
+    loaded.slid = read_now(&kept.slid);
   }
-  BR_HD void fetch(Index, Ready& ready) const {
+  BR_HD void load_late(Index, Loaded& loaded) const {
     for (int k = 0; k < 3; ++k) {
-      ready.corner[0][k] = read_record_now(&all.nodes[ready.a].at[k].position);
-      ready.corner[1][k] = read_record_now(&all.nodes[ready.b].at[k].position);
+      loaded.corner[0][k] = read_record_now(&all.nodes[loaded.a].at[k].position);
+      loaded.corner[1][k] = read_record_now(&all.nodes[loaded.b].at[k].position);
     }
   }
-  BR_HD void at_moment(const Moment& now, Index i, const Ready& ready) const {
-    const bool resting = ready.scale != 0.0 && ready.work == 0.0 && ready.slid == 0.0;
-    if (resting && !CoupleForces<Number>::meet(ready.corner[0], ready.corner[1]))
-      all.force[i] = {};
-    else
-      rarely(&all, now, i, [](const CoupleForces<Number>& k, Index couple) { k(couple); });
+  BR_HD bool update(Index i, const Loaded& loaded) const {
+    const bool resting = loaded.scale != 0.0 && loaded.work == 0.0 && loaded.slid == 0.0;
+    if (!resting || CoupleForces<Number>::meet(loaded.corner[0], loaded.corner[1])) return false;
+    all.force[i] = {};
+    return true;
   }
-  BR_HD void operator()(Index i, const Ready& ready) const {
-    at_moment(Moment{0.0, all.dt, all.dt, 0}, i, ready);
-  }
+  BR_HD void slow(Index i) const { all(i); }
+  BR_HD void set(const StepTime& now) { all.set(now); }
 };
 
 /// CoupleForces by eight threads a couple, of which six each take an edge, and then a corner: every
@@ -159,9 +155,9 @@ struct CouplesWide {
   static constexpr Index width = 8;
   CoupleForces<Number> all;
 
-  BR_HD void set(const Moment& now) { all.set(now); }
+  BR_HD void set(const StepTime& now) { all.set(now); }
 
-  struct Ready {
+  struct Loaded {
     Index a, b, born;
     double scale, drag, work, slid, sprung;
     NodeState corner[3];  ///< of the own triangle, from the own one on
@@ -179,35 +175,35 @@ struct CouplesWide {
       of = of_a ? edge : edge - 3;
     }
   };
-  BR_HD void prepare(Index i, Ready& ready) const {
+  BR_HD void load_early(Index i, Loaded& loaded) const {
     const Index c = i / width;
     const CoupleState& kept = all.state[c];
-    ready.a = read_now(&all.a[c]);
-    ready.b = read_now(&all.b[c]);
-    ready.born = read_now(&all.born[c]);
-    ready.scale = read_now(&kept.scale);
-    ready.drag = read_now(&kept.drag[Place(i).edge]);
-    ready.work = read_now(&kept.work);
-    ready.slid = read_now(&kept.slid);
-    ready.sprung = read_now(&kept.sprung);
+    loaded.a = read_now(&all.a[c]);
+    loaded.b = read_now(&all.b[c]);
+    loaded.born = read_now(&all.born[c]);
+    loaded.scale = read_now(&kept.scale);
+    loaded.drag = read_now(&kept.drag[Place(i).edge]);
+    loaded.work = read_now(&kept.work);
+    loaded.slid = read_now(&kept.slid);
+    loaded.sprung = read_now(&kept.sprung);
   }
-  BR_HD void fetch(Index i, Ready& ready) const {
+  BR_HD void load_late(Index i, Loaded& loaded) const {
     const Place place(i);
-    const NodeState* const own = all.nodes[place.of_a ? ready.a : ready.b].at;
-    const NodeState* const others = all.nodes[place.of_a ? ready.b : ready.a].at;
+    const NodeState* const own = all.nodes[place.of_a ? loaded.a : loaded.b].at;
+    const NodeState* const others = all.nodes[place.of_a ? loaded.b : loaded.a].at;
     for (int k = 0; k < 3; ++k) {
       const int at = place.of + k;
-      ready.corner[k] = read_record_now(own + (at < 3 ? at : at - 3));
-      ready.other[k] = read_record_now(others + k);
+      loaded.corner[k] = read_record_now(own + (at < 3 ? at : at - 3));
+      loaded.other[k] = read_record_now(others + k);
     }
   }
-  BR_HD void operator()(Index i, Ready& ready) const { at(all.dt, i, ready); }
-  BR_HD void at_moment(const Moment& now, Index i, Ready& ready) const {
-    at(now.last_dt, i, ready);
+  BR_HD void update(Index i, Loaded& loaded) const { at(all.dt, i, loaded); }
+  BR_HD void update_at(const StepTime& now, Index i, Loaded& loaded) const {
+    at(now.last_dt, i, loaded);
   }
 
  private:
-  BR_HD void at(double dt, Index i, Ready& ready) const {
+  BR_HD void at(double dt, Index i, Loaded& loaded) const {
     const Index c = i / width;
     const Place place(i);
     const LaneGroup<width> group;
@@ -217,14 +213,14 @@ struct CouplesWide {
     };
     const bool leads = place.edge == 0;
     CoupleState& kept = all.state[c];
-    const bool is_new = ready.scale == 0.0;
-    if (is_new) ready.scale = 1.0;
+    const bool is_new = loaded.scale == 0.0;
+    if (is_new) loaded.scale = 1.0;
 
     Vec2 own[3], other[3], other_v[3];
     for (int k = 0; k < 3; ++k) {
-      own[k] = ready.corner[k].position;
-      other[k] = ready.other[k].position;
-      other_v[k] = ready.other[k].velocity;
+      own[k] = loaded.corner[k].position;
+      other[k] = loaded.other[k].position;
+      other_v[k] = loaded.other[k].velocity;
     }
     EdgePush mine;
     Rubbing rubbing;
@@ -232,16 +228,16 @@ struct CouplesWide {
     unsigned touching = 0;  // edges that do
     if (CoupleForces<Number>::boxes_meet(own, other)) {
       const ContactPair law = all.law_of(c);
-      if (is_new && ready.born >= 0) {
+      if (is_new && loaded.born >= 0) {
         if (leads) begin_rarely(&all, c);
         group.wait();
-        ready.scale = kept.scale;
-        ready.drag = kept.drag[place.edge];
-        ready.work = kept.work;
-        ready.sprung = kept.sprung;
+        loaded.scale = kept.scale;
+        loaded.drag = kept.drag[place.edge];
+        loaded.work = kept.work;
+        loaded.sprung = kept.sprung;
         group.wait();
       }
-      mine = edge_push(law, ready.scale, ready.drag, dt, ready.corner[0], ready.corner[1],
+      mine = edge_push(law, loaded.scale, loaded.drag, dt, loaded.corner[0], loaded.corner[1],
                        Target::of(other), other_v);
       kept.drag[place.edge] = mine.drag;
       touching = group.ballot(mine.touches) & 0x3fU;
@@ -269,13 +265,13 @@ struct CouplesWide {
           add(vector_from(s, mine.friction[0]), vector_from(s, mine.friction[1]));
       }
       if (touching != 0 && all.conservative)
-        sum += shape_force_rarely(&all, c, ready.scale * law.penalty, place.of_a, place.of);
+        sum += shape_force_rarely(&all, c, loaded.scale * law.penalty, place.of_a, place.of);
     }
-    if (is_new && leads) kept.scale = ready.scale;
+    if (is_new && leads) kept.scale = loaded.scale;
 
     CoupleForceOf<Number>& both = all.force[c];
     Vec2Of<Number>& stored = (place.of_a ? both.on_a : both.on_b).at[place.of];
-    if (touching == 0 && ready.work == 0.0 && ready.slid == 0.0) {
+    if (touching == 0 && loaded.work == 0.0 && loaded.slid == 0.0) {
       stored = {};
       return;
     }
@@ -283,25 +279,25 @@ struct CouplesWide {
     group.wait();  // two threads read and write the sixth corner
     const Vec2Of<Number> now = converted<Number>(sum);
     stored = now;
-    const double taken = 0.5 * dt * dot(last + converted<double>(now), ready.corner[0].velocity);
+    const double taken = 0.5 * dt * dot(last + converted<double>(now), loaded.corner[0].velocity);
     for (int k = 0; k < 3; ++k) {
-      ready.work -= from(k, taken);
-      ready.work -= from(k + 3, taken);
+      loaded.work -= from(k, taken);
+      loaded.work -= from(k + 3, taken);
     }
-    rubbing.book(ready.slid, ready.sprung);
+    rubbing.book(loaded.slid, loaded.sprung);
     if (touching == 0) {
       kept.drag[place.edge] = 0.0;
       if (leads) {
-        kept.lost += ready.work - ready.slid;
-        kept.rubbed += ready.slid;
+        kept.lost += loaded.work - loaded.slid;
+        kept.rubbed += loaded.slid;
         kept.scale = 1.0;
       }
-      ready.work = ready.slid = 0.0;
+      loaded.work = loaded.slid = 0.0;
     }
     if (leads) {
-      kept.work = ready.work;
-      kept.slid = ready.slid;
-      kept.sprung = ready.sprung;
+      kept.work = loaded.work;
+      kept.slid = loaded.slid;
+      kept.sprung = loaded.sprung;
     }
   }
 };
@@ -311,7 +307,7 @@ struct TrianglesAhead {
   static constexpr const char* name = "fdem.triangles_ahead";
   TriangleForces<Number> all;
 
-  struct Ready {
+  struct Loaded {
     TriangleNodes nodes;
     Mat2 inverse;
     double viscosity;
@@ -319,39 +315,39 @@ struct TrianglesAhead {
     Index edge[3];
     JointForceOf<Number> joint[3];
   };
-  BR_HD void set(const Moment& now) { all.set(now); }
-  BR_HD void prepare(Index t, Ready& ready) const {
-    for (int k = 0; k < 3; ++k) ready.edge[k] = read_now(&all.edges[t].at[k]);
-    ready.material = read_now(&all.material[t]);
-    ready.viscosity = read_now(&all.viscosity[t]);
-    ready.couples = read_now(&all.couples.starts[t]);
-    ready.couples_end = read_now(&all.couples.starts[t + 1]);
+  BR_HD void set(const StepTime& now) { all.set(now); }
+  BR_HD void load_early(Index t, Loaded& loaded) const {
+    for (int k = 0; k < 3; ++k) loaded.edge[k] = read_now(&all.edges[t].at[k]);
+    loaded.material = read_now(&all.material[t]);
+    loaded.viscosity = read_now(&all.viscosity[t]);
+    loaded.couples = read_now(&all.couples.starts[t]);
+    loaded.couples_end = read_now(&all.couples.starts[t + 1]);
     WarpRecords<TriangleNodes> nodes;
     WarpRecords<Mat2> inverse;
     nodes.read(all.nodes, t);
     inverse.read(all.shape_inverse, t);
-    ready.nodes = nodes.own();
-    ready.inverse = inverse.own();
+    loaded.nodes = nodes.own();
+    loaded.inverse = inverse.own();
   }
-  BR_HD void fetch(Index, Ready& ready) const {
+  BR_HD void load_late(Index, Loaded& loaded) const {
     for (int k = 0; k < 3; ++k)
-      ready.joint[k] = read_record_now(&all.joint_force[all.joint_of(ready.edge[k])]);
+      loaded.joint[k] = read_record_now(&all.joint_force[all.joint_of(loaded.edge[k])]);
   }
-  BR_HD void operator()(Index t, const Ready& ready) const {
+  BR_HD void update(Index t, const Loaded& loaded) const {
     double c[12], inverse[4];
-    __builtin_memcpy(c, &ready.nodes, sizeof c);
-    __builtin_memcpy(inverse, &ready.inverse, sizeof inverse);
+    __builtin_memcpy(c, &loaded.nodes, sizeof c);
+    __builtin_memcpy(inverse, &loaded.inverse, sizeof inverse);
     Vec2 sum[3];
-    all.template deform<double>(t, CornersOf<double>(c), inverse, Indices<double>{ready.material},
-                                ready.viscosity, sum);
+    all.template deform<double>(t, CornersOf<double>(c), inverse, Indices<double>{loaded.material},
+                                loaded.viscosity, sum);
     for (int k = 0; k < 3; ++k) {
       double f[4];
-      const JointForce own = converted<double>(ready.joint[k]);
+      const JointForce own = converted<double>(loaded.joint[k]);
       __builtin_memcpy(f, &own, sizeof f);
-      const Index entry = ready.edge[k];
+      const Index entry = loaded.edge[k];
       all.add_force(entry >= 0 && side_of(entry) != 0, f, sum[k], sum[k == 2 ? 0 : k + 1]);
     }
-    all.add_couples(ready.couples, ready.couples_end, sum);
+    all.add_couples(loaded.couples, loaded.couples_end, sum);
     wait_for_warp();
     WarpRecords<Corners>::write(all.force, t, {{sum[0], sum[1], sum[2]}});
   }

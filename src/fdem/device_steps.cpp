@@ -16,12 +16,12 @@ enum Wanted : std::int32_t { wanted_search = 1, wanted_insertion = 2 };
 /// Velocities of supports at the middle of the step to come.
 struct ScaleMotions {
   static constexpr const char* name = "fdem.scale_motions";
-  Moment now;
+  StepTime now;
   View<const AmplitudeTable> tables;
   View<const double> times, factors;
   View<const Vec2> velocity;
   View<Motion> motions;
-  BR_HD void set(const Moment& moment) { now = moment; }
+  BR_HD void set(const StepTime& moment) { now = moment; }
   BR_HD void operator()(Index i) const {
     const double middle = now.time + 0.5 * now.next_dt;
     motions[i].velocity = tables[i].at(middle, times, factors) * velocity[i];
@@ -49,12 +49,12 @@ struct ScaleMotionsAhead {
 
 struct ScaleLoads {
   static constexpr const char* name = "fdem.scale_loads";
-  Moment now;
+  StepTime now;
   Index first;  ///< amplitude of the first load
   View<const AmplitudeTable> tables;
   View<const double> times, factors;
   View<LoadLaw> laws;
-  BR_HD void set(const Moment& moment) { now = moment; }
+  BR_HD void set(const StepTime& moment) { now = moment; }
   BR_HD void operator()(Index i) const {
     laws[i].factor = tables[first + i].at(now.time, times, factors);
   }
@@ -70,37 +70,37 @@ struct MoveAndWatch {
   std::int32_t* wanted;
   std::int64_t step = 0;
 
-  BR_HD void set(const Moment& now) {
+  BR_HD void set(const StepTime& now) {
     move.set(now);
     used.set_time(now.time + now.next_dt);
     step = now.step;
   }
   /// What the sums of forces, which end while these are read, do not write; and then those sums.
-  struct Ready {
+  struct Loaded {
     Kick::Given given;
     WarpRecords<Corners> force;
     Corners from;
     double margin;
     Index place;
   };
-  BR_HD void prepare(Index t, Ready& ready) const {
-    ready.place = read_now(&reach_place[t]);
-    ready.given.hold = read_now(&move.kick.hold[t]);
-    ready.given.mass = read_now(&move.kick.mass[t]);
+  BR_HD void load_early(Index t, Loaded& loaded) const {
+    loaded.place = read_now(&reach_place[t]);
+    loaded.given.hold = read_now(&move.kick.hold[t]);
+    loaded.given.mass = read_now(&move.kick.mass[t]);
     WarpRecords<TriangleNodes> nodes;
     nodes.read(move.kick.nodes, t);
-    ready.margin = 0.0;
-    if (ready.place >= 0) {
-      ready.from = read_record_now(&used.reference[ready.place]);
-      ready.margin = read_now(&used.margin[ready.place]);
+    loaded.margin = 0.0;
+    if (loaded.place >= 0) {
+      loaded.from = read_record_now(&used.reference[loaded.place]);
+      loaded.margin = read_now(&used.margin[loaded.place]);
     }
-    ready.given.nodes = nodes.own();
+    loaded.given.nodes = nodes.own();
   }
-  BR_HD void fetch(Index t, Ready& ready) const { ready.force.read(move.kick.force, t); }
+  BR_HD void load_late(Index t, Loaded& loaded) const { loaded.force.read(move.kick.force, t); }
   /// @returns whether the triangle has used its margin up
-  BR_HD bool moves(Index t, Ready& ready) const {
-    Kick::Given& given = ready.given;
-    given.force = ready.force.own();
+  BR_HD bool moves(Index t, Loaded& loaded) const {
+    Kick::Given& given = loaded.given;
+    given.force = loaded.force.own();
     if (move.kick.damping > 0.0 || move.external.size > 0 || given.hold >= 0) {
       given.nodes = move.moved_driven(t, given);
     } else {
@@ -112,10 +112,10 @@ struct MoveAndWatch {
     }
     wait_for_warp();
     WarpRecords<TriangleNodes>::write(move.nodes, t, given.nodes);
-    return ready.place >= 0 && used.beyond(given.nodes, ready.from, ready.margin);
+    return loaded.place >= 0 && used.beyond(given.nodes, loaded.from, loaded.margin);
   }
-  BR_HD void operator()(Index t, Ready& ready) const {
-    if (moves(t, ready)) *wanted = wanted_search;
+  BR_HD void update(Index t, Loaded& loaded) const {
+    if (moves(t, loaded)) *wanted = wanted_search;
     if (t == 0 && marking_due(changed[change_softened], changed[change_broken], step))
       *wanted = wanted_search;
   }
@@ -125,8 +125,8 @@ struct MoveAndWatch {
 struct MoveAndTell : MoveAndWatch {
   OwnedView owned;
   View<std::int32_t> news;
-  BR_HD void operator()(Index t, Ready& ready) const {
-    if (moves(t, ready) && owned(t)) news[0] = 1;
+  BR_HD void update(Index t, Loaded& loaded) const {
+    if (moves(t, loaded) && owned(t)) news[0] = 1;
     if (t == 0) news[1] = (changed[0] != 0 ? 1 : 0) | (changed[1] != 0 ? 2 : 0);
   }
 };
@@ -139,7 +139,7 @@ struct WatchReached {
   static constexpr const char* name = "fdem.watch_reached";
   View<const std::uint8_t> reached;
   std::int32_t* wanted;
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
   BR_HD void operator()(Index) const {
     if (reached[0] != 0) *wanted = wanted_insertion;
   }
@@ -153,7 +153,7 @@ struct NoteStable {
   int evaluate_every;
   NoteLeast note;
   std::int64_t step = 0;
-  BR_HD void set(const Moment& now) { step = now.step; }
+  BR_HD void set(const StepTime& now) { step = now.step; }
   BR_HD void operator()(Index i) const {
     if (step % evaluate_every != 0) return;
     double least = largest_least;

@@ -12,7 +12,7 @@ struct TriangleStress {
   View<const ElasticTriangle> laws;
   View<const Mat2> shape_inverse;
   View<Sym2> stress;
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
   BR_HD void operator()(Index t) const {
     const CornersOf<double> c(nodes, t);
     stress[t] = laws[material[t]].stress(deformation(shape_inverse[t], c.x, c.v), 0.0);
@@ -47,7 +47,7 @@ struct Overshoot {
   View<const JointStage> stage;
   View<double> overshoot;
   View<std::uint8_t> reached;
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
   BR_HD void operator()(Index i) const {
     overshoot[i] = 0.0;
     if (stage[i] != JointStage::dormant) return;

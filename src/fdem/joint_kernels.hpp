@@ -103,7 +103,7 @@ struct JointForces {
     return true;
   }
 
-  BR_HD void set(const Moment& now) {
+  BR_HD void set(const StepTime& now) {
     time = now.time;
     dt = now.last_dt;
   }

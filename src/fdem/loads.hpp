@@ -80,7 +80,7 @@ struct LoadForces {
   View<const TriangleNodes> nodes;
   View<Corners> external, force;
 
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
   BR_HD void operator()(Index i) const {
     const Index t = edges[starts[i]].triangle;
     Corners sum{};

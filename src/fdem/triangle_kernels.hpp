@@ -72,7 +72,7 @@ struct TriangleForces {
       add_couples(t + k, couples.first(t + k), couples.last(t + k));
   }
   BR_HD void operator()(Index t) const { at<double>(t); }
-  BR_HD void set(const Moment& now) { span = now.last_dt; }
+  BR_HD void set(const StepTime& now) { span = now.last_dt; }
 
   /// Internal forces on the corners, and the work of viscosity.
   template <class R>
@@ -153,7 +153,7 @@ struct BundleForces {
   View<const double> mass;
   View<Corners> force;
 
-  BR_HD void set(const Moment&) {}
+  BR_HD void set(const StepTime&) {}
   BR_HD void operator()(Index vertex) const {
     const Index end = starts[vertex + 1];
     for (Index first = starts[vertex]; first < end; ++first) {
@@ -203,7 +203,7 @@ struct Kick {
     Vec2 damped[3];    ///< force that damping took off
   };
 
-  BR_HD void set(const Moment& now) {
+  BR_HD void set(const StepTime& now) {
     last_dt = now.last_dt;
     next_dt = now.next_dt;
   }
@@ -287,7 +287,7 @@ struct MoveTriangles {
       }
   }
 
-  BR_HD void set(const Moment& now) { kick.set(now); }
+  BR_HD void set(const StepTime& now) { kick.set(now); }
   BR_HD void operator()(Index t) const {
     if (!free_at<double>(t)) nodes[t] = moved_driven(t, kick.given(t));
   }

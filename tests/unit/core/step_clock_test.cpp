@@ -81,15 +81,15 @@ TEST(StepClock, EvaluatesTheStepAsOftenAsTheCaseSays) {
 
 /// Writes down when it was called.
 struct Called {
-  Moment* last;
-  Moment now;
-  BR_HD void set(const Moment& moment) { now = moment; }
+  StepTime* last;
+  StepTime now;
+  BR_HD void set(const StepTime& moment) { now = moment; }
   BR_HD void operator()(Index) const { *last = now; }
 };
 
 TEST(StepClock, OpensAStepInOneClockFromTheOther) {
   StepClock clocks[2] = {started({}), started({})};
-  Moment last{};
+  StepTime last{};
   const EndOfStep<TwiceTheLeast> end{{}, 1};
   const auto open = [&](int from) {
     Opening<Called, TwiceTheLeast>({&last, {}}, end, &clocks[from], &clocks[1 - from], true)(0);
@@ -125,7 +125,7 @@ TEST(StepClock, CountsToTheSameEvaluationsWhereverItStarts) {
       c.now.step = first;
       c.to_evaluation = end.to_evaluation(first);
     }
-    Moment last{};
+    StepTime last{};
     for (int taken = 0; taken < 8; ++taken) {
       const int from = taken % 2;
       Opening<Called, TwiceTheLeast>({&last, {}}, end, &clocks[from], &clocks[1 - from], true)(0);
