@@ -32,6 +32,13 @@ BR_HD inline Vec3Of<R> load(const PlanesView<T>& planes, Index first) {
   return {load<R>(items, first), load<R>(items, planes.stride + first),
           load<R>(items, 2 * planes.stride + first)};
 }
+/// The same where this call stands (load_now).
+template <class R, class T>
+BR_HD inline Vec3Of<R> load_now(const PlanesView<T>& planes, Index first) {
+  const View<T>& items = planes.items;
+  return {load_now<R>(items, first), load_now<R>(items, planes.stride + first),
+          load_now<R>(items, 2 * planes.stride + first)};
+}
 template <class R, class T>
 BR_HD inline void store(const PlanesView<T>& planes, Index first, const Vec3Of<R>& v) {
   store(planes.items, first, v.x);

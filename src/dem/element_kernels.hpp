@@ -2,7 +2,7 @@
 // What is done to each element by itself: its sum of forces, its critical step, its motion.
 
 #include "core/incidence.hpp"
-#include "core/step_clock.hpp"
+#include "core/kernel.hpp"
 #include "dem/contacts.hpp"
 #include "dem/elements.hpp"
 #include "dem/link_sums.hpp"
@@ -25,18 +25,14 @@ struct Motion {
   }
 };
 
-/// 1 where an element has used its margin up: the list of pairs is no longer valid.
+/// Whether elements have used their margins up: the list of pairs is no longer valid.
 struct UsedMargin {
-  View<const ElementState> state;
   View<const Vec3> reference;
   View<const double> margin;
   template <class R>
   BR_HD static auto beyond(const Vec3Of<R>& position, const Vec3Of<R>& from, const R& allowed) {
     const Vec3Of<R> moved = position - from;
     return opposite(dot(moved, moved) <= allowed * allowed);  // NaN counts as beyond
-  }
-  BR_HD double operator()(Index e) const {
-    return beyond(state[e].position, reference[e], margin[e]) ? 1.0 : 0.0;
   }
 };
 
@@ -105,34 +101,6 @@ struct LinkRows {
     View<const Index> starts, links;
   };
   Seen view() const { return {starts.view(), links.view()}; }
-};
-
-/// GatherForces where every link has an action: on a device.
-/// @tparam Number  what actions of links are stored in
-template <class Number>
-struct GatherRows {
-  static constexpr const char* name = "dem.gather_rows";
-  GatherForces gather;
-  LinkRows::Seen rows_a, rows_b;
-  View<const ActionOf<Number>> actions;
-
-  BR_HD void operator()(Index e) const {
-    LinkSums s{};
-    for (Index k = rows_a.starts[e]; k < rows_a.starts[e + 1]; ++k) {
-      const ActionOf<Number>& action = actions[rows_a.links[k]];
-      s.as_a.add(action.numbers);
-      s.stiffness_a.add(action.stiffness);
-    }
-    for (Index k = rows_b.starts[e]; k < rows_b.starts[e + 1]; ++k) {
-      const ActionOf<Number>& action = actions[rows_b.links[k]];
-      s.as_b.add(action.numbers + 3);
-      s.stiffness_b.add(action.stiffness + 3);
-    }
-    GatherForces::add(s, gather.bars, gather.bar_actions, e);
-    GatherForces::add(s, gather.contacts, gather.contact_actions, e);
-    gather.finish(e, totals_of(s, gather.fixed[e]));
-  }
-  BR_HD void set(const StepTime&) {}
 };
 
 /// How the forces of this time change velocities (leapfrog with a variable step, Durand 2012, 3.3).
@@ -270,28 +238,54 @@ struct Kick {
 };
 
 /// accelerationsFromForces, velocitiesFromAccelerations and positionsFromVelocities of Durand
-/// 2012, 4.4.
+/// 2012, 4.4; and the question whether margins still hold.
 struct MoveElements {
   static constexpr const char* name = "dem.move";
   Kick kick;
   View<ElementState> state;
   View<Quaternion> orientation;
   View<double> damping_work, load_work;
+  UsedMargin used;
 
-  BR_HD void set(const StepTime& now) { kick.set(now); }
-  BR_WHOLE BR_HD void operator()(Index e) const { at<double>(e); }
-  /// Moves element e and its neighbours in a pack. @returns where they are then
   template <class R>
-  BR_HD Vec3Of<R> at(Index e) const {
-    R s[10], q[4];
-    gather_records(kick.state, consecutive<R>(e), s);
-    gather_records(View<const Quaternion>(orientation), consecutive<R>(e), q);
-    const ElementStateOf<R> now{{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, {s[6], s[7], s[8]}, s[9]};
-    return moved<R>(e, now, {q[0], q[1], q[2], q[3]}, kick.given<R>(e));
+  struct Loaded {
+    ElementStateOf<R> state;
+    QuaternionOf<R> turn;
+    Kick::GivenOf<R> given;
+    Vec3Of<R> reference;
+    R margin;
+  };
+  BR_HD void set(const StepTime& now) { kick.set(now); }
+  /// All but the sums of forces.
+  template <class R>
+  BR_HD void load_early(Index e, Loaded<R>& loaded) const {
+    if constexpr (width_of<R> == 1) {
+      loaded.state = read_record_now(&kick.state[e]);
+      loaded.turn = read_record_now(&orientation[e]);
+    } else {
+      R s[10], q[4];
+      gather_records(kick.state, consecutive<R>(e), s);
+      gather_records(View<const Quaternion>(orientation), consecutive<R>(e), q);
+      loaded.state = {{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, {s[6], s[7], s[8]}, s[9]};
+      loaded.turn = {q[0], q[1], q[2], q[3]};
+    }
+    loaded.given.mass = load_now<R>(kick.mass, e);
+    loaded.given.inertia = load_now<R>(kick.inertia, e);
+    loaded.given.fixed = 0;
+    for (Index k = 0; k < width_of<R>; ++k) loaded.given.fixed |= kick.fixed[e + k];
+    loaded.reference = load_vectors_now<R>(used.reference, e);
+    loaded.margin = load_now<R>(used.margin, e);
   }
   template <class R>
-  BR_HD Vec3Of<R> moved(Index e, const ElementStateOf<R>& now, const QuaternionOf<R>& turn,
-                        const Kick::GivenOf<R>& of) const {
+  BR_HD void load_late(Index e, Loaded<R>& loaded) const {
+    loaded.given.force = load_vectors_now<R>(kick.force, e);
+    loaded.given.torque = load_vectors_now<R>(kick.torque, e);
+  }
+  /// @returns whether element e or one of its neighbours in a pack has used its margin up
+  template <class R>
+  BR_HD bool update(Index e, const Loaded<R>& loaded) const {
+    const ElementStateOf<R>& now = loaded.state;
+    const Kick::GivenOf<R>& of = loaded.given;
     const Kick::ResultOf<R> r = kick(e, now, of);
     const R last = constant<R>(kick.last_dt), next = constant<R>(kick.next_dt);
     const Vec3Of<R> before = last * now.velocity, after = next * r.velocity;
@@ -308,26 +302,12 @@ struct MoveElements {
     const R s[10] = {position.x,   position.y, position.z, r.velocity.x, r.velocity.y,
                      r.velocity.z, r.spin.x,   r.spin.y,   r.spin.z,     now.radius};
     store_records(state, e, s);
-    const QuaternionOf<R> q = turned(turn, turned_by);
+    const QuaternionOf<R> q = turned(loaded.turn, turned_by);
     const R numbers[4] = {q.w, q.x, q.y, q.z};
     store_records(orientation, e, numbers);
-    return position;
+    return any(UsedMargin::beyond<R>(position, loaded.reference, loaded.margin));
   }
-};
-
-/// MoveElements, and the question whether the margins still hold.
-struct MoveWithin {
-  MoveElements move;
-  UsedMargin used;
-
-  /// @returns whether element e or one of its neighbours in a pack has used its margin up
-  template <class R>
-  BR_HD bool at(Index e) const {
-    const Vec3Of<R> position = move.at<R>(e);
-    return any(UsedMargin::beyond<R>(position, load_vectors<R>(used.reference, e),
-                                     load<R>(used.margin, e)));
-  }
-  BR_WHOLE BR_HD bool operator()(Index e) const { return at<double>(e); }
+  BR_WHOLE BR_HD bool operator()(Index e) const { return run_at<double>(*this, e); }
 };
 
 }  // namespace breccia::dem

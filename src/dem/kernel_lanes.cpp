@@ -52,7 +52,7 @@ double least([[maybe_unused]] Lanes lanes, const View<const double>& numbers, In
   return least.number;
 }
 
-bool run_packs([[maybe_unused]] Lanes lanes, const MoveWithin& kernel, Index begin, Index end) {
+bool run_packs([[maybe_unused]] Lanes lanes, const MoveElements& kernel, Index begin, Index end) {
   MovedTo moved{begin, false};
 #if defined(BR_WIDE_LANES)
   if (lanes == Lanes::eight) moved = PacksAvx512::run(kernel, begin, end);

@@ -17,7 +17,7 @@ void run_packs(Lanes lanes, const GatherForces& kernel, Index begin, Index end);
 /// @returns the least of the numbers [begin, end), none of which is negative
 double least(Lanes lanes, const View<const double>& numbers, Index begin, Index end);
 /// Likewise for elements that move. @returns whether one of them has used its margin up
-bool run_packs(Lanes lanes, const MoveWithin& kernel, Index begin, Index end);
+bool run_packs(Lanes lanes, const MoveElements& kernel, Index begin, Index end);
 
 /// How far a kernel came, and whether an element on the way has used its margin up.
 struct MovedTo {
@@ -40,7 +40,7 @@ struct PacksAvx2 {
   static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
   static Index run(const GatherForces& kernel, Index begin, Index end);
   static LeastOf run(const View<const double>& numbers, Index begin, Index end);
-  static MovedTo run(const MoveWithin& kernel, Index begin, Index end);
+  static MovedTo run(const MoveElements& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
   static Index run(const ConcreteLinkForces<double>& kernel, Index begin, Index end);
@@ -49,7 +49,7 @@ struct PacksAvx512 {
   static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
   static Index run(const GatherForces& kernel, Index begin, Index end);
   static LeastOf run(const View<const double>& numbers, Index begin, Index end);
-  static MovedTo run(const MoveWithin& kernel, Index begin, Index end);
+  static MovedTo run(const MoveElements& kernel, Index begin, Index end);
 };
 
 }  // namespace breccia::dem

@@ -2,9 +2,26 @@
 // The kernels of a step with the arrays of a world: the same for loops on the host and for launches
 // ahead on a device.
 
+#include "dem/wide_kernels.hpp"
 #include "dem/world.hpp"
 
 namespace breccia::dem {
+
+/// Calls visit(begin, end) for what this rank owns of the elements [begin, end) in some runs.
+template <class Visit>
+inline void each_owned(const Domain& domain, const std::vector<ElementRun>& runs, Index begin,
+                       Index end, const Visit& visit) {
+  if (domain.alone()) return visit(begin, end);
+  const OwnedView owned = domain.owned_view();
+  Domain::each_run_of(runs, begin, end, [&](Index from, Index to) {
+    while (from < to) {
+      Index last = from;
+      while (last < to && owned(last)) ++last;
+      if (last > from) visit(from, last);
+      from = last + 1;
+    }
+  });
+}
 
 /// Whether the sums of a step on a device of several note their least critical number in `w.clock`,
 /// where the move has made room for it. Those of copies count, too: they lack some of the stiffness
@@ -76,7 +93,7 @@ inline GatherForces gather_kernel(World& w) {
 }
 
 template <class Number>
-GatherRows<Number> gather_rows_kernel(World& w) {
+GatherWide<Number> gather_wide_kernel(World& w) {
   return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), w.link_actions.as<Number>().view()};
 }
 
@@ -102,7 +119,12 @@ inline WallForces wall_kernel(World& w, Index wall) {
 
 inline MoveElements move_kernel(World& w) {
   Elements& e = w.elements;
-  return {kick(w), e.state.view(), e.orientation.view(), e.damping_work.view(), e.load_work.view()};
+  return {kick(w),
+          e.state.view(),
+          e.orientation.view(),
+          e.damping_work.view(),
+          e.load_work.view(),
+          {w.travel.reference.view(), w.travel.margin.view()}};
 }
 
 }  // namespace breccia::dem

@@ -1,9 +1,10 @@
 #pragma once
 // One kernel for each kind of link (Durand 2012, 4.2): reads, one law call, one write.
 
-#include "core/step_clock.hpp"
+#include "core/kernel.hpp"
 #include "dem/elements.hpp"
 #include "dem/links.hpp"
+#include "math/constants.hpp"
 #include "math/rounding.hpp"
 
 namespace breccia::dem {
@@ -20,13 +21,22 @@ struct ElementsView {
   BR_HD double radius(Index i) const { return state[i].radius; }
 };
 
-/// The end of every link of a pack and its radius.
+/// One end of a link, or of each in a pack.
 template <class R>
-BR_HD PairEnd<R> gather_end(const View<const ElementState>& state, const Indices<R>& i, R& radius) {
-  R c[10];
-  gather_records(state, i, c);
-  radius = c[9];
-  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}};
+struct LinkEnd {
+  PairEnd<R> motion;
+  R radius;
+};
+template <class R>
+BR_HD inline LinkEnd<R> load_end(const View<const ElementState>& state, const Indices<R>& i) {
+  if constexpr (width_of<R> == 1) {
+    const ElementState s = read_record_now(&state[i.at]);
+    return {{s.position, s.velocity, s.spin}, s.radius};
+  } else {
+    R c[10];
+    gather_records(state, i, c);
+    return {{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}}, c[9]};
+  }
 }
 
 /// Cohesive links of one material, one link (R = double) or a pack of neighbours at a time.
@@ -48,31 +58,45 @@ struct ConcreteLinkForces {
   std::int64_t step;   ///< steps taken before
 
   template <class R>
-  BR_HD void at(Index i) const {
-    const Indices<R> ia = load_indices<R>(a, i), ib = load_indices<R>(b, i);
-    R radius_a, radius_b;
-    const PairEnd<R> end_a = gather_end(elements.state, ia, radius_a);
-    const PairEnd<R> end_b = gather_end(elements.state, ib, radius_b);
-    answer(i, end_a, radius_a, end_b, radius_b, load<R>(length, i), load<R>(stiffness, i),
-           LinkState<R>{load<R>(opening, i), load<R>(shear, i), load<R>(moment, i)});
-  }
-  /// What link i does with its ends, its length and stiffness, and what it kept.
+  struct Loaded {
+    Indices<R> a, b;
+    R length, stiffness;
+    LinkState<R> state;
+    LinkEnd<R> end_a, end_b;
+  };
   template <class R>
-  BR_HD void answer(Index i, const PairEnd<R>& end_a, const R& radius_a, const PairEnd<R>& end_b,
-                    const R& radius_b, const R& free_length, const R& own_stiffness,
-                    LinkState<R> state) const {
-    constexpr double pi = 3.14159265358979323846;
-    const PairMotion<R> motion = pair_motion<R>(end_a, end_b, radius_a - radius_b, dt);
+  BR_HD void load_early(Index i, Loaded<R>& loaded) const {
+    loaded.a = load_indices_now<R>(a, i);
+    loaded.b = load_indices_now<R>(b, i);
+    loaded.length = load_now<R>(length, i);
+    loaded.stiffness = load_now<R>(stiffness, i);
+    loaded.state = {load_now<R>(opening, i), load_now<R>(shear, i), load_now<R>(moment, i)};
+  }
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    loaded.end_a = load_end<R>(elements.state, loaded.a);
+    loaded.end_b = load_end<R>(elements.state, loaded.b);
+  }
+  template <class R>
+  BR_HD void update(Index i, const Loaded<R>& loaded) const {
+    update(law, i, loaded);
+  }
+  template <class R>
+  BR_HD void update(const ConcreteLink& by, Index i, const Loaded<R>& loaded) const {
+    const R &radius_a = loaded.end_a.radius, &radius_b = loaded.end_b.radius;
+    const PairMotion<R> motion =
+        pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, radius_a - radius_b, dt);
     const R least = smaller(radius_a, radius_b), touching = radius_a + radius_b;
-    const LinkConstants<R> link{free_length, own_stiffness, pi * least * least, 0.5 * touching,
+    const LinkConstants<R> link{loaded.length, loaded.stiffness, pi * least * least, 0.5 * touching,
                                 touching};
-    const LinkResponse<R> r = law.answer(link, motion, state);
+    LinkState<R> state = loaded.state;
+    const LinkResponse<R> r = by.answer(link, motion, state);
 
     if constexpr (std::is_same_v<Number, float>) {
       const BitsOf<R> chance = chance_of(motion.distance, step);
       state.shear = rounded_by(chance, 0, state.shear);
       state.moment = rounded_by(chance, 18, state.moment);
-      if (law.wears()) state.opening = rounded_by<R>(chance >> 35, state.opening);
+      if (by.wears()) state.opening = rounded_by<R>(chance >> 35, state.opening);
     }
     store(opening, i, state.opening);
     store(shear, i, state.shear);
@@ -82,8 +106,8 @@ struct ConcreteLinkForces {
     if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
     if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
 
-    const R kn = r.active * link.stiffness, kt = law.shear_ratio * kn;
-    const R kr = law.rolling_ratio * kt * link.radius * link.radius;
+    const R kn = r.active * link.stiffness, kt = by.shear_ratio * kn;
+    const R kr = by.rolling_ratio * kt * link.radius * link.radius;
     book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt,
          kr, kr);
   }
@@ -91,7 +115,7 @@ struct ConcreteLinkForces {
     dt = now.last_dt;
     step = now.step;
   }
-  BR_WHOLE BR_HD void operator()(Index i) const { at<double>(i); }
+  BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
 };
 
 /// Numbers of links first, first + 1, ... as their state.
@@ -133,23 +157,44 @@ struct SteelLinkForces {
   View<Action> actions;
   Index first_action;  ///< action of link 0
 
-  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
-  BR_WHOLE BR_HD void operator()(Index i) const { at<double>(i); }
-  /// Link i and its neighbours in a pack. @returns false, having done nothing, if they are to be
-  /// taken one by one
   template <class R>
-  BR_HD bool at(Index i) const {
-    R radius_a, radius_b;
-    const PairEnd<R> end_a = gather_end(elements.state, load_indices<R>(a, i), radius_a);
-    const PairEnd<R> end_b = gather_end(elements.state, load_indices<R>(b, i), radius_b);
-    const PairMotion<R> motion = pair_motion<R>(end_a, end_b, constant<R>(0.0), dt);
-    const R own_length = load<R>(length, i), radius = smaller(radius_a, radius_b);
-    const SteelLink::StiffnessOf<R> k = law.stiffness(own_length, radius);
-    SteelStateOf<R> kept = load_state<R>(View<const SteelState>(state), i);
+  struct Loaded {
+    Indices<R> a, b;
+    R length;
+    SteelStateOf<R> state;
+    LinkEnd<R> end_a, end_b;
+  };
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
+  template <class R>
+  BR_HD void load_early(Index i, Loaded<R>& loaded) const {
+    loaded.a = load_indices_now<R>(a, i);
+    loaded.b = load_indices_now<R>(b, i);
+    loaded.length = load_now<R>(length, i);
+    loaded.state = load_state<R>(View<const SteelState>(state), i);
+  }
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    loaded.end_a = load_end<R>(elements.state, loaded.a);
+    loaded.end_b = load_end<R>(elements.state, loaded.b);
+  }
+  BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
+  template <class R>
+  BR_HD bool update(Index i, const Loaded<R>& loaded) const {
+    return update(law, i, loaded);
+  }
+  /// @returns false, having done nothing, if the links of a pack are to be taken one by one
+  template <class R>
+  BR_HD bool update(const SteelLink& by, Index i, const Loaded<R>& loaded) const {
+    const PairMotion<R> motion =
+        pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, constant<R>(0.0), dt);
+    const R own_length = loaded.length;
+    const R radius = smaller(loaded.end_a.radius, loaded.end_b.radius);
+    const SteelLink::StiffnessOf<R> k = by.stiffness(own_length, radius);
+    SteelStateOf<R> kept = loaded.state;
     SteelResponseOf<R> r;
     if constexpr (width_of<R> == 1)
-      r = law.answer(own_length, radius, motion, kept);
-    else if (!law.stays_elastic(k, own_length, radius, motion, kept, r))
+      r = by.answer(own_length, radius, motion, kept);
+    else if (!by.stays_elastic(k, own_length, radius, motion, kept, r))
       return false;
     store_state(state, i, kept);
     if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
@@ -176,29 +221,51 @@ struct InterfaceLinkForces {
   View<Action> actions;
   Index first_action;  ///< action of link 0
 
-  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
-  BR_WHOLE BR_HD void operator()(Index i) const { with(law, i); }
-  /// By a law that stays where it is: it holds a table.
-  BR_HD void with(const InterfaceLink& bond, Index i) const { at<double>(bond, i); }
-  /// Link i and its neighbours in a pack. @returns false, having done nothing, if they are to be
-  /// taken one by one
   template <class R>
-  BR_HD bool at(const InterfaceLink& bond, Index i) const {
-    R radius_a, radius_b;
-    const PairEnd<R> bar = gather_end(elements.state, load_indices<R>(a, i), radius_a);
-    const PairEnd<R> concrete = gather_end(elements.state, load_indices<R>(b, i), radius_b);
-    const Vec3Of<R> chord =
-        place_of(load_indices<R>(after, i)) - place_of(load_indices<R>(before, i));
-    const Vec3Of<R> axis = (1.0 / norm(chord)) * chord;
+  struct Loaded {
+    Indices<R> a, b, before, after;
+    R stiffness, area;
+    InterfaceStateOf<R> state;
+    LinkEnd<R> bar, concrete;
+    Vec3Of<R> chord;  ///< between the neighbours of the bar's element  [m]
+  };
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
+  template <class R>
+  BR_HD void load_early(Index i, Loaded<R>& loaded) const {
+    loaded.a = load_indices_now<R>(a, i);
+    loaded.b = load_indices_now<R>(b, i);
+    loaded.before = load_indices_now<R>(before, i);
+    loaded.after = load_indices_now<R>(after, i);
+    loaded.stiffness = load_now<R>(stiffness, i);
+    loaded.area = load_now<R>(area, i);
+    loaded.state = load_state<R>(View<const InterfaceState>(state), i);
+  }
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    loaded.bar = load_end<R>(elements.state, loaded.a);
+    loaded.concrete = load_end<R>(elements.state, loaded.b);
+    loaded.chord = place_of(loaded.after) - place_of(loaded.before);
+  }
+  BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
+  template <class R>
+  BR_HD bool update(Index i, const Loaded<R>& loaded) const {
+    return update(law, i, loaded);
+  }
+  /// @param by  a law that stays where it is: it holds a table
+  /// @returns false, having done nothing, if the links of a pack are to be taken one by one
+  template <class R>
+  BR_HD bool update(const InterfaceLink& by, Index i, const Loaded<R>& loaded) const {
+    const R &radius_a = loaded.bar.radius, &radius_b = loaded.concrete.radius;
+    const PairEnd<R>&bar = loaded.bar.motion, &concrete = loaded.concrete.motion;
+    const Vec3Of<R> axis = (1.0 / norm(loaded.chord)) * loaded.chord;
     // The contact point divides the distance like the radii: a bar is thin beside its concrete.
     const R touching = radius_a + radius_b, share = (radius_a - radius_b) / touching;
     const R distance = norm(concrete.position - bar.position);
     const PairMotion<R> motion = pair_motion<R>(bar, concrete, share * distance, dt);
-    InterfaceStateOf<R> kept = load_state<R>(View<const InterfaceState>(state), i);
-    const R transverse = load<R>(stiffness, i);
+    InterfaceStateOf<R> kept = loaded.state;
+    const R transverse = loaded.stiffness;
     InterfaceResponseOf<R> r;
-    if (!bond.respond(transverse, load<R>(area, i), touching, axis, motion, motion.extension, kept,
-                      r))
+    if (!by.respond(transverse, loaded.area, touching, axis, motion, motion.extension, kept, r))
       return false;
     store_state(state, i, kept);
     if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);

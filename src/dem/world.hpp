@@ -208,29 +208,13 @@ void step(World& w);
 /// One step on the host; on a device as many as a few hundredths of a second hold, ending at
 /// `stop`.
 Advanced advance(World& w, const StopAt& stop);
-/// The same text as step(), launched ahead by the device's clock.
-Advanced advance_on_device(World& w, const StopAt& stop);
-/// Moves the elements of this rank by those launches, at once, and notes whether one of them has
-/// used its margin up.
-void move_on_device(World& w);
-/// Forces of links and contacts and their sums, likewise.
-void forces_on_device(World& w);
-
-/// The parts of a step, in its order.
-/// Moves the elements: first those that other ranks wait for, then all others.
-void move_awaited(World& w);
-void move_others(World& w);
+/// Walls, and the host's time, at the end of a step to come.
+void move_walls(World& w);
 /// Asks all ranks whether contacts must be searched for, and hears what they say.
 void ask_for_search(World& w);
 bool contacts_are_due(const World& w);
 MarginRule margin_rule(const World& w);
 void find_contacts(World& w);
-void bar_forces(World& w);
-void contact_forces(World& w);
-void concrete_forces_and_sums(World& w);
-void wall_forces(World& w);
-/// The step that follows: share of the critical one, rounded down to six bits.  [s]
-double choose_time_step(const World& w);
 
 /// Forces and time step at the time of the positions: once, before the first step.
 void evaluate_forces(World& w);

@@ -3,6 +3,7 @@
 // arrays.
 
 #include "exec/buffer.hpp"
+#include "exec/early.hpp"
 #include "math/vec.hpp"
 
 namespace breccia {
@@ -59,6 +60,23 @@ BR_HD inline Indices<double> load_indices<double>(const View<const Index>& array
   return {array[first]};
 }
 
+/// load() and load_indices() where these calls stand: a device may wait between them for the launch
+/// before.
+template <class R, class T>
+BR_HD inline R load_now(const View<T>& array, Index first) {
+  if constexpr (width_of<R> == 1)
+    return read_now(&array[first]);
+  else
+    return load<R>(array, first);
+}
+template <class R>
+BR_HD inline Indices<R> load_indices_now(const View<const Index>& array, Index first) {
+  if constexpr (width_of<R> == 1)
+    return {read_now(&array[first])};
+  else
+    return load_indices<R>(array, first);
+}
+
 /// Reads the first `count` doubles of record i of an array, for each index of a pack: columns[k] is
 /// number k of every record.
 template <int count, class Record>
@@ -100,6 +118,17 @@ BR_HD inline Vec3Of<R> load_vectors(const View<const Vec3>& vectors, Index first
 template <>
 BR_HD inline Vec3 load_vectors<double>(const View<const Vec3>& vectors, Index first) {
   return vectors[first];
+}
+
+/// The same where this call stands (load_now).
+template <class R>
+BR_HD inline Vec3Of<R> load_vectors_now(const View<const Vec3>& vectors, Index first) {
+  if constexpr (width_of<R> == 1) {
+    const Vec3& v = vectors[first];
+    return {read_now(&v.x), read_now(&v.y), read_now(&v.z)};
+  } else {
+    return load_vectors<R>(vectors, first);
+  }
 }
 
 /// A whole record of doubles, read and written two numbers at a time on a device.

@@ -15,10 +15,10 @@ void fetch(const View<T>& array, Index first) {
   for (Index byte = 0; byte < bytes; byte += 64) __builtin_prefetch(items + byte);
 }
 /// Likewise for all that a motion reads: more arrays than the processor foresees.
-void fetch(const MoveWithin& kernel, Index first) {
-  const Kick& kick = kernel.move.kick;
+void fetch(const MoveElements& kernel, Index first) {
+  const Kick& kick = kernel.kick;
   fetch(kick.state, first);
-  fetch(kernel.move.orientation, first);
+  fetch(kernel.orientation, first);
   fetch(kick.force, first);
   fetch(kick.torque, first);
   fetch(kick.mass, first);
@@ -31,24 +31,24 @@ void fetch(const MoveWithin& kernel, Index first) {
 
 BR_WHOLE Index BR_PACKS::run(const ConcreteLinkForces<double>& kernel, Index begin, Index end) {
   Index i = begin;
-  for (; i + width <= end; i += width) kernel.at<WidestPack>(i);
+  for (; i + width <= end; i += width) run_at<WidestPack>(kernel, i);
   return i;
 }
 BR_WHOLE Index BR_PACKS::run(const ConcreteLinkForces<float>& kernel, Index begin, Index end) {
   Index i = begin;
-  for (; i + width <= end; i += width) kernel.at<WidestPack>(i);
+  for (; i + width <= end; i += width) run_at<WidestPack>(kernel, i);
   return i;
 }
 
 BR_WHOLE Index BR_PACKS::run(const SteelLinkForces& kernel, Index begin, Index end) {
   Index i = begin;
-  while (i + width <= end && kernel.at<WidestPack>(i)) i += width;
+  while (i + width <= end && run_at<WidestPack>(kernel, i)) i += width;
   return i;
 }
 
 BR_WHOLE Index BR_PACKS::run(const InterfaceLinkForces& kernel, Index begin, Index end) {
   Index i = begin;
-  while (i + width <= end && kernel.at<WidestPack>(kernel.law, i)) i += width;
+  while (i + width <= end && run_at<WidestPack>(kernel, i)) i += width;
   return i;
 }
 
@@ -67,11 +67,11 @@ BR_WHOLE LeastOf BR_PACKS::run(const View<const double>& numbers, Index begin, I
   return {i, number};
 }
 
-BR_WHOLE MovedTo BR_PACKS::run(const MoveWithin& kernel, Index begin, Index end) {
+BR_WHOLE MovedTo BR_PACKS::run(const MoveElements& kernel, Index begin, Index end) {
   MovedTo moved{begin, false};
   for (; moved.end + width <= end; moved.end += width) {
     fetch(kernel, moved.end + 3 * width);
-    if (kernel.at<WidestPack>(moved.end)) moved.beyond = true;
+    if (run_at<WidestPack>(kernel, moved.end)) moved.beyond = true;
   }
   return moved;
 }

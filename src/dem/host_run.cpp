@@ -1,8 +1,10 @@
-// The launches of a step's loops over elements, links and contacts.
+// A step by loops on the host: over packs of elements and links, shared by threads.
 
 #include <algorithm>
 
 #include "dem/launches.hpp"
+#include "dem/ranks.hpp"
+#include "dem/step.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia::dem {
@@ -14,24 +16,8 @@ BR_HD void add_to_b(LinkSums& sums, const ActionOf<Number>& action) {
   sums.stiffness_b.add(action.stiffness + 3);
 }
 
-/// Calls visit(begin, end) for what this rank owns of the elements [begin, end) in some runs.
-template <class Visit>
-void each_owned(const Domain& domain, const std::vector<ElementRun>& runs, Index begin, Index end,
-                const Visit& visit) {
-  if (domain.alone()) return visit(begin, end);
-  const OwnedView owned = domain.owned_view();
-  Domain::each_run_of(runs, begin, end, [&](Index from, Index to) {
-    while (from < to) {
-      Index last = from;
-      while (last < to && owned(last)) ++last;
-      if (last > from) visit(from, last);
-      from = last + 1;
-    }
-  });
-}
-
 /// Moves elements of this rank. @returns whether one of them has used its margin up
-bool move_here(const World& w, const std::vector<ElementRun>& runs, const MoveWithin& move) {
+bool move_here(const World& w, const std::vector<ElementRun>& runs, const MoveElements& move) {
   constexpr Index grain = 512;
   const Index count = w.elements.size();
   std::vector<std::uint8_t> beyond(static_cast<std::size_t>((count + grain - 1) / grain), 0);
@@ -51,36 +37,6 @@ void run_group(const World& w, const LinkGroup<Law>& group, const Kernel& kernel
   for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
     run_packs(w.lanes, kernel, group.begin + begin, group.begin + end);
   });
-}
-
-struct LeastCritical {
-  View<const double> critical;
-  OwnedView owned;
-  BR_HD double operator()(Index e) const { return owned(e) ? critical[e] : largest_least; }
-};
-/// Of the elements of this rank, on a device.
-double least_there(const World& w) {
-  if (sums_note_least(w)) {
-    std::uint64_t bits = 0;
-    peek_marked_bytes(&bits, &w.clock.data()->least, w.exec.space, sizeof bits);
-    return number_of(bits);
-  }
-  return fold(w.exec, w.elements.size(), largest_least,
-              LeastCritical{w.critical.view(), w.domain.owned_view()}, Least{});
-}
-/// The same on the host.
-double least_here(const World& w) {
-  constexpr Index grain = 4096;
-  const Index count = w.elements.size();
-  std::vector<double> least_of(static_cast<std::size_t>((count + grain - 1) / grain + 1),
-                               largest_least);
-  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
-    double& own = least_of[static_cast<std::size_t>(begin / grain)];
-    each_owned(w.domain, w.domain.runs, begin, end, [&](Index from, Index to) {
-      own = std::min(own, least(w.lanes, w.critical.view(), from, to));
-    });
-  });
-  return *std::min_element(least_of.begin(), least_of.end());
 }
 
 /// Sums the actions of links as they come. A force on an element outside this thread's private
@@ -214,95 +170,30 @@ void link_forces_and_sums(World& w) {
 
 }  // namespace
 
-ElementsView elements_view(const World& w) {
-  return {w.elements.state.view(), w.elements.mass.view(), w.elements.inertia.view()};
-}
-
-Kick kick(const World& w) {
-  return {w.time,
-          w.last_dt,
-          w.next_dt,
-          w.parameters.gravity,
-          w.parameters.local_damping,
-          w.motions.view(),
-          w.elements.mass.view(),
-          w.elements.inertia.view(),
-          w.elements.state.view(),
-          w.elements.force.view(),
-          w.elements.torque.view(),
-          w.elements.fixed.view(),
-          w.elements.motion.view()};
-}
-
-StepRule step_rule(const World& w) {
-  return {w.parameters.time.safety, w.parameters.time.max_step, w.parameters.contact_step};
-}
-
-View<const Wall> walls_view(const World& w) {
-  if (w.exec.space != Space::host) return w.device_walls.view();
-  View<const Wall> view;
-  view.data = w.walls.data();
-  view.size = static_cast<Index>(w.walls.size());
-  return view;
-}
-
-namespace {
-
-MoveWithin move_within(World& w) {
-  return {move_kernel(w),
-          {w.elements.state.view(), w.travel.reference.view(), w.travel.margin.view()}};
-}
-
-}  // namespace
-
-void move_awaited(World& w) {
+void HostRun::move_boundary(World& w) const {
   const StageTime timed(w.exec, "integration");
-  if (w.exec.space != Space::host)
-    move_on_device(w);
-  else
-    w.margin_used = move_here(w, w.domain.awaited_runs, move_within(w));
+  w.margin_used = move_here(w, w.domain.awaited_runs, move_kernel(w));
 }
 
-void move_others(World& w) {
+void HostRun::move_interior(World& w) const {
   const StageTime timed(w.exec, "integration");
-  if (w.exec.space == Space::host && !w.domain.alone())
-    w.margin_used |= move_here(w, w.domain.other_runs, move_within(w));
-  for (Wall& wall : w.walls) {
-    wall.point += w.next_dt * wall.velocity;
-    wall.travelled += w.next_dt * norm(wall.velocity);
+  if (!w.domain.alone()) w.margin_used |= move_here(w, w.domain.other_runs, move_kernel(w));
+  move_walls(w);
+}
+
+void HostRun::pair_forces(World& w) const {
+  {
+    const StageTime timed(w.exec, "bar_forces");
+    for (const auto& group : w.steel_groups) run_group(w, group, steel_kernel(w, group));
+    for (const auto& group : w.interface_groups) run_group(w, group, interface_kernel(w, group));
   }
-  w.time += w.next_dt;
-  w.last_dt = w.next_dt;
-}
-
-void bar_forces(World& w) {
-  const StageTime timed(w.exec, "bar_forces");
-  for (const auto& group : w.steel_groups) run_group(w, group, steel_kernel(w, group));
-  for (const auto& group : w.interface_groups) run_group(w, group, interface_kernel(w, group));
-}
-
-void contact_forces(World& w) {
   const StageTime timed(w.exec, "contact_forces");
   for_each(w.exec, w.contacts.size(), contact_kernel(w));
 }
 
-void concrete_forces_and_sums(World& w) {
+void HostRun::sum_forces(World& w) const {
   const StageTime timed(w.exec, "link_forces");
   with_number(w.exec.precision, [&w](auto number) { link_forces_and_sums<decltype(number)>(w); });
-}
-
-void wall_forces(World& w) {
-  if (w.wall_contacts.size() == 0) return;
-  const StageTime timed(w.exec, "wall_forces");
-  if (w.exec.space != Space::host) copy_to(w.device_walls, w.walls);
-  for (std::size_t k = 0; k < w.walls.size(); ++k)
-    for_each(w.exec, w.wall_begin[k + 1] - w.wall_begin[k], wall_kernel(w, static_cast<Index>(k)));
-}
-
-double choose_time_step(const World& w) {
-  const StageTime timed(w.exec, "time_step");
-  const double least = w.exec.space != Space::host ? least_there(w) : least_here(w);
-  return step_rule(w)(w.domain.least(least), w.last_dt);
 }
 
 }  // namespace breccia::dem

@@ -1,0 +1,66 @@
+#pragma once
+// The step of the DEM: the only text of the order of its work.
+//
+// A run carries it out: HostRun by loops over packs, DeviceRun by launches, at once or recorded and
+// led by the device's clock. A run groups kernels into loops or launches; it never reorders them.
+
+#include "dem/world.hpp"
+
+namespace breccia::dem {
+
+/// Forces at the time of the positions, and the step that follows.
+template <class Run>
+void take_forces(Run&& run, World& w) {
+  // 3. One force per interaction, then one sum per element: no atomics              (section 4.2)
+  //    Links and contacts that end here mark themselves.
+  run.pair_forces(w);
+  run.sum_forces(w);
+  run.wall_forces(w);
+
+  // 4. The next step: min over elements of sqrt(inertia / stiffness)                (section 4.4)
+  run.choose_step(w);
+}
+
+/// One step of the scheme of Durand et al. 2012, Figure 1 and section 3.3.
+template <class Run>
+void take_step(Run&& run, World& w) {
+  // 1. Newton's laws: accelerations, velocities, positions                          (section 4.4)
+  run.move_boundary(w);
+  run.send_ghosts(w);  // while the interior moves
+  run.move_interior(w);
+  run.receive_ghosts(w);
+
+  // 2. New contacts, when travel has used the margin up: grid, sort, search         (section 4.3)
+  run.search_if_due(w);
+
+  take_forces(run, w);
+  run.count_step(w);
+}
+
+/// What runs that take one step at a time share: ghosts, the search, the time step.
+struct StepwiseRun {
+  void send_ghosts(World& w) const;
+  void receive_ghosts(World& w) const;
+  void search_if_due(World& w) const;
+  void wall_forces(World& w) const;
+  void choose_step(World& w) const;
+  void count_step(World& w) const { w.step += 1; }
+};
+
+/// Loops on the host, over packs, shared by threads.
+struct HostRun : StepwiseRun {
+  void move_boundary(World& w) const;
+  void move_interior(World& w) const;
+  void pair_forces(World& w) const;
+  void sum_forces(World& w) const;
+};
+
+/// One step by launches at once: on the GPUs of ranks. The host's text, the device's kernels.
+void take_step_on_device(World& w);
+/// Forces and the step that follows, likewise.
+void take_forces_on_device(World& w);
+/// As many steps as a few hundredths of a second hold, launched ahead and led by the device's
+/// clock.
+Advanced advance_on_device(World& w, const StopAt& stop);
+
+}  // namespace breccia::dem
