@@ -67,8 +67,7 @@ struct Windows {
     const dem::Counts n = dem::count(w);
     result.push_back(once(part, "searches", static_cast<double>(searches), "-"));
     result.push_back(once(part, "contacts_touching", n.touching, "-"));
-    result.push_back(
-        once(part, "links_broken", n.broken_concrete + n.broken_steel + n.broken_interface, "-"));
+    result.push_back(once(part, "links_broken", n.broken_links(), "-"));
   }
 
   std::string part;

@@ -290,13 +290,10 @@ dem::World tiled_slabs(dem::Config config, int count, Communicator* ranks, const
                                static_cast<double>(slab.size());
     if (ranks == nullptr) return;
     number_elements(w, first * slab.size());
-    number_links(w.concrete_groups, w.numbers.concrete, tiles, built);
-    number_links(w.steel_groups, w.numbers.steel, tiles, built);
-    number_links(w.interface_groups, w.numbers.interface, tiles, built);
+    w.each_set([&](auto& set) { number_links(set.groups, set.numbers, tiles, built); });
     if (tiles.first == tiles.last) {
       drop_state(w);
-      for (Buffer<Index>* numbers : {&w.numbers.concrete, &w.numbers.steel, &w.numbers.interface})
-        numbers->resize(0);
+      w.each_set([](auto& set) { set.numbers.resize(0); });
     }
   });
   if (ranks != nullptr) {

@@ -3,7 +3,7 @@
 
 #include "core/pair_list.hpp"
 #include "dem/laws/contact.hpp"
-#include "dem/link_kernels.hpp"
+#include "dem/links/link_set.hpp"
 
 namespace breccia::dem {
 

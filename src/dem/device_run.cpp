@@ -53,9 +53,10 @@ struct MoveWalls {
 };
 
 /// Links of all groups in one launch, each by its group's law.
-template <class Kernel, class Law>
+template <class Kernel>
 struct Grouped {
   static constexpr const char* name = Kernel::name;
+  using Law = typename Kernel::Law;
   Kernel kernel;
   View<const Index> ends;  ///< of each group
   View<const Law> laws;
@@ -112,18 +113,13 @@ class LaunchedForces {
  protected:
   template <class Number>
   void pair_forces(World& w) const {
-    const LinkGroup<ConcreteLink> no_concrete{};
-    const LinkGroup<SteelLink> no_steel{};
-    const LinkGroup<InterfaceLink> no_interface{};
-    const Grouped<ConcreteLinkForces<Number>, ConcreteLink> concrete(
-        concrete_kernel<Number>(w, no_concrete), w.concrete_laws);
-    const Grouped<SteelLinkForces, SteelLink> steel(steel_kernel(w, no_steel), w.steel_laws);
-    const Grouped<InterfaceLinkForces, InterfaceLink> interface(interface_kernel(w, no_interface),
-                                                                w.interface_laws);
-    for_each_part(w.exec, part(w.steel.size(), by_(steel),
-                               part(w.interface.size(), by_(interface),
+    const auto of = [&](auto& set, Index first_action) {
+      return by_(Grouped(link_kernel<Number>(w, set, {}, first_action), set.on_device));
+    };
+    for_each_part(w.exec, part(w.steel.size(), of(w.steel, 0),
+                               part(w.interface.size(), of(w.interface, w.steel.size()),
                                     part(w.contacts.size(), by_(contact_kernel(w)),
-                                         part(w.concrete.size(), by_(concrete), Parts<>{})))));
+                                         part(w.concrete.size(), of(w.concrete, 0), Parts<>{})))));
   }
   By by_;
   StepClock* clock_;

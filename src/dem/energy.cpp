@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "exec/for_each.hpp"
-#include "math/constants.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -42,97 +41,18 @@ struct GravityPotential {
   }
 };
 
-template <class Number>
-struct ConcreteShares {
-  OwnedView owned;
-  ConcreteLink law;
-  Index first;
-  View<const ElementState> state_of;
-  View<const Index> a, b;
-  View<const double> length, stiffness;
-  View<const Number> opening;
-  PlanesView<const Number> shear, moment;
-  View<const double> slid, yielded, broke;
-
-  BR_HD Energies operator()(Index k) const {
-    const Index i = first + k;
-    Energies s;
-    if (!owned(a[i])) return s;
-    const double ra = state_of[a[i]].radius, rb = state_of[b[i]].radius, least = smaller(ra, rb);
-    const LinkConstants<double> link{length[i], stiffness[i], pi * least * least, 0.5 * (ra + rb),
-                                     ra + rb};
-    const double stretch = norm(state_of[b[i]].position - state_of[a[i]].position) - length[i];
-    const LinkState<double> state{opening[i], shear[i], moment[i]};
-    s.elastic.add(law.stored(link, stretch, state));
-    s.fracture.add(broke[i]);
-    if (state.opening >= 0.0) s.fracture.add(law.tension(link).spent(state.opening));
-    s.plastic.add(yielded[i]);
-    s.friction.add(slid[i]);
-    return s;
-  }
-};
-
-template <class Number>
-Energies concrete_shares(const World& w) {
-  const ConcreteLinks& c = w.concrete;
-  const LinkHistory<Number>& kept = c.kept.as<Number>();
+/// Of all links of a kind.
+template <class Number, class Law>
+Energies link_energies(const World& w, const LinkSet<Law>& set) {
+  const auto shares = shares_of<Number>(set, w.elements.state.view());
   Energies all;
-  for (const auto& g : w.concrete_groups)
+  for (const LinkGroup<Law>& g : set.groups)
     all = all + fold(w.exec, g.end - g.begin, Energies{},
-                     ConcreteShares<Number>{
-                         w.domain.owned_view(), g.law, g.begin, w.elements.state.view(), c.a.view(),
-                         c.b.view(), c.length.view(), c.stiffness.view(), kept.opening.view(),
-                         kept.shear.view(), kept.moment.view(), c.slid.view(), c.yielded.view(),
-                         c.broke.view()},
+                     GroupEnergies<Law, std::remove_const_t<decltype(shares)>>{
+                         w.domain.owned_view(), g.law, g.begin, shares},
                      Sum{});
   return all;
 }
-
-struct SteelShares {
-  OwnedView owned;
-  SteelLink law;
-  Index first;
-  View<const ElementState> state_of;
-  View<const Index> a, b;
-  View<const double> length;
-  View<const SteelState> state;
-  View<const double> yielded, broke;
-
-  BR_HD Energies operator()(Index k) const {
-    const Index i = first + k;
-    Energies s;
-    if (!owned(a[i])) return s;
-    const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
-    const double distance = norm(d), r = smaller(state_of[a[i]].radius, state_of[b[i]].radius);
-    s.elastic.add(law.stored(length[i], r, distance - length[i], state[i]));
-    if (state[i].hardening >= 0.0)
-      s.elastic.add(law.stored_moment(length[i], r, (1.0 / distance) * d, state[i]));
-    s.fracture.add(broke[i]);
-    s.plastic.add(yielded[i]);
-    return s;
-  }
-};
-
-struct InterfaceShares {
-  OwnedView owned;
-  InterfaceLink law;
-  Index first;
-  View<const Index> a;
-  View<const double> stiffness, area;
-  View<const InterfaceState> state;
-  View<const double> slid, broke;
-
-  BR_HD Energies operator()(Index k) const {
-    const Index i = first + k;
-    Energies s;
-    if (!owned(a[i])) return s;
-    s.elastic.add(law.stored(stiffness[i], area[i], state[i]));
-    s.fracture.add(broke[i]);
-    s.fracture.add(law.spent(stiffness[i], area[i], state[i]));
-    s.friction.add(slid[i]);
-    return s;
-  }
-};
 
 /// What contacts hold; `stored_normal` comes from the overlap of the last step.
 struct ContactShares {
@@ -214,20 +134,9 @@ Energies held(const World& w) {
   const Elements& e = w.elements;
   Energies all;
   all.kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{owned, kick(w)}, Sum{});
-  with_number(w.exec.precision,
-              [&](auto number) { all = all + concrete_shares<decltype(number)>(w); });
-  const SteelLinks& s = w.steel;
-  for (const auto& g : w.steel_groups)
-    all = all + fold(w.exec, g.end - g.begin, Energies{},
-                     SteelShares{owned, g.law, g.begin, e.state.view(), s.a.view(), s.b.view(),
-                                 s.length.view(), s.state.view(), s.yielded.view(), s.broke.view()},
-                     Sum{});
-  const InterfaceLinks& b = w.interface;
-  for (const auto& g : w.interface_groups)
-    all = all + fold(w.exec, g.end - g.begin, Energies{},
-                     InterfaceShares{owned, g.law, g.begin, b.a.view(), b.stiffness.view(),
-                                     b.area.view(), b.state.view(), b.slid.view(), b.broke.view()},
-                     Sum{});
+  with_number(w.exec.precision, [&](auto number) {
+    w.each_set([&](const auto& set) { all = all + link_energies<decltype(number)>(w, set); });
+  });
   std::vector<double> factors;
   for (const Wall& wall : w.walls) factors.push_back(wall.stiffness);
   Buffer<double> wall_stiffness(w.exec.space);

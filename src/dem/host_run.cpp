@@ -129,7 +129,8 @@ void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index
 template <class Number>
 void link_forces_and_sums(World& w) {
   std::vector<ConcreteLinkForces<Number>> kernels;
-  for (const auto& group : w.concrete_groups) kernels.push_back(concrete_kernel<Number>(w, group));
+  for (const auto& group : w.concrete.groups)
+    kernels.push_back(link_kernel<Number>(w, w.concrete, group.law, 0));
   const GatherForces gather = gather_kernel(w);
   Sweep& sweep = w.sweep;
   const auto threads = static_cast<int>(sweep.settled.size());
@@ -146,7 +147,7 @@ void link_forces_and_sums(World& w) {
       for (; *tile < sweep.begin[run + 1]; ++tile) {
         const Index from = *tile, to = *(tile + 1);
         for (std::size_t g = 0; g < kernels.size(); ++g) {
-          const std::vector<Index>& starts = w.concrete_groups[g].starts;
+          const std::vector<Index>& starts = w.concrete.groups[g].starts;
           add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
                     starts[static_cast<std::size_t>(to)], add);
         }
@@ -184,8 +185,10 @@ void HostRun::move_interior(World& w) const {
 void HostRun::pair_forces(World& w) const {
   {
     const StageTime timed(w.exec, "bar_forces");
-    for (const auto& group : w.steel_groups) run_group(w, group, steel_kernel(w, group));
-    for (const auto& group : w.interface_groups) run_group(w, group, interface_kernel(w, group));
+    each_bar_set(w, [&](auto& set, Index first_action) {
+      for (const auto& group : set.groups)
+        run_group(w, group, link_kernel<double>(w, set, group.law, first_action));
+    });
   }
   const StageTime timed(w.exec, "contact_forces");
   for_each(w.exec, w.contacts.size(), contact_kernel(w));

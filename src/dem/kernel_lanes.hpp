@@ -2,7 +2,7 @@
 // The widest form of the kernels that this processor can run, found at run time; same bits in all.
 
 #include "dem/element_kernels.hpp"
-#include "dem/link_kernels.hpp"
+#include "dem/links/all.hpp"
 #include "exec/lanes.hpp"
 
 namespace breccia::dem {

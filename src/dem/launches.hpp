@@ -30,26 +30,30 @@ inline bool sums_note_least(const World& w) {
   return !w.domain.alone() && w.walls.empty() && !w.clock.empty() && w.elements.size() > 0;
 }
 
-inline SteelLinkForces steel_kernel(World& w, const LinkGroup<SteelLink>& group) {
-  SteelLinks& s = w.steel;
-  return {group.law,
-          w.last_dt,
-          elements_view(w),
-          s.a.view(),
-          s.b.view(),
-          s.length.view(),
-          s.state.view(),
-          s.yielded.view(),
-          s.broke.view(),
-          w.bar_actions.view(),
-          0};
+/// Forces of links by a law, with the arrays of all links of its kind.
+/// @param first_action  action of link 0 among those of `bar_actions`; 0 for swept links
+template <class Number, class Law>
+auto link_kernel(World& w, LinkSet<Law>& set, const Law& law, Index first_action) {
+  const LinkSpace space{elements_view(w), w.last_dt, w.step};
+  if constexpr (LinkSet<Law>::swept) {
+    return forces_of<Number>(set, law, space, w.link_actions.as<Number>());
+  } else {
+    auto kernel = forces_of<Number>(set, law, space, w.bar_actions);
+    kernel.first_action = first_action;
+    return kernel;
+  }
 }
 
-inline InterfaceLinkForces interface_kernel(World& w, const LinkGroup<InterfaceLink>& group) {
-  InterfaceLinks& b = w.interface;
-  return {group.law,       w.last_dt,      elements_view(w),     b.a.view(),    b.b.view(),
-          b.before.view(), b.after.view(), b.stiffness.view(),   b.area.view(), b.state.view(),
-          b.slid.view(),   b.broke.view(), w.bar_actions.view(), w.steel.size()};
+/// Calls visit(set, first_action) for each kind of links whose forces the host does not sweep.
+template <class Visit>
+void each_bar_set(World& w, const Visit& visit) {
+  Index first = 0;
+  w.each_set([&](auto& set) {
+    if constexpr (!std::remove_reference_t<decltype(set)>::swept) {
+      visit(set, first);
+      first += set.size();
+    }
+  });
 }
 
 inline ContactForces contact_kernel(World& w) {
@@ -60,28 +64,6 @@ inline ContactForces contact_kernel(World& w) {
           c.pairs.a.view(),        c.pairs.b.view(),
           c.history.state.view(),  c.history.slid.view(),
           c.history.damped.view(), w.contact_actions.view()};
-}
-
-template <class Number>
-ConcreteLinkForces<Number> concrete_kernel(World& w, const LinkGroup<ConcreteLink>& group) {
-  ConcreteLinks& c = w.concrete;
-  LinkHistory<Number>& kept = c.kept.as<Number>();
-  return {group.law,
-          w.last_dt,
-          elements_view(w),
-          c.a.view(),
-          c.b.view(),
-          c.length.view(),
-          c.stiffness.view(),
-          kept.opening.view(),
-          kept.shear.view(),
-          kept.moment.view(),
-          c.slid.view(),
-          c.yielded.view(),
-          c.broke.view(),
-          w.link_actions.as<Number>().view(),
-          0,
-          w.step};
 }
 
 inline GatherForces gather_kernel(World& w) {

@@ -94,19 +94,12 @@ struct ReadProbe {
 };
 
 /// Counts the links of each element, and the broken ones.
-template <class Number>
+template <class Broken>
 struct CountLinks {
   View<const Index> a, b;
-  View<const Number> opening;            ///< of concrete links; else empty
-  View<const SteelState> steel;          ///< likewise
-  View<const InterfaceState> interface;  ///< likewise
+  Broken is_broken;
   View<Index> links, broken;
 
-  BR_HD bool is_broken(Index i) const {
-    if (opening.size > 0) return opening[i] < 0.0;
-    if (steel.size > 0) return steel[i].hardening < 0.0;
-    return interface[i].opening < 0.0;
-  }
   BR_HD void operator()(Index i) const {
     const bool is = is_broken(i);
     for (const Index e : {a[i], b[i]}) {
@@ -128,56 +121,30 @@ Buffer<double> damage_of(const World& w) {
   const Index count = w.elements.size();
   Buffer<Index> links(w.exec.space, count), broken(w.exec.space, count);
   Buffer<double> damage(w.exec.space, count);
-  with_number(w.exec.precision, [&](auto number) {
-    using Number = decltype(number);
-    for_each(w.exec, w.concrete.size(),
-             CountLinks<Number>{w.concrete.a.view(),
-                                w.concrete.b.view(),
-                                w.concrete.kept.as<Number>().opening.view(),
-                                {},
-                                {},
-                                links.view(),
-                                broken.view()});
+  w.each_set([&](const auto& set) {
+    with_number(w.exec.precision, [&](auto number) {
+      const auto is_broken = set.template broken<decltype(number)>();
+      for_each(w.exec, set.size(),
+               CountLinks<std::remove_const_t<decltype(is_broken)>>{
+                   set.a.view(), set.b.view(), is_broken, links.view(), broken.view()});
+    });
   });
-  for_each(w.exec, w.steel.size(),
-           CountLinks<double>{w.steel.a.view(),
-                              w.steel.b.view(),
-                              {},
-                              w.steel.state.view(),
-                              {},
-                              links.view(),
-                              broken.view()});
-  for_each(w.exec, w.interface.size(),
-           CountLinks<double>{w.interface.a.view(),
-                              w.interface.b.view(),
-                              {},
-                              {},
-                              w.interface.state.view(),
-                              links.view(),
-                              broken.view()});
   for_each(w.exec, count,
            Damage{std::as_const(links).view(), std::as_const(broken).view(), damage.view()});
   return damage;
 }
 
-/// Both ends of each link and whether it is broken.
+/// Calls visit(kind, a, b, broken) for each link, with both its ends.
 template <class Visit>
 void each_link(const World& w, const Visit& visit) {
-  const auto each = [&](LinkKind kind, const auto& links, const auto& state,
-                        const auto& is_broken) {
-    const OnHost a(links.a, w.exec.space), b(links.b, w.exec.space);
-    const OnHost s(state, w.exec.space);
-    for (Index i = 0; i < a->size(); ++i)
-      visit(kind, a->data()[i], b->data()[i], is_broken(s->data()[i]));
-  };
-  with_number(w.exec.precision, [&](auto number) {
-    each(LinkKind::concrete, w.concrete, w.concrete.kept.as<decltype(number)>().opening,
-         [](auto opening) { return opening < 0; });
+  w.each_set([&](const auto& set) {
+    const OnHost arrays(set.arrays(), w.exec.space);
+    with_number(w.exec.precision, [&](auto number) {
+      const auto is_broken = arrays->template broken<decltype(number)>();
+      for (Index i = 0; i < arrays->size(); ++i)
+        visit(set.kind, arrays->a.data()[i], arrays->b.data()[i], is_broken(i));
+    });
   });
-  each(LinkKind::steel, w.steel, w.steel.state,
-       [](const SteelState& s) { return s.hardening < 0.0; });
-  each(LinkKind::interface, w.interface, w.interface.state,
-       [](const InterfaceState& s) { return s.opening < 0.0; });
 }
 
 }  // namespace
@@ -258,9 +225,7 @@ Counts count(const World& w) {
     if (!broken)
       pieces.join(a, b);
     else
-      ++(kind == LinkKind::concrete ? n.broken_concrete
-         : kind == LinkKind::steel  ? n.broken_steel
-                                    : n.broken_interface);
+      ++n.broken[static_cast<std::size_t>(kind)];
   });
   const OnHost contacts(w.contacts.history.state, w.exec.space);
   for (const ContactState& contact : contacts->host())

@@ -1,6 +1,9 @@
 #pragma once
 // What a DEM run shows: hash, probes, counts, and whether its numbers are sound.
 
+#include <array>
+#include <numeric>
+
 #include "core/probe.hpp"
 #include "core/unsound.hpp"
 #include "dem/world.hpp"
@@ -25,10 +28,13 @@ Readings read_own(World& part, const ProbeConfig& probe);
 
 /// Counts of broken links and the like.
 struct Counts {
-  Index broken_concrete = 0, broken_steel = 0, broken_interface = 0;
-  Index touching = 0;             ///< contacts that press now
-  Index fragments = 0;            ///< pieces held together by links
-  double largest_fragment = 0.0;  ///< share of the mass  [-]
+  std::array<Index, link_kinds> broken{};  ///< links, by kind
+  Index touching = 0;                      ///< contacts that press now
+  Index fragments = 0;                     ///< pieces held together by links
+  double largest_fragment = 0.0;           ///< share of the mass  [-]
+
+  Index broken_links() const { return std::accumulate(broken.begin(), broken.end(), Index{0}); }
+  Index broken_of(LinkKind kind) const { return broken[static_cast<std::size_t>(kind)]; }
 };
 Counts count(const World& w);
 

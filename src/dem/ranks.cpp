@@ -18,9 +18,10 @@ void renumber(Buffer<Index>& ends, Number& number) {
 }
 template <class Number>
 void renumber_all(World& w, Number number) {
-  for (Buffer<Index>* ends : {&w.concrete.a, &w.concrete.b, &w.steel.a, &w.steel.b, &w.interface.a,
-                              &w.interface.b, &w.interface.before, &w.interface.after,
-                              &w.contacts.pairs.a, &w.contacts.pairs.b, &w.wall_contacts.pairs.a})
+  w.each_set([&](auto& set) {
+    set.each_end([&](const char*, Buffer<Index>& ends) { renumber(ends, number); });
+  });
+  for (Buffer<Index>* ends : {&w.contacts.pairs.a, &w.contacts.pairs.b, &w.wall_contacts.pairs.a})
     renumber(*ends, number);
 }
 
@@ -44,14 +45,12 @@ class Journey {
     for (Index e = 0; e < w_.elements.size(); ++e)
       if (w_.domain.owns(e)) elements_.add(ties_.owner_of(e), e);
     const int ranks = w_.domain.ranks->size();
-    Deliveries concrete(ranks), steel(ranks), interface(ranks), contacts(ranks), walls(ranks);
-    const InterfaceLinks& b = w_.interface;
-    for (Index i = 0; i < b.size(); ++i)
-      ties_.tie(std::array{b.a.data()[i], b.b.data()[i], b.before.data()[i], b.after.data()[i]}, i,
-                interface);
-    tie_all(w_.concrete, concrete);
-    tie_all(w_.steel, steel);
-    tie_all(w_.contacts.pairs, contacts);
+    std::vector<Deliveries> links(link_kinds, Deliveries(ranks));
+    Deliveries contacts(ranks), walls(ranks);
+    w_.each_set([&](const auto& set) { tie_ends(set, links[static_cast<std::size_t>(set.kind)]); });
+    for (Index i = 0; i < w_.contacts.size(); ++i)
+      ties_.tie(std::array{w_.contacts.pairs.a.data()[i], w_.contacts.pairs.b.data()[i]}, i,
+                contacts);
     const Pairs& at_walls = w_.wall_contacts.pairs;
     for (Index i = 0; i < at_walls.size(); ++i)
       ties_.tie(std::array{at_walls.a.data()[i]}, i, walls);
@@ -59,43 +58,53 @@ class Journey {
     renumber_all(w_, [this](Index e) { return w_.elements.id.data()[e]; });
     Communicator& all = *w_.domain.ranks;
     deal(all, together(w_.elements, w_.travel), elements_, w_.elements.id);
-    auto concrete_number = one_field(w_.numbers.concrete),
-         steel_number = one_field(w_.numbers.steel),
-         interface_number = one_field(w_.numbers.interface);
-    Buffer<Action> on_steel, on_interface;
-    split_actions(on_steel, on_interface);
-    auto steel_actions = one_field(on_steel), interface_actions = one_field(on_interface);
-    deal(all, together(w_.concrete, concrete_number), concrete, w_.numbers.concrete);
-    deal(all, together(w_.steel, steel_number, steel_actions), steel, w_.numbers.steel);
-    deal(all, together(w_.interface, interface_number, interface_actions), interface,
-         w_.numbers.interface);
+    std::vector<Buffer<Action>> on_links = split_actions();
+    w_.each_set([&](auto& set) {
+      const auto kind = static_cast<std::size_t>(set.kind);
+      auto number = one_field(set.numbers);
+      auto actions = one_field(on_links[kind]);
+      if constexpr (std::remove_reference_t<decltype(set)>::swept)
+        deal(all, together(set.arrays(), number), links[kind], set.numbers);
+      else
+        deal(all, together(set.arrays(), number, actions), links[kind], set.numbers);
+    });
     deal(all, w_.contacts, contacts, w_.contacts.pairs.key);
     deal(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
-    join_actions(on_steel, on_interface);
+    join_actions(on_links);
     renumber_all(w_, [places = Places(w_.elements.id)](Index id) mutable { return places.of(id); });
   }
 
  private:
   template <class Links>
-  void tie_all(const Links& links, Deliveries& items) {
-    for (Index i = 0; i < links.size(); ++i)
-      ties_.tie(std::array{links.a.data()[i], links.b.data()[i]}, i, items);
+  void tie_ends(const Links& links, Deliveries& items) {
+    std::vector<const Index*> arrays;
+    links.each_end([&](const char*, const Buffer<Index>& end) { arrays.push_back(end.data()); });
+    std::vector<Index> ends(arrays.size());
+    for (Index i = 0; i < links.size(); ++i) {
+      for (std::size_t k = 0; k < ends.size(); ++k) ends[k] = arrays[k][i];
+      ties_.tie(ends, i, items);
+    }
   }
 
   /// Bar forces are output between steps, so they migrate with their links.
-  void split_actions(Buffer<Action>& on_steel, Buffer<Action>& on_interface) const {
-    on_steel.resize(w_.steel.size());
-    on_interface.resize(w_.interface.size());
-    const auto all = w_.bar_actions.host();
-    std::copy_n(all.begin(), on_steel.size(), on_steel.host().begin());
-    std::copy_n(all.begin() + on_steel.size(), on_interface.size(), on_interface.host().begin());
+  std::vector<Buffer<Action>> split_actions() const {
+    std::vector<Buffer<Action>> on_links(link_kinds);
+    const Action* from = w_.bar_actions.data();
+    w_.each_set([&](const auto& set) {
+      if (set.swept) return;
+      Buffer<Action>& own = on_links[static_cast<std::size_t>(set.kind)];
+      own.resize(set.size());
+      std::copy_n(from, set.size(), own.data());
+      from += set.size();
+    });
+    return on_links;
   }
-  void join_actions(const Buffer<Action>& on_steel, const Buffer<Action>& on_interface) {
-    w_.bar_actions.resize(on_steel.size() + on_interface.size());
-    const auto all = w_.bar_actions.host();
-    std::copy(on_steel.host().begin(), on_steel.host().end(), all.begin());
-    std::copy(on_interface.host().begin(), on_interface.host().end(),
-              all.begin() + on_steel.size());
+  void join_actions(const std::vector<Buffer<Action>>& on_links) {
+    Index count = 0;
+    for (const Buffer<Action>& own : on_links) count += own.size();
+    w_.bar_actions.resize(count);
+    Action* to = w_.bar_actions.data();
+    for (const Buffer<Action>& own : on_links) to = std::copy_n(own.data(), own.size(), to);
   }
 
   World& w_;
@@ -105,21 +114,14 @@ class Journey {
 
 /// Links of each group lie together in memory, as in the whole model.
 template <class Law>
-void divide(std::vector<LinkGroup<Law>>& groups, const Buffer<Index>& numbers) {
-  const auto all = numbers.host();
+void divide(LinkSet<Law>& set) {
+  const auto all = set.numbers.host();
   const auto place = [&](Index number) {
     return static_cast<Index>(std::lower_bound(all.begin(), all.end(), number) - all.begin());
   };
-  for (LinkGroup<Law>& group : groups) {
+  for (LinkGroup<Law>& group : set.groups) {
     group.begin = place(group.first_number);
     group.end = place(group.end_number);
-  }
-}
-template <class Law>
-void note_numbers(std::vector<LinkGroup<Law>>& groups) {
-  for (LinkGroup<Law>& group : groups) {
-    group.first_number = group.begin;
-    group.end_number = group.end;
   }
 }
 
@@ -169,10 +171,12 @@ class Spheres final : public Shareable {
     const auto add = [&weight](const Buffer<Index>& ends, std::int64_t cost) {
       for (const Index e : ends.host()) weight[static_cast<std::size_t>(e)] += cost;
     };
-    for (const Buffer<Index>* ends : {&w_.concrete.a, &w_.concrete.b}) add(*ends, end_of_link);
+    w_.each_set([&](const auto& set) {
+      for (const Buffer<Index>* ends : {&set.a, &set.b})
+        add(*ends, set.swept ? end_of_link : other_end);
+    });
     for (const Buffer<Index>* ends :
-         {&w_.steel.a, &w_.steel.b, &w_.interface.a, &w_.interface.b, &w_.contacts.pairs.a,
-          &w_.contacts.pairs.b, &w_.wall_contacts.pairs.a})
+         {&w_.contacts.pairs.a, &w_.contacts.pairs.b, &w_.wall_contacts.pairs.a})
       add(*ends, other_end);
     return weight;
   }
@@ -192,15 +196,14 @@ class Spheres final : public Shareable {
     journey.go();
   }
   void settle_in() override {
-    divide(w_.concrete_groups, w_.numbers.concrete);
-    divide(w_.steel_groups, w_.numbers.steel);
-    divide(w_.interface_groups, w_.numbers.interface);
+    w_.each_set([](auto& set) { divide(set); });
     w_.domain.tied.assign(static_cast<std::size_t>(w_.elements.size()), 0);
-    for (const Buffer<Index>* ends :
-         {&w_.concrete.a, &w_.concrete.b, &w_.steel.a, &w_.steel.b, &w_.interface.a,
-          &w_.interface.b, &w_.interface.before, &w_.interface.after})
-      for (const Index e : ends->host())
-        if (e >= 0) w_.domain.tied[static_cast<std::size_t>(e)] = 1;
+    w_.each_set([&](const auto& set) {
+      set.each_end([&](const char*, const Buffer<Index>& ends) {
+        for (const Index e : ends.host())
+          if (e >= 0) w_.domain.tied[static_cast<std::size_t>(e)] = 1;
+      });
+    });
     move_to(w_, space_);
     set_linked_pairs(w_);
     derive(w_);
@@ -220,9 +223,11 @@ class Spheres final : public Shareable {
   Buffer<ElementState> seen_;  ///< on the host, while elements are elsewhere
 };
 
-void number(Buffer<Index>& numbers, Index count) {
-  numbers.resize(count);
-  for (Index i = 0; i < count; ++i) numbers.data()[i] = i;
+/// Numbers the links of a whole model.
+template <class Law>
+void number(LinkSet<Law>& set) {
+  set.numbers.resize(set.size());
+  for (Index i = 0; i < set.size(); ++i) set.numbers.data()[i] = i;
 }
 
 }  // namespace
@@ -230,9 +235,7 @@ void number(Buffer<Index>& numbers, Index count) {
 void drop_state(World& w) {
   resize_fields(w.elements, 0);
   resize_fields(w.travel, 0);
-  resize_fields(w.concrete, 0);
-  resize_fields(w.steel, 0);
-  resize_fields(w.interface, 0);
+  w.each_set([](auto& set) { resize_fields(set, 0); });
   resize_fields(w.contacts, 0);
   resize_fields(w.wall_contacts, 0);
   w.bar_actions.resize(0);
@@ -262,13 +265,14 @@ void feel_contacts(World& w) {
 
 World share_out(const World& whole, Communicator& ranks, const DomainConfig& config, Space space) {
   World w = whole;
-  note_numbers(w.concrete_groups);
-  note_numbers(w.steel_groups);
-  note_numbers(w.interface_groups);
+  w.each_set([](auto& set) {
+    for (auto& group : set.groups) {
+      group.first_number = group.begin;
+      group.end_number = group.end;
+    }
+  });
   if (ranks.rank() != 0) drop_state(w);
-  number(w.numbers.concrete, w.concrete.size());
-  number(w.numbers.steel, w.steel.size());
-  number(w.numbers.interface, w.interface.size());
+  w.each_set([](auto& set) { number(set); });
   return share_parts(std::move(w), ranks, config, space);
 }
 
@@ -303,12 +307,12 @@ void collect(World& part, World& whole) {
   World copy(Exec{});
   copy.elements = host_copy(part.elements);
   copy.travel = host_copy(part.travel);
-  copy.concrete = host_copy(part.concrete);
-  copy.steel = host_copy(part.steel);
-  copy.interface = host_copy(part.interface);
+  each_two_sets(copy, part, [](auto& to, const auto& from) {
+    to.arrays() = host_copy(from.arrays());
+    to.numbers = from.numbers;
+  });
   copy.contacts = host_copy(part.contacts);
   copy.wall_contacts = host_copy(part.wall_contacts);
-  copy.numbers = part.numbers;
   copy_to(copy.bar_actions, part.bar_actions);
   copy.domain.ranks = part.domain.ranks;
   copy.domain.owned = part.domain.owned;
@@ -320,9 +324,7 @@ void collect(World& part, World& whole) {
   for (const Ledger& ledger : booked) whole.ledger.add(ledger);
   whole.elements = std::move(copy.elements);
   whole.travel = std::move(copy.travel);
-  whole.concrete = std::move(copy.concrete);
-  whole.steel = std::move(copy.steel);
-  whole.interface = std::move(copy.interface);
+  each_two_sets(whole, copy, [](auto& to, auto& from) { to.arrays() = std::move(from.arrays()); });
   whole.contacts = std::move(copy.contacts);
   whole.wall_contacts = std::move(copy.wall_contacts);
   whole.bar_actions = std::move(copy.bar_actions);

@@ -22,34 +22,33 @@ struct UnpackState {
   }
 };
 
-/// Pairs that a link still holds: all but released ones do.
-template <class Number>
+/// Pairs that a link of one kind still holds: all but released ones do.
+template <class Released>
 struct ListHeld {
   static constexpr const char* name = "dem.list_held";
-  View<const Number> opening;            ///< of concrete links
-  View<const InterfaceState> interface;  ///< of interface links
-  Index bonds;                           ///< first interface link among all
-  View<const Index> links, partners;     ///< by the ends of the link
+  Released released;
+  Index first, count;                 ///< of the kind among the links of all kinds
+  View<const Index> links, partners;  ///< by the ends of the link
   View<Index> held;
   BR_HD void operator()(Index i) const {
-    const Index link = links[i];
-    double widest = 0.0;
-    if (link < opening.size) widest = opening[link];
-    if (link >= bonds) widest = interface[link - bonds].opening;
-    held[i] = widest < 0.5 * (link_broken + link_released) ? -1 : partners[i];
+    const Index link = links[i] - first;
+    if (link >= 0 && link < count) held[i] = released(link) ? -1 : partners[i];
   }
 };
 
 /// The links that a search leaves out.
 KnownPairs held_pairs(World& w) {
   w.held_partners.resize(w.linked_partners.size());
-  with_number(w.exec.precision, [&w](auto number) {
-    using Number = decltype(number);
-    for_each(w.exec, w.linked_partners.size(),
-             ListHeld<Number>{std::as_const(w.concrete.kept.as<Number>().opening).view(),
-                              std::as_const(w.interface.state).view(),
-                              w.concrete.size() + w.steel.size(), w.linked_links.view(),
-                              w.linked_partners.view(), w.held_partners.view()});
+  Index first = 0;
+  w.each_set([&](const auto& set) {
+    with_number(w.exec.precision, [&](auto number) {
+      const auto released = set.template released<decltype(number)>();
+      if (set.size() > 0)
+        for_each(w.exec, w.linked_partners.size(),
+                 ListHeld<decltype(released)>{released, first, set.size(), w.linked_links.view(),
+                                              w.linked_partners.view(), w.held_partners.view()});
+    });
+    first += set.size();
   });
   return {w.linked_starts.view(), w.held_partners.view()};
 }
@@ -207,7 +206,7 @@ void list_rows(World& w, const std::vector<Index>& a, const std::vector<Index>& 
   for (Index from = 0; from < count; from += sweep_tile) {
     const auto begin = static_cast<std::size_t>(from);
     const auto end = static_cast<std::size_t>(std::min(from + sweep_tile, count));
-    for (const auto& group : w.concrete_groups)
+    for (const auto& group : w.concrete.groups)
       for (Index i = group.starts[begin]; i < group.starts[end]; ++i) order.push_back(i);
   }
   w.rows_a = rows_of(w.exec.space, a, count, order);
@@ -237,7 +236,7 @@ void plan_sweep(World& w) {
     links_before[e] += links_before[e - 1] + 1;  // an element weighs about as much as a link
     reached[e] = std::max(reached[e], reached[e - 1]);
   }
-  for (auto& group : w.concrete_groups) find_starts(a, count, group);
+  for (auto& group : w.concrete.groups) find_starts(a, count, group);
   const int threads = count < smallest_shared_loop ? 1 : w.exec.threads;
   w.sweep = {};
   std::vector<Index>& tiles = w.sweep.tiles;
@@ -337,32 +336,31 @@ void derive_contacts(World& w) {
 namespace {
 
 template <class Law>
-void list_laws(const std::vector<LinkGroup<Law>>& groups, GroupLaws<Law>& list) {
+void list_laws(LinkSet<Law>& set) {
   std::vector<Law> laws;
   std::vector<Index> ends;
-  for (const LinkGroup<Law>& group : groups) {
+  for (const LinkGroup<Law>& group : set.groups) {
     laws.push_back(group.law);
     ends.push_back(group.end);
   }
-  copy_to(list.laws, laws);
-  copy_to(list.ends, ends);
+  copy_to(set.on_device.laws, laws);
+  copy_to(set.on_device.ends, ends);
 }
 
 }  // namespace
 
 void derive(World& w) {
-  list_laws(w.concrete_groups, w.concrete_laws);
-  list_laws(w.steel_groups, w.steel_laws);
-  list_laws(w.interface_groups, w.interface_laws);
+  w.each_set([](auto& set) { list_laws(set); });
   std::vector<Index> a, b, more;
   const auto append = [&](std::vector<Index>& all, const Buffer<Index>& ends) {
     copy_to(more, ends);
     all.insert(all.end(), more.begin(), more.end());
   };
-  append(a, w.steel.a);
-  append(a, w.interface.a);
-  append(b, w.steel.b);
-  append(b, w.interface.b);
+  w.each_set([&](const auto& set) {
+    if (set.swept) return;
+    append(a, set.a);
+    append(b, set.b);
+  });
   Buffer<Index> all_a(w.exec.space), all_b(w.exec.space);
   copy_to(all_a, a);
   copy_to(all_b, b);

@@ -51,11 +51,12 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
 
 /// The links of one kind, sorted into groups of one material, each in the model's order.
 template <class Law, class MakeLaw>
-std::vector<Model::Link> grouped(const Model& m, LinkKind kind, const Config& config,
-                                 std::vector<LinkGroup<Law>>& groups, const MakeLaw& make_law) {
+std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<Law>& set,
+                                 const MakeLaw& make_law) {
+  std::vector<LinkGroup<Law>>& groups = set.groups;
   std::vector<Model::Link> links;
   for (const Model::Link& link : m.links)
-    if (link.kind == kind) links.push_back(link);
+    if (link.kind == set.kind) links.push_back(link);
   std::stable_sort(links.begin(), links.end(), [](const Model::Link& p, const Model::Link& q) {
     return p.material < q.material;
   });
@@ -69,6 +70,7 @@ std::vector<Model::Link> grouped(const Model& m, LinkKind kind, const Config& co
                         {}});
     groups.back().end = static_cast<Index>(i + 1);
   }
+  resize_fields(set, static_cast<Index>(links.size()));
   return links;
 }
 
@@ -90,10 +92,9 @@ void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>
 }
 
 void set_concrete_links(World& w, const Config& config, const Model& m) {
-  const auto links =
-      grouped(m, LinkKind::concrete, config, w.concrete_groups,
-              [&](const MaterialConfig& c) { return concrete_law(c, config.contact); });
-  resize_fields(w.concrete, static_cast<Index>(links.size()));
+  const auto links = grouped(m, config, w.concrete, [&](const MaterialConfig& c) {
+    return concrete_law(c, config.contact);
+  });
   set_ends(w.concrete.a, w.concrete.b, links);
   std::vector<double> length, stiffness;
   for (const Model::Link& link : links) {
@@ -119,8 +120,7 @@ void limit_margins(World& w, const Model& m) {
 }
 
 void set_steel_links(World& w, const Config& config, const Model& m) {
-  const auto links = grouped(m, LinkKind::steel, config, w.steel_groups, steel_law);
-  resize_fields(w.steel, static_cast<Index>(links.size()));
+  const auto links = grouped(m, config, w.steel, steel_law);
   set_ends(w.steel.a, w.steel.b, links);
   std::vector<double> length;
   for (const Model::Link& link : links) length.push_back(distance(m, link.a, link.b));
@@ -133,7 +133,7 @@ bool is_steel(const Config& config, const Model& m, Index e) {
 }
 
 void set_interface_links(World& w, const Config& config, const Model& m) {
-  auto links = grouped(m, LinkKind::interface, config, w.interface_groups,
+  auto links = grouped(m, config, w.interface,
                        [&](const MaterialConfig& c) { return interface_law(c, config.contact); });
   std::map<Index, int> shares;  // links of each bar element
   for (Model::Link& link : links) {
@@ -141,7 +141,6 @@ void set_interface_links(World& w, const Config& config, const Model& m) {
     ++shares[link.a];
   }
   InterfaceLinks& b = w.interface;
-  resize_fields(b, static_cast<Index>(links.size()));
   set_ends(b.a, b.b, links);
   std::vector<Index> before, after;
   std::vector<double> stiffness, area;
@@ -226,19 +225,15 @@ void move_to(World& w, Space space) {
 }
 
 void set_linked_pairs(World& w) {
-  Buffer<KeyedIndex> linked(Space::host,
-                            w.concrete.a.size() + w.steel.a.size() + w.interface.a.size());
+  Buffer<KeyedIndex> linked(Space::host, w.links());
   Index link = 0;
-  const auto append = [&](const Buffer<Index>& a, const Buffer<Index>& b) {
+  w.each_set([&](const auto& set) {
     std::vector<Index> ends_a, ends_b;
-    copy_to(ends_a, a);
-    copy_to(ends_b, b);
+    copy_to(ends_a, set.a);
+    copy_to(ends_b, set.b);
     for (std::size_t i = 0; i < ends_a.size(); ++i, ++link)  // by places: the order by ids
       linked.data()[link] = {pair_key(ends_a[i], ends_b[i]), link};
-  };
-  append(w.concrete.a, w.concrete.b);
-  append(w.steel.a, w.steel.b);
-  append(w.interface.a, w.interface.b);
+  });
   sort_by_key(w.exec, linked);
   std::vector<Index> starts(static_cast<std::size_t>(w.elements.size()) + 1, 0), partners, links;
   for (const KeyedIndex& pair : linked.host()) {

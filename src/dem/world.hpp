@@ -11,45 +11,14 @@
 #include "dem/config.hpp"
 #include "dem/element_kernels.hpp"
 #include "dem/kernel_lanes.hpp"
+#include "dem/links/all.hpp"
 #include "dem/model.hpp"
 #include "domain/domain.hpp"
 #include "domain/set_here.hpp"
-#include "exec/early.hpp"
 #include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
 
 namespace breccia::dem {
-
-/// Neighbouring links of one law: one launch.
-template <class Law>
-struct LinkGroup {
-  Law law;
-  Index begin = 0, end = 0;
-  std::int16_t material = 0;
-  std::vector<Index>
-      starts;  ///< first link of each element a, and the end; concrete on the host only
-  Index first_number = 0, end_number = 0;  ///< of its links in the whole model; ranks only
-};
-
-/// The laws of all groups of a kind of link where kernels can read them, in the order of the
-/// groups.
-template <class Law>
-struct GroupLaws {
-  Buffer<Law> laws;
-  Buffer<Index> ends;  ///< of each group; equal to the one before where a group has no link here
-};
-
-/// The group of link i: the first that ends beyond it.
-BR_HD inline Index group_of(const View<const Index>& ends, Index i) {
-  Index group = 0;
-  while (i >= read_now(&ends[group])) ++group;
-  return group;
-}
-
-/// What links are called in the whole model, ascending. Empty on one rank, which holds all.
-struct LinkNumbers {
-  Buffer<Index> concrete, steel, interface;
-};
 
 /// The action of a link that a later run adds to element b.
 struct PassedAction {
@@ -92,7 +61,7 @@ struct Parameters {
   Index materials = 0;
 };
 
-struct World {
+struct World : LinkSets {
   /// Empty, every array in the space of `how`.
   explicit World(const Exec& how);
 
@@ -101,10 +70,7 @@ struct World {
   Parameters parameters;
 
   // State: what a checkpoint holds.
-  Elements elements;
-  ConcreteLinks concrete;
-  SteelLinks steel;
-  InterfaceLinks interface;
+  Elements elements;       // and the links, in LinkSets
   Contacts contacts;       ///< between elements
   Contacts wall_contacts;  ///< with walls
   Travel travel;           ///< since the last search
@@ -123,9 +89,7 @@ struct World {
       s.each_field([&](const char*, const char*, auto& array) { visit(array); });
     };
     state(elements);
-    state(concrete);
-    state(steel);
-    state(interface);
+    each_set([&](auto& set) { state(set); });
     state(contacts);
     state(wall_contacts);
     state(travel);
@@ -139,17 +103,11 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(bar_incidence, contact_incidence, broad_phase, held_partners, contact_actions, link_sums,
          critical, rows_a, rows_b, link_actions.in_double, link_actions.in_single, device_walls,
-         clock, beyond, concrete_laws.laws, concrete_laws.ends, steel_laws.laws, steel_laws.ends,
-         interface_laws.laws, interface_laws.ends);
+         clock, beyond);
+    each_set([&](auto& set) { each(set.on_device.laws, set.on_device.ends); });
   }
 
-  /// Of all kinds, broken ones included.
-  Index links() const { return concrete.size() + steel.size() + interface.size(); }
-
   // What follows from the case.
-  std::vector<LinkGroup<ConcreteLink>> concrete_groups;
-  std::vector<LinkGroup<SteelLink>> steel_groups;
-  std::vector<LinkGroup<InterfaceLink>> interface_groups;
   std::vector<ElementSet> sets;
   Buffer<ContactPair> contact_pairs;  ///< by two materials
   Buffer<ContactPair> wall_pairs;     ///< by one material
@@ -158,15 +116,14 @@ struct World {
   // alike.
   Buffer<Index> linked_starts;    ///< first link of each lower end, and the number of links
   Buffer<Index> linked_partners;  ///< the higher end of each
-  Buffer<Index> linked_links;     ///< its place among concrete, steel and interface links
+  Buffer<Index> linked_links;     ///< its place among the links of all kinds
 
   // Which part of the whole it is.
   Domain domain;
-  LinkNumbers numbers;
 
   // What follows from the state.
   Buffer<Index> held_partners;  ///< linked_partners, -1 where the link has let go; for a search
-  Incidence bar_incidence, contact_incidence;  ///< bars: steel, then interface links
+  Incidence bar_incidence, contact_incidence;  ///< bars: all links but swept ones, kind by kind
   Sweep sweep;
   BroadPhase broad_phase;
   std::vector<Index> wall_begin;  ///< first contact of each wall, and the end
@@ -179,9 +136,6 @@ struct World {
   LinkRows rows_a, rows_b;         ///< concrete links that start, and that end, at each element
   Stored<ActionsOf> link_actions;  ///< of concrete links
   Buffer<Wall> device_walls;
-  GroupLaws<ConcreteLink> concrete_laws;
-  GroupLaws<SteelLink> steel_laws;
-  GroupLaws<InterfaceLink> interface_laws;
   Buffer<StepClock> clock;
   Buffer<std::int32_t> beyond;  ///< one: 1 if an element has used its margin up; ranks only
   StepGraph graph;              ///< of a few steps

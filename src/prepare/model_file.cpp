@@ -66,7 +66,7 @@ void refuse_misfits(const dem::Model& model) {
   const dem::Model::Link* before = nullptr;
   for (const dem::Model::Link& link : model.links) {
     if (!is_element(link.a) || !is_element(link.b) || link.a >= link.b ||
-        link.kind > dem::LinkKind::interface)
+        static_cast<std::size_t>(link.kind) >= dem::link_kinds)
       fail();
     if (before != nullptr && std::tie(link.a, link.b) < std::tie(before->a, before->b)) fail();
     before = &link;

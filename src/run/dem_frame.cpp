@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "core/on_host.hpp"
 #include "dem/observe.hpp"
-#include "math/constants.hpp"
 #include "run/dem_method.hpp"
 
 namespace breccia {
@@ -16,29 +16,25 @@ using namespace dem;
 
 /// How many elements and links there are in all, and bodies.
 struct Totals {
-  std::int64_t elements, concrete, steel, interface;
+  std::array<std::int64_t, link_kinds + 1> items;  ///< links by kind, then elements  [-]
   std::size_t bodies;
 };
 
-/// @param own  elements and links of this rank  [-]
-Totals totals(const Domain& domain, std::array<std::int64_t, 4> own, std::int16_t last_body) {
+/// @param own  of this rank, as in Totals::items  [-]
+Totals totals(const Domain& domain, std::array<std::int64_t, link_kinds + 1> own,
+              std::int16_t last_body) {
   double last = last_body;
   if (!domain.alone()) {
     domain.ranks->add_up(own);
     last = -domain.ranks->least(-last);
   }
-  return {own[0], own[1], own[2], own[3], static_cast<std::size_t>(last + 1.0)};
+  return {own, static_cast<std::size_t>(last + 1.0)};
 }
 
 /// Elements of a frame, and places of lines that end on them.
 class DemFrame {
  public:
-  explicit DemFrame(const dem::World& w)
-      : w_(w),
-        elements_(w.elements, w.exec.space),
-        concrete_(w.concrete, w.exec.space),
-        steel_(w.steel, w.exec.space),
-        interface_(w.interface, w.exec.space) {}
+  explicit DemFrame(const dem::World& w) : w_(w), elements_(w.elements, w.exec.space) {}
 
   FramePart made() {
     const Elements& e = *elements_;
@@ -46,10 +42,10 @@ class DemFrame {
       if (w_.domain.owns(i)) own_.push_back(i);
     std::int16_t last_body = -1;
     for (const Index i : own_) last_body = std::max(last_body, e.group.data()[i]);
-    const Totals all = totals(
-        w_.domain,
-        {static_cast<std::int64_t>(own_.size()), own(*concrete_), own(*steel_), own(*interface_)},
-        last_body);
+    std::array<std::int64_t, link_kinds + 1> items{};
+    w_.each_set([&](const auto& set) { items[static_cast<std::size_t>(set.kind)] = own(set); });
+    items.back() = static_cast<std::int64_t>(own_.size());
+    const Totals all = totals(w_.domain, items, last_body);
     Frame& f = part_.frame;
     f.step = w_.step;
     f.time = w_.time;
@@ -59,8 +55,8 @@ class DemFrame {
     FramePlaces& places = part_.places;
     places.whole = w_.domain.alone();
     places.has_spheres = true;
-    places.points = all.elements;
-    places.lines = all.concrete + all.steel + all.interface;
+    places.points = all.items.back();
+    places.lines = std::accumulate(all.items.begin(), all.items.end() - 1, std::int64_t{0});
     return std::move(part_);
   }
 
@@ -68,7 +64,8 @@ class DemFrame {
   template <class Links>
   std::int64_t own(const Links& links) const {
     if (w_.domain.alone()) return links.size();
-    return std::count_if(links.a.host().begin(), links.a.host().end(),
+    const OnHost ends(links.a, w_.exec.space);
+    return std::count_if(ends->host().begin(), ends->host().end(),
                          [this](Index a) { return w_.domain.owns(a); });
   }
 
@@ -113,41 +110,27 @@ class DemFrame {
 
   // Links: kind 0 concrete, 1 steel, 2 interface; state 0 whole, 1 softened or yielded, 2 broken.
   void add_links(const Totals& all) {
-    const ConcreteLinks& c = *concrete_;
-    kind_ = 0.0F;
-    for (const auto& g : w_.concrete_groups)
-      for (Index i = g.begin; i < g.end; ++i) {
-        if (!w_.domain.owns(c.a.data()[i])) continue;
-        const ElementState* const state = elements_->state.data();
-        const double opening = link_opening(c, i);
-        const double r = std::min(state[c.a.data()[i]].radius, state[c.b.data()[i]].radius);
-        const double onset = g.law.tensile_strength * pi * r * r / c.stiffness.data()[i];
-        add_line(c, i,
-                 opening < 0.0     ? 2.0F
-                 : opening > onset ? 1.0F
-                                   : 0.0F,
-                 norm(link_force(g.law, c, *elements_, i)));
-        note_place(w_.numbers.concrete, i, 0);
-      }
-    Buffer<Action> copy;
-    if (w_.exec.space != Space::host) copy_to(copy, w_.bar_actions);
-    const Buffer<Action>& actions = w_.exec.space != Space::host ? copy : w_.bar_actions;
-    const auto bar_pull = [&](Index i) { return norm(actions.data()[i].force_on_b()); };
-    const SteelLinks& s = *steel_;
-    kind_ = 1.0F;
-    for (Index i = 0; i < s.size(); ++i) {
-      if (!w_.domain.owns(s.a.data()[i])) continue;
-      const double hardening = s.state.data()[i].hardening;
-      add_line(s, i, hardening < 0.0 ? 2.0F : hardening > 0.0 ? 1.0F : 0.0F, bar_pull(i));
-      note_place(w_.numbers.steel, i, all.concrete);
-    }
-    const InterfaceLinks& b = *interface_;
-    kind_ = 2.0F;
-    for (Index i = 0; i < b.size(); ++i) {
-      if (!w_.domain.owns(b.a.data()[i])) continue;
-      add_line(b, i, b.state.data()[i].opening < 0.0 ? 2.0F : 0.0F, bar_pull(s.size() + i));
-      note_place(w_.numbers.interface, i, all.concrete + all.steel);
-    }
+    const OnHost actions(w_.bar_actions, w_.exec.space);
+    std::int64_t before = 0;
+    Index first_action = 0;
+    w_.each_set([&](const auto& set) {
+      const OnHost arrays(set.arrays(), w_.exec.space);
+      kind_ = static_cast<float>(set.kind);
+      for (const auto& g : set.groups)
+        for (Index i = g.begin; i < g.end; ++i) {
+          if (!w_.domain.owns(arrays->a.data()[i])) continue;
+          double pull = 0.0;
+          if constexpr (std::remove_reference_t<decltype(set)>::swept)
+            pull = norm(link_force(g.law, *arrays, *elements_, i));
+          else
+            pull = norm(actions->data()[first_action + i].force_on_b());
+          add_line(*arrays, i, static_cast<float>(stage_of(g.law, *arrays, *elements_, i)), pull);
+          if (!w_.domain.alone())
+            part_.places.line.push_back(static_cast<std::int32_t>(before + set.numbers.data()[i]));
+        }
+      before += all.items[static_cast<std::size_t>(set.kind)];
+      if (!set.swept) first_action += set.size();
+    });
     part_.frame.line_fields.push_back(std::move(kinds_));
     part_.frame.line_fields.push_back(std::move(states_));
     part_.frame.line_fields.push_back(std::move(force_));
@@ -161,17 +144,8 @@ class DemFrame {
     kinds_.values.push_back(kind_);
     states_.values.push_back(state);
   }
-  /// @param before  lines of other kinds
-  void note_place(const Buffer<Index>& numbers, Index i, std::int64_t before) {
-    if (!w_.domain.alone())
-      part_.places.line.push_back(static_cast<std::int32_t>(before + numbers.data()[i]));
-  }
-
   const dem::World& w_;
   OnHost<Elements> elements_;
-  OnHost<ConcreteLinks> concrete_;
-  OnHost<SteelLinks> steel_;
-  OnHost<InterfaceLinks> interface_;
   std::vector<Index> own_;
   float kind_ = 0.0F;  ///< of the lines that are added now
   FrameField kinds_{"kind", "-", 1, {}}, states_{"state", "-", 1, {}}, force_{"force", "N", 1, {}};

@@ -39,9 +39,8 @@ struct DemSim {
     for (std::size_t g = 0; g < groups; ++g)
       add("model.elements_by_group." + w.sets[g].name, w.sets[g].members.size());
     add("model.links", w.links());
-    add("model.links_by_kind.concrete", w.concrete.size());
-    add("model.links_by_kind.steel", w.steel.size());
-    add("model.links_by_kind.interface", w.interface.size());
+    w.each_set(
+        [&](const auto& set) { add(std::string("model.links_by_kind.") + set.name, set.size()); });
     add("model.interaction_range", interaction_range);
     add("searches", static_cast<double>(w.searches));
     add("contacts.candidates", w.contacts.size());
@@ -50,10 +49,10 @@ struct DemSim {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     const dem::Counts n = dem::count(w);
     add("contacts.touching", n.touching);
-    add("fracture.broken_links", n.broken_concrete + n.broken_steel + n.broken_interface);
-    add("fracture.broken_by_kind.concrete", n.broken_concrete);
-    add("fracture.broken_by_kind.steel", n.broken_steel);
-    add("fracture.broken_by_kind.interface", n.broken_interface);
+    add("fracture.broken_links", n.broken_links());
+    w.each_set([&](const auto& set) {
+      add(std::string("fracture.broken_by_kind.") + set.name, n.broken_of(set.kind));
+    });
     add("fracture.fragments", n.fragments);
     add("fracture.largest_fragment_fraction", n.largest_fragment);
   }
@@ -61,9 +60,7 @@ struct DemSim {
   template <class Visit>
   static void each_stored(World& w, const Visit& visit) {
     visit.fields("elements", w.elements);
-    visit.fields("concrete", w.concrete);
-    visit.fields("steel", w.steel);
-    visit.fields("interface", w.interface);
+    w.each_set([&](auto& set) { visit.fields(set.name, set); });
     visit.fields("contacts", w.contacts);
     visit.fields("wall_contacts", w.wall_contacts);
     visit.fields("travel", w.travel);

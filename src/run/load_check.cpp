@@ -17,7 +17,7 @@ namespace {
 class Collector {
  public:
   template <class T>
-  void add(const char* section, const Buffer<T>& array) {
+  void add(const std::string& section, const Buffer<T>& array) {
     std::vector<T> items;
     copy_to(items, array);
     Repeated one{section, std::vector<std::byte>(items.size() * sizeof(T))};
@@ -93,14 +93,11 @@ std::vector<Repeated> repeated_by(const dem::World& w) {
   c.add("elements.material", w.elements.material);
   c.add("elements.fixed", w.elements.fixed);
   c.add("elements.motion", w.elements.motion);
-  c.add("concrete.a", w.concrete.a);
-  c.add("concrete.b", w.concrete.b);
-  c.add("steel.a", w.steel.a);
-  c.add("steel.b", w.steel.b);
-  c.add("interface.a", w.interface.a);
-  c.add("interface.b", w.interface.b);
-  c.add("interface.before", w.interface.before);
-  c.add("interface.after", w.interface.after);
+  w.each_set([&](const auto& set) {
+    set.each_end([&](const char* end, const auto& array) {
+      c.add(std::string(set.name) + "." + end, array);
+    });
+  });
   return std::move(c.all);
 }
 

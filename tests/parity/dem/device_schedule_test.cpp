@@ -31,7 +31,7 @@ Scene pairs_that_part(int materials, double speed) {
 }
 
 Index broken(const World& w) {
-  return static_cast<Index>(count(w).broken_concrete);
+  return static_cast<Index>(count(w).broken_of(LinkKind::concrete));
 }
 
 constexpr int steps = 120;

@@ -33,7 +33,7 @@ dem::World small_world(int threads, const std::vector<std::string>& overrides = 
 /// Hash after the impact has begun to break the slab.
 std::uint64_t hash_after(dem::World w, int steps = 900) {
   while (w.step < steps) dem::advance(w, {1e300, steps});
-  EXPECT_GT(dem::count(w).broken_concrete, 100);
+  EXPECT_GT(dem::count(w).broken_of(dem::LinkKind::concrete), 100);
   return dem::state_hash(w);
 }
 
@@ -187,7 +187,7 @@ TEST(SameBits, of_links_that_wear_and_crush) {
         for (Index i = 0; i < before.size(); ++i)
           shorter += w.concrete.length.data()[i] < before.data()[i] ? 1 : 0;
         EXPECT_GT(shorter, 100);
-        EXPECT_GT(dem::count(w).broken_concrete, 100);
+        EXPECT_GT(dem::count(w).broken_of(dem::LinkKind::concrete), 100);
         EXPECT_LT(energy.error_relative, 1e-3);
       }
       EXPECT_EQ(dem::state_hash(w), hash) << threads << ", " << static_cast<int>(lanes);

@@ -36,8 +36,8 @@ struct LinkStiffness {
   double shear, bending;
 };
 LinkStiffness stiffness_of(const World& w) {
-  const double kt = w.concrete_groups[0].law.shear_ratio * w.concrete.stiffness.data()[0];
-  return {kt, w.concrete_groups[0].law.rolling_ratio * kt * radius * radius};
+  const double kt = w.concrete.groups[0].law.shear_ratio * w.concrete.stiffness.data()[0];
+  return {kt, w.concrete.groups[0].law.rolling_ratio * kt * radius * radius};
 }
 
 /// Moves the tip sideways, lets everything come to rest and returns force over deflection there.

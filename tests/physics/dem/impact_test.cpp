@@ -49,7 +49,7 @@ TEST(Impact, the_rock_s_loss_of_momentum_is_the_impulse_on_slab_bars_and_support
   }
   const double lost = before - sum(w, "impactor", "momentum_z");
   EXPECT_LT(lost, 0.3 * before) << "the rock has hardly been slowed";
-  EXPECT_GT(count(w).broken_concrete, 100);
+  EXPECT_GT(count(w).broken_of(LinkKind::concrete), 100);
   const double tolerance = 1e-10 * std::fabs(before);
   EXPECT_NEAR(lost, -given.rock, tolerance);
   EXPECT_NEAR(given.rock, -(given.slab + given.steel), tolerance);

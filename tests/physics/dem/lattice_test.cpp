@@ -52,7 +52,7 @@ Affine deformed(double poisson, const Plane& rate, double angle, double turn = 0
         s.link(a, b);
   World w = s.world();
   const double kn = w.concrete.stiffness.data()[0];
-  const double kt = w.concrete_groups[0].law.shear_ratio * kn;
+  const double kt = w.concrete.groups[0].law.shear_ratio * kn;
   const double dt = w.next_dt;
   step(w);
   return {std::move(w), {rate.xx * dt, rate.yy * dt, rate.xy * dt}, middle, kn, kt};
@@ -67,7 +67,7 @@ Plane stress_at(const World& w, Index element) {
     const Index a = w.concrete.a.data()[i], b = w.concrete.b.data()[i];
     if (a != element && b != element) continue;
     const Vec3 branch = state(w, b).position - state(w, a).position;
-    const Vec3 pull = -1.0 * link_force(w.concrete_groups[0].law, w.concrete, w.elements, i);
+    const Vec3 pull = -1.0 * link_force(w.concrete.groups[0].law, w.concrete, w.elements, i);
     sum.xx += 0.5 / area * pull.x * branch.x;
     sum.yy += 0.5 / area * pull.y * branch.y;
     sum.xy += 0.25 / area * (pull.x * branch.y + pull.y * branch.x);
@@ -120,7 +120,7 @@ TEST(Lattice, stores_half_of_stress_times_strain) {
     const Index a = now.world.concrete.a.data()[i], b = now.world.concrete.b.data()[i];
     if (a != now.middle && b != now.middle) continue;
     const World& w = now.world;
-    const Vec3 f = link_force(w.concrete_groups[0].law, w.concrete, w.elements, i);
+    const Vec3 f = link_force(w.concrete.groups[0].law, w.concrete, w.elements, i);
     const Vec3 n = (1.0 / spacing) * (state(now.world, b).position - state(now.world, a).position);
     const double pull = dot(f, n), slide = dot(f, f) - pull * pull;
     // half a link belongs to this element

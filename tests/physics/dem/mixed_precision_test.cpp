@@ -39,7 +39,7 @@ TEST(MixedPrecision, feels_a_load_that_grows_by_a_billionth_of_the_strength_a_st
   constexpr int steps = 400'000;
   constexpr double share = 1e-9;
   const World still = held_pair({}).world();
-  const ConcreteLink& law = still.concrete_groups[0].law;
+  const ConcreteLink& law = still.concrete.groups[0].law;
   const double kt = law.shear_ratio * still.concrete.stiffness.data()[0];
   const double strength = law.cohesion * pi * 1e-4, at_first = 0.6 * strength;
   const Vec3 velocity{0.0, share * strength / kt / still.next_dt, 0.0};
@@ -78,7 +78,7 @@ TEST(MixedPrecision, feels_wear_of_a_billionth_of_the_rupture_a_step) {
   };
   const World still = pair({}).world();
   const double kn = still.concrete.stiffness.data()[0];
-  const double rupture = still.concrete_groups[0].law.tensile_strength * pi * 1e-4 / kn * 6.0;
+  const double rupture = still.concrete.groups[0].law.tensile_strength * pi * 1e-4 / kn * 6.0;
   const double at_first = 0.6 * rupture, grown = share * rupture;
   const Vec3 velocity{0.0, grown / wear / still.next_dt, 0.0};
   for (const Precision precision : {Precision::full, Precision::mixed}) {
@@ -110,7 +110,7 @@ struct Pulled {
 Pulled pulled_apart(Precision precision) {
   World w = held_pair({0.02, 0.0, 0.0}).world(1, precision);
   Pulled r;
-  const ConcreteLink& law = w.concrete_groups[0].law;
+  const ConcreteLink& law = w.concrete.groups[0].law;
   r.strength = law.tensile_strength * pi * 1e-4;
   r.toughness = 0.5 * r.strength * r.strength / w.concrete.stiffness.data()[0] * 6.0;
   while (link_opening(w.concrete, 0) >= 0.0) {
@@ -197,7 +197,7 @@ TEST(MixedPrecision, keeps_momentum_as_double_does_and_turns_by_roundings_only) 
     torques = std::max(torques, w.last_dt * sum);
   }
   const Momentum end = momentum(w);
-  EXPECT_GT(count(w).broken_concrete, 100);
+  EXPECT_GT(count(w).broken_of(LinkKind::concrete), 100);
   EXPECT_LT(norm(end.linear - start.linear), 1e-11 * scale);  // both ends get the same number
   EXPECT_LT(norm(end.angular - start.angular), steps * nearest * torques);
   EXPECT_GT(norm(end.angular - start.angular), 0.0);
@@ -224,7 +224,7 @@ TEST(MixedPrecision, forces_of_a_breaking_slab_differ_by_less_than_3e_6_after_a_
       read_case<Config>(std::string(source_dir) + "/cases/rc_slab/small.toml", {});
   World full = make_world(config, build_model(config, ""), {});
   for (int i = 0; i < 600; ++i) step(full);
-  ASSERT_GT(count(full).broken_concrete, 1000);
+  ASSERT_GT(count(full).broken_of(LinkKind::concrete), 1000);
   World mixed = full;
   mixed.exec.precision = mixed.concrete.precision = Precision::mixed;
   const LinkHistory<double>& kept = full.concrete.kept.in_double;

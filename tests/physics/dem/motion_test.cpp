@@ -105,7 +105,7 @@ Scene linked_pair() {
 TEST(Motion, the_four_modes_of_a_linked_pair_have_their_frequencies) {
   const double kn = [] { return linked_pair().world().concrete.stiffness.data()[0]; }();
   const World at_rest = linked_pair().world();
-  const double kt = at_rest.concrete_groups[0].law.shear_ratio * kn, kr = kt * 1e-4;
+  const double kt = at_rest.concrete.groups[0].law.shear_ratio * kn, kr = kt * 1e-4;
   const double m = at_rest.elements.mass.data()[0], inertia = at_rest.elements.inertia.data()[0];
   {
     Scene s = linked_pair();
@@ -283,7 +283,7 @@ TEST(Motion, momentum_and_angular_momentum_survive_fracture_friction_and_dashpot
   const auto start = momentum(w);
   for (int i = 0; i < 6000; ++i) step(w);
   const auto end = momentum(w);
-  EXPECT_GT(count(w).broken_concrete, 500);
+  EXPECT_GT(count(w).broken_of(LinkKind::concrete), 500);
   EXPECT_LT(norm(end.linear - start.linear), 1e-11 * scale);
   EXPECT_LT(norm(end.angular - start.angular), 1e-10 * scale * 0.2);
   EXPECT_LT(balance(w).error_relative, 1e-2);
@@ -342,7 +342,7 @@ TEST(Motion, the_same_scene_turned_or_shifted_moves_the_same) {
   const auto quarter = [](const Vec3& x) { return Vec3{-x.y, x.x, x.z}; };
   const World w = run(same, same), turned = run(quarter, quarter);
   const World moved = run([](const Vec3& x) { return x + Vec3{4.0, -8.0, 2.0}; }, same);
-  EXPECT_GT(count(w).broken_concrete, 0);
+  EXPECT_GT(count(w).broken_of(LinkKind::concrete), 0);
   for (Index e = 0; e < w.elements.size(); ++e) {
     EXPECT_LT(norm(state(turned, e).position - quarter(state(w, e).position)), 1e-9);
     EXPECT_LT(norm(state(moved, e).position - (state(w, e).position + Vec3{4.0, -8.0, 2.0})), 1e-9);

@@ -51,7 +51,7 @@ struct UnequalPair {
     scene.sphere({0.025, 0.0, 0.0}, 0.013);
     scene.link(0, 1);
     const World w = scene.world();
-    const ConcreteLink& law = w.concrete_groups[0].law;
+    const ConcreteLink& law = w.concrete.groups[0].law;
     kn = w.concrete.stiffness.data()[0];
     kt = law.shear_ratio * kn;
     kr = law.rolling_ratio * kt * 0.0115 * 0.0115;

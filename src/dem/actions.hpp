@@ -1,98 +1,11 @@
 #pragma once
-// What joins elements from the start: the arrays of each kind of link, and what interactions do to
-// their ends.
+// What interactions do to their two ends: written once by each, read by both ends.
 
-#include "core/fields.hpp"
 #include "core/precision.hpp"
-#include "dem/laws/concrete_link.hpp"
-#include "dem/laws/interface_link.hpp"
-#include "dem/laws/steel_link.hpp"
+#include "dem/laws/pair_motion.hpp"
+#include "exec/buffer.hpp"
 
 namespace breccia::dem {
-
-/// What cohesive links keep from step to step.
-template <class Number>
-struct LinkHistory {
-  Buffer<Number> opening;   ///< largest so far, or link_broken, link_released  [m]
-  PlanesOf<Number> shear;   ///< F_s on b  [N]
-  PlanesOf<Number> moment;  ///< M on b  [N m]
-};
-
-/// Cohesive links. Never removed: a broken one answers as the contact that is left of it.
-struct ConcreteLinks {
-  Precision precision = Precision::full;  ///< of `kept`
-  Buffer<Index> a, b;                     ///< the ends, a's global id below b's
-  Buffer<double> length;                  ///< D_eq  [m]
-  Buffer<double> stiffness;               ///< K_n  [N/m]
-  Stored<LinkHistory> kept;
-  Buffer<double> slid;     ///< energy spent on sliding so far  [J]
-  Buffer<double> yielded;  ///< energy spent on plastic moments so far  [J]
-  Buffer<double> broke;    ///< energy that its rupture spent  [J]
-
-  template <class Visit>
-  void each_field(Visit&& field) {
-    field("a", "-", a);
-    field("b", "-", b);
-    field("length", "m", length);
-    field("stiffness", "N/m", stiffness);
-    with_number(precision, [&](auto number) {
-      auto& history = kept.as<decltype(number)>();
-      field("opening", "m", history.opening);
-      field("shear", "N", history.shear);
-      field("moment", "N m", history.moment);
-    });
-    field("slid", "J", slid);
-    field("yielded", "J", yielded);
-    field("broke", "J", broke);
-  }
-  Index size() const { return a.size(); }
-};
-
-/// Pieces of bar.
-struct SteelLinks {
-  Buffer<Index> a, b;
-  Buffer<double> length;  ///< L_s  [m]
-  Buffer<SteelState> state;
-  Buffer<double> yielded;  ///< energy spent on yielding so far  [J]
-  Buffer<double> broke;    ///< energy that its rupture spent  [J]
-
-  template <class Visit>
-  void each_field(Visit&& field) {
-    field("a", "-", a);
-    field("b", "-", b);
-    field("length", "m", length);
-    field("state", "-", state);
-    field("yielded", "J", yielded);
-    field("broke", "J", broke);
-  }
-  Index size() const { return a.size(); }
-};
-
-/// Bonds between bars and concrete: a is the bar's element, b the concrete's.
-struct InterfaceLinks {
-  Buffer<Index> a, b;
-  Buffer<Index> before,
-      after;  ///< neighbours of a along its bar (a itself at an end): they give the axis
-  Buffer<double> stiffness;  ///< K_tr  [N/m]
-  Buffer<double> area;       ///< S, share of the bar's surface  [m2]
-  Buffer<InterfaceState> state;
-  Buffer<double> slid;   ///< energy spent on bond slip and friction so far  [J]
-  Buffer<double> broke;  ///< energy that its rupture spent  [J]
-
-  template <class Visit>
-  void each_field(Visit&& field) {
-    field("a", "-", a);
-    field("b", "-", b);
-    field("before", "-", before);
-    field("after", "-", after);
-    field("stiffness", "N/m", stiffness);
-    field("area", "m2", area);
-    field("state", "-", state);
-    field("slid", "J", slid);
-    field("broke", "J", broke);
-  }
-  Index size() const { return a.size(); }
-};
 
 /// What an interaction does to its two ends in this step, and how stiff it is: written once by its
 /// law, read by both ends. What an end adds up lies side by side: six numbers from 0 for a, from 3

@@ -1,0 +1,238 @@
+#pragma once
+// Cohesive links of concrete: arrays, forces, energies.
+
+#include "dem/laws/concrete_link.hpp"
+#include "dem/links/link_set.hpp"
+#include "math/constants.hpp"
+#include "math/lanes.hpp"
+#include "math/rounding.hpp"
+
+namespace breccia::dem {
+
+/// What cohesive links keep from step to step.
+template <class Number>
+struct LinkHistory {
+  Buffer<Number> opening;   ///< largest so far, or link_broken, link_released  [m]
+  PlanesOf<Number> shear;   ///< F_s on b  [N]
+  PlanesOf<Number> moment;  ///< M on b  [N m]
+};
+
+/// Cohesive links. Never removed: a broken one answers as the contact that is left of it.
+template <>
+struct LinkArrays<ConcreteLink> {
+  static constexpr LinkKind kind = LinkKind::concrete;
+  static constexpr const char* name = "concrete";
+  static constexpr bool swept = true;
+
+  Precision precision = Precision::full;  ///< of `kept`
+  Buffer<Index> a, b;                     ///< the ends, a's global id below b's
+  Buffer<double> length;                  ///< D_eq  [m]
+  Buffer<double> stiffness;               ///< K_n  [N/m]
+  Stored<LinkHistory> kept;
+  Buffer<double> slid;     ///< energy spent on sliding so far  [J]
+  Buffer<double> yielded;  ///< energy spent on plastic moments so far  [J]
+  Buffer<double> broke;    ///< energy that its rupture spent  [J]
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("a", "-", a);
+    field("b", "-", b);
+    field("length", "m", length);
+    field("stiffness", "N/m", stiffness);
+    with_number(precision, [&](auto number) {
+      auto& history = kept.as<decltype(number)>();
+      field("opening", "m", history.opening);
+      field("shear", "N", history.shear);
+      field("moment", "N m", history.moment);
+    });
+    field("slid", "J", slid);
+    field("yielded", "J", yielded);
+    field("broke", "J", broke);
+  }
+  template <class Visit>
+  void each_end(Visit&& visit) {
+    visit("a", a);
+    visit("b", b);
+  }
+  template <class Visit>
+  void each_end(Visit&& visit) const {
+    visit("a", a);
+    visit("b", b);
+  }
+  Index size() const { return a.size(); }
+
+  template <class Number>
+  struct Below {
+    View<const Number> opening;
+    double limit;
+    BR_HD bool operator()(Index i) const { return opening[i] < limit; }
+  };
+  template <class Number>
+  Below<Number> broken() const {
+    return {kept.as<Number>().opening.view(), 0.0};
+  }
+  template <class Number>
+  Below<Number> released() const {
+    return {kept.as<Number>().opening.view(), 0.5 * (link_broken + link_released)};
+  }
+};
+using ConcreteLinks = LinkArrays<ConcreteLink>;
+
+/// Cohesive links of one material, one link (R = double) or a pack of neighbours at a time.
+/// @tparam Number  what the links' history and actions are stored in
+template <class Number>
+struct ConcreteLinkForces {
+  static constexpr const char* name = "dem.concrete_links";
+  using Law = ConcreteLink;
+  Law law;
+  double dt;  ///< the step that moved the elements to where they are  [s]
+  ElementsView elements;
+  View<const Index> a, b;
+  View<double> length;
+  View<const double> stiffness;
+  View<Number> opening;
+  PlanesView<Number> shear, moment;
+  View<double> slid, yielded, broke;
+  View<ActionOf<Number>> actions;
+  Index first_action;  ///< action of link 0
+  std::int64_t step;   ///< steps taken before
+
+  template <class R>
+  struct Loaded {
+    Indices<R> a, b;
+    R length, stiffness;
+    LinkState<R> state;
+    LinkEnd<R> end_a, end_b;
+  };
+  template <class R>
+  BR_HD void load_early(Index i, Loaded<R>& loaded) const {
+    loaded.a = load_indices_now<R>(a, i);
+    loaded.b = load_indices_now<R>(b, i);
+    loaded.length = load_now<R>(length, i);
+    loaded.stiffness = load_now<R>(stiffness, i);
+    loaded.state = {load_now<R>(opening, i), load_now<R>(shear, i), load_now<R>(moment, i)};
+  }
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    loaded.end_a = load_end<R>(elements.state, loaded.a);
+    loaded.end_b = load_end<R>(elements.state, loaded.b);
+  }
+  template <class R>
+  BR_HD void update(Index i, const Loaded<R>& loaded) const {
+    update(law, i, loaded);
+  }
+  template <class R>
+  BR_HD void update(const ConcreteLink& by, Index i, const Loaded<R>& loaded) const {
+    const R &radius_a = loaded.end_a.radius, &radius_b = loaded.end_b.radius;
+    const PairMotion<R> motion =
+        pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, radius_a - radius_b, dt);
+    const R least = smaller(radius_a, radius_b), touching = radius_a + radius_b;
+    const LinkConstants<R> link{loaded.length, loaded.stiffness, pi * least * least, 0.5 * touching,
+                                touching};
+    LinkState<R> state = loaded.state;
+    const LinkResponse<R> r = by.answer(link, motion, state);
+
+    if constexpr (std::is_same_v<Number, float>) {
+      const BitsOf<R> chance = chance_of(motion.distance, step);
+      state.shear = rounded_by(chance, 0, state.shear);
+      state.moment = rounded_by(chance, 18, state.moment);
+      if (by.wears()) state.opening = rounded_by<R>(chance >> 35, state.opening);
+    }
+    store(opening, i, state.opening);
+    store(shear, i, state.shear);
+    store(moment, i, state.moment);
+    if (any(r.shortened != 0.0)) store(length, i, link.length - r.shortened);
+    if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);
+    if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
+    if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
+
+    const R kn = r.active * link.stiffness, kt = by.shear_ratio * kn;
+    const R kr = by.rolling_ratio * kt * link.radius * link.radius;
+    book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt,
+         kr, kr);
+  }
+  BR_HD void set(const StepTime& now) {
+    dt = now.last_dt;
+    step = now.step;
+  }
+  BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
+};
+
+template <class Number>
+ConcreteLinkForces<Number> forces_of(ConcreteLinks& c, const ConcreteLink& law, const LinkSpace& in,
+                                     ActionsOf<Number>& actions) {
+  LinkHistory<Number>& kept = c.kept.as<Number>();
+  return {law,
+          in.dt,
+          in.elements,
+          c.a.view(),
+          c.b.view(),
+          c.length.view(),
+          c.stiffness.view(),
+          kept.opening.view(),
+          kept.shear.view(),
+          kept.moment.view(),
+          c.slid.view(),
+          c.yielded.view(),
+          c.broke.view(),
+          actions.view(),
+          0,
+          in.step};
+}
+
+/// Energies of cohesive links.
+template <class Number>
+struct ConcreteShares {
+  View<const ElementState> state_of;
+  View<const Index> a, b;
+  View<const double> length, stiffness;
+  View<const Number> opening;
+  PlanesView<const Number> shear, moment;
+  View<const double> slid, yielded, broke;
+
+  BR_HD Energies operator()(const ConcreteLink& law, Index i) const {
+    Energies s;
+    const double ra = state_of[a[i]].radius, rb = state_of[b[i]].radius, least = smaller(ra, rb);
+    const LinkConstants<double> link{length[i], stiffness[i], pi * least * least, 0.5 * (ra + rb),
+                                     ra + rb};
+    const double stretch = norm(state_of[b[i]].position - state_of[a[i]].position) - length[i];
+    const LinkState<double> state{opening[i], shear[i], moment[i]};
+    s.elastic.add(law.stored(link, stretch, state));
+    s.fracture.add(broke[i]);
+    if (state.opening >= 0.0) s.fracture.add(law.tension(link).spent(state.opening));
+    s.plastic.add(yielded[i]);
+    s.friction.add(slid[i]);
+    return s;
+  }
+};
+
+template <class Number>
+ConcreteShares<Number> shares_of(const ConcreteLinks& c, const View<const ElementState>& state) {
+  const LinkHistory<Number>& kept = c.kept.as<Number>();
+  return {state,
+          c.a.view(),
+          c.b.view(),
+          c.length.view(),
+          c.stiffness.view(),
+          kept.opening.view(),
+          kept.shear.view(),
+          kept.moment.view(),
+          c.slid.view(),
+          c.yielded.view(),
+          c.broke.view()};
+}
+
+/// How far a link has gone. All arrays on the host.
+inline LinkStage stage_of(const ConcreteLink& law, const ConcreteLinks& c, const Elements& e,
+                          Index i) {
+  const double opening = with_number(c.precision, [&](auto number) -> double {
+    return c.kept.as<decltype(number)>().opening.data()[i];
+  });
+  if (opening < 0.0) return LinkStage::broken;
+  const ElementState* const state = e.state.data();
+  const double r = smaller(state[c.a.data()[i]].radius, state[c.b.data()[i]].radius);
+  const double onset = law.tensile_strength * pi * r * r / c.stiffness.data()[i];
+  return opening > onset ? LinkStage::softened : LinkStage::whole;
+}
+
+}  // namespace breccia::dem

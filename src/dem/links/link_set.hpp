@@ -1,0 +1,117 @@
+#pragma once
+// Links of one law: their arrays, the groups of one material each, and how ranks number them.
+
+#include <string>
+#include <vector>
+
+#include "core/energy.hpp"
+#include "core/fields.hpp"
+#include "core/kernel.hpp"
+#include "dem/actions.hpp"
+#include "dem/elements.hpp"
+#include "dem/model.hpp"
+#include "domain/domain.hpp"
+
+namespace breccia::dem {
+
+/// The arrays of all links of a law: ends, constants, state, what they have spent. One definition a
+/// law, with
+///
+///   kind, name             its LinkKind, and its word in files
+///   swept                  whether the host sums its forces as they come (concrete alone)
+///   each_field, each_end   visit the arrays, and those of elements
+///   broken(), released()   kernels: whether link i is broken, and whether it has let go of its
+///                          ends, which may then touch as others do
+template <class Law>
+struct LinkArrays;
+
+/// Neighbouring links of one material: one loop.
+template <class Law>
+struct LinkGroup {
+  Law law;
+  Index begin = 0, end = 0;
+  std::int16_t material = 0;
+  std::vector<Index> starts;  ///< first link of each element a, and the end; swept on the host only
+  Index first_number = 0, end_number = 0;  ///< of its links in the whole model; ranks only
+};
+
+/// The laws of all groups where a device's kernels can read them, in the order of the groups.
+template <class Law>
+struct GroupLaws {
+  Buffer<Law> laws;
+  Buffer<Index> ends;  ///< of each group; equal to the one before where a group has no link here
+};
+
+/// The group of link i: the first that ends beyond it.
+BR_HD inline Index group_of(const View<const Index>& ends, Index i) {
+  Index group = 0;
+  while (i >= read_now(&ends[group])) ++group;
+  return group;
+}
+
+/// All links of a law.
+template <class Law>
+struct LinkSet : LinkArrays<Law> {
+  std::vector<LinkGroup<Law>> groups;
+  GroupLaws<Law> on_device;
+  Buffer<Index> numbers;  ///< in the whole model, ascending; empty on one rank, which holds all
+
+  LinkArrays<Law>& arrays() { return *this; }
+  const LinkArrays<Law>& arrays() const { return *this; }
+};
+
+/// What kernels of links read of the elements.
+struct ElementsView {
+  View<const ElementState> state;
+  View<const double> mass, inertia;
+
+  BR_HD PairEnd<double> end(Index i) const {
+    const ElementState& s = state[i];
+    return {s.position, s.velocity, s.spin};
+  }
+  BR_HD double radius(Index i) const { return state[i].radius; }
+};
+
+/// One end of a link, or of each in a pack.
+template <class R>
+struct LinkEnd {
+  PairEnd<R> motion;
+  R radius;
+};
+template <class R>
+BR_HD inline LinkEnd<R> load_end(const View<const ElementState>& state, const Indices<R>& i) {
+  if constexpr (width_of<R> == 1) {
+    const ElementState s = read_record_now(&state[i.at]);
+    return {{s.position, s.velocity, s.spin}, s.radius};
+  } else {
+    R c[10];
+    gather_records(state, i, c);
+    return {{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}}, c[9]};
+  }
+}
+
+/// What a kernel of forces needs of a world.
+struct LinkSpace {
+  ElementsView elements;
+  double dt;          ///< the step that moved the elements to where they are  [s]
+  std::int64_t step;  ///< steps taken before
+};
+
+/// Energies of one group of links.
+/// @tparam Shares  a kernel with operator()(law, link)
+template <class Law, class Shares>
+struct GroupEnergies {
+  OwnedView owned;
+  Law law;
+  Index first;
+  Shares shares;
+  BR_HD Energies operator()(Index k) const {
+    const Index i = first + k;
+    return owned(shares.a[i]) ? shares(law, i) : Energies{};
+  }
+};
+
+/// How far a link has gone, as pictures show it.
+enum class LinkStage : std::uint8_t { whole, softened, broken };
+
+}  // namespace breccia::dem

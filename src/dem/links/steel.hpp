@@ -1,0 +1,192 @@
+#pragma once
+// Pieces of reinforcing bar: arrays, forces, energies.
+
+#include "dem/laws/steel_link.hpp"
+#include "dem/links/link_set.hpp"
+#include "math/lanes.hpp"
+
+namespace breccia::dem {
+
+/// Pieces of bar.
+template <>
+struct LinkArrays<SteelLink> {
+  static constexpr LinkKind kind = LinkKind::steel;
+  static constexpr const char* name = "steel";
+  static constexpr bool swept = false;
+
+  Buffer<Index> a, b;
+  Buffer<double> length;  ///< L_s  [m]
+  Buffer<SteelState> state;
+  Buffer<double> yielded;  ///< energy spent on yielding so far  [J]
+  Buffer<double> broke;    ///< energy that its rupture spent  [J]
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("a", "-", a);
+    field("b", "-", b);
+    field("length", "m", length);
+    field("state", "-", state);
+    field("yielded", "J", yielded);
+    field("broke", "J", broke);
+  }
+  template <class Visit>
+  void each_end(Visit&& visit) {
+    visit("a", a);
+    visit("b", b);
+  }
+  template <class Visit>
+  void each_end(Visit&& visit) const {
+    visit("a", a);
+    visit("b", b);
+  }
+  Index size() const { return a.size(); }
+
+  struct Broken {
+    View<const SteelState> state;
+    BR_HD bool operator()(Index i) const { return state[i].hardening < 0.0; }
+  };
+  template <class>
+  Broken broken() const {
+    return {state.view()};
+  }
+  /// A ruptured bar still bears compression.
+  struct Never {
+    BR_HD bool operator()(Index) const { return false; }
+  };
+  template <class>
+  Never released() const {
+    return {};
+  }
+};
+using SteelLinks = LinkArrays<SteelLink>;
+
+/// Numbers of links first, first + 1, ... as their state.
+template <class R>
+BR_HD SteelStateOf<R> load_state(const View<const SteelState>& states, Index first) {
+  R s[8];
+  gather_records(states, consecutive<R>(first), s);
+  return {s[0], s[1], {s[2], s[3], s[4]}, {s[5], s[6], s[7]}};
+}
+template <class R>
+BR_HD void store_state(const View<SteelState>& states, Index first, const SteelStateOf<R>& state) {
+  const Vec3Of<R>&f = state.shear, &m = state.moment;
+  const R s[8] = {state.plastic_strain, state.hardening, f.x, f.y, f.z, m.x, m.y, m.z};
+  store_records(states, first, s);
+}
+/// Pieces of bar.
+struct SteelLinkForces {
+  static constexpr const char* name = "dem.steel_links";
+  using Law = SteelLink;
+  Law law;
+  double dt;
+  ElementsView elements;
+  View<const Index> a, b;
+  View<const double> length;
+  View<SteelState> state;
+  View<double> yielded, broke;
+  View<Action> actions;
+  Index first_action;  ///< action of link 0
+
+  template <class R>
+  struct Loaded {
+    Indices<R> a, b;
+    R length;
+    SteelStateOf<R> state;
+    LinkEnd<R> end_a, end_b;
+  };
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
+  template <class R>
+  BR_HD void load_early(Index i, Loaded<R>& loaded) const {
+    loaded.a = load_indices_now<R>(a, i);
+    loaded.b = load_indices_now<R>(b, i);
+    loaded.length = load_now<R>(length, i);
+    loaded.state = load_state<R>(View<const SteelState>(state), i);
+  }
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    loaded.end_a = load_end<R>(elements.state, loaded.a);
+    loaded.end_b = load_end<R>(elements.state, loaded.b);
+  }
+  BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
+  template <class R>
+  BR_HD bool update(Index i, const Loaded<R>& loaded) const {
+    return update(law, i, loaded);
+  }
+  /// @returns false, having done nothing, if the links of a pack are to be taken one by one
+  template <class R>
+  BR_HD bool update(const SteelLink& by, Index i, const Loaded<R>& loaded) const {
+    const PairMotion<R> motion =
+        pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, constant<R>(0.0), dt);
+    const R own_length = loaded.length;
+    const R radius = smaller(loaded.end_a.radius, loaded.end_b.radius);
+    const SteelLink::StiffnessOf<R> k = by.stiffness(own_length, radius);
+    SteelStateOf<R> kept = loaded.state;
+    SteelResponseOf<R> r;
+    if constexpr (width_of<R> == 1)
+      r = by.answer(own_length, radius, motion, kept);
+    else if (!by.stays_elastic(k, own_length, radius, motion, kept, r))
+      return false;
+    store_state(state, i, kept);
+    if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
+    if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
+    const auto whole = kept.hardening >= 0.0;
+    const R none = constant<R>(0.0);
+    book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment,
+         r.active * k.axial, choose(whole, k.shear, none), choose(whole, k.bending, none),
+         choose(whole, k.twist, none));
+    return true;
+  }
+};
+
+template <class>
+SteelLinkForces forces_of(SteelLinks& s, const SteelLink& law, const LinkSpace& in,
+                          Buffer<Action>& actions) {
+  return {law,
+          in.dt,
+          in.elements,
+          s.a.view(),
+          s.b.view(),
+          s.length.view(),
+          s.state.view(),
+          s.yielded.view(),
+          s.broke.view(),
+          actions.view(),
+          0};
+}
+
+/// Energies of bars.
+struct SteelShares {
+  View<const ElementState> state_of;
+  View<const Index> a, b;
+  View<const double> length;
+  View<const SteelState> state;
+  View<const double> yielded, broke;
+
+  BR_HD Energies operator()(const SteelLink& law, Index i) const {
+    Energies s;
+    const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
+    const double distance = norm(d), r = smaller(state_of[a[i]].radius, state_of[b[i]].radius);
+    s.elastic.add(law.stored(length[i], r, distance - length[i], state[i]));
+    if (state[i].hardening >= 0.0)
+      s.elastic.add(law.stored_moment(length[i], r, (1.0 / distance) * d, state[i]));
+    s.fracture.add(broke[i]);
+    s.plastic.add(yielded[i]);
+    return s;
+  }
+};
+
+template <class>
+SteelShares shares_of(const SteelLinks& s, const View<const ElementState>& state) {
+  return {state,          s.a.view(),       s.b.view(),    s.length.view(),
+          s.state.view(), s.yielded.view(), s.broke.view()};
+}
+
+/// How far a piece of bar has gone. All arrays on the host.
+inline LinkStage stage_of(const SteelLink&, const SteelLinks& s, const Elements&, Index i) {
+  const double hardening = s.state.data()[i].hardening;
+  return hardening < 0.0   ? LinkStage::broken
+         : hardening > 0.0 ? LinkStage::softened
+                           : LinkStage::whole;
+}
+
+}  // namespace breccia::dem
