@@ -146,7 +146,7 @@ inline Outcome outcome_of(dem::World& w) {
   return {dem::state_hash(w),
           w.searches,
           {e.kinetic, e.elastic, e.friction, e.fracture, e.work},
-          static_cast<std::size_t>(dem::count(w).broken_concrete),
+          static_cast<std::size_t>(dem::count(w).broken_of(dem::LinkKind::concrete)),
           w.contacts.size(),
           w.next_dt};
 }
