@@ -3,35 +3,17 @@
 #include "exec/whole_packs.hpp"
 
 namespace breccia::dem {
-namespace {
-
-template <class Number>
-void run_links([[maybe_unused]] Lanes lanes, const ConcreteLinkForces<Number>& kernel, Index begin,
-               Index end) {
+template <class Kernel>
+void run_packs([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end) {
 #if defined(BR_WIDE_LANES)
-  // One by one to where packs lie in whole cache lines.
-  for (; begin < end && begin % static_cast<Index>(lanes) != 0; ++begin) kernel(begin);
-  if (lanes == Lanes::eight) begin = PacksAvx512::run(kernel, begin, end);
-  if (lanes == Lanes::four) begin = PacksAvx2::run(kernel, begin, end);
+  if constexpr (LinkArrays<typename Kernel::Law>::swept)  // to where packs lie in whole cache lines
+    for (; begin < end && begin % static_cast<Index>(lanes) != 0; ++begin) kernel(begin);
 #endif
-  for (Index i = begin; i < end; ++i) kernel(i);
-}
-
-}  // namespace
-
-void run_packs(Lanes lanes, const ConcreteLinkForces<double>& kernel, Index begin, Index end) {
-  run_links(lanes, kernel, begin, end);
-}
-void run_packs(Lanes lanes, const ConcreteLinkForces<float>& kernel, Index begin, Index end) {
-  run_links(lanes, kernel, begin, end);
-}
-
-void run_packs(Lanes lanes, const SteelLinkForces& kernel, Index begin, Index end) {
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
-void run_packs(Lanes lanes, const InterfaceLinkForces& kernel, Index begin, Index end) {
-  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
-}
+#define BR_INSTANTIATE(Kernel) template void run_packs(Lanes, const Kernel&, Index, Index);
+BR_EACH_LINK_KERNEL(BR_INSTANTIATE)
+#undef BR_INSTANTIATE
 
 void run_packs([[maybe_unused]] Lanes lanes, const GatherForces& kernel, Index begin, Index end) {
 #if defined(BR_WIDE_LANES)

@@ -8,10 +8,8 @@
 namespace breccia::dem {
 
 /// kernel for the links [begin, end) on the calling thread.
-void run_packs(Lanes lanes, const ConcreteLinkForces<double>& kernel, Index begin, Index end);
-void run_packs(Lanes lanes, const ConcreteLinkForces<float>& kernel, Index begin, Index end);
-void run_packs(Lanes lanes, const SteelLinkForces& kernel, Index begin, Index end);
-void run_packs(Lanes lanes, const InterfaceLinkForces& kernel, Index begin, Index end);
+template <class Kernel>
+void run_packs(Lanes lanes, const Kernel& kernel, Index begin, Index end);
 /// Likewise for elements.
 void run_packs(Lanes lanes, const GatherForces& kernel, Index begin, Index end);
 /// @returns the least of the numbers [begin, end), none of which is negative
@@ -32,21 +30,18 @@ struct LeastOf {
 };
 
 /// Builds of lanes/kernel_lanes.cpp for one width each. They process whole packs only and return
-/// the first item not processed: of the remainder, or of a pack with a breaking bar.
+/// the first item not processed: of the remainder, or of a pack that is left to be taken one by
+/// one.
 struct PacksAvx2 {
-  static Index run(const ConcreteLinkForces<double>& kernel, Index begin, Index end);
-  static Index run(const ConcreteLinkForces<float>& kernel, Index begin, Index end);
-  static Index run(const SteelLinkForces& kernel, Index begin, Index end);
-  static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
+  template <class Kernel>
+  static Index run(const Kernel& kernel, Index begin, Index end);
   static Index run(const GatherForces& kernel, Index begin, Index end);
   static LeastOf run(const View<const double>& numbers, Index begin, Index end);
   static MovedTo run(const MoveElements& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
-  static Index run(const ConcreteLinkForces<double>& kernel, Index begin, Index end);
-  static Index run(const ConcreteLinkForces<float>& kernel, Index begin, Index end);
-  static Index run(const SteelLinkForces& kernel, Index begin, Index end);
-  static Index run(const InterfaceLinkForces& kernel, Index begin, Index end);
+  template <class Kernel>
+  static Index run(const Kernel& kernel, Index begin, Index end);
   static Index run(const GatherForces& kernel, Index begin, Index end);
   static LeastOf run(const View<const double>& numbers, Index begin, Index end);
   static MovedTo run(const MoveElements& kernel, Index begin, Index end);

@@ -31,6 +31,14 @@ LocalElasticity local_elasticity(const MaterialConfig& a, const MaterialConfig& 
   return local_elasticity(mean);
 }
 
+std::optional<LinkKind> kind_within(const std::string& law) {
+  if (law == "concrete") return LinkKind::concrete;
+  return std::nullopt;
+}
+std::string laws_within() {
+  return "concrete or ";
+}
+
 ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact) {
   const LocalElasticity local = local_elasticity(m);
   ConcreteLink law{};

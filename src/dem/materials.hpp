@@ -1,10 +1,13 @@
 #pragma once
 // From the case's macroscopic materials to the constants of laws.
 
+#include <optional>
+
 #include "dem/config.hpp"
 #include "dem/laws/contact.hpp"
 #include "dem/laws/interface_link.hpp"
 #include "dem/laws/steel_link.hpp"
+#include "dem/model.hpp"
 
 namespace breccia::dem {
 
@@ -17,6 +20,11 @@ struct LocalElasticity {
 LocalElasticity local_elasticity(const MaterialConfig& material);
 /// Of two materials: harmonic means of E and nu, the constants alpha, beta, gamma of the first.
 LocalElasticity local_elasticity(const MaterialConfig& a, const MaterialConfig& b);
+
+/// What joins the elements of a body of this law, pair by pair; nothing: no links, or bars.
+std::optional<LinkKind> kind_within(const std::string& law);
+/// Words of such laws, for a message: "concrete, ...  or ".
+std::string laws_within();
 
 ConcreteLink concrete_law(const MaterialConfig& material, const ContactConfig& contact);
 SteelLink steel_law(const MaterialConfig& material);

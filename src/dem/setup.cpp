@@ -91,11 +91,10 @@ void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>
   copy_to(b, second);
 }
 
-void set_concrete_links(World& w, const Config& config, const Model& m) {
-  const auto links = grouped(m, config, w.concrete, [&](const MaterialConfig& c) {
-    return concrete_law(c, config.contact);
-  });
-  set_ends(w.concrete.a, w.concrete.b, links);
+void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m) {
+  const auto links = grouped(
+      m, config, set, [&](const MaterialConfig& c) { return concrete_law(c, config.contact); });
+  set_ends(set.a, set.b, links);
   std::vector<double> length, stiffness;
   for (const Model::Link& link : links) {
     const double d = distance(m, link.a, link.b);
@@ -104,8 +103,8 @@ void set_concrete_links(World& w, const Config& config, const Model& m) {
     length.push_back(d);
     stiffness.push_back(local_elasticity(material).modulus * pi * least * least / d);
   }
-  copy_to(w.concrete.length, length);
-  copy_to(w.concrete.stiffness, stiffness);
+  copy_to(set.length, length);
+  copy_to(set.stiffness, stiffness);
 }
 
 /// A released pair is D > 1.5 (R_a + R_b) apart. If margins of two elements never exceed half of
@@ -113,18 +112,18 @@ void set_concrete_links(World& w, const Config& config, const Model& m) {
 void limit_margins(World& w, const Model& m) {
   double least = no_limit;
   for (const Model::Link& link : m.links)
-    if (link.kind == LinkKind::concrete)
+    if (link.kind != LinkKind::steel && link.kind != LinkKind::interface)
       least = std::min({least, radius_of(m, link.a), radius_of(m, link.b)});
   if (least == no_limit) least = *std::max_element(m.radius.begin(), m.radius.end());
   w.parameters.largest_margin = 0.5 * least;
 }
 
-void set_steel_links(World& w, const Config& config, const Model& m) {
-  const auto links = grouped(m, config, w.steel, steel_law);
-  set_ends(w.steel.a, w.steel.b, links);
+void set_links(LinkSet<SteelLink>& set, const Config& config, const Model& m) {
+  const auto links = grouped(m, config, set, steel_law);
+  set_ends(set.a, set.b, links);
   std::vector<double> length;
   for (const Model::Link& link : links) length.push_back(distance(m, link.a, link.b));
-  copy_to(w.steel.length, length);
+  copy_to(set.length, length);
 }
 
 bool is_steel(const Config& config, const Model& m, Index e) {
@@ -132,16 +131,15 @@ bool is_steel(const Config& config, const Model& m, Index e) {
   return config.materials[material].law == "steel";
 }
 
-void set_interface_links(World& w, const Config& config, const Model& m) {
-  auto links = grouped(m, config, w.interface,
+void set_links(LinkSet<InterfaceLink>& set, const Config& config, const Model& m) {
+  auto links = grouped(m, config, set,
                        [&](const MaterialConfig& c) { return interface_law(c, config.contact); });
   std::map<Index, int> shares;  // links of each bar element
   for (Model::Link& link : links) {
     if (!is_steel(config, m, link.a)) std::swap(link.a, link.b);
     ++shares[link.a];
   }
-  InterfaceLinks& b = w.interface;
-  set_ends(b.a, b.b, links);
+  set_ends(set.a, set.b, links);
   std::vector<Index> before, after;
   std::vector<double> stiffness, area;
   for (const Model::Link& link : links) {
@@ -161,10 +159,10 @@ void set_interface_links(World& w, const Config& config, const Model& m) {
     area.push_back(share);
     stiffness.push_back(config.materials[concrete].young * share / layer);
   }
-  copy_to(b.before, before);
-  copy_to(b.after, after);
-  copy_to(b.stiffness, stiffness);
-  copy_to(b.area, area);
+  copy_to(set.before, before);
+  copy_to(set.after, after);
+  copy_to(set.stiffness, stiffness);
+  copy_to(set.area, area);
 }
 
 /// Bodies and supports, for probes.
@@ -256,9 +254,7 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   w.parameters.local_damping = config.local_damping;
   const Prescribed held = prescribed(config, model);
   set_elements(w, model, held);
-  set_concrete_links(w, config, model);
-  set_steel_links(w, config, model);
-  set_interface_links(w, config, model);
+  w.each_set([&](auto& set) { set_links(set, config, model); });
   set_linked_pairs(w);
   limit_margins(w, model);
   set_sets(w, config, model, held);

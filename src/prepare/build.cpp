@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "dem/materials.hpp"
 #include "math/constants.hpp"
 #include "prepare/check_bodies.hpp"
 #include "prepare/linking.hpp"
@@ -63,7 +64,10 @@ class Assembly {
         add({}, body.radius, material().density * ball(body.radius));
       } else {
         is_packed(body) ? add_packing() : add_file();
-        if (material().law == "concrete") links.kind = BodyLinks::Kind::concrete;
+        if (const auto kind = dem::kind_within(material().law)) {
+          links.kind = BodyLinks::Kind::range;
+          links.link = *kind;
+        }
       }
       links_.push_back(links);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "dem/materials.hpp"
 #include "prepare/by_name.hpp"
 #include "prepare/check_bodies.hpp"
 #include "prepare/rebar.hpp"
@@ -93,7 +94,8 @@ class DemBodyChecks {
     require(b.shape != "cylinder" || b.length > 0.0, ".length must be above 0");
     require(b.shape != "file" || !b.file.empty(), ".file is missing: a CSV of x,y,z,radius");
     const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
-    const bool bulk = b.shape == "file" && material != nullptr && material->law == "concrete";
+    const bool bulk =
+        b.shape == "file" && material != nullptr && dem::kind_within(material->law).has_value();
     require(!bulk || b.bulk_volume() > 0.0,
             ".volume is missing: spheres of concrete do not fill space, so their mass is density "
             "times the volume that they stand for; give volume in m3, or the size of a box");
@@ -108,9 +110,9 @@ class DemBodyChecks {
       require(material->law == "steel", ": bars need a material of law steel, {} has {}",
               b.material, material->law);
     else
-      require(material->law == "concrete" || material->law == "grain",
-              ": elements need a material of law concrete or grain, {} has {}", b.material,
-              material->law);
+      require(dem::kind_within(material->law).has_value() || material->law == "grain",
+              ": elements need a material of law {}grain, {} has {}", dem::laws_within(),
+              b.material, material->law);
   }
 
   void check_rebar(const BodyConfig& b) {

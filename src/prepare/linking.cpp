@@ -127,9 +127,9 @@ Candidates find_candidates(const dem::Model& m, const std::vector<BodyLinks>& bo
   std::vector<std::pair<double, dem::Model::Link>> ranged;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const BodyLinks& body = bodies[k];
-    if (body.kind == BodyLinks::Kind::concrete) {
+    if (body.kind == BodyLinks::Kind::range) {
       for (const Candidate& c : concrete_candidates({m, members[k]}, range))
-        ranged.emplace_back(c.ratio, make_link(c, dem::LinkKind::concrete, body.material));
+        ranged.emplace_back(c.ratio, make_link(c, body.link, body.material));
     } else if (body.kind == BodyLinks::Kind::bars) {
       const Neighbourhood host(m, members[static_cast<std::size_t>(body.host)]);
       for (const Index s : members[k]) {
@@ -213,7 +213,7 @@ std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<Bo
     const BodyLinks& p = bodies[static_cast<std::size_t>(m.group[i])];
     const BodyLinks& q = bodies[static_cast<std::size_t>(m.group[j])];
     if (m.group[i] == m.group[j])
-      return p.kind == BodyLinks::Kind::concrete || m.bar_next[i] == b || m.bar_previous[i] == b;
+      return p.kind == BodyLinks::Kind::range || m.bar_next[i] == b || m.bar_previous[i] == b;
     return p.host == m.group[j] || q.host == m.group[i];
   };
   struct Deepest {

@@ -12,13 +12,14 @@ namespace breccia::prepare {
 /// How elements of a body are joined at the start; one a body, in the order of the case.
 struct BodyLinks {
   enum class Kind {
-    none,      ///< grains and single elements
-    concrete,  ///< every pair in range
-    bars       ///< neighbours along a bar, and the elements of `host` around them
+    none,   ///< grains and single elements
+    range,  ///< every pair in range
+    bars    ///< neighbours along a bar, and the elements of `host` around them
   } kind = Kind::none;
-  std::int16_t material = 0;   ///< of the links within the body
-  int host = -1;               ///< body that the bars reinforce
-  std::int16_t interface = 0;  ///< material of the links between bars and host
+  dem::LinkKind link = dem::LinkKind::concrete;  ///< what joins pairs in range
+  std::int16_t material = 0;                     ///< of the links within the body
+  int host = -1;                                 ///< body that the bars reinforce
+  std::int16_t interface = 0;                    ///< material of the links between bars and host
 };
 
 /// The least number of interface links an element of a bar has, if its host has that many elements.

@@ -29,28 +29,20 @@ void fetch(const MoveElements& kernel, Index first) {
 
 }  // namespace
 
-BR_WHOLE Index BR_PACKS::run(const ConcreteLinkForces<double>& kernel, Index begin, Index end) {
+template <class Kernel>
+BR_WHOLE Index BR_PACKS::run(const Kernel& kernel, Index begin, Index end) {
   Index i = begin;
-  for (; i + width <= end; i += width) run_at<WidestPack>(kernel, i);
+  for (; i + width <= end; i += width) {
+    if constexpr (std::is_void_v<decltype(run_at<WidestPack>(kernel, i))>)
+      run_at<WidestPack>(kernel, i);
+    else if (!run_at<WidestPack>(kernel, i))
+      break;
+  }
   return i;
 }
-BR_WHOLE Index BR_PACKS::run(const ConcreteLinkForces<float>& kernel, Index begin, Index end) {
-  Index i = begin;
-  for (; i + width <= end; i += width) run_at<WidestPack>(kernel, i);
-  return i;
-}
-
-BR_WHOLE Index BR_PACKS::run(const SteelLinkForces& kernel, Index begin, Index end) {
-  Index i = begin;
-  while (i + width <= end && run_at<WidestPack>(kernel, i)) i += width;
-  return i;
-}
-
-BR_WHOLE Index BR_PACKS::run(const InterfaceLinkForces& kernel, Index begin, Index end) {
-  Index i = begin;
-  while (i + width <= end && run_at<WidestPack>(kernel, i)) i += width;
-  return i;
-}
+#define BR_INSTANTIATE(Kernel) template Index BR_PACKS::run(const Kernel&, Index, Index);
+BR_EACH_LINK_KERNEL(BR_INSTANTIATE)
+#undef BR_INSTANTIATE
 
 BR_WHOLE Index BR_PACKS::run(const GatherForces& kernel, Index begin, Index end) {
   Index e = begin;

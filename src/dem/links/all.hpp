@@ -7,6 +7,13 @@
 
 namespace breccia::dem {
 
+/// Calls X(Kernel) for the kernel of forces of each kind: their packs are built by this list.
+#define BR_EACH_LINK_KERNEL(X)  \
+  X(ConcreteLinkForces<double>) \
+  X(ConcreteLinkForces<float>)  \
+  X(SteelLinkForces)            \
+  X(InterfaceLinkForces)
+
 /// All links of a world. A new law is a member here, in the order of LinkKind.
 struct LinkSets {
   LinkSet<ConcreteLink> concrete;

@@ -75,8 +75,8 @@ Model random_model(int count, double widest, std::uint64_t seed) {
 
 TEST(Linking, EqualsTheDefinitionOnRandomModels) {
   const std::vector<BodyLinks> bodies{
-      {.kind = BodyLinks::Kind::concrete, .material = 0},
-      {.kind = BodyLinks::Kind::concrete, .material = 1},
+      {.kind = BodyLinks::Kind::range, .material = 0},
+      {.kind = BodyLinks::Kind::range, .material = 1},
       {.kind = BodyLinks::Kind::bars, .material = 2, .host = 0, .interface = 3}};
   for (const double widest : {1.0, 2.0, 50.0}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -108,7 +108,7 @@ TEST(Linking, ABarWithFewConcreteElementsIsLinkedToAllOfThem) {
     m.bar_next.push_back(-1);
   }
   const std::vector<BodyLinks> bodies{
-      {.kind = BodyLinks::Kind::concrete}, {}, {.kind = BodyLinks::Kind::bars, .host = 0}};
+      {.kind = BodyLinks::Kind::range}, {}, {.kind = BodyLinks::Kind::bars, .host = 0}};
   link_elements(m, bodies, {});
   EXPECT_EQ(pairs_of(m, LinkKind::interface), (Pairs{{0, 1}, {0, 2}, {0, 3}}));
 }
