@@ -31,6 +31,9 @@ struct MaterialConfig {
   double crushing_slope = 0.4;                    ///< H_b  [-]
   double alpha = 3.9, beta = 3.125, gamma = 5.0;  ///< macro-micro constants  [-]
   std::string shear = "plastic";
+  // parallel: the strengths and constants above, and
+  double bond_radius = 1.0;   ///< lambda: of the bond, over the smaller element's  [-]
+  double moment_share = 1.0;  ///< beta of moments in the bond's stresses  [-]
   // steel
   double yield = 500e6;          ///< f_y  [Pa]
   double hardening = 1e9;        ///< H  [Pa]
@@ -43,9 +46,10 @@ struct MaterialConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("law", law, OneOf{"concrete", "steel", "interface", "grain"},
-        "concrete: cohesive links; steel: bars; interface: between bars and concrete; grain: "
-        "contacts only");
+    key("law", law, OneOf{"concrete", "parallel", "steel", "interface", "grain"},
+        "concrete: cohesive links; parallel: bonds of cement between grains (bonded-particle "
+        "rock); "
+        "steel: bars; interface: between bars and concrete; grain: contacts only");
     key("density", density, "kg/m3", Range{10.0, 1e6}, "mass per volume of the bulk material");
     key("young", young, "Pa", Range{1e3, 1e13}, "Young's modulus of the bulk material");
     key("poisson", poisson, "-", Range{-1.0, 0.5, Open::both},
@@ -84,6 +88,10 @@ struct MaterialConfig {
     key("beta", beta, "-", positive, "macro-micro constant of the stiffness");
     key("gamma", gamma, "-", positive, "macro-micro constant of the stiffness");
     key("shear", shear, OneOf{"plastic", "brittle"}, "what a link does at its shear strength");
+    key("bond_radius", bond_radius, "-", Range{0.0, 1.0, Open::low},
+        "lambda, radius of a parallel bond over that of the smaller element");
+    key("moment_share", moment_share, "-", Range{0.0, 1.0},
+        "how far moments count in the stresses that break a parallel bond");
     key("yield", yield, "Pa", Range{0.0, 1e15, Open::low}, "yield stress of steel");
     key("hardening", hardening, "Pa", Range{0.0, 1e15}, "plastic hardening modulus of steel");
     key("failure_strain", failure_strain, "-", positive, "plastic strain at which steel ruptures");

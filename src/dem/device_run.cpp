@@ -116,10 +116,13 @@ class LaunchedForces {
     const auto of = [&](auto& set, Index first_action) {
       return by_(Grouped(link_kernel<Number>(w, set, {}, first_action), set.on_device));
     };
-    for_each_part(w.exec, part(w.steel.size(), of(w.steel, 0),
-                               part(w.interface.size(), of(w.interface, w.steel.size()),
-                                    part(w.contacts.size(), by_(contact_kernel(w)),
-                                         part(w.concrete.size(), of(w.concrete, 0), Parts<>{})))));
+    for_each_part(
+        w.exec,
+        part(w.steel.size(), of(w.steel, 0),
+             part(w.interface.size(), of(w.interface, w.steel.size()),
+                  part(w.parallel.size(), of(w.parallel, w.steel.size() + w.interface.size()),
+                       part(w.contacts.size(), by_(contact_kernel(w)),
+                            part(w.concrete.size(), of(w.concrete, 0), Parts<>{}))))));
   }
   By by_;
   StepClock* clock_;

@@ -33,10 +33,11 @@ LocalElasticity local_elasticity(const MaterialConfig& a, const MaterialConfig& 
 
 std::optional<LinkKind> kind_within(const std::string& law) {
   if (law == "concrete") return LinkKind::concrete;
+  if (law == "parallel") return LinkKind::parallel;
   return std::nullopt;
 }
 std::string laws_within() {
-  return "concrete or ";
+  return "concrete, parallel or ";
 }
 
 ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact) {
@@ -84,6 +85,16 @@ InterfaceLink interface_law(const MaterialConfig& m, const ContactConfig& contac
   law.softening = m.softening;
   law.friction = contact.friction;
   return law;
+}
+
+ParallelBond parallel_bond(const MaterialConfig& m, const ContactConfig& contact) {
+  return {m.tensile_strength,
+          m.cohesion,
+          std::tan(m.friction_angle),
+          m.broken_friction < 0.0 ? contact.friction : m.broken_friction,
+          local_elasticity(m).ratio,
+          m.bond_radius,
+          m.moment_share};
 }
 
 ContactLaw contact_law(const ContactConfig& c) {

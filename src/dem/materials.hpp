@@ -6,6 +6,7 @@
 #include "dem/config.hpp"
 #include "dem/laws/contact.hpp"
 #include "dem/laws/interface_link.hpp"
+#include "dem/laws/parallel_bond.hpp"
 #include "dem/laws/steel_link.hpp"
 #include "dem/model.hpp"
 
@@ -29,6 +30,7 @@ std::string laws_within();
 ConcreteLink concrete_law(const MaterialConfig& material, const ContactConfig& contact);
 SteelLink steel_law(const MaterialConfig& material);
 InterfaceLink interface_law(const MaterialConfig& material, const ContactConfig& contact);
+ParallelBond parallel_bond(const MaterialConfig& material, const ContactConfig& contact);
 ContactLaw contact_law(const ContactConfig& contact);
 /// Constants of elements of two materials in contact, and of one with a rigid wall.
 ContactPair contact_pair(const ContactConfig& contact, const MaterialConfig& a,

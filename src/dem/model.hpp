@@ -10,8 +10,8 @@
 namespace breccia::dem {
 
 /// What joins two elements from the start.
-enum class LinkKind : std::uint8_t { concrete, steel, interface };
-inline constexpr std::size_t link_kinds = 3;
+enum class LinkKind : std::uint8_t { concrete, steel, interface, parallel };
+inline constexpr std::size_t link_kinds = 4;
 
 /// What prepare makes of a case and dem/setup turns into a world. Element i has global id i.
 struct Model {

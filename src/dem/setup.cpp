@@ -107,6 +107,25 @@ void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m)
   copy_to(set.stiffness, stiffness);
 }
 
+void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m) {
+  const auto links = grouped(
+      m, config, set, [&](const MaterialConfig& c) { return parallel_bond(c, config.contact); });
+  set_ends(set.a, set.b, links);
+  std::vector<double> length, stiffness;
+  for (const Model::Link& link : links) {
+    const double d = distance(m, link.a, link.b);
+    const MaterialConfig& material = config.materials[static_cast<std::size_t>(link.material)];
+    const double radius =
+        material.bond_radius * std::min(radius_of(m, link.a), radius_of(m, link.b));
+    length.push_back(d);
+    stiffness.push_back(local_elasticity(material).modulus * pi * radius * radius / d);
+  }
+  copy_to(set.length, length);
+  copy_to(set.stiffness, stiffness);
+  std::vector<ParallelBondState> whole(links.size(), {1.0, 0.0, {}, {}});
+  copy_to(set.state, whole);
+}
+
 /// A released pair is D > 1.5 (R_a + R_b) apart. If margins of two elements never exceed half of
 /// R_a + R_b, a new search comes before such a pair can meet again, whenever it was released.
 void limit_margins(World& w, const Model& m) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "dem/materials.hpp"
 #include "fdem/check_case.hpp"
 #include "prepare/by_name.hpp"
 #include "prepare/check_bodies.hpp"
@@ -33,7 +34,7 @@ class Check {
 
   void check(const MaterialConfig& m) {
     const std::string path = "material." + m.name;
-    if (m.law == "concrete" && m.poisson > 1.0 / m.alpha)
+    if (dem::kind_within(m.law) && m.poisson > 1.0 / m.alpha)
       add(
           fmt::format("{}.poisson = {} is above 1 / alpha = {:.4g}: links would have a negative "
                       "shear stiffness",

@@ -3,6 +3,7 @@
 
 #include "dem/links/concrete.hpp"
 #include "dem/links/interface.hpp"
+#include "dem/links/parallel_bond.hpp"
 #include "dem/links/steel.hpp"
 
 namespace breccia::dem {
@@ -12,22 +13,24 @@ namespace breccia::dem {
   X(ConcreteLinkForces<double>) \
   X(ConcreteLinkForces<float>)  \
   X(SteelLinkForces)            \
-  X(InterfaceLinkForces)
+  X(InterfaceLinkForces)        \
+  X(ParallelBondForces)
 
 /// All links of a world. A new law is a member here, in the order of LinkKind.
 struct LinkSets {
   LinkSet<ConcreteLink> concrete;
   LinkSet<SteelLink> steel;
   LinkSet<InterfaceLink> interface;
+  LinkSet<ParallelBond> parallel;
 
   /// Calls visit(set) for each kind.
   template <class Visit>
   void each_set(Visit&& visit) {
-    visit(concrete), visit(steel), visit(interface);
+    visit(concrete), visit(steel), visit(interface), visit(parallel);
   }
   template <class Visit>
   void each_set(Visit&& visit) const {
-    visit(concrete), visit(steel), visit(interface);
+    visit(concrete), visit(steel), visit(interface), visit(parallel);
   }
 
   /// Links of all kinds, broken ones included.

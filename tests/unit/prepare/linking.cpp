@@ -139,6 +139,9 @@ TEST(Linking, LinksAreUniqueOrderedAndBetweenTheRightElements) {
         EXPECT_TRUE(m.bar_next[a] == link.b || m.bar_next[b] == link.a);
         EXPECT_EQ(link.material, 1);
         break;
+      case LinkKind::parallel:
+        ADD_FAILURE() << "no body of the case has parallel bonds";
+        break;
       case LinkKind::interface:
         EXPECT_EQ(groups, (std::set<int>{0, 1}));
         EXPECT_EQ(link.material, 2);
