@@ -116,7 +116,7 @@ struct DomainConfig {
 /// [[probe]]: one column of history.csv
 struct ProbeConfig {
   std::string name;
-  std::string on;  ///< group or support; empty: all elements
+  std::string on;  ///< body, support or wall; empty: all elements
   std::string quantity = "velocity_z";
   std::string reduce = "mean";
 
@@ -124,7 +124,10 @@ struct ProbeConfig {
   void each_key(Visit&& key) {
     key("name", name, "column of history.csv");
     key.required("name");
-    key("on", on, "group or support whose elements are read; empty reads all");
+    key("on", on,
+        "body or support whose elements are read, or a wall: its force (that of all elements on "
+        "it), "
+        "position, velocity; empty reads all elements");
     key("quantity", quantity, quantity_words(3), "what is read from each element");
     key("reduce", reduce, OneOf{"mean", "sum", "min", "max"}, "how the elements' values combine");
   }

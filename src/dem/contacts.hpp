@@ -7,25 +7,38 @@
 
 namespace breccia::dem {
 
-/// What the contact of a pair of elements, or of an element and a wall, keeps between searches.
+/// What the contact of a pair of elements keeps between searches.
 struct ContactHistory {
   Buffer<ContactState> state;
   Buffer<double> slid;    ///< energy spent on sliding and rolling so far  [J]
   Buffer<double> damped;  ///< energy taken by the dashpot so far  [J]
-  Buffer<double> driven;  ///< energy that a moving wall put in so far  [J]
 
   template <class Visit>
   void each_field(Visit&& field) {
     field("state", "-", state);
     field("slid", "J", slid);
     field("damped", "J", damped);
-    field("driven", "J", driven);
   }
+  View<const double> work_of_walls() const { return {}; }
+};
+/// What the contact of an element and a wall keeps between searches.
+struct WallHistory : ContactHistory {
+  Buffer<double> driven;  ///< energy that a moving wall put in so far  [J]
+  Buffer<Vec3> on_wall;   ///< force on the wall at the time of the positions  [N]
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    ContactHistory::each_field(field);
+    field("driven", "J", driven);
+    field("on_wall", "N", on_wall);
+  }
+  View<const double> work_of_walls() const { return driven.view(); }
 };
 
-/// Pairs that may touch until the next search. At a wall b is the wall and the key is of wall and
-/// element.
+/// Pairs that may touch until the next search.
 using Contacts = PairList<ContactHistory>;
+/// Likewise elements and walls: b is the wall, and the key is of wall and element.
+using WallContacts = PairList<WallHistory>;
 
 /// A rigid half-space.
 struct Wall {
@@ -91,6 +104,7 @@ struct WallForces {
   Index first;  ///< contact 0 of this wall
   View<ContactState> state;
   View<double> slid, damped, driven;
+  View<Vec3> wall_force;
   View<Vec3> force, torque;
   View<double> critical;
 
@@ -124,6 +138,7 @@ struct WallForces {
     damped[i] += r.damped;
 
     const Vec3 on_wall = r.shear + r.pressure * motion.normal;
+    wall_force[i] = on_wall;
     force[e] -= on_wall;
     torque[e] += -(height * cross(motion.normal, on_wall)) - r.moment;
     driven[i] -= dt * dot(on_wall, wall.velocity);

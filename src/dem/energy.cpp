@@ -65,7 +65,8 @@ struct ContactShares {
   View<const double> wall_stiffness;  ///< of each wall; empty between elements
   View<const Index> a, b;
   View<const ContactState> state;
-  View<const double> slid, damped, driven;
+  View<const double> slid, damped;
+  View<const double> driven;  ///< likewise
 
   BR_HD Energies operator()(Index i) const {
     Energies s;
@@ -87,7 +88,7 @@ struct ContactShares {
     }
     s.friction.add(slid[i]);
     s.contact.add(damped[i]);
-    s.work.add(driven[i]);
+    if (driven.size > 0) s.work.add(driven[i]);
     return s;
   }
 };
@@ -115,14 +116,15 @@ struct ElementShares {
   }
 };
 
-Energies contact_shares(const World& w, const Contacts& c, const Buffer<ContactPair>& pairs,
+template <class List>
+Energies contact_shares(const World& w, const List& c, const Buffer<ContactPair>& pairs,
                         Index materials, const Buffer<double>& wall_stiffness) {
   return fold(
       w.exec, c.size(), Energies{},
       ContactShares{w.domain.owned_view(), w.parameters.contact, w.elements.material.view(),
                     w.elements.state.view(), pairs.view(), materials, wall_stiffness.view(),
                     c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
-                    c.history.slid.view(), c.history.damped.view(), c.history.driven.view()},
+                    c.history.slid.view(), c.history.damped.view(), c.history.work_of_walls()},
       Sum{});
 }
 

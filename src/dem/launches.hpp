@@ -80,7 +80,7 @@ GatherWide<Number> gather_wide_kernel(World& w) {
 }
 
 inline WallForces wall_kernel(World& w, Index wall) {
-  Contacts& c = w.wall_contacts;
+  WallContacts& c = w.wall_contacts;
   return {w.parameters.contact,
           w.last_dt,
           walls_view(w),
@@ -94,6 +94,7 @@ inline WallForces wall_kernel(World& w, Index wall) {
           c.history.slid.view(),
           c.history.damped.view(),
           c.history.driven.view(),
+          c.history.on_wall.view(),
           w.elements.force.view(),
           w.elements.torque.view(),
           w.critical.view()};

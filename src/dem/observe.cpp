@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "core/on_host.hpp"
 #include "core/pieces.hpp"
@@ -198,7 +199,60 @@ Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
 
 }  // namespace
 
+namespace {
+
+struct ForceOnWall {
+  OwnedView owned;
+  Index first;  ///< contact of the wall
+  int axis;
+  View<const Index> a;
+  View<const Vec3> on_wall;
+  BR_HD ExactSum operator()(Index k) const {
+    const Index i = first + k;
+    if (!owned(a[i])) return ExactSum();
+    const Vec3& f = on_wall[i];
+    return ExactSum(axis == 0 ? f.x : axis == 1 ? f.y : f.z);
+  }
+};
+
+/// The wall of a probe; none: the probe reads elements.
+std::optional<std::size_t> wall_of(const World& w, const ProbeConfig& p) {
+  const auto name = std::find(w.wall_names.begin(), w.wall_names.end(), p.on);
+  if (p.on.empty() || name == w.wall_names.end()) return std::nullopt;
+  return static_cast<std::size_t>(name - w.wall_names.begin());
+}
+
+/// A wall's place and velocity, which rank 0 knows as well as all, and what this rank's elements
+/// push it with.
+Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
+  const Quantity quantity = quantity_named(p.quantity).quantity;
+  const bool first = w.domain.alone() || w.domain.ranks->rank() == 0;
+  const Wall& own = w.walls[wall];
+  const auto part = [&](const Vec3& v) {
+    return quantity.axis == 0 ? v.x : quantity.axis == 1 ? v.y : v.z;
+  };
+  if (quantity.kind != Quantity::Kind::force) {
+    const double value = quantity.kind == Quantity::Kind::position   ? part(own.point)
+                         : quantity.kind == Quantity::Kind::velocity ? part(own.velocity)
+                                                                     : norm(own.velocity);
+    return first ? Readings(value, 0) : Readings();
+  }
+  Readings read;
+  if (first) read = Readings(0.0, 0);
+  if (wall + 1 >= w.wall_begin.size()) return read;  // no search yet
+  const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
+  read.sum.add(
+      fold(w.exec, end - begin, ExactSum(),
+           ForceOnWall{w.domain.owned_view(), begin, quantity.axis, w.wall_contacts.pairs.a.view(),
+                       w.wall_contacts.history.on_wall.view()},
+           Sum{}));
+  return read;
+}
+
+}  // namespace
+
 double probe(const World& w, const ProbeConfig& p) {
+  if (const auto wall = wall_of(w, p)) return read_wall(w, p, *wall).sum.value();
   View<const Index> members{};
   if (!p.on.empty()) {
     const auto set = std::find_if(w.sets.begin(), w.sets.end(),
@@ -210,6 +264,7 @@ double probe(const World& w, const ProbeConfig& p) {
 }
 
 Readings read_own(World& part, const ProbeConfig& p) {
+  if (const auto wall = wall_of(part, p)) return read_wall(part, p, *wall);
   const auto set = std::find_if(part.sets.begin(), part.sets.end(),
                                 [&](const ElementSet& s) { return s.name == p.on; });
   if (set == part.sets.end()) return read(part, p, {});

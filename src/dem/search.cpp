@@ -75,29 +75,31 @@ struct MayTouch {
 struct SpentBy {
   OwnedView owned;  ///< the owner of a books
   View<const Index> contact, a;
-  View<const double> slid, damped, driven;
+  View<const double> slid, damped;
+  View<const double> driven;  ///< empty between elements
   BR_HD Energies operator()(Index k) const {
     const Index i = contact[k];
     Energies spent;
     if (!owned(a[i])) return spent;
     spent.friction.add(slid[i]);
     spent.contact.add(damped[i]);
-    spent.work.add(driven[i]);
+    if (driven.size > 0) spent.work.add(driven[i]);
     return spent;
   }
 };
 
 /// Books what the pairs that leave the list have spent.
-void book_dropped(World& w, const Contacts& contacts, const Pairs& found) {
+template <class List>
+void book_dropped(World& w, const List& contacts, const Pairs& found) {
   if (contacts.size() == 0) return;
   Buffer<Index> dropped(w.exec.space);
   find_dropped(w.exec, contacts.pairs.key, found.key, dropped);
   if (dropped.empty()) return;
-  const ContactHistory& h = contacts.history;
+  const auto& h = contacts.history;
   w.ledger.book(
       fold(w.exec, dropped.size(), Energies{},
            SpentBy{w.domain.owned_view(), std::as_const(dropped).view(), contacts.pairs.a.view(),
-                   h.slid.view(), h.damped.view(), h.driven.view()},
+                   h.slid.view(), h.damped.view(), h.work_of_walls()},
            Sum{}));
 }
 

@@ -210,6 +210,7 @@ void set_contacts(World& w, const Config& config, const Model& m) {
   for (const WallConfig& wall : config.walls) {
     const double size = norm(wall.normal);
     if (!(size > 0.0)) throw InputError("wall " + wall.name + " has a normal of length 0");
+    w.wall_names.push_back(wall.name);
     w.walls.push_back({wall.point, (1.0 / size) * wall.normal, wall.velocity, wall.stiffness, 0.0});
   }
   // A step that resolves the contact of two like elements, for those that nothing else slows down.

@@ -70,10 +70,10 @@ struct World : LinkSets {
   Parameters parameters;
 
   // State: what a checkpoint holds.
-  Elements elements;       // and the links, in LinkSets
-  Contacts contacts;       ///< between elements
-  Contacts wall_contacts;  ///< with walls
-  Travel travel;           ///< since the last search
+  Elements elements;  // and the links, in LinkSets
+  Contacts contacts;  ///< between elements
+  WallContacts wall_contacts;
+  Travel travel;  ///< since the last search
   std::vector<Wall> walls;
   Ledger ledger;
   double time = 0.0;     ///< of positions and forces  [s]
@@ -109,6 +109,7 @@ struct World : LinkSets {
 
   // What follows from the case.
   std::vector<ElementSet> sets;
+  std::vector<std::string> wall_names;
   Buffer<ContactPair> contact_pairs;  ///< by two materials
   Buffer<ContactPair> wall_pairs;     ///< by one material
   Buffer<Motion> motions;

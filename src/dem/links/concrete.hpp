@@ -83,6 +83,7 @@ using ConcreteLinks = LinkArrays<ConcreteLink>;
 template <class Number>
 struct ConcreteLinkForces {
   static constexpr const char* name = "dem.concrete_links";
+  static constexpr int least_blocks = sizeof(Number) == sizeof(double) ? 4 : 0;  // 128 registers
   using Law = ConcreteLink;
   Law law;
   double dt;  ///< the step that moved the elements to where they are  [s]
