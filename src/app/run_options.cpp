@@ -43,6 +43,13 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("SECONDS")
       ->check(problem_of<double>);
   command
+      .add_option("--max-wall", options.max_wall,
+                  "save and end (exit code 10) before so much wall-clock time has passed")
+      ->type_name("TIME")
+      ->check([](const std::string& text) {
+        return wall_time(text) ? "" : text + " is no time such as 3h50m, 90m, 45 or 00:45:00";
+      });
+  command
       .add_option("--set", options.overrides, "override a key of the case; may be given repeatedly")
       ->type_name("KEY=VALUE")
       ->take_all()
@@ -87,7 +94,7 @@ RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec,
   plan.case_folder = read.folder;
   plan.prepared = read.prepared;
   plan.model_digest = read.model_digest;
-  plan.limits = {options.until, options.steps};
+  plan.limits = {options.until, options.steps, wall_time(options.max_wall)};
   plan.machine = {processor_name(), options.device, exec.threads,
                   ranks == nullptr ? 1 : ranks->size()};
   plan.timers = exec.timers;

@@ -20,6 +20,7 @@ struct RunOptions {
   int threads = 0;  ///< 0: all there are
   std::optional<std::int64_t> steps;
   std::optional<double> until;  ///<  [s]
+  std::string max_wall;         ///< as people write it; empty: none
   std::vector<std::string> overrides;
   bool allow_scripts = false;
   bool quiet = false, verbose = false, no_progress = false;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace breccia {
 
@@ -18,10 +19,11 @@ struct Standing {
   double time = 0.0;   ///<  [s]
   double share = 0.0;  ///< of the whole run  [0, 1]
   std::string broken;  ///< how many links or joints are, in words; empty: there are none to break
+  std::optional<double> missing{};  ///< relative error of the ledger in its last row; none yet  [-]
 };
 
-/// On a terminal: one line that is redrawn up to five times a second. Elsewhere: a line each tenth
-/// of the run, at most one a second.
+/// On a terminal: one line, never wider than it, that is redrawn up to five times a second.
+/// Elsewhere: a line each tenth of the run, at most one a second.
 class Progress {
  public:
   using Clock = std::chrono::steady_clock;
@@ -41,7 +43,7 @@ class Progress {
   void end_line();
 
  private:
-  std::string text(const Standing& standing, Clock::time_point now) const;
+  std::string text(const Standing& standing, Clock::time_point now, std::size_t width) const;
 
   std::FILE* stream_;
   Form form_;
@@ -51,8 +53,15 @@ class Progress {
   bool line_open_ = false;
 };
 
+/// A bar and pieces of text, the most important first, in at most `width` columns: pieces that have
+/// no room are left out, and the bar takes what is left, up to 24 columns.
+std::string progress_line(double share, const std::vector<std::string>& pieces, std::size_t width);
+
 /// A duration for people: "1.3 s", "4 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
+/// A span of wall-clock time as people write it: 3h50m, 90m, 1.5h, 45, 00:45:00; nothing for what
+/// is none.  [s]
+std::optional<double> wall_time(const std::string& text);
 /// A count with commas: "14,274".
 std::string count_text(double count);
 

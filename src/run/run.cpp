@@ -23,6 +23,9 @@ namespace {
 /// Steps from one look at the numbers to the next.
 constexpr std::int64_t verify_every = 1000;
 
+/// Why a run ends early, beside the numbers of signals.
+constexpr int wall_limit = -1;
+
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -181,6 +184,7 @@ Run::Decision Run::decide(double spent) const {
     decision.steps_at_once = std::min<std::int64_t>(2 * steps_at_once_, 1000);
   if (spent > attention) decision.steps_at_once = std::max<std::int64_t>(steps_at_once_ / 2, 1);
   decision.signal = finished() ? 0 : StopSignals::received();
+  if (decision.signal == 0 && !finished() && out_of_time()) decision.signal = wall_limit;
   decision.save = !finished() && checkpoints_.due(method_.steps(), now) ? 1 : 0;
   decision.show = progress_.due(share(), now) ? 1 : 0;
   decision.count = decision.show != 0 && now >= next_facts_ ? 1 : 0;
@@ -248,6 +252,7 @@ CheckpointWriter Run::record_state() const {
 
 void Run::save_checkpoint() {
   if (checkpoints_.last_step() == method_.steps()) return;
+  const Clock::time_point begin = Clock::now();
   const OutputTime time(plan_.timers, output_);
   method_.verify();
   const std::int64_t step = method_.steps();
@@ -272,16 +277,27 @@ void Run::save_checkpoint() {
     log_->sync();
     write_summary(now);
   });
+  save_time_ = std::max(save_time_, seconds_since(begin));
 }
 
-int Run::interrupted(int signal) {
+/// Whether what is left of the wall limit is no more than what saving may take.
+bool Run::out_of_time() const {
+  if (!plan_.limits.wall) return false;
+  const double needed = 1.0 + 2.0 * save_time_;
+  return seconds_since(plan_.begin) >=
+         *plan_.limits.wall - std::min(needed, 0.1 * *plan_.limits.wall);
+}
+
+int Run::interrupted(int cause) {
   save_checkpoint();
   background_.finish();
   Summary now = summary();
   now.energy = method_.energy();
   now.status = "interrupted";
-  now.exit_code = 128 + signal;
-  now.message = fmt::format("{} at step {}; state saved", signal_name(signal), method_.steps());
+  now.exit_code = cause == wall_limit ? exit_at_wall_limit : 128 + cause;
+  now.message =
+      fmt::format("{} at step {}; state saved",
+                  cause == wall_limit ? "end of --max-wall" : signal_name(cause), method_.steps());
   on_first(plan_.ranks, [&] {
     log_->write(Level::warning, "end", method_.steps(), now.message);
     write_summary(now);
@@ -470,7 +486,10 @@ void Run::count_broken() {
 }
 
 Standing Run::standing() const {
-  return {method_.steps(), method_.time(), share(), broken_};
+  const std::optional<EnergyBalance> row = recorder_.last_energy();
+  std::optional<double> missing;
+  if (row) missing = row->error_relative;
+  return {method_.steps(), method_.time(), share(), broken_, missing};
 }
 
 }  // namespace breccia

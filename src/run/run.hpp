@@ -19,10 +19,14 @@
 
 namespace breccia {
 
-/// Where a run ends if not at the end of its case: --until and --steps.
+/// Exit code of a run that --max-wall ended: its state is saved, `resume` goes on.
+inline constexpr int exit_at_wall_limit = 10;
+
+/// Where a run ends if not at the end of its case: --until, --steps and --max-wall.
 struct Limits {
   std::optional<double> time;         ///< simulated time  [s]
   std::optional<std::int64_t> steps;  ///< since the start of the case
+  std::optional<double> wall{};       ///< since the program began: then saved, to be resumed  [s]
 };
 
 /// What a run is told besides its method.
@@ -94,7 +98,7 @@ class Run {
   void save_checkpoint();
   /// All of a checkpoint but the method's own.
   CheckpointWriter record_state() const;
-  int interrupted(int signal);
+  int interrupted(int cause);
   int done();
   void conclude(Summary& now);
   void failed(int exit_code, const std::string& message);
@@ -109,6 +113,7 @@ class Run {
   void say(const std::string& text);
   void count_broken();
   Standing standing() const;
+  bool out_of_time() const;
 
   Method& method_;
   const RunPlan& plan_;
@@ -123,6 +128,7 @@ class Run {
   Progress progress_;
   std::int64_t steps_at_once_ = 1;
   double setup_ = 0.0, loop_ = 0.0, output_ = 0.0;  ///< wall time  [s]
+  double save_time_ = 0.0;                          ///< of the longest checkpoint so far  [s]
   std::string broken_;
   Clock::time_point next_facts_{};
   Background background_;  ///< last: it uses the others

@@ -372,6 +372,15 @@ TEST_F(Program, SavesItsStateAtASignalAndResumesToTheSameBits) {
   }
 }
 
+TEST_F(Program, EndsBeforeItsWallTimeIsOverAndResumesToTheSameBits) {
+  ASSERT_EQ(run("run " + path("long.toml") + " --steps 400000 -o " + path("whole")), 0) << output();
+  EXPECT_EQ(run("run " + path("long.toml") + " --max-wall 1.2s -o " + path("cut")), 10) << output();
+  EXPECT_NE(output().find("breccia resume"), std::string::npos) << output();
+  EXPECT_EQ(summary("cut")["status"], "interrupted");
+  EXPECT_EQ(run("resume " + path("cut") + " --threads 1 --steps 400000"), 0) << output();
+  EXPECT_EQ(summary("cut")["state_hash"], summary("whole")["state_hash"]);
+}
+
 TEST_F(Program, RestartsFromACheckpointInANewFolder) {
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("whole")), 0) << output();
   ASSERT_EQ(run("run " + path("balls.toml") + " --steps 50 -o " + path("part")), 0) << output();
