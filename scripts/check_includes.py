@@ -20,7 +20,8 @@ ALLOWED = {
     "io": {"exec", "math", "core"},
     "prepare": {"exec", "math", "core", "io", "dem", "fdem"},
     "run": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare"},
-    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run"},
+    "report": {"exec", "math", "core", "io"},
+    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run", "report"},
 }
 ALLOWED["bench"] = set(ALLOWED)
 LONGEST = 500

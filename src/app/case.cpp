@@ -8,6 +8,7 @@
 #include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
 #include "io/case_file.hpp"
+#include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
@@ -17,7 +18,6 @@
 #include "run/device_plan.hpp"
 #include "run/fdem_method.hpp"
 #include "run/memory_plan.hpp"
-#include "run/progress.hpp"
 #include "run/shown.hpp"
 
 namespace breccia::app {

@@ -20,6 +20,7 @@ void add_check(CLI::App& program, int& exit_code);
 void add_keys(CLI::App& program);
 void add_info(CLI::App& program);
 void add_render(CLI::App& program);
+void add_report(CLI::App& program);
 void add_bench(CLI::App& program, Communicator* ranks);  ///< bench/command.cpp
 
 }  // namespace breccia::app

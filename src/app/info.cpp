@@ -15,7 +15,6 @@
 #include "io/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 #include "run/checkpoints.hpp"
-#include "run/progress.hpp"
 
 namespace breccia::app {
 namespace {

@@ -95,4 +95,14 @@ std::string length_text(double metres) {
   return fmt::format("{:.4g} um", 1e6 * metres);
 }
 
+std::string count_text(double count) {
+  std::string digits = fmt::format("{:.0f}", count);
+  const std::size_t first = digits.starts_with('-') ? 1 : 0;
+  for (std::size_t i = digits.size(); i > first + 3;) {
+    i -= 3;
+    digits.insert(i, 1, ',');
+  }
+  return digits;
+}
+
 }  // namespace breccia

@@ -31,5 +31,7 @@ ValueRange rounded_outwards(const ValueRange& range);
 /// A time with its unit, "1.206 ms"; a length likewise, "200 mm".
 std::string time_text(double seconds);
 std::string length_text(double metres);
+/// A count with commas: "14,274".
+std::string count_text(double count);
 
 }  // namespace breccia

@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "exec/error.hpp"
-#include "run/progress.hpp"
+#include "io/round_numbers.hpp"
 
 namespace breccia {
 namespace {

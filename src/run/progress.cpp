@@ -64,16 +64,6 @@ std::optional<double> wall_time(const std::string& text) {
   return seconds;
 }
 
-std::string count_text(double count) {
-  std::string digits = fmt::format("{:.0f}", count);
-  const std::size_t first = digits.starts_with('-') ? 1 : 0;
-  for (std::size_t i = digits.size(); i > first + 3;) {
-    i -= 3;
-    digits.insert(i, 1, ',');
-  }
-  return digits;
-}
-
 Progress::Form Progress::form_for(std::FILE* stream) {
   return ::isatty(::fileno(stream)) == 1 ? Form::bar : Form::lines;
 }

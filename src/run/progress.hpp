@@ -62,7 +62,5 @@ std::string duration_text(double seconds);
 /// A span of wall-clock time as people write it: 3h50m, 90m, 1.5h, 45, 00:45:00; nothing for what
 /// is none.  [s]
 std::optional<double> wall_time(const std::string& text);
-/// A count with commas: "14,274".
-std::string count_text(double count);
 
 }  // namespace breccia

@@ -1,0 +1,297 @@
+#include "report/film.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <unordered_map>
+
+#include "report/packed_bytes.hpp"
+#include "report/thinning.hpp"
+
+namespace breccia::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Numbers = std::vector<std::uint32_t>;
+
+/// How positions become whole numbers.
+struct Grid {
+  Vec3 low;
+  double step = 1.0;  ///<  [m]
+  int width = 2;      ///<  [bytes]
+  int axes = 3;
+
+  Grid(const Survey& survey, bool fine) : low(survey.low), axes(survey.plane ? 2 : 3) {
+    const Vec3 box = survey.high - survey.low;
+    const double extent = std::max({box.x, box.y, box.z, 1e-12});
+    // A hundredth of an element cannot be seen; displacements of a plane may be shown enlarged.
+    const bool wide = (survey.plane && fine) || extent / 65535.0 > 0.02 * survey.size;
+    width = wide ? 3 : 2;
+    step = extent / static_cast<double>((1U << (8 * width)) - 1);
+  }
+  Numbers of(const std::vector<Vec3>& points, int axis) const {
+    Numbers numbers;
+    numbers.reserve(points.size());
+    for (const Vec3& p : points) {
+      const double place = axis == 0 ? p.x - low.x : axis == 1 ? p.y - low.y : p.z - low.z;
+      const double last = static_cast<double>((1U << (8 * width)) - 1);
+      numbers.push_back(
+          static_cast<std::uint32_t>(std::llround(std::clamp(place / step, 0.0, last))));
+    }
+    return numbers;
+  }
+};
+
+/// A field as the film stores it.
+struct StoredField {
+  const FieldSurvey* field;
+  int components;  ///< 1 where only the length of a vector is kept
+  Scale scale;
+};
+
+StoredField stored(const FieldSurvey& field, const Selection& selection) {
+  StoredField made{&field, selection.components ? field.components : 1, {}};
+  Scale& scale = made.scale;
+  scale.low = field.low;
+  scale.high = field.high;
+  const double largest = std::max(std::abs(field.low), std::abs(field.high));
+  if (field.category) {
+    scale.low = 0.0F;
+    scale.last = std::max(1U, static_cast<std::uint32_t>(std::max(field.high, 0.0F)));
+    scale.high = static_cast<float>(scale.last);
+    return made;
+  }
+  if (made.components < field.components) {
+    scale.low = 0.0F;
+    scale.high = static_cast<float>(largest * std::sqrt(field.components));
+  }
+  scale.last = field.of_lines ? 63 : selection.fine ? 1023 : 255;
+  scale.root = field.mean_size < 0.1 * largest;
+  if (field.unit == "-" && field.low >= 0.0F && field.high <= 1.0F) {  // a share
+    scale = {0.0F, 1.0F, field.of_lines ? 63U : 255U, false};
+  }
+  return made;
+}
+
+/// Positions of each frame as differences from the first: of triangles less those of the first
+/// corner that began at the same place, since corners of whole rock move together.
+class Positions {
+ public:
+  Positions(const Grid& grid, bool plane) : grid_(grid), plane_(plane) {}
+
+  void add(Planes& planes, const std::vector<Vec3>& points) {
+    const bool first = reference_.empty();
+    std::vector<Numbers> now;
+    for (int axis = 0; axis < grid_.axes; ++axis) now.push_back(grid_.of(points, axis));
+    for (int axis = 0; axis < grid_.axes; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      Numbers differences = now[a];
+      if (!first) {
+        const Numbers& start = reference_[a];
+        for (std::size_t i = 0; i < differences.size(); ++i) {
+          std::uint32_t moved = now[a][i] - start[i];
+          if (const std::size_t m = leader(i); m != i) moved -= now[a][m] - start[m];
+          differences[i] = zigzag(moved, grid_.width);
+        }
+      }
+      planes.add(differences, grid_.width);
+    }
+    if (!first) return;
+    reference_ = std::move(now);
+    if (plane_) find_leaders();
+  }
+
+ private:
+  std::size_t leader(std::size_t i) const { return plane_ ? leader_[i] : i; }
+  void find_leaders() {
+    std::unordered_map<std::uint64_t, std::size_t> seen;
+    for (std::size_t i = 0; i < reference_[0].size(); ++i) {
+      const std::uint64_t place =
+          static_cast<std::uint64_t>(reference_[0][i]) << 32 | reference_[1][i];
+      leader_.push_back(seen.emplace(place, i).first->second);
+    }
+  }
+
+  const Grid& grid_;
+  bool plane_;
+  std::vector<Numbers> reference_;
+  std::vector<std::size_t> leader_;
+};
+
+/// Makes a film of what a selection takes.
+class Cutter {
+ public:
+  Cutter(const std::string& folder, const Survey& survey, const Selection& selection)
+      : folder_(folder),
+        survey_(survey),
+        selection_(selection),
+        grid_(survey, selection.fine),
+        positions_(grid_, survey.plane) {
+    for (const FieldSurvey& field : survey.fields)
+      if (selection.takes(field)) fields_.push_back(stored(field, selection));
+    place_.assign(survey.elements, -1);
+    for (std::size_t k = 0; k < selection.elements.size(); ++k)
+      place_[selection.elements[k]] = static_cast<std::int32_t>(k);
+  }
+
+  Film made(std::size_t first_blob) {
+    Film film;
+    Json frames = Json::array();
+    for (const std::size_t k : selection_.frames) {
+      const FrameFacts& facts = survey_.frames[k];
+      const Shot shot = read_shot(folder_, facts.number);
+      Json frame{{"number", facts.number}, {"step", facts.step}, {"time", facts.time}};
+      frame["blob"] = first_blob + film.blobs.size();
+      Planes planes;
+      add_elements(planes, shot);
+      add_lines(planes, shot, frame);
+      film.blobs.push_back(base64(deflated(planes.bytes())));
+      frames.push_back(std::move(frame));
+      first_ = false;
+    }
+    film.json = described(std::move(frames)).dump(-1, ' ', false, Json::error_handler_t::replace);
+    film.notes = selection_.notes(survey_);
+    return film;
+  }
+
+ private:
+  void add_elements(Planes& planes, const Shot& shot) {
+    std::vector<Vec3> corner;
+    const std::size_t each = survey_.plane ? 3 : 1;
+    for (const std::uint32_t i : selection_.elements)
+      for (std::size_t c = 0; c < each; ++c) corner.push_back(shot.corner[each * i + c]);
+    positions_.add(planes, corner);
+    if (first_ && !survey_.plane) {
+      Numbers radius;
+      const Scale scale = radius_scale();
+      for (const std::uint32_t i : selection_.elements)
+        radius.push_back(scale.step_of(static_cast<float>(shot.radius[i])));
+      planes.add(radius, 2);
+    }
+    for (const StoredField& field : fields_)
+      if (!field.field->of_lines && (first_ || !field.field->constant))
+        add_field(planes, field, shot.element_fields, selection_.elements);
+  }
+
+  void add_lines(Planes& planes, const Shot& shot, Json& frame) {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t l = 0; l < shot.lines(); ++l)
+      if (survey_.plane || (place(shot.ends[2 * l]) >= 0 && place(shot.ends[2 * l + 1]) >= 0))
+        kept.push_back(static_cast<std::uint32_t>(l));
+    const bool told = survey_.plane || first_ || !survey_.lines_constant;
+    frame["lines"] = kept.size();
+    frame["ends"] = told;
+    if (told && survey_.plane) {
+      std::vector<Vec3> points;
+      for (const std::uint32_t l : kept)
+        for (std::size_t k = 0; k < 2; ++k) points.push_back(shot.end[2 * l + k]);
+      for (int axis = 0; axis < 2; ++axis) planes.add(grid_.of(points, axis), grid_.width);
+    } else if (told) {
+      Numbers a, b;
+      std::uint32_t before = 0;
+      for (const std::uint32_t l : kept) {
+        const auto from = static_cast<std::uint32_t>(place(shot.ends[2 * l]));
+        const auto to = static_cast<std::uint32_t>(place(shot.ends[2 * l + 1]));
+        a.push_back(zigzag(from - before, 4));
+        b.push_back(zigzag(to - from, 4));
+        before = from;
+      }
+      planes.add(a, 4);
+      planes.add(b, 4);
+    }
+    for (const StoredField& field : fields_)
+      if (field.field->of_lines && (told || !field.field->constant))
+        add_field(planes, field, shot.line_fields, kept);
+  }
+
+  static void add_field(Planes& planes, const StoredField& field,
+                        const std::vector<FrameField>& values, const Numbers& items) {
+    const FrameField* const found = field_named(values, field.field->name);
+    const auto width = static_cast<std::size_t>(field.field->components);
+    for (int c = 0; c < field.components; ++c) {
+      Numbers steps;
+      for (const std::uint32_t i : items) {
+        float value = 0.0F;
+        if (found != nullptr && static_cast<std::size_t>(field.components) == width) {
+          value = found->values[width * i + static_cast<std::size_t>(c)];
+        } else if (found != nullptr) {
+          for (std::size_t k = 0; k < width; ++k)
+            value += found->values[width * i + k] * found->values[width * i + k];
+          value = std::sqrt(value);
+        }
+        steps.push_back(field.scale.step_of(value));
+      }
+      planes.add(steps, field.scale.width());
+    }
+  }
+
+  Scale radius_scale() const {
+    const std::vector<double>& r = survey_.first.radius;
+    return {0.0F, r.empty() ? 1.0F : static_cast<float>(*std::max_element(r.begin(), r.end())),
+            65535, false};
+  }
+
+  Json described(Json&& frames) const {
+    Json film;
+    film["plane"] = survey_.plane;
+    film["elements"] = selection_.elements.size();
+    film["low"] = {survey_.low.x, survey_.low.y, survey_.low.z};
+    film["high"] = {survey_.high.x, survey_.high.y, survey_.high.z};
+    film["step"] = grid_.step;
+    film["width"] = grid_.width;
+    film["size"] = survey_.size;
+    if (!survey_.plane) film["largest_radius"] = radius_scale().high;
+    film["groups"] = survey_.groups;
+    film["fields"] = Json::array();
+    for (const StoredField& f : fields_)
+      film["fields"].push_back({{"name", f.field->name},
+                                {"unit", f.field->unit},
+                                {"lines", f.field->of_lines},
+                                {"components", f.components},
+                                {"length", f.components < f.field->components},
+                                {"category", f.field->category},
+                                {"constant", f.field->constant},
+                                {"low", f.scale.low},
+                                {"high", f.scale.high},
+                                {"last", f.scale.last},
+                                {"root", f.scale.root}});
+    film["frames"] = std::move(frames);
+    return film;
+  }
+
+  std::int32_t place(std::int32_t element) const {
+    return place_[static_cast<std::size_t>(element)];
+  }
+
+  const std::string& folder_;
+  const Survey& survey_;
+  const Selection& selection_;
+  Grid grid_;
+  Positions positions_;
+  std::vector<StoredField> fields_;
+  std::vector<std::int32_t> place_;  ///< of each element in the film; -1: it is not in it
+  bool first_ = true;
+};
+
+}  // namespace
+
+std::size_t Film::bytes() const {
+  std::size_t sum = json.size();
+  for (const std::string& blob : blobs) sum += blob.size();
+  return sum;
+}
+
+Film film_of(const std::string& folder, const Survey& survey, std::size_t first_blob,
+             std::size_t limit) {
+  Selection selection = Selection::whole(survey);
+  while (selection.estimate(survey) > static_cast<double>(limit) && selection.tighten(survey)) {
+  }
+  while (true) {
+    Film film = Cutter(folder, survey, selection).made(first_blob);
+    if (film.bytes() <= limit || !selection.tighten(survey)) return film;
+  }
+}
+
+}  // namespace breccia::report

@@ -1,0 +1,320 @@
+#include "report/findings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "io/round_numbers.hpp"
+#include "math/constants.hpp"
+#include "report/shot.hpp"
+
+namespace breccia::report {
+namespace {
+
+std::string place_text(const Vec3& p, bool plane) {
+  const auto tidy = [](double x) { return std::abs(x) < 5e-7 ? 0.0 : x; };
+  if (plane) return fmt::format("({:.3g}, {:.3g}) m", tidy(p.x), tidy(p.y));
+  return fmt::format("({:.3g}, {:.3g}, {:.3g}) m", tidy(p.x), tidy(p.y), tidy(p.z));
+}
+
+std::string value_text(double value, const std::string& unit) {
+  const ScaledUnit scaled = scaled_unit(unit, std::abs(value));
+  return fmt::format("{:.3g} {}", value * scaled.factor, scaled.unit);
+}
+
+std::string percent_text(double share) {
+  return fmt::format("{:.2g} %", 100.0 * share);
+}
+
+std::string count_of(double count, const std::string& what) {
+  return fmt::format("{} {}{}", count_text(count), what, count == 1.0 ? "" : "s");
+}
+
+std::string listed(const std::vector<std::string>& items) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == items.size() ? " and " : ", ") + items[i];
+  return text;
+}
+
+/// Bodies that the ends of broken lines belong to.
+std::string bodies_of(const Shot& shot, const std::vector<std::uint8_t>& broken) {
+  const FrameField* const group = field_named(shot.element_fields, "group");
+  if (shot.plane || group == nullptr) return "";
+  std::set<std::size_t> found;
+  for (std::size_t l = 0; l < broken.size(); ++l)
+    if (broken[l] != 0)
+      found.insert(static_cast<std::size_t>(
+          std::max(0.0F, group->values[static_cast<std::size_t>(shot.ends[2 * l])])));
+  std::vector<std::string> names;
+  for (const std::size_t g : found)
+    if (g < shot.groups.size()) names.push_back(shot.groups[g]);
+  return names.empty() ? "" : " in " + listed(names);
+}
+
+/// How much of its strength a shot uses, where it does so most.
+struct Use {
+  double share = 0.0, time = 0.0;
+  Vec3 place{};
+  std::string material;
+};
+
+/// Largest principal stress over the joints' tensile strength.
+void judge_triangles(const Record& record, const Shot& shot, Use& use) {
+  const auto field = [&](const char* name) { return field_named(shot.element_fields, name); };
+  const FrameField *xx = field("stress_xx"), *yy = field("stress_yy"), *xy = field("stress_xy");
+  const FrameField* const material = field("material");
+  if (xx == nullptr || yy == nullptr || xy == nullptr || material == nullptr) return;
+  for (std::size_t t = 0; t < shot.elements(); ++t) {
+    const auto m = static_cast<std::size_t>(std::max(0.0F, material->values[t]));
+    if (m >= record.scene.strengths.size()) continue;
+    const Strength& strength = record.scene.strengths[m];
+    if (!strength.breaks || !(strength.tension > 0.0)) continue;
+    const double mean = 0.5 * (xx->values[t] + yy->values[t]);
+    const double half = 0.5 * (xx->values[t] - yy->values[t]);
+    const double stress = mean + std::hypot(half, static_cast<double>(xy->values[t]));
+    if (stress / strength.tension <= use.share) continue;
+    const Vec3 middle =
+        (1.0 / 3.0) * (shot.corner[3 * t] + shot.corner[3 * t + 1] + shot.corner[3 * t + 2]);
+    use = {stress / strength.tension, shot.time, middle, strength.material};
+  }
+}
+
+/// Force of stretched links between elements of one material over its tensile strength.
+void judge_links(const Record& record, const Shot& first, const Shot& shot, Use& use) {
+  const FrameField* const force = field_named(shot.line_fields, "force");
+  const FrameField* const kind = field_named(shot.line_fields, "kind");
+  const FrameField* const group = field_named(shot.element_fields, "group");
+  if (force == nullptr || kind == nullptr || group == nullptr || shot.ends != first.ends) return;
+  std::vector<const Strength*> of_group(shot.groups.size(), nullptr);
+  for (std::size_t g = 0; g < shot.groups.size(); ++g) {
+    const auto material = record.scene.materials.find(shot.groups[g]);
+    for (const Strength& strength : record.scene.strengths)
+      if (material != record.scene.materials.end() && strength.material == material->second &&
+          strength.breaks && strength.tension > 0.0)
+        of_group[g] = &strength;
+  }
+  for (std::size_t l = 0; l < shot.lines(); ++l) {
+    if (kind->values[l] != 0.0F) continue;  // concrete alone
+    const auto a = static_cast<std::size_t>(shot.ends[2 * l]);
+    const auto b = static_cast<std::size_t>(shot.ends[2 * l + 1]);
+    const auto g = static_cast<std::size_t>(std::max(0.0F, group->values[a]));
+    if (g >= of_group.size() || of_group[g] == nullptr || group->values[a] != group->values[b])
+      continue;
+    if (norm(shot.corner[b] - shot.corner[a]) <= norm(first.corner[b] - first.corner[a])) continue;
+    const double r = std::min(shot.radius[a], shot.radius[b]);
+    const double share = force->values[l] / (of_group[g]->tension * pi * r * r);
+    if (share > use.share) use = {share, shot.time, shot.middle(l), of_group[g]->material};
+  }
+}
+
+/// The sentences of one run.
+class Findings {
+ public:
+  explicit Findings(const Record& record) : record_(record) {
+    const std::optional<double> links = record.number("fracture.broken_links");
+    broken_ = links ? links : record.number("fracture.broken_joints");
+    what_ = links ? "link" : "joint";
+    all_ = record.number(links ? "model.links" : "model.joints").value_or(0.0);
+    if (!record.times.empty()) first_ = read(0);
+  }
+
+  std::vector<std::string> sentences() {
+    std::vector<std::string> all;
+    if (all_ <= 0.0)
+      all.push_back("Nothing can break here: the model has no links or joints.");
+    else if (!broken_ || *broken_ == 0.0)
+      all = {unbroken(), nearness()};
+    else
+      all = {when(), where()};
+    all.push_back(load());
+    std::erase(all, "");
+    return all;
+  }
+
+ private:
+  Shot read(std::size_t frame) const { return read_shot(record_.folder, static_cast<int>(frame)); }
+
+  std::string unbroken() const {
+    const double fracture = record_.number("energy.fracture").value_or(0.0);
+    std::string text = fmt::format("Nothing broke: all {} are whole", count_of(all_, what_));
+    text += fracture > 0.0 ? fmt::format(", though {} went into softening",
+                                         value_text(fracture, energy_unit()))
+                           : std::string(" and none has softened");
+    return text + ".";
+  }
+
+  /// How near to breaking.
+  std::string nearness() const {
+    if (!first_) return "";
+    Use use;
+    const std::size_t frames = record_.times.size(), looks = std::min<std::size_t>(frames, 9);
+    for (std::size_t k = 1; k <= looks; ++k) {
+      const Shot shot = read(k * (frames - 1) / looks);
+      if (shot.plane)
+        judge_triangles(record_, shot, use);
+      else
+        judge_links(record_, *first_, shot, use);
+    }
+    if (!(use.share > 0.01)) return "";
+    std::string text = fmt::format(
+        "The highest tension in the frames that were looked at is {:.2g} of the strength of {}, "
+        "near {} at {}",
+        use.share, use.material, place_text(use.place, first_->plane), time_text(use.time));
+    if (use.share < 1.0)
+      text += fmt::format(": if all grows in proportion, {:.2g} times the load begins to break it",
+                          1.0 / use.share);
+    else
+      text += ": it softens there, and a little more breaks it";
+    return text + ".";
+  }
+
+  std::string when() {
+    std::string text = fmt::format("{} of {} broke ({})", count_text(*broken_),
+                                   count_of(all_, what_), percent_text(*broken_ / all_));
+    std::vector<std::string> kinds;
+    for (const char* kind : {"concrete", "steel", "interface"})
+      if (const auto count =
+              record_.number(std::string("fracture.broken_by_kind.") + kind).value_or(0.0);
+          count > 0.0)
+        kinds.push_back(fmt::format("{} of {}", count_text(count), kind));
+    if (!kinds.empty() && kinds.size() > 1) text += ": " + listed(kinds);
+    const Column* const times = record_.cracks.column("time");
+    if (times != nullptr && !times->values.empty()) {
+      const double first = times->values.front();
+      text += fmt::format("; the first at {}", time_text(first));
+      if (times->values.size() > 1)
+        text += fmt::format(", half of them by {}",
+                            time_text(times->values[(times->values.size() - 1) / 2]));
+    } else if (find_first_break() && break_frame_ > 0) {
+      text +=
+          fmt::format("; the first between {} and {}", time_text(record_.times[break_frame_ - 1]),
+                      time_text(record_.times[break_frame_]));
+    }
+    return text + ".";
+  }
+
+  std::string where() {
+    std::string text;
+    const Column *x = record_.cracks.column("x0"), *y = record_.cracks.column("y0");
+    const Column *x1 = record_.cracks.column("x1"), *y1 = record_.cracks.column("y1");
+    if (x != nullptr && y != nullptr && x1 != nullptr && y1 != nullptr && !x->values.empty()) {
+      const Vec3 start{0.5 * (x->values[0] + x1->values[0]), 0.5 * (y->values[0] + y1->values[0]),
+                       0.0};
+      text = "It began at " + place_text(start, true);
+    } else if (find_first_break()) {
+      const Shot shot = read(break_frame_);
+      const std::vector<std::uint8_t> broken = broken_lines(shot);
+      Vec3 sum{};
+      double count = 0.0;
+      for (std::size_t l = 0; l < broken.size(); ++l) {
+        if (broken[l] == 0) continue;
+        sum = sum + shot.middle(l);
+        count += 1.0;
+      }
+      text = "It began around " + place_text((1.0 / count) * sum, shot.plane) +
+             bodies_of(shot, broken);
+    }
+    const std::string mode = mode_text();
+    if (!mode.empty()) text += (text.empty() ? "It was " : ", ") + mode;
+    const auto pieces = record_.number("fracture.fragments");
+    if (pieces && *pieces > 1.0)
+      text += fmt::format(
+          "{} {} pieces are left, the largest with {} of the mass", text.empty() ? "" : ";",
+          count_text(*pieces),
+          percent_text(record_.number("fracture.largest_fragment_fraction").value_or(1.0)));
+    if (text.starts_with("  ")) text.erase(0, 2);
+    return text.empty() ? "" : text + ".";
+  }
+
+  std::string mode_text() const {
+    const double open = record_.number("fracture.energy_by_mode.opening").value_or(0.0);
+    const double slide = record_.number("fracture.energy_by_mode.sliding").value_or(0.0);
+    if (open + slide > 0.0)
+      return open >= slide ? fmt::format("by opening ({} of the fracture energy)",
+                                         percent_text(open / (open + slide)))
+                           : fmt::format("by sliding ({} of the fracture energy)",
+                                         percent_text(slide / (open + slide)));
+    const double fracture = record_.number("energy.fracture").value_or(0.0);
+    const double plastic = record_.number("energy.plastic").value_or(0.0);
+    if (fracture <= 0.0) return "";
+    return fmt::format(
+        "and took {} in cracks{}", value_text(fracture, energy_unit()),
+        plastic > 0.0 ? " besides " + value_text(plastic, energy_unit()) + " of plastic slip" : "");
+  }
+
+  /// The largest force that a probe read, and what of it is left.
+  std::string load() const {
+    const Column* best = nullptr;
+    const Column* const time = record_.history.column("time");
+    double peak = 0.0;
+    std::size_t row = 0;
+    for (const Column& column : record_.history.columns) {
+      if (column.unit != "N" && column.unit != "N/m") continue;
+      for (std::size_t i = 0; i < column.values.size(); ++i) {
+        if (!(std::abs(column.values[i]) > std::abs(peak))) continue;
+        best = &column;
+        peak = column.values[i];
+        row = i;
+      }
+    }
+    if (best == nullptr || time == nullptr) return "";
+    const double share = best->values.back() / peak;
+    std::string text = fmt::format("{} was {} at its highest, at {}", best->name,
+                                   value_text(peak, best->unit), time_text(time->values[row]));
+    if (row + 1 == best->values.size())
+      text += ", at the end of the run: it may have risen further";
+    else if (share < 0.0005)
+      text += "; nothing of it is left at the end";
+    else
+      text += fmt::format("; {} of it is left at the end", percent_text(share));
+    return text + ".";
+  }
+
+  /// The first frame with broken lines, by bisection: lines do not heal.
+  bool find_first_break() {
+    if (looked_for_break_) return break_frame_ < record_.times.size();
+    looked_for_break_ = true;
+    const auto breaks = [&](std::size_t frame) {
+      const std::vector<std::uint8_t> broken = broken_lines(read(frame));
+      return std::find(broken.begin(), broken.end(), 1) != broken.end();
+    };
+    std::size_t low = 0, high = record_.times.size();
+    break_frame_ = high;
+    if (high == 0 || !breaks(high - 1)) return false;
+    --high;
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      if (breaks(middle))
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    break_frame_ = low;
+    return true;
+  }
+
+  std::string energy_unit() const {
+    const Column* const kinetic = record_.history.column("kinetic");
+    return kinetic == nullptr ? "J" : kinetic->unit;
+  }
+
+  const Record& record_;
+  std::optional<double> broken_;
+  double all_ = 0.0;
+  std::string what_;
+  std::optional<Shot> first_;
+  bool looked_for_break_ = false;
+  std::size_t break_frame_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> findings_of(const Record& record) {
+  return Findings(record).sentences();
+}
+
+}  // namespace breccia::report

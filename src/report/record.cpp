@@ -1,0 +1,96 @@
+#include "report/record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "exec/error.hpp"
+#include "io/vtu_reader.hpp"
+#include "io/whole_file.hpp"
+
+namespace breccia::report {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+void flatten(const Json& json, const std::string& path, Record& record) {
+  if (json.is_object()) {
+    for (const auto& [key, value] : json.items())
+      flatten(value, path.empty() ? key : path + "." + key, record);
+  } else if (json.is_number()) {
+    record.numbers[path] = json.get<double>();
+  } else if (json.is_string()) {
+    record.texts[path] = json.get<std::string>();
+  }
+}
+
+void read_summary(const std::string& path, Record& record) {
+  const Json json = Json::parse(read_whole_file(path), nullptr, false);
+  if (!json.is_object())
+    throw InputError(path + ": this is no summary of a run: it is damaged, or not JSON");
+  record.summary = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  flatten(json, "", record);
+}
+
+/// Messages of lines that warn or tell of an error; a damaged line is passed over.
+std::vector<std::string> warnings_of(const std::string& path) {
+  constexpr std::size_t most = 50;
+  std::vector<std::string> warnings;
+  const std::string log = read_whole_file(path);
+  for (std::size_t begin = 0; begin < log.size() && warnings.size() < most;) {
+    const std::size_t end = std::min(log.find('\n', begin), log.size());
+    const Json line = Json::parse(log.substr(begin, end - begin), nullptr, false);
+    begin = end + 1;
+    if (!line.is_object()) continue;
+    const auto word = [&](const char* key) {
+      return line.contains(key) && line[key].is_string() ? line[key].get<std::string>() : "";
+    };
+    const std::string level = word("level");
+    if (level != "info" && level != "debug" && !word("message").empty())
+      warnings.push_back(level + ": " + word("message"));
+  }
+  return warnings;
+}
+
+}  // namespace
+
+std::string Record::text(const std::string& path) const {
+  const auto found = texts.find(path);
+  return found == texts.end() ? "" : found->second;
+}
+
+std::optional<double> Record::number(const std::string& path) const {
+  const auto found = numbers.find(path);
+  if (found == numbers.end()) return std::nullopt;
+  return found->second;
+}
+
+Record read_record(const std::string& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error))
+    throw IoError(folder + ": cannot be read: there is no such folder");
+  if (!fs::is_directory(folder, error))
+    throw InputError(folder + ": this is no folder; report takes the result folder of a run");
+  const auto file = [&](const char* name) { return folder + "/" + name; };
+  const auto has = [&](const char* name) { return fs::exists(file(name), error); };
+  if (!has("summary.json"))
+    throw InputError(fmt::format(
+        "{}: this folder holds no run (there is no summary.json){}", folder,
+        has("case.toml") ? "\n  it holds a case: 'breccia run' makes a result of it" : ""));
+  Record record;
+  record.folder = folder;
+  read_summary(file("summary.json"), record);
+  if (has("case.toml")) record.case_text = read_whole_file(file("case.toml"));
+  record.scene = scene_of(record.case_text);
+  if (has("history.csv")) record.history = read_table(file("history.csv"));
+  if (has("cracks.csv")) record.cracks = read_table(file("cracks.csv"));
+  if (has("fragments.csv")) record.fragments = read_table(file("fragments.csv"));
+  if (has("log.jsonl")) record.warnings = warnings_of(file("log.jsonl"));
+  if (has("elements.pvd")) record.times = frame_times(folder);
+  return record;
+}
+
+}  // namespace breccia::report

@@ -1,0 +1,115 @@
+#include "report/shot.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "io/vtu_reader.hpp"
+
+namespace breccia::report {
+namespace {
+
+std::size_t at(std::int32_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// Values of a field of points as those of triangles: means of their corners.
+FrameField of_triangles(const FrameField& field, const std::vector<std::int32_t>& triangles) {
+  FrameField made{field.name, field.unit, field.components, {}};
+  const auto width = static_cast<std::size_t>(field.components);
+  made.values.resize(triangles.size() / 3 * width);
+  for (std::size_t t = 0; t < triangles.size() / 3; ++t)
+    for (std::size_t c = 0; c < width; ++c) {
+      float sum = 0.0F;
+      for (std::size_t k = 0; k < 3; ++k) sum += field.values[width * at(triangles[3 * t + k]) + c];
+      made.values[width * t + c] = sum / 3.0F;
+    }
+  return made;
+}
+
+/// Puts elements, and what names them, into the order of their ids.
+void sort_by_id(Shot& shot) {
+  const FrameField* const id = field_named(shot.element_fields, "id");
+  if (id == nullptr || shot.plane) return;
+  std::vector<std::size_t> order(shot.elements());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto earlier = [&](std::size_t a, std::size_t b) { return id->values[a] < id->values[b]; };
+  if (std::is_sorted(order.begin(), order.end(), earlier)) return;
+  std::stable_sort(order.begin(), order.end(), earlier);
+  const Shot old = shot;
+  std::vector<std::int32_t> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    place[order[i]] = static_cast<std::int32_t>(i);
+    shot.corner[i] = old.corner[order[i]];
+    shot.radius[i] = old.radius[order[i]];
+  }
+  for (std::size_t f = 0; f < shot.element_fields.size(); ++f) {
+    FrameField& field = shot.element_fields[f];
+    const auto width = static_cast<std::size_t>(field.components);
+    for (std::size_t i = 0; i < order.size(); ++i)
+      for (std::size_t c = 0; c < width; ++c)
+        field.values[width * i + c] = old.element_fields[f].values[width * order[i] + c];
+  }
+  for (std::int32_t& end : shot.ends) end = place[at(end)];
+}
+
+Shot of_spheres(Frame&& frame) {
+  Shot shot;
+  shot.corner = std::move(frame.position);
+  shot.radius = std::move(frame.radius);
+  shot.radius.resize(shot.corner.size(), 0.0);
+  shot.element_fields = std::move(frame.point_fields);
+  shot.ends = std::move(frame.lines);
+  return shot;
+}
+
+Shot of_plane(Frame&& frame) {
+  Shot shot;
+  shot.plane = true;
+  for (const std::int32_t node : frame.triangles) shot.corner.push_back(frame.position[at(node)]);
+  for (const std::int32_t node : frame.lines) shot.end.push_back(frame.position[at(node)]);
+  shot.element_fields = std::move(frame.triangle_fields);
+  for (const FrameField& field : frame.point_fields)
+    if (field_named(shot.element_fields, field.name) == nullptr)
+      shot.element_fields.push_back(of_triangles(field, frame.triangles));
+  return shot;
+}
+
+}  // namespace
+
+Vec3 Shot::middle(std::size_t line) const {
+  if (plane) return 0.5 * (end[2 * line] + end[2 * line + 1]);
+  return 0.5 * (corner[at(ends[2 * line])] + corner[at(ends[2 * line + 1])]);
+}
+
+const FrameField* field_named(const std::vector<FrameField>& fields, const std::string& name) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&](const FrameField& field) { return field.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+Shot read_shot(const std::string& folder, int number) {
+  Frame frame = read_frame(folder, number);
+  const std::int64_t step = frame.step;
+  const double time = frame.time;
+  std::vector<std::string> groups = std::move(frame.groups);
+  std::vector<FrameField> line_fields = std::move(frame.line_fields);
+  Shot shot = frame.triangles.empty() ? of_spheres(std::move(frame)) : of_plane(std::move(frame));
+  shot.step = step;
+  shot.time = time;
+  shot.groups = std::move(groups);
+  shot.line_fields = std::move(line_fields);
+  sort_by_id(shot);
+  return shot;
+}
+
+std::vector<std::uint8_t> broken_lines(const Shot& shot) {
+  std::vector<std::uint8_t> broken(shot.lines(), 0);
+  const FrameField* const state = field_named(shot.line_fields, "state");
+  const FrameField* const damage = field_named(shot.line_fields, "damage");
+  for (std::size_t l = 0; l < broken.size(); ++l)
+    broken[l] = (state != nullptr && state->values[l] >= 2.0F) ||
+                (state == nullptr && damage != nullptr && damage->values[l] >= 1.0F);
+  return broken;
+}
+
+}  // namespace breccia::report

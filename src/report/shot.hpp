@@ -1,0 +1,42 @@
+#pragma once
+// A frame as a report sees it: elements, spheres or triangles, and lines between or beside them.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/frame.hpp"
+
+namespace breccia::report {
+
+/// One moment. All shots of a run list the same elements in the same order.
+struct Shot {
+  std::int64_t step = 0;
+  double time = 0.0;           ///<  [s]
+  bool plane = false;          ///< triangles; else spheres
+  std::vector<Vec3> corner;    ///< centres of spheres, or three corners a triangle  [m]
+  std::vector<double> radius;  ///< of spheres  [m]
+  std::vector<FrameField> element_fields;
+  std::vector<std::int32_t> ends;  ///< of spheres: two of them a line
+  std::vector<Vec3> end;           ///< of triangles: two ends a line, which may lie anywhere  [m]
+  std::vector<FrameField> line_fields;
+  std::vector<std::string> groups;  ///< names for the field "group"
+
+  std::size_t elements() const { return plane ? corner.size() / 3 : corner.size(); }
+  std::size_t lines() const { return (plane ? end.size() : ends.size()) / 2; }
+  /// Middle of a line.  [m]
+  Vec3 middle(std::size_t line) const;
+};
+
+/// Null if there is none of this name.
+const FrameField* field_named(const std::vector<FrameField>& fields, const std::string& name);
+
+/// Frame `number` of a result folder. Elements come by their field "id", if they have one; nodes'
+/// velocities become those of triangles.
+/// @throws InputError or IoError as read_frame
+Shot read_shot(const std::string& folder, int number);
+
+/// Whether a line of this shot is broken: by its field "state", or by "damage".
+std::vector<std::uint8_t> broken_lines(const Shot& shot);
+
+}  // namespace breccia::report

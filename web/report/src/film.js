@@ -1,0 +1,195 @@
+// The frames of a run: the reader of src/report/film.cpp.
+
+import {blobBytes, Planes, unzigzag} from "./packed.js";
+
+const KEPT = 3e8; // bytes of unpacked frames
+
+function unscale(field, steps) {
+  const values = new Float32Array(steps.length);
+  if (field.category) {
+    values.set(steps);
+    return values;
+  }
+  const on = (v) => (field.root ? Math.sign(v) * Math.sqrt(Math.abs(v)) : v);
+  const low = on(field.low), range = on(field.high) - low;
+  const table = new Float32Array(field.last + 1);
+  for (let q = 0; q <= field.last; ++q) {
+    const place = low + (range * q) / field.last;
+    table[q] = field.root ? Math.sign(place) * place * place : place;
+  }
+  for (let i = 0; i < steps.length; ++i) values[i] = table[steps[i]];
+  return values;
+}
+
+const widthOf = (field) => (field.last < 256 ? 1 : field.last < 65536 ? 2 : field.last < 1 << 24 ? 3 : 4);
+
+export class Film {
+  constructor(meta) {
+    this.meta = meta;
+    this.times = meta.frames.map((f) => f.time);
+    this.cache = new Map();
+    this.kept = 0;
+    this.first = null;
+  }
+
+  /** Points of a frame: centres of spheres, or three corners a triangle. */
+  get points() {
+    return this.meta.plane ? 3 * this.meta.elements : this.meta.elements;
+  }
+
+  /** Number of the frame nearest to a time. */
+  nearest(time) {
+    let best = 0;
+    this.times.forEach((t, k) => {
+      if (Math.abs(t - time) < Math.abs(this.times[best] - time)) best = k;
+    });
+    return best;
+  }
+
+  /** {position: x, y, z, radius of each point; fields; lines: {count, ends, fields}} */
+  async frame(k) {
+    if (this.cache.has(k)) return this.cache.get(k);
+    if (k !== 0 && !this.first) await this.frame(0);
+    const made = this.unpack(this.meta.frames[k], await blobBytes(this.meta.frames[k].blob));
+    if (k === 0) this.first = made;
+    this.cache.set(k, made);
+    this.kept += made.size;
+    for (const [old, frame] of this.cache) {
+      if (this.kept < KEPT) break;
+      if (old === k || old === 0) continue;
+      this.cache.delete(old);
+      this.kept -= frame.size;
+    }
+    return made;
+  }
+
+  unpack(info, bytes) {
+    const {meta} = this, first = this.first;
+    const planes = new Planes(bytes);
+    const position = this.positions(planes);
+    if (!first && !meta.plane) {
+      const steps = planes.numbers(meta.elements, 2);
+      for (let i = 0; i < meta.elements; ++i) position[4 * i + 3] = (steps[i] * meta.largest_radius) / 65535;
+    } else if (!meta.plane) {
+      for (let i = 0; i < meta.elements; ++i) position[4 * i + 3] = first.position[4 * i + 3];
+    }
+    const fields = {}, lines = {count: info.lines, fields: {}};
+    for (const field of meta.fields) {
+      if (field.lines) continue;
+      fields[field.name] = first && field.constant ? first.fields[field.name] : this.field(planes, field, meta.elements);
+    }
+    lines.ends = info.ends ? this.ends(planes, info.lines) : first.lines.ends;
+    for (const field of meta.fields) {
+      if (!field.lines) continue;
+      lines.fields[field.name] =
+        info.ends || !field.constant ? this.field(planes, field, info.lines) : first.lines.fields[field.name];
+    }
+    return {time: info.time, step: info.step, number: info.number, position, fields, lines, size: 8 * bytes.length + position.byteLength};
+  }
+
+  positions(planes) {
+    const {meta} = this, count = this.points, axes = meta.plane ? 2 : 3;
+    const position = new Float32Array(4 * count);
+    const mask = meta.width === 2 ? 0xffff : 0xffffff;
+    const start = !this.reference;
+    if (start) this.reference = [];
+    for (let axis = 0; axis < axes; ++axis) {
+      const steps = planes.numbers(count, meta.width);
+      if (start) {
+        this.reference.push(steps);
+      } else {
+        const from = this.reference[axis], leader = this.leader, now = new Uint32Array(count);
+        for (let i = 0; i < count; ++i) {
+          let moved = unzigzag(steps[i]);
+          if (leader && leader[i] !== i) moved += now[leader[i]] - from[leader[i]];
+          now[i] = (from[i] + moved) & mask;
+        }
+        steps.set(now);
+      }
+      for (let i = 0; i < count; ++i) position[4 * i + axis] = meta.low[axis] + steps[i] * meta.step;
+    }
+    if (start && meta.plane) this.leader = this.leaders();
+    return position;
+  }
+
+  /** Of each corner the first one at the same place: see Positions in film.cpp. */
+  leaders() {
+    const [x, y] = this.reference, seen = new Map(), leader = new Uint32Array(x.length);
+    for (let i = 0; i < x.length; ++i) {
+      const place = x[i] * 16777216 + y[i];
+      const known = seen.get(place);
+      if (known === undefined) seen.set(place, i);
+      leader[i] = known ?? i;
+    }
+    return leader;
+  }
+
+  field(planes, field, count) {
+    const width = widthOf(field);
+    if (field.components === 1) return unscale(field, planes.numbers(count, width));
+    const values = [];
+    for (let c = 0; c < field.components; ++c) values.push(unscale(field, planes.numbers(count, width)));
+    return values;
+  }
+
+  ends(planes, count) {
+    const {meta} = this;
+    if (meta.plane) {
+      const ends = new Float32Array(4 * count); // x0, y0, x1, y1
+      for (let axis = 0; axis < 2; ++axis) {
+        const steps = planes.numbers(2 * count, meta.width);
+        for (let e = 0; e < 2 * count; ++e) ends[2 * e + axis] = meta.low[axis] + steps[e] * meta.step;
+      }
+      return ends;
+    }
+    const a = planes.numbers(count, 4), b = planes.numbers(count, 4);
+    const ends = new Uint32Array(2 * count);
+    let from = 0;
+    for (let l = 0; l < count; ++l) {
+      from += unzigzag(a[l]);
+      ends[2 * l] = from;
+      ends[2 * l + 1] = from + unzigzag(b[l]);
+    }
+    return ends;
+  }
+}
+
+/** What can colour the elements: fields, components and lengths of vectors, displacement. */
+export function colorings(film) {
+  const list = [{name: "body", label: "body", unit: "", category: true, read: (f) => f.fields.group}];
+  for (const field of film.meta.fields) {
+    if (field.lines || field.name === "group") continue;
+    const {name, unit, category} = field;
+    if (field.components === 1) {
+      list.push({name, label: name.replace(/_/g, " ") + (field.length ? " (length)" : ""), unit, category, read: (f) => f.fields[name]});
+      continue;
+    }
+    list.push({name, label: name, unit, category: false, read: (f) => lengths(f.fields[name])});
+    "xyz".slice(0, film.meta.plane ? 2 : 3).split("").forEach((axis, c) =>
+      list.push({name: `${name}_${axis}`, label: `${name} ${axis}`, unit, category: false, read: (f) => f.fields[name][c]}));
+  }
+  const moved = (pick) => (f) => displacement(film, f, pick);
+  list.push({name: "displacement", label: "displacement", unit: "m", read: moved((d) => Math.hypot(d[0], d[1], d[2]))});
+  "xyz".slice(0, film.meta.plane ? 2 : 3).split("").forEach((axis, c) =>
+    list.push({name: `displacement_${axis}`, label: `displacement ${axis}`, unit: "m", read: moved((d) => d[c])}));
+  return list;
+}
+
+function lengths(components) {
+  const values = new Float32Array(components[0].length);
+  for (let i = 0; i < values.length; ++i) values[i] = Math.hypot(...components.map((c) => c[i]));
+  return values;
+}
+
+function displacement(film, frame, pick) {
+  const {elements, plane} = film.meta, from = film.first.position, to = frame.position;
+  const values = new Float32Array(elements), each = plane ? 3 : 1, d = [0, 0, 0];
+  for (let i = 0; i < elements; ++i) {
+    for (let c = 0; c < 3; ++c) {
+      d[c] = 0;
+      for (let k = 0; k < each; ++k) d[c] += (to[4 * (each * i + k) + c] - from[4 * (each * i + k) + c]) / each;
+    }
+    values[i] = pick(d);
+  }
+  return values;
+}

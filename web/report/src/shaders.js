@@ -1,0 +1,250 @@
+// Shaders of the view. Everything reads its place from textures, by the number of its instance, so
+// that a new frame costs the upload of two textures.
+
+const READ = `
+precision highp float;
+precision highp int;
+uniform highp sampler2D uNow, uFirst, uValue;
+uniform int uAcross;
+uniform float uScale;
+ivec2 cell(int i) { return ivec2(i % uAcross, i / uAcross); }
+// Place of a point, its displacement enlarged, and the radius.
+vec4 place(int i) {
+  vec4 now = texelFetch(uNow, cell(i), 0), first = texelFetch(uFirst, cell(i), 0);
+  return vec4(first.xyz + uScale * (now.xyz - first.xyz), now.w);
+}
+`;
+
+const COLOR = `
+uniform sampler2D uMap;
+uniform vec2 uRange;
+uniform float uCategories;
+vec3 colorOf(float value) {
+  float share = uCategories > 0.0 ? (mod(floor(value + 0.5), uCategories) + 0.5) / uCategories
+                                  : clamp((value - uRange.x) / max(uRange.y - uRange.x, 1e-30), 0.001, 0.999);
+  return texture(uMap, vec2(share, 0.5)).rgb;
+}
+`;
+
+// Bodies: 0 hidden, 1 solid, 2 seen through.
+const BODY = `
+uniform float uBody[16];
+uniform float uWanted;
+bool wanted(float group) { return abs(uBody[int(min(group, 15.0) + 0.5)] - uWanted) < 0.5; }
+`;
+
+const LIGHT = `
+vec3 lit(vec3 color, vec3 n) {
+  float sun = max(dot(n, normalize(vec3(-0.35, 0.55, 0.75))), 0.0);
+  float sky = 0.5 + 0.5 * n.y;
+  return color * (0.42 + 0.16 * sky + 0.50 * sun);
+}
+`;
+
+export const spheres = {
+  vertex: READ + BODY + `
+flat out vec3 vCenter;
+flat out float vRadius, vValue;
+out vec2 vAt;
+void main() {
+  vec4 p = place(gl_InstanceID);
+  vec2 value = texelFetch(uValue, cell(gl_InstanceID), 0).rg;
+  vec4 center = modelViewMatrix * vec4(p.xyz, 1.0);
+  vRadius = wanted(value.g) ? p.w : 0.0;
+  vCenter = center.xyz;
+  vValue = value.r;
+  vAt = position.xy;
+  gl_Position = projectionMatrix * vec4(center.xy + vRadius * position.xy, center.z, 1.0);
+}`,
+  // A ray along -z meets the sphere, or the flat face that the clip plane leaves of it.
+  fragment: `precision highp float;
+` + COLOR + LIGHT + `
+uniform mat4 projectionMatrix;
+uniform vec4 uClip; // in the frame of the camera; no cut: w very large
+uniform float uThrough;
+flat in vec3 vCenter;
+flat in float vRadius, vValue;
+in vec2 vAt;
+out vec4 color;
+void main() {
+  float d2 = dot(vAt, vAt);
+  if (d2 > 1.0 || vRadius <= 0.0) discard;
+  vec3 n = vec3(vAt, sqrt(1.0 - d2));
+  vec3 p = vCenter + vRadius * n;
+  bool flatFace = false;
+  if (dot(uClip.xyz, p) > uClip.w) {
+    if (uClip.z < 1e-4) discard;
+    float z = (uClip.w - dot(uClip.xy, p.xy)) / uClip.z;
+    if (z < vCenter.z - vRadius * n.z) discard;
+    p.z = z;
+    n = uClip.xyz;
+    flatFace = true;
+  }
+  vec3 base = colorOf(vValue);
+  if (uThrough > 0.5) {
+    float rim = 1.0 - n.z;
+    color = vec4(base * 0.85, 0.012 + 0.10 * rim * rim * rim);
+  } else {
+    float edge = flatFace ? 1.0 : 0.62 + 0.38 * smoothstep(0.0, 0.45, n.z);
+    color = vec4((flatFace ? base * 0.97 : lit(base, n)) * edge, 1.0);
+  }
+  float depth = projectionMatrix[2][2] * p.z + projectionMatrix[3][2];
+  gl_FragDepth = 0.5 * depth + 0.5;
+}`,
+};
+
+// Links as ribbons that face the camera, shaded as round bars. uLines holds two ends, kind and
+// state in one number (8 kind + state), and a share that widens the ribbon.
+export const links = {
+  vertex: READ + BODY + `
+uniform highp sampler2D uLines;
+uniform int uLinesAcross, uStyle; // style 0: bars of steel, 1: kind, 2: force
+uniform float uWidth;
+flat out int vKind, vState;
+flat out float vShare, vThrough;
+out float vSide, vDepth;
+out vec3 vAlong, vPoint;
+void main() {
+  vec4 line = texelFetch(uLines, ivec2(gl_InstanceID % uLinesAcross, gl_InstanceID / uLinesAcross), 0);
+  int code = int(line.z + 0.5);
+  vKind = code / 8;
+  vState = code % 8;
+  vShare = line.w;
+  float width = uWidth;
+  bool shown = vState < 2;
+  if (uStyle == 0) shown = shown && vKind == 1;
+  if (uStyle == 1) width *= vKind == 1 ? 1.0 : 0.55;
+  if (uStyle == 2) {
+    width *= 2.0 * sqrt(vShare);
+    shown = shown && vShare > 0.03;
+  }
+  float ga = texelFetch(uValue, cell(int(line.x + 0.5)), 0).g;
+  if (uBody[int(min(ga, 15.0) + 0.5)] < 0.5) shown = false;
+  vec3 a = (modelViewMatrix * vec4(place(int(line.x + 0.5)).xyz, 1.0)).xyz;
+  vec3 b = (modelViewMatrix * vec4(place(int(line.y + 0.5)).xyz, 1.0)).xyz;
+  vec3 along = b - a;
+  vec2 side = length(along.xy) > 1e-12 ? normalize(vec2(-along.y, along.x)) : vec2(1.0, 0.0);
+  vec3 p = mix(a, b, position.y);
+  p.xy += side * position.x * (shown ? width : 0.0);
+  vSide = position.x;
+  vAlong = normalize(along + vec3(0.0, 0.0, 1e-9));
+  vPoint = p;
+  gl_Position = projectionMatrix * vec4(p, 1.0);
+  if (!shown) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+}`,
+  fragment: `precision highp float;
+precision highp int;
+` + LIGHT + `
+uniform int uStyle;
+uniform vec4 uClip;
+uniform sampler2D uMap;
+flat in int vKind, vState;
+flat in float vShare, vThrough;
+in float vSide, vDepth;
+in vec3 vAlong, vPoint;
+out vec4 color;
+void main() {
+  if (dot(uClip.xyz, vPoint) > uClip.w) discard;
+  vec3 base = vKind == 1 ? vec3(0.29, 0.47, 0.66) : vKind == 2 ? vec3(0.24, 0.60, 0.55) : vec3(0.55, 0.53, 0.49);
+  if (uStyle != 2 && vState == 1) base = vKind == 1 ? vec3(0.90, 0.55, 0.13) : vec3(0.93, 0.65, 0.25);
+  if (uStyle == 2) base = mix(vec3(0.45, 0.62, 0.80), vec3(0.72, 0.09, 0.10), smoothstep(0.05, 0.7, vShare));
+  vec3 across = normalize(vec3(-vAlong.y, vAlong.x, 0.0) + vec3(1e-9, 0.0, 0.0));
+  vec3 n = normalize(vSide * across + sqrt(max(0.0, 1.0 - vSide * vSide)) * vec3(0.0, 0.0, 1.0));
+  color = vec4(lit(base, n), 1.0);
+}`,
+};
+
+// Broken links as discs across the line where the link was.
+export const cracks = {
+  vertex: READ + BODY + `
+uniform highp sampler2D uLines;
+uniform int uLinesAcross;
+flat out int vKind;
+out vec3 vNormal, vPoint;
+void main() {
+  vec4 line = texelFetch(uLines, ivec2(gl_InstanceID % uLinesAcross, gl_InstanceID / uLinesAcross), 0);
+  int code = int(line.z + 0.5), ia = int(line.x + 0.5), ib = int(line.y + 0.5);
+  vKind = code / 8;
+  vec4 a = place(ia), b = place(ib);
+  vec3 a0 = texelFetch(uFirst, cell(ia), 0).xyz, b0 = texelFetch(uFirst, cell(ib), 0).xyz;
+  float ga = texelFetch(uValue, cell(ia), 0).g;
+  bool shown = code % 8 == 2 && distance(texelFetch(uNow, cell(ia), 0).xyz, texelFetch(uNow, cell(ib), 0).xyz) < 1.6 * distance(a0, b0)
+               && uBody[int(min(ga, 15.0) + 0.5)] > 0.5;
+  vec3 n = normalize(b0 - a0);
+  vec3 u = normalize(cross(n, abs(n.z) < 0.8 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
+  vec3 v = cross(n, u);
+  float r = 1.0 * min(a.w, b.w);
+  vec4 p = modelViewMatrix * vec4(0.5 * (a.xyz + b.xyz) + r * (position.x * u + position.y * v), 1.0);
+  vNormal = (modelViewMatrix * vec4(n, 0.0)).xyz;
+  vPoint = p.xyz;
+  gl_Position = shown ? projectionMatrix * p : vec4(2.0, 2.0, 2.0, 1.0);
+}`,
+  fragment: `precision highp float;
+precision highp int;
+uniform vec4 uClip;
+flat in int vKind;
+in vec3 vNormal, vPoint;
+out vec4 color;
+void main() {
+  if (dot(uClip.xyz, vPoint) > uClip.w) discard;
+  vec3 base = vKind == 2 ? vec3(0.20, 0.52, 0.80) : vKind == 1 ? vec3(0.10, 0.12, 0.16) : vec3(0.80, 0.11, 0.13);
+  color = vec4(base * (0.55 + 0.45 * abs(normalize(vNormal).z)), 1.0);
+}`,
+};
+
+export const triangles = {
+  vertex: READ + BODY + `
+flat out float vValue;
+out vec3 vShare;
+void main() {
+  int corner = int(position.x + 0.5);
+  vec4 p = place(3 * gl_InstanceID + corner);
+  vec2 value = texelFetch(uValue, cell(gl_InstanceID), 0).rg;
+  vValue = value.r;
+  vShare = vec3(corner == 0, corner == 1, corner == 2);
+  gl_Position = wanted(value.g) ? projectionMatrix * modelViewMatrix * vec4(p.xy, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+}`,
+  fragment: `precision highp float;
+` + COLOR + `
+uniform float uMesh, uThrough;
+flat in float vValue;
+in vec3 vShare;
+out vec4 color;
+void main() {
+  vec3 base = colorOf(vValue);
+  vec3 wide = fwidth(vShare);
+  float pixel = max(wide.x, max(wide.y, wide.z)); // one over the height of the triangle in pixels
+  vec3 inside = smoothstep(vec3(0.0), 1.2 * wide, vShare);
+  float edge = 1.0 - min(inside.x, min(inside.y, inside.z));
+  float strength = uMesh * (1.0 - smoothstep(0.05, 0.2, pixel));
+  color = vec4(mix(base, base * 0.72, edge * strength), uThrough > 0.5 ? 0.25 : 1.0);
+}`,
+};
+
+// Joints of a plane that have softened or broken; uEnds holds both ends, uLines damage and mode.
+export const joints = {
+  vertex: `
+precision highp float;
+precision highp int;
+uniform highp sampler2D uEnds, uLines;
+uniform int uLinesAcross;
+uniform float uPixel;
+flat out vec2 vLine;
+void main() {
+  ivec2 cell = ivec2(gl_InstanceID % uLinesAcross, gl_InstanceID / uLinesAcross);
+  vec4 ends = texelFetch(uEnds, cell, 0);
+  vLine = texelFetch(uLines, cell, 0).xy;
+  vec2 along = ends.zw - ends.xy;
+  vec2 unit = length(along) > 1e-12 ? normalize(along) : vec2(1.0, 0.0);
+  float width = uPixel * (vLine.x > 0.985 ? 1.5 : 0.9);
+  vec2 p = mix(ends.xy, ends.zw, position.y) + vec2(-unit.y, unit.x) * position.x * width + unit * (position.y - 0.5) * width;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(p, 0.001 * uPixel, 1.0);
+}`,
+  fragment: `precision highp float;
+flat in vec2 vLine;
+out vec4 color;
+void main() {
+  if (vLine.x > 0.985) color = vec4(mix(vec3(0.78, 0.05, 0.13), vec3(0.05, 0.30, 0.72), smoothstep(0.25, 0.75, vLine.y)), 1.0);
+  else color = vec4(0.89, 0.47, 0.10, 0.25 + 0.65 * vLine.x);
+}`,
+};
