@@ -14,10 +14,17 @@
 namespace breccia::report {
 namespace {
 
+/// A place, to three digits of its largest coordinate.
 std::string place_text(const Vec3& p, bool plane) {
-  const auto tidy = [](double x) { return std::abs(x) < 5e-7 ? 0.0 : x; };
-  if (plane) return fmt::format("({:.3g}, {:.3g}) m", tidy(p.x), tidy(p.y));
-  return fmt::format("({:.3g}, {:.3g}, {:.3g}) m", tidy(p.x), tidy(p.y), tidy(p.z));
+  const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 1e-9});
+  const bool short_ = largest < 1.0;
+  const double step = std::pow(10.0, std::floor(std::log10(largest)) - 2.0);
+  const auto number = [&](double x) {
+    const double rounded = std::round(x / step) * step * (short_ ? 1e3 : 1.0);
+    return fmt::format("{:.3g}", rounded == 0.0 ? 0.0 : rounded);
+  };
+  const std::string xy = number(p.x) + ", " + number(p.y);
+  return fmt::format("({}{}) {}", xy, plane ? "" : ", " + number(p.z), short_ ? "mm" : "m");
 }
 
 std::string value_text(double value, const std::string& unit) {
@@ -26,7 +33,8 @@ std::string value_text(double value, const std::string& unit) {
 }
 
 std::string percent_text(double share) {
-  return fmt::format("{:.2g} %", 100.0 * share);
+  const double percent = 100.0 * share;
+  return percent >= 9.95 ? fmt::format("{:.0f} %", percent) : fmt::format("{:.2g} %", percent);
 }
 
 std::string count_of(double count, const std::string& what) {
@@ -263,7 +271,7 @@ class Findings {
     }
     if (best == nullptr || time == nullptr) return "";
     const double share = best->values.back() / peak;
-    std::string text = fmt::format("{} was {} at its highest, at {}", best->name,
+    std::string text = fmt::format("{} was {} at its strongest, at {}", best->name,
                                    value_text(peak, best->unit), time_text(time->values[row]));
     if (row + 1 == best->values.size())
       text += ", at the end of the run: it may have risen further";

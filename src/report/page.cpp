@@ -53,6 +53,8 @@ class Writer {
     json["folder"] = std::filesystem::path(record.folder).lexically_normal().filename().string();
     json["why"] = findings_of(record);
     json["warnings"] = record.warnings;
+    json["color"] = record.scene.color;
+    json["view"] = record.scene.view;
     json["bar_radius"] = record.scene.bar_radius;
     json["walls"] = Json::array();
     for (const Wall& wall : record.scene.walls)

@@ -84,6 +84,10 @@ Scene scene_of(const std::string& case_text) {
     return scene;
   }
   scene.title = text(all, "title");
+  if (const toml::table* const output = all["output"].as_table()) {
+    scene.color = text(*output, "color");
+    scene.view = text(*output, "view");
+  }
   add_materials(all, scene);
   each_of(all, "body", [&](const toml::table& body) {
     scene.materials[text(body, "name")] = text(body, "material");

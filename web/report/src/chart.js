@@ -17,6 +17,12 @@ export function nearest(values, at) {
   return low > 0 && at - values[low - 1] < values[low] - at ? low - 1 : low;
 }
 
+/** Powers of ten. */
+function logTick(v) {
+  const power = Math.log10(v);
+  return Math.abs(power - Math.round(power)) < 1e-6 ? (power >= 0 && power < 5 ? String(Math.round(v)) : `10${String(Math.round(power)).replace(/[-\d]/g, (c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻")}`) : "";
+}
+
 function span(arrays) {
   let low = Infinity, high = -Infinity;
   for (const values of arrays)
@@ -35,22 +41,22 @@ function span(arrays) {
  * onTime(t): the reader dragged to this time.
  */
 export class Chart {
-  constructor(host, {lines, x, yUnit, height = 220, onTime, logX = false, xRange}) {
+  constructor(host, {lines, x, yUnit, height = 220, onTime, logX = false, logY = false, xRange}) {
     Object.assign(this, {host, lines, onTime, logX});
     this.time = null;
     const [xLow, xHigh] = xRange ?? span(lines.map((l) => l.x));
     const [yLow, yHigh] = span(lines.flatMap((l) => (l.base ? [l.y, l.base] : [l.y])));
-    this.xScale = scaledUnit(x.unit, Math.max(Math.abs(xLow), Math.abs(xHigh)));
-    this.yScale = scaledUnit(yUnit, Math.max(Math.abs(yLow), Math.abs(yHigh)));
+    this.xScale = logX ? {factor: 1, unit: ""} : scaledUnit(x.unit, Math.max(Math.abs(xLow), Math.abs(xHigh)));
+    this.yScale = logY ? {factor: 1, unit: ""} : scaledUnit(yUnit, Math.max(Math.abs(yLow), Math.abs(yHigh)));
     this.xIsTime = x.unit === "s" && lines.every((l) => !l.times);
     const room = 0.04 * (yHigh - yLow);
     const axis = (label, scaled, log) => ({
       stroke: () => style("--text-2"), font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif",
-      label: `${label}${scaled.unit ? ` [${scaled.unit}]` : ""}`, labelSize: 18, size: 40, gap: 3,
+      label: `${label}${scaled.unit ? ` [${scaled.unit}]` : ""}`, labelSize: 15, size: 24, gap: 4,
       grid: {stroke: () => style("--grid"), width: 1}, ticks: {stroke: () => style("--grid"), size: 4},
-      values: (_, ticks) => ticks.map((v) => (v == null ? "" : log ? round(v, 2) : round(v * scaled.factor, 4))),
+      values: (_, ticks) => ticks.map((v) => (v == null ? "" : log ? logTick(v) : round(v * scaled.factor, 4))),
     });
-    const left = axis("", this.yScale);
+    const left = axis("", this.yScale, logY);
     left.label = this.yScale.unit ? `[${this.yScale.unit}]` : "";
     left.labelSize = this.yScale.unit ? 16 : 0;
     left.size = 46;
@@ -60,7 +66,7 @@ export class Chart {
       cursor: {x: false, y: false, points: {show: false}, drag: {x: false, y: false}},
       scales: {
         x: {time: false, distr: logX ? 3 : 1, range: () => [xLow, xHigh]},
-        y: {range: () => [Math.min(yLow - (yLow < 0 ? room : 0), 0 < yLow && yLow < 0.4 * yHigh ? 0 : yLow), yHigh + room]},
+        y: {distr: logY ? 3 : 1, range: () => logY ? [0.8 * yLow, 1.3 * yHigh] : [Math.min(yLow - (yLow < 0 ? room : 0), 0 < yLow && yLow < 0.4 * yHigh ? 0 : yLow), yHigh + room]},
       },
       series: [{}, {show: true, stroke: "transparent", paths: () => null, points: {show: false}}],
       axes: [axis(x.label, this.xScale, logX), left],

@@ -32,8 +32,14 @@ export function round(value, digits = 4) {
 }
 
 export function withUnit(value, unit, digits = 4) {
+  if (!unit || unit === "-") return Number.isInteger(value) && Math.abs(value) < 1e12 ? count(value) : round(value, digits);
   const scaled = scaledUnit(unit, Math.abs(value));
   return `${round(value * scaled.factor, digits)}${scaled.unit ? " " + scaled.unit : ""}`;
+}
+
+/** What is nothing beside the largest of its kind is zero. */
+export function besides(value, largest, unit) {
+  return withUnit(Math.abs(value) < 1e-6 * largest ? 0 : value, unit, 3);
 }
 
 export const timeText = (seconds) => withUnit(seconds, "s", 4);
@@ -54,6 +60,9 @@ export function bytes(size) {
 /** A name from a file, for people: "rock_velocity" becomes "rock velocity". */
 export const words = (name) => name.replace(/_/g, " ");
 
+/** A sentence from the program, which writes microseconds in ASCII. */
+export const sentence = (text) => text.replace(/(\d) us\b/g, "$1 µs");
+
 /** An element with attributes and children; text is never read as HTML. */
 export function make(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);
@@ -63,7 +72,7 @@ export function make(tag, attributes = {}, ...children) {
     else if (value === true) node.setAttribute(name, "");
     else if (value !== false && value != null) node.setAttribute(name, value);
   }
-  for (const child of children.flat()) if (child != null && child !== false) node.append(child);
+  for (const child of children.flat(Infinity)) if (child != null && child !== false) node.append(child);
   return node;
 }
 
@@ -71,6 +80,6 @@ const SVG = "http://www.w3.org/2000/svg";
 export function draw(tag, attributes = {}, ...children) {
   const node = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
-  for (const child of children.flat()) if (child != null) node.append(child);
+  for (const child of children.flat(Infinity)) if (child != null) node.append(child);
   return node;
 }

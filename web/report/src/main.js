@@ -2,7 +2,7 @@
 
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
-import {count, duration, make, timeText} from "./format.js";
+import {count, duration, make, sentence, timeText} from "./format.js";
 import {readTable} from "./packed.js";
 import * as panels from "./panels.js";
 import {ViewPanel} from "./view_panel.js";
@@ -40,12 +40,12 @@ function heading(runs) {
 }
 
 function why(runs) {
-  return make("section", {class: "why"}, runs.map((run) => make("div", {}, runs.length > 1 && make("h3", {}, run.label), run.why.map((text) => make("p", {}, text)))));
+  return make("section", {class: "why"}, runs.map((run) => make("div", {}, runs.length > 1 && make("h3", {}, run.label), run.why.map((text) => make("p", {}, sentence(text))))));
 }
 
 function remarks(runs) {
   const texts = runs.flatMap((run) => [...run.notes, ...run.warnings].map((text) => (runs.length > 1 ? `${run.label}: ${text}` : text)));
-  return texts.length === 0 ? null : panels.panel("Remarks", null, make("ul", {class: "remarks"}, texts.map((t) => make("li", {}, t))));
+  return texts.length === 0 ? null : panels.panel("Remarks", null, make("ul", {class: "remarks"}, texts.map((t) => make("li", {}, sentence(t)))));
 }
 
 async function build() {
@@ -59,10 +59,9 @@ async function build() {
   }
   document.getElementById("wait")?.remove();
   const view = runs.some((run) => run.film) ? new ViewPanel(runs, store) : null;
-  const side = [panels.curvePanel(runs, measured, store), ...runs.slice(0, 1).map((run) => panels.energyPanel(run, run.table, store))].filter(Boolean);
+  const side = [panels.curvePanel(runs, measured, store), ...runs.map((run) => panels.energyPanel(run, run.table, store, runs.length > 1))].filter(Boolean);
   const below = [
-    panels.eventPanel(runs, store), panels.rosePanel(runs[0]), panels.fragmentPanel(runs), panels.stagePanel(runs),
-    runs.length > 1 ? panels.energyPanel(runs[1], runs[1].table, store) : null,
+    panels.eventPanel(runs, store), panels.rosePanel(runs), panels.fragmentPanel(runs), panels.stagePanel(runs),
   ].filter(Boolean);
   const wide = [panels.checkPanel(runs), panels.provenancePanel(runs)].filter(Boolean);
   document.body.append(make("main", {}, heading(runs), why(runs),

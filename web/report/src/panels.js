@@ -2,7 +2,7 @@
 
 import {Chart, legend, nearest} from "./chart.js";
 import {LINES} from "./colors.js";
-import {bytes, count, draw, duration, make, round, timeText, withUnit, words} from "./format.js";
+import {besides, bytes, count, draw, duration, make, round, timeText, withUnit, words} from "./format.js";
 import {blobText} from "./packed.js";
 
 export function panel(title, about, ...children) {
@@ -14,7 +14,7 @@ const ENERGIES = {
 };
 
 /** Energies as areas upon each other. */
-export function energyPanel(run, history, store) {
+export function energyPanel(run, history, store, several) {
   const time = history.column?.("time");
   if (!time) return null;
   const parts = Object.keys(ENERGIES).map((name) => history.column(name)).filter((c) => c && c.values.some((v) => v > 0));
@@ -33,10 +33,10 @@ export function energyPanel(run, history, store) {
   if (work && work.values.some((v) => v !== 0)) entries.push({label: "work put in", color: "transparent", value: at(work)});
   const key = legend(entries);
   const error = history.column("error_relative");
-  const worst = error ? error.values.reduce((a, b) => Math.max(a, b), 0) : null;
+  const missing = error?.values.at(-1);
   const host = make("div", {class: "chart"});
-  const node = panel("Where the energy is", null, host, key.node,
-    worst != null && make("p", {class: "note"}, `At most ${round(100 * worst, 2)} % of it was ever missing from the ledger.`));
+  const node = panel(`Where the energy is${several ? `: ${run.label}` : ""}`, null, host, key.node,
+    missing != null && make("p", {class: "note"}, `At the end ${round(100 * missing, 2)} % is missing from the ledger.`));
   return {node, start: () => timeChart(host, {lines, yUnit: unit}, key, store)};
 }
 
@@ -95,9 +95,10 @@ export function curvePanel(runs, measured, store) {
         if (!x || !y || !on) return;
         lines.push({label: probe.name, color, x: x.values, y: y.values, dash: r > 0, times: x === t ? null : t.values});
       });
+      const largest = probe.values.reduce((a, b) => Math.max(a, Math.abs(b)), 0);
       const value = (t) => {
         const rows = runs[0].table.column("time").values;
-        return on ? withUnit(probe.values[nearest(rows, t)], probe.unit, 3) : "";
+        return on ? besides(probe.values[nearest(rows, t)], largest, probe.unit) : "";
       };
       entries.push({label: words(probe.name), color, value, on, toggle: () => {
         // Curves of one unit share the axis.
@@ -144,7 +145,7 @@ export function eventPanel(runs, store) {
     const cracks = run.cracks.column?.("time");
     if (cracks && run.cracks.rows > 0) {
       const end = run.summary.time, mode = run.cracks.column("mode");
-      what = run.film?.meta.plane ? "joints" : "links";
+      what = run.film?.plane ? "joints" : "links";
       const groups = mode ? [["by opening", (i) => mode.values[i] < 0.5, "#c8102e"], ["by sliding", (i) => mode.values[i] >= 0.5, "#1f5fbf"]] : [["broken", () => true, "#c8102e"]];
       for (const [label, is, color] of groups) {
         const x = [0], y = [0];
@@ -176,15 +177,16 @@ export function eventPanel(runs, store) {
 }
 
 /** Histograms of directions as half or quarter roses. */
-export function rosePanel(run) {
-  const roses = run.roses ?? [];
-  if (roses.length === 0) return null;
-  return {node: panel("Where cracks point", null, make("div", {class: "roses"}, roses.map(roseOf)))};
+export function rosePanel(runs) {
+  const all = runs.filter((run) => run.roses?.length);
+  if (all.length === 0) return null;
+  return {node: panel("Where cracks point", null, all.map((run) => [
+    runs.length > 1 && make("h3", {}, run.label), make("div", {class: "roses"}, run.roses.map(roseOf))]))};
 }
 
 function roseOf(rose) {
-  const largest = Math.max(...rose.bars, 1e-300), bars = rose.bars.length, reach = 88, wide = rose.to > 100;
-  const center = wide ? 100 : 16, width = wide ? 200 : 124, height = 118;
+  const largest = Math.max(...rose.bars, 1e-300), bars = rose.bars.length, reach = 86, wide = rose.to > 100;
+  const center = wide ? 100 : 16, width = wide ? 200 : 124, height = 122;
   const at = (degrees, r) => {
     const angle = (degrees * Math.PI) / 180;
     return `${(center + r * Math.cos(angle)).toFixed(2)} ${(100 - r * Math.sin(angle)).toFixed(2)}`;
@@ -201,29 +203,22 @@ function roseOf(rose) {
   };
   const labels = wide ? [label(0, "0°", -14, 12), label(90, "90°"), label(180, "180°", 24, 12)] : [label(0, "0°", -14, 12), label(90, "90°", 4, 4)];
   return make("figure", {},
-    draw("svg", {viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": rose.name, style: `max-width:${1.35 * width}px`}, rings, draw("path", {d: `M${at(0, reach)} L${center} 100 L${at(rose.to, reach)}`, class: "ring"}), wedges, labels),
+    draw("svg", {viewBox: `0 -6 ${width} ${height}`, role: "img", "aria-label": rose.name, style: `width:${width}px`}, rings, draw("path", {d: `M${at(0, reach)} L${center} 100 L${at(rose.to, reach)}`, class: "ring"}), wedges, labels),
     make("figcaption", {}, rose.name));
 }
 
-/** Share of the mass in pieces up to a size, as a sieve would tell. */
+/** How many pieces are at least of a size. */
 export function fragmentPanel(runs) {
   const lines = runs.map((run, r) => {
-    const shares = [...(run.fragments ?? [])].reverse(); // rising
+    const shares = run.fragments ?? []; // falling
     if (shares.length < 2) return null;
-    let sum = 0;
-    const x = [], y = [];
-    for (const share of shares) {
-      x.push(share);
-      y.push(100 * (sum += share));
-    }
-    return {label: "pieces", color: LINES[r], x, y, step: true, dots: shares.length < 40, dash: r > 0};
+    return {label: "pieces", color: LINES[r], x: shares, y: shares.map((_, k) => k + 1), dots: shares.length < 200, dash: r > 0};
   }).filter(Boolean);
   if (lines.length === 0) return null;
-  const host = make("div", {class: "chart"});
-  const [largest] = runs[0].fragments;
+  const host = make("div", {class: "chart"}), run = runs.find((r) => r.fragments?.length > 1);
   const node = panel("Pieces", null, host, make("p", {class: "note"},
-    `${count(runs[0].fragments.length)} pieces; the largest holds ${round(100 * largest, 3)} %. The curve tells which share of all lies in pieces up to a size.`));
-  return {node, start: () => new Chart(host, {lines, x: {label: "share of a piece in all", unit: ""}, yUnit: "%", logX: true, height: 190})};
+    `${count(run.fragments.length)} pieces; the largest holds ${round(100 * run.fragments[0], 3)} % of all. The curve tells how many are at least of a size.`));
+  return {node, start: () => new Chart(host, {lines, x: {label: "share of a piece in all", unit: ""}, yUnit: "", logX: true, logY: true, height: 190})};
 }
 
 /** Where the wall time went. */
@@ -239,16 +234,16 @@ export function stagePanel(runs) {
   });
   if (bars[0].length === 0) return null;
   const total = bars[0].reduce((sum, [, s]) => sum + s, 0);
-  const rows = bars[0].filter(([, s]) => s > 0.001 * total).map(([name, seconds]) => {
+  const rows = bars[0].filter(([, s], k) => s > 0.002 * total && k < 9).map(([name, seconds]) => {
     const bar = make("span", {class: "bar"});
     bar.style.width = `${(100 * seconds) / bars[0][0][1]}%`;
     const other = bars[1]?.find(([n]) => n === name)?.[1];
     return make("tr", {}, make("th", {scope: "row"}, words(name)), make("td", {class: "number"}, duration(seconds)),
-      bars[1] && make("td", {class: "number"}, other == null ? "–" : duration(other)), make("td", {class: "wide"}, bar));
+      bars[1] ? make("td", {class: "number"}, other == null ? "–" : duration(other)) : make("td", {class: "bars"}, bar));
   });
   const {step_us: step = {}} = runs[0].summary;
   return {node: panel("Where the time went", null, make("table", {class: "stages"},
-    bars[1] && make("thead", {}, make("tr", {}, make("th"), runs.slice(0, 2).map((r) => make("th", {class: "number"}, r.label)), make("th"))),
+    bars[1] && make("thead", {}, make("tr", {}, make("th"), runs.map((r) => make("th", {class: "number wrap"}, r.label)))),
     make("tbody", {}, rows)),
     make("p", {class: "note"}, `${duration(runs[0].summary.wall_s?.total ?? total)} in all${step.median ? `; half of the steps took less than ${withUnit(1e-6 * step.median, "s", 3)}` : ""}.`))};
 }

@@ -1,5 +1,6 @@
-// Shaders of the view. Everything reads its place from textures, by the number of its instance, so
-// that a new frame costs the upload of two textures.
+// Shaders of the view. Everything reads its place from textures, by the number of its vertex, so
+// that a new frame costs the upload of two textures. No instances: software renderers, and some
+// GPUs, take far longer for many small ones than for one list of triangles.
 
 const READ = `
 precision highp float;
@@ -8,6 +9,8 @@ uniform highp sampler2D uNow, uFirst, uValue;
 uniform int uAcross;
 uniform float uScale;
 ivec2 cell(int i) { return ivec2(i % uAcross, i / uAcross); }
+// Corner of the square -1..1, from the number 0..5 of a vertex of two triangles.
+vec2 square(int k) { return vec2(k == 1 || k == 2 || k == 4 ? 1.0 : -1.0, k >= 2 && k != 3 ? 1.0 : -1.0); }
 // Place of a point, its displacement enlarged, and the radius.
 vec4 place(int i) {
   vec4 now = texelFetch(uNow, cell(i), 0), first = texelFetch(uFirst, cell(i), 0);
@@ -47,14 +50,16 @@ flat out vec3 vCenter;
 flat out float vRadius, vValue;
 out vec2 vAt;
 void main() {
-  vec4 p = place(gl_InstanceID);
-  vec2 value = texelFetch(uValue, cell(gl_InstanceID), 0).rg;
+  int item = gl_VertexID / 6;
+  vec2 corner = square(gl_VertexID % 6);
+  vec4 p = place(item);
+  vec2 value = texelFetch(uValue, cell(item), 0).rg;
   vec4 center = modelViewMatrix * vec4(p.xyz, 1.0);
   vRadius = wanted(value.g) ? p.w : 0.0;
   vCenter = center.xyz;
   vValue = value.r;
-  vAt = position.xy;
-  gl_Position = projectionMatrix * vec4(center.xy + vRadius * position.xy, center.z, 1.0);
+  vAt = corner;
+  gl_Position = projectionMatrix * vec4(center.xy + vRadius * corner, center.z, 1.0);
 }`,
   // A ray along -z meets the sphere, or the flat face that the clip plane leaves of it.
   fragment: `precision highp float;
@@ -101,32 +106,31 @@ uniform highp sampler2D uLines;
 uniform int uLinesAcross, uStyle; // style 0: bars of steel, 1: kind, 2: force
 uniform float uWidth;
 flat out int vKind, vState;
-flat out float vShare, vThrough;
-out float vSide, vDepth;
+flat out float vShare;
+out float vSide;
 out vec3 vAlong, vPoint;
 void main() {
-  vec4 line = texelFetch(uLines, ivec2(gl_InstanceID % uLinesAcross, gl_InstanceID / uLinesAcross), 0);
+  int item = gl_VertexID / 6;
+  vec2 corner = square(gl_VertexID % 6);
+  float side_ = corner.x, share_ = 0.5 + 0.5 * corner.y;
+  vec4 line = texelFetch(uLines, ivec2(item % uLinesAcross, item / uLinesAcross), 0);
   int code = int(line.z + 0.5);
   vKind = code / 8;
   vState = code % 8;
   vShare = line.w;
   float width = uWidth;
-  bool shown = vState < 2;
-  if (uStyle == 0) shown = shown && vKind == 1;
+  bool shown = true;
   if (uStyle == 1) width *= vKind == 1 ? 1.0 : 0.55;
-  if (uStyle == 2) {
-    width *= 2.0 * sqrt(vShare);
-    shown = shown && vShare > 0.03;
-  }
+  if (uStyle == 2) width *= 2.0 * sqrt(vShare);
   float ga = texelFetch(uValue, cell(int(line.x + 0.5)), 0).g;
   if (uBody[int(min(ga, 15.0) + 0.5)] < 0.5) shown = false;
   vec3 a = (modelViewMatrix * vec4(place(int(line.x + 0.5)).xyz, 1.0)).xyz;
   vec3 b = (modelViewMatrix * vec4(place(int(line.y + 0.5)).xyz, 1.0)).xyz;
   vec3 along = b - a;
   vec2 side = length(along.xy) > 1e-12 ? normalize(vec2(-along.y, along.x)) : vec2(1.0, 0.0);
-  vec3 p = mix(a, b, position.y);
-  p.xy += side * position.x * (shown ? width : 0.0);
-  vSide = position.x;
+  vec3 p = mix(a, b, share_);
+  p.xy += side * side_ * (shown ? width : 0.0);
+  vSide = side_;
   vAlong = normalize(along + vec3(0.0, 0.0, 1e-9));
   vPoint = p;
   gl_Position = projectionMatrix * vec4(p, 1.0);
@@ -139,8 +143,8 @@ uniform int uStyle;
 uniform vec4 uClip;
 uniform sampler2D uMap;
 flat in int vKind, vState;
-flat in float vShare, vThrough;
-in float vSide, vDepth;
+flat in float vShare;
+in float vSide;
 in vec3 vAlong, vPoint;
 out vec4 color;
 void main() {
@@ -162,19 +166,23 @@ uniform int uLinesAcross;
 flat out int vKind;
 out vec3 vNormal, vPoint;
 void main() {
-  vec4 line = texelFetch(uLines, ivec2(gl_InstanceID % uLinesAcross, gl_InstanceID / uLinesAcross), 0);
+  // A fan of 6 triangles: 18 vertices a disc.
+  int item = gl_VertexID / 18, k = gl_VertexID % 18;
+  float angle = (float(k / 3) + (k % 3 == 2 ? 1.0 : 0.0)) * 1.0471976;
+  vec2 corner = k % 3 == 0 ? vec2(0.0) : vec2(cos(angle), sin(angle));
+  vec4 line = texelFetch(uLines, ivec2(item % uLinesAcross, item / uLinesAcross), 0);
   int code = int(line.z + 0.5), ia = int(line.x + 0.5), ib = int(line.y + 0.5);
   vKind = code / 8;
   vec4 a = place(ia), b = place(ib);
   vec3 a0 = texelFetch(uFirst, cell(ia), 0).xyz, b0 = texelFetch(uFirst, cell(ib), 0).xyz;
   float ga = texelFetch(uValue, cell(ia), 0).g;
-  bool shown = code % 8 == 2 && distance(texelFetch(uNow, cell(ia), 0).xyz, texelFetch(uNow, cell(ib), 0).xyz) < 1.6 * distance(a0, b0)
+  bool shown = distance(texelFetch(uNow, cell(ia), 0).xyz, texelFetch(uNow, cell(ib), 0).xyz) < 1.6 * distance(a0, b0)
                && uBody[int(min(ga, 15.0) + 0.5)] > 0.5;
   vec3 n = normalize(b0 - a0);
   vec3 u = normalize(cross(n, abs(n.z) < 0.8 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
   vec3 v = cross(n, u);
-  float r = 1.0 * min(a.w, b.w);
-  vec4 p = modelViewMatrix * vec4(0.5 * (a.xyz + b.xyz) + r * (position.x * u + position.y * v), 1.0);
+  float r = min(a.w, b.w);
+  vec4 p = modelViewMatrix * vec4(0.5 * (a.xyz + b.xyz) + r * (corner.x * u + corner.y * v), 1.0);
   vNormal = (modelViewMatrix * vec4(n, 0.0)).xyz;
   vPoint = p.xyz;
   gl_Position = shown ? projectionMatrix * p : vec4(2.0, 2.0, 2.0, 1.0);
@@ -197,9 +205,9 @@ export const triangles = {
 flat out float vValue;
 out vec3 vShare;
 void main() {
-  int corner = int(position.x + 0.5);
-  vec4 p = place(3 * gl_InstanceID + corner);
-  vec2 value = texelFetch(uValue, cell(gl_InstanceID), 0).rg;
+  int corner = gl_VertexID % 3;
+  vec4 p = place(gl_VertexID);
+  vec2 value = texelFetch(uValue, cell(gl_VertexID / 3), 0).rg;
   vValue = value.r;
   vShare = vec3(corner == 0, corner == 1, corner == 2);
   gl_Position = wanted(value.g) ? projectionMatrix * modelViewMatrix * vec4(p.xy, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
@@ -231,13 +239,15 @@ uniform int uLinesAcross;
 uniform float uPixel;
 flat out vec2 vLine;
 void main() {
-  ivec2 cell = ivec2(gl_InstanceID % uLinesAcross, gl_InstanceID / uLinesAcross);
+  int item = gl_VertexID / 6, k = gl_VertexID % 6;
+  vec2 corner = vec2(k == 1 || k == 2 || k == 4 ? 1.0 : -1.0, k >= 2 && k != 3 ? 1.0 : 0.0);
+  ivec2 cell = ivec2(item % uLinesAcross, item / uLinesAcross);
   vec4 ends = texelFetch(uEnds, cell, 0);
   vLine = texelFetch(uLines, cell, 0).xy;
   vec2 along = ends.zw - ends.xy;
   vec2 unit = length(along) > 1e-12 ? normalize(along) : vec2(1.0, 0.0);
   float width = uPixel * (vLine.x > 0.985 ? 1.5 : 0.9);
-  vec2 p = mix(ends.xy, ends.zw, position.y) + vec2(-unit.y, unit.x) * position.x * width + unit * (position.y - 0.5) * width;
+  vec2 p = mix(ends.xy, ends.zw, corner.y) + vec2(-unit.y, unit.x) * corner.x * width + unit * (corner.y - 0.5) * width;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(p, 0.001 * uPixel, 1.0);
 }`,
   fragment: `precision highp float;

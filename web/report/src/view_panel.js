@@ -27,8 +27,7 @@ export class ViewPanel {
     this.plane = this.film.meta.plane;
     this.colorings = colorings(this.film).filter((c) => c.name !== "body" || this.film.meta.fields.some((f) => f.name === "group"));
     const named = (name) => this.colorings.find((c) => c.name === name);
-    this.coloring = (this.plane && named("stress_yy")) || named("damage") || this.colorings[0];
-    if (this.plane && named("damage") && this.runs[0].cracks?.rows > 0) this.coloring = named("stress_xx") ?? named("damage");
+    this.coloring = named(this.runs[0].color) ?? named("damage") ?? this.colorings[0];
     this.groups = this.film.meta.groups.length ? this.film.meta.groups : ["elements"];
     this.body = new Array(16).fill(1);
     this.build();
@@ -76,7 +75,10 @@ export class ViewPanel {
         const now = button.getAttribute("aria-pressed") !== "true";
         button.setAttribute("aria-pressed", String(now));
         apply(now);
-        this.each((v) => v.redraw());
+        this.each((v) => {
+          v.fillLines();
+          v.redraw();
+        });
       }}, label);
       return button;
     };
@@ -145,7 +147,10 @@ export class ViewPanel {
     this.setBody(largest, on ? 2 : 1);
     const steel = this.groups.findIndex((name) => /steel|bar|rebar/i.test(name));
     if (steel >= 0 && steel !== largest) this.setBody(steel, on ? 2 : 1);
-    this.each((v) => (v.bars.visible = on));
+    this.each((v) => {
+      v.bars.visible = on;
+      v.fillLines();
+    });
     if (on && this.cracksButton.getAttribute("aria-pressed") !== "true") this.cracksButton.click();
   }
 
@@ -207,9 +212,10 @@ export class ViewPanel {
         continue;
       }
       await view.viewer.start();
-      view.bar = make("span", {class: "bar-of-scale"});
+      view.bar = make("span", {class: "bar-of-scale"}, make("span"));
       view.host.append(view.bar);
       view.viewer.drawn = (viewer) => this.drawn(view, viewer);
+      view.viewer.turned = (viewer) => this.each((other) => other !== viewer && other.follow(viewer));
       this.keyboard(view.canvas);
     }
     await this.recolor();
@@ -235,12 +241,7 @@ export class ViewPanel {
     const length = [5, 2, 1].map((m) => m * power).find((l) => l <= metres) ?? power;
     const scaled = scaledUnit("m", length);
     view.bar.style.width = `${(length / viewer.metresPerPixel).toFixed(1)}px`;
-    view.bar.textContent = `${round(length * scaled.factor, 3)} ${scaled.unit}`;
-    if (this.following) return;
-    this.following = true;
-    for (const other of this.views)
-      if (other !== view && other.viewer && this.active !== other) other.viewer.follow(viewer);
-    this.following = false;
+    view.bar.firstChild.textContent = `${round(length * scaled.factor, 3)} ${scaled.unit}`;
   }
 
   /** Shows the frames nearest to a time; of many calls the last one counts. */

@@ -24,26 +24,14 @@ function colorTexture(bytes, smooth) {
   return texture;
 }
 
-/** A shape that is drawn `count` times. */
-function repeated(positions, index, count) {
-  const geometry = new THREE.InstancedBufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(positions, 3));
-  if (index) geometry.setIndex(index);
-  geometry.instanceCount = count;
+/** `count` vertices without attributes: shaders read all from textures. */
+function vertices(count) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setDrawRange(0, count);
   return geometry;
 }
 
-const QUAD = [[-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], [0, 1, 2, 0, 2, 3]];
-const RIBBON = [[-1, 0, 0, 1, 0, 0, 1, 1, 0, -1, 1, 0], [0, 1, 2, 0, 2, 3]];
-function disc(corners = 8) {
-  const at = [], index = [];
-  for (let k = 0; k < corners; ++k) {
-    const angle = (2 * Math.PI * k) / corners;
-    at.push(Math.cos(angle), Math.sin(angle), 0);
-    if (k > 1) index.push(0, k - 1, k);
-  }
-  return [at, index];
-}
+const OF_SQUARE = 6, OF_DISC = 18;
 
 /** The box of what is worth seeing: the first frame, and of the last all but what flew far. */
 function bulk(film, first, last) {
@@ -79,7 +67,10 @@ export class Viewer {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
-    this.controls.addEventListener("change", () => this.redraw());
+    this.controls.addEventListener("change", () => {
+      this.redraw();
+      this.turned?.(this);
+    });
     if (this.plane) {
       this.controls.enableRotate = false;
       this.controls.mouseButtons.LEFT = THREE.MOUSE.PAN;
@@ -90,7 +81,7 @@ export class Viewer {
       uNow: {value: null}, uFirst: {value: null}, uValue: {value: null}, uAcross: {value: ACROSS},
       uScale: {value: 1}, uMap: {value: null}, uRange: {value: new THREE.Vector2(0, 1)}, uCategories: {value: 0},
       uBody: {value: new Array(16).fill(1)}, uClip: {value: new THREE.Vector4(0, 0, 0, 1e30)},
-      uLines: {value: null}, uEnds: {value: null}, uLinesAcross: {value: ACROSS}, uMesh: {value: 1}, uPixel: {value: 1},
+      uLinesAcross: {value: ACROSS}, uMesh: {value: 1}, uPixel: {value: 1},
     };
     this.maps = {};
     for (const name of Object.keys(MAPS)) this.maps[name] = colorTexture(ramp(name), true);
@@ -108,7 +99,7 @@ export class Viewer {
     if (this.plane) this.buildPlane();
     else this.buildSpace();
     this.buildSurroundings();
-    this.look(this.plane ? "z" : "iso");
+    this.look(this.plane ? "z" : /^(iso|x|y|z)$/.test(this.run.view) ? this.run.view : "iso");
     this.resize();
   }
 
@@ -129,29 +120,28 @@ export class Viewer {
   }
 
   buildSpace() {
-    const {film, run} = this, count = film.meta.elements;
+    const {film, run} = this, spheres = () => vertices(OF_SQUARE * film.meta.elements);
     const size = film.meta.size;
-    this.solid = this.add(repeated(...QUAD, count), this.material(shaders.spheres, {uWanted: 1, uThrough: 0}));
-    this.through = this.add(repeated(...QUAD, count),
+    this.solid = this.add(spheres(), this.material(shaders.spheres, {uWanted: 1, uThrough: 0}));
+    this.through = this.add(spheres(),
       this.material(shaders.spheres, {uWanted: 2, uThrough: 1}, {transparent: true, depthWrite: false}), 5);
-    const links = (style, width) => this.add(repeated(...RIBBON, 0),
-      this.material(shaders.links, {uStyle: style, uWidth: width}, {side: THREE.DoubleSide}), 1);
+    const two = {side: THREE.DoubleSide};
+    const links = (style, width) => this.add(vertices(0),
+      this.material(shaders.links, {uStyle: style, uWidth: width, uLines: null}, two), 1);
     this.bars = links(0, Math.max(run.bar_radius || 0, 0.25 * size));
     this.links = links(1, 0.16 * size);
     this.forces = links(2, 0.45 * size);
-    this.cracks = this.add(repeated(...disc(), 0), this.material(shaders.cracks, {}, {side: THREE.DoubleSide}), 2);
-    for (const mesh of [this.bars, this.links, this.forces]) mesh.visible = false;
-    this.cracks.visible = false;
+    this.cracks = this.add(vertices(0), this.material(shaders.cracks, {uLines: null}, two), 2);
+    for (const mesh of [this.bars, this.links, this.forces, this.cracks]) mesh.visible = false;
   }
 
   buildPlane() {
-    const count = this.film.meta.elements;
-    const corners = [[0, 0, 0, 1, 0, 0, 2, 0, 0], null];
+    const corners = () => vertices(3 * this.film.meta.elements);
     const options = {side: THREE.DoubleSide, depthTest: false};
-    this.solid = this.add(repeated(...corners, count), this.material(shaders.triangles, {uWanted: 1, uThrough: 0}, options));
-    this.through = this.add(repeated(...corners, count),
+    this.solid = this.add(corners(), this.material(shaders.triangles, {uWanted: 1, uThrough: 0}, options));
+    this.through = this.add(corners(),
       this.material(shaders.triangles, {uWanted: 2, uThrough: 1}, {...options, transparent: true}), 1);
-    this.cracks = this.add(repeated(...RIBBON, 0), this.material(shaders.joints, {}, {...options, transparent: true}), 2);
+    this.cracks = this.add(vertices(0), this.material(shaders.joints, {uLines: null, uEnds: null}, {...options, transparent: true}), 2);
   }
 
   /** Walls, and regions that are held or loaded. */
@@ -246,7 +236,7 @@ export class Viewer {
   /** Shows a frame. @param values  one number an element */
   show(frame, values) {
     const {film, uniforms} = this;
-    const old = [uniforms.uNow, uniforms.uValue, uniforms.uLines, uniforms.uEnds].map((u) => u.value);
+    const old = [uniforms.uNow, uniforms.uValue].map((u) => u.value);
     uniforms.uNow.value = floatTexture(frame.position, 4, film.points);
     const pairs = new Float32Array(2 * film.meta.elements), group = frame.fields.group;
     for (let i = 0; i < film.meta.elements; ++i) {
@@ -254,30 +244,49 @@ export class Viewer {
       pairs[2 * i + 1] = group ? group[i] : 0;
     }
     uniforms.uValue.value = floatTexture(pairs, 2, film.meta.elements);
-    const data = new Float32Array(4 * frame.lines.count);
-    if (this.plane) {
-      const {damage, mode} = frame.lines.fields;
-      for (let l = 0; l < frame.lines.count; ++l) {
-        data[4 * l] = damage ? damage[l] : 1;
-        data[4 * l + 1] = mode ? mode[l] : 0;
-      }
-      uniforms.uEnds.value = floatTexture(frame.lines.ends, 4, frame.lines.count);
-    } else {
-      const {kind, state, force} = frame.lines.fields, ends = frame.lines.ends;
-      const largest = this.film.meta.fields.find((f) => f.lines && f.name === "force")?.high || 1;
-      for (let l = 0; l < frame.lines.count; ++l) {
-        data[4 * l] = ends[2 * l];
-        data[4 * l + 1] = ends[2 * l + 1];
-        data[4 * l + 2] = 8 * (kind ? kind[l] : 0) + (state ? state[l] : 0);
-        data[4 * l + 3] = force ? Math.min(1, (4 * force[l]) / largest) : 0;
-      }
-      for (const mesh of [this.bars, this.links, this.forces]) mesh.geometry.instanceCount = frame.lines.count;
-    }
-    uniforms.uLines.value = floatTexture(data, 4, frame.lines.count);
-    this.cracks.geometry.instanceCount = frame.lines.count;
+    this.lines = frame.lines;
+    this.fillLines();
     for (const {patch, at, velocity} of this.walls) patch.position.copy(at).addScaledVector(velocity, frame.time);
     for (const texture of old) texture?.dispose();
     this.redraw();
+  }
+
+  /** Gives each list of lines that is shown the lines that belong to it. */
+  fillLines() {
+    if (!this.lines) return;
+    if (this.plane) return this.fillJoints();
+    const {kind = [], state = [], force = []} = this.lines.fields;
+    const largest = this.film.meta.fields.find((f) => f.lines && f.name === "force")?.high || 1;
+    const share = (l) => Math.min(1, (4 * (force[l] ?? 0)) / largest);
+    this.fill(this.bars, OF_SQUARE, (l) => kind[l] === 1 && state[l] !== 2, share);
+    this.fill(this.links, OF_SQUARE, (l) => state[l] !== 2, share);
+    this.fill(this.forces, OF_SQUARE, (l) => state[l] !== 2 && share(l) > 0.12, share);
+    this.fill(this.cracks, OF_DISC, (l) => state[l] === 2, share);
+  }
+
+  fill(mesh, each, takes, share) {
+    if (!mesh.visible) return;
+    const {count, ends, fields: {kind = [], state = []}} = this.lines, data = [];
+    for (let l = 0; l < count; ++l)
+      if (takes(l)) data.push(ends[2 * l], ends[2 * l + 1], 8 * (kind[l] ?? 0) + (state[l] ?? 0), share(l));
+    const {uLines} = mesh.material.uniforms;
+    uLines.value?.dispose();
+    uLines.value = floatTexture(new Float32Array(data), 4, data.length / 4);
+    mesh.geometry.setDrawRange(0, (each * data.length) / 4);
+  }
+
+  fillJoints() {
+    const {count, ends, fields: {damage, mode}} = this.lines, data = new Float32Array(4 * count);
+    for (let l = 0; l < count; ++l) {
+      data[4 * l] = damage ? damage[l] : 1;
+      data[4 * l + 1] = mode ? mode[l] : 0;
+    }
+    const {uLines, uEnds} = this.cracks.material.uniforms;
+    uLines.value?.dispose();
+    uEnds.value?.dispose();
+    uLines.value = floatTexture(data, 4, count);
+    uEnds.value = floatTexture(ends, 4, count);
+    this.cracks.geometry.setDrawRange(0, OF_SQUARE * count);
   }
 
   color({category, map, low, high}) {
