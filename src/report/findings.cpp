@@ -29,7 +29,9 @@ std::string place_text(const Vec3& p, bool plane) {
 
 std::string value_text(double value, const std::string& unit) {
   const ScaledUnit scaled = scaled_unit(unit, std::abs(value));
-  return fmt::format("{:.3g} {}", value * scaled.factor, scaled.unit);
+  const double shown = value * scaled.factor;
+  return std::abs(shown) < 999.5 ? fmt::format("{:.3g} {}", shown, scaled.unit)
+                                 : fmt::format("{} {}", count_text(shown), scaled.unit);
 }
 
 std::string percent_text(double share) {

@@ -17,7 +17,7 @@ namespace breccia::report {
 namespace {
 
 std::string_view trimmed(std::string_view text) {
-  constexpr const char* blanks = " \t\r\"\xef\xbb\xbf";
+  constexpr const char* blanks = " \t\r";
   const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
@@ -67,13 +67,16 @@ struct Lines {
 };
 
 Lines lines_of(const std::string& path, bool measured) {
-  const std::string content = read_whole_file(path, std::uint64_t{1} << 30);
+  const std::string file = read_whole_file(path, std::uint64_t{1} << 30);
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  std::string_view content(file);
+  if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
   Lines all;
   all.ends_with_newline = content.empty() || content.back() == '\n';
   int number = 0;
   for (std::size_t begin = 0; begin < content.size();) {
     const std::size_t end = std::min(content.find('\n', begin), content.size());
-    const std::string_view line = std::string_view(content).substr(begin, end - begin);
+    const std::string_view line = content.substr(begin, end - begin);
     begin = end + 1;
     ++number;
     const std::string_view inside = trimmed(line);

@@ -180,8 +180,10 @@ export function eventPanel(runs, store) {
 export function rosePanel(runs) {
   const all = runs.filter((run) => run.roses?.length);
   if (all.length === 0) return null;
-  return {node: panel("Where cracks point", null, all.map((run) => [
-    runs.length > 1 && make("h3", {}, run.label), make("div", {class: "roses"}, run.roses.map(roseOf))]))};
+  const node = panel("Where cracks point", null, make("div", {class: "row top"}, all.map((run) => make("div", {},
+    runs.length > 1 && make("h3", {}, run.label), make("div", {class: "roses"}, run.roses.map(roseOf))))));
+  if (all.length > 1) node.classList.add("double");
+  return {node};
 }
 
 function roseOf(rose) {

@@ -1,0 +1,179 @@
+// A film read back: what the page will see.
+
+#include "report/film.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "exec/error.hpp"
+#include "report/thinning.hpp"
+#include "unit/io/slab_scene.hpp"
+#include "unit/report/result_scene.hpp"
+#include "unit/report/unpacked.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia::report {
+namespace {
+
+using Json = nlohmann::json;
+
+test::PlaneReader opened(const Film& film, std::size_t frame) {
+  return test::PlaneReader(test::inflated(test::from_base64(film.blobs.at(frame))));
+}
+
+TEST(Film, SpheresComeBackToHalfAStep) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  const Survey survey = survey_of(folder.path(), 3);
+  const Film film = film_of(folder.path(), survey, 5, 10'000'000);
+  const Json json = Json::parse(film.json);
+  ASSERT_EQ(film.blobs.size(), 3U);
+  EXPECT_EQ(json["frames"][2]["blob"], 7);
+  EXPECT_EQ(json["frames"][2]["step"], 20);
+  ASSERT_EQ(json["width"], 2);
+
+  const double step = json["step"];
+  EXPECT_LT(step, 1e-5);
+  const auto place = [&](std::uint32_t steps, int axis) {
+    return json["low"][static_cast<std::size_t>(axis)].get<double>() + step * steps;
+  };
+  test::PlaneReader first = opened(film, 0), last = opened(film, 2);
+  const Frame at_first = test::chain_frame(0, 8, 2), at_last = test::chain_frame(2, 8, 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto start = first.numbers(8, 2), moved = last.numbers(8, 2);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Vec3 a = at_first.position[i], b = at_last.position[i];
+      const auto now = static_cast<std::uint32_t>(
+                           start[i] + static_cast<std::uint32_t>(test::unzigzag(moved[i]))) &
+                       0xffffU;
+      EXPECT_NEAR(place(start[i], axis), axis == 0 ? a.x : axis == 1 ? a.y : a.z, 0.51 * step);
+      EXPECT_NEAR(place(now, axis), axis == 0 ? b.x : axis == 1 ? b.y : b.z, 0.51 * step);
+    }
+  }
+  const auto radius = first.numbers(8, 2);
+  EXPECT_NEAR(radius[3] * json["largest_radius"].get<double>() / 65535.0, 0.01, 1e-6);
+}
+
+TEST(Film, WhatStaysAlikeIsToldOnce) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  const Survey survey = survey_of(folder.path(), 3);
+  EXPECT_TRUE(survey.lines_constant);
+  const Json json = Json::parse(film_of(folder.path(), survey, 0, 10'000'000).json);
+  EXPECT_EQ(json["frames"][0]["ends"], true);
+  EXPECT_EQ(json["frames"][1]["ends"], false);
+  for (const Json& field : json["fields"])
+    EXPECT_EQ(field["constant"],
+              field["name"] == "velocity" || field["name"] == "group" || field["name"] == "kind")
+        << field;
+}
+
+TEST(Film, EveryByteOfAFrameHasItsPlace) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  const Film film = film_of(folder.path(), survey_of(folder.path(), 3), 0, 10'000'000);
+  test::PlaneReader last = opened(film, 2);
+  last.numbers(3 * 8, 2);                 // positions
+  EXPECT_EQ(last.numbers(8, 1)[0], 64U);  // damage: 0.25 of 255 steps
+  EXPECT_EQ(last.numbers(7, 1)[3], 2U);   // state: the link in the middle
+  last.numbers(7, 1);                     // force
+  EXPECT_TRUE(last.at_end());
+}
+
+TEST(Film, CornersThatPartComeBackFromTheirLeader) {
+  const ScratchFolder folder;
+  ParaviewSeries series(folder.path());
+  series.write(test::pair_frame(0, 0.0));
+  series.write(test::pair_frame(1, 0.01));
+  series.finish();
+  const Survey survey = survey_of(folder.path(), 2);
+  EXPECT_TRUE(survey.plane);
+  const Film film = film_of(folder.path(), survey, 0, 10'000'000);
+  const Json json = Json::parse(film.json);
+  ASSERT_EQ(json["width"], 3);
+  const double step = json["step"], low = json["low"][0];
+  const auto start = opened(film, 0).numbers(6, 3);
+  const auto told = opened(film, 1).numbers(6, 3);
+  // Corners 3 and 5 began where 1 and 2 did, which did not move.
+  const double gap = 0.01;
+  for (const auto& [corner, leader] :
+       {std::pair<std::size_t, std::size_t>{3, 1}, {5, 2}, {4, 4}, {1, 1}}) {
+    const double moved = test::unzigzag(told[corner]) * step;
+    EXPECT_NEAR(moved, corner == 1 ? 0.0 : gap, 2.0 * step) << corner << " after " << leader;
+  }
+  EXPECT_NEAR(low + step * start[4], 0.1, 0.6 * step);
+}
+
+TEST(Film, AFilmStaysUnderItsLimit) {
+  const ScratchFolder folder;
+  ParaviewSeries series(folder.path());
+  Frame frame = test::slab_scene();
+  for (int k = 0; k < 4; ++k) {
+    frame.time = 1e-3 * k;
+    frame.step = k;
+    for (Vec3& p : frame.position) p.z += 1e-4 * p.x;
+    for (float& v : frame.point_fields.front().values) v *= 0.9F;
+    series.write(frame);
+  }
+  series.finish();
+  const Survey survey = survey_of(folder.path(), 4);
+  const Film whole = film_of(folder.path(), survey, 0, 20'000'000);
+  EXPECT_TRUE(whole.notes.empty());
+  std::size_t before = whole.bytes();
+  for (const std::size_t limit : {120'000, 90'000, 60'000, 30'000}) {
+    const Film film = film_of(folder.path(), survey, 0, limit);
+    EXPECT_LE(film.bytes(), limit);
+    EXPECT_LT(film.bytes(), before);
+    EXPECT_FALSE(film.notes.empty());
+    const Json json = Json::parse(film.json);
+    EXPECT_EQ(json["frames"].front()["number"], 0);
+    EXPECT_EQ(json["frames"].back()["number"], 3);
+    before = film.bytes();
+  }
+}
+
+TEST(Film, ElementsThatNobodySeesGoBeforeOthers) {
+  const ScratchFolder folder;
+  ParaviewSeries series(folder.path());
+  Frame cube;
+  cube.groups = {"cube"};
+  FrameField group{"group", "-", 1, {}}, damage{"damage", "-", 1, {}};
+  constexpr int n = 20;
+  for (int i = 0; i < n * n * n; ++i) {
+    cube.position.push_back({0.02 * (i % n), 0.02 * (i / n % n), 0.02 * (i / n / n)});
+    cube.radius.push_back(0.01);
+    group.values.push_back(0.0F);
+    damage.values.push_back(i == n * n * n / 2 + n * n / 2 + n / 2 ? 1.0F : 0.0F);
+  }
+  cube.point_fields = {group, damage};
+  series.write(cube);
+  series.finish();
+  const Survey survey = survey_of(folder.path(), 1);
+  const std::vector<std::uint32_t> visible = visible_elements(survey);
+  std::size_t faces = 0;
+  for (const std::uint32_t i : visible)
+    for (const double c : {cube.position[i].x, cube.position[i].y, cube.position[i].z})
+      if (c < 0.001 || c > 0.379) {
+        ++faces;
+        break;
+      }
+  EXPECT_EQ(faces, static_cast<std::size_t>(n * n * n - (n - 2) * (n - 2) * (n - 2)));
+  EXPECT_LT(visible.size(), cube.position.size() * 7 / 10);
+  EXPECT_TRUE(std::find(visible.begin(), visible.end(), n * n * n / 2 + n * n / 2 + n / 2) !=
+              visible.end());
+}
+
+TEST(Film, FramesOfOtherElementsAreRefused) {
+  const ScratchFolder folder;
+  ParaviewSeries series(folder.path());
+  series.write(test::chain_frame(0, 8, 9));
+  series.write(test::chain_frame(1, 7, 9));
+  series.finish();
+  EXPECT_THROW(survey_of(folder.path(), 2), IoError);
+}
+
+}  // namespace
+}  // namespace breccia::report
