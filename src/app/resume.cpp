@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/findings.hpp"
 #include "app/run_options.hpp"
 #include "domain/together.hpp"
 #include "exec/error.hpp"
@@ -85,7 +86,9 @@ struct ResumeCommand {
     signals.answer_between_steps();
     timers.clear();
     method->load(checkpoint ? &*checkpoint : nullptr);
-    return Run(*method, plan, folder ? &*folder : nullptr, &*former).execute();
+    const int exit_code = Run(*method, plan, folder ? &*folder : nullptr, &*former).execute();
+    if (exit_code == 0 && folder && !options.quiet) tell_findings(folder->path());
+    return exit_code;
   }
 };
 

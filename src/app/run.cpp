@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/findings.hpp"
 #include "app/run_options.hpp"
 #include "domain/together.hpp"
 #include "run/signals.hpp"
@@ -44,7 +45,9 @@ struct RunCommand {
     timers.clear();
     std::optional<ResultFolder> result;  // of rank 0
     on_first(ranks, [&] { result.emplace(ResultFolder::create(out, existing)); });
-    return Run(*method, plan, result ? &*result : nullptr).execute();
+    const int exit_code = Run(*method, plan, result ? &*result : nullptr).execute();
+    if (exit_code == 0 && result && !options.quiet) tell_findings(result->path());
+    return exit_code;
   }
 
   void load(Method& method, const RunPlan& plan) const {

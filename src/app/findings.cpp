@@ -1,0 +1,41 @@
+#include "app/findings.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "exec/error.hpp"
+#include "io/harmless.hpp"
+#include "report/findings.hpp"
+
+namespace breccia::app {
+namespace {
+
+/// Frames of larger files take longer to look at than a person waits.
+constexpr std::uintmax_t largest_frame = 20'000'000;
+
+bool has_small_frames(const std::string& folder) {
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(folder + "/fields", error))
+    if (file.file_size(error) > largest_frame || error) return false;
+  return !error;
+}
+
+}  // namespace
+
+void tell_findings(const std::string& folder) {
+  try {
+    report::Record record = report::read_record(folder);
+    if (!has_small_frames(folder)) record.times.clear();
+    const char* head = "shows";
+    for (const std::string& sentence : report::findings_of(record)) {
+      std::fputs(fmt::format("{:<7} {}\n", head, harmless(sentence)).c_str(), stdout);
+      head = "";
+    }
+  } catch (const Error&) {
+    return;
+  }
+}
+
+}  // namespace breccia::app
