@@ -98,6 +98,15 @@ TEST_F(Program, RunsACaseAndLeavesItsResultFolder) {
   EXPECT_EQ(summary("out")["case"]["sha256"].get<std::string>().size(), 64U);
 }
 
+TEST_F(Program, TellsAtItsEndWhatTheRunShows) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
+  EXPECT_NE(output().find("shows   Nothing can break here"), std::string::npos) << output();
+  replace_file(path("held.toml"), two_balls + "[[check]]\nname = \"wrong\"\nvalue = "
+                                              "\"model.elements\"\nexpected = 3\n");
+  ASSERT_EQ(run("run " + path("held.toml") + " -o " + path("failed")), 9);
+  EXPECT_EQ(output().find("shows"), std::string::npos) << output();
+}
+
 TEST_F(Program, CompletedCaseRunsToTheSameState) {
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("first")), 0) << output();
   ASSERT_EQ(run("run " + path("first/case.toml") + " -o " + path("again")), 0) << output();
@@ -493,6 +502,8 @@ TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
   EXPECT_EQ(run("render " + path("out") + " --color no_such_field"), 2);
   EXPECT_EQ(run("render " + path("out") + " -o " + path("picture.jpg")), 2);
   EXPECT_FALSE(fs::exists(path("picture.jpg")));
+  EXPECT_EQ(run("report " + path("out")), 0) << output();
+  EXPECT_TRUE(fs::exists(path("out/report.html")));
   EXPECT_EQ(run("keys time"), 0) << output();
   EXPECT_NE(output().find("time.end"), std::string::npos) << output();
   EXPECT_EQ(run("keys no_such_prefix"), 2);
