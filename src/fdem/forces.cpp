@@ -66,10 +66,24 @@ Kick kick(const World& w) {
 
 StableStep stable_step(const World& w) {
   const Triangles& t = w.triangles;
-  return {t.nodes.view(), t.material.view(),      w.laws.view(),          t.viscosity.view(),
-          t.mass.view(),  w.contact_pairs.view(), w.parameters.materials, w.edges.view(),
-          w.bonds.view(), w.joints.law.view(),    w.joints.stage.view(),  t.hold.view(),
-          w.holds.view(), w.dashpots.view()};
+  const Pairs& pairs = w.couples.pairs;
+  return {t.nodes.view(),
+          t.material.view(),
+          w.laws.view(),
+          t.viscosity.view(),
+          t.mass.view(),
+          w.contact_pairs.view(),
+          w.parameters.materials,
+          w.edges.view(),
+          w.bonds.view(),
+          w.joints.law.view(),
+          w.joints.stage.view(),
+          t.hold.view(),
+          w.holds.view(),
+          w.dashpots.view(),
+          {t.nodes.view(), t.shape_inverse.view(), w.couple_incidence.view(), pairs.a.view(),
+           pairs.b.view(), w.joints.edge_a.view(), w.joints.edge_b.view()},
+          w.parameters.time.evaluate_every};
 }
 
 void list_motions(World& w) {

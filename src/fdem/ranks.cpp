@@ -268,10 +268,15 @@ class Mesh final : public Shareable {
 
   const Buffer<GlobalId>& ids() const override { return w_.triangles.id; }
   void look() override {
-    if (w_.triangles.nodes.space() != Space::host) copy_to(seen_, w_.triangles.nodes);
+    if (w_.triangles.nodes.space() == Space::host) return;
+    copy_to(seen_, w_.triangles.nodes);
+    copy_to(seen_shapes_, w_.triangles.shape_inverse);
   }
   Vec3 centre(Index t) const override { return centroid(nodes().data()[t]); }
-  double radius(Index t) const override { return fdem::radius(nodes().data()[t]); }
+  /// With what counts as near to it.
+  double radius(Index t) const override {
+    return fdem::radius(nodes().data()[t]) + near_reach(shapes().data()[t]);
+  }
   std::vector<Vec3> points() const override {
     std::vector<Vec3> points;
     points.reserve(at(3 * w_.triangles.size()));
@@ -317,6 +322,9 @@ class Mesh final : public Shareable {
   const Buffer<TriangleNodes>& nodes() const {
     return w_.triangles.nodes.space() == Space::host ? w_.triangles.nodes : seen_;
   }
+  const Buffer<Mat2>& shapes() const {
+    return w_.triangles.nodes.space() == Space::host ? w_.triangles.shape_inverse : seen_shapes_;
+  }
   HasLeft has_left_kernel() const {
     return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(), w_.domain.drifted,
             std::as_const(w_.triangles.nodes).view(), std::as_const(w_.domain.placed).view()};
@@ -325,6 +333,7 @@ class Mesh final : public Shareable {
   World& w_;
   Space space_;
   Buffer<TriangleNodes> seen_;  ///< on the host, while triangles are elsewhere
+  Buffer<Mat2> seen_shapes_;    ///< likewise
 };
 
 /// What follows from couples that came with their triangles. A search finds it for its own.
@@ -475,6 +484,7 @@ void collect(World& part, World& whole) {
   moved.partition.move(moved.drifted);
   whole.domain.partition = moved.partition;
   copy_time(part, whole);
+  derive_couples(whole);
 }
 
 }  // namespace breccia::fdem

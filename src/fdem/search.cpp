@@ -10,12 +10,13 @@
 namespace breccia::fdem {
 namespace {
 
-/// Starts the travel of a triangle anew and boxes it with its margin.
+/// Starts the travel of a triangle anew and boxes it with its margin and what counts as near.
 struct BeginReach {
   double skin, horizon, largest;  ///<  [m], [s], [m]
   Drift drift;
   View<const Index> triangle;
   View<const TriangleNodes> nodes;
+  View<const Mat2> shape_inverse;
   View<const GlobalId> id_of;
   View<Corners> reference;
   View<double> margin;
@@ -31,7 +32,8 @@ struct BeginReach {
     const double own = smaller(0.5 * skin + fastest * horizon, largest);
     Box box{{1e300, 1e300, 0.0}, {-1e300, -1e300, 0.0}};
     // covers rounding
-    const double grown = own * (1.0 + 1e-12) + 1e-15 * (extent + drift.farthest);
+    const double grown = (own + near_reach(shape_inverse[triangle[i]])) * (1.0 + 1e-12) +
+                         1e-15 * (extent + drift.farthest);
     for (int k = 0; k < 3; ++k) {
       const Vec2& x = now.at[k].position;
       reference[i].at[k] = x;
@@ -178,7 +180,7 @@ bool any_rank_is_due(World& w) {
   return marking_is_due(w) || (bits & 4) != 0;
 }
 
-/// The couples that may touch until the next search.
+/// The couples that may touch, or be near each other, until the next search.
 void search(World& w) {
   const OpenVertices vertices = open_vertices(w);
   w.reach.triangle = items_where(w.exec, w.triangles.size(), Touchable{vertices});
@@ -188,11 +190,12 @@ void search(World& w) {
   Buffer<Box> boxes(w.exec.space, count);
   Buffer<GlobalId> ids(w.exec.space, count);
   const MarginRule rule = margin_rule(w);
-  for_each(w.exec, count,
-           BeginReach{rule.base, rule.horizon, rule.largest, w.reach.drift,
-                      std::as_const(w.reach.triangle).view(),
-                      std::as_const(w.triangles.nodes).view(), std::as_const(w.triangles.id).view(),
-                      w.reach.reference.view(), w.reach.margin.view(), boxes.view(), ids.view()});
+  for_each(
+      w.exec, count,
+      BeginReach{rule.base, rule.horizon, rule.largest, w.reach.drift,
+                 std::as_const(w.reach.triangle).view(), std::as_const(w.triangles.nodes).view(),
+                 w.triangles.shape_inverse.view(), std::as_const(w.triangles.id).view(),
+                 w.reach.reference.view(), w.reach.margin.view(), boxes.view(), ids.view()});
   Pairs found(w.exec.space);
   if (count > 0) w.broad_phase.search(w.exec, boxes, ids, found);
 

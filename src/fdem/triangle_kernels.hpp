@@ -5,6 +5,7 @@
 #include "fdem/couples.hpp"
 #include "fdem/drift.hpp"
 #include "fdem/joint_kernels.hpp"
+#include "fdem/nearness.hpp"
 
 namespace breccia::fdem {
 
@@ -354,7 +355,9 @@ struct EdgeDashpots {
 };
 
 /// The stable step of a triangle by Gershgorin's bound: every eigenfrequency is at most the largest
-/// sum of a row's |stiffness| over its mass (docs/theory-fdem.md, 5).
+/// sum of a row's |stiffness| over its mass (docs/theory-fdem.md, 5). Contact counts at edges that
+/// another triangle is near to, and at all that can touch of a triangle so fast that it might pass
+/// what is near between two evaluations.
 struct StableStep {
   View<const TriangleNodes> nodes;
   View<const Index> material;
@@ -369,6 +372,8 @@ struct StableStep {
   View<const Index> hold;
   View<const Hold> holds;
   View<const EdgeDashpots> dashpots;  ///< empty: nothing absorbs
+  Nearness nearness;
+  int evaluate_every;  ///< steps from one evaluation to the next
 
   /// Shares of the largest row sum.
   struct Parts {
@@ -383,12 +388,29 @@ struct StableStep {
   BR_HD Parts parts(Index t) const {
     Vec2 x[3], v[3];
     split(nodes[t], x, v);
+    const int exposed = exposed_edges(t);
+    const int near = exposed == 0 ? 0 : near_edges(t, x, exposed);
+    Parts least = parts(t, x, near);
+    if (near == exposed) return least;
+    double fastest = 0.0;
+    for (int k = 0; k < 3; ++k) fastest = larger(fastest, dot(v[k], v[k]));
+    const double way = evaluate_every * least.step * root(fastest);
+    if (way > nearness.reach(t)) least = parts(t, x, exposed);
+    return least;
+  }
+
+ private:
+  /// @param pressed  bits of the edges whose contact counts
+  BR_HD Parts parts(Index t, const Vec2 (&x)[3], int pressed) const {
     const ElasticTriangle& law = laws[material[t]];
     const Target shape = Target::of(x);
     const double area = 0.5 / shape.over_double;
     const Vec2 slope[3] = {shape.slope(0), shape.slope(1), shape.slope(2)};
     double on_edge[3][2];  // joint and contact stiffness of each edge
-    for (int k = 0; k < 3; ++k) edge_stiffness(t, k, x, area, on_edge[k]);
+    for (int k = 0; k < 3; ++k) {
+      on_edge[k][0] = joint_stiffness(t, k);
+      on_edge[k][1] = (pressed >> k & 1) != 0 ? contact_stiffness(t, k, x, area) : 0.0;
+    }
     Parts largest;
     largest.step = 1e300;
     const int fixed = hold[t] >= 0 ? holds[hold[t]].fixed : 0;
@@ -411,8 +433,6 @@ struct StableStep {
     }
     return largest;
   }
-
- private:
   /// Sum of the absolute stiffnesses in the row of component c of corner i.
   BR_HD static double row(const Vec2 (&slope)[3], int i, int c, double area, double lambda,
                           double shear) {
@@ -433,21 +453,38 @@ struct StableStep {
   BR_HD double dashpot(Index t, int k, const Vec2 (&x)[3]) const {
     return 0.5 * norm(x[(k + 1) % 3] - x[k]) * dashpots[t].at[k];
   }
-  /// A live joint adds p_f to the row of each of its nodes; an edge that can touch adds the
-  /// stiffness of two faces pressed together, 3 p L (1/H + 1/H).
-  BR_HD void edge_stiffness(Index t, int k, const Vec2 (&x)[3], double area,
-                            double (&stiffness)[2]) const {
-    stiffness[0] = stiffness[1] = 0.0;
+  /// A live joint adds p_f to the row of each of its nodes.
+  BR_HD double joint_stiffness(Index t, int k) const {
     const Index entry = edges[t].at[k];
-    if (entry == edge_bonded) return;
-    if (entry >= 0 && stage[pair_of(entry)] != JointStage::broken) {
-      if (stage[pair_of(entry)] != JointStage::dormant)
-        stiffness[0] = bonds[bond_of[pair_of(entry)]].stiffness;
-      return;
-    }
+    if (entry < 0) return 0.0;
+    const JointStage now = stage[pair_of(entry)];
+    if (now == JointStage::broken || now == JointStage::dormant) return 0.0;
+    return bonds[bond_of[pair_of(entry)]].stiffness;
+  }
+  /// An edge that may touch adds the stiffness of two faces pressed together, 3 p L (1/H + 1/H).
+  BR_HD double contact_stiffness(Index t, int k, const Vec2 (&x)[3], double area) const {
     const Vec2 edge = x[(k + 1) % 3] - x[k];
     const double over_height = dot(edge, edge) / (2.0 * area);  // L / H
-    stiffness[1] = 6.0 * contacts[material[t] * materials + material[t]].penalty * over_height;
+    return 6.0 * contacts[material[t] * materials + material[t]].penalty * over_height;
+  }
+  BR_HD bool is_broken(Index entry) const {
+    return entry >= 0 && stage[pair_of(entry)] == JointStage::broken;
+  }
+  /// Bits of the edges that nothing joins.
+  BR_HD int exposed_edges(Index t) const {
+    int exposed = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Index entry = edges[t].at[k];
+      if (entry == edge_free || is_broken(entry)) exposed |= 1 << k;
+    }
+    return exposed;
+  }
+  BR_HD int near_edges(Index t, const Vec2 (&x)[3], int exposed) const {
+    int near = 0;
+    for (int k = 0; k < 3; ++k)
+      if (is_broken(edges[t].at[k]))
+        near |= nearness.edges_near_across(t, x, edges[t].at[k], exposed & ~near);
+    return near == exposed ? near : near | nearness.edges_near(t, x, exposed & ~near);
   }
 };
 

@@ -241,12 +241,15 @@ void evaluate_forces(World& w);
 Kick kick(const World& w);
 StableStep stable_step(const World& w);
 
-/// The time step from the least stable step of all triangles.
+/// The time step from the least stable step of all triangles: it falls at once, when something
+/// comes near, and grows slowly.
 struct AllowedStep {
   double safety, max_step;  ///< share of the stable step  [-], limit  [s]
 
-  BR_HD double operator()(double least, double) const {
-    return rounded_down(smaller(safety * least, max_step));
+  BR_HD double operator()(double least, double last_dt) const {
+    double dt = smaller(safety * least, max_step);
+    if (last_dt > 0.0) dt = smaller(dt, 1.05 * last_dt);
+    return rounded_down(dt);
   }
 };
 AllowedStep allowed_step(const World& w);

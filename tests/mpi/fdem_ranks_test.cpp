@@ -54,6 +54,20 @@ TEST(FdemRanks, leave_the_same_state_where_one_strays_far_and_hits) {
   }
 }
 
+/// Discs that come near a plate, touch it and part: the step falls and grows with what is near.
+TEST(FdemRanks, leave_the_same_state_where_steps_fall_and_grow) {
+  Scene scene;
+  scene.material(30e9, 0.2, 2500.0).friction = 0.3;
+  scene.body("plate", prepare::equilateral_rectangle({{0.0, -0.002}, {0.012, 0.004}}, 1e-3));
+  for (int i = 0; i < 2; ++i)
+    scene.body(i == 0 ? "first" : "second",
+               prepare::ringed_disc({4e-3 * i, 1e-4 + 0.001 + 2e-4 * i}, 0.001, 5e-4), 0,
+               {3.0, -40.0});
+  const Outcome expected = alone(scene, 1000);
+  for (const int count : {2, 3, 5, 8, 16})
+    EXPECT_EQ(on_ranks(count, scene, 1000).outcome, expected) << count << " ranks";
+}
+
 TEST(FdemRanks, leave_the_same_state_in_mixed_precision) {
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     Scene scene = impact(joints);

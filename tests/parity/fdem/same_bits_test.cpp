@@ -110,6 +110,34 @@ TEST(FdemSameBits, for_any_margin_in_a_swarm_that_meets_a_wall) {
     EXPECT_EQ(fdem::state_hash(flown(margin, 1)), fdem::state_hash(usual)) << margin;
 }
 
+/// Blocks that come near each other, touch and part: the step falls and grows with what is near.
+TEST(FdemSameBits, for_any_margin_and_space_where_steps_fall_and_grow) {
+  Scene scene;
+  scene.material(30e9, 0.2, 2500.0).friction = 0.3;
+  scene.body("plate", prepare::equilateral_rectangle({{0.0, -0.002}, {0.012, 0.004}}, 1e-3));
+  for (int i = 0; i < 2; ++i)
+    scene.body(i == 0 ? "first" : "second",
+               prepare::ringed_disc({4e-3 * i, 1e-4 + 0.001 + 2e-4 * i}, 0.001, 5e-4), 0,
+               {3.0, -40.0});
+  const auto flown = [&scene](double margin, const Exec& exec) {
+    scene.config.search.margin = margin;
+    fdem::World w = fdem::make_world(scene.config, scene.model, exec);
+    double least = w.next_dt, most = least;
+    while (w.step < 1500) {
+      const Advanced taken = fdem::advance(w, {1e300, 1500});
+      least = std::min(least, taken.dt_min);
+      most = std::max(most, taken.dt_max);
+    }
+    EXPECT_GT(most, 2.0 * least);
+    return fdem::state_hash(w);
+  };
+  const std::uint64_t usual = flown(0.1, {});
+  Exec shadow;
+  shadow.space = Space::shadow;
+  for (const double margin : {0.001, 0.01, 1.0}) EXPECT_EQ(flown(margin, {}), usual) << margin;
+  EXPECT_EQ(flown(0.02, shadow), usual);
+}
+
 TEST(FdemSearch, is_rare_while_all_fly_together) {
   Scene scene;
   scene.material(990e6, 0.3, 2700.0);

