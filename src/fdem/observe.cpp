@@ -116,7 +116,10 @@ struct Ruling {
 };
 struct RulingOf {
   StableStep stable;
-  BR_HD Ruling operator()(Index t) const { return {stable.parts(t), t}; }
+  bool pressed;
+  BR_HD Ruling operator()(Index t) const {
+    return {pressed ? stable.parts_pressed(t) : stable.parts(t), t};
+  }
 };
 
 }  // namespace
@@ -275,16 +278,21 @@ Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
   return f;
 }
 
-const char* ruling_term(const World& w) {
+RuledStep ruled_step(const World& w, bool pressed) {
   Ruling none;
   none.parts.step = no_limit;
   const StableStep::Parts least =
-      fold(w.exec, w.triangles.size(), none, RulingOf{stable_step(w)}, Least{}).parts;
+      fold(w.exec, w.triangles.size(), none, RulingOf{stable_step(w), pressed}, Least{}).parts;
   const double undamped = 2.0 / std::sqrt(least.square);
+  const char* term = least.joint >= least.contact ? "joints" : "contact";
+  if (least.element >= least.joint && least.element >= least.contact) term = "elements";
   if (least.step < 0.5 * undamped)
-    return least.absorbed > least.viscous ? "absorbing edges" : "viscosity";
-  if (least.element >= least.joint && least.element >= least.contact) return "elements";
-  return least.joint >= least.contact ? "joints" : "contact";
+    term = least.absorbed > least.viscous ? "absorbing edges" : "viscosity";
+  return {least.step, term};
+}
+
+const char* ruling_term(const World& w) {
+  return ruled_step(w, false).term;
 }
 
 }  // namespace breccia::fdem

@@ -52,6 +52,13 @@ Fragments fragments(const World& w);
 /// @param broken  1: of each joint
 Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken);
 
+/// The least stable step of all triangles, without its safety, and what rules it, in a word.
+struct RuledStep {
+  double step;  ///<  [s]
+  const char* term;
+};
+/// @param pressed  as if something touched wherever it can
+RuledStep ruled_step(const World& w, bool pressed);
 /// Which term rules the time step now: elements, joints, contact or viscosity.
 const char* ruling_term(const World& w);
 

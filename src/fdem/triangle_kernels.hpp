@@ -385,6 +385,12 @@ struct StableStep {
 
   BR_HD double operator()(Index t) const { return parts(t).step; }
 
+  /// As if something were near everywhere.
+  BR_HD Parts parts_pressed(Index t) const {
+    Vec2 x[3], v[3];
+    split(nodes[t], x, v);
+    return parts(t, x, exposed_edges(t));
+  }
   BR_HD Parts parts(Index t) const {
     Vec2 x[3], v[3];
     split(nodes[t], x, v);
