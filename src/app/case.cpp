@@ -212,6 +212,10 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
       read.config);
 }
 
+std::vector<std::string> warnings_of(const Case& read) {
+  return make_method(read, Exec{}, nullptr)->warnings();
+}
+
 std::string save_model_of(const Case& read, CheckpointWriter& writer) {
   return std::visit(
       [&](const auto& config) {

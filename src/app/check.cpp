@@ -22,6 +22,7 @@ std::string counted(std::size_t count, const char* one, const char* several) {
 
 struct CheckCommand {
   std::vector<std::string> paths, overrides;
+  bool model = false, allow_scripts = false;
 
   int execute() const {
     int exit_code = 0;
@@ -29,6 +30,7 @@ struct CheckCommand {
       try {
         const Case read = load_case(path, overrides);
         check_files(read);
+        if (model && !allow_scripts) refuse_scripts(read);
         std::visit(
             [&](const auto& config) {
               const MemoryPlan plan = memory_plan(config);
@@ -44,6 +46,7 @@ struct CheckCommand {
               fmt::print("\n");
             },
             read.config);
+        if (model) tell_of_model(read);
       } catch (const Error& error) {
         std::fflush(stdout);
         std::fputs(fmt::format("error: {}\n", harmless(error.what())).c_str(), stderr);
@@ -51,6 +54,12 @@ struct CheckCommand {
       }
     }
     return exit_code;
+  }
+
+  static void tell_of_model(const Case& read) {
+    std::fflush(stdout);
+    for (const std::string& warning : warnings_of(read))
+      std::fputs(fmt::format("warning: {}\n", harmless(warning)).c_str(), stderr);
   }
 };
 
@@ -67,6 +76,9 @@ void add_check(CLI::App& program, int& exit_code) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
+  command->add_flag("--model", check->model,
+                    "also build and set up the models, and say what is doubtful about them");
+  command->add_flag("--allow-scripts", check->allow_scripts, allow_scripts_help);
   command->callback([check, &exit_code] { exit_code = check->execute(); });
 }
 

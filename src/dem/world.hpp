@@ -108,6 +108,7 @@ struct World : LinkSets {
   }
 
   // What follows from the case.
+  std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<ElementSet> sets;
   std::vector<std::string> wall_names;
   Buffer<ContactPair> contact_pairs;  ///< by two materials

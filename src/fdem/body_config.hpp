@@ -114,6 +114,7 @@ struct BodyConfig {
   double radius = 0.0;        ///<  [m]
   double inner_radius = 0.0;  ///< of a ring  [m]
   double mesh_size = 0.0;     ///< edge length that is aimed at  [m]
+  double merge = 0.25;        ///< of cracks, over mesh_size  [-]
   double jitter = 0.0;        ///< over the edge length  [-]
   bool structured = false;
   std::string pattern = "equilateral";
@@ -144,6 +145,9 @@ struct BodyConfig {
     key("radius", radius, "m", not_negative, "radius of a disc, outer radius of a ring");
     key("inner_radius", inner_radius, "m", not_negative, "inner radius of a ring");
     key("mesh_size", mesh_size, "m", not_negative, "edge length of the triangles");
+    key("merge", merge, "-", Range{0.0, 0.3},
+        "cracks are moved by about this share of mesh_size where their ends, their crossings or "
+        "straight sides of the body are nearer than that: otherwise slivers make the steps short");
     key("jitter", jitter, "-", Range{0.0, 0.3},
         "inner vertices are moved by up to this share of an edge; hexagons by this share of their "
         "distance");

@@ -12,6 +12,7 @@
 #include "fdem/mesh_edges.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/regions.hpp"
+#include "fdem/warnings.hpp"
 #include "fdem/world.hpp"
 
 namespace breccia::fdem {
@@ -316,12 +317,14 @@ void set_up_bodies(World& w, const Model& model) {
 /// No machine takes more steps than this, and time, a sum of them, would stop.
 void refuse_endless(const World& w) {
   constexpr double most = 1e15;
-  if (w.next_dt * most > w.parameters.time.end) return;
+  const RuledStep least = ruled_step(w, true);
+  const double dt = std::min(w.next_dt, w.parameters.time.safety * least.step);
+  if (dt * most > w.parameters.time.end) return;
   char text[200];
   std::snprintf(text, sizeof text,
                 "the stable time step is %.3g s, ruled by %s: time.end = %.3g s is more than 1e15 "
                 "steps away; see the densities, moduli and stiffnesses of the materials",
-                w.next_dt, ruling_term(w), w.parameters.time.end);
+                dt, least.term, w.parameters.time.end);
   throw InputError(text);
 }
 
@@ -357,6 +360,7 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   find_couples(w);
   evaluate_forces(w);
   refuse_endless(w);
+  w.warnings = doubts(w, config);
   begin_ledger(w);
   return w;
 }

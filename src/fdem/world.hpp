@@ -127,7 +127,8 @@ struct World {
 
   // What follows from the case.
   std::vector<std::string> groups;
-  std::vector<NodeSet> sets;  ///< bodies first
+  std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
+  std::vector<NodeSet> sets;          ///< bodies first
   Buffer<ElasticTriangle> laws;
   Buffer<JointBond> bonds;
   Buffer<ContactPair> contact_pairs;

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "exec/error.hpp"
+#include "prepare/clean_lines.hpp"
 #include "prepare/csv_numbers.hpp"
 #include "prepare/mesh_check.hpp"
 #include "prepare/mesh_file.hpp"
@@ -45,6 +46,21 @@ std::vector<Line> lines_of(const BodyConfig& body, const MeshingContext& context
   return lines;
 }
 
+/// The straight sides of a region's outline and slots.
+std::vector<Line> straight_rim(const Region& region) {
+  std::vector<Line> rim;
+  const auto add = [&rim](const auto& corners) {
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      rim.push_back({corners[k], corners[(k + 1) % corners.size()]});
+  };
+  const Vec2 half = 0.5 * region.size, other{half.x, -half.y}, middle = region.center;
+  if (region.shape == Region::Shape::rectangle)
+    add(std::array{middle - half, middle + other, middle + half, middle - other});
+  if (region.shape == Region::Shape::polygon) add(region.polygon);
+  for (const auto& slot : region.slots) add(slot);
+  return rim;
+}
+
 Mesh meshed_by_gmsh(const BodyConfig& body, const MeshingContext& context) {
   Region region{.center = body.center, .size = body.size, .edge = body.mesh_size};
   if (body.shape == "disc" || body.shape == "ring") {
@@ -62,6 +78,8 @@ Mesh meshed_by_gmsh(const BodyConfig& body, const MeshingContext& context) {
   for (const fdem::NotchConfig& notch : body.notches)
     if (notch.width > 0.0) region.slots.push_back(slot_corners(notch));
   region.lines = lines_of(body, context);
+  if (body.merge > 0.0)
+    region.lines = cleaned(region.lines, straight_rim(region), body.merge * body.mesh_size);
   return mesh_region(region, context.seed);
 }
 

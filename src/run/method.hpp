@@ -45,6 +45,8 @@ class Method {
   virtual double time() const = 0;         ///< simulated  [s]
   virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]
 
+  /// What set-up found doubtful though it can be run, as sentences; on rank 0.
+  virtual std::vector<std::string> warnings() { return {}; }
   /// What rules the time step now, in a word; empty if the method does not tell.
   virtual std::string step_rule() { return {}; }
 

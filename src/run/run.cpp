@@ -143,6 +143,7 @@ int Run::execute_together() {
 
 void Run::start() {
   setup_ = seconds_since(plan_.begin);
+  warnings_ = method_.warnings();
   const Summary now = summary();
   on_first(plan_.ranks, [&] {
     write_summary(now);
@@ -151,6 +152,7 @@ void Run::start() {
                 fmt::format("{} starts at step {}, {:.9g} s", plan_.case_name, method_.steps(),
                             method_.time()));
     say(opening_text(now, end_time_, end_steps_, folder_->path()));
+    for (const std::string& warning : warnings_) log_->warn("setup", method_.steps(), warning);
   });
   method_.verify();
   if (recorder_.due(method_.time())) observe();
@@ -443,6 +445,7 @@ Summary Run::measured() const {
   s.method = plan_.config.method;
   s.precision = plan_.config.precision;
   s.seed = plan_.config.seed;
+  s.warnings = warnings_;
   s.machine = plan_.machine;
   s.steps = method_.steps();
   s.time = method_.time();

@@ -129,6 +129,7 @@ class Run {
   std::int64_t steps_at_once_ = 1;
   double setup_ = 0.0, loop_ = 0.0, output_ = 0.0;  ///< wall time  [s]
   double save_time_ = 0.0;                          ///< of the longest checkpoint so far  [s]
+  std::vector<std::string> warnings_;               ///< of set-up
   std::string broken_;
   Clock::time_point next_facts_{};
   Background background_;  ///< last: it uses the others

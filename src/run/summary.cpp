@@ -57,6 +57,7 @@ Json json_of(const Summary& s) {
   json["status"] = s.status;
   json["exit_code"] = s.exit_code;
   json["message"] = s.message;
+  if (!s.warnings.empty()) json["warnings"] = s.warnings;
   json["breccia"] = {{"version", build.version},
                      {"commit", build.commit},
                      {"build",

@@ -33,6 +33,7 @@ struct Summary {
   std::string status = "running";  ///< done, running, failed or interrupted
   int exit_code = 0;
   std::string message;
+  std::vector<std::string> warnings;  ///< of set-up
 
   std::string case_name, case_sha256, method, precision;
   std::int64_t seed = 0;

@@ -21,7 +21,8 @@ struct Trouble {
   std::int64_t lose_at = -1;    ///< this step fails and knows no more than an element's place
   std::int64_t signal_at = -1;  ///< the process gets `signal` during this step
   int signal = SIGTERM;
-  double pause = 0.0;  ///< wall time a step takes  [s]
+  double pause = 0.0;               ///< wall time a step takes  [s]
+  std::vector<std::string> doubts;  ///< of set-up
 };
 
 class FakeMethod : public Method {
@@ -50,6 +51,7 @@ class FakeMethod : public Method {
   double time() const override { return time_; }
   double time_step() const override { return last_step_; }
 
+  std::vector<std::string> warnings() override { return trouble_.doubts; }
   EnergyBalance energy() override {
     EnergyBalance energy;
     for (std::size_t i = 0; i < position_.size(); ++i) {

@@ -50,6 +50,23 @@ std::vector<std::string> temporary_files(const std::string& path) {
   return found;
 }
 
+TEST(Run, TellsWhatSetUpFindsDoubtful) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.doubts = {"one triangle rules the step", "edges are long"};
+  EXPECT_EQ(run_fake(fake_plan(), scratch / "out", trouble), 0);
+  const nlohmann::json summary = summary_of(scratch / "out");
+  EXPECT_EQ(summary["warnings"], nlohmann::json(trouble.doubts));
+  const std::string log = read_whole_file(scratch / "out/log.jsonl");
+  for (const std::string& doubt : trouble.doubts)
+    EXPECT_NE(
+        log.find("\"level\":\"warning\",\"stage\":\"setup\",\"step\":0,\"message\":\"" + doubt),
+        std::string::npos)
+        << log;
+  EXPECT_EQ(run_fake(fake_plan(), scratch / "quiet"), 0);
+  EXPECT_FALSE(summary_of(scratch / "quiet").contains("warnings"));
+}
+
 TEST(Run, EndsAtTheFirstStepAtOrPastItsEnd) {
   const ScratchFolder scratch;
   EXPECT_EQ(run_fake(fake_plan(), scratch / "out"), 0);
