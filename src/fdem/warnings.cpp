@@ -56,11 +56,68 @@ void look_for_slivers(const World& w, std::vector<std::string>& found) {
   found.emplace_back(text);
 }
 
+/// The joints of one law against the zone in which they soften, E G_I/f_t^2.
+struct ProcessZone {
+  double zone = 1e300;              ///< the shortest  [m]
+  double sum = 0.0, longest = 0.0;  ///< of their lengths  [m]
+  Index count = 0, at_longest = -1;
+  double edges() const { return zone * count / sum; }  ///< that it spans in the mean  [-]
+};
+
+/// A law whose process zone the mesh does not resolve.
+void look_for_long_edges(const World& w, const Config& config, std::vector<std::string>& found) {
+  constexpr double wanted = 3.0;
+  const OnHost<Joints> joints(w.joints, w.exec.space);
+  const OnHost<Triangles> triangles(w.triangles, w.exec.space);
+  std::vector<JointBond> bonds;
+  copy_to(bonds, w.bonds);
+  const auto material = [&](Index edge) -> const MaterialConfig& {
+    return config.materials[at(triangles->material.data()[edge / 3])];
+  };
+  std::vector<ProcessZone> zones(bonds.size());
+  for (Index i = 0; i < joints->size(); ++i) {
+    const JointBond& bond = bonds[at(joints->law.data()[i])];
+    if (!(bond.tension > 0.0)) continue;
+    ProcessZone& z = zones[at(joints->law.data()[i])];
+    const double young = std::min(material(joints->edge_a.data()[i]).young,
+                                  material(joints->edge_b.data()[i]).young);
+    const double energy = bond.softening_open / config.joints.softening_factor;
+    const double length = joints->length.data()[i];
+    z.zone = std::min(z.zone, young * energy / (bond.tension * bond.tension));
+    z.sum += length;
+    ++z.count;
+    if (length <= z.longest) continue;
+    z.longest = length;
+    z.at_longest = i;
+  }
+  std::erase_if(zones, [](const ProcessZone& z) { return z.count == 0 || !(z.edges() < wanted); });
+  if (zones.empty()) return;
+  const ProcessZone& worst = *std::min_element(
+      zones.begin(), zones.end(),
+      [](const ProcessZone& a, const ProcessZone& b) { return a.edges() < b.edges(); });
+  const Index a = joints->edge_a.data()[worst.at_longest],
+              b = joints->edge_b.data()[worst.at_longest];
+  const NodeState* const ends = triangles->nodes.data()[a / 3].at;
+  const Vec2 place = 0.5 * (ends[a % 3].position + ends[(a + 1) % 3].position);
+  std::string names = material(a).name;
+  if (material(b).name != names) names += " and " + material(b).name;
+  char text[600];
+  std::snprintf(text, sizeof text,
+                "%d joints (%s): their process zone E G_I/f_t^2 = %.3g m spans %.2g edges of %.3g "
+                "m (the longest, %.3g m, at (%.6g, %.6g) m), not 3: strength and energy depend on "
+                "the mesh, and each row of triangles may break by itself; %zu laws of joints are "
+                "like that. A shorter mesh_size helps, or more energy_open",
+                worst.count, names.c_str(), worst.zone, worst.edges(), worst.sum / worst.count,
+                worst.longest, place.x, place.y, zones.size());
+  found.emplace_back(text);
+}
+
 }  // namespace
 
-std::vector<std::string> doubts(const World& w, const Config&) {
+std::vector<std::string> doubts(const World& w, const Config& config) {
   std::vector<std::string> found;
   look_for_slivers(w, found);
+  look_for_long_edges(w, config, found);
   return found;
 }
 

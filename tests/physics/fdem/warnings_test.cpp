@@ -21,5 +21,29 @@ TEST(FdemWarnings, name_the_sliver_that_rules_the_step) {
   EXPECT_NE(said[0].find("times shorter than the median"), std::string::npos) << said[0];
 }
 
+/// E G_I/f_t^2 is 3 mm with 10 J/m2; squares of 3 mm with diagonals have edges of 2.4 mm in the
+/// mean.
+TEST(FdemWarnings, tell_where_edges_are_too_long_for_the_process_zone) {
+  const auto said = [](double edge, double energy, const char* joints) {
+    Scene scene;
+    MaterialConfig& m = scene.material(30e9, 0.2, 2500.0);
+    m.name = "granite";
+    m.joints = joints;
+    m.joint.tension = 10e6;
+    m.joint.energy_open = energy;
+    scene.body("plate", prepare::crossed_rectangle({{0.0, 0.0}, {0.03, 0.03}}, edge));
+    const std::vector<std::string> all = scene.world().warnings;
+    return all.empty() ? "" : all[0];
+  };
+  EXPECT_EQ(said(1e-3, 11.0, "intrinsic"), "");
+  EXPECT_EQ(said(3e-3, 10.0, "none"), "");
+  for (const char* joints : {"intrinsic", "extrinsic"}) {
+    const std::string text = said(3e-3, 10.0, joints);
+    EXPECT_NE(text.find("(granite): their process zone E G_I/f_t^2 = 0.003 m spans 1.3 edges"),
+              std::string::npos)
+        << text;
+  }
+}
+
 }  // namespace
 }  // namespace breccia::fdem
