@@ -212,8 +212,8 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
       read.config);
 }
 
-std::vector<std::string> warnings_of(const Case& read) {
-  return make_method(read, Exec{}, nullptr)->warnings();
+std::unique_ptr<Method> method_to_look_at(const Case& read) {
+  return make_method(read, Exec{}, nullptr);
 }
 
 std::string save_model_of(const Case& read, CheckpointWriter& writer) {

@@ -64,9 +64,9 @@ void take_prepared(Case& read, const std::string& path);
 std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks,
                                     bool quiet = true);
 
-/// What setting a case's model up finds doubtful though it can be run, as sentences.
+/// The method of a case over its model as `check` and `prepare` look at it: alone, on the host.
 /// @throws InputError if the model cannot be built, or does not fit
-std::vector<std::string> warnings_of(const Case& read);
+std::unique_ptr<Method> method_to_look_at(const Case& read);
 
 /// Builds the model and adds it to a file. Returns a few words about its size.
 std::string save_model_of(const Case& read, CheckpointWriter& writer);

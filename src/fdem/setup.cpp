@@ -178,6 +178,15 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   j.pressing.resize(count);
   j.rubbing.resize(count);
   j.handed.resize(count);
+  std::vector<double> area;
+  for (const auto& corners : model.triangle) {
+    const Vec2& from = model.point[at(corners[0])];
+    area.push_back(0.5 *
+                   cross(model.point[at(corners[1])] - from, model.point[at(corners[2])] - from));
+  }
+  const std::vector<Index> material(model.material.begin(), model.material.end());
+  w.rocks =
+      effective_rocks(config, {material, area, edge_a, edge_b, law, length, stage, table.bonds});
   if (w.extrinsic) {
     w.stress.resize(w.triangles.size());
     w.overshoot.resize(count);
@@ -261,7 +270,6 @@ LoadKind kind_of(const LoadConfig& load) {
 }
 
 void set_up_loads(World& w, const Config& config, const Model& model) {
-  const std::vector<ElasticTriangle> laws = elastic_table(config);
   std::vector<LoadedEdge> loaded;
   std::vector<EdgeDashpots> dashpots;
   for (const LoadConfig& load : config.loads) {
@@ -278,10 +286,9 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
       const double density = config.materials[material].density;
       const double own = norm(model.point[at(model.triangle[t][(k + 1) % 3])] -
                               model.point[at(model.triangle[t][k])]);
-      const double impedance_p =
-          std::sqrt(density * (laws[material].lambda + 2.0 * laws[material].shear));
+      const double impedance_p = density * w.rocks[material].fast;
       loaded.push_back({edge / 3, static_cast<std::int16_t>(k), index, own, impedance_p,
-                        std::sqrt(density * laws[material].shear)});
+                        density * w.rocks[material].slow});
       length += own;
       if (kind == LoadKind::absorbing)
         dashpots[t].at[k] += impedance_p * w.load_amplitudes.back().largest();

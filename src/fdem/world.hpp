@@ -15,6 +15,7 @@
 #include "exec/timers.hpp"
 #include "fdem/config.hpp"
 #include "fdem/drift.hpp"
+#include "fdem/effective.hpp"
 #include "fdem/loads.hpp"
 #include "fdem/model.hpp"
 
@@ -127,6 +128,7 @@ struct World {
 
   // What follows from the case.
   std::vector<std::string> groups;
+  std::vector<EffectiveRock> rocks;   ///< each material with its joints
   std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<NodeSet> sets;          ///< bodies first
   Buffer<ElasticTriangle> laws;

@@ -63,6 +63,13 @@ struct FdemSim {
       add("model.triangles_by_group." + w.groups[g],
           static_cast<double>(w.sets[g].nodes.size() / 3));
     add("model.joints", w.joints.size());
+    for (const fdem::EffectiveRock& rock : w.rocks) {
+      const std::string path = "model.rock." + rock.material + ".";
+      add(path + "young", rock.young);
+      add(path + "poisson", rock.poisson);
+      add(path + "wave_speed", rock.fast);
+      add(path + "shear_wave_speed", rock.slow);
+    }
     add("model.nodes", 3 * w.triangles.size());
     add("searches", static_cast<double>(w.searches));
     add("contacts.candidates", w.couples.size());
