@@ -237,24 +237,24 @@ struct CoupleForces {
     return shape[corner];
   }
 
- private:
-  /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
-  /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
-  /// part of the joint's work.
-  BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Vec2 (&xa)[3],
-                     const Target& of_a, const Vec2 (&xb)[3], const Target& of_b) const {
-    if (!(joints.pressing[joint] > 0.0)) return;
-    kept.scale = first_scale(joints.pressing[joint], law, xa, of_a, xb, of_b);
+  /// Gives a couple in overlap the forces that its faces carry, as far as friction bears them.
+  /// @param pressing, rubbing  between the faces, and on a along its edge  [N/m]
+  /// @param edges              that lie on each other, of a and of b
+  /// @returns what it stores then
+  BR_HD static JointWork begin_pressed(double pressing, double rubbing, const int (&edges)[2],
+                                       const ContactPair& law, CoupleState& kept,
+                                       const Vec2 (&xa)[3], const Target& of_a, const Vec2 (&xb)[3],
+                                       const Target& of_b) {
+    kept.scale = first_scale(pressing, law, xa, of_a, xb, of_b);
     const double penalty = kept.scale * law.penalty;
     const Polygon over = overlap_of(of_a, of_b);
     JointWork given{penalty * (potential_integral(of_a, over) + potential_integral(of_b, over)),
                     0.0};
 
-    const int of_joint[2] = {joints.edge_a[joint] % 3, joints.edge_b[joint] % 3};
     double limit[2] = {}, stiffness[2] = {};
     for (int side = 0; side < 2; ++side) {
       const Vec2(&x)[3] = side == 0 ? xa : xb;
-      const Vec2 &from = x[of_joint[side]], &to = x[(of_joint[side] + 1) % 3];
+      const Vec2 &from = x[edges[side]], &to = x[(edges[side] + 1) % 3];
       EdgeOverlap o;
       if (!overlap_of_edge(from, to, side == 0 ? of_b : of_a, o)) continue;
       limit[side] = law.friction * penalty * o.whole * norm(to - from);
@@ -263,17 +263,29 @@ struct CoupleForces {
     // Along either edge, in its own direction, it is the same: both turn.
     const double most = limit[0] + limit[1];
     if (most > 0.0) {
-      const double share = larger(-1.0, smaller(1.0, joints.rubbing[joint] / most));
+      const double share = larger(-1.0, smaller(1.0, rubbing / most));
       for (int side = 0; side < 2; ++side) {
         if (!(stiffness[side] > 0.0)) continue;
         const double drag = share * limit[side];
-        kept.drag[3 * side + of_joint[side]] = drag;
+        kept.drag[3 * side + edges[side]] = drag;
         given.slide += 0.5 * drag * drag / stiffness[side];
       }
     }
     kept.work = given.open + given.slide;
     kept.sprung = given.slide;
-    joints.handed[joint] = given;
+    return given;
+  }
+
+ private:
+  /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
+  /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
+  /// part of the joint's work.
+  BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Vec2 (&xa)[3],
+                     const Target& of_a, const Vec2 (&xb)[3], const Target& of_b) const {
+    if (!(joints.pressing[joint] > 0.0)) return;
+    const int of_joint[2] = {joints.edge_a[joint] % 3, joints.edge_b[joint] % 3};
+    joints.handed[joint] = begin_pressed(joints.pressing[joint], joints.rubbing[joint], of_joint,
+                                         law, kept, xa, of_a, xb, of_b);
   }
 
   /// Of the penalty, so that the couple presses as hard as this.  [N/m]

@@ -131,10 +131,12 @@ struct Wake {
     // just below its strength, where that is reached
     const double share = smaller(1.0, (1.0 - 1e-6) / overshoot[i]);
     const RockStress s = stress(i);
-    preset_opening(bond, strength[i], length[i], share * s.normal, share * s.shear, preset[i]);
+    Vec2 opening{};
+    preset_opening(bond, strength[i], length[i], share * s.normal, share * s.shear, opening);
+    preset[i] += opening;  // it held how far its triangles were moved apart at the start, if at all
     stage[i] = JointStage::whole;
     const StoredEnergy stored =
-        stored_in(bond, strength[i], length[i], preset[i], JointOpening<double>{}, JointPoints{});
+        stored_in(bond, strength[i], length[i], opening, JointOpening<double>{}, JointPoints{});
     held[k] = owned(e.a0 / 3) ? stored.open + stored.slide : 0.0;
     triangles[2 * k] = e.a0 / 3;
     triangles[2 * k + 1] = e.b0 / 3;

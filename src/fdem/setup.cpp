@@ -11,6 +11,7 @@
 #include "fdem/materials.hpp"
 #include "fdem/mesh_edges.hpp"
 #include "fdem/observe.hpp"
+#include "fdem/pressed_faces.hpp"
 #include "fdem/regions.hpp"
 #include "fdem/warnings.hpp"
 #include "fdem/world.hpp"
@@ -364,10 +365,12 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   set_up_loads(w, config, model);
   w.opened.changed.resize(2);
   w.opened.vertex.resize(static_cast<Index>(model.point.size()));
+  const std::vector<PressedFace> faces = press_faces(w);
   find_couples(w);
+  load_faces(w, faces);
   evaluate_forces(w);
   refuse_endless(w);
-  w.warnings = doubts(w, config);
+  for (std::string& doubt : doubts(w, config)) w.warnings.push_back(std::move(doubt));
   begin_ledger(w);
   return w;
 }
