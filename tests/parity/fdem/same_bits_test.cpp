@@ -113,6 +113,7 @@ TEST(FdemSameBits, for_any_margin_in_a_swarm_that_meets_a_wall) {
 /// Blocks that come near each other, touch and part: the step falls and grows with what is near.
 TEST(FdemSameBits, for_any_margin_and_space_where_steps_fall_and_grow) {
   Scene scene;
+  scene.config.time.evaluate_every = 1;
   scene.material(30e9, 0.2, 2500.0).friction = 0.3;
   scene.body("plate", prepare::equilateral_rectangle({{0.0, -0.002}, {0.012, 0.004}}, 1e-3));
   for (int i = 0; i < 2; ++i)

@@ -162,6 +162,7 @@ TEST(FdemLoads, in_situ_stress_is_in_equilibrium_from_the_start) {
 /// The support's velocity follows its table; its work goes into what it moves.
 TEST(FdemLoads, support_follows_its_table_and_books_its_work) {
   Scene scene;
+  scene.config.time.evaluate_every = 1;
   scene.material(1e8).joints = "intrinsic";
   scene.body("block", prepare::crossed_rectangle({{0.0, 0.0}, {0.2, 0.2}}, 0.1));
   SupportConfig& s = scene.support("grip", {-far, -far}, {-0.0999, far}, {"x"}, {2.0, 0.0});
