@@ -34,6 +34,7 @@ struct MaterialConfig {
   // parallel: the strengths and constants above, and
   double bond_radius = 1.0;   ///< lambda: of the bond, over the smaller element's  [-]
   double moment_share = 1.0;  ///< beta of moments in the bond's stresses  [-]
+  std::string fabric = "packed", stiffness = "estimated";
   // steel
   double yield = 500e6;          ///< f_y  [Pa]
   double hardening = 1e9;        ///< H  [Pa]
@@ -92,6 +93,12 @@ struct MaterialConfig {
         "lambda, radius of a parallel bond over that of the smaller element");
     key("moment_share", moment_share, "-", Range{0.0, 1.0},
         "how far moments count in the stresses that break a parallel bond");
+    key("fabric", fabric, OneOf{"packed", "even"},
+        "sections of links: packed: by the radii alone, so that faces of a body are weak and soft; "
+        "even: larger where an element has fewer links than those deep in the body");
+    key("stiffness", stiffness, OneOf{"estimated", "measured"},
+        "stiffness of links: estimated: by alpha, beta, gamma; measured: times a factor that makes "
+        "the modulus of each body, measured when it is built, that of the key young");
     key("yield", yield, "Pa", Range{0.0, 1e15, Open::low}, "yield stress of steel");
     key("hardening", hardening, "Pa", Range{0.0, 1e15}, "plastic hardening modulus of steel");
     key("failure_strain", failure_strain, "-", positive, "plastic strain at which steel ruptures");

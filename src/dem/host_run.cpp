@@ -98,6 +98,7 @@ void fetch(const ConcreteLinkForces<Number>& links, Index from, Index to) {
   for (Index i = from; i < to; i += 8) {
     __builtin_prefetch(links.length.data + i);
     __builtin_prefetch(links.stiffness.data + i);
+    __builtin_prefetch(links.area.data + i);
     if (sizeof(Number) < sizeof(double) && i % 16 != 0) continue;  // of a cache line that is asked
     __builtin_prefetch(links.opening.data + i, 1);
     for (int c = 0; c < 3; ++c) {

@@ -40,6 +40,28 @@ std::string laws_within() {
   return "concrete, parallel or ";
 }
 
+namespace {
+
+double lesser_radius(const Model& m, const Model::Link& link) {
+  return std::min(m.radius[static_cast<std::size_t>(link.a)],
+                  m.radius[static_cast<std::size_t>(link.b)]);
+}
+
+}  // namespace
+
+double link_section(const Model& m, const Model::Link& link) {
+  const double least = lesser_radius(m, link);
+  return pi * least * least * link.share;
+}
+
+double link_stiffness(const Model& m, const Model::Link& link, const MaterialConfig& material) {
+  const Vec3 apart =
+      m.position[static_cast<std::size_t>(link.b)] - m.position[static_cast<std::size_t>(link.a)];
+  const double modulus = local_elasticity(material).modulus * m.stiffening(link.a);
+  const double least = lesser_radius(m, link);
+  return modulus * pi * least * least * link.share / norm(apart);
+}
+
 ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact) {
   const LocalElasticity local = local_elasticity(m);
   ConcreteLink law{};

@@ -27,6 +27,10 @@ std::optional<LinkKind> kind_within(const std::string& law);
 /// Words of such laws, for a message: "concrete, ...  or ".
 std::string laws_within();
 
+/// S and K_n of a concrete link of a model.  [m2], [N/m]
+double link_section(const Model& model, const Model::Link& link);
+double link_stiffness(const Model& model, const Model::Link& link, const MaterialConfig& material);
+
 ConcreteLink concrete_law(const MaterialConfig& material, const ContactConfig& contact);
 SteelLink steel_law(const MaterialConfig& material);
 InterfaceLink interface_law(const MaterialConfig& material, const ContactConfig& contact);

@@ -30,6 +30,7 @@ struct Model {
     Index a, b;
     LinkKind kind;
     std::int16_t material;  ///< law of the link: the concrete's, steel's or interface's material
+    double share = 1.0;     ///< of a concrete link: its section over pi min(R_a, R_b)^2  [-]
   };
   std::vector<Link> links;  ///< sorted by a, then b
 
@@ -37,6 +38,22 @@ struct Model {
   std::vector<Index> bar_next;      ///< likewise, towards the other end
 
   double interaction_range = 0.0;  ///< gamma_int that was used  [-]
+
+  /// Elasticity of a body as its links have it, measured when it was built.
+  struct Stiffness {
+    double factor = 1.0;                ///< on the stiffness of its concrete links  [-]
+    double young = 0.0, poisson = 0.0;  ///< with that factor; 0: not measured  [Pa, -]
+    double packed_young = 0.0, packed_poisson = 0.0;  ///< as packed, all sections alike  [Pa, -]
+  };
+  std::vector<Stiffness> stiffness;  ///< of each body; empty: factors of 1, nothing measured
+
+  /// Factor on the stiffness of the concrete links of an element's body  [-]
+  double stiffening(Index element) const {
+    return stiffness.empty()
+               ? 1.0
+               : stiffness[static_cast<std::size_t>(group[static_cast<std::size_t>(element)])]
+                     .factor;
+  }
 
   Index size() const { return static_cast<Index>(position.size()); }
 };

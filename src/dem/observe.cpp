@@ -309,9 +309,9 @@ Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Eleme
                 Index i) {
   const ElementState& a = elements.state.data()[links.a.data()[i]];
   const ElementState& b = elements.state.data()[links.b.data()[i]];
-  const double least = std::min(a.radius, b.radius), touching = a.radius + b.radius;
+  const double touching = a.radius + b.radius;
   const LinkConstants<double> link{links.length.data()[i], links.stiffness.data()[i],
-                                   pi * least * least, 0.5 * touching, touching};
+                                   links.area.data()[i], 0.5 * touching, touching};
   const Vec3 d = b.position - a.position;
   const double distance = norm(d);
   const double pull =

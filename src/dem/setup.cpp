@@ -49,7 +49,8 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
   w.parameters.mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
 }
 
-/// The links of one kind, sorted into groups of one material, each in the model's order.
+/// The links of one kind, sorted into groups of one material and one stiffening of their bodies,
+/// each in the model's order.
 template <class Law, class MakeLaw>
 std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<Law>& set,
                                  const MakeLaw& make_law) {
@@ -57,13 +58,17 @@ std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<L
   std::vector<Model::Link> links;
   for (const Model::Link& link : m.links)
     if (link.kind == set.kind) links.push_back(link);
-  std::stable_sort(links.begin(), links.end(), [](const Model::Link& p, const Model::Link& q) {
-    return p.material < q.material;
+  const auto law_of = [&](const Model::Link& link) {
+    return std::pair{link.material,
+                     link.kind == LinkKind::concrete ? m.stiffening(link.a) : 1.0};
+  };
+  std::stable_sort(links.begin(), links.end(), [&](const Model::Link& p, const Model::Link& q) {
+    return law_of(p) < law_of(q);
   });
   for (std::size_t i = 0; i < links.size(); ++i) {
     const std::int16_t material = links[i].material;
-    if (groups.empty() || groups.back().material != material)
-      groups.push_back({make_law(config.materials.at(static_cast<std::size_t>(material))),
+    if (i == 0 || law_of(links[i - 1]) != law_of(links[i]))
+      groups.push_back({make_law(config.materials.at(static_cast<std::size_t>(material)), links[i]),
                         static_cast<Index>(i),
                         static_cast<Index>(i),
                         material,
@@ -92,24 +97,27 @@ void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>
 }
 
 void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m) {
-  const auto links = grouped(
-      m, config, set, [&](const MaterialConfig& c) { return concrete_law(c, config.contact); });
+  const auto links = grouped(m, config, set, [&](const MaterialConfig& c, const Model::Link& link) {
+    ConcreteLink law = concrete_law(c, config.contact);
+    law.modulus *= m.stiffening(link.a);
+    return law;
+  });
   set_ends(set.a, set.b, links);
-  std::vector<double> length, stiffness;
+  std::vector<double> length, stiffness, area;
   for (const Model::Link& link : links) {
-    const double d = distance(m, link.a, link.b);
-    const double least = std::min(radius_of(m, link.a), radius_of(m, link.b));
-    const MaterialConfig& material = config.materials[static_cast<std::size_t>(link.material)];
-    length.push_back(d);
-    stiffness.push_back(local_elasticity(material).modulus * pi * least * least / d);
+    length.push_back(distance(m, link.a, link.b));
+    area.push_back(link_section(m, link));
+    stiffness.push_back(
+        link_stiffness(m, link, config.materials[static_cast<std::size_t>(link.material)]));
   }
   copy_to(set.length, length);
   copy_to(set.stiffness, stiffness);
+  copy_to(set.area, area);
 }
 
 void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m) {
   const auto links = grouped(
-      m, config, set, [&](const MaterialConfig& c) { return parallel_bond(c, config.contact); });
+      m, config, set, [&](const MaterialConfig& c, const Model::Link&) { return parallel_bond(c, config.contact); });
   set_ends(set.a, set.b, links);
   std::vector<double> length, stiffness;
   for (const Model::Link& link : links) {
@@ -138,7 +146,7 @@ void limit_margins(World& w, const Model& m) {
 }
 
 void set_links(LinkSet<SteelLink>& set, const Config& config, const Model& m) {
-  const auto links = grouped(m, config, set, steel_law);
+  const auto links = grouped(m, config, set, [](const MaterialConfig& c, const Model::Link&) { return steel_law(c); });
   set_ends(set.a, set.b, links);
   std::vector<double> length;
   for (const Model::Link& link : links) length.push_back(distance(m, link.a, link.b));
@@ -152,7 +160,7 @@ bool is_steel(const Config& config, const Model& m, Index e) {
 
 void set_links(LinkSet<InterfaceLink>& set, const Config& config, const Model& m) {
   auto links = grouped(m, config, set,
-                       [&](const MaterialConfig& c) { return interface_law(c, config.contact); });
+                       [&](const MaterialConfig& c, const Model::Link&) { return interface_law(c, config.contact); });
   std::map<Index, int> shares;  // links of each bar element
   for (Model::Link& link : links) {
     if (!is_steel(config, m, link.a)) std::swap(link.a, link.b);

@@ -12,6 +12,7 @@
 #include "prepare/rebar.hpp"
 #include "prepare/refusal.hpp"
 #include "prepare/spheres_file.hpp"
+#include "prepare/stiffness.hpp"
 
 namespace breccia {
 namespace {
@@ -23,6 +24,7 @@ using dem::Model;
 using prepare::Bar;
 using prepare::BodyLinks;
 using prepare::Container;
+using prepare::container_of;
 
 double ball(double radius) {
   return 4.0 / 3.0 * pi * radius * radius * radius;
@@ -37,13 +39,6 @@ int find_named(const std::vector<Named>& list, const std::string& name) {
 
 bool is_packed(const BodyConfig& body) {
   return body.shape == "box" || body.shape == "sphere" || body.shape == "cylinder";
-}
-
-Container container_of(const BodyConfig& body) {
-  const auto shape = body.shape == "sphere"     ? Container::Shape::sphere
-                     : body.shape == "cylinder" ? Container::Shape::cylinder
-                                                : Container::Shape::box;
-  return {.shape = shape, .size = body.size, .radius = body.radius, .length = body.length};
 }
 
 /// Collects the elements of all bodies.
@@ -180,6 +175,7 @@ dem::Model build_model(const dem::Config& config, const std::string& case_folder
   Model& model = assembly.model();
   prepare::reorder(model, prepare::spatial_order(model.position, 2.0 * mean_radius(model)));
   prepare::link_elements(model, assembly.links(), config.links);
+  prepare::set_stiffness(model, config);
 
   prepare::refuse(prepare::free_overlaps(model, assembly.links()), "with the model");
   return std::move(model);

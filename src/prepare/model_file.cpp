@@ -45,6 +45,7 @@ struct LinkArrays {
   std::vector<Index> a, b;
   std::vector<std::uint8_t> kind;
   std::vector<std::int16_t> material;
+  std::vector<double> share;
 };
 
 template <class Arrays, class Visit>
@@ -53,6 +54,7 @@ void each_link_array(Arrays& links, Visit&& array) {
   array("link_b", links.b);
   array("link_kind", links.kind);
   array("link_material", links.material);
+  array("link_share", links.share);
 }
 
 void refuse_misfits(const dem::Model& model) {
@@ -74,6 +76,7 @@ void refuse_misfits(const dem::Model& model) {
   for (const std::vector<Index>* ends : {&model.bar_previous, &model.bar_next})
     for (const Index i : *ends)
       if (i != -1 && !is_element(i)) fail();
+  if (!model.stiffness.empty() && model.stiffness.size() != model.groups.size()) fail();
   const auto groups = static_cast<std::int16_t>(model.groups.size());
   if (std::any_of(model.group.begin(), model.group.end(),
                   [&](std::int16_t g) { return g < 0 || g >= groups; }))
@@ -197,6 +200,7 @@ fdem::Model load_fdem_model(const CheckpointReader& reader) {
 void save_model(CheckpointWriter& writer, const dem::Model& model) {
   writer.text("model.groups", lines_of(model.groups));
   writer.value("model.interaction_range", model.interaction_range);
+  save_array(writer, "stiffness", model.stiffness);
   each_element_array(model,
                      [&](const char* name, const auto& items) { save_array(writer, name, items); });
   LinkArrays links;
@@ -205,6 +209,7 @@ void save_model(CheckpointWriter& writer, const dem::Model& model) {
     links.b.push_back(link.b);
     links.kind.push_back(static_cast<std::uint8_t>(link.kind));
     links.material.push_back(link.material);
+    links.share.push_back(link.share);
   }
   each_link_array(links,
                   [&](const char* name, const auto& items) { save_array(writer, name, items); });
@@ -232,6 +237,7 @@ dem::Model load_model(const CheckpointReader& reader) {
   dem::Model model;
   model.groups = lines_in(reader.text("model.groups"));
   model.interaction_range = reader.value<double>("model.interaction_range");
+  model.stiffness = load_array<dem::Model::Stiffness>(reader, "stiffness");
   each_element_array(model, [&](const char* array, auto& items) {
     items =
         load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
@@ -242,11 +248,11 @@ dem::Model load_model(const CheckpointReader& reader) {
         load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
   });
   if (links.b.size() != links.a.size() || links.kind.size() != links.a.size() ||
-      links.material.size() != links.a.size())
+      links.material.size() != links.a.size() || links.share.size() != links.a.size())
     throw CheckpointError("the model's links are not whole");
   for (std::size_t i = 0; i < links.a.size(); ++i)
-    model.links.push_back(
-        {links.a[i], links.b[i], static_cast<dem::LinkKind>(links.kind[i]), links.material[i]});
+    model.links.push_back({links.a[i], links.b[i], static_cast<dem::LinkKind>(links.kind[i]),
+                           links.material[i], links.share[i]});
   refuse_misfits(model);
   return model;
 }

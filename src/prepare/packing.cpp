@@ -67,6 +67,21 @@ Vec3 Container::half() const {
   return 0.5 * size;
 }
 
+double Container::depth(const Vec3& p) const {
+  if (shape == Shape::sphere) return radius - norm(p);
+  if (shape == Shape::cylinder)
+    return std::min(radius - root(p.x * p.x + p.y * p.y), 0.5 * length - std::abs(p.z));
+  return std::min(
+      {0.5 * size.x - std::abs(p.x), 0.5 * size.y - std::abs(p.y), 0.5 * size.z - std::abs(p.z)});
+}
+
+Container container_of(const dem::BodyConfig& body) {
+  const auto shape = body.shape == "sphere"     ? Container::Shape::sphere
+                     : body.shape == "cylinder" ? Container::Shape::cylinder
+                                                : Container::Shape::box;
+  return {.shape = shape, .size = body.size, .radius = body.radius, .length = body.length};
+}
+
 bool Container::holds(const Vec3& p, double r) const {
   const Vec3 h = half();
   const bool in_box =

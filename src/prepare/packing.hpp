@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "dem/config.hpp"
 #include "math/vec.hpp"
 
 namespace breccia::prepare {
@@ -20,7 +21,12 @@ struct Container {
   Vec3 half() const;
   /// Whether a sphere about `center` lies inside.
   bool holds(const Vec3& center, double sphere_radius) const;
+  /// From a point inside to the nearest face; below 0 outside.  [m]
+  double depth(const Vec3& point) const;
 };
+
+/// The container of a body; of a file, the box that its spheres fill.
+Container container_of(const dem::BodyConfig& body);
 
 /// A fixed obstacle: all points within `radius` of the segment from a to b.
 struct Capsule {

@@ -43,6 +43,27 @@ std::string stage_shares(const Summary& s) {
   return text;
 }
 
+/// Moduli of bodies of the DEM as their links have them, one line each.
+std::string elasticity_text(const std::vector<Fact>& facts) {
+  const std::string prefix = "model.elasticity.", last = ".young";
+  std::string text;
+  for (const auto& [path, young] : facts) {
+    const std::size_t end = path.rfind(last);
+    if (path.rfind(prefix, 0) != 0 || end == std::string::npos) continue;
+    const std::string body = path.substr(prefix.size(), end - prefix.size());
+    const auto of_body = [&](const char* name) {
+      return fact(facts, prefix + body + name).value_or(0.0);
+    };
+    text += fmt::format("elastic {}   E {:.3g} GPa, nu {:.3f}", body, 1e-9 * young,
+                        of_body(".poisson"));
+    if (of_body(".factor") != 1.0 || of_body(".packed_young") != young)
+      text += fmt::format("   as packed {:.3g} GPa, {:.3f}", 1e-9 * of_body(".packed_young"),
+                          of_body(".packed_poisson"));
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string opening_text(const Summary& s, double end_time, std::int64_t end_steps,
@@ -55,6 +76,7 @@ std::string opening_text(const Summary& s, double end_time, std::int64_t end_ste
     if (const auto count = fact(s, std::string("model.") + kind); count && *count > 0.0)
       text += fmt::format("   {} {}", count_text(*count), kind);
   text += fmt::format("   memory {:.0f} MB\n", static_cast<double>(s.peak_memory) / 1e6);
+  text += elasticity_text(s.facts);
   const double left_by_steps = static_cast<double>(std::max<std::int64_t>(end_steps - s.steps, 0));
   const double left_by_time =
       s.dt_last > 0.0 ? std::max(0.0, std::ceil((end_time - s.time) / s.dt_last)) : left_by_steps;

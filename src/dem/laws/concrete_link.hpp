@@ -35,7 +35,7 @@ template <class R>
 struct LinkConstants {
   R length;     ///< D_eq, at which it is free of force  [m]
   R stiffness;  ///< K_n  [N/m]
-  R area;       ///< S = pi min(R_a, R_b)^2  [m2]
+  R area;       ///< S, pi min(R_a, R_b)^2 times the share of fabric  [m2]
   R radius;     ///< r, mean of the two  [m]
   R touching;   ///< R_a + R_b  [m]
 };

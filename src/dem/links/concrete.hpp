@@ -28,6 +28,7 @@ struct LinkArrays<ConcreteLink> {
   Buffer<Index> a, b;                     ///< the ends, a's global id below b's
   Buffer<double> length;                  ///< D_eq  [m]
   Buffer<double> stiffness;               ///< K_n  [N/m]
+  Buffer<double> area;                    ///< S  [m2]
   Stored<LinkHistory> kept;
   Buffer<double> slid;     ///< energy spent on sliding so far  [J]
   Buffer<double> yielded;  ///< energy spent on plastic moments so far  [J]
@@ -39,6 +40,7 @@ struct LinkArrays<ConcreteLink> {
     field("b", "-", b);
     field("length", "m", length);
     field("stiffness", "N/m", stiffness);
+    field("area", "m2", area);
     with_number(precision, [&](auto number) {
       auto& history = kept.as<decltype(number)>();
       field("opening", "m", history.opening);
@@ -90,7 +92,7 @@ struct ConcreteLinkForces {
   ElementsView elements;
   View<const Index> a, b;
   View<double> length;
-  View<const double> stiffness;
+  View<const double> stiffness, area;
   View<Number> opening;
   PlanesView<Number> shear, moment;
   View<double> slid, yielded, broke;
@@ -101,7 +103,7 @@ struct ConcreteLinkForces {
   template <class R>
   struct Loaded {
     Indices<R> a, b;
-    R length, stiffness;
+    R length, stiffness, area;
     LinkState<R> state;
     LinkEnd<R> end_a, end_b;
   };
@@ -111,6 +113,7 @@ struct ConcreteLinkForces {
     loaded.b = load_indices_now<R>(b, i);
     loaded.length = load_now<R>(length, i);
     loaded.stiffness = load_now<R>(stiffness, i);
+    loaded.area = load_now<R>(area, i);
     loaded.state = {load_now<R>(opening, i), load_now<R>(shear, i), load_now<R>(moment, i)};
   }
   template <class R>
@@ -127,8 +130,8 @@ struct ConcreteLinkForces {
     const R &radius_a = loaded.end_a.radius, &radius_b = loaded.end_b.radius;
     const PairMotion<R> motion =
         pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, radius_a - radius_b, dt);
-    const R least = smaller(radius_a, radius_b), touching = radius_a + radius_b;
-    const LinkConstants<R> link{loaded.length, loaded.stiffness, pi * least * least, 0.5 * touching,
+    const R touching = radius_a + radius_b;
+    const LinkConstants<R> link{loaded.length, loaded.stiffness, loaded.area, 0.5 * touching,
                                 touching};
     LinkState<R> state = loaded.state;
     const LinkResponse<R> r = by.answer(link, motion, state);
@@ -170,6 +173,7 @@ ConcreteLinkForces<Number> forces_of(ConcreteLinks& c, const ConcreteLink& law, 
           c.b.view(),
           c.length.view(),
           c.stiffness.view(),
+          c.area.view(),
           kept.opening.view(),
           kept.shear.view(),
           kept.moment.view(),
@@ -186,16 +190,15 @@ template <class Number>
 struct ConcreteShares {
   View<const ElementState> state_of;
   View<const Index> a, b;
-  View<const double> length, stiffness;
+  View<const double> length, stiffness, area;
   View<const Number> opening;
   PlanesView<const Number> shear, moment;
   View<const double> slid, yielded, broke;
 
   BR_HD Energies operator()(const ConcreteLink& law, Index i) const {
     Energies s;
-    const double ra = state_of[a[i]].radius, rb = state_of[b[i]].radius, least = smaller(ra, rb);
-    const LinkConstants<double> link{length[i], stiffness[i], pi * least * least, 0.5 * (ra + rb),
-                                     ra + rb};
+    const double touching = state_of[a[i]].radius + state_of[b[i]].radius;
+    const LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
     const double stretch = norm(state_of[b[i]].position - state_of[a[i]].position) - length[i];
     const LinkState<double> state{opening[i], shear[i], moment[i]};
     s.elastic.add(law.stored(link, stretch, state));
@@ -215,6 +218,7 @@ ConcreteShares<Number> shares_of(const ConcreteLinks& c, const View<const Elemen
           c.b.view(),
           c.length.view(),
           c.stiffness.view(),
+          c.area.view(),
           kept.opening.view(),
           kept.shear.view(),
           kept.moment.view(),
@@ -224,15 +228,13 @@ ConcreteShares<Number> shares_of(const ConcreteLinks& c, const View<const Elemen
 }
 
 /// How far a link has gone. All arrays on the host.
-inline LinkStage stage_of(const ConcreteLink& law, const ConcreteLinks& c, const Elements& e,
+inline LinkStage stage_of(const ConcreteLink& law, const ConcreteLinks& c, const Elements&,
                           Index i) {
   const double opening = with_number(c.precision, [&](auto number) -> double {
     return c.kept.as<decltype(number)>().opening.data()[i];
   });
   if (opening < 0.0) return LinkStage::broken;
-  const ElementState* const state = e.state.data();
-  const double r = smaller(state[c.a.data()[i]].radius, state[c.b.data()[i]].radius);
-  const double onset = law.tensile_strength * pi * r * r / c.stiffness.data()[i];
+  const double onset = law.tensile_strength * c.area.data()[i] / c.stiffness.data()[i];
   return opening > onset ? LinkStage::softened : LinkStage::whole;
 }
 

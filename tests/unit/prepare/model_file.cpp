@@ -23,7 +23,10 @@ std::string bytes_of(const dem::Model& model, const std::string& path) {
 
 TEST(ModelFile, GivesBackTheModelThatWasBuilt) {
   const ScratchFolder scratch;
-  const dem::Model built = build_model(dem::small_slab(), "");
+  dem::Config config = dem::small_slab();
+  config.materials[0].fabric = "even";
+  config.materials[0].stiffness = "measured";
+  const dem::Model built = build_model(config, "");
   const std::string bytes = bytes_of(built, scratch / "built.br");
   const CheckpointReader reader(scratch / "built.br");
   ASSERT_TRUE(holds_model(reader));
@@ -31,6 +34,9 @@ TEST(ModelFile, GivesBackTheModelThatWasBuilt) {
   EXPECT_EQ(read.groups, built.groups);
   EXPECT_EQ(read.position.size(), built.position.size());
   EXPECT_EQ(read.links.size(), built.links.size());
+  ASSERT_EQ(read.stiffness.size(), 2U);
+  EXPECT_NE(read.stiffness[0].factor, 1.0);
+  EXPECT_NEAR(read.stiffness[0].young, 30e9, 1.0);
   EXPECT_EQ(bytes_of(read, scratch / "read.br"), bytes);
 }
 
