@@ -96,8 +96,8 @@ std::string size_text(const dem::Model& model) {
   std::string text =
       fmt::format("{} elements  {} links", count_text(static_cast<double>(model.size())),
                   count_text(static_cast<double>(model.links.size())));
-  for (std::size_t k = 0; k < model.stiffness.size(); ++k)
-    if (const dem::Model::Stiffness& s = model.stiffness[k]; s.young > 0.0)
+  for (std::size_t k = 0; k < model.bulk.size(); ++k)
+    if (const dem::Model::Bulk& s = model.bulk[k]; s.young > 0.0)
       text += fmt::format("  {} E {:.3g} GPa ({:.3g} as packed)", model.groups[k], 1e-9 * s.young,
                           1e-9 * s.packed_young);
   return text;

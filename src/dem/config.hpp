@@ -18,6 +18,7 @@ struct MaterialConfig {
   double tensile_strength = 2.2e6;                ///< T, local  [Pa]
   double cohesion = 5.5e6;                        ///< C, local  [Pa]
   double softening = 5.0;                         ///< zeta: initial over softening stiffness  [-]
+  double fracture_energy = 0.0;                   ///< G_F, macroscopic; 0: by zeta  [J/m2]
   double friction_angle = 0.5235987755982988;     ///< phi_i of intact links  [rad]
   double rolling_stiffness = 1.0;                 ///< beta_r  [-]
   double rolling_limit = 0.17;                    ///< eta  [-]
@@ -60,6 +61,10 @@ struct MaterialConfig {
     key("cohesion", cohesion, "Pa", Range{0.0, 1e15}, "local cohesion C of a link");
     key("softening", softening, "-", not_negative,
         "zeta, initial stiffness over softening stiffness in tension; 0 is brittle");
+    key("fracture_energy", fracture_energy, "J/m2", not_negative,
+        "G_F, energy of a crack in tension over its area, which sets how far links open before "
+        "they "
+        "break, whatever the size of elements; 0: softening sets that");
     key("friction_angle", friction_angle, "rad", Range{0.0, 1.5707, Open::high},
         "internal friction angle of intact links");
     key("rolling_stiffness", rolling_stiffness, "-", not_negative,

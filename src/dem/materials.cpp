@@ -57,7 +57,7 @@ double link_section(const Model& m, const Model::Link& link) {
 double link_stiffness(const Model& m, const Model::Link& link, const MaterialConfig& material) {
   const Vec3 apart =
       m.position[static_cast<std::size_t>(link.b)] - m.position[static_cast<std::size_t>(link.a)];
-  const double modulus = local_elasticity(material).modulus * m.stiffening(link.a);
+  const double modulus = local_elasticity(material).modulus * m.bulk_of(link.a).factor;
   const double least = lesser_radius(m, link);
   return modulus * pi * least * least * link.share / norm(apart);
 }

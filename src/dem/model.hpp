@@ -39,20 +39,18 @@ struct Model {
 
   double interaction_range = 0.0;  ///< gamma_int that was used  [-]
 
-  /// Elasticity of a body as its links have it, measured when it was built.
-  struct Stiffness {
+  /// A body of concrete as its links have it, measured when it was built.
+  struct Bulk {
     double factor = 1.0;                ///< on the stiffness of its concrete links  [-]
+    double rupture_opening = 0.0;       ///< u_2 of its links; 0: by their softening  [m]
     double young = 0.0, poisson = 0.0;  ///< with that factor; 0: not measured  [Pa, -]
     double packed_young = 0.0, packed_poisson = 0.0;  ///< as packed, all sections alike  [Pa, -]
   };
-  std::vector<Stiffness> stiffness;  ///< of each body; empty: factors of 1, nothing measured
+  std::vector<Bulk> bulk;  ///< of each body; empty: nothing measured, factors of 1
 
-  /// Factor on the stiffness of the concrete links of an element's body  [-]
-  double stiffening(Index element) const {
-    return stiffness.empty()
-               ? 1.0
-               : stiffness[static_cast<std::size_t>(group[static_cast<std::size_t>(element)])]
-                     .factor;
+  Bulk bulk_of(Index element) const {
+    return bulk.empty() ? Bulk{}
+                        : bulk[static_cast<std::size_t>(group[static_cast<std::size_t>(element)])];
   }
 
   Index size() const { return static_cast<Index>(position.size()); }

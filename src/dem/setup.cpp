@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 #include "core/world_space.hpp"
 #include "dem/materials.hpp"
@@ -49,7 +50,7 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
   w.parameters.mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
 }
 
-/// The links of one kind, sorted into groups of one material and one stiffening of their bodies,
+/// The links of one kind, sorted into groups of one material and, of concrete, bodies of one bulk,
 /// each in the model's order.
 template <class Law, class MakeLaw>
 std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<Law>& set,
@@ -59,8 +60,9 @@ std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<L
   for (const Model::Link& link : m.links)
     if (link.kind == set.kind) links.push_back(link);
   const auto law_of = [&](const Model::Link& link) {
-    return std::pair{link.material,
-                     link.kind == LinkKind::concrete ? m.stiffening(link.a) : 1.0};
+    const Model::Bulk bulk =
+        link.kind == LinkKind::concrete ? m.bulk_of(link.a) : Model::Bulk{};
+    return std::tuple{link.material, bulk.factor, bulk.rupture_opening};
   };
   std::stable_sort(links.begin(), links.end(), [&](const Model::Link& p, const Model::Link& q) {
     return law_of(p) < law_of(q);
@@ -99,7 +101,8 @@ void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>
 void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m) {
   const auto links = grouped(m, config, set, [&](const MaterialConfig& c, const Model::Link& link) {
     ConcreteLink law = concrete_law(c, config.contact);
-    law.modulus *= m.stiffening(link.a);
+    law.modulus *= m.bulk_of(link.a).factor;
+    law.rupture_opening = m.bulk_of(link.a).rupture_opening;
     return law;
   });
   set_ends(set.a, set.b, links);

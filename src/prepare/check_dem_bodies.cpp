@@ -110,6 +110,8 @@ class DemBodyChecks {
     require(material != nullptr, ".material = {:?} is not a material; there are: {}", b.material,
             prepare::all_names(config_.materials));
     if (material == nullptr) return;
+    require(material->fracture_energy == 0.0 || material->tensile_strength > 0.0,
+            ": fracture_energy of {} needs a tensile_strength above 0", b.material);
     if (b.shape == "rebar")
       require(material->law == "steel", ": bars need a material of law steel, {} has {}",
               b.material, material->law);

@@ -76,7 +76,7 @@ void refuse_misfits(const dem::Model& model) {
   for (const std::vector<Index>* ends : {&model.bar_previous, &model.bar_next})
     for (const Index i : *ends)
       if (i != -1 && !is_element(i)) fail();
-  if (!model.stiffness.empty() && model.stiffness.size() != model.groups.size()) fail();
+  if (!model.bulk.empty() && model.bulk.size() != model.groups.size()) fail();
   const auto groups = static_cast<std::int16_t>(model.groups.size());
   if (std::any_of(model.group.begin(), model.group.end(),
                   [&](std::int16_t g) { return g < 0 || g >= groups; }))
@@ -200,7 +200,7 @@ fdem::Model load_fdem_model(const CheckpointReader& reader) {
 void save_model(CheckpointWriter& writer, const dem::Model& model) {
   writer.text("model.groups", lines_of(model.groups));
   writer.value("model.interaction_range", model.interaction_range);
-  save_array(writer, "stiffness", model.stiffness);
+  save_array(writer, "bulk", model.bulk);
   each_element_array(model,
                      [&](const char* name, const auto& items) { save_array(writer, name, items); });
   LinkArrays links;
@@ -237,7 +237,7 @@ dem::Model load_model(const CheckpointReader& reader) {
   dem::Model model;
   model.groups = lines_in(reader.text("model.groups"));
   model.interaction_range = reader.value<double>("model.interaction_range");
-  model.stiffness = load_array<dem::Model::Stiffness>(reader, "stiffness");
+  model.bulk = load_array<dem::Model::Bulk>(reader, "bulk");
   each_element_array(model, [&](const char* array, auto& items) {
     items =
         load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);

@@ -7,6 +7,7 @@
 #include "math/constants.hpp"
 #include "prepare/by_name.hpp"
 #include "prepare/elastic_network.hpp"
+#include "prepare/fracture_energy.hpp"
 #include "prepare/rebar.hpp"
 
 namespace breccia::prepare {
@@ -122,14 +123,47 @@ class Fabric {
 };
 
 /// Bodies of so many elements are measured even if nothing depends on it: a second or two.
-constexpr int always_measured = 20'000;
+constexpr std::size_t always_measured = 20'000;
 
 /// E over that of links that all follow one strain, without moments: 0.97 to 1.10 in prisms of
 /// compactness 0.5 to 0.62, range 1.2 to 1.6, size ratio 1 to 4.
 constexpr double moments = 1.05;
 
+/// Bounds of what a packing can be asked for.
+constexpr double densest = 0.62, widest = 10.0;
+
+/// visit(link, its length at the start) for the concrete links of a body.
+template <class Visit>
+void each_link(const Model& model, int body, Visit&& visit) {
+  for (const Model::Link& link : model.links)
+    if (link.kind == dem::LinkKind::concrete &&
+        model.group[static_cast<std::size_t>(link.a)] == body)
+      visit(link, norm(model.position[static_cast<std::size_t>(link.b)] -
+                       model.position[static_cast<std::size_t>(link.a)]));
+}
+
 double component(const Vec3& v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+/// u_2 of a body's links from its G_F.
+double opening_for_energy(const Model& model, const Config& config, int number) {
+  const BodyConfig& body = config.bodies[static_cast<std::size_t>(number)];
+  double longest = 0.0, mean = 0.0, solid = 0.0, least = no_limit, most = 0.0;
+  each_link(model, number,
+            [&](const Model::Link&, double length) { longest = std::max(longest, length); });
+  const std::vector<Index> members = members_of(model, number);
+  for (const Index e : members) {
+    const double r = model.radius[static_cast<std::size_t>(e)];
+    mean += r / static_cast<double>(members.size());
+    solid += 4.0 / 3.0 * pi * r * r * r;
+    least = std::min(least, r), most = std::max(most, r);
+  }
+  const double compactness = std::min(solid / bulk_of(config, body), densest);
+  return rupture_opening(
+      material_of(config, body), config.contact,
+      {mean, std::min(most / least, widest), compactness, model.interaction_range}, longest,
+      body.name);
 }
 
 bool has_section(const BodyConfig& body) {
@@ -189,21 +223,16 @@ Elasticity estimated_elasticity(const Model& model, const Config& config, int nu
   const BodyConfig& body = config.bodies[static_cast<std::size_t>(number)];
   const MaterialConfig& material = material_of(config, body);
   double sum = 0.0;
-  for (const Model::Link& link : model.links) {
-    if (link.kind != dem::LinkKind::concrete ||
-        model.group[static_cast<std::size_t>(link.a)] != number)
-      continue;
-    const double d = norm(model.position[static_cast<std::size_t>(link.b)] -
-                          model.position[static_cast<std::size_t>(link.a)]);
-    sum += dem::link_stiffness(model, link, material) * d * d;
-  }
+  each_link(model, number, [&](const Model::Link& link, double length) {
+    sum += dem::link_stiffness(model, link, material) * length * length;
+  });
   const double x = dem::local_elasticity(material).ratio;
   const double voigt = sum / (3.0 * bulk_of(config, body)) * (2.0 + 3.0 * x) / (4.0 + x);
   return {moments * voigt, (1.0 - x) / (4.0 + x)};
 }
 
 void set_stiffness(Model& model, const Config& config) {
-  model.stiffness.resize(config.bodies.size());
+  model.bulk.resize(config.bodies.size());
   for (std::size_t k = 0; k < config.bodies.size(); ++k) {
     const BodyConfig& body = config.bodies[k];
     const MaterialConfig& material = material_of(config, body);
@@ -211,19 +240,24 @@ void set_stiffness(Model& model, const Config& config) {
     const auto number = static_cast<int>(k);
     const bool corrected = material.stiffness == "measured";
     const bool even = material.fabric == "even";
-    if (!corrected && !(has_section(body) && body.pack.count <= always_measured)) {
-      if (even) Fabric(model, config, number).even_out();
-      continue;
-    }
+    const bool wanted =
+        corrected || (has_section(body) && members_of(model, number).size() <= always_measured);
     const auto elasticity = [&] {
-      return has_section(body) ? measured_elasticity(model, config, number)
-                               : estimated_elasticity(model, config, number);
+      return !wanted             ? Elasticity{}
+             : has_section(body) ? measured_elasticity(model, config, number)
+                                 : estimated_elasticity(model, config, number);
     };
     const Elasticity packed = elasticity();
     if (even) Fabric(model, config, number).even_out();
     const Elasticity now = even ? elasticity() : packed;
-    const double factor = corrected ? material.young / now.young : 1.0;
-    model.stiffness[k] = {factor, factor * now.young, now.poisson, packed.young, packed.poisson};
+    Model::Bulk& bulk = model.bulk[k];
+    if (corrected) bulk.factor = material.young / now.young;
+    bulk.young = bulk.factor * now.young;
+    bulk.poisson = now.poisson;
+    bulk.packed_young = packed.young;
+    bulk.packed_poisson = packed.poisson;
+    if (material.fracture_energy > 0.0)
+      bulk.rupture_opening = opening_for_energy(model, config, number);
   }
 }
 

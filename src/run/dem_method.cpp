@@ -21,10 +21,10 @@ std::size_t group_count(const dem::World& w) {
 struct DemSim {
   using World = dem::World;
   double interaction_range;
-  std::vector<dem::Model::Stiffness> stiffness;  ///< of each body
+  std::vector<dem::Model::Bulk> bulk;  ///< of each body
 
   DemSim(const dem::Model& model, const World&)
-      : interaction_range(model.interaction_range), stiffness(model.stiffness) {}
+      : interaction_range(model.interaction_range), bulk(model.bulk) {}
 
   static World made(const dem::Config& config, const dem::Model& model, const Exec& exec) {
     return dem::make_world(config, model, exec);
@@ -44,8 +44,8 @@ struct DemSim {
     w.each_set(
         [&](const auto& set) { add(std::string("model.links_by_kind.") + set.name, set.size()); });
     add("model.interaction_range", interaction_range);
-    for (std::size_t g = 0; g < stiffness.size(); ++g) {
-      const dem::Model::Stiffness& s = stiffness[g];
+    for (std::size_t g = 0; g < bulk.size(); ++g) {
+      const dem::Model::Bulk& s = bulk[g];
       if (!(s.young > 0.0)) continue;
       const std::string path = "model.elasticity." + w.sets[g].name + '.';
       add(path + "young", s.young);
@@ -53,6 +53,7 @@ struct DemSim {
       add(path + "packed_young", s.packed_young);
       add(path + "packed_poisson", s.packed_poisson);
       add(path + "factor", s.factor);
+      if (s.rupture_opening > 0.0) add(path + "rupture_opening", s.rupture_opening);
     }
     add("searches", static_cast<double>(w.searches));
     add("contacts.candidates", w.contacts.size());

@@ -44,7 +44,8 @@ struct LinkConstants {
 /// links).
 ///
 ///   tension      N = K_n u                     up to the opening u_1 = S T / K_n
-///                N = S T - (K_n / zeta)(u-u_1) up to u_2 = u_1 (1 + zeta), then rupture
+///                N = S T - (K_n / zeta)(u-u_1) up to u_2 = u_1 (1 + zeta), then rupture; u_2 may
+///                be given instead of zeta
 ///                unloading along the secant to the largest opening kappa
 ///   compression  N = K_n u >= -S (Y + K p H/(1 - H)), p = (D_0 - D_eq) / D_0; beyond it D_eq
 ///                yields; Y = Y_c, H = H_c, of broken links that do not touch Y_b, H_b
@@ -60,6 +61,7 @@ struct ConcreteLink {
   double tensile_strength;      ///< T  [Pa]
   double cohesion;              ///< C  [Pa]
   double softening;             ///< zeta >= 0  [-]
+  double rupture_opening;       ///< u_2, which rules instead of zeta; 0: zeta rules  [m]
   double friction;              ///< tan phi_i of the intact link  [-]
   double broken_friction;       ///< mu_b  [-]
   double shear_ratio;           ///< K_t / K_n  [-]
@@ -131,7 +133,7 @@ struct ConcreteLink {
 
   template <class R>
   BR_HD TensionSoftening<R> tension(const LinkConstants<R>& link) const {
-    return {link.stiffness, tensile_strength * link.area, softening};
+    return {link.stiffness, tensile_strength * link.area, softening, rupture_opening};
   }
   /// N of a link at a stretch u, tension positive.  [N]
   BR_HD double normal_force(const LinkConstants<double>& link, double stretch,
@@ -193,7 +195,7 @@ struct ConcreteLink {
     s.stretch = motion.distance - link.length;
     s.intact = opening_before >= 0.0;
     s.opening = larger(opening_before, s.stretch);
-    s.torn = both(s.intact, kn * s.opening >= t.strength * (1.0 + softening));
+    s.torn = both(s.intact, kn * s.opening >= t.elastic_at_rupture());
     s.health = one;
     const auto softened = both(s.intact, kn * s.opening > t.strength);
     if (any(softened)) s.health = choose(softened, one - t.damage(s.opening), one);

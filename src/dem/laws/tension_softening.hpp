@@ -10,15 +10,22 @@ namespace breccia::dem {
 ///   F = K u                        u <= u_1 = F_t / K
 ///   F = F_t - (K / zeta)(u - u_1)  u_1 < u < u_2 = u_1 (1 + zeta), then rupture
 ///
+/// or with u_2 given instead of zeta.
+///
 /// Source: docs/theory.md, cohesive links; envelope of Durand 2012's reference law (Rousseau 2008).
 template <class R>
 struct TensionSoftening {
-  R stiffness;       ///< K  [N/m]
-  R strength;        ///< F_t  [N]
-  double softening;  ///< zeta >= 0, elastic over softening stiffness; 0 is brittle  [-]
+  R stiffness;        ///< K  [N/m]
+  R strength;         ///< F_t  [N]
+  double softening;   ///< zeta >= 0, elastic over softening stiffness; 0 is brittle  [-]
+  double last = 0.0;  ///< u_2 > u_1, which rules instead of zeta; 0: zeta rules  [m]
 
   BR_HD R onset() const { return strength / stiffness; }
-  BR_HD R rupture() const { return onset() * (1.0 + softening); }
+  BR_HD R rupture() const { return last > 0.0 ? constant<R>(last) : onset() * (1.0 + softening); }
+  /// K u_2  [N]
+  BR_HD R elastic_at_rupture() const {
+    return last > 0.0 ? last * stiffness : strength * (1.0 + softening);
+  }
 
   /// 1 - secant stiffness / K after a largest opening.  [-]
   BR_HD R damage(const R& opening) const {
@@ -37,7 +44,11 @@ struct TensionSoftening {
   BR_HD R toughness() const { return 0.5 * strength * rupture(); }
 
  private:
-  BR_HD double inverse() const { return softening > 1e-12 ? 1.0 / softening : 1e12; }
+  /// 1 / zeta
+  BR_HD R inverse() const {
+    if (last > 0.0) return strength / (last * stiffness - strength);
+    return constant<R>(softening > 1e-12 ? 1.0 / softening : 1e12);
+  }
 };
 
 }  // namespace breccia::dem

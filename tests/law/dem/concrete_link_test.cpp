@@ -59,6 +59,32 @@ TEST(ConcreteLink, pulling_it_apart_costs_the_area_under_the_curve) {
   }
 }
 
+TEST(ConcreteLink, with_a_given_rupture_opening_costs_its_energy_whatever_its_length) {
+  ConcreteLink l = law();
+  l.rupture_opening = rupture;
+  for (const double stiffer : {0.5, 1.0, 4.0}) {  // as long and short links are
+    const LinkConstants<double> own{length, stiffer * stiffness, area, radius, 2.0 * radius};
+    const double first = strength / own.stiffness, energy = 0.5 * strength * rupture;
+    LinkState<double> state{};
+    Pair pair;
+    double work = 0.0, before = 0.0;
+    for (int i = 1; i <= 20'000; ++i) {
+      const double u = 1.01 * rupture * i / 20'000;
+      pair.b.position.x = length + u;
+      const double n = l.answer(own, pair.move_b({}), state).normal;
+      const double expected = u <= first    ? own.stiffness * u
+                              : u < rupture ? strength * (rupture - u) / (rupture - first)
+                                            : 0.0;
+      ASSERT_NEAR(n, expected, 1e-9 * strength) << "u / u_2 = " << u / rupture;
+      work += 0.5 * (before + n) * 1.01 * rupture / 20'000;
+      before = n;
+    }
+    EXPECT_NEAR(work, energy, 1e-3 * energy);
+    EXPECT_EQ(state.opening, link_broken);
+    EXPECT_NEAR(l.tension(own).spent(rupture), energy, 1e-12 * energy);
+  }
+}
+
 TEST(ConcreteLink, the_peak_is_the_strength_and_the_fall_is_linear) {
   LinkState<double> state{};
   Pair pair;

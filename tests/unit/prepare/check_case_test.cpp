@@ -49,6 +49,18 @@ TEST(CheckDem, refuses_a_body_with_the_words_of_the_build) {
       [](Config& c) { c.bodies[1].rebar.in = "wall"; },
       [](Config& c) { c.bodies[1].rebar.bars = 26; },
       [](Config& c) { c.bodies[1].velocity.x = 1.0; },
+      [](Config& c) {
+        c.materials[0].fracture_energy = 80.0;
+        c.materials[0].tensile_strength = 0.0;
+      },
+      [](Config& c) {
+        c.bodies.erase(c.bodies.begin() + 1);
+        c.bodies[0].shape = "file";
+        c.bodies[0].file = "spheres.csv";
+        c.bodies[0].size = {};
+        c.bodies[0].volume = 1e-3;
+        c.materials[0].fabric = "even";
+      },
   };
   for (const auto& change : changes) {
     Config config = dem::small_slab();

@@ -34,9 +34,9 @@ TEST(ModelFile, GivesBackTheModelThatWasBuilt) {
   EXPECT_EQ(read.groups, built.groups);
   EXPECT_EQ(read.position.size(), built.position.size());
   EXPECT_EQ(read.links.size(), built.links.size());
-  ASSERT_EQ(read.stiffness.size(), 2U);
-  EXPECT_NE(read.stiffness[0].factor, 1.0);
-  EXPECT_NEAR(read.stiffness[0].young, 30e9, 1.0);
+  ASSERT_EQ(read.bulk.size(), 2U);
+  EXPECT_NE(read.bulk[0].factor, 1.0);
+  EXPECT_NEAR(read.bulk[0].young, 30e9, 1.0);
   EXPECT_EQ(bytes_of(read, scratch / "read.br"), bytes);
 }
 
