@@ -134,19 +134,49 @@ struct PackConfig {
   }
 };
 
-/// [body.rebar]: mats of bars through a box-shaped body
-struct RebarConfig {
-  std::string in;             ///< body that the bars reinforce
-  std::string interface_law;  ///< material of the bond
-  double diameter = 8e-3;     ///< d_b  [m]
-  double cover = 0.02;        ///< from the face to the outer bar's axis  [m]
-  int layers = 2;             ///< mats: 1 bottom, 2 bottom and top  [-]
-  int bars = 7;               ///< bars in each direction of a mat  [-]
-  int elements = 28;          ///< elements along each bar  [-]
+/// [[body.rebar.bar]]: a bar, or a stirrup, along straight lines
+struct BarConfig {
+  std::string mark;          ///< for messages
+  std::vector<Vec3> points;  ///< of its axis, from the centre of the body  [m]
+  bool closed = false;       ///< back to the first point
+  double diameter = 0.0;     ///< 0: that of the rebar  [m]
+  int copies = 1;            ///< alike, each `step` from the one before  [-]
+  Vec3 step{};               ///<  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("in", in, "body that the bars reinforce; it must be a box");
+    key("mark", mark, "what messages call the bar; empty: its number");
+    key("points", points, "m", any_number,
+        "points of the axis in the frame of the body (its centre is the origin), joined by "
+        "straight "
+        "lines");
+    key.required("points");
+    key("closed", closed, "whether the last point is joined to the first one, as of a stirrup");
+    key("diameter", diameter, "m", not_negative, "bar diameter; 0: that of the rebar");
+    key("copies", copies, "-", Range{1, 10000}, "how many such bars lie beside each other");
+    key("step", step, "m", any_number, "from one copy to the next");
+  }
+};
+
+/// [body.rebar]: bars through a body: as drawn, or mats through a box
+struct RebarConfig {
+  std::string in;                ///< body that the bars reinforce
+  std::string interface_law;     ///< material of the bond
+  double diameter = 8e-3;        ///< d_b  [m]
+  double cover = 0.02;           ///< from the face to the outer bar's axis  [m]
+  int layers = 2;                ///< mats: 1 bottom, 2 bottom and top  [-]
+  int bars = 7;                  ///< bars in each direction of a mat  [-]
+  int bars_x = 0, bars_y = 0;    ///< along x, along y; 0: `bars`  [-]
+  int elements = 28;             ///< elements along each bar of a mat  [-]
+  double spacing = 0.0;          ///< of elements along drawn bars; 0: twice the diameter  [m]
+  std::vector<BarConfig> drawn;  ///< instead of mats
+
+  int along_x() const { return bars_x > 0 ? bars_x : bars; }
+  int along_y() const { return bars_y > 0 ? bars_y : bars; }
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("in", in, "body that the bars reinforce: of concrete; for mats a box");
     key.required("in");
     key("interface", interface_law, "material (law interface) that bonds bars and concrete");
     key.required("interface");
@@ -154,7 +184,12 @@ struct RebarConfig {
     key("cover", cover, "m", positive, "distance from the face to the axes of the outer bars");
     key("layers", layers, "-", Range{1, 2}, "1: a mat near the bottom; 2: also one near the top");
     key("bars", bars, "-", Range{1, 10000}, "bars in each of the two directions of a mat");
-    key("elements", elements, "-", Range{2, 100000}, "elements along each bar");
+    key("bars_x", bars_x, "-", Range{0, 10000}, "bars along x of a mat; 0: as many as bars says");
+    key("bars_y", bars_y, "-", Range{0, 10000}, "bars along y of a mat; 0: as many as bars says");
+    key("elements", elements, "-", Range{2, 100000}, "elements along each bar of a mat");
+    key("spacing", spacing, "m", not_negative,
+        "distance of elements along drawn bars, about; 0: twice the diameter");
+    key.list("bar", drawn, "bars and stirrups one by one, instead of mats");
   }
 };
 
@@ -182,7 +217,7 @@ struct BodyConfig {
     key("name", name, "name of the body: its elements form a group of this name");
     key.required("name");
     key("shape", shape, OneOf{"box", "sphere", "cylinder", "element", "rebar", "file"},
-        "box, sphere, cylinder: a packing; element: one sphere; rebar: mats of bars; file: spheres "
+        "box, sphere, cylinder: a packing; element: one sphere; rebar: bars; file: spheres "
         "from a CSV");
     key("material", material, "name of a material");
     key.required("material");
@@ -192,7 +227,7 @@ struct BodyConfig {
     key("radius", radius, "m", not_negative, "radius of a sphere, cylinder or single element");
     key("length", length, "m", not_negative, "length of a cylinder, along z");
     key.table("pack", pack, "the packing of a box, sphere or cylinder");
-    key.table("rebar", rebar, "the mats of bars of a rebar body");
+    key.table("rebar", rebar, "the bars of a rebar body");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6}, "velocity at the start");
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
         "angular velocity of the body about its centre at the start");

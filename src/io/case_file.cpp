@@ -311,6 +311,14 @@ void CaseReader::read(const char* name, std::vector<Vec2>& value, const char* un
                });
 }
 
+void CaseReader::read(const char* name, std::vector<Vec3>& value, const char* unit,
+                      const Range& range, const char* meaning) {
+  state_->list(name, value, "points, as in [[0.0, 0.0, 0.0], [1.0, 0.5, 0.0]]",
+               [&](const toml::node& node, const std::string& key, Vec3& to) {
+                 return state_->numbers<3>(node, key, {&to.x, &to.y, &to.z}, unit, range, meaning);
+               });
+}
+
 void CaseReader::read(const char* name, std::vector<double>& value, const char* unit,
                       const Range& range, const char* meaning) {
   state_->list(name, value, "a list of numbers, as in [0.0, 1.5]",

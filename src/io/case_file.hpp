@@ -43,6 +43,8 @@ class CaseReader {
             const char* meaning);
   void read(const char* name, std::vector<Vec2>& value, const char* unit, const Range& range,
             const char* meaning);
+  void read(const char* name, std::vector<Vec3>& value, const char* unit, const Range& range,
+            const char* meaning);
   void read(const char* name, bool& value, const char* meaning);
   void read(const char* name, std::string& value, const char* meaning);
   void read(const char* name, std::string& value, const OneOf& words, const char* meaning);
@@ -126,6 +128,7 @@ std::string value_text(const Vec3& value);
 std::string value_text(const Vec2& value);
 std::string value_text(const std::vector<double>& value);
 std::string value_text(const std::vector<Vec2>& value);
+std::string value_text(const std::vector<Vec3>& value);
 std::string value_text(bool value);
 std::string value_text(const std::string& value);
 std::string value_text(const std::vector<std::string>& value);
@@ -153,6 +156,9 @@ inline const char* type_name(const std::vector<double>&) {
 }
 inline const char* type_name(const std::vector<Vec2>&) {
   return "points";
+}
+inline const char* type_name(const std::vector<Vec3>&) {
+  return "points in space";
 }
 inline const char* type_name(const bool&) {
   return "true/false";

@@ -63,6 +63,9 @@ std::string value_text(const std::vector<std::string>& value) {
 std::string value_text(const std::vector<Vec2>& value) {
   return list_text(value);
 }
+std::string value_text(const std::vector<Vec3>& value) {
+  return list_text(value);
+}
 std::string value_text(const std::vector<double>& value) {
   return list_text(value);
 }

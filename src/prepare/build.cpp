@@ -101,9 +101,10 @@ class Assembly {
     double volume = container.volume();
     for (const BodyConfig& other : config_.bodies) {
       if (other.shape != "rebar" || other.rebar.in != body_->name) continue;
-      const auto more = prepare::bars_through(other.rebar, body_->size);
-      volume -= prepare::bars_volume(other.rebar, more);
-      bars.insert(bars.end(), more.begin(), more.end());
+      const auto chains = prepare::chains_through(other.rebar, body_->size);
+      volume -= prepare::bars_volume(chains);
+      for (const prepare::Chain& chain : chains)
+        bars.insert(bars.end(), chain.segments.begin(), chain.segments.end());
     }
     const double compactness = body_->pack.compactness;
     const prepare::Packing packing = prepare::pack(
@@ -129,21 +130,23 @@ class Assembly {
       add(spheres.position[i], spheres.radius[i], density * ball(spheres.radius[i]));
   }
 
+  void join(Index before, Index after) {
+    model_.bar_next[static_cast<std::size_t>(before)] = after;
+    model_.bar_previous[static_cast<std::size_t>(after)] = before;
+  }
+
   BodyLinks add_bars() {
     const dem::RebarConfig& rebar = body_->rebar;
     const int host = find_named(config_.bodies, rebar.in);
     const BodyConfig& box = config_.bodies[static_cast<std::size_t>(host)];
-    for (const Bar& bar : prepare::bars_through(rebar, box.size)) {
-      const prepare::BarElements piece = prepare::bar_elements(rebar, bar);
-      for (int k = 0; k < rebar.elements; ++k) {
-        const Index index = model_.size();
-        const double mass = piece.mass(material().density, k, rebar.elements);
-        add(prepare::bar_element_centre(bar, k, rebar.elements), bar.radius, mass,
-            piece.inertia(mass), box);
-        if (k == 0) continue;
-        model_.bar_previous.back() = index - 1;
-        model_.bar_next[static_cast<std::size_t>(index - 1)] = index;
+    for (const prepare::Chain& chain : prepare::chains_through(rebar, box.size)) {
+      const Index first = model_.size();
+      for (std::size_t k = 0; k < chain.centres.size(); ++k) {
+        const double mass = chain.mass(material().density, k);
+        add(chain.centres[k], chain.radius(), mass, chain.inertia(mass, k), box);
+        if (k > 0) join(model_.size() - 2, model_.size() - 1);
       }
+      if (chain.closed) join(model_.size() - 1, first);
     }
     return {
         .kind = BodyLinks::Kind::bars,

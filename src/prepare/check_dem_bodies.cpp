@@ -129,12 +129,30 @@ class DemBodyChecks {
             ".rebar.interface = {:?} is not a material of law interface; there are: {}",
             b.rebar.interface_law, prepare::all_names(config_.materials));
     const BodyConfig* host = prepare::item_named(config_.bodies, b.rebar.in);
-    const bool in_box = host != nullptr && host->shape == "box";
-    require(in_box, ".rebar.in = {:?} is not a box body; there are: {}", b.rebar.in,
-            prepare::all_names(config_.bodies));
-    if (!in_box) return;
-    for (const std::string& problem : bar_problems(b.rebar, host->size))
-      require(false, ".rebar: {}", problem);
+    const bool drawn = !b.rebar.drawn.empty();
+    const bool fits =
+        host != nullptr &&
+        (host->shape == "box" || (drawn && (host->shape == "sphere" || host->shape == "cylinder" ||
+                                            host->shape == "file")));
+    require(fits, ".rebar.in = {:?} is not a {} body; there are: {}", b.rebar.in,
+            drawn ? "packed" : "box", prepare::all_names(config_.bodies));
+    if (!fits) return;
+    const auto problems = bar_problems(b.rebar, *host);
+    for (const std::string& problem : problems) require(false, ".rebar: {}", problem);
+    if (!problems.empty()) return;
+    const std::vector<Chain> own = chains_through(b.rebar, host->size);
+    if (drawn)
+      for (const std::string& problem : crossing_problems(own, own))
+        require(false, ".rebar: {}", problem);
+    for (const BodyConfig& other : config_.bodies) {
+      if (&other == &b) break;
+      if (other.shape != "rebar" || other.rebar.in != b.rebar.in ||
+          !bar_problems(other.rebar, *host).empty())
+        continue;
+      for (const std::string& problem :
+           crossing_problems(own, chains_through(other.rebar, host->size)))
+        require(false, ".rebar: with body.{}: {}", other.name, problem);
+    }
   }
 
   const Config& config_;

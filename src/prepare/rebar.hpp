@@ -1,5 +1,6 @@
 #pragma once
-// Reinforcement: mats of straight bars through a box, each bar a chain of elements.
+// Reinforcement: mats of straight bars through a box, or bars as they are drawn, each a chain of
+// elements.
 
 #include <string>
 #include <vector>
@@ -9,32 +10,45 @@
 
 namespace breccia::prepare {
 
-/// One bar: from the centre of its first element to that of its last, in the frame of the box.
+/// A straight bar: from the centre of its first element to that of its last, in the body's frame.
 using Bar = Capsule;
 
-/// The bars of a box of edges `size` centred at the origin. Outer bars run along x at depth `cover`
-/// below the face, inner bars along y, one diameter deeper: they touch at crossings. Bars share the
-/// width evenly and end with round caps at the faces of the box (docs/theory.md, bars).
+/// The bars of the mats of a box of edges `size` centred at the origin. Outer bars run along x at
+/// depth `cover` below the face, inner bars along y, one diameter deeper: they touch at crossings.
+/// Bars share the width evenly and end with round caps at the faces of the box (docs/theory.md,
+/// bars).
 std::vector<Bar> bars_through(const dem::RebarConfig& rebar, const Vec3& size);
 
-/// Reasons why these bars do not fit the box, one sentence each; empty: they fit.
-std::vector<std::string> bar_problems(const dem::RebarConfig& rebar, const Vec3& size);
+/// A bar as a chain of elements.
+struct Chain {
+  std::string name;             ///< for messages
+  std::vector<Bar> segments;    ///< straight parts
+  bool closed = false;          ///< the last element joins the first one
+  double diameter = 0.0;        ///<  [m]
+  std::vector<Vec3> centres;    ///< of its elements, one at each corner  [m]
+  std::vector<double> piece;    ///< of bar that belongs to each  [m]
+  std::vector<double> spacing;  ///< L of each, mean of both sides  [m]
 
-/// The element of a bar as a chain: spacing L = length / (elements - 1).
-struct BarElements {
-  double spacing;  ///< L  [m]
-  double area;     ///< A = pi d^2 / 4  [m2]
-  double diameter;
-
-  /// rho A L, half of it at the two ends  [kg]
-  double mass(double density, int element, int count) const;
+  double radius() const { return 0.5 * diameter; }
+  double area() const;  ///<  [m2]
+  /// rho A times its piece  [kg]
+  double mass(double density, std::size_t element) const;
   /// m (L^2 / 12 + d^2 / 16) about every axis  [kg m2]
-  double inertia(double element_mass) const;
+  double inertia(double element_mass, std::size_t element) const;
 };
-BarElements bar_elements(const dem::RebarConfig& rebar, const Bar& bar);
-/// Centre of an element along a bar  [m]
-Vec3 bar_element_centre(const Bar& bar, int element, int count);
+
+/// The chains of a rebar through a body: as drawn, or the mats of a box of edges `size`. Each
+/// straight part of a drawn bar is shared by whole pieces of about the wanted spacing.
+std::vector<Chain> chains_through(const dem::RebarConfig& rebar, const Vec3& size);
+
 /// Of the steel, as its elements weigh it: area times length  [m3]
-double bars_volume(const dem::RebarConfig& rebar, const std::vector<Bar>& bars);
+double bars_volume(const std::vector<Chain>& chains);
+
+/// Reasons why these bars do not fit their body, one sentence each; empty: they fit.
+std::vector<std::string> bar_problems(const dem::RebarConfig& rebar, const dem::BodyConfig& host);
+
+/// Where bars of one or two rebars of a body come closer than they may; one sentence at most.
+std::vector<std::string> crossing_problems(const std::vector<Chain>& bars,
+                                           const std::vector<Chain>& others);
 
 }  // namespace breccia::prepare

@@ -35,7 +35,7 @@ double bulk_of(const Config& config, const BodyConfig& body) {
   double volume = container_of(body).volume();
   for (const BodyConfig& other : config.bodies)
     if (other.shape == "rebar" && other.rebar.in == body.name)
-      volume -= bars_volume(other.rebar, bars_through(other.rebar, body.size));
+      volume -= bars_volume(chains_through(other.rebar, body.size));
   return volume;
 }
 

@@ -135,6 +135,11 @@ struct AnyValues {
     for (double* part : {&value.x, &value.y, &value.z})
       if (random() % 4 != 0) *part = number(range);
   }
+  void operator()(const char*, std::vector<Vec3>& value, const char*, const Range& range,
+                  const char*) {
+    value.resize(1 + random() % 4);
+    for (Vec3& point : value) point = {number(range), number(range), number(range)};
+  }
   void operator()(const char*, bool& value, const char*) { value = random() % 2 == 0; }
   void operator()(const char*, std::string& value, const char*) { value = word(); }
   void operator()(const char*, std::vector<std::string>& value, const char*) {
