@@ -7,11 +7,11 @@
 namespace breccia {
 
 /// Adds one to a counter that other threads count in too; returns what it was.
-BR_HD inline Index count_up(Index& counter) {
+BR_HD inline Index count_up(Index& counter, Index by = 1) {
 #if defined(__CUDA_ARCH__)
-  return atomicAdd(&counter, 1);
+  return atomicAdd(&counter, by);
 #else
-  return __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED);
+  return __atomic_fetch_add(&counter, by, __ATOMIC_RELAXED);
 #endif
 }
 

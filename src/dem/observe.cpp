@@ -94,44 +94,78 @@ struct ReadProbe {
   }
 };
 
-/// Counts the links of each element, and the broken ones.
-template <class Broken>
-struct CountLinks {
-  View<const Index> a, b;
-  Broken is_broken;
-  View<Index> links, broken;
+/// Damage of links is added up in whole parts of a link, in any order.
+constexpr Index parts_of_a_link = 1024;
 
-  BR_HD void operator()(Index i) const {
-    const bool is = is_broken(i);
+/// Adds a link's damage to both of its ends.
+struct AddDamage {
+  View<const Index> a, b;
+  View<Index> links, lost;
+
+  BR_HD void operator()(Index i, double damage) const {
+    const auto parts = static_cast<Index>(parts_of_a_link * damage + 0.5);
     for (const Index e : {a[i], b[i]}) {
       count_up(links[e]);
-      if (is) count_up(broken[e]);
+      if (parts > 0) count_up(lost[e], parts);
     }
   }
 };
+template <class Number>
+struct ConcreteDamage {
+  AddDamage add;
+  ConcreteLink law;
+  Index first;
+  View<const Number> opening;
+  View<const double> length, stiffness, area;
+
+  BR_HD void operator()(Index k) const {
+    const Index i = first + k;
+    const LinkConstants<double> link{length[i], stiffness[i], area[i], 0.0, 0.0};
+    const double so_far = opening[i];
+    add(i, so_far < 0.0 ? 1.0 : law.tension(link).damage(so_far));
+  }
+};
+/// Links that are whole or broken.
+template <class Broken>
+struct BrokenDamage {
+  AddDamage add;
+  Broken is_broken;
+  BR_HD void operator()(Index i) const { add(i, is_broken(i) ? 1.0 : 0.0); }
+};
 struct Damage {
-  View<const Index> links, broken;
+  View<const Index> links, lost;
   View<double> damage;
   BR_HD void operator()(Index e) const {
-    damage[e] = links[e] > 0 ? static_cast<double>(broken[e]) / links[e] : 0.0;
+    const double whole = static_cast<double>(parts_of_a_link) * links[e];
+    damage[e] = links[e] > 0 ? lost[e] / whole : 0.0;
   }
 };
 
-/// Share of broken links of each element.
+/// Mean damage of the links of each element; a broken link counts 1.
 Buffer<double> damage_of(const World& w) {
   const Index count = w.elements.size();
-  Buffer<Index> links(w.exec.space, count), broken(w.exec.space, count);
+  Buffer<Index> links(w.exec.space, count), lost(w.exec.space, count);
   Buffer<double> damage(w.exec.space, count);
   w.each_set([&](const auto& set) {
+    const AddDamage add{set.a.view(), set.b.view(), links.view(), lost.view()};
     with_number(w.exec.precision, [&](auto number) {
-      const auto is_broken = set.template broken<decltype(number)>();
-      for_each(w.exec, set.size(),
-               CountLinks<std::remove_const_t<decltype(is_broken)>>{
-                   set.a.view(), set.b.view(), is_broken, links.view(), broken.view()});
+      using Number = decltype(number);
+      if constexpr (std::remove_reference_t<decltype(set)>::kind == LinkKind::concrete) {
+        for (const auto& g : set.groups)
+          for_each(w.exec, g.end - g.begin,
+                   ConcreteDamage<Number>{add, g.law, g.begin,
+                                          set.kept.template as<Number>().opening.view(),
+                                          set.length.view(), set.stiffness.view(),
+                                          set.area.view()});
+      } else {
+        const auto is_broken = set.template broken<Number>();
+        for_each(w.exec, set.size(),
+                 BrokenDamage<std::remove_const_t<decltype(is_broken)>>{add, is_broken});
+      }
     });
   });
   for_each(w.exec, count,
-           Damage{std::as_const(links).view(), std::as_const(broken).view(), damage.view()});
+           Damage{std::as_const(links).view(), std::as_const(lost).view(), damage.view()});
   return damage;
 }
 

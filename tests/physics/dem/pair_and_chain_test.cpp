@@ -177,5 +177,39 @@ TEST(Chain, a_pushed_end_gives_momentum_at_the_rate_of_the_wave_speed) {
   }
 }
 
+/// A chain of three whose first link is softened, whose second one is whole.
+TEST(Chain, damage_of_elements_counts_links_that_soften_and_those_that_broke) {
+  Scene scene = elastic_scene(0.2);
+  scene.config.materials[0].tensile_strength = 2e6;
+  scene.config.materials[0].softening = 10.0;
+  scene.sphere({0.0, 0.0, 0.0}, 0.01, {-1.0, 0.0, 0.0});
+  scene.sphere({0.02, 0.0, 0.0}, 0.01);
+  scene.sphere({0.04, 0.0, 0.0}, 0.01);
+  scene.link(0, 1);
+  scene.link(1, 2);
+  scene.config.supports.push_back(
+      {"left", "", {-1.0, -1.0, -1.0}, {0.005, 1.0, 1.0}, {"x"}, {-1.0, 0.0, 0.0}, 0.0});
+  scene.config.supports.push_back(
+      {"right", "", {0.015, -1.0, -1.0}, {1.0, 1.0, 1.0}, {"x"}, {}, 0.0});
+  World w = scene.world();
+  const ConcreteLink& law = w.concrete_groups[0].law;
+  const LinkConstants<double> link{0.02, w.concrete.stiffness.data()[0], w.concrete.area.data()[0],
+                                   0.01, 0.02};
+  const double onset = law.tension(link).onset();
+  EXPECT_EQ(damage(w), (std::vector<double>{0.0, 0.0, 0.0}));
+  while (link_opening(w.concrete, 0) < 3.0 * onset) step(w);
+  const double lost = law.tension(link).damage(link_opening(w.concrete, 0));
+  ASSERT_GT(lost, 0.5);
+  ASSERT_LT(lost, 0.9);
+  std::vector<double> now = damage(w);
+  EXPECT_NEAR(now[0], lost, 1e-3);
+  EXPECT_NEAR(now[1], 0.5 * lost, 1e-3);
+  EXPECT_EQ(now[2], 0.0);
+  while (link_opening(w.concrete, 0) >= 0.0) step(w);
+  now = damage(w);
+  EXPECT_EQ(now[0], 1.0);
+  EXPECT_EQ(now[1], 0.5);
+}
+
 }  // namespace
 }  // namespace breccia::dem
