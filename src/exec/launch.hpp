@@ -188,11 +188,13 @@ __global__ void __launch_bounds__(block_size)
   follow_previous();
   __shared__ alignas(16) unsigned char memory[block_size * sizeof(Value)];
   auto* shared = reinterpret_cast<Value*>(memory);
-  Value value = neutral;
+  // Each thread's value lies in `shared` from the start: of a copy of `neutral` in registers nvcc
+  // 13.0 forgets in each turn what the turns before have added (bench/notes/tried.md).
+  Value& value = shared[threadIdx.x];
+  value = neutral;
   for (std::int64_t i = blockIdx.x * std::int64_t{block_size} + threadIdx.x; i < count;
        i += gridDim.x * std::int64_t{block_size})
     value = combine(value, kernel(static_cast<Index>(i)));
-  shared[threadIdx.x] = value;
   for (unsigned half = block_size / 2; half > 0; half /= 2) {
     __syncthreads();
     if (threadIdx.x < half)

@@ -192,7 +192,7 @@ TEST(Chain, damage_of_elements_counts_links_that_soften_and_those_that_broke) {
   scene.config.supports.push_back(
       {"right", "", {0.015, -1.0, -1.0}, {1.0, 1.0, 1.0}, {"x"}, {}, 0.0});
   World w = scene.world();
-  const ConcreteLink& law = w.concrete_groups[0].law;
+  const ConcreteLink& law = w.concrete.groups[0].law;
   const LinkConstants<double> link{0.02, w.concrete.stiffness.data()[0], w.concrete.area.data()[0],
                                    0.01, 0.02};
   const double onset = law.tension(link).onset();
