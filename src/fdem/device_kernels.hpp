@@ -58,44 +58,10 @@ struct BundlesWide {
   }
 };
 
-/// JointForces: the law of whole joints, and rarely that of the others.
-/// @tparam blocks  that fit a multiprocessor at once
-template <class Number, int blocks>
-struct JointsAhead {
-  static constexpr const char* name = "fdem.joints";
+/// A kernel of which so many blocks fit a multiprocessor at once: a bound on its registers.
+template <class Kernel, int blocks>
+struct Bounded : Kernel {
   static constexpr int least_blocks = blocks;
-  JointForces<Number> all;
-
-  struct Loaded {
-    JointEnds ends;
-    Index law;
-    double length, strength;
-    JointStage stage;
-    double corner[4][4];
-  };
-  BR_HD void load_early(Index i, Loaded& loaded) const {
-    loaded.ends = all.ends[i];
-    loaded.stage = all.stage[i];
-    loaded.law = read_now(&all.law[i]);
-    loaded.length = read_now(&all.length[i]);
-    loaded.strength = read_now(&all.strength[i]);
-  }
-  BR_HD void load_late(Index, Loaded& loaded) const {
-    const JointEnds& e = loaded.ends;
-    const Index at[4] = {e.a0, e.a1, e.b0, e.b1};
-    for (int k = 0; k < 4; ++k) {
-      const NodeState node = read_record_now(&all.nodes[at[k]]);
-      __builtin_memcpy(loaded.corner[k], &node, sizeof node);
-    }
-  }
-  BR_HD bool update(Index i, const Loaded& loaded) const {
-    return loaded.stage == JointStage::dormant ||
-           (loaded.stage == JointStage::whole &&
-            all.elastic_at(i, loaded.corner, Indices<double>{loaded.law}, loaded.strength,
-                           loaded.length));
-  }
-  BR_HD void slow(Index i) const { all.damaged_at(i); }
-  BR_HD void set(const StepTime& now) { all.set(now); }
 };
 
 /// What few couples need.

@@ -220,9 +220,10 @@ void launch_pairs(World& w, const By& by) {
   if (joints < fewest_joints_apart && couples < fewest_couples_apart)
     return for_each_part(
         w.exec, part(couples * CouplesWide<Number>::width, by(wide),
-                     part(joints, by(JointsAhead<Number, 4>{joint_kernel<Number>(w)}), Parts<>{})));
-  for_each_part(w.exec,
-                part(joints, by(JointsAhead<Number, 8>{joint_kernel<Number>(w)}), Parts<>{}));
+                     part(joints, by(Bounded<JointForces<Number>, 4>{joint_kernel<Number>(w)}),
+                          Parts<>{})));
+  for_each_part(w.exec, part(joints, by(Bounded<JointForces<Number>, 8>{joint_kernel<Number>(w)}),
+                             Parts<>{}));
   if (couples < fewest_couples_apart)
     for_each_part(w.exec, part(couples * CouplesWide<Number>::width, by(wide), Parts<>{}));
   else

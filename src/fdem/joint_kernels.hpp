@@ -1,7 +1,7 @@
 #pragma once
 // The kernel of all joints: reads, one law call, one write.
 
-#include "core/step_clock.hpp"
+#include "core/kernel.hpp"
 #include "fdem/joints.hpp"
 #include "math/lanes.hpp"
 
@@ -50,68 +50,56 @@ struct JointForces {
   View<double> broke_at, pressing, rubbing;
   View<std::uint8_t> changed;  ///< flags of Change: contacts must be searched
 
-  /// Joint i, or i and its neighbours in a pack. False, with nothing written, unless all of them
-  /// are whole and stay so.
   template <class R>
-  BR_HD bool whole_at(Index i) const {
+  struct Loaded {
+    Indices<R> end[4], law;  ///< corners a0, a1, b0, b1
+    R length, strength;
+    JointStage stage;  ///< of a pack: whole if all are
+    R corner[4][4];    ///< position and velocity
+  };
+  BR_HD void set(const StepTime& now) {
+    time = now.time;
+    dt = now.last_dt;
+  }
+  template <class R>
+  BR_HD void load_early(Index i, Loaded<R>& loaded) const {
+    loaded.stage = stage[i];
+    for (Index k = 1; k < width_of<R>; ++k)
+      if (stage[i + k] != JointStage::whole) loaded.stage = stage[i + k];
+    if (left<R>(loaded)) return;
     Index at[4][width_of<R>];
     for (Index k = 0; k < width_of<R>; ++k) {
-      if (stage[i + k] != JointStage::whole) return false;
       const JointEnds& e = ends[i + k];
       at[0][k] = e.a0;
       at[1][k] = e.a1;
       at[2][k] = e.b0;
       at[3][k] = e.b1;
     }
-    R corner[4][4];  // position and velocity of a0, a1, b0, b1
-    for (int k = 0; k < 4; ++k) gather_records(nodes, indices<R>(at[k]), corner[k]);
-    return elastic_at(i, corner, load_indices<R>(law, i), load<R>(strength, i), load<R>(length, i));
+    for (int k = 0; k < 4; ++k) loaded.end[k] = indices<R>(at[k]);
+    loaded.law = load_indices_now<R>(law, i);
+    loaded.length = load_now<R>(length, i);
+    loaded.strength = load_now<R>(strength, i);
   }
-  /// The same with what was read of it.
   template <class R>
-  BR_HD bool elastic_at(Index i, const R (&corner)[4][4], const Indices<R>& own_law, const R& share,
-                        const R& h) const {
-    const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
-    const JointOpening<R> o = opening_of(position(0), position(1), position(2), position(3));
-    R bond[10];
-    gather_records(bonds, own_law, bond);
-    const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
-    const R quarter = 0.25 / tension;
-    R offset[2] = {};
-    if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
-    auto beyond = opposite(o.size > 1e-12 * h);
-    Vec2Of<R> traction[3];
-    R normal = constant<R>(0.0), shear = normal;  // means
-    for (int q = 0; q < 3; ++q) {
-      const BondTraction<R> t =
-          elastic_answer(slope, tension, quarter, cohesion, bond[3], o.open[q] + offset[0],
-                         o.slide[q] + offset[1], beyond);
-      traction[q] = t.shear * o.along + t.normal * o.across;
-      normal = normal + weight_of(q) * t.normal;
-      shear = shear + weight_of(q) * t.shear;
-    }
-    const R stretch = o.size / h - 1.0;
-    const R along = stress_along(o.along, stretch, normal, bond[8], bond[9], in_situ);
-    const auto failing = may_fail(tension, cohesion, bond[3], normal, shear, along);
-    beyond = either(beyond, both(bond[8] > 0.0, failing));
-    if (any(beyond)) return false;
-    const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
-    const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
-    const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
-    const R numbers[4] = {first.x, first.y, second.x, second.y};
-    store_four<Number>(force, i, numbers);
-    return true;
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    if (left<R>(loaded)) return;
+    for (int k = 0; k < 4; ++k) gather_records_now(nodes, loaded.end[k], loaded.corner[k]);
+  }
+  /// Joint i, or i and its neighbours in a pack. @returns false, with nothing written, unless all
+  /// of them are whole and stay so, or the one is dormant
+  template <class R>
+  BR_HD bool update(Index i, const Loaded<R>& loaded) const {
+    if constexpr (width_of<R> == 1)
+      if (loaded.stage == JointStage::dormant) return true;
+    return loaded.stage == JointStage::whole && stay_whole(i, loaded);
   }
 
-  BR_HD void set(const StepTime& now) {
-    time = now.time;
-    dt = now.last_dt;
-  }
   BR_HD void operator()(Index i) const {
-    if (!whole_at<double>(i)) damaged_at(i);
+    if (!run_at<double>(*this, i)) slow(i);
   }
 
-  BR_HD void damaged_at(Index i) const {
+  /// A joint that is softened or broken, or becomes so.
+  BR_HD void slow(Index i) const {
     const JointStage before = stage[i];
     if (before == JointStage::dormant) return;
     const JointForce last = converted<double>(force[i]);
@@ -171,6 +159,47 @@ struct JointForces {
   }
 
  private:
+  /// Whether a pack is not to be taken as one.
+  template <class R>
+  BR_HD static bool left(const Loaded<R>& loaded) {
+    return width_of<R> > 1 && loaded.stage != JointStage::whole;
+  }
+  /// Forces of joints that are whole. @returns false, with nothing written, unless all stay so
+  template <class R>
+  BR_HD bool stay_whole(Index i, const Loaded<R>& loaded) const {
+    const R &share = loaded.strength, &h = loaded.length;
+    const auto& corner = loaded.corner;
+    const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
+    const JointOpening<R> o = opening_of(position(0), position(1), position(2), position(3));
+    R bond[10];
+    gather_records(bonds, loaded.law, bond);
+    const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
+    const R quarter = 0.25 / tension;
+    R offset[2] = {};
+    if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
+    auto beyond = opposite(o.size > 1e-12 * h);
+    Vec2Of<R> traction[3];
+    R normal = constant<R>(0.0), shear = normal;  // means
+    for (int q = 0; q < 3; ++q) {
+      const BondTraction<R> t =
+          elastic_answer(slope, tension, quarter, cohesion, bond[3], o.open[q] + offset[0],
+                         o.slide[q] + offset[1], beyond);
+      traction[q] = t.shear * o.along + t.normal * o.across;
+      normal = normal + weight_of(q) * t.normal;
+      shear = shear + weight_of(q) * t.shear;
+    }
+    const R stretch = o.size / h - 1.0;
+    const R along = stress_along(o.along, stretch, normal, bond[8], bond[9], in_situ);
+    const auto failing = may_fail(tension, cohesion, bond[3], normal, shear, along);
+    beyond = either(beyond, both(bond[8] > 0.0, failing));
+    if (any(beyond)) return false;
+    const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
+    const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
+    const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
+    const R numbers[4] = {first.x, first.y, second.x, second.y};
+    store_four<Number>(force, i, numbers);
+    return true;
+  }
   /// Weight of an integration point in a mean.  [-]
   BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
 

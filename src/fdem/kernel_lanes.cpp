@@ -12,7 +12,9 @@ Index while_whole([[maybe_unused]] Lanes lanes, const JointForces<Number>& joint
   if (lanes == Lanes::eight) begin = PacksAvx512::run(joints, begin, end);
   if (lanes == Lanes::four) begin = PacksAvx2::run(joints, begin, end);
 #endif
-  while (begin < end && joints.template whole_at<double>(begin)) ++begin;
+  // A dormant one may wake yet.
+  while (begin < end && joints.stage[begin] == JointStage::whole && run_at<double>(joints, begin))
+    ++begin;
   return begin;
 }
 

@@ -97,6 +97,19 @@ BR_HD inline void gather_records(const View<const Record>& records, Indices<doub
 #endif
 }
 
+/// The same where this call stands (load_now); records are of `count` doubles.
+template <int count, class Record, class R>
+BR_HD inline void gather_records_now(const View<const Record>& records, const Indices<R>& i,
+                                     R (&columns)[count]) {
+  if constexpr (width_of<R> == 1) {
+    static_assert(sizeof(Record) == count * sizeof(double));
+    const Record record = read_record_now(&records[i.at]);
+    __builtin_memcpy(columns, &record, sizeof record);
+  } else {
+    gather_records(records, i, columns);
+  }
+}
+
 /// Writes numbers k of records first, first + 1, ... from columns[k].
 template <int count, class Record>
 BR_HD inline void store_records(const View<Record>& records, Index first,

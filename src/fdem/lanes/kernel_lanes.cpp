@@ -10,7 +10,7 @@ constexpr Index width = width_of<WidestPack>;
 template <class Kernel>
 Index run_whole(const Kernel& joints, Index begin, Index end) {
   Index i = begin;
-  while (i + width <= end && joints.template whole_at<WidestPack>(i)) i += width;
+  while (i + width <= end && run_at<WidestPack>(joints, i)) i += width;
   return i;
 }
 template <class Kernel>
