@@ -267,56 +267,5 @@ struct CouplesWide {
     }
   }
 };
-/// TriangleForces that read ahead what joints and couples do not write.
-template <class Number>
-struct TrianglesAhead {
-  static constexpr const char* name = "fdem.triangles_ahead";
-  TriangleForces<Number> all;
-
-  struct Loaded {
-    TriangleNodes nodes;
-    Mat2 inverse;
-    double viscosity;
-    Index material, couples, couples_end;
-    Index edge[3];
-    JointForceOf<Number> joint[3];
-  };
-  BR_HD void set(const StepTime& now) { all.set(now); }
-  BR_HD void load_early(Index t, Loaded& loaded) const {
-    for (int k = 0; k < 3; ++k) loaded.edge[k] = read_now(&all.edges[t].at[k]);
-    loaded.material = read_now(&all.material[t]);
-    loaded.viscosity = read_now(&all.viscosity[t]);
-    loaded.couples = read_now(&all.couples.starts[t]);
-    loaded.couples_end = read_now(&all.couples.starts[t + 1]);
-    WarpRecords<TriangleNodes> nodes;
-    WarpRecords<Mat2> inverse;
-    nodes.read(all.nodes, t);
-    inverse.read(all.shape_inverse, t);
-    loaded.nodes = nodes.own();
-    loaded.inverse = inverse.own();
-  }
-  BR_HD void load_late(Index, Loaded& loaded) const {
-    for (int k = 0; k < 3; ++k)
-      loaded.joint[k] = read_record_now(&all.joint_force[all.joint_of(loaded.edge[k])]);
-  }
-  BR_HD void update(Index t, const Loaded& loaded) const {
-    double c[12], inverse[4];
-    __builtin_memcpy(c, &loaded.nodes, sizeof c);
-    __builtin_memcpy(inverse, &loaded.inverse, sizeof inverse);
-    Vec2 sum[3];
-    all.template deform<double>(t, CornersOf<double>(c), inverse, Indices<double>{loaded.material},
-                                loaded.viscosity, sum);
-    for (int k = 0; k < 3; ++k) {
-      double f[4];
-      const JointForce own = converted<double>(loaded.joint[k]);
-      __builtin_memcpy(f, &own, sizeof f);
-      const Index entry = loaded.edge[k];
-      all.add_force(entry >= 0 && side_of(entry) != 0, f, sum[k], sum[k == 2 ? 0 : k + 1]);
-    }
-    all.add_couples(loaded.couples, loaded.couples_end, sum);
-    wait_for_warp();
-    WarpRecords<Corners>::write(all.force, t, {{sum[0], sum[1], sum[2]}});
-  }
-};
 
 }  // namespace breccia::fdem

@@ -249,7 +249,7 @@ void launch_forces(World& w, StepClock* clock, const By& by) {
       part(threads,
            by(NoteStable{
                stable_step(w), triangles, threads, w.parameters.time.evaluate_every, {clock}}),
-           part(triangles, by(TrianglesAhead<Number>{triangle_kernel<Number>(w)}), Parts<>{})));
+           part(triangles, by(triangle_kernel<Number>(w)), Parts<>{})));
   if (w.load_starts.size() > 1) {
     for_each(exec, w.load_laws.size(),
              by(ScaleLoads{{},
@@ -338,9 +338,7 @@ void forces_on_device(World& w) {
   with_number(w.exec.precision, [&](auto number) {
     using Number = decltype(number);
     launch_pairs<Number>(w, at_once);
-    for_each_part(w.exec,
-                  part(w.triangles.size(),
-                       at_once(TrianglesAhead<Number>{triangle_kernel<Number>(w)}), Parts<>{}));
+    for_each_part(w.exec, part(w.triangles.size(), at_once(triangle_kernel<Number>(w)), Parts<>{}));
   });
 }
 

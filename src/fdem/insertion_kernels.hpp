@@ -14,7 +14,9 @@ struct TriangleStress {
   View<Sym2> stress;
   BR_HD void set(const StepTime&) {}
   BR_HD void operator()(Index t) const {
-    const CornersOf<double> c(nodes, t);
+    double numbers[12];
+    gather_records(nodes, Indices<double>{t}, numbers);
+    const CornersOf<double> c(numbers);
     stress[t] = laws[material[t]].stress(deformation(shape_inverse[t], c.x, c.v), 0.0);
   }
 };

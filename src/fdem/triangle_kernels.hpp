@@ -1,7 +1,9 @@
 #pragma once
 // What is done to each triangle by itself: its sum of forces, its motion, its stable step.
 
-#include "core/step_clock.hpp"
+#include <type_traits>
+
+#include "core/kernel.hpp"
 #include "fdem/couples.hpp"
 #include "fdem/drift.hpp"
 #include "fdem/joint_kernels.hpp"
@@ -17,21 +19,51 @@ struct EdgeJoints {
 inline constexpr Index edge_free = -1;    ///< on the border, or no law joins the two materials
 inline constexpr Index edge_bonded = -2;  ///< the neighbours move as one body: no joint, no contact
 
+/// Records first, first + 1, ... of doubles by columns: columns[k] is number k of every record. On
+/// a device a warp reads and writes those of its threads together.
+template <class R, class Record>
+class Columns {
+ public:
+  static constexpr int count = sizeof(Record) / sizeof(double);
+
+  /// The reads begin,
+  BR_HD void read(const View<const Record>& from, Index first) {
+    if constexpr (width_of<R> == 1)
+      kept_.read(from, first);
+    else
+      gather_records(from, consecutive<R>(first), kept_);
+  }
+  /// and have ended.
+  BR_HD void own(R (&columns)[count]) {
+    if constexpr (width_of<R> == 1) {
+      const Record own = kept_.own();
+      __builtin_memcpy(columns, &own, sizeof own);
+    } else {
+      __builtin_memcpy(columns, kept_, sizeof kept_);
+    }
+  }
+  BR_HD static void write(const View<Record>& to, Index first, const R (&columns)[count]) {
+    if constexpr (width_of<R> == 1) {
+      Record own;
+      __builtin_memcpy(&own, columns, sizeof own);
+      wait_for_warp();
+      WarpRecords<Record>::write(to, first, own);
+    } else {
+      store_records(to, first, columns);
+    }
+  }
+
+ private:
+  using Pack = R[count];
+  std::conditional_t<width_of<R> == 1, WarpRecords<Record>, Pack> kept_;
+};
+
 /// Corners of a triangle by component.
 template <class R>
 struct CornersOf {
   Vec2Of<R> x[3], v[3];
 
-  /// Of triangles first, first + 1, ...
-  BR_HD CornersOf(const View<const TriangleNodes>& nodes, Index first) {
-    R c[12];
-    gather_records(nodes, consecutive<R>(first), c);
-    take(c);
-  }
-  BR_HD explicit CornersOf(const R (&c)[12]) { take(c); }
-
- private:
-  BR_HD void take(const R (&c)[12]) {
+  BR_HD explicit CornersOf(const R (&c)[12]) {
     for (int k = 0; k < 3; ++k) {
       x[k] = {c[4 * k], c[4 * k + 1]};
       v[k] = {c[4 * k + 2], c[4 * k + 3]};
@@ -59,31 +91,72 @@ struct TriangleForces {
   View<Corners> force;
   View<double> viscous_work;
 
+  template <class R>
+  struct Loaded {
+    R nodes[12], inverse[4], viscosity;
+    Indices<R> material;
+    Index couples, couples_end;  ///< of the first triangle, and of the last
+    Index edge[3][width_of<R>];  ///< entries of `edges`
+    R joint[3][4];               ///< forces
+  };
+  BR_HD void set(const StepTime& now) { span = now.last_dt; }
+  /// All but forces of joints and couples.
+  template <class R>
+  BR_HD void load_early(Index t, Loaded<R>& loaded) const {
+    for (int k = 0; k < 3; ++k)
+      for (Index i = 0; i < width_of<R>; ++i) loaded.edge[k][i] = read_now(&edges[t + i].at[k]);
+    loaded.material = load_indices_now<R>(material, t);
+    loaded.viscosity = load_now<R>(viscosity, t);
+    loaded.couples = read_now(&couples.starts[t]);
+    loaded.couples_end = read_now(&couples.starts[t + width_of<R>]);
+    Columns<R, TriangleNodes> corners;
+    Columns<R, Mat2> shape;
+    corners.read(nodes, t);
+    shape.read(shape_inverse, t);
+    corners.own(loaded.nodes);
+    shape.own(loaded.inverse);
+  }
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    for (int k = 0; k < 3; ++k) {
+      if constexpr (width_of<R> == 1) {
+        const JointForce own =
+            converted<double>(read_record_now(&joint_force[joint_of(loaded.edge[k][0])]));
+        __builtin_memcpy(loaded.joint[k], &own, sizeof own);
+      } else {
+        Index joint[width_of<R>];
+        for (Index i = 0; i < width_of<R>; ++i) joint[i] = joint_of(loaded.edge[k][i]);
+        gather_four<Number>(joint_force, indices<R>(joint), loaded.joint[k]);
+      }
+    }
+  }
   /// Triangle t, or t and its neighbours in a pack.
   template <class R>
-  BR_HD void at(Index t) const {
-    R inverse_of[4];
-    gather_records(shape_inverse, consecutive<R>(t), inverse_of);
+  BR_HD void update(Index t, const Loaded<R>& loaded) const {
     Vec2Of<R> sum[3];
-    deform(t, CornersOf<R>(nodes, t), inverse_of, load_indices<R>(material, t),
-           load<R>(viscosity, t), sum);
-    for (int k = 0; k < 3; ++k) add_joint(t, k, sum[k], sum[k == 2 ? 0 : k + 1]);
-    store_sum(t, sum);
-    for (Index k = 0; k < width_of<R>; ++k)
-      add_couples(t + k, couples.first(t + k), couples.last(t + k));
+    deform(t, loaded, sum);
+    for (int k = 0; k < 3; ++k)
+      add_force(is_b<R>(loaded.edge[k]), loaded.joint[k], sum[k], sum[k == 2 ? 0 : k + 1]);
+    if constexpr (width_of<R> == 1) add_couples(loaded.couples, loaded.couples_end, sum);
+    const R total[6] = {sum[0].x, sum[0].y, sum[1].x, sum[1].y, sum[2].x, sum[2].y};
+    Columns<R, Corners>::write(force, t, total);
+    if (width_of < R >> 1 && loaded.couples < loaded.couples_end)
+      for (Index k = 0; k < width_of<R>; ++k) add_couples(t + k);
   }
-  BR_HD void operator()(Index t) const { at<double>(t); }
-  BR_HD void set(const StepTime& now) { span = now.last_dt; }
+  BR_HD void operator()(Index t) const { run_at<double>(*this, t); }
 
+ private:
   /// Internal forces on the corners, and the work of viscosity.
   template <class R>
-  BR_HD void deform(Index t, const CornersOf<R>& c, const R (&inverse_of)[4],
-                    const Indices<R>& own_material, const R& eta, Vec2Of<R> (&sum)[3]) const {
+  BR_HD void deform(Index t, const Loaded<R>& loaded, Vec2Of<R> (&sum)[3]) const {
+    const CornersOf<R> c(loaded.nodes);
+    const R& eta = loaded.viscosity;
     R numbers[8];
-    gather_records(laws, own_material, numbers);
+    gather_records(laws, loaded.material, numbers);
     const ElasticLaw<R> law{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
     const Deformation<R> d = deformation(
-        Mat2Of<R>{inverse_of[0], inverse_of[1], inverse_of[2], inverse_of[3]}, c.x, c.v);
+        Mat2Of<R>{loaded.inverse[0], loaded.inverse[1], loaded.inverse[2], loaded.inverse[3]}, c.x,
+        c.v);
     corner_forces(law.stress(d, eta), c.x, sum);
     if (any(eta > 0.0)) {
       const Mat2Of<R>& l = d.velocity_gradient;
@@ -92,10 +165,20 @@ struct TriangleForces {
       store(viscous_work, t, load<R>(viscous_work, t) + span * (eta * area * contract(rate, rate)));
     }
   }
+  BR_HD Index joint_of(Index entry) const {
+    return entry < 0 ? joint_force.size - 1 : pair_of(entry);
+  }
+  /// Where triangles are side b of the joints on edges.
   template <class R>
-  BR_HD void store_sum(Index t, const Vec2Of<R> (&sum)[3]) const {
-    const R total[6] = {sum[0].x, sum[0].y, sum[1].x, sum[1].y, sum[2].x, sum[2].y};
-    store_records(force, t, total);
+  BR_HD static auto is_b(const Index (&edge)[width_of<R>]) {
+    if constexpr (width_of<R> == 1) {
+      return edge[0] >= 0 && side_of(edge[0]) != 0;
+    } else {
+      double side[width_of<R>];
+      for (Index i = 0; i < width_of<R>; ++i)
+        side[i] = edge[i] < 0 ? 0.0 : static_cast<double>(side_of(edge[i]));
+      return pack_of<R>(side) > 0.0;
+    }
   }
   /// Adds a joint's forces to the two corners of its edge: on b the edge runs the other way, and
   /// forces are opposite.
@@ -106,25 +189,8 @@ struct TriangleForces {
     to.x += choose(on_b, -f[0], f[2]);
     to.y += choose(on_b, -f[1], f[3]);
   }
-  BR_HD Index joint_of(Index entry) const {
-    return entry < 0 ? joint_force.size - 1 : pair_of(entry);
-  }
-
-  template <class R>
-  BR_HD void add_joint(Index t, int k, Vec2Of<R>& from, Vec2Of<R>& to) const {
-    Index joint[width_of<R>];
-    double side[width_of<R>];
-    for (Index i = 0; i < width_of<R>; ++i) {
-      const Index entry = edges[t + i].at[k];
-      joint[i] = joint_of(entry);
-      side[i] = entry < 0 ? 0.0 : static_cast<double>(side_of(entry));
-    }
-    R f[4], other;
-    gather_four<Number>(joint_force, indices<R>(joint), f);
-    __builtin_memcpy(&other, side, sizeof other);
-    add_force(other > 0.0, f, from, to);
-  }
-  BR_HD void add_couples(Index t, Index first, Index last) const {
+  BR_HD void add_couples(Index t) const {
+    const Index first = couples.first(t), last = couples.last(t);
     if (first == last) return;
     Corners sum = force[t];
     add_couples(first, last, sum.at);

@@ -16,7 +16,7 @@ Index run_whole(const Kernel& joints, Index begin, Index end) {
 template <class Kernel>
 Index run_all(const Kernel& triangles, Index begin, Index end) {
   Index t = begin;
-  for (; t + width <= end; t += width) triangles.template at<WidestPack>(t);
+  for (; t + width <= end; t += width) run_at<WidestPack>(triangles, t);
   return t;
 }
 
