@@ -2,8 +2,9 @@
 // Triangles in contact: what a couple remembers, and the kernel of one launch.
 
 #include "core/incidence.hpp"
+#include "core/kernel.hpp"
 #include "core/pair_list.hpp"
-#include "core/step_clock.hpp"
+#include "exec/early.hpp"
 #include "fdem/joints.hpp"
 #include "fdem/laws/potential_contact.hpp"
 #include "fdem/triangles.hpp"
@@ -150,8 +151,37 @@ struct CoupleForces {
   View<CoupleState> state;
   View<CoupleForceOf<Number>> force;
 
+  struct Loaded {
+    Index a, b;
+    double scale, work, slid;
+    Vec2 corner[2][3];
+  };
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
-  BR_HD void operator()(Index i) const {
+  BR_HD void load_early(Index i, Loaded& loaded) const {
+    const CoupleState& kept = state[i];
+    loaded.a = read_now(&a[i]);
+    loaded.b = read_now(&b[i]);
+    loaded.scale = read_now(&kept.scale);
+    loaded.work = read_now(&kept.work);
+    loaded.slid = read_now(&kept.slid);
+  }
+  BR_HD void load_late(Index, Loaded& loaded) const {
+    for (int k = 0; k < 3; ++k) {
+      loaded.corner[0][k] = read_record_now(&nodes[loaded.a].at[k].position);
+      loaded.corner[1][k] = read_record_now(&nodes[loaded.b].at[k].position);
+    }
+  }
+  /// Most couples only find that the two do not meet. @returns false, with nothing written, if
+  /// these may
+  BR_HD bool update(Index i, const Loaded& loaded) const {
+    const bool resting = loaded.scale != 0.0 && loaded.work == 0.0 && loaded.slid == 0.0;
+    if (!resting || meet(loaded.corner[0], loaded.corner[1])) return false;
+    force[i] = {};
+    return true;
+  }
+  /// On the host all couples: it finds whether the two meet on its way.
+  BR_HD void operator()(Index i) const { slow(i); }
+  BR_HD void slow(Index i) const {
     CoupleState& kept = state[i];
     Vec2 xa[3], va[3], xb[3], vb[3];
     split(nodes[a[i]], xa, va);

@@ -77,42 +77,6 @@ BR_RARELY Vec2 shape_force_rarely(const CoupleForces<Number>* couples, Index c, 
   return couples->shape_force(c, penalty, of_a, corner);
 }
 
-/// CoupleForces by one thread a couple: most only find that the two do not meet.
-template <class Number>
-struct CouplesAhead {
-  static constexpr const char* name = "fdem.couples";
-  static constexpr int least_blocks = 5;
-  CoupleForces<Number> all;
-
-  struct Loaded {
-    Index a, b;
-    double scale, work, slid;
-    Vec2 corner[2][3];
-  };
-  BR_HD void load_early(Index i, Loaded& loaded) const {
-    const CoupleState& kept = all.state[i];
-    loaded.a = read_now(&all.a[i]);
-    loaded.b = read_now(&all.b[i]);
-    loaded.scale = read_now(&kept.scale);
-    loaded.work = read_now(&kept.work);
-    loaded.slid = read_now(&kept.slid);
-  }
-  BR_HD void load_late(Index, Loaded& loaded) const {
-    for (int k = 0; k < 3; ++k) {
-      loaded.corner[0][k] = read_record_now(&all.nodes[loaded.a].at[k].position);
-      loaded.corner[1][k] = read_record_now(&all.nodes[loaded.b].at[k].position);
-    }
-  }
-  BR_HD bool update(Index i, const Loaded& loaded) const {
-    const bool resting = loaded.scale != 0.0 && loaded.work == 0.0 && loaded.slid == 0.0;
-    if (!resting || CoupleForces<Number>::meet(loaded.corner[0], loaded.corner[1])) return false;
-    all.force[i] = {};
-    return true;
-  }
-  BR_HD void slow(Index i) const { all(i); }
-  BR_HD void set(const StepTime& now) { all.set(now); }
-};
-
 /// CoupleForces by eight threads a couple, of which six each take an edge, and then a corner: every
 /// corner adds up what edges do to it in their order.
 template <class Number>

@@ -227,8 +227,9 @@ void launch_pairs(World& w, const By& by) {
   if (couples < fewest_couples_apart)
     for_each_part(w.exec, part(couples * CouplesWide<Number>::width, by(wide), Parts<>{}));
   else
-    for_each_part(w.exec,
-                  part(couples, by(CouplesAhead<Number>{couple_kernel<Number>(w)}), Parts<>{}));
+    for_each_part(
+        w.exec,
+        part(couples, by(Bounded<CoupleForces<Number>, 5>{couple_kernel<Number>(w)}), Parts<>{}));
 }
 
 /// All forces and their sums, and the stable step. `by` wraps a kernel by the clock.
