@@ -147,7 +147,7 @@ Energies held(const World& w) {
   const Triangles& t = w.triangles;
   Energies all = fold(w.exec, t.size(), Energies{},
                       TriangleShares{owned,
-                                     {kick(w), t.external.view(), {}, {}, {}},
+                                     {kick(w), t.external.view(), {}, {}, {}, {}},
                                      t.material.view(),
                                      w.laws.view(),
                                      t.shape_inverse.view(),

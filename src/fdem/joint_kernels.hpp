@@ -162,7 +162,7 @@ struct JointForces {
   /// Whether a pack is not to be taken as one.
   template <class R>
   BR_HD static bool left(const Loaded<R>& loaded) {
-    return width_of<R> > 1 && loaded.stage != JointStage::whole;
+    return width_of<R> != 1 && loaded.stage != JointStage::whole;
   }
   /// Forces of joints that are whole. @returns false, with nothing written, unless all stay so
   template <class R>

@@ -18,6 +18,21 @@ Index while_whole([[maybe_unused]] Lanes lanes, const JointForces<Number>& joint
   return begin;
 }
 
+/// MoveTriangles that notes whether a triangle has used its margin up.
+struct NotingMove {
+  const MoveTriangles& move;
+  bool& beyond;
+  void operator()(Index t) const { beyond = move(t) || beyond; }
+};
+template <class Packs>
+struct NotingPacks {
+  static Index run(const NotingMove& noting, Index begin, Index end) {
+    const MovedTo moved = Packs::run(noting.move, begin, end);
+    noting.beyond = noting.beyond || moved.beyond;
+    return moved.end;
+  }
+};
+
 }  // namespace
 
 void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end) {
@@ -32,8 +47,11 @@ void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, I
 void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end) {
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
-void run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end) {
-  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end) {
+  bool beyond = false;
+  run_whole_packs<NotingPacks<PacksAvx512>, NotingPacks<PacksAvx2>>(
+      lanes, NotingMove{kernel, beyond}, begin, end);
+  return beyond;
 }
 
 Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end) {

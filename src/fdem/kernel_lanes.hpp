@@ -11,7 +11,14 @@ void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Inde
 void run_packs(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end);
-void run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
+/// @returns whether a triangle has used its margin up
+bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
+
+/// Where a move stopped, and whether a triangle before has used its margin up.
+struct MovedTo {
+  Index end;
+  bool beyond;
+};
 
 /// Joints from `begin` on as long as they are whole and stay so. @returns where that ends; from
 /// there on nothing is written
@@ -26,14 +33,14 @@ struct PacksAvx2 {
   static Index run(const JointForces<float>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
-  static Index run(const MoveTriangles& kernel, Index begin, Index end);
+  static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
   static Index run(const JointForces<double>& kernel, Index begin, Index end);
   static Index run(const JointForces<float>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
-  static Index run(const MoveTriangles& kernel, Index begin, Index end);
+  static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
 };
 
 }  // namespace breccia::fdem

@@ -119,22 +119,6 @@ void book_dropped(World& w, const Pairs& found) {
                      Sum{}));
 }
 
-/// Copies are their owners' to tell of.
-struct OwnUsedMargin {
-  UsedMargin used;
-  OwnedView owned;
-  BR_HD double operator()(Index i) const { return owned(used.triangle[i]) ? used(i) : 0.0; }
-};
-
-bool margin_is_used(const World& w) {
-  UsedMargin used{w.reach.triangle.view(), w.reach.reference.view(),
-                  w.reach.margin.view(),   w.triangles.nodes.view(),
-                  w.reach.drift,           Vec2{}};
-  used.set_time(w.time);
-  const OwnUsedMargin own{used, w.domain.owned_view()};
-  return fold(w.exec, w.reach.triangle.size(), 0.0, own, Largest{}) > 0.0;
-}
-
 /// The drift from now on: the mean velocity, where it makes up most of all motion. Otherwise there
 /// are some that fly and many at rest, and each is served best by its own speed.
 Drift choose_drift(const World& w) {
@@ -152,23 +136,23 @@ Drift choose_drift(const World& w) {
   return {mean, w.time, 1000.0 * w.parameters.mean_edge};
 }
 
-/// What this rank votes: what joints tell, and bit 2 if a triangle has used its margin up.
-std::uint64_t own_news(const World& w) {
+/// Flags of Change that are set, as bits.
+std::uint64_t changed_bits(const World& w) {
   std::vector<std::uint8_t> changed;
   copy_to(changed, w.opened.changed);
-  std::uint64_t bits = margin_is_used(w) ? 4 : 0;
+  std::uint64_t bits = 0;
   for (std::size_t i = 0; i < changed.size(); ++i)
     if (changed[i] != 0) bits |= std::uint64_t{1} << i;
   return bits;
 }
 
-/// The same on a device, where the move has looked.
-std::uint64_t moves_news(World& w) {
+/// The same on a device, as its move has noted; likewise whether a margin is used up.
+std::uint64_t noted_bits(World& w) {
   std::int32_t news[2];
   peek_marked_bytes(news, w.news.data(), w.exec.space, sizeof news);
-  if (news[0] == 0) return static_cast<std::uint64_t>(news[1]);
-  clear_bytes(w.news.data(), w.exec.space, sizeof news[0]);
-  return static_cast<std::uint64_t>(news[1] | 4);
+  w.margin_used = news[0] != 0;
+  if (w.margin_used) clear_bytes(w.news.data(), w.exec.space, sizeof news[0]);
+  return static_cast<std::uint64_t>(news[1]);
 }
 
 /// Whether a search is due on some rank; what joints tell becomes known to all.
@@ -178,6 +162,27 @@ bool any_rank_is_due(World& w) {
   for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = (bits >> i & 1) != 0 ? 1 : 0;
   copy_to(w.opened.changed, changed);
   return marking_is_due(w) || (bits & 4) != 0;
+}
+
+struct NoPlace {
+  View<Index> place;
+  BR_HD void operator()(Index t) const { place[t] = -1; }
+};
+struct PlaceReach {
+  View<const Index> triangle;
+  OwnedView owned;
+  View<Index> place;
+  BR_HD void operator()(Index i) const {
+    if (owned(triangle[i])) place[triangle[i]] = i;
+  }
+};
+/// The place in `reach` of each triangle. Ghosts have none: their owners tell of them.
+void place_reach(World& w) {
+  w.reach_place.resize(w.triangles.size());
+  for_each(w.exec, w.triangles.size(), NoPlace{w.reach_place.view()});
+  for_each(w.exec, w.reach.triangle.size(),
+           PlaceReach{std::as_const(w.reach.triangle).view(), w.domain.owned_view(),
+                      w.reach_place.view()});
 }
 
 /// The couples that may touch, or be near each other, until the next search.
@@ -222,15 +227,17 @@ MarginRule margin_rule(const World& w) {
 }
 
 void ask_for_search(World& w) {
-  if (w.domain.alone()) return;
+  const bool on_device = w.exec.space != Space::host;
+  if (w.domain.alone() && !on_device) return;
   const StageTime timed(w.exec, "travel");
-  w.domain.ranks->ask_for_bits(w.exec.space != Space::host ? moves_news(w) : own_news(w));
+  const std::uint64_t changed = on_device ? noted_bits(w) : changed_bits(w);
+  if (!w.domain.alone()) w.domain.ranks->ask_for_bits(changed | (w.margin_used ? 4 : 0));
 }
 
 bool couples_are_due(World& w) {
   const StageTime timed(w.exec, "travel");
   if (!w.domain.alone()) return any_rank_is_due(w);
-  return marking_is_due(w) || margin_is_used(w);
+  return w.margin_used || marking_is_due(w);
 }
 
 void find_couples(World& w) {
@@ -254,7 +261,7 @@ void derive_couples(World& w) {
   for_each(w.exec, pairs.size(),
            BornOf{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(), w.edges.view(),
                   j.edge_a.view(), j.edge_b.view(), j.broke_at.view(), w.born.view()});
-  if (w.exec.space != Space::host) place_reach(w);
+  place_reach(w);
 }
 
 }  // namespace breccia::fdem

@@ -19,43 +19,41 @@ struct EdgeJoints {
 inline constexpr Index edge_free = -1;    ///< on the border, or no law joins the two materials
 inline constexpr Index edge_bonded = -2;  ///< the neighbours move as one body: no joint, no contact
 
-/// Records first, first + 1, ... of doubles by columns: columns[k] is number k of every record. On
+/// Records first, first + 1, ... of doubles by columns: numbers[k] is number k of every record. On
 /// a device a warp reads and writes those of its threads together.
 template <class R, class Record>
-class Columns {
- public:
+struct Columns {
   static constexpr int count = sizeof(Record) / sizeof(double);
+  R numbers[count];
 
   /// The reads begin,
   BR_HD void read(const View<const Record>& from, Index first) {
     if constexpr (width_of<R> == 1)
-      kept_.read(from, first);
+      records_.read(from, first);
     else
-      gather_records(from, consecutive<R>(first), kept_);
+      gather_records(from, consecutive<R>(first), numbers);
   }
   /// and have ended.
-  BR_HD void own(R (&columns)[count]) {
+  BR_HD void wait() {
     if constexpr (width_of<R> == 1) {
-      const Record own = kept_.own();
-      __builtin_memcpy(columns, &own, sizeof own);
-    } else {
-      __builtin_memcpy(columns, kept_, sizeof kept_);
+      const Record own = records_.own();
+      __builtin_memcpy(numbers, &own, sizeof own);
     }
   }
-  BR_HD static void write(const View<Record>& to, Index first, const R (&columns)[count]) {
+  BR_HD static void write(const View<Record>& to, Index first, const R (&numbers)[count]) {
     if constexpr (width_of<R> == 1) {
       Record own;
-      __builtin_memcpy(&own, columns, sizeof own);
+      __builtin_memcpy(&own, numbers, sizeof own);
       wait_for_warp();
       WarpRecords<Record>::write(to, first, own);
     } else {
-      store_records(to, first, columns);
+      store_records(to, first, numbers);
     }
   }
 
  private:
-  using Pack = R[count];
-  std::conditional_t<width_of<R> == 1, WarpRecords<Record>, Pack> kept_;
+  struct Nothing {};
+  [[no_unique_address]] std::conditional_t<width_of<R> == 1, WarpRecords<Record>, Nothing> records_;
 };
 
 /// Corners of a triangle by component.
@@ -93,7 +91,9 @@ struct TriangleForces {
 
   template <class R>
   struct Loaded {
-    R nodes[12], inverse[4], viscosity;
+    Columns<R, TriangleNodes> nodes;
+    Columns<R, Mat2> inverse;
+    R viscosity;
     Indices<R> material;
     Index couples, couples_end;  ///< of the first triangle, and of the last
     Index edge[3][width_of<R>];  ///< entries of `edges`
@@ -109,12 +109,10 @@ struct TriangleForces {
     loaded.viscosity = load_now<R>(viscosity, t);
     loaded.couples = read_now(&couples.starts[t]);
     loaded.couples_end = read_now(&couples.starts[t + width_of<R>]);
-    Columns<R, TriangleNodes> corners;
-    Columns<R, Mat2> shape;
-    corners.read(nodes, t);
-    shape.read(shape_inverse, t);
-    corners.own(loaded.nodes);
-    shape.own(loaded.inverse);
+    loaded.nodes.read(nodes, t);
+    loaded.inverse.read(shape_inverse, t);
+    loaded.nodes.wait();
+    loaded.inverse.wait();
   }
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
@@ -140,7 +138,7 @@ struct TriangleForces {
     if constexpr (width_of<R> == 1) add_couples(loaded.couples, loaded.couples_end, sum);
     const R total[6] = {sum[0].x, sum[0].y, sum[1].x, sum[1].y, sum[2].x, sum[2].y};
     Columns<R, Corners>::write(force, t, total);
-    if (width_of < R >> 1 && loaded.couples < loaded.couples_end)
+    if (width_of<R> != 1 && loaded.couples < loaded.couples_end)
       for (Index k = 0; k < width_of<R>; ++k) add_couples(t + k);
   }
   BR_HD void operator()(Index t) const { run_at<double>(*this, t); }
@@ -149,14 +147,14 @@ struct TriangleForces {
   /// Internal forces on the corners, and the work of viscosity.
   template <class R>
   BR_HD void deform(Index t, const Loaded<R>& loaded, Vec2Of<R> (&sum)[3]) const {
-    const CornersOf<R> c(loaded.nodes);
+    const CornersOf<R> c(loaded.nodes.numbers);
+    const R(&inverse)[4] = loaded.inverse.numbers;
     const R& eta = loaded.viscosity;
     R numbers[8];
     gather_records(laws, loaded.material, numbers);
     const ElasticLaw<R> law{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
-    const Deformation<R> d = deformation(
-        Mat2Of<R>{loaded.inverse[0], loaded.inverse[1], loaded.inverse[2], loaded.inverse[3]}, c.x,
-        c.v);
+    const Deformation<R> d =
+        deformation(Mat2Of<R>{inverse[0], inverse[1], inverse[2], inverse[3]}, c.x, c.v);
     corner_forces(law.stress(d, eta), c.x, sum);
     if (any(eta > 0.0)) {
       const Mat2Of<R>& l = d.velocity_gradient;
@@ -319,26 +317,132 @@ struct Kick {
   }
 };
 
-/// Moves the corners and books the work of loads, supports and local damping.
+/// Whether triangles have used their margins up: the list of couples is no longer valid.
+struct UsedMargin {
+  View<const Index> place;  ///< of each triangle in the other two; -1: a ghost, or it cannot touch
+  View<const Corners> reference;
+  View<const double> margin;
+  Drift drift;
+  Vec2 drifted;  ///< since the search  [m]
+
+  /// @param time  of the positions  [s]
+  BR_HD void set_time(double time) { drifted = drift.way(time); }
+  BR_HD bool beyond(const TriangleNodes& now, const Corners& from, double allowed) const {
+    bool inside = dot(drifted, drifted) <= drift.farthest * drift.farthest;
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 moved = (now.at[k].position - from.at[k]) - drifted;
+      inside = inside && dot(moved, moved) <= allowed * allowed;
+    }
+    return !inside;  // NaN counts as beyond
+  }
+};
+
+/// How a move has ended.
+enum class Moved : std::uint8_t {
+  within,  ///< all are within their margins
+  beyond,  ///< one has used its margin up
+  left     ///< a pack in which one is held, loaded or damped: nothing is written
+};
+
+/// Moves the corners and books the work of loads, supports and local damping; and the question
+/// whether margins still hold.
 struct MoveTriangles {
   static constexpr const char* name = "fdem.move";
   Kick kick;
   View<const Corners> external;
   View<TriangleNodes> nodes;
   View<double> damping_work, load_work;
+  UsedMargin used;
 
-  /// Triangle t and its neighbours in a pack, if nothing but forces acts on them.
   template <class R>
-  BR_HD bool free_at(Index t) const {
-    if (kick.damping > 0.0 || external.size > 0) return false;
-    for (Index k = 0; k < width_of<R>; ++k)
-      if (kick.hold[t + k] >= 0) return false;
-    R c[12], f[6];
-    gather_records(kick.nodes, consecutive<R>(t), c);
-    gather_records(kick.force, consecutive<R>(t), f);
-    move_free(c, f, load<R>(kick.mass, t));
-    store_records(nodes, t, c);
-    return true;
+  struct Loaded {
+    Columns<R, TriangleNodes> nodes;
+    Columns<R, Corners> force;
+    R mass;
+    Index hold;  ///< of a pack: below zero if no triangle is held
+    Index place[width_of<R>];
+    Corners from;   ///< of one triangle; packs rarely need it
+    double margin;  ///< likewise
+  };
+  BR_HD void set(const StepTime& now) {
+    kick.set(now);
+    used.set_time(now.time + now.next_dt);
+  }
+  /// All but the sums of forces.
+  template <class R>
+  BR_HD void load_early(Index t, Loaded<R>& loaded) const {
+    for (Index k = 0; k < width_of<R>; ++k) loaded.place[k] = read_now(&used.place[t + k]);
+    loaded.hold = read_now(&kick.hold[t]);
+    for (Index k = 1; k < width_of<R>; ++k)
+      if (kick.hold[t + k] >= 0) loaded.hold = kick.hold[t + k];
+    if (is_left(loaded)) return;
+    loaded.mass = load_now<R>(kick.mass, t);
+    loaded.nodes.read(kick.nodes, t);
+    loaded.margin = 0.0;
+    if (width_of<R> == 1 && loaded.place[0] >= 0) {
+      loaded.from = read_record_now(&used.reference[loaded.place[0]]);
+      loaded.margin = read_now(&used.margin[loaded.place[0]]);
+    }
+    loaded.nodes.wait();
+  }
+  template <class R>
+  BR_HD void load_late(Index t, Loaded<R>& loaded) const {
+    if (!is_left(loaded)) loaded.force.read(kick.force, t);
+  }
+  template <class R>
+  BR_HD Moved update(Index t, Loaded<R>& loaded) const {
+    if (is_left(loaded)) return Moved::left;
+    loaded.force.wait();
+    if constexpr (width_of<R> == 1) {
+      if (is_driven(loaded))
+        move_driven(t, loaded);
+      else
+        move_free(loaded.nodes.numbers, loaded.force.numbers, loaded.mass);
+    } else {
+      move_free(loaded.nodes.numbers, loaded.force.numbers, loaded.mass);
+    }
+    Columns<R, TriangleNodes>::write(nodes, t, loaded.nodes.numbers);
+    return is_beyond(t, loaded) ? Moved::beyond : Moved::within;
+  }
+  /// @returns whether the triangle has used its margin up
+  BR_HD bool operator()(Index t) const { return run_at<double>(*this, t) == Moved::beyond; }
+
+  /// Force that holds a corner to its prescribed motion; zero in free directions.  [N/m]
+  BR_HD Vec2 reaction(const Kick::Given& of, int k, const Kick::Result& r) const {
+    const double span = kick.span();
+    if (!(span > 0.0)) return {};
+    const int bits = kick.holds[of.hold].fixed >> (2 * k);
+    const Vec2 gained = (of.mass / span) * (r.velocity[k] - of.nodes.at[k].velocity);
+    const Vec2 given = of.force.at[k] + of.mass * kick.gravity - r.damped[k];
+    const Vec2 held = gained - given;
+    return {(bits & 1) != 0 ? held.x : 0.0, (bits & 2) != 0 ? held.y : 0.0};
+  }
+
+ private:
+  template <class R>
+  BR_HD bool is_driven(const Loaded<R>& loaded) const {
+    return kick.damping > 0.0 || external.size > 0 || loaded.hold >= 0;
+  }
+  /// Whether a pack is not to be taken as one.
+  template <class R>
+  BR_HD bool is_left(const Loaded<R>& loaded) const {
+    return width_of<R> != 1 && is_driven(loaded);
+  }
+  template <class R>
+  BR_HD bool is_beyond(Index t, const Loaded<R>& loaded) const {
+    if constexpr (width_of<R> == 1) {
+      TriangleNodes now;
+      __builtin_memcpy(&now, loaded.nodes.numbers, sizeof now);
+      return loaded.place[0] >= 0 && used.beyond(now, loaded.from, loaded.margin);
+    } else {
+      bool beyond = false;
+      for (Index k = 0; k < width_of<R>; ++k) {
+        const Index place = loaded.place[k];
+        if (place >= 0 && used.beyond(nodes[t + k], used.reference[place], used.margin[place]))
+          beyond = true;
+      }
+      return beyond;
+    }
   }
   /// Moves corners c that forces f alone act on.
   template <class R>
@@ -354,64 +458,28 @@ struct MoveTriangles {
       }
   }
 
-  BR_HD void set(const StepTime& now) { kick.set(now); }
-  BR_HD void operator()(Index t) const {
-    if (!free_at<double>(t)) nodes[t] = moved_driven(t, kick.given(t));
-  }
-  /// Where a triangle goes that is held, loaded or damped; books the work.
-  BR_HD TriangleNodes moved_driven(Index t, const Kick::Given& of) const {
+  /// Moves a triangle that is held, loaded or damped; books the work.
+  BR_HD void move_driven(Index t, Loaded<double>& loaded) const {
+    Kick::Given of{{}, {}, loaded.mass, loaded.hold};
+    __builtin_memcpy(&of.nodes, loaded.nodes.numbers, sizeof of.nodes);
+    __builtin_memcpy(&of.force, loaded.force.numbers, sizeof of.force);
     const Kick::Result r = kick(of);
     TriangleNodes moved = of.nodes;
     const bool held = of.hold >= 0;
-    double damped = 0.0, loaded = 0.0;
+    double damped = 0.0, booked = 0.0;
     for (int k = 0; k < 3; ++k) {
       NodeState& n = moved.at[k];
       const Vec2 after = kick.next_dt * r.velocity[k];
       const Vec2 both = kick.last_dt * n.velocity + after;
       if (kick.damping > 0.0) damped += 0.5 * dot(r.damped[k], both);
-      if (external.size > 0) loaded += 0.5 * dot(external[t].at[k], both);
-      if (held) loaded += 0.5 * dot(reaction(of, k, r), both);
+      if (external.size > 0) booked += 0.5 * dot(external[t].at[k], both);
+      if (held) booked += 0.5 * dot(reaction(of, k, r), both);
       n.velocity = r.velocity[k];
       n.position += after;
     }
     if (kick.damping > 0.0) damping_work[t] += damped;
-    if (held || external.size > 0) load_work[t] += loaded;
-    return moved;
-  }
-
-  /// Force that holds a corner to its prescribed motion; zero in free directions.  [N/m]
-  BR_HD Vec2 reaction(const Kick::Given& of, int k, const Kick::Result& r) const {
-    const double span = kick.span();
-    if (!(span > 0.0)) return {};
-    const int bits = kick.holds[of.hold].fixed >> (2 * k);
-    const Vec2 gained = (of.mass / span) * (r.velocity[k] - of.nodes.at[k].velocity);
-    const Vec2 given = of.force.at[k] + of.mass * kick.gravity - r.damped[k];
-    const Vec2 held = gained - given;
-    return {(bits & 1) != 0 ? held.x : 0.0, (bits & 2) != 0 ? held.y : 0.0};
-  }
-};
-
-/// 1 where a triangle has used its margin up, or has gone nowhere (NaN).
-struct UsedMargin {
-  View<const Index> triangle;
-  View<const Corners> reference;
-  View<const double> margin;
-  View<const TriangleNodes> nodes;
-  Drift drift;
-  Vec2 drifted;  ///< since the search  [m]
-
-  /// @param time  of the positions  [s]
-  BR_HD void set_time(double time) { drifted = drift.way(time); }
-  BR_HD double operator()(Index i) const {
-    return beyond(nodes[triangle[i]], reference[i], margin[i]) ? 1.0 : 0.0;
-  }
-  BR_HD bool beyond(const TriangleNodes& now, const Corners& from, double allowed) const {
-    bool inside = dot(drifted, drifted) <= drift.farthest * drift.farthest;
-    for (int k = 0; k < 3; ++k) {
-      const Vec2 moved = (now.at[k].position - from.at[k]) - drifted;
-      inside = inside && dot(moved, moved) <= allowed * allowed;
-    }
-    return !inside;
+    if (held || external.size > 0) load_work[t] += booked;
+    __builtin_memcpy(loaded.nodes.numbers, &moved, sizeof moved);
   }
 };
 

@@ -168,6 +168,8 @@ struct World {
   Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
   Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached
   Buffer<Index> born;            ///< of each couple, see CoupleForces
+  Buffer<Index> reach_place;     ///< of each triangle in `reach`, -1: a ghost, or it cannot touch
+  bool margin_used = false;      ///< some own triangle has used its margin up
   Incidence couple_incidence;
   BroadPhase broad_phase;
 
@@ -176,9 +178,8 @@ struct World {
   Buffer<AmplitudeTable> amplitudes;  ///< of prescribed motions, then of loads
   Buffer<double> amplitude_times, amplitude_factors;
   Buffer<Vec2> prescribed_velocity;
-  Buffer<Index> reach_place;  ///< of each triangle in `reach`, -1: it cannot touch
   Buffer<StepClock> clock;
-  /// Ranks only: 1 if a triangle has used its margin up; and bit k if flag k of Opened::changed is
+  /// Of a move launched at once: 1 if margin_used; and bit k if flag k of Opened::changed is
   /// set.
   Buffer<std::int32_t> news;
   StepGraph graph;  ///< of a few steps
@@ -194,8 +195,6 @@ World make_world(const Config& config, const Model& model, const Exec& exec);
 /// Fills what follows from the state, after loading.
 void derive(World& w);
 void derive_couples(World& w);
-/// The place in `reach` of each triangle, for a device.
-void place_reach(World& w);
 /// The vertex of each node where kernels can read it; it changes only where triangles move between
 /// ranks.
 View<const Index> node_vertices(World& w);
@@ -207,34 +206,16 @@ void step(World& w);
 /// One step on the host; on a device as many as a few hundredths of a second hold, ending at
 /// `stop`.
 Advanced advance(World& w, const StopAt& stop);
-/// The same text as step(), launched ahead by the device's clock.
-Advanced advance_on_device(World& w, const StopAt& stop);
-/// Moves the triangles by those launches, at once, and notes what ranks vote on.
-void move_on_device(World& w);
-/// Forces of joints, couples and triangles, likewise.
-void forces_on_device(World& w);
-
 /// Velocities of supports at the middle of the step to come, into World::motions.
 void list_motions(World& w);
 
-/// The parts of a step, in its order.
-/// Moves the triangles: first those that other ranks wait for, then all others.
-void move_awaited(World& w);
-void move_others(World& w);
+/// The parts of a step that all runs share (fdem/step.hpp).
 /// Asks all ranks whether couples must be searched for, and hears what they say.
 void ask_for_search(World& w);
 bool couples_are_due(World& w);
-/// While copies travel: forces of joints that act on none of them. Only of those that are whole and
-/// stay so, since a search reads how joints are damaged and may be due.
-void inner_joint_forces(World& w);
 MarginRule margin_rule(const World& w);
 void find_couples(World& w);
 void insert_joints(World& w);
-/// All others, or all.
-void joint_forces(World& w);
-void couple_forces(World& w);
-void triangle_forces(World& w);
-void load_forces(World& w);
 /// Safe share of the stable step of all triangles, rounded down to six bits.  [s]
 double choose_time_step(const World& w);
 /// The step to come, or less where these triangles allow less: after their joints have changed.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fdem/ranks.hpp"
+#include "fdem/step.hpp"
 #include "mpi/on_ranks.hpp"
 
 namespace breccia {
@@ -68,7 +69,7 @@ TEST(Awaited, whole_joints_between_own_triangles_go_ahead_and_leave_nothing_but_
       });
       return bytes;
     };
-    inner_joint_forces(again);
+    fdem::HostRun{}.inner_joint_forces(again);
     EXPECT_EQ(state(again.joints), state(part.joints));
     std::vector<std::int64_t> sums{0, count};
     for (Index i = 0; i < count; ++i) {

@@ -36,10 +36,15 @@ Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end)
   return run_all(kernel, begin, end);
 }
 
-Index BR_PACKS::run(const MoveTriangles& kernel, Index begin, Index end) {
-  Index t = begin;
-  while (t + width <= end && kernel.free_at<WidestPack>(t)) t += width;
-  return t;
+// Flat: no function that other builds call is compiled for this width.
+[[gnu::flatten]] MovedTo BR_PACKS::run(const MoveTriangles& kernel, Index begin, Index end) {
+  MovedTo moved{begin, false};
+  for (; moved.end + width <= end; moved.end += width) {
+    const Moved pack = run_at<WidestPack>(kernel, moved.end);
+    if (pack == Moved::left) break;
+    if (pack == Moved::beyond) moved.beyond = true;
+  }
+  return moved;
 }
 
 }  // namespace breccia::fdem

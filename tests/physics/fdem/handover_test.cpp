@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fdem/step.hpp"
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
@@ -33,10 +34,9 @@ struct Pair {
       n.velocity = (1.0 / dt) * by;
     }
     w.time += dt;
-    if (couples_are_due(w)) find_couples(w);
+    find_couples(w);
     w.next_dt = dt;
-    joint_forces(w);
-    couple_forces(w);
+    HostRun{}.pair_forces(w);
     const Vec2 now = force();
     taken -= 0.5 * dot(last + now, along);
     last = now;

@@ -1,6 +1,6 @@
 #pragma once
-// Kernels that a device alone runs: they read ahead, or give several threads to one item. Forces
-// are those of the kernels of all machines, to the bit.
+// Kernels that a device alone runs: they give several threads to one item, or bound the registers
+// of one thread. Forces are those of the kernels of all machines, to the bit.
 
 #include "core/timed.hpp"
 #include "exec/early.hpp"
