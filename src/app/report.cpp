@@ -16,6 +16,10 @@
 namespace breccia::app {
 namespace {
 
+bool is_plane(const report::Record& run) {
+  return run.text("method").ends_with("2d");
+}
+
 struct ReportCommand {
   std::vector<std::string> folders;
   std::string data, file;
@@ -28,6 +32,10 @@ struct ReportCommand {
       measured = {std::filesystem::path(data).filename().string(), report::read_measured(data)};
     std::vector<report::Record> runs;
     for (const std::string& folder : folders) runs.push_back(report::read_record(folder));
+    if (runs.size() == 2 && is_plane(runs[0]) != is_plane(runs[1]))
+      throw InputError(
+          fmt::format("{} is a run in a plane and {} one in space: one camera cannot show both",
+                      folders[is_plane(runs[0]) ? 0 : 1], folders[is_plane(runs[0]) ? 1 : 0]));
     const report::Page page = report::page_of(runs, measured);
     const std::string path = file.empty() ? folders.front() + "/report.html" : file;
     replace_file(path, page.html);

@@ -186,12 +186,13 @@ class Findings {
     std::string text = fmt::format("{} of {} broke ({})", count_text(*broken_),
                                    count_of(all_, what_), percent_text(*broken_ / all_));
     std::vector<std::string> kinds;
-    for (const char* kind : {"concrete", "steel", "interface"})
-      if (const auto count =
-              record_.number(std::string("fracture.broken_by_kind.") + kind).value_or(0.0);
-          count > 0.0)
-        kinds.push_back(fmt::format("{} of {}", count_text(count), kind));
-    if (!kinds.empty() && kinds.size() > 1) text += ": " + listed(kinds);
+    const std::string list = "fracture.broken_by_kind.";
+    for (auto kind = record_.numbers.lower_bound(list);
+         kind != record_.numbers.end() && kind->first.starts_with(list); ++kind)
+      if (kind->second > 0.0)
+        kinds.push_back(
+            fmt::format("{} of {}", count_text(kind->second), kind->first.substr(list.size())));
+    if (kinds.size() > 1) text += ": " + listed(kinds);
     const Column* const times = record_.cracks.column("time");
     if (times != nullptr && !times->values.empty()) {
       const double first = times->values.front();

@@ -173,6 +173,15 @@ TEST(ReportProgram, WrongInputsAreNamed) {
   EXPECT_EQ(report(folder.path() + " " + folder.path() + " " + folder.path()).exit_code, 2);
 }
 
+TEST(ReportProgram, APlaneBesideASpaceIsRefused) {
+  const ScratchFolder space, plane;
+  test::write_chain(space.path());
+  test::write_text(plane / "summary.json", R"({"method": "fdem2d"})");
+  const Said said = report(space.path() + " " + plane.path());
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.text.find("one camera cannot show both"), std::string::npos) << said.text;
+}
+
 TEST(ReportProgram, ADamagedFrameIsNamed) {
   const ScratchFolder folder;
   test::write_chain(folder.path());

@@ -135,7 +135,7 @@ export function curvePanel(runs, measured, store) {
   return {node, start: build};
 }
 
-const KINDS = ["concrete", "steel", "interface"];
+const KINDS = ["concrete", "steel", "interface", "parallel"]; // as LinkKind of src/dem/model.hpp
 
 /** How many links or joints are broken, over time. */
 export function eventPanel(runs, store) {
@@ -164,7 +164,7 @@ export function eventPanel(runs, store) {
       for (let k = 0; k < kinds; ++k) {
         const y = run.events.map((e) => e.broken[k] ?? 0);
         if (!y.some((v) => v > 0)) continue;
-        const color = ["#c8102e", "#3b3f46", "#1f77b4"][k] ?? LINES[k];
+        const color = ["#c8102e", "#6b7280", "#1f77b4"][k] ?? LINES[k];
         lines.push({label: KINDS[k], color, x, y, dash: r > 0});
         if (r === 0) entries.push({label: kinds > 1 ? KINDS[k] : "broken", color, value: (t) => count(y[nearest(x, t)])});
       }
