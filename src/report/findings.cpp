@@ -134,7 +134,10 @@ class Findings {
 
   std::vector<std::string> sentences() {
     std::vector<std::string> all;
-    if (all_ <= 0.0)
+    if (all_ <= 0.0 && record_.number("model.elements").value_or(0.0) <= 0.0 &&
+        record_.number("model.triangles").value_or(0.0) <= 0.0)
+      all.emplace_back();  // the summary tells too little
+    else if (all_ <= 0.0)
       all.push_back("Nothing can break here: the model has no links or joints.");
     else if (!broken_ || *broken_ == 0.0)
       all = {unbroken(), nearness()};
@@ -193,19 +196,36 @@ class Findings {
         kinds.push_back(
             fmt::format("{} of {}", count_text(kind->second), kind->first.substr(list.size())));
     if (kinds.size() > 1) text += ": " + listed(kinds);
+    if (const std::optional<double> softening = first_softening())
+      text += fmt::format("; softening began at {}", time_text(*softening));
     const Column* const times = record_.cracks.column("time");
     if (times != nullptr && !times->values.empty()) {
       const double first = times->values.front();
-      text += fmt::format("; the first at {}", time_text(first));
+      text += fmt::format("{} the first broke at {}", glue(text), time_text(first));
       if (times->values.size() > 1)
         text += fmt::format(", half of them by {}",
                             time_text(times->values[(times->values.size() - 1) / 2]));
     } else if (find_first_break() && break_frame_ > 0) {
-      text +=
-          fmt::format("; the first between {} and {}", time_text(record_.times[break_frame_ - 1]),
-                      time_text(record_.times[break_frame_]));
+      text += fmt::format("{} the first broke between {} and {}", glue(text),
+                          time_text(record_.times[break_frame_ - 1]),
+                          time_text(record_.times[break_frame_]));
     }
     return text + ".";
+  }
+
+  /// What parts a sentence from one more fact.
+  static const char* glue(const std::string& text) {
+    return text.find(';') == std::string::npos ? ";" : ",";
+  }
+
+  /// Time of the first row of the history with work of fracture.  [s]
+  std::optional<double> first_softening() const {
+    const Column* const time = record_.history.column("time");
+    const Column* const spent = record_.history.column("fracture");
+    if (time == nullptr || spent == nullptr) return std::nullopt;
+    for (std::size_t i = 0; i < spent->values.size(); ++i)
+      if (spent->values[i] > 1e-6 * spent->values.back()) return time->values[i];
+    return std::nullopt;
   }
 
   std::string where() {

@@ -23,7 +23,7 @@ TEST(Findings, ABrokenChainIsToldByWhatWhenAndWhere) {
   const ScratchFolder folder;
   test::write_chain(folder.path());
   const std::string text = joined(findings_of(read_record(folder.path())));
-  EXPECT_NE(text.find("1 of 7 links broke (14 %); the first between 1 ms and 2 ms."),
+  EXPECT_NE(text.find("1 of 7 links broke (14 %); softening began at 2 ms, the first broke between 1 ms and 2 ms."),
             std::string::npos)
       << text;
   // The link between spheres 3 and 4: at 0.07 m, stretched by 2 %, half of the gap of 50 mm.
@@ -66,7 +66,7 @@ TEST(Findings, CracksOfAPlaneTellTheirMode) {
                    "0.001,0,0,0,0.02,0\n0.003,0,0,-0.01,-0.01,1\n");
   const Record record = read_record(folder.path());
   const std::string text = joined(findings_of(record));
-  EXPECT_NE(text.find("2 of 50 joints broke (4 %); the first at 1 ms, half of them by 1 ms."),
+  EXPECT_NE(text.find("2 of 50 joints broke (4 %); the first broke at 1 ms, half of them by 1 ms."),
             std::string::npos)
       << text;
   EXPECT_NE(text.find("It began at (0, 10) mm, by opening (75 % of the fracture energy); 2 pieces"),

@@ -2,7 +2,7 @@
 // runs have rows at different times.
 
 import uPlot from "uplot";
-import {make, round, scaledUnit} from "./format.js";
+import {make, round, save, scaledUnit} from "./format.js";
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -74,6 +74,10 @@ export class Chart {
     }, [[xLow, xHigh], [yLow, yHigh]], host);
     this.plot.over.classList.add("drag");
     this.listen();
+    this.exports = make("div", {class: "export"},
+      make("button", {type: "button", title: "save these numbers", onclick: () => save(new Blob([this.csv(x, yUnit)], {type: "text/csv"}), "curve.csv")}, "csv"),
+      make("button", {type: "button", title: "save this picture", onclick: () => this.plot.ctx.canvas.toBlob((blob) => save(blob, "curve.png"))}, "png"));
+    host.append(this.exports);
     this.observer = new ResizeObserver(() => {
       const width = host.clientWidth;
       if (width > 0 && width !== this.plot.width) this.plot.setSize({width, height});
@@ -84,6 +88,16 @@ export class Chart {
   destroy() {
     this.observer.disconnect();
     this.plot.destroy();
+  }
+
+  /** The numbers in SI, the lines below each other. */
+  csv(x, yUnit) {
+    const quoted = (text) => `"${String(text).replaceAll('"', '""')}"`;
+    const rows = [`curve,${quoted(`${x.label || "x"}${x.unit ? ` [${x.unit}]` : ""}`)},${quoted(`value${yUnit && yUnit !== "-" ? ` [${yUnit}]` : ""}`)}`];
+    for (const line of this.lines)
+      for (let i = 0; i < line.x.length; ++i)
+        if (Number.isFinite(line.y[i])) rows.push(`${quoted(line.label)},${line.x[i]},${line.base ? line.y[i] - line.base[i] : line.y[i]}`);
+    return rows.join("\n") + "\n";
   }
 
   setTime(time) {

@@ -63,6 +63,13 @@ export const words = (name) => name.replace(/_/g, " ");
 /** A sentence from the program, which writes microseconds in ASCII. */
 export const sentence = (text) => text.replace(/(\d) us\b/g, "$1 µs");
 
+/** Hands the reader a file. */
+export function save(blob, name) {
+  const url = URL.createObjectURL(blob);
+  make("a", {href: url, download: name}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}
+
 /** An element with attributes and children; text is never read as HTML. */
 export function make(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);

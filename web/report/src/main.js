@@ -65,7 +65,7 @@ async function build() {
   ].filter(Boolean);
   const wide = [panels.checkPanel(runs), panels.provenancePanel(runs)].filter(Boolean);
   document.body.append(make("main", {}, heading(runs), why(runs),
-    make("div", {class: "first"}, view?.node ?? make("section", {class: "panel"}, make("p", {class: "note"}, "The folder holds no frames, so there is no view.")),
+    make("div", {class: "first"}, view?.node ?? make("p", {class: "note bare"}, "The folder holds no frames, so there is no view."),
       make("div", {class: "side"}, side.map((p) => p.node))),
     make("div", {class: "grid"}, below.map((p) => p.node)),
     make("div", {class: "wide"}, wide.map((p) => p.node)), remarks(runs),

@@ -2,7 +2,7 @@
 
 import {Chart, legend, nearest} from "./chart.js";
 import {LINES} from "./colors.js";
-import {besides, bytes, count, draw, duration, make, round, timeText, withUnit, words} from "./format.js";
+import {besides, bytes, count, draw, duration, make, round, save, timeText, withUnit, words} from "./format.js";
 import {blobText} from "./packed.js";
 
 export function panel(title, about, ...children) {
@@ -272,17 +272,13 @@ export function provenancePanel(runs) {
       await navigator.clipboard?.writeText(command).catch(() => {});
       copy.textContent = "copied";
     }}, "copy");
-    const save = run.case != null && make("button", {type: "button", onclick: async () => {
-      const url = URL.createObjectURL(new Blob([await blobText(run.case)], {type: "text/plain"}));
-      make("a", {href: url, download: "case.toml"}).click();
-      setTimeout(() => URL.revokeObjectURL(url), 1000);
-    }}, "save case.toml");
+    const save = run.case != null && make("button", {type: "button", onclick: async () => save(new Blob([await blobText(run.case)], {type: "text/plain"}), "case.toml")}, "save case.toml");
     const facts = [
       ["case", `${s.case?.name ?? ""}${s.case?.seed != null ? `, seed ${s.case.seed}` : ""}`],
       ["state hash", s.state_hash && make("code", {}, s.state_hash)],
       ["case digest", s.case?.sha256 && make("code", {class: "long"}, s.case.sha256)],
-      ["program", `breccia ${build.version ?? ""} ${build.commit ? `(${build.commit})` : ""}, ${build.build?.type ?? ""}, ${build.build?.compiler ?? ""}`],
-      ["machine", `${machine.cpu ?? ""}, ${machine.device ?? "cpu"}, ${machine.threads ?? 1} thread${machine.threads > 1 ? "s" : ""}${machine.ranks > 1 ? `, ${machine.ranks} ranks` : ""}`],
+      ["program", build.version && `breccia ${build.version ?? ""} ${build.commit ? `(${build.commit})` : ""}, ${build.build?.type ?? ""}, ${build.build?.compiler ?? ""}`],
+      ["machine", machine.cpu && `${machine.cpu}, ${machine.device ?? "cpu"}, ${machine.threads ?? 1} thread${machine.threads > 1 ? "s" : ""}${machine.ranks > 1 ? `, ${machine.ranks} ranks` : ""}`],
       ["precision", s.precision],
       ["steps", s.dt && `${count(s.steps)} of ${timeText(s.dt.min)}${s.dt.max > 1.001 * s.dt.min ? ` to ${timeText(s.dt.max)}` : ""}${s.dt.ruled_by ? `, ruled by ${s.dt.ruled_by}` : ""}`],
       ["memory", s.peak_memory_bytes && bytes(s.peak_memory_bytes)],

@@ -2,7 +2,7 @@
 
 import {CATEGORIES, gradient, MAPS} from "./colors.js";
 import {Film, colorings} from "./film.js";
-import {make, round, scaledUnit, timeText, words} from "./format.js";
+import {make, round, save, scaledUnit, timeText, words} from "./format.js";
 import {Viewer} from "./viewer.js";
 
 /** Values at two shares of the way through the sorted finite ones. */
@@ -157,7 +157,7 @@ export class ViewPanel {
   scaleControl() {
     const text = make("output", {}, "1×");
     const factors = [0, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
-    const input = make("input", {type: "range", min: 0, max: factors.length - 1, step: 1, value: 1, "aria-label": "displacement", oninput: () => {
+    const input = make("input", {type: "range", min: 0, max: factors.length - 1, step: 1, value: 1, "aria-label": "displacement", title: this.plane ? "cracks are drawn at 1× only" : "how large displacements are drawn", oninput: () => {
       const factor = factors[Number(input.value)];
       text.textContent = `${factor}×`;
       this.each((v) => {
@@ -347,6 +347,6 @@ export class ViewPanel {
     const [{viewer, run}] = this.views;
     if (!viewer) return;
     viewer.draw();
-    make("a", {href: viewer.renderer.domElement.toDataURL("image/png"), download: `${run.name || "breccia"}.png`}).click();
+    viewer.renderer.domElement.toBlob((blob) => save(blob, `${run.name || "breccia"}.png`));
   }
 }
