@@ -196,8 +196,8 @@ class Findings {
         kinds.push_back(
             fmt::format("{} of {}", count_text(kind->second), kind->first.substr(list.size())));
     if (kinds.size() > 1) text += ": " + listed(kinds);
-    if (const std::optional<double> softening = first_softening())
-      text += fmt::format("; softening began at {}", time_text(*softening));
+    const std::optional<double> softening = first_softening();
+    if (softening) text += fmt::format("; softening began at {}", time_text(*softening));
     const Column* const times = record_.cracks.column("time");
     if (times != nullptr && !times->values.empty()) {
       const double first = times->values.front();
@@ -206,8 +206,10 @@ class Findings {
         text += fmt::format(", half of them by {}",
                             time_text(times->values[(times->values.size() - 1) / 2]));
     } else if (find_first_break() && break_frame_ > 0) {
-      text += fmt::format("{} the first broke between {} and {}", glue(text),
-                          time_text(record_.times[break_frame_ - 1]),
+      // Frames may be far apart; what softens late breaks later.
+      const double end = record_.times[break_frame_], before = record_.times[break_frame_ - 1];
+      const double after = softening && *softening < end ? std::max(before, *softening) : before;
+      text += fmt::format("{} the first broke between {} and {}", glue(text), time_text(after),
                           time_text(record_.times[break_frame_]));
     }
     return text + ".";

@@ -88,7 +88,7 @@ void main() {
   vec3 base = colorOf(vValue);
   if (uThrough > 0.5) {
     float rim = 1.0 - n.z;
-    color = vec4(base * 0.85, 0.012 + 0.10 * rim * rim * rim);
+    color = vec4(base * 0.85, 0.02 + 0.16 * rim * rim * rim);
   } else {
     float edge = flatFace ? 1.0 : 0.62 + 0.38 * smoothstep(0.0, 0.45, n.z);
     color = vec4((flatFace ? base * 0.97 : lit(base, n)) * edge, 1.0);
