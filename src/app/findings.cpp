@@ -5,9 +5,12 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "core/case_config.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
+#include "io/whole_file.hpp"
 #include "report/findings.hpp"
+#include "report/page.hpp"
 
 namespace breccia::app {
 namespace {
@@ -22,8 +25,6 @@ bool has_small_frames(const std::string& folder) {
   return !error;
 }
 
-}  // namespace
-
 void tell_findings(const std::string& folder) {
   try {
     report::Record record = report::read_record(folder);
@@ -36,6 +37,16 @@ void tell_findings(const std::string& folder) {
   } catch (const Error&) {
     return;
   }
+}
+
+}  // namespace
+
+void tell_and_report(const std::string& folder, const CaseConfig& config, bool quiet) {
+  if (!quiet) tell_findings(folder);
+  if (!config.output.report) return;
+  const std::string path = folder + "/report.html";
+  replace_file(path, report::page_of({report::read_record(folder)}, std::nullopt).html);
+  if (!quiet) std::fputs(fmt::format("report  {}\n", harmless(path)).c_str(), stdout);
 }
 
 }  // namespace breccia::app

@@ -2,10 +2,15 @@
 
 #include <string>
 
+namespace breccia {
+struct CaseConfig;
+}
+
 namespace breccia::app {
 
-/// Prints what a finished run shows, in up to three sentences, from its result folder. What cannot
-/// be read is not told: the run itself went well.
-void tell_findings(const std::string& folder);
+/// Prints what a finished run shows, in up to three sentences, from its result folder, unless
+/// `quiet`; what cannot be read is not told. Writes report.html, if the case asks for it.
+/// @throws IoError if the report cannot be written
+void tell_and_report(const std::string& folder, const CaseConfig& config, bool quiet);
 
 }  // namespace breccia::app

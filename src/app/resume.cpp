@@ -87,7 +87,7 @@ struct ResumeCommand {
     timers.clear();
     method->load(checkpoint ? &*checkpoint : nullptr);
     const int exit_code = Run(*method, plan, folder ? &*folder : nullptr, &*former).execute();
-    if (exit_code == 0 && folder && !options.quiet) tell_findings(folder->path());
+    if (exit_code == 0 && folder) tell_and_report(folder->path(), plan.config, options.quiet);
     return exit_code;
   }
 };

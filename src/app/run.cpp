@@ -46,7 +46,7 @@ struct RunCommand {
     std::optional<ResultFolder> result;  // of rank 0
     on_first(ranks, [&] { result.emplace(ResultFolder::create(out, existing)); });
     const int exit_code = Run(*method, plan, result ? &*result : nullptr).execute();
-    if (exit_code == 0 && result && !options.quiet) tell_findings(result->path());
+    if (exit_code == 0 && result) tell_and_report(result->path(), plan.config, options.quiet);
     return exit_code;
   }
 

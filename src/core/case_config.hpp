@@ -38,6 +38,7 @@ struct OutputConfig {
   double history = 0.0;  ///< time between history rows; 0: 1000 rows over the run  [s]
   bool fields = true;    ///< write ParaView files
   bool pictures = true;  ///< write a PNG a frame
+  bool report = false;   ///< write report.html at the end
   std::string color = "damage";
   std::string view = "iso";
   int width = 1280, height = 960;
@@ -49,6 +50,7 @@ struct OutputConfig {
         "time between two rows of history.csv; 0 writes 1000 rows over the run");
     key("fields", fields, "write the frames as ParaView files");
     key("pictures", pictures, "write one PNG picture a frame");
+    key("report", report, "write report.html when the run is done, as `breccia report` does");
     key("color", color, "field that colours the pictures");
     key("view", view, OneOf{"iso", "x", "y", "z"}, "camera of the pictures");
     key("width", width, "-", Range{64, 16384}, "width of the pictures in pixels");

@@ -107,6 +107,17 @@ TEST_F(Program, TellsAtItsEndWhatTheRunShows) {
   EXPECT_EQ(output().find("shows"), std::string::npos) << output();
 }
 
+TEST_F(Program, ACaseMayAskForItsReport) {
+  ASSERT_EQ(run("run " + path("balls.toml") + " --set output.report=true -o " + path("out")), 0)
+      << output();
+  EXPECT_NE(output().find("report  " + path("out/report.html")), std::string::npos) << output();
+  const std::string html = read_whole_file(path("out/report.html"));
+  fs::remove(path("out/report.html"));
+  ASSERT_EQ(run("report " + path("out")), 0) << output();
+  EXPECT_EQ(read_whole_file(path("out/report.html")), html);
+  EXPECT_EQ(summary("out")["status"], "done");
+}
+
 TEST_F(Program, CompletedCaseRunsToTheSameState) {
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("first")), 0) << output();
   ASSERT_EQ(run("run " + path("first/case.toml") + " -o " + path("again")), 0) << output();
