@@ -23,7 +23,8 @@ TEST(Findings, ABrokenChainIsToldByWhatWhenAndWhere) {
   const ScratchFolder folder;
   test::write_chain(folder.path());
   const std::string text = joined(findings_of(read_record(folder.path())));
-  EXPECT_NE(text.find("1 of 7 links broke (14 %); softening began at 2 ms, the first broke between 1 ms and 2 ms."),
+  EXPECT_NE(text.find("1 of 7 links broke (14 %); softening began at 2 ms, the first broke between "
+                      "1 ms and 2 ms."),
             std::string::npos)
       << text;
   // The link between spheres 3 and 4: at 0.07 m, stretched by 2 %, half of the gap of 50 mm.
