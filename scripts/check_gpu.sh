@@ -27,6 +27,9 @@ for case in "${cases[@]}"; do
   verdict=same
   [ "$cpu" = "$first" ] && [ "$cpu" = "$again" ] || { verdict=DIFFERENT; failed=1; }
   echo "$case: cpu $cpu, cuda $first and $again: $verdict"
+  verdict=same  # energies, too, of which the hash knows nothing
+  cmp -s "$out/cpu/history.csv" "$out/cuda/history.csv" || { verdict=DIFFERENT; failed=1; }
+  echo "$case: history.csv of cpu and cuda: $verdict"
 done
 
 if command -v mpirun > /dev/null; then
