@@ -153,10 +153,9 @@ Buffer<double> damage_of(const World& w) {
       if constexpr (std::remove_reference_t<decltype(set)>::kind == LinkKind::concrete) {
         for (const auto& g : set.groups)
           for_each(w.exec, g.end - g.begin,
-                   ConcreteDamage<Number>{add, g.law, g.begin,
-                                          set.kept.template as<Number>().opening.view(),
-                                          set.length.view(), set.stiffness.view(),
-                                          set.area.view()});
+                   ConcreteDamage<Number>{
+                       add, g.law, g.begin, set.kept.template as<Number>().opening.view(),
+                       set.length.view(), set.stiffness.view(), set.area.view()});
       } else {
         const auto is_broken = set.template broken<Number>();
         for_each(w.exec, set.size(),

@@ -60,8 +60,7 @@ std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<L
   for (const Model::Link& link : m.links)
     if (link.kind == set.kind) links.push_back(link);
   const auto law_of = [&](const Model::Link& link) {
-    const Model::Bulk bulk =
-        link.kind == LinkKind::concrete ? m.bulk_of(link.a) : Model::Bulk{};
+    const Model::Bulk bulk = link.kind == LinkKind::concrete ? m.bulk_of(link.a) : Model::Bulk{};
     return std::tuple{link.material, bulk.factor, bulk.rupture_opening};
   };
   std::stable_sort(links.begin(), links.end(), [&](const Model::Link& p, const Model::Link& q) {
@@ -119,8 +118,9 @@ void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m)
 }
 
 void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m) {
-  const auto links = grouped(
-      m, config, set, [&](const MaterialConfig& c, const Model::Link&) { return parallel_bond(c, config.contact); });
+  const auto links = grouped(m, config, set, [&](const MaterialConfig& c, const Model::Link&) {
+    return parallel_bond(c, config.contact);
+  });
   set_ends(set.a, set.b, links);
   std::vector<double> length, stiffness;
   for (const Model::Link& link : links) {
@@ -149,7 +149,8 @@ void limit_margins(World& w, const Model& m) {
 }
 
 void set_links(LinkSet<SteelLink>& set, const Config& config, const Model& m) {
-  const auto links = grouped(m, config, set, [](const MaterialConfig& c, const Model::Link&) { return steel_law(c); });
+  const auto links = grouped(
+      m, config, set, [](const MaterialConfig& c, const Model::Link&) { return steel_law(c); });
   set_ends(set.a, set.b, links);
   std::vector<double> length;
   for (const Model::Link& link : links) length.push_back(distance(m, link.a, link.b));
@@ -162,8 +163,9 @@ bool is_steel(const Config& config, const Model& m, Index e) {
 }
 
 void set_links(LinkSet<InterfaceLink>& set, const Config& config, const Model& m) {
-  auto links = grouped(m, config, set,
-                       [&](const MaterialConfig& c, const Model::Link&) { return interface_law(c, config.contact); });
+  auto links = grouped(m, config, set, [&](const MaterialConfig& c, const Model::Link&) {
+    return interface_law(c, config.contact);
+  });
   std::map<Index, int> shares;  // links of each bar element
   for (Model::Link& link : links) {
     if (!is_steel(config, m, link.a)) std::swap(link.a, link.b);

@@ -234,7 +234,8 @@ struct SearchConfig {
 /// A whole FDEM case.
 struct Config : CaseConfig {
   /// The bound on the step walks all triangles and their joints: in every step it would cost more
-  /// than the forces. Triangles that could meet until the next evaluation count as met (StableStep).
+  /// than the forces. Triangles that could meet until the next evaluation count as met
+  /// (StableStep).
   Config() { time.evaluate_every = 20; }
 
   std::string plane = "stress";

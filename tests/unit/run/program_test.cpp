@@ -101,8 +101,9 @@ TEST_F(Program, RunsACaseAndLeavesItsResultFolder) {
 TEST_F(Program, TellsAtItsEndWhatTheRunShows) {
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
   EXPECT_NE(output().find("shows   Nothing can break here"), std::string::npos) << output();
-  replace_file(path("held.toml"), two_balls + "[[check]]\nname = \"wrong\"\nvalue = "
-                                              "\"model.elements\"\nexpected = 3\n");
+  replace_file(path("held.toml"), two_balls +
+                                      "[[check]]\nname = \"wrong\"\nvalue = "
+                                      "\"model.elements\"\nexpected = 3\n");
   ASSERT_EQ(run("run " + path("held.toml") + " -o " + path("failed")), 9);
   EXPECT_EQ(output().find("shows"), std::string::npos) << output();
 }
