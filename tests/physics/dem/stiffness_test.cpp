@@ -149,9 +149,9 @@ TEST(Stiffness, and_section_of_every_link_give_its_length_at_the_start) {
   specimen.config.bodies.push_back(other);
   const Model m = specimen.model();
   const World w = make_world(specimen.config, m, {});
-  ASSERT_EQ(w.concrete_groups.size(), 2U) << "each body has its own factor";
+  ASSERT_EQ(w.concrete.groups.size(), 2U) << "each body has its own factor";
   double least = 1.0, most = 1.0;
-  for (const auto& group : w.concrete_groups)
+  for (const auto& group : w.concrete.groups)
     for (Index i = group.begin; i < group.end; ++i) {
       const double first =
           group.law.modulus * w.concrete.area.data()[i] / w.concrete.stiffness.data()[i];
