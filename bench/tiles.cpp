@@ -29,6 +29,7 @@ void number_elements(dem::World& w, Index first) {
 template <class Law>
 void number_links(std::vector<dem::LinkGroup<Law>>& groups, Buffer<Index>& numbers,
                   const TileRun& tiles, int built) {
+  if (groups.empty()) return;  // a kind that slabs lack
   BR_ASSERT(groups.size() == 1);
   const Index each = groups[0].end / built;
   groups[0].first_number = 0;

@@ -255,27 +255,13 @@ std::vector<Color> category_colors(const Frame& frame, const Selected& selected,
   return colors;
 }
 
-/// Points that lines of steel end at: bars.
-std::vector<bool> points_of_bars(const Frame& frame) {
-  std::vector<bool> bars(frame.position.size(), false);
-  const FrameField* kind = field_named(frame.line_fields, "kind");
-  if (kind == nullptr || 2 * kind->values.size() != frame.lines.size()) return bars;
-  for (std::size_t k = 0; k < frame.lines.size(); ++k)
-    if (kind->values[k / 2] == 1.0F)
-      if (const auto point = static_cast<std::size_t>(frame.lines[k]); point < bars.size())
-        bars[point] = true;
-  return bars;
-}
-
-/// Damage tints every body from its own colour: only the main one starts as light concrete. Bars
-/// keep theirs, so that they are seen where the concrete around them is crushed.
+/// Damage tints every body from its own colour: only the main one starts as light concrete.
 void tint_bodies(const Frame& frame, const std::vector<float>& damage, Coloring& coloring) {
   const std::vector<std::size_t> groups = point_groups(frame);
   const GroupTints tints = group_tints(frame, groups);
-  const std::vector<bool> bars = points_of_bars(frame);
   for (std::size_t i = 0; i < damage.size(); ++i) {
     if (groups[i] == tints.main) continue;
-    const float share = bars[i] ? 0.0F : std::clamp(4.0F * damage[i], 0.0F, 1.0F);
+    const float share = std::clamp(4.0F * damage[i], 0.0F, 1.0F);
     coloring.points[i] = blend(tints.tint[groups[i]], coloring.points[i], share);
   }
   coloring.legend.swatches = tints.others;

@@ -318,20 +318,6 @@ TEST(picture, damage_reddens_concrete_and_steel_stays_blue) {
   EXPECT_GT(blue, 60);
 }
 
-TEST(picture, bars_keep_the_colour_of_steel_where_their_bond_is_broken) {
-  Frame frame = spheres({{-0.5, 0, 0}, {0.0, 0, 0}, {0.5, 0, 0}}, 0.2);
-  frame.point_fields = {{"group", "-", 1, {0, 0, 1}}, {"damage", "-", 1, {0.9F, 0.9F, 0.9F}}};
-  RenderOptions options = cube_options();
-  options.field = "damage";
-  EXPECT_LT(patch_of(render(frame, options), is_blue).pixels, 1000.0) << "all is red";
-
-  frame.lines = {2, 2};
-  frame.line_fields = {{"kind", "-", 1, {1}}};
-  const Image image = render(frame, options);
-  EXPECT_GT(patch_of(image, is_blue).pixels, 5000.0);
-  EXPECT_GT(patch_of(image, is_red).pixels, 3000.0);
-}
-
 TEST(picture, a_few_fragments_that_flew_far_do_not_shrink_the_rest) {
   Frame frame = test::slab_scene();
   const Extent extent = bulk_extent(frame);
