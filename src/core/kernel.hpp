@@ -35,7 +35,7 @@ concept HasSlow = requires(const Kernel& kernel) {
   kernel.slow(Index{});
 };
 
-/// What a kernel loads of one item, as the member Loaded; none if it loads nothing ahead.
+/// Numbers that a kernel loads of one item, as the member Loaded; none if it loads nothing ahead.
 template <class Kernel>
 struct LoadedBy {};
 template <LoadsItems Kernel>
@@ -56,7 +56,7 @@ BR_HD inline auto run_at(const Kernel& kernel, Index i) {
   return kernel.update(i, loaded);
 }
 
-/// What a kernel does for an item of which all has been loaded.
+/// The work of a kernel for an item of which all has been loaded.
 template <class Kernel, class... Read>
 BR_HD inline auto finish_item(const Kernel& kernel, Index i, Read&... loaded) {
   if constexpr (sizeof...(Read) == 0)

@@ -32,7 +32,7 @@ BR_HD inline Vec3Of<R> load(const PlanesView<T>& planes, Index first) {
   return {load<R>(items, first), load<R>(items, planes.stride + first),
           load<R>(items, 2 * planes.stride + first)};
 }
-/// The same where this call stands (load_now).
+/// Loads vectors where this call stands (load_now).
 template <class R, class T>
 BR_HD inline Vec3Of<R> load_now(const PlanesView<T>& planes, Index first) {
   const View<T>& items = planes.items;

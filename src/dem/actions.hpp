@@ -1,5 +1,5 @@
 #pragma once
-// What interactions do to their two ends: written once by each, read by both ends.
+// Actions of interactions on their two ends: written once by each, read by both ends.
 
 #include "core/precision.hpp"
 #include "dem/laws/pair_motion.hpp"

@@ -7,7 +7,7 @@
 
 namespace breccia::dem {
 
-/// What the contact of a pair of elements keeps between searches.
+/// History of the contact of a pair of elements, kept between searches.
 struct ContactHistory {
   Buffer<ContactState> state;
   Buffer<double> slid;    ///< energy spent on sliding and rolling so far  [J]
@@ -21,7 +21,7 @@ struct ContactHistory {
   }
   View<const double> work_of_walls() const { return {}; }
 };
-/// What the contact of an element and a wall keeps between searches.
+/// History of the contact of an element and a wall, kept between searches.
 struct WallHistory : ContactHistory {
   Buffer<double> driven;  ///< energy that a moving wall put in so far  [J]
   Buffer<Vec3> on_wall;   ///< force on the wall at the time of the positions  [N]
@@ -37,7 +37,7 @@ struct WallHistory : ContactHistory {
 
 /// Pairs that may touch until the next search.
 using Contacts = PairList<ContactHistory>;
-/// Likewise elements and walls: b is the wall, and the key is of wall and element.
+/// Elements and walls that may touch: b is the wall, and the key is of wall and element.
 using WallContacts = PairList<WallHistory>;
 
 /// A rigid half-space.

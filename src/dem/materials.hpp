@@ -22,7 +22,8 @@ LocalElasticity local_elasticity(const MaterialConfig& material);
 /// Of two materials: harmonic means of E and nu, the constants alpha, beta, gamma of the first.
 LocalElasticity local_elasticity(const MaterialConfig& a, const MaterialConfig& b);
 
-/// What joins the elements of a body of this law, pair by pair; nothing: no links, or bars.
+/// Kind of links that join the elements of a body of this law, pair by pair; nothing: no links, or
+/// bars.
 std::optional<LinkKind> kind_within(const std::string& law);
 /// Words of such laws, for a message: "concrete, ...  or ".
 std::string laws_within();

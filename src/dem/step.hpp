@@ -37,7 +37,7 @@ void take_step(Run&& run, World& w) {
   run.count_step(w);
 }
 
-/// What runs that take one step at a time share: ghosts, the search, the time step.
+/// Parts that all runs of one step at a time share: ghosts, the search, the time step.
 struct StepwiseRun {
   void send_ghosts(World& w) const;
   void receive_ghosts(World& w) const;

@@ -272,7 +272,7 @@ class ClockedRun {
   StepClocks clocks_;
 };
 
-/// What the launches read besides the state.
+/// Tables that the launches read besides the state.
 void list_amplitudes(World& w) {
   std::vector<AmplitudeTable> tables;
   std::vector<double> times, factors;

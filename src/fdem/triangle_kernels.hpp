@@ -1,5 +1,5 @@
 #pragma once
-// What is done to each triangle by itself: its sum of forces, its stable step.
+// Kernels of each triangle by itself: its sum of forces, its stable step.
 
 #include "core/kernel.hpp"
 #include "fdem/columns.hpp"

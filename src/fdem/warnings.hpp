@@ -1,5 +1,5 @@
 #pragma once
-// What set-up finds doubtful, though it can be run.
+// Findings of set-up that are doubtful, though they can be run.
 
 #include <string>
 #include <vector>

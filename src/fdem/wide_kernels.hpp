@@ -64,7 +64,7 @@ struct Bounded : Kernel {
   static constexpr int least_blocks = blocks;
 };
 
-/// What few couples need.
+/// Work that few couples need.
 template <class Number>
 BR_RARELY void begin_rarely(const CoupleForces<Number>* couples, Index c) {
   stay_in_place(couples);

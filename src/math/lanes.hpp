@@ -133,7 +133,7 @@ BR_HD inline Vec3 load_vectors<double>(const View<const Vec3>& vectors, Index fi
   return vectors[first];
 }
 
-/// The same where this call stands (load_now).
+/// Loads vectors where this call stands (load_now).
 template <class R>
 BR_HD inline Vec3Of<R> load_vectors_now(const View<const Vec3>& vectors, Index first) {
   if constexpr (width_of<R> == 1) {

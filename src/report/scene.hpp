@@ -22,7 +22,7 @@ struct Region {
   bool load = false;   ///< a load, not a support
 };
 
-/// What links or joints of a material bear.
+/// Strengths of the links or joints of a material.
 struct Strength {
   std::string material;
   bool breaks = true;    ///< false: of what has no joints, or is steel

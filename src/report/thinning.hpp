@@ -9,7 +9,7 @@
 
 namespace breccia::report {
 
-/// What goes into a film.
+/// Frames and fields that go into a film.
 struct Selection {
   std::vector<std::size_t> frames;      ///< of the survey
   std::vector<std::uint32_t> elements;  ///< ascending
@@ -25,7 +25,7 @@ struct Selection {
   /// Leaves the next detail out. False: nothing is left that could go.
   bool tighten(const Survey& survey);
   bool takes(const FieldSurvey& field) const;
-  /// What it leaves out, in sentences.
+  /// Items that it leaves out, in sentences.
   std::vector<std::string> notes(const Survey& survey) const;
   /// How large the film will be, from experience.  [bytes]
   double estimate(const Survey& survey) const;

@@ -6,7 +6,7 @@
 
 namespace breccia::dem {
 
-/// What a parallel bond keeps from step to step.
+/// State of a parallel bond from step to step.
 template <class R>
 struct ParallelBondStateOf {
   R bond;            ///< 1 while it holds, 0 once broken, bond_released when its ends have parted
@@ -17,7 +17,7 @@ struct ParallelBondStateOf {
 using ParallelBondState = ParallelBondStateOf<double>;
 inline constexpr double bond_released = -1.0;
 
-/// What a parallel bond answers in one step.
+/// Response of a parallel bond in one step.
 template <class R>
 struct ParallelBondResponseOf {
   R normal;          ///< N, tension positive  [N]
@@ -132,7 +132,7 @@ struct ParallelBond {
   }
 
  private:
-  /// What a step of elastic motion brings about.
+  /// Forces and moments after a step of elastic motion.
   template <class R>
   struct Trial {
     R normal;

@@ -9,7 +9,7 @@
 
 namespace breccia::dem {
 
-/// What cohesive links keep from step to step.
+/// History of cohesive links from step to step.
 template <class Number>
 struct LinkHistory {
   Buffer<Number> opening;   ///< largest so far, or link_broken, link_released  [m]

@@ -60,7 +60,7 @@ struct LinkSet : LinkArrays<Law> {
   const LinkArrays<Law>& arrays() const { return *this; }
 };
 
-/// What kernels of links read of the elements.
+/// Arrays of the elements that kernels of links read.
 struct ElementsView {
   View<const ElementState> state;
   View<const double> mass, inertia;
@@ -90,7 +90,7 @@ BR_HD inline LinkEnd<R> load_end(const View<const ElementState>& state, const In
   }
 }
 
-/// What a kernel of forces needs of a world.
+/// Elements and time, as a kernel of forces needs them.
 struct LinkSpace {
   ElementsView elements;
   double dt;          ///< the step that moved the elements to where they are  [s]

@@ -1,4 +1,4 @@
-// What set-up says of models that can be run, but should be looked at.
+// Warnings of set-up about models that can be run, but should be looked at.
 
 #include <gtest/gtest.h>
 
