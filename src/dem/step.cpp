@@ -24,7 +24,7 @@ double least_there(const World& w) {
   return fold(w.exec, w.elements.size(), largest_least,
               LeastCritical{w.critical.view(), w.domain.owned_view()}, Least{});
 }
-/// Likewise on the host.
+/// The least critical number of this rank's elements, on the host.
 double least_here(const World& w) {
   constexpr Index grain = 4096;
   const Index count = w.elements.size();

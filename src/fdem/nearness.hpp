@@ -47,7 +47,8 @@ struct Nearness {
     }
     return near;
   }
-  /// The same of the triangle across a joint: at once when it breaks, before a search lists it.
+  /// Edges near the triangle across a joint: asked at once when it breaks, before a search lists
+  /// it.
   BR_HD int edges_near_across(Index t, const Vec2 (&x)[3], Entry joint, int edges) const {
     const View<const Index>& other = side_of(joint) == 0 ? joint_b : joint_a;
     return near_to(t, x, other[pair_of(joint)] / 3, edges);

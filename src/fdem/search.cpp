@@ -146,7 +146,7 @@ std::uint64_t changed_bits(const World& w) {
   return bits;
 }
 
-/// The same on a device, as its move has noted; likewise whether a margin is used up.
+/// Those bits on a device, as its move has noted them, and whether a margin is used up.
 std::uint64_t noted_bits(World& w) {
   std::int32_t news[2];
   peek_marked_bytes(news, w.news.data(), w.exec.space, sizeof news);

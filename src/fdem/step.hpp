@@ -41,7 +41,7 @@ void take_step(Run&& run, World& w) {
   run.count_step(w);
 }
 
-/// What runs that take one step at a time share: ghosts, the search, insertion, loads, the time
+/// Parts that all runs of one step at a time share: ghosts, the search, insertion, loads, the time
 /// step.
 struct StepwiseRun {
   void send_ghosts(World& w) const;

@@ -97,7 +97,7 @@ BR_HD inline void gather_records(const View<const Record>& records, Indices<doub
 #endif
 }
 
-/// The same where this call stands (load_now); records are of `count` doubles.
+/// Gathers records where this call stands (load_now); records are of `count` doubles.
 template <int count, class Record, class R>
 BR_HD inline void gather_records_now(const View<const Record>& records, const Indices<R>& i,
                                      R (&columns)[count]) {

@@ -25,7 +25,7 @@ class ElasticNetwork {
   const std::vector<Index>& members() const { return members_; }
   double mean_radius() const { return mean_radius_; }
 
-  /// What holds one component of each element: six flags and their values, by member.
+  /// Prescribed components of each element: six flags and their values, by member.
   struct Held {
     std::vector<std::array<bool, 6>> fixed;
     Displacements value;  ///< also a first guess of what is free

@@ -215,7 +215,7 @@ class Findings {
     return text + ".";
   }
 
-  /// What parts a sentence from one more fact.
+  /// Separator of a sentence and one more fact.
   static const char* glue(const std::string& text) {
     return text.find(';') == std::string::npos ? ";" : ",";
   }

@@ -103,7 +103,7 @@ struct ParallelBond {
     const double ks = shear_ratio * k.stiffness;
     const Vec3 both = 0.5 * (t.shear_before + r.shear);
     if (breaks) {
-      // What it had stored and was given by the trapezoidal rule, less what it goes on to store.
+      // Energy stored before and given by the trapezoidal rule, less the energy that stays stored.
       const ParallelBondState before{1.0, 0.0, t.shear_before, t.bend_before + t.twist_before};
       const ParallelBondState after{0.0, 0.0, r.shear, {}};
       const double last = stretch - motion.extension;
