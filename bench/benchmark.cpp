@@ -14,8 +14,8 @@
 #include "exec/device.hpp"
 #include "exec/memory.hpp"
 #include "prepare/build.hpp"
-#include "prepare/packing.hpp"
-#include "run/machine.hpp"
+#include "prepare/packing/packing.hpp"
+#include "run/machine/machine.hpp"
 
 namespace breccia {
 namespace {

@@ -56,7 +56,7 @@ struct BenchCommand {
   void execute(Communicator* ranks) const {
     refuse_unknown(ranks);
     Exec exec;
-    together_or_not(ranks, [&] { exec = in_precision(exec_of(options, ranks), precision); });
+    collective_try(ranks, [&] { exec = in_precision(exec_of(options, ranks), precision); });
     if (paced) {
       pace_slab(std::cin, std::cout, exec);
       return;
@@ -73,7 +73,7 @@ struct BenchCommand {
       if (names.empty() || wanted(benchmark)) add(benchmark.name, benchmark.measure(exec));
     for (const RankBenchmark& benchmark : rank_benchmarks())
       if (wanted(benchmark)) add(benchmark.name, benchmark.measure(exec, ranks, scale));
-    together_or_not(ranks, [&] {
+    collective_try(ranks, [&] {
       if (!file.empty() && leads(ranks))
         replace_file(file, benchmark_json(all, exec, options.device));
     });

@@ -12,7 +12,7 @@
 #include "exec/memory.hpp"
 #include "fdem/world.hpp"
 #include "prepare/build_fdem.hpp"
-#include "run/machine.hpp"
+#include "run/machine/machine.hpp"
 
 namespace breccia {
 namespace {

@@ -15,7 +15,7 @@
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
-#include "run/machine.hpp"
+#include "run/machine/machine.hpp"
 
 namespace breccia {
 namespace {

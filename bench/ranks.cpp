@@ -15,7 +15,7 @@
 #include "exec/memory.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
-#include "run/machine.hpp"
+#include "run/machine/machine.hpp"
 
 namespace breccia {
 namespace {
@@ -54,10 +54,10 @@ Index size_of(const fdem::World& w) {
 /// Ends with all work of a device done.
 template <class World>
 void take_steps(World& w, int steps) {
-  if (!w.domain.alone()) w.domain.pace.resume(*w.domain.ranks);
+  if (!w.domain.single_rank()) w.domain.pace.resume(*w.domain.ranks);
   StopAt stop;
   for (stop.step = w.step + steps; w.step < stop.step;) advance(w, stop);
-  if (!w.domain.alone()) w.domain.pace.pause(*w.domain.ranks);
+  if (!w.domain.single_rank()) w.domain.pace.pause(*w.domain.ranks);
   rebalance(w);
   if (w.exec.space == Space::cuda) wait_for_device();
 }
@@ -88,7 +88,7 @@ void report_ranks(const All& all, const DomainCounts& before, const DomainCounts
   const DomainFacts facts = domain_facts(*all.ranks, now, waited);
   result.push_back({part, "waited", "of the time", facts.waited_mean / spent,
                     facts.waited_least / spent, facts.waited_most / spent});
-  result.push_back(once(part, "copies", facts.copies, "-"));
+  result.push_back(once(part, "copies", facts.ghosts, "-"));
   const PeerLink* const link = all.ranks->link();
   result.push_back(once(part, "copies_read_directly", link && link->in_use() ? 1.0 : 0.0, "-"));
   result.push_back(once(part, "imbalance", facts.imbalance, "-"));
@@ -103,7 +103,7 @@ template <class World>
 std::vector<Measurement> measure_windows(World& w, const All& all, int steps, double setup) {
   StageTimers timers;
   w.exec.timers = &timers;
-  const Index own = w.domain.alone() ? size_of(w) : static_cast<Index>(w.domain.counts.owned);
+  const Index own = w.domain.single_rank() ? size_of(w) : static_cast<Index>(w.domain.counts.owned);
   const auto elements = static_cast<double>(all.sum(own));
   const DomainCounts counts = w.domain.counts;
   const std::int64_t searched = w.searches;

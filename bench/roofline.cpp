@@ -28,8 +28,8 @@ std::vector<CountedKernel> counted(const dem::World& w) {
   const bool mixed = w.exec.precision == Precision::mixed;
   const double elements = w.elements.size(), links = w.links();
   const double number = mixed ? size<float> : size<double>;
-  const double action = size<dem::Action>;
-  const double actions = w.concrete.size() * (mixed ? size<dem::ActionOf<float>> : action) +
+  const double action = size<dem::PairForce>;
+  const double actions = w.concrete.size() * (mixed ? size<dem::PairForceOf<float>> : action) +
                          (w.steel.size() + w.interface.size()) * action;
   const double ends = 2 * size<Index>, state = size<dem::ElementState>;
   const double concrete = w.concrete.size() * (ends + 2 * size<double> + 2 * 7 * number);

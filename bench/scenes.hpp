@@ -1,9 +1,9 @@
 #pragma once
 // Scenes that benchmarks run, built without a file.
 
-#include "dem/config.hpp"
-#include "dem/model.hpp"
-#include "fdem/config.hpp"
+#include "dem/setup/config.hpp"
+#include "dem/setup/model.hpp"
+#include "fdem/setup/config.hpp"
 #include "fdem/world.hpp"
 
 namespace breccia {

@@ -253,7 +253,7 @@ void number_triangles(fdem::World& w, const Plate& plate, const std::vector<Inde
   w.open_vertex = plate.rim();
   w.node_vertex.clear();  // both follow from these
   w.border_vertex.clear();
-  w.opened.vertex.resize(plate.vertices());
+  w.exposed.vertex.resize(plate.vertices());
   resize_fields(w.couples, 0);
   resize_fields(w.reach, 0);
   hold_below(w, plate, triangles);
@@ -281,7 +281,7 @@ dem::World tiled_slabs(dem::Config config, int count, Communicator* ranks, const
   config.supports.clear();
   const TileRun tiles = tiles_of(count, ranks);
   dem::World w(on_host(exec));
-  together_or_not(ranks, [&] {
+  collective_try(ranks, [&] {
     const dem::Model slab = build_model(config, "");
     // A rank without tiles makes one for what all ranks know alike.
     const int first = std::min(tiles.first, count - 1), built = std::max(1, tiles.last - first);
@@ -324,7 +324,7 @@ fdem::World tiled_plate(const PlateTiles& tiles, Communicator* ranks, const Exec
   const fdem::Config config = granite();
   fdem::World w(on_host(exec));
   std::vector<std::uint8_t> own;
-  together_or_not(ranks, [&] {
+  collective_try(ranks, [&] {
     const Plate plate(tiles);
     TileRun run = tiles_of(plate.count(), ranks);
     const bool none = run.first == run.last;

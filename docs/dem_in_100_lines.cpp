@@ -1,6 +1,6 @@
 // The discrete element method on two pages: a ball of bonded spheres strikes a plate of bonded
 // spheres, links break, fragments fly. For teaching: one thread, no rotation, no friction.
-// Breccia's loop, src/dem/step.hpp, has the same stages; its laws are in docs/theory.md.
+// Breccia's loop, src/dem/stepping/step.hpp, has the same stages; its laws are in docs/theory.md.
 //
 //   g++ -O2 -std=c++20 docs/dem_in_100_lines.cpp -o dem && ./dem
 #include <algorithm>

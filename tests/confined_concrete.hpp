@@ -1,7 +1,7 @@
 #pragma once
 // Parameters of concrete that bound it under pressure (docs/theory.md, section 4).
 
-#include "dem/config.hpp"
+#include "dem/setup/config.hpp"
 
 namespace breccia::testing {
 

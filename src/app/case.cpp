@@ -7,18 +7,18 @@
 #include "domain/domain.hpp"
 #include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
-#include "prepare/check_case.hpp"
+#include "prepare/checks/check_case.hpp"
 #include "prepare/model_file.hpp"
-#include "run/dem_method.hpp"
-#include "run/device_plan.hpp"
-#include "run/fdem_method.hpp"
-#include "run/memory_plan.hpp"
-#include "run/shown.hpp"
+#include "run/machine/device_plan.hpp"
+#include "run/machine/memory_plan.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem_method.hpp"
+#include "run/method/shown.hpp"
 
 namespace breccia::app {
 namespace {
@@ -199,11 +199,11 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
   return std::visit(
       [&](const auto& config) {
         decltype(model_of(read, config)) model;
-        together_or_not(ranks, [&] {  // before any of them takes some
+        collective_try(ranks, [&] {  // before any of them takes some
           const MemoryPlan plan = memory_plan(config);
           refuse_without_memory(plan, plan.run_bytes, ranks_on_this_machine(ranks));
         });
-        together_or_not(ranks, [&] {
+        collective_try(ranks, [&] {
           model = model_of(read, config);
           if (exec.space == Space::cuda)
             plan_device(device_bytes(model) / (ranks == nullptr ? 1 : ranks->size()),

@@ -7,14 +7,14 @@
 #include <variant>
 #include <vector>
 
-#include "dem/config.hpp"
-#include "dem/model.hpp"
+#include "dem/setup/config.hpp"
+#include "dem/setup/model.hpp"
 #include "domain/communicator.hpp"
 #include "exec/space.hpp"
-#include "fdem/config.hpp"
-#include "fdem/model.hpp"
+#include "fdem/setup/config.hpp"
+#include "fdem/setup/model.hpp"
 #include "io/checkpoint.hpp"
-#include "run/method.hpp"
+#include "run/method/method.hpp"
 
 namespace breccia::app {
 

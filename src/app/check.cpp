@@ -11,7 +11,7 @@
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
-#include "run/memory_plan.hpp"
+#include "run/machine/memory_plan.hpp"
 
 namespace breccia::app {
 namespace {

@@ -12,9 +12,9 @@
 #include "io/checkpoint.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
-#include "io/vtu_reader.hpp"
+#include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
-#include "run/checkpoints.hpp"
+#include "run/results/checkpoints.hpp"
 
 namespace breccia::app {
 namespace {

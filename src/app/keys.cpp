@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "dem/config.hpp"
+#include "dem/setup/config.hpp"
 #include "exec/error.hpp"
-#include "fdem/config.hpp"
-#include "io/case_file.hpp"
+#include "fdem/setup/config.hpp"
+#include "io/case/case_file.hpp"
 
 namespace breccia::app {
 

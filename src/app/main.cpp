@@ -14,11 +14,11 @@
 #include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
 #include "exec/threads.hpp"
+#include "io/case/suggestion.hpp"
 #include "io/harmless.hpp"
-#include "io/suggestion.hpp"
-#include "run/machine.hpp"
-#include "run/memory_plan.hpp"
-#include "run/signals.hpp"
+#include "run/machine/machine.hpp"
+#include "run/machine/memory_plan.hpp"
+#include "run/machine/signals.hpp"
 
 namespace {
 

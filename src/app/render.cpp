@@ -9,9 +9,9 @@
 
 #include "app/commands.hpp"
 #include "exec/error.hpp"
-#include "io/picture.hpp"
+#include "io/picture/picture.hpp"
 #include "io/round_numbers.hpp"
-#include "io/vtu_reader.hpp"
+#include "io/vtu/vtu_reader.hpp"
 
 namespace breccia::app {
 namespace {

@@ -17,8 +17,8 @@
 #include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
+#include "run/machine/signals.hpp"
 #include "run/run.hpp"
-#include "run/signals.hpp"
 
 namespace breccia::app {
 namespace {
@@ -61,7 +61,7 @@ struct ResumeCommand {
     std::optional<ResultFolder> folder;          // of rank 0
     std::optional<CheckpointReader> checkpoint;  // every rank needs the folder of the case
     std::optional<RunState> former;
-    together_or_not(ranks, [&] {
+    collective_try(ranks, [&] {
       exec = exec_of(options, ranks);
       exec.timers = &timers;
       refuse_fixed_keys(options.overrides);

@@ -11,7 +11,7 @@
 #include "app/findings.hpp"
 #include "app/run_options.hpp"
 #include "domain/together.hpp"
-#include "run/signals.hpp"
+#include "run/machine/signals.hpp"
 
 namespace breccia::app {
 namespace {
@@ -29,7 +29,7 @@ struct RunCommand {
     Exec exec;
     Case read;
     std::string out;
-    together_or_not(ranks, [&] {
+    collective_try(ranks, [&] {
       exec = exec_of(options, ranks);
       exec.timers = &timers;
       read = load_case(path, options.overrides);

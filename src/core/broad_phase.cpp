@@ -45,9 +45,9 @@ struct MeasureBox {
       return extent;
     }
     if (low.x > high.x || low.y > high.y || low.z > high.z) extent.swapped = i;
-    extent.plane = larger(high.x - low.x, high.y - low.y);
-    extent.size = larger(extent.plane, high.z - low.z);
-    extent.reach = larger(reach(low), reach(high));
+    extent.plane = max(high.x - low.x, high.y - low.y);
+    extent.size = max(extent.plane, high.z - low.z);
+    extent.reach = max(reach(low), reach(high));
     extent.lowest = extent.highest = low.z;
     return extent;
   }
@@ -56,19 +56,17 @@ struct MeasureBox {
   BR_HD static bool finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
   }
-  BR_HD static double reach(const Vec3& v) {
-    return larger(absolute(v.x), larger(absolute(v.y), absolute(v.z)));
-  }
+  BR_HD static double reach(const Vec3& v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 };
 
 struct JoinExtents {
   BR_HD Extent operator()(const Extent& a, const Extent& b) const {
     Extent both;
-    both.plane = larger(a.plane, b.plane);
-    both.size = larger(a.size, b.size);
-    both.reach = larger(a.reach, b.reach);
-    both.lowest = smaller(a.lowest, b.lowest);
-    both.highest = larger(a.highest, b.highest);
+    both.plane = max(a.plane, b.plane);
+    both.size = max(a.size, b.size);
+    both.reach = max(a.reach, b.reach);
+    both.lowest = min(a.lowest, b.lowest);
+    both.highest = max(a.highest, b.highest);
     both.infinite = LowerIndex{}(a.infinite, b.infinite);
     both.swapped = LowerIndex{}(a.swapped, b.swapped);
     return both;
@@ -92,7 +90,7 @@ struct MeasureLevels {
     const Index end = first + fold_chunk < boxes.size ? first + fold_chunk : boxes.size;
     for (Index i = first; i < end; ++i) {
       double& size = sizes.size[grid.level(boxes[i])];
-      size = larger(size, grid.size(boxes[i]));
+      size = max(size, grid.size(boxes[i]));
     }
     return sizes;
   }
@@ -107,7 +105,7 @@ struct JoinLevels {
   BR_HD LevelSizes operator()(const LevelSizes& a, const LevelSizes& b) const {
     LevelSizes both;
     for (Index level = 0; level <= finest_level; ++level)
-      both.size[level] = larger(a.size[level], b.size[level]);
+      both.size[level] = max(a.size[level], b.size[level]);
     return both;
   }
 };
@@ -317,7 +315,7 @@ CellGrid grid_for(const Exec& exec, const Extent& extent, View<const Box> boxes)
     if (sizes.size[level] < 0.0) continue;
     const double width = sizes.size[level] > 0.0 ? sizes.size[level] : for_points;
     grid.occupied |= 1U << level;
-    grid.inverse[level] = 1.0 / larger((1.0 + 1.0 / 256.0) * width, smallest);
+    grid.inverse[level] = 1.0 / max((1.0 + 1.0 / 256.0) * width, smallest);
   }
   return grid;
 }

@@ -28,8 +28,8 @@ struct CellGrid {
 
   /// The longest edge of a box that the grid knows of.
   BR_HD double size(const Box& box) const {
-    const double plane = larger(box.high.x - box.low.x, box.high.y - box.low.y);
-    return planar ? plane : larger(plane, box.high.z - box.low.z);
+    const double plane = max(box.high.x - box.low.x, box.high.y - box.low.y);
+    return planar ? plane : max(plane, box.high.z - box.low.z);
   }
   BR_HD Index level(const Box& box) const {
     double twice = 2.0 * size(box);
@@ -40,7 +40,7 @@ struct CellGrid {
   BR_HD std::int64_t cell(double place, Index level) const {
     constexpr double outermost = 4398046511104.0;  // 2^42
     double t = place * inverse[level];
-    t = smaller(larger(t, -outermost), outermost);
+    t = min(max(t, -outermost), outermost);
     const auto whole = static_cast<std::int64_t>(t);
     return whole - (t < static_cast<double>(whole) ? 1 : 0);
   }

@@ -25,12 +25,12 @@ struct StepClocks {
   StepClock* now;
 
   template <class Kernel, class Rule>
-  Opening<Kernel, Rule> opening(const Kernel& kernel, const EndOfStep<Rule>& end,
-                                bool keeps) const {
+  FirstLaunch<Kernel, Rule> opening(const Kernel& kernel, const EndOfStep<Rule>& end,
+                                    bool keeps) const {
     return {kernel, end, before, now, keeps};
   }
-  template <Stand stand, class Kernel>
-  Timed<Kernel, stand> timed(const Kernel& kernel) const {
+  template <Phase phase, class Kernel>
+  ClockedLaunch<Kernel, phase> timed(const Kernel& kernel) const {
     return {kernel, now};
   }
 };
@@ -60,8 +60,8 @@ StepClock read_clock(const Buffer<StepClock>& clock, const EndOfStep<Rule>& end,
   host.last_dt = c.now.last_dt;
   host.next_dt = c.now.next_dt;
   if (c.now.step > host.step) {
-    taken.dt_min = taken.steps > 0 ? smaller(taken.dt_min, c.dt_min) : c.dt_min;
-    taken.dt_max = larger(taken.dt_max, c.dt_max);
+    taken.dt_min = taken.steps > 0 ? min(taken.dt_min, c.dt_min) : c.dt_min;
+    taken.dt_max = max(taken.dt_max, c.dt_max);
     taken.steps += c.now.step - host.step;
   }
   host.step = c.now.step;
@@ -71,14 +71,15 @@ StepClock read_clock(const Buffer<StepClock>& clock, const EndOfStep<Rule>& end,
 /// Takes steps on a device until `stop`, or until about `slice` has passed.
 ///
 /// @param launch_step  launches all kernels of one step by its StepClocks; the first one is Opening
-/// @param launch_rest  launches those after the move, wrapped as before it: the clock starts there
+/// @param launch_forces_only  launches those after the move, wrapped as before it: the clock starts
+/// there
 /// @param on_halt      what the host does when the clock halts in the middle of a step, told why:
 ///                     the rest of that step too if it returns true; it clears `graph` if arrays
 ///                     have moved
-template <class Rule, class LaunchStep, class LaunchRest, class OnHalt>
+template <class Rule, class LaunchStep, class LaunchForcesOnly, class OnHalt>
 Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<Rule>& end,
                    const HostTimes& host, const StopAt& stop, const LaunchStep& launch_step,
-                   const LaunchRest& launch_rest, const OnHalt& on_halt) {
+                   const LaunchForcesOnly& launch_forces_only, const OnHalt& on_halt) {
   constexpr std::chrono::milliseconds slice{50};
   constexpr std::int64_t few = 4;  // steps of a graph: even, so that the first clock is the last
   const auto begin = std::chrono::steady_clock::now();
@@ -96,9 +97,9 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
     start_clock(clock, end, host, stop, open);
     std::optional<ShadowLaunches> launches;
     if (shadow) launches.emplace();
-    if (open != 0) launch_rest(StepClocks{nullptr, clock.data()});
-    const double needed = smaller(std::ceil((stop.time - host.time) / host.next_dt),
-                                  static_cast<double>(stop.step - host.step));
+    if (open != 0) launch_forces_only(StepClocks{nullptr, clock.data()});
+    const double needed = min(std::ceil((stop.time - host.time) / host.next_dt),
+                              static_cast<double>(stop.step - host.step));
     for (std::int64_t launched = 0, seen = 0; static_cast<double>(launched) < needed;) {
       if (launched - seen < ahead) {
         if (LaunchTimes::wanted() || shadow) {  // neither has a graph
@@ -123,11 +124,11 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
     launches.reset();
     const StepClock now = read_clock(clock, end, host, taken);
     open = 0;
-    if (now.wanted != 0) {
-      if (on_halt(now.wanted)) {
+    if (now.host_request != 0) {
+      if (on_halt(now.host_request)) {
         host.step += 1;
-        taken.dt_min = taken.steps > 0 ? smaller(taken.dt_min, host.last_dt) : host.last_dt;
-        taken.dt_max = larger(taken.dt_max, host.last_dt);
+        taken.dt_min = taken.steps > 0 ? min(taken.dt_min, host.last_dt) : host.last_dt;
+        taken.dt_max = max(taken.dt_max, host.last_dt);
         ++taken.steps;
       } else {
         open = step_open_after_move;

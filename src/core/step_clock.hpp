@@ -43,7 +43,7 @@ struct StepClock {
   StopAt stop;
   double dt_min = 1e300, dt_max = 0.0;  ///< of the steps since the clock was started  [s]
   std::uint64_t least = 0;              ///< bits of the smallest number noted in this step
-  std::int32_t wanted = 0;              ///< the host is wanted after the move of this step
+  std::int32_t host_request = 0;        ///< the host is host_request after the move of this step
   std::int32_t halted = 0;
   std::int32_t to_evaluation = 0;  ///< steps until one whose least number counts
   std::int32_t open = 0;           ///< step_open...: a step was taken and has not been counted yet

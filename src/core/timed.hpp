@@ -26,7 +26,7 @@ struct EndOfStep {
       c.now.last_dt = c.now.next_dt;
     }
     c.open = 0;
-    if (c.wanted != 0) {
+    if (c.host_request != 0) {
       c.halted = 1;
       return;
     }
@@ -37,23 +37,23 @@ struct EndOfStep {
     c.to_evaluation -= 1;
     c.least = ordered_bits(largest_least);
     c.now.step += 1;
-    c.dt_min = smaller(c.dt_min, c.now.last_dt);
-    c.dt_max = larger(c.dt_max, c.now.last_dt);
+    c.dt_min = min(c.dt_min, c.now.last_dt);
+    c.dt_max = max(c.dt_max, c.now.last_dt);
     if (c.now.time >= c.stop.time || c.now.step >= c.stop.step) c.halted = 1;
   }
 };
 
 /// A kernel of the first launch of a step: ends the step before.
 template <class Kernel, class Rule>
-struct Opening : LoadedBy<Kernel> {
+struct FirstLaunch : LoadedBy<Kernel> {
   Kernel kernel;
   EndOfStep<Rule> end;
   const StepClock* before;  ///< the clock that the step before has kept
   StepClock* clock;         ///< of this step
   bool keeps;               ///< of all kernels of the launch, this one's item 0 writes the clock
 
-  Opening(const Kernel& of, const EndOfStep<Rule>& rule, const StepClock* from, StepClock* to,
-          bool writes)
+  FirstLaunch(const Kernel& of, const EndOfStep<Rule>& rule, const StepClock* from, StepClock* to,
+              bool writes)
       : kernel(of), end(rule), before(from), clock(to), keeps(writes) {}
 
   template <class Read>
@@ -75,7 +75,8 @@ struct Opening : LoadedBy<Kernel> {
       clock->to_evaluation = c.to_evaluation;
       clock->halted = c.halted;
       clock->open = c.open;
-      if (c.halted != 0) clock->wanted = c.wanted;  // or a thread of this launch may set it
+      if (c.halted != 0)
+        clock->host_request = c.host_request;  // or a thread of this launch may set it
     }
     if (c.halted != 0) return;
     Kernel timed = kernel;
@@ -85,17 +86,17 @@ struct Opening : LoadedBy<Kernel> {
 };
 
 /// Where in a step a launch stands: in its move; after that, where it stays out if the host is
-/// wanted; or there with the move in the clock's time already.
-enum class Stand { in_move, after_move, in_rest };
+/// host_request; or there with the move in the clock's time already.
+enum class Phase { in_move, after_move, after_search };
 
 /// A kernel of any launch but the first. A copy of it gets the time, unless it hands its own
 /// address on: the parameters of one with slow() or update_at(now, i, loaded) stay in place.
-template <class Kernel, Stand stand>
-struct Timed : LoadedBy<Kernel> {
+template <class Kernel, Phase phase>
+struct ClockedLaunch : LoadedBy<Kernel> {
   Kernel kernel;
   const StepClock* clock;
 
-  Timed(const Kernel& of, const StepClock* by) : kernel(of), clock(by) {}
+  ClockedLaunch(const Kernel& of, const StepClock* by) : kernel(of), clock(by) {}
 
   template <class Read>
   BR_HD void load_early(Index i, Read& loaded) const {
@@ -105,14 +106,14 @@ struct Timed : LoadedBy<Kernel> {
   BR_HD auto operator()(Index i, Read&... loaded) const {
     (kernel.load_late(i, loaded), ...);  // before the clock is known
     const StepClock& c = *clock;
-    if (c.halted != 0 || (stand != Stand::in_move && c.wanted != 0)) {
+    if (c.halted != 0 || (phase != Phase::in_move && c.host_request != 0)) {
       if constexpr (gives_number<Kernel, Read...>)
         return largest_least;
       else
         return;
     }
     const StepTime now =
-        stand == Stand::after_move
+        phase == Phase::after_move
             ? StepTime{c.now.time + c.now.next_dt, c.now.next_dt, c.now.next_dt, c.now.step}
             : c.now;
     if constexpr (HasSlow<Kernel>) {
@@ -139,10 +140,10 @@ struct Fence {
 
 /// A kernel of a step that the host takes by itself, with the times that it was made with.
 template <class Kernel>
-struct AtOnce : LoadedBy<Kernel> {
+struct PlainLaunch : LoadedBy<Kernel> {
   Kernel kernel;
 
-  explicit AtOnce(const Kernel& of) : kernel(of) {}
+  explicit PlainLaunch(const Kernel& of) : kernel(of) {}
 
   template <class Read>
   BR_HD void load_early(Index i, Read& loaded) const {

@@ -41,9 +41,8 @@ struct BoxSphere {
     constexpr double rounding = 1.0 / 281474976710656.0;  // 2^-48
     const Vec3 c = centre[i];
     const double reach = radius[i] + margin[i];
-    const Vec3 half{reach + rounding * (reach + absolute(c.x)),
-                    reach + rounding * (reach + absolute(c.y)),
-                    reach + rounding * (reach + absolute(c.z))};
+    const Vec3 half{reach + rounding * (reach + abs(c.x)), reach + rounding * (reach + abs(c.y)),
+                    reach + rounding * (reach + abs(c.z))};
     boxes[i] = {c - half, c + half};
   }
 };

@@ -61,7 +61,7 @@ struct ContactForces {
   View<const Index> a, b;
   View<ContactState> state;
   View<double> slid, damped;
-  View<Action> actions;  ///< zero for pairs that were apart when last seen
+  View<PairForce> actions;  ///< zero for pairs that were apart when last seen
 
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_HD void operator()(Index i) const {
@@ -74,18 +74,19 @@ struct ContactForces {
     if (apart && state[i].overlap <= 0.0) return;  // was apart, too: its action is zero already
     const PairMotion<double> motion = pair_motion<double>(end_a, end_b, radius_a - radius_b, dt);
     const double mass_a = elements.mass[ia], mass_b = elements.mass[ib];
-    const ContactLaw::Pair pair{radius_a * radius_b / sum, smaller(radius_a, radius_b), sum,
+    const ContactLaw::Pair pair{radius_a * radius_b / sum, min(radius_a, radius_b), sum,
                                 mass_a * mass_b / (mass_a + mass_b), 0.5 * sum};
     const double approach = -dot(end_b.velocity - end_a.velocity, motion.normal);
     const double overlap = apart ? 0.0 : sum - motion.distance;
     ContactState kept = state[i];
-    const ContactResponse r = law.answer(pairs[material[ia] * materials + material[ib]], pair,
-                                         overlap, approach, motion, kept);
+    const ContactResponse r = law.response(pairs[material[ia] * materials + material[ib]], pair,
+                                           overlap, approach, motion, kept);
     state[i] = kept;
     slid[i] += r.slid;
     damped[i] += r.damped;
-    book(actions, i, motion, r.shear + r.pressure * motion.normal, r.moment, r.normal_stiffness,
-         r.shear_stiffness, r.rolling_stiffness, r.rolling_stiffness);
+    write_pair_force(actions, i, motion, r.shear + r.pressure * motion.normal, r.moment,
+                     r.normal_stiffness, r.shear_stiffness, r.rolling_stiffness,
+                     r.rolling_stiffness);
   }
 };
 
@@ -123,7 +124,7 @@ struct WallForces {
     motion.normal = -wall.normal;
     motion.distance = motion.arm_a = height;
     const Vec3 dv = wall.velocity - end.velocity;
-    motion.slip = dt * motion.across(dv - cross(height * end.spin, motion.normal));
+    motion.slip = dt * motion.tangential(dv - cross(height * end.spin, motion.normal));
     motion.turn = -(dt * end.spin);
     motion.half_turn = (0.25 * dt * dot(motion.normal, end.spin)) * motion.normal;
     motion.turn_scale = turn_scale(motion.half_turn);
@@ -132,7 +133,7 @@ struct WallForces {
     ContactPair constants = pairs[material[e]];
     if (!law.hertz) constants.normal *= wall.stiffness;
     const ContactResponse r =
-        law.answer(constants, pair, overlap, -dot(dv, motion.normal), motion, kept);
+        law.response(constants, pair, overlap, -dot(dv, motion.normal), motion, kept);
     state[i] = kept;
     slid[i] += r.slid;
     damped[i] += r.damped;
@@ -144,12 +145,12 @@ struct WallForces {
     driven[i] -= dt * dot(on_wall, wall.velocity);
     // Stiffnesses add, so their critical times squared add like resistances in parallel; the wall's
     // largest stiffness stands for all its directions.
-    const double stiffest = larger(r.normal_stiffness, r.shear_stiffness);
+    const double stiffest = max(r.normal_stiffness, r.shear_stiffness);
     if (stiffest > 0.0) {
       const double rolling = r.shear_stiffness * height * height + r.rolling_stiffness;
       const double own = mass / stiffest;
       const double turning = rolling > 0.0 ? elements.inertia[e] / rolling : own;
-      const double least = smaller(own, turning);
+      const double least = min(own, turning);
       critical[e] = critical[e] * least / (critical[e] + least);
     }
   }

@@ -21,7 +21,7 @@ struct Motion {
 
  private:
   BR_HD static double share(double time, double ramp) {
-    return ramp > 0.0 ? smaller(1.0, larger(0.0, time / ramp)) : 1.0;
+    return ramp > 0.0 ? min(1.0, max(0.0, time / ramp)) : 1.0;
   }
 };
 
@@ -32,7 +32,7 @@ struct UsedMargin {
   template <class R>
   BR_HD static auto beyond(const Vec3Of<R>& position, const Vec3Of<R>& from, const R& allowed) {
     const Vec3Of<R> moved = position - from;
-    return opposite(dot(moved, moved) <= allowed * allowed);  // NaN counts as beyond
+    return !(dot(moved, moved) <= allowed * allowed);  // NaN counts as beyond
   }
 };
 
@@ -44,17 +44,17 @@ struct GatherForces {
   static constexpr const char* name = "dem.gather";
   View<LinkSums> sums;
   IncidenceView bars, contacts;
-  View<const Action> bar_actions, contact_actions;
+  View<const PairForce> bar_actions, contact_actions;
   View<const double> mass, inertia;
   View<const std::uint8_t> fixed;
   View<Vec3> force, torque;
   View<double> critical;  ///< min over free coordinates of inertia / stiffness  [s2]
 
   BR_HD static void add(LinkSums& sums, const IncidenceView& incidence,
-                        const View<const Action>& actions, Index element) {
+                        const View<const PairForce>& actions, Index element) {
     for (Index k = incidence.first(element); k < incidence.last(element); ++k) {
       const Entry entry = incidence.entries[k];
-      const Action& action = actions[pair_of(entry)];
+      const PairForce& action = actions[pair_of(entry)];
       if (side_of(entry) == 0) {
         sums.as_a.add(action.numbers);
         sums.stiffness_a.add(action.stiffness);
@@ -75,7 +75,7 @@ struct GatherForces {
     for (Index k = 0; k < width_of<R>; ++k) sums[e + k] = LinkSums{};
   }
   template <class R>
-  BR_HD void add_all(const IncidenceView& incidence, const View<const Action>& actions,
+  BR_HD void add_all(const IncidenceView& incidence, const View<const PairForce>& actions,
                      Index e) const {
     if (incidence.first(e) == incidence.first(e + width_of<R>)) return;
     for (Index k = 0; k < width_of<R>; ++k) add(sums[e + k], incidence, actions, e + k);
@@ -86,8 +86,8 @@ struct GatherForces {
   BR_HD void finish(Index e, const TotalsOf<R>& of) const {
     store_vectors(force, e, of.force);
     store_vectors(torque, e, of.torque);
-    const R slowest = larger(of.straight / load<R>(mass, e), of.turning / load<R>(inertia, e));
-    store(critical, e, choose(slowest > 0.0, 1.0 / slowest, constant<R>(largest_least)));
+    const R slowest = max(of.straight / load<R>(mass, e), of.turning / load<R>(inertia, e));
+    store(critical, e, select(slowest > 0.0, 1.0 / slowest, constant<R>(largest_least)));
   }
 };
 
@@ -130,8 +130,8 @@ struct Kick {
   }
   template <class R>
   BR_HD static R opposed(const R& force, const R& velocity) {
-    const R size = absolute(force);
-    return choose(velocity > 0.0, size, choose(velocity < 0.0, -size, constant<R>(0.0)));
+    const R size = abs(force);
+    return select(velocity > 0.0, size, select(velocity < 0.0, -size, constant<R>(0.0)));
   }
   /// Share of a force that opposes the motion it is about to drive.
   template <class R>
@@ -198,8 +198,8 @@ struct Kick {
     const Vec3Of<R> given = of.force + weight(of.mass) - r.damped_force;
     const Vec3Of<R> held = gained - given;
     const R none = constant<R>(0.0);
-    return {choose(holds<R>(e, fixed_x), held.x, none), choose(holds<R>(e, fixed_y), held.y, none),
-            choose(holds<R>(e, fixed_z), held.z, none)};
+    return {select(holds<R>(e, fixed_x), held.x, none), select(holds<R>(e, fixed_y), held.y, none),
+            select(holds<R>(e, fixed_z), held.z, none)};
   }
   /// Where bit `which` of Fixed is set, of element e and its neighbours in a pack.
   template <class R>
@@ -232,8 +232,8 @@ struct Kick {
   /// Local damping leaves held directions out.
   template <class R, class Truth>
   BR_HD static void prescribe(const Truth& held, const R& given, R& velocity, R& damped) {
-    velocity = choose(held, given, velocity);
-    damped = choose(held, constant<R>(0.0), damped);
+    velocity = select(held, given, velocity);
+    damped = select(held, constant<R>(0.0), damped);
   }
 };
 
@@ -302,7 +302,7 @@ struct MoveElements {
     const R s[10] = {position.x,   position.y, position.z, r.velocity.x, r.velocity.y,
                      r.velocity.z, r.spin.x,   r.spin.y,   r.spin.z,     now.radius};
     store_records(state, e, s);
-    const QuaternionOf<R> q = turned(loaded.turn, turned_by);
+    const QuaternionOf<R> q = rotated(loaded.turn, turned_by);
     const R numbers[4] = {q.w, q.x, q.y, q.z};
     store_records(orientation, e, numbers);
     return any(UsedMargin::beyond<R>(position, loaded.reference, loaded.margin));

@@ -76,7 +76,7 @@ struct ContactShares {
       const double ra = state_of[a[i]].radius;
       if (materials > 0) {
         const double rb = state_of[b[i]].radius;
-        const ContactLaw::Pair pair{ra * rb / (ra + rb), smaller(ra, rb), ra + rb, 0.0, 0.0};
+        const ContactLaw::Pair pair{ra * rb / (ra + rb), min(ra, rb), ra + rb, 0.0, 0.0};
         s.elastic.add(
             law.stored_normal(pairs[material[a[i]] * materials + material[b[i]]], pair, overlap));
       } else {

@@ -259,7 +259,7 @@ std::optional<std::size_t> wall_of(const World& w, const ProbeConfig& p) {
 /// push it with.
 Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
   const Quantity quantity = quantity_named(p.quantity).quantity;
-  const bool first = w.domain.alone() || w.domain.ranks->rank() == 0;
+  const bool first = w.domain.single_rank() || w.domain.ranks->rank() == 0;
   const Wall& own = w.walls[wall];
   const auto part = [&](const Vec3& v) {
     return quantity.axis == 0 ? v.x : quantity.axis == 1 ? v.y : v.z;

@@ -26,90 +26,90 @@ void renumber_all(World& w, Number number) {
 }
 
 /// Sends everything to the ranks that need it: elements and what ties them together.
-class Journey {
+class Migration {
  public:
   /// @param owner  rank that each local element will belong to
-  Journey(World& w, const std::vector<int>& owner)
-      : w_(w), elements_(w.domain.ranks->size()), ties_(w.domain, owner, elements_) {}
+  Migration(World& w, const std::vector<int>& owner)
+      : w_(w), elements_(w.domain.ranks->size()), shared_items_(w.domain, owner, elements_) {}
 
   /// Besides the owner, the ranks whose elements may touch one get a copy.
   void add_copies(const std::vector<Sphere>& around) {
     for (Index e = 0; e < w_.elements.size(); ++e)
       if (w_.domain.owns(e))
         w_.domain.each_sharer(around[static_cast<std::size_t>(e)], [&](int r) {
-          if (r != ties_.owner_of(e)) elements_.add(r, e);
+          if (r != shared_items_.owner_of(e)) elements_.add(r, e);
         });
   }
 
   void go() {
     for (Index e = 0; e < w_.elements.size(); ++e)
-      if (w_.domain.owns(e)) elements_.add(ties_.owner_of(e), e);
+      if (w_.domain.owns(e)) elements_.add(shared_items_.owner_of(e), e);
     const int ranks = w_.domain.ranks->size();
-    std::vector<Deliveries> links(link_kinds, Deliveries(ranks));
-    Deliveries contacts(ranks), walls(ranks);
+    std::vector<SendLists> links(link_kinds, SendLists(ranks));
+    SendLists contacts(ranks), walls(ranks);
     w_.each_set([&](const auto& set) { tie_ends(set, links[static_cast<std::size_t>(set.kind)]); });
     for (Index i = 0; i < w_.contacts.size(); ++i)
-      ties_.tie(std::array{w_.contacts.pairs.a.data()[i], w_.contacts.pairs.b.data()[i]}, i,
-                contacts);
+      shared_items_.keep_together(
+          std::array{w_.contacts.pairs.a.data()[i], w_.contacts.pairs.b.data()[i]}, i, contacts);
     const Pairs& at_walls = w_.wall_contacts.pairs;
     for (Index i = 0; i < at_walls.size(); ++i)
-      ties_.tie(std::array{at_walls.a.data()[i]}, i, walls);
+      shared_items_.keep_together(std::array{at_walls.a.data()[i]}, i, walls);
 
     renumber_all(w_, [this](Index e) { return w_.elements.id.data()[e]; });
     Communicator& all = *w_.domain.ranks;
-    deal(all, together(w_.elements, w_.travel), elements_, w_.elements.id);
-    std::vector<Buffer<Action>> on_links = split_actions();
+    redistribute(all, together(w_.elements, w_.travel), elements_, w_.elements.id);
+    std::vector<Buffer<PairForce>> on_links = split_actions();
     w_.each_set([&](auto& set) {
       const auto kind = static_cast<std::size_t>(set.kind);
       auto number = one_field(set.numbers);
       auto actions = one_field(on_links[kind]);
       if constexpr (std::remove_reference_t<decltype(set)>::swept)
-        deal(all, together(set.arrays(), number), links[kind], set.numbers);
+        redistribute(all, together(set.arrays(), number), links[kind], set.numbers);
       else
-        deal(all, together(set.arrays(), number, actions), links[kind], set.numbers);
+        redistribute(all, together(set.arrays(), number, actions), links[kind], set.numbers);
     });
-    deal(all, w_.contacts, contacts, w_.contacts.pairs.key);
-    deal(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
+    redistribute(all, w_.contacts, contacts, w_.contacts.pairs.key);
+    redistribute(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
     join_actions(on_links);
     renumber_all(w_, [places = Places(w_.elements.id)](Index id) mutable { return places.of(id); });
   }
 
  private:
   template <class Links>
-  void tie_ends(const Links& links, Deliveries& items) {
+  void tie_ends(const Links& links, SendLists& items) {
     std::vector<const Index*> arrays;
     links.each_end([&](const char*, const Buffer<Index>& end) { arrays.push_back(end.data()); });
     std::vector<Index> ends(arrays.size());
     for (Index i = 0; i < links.size(); ++i) {
       for (std::size_t k = 0; k < ends.size(); ++k) ends[k] = arrays[k][i];
-      ties_.tie(ends, i, items);
+      shared_items_.keep_together(ends, i, items);
     }
   }
 
   /// Bar forces are output between steps, so they migrate with their links.
-  std::vector<Buffer<Action>> split_actions() const {
-    std::vector<Buffer<Action>> on_links(link_kinds);
-    const Action* from = w_.bar_actions.data();
+  std::vector<Buffer<PairForce>> split_actions() const {
+    std::vector<Buffer<PairForce>> on_links(link_kinds);
+    const PairForce* from = w_.bar_actions.data();
     w_.each_set([&](const auto& set) {
       if (set.swept) return;
-      Buffer<Action>& own = on_links[static_cast<std::size_t>(set.kind)];
+      Buffer<PairForce>& own = on_links[static_cast<std::size_t>(set.kind)];
       own.resize(set.size());
       std::copy_n(from, set.size(), own.data());
       from += set.size();
     });
     return on_links;
   }
-  void join_actions(const std::vector<Buffer<Action>>& on_links) {
+  void join_actions(const std::vector<Buffer<PairForce>>& on_links) {
     Index count = 0;
-    for (const Buffer<Action>& own : on_links) count += own.size();
+    for (const Buffer<PairForce>& own : on_links) count += own.size();
     w_.bar_actions.resize(count);
-    Action* to = w_.bar_actions.data();
-    for (const Buffer<Action>& own : on_links) to = std::copy_n(own.data(), own.size(), to);
+    PairForce* to = w_.bar_actions.data();
+    for (const Buffer<PairForce>& own : on_links) to = std::copy_n(own.data(), own.size(), to);
   }
 
   World& w_;
-  Deliveries elements_;
-  Ties ties_;
+  SendLists elements_;
+  SharedItems shared_items_;
 };
 
 /// Links of each group lie together in memory, as in the whole model.
@@ -137,9 +137,9 @@ struct HasLeft {
   double allowed;  ///< square of the way that it may go  [m2]
   OwnedView owned;
   View<const ElementState> state;
-  View<const Vec3> placed;
+  View<const Vec3> reference;
   BR_HD double operator()(Index e) const {
-    const Vec3 moved = state[e].position - placed[e];
+    const Vec3 moved = state[e].position - reference[e];
     return owned(e) && !(dot(moved, moved) <= allowed) ? 1.0 : 0.0;
   }
 };
@@ -191,7 +191,7 @@ class Spheres final : public Shareable {
   }
   double largest_margin() const override { return w_.parameters.largest_margin; }
   void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
-    Journey journey(w_, owner);
+    Migration journey(w_, owner);
     journey.add_copies(around);
     journey.go();
   }
@@ -215,7 +215,8 @@ class Spheres final : public Shareable {
   }
   HasLeft has_left_kernel() const {
     return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
-            std::as_const(w_.elements.state).view(), std::as_const(w_.domain.placed).view()};
+            std::as_const(w_.elements.state).view(),
+            std::as_const(w_.domain.migration_reference).view()};
   }
 
   World& w_;
@@ -242,25 +243,25 @@ void drop_state(World& w) {
 }
 
 void start_copies(World& w) {
-  if (w.domain.alone()) return;
+  if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.start_refresh(w.exec, w.elements.state);
 }
 void finish_copies(World& w) {
-  if (w.domain.alone()) return;
+  if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.finish_refresh(w.exec, w.elements.state);
 }
 void refresh_copies(World& w) {
-  if (w.domain.alone()) return;
+  if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.refresh_all(w.exec, w.elements.state);
 }
 
-void feel_contacts(World& w) {
+void select_active_ghosts(World& w) {
   // On a device the list costs more than it saves.
-  if (w.domain.alone() || w.exec.space != Space::host) return;
-  w.domain.feel(w.elements.id, w.contacts.pairs.a, w.contacts.pairs.b);
+  if (w.domain.single_rank() || w.exec.space != Space::host) return;
+  w.domain.select_active_ghosts(w.elements.id, w.contacts.pairs.a, w.contacts.pairs.b);
 }
 
 World share_out(const World& whole, Communicator& ranks, const DomainConfig& config, Space space) {
@@ -283,12 +284,12 @@ World share_parts(World part, Communicator& ranks, const DomainConfig& config, S
   Spheres spheres(part, space);
   begin_sharing(part.domain, ranks, config, spheres, 2.0 * part.parameters.mean_radius, 3);
   share_anew(part.domain, spheres, true);
-  feel_contacts(part);
+  select_active_ghosts(part);
   return part;
 }
 
 void migrate(World& w) {
-  if (w.domain.alone()) return;
+  if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "migration");
   Spheres spheres(w, w.exec.space);
   share_if_needed(w.domain, spheres);
@@ -300,7 +301,7 @@ void rebalance(World& w) {
   Spheres spheres(w, w.exec.space);
   spheres.come_to_host();
   share_anew(w.domain, spheres, false);
-  feel_contacts(w);
+  select_active_ghosts(w);
 }
 
 void collect(World& part, World& whole) {
@@ -316,7 +317,7 @@ void collect(World& part, World& whole) {
   copy_to(copy.bar_actions, part.bar_actions);
   copy.domain.ranks = part.domain.ranks;
   copy.domain.owned = part.domain.owned;
-  Journey(copy, std::vector<int>(static_cast<std::size_t>(part.elements.size()), 0)).go();
+  Migration(copy, std::vector<int>(static_cast<std::size_t>(part.elements.size()), 0)).go();
 
   const std::vector<Ledger> booked = from_each(*part.domain.ranks, part.ledger);
   part.ledger = {};

@@ -1,7 +1,7 @@
 #pragma once
 // A world shared out among ranks: owner computes (docs/theory-domain.md).
 //
-// Each rank's World holds the elements that it owns and copies of all others that these may touch
+// Each rank's World holds the elements that it owns and ghosts of all others that these may touch
 // or are linked with, in ascending order of their global ids, so that every sum keeps its order.
 // Links and contacts with an owned end are evaluated on each rank that owns one of their elements,
 // with equal history; each rank sums for its own elements.
@@ -22,21 +22,21 @@ World share_parts(World part, Communicator& ranks, const DomainConfig& config, S
 
 /// Shares elements out anew, if some have left the buffer since it was done last, with all that
 /// they own: links, contacts and their history (Lukas 2014, 3.5); first moves the borders if loads
-/// have become uneven (section 4). Only before a search, which finds the contacts of new copies.
+/// have become uneven (section 4). Only before a search, which finds the contacts of new ghosts.
 void migrate(World& w);
 /// Between two steps: elements are shared out anew if some ranks take longer than others, so that
 /// these take less. Pairs go with their elements; the next search comes when it would have come.
 void rebalance(World& w);
 
-/// After the elements have moved: copies that own ones feel follow their owners.
+/// After the elements have moved: active ghosts follow their owners.
 /// Meanwhile ranks vote on a search.
 void start_copies(World& w);
 void finish_copies(World& w);
 /// And now all of them: a search is due.
 void refresh_copies(World& w);
 
-/// After a search: which copies own elements feel until the next one.
-void feel_contacts(World& w);
+/// After a search: selects the ghosts that are active until the next one.
+void select_active_ghosts(World& w);
 
 /// Brings the state of all ranks together in `whole` on rank 0; it may lack contact lists and sums,
 /// which the observers do not read. Every rank calls it.

@@ -199,7 +199,7 @@ LinkRows rows_of(Space space, const std::vector<Index>& end, Index elements,
   return rows;
 }
 
-/// The order in which the host's sweep adds links up, as lists for a device: tile by tile of
+/// The order in which the host's link_plan adds links up, as lists for a device: tile by tile of
 /// elements a, group by group.
 void list_rows(World& w, const std::vector<Index>& a, const std::vector<Index>& b) {
   const Index count = w.elements.size();
@@ -240,8 +240,8 @@ void plan_sweep(World& w) {
   }
   for (auto& group : w.concrete.groups) find_starts(a, count, group);
   const int threads = count < smallest_shared_loop ? 1 : w.exec.threads;
-  w.sweep = {};
-  std::vector<Index>& tiles = w.sweep.tiles;
+  w.link_plan = {};
+  std::vector<Index>& tiles = w.link_plan.tiles;
   for (Index e = 0; e < count; ++e)
     if (e == 0 || id[static_cast<std::size_t>(e)] / sweep_tile !=
                       id[static_cast<std::size_t>(e) - 1] / sweep_tile)
@@ -253,15 +253,16 @@ void plan_sweep(World& w) {
     const auto begin = static_cast<Index>(
         std::lower_bound(links_before.begin(), links_before.end(), share) - links_before.begin());
     const auto tile = std::upper_bound(tiles.begin(), tiles.end(), std::min(begin, count));
-    w.sweep.begin.push_back(*(tile - 1));
+    w.link_plan.begin.push_back(*(tile - 1));
   }
-  w.sweep.begin.back() = count;
+  w.link_plan.begin.back() = count;
   for (int t = 0; t < threads; ++t) {
-    const Index begin = w.sweep.begin[static_cast<std::size_t>(t)];
-    w.sweep.settled.push_back(std::max(begin, reached[static_cast<std::size_t>(begin)]));
+    const Index begin = w.link_plan.begin[static_cast<std::size_t>(t)];
+    w.link_plan.first_private.push_back(std::max(begin, reached[static_cast<std::size_t>(begin)]));
   }
-  for (std::size_t i = 0; i < a.size(); ++i) w.sweep.reach = std::max(w.sweep.reach, b[i] - a[i]);
-  w.sweep.passed.resize(static_cast<std::size_t>(threads));
+  for (std::size_t i = 0; i < a.size(); ++i)
+    w.link_plan.reach = std::max(w.link_plan.reach, b[i] - a[i]);
+  w.link_plan.deferred.resize(static_cast<std::size_t>(threads));
   if (w.exec.space != Space::host) list_rows(w, a, b);
 }
 
@@ -307,12 +308,12 @@ void ask_for_search(World& w) {
     w.margin_used = beyond != 0;
     if (w.margin_used) clear_bytes(w.beyond.data(), w.exec.space, sizeof beyond);
   }
-  if (!w.domain.alone()) w.domain.ranks->ask_for_bits(w.margin_used ? 1 : 0);
+  if (!w.domain.single_rank()) w.domain.ranks->start_any_of(w.margin_used ? 1 : 0);
 }
 
 bool contacts_are_due(const World& w) {
   const StageTime timed(w.exec, "travel");
-  const bool used = w.domain.alone() ? w.margin_used : w.domain.ranks->told_bits() != 0;
+  const bool used = w.domain.single_rank() ? w.margin_used : w.domain.ranks->finish_any_of() != 0;
   if (w.parameters.search.every > 0)  // the paper's rule
     return w.step % w.parameters.search.every == 0;
   for (const Wall& wall : w.walls)
@@ -323,8 +324,8 @@ bool contacts_are_due(const World& w) {
 void find_contacts(World& w) {
   migrate(w);
   const StageTime timed(w.exec, "contact_detection");
-  together_or_not(w.domain.ranks, [&w] { search(w); });
-  feel_contacts(w);
+  collective_try(w.domain.ranks, [&w] { search(w); });
+  select_active_ghosts(w);
 }
 
 void derive_contacts(World& w) {

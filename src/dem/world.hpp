@@ -8,11 +8,11 @@
 #include "core/incidence.hpp"
 #include "core/step_clock.hpp"
 #include "core/travel.hpp"
-#include "dem/config.hpp"
 #include "dem/element_kernels.hpp"
-#include "dem/kernel_lanes.hpp"
 #include "dem/links/all.hpp"
-#include "dem/model.hpp"
+#include "dem/setup/config.hpp"
+#include "dem/setup/model.hpp"
+#include "dem/stepping/kernel_lanes.hpp"
 #include "domain/domain.hpp"
 #include "domain/set_here.hpp"
 #include "exec/step_graph.hpp"
@@ -21,8 +21,8 @@
 namespace breccia::dem {
 
 /// The action of a link that a later run adds to element b.
-struct PassedAction {
-  Action action;
+struct DeferredForce {
+  PairForce action;
   Index b;
 };
 
@@ -30,12 +30,13 @@ struct PassedAction {
 /// the links that start there. Links lead from lower to higher elements, so once a thread has done
 /// the links of a run, the sums of its elements are complete, but for those that an earlier run
 /// reaches.
-struct Sweep {
-  std::vector<Index> begin;    ///< first element of each thread's run, and the end
-  std::vector<Index> settled;  ///< first element of each run that no link of an earlier run reaches
-  Index reach = 0;             ///< from the lower to the higher end of a link, at most
-  std::vector<Index> tiles;    ///< first element of each tile, and the end
-  std::vector<std::vector<PassedAction>> passed;  ///< of each run, in the order of its links
+struct LinkPlan {
+  std::vector<Index> begin;  ///< first element of each thread's run, and the end
+  std::vector<Index>
+      first_private;         ///< first element of each run that no link of an earlier run reaches
+  Index reach = 0;           ///< from the lower to the higher end of a link, at most
+  std::vector<Index> tiles;  ///< first element of each tile, and the end
+  std::vector<std::vector<DeferredForce>> deferred;  ///< of each run, in the order of its links
 };
 /// Elements whose links of all groups are done before the next ones, by global id: runs begin at
 /// tiles, so that the order of sums is the same for any number of threads and ranks.
@@ -95,7 +96,7 @@ struct World : LinkSets {
     state(travel);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(contact_pairs, wall_pairs, motions, linked_starts, linked_partners, linked_links,
-         bar_actions, domain.owned_there, domain.placed);
+         bar_actions, domain.owned_there, domain.migration_reference);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
@@ -126,10 +127,10 @@ struct World : LinkSets {
   // What follows from the state.
   Buffer<Index> held_partners;  ///< linked_partners, -1 where the link has let go; for a search
   Incidence bar_incidence, contact_incidence;  ///< bars: all links but swept ones, kind by kind
-  Sweep sweep;
+  LinkPlan link_plan;
   BroadPhase broad_phase;
   std::vector<Index> wall_begin;  ///< first contact of each wall, and the end
-  Buffer<Action> bar_actions, contact_actions;
+  Buffer<PairForce> bar_actions, contact_actions;
   Buffer<LinkSums> link_sums;  ///< of each element, zero between steps
   Buffer<double> critical;     ///< [s2]
   bool margin_used = false;    ///< some element has used its margin up
@@ -189,9 +190,9 @@ struct StepRule {
 
   BR_HD double operator()(double least, double last_dt) const {
     // sqrt(2): two neighbours in opposite motion (docs/theory.md, time step).
-    double dt = safety * root(2.0 * least);
-    dt = smaller(dt, smaller(max_step, contact_step));
-    if (last_dt > 0.0) dt = smaller(dt, 1.05 * last_dt);  // falls at once, grows slowly
+    double dt = safety * sqrt(2.0 * least);
+    dt = min(dt, min(max_step, contact_step));
+    if (last_dt > 0.0) dt = min(dt, 1.05 * last_dt);  // falls at once, grows slowly
     return rounded_down(dt);
   }
 };

@@ -72,8 +72,8 @@ class Communicator {
   virtual std::uint64_t any_of(std::uint64_t bits);
   /// any_of in two parts: messages may be started and finished between them, no other reduction.
   /// A rank that has asked may do other work until the other ranks have asked.
-  virtual void ask_for_bits(std::uint64_t bits) { asked_ = bits; }
-  virtual std::uint64_t told_bits() { return any_of(asked_); }
+  virtual void start_any_of(std::uint64_t bits) { asked_ = bits; }
+  virtual std::uint64_t finish_any_of() { return any_of(asked_); }
   /// Each number becomes the sum of all ranks' numbers.
   virtual void add_up(std::span<std::int64_t> numbers);
   /// Every rank gets the message of rank 0.

@@ -5,7 +5,7 @@
 namespace breccia {
 
 DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own, double waited) {
-  std::vector<std::int64_t> sums{own.moved, own.copies, own.owned, own.weighed,
+  std::vector<std::int64_t> sums{own.moved, own.ghosts, own.owned, own.weighed,
                                  std::llround(1e9 * waited)};
   ranks.add_up(sums);
   const double largest = -ranks.least(-static_cast<double>(own.weighed));
@@ -13,7 +13,7 @@ DomainFacts domain_facts(Communicator& ranks, const DomainCounts& own, double wa
   facts.waited_least = ranks.least(waited);
   facts.waited_most = -ranks.least(-waited);
   facts.waited_mean = 1e-9 * static_cast<double>(sums[4]) / ranks.size();
-  if (sums[2] > 0) facts.copies = static_cast<double>(sums[1]) / static_cast<double>(sums[2]);
+  if (sums[2] > 0) facts.ghosts = static_cast<double>(sums[1]) / static_cast<double>(sums[2]);
   if (sums[3] > 0) facts.imbalance = largest * ranks.size() / static_cast<double>(sums[3]) - 1.0;
   return facts;
 }
@@ -23,14 +23,14 @@ namespace {
 /// Parts the runs of packs: those with one of these elements, and the others.
 void part_runs(Domain& d, const Buffer<Index>& elements) {
   constexpr Index pack = 8;
-  std::vector<std::uint8_t> awaited(static_cast<std::size_t>(d.owned.size() / pack + 1), 0);
-  for (const Index e : elements.host()) awaited[static_cast<std::size_t>(e / pack)] = 1;
-  d.awaited_runs.clear();
-  d.other_runs.clear();
+  std::vector<std::uint8_t> boundary(static_cast<std::size_t>(d.owned.size() / pack + 1), 0);
+  for (const Index e : elements.host()) boundary[static_cast<std::size_t>(e / pack)] = 1;
+  d.boundary_runs.clear();
+  d.interior_runs.clear();
   for (const ElementRun& run : d.runs)
     for (Index begin = run.begin; begin < run.end; begin += pack) {
       std::vector<ElementRun>& part =
-          awaited[static_cast<std::size_t>(begin / pack)] != 0 ? d.awaited_runs : d.other_runs;
+          boundary[static_cast<std::size_t>(begin / pack)] != 0 ? d.boundary_runs : d.interior_runs;
       if (part.empty() || part.back().end != begin) part.push_back({begin, begin});
       part.back().end = std::min(begin + pack, run.end);
     }
@@ -38,17 +38,18 @@ void part_runs(Domain& d, const Buffer<Index>& elements) {
 
 }  // namespace
 
-void Domain::feel(const Buffer<GlobalId>& ids, const Buffer<Index>& a, const Buffer<Index>& b) {
-  if (alone()) return;
+void Domain::select_active_ghosts(const Buffer<GlobalId>& ids, const Buffer<Index>& a,
+                                  const Buffer<Index>& b) {
+  if (single_rank()) return;
   std::vector<std::uint8_t> wanted = tied;
   for (const Buffer<Index>* ends : {&a, &b})
     for (const Index e : ends->host()) wanted[static_cast<std::size_t>(e)] = 1;
-  std::vector<Copy> followed;
-  for (const Copy& copy : copies)
-    if (wanted[static_cast<std::size_t>(copy.element)] != 0) followed.push_back(copy);
-  felt.build(*ranks, ids, followed);
-  part_runs(*this, felt.sent());
-  knows_felt = true;
+  std::vector<Ghost> followed;
+  for (const Ghost& ghost : ghosts)
+    if (wanted[static_cast<std::size_t>(ghost.element)] != 0) followed.push_back(ghost);
+  active_ghosts.build(*ranks, ids, followed);
+  part_runs(*this, active_ghosts.sent());
+  ghosts_selected = true;
 }
 
 }  // namespace breccia

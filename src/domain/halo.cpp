@@ -5,14 +5,14 @@
 
 namespace breccia {
 
-void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<Copy>& copies,
+void Halo::build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<Ghost>& ghosts,
                  Space space) {
   const auto count = static_cast<std::size_t>(ranks.size());
   std::vector<std::vector<Index>> receive(count);
   std::vector<Message> wanted(count);
-  for (const Copy& copy : copies)
-    receive[static_cast<std::size_t>(copy.owner)].push_back(copy.element);
-  for (std::size_t r = 0; r < count; ++r) deal_detail::put(wanted[r], ids, receive[r]);
+  for (const Ghost& ghost : ghosts)
+    receive[static_cast<std::size_t>(ghost.owner)].push_back(ghost.element);
+  for (std::size_t r = 0; r < count; ++r) redistribute_detail::put(wanted[r], ids, receive[r]);
   const std::vector<Message> asked = ranks.exchange(std::move(wanted));
 
   messages_.reset();

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "domain/deal.hpp"
 #include "domain/peer_link.hpp"
+#include "domain/redistribute.hpp"
 #include "exec/for_each.hpp"
 #include "exec/staging.hpp"
 
@@ -45,7 +45,7 @@ struct PullItems {
 };
 
 /// A local element that another rank owns.
-struct Copy {
+struct Ghost {
   Index element;
   int owner;
 };
@@ -55,12 +55,12 @@ struct Copy {
 class Halo {
  public:
   /// @param ids     of the local elements, ascending, on the host
-  /// @param copies  that will follow their owners, ascending
+  /// @param ghosts  that will follow their owners, ascending
   /// @param space   where the items lie that will be exchanged
-  void build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<Copy>& copies,
+  void build(Communicator& ranks, const Buffer<GlobalId>& ids, const std::vector<Ghost>& ghosts,
              Space space = Space::host);
 
-  /// Sends the items of owned elements to the ranks that hold copies of them. finish() then writes
+  /// Sends the items of owned elements to the ranks that hold ghosts of them. finish() then writes
   /// those that came. Every rank calls both.
   template <class T>
   void start(const Exec& exec, Communicator& ranks, Buffer<T>& items) {
@@ -83,8 +83,8 @@ class Halo {
     finish(exec, items);
   }
 
-  Index copies() const { return receive_.size(); }  ///< of other ranks' elements held here
-  /// Own elements that other ranks hold copies of, once for each.
+  Index ghosts() const { return receive_.size(); }  ///< of other ranks' elements held here
+  /// Own elements that other ranks hold ghosts of, once for each.
   const Buffer<Index>& sent() const { return send_; }
 
  private:

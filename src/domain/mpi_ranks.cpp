@@ -23,7 +23,7 @@
 
 #include "core/case_config.hpp"
 #include "domain/peer_link.hpp"
-#include "domain/vote_board.hpp"
+#include "domain/shared_reduction.hpp"
 #include "domain/watchdog.hpp"
 #include "exec/error.hpp"
 
@@ -191,8 +191,8 @@ class MpiRanks final : public Communicator {
   double least(double value) override {
     const Waiting waiting(*this);
     if (board_) {
-      board_->tell(std::bit_cast<std::uint64_t>(value));
-      hear([&value](std::uint64_t told) {
+      board_->publish(std::bit_cast<std::uint64_t>(value));
+      collect([&value](std::uint64_t told) {
         const auto other = std::bit_cast<double>(told);
         if (other < value) value = other;
       });
@@ -202,26 +202,26 @@ class MpiRanks final : public Communicator {
     must(MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, MPI_MIN, all_), "MPI_Allreduce");
     return result;
   }
-  void ask_for_bits(std::uint64_t bits) override {
-    if (board_) return board_->tell(bits);
+  void start_any_of(std::uint64_t bits) override {
+    if (board_) return board_->publish(bits);
     asked_bits_ = bits;
     must(MPI_Iallreduce(&asked_bits_, &told_bits_, 1, MPI_UINT64_T, MPI_BOR, all_, &vote_),
          "MPI_Iallreduce");
   }
-  std::uint64_t told_bits() override {
+  std::uint64_t finish_any_of() override {
     const Waiting waiting(*this);
     if (!board_) {
       must(MPI_Wait(&vote_, MPI_STATUS_IGNORE), "MPI_Wait");
       return told_bits_;
     }
     std::uint64_t bits = 0;
-    hear([&bits](std::uint64_t told) { bits |= told; });
+    collect([&bits](std::uint64_t told) { bits |= told; });
     return bits;
   }
   std::uint64_t any_of(std::uint64_t bits) override {
     if (board_) {
-      ask_for_bits(bits);
-      return told_bits();
+      start_any_of(bits);
+      return finish_any_of();
     }
     const Waiting waiting(*this);
     std::uint64_t result = bits;
@@ -295,7 +295,7 @@ class MpiRanks final : public Communicator {
   /// While it waits, this rank brings its own messages on their way and, in time, lets others have
   /// the processor: there may be fewer of them than ranks.
   template <class Visit>
-  void hear(const Visit& visit) {
+  void collect(const Visit& visit) {
     constexpr int patient = 200;
     int rounds = 0;
     const auto idle = [&] {
@@ -304,7 +304,7 @@ class MpiRanks final : public Communicator {
       must(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, all_, &any, MPI_STATUS_IGNORE), "MPI_Iprobe");
       std::this_thread::yield();
     };
-    board_->hear(idle, visit);
+    board_->collect(idle, visit);
   }
   static void pause_processor() {
 #if defined(__x86_64__)
@@ -376,8 +376,8 @@ class MpiRanks final : public Communicator {
   MPI_Request vote_ = MPI_REQUEST_NULL;
   std::uint64_t asked_bits_ = 0, told_bits_ = 0;
   std::optional<SharedSigns> signs_;
-  std::optional<VoteBoard> board_;  ///< if all ranks are on this machine
-  std::optional<PeerLink> link_;    ///< if all ranks are on this machine
+  std::optional<SharedReduction> board_;  ///< if all ranks are on this machine
+  std::optional<PeerLink> link_;          ///< if all ranks are on this machine
   std::optional<Watchdog> watchdog_;
 };
 

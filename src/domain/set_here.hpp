@@ -7,7 +7,7 @@
 
 namespace breccia {
 
-/// Places of those items of a set that a rank holds, of copies too, ascending; as long as elements
+/// Places of those items of a set that a rank holds, of ghosts too, ascending; as long as elements
 /// are not shared out anew.
 struct SetHere {
   Buffer<Index> places{};

@@ -7,7 +7,7 @@
 namespace breccia {
 namespace {
 
-/// Runs of packs with own elements: copies among them cost less than what is left over.
+/// Runs of packs with own elements: ghosts among them cost less than what is left over.
 std::vector<ElementRun> own_runs(const Domain& d) {
   constexpr Index pack = 8;
   const Index count = d.owned.size();
@@ -29,12 +29,12 @@ std::int64_t load_of(const Domain& d, const std::vector<std::int64_t>& weights) 
   return sum;
 }
 
-/// Whether copies of an own element, or of what is near it, may be missing somewhere: it has left
+/// Whether ghosts of an own element, or of what is near it, may be missing somewhere: it has left
 /// the buffer and matters now to ranks that do not hold it, or is no longer at home
 /// (docs/theory-domain.md, section 2).
 bool strays(const Domain& d, const Shareable& elements, Index e) {
   const SharingSets& sets = d.sharing_sets;
-  const Sphere& then = d.placed_around[static_cast<std::size_t>(e)];
+  const Sphere& then = d.migration_reference_spheres[static_cast<std::size_t>(e)];
   const Sphere now{elements.centre(e) - d.drifted, elements.radius(e)};
   const Vec3 moved = now.centre - then.centre;
   const double half = 0.5 * d.buffer;
@@ -168,18 +168,18 @@ void share_anew(Domain& d, Shareable& elements, bool first) {
     while (known != mine.end() && *known < id) ++known;
     if (own && (known == mine.end() || *known != id)) ++d.counts.moved;
   }
-  d.copies.clear();
+  d.ghosts.clear();
   for (Index e = 0; e < count; ++e)
-    if (!d.owns(e)) d.copies.push_back({e, owner[static_cast<std::size_t>(e)]});
-  d.knows_felt = false;
-  d.runs = d.awaited_runs = own_runs(d);
-  d.other_runs.clear();
-  copy_to(d.placed, elements.points());
-  d.placed_around = std::move(around);
+    if (!d.owns(e)) d.ghosts.push_back({e, owner[static_cast<std::size_t>(e)]});
+  d.ghosts_selected = false;
+  d.runs = d.boundary_runs = own_runs(d);
+  d.interior_runs.clear();
+  copy_to(d.migration_reference, elements.points());
+  d.migration_reference_spheres = std::move(around);
   copy_to(d.owned_there, d.owned);
-  d.halo.build(*d.ranks, elements.ids(), d.copies, elements.space());
-  d.counts.copies = d.halo.copies();
-  d.counts.owned = count - d.halo.copies();
+  d.halo.build(*d.ranks, elements.ids(), d.ghosts, elements.space());
+  d.counts.ghosts = d.halo.ghosts();
+  d.counts.owned = count - d.halo.ghosts();
   d.counts.load = load_of(d, elements.weights());
   std::vector<std::int64_t> all{d.counts.load};
   d.ranks->add_up(all);
@@ -202,7 +202,8 @@ void share_if_needed(Domain& d, Shareable& elements) {
 }
 
 bool is_uneven(const Domain& d) {
-  return !d.alone() && d.config.balance && d.pace.spent(*d.ranks).is_uneven(d.config.imbalance);
+  return !d.single_rank() && d.config.balance &&
+         d.pace.spent(*d.ranks).is_uneven(d.config.imbalance);
 }
 
 }  // namespace breccia

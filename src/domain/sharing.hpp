@@ -61,16 +61,16 @@ bool is_uneven(const Domain& domain);
 
 /// Items that tie elements together: each is held by every rank that owns one of its elements, and
 /// so are all its elements.
-class Ties {
+class SharedItems {
  public:
   /// @param owner     rank that each local element will belong to
   /// @param elements  gets the elements that ranks need for their ties
-  Ties(const Domain& domain, const std::vector<int>& owner, Deliveries& elements)
+  SharedItems(const Domain& domain, const std::vector<int>& owner, SendLists& elements)
       : domain_(domain), owner_(owner), elements_(elements) {}
 
   /// The members of an item go wherever one of them is owned.
   template <class Members>
-  void tie(const Members& members) {
+  void keep_together(const Members& members) {
     const auto goes_along = [&](Index e) { return owner_of(e) == owner_of(members[0]); };
     if (std::all_of(std::begin(members), std::end(members), goes_along)) return;
     for (const Index e : members) {
@@ -81,8 +81,8 @@ class Ties {
   }
   /// So does the item itself, from the owner of the first one.
   template <class Members>
-  void tie(const Members& members, Index item, Deliveries& items) {
-    tie(members);
+  void keep_together(const Members& members, Index item, SendLists& items) {
+    keep_together(members);
     if (!domain_.owns(members[0])) return;
     for (const Index e : members) items.add(owner_of(e), item);
   }
@@ -91,7 +91,7 @@ class Ties {
  private:
   const Domain& domain_;
   const std::vector<int>& owner_;
-  Deliveries& elements_;
+  SendLists& elements_;
 };
 
 /// Where a world is in time: equal on all ranks. Worlds name it alike.

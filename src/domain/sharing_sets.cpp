@@ -42,13 +42,14 @@ double common_radius(Communicator& ranks, const std::vector<Sphere>& elements) {
 }  // namespace
 
 double SharingSets::buffer(double radius) const {
-  return is_large(radius) ? std::max(leeway_.buffer, leeway_.per_size * 2.0 * radius)
-                          : leeway_.buffer;
+  return is_large(radius)
+             ? std::max(migration_buffer_.buffer, migration_buffer_.per_size * 2.0 * radius)
+             : migration_buffer_.buffer;
 }
 
 void SharingSets::build(Communicator& ranks, const std::vector<Sphere>& elements,
-                        const std::vector<int>& owners, const Leeway& leeway) {
-  leeway_ = leeway;
+                        const std::vector<int>& owners, const MigrationBuffer& migration_buffer) {
+  migration_buffer_ = migration_buffer;
   constexpr double stretched = 1.05;  // an element may be, meanwhile
   common_ = stretched * common_radius(ranks, elements);
   std::vector<Large> own;

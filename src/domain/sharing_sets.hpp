@@ -16,7 +16,7 @@ struct Sphere {
 };
 
 /// How far elements may go until they are shared out anew.
-struct Leeway {
+struct MigrationBuffer {
   double margin = 0.0;    ///< largest of a search  [m]
   double buffer = 0.0;    ///< way of an element of the mean size  [m]
   double per_size = 0.0;  ///< way of a larger one, over its size  [-]
@@ -32,7 +32,7 @@ class SharingSets {
   /// @param elements  where they are
   /// @param owners    whose they will be
   void build(Communicator& ranks, const std::vector<Sphere>& elements,
-             const std::vector<int>& owners, const Leeway& leeway);
+             const std::vector<int>& owners, const MigrationBuffer& migration_buffer);
 
   /// Way from its place that an element of this radius may go.  [m]
   double buffer(double radius) const;
@@ -49,7 +49,8 @@ class SharingSets {
   template <class Visit>
   void each_sharer(const Partition& partition, const Sphere& e, double way,
                    const Visit& visit) const {
-    partition.each_near(e.centre, e.radius + common_ + reach() + leeway_.buffer + way, visit);
+    partition.each_near(e.centre, e.radius + common_ + reach() + migration_buffer_.buffer + way,
+                        visit);
     const double near = e.radius + reach() + way;
     each_row(e.centre.x, near + widest_, [&](auto l, auto end) {
       const double low = e.centre.y - near - widest_, high = e.centre.y + near + widest_;
@@ -68,7 +69,7 @@ class SharingSets {
     int owner;
   };
   void sort_into_rows();
-  double reach() const { return 2.0 * leeway_.margin; }
+  double reach() const { return 2.0 * migration_buffer_.margin; }
   static double largest(const Vec3& v) {
     return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
   }
@@ -87,7 +88,7 @@ class SharingSets {
       visit(large_.begin() + row_starts_[row], large_.begin() + row_starts_[row + 1]);
   }
 
-  Leeway leeway_;
+  MigrationBuffer migration_buffer_;
   double common_ = 0.0;  ///< largest radius of those that are not told of one by one  [m]
   double widest_ = 0.0, rows_begin_ = 0.0, row_width_ = 1.0;
   std::vector<Large> large_;       ///< by row, then by y

@@ -30,7 +30,7 @@ namespace {
 
 }  // namespace
 
-void together_or_not(Communicator* ranks, const std::function<void()>& work) {
+void collective_try(Communicator* ranks, const std::function<void()>& work) {
   if (ranks == nullptr) return work();
   int code = 0;
   std::string text;

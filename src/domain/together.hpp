@@ -17,12 +17,12 @@ inline bool leads(const Communicator* ranks) {
 
 /// Does something on every rank that may fail on some. If it does, all ranks throw the error of the
 /// lowest one that failed, so that none waits for another for ever.
-void together_or_not(Communicator* ranks, const std::function<void()>& work);
+void collective_try(Communicator* ranks, const std::function<void()>& work);
 
 /// Does something on rank 0 alone; what it throws, all ranks throw.
 template <class Work>
 void on_first(Communicator* ranks, const Work& work) {
-  together_or_not(ranks, [&] {
+  collective_try(ranks, [&] {
     if (leads(ranks)) work();
   });
 }

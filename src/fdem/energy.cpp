@@ -72,7 +72,7 @@ struct JointShares {
   View<const Vec2> preset;
   View<const JointStage> stage;
   View<const JointPoints> points;
-  View<const JointWork> work, handed;
+  View<const JointWork> work, inherited_work;
 
   BR_HD Energies operator()(Index i) const {
     Energies s;
@@ -82,8 +82,8 @@ struct JointShares {
       s.sliding.add(work[i].slide);
     }
     if (stage[i] == JointStage::broken) {
-      s.fracture.add(-handed[i].open);
-      s.sliding.add(-handed[i].slide);
+      s.fracture.add(-inherited_work[i].open);
+      s.sliding.add(-inherited_work[i].slide);
       return s;
     }
     const JointEnds& e = ends[i];
@@ -156,12 +156,12 @@ Energies held(const World& w) {
                                      t.load_work.view()},
                       Sum{});
   const Joints& j = w.joints;
-  all =
-      all + fold(w.exec, j.size(), Energies{},
-                 JointShares{owned, by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
-                             j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
-                             j.stage.view(), j.points.view(), j.work.view(), j.handed.view()},
-                 Sum{});
+  all = all +
+        fold(w.exec, j.size(), Energies{},
+             JointShares{owned, by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
+                         j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
+                         j.stage.view(), j.points.view(), j.work.view(), j.inherited_work.view()},
+             Sum{});
   all = all + fold(w.exec, w.couples.size(), Energies{},
                    CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()},
                    Sum{});

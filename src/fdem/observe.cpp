@@ -10,7 +10,7 @@
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
-#include "fdem/check_case.hpp"
+#include "fdem/setup/check_case.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -47,7 +47,7 @@ struct FindUnsound {
     const double jacobian = area * determinant(shape_inverse[t]);
     double fastest = 0.0, sum = 0.0;
     for (int k = 0; k < 3; ++k) {
-      fastest = larger(fastest, dot(v[k], v[k]));
+      fastest = max(fastest, dot(v[k], v[k]));
       sum += x[k].x + x[k].y + v[k].x + v[k].y;
     }
     const bool finite = sum - sum == 0.0;
@@ -209,9 +209,9 @@ Readings read_own(World& part, const ProbeConfig& p) {
 }
 
 double mode_of(const Joints& joints, Index i) {
-  const JointWork &work = joints.work.data()[i], &handed = joints.handed.data()[i];
-  const double open = std::max(work.open - handed.open, 0.0);
-  const double slide = std::max(work.slide - handed.slide, 0.0);
+  const JointWork &work = joints.work.data()[i], &inherited_work = joints.inherited_work.data()[i];
+  const double open = std::max(work.open - inherited_work.open, 0.0);
+  const double slide = std::max(work.slide - inherited_work.slide, 0.0);
   return open + slide > 0.0 ? slide / (open + slide) : 0.0;
 }
 
@@ -225,10 +225,10 @@ std::vector<Crack> cracks(const World& w) {
     if (j.stage.data()[i] != JointStage::broken) continue;
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     const JointWork& work = j.work.data()[i];
-    const JointWork& handed = j.handed.data()[i];
+    const JointWork& inherited_work = j.inherited_work.data()[i];
     all.push_back({i, j.broke_at.data()[i], 0.5 * (corner(e.a0) + corner(e.b0)),
                    0.5 * (corner(e.a1) + corner(e.b1)), mode_of(j, i),
-                   work.open + work.slide - handed.open - handed.slide});
+                   work.open + work.slide - inherited_work.open - inherited_work.slide});
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Crack& a, const Crack& b) { return a.time < b.time; });

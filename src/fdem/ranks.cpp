@@ -6,7 +6,7 @@
 #include "domain/sharing.hpp"
 #include "exec/for_each.hpp"
 #include "fdem/energy.hpp"
-#include "fdem/rings.hpp"
+#include "fdem/joints/rings.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -30,39 +30,39 @@ double radius(const TriangleNodes& nodes) {
 }
 
 /// Sends everything to the ranks that need it: triangles and what ties them together.
-class Journey {
+class Migration {
  public:
   /// @param owner  rank that each local triangle will belong to
-  Journey(World& w, const std::vector<int>& owner)
-      : w_(w), triangles_(w.domain.ranks->size()), ties_(w.domain, owner, triangles_) {}
+  Migration(World& w, const std::vector<int>& owner)
+      : w_(w), triangles_(w.domain.ranks->size()), shared_items_(w.domain, owner, triangles_) {}
 
   /// Besides the owner, the ranks whose triangles may touch one get a copy.
   void add_copies(const std::vector<Sphere>& around) {
     for (Index t = 0; t < w_.triangles.size(); ++t)
       if (w_.domain.owns(t))
         w_.domain.each_sharer(around[at(t)], [&](int r) {
-          if (r != ties_.owner_of(t)) triangles_.add(r, t);
+          if (r != shared_items_.owner_of(t)) triangles_.add(r, t);
         });
   }
 
   void go() {
     Communicator& all = *w_.domain.ranks;
-    Deliveries joints(all.size()), couples(all.size()), reach(all.size());
+    SendLists joints(all.size()), couples(all.size()), reach(all.size());
     for (Index t = 0; t < w_.triangles.size(); ++t)
-      if (w_.domain.owns(t)) triangles_.add(ties_.owner_of(t), t);
+      if (w_.domain.owns(t)) triangles_.add(shared_items_.owner_of(t), t);
     tie_all(joints, couples);
     const auto can_touch = w_.reach.triangle.host();
     for (Index i = 0; i < w_.reach.triangle.size(); ++i)
-      if (w_.domain.owns(can_touch[at(i)])) reach.add(ties_.owner_of(can_touch[at(i)]), i);
+      if (w_.domain.owns(can_touch[at(i)])) reach.add(shared_items_.owner_of(can_touch[at(i)]), i);
 
     leave();
     Triangles& t = w_.triangles;
     auto lie = one_field(lies_);
     auto external = one_field(t.external);
     if (w_.mesh.loaded.empty())
-      deal(all, together(t, lie), triangles_, t.id);
+      redistribute(all, together(t, lie), triangles_, t.id);
     else
-      deal(all, together(t, lie, external), triangles_, t.id);
+      redistribute(all, together(t, lie, external), triangles_, t.id);
 
     Joints& j = w_.joints;
     Buffer<Index>& number = w_.mesh.joint_number;
@@ -73,25 +73,25 @@ class Journey {
       auto force = one_field(forces);
       forces.resize(j.size());
       if (w_.mesh.preset)
-        deal(all, together(j, numbers, force, preset), joints, number);
+        redistribute(all, together(j, numbers, force, preset), joints, number);
       else
-        deal(all, together(j, numbers, force), joints, number);
+        redistribute(all, together(j, numbers, force), joints, number);
       forces.resize(j.size() + 1);  // the last one is zero
     });
 
-    deal(all, w_.couples, couples, w_.couples.pairs.key);
-    deal(all, w_.reach, reach, w_.reach.triangle);
+    redistribute(all, w_.couples, couples, w_.couples.pairs.key);
+    redistribute(all, w_.reach, reach, w_.reach.triangle);
     arrive();
   }
 
  private:
-  void tie_all(Deliveries& joints, Deliveries& couples) {
+  void tie_all(SendLists& joints, SendLists& couples) {
     const Rings rings(w_);
     std::vector<Index> members;
     rings.each([&](const KeyedIndex* first, const KeyedIndex* end) {
       members.clear();
       for (; first != end; ++first) members.push_back(first->item / 3);
-      ties_.tie(members);
+      shared_items_.keep_together(members);
     });
     for (Index i = 0; i < w_.joints.size(); ++i) {
       const Index a = w_.joints.edge_a.data()[i], b = w_.joints.edge_b.data()[i];
@@ -100,11 +100,11 @@ class Journey {
       for (const Index node : {a, JointEnds::next_corner(a)})
         if (w_.mesh.tied[at(w_.vertex[at(node)])] != 0)
           rings.add_triangles(w_.vertex[at(node)], members);
-      ties_.tie(members, i, joints);
+      shared_items_.keep_together(members, i, joints);
     }
     const Pairs& pairs = w_.couples.pairs;
     for (Index i = 0; i < pairs.size(); ++i)
-      ties_.tie(std::array{pairs.a.data()[i], pairs.b.data()[i]}, i, couples);
+      shared_items_.keep_together(std::array{pairs.a.data()[i], pairs.b.data()[i]}, i, couples);
   }
 
   Index id_of(Index t) const { return w_.triangles.id.data()[t]; }
@@ -130,7 +130,7 @@ class Journey {
       for (Index& t : ends->host()) t = id_of(t);
   }
 
-  /// And back again. Edges whose joint or neighbour is not here are those of copies.
+  /// And back again. Edges whose joint or neighbour is not here are those of ghosts.
   void arrive() {
     Places triangles(w_.triangles.id), joints(w_.mesh.joint_number);
     for (Buffer<Index>* edges : {&w_.joints.edge_a, &w_.joints.edge_b})
@@ -162,8 +162,8 @@ class Journey {
   }
 
   World& w_;
-  Deliveries triangles_;
-  Ties ties_;
+  SendLists triangles_;
+  SharedItems shared_items_;
   Buffer<Neighbourhood> lies_;
 };
 
@@ -208,9 +208,9 @@ void settle_in(World& w, Space space) {
   d.tied.assign(at(count), 0);
   if (w.mesh.bundled) {
     for (const Index node : nodes) d.tied[at(node / 3)] = 1;
-    std::vector<Copy> in_rings;
-    for (const Copy& copy : d.copies)
-      if (d.tied[at(copy.element)] != 0) in_rings.push_back(copy);
+    std::vector<Ghost> in_rings;
+    for (const Ghost& ghost : d.ghosts)
+      if (d.tied[at(ghost.element)] != 0) in_rings.push_back(ghost);
     w.tied_forces.build(*d.ranks, w.triangles.id, in_rings, space);
   }
   w.joint_packs.clear();
@@ -234,7 +234,7 @@ struct Fastest {
     if (owned(t))
       for (const NodeState& n : nodes[t].at) {
         const Vec2 velocity = n.velocity - drift;
-        fastest = larger(fastest, dot(velocity, velocity));
+        fastest = max(fastest, dot(velocity, velocity));
       }
     return fastest;
   }
@@ -246,12 +246,12 @@ struct HasLeft {
   OwnedView owned;
   Vec3 drifted;  ///< common to all since they were placed  [m]
   View<const TriangleNodes> nodes;
-  View<const Vec3> placed;
+  View<const Vec3> reference;
   BR_HD double operator()(Index t) const {
     bool left = false;
     for (int k = 0; k < 3; ++k) {
       const Vec2& x = nodes[t].at[k].position;
-      const Vec3 moved = (Vec3{x.x, x.y, 0.0} - placed[3 * t + k]) - drifted;
+      const Vec3 moved = (Vec3{x.x, x.y, 0.0} - reference[3 * t + k]) - drifted;
       if (!(dot(moved, moved) <= allowed)) left = true;
     }
     return owned(t) && left ? 1.0 : 0.0;
@@ -308,7 +308,7 @@ class Mesh final : public Shareable {
   }
   double largest_margin() const override { return margin_rule(w_).largest; }
   void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
-    Journey journey(w_, owner);
+    Migration journey(w_, owner);
     journey.add_copies(around);
     journey.go();
   }
@@ -327,7 +327,8 @@ class Mesh final : public Shareable {
   }
   HasLeft has_left_kernel() const {
     return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(), w_.domain.drifted,
-            std::as_const(w_.triangles.nodes).view(), std::as_const(w_.domain.placed).view()};
+            std::as_const(w_.triangles.nodes).view(),
+            std::as_const(w_.domain.migration_reference).view()};
   }
 
   World& w_;
@@ -339,14 +340,14 @@ class Mesh final : public Shareable {
 /// What follows from couples that came with their triangles. A search finds it for its own.
 void go_on_with_couples(World& w) {
   derive_couples(w);
-  feel_couples(w);
+  select_active_ghosts(w);
 }
 
 /// What all ranks know alike, as rank 0 has it.
 void take_common(World& w, Communicator& ranks) {
   take_time_from_first(ranks, w);
   take_from_first(ranks, w.reach.drift);
-  for (Buffer<std::uint8_t>* flags : {&w.opened.changed, &w.opened.vertex}) {
+  for (Buffer<std::uint8_t>* flags : {&w.exposed.changed, &w.exposed.vertex}) {
     Message message;
     put_bytes(message, flags->data(), at(flags->size()));
     message = ranks.from_first(std::move(message));
@@ -387,26 +388,26 @@ void drop_state(World& w) {
 }
 
 void start_copies(World& w) {
-  if (w.domain.alone()) return;
+  if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.start_refresh(w.exec, w.triangles.nodes);
 }
 void finish_copies(World& w) {
-  if (w.domain.alone()) return;
+  if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.finish_refresh(w.exec, w.triangles.nodes);
 }
 void refresh_copies(World& w) {
-  if (w.domain.alone()) return;
+  if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.refresh_all(w.exec, w.triangles.nodes);
 }
 
-void feel_couples(World& w) {
+void select_active_ghosts(World& w) {
   // Waking joints look at triangles that nothing ties yet; on a device the list costs more than
   // it saves.
-  if (w.domain.alone() || w.extrinsic || w.exec.space != Space::host) return;
-  w.domain.feel(w.triangles.id, w.couples.pairs.a, w.couples.pairs.b);
+  if (w.domain.single_rank() || w.extrinsic || w.exec.space != Space::host) return;
+  w.domain.select_active_ghosts(w.triangles.id, w.couples.pairs.a, w.couples.pairs.b);
 }
 
 World share_out(World& whole, Communicator& ranks, const DomainConfig& config, Space space) {
@@ -437,7 +438,7 @@ World share_parts(World part, const std::vector<std::uint8_t>& own, Communicator
 }
 
 void migrate(World& w) {
-  if (w.domain.alone()) return;
+  if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "migration");
   Mesh mesh(w, w.exec.space);
   share_if_needed(w.domain, mesh);
@@ -459,14 +460,14 @@ void collect(World& part, World& whole) {
   World copy = part;
   move_to(copy, Space::host);
   // What lies around a triangle stays: rank 0 knows the whole mesh.
-  Journey(copy, std::vector<int>(at(part.triangles.size()), 0)).go();
+  Migration(copy, std::vector<int>(at(part.triangles.size()), 0)).go();
 
   Communicator& ranks = *part.domain.ranks;
   const std::vector<Ledger> booked = from_each(ranks, part.ledger);
   part.ledger = {};
   std::uint64_t changed = 0;
-  for (Index i = 0; i < copy.opened.changed.size(); ++i)
-    if (copy.opened.changed.data()[i] != 0) changed |= std::uint64_t{1} << i;
+  for (Index i = 0; i < copy.exposed.changed.size(); ++i)
+    if (copy.exposed.changed.data()[i] != 0) changed |= std::uint64_t{1} << i;
   changed = ranks.any_of(changed);
   if (ranks.rank() != 0) return;
   for (const Ledger& ledger : booked) whole.ledger.add(ledger);
@@ -474,9 +475,9 @@ void collect(World& part, World& whole) {
   whole.joints = std::move(copy.joints);
   whole.couples = std::move(copy.couples);
   whole.reach = std::move(copy.reach);
-  whole.opened = std::move(copy.opened);
-  for (Index i = 0; i < whole.opened.changed.size(); ++i)
-    whole.opened.changed.data()[i] = (changed >> i & 1) != 0 ? 1 : 0;
+  whole.exposed = std::move(copy.exposed);
+  for (Index i = 0; i < whole.exposed.changed.size(); ++i)
+    whole.exposed.changed.data()[i] = (changed >> i & 1) != 0 ? 1 : 0;
   whole.motions = std::move(copy.motions);
   whole.load_laws = std::move(copy.load_laws);
   Domain moved = part.domain;

@@ -13,11 +13,11 @@
 #include "exec/lanes.hpp"
 #include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
-#include "fdem/config.hpp"
-#include "fdem/drift.hpp"
-#include "fdem/effective.hpp"
-#include "fdem/loads.hpp"
-#include "fdem/model.hpp"
+#include "fdem/setup/config.hpp"
+#include "fdem/setup/effective.hpp"
+#include "fdem/setup/model.hpp"
+#include "fdem/triangles/drift.hpp"
+#include "fdem/triangles/loads.hpp"
 
 namespace breccia::fdem {
 
@@ -30,7 +30,7 @@ struct NodeSet {
 
 /// Where the triangles that can touch stood at the last search, and how far each may go from there,
 /// the drift taken off.
-struct Reach {
+struct TravelOfTriangles {
   Buffer<Index> triangle;     ///< those that can touch, ascending by global id
   Buffer<Corners> reference;  ///< their corners at the search  [m]
   Buffer<double> margin;      ///<  [m]
@@ -46,7 +46,7 @@ struct Reach {
 
 /// Where joints have opened. A vertex becomes contact-active at a step fixed by the physics, not at
 /// the next search, so results do not depend on when searches happen.
-struct Opened {
+struct ExposedVertices {
   Buffer<std::uint8_t> changed;  ///< flags of Change since the vertices were marked last
   Buffer<std::uint8_t> vertex;   ///< 1: a joint at this vertex of the mesh is damaged
 };
@@ -61,7 +61,7 @@ struct WholeMesh {
   bool preset = false;             ///< joints keep an opening at which they were joined
 };
 
-/// Joints side by side, and whether they can do without copies of other ranks' triangles.
+/// Joints side by side, and whether they can do without ghosts of other ranks' triangles.
 inline constexpr Index joint_pack = 8;
 enum class JointPack : std::uint8_t {
   outer,  ///< some of them act on a copy
@@ -100,25 +100,26 @@ struct World {
     state(reach);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(triangles.external, joints.force.in_double, joints.force.in_single, joints.preset,
-         opened.changed, opened.vertex, laws, bonds, contact_pairs, holds, load_starts,
+         exposed.changed, exposed.vertex, laws, bonds, contact_pairs, holds, load_starts,
          loaded_edges, dashpots, bundles.starts, bundles.nodes, bundles.leader, joint_ends, edges,
          motions, last_motions, load_laws, stress, overshoot, reached, domain.owned_there,
-         domain.placed);
+         domain.migration_reference);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(couple_incidence, broad_phase, born, node_vertex, edge_across, border_vertex, amplitudes,
-         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock, news);
+    each(couple_incidence, broad_phase, parent_joint, node_vertex, edge_across, border_vertex,
+         amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
+         device_flags);
   }
 
   // State: what a checkpoint holds.
   Triangles triangles;
   Joints joints;
   Couples couples;
-  Reach reach;
-  Opened opened;
+  TravelOfTriangles reach;
+  ExposedVertices exposed;
   Ledger ledger;
   double time = 0.0;     ///< of positions and forces  [s]
   double last_dt = 0.0;  ///< the step that led here  [s]
@@ -154,8 +155,8 @@ struct World {
   // Which part of the whole it is.
   Domain domain;
   WholeMesh mesh;
-  Halo tied_forces;  ///< copies whose corners move as one with own ones
-  /// Of each joint_pack joints; empty: all of them wait for copies. On the host.
+  Halo tied_forces;  ///< ghosts whose corners move as one with own ones
+  /// Of each joint_pack joints; empty: all of them wait for ghosts. On the host.
   std::vector<JointPack> joint_packs;
 
   // What follows from the state.
@@ -167,7 +168,7 @@ struct World {
   Buffer<Sym2> stress;           ///< of each triangle, where joints are extrinsic  [Pa]
   Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
   Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached
-  Buffer<Index> born;            ///< of each couple, see CoupleForces
+  Buffer<Index> parent_joint;    ///< of each couple, see CoupleForces
   Buffer<Index> reach_place;     ///< of each triangle in `reach`, -1: a ghost, or it cannot touch
   bool margin_used = false;      ///< some own triangle has used its margin up
   Incidence couple_incidence;
@@ -179,9 +180,9 @@ struct World {
   Buffer<double> amplitude_times, amplitude_factors;
   Buffer<Vec2> prescribed_velocity;
   Buffer<StepClock> clock;
-  /// Of a move launched at once: 1 if margin_used; and bit k if flag k of Opened::changed is
-  /// set.
-  Buffer<std::int32_t> news;
+  /// Of a move launched at once: 1 if margin_used; and bit k if flag k of ExposedVertices::changed
+  /// is set.
+  Buffer<std::int32_t> device_flags;
   StepGraph graph;  ///< of a few steps
 };
 
@@ -209,7 +210,7 @@ Advanced advance(World& w, const StopAt& stop);
 /// Velocities of supports at the middle of the step to come, into World::motions.
 void list_motions(World& w);
 
-/// The parts of a step that all runs share (fdem/step.hpp).
+/// The parts of a step that all runs share (fdem/stepping/step.hpp).
 /// Asks all ranks whether couples must be searched for, and hears what they say.
 void ask_for_search(World& w);
 bool couples_are_due(World& w);
@@ -231,8 +232,8 @@ struct AllowedStep {
   double safety, max_step;  ///< share of the stable step  [-], limit  [s]
 
   BR_HD double operator()(double least, double last_dt) const {
-    double dt = smaller(safety * least, max_step);
-    if (last_dt > 0.0) dt = smaller(dt, 1.05 * last_dt);
+    double dt = min(safety * least, max_step);
+    if (last_dt > 0.0) dt = min(dt, 1.05 * last_dt);
     return rounded_down(dt);
   }
 };

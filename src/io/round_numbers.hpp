@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/picture.hpp"
+#include "io/picture/picture.hpp"
 
 namespace breccia {
 

@@ -55,12 +55,12 @@ BR_HD Vec3Of<R> cross(const Vec3Of<R>& a, const Vec3Of<R>& b) {
 
 template <class R>
 BR_HD R norm(const Vec3Of<R>& a) {
-  return root(dot(a, a));
+  return sqrt(dot(a, a));
 }
 template <class M, class R>
-BR_HD Vec3Of<R> choose(const M& condition, const Vec3Of<R>& yes, const Vec3Of<R>& no) {
-  return {choose(condition, yes.x, no.x), choose(condition, yes.y, no.y),
-          choose(condition, yes.z, no.z)};
+BR_HD Vec3Of<R> select(const M& condition, const Vec3Of<R>& yes, const Vec3Of<R>& no) {
+  return {select(condition, yes.x, no.x), select(condition, yes.y, no.y),
+          select(condition, yes.z, no.z)};
 }
 
 /// A unit quaternion w + xi + yj + zk: the orientation of an element.
@@ -81,7 +81,7 @@ BR_HD QuaternionOf<R> operator*(const QuaternionOf<R>& a, const QuaternionOf<R>&
 /// the rotation, which needs no sine; the turned angle is 2 atan(|angle| / 2). One Newton step of 1
 /// / |q| keeps it a unit quaternion.
 template <class R>
-BR_HD QuaternionOf<R> turned(const QuaternionOf<R>& q, const Vec3Of<R>& angle) {
+BR_HD QuaternionOf<R> rotated(const QuaternionOf<R>& q, const Vec3Of<R>& angle) {
   const QuaternionOf<R> t =
       QuaternionOf<R>{constant<R>(1.0), 0.5 * angle.x, 0.5 * angle.y, 0.5 * angle.z} * q;
   const R scale = 1.5 - 0.5 * (t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z);

@@ -58,7 +58,7 @@ BR_HD R cross(const Vec2Of<R>& a, const Vec2Of<R>& b) {
 }
 template <class R>
 BR_HD R norm(const Vec2Of<R>& a) {
-  return root(dot(a, a));
+  return sqrt(dot(a, a));
 }
 
 /// A 2 x 2 matrix by rows.

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "dem/materials.hpp"
+#include "dem/setup/materials.hpp"
 #include "math/constants.hpp"
-#include "prepare/check_bodies.hpp"
-#include "prepare/linking.hpp"
-#include "prepare/ordering.hpp"
-#include "prepare/packing.hpp"
-#include "prepare/rebar.hpp"
-#include "prepare/refusal.hpp"
-#include "prepare/spheres_file.hpp"
-#include "prepare/stiffness.hpp"
+#include "prepare/checks/check_bodies.hpp"
+#include "prepare/checks/refusal.hpp"
+#include "prepare/packing/linking.hpp"
+#include "prepare/packing/ordering.hpp"
+#include "prepare/packing/packing.hpp"
+#include "prepare/packing/rebar.hpp"
+#include "prepare/packing/spheres_file.hpp"
+#include "prepare/packing/stiffness.hpp"
 
 namespace breccia {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "dem/config.hpp"
-#include "dem/model.hpp"
+#include "dem/setup/config.hpp"
+#include "dem/setup/model.hpp"
 
 namespace breccia {
 

@@ -9,14 +9,14 @@
 #include <tuple>
 
 #include "exec/error.hpp"
-#include "prepare/body_mesh.hpp"
-#include "prepare/check_bodies.hpp"
-#include "prepare/crack_path.hpp"
-#include "prepare/heterogeneity.hpp"
-#include "prepare/mesh_check.hpp"
-#include "prepare/mesh_order.hpp"
-#include "prepare/mesh_overlap.hpp"
-#include "prepare/refusal.hpp"
+#include "prepare/checks/check_bodies.hpp"
+#include "prepare/checks/refusal.hpp"
+#include "prepare/meshing/body_mesh.hpp"
+#include "prepare/meshing/crack_path.hpp"
+#include "prepare/meshing/heterogeneity.hpp"
+#include "prepare/meshing/mesh_check.hpp"
+#include "prepare/meshing/mesh_order.hpp"
+#include "prepare/meshing/mesh_overlap.hpp"
 
 namespace breccia {
 namespace {

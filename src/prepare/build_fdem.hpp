@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fdem/config.hpp"
-#include "fdem/model.hpp"
+#include "fdem/setup/config.hpp"
+#include "fdem/setup/model.hpp"
 
 namespace breccia {
 

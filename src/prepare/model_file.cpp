@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "exec/error.hpp"
-#include "prepare/mesh_check.hpp"
+#include "prepare/meshing/mesh_check.hpp"
 
 namespace breccia {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "dem/config.hpp"
-#include "dem/model.hpp"
-#include "fdem/config.hpp"
-#include "fdem/model.hpp"
+#include "dem/setup/config.hpp"
+#include "dem/setup/model.hpp"
+#include "fdem/setup/config.hpp"
+#include "fdem/setup/model.hpp"
 #include "io/checkpoint.hpp"
 
 namespace breccia {

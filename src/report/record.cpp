@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
-#include "io/vtu_reader.hpp"
+#include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia::report {

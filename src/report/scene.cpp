@@ -1,6 +1,6 @@
 #include "report/scene.hpp"
 
-// A wrong case must not end the program: see io/case_file.cpp.
+// A wrong case must not end the program: see io/case/case_file.cpp.
 #define TOML_ASSERT(condition) static_cast<void>(0)
 #include <toml++/toml.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "exec/error.hpp"
-#include "io/case_source.hpp"
+#include "io/case/case_source.hpp"
 
 namespace breccia::report {
 namespace {

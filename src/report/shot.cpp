@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "io/vtu_reader.hpp"
+#include "io/vtu/vtu_reader.hpp"
 
 namespace breccia::report {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "exec/error.hpp"
-#include "io/units.hpp"
+#include "io/case/units.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia::report {

@@ -12,10 +12,10 @@
 #include "io/file.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
-#include "run/checks.hpp"
-#include "run/messages.hpp"
-#include "run/signals.hpp"
-#include "run/tables.hpp"
+#include "run/machine/signals.hpp"
+#include "run/method/checks.hpp"
+#include "run/results/messages.hpp"
+#include "run/results/tables.hpp"
 
 namespace breccia {
 namespace {

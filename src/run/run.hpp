@@ -7,15 +7,15 @@
 #include <string>
 
 #include "exec/timers.hpp"
-#include "run/background.hpp"
-#include "run/checkpoints.hpp"
-#include "run/log.hpp"
-#include "run/method.hpp"
-#include "run/progress.hpp"
-#include "run/recorder.hpp"
-#include "run/result_folder.hpp"
-#include "run/step_times.hpp"
-#include "run/summary.hpp"
+#include "run/machine/background.hpp"
+#include "run/method/method.hpp"
+#include "run/results/checkpoints.hpp"
+#include "run/results/log.hpp"
+#include "run/results/progress.hpp"
+#include "run/results/recorder.hpp"
+#include "run/results/result_folder.hpp"
+#include "run/results/step_times.hpp"
+#include "run/results/summary.hpp"
 
 namespace breccia {
 

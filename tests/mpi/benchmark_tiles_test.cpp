@@ -26,7 +26,7 @@ std::uint64_t on_ranks(int count, int steps, const Make& make) {
   std::uint64_t hash = 0;
   simulate_ranks(count, 5, [&](Communicator& ranks) {
     auto w = make(&ranks);
-    EXPECT_GT(w.domain.counts.copies, 0) << "borders lie between tiles";
+    EXPECT_GT(w.domain.counts.ghosts, 0) << "borders lie between tiles";
     const std::uint64_t own = hash_after(w, steps, &ranks);
     if (ranks.rank() == 0) hash = own;
   });
@@ -49,7 +49,7 @@ TEST(TiledPlate, moves_alike_on_any_number_of_ranks) {
   const auto make = [](Communicator* ranks) { return tiled_plate(four, ranks, Exec{}); };
   fdem::World alone = make(nullptr);
   const std::uint64_t hash = hash_after(alone, 400, nullptr);
-  const auto opened = alone.opened.vertex.host();  // marks of damage go to all ranks
+  const auto opened = alone.exposed.vertex.host();  // marks of damage go to all ranks
   EXPECT_GT(std::count(opened.begin(), opened.end(), 1), 100);
   EXPECT_GT(alone.couples.size(), 100);
   for (const int ranks : {2, 3, 5}) EXPECT_EQ(on_ranks(ranks, 400, make), hash) << ranks;

@@ -113,10 +113,10 @@ TEST(DemRanks, write_the_same_bytes_and_go_on_from_those_of_any_other_number_of_
     EXPECT_EQ(journal(count, slab(), 450, steps, state, state), expected);
 }
 
-/// Of each element by global id, on the rank that owns it, and the others' copies.
+/// Of each element by global id, on the rank that owns it, and the others' ghosts.
 struct CriticalNumbers {
   std::map<GlobalId, double> owned;
-  std::vector<std::pair<GlobalId, double>> copies;
+  std::vector<std::pair<GlobalId, double>> ghosts;
 };
 
 // On GPUs the least of all elements that are here is noted, whoever owns them.
@@ -135,14 +135,14 @@ TEST(DemRanks, hold_no_copy_whose_critical_number_is_below_its_owners) {
       if (part.domain.owns(e))
         own.owned[id] = critical;
       else
-        own.copies.emplace_back(id, critical);
+        own.ghosts.emplace_back(id, critical);
     }
   });
   std::map<GlobalId, double> owned;
   for (const CriticalNumbers& own : of_rank) owned.insert(own.owned.begin(), own.owned.end());
   int equal = 0, above = 0;
   for (const CriticalNumbers& own : of_rank)
-    for (const auto& [id, critical] : own.copies) {
+    for (const auto& [id, critical] : own.ghosts) {
       EXPECT_GE(critical, owned.at(id)) << "element " << id;
       ++(critical > owned.at(id) ? above : equal);
     }

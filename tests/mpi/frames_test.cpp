@@ -4,7 +4,7 @@
 
 #include "core/state_hash.hpp"
 #include "mpi/on_ranks.hpp"
-#include "run/frame_parts.hpp"
+#include "run/frames/frame_parts.hpp"
 
 namespace breccia {
 namespace {
@@ -164,13 +164,13 @@ FramePart part_of(const Frame& whole, int rank, int ranks) {
     return static_cast<int>(mixed(static_cast<std::uint64_t>(item) / 10) %
                             static_cast<std::uint64_t>(ranks - 1));
   };
-  const auto deal = [&](std::int64_t count, std::vector<std::int32_t>& own) {
+  const auto redistribute = [&](std::int64_t count, std::vector<std::int32_t>& own) {
     for (std::int32_t i = 0; i < count; ++i)
       if (owner(i) == rank) own.push_back(i);
   };
-  deal(places.points, places.point);
-  deal(places.lines, places.line);
-  deal(places.triangles, places.triangle);
+  redistribute(places.points, places.point);
+  redistribute(places.lines, places.line);
+  redistribute(places.triangles, places.triangle);
   Frame& f = part.frame;
   f.step = whole.step;
   f.time = whole.time;

@@ -159,8 +159,8 @@ void expect_copies_are_left_to_their_owners(const AScene& scene, const Spoil& sp
     auto whole = scene.world();
     auto part = share_out(whole, ranks, {});
     const Domain& domain = part.domain;
-    EXPECT_FALSE(domain.copies.empty());
-    for (const Copy& copy : domain.copies) spoil(part, copy.element);
+    EXPECT_FALSE(domain.ghosts.empty());
+    for (const Ghost& ghost : domain.ghosts) spoil(part, ghost.element);
     EXPECT_EQ(find_unsound(part).id, Unsound::none);
     for (Index e = 0; e < domain.owned.size(); ++e) spoil(part, e);
     EXPECT_NE(find_unsound(part).id, Unsound::none);

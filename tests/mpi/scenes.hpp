@@ -8,13 +8,13 @@
 #include "core/precision.hpp"
 #include "dem/observe.hpp"
 #include "domain/domain.hpp"
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "physics/fdem/scene.hpp"
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
-#include "run/dem_method.hpp"
-#include "run/fdem_method.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem_method.hpp"
 
 namespace breccia::mpi_testing {
 

@@ -12,7 +12,7 @@
 namespace breccia {
 namespace {
 
-constexpr Leeway leeway{.margin = 0.2, .buffer = 0.25, .per_size = 0.25};
+constexpr MigrationBuffer migration_buffer{.margin = 0.2, .buffer = 0.25, .per_size = 0.25};
 constexpr int ranks_count = 6;
 
 /// In [0, 1), by a thing.
@@ -36,7 +36,7 @@ struct Held {
   std::vector<int> owner;
   std::vector<std::set<int>> by;
   Index large = 0;
-  std::size_t copies = 0;        ///< of all elements
+  std::size_t ghosts = 0;        ///< of all elements
   std::size_t by_one_width = 0;  ///< if all reached as far as the largest
 };
 Held held(const std::vector<Sphere>& all, const SharingSets& sets, const Partition& partition) {
@@ -47,10 +47,10 @@ Held held(const std::vector<Sphere>& all, const SharingSets& sets, const Partiti
     h.owner.push_back(partition.owner(s.centre));
     std::set<int> by{h.owner.back()}, wide = by;
     sets.each_sharer(partition, s, sets.buffer(s.radius), [&](int r) { by.insert(r); });
-    partition.each_near(s.centre,
-                        s.radius + largest + 2.0 * leeway.margin + 2.0 * sets.buffer(largest),
-                        [&](int r) { wide.insert(r); });
-    h.copies += by.size() - 1;
+    partition.each_near(
+        s.centre, s.radius + largest + 2.0 * migration_buffer.margin + 2.0 * sets.buffer(largest),
+        [&](int r) { wide.insert(r); });
+    h.ghosts += by.size() - 1;
     h.by_one_width += wide.size() - 1;
     h.by.push_back(std::move(by));
   }
@@ -72,7 +72,7 @@ Held held_on_ranks(const std::vector<Sphere>& all) {
     std::vector<int> owners;
     for (const Sphere& s : own) owners.push_back(partition.owner(s.centre));
     SharingSets sets;
-    sets.build(ranks, own, owners, leeway);
+    sets.build(ranks, own, owners, migration_buffer);
     if (ranks.rank() == 0) h = held(all, sets, partition);
   });
   return h;
@@ -86,7 +86,8 @@ TEST(SharingSets, two_that_may_touch_are_held_by_the_owners_of_both) {
     for (std::size_t f = 0; f < all.size(); ++f) {
       // Each goes as far as it may, towards the other.
       const auto way = [](const Sphere& s) {
-        return leeway.margin + (s.radius > 1.0 ? 0.5 * s.radius : leeway.buffer);
+        return migration_buffer.margin +
+               (s.radius > 1.0 ? 0.5 * s.radius : migration_buffer.buffer);
       };
       const Vec3 d = all[f].centre - all[e].centre;
       const double apart = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
@@ -104,8 +105,8 @@ TEST(SharingSets, a_few_large_elements_do_not_make_copies_of_all_others) {
   const Held none = held_on_ranks(spheres(0)), some = held_on_ranks(spheres(10));
   EXPECT_EQ(none.large, 0);
   EXPECT_EQ(some.large, 10);
-  EXPECT_LT(some.copies, 2 * none.copies);
-  EXPECT_GT(some.by_one_width, 3 * some.copies);
+  EXPECT_LT(some.ghosts, 2 * none.ghosts);
+  EXPECT_GT(some.by_one_width, 3 * some.ghosts);
 }
 
 }  // namespace

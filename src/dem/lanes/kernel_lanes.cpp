@@ -1,6 +1,6 @@
 // Built once for each width of vector; BR_PACKS names the build (see CMakeLists.txt).
 
-#include "dem/kernel_lanes.hpp"
+#include "dem/stepping/kernel_lanes.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -53,9 +53,9 @@ BR_WHOLE Index BR_PACKS::run(const GatherForces& kernel, Index begin, Index end)
 BR_WHOLE LeastOf BR_PACKS::run(const View<const double>& numbers, Index begin, Index end) {
   WidestPack least = constant<WidestPack>(largest_least);
   Index i = begin;
-  for (; i + width <= end; i += width) least = smaller(load<WidestPack>(numbers, i), least);
+  for (; i + width <= end; i += width) least = min(load<WidestPack>(numbers, i), least);
   double number = largest_least;
-  for (Index k = 0; k < width; ++k) number = smaller(least[k], number);
+  for (Index k = 0; k < width; ++k) number = min(least[k], number);
   return {i, number};
 }
 

@@ -80,8 +80,8 @@ struct ConcreteLink {
 
   /// One step of a link (R = double) or of a pack of links.
   template <class R>
-  BR_HD LinkResponse<R> answer(const LinkConstants<R>& link, const PairMotion<R>& motion,
-                               LinkState<R>& state) const {
+  BR_HD LinkResponse<R> response(const LinkConstants<R>& link, const PairMotion<R>& motion,
+                                 LinkState<R>& state) const {
     const R zero = constant<R>(0.0);
     const R kt = shear_ratio * link.stiffness;
     const R kr = rolling_ratio * kt * link.radius * link.radius;
@@ -91,38 +91,38 @@ struct ConcreteLink {
     if (compaction_strength > 0.0 || crushing_strength > 0.0) compact(s, link, motion);
 
     // 2. Shear force and moment: carried with the pair, then this step's increment.
-    const Vec3Of<R> shear_before = motion.across(motion.carried(state.shear));
-    const Vec3Of<R> moment_before = motion.carried(state.moment);
+    const Vec3Of<R> shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
+    const Vec3Of<R> moment_before = motion.rotated_with_pair(state.moment);
     const Vec3Of<R> shear_trial = shear_before - kt * motion.slip;
     const Vec3Of<R> moment_trial = moment_before - kr * motion.turn;
 
     // 3. Their limits.
     const R shear_limit = limit_shear(s, link, dot(shear_trial, shear_trial));
-    const auto survives = both(s.holds, opposite(s.sheared));
-    const auto acts = either(survives, both(s.pressed, opposite(s.parted)));
+    const auto survives = s.holds && !s.sheared;
+    const auto acts = survives || (s.pressed && !s.parted);
     const R moment_limit = limit_moment(s, link, survives);
     const Cut<R> slide = cut(shear_before, shear_trial, shear_limit, acts, kt);
     const Cut<R> roll = cut(moment_before, moment_trial, moment_limit, acts, kr);
 
     LinkResponse<R> r;
-    r.normal = choose(acts, s.normal, zero);
+    r.normal = select(acts, s.normal, zero);
     r.shear = slide.kept;
     r.moment = roll.kept;
-    r.active = choose(acts, constant<R>(1.0), zero);
+    r.active = select(acts, constant<R>(1.0), zero);
     r.shortened = s.shortened;
     r.slid = slide.spent;
     r.yielded = roll.spent;
     r.broke = zero;
 
     // 4. What is kept.
-    state.opening = choose(s.intact, s.opening, state.opening);
+    state.opening = select(s.intact, s.opening, state.opening);
     if (wears()) {
       const R wear = slip_wear * slide.plastic + turn_wear * link.radius * roll.plastic;
-      wear_out(s, link, motion, choose(survives, wear, zero), state, r);
+      wear_out(s, link, motion, select(survives, wear, zero), state, r);
     }
-    if (any(either(s.torn, s.sheared))) rupture(s, link, state, r);
+    if (any(s.torn || s.sheared)) rupture(s, link, state, r);
     r.yielded = r.yielded + s.crushed;
-    state.opening = choose(s.parted, constant<R>(link_released), state.opening);
+    state.opening = select(s.parted, constant<R>(link_released), state.opening);
     state.shear = r.shear;
     state.moment = r.moment;
     return r;
@@ -194,19 +194,19 @@ struct ConcreteLink {
     Stand<R> s;
     s.stretch = motion.distance - link.length;
     s.intact = opening_before >= 0.0;
-    s.opening = larger(opening_before, s.stretch);
-    s.torn = both(s.intact, kn * s.opening >= t.elastic_at_rupture());
+    s.opening = max(opening_before, s.stretch);
+    s.torn = s.intact && kn * s.opening >= t.elastic_at_rupture();
     s.health = one;
-    const auto softened = both(s.intact, kn * s.opening > t.strength);
-    if (any(softened)) s.health = choose(softened, one - t.damage(s.opening), one);
+    const auto softened = s.intact && kn * s.opening > t.strength;
+    if (any(softened)) s.health = select(softened, one - t.damage(s.opening), one);
     s.pressed = s.stretch < 0.0;
-    s.holds = both(s.intact, opposite(s.torn));
+    s.holds = s.intact && !s.torn;
     const auto released = opening_before < 0.5 * (link_broken + link_released);
-    const R reach = 1.5 * larger(link.length, link.touching);
-    s.parted = either(released, both(opposite(s.intact), motion.distance > reach));
-    const auto resists = either(s.holds, both(s.pressed, opposite(s.parted)));
+    const R reach = 1.5 * max(link.length, link.touching);
+    s.parted = released || (!s.intact && motion.distance > reach);
+    const auto resists = s.holds || (s.pressed && !s.parted);
     const R elastic = kn * s.stretch;
-    s.normal = choose(resists, choose(s.pressed, elastic, s.health * elastic), zero);
+    s.normal = select(resists, select(s.pressed, elastic, s.health * elastic), zero);
     s.shortened = s.crushed = zero;
     return s;
   }
@@ -218,16 +218,16 @@ struct ConcreteLink {
   BR_HD void compact(Stand<R>& s, const LinkConstants<R>& link, const PairMotion<R>& motion) const {
     const R zero = constant<R>(0.0), kn = link.stiffness;
     const R first = modulus * link.area / kn;  // D_0
-    const R p = larger(zero, first - link.length) / first;
-    const auto filled = either(s.holds, link.touching >= link.length);
+    const R p = max(zero, first - link.length) / first;
+    const auto filled = s.holds || link.touching >= link.length;
     const R onset =
-        choose(filled, constant<R>(compaction_strength), constant<R>(crushing_strength));
-    const R slope = choose(filled, constant<R>(compaction_slope), constant<R>(crushing_slope));
+        select(filled, constant<R>(compaction_strength), constant<R>(crushing_strength));
+    const R slope = select(filled, constant<R>(compaction_slope), constant<R>(crushing_slope));
     const R excess = -s.normal - link.area * (onset + modulus * p * slope / (1.0 - slope));
-    const auto yields = both(both(s.pressed, opposite(s.parted)), both(excess > 0.0, onset > 0.0));
+    const auto yields = s.pressed && !s.parted && excess > 0.0 && onset > 0.0;
     if (!any(yields)) return;
-    s.shortened = choose(yields, excess * (1.0 - slope) / kn, zero);
-    const R before = smaller(zero, s.normal - kn * motion.extension);
+    s.shortened = select(yields, excess * (1.0 - slope) / kn, zero);
+    const R before = min(zero, s.normal - kn * motion.extension);
     s.normal = s.normal + kn * s.shortened;
     s.crushed = -0.5 * s.shortened * (before + s.normal);
   }
@@ -236,13 +236,13 @@ struct ConcreteLink {
   template <class R>
   BR_HD R limit_shear(Stand<R>& s, const LinkConstants<R>& link, const R& trial_squared) const {
     const R zero = constant<R>(0.0);
-    const R cohesive = choose(s.holds, s.health, zero);
-    const R slope = choose(s.holds, constant<R>(friction), constant<R>(broken_friction));
-    R limit = larger(zero, cohesion * link.area * cohesive - s.normal * slope);
-    const auto beyond = both(trial_squared > zero, trial_squared > limit * limit);
-    s.sheared = both(both(s.holds, beyond), constant<R>(brittle_shear) > 0.5);
+    const R cohesive = select(s.holds, s.health, zero);
+    const R slope = select(s.holds, constant<R>(friction), constant<R>(broken_friction));
+    R limit = max(zero, cohesion * link.area * cohesive - s.normal * slope);
+    const auto beyond = trial_squared > zero && trial_squared > limit * limit;
+    s.sheared = s.holds && beyond && constant<R>(brittle_shear) > 0.5;
     if (any(s.sheared))
-      limit = choose(s.sheared, larger(zero, -1.0 * broken_friction * s.normal), limit);
+      limit = select(s.sheared, max(zero, -1.0 * broken_friction * s.normal), limit);
     return limit;
   }
 
@@ -250,11 +250,11 @@ struct ConcreteLink {
   BR_HD R limit_moment(const Stand<R>& s, const LinkConstants<R>& link,
                        const typename Stand<R>::Truth& survives) const {
     const R zero = constant<R>(0.0);
-    const auto counts = either(s.pressed, opposite(survives));
-    R force = choose(counts, absolute(s.normal), zero) +
-              choose(survives, tensile_strength * link.area * s.health, zero);
-    if (rolling_cap > 0.0) force = smaller(force, rolling_cap * link.area);
-    const R eta = choose(survives, constant<R>(rolling_limit), constant<R>(broken_rolling_limit));
+    const auto counts = s.pressed || !survives;
+    R force = select(counts, abs(s.normal), zero) +
+              select(survives, tensile_strength * link.area * s.health, zero);
+    if (rolling_cap > 0.0) force = min(force, rolling_cap * link.area);
+    const R eta = select(survives, constant<R>(rolling_limit), constant<R>(broken_rolling_limit));
     return eta * link.radius * force;
   }
 
@@ -265,14 +265,14 @@ struct ConcreteLink {
     const R zero = constant<R>(0.0), one = constant<R>(1.0);
     Cut<R> c{trial, zero, zero};
     const R squared = dot(trial, trial);
-    const auto beyond = either(squared > limit * limit, opposite(acts));
+    const auto beyond = squared > limit * limit || !acts;
     if (!any(beyond)) return c;
-    const R size = root(squared);
-    const R scale = choose(acts, limit / choose(size > zero, size, one), zero);
-    c.kept = choose(beyond, scale * trial, trial);
-    const R per_stiffness = constant<R>(0.5) / choose(stiffness > zero, stiffness, one);
+    const R size = sqrt(squared);
+    const R scale = select(acts, limit / select(size > zero, size, one), zero);
+    c.kept = select(beyond, scale * trial, trial);
+    const R per_stiffness = constant<R>(0.5) / select(stiffness > zero, stiffness, one);
     c.spent = per_stiffness * dot(before + c.kept, trial - c.kept);
-    c.plastic = choose(beyond, 2.0 * per_stiffness * (size - scale * size), zero);
+    c.plastic = select(beyond, 2.0 * per_stiffness * (size - scale * size), zero);
     return c;
   }
 
@@ -287,13 +287,13 @@ struct ConcreteLink {
     const TensionSoftening<R> t = tension(link);
     // a little beyond u_2, so that rounding cannot keep the link whole
     const R last = (1.0 + 1e-6) * t.rupture();
-    const R after = larger(s.opening, smaller(s.opening + wear, last));
+    const R after = max(s.opening, min(s.opening + wear, last));
     const R softer = s.health - (1.0 - t.damage(after));
-    const R next = larger(constant<R>(0.0), s.stretch + motion.extension);
+    const R next = max(constant<R>(0.0), s.stretch + motion.extension);
     const R released =
-        choose(s.pressed, constant<R>(0.0), 0.5 * link.stiffness * softer * s.stretch * next);
-    r.broke = choose(worn, t.spent(s.opening) - t.spent(after) + released, r.broke);
-    state.opening = choose(worn, after, state.opening);
+        select(s.pressed, constant<R>(0.0), 0.5 * link.stiffness * softer * s.stretch * next);
+    r.broke = select(worn, t.spent(s.opening) - t.spent(after) + released, r.broke);
+    state.opening = select(worn, after, state.opening);
   }
 
   template <class R>
@@ -301,14 +301,14 @@ struct ConcreteLink {
                      LinkResponse<R>& r) const {
     const R zero = constant<R>(0.0);
     const TensionSoftening<R> t = tension(link);
-    const auto ends = either(s.torn, s.sheared);
+    const auto ends = s.torn || s.sheared;
     const R stored = constant<R>(0.5) * s.health * link.stiffness * s.stretch * s.stretch;
     const R spent =
-        choose(s.torn, t.toughness(), t.spent(s.opening) + choose(s.pressed, zero, stored));
-    r.broke = choose(ends, spent + r.slid + r.yielded, r.broke);
-    r.slid = choose(ends, zero, r.slid);
-    r.yielded = choose(ends, zero, r.yielded);
-    state.opening = choose(ends, constant<R>(link_broken), state.opening);
+        select(s.torn, t.toughness(), t.spent(s.opening) + select(s.pressed, zero, stored));
+    r.broke = select(ends, spent + r.slid + r.yielded, r.broke);
+    r.slid = select(ends, zero, r.slid);
+    r.yielded = select(ends, zero, r.yielded);
+    state.opening = select(ends, constant<R>(link_broken), state.opening);
   }
 };
 

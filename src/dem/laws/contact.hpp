@@ -54,9 +54,9 @@ struct ContactLaw {
     double arm;      ///< r, mean radius, of the rolling moment  [m]
   };
 
-  BR_HD ContactResponse answer(const ContactPair& material, const Pair& pair, double overlap,
-                               double approach, const PairMotion<double>& motion,
-                               ContactState& state) const {
+  BR_HD ContactResponse response(const ContactPair& material, const Pair& pair, double overlap,
+                                 double approach, const PairMotion<double>& motion,
+                                 ContactState& state) const {
     ContactResponse r{};
     if (overlap <= 0.0) {
       r.slid = state.stored;
@@ -66,7 +66,7 @@ struct ContactLaw {
     }
     double elastic = 0.0, shear_stiffness = 0.0;
     if (hertz) {
-      const double chord = root(pair.radius * overlap);
+      const double chord = sqrt(pair.radius * overlap);
       r.normal_stiffness = 2.0 * material.normal * chord;
       elastic = r.normal_stiffness * overlap * (2.0 / 3.0);
       shear_stiffness = 8.0 * material.shear * chord;
@@ -80,13 +80,13 @@ struct ContactLaw {
     // Normal: spring and dashpot, never attraction.
     double dashpot = 0.0;
     if (damping > 0.0)
-      dashpot = larger(2.0 * damping * root(pair.mass * r.normal_stiffness) * approach, -elastic);
+      dashpot = max(2.0 * damping * sqrt(pair.mass * r.normal_stiffness) * approach, -elastic);
     r.pressure = elastic + dashpot;
     r.damped = 0.5 * (state.dashpot + dashpot) * (overlap - state.overlap);
 
     // Shear and rolling.
-    const Vec3 shear_before = motion.across(motion.carried(state.shear));
-    const Vec3 moment_before = motion.carried(state.moment);
+    const Vec3 shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
+    const Vec3 moment_before = motion.rotated_with_pair(state.moment);
     r.shear = shear_before - shear_stiffness * motion.slip;
     r.moment = moment_before - rolling_stiffness * motion.turn;
     cut(r.shear, friction * r.pressure);
@@ -101,7 +101,7 @@ struct ContactLaw {
     r.shear_stiffness = shear_stiffness;
     r.rolling_stiffness = rolling_stiffness;
     if (damping > 0.0) {  // a dashpot shortens the stable step: dt <= 2/omega (sqrt(1 + xi^2) - xi)
-      const double shrink = root(1.0 + damping * damping) - damping;
+      const double shrink = sqrt(1.0 + damping * damping) - damping;
       r.normal_stiffness /= shrink * shrink;
     }
     state = {r.shear, r.moment, stored, dashpot, overlap};
@@ -112,7 +112,7 @@ struct ContactLaw {
   BR_HD double stored_normal(const ContactPair& material, const Pair& pair, double overlap) const {
     if (overlap <= 0.0) return 0.0;
     if (hertz)
-      return 8.0 / 15.0 * material.normal * root(pair.radius * overlap) * overlap * overlap;
+      return 8.0 / 15.0 * material.normal * sqrt(pair.radius * overlap) * overlap * overlap;
     return 0.5 * material.normal * pair.smaller * pair.smaller / pair.sum * overlap * overlap;
   }
 

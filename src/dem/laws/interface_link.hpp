@@ -20,7 +20,7 @@ struct BondSlip {
     R tau = constant<R>(strength);
     const auto rising = slip < slip1;
     if (any(rising)) {
-      const R place = static_cast<double>(intervals) * root(slip / slip1);
+      const R place = static_cast<double>(intervals) * sqrt(slip / slip1);
       double at[width_of<R>], from[width_of<R>], to[width_of<R>];
       __builtin_memcpy(at, &place, sizeof place);
       for (Index k = 0; k < width_of<R>; ++k) {
@@ -30,12 +30,12 @@ struct BondSlip {
         to[k] = rise[below + 1];
       }
       const R low = pack_of<R>(from), high = pack_of<R>(to);
-      tau = choose(rising, strength * (low + (place - pack_of<R>(at)) * (high - low)), tau);
+      tau = select(rising, strength * (low + (place - pack_of<R>(at)) * (high - low)), tau);
     }
     const auto falling = slip > slip2, fallen = slip >= slip3;
-    if (any(either(falling, fallen))) {
+    if (any(falling || fallen)) {
       const R fall = strength - (strength - residual) * (slip - slip2) / (slip3 - slip2);
-      tau = choose(fallen, constant<R>(residual), choose(falling, fall, tau));
+      tau = select(fallen, constant<R>(residual), select(falling, fall, tau));
     }
     return tau;
   }
@@ -85,9 +85,9 @@ struct InterfaceLink {
   /// @param approach    relative displacement of b along n in this step  [m]
   /// @returns whether that holds; if not, the links are to be taken one by one
   template <class R>
-  BR_HD bool respond(const R& transverse, const R& area, const R& touching, const Vec3Of<R>& axis,
-                     const PairMotion<R>& motion, const R& approach, InterfaceStateOf<R>& state,
-                     InterfaceResponseOf<R>& r) const {
+  BR_HD bool force_within(const R& transverse, const R& area, const R& touching,
+                          const Vec3Of<R>& axis, const PairMotion<R>& motion, const R& approach,
+                          InterfaceStateOf<R>& state, InterfaceResponseOf<R>& r) const {
     constexpr bool alone = width_of<R> == 1;
     const R zero = constant<R>(0.0);
     r = InterfaceResponseOf<R>{};
@@ -95,7 +95,7 @@ struct InterfaceLink {
     const Vec3Of<R> radial = motion.normal - dot(motion.normal, axis) * axis;
     const R sine = norm(radial);
     const auto has_side = sine > 1e-3;  // b lies beside the bar, not on its axis
-    const Vec3Of<R> out = choose(has_side, (1.0 / sine) * radial, Vec3Of<R>{});
+    const Vec3Of<R> out = select(has_side, (1.0 / sine) * radial, Vec3Of<R>{});
     const Vec3Of<R> round = cross(axis, out);
     const Vec3Of<R> moved = motion.slip + approach * motion.normal;
 
@@ -105,10 +105,10 @@ struct InterfaceLink {
     const R u = state.gap;
     auto intact = state.opening >= 0.0;
     R radial_force = transverse * u;  // tension positive
-    state.opening = choose(intact, larger(state.opening, u), state.opening);
-    const auto strained = both(intact, transverse * state.opening >= tension.strength);
+    state.opening = select(intact, max(state.opening, u), state.opening);
+    const auto strained = intact && transverse * state.opening >= tension.strength;
     if (any(strained)) {  // at the onset or beyond
-      const auto torn = both(strained, state.opening >= tension.rupture());
+      const auto torn = strained && state.opening >= tension.rupture();
       if (any(torn)) {
         if constexpr (alone) {
           intact = false;
@@ -119,11 +119,11 @@ struct InterfaceLink {
         }
       }
       const R softened = radial_force * (1.0 - tension.damage(state.opening));
-      radial_force = choose(both(both(strained, intact), u > 0.0), softened, radial_force);
+      radial_force = select(strained && intact && u > 0.0, softened, radial_force);
     }
-    const auto apart = both(opposite(intact), u > 0.0);
-    radial_force = choose(apart, zero, radial_force);
-    if (any(both(apart, motion.distance > 2.25 * touching))) {
+    const auto apart = !intact && u > 0.0;
+    radial_force = select(apart, zero, radial_force);
+    if (any(apart && motion.distance > 2.25 * touching)) {
       if constexpr (alone) {
         r.slid = stored(transverse, area, state);
         state = {0.0, link_released, 0.0, 0.0, 0.0, 0.0};
@@ -135,24 +135,24 @@ struct InterfaceLink {
     const R slip_stiffness = slip_ratio * transverse;
     const R step = dot(moved, axis);
     state.slip += step;
-    state.slip_peak = larger(state.slip_peak, absolute(state.slip));
-    const R grip = larger(zero, -friction * radial_force);
+    state.slip_peak = max(state.slip_peak, abs(state.slip));
+    const R grip = max(zero, -friction * radial_force);
     R bond_limit = grip;
-    if (any(intact)) bond_limit = choose(intact, area * bond.stress(state.slip_peak), grip);
+    if (any(intact)) bond_limit = select(intact, area * bond.stress(state.slip_peak), grip);
     r.slid = advance(state.along, slip_stiffness, step, bond_limit);
-    const R around_limit = choose(intact, constant<R>(1e300), grip);
+    const R around_limit = select(intact, constant<R>(1e300), grip);
     r.slid +=
-        advance(state.around, transverse, choose(has_side, dot(moved, round), zero), around_limit);
+        advance(state.around, transverse, select(has_side, dot(moved, round), zero), around_limit);
 
     r.force = state.along * axis + state.around * round - radial_force * out;
-    r.active = choose(either(intact, u < 0.0), constant<R>(1.0), zero);
+    r.active = select(intact || u < 0.0, constant<R>(1.0), zero);
     return true;
   }
-  BR_HD InterfaceResponse answer(double transverse, double area, double touching, const Vec3& axis,
-                                 const PairMotion<double>& motion, double approach,
-                                 InterfaceState& state) const {
+  BR_HD InterfaceResponse response(double transverse, double area, double touching,
+                                   const Vec3& axis, const PairMotion<double>& motion,
+                                   double approach, InterfaceState& state) const {
     InterfaceResponse r;
-    respond(transverse, area, touching, axis, motion, approach, state, r);
+    force_within(transverse, area, touching, axis, motion, approach, state, r);
     return r;
   }
 
@@ -180,11 +180,11 @@ struct InterfaceLink {
   BR_HD static R advance(R& force, const R& stiffness, const R& step, const R& limit) {
     const R before = force;
     const R trial = before - stiffness * step;
-    force = larger(-limit, smaller(limit, trial));
+    force = max(-limit, min(limit, trial));
     const auto cut = force != trial;
     const R none = constant<R>(0.0);
     if (!any(cut)) return none;
-    return choose(cut, 0.5 * (before + force) * (trial - force) / stiffness, none);
+    return select(cut, 0.5 * (before + force) * (trial - force) / stiffness, none);
   }
 };
 

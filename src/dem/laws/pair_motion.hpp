@@ -31,12 +31,12 @@ struct PairMotion {
   /// A vector kept by the pair (shear force, moment), turned with the pair: Cayley's form of the
   /// rotation that brings the old normal to the new one and spins about it by the mean spin. It
   /// keeps the length.
-  BR_HD Vec3Of<R> carried(const Vec3Of<R>& v) const {
+  BR_HD Vec3Of<R> rotated_with_pair(const Vec3Of<R>& v) const {
     const Vec3Of<R> w = cross(half_turn, v);
     return v + turn_scale * (w + cross(half_turn, w));
   }
   /// What is left of a vector across the normal.
-  BR_HD Vec3Of<R> across(const Vec3Of<R>& v) const { return v - dot(v, normal) * normal; }
+  BR_HD Vec3Of<R> tangential(const Vec3Of<R>& v) const { return v - dot(v, normal) * normal; }
 };
 
 /// 2 / (1 + h.h) by its series: h is half the angle of one step, h^8 below rounding.
@@ -86,7 +86,7 @@ BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const 
   const R bend = dot(swing, swing);
   const Vec3Of<R> lever = (1.0 - bend * (1.0 - bend)) * middle;  // (old + new normal) / 2
   const Vec3Of<R> sliding = dv - cross(m.arm_b * b.spin + m.arm_a * a.spin, lever);
-  m.slip = step * m.across(sliding);
+  m.slip = step * m.tangential(sliding);
   m.turn = step * (b.spin - a.spin);
   m.turn_scale = turn_scale(m.half_turn);
   return m;

@@ -61,7 +61,7 @@ struct ParallelBond {
   template <class R>
   BR_HD ConstantsOf<R> constants(const R& length, const R& stiffness, const R& radius_a,
                                  const R& radius_b) const {
-    return {length, stiffness, radius_factor * smaller(radius_a, radius_b), radius_a + radius_b};
+    return {length, stiffness, radius_factor * min(radius_a, radius_b), radius_a + radius_b};
   }
   /// K_s J/A.  [N m]
   template <class R>
@@ -75,21 +75,22 @@ struct ParallelBond {
   BR_HD bool stays_whole(const ConstantsOf<R>& k, const PairMotion<R>& motion,
                          ParallelBondStateOf<R>& state, ParallelBondResponseOf<R>& r) const {
     const Trial<R> t = trial(k, motion, state);
-    if (any(either(state.bond < 0.5, opposite(t.strained < 1.0)))) return false;
+    if (any(state.bond < 0.5 || !(t.strained < 1.0))) return false;
     const R none = constant<R>(0.0);
-    state.strained = larger(state.strained, t.strained);
+    state.strained = max(state.strained, t.strained);
     state.shear = t.shear;
     state.moment = t.bend + t.twist;
     r = {t.normal, state.shear, state.moment, constant<R>(1.0), none, none};
     return true;
   }
   /// One step of any bond.
-  BR_HD ParallelBondResponseOf<double> answer(const Constants& k, const PairMotion<double>& motion,
-                                              ParallelBondState& state) const {
+  BR_HD ParallelBondResponseOf<double> response(const Constants& k,
+                                                const PairMotion<double>& motion,
+                                                ParallelBondState& state) const {
     ParallelBondResponseOf<double> r{};
     if (state.bond < 0.0 || stays_whole(k, motion, state, r)) return r;
     const double stretch = motion.distance - k.length;
-    if (state.bond < 0.5 && motion.distance > 1.5 * larger(k.length, k.touching)) {
+    if (state.bond < 0.5 && motion.distance > 1.5 * max(k.length, k.touching)) {
       state = {bond_released, state.strained, {}, {}};
       return r;
     }
@@ -115,7 +116,7 @@ struct ParallelBond {
     } else {
       r.slid = dot(both, t.shear - r.shear) / ks;
     }
-    state = {0.0, larger(state.strained, breaks ? t.strained : 0.0), r.shear, {}};
+    state = {0.0, max(state.strained, breaks ? t.strained : 0.0), r.shear, {}};
     return r;
   }
 
@@ -145,11 +146,11 @@ struct ParallelBond {
                        const ParallelBondStateOf<R>& state) const {
     Trial<R> t;
     t.normal = k.stiffness * (motion.distance - k.length);
-    t.shear_before = motion.across(motion.carried(state.shear));
+    t.shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
     t.shear = t.shear_before - (shear_ratio * k.stiffness) * motion.slip;
-    const Vec3Of<R> moment = motion.carried(state.moment);
+    const Vec3Of<R> moment = motion.rotated_with_pair(state.moment);
     const Vec3Of<R> turned = dot(motion.turn, motion.normal) * motion.normal;
-    t.bend_before = motion.across(moment);
+    t.bend_before = motion.tangential(moment);
     t.twist_before = dot(moment, motion.normal) * motion.normal;
     t.bend = t.bend_before - k.bending() * (motion.turn - turned);
     t.twist = t.twist_before - twisting(k) * turned;
@@ -158,8 +159,8 @@ struct ParallelBond {
     const R pull = t.normal / area;
     const R tension = pull + 4.0 * share * norm(t.bend);
     const R sliding = norm(t.shear) / area + 2.0 * share * norm(t.twist);
-    const R bears = larger(cohesion - friction * pull, constant<R>(1e-300));
-    t.strained = larger(tension / tensile_strength, sliding / bears);
+    const R bears = max(cohesion - friction * pull, constant<R>(1e-300));
+    t.strained = max(tension / tensile_strength, sliding / bears);
     return t;
   }
 };

@@ -62,8 +62,8 @@ struct SteelLink {
             2.0 * shear_modulus * second_moment / length};
   }
 
-  BR_HD SteelResponse answer(double length, double radius, const PairMotion<double>& motion,
-                             SteelState& state) const {
+  BR_HD SteelResponse response(double length, double radius, const PairMotion<double>& motion,
+                               SteelState& state) const {
     const Stiffness k = stiffness(length, radius);
     const double stretch = motion.distance - length;
     SteelResponse r{};
@@ -88,9 +88,9 @@ struct SteelLink {
 
     // The plastic hinge.
     const Limits<double> limits = hinge(radius, t.area, r.normal);
-    r.yielded += cut(t.bending, motion.across(t.moment_before), limits.bending, k.bending);
+    r.yielded += cut(t.bending, motion.tangential(t.moment_before), limits.bending, k.bending);
     r.yielded +=
-        cut(t.twist, t.moment_before - motion.across(t.moment_before), limits.twist, k.twist);
+        cut(t.twist, t.moment_before - motion.tangential(t.moment_before), limits.twist, k.twist);
     r.yielded += cut(t.shear, t.shear_before, limits.shear, k.shear);
 
     if (state.hardening > failure_strain) {
@@ -106,19 +106,18 @@ struct SteelLink {
   /// The same for a pack of links of which none is ruptured, yields or breaks.
   /// @returns false, having done nothing, if one is or does
   template <class R>
-  BR_HD bool stays_elastic(const StiffnessOf<R>& k, const R& length, const R& radius,
-                           const PairMotion<R>& motion, SteelStateOf<R>& state,
-                           SteelResponseOf<R>& r) const {
+  BR_HD bool elastic_response(const StiffnessOf<R>& k, const R& length, const R& radius,
+                              const PairMotion<R>& motion, SteelStateOf<R>& state,
+                              SteelResponseOf<R>& r) const {
     const Trial<R> t = trial(k, length, radius, motion, state);
     r.normal = t.stress * t.area;
     r.active = constant<R>(1.0);
     r.yielded = r.broke = constant<R>(0.0);
     const Limits<R> limits = hinge(radius, t.area, r.normal);
-    const auto elastic =
-        both(both(state.hardening >= 0.0, opposite(t.excess > 0.0)),
-             both(norm(t.bending) <= limits.bending,
-                  both(norm(t.twist) <= limits.twist, norm(t.shear) <= limits.shear)));
-    if (any(either(opposite(elastic), state.hardening > failure_strain))) return false;
+    const auto elastic = state.hardening >= 0.0 && !(t.excess > 0.0) &&
+                         norm(t.bending) <= limits.bending && norm(t.twist) <= limits.twist &&
+                         norm(t.shear) <= limits.shear;
+    if (any(!elastic || state.hardening > failure_strain)) return false;
     keep(t, state, r);
     return true;
   }
@@ -155,13 +154,13 @@ struct SteelLink {
     t.area = pi * radius * radius;
     const R strain = (motion.distance - length) / length;
     t.stress = young * (strain - state.plastic_strain);
-    t.excess = absolute(t.stress) - (yield + hardening * state.hardening);
+    t.excess = abs(t.stress) - (yield + hardening * state.hardening);
 
-    t.shear_before = motion.across(motion.carried(state.shear));
+    t.shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
     t.shear = t.shear_before - k.shear * motion.slip;
-    t.moment_before = motion.carried(state.moment);
+    t.moment_before = motion.rotated_with_pair(state.moment);
     const Vec3Of<R> twist_turn = dot(motion.turn, motion.normal) * motion.normal;
-    t.bending = motion.across(t.moment_before) - k.bending * (motion.turn - twist_turn);
+    t.bending = motion.tangential(t.moment_before) - k.bending * (motion.turn - twist_turn);
     t.twist = dot(t.moment_before, motion.normal) * motion.normal - k.twist * twist_turn;
     return t;
   }
@@ -176,7 +175,7 @@ struct SteelLink {
     const R cube = 8.0 * radius * radius * radius;  // d^3
     const R reserve = 1.0 - axial_share * axial_share;
     const R zero = constant<R>(0.0);
-    return {yield * cube / 6.0 * choose(reserve > 0.0, reserve, zero),
+    return {yield * cube / 6.0 * select(reserve > 0.0, reserve, zero),
             yield / root3 * pi * cube / 12.0, yield / root3 * area};
   }
   template <class R>

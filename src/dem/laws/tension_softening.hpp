@@ -31,14 +31,14 @@ struct TensionSoftening {
   BR_HD R damage(const R& opening) const {
     const R u1 = onset();
     const R envelope = u1 - (opening - u1) * inverse();  // over K
-    const R lost = smaller(constant<R>(1.0), 1.0 - envelope / opening);
-    return choose(opening > u1, lost, constant<R>(0.0));
+    const R lost = min(constant<R>(1.0), 1.0 - envelope / opening);
+    return select(opening > u1, lost, constant<R>(0.0));
   }
   /// Energy spent up to a largest opening: the area under the envelope less what the secant stores.
   /// With b = u - u_1 it is K b u_1 (1 + 1/zeta) / 2, at most that of a whole rupture.  [J]
   BR_HD R spent(const R& opening) const {
-    const R beyond = larger(opening - onset(), constant<R>(0.0));
-    return smaller(0.5 * strength * beyond * (1.0 + inverse()), toughness());
+    const R beyond = max(opening - onset(), constant<R>(0.0));
+    return min(0.5 * strength * beyond * (1.0 + inverse()), toughness());
   }
   /// Energy of a whole rupture, F_t u_2 / 2.  [J]
   BR_HD R toughness() const { return 0.5 * strength * rupture(); }

@@ -96,7 +96,7 @@ struct ConcreteLinkForces {
   View<Number> opening;
   PlanesView<Number> shear, moment;
   View<double> slid, yielded, broke;
-  View<ActionOf<Number>> actions;
+  View<PairForceOf<Number>> actions;
   Index first_action;  ///< action of link 0
   std::int64_t step;   ///< steps taken before
 
@@ -134,7 +134,7 @@ struct ConcreteLinkForces {
     const LinkConstants<R> link{loaded.length, loaded.stiffness, loaded.area, 0.5 * touching,
                                 touching};
     LinkState<R> state = loaded.state;
-    const LinkResponse<R> r = by.answer(link, motion, state);
+    const LinkResponse<R> r = by.response(link, motion, state);
 
     if constexpr (std::is_same_v<Number, float>) {
       const BitsOf<R> chance = chance_of(motion.distance, step);
@@ -152,8 +152,8 @@ struct ConcreteLinkForces {
 
     const R kn = r.active * link.stiffness, kt = by.shear_ratio * kn;
     const R kr = by.rolling_ratio * kt * link.radius * link.radius;
-    book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, kt,
-         kr, kr);
+    write_pair_force(actions, first_action + i, motion, r.shear - r.normal * motion.normal,
+                     r.moment, kn, kt, kr, kr);
   }
   BR_HD void set(const StepTime& now) {
     dt = now.last_dt;

@@ -92,7 +92,7 @@ struct InterfaceLinkForces {
   View<const double> stiffness, area;
   View<InterfaceState> state;
   View<double> slid, broke;
-  View<Action> actions;
+  View<PairForce> actions;
   Index first_action;  ///< action of link 0
 
   template <class R>
@@ -139,13 +139,14 @@ struct InterfaceLinkForces {
     InterfaceStateOf<R> kept = loaded.state;
     const R transverse = loaded.stiffness;
     InterfaceResponseOf<R> r;
-    if (!by.respond(transverse, loaded.area, touching, axis, motion, motion.extension, kept, r))
+    if (!by.force_within(transverse, loaded.area, touching, axis, motion, motion.extension, kept,
+                         r))
       return false;
     store_state(state, i, kept);
     if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);
     if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
     const R k = r.active * transverse, none = constant<R>(0.0);
-    book(actions, first_action + i, motion, r.force, Vec3Of<R>{}, k, k, none, none);
+    write_pair_force(actions, first_action + i, motion, r.force, Vec3Of<R>{}, k, k, none, none);
     return true;
   }
 
@@ -160,7 +161,7 @@ struct InterfaceLinkForces {
 
 template <class>
 InterfaceLinkForces forces_of(InterfaceLinks& b, const InterfaceLink& law, const LinkSpace& in,
-                              Buffer<Action>& actions) {
+                              Buffer<PairForce>& actions) {
   return {law,
           in.dt,
           in.elements,

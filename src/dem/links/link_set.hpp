@@ -7,9 +7,9 @@
 #include "core/energy.hpp"
 #include "core/fields.hpp"
 #include "core/kernel.hpp"
-#include "dem/actions.hpp"
 #include "dem/elements.hpp"
-#include "dem/model.hpp"
+#include "dem/pair_forces.hpp"
+#include "dem/setup/model.hpp"
 #include "domain/domain.hpp"
 
 namespace breccia::dem {

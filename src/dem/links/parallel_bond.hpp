@@ -70,7 +70,7 @@ struct ParallelBondForces {
   View<const double> length, stiffness;
   View<ParallelBondState> state;
   View<double> slid, broke;
-  View<Action> actions;
+  View<PairForce> actions;
   Index first_action;  ///< action of bond 0
 
   template <class R>
@@ -111,7 +111,7 @@ struct ParallelBondForces {
     ParallelBondStateOf<R> kept = loaded.state;
     ParallelBondResponseOf<R> r;
     if constexpr (width_of<R> == 1)
-      r = by.answer(k, motion, kept);
+      r = by.response(k, motion, kept);
     else if (!by.stays_whole(k, motion, kept, r))
       return false;
     const R s[8] = {kept.bond,    kept.strained, kept.shear.x,  kept.shear.y,
@@ -122,14 +122,15 @@ struct ParallelBondForces {
     const R kn = r.active * k.stiffness, ks = by.shear_ratio * kn;
     const R none = constant<R>(0.0);
     const auto holds = kept.bond > 0.5;
-    book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment, kn, ks,
-         choose(holds, k.bending(), none), choose(holds, by.twisting(k), none));
+    write_pair_force(actions, first_action + i, motion, r.shear - r.normal * motion.normal,
+                     r.moment, kn, ks, select(holds, k.bending(), none),
+                     select(holds, by.twisting(k), none));
     return true;
   }
 };
 template <class>
 ParallelBondForces forces_of(ParallelBonds& p, const ParallelBond& law, const LinkSpace& in,
-                             Buffer<Action>& actions) {
+                             Buffer<PairForce>& actions) {
   return {law,           in.dt,           in.elements,        p.a.view(),
           p.b.view(),    p.length.view(), p.stiffness.view(), p.state.view(),
           p.slid.view(), p.broke.view(),  actions.view(),     0};

@@ -84,7 +84,7 @@ struct SteelLinkForces {
   View<const double> length;
   View<SteelState> state;
   View<double> yielded, broke;
-  View<Action> actions;
+  View<PairForce> actions;
   Index first_action;  ///< action of link 0
 
   template <class R>
@@ -118,29 +118,29 @@ struct SteelLinkForces {
     const PairMotion<R> motion =
         pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, constant<R>(0.0), dt);
     const R own_length = loaded.length;
-    const R radius = smaller(loaded.end_a.radius, loaded.end_b.radius);
+    const R radius = min(loaded.end_a.radius, loaded.end_b.radius);
     const SteelLink::StiffnessOf<R> k = by.stiffness(own_length, radius);
     SteelStateOf<R> kept = loaded.state;
     SteelResponseOf<R> r;
     if constexpr (width_of<R> == 1)
-      r = by.answer(own_length, radius, motion, kept);
-    else if (!by.stays_elastic(k, own_length, radius, motion, kept, r))
+      r = by.response(own_length, radius, motion, kept);
+    else if (!by.elastic_response(k, own_length, radius, motion, kept, r))
       return false;
     store_state(state, i, kept);
     if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
     if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
     const auto whole = kept.hardening >= 0.0;
     const R none = constant<R>(0.0);
-    book(actions, first_action + i, motion, r.shear - r.normal * motion.normal, r.moment,
-         r.active * k.axial, choose(whole, k.shear, none), choose(whole, k.bending, none),
-         choose(whole, k.twist, none));
+    write_pair_force(actions, first_action + i, motion, r.shear - r.normal * motion.normal,
+                     r.moment, r.active * k.axial, select(whole, k.shear, none),
+                     select(whole, k.bending, none), select(whole, k.twist, none));
     return true;
   }
 };
 
 template <class>
 SteelLinkForces forces_of(SteelLinks& s, const SteelLink& law, const LinkSpace& in,
-                          Buffer<Action>& actions) {
+                          Buffer<PairForce>& actions) {
   return {law,
           in.dt,
           in.elements,
@@ -165,7 +165,7 @@ struct SteelShares {
   BR_HD Energies operator()(const SteelLink& law, Index i) const {
     Energies s;
     const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
-    const double distance = norm(d), r = smaller(state_of[a[i]].radius, state_of[b[i]].radius);
+    const double distance = norm(d), r = min(state_of[a[i]].radius, state_of[b[i]].radius);
     s.elastic.add(law.stored(length[i], r, distance - length[i], state[i]));
     if (state[i].hardening >= 0.0)
       s.elastic.add(law.stored_moment(length[i], r, (1.0 / distance) * d, state[i]));

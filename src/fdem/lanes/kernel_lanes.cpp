@@ -1,6 +1,6 @@
 // Built once for each width of vector; BR_PACKS names the build (see CMakeLists.txt).
 
-#include "fdem/kernel_lanes.hpp"
+#include "fdem/stepping/kernel_lanes.hpp"
 
 namespace breccia::fdem {
 namespace {

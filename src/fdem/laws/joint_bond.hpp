@@ -94,17 +94,17 @@ struct BondTraction {
 /// @param quarter  1 / (4 tension)  [1/Pa]
 /// @param beyond  set where the point leaves its elastic branch, so that the answer does not hold
 template <class R, class Mask>
-BR_HD BondTraction<R> elastic_answer(const R& slope, const R& tension, const R& quarter,
-                                     const R& cohesion, const R& friction, const R& opening,
-                                     const R& slip, Mask& beyond) {
+BR_HD BondTraction<R> elastic_response(const R& slope, const R& tension, const R& quarter,
+                                       const R& cohesion, const R& friction, const R& opening,
+                                       const R& slip, Mask& beyond) {
   const R straight = slope * opening, sideways = slope * slip;
   const auto pressed = straight < 0.0;
-  const R strength = cohesion - choose(pressed, friction * straight, constant<R>(0.0));
-  const R size = absolute(sideways);
-  beyond = either(beyond, either(straight > 2.0 * tension, size > 2.0 * strength));
+  const R strength = cohesion - select(pressed, friction * straight, constant<R>(0.0));
+  const R size = abs(sideways);
+  beyond = beyond || straight > 2.0 * tension || size > 2.0 * strength;
   // f (2 r - r^2) with r = slope x / (2 f). Nothing that may be zero is divided: GPUs are slow at
   // it
-  return {choose(pressed, straight, straight * (1.0 - straight * quarter)),
+  return {select(pressed, straight, straight * (1.0 - straight * quarter)),
           sideways * (1.0 - size * (0.25 / strength))};
 }
 
@@ -118,43 +118,43 @@ BR_HD inline BondTraction<double> edge_answer(const JointBond& law, double stren
   const R tension = law.tension * strength;
   const auto pressed = opening < 0.0;
   const R pressure = (law.stiffness / h) * opening;  // sigma where pressed
-  const R shear_strength = law.cohesion * strength - choose(pressed, law.friction * pressure, zero);
+  const R shear_strength = law.cohesion * strength - select(pressed, law.friction * pressure, zero);
   const R o_p = (2.0 / law.stiffness) * h * tension;
   const R s_p = (2.0 / law.stiffness) * h * shear_strength;
-  const R slid = absolute(slip);
-  const R over_o = larger(zero, opening - o_p), over_s = larger(zero, slid - s_p);
+  const R slid = abs(slip);
+  const R over_o = max(zero, opening - o_p), over_s = max(zero, slid - s_p);
 
   // Damage.
   R health = one;
   const bool reversible = law.reversible > 0.5;
-  const auto beyond = either(over_o > 0.0, over_s > 0.0);
-  if (any(either(beyond, state.damage > 0.0))) {
+  const auto beyond = over_o > 0.0 || over_s > 0.0;
+  if (any(beyond || state.damage > 0.0)) {
     const R open = over_o * (tension / (law.softening_open * strength));
     const R slide = over_s * (shear_strength / (law.softening_slide * strength));
-    const R now = smaller(one, root(open * open + slide * slide));
-    state.damage = larger(state.damage, now);
+    const R now = min(one, sqrt(open * open + slide * slide));
+    state.damage = max(state.damage, now);
     const R counted = reversible ? now : state.damage;
     health = softening(counted);
   }
   if (!reversible) {
-    state.opening = choose(over_o > 0.0, larger(state.opening, opening), state.opening);
-    state.slip = choose(over_s > 0.0, larger(state.slip, slid), state.slip);
+    state.opening = select(over_o > 0.0, max(state.opening, opening), state.opening);
+    state.slip = select(over_s > 0.0, max(state.slip, slid), state.slip);
   }
 
   // Tractions.
   BondTraction<R> t;
-  const R r = opening / choose(o_p > zero, o_p, one);
-  R pull = choose(opening <= o_p, 2.0 * r - r * r, one);
+  const R r = opening / select(o_p > zero, o_p, one);
+  R pull = select(opening <= o_p, 2.0 * r - r * r, one);
   pull =
-      choose(state.opening > 0.0, opening / choose(state.opening > 0.0, state.opening, one), pull);
-  t.normal = choose(pressed, pressure, health * tension * pull);
-  const R q = slid / choose(s_p > zero, s_p, one);
-  R drag = choose(slid <= s_p, 2.0 * q - q * q, one);
-  const R reach = larger(state.slip, s_p);
-  drag = choose(state.slip > 0.0, smaller(one, slid / choose(reach > zero, reach, one)), drag);
-  const R rubbing = choose(pressed, -law.residual * pressure, zero);
+      select(state.opening > 0.0, opening / select(state.opening > 0.0, state.opening, one), pull);
+  t.normal = select(pressed, pressure, health * tension * pull);
+  const R q = slid / select(s_p > zero, s_p, one);
+  R drag = select(slid <= s_p, 2.0 * q - q * q, one);
+  const R reach = max(state.slip, s_p);
+  drag = select(state.slip > 0.0, min(one, slid / select(reach > zero, reach, one)), drag);
+  const R rubbing = select(pressed, -law.residual * pressure, zero);
   const R size = (health * shear_strength + (one - health) * rubbing) * drag;
-  t.shear = choose(slip < 0.0, -size, size);
+  t.shear = select(slip < 0.0, -size, size);
   return t;
 }
 
@@ -165,7 +165,7 @@ struct StoredEnergy {
 /// Of (2 r - r^2) f, r = x / p, up to p.
 BR_HD inline double stored_on_parabola(double f, double x, double p) {
   if (!(p > 0.0)) return 0.0;
-  const double r = smaller(x, p) / p;
+  const double r = min(x, p) / p;
   return f * p * (r * r - r * r * r / 3.0);
 }
 /// If it were unloaded now.
@@ -175,7 +175,7 @@ BR_HD inline StoredEnergy edge_stored(const JointBond& law, double strength, dou
   const double pressure = opening < 0.0 ? law.stiffness * opening / h : 0.0;
   const double shear = law.cohesion * strength - law.friction * pressure;
   const double s_p = 2.0 * h * shear / law.stiffness;
-  const double z = state.damage > 0.0 ? softening(state.damage) : 1.0, slid = absolute(slip);
+  const double z = state.damage > 0.0 ? softening(state.damage) : 1.0, slid = abs(slip);
   const double kept = z * shear - (1.0 - z) * law.residual * pressure;
   StoredEnergy energy{};
   if (opening < 0.0)
@@ -185,7 +185,7 @@ BR_HD inline StoredEnergy edge_stored(const JointBond& law, double strength, dou
   else
     energy.open = z * stored_on_parabola(tension, opening, o_p);
   if (state.slip > 0.0) {
-    const double reach = larger(state.slip, s_p), used = smaller(slid, reach);
+    const double reach = max(state.slip, s_p), used = min(slid, reach);
     energy.slide = 0.5 * kept * used * used / reach;
   } else {
     energy.slide = stored_on_parabola(kept, slid, s_p);

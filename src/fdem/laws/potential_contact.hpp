@@ -59,8 +59,8 @@ BR_HD inline bool overlap_of_edge(const Vec2& a, const Vec2& b, const Target& ta
   for (int k = 0; k < 3; ++k) {
     const double la = o.at_a[k], lb = o.at_b[k];
     if (la <= 0.0 && lb <= 0.0) return false;
-    if (la < 0.0) o.begin = larger(o.begin, la / (la - lb));
-    if (lb < 0.0) o.end = smaller(o.end, la / (la - lb));
+    if (la < 0.0) o.begin = max(o.begin, la / (la - lb));
+    if (lb < 0.0) o.end = min(o.end, la / (la - lb));
   }
   if (!(o.end > o.begin)) return false;
 
@@ -76,16 +76,16 @@ BR_HD inline bool overlap_of_edge(const Vec2& a, const Vec2& b, const Target& ta
     const double least = o.at_a[k] + at * (o.at_b[k] - o.at_a[k]);
     if (least > o.at_a[other] + at * (o.at_b[other] - o.at_a[other])) continue;
     for (int i = 1; i < 4; ++i) {  // an index that is not known in advance costs GPUs much
-      const double here = smaller(s[i], at);
-      at = larger(s[i], at);
+      const double here = min(s[i], at);
+      at = max(s[i], at);
       s[i] = here;
     }
   }
 
   const auto phi = [&o](double at) {
     double least = 1.0;
-    for (int k = 0; k < 3; ++k) least = smaller(least, o.at_a[k] + at * (o.at_b[k] - o.at_a[k]));
-    return 3.0 * larger(0.0, least);
+    for (int k = 0; k < 3; ++k) least = min(least, o.at_a[k] + at * (o.at_b[k] - o.at_a[k]));
+    return 3.0 * max(0.0, least);
   };
   o.whole = 0.0;
   o.moment = 0.0;

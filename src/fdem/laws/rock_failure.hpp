@@ -56,15 +56,15 @@ template <class R>
 BR_HD auto may_fail(const R& tension, const R& cohesion, const R& friction, const R& normal,
                     const R& shear, const R& along) {
   const R centre = 0.5 * (normal + along), half = 0.5 * (normal - along);
-  const R radius = root(half * half + shear * shear);
-  return either(centre + radius > tension,
-                friction * centre + radius * root(1.0 + friction * friction) > cohesion);
+  const R radius = sqrt(half * half + shear * shear);
+  return centre + radius > tension ||
+         friction * centre + radius * sqrt(1.0 + friction * friction) > cohesion;
 }
 
 /// Stress over strength.  [-]
 struct RockFailure {
   double torn, sheared;
-  BR_HD double most() const { return larger(torn, sheared); }
+  BR_HD double most() const { return max(torn, sheared); }
 };
 
 /// How far the rock is from failure on a plane near this edge. With theta between its normal and
@@ -75,16 +75,15 @@ struct RockFailure {
 BR_HD inline RockFailure rock_failure(const JointBond& law, double strength, const RockStress& s) {
   const double tension = law.tension * strength, cohesion = law.cohesion * strength;
   const double centre = 0.5 * (s.normal + s.along), half = 0.5 * (s.normal - s.along);
-  const double radius = root(half * half + s.shear * s.shear);
+  const double radius = sqrt(half * half + s.shear * s.shear);
   RockFailure f{s.normal / tension, 0.0};
   if (!(radius > 0.0)) return f;
   const double cos2 = 0.5 + 0.5 * half / radius;  // of theta
   if (s.normal > 0.0 && cos2 >= torn_at_all)
-    f.torn = larger(f.torn, (centre + radius) * smaller(1.0, cos2 / torn_in_full) / tension);
-  const double reach = radius * root(1.0 + law.friction * law.friction);
+    f.torn = max(f.torn, (centre + radius) * min(1.0, cos2 / torn_in_full) / tension);
+  const double reach = radius * sqrt(1.0 + law.friction * law.friction);
   const double middle = centre * law.friction;
-  const double own =
-      absolute(s.shear) + s.normal * law.friction;  // less middle: reach cos(2 angle)
+  const double own = abs(s.shear) + s.normal * law.friction;  // less middle: reach cos(2 angle)
   if (own > 0.0 && own - middle >= sheared_at_all * reach) f.sheared = (middle + reach) / cohesion;
   return f;
 }
@@ -99,24 +98,24 @@ BR_HD inline Failure failure_of(const RockFailure& f) {
 /// @param carried  its tractions now, by the law of edges  [Pa]
 BR_HD inline void fail(const JointBond& law, double strength, double h, Failure how, double opening,
                        double slip, const BondTraction<double>& carried, BondState<double>& state) {
-  const double unit = h / law.stiffness, slid = absolute(slip), shear = absolute(carried.shear);
-  const double pressure = larger(0.0, -carried.normal), z = softening(state.damage);
-  state.damage = larger(state.damage, 1e-12);  // it has begun
+  const double unit = h / law.stiffness, slid = abs(slip), shear = abs(carried.shear);
+  const double pressure = max(0.0, -carried.normal), z = softening(state.damage);
+  state.damage = max(state.damage, 1e-12);  // it has begun
   if (how == Failure::torn) {
     // No less than a hundredth of f_t, so that nothing is divided by zero.
     const double least = 0.01 * law.tension * strength;
     const double most = pressure * (z * law.friction + (1.0 - z) * law.residual);
-    const double rubs = smaller(most, shear);
-    state.normal = larger(carried.normal / z, least);
+    const double rubs = min(most, shear);
+    state.normal = max(carried.normal / z, least);
     state.shear = (shear - rubs) / z;
     state.stuck = slip - copysign(rubs * unit, slip);
-    state.opening = state.opened = larger(opening, unit * least);
-    state.slip = state.slid = larger(slid, 1e-4 * unit * least);
+    state.opening = state.opened = max(opening, unit * least);
+    state.slip = state.slid = max(slid, 1e-4 * unit * least);
     return;
   }
   const double rest = (1.0 - z) * law.residual * pressure, rubs = law.friction * pressure;
   state.normal = 0.0;
-  state.shear = larger((shear - rest) / z - rubs, 0.02 * law.cohesion * strength);
+  state.shear = max((shear - rest) / z - rubs, 0.02 * law.cohesion * strength);
   // On the secant to where it yields: its slip and traction are on it.
   const double resists = state.shear + rubs, share = (z * resists + rest) / resists;
   state.slid = shear > 0.0 ? share * slid / shear : unit;
@@ -131,18 +130,18 @@ struct TornTraction {
 };
 BR_HD inline TornTraction torn_traction(const JointBond& law, double h, double opening, double slip,
                                         BondState<double>& state) {
-  const double slid = absolute(slip), slope = law.stiffness / h;
-  const double open = larger(0.0, opening - state.opened), slide = larger(0.0, slid - state.slid);
+  const double slid = abs(slip), slope = law.stiffness / h;
+  const double open = max(0.0, opening - state.opened), slide = max(0.0, slid - state.slid);
   const double per_length = law.tension / law.softening_open;  // 1/o_t
-  state.damage = larger(state.damage, smaller(1.0, per_length * root(open * open + slide * slide)));
-  state.opening = larger(state.opening, opening);
-  state.slip = larger(state.slip, slid);
-  const double z = softening(state.damage), pressure = slope * smaller(0.0, opening);
+  state.damage = max(state.damage, min(1.0, per_length * sqrt(open * open + slide * slide)));
+  state.opening = max(state.opening, opening);
+  state.slip = max(state.slip, slid);
+  const double z = softening(state.damage), pressure = slope * min(0.0, opening);
   const double most = -pressure * (z * law.friction + (1.0 - z) * law.residual);
   TornTraction t{};
-  t.normal = opening < 0.0 ? pressure : z * state.normal * smaller(1.0, opening / state.opening);
-  t.kept = copysign(z * state.shear * smaller(1.0, slid / state.slip), slip);
-  t.rubbing = larger(-most, smaller(most, slope * (slip - state.stuck)));
+  t.normal = opening < 0.0 ? pressure : z * state.normal * min(1.0, opening / state.opening);
+  t.kept = copysign(z * state.shear * min(1.0, slid / state.slip), slip);
+  t.rubbing = max(-most, min(most, slope * (slip - state.stuck)));
   state.stuck = slip - t.rubbing / slope;
   return t;
 }
@@ -151,29 +150,29 @@ BR_HD inline TornTraction torn_traction(const JointBond& law, double h, double o
 BR_HD inline BondTraction<double> sheared_answer(const JointBond& law, double strength, double h,
                                                  double opening, double slip,
                                                  BondState<double>& state) {
-  const double slid = absolute(slip), tension = law.tension * strength;
+  const double slid = abs(slip), tension = law.tension * strength;
   const double o_p = 2.0 * h * tension / law.stiffness;
-  const double pressure = law.stiffness / h * smaller(0.0, opening);
+  const double pressure = law.stiffness / h * min(0.0, opening);
   const double resists = state.shear - law.friction * pressure, yield = resists * state.slid;
-  const double over_o = larger(0.0, opening - o_p), over_s = larger(0.0, slid - yield);
-  if (over_o > 0.0) state.opening = larger(state.opening, opening);
-  if (over_s > 0.0) state.slip = larger(state.slip, slid);
+  const double over_o = max(0.0, opening - o_p), over_s = max(0.0, slid - yield);
+  if (over_o > 0.0) state.opening = max(state.opening, opening);
+  if (over_s > 0.0) state.slip = max(state.slip, slid);
   const double x = over_o * law.tension / law.softening_open;
   const double y = over_s * resists / (law.softening_slide * strength);
-  state.damage = larger(state.damage, smaller(1.0, root(x * x + y * y)));
+  state.damage = max(state.damage, min(1.0, sqrt(x * x + y * y)));
   const double z = softening(state.damage), r = opening / o_p;
   double pull = r < 1.0 ? 2.0 * r - r * r : 1.0;
   if (state.opening > 0.0) pull = opening / state.opening;
   const double kept = z * state.shear - pressure * (z * law.friction + (1.0 - z) * law.residual);
   return {opening < 0.0 ? pressure : z * tension * pull,
-          copysign(kept * smaller(1.0, slid / larger(state.slip, yield)), slip)};
+          copysign(kept * min(1.0, slid / max(state.slip, yield)), slip)};
 }
 
 /// The law in full, of an integration point of either criterion. @param strength  of this joint
 /// over its law's: scales f_t, c and, so that lengths stay, both energies  [-]. @param h  initial
 /// length [m]
-BR_HD inline BondTraction<double> answer(const JointBond& law, double strength, double h,
-                                         double opening, double slip, BondState<double>& state) {
+BR_HD inline BondTraction<double> response(const JointBond& law, double strength, double h,
+                                           double opening, double slip, BondState<double>& state) {
   switch (failure_of(state)) {
     case Failure::torn: {
       const TornTraction t = torn_traction(law, h, opening, slip, state);
@@ -198,7 +197,7 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
     return {0.5 * t.normal * opening,
             0.5 * t.kept * slip + 0.5 * t.rubbing * t.rubbing * h / law.stiffness};
   }
-  const BondTraction<double> t = answer(law, strength, h, opening, slip, same);
+  const BondTraction<double> t = response(law, strength, h, opening, slip, same);
   return {0.5 * t.normal * opening, 0.5 * t.shear * slip};
 }
 

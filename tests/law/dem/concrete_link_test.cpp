@@ -40,9 +40,9 @@ double pull(const ConcreteLink& l, LinkState<double>& state, Pair& pair, double 
   double before = norm(pair.b.position - pair.a.position) - length;
   const double each = (stretch - before) / steps;
   LinkState<double> probe = state;
-  double normal = l.answer(link, pair.move_b({}), probe).normal;
+  double normal = l.response(link, pair.move_b({}), probe).normal;
   for (int i = 0; i < steps; ++i) {
-    const LinkResponse<double> r = l.answer(link, pair.move_b({each / pair.dt, 0.0, 0.0}), state);
+    const LinkResponse<double> r = l.response(link, pair.move_b({each / pair.dt, 0.0, 0.0}), state);
     work += 0.5 * (normal + r.normal) * each;
     normal = r.normal;
   }
@@ -71,7 +71,7 @@ TEST(ConcreteLink, with_a_given_rupture_opening_costs_its_energy_whatever_its_le
     for (int i = 1; i <= 20'000; ++i) {
       const double u = 1.01 * rupture * i / 20'000;
       pair.b.position.x = length + u;
-      const double n = l.answer(own, pair.move_b({}), state).normal;
+      const double n = l.response(own, pair.move_b({}), state).normal;
       const double expected = u <= first    ? own.stiffness * u
                               : u < rupture ? strength * (rupture - u) / (rupture - first)
                                             : 0.0;
@@ -92,7 +92,7 @@ TEST(ConcreteLink, the_peak_is_the_strength_and_the_fall_is_linear) {
   for (int i = 1; i <= 11'000; ++i) {
     const double u = i * rupture / 10'000;
     pair.b.position.x = length + u;
-    const double n = law().answer(link, pair.move_b({}), state).normal;
+    const double n = law().response(link, pair.move_b({}), state).normal;
     peak = std::max(peak, n);
     const double expected = u <= onset    ? stiffness * u
                             : u < rupture ? strength - stiffness / 10.0 * (u - onset)
@@ -121,7 +121,7 @@ TEST(ConcreteLink, compression_is_elastic_without_limit_even_after_damage_and_ru
   for (const double opened : {0.0, 4.0 * onset, 1.1 * rupture}) {
     pull(law(), state, pair, opened, 2'000);
     pair.b.position.x = length - 20.0 * onset;
-    EXPECT_NEAR(law().answer(link, pair.move_b({}), state).normal, -20.0 * strength,
+    EXPECT_NEAR(law().response(link, pair.move_b({}), state).normal, -20.0 * strength,
                 1e-6 * strength);
   }
 }
@@ -136,7 +136,7 @@ LinkResponse<double> slide(const ConcreteLink& l, LinkState<double>& state, Pair
     // The contact point slides while the centres stay: spins about z, equal on both ends.
     pair.b.position = {length + stretch, 0.0, 0.0};
     const double spin = -path / steps / pair.dt / (length + stretch);
-    r = l.answer(link, pair.step({}, {0.0, 0.0, spin}, {}, {0.0, 0.0, spin}), state);
+    r = l.response(link, pair.step({}, {0.0, 0.0, spin}, {}, {0.0, 0.0, spin}), state);
     spent += r.slid;
   }
   return r;
@@ -173,7 +173,7 @@ TEST(ConcreteLink, no_force_ever_leaves_the_strength_surface) {
     Pair pair;
     const double speed = 2.0 * rupture / 2'000 / pair.dt;
     for (int i = 0; i < 2'000; ++i) {
-      const LinkResponse<double> r = law().answer(
+      const LinkResponse<double> r = law().response(
           link, pair.move_b({speed * std::cos(angle), speed * std::sin(angle), 0.0}), state);
       const double cohesion = state.opening >= 0.0 ? 5.5e6 * area : 0.0;
       const double slope = state.opening >= 0.0 ? std::tan(0.5) : std::tan(0.6);
@@ -189,11 +189,12 @@ TEST(ConcreteLink, moments_are_elastic_up_to_their_limit) {
   const double kr = 0.18 * stiffness * radius * radius;
   const double limit = 0.15 * radius * strength;
   const double small = 0.5 * limit / kr;
-  LinkResponse<double> r = law().answer(link, pair.move_b({}, {small / pair.dt, 0.0, 0.0}), state);
+  LinkResponse<double> r =
+      law().response(link, pair.move_b({}, {small / pair.dt, 0.0, 0.0}), state);
   EXPECT_NEAR(r.moment.x, -kr * small, 1e-9 * limit);  // twist; the moment on b resists its turn
   EXPECT_EQ(r.yielded, 0.0);
   for (int i = 0; i < 10; ++i)
-    r = law().answer(link, pair.move_b({}, {small / pair.dt, 0.0, 0.0}), state);
+    r = law().response(link, pair.move_b({}, {small / pair.dt, 0.0, 0.0}), state);
   EXPECT_NEAR(norm(r.moment), limit, 1e-9 * limit);
   EXPECT_NEAR(r.yielded, limit * small, 1e-6 * limit * small);
 }
@@ -208,7 +209,8 @@ TEST(ConcreteLink, a_rigid_turn_changes_no_force_and_no_moment) {
     pair.b.position.x = length + 0.5 * onset;
     const int steps = 1'000;
     for (int turn = 0; turn < steps; ++turn) {
-      const LinkResponse<double> r = elastic.answer(link, pair.turn(axis, 2.0 * pi / steps), state);
+      const LinkResponse<double> r =
+          elastic.response(link, pair.turn(axis, 2.0 * pi / steps), state);
       ASSERT_NEAR(r.normal, 0.5 * strength, 1e-6 * strength);
     }
     // positions round at 1e-16 of the length: 1e-12 of the force of that stretch is all that can be
@@ -233,8 +235,8 @@ TEST(ConcreteLink, swapping_the_ends_reverses_the_force) {
   swapped.b.position = pair.a.position;
   for (int i = 0; i < 500; ++i) {
     const Vec3 va = any_vec(0.01), wa = any_vec(1.0), vb = any_vec(0.01), wb = any_vec(1.0);
-    const LinkResponse<double> p = law().answer(link, pair.step(va, wa, vb, wb), one);
-    const LinkResponse<double> q = law().answer(link, swapped.step(vb, wb, va, wa), other);
+    const LinkResponse<double> p = law().response(link, pair.step(va, wa, vb, wb), one);
+    const LinkResponse<double> q = law().response(link, swapped.step(vb, wb, va, wa), other);
     ASSERT_NEAR(p.normal, q.normal, 1e-9 * strength);
     ASSERT_NEAR(norm(p.shear + q.shear), 0.0, 1e-9 * strength);
     ASSERT_NEAR(norm(p.moment + q.moment), 0.0, 1e-9 * strength * radius);
@@ -257,7 +259,7 @@ TEST(ConcreteLink, what_a_random_path_puts_in_is_stored_or_spent) {
       spin = {normal(random), normal(random), normal(random)};
     }
     const PairMotion<double> m = pair.move_b(velocity, spin);
-    const LinkResponse<double> r = l.answer(link, m, state);
+    const LinkResponse<double> r = l.response(link, m, state);
     const double approach = dot(pair.dt * pair.b.velocity, m.normal);
     work += 0.5 * (before.normal + r.normal) * approach -
             0.5 * dot(before.shear + r.shear, m.slip) - 0.5 * dot(before.moment + r.moment, m.turn);
@@ -276,13 +278,13 @@ TEST(ConcreteLink, parted_ends_are_released_for_good) {
   Pair pair;
   pull(law(), state, pair, 1.1 * rupture, 2'000);
   pair.b.position.x = 1.49 * length;
-  law().answer(link, pair.move_b({}), state);
+  law().response(link, pair.move_b({}), state);
   EXPECT_EQ(state.opening, link_broken);
   pair.b.position.x = 1.51 * length;
-  law().answer(link, pair.move_b({}), state);
+  law().response(link, pair.move_b({}), state);
   EXPECT_EQ(state.opening, link_released);
   pair.b.position.x = 0.9 * length;
-  EXPECT_EQ(law().answer(link, pair.move_b({}), state).normal, 0.0);
+  EXPECT_EQ(law().response(link, pair.move_b({}), state).normal, 0.0);
 }
 
 TEST(ConcreteLink, arms_that_change_leave_a_known_shear_after_a_closed_path) {
@@ -293,10 +295,10 @@ TEST(ConcreteLink, arms_that_change_leave_a_known_shear_after_a_closed_path) {
   LinkState<double> state{};
   Pair pair;
   const double u = 1e-4, angle = 1e-3, v = u / pair.dt, w = angle / pair.dt;
-  elastic.answer(link, pair.move_b({v, 0.0, 0.0}), state);
-  elastic.answer(link, pair.move_b({}, {0.0, 0.0, w}), state);
-  elastic.answer(link, pair.move_b({-v, 0.0, 0.0}), state);
-  elastic.answer(link, pair.move_b({}, {0.0, 0.0, -w}), state);
+  elastic.response(link, pair.move_b({v, 0.0, 0.0}), state);
+  elastic.response(link, pair.move_b({}, {0.0, 0.0, w}), state);
+  elastic.response(link, pair.move_b({-v, 0.0, 0.0}), state);
+  elastic.response(link, pair.move_b({}, {0.0, 0.0, -w}), state);
   const double kt = 0.18 * stiffness;
   EXPECT_NEAR(norm(state.shear), kt * angle * u / 2.0, 1e-3 * kt * angle * u);
 }

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "dem/laws/concrete_link.hpp"
-#include "dem/materials.hpp"
+#include "dem/setup/materials.hpp"
 #include "pair_driver.hpp"
 
 namespace breccia::dem {
@@ -54,7 +54,7 @@ struct Rig {
 
   double distance() const { return norm(pair.b.position - pair.a.position); }
   void take(const PairMotion<double>& m) {
-    const LinkResponse<double> r = law.answer(link, m, state);
+    const LinkResponse<double> r = law.response(link, m, state);
     link.length -= r.shortened;
     work += 0.5 * (last.normal + r.normal) * m.extension - 0.5 * dot(last.shear + r.shear, m.slip) -
             0.5 * dot(last.moment + r.moment, m.turn);

@@ -8,8 +8,8 @@
 #include "dem/laws/contact.hpp"
 #include "dem/laws/interface_link.hpp"
 #include "dem/laws/steel_link.hpp"
-#include "dem/materials.hpp"
-#include "dem/restitution.hpp"
+#include "dem/setup/materials.hpp"
+#include "dem/setup/restitution.hpp"
 #include "math/constants.hpp"
 #include "pair_driver.hpp"
 
@@ -27,11 +27,11 @@ const double area = pi * radius * radius;
 double pull(SteelState& state, Pair& pair, double stretch, int steps, double* spent = nullptr) {
   const double from = norm(pair.b.position - pair.a.position) - length;
   SteelState probe = state;
-  double before = steel.answer(length, radius, pair.move_b({}), probe).normal, work = 0.0;
+  double before = steel.response(length, radius, pair.move_b({}), probe).normal, work = 0.0;
   for (int i = 0; i < steps; ++i) {
     const double each = (stretch - from) / steps;
     const SteelResponse r =
-        steel.answer(length, radius, pair.move_b({each / pair.dt, 0.0, 0.0}), state);
+        steel.response(length, radius, pair.move_b({each / pair.dt, 0.0, 0.0}), state);
     work += 0.5 * (before + r.normal) * each;
     before = r.normal;
     if (spent != nullptr) *spent += r.yielded + r.broke;
@@ -56,11 +56,12 @@ TEST(SteelLink, it_yields_hardens_and_unloads_elastically) {
   const double tangent = 200e9 * 2e9 / 202e9;
   const double peak = 500e6 + tangent * (0.02 - 0.0025);
   SteelState probe = state;
-  EXPECT_NEAR(steel.answer(length, radius, pair.move_b({}), probe).normal, area * peak,
+  EXPECT_NEAR(steel.response(length, radius, pair.move_b({}), probe).normal, area * peak,
               1e-6 * area * peak);
   EXPECT_NEAR(state.hardening, (peak - 500e6) / 2e9, 1e-9);
   pull(state, pair, (0.02 - peak / 200e9) * length, 500);
-  EXPECT_NEAR(steel.answer(length, radius, pair.move_b({}), state).normal, 0.0, 1e-6 * area * peak);
+  EXPECT_NEAR(steel.response(length, radius, pair.move_b({}), state).normal, 0.0,
+              1e-6 * area * peak);
 }
 
 TEST(SteelLink, a_perfectly_plastic_cycle_costs_two_yield_forces_times_the_plastic_path) {
@@ -72,8 +73,8 @@ TEST(SteelLink, a_perfectly_plastic_cycle_costs_two_yield_forces_times_the_plast
     const double from = norm(pair.b.position - pair.a.position) - length;
     for (int i = 0; i < 4'000; ++i)
       spent += perfect
-                   .answer(length, radius,
-                           pair.move_b({(stretch - from) / 4'000 / pair.dt, 0.0, 0.0}), state)
+                   .response(length, radius,
+                             pair.move_b({(stretch - from) / 4'000 / pair.dt, 0.0, 0.0}), state)
                    .yielded;
   };
   go(0.01 * length);
@@ -90,9 +91,9 @@ TEST(SteelLink, it_ruptures_at_its_failure_strain_and_then_only_bears_compressio
   const double work = pull(state, pair, 0.1 * length, 20'000, &spent);
   EXPECT_EQ(state.hardening, steel_ruptured);
   EXPECT_NEAR(work, spent, 1e-3 * work);
-  EXPECT_EQ(steel.answer(length, radius, pair.move_b({}), state).normal, 0.0);
+  EXPECT_EQ(steel.response(length, radius, pair.move_b({}), state).normal, 0.0);
   pair.b.position.x = 0.99 * length;
-  EXPECT_LT(steel.answer(length, radius, pair.move_b({}), state).normal, 0.0);
+  EXPECT_LT(steel.response(length, radius, pair.move_b({}), state).normal, 0.0);
 }
 
 TEST(SteelLink, a_plastic_hinge_limits_the_bending_moment) {
@@ -100,7 +101,7 @@ TEST(SteelLink, a_plastic_hinge_limits_the_bending_moment) {
   Pair pair;
   SteelResponse r{};
   for (int i = 0; i < 1'000; ++i)
-    r = steel.answer(length, radius, pair.move_b({}, {0.0, 0.0, 1e-3 / pair.dt}), state);
+    r = steel.response(length, radius, pair.move_b({}, {0.0, 0.0, 1e-3 / pair.dt}), state);
   EXPECT_NEAR(norm(r.moment), 500e6 * std::pow(2.0 * radius, 3) / 6.0, 1e-3 * norm(r.moment));
 }
 
@@ -140,7 +141,7 @@ TEST(InterfaceLink, pulling_the_bar_out_meets_the_bond_stress_on_its_surface) {
     const PairMotion<double> m = pair.step({-0.2, 0.0, 0.0}, {}, {}, {});
     pair.a.position.x = 0.0;  // the chord's turn is not what is looked at
     const InterfaceResponse r =
-        law.answer(30e9 * share / 0.014, share, 0.014, {1.0, 0.0, 0.0}, m, 0.0, state);
+        law.response(30e9 * share / 0.014, share, 0.014, {1.0, 0.0, 0.0}, m, 0.0, state);
     slip += 0.2 * pair.dt;
     spent += r.slid;
     work -= 0.5 * (before + r.force.x) * 0.2 * pair.dt;
@@ -178,7 +179,7 @@ TEST(Contact, hertz_force_and_stiffnesses_are_those_of_the_book) {
   ContactState state{};
   Pair pair;
   const double overlap = 1e-5;
-  const ContactResponse r = law.answer(glass, spheres, overlap, 0.0, pair.move_b({}), state);
+  const ContactResponse r = law.response(glass, spheres, overlap, 0.0, pair.move_b({}), state);
   EXPECT_NEAR(r.pressure, 4.0 / 3.0 * 26e9 * std::sqrt(0.005) * std::pow(overlap, 1.5),
               1e-9 * r.pressure);
   EXPECT_NEAR(r.normal_stiffness, 2.0 * 26e9 * std::sqrt(0.005 * overlap),
@@ -198,7 +199,7 @@ TEST(Contact, friction_never_exceeds_coulomb_and_its_work_is_booked) {
   for (int i = 0; i < 5'000; ++i) {
     const PairMotion<double> m = pair.move_b({0.0, 0.1 * uniform(random), 0.1 * uniform(random)},
                                              {uniform(random), uniform(random), uniform(random)});
-    const ContactResponse r = law.answer({1e10, 0.2}, spheres, 1e-5, 0.0, m, state);
+    const ContactResponse r = law.response({1e10, 0.2}, spheres, 1e-5, 0.0, m, state);
     ASSERT_LE(norm(r.shear), 0.3 * r.pressure * (1.0 + 1e-12));
     ASSERT_LE(norm(r.moment), 0.1 * 0.01 * r.pressure * (1.0 + 1e-12));
     slid += r.slid;
@@ -206,7 +207,7 @@ TEST(Contact, friction_never_exceeds_coulomb_and_its_work_is_booked) {
   }
   EXPECT_GT(slid, 0.0);
   const ContactResponse apart =
-      law.answer({1e10, 0.2}, spheres, -1e-6, 0.0, pair.move_b({}), state);
+      law.response({1e10, 0.2}, spheres, -1e-6, 0.0, pair.move_b({}), state);
   EXPECT_EQ(apart.pressure, 0.0);
   EXPECT_EQ(norm(state.shear), 0.0);
 }

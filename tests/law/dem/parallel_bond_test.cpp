@@ -26,7 +26,7 @@ class Driver {
 
   ParallelBondResponseOf<double> move(const Vec3& velocity, const Vec3& spin = {}) {
     const PairMotion<double> m = pair_.move_b(velocity, spin);
-    const ParallelBondResponseOf<double> r = law_.answer(k, m, state_);
+    const ParallelBondResponseOf<double> r = law_.response(k, m, state_);
     work_ += 0.5 * (last_.normal + r.normal) * m.extension -
              0.5 * dot(last_.shear + r.shear, m.slip) - 0.5 * dot(last_.moment + r.moment, m.turn);
     spent_ += r.slid + r.broke;

@@ -10,7 +10,7 @@ namespace breccia::fdem {
 namespace {
 
 using testing::Scene;
-using testing::turned;
+using testing::rotated;
 
 constexpr double young = 60e9, poisson = 0.25;
 
@@ -28,7 +28,7 @@ struct Example {
   Mat2 shape_inverse = inverse(columns(reference[1] - reference[0], reference[2] - reference[0]));
 
   explicit Example(const Mat2& stretch = {1.002, 0.0005, 0.0005, 0.9985}) {
-    for (int k = 0; k < 3; ++k) x[k] = turned(stretch * reference[k], pi / 6.0) + Vec2{3e-3, -1e-3};
+    for (int k = 0; k < 3; ++k) x[k] = rotated(stretch * reference[k], pi / 6.0) + Vec2{3e-3, -1e-3};
   }
   Deformation<double> now() const { return deformation(shape_inverse, x, v); }
 };
@@ -81,7 +81,7 @@ TEST(ElasticTriangle, is_hooke_s_law_to_first_order) {
 TEST(ElasticTriangle, feels_no_rotation) {
   for (int i = 1; i < 12; ++i) {
     Example e;
-    for (int k = 0; k < 3; ++k) e.x[k] = turned(e.reference[k], i * pi / 6.0);
+    for (int k = 0; k < 3; ++k) e.x[k] = rotated(e.reference[k], i * pi / 6.0);
     const Sym2 s = law_of(true).stress(e.now(), 0.0);
     EXPECT_LT(std::abs(s.xx) + std::abs(s.yy) + std::abs(s.xy), 1e-14 * young);
   }
@@ -156,7 +156,7 @@ TEST(ElasticTriangle, and_joints_feel_nothing_of_a_full_turn) {
   World w = scene.world();
   constexpr int steps = 100000;
   for (int i = 1; i <= steps; ++i) {
-    testing::deform(w, [](const Vec2& x) { return turned(x, 2.0 * pi / steps); });
+    testing::deform(w, [](const Vec2& x) { return rotated(x, 2.0 * pi / steps); });
     if (i % 5000 != 0) continue;
     evaluate_forces(w);
     for (const Sym2& s : stresses(w))

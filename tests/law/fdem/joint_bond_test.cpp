@@ -15,7 +15,7 @@ JointBond bond(double factor = exact_softening_factor) {
   return {150e9, 3e6, 15e6, 0.7, factor * 10.0, factor * 50.0, 0.0, 0.0, 0.0, 0.0};
 }
 BondTraction<double> at(const JointBond& b, double opening, double slip, BondState<double>& s) {
-  return answer(b, 1.0, h, opening, slip, s);
+  return response(b, 1.0, h, opening, slip, s);
 }
 
 /// Work along a straight path, by Simpson's rule.  [J/m2]
@@ -114,8 +114,8 @@ TEST(JointBond, strength_scales_stress_and_energy_alike) {
     const JointBond b = bond();
     JointBond stiff = b;
     stiff.stiffness *= 2.0;  // so that the elastic limits stay
-    const BondTraction<double> t = answer(b, 1.0, h, x, 2.0 * x, one);
-    const BondTraction<double> u = answer(stiff, 2.0, h, x, 2.0 * x, two);
+    const BondTraction<double> t = response(b, 1.0, h, x, 2.0 * x, one);
+    const BondTraction<double> u = response(stiff, 2.0, h, x, 2.0 * x, two);
     EXPECT_NEAR(u.normal, 2.0 * t.normal, 1e-9 * t.normal);
     EXPECT_NEAR(u.shear, 2.0 * t.shear, 1e-9 * t.shear);
   }

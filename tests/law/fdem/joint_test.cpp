@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fdem/step.hpp"
+#include "fdem/stepping/step.hpp"
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
@@ -115,9 +115,9 @@ TEST(Joint, pulled_apart_books_its_fracture_energy_and_breaks) {
       Scene scene = two_triangles();
       scene.config.joints.softening_factor = factor;
       const double angle = rotated ? 0.7 : 0.0;
-      for (Vec2& x : scene.model.point) x = testing::turned(x, angle);
+      for (Vec2& x : scene.model.point) x = testing::rotated(x, angle);
       World w = scene.world();
-      const Vec2 velocity = testing::turned({0.0, 0.05}, angle);
+      const Vec2 velocity = testing::rotated({0.0, 0.05}, angle);
       // A moves as a rigid body, by hand: velocity and position of each corner
       const double dt = 1e-8;
       int steps = 0;

@@ -8,7 +8,7 @@
 #include <array>
 #include <random>
 
-#include "fdem/step.hpp"
+#include "fdem/stepping/step.hpp"
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
@@ -167,7 +167,7 @@ TEST(PotentialContact, pushes_rigid_triangles_down_their_energy) {
     constexpr double tolerance = 1e-8;
     EXPECT_NEAR(total.x, -slope([](Vec2 x, double s) { return x + Vec2{s, 0.0}; }), tolerance);
     EXPECT_NEAR(total.y, -slope([](Vec2 x, double s) { return x + Vec2{0.0, s}; }), tolerance);
-    EXPECT_NEAR(moment, -slope([](Vec2 x, double s) { return testing::turned(x, s); }), tolerance);
+    EXPECT_NEAR(moment, -slope([](Vec2 x, double s) { return testing::rotated(x, s); }), tolerance);
   }
 }
 

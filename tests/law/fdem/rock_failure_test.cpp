@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "fdem/joints.hpp"
+#include "fdem/joints/joints.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -29,7 +29,7 @@ JointBond bond(double tan_phi = phi) {
           0.2};
 }
 /// sigma_1 and sigma_2 as an edge sees them whose normal is turned by an angle from sigma_1.
-RockStress turned(double first, double second, double angle) {
+RockStress rotated(double first, double second, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {first * c * c + second * s * s, (second - first) * s * c, first * s * s + second * c * c};
 }
@@ -41,7 +41,7 @@ struct Drawn {
   Drawn(double theta, const Vec2& from, BondState<double> s) {
     const double c = std::cos(theta), n = std::sin(theta), step = 2e-10;
     const auto pull = [&](double d) {
-      const BondTraction<double> t = answer(bond(), 1.0, h, from.x + d * c, from.y + d * n, s);
+      const BondTraction<double> t = response(bond(), 1.0, h, from.x + d * c, from.y + d * n, s);
       return (t.normal * c + t.shear * n) / c;
     };
     double last = pull(0.0);
@@ -74,7 +74,9 @@ TEST(RockFailure, with_the_rock_an_inclined_edge_has_f_t_and_takes_g_i) {
   for (const double angle : {0.0, 10.0, 20.0, 30.0, 45.0}) {
     const double theta = angle * degree, cos2 = std::pow(std::cos(theta), 2);
     const double expected = std::max(1.0, std::pow(std::cos(35.0 * degree), 2) / cos2);
-    const auto rock = [&](double share) { return turned(share * expected * tension, 0.0, -theta); };
+    const auto rock = [&](double share) {
+      return rotated(share * expected * tension, 0.0, -theta);
+    };
     const RockStress below = rock(1.0 - 1e-9);
     EXPECT_EQ(failure_of(rock_failure(bond(), 1.0, below)), Failure::none) << angle;
     EXPECT_EQ(failure_of(rock_failure(bond(), 1.0, rock(1.0 + 1e-9))), Failure::torn) << angle;
@@ -92,7 +94,7 @@ TEST(RockFailure, with_the_rock_an_inclined_edge_has_f_t_and_takes_g_i) {
 
 TEST(RockFailure, rankine_counts_within_35_degrees_and_fades_until_60) {
   const auto torn = [](double angle) {
-    return rock_failure(bond(), 1.0, turned(tension, 0.0, angle * degree)).torn;
+    return rock_failure(bond(), 1.0, rotated(tension, 0.0, angle * degree)).torn;
   };
   const auto cos2 = [](double angle) { return std::pow(std::cos(angle * degree), 2); };
   for (const double angle : {0.0, 20.0, 34.9, -34.9}) EXPECT_NEAR(torn(angle), 1.0, 1e-12) << angle;
@@ -100,9 +102,9 @@ TEST(RockFailure, rankine_counts_within_35_degrees_and_fades_until_60) {
     EXPECT_NEAR(torn(angle), cos2(angle) / cos2(35.0), 1e-12) << angle;
   for (const double angle : {60.1, 75.0, 90.0}) EXPECT_NEAR(torn(angle), cos2(angle), 1e-12);
   // An edge that is pressed does not tear.
-  EXPECT_LE(rock_failure(bond(), 1.0, turned(tension, -3.0 * tension, 50.0 * degree)).torn, 0.0);
+  EXPECT_LE(rock_failure(bond(), 1.0, rotated(tension, -3.0 * tension, 50.0 * degree)).torn, 0.0);
   // Strength of the joint scales its law's.
-  EXPECT_NEAR(rock_failure(bond(), 2.0, turned(tension, 0.0, 0.1)).torn, 0.5, 1e-12);
+  EXPECT_NEAR(rock_failure(bond(), 2.0, rotated(tension, 0.0, 0.1)).torn, 0.5, 1e-12);
 }
 
 /// Uniaxial compression slides on planes whose normals are 45 + phi/2 degrees from the load.
@@ -112,7 +114,7 @@ TEST(RockFailure, mohr_and_coulomb_count_within_25_degrees_of_a_plane_that_slide
       2.0 * cohesion * std::cos(friction_angle) / (1.0 - std::sin(friction_angle));
   const double plane = 45.0 + 0.5 * friction_angle / degree;
   const auto sheared = [&](double angle) {  // of the edge's normal to the load
-    return rock_failure(bond(), 1.0, turned(-strength, 0.0, angle * degree)).sheared;
+    return rock_failure(bond(), 1.0, rotated(-strength, 0.0, angle * degree)).sheared;
   };
   for (const double off : {0.0, 24.9, -24.9}) {
     EXPECT_NEAR(sheared(plane + off), 1.0, 1e-12) << off;
@@ -168,17 +170,17 @@ TEST(RockFailure, no_force_jumps_when_a_point_fails) {
   for (int i = 0; i < 4000; ++i) {
     const bool drawn = i % 2 == 0;
     BondState<double> s{};
-    if (i % 4 >= 2) answer(b, 1.0, h, 3e-6 * unit(random), 3e-6 * unit(random), s);
+    if (i % 4 >= 2) response(b, 1.0, h, 3e-6 * unit(random), 3e-6 * unit(random), s);
     const double opening = (drawn ? 2.0 : -4.0) * o_p * unit(random);
     const double slip = 3.0 * s_p * (unit(random) - 0.5);
-    const BondTraction<double> before = answer(b, 1.0, h, opening, slip, s);
+    const BondTraction<double> before = response(b, 1.0, h, opening, slip, s);
     soft += s.damage > 0.0 ? 1 : 0;
     const Failure how = i % 8 < 4 ? Failure::torn : Failure::sheared;
     // Drawn and torn ones keep a hundredth of f_t at least.
     if (drawn && before.normal < 0.01 * tension * softening(s.damage)) continue;
     fail(b, 1.0, h, how, opening, slip, before, s);
     EXPECT_EQ(failure_of(s), how);
-    const BondTraction<double> after = answer(b, 1.0, h, opening, slip, s);
+    const BondTraction<double> after = response(b, 1.0, h, opening, slip, s);
     EXPECT_NEAR(after.normal, before.normal, 1e-6 * tension) << i;
     EXPECT_NEAR(after.shear, before.shear, 1e-6 * cohesion) << i;
     torn += how == Failure::torn ? 1 : 0;
@@ -202,17 +204,17 @@ TEST(RockFailure, torn_edge_takes_g_i_by_projected_length_and_unloads_along_the_
     double spent = 0.0;
     for (int i = 0; i < steps; ++i) {
       const double d = start + (i + 0.5) * o_t / steps;
-      const BondTraction<double> t = answer(b, 1.0, h, d * c, d * n, s);
+      const BondTraction<double> t = response(b, 1.0, h, d * c, d * n, s);
       spent += (t.normal * c + t.shear * n) * o_t / steps;
       if (i != steps / 2) continue;
       BondState<double> back = s;
-      EXPECT_NEAR(answer(b, 1.0, h, 0.5 * d * c, 0.5 * d * n, back).normal, 0.5 * t.normal, 1.0);
+      EXPECT_NEAR(response(b, 1.0, h, 0.5 * d * c, 0.5 * d * n, back).normal, 0.5 * t.normal, 1.0);
       EXPECT_EQ(back.damage, s.damage);
       const StoredEnergy held = stored(b, 1.0, h, d * c, d * n, s);
       EXPECT_NEAR(held.open + held.slide, 0.5 * d * (t.normal * c + t.shear * n), 1e-12);
     }
     EXPECT_NEAR(spent, energy * c, 1e-4 * energy);
-    answer(b, 1.0, h, (start + o_t) * c, (start + o_t) * n, s);
+    response(b, 1.0, h, (start + o_t) * c, (start + o_t) * n, s);
     EXPECT_NEAR(s.damage, 1.0, 1e-12);
   }
 }
@@ -229,7 +231,7 @@ TEST(RockFailure, torn_edge_never_gives_energy) {
     BondState<double> s{};
     fail(b, 1.0, h, Failure::torn, 0.0, 0.0, {0.5 * tension, 0.0}, s);
     Vec2 at{};
-    BondTraction<double> t = answer(b, 1.0, h, 0.0, 0.0, s);
+    BondTraction<double> t = response(b, 1.0, h, 0.0, 0.0, s);
     double sum = 0.0;
     for (int leg = 0; leg < 40; ++leg) {
       // pressed, slid, eased, back: the pump; every other path goes anywhere
@@ -240,7 +242,7 @@ TEST(RockFailure, torn_edge_never_gives_energy) {
       const Vec2 d = (1.0 / steps) * (to - at);
       for (int i = 1; i <= steps; ++i) {
         const Vec2 x = at + static_cast<double>(i) * d;
-        const BondTraction<double> next = answer(b, 1.0, h, x.x, x.y, s);
+        const BondTraction<double> next = response(b, 1.0, h, x.x, x.y, s);
         sum += 0.5 * ((t.normal + next.normal) * d.x + (t.shear + next.shear) * d.y);
         least = std::min(least, sum);
         t = next;
@@ -261,20 +263,20 @@ TEST(RockFailure, sheared_edge_takes_g_ii_and_keeps_its_residual_friction) {
     const double pressure = 10e6, opening = -pressure * h / b.stiffness;
     BondState<double> s{};
     const double slip = 0.6 * 2.0 * h * cohesion / b.stiffness;
-    const BondTraction<double> carried = answer(b, 1.0, h, opening, slip, s);
+    const BondTraction<double> carried = response(b, 1.0, h, opening, slip, s);
     fail(b, 1.0, h, Failure::sheared, opening, slip, carried, s);
     const double s_t = b.softening_slide / carried.shear;
     const int steps = 20000;
     double over_friction = 0.0;
     for (int i = 0; i < steps; ++i) {
       const double at = slip + (i + 0.5) * s_t / steps;
-      const BondTraction<double> t = answer(b, 1.0, h, opening, at, s);
+      const BondTraction<double> t = response(b, 1.0, h, opening, at, s);
       over_friction += (t.shear - residual * pressure) * s_t / steps;
       EXPECT_EQ(t.normal, carried.normal);
     }
     const double share = (carried.shear - residual * pressure) / carried.shear;
     EXPECT_NEAR(over_friction, share * 5.0 * energy, 1e-3 * energy);
-    EXPECT_NEAR(answer(b, 1.0, h, opening, slip + s_t, s).shear, residual * pressure, 1e-3);
+    EXPECT_NEAR(response(b, 1.0, h, opening, slip + s_t, s).shear, residual * pressure, 1e-3);
     EXPECT_NEAR(s.damage, 1.0, 1e-12);
   }
 }

@@ -7,10 +7,10 @@
 #include "confined_concrete.hpp"
 #include "dem/observe.hpp"
 #include "exec/error.hpp"
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
-#include "run/dem_method.hpp"
+#include "run/method/dem_method.hpp"
 
 namespace breccia {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <random>
 
-#include "dem/kernel_lanes.hpp"
+#include "dem/stepping/kernel_lanes.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -15,7 +15,7 @@ struct Scene {
   static constexpr Index count = 203;  // no whole number of packs
   Buffer<LinkSums> sums{Space::host, count};
   Incidence bars, contacts;
-  Buffer<Action> bar_actions{Space::host, 3}, contact_actions{Space::host, 2};
+  Buffer<PairForce> bar_actions{Space::host, 3}, contact_actions{Space::host, 2};
   Buffer<double> mass{Space::host, count}, inertia{Space::host, count};
   Buffer<std::uint8_t> fixed{Space::host, count};
   Buffer<Vec3> force{Space::host, count}, torque{Space::host, count};
@@ -43,8 +43,8 @@ struct Scene {
       if (e % 50 < 3) fixed.data()[e] = static_cast<std::uint8_t>(random() % 64);
       if (e % 40 != 7) fill(sums.data()[e]);  // the others are free of forces
     }
-    for (Buffer<Action>* actions : {&bar_actions, &contact_actions})
-      for (Action& action : actions->host()) {
+    for (Buffer<PairForce>* actions : {&bar_actions, &contact_actions})
+      for (PairForce& action : actions->host()) {
         for (double& n : action.numbers) n = number(random);
         for (float& k : action.stiffness) k = stiffness(random);
       }

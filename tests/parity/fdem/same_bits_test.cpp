@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "physics/fdem/scene.hpp"
-#include "run/fdem_method.hpp"
+#include "run/method/fdem_method.hpp"
 
 namespace breccia {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
 #include "scene.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
 #include "scene.hpp"

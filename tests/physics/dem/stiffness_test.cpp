@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "dem/observe.hpp"
-#include "prepare/elastic_network.hpp"
+#include "prepare/packing/elastic_network.hpp"
 #include "specimen.hpp"
 
 namespace breccia::dem {

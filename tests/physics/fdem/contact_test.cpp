@@ -13,7 +13,7 @@ namespace {
 using testing::far;
 using testing::nodes;
 using testing::Scene;
-using testing::turned;
+using testing::rotated;
 
 double overlap(const World& w, Index a, Index b) {
   Vec2 xa[3], xb[3], v[3];
@@ -36,8 +36,8 @@ TEST(FdemContact, search_finds_every_touching_pair_of_random_clouds) {
       };
       const double size = 0.05 + 0.25 * draw(0), angle = 6.3 * draw(1);
       const Vec2 center{draw(2), draw(3)};
-      const Vec2 a = turned({size, 0.0}, angle), b = turned({size, 0.0}, angle + 1.6 + draw(4)),
-                 c = turned({size, 0.0}, angle + 4.0 + draw(5));
+      const Vec2 a = rotated({size, 0.0}, angle), b = rotated({size, 0.0}, angle + 1.6 + draw(4)),
+                 c = rotated({size, 0.0}, angle + 4.0 + draw(5));
       scene.triangle("t", center + a, center + b, center + c, 0,
                      {100.0 * (draw(6) - 0.5), 100.0 * (draw(7) - 0.5)});
     }
@@ -129,7 +129,7 @@ struct Slope {
     MaterialConfig& m = scene.material(1e8, 0.2, 2000.0);
     m.friction = mu;
     m.damping = 0.5;  // the block bounces on its own elasticity, until that is damped away
-    scene.config.gravity = turned({0.0, -g}, angle);
+    scene.config.gravity = rotated({0.0, -g}, angle);
     // per length: rho g cos H_block = 6 p sag / H over equal meshes
     sag = 2000.0 * g * std::cos(angle) * 0.1 * 0.0433 / (6.0 * 1e9);
     scene.body("base", prepare::equilateral_rectangle({{0.3, -0.5 * base_edge}, {1.2, base_edge}},
@@ -180,7 +180,7 @@ TEST(FdemContact, stone_that_falls_on_a_corner_loses_what_friction_spends) {
     prepare::Mesh stone = prepare::crossed_rectangle({{0.0, 0.0}, {0.1, 0.06}}, 0.01);
     double lowest = 0.0;
     for (Vec2& x : stone.point) {
-      x = turned(x, 0.6);
+      x = rotated(x, 0.6);
       lowest = std::min(lowest, x.y);
     }
     for (Vec2& x : stone.point) x.y -= lowest - 1e-4;

@@ -1,7 +1,7 @@
 // Rock with intrinsic joints is softer than its triangles: by the same numbers in statics and
 // waves.
 
-#include "fdem/effective.hpp"
+#include "fdem/setup/effective.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "physics/fdem/scene.hpp"
 #include "prepare/build_fdem.hpp"

@@ -121,7 +121,7 @@ TEST(Fracture, disc_splits_in_the_middle) {
   m.joint.cohesion = 20e6;
   constexpr double radius = 20e-3;
   prepare::Mesh disc = prepare::ringed_disc({0.0, 0.0}, radius, 2.5e-3);
-  for (Vec2& x : disc.point) x = testing::turned(x, pi / 6.0);  // edges along the diameter
+  for (Vec2& x : disc.point) x = testing::rotated(x, pi / 6.0);  // edges along the diameter
   scene.body("disc", disc);
   pull_ends(scene, 0.985 * radius, -0.03);
   World w = scene.world();

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "fdem/step.hpp"
+#include "fdem/stepping/step.hpp"
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
 namespace {
 
 using testing::nodes;
+using testing::rotated;
 using testing::Scene;
-using testing::turned;
 
 /// Two triangles with one joint that are moved by hand: the lower one rests. The directions are
 /// those of the joint's edge, turned with the scene.
@@ -28,7 +28,7 @@ struct Pair {
     w.last_dt = w.next_dt = dt;
   }
   void move(const Vec2& along) {
-    const Vec2 by = turned(along, angle);
+    const Vec2 by = rotated(along, angle);
     for (NodeState& n : nodes(w, upper_).at) {
       n.position += by;
       n.velocity = (1.0 / dt) * by;
@@ -47,7 +47,7 @@ struct Pair {
     Vec2 sum = f.first + f.second;
     if (w.couples.size() > 0)
       for (const Vec2& g : w.couples.history.force.in_double.data()[0].on_a.at) sum += g;
-    return turned(upper_ == 0 ? sum : -sum, -angle);
+    return rotated(upper_ == 0 ? sum : -sum, -angle);
   }
   bool broken() const { return w.joints.stage.data()[0] == JointStage::broken; }
   /// Slides by this a step until the joint breaks.
@@ -62,7 +62,7 @@ struct Pair {
     scene.config.materials.push_back(material);
     prepare::Mesh mesh;
     mesh.point = {{0.0, 0.0}, {edge, 0.0}, {0.5 * edge, 0.8 * edge}, {0.5 * edge, -0.8 * edge}};
-    for (Vec2& x : mesh.point) x = turned(x, turn);
+    for (Vec2& x : mesh.point) x = rotated(x, turn);
     prepare::Triangle upper{0, 1, 2}, lower{0, 3, 1};
     std::rotate(upper.begin(), upper.begin() + first, upper.end());
     std::rotate(lower.begin(), lower.begin() + (2 * first) % 3, lower.end());
@@ -241,7 +241,7 @@ TEST(Handover, keeps_the_ledger_and_the_bits) {
     if (threads == 1) {
       reference = state_hash(w);
       double handed = 0.0;
-      for (const JointWork& h : w.joints.handed.host()) handed += h.slide;
+      for (const JointWork& h : w.joints.inherited_work.host()) handed += h.slide;
       EXPECT_GT(handed, 0.0);
       EXPECT_LT(energies(w).balance.error_relative, 1e-3);
     }

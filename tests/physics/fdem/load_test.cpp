@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fdem/step.hpp"
+#include "fdem/stepping/step.hpp"
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
@@ -10,9 +10,9 @@ namespace {
 
 using testing::far;
 using testing::nodes;
+using testing::rotated;
 using testing::run_to;
 using testing::Scene;
-using testing::turned;
 
 TEST(FdemLoads, free_fall_is_a_parabola_and_its_work_is_booked) {
   Scene scene;
@@ -84,11 +84,11 @@ TEST(FdemLoads, force_stays_as_given_while_traction_and_pressure_follow_their_ed
     };
     EXPECT_LT(norm(sum() - before), 1e-12 * norm(before)) << kind;
     constexpr double stretch = 1.7, angle = 0.8;
-    testing::deform(w, [](const Vec2& x) { return testing::turned({x.x, stretch * x.y}, angle); });
+    testing::deform(w, [](const Vec2& x) { return testing::rotated({x.x, stretch * x.y}, angle); });
     HostRun{}.load_forces(w);
     const Vec2 now = kind[0] == 'f'   ? before
                      : kind[0] == 't' ? stretch * before
-                                      : testing::turned(stretch * before, angle);
+                                      : testing::rotated(stretch * before, angle);
     EXPECT_LT(norm(sum() - now), 1e-12 * norm(now)) << kind;
   }
 }
@@ -276,7 +276,7 @@ Scene absorbing_triangle(double angle, double factor) {
   scene.material().contact_stiffness = 1e-3;
   scene.config.time.safety = 1.0;
   scene.config.time.evaluate_every = 1 << 30;
-  scene.triangle("t", {0.0, 0.0}, turned({1.0, 0.0}, angle), turned({0.3, 0.8}, angle));
+  scene.triangle("t", {0.0, 0.0}, rotated({1.0, 0.0}, angle), rotated({0.3, 0.8}, angle));
   if (factor > 0.0) {
     HistoryConfig& h = scene.load("rim", "absorbing", {-far, -far}, {far, far}).history;
     h.times = {0.0, 1.0};

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "physics/fdem/scene.hpp"
-#include "prepare/structured.hpp"
+#include "prepare/meshing/structured.hpp"
 
 namespace breccia::fdem {
 namespace {

@@ -10,7 +10,7 @@
 #include "fdem/observe.hpp"
 #include "fdem/world.hpp"
 #include "math/constants.hpp"
-#include "prepare/structured.hpp"
+#include "prepare/meshing/structured.hpp"
 
 namespace breccia::fdem::testing {
 
@@ -137,7 +137,7 @@ inline void run_to(World& w, double time) {
   while (w.time < time) step(w);
 }
 
-inline Vec2 turned(const Vec2& x, double angle) {
+inline Vec2 rotated(const Vec2& x, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * x.x - s * x.y, s * x.x + c * x.y};
 }

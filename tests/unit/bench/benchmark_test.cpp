@@ -9,7 +9,7 @@
 
 #include "bench/scenes.hpp"
 #include "exec/error.hpp"
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "unit/run/scratch_folder.hpp"
 

@@ -46,13 +46,13 @@ TEST(StepClock, HaltsAtTheFirstStepAtOrPastItsEnd) {
 
 TEST(StepClock, WaitsForTheHostInTheMiddleOfAStepAndGoesOnThere) {
   StepClock c = started({});
-  c.wanted = 1;
+  c.host_request = 1;
   take(c, 0.25);
   EXPECT_EQ(c.halted, 1);
   EXPECT_EQ(c.now.time, 1.5);     // elements have moved
   EXPECT_EQ(c.now.next_dt, 0.5);  // forces and the next step are still to come
   EXPECT_EQ(c.now.step, 0);
-  c.wanted = c.halted = 0;
+  c.host_request = c.halted = 0;
   c.open = step_open_after_move;
   take(c, 0.15);
   EXPECT_EQ(c.now.time, 1.5);
@@ -92,12 +92,12 @@ TEST(StepClock, OpensAStepInOneClockFromTheOther) {
   StepTime last{};
   const EndOfStep<TwiceTheLeast> end{{}, 1};
   const auto open = [&](int from) {
-    Opening<Called, TwiceTheLeast>({&last, {}}, end, &clocks[from], &clocks[1 - from], true)(0);
+    FirstLaunch<Called, TwiceTheLeast>({&last, {}}, end, &clocks[from], &clocks[1 - from], true)(0);
   };
   open(0);
   EXPECT_EQ(last.time, 1.0);
   EXPECT_EQ(clocks[1].open, step_open);
-  Timed<Called, Stand::after_move>({&last, {}}, &clocks[1])(0);
+  ClockedLaunch<Called, Phase::after_move>({&last, {}}, &clocks[1])(0);
   EXPECT_EQ(last.time, 1.5);
   EXPECT_EQ(last.last_dt, 0.5);
   clocks[1].least = ordered_bits(0.125);
@@ -105,14 +105,14 @@ TEST(StepClock, OpensAStepInOneClockFromTheOther) {
   EXPECT_EQ(last.time, 1.5);
   EXPECT_EQ(last.next_dt, 0.25);
   EXPECT_EQ(last.step, 1);
-  clocks[0].wanted = 1;  // a search is due after this move
-  Timed<Called, Stand::after_move>({&last, {}}, &clocks[0])(0);
+  clocks[0].host_request = 1;  // a search is due after this move
+  ClockedLaunch<Called, Phase::after_move>({&last, {}}, &clocks[0])(0);
   EXPECT_EQ(last.step, 1) << "what follows the move is left to the host";
   EXPECT_EQ(last.time, 1.5);
   last = {};
   open(0);
   EXPECT_EQ(clocks[1].halted, 1);
-  EXPECT_EQ(clocks[1].wanted, 1);
+  EXPECT_EQ(clocks[1].host_request, 1);
   EXPECT_EQ(clocks[1].now.time, 1.75);
   EXPECT_EQ(last.time, 0.0) << "nothing runs once the clock has halted";
 }
@@ -128,7 +128,8 @@ TEST(StepClock, CountsToTheSameEvaluationsWhereverItStarts) {
     StepTime last{};
     for (int taken = 0; taken < 8; ++taken) {
       const int from = taken % 2;
-      Opening<Called, TwiceTheLeast>({&last, {}}, end, &clocks[from], &clocks[1 - from], true)(0);
+      FirstLaunch<Called, TwiceTheLeast>({&last, {}}, end, &clocks[from], &clocks[1 - from],
+                                         true)(0);
       clocks[1 - from].least = ordered_bits(1.0 + taken);
       StepClock after = clocks[1 - from];
       end(after);

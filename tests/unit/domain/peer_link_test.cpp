@@ -63,32 +63,32 @@ Large item(GlobalId id, Index round, Large) {
   return {1.0 * id, 1.0 * round, {2.0 * id, 3.0 * round, 0.5}};
 }
 
-/// Elements that this rank owns, and copies of some others: which, that changes with `kind`.
+/// Elements that this rank owns, and ghosts of some others: which, that changes with `kind`.
 struct Share {
   static constexpr Index all = 300;
   Buffer<GlobalId> ids;
-  std::vector<Copy> copies;
+  std::vector<Ghost> ghosts;
   Halo halo;
 
   Share(Communicator& ranks, int kind) {
     std::vector<GlobalId> here;
     for (GlobalId id = 0; id < all; ++id) {
       const int owner = id * ranks.size() / all;
-      // The middle rank owns what all copy, the first has copies of nobody in some kinds.
+      // The middle rank owns what all copy, the first has ghosts of nobody in some kinds.
       const bool wanted = (id * 7 + kind * 5 + ranks.rank() * 3) % (4 + owner) == 0;
       if (owner != ranks.rank() && (!wanted || (kind == 1 && ranks.rank() == 0))) continue;
-      if (owner != ranks.rank()) copies.push_back({static_cast<Index>(here.size()), owner});
+      if (owner != ranks.rank()) ghosts.push_back({static_cast<Index>(here.size()), owner});
       here.push_back(id);
     }
     copy_to(ids, here);
-    halo.build(ranks, ids, copies);
+    halo.build(ranks, ids, ghosts);
   }
 
   template <class T>
   void go_round(Communicator& ranks, Index round) {
     Buffer<T> items(Space::host, ids.size());
     for (Index e = 0; e < ids.size(); ++e) items.data()[e] = item(ids.data()[e], round, T{});
-    for (const Copy& copy : copies) items.data()[copy.element] = item(-1, -1, T{});
+    for (const Ghost& ghost : ghosts) items.data()[ghost.element] = item(-1, -1, T{});
     // Ranks come and go at different times.
     const auto pause = [&](int k) {
       if ((round * 3 + ranks.rank() + k) % 5 == 0)
@@ -106,7 +106,7 @@ struct Share {
   }
 };
 
-/// Two halos by turns, items of two sizes, and then other copies.
+/// Two halos by turns, items of two sizes, and then other ghosts.
 std::size_t longest_message(int count) {
   std::atomic<std::size_t> longest = 0;
   simulate_ranks(count, 6, [&](Communicator& threads) {

@@ -54,7 +54,7 @@ TEST(SimulatedRanks, an_error_on_one_rank_becomes_the_same_error_on_all) {
   std::atomic<int> refused = 0;
   simulate_ranks(6, 2, [&](Communicator& ranks) {
     try {
-      together_or_not(&ranks, [&] {
+      collective_try(&ranks, [&] {
         if (ranks.rank() == 3) throw NumericsError("three");
         if (ranks.rank() == 5) throw InputError("five");
       });
@@ -111,13 +111,13 @@ TEST(Deal, no_element_is_lost_or_doubled_over_a_hundred_thousand_migrations) {
         loads.push_back({own.place.data()[i], 1});
       }
       if (round % 5 == 0) partition.cut(ranks, loads);
-      Deliveries to(7);
+      SendLists to(7);
       std::int64_t left = 0;
       for (Index i = 0; i < own.id.size(); ++i) {
         to.add(partition.owner(own.place.data()[i]), i);
         left += partition.owner(own.place.data()[i]) != ranks.rank() ? 1 : 0;
       }
-      deal(ranks, own, to, own.id);
+      redistribute(ranks, own, to, own.id);
       EXPECT_TRUE(std::is_sorted(own.id.host().begin(), own.id.host().end()));
       std::vector<std::int64_t> seen(count + 1, 0);
       for (Index i = 0; i < own.id.size(); ++i) {
@@ -187,7 +187,7 @@ TEST(Halo, messages_are_prepared_once_for_each_place_that_they_come_from) {
     const Index own = ranks.rank(), other = 1 - own;
     Buffer<GlobalId> ids(Space::host, 2);
     ids.data()[1] = 1;
-    const std::vector<Copy> copies{{other, static_cast<int>(other)}};
+    const std::vector<Ghost> ghosts{{other, static_cast<int>(other)}};
     Buffer<double> numbers(Space::host, 2);
     double told = 0.0;
     const auto follow = [&](Halo& halo) {
@@ -196,7 +196,7 @@ TEST(Halo, messages_are_prepared_once_for_each_place_that_they_come_from) {
       return numbers.data()[other] == told + 0.5 * other;
     };
     Halo halo;
-    halo.build(ranks, ids, copies);
+    halo.build(ranks, ids, ghosts);
     for (int round = 0; round < 5; ++round) EXPECT_TRUE(follow(halo));
     EXPECT_EQ(ranks.prepared, 1);
     Halo copy = halo;
@@ -215,21 +215,21 @@ TEST(Halo, messages_are_prepared_once_for_each_place_that_they_come_from) {
 
 TEST(Halo, copies_become_what_their_owners_have) {
   simulate_ranks(3, 5, [](Communicator& ranks) {
-    // Rank r owns 10 r to 10 r + 9 and holds copies of two of each other rank's.
+    // Rank r owns 10 r to 10 r + 9 and holds ghosts of two of each other rank's.
     Buffer<GlobalId> ids;
     std::vector<int> owner;
-    std::vector<Copy> copies;
+    std::vector<Ghost> ghosts;
     for (int of = 0; of < 3; ++of)
       for (Index k = 0; k < 10; ++k) {
         if (of != ranks.rank() && k != ranks.rank() && k != 7) continue;
         ids.resize(ids.size() + 1);
         ids.data()[ids.size() - 1] = 10 * of + k;
         owner.push_back(of);
-        if (of != ranks.rank()) copies.push_back({ids.size() - 1, of});
+        if (of != ranks.rank()) ghosts.push_back({ids.size() - 1, of});
       }
     Halo halo;
-    halo.build(ranks, ids, copies);
-    EXPECT_EQ(halo.copies(), 4);
+    halo.build(ranks, ids, ghosts);
+    EXPECT_EQ(halo.ghosts(), 4);
     Buffer<double> numbers(Space::host, ids.size());
     for (Index i = 0; i < ids.size(); ++i)
       numbers.data()[i] = owner[static_cast<std::size_t>(i)] == ranks.rank() ? ids.data()[i] : -1.0;

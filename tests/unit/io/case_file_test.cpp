@@ -1,4 +1,4 @@
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <fstream>
 #include <random>
 
-#include "dem/config.hpp"
+#include "dem/setup/config.hpp"
 #include "exec/error.hpp"
 #include "paths.hpp"
-#include "prepare/check_case.hpp"
-#include "run/shown.hpp"
+#include "prepare/checks/check_case.hpp"
+#include "run/method/shown.hpp"
 
 namespace breccia {
 namespace {

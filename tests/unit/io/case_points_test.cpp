@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "exec/error.hpp"
-#include "fdem/body_config.hpp"
-#include "io/case_file.hpp"
+#include "fdem/setup/body_config.hpp"
+#include "io/case/case_file.hpp"
 
 namespace breccia {
 namespace {

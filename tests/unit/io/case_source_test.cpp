@@ -1,10 +1,10 @@
-#include "io/case_source.hpp"
+#include "io/case/case_source.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dem/config.hpp"
+#include "dem/setup/config.hpp"
 #include "exec/error.hpp"
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 
 namespace breccia {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "dem/config.hpp"
-#include "io/case_file.hpp"
+#include "dem/setup/config.hpp"
+#include "io/case/case_file.hpp"
 
 namespace breccia {
 namespace {

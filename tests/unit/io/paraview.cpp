@@ -1,4 +1,4 @@
-#include "io/paraview.hpp"
+#include "io/vtu/paraview.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
-#include "io/vtu_reader.hpp"
+#include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 #include "paths.hpp"
 #include "unit/io/slab_scene.hpp"

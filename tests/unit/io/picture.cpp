@@ -1,4 +1,4 @@
-#include "io/picture.hpp"
+#include "io/picture/picture.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

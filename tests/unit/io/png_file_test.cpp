@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "exec/error.hpp"
-#include "io/picture.hpp"
+#include "io/picture/picture.hpp"
 #include "unit/io/slab_scene.hpp"
 
 namespace breccia {

@@ -12,8 +12,8 @@
 
 #include "exec/error.hpp"
 #include "math/constants.hpp"
-#include "prepare/packing.hpp"
-#include "prepare/rebar.hpp"
+#include "prepare/packing/packing.hpp"
+#include "prepare/packing/rebar.hpp"
 #include "unit/prepare/models.hpp"
 
 namespace breccia::dem {

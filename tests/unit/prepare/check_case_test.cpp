@@ -1,6 +1,6 @@
 // One list of rules for the bodies of a case: `check`, `run` and `prepare` refuse alike.
 
-#include "prepare/check_case.hpp"
+#include "prepare/checks/check_case.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prepare/clean_lines.hpp"
+#include "prepare/meshing/clean_lines.hpp"
 
 #include <gtest/gtest.h>
 

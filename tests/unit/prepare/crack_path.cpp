@@ -1,10 +1,10 @@
 // Cracks that are there at the start: the edges of the mesh that they take.
 
-#include "prepare/crack_path.hpp"
+#include "prepare/meshing/crack_path.hpp"
 
 #include <gtest/gtest.h>
 
-#include "prepare/mesh_overlap.hpp"
+#include "prepare/meshing/mesh_overlap.hpp"
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::fdem {

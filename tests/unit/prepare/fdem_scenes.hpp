@@ -7,8 +7,8 @@
 
 #include "exec/error.hpp"
 #include "prepare/build_fdem.hpp"
-#include "prepare/mesh.hpp"
-#include "prepare/mesh_check.hpp"
+#include "prepare/meshing/mesh.hpp"
+#include "prepare/meshing/mesh_check.hpp"
 
 namespace breccia::fdem {
 

@@ -1,6 +1,6 @@
 // Minerals and strengths inside a body: shares of the area, grain sizes, distributions.
 
-#include "prepare/heterogeneity.hpp"
+#include "prepare/meshing/heterogeneity.hpp"
 
 #include <gtest/gtest.h>
 

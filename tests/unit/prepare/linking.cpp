@@ -1,6 +1,6 @@
 // Links at the start: those and only those that the interaction range asks for.
 
-#include "prepare/linking.hpp"
+#include "prepare/packing/linking.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Mesh files: what is read, and what each wrong one is told.
 
-#include "prepare/mesh_file.hpp"
+#include "prepare/meshing/mesh_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
-#include "prepare/mesh_check.hpp"
-#include "prepare/meshing.hpp"
+#include "prepare/meshing/mesh_check.hpp"
+#include "prepare/meshing/meshing.hpp"
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::prepare {

@@ -1,7 +1,7 @@
 #pragma once
 // Cases that several tests of prepare build models from.
 
-#include "dem/config.hpp"
+#include "dem/setup/config.hpp"
 
 namespace breccia::dem {
 

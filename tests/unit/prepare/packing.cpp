@@ -1,7 +1,7 @@
 // Packings: exact number and volume, inside, no overlap, no preferred direction, same seed same
 // bits.
 
-#include "prepare/packing.hpp"
+#include "prepare/packing/packing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 
 #include "exec/error.hpp"
 #include "math/constants.hpp"
-#include "prepare/cell_grid.hpp"
+#include "prepare/packing/cell_grid.hpp"
 
 namespace breccia::prepare {
 namespace {

@@ -1,7 +1,7 @@
 // Bars that users draw: where their elements lie, what they weigh, how they are joined, and which
 // do not fit.
 
-#include "prepare/rebar.hpp"
+#include "prepare/packing/rebar.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <functional>
 
 #include "exec/error.hpp"
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "math/constants.hpp"
 #include "prepare/build.hpp"
-#include "prepare/check_case.hpp"
+#include "prepare/checks/check_case.hpp"
 #include "unit/prepare/models.hpp"
 
 namespace breccia::dem {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/paraview.hpp"
+#include "io/vtu/paraview.hpp"
 
 namespace breccia::test {
 

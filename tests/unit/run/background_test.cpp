@@ -1,6 +1,6 @@
 // Output by another thread: order, errors, and states that stay as they were.
 
-#include "run/background.hpp"
+#include "run/machine/background.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "physics/fdem/scene.hpp"
-#include "run/fdem_method.hpp"
+#include "run/method/fdem_method.hpp"
 
 namespace breccia {
 namespace {

@@ -1,4 +1,4 @@
-#include "run/energy_watch.hpp"
+#include "run/machine/energy_watch.hpp"
 
 #include <gtest/gtest.h>
 

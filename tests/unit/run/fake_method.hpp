@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "exec/error.hpp"
-#include "run/method.hpp"
+#include "run/method/method.hpp"
 
 namespace breccia {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "io/whole_file.hpp"
+#include "run/machine/signals.hpp"
 #include "run/run.hpp"
-#include "run/signals.hpp"
 #include "unit/run/fake_method.hpp"
 
 namespace breccia {

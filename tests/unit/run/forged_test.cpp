@@ -7,13 +7,13 @@
 #include <functional>
 
 #include "exec/error.hpp"
-#include "io/case_file.hpp"
+#include "io/case/case_file.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
 #include "prepare/model_file.hpp"
-#include "run/dem_method.hpp"
-#include "run/fdem_method.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem_method.hpp"
 #include "unit/prepare/models.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -186,7 +186,7 @@ TEST(Forged, fdem_checkpoints_are_refused) {
               {"couples.b", 4},
               {"couples.key", 8},
               {"reach.triangle", 4}},
-             {"changed.flags", "opened.vertex", "joint_force.force", "triangles.id"});
+             {"changed.flags", "exposed.vertex", "joint_force.force", "triangles.id"});
 }
 
 TEST(Forged, dem_models_are_refused) {

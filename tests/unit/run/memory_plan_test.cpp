@@ -1,4 +1,4 @@
-#include "run/memory_plan.hpp"
+#include "run/machine/memory_plan.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>

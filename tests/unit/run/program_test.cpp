@@ -14,7 +14,7 @@
 
 #include "io/whole_file.hpp"
 #include "paths.hpp"
-#include "run/checkpoints.hpp"
+#include "run/results/checkpoints.hpp"
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {

@@ -1,6 +1,6 @@
 // The line of progress on narrow terminals, and spans of wall-clock time as people write them.
 
-#include "run/progress.hpp"
+#include "run/results/progress.hpp"
 
 #include <gtest/gtest.h>
 

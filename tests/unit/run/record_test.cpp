@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "run/checks.hpp"
-#include "run/recorder.hpp"
-#include "run/step_times.hpp"
+#include "run/method/checks.hpp"
+#include "run/results/recorder.hpp"
+#include "run/results/step_times.hpp"
 #include "unit/run/fake_run.hpp"
 #include "unit/run/scratch_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "run/result_folder.hpp"
+#include "run/results/result_folder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,147 @@
+#include "dem/setup/materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/setup/restitution.hpp"
+#include "math/constants.hpp"
+
+namespace breccia::dem {
+namespace {
+
+double harmonic(double a, double b) {
+  return a + b > 0.0 ? 2.0 * a * b / (a + b) : 0.0;
+}
+double shear_modulus(const MaterialConfig& m) {
+  return m.young / (2.0 * (1.0 + m.poisson));
+}
+
+}  // namespace
+
+LocalElasticity local_elasticity(const MaterialConfig& m) {
+  const double shear = 1.0 - m.alpha * m.poisson;
+  return {m.young * (1.0 + m.alpha) / (m.beta * (1.0 + m.poisson) + m.gamma * std::max(0.0, shear)),
+          std::max(0.0, shear / (1.0 + m.poisson))};
+}
+
+LocalElasticity local_elasticity(const MaterialConfig& a, const MaterialConfig& b) {
+  MaterialConfig mean = a;
+  mean.young = harmonic(a.young, b.young);
+  mean.poisson = harmonic(a.poisson, b.poisson);
+  return local_elasticity(mean);
+}
+
+std::optional<LinkKind> kind_within(const std::string& law) {
+  if (law == "concrete") return LinkKind::concrete;
+  if (law == "parallel") return LinkKind::parallel;
+  return std::nullopt;
+}
+std::string laws_within() {
+  return "concrete, parallel or ";
+}
+
+namespace {
+
+double lesser_radius(const Model& m, const Model::Link& link) {
+  return std::min(m.radius[static_cast<std::size_t>(link.a)],
+                  m.radius[static_cast<std::size_t>(link.b)]);
+}
+
+}  // namespace
+
+double link_section(const Model& m, const Model::Link& link) {
+  const double least = lesser_radius(m, link);
+  return pi * least * least * link.share;
+}
+
+double link_stiffness(const Model& m, const Model::Link& link, const MaterialConfig& material) {
+  const Vec3 apart =
+      m.position[static_cast<std::size_t>(link.b)] - m.position[static_cast<std::size_t>(link.a)];
+  const double modulus = local_elasticity(material).modulus * m.bulk_of(link.a).factor;
+  const double least = lesser_radius(m, link);
+  return modulus * pi * least * least * link.share / norm(apart);
+}
+
+ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact) {
+  const LocalElasticity local = local_elasticity(m);
+  ConcreteLink law{};
+  law.tensile_strength = m.tensile_strength;
+  law.cohesion = m.cohesion;
+  law.softening = m.softening;
+  law.friction = std::tan(m.friction_angle);
+  law.broken_friction = m.broken_friction < 0.0 ? contact.friction : m.broken_friction;
+  law.shear_ratio = local.ratio;
+  law.rolling_ratio = m.rolling_stiffness;
+  law.rolling_limit = m.rolling_limit;
+  law.broken_rolling_limit =
+      m.broken_rolling_limit < 0.0 ? m.rolling_limit : m.broken_rolling_limit;
+  law.rolling_cap = m.rolling_cap;
+  law.brittle_shear = m.shear == "brittle" ? 1.0 : 0.0;
+  law.slip_wear = m.slip_wear;
+  law.turn_wear = m.turn_wear;
+  law.modulus = local.modulus;
+  law.compaction_strength = m.compaction_strength;
+  law.compaction_slope = m.compaction_slope;
+  law.crushing_strength = m.crushing_strength;
+  law.crushing_slope = m.crushing_slope;
+  return law;
+}
+
+SteelLink steel_law(const MaterialConfig& m) {
+  return {m.young, shear_modulus(m), m.yield, m.hardening, m.failure_strain};
+}
+
+InterfaceLink interface_law(const MaterialConfig& m, const ContactConfig& contact) {
+  InterfaceLink law{};
+  BondSlip& bond = law.bond;
+  bond = {m.bond_strength, m.bond_residual, m.slip1, m.slip2, m.slip3, {}};
+  if (m.bond != "mc90") {
+    bond.strength = bond.residual = m.bond == "perfect" ? 1e300 : m.bond_strength;
+    bond.slip1 = bond.slip2 = bond.slip3 = 0.0;
+  }
+  // tau / tau_max = (s / s_1)^0.4 = t^0.8 with t = sqrt(s / s_1)
+  for (int k = 0; k <= BondSlip::intervals; ++k)
+    bond.rise[k] = std::pow(static_cast<double>(k) / BondSlip::intervals, 0.8);
+  law.slip_ratio = 0.4;  // G_b / E_c: bond layer as stiff in shear as concrete
+  law.tensile_strength = m.tensile_strength;
+  law.softening = m.softening;
+  law.friction = contact.friction;
+  return law;
+}
+
+ParallelBond parallel_bond(const MaterialConfig& m, const ContactConfig& contact) {
+  return {m.tensile_strength,
+          m.cohesion,
+          std::tan(m.friction_angle),
+          m.broken_friction < 0.0 ? contact.friction : m.broken_friction,
+          local_elasticity(m).ratio,
+          m.bond_radius,
+          m.moment_share};
+}
+
+ContactLaw contact_law(const ContactConfig& c) {
+  const bool hertz = c.law == "hertz";
+  return {hertz, c.friction,
+          hertz ? damping_ratio_hertz(c.restitution) : damping_ratio_linear(c.restitution),
+          c.rolling_stiffness, c.rolling_limit};
+}
+
+ContactPair contact_pair(const ContactConfig& c, const MaterialConfig& a, const MaterialConfig& b) {
+  if (c.law == "hertz") {
+    const double compliance =
+        (1.0 - a.poisson * a.poisson) / a.young + (1.0 - b.poisson * b.poisson) / b.young;
+    const double shear =
+        (2.0 - a.poisson) / shear_modulus(a) + (2.0 - b.poisson) / shear_modulus(b);
+    return {1.0 / compliance, 1.0 / shear};
+  }
+  const LocalElasticity local = local_elasticity(a, b);
+  return {local.modulus * pi, local.ratio};
+}
+
+ContactPair wall_pair(const ContactConfig& c, const MaterialConfig& m) {
+  if (c.law == "hertz")
+    return {m.young / (1.0 - m.poisson * m.poisson), shear_modulus(m) / (2.0 - m.poisson)};
+  return contact_pair(c, m, m);
+}
+
+}  // namespace breccia::dem

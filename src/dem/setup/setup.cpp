@@ -1,0 +1,303 @@
+// From a model and its case to a world: laws, links, contacts' constants, supports, first forces.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "core/world_space.hpp"
+#include "dem/setup/materials.hpp"
+#include "dem/setup/supports.hpp"
+#include "dem/world.hpp"
+#include "exec/error.hpp"
+#include "exec/sort_scan.hpp"
+#include "math/constants.hpp"
+
+namespace breccia::dem {
+namespace {
+
+template <class T>
+Buffer<T> filled(const World& w, const std::vector<T>& items) {
+  Buffer<T> buffer(w.exec.space);
+  copy_to(buffer, items);
+  return buffer;
+}
+
+void set_elements(World& w, const Model& m, const Prescribed& held) {
+  Elements& e = w.elements;
+  resize_fields(e, m.size());
+  std::vector<GlobalId> ids(static_cast<std::size_t>(m.size()));
+  std::iota(ids.begin(), ids.end(), 0);
+  copy_to(e.id, ids);
+  copy_to(e.group, m.group);
+  copy_to(e.material, m.material);
+  copy_to(e.mass, m.mass);
+  copy_to(e.inertia, m.inertia);
+  std::vector<ElementState> states;
+  for (std::size_t i = 0; i < m.radius.size(); ++i)
+    states.push_back({m.position[i], held.velocity_at_start(i, m.velocity[i]),
+                      held.spin_at_start(i, m.spin[i]), m.radius[i]});
+  copy_to(e.state, states);
+  copy_to(e.orientation, std::vector<Quaternion>(ids.size()));
+  copy_to(e.fixed, held.fixed);
+  copy_to(e.motion, held.motion);
+  w.motions = filled(w, held.motions);
+  double sum = 0.0;
+  for (const double r : m.radius) sum += r;
+  w.parameters.mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
+}
+
+/// The links of one kind, sorted into groups of one material and, of concrete, bodies of one bulk,
+/// each in the model's order.
+template <class Law, class MakeLaw>
+std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<Law>& set,
+                                 const MakeLaw& make_law) {
+  std::vector<LinkGroup<Law>>& groups = set.groups;
+  std::vector<Model::Link> links;
+  for (const Model::Link& link : m.links)
+    if (link.kind == set.kind) links.push_back(link);
+  const auto law_of = [&](const Model::Link& link) {
+    const Model::Bulk bulk = link.kind == LinkKind::concrete ? m.bulk_of(link.a) : Model::Bulk{};
+    return std::tuple{link.material, bulk.factor, bulk.rupture_opening};
+  };
+  std::stable_sort(links.begin(), links.end(), [&](const Model::Link& p, const Model::Link& q) {
+    return law_of(p) < law_of(q);
+  });
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const std::int16_t material = links[i].material;
+    if (i == 0 || law_of(links[i - 1]) != law_of(links[i]))
+      groups.push_back({make_law(config.materials.at(static_cast<std::size_t>(material)), links[i]),
+                        static_cast<Index>(i),
+                        static_cast<Index>(i),
+                        material,
+                        {}});
+    groups.back().end = static_cast<Index>(i + 1);
+  }
+  resize_fields(set, static_cast<Index>(links.size()));
+  return links;
+}
+
+double distance(const Model& m, Index a, Index b) {
+  return norm(m.position[static_cast<std::size_t>(b)] - m.position[static_cast<std::size_t>(a)]);
+}
+double radius_of(const Model& m, Index e) {
+  return m.radius[static_cast<std::size_t>(e)];
+}
+
+void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>& links) {
+  std::vector<Index> first, second;
+  for (const Model::Link& link : links) {
+    first.push_back(link.a);
+    second.push_back(link.b);
+  }
+  copy_to(a, first);
+  copy_to(b, second);
+}
+
+void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m) {
+  const auto links = grouped(m, config, set, [&](const MaterialConfig& c, const Model::Link& link) {
+    ConcreteLink law = concrete_law(c, config.contact);
+    law.modulus *= m.bulk_of(link.a).factor;
+    law.rupture_opening = m.bulk_of(link.a).rupture_opening;
+    return law;
+  });
+  set_ends(set.a, set.b, links);
+  std::vector<double> length, stiffness, area;
+  for (const Model::Link& link : links) {
+    length.push_back(distance(m, link.a, link.b));
+    area.push_back(link_section(m, link));
+    stiffness.push_back(
+        link_stiffness(m, link, config.materials[static_cast<std::size_t>(link.material)]));
+  }
+  copy_to(set.length, length);
+  copy_to(set.stiffness, stiffness);
+  copy_to(set.area, area);
+}
+
+void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m) {
+  const auto links = grouped(m, config, set, [&](const MaterialConfig& c, const Model::Link&) {
+    return parallel_bond(c, config.contact);
+  });
+  set_ends(set.a, set.b, links);
+  std::vector<double> length, stiffness;
+  for (const Model::Link& link : links) {
+    const double d = distance(m, link.a, link.b);
+    const MaterialConfig& material = config.materials[static_cast<std::size_t>(link.material)];
+    const double radius =
+        material.bond_radius * std::min(radius_of(m, link.a), radius_of(m, link.b));
+    length.push_back(d);
+    stiffness.push_back(local_elasticity(material).modulus * pi * radius * radius / d);
+  }
+  copy_to(set.length, length);
+  copy_to(set.stiffness, stiffness);
+  std::vector<ParallelBondState> whole(links.size(), {1.0, 0.0, {}, {}});
+  copy_to(set.state, whole);
+}
+
+/// A released pair is D > 1.5 (R_a + R_b) apart. If margins of two elements never exceed half of
+/// R_a + R_b, a new search comes before such a pair can meet again, whenever it was released.
+void limit_margins(World& w, const Model& m) {
+  double least = no_limit;
+  for (const Model::Link& link : m.links)
+    if (link.kind != LinkKind::steel && link.kind != LinkKind::interface)
+      least = std::min({least, radius_of(m, link.a), radius_of(m, link.b)});
+  if (least == no_limit) least = *std::max_element(m.radius.begin(), m.radius.end());
+  w.parameters.largest_margin = 0.5 * least;
+}
+
+void set_links(LinkSet<SteelLink>& set, const Config& config, const Model& m) {
+  const auto links = grouped(
+      m, config, set, [](const MaterialConfig& c, const Model::Link&) { return steel_law(c); });
+  set_ends(set.a, set.b, links);
+  std::vector<double> length;
+  for (const Model::Link& link : links) length.push_back(distance(m, link.a, link.b));
+  copy_to(set.length, length);
+}
+
+bool is_steel(const Config& config, const Model& m, Index e) {
+  const auto material = static_cast<std::size_t>(m.material[static_cast<std::size_t>(e)]);
+  return config.materials[material].law == "steel";
+}
+
+void set_links(LinkSet<InterfaceLink>& set, const Config& config, const Model& m) {
+  auto links = grouped(m, config, set, [&](const MaterialConfig& c, const Model::Link&) {
+    return interface_law(c, config.contact);
+  });
+  std::map<Index, int> shares;  // links of each bar element
+  for (Model::Link& link : links) {
+    if (!is_steel(config, m, link.a)) std::swap(link.a, link.b);
+    ++shares[link.a];
+  }
+  set_ends(set.a, set.b, links);
+  std::vector<Index> before, after;
+  std::vector<double> stiffness, area;
+  for (const Model::Link& link : links) {
+    const auto s = static_cast<std::size_t>(link.a);
+    const Index previous = m.bar_previous[s], next = m.bar_next[s];
+    if (previous < 0 && next < 0)
+      throw InputError(
+          fmt::format("element {} is bonded as a bar but has no neighbour along it", s));
+    before.push_back(previous >= 0 ? previous : link.a);
+    after.push_back(next >= 0 ? next : link.a);
+    const double piece = 0.5 * ((previous >= 0 ? distance(m, link.a, previous) : 0.0) +
+                                (next >= 0 ? distance(m, link.a, next) : 0.0));
+    const double share = pi * 2.0 * m.radius[s] * piece / shares[link.a];  // pi d_b L_s / n_s
+    const double d = distance(m, link.a, link.b);
+    const double layer = std::max(d, 0.5 * (m.radius[s] + radius_of(m, link.b)));
+    const auto concrete = static_cast<std::size_t>(m.material[static_cast<std::size_t>(link.b)]);
+    area.push_back(share);
+    stiffness.push_back(config.materials[concrete].young * share / layer);
+  }
+  copy_to(set.before, before);
+  copy_to(set.after, after);
+  copy_to(set.stiffness, stiffness);
+  copy_to(set.area, area);
+}
+
+/// Bodies and supports, for probes.
+void set_sets(World& w, const Config& config, const Model& m, const Prescribed& held) {
+  for (std::size_t g = 0; g < m.groups.size(); ++g) {
+    std::vector<Index> members;
+    for (std::size_t e = 0; e < m.group.size(); ++e)
+      if (m.group[e] == static_cast<std::int16_t>(g)) members.push_back(static_cast<Index>(e));
+    w.sets.push_back({m.groups[g], filled(w, members)});
+  }
+  for (std::size_t s = 0; s < config.supports.size(); ++s)
+    w.sets.push_back({config.supports[s].name, filled(w, held.members[s])});
+}
+
+void set_contacts(World& w, const Config& config, const Model& m) {
+  w.parameters.contact = contact_law(config.contact);
+  w.parameters.materials = static_cast<Index>(config.materials.size());
+  std::vector<ContactPair> pairs, walls;
+  for (const MaterialConfig& a : config.materials) {
+    for (const MaterialConfig& b : config.materials)
+      pairs.push_back(contact_pair(config.contact, a, b));
+    walls.push_back(wall_pair(config.contact, a));
+  }
+  w.contact_pairs = filled(w, pairs);
+  w.wall_pairs = filled(w, walls);
+  for (const WallConfig& wall : config.walls) {
+    const double size = norm(wall.normal);
+    if (!(size > 0.0)) throw InputError("wall " + wall.name + " has a normal of length 0");
+    w.wall_names.push_back(wall.name);
+    w.walls.push_back({wall.point, (1.0 / size) * wall.normal, wall.velocity, wall.stiffness, 0.0});
+  }
+  // A step that resolves the contact of two like elements, for those that nothing else slows down.
+  for (std::size_t e = 0; e < m.radius.size(); ++e) {
+    const auto material = static_cast<std::size_t>(m.material[e]);
+    const MaterialConfig& c = config.materials[material];
+    const double r = m.radius[e];
+    double step = 0.0;
+    if (config.contact.law == "hertz") {  // a fifth of the Rayleigh time
+      const double density = m.mass[e] / (4.0 / 3.0 * pi * r * r * r);
+      step = 0.2 * pi * r * std::sqrt(density * 2.0 * (1.0 + c.poisson) / c.young) /
+             (0.1631 * c.poisson + 0.8766);
+    } else {
+      const ContactPair& pair = pairs[material * config.materials.size() + material];
+      step = std::sqrt(2.0 * m.mass[e] / (pair.normal * 0.5 * r));
+    }
+    w.parameters.contact_step = std::min(w.parameters.contact_step, config.time.safety * step);
+  }
+}
+
+}  // namespace
+
+World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
+  concrete.precision = how.precision;
+  place_arrays(*this);
+}
+
+void move_to(World& w, Space space) {
+  move_world(w, space);
+}
+
+void set_linked_pairs(World& w) {
+  Buffer<KeyedIndex> linked(Space::host, w.links());
+  Index link = 0;
+  w.each_set([&](const auto& set) {
+    std::vector<Index> ends_a, ends_b;
+    copy_to(ends_a, set.a);
+    copy_to(ends_b, set.b);
+    for (std::size_t i = 0; i < ends_a.size(); ++i, ++link)  // by places: the order by ids
+      linked.data()[link] = {pair_key(ends_a[i], ends_b[i]), link};
+  });
+  sort_by_key(w.exec, linked);
+  std::vector<Index> starts(static_cast<std::size_t>(w.elements.size()) + 1, 0), partners, links;
+  for (const KeyedIndex& pair : linked.host()) {
+    ++starts[static_cast<std::size_t>(low_id(pair.key)) + 1];
+    partners.push_back(high_id(pair.key));
+    links.push_back(pair.item);
+  }
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  copy_to(w.linked_starts, starts);
+  copy_to(w.linked_partners, partners);
+  copy_to(w.linked_links, links);
+}
+
+World make_world(const Config& config, const Model& model, const Exec& exec) {
+  if (model.size() == 0) throw InputError("the case has no elements");
+  World w(exec);
+  w.parameters.time = config.time;
+  w.parameters.search = config.search;
+  w.parameters.gravity = config.gravity;
+  w.parameters.local_damping = config.local_damping;
+  const Prescribed held = prescribed(config, model);
+  set_elements(w, model, held);
+  w.each_set([&](auto& set) { set_links(set, config, model); });
+  set_linked_pairs(w);
+  limit_margins(w, model);
+  set_sets(w, config, model, held);
+  set_contacts(w, config, model);
+  derive(w);
+  find_contacts(w);
+  evaluate_forces(w);
+  const EnergyBalance start = balance(w);
+  w.ledger.start = start.kinetic + start.elastic;
+  return w;
+}
+
+}  // namespace breccia::dem

@@ -1,0 +1,167 @@
+#include "dem/setup/supports.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+
+#include "dem/setup/config.hpp"
+#include "exec/error.hpp"
+
+namespace breccia::dem {
+namespace {
+
+constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+
+double part(const Vec3& v, std::size_t axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+std::uint8_t fixed_bits(const SupportConfig& support) {
+  static const std::map<std::string, int> words{
+      {"x", fixed_x},           {"y", fixed_y},           {"z", fixed_z}, {"spin_x", fixed_spin_x},
+      {"spin_y", fixed_spin_y}, {"spin_z", fixed_spin_z}, {"all", 63}};
+  int bits = 0;
+  for (const std::string& word : support.fix) {
+    const auto found = words.find(word);
+    if (found == words.end())
+      throw InputError(
+          "support " + support.name + ": '" + word +
+          "' is no degree of freedom; allowed are x, y, z, spin_x, spin_y, spin_z, all");
+    bits |= found->second;
+  }
+  return static_cast<std::uint8_t>(bits);
+}
+
+std::vector<Index> members_of(const SupportConfig& s, const Model& m) {
+  std::vector<Index> members;
+  for (std::size_t e = 0; e < m.position.size(); ++e) {
+    if (!s.on.empty() && m.groups[static_cast<std::size_t>(m.group[e])] != s.on) continue;
+    const Vec3& x = m.position[e];
+    const bool inside = x.x >= s.min.x && x.y >= s.min.y && x.z >= s.min.z && x.x <= s.max.x &&
+                        x.y <= s.max.y && x.z <= s.max.z;
+    if (inside) members.push_back(static_cast<Index>(e));
+  }
+  return members;
+}
+
+/// Gives each direction of each element to the supports that prescribe it.
+class Holding {
+ public:
+  explicit Holding(const Config& config, const Model& model)
+      : supports_(config.supports), owners_(model.position.size(), {-1, -1, -1}) {
+    all_.fixed.assign(model.position.size(), fixed_none);
+    for (std::size_t s = 0; s < supports_.size(); ++s) {
+      const std::uint8_t bits = fixed_bits(supports_[s]);
+      all_.members.push_back(members_of(supports_[s], model));
+      if (all_.members.back().empty())
+        problems_.push_back("support " + supports_[s].name + " holds no element");
+      for (const Index e : all_.members.back()) hold(s, bits, static_cast<std::size_t>(e));
+    }
+    for (const auto& [clash, found] : clashes_) tell(clash, found);
+    if (problems_.empty()) return;
+    std::string text = fmt::format("{} problem{} with the supports; nothing was run.",
+                                   problems_.size(), problems_.size() == 1 ? "" : "s");
+    for (const std::string& problem : problems_) text += "\n  " + problem;
+    throw InputError(text);
+  }
+
+  Prescribed prescribed() {
+    std::map<Owners, std::int16_t> known;  // combinations of supports that move
+    for (const Owners& owners : owners_) {
+      Owners moving = owners;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (moving[axis] >= 0 && speed(moving[axis], axis) == 0.0) moving[axis] = -1;
+      if (moving == Owners{-1, -1, -1}) {
+        all_.motion.push_back(-1);
+        continue;
+      }
+      const auto next = static_cast<std::int16_t>(all_.motions.size());
+      const auto [entry, is_new] = known.try_emplace(moving, next);
+      if (is_new) all_.motions.push_back(motion_of(moving));
+      all_.motion.push_back(entry->second);
+    }
+    return std::move(all_);
+  }
+
+ private:
+  using Owners = std::array<int, 3>;  ///< the support that prescribes x, y, z, or -1
+  struct Clash {
+    int first, second;
+    std::size_t axis;
+    auto operator<=>(const Clash&) const = default;
+  };
+  struct Found {
+    int elements = 0;
+    std::size_t first = 0;
+  };
+
+  const SupportConfig& support(int s) const { return supports_[static_cast<std::size_t>(s)]; }
+  double speed(int s, std::size_t axis) const { return part(support(s).velocity, axis); }
+  bool alike(int a, int b, std::size_t axis) const {
+    return speed(a, axis) == speed(b, axis) &&
+           (speed(a, axis) == 0.0 || support(a).ramp == support(b).ramp);
+  }
+
+  void hold(std::size_t s, std::uint8_t bits, std::size_t e) {
+    all_.fixed[e] = static_cast<std::uint8_t>(all_.fixed[e] | bits);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if ((bits >> axis & 1) == 0) continue;
+      int& owner = owners_[e][axis];
+      const int own = static_cast<int>(s);
+      if (owner < 0) owner = own;
+      if (alike(owner, own, axis)) continue;
+      Found& found = clashes_[{owner, own, axis}];
+      if (found.elements++ == 0) found.first = e;
+    }
+  }
+
+  void tell(const Clash& clash, const Found& found) {
+    const SupportConfig &a = support(clash.first), &b = support(clash.second);
+    problems_.push_back(fmt::format(
+        "supports {} and {} both prescribe {} of {} element{} (the first is element {}): {} m/s "
+        "with a ramp of {} s, and {} m/s with a ramp of {} s; supports that share elements must "
+        "prescribe other directions, or the same motion",
+        a.name, b.name, axis_names[clash.axis], found.elements, found.elements == 1 ? "" : "s",
+        found.first, part(a.velocity, clash.axis), a.ramp, part(b.velocity, clash.axis), b.ramp));
+  }
+
+  Motion motion_of(const Owners& owners) const {
+    const auto velocity = [&](std::size_t axis) {
+      return owners[axis] >= 0 ? speed(owners[axis], axis) : 0.0;
+    };
+    const auto ramp = [&](std::size_t axis) {
+      return owners[axis] >= 0 ? support(owners[axis]).ramp : 0.0;
+    };
+    return {{velocity(0), velocity(1), velocity(2)}, {ramp(0), ramp(1), ramp(2)}};
+  }
+
+  const std::vector<SupportConfig>& supports_;
+  std::vector<Owners> owners_;  ///< of each element
+  std::map<Clash, Found> clashes_;
+  std::vector<std::string> problems_;
+  Prescribed all_;
+};
+
+/// x, y and z of `given` where bits 0, 1 and 2 are set, else of `own`.
+Vec3 chosen(int bits, const Vec3& given, const Vec3& own) {
+  return {(bits & 1) != 0 ? given.x : own.x, (bits & 2) != 0 ? given.y : own.y,
+          (bits & 4) != 0 ? given.z : own.z};
+}
+
+}  // namespace
+
+Vec3 Prescribed::velocity_at_start(std::size_t element, const Vec3& own) const {
+  const std::int16_t way = motion[element];
+  const Vec3 given = way >= 0 ? motions[static_cast<std::size_t>(way)].at(0.0) : Vec3{};
+  return chosen(fixed[element], given, own);
+}
+Vec3 Prescribed::spin_at_start(std::size_t element, const Vec3& own) const {
+  return chosen(fixed[element] >> 3, {}, own);
+}
+
+Prescribed prescribed(const Config& config, const Model& model) {
+  return Holding(config, model).prescribed();
+}
+
+}  // namespace breccia::dem

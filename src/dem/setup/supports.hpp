@@ -1,0 +1,31 @@
+#pragma once
+// Which elements supports hold, and how these must move.
+
+#include <vector>
+
+#include "dem/element_kernels.hpp"
+#include "dem/setup/model.hpp"
+
+namespace breccia::dem {
+
+struct Config;
+
+/// Directions and motions that the supports of a case prescribe, by element.
+struct Prescribed {
+  std::vector<std::uint8_t> fixed;          ///< bits of Fixed  [-]
+  std::vector<std::int16_t> motion;         ///< index into motions, -1: stands still  [-]
+  std::vector<Motion> motions;              ///< each combination of supports that there is
+  std::vector<std::vector<Index>> members;  ///< of each support, ascending
+
+  /// Of an element, with one of its own: what is held starts with the motion of its support, so
+  /// that no jump of velocity at the start does work.  [m/s], [rad/s]
+  Vec3 velocity_at_start(std::size_t element, const Vec3& own) const;
+  Vec3 spin_at_start(std::size_t element, const Vec3& own) const;
+};
+
+/// Several supports may hold one element, if they prescribe different directions or the same
+/// motion.
+/// @throws InputError naming supports that hold no element, or that contradict each other
+Prescribed prescribed(const Config& config, const Model& model);
+
+}  // namespace breccia::dem

@@ -1,0 +1,205 @@
+// A step by loops on the host: over packs of elements and links, shared by threads.
+
+#include <algorithm>
+
+#include "dem/ranks.hpp"
+#include "dem/stepping/launches.hpp"
+#include "dem/stepping/step.hpp"
+#include "exec/for_each.hpp"
+
+namespace breccia::dem {
+namespace {
+
+template <class Number>
+BR_HD void add_to_b(LinkSums& sums, const PairForceOf<Number>& action) {
+  sums.as_b.add(action.numbers + 3);
+  sums.stiffness_b.add(action.stiffness + 3);
+}
+
+/// Moves elements of this rank. @returns whether one of them has used its margin up
+bool move_here(const World& w, const std::vector<ElementRun>& runs, const MoveElements& move) {
+  constexpr Index grain = 512;
+  const Index count = w.elements.size();
+  std::vector<std::uint8_t> beyond(static_cast<std::size_t>((count + grain - 1) / grain), 0);
+  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
+    each_owned(w.domain, runs, begin, end, [&](Index from, Index to) {
+      if (run_packs(w.lanes, move, from, to)) beyond[static_cast<std::size_t>(begin / grain)] = 1;
+    });
+  });
+  return std::find(beyond.begin(), beyond.end(), 1) != beyond.end();
+}
+
+/// A kernel for all links of a group, on the host.
+template <class Law, class Kernel>
+void run_group(const World& w, const LinkGroup<Law>& group, const Kernel& kernel) {
+  const Index count = group.end - group.begin;
+  constexpr Index grain = 512;
+  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
+    run_packs(w.lanes, kernel, group.begin + begin, group.begin + end);
+  });
+}
+
+/// Sums the actions of links as they come. A force on an element outside this thread's private
+/// range is stored in `deferred`; its owner thread adds it later, in the order of all links, so
+/// that the sum does not depend on the number of threads.
+struct AddLinks {
+  View<LinkSums> sums;
+  Index first_private, end;  ///< elements that get sums at once
+  Index reach;               ///< no link leads further
+  std::vector<DeferredForce>& deferred;
+
+  /// Links [from, to); action 0 is of link `from`.
+  template <class Number>
+  void operator()(const ConcreteLinkForces<Number>& links, Index from, Index to,
+                  const PairForceOf<Number>* actions) const {
+    for (Index i = from; i < to;) {
+      const Index a = links.a[i];
+      SixSums as_a = sums[a].as_a;
+      SixFloatSums stiffness_a = sums[a].stiffness_a;
+      fetch(std::min(a + reach, sums.size - 1), links.elements.state);
+      for (; i < to && links.a[i] == a; ++i) {
+        const PairForceOf<Number>& action = actions[i - from];
+        as_a.add(action.numbers);
+        stiffness_a.add(action.stiffness);
+        const Index b = links.b[i], soon = links.b[std::min(i + 8, to - 1)];
+        __builtin_prefetch(&sums[soon].as_b, 1);
+        __builtin_prefetch(&sums[soon].stiffness_b, 1);
+        if (b >= first_private && b < end)
+          add_to_b(sums[b], action);
+        else
+          deferred.push_back({in_double(action), b});
+      }
+      sums[a].as_a = as_a;
+      sums[a].stiffness_a = stiffness_a;
+    }
+  }
+  static const PairForce& in_double(const PairForce& action) { return action; }
+  static PairForce in_double(const PairForceOf<float>& action) {
+    PairForce same{};
+    std::copy_n(action.numbers, 9, same.numbers);
+    std::copy_n(action.stiffness, 9, same.stiffness);
+    return same;
+  }
+  /// Asks the memory for an element before the first link comes to it.
+  void fetch(Index element, const View<const ElementState>& state) const {
+    const auto* sum = reinterpret_cast<const char*>(sums.data + element);
+    const auto* record = reinterpret_cast<const char*>(state.data + element);
+    for (int line = 0; line < 3; ++line) __builtin_prefetch(sum + 64 * line, 1);
+    for (int line = 0; line < 2; ++line) __builtin_prefetch(record + 64 * line);
+  }
+};
+
+/// Asks the memory for what the links [from, to) keep: too many arrays for the processor to
+/// foresee.
+template <class Number>
+void fetch(const ConcreteLinkForces<Number>& links, Index from, Index to) {
+  const View<Number>&shear = links.shear.items, &moment = links.moment.items;
+  const Index plane = links.shear.stride;
+  for (Index i = from; i < to; i += 8) {
+    __builtin_prefetch(links.length.data + i);
+    __builtin_prefetch(links.stiffness.data + i);
+    __builtin_prefetch(links.area.data + i);
+    if (sizeof(Number) < sizeof(double) && i % 16 != 0) continue;  // of a cache line that is asked
+    __builtin_prefetch(links.opening.data + i, 1);
+    for (int c = 0; c < 3; ++c) {
+      __builtin_prefetch(shear.data + c * plane + i, 1);
+      __builtin_prefetch(moment.data + c * plane + i, 1);
+    }
+  }
+}
+
+/// Forces of links [begin, end) and their sums, in portions whose actions stay in the nearest
+/// cache.
+template <class Number>
+void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index end,
+               const AddLinks& add) {
+  constexpr Index portion = 64;
+  alignas(64) PairForceOf<Number> actions[portion];
+  links.actions.data = actions;
+  links.actions.size = portion;
+  for (Index from = begin; from < end;) {
+    const Index to = std::min(from / portion * portion + portion, end);  // whole packs, aligned
+    links.first_action = -from;
+    fetch(links, to, std::min(to + portion, end));
+    run_packs(lanes, links, from, to);
+    add(links, from, to, actions);
+    from = to;
+  }
+}
+
+template <class Number>
+void link_forces_and_sums(World& w) {
+  std::vector<ConcreteLinkForces<Number>> kernels;
+  for (const auto& group : w.concrete.groups)
+    kernels.push_back(link_kernel<Number>(w, w.concrete, group.law, 0));
+  const GatherForces gather = gather_kernel(w);
+  LinkPlan& link_plan = w.link_plan;
+  const auto threads = static_cast<int>(link_plan.first_private.size());
+#pragma omp parallel num_threads(threads) if (threads > 1)
+  {
+    const KernelScope scope;
+#pragma omp for schedule(static, 1)
+    for (int t = 0; t < threads; ++t) {
+      const auto run = static_cast<std::size_t>(t);
+      AddLinks add{gather.sums, link_plan.first_private[run], link_plan.begin[run + 1],
+                   link_plan.reach, link_plan.deferred[run]};
+      add.deferred.clear();
+      auto tile =
+          std::lower_bound(link_plan.tiles.begin(), link_plan.tiles.end(), link_plan.begin[run]);
+      for (; *tile < link_plan.begin[run + 1]; ++tile) {
+        const Index from = *tile, to = *(tile + 1);
+        for (std::size_t g = 0; g < kernels.size(); ++g) {
+          const std::vector<Index>& starts = w.concrete.groups[g].starts;
+          add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
+                    starts[static_cast<std::size_t>(to)], add);
+        }
+        run_packs(w.lanes, gather, std::max(from, link_plan.first_private[run]), to);
+      }
+    }
+    // The end of the loop above is a barrier: every link is done.
+#pragma omp for schedule(static, 1)
+    for (int t = 0; t < threads; ++t) {
+      const auto run = static_cast<std::size_t>(t);
+      const Index begin = link_plan.begin[run];
+      const Index end = std::min(link_plan.first_private[run], link_plan.begin[run + 1]);
+      if (begin == end) continue;
+      for (std::size_t before = 0; before <= run; ++before)
+        for (const DeferredForce& p : link_plan.deferred[before])
+          if (p.b >= begin && p.b < end) add_to_b(gather.sums[p.b], p.action);
+      run_packs(w.lanes, gather, begin, end);
+    }
+  }
+}
+
+}  // namespace
+
+void HostRun::move_boundary(World& w) const {
+  const StageTime timed(w.exec, "integration");
+  w.margin_used = move_here(w, w.domain.boundary_runs, move_kernel(w));
+}
+
+void HostRun::move_interior(World& w) const {
+  const StageTime timed(w.exec, "integration");
+  if (!w.domain.single_rank())
+    w.margin_used |= move_here(w, w.domain.interior_runs, move_kernel(w));
+  move_walls(w);
+}
+
+void HostRun::pair_forces(World& w) const {
+  {
+    const StageTime timed(w.exec, "bar_forces");
+    each_bar_set(w, [&](auto& set, Index first_action) {
+      for (const auto& group : set.groups)
+        run_group(w, group, link_kernel<double>(w, set, group.law, first_action));
+    });
+  }
+  const StageTime timed(w.exec, "contact_forces");
+  for_each(w.exec, w.contacts.size(), contact_kernel(w));
+}
+
+void HostRun::sum_forces(World& w) const {
+  const StageTime timed(w.exec, "link_forces");
+  with_number(w.exec.precision, [&w](auto number) { link_forces_and_sums<decltype(number)>(w); });
+}
+
+}  // namespace breccia::dem

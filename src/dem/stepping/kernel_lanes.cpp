@@ -1,0 +1,47 @@
+#include "dem/stepping/kernel_lanes.hpp"
+
+#include "exec/whole_packs.hpp"
+
+namespace breccia::dem {
+template <class Kernel>
+void run_packs([[maybe_unused]] Lanes lanes, const Kernel& kernel, Index begin, Index end) {
+#if defined(BR_WIDE_LANES)
+  if constexpr (LinkArrays<typename Kernel::Law>::swept)  // to where packs lie in whole cache lines
+    for (; begin < end && begin % static_cast<Index>(lanes) != 0; ++begin) kernel(begin);
+#endif
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+#define BR_INSTANTIATE(Kernel) template void run_packs(Lanes, const Kernel&, Index, Index);
+BR_EACH_LINK_KERNEL(BR_INSTANTIATE)
+#undef BR_INSTANTIATE
+
+void run_packs([[maybe_unused]] Lanes lanes, const GatherForces& kernel, Index begin, Index end) {
+#if defined(BR_WIDE_LANES)
+  if (lanes == Lanes::eight) begin = PacksAvx512::run(kernel, begin, end);
+  if (lanes == Lanes::four) begin = PacksAvx2::run(kernel, begin, end);
+#endif
+  for (Index e = begin; e < end; ++e) kernel(e);
+}
+
+double least([[maybe_unused]] Lanes lanes, const View<const double>& numbers, Index begin,
+             Index end) {
+  LeastOf least{begin, largest_least};
+#if defined(BR_WIDE_LANES)
+  if (lanes == Lanes::eight) least = PacksAvx512::run(numbers, begin, end);
+  if (lanes == Lanes::four) least = PacksAvx2::run(numbers, begin, end);
+#endif
+  for (Index i = least.end; i < end; ++i) least.number = min(numbers[i], least.number);
+  return least.number;
+}
+
+bool run_packs([[maybe_unused]] Lanes lanes, const MoveElements& kernel, Index begin, Index end) {
+  MovedTo moved{begin, false};
+#if defined(BR_WIDE_LANES)
+  if (lanes == Lanes::eight) moved = PacksAvx512::run(kernel, begin, end);
+  if (lanes == Lanes::four) moved = PacksAvx2::run(kernel, begin, end);
+#endif
+  for (Index e = moved.end; e < end; ++e) moved.beyond = kernel(e) || moved.beyond;
+  return moved.beyond;
+}
+
+}  // namespace breccia::dem

@@ -1,0 +1,113 @@
+#pragma once
+// The kernels of a step with the arrays of a world: the same for loops on the host and for launches
+// ahead on a device.
+
+#include "dem/stepping/wide_kernels.hpp"
+#include "dem/world.hpp"
+
+namespace breccia::dem {
+
+/// Calls visit(begin, end) for what this rank owns of the elements [begin, end) in some runs.
+template <class Visit>
+inline void each_owned(const Domain& domain, const std::vector<ElementRun>& runs, Index begin,
+                       Index end, const Visit& visit) {
+  if (domain.single_rank()) return visit(begin, end);
+  const OwnedView owned = domain.owned_view();
+  Domain::each_run_of(runs, begin, end, [&](Index from, Index to) {
+    while (from < to) {
+      Index last = from;
+      while (last < to && owned(last)) ++last;
+      if (last > from) visit(from, last);
+      from = last + 1;
+    }
+  });
+}
+
+/// Whether the sums of a step on a device of several note their least critical number in `w.clock`,
+/// where the move has made room for it. Those of ghosts count, too: they lack some of the stiffness
+/// that the owner adds up, so none is below the owner's, which another rank notes.
+inline bool sums_note_least(const World& w) {
+  return !w.domain.single_rank() && w.walls.empty() && !w.clock.empty() && w.elements.size() > 0;
+}
+
+/// Forces of links by a law, with the arrays of all links of its kind.
+/// @param first_action  action of link 0 among those of `bar_actions`; 0 for swept links
+template <class Number, class Law>
+auto link_kernel(World& w, LinkSet<Law>& set, const Law& law, Index first_action) {
+  const LinkSpace space{elements_view(w), w.last_dt, w.step};
+  if constexpr (LinkSet<Law>::swept) {
+    return forces_of<Number>(set, law, space, w.link_actions.as<Number>());
+  } else {
+    auto kernel = forces_of<Number>(set, law, space, w.bar_actions);
+    kernel.first_action = first_action;
+    return kernel;
+  }
+}
+
+/// Calls visit(set, first_action) for each kind of links whose forces the host does not link_plan.
+template <class Visit>
+void each_bar_set(World& w, const Visit& visit) {
+  Index first = 0;
+  w.each_set([&](auto& set) {
+    if constexpr (!std::remove_reference_t<decltype(set)>::swept) {
+      visit(set, first);
+      first += set.size();
+    }
+  });
+}
+
+inline ContactForces contact_kernel(World& w) {
+  Contacts& c = w.contacts;
+  return {w.parameters.contact,    w.last_dt,
+          elements_view(w),        w.elements.material.view(),
+          w.contact_pairs.view(),  w.parameters.materials,
+          c.pairs.a.view(),        c.pairs.b.view(),
+          c.history.state.view(),  c.history.slid.view(),
+          c.history.damped.view(), w.contact_actions.view()};
+}
+
+inline GatherForces gather_kernel(World& w) {
+  Elements& e = w.elements;
+  return {w.link_sums.view(),   w.bar_incidence.view(),   w.contact_incidence.view(),
+          w.bar_actions.view(), w.contact_actions.view(), e.mass.view(),
+          e.inertia.view(),     e.fixed.view(),           e.force.view(),
+          e.torque.view(),      w.critical.view()};
+}
+
+template <class Number>
+GatherWide<Number> gather_wide_kernel(World& w) {
+  return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), w.link_actions.as<Number>().view()};
+}
+
+inline WallForces wall_kernel(World& w, Index wall) {
+  WallContacts& c = w.wall_contacts;
+  return {w.parameters.contact,
+          w.last_dt,
+          walls_view(w),
+          wall,
+          elements_view(w),
+          w.elements.material.view(),
+          w.wall_pairs.view(),
+          c.pairs.a.view(),
+          w.wall_begin[static_cast<std::size_t>(wall)],
+          c.history.state.view(),
+          c.history.slid.view(),
+          c.history.damped.view(),
+          c.history.driven.view(),
+          c.history.on_wall.view(),
+          w.elements.force.view(),
+          w.elements.torque.view(),
+          w.critical.view()};
+}
+
+inline MoveElements move_kernel(World& w) {
+  Elements& e = w.elements;
+  return {kick(w),
+          e.state.view(),
+          e.orientation.view(),
+          e.damping_work.view(),
+          e.load_work.view(),
+          {w.travel.reference.view(), w.travel.margin.view()}};
+}
+
+}  // namespace breccia::dem

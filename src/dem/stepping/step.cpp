@@ -1,0 +1,135 @@
+#include "dem/stepping/step.hpp"
+
+#include <algorithm>
+
+#include "dem/ranks.hpp"
+#include "dem/stepping/launches.hpp"
+#include "exec/for_each.hpp"
+
+namespace breccia::dem {
+namespace {
+
+struct LeastCritical {
+  View<const double> critical;
+  OwnedView owned;
+  BR_HD double operator()(Index e) const { return owned(e) ? critical[e] : largest_least; }
+};
+/// Of the elements of this rank, on a device.
+double least_there(const World& w) {
+  if (sums_note_least(w)) {
+    std::uint64_t bits = 0;
+    peek_marked_bytes(&bits, &w.clock.data()->least, w.exec.space, sizeof bits);
+    return number_of(bits);
+  }
+  return fold(w.exec, w.elements.size(), largest_least,
+              LeastCritical{w.critical.view(), w.domain.owned_view()}, Least{});
+}
+/// The least critical number of this rank's elements, on the host.
+double least_here(const World& w) {
+  constexpr Index grain = 4096;
+  const Index count = w.elements.size();
+  std::vector<double> least_of(static_cast<std::size_t>((count + grain - 1) / grain + 1),
+                               largest_least);
+  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
+    double& own = least_of[static_cast<std::size_t>(begin / grain)];
+    each_owned(w.domain, w.domain.runs, begin, end, [&](Index from, Index to) {
+      own = std::min(own, least(w.lanes, w.critical.view(), from, to));
+    });
+  });
+  return *std::min_element(least_of.begin(), least_of.end());
+}
+
+}  // namespace
+
+ElementsView elements_view(const World& w) {
+  return {w.elements.state.view(), w.elements.mass.view(), w.elements.inertia.view()};
+}
+
+Kick kick(const World& w) {
+  return {w.time,
+          w.last_dt,
+          w.next_dt,
+          w.parameters.gravity,
+          w.parameters.local_damping,
+          w.motions.view(),
+          w.elements.mass.view(),
+          w.elements.inertia.view(),
+          w.elements.state.view(),
+          w.elements.force.view(),
+          w.elements.torque.view(),
+          w.elements.fixed.view(),
+          w.elements.motion.view()};
+}
+
+StepRule step_rule(const World& w) {
+  return {w.parameters.time.safety, w.parameters.time.max_step, w.parameters.contact_step};
+}
+
+View<const Wall> walls_view(const World& w) {
+  if (w.exec.space != Space::host) return w.device_walls.view();
+  View<const Wall> view;
+  view.data = w.walls.data();
+  view.size = static_cast<Index>(w.walls.size());
+  return view;
+}
+
+void move_walls(World& w) {
+  for (Wall& wall : w.walls) {
+    wall.point += w.next_dt * wall.velocity;
+    wall.travelled += w.next_dt * norm(wall.velocity);
+  }
+  w.time += w.next_dt;
+  w.last_dt = w.next_dt;
+}
+
+void StepwiseRun::send_ghosts(World& w) const {
+  start_copies(w);
+}
+
+void StepwiseRun::receive_ghosts(World& w) const {
+  ask_for_search(w);  // all ranks vote, while ghosts travel
+  finish_copies(w);
+}
+
+void StepwiseRun::search_if_due(World& w) const {
+  if (!contacts_are_due(w)) return;
+  refresh_copies(w);
+  find_contacts(w);
+}
+
+void StepwiseRun::wall_forces(World& w) const {
+  if (w.wall_contacts.size() == 0) return;
+  const StageTime timed(w.exec, "wall_forces");
+  if (w.exec.space != Space::host) copy_to(w.device_walls, w.walls);
+  for (std::size_t k = 0; k < w.walls.size(); ++k)
+    for_each(w.exec, w.wall_begin[k + 1] - w.wall_begin[k], wall_kernel(w, static_cast<Index>(k)));
+}
+
+void StepwiseRun::choose_step(World& w) const {
+  if (w.step % w.parameters.time.evaluate_every != 0) return;
+  const StageTime timed(w.exec, "time_step");
+  const double least = w.exec.space != Space::host ? least_there(w) : least_here(w);
+  w.next_dt = step_rule(w)(w.domain.least(least), w.last_dt);
+}
+
+void step(World& w) {
+  if (w.exec.space != Space::host)
+    take_step_on_device(w);
+  else
+    take_step(HostRun{}, w);
+}
+
+void evaluate_forces(World& w) {
+  if (w.exec.space != Space::host)
+    take_forces_on_device(w);
+  else
+    take_forces(HostRun{}, w);
+}
+
+Advanced advance(World& w, const StopAt& stop) {
+  if (w.exec.space != Space::host && w.domain.single_rank()) return advance_on_device(w, stop);
+  step(w);
+  return {1, w.last_dt, w.last_dt};
+}
+
+}  // namespace breccia::dem

@@ -1,0 +1,162 @@
+#pragma once
+// Kernels of a device that give several threads to an item: as fast as they are only so
+// (bench/notes/gpu.md). Space::shadow runs their lanes in lockstep.
+
+#include "core/kernel.hpp"
+#include "dem/element_kernels.hpp"
+#include "exec/lockstep.hpp"
+
+namespace breccia::dem {
+
+/// GatherForces where every link has an action, by eight threads an element, of which six each add
+/// up one number and one stiffness of what it gets as a, and as b, in the order of GatherForces,
+/// and write one number of force and torque.
+/// @tparam Number  what actions of links are stored in
+template <class Number>
+struct GatherWide {
+  static constexpr const char* name = "dem.gather_wide";
+  static constexpr Index width = 8;
+  static constexpr int at_once = 4;  ///< actions of a row that are read before the first is added
+  GatherForces gather;
+  LinkRows::Seen rows_a, rows_b;
+  View<const PairForceOf<Number>> actions;
+
+  BR_HD void set(const StepTime&) {}
+  struct Sum {
+    double number;
+    float stiffness;
+    BR_HD void add(const Sum& other) {
+      number += other.number;
+      stiffness += other.stiffness;
+    }
+  };
+  BR_HD static Sum read(const PairForce* action, int column) {
+    return {action->numbers[column], action->stiffness[column]};
+  }
+  struct Row {
+    Index next, end;
+    BR_HD void find(const View<const Index>& starts, Index e) {
+      next = read_now(starts.data + e);
+      end = read_now(starts.data + e + 1);
+    }
+  };
+  /// The next few links of a row, and what they do.
+  struct Few {
+    Index link[at_once];
+    Sum part[at_once];
+  };
+  /// Past the end of a row its last link is read again: a branch would cost more.
+  BR_HD static void list(Few& few, const Row& row, const Index* links) {
+    const Index last = row.end > 0 ? row.end - 1 : 0;
+    BR_UNROLL
+    for (int k = 0; k < at_once; ++k) {
+      const Index place = row.next + k < last ? row.next + k : last;
+      few.link[k] = read_now(links + place);
+    }
+  }
+  BR_HD void read(Few& few, int column) const {
+    BR_UNROLL
+    for (int k = 0; k < at_once; ++k) {
+      const PairForceOf<Number>& action = actions.data[few.link[k]];
+      few.part[k] = {read_now(action.numbers + column), read_now(action.stiffness + column)};
+    }
+  }
+  BR_HD static void add(Sum& sum, const Few& few, Row& row) {
+    BR_UNROLL
+    for (int k = 0; k < at_once; ++k)
+      if (row.next + k < row.end) sum.add(few.part[k]);
+    row.next += at_once;
+  }
+  /// A row of bars or contacts.
+  BR_HD static void add_pairs(Sum& as_a, Sum& as_b, Row row, const Entry* entries,
+                              const PairForce* actions, int column) {
+    for (; row.next < row.end; row.next += at_once) {
+      Entry entry[at_once];
+      Sum part[at_once];
+      BR_UNROLL
+      for (int k = 0; k < at_once; ++k)
+        if (row.next + k < row.end) entry[k] = entries[row.next + k];
+      BR_UNROLL
+      for (int k = 0; k < at_once; ++k)
+        if (row.next + k < row.end)
+          part[k] = read(actions + pair_of(entry[k]), column + 3 * side_of(entry[k]));
+      BR_UNROLL
+      for (int k = 0; k < at_once; ++k)
+        if (row.next + k < row.end) side_of(entry[k]) == 0 ? as_a.add(part[k]) : as_b.add(part[k]);
+    }
+  }
+  /// Rows are as the last search left them; actions come from the launch before.
+  struct Loaded {
+    Row links_a, links_b, bars, contacts;
+    Few as_a, as_b;
+    double inertia;
+    int fixed;
+  };
+  BR_HD static int column_of(Index i) {
+    const int part = i % width;
+    return part < 6 ? part : 5;  // two threads repeat the sixth
+  }
+  BR_HD void load_early(Index i, Loaded& loaded) const {
+    const Index e = i / width;
+    loaded.links_a.find(rows_a.starts, e);
+    loaded.links_b.find(rows_b.starts, e);
+    loaded.bars.find(gather.bars.starts, e);
+    loaded.contacts.find(gather.contacts.starts, e);
+    loaded.inertia = read_now(i % width < 3 ? &gather.mass[e] : &gather.inertia[e]);
+    loaded.fixed = gather.fixed[e];
+    if (actions.size == 0) return;
+    list(loaded.as_a, loaded.links_a, rows_a.links.data);
+    list(loaded.as_b, loaded.links_b, rows_b.links.data);
+  }
+  BR_HD void load_late(Index i, Loaded& loaded) const {
+    if (actions.size == 0) return;
+    read(loaded.as_a, column_of(i));
+    read(loaded.as_b, column_of(i) + 3);
+  }
+  /// @returns the critical number of the element, once
+  BR_HD double update(Index i, Loaded& loaded) const {
+    const Index e = i / width;
+    const int part = i % width, column = column_of(i), fixed = loaded.fixed;
+    Sum as_a{0.0, 0.0F}, as_b{0.0, 0.0F};
+    for (;;) {
+      add(as_a, loaded.as_a, loaded.links_a);
+      add(as_b, loaded.as_b, loaded.links_b);
+      if (loaded.links_a.next >= loaded.links_a.end && loaded.links_b.next >= loaded.links_b.end)
+        break;
+      list(loaded.as_a, loaded.links_a, rows_a.links.data);
+      list(loaded.as_b, loaded.links_b, rows_b.links.data);
+      read(loaded.as_a, column);
+      read(loaded.as_b, column + 3);
+    }
+    add_pairs(as_a, as_b, loaded.bars, gather.bars.entries.data, gather.bar_actions.data, column);
+    add_pairs(as_a, as_b, loaded.contacts, gather.contacts.entries.data,
+              gather.contact_actions.data, column);
+    // Force x y z, then torque: what the element gets as b, and as a (with the opposite force).
+    const LaneGroup<width> group;
+    const int other = part < 3 ? part + 3 : part < 6 ? part - 3 : part;
+    const double from_a = group.from(other, as_a.number);
+    float stiffness = group.from(other, as_a.stiffness) + as_b.stiffness;
+    if (part < 3) reinterpret_cast<double*>(&gather.force[e])[part] = as_b.number - from_a;
+    if (part >= 3 && part < 6)
+      reinterpret_cast<double*>(&gather.torque[e])[part - 3] = as_b.number + from_a;
+    if (part >= 6 || (fixed >> part & 1) != 0 || !(stiffness > 0.0F)) stiffness = 0.0F;
+    float largest = stiffness;  // of three neighbours
+    largest = std::fmax(largest, group.from_next(1, stiffness));
+    largest = std::fmax(largest, group.from_next(2, stiffness));
+    const double slow = static_cast<double>(largest) / loaded.inertia;
+    const double slowest = max(slow, group.from(3, slow));
+    if (part != 0) return largest_least;
+    const double critical = slowest > 0.0 ? 1.0 / slowest : largest_least;
+    gather.critical[e] = critical;
+    return critical;
+  }
+};
+/// Critical numbers that walls have changed.
+struct NoteCritical {
+  static constexpr const char* name = "dem.note_critical";
+  View<const double> critical;
+  BR_HD void set(const StepTime&) {}
+  BR_HD double operator()(Index e) const { return critical[e]; }
+};
+
+}  // namespace breccia::dem

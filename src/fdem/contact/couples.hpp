@@ -1,0 +1,363 @@
+#pragma once
+// Triangles in contact: what a couple remembers, and the kernel of one launch.
+
+#include "core/incidence.hpp"
+#include "core/kernel.hpp"
+#include "core/pair_list.hpp"
+#include "exec/early.hpp"
+#include "fdem/joints/joints.hpp"
+#include "fdem/laws/potential_contact.hpp"
+#include "fdem/triangles/triangles.hpp"
+
+namespace breccia::fdem {
+
+/// Contact of two materials.
+struct ContactPair {
+  double penalty;     ///< p_n  [Pa]
+  double tangential;  ///< p_t  [Pa]
+  double friction;    ///< mu  [-]
+};
+
+/// What a couple of triangles remembers.
+struct CoupleState {
+  double drag[6];  ///< tangential force of a's edges through b, then of b's through a  [N/m]
+  double scale;    ///< of its normal penalty; 0: it is new  [-]
+  double work;     ///< taken up since it began to touch, friction included  [J/m]
+  double slid;     ///< the part of it that friction has spent  [J/m]
+  double sprung;   ///< the part of it that the springs of friction hold  [J/m]
+  double lost;     ///< what was left of both when it parted: errors of integration  [J/m]
+  double rubbed;   ///< what friction spent in touches that have ended  [J/m]
+};
+
+/// Forces of a couple on the corners of both triangles.  [N/m]
+template <class Number>
+struct CoupleForceOf {
+  CornerVectors<Number> on_a, on_b;
+};
+using CoupleForce = CoupleForceOf<double>;
+template <class To, class From>
+BR_HD CoupleForceOf<To> converted(const CoupleForceOf<From>& f) {
+  CoupleForceOf<To> same;
+  for (int k = 0; k < 3; ++k) {
+    same.on_a.at[k] = converted<To>(f.on_a.at[k]);
+    same.on_b.at[k] = converted<To>(f.on_b.at[k]);
+  }
+  return same;
+}
+template <class Number>
+using CoupleForcesOf = Buffer<CoupleForceOf<Number>>;
+
+struct CoupleHistory {
+  Precision precision = Precision::full;  ///< of `force`
+  Buffer<CoupleState> state;
+  Stored<CoupleForcesOf> force;
+
+  explicit CoupleHistory(Space space = Space::host)
+      : state(space), force{CoupleForcesOf<double>(space), CoupleForcesOf<float>(space)} {}
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("state", "-", state);
+    with_number(precision,
+                [&](auto number) { field("force", "N/m", force.as<decltype(number)>()); });
+  }
+};
+using Couples = PairList<CoupleHistory>;
+
+/// What an edge of one triangle does in the other, in one step.
+struct EdgePush {
+  EdgeOverlap overlap;
+  bool touches = false;
+  Vec2 normal[2] = {}, friction[2] = {};  ///< forces on its ends  [N/m]
+  double drag = 0.0;                      ///< what friction pulls with now  [N/m]
+  double taken = 0.0;                     ///< work that it has taken up in this step  [J/m]
+  double sprung = 0.0;                    ///< what its spring holds now  [J/m]
+};
+
+/// Work that friction of a couple's edges takes up in a step, T v_t dt by the trapezoidal rule
+/// where T acts, and what its springs hold after it: sum T^2/(2 k), k = p_t (share of the edge
+/// inside), but no more than they were given. The rest is spent. k goes with the edge: where it
+/// shrinks under a T that stays, T^2/(2 k) grows; slip counted by it, (T - mu N)/k, would spend
+/// what nobody put in. A spring that is forgotten has spent what it held.  [J/m]
+struct Rubbing {
+  double taken = 0.0, sprung = 0.0;
+  BR_HD void add(double more_taken, double more_sprung) {
+    taken += more_taken;
+    sprung += more_sprung;
+  }
+  BR_HD void book(double& spent, double& held) const {
+    const double given = held + taken;
+    held = max(0.0, min(sprung, given));
+    spent += given - held;
+  }
+};
+
+/// @param scale  of the penalty  @param drag  what friction pulled with before  [N/m]
+/// @param dt     the step that led here  [s]
+BR_HD inline EdgePush edge_push(const ContactPair& law, double scale, double drag, double dt,
+                                const NodeState& from, const NodeState& to, const Target& target,
+                                const Vec2 (&target_v)[3]) {
+  EdgePush p;
+  EdgeOverlap& o = p.overlap;
+  p.touches = overlap_of_edge(from.position, to.position, target, o);
+  if (!p.touches) return p;
+  const double penalty = scale * law.penalty;
+  normal_forces(o, from.position, to.position, penalty, p.normal[0], p.normal[1]);
+  p.drag = drag;
+  if (!(law.friction > 0.0)) return p;
+
+  const Vec2 edge = to.position - from.position;
+  const double size = norm(edge);
+  const Vec2 along = (1.0 / size) * edge;
+  const auto rate_at = [&](double s) {  // of the target against a point of the edge
+    Vec2 rate = -((1.0 - s) * from.velocity + s * to.velocity);
+    for (int m = 0; m < 3; ++m) rate += (o.at_a[m] + s * (o.at_b[m] - o.at_a[m])) * target_v[m];
+    return dot(rate, along);
+  };
+  const double stiffness = law.tangential * (o.end - o.begin);
+  const double limit = law.friction * penalty * o.whole * size;
+  p.drag += stiffness * dt * rate_at(0.5 * (o.begin + o.end));
+  if (abs(p.drag) > limit) p.drag = p.drag < 0.0 ? -limit : limit;
+  const double share = o.moment / o.whole;
+  p.taken = 0.5 * dt * (drag + p.drag) * rate_at(share);
+  p.sprung = 0.5 * p.drag * p.drag / stiffness;
+  p.friction[0] = (p.drag * (1.0 - share)) * along;
+  p.friction[1] = (p.drag * share) * along;
+  return p;
+}
+
+/// What broken joints leave to the contact of their faces.
+struct JointLegacy {
+  View<const Index> edge_a, edge_b;
+  View<const double> pressing, shear_at_break;  ///<  [N/m]
+  View<JointWork> inherited_work;               ///<  [J/m]
+};
+
+/// Normal force by potential, both ways; Coulomb friction on each edge with a spring that remembers
+/// (docs/theory-fdem.md, 4).
+/// @tparam Number  what forces are stored in
+template <class Number>
+struct CoupleForces {
+  static constexpr const char* name = "fdem.couples";
+  double dt;          ///< the step that led here  [s]
+  bool conservative;  ///< adds the shape forces that make it the gradient of an energy
+  View<const TriangleNodes> nodes;
+  View<const Index> material;
+  View<const ContactPair> laws;  ///< of materials a and b at a * materials + b
+  Index materials;
+  View<const Index> a, b;
+  View<const Index>
+      parent_joint;  ///< the joint between them where it broke in the step before, or -1
+  JointLegacy joints;
+  View<CoupleState> state;
+  View<CoupleForceOf<Number>> force;
+
+  struct Loaded {
+    Index a, b;
+    double scale, work, slid;
+    Vec2 corner[2][3];
+  };
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
+  BR_HD void load_early(Index i, Loaded& loaded) const {
+    const CoupleState& kept = state[i];
+    loaded.a = read_now(&a[i]);
+    loaded.b = read_now(&b[i]);
+    loaded.scale = read_now(&kept.scale);
+    loaded.work = read_now(&kept.work);
+    loaded.slid = read_now(&kept.slid);
+  }
+  BR_HD void load_late(Index, Loaded& loaded) const {
+    for (int k = 0; k < 3; ++k) {
+      loaded.corner[0][k] = read_record_now(&nodes[loaded.a].at[k].position);
+      loaded.corner[1][k] = read_record_now(&nodes[loaded.b].at[k].position);
+    }
+  }
+  /// Most couples only find that the two do not meet. @returns false, with nothing written, if
+  /// these may
+  BR_HD bool update(Index i, const Loaded& loaded) const {
+    const bool resting = loaded.scale != 0.0 && loaded.work == 0.0 && loaded.slid == 0.0;
+    if (!resting || meet(loaded.corner[0], loaded.corner[1])) return false;
+    force[i] = {};
+    return true;
+  }
+  /// On the host all couples: it finds whether the two meet on its way.
+  BR_HD void operator()(Index i) const { slow(i); }
+  BR_HD void slow(Index i) const {
+    CoupleState& kept = state[i];
+    Vec2 xa[3], va[3], xb[3], vb[3];
+    split(nodes[a[i]], xa, va);
+    split(nodes[b[i]], xb, vb);
+    CoupleForce sum{};
+    Rubbing rubbing;
+    bool touching = false;
+    const bool is_new = kept.scale == 0.0;
+    if (is_new) kept.scale = 1.0;
+    if (meet(xa, xb)) {
+      const ContactPair& law = law_of(i);
+      const Target of_a = Target::of(xa), of_b = Target::of(xb);
+      if (is_new && parent_joint[i] >= 0) inherit(parent_joint[i], law, kept, xa, of_a, xb, of_b);
+      touching =
+          pass(law, kept.scale, kept.drag, rubbing, xa, va, of_b, vb, sum.on_a.at, sum.on_b.at);
+      touching = pass(law, kept.scale, kept.drag + 3, rubbing, xb, vb, of_a, va, sum.on_b.at,
+                      sum.on_a.at) ||
+                 touching;
+      if (touching && conservative) {
+        const Polygon over = overlap_of(of_a, of_b);
+        add_shape_forces(of_a, over, kept.scale * law.penalty, sum.on_a.at);
+        add_shape_forces(of_b, over, kept.scale * law.penalty, sum.on_b.at);
+      }
+    }
+    CoupleForceOf<Number>& stored = force[i];
+    if (!touching && kept.work == 0.0 && kept.slid == 0.0) {
+      stored = {};  // it may have touched while nothing moved
+      return;
+    }
+    // Work is booked of the forces that act: as they are stored.
+    const CoupleForce last = converted<double>(stored);
+    stored = converted<Number>(sum);
+    sum = converted<double>(stored);
+    for (int k = 0; k < 3; ++k) {
+      kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.on_a.at[k], va[k]);
+      kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.on_b.at[k], vb[k]);
+    }
+    rubbing.book(kept.slid, kept.sprung);
+    if (!touching) {
+      kept.lost += kept.work - kept.slid;
+      kept.rubbed += kept.slid;
+      kept.work = kept.slid = 0.0;
+      kept.scale = 1.0;
+      for (double& drag : kept.drag) drag = 0.0;
+    }
+  }
+
+  BR_HD const ContactPair& law_of(Index i) const {
+    return laws[material[a[i]] * materials + material[b[i]]];
+  }
+  /// False only where nothing can touch. Without the second line forces would be the same.
+  BR_HD static bool meet(const Vec2 (&p)[3], const Vec2 (&q)[3]) {
+    return boxes_meet(p, q) && !outside(p, Target::of(q)) && !outside(q, Target::of(p));
+  }
+  BR_HD static bool boxes_meet(const Vec2 (&p)[3], const Vec2 (&q)[3]) {
+    for (int k = 0; k < 2; ++k) {
+      const auto part = [k](const Vec2& v) { return k == 0 ? v.x : v.y; };
+      const double p_low = min(part(p[0]), min(part(p[1]), part(p[2])));
+      const double p_high = max(part(p[0]), max(part(p[1]), part(p[2])));
+      const double q_low = min(part(q[0]), min(part(q[1]), part(q[2])));
+      const double q_high = max(part(q[0]), max(part(q[1]), part(q[2])));
+      if (p_high < q_low || q_high < p_low) return false;
+    }
+    return true;
+  }
+
+  /// A new couple of which a joint is known that broke between them.
+  BR_HD void begin(Index i) const {
+    Vec2 xa[3], va[3], xb[3], vb[3];
+    split(nodes[a[i]], xa, va);
+    split(nodes[b[i]], xb, vb);
+    state[i].scale = 1.0;
+    inherit(parent_joint[i], law_of(i), state[i], xa, Target::of(xa), xb, Target::of(xb));
+  }
+  /// Force of `add_shape_forces` on a corner of one of the two.
+  BR_HD Vec2 shape_force(Index i, double penalty, bool of_a, int corner) const {
+    Vec2 x[2][3], v[2][3];
+    split(nodes[a[i]], x[0], v[0]);
+    split(nodes[b[i]], x[1], v[1]);
+    const Target targets[2] = {Target::of(x[0]), Target::of(x[1])};
+    Vec2 shape[3] = {};
+    add_shape_forces(targets[of_a ? 0 : 1], overlap_of(targets[0], targets[1]), penalty, shape);
+    return shape[corner];
+  }
+
+  /// Gives a couple in overlap the forces that its faces carry, as far as friction bears them.
+  /// @param pressing, rubbing  between the faces, and on a along its edge  [N/m]
+  /// @param edges              that lie on each other, of a and of b
+  /// @returns what it stores then
+  BR_HD static JointWork begin_pressed(double pressing, double rubbing, const int (&edges)[2],
+                                       const ContactPair& law, CoupleState& kept,
+                                       const Vec2 (&xa)[3], const Target& of_a, const Vec2 (&xb)[3],
+                                       const Target& of_b) {
+    kept.scale = first_scale(pressing, law, xa, of_a, xb, of_b);
+    const double penalty = kept.scale * law.penalty;
+    const Polygon over = overlap_of(of_a, of_b);
+    JointWork given{penalty * (potential_integral(of_a, over) + potential_integral(of_b, over)),
+                    0.0};
+
+    double limit[2] = {}, stiffness[2] = {};
+    for (int side = 0; side < 2; ++side) {
+      const Vec2(&x)[3] = side == 0 ? xa : xb;
+      const Vec2 &from = x[edges[side]], &to = x[(edges[side] + 1) % 3];
+      EdgeOverlap o;
+      if (!overlap_of_edge(from, to, side == 0 ? of_b : of_a, o)) continue;
+      limit[side] = law.friction * penalty * o.whole * norm(to - from);
+      stiffness[side] = law.tangential * (o.end - o.begin);
+    }
+    // Along either edge, in its own direction, it is the same: both turn.
+    const double most = limit[0] + limit[1];
+    if (most > 0.0) {
+      const double share = max(-1.0, min(1.0, rubbing / most));
+      for (int side = 0; side < 2; ++side) {
+        if (!(stiffness[side] > 0.0)) continue;
+        const double drag = share * limit[side];
+        kept.drag[3 * side + edges[side]] = drag;
+        given.slide += 0.5 * drag * drag / stiffness[side];
+      }
+    }
+    kept.work = given.open + given.slide;
+    kept.sprung = given.slide;
+    return given;
+  }
+
+ private:
+  /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
+  /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
+  /// part of the joint's work.
+  BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Vec2 (&xa)[3],
+                     const Target& of_a, const Vec2 (&xb)[3], const Target& of_b) const {
+    if (!(joints.pressing[joint] > 0.0)) return;
+    const int of_joint[2] = {joints.edge_a[joint] % 3, joints.edge_b[joint] % 3};
+    joints.inherited_work[joint] =
+        begin_pressed(joints.pressing[joint], joints.shear_at_break[joint], of_joint, law, kept, xa,
+                      of_a, xb, of_b);
+  }
+
+  /// Of the penalty, so that the couple presses as hard as this.  [N/m]
+  BR_HD static double first_scale(double force, const ContactPair& law, const Vec2 (&xa)[3],
+                                  const Target& of_a, const Vec2 (&xb)[3], const Target& of_b) {
+    Vec2 on_a{};
+    for (int k = 0; k < 3; ++k) {
+      EdgeOverlap o;
+      Vec2 first, second;
+      if (overlap_of_edge(xa[k], xa[(k + 1) % 3], of_b, o)) {
+        normal_forces(o, xa[k], xa[(k + 1) % 3], law.penalty, first, second);
+        on_a += first + second;
+      }
+      if (overlap_of_edge(xb[k], xb[(k + 1) % 3], of_a, o)) {
+        normal_forces(o, xb[k], xb[(k + 1) % 3], law.penalty, first, second);
+        on_a -= first + second;
+      }
+    }
+    const double size = norm(on_a);
+    return size > 0.0 ? min(2.0, max(0.01, force / size)) : 1.0;
+  }
+
+  /// The edges of one triangle through the other. True if any of them touches.
+  BR_HD bool pass(const ContactPair& law, double scale, double* drag, Rubbing& rubbing,
+                  const Vec2 (&x)[3], const Vec2 (&v)[3], const Target& target,
+                  const Vec2 (&target_v)[3], Vec2 (&on_x)[3], Vec2 (&on_target)[3]) const {
+    bool touching = false;
+    for (int k = 0; k < 3; ++k) {
+      const int next = k == 2 ? 0 : k + 1;
+      const EdgePush p =
+          edge_push(law, scale, drag[k], dt, {x[k], v[k]}, {x[next], v[next]}, target, target_v);
+      drag[k] = p.drag;
+      if (!p.touches) continue;
+      touching = true;
+      rubbing.add(p.taken, p.sprung);
+      push(p.overlap, k, p.normal[0], p.normal[1], on_x, on_target);
+      if (law.friction > 0.0) push(p.overlap, k, p.friction[0], p.friction[1], on_x, on_target);
+    }
+    return touching;
+  }
+};
+
+}  // namespace breccia::fdem

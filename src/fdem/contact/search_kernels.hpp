@@ -1,0 +1,153 @@
+#pragma once
+// What a search of couples asks of the mesh: which triangles can touch, and which pairs of them.
+
+#include "core/energy.hpp"
+#include "domain/domain.hpp"
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+
+/// Marks the vertices of damaged joints.
+struct MarkDamaged {
+  static constexpr const char* name = "fdem.mark_damaged";
+  View<const JointStage> stage;
+  View<const Index> edge_a, vertex_of;
+  View<std::uint8_t> marked;
+  BR_HD void operator()(Index i) const {
+    if (!is_damaged(stage[i])) return;
+    set_flag(marked, vertex_of[edge_a[i]]);
+    set_flag(marked, vertex_of[JointEnds::next_corner(edge_a[i])]);
+  }
+};
+
+/// How the vertices of the mesh are open.
+struct OpenVertices {
+  View<const Index> vertex_of;               ///< of each node
+  View<const std::uint8_t> border, damaged;  ///< World::open_vertex, ExposedVertices::vertex
+
+  /// World::open_vertex, and bit 2: a joint here is damaged.
+  BR_HD int open(Index vertex) const { return border[vertex] | (damaged[vertex] != 0 ? 4 : 0); }
+};
+
+/// Triangles with a corner at the border, at an edge that nothing joins, or at a damaged joint.
+struct Touchable {
+  OpenVertices vertices;
+  BR_HD bool operator()(Index t) const {
+    int open = 0;
+    for (Index k = 0; k < 3; ++k) open |= vertices.open(vertices.vertex_of[3 * t + k]);
+    return open != 0;
+  }
+};
+
+/// From places in the list of triangles that can touch to triangles.
+struct NameTriangles {
+  static constexpr const char* name = "fdem.name_triangles";
+  View<const Index> triangle;
+  View<Index> a, b;
+  BR_HD void operator()(Index i) const {
+    a[i] = triangle[a[i]];
+    b[i] = triangle[b[i]];
+  }
+};
+
+/// Whether a couple can touch, and is of this rank. Neighbours across an edge do once nothing joins
+/// them; neighbours at a vertex do once a joint around it is damaged.
+struct MayTouch {
+  OpenVertices vertices;
+  View<const EdgeJoints> edges;
+  View<const JointStage> stage;
+  OwnedView owned;
+  View<const Index> a, b;
+
+  BR_HD bool operator()(Index i) const {
+    const Index p = a[i], q = b[i];
+    if (!owned(p) && !owned(q)) return false;
+    int shared = 0, open = 0;
+    bool common[3] = {false, false, false};
+    for (Index k = 0; k < 3; ++k)
+      for (Index m = 0; m < 3; ++m) {
+        const Index vertex = vertices.vertex_of[3 * p + k];
+        if (vertex != vertices.vertex_of[3 * q + m]) continue;
+        ++shared;
+        open |= vertices.open(vertex);
+        common[k] = true;
+      }
+    if (shared == 0) return true;
+    if (shared == 1) return (open & 6) != 0;
+    const int edge = common[0] && common[1] ? 0 : common[1] && common[2] ? 1 : 2;
+    const Index entry = edges[p].at[edge];
+    if (entry < 0) return entry == edge_free;
+    return stage[pair_of(entry)] == JointStage::broken;
+  }
+};
+
+/// What corners do together. Sums are exact: the same on any number of ranks and threads.
+struct CommonMotion {
+  ExactSum x, y, squares;  ///< of velocities  [m/s], [m2/s2]
+  std::int64_t count = 0;
+
+  BR_HD void add(const Vec2& velocity) {
+    constexpr double fastest = 1e4;  // the sums hold no more; what is faster has gone wrong
+    if (!(dot(velocity, velocity) < fastest * fastest)) return;
+    x.add(velocity.x);
+    y.add(velocity.y);
+    squares.add(dot(velocity, velocity));
+    ++count;
+  }
+};
+BR_HD inline CommonMotion operator+(CommonMotion a, const CommonMotion& b) {
+  a.x.add(b.x);
+  a.y.add(b.y);
+  a.squares.add(b.squares);
+  a.count += b.count;
+  return a;
+}
+struct MotionOf {
+  View<const TriangleNodes> nodes;
+  OwnedView owned;
+  BR_HD CommonMotion operator()(Index t) const {
+    CommonMotion motion;
+    if (!owned(t)) return motion;
+    for (const NodeState& n : nodes[t].at) motion.add(n.velocity);
+    return motion;
+  }
+};
+
+/// What couples that leave the list have spent.
+struct SpentBy {
+  View<const Index> couple, a;
+  View<const CoupleState> state;
+  OwnedView owned;  ///< the owner of a books it
+  BR_HD Energies operator()(Index k) const {
+    Energies spent;
+    if (!owned(a[couple[k]])) return spent;
+    const CoupleState& s = state[couple[k]];
+    spent.friction.add(s.rubbed + (s.slid + s.sprung));
+    spent.contact.add(s.lost + s.work - (s.slid + s.sprung));
+    return spent;
+  }
+};
+
+/// The joint between the triangles of a couple, if it broke lately, or -1: faces that meet again
+/// later begin anew.
+struct BornOf {
+  static constexpr const char* name = "fdem.born_of";
+  double lately;  ///< the time from which on a break counts  [s]
+  View<const Index> a, b;
+  View<const EdgeJoints> edges;
+  View<const Index> edge_a, edge_b;
+  View<const double> broke_at;
+  View<Index> parent_joint;
+  BR_HD void operator()(Index i) const {
+    parent_joint[i] = -1;
+    for (int k = 0; k < 3; ++k) {
+      const Index entry = edges[a[i]].at[k];
+      if (entry < 0) continue;
+      const Index joint = pair_of(entry);
+      const Index other = (side_of(entry) == 0 ? edge_b[joint] : edge_a[joint]) / 3;
+      if (other == b[i] && broke_at[joint] >= lately) parent_joint[i] = joint;
+    }
+  }
+};
+
+}  // namespace breccia::fdem

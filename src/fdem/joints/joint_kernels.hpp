@@ -1,0 +1,258 @@
+#pragma once
+// The kernel of all joints: reads, one law call, one write.
+
+#include "core/kernel.hpp"
+#include "fdem/joints/joints.hpp"
+#include "math/lanes.hpp"
+
+namespace breccia::fdem {
+
+/// What joints tell the host: flag 0, one has softened; flag 1, one has broken.
+enum Change : Index { change_softened = 0, change_broken = 1 };
+
+/// Whether the vertices that touch must be marked anew in this step.
+BR_HD inline bool marking_due(std::uint8_t softened, std::uint8_t broken, std::int64_t step) {
+  constexpr std::int64_t every = 32;
+  return broken != 0 || (softened != 0 && step % every == 0);
+}
+
+/// Sets a flag that several items may set.
+BR_HD inline void set_flag(const View<std::uint8_t>& flags, Index flag) {
+#if defined(__CUDA_ARCH__)
+  flags[flag] = 1;
+#else
+  __atomic_store_n(&flags[flag], std::uint8_t{1}, __ATOMIC_RELAXED);
+#endif
+}
+/// Whichever item does it first.
+BR_HD inline void raise(const View<std::uint8_t>& flags, Change change) {
+  set_flag(flags, change);
+}
+
+/// Tractions at three points, damage and break of every joint (Lukas 2014, section 2). Joints that
+/// are whole and stay so, nearly all, are taken side by side.
+/// @tparam Number  what their forces are stored in
+template <class Number>
+struct JointForces {
+  static constexpr const char* name = "fdem.joints";
+  double time, dt;  ///< of the positions, and the step that led there  [s]
+  View<const NodeState> nodes;
+  View<const JointBond> bonds;
+  View<const JointEnds> ends;
+  View<const Index> law;
+  View<const double> length, strength;
+  View<const Vec2> preset;
+  Sym2 in_situ;  ///< stress at the start  [Pa]
+  View<JointStage> stage;
+  View<JointPoints> points;
+  View<JointForceOf<Number>> force;
+  View<JointWork> work;
+  View<double> broke_at, pressing, shear_at_break;
+  View<std::uint8_t> changed;  ///< flags of Change: contacts must be searched
+
+  template <class R>
+  struct Loaded {
+    Indices<R> end[4], law;  ///< corners a0, a1, b0, b1
+    R length, strength;
+    JointStage stage;  ///< of a pack: whole if all are
+    R corner[4][4];    ///< position and velocity
+  };
+  BR_HD void set(const StepTime& now) {
+    time = now.time;
+    dt = now.last_dt;
+  }
+  template <class R>
+  BR_HD void load_early(Index i, Loaded<R>& loaded) const {
+    loaded.stage = stage[i];
+    for (Index k = 1; k < width_of<R>; ++k)
+      if (stage[i + k] != JointStage::whole) loaded.stage = stage[i + k];
+    if (left<R>(loaded)) return;
+    Index at[4][width_of<R>];
+    for (Index k = 0; k < width_of<R>; ++k) {
+      const JointEnds& e = ends[i + k];
+      at[0][k] = e.a0;
+      at[1][k] = e.a1;
+      at[2][k] = e.b0;
+      at[3][k] = e.b1;
+    }
+    for (int k = 0; k < 4; ++k) loaded.end[k] = indices<R>(at[k]);
+    loaded.law = load_indices_now<R>(law, i);
+    loaded.length = load_now<R>(length, i);
+    loaded.strength = load_now<R>(strength, i);
+  }
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    if (left<R>(loaded)) return;
+    for (int k = 0; k < 4; ++k) gather_records_now(nodes, loaded.end[k], loaded.corner[k]);
+  }
+  /// Joint i, or i and its neighbours in a pack. @returns false, with nothing written, unless all
+  /// of them are whole and stay so, or the one is dormant
+  template <class R>
+  BR_HD bool update(Index i, const Loaded<R>& loaded) const {
+    if constexpr (width_of<R> == 1)
+      if (loaded.stage == JointStage::dormant) return true;
+    return loaded.stage == JointStage::whole && stay_whole(i, loaded);
+  }
+
+  BR_HD void operator()(Index i) const {
+    if (!run_at<double>(*this, i)) slow(i);
+  }
+
+  /// A joint that is softened or broken, or becomes so.
+  BR_HD void slow(Index i) const {
+    const JointStage before = stage[i];
+    if (before == JointStage::dormant) return;
+    const JointForce last = converted<double>(force[i]);
+    const bool acted = dot(last.first, last.first) + dot(last.second, last.second) > 0.0;
+    if (before == JointStage::broken && !acted) return;
+    const JointEnds& e = ends[i];
+    const NodeState &a0 = nodes[e.a0], &a1 = nodes[e.a1], &b0 = nodes[e.b0], &b1 = nodes[e.b1];
+    const Vec2 first = dt * (a0.velocity - b0.velocity), second = dt * (a1.velocity - b1.velocity);
+    const JointOpening<double> o = opening_of(a0.position, a1.position, b0.position, b1.position);
+    const double h = length[i];
+    const bool collapsed = !(o.size > 1e-12 * h);  // of the middle line no length is left
+    if (before == JointStage::broken || collapsed) {
+      if (!collapsed) book_work(i, o, first, second, JointForce{});
+      if (before != JointStage::broken) finish(i);
+      force[i] = {};
+      return;
+    }
+    const JointBond& bond = bonds[law[i]];
+    const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
+    JointPoints state{};
+    if (before != JointStage::whole) state = points[i];
+    if (bond.by_rock() && failure_of(state.point[1]) == Failure::none)
+      fail_with_rock(i, bond, o, offset, state);
+    Vec2 traction[3];
+    double pressure = 0.0, drag = 0.0;
+    int failed = 0;
+    bool damaged = false;
+    for (int q = 0; q < 3; ++q) {
+      const BondTraction<double> t = response(bond, strength[i], h, o.open[q] + offset.x,
+                                              o.slide[q] + offset.y, state.point[q]);
+      traction[q] = t.shear * o.along + t.normal * o.across;
+      const double weight = (q == 1 ? -4.0 : -1.0) * h / 6.0;
+      pressure += weight * t.normal;
+      drag += weight * t.shear;
+      failed += state.point[q].damage >= 1.0 ? 1 : 0;
+      damaged = damaged || state.point[q].damage > 0.0;
+    }
+    const double weight = (-1.0 / 6.0) * h;
+    // Work is booked of the forces that act: as they are stored.
+    const JointForceOf<Number> now = converted<Number>(JointForce{
+        weight * (traction[0] + 2.0 * traction[1]), weight * (traction[2] + 2.0 * traction[1])});
+    if (damaged) {
+      if (before == JointStage::whole) begin_work(i, bond, offset, a0, a1, b0, b1);
+      book_work(i, o, first, second, converted<double>(now));
+      points[i] = state;
+      if (before == JointStage::whole) {
+        stage[i] = JointStage::softened;
+        raise(changed, change_softened);
+      }
+    }
+    force[i] = now;
+    if (failed >= 2) {
+      pressing[i] = max(0.0, pressure);
+      shear_at_break[i] = drag;
+      finish(i);
+    }
+  }
+
+ private:
+  /// Whether a pack is not to be taken as one.
+  template <class R>
+  BR_HD static bool left(const Loaded<R>& loaded) {
+    return width_of<R> != 1 && loaded.stage != JointStage::whole;
+  }
+  /// Forces of joints that are whole. @returns false, with nothing written, unless all stay so
+  template <class R>
+  BR_HD bool stay_whole(Index i, const Loaded<R>& loaded) const {
+    const R &share = loaded.strength, &h = loaded.length;
+    const auto& corner = loaded.corner;
+    const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
+    const JointOpening<R> o = opening_of(position(0), position(1), position(2), position(3));
+    R bond[10];
+    gather_records(bonds, loaded.law, bond);
+    const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
+    const R quarter = 0.25 / tension;
+    R offset[2] = {};
+    if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
+    auto beyond = !(o.size > 1e-12 * h);
+    Vec2Of<R> traction[3];
+    R normal = constant<R>(0.0), shear = normal;  // means
+    for (int q = 0; q < 3; ++q) {
+      const BondTraction<R> t =
+          elastic_response(slope, tension, quarter, cohesion, bond[3], o.open[q] + offset[0],
+                           o.slide[q] + offset[1], beyond);
+      traction[q] = t.shear * o.along + t.normal * o.across;
+      normal = normal + weight_of(q) * t.normal;
+      shear = shear + weight_of(q) * t.shear;
+    }
+    const R stretch = o.size / h - 1.0;
+    const R along = stress_along(o.along, stretch, normal, bond[8], bond[9], in_situ);
+    const auto failing = may_fail(tension, cohesion, bond[3], normal, shear, along);
+    beyond = beyond || (bond[8] > 0.0 && failing);
+    if (any(beyond)) return false;
+    const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
+    const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
+    const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
+    const R numbers[4] = {first.x, first.y, second.x, second.y};
+    store_four<Number>(force, i, numbers);
+    return true;
+  }
+  /// Weight of an integration point in a mean.  [-]
+  BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
+
+  /// Lets all points of a joint fail where the mean stress of the rock there fails near its edge.
+  BR_HD void fail_with_rock(Index i, const JointBond& bond, const JointOpening<double>& o,
+                            const Vec2& offset, JointPoints& state) const {
+    const double h = length[i], share = strength[i];
+    JointPoints now = state;
+    BondTraction<double> carried[3];
+    double normal = 0.0, shear = 0.0;
+    for (int q = 0; q < 3; ++q) {
+      carried[q] =
+          response(bond, share, h, o.open[q] + offset.x, o.slide[q] + offset.y, now.point[q]);
+      normal += weight_of(q) * carried[q].normal;
+      shear += weight_of(q) * carried[q].shear;
+      // Half soft it goes its own way to the end.
+      if (softening(now.point[q].damage) < 0.5) return;
+    }
+    const double along =
+        stress_along(o.along, o.size / h - 1.0, normal, bond.young, bond.poisson, in_situ);
+    const Failure how = failure_of(rock_failure(bond, share, {normal, shear, along}));
+    if (how == Failure::none) return;
+    for (int q = 0; q < 3; ++q)
+      fail(bond, share, h, how, o.open[q] + offset.x, o.slide[q] + offset.y, carried[q],
+           now.point[q]);
+    state = now;
+  }
+  /// A joint that softens in this step had stored this much before it: all it had taken up.
+  BR_HD void begin_work(Index i, const JointBond& bond, const Vec2& offset, const NodeState& a0,
+                        const NodeState& a1, const NodeState& b0, const NodeState& b1) const {
+    const JointOpening<double> o =
+        opening_of(a0.position - dt * a0.velocity, a1.position - dt * a1.velocity,
+                   b0.position - dt * b0.velocity, b1.position - dt * b1.velocity);
+    const StoredEnergy e = stored_in(bond, strength[i], length[i], offset, o, JointPoints{});
+    work[i] = {e.open, e.slide};
+  }
+  /// Work of this step by the trapezoidal rule: with leapfrog velocities it sums to exactly what
+  /// the nodes lose.
+  BR_HD void book_work(Index i, const JointOpening<double>& o, const Vec2& first,
+                       const Vec2& second, const JointForce& now) const {
+    const JointForce last = converted<double>(force[i]);
+    const Vec2 f = last.first + now.first, s = last.second + now.second;
+    JointWork& w = work[i];
+    w.open -=
+        0.5 * (dot(f, o.across) * dot(first, o.across) + dot(s, o.across) * dot(second, o.across));
+    w.slide -=
+        0.5 * (dot(f, o.along) * dot(first, o.along) + dot(s, o.along) * dot(second, o.along));
+  }
+  BR_HD void finish(Index i) const {
+    stage[i] = JointStage::broken;
+    broke_at[i] = time;
+    raise(changed, change_broken);
+  }
+};
+
+}  // namespace breccia::fdem

@@ -1,0 +1,150 @@
+#pragma once
+// What ties triangles along their common edges: their arrays and geometry.
+
+#include "core/precision.hpp"
+#include "exec/buffer.hpp"
+#include "fdem/laws/rock_failure.hpp"
+#include "fdem/triangles/triangles.hpp"
+
+namespace breccia::fdem {
+
+/// How far a joint has gone.
+/// dormant: its triangles move as one until the stress between them reaches its strength.
+enum class JointStage : std::uint8_t { whole, softened, broken, dormant };
+
+/// Whether a joint has lost some of its strength.
+BR_HD constexpr bool is_damaged(JointStage stage) {
+  return stage == JointStage::softened || stage == JointStage::broken;
+}
+
+/// Integration points: at the first end, in the middle, at the second end; weights 1/6, 4/6, 1/6.
+struct JointPoints {
+  BondState<double> point[3];
+};
+
+/// Forces of a joint on the two nodes of its side a; those of side b get the opposite.  [N/m]
+template <class Number>
+struct JointForceOf {
+  Vec2Of<Number> first, second;
+};
+using JointForce = JointForceOf<double>;
+template <class To, class From>
+BR_HD JointForceOf<To> converted(const JointForceOf<From>& f) {
+  return {converted<To>(f.first), converted<To>(f.second)};
+}
+template <class Number>
+using JointForcesOf = Buffer<JointForceOf<Number>>;
+
+/// Work that a joint has taken up since it began to soften, and what it held then, by direction.
+/// [J/m]
+struct JointWork {
+  double open = 0.0, slide = 0.0;
+};
+
+/// Cohesive joints. Edge 3 t + k leads from corner k of triangle t to the next one. Side a is the
+/// triangle with the lower global id; its edge's first node lies at the second node of side b's.
+struct Joints {
+  Buffer<Index> edge_a, edge_b;   ///< the two edges that it joins
+  Buffer<Index> law;              ///< index into World::bonds  [-]
+  Buffer<double> length;          ///< at the start  [m]
+  Buffer<double> strength;        ///< over its law's  [-]
+  Buffer<Vec2> preset;            ///< opening and slip at which it was joined; empty: none  [m]
+  Buffer<JointStage> stage;       ///<  [-]
+  Buffer<JointPoints> points;     ///< damage and largest opening and slip
+  Stored<JointForcesOf> force;    ///< of this time  [N/m]
+  Buffer<JointWork> work;         ///< taken up so far  [J/m]
+  Buffer<double> broke_at;        ///< time of its break, -1: whole, -2: broken from the start  [s]
+  Buffer<double> pressing;        ///< compressive force when it broke  [N/m]
+  Buffer<double> shear_at_break;  ///< force on side a along its edge when it broke  [N/m]
+  Buffer<JointWork>
+      inherited_work;  ///< of its work, what the contact of its faces began with  [J/m]
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("edge_a", "-", edge_a);
+    field("edge_b", "-", edge_b);
+    field("law", "-", law);
+    field("length", "m", length);
+    field("strength", "-", strength);
+    field("stage", "-", stage);
+    field("points", "-", points);
+    field("work", "J/m", work);
+    field("broke_at", "s", broke_at);
+    field("pressing", "N/m", pressing);
+    field("shear_at_break", "N/m", shear_at_break);
+    field("inherited_work", "J/m", inherited_work);
+  }
+  Index size() const { return edge_a.size(); }
+};
+
+/// The corners that a joint ties: a0 and a1 along side a; b0 faces a0, b1 faces a1.
+struct JointEnds {
+  Index a0, a1, b0, b1;
+
+  BR_HD static JointEnds of(Index edge_a, Index edge_b) {
+    return {edge_a, next_corner(edge_a), next_corner(edge_b), edge_b};
+  }
+  BR_HD static Index next_corner(Index edge) { return edge % 3 == 2 ? edge - 2 : edge + 1; }
+};
+
+/// How a joint is open: axes and relative displacements at its integration points.
+template <class R>
+struct JointOpening {
+  Vec2Of<R> along, across;  ///< e of the middle line, and n from side b into side a  [-]
+  R size;                   ///< length of the middle line  [m]
+  R open[3];                ///<  [m]
+  R slide[3];               ///< of side a against b along e  [m]
+};
+
+template <class R>
+BR_HD JointOpening<R> opening_of(const Vec2Of<R>& a0, const Vec2Of<R>& a1, const Vec2Of<R>& b0,
+                                 const Vec2Of<R>& b1) {
+  JointOpening<R> o;
+  const R half = constant<R>(0.5);
+  const Vec2Of<R> line = half * ((a1 - a0) + (b1 - b0));
+  o.size = norm(line);
+  o.along = (1.0 / o.size) * line;
+  o.across = {-o.along.y, o.along.x};
+  const Vec2Of<R> first = a0 - b0, second = a1 - b1;
+  o.open[0] = dot(first, o.across);
+  o.open[2] = dot(second, o.across);
+  o.slide[0] = dot(first, o.along);
+  o.slide[2] = dot(second, o.along);
+  o.open[1] = half * (o.open[0] + o.open[2]);
+  o.slide[1] = half * (o.slide[0] + o.slide[2]);
+  return o;
+}
+
+/// Opening and slip at which a joint carries a traction, its strength permitting. False if not.
+/// @param normal, shear  traction, tension positive  [Pa]
+BR_HD inline bool preset_opening(const JointBond& bond, double strength, double length,
+                                 double normal, double shear, Vec2& opening_and_slip) {
+  const double tension = bond.tension * strength;
+  const double limit = bond.cohesion * strength - bond.friction * min(normal, 0.0);
+  if (normal >= tension || abs(shear) >= limit) return false;
+  // (2 r - r^2) f = t on the rising branch
+  const auto share = [](double t, double f) { return 1.0 - sqrt(1.0 - t / f); };
+  const double slip = share(abs(shear), limit) * 2.0 * length * limit / bond.stiffness;
+  opening_and_slip = {normal < 0.0
+                          ? normal * length / bond.stiffness
+                          : share(normal, tension) * 2.0 * length * tension / bond.stiffness,
+                      copysign(slip, shear)};
+  return true;
+}
+
+/// Energy that a joint would give back if it were unloaded now, by direction.  [J/m]
+BR_HD inline StoredEnergy stored_in(const JointBond& bond, double strength, double length,
+                                    const Vec2& offset, const JointOpening<double>& o,
+                                    const JointPoints& points) {
+  StoredEnergy sum{};
+  for (int q = 0; q < 3; ++q) {
+    const StoredEnergy e = stored(bond, strength, length, o.open[q] + offset.x,
+                                  o.slide[q] + offset.y, points.point[q]);
+    const double weight = (q == 1 ? 4.0 : 1.0) * length / 6.0;
+    sum.open += weight * e.open;
+    sum.slide += weight * e.slide;
+  }
+  return sum;
+}
+
+}  // namespace breccia::fdem

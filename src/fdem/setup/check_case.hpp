@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fdem/setup/config.hpp"
+
+namespace breccia::fdem {
+
+/// Names that lead nowhere and tables that do not fit, one sentence each. Rules for bodies are in
+/// prepare/checks/check_bodies.hpp.
+std::vector<std::string> case_problems(const Config& config);
+
+/// Why a probe cannot read this, and what it can read.
+std::string no_z(const std::string& quantity);
+
+}  // namespace breccia::fdem

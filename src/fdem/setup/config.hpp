@@ -1,0 +1,277 @@
+#pragma once
+// The case file of the FDEM: every key with its unit, range and meaning.
+
+#include "core/case_config.hpp"
+#include "fdem/laws/joint_bond.hpp"
+#include "fdem/setup/body_config.hpp"
+
+namespace breccia::fdem {
+
+/// Strengths of the joints of one material, or between two.
+struct StrengthConfig {
+  double tension = 5e6;                        ///< f_t  [Pa]
+  double cohesion = 15e6;                      ///< c  [Pa]
+  double friction_angle = 0.6108652381980153;  ///< phi_i of whole joints  [rad]
+  double residual_angle = 0.0;                 ///< phi_r  [rad]
+  double energy_open = 30.0;                   ///< G_I  [J/m2]
+  double energy_slide = 100.0;                 ///< G_II  [J/m2]
+  double stiffness = 20.0;                     ///< p_f over Young's modulus  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("tension", tension, "Pa", positive, "tensile strength f_t");
+    key("cohesion", cohesion, "Pa", positive, "cohesion c");
+    key("friction_angle", friction_angle, "rad", Range{0.0, 1.5707, Open::high},
+        "internal friction angle of a whole joint; a broken one rubs by the contact's friction");
+    key("residual_angle", residual_angle, "rad", Range{0.0, 1.5707, Open::high},
+        "friction angle that a pressed joint keeps while it softens, at most friction_angle; 0: "
+        "none, "
+        "as in Lukas et al. 2014; the codes whose contact rubs between joined triangles keep it");
+    key("energy_open", energy_open, "J/m2", positive, "fracture energy of opening, G_I");
+    key("energy_slide", energy_slide, "J/m2", positive, "fracture energy of sliding, G_II");
+    key("stiffness", stiffness, "-", positive,
+        "joint penalty p_f over Young's modulus; 20 keeps 92 % of the solid's stiffness");
+  }
+};
+
+/// [material.<name>]
+struct MaterialConfig {
+  std::string name;
+  double density = 2700.0;  ///<  [kg/m3]
+  double young = 60e9;      ///< E  [Pa]
+  double poisson = 0.25;    ///< nu  [-]
+  double damping = 0.0;     ///< eta over 2 h sqrt(E rho)  [-]
+  std::string joints = "intrinsic";
+  StrengthConfig joint;
+  double contact_stiffness = 10.0;    ///< p_n over E  [-]
+  double tangential_stiffness = 0.1;  ///< p_t over p_n  [-]
+  double friction = 0.6;              ///< of contact  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("density", density, "kg/m3", Range{1e-3, 1e6}, "mass per volume");
+    key("young", young, "Pa", Range{1.0, 1e15}, "Young's modulus");
+    key("poisson", poisson, "-", Range{-1.0, 1.0, Open::both},
+        "Poisson's ratio; below 0.5 in plane strain");
+    key("damping", damping, "-", not_negative,
+        "viscosity over 2 h sqrt(E rho): 0.5 for quasi-static runs, 0.02 for dynamic ones");
+    key("joints", joints, OneOf{"intrinsic", "extrinsic", "none"},
+        "intrinsic: joints from the start; extrinsic: joints appear where strength is reached; "
+        "none: it does not break; two such materials that share an edge move as one there, while "
+        "to others only a [joint.<name>] between both joins it");
+    key.table("joint", joint, "strength of its joints");
+    key("contact_stiffness", contact_stiffness, "-", positive,
+        "contact penalty p_n over Young's modulus");
+    key("tangential_stiffness", tangential_stiffness, "-", positive,
+        "tangential contact penalty p_t over p_n");
+    key("friction", friction, "-", not_negative,
+        "coefficient of friction of contact; between two materials the lower one counts");
+  }
+};
+
+/// [joint.<name>]: joints between two materials, or along a discontinuity
+struct JointConfig {
+  std::string name;
+  std::vector<std::string> between;
+  StrengthConfig strength;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("between", between,
+        "the two materials whose triangles it joins; empty: for discontinuities that name it");
+    key.table("strength", strength,
+              "its strength; stiffness counts the stiffer material's modulus");
+  }
+};
+
+/// [[friction]]
+struct FrictionConfig {
+  std::vector<std::string> between;
+  double coefficient = 0.6;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("between", between, "the two materials, or twice the same");
+    key.required("between");
+    key("coefficient", coefficient, "-", not_negative, "coefficient of friction of their contact");
+  }
+};
+
+/// Which part of the model a support, load or probe takes.
+struct RegionConfig {
+  std::string on;
+  std::string edges;
+  Vec2 min{-no_limit, -no_limit}, max{no_limit, no_limit};  ///<  [m]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("on", on, "body that it takes part of; empty: of all bodies");
+    key("edges", edges, "named line of a mesh file that it takes; empty: all");
+    key("min", min, "m", any_number, "lower corner of the region it takes");
+    key("max", max, "m", any_number, "upper corner of that region");
+  }
+};
+
+/// How something given grows and changes over time.
+struct HistoryConfig {
+  double ramp = 0.0;                   ///<  [s]
+  std::vector<double> times, factors;  ///<  [s], [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("ramp", ramp, "s", not_negative, "time in which it grows from zero, linearly");
+    key("times", times, "s", any_number,
+        "times of a table of factors, linear in between, constant beyond; empty: always 1");
+    key("factors", factors, "-", any_number, "the factors at these times");
+  }
+};
+
+/// [[support]]: prescribed velocity of corners
+struct SupportConfig {
+  std::string name;
+  RegionConfig region;
+  std::vector<std::string> fix{"x", "y"};
+  Vec2 velocity{};  ///<  [m/s]
+  HistoryConfig history;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the support: probes read its corners by it");
+    key.required("name");
+    region.each_key(key);
+    key("fix", fix, "directions that are prescribed: x, y");
+    key("velocity", velocity, "m/s", any_number, "prescribed velocity of these directions");
+    history.each_key(key);
+  }
+};
+
+/// [[load]]: forces on free edges
+struct LoadConfig {
+  std::string name;
+  RegionConfig region;
+  std::string kind = "pressure";
+  double pressure = 0.0;  ///<  [Pa]
+  Vec2 traction{};        ///<  [Pa]
+  Vec2 force{};           ///<  [N/m]
+  HistoryConfig history;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the load");
+    key.required("name");
+    region.each_key(key);
+    key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing"},
+        "pressure: against the edge, and traction: along fixed axes, both per present length; "
+        "force: a sum, spread over the edges by their length at the start, that stays as given "
+        "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer)");
+    key("pressure", pressure, "Pa", any_number, "pressure, positive pushes");
+    key("traction", traction, "Pa", any_number, "force per area");
+    key("force", force, "N/m", any_number, "force per unit thickness, of all edges together");
+    history.each_key(key);
+  }
+};
+
+/// [in_situ]
+struct InSituConfig {
+  double xx = 0.0, yy = 0.0, xy = 0.0;  ///< stress at the start, tension positive  [Pa]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("xx", xx, "Pa", any_number, "stress at the start, tension positive");
+    key("yy", yy, "Pa", any_number, "stress at the start, tension positive");
+    key("xy", xy, "Pa", any_number, "stress at the start");
+  }
+  bool any() const { return xx != 0.0 || yy != 0.0 || xy != 0.0; }
+};
+
+/// [contact]
+struct ContactConfig {
+  bool conservative = false;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("conservative", conservative,
+        "adds the forces that make contact of deformable triangles the gradient of an energy; "
+        "costs one polygon cut a contact");
+  }
+};
+
+/// [joints]: what all joints share
+struct JointsConfig {
+  double softening_factor = exact_softening_factor;
+  std::string unloading = "secant";
+  std::string criterion = "rock";
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("softening_factor", softening_factor, "-", positive,
+        "softening length times strength over fracture energy: 2.5886128 dissipates exactly the "
+        "fracture energy, 3 is the classical codes' and 15.9 % too much");
+    key("unloading", unloading, OneOf{"secant", "reversible"},
+        "secant: damage stays; reversible: joints heal as in the classical codes");
+    key("criterion", criterion, OneOf{"rock", "edge"},
+        "rock: a joint within a material fails where the stress of the rock beside it reaches f_t, "
+        "or "
+        "c - sigma tan phi, on any plane near its edge, and keeps f_t and G_I on a free mesh; "
+        "edge: by "
+        "its own tractions, as in the classical codes: on a free mesh 10 % (tension) to 60 % "
+        "(discs) too "
+        "strong; [joint.<name>] is always edge");
+  }
+};
+
+/// [search]
+struct SearchConfig {
+  double margin = 0.1;  ///< over the mean edge  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("margin", margin, "-", Range{0.0, 1.0, Open::low},
+        "how far two triangles may approach before a new search, over the mean edge");
+  }
+};
+
+/// A whole FDEM case.
+struct Config : CaseConfig {
+  /// The bound on the step walks all triangles and their joints: in every step it would cost more
+  /// than the forces. Triangles that could meet until the next evaluation count as met
+  /// (StableStep).
+  Config() { time.evaluate_every = 20; }
+
+  std::string plane = "stress";
+  Vec2 gravity{};              ///<  [m/s2]
+  double local_damping = 0.0;  ///<  [-]
+  std::vector<MaterialConfig> materials;
+  std::vector<JointConfig> joint_laws;
+  std::vector<FrictionConfig> frictions;
+  std::vector<BodyConfig> bodies;
+  std::vector<DiscontinuityConfig> discontinuities;
+  JointsConfig joints;
+  ContactConfig contact;
+  InSituConfig in_situ;
+  std::vector<SupportConfig> supports;
+  std::vector<LoadConfig> loads;
+  SearchConfig search;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    CaseConfig::each_key(key);
+    key("plane", plane, OneOf{"stress", "strain"}, "plane stress or plane strain");
+    key("gravity", gravity, "m/s2", any_number, "acceleration of gravity");
+    key("local_damping", local_damping, "-", Range{0.0, 1.0, Open::high},
+        "share of each force that opposes motion (Cundall), for quasi-static runs only");
+    key.named("material", materials, "the materials");
+    key.named("joint", joint_laws, "joints between two materials, or of discontinuities");
+    key.list("friction", frictions, "coefficients of friction by pairs of materials");
+    key.list("body", bodies, "what there is");
+    key.list("discontinuity", discontinuities, "cracks and weak planes at the start");
+    key.table("joints", joints, "what all joints share");
+    key.table("contact", contact, "what happens where triangles touch");
+    key.table("in_situ", in_situ, "stress at the start");
+    key.list("support", supports, "prescribed motion");
+    key.list("load", loads, "forces on edges");
+    key.table("search", search, "when new contacts are searched for");
+  }
+};
+
+}  // namespace breccia::fdem

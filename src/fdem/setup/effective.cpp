@@ -1,0 +1,48 @@
+#include "fdem/setup/effective.hpp"
+
+#include <cmath>
+
+#include "fdem/setup/materials.hpp"
+
+namespace breccia::fdem {
+
+std::vector<EffectiveRock> effective_rocks(const Config& config, const JointedMesh& mesh) {
+  const std::size_t count = config.materials.size();
+  std::vector<double> area(count, 0.0), given(count, 0.0);
+  for (std::size_t t = 0; t < mesh.material.size(); ++t) area[at(mesh.material[t])] += mesh.area[t];
+  // A joint of length h opens by t h/p_f under a traction t: strains of h^2/p_f sym(t n) over the
+  // area, half of it for the triangle on each side. Edges point everywhere alike: <n n> = 1/2.
+  for (std::size_t i = 0; i < mesh.law.size(); ++i) {
+    if (mesh.stage[i] == JointStage::dormant) continue;
+    const double h = mesh.length[i], each = 0.5 * h * h / mesh.bonds[at(mesh.law[i])].stiffness;
+    for (const Index edge : {mesh.edge_a[i], mesh.edge_b[i]})
+      given[at(mesh.material[at(edge / 3)])] += 0.5 * each;
+  }
+  const std::vector<ElasticTriangle> laws = elastic_table(config);
+  const bool stress = config.plane == "stress";
+  std::vector<EffectiveRock> rocks;
+  for (std::size_t m = 0; m < count; ++m) {
+    const MaterialConfig& material = config.materials[m];
+    EffectiveRock rock{material.name, area[m] > 0.0 ? given[m] / area[m] : 0.0, material.young,
+                       material.poisson};
+    double pressing = laws[m].lambda + 2.0 * laws[m].shear, shear = laws[m].shear;
+    if (rock.compliance > 0.0) {
+      // In the plane: 1/E' and (1 + nu')/E' grow by it, nu'/E' stays.
+      const double nu = material.poisson;
+      const double plane_young = stress ? material.young : material.young / (1.0 - nu * nu);
+      const double plane_poisson = stress ? nu : nu / (1.0 - nu);
+      const double young = 1.0 / (1.0 / plane_young + rock.compliance);
+      const double poisson = plane_poisson * young / plane_young;
+      pressing = young / (1.0 - poisson * poisson);
+      shear = 0.5 * young / (1.0 + poisson);
+      rock.poisson = stress ? poisson : poisson / (1.0 + poisson);
+      rock.young = stress ? young : young * (1.0 - rock.poisson * rock.poisson);
+    }
+    rock.fast = std::sqrt(pressing / material.density);
+    rock.slow = std::sqrt(shear / material.density);
+    rocks.push_back(std::move(rock));
+  }
+  return rocks;
+}
+
+}  // namespace breccia::fdem

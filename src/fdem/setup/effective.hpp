@@ -1,0 +1,34 @@
+#pragma once
+// Rock with its joints, seen from afar: what long waves and slow loads meet.
+
+#include <string>
+#include <vector>
+
+#include "fdem/joints/joints.hpp"
+#include "fdem/setup/config.hpp"
+
+namespace breccia::fdem {
+
+/// A material with the joints that its triangles have at the start (docs/theory-fdem.md, 2).
+struct EffectiveRock {
+  std::string material;
+  double compliance = 0.0;  ///< that joints add, to each stretch and to half of each shear  [1/Pa]
+  double young = 0.0;       ///< E  [Pa]
+  double poisson = 0.0;     ///< nu  [-]
+  double fast = 0.0, slow = 0.0;  ///< speeds of waves that press and that shear, in the plane [m/s]
+};
+
+/// The joints of a model where the host reads them.
+struct JointedMesh {
+  const std::vector<Index>& material;  ///< of each triangle
+  const std::vector<double>& area;     ///< of each triangle  [m2]
+  const std::vector<Index>&edge_a, &edge_b, &law;
+  const std::vector<double>& length;  ///<  [m]
+  const std::vector<JointStage>& stage;
+  const std::vector<JointBond>& bonds;
+};
+
+/// Of each material of the case; one without joints, or without triangles, is as the case says.
+std::vector<EffectiveRock> effective_rocks(const Config& config, const JointedMesh& mesh);
+
+}  // namespace breccia::fdem

@@ -1,0 +1,34 @@
+#pragma once
+// From what a case says of materials to what kernels read.
+
+#include "fdem/contact/couples.hpp"
+#include "fdem/joints/joints.hpp"
+#include "fdem/setup/config.hpp"
+
+namespace breccia::fdem {
+
+/// Laws of joints, and which one joins two materials.
+struct BondTable {
+  std::vector<JointBond> bonds;
+  std::vector<std::int16_t> of_pair;  ///< at a * materials + b: index into bonds, or a reason below
+  std::vector<std::int16_t> of_joint;  ///< of each [joint.<name>]
+  std::vector<bool> dormant;  ///< of each material: its joints appear where they are needed
+  static constexpr std::int16_t nothing = -1, bonded = -2;
+};
+
+/// One material: its own strength. Two: that of the [joint.<name>] between them, or else the weaker
+/// one in each respect. A material without joints is bonded to itself and joined to no other unless
+/// a [joint.<name>] says so. @throws InputError for names that do not exist
+BondTable bond_table(const Config& config);
+
+/// @throws InputError for names that do not exist
+std::vector<ContactPair> contact_table(const Config& config);
+
+/// @throws InputError where plane strain meets a Poisson's ratio of 0.5 or more
+std::vector<ElasticTriangle> elastic_table(const Config& config);
+
+/// Index of a material. @throws InputError saying where the name was used
+std::int16_t material_index(const Config& config, const std::string& name,
+                            const std::string& where);
+
+}  // namespace breccia::fdem

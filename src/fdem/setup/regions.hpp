@@ -1,0 +1,22 @@
+#pragma once
+// Which corners and edges of a model a case means.
+
+#include <string>
+#include <vector>
+
+#include "fdem/setup/config.hpp"
+#include "fdem/setup/model.hpp"
+
+namespace breccia::fdem {
+
+/// Corners 3 t + k in a region, by where they are at the start.
+/// @throws InputError naming `where` if there are none, or a name does not exist
+std::vector<Index> corners_in(const Model& model, const RegionConfig& region,
+                              const std::string& where);
+
+/// Edges 3 t + k on the border of the mesh with both ends in a region.
+/// @throws InputError likewise
+std::vector<Index> edges_in(const Model& model, const RegionConfig& region,
+                            const std::string& where);
+
+}  // namespace breccia::fdem

@@ -1,0 +1,64 @@
+#include "fdem/stepping/kernel_lanes.hpp"
+
+#include "exec/whole_packs.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+template <class Number>
+Index while_whole([[maybe_unused]] Lanes lanes, const JointForces<Number>& joints, Index begin,
+                  Index end) {
+#if defined(BR_WIDE_LANES)
+  if (lanes == Lanes::eight) begin = PacksAvx512::run(joints, begin, end);
+  if (lanes == Lanes::four) begin = PacksAvx2::run(joints, begin, end);
+#endif
+  // A dormant one may wake yet.
+  while (begin < end && joints.stage[begin] == JointStage::whole && run_at<double>(joints, begin))
+    ++begin;
+  return begin;
+}
+
+/// MoveTriangles that notes whether a triangle has used its margin up.
+struct NotingMove {
+  const MoveTriangles& move;
+  bool& beyond;
+  void operator()(Index t) const { beyond = move(t) || beyond; }
+};
+template <class Packs>
+struct NotingPacks {
+  static Index run(const NotingMove& noting, Index begin, Index end) {
+    const MovedTo moved = Packs::run(noting.move, begin, end);
+    noting.beyond = noting.beyond || moved.beyond;
+    return moved.end;
+  }
+};
+
+}  // namespace
+
+void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end) {
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+void run_packs(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end) {
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, Index end) {
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end) {
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end) {
+  bool beyond = false;
+  run_whole_packs<NotingPacks<PacksAvx512>, NotingPacks<PacksAvx2>>(
+      lanes, NotingMove{kernel, beyond}, begin, end);
+  return beyond;
+}
+
+Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end) {
+  return while_whole(lanes, kernel, begin, end);
+}
+Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end) {
+  return while_whole(lanes, kernel, begin, end);
+}
+
+}  // namespace breccia::fdem

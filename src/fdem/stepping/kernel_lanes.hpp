@@ -1,0 +1,46 @@
+#pragma once
+// The widest form of the kernels that this processor can run, found at run time; same bits in all.
+
+#include "exec/lanes.hpp"
+#include "fdem/triangles/triangle_kernels.hpp"
+
+namespace breccia::fdem {
+
+/// kernel for the items [begin, end) on the calling thread.
+void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end);
+/// @returns whether a triangle has used its margin up
+bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
+
+/// Where a move stopped, and whether a triangle before has used its margin up.
+struct MovedTo {
+  Index end;
+  bool beyond;
+};
+
+/// Joints from `begin` on as long as they are whole and stay so. @returns where that ends; from
+/// there on nothing is written
+Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end);
+Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
+
+/// Builds of lanes/kernel_lanes.cpp for one width each. Return where they stop: at what does not
+/// fill a pack, or at a pack that is not as most are. Both are left to the caller, whose build runs
+/// on every processor.
+struct PacksAvx2 {
+  static Index run(const JointForces<double>& kernel, Index begin, Index end);
+  static Index run(const JointForces<float>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
+  static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
+};
+struct PacksAvx512 {
+  static Index run(const JointForces<double>& kernel, Index begin, Index end);
+  static Index run(const JointForces<float>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
+  static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
+  static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
+};
+
+}  // namespace breccia::fdem

@@ -1,0 +1,94 @@
+#pragma once
+// The kernels of a step with the arrays of a world: the same for loops on the host and for launches
+// ahead on a device.
+
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+
+/// Asks whether margins hold where the triangles will be.
+inline MoveTriangles move_kernel(World& w) {
+  Triangles& t = w.triangles;
+  UsedMargin used{std::as_const(w.reach_place).view(), std::as_const(w.reach.reference).view(),
+                  std::as_const(w.reach.margin).view(), w.reach.drift, Vec2{}};
+  used.set_time(w.time + w.next_dt);
+  return {kick(w),
+          std::as_const(t.external).view(),
+          t.nodes.view(),
+          t.damping_work.view(),
+          t.load_work.view(),
+          used};
+}
+
+template <class Number>
+JointForces<Number> joint_kernel(World& w) {
+  Joints& j = w.joints;
+  return {w.time,
+          w.last_dt,
+          by_number(std::as_const(w.triangles.nodes).view()),
+          w.bonds.view(),
+          w.joint_ends.view(),
+          j.law.view(),
+          j.length.view(),
+          j.strength.view(),
+          j.preset.view(),
+          w.parameters.in_situ,
+          j.stage.view(),
+          j.points.view(),
+          j.force.as<Number>().view(),
+          j.work.view(),
+          j.broke_at.view(),
+          j.pressing.view(),
+          j.shear_at_break.view(),
+          w.exposed.changed.view()};
+}
+
+template <class Number>
+CoupleForces<Number> couple_kernel(World& w) {
+  Couples& c = w.couples;
+  Joints& j = w.joints;
+  return {w.last_dt,
+          w.parameters.conservative,
+          std::as_const(w.triangles.nodes).view(),
+          w.triangles.material.view(),
+          w.contact_pairs.view(),
+          w.parameters.materials,
+          c.pairs.a.view(),
+          c.pairs.b.view(),
+          std::as_const(w.parent_joint).view(),
+          {std::as_const(j.edge_a).view(), std::as_const(j.edge_b).view(),
+           std::as_const(j.pressing).view(), std::as_const(j.shear_at_break).view(),
+           j.inherited_work.view()},
+          c.history.state.view(),
+          c.history.force.as<Number>().view()};
+}
+
+template <class Number>
+TriangleForces<Number> triangle_kernel(World& w) {
+  Triangles& t = w.triangles;
+  return {w.last_dt,
+          std::as_const(t.nodes).view(),
+          t.material.view(),
+          w.laws.view(),
+          t.shape_inverse.view(),
+          t.viscosity.view(),
+          w.edges.view(),
+          std::as_const(w.joints.force.as<Number>()).view(),
+          w.couple_incidence.view(),
+          std::as_const(w.couples.history.force.as<Number>()).view(),
+          t.force.view(),
+          t.viscous_work.view()};
+}
+
+inline LoadForces load_kernel(World& w) {
+  Triangles& t = w.triangles;
+  return {w.load_starts.view(),          w.loaded_edges.view(), w.load_laws.view(),
+          std::as_const(t.nodes).view(), t.external.view(),     t.force.view()};
+}
+
+inline BundleForces bundle_kernel(World& w) {
+  return {w.bundles.starts.view(), w.bundles.nodes.view(), w.bundles.leader.view(),
+          w.triangles.mass.view(), w.triangles.force.view()};
+}
+
+}  // namespace breccia::fdem

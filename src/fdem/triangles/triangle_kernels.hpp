@@ -1,0 +1,349 @@
+#pragma once
+// Kernels of each triangle by itself: its sum of forces, its stable step.
+
+#include "core/kernel.hpp"
+#include "fdem/contact/couples.hpp"
+#include "fdem/contact/nearness.hpp"
+#include "fdem/joints/joint_kernels.hpp"
+#include "fdem/triangles/columns.hpp"
+#include "fdem/triangles/motion_kernels.hpp"
+
+namespace breccia::fdem {
+
+/// The joints on the three edges of a triangle: entries as of an Incidence (pair 2 i + side), or a
+/// reason why there is none.
+struct EdgeJoints {
+  Index at[3];
+};
+inline constexpr Index edge_free = -1;    ///< on the border, or no law joins the two materials
+inline constexpr Index edge_bonded = -2;  ///< the neighbours move as one body: no joint, no contact
+
+/// Corners of a triangle by component.
+template <class R>
+struct CornersOf {
+  Vec2Of<R> x[3], v[3];
+
+  BR_HD explicit CornersOf(const R (&c)[12]) {
+    for (int k = 0; k < 3; ++k) {
+      x[k] = {c[4 * k], c[4 * k + 1]};
+      v[k] = {c[4 * k + 2], c[4 * k + 3]};
+    }
+  }
+};
+
+/// Internal force of the triangle, plus its joints by slot, plus its couples by the partners'
+/// global ids: no order of memory, threads or ranks changes a bit.
+/// @tparam Number  what forces of joints and couples are stored in
+template <class Number>
+struct TriangleForces {
+  static constexpr const char* name = "fdem.triangles";
+  double span;  ///< time that the forces of this moment act  [s]
+  View<const TriangleNodes> nodes;
+  View<const Index> material;
+  View<const ElasticTriangle> laws;
+  View<const Mat2> shape_inverse;
+  View<const double> viscosity;
+  View<const EdgeJoints> edges;
+  View<const JointForceOf<Number>>
+      joint_force;  ///< the last one is zero: that of an edge without a joint
+  IncidenceView couples;
+  View<const CoupleForceOf<Number>> couple_force;
+  View<Corners> force;
+  View<double> viscous_work;
+
+  template <class R>
+  struct Loaded {
+    Columns<R, TriangleNodes> nodes;
+    Columns<R, Mat2> inverse;
+    R viscosity;
+    Indices<R> material;
+    Index couples, couples_end;  ///< of the first triangle, and of the last
+    Index edge[3][width_of<R>];  ///< entries of `edges`
+    R joint[3][4];               ///< forces
+  };
+  BR_HD void set(const StepTime& now) { span = now.last_dt; }
+  /// All but forces of joints and couples.
+  template <class R>
+  BR_HD void load_early(Index t, Loaded<R>& loaded) const {
+    for (int k = 0; k < 3; ++k)
+      for (Index i = 0; i < width_of<R>; ++i) loaded.edge[k][i] = read_now(&edges[t + i].at[k]);
+    loaded.material = load_indices_now<R>(material, t);
+    loaded.viscosity = load_now<R>(viscosity, t);
+    loaded.couples = read_now(&couples.starts[t]);
+    loaded.couples_end = read_now(&couples.starts[t + width_of<R>]);
+    loaded.nodes.read(nodes, t);
+    loaded.inverse.read(shape_inverse, t);
+    loaded.nodes.wait();
+    loaded.inverse.wait();
+  }
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
+    for (int k = 0; k < 3; ++k) {
+      if constexpr (width_of<R> == 1) {
+        const JointForce own =
+            converted<double>(read_record_now(&joint_force[joint_of(loaded.edge[k][0])]));
+        __builtin_memcpy(loaded.joint[k], &own, sizeof own);
+      } else {
+        Index joint[width_of<R>];
+        for (Index i = 0; i < width_of<R>; ++i) joint[i] = joint_of(loaded.edge[k][i]);
+        gather_four<Number>(joint_force, indices<R>(joint), loaded.joint[k]);
+      }
+    }
+  }
+  /// Triangle t, or t and its neighbours in a pack.
+  template <class R>
+  BR_HD void update(Index t, const Loaded<R>& loaded) const {
+    Vec2Of<R> sum[3];
+    deform(t, loaded, sum);
+    for (int k = 0; k < 3; ++k)
+      add_force(is_b<R>(loaded.edge[k]), loaded.joint[k], sum[k], sum[k == 2 ? 0 : k + 1]);
+    if constexpr (width_of<R> == 1) add_couples(loaded.couples, loaded.couples_end, sum);
+    const R total[6] = {sum[0].x, sum[0].y, sum[1].x, sum[1].y, sum[2].x, sum[2].y};
+    Columns<R, Corners>::write(force, t, total);
+    if (width_of<R> != 1 && loaded.couples < loaded.couples_end)
+      for (Index k = 0; k < width_of<R>; ++k) add_couples(t + k);
+  }
+  BR_HD void operator()(Index t) const { run_at<double>(*this, t); }
+
+ private:
+  /// Internal forces on the corners, and the work of viscosity.
+  template <class R>
+  BR_HD void deform(Index t, const Loaded<R>& loaded, Vec2Of<R> (&sum)[3]) const {
+    const CornersOf<R> c(loaded.nodes.numbers);
+    const R(&inverse)[4] = loaded.inverse.numbers;
+    const R& eta = loaded.viscosity;
+    R numbers[8];
+    gather_records(laws, loaded.material, numbers);
+    const ElasticLaw<R> law{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
+    const Deformation<R> d =
+        deformation(Mat2Of<R>{inverse[0], inverse[1], inverse[2], inverse[3]}, c.x, c.v);
+    corner_forces(law.stress(d, eta), c.x, sum);
+    if (any(eta > 0.0)) {
+      const Mat2Of<R>& l = d.velocity_gradient;
+      const Sym2Of<R> rate{l.xx, l.yy, 0.5 * (l.xy + l.yx)};
+      const R area = 0.5 * cross(c.x[1] - c.x[0], c.x[2] - c.x[0]);
+      store(viscous_work, t, load<R>(viscous_work, t) + span * (eta * area * contract(rate, rate)));
+    }
+  }
+  BR_HD Index joint_of(Index entry) const {
+    return entry < 0 ? joint_force.size - 1 : pair_of(entry);
+  }
+  /// Where triangles are side b of the joints on edges.
+  template <class R>
+  BR_HD static auto is_b(const Index (&edge)[width_of<R>]) {
+    if constexpr (width_of<R> == 1) {
+      return edge[0] >= 0 && side_of(edge[0]) != 0;
+    } else {
+      double side[width_of<R>];
+      for (Index i = 0; i < width_of<R>; ++i)
+        side[i] = edge[i] < 0 ? 0.0 : static_cast<double>(side_of(edge[i]));
+      return pack_of<R>(side) > 0.0;
+    }
+  }
+  /// Adds a joint's forces to the two corners of its edge: on b the edge runs the other way, and
+  /// forces are opposite.
+  template <class R, class Mask>
+  BR_HD static void add_force(const Mask& on_b, const R (&f)[4], Vec2Of<R>& from, Vec2Of<R>& to) {
+    from.x += select(on_b, -f[2], f[0]);
+    from.y += select(on_b, -f[3], f[1]);
+    to.x += select(on_b, -f[0], f[2]);
+    to.y += select(on_b, -f[1], f[3]);
+  }
+  BR_HD void add_couples(Index t) const {
+    const Index first = couples.first(t), last = couples.last(t);
+    if (first == last) return;
+    Corners sum = force[t];
+    add_couples(first, last, sum.at);
+    force[t] = sum;
+  }
+  BR_HD void add_couples(Index first, Index last, Vec2 (&sum)[3]) const {
+    for (Index c = first; c < last; ++c) {
+      const Entry entry = couples.entries[c];
+      const CoupleForceOf<Number>& f = couple_force[pair_of(entry)];
+      const CornerVectors<Number>& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
+      for (int k = 0; k < 3; ++k) sum[k] += converted<double>(mine.at[k]);
+    }
+  }
+};
+
+/// Corners that move as one: at each vertex where some do, all corners, and who goes with whom.
+struct Bundles {
+  Buffer<Index> starts;  ///< first corner of each vertex, and the end
+  Buffer<Index> nodes;   ///< corners, ascending by global number
+  Buffer<Index> leader;  ///< place in `nodes` of the first corner of the same bundle
+};
+
+/// Shares the sum of a bundle's forces by mass: all its corners get one acceleration.
+struct BundleForces {
+  static constexpr const char* name = "fdem.bundles";
+  View<const Index> starts, nodes, leader;
+  View<const double> mass;
+  View<Corners> force;
+
+  BR_HD void set(const StepTime&) {}
+  BR_HD void operator()(Index vertex) const {
+    const Index end = starts[vertex + 1];
+    for (Index first = starts[vertex]; first < end; ++first) {
+      if (leader[first] != first) continue;
+      Vec2 sum{};
+      double total = 0.0;
+      for (Index k = first; k < end; ++k) {
+        if (leader[k] != first) continue;
+        const Index n = nodes[k];
+        sum += force[n / 3].at[n % 3];
+        total += mass[n / 3];
+      }
+      const Vec2 acceleration = (1.0 / total) * sum;
+      for (Index k = first; k < end; ++k)
+        if (leader[k] == first)
+          force[nodes[k] / 3].at[nodes[k] % 3] = mass[nodes[k] / 3] * acceleration;
+    }
+  }
+};
+
+/// Impedance rho c_p of absorbing edges of a triangle, times their largest factor; 0 elsewhere.
+struct EdgeDashpots {
+  double at[3] = {0.0, 0.0, 0.0};  ///<  [Pa s/m]
+};
+
+/// The stable step of a triangle by Gershgorin's bound: every eigenfrequency is at most the largest
+/// sum of a row's |stiffness| over its mass (docs/theory-fdem.md, 5). Contact counts at edges that
+/// another triangle is near to, and at all that can touch of a triangle so fast that it might pass
+/// what is near between two evaluations.
+struct StableStep {
+  View<const TriangleNodes> nodes;
+  View<const Index> material;
+  View<const ElasticTriangle> laws;
+  View<const double> viscosity, mass;
+  View<const ContactPair> contacts;
+  Index materials;
+  View<const EdgeJoints> edges;
+  View<const JointBond> bonds;
+  View<const Index> bond_of;
+  View<const JointStage> stage;
+  View<const Index> hold;
+  View<const Hold> holds;
+  View<const EdgeDashpots> dashpots;  ///< empty: nothing absorbs
+  Nearness nearness;
+  int evaluate_every;  ///< steps from one evaluation to the next
+
+  /// Shares of the largest row sum.
+  struct Parts {
+    double element = 0.0, joint = 0.0, contact = 0.0;  ///<  [Pa], per unit thickness
+    double viscous = 0.0, absorbed = 0.0;              ///<  [Pa s]
+    double square = 0.0;                               ///< omega^2 bound  [1/s2]
+    double step = 0.0;                                 ///<  [s]
+  };
+
+  BR_HD double operator()(Index t) const { return parts(t).step; }
+
+  /// As if something were near everywhere.
+  BR_HD Parts parts_pressed(Index t) const {
+    Vec2 x[3], v[3];
+    split(nodes[t], x, v);
+    return parts(t, x, exposed_edges(t));
+  }
+  BR_HD Parts parts(Index t) const {
+    Vec2 x[3], v[3];
+    split(nodes[t], x, v);
+    const int exposed = exposed_edges(t);
+    const int near = exposed == 0 ? 0 : near_edges(t, x, exposed);
+    Parts least = parts(t, x, near);
+    if (near == exposed) return least;
+    double fastest = 0.0;
+    for (int k = 0; k < 3; ++k) fastest = max(fastest, dot(v[k], v[k]));
+    const double way = evaluate_every * least.step * sqrt(fastest);
+    if (way > nearness.reach(t)) least = parts(t, x, exposed);
+    return least;
+  }
+
+ private:
+  /// @param pressed  bits of the edges whose contact counts
+  BR_HD Parts parts(Index t, const Vec2 (&x)[3], int pressed) const {
+    const ElasticTriangle& law = laws[material[t]];
+    const Target shape = Target::of(x);
+    const double area = 0.5 / shape.over_double;
+    const Vec2 slope[3] = {shape.slope(0), shape.slope(1), shape.slope(2)};
+    double on_edge[3][2];  // joint and contact stiffness of each edge
+    for (int k = 0; k < 3; ++k) {
+      on_edge[k][0] = joint_stiffness(t, k);
+      on_edge[k][1] = (pressed >> k & 1) != 0 ? contact_stiffness(t, k, x, area) : 0.0;
+    }
+    Parts largest;
+    largest.step = 1e300;
+    const int fixed = hold[t] >= 0 ? holds[hold[t]].fixed : 0;
+    for (int i = 0; i < 3; ++i) {
+      if ((fixed >> (2 * i) & 3) == 3) continue;  // goes where it is told, whatever its mass
+      Parts p;
+      for (int c = 0; c < 2; ++c) {
+        p.element = max(p.element, row(slope, i, c, area, law.lambda, law.shear));
+        p.viscous = max(p.viscous, row(slope, i, c, area, 0.0, 0.5 * viscosity[t]));
+      }
+      const int before = i == 0 ? 2 : i - 1;
+      if (dashpots.size > 0) p.absorbed = dashpot(t, i, x) + dashpot(t, before, x);
+      p.joint = on_edge[i][0] + on_edge[before][0];
+      p.contact = on_edge[i][1] + on_edge[before][1];
+      p.square = (p.element + p.joint + p.contact) / mass[t];
+      const double omega = sqrt(p.square), lost = p.viscous + p.absorbed;
+      const double xi = 0.5 * lost / (mass[t] * omega);
+      p.step = 2.0 / omega * (sqrt(1.0 + xi * xi) - xi);
+      if (p.step < largest.step) largest = p;
+    }
+    return largest;
+  }
+  /// Sum of the absolute stiffnesses in the row of component c of corner i.
+  BR_HD static double row(const Vec2 (&slope)[3], int i, int c, double area, double lambda,
+                          double shear) {
+    double sum = 0.0;
+    for (int j = 0; j < 3; ++j) {
+      const double dots = dot(slope[i], slope[j]);
+      const double gi[2] = {slope[i].x, slope[i].y}, gj[2] = {slope[j].x, slope[j].y};
+      for (int d = 0; d < 2; ++d) {
+        const double k =
+            lambda * (gi[c] * gj[d]) + shear * (gi[d] * gj[c]) + (c == d ? shear * dots : 0.0);
+        sum += area * abs(k);
+      }
+    }
+    return sum;
+  }
+  /// What an absorbing edge takes from each of its ends, half its length times the impedance: both
+  /// of its impedances are at most the larger one.
+  BR_HD double dashpot(Index t, int k, const Vec2 (&x)[3]) const {
+    return 0.5 * norm(x[(k + 1) % 3] - x[k]) * dashpots[t].at[k];
+  }
+  /// A live joint adds p_f to the row of each of its nodes.
+  BR_HD double joint_stiffness(Index t, int k) const {
+    const Index entry = edges[t].at[k];
+    if (entry < 0) return 0.0;
+    const JointStage now = stage[pair_of(entry)];
+    if (now == JointStage::broken || now == JointStage::dormant) return 0.0;
+    return bonds[bond_of[pair_of(entry)]].stiffness;
+  }
+  /// An edge that may touch adds the stiffness of two faces pressed together, 3 p L (1/H + 1/H).
+  BR_HD double contact_stiffness(Index t, int k, const Vec2 (&x)[3], double area) const {
+    const Vec2 edge = x[(k + 1) % 3] - x[k];
+    const double over_height = dot(edge, edge) / (2.0 * area);  // L / H
+    return 6.0 * contacts[material[t] * materials + material[t]].penalty * over_height;
+  }
+  BR_HD bool is_broken(Index entry) const {
+    return entry >= 0 && stage[pair_of(entry)] == JointStage::broken;
+  }
+  /// Bits of the edges that nothing joins.
+  BR_HD int exposed_edges(Index t) const {
+    int exposed = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Index entry = edges[t].at[k];
+      if (entry == edge_free || is_broken(entry)) exposed |= 1 << k;
+    }
+    return exposed;
+  }
+  BR_HD int near_edges(Index t, const Vec2 (&x)[3], int exposed) const {
+    int near = 0;
+    for (int k = 0; k < 3; ++k)
+      if (is_broken(edges[t].at[k]))
+        near |= nearness.edges_near_across(t, x, edges[t].at[k], exposed & ~near);
+    return near == exposed ? near : near | nearness.edges_near(t, x, exposed & ~near);
+  }
+};
+
+}  // namespace breccia::fdem

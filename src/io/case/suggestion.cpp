@@ -1,0 +1,40 @@
+#include "io/case/suggestion.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace breccia {
+namespace {
+
+/// Letters to add, drop, change or swap to make one word of the other.
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i)
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] =
+          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string suggestion(const std::string& word, const std::set<std::string>& known) {
+  std::string best;
+  std::size_t least = 3 + word.size() / 4;
+  for (const std::string& candidate : known)
+    if (const std::size_t d = distance(word, candidate); d < least) {
+      least = d;
+      best = candidate;
+    }
+  if (!best.empty()) return "; did you mean " + best + "?";
+  std::string all;
+  for (const std::string& candidate : known) all += (all.empty() ? "" : ", ") + candidate;
+  return known.size() <= 12 && !known.empty() ? "; allowed are " + all : "";
+}
+
+}  // namespace breccia

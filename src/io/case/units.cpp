@@ -1,0 +1,218 @@
+#include "io/case/units.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "math/constants.hpp"
+
+namespace breccia {
+namespace {
+
+struct NamedUnit {
+  std::string_view symbol;
+  Unit unit;
+  bool takes_prefix;
+};
+
+const std::vector<NamedUnit>& named_units() {
+  static const std::vector<NamedUnit> units{{"m", {{0, 1, 0, 0}}, true},
+                                            {"g", {{1, 0, 0, 0}, -3}, true},
+                                            {"s", {{0, 0, 1, 0}}, true},
+                                            {"N", {{1, 1, -2, 0}}, true},
+                                            {"Pa", {{1, -1, -2, 0}}, true},
+                                            {"J", {{1, 2, -2, 0}}, true},
+                                            {"W", {{1, 2, -3, 0}}, true},
+                                            {"Hz", {{0, 0, -1, 0}}, true},
+                                            {"rad", {{0, 0, 0, 1}}, true},
+                                            {"t", {{1, 0, 0, 0}, 3}, false},
+                                            {"min", {{0, 0, 1, 0}, 0, 60.0}, false},
+                                            {"h", {{0, 0, 1, 0}, 0, 3600.0}, false},
+                                            {"deg", {{0, 0, 0, 1}, 0, pi / 180.0}, false},
+                                            {"%", {{0, 0, 0, 0}, -2}, false},
+                                            {"-", {}, false},
+                                            {"1", {}, false}};
+  return units;
+}
+
+struct Prefix {
+  std::string_view symbol;
+  int tens;
+};
+constexpr std::array<Prefix, 11> prefixes{{{"n", -9},
+                                           {"u", -6},
+                                           {"\u00b5", -6},
+                                           {"m", -3},
+                                           {"c", -2},
+                                           {"d", -1},
+                                           {"h", 2},
+                                           {"k", 3},
+                                           {"M", 6},
+                                           {"G", 9},
+                                           {"T", 12}}};
+
+std::optional<Unit> find_symbol(std::string_view symbol) {
+  for (const NamedUnit& named : named_units())
+    if (named.symbol == symbol) return named.unit;
+  for (const auto& [prefix, tens] : prefixes) {
+    if (!symbol.starts_with(prefix)) continue;
+    for (const NamedUnit& named : named_units())
+      if (named.takes_prefix && named.symbol == symbol.substr(prefix.size()))
+        return Unit{named.unit.powers, tens + named.unit.tens, named.unit.factor};
+  }
+  return std::nullopt;
+}
+
+/// "m3", "s-2", "m^2"
+std::optional<Unit> parse_power(std::string_view text) {
+  std::size_t end = text.size();
+  while (end > 0 && ((text[end - 1] >= '0' && text[end - 1] <= '9') || text[end - 1] == '-')) --end;
+  if (end == 0) end = text.size();
+  int power = 1;
+  if (end < text.size()) {
+    const auto parsed = std::from_chars(text.data() + end, text.data() + text.size(), power);
+    if (parsed.ec != std::errc{} || parsed.ptr != text.data() + text.size()) return std::nullopt;
+  }
+  std::string_view symbol = text.substr(0, end);
+  if (end < text.size() && symbol.ends_with('^')) symbol.remove_suffix(1);
+  std::optional<Unit> unit = find_symbol(symbol);
+  if (!unit || power < -9 || power > 9) return std::nullopt;
+  double factor = 1.0;
+  for (int k = 0; k < std::abs(power); ++k) factor *= unit->factor;
+  unit->factor = power < 0 ? 1.0 / factor : factor;
+  unit->tens *= power;
+  for (int& p : unit->powers) p *= power;
+  return unit;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+/// The double nearest to a decimal number times a power of ten: the power goes into its exponent.
+double times_power_of_ten(std::string_view digits, int tens) {
+  const std::size_t e = std::min(digits.find_first_of("eE"), digits.size());
+  int exponent = 0;
+  if (e < digits.size()) {
+    const std::size_t start = digits[e + 1] == '+' ? e + 2 : e + 1;
+    std::from_chars(digits.data() + start, digits.data() + digits.size(), exponent);
+  }
+  const std::string text = std::string(digits.substr(0, e)) + "e" + std::to_string(exponent + tens);
+  double value = 0.0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (read.ec == std::errc::result_out_of_range) return std::numeric_limits<double>::quiet_NaN();
+  return value;
+}
+
+/// Whether people write such a unit: nobody means "mPa" or "ks".
+bool is_usual(std::string_view unit) {
+  constexpr std::array<std::string_view, 17> usual{"nm", "um", "mm",  "cm",  "km",  "ns",
+                                                   "us", "ms", "kPa", "MPa", "GPa", "kN",
+                                                   "MN", "GN", "kJ",  "MJ",  "kHz"};
+  return std::find(usual.begin(), usual.end(), unit) != usual.end();
+}
+
+/// The wanted unit with the prefix of the first symbol of another: "GN", "Pa" give "GPa". Empty if
+/// nobody writes it so.
+std::string with_prefix_of(std::string_view given, const std::string& wanted) {
+  const std::string_view first = given.substr(0, given.find_first_of("/* ^-0123456789"));
+  for (const NamedUnit& named : named_units())
+    if (named.symbol == first) return wanted;  // "m" is a metre, not a prefix
+  for (const Prefix& prefix : prefixes) {
+    const std::string prefixed = std::string(prefix.symbol) + wanted;
+    if (first.starts_with(prefix.symbol) && find_symbol(first) && find_symbol(wanted) &&
+        find_symbol(prefixed))
+      return is_usual(prefixed) ? prefixed : "";
+  }
+  return wanted;
+}
+
+}  // namespace
+
+std::optional<Unit> parse_unit(std::string_view text) {
+  text = trimmed(text);
+  Unit product;
+  for (bool below = false;;) {
+    const std::size_t end = std::min(text.find_first_of("/* "), text.size());
+    const std::optional<Unit> factor = parse_power(text.substr(0, end));
+    if (!factor) return std::nullopt;
+    for (std::size_t k = 0; k < 4; ++k)
+      product.powers[k] += below ? -factor->powers[k] : factor->powers[k];
+    product.tens += below ? -factor->tens : factor->tens;
+    product.factor = below ? product.factor / factor->factor : product.factor * factor->factor;
+    text = trimmed(text.substr(end));
+    if (text.empty()) return product;
+    below = text.front() == '/';
+    if (below || text.front() == '*') text = trimmed(text.substr(1));
+  }
+}
+
+std::string describe_dimension(const Unit& unit) {
+  static const std::vector<std::pair<std::array<int, 4>, const char*>> names{
+      {{0, 0, 0, 0}, "a plain number"},
+      {{0, 1, 0, 0}, "a length"},
+      {{0, 0, 1, 0}, "a time"},
+      {{1, 0, 0, 0}, "a mass"},
+      {{0, 0, 0, 1}, "an angle"},
+      {{0, 1, -1, 0}, "a velocity"},
+      {{0, 1, -2, 0}, "an acceleration"},
+      {{1, 1, -2, 0}, "a force"},
+      {{1, -1, -2, 0}, "a pressure"},
+      {{1, 2, -2, 0}, "an energy"},
+      {{1, 0, -2, 0}, "an energy per area"},
+      {{1, -3, 0, 0}, "a density"},
+      {{0, 0, -1, 1}, "an angular velocity"},
+      {{0, 0, -1, 0}, "a frequency"},
+      {{0, 2, 0, 0}, "an area"},
+      {{0, 3, 0, 0}, "a volume"}};
+  for (const auto& [powers, name] : names)
+    if (powers == unit.powers) return name;
+  std::string text = "[";
+  constexpr std::array<const char*, 4> symbols{"kg", "m", "s", "rad"};
+  for (std::size_t k = 0; k < 4; ++k)
+    if (unit.powers[k] != 0)
+      text +=
+          (text.size() > 1 ? " " : "") + std::string(symbols[k]) + std::to_string(unit.powers[k]);
+  return text + "]";
+}
+
+double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem) {
+  problem.clear();
+  const std::string quoted = "\"" + std::string(text) + "\"";
+  std::string_view whole = trimmed(text);
+  if (whole.starts_with('+')) whole.remove_prefix(1);
+  const char* const whole_end = whole.data() + whole.size();
+  double value = 0.0;
+  const auto number = std::from_chars(whole.data(), whole_end, value);
+  if (number.ec != std::errc{} || !std::isfinite(value)) {
+    problem = quoted + " does not start with a number";
+    return 0.0;
+  }
+  const std::size_t length = static_cast<std::size_t>(number.ptr - whole.data());
+  const std::string_view digits = whole.substr(0, length), rest = trimmed(whole.substr(length));
+  const Unit target = parse_unit(wanted).value_or(Unit{});
+  if (rest.empty()) {
+    problem = quoted + " has no unit; write it as a number for " + wanted + ", or with a unit";
+    return 0.0;
+  }
+  const std::optional<Unit> unit = parse_unit(rest);
+  if (!unit) {
+    problem = "'" + std::string(rest) + "' is not a unit";
+    return 0.0;
+  }
+  if (unit->powers != target.powers) {
+    problem = quoted + " is " + describe_dimension(*unit) + ", " + describe_dimension(target) +
+              " is wanted, in " + wanted + " or the like";
+    if (const std::string hint = with_prefix_of(rest, wanted); !hint.empty())
+      problem += "; try \"" + std::string(digits) + " " + hint + "\"";
+    return 0.0;
+  }
+  return times_power_of_ten(digits, unit->tens - target.tens) * (unit->factor / target.factor);
+}
+
+}  // namespace breccia

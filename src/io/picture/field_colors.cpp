@@ -1,0 +1,367 @@
+#include "io/picture/field_colors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+constexpr Color pale{0.84F, 0.83F, 0.81F}, dark{0.32F, 0.33F, 0.35F};
+constexpr std::size_t most_swatches = 9;
+
+/// A field, or one component of it, that an option names.
+struct Selected {
+  Carrier carrier;
+  const FrameField* field;
+  int component;  ///< -1: the length of a vector
+};
+
+const std::vector<FrameField>& fields_of(const Frame& frame, Carrier carrier) {
+  if (carrier == Carrier::lines) return frame.line_fields;
+  return carrier == Carrier::triangles ? frame.triangle_fields : frame.point_fields;
+}
+
+std::size_t items_of(const Frame& frame, Carrier carrier) {
+  if (carrier == Carrier::lines) return frame.lines.size() / 2;
+  return carrier == Carrier::triangles ? frame.triangles.size() / 3 : frame.position.size();
+}
+
+const FrameField* field_named(const std::vector<FrameField>& fields, const std::string& name) {
+  for (const FrameField& field : fields) {
+    if (field.name == name) return &field;
+  }
+  return nullptr;
+}
+
+std::optional<Selected> find(const Frame& frame, const std::string& name) {
+  constexpr std::array carriers{Carrier::points, Carrier::triangles, Carrier::lines};
+  for (const Carrier carrier : carriers) {
+    if (const FrameField* field = field_named(fields_of(frame, carrier), name)) {
+      return Selected{carrier, field, field->components == 1 ? 0 : -1};
+    }
+  }
+  if (name.size() < 3 || name[name.size() - 2] != '_') return std::nullopt;
+  const int component = name.back() - 'x';
+  const std::string vector_name = name.substr(0, name.size() - 2);
+  for (const Carrier carrier : carriers) {
+    const FrameField* field = field_named(fields_of(frame, carrier), vector_name);
+    if (field != nullptr && component >= 0 && component < field->components) {
+      return Selected{carrier, field, component};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string names_of_fields(const Frame& frame) {
+  std::string names;
+  std::set<std::string> told;
+  for (const Carrier carrier : {Carrier::points, Carrier::triangles, Carrier::lines}) {
+    for (const FrameField& field : fields_of(frame, carrier)) {
+      if (told.insert(field.name).second) names += (names.empty() ? "" : ", ") + field.name;
+    }
+  }
+  return names.empty() ? "none" : names;
+}
+
+std::vector<float> scalar_values(const Frame& frame, const Selected& selected) {
+  const FrameField& field = *selected.field;
+  const std::size_t count = items_of(frame, selected.carrier);
+  const auto width = static_cast<std::size_t>(field.components);
+  if (field.values.size() != width * count) {
+    throw InputError(fmt::format("field {} has {} values; {} items with {} components need {}",
+                                 field.name, field.values.size(), count, width, width * count));
+  }
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (selected.component >= 0) {
+      values[i] = field.values[width * i + static_cast<std::size_t>(selected.component)];
+      continue;
+    }
+    float square = 0.0F;
+    for (std::size_t c = 0; c < width; ++c) {
+      square += field.values[width * i + c] * field.values[width * i + c];
+    }
+    values[i] = std::sqrt(square);
+  }
+  return values;
+}
+
+bool is_category(const std::string& name) {
+  constexpr std::array names{"group",    "material", "kind",  "state",
+                             "fragment", "rank",     "fixed", "motion"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Group of every point, 0 where the frame does not say.
+std::vector<std::size_t> point_groups(const Frame& frame) {
+  std::vector<std::size_t> groups(frame.position.size(), 0);
+  const FrameField* field = field_named(frame.point_fields, "group");
+  if (field == nullptr || field->components != 1 || field->values.size() != groups.size()) {
+    return groups;
+  }
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const float value = field->values[i];
+    if (value >= 0.0F && value < 1e6F) groups[i] = static_cast<std::size_t>(value);
+  }
+  return groups;
+}
+
+std::string group_name(const Frame& frame, std::size_t group) {
+  return group < frame.groups.size() ? frame.groups[group] : fmt::format("group {}", group);
+}
+
+/// The body with most elements has the colour of concrete; the others follow in their order.
+struct GroupTints {
+  std::vector<Color> tint;  ///< by group
+  std::size_t main = 0;
+  std::vector<Legend::Swatch> others;  ///< of the groups besides the main one
+};
+GroupTints group_tints(const Frame& frame, const std::vector<std::size_t>& groups) {
+  std::vector<std::size_t> sizes;
+  for (const std::size_t group : groups) {
+    if (group >= sizes.size()) sizes.resize(group + 1, 0);
+    ++sizes[group];
+  }
+  GroupTints tints;
+  tints.tint.resize(sizes.size());
+  if (sizes.empty()) return tints;
+  tints.main =
+      static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  tints.tint[tints.main] = map_color(ColorMap::damage, 0.0F);
+  std::size_t number = 1;
+  for (std::size_t group = 0; group < sizes.size(); ++group) {
+    if (group == tints.main || sizes[group] == 0) continue;
+    tints.tint[group] = category_color(number++);
+    if (tints.others.size() < most_swatches) {
+      tints.others.push_back({tints.tint[group], group_name(frame, group)});
+    }
+  }
+  return tints;
+}
+
+/// The range to show: all values, or where a few lie far out, the bulk of them.
+struct Spread {
+  ValueRange shown, whole;
+};
+Spread spread_of(const std::vector<float>& values) {
+  std::vector<float> sorted;
+  for (const float value : values) {
+    if (std::isfinite(value)) sorted.push_back(value);
+  }
+  if (sorted.empty()) return {{0.0, 0.0}, {0.0, 0.0}};
+  std::sort(sorted.begin(), sorted.end());
+  const ValueRange whole{sorted.front(), sorted.back()};
+  if (sorted.size() < 1000) return {whole, whole};
+  const std::size_t cut = sorted.size() / 500;  // two in a thousand at either end
+  const ValueRange bulk{sorted[cut], sorted[sorted.size() - 1 - cut]};
+  const double margin = 0.5 * (bulk.high - bulk.low);
+  if (!(margin > 0.0)) return {whole, whole};
+  return {{whole.low < bulk.low - margin ? bulk.low : whole.low,
+           whole.high > bulk.high + margin ? bulk.high : whole.high},
+          whole};
+}
+
+Legend::Bar bar_of(const std::string& name, const Spread& spread,
+                   const std::optional<ValueRange>& wanted) {
+  const bool ends_on_damage = name.size() >= 6 && name.substr(name.size() - 6) == "damage";
+  if (ends_on_damage && spread.whole.low >= 0.0 && spread.whole.high <= 1.0) {
+    return {ColorMap::damage, wanted.value_or(ValueRange{0.0, 1.0}), {}, ""};
+  }
+  if (wanted) {
+    const bool centred = wanted->low < 0.0 && std::fabs(wanted->low + wanted->high) <
+                                                  1e-6 * (wanted->high - wanted->low);
+    return {centred ? ColorMap::diverging : ColorMap::viridis, *wanted, {}, ""};
+  }
+  Legend::Bar bar{ColorMap::viridis, spread.shown, {}, ""};
+  const double smaller = std::min(-bar.range.low, bar.range.high);
+  const double largest = std::max(std::fabs(bar.range.low), std::fabs(bar.range.high));
+  if (smaller > 0.02 * largest) {
+    bar.map = ColorMap::diverging;
+    bar.range = {-largest, largest};
+  } else if (bar.range.low > 0.0 && bar.range.low < 0.5 * bar.range.high) {
+    bar.range.low = 0.0;
+  }
+  bar.range = rounded_outwards(bar.range);
+  return bar;
+}
+
+void finish_legend(Legend& legend, const std::string& name, const std::string& unit,
+                   const ValueRange& whole) {
+  Legend::Bar& bar = *legend.bar;
+  const double largest = std::max(std::fabs(bar.range.low), std::fabs(bar.range.high));
+  const ScaledUnit scaled = scaled_unit(unit, largest);
+  legend.title = scaled.unit.empty() ? name : fmt::format("{} [{}]", name, scaled.unit);
+  bar.ticks = ticks_of(bar.range, scaled.factor);
+  if (whole.high > bar.range.high) bar.note = fmt::format("max {:.3g}", scaled.factor * whole.high);
+  if (whole.low < bar.range.low) {
+    bar.note +=
+        fmt::format("{}min {:.3g}", bar.note.empty() ? "" : ", ", scaled.factor * whole.low);
+  }
+}
+
+std::vector<Color> mapped_colors(const Legend::Bar& bar, const std::vector<float>& values) {
+  const double width = bar.range.high - bar.range.low;
+  const auto low = static_cast<float>(bar.range.low);
+  const auto factor = static_cast<float>(width > 0.0 ? 1.0 / width : 1.0);
+  std::vector<Color> colors(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    colors[i] = map_color(bar.map, factor * (values[i] - low));
+  }
+  return colors;
+}
+
+/// The name of a category in a legend: groups have names, and so have kinds and states of links.
+std::string category_name(const Frame& frame, const Selected& selected, double value) {
+  constexpr std::array kinds{"concrete", "steel", "interface"};
+  constexpr std::array states{"whole", "softened", "broken"};
+  const auto number = static_cast<std::size_t>(std::clamp(value, 0.0, 1e6));
+  const bool known = value == static_cast<double>(number);
+  const std::string& name = selected.field->name;
+  if (known && name == "group") return group_name(frame, number);
+  if (known && number < 3 && selected.carrier == Carrier::lines) {
+    if (name == "kind") return kinds[number];
+    if (name == "state") return states[number];
+  }
+  return fmt::format("{:g}", value);
+}
+
+/// One colour a distinct value, in the order of the values.
+std::vector<Color> category_colors(const Frame& frame, const Selected& selected,
+                                   const std::vector<float>& values, Legend& legend) {
+  std::map<float, std::size_t> numbers;
+  for (const float value : values) {
+    if (value == value) numbers.emplace(value, 0);
+  }
+  std::size_t number = 0;
+  legend.title = selected.field->name;
+  for (auto& [value, place] : numbers) {
+    place = number++;
+    if (place == most_swatches) legend.swatches.push_back({{1.0F, 1.0F, 1.0F}, "..."});
+    if (place >= most_swatches) continue;
+    legend.swatches.push_back(
+        {category_color(place), category_name(frame, selected, static_cast<double>(value))});
+  }
+  std::vector<Color> colors(values.size(), Color{1.0F, 0.0F, 1.0F});
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] == values[i]) colors[i] = category_color(numbers.at(values[i]));
+  }
+  return colors;
+}
+
+/// Damage tints every body from its own colour: only the main one starts as light concrete.
+void tint_bodies(const Frame& frame, const std::vector<float>& damage, Coloring& coloring) {
+  const std::vector<std::size_t> groups = point_groups(frame);
+  const GroupTints tints = group_tints(frame, groups);
+  for (std::size_t i = 0; i < damage.size(); ++i) {
+    if (groups[i] == tints.main) continue;
+    const float share = std::clamp(4.0F * damage[i], 0.0F, 1.0F);
+    coloring.points[i] = blend(tints.tint[groups[i]], coloring.points[i], share);
+  }
+  coloring.legend.swatches = tints.others;
+}
+
+/// Colours for what the field does not colour: bodies by group, lines by kind, triangles pale.
+void fill_default_colors(const Frame& frame, Coloring& coloring) {
+  coloring.triangles.assign(items_of(frame, Carrier::triangles), pale);
+  coloring.lines.assign(items_of(frame, Carrier::lines), dark);
+  const FrameField* kind = field_named(frame.line_fields, "kind");
+  if (kind != nullptr && kind->values.size() == coloring.lines.size()) {
+    for (std::size_t i = 0; i < coloring.lines.size(); ++i) {
+      const bool first_kind = !(kind->values[i] > 0.0F && kind->values[i] < 1e6F);
+      if (!first_kind) {
+        coloring.lines[i] = category_color(static_cast<std::size_t>(kind->values[i]));
+      }
+    }
+  }
+  const FrameField* state = field_named(frame.line_fields, "state");
+  if (state != nullptr && state->values.size() == coloring.lines.size()) {
+    for (const float value : state->values) coloring.broken_lines.push_back(value == 2.0F);
+  }
+  const std::vector<std::size_t> groups = point_groups(frame);
+  const GroupTints tints = group_tints(frame, groups);
+  coloring.points.resize(groups.size());
+  for (std::size_t i = 0; i < groups.size(); ++i) coloring.points[i] = tints.tint[groups[i]];
+  if (tints.others.empty()) return;
+  coloring.legend.swatches = tints.others;
+  const Legend::Swatch main{tints.tint[tints.main], group_name(frame, tints.main)};
+  coloring.legend.swatches.insert(coloring.legend.swatches.begin(), main);
+}
+
+/// Triangles take the mean of their nodes.
+std::vector<Color> triangle_means(const Frame& frame, const std::vector<float>& values,
+                                  const Legend::Bar& bar) {
+  std::vector<float> means(items_of(frame, Carrier::triangles));
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    float sum = 0.0F;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t node = frame.triangles[3 * i + k];
+      const bool known = node >= 0 && static_cast<std::size_t>(node) < values.size();
+      sum += known ? values[static_cast<std::size_t>(node)] : 0.0F;
+    }
+    means[i] = sum / 3.0F;
+  }
+  return mapped_colors(bar, means);
+}
+
+}  // namespace
+
+bool has_field(const Frame& frame, const std::string& field) {
+  return field.empty() || find(frame, field).has_value();
+}
+
+bool colors_lines(const Frame& frame, const std::string& field) {
+  const std::optional<Selected> selected = find(frame, field);
+  return selected && selected->carrier == Carrier::lines;
+}
+
+Coloring color_frame(const Frame& frame, const std::string& field,
+                     const std::optional<ValueRange>& range) {
+  Coloring coloring;
+  fill_default_colors(frame, coloring);
+  if (field.empty()) return coloring;
+  const std::optional<Selected> selected = find(frame, field);
+  if (!selected) {
+    throw InputError(fmt::format("field = \"{}\" is not in this frame; it has {}", field,
+                                 names_of_fields(frame)));
+  }
+  coloring.legend = {};
+  coloring.of_lines = selected->carrier == Carrier::lines;
+  const std::vector<float> values = scalar_values(frame, *selected);
+  std::vector<Color> colors;
+  if (is_category(field)) {
+    colors = category_colors(frame, *selected, values, coloring.legend);
+  } else {
+    const Spread spread = spread_of(values);
+    coloring.legend.bar = bar_of(field, spread, range);
+    finish_legend(coloring.legend, field, selected->field->unit, spread.whole);
+    colors = mapped_colors(*coloring.legend.bar, values);
+  }
+  switch (selected->carrier) {
+    case Carrier::points:
+      coloring.points = std::move(colors);
+      if (!coloring.legend.bar) break;
+      coloring.triangles = triangle_means(frame, values, *coloring.legend.bar);
+      if (coloring.legend.bar->map == ColorMap::damage) tint_bodies(frame, values, coloring);
+      break;
+    case Carrier::lines:
+      coloring.lines = std::move(colors);
+      if (field == "state") coloring.broken_lines.clear();
+      std::fill(coloring.points.begin(), coloring.points.end(), pale);
+      break;
+    case Carrier::none:
+      break;
+    case Carrier::triangles:
+      coloring.triangles = std::move(colors);
+      break;
+  }
+  return coloring;
+}
+
+}  // namespace breccia

@@ -1,0 +1,43 @@
+#pragma once
+// Which colour every item of a frame gets, and the legend that explains it.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/picture/color_map.hpp"
+#include "io/picture/picture.hpp"
+#include "io/round_numbers.hpp"
+
+namespace breccia {
+
+/// Contents of a legend.
+struct Legend {
+  struct Bar {
+    ColorMap map;
+    ValueRange range;  ///< in the unit of the field
+    std::vector<Tick> ticks;
+    std::string note;  ///< what the range leaves out; may be empty
+  };
+  struct Swatch {
+    Color color;
+    std::string name;
+  };
+  std::string title;  ///< "velocity [m/s]"; empty: no field
+  std::optional<Bar> bar;
+  std::vector<Swatch> swatches;
+};
+
+/// A colour an item.
+struct Coloring {
+  std::vector<Color> points, lines, triangles;
+  bool of_lines = false;           ///< the field is one of the lines
+  std::vector<bool> broken_lines;  ///< not to be drawn; empty: all are
+  Legend legend;
+};
+
+/// @throws InputError if the frame has no such field (lists what it has), or one of wrong length
+Coloring color_frame(const Frame& frame, const std::string& field,
+                     const std::optional<ValueRange>& range);
+
+}  // namespace breccia

@@ -1,0 +1,32 @@
+#pragma once
+// From depths and items to light and colour.
+
+#include <span>
+#include <vector>
+
+#include "io/picture/color_map.hpp"
+#include "io/picture/raster.hpp"
+
+namespace breccia {
+
+/// Colour and shape of an item in a pixel, before lighting.
+struct ItemLook {
+  Color color;
+  ScreenSphere sphere;  ///< radius 0: a flat item, which its colour already shades
+};
+
+/// Direction of the lamp from the scene: right, up, towards the viewer; of unit length.
+Vec3 lamp_direction();
+
+/// Lights every pixel: diffuse and a little gloss on spheres, darker where nearer things stand
+/// around a pixel (after C. Boucheny's eye-dome lighting, 2009), white where nothing is.
+/// `relief` is the difference in depth that counts as deep  [pixels]
+Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
+            const std::optional<ScreenClip>& clip, float relief, int threads);
+
+/// Softens the steps on the outlines of spheres: a pixel that an outline crosses takes part of the
+/// colour of either side, by the distance of its centre from the outline.
+void smooth_outlines(Image& image, const Canvas& canvas, std::span<const ItemLook> looks,
+                     int threads);
+
+}  // namespace breccia

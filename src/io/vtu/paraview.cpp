@@ -1,0 +1,99 @@
+#include "io/vtu/paraview.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+
+#include "exec/error.hpp"
+#include "io/vtu/vtu_reader.hpp"
+#include "io/whole_file.hpp"
+
+namespace breccia {
+namespace {
+
+constexpr const char* kinds[] = {"elements", "links"};
+
+std::string file_of(const char* kind, std::size_t frame) {
+  return fmt::format("fields/{}_{:04}.vtu", kind, frame);
+}
+
+/// ParaView's collection of files with times; several kinds become parts of one data set.
+std::string collection(const std::vector<double>& times, std::span<const char* const> parts) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
+  for (std::size_t frame = 0; frame < times.size(); ++frame) {
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      text += fmt::format(R"(<DataSet timestep="{}" group="" part="{}" file="{}"/>)", times[frame],
+                          part, file_of(parts[part], frame));
+      text += "\n";
+    }
+  }
+  return text + "</Collection>\n</VTKFile>\n";
+}
+
+}  // namespace
+
+ParaviewSeries::ParaviewSeries(const std::string& folder) : folder_(folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_ + "/fields", error);
+  if (error) throw IoError(folder_ + "/fields: cannot make the folder: " + error.message());
+}
+
+ParaviewSeries ParaviewSeries::resumed(const std::string& folder, double time) {
+  ParaviewSeries series(folder);
+  if (!std::filesystem::exists(folder + "/elements.pvd")) return series;
+  series.times_ = frame_times(folder);
+  series.listed_ = series.times_.size();
+  const auto later = std::upper_bound(series.times_.begin(), series.times_.end(), time);
+  series.drop_from(static_cast<std::size_t>(later - series.times_.begin()));
+  return series;
+}
+
+void ParaviewSeries::write(const FrameContents& frame) {
+  const auto same = std::lower_bound(times_.begin(), times_.end(), frame.time);
+  drop_from(static_cast<std::size_t>(same - times_.begin()));
+  const std::string start = folder_ + "/";
+  replace_file(start + file_of(kinds[0], times_.size()), frame.points);
+  replace_file(start + file_of(kinds[1], times_.size()), frame.lines);
+  times_.push_back(frame.time);
+  if (collections_are_due()) write_collections();
+}
+
+void ParaviewSeries::finish() {
+  if (listed_ != times_.size()) write_collections();
+}
+
+bool ParaviewSeries::collections_are_due() const {
+  constexpr std::size_t few = 256;
+  constexpr int share = 20;
+  return times_.size() <= few || Clock::now() - listed_at_ >= share * listing_;
+}
+
+void ParaviewSeries::write_collections() {
+  const Clock::time_point begin = Clock::now();
+  const std::span<const char* const> all(kinds);
+  replace_file(folder_ + "/elements.pvd", collection(times_, all.first(1)));
+  replace_file(folder_ + "/links.pvd", collection(times_, all.last(1)));
+  replace_file(folder_ + "/result.pvd", collection(times_, all));
+  listed_ = times_.size();
+  listed_at_ = Clock::now();
+  listing_ = listed_at_ - begin;
+}
+
+void ParaviewSeries::drop_from(std::size_t first) {
+  if (first >= times_.size()) return;
+  const std::size_t count = times_.size();
+  times_.resize(first);
+  write_collections();  // before the files go: at no moment does a collection name a missing file
+  for (std::size_t frame = first; frame < count; ++frame) {
+    for (const char* kind : kinds) {
+      std::error_code ignored;  // a file that stays behind harms nobody
+      std::filesystem::remove(folder_ + "/" + file_of(kind, frame), ignored);
+    }
+  }
+}
+
+}  // namespace breccia

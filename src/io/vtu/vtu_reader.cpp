@@ -1,0 +1,331 @@
+#include "io/vtu/vtu_reader.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <string_view>
+
+#include "exec/error.hpp"
+#include "io/whole_file.hpp"
+
+namespace breccia {
+namespace {
+
+/// One tag of an XML file and the text behind it, up to the next tag.
+struct Tag {
+  std::string_view name;  ///< "/Piece" for an end
+  std::map<std::string, std::string, std::less<>> attributes;
+  std::string_view text;
+};
+
+std::string unescaped(std::string_view text) {
+  constexpr std::pair<std::string_view, char> signs[] = {
+      {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}};
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    bool replaced = false;
+    for (const auto& [code, sign] : signs) {
+      if (text.substr(i, code.size()) != code) continue;
+      result += sign;
+      i += code.size();
+      replaced = true;
+      break;
+    }
+    if (!replaced) result += text[i++];
+  }
+  return result;
+}
+
+/// The XML that ParaviewSeries writes: no comments, no > inside attributes.
+std::vector<Tag> tags_of(std::string_view xml) {
+  std::vector<Tag> tags;
+  std::size_t open = xml.find('<');
+  while (open != std::string_view::npos) {
+    const std::size_t close = xml.find('>', open);
+    if (close == std::string_view::npos) break;
+    const std::size_t next = xml.find('<', close);
+    const std::string_view inside = xml.substr(open + 1, close - open - 1);
+    Tag tag;
+    tag.name = inside.substr(0, inside.find_first_of(" \n/", 1));
+    std::size_t place = inside.find(' ');
+    while (place != std::string_view::npos) {
+      const std::size_t start = inside.find_first_not_of(" \n", place);
+      const std::size_t quote = inside.find("=\"", place);
+      if (start == std::string_view::npos || quote == std::string_view::npos) break;
+      const std::size_t end = inside.find('"', quote + 2);
+      if (end == std::string_view::npos) break;
+      tag.attributes.emplace(inside.substr(start, quote - start),
+                             unescaped(inside.substr(quote + 2, end - quote - 2)));
+      place = end + 1;
+    }
+    tag.text = xml.substr(close + 1, next == std::string_view::npos ? next : next - close - 1);
+    tags.push_back(std::move(tag));
+    open = next;
+  }
+  return tags;
+}
+
+/// A .vtu file in memory.
+class VtuFile {
+ public:
+  explicit VtuFile(const std::string& path) : path_(path), content_(read_whole_file(path)) {
+    const std::string_view content(content_);
+    const std::size_t end = content.find("<AppendedData");
+    const std::size_t start = content.find('_', end);
+    if (end == std::string_view::npos || start == std::string_view::npos) fail("has no data");
+    tail_ = content.substr(start + 1);
+    read_tags(tags_of(content.substr(0, end)));
+  }
+  VtuFile(const VtuFile&) = delete;
+  VtuFile& operator=(const VtuFile&) = delete;
+
+  std::size_t points() const { return points_; }
+  std::size_t cells() const { return cells_; }
+
+  /// An array of a section as numbers of type T, converted from what the file holds.
+  template <class T>
+  std::vector<T> array(const std::string& section, const std::string& name,
+                       std::size_t items) const {
+    for (const Array& array : arrays_) {
+      if (array.section == section && array.name == name) return values<T>(array, items);
+    }
+    fail("has no " + section + " " + name);
+  }
+
+  std::vector<FrameField> fields(const std::string& section, std::size_t items) const {
+    std::vector<FrameField> result;
+    for (const Array& array : arrays_) {
+      if (array.section != section) continue;
+      result.push_back({array.name, array.unit, array.components, values<float>(array, items)});
+    }
+    return result;
+  }
+
+  const std::vector<std::string>& groups() const { return groups_; }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw IoError(path_ + ": cannot read: " + what);
+  }
+
+ private:
+  struct Array {
+    std::string section, name, type, unit;
+    int components;
+    std::size_t offset;
+  };
+
+  std::size_t number(const Tag& tag, const std::string& name, std::size_t otherwise) const {
+    const auto found = tag.attributes.find(name);
+    if (found == tag.attributes.end()) return otherwise;
+    std::size_t value = 0;
+    const std::string& text = found->second;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value > 1ULL << 40) {
+      fail("its " + name + " is damaged");
+    }
+    return value;
+  }
+
+  static std::string word(const Tag& tag, const std::string& name) {
+    const auto found = tag.attributes.find(name);
+    return found == tag.attributes.end() ? "" : found->second;
+  }
+
+  void read_tags(const std::vector<Tag>& tags) {
+    std::string section;
+    for (const Tag& tag : tags) {
+      if (tag.name == "Piece") {
+        points_ = number(tag, "NumberOfPoints", 0);
+        cells_ = number(tag, "NumberOfCells", 0);
+      } else if (tag.name == "DataArray") {
+        const std::size_t components = number(tag, "NumberOfComponents", 1);
+        if (components < 1 || components > 64) fail("its NumberOfComponents is damaged");
+        arrays_.push_back({section, word(tag, "Name"), word(tag, "type"), "",
+                           static_cast<int>(components), number(tag, "offset", 0)});
+      } else if (tag.name == "InformationKey" && !arrays_.empty()) {
+        arrays_.back().unit = unescaped(tag.text);
+      } else if (tag.name == "Array" && word(tag, "Name") == "groups") {
+        read_groups(tag.text);
+      } else if (tag.name == "PointData" || tag.name == "CellData" || tag.name == "Points" ||
+                 tag.name == "Cells" || tag.name == "FieldData") {
+        section = tag.name;
+      }
+    }
+  }
+
+  void read_groups(std::string_view codes) {
+    std::string name;
+    const char* place = codes.data();
+    const char* const end = codes.data() + codes.size();
+    while (place != end) {
+      unsigned code = 0;
+      const auto [stop, error] = std::from_chars(place, end, code);
+      if (error != std::errc()) {
+        ++place;
+        continue;
+      }
+      place = stop;
+      if (code != 0) {
+        name += static_cast<char>(code);
+        continue;
+      }
+      groups_.push_back(name);
+      name.clear();
+    }
+  }
+
+  std::uint64_t number_at(std::size_t place) const {
+    if (place > tail_.size() || tail_.size() - place < sizeof(std::uint64_t)) fail("it is cut off");
+    std::uint64_t value = 0;
+    std::memcpy(&value, tail_.data() + place, sizeof value);
+    return value;
+  }
+
+  /// Unpacks an array that must have `size` bytes.
+  std::string bytes_of(const Array& array, std::size_t size) const {
+    const std::uint64_t blocks = number_at(array.offset);
+    const std::uint64_t block_size = number_at(array.offset + 8);
+    const std::uint64_t header = 8 * (3 + blocks);
+    const bool fits = blocks <= tail_.size() / 8 && block_size > 0 && block_size < 1U << 30 &&
+                      (size + block_size - 1) / block_size == blocks &&
+                      size / 1100 <= tail_.size();  // zlib packs by 1032 at most
+    if (!fits) fail("array " + array.name + " is damaged");
+    std::string bytes(size, '\0');
+    std::size_t place = array.offset + header;
+    for (std::uint64_t block = 0; block < blocks; ++block) {
+      const std::uint64_t packed = number_at(array.offset + 8 * (3 + block));
+      if (place > tail_.size() || packed > tail_.size() - place) fail("it is cut off");
+      const std::size_t start = block * block_size;
+      const std::size_t wanted = std::min<std::size_t>(block_size, size - start);
+      auto unpacked = static_cast<uLongf>(wanted);
+      const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data() + start), &unpacked,
+                                    reinterpret_cast<const Bytef*>(tail_.data() + place),
+                                    static_cast<uLong>(packed));
+      if (status != Z_OK || unpacked != wanted) fail("array " + array.name + " is damaged");
+      place += packed;
+    }
+    return bytes;
+  }
+
+  template <class Stored, class T>
+  std::vector<T> converted(const Array& array, std::size_t count) const {
+    const std::string bytes = bytes_of(array, count * sizeof(Stored));
+    std::vector<T> result(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      Stored value;
+      std::memcpy(&value, bytes.data() + i * sizeof(Stored), sizeof(Stored));
+      result[i] = static_cast<T>(value);
+    }
+    return result;
+  }
+
+  template <class T>
+  std::vector<T> values(const Array& array, std::size_t items) const {
+    const std::size_t count = items * static_cast<std::size_t>(array.components);
+    if (array.type == "Float32") return converted<float, T>(array, count);
+    if (array.type == "Float64") return converted<double, T>(array, count);
+    if (array.type == "Int32") return converted<std::int32_t, T>(array, count);
+    if (array.type == "Int64") return converted<std::int64_t, T>(array, count);
+    fail("array " + array.name + " has numbers of type " + array.type);
+  }
+
+  std::string path_, content_;
+  std::string_view tail_;
+  std::size_t points_ = 0, cells_ = 0;
+  std::vector<Array> arrays_;
+  std::vector<std::string> groups_;
+};
+
+std::vector<std::int32_t> connectivity(const VtuFile& file, std::size_t points_a_cell) {
+  const auto numbers =
+      file.array<std::int32_t>("Cells", "connectivity", points_a_cell * file.cells());
+  for (const std::int32_t number : numbers) {
+    if (number < 0 || static_cast<std::size_t>(number) >= file.points()) {
+      file.fail("a cell names a point that does not exist");
+    }
+  }
+  return numbers;
+}
+
+/// Whether the cells are triangles; the first one speaks for all.
+bool has_triangles(const VtuFile& file) {
+  if (file.cells() == 0) return false;
+  return file.array<std::int32_t>("Cells", "offsets", file.cells()).front() == 3;
+}
+
+/// Times and files of a collection.
+struct Entry {
+  double time;
+  std::string file;
+};
+std::vector<Entry> entries_of(const std::string& folder, const std::string& collection) {
+  const std::string path = folder + "/" + collection;
+  const std::string content = read_whole_file(path);
+  std::vector<Entry> entries;
+  for (const Tag& tag : tags_of(content)) {
+    if (tag.name != "DataSet") continue;
+    const auto time = tag.attributes.find("timestep"), file = tag.attributes.find("file");
+    Entry entry{};
+    bool good = time != tag.attributes.end() && file != tag.attributes.end();
+    if (good) {
+      const std::string& text = time->second;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), entry.time);
+      good = error == std::errc() && std::isfinite(entry.time);
+      entry.file = file->second;
+    }
+    if (!good) throw IoError(path + ": cannot read: an entry has no time or no file");
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+}  // namespace
+
+std::vector<double> frame_times(const std::string& folder) {
+  std::vector<double> times;
+  for (const Entry& entry : entries_of(folder, "elements.pvd")) times.push_back(entry.time);
+  return times;
+}
+
+Frame read_frame(const std::string& folder, int index) {
+  const std::vector<Entry> entries = entries_of(folder, "elements.pvd");
+  if (index < 0 || static_cast<std::size_t>(index) >= entries.size()) {
+    throw InputError(fmt::format("frame {} does not exist: {} holds {} frames, counted from 0",
+                                 index, folder, entries.size()));
+  }
+  const auto number = static_cast<std::size_t>(index);
+  const VtuFile elements(folder + "/" + entries[number].file);
+  Frame frame;
+  frame.time = elements.array<double>("FieldData", "TIME", 1).front();
+  frame.step = elements.array<std::int64_t>("FieldData", "CYCLE", 1).front();
+  frame.groups = elements.groups();
+  const auto coordinates = elements.array<double>("Points", "Points", elements.points());
+  for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3) {
+    frame.position.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
+  }
+  frame.point_fields = elements.fields("PointData", elements.points());
+  if (!frame.point_fields.empty() && frame.point_fields.front().name == "radius") {
+    const std::vector<float>& radius = frame.point_fields.front().values;
+    frame.radius.assign(radius.begin(), radius.end());
+    frame.point_fields.erase(frame.point_fields.begin());
+  }
+  if (has_triangles(elements)) {
+    frame.triangles = connectivity(elements, 3);
+    frame.triangle_fields = elements.fields("CellData", elements.cells());
+  }
+  const std::vector<Entry> link_entries = entries_of(folder, "links.pvd");
+  if (number < link_entries.size()) {
+    const VtuFile links(folder + "/" + link_entries[number].file);
+    if (links.points() != elements.points()) links.fail("it has other points than the elements");
+    frame.lines = connectivity(links, 2);
+    frame.line_fields = links.fields("CellData", links.cells());
+  }
+  return frame;
+}
+
+}  // namespace breccia

@@ -1,0 +1,33 @@
+#pragma once
+// Rules for bodies that their keys cannot state one by one.
+
+#include <string>
+#include <vector>
+
+#include "dem/setup/config.hpp"
+#include "prepare/build_fdem.hpp"
+
+namespace breccia::prepare {
+
+inline constexpr std::size_t most_names =
+    32767;  ///< a model numbers bodies and materials in 16 bits
+
+/// Everything that keeps the bodies of a case from being built, one sentence each: names that lead
+/// nowhere, keys that a shape needs or cannot use, laws and shares that do not fit. No file is read
+/// and nothing is built.
+std::vector<std::string> body_problems(const dem::Config& config);
+std::vector<std::string> body_problems(
+    const std::vector<fdem::BodyConfig>& bodies,
+    const std::vector<fdem::DiscontinuityConfig>& discontinuities, const FdemNames& names);
+
+/// Bodies that share space by their keys alone. The built model is tested by its elements again.
+std::vector<std::string> overlap_problems(const std::vector<dem::BodyConfig>& bodies);
+/// Plates, beams and discs without holes and slots; discs if they overlap by more than an edge of
+/// their mesh, which lies within the circle.
+std::vector<std::string> overlap_problems(const std::vector<fdem::BodyConfig>& bodies);
+
+inline std::string overlap_problem(const std::string& a, const std::string& b) {
+  return "body." + a + " and body." + b + " overlap at the start; move one of them";
+}
+
+}  // namespace breccia::prepare

@@ -1,0 +1,115 @@
+#include "prepare/checks/check_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "dem/setup/materials.hpp"
+#include "fdem/setup/check_case.hpp"
+#include "prepare/checks/by_name.hpp"
+#include "prepare/checks/check_bodies.hpp"
+#include "prepare/checks/refusal.hpp"
+
+namespace breccia {
+namespace dem {
+namespace {
+
+class Check {
+ public:
+  explicit Check(const Config& config) : config_(config) {
+    for (const MaterialConfig& m : config_.materials) check(m);
+    for (const std::string& problem : prepare::body_problems(config)) add(problem);
+    for (const std::string& problem : prepare::overlap_problems(config.bodies)) add(problem);
+    for (const WallConfig& w : config_.walls)
+      if (!(norm(w.normal) > 0.0))
+        add("wall." + w.name + ".normal has length 0; it must point somewhere");
+    for (const SupportConfig& s : config_.supports) check(s);
+    for (const ProbeConfig& p : config_.probes) check(p);
+  }
+  std::vector<std::string> problems_;
+
+ private:
+  void add(const std::string& problem) { problems_.push_back(problem); }
+
+  void check(const MaterialConfig& m) {
+    const std::string path = "material." + m.name;
+    if (dem::kind_within(m.law) && m.poisson > 1.0 / m.alpha)
+      add(
+          fmt::format("{}.poisson = {} is above 1 / alpha = {:.4g}: links would have a negative "
+                      "shear stiffness",
+                      path, m.poisson, 1.0 / m.alpha));
+    if (m.law == "interface" && m.bond == "mc90" && !(m.slip1 <= m.slip2 && m.slip2 < m.slip3))
+      add(fmt::format("{}: slip1 <= slip2 < slip3 must hold (they are {}, {}, {} m)", path, m.slip1,
+                      m.slip2, m.slip3));
+  }
+
+  void check(const SupportConfig& s) {
+    static const std::set<std::string> words{"x", "y", "z", "spin_x", "spin_y", "spin_z", "all"};
+    if (prepare::item_named(config_.bodies, s.name) != nullptr)
+      add(fmt::format("support.{0} and body.{0} have one name; a probe could not tell them apart",
+                      s.name));
+    if (!s.on.empty() && prepare::item_named(config_.bodies, s.on) == nullptr)
+      add(fmt::format("support.{}.on = {:?} is not a body; there are: {}", s.name, s.on,
+                      prepare::all_names(config_.bodies)));
+    for (const std::string& word : s.fix)
+      if (!words.contains(word))
+        add(fmt::format(
+            "support.{}.fix: {:?} is no degree of freedom; allowed are x, y, z, spin_x, spin_y, "
+            "spin_z, all",
+            s.name, word));
+    if (!(s.min.x <= s.max.x && s.min.y <= s.max.y && s.min.z <= s.max.z))
+      add("support." + s.name + ": min must not be above max");
+  }
+
+  void check(const ProbeConfig& p) {
+    if (p.on.empty() || prepare::item_named(config_.bodies, p.on) != nullptr ||
+        prepare::item_named(config_.supports, p.on) != nullptr)
+      return;
+    if (prepare::item_named(config_.walls, p.on) != nullptr) return check_wall_probe(p);
+    add(fmt::format("probe.{}.on = {:?} is neither a body ({}) nor a support ({}) nor a wall ({})",
+                    p.name, p.on, prepare::all_names(config_.bodies),
+                    prepare::all_names(config_.supports), prepare::all_names(config_.walls)));
+  }
+
+  void check_wall_probe(const ProbeConfig& p) {
+    if (prepare::item_named(config_.bodies, p.on) != nullptr ||
+        prepare::item_named(config_.supports, p.on) != nullptr)
+      add(fmt::format(
+          "wall.{0} has the name of a body or support; a probe could not tell them apart", p.on));
+    const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
+    if (kind != Quantity::Kind::force && kind != Quantity::Kind::position &&
+        kind != Quantity::Kind::velocity && kind != Quantity::Kind::speed)
+      add(
+          fmt::format("probe.{}.quantity = {:?} is none of a wall; allowed are position, velocity, "
+                      "force (with _x, _y, _z) and speed",
+                      p.name, p.quantity));
+    if (p.reduce != "mean" && p.reduce != "sum")
+      add(fmt::format("probe.{}.reduce = {:?}: a wall has one value; leave the key out", p.name,
+                      p.reduce));
+  }
+
+  const Config& config_;
+};
+
+}  // namespace
+
+void check_case(const Config& config) {
+  prepare::refuse(Check(config).problems_, "in the case");
+}
+
+}  // namespace dem
+
+namespace fdem {
+
+void check_case(const Config& config) {
+  std::vector<std::string> problems = case_problems(config);
+  for (const auto& more :
+       {prepare::body_problems(config.bodies, config.discontinuities, names_of(config)),
+        prepare::overlap_problems(config.bodies)})
+    problems.insert(problems.end(), more.begin(), more.end());
+  prepare::refuse(problems, "in the case");
+}
+
+}  // namespace fdem
+}  // namespace breccia

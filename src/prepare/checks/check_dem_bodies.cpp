@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "dem/setup/materials.hpp"
+#include "prepare/checks/by_name.hpp"
+#include "prepare/checks/check_bodies.hpp"
+#include "prepare/packing/rebar.hpp"
+
+namespace breccia::prepare {
+namespace {
+
+using dem::BodyConfig;
+using dem::Config;
+using dem::MaterialConfig;
+
+/// The distance of x from an interval; 0 inside.  [m]
+double beyond(double x, double low, double high) {
+  return x < low ? low - x : x > high ? x - high : 0.0;
+}
+bool round(const BodyConfig& b) {
+  return b.shape == "sphere" || b.shape == "element";
+}
+bool has_shape(const BodyConfig& b) {
+  return round(b) || b.shape == "box" || b.shape == "cylinder";
+}
+/// Half of the height of a box or cylinder.  [m]
+double half_height(const BodyConfig& b) {
+  return 0.5 * (b.shape == "box" ? b.size.z : b.length);
+}
+/// The space between two upright bodies, each a rectangle or a disc times a height, or between
+/// one of them and a ball; below 0 they share space by so much.  [m]
+double gap(const BodyConfig& a, const BodyConfig& b) {
+  if (round(b) && !round(a)) return gap(b, a);
+  const Vec3 apart = b.center - a.center;
+  if (round(b)) return norm(apart) - a.radius - b.radius;
+  // In the plane: corners of rectangles are sharp, so a disc's radius is taken off last.
+  const double half_x =
+      (a.shape == "box" ? 0.5 * a.size.x : 0.0) + (b.shape == "box" ? 0.5 * b.size.x : 0.0);
+  const double half_y =
+      (a.shape == "box" ? 0.5 * a.size.y : 0.0) + (b.shape == "box" ? 0.5 * b.size.y : 0.0);
+  const double dx = beyond(apart.x, -half_x, half_x), dy = beyond(apart.y, -half_y, half_y);
+  const double across = std::sqrt(dx * dx + dy * dy);
+  const double disc_b = b.shape == "cylinder" ? b.radius : 0.0;
+  if (round(a)) {
+    const double aside = std::max(across - disc_b, 0.0);
+    const double above = beyond(apart.z, -half_height(b), half_height(b));
+    return std::sqrt(aside * aside + above * above) - a.radius;
+  }
+  const double along = std::abs(apart.z) - half_height(a) - half_height(b);
+  if (a.shape == "box" && b.shape == "box")
+    return std::max({std::abs(apart.x) - half_x, std::abs(apart.y) - half_y, along});
+  const double disc_a = a.shape == "cylinder" ? a.radius : 0.0;
+  return std::max(across - disc_a - disc_b, along);
+}
+double extent(const BodyConfig& b) {
+  return norm(b.size) + b.radius + b.length + norm(b.center);
+}
+
+class DemBodyChecks {
+ public:
+  explicit DemBodyChecks(const Config& config) : config_(config) {
+    if (config.bodies.empty())
+      problems_.push_back("body: the case has no elements; at least one [[body]] is needed");
+    if (config.bodies.size() > most_names || config.materials.size() > most_names)
+      problems_.push_back(
+          fmt::format("the case has {} bodies and {} materials; at most {} of each are allowed",
+                      config.bodies.size(), config.materials.size(), most_names));
+    std::set<std::string> seen;
+    for (const BodyConfig& b : config.bodies) {
+      path_ = "body." + b.name;
+      require(seen.insert(b.name).second, ": another body has this name");
+      check(b);
+    }
+  }
+  std::vector<std::string> problems_;
+
+ private:
+  template <class... Args>
+  void require(bool holds, fmt::format_string<Args...> text, Args&&... args) {
+    if (!holds) problems_.push_back(path_ + fmt::format(text, std::forward<Args>(args)...));
+  }
+  void check(const BodyConfig& b) {
+    check_material(b);
+    if (b.shape == "rebar") return check_rebar(b);
+    const bool packed = b.shape == "box" || b.shape == "sphere" || b.shape == "cylinder";
+    require(!packed || b.pack.count >= 1,
+            ".pack.count is missing: how many elements fill the body?");
+    require(b.shape != "box" || (b.size.x > 0.0 && b.size.y > 0.0 && b.size.z > 0.0),
+            ".size needs three lengths above 0");
+    require(b.shape == "box" || b.shape == "file" || b.radius > 0.0, ".radius must be above 0");
+    require(b.shape != "cylinder" || b.length > 0.0, ".length must be above 0");
+    require(b.shape != "file" || !b.file.empty(), ".file is missing: a CSV of x,y,z,radius");
+    const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
+    const bool bulk =
+        b.shape == "file" && material != nullptr && dem::kind_within(material->law).has_value();
+    require(!bulk || b.bulk_volume() > 0.0,
+            ".volume is missing: spheres of concrete do not fill space, so their mass is density "
+            "times the volume that they stand for; give volume in m3, or the size of a box");
+    const bool even = material != nullptr && material->fabric == "even";
+    require(b.shape != "file" || !even || b.size.x * b.size.y * b.size.z > 0.0,
+            ".size is missing: fabric = \"even\" of {} asks how deep elements lie in their box",
+            b.material);
+  }
+
+  void check_material(const BodyConfig& b) {
+    const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
+    require(material != nullptr, ".material = {:?} is not a material; there are: {}", b.material,
+            prepare::all_names(config_.materials));
+    if (material == nullptr) return;
+    require(material->fracture_energy == 0.0 || material->tensile_strength > 0.0,
+            ": fracture_energy of {} needs a tensile_strength above 0", b.material);
+    if (b.shape == "rebar")
+      require(material->law == "steel", ": bars need a material of law steel, {} has {}",
+              b.material, material->law);
+    else
+      require(dem::kind_within(material->law).has_value() || material->law == "grain",
+              ": elements need a material of law {}grain, {} has {}", dem::laws_within(),
+              b.material, material->law);
+  }
+
+  void check_rebar(const BodyConfig& b) {
+    require(norm(b.velocity) == 0.0 && norm(b.spin) == 0.0,
+            ": bars move with the body they reinforce; give velocity and spin there");
+    const MaterialConfig* bond = prepare::item_named(config_.materials, b.rebar.interface_law);
+    require(bond != nullptr && bond->law == "interface",
+            ".rebar.interface = {:?} is not a material of law interface; there are: {}",
+            b.rebar.interface_law, prepare::all_names(config_.materials));
+    const BodyConfig* host = prepare::item_named(config_.bodies, b.rebar.in);
+    const bool drawn = !b.rebar.drawn.empty();
+    const bool fits =
+        host != nullptr &&
+        (host->shape == "box" || (drawn && (host->shape == "sphere" || host->shape == "cylinder" ||
+                                            host->shape == "file")));
+    require(fits, ".rebar.in = {:?} is not a {} body; there are: {}", b.rebar.in,
+            drawn ? "packed" : "box", prepare::all_names(config_.bodies));
+    if (!fits) return;
+    const auto problems = bar_problems(b.rebar, *host);
+    for (const std::string& problem : problems) require(false, ".rebar: {}", problem);
+    if (!problems.empty()) return;
+    const std::vector<Chain> own = chains_through(b.rebar, host->size);
+    if (drawn)
+      for (const std::string& problem : crossing_problems(own, own))
+        require(false, ".rebar: {}", problem);
+    for (const BodyConfig& other : config_.bodies) {
+      if (&other == &b) break;
+      if (other.shape != "rebar" || other.rebar.in != b.rebar.in ||
+          !bar_problems(other.rebar, *host).empty())
+        continue;
+      for (const std::string& problem :
+           crossing_problems(own, chains_through(other.rebar, host->size)))
+        require(false, ".rebar: with body.{}: {}", other.name, problem);
+    }
+  }
+
+  const Config& config_;
+  std::string path_;
+};
+
+}  // namespace
+
+std::vector<std::string> body_problems(const Config& config) {
+  return DemBodyChecks(config).problems_;
+}
+
+std::vector<std::string> overlap_problems(const std::vector<BodyConfig>& bodies) {
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      const BodyConfig &a = bodies[i], &b = bodies[j];
+      // Bars lie in their host; the spheres of a file are compared when they have been read.
+      if (!has_shape(a) || !has_shape(b)) continue;
+      if (gap(a, b) < -1e-9 * (extent(a) + extent(b)))
+        problems.push_back(overlap_problem(a.name, b.name));
+    }
+  return problems;
+}
+
+}  // namespace breccia::prepare

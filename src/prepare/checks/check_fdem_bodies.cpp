@@ -1,0 +1,202 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "prepare/checks/check_bodies.hpp"
+
+namespace breccia::prepare {
+namespace {
+
+using fdem::BodyConfig;
+using fdem::DiscontinuityConfig;
+
+constexpr double most_triangles = 2e8;
+
+std::string list_of(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool is_plain(const BodyConfig& b) {
+  const bool plain = b.shape == "plate" || b.shape == "beam" || b.shape == "disc";
+  const bool slotted = std::any_of(b.notches.begin(), b.notches.end(),
+                                   [](const fdem::NotchConfig& n) { return n.width > 0.0; });
+  return plain && b.holes.empty() && !slotted;
+}
+
+/// The space between two plain bodies; below 0 they share space by so much.  [m]
+double gap(const BodyConfig& a, const BodyConfig& b) {
+  const Vec2 apart = b.center - a.center;
+  if (a.shape == "disc" && b.shape == "disc") return norm(apart) - a.radius - b.radius;
+  Vec2 half{};  // of the rectangles
+  for (const BodyConfig* each : {&a, &b})
+    if (each->shape != "disc") half += 0.5 * each->size;
+  const Vec2 beyond{std::abs(apart.x) - half.x, std::abs(apart.y) - half.y};
+  if (a.shape != "disc" && b.shape != "disc") return std::max(beyond.x, beyond.y);
+  const double radius = a.shape == "disc" ? a.radius : b.radius;
+  return norm(Vec2{std::max(beyond.x, 0.0), std::max(beyond.y, 0.0)}) - radius;
+}
+
+class BodyChecks {
+ public:
+  BodyChecks(const std::vector<BodyConfig>& bodies,
+             const std::vector<DiscontinuityConfig>& discontinuities, const FdemNames& names)
+      : names_(names) {
+    if (bodies.empty())
+      problems_.push_back("body: the case has no elements; at least one [[body]] is needed");
+    if (bodies.size() > most_names || names.materials.size() > most_names ||
+        names.joints.size() > most_names)
+      problems_.push_back(fmt::format(
+          "the case has {} bodies, {} materials and {} joint laws; at most {} of each are allowed",
+          bodies.size(), names.materials.size(), names.joints.size(), most_names));
+    std::set<std::string> seen;
+    for (const BodyConfig& b : bodies) {
+      path_ = "body." + b.name;
+      require(seen.insert(b.name).second, "another body has this name");
+      check(b);
+    }
+    for (const DiscontinuityConfig& d : discontinuities) check(d);
+  }
+  std::vector<std::string> problems_;
+
+ private:
+  template <class... Args>
+  void require(bool holds, fmt::format_string<Args...> text, Args&&... args) {
+    if (!holds) problems_.push_back(path_ + ": " + fmt::format(text, std::forward<Args>(args)...));
+  }
+  void require_material(const char* key, const std::string& name) {
+    const auto& all = names_.materials;
+    require(std::find(all.begin(), all.end(), name) != all.end(),
+            "{} = \"{}\" is not a material; there are: {}", key, name, list_of(all));
+  }
+
+  void check(const BodyConfig& b) {
+    require_material("material", b.material);
+    const bool rectangle = b.shape == "plate" || b.shape == "beam";
+    const bool from_file = b.shape == "outline" || b.shape == "geo" || b.shape == "mesh";
+    const bool cut = rectangle || b.shape == "disc" || b.shape == "ring" || b.shape == "outline";
+    double area = 0.0;
+    if (rectangle) {
+      require(b.size.x > 0.0 && b.size.y > 0.0, "shape {} needs size, two lengths above 0",
+              b.shape);
+      area = b.size.x * b.size.y;
+    }
+    if (b.shape == "disc" || b.shape == "ring") {
+      require(b.radius > 0.0, "shape {} needs a radius above 0", b.shape);
+      area = 3.2 * b.radius * b.radius;
+    }
+    if (b.shape == "ring")
+      require(b.inner_radius > 0.0 && b.inner_radius < b.radius,
+              "inner_radius = {} m must be between 0 and radius = {} m", b.inner_radius, b.radius);
+    if (b.shape == "hexagons") {
+      require(b.hexagons.count > 0 && b.hexagons.side > 0.0,
+              "shape hexagons needs the table [body.hexagons] with count and side");
+      require((b.size.x > 0.0) == (b.size.y > 0.0),
+              "size must be two lengths above 0, or left out");
+    } else if (b.shape != "geo" && b.shape != "mesh") {
+      require(b.mesh_size > 0.0, "shape {} needs mesh_size, the edge length of its triangles",
+              b.shape);
+      if (b.mesh_size > 0.0)
+        require(area / (0.433 * b.mesh_size * b.mesh_size) < most_triangles,
+                "mesh_size = {} m would give more than {:.0e} triangles", b.mesh_size,
+                most_triangles);
+    }
+    if (from_file) check_file(b);
+    require(from_file || b.file.empty(), "shape {} reads no file", b.shape);
+    require(b.parts.empty() || b.shape == "geo" || b.shape == "mesh",
+            "parts are of a mesh or geo file; shape is {}", b.shape);
+    if (b.structured) {
+      require(rectangle || b.shape == "disc",
+              "structured = true is for plate, beam and disc, not for {}", b.shape);
+      require(b.holes.empty(), "a structured mesh can have no holes");
+      for (const fdem::NotchConfig& n : b.notches)
+        require(n.width == 0.0, "a structured mesh can have open cracks (width 0), but no slots");
+    }
+    require(cut || b.holes.empty(), "a body of shape {} can have no holes", b.shape);
+    check_notches(b, cut);
+    if (!b.grains.kind.empty()) check_grains(b);
+  }
+
+  void check_file(const BodyConfig& b) {
+    const char* ending = b.shape == "outline" ? ".csv" : b.shape == "geo" ? ".geo" : ".msh or .inp";
+    const bool fits = b.shape == "outline" ? b.file.ends_with(".csv")
+                      : b.shape == "geo"   ? b.file.ends_with(".geo")
+                                           : b.file.ends_with(".msh") || b.file.ends_with(".inp");
+    require(fits, "shape {} needs file, the name of a {} file; it is \"{}\"", b.shape, ending,
+            b.file);
+  }
+
+  void check_notches(const BodyConfig& b, bool cut) {
+    for (std::size_t k = 0; k < b.notches.size(); ++k) {
+      const fdem::NotchConfig& n = b.notches[k];
+      require(norm(n.to - n.from) > 0.0, "notch[{}] has no length: from and to are one point", k);
+      require(cut || n.width == 0.0,
+              "notch[{}] has a width; a body of shape {} can only have open cracks (width 0)", k,
+              b.shape);
+    }
+  }
+
+  void check_grains(const BodyConfig& b) {
+    const fdem::GrainsConfig& g = b.grains;
+    require(!g.minerals.empty(), "grains need at least one [[body.grains.mineral]]");
+    require(g.kind != "voronoi" || g.size > 0.0, "grains.size must be above 0 for Voronoi grains");
+    const bool picture = g.kind == "picture";
+    require(!picture || g.file.ends_with(".png"), "grains.file must name a .png file; it is \"{}\"",
+            g.file);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < g.minerals.size(); ++k) {
+      const fdem::MineralConfig& m = g.minerals[k];
+      require_material(fmt::format("grains.mineral[{}].material", k).c_str(), m.material);
+      sum += m.fraction;
+      const bool is_color =
+          m.color.size() == 6 &&
+          m.color.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+      require(!picture || is_color,
+              "grains.mineral[{}].color = \"{}\" is no colour; needed is rrggbb, as in \"ff8800\"",
+              k, m.color);
+    }
+    require(picture || std::abs(sum - 1.0) <= 1e-6,
+            "the fractions of grains add up to {:.6g}; they must add up to 1", sum);
+  }
+
+  void check(const DiscontinuityConfig& d) {
+    path_ = "discontinuity." + d.name;
+    require(d.points.size() >= 2, "points must be two or more points; there are {}",
+            d.points.size());
+    for (std::size_t k = 1; k < d.points.size(); ++k)
+      require(norm(d.points[k] - d.points[k - 1]) > 0.0, "points {} and {} are one point", k - 1,
+              k);
+    const auto& joints = names_.joints;
+    if (d.kind == "cohesive")
+      require(std::find(joints.begin(), joints.end(), d.material) != joints.end(),
+              "material = \"{}\" is not a joint law; there are: {}", d.material, list_of(joints));
+  }
+
+  const FdemNames& names_;
+  std::string path_;
+};
+
+}  // namespace
+
+std::vector<std::string> body_problems(const std::vector<BodyConfig>& bodies,
+                                       const std::vector<DiscontinuityConfig>& discontinuities,
+                                       const FdemNames& names) {
+  return BodyChecks(bodies, discontinuities, names).problems_;
+}
+
+std::vector<std::string> overlap_problems(const std::vector<BodyConfig>& bodies) {
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      const BodyConfig &a = bodies[i], &b = bodies[j];
+      if (!is_plain(a) || !is_plain(b)) continue;
+      double tolerance = 1e-9 * (norm(a.size) + norm(b.size) + norm(a.center) + norm(b.center));
+      for (const BodyConfig* each : {&a, &b})
+        if (each->shape == "disc") tolerance = std::max(tolerance, each->mesh_size);
+      if (gap(a, b) < -tolerance) problems.push_back(overlap_problem(a.name, b.name));
+    }
+  return problems;
+}
+
+}  // namespace breccia::prepare

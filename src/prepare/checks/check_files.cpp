@@ -1,0 +1,80 @@
+#include <filesystem>
+#include <functional>
+
+#include "io/picture/picture.hpp"
+#include "io/whole_file.hpp"
+#include "prepare/checks/check_case.hpp"
+#include "prepare/checks/refusal.hpp"
+#include "prepare/meshing/body_mesh.hpp"
+#include "prepare/meshing/mesh_check.hpp"
+#include "prepare/meshing/mesh_file.hpp"
+#include "prepare/packing/spheres_file.hpp"
+
+namespace breccia::prepare {
+namespace {
+
+class FileChecks {
+ public:
+  explicit FileChecks(const std::string& case_folder) : folder_(case_folder) {}
+
+  /// Reads a file of a body and notes what is wrong with it.
+  void check(const std::string& body, const std::string& file,
+             const std::function<void(const std::string& path)>& read) {
+    const auto note = [&](const Error& error) {
+      problems_.push_back("body." + body + ": " + error.what());
+    };
+    try {
+      read((folder_ / file).string());
+    } catch (const IoError& error) {
+      note(error);
+    } catch (const InputError& error) {
+      note(error);
+      wrong_ = true;
+    }
+  }
+  void refuse_all() const {
+    try {
+      refuse(problems_, "with the files of the case");
+    } catch (const InputError& error) {
+      if (wrong_) throw;
+      throw IoError(error.what());
+    }
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::string> problems_;
+  bool wrong_ = false;  ///< in a file that can be read
+};
+
+void read_body(const fdem::BodyConfig& body, const std::string& path) {
+  if (body.shape == "outline") read_outline(path);
+  if (body.shape == "geo") read_whole_file(path);
+  if (body.shape != "mesh") return;
+  const Mesh mesh = read_mesh(path, body.seams == "open");
+  check_mesh(mesh);
+  triangles_of(body, mesh);
+}
+
+}  // namespace
+
+void check_files(const dem::Config& config, const std::string& case_folder) {
+  FileChecks files(case_folder);
+  for (const dem::BodyConfig& body : config.bodies)
+    if (body.shape == "file")
+      files.check(body.name, body.file, [](const std::string& path) { read_spheres(path); });
+  files.refuse_all();
+}
+
+void check_files(const fdem::Config& config, const std::string& case_folder) {
+  FileChecks files(case_folder);
+  for (const fdem::BodyConfig& body : config.bodies) {
+    if (!body.file.empty())
+      files.check(body.name, body.file, [&](const std::string& path) { read_body(body, path); });
+    if (body.grains.kind == "picture")
+      files.check(body.name, body.grains.file, [](const std::string& path) { read_png(path); });
+  }
+  files.refuse_all();
+}
+
+}  // namespace breccia::prepare

@@ -1,0 +1,209 @@
+#include "prepare/packing/soft_spheres.hpp"
+
+#include <cmath>
+
+#include "prepare/packing/cell_grid.hpp"
+
+namespace breccia::prepare {
+namespace {
+
+// FIRE, with the constants of Bitzek et al. 2006.
+constexpr double longest_step = 0.6, first_step = 0.1;
+constexpr double faster = 1.1, slower = 0.5;
+constexpr double first_mixing = 0.1, mixing_decay = 0.99;
+constexpr int patience = 5;
+
+constexpr double wall_stiffness = 2.0;
+
+double mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+template <class T>
+void reorder(std::vector<T>& items, const std::vector<Index>& order) {
+  std::vector<T> sorted;
+  sorted.reserve(items.size());
+  for (const Index i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);
+  items.swap(sorted);
+}
+
+}  // namespace
+
+SoftSpheres::SoftSpheres(const PackingTask& task, std::vector<Vec3> position,
+                         std::vector<double> radius)
+    : task_(task),
+      position_(std::move(position)),
+      velocity_(position_.size()),
+      force_(position_.size()),
+      radius_(std::move(radius)),
+      margin_(0.4 * mean(radius_)),
+      dt_(first_step),
+      mixing_(first_mixing) {}
+
+double SoftSpheres::push() {
+  if (!neighbours_hold()) find_neighbours();
+  energy_ = worst_ = 0.0;
+  for (Vec3& f : force_) f = {};
+  push_pairs();
+  push_walls();
+  push_obstacles();
+  return worst_;
+}
+
+/// Two spheres that were further apart than the margin cannot touch before one of them has
+/// travelled half of it.
+bool SoftSpheres::neighbours_hold() const {
+  if (searched_.empty()) return false;
+  double furthest = 0.0;
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    const Vec3 travel = position_[i] - searched_[i];
+    furthest = std::max(furthest, dot(travel, travel));
+  }
+  return 4.0 * furthest < margin_ * margin_;
+}
+
+void SoftSpheres::find_neighbours() {
+  const CellGrid grid(position_, 2.0 * mean(radius_) + margin_);
+  // Memory follows space; from here on sphere i is the i-th of the grid's order.
+  const std::vector<Index> order = grid.order();
+  std::vector<Index> rank(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    rank[static_cast<std::size_t>(order[k])] = static_cast<Index>(k);
+  reorder(position_, order);
+  reorder(velocity_, order);
+  reorder(radius_, order);
+
+  const std::size_t count = position_.size();
+  first_.assign(count + 1, 0);
+  neighbour_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 here = position_[i];
+    const double mine = radius_[i];
+    // Each pair is found from its larger sphere.
+    grid.visit(here, 2.0 * mine + margin_, [&](Index item) {
+      const Index j = rank[static_cast<std::size_t>(item)];
+      const double other = radius_[static_cast<std::size_t>(j)];
+      if (other > mine || (other == mine && j >= static_cast<Index>(i))) return;
+      const Vec3 apart = position_[static_cast<std::size_t>(j)] - here;
+      const double reach = mine + other + margin_;
+      if (dot(apart, apart) < reach * reach) neighbour_.push_back(j);
+    });
+    first_[i + 1] = static_cast<Index>(neighbour_.size());
+  }
+
+  near_obstacle_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < task_.obstacles.size(); ++k) {
+      const Capsule& obstacle = task_.obstacles[k];
+      if (norm(from_axis(obstacle, position_[i])) < radius_[i] + obstacle.radius + margin_)
+        near_obstacle_.push_back({static_cast<Index>(i), static_cast<Index>(k)});
+    }
+  }
+  searched_ = position_;
+}
+
+void SoftSpheres::push_pairs() {
+  const std::size_t count = position_.size();
+  double energy = 0.0, worst = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 here = position_[i];
+    const double mine = radius_[i];
+    Vec3 total = force_[i];
+    for (Index k = first_[i]; k < first_[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(neighbour_[static_cast<std::size_t>(k)]);
+      const Vec3 apart = position_[j] - here;
+      const double squared = dot(apart, apart);
+      const double touching = mine + radius_[j];
+      if (squared >= touching * touching) continue;
+      const double distance = std::sqrt(squared);
+      const double overlap = touching - distance;
+      energy += 0.5 * overlap * overlap;
+      // A neighbour is never the larger of the two.
+      if (overlap > worst * radius_[j]) worst = overlap / radius_[j];
+      const Vec3 push = distance > 0.0 ? (overlap / distance) * apart : Vec3{overlap, 0.0, 0.0};
+      total -= push;
+      force_[j] += push;
+    }
+    force_[i] = total;
+  }
+  energy_ += energy;
+  worst_ = std::max(worst_, worst);
+}
+
+void SoftSpheres::push_walls() {
+  const Container& c = task_.container;
+  const Vec3 half = c.half();
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    const Vec3 p = position_[i];
+    const double r = radius_[i];
+    const auto wall = [&](double depth, const Vec3& inwards) {
+      if (depth <= 0.0) return;
+      energy_ += 0.5 * wall_stiffness * depth * depth;
+      worst_ = std::max(worst_, 2.0 * depth / r);
+      force_[i] += (wall_stiffness * depth) * inwards;
+    };
+    if (c.shape == Container::Shape::box) {
+      wall(r - half.x - p.x, {1.0, 0.0, 0.0});
+      wall(r - half.x + p.x, {-1.0, 0.0, 0.0});
+      wall(r - half.y - p.y, {0.0, 1.0, 0.0});
+      wall(r - half.y + p.y, {0.0, -1.0, 0.0});
+    } else {
+      const Vec3 out{p.x, p.y, c.shape == Container::Shape::sphere ? p.z : 0.0};
+      const double free = c.radius - r;
+      const double squared = dot(out, out);
+      if (squared > free * free) {
+        const double distance = std::sqrt(squared);
+        wall(distance - free, (-1.0 / distance) * out);
+      }
+    }
+    if (c.shape != Container::Shape::sphere) {
+      wall(r - half.z - p.z, {0.0, 0.0, 1.0});
+      wall(r - half.z + p.z, {0.0, 0.0, -1.0});
+    }
+  }
+}
+
+void SoftSpheres::push_obstacles() {
+  for (const NearObstacle& pair : near_obstacle_) {
+    const auto i = static_cast<std::size_t>(pair.sphere);
+    const Capsule& obstacle = task_.obstacles[static_cast<std::size_t>(pair.obstacle)];
+    const Vec3 out = from_axis(obstacle, position_[i]);
+    const double distance = norm(out);
+    const double depth = radius_[i] + obstacle.radius - distance;
+    if (depth <= 0.0 || distance <= 0.0) continue;
+    energy_ += 0.5 * wall_stiffness * depth * depth;
+    worst_ = std::max(worst_, 2.0 * depth / radius_[i]);
+    force_[i] += (wall_stiffness * depth / distance) * out;
+  }
+}
+
+void SoftSpheres::move() {
+  double power = 0.0, force_squared = 0.0, speed_squared = 0.0;
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    power += dot(force_[i], velocity_[i]);
+    force_squared += dot(force_[i], force_[i]);
+    speed_squared += dot(velocity_[i], velocity_[i]);
+  }
+  double keep = 1.0, turn = 0.0;
+  if (power > 0.0) {
+    keep = 1.0 - mixing_;
+    turn = force_squared > 0.0 ? mixing_ * std::sqrt(speed_squared / force_squared) : 0.0;
+    if (++downhill_ > patience) {
+      dt_ = std::min(dt_ * faster, longest_step);
+      mixing_ *= mixing_decay;
+    }
+  } else {
+    keep = 0.0;
+    dt_ *= slower;
+    mixing_ = first_mixing;
+    downhill_ = 0;
+  }
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    velocity_[i] = keep * velocity_[i] + (turn + dt_) * force_[i];
+    position_[i] += dt_ * velocity_[i];
+  }
+}
+
+}  // namespace breccia::prepare

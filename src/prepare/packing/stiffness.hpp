@@ -1,0 +1,29 @@
+#pragma once
+// How stiff packed bodies are: sections of links that make up for missing neighbours, and Young's
+// modulus as it is measured.
+
+#include "dem/setup/config.hpp"
+#include "dem/setup/model.hpp"
+
+namespace breccia::prepare {
+
+/// Young's modulus and Poisson's ratio of a body  [Pa, -]
+struct Elasticity {
+  double young = 0.0, poisson = 0.0;
+};
+
+/// Elasticity of a box or cylinder whose ends are pulled apart (docs/theory.md, fabric): the
+/// longest edge of a box, the axis of a cylinder; sides are free, moments act, links are intact. E
+/// is the force at the ends over section and strain of the middle half. No bars.
+Elasticity measured_elasticity(const dem::Model& model, const dem::Config& config, int body);
+
+/// Of any body, to 7 %: that of links that all follow one strain (Voigt), times a constant.
+Elasticity estimated_elasticity(const dem::Model& model, const dem::Config& config, int body);
+
+/// Measures the bodies of concrete (Model::stiffness): boxes and cylinders of up to 20,000 elements
+/// always, others where their material has stiffness = "measured"; it then sets the factors on the
+/// stiffness of their links, too. Sets the sections of links (Model::Link::share) of bodies whose
+/// material has fabric = "even".
+void set_stiffness(dem::Model& model, const dem::Config& config);
+
+}  // namespace breccia::prepare

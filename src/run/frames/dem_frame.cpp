@@ -1,0 +1,161 @@
+// A DEM world as output sees it.
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include "core/on_host.hpp"
+#include "dem/observe.hpp"
+#include "run/method/dem_method.hpp"
+
+namespace breccia {
+namespace {
+
+using namespace dem;
+
+/// How many elements and links there are in all, and bodies.
+struct Totals {
+  std::array<std::int64_t, link_kinds + 1> items;  ///< links by kind, then elements  [-]
+  std::size_t bodies;
+};
+
+/// @param own  of this rank, as in Totals::items  [-]
+Totals totals(const Domain& domain, std::array<std::int64_t, link_kinds + 1> own,
+              std::int16_t last_body) {
+  double last = last_body;
+  if (!domain.single_rank()) {
+    domain.ranks->add_up(own);
+    last = -domain.ranks->least(-last);
+  }
+  return {own, static_cast<std::size_t>(last + 1.0)};
+}
+
+/// Elements of a frame, and places of lines that end on them.
+class DemFrame {
+ public:
+  explicit DemFrame(const dem::World& w) : w_(w), elements_(w.elements, w.exec.space) {}
+
+  FramePart made() {
+    const Elements& e = *elements_;
+    for (Index i = 0; i < e.size(); ++i)
+      if (w_.domain.owns(i)) own_.push_back(i);
+    std::int16_t last_body = -1;
+    for (const Index i : own_) last_body = std::max(last_body, e.group.data()[i]);
+    std::array<std::int64_t, link_kinds + 1> items{};
+    w_.each_set([&](const auto& set) { items[static_cast<std::size_t>(set.kind)] = own(set); });
+    items.back() = static_cast<std::int64_t>(own_.size());
+    const Totals all = totals(w_.domain, items, last_body);
+    Frame& f = part_.frame;
+    f.step = w_.step;
+    f.time = w_.time;
+    for (std::size_t g = 0; g < all.bodies; ++g) f.groups.push_back(w_.sets[g].name);
+    add_elements();
+    add_links(all);
+    FramePlaces& places = part_.places;
+    places.whole = w_.domain.single_rank();
+    places.has_spheres = true;
+    places.points = all.items.back();
+    places.lines = std::accumulate(all.items.begin(), all.items.end() - 1, std::int64_t{0});
+    return std::move(part_);
+  }
+
+ private:
+  template <class Links>
+  std::int64_t own(const Links& links) const {
+    if (w_.domain.single_rank()) return links.size();
+    const OnHost ends(links.a, w_.exec.space);
+    return std::count_if(ends->host().begin(), ends->host().end(),
+                         [this](Index a) { return w_.domain.owns(a); });
+  }
+
+  template <class Value>
+  FrameField scalar(const char* name, const Value& value) const {
+    FrameField field{name, "-", 1, {}};
+    field.values.reserve(own_.size());
+    for (const Index i : own_) field.values.push_back(static_cast<float>(value(i)));
+    return field;
+  }
+  FrameField vector(const char* name, const char* unit, Vec3 ElementState::*member) const {
+    FrameField field{name, unit, 3, {}};
+    field.values.reserve(3 * own_.size());
+    for (const Index i : own_) {
+      const Vec3& v = elements_->state.data()[i].*member;
+      for (const double c : {v.x, v.y, v.z}) field.values.push_back(static_cast<float>(c));
+    }
+    return field;
+  }
+
+  void add_elements() {
+    const Elements& e = *elements_;
+    Frame& f = part_.frame;
+    f.position.reserve(own_.size());
+    f.radius.reserve(own_.size());
+    for (const Index i : own_) {
+      f.position.push_back(e.state.data()[i].position);
+      f.radius.push_back(e.state.data()[i].radius);
+      if (!w_.domain.single_rank()) part_.places.point.push_back(e.id.data()[i]);
+    }
+    f.point_fields.push_back(vector("velocity", "m/s", &ElementState::velocity));
+    f.point_fields.push_back(vector("spin", "rad/s", &ElementState::spin));
+    f.point_fields.push_back(scalar("group", [&](Index i) { return e.group.data()[i]; }));
+    const std::vector<double> lost = damage(w_);
+    f.point_fields.push_back(
+        scalar("damage", [&](Index i) { return lost[static_cast<std::size_t>(i)]; }));
+    f.point_fields.push_back(scalar("id", [&](Index i) { return e.id.data()[i]; }));
+    if (w_.domain.config.show)
+      f.point_fields.push_back(scalar(
+          "rank", [&](Index i) { return w_.domain.partition.owner(e.state.data()[i].position); }));
+  }
+
+  // Links: kind 0 concrete, 1 steel, 2 interface; state 0 whole, 1 softened or yielded, 2 broken.
+  void add_links(const Totals& all) {
+    const OnHost actions(w_.bar_actions, w_.exec.space);
+    std::int64_t before = 0;
+    Index first_action = 0;
+    w_.each_set([&](const auto& set) {
+      const OnHost arrays(set.arrays(), w_.exec.space);
+      kind_ = static_cast<float>(set.kind);
+      for (const auto& g : set.groups)
+        for (Index i = g.begin; i < g.end; ++i) {
+          if (!w_.domain.owns(arrays->a.data()[i])) continue;
+          double pull = 0.0;
+          if constexpr (std::remove_reference_t<decltype(set)>::swept)
+            pull = norm(link_force(g.law, *arrays, *elements_, i));
+          else
+            pull = norm(actions->data()[first_action + i].force_on_b());
+          add_line(*arrays, i, static_cast<float>(stage_of(g.law, *arrays, *elements_, i)), pull);
+          if (!w_.domain.single_rank())
+            part_.places.line.push_back(static_cast<std::int32_t>(before + set.numbers.data()[i]));
+        }
+      before += all.items[static_cast<std::size_t>(set.kind)];
+      if (!set.swept) first_action += set.size();
+    });
+    part_.frame.line_fields.push_back(std::move(kinds_));
+    part_.frame.line_fields.push_back(std::move(states_));
+    part_.frame.line_fields.push_back(std::move(force_));
+  }
+
+  template <class Links>
+  void add_line(const Links& links, Index i, float state, double pull) {
+    for (const Buffer<Index>* ends : {&links.a, &links.b})
+      part_.frame.lines.push_back(elements_->id.data()[ends->data()[i]]);
+    force_.values.push_back(static_cast<float>(pull));  // |force on b|
+    kinds_.values.push_back(kind_);
+    states_.values.push_back(state);
+  }
+  const dem::World& w_;
+  OnHost<Elements> elements_;
+  std::vector<Index> own_;
+  float kind_ = 0.0F;  ///< of the lines that are added now
+  FrameField kinds_{"kind", "-", 1, {}}, states_{"state", "-", 1, {}}, force_{"force", "N", 1, {}};
+  FramePart part_;
+};
+
+}  // namespace
+
+FramePart dem_frame(const dem::World& w) {
+  return DemFrame(w).made();
+}
+
+}  // namespace breccia

@@ -1,0 +1,225 @@
+// An FDEM world as output sees it.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/on_host.hpp"
+#include "domain/parcel.hpp"
+#include "exec/tasks.hpp"
+#include "fdem/observe.hpp"
+#include "fdem/ranks.hpp"
+#include "run/method/fdem_method.hpp"
+
+namespace breccia {
+namespace {
+
+using namespace fdem;
+
+/// What a rank cannot know by itself.
+struct Placed {
+  std::vector<Index> fragment;  ///< of each own triangle
+  std::vector<Index> line;      ///< place of each own line
+  std::int64_t lines, triangles;
+};
+
+/// The triangles, and the joints that have softened or broken, of this rank: by their places in
+/// memory.
+struct Own {
+  std::vector<Index> triangles, lines;
+};
+
+/// Rank 0: fragments and places of lines, from what all ranks have told.
+std::vector<Message> placed_on_first(const std::vector<Message>& told, const World& mesh) {
+  std::vector<std::vector<Index>> triangles, lines;
+  std::vector<std::uint8_t> broken(at(mesh.joints.size()), 0);
+  std::vector<Index> place(at(mesh.joints.size()), 0);
+  for (const Message& message : told) {
+    Unpacking from(message);
+    triangles.push_back(from.array<Index>());
+    lines.push_back(from.array<Index>());
+    for (const Index joint : lines.back()) place[at(joint)] = 1;
+    for (const Index joint : from.array<Index>()) broken[at(joint)] = 1;
+  }
+  Index count = 0;
+  for (Index& one : place) one = std::exchange(count, count + one);
+  const std::vector<Index> fragment = fragments(mesh, broken).of;
+  std::vector<Message> answers;
+  for (std::size_t r = 0; r < told.size(); ++r) {
+    for (Index& t : triangles[r]) t = fragment[at(t)];
+    for (Index& joint : lines[r]) joint = place[at(joint)];
+    Message& answer = answers.emplace_back();
+    put_array(answer, triangles[r]);
+    put_array(answer, lines[r]);
+    put_value(answer, count);
+    put_value(answer, mesh.triangles.size());
+  }
+  return answers;
+}
+
+/// @param mesh  rank 0: the whole, whose broken joints may be out of date
+Placed placed(const World& w, const Triangles& triangles, const Joints& joints, const Own& own,
+              const World* mesh) {
+  Placed placed;
+  if (w.domain.single_rank()) {
+    placed.fragment = fragments(w).of;
+    for (std::size_t l = 0; l < own.lines.size(); ++l) placed.line.push_back(static_cast<Index>(l));
+    placed.lines = static_cast<std::int64_t>(own.lines.size());
+    placed.triangles = w.triangles.size();
+    return placed;
+  }
+  std::vector<Index> ids, lines, broken;
+  for (const Index t : own.triangles) ids.push_back(triangles.id.data()[t]);
+  for (const Index i : own.lines) {
+    lines.push_back(w.mesh.joint_number.data()[i]);
+    if (joints.stage.data()[i] == JointStage::broken) broken.push_back(lines.back());
+  }
+  Communicator& ranks = *w.domain.ranks;
+  std::vector<Message> messages(at(ranks.size()));
+  for (const std::vector<Index>* list : {&ids, &lines, &broken}) put_array(messages[0], *list);
+  messages = ranks.exchange(std::move(messages));
+  messages = ranks.exchange(mesh != nullptr ? placed_on_first(messages, *mesh)
+                                            : std::vector<Message>(at(ranks.size())));
+  Unpacking from(messages[0]);
+  placed.fragment = from.array<Index>();
+  placed.line = from.array<Index>();
+  placed.lines = from.value<Index>();
+  placed.triangles = from.value<Index>();
+  return placed;
+}
+
+/// The partition as it lies now: it moves with the triangles.
+Partition partition_now(const World& w) {
+  Partition partition = w.domain.partition;
+  if (w.domain.single_rank()) return partition;
+  const Vec2 drift = w.reach.drift.velocity;
+  Domain moved;
+  moved.drifted = w.domain.drifted;
+  moved.drifted_until = w.domain.drifted_until;
+  moved.drift({drift.x, drift.y, 0.0}, w.time);
+  partition.move(moved.drifted);
+  return partition;
+}
+
+void put_point(Frame& f, std::size_t place, const NodeState& n) {
+  f.position[place] = {n.position.x, n.position.y, 0.0};
+  const double v[] = {n.velocity.x, n.velocity.y, 0.0};
+  for (std::size_t c = 0; c < 3; ++c)
+    f.point_fields[0].values[3 * place + c] = static_cast<float>(v[c]);
+}
+
+/// work(k) for all k < count, by threads.
+template <class Work>
+void each_of(std::size_t count, int threads, const Work& work) {
+  constexpr std::size_t chunk = 4096;
+  for_each_task(threads, static_cast<int>((count + chunk - 1) / chunk), [&](int task) {
+    const std::size_t begin = chunk * static_cast<std::size_t>(task);
+    for (std::size_t k = begin; k < std::min(count, begin + chunk); ++k) work(k);
+  });
+}
+
+void add_triangles(const World& w, const Triangles& t, const Own& own, const Placed& placed,
+                   Frame& f) {
+  const std::size_t count = own.triangles.size();
+  f.triangles.resize(3 * count);
+  each_of(count, w.exec.threads, [&](std::size_t k) {
+    const Index i = own.triangles[k];
+    for (std::size_t c = 0; c < 3; ++c) {
+      f.triangles[3 * k + c] = static_cast<std::int32_t>(3 * at(t.id.data()[i]) + c);
+      put_point(f, 3 * k + c, t.nodes.data()[i].at[c]);
+    }
+  });
+  const auto field = [&](const char* name, const char* unit, const auto& value) {
+    FrameField& made =
+        f.triangle_fields.emplace_back(FrameField{name, unit, 1, std::vector<float>(count)});
+    each_of(count, w.exec.threads, [&](std::size_t k) {
+      made.values[k] = static_cast<float>(value(own.triangles[k], k));
+    });
+  };
+  const std::vector<Sym2> stress = stresses(w);
+  const std::vector<double> lost = damage(w);
+  field("stress_xx", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xx; });
+  field("stress_yy", "Pa", [&](Index i, std::size_t) { return stress[at(i)].yy; });
+  field("stress_xy", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xy; });
+  field("pressure", "Pa",
+        [&](Index i, std::size_t) { return -0.5 * (stress[at(i)].xx + stress[at(i)].yy); });
+  field("damage", "-", [&](Index i, std::size_t) { return lost[at(i)]; });
+  field("group", "-", [&](Index i, std::size_t) { return t.group.data()[i]; });
+  field("material", "-", [&](Index i, std::size_t) { return t.material.data()[i]; });
+  field("fragment", "-", [&](Index, std::size_t k) { return placed.fragment[k]; });
+  if (!w.domain.config.show) return;
+  const Partition partition = partition_now(w);
+  field("rank", "-",
+        [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
+}
+
+void add_lines(const Triangles& t, const Joints& j, const Own& own, const Placed& placed,
+               Frame& f) {
+  FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
+  const View<const NodeState> nodes = by_number(t.nodes.view());
+  std::size_t point = 3 * own.triangles.size();
+  for (std::size_t l = 0; l < own.lines.size(); ++l) {
+    const Index i = own.lines[l];
+    const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
+    auto place = static_cast<std::int32_t>(3 * placed.triangles + 2 * placed.line[l]);
+    for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}}) {
+      const NodeState &a = nodes[on_a], &b = nodes[on_b];
+      f.lines.push_back(place++);
+      put_point(f, point++, {0.5 * (a.position + b.position), 0.5 * (a.velocity + b.velocity)});
+    }
+    mode.values.push_back(static_cast<float>(mode_of(j, i)));
+    double worst = j.stage.data()[i] == JointStage::broken ? 1.0 : 0.0;
+    for (const auto& p : j.points.data()[i].point) worst = std::max(worst, p.damage);
+    damage.values.push_back(static_cast<float>(worst));
+    time.values.push_back(static_cast<float>(j.broke_at.data()[i]));
+  }
+  f.line_fields.push_back(std::move(mode));
+  f.line_fields.push_back(std::move(damage));
+  f.line_fields.push_back(std::move(time));
+}
+
+/// Where the items of a part stand in the whole.
+FramePlaces places_of(const Triangles& t, const Own& own, const Placed& placed) {
+  FramePlaces places;
+  for (const Index i : own.triangles) places.triangle.push_back(t.id.data()[i]);
+  places.line.assign(placed.line.begin(), placed.line.end());
+  for (const std::int32_t id : places.triangle)
+    for (std::int32_t c = 0; c < 3; ++c) places.point.push_back(3 * id + c);
+  const auto behind = static_cast<std::int32_t>(3 * placed.triangles);
+  for (const std::int32_t line : places.line)
+    for (std::int32_t end = 0; end < 2; ++end) places.point.push_back(behind + 2 * line + end);
+  return places;
+}
+
+}  // namespace
+
+FramePart fdem_frame(const World& w, const World* mesh) {
+  const OnHost<Triangles> triangles(w.triangles, w.exec.space);
+  const OnHost<Joints> joints(w.joints, w.exec.space);
+  Own own;
+  for (Index t = 0; t < triangles->size(); ++t)
+    if (w.domain.owns(t)) own.triangles.push_back(t);
+  for (Index i = 0; i < joints->size(); ++i)
+    if (is_damaged(joints->stage.data()[i]) && w.domain.owns(joints->edge_a.data()[i] / 3))
+      own.lines.push_back(i);
+  const Placed known = placed(w, *triangles, *joints, own, mesh);
+
+  FramePart part;
+  Frame& f = part.frame;
+  f.step = w.step;
+  f.time = w.time;
+  f.groups = w.groups;
+  const std::size_t points = 3 * own.triangles.size() + 2 * own.lines.size();
+  f.position.resize(points);
+  f.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});
+  add_triangles(w, *triangles, own, known, f);
+  add_lines(*triangles, *joints, own, known, f);
+  if (!w.domain.single_rank()) part.places = places_of(*triangles, own, known);
+  part.places.whole = w.domain.single_rank();
+  part.places.triangles = known.triangles;
+  part.places.lines = known.lines;
+  part.places.points = 3 * known.triangles + 2 * known.lines;
+  return part;
+}
+
+}  // namespace breccia

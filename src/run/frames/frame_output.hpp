@@ -1,0 +1,31 @@
+#pragma once
+// From a frame to the bytes of its files and of its picture.
+
+#include <optional>
+#include <string>
+
+#include "io/picture/picture.hpp"
+#include "io/vtu/vtu_writer.hpp"
+
+namespace breccia {
+
+/// What is to be made of a frame.
+struct FrameWish {
+  bool files = true;
+  std::optional<RenderOptions> picture;  ///< without an extent: that of this frame
+};
+
+struct FrameOutput {
+  FrameContents files;  ///< empty if not wished
+  std::string png;      ///< likewise
+  Extent extent{};      ///< that the picture shows
+};
+
+/// Blocks are compressed, and the picture is encoded meanwhile, by that many threads: the same
+/// bytes for any number of them.
+FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads);
+
+/// The picture that is wished for; notes the extent.
+Image drawn(const Frame& whole, RenderOptions options, int threads, FrameOutput& output);
+
+}  // namespace breccia

@@ -1,0 +1,260 @@
+#include "run/frames/frame_parts.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "exec/tasks.hpp"
+
+namespace breccia {
+namespace {
+
+const std::vector<std::int32_t>& places_of(const FramePlaces& places, Carrier carrier) {
+  return carrier == Carrier::points  ? places.point
+         : carrier == Carrier::lines ? places.line
+                                     : places.triangle;
+}
+
+/// work(width), with the usual widths of items as constants.  [bytes]
+template <class Work>
+void with_width(std::size_t width, const Work& work) {
+  switch (width) {
+    case 4:
+      return work(std::integral_constant<std::size_t, 4>{});
+    case 8:
+      return work(std::integral_constant<std::size_t, 8>{});
+    case 12:
+      return work(std::integral_constant<std::size_t, 12>{});
+    case 24:
+      return work(std::integral_constant<std::size_t, 24>{});
+    default:
+      return work(width);
+  }
+}
+
+/// Which rank compresses which block: shares of about equal cost. Rank 0 draws the picture, too.
+std::vector<int> workers(const FrameBlocks& files, int ranks, const FrameWish& wish) {
+  std::vector<std::size_t> cost(static_cast<std::size_t>(ranks), 0);
+  // A pixel takes as long as some fifteen bytes of a block.
+  if (wish.picture)
+    cost[0] = 15 * static_cast<std::size_t>(wish.picture->width) *
+              static_cast<std::size_t>(wish.picture->height);
+  std::vector<int> worker;
+  for (const FrameBlocks::Block& block : files.blocks()) {
+    const auto idlest = std::min_element(cost.begin(), cost.end());
+    // Bytes that are all alike are packed in no time.
+    *idlest += files.array_of(block).width == 1 ? block.size / 8 : block.size;
+    worker.push_back(static_cast<int>(idlest - cost.begin()));
+  }
+  return worker;
+}
+
+/// What of a frame shows in a picture by a field, as columns of a part and of the whole.
+class Sight {
+ public:
+  /// @param whole  gets as many items as there are in all; null on ranks other than 0
+  Sight(const FramePart& part, const std::string& field, Frame* whole) : places_(part.places) {
+    const Frame& f = part.frame;
+    column(Carrier::points, f.position, whole ? &whole->position : nullptr, 1);
+    if (places_.has_spheres) column(Carrier::points, f.radius, whole ? &whole->radius : nullptr, 1);
+    if (places_.triangles > 0)
+      column(Carrier::triangles, f.triangles, whole ? &whole->triangles : nullptr, 3);
+    fields(Carrier::points, f.point_fields, whole ? &whole->point_fields : nullptr, field);
+    fields(Carrier::triangles, f.triangle_fields, whole ? &whole->triangle_fields : nullptr, field);
+    if (!colors_lines(f, field)) return;
+    column(Carrier::lines, f.lines, whole ? &whole->lines : nullptr, 2);
+    fields(Carrier::lines, f.line_fields, whole ? &whole->line_fields : nullptr, field);
+  }
+
+  Message packed() const {
+    Message message;
+    put_array(message, places_.point);
+    put_array(message, places_.triangle);
+    put_array(message, places_.line);
+    for (const Column& c : columns_) put_bytes(message, c.own.data(), c.own.size());
+    return message;
+  }
+  /// Rank 0: what another part has.
+  void take(const Message& message) const {
+    Unpacking from(message);
+    FramePlaces places;
+    places.point = from.array<std::int32_t>();
+    places.triangle = from.array<std::int32_t>();
+    places.line = from.array<std::int32_t>();
+    for (const Column& c : columns_) {
+      const std::vector<std::int32_t>& to = places_of(places, c.carrier);
+      const std::span<const std::byte> values = from.bytes(to.size() * c.width);
+      with_width(c.width, [&](auto width) {
+        for (std::size_t i = 0; i < to.size(); ++i)
+          std::memcpy(c.whole + static_cast<std::size_t>(to[i]) * width, values.data() + i * width,
+                      width);
+      });
+    }
+  }
+
+ private:
+  struct Column {
+    Carrier carrier;
+    std::size_t width;  ///< bytes an item
+    std::span<const std::byte> own;
+    std::byte* whole;
+  };
+
+  template <class T>
+  void column(Carrier carrier, const std::vector<T>& own, std::vector<T>* whole,
+              std::size_t components) {
+    const std::int64_t items = carrier == Carrier::points  ? places_.points
+                               : carrier == Carrier::lines ? places_.lines
+                                                           : places_.triangles;
+    if (whole != nullptr) whole->resize(static_cast<std::size_t>(items) * components);
+    columns_.push_back({carrier, components * sizeof(T), std::as_bytes(std::span(own)),
+                        whole ? reinterpret_cast<std::byte*>(whole->data()) : nullptr});
+  }
+  void fields(Carrier carrier, const std::vector<FrameField>& own, std::vector<FrameField>* whole,
+              const std::string& shown) {
+    for (const FrameField& field : own) {
+      const bool wanted = field.name == shown || shown.starts_with(field.name + "_") ||
+                          field.name == "group" || field.name == "kind" || field.name == "state";
+      if (!wanted) continue;
+      if (whole != nullptr) whole->push_back({field.name, field.unit, field.components, {}});
+      column(carrier, field.values, whole ? &whole->back().values : nullptr,
+             static_cast<std::size_t>(field.components));
+    }
+  }
+
+  const FramePlaces& places_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace
+
+FrameOfParts::FrameOfParts(FramePart part, const FrameWish& wish, Communicator& ranks, int threads)
+    : part_(std::move(part)), wish_(wish), ranks_(ranks), threads_(threads) {
+  if (!wish_.files) return;
+  files_.emplace(part_.frame, part_.places);
+  worker_ = workers(*files_, ranks_.size(), wish_);
+}
+
+/// Everything that the picture shows comes to rank 0.
+void FrameOfParts::see() {
+  const bool draws = ranks_.rank() == 0;
+  const Sight sight(part_, wish_.picture->field, draws ? &seen_ : nullptr);
+  const std::vector<Message> messages = told_to_first(ranks_, sight.packed());
+  if (!draws) return;
+  seen_.step = part_.frame.step;
+  seen_.time = part_.frame.time;
+  seen_.groups = part_.frame.groups;
+  for (const Message& message : messages) sight.take(message);
+}
+
+/// What this part has of a block: how many items, where each stands behind the first, values.
+void FrameOfParts::give_values(Message& message, const Block& block) const {
+  const FrameBlocks::Array& array = files_->array_of(block);
+  const std::vector<std::int32_t>& places = places_of(part_.places, array.carrier);
+  const auto first = static_cast<std::int32_t>(block.begin / array.width);
+  const auto end =
+      static_cast<std::int32_t>((block.begin + block.size + array.width - 1) / array.width);
+  const auto from = std::lower_bound(places.begin(), places.end(), first);
+  const auto to = std::lower_bound(from, places.end(), end);
+  std::vector<std::uint16_t> behind;  // a block has no more items than it can count
+  behind.reserve(static_cast<std::size_t>(to - from));
+  for (auto place = from; place != to; ++place)
+    behind.push_back(static_cast<std::uint16_t>(*place - first));
+  put_array(message, behind);
+  put_bytes(message,
+            array.own.data() + static_cast<std::size_t>(from - places.begin()) * array.width,
+            behind.size() * array.width);
+}
+
+/// The block, from what all ranks have of it.
+void FrameOfParts::take_values(const Block& block, const std::vector<Values>& from,
+                               std::vector<std::byte>& to) const {
+  const std::size_t end = block.begin + block.size;
+  to.resize(block.size);
+  with_width(files_->array_of(block).width, [&](auto width) {
+    const std::size_t first = block.begin / width * width;
+    for (const Values& values : from)
+      for (std::size_t i = 0; i < values.behind.size(); ++i) {
+        const std::size_t begin = first + values.behind[i] * width;
+        const std::byte* const item = values.bytes.data() + i * width;
+        if (begin >= block.begin && begin + width <= end) {
+          std::memcpy(to.data() + (begin - block.begin), item, width);
+          continue;
+        }
+        // It lies across the border of two blocks.
+        const std::size_t low = std::max(begin, block.begin);
+        std::memcpy(to.data() + (low - block.begin), item + (low - begin),
+                    std::min(begin + width, end) - low);
+      }
+  });
+}
+
+Message FrameOfParts::share() {
+  if (wish_.picture) see();
+  const auto self = static_cast<std::size_t>(ranks_.rank());
+  std::vector<std::size_t> own;
+  std::vector<Message> messages(static_cast<std::size_t>(ranks_.size()));
+  for (std::size_t b = 0; b < worker_.size(); ++b) {
+    const Block& block = files_->blocks()[b];
+    const auto worker = static_cast<std::size_t>(worker_[b]);
+    if (worker == self) own.push_back(b);
+    if (files_->array_of(block).carrier != Carrier::none) give_values(messages[worker], block);
+  }
+  messages = ranks_.exchange(std::move(messages));
+
+  std::vector<Unpacking> from(messages.begin(), messages.end());
+  std::vector<std::vector<Values>> values(own.size());
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const FrameBlocks::Array& array = files_->array_of(files_->blocks()[own[k]]);
+    if (array.carrier == Carrier::none) continue;
+    for (Unpacking& message : from) {
+      Values& part = values[k].emplace_back();
+      part.behind = message.array<std::uint16_t>();
+      part.bytes = message.bytes(part.behind.size() * array.width);
+    }
+  }
+
+  Image image;
+  if (wish_.picture && self == 0) image = drawn(seen_, *wish_.picture, threads_, output_);
+  std::vector<std::string> packed(own.size());
+  for_each_task(threads_, 1 + static_cast<int>(own.size()), [&](int task) {
+    const std::size_t k = static_cast<std::size_t>(task) - 1;
+    if (task == 0) {
+      if (image.width > 0) output_.png = png_content(image);
+      return;
+    }
+    const Block& block = files_->blocks()[own[k]];
+    std::vector<std::byte> bytes;
+    if (files_->array_of(block).carrier == Carrier::none) {
+      packed[k] = files_->packed(block);
+    } else {
+      take_values(block, values[k], bytes);
+      packed[k] = packed_block(bytes);
+    }
+  });
+
+  Message share;
+  for (const std::string& block : packed) {
+    put_value(share, block.size());
+    put_bytes(share, block.data(), block.size());
+  }
+  return share;
+}
+
+FrameOutput FrameOfParts::output() {
+  const std::vector<Message> shares = told_to_first(ranks_, share());
+  if (shares.empty()) return {};
+  std::vector<Unpacking> from(shares.begin(), shares.end());
+  std::vector<std::string> packed;
+  packed.reserve(worker_.size());
+  for (const int worker : worker_) {
+    Unpacking& share = from[static_cast<std::size_t>(worker)];
+    const std::span<const std::byte> block = share.bytes(share.value<std::size_t>());
+    packed.emplace_back(reinterpret_cast<const char*>(block.data()), block.size());
+  }
+  if (files_) output_.files = files_->contents(packed);
+  return std::move(output_);
+}
+
+}  // namespace breccia

@@ -1,0 +1,19 @@
+#pragma once
+// How much memory a model takes on a GPU, known before anything is put there.
+
+#include <cstddef>
+
+#include "dem/setup/model.hpp"
+#include "fdem/setup/model.hpp"
+
+namespace breccia {
+
+/// What the arrays of a run will take at most while nothing touches yet, search included.  [B]
+std::size_t device_bytes(const dem::Model& model);
+std::size_t device_bytes(const fdem::Model& model);
+
+/// Says how much a run will take of the GPU in use. @throws DeviceError if it has not that much
+/// free
+void plan_device(std::size_t bytes, bool quiet);
+
+}  // namespace breccia

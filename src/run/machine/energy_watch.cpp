@@ -1,0 +1,52 @@
+#include "run/machine/energy_watch.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+std::string moment(std::int64_t step, double time) {
+  return fmt::format("step {}, t = {:.6e} s: ", step, time);
+}
+
+[[noreturn]] void refuse(const EnergyBalance& energy, double limit, std::int64_t step,
+                         double time) {
+  throw NumericsError(fmt::format(
+      "{}{:.3g} J of {:.3g} J are missing ({:.2g} of the largest energy or work so far; "
+      "energy.stop = {}): a smaller time.safety, or a load that grows more slowly, may help",
+      moment(step, time), std::fabs(energy.missing()),
+      std::fabs(energy.missing()) / energy.error_relative, energy.error_relative, limit));
+}
+
+}  // namespace
+
+bool is_finite(const EnergyBalance& e) {
+  for (const double joules : {e.kinetic, e.elastic, e.fracture, e.plastic, e.friction, e.damping,
+                              e.contact, e.work, e.start, e.error_relative})
+    if (!std::isfinite(joules)) return false;
+  return true;
+}
+
+bool EnergyWatch::look(const EnergyBalance& energy, std::int64_t step, double time) {
+  if (!is_finite(energy))
+    throw NumericsError(
+        "an energy of an element, link or contact is no number, or beyond "
+        "9.2e18 J, the most that can be summed");
+  const auto count = [&](double limit, std::int64_t& rows) {
+    rows = limit > 0.0 && energy.error_relative > limit ? rows + 1 : 0;
+    return rows;
+  };
+  if (count(limits_.stop, rows_.above_stop) >= patience) refuse(energy, limits_.stop, step, time);
+  return count(limits_.warn, rows_.above_warn) == patience;
+}
+
+void EnergyWatch::judge_end(const EnergyBalance& energy, std::int64_t step, double time) const {
+  if (limits_.stop > 0.0 && energy.error_relative > limits_.stop)
+    refuse(energy, limits_.stop, step, time);
+}
+
+}  // namespace breccia

@@ -1,0 +1,148 @@
+#include "run/machine/load_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+[[noreturn]] void refuse(const std::string& section, const std::string& why) {
+  throw CheckpointError(fmt::format("the checkpoint's section {} {}", section, why));
+}
+
+class Collector {
+ public:
+  template <class T>
+  void add(const std::string& section, const Buffer<T>& array) {
+    std::vector<T> items;
+    copy_to(items, array);
+    Repeated one{section, std::vector<std::byte>(items.size() * sizeof(T))};
+    if (!items.empty()) std::memcpy(one.bytes.data(), items.data(), one.bytes.size());
+    all.push_back(std::move(one));
+  }
+  std::vector<Repeated> all;
+};
+
+template <class T>
+std::vector<T> on_host(const Buffer<T>& array) {
+  std::vector<T> items;
+  copy_to(items, array);
+  return items;
+}
+
+bool is_place(Index place, std::size_t count) {
+  return place >= 0 && static_cast<std::size_t>(place) < count;
+}
+
+template <class T>
+void refuse_size(const char* section, const Buffer<T>& array, Index expected) {
+  if (array.size() != expected)
+    refuse(section, fmt::format("has {} items, expected {}", array.size(), expected));
+}
+
+/// Keys ascend, and belong to what the places lead to.
+/// @param ends  how many there are that a and b may lead to
+/// @param key   of the pair of two such places
+template <class Key>
+void refuse_wrong_pairs(const std::string& name, const Pairs& pairs, std::size_t ends_a,
+                        std::size_t ends_b, const Key& key) {
+  const auto keys = on_host(pairs.key);
+  const auto a = on_host(pairs.a), b = on_host(pairs.b);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (!is_place(a[i], ends_a)) refuse(name + ".a", fmt::format("leads to {}", a[i]));
+    if (!is_place(b[i], ends_b)) refuse(name + ".b", fmt::format("leads to {}", b[i]));
+    if (keys[i] != key(a[i], b[i]) || (i > 0 && keys[i] <= keys[i - 1]))
+      refuse(name + ".key", fmt::format("is not that of the pairs (item {})", i));
+  }
+}
+
+/// Keys of pairs of elements, the lower global id first.
+class KeyOfIds {
+ public:
+  explicit KeyOfIds(const Buffer<GlobalId>& ids) : ids_(on_host(ids)) {}
+  PairKey operator()(Index a, Index b) const {
+    const GlobalId low = ids_[static_cast<std::size_t>(a)],
+                   high = ids_[static_cast<std::size_t>(b)];
+    return low < high ? pair_key(low, high) : ~PairKey{0};
+  }
+  std::size_t size() const { return ids_.size(); }
+
+ private:
+  std::vector<GlobalId> ids_;
+};
+
+template <class World>
+void refuse_wrong_clock(const World& w) {
+  constexpr std::int64_t most_steps = std::int64_t{1} << 60;
+  const auto is_time = [](double t) { return t >= 0.0 && t < no_limit; };
+  if (w.step < 0 || w.step > most_steps || !is_time(w.time) || !is_time(w.last_dt) ||
+      !is_time(w.next_dt))
+    refuse("step, time, last_dt or next_dt", "holds no count or time");
+}
+
+}  // namespace
+
+std::vector<Repeated> repeated_by(const dem::World& w) {
+  Collector c;
+  c.add("elements.id", w.elements.id);
+  c.add("elements.group", w.elements.group);
+  c.add("elements.material", w.elements.material);
+  c.add("elements.fixed", w.elements.fixed);
+  c.add("elements.motion", w.elements.motion);
+  w.each_set([&](const auto& set) {
+    set.each_end([&](const char* end, const auto& array) {
+      c.add(std::string(set.name) + "." + end, array);
+    });
+  });
+  return std::move(c.all);
+}
+
+std::vector<Repeated> repeated_by(const fdem::World& w) {
+  Collector c;
+  c.add("triangles.id", w.triangles.id);
+  c.add("triangles.group", w.triangles.group);
+  c.add("triangles.material", w.triangles.material);
+  c.add("triangles.hold", w.triangles.hold);
+  c.add("joints.edge_a", w.joints.edge_a);
+  c.add("joints.edge_b", w.joints.edge_b);
+  c.add("joints.law", w.joints.law);
+  return std::move(c.all);
+}
+
+void refuse_changed(const std::vector<Repeated>& built, const std::vector<Repeated>& loaded) {
+  for (std::size_t i = 0; i < built.size(); ++i)
+    if (built[i].bytes != loaded[i].bytes)
+      refuse(built[i].section, "is not that of the model that the case builds");
+}
+
+void refuse_wrong_places(const dem::World& w) {
+  refuse_wrong_clock(w);
+  const KeyOfIds key(w.elements.id);
+  refuse_wrong_pairs("contacts", w.contacts.pairs, key.size(), key.size(), key);
+  const auto ids = on_host(w.elements.id);
+  const auto wall_key = [&](Index element, Index wall) {
+    return static_cast<PairKey>(wall) << 32 |
+           static_cast<std::uint32_t>(ids[static_cast<std::size_t>(element)]);
+  };
+  refuse_wrong_pairs("wall_contacts", w.wall_contacts.pairs, key.size(), w.walls.size(), wall_key);
+  refuse_size("travel.reference", w.travel.reference, w.elements.size());
+}
+
+void refuse_wrong_places(const fdem::World& w) {
+  refuse_wrong_clock(w);
+  const KeyOfIds key(w.triangles.id);
+  refuse_wrong_pairs("couples", w.couples.pairs, key.size(), key.size(), key);
+  const auto near = on_host(w.reach.triangle);
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (!is_place(near[i], key.size()) || (i > 0 && near[i] <= near[i - 1]))
+      refuse("reach.triangle", fmt::format("leads to {} (item {})", near[i], i));
+  for (const fdem::JointStage stage : on_host(w.joints.stage))
+    if (stage > fdem::JointStage::dormant)
+      refuse("joints.stage", "holds what is no stage of a joint");
+}
+
+}  // namespace breccia

@@ -1,0 +1,36 @@
+#pragma once
+// Whether this machine has the memory that a case needs, told before anything is built.
+
+#include <cstdint>
+#include <string>
+
+#include "dem/setup/config.hpp"
+#include "fdem/setup/config.hpp"
+
+namespace breccia {
+
+/// Memory that building or running a case takes at least. Bodies from files are not counted.
+struct MemoryPlan {
+  double items = 0.0;     ///< elements or triangles
+  const char* kind = "";  ///< "elements" or "triangles"
+  double build_bytes = 0.0;
+  double run_bytes = 0.0;
+};
+MemoryPlan memory_plan(const dem::Config& config);
+MemoryPlan memory_plan(const fdem::Config& config);
+
+/// Memory that this process may still take: of the machine (MemAvailable), of its limit (`ulimit
+/// -v`), and of its control group.  [bytes]
+/// @param root  where /proc and /sys are found; others for tests
+double available_memory(const std::string& root = "");
+
+/// @param sharers  processes that each build the whole model on this machine
+/// @param what     it is that needs so much, for the message
+/// @throws DeviceError naming both numbers if `bytes` for each of them are not there
+void refuse_without_memory(const MemoryPlan& plan, double bytes, int sharers,
+                           const std::string& what = "the model");
+
+/// "1.2 GB" of bytes.
+std::string memory_text(double bytes);
+
+}  // namespace breccia

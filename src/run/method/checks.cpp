@@ -1,0 +1,41 @@
+#include "run/method/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace breccia {
+
+std::vector<CheckResult> evaluate_checks(const std::vector<CheckConfig>& checks,
+                                         const Summary& summary) {
+  std::vector<CheckResult> results;
+  for (const CheckConfig& check : checks) {
+    CheckResult result{check.name,     number_at(summary, check.value),
+                       check.expected, check.tolerance,
+                       check.unit,     false};
+    // Not a number compares false, so it never passes.
+    result.pass = result.value && std::abs(*result.value - check.expected) <= check.tolerance;
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+bool all_pass(const std::vector<CheckResult>& results) {
+  return std::all_of(results.begin(), results.end(), [](const CheckResult& r) { return r.pass; });
+}
+
+std::string check_table(const std::vector<CheckResult>& results) {
+  std::size_t width = 4;
+  for (const CheckResult& result : results) width = std::max(width, result.name.size());
+  std::string table = fmt::format("  {:<{}}  {:>14}  {:>14}  {:>12}  {:<8}\n", "check", width,
+                                  "value", "expected", "tolerance", "unit");
+  for (const CheckResult& result : results)
+    table +=
+        fmt::format("  {:<{}}  {:>14}  {:>14.8g}  {:>12.4g}  {:<8}  {}\n", result.name, width,
+                    result.value ? fmt::format("{:.8g}", *result.value) : "missing",
+                    result.expected, result.tolerance, result.unit, result.pass ? "pass" : "FAIL");
+  return table;
+}
+
+}  // namespace breccia

@@ -1,0 +1,94 @@
+#include "run/method/dem_method.hpp"
+
+#include <algorithm>
+
+#include "dem/energy.hpp"
+#include "dem/observe.hpp"
+#include "dem/ranks.hpp"
+#include "run/method/sim_method.hpp"
+
+namespace breccia {
+namespace {
+
+std::size_t group_count(const dem::World& w) {
+  std::size_t groups = 0;
+  Buffer<std::int16_t> group;
+  copy_to(group, w.elements.group);
+  for (const std::int16_t g : group.host()) groups = std::max(groups, std::size_t(g) + 1);
+  return groups;
+}
+
+struct DemSim {
+  using World = dem::World;
+  double interaction_range;
+  std::vector<dem::Model::Bulk> bulk;  ///< of each body
+
+  DemSim(const dem::Model& model, const World&)
+      : interaction_range(model.interaction_range), bulk(model.bulk) {}
+
+  static World made(const dem::Config& config, const dem::Model& model, const Exec& exec) {
+    return dem::make_world(config, model, exec);
+  }
+  static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {
+    return dem::balance(ledger, all, step);
+  }
+  static FramePart frame(const World& w, const World*) { return dem_frame(w); }
+
+  void add_model(const World& w, std::vector<Fact>& facts) const {
+    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
+    add("model.elements", w.elements.size());
+    const std::size_t groups = group_count(w);
+    for (std::size_t g = 0; g < groups; ++g)
+      add("model.elements_by_group." + w.sets[g].name, w.sets[g].members.size());
+    add("model.links", w.links());
+    w.each_set(
+        [&](const auto& set) { add(std::string("model.links_by_kind.") + set.name, set.size()); });
+    add("model.interaction_range", interaction_range);
+    for (std::size_t g = 0; g < bulk.size(); ++g) {
+      const dem::Model::Bulk& s = bulk[g];
+      if (!(s.young > 0.0)) continue;
+      const std::string path = "model.elasticity." + w.sets[g].name + '.';
+      add(path + "young", s.young);
+      add(path + "poisson", s.poisson);
+      add(path + "packed_young", s.packed_young);
+      add(path + "packed_poisson", s.packed_poisson);
+      add(path + "factor", s.factor);
+      if (s.rupture_opening > 0.0) add(path + "rupture_opening", s.rupture_opening);
+    }
+    add("searches", static_cast<double>(w.searches));
+    add("contacts.candidates", w.contacts.size());
+  }
+  static void add_findings(const World& w, std::vector<Fact>& facts) {
+    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
+    const dem::Counts n = dem::count(w);
+    add("contacts.touching", n.touching);
+    add("fracture.broken_links", n.broken_links());
+    w.each_set([&](const auto& set) {
+      add(std::string("fracture.broken_by_kind.") + set.name, n.broken_of(set.kind));
+    });
+    add("fracture.fragments", n.fragments);
+    add("fracture.largest_fragment_fraction", n.largest_fragment);
+  }
+
+  template <class Visit>
+  static void each_stored(World& w, const Visit& visit) {
+    visit.fields("elements", w.elements);
+    w.each_set([&](auto& set) {  // files of before parallel bonds have none
+      if (set.kind != dem::LinkKind::parallel || set.size() > 0) visit.fields(set.name, set);
+    });
+    visit.fields("contacts", w.contacts);
+    visit.fields("wall_contacts", w.wall_contacts);
+    visit.fields("travel", w.travel);
+    for (std::size_t k = 0; k < w.walls.size(); ++k)
+      visit("walls." + std::to_string(k), w.walls[k]);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_method(const dem::Config& config, const dem::Model& model,
+                                    const Exec& exec, Communicator* ranks) {
+  return std::make_unique<SimMethod<DemSim>>(config, model, exec, ranks);
+}
+
+}  // namespace breccia

@@ -1,0 +1,143 @@
+#include "run/method/fdem_method.hpp"
+
+#include <algorithm>
+
+#include "exec/error.hpp"
+#include "fdem/energy.hpp"
+#include "fdem/observe.hpp"
+#include "fdem/ranks.hpp"
+#include "run/method/sim_method.hpp"
+
+namespace breccia {
+namespace {
+
+/// An array of another length than its neighbours'.
+template <class T>
+struct Loose {
+  const char* name;
+  Buffer<T>& array;
+  template <class Visit>
+  void each_field(Visit&& field) {
+    const Index built = array.size();
+    field(name, "SI", array);
+    if (array.size() != built)
+      throw CheckpointError(std::string("the checkpoint's section ") + name +
+                            " is not as long as the case's");
+  }
+};
+
+struct FdemSim {
+  using World = fdem::World;
+  /// Where a joint lay at the start.
+  struct Line {
+    Vec2 begin, end;  ///<  [m]
+  };
+  std::vector<Line> lines;  ///< of all joints; on rank 0
+
+  FdemSim(const fdem::Model& model, const World& mesh) {
+    std::vector<Index> edges;
+    copy_to(edges, mesh.joints.edge_a);
+    for (const Index edge : edges) {
+      const auto& corners = model.triangle[at(edge / 3)];
+      const auto point = [&](Index k) { return model.point[at(corners[at(k % 3)])]; };
+      lines.push_back({point(edge % 3), point(edge % 3 + 1)});
+    }
+  }
+
+  static World made(const fdem::Config& config, const fdem::Model& model, const Exec& exec) {
+    World w = fdem::make_world(config, model, exec);
+    fdem::energies(w);
+    for (const ProbeConfig& p : config.probes) fdem::probe(w, p);  // refuses what cannot be read
+    return w;
+  }
+  static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t) {
+    return fdem::energies(ledger, all).balance;
+  }
+  static const char* step_rule(const World& w) { return fdem::ruling_term(w); }
+  static FramePart frame(const World& w, const World* mesh) { return fdem_frame(w, mesh); }
+
+  static void add_model(const World& w, std::vector<Fact>& facts) {
+    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
+    add("model.triangles", w.triangles.size());
+    for (std::size_t g = 0; g < w.groups.size(); ++g)
+      add("model.triangles_by_group." + w.groups[g],
+          static_cast<double>(w.sets[g].nodes.size() / 3));
+    add("model.joints", w.joints.size());
+    for (const fdem::EffectiveRock& rock : w.rocks) {
+      const std::string path = "model.rock." + rock.material + ".";
+      add(path + "young", rock.young);
+      add(path + "poisson", rock.poisson);
+      add(path + "wave_speed", rock.fast);
+      add(path + "shear_wave_speed", rock.slow);
+    }
+    add("model.nodes", 3 * w.triangles.size());
+    add("searches", static_cast<double>(w.searches));
+    add("contacts.candidates", w.couples.size());
+  }
+  static void add_findings(const World& w, std::vector<Fact>& facts) {
+    const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
+    const std::vector<fdem::Crack> cracks = fdem::cracks(w);
+    const auto sliding = std::count_if(cracks.begin(), cracks.end(),
+                                       [](const fdem::Crack& c) { return c.mode > 0.5; });
+    add("fracture.broken_joints", static_cast<double>(cracks.size()));
+    add("fracture.first_break", cracks.empty() ? -1.0 : cracks.front().time);
+    add("fracture.broken_by_mode.opening",
+        static_cast<double>(cracks.size()) - static_cast<double>(sliding));
+    add("fracture.broken_by_mode.sliding", static_cast<double>(sliding));
+    const fdem::EnergySplit split = fdem::energy_split(w);
+    add("fracture.energy_by_mode.opening", split.fracture_open);
+    add("fracture.energy_by_mode.sliding", split.fracture_slide);
+    const fdem::Fragments pieces = fdem::fragments(w);
+    double total = 0.0;
+    for (const double m : pieces.mass) total += m;
+    add("fracture.fragments", static_cast<double>(pieces.mass.size()));
+    add("fracture.largest_fragment_fraction", pieces.mass.front() / total);
+  }
+
+  std::vector<Table> tables(const World& w) const {
+    Table cracks{"cracks",
+                 {"time", "x", "y", "length", "mode", "energy", "x0", "y0", "x1", "y1"},
+                 {"s", "m", "m", "m", "-", "J/m", "m", "m", "m", "m"},
+                 {}};
+    for (const fdem::Crack& c : fdem::cracks(w)) {
+      const Vec2 middle = 0.5 * (c.begin + c.end);
+      const Line& line = lines[at(c.joint)];
+      cracks.rows.push_back({c.time, middle.x, middle.y, norm(c.end - c.begin), c.mode, c.energy,
+                             line.begin.x, line.begin.y, line.end.x, line.end.y});
+    }
+    Table pieces{"fragments", {"fragment", "mass", "share"}, {"-", "kg/m", "-"}, {}};
+    const fdem::Fragments all = fdem::fragments(w);
+    double total = 0.0;
+    for (const double m : all.mass) total += m;
+    for (std::size_t i = 0; i < all.mass.size(); ++i)
+      pieces.rows.push_back({static_cast<double>(i), all.mass[i], all.mass[i] / total});
+    return {cracks, pieces};
+  }
+
+  template <class Visit>
+  static void each_stored(World& w, const Visit& visit) {
+    visit.fields("triangles", w.triangles);
+    visit.fields("joints", w.joints);
+    visit.fields("external", Loose<fdem::Corners>{"force", w.triangles.external});
+    with_number(w.exec.precision, [&](auto number) {
+      using Number = decltype(number);
+      visit.fields("joint_force",
+                   Loose<fdem::JointForceOf<Number>>{"force", w.joints.force.as<Number>()});
+    });
+    visit.fields("changed", Loose<std::uint8_t>{"flags", w.exposed.changed});
+    visit.fields("exposed", Loose<std::uint8_t>{"vertex", w.exposed.vertex});
+    visit.fields("joint_preset", Loose<Vec2>{"opening", w.joints.preset});
+    visit.fields("couples", w.couples);
+    visit.fields("reach", w.reach);
+    visit("reach.drift", w.reach.drift);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_method(const fdem::Config& config, const fdem::Model& model,
+                                    const Exec& exec, Communicator* ranks) {
+  return std::make_unique<SimMethod<FdemSim>>(config, model, exec, ranks);
+}
+
+}  // namespace breccia

@@ -1,0 +1,78 @@
+#pragma once
+// The interface of a method, as the outer loop calls it.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/energy.hpp"
+#include "core/step_clock.hpp"
+#include "io/checkpoint.hpp"
+#include "run/frames/frame_output.hpp"
+
+namespace breccia {
+
+/// A named count or number for summary.json, in a section of it ("model", "fracture", "searches",
+/// ...).
+struct Fact {
+  std::string
+      path;  ///< e.g. "model.elements", "model.links_by_kind.concrete", "fracture.broken_links"
+  double value;
+};
+
+/// A table of what a run found, for DIR/<name>.csv.
+struct Table {
+  std::string name;
+  std::vector<std::string> columns, units;
+  std::vector<std::vector<double>> rows;
+};
+
+/// A running simulation, whatever its method. Of several ranks each makes the same calls; numbers,
+/// frames and states come out on rank 0 alone, empty ones on the others.
+class Method {
+ public:
+  Method() = default;
+  Method(const Method&) = delete;
+  Method& operator=(const Method&) = delete;
+  virtual ~Method() = default;
+
+  /// One time step or, on a device, as many as fit a few hundredths of a second; on several ranks
+  /// all of them: to the first one at or past `stop`. @throws NumericsError naming step, time and
+  /// element
+  virtual Advanced advance(const StopAt& stop) = 0;
+  virtual std::int64_t steps() const = 0;  ///< done so far
+  virtual double time() const = 0;         ///< simulated  [s]
+  virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]
+
+  /// What set-up found doubtful though it can be run, as sentences; on rank 0.
+  virtual std::vector<std::string> warnings() { return {}; }
+  /// What rules the time step now, in a word; empty if the method does not tell.
+  virtual std::string step_rule() { return {}; }
+
+  virtual EnergyBalance energy() = 0;
+  /// Values of the case's probes, in their order.  [SI]
+  virtual std::vector<double> probes() = 0;
+  /// Order-free hash of all element states by global id: equal on any thread or rank count.
+  virtual std::uint64_t state_hash() = 0;
+  /// Looks for numbers that went wrong. @throws NumericsError naming step, time and element
+  virtual void verify() = 0;
+  virtual Frame frame() = 0;
+  /// The files and the picture of this moment.
+  virtual FrameOutput frame_output(const FrameWish& wish) {
+    return breccia::frame_output(frame(), wish, 1);
+  }
+  /// A copy of the state as it is now, for another thread to look at while this one goes on. Null
+  /// if one must look now: on the host, on several ranks, or for want of memory.
+  virtual std::unique_ptr<Method> snapshot() { return nullptr; }
+  virtual std::vector<Fact> facts() = 0;
+  /// What else the end of a run shows.
+  virtual std::vector<Table> tables() { return {}; }
+
+  /// Everything the run needs to go on, to and from a checkpoint.
+  virtual void save(CheckpointWriter& writer) = 0;
+  /// @param reader  on ranks other than 0 it may be null
+  virtual void load(const CheckpointReader* reader) = 0;
+};
+
+}  // namespace breccia

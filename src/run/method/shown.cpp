@@ -1,0 +1,132 @@
+#include "run/method/shown.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "exec/error.hpp"
+#include "io/case/suggestion.hpp"
+#include "io/picture/picture.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem_method.hpp"
+#include "run/results/summary.hpp"
+
+namespace breccia {
+namespace {
+
+/// What checks and pictures may name.
+struct Shown {
+  std::set<std::string> numbers;  ///< paths into summary.json, without those of probes
+  Frame frame;
+};
+
+void add_numbers(const nlohmann::json& json, const std::string& path,
+                 std::set<std::string>& paths) {
+  for (const auto& [key, value] : json.items()) {
+    const std::string below = path.empty() ? key : path + "." + key;
+    if (value.is_object()) add_numbers(value, below, paths);
+    if (value.is_number()) paths.insert(below);
+  }
+}
+
+Shown shown_by(Method& specimen) {
+  Summary summary;
+  summary.facts = specimen.facts();
+  summary.energy = specimen.energy();
+  Shown shown;
+  add_numbers(nlohmann::json::parse(to_json(summary)), "", shown.numbers);
+  shown.frame = specimen.frame();
+  return shown;
+}
+
+std::set<std::string> field_names(const Frame& frame) {
+  std::set<std::string> names;
+  for (const auto* fields : {&frame.point_fields, &frame.line_fields, &frame.triangle_fields})
+    for (const FrameField& field : *fields)
+      names.insert(field.name + (field.components == 3 ? "[_x, _y, _z]" : ""));
+  return names;
+}
+
+/// The problem of a check that no run can evaluate; empty: none.
+std::string problem_of(const CheckConfig& c, const std::vector<ProbeConfig>& probes,
+                       const Shown& shown) {
+  const std::string where = fmt::format("check.{}.value = {:?}", c.name, c.value);
+  if (c.value.starts_with("stages_s.")) return "";  // as many as the run comes to
+  if (!c.value.starts_with("probe."))
+    return shown.numbers.contains(c.value)
+               ? ""
+               : where + " is no number of summary.json" + suggestion(c.value, shown.numbers);
+  const std::size_t dot = c.value.rfind('.');
+  const std::string name = dot > 5 ? c.value.substr(6, dot - 6) : "",
+                    which = c.value.substr(dot + 1);
+  std::string known;
+  for (const ProbeConfig& probe : probes) {
+    if (probe.name == name)
+      return which == "last" || which == "min" || which == "max"
+                 ? ""
+                 : where + " must end in .last, .min or .max";
+    known += (known.empty() ? "" : ", ") + probe.name;
+  }
+  return where + " is not of a probe; there are: " + (known.empty() ? "none" : known);
+}
+
+void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
+  const Shown shown = shown_by(specimen);
+  std::vector<std::string> problems;
+  for (const CheckConfig& check : config.checks)
+    problems.push_back(problem_of(check, config.probes, shown));
+  if (!has_field(shown.frame, config.output.color))
+    problems.push_back(
+        fmt::format("output.color = {:?} is no field of the frames; allowed are {}, and \"\" for "
+                    "none",
+                    config.output.color, fmt::join(field_names(shown.frame), ", ")));
+  std::erase(problems, "");
+  if (problems.empty()) return;
+  throw InputError(fmt::format("{} problem{} in the case; nothing was run.\n  {}", problems.size(),
+                               problems.size() == 1 ? "" : "s", fmt::join(problems, "\n  ")));
+}
+
+}  // namespace
+
+void check_shown(const dem::Config& config) {
+  dem::Config one;
+  one.materials.emplace_back();
+  one.domain.show = config.domain.show;
+  dem::Model model;  // one element a body
+  for (const dem::BodyConfig& body : config.bodies) {
+    model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
+    model.position.push_back({10.0 * static_cast<double>(model.groups.size()), 0.0, 0.0});
+    model.groups.push_back(body.name);
+  }
+  const std::size_t count = model.groups.size();
+  model.material.resize(count);
+  model.radius = model.mass = model.inertia = std::vector<double>(count, 1.0);
+  model.velocity = model.spin = std::vector<Vec3>(count);
+  model.bar_previous = model.bar_next = std::vector<Index>(count, -1);
+  refuse_what_is_not_shown(config, *make_method(one, model, {}));
+}
+
+void check_shown(const fdem::Config& config) {
+  fdem::Config one;
+  one.materials.emplace_back();
+  one.domain.show = config.domain.show;
+  fdem::Model model;  // one triangle a body
+  for (const fdem::BodyConfig& body : config.bodies) {
+    const auto first = static_cast<Index>(model.point.size());
+    const double x = 10.0 * static_cast<double>(model.groups.size());
+    for (const Vec2& corner : {Vec2{x, 0.0}, Vec2{x + 1.0, 0.0}, Vec2{x, 1.0}})
+      model.point.push_back(corner);
+    model.triangle.push_back({first, first + 1, first + 2});
+    model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
+    model.groups.push_back(body.name);
+  }
+  const std::size_t count = model.groups.size();
+  model.material.resize(count);
+  model.velocity.resize(count);
+  model.strength.assign(count, 1.0F);
+  refuse_what_is_not_shown(config, *make_method(one, model, {}));
+}
+
+}  // namespace breccia

@@ -1,0 +1,214 @@
+#pragma once
+// One method for every kind of world: steps, looks, saves, alone or on ranks.
+
+#include <concepts>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/precision.hpp"
+#include "core/probe.hpp"
+#include "core/unsound.hpp"
+#include "exec/error.hpp"
+#include "run/frames/frame_parts.hpp"
+#include "run/machine/load_check.hpp"
+#include "run/method/method.hpp"
+#include "run/method/shared_world.hpp"
+
+namespace breccia {
+
+/// The parts that differ between kinds of world. It may also have `step_rule(world)` and
+/// `tables(world)`, and has `each_stored(world, visit)`: the one list of what a checkpoint holds,
+/// as visit(name, value) and visit.fields(prefix, state). Beside the world are advance, held,
+/// probe, read_own, find_unsound, state_hash, derive, share_out, collect and rebalance.
+template <class Sim>
+concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vector<Fact>& facts,
+                              Ledger& ledger, const Energies& energies) {
+  { Sim::balance(ledger, energies, std::int64_t{}) } -> std::same_as<EnergyBalance>;
+  // The frame of a world, or what a part has of it; rank 0 knows the whole mesh, too.
+  { Sim::frame(w, &w) } -> std::same_as<FramePart>;
+  // Counts of the model, and findings about its state.
+  sim.add_model(w, facts);
+  sim.add_findings(w, facts);
+};
+
+template <class World>
+std::uint64_t hash_of(const World& w) {
+  return state_hash(w);
+}
+
+template <Simulation Sim>
+class SimMethod final : public Method {
+ public:
+  using World = typename Sim::World;
+
+  template <class Config, class Model>
+  SimMethod(const Config& config, const Model& model, const Exec& exec, Communicator* ranks)
+      : world_([&](const Exec& where) { return Sim::made(config, model, where); },
+               in_precision(exec, config.precision), ranks, config.domain),
+        sim_(model, world_.mesh()),
+        probes_(config.probes) {}
+
+  Advanced advance(const StopAt& stop) override { return world_.advance_to(stop); }
+  std::int64_t steps() const override { return world_.part().step; }
+  double time() const override { return world_.part().time; }
+  double time_step() const override {
+    const World& w = world_.part();
+    return w.step > 0 ? w.last_dt : w.next_dt;
+  }
+  std::vector<std::string> warnings() override { return world_.mesh().warnings; }
+  std::string step_rule() override {
+    if constexpr (requires(const World& w) { Sim::step_rule(w); })
+      return world_.of_whole([](const World& w) { return std::string(Sim::step_rule(w)); });
+    return {};
+  }
+
+  EnergyBalance energy() override {
+    World& w = world_.part();
+    Energies all = held(w);
+    if (!single_rank()) {
+      Message message;
+      put_value(message, all);
+      put_value(message, std::exchange(w.ledger, {}));  // rank 0 keeps what has been booked
+      all = {};
+      for (const Message& told : world_.told(std::move(message))) {
+        Unpacking from(told);
+        all = all + from.value<Energies>();
+        world_.ledger().add(from.value<Ledger>());
+      }
+    }
+    if (!leads(world_.ranks())) return {};
+    return Sim::balance(world_.ledger(), all, steps());
+  }
+  std::vector<double> probes() override {
+    World& w = world_.part();
+    std::vector<double> values;
+    if (single_rank()) {
+      for (const ProbeConfig& p : probes_) values.push_back(probe(w, p));
+      return values;
+    }
+    Message message;
+    for (const ProbeConfig& p : probes_) put_value(message, read_own(w, p));
+    std::vector<Readings> all(probes_.size());
+    for (const Message& told : world_.told(std::move(message))) {
+      Unpacking from(told);
+      for (Readings& readings : all) readings = readings + from.value<Readings>();
+    }
+    for (std::size_t i = 0; i < all.size(); ++i)
+      values.push_back(all[i].reduced(probes_[i].reduce));
+    return values;
+  }
+  std::uint64_t state_hash() override {
+    return world_.of_whole([](World& w) { return hash_of(w); });
+  }
+  void verify() override {
+    Unsound first = find_unsound(world_.part());
+    if (!single_rank()) {
+      Message message;
+      put_value(message, first.id);
+      put_array(message, std::vector<char>(first.text.begin(), first.text.end()));
+      for (const Message& told : world_.told(std::move(message))) {
+        Unpacking from(told);
+        const auto id = from.value<GlobalId>();
+        const std::vector<char> text = from.array<char>();
+        if (id < first.id) first = {id, {text.begin(), text.end()}};
+      }
+    }
+    on_first(world_.ranks(), [&] {
+      if (first.id != Unsound::none) throw NumericsError(first.text);
+    });
+  }
+
+  Frame frame() override {
+    return world_.of_whole([](World& w) { return Sim::frame(w, nullptr).frame; });
+  }
+  FrameOutput frame_output(const FrameWish& wish) override {
+    const World& w = world_.part();
+    const int threads = w.exec.threads;
+    if (single_rank()) return breccia::frame_output(Sim::frame(w, nullptr).frame, wish, threads);
+    FrameOutput output;
+    at_once(world_.ranks(), [&] {
+      const World* const mesh = leads(world_.ranks()) ? &world_.mesh() : nullptr;
+      output = FrameOfParts(Sim::frame(w, mesh), wish, *world_.ranks(), threads).output();
+    });
+    return output;
+  }
+  std::vector<Fact> facts() override {
+    return world_.of_whole([this](const World& w) {
+      std::vector<Fact> facts;
+      sim_.add_model(w, facts);
+      world_.add_facts(facts);
+      sim_.add_findings(w, facts);
+      return facts;
+    });
+  }
+  std::vector<Table> tables() override {
+    if constexpr (requires(const World& w, const Sim& sim) { sim.tables(w); })
+      return world_.of_whole([this](const World& w) { return sim_.tables(w); });
+    return {};
+  }
+
+  std::unique_ptr<Method> snapshot() override {
+    return world_.apart([this] { return std::unique_ptr<Method>(new SimMethod(*this)); });
+  }
+  void save(CheckpointWriter& writer) override {
+    world_.with_whole([&](World& w) { each_stored(w, Saving{writer}); });
+  }
+  void load(const CheckpointReader* reader) override {
+    world_.renew([&](World& w) {
+      const LoadCheck<World> check(w);
+      each_stored(w, Loading{*reader});
+      check.refuse_misfits(w);
+      derive(w);
+    });
+  }
+
+ private:
+  /// A copy whose steps are not booked.
+  SimMethod(const SimMethod& other)
+      : Method(), world_(other.world_), sim_(other.sim_), probes_(other.probes_) {
+    world_.forget_timers();
+  }
+
+  struct Saving {
+    CheckpointWriter& to;
+    template <class T>
+    void operator()(const std::string& name, const T& value) const {
+      to.value(name, value);
+    }
+    template <class State>
+    void fields(const char* prefix, State&& state) const {
+      to.fields(prefix, state);
+    }
+  };
+  struct Loading {
+    const CheckpointReader& from;
+    template <class T>
+    void operator()(const std::string& name, T& value) const {
+      value = from.value<T>(name);
+    }
+    template <class State>
+    void fields(const char* prefix, State&& state) const {
+      from.fields(prefix, state);
+    }
+  };
+  template <class Visit>
+  static void each_stored(World& w, const Visit& visit) {
+    visit("step", w.step);
+    visit("time", w.time);
+    visit("last_dt", w.last_dt);
+    visit("next_dt", w.next_dt);
+    visit("searches", w.searches);
+    visit("ledger", w.ledger);
+    Sim::each_stored(w, visit);
+  }
+
+  bool single_rank() const { return world_.ranks() == nullptr; }
+
+  SharedWorld<World> world_;
+  Sim sim_;
+  std::vector<ProbeConfig> probes_;
+};
+
+}  // namespace breccia

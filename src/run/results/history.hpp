@@ -1,0 +1,40 @@
+#pragma once
+// history.csv: the energies and probes of a run over its time.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/case_config.hpp"
+#include "core/energy.hpp"
+#include "run/results/text_file.hpp"
+
+namespace breccia {
+
+/// One row of the history.
+struct Sample {
+  std::int64_t step = 0;
+  double time = 0.0;       ///<  [s]
+  double time_step = 0.0;  ///<  [s]
+  EnergyBalance energy;    ///<  [J]
+  std::vector<double> probes;
+};
+
+/// A CSV file: names in the first line, units in the second, then a row a sample. Numbers carry 17
+/// significant digits, so that reading them gives the same bits.
+class History {
+ public:
+  /// Opens the file to append; a new one gets its two head lines.
+  History(const std::string& path, const std::vector<ProbeConfig>& probes);
+
+  /// Rows of later steps than `step` go: a run that goes on from there writes them anew.
+  static void cut_to(const std::string& path, std::int64_t step);
+
+  void write(const Sample& sample);
+  void sync() { file_.sync(); }
+
+ private:
+  LineFile file_;
+};
+
+}  // namespace breccia

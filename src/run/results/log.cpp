@@ -1,0 +1,57 @@
+#include "run/results/log.hpp"
+
+#include <fmt/chrono.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+namespace breccia {
+namespace {
+
+const char* word(Level level) {
+  switch (level) {
+    case Level::info:
+      return "info";
+    case Level::warning:
+      return "warning";
+    case Level::error:
+      return "error";
+  }
+  return "info";
+}
+
+std::string time_stamp() {
+  const auto now = std::chrono::system_clock::now();
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(now);
+  const auto milliseconds =
+      std::chrono::duration_cast<std::chrono::milliseconds>(now - seconds).count();
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03d}Z",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(seconds)), milliseconds);
+}
+
+}  // namespace
+
+void Log::write(Level level, const std::string& stage, std::int64_t step,
+                const std::string& message) {
+  const nlohmann::ordered_json line{{"time", time_stamp()},
+                                    {"level", word(level)},
+                                    {"stage", stage},
+                                    {"step", step},
+                                    {"message", message}};
+  file_.append(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (echo_ != nullptr) std::fputs(fmt::format("  {}: {}\n", stage, message).c_str(), echo_);
+}
+
+void Log::warn(const std::string& stage, std::int64_t step, const std::string& message) {
+  write(Level::warning, stage, step, message);
+  std::fputs(fmt::format("warning: step {}: {}\n", step, message).c_str(), stderr);
+}
+
+void Log::cut_to(const std::string& path, std::int64_t step) {
+  keep_lines(path, [step](std::string_view line) {
+    const auto parsed = nlohmann::json::parse(line, nullptr, false);
+    return parsed.is_object() && parsed.value("step", std::int64_t{0}) <= step;
+  });
+}
+
+}  // namespace breccia

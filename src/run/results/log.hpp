@@ -1,0 +1,34 @@
+#pragma once
+// log.jsonl: what happened, one JSON object a line.
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "run/results/text_file.hpp"
+
+namespace breccia {
+
+enum class Level { info, warning, error };
+
+/// The log of a run.
+class Log {
+ public:
+  /// @param echo  where messages are repeated for people; may be null
+  explicit Log(const std::string& path, std::FILE* echo = nullptr) : file_(path), echo_(echo) {}
+
+  /// Lines of later steps than `step` go: a run that goes on from there writes them anew.
+  static void cut_to(const std::string& path, std::int64_t step);
+
+  /// @param stage  "setup", "step", "frame", "checkpoint", "end"
+  void write(Level level, const std::string& stage, std::int64_t step, const std::string& message);
+  /// And tells people of it, whether messages are repeated for them or not.
+  void warn(const std::string& stage, std::int64_t step, const std::string& message);
+  void sync() { file_.sync(); }
+
+ private:
+  LineFile file_;
+  std::FILE* echo_;
+};
+
+}  // namespace breccia

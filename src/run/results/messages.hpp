@@ -1,0 +1,24 @@
+#pragma once
+// The opening and closing lines of a run.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "run/results/summary.hpp"
+
+namespace breccia {
+
+/// What was read and what is to come.
+/// @param end_time   simulated time at which the run ends  [s]
+/// @param end_steps  steps after which it ends at the latest
+std::string opening_text(const Summary& summary, double end_time, std::int64_t end_steps,
+                         const std::string& folder);
+
+/// How many links or joints have broken, in words; empty if there are none to break.
+std::string broken_text(const std::vector<Fact>& facts);
+
+/// What came out, and where it lies.
+std::string closing_text(const Summary& summary, std::int64_t frames, const std::string& folder);
+
+}  // namespace breccia

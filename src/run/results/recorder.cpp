@@ -1,0 +1,227 @@
+#include "run/results/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+#include "domain/together.hpp"
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+Schedule row_schedule(const CaseConfig& config) {
+  if (config.output.history > 0.0) return {config.output.history, 1.0};
+  return {config.time.end, 1000.0};
+}
+
+Schedule frame_schedule(const CaseConfig& config) {
+  if (config.output.frames == 0) return {};
+  return {config.time.end, static_cast<double>(config.output.frames)};
+}
+
+/// Removes the pictures numbered `first` and later.
+void drop_pictures(const std::string& folder, std::int64_t first) {
+  std::error_code error;
+  std::vector<fs::path> later;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string stem = entry.path().stem().string();
+    std::int64_t number = 0;
+    const auto [end, problem] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+    if (problem == std::errc{} && *end == '\0' && number >= first) later.push_back(entry.path());
+  }
+  for (const fs::path& path : later) fs::remove(path, error);
+}
+
+ProbeRange fresh_range(const std::string& name) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {name, 0.0, infinity, -infinity};
+}
+
+}  // namespace
+
+void Schedule::pass(double time) {
+  if (time < next_) return;
+  if (std::isinf(end_)) {
+    next_ = end_;
+    return;
+  }
+  const auto moment = [this](double k) { return k / count_ * end_; };
+  // The quotient may be off by a rounding, so the search starts below it.
+  double k = std::max(0.0, std::floor(time / end_ * count_) - 2.0);
+  constexpr double most_counted = 1e15;  // beyond, k + 1 may be k
+  if (!(k < most_counted)) {
+    next_ = std::nextafter(time, std::numeric_limits<double>::infinity());
+    return;
+  }
+  while (moment(k) <= time) k += 1.0;
+  next_ = moment(k);
+}
+
+void RecordState::save(CheckpointWriter& writer) const {
+  writer.value("run.row_step", row_step);
+  writer.value("run.frame_step", frame_step);
+  writer.value("run.frame_time", frame_time);
+  writer.value("run.frames", frames);
+  if (extent) writer.value("run.extent", *extent);
+  writer.value("run.unbalanced", unbalanced);
+  std::vector<double> ranges;
+  for (const ProbeRange& probe : probes)
+    ranges.insert(ranges.end(), {probe.last, probe.min, probe.max});
+  writer.section("run.probes", ranges.data(), ranges.size(), sizeof(double));
+}
+
+void RecordState::load(const CheckpointReader& reader) {
+  row_step = reader.value<std::int64_t>("run.row_step");
+  frame_step = reader.value<std::int64_t>("run.frame_step");
+  frame_time = reader.value<double>("run.frame_time");
+  frames = reader.value<std::int64_t>("run.frames");
+  if (reader.has("run.extent")) extent = reader.value<Extent>("run.extent");
+  if (reader.has("run.unbalanced")) unbalanced = reader.value<EnergyWatch::Rows>("run.unbalanced");
+  const CheckpointReader::Section& ranges = reader.section("run.probes", sizeof(double));
+  probes.resize(ranges.count / 3);
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    std::array<double, 3> range{};
+    std::copy_n(ranges.bytes.data() + i * sizeof(range), sizeof(range),
+                reinterpret_cast<std::byte*>(range.data()));
+    probes[i].last = range[0];
+    probes[i].min = range[1];
+    probes[i].max = range[2];
+  }
+}
+
+Recorder::Recorder(const CaseConfig& config, Communicator* ranks)
+    : config_(config),
+      ranks_(ranks),
+      rows_(row_schedule(config)),
+      frames_(frame_schedule(config)),
+      watch_(config.energy) {
+  for (const ProbeConfig& probe : config_.probes) state_.probes.push_back(fresh_range(probe.name));
+}
+
+void Recorder::resume(const RecordState& state, double time) {
+  state_ = state;
+  watch_ = EnergyWatch(config_.energy, state.unbalanced);
+  state_.probes.resize(config_.probes.size());
+  for (std::size_t i = 0; i < config_.probes.size(); ++i)
+    state_.probes[i].name = config_.probes[i].name;
+  if (state_.row_step >= 0) rows_.pass(time);
+  if (state_.frame_step >= 0) frames_.pass(time);
+  frame_count_ = state_.frames;
+  resumed_ = true;
+}
+
+void Recorder::open(const ResultFolder& folder, Log& log) {
+  log_ = &log;
+  pictures_ = folder.file("pictures");
+  const std::string history = folder.file("history.csv");
+  if (resumed_) History::cut_to(history, state_.row_step);
+  history_.emplace(history, config_.probes);
+  if (config_.output.fields && state_.frames > 0)
+    series_ = ParaviewSeries::resumed(folder.path(), state_.frame_time);
+  else if (config_.output.fields)
+    series_.emplace(folder.path());
+  if (!config_.output.pictures) return;
+  make_folder(pictures_);
+  if (resumed_) drop_pictures(pictures_, state_.frames);
+}
+
+void Recorder::record(Method& method, Background& background) {
+  const double time = method.time();
+  if (time >= rows_.next()) {
+    write_row(method);
+    on_first(ranks_, [&] {
+      if (watch_.look(*last_energy_, method.steps(), time))
+        log_->warn(
+            "step", method.steps(),
+            fmt::format("energies do not add up: error_relative has been above {} for {} rows, "
+                        "and is {:.2g}",
+                        config_.energy.warn, EnergyWatch::patience, last_energy_->error_relative));
+      state_.unbalanced = watch_.rows();
+    });
+    rows_.pass(time);
+    state_.row_step = method.steps();
+  }
+  if (time >= frames_.next()) {
+    if (wants_frames()) write_frame(method, background);
+    frames_.pass(time);
+    state_.frame_step = method.steps();
+    state_.frame_time = time;
+    state_.frames = frame_count_;
+  }
+}
+
+void Recorder::record_last(Method& method, Background& background) {
+  if (state_.row_step != method.steps()) write_row(method);
+  if (wants_frames() && config_.output.frames > 0 && state_.frame_step != method.steps())
+    write_frame(method, background);
+}
+
+void Recorder::judge_end(const Method& method, const EnergyBalance& energy) const {
+  on_first(ranks_, [&] { watch_.judge_end(energy, method.steps(), method.time()); });
+}
+
+void Recorder::sync() {
+  if (series_) series_->finish();
+  history_->sync();
+}
+
+void Recorder::write_row(Method& method) {
+  const std::vector<double> probes = method.probes();
+  last_energy_ = method.energy();
+  on_first(ranks_, [&] {
+    history_->write({method.steps(), method.time(), method.time_step(), *last_energy_, probes});
+    for (std::size_t i = 0; i < std::min(probes.size(), state_.probes.size()); ++i) {
+      ProbeRange& range = state_.probes[i];
+      range.last = probes[i];
+      range.min = std::min(range.min, probes[i]);
+      range.max = std::max(range.max, probes[i]);
+    }
+  });
+}
+
+void Recorder::write_frame(Method& method, Background& background) {
+  background.finish();
+  const std::int64_t number = frame_count_;
+  std::shared_ptr<Method> later;
+  if (state_.extent || !config_.output.pictures)  // else it belongs to the record's state
+    later = method.snapshot();
+  if (later != nullptr)
+    background.add([this, later, number] { write_frame_of(*later, number); });
+  else
+    write_frame_of(method, number);
+  on_first(ranks_, [&] {
+    log_->write(Level::info, "frame", method.steps(),
+                fmt::format("frame {} at {:.9g} s", number, method.time()));
+  });
+  ++frame_count_;
+}
+
+void Recorder::write_frame_of(Method& method, std::int64_t number) {
+  FrameWish wish{config_.output.fields, std::nullopt};
+  if (config_.output.pictures) {
+    RenderOptions& options = wish.picture.emplace();
+    options.field = config_.output.color;
+    options.view = config_.output.view;
+    options.width = config_.output.width;
+    options.height = config_.output.height;
+    options.extent = state_.extent;
+    if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
+    options.title = config_.title;
+  }
+  const FrameOutput output = method.frame_output(wish);
+  on_first(ranks_, [&] {
+    if (series_) series_->write(output.files);
+    if (!config_.output.pictures) return;
+    if (!state_.extent) state_.extent = output.extent;
+    write_png(fmt::format("{}/{:04}.png", pictures_, number), output.png);
+  });
+}
+
+}  // namespace breccia

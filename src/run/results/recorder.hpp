@@ -1,0 +1,106 @@
+#pragma once
+// What a run shows of itself while it goes on: rows of history.csv, frames and pictures.
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "domain/communicator.hpp"
+#include "io/picture/picture.hpp"
+#include "io/vtu/paraview.hpp"
+#include "run/machine/background.hpp"
+#include "run/machine/energy_watch.hpp"
+#include "run/method/method.hpp"
+#include "run/results/history.hpp"
+#include "run/results/log.hpp"
+#include "run/results/result_folder.hpp"
+#include "run/results/summary.hpp"
+
+namespace breccia {
+
+/// The moments k end / count, k = 0, 1, 2, ...: something is due at the first step at or past one.
+/// Which one is next follows from the time alone, so a resumed run meets the same steps.
+class Schedule {
+ public:
+  /// Never, but for k = 0.
+  Schedule() = default;
+  Schedule(double end, double count) : end_(end), count_(count) {}
+
+  double next() const { return next_; }
+  /// The next moment becomes the first one later than `time`.
+  void pass(double time);
+
+ private:
+  double end_ = std::numeric_limits<double>::infinity(), count_ = 1.0;
+  double next_ = 0.0;  ///<  [s]
+};
+
+/// How far the record has come: what a checkpoint needs so that a resumed run leaves the same one.
+struct RecordState {
+  std::int64_t row_step = -1;      ///< of the last row that the schedule asked for
+  std::int64_t frame_step = -1;    ///< of the last frame that the schedule asked for
+  double frame_time = 0.0;         ///< likewise  [s]
+  std::int64_t frames = 0;         ///< in the folder, that the schedule asked for
+  std::optional<Extent> extent;    ///< of the pictures, from the first frame  [m]
+  std::vector<ProbeRange> probes;  ///< over the rows that the schedule asked for
+  EnergyWatch::Rows unbalanced;    ///< likewise
+
+  void save(CheckpointWriter& writer) const;
+  void load(const CheckpointReader& reader);
+};
+
+/// Writes what the case's [output] asks for. It only reads the method: no output changes a bit of
+/// the run. Of several ranks each has one; that of rank 0 writes.
+class Recorder {
+ public:
+  explicit Recorder(const CaseConfig& config, Communicator* ranks);
+  /// Goes on with an older record, which had come to that state.
+  /// @param time  then  [s]
+  void resume(const RecordState& state, double time);
+  /// Opens the files of a new record, or cuts those of an older one to its state. Rank 0 only.
+  void open(const ResultFolder& folder, Log& log);
+
+  /// Whether a row or a frame is due. Cheap: asked every step.
+  bool due(double time) const { return time >= next(); }
+  /// When the next row or frame is due.  [s]
+  double next() const { return std::min(rows_.next(), frames_.next()); }
+  /// Writes the rows and frames that are due; frames in the background where the method can be
+  /// looked at there.
+  void record(Method& method, Background& background);
+  /// Writes a row and a frame of the last state, if the schedule did not ask for them.
+  void record_last(Method& method, Background& background);
+  /// At the end of a case. @throws NumericsError if its energies do not add up
+  void judge_end(const Method& method, const EnergyBalance& energy) const;
+  /// Brings all files up to what was recorded. The background must have finished.
+  void sync();
+
+  /// To be saved after record() and before record_last().
+  const RecordState& state() const { return state_; }
+  /// The energies of the newest row, on rank 0; none before the first.
+  const std::optional<EnergyBalance>& last_energy() const { return last_energy_; }
+  /// Frames written to the folder so far.
+  std::int64_t frame_count() const { return frame_count_; }
+
+ private:
+  void write_row(Method& method);
+  void write_frame(Method& method, Background& background);
+  void write_frame_of(Method& method, std::int64_t number);
+  bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
+
+  CaseConfig config_;
+  Communicator* ranks_;
+  RecordState state_;
+  std::string pictures_;
+  Log* log_ = nullptr;
+  std::optional<History> history_;
+  std::optional<ParaviewSeries> series_;
+  Schedule rows_, frames_;
+  std::int64_t frame_count_ = 0;
+  bool resumed_ = false;
+  std::optional<EnergyBalance> last_energy_;
+  EnergyWatch watch_;
+};
+
+}  // namespace breccia
