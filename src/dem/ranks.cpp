@@ -242,17 +242,17 @@ void drop_state(World& w) {
   w.bar_actions.resize(0);
 }
 
-void start_copies(World& w) {
+void start_ghosts(World& w) {
   if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.start_refresh(w.exec, w.elements.state);
 }
-void finish_copies(World& w) {
+void finish_ghosts(World& w) {
   if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.finish_refresh(w.exec, w.elements.state);
 }
-void refresh_copies(World& w) {
+void refresh_ghosts(World& w) {
   if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.refresh_all(w.exec, w.elements.state);

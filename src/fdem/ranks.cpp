@@ -387,17 +387,17 @@ void drop_state(World& w) {
   w.vertex.clear();
 }
 
-void start_copies(World& w) {
+void start_ghosts(World& w) {
   if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.start_refresh(w.exec, w.triangles.nodes);
 }
-void finish_copies(World& w) {
+void finish_ghosts(World& w) {
   if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.finish_refresh(w.exec, w.triangles.nodes);
 }
-void refresh_copies(World& w) {
+void refresh_ghosts(World& w) {
   if (w.domain.single_rank()) return;
   const StageTime timed(w.exec, "halo");
   w.domain.refresh_all(w.exec, w.triangles.nodes);

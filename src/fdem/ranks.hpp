@@ -33,10 +33,10 @@ void rebalance(World& w);
 
 /// After the triangles have moved: active ghosts follow their owners.
 /// Meanwhile ranks vote on a search.
-void start_copies(World& w);
-void finish_copies(World& w);
+void start_ghosts(World& w);
+void finish_ghosts(World& w);
 /// And now all of them: a search is due.
-void refresh_copies(World& w);
+void refresh_ghosts(World& w);
 
 /// After a search: selects the ghosts that are active until the next one.
 void select_active_ghosts(World& w);

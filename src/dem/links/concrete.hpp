@@ -19,13 +19,12 @@ struct LinkHistory {
 
 /// Cohesive links. Never removed: a broken one answers as the contact that is left of it.
 template <>
-struct LinkArrays<ConcreteLink> {
+struct LinkArrays<ConcreteLink> : LinkEnds {
   static constexpr LinkKind kind = LinkKind::concrete;
   static constexpr const char* name = "concrete";
   static constexpr bool swept = true;
 
   Precision precision = Precision::full;  ///< of `kept`
-  Buffer<Index> a, b;                     ///< the ends, a's global id below b's
   Buffer<double> length;                  ///< D_eq  [m]
   Buffer<double> stiffness;               ///< K_n  [N/m]
   Buffer<double> area;                    ///< S  [m2]
@@ -36,8 +35,7 @@ struct LinkArrays<ConcreteLink> {
 
   template <class Visit>
   void each_field(Visit&& field) {
-    field("a", "-", a);
-    field("b", "-", b);
+    LinkEnds::each_field(field);
     field("length", "m", length);
     field("stiffness", "N/m", stiffness);
     field("area", "m2", area);
@@ -51,17 +49,6 @@ struct LinkArrays<ConcreteLink> {
     field("yielded", "J", yielded);
     field("broke", "J", broke);
   }
-  template <class Visit>
-  void each_end(Visit&& visit) {
-    visit("a", a);
-    visit("b", b);
-  }
-  template <class Visit>
-  void each_end(Visit&& visit) const {
-    visit("a", a);
-    visit("b", b);
-  }
-  Index size() const { return a.size(); }
 
   template <class Number>
   struct Below {

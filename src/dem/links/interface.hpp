@@ -9,12 +9,11 @@ namespace breccia::dem {
 
 /// Bonds between bars and concrete: a is the bar's element, b the concrete's.
 template <>
-struct LinkArrays<InterfaceLink> {
+struct LinkArrays<InterfaceLink> : LinkEnds {
   static constexpr LinkKind kind = LinkKind::interface;
   static constexpr const char* name = "interface";
   static constexpr bool swept = false;
 
-  Buffer<Index> a, b;
   Buffer<Index> before,
       after;  ///< neighbours of a along its bar (a itself at an end): they give the axis
   Buffer<double> stiffness;  ///< K_tr  [N/m]
@@ -25,8 +24,7 @@ struct LinkArrays<InterfaceLink> {
 
   template <class Visit>
   void each_field(Visit&& field) {
-    field("a", "-", a);
-    field("b", "-", b);
+    LinkEnds::each_field(field);
     field("before", "-", before);
     field("after", "-", after);
     field("stiffness", "N/m", stiffness);
@@ -37,19 +35,16 @@ struct LinkArrays<InterfaceLink> {
   }
   template <class Visit>
   void each_end(Visit&& visit) {
-    visit("a", a);
-    visit("b", b);
+    LinkEnds::each_end(visit);
     visit("before", before);
     visit("after", after);
   }
   template <class Visit>
   void each_end(Visit&& visit) const {
-    visit("a", a);
-    visit("b", b);
+    LinkEnds::each_end(visit);
     visit("before", before);
     visit("after", after);
   }
-  Index size() const { return a.size(); }
 
   struct Below {
     View<const InterfaceState> state;

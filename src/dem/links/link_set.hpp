@@ -14,12 +14,35 @@
 
 namespace breccia::dem {
 
+/// Elements that links join, a's global id below b's.
+struct LinkEnds {
+  Buffer<Index> a, b;  ///< places in memory
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("a", "-", a);
+    field("b", "-", b);
+  }
+  template <class Visit>
+  void each_end(Visit&& visit) {
+    visit("a", a);
+    visit("b", b);
+  }
+  template <class Visit>
+  void each_end(Visit&& visit) const {
+    visit("a", a);
+    visit("b", b);
+  }
+  Index size() const { return a.size(); }
+};
+
 /// The arrays of all links of a law: ends, constants, state, what they have spent. One definition a
 /// law, with
 ///
 ///   kind, name             its LinkKind, and its word in files
 ///   swept                  whether the host sums its forces as they come (concrete alone)
-///   each_field, each_end   visit the arrays, and those of elements
+///   each_field             visits the arrays; each_end, those of elements: LinkEnds, from which it
+///                          derives, or more of them
 ///   broken(), released()   kernels: whether link i is broken, and whether it has let go of its
 ///                          ends, which may then touch as others do
 template <class Law>

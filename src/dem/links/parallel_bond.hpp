@@ -9,12 +9,11 @@ namespace breccia::dem {
 
 /// Bonds of cement between grains.
 template <>
-struct LinkArrays<ParallelBond> {
+struct LinkArrays<ParallelBond> : LinkEnds {
   static constexpr LinkKind kind = LinkKind::parallel;
   static constexpr const char* name = "parallel";
   static constexpr bool swept = false;
 
-  Buffer<Index> a, b;
   Buffer<double> length;     ///< D_eq  [m]
   Buffer<double> stiffness;  ///< K_n  [N/m]
   Buffer<ParallelBondState> state;
@@ -23,25 +22,13 @@ struct LinkArrays<ParallelBond> {
 
   template <class Visit>
   void each_field(Visit&& field) {
-    field("a", "-", a);
-    field("b", "-", b);
+    LinkEnds::each_field(field);
     field("length", "m", length);
     field("stiffness", "N/m", stiffness);
     field("state", "-", state);
     field("slid", "J", slid);
     field("broke", "J", broke);
   }
-  template <class Visit>
-  void each_end(Visit&& visit) {
-    visit("a", a);
-    visit("b", b);
-  }
-  template <class Visit>
-  void each_end(Visit&& visit) const {
-    visit("a", a);
-    visit("b", b);
-  }
-  Index size() const { return a.size(); }
 
   struct Below {
     View<const ParallelBondState> state;

@@ -9,12 +9,11 @@ namespace breccia::dem {
 
 /// Pieces of bar.
 template <>
-struct LinkArrays<SteelLink> {
+struct LinkArrays<SteelLink> : LinkEnds {
   static constexpr LinkKind kind = LinkKind::steel;
   static constexpr const char* name = "steel";
   static constexpr bool swept = false;
 
-  Buffer<Index> a, b;
   Buffer<double> length;  ///< L_s  [m]
   Buffer<SteelState> state;
   Buffer<double> yielded;  ///< energy spent on yielding so far  [J]
@@ -22,24 +21,12 @@ struct LinkArrays<SteelLink> {
 
   template <class Visit>
   void each_field(Visit&& field) {
-    field("a", "-", a);
-    field("b", "-", b);
+    LinkEnds::each_field(field);
     field("length", "m", length);
     field("state", "-", state);
     field("yielded", "J", yielded);
     field("broke", "J", broke);
   }
-  template <class Visit>
-  void each_end(Visit&& visit) {
-    visit("a", a);
-    visit("b", b);
-  }
-  template <class Visit>
-  void each_end(Visit&& visit) const {
-    visit("a", a);
-    visit("b", b);
-  }
-  Index size() const { return a.size(); }
 
   struct Broken {
     View<const SteelState> state;

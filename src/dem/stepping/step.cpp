@@ -83,17 +83,17 @@ void move_walls(World& w) {
 }
 
 void StepwiseRun::send_ghosts(World& w) const {
-  start_copies(w);
+  start_ghosts(w);
 }
 
 void StepwiseRun::receive_ghosts(World& w) const {
   ask_for_search(w);  // all ranks vote, while ghosts travel
-  finish_copies(w);
+  finish_ghosts(w);
 }
 
 void StepwiseRun::search_if_due(World& w) const {
   if (!contacts_are_due(w)) return;
-  refresh_copies(w);
+  refresh_ghosts(w);
   find_contacts(w);
 }
 

@@ -83,7 +83,7 @@ double shortened_time_step(const World& w, const Buffer<Index>& triangles) {
 }
 
 void StepwiseRun::send_ghosts(World& w) const {
-  start_copies(w);
+  start_ghosts(w);
 }
 
 void StepwiseRun::ask_for_search(World& w) const {
@@ -91,12 +91,12 @@ void StepwiseRun::ask_for_search(World& w) const {
 }
 
 void StepwiseRun::receive_ghosts(World& w) const {
-  finish_copies(w);
+  finish_ghosts(w);
 }
 
 void StepwiseRun::search_if_due(World& w) const {
   if (!couples_are_due(w)) return;
-  refresh_copies(w);
+  refresh_ghosts(w);
   find_couples(w);
 }
 
