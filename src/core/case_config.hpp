@@ -15,10 +15,11 @@ namespace breccia {
 
 /// [time]
 struct TimeConfig {
-  double end = 1e-3;       ///< simulated time at which the run is done  [s]
-  double safety = 0.7;     ///< share of the critical time step that is used  [-]
-  double max_step = 1e-3;  ///< never longer than this  [s]
-  int evaluate_every = 1;  ///< steps between evaluations of the critical step  [-]
+  double end = 1e-3;          ///< simulated time at which the run is done  [s]
+  double safety = 0.7;        ///< share of the critical time step that is used  [-]
+  double max_step = 1e-3;     ///< never longer than this  [s]
+  int evaluate_every = 1;     ///< steps between evaluations of the critical step  [-]
+  double mass_scaling = 1.0;  ///< inertia in the run over that of the bodies; weight stays  [-]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -29,6 +30,10 @@ struct TimeConfig {
     key("max_step", max_step, "s", positive, "no time step is longer than this");
     key("evaluate_every", evaluate_every, "-", Range{1, 1000},
         "steps from one evaluation of the critical time step to the next");
+    key("mass_scaling", mass_scaling, "-", Range{1.0, 1e12},
+        "inertia is so many times that of the bodies, weight stays: the time step grows with its "
+        "square root. For quasi-static runs alone: energy.kinetic_share in summary.json tells "
+        "whether inertia had a part");
   }
 };
 

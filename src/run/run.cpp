@@ -332,6 +332,11 @@ int Run::done() {
 /// Tells what came out. @throws CheckFailed
 void Run::conclude(Summary& now) {
   now.status = "done";
+  if (const std::string doubt = inertia_text(plan_.config.time.mass_scaling, now.kinetic_share);
+      !doubt.empty()) {
+    log_->warn("end", method_.steps(), doubt);
+    now.warnings.push_back(doubt);
+  }
   const bool whole_case = method_.time() >= plan_.config.time.end;
   if (whole_case) now.checks = evaluate_checks(plan_.config.checks, now);
   const std::string table = now.checks.empty() ? "" : check_table(now.checks);
@@ -435,6 +440,7 @@ Summary Run::summary() const {
   // Asking the ledger may note a new largest energy in it, so it is asked at rows only: when a
   // checkpoint falls due by wall time must not show in the history.
   s.energy = recorder_.last_energy();
+  s.kinetic_share = recorder_.moving().value();
   return s;
 }
 

@@ -278,7 +278,9 @@ void set_linked_pairs(World& w) {
   copy_to(w.linked_links, links);
 }
 
-World make_world(const Config& config, const Model& model, const Exec& exec) {
+namespace {
+
+World made(const Config& config, const Model& model, const Exec& exec) {
   if (model.size() == 0) throw InputError("the case has no elements");
   World w(exec);
   w.parameters.time = config.time;
@@ -298,6 +300,19 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   const EnergyBalance start = balance(w);
   w.ledger.start = start.kinetic + start.elastic;
   return w;
+}
+
+}  // namespace
+
+World make_world(const Config& config, const Model& model, const Exec& exec) {
+  const double scale = config.time.mass_scaling;
+  if (scale == 1.0) return made(config, model, exec);
+  Config slower = config;  // more inertia under the weight that bodies have
+  slower.gravity = (1.0 / scale) * config.gravity;
+  Model heavier = model;
+  for (double& mass : heavier.mass) mass *= scale;
+  for (double& inertia : heavier.inertia) inertia *= scale;
+  return made(slower, heavier, exec);
 }
 
 }  // namespace breccia::dem

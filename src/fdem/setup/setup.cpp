@@ -347,7 +347,20 @@ void move_to(World& w, Space space) {
   move_world(w, space);
 }
 
-World make_world(const Config& config, const Model& model, const Exec& exec) {
+namespace {
+
+/// More inertia under the weight that bodies have: time.mass_scaling.
+Config with_inertia(Config config) {
+  const double scale = config.time.mass_scaling;
+  for (MaterialConfig& material : config.materials) material.density *= scale;
+  config.gravity = (1.0 / scale) * config.gravity;
+  return config;
+}
+
+}  // namespace
+
+World make_world(const Config& given, const Model& model, const Exec& exec) {
+  const Config config = with_inertia(given);
   if (model.size() == 0) throw InputError("the model holds no triangles");
   World w(exec);
   w.parameters.time = config.time;

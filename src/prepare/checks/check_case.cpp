@@ -12,6 +12,22 @@
 #include "prepare/checks/refusal.hpp"
 
 namespace breccia {
+namespace {
+
+/// A body that flies would have time.mass_scaling times its kinetic energy.
+template <class Config>
+void check_mass_scaling(const Config& config, std::vector<std::string>& problems) {
+  if (config.time.mass_scaling == 1.0) return;
+  for (const auto& body : config.bodies)
+    if (dot(body.velocity, body.velocity) > 0.0)
+      problems.push_back(fmt::format(
+          "time.mass_scaling = {} is for quasi-static runs, and body.{} begins with a velocity: "
+          "it would have {} times its kinetic energy; leave one of the keys out",
+          config.time.mass_scaling, body.name, config.time.mass_scaling));
+}
+
+}  // namespace
+
 namespace dem {
 namespace {
 
@@ -26,6 +42,7 @@ class Check {
         add("wall." + w.name + ".normal has length 0; it must point somewhere");
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
+    check_mass_scaling(config_, problems_);
   }
   std::vector<std::string> problems_;
 
@@ -108,6 +125,7 @@ void check_case(const Config& config) {
        {prepare::body_problems(config.bodies, config.discontinuities, names_of(config)),
         prepare::overlap_problems(config.bodies)})
     problems.insert(problems.end(), more.begin(), more.end());
+  check_mass_scaling(config, problems);
   prepare::refuse(problems, "in the case");
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "exec/error.hpp"
@@ -42,6 +43,11 @@ bool EnergyWatch::look(const EnergyBalance& energy, std::int64_t step, double ti
   };
   if (count(limits_.stop, rows_.above_stop) >= patience) refuse(energy, limits_.stop, step, time);
   return count(limits_.warn, rows_.above_warn) == patience;
+}
+
+void KineticShare::look(const EnergyBalance& energy) {
+  kinetic = std::max(kinetic, energy.kinetic);
+  work = std::max(work, energy.work + energy.start);
 }
 
 void EnergyWatch::judge_end(const EnergyBalance& energy, std::int64_t step, double time) const {

@@ -39,6 +39,15 @@ class EnergyWatch {
   Rows rows_;
 };
 
+/// The largest kinetic energy of a run over the largest work done on it: small if it was
+/// quasi-static. A body that breaks throws pieces, and then it is not.
+struct KineticShare {
+  double kinetic = 0.0, work = 0.0;  ///< the largest so far; work with the energy at the start  [J]
+
+  void look(const EnergyBalance& energy);
+  double value() const { return work > 0.0 ? kinetic / work : 0.0; }
+};
+
 /// Whether all of them are numbers.
 bool is_finite(const EnergyBalance& energy);
 

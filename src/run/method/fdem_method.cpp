@@ -107,10 +107,11 @@ struct FdemSim {
     }
     Table pieces{"fragments", {"fragment", "mass", "share"}, {"-", "kg/m", "-"}, {}};
     const fdem::Fragments all = fdem::fragments(w);
+    const double scaling = w.parameters.time.mass_scaling;
     double total = 0.0;
     for (const double m : all.mass) total += m;
     for (std::size_t i = 0; i < all.mass.size(); ++i)
-      pieces.rows.push_back({static_cast<double>(i), all.mass[i], all.mass[i] / total});
+      pieces.rows.push_back({static_cast<double>(i), all.mass[i] / scaling, all.mass[i] / total});
     return {cracks, pieces};
   }
 

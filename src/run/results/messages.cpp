@@ -105,6 +105,16 @@ std::string broken_text(const std::vector<Fact>& facts) {
   return "";
 }
 
+std::string inertia_text(double mass_scaling, double kinetic_share) {
+  constexpr double quasi_static = 0.02;  // of the work
+  if (mass_scaling == 1.0 || kinetic_share <= quasi_static) return "";
+  return fmt::format(
+      "not quasi-static: with time.mass_scaling = {:g} the kinetic energy has come to {:.2g} % of "
+      "the work; forces depend on the scaling. A slower load or a smaller scaling helps; pieces "
+      "that fly off after a failure do no harm to the forces before it",
+      mass_scaling, 100.0 * kinetic_share);
+}
+
 std::string closing_text(const Summary& s, std::int64_t frames, const std::string& folder) {
   std::string text =
       fmt::format("{:<7} {} in {}   {} steps   {} frames", s.status, time_text(s.time),

@@ -18,6 +18,10 @@ std::string opening_text(const Summary& summary, double end_time, std::int64_t e
 /// How many links or joints have broken, in words; empty if there are none to break.
 std::string broken_text(const std::vector<Fact>& facts);
 
+/// A warning if inertia had a part in a run in which it was scaled; else empty.
+/// @param kinetic_share  see Summary
+std::string inertia_text(double mass_scaling, double kinetic_share);
+
 /// What came out, and where it lies.
 std::string closing_text(const Summary& summary, std::int64_t frames, const std::string& folder);
 

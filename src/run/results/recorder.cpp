@@ -71,6 +71,7 @@ void RecordState::save(CheckpointWriter& writer) const {
   writer.value("run.frames", frames);
   if (extent) writer.value("run.extent", *extent);
   writer.value("run.unbalanced", unbalanced);
+  writer.value("run.moving", moving);
   std::vector<double> ranges;
   for (const ProbeRange& probe : probes)
     ranges.insert(ranges.end(), {probe.last, probe.min, probe.max});
@@ -84,6 +85,7 @@ void RecordState::load(const CheckpointReader& reader) {
   frames = reader.value<std::int64_t>("run.frames");
   if (reader.has("run.extent")) extent = reader.value<Extent>("run.extent");
   if (reader.has("run.unbalanced")) unbalanced = reader.value<EnergyWatch::Rows>("run.unbalanced");
+  if (reader.has("run.moving")) moving = reader.value<KineticShare>("run.moving");
   const CheckpointReader::Section& ranges = reader.section("run.probes", sizeof(double));
   probes.resize(ranges.count / 3);
   for (std::size_t i = 0; i < probes.size(); ++i) {
@@ -144,6 +146,7 @@ void Recorder::record(Method& method, Background& background) {
                         "and is {:.2g}",
                         config_.energy.warn, EnergyWatch::patience, last_energy_->error_relative));
       state_.unbalanced = watch_.rows();
+      state_.moving.look(*last_energy_);
     });
     rows_.pass(time);
     state_.row_step = method.steps();

@@ -46,6 +46,7 @@ struct RecordState {
   std::optional<Extent> extent;    ///< of the pictures, from the first frame  [m]
   std::vector<ProbeRange> probes;  ///< over the rows that the schedule asked for
   EnergyWatch::Rows unbalanced;    ///< likewise
+  KineticShare moving;             ///< likewise
 
   void save(CheckpointWriter& writer) const;
   void load(const CheckpointReader& reader);
@@ -80,6 +81,8 @@ class Recorder {
   const RecordState& state() const { return state_; }
   /// The energies of the newest row, on rank 0; none before the first.
   const std::optional<EnergyBalance>& last_energy() const { return last_energy_; }
+  /// How far the run was from quasi-static, by its rows; on rank 0.
+  const KineticShare& moving() const { return state_.moving; }
   /// Frames written to the folder so far.
   std::int64_t frame_count() const { return frame_count_; }
 

@@ -33,7 +33,7 @@ void put(Json& json, const Fact& fact) {
   *place = number(fact.value);
 }
 
-Json energy_json(const EnergyBalance& energy) {
+Json energy_json(const EnergyBalance& energy, double kinetic_share) {
   return {{"kinetic", energy.kinetic},
           {"elastic", energy.elastic},
           {"fracture", energy.fracture},
@@ -42,7 +42,8 @@ Json energy_json(const EnergyBalance& energy) {
           {"damping", energy.damping},
           {"contact", energy.contact},
           {"work", energy.work},
-          {"error_relative", energy.error_relative}};
+          {"error_relative", energy.error_relative},
+          {"kinetic_share", kinetic_share}};
 }
 
 Json check_json(const CheckResult& check) {
@@ -84,7 +85,7 @@ Json json_of(const Summary& s) {
   for (const Fact& fact : s.facts)
     if (fact.path.find('.') == std::string::npos) put(json, fact);
   json["peak_memory_bytes"] = s.peak_memory;
-  if (s.energy) json["energy"] = energy_json(*s.energy);
+  if (s.energy) json["energy"] = energy_json(*s.energy, s.kinetic_share);
   for (const Fact& fact : s.facts)
     if (fact.path.find('.') != std::string::npos && !fact.path.starts_with("model."))
       put(json, fact);

@@ -50,6 +50,7 @@ struct Summary {
 
   std::vector<Fact> facts;
   std::optional<EnergyBalance> energy;
+  double kinetic_share = 0.0;  ///< largest kinetic energy over the largest work  [-]
   std::optional<std::uint64_t> state_hash;
   std::vector<ProbeRange> probes;
   std::vector<CheckResult> checks;
