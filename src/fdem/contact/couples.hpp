@@ -64,15 +64,24 @@ struct CoupleHistory {
 };
 using Couples = PairList<CoupleHistory>;
 
-/// What an edge of one triangle does in the other, in one step.
-struct EdgePush {
-  EdgeOverlap overlap;
-  bool touches = false;
-  Vec2 normal[2] = {}, friction[2] = {};  ///< forces on its ends  [N/m]
-  double drag = 0.0;                      ///< what friction pulls with now  [N/m]
-  double taken = 0.0;                     ///< work that it has taken up in this step  [J/m]
-  double sprung = 0.0;                    ///< what its spring holds now  [J/m]
+/// An end of an edge, or of several side by side.
+template <class R>
+struct EdgeEnd {
+  Vec2Of<R> position, velocity;
 };
+
+/// Force and work of an edge of one triangle in the other, in one step. Of a pack the numbers of
+/// edges that do not touch mean nothing, but for drag.
+template <class R>
+struct EdgePushOf {
+  EdgeOverlapOf<R> overlap;
+  decltype(R{} < R{}) touches{};
+  Vec2Of<R> normal[2] = {}, friction[2] = {};  ///< forces on its ends  [N/m]
+  R drag{};                                    ///< what friction pulls with now  [N/m]
+  R taken{};                                   ///< work that it has taken up in this step  [J/m]
+  R sprung{};                                  ///< what its spring holds now  [J/m]
+};
+using EdgePush = EdgePushOf<double>;
 
 /// Work that friction of a couple's edges takes up in a step, T v_t dt by the trapezoidal rule
 /// where T acts, and what its springs hold after it: sum T^2/(2 k), k = p_t (share of the edge
@@ -94,37 +103,66 @@ struct Rubbing {
 
 /// @param scale  of the penalty  @param drag  what friction pulled with before  [N/m]
 /// @param dt     the step that led here  [s]
-BR_HD inline EdgePush edge_push(const ContactPair& law, double scale, double drag, double dt,
-                                const NodeState& from, const NodeState& to, const Target& target,
-                                const Vec2 (&target_v)[3]) {
-  EdgePush p;
-  EdgeOverlap& o = p.overlap;
+template <class R, class End>
+BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, double scale, const R& drag, double dt,
+                                     const End& from, const End& to, const TargetOf<R>& target,
+                                     const Vec2Of<R> (&target_v)[3]) {
+  EdgePushOf<R> p;
+  EdgeOverlapOf<R>& o = p.overlap;
   p.touches = overlap_of_edge(from.position, to.position, target, o);
-  if (!p.touches) return p;
+  if (!any(p.touches)) return p;
   const double penalty = scale * law.penalty;
   normal_forces(o, from.position, to.position, penalty, p.normal[0], p.normal[1]);
-  p.drag = drag;
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
+  p.drag = select(p.touches, drag, zero);
   if (!(law.friction > 0.0)) return p;
 
-  const Vec2 edge = to.position - from.position;
-  const double size = norm(edge);
-  const Vec2 along = (1.0 / size) * edge;
-  const auto rate_at = [&](double s) {  // of the target against a point of the edge
-    Vec2 rate = -((1.0 - s) * from.velocity + s * to.velocity);
+  const Vec2Of<R> edge = to.position - from.position;
+  const R size = norm(edge);
+  const Vec2Of<R> along = (one / size) * edge;
+  const auto rate_at = [&](const R& s) {  // of the target against a point of the edge
+    Vec2Of<R> rate = -((one - s) * from.velocity + s * to.velocity);
     for (int m = 0; m < 3; ++m) rate += (o.at_a[m] + s * (o.at_b[m] - o.at_a[m])) * target_v[m];
     return dot(rate, along);
   };
-  const double stiffness = law.tangential * (o.end - o.begin);
-  const double limit = law.friction * penalty * o.whole * size;
-  p.drag += stiffness * dt * rate_at(0.5 * (o.begin + o.end));
-  if (abs(p.drag) > limit) p.drag = p.drag < 0.0 ? -limit : limit;
-  const double share = o.moment / o.whole;
-  p.taken = 0.5 * dt * (drag + p.drag) * rate_at(share);
-  p.sprung = 0.5 * p.drag * p.drag / stiffness;
-  p.friction[0] = (p.drag * (1.0 - share)) * along;
-  p.friction[1] = (p.drag * share) * along;
+  const R stiffness = law.tangential * (o.end - o.begin);
+  const R limit = law.friction * penalty * o.whole * size;
+  R pull = drag + stiffness * dt * rate_at(0.5 * (o.begin + o.end));
+  pull = select(abs(pull) > limit, select(pull < 0.0, -limit, limit), pull);
+  const R share = o.moment / o.whole;
+  p.taken = 0.5 * dt * (drag + pull) * rate_at(share);
+  p.sprung = 0.5 * pull * pull / stiffness;
+  p.friction[0] = (pull * (one - share)) * along;
+  p.friction[1] = (pull * share) * along;
+  p.drag = select(p.touches, pull, zero);
   return p;
 }
+
+/// The six edges of a couple one after the other; any couple.
+struct EdgesInTurn {
+  static constexpr bool any_couple = true;  ///< new ones, too, and with conservative forces
+
+  /// False only where the two cannot touch.
+  BR_HD bool near(const Vec2 (&xa)[3], const Vec2 (&xb)[3]) const { return meet(xa, xb); }
+  /// Calls visit(edge, push) for edges 0 to 2 of a in b, then for 3 to 5: those of b in a.
+  template <class Visit>
+  BR_HD void operator()(const ContactPair& law, double scale, const double (&drag)[6], double dt,
+                        const Vec2 (&xa)[3], const Vec2 (&va)[3], const Target& of_a,
+                        const Vec2 (&xb)[3], const Vec2 (&vb)[3], const Target& of_b,
+                        const Visit& visit) const {
+    using End = EdgeEnd<double>;
+    for (int k = 0; k < 3; ++k) {
+      const int next = k == 2 ? 0 : k + 1;
+      visit(k, edge_push(law, scale, drag[k], dt, End{xa[k], va[k]}, End{xa[next], va[next]}, of_b,
+                         vb));
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int next = k == 2 ? 0 : k + 1;
+      visit(3 + k, edge_push(law, scale, drag[3 + k], dt, End{xb[k], vb[k]},
+                             End{xb[next], vb[next]}, of_a, va));
+    }
+  }
+};
 
 /// What broken joints leave to the contact of their faces.
 struct JointLegacy {
@@ -182,7 +220,10 @@ struct CoupleForces {
   }
   /// On the host all couples: it finds whether the two meet on its way.
   BR_HD void operator()(Index i) const { slow(i); }
-  BR_HD void slow(Index i) const {
+  BR_HD void slow(Index i) const { evaluate(i, EdgesInTurn{}); }
+  /// @param edges  how the edges are taken: EdgesInTurn, or side by side
+  template <class Edges>
+  BR_HD void evaluate(Index i, const Edges& edges) const {
     CoupleState& kept = state[i];
     Vec2 xa[3], va[3], xb[3], vb[3];
     split(nodes[a[i]], xa, va);
@@ -190,22 +231,33 @@ struct CoupleForces {
     CoupleForce sum{};
     Rubbing rubbing;
     bool touching = false;
-    const bool is_new = kept.scale == 0.0;
+    const bool is_new = Edges::any_couple && kept.scale == 0.0;
     if (is_new) kept.scale = 1.0;
-    if (meet(xa, xb)) {
+    if (edges.near(xa, xb)) {
       const ContactPair& law = law_of(i);
       const Target of_a = Target::of(xa), of_b = Target::of(xb);
-      if (is_new && parent_joint[i] >= 0) inherit(parent_joint[i], law, kept, xa, of_a, xb, of_b);
-      touching =
-          pass(law, kept.scale, kept.drag, rubbing, xa, va, of_b, vb, sum.on_a.at, sum.on_b.at);
-      touching = pass(law, kept.scale, kept.drag + 3, rubbing, xb, vb, of_a, va, sum.on_b.at,
-                      sum.on_a.at) ||
-                 touching;
-      if (touching && conservative) {
-        const Polygon over = overlap_of(of_a, of_b);
-        add_shape_forces(of_a, over, kept.scale * law.penalty, sum.on_a.at);
-        add_shape_forces(of_b, over, kept.scale * law.penalty, sum.on_b.at);
-      }
+      if constexpr (Edges::any_couple)
+        if (is_new && parent_joint[i] >= 0) inherit(parent_joint[i], law, kept, xa, of_a, xb, of_b);
+      edges(law, kept.scale, kept.drag, dt, xa, va, of_a, xb, vb, of_b,
+            [&](int edge, const EdgePush& p) {
+              kept.drag[edge] = p.drag;
+              if (!p.touches) return;
+              touching = true;
+              rubbing.add(p.taken, p.sprung);
+              const bool of_own = edge < 3;
+              auto& on_x = of_own ? sum.on_a.at : sum.on_b.at;
+              auto& on_target = of_own ? sum.on_b.at : sum.on_a.at;
+              const int k = of_own ? edge : edge - 3;
+              push(p.overlap, k, p.normal[0], p.normal[1], on_x, on_target);
+              if (law.friction > 0.0)
+                push(p.overlap, k, p.friction[0], p.friction[1], on_x, on_target);
+            });
+      if constexpr (Edges::any_couple)
+        if (touching && conservative) {
+          const Polygon over = overlap_of(of_a, of_b);
+          add_shape_forces(of_a, over, kept.scale * law.penalty, sum.on_a.at);
+          add_shape_forces(of_b, over, kept.scale * law.penalty, sum.on_b.at);
+        }
     }
     CoupleForceOf<Number>& stored = force[i];
     if (!touching && kept.work == 0.0 && kept.slid == 0.0) {
@@ -233,22 +285,6 @@ struct CoupleForces {
   BR_HD const ContactPair& law_of(Index i) const {
     return laws[material[a[i]] * materials + material[b[i]]];
   }
-  /// False only where nothing can touch. Without the second line forces would be the same.
-  BR_HD static bool meet(const Vec2 (&p)[3], const Vec2 (&q)[3]) {
-    return boxes_meet(p, q) && !outside(p, Target::of(q)) && !outside(q, Target::of(p));
-  }
-  BR_HD static bool boxes_meet(const Vec2 (&p)[3], const Vec2 (&q)[3]) {
-    for (int k = 0; k < 2; ++k) {
-      const auto part = [k](const Vec2& v) { return k == 0 ? v.x : v.y; };
-      const double p_low = min(part(p[0]), min(part(p[1]), part(p[2])));
-      const double p_high = max(part(p[0]), max(part(p[1]), part(p[2])));
-      const double q_low = min(part(q[0]), min(part(q[1]), part(q[2])));
-      const double q_high = max(part(q[0]), max(part(q[1]), part(q[2])));
-      if (p_high < q_low || q_high < p_low) return false;
-    }
-    return true;
-  }
-
   /// A new couple of which a joint is known that broke between them.
   BR_HD void begin(Index i) const {
     Vec2 xa[3], va[3], xb[3], vb[3];
@@ -338,25 +374,6 @@ struct CoupleForces {
     }
     const double size = norm(on_a);
     return size > 0.0 ? min(2.0, max(0.01, force / size)) : 1.0;
-  }
-
-  /// The edges of one triangle through the other. True if any of them touches.
-  BR_HD bool pass(const ContactPair& law, double scale, double* drag, Rubbing& rubbing,
-                  const Vec2 (&x)[3], const Vec2 (&v)[3], const Target& target,
-                  const Vec2 (&target_v)[3], Vec2 (&on_x)[3], Vec2 (&on_target)[3]) const {
-    bool touching = false;
-    for (int k = 0; k < 3; ++k) {
-      const int next = k == 2 ? 0 : k + 1;
-      const EdgePush p =
-          edge_push(law, scale, drag[k], dt, {x[k], v[k]}, {x[next], v[next]}, target, target_v);
-      drag[k] = p.drag;
-      if (!p.touches) continue;
-      touching = true;
-      rubbing.add(p.taken, p.sprung);
-      push(p.overlap, k, p.normal[0], p.normal[1], on_x, on_target);
-      if (law.friction > 0.0) push(p.overlap, k, p.friction[0], p.friction[1], on_x, on_target);
-    }
-    return touching;
   }
 };
 

@@ -2,6 +2,8 @@
 
 #include "fdem/stepping/kernel_lanes.hpp"
 
+#include "fdem/contact/couple_lanes.hpp"
+
 namespace breccia::fdem {
 namespace {
 
@@ -37,6 +39,12 @@ Index BR_PACKS::run(const TriangleForces<float>& kernel, Index begin, Index end)
 }
 
 // Flat: no function that other builds call is compiled for this width.
+[[gnu::flatten]] Index BR_PACKS::run(const CoupleForces<double>& kernel, Index begin, Index end) {
+  return run_couples<WidestPack>(kernel, begin, end);
+}
+[[gnu::flatten]] Index BR_PACKS::run(const CoupleForces<float>& kernel, Index begin, Index end) {
+  return run_couples<WidestPack>(kernel, begin, end);
+}
 [[gnu::flatten]] MovedTo BR_PACKS::run(const MoveTriangles& kernel, Index begin, Index end) {
   MovedTo moved{begin, false};
   for (; moved.end + width <= end; moved.end += width) {

@@ -5,99 +5,132 @@
 
 namespace breccia::fdem {
 
-/// A triangle seen by the points of another: where a point lies in it.
-struct Target {
-  Vec2 x[3];           ///< corners, counter-clockwise  [m]
-  double over_double;  ///< 1 / (2 area)  [1/m2]
+/// A triangle seen by the points of another: where a point lies in it. R is double, or a pack.
+template <class R>
+struct TargetOf {
+  Vec2Of<R> x[3];  ///< corners, counter-clockwise  [m]
+  R over_double;   ///< 1 / (2 area)  [1/m2]
 
-  BR_HD static Target of(const Vec2 (&corner)[3]) {
+  BR_HD static TargetOf of(const Vec2Of<R> (&corner)[3]) {
     return {{corner[0], corner[1], corner[2]},
             1.0 / cross(corner[1] - corner[0], corner[2] - corner[0])};
   }
   /// Area coordinates of a point; they sum to 1.
-  BR_HD void coordinates(const Vec2& p, double (&l)[3]) const {
+  BR_HD void coordinates(const Vec2Of<R>& p, R (&l)[3]) const {
     l[1] = over_double * cross(p - x[0], x[2] - x[0]);
     l[2] = over_double * cross(x[1] - x[0], p - x[0]);
     l[0] = over_double * cross(x[2] - x[1], p - x[1]);
   }
   /// Gradient of area coordinate k.  [1/m]
-  BR_HD Vec2 slope(int k) const {
-    const Vec2 edge = x[(k + 2) % 3] - x[(k + 1) % 3];
-    return over_double * Vec2{-edge.y, edge.x};
+  BR_HD Vec2Of<R> slope(int k) const {
+    const Vec2Of<R> edge = x[(k + 2) % 3] - x[(k + 1) % 3];
+    return over_double * Vec2Of<R>{-edge.y, edge.x};
   }
 };
+using Target = TargetOf<double>;
 
 /// Whether a line along an edge of the target has all these corners clearly outside: no edge of
 /// either overlaps the other then, however numbers round.
-BR_HD inline bool outside(const Vec2 (&corner)[3], const Target& target) {
+template <class R>
+BR_HD inline auto outside(const Vec2Of<R> (&corner)[3], const TargetOf<R>& target) {
   constexpr double clearly = -1e-9;
-  double l[3][3];
+  R l[3][3];
   for (int k = 0; k < 3; ++k) target.coordinates(corner[k], l[k]);
-  bool beyond = false;
-  for (int k = 0; k < 3; ++k)
+  auto beyond = l[0][0] < clearly && l[1][0] < clearly && l[2][0] < clearly;
+  for (int k = 1; k < 3; ++k)
     beyond = beyond || (l[0][k] < clearly && l[1][k] < clearly && l[2][k] < clearly);
   return beyond;
+}
+/// Whether boxes around two triangles have a point in common.
+template <class R>
+BR_HD inline auto boxes_meet(const Vec2Of<R> (&p)[3], const Vec2Of<R> (&q)[3]) {
+  const auto apart = [](const R& p0, const R& p1, const R& p2, const R& q0, const R& q1,
+                        const R& q2) {
+    return max(p0, max(p1, p2)) < min(q0, min(q1, q2)) ||
+           max(q0, max(q1, q2)) < min(p0, min(p1, p2));
+  };
+  return !(apart(p[0].x, p[1].x, p[2].x, q[0].x, q[1].x, q[2].x) ||
+           apart(p[0].y, p[1].y, p[2].y, q[0].y, q[1].y, q[2].y));
+}
+/// False only where nothing can touch: forces would be zero without asking.
+template <class R>
+BR_HD inline auto meet(const Vec2Of<R> (&p)[3], const Vec2Of<R> (&q)[3]) {
+  const auto near = boxes_meet(p, q);
+  if (!any(near)) return near;
+  return near && !outside(p, TargetOf<R>::of(q)) && !outside(q, TargetOf<R>::of(p));
 }
 
 /// What an edge meets inside another triangle, with the potential phi = 3 min(l0, l1, l2): 0 on the
 /// border, 1 in the middle.
-struct EdgeOverlap {
-  double whole = 0.0;             ///< integral of phi over s, the share of the edge  [-]
-  double moment = 0.0;            ///< integral of phi s over s  [-]
-  double begin = 0.0, end = 0.0;  ///< the part of the edge that lies inside, in s  [-]
-  double at_a[3], at_b[3];        ///< area coordinates of the edge's ends in the target  [-]
+template <class R>
+struct EdgeOverlapOf {
+  R whole{};           ///< integral of phi over s, the share of the edge  [-]
+  R moment{};          ///< integral of phi s over s  [-]
+  R begin{}, end{};    ///< the part of the edge that lies inside, in s  [-]
+  R at_a[3], at_b[3];  ///< area coordinates of the edge's ends in the target  [-]
 };
+using EdgeOverlap = EdgeOverlapOf<double>;
 
 /// The edge a -> b through a target. False if no part of it lies inside. Exact: phi is linear
 /// between the breaks where two area coordinates are least together (Munjiza 2004, 2.50-2.56).
-BR_HD inline bool overlap_of_edge(const Vec2& a, const Vec2& b, const Target& target,
-                                  EdgeOverlap& o) {
+template <class R>
+BR_HD inline auto overlap_of_edge(const Vec2Of<R>& a, const Vec2Of<R>& b, const TargetOf<R>& target,
+                                  EdgeOverlapOf<R>& o) {
   target.coordinates(a, o.at_a);
   target.coordinates(b, o.at_b);
-  o.begin = 0.0;
-  o.end = 1.0;
+  o.begin = constant<R>(0.0);
+  o.end = constant<R>(1.0);
+  auto inside = o.end > o.begin;
   for (int k = 0; k < 3; ++k) {
-    const double la = o.at_a[k], lb = o.at_b[k];
-    if (la <= 0.0 && lb <= 0.0) return false;
-    if (la < 0.0) o.begin = max(o.begin, la / (la - lb));
-    if (lb < 0.0) o.end = min(o.end, la / (la - lb));
+    const R la = o.at_a[k], lb = o.at_b[k];
+    inside = inside && !(la <= 0.0 && lb <= 0.0);
+    if (!any(inside)) return inside;
+    if (const auto begins = la < 0.0; any(begins))
+      o.begin = select(begins, max(o.begin, la / (la - lb)), o.begin);
+    if (const auto ends = lb < 0.0; any(ends))
+      o.end = select(ends, min(o.end, la / (la - lb)), o.end);
   }
-  if (!(o.end > o.begin)) return false;
+  inside = inside && o.end > o.begin;
+  if (!any(inside)) return inside;
 
   // Breaks, ascending; where there are fewer than three, the end again.
-  double s[5] = {o.begin, o.end, o.end, o.end, o.end};
+  R s[5] = {o.begin, o.end, o.end, o.end, o.end};
   for (int k = 0; k < 3; ++k) {
     const int m = (k + 1) % 3, other = (k + 2) % 3;
-    const double difference_a = o.at_a[k] - o.at_a[m], difference_b = o.at_b[k] - o.at_b[m];
-    const double change = difference_a - difference_b;
-    if (change == 0.0) continue;
-    double at = difference_a / change;
-    if (!(at > o.begin && at < o.end)) continue;
-    const double least = o.at_a[k] + at * (o.at_b[k] - o.at_a[k]);
-    if (least > o.at_a[other] + at * (o.at_b[other] - o.at_a[other])) continue;
-    for (int i = 1; i < 4; ++i) {  // an index that is not known in advance costs GPUs much
-      const double here = min(s[i], at);
+    const R difference_a = o.at_a[k] - o.at_a[m], difference_b = o.at_b[k] - o.at_b[m];
+    const R change = difference_a - difference_b;
+    auto breaks = change != 0.0;
+    if (!any(breaks)) continue;
+    R at = difference_a / change;
+    breaks = breaks && at > o.begin && at < o.end;
+    if (!any(breaks)) continue;
+    const R least = o.at_a[k] + at * (o.at_b[k] - o.at_a[k]);
+    breaks = breaks && !(least > o.at_a[other] + at * (o.at_b[other] - o.at_a[other]));
+    if (!any(breaks)) continue;
+    at = select(breaks, at, o.end);  // one more end leaves them as they are
+    for (int i = 1; i < 4; ++i) {    // an index that is not known in advance costs GPUs much
+      const R here = min(s[i], at);
       at = max(s[i], at);
       s[i] = here;
     }
   }
 
-  const auto phi = [&o](double at) {
-    double least = 1.0;
+  const auto phi = [&o](const R& at) {
+    R least = constant<R>(1.0);
     for (int k = 0; k < 3; ++k) least = min(least, o.at_a[k] + at * (o.at_b[k] - o.at_a[k]));
-    return 3.0 * max(0.0, least);
+    return 3.0 * max(constant<R>(0.0), least);
   };
-  o.whole = 0.0;
-  o.moment = 0.0;
-  double before = phi(s[0]);
+  o.whole = constant<R>(0.0);
+  o.moment = constant<R>(0.0);
+  R before = phi(s[0]);
   for (int i = 0; i < 4; ++i) {
-    const double after = phi(s[i + 1]), width = s[i + 1] - s[i];
+    const R after = phi(s[i + 1]), width = s[i + 1] - s[i];
     o.whole += 0.5 * width * (before + after);
     o.moment +=
         (1.0 / 6.0) * width * (before * (2.0 * s[i] + s[i + 1]) + after * (s[i] + 2.0 * s[i + 1]));
     before = after;
   }
-  return o.whole > 0.0;
+  return inside && o.whole > 0.0;
 }
 
 /// Adds a force on an edge's ends and its reaction on the target's corners: force and moment of the
@@ -111,9 +144,10 @@ BR_HD inline void push(const EdgeOverlap& o, int edge, const Vec2& on_a, const V
 
 /// Force of an overlap on the edge's ends: -p phi n ds, shared by linear shape functions.
 /// @param penalty  p  [Pa]
-BR_HD inline void normal_forces(const EdgeOverlap& o, const Vec2& a, const Vec2& b, double penalty,
-                                Vec2& on_a, Vec2& on_b) {
-  const Vec2 outward{penalty * (b.y - a.y), penalty * (a.x - b.x)};  // times the edge's length
+template <class R>
+BR_HD inline void normal_forces(const EdgeOverlapOf<R>& o, const Vec2Of<R>& a, const Vec2Of<R>& b,
+                                double penalty, Vec2Of<R>& on_a, Vec2Of<R>& on_b) {
+  const Vec2Of<R> outward{penalty * (b.y - a.y), penalty * (a.x - b.x)};  // times the edge's length
   on_b = -o.moment * outward;
   on_a = -(o.whole - o.moment) * outward;
 }

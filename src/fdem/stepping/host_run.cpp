@@ -99,7 +99,9 @@ void HostRun::joint_forces(World& w) const {
 void HostRun::couple_forces(World& w) const {
   const StageTime timed(w.exec, "contact_forces");
   with_number(w.exec.precision, [&](auto number) {
-    for_each(w.exec, w.couples.size(), couple_kernel<decltype(number)>(w));
+    const auto kernel = couple_kernel<decltype(number)>(w);
+    for_each_run(w.exec, w.couples.size(), 64,
+                 [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
   });
 }
 

@@ -47,6 +47,12 @@ void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, I
 void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end) {
   run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
 }
+void run_packs(Lanes lanes, const CoupleForces<double>& kernel, Index begin, Index end) {
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
+void run_packs(Lanes lanes, const CoupleForces<float>& kernel, Index begin, Index end) {
+  run_whole_packs<PacksAvx512, PacksAvx2>(lanes, kernel, begin, end);
+}
 bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end) {
   bool beyond = false;
   run_whole_packs<NotingPacks<PacksAvx512>, NotingPacks<PacksAvx2>>(

@@ -2,6 +2,7 @@
 // The widest form of the kernels that this processor can run, found at run time; same bits in all.
 
 #include "exec/lanes.hpp"
+#include "fdem/contact/couples.hpp"
 #include "fdem/triangles/triangle_kernels.hpp"
 
 namespace breccia::fdem {
@@ -11,6 +12,8 @@ void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Inde
 void run_packs(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const TriangleForces<double>& kernel, Index begin, Index end);
 void run_packs(Lanes lanes, const TriangleForces<float>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const CoupleForces<double>& kernel, Index begin, Index end);
+void run_packs(Lanes lanes, const CoupleForces<float>& kernel, Index begin, Index end);
 /// @returns whether a triangle has used its margin up
 bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end);
 
@@ -33,6 +36,8 @@ struct PacksAvx2 {
   static Index run(const JointForces<float>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
+  static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
+  static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
@@ -40,6 +45,8 @@ struct PacksAvx512 {
   static Index run(const JointForces<float>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
+  static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
+  static Index run(const CoupleForces<float>& kernel, Index begin, Index end);
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
 };
 

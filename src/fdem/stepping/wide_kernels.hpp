@@ -156,7 +156,7 @@ struct CouplesWide {
     Rubbing rubbing;
     Vec2 sum{};
     unsigned touching = 0;  // edges that do
-    if (CoupleForces<Number>::boxes_meet(own, other)) {
+    if (boxes_meet(own, other)) {
       const ContactPair law = all.law_of(c);
       if (is_new && loaded.parent_joint >= 0) {
         if (leads) begin_rarely(&all, c);
