@@ -1,0 +1,392 @@
+#!/usr/bin/env python3
+"""Runs the tables of docs/validation-rock.md over meshes and seeds and prints them as markdown.
+
+    scripts/rock_tables.py --binary build/release/breccia --out DIR --jobs 2 [NAME...]
+    scripts/rock_tables.py --list
+
+Three stages, for a machine without gmsh: --prepare DIR builds the models, --run DIR runs those that have not
+run yet (pass DIR to another machine in between), --table DIR prints. Without a stage: all three. A seed moves
+the inner vertices (jitter) and changes the edges by 2 %, so that each mesh is another one.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import json
+import math
+import pathlib
+import statistics
+import subprocess
+import sys
+import time
+
+CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
+SEEDS = (1, 2, 3)
+
+
+# ---------------------------------------------------------------- what a run left
+
+class Result:
+    """The files of a finished run."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.summary = json.loads((folder / "summary.json").read_text())
+
+    def value(self, path):
+        found = self.summary
+        for key in path.split("."):
+            found = found[key]
+        return float(found)
+
+    def rows(self, name):
+        """Rows of history.csv or cracks.csv as numbers; the second line holds units."""
+        with open(self.folder / name, newline="") as file:
+            rows = list(csv.DictReader(file))[1:]
+        return [{key: float(value) for key, value in row.items()} for row in rows]
+
+    def cracks(self):
+        """Broken joints with their ends at the start, by time."""
+        return sorted(self.rows("cracks.csv"), key=lambda c: c["time"])
+
+    def strongest(self, probe):
+        ends = self.summary["probe"][probe]
+        return max(abs(ends["min"]), abs(ends["max"]))
+
+
+def networks(cracks):
+    """Groups of cracks that share ends."""
+    groups, at = {}, {}
+
+    def leader(i):
+        while groups[i] != i:
+            groups[i] = groups[groups[i]]
+            i = groups[i]
+        return i
+
+    for i, c in enumerate(cracks):
+        groups[i] = i
+        for end in ((c["x0"], c["y0"]), (c["x1"], c["y1"])):
+            key = (round(end[0] * 1e8), round(end[1] * 1e8))
+            if key in at:
+                groups[leader(i)] = leader(at[key])
+            at[key] = i
+    found = {}
+    for i, c in enumerate(cracks):
+        found.setdefault(leader(i), []).append(c)
+    return list(found.values())
+
+
+def ends(c):
+    return ((c["x0"], c["y0"]), (c["x1"], c["y1"]))
+
+
+def network_from(cracks, tip, reach):
+    """The largest group with an end near the tip of a notch."""
+    near = [n for n in networks(cracks)
+            if any(math.dist(e, tip) < reach for c in n for e in ends(c))]
+    return max(near, key=len, default=[])
+
+
+# ---------------------------------------------------------------- quantities
+
+def tension(r, setting):
+    width, strength, energy = 0.05, 3e6, 10.0
+    return {
+        "strength / f_t": r.strongest("force") / (strength * width),
+        "fracture energy / (G_I A)": r.value("energy.fracture") / (energy * width),
+        "of it in broken joints": sum(c["energy"] for c in r.cracks()) / r.value("energy.fracture"),
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
+def disc(r, setting):
+    strength, diameter, half = 5e6, 0.04, math.radians(10.0)
+    load = r.strongest("force_top")
+    unit = 2.0 * load / (math.pi * diameter) / strength
+    history = r.rows("history.csv")
+    peak = max(history, key=lambda row: row["force_top"])
+    first = r.cracks()[:1]
+    return {
+        "2P/(pi D f_t)": unit,
+        "over Hondros": unit * (math.sin(2.0 * half) / half - 1.0),
+        "first break at abs(y)/R": abs(0.5 * (first[0]["y0"] + first[0]["y1"])) / 0.02 if first else math.nan,
+        "kinetic / work at the peak": peak["kinetic"] / peak["work"],
+        "jaws out of balance": abs(peak["force_top"] + peak["force_bottom"]) / peak["force_top"],
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
+def kalthoff(r, setting):
+    tip = (0.05, 0.025)
+    crack = [c for c in network_from(r.cracks(), tip, 2.5e-3 + setting["edge"]) if c["y"] > 0.02]
+    if not crack:
+        return {"angle": math.nan}
+    far, when = max(((e, c["time"]) for c in crack for e in ends(c)), key=lambda ec: math.dist(ec[0], tip))
+    start = crack[0]["time"]
+    return {
+        "angle, degrees": math.degrees(math.atan2(far[1] - tip[1], far[0] - tip[0])),
+        "first break, us": 1e6 * start,
+        "length, mm": 1e3 * math.dist(far, tip),
+        "mean speed / c_R": math.dist(far, tip) / (when - start) / 2799.0,
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
+def branching(r, setting):
+    crack = network_from(r.cracks(), (0.0, 0.0), 2.0 * setting["edge"])
+    if not crack:
+        return {"first break, us": math.nan}
+    front, reached = [], 0.0
+    for c in crack:
+        x = max(c["x0"], c["x1"])
+        if x > reached:
+            reached = x
+            front.append((c["time"], x))
+    window, fastest = 8e-6, 0.0
+    for t0, x0 in front:
+        later = [(t, x) for t, x in front if t - t0 >= window]
+        if later:
+            fastest = max(fastest, (later[0][1] - x0) / (later[0][0] - t0))
+    # It has branched where a second crack runs at least 2.5 mm beside.
+    wide = []
+    for k in range(1, 50):
+        inside = [c for c in crack if 1e-3 * (k - 1) <= c["x"] < 1e-3 * k]
+        if inside and max(c["y"] for c in inside) - min(c["y"] for c in inside) > 2.5e-3:
+            wide.append((k - 0.5, min(c["time"] for c in inside)))
+    up = max((c["x1"] for c in crack if c["y"] > 2e-3), default=0.0)
+    down = max((c["x1"] for c in crack if c["y"] < -2e-3), default=0.0)
+    return {
+        "first break, us": 1e6 * r.cracks()[0]["time"],
+        "branches at x, mm": wide[0][0] if wide else math.nan,
+        "and at, us": 1e6 * wide[0][1] if wide else math.nan,
+        "fastest in 8 us / c_R": fastest / 2125.0,
+        "upper branch to x, mm": 1e3 * up,
+        "lower branch to x, mm": 1e3 * down,
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
+def spall(r, setting):
+    width = 0.024
+    planes = []
+    for n in networks(r.cracks()):
+        ys = [e[1] for c in n for e in ends(c)]
+        if max(ys) - min(ys) > 0.9 * width:
+            planes.append((statistics.mean(c["time"] for c in n), 300.0 - 1e3 * statistics.mean(c["x"] for c in n)))
+    planes.sort()
+    history = r.rows("history.csv")
+    free = [row["end"] for row in history if row["time"] < 0.24e-3]
+    return {
+        "first plane from the end, mm": planes[0][1] if planes else math.nan,
+        "at, us": 1e6 * planes[0][0] if planes else math.nan,
+        "planes": float(len(planes)),
+        "largest velocity of the end, m/s": max(free),
+        "velocity of the last 45 mm, m/s": r.value("probe.cap.last"),
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
+def triaxial(r, setting):
+    bears = 20.0 * math.cos(math.pi / 6.0) / (1.0 - math.sin(math.pi / 6.0)) + 3.0 * setting["pressure"]
+    history = r.rows("history.csv")
+    peak = max(history, key=lambda row: row["force_top"])
+    return {
+        "sigma_1, MPa": r.strongest("force_top") / 0.03 / 1e6,
+        "over Mohr-Coulomb": r.strongest("force_top") / 0.03 / 1e6 / bears,
+        "kinetic / work at the peak": peak["kinetic"] / peak["work"],
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
+def dominoes(r, setting):
+    """Speed from the times at which middles have moved by 1 mm, over the second half of the row."""
+    history = r.rows("history.csv")
+    count = sum(1 for key in history[0] if key.startswith("x") and key[1:].isdigit())
+    moved = []
+    for k in range(1, count + 1):
+        start = history[0][f"x{k}"]
+        moved.append(next((row["time"] for row in history if row[f"x{k}"] > start + 1e-3), math.nan))
+    half, last = count // 2, count - 1
+    speed = (last - half) * 0.025 / (moved[last] - moved[half])
+    return {
+        "speed, m/s": speed,
+        "over sqrt(g h)": speed / math.sqrt(9.81 * 0.05),
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
+# ---------------------------------------------------------------- campaigns
+
+def over_meshes(body, edges, **more):
+    """A row for each length of edges, three seeds each."""
+    for edge in edges:
+        for seed in SEEDS:
+            sets = {"seed": seed, f"body.{body}.mesh_size": edge * (1.0 + 0.02 * (seed - 2))}
+            yield {"edge": edge, **more}, sets
+
+
+def tension_runs():
+    for setting, sets in over_meshes("square", (3e-3, 2e-3, 1e-3), mesh="free", criterion="rock"):
+        yield setting, sets
+    for setting, sets in over_meshes("square", (3e-3, 2e-3, 1e-3), mesh="free", criterion="edge"):
+        yield setting, {**sets, "joints.criterion": "edge"}
+    for edge in (2.5e-3, 1e-3):
+        yield ({"edge": edge, "mesh": "aligned", "criterion": "rock"},
+               {"body.square.mesh_size": edge, "body.square.structured": "true",
+                "body.square.pattern": "crossed", "body.square.jitter": 0.0})
+
+
+def disc_runs():
+    for energy, edges in ((4.0, (2e-3, 1.4e-3, 1e-3)), (1.0, (1e-3,)), (16.0, (1.4e-3,))):
+        for setting, sets in over_meshes("disc", edges):
+            yield ({"E G/(f_t^2 R)": round(energy * 30e9 / 25e12 / 0.02, 2), **setting},
+                   {**sets, "material.rock.joint.energy_open": energy,
+                    "material.rock.joint.energy_slide": 5.0 * energy})
+
+
+def triaxial_runs():
+    for edge in (3e-3, 2e-3, 1e-3):
+        for pressure in (0.0, 10.0, 20.0):
+            for setting, sets in over_meshes("rock", (edge,)):
+                yield ({"pressure": pressure, **setting},
+                       {**sets, "load.cell_left.pressure": 1e6 * pressure,
+                        "load.cell_right.pressure": 1e6 * pressure})
+
+
+def dominoes_runs():
+    for friction in (0.0, 0.1, 0.3):
+        yield {"friction of stones": friction}, {"material.stone.friction": friction}
+
+
+CAMPAIGNS = {  # name: case, runs, quantities
+    "tension": ("tension_free_mesh", tension_runs, tension),
+    "disc": ("homogeneous_disc", disc_runs, disc),
+    "kalthoff": ("kalthoff", lambda: over_meshes("plate", (2e-3, 1.4e-3, 1e-3)), kalthoff),
+    "branching": ("branching", lambda: over_meshes("plate", (1.25e-3, 1e-3, 0.7e-3)), branching),
+    "spall": ("spall_bar", lambda: over_meshes("bar", (4e-3, 2.5e-3, 1.5e-3)), spall),
+    "triaxial": ("triaxial_envelope", triaxial_runs, triaxial),
+    "dominoes": ("dominoes", dominoes_runs, dominoes),
+}
+
+
+def plan(names, edge_at_least):
+    for name in names:
+        case, runs, _ = CAMPAIGNS[name]
+        for number, (setting, sets) in enumerate(runs()):
+            if setting.get("edge", math.inf) >= edge_at_least:
+                yield {"id": f"{name}_{number:02d}", "campaign": name, "case": case, "setting": setting, "sets": sets}
+
+
+# ---------------------------------------------------------------- stages
+
+def call(command):
+    return subprocess.run(["nice", "-n", "10", *map(str, command)], capture_output=True, text=True)
+
+
+def prepare(binary, folder, jobs):
+    (folder / "models").mkdir(parents=True, exist_ok=True)
+
+    def build(job):
+        model = folder / "models" / f"{job['id']}.br"
+        if model.exists():
+            return
+        sets = {**job["sets"], "output.frames": 1, "output.pictures": "false", "output.fields": "false"}
+        done = call([binary, "prepare", CASES / job["case"] / "case.toml", "-o", model,
+                     *(part for key, value in sets.items() for part in ("--set", f"{key}={value}"))])
+        if done.returncode != 0:
+            sys.exit(f"{job['id']}: {done.stderr}")
+
+    with concurrent.futures.ThreadPoolExecutor(jobs["count"]) as pool:
+        list(pool.map(build, jobs["plan"]))
+    (folder / "plan.json").write_text(json.dumps(jobs["plan"], indent=1))
+
+
+def run(binary, folder, count):
+    jobs = json.loads((folder / "plan.json").read_text())
+
+    def work(job):
+        out = folder / "runs" / job["id"]
+        if (out / "summary.json").exists():
+            return
+        begun = time.monotonic()
+        done = call([binary, "run", folder / "models" / f"{job['id']}.br", "-o", out, "--force",
+                     "--threads", "1", "--no-progress"])
+        # A check of the case may fail (9): it stands for the case's own mesh.
+        state = "" if done.returncode in (0, 9) else f"exit code {done.returncode}: {done.stderr}"
+        print(f"{job['id']} {time.monotonic() - begun:.1f} s {state}", file=sys.stderr, flush=True)
+
+    with concurrent.futures.ThreadPoolExecutor(count) as pool:
+        list(pool.map(work, jobs))
+
+
+def cell(values):
+    known = [v for v in values if not math.isnan(v)]
+    if not known:
+        return "-"
+    short = lambda v: f"{v:.3g}" if abs(v) < 100.0 else f"{v:.0f}"
+    text = short(statistics.mean(known))
+    if len(known) > 1:
+        text += f" +- {statistics.stdev(known):.2g}"
+    return text if len(known) == len(values) else f"{text} (of {len(known)})"
+
+
+def table(folder):
+    jobs = json.loads((folder / "plan.json").read_text())
+    for name in dict.fromkeys(job["campaign"] for job in jobs):
+        rows, cost = {}, 0.0
+        for job in jobs:
+            done = folder / "runs" / job["id"]
+            if job["campaign"] != name or not (done / "summary.json").exists():
+                continue
+            result = Result(done)
+            if result.summary["exit_code"] not in (0, 9):
+                print(f"{job['id']}: exit code {result.summary['exit_code']}", file=sys.stderr)
+                continue
+            cost += sum(result.summary["stages_s"].values())
+            rows.setdefault(json.dumps(job["setting"]), []).append(CAMPAIGNS[name][2](result, job["setting"]))
+        if not rows:
+            continue
+        settings = [json.loads(key) for key in rows]
+        heads = list(dict.fromkeys(q for found in rows.values() for one in found for q in one))
+        columns = ["edges, mm" if key == "edge" else key for key in settings[0]]
+        print(f"\n**{name}** (cases/{CAMPAIGNS[name][0]}; {cost:.0f} s of steps on one core in all)\n")
+        print("| " + " | ".join([*columns, "n", *heads]) + " |")
+        print("|" + "---|" * (len(columns) + 1 + len(heads)))
+        for setting, found in zip(settings, rows.values()):
+            given = [f"{1e3 * v:g}" if key == "edge" else str(v) for key, v in setting.items()]
+            values = [cell([one.get(q, math.nan) for one in found]) for q in heads]
+            print("| " + " | ".join([*given, str(len(found)), *values]) + " |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(CAMPAIGNS)}; default: all")
+    parser.add_argument("--binary", default="build/release/breccia")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at a time, each on one thread")
+    parser.add_argument("--edge-at-least", type=float, default=0.0, metavar="METRES", help="leave out finer meshes")
+    parser.add_argument("--list", action="store_true", help="say which runs there are")
+    parser.add_argument("--prepare", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--run", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--table", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--out", type=pathlib.Path, metavar="DIR", default=pathlib.Path("out/rock_tables"))
+    options = parser.parse_args()
+    unknown = [name for name in options.names if name not in CAMPAIGNS]
+    if unknown:
+        parser.error(f"no table {', '.join(unknown)}")
+    jobs = list(plan(options.names or CAMPAIGNS, options.edge_at_least))
+    if options.list:
+        for job in jobs:
+            print(job["id"], job["case"], job["setting"], job["sets"])
+        return
+    every = not (options.prepare or options.run or options.table)
+    if options.prepare or every:
+        prepare(options.binary, options.prepare or options.out, {"plan": jobs, "count": options.jobs})
+    if options.run or every:
+        run(options.binary, options.run or options.out, options.jobs)
+    if options.table or every:
+        table(options.table or options.out)
+
+
+if __name__ == "__main__":
+    main()
