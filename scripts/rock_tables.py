@@ -168,7 +168,7 @@ def branching(r, setting):
 
 
 def spall(r, setting):
-    width = 0.024
+    width = 0.012
     planes = []
     for n in networks(r.cracks()):
         ys = [e[1] for c in n for e in ends(c)]
@@ -281,7 +281,7 @@ def plan(names, edge_at_least):
 # ---------------------------------------------------------------- stages
 
 def call(command):
-    return subprocess.run(["nice", "-n", "10", *map(str, command)], capture_output=True, text=True)
+    return subprocess.run([str(part) for part in command], capture_output=True, text=True)
 
 
 def prepare(binary, folder, jobs):

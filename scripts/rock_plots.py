@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Plots of the rock cases' READMEs, from result folders. Needs python3-matplotlib.
+
+    scripts/rock_plots.py KIND RESULT_DIR [RESULT_DIR...] -o plot.png
+
+KIND: tension, disc (force over travel), kalthoff (crack path), branching (crack front), spall (velocity of the free end),
+triaxial (strengths over pressure, from several runs), dominoes (speed along the row, several runs).
+"""
+
+import argparse
+import math
+import pathlib
+import tomllib
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+import domino_wave
+import rock_tables
+
+
+def tension(axes, results):
+    for r in results:
+        rows = r.rows("history.csv")
+        axes.plot([1e6 * row["time"] for row in rows], [row["force"] / 150e3 for row in rows], label=str(r.folder.name))
+    axes.axhline(1.0, color="0.5", lw=1, ls="--", label="f_t")
+    axes.set(xlabel="time, us", ylabel="mean stress / f_t")
+
+
+def disc(axes, results):
+    half = math.radians(10.0)
+    for r in results:
+        rows = r.rows("history.csv")
+        axes.plot([1e6 * row["time"] for row in rows],
+                  [2.0 * row["force_top"] / (math.pi * 0.04) / 5e6 * (math.sin(2 * half) / half - 1) for row in rows],
+                  label=str(r.folder.name))
+    axes.axhline(1.0, color="0.5", lw=1, ls="--", label="Hondros: the centre at f_t")
+    axes.set(xlabel="time, us", ylabel="stress at the centre by Hondros / f_t")
+
+
+def kalthoff(axes, results):
+    for r in results:
+        for c in r.cracks():
+            axes.plot([1e3 * c["x0"], 1e3 * c["x1"]], [1e3 * c["y0"], 1e3 * c["y1"]], color="k", lw=1)
+    for angle in (60, 70):
+        a = math.radians(angle)
+        axes.plot([50, 50 + 75 / math.tan(a)], [25, 100], lw=1, ls="--", label=f"{angle} degrees")
+    axes.plot([0, 50], [25, 25], color="0.5", lw=3, label="notch")
+    axes.set(xlabel="x, mm", ylabel="y, mm", xlim=(0, 100), ylim=(0, 100), aspect="equal")
+
+
+def branching(axes, results):
+    for r in results:
+        cracks = r.cracks()
+        axes.plot([1e6 * c["time"] for c in cracks], [1e3 * c["x"] for c in cracks], ".", ms=3, label="joints that break")
+    for share, style in ((0.6, "--"), (1.0, ":")):
+        axes.plot([20, 20 + 50 / (2.125 * share)], [0, 50], color="0.5", lw=1, ls=style, label=f"{share} c_R")
+    axes.set(xlabel="time, us", ylabel="x, mm", xlim=(10, 80), ylim=(0, 50))
+
+
+def spall(axes, results):
+    c = 3319.6
+    for r in results:
+        rows = r.rows("history.csv")
+        axes.plot([1e6 * row["time"] for row in rows], [row["end"] for row in rows], label="free end")
+        axes.plot([1e6 * row["time"] for row in rows], [row["cap"] for row in rows], label="mean of the last 45 mm")
+    for speed, text in ((20e6, "2 p/(rho c)"), (15e6, "(2 p - f_t)/(rho c)"), (10e6, "(2 p - 2 f_t)/(rho c)")):
+        axes.axhline(speed / 2500 / c, color="0.5", lw=1, ls="--")
+        axes.text(162, speed / 2500 / c + 0.03, text, fontsize=8)
+    axes.set(xlabel="time, us", ylabel="velocity, m/s", xlim=(160, None))
+
+
+def triaxial(axes, results):
+    for r in results:
+        case = tomllib.loads((r.folder / "case.toml").read_text())
+        p = next(l["pressure"] for l in case["load"] if l["name"] == "cell_left") / 1e6
+        axes.plot(p, r.strongest("force_top") / 0.03 / 1e6, "k.", ms=6)
+    axes.plot([0, 25], [34.64, 34.64 + 75], color="C0", lw=1, label="Mohr and Coulomb")
+    axes.set(xlabel="confining pressure, MPa", ylabel="strength, MPa", xlim=(0, 25))
+
+
+def dominoes(axes, results):
+    for r in results:
+        rows = r.rows("history.csv")
+        count = sum(1 for key in rows[0] if key[0] == "x" and key[1:].isdigit())
+        moved = [next((row["time"] for row in rows if row[f"x{k}"] > rows[0][f"x{k}"] + 1e-3), math.nan)
+                 for k in range(1, count + 1)]
+        case = tomllib.loads((r.folder / "case.toml").read_text())
+        friction = case["material"]["stone"]["friction"]
+        axes.plot(range(2, count), [0.05 / (b - a) for a, b in zip(moved, moved[2:])], ".-",
+                  label=f"friction of stones {friction:g}")
+    limit = domino_wave.speeds(stones=40, push=6.0)[-1]
+    axes.axhline(limit, color="0.5", lw=1, ls="--", label=f"rigid, without friction: {limit:.2f} m/s")
+    axes.set(xlabel="stone", ylabel="speed, m/s", ylim=(0, None))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    kinds = {f.__name__: f for f in (tension, disc, kalthoff, branching, spall, triaxial, dominoes)}
+    parser.add_argument("kind", choices=kinds)
+    parser.add_argument("results", nargs="+", type=pathlib.Path)
+    parser.add_argument("-o", "--out", required=True)
+    options = parser.parse_args()
+    figure, axes = plt.subplots(figsize=(6.4, 4.0))
+    kinds[options.kind](axes, [rock_tables.Result(folder) for folder in options.results])
+    axes.grid(alpha=0.3)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(options.out, dpi=100)
+
+
+if __name__ == "__main__":
+    main()
