@@ -24,7 +24,7 @@ import rock_tables
 def tension(axes, results):
     for r in results:
         rows = r.rows("history.csv")
-        axes.plot([1e6 * row["time"] for row in rows], [row["force"] / 150e3 for row in rows], label=str(r.folder.name))
+        axes.plot([1e6 * row["time"] for row in rows], [row["force"] / 150e3 for row in rows], label=f"{r.value('model.triangles'):.0f} triangles")
     axes.axhline(1.0, color="0.5", lw=1, ls="--", label="f_t")
     axes.set(xlabel="time, us", ylabel="mean stress / f_t")
 
@@ -35,7 +35,7 @@ def disc(axes, results):
         rows = r.rows("history.csv")
         axes.plot([1e6 * row["time"] for row in rows],
                   [2.0 * row["force_top"] / (math.pi * 0.04) / 5e6 * (math.sin(2 * half) / half - 1) for row in rows],
-                  label=str(r.folder.name))
+                  label=f"{r.value('model.triangles'):.0f} triangles")
     axes.axhline(1.0, color="0.5", lw=1, ls="--", label="Hondros: the centre at f_t")
     axes.set(xlabel="time, us", ylabel="stress at the centre by Hondros / f_t")
 
