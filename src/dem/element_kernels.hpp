@@ -48,7 +48,7 @@ struct GatherForces {
   View<const double> mass, inertia;
   View<const std::uint8_t> fixed;
   View<Vec3> force, torque;
-  View<double> critical;  ///< min over free coordinates of inertia / stiffness  [s2]
+  View<double> critical;  ///< inertia over a bound of the largest stiffness, in any axes  [s2]
 
   BR_HD static void add(LinkSums& sums, const IncidenceView& incidence,
                         const View<const PairForce>& actions, Index element) {
@@ -59,8 +59,7 @@ struct GatherForces {
         sums.as_a.add(action.numbers);
         sums.stiffness_a.add(action.stiffness);
       } else {
-        sums.as_b.add(action.numbers + 3);
-        sums.stiffness_b.add(action.stiffness + 3);
+        sums.add_as_b(action.numbers, action.stiffness);
       }
     }
   }
@@ -72,7 +71,7 @@ struct GatherForces {
     add_all<R>(bars, bar_actions, e);
     add_all<R>(contacts, contact_actions, e);
     finish(e, totals<R>(sums, fixed, e));
-    for (Index k = 0; k < width_of<R>; ++k) sums[e + k] = LinkSums{};
+    for (Index k = 0; k < width_of<R>; ++k) sums[e + k].clear();
   }
   template <class R>
   BR_HD void add_all(const IncidenceView& incidence, const View<const PairForce>& actions,

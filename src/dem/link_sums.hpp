@@ -6,35 +6,94 @@
 
 namespace breccia::dem {
 
+/// Stiffnesses of pairs (PairForce::stiffness) added up at one end.
+struct StiffnessSums {
+  EightFloatSums straight;  ///< of all eight: `turn` of this end among them, and K
+  EightFloatSums turning;   ///< of ratio K, likewise from 1 to 6
+
+  BR_HD void add(const float* stiffness) {
+    straight.add(stiffness);
+    turning.add(stiffness[8], stiffness);
+  }
+};
+
 /// What the concrete links of an element have added up to so far. Zero between two steps.
 struct LinkSums {
-  SixSums as_b;              ///< force, then torque, of links that end at the element  [N, N m]
-  SixFloatSums stiffness_b;  ///< K, then K^theta  [N/m, N m]
-  SixSums as_a;              ///< torque, then minus the force, of links that start there
-  SixFloatSums stiffness_a;  ///< K^theta, then K
+  SixSums as_b;  ///< force, then torque, of links that end at the element  [N, N m]
+  StiffnessSums stiffness_b;
+  SixSums as_a;  ///< torque, then minus the force, of links that start there
+  StiffnessSums stiffness_a;
+
+  /// Member by member: the whole at once becomes a slow loop.
+  BR_HD void clear() {
+    as_b = {};
+    stiffness_b.straight = stiffness_b.turning = {};
+    as_a = {};
+    stiffness_a.straight = stiffness_a.turning = {};
+  }
+  /// Adds what a pair does to its end b, as PairForce has it.
+  template <class Number>
+  BR_HD void add_as_b(const Number* numbers, const float* stiffness) {
+    as_b.add(numbers + 3);
+    stiffness_b.add(stiffness);
+  }
 };
-static_assert(sizeof(LinkSums) == 144);
+static_assert(sizeof(LinkSums) == 224);
 
 /// What an element gets from all its sums.
 template <class R>
 struct TotalsOf {
   Vec3Of<R> force, torque;  ///<  [N], [N m]
-  R straight, turning;      ///< largest stiffness of a free coordinate  [N/m], [N m]
+  R straight, turning;      ///< bounds of the largest stiffness of a free motion  [N/m], [N m]
 };
 
-/// @param fixed  coordinates that are not free, bits of Fixed
-BR_HD inline TotalsOf<double> totals_of(const LinkSums& s, int fixed) {
-  float straight = 0.0F, turning = 0.0F;
-  for (int c = 0; c < 3; ++c) {
-    const float k = s.stiffness_a[3 + c] + s.stiffness_b[c];
-    const float k_theta = s.stiffness_a[c] + s.stiffness_b[3 + c];
-    if ((fixed >> c & 1) == 0 && k > straight) straight = k;
-    if ((fixed >> (3 + c) & 1) == 0 && k_theta > turning) turning = k_theta;
+/// A symmetric matrix by its components xx yy zz xy xz yz.
+/// @tparam F  float, or several of neighbouring elements
+template <class F>
+struct Symmetric {
+  F c[6];
+
+  /// A third of the trace: the mean of the eigenvalues.
+  BR_HD F mean() const { return (c[0] + c[1] + c[2]) * (1.0F / 3.0F); }
+  /// Two thirds of the squared norm of the deviator: no eigenvalue is further from the mean than
+  /// its root, and one is as far where the other two are alike. It does not depend on the axes.
+  BR_HD F square_spread() const {
+    const F p = c[0] - c[1], q = c[1] - c[2], r = c[2] - c[0];
+    return (p * p + q * q + r * r) * (2.0F / 9.0F) +
+           (c[3] * c[3] + c[4] * c[4] + c[5] * c[5]) * (4.0F / 3.0F);
   }
+};
+
+/// Bounds of the largest stiffness of an element.
+struct Stiffest {
+  float straight, turning;  ///<  [N/m], [N m]
+};
+/// @param turn  sum of the pairs' `turn`
+BR_HD inline Stiffest stiffest(const Symmetric<float>& straight, const Symmetric<float>& turning,
+                               float turn) {
+  return {straight.mean() + sqrtf(straight.square_spread()),
+          (turn - turning.mean()) + sqrtf(turning.square_spread())};
+}
+
+/// All coordinates of a kind are held (bits of Fixed from `first` on): nothing can move.
+BR_HD inline bool is_held(int fixed, int first) {
+  return (fixed >> first & 7) == 7;
+}
+
+/// @param fixed  coordinates that are not free, bits of Fixed. Those of a kind count as free unless
+///               all three are held: the bound then does not depend on the axes.
+BR_HD inline TotalsOf<double> totals_of(const LinkSums& s, int fixed) {
+  Symmetric<float> straight, turning;
+  for (int k = 0; k < 6; ++k) {
+    straight.c[k] = s.stiffness_a.straight[1 + k] + s.stiffness_b.straight[1 + k];
+    turning.c[k] = s.stiffness_a.turning[1 + k] + s.stiffness_b.turning[1 + k];
+  }
+  const Stiffest most =
+      stiffest(straight, turning, s.stiffness_a.straight[0] + s.stiffness_b.straight[7]);
   return {{s.as_b[0] - s.as_a[3], s.as_b[1] - s.as_a[4], s.as_b[2] - s.as_a[5]},
           {s.as_b[3] + s.as_a[0], s.as_b[4] + s.as_a[1], s.as_b[5] + s.as_a[2]},
-          static_cast<double>(straight),
-          static_cast<double>(turning)};
+          is_held(fixed, 0) ? 0.0 : static_cast<double>(most.straight),
+          is_held(fixed, 3) ? 0.0 : static_cast<double>(most.turning)};
 }
 
 /// Vectors first, first + 1, ... of an array, written.
@@ -42,29 +101,71 @@ BR_HD inline void store_vectors(const View<Vec3>& vectors, Index first, const Ve
   vectors[first] = v;
 }
 
-/// Totals of element e and its neighbours in a pack, taken one by one.
-template <class R>
-BR_HD TotalsOf<R> totals_in_turn(const View<LinkSums>& sums, const View<const std::uint8_t>& fixed,
-                                 Index e) {
-  constexpr Index width = width_of<R>;
-  double numbers[8][width];
-  for (Index k = 0; k < width; ++k) {
-    const TotalsOf<double> t = totals_of(sums[e + k], fixed[e + k]);
-    const double own[8] = {t.force.x,  t.force.y,  t.force.z,  t.torque.x,
-                           t.torque.y, t.torque.z, t.straight, t.turning};
-    for (int c = 0; c < 8; ++c) numbers[c][k] = own[c];
-  }
-  return {{pack_of<R>(numbers[0]), pack_of<R>(numbers[1]), pack_of<R>(numbers[2])},
-          {pack_of<R>(numbers[3]), pack_of<R>(numbers[4]), pack_of<R>(numbers[5])},
-          pack_of<R>(numbers[6]),
-          pack_of<R>(numbers[7])};
-}
-
 template <class R>
 BR_HD TotalsOf<R> totals(const View<LinkSums>& sums, const View<const std::uint8_t>& fixed,
                          Index e) {
-  return totals_in_turn<R>(sums, fixed, e);
+  return totals_of(sums[e], fixed[e]);
 }
+
+#if !defined(__CUDACC__) && defined(__AVX2__)
+
+using EightFloats = float __attribute__((vector_size(32)));
+
+/// The bounds of four neighbours. @param straight, turning  room for four each
+inline void stiffest_of_four(const LinkSums* sums, double* straight, double* turning) {
+  const auto lower = [](EightFloats x) { return _mm256_castps256_ps128(x); };
+  const auto upper = [](EightFloats x) { return _mm256_extractf128_ps(x, 1); };
+  // Of each matrix: numbers k and 4 + k of all four.
+  const auto columns = [](__m256 e0, __m256 e1, __m256 e2, __m256 e3, __m256(&of)[4]) {
+    const __m256 low01 = _mm256_unpacklo_ps(e0, e1), low23 = _mm256_unpacklo_ps(e2, e3);
+    const __m256 high01 = _mm256_unpackhi_ps(e0, e1), high23 = _mm256_unpackhi_ps(e2, e3);
+    of[0] = _mm256_shuffle_ps(low01, low23, 0x44);
+    of[1] = _mm256_shuffle_ps(low01, low23, 0xee);
+    of[2] = _mm256_shuffle_ps(high01, high23, 0x44);
+    of[3] = _mm256_shuffle_ps(high01, high23, 0xee);
+  };
+  const auto sum = [sums](int k, EightFloatSums StiffnessSums::*of) {
+    return __m256((sums[k].stiffness_a.*of).sum + (sums[k].stiffness_b.*of).sum);
+  };
+  __m256 s[4], t[4];
+  constexpr auto of_k = &StiffnessSums::straight, of_theta = &StiffnessSums::turning;
+  columns(sum(0, of_k), sum(1, of_k), sum(2, of_k), sum(3, of_k), s);
+  columns(sum(0, of_theta), sum(1, of_theta), sum(2, of_theta), sum(3, of_theta), t);
+  // Both matrices side by side: numbers 1 to 3, then 4 to 6.
+  Symmetric<EightFloats> both;
+  for (int k = 0; k < 3; ++k) {
+    both.c[k] = EightFloats(_mm256_permute2f128_ps(s[k + 1], t[k + 1], 0x20));
+    both.c[3 + k] = EightFloats(_mm256_permute2f128_ps(s[k], t[k], 0x31));
+  }
+  const EightFloats mean = both.mean();
+  const EightFloats spread = EightFloats(_mm256_sqrt_ps(both.square_spread()));
+  alignas(16) float turn[4];
+  for (int k = 0; k < 4; ++k)
+    turn[k] = sums[k].stiffness_a.straight[0] + sums[k].stiffness_b.straight[7];
+  _mm256_storeu_pd(straight, _mm256_cvtps_pd(lower(mean + spread)));
+  const __m128 rest = _mm_sub_ps(_mm_load_ps(turn), upper(mean));
+  _mm256_storeu_pd(turning, _mm256_cvtps_pd(_mm_add_ps(rest, upper(spread))));
+}
+
+/// Bounds of element e and its neighbours in a pack.
+template <class R>
+inline void stiffest_of_pack(const View<LinkSums>& sums, const View<const std::uint8_t>& fixed,
+                             Index e, R& straight, R& turning) {
+  double numbers[2][width_of<R>];
+  std::uint8_t held[width_of<R>], none[width_of<R>] = {};
+  for (Index first = 0; first < width_of<R>; first += 4)
+    stiffest_of_four(sums.data + e + first, numbers[0] + first, numbers[1] + first);
+  __builtin_memcpy(held, fixed.data + e, sizeof held);
+  if (__builtin_memcmp(held, none, sizeof held) != 0)
+    for (Index k = 0; k < width_of<R>; ++k) {
+      if (is_held(held[k], 0)) numbers[0][k] = 0.0;
+      if (is_held(held[k], 3)) numbers[1][k] = 0.0;
+    }
+  straight = pack_of<R>(numbers[0]);
+  turning = pack_of<R>(numbers[1]);
+}
+
+#endif
 
 #if !defined(__CUDACC__) && defined(__AVX512F__)
 
@@ -81,46 +182,40 @@ inline void store_vectors(const View<Vec3>& vectors, Index first, const Vec3Of<P
                                   _mm512_setr_epi64(0, 13, 2, 3, 14, 5, 6, 15)));
 }
 
-/// Eight at once, if all are free.
 template <>
 inline TotalsOf<Pack8> totals<Pack8>(const View<LinkSums>& sums,
                                      const View<const std::uint8_t>& fixed, Index e) {
-  std::uint64_t held = 0;
-  __builtin_memcpy(&held, fixed.data + e, sizeof held);
-  if (held != 0) return totals_in_turn<Pack8>(sums, fixed, e);
-  Pack8 c[18];  // of each two stiffnesses make one column
+  Pack8 c[20];  // stiffnesses in between
   gather_records(View<const LinkSums>(sums), consecutive<Pack8>(e), c);
   const Pack8* const b = c;
-  const Pack8* const a = c + 9;
-  // Number `one` of columns p, q, counted through both, for all elements; then number `other`.
-  const auto two = [](Pack8 p, Pack8 q, int one, int other) {
-    const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 0, 2, 4, 6, 8, 10, 12, 14);
-    const auto shift = [](int number) { return number % 2 + 16 * (number / 2); };
-    const __m512i places = _mm512_add_epi32(
-        even,
-        _mm512_inserti64x4(_mm512_set1_epi32(shift(one)), _mm256_set1_epi32(shift(other)), 1));
-    return _mm512_permutex2var_ps(_mm512_castpd_ps(p), places, _mm512_castpd_ps(q));
-  };
-  const __m512 straight01 = two(a[7], a[8], 1, 2) + two(b[6], b[6], 0, 1);
-  const __m512 straight2_turning0 = two(a[8], a[6], 1, 2) + two(b[7], b[7], 0, 1);
-  const __m512 turning12 = two(a[6], a[7], 1, 2) + two(b[8], b[8], 0, 1);
-  const auto low = [](__m512 pair) { return _mm512_castps512_ps256(pair); };
-  const auto high = [](__m512 pair) { return _mm512_extractf32x8_ps(pair, 1); };
-  // As k > largest ? k : largest, from zero on.
-  const auto stiffest = [](__m256 k0, __m256 k1, __m256 k2) {
-    const __m256 first = _mm256_max_ps(k0, _mm256_setzero_ps());
-    return Pack8(_mm512_cvtps_pd(_mm256_max_ps(k2, _mm256_max_ps(k1, first))));
-  };
-  return {{b[0] - a[3], b[1] - a[4], b[2] - a[5]},
-          {b[3] + a[0], b[4] + a[1], b[5] + a[2]},
-          stiffest(low(straight01), high(straight01), low(straight2_turning0)),
-          stiffest(high(straight2_turning0), low(turning12), high(turning12))};
+  const Pack8* const a = c + 14;
+  TotalsOf<Pack8> t{{b[0] - a[3], b[1] - a[4], b[2] - a[5]},
+                    {b[3] + a[0], b[4] + a[1], b[5] + a[2]},
+                    Pack8{},
+                    Pack8{}};
+  stiffest_of_pack(sums, fixed, e, t.straight, t.turning);
+  return t;
 }
 
 #elif !defined(__CUDACC__) && defined(__AVX2__)
 
 inline void store_vectors(const View<Vec3>& vectors, Index first, const Vec3Of<Pack4>& v) {
   for (Index k = 0; k < 4; ++k) vectors[first + k] = {v.x[k], v.y[k], v.z[k]};
+}
+
+template <>
+inline TotalsOf<Pack4> totals<Pack4>(const View<LinkSums>& sums,
+                                     const View<const std::uint8_t>& fixed, Index e) {
+  Pack4 c[20];  // stiffnesses in between
+  gather_records(View<const LinkSums>(sums), consecutive<Pack4>(e), c);
+  const Pack4* const b = c;
+  const Pack4* const a = c + 14;
+  TotalsOf<Pack4> t{{b[0] - a[3], b[1] - a[4], b[2] - a[5]},
+                    {b[3] + a[0], b[4] + a[1], b[5] + a[2]},
+                    Pack4{},
+                    Pack4{}};
+  stiffest_of_pack(sums, fixed, e, t.straight, t.turning);
+  return t;
 }
 
 #endif

@@ -9,13 +9,16 @@ namespace breccia::dem {
 
 /// What an interaction does to its two ends in this step, and how stiff it is: written once by its
 /// law, read by both ends. What an end adds up lies side by side: six numbers from 0 for a, from 3
-/// for b.
+/// for b, and the same eight stiffnesses for both.
+///
+/// The rotational stiffness of an end is bounded by a matrix that K itself makes up,
+/// K^theta <= turn I - ratio K: two numbers instead of six (docs/theory.md, time step).
 template <class Number>
 struct PairForceOf {
   Number numbers[9];  ///< torque on a  [N m], force on b (a gets the opposite)  [N], torque on b [N
                       ///< m]
-  float stiffness[sizeof(Number) == 8 ? 10 : 9];  ///< K^theta of a  [N m], K  [N/m], K^theta of b
-                                                  ///< [N m], each xx yy zz; a tenth fills up
+  /// turn of a  [N m], K xx yy zz xy xz yz  [N/m], turn of b  [N m], ratio  [m2]; a tenth fills up
+  float stiffness[sizeof(Number) == 8 ? 10 : 9];
 
   BR_HD Vec3 force_on_b() const { return {numbers[3], numbers[4], numbers[5]}; }
 };
@@ -162,16 +165,25 @@ BR_HD void write_pair_force(const View<PairForceOf<Number>>& actions, Index at,
   const R numbers[9] = {torque_a.x, torque_a.y, torque_a.z, f.x,       f.y,
                         f.z,        torque_b.x, torque_b.y, torque_b.z};
 
+  // K = shear I + stretch n n^T, K^theta = across I - (across - twist) n n^T, with the larger arm's
+  // `across` for an end that has it: the ratio of the two matrices is the smaller end's.
   const Vec3Of<R>& n = motion.normal;
-  const R q[3] = {n.x * n.x, n.y * n.y, n.z * n.z};
-  const R stretch = normal - shear, screw = twist - bending;
-  const R a = shear * motion.arm_a * motion.arm_a, b = shear * motion.arm_b * motion.arm_b;
-  R stiffness[9];
-  for (int c = 0; c < 3; ++c) {
-    stiffness[c] = a + bending + (screw - a) * q[c];
-    stiffness[3 + c] = shear + stretch * q[c];
-    stiffness[6 + c] = b + bending + (screw - b) * q[c];
-  }
+  const R stretch = normal - shear, none = constant<R>(0.0);
+  const R across_a = shear * motion.arm_a * motion.arm_a + bending;
+  const R across_b = shear * motion.arm_b * motion.arm_b + bending;
+  const R softer = min(across_a, across_b) - twist;
+  const auto alike = stretch > 0.01 * normal && softer > none;
+  const R ratio = select(alike, softer / select(alike, stretch, constant<R>(1.0)), none);
+  const Vec3Of<R> along = stretch * n;
+  const R stiffness[9] = {max(across_a, twist) + ratio * shear,
+                          shear + along.x * n.x,
+                          shear + along.y * n.y,
+                          shear + along.z * n.z,
+                          along.x * n.y,
+                          along.x * n.z,
+                          along.y * n.z,
+                          max(across_b, twist) + ratio * shear,
+                          ratio};
   write_actions(actions, at, numbers, stiffness);
 }
 

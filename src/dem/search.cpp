@@ -369,7 +369,7 @@ void derive(World& w) {
   copy_to(all_b, b);
   build_incidence(w.exec, all_a, all_b, w.elements.id, w.bar_incidence);
   w.bar_actions.resize(all_a.size());
-  w.link_sums.resize(w.elements.size());
+  if (w.exec.space == Space::host) w.link_sums.resize(w.elements.size());
   w.critical.resize(w.elements.size());
   plan_sweep(w);
   derive_contacts(w);

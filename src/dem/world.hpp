@@ -20,12 +20,6 @@
 
 namespace breccia::dem {
 
-/// The action of a link that a later run adds to element b.
-struct DeferredForce {
-  PairForce action;
-  Index b;
-};
-
 /// How the threads of the host share concrete links and elements: each takes a run of elements with
 /// the links that start there. Links lead from lower to higher elements, so once a thread has done
 /// the links of a run, the sums of its elements are complete, but for those that an earlier run

@@ -60,27 +60,30 @@ struct SixSums {
   }
 #endif
 };
-/// Six sums side by side, in single precision.
-struct SixFloatSums {
+/// Eight sums side by side, in single precision.
+struct EightFloatSums {
 #if defined(__CUDACC__)
-  float sum[6] = {};
+  float sum[8] = {};
   BR_HD void add(const float* numbers) {
-    for (int k = 0; k < 6; ++k) sum[k] += numbers[k];
+    for (int k = 0; k < 8; ++k) sum[k] += numbers[k];
+  }
+  BR_HD void add(float factor, const float* numbers) {
+    for (int k = 0; k < 8; ++k) sum[k] += factor * numbers[k];
   }
   BR_HD float operator[](int k) const {
     return sum[k];
   }
 #else
-  using Four = float __attribute__((vector_size(16), aligned(4), may_alias));
-  using Two = float __attribute__((vector_size(8), aligned(4), may_alias));
-  Four four{};
-  Two two{};
+  using Eight = float __attribute__((vector_size(32), aligned(4), may_alias));
+  Eight sum{};
   void add(const float* numbers) {
-    four += *reinterpret_cast<const Four*>(numbers);
-    two += *reinterpret_cast<const Two*>(numbers + 4);
+    sum += *reinterpret_cast<const Eight*>(numbers);
+  }
+  void add(float factor, const float* numbers) {
+    sum += factor * *reinterpret_cast<const Eight*>(numbers);
   }
   float operator[](int k) const {
-    return k < 4 ? four[k] : two[k - 4];
+    return sum[k];
   }
 #endif
 };

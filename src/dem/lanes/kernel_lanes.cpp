@@ -68,4 +68,14 @@ BR_WHOLE MovedTo BR_PACKS::run(const MoveElements& kernel, Index begin, Index en
   return moved;
 }
 
+template <class Number>
+BR_WHOLE void BR_PACKS::run(const AddLinks& add, const ConcreteLinkForces<Number>& links,
+                            Index from, Index to, const PairForceOf<Number>* actions) {
+  add(links, from, to, actions);
+}
+template void BR_PACKS::run(const AddLinks&, const ConcreteLinkForces<double>&, Index, Index,
+                            const PairForceOf<double>*);
+template void BR_PACKS::run(const AddLinks&, const ConcreteLinkForces<float>&, Index, Index,
+                            const PairForceOf<float>*);
+
 }  // namespace breccia::dem

@@ -10,12 +10,6 @@
 namespace breccia::dem {
 namespace {
 
-template <class Number>
-BR_HD void add_to_b(LinkSums& sums, const PairForceOf<Number>& action) {
-  sums.as_b.add(action.numbers + 3);
-  sums.stiffness_b.add(action.stiffness + 3);
-}
-
 /// Moves elements of this rank. @returns whether one of them has used its margin up
 bool move_here(const World& w, const std::vector<ElementRun>& runs, const MoveElements& move) {
   constexpr Index grain = 512;
@@ -38,56 +32,6 @@ void run_group(const World& w, const LinkGroup<Law>& group, const Kernel& kernel
     run_packs(w.lanes, kernel, group.begin + begin, group.begin + end);
   });
 }
-
-/// Sums the actions of links as they come. A force on an element outside this thread's private
-/// range is stored in `deferred`; its owner thread adds it later, in the order of all links, so
-/// that the sum does not depend on the number of threads.
-struct AddLinks {
-  View<LinkSums> sums;
-  Index first_private, end;  ///< elements that get sums at once
-  Index reach;               ///< no link leads further
-  std::vector<DeferredForce>& deferred;
-
-  /// Links [from, to); action 0 is of link `from`.
-  template <class Number>
-  void operator()(const ConcreteLinkForces<Number>& links, Index from, Index to,
-                  const PairForceOf<Number>* actions) const {
-    for (Index i = from; i < to;) {
-      const Index a = links.a[i];
-      SixSums as_a = sums[a].as_a;
-      SixFloatSums stiffness_a = sums[a].stiffness_a;
-      fetch(std::min(a + reach, sums.size - 1), links.elements.state);
-      for (; i < to && links.a[i] == a; ++i) {
-        const PairForceOf<Number>& action = actions[i - from];
-        as_a.add(action.numbers);
-        stiffness_a.add(action.stiffness);
-        const Index b = links.b[i], soon = links.b[std::min(i + 8, to - 1)];
-        __builtin_prefetch(&sums[soon].as_b, 1);
-        __builtin_prefetch(&sums[soon].stiffness_b, 1);
-        if (b >= first_private && b < end)
-          add_to_b(sums[b], action);
-        else
-          deferred.push_back({in_double(action), b});
-      }
-      sums[a].as_a = as_a;
-      sums[a].stiffness_a = stiffness_a;
-    }
-  }
-  static const PairForce& in_double(const PairForce& action) { return action; }
-  static PairForce in_double(const PairForceOf<float>& action) {
-    PairForce same{};
-    std::copy_n(action.numbers, 9, same.numbers);
-    std::copy_n(action.stiffness, 9, same.stiffness);
-    return same;
-  }
-  /// Asks the memory for an element before the first link comes to it.
-  void fetch(Index element, const View<const ElementState>& state) const {
-    const auto* sum = reinterpret_cast<const char*>(sums.data + element);
-    const auto* record = reinterpret_cast<const char*>(state.data + element);
-    for (int line = 0; line < 3; ++line) __builtin_prefetch(sum + 64 * line, 1);
-    for (int line = 0; line < 2; ++line) __builtin_prefetch(record + 64 * line);
-  }
-};
 
 /// Asks the memory for what the links [from, to) keep: too many arrays for the processor to
 /// foresee.
@@ -122,7 +66,7 @@ void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index
     links.first_action = -from;
     fetch(links, to, std::min(to + portion, end));
     run_packs(lanes, links, from, to);
-    add(links, from, to, actions);
+    run_adding(lanes, add, links, from, to, actions);
     from = to;
   }
 }
@@ -165,13 +109,24 @@ void link_forces_and_sums(World& w) {
       if (begin == end) continue;
       for (std::size_t before = 0; before <= run; ++before)
         for (const DeferredForce& p : link_plan.deferred[before])
-          if (p.b >= begin && p.b < end) add_to_b(gather.sums[p.b], p.action);
+          if (p.b >= begin && p.b < end)
+            gather.sums[p.b].add_as_b(p.action.numbers, p.action.stiffness);
       run_packs(w.lanes, gather, begin, end);
     }
   }
 }
 
 }  // namespace
+
+void defer(const AddLinks& add, const PairForce& action, Index b) {
+  add.deferred.push_back({action, b});
+}
+void defer(const AddLinks& add, const PairForceOf<float>& action, Index b) {
+  PairForce same{};
+  std::copy_n(action.numbers, 9, same.numbers);
+  std::copy_n(action.stiffness, 9, same.stiffness);
+  defer(add, same, b);
+}
 
 void HostRun::move_boundary(World& w) const {
   const StageTime timed(w.exec, "integration");

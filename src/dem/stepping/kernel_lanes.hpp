@@ -3,6 +3,7 @@
 
 #include "dem/element_kernels.hpp"
 #include "dem/links/all.hpp"
+#include "dem/stepping/add_links.hpp"
 #include "exec/lanes.hpp"
 
 namespace breccia::dem {
@@ -16,6 +17,11 @@ void run_packs(Lanes lanes, const GatherForces& kernel, Index begin, Index end);
 double least(Lanes lanes, const View<const double>& numbers, Index begin, Index end);
 /// Likewise for elements that move. @returns whether one of them has used its margin up
 bool run_packs(Lanes lanes, const MoveElements& kernel, Index begin, Index end);
+
+/// add for the links [from, to).
+template <class Number>
+void run_adding(Lanes lanes, const AddLinks& add, const ConcreteLinkForces<Number>& links,
+                Index from, Index to, const PairForceOf<Number>* actions);
 
 /// How far a kernel came, and whether an element on the way has used its margin up.
 struct MovedTo {
@@ -38,6 +44,9 @@ struct PacksAvx2 {
   static Index run(const GatherForces& kernel, Index begin, Index end);
   static LeastOf run(const View<const double>& numbers, Index begin, Index end);
   static MovedTo run(const MoveElements& kernel, Index begin, Index end);
+  template <class Number>
+  static void run(const AddLinks& add, const ConcreteLinkForces<Number>& links, Index from,
+                  Index to, const PairForceOf<Number>* actions);
 };
 struct PacksAvx512 {
   template <class Kernel>
@@ -45,6 +54,9 @@ struct PacksAvx512 {
   static Index run(const GatherForces& kernel, Index begin, Index end);
   static LeastOf run(const View<const double>& numbers, Index begin, Index end);
   static MovedTo run(const MoveElements& kernel, Index begin, Index end);
+  template <class Number>
+  static void run(const AddLinks& add, const ConcreteLinkForces<Number>& links, Index from,
+                  Index to, const PairForceOf<Number>* actions);
 };
 
 }  // namespace breccia::dem

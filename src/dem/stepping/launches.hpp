@@ -24,8 +24,7 @@ inline void each_owned(const Domain& domain, const std::vector<ElementRun>& runs
 }
 
 /// Whether the sums of a step on a device of several note their least critical number in `w.clock`,
-/// where the move has made room for it. Those of ghosts count, too: they lack some of the stiffness
-/// that the owner adds up, so none is below the owner's, which another rank notes.
+/// where the move has made room for it.
 inline bool sums_note_least(const World& w) {
   return !w.domain.single_rank() && w.walls.empty() && !w.clock.empty() && w.elements.size() > 0;
 }
@@ -76,7 +75,8 @@ inline GatherForces gather_kernel(World& w) {
 
 template <class Number>
 GatherWide<Number> gather_wide_kernel(World& w) {
-  return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), w.link_actions.as<Number>().view()};
+  return {gather_kernel(w), w.rows_a.view(), w.rows_b.view(), w.link_actions.as<Number>().view(),
+          w.domain.owned_view()};
 }
 
 inline WallForces wall_kernel(World& w, Index wall) {

@@ -4,13 +4,14 @@
 
 #include "core/kernel.hpp"
 #include "dem/element_kernels.hpp"
+#include "domain/domain.hpp"
 #include "exec/lockstep.hpp"
 
 namespace breccia::dem {
 
-/// GatherForces where every link has an action, by eight threads an element, of which six each add
-/// up one number and one stiffness of what it gets as a, and as b, in the order of GatherForces,
-/// and write one number of force and torque.
+/// GatherForces where every link has an action, by eight threads an element. Each adds up one
+/// stiffness of what the element gets as a, and as b, in the order of GatherForces; six of them one
+/// number, too, and write one number of force and torque.
 /// @tparam Number  what actions of links are stored in
 template <class Number>
 struct GatherWide {
@@ -20,18 +21,29 @@ struct GatherWide {
   GatherForces gather;
   LinkRows::Seen rows_a, rows_b;
   View<const PairForceOf<Number>> actions;
+  OwnedView owned;
 
   BR_HD void set(const StepTime&) {}
   struct Sum {
     double number;
-    float stiffness;
+    float straight, turning;  ///< of StiffnessSums
     BR_HD void add(const Sum& other) {
       number += other.number;
-      stiffness += other.stiffness;
+      straight += other.straight;
+      turning += other.turning;
     }
   };
-  BR_HD static Sum read(const PairForce* action, int column) {
-    return {action->numbers[column], action->stiffness[column]};
+  /// One thread's columns of what an action holds.
+  struct Columns {
+    int number;  ///< for end a; for b three further
+    int stiffness;
+    BR_HD Columns b() const { return {number + 3, stiffness}; }
+  };
+  template <class Of>
+  BR_HD static Sum read(const Of& action, const Columns& column) {
+    const float stiffness = read_now(action.stiffness + column.stiffness);
+    return {read_now(action.numbers + column.number), stiffness,
+            read_now(action.stiffness + 8) * stiffness};
   }
   struct Row {
     Index next, end;
@@ -54,12 +66,9 @@ struct GatherWide {
       few.link[k] = read_now(links + place);
     }
   }
-  BR_HD void read(Few& few, int column) const {
+  BR_HD void read(Few& few, const Columns& column) const {
     BR_UNROLL
-    for (int k = 0; k < at_once; ++k) {
-      const PairForceOf<Number>& action = actions.data[few.link[k]];
-      few.part[k] = {read_now(action.numbers + column), read_now(action.stiffness + column)};
-    }
+    for (int k = 0; k < at_once; ++k) few.part[k] = read(actions.data[few.link[k]], column);
   }
   BR_HD static void add(Sum& sum, const Few& few, Row& row) {
     BR_UNROLL
@@ -69,7 +78,7 @@ struct GatherWide {
   }
   /// A row of bars or contacts.
   BR_HD static void add_pairs(Sum& as_a, Sum& as_b, Row row, const Entry* entries,
-                              const PairForce* actions, int column) {
+                              const PairForce* actions, const Columns& column) {
     for (; row.next < row.end; row.next += at_once) {
       Entry entry[at_once];
       Sum part[at_once];
@@ -79,7 +88,7 @@ struct GatherWide {
       BR_UNROLL
       for (int k = 0; k < at_once; ++k)
         if (row.next + k < row.end)
-          part[k] = read(actions + pair_of(entry[k]), column + 3 * side_of(entry[k]));
+          part[k] = read(actions[pair_of(entry[k])], side_of(entry[k]) == 0 ? column : column.b());
       BR_UNROLL
       for (int k = 0; k < at_once; ++k)
         if (row.next + k < row.end) side_of(entry[k]) == 0 ? as_a.add(part[k]) : as_b.add(part[k]);
@@ -92,9 +101,9 @@ struct GatherWide {
     double inertia;
     int fixed;
   };
-  BR_HD static int column_of(Index i) {
+  BR_HD static Columns column_of(Index i) {
     const int part = i % width;
-    return part < 6 ? part : 5;  // two threads repeat the sixth
+    return {part < 6 ? part : 5, part};  // two threads repeat the sixth number
   }
   BR_HD void load_early(Index i, Loaded& loaded) const {
     const Index e = i / width;
@@ -111,13 +120,15 @@ struct GatherWide {
   BR_HD void load_late(Index i, Loaded& loaded) const {
     if (actions.size == 0) return;
     read(loaded.as_a, column_of(i));
-    read(loaded.as_b, column_of(i) + 3);
+    read(loaded.as_b, column_of(i).b());
   }
-  /// @returns the critical number of the element, once
+  /// @returns the critical number of an element of this rank, once. A ghost lacks pairs, and its
+  ///          bound may be above its owner's.
   BR_HD double update(Index i, Loaded& loaded) const {
     const Index e = i / width;
-    const int part = i % width, column = column_of(i), fixed = loaded.fixed;
-    Sum as_a{0.0, 0.0F}, as_b{0.0, 0.0F};
+    const int part = i % width;
+    const Columns column = column_of(i);
+    Sum as_a{0.0, 0.0F, 0.0F}, as_b{0.0, 0.0F, 0.0F};
     for (;;) {
       add(as_a, loaded.as_a, loaded.links_a);
       add(as_b, loaded.as_b, loaded.links_b);
@@ -126,7 +137,7 @@ struct GatherWide {
       list(loaded.as_a, loaded.links_a, rows_a.links.data);
       list(loaded.as_b, loaded.links_b, rows_b.links.data);
       read(loaded.as_a, column);
-      read(loaded.as_b, column + 3);
+      read(loaded.as_b, column.b());
     }
     add_pairs(as_a, as_b, loaded.bars, gather.bars.entries.data, gather.bar_actions.data, column);
     add_pairs(as_a, as_b, loaded.contacts, gather.contacts.entries.data,
@@ -135,20 +146,30 @@ struct GatherWide {
     const LaneGroup<width> group;
     const int other = part < 3 ? part + 3 : part < 6 ? part - 3 : part;
     const double from_a = group.from(other, as_a.number);
-    float stiffness = group.from(other, as_a.stiffness) + as_b.stiffness;
     if (part < 3) reinterpret_cast<double*>(&gather.force[e])[part] = as_b.number - from_a;
     if (part >= 3 && part < 6)
       reinterpret_cast<double*>(&gather.torque[e])[part - 3] = as_b.number + from_a;
-    if (part >= 6 || (fixed >> part & 1) != 0 || !(stiffness > 0.0F)) stiffness = 0.0F;
-    float largest = stiffness;  // of three neighbours
-    largest = std::fmax(largest, group.from_next(1, stiffness));
-    largest = std::fmax(largest, group.from_next(2, stiffness));
+    // Each thread has one component of the matrices; all of them find both bounds.
+    const float straight_part = as_a.straight + as_b.straight;
+    const float turning_part = as_a.turning + as_b.turning;
+    Symmetric<float> straight, turning;
+    BR_UNROLL
+    for (int k = 0; k < 6; ++k) {
+      straight.c[k] = group.from(1 + k, straight_part);
+      turning.c[k] = group.from(1 + k, turning_part);
+    }
+    const float turn = group.from(0, as_a.straight) + group.from(7, as_b.straight);
+    const Stiffest most = stiffest(straight, turning, turn);
+    const bool of_straight = part < 3;
+    const float largest = is_held(loaded.fixed, of_straight ? 0 : 3) ? 0.0F
+                          : of_straight                              ? most.straight
+                                                                     : most.turning;
     const double slow = static_cast<double>(largest) / loaded.inertia;
     const double slowest = max(slow, group.from(3, slow));
     if (part != 0) return largest_least;
     const double critical = slowest > 0.0 ? 1.0 / slowest : largest_least;
     gather.critical[e] = critical;
-    return critical;
+    return owned(e) ? critical : largest_least;
   }
 };
 /// Critical numbers that walls have changed.

@@ -55,7 +55,7 @@ TEST(DeviceSchedule, gives_each_of_ten_materials_its_own_law) {
 }
 
 TEST(DeviceSchedule, gives_a_rank_without_links_of_the_first_material_the_law_of_the_second) {
-  Scene scene = pairs_that_part(2, 0.39);
+  Scene scene = pairs_that_part(2, 0.2);
   for (Index e = 2; e < 4; ++e) scene.model.position[static_cast<std::size_t>(e)].x += 10.0;
   const World host = run_alone(scene, Space::host);
   EXPECT_EQ(broken(host), 1);

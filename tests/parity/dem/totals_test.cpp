@@ -27,14 +27,14 @@ struct Scene {
     std::uniform_real_distribution<float> stiffness(0.0F, 1.0F);
     const auto fill = [&](LinkSums& s) {
       double numbers[6];
-      float stiffnesses[6];
+      float stiffnesses[9];
       for (SixSums* six : {&s.as_a, &s.as_b}) {
         for (double& n : numbers) n = number(random);
         six->add(numbers);
       }
-      for (SixFloatSums* six : {&s.stiffness_a, &s.stiffness_b}) {
+      for (StiffnessSums* sums_of_end : {&s.stiffness_a, &s.stiffness_b}) {
         for (float& k : stiffnesses) k = stiffness(random);
-        six->add(stiffnesses);
+        sums_of_end->add(stiffnesses);
       }
     };
     for (Index e = 0; e < count; ++e) {

@@ -1,0 +1,66 @@
+#pragma once
+// The sums of concrete links on the host, as their forces come.
+
+#include <algorithm>
+#include <vector>
+
+#include "dem/element_kernels.hpp"
+#include "dem/links/all.hpp"
+
+namespace breccia::dem {
+
+/// The action of a link that a later run adds to element b.
+struct DeferredForce {
+  PairForce action;
+  Index b;
+};
+
+struct AddLinks;
+/// Stores an action for the run that owns element b.
+void defer(const AddLinks& add, const PairForce& action, Index b);
+void defer(const AddLinks& add, const PairForceOf<float>& action, Index b);
+
+/// Sums the actions of links as they come. A force on an element outside this thread's private
+/// range is stored in `deferred`; its owner thread adds it later, in the order of all links, so
+/// that the sum does not depend on the number of threads.
+struct AddLinks {
+  View<LinkSums> sums;
+  Index first_private, end;  ///< elements that get sums at once
+  Index reach;               ///< no link leads further
+  std::vector<DeferredForce>& deferred;
+
+  /// Links [from, to); action 0 is of link `from`.
+  template <class Number>
+  void operator()(const ConcreteLinkForces<Number>& links, Index from, Index to,
+                  const PairForceOf<Number>* actions) const {
+    for (Index i = from; i < to;) {
+      const Index a = links.a[i];
+      SixSums as_a = sums[a].as_a;
+      StiffnessSums stiffness_a = sums[a].stiffness_a;
+      fetch(std::min(a + reach, sums.size - 1), links.elements.state);
+      for (; i < to && links.a[i] == a; ++i) {
+        const PairForceOf<Number>& action = actions[i - from];
+        as_a.add(action.numbers);
+        stiffness_a.add(action.stiffness);
+        const Index b = links.b[i], soon = links.b[std::min(i + 8, to - 1)];
+        __builtin_prefetch(&sums[soon].as_b, 1);
+        __builtin_prefetch(&sums[soon].stiffness_b, 1);
+        if (b >= first_private && b < end)
+          sums[b].add_as_b(action.numbers, action.stiffness);
+        else
+          defer(*this, action, b);
+      }
+      sums[a].as_a = as_a;
+      sums[a].stiffness_a = stiffness_a;
+    }
+  }
+  /// Asks the memory for an element before the first link comes to it.
+  void fetch(Index element, const View<const ElementState>& state) const {
+    const auto* sum = reinterpret_cast<const char*>(sums.data + element);
+    const auto* record = reinterpret_cast<const char*>(state.data + element);
+    for (int line = 0; line < 4; ++line) __builtin_prefetch(sum + 64 * line, 1);
+    for (int line = 0; line < 2; ++line) __builtin_prefetch(record + 64 * line);
+  }
+};
+
+}  // namespace breccia::dem
