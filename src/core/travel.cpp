@@ -34,13 +34,14 @@ struct BoxSphere {
   View<const Vec3> centre;
   View<const double> radius, margin;
   View<Box> boxes;
+  double farthest;
 
   BR_HD void operator()(Index i) const {
     // 32 times the rounding of one operation: the sums here, the test of the travel and the test
     // of the contact round about 12 times together.
     constexpr double rounding = 1.0 / 281474976710656.0;  // 2^-48
     const Vec3 c = centre[i];
-    const double reach = radius[i] + margin[i];
+    const double reach = radius[i] + margin[i] + rounding * farthest;
     const Vec3 half{reach + rounding * (reach + abs(c.x)), reach + rounding * (reach + abs(c.y)),
                     reach + rounding * (reach + abs(c.z))};
     boxes[i] = {c - half, c + half};
@@ -63,11 +64,11 @@ void begin_travel(const Exec& exec, const MarginRule& rule, const Buffer<Vec3>& 
 }
 
 void sphere_boxes(const Exec& exec, const Buffer<Vec3>& centre, const Buffer<double>& radius,
-                  const Buffer<double>& margin, Buffer<Box>& boxes) {
+                  const Buffer<double>& margin, Buffer<Box>& boxes, double farthest) {
   BR_ASSERT(centre.size() == radius.size() && centre.size() == margin.size());
   boxes.resize(centre.size());
   for_each(exec, centre.size(),
-           BoxSphere{centre.view(), radius.view(), margin.view(), boxes.view()});
+           BoxSphere{centre.view(), radius.view(), margin.view(), boxes.view(), farthest});
 }
 
 }  // namespace breccia

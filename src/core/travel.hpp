@@ -16,6 +16,7 @@
 // the boxes of all others larger. Rounding is covered by `sphere_boxes`.
 
 #include "core/broad_phase.hpp"
+#include "core/drift.hpp"
 
 namespace breccia {
 
@@ -34,7 +35,8 @@ struct MarginRule {
 /// Where the elements (or nodes) stood at the last search, and how far each may go.
 struct Travel {
   Buffer<Vec3> reference;  ///< position at the last search  [m]
-  Buffer<double> margin;   ///< how far from there  [m]
+  Buffer<double> margin;   ///< how far from there, the drift taken off  [m]
+  Drift drift;
 
   explicit Travel(Space space = Space::host) : reference(space), margin(space) {}
 
@@ -47,13 +49,15 @@ struct Travel {
 
 /// Starts anew: elements stand at `position`, and get margins by the rule. @throws NumericsError
 /// if a margin is not finite (the velocity went wrong; names the element's place in memory)
+/// @param velocity  less that of the drift  [m/s]
 void begin_travel(const Exec& exec, const MarginRule& rule, const Buffer<Vec3>& position,
                   const Buffer<Vec3>& velocity, Travel& travel);
 
 /// Boxes of spheres, grown by their margins and by a few roundings of the coordinates, so that the
 /// claim above holds in floating-point numbers too.
-/// @param radius  reach of each element: two touch within the sum of theirs  [m]
+/// @param radius    reach of each element: two touch within the sum of theirs  [m]
+/// @param farthest  way of the drift whose rounding is covered, too  [m]
 void sphere_boxes(const Exec& exec, const Buffer<Vec3>& centre, const Buffer<double>& radius,
-                  const Buffer<double>& margin, Buffer<Box>& boxes);
+                  const Buffer<double>& margin, Buffer<Box>& boxes, double farthest = 0.0);
 
 }  // namespace breccia

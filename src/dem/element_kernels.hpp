@@ -1,6 +1,7 @@
 #pragma once
 // What is done to each element by itself: its sum of forces, its critical step, its motion.
 
+#include "core/drift.hpp"
 #include "core/incidence.hpp"
 #include "core/kernel.hpp"
 #include "dem/contacts.hpp"
@@ -29,9 +30,19 @@ struct Motion {
 struct UsedMargin {
   View<const Vec3> reference;
   View<const double> margin;
+  Drift drift;
+  Vec3 drifted;  ///< since the search  [m]
+  bool too_far;  ///< for rounding
+
+  /// @param time  of the positions  [s]
+  BR_HD void set_time(double time) {
+    drifted = drift.way(time);
+    too_far = !(dot(drifted, drifted) <= drift.farthest * drift.farthest);
+  }
   template <class R>
-  BR_HD static auto beyond(const Vec3Of<R>& position, const Vec3Of<R>& from, const R& allowed) {
-    const Vec3Of<R> moved = position - from;
+  BR_HD auto beyond(const Vec3Of<R>& position, const Vec3Of<R>& from, const R& allowed) const {
+    const Vec3Of<R> way = position - from;
+    const Vec3Of<R> moved{way.x - drifted.x, way.y - drifted.y, way.z - drifted.z};
     return !(dot(moved, moved) <= allowed * allowed);  // NaN counts as beyond
   }
 };
@@ -254,7 +265,10 @@ struct MoveElements {
     Vec3Of<R> reference;
     R margin;
   };
-  BR_HD void set(const StepTime& now) { kick.set(now); }
+  BR_HD void set(const StepTime& now) {
+    kick.set(now);
+    used.set_time(now.time + now.next_dt);
+  }
   /// All but the sums of forces.
   template <class R>
   BR_HD void load_early(Index e, Loaded<R>& loaded) const {
@@ -304,7 +318,7 @@ struct MoveElements {
     const QuaternionOf<R> q = rotated(loaded.turn, turned_by);
     const R numbers[4] = {q.w, q.x, q.y, q.z};
     store_records(orientation, e, numbers);
-    return any(UsedMargin::beyond<R>(position, loaded.reference, loaded.margin));
+    return used.too_far || any(used.beyond<R>(position, loaded.reference, loaded.margin));
   }
   BR_WHOLE BR_HD bool operator()(Index e) const { return run_at<double>(*this, e); }
 };

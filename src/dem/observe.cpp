@@ -39,11 +39,12 @@ struct HashElement {
 struct FindUnsound {
   OwnedView owned;
   double dt;
+  Vec3 drift;  ///< velocity that all share  [m/s]
   View<const GlobalId> id;
   View<const ElementState> state;
   BR_HD GlobalId operator()(Index e) const {
     if (!owned(e)) return Unsound::none;
-    const Vec3 x = state[e].position, v = state[e].velocity, spin = state[e].spin;
+    const Vec3 x = state[e].position, v = state[e].velocity - drift, spin = state[e].spin;
     const double radius = state[e].radius;
     const double travelled = dt * dt * dot(v, v);
     const double sum = x.x + x.y + x.z + dot(spin, spin);
@@ -192,9 +193,10 @@ std::uint64_t state_hash(const World& w) {
 
 Unsound find_unsound(const World& w) {
   const Elements& e = w.elements;
-  const GlobalId bad =
-      fold(w.exec, e.size(), Unsound::none,
-           FindUnsound{w.domain.owned_view(), w.last_dt, e.id.view(), e.state.view()}, Least{});
+  const GlobalId bad = fold(w.exec, e.size(), Unsound::none,
+                            FindUnsound{w.domain.owned_view(), w.last_dt, w.travel.drift.velocity,
+                                        e.id.view(), e.state.view()},
+                            Least{});
   if (bad == Unsound::none) return {};
   const Elements host = host_copy(e);
   const auto ids = host.id.host();
@@ -206,8 +208,8 @@ Unsound find_unsound(const World& w) {
       "step %lld, t = %.6e s: element %d (%s) moves at %.3e m/s, more than its radius %.3e m in a "
       "step of %.3e s, or is not finite; a smaller time.safety (now %g) may help",
       static_cast<long long>(w.step), w.time, bad, group.c_str(),
-      norm(host.state.data()[i].velocity), host.state.data()[i].radius, w.last_dt,
-      w.parameters.time.safety);
+      norm(host.state.data()[i].velocity - w.travel.drift.velocity), host.state.data()[i].radius,
+      w.last_dt, w.parameters.time.safety);
   return {bad, message};
 }
 

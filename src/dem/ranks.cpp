@@ -4,6 +4,7 @@
 #include <array>
 
 #include "dem/energy.hpp"
+#include "domain/drift.hpp"
 #include "domain/sharing.hpp"
 #include "exec/for_each.hpp"
 
@@ -127,19 +128,23 @@ void divide(LinkSet<Law>& set) {
 
 struct MarginNow {
   MarginRule rule;
+  Vec3 drift;  ///<  [m/s]
   OwnedView owned;
   View<const ElementState> state;
-  BR_HD double operator()(Index e) const { return owned(e) ? rule.margin(state[e].velocity) : 0.0; }
+  BR_HD double operator()(Index e) const {
+    return owned(e) ? rule.margin(state[e].velocity - drift) : 0.0;
+  }
 };
 
 /// 1 where an element has left the buffer.
 struct HasLeft {
   double allowed;  ///< square of the way that it may go  [m2]
   OwnedView owned;
+  Vec3 drifted;  ///< common to all since they were shared out  [m]
   View<const ElementState> state;
   View<const Vec3> reference;
   BR_HD double operator()(Index e) const {
-    const Vec3 moved = state[e].position - reference[e];
+    const Vec3 moved = (state[e].position - reference[e]) - drifted;
     return owned(e) && !(dot(moved, moved) <= allowed) ? 1.0 : 0.0;
   }
 };
@@ -181,10 +186,10 @@ class Spheres final : public Shareable {
     return weight;
   }
   double margin() const override {
-    return fold(
-        w_.exec, w_.elements.size(), 0.0,
-        MarginNow{margin_rule(w_), w_.domain.owned_view(), std::as_const(w_.elements.state).view()},
-        Largest{});
+    return fold(w_.exec, w_.elements.size(), 0.0,
+                MarginNow{margin_rule(w_), w_.travel.drift.velocity, w_.domain.owned_view(),
+                          std::as_const(w_.elements.state).view()},
+                Largest{});
   }
   bool has_left() const override {
     return fold(w_.exec, w_.elements.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
@@ -214,7 +219,7 @@ class Spheres final : public Shareable {
     return w_.elements.state.space() == Space::host ? w_.elements.state : seen_;
   }
   HasLeft has_left_kernel() const {
-    return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(),
+    return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(), w_.domain.drifted,
             std::as_const(w_.elements.state).view(),
             std::as_const(w_.domain.migration_reference).view()};
   }
@@ -280,9 +285,11 @@ World share_out(const World& whole, Communicator& ranks, const DomainConfig& con
 World share_parts(World part, Communicator& ranks, const DomainConfig& config, Space space) {
   take_time_from_first(ranks, part);
   for (Wall& wall : part.walls) take_from_first(ranks, wall);
+  take_from_first(ranks, part.travel.drift);
   part.ledger = {};  // what this rank books from here on
   Spheres spheres(part, space);
   begin_sharing(part.domain, ranks, config, spheres, 2.0 * part.parameters.mean_radius, 3);
+  part.domain.drifted_until = part.time;
   share_anew(part.domain, spheres, true);
   select_active_ghosts(part);
   return part;
@@ -298,6 +305,8 @@ void migrate(World& w) {
 void rebalance(World& w) {
   if (!is_uneven(w.domain)) return;
   const StageTime timed(w.exec, "migration");
+  // Otherwise the way since the last search would be taken off what comes next.
+  w.domain.drift(w.travel.drift.velocity, w.time);
   Spheres spheres(w, w.exec.space);
   spheres.come_to_host();
   share_anew(w.domain, spheres, false);
@@ -330,7 +339,7 @@ void collect(World& part, World& whole) {
   whole.wall_contacts = std::move(copy.wall_contacts);
   whole.bar_actions = std::move(copy.bar_actions);
   whole.walls = part.walls;
-  whole.domain.partition = part.domain.partition;
+  whole.domain.partition = partition_at(part.domain, part.travel.drift.velocity, part.time);
   copy_time(part, whole);
 }
 

@@ -7,17 +7,20 @@
 #include "core/rows.hpp"
 #include "core/select.hpp"
 #include "dem/ranks.hpp"
+#include "domain/drift.hpp"
 
 namespace breccia::dem {
 namespace {
 
+/// Positions, and velocities less that of the drift.
 struct UnpackState {
+  Vec3 drift;  ///<  [m/s]
   View<const ElementState> state;
   View<Vec3> position, velocity;
   View<double> radius;
   BR_HD void operator()(Index e) const {
     position[e] = state[e].position;
-    velocity[e] = state[e].velocity;
+    velocity[e] = state[e].velocity - drift;
     radius[e] = state[e].radius;
   }
 };
@@ -60,13 +63,14 @@ struct MayTouch {
   View<const Index> a, b;
   View<const ElementState> state;
   View<const double> margin;
+  double rounding;  ///< of the drift's way  [m]
 
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
     if (!owned(p) && !owned(q)) return false;
     const Vec3 d = state[q].position - state[p].position;
     const double reach =
-        (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12);
+        (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12) + rounding;
     return !(dot(d, d) > reach * reach);
   }
 };
@@ -136,10 +140,11 @@ Pairs near_walls(const World& w) {
   Pairs pairs(w.exec.space);
   Index wall_number = 0;
   for (const Wall& wall : w.walls) {
-    // A moving wall uses margins up, too: it may cover one largest margin until it asks for a
-    // search.
-    const double reach =
-        dot(wall.velocity, wall.velocity) > 0.0 ? w.parameters.largest_margin : 0.0;
+    // A wall that moves against the drift uses margins up, too: it may cover one largest margin
+    // until it asks for a search.
+    const Vec3 past = wall.velocity - w.travel.drift.velocity;
+    const double reach = (dot(past, past) > 0.0 ? w.parameters.largest_margin : 0.0) +
+                         1e-14 * w.travel.drift.farthest;
     const Buffer<Index> near =
         items_where(w.exec, w.elements.size(),
                     WallNear{wall, reach, w.domain.owned_view(), w.elements.state.view(),
@@ -266,23 +271,40 @@ void plan_sweep(World& w) {
   if (w.exec.space != Space::host) list_rows(w, a, b);
 }
 
+struct MotionOf {
+  View<const ElementState> state;
+  OwnedView owned;
+  BR_HD CommonMotion operator()(Index e) const {
+    CommonMotion motion;
+    if (owned(e)) motion.add(state[e].velocity);
+    return motion;
+  }
+};
+/// The drift from now on.
+Drift choose_drift(const World& w) {
+  const CommonMotion own = fold(w.exec, w.elements.size(), CommonMotion{},
+                                MotionOf{w.elements.state.view(), w.domain.owned_view()}, Sum{});
+  return of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.parameters.mean_radius);
+}
+
 /// The pairs that may touch until the next search.
 void search(World& w) {
   const Index count = w.elements.size();
   Buffer<Vec3> position(w.exec.space, count), velocity(w.exec.space, count);
   Buffer<double> radius(w.exec.space, count);
   for_each(w.exec, count,
-           UnpackState{std::as_const(w.elements.state).view(), position.view(), velocity.view(),
-                       radius.view()});
+           UnpackState{w.travel.drift.velocity, std::as_const(w.elements.state).view(),
+                       position.view(), velocity.view(), radius.view()});
   begin_travel(w.exec, margin_rule(w), position, velocity, w.travel);
   Buffer<Box> boxes(w.exec.space);
-  sphere_boxes(w.exec, position, radius, w.travel.margin, boxes);
+  sphere_boxes(w.exec, position, radius, w.travel.margin, boxes, w.travel.drift.farthest);
   Pairs found(w.exec.space);
   w.broad_phase.search(w.exec, boxes, w.elements.id, found, held_pairs(w));
-  const Buffer<Index> near = items_where(
-      w.exec, found.size(),
-      MayTouch{w.domain.owned_view(), std::as_const(found.a).view(), std::as_const(found.b).view(),
-               w.elements.state.view(), std::as_const(w.travel.margin).view()});
+  const Buffer<Index> near =
+      items_where(w.exec, found.size(),
+                  MayTouch{w.domain.owned_view(), std::as_const(found.a).view(),
+                           std::as_const(found.b).view(), w.elements.state.view(),
+                           std::as_const(w.travel.margin).view(), 1e-14 * w.travel.drift.farthest});
   gather_fields(w.exec, near, found);
   book_dropped(w, w.contacts, found);
   w.contacts.replace(w.exec, std::move(found));
@@ -322,6 +344,8 @@ bool contacts_are_due(const World& w) {
 }
 
 void find_contacts(World& w) {
+  w.domain.drift(w.travel.drift.velocity, w.time);
+  w.travel.drift = choose_drift(w);
   migrate(w);
   const StageTime timed(w.exec, "contact_detection");
   collective_try(w.domain.ranks, [&w] { search(w); });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/broad_phase.hpp"
+#include "core/drift.hpp"
 #include "core/energy.hpp"
 #include "core/step_clock.hpp"
 #include "core/travel.hpp"
@@ -16,7 +17,6 @@
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/effective.hpp"
 #include "fdem/setup/model.hpp"
-#include "fdem/triangles/drift.hpp"
 #include "fdem/triangles/loads.hpp"
 
 namespace breccia::fdem {
@@ -34,7 +34,7 @@ struct TravelOfTriangles {
   Buffer<Index> triangle;     ///< those that can touch, ascending by global id
   Buffer<Corners> reference;  ///< their corners at the search  [m]
   Buffer<double> margin;      ///<  [m]
-  Drift drift;
+  PlaneDrift drift;
 
   template <class Visit>
   void each_field(Visit&& field) {

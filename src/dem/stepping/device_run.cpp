@@ -39,6 +39,7 @@ struct MoveAndWatch {
 struct MoveWalls {
   static constexpr const char* name = "dem.move_walls";
   double dt, largest_travel;
+  Vec3 drift;  ///<  [m/s]
   int search_every;
   View<Wall> walls;
   std::int32_t* host_request;
@@ -47,7 +48,7 @@ struct MoveWalls {
   BR_HD void operator()(Index k) const {
     Wall& wall = walls[k];
     wall.point += dt * wall.velocity;
-    wall.travelled += dt * norm(wall.velocity);
+    wall.travelled += dt * norm(wall.velocity - drift);
     if (search_every == 0 && wall.travelled > largest_travel) *host_request = 1;
   }
 };
@@ -189,8 +190,8 @@ class ClockedRun : public LaunchedForces<ClockBy<phase>> {
     std::int32_t* const host_request = &clocks_.now->host_request;
     const EndOfStep<StepRule> end = end_of_step(w);
     const MoveAndWatch move{move_kernel(w), every, host_request, w.domain.owned_view(), nullptr};
-    const MoveWalls walls{0.0, w.parameters.largest_margin, every, w.device_walls.view(),
-                          host_request};
+    const MoveWalls walls{0.0,   w.parameters.largest_margin, w.travel.drift.velocity,
+                          every, w.device_walls.view(),       host_request};
     for_each_part(w.exec,
                   part(w.device_walls.size(), clocks_.opening(walls, end, false),
                        part(w.elements.size(), clocks_.opening(move, end, true), Parts<>{})));

@@ -102,12 +102,10 @@ inline WallForces wall_kernel(World& w, Index wall) {
 
 inline MoveElements move_kernel(World& w) {
   Elements& e = w.elements;
-  return {kick(w),
-          e.state.view(),
-          e.orientation.view(),
-          e.damping_work.view(),
-          e.load_work.view(),
-          {w.travel.reference.view(), w.travel.margin.view()}};
+  UsedMargin used{w.travel.reference.view(), w.travel.margin.view(), w.travel.drift, {}, false};
+  used.set_time(w.time + w.next_dt);
+  return {kick(w), e.state.view(), e.orientation.view(), e.damping_work.view(), e.load_work.view(),
+          used};
 }
 
 }  // namespace breccia::dem

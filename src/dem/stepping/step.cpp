@@ -76,7 +76,7 @@ View<const Wall> walls_view(const World& w) {
 void move_walls(World& w) {
   for (Wall& wall : w.walls) {
     wall.point += w.next_dt * wall.velocity;
-    wall.travelled += w.next_dt * norm(wall.velocity);
+    wall.travelled += w.next_dt * norm(wall.velocity - w.travel.drift.velocity);
   }
   w.time += w.next_dt;
   w.last_dt = w.next_dt;

@@ -13,7 +13,7 @@ namespace {
 /// Starts the travel of a triangle anew and boxes it with its margin and what counts as near.
 struct BeginReach {
   double skin, horizon, largest;  ///<  [m], [s], [m]
-  Drift drift;
+  PlaneDrift drift;
   View<const Index> triangle;
   View<const TriangleNodes> nodes;
   View<const Mat2> shape_inverse;
@@ -119,21 +119,12 @@ void book_dropped(World& w, const Pairs& found) {
                      Sum{}));
 }
 
-/// The drift from now on: the mean velocity, where it makes up most of all motion. Otherwise there
-/// are some that fly and many at rest, and each is served best by its own speed.
-Drift choose_drift(const World& w) {
-  CommonMotion motion = fold(w.exec, w.triangles.size(), CommonMotion{},
-                             MotionOf{w.triangles.nodes.view(), w.domain.owned_view()}, Sum{});
-  if (!w.domain.single_rank()) {
-    const std::vector<CommonMotion> all = from_each(*w.domain.ranks, motion);
-    motion = {};
-    for (const CommonMotion& of_rank : all) motion = motion + of_rank;
-  }
-  if (motion.count == 0) return {};
-  const double share = 1.0 / static_cast<double>(motion.count);
-  const Vec2 mean{share * motion.x.value(), share * motion.y.value()};
-  if (!(dot(mean, mean) > 0.75 * share * motion.squares.value())) return {};
-  return {mean, w.time, 1000.0 * w.parameters.mean_edge};
+/// The drift from now on.
+PlaneDrift choose_drift(const World& w) {
+  const CommonMotion own = fold(w.exec, w.triangles.size(), CommonMotion{},
+                                MotionOf{w.triangles.nodes.view(), w.domain.owned_view()}, Sum{});
+  const Drift all = of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.parameters.mean_edge);
+  return {{all.velocity.x, all.velocity.y}, all.since, all.farthest};
 }
 
 /// Flags of Change that are set, as bits.

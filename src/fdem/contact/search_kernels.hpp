@@ -2,7 +2,7 @@
 // What a search of couples asks of the mesh: which triangles can touch, and which pairs of them.
 
 #include "core/energy.hpp"
-#include "domain/domain.hpp"
+#include "domain/drift.hpp"
 #include "fdem/world.hpp"
 
 namespace breccia::fdem {
@@ -81,34 +81,14 @@ struct MayTouch {
   }
 };
 
-/// What corners do together. Sums are exact: the same on any number of ranks and threads.
-struct CommonMotion {
-  ExactSum x, y, squares;  ///< of velocities  [m/s], [m2/s2]
-  std::int64_t count = 0;
-
-  BR_HD void add(const Vec2& velocity) {
-    constexpr double fastest = 1e4;  // the sums hold no more; what is faster has gone wrong
-    if (!(dot(velocity, velocity) < fastest * fastest)) return;
-    x.add(velocity.x);
-    y.add(velocity.y);
-    squares.add(dot(velocity, velocity));
-    ++count;
-  }
-};
-BR_HD inline CommonMotion operator+(CommonMotion a, const CommonMotion& b) {
-  a.x.add(b.x);
-  a.y.add(b.y);
-  a.squares.add(b.squares);
-  a.count += b.count;
-  return a;
-}
+/// What the corners of a triangle add to the common motion.
 struct MotionOf {
   View<const TriangleNodes> nodes;
   OwnedView owned;
   BR_HD CommonMotion operator()(Index t) const {
     CommonMotion motion;
     if (!owned(t)) return motion;
-    for (const NodeState& n : nodes[t].at) motion.add(n.velocity);
+    for (const NodeState& n : nodes[t].at) motion.add({n.velocity.x, n.velocity.y, 0.0});
     return motion;
   }
 };

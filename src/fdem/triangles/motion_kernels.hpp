@@ -1,9 +1,9 @@
 #pragma once
 // The motion of triangles: what acts on their corners, and how far they may go.
 
+#include "core/drift.hpp"
 #include "core/kernel.hpp"
 #include "fdem/triangles/columns.hpp"
-#include "fdem/triangles/drift.hpp"
 #include "fdem/triangles/triangles.hpp"
 
 namespace breccia::fdem {
@@ -91,7 +91,7 @@ struct UsedMargin {
   View<const Index> place;  ///< of each triangle in the other two; -1: a ghost, or it cannot touch
   View<const Corners> reference;
   View<const double> margin;
-  Drift drift;
+  PlaneDrift drift;
   Vec2 drifted;  ///< since the search  [m]
 
   /// @param time  of the positions  [s]

@@ -7,6 +7,7 @@
 
 #include "core/on_host.hpp"
 #include "dem/observe.hpp"
+#include "domain/drift.hpp"
 #include "run/method/dem_method.hpp"
 
 namespace breccia {
@@ -103,9 +104,10 @@ class DemFrame {
     f.point_fields.push_back(
         scalar("damage", [&](Index i) { return lost[static_cast<std::size_t>(i)]; }));
     f.point_fields.push_back(scalar("id", [&](Index i) { return e.id.data()[i]; }));
-    if (w_.domain.config.show)
-      f.point_fields.push_back(scalar(
-          "rank", [&](Index i) { return w_.domain.partition.owner(e.state.data()[i].position); }));
+    if (!w_.domain.config.show) return;
+    const Partition partition = partition_at(w_.domain, w_.travel.drift.velocity, w_.time);
+    f.point_fields.push_back(
+        scalar("rank", [&](Index i) { return partition.owner(e.state.data()[i].position); }));
   }
 
   // Links: kind 0 concrete, 1 steel, 2 interface; state 0 whole, 1 softened or yielded, 2 broken.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/on_host.hpp"
+#include "domain/drift.hpp"
 #include "domain/parcel.hpp"
 #include "exec/tasks.hpp"
 #include "fdem/observe.hpp"
@@ -88,19 +89,6 @@ Placed placed(const World& w, const Triangles& triangles, const Joints& joints, 
   return placed;
 }
 
-/// The partition as it lies now: it moves with the triangles.
-Partition partition_now(const World& w) {
-  Partition partition = w.domain.partition;
-  if (w.domain.single_rank()) return partition;
-  const Vec2 drift = w.reach.drift.velocity;
-  Domain moved;
-  moved.drifted = w.domain.drifted;
-  moved.drifted_until = w.domain.drifted_until;
-  moved.drift({drift.x, drift.y, 0.0}, w.time);
-  partition.move(moved.drifted);
-  return partition;
-}
-
 void put_point(Frame& f, std::size_t place, const NodeState& n) {
   f.position[place] = {n.position.x, n.position.y, 0.0};
   const double v[] = {n.velocity.x, n.velocity.y, 0.0};
@@ -148,7 +136,8 @@ void add_triangles(const World& w, const Triangles& t, const Own& own, const Pla
   field("material", "-", [&](Index i, std::size_t) { return t.material.data()[i]; });
   field("fragment", "-", [&](Index, std::size_t k) { return placed.fragment[k]; });
   if (!w.domain.config.show) return;
-  const Partition partition = partition_now(w);
+  const Vec2 drift = w.reach.drift.velocity;
+  const Partition partition = partition_at(w.domain, {drift.x, drift.y, 0.0}, w.time);
   field("rank", "-",
         [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
 }

@@ -79,6 +79,7 @@ struct DemSim {
     visit.fields("contacts", w.contacts);
     visit.fields("wall_contacts", w.wall_contacts);
     visit.fields("travel", w.travel);
+    visit.where_kept("travel.drift", w.travel.drift);  // files of before drifts have none
     for (std::size_t k = 0; k < w.walls.size(); ++k)
       visit("walls." + std::to_string(k), w.walls[k]);
   }

@@ -20,7 +20,8 @@ namespace breccia {
 
 /// The parts that differ between kinds of world. It may also have `step_rule(world)` and
 /// `tables(world)`, and has `each_stored(world, visit)`: the one list of what a checkpoint holds,
-/// as visit(name, value) and visit.fields(prefix, state). Beside the world are advance, held,
+/// as visit(name, value), visit.fields(prefix, state), and visit.where_kept(name, value) for what
+/// older files lack. Beside the world are advance, held,
 /// probe, read_own, find_unsound, state_hash, derive, share_out, collect and rebalance.
 template <class Sim>
 concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vector<Fact>& facts,
@@ -177,6 +178,10 @@ class SimMethod final : public Method {
     void operator()(const std::string& name, const T& value) const {
       to.value(name, value);
     }
+    template <class T>
+    void where_kept(const std::string& name, const T& value) const {
+      to.value(name, value);
+    }
     template <class State>
     void fields(const char* prefix, State&& state) const {
       to.fields(prefix, state);
@@ -187,6 +192,10 @@ class SimMethod final : public Method {
     template <class T>
     void operator()(const std::string& name, T& value) const {
       value = from.value<T>(name);
+    }
+    template <class T>
+    void where_kept(const std::string& name, T& value) const {
+      if (from.has(name)) value = from.value<T>(name);
     }
     template <class State>
     void fields(const char* prefix, State&& state) const {
