@@ -95,6 +95,17 @@ struct ReadProbe {
   }
 };
 
+struct CentreMotion {
+  static constexpr const char* name = "dem.centre_motion";
+  Kick kick;
+  View<Vec3> velocity, spin;
+  BR_HD void operator()(Index e) const {
+    const Kick::Result next = kick(e);
+    velocity[e] = kick.between(kick.state[e].velocity, next.velocity);
+    spin[e] = kick.between(kick.state[e].spin, next.spin);
+  }
+};
+
 /// Damage of links is added up in whole parts of a link, in any order.
 constexpr Index parts_of_a_link = 1024;
 
@@ -211,6 +222,16 @@ Unsound find_unsound(const World& w) {
       norm(host.state.data()[i].velocity - w.travel.drift.velocity), host.state.data()[i].radius,
       w.last_dt, w.parameters.time.safety);
   return {bad, message};
+}
+
+MotionNow motion_now(const World& w) {
+  const Index count = w.elements.size();
+  Buffer<Vec3> velocity(w.exec.space, count), spin(w.exec.space, count);
+  for_each(w.exec, count, CentreMotion{kick(w), velocity.view(), spin.view()});
+  MotionNow now;
+  copy_to(now.velocity, velocity);
+  copy_to(now.spin, spin);
+  return now;
 }
 
 std::vector<double> damage(const World& w) {

@@ -21,6 +21,12 @@ Unsound find_unsound(const World& w);
 /// Share of each element's initial cohesive and interface links that are damaged or broken.  [-]
 std::vector<double> damage(const World& w);
 
+/// Velocities and spins of all elements at the time of the positions; those of ghosts mean nothing.
+struct MotionNow {
+  std::vector<Vec3> velocity, spin;  ///<  [m/s], [rad/s]
+};
+MotionNow motion_now(const World& w);
+
 double probe(const World& w, const ProbeConfig& probe);
 /// What a probe reads of a rank's own elements; the sum over all ranks is what it reads of the
 /// whole.

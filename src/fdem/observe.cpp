@@ -61,30 +61,31 @@ struct ReadProbe {
   Quantity quantity;
   View<const Index> members;  ///< corners; empty: all
   View<const GlobalId> id;
-  View<const TriangleNodes> nodes;
-  View<const Corners> force;
-  View<const double> mass, damage;
+  Kick kick;  ///< velocities are read at the time of the positions
+  View<const double> damage;
 
   BR_HD double part(const Vec2& v) const { return quantity.axis == 0 ? v.x : v.y; }
   BR_HD double value(Index n) const {
-    const NodeState& node = nodes[n / 3].at[n % 3];
+    const Index t = n / 3, k = n % 3;
+    const NodeState& node = kick.nodes[t].at[k];
+    const Vec2 velocity = kick.between(node.velocity, kick(t).velocity[k]);
     switch (quantity.kind) {
       case Quantity::Kind::position:
         return part(node.position);
       case Quantity::Kind::velocity:
-        return part(node.velocity);
+        return part(velocity);
       case Quantity::Kind::force:
-        return part(force[n / 3].at[n % 3]);
+        return part(kick.force[t].at[k]);
       case Quantity::Kind::momentum:
-        return mass[n / 3] * part(node.velocity);
+        return kick.mass[t] * part(velocity);
       case Quantity::Kind::speed:
-        return norm(node.velocity);
+        return norm(velocity);
       case Quantity::Kind::damage:
-        return damage[n / 3];
+        return damage[t];
       case Quantity::Kind::kinetic:
         break;
     }
-    return 0.5 * mass[n / 3] * dot(node.velocity, node.velocity);
+    return 0.5 * kick.mass[t] * dot(velocity, velocity);
   }
   BR_HD Readings operator()(Index i) const {
     const Index n = members.size > 0 ? members[i] : i;
@@ -99,10 +100,22 @@ Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members
   if (quantity.kind == Quantity::Kind::damage) copy_to(lost, damage(w));
   const Triangles& t = w.triangles;
   return fold(w.exec, p.on.empty() ? 3 * t.size() : members.size(), Readings{},
-              ReadProbe{w.domain.owned_view(), quantity, members.view(), t.id.view(),
-                        t.nodes.view(), t.force.view(), t.mass.view(), std::as_const(lost).view()},
+              ReadProbe{w.domain.owned_view(), quantity, members.view(), t.id.view(), kick(w),
+                        std::as_const(lost).view()},
               Sum{});
 }
+
+/// Velocities of a triangle's corners at the time of the positions.
+struct CentreVelocities {
+  static constexpr const char* name = "fdem.centre_velocities";
+  Kick kick;
+  View<Corners> now;
+  BR_HD void operator()(Index t) const {
+    const Kick::Result next = kick(t);
+    for (int k = 0; k < 3; ++k)
+      now[t].at[k] = kick.between(kick.nodes[t].at[k].velocity, next.velocity[k]);
+  }
+};
 
 /// What rules a triangle's step, and the triangle.
 struct Ruling {
@@ -154,6 +167,15 @@ Unsound find_unsound(const World& w) {
       jacobian > 0.0 ? "too fast or not finite" : "inside out", jacobian, norm(v[0]), w.last_dt,
       w.parameters.time.safety);
   return {bad, message};
+}
+
+std::vector<Corners> velocities_now(World& w) {
+  Buffer<Corners> now(w.exec.space, w.triangles.size());
+  for_each(w.exec, now.size(), CentreVelocities{kick(w), now.view()});
+  if (!w.domain.single_rank()) w.domain.halo.refresh(w.exec, *w.domain.ranks, now);
+  std::vector<Corners> velocities;
+  copy_to(velocities, now);
+  return velocities;
 }
 
 std::vector<double> damage(const World& w) {

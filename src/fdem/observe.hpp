@@ -22,6 +22,10 @@ std::vector<double> damage(const World& w);
 /// Cauchy stress of each triangle, without viscosity.  [Pa]
 std::vector<Sym2> stresses(const World& w);
 
+/// Velocities of the corners at the time of the positions. On ranks all call it: ghosts follow
+/// their owners.  [m/s]
+std::vector<Corners> velocities_now(World& w);
+
 double probe(const World& w, const ProbeConfig& probe);
 /// What a probe reads of a rank's own triangles; the sum over all ranks is what it reads of the
 /// whole.

@@ -45,6 +45,10 @@ struct Kick {
   BR_HD static double opposed(double force, double velocity) {
     return velocity > 0.0 ? abs(force) : velocity < 0.0 ? -abs(force) : 0.0;
   }
+  /// A velocity at the time of the forces, from those half a step before and after.
+  BR_HD Vec2 between(const Vec2& before, const Vec2& after) const {
+    return span() > 0.0 ? before + (0.5 * last_dt / span()) * (after - before) : before;
+  }
   /// A triangle, and what acts on it.
   struct Given {
     TriangleNodes nodes;

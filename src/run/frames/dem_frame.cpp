@@ -77,11 +77,11 @@ class DemFrame {
     for (const Index i : own_) field.values.push_back(static_cast<float>(value(i)));
     return field;
   }
-  FrameField vector(const char* name, const char* unit, Vec3 ElementState::*member) const {
+  FrameField vector(const char* name, const char* unit, const std::vector<Vec3>& of) const {
     FrameField field{name, unit, 3, {}};
     field.values.reserve(3 * own_.size());
     for (const Index i : own_) {
-      const Vec3& v = elements_->state.data()[i].*member;
+      const Vec3& v = of[static_cast<std::size_t>(i)];
       for (const double c : {v.x, v.y, v.z}) field.values.push_back(static_cast<float>(c));
     }
     return field;
@@ -97,8 +97,9 @@ class DemFrame {
       f.radius.push_back(e.state.data()[i].radius);
       if (!w_.domain.single_rank()) part_.places.point.push_back(e.id.data()[i]);
     }
-    f.point_fields.push_back(vector("velocity", "m/s", &ElementState::velocity));
-    f.point_fields.push_back(vector("spin", "rad/s", &ElementState::spin));
+    const MotionNow now = motion_now(w_);
+    f.point_fields.push_back(vector("velocity", "m/s", now.velocity));
+    f.point_fields.push_back(vector("spin", "rad/s", now.spin));
     f.point_fields.push_back(scalar("group", [&](Index i) { return e.group.data()[i]; }));
     const std::vector<double> lost = damage(w_);
     f.point_fields.push_back(

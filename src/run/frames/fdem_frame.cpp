@@ -89,9 +89,9 @@ Placed placed(const World& w, const Triangles& triangles, const Joints& joints, 
   return placed;
 }
 
-void put_point(Frame& f, std::size_t place, const NodeState& n) {
-  f.position[place] = {n.position.x, n.position.y, 0.0};
-  const double v[] = {n.velocity.x, n.velocity.y, 0.0};
+void put_point(Frame& f, std::size_t place, const Vec2& position, const Vec2& velocity) {
+  f.position[place] = {position.x, position.y, 0.0};
+  const double v[] = {velocity.x, velocity.y, 0.0};
   for (std::size_t c = 0; c < 3; ++c)
     f.point_fields[0].values[3 * place + c] = static_cast<float>(v[c]);
 }
@@ -106,15 +106,15 @@ void each_of(std::size_t count, int threads, const Work& work) {
   });
 }
 
-void add_triangles(const World& w, const Triangles& t, const Own& own, const Placed& placed,
-                   Frame& f) {
+void add_triangles(const World& w, const Triangles& t, const std::vector<Corners>& velocity,
+                   const Own& own, const Placed& placed, Frame& f) {
   const std::size_t count = own.triangles.size();
   f.triangles.resize(3 * count);
   each_of(count, w.exec.threads, [&](std::size_t k) {
     const Index i = own.triangles[k];
     for (std::size_t c = 0; c < 3; ++c) {
       f.triangles[3 * k + c] = static_cast<std::int32_t>(3 * at(t.id.data()[i]) + c);
-      put_point(f, 3 * k + c, t.nodes.data()[i].at[c]);
+      put_point(f, 3 * k + c, t.nodes.data()[i].at[c].position, velocity[at(i)].at[c]);
     }
   });
   const auto field = [&](const char* name, const char* unit, const auto& value) {
@@ -142,8 +142,8 @@ void add_triangles(const World& w, const Triangles& t, const Own& own, const Pla
         [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
 }
 
-void add_lines(const Triangles& t, const Joints& j, const Own& own, const Placed& placed,
-               Frame& f) {
+void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& velocity,
+               const Own& own, const Placed& placed, Frame& f) {
   FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
   const View<const NodeState> nodes = by_number(t.nodes.view());
   std::size_t point = 3 * own.triangles.size();
@@ -154,7 +154,9 @@ void add_lines(const Triangles& t, const Joints& j, const Own& own, const Placed
     for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}}) {
       const NodeState &a = nodes[on_a], &b = nodes[on_b];
       f.lines.push_back(place++);
-      put_point(f, point++, {0.5 * (a.position + b.position), 0.5 * (a.velocity + b.velocity)});
+      const Vec2 &of_a = velocity[at(on_a / 3)].at[on_a % 3],
+                 &of_b = velocity[at(on_b / 3)].at[on_b % 3];
+      put_point(f, point++, 0.5 * (a.position + b.position), 0.5 * (of_a + of_b));
     }
     mode.values.push_back(static_cast<float>(mode_of(j, i)));
     double worst = j.stage.data()[i] == JointStage::broken ? 1.0 : 0.0;
@@ -182,7 +184,7 @@ FramePlaces places_of(const Triangles& t, const Own& own, const Placed& placed) 
 
 }  // namespace
 
-FramePart fdem_frame(const World& w, const World* mesh) {
+FramePart fdem_frame(World& w, const World* mesh) {
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
   const OnHost<Joints> joints(w.joints, w.exec.space);
   Own own;
@@ -201,8 +203,9 @@ FramePart fdem_frame(const World& w, const World* mesh) {
   const std::size_t points = 3 * own.triangles.size() + 2 * own.lines.size();
   f.position.resize(points);
   f.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});
-  add_triangles(w, *triangles, own, known, f);
-  add_lines(*triangles, *joints, own, known, f);
+  const std::vector<Corners> velocity = velocities_now(w);
+  add_triangles(w, *triangles, velocity, own, known, f);
+  add_lines(*triangles, *joints, velocity, own, known, f);
   if (!w.domain.single_rank()) part.places = places_of(*triangles, own, known);
   part.places.whole = w.domain.single_rank();
   part.places.triangles = known.triangles;

@@ -54,7 +54,7 @@ struct FdemSim {
     return fdem::energies(ledger, all).balance;
   }
   static const char* step_rule(const World& w) { return fdem::ruling_term(w); }
-  static FramePart frame(const World& w, const World* mesh) { return fdem_frame(w, mesh); }
+  static FramePart frame(World& w, const World* mesh) { return fdem_frame(w, mesh); }
 
   static void add_model(const World& w, std::vector<Fact>& facts) {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };

@@ -18,6 +18,6 @@ std::unique_ptr<Method> make_method(const fdem::Config& config, const fdem::Mode
 /// with mode, damage and time of break.
 /// Of a rank's part of a world, that part of the frame: all ranks make it at once.
 /// @param mesh  on rank 0 of several: a whole world, for what does not change
-FramePart fdem_frame(const fdem::World& w, const fdem::World* mesh = nullptr);
+FramePart fdem_frame(fdem::World& w, const fdem::World* mesh = nullptr);
 
 }  // namespace breccia

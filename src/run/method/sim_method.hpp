@@ -125,7 +125,7 @@ class SimMethod final : public Method {
     return world_.of_whole([](World& w) { return Sim::frame(w, nullptr).frame; });
   }
   FrameOutput frame_output(const FrameWish& wish) override {
-    const World& w = world_.part();
+    World& w = world_.part();
     const int threads = w.exec.threads;
     if (single_rank()) return breccia::frame_output(Sim::frame(w, nullptr).frame, wish, threads);
     FrameOutput output;
