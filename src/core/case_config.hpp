@@ -39,11 +39,13 @@ struct TimeConfig {
 
 /// [output]
 struct OutputConfig {
-  int frames = 20;       ///< frames over the whole run, besides the one at the start  [-]
-  double history = 0.0;  ///< time between history rows; 0: 1000 rows over the run  [s]
-  bool fields = true;    ///< write ParaView files
-  bool pictures = true;  ///< write a PNG a frame
-  bool report = false;   ///< write report.html at the end
+  int frames = 20;          ///< frames over the whole run, besides the one at the start  [-]
+  double history = 0.0;     ///< time between history rows; 0: 1000 rows over the run  [s]
+  bool fields = true;       ///< write ParaView files
+  bool pictures = true;     ///< write a PNG a frame
+  bool report = false;      ///< write report.html at the end
+  bool step_times = false;  ///< write steps.csv
+  std::vector<double> picture_steps;  ///< steps since the start of the case  [-]
   std::string color = "damage";
   std::string view = "iso";
   int width = 1280, height = 960;
@@ -56,6 +58,12 @@ struct OutputConfig {
     key("fields", fields, "write the frames as ParaView files");
     key("pictures", pictures, "write one PNG picture a frame");
     key("report", report, "write report.html when the run is done, as `breccia report` does");
+    key("step_times", step_times,
+        "write steps.csv, a row a step: its simulated time, the wall time it took, searches for "
+        "contacts in it; a GPU then computes one step at a time");
+    key("picture_steps", picture_steps, "-", not_negative,
+        "steps of which a picture is drawn, as pictures/step_<number>.png, besides those of "
+        "frames");
     key("color", color, "field that colours the pictures");
     key("view", view, OneOf{"iso", "x", "y", "z"}, "camera of the pictures");
     key("width", width, "-", Range{64, 16384}, "width of the pictures in pixels");

@@ -103,7 +103,7 @@ Run::Run(Method& method, const RunPlan& plan, const ResultFolder* folder, const 
 void Run::go_on_from(const RunState& former) {
   dt_min_ = former.dt_min;
   dt_max_ = former.dt_max;
-  recorder_.resume(former.record, former.time);
+  recorder_.resume(former.record, former.time, former.step);
   // A run that was cut short goes on to where it was sent; one that got there goes on to the end of
   // its case.
   const bool cut_short = former.time < former.end_time && former.step < former.end_steps;
@@ -155,7 +155,7 @@ void Run::start() {
     for (const std::string& warning : warnings_) log_->warn("setup", method_.steps(), warning);
   });
   method_.verify();
-  if (recorder_.due(method_.time())) observe();
+  if (recorder_.due(method_.time(), method_.steps())) observe();
   broken_ = broken_text(now.facts);
   progress_.start(standing());
 }
@@ -164,7 +164,7 @@ void Run::start() {
 int Run::advance() {
   while (!finished()) {
     const double spent = take_steps();
-    if (recorder_.due(method_.time())) observe();
+    if (recorder_.due(method_.time(), method_.steps())) observe();
     const Decision decision = decide(spent);
     steps_at_once_ = decision.steps_at_once;
     if (decision.signal != 0) return decision.signal;
@@ -196,19 +196,21 @@ Run::Decision Run::decide(double spent) const {
 
 /// The next moment at which someone looks at the state, or at which ranks decide.
 StopAt Run::next_stop() const {
-  const std::int64_t next_look = (method_.steps() / verify_every + 1) * verify_every;
+  const std::int64_t now = method_.steps(), look = (now / verify_every + 1) * verify_every;
   StopAt stop{std::min(end_time_, recorder_.next()),
-              std::min({end_steps_, next_look, checkpoints_.next_step(method_.steps())})};
-  if (plan_.ranks != nullptr) stop.step = std::min(stop.step, method_.steps() + steps_at_once_);
+              std::min({end_steps_, look, checkpoints_.next_step(now), recorder_.next_step(now)})};
+  if (plan_.ranks != nullptr) stop.step = std::min(stop.step, now + steps_at_once_);
   return stop;
 }
 
 /// Returns the wall time that they took.  [s]
 double Run::take_steps() {
+  const std::int64_t searches = method_.searches();
   const Clock::time_point begin = Clock::now();
   const Advanced taken = method_.advance(next_stop());
   const double spent = seconds_since(begin);
   if (taken.steps == 0) return spent;
+  recorder_.note_step({method_.steps(), method_.time(), spent, method_.searches() - searches});
   step_times_.add(spent / static_cast<double>(taken.steps), taken.steps);
   loop_ += spent;
   dt_min_ = dt_min_ > 0.0 ? std::min(dt_min_, taken.dt_min) : taken.dt_min;

@@ -44,6 +44,7 @@ class Method {
   virtual std::int64_t steps() const = 0;  ///< done so far
   virtual double time() const = 0;         ///< simulated  [s]
   virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]
+  virtual std::int64_t searches() const { return 0; }  ///< for contacts so far
 
   /// What set-up found doubtful though it can be run, as sentences; on rank 0.
   virtual std::vector<std::string> warnings() { return {}; }

@@ -58,6 +58,7 @@ class SimMethod final : public Method {
     const World& w = world_.part();
     return w.step > 0 ? w.last_dt : w.next_dt;
   }
+  std::int64_t searches() const override { return world_.part().searches; }
   std::vector<std::string> warnings() override { return world_.mesh().warnings; }
   std::string step_rule() override {
     if constexpr (requires(const World& w) { Sim::step_rule(w); })

@@ -27,7 +27,8 @@ class History {
   /// Opens the file to append; a new one gets its two head lines.
   History(const std::string& path, const std::vector<ProbeConfig>& probes);
 
-  /// Rows of later steps than `step` go: a run that goes on from there writes them anew.
+  /// Rows of later steps than `step` go, of this file or another one that begins so: a run that
+  /// goes on from there writes them anew.
   static void cut_to(const std::string& path, std::int64_t step);
 
   void write(const Sample& sample);

@@ -104,10 +104,13 @@ Recorder::Recorder(const CaseConfig& config, Communicator* ranks)
       rows_(row_schedule(config)),
       frames_(frame_schedule(config)),
       watch_(config.energy) {
+  for (const double step : config_.output.picture_steps)
+    picture_steps_.push_back(static_cast<std::int64_t>(std::min(std::ceil(step), 9e15)));
+  std::sort(picture_steps_.begin(), picture_steps_.end());
   for (const ProbeConfig& probe : config_.probes) state_.probes.push_back(fresh_range(probe.name));
 }
 
-void Recorder::resume(const RecordState& state, double time) {
+void Recorder::resume(const RecordState& state, double time, std::int64_t step) {
   state_ = state;
   watch_ = EnergyWatch(config_.energy, state.unbalanced);
   state_.probes.resize(config_.probes.size());
@@ -116,22 +119,41 @@ void Recorder::resume(const RecordState& state, double time) {
   if (state_.row_step >= 0) rows_.pass(time);
   if (state_.frame_step >= 0) frames_.pass(time);
   frame_count_ = state_.frames;
-  resumed_ = true;
+  resumed_from_ = step;
 }
 
 void Recorder::open(const ResultFolder& folder, Log& log) {
   log_ = &log;
   pictures_ = folder.file("pictures");
   const std::string history = folder.file("history.csv");
-  if (resumed_) History::cut_to(history, state_.row_step);
+  if (resumed_from_) History::cut_to(history, state_.row_step);
   history_.emplace(history, config_.probes);
+  if (config_.output.step_times) {
+    const std::string steps = folder.file("steps.csv");
+    if (resumed_from_) History::cut_to(steps, *resumed_from_);
+    steps_.emplace(steps);
+  }
   if (config_.output.fields && state_.frames > 0)
     series_ = ParaviewSeries::resumed(folder.path(), state_.frame_time);
   else if (config_.output.fields)
     series_.emplace(folder.path());
-  if (!config_.output.pictures) return;
+  if (!config_.output.pictures && picture_steps_.empty()) return;
   make_folder(pictures_);
-  if (resumed_) drop_pictures(pictures_, state_.frames);
+  if (resumed_from_ && config_.output.pictures) drop_pictures(pictures_, state_.frames);
+}
+
+bool Recorder::is_picture_step(std::int64_t step) const {
+  return std::binary_search(picture_steps_.begin(), picture_steps_.end(), step);
+}
+
+std::int64_t Recorder::next_step(std::int64_t step) const {
+  if (config_.output.step_times) return step + 1;
+  const auto next = std::upper_bound(picture_steps_.begin(), picture_steps_.end(), step);
+  return next == picture_steps_.end() ? std::numeric_limits<std::int64_t>::max() : *next;
+}
+
+void Recorder::note_step(const StepRow& row) {
+  if (steps_) steps_->write(row);
 }
 
 void Recorder::record(Method& method, Background& background) {
@@ -158,6 +180,19 @@ void Recorder::record(Method& method, Background& background) {
     state_.frame_time = time;
     state_.frames = frame_count_;
   }
+  if (is_picture_step(method.steps())) {
+    background.finish();  // the first frame gives the extent
+    write_picture_of_step(method);
+  }
+}
+
+/// A picture besides those of frames; a run that is resumed draws it anew.
+void Recorder::write_picture_of_step(Method& method) {
+  const FrameOutput output = method.frame_output({false, picture_options()});
+  on_first(ranks_, [&] {
+    if (!state_.extent) state_.extent = output.extent;
+    write_png(fmt::format("{}/step_{}.png", pictures_, method.steps()), output.png);
+  });
 }
 
 void Recorder::record_last(Method& method, Background& background) {
@@ -173,6 +208,7 @@ void Recorder::judge_end(const Method& method, const EnergyBalance& energy) cons
 void Recorder::sync() {
   if (series_) series_->finish();
   history_->sync();
+  if (steps_) steps_->sync();
 }
 
 void Recorder::write_row(Method& method) {
@@ -206,18 +242,21 @@ void Recorder::write_frame(Method& method, Background& background) {
   ++frame_count_;
 }
 
+RenderOptions Recorder::picture_options() const {
+  RenderOptions options;
+  options.field = config_.output.color;
+  options.view = config_.output.view;
+  options.width = config_.output.width;
+  options.height = config_.output.height;
+  options.extent = state_.extent;
+  if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
+  options.title = config_.title;
+  return options;
+}
+
 void Recorder::write_frame_of(Method& method, std::int64_t number) {
   FrameWish wish{config_.output.fields, std::nullopt};
-  if (config_.output.pictures) {
-    RenderOptions& options = wish.picture.emplace();
-    options.field = config_.output.color;
-    options.view = config_.output.view;
-    options.width = config_.output.width;
-    options.height = config_.output.height;
-    options.extent = state_.extent;
-    if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
-    options.title = config_.title;
-  }
+  if (config_.output.pictures) wish.picture = picture_options();
   const FrameOutput output = method.frame_output(wish);
   on_first(ranks_, [&] {
     if (series_) series_->write(output.files);

@@ -16,6 +16,7 @@
 #include "run/results/history.hpp"
 #include "run/results/log.hpp"
 #include "run/results/result_folder.hpp"
+#include "run/results/step_table.hpp"
 #include "run/results/summary.hpp"
 
 namespace breccia {
@@ -58,17 +59,21 @@ class Recorder {
  public:
   explicit Recorder(const CaseConfig& config, Communicator* ranks);
   /// Goes on with an older record, which had come to that state.
-  /// @param time  then  [s]
-  void resume(const RecordState& state, double time);
+  /// @param time, step  then  [s], [-]
+  void resume(const RecordState& state, double time, std::int64_t step);
   /// Opens the files of a new record, or cuts those of an older one to its state. Rank 0 only.
   void open(const ResultFolder& folder, Log& log);
 
-  /// Whether a row or a frame is due. Cheap: asked every step.
-  bool due(double time) const { return time >= next(); }
+  /// Whether a row, a frame or a picture is due. Cheap: asked every step.
+  bool due(double time, std::int64_t step) const { return time >= next() || is_picture_step(step); }
   /// When the next row or frame is due.  [s]
   double next() const { return std::min(rows_.next(), frames_.next()); }
-  /// Writes the rows and frames that are due; frames in the background where the method can be
-  /// looked at there.
+  /// The step after this one at which something is due, whatever the time.
+  std::int64_t next_step(std::int64_t step) const;
+  /// A row of steps.csv, if it is asked for.
+  void note_step(const StepRow& row);
+  /// Writes the rows, pictures and frames that are due; frames in the background where the method
+  /// can be looked at there.
   void record(Method& method, Background& background);
   /// Writes a row and a frame of the last state, if the schedule did not ask for them.
   void record_last(Method& method, Background& background);
@@ -90,6 +95,9 @@ class Recorder {
   void write_row(Method& method);
   void write_frame(Method& method, Background& background);
   void write_frame_of(Method& method, std::int64_t number);
+  void write_picture_of_step(Method& method);
+  RenderOptions picture_options() const;
+  bool is_picture_step(std::int64_t step) const;
   bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
 
   CaseConfig config_;
@@ -99,9 +107,11 @@ class Recorder {
   Log* log_ = nullptr;
   std::optional<History> history_;
   std::optional<ParaviewSeries> series_;
+  std::optional<StepTable> steps_;
   Schedule rows_, frames_;
+  std::vector<std::int64_t> picture_steps_;  ///< ascending
   std::int64_t frame_count_ = 0;
-  bool resumed_ = false;
+  std::optional<std::int64_t> resumed_from_;  ///< a step
   std::optional<EnergyBalance> last_energy_;
   EnergyWatch watch_;
 };

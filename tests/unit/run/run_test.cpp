@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
 #include <thread>
 
 #include "exec/error.hpp"
@@ -110,6 +111,42 @@ TEST(Run, InterruptedAndResumedLeavesWhatAnUnbrokenRunLeaves) {
     for (const char* key : {"status", "steps", "time", "dt", "state_hash", "energy", "probe"})
       EXPECT_EQ(resumed[key], whole[key]) << key << " after step " << step;
     EXPECT_EQ(read_whole_file(path + "/history.csv"), history);
+  }
+}
+
+TEST(Run, WritesARowAStepAndPicturesOfSteps) {
+  const ScratchFolder scratch;
+  RunPlan plan = fake_plan();
+  plan.config.output.step_times = true;
+  plan.config.output.picture_steps = {0.0, 31.0, 31.5, 150.0, 1e9};
+  plan.config.output.width = plan.config.output.height = 64;
+  run_fake(plan, scratch / "whole");
+  Trouble trouble;
+  trouble.signal_at = 77;
+  run_fake(plan, scratch / "cut", trouble);
+  resume_fake(plan, scratch / "cut");
+  run_fake(fake_plan(), scratch / "calm");
+  EXPECT_FALSE(fs::exists(scratch / "calm/steps.csv"));
+  for (const char* name : {"whole", "cut"}) {
+    const std::string path = scratch / name;
+    EXPECT_EQ(summary_of(path)["state_hash"], summary_of(scratch / "calm")["state_hash"]);
+    std::ifstream rows(path + "/steps.csv");
+    std::string line;
+    std::getline(rows, line);
+    EXPECT_EQ(line, "step,time,wall,searches");
+    std::getline(rows, line);
+    EXPECT_EQ(line, "-,s,s,-");
+    std::int64_t step = 0;
+    for (; std::getline(rows, line); ++step)
+      EXPECT_TRUE(line.starts_with(std::to_string(step + 1) + ",")) << line;
+    EXPECT_EQ(summary_of(path)["steps"], step);
+    std::set<std::string> pictures;
+    for (const auto& entry : fs::directory_iterator(path + "/pictures"))
+      pictures.insert(entry.path().filename());
+    EXPECT_EQ(pictures,
+              (std::set<std::string>{"step_0.png", "step_150.png", "step_31.png", "step_32.png"}));
+    EXPECT_EQ(read_whole_file(path + "/pictures/step_150.png"),
+              read_whole_file(scratch / "whole/pictures/step_150.png"));
   }
 }
 
