@@ -54,6 +54,7 @@ struct Parameters {
   ContactLaw contact{};
   double contact_step = no_limit;  ///< that resolves a contact of two like elements  [s]
   Index materials = 0;
+  std::vector<std::uint8_t> bars;  ///< by material: 1 where its elements are bars
 };
 
 struct World : LinkSets {

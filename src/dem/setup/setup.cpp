@@ -287,6 +287,8 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   w.parameters.search = config.search;
   w.parameters.gravity = config.gravity;
   w.parameters.local_damping = config.local_damping;
+  for (const MaterialConfig& m : config.materials)
+    w.parameters.bars.push_back(m.law == "steel" ? 1 : 0);
   const Prescribed held = prescribed(config, model);
   set_elements(w, model, held);
   w.each_set([&](auto& set) { set_links(set, config, model); });

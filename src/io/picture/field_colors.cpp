@@ -255,6 +255,26 @@ std::vector<Color> category_colors(const Frame& frame, const Selected& selected,
   return colors;
 }
 
+/// Reinforcement keeps its own colour, and shows through the concrete of the main body: a little
+/// where that is whole, most of it where it is damaged. Of the spheres' own field, which parts of a
+/// frame on ranks have, too.
+void show_bars(const Frame& frame, const std::vector<std::size_t>& groups, const GroupTints& tints,
+               const std::vector<float>& damage, Coloring& coloring) {
+  constexpr float through_whole = 0.25F, through_damaged = 0.75F;
+  const FrameField* field = field_named(frame.point_fields, "bar");
+  if (field == nullptr || field->values.size() != damage.size()) return;
+  coloring.bars.resize(damage.size());
+  coloring.veil.resize(damage.size(), 0.0F);
+  for (std::size_t i = 0; i < damage.size(); ++i) {
+    coloring.bars[i] = field->values[i] > 0.0F;
+    if (coloring.bars[i])
+      coloring.points[i] = tints.tint[groups[i]];
+    else if (groups[i] == tints.main)
+      coloring.veil[i] = through_whole + (through_damaged - through_whole) *
+                                             std::clamp(2.0F * damage[i], 0.0F, 1.0F);
+  }
+}
+
 /// Damage tints every body from its own colour: only the main one starts as light concrete.
 void tint_bodies(const Frame& frame, const std::vector<float>& damage, Coloring& coloring) {
   const std::vector<std::size_t> groups = point_groups(frame);
@@ -265,6 +285,7 @@ void tint_bodies(const Frame& frame, const std::vector<float>& damage, Coloring&
     coloring.points[i] = blend(tints.tint[groups[i]], coloring.points[i], share);
   }
   coloring.legend.swatches = tints.others;
+  show_bars(frame, groups, tints, damage, coloring);
 }
 
 /// Colours for what the field does not colour: bodies by group, lines by kind, triangles pale.

@@ -33,6 +33,8 @@ struct Coloring {
   std::vector<Color> points, lines, triangles;
   bool of_lines = false;           ///< the field is one of the lines
   std::vector<bool> broken_lines;  ///< not to be drawn; empty: all are
+  std::vector<bool> bars;          ///< points that show through others; empty: none
+  std::vector<float> veil;         ///< by point, how much of a bar behind it shows: 0 to 1
   Legend legend;
 };
 

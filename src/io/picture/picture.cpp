@@ -59,6 +59,34 @@ void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scen
   draw_spheres(canvas, spheres, scene.clip, threads);
 }
 
+/// Reinforcement that others hide, drawn over them as if they were veils.
+void draw_bars(Image& image, const Canvas& canvas, const Coloring& coloring, const Scene& scene,
+               float relief, int threads) {
+  std::vector<ScreenSphere> bars(coloring.bars.size());
+  for (std::size_t i = 0; i < bars.size(); ++i)
+    if (coloring.bars[i]) bars[i] = scene.looks[i].sphere;
+  Canvas behind(image.width, image.height);
+  draw_spheres(behind, bars, scene.clip, threads);
+  Image own = shade(behind, scene.looks, scene.clip, relief, threads);
+  smooth_outlines(own, behind, scene.looks, threads);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::size_t at = canvas.row(y) + static_cast<std::size_t>(x);
+      const std::int32_t front = canvas.item[at];
+      if (behind.item[at] == Canvas::none || front == Canvas::none || front == behind.item[at])
+        continue;
+      const auto item = static_cast<std::size_t>(front);
+      const float veil = item < coloring.veil.size() ? coloring.veil[item] : 0.0F;
+      const std::size_t pixel =
+          3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+               static_cast<std::size_t>(x));
+      for (std::size_t c = pixel; c < pixel + 3; ++c) {
+        const float here = image.rgb[c], there = own.rgb[c];
+        image.rgb[c] = static_cast<std::uint8_t>(here + veil * (there - here) + 0.5F);
+      }
+    }
+}
+
 /// work(i) for every i in [0, count), a few thousand by one thread at a time.
 template <class Work>
 void for_chunks(int threads, std::size_t count, const Work& work) {
@@ -207,9 +235,11 @@ Image render(const Frame& frame, const RenderOptions& options, int threads) {
   if (links) draw_lines(canvas, frame, coloring, scene, threads);
   draw_triangles(canvas, frame, coloring.triangles, scene, threads);
 
-  Image image =
-      shade(canvas, scene.looks, scene.clip, relief_of(frame, scene.camera.resolution), threads);
+  const float relief = relief_of(frame, scene.camera.resolution);
+  Image image = shade(canvas, scene.looks, scene.clip, relief, threads);
   smooth_outlines(image, canvas, scene.looks, threads);
+  if (!coloring.bars.empty() && options.show_spheres && !frame.radius.empty())
+    draw_bars(image, canvas, coloring, scene, relief, threads);
   const int scale = text_scale(options);
   draw_title(image, options.title, frame, scale);
   draw_legend(image, coloring.legend, scale);

@@ -104,6 +104,10 @@ class DemFrame {
     const std::vector<double> lost = damage(w_);
     f.point_fields.push_back(
         scalar("damage", [&](Index i) { return lost[static_cast<std::size_t>(i)]; }));
+    const std::vector<std::uint8_t>& bars = w_.parameters.bars;
+    if (std::find(bars.begin(), bars.end(), 1) != bars.end())
+      f.point_fields.push_back(scalar(
+          "bar", [&](Index i) { return bars[static_cast<std::size_t>(e.material.data()[i])]; }));
     f.point_fields.push_back(scalar("id", [&](Index i) { return e.id.data()[i]; }));
     if (!w_.domain.config.show) return;
     const Partition partition = partition_at(w_.domain, w_.travel.drift.velocity, w_.time);

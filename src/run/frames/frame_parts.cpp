@@ -115,7 +115,8 @@ class Sight {
               const std::string& shown) {
     for (const FrameField& field : own) {
       const bool wanted = field.name == shown || shown.starts_with(field.name + "_") ||
-                          field.name == "group" || field.name == "kind" || field.name == "state";
+                          field.name == "group" || field.name == "bar" || field.name == "kind" ||
+                          field.name == "state";
       if (!wanted) continue;
       if (whole != nullptr) whole->push_back({field.name, field.unit, field.components, {}});
       column(carrier, field.values, whole ? &whole->back().values : nullptr,

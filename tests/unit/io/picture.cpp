@@ -318,6 +318,31 @@ TEST(picture, damage_reddens_concrete_and_steel_stays_blue) {
   EXPECT_GT(blue, 60);
 }
 
+TEST(picture, bars_show_through_concrete_the_more_it_is_damaged) {
+  // Seen from the front: a bar behind a whole sphere, another behind a damaged one.
+  Frame frame = spheres({{-0.5, -0.5, 0}, {0.3, -0.5, 0}, {-0.5, 0.2, 0}, {0.3, 0.2, 0}}, 0.2);
+  frame.radius[2] = frame.radius[3] = 0.1;
+  frame.point_fields = {{"group", "-", 1, {0, 0, 1, 1}},
+                        {"damage", "-", 1, {0.0F, 1.0F, 0.9F, 0.9F}}};
+  RenderOptions options = cube_options();
+  options.field = "damage";
+  options.view = "y";
+  const Image hidden = render(frame, options);
+  frame.point_fields.push_back({"bar", "-", 1, {0, 0, 1, 1}});
+  const Image shown = render(frame, options);
+  // How much bluer each half of the picture became.
+  double bluer[2] = {};
+  for (int y = 0; y < shown.height; ++y)
+    for (int x = 0; x < shown.width; ++x) {
+      const Pixel before = pixel(hidden, x, y), now = pixel(shown, x, y);
+      bluer[x < shown.width * 2 / 5 ? 0 : 1] +=
+          std::max(0, (now[2] - now[0]) - (before[2] - before[0]));
+    }
+  EXPECT_GT(bluer[0], 1000.0);
+  EXPECT_GT(bluer[1], 2.0 * bluer[0]);
+  EXPECT_EQ(shown.rgb, render(frame, options, 3).rgb);
+}
+
 TEST(picture, a_few_fragments_that_flew_far_do_not_shrink_the_rest) {
   Frame frame = test::slab_scene();
   const Extent extent = bulk_extent(frame);
