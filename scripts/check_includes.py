@@ -21,7 +21,8 @@ ALLOWED = {
     "prepare": {"exec", "math", "core", "io", "dem", "fdem"},
     "run": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare"},
     "report": {"exec", "math", "core", "io"},
-    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run", "report"},
+    "laboratory": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run", "report"},
+    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run", "report", "laboratory"},
 }
 ALLOWED["bench"] = set(ALLOWED)
 LONGEST = 500

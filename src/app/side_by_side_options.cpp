@@ -1,0 +1,75 @@
+#include "app/side_by_side_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <memory>
+
+#include "exec/device.hpp"
+#include "exec/error.hpp"
+#include "io/harmless.hpp"
+#include "run/machine/memory_plan.hpp"
+
+namespace breccia::app {
+
+std::string count_problem(const std::string& text) {
+  constexpr int most = 10'000;
+  int count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  const bool good = error == std::errc{} && end == text.data() + text.size();
+  return good && count >= 1 && count <= most
+             ? ""
+             : fmt::format("{} is no count from 1 to {}", text, most);
+}
+
+laboratory::Workers SideBySideOptions::workers(std::size_t runs, double bytes) const {
+  laboratory::Workers workers = laboratory::workers_for(jobs, runs, bytes);
+  workers.force = force;
+  workers.allow_scripts = allow_scripts;
+  if (device == "cpu") return workers;
+  if (device == "cuda") {
+    const int there = device_count();
+    for (int k = 0; k < there; ++k) workers.devices.push_back(fmt::format("cuda:{}", k));
+    if (there == 0)
+      throw DeviceError("--device cuda: there is no GPU, or this program has no CUDA");
+  } else {
+    workers.devices = {device};
+  }
+  if (jobs == 0) workers.jobs = std::min(workers.jobs, static_cast<int>(workers.devices.size()));
+  return workers;
+}
+
+void add_side_by_side_options(CLI::App& command, SideBySideOptions& options) {
+  command.add_option("--jobs", options.jobs, "runs at a time; default: as many as fit")
+      ->type_name("N")
+      ->check([](const std::string& text) { return count_problem(text); });
+  command.add_option("--device", options.device, "cpu, cuda (all GPUs in turn) or cuda:N")
+      ->type_name("NAME");
+  command.add_flag("--force", options.force, "compute finished runs anew");
+  command.add_flag("--allow-scripts", options.allow_scripts,
+                   "let gmsh run .geo files; only for trusted cases");
+}
+
+double run_bytes(const Case& read) {
+  return std::visit([](const auto& config) { return memory_plan(config).run_bytes; }, read.config);
+}
+
+std::function<void(std::size_t, const laboratory::FinishedRun&)> tell_of(
+    const std::vector<laboratory::PlannedRun>& runs) {
+  const auto ended = std::make_shared<std::size_t>(0);
+  return [ended, &runs](std::size_t run, const laboratory::FinishedRun& result) {
+    const std::string state = result.kept             ? "kept"
+                              : result.exit_code == 0 ? "done"
+                              : result.exit_code == 9 ? "check failed"
+                                                      : "failed";
+    std::string line = fmt::format("{:>5} of {}  {:<12} {:>7.1f} s  {}", ++*ended, runs.size(),
+                                   state, result.wall, runs[run].name);
+    if (!result.message.empty()) line += ": " + result.message;
+    fmt::print("{}\n", harmless(line));
+    std::fflush(stdout);
+  };
+}
+
+}  // namespace breccia::app

@@ -1,0 +1,123 @@
+// breccia sweep CASE: a case over values of its keys and over seeds, side by side.
+
+#include "laboratory/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "app/case.hpp"
+#include "app/commands.hpp"
+#include "app/side_by_side_options.hpp"
+#include "io/harmless.hpp"
+#include "io/whole_file.hpp"
+#include "run/machine/memory_plan.hpp"
+#include "run/results/result_folder.hpp"
+
+namespace breccia::app {
+namespace {
+
+namespace lab = laboratory;
+
+struct SweepCommand {
+  std::string path, folder;
+  std::vector<std::string> over, measures, overrides;
+  int seeds = 1;
+  SideBySideOptions options;
+
+  int execute() const {
+    const Case base = load_case(path, overrides);
+    if (!options.allow_scripts) refuse_scripts(base);
+    std::vector<lab::SweepAxis> axes;
+    for (const std::string& text : over) axes.push_back(lab::sweep_axis(text));
+    const std::string out = folder.empty() ? "out/" + base.name + "_sweep" : folder;
+    std::vector<lab::SweepRow> rows;
+    std::vector<lab::PlannedRun> runs;
+    double bytes = 0.0;
+    for (const lab::SweepPoint& point : lab::sweep_points(axes, base.common().seed, seeds)) {
+      lab::PlannedRun run;
+      run.name = point.name(axes);
+      run.case_path = path;
+      run.overrides = overrides;
+      for (const std::string& text : point.overrides(axes)) run.overrides.push_back(text);
+      const Case read = load_case(path, run.overrides);
+      run.digest = read.digest;
+      run.folder = out + "/runs/" + lab::run_folder_name(run.name, run.digest);
+      bytes = std::max(bytes, run_bytes(read));
+      rows.push_back({point, run.folder, {}, {}});
+      runs.push_back(run);
+    }
+    const lab::Workers workers = options.workers(runs.size(), bytes);
+    make_folder(out);
+    fmt::print("{}: {} runs, {} at a time\n", harmless(base.name), runs.size(), workers.jobs);
+    const auto results = lab::run_side_by_side(runs, workers, tell_of(runs));
+    int exit_code = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      rows[k].run = results[k];
+      if (results[k].complete()) rows[k].result = lab::read_result(rows[k].folder);
+      if (exit_code == 0 || exit_code == 9)
+        exit_code = results[k].exit_code != 0 ? std::abs(results[k].exit_code) : exit_code;
+    }
+    write(lab::SweepTable(axes, rows, measures), out, base.name);
+    return exit_code;
+  }
+
+  static void write(const lab::SweepTable& table, const std::string& out, const std::string& name) {
+    replace_file(out + "/sweep.csv", table.csv());
+    replace_file(out + "/sweep.md", table.markdown("Sweep of " + name));
+    replace_file(out + "/sweep.svg", svg_of(table.plots(), 2));
+    for (const lab::SweepTable::Group& group : table.groups()) {
+      if (!group.values.empty())
+        fmt::print("{}\n", harmless(fmt::format("{}", fmt::join(group.values, ", "))));
+      for (std::size_t m = 0; m < table.measures().size(); ++m)
+        fmt::print("  {:<44} {}\n", harmless(table.measures()[m].substr(0, 44)),
+                   lab::spread_text(group.spreads[m]));
+    }
+    fmt::print("table {0}/sweep.csv, {0}/sweep.md  plot {0}/sweep.svg\n", harmless(out));
+  }
+};
+
+}  // namespace
+
+void add_sweep(CLI::App& program, int& exit_code) {
+  const auto sweep = std::make_shared<SweepCommand>();
+  CLI::App* const command =
+      program.add_subcommand("sweep", "run a case over values of keys and seeds, side by side");
+  command->add_option("CASE", sweep->path, "a case file, or a folder with case.toml")->required();
+  const auto each = [&](const char* name, std::vector<std::string>& values, const char* help,
+                        const char* type) {
+    command->add_option(name, values, help)
+        ->type_name(type)
+        ->take_all()
+        ->expected(1)
+        ->allow_extra_args(false);
+  };
+  each("--over", sweep->over, "values of a key; may be repeated", "KEY=VALUES");
+  command->add_option("--seeds", sweep->seeds, "seeds for each value; default: 1")
+      ->type_name("N")
+      ->check([](const std::string& text) { return count_problem(text); });
+  each("--measure", sweep->measures, "a number to compare; may be repeated", "PATH");
+  each("--set", sweep->overrides, "override a key in all runs", "KEY=VALUE");
+  command->add_option("-o,--out", sweep->folder, "default: out/<case name>_sweep")
+      ->type_name("DIR");
+  add_side_by_side_options(*command, sweep->options);
+  command->footer(
+      "Values are a list, as in --over seed=1,2,5, or N values at even distances, as\n"
+      "in --over 'body.rock.velocity=[0, 0, -10]..[0, 0, -40]:4'. Several --over give\n"
+      "every combination; --seeds takes seeds from that of the case on.\n"
+      "\n"
+      "PATH is a number of summary.json such as fracture.fragments, the name of a\n"
+      "check, or probe.NAME.last, .min, .max or .peak. Without any: checks, what broke\n"
+      "and probes.\n"
+      "\n"
+      "Each run has a folder below DIR/runs. Called again, the command keeps finished\n"
+      "runs of the same completed case and goes on with interrupted ones. DIR/sweep.csv\n"
+      "has a line for each run, sweep.md means and deviations, sweep.svg the plots.\n"
+      "A run that fails is in the tables, and the exit code is that of the first one.");
+  command->callback([sweep, &exit_code] { exit_code = sweep->execute(); });
+}
+
+}  // namespace breccia::app

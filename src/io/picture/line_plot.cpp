@@ -1,0 +1,211 @@
+#include "io/picture/line_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/round_numbers.hpp"
+
+namespace breccia {
+namespace {
+
+constexpr int panel_width = 480, panel_height = 340;         // pixels
+constexpr int left = 68, right = 16, top = 34, bottom = 48;  // pixels around the axes
+constexpr std::size_t most_points = 1500;                    // of a curve that are drawn
+constexpr std::array colors{"#1f5fa8", "#c8502b", "#2f8f4e", "#7d4aa0",  // legible on white
+                            "#b58a00", "#00838f", "#8a4b2a", "#5a5a5a"};
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text)
+    result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return result;
+}
+
+/// The values that an axis shows.
+struct Span {
+  double low = 1e300, high = -1e300;
+
+  void add(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  bool empty() const { return low > high; }
+  ValueRange widened() const {
+    if (high - low > 1e-9 * std::max(std::abs(low), std::abs(high)))
+      return {low - 0.03 * (high - low), high + 0.05 * (high - low)};
+    const double half = low == 0.0 ? 1.0 : 0.1 * std::abs(low);
+    return {low - half, low + half};
+  }
+};
+
+/// One plot within the sheet; (x, y) is its upper left corner.
+class Panel {
+ public:
+  Panel(const LinePlot& plot, int x, int y) : plot_(plot), x_(x), y_(y) {}
+
+  std::string text() {
+    std::string svg = label(x_ + panel_width / 2, y_ + 20, plot_.title, "middle", "title");
+    if (!take_spans()) return svg + label(middle(), y_ + panel_height / 2, "no numbers", "middle");
+    svg += axes();
+    for (const PlotLevel& level : plot_.levels) svg += drawn(level);
+    for (std::size_t s = 0; s < plot_.series.size(); ++s)
+      svg += drawn(plot_.series[s], color_of(s));
+    return svg + legend();
+  }
+
+ private:
+  int middle() const { return x_ + left + (panel_width - left - right) / 2; }
+
+  bool take_spans() {
+    Span x, y;
+    for (const PlotSeries& series : plot_.series)
+      for (std::size_t k = 0; k < series.x.size(); ++k) {
+        if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) continue;
+        const double error = k < series.error.size() ? series.error[k] : 0.0;
+        x.add(series.x[k]);
+        y.add(series.y[k] - error);
+        y.add(series.y[k] + error);
+      }
+    if (x.empty()) return false;
+    for (const PlotLevel& level : plot_.levels) y.add(level.y);
+    if (y.low > 0.0 && y.low < 0.5 * y.high) y.low = 0.0;
+    x_span_ = x.widened();
+    y_span_ = y.widened();
+    return true;
+  }
+
+  double place_x(double value) const {
+    const double width = panel_width - left - right;
+    return x_ + left + width * (value - x_span_.low) / (x_span_.high - x_span_.low);
+  }
+  double place_y(double value) const {
+    const double height = panel_height - top - bottom;
+    return y_ + top + height * (y_span_.high - value) / (y_span_.high - y_span_.low);
+  }
+
+  static std::string label(double x, double y, const std::string& text, const char* anchor,
+                           const char* style = "text") {
+    return fmt::format(
+        "<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", style, x, y,
+        anchor, escaped(text));
+  }
+  static std::string rule(double x1, double y1, double x2, double y2, const char* style) {
+    return fmt::format(
+        "<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", style, x1,
+        y1, x2, y2);
+  }
+
+  /// A label with the power of ten that its ticks leave out.
+  static std::string with_power(const std::string& text, int power) {
+    return power == 0 ? text : fmt::format("{}, times 1e{}", text, power);
+  }
+  static int power_of(const ValueRange& range) {
+    const double largest = std::max(std::abs(range.low), std::abs(range.high));
+    const int power = largest > 0.0 ? static_cast<int>(std::floor(std::log10(largest))) : 0;
+    return power >= 4 || power < -2 ? 3 * static_cast<int>(std::floor(power / 3.0)) : 0;
+  }
+
+  std::string axes() const {
+    const double x0 = x_ + left, x1 = x_ + panel_width - right;
+    const double y0 = y_ + panel_height - bottom, y1 = y_ + top;
+    std::string svg;
+    const int power_y = power_of(y_span_), power_x = power_of(x_span_);
+    for (const Tick& tick : ticks_of(y_span_, std::pow(10.0, -power_y))) {
+      svg += rule(x0, place_y(tick.value), x1, place_y(tick.value), "grid");
+      svg += label(x0 - 6, place_y(tick.value) + 4, tick.text, "end");
+    }
+    if (plot_.x_words.empty())
+      for (const Tick& tick : ticks_of(x_span_, std::pow(10.0, -power_x))) {
+        svg += rule(place_x(tick.value), y0, place_x(tick.value), y1, "grid");
+        svg += label(place_x(tick.value), y0 + 16, tick.text, "middle");
+      }
+    for (std::size_t k = 0; k < plot_.x_words.size(); ++k)
+      svg += label(place_x(static_cast<double>(k)), y0 + 16, plot_.x_words[k], "middle");
+    svg += rule(x0, y0, x1, y0, "axis") + rule(x0, y0, x0, y1, "axis");
+    const bool words = !plot_.x_words.empty();
+    svg += label(middle(), y0 + 36, with_power(plot_.x_label, words ? 0 : power_x), "middle");
+    svg += fmt::format(
+        "<text class=\"text\" transform=\"translate({},{}) rotate(-90)\" "
+        "text-anchor=\"middle\">{}</text>\n",
+        x_ + 16, (y0 + y1) / 2.0, escaped(with_power(plot_.y_label, power_y)));
+    return svg;
+  }
+
+  const char* color_of(std::size_t series) const {
+    const int given = plot_.series[series].color;
+    return colors[(given < 0 ? series : static_cast<std::size_t>(given)) % colors.size()];
+  }
+
+  std::string drawn(const PlotLevel& level) const {
+    return rule(x_ + left, place_y(level.y), x_ + panel_width - right, place_y(level.y), "level") +
+           label(x_ + panel_width - right - 2, place_y(level.y) - 4, level.name, "end");
+  }
+
+  std::string drawn(const PlotSeries& series, const char* color) const {
+    const std::size_t count = std::min(series.x.size(), series.y.size());
+    const std::size_t stride = series.marks ? 1 : count / most_points + 1;
+    std::string path, marks;
+    bool down = false;
+    for (std::size_t k = 0; k < count; k += stride) {
+      if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) {
+        down = false;
+        continue;
+      }
+      const double x = place_x(series.x[k]), y = place_y(series.y[k]);
+      path += fmt::format("{}{:.1f} {:.1f}", down ? "L" : "M", x, y);
+      down = true;
+      if (series.marks)
+        marks +=
+            fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x, y, color);
+      if (k < series.error.size() && series.error[k] > 0.0)
+        marks += fmt::format("<path class=\"curve\" stroke=\"{}\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n",
+                             color, x, place_y(series.y[k] - series.error[k]),
+                             place_y(series.y[k] + series.error[k]));
+    }
+    if (!series.line) return marks;
+    return fmt::format("<path class=\"curve\" stroke=\"{}\" d=\"{}\"/>\n", color, path) + marks;
+  }
+
+  std::string legend() const {
+    std::string svg;
+    int line = 0;
+    for (std::size_t s = 0; s < plot_.series.size(); ++s) {
+      if (plot_.series[s].name.empty()) continue;
+      const int y = y_ + top + 14 + 15 * line++;
+      svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"12\" height=\"3\" fill=\"{}\"/>\n",
+                         x_ + left + 10, y - 5, color_of(s));
+      svg += label(x_ + left + 27, y, plot_.series[s].name, "start");
+    }
+    return svg;
+  }
+
+  const LinePlot& plot_;
+  int x_, y_;
+  ValueRange x_span_{0.0, 1.0}, y_span_{0.0, 1.0};
+};
+
+}  // namespace
+
+std::string svg_of(const std::vector<LinePlot>& plots, int columns) {
+  const int count = static_cast<int>(plots.size());
+  const int across = std::clamp(columns, 1, std::max(count, 1));
+  const int down = std::max((count + across - 1) / across, 1);
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
+      "{1}\">\n<style>text{{font:12px sans-serif;fill:#222}}.title{{font-weight:bold}}"
+      ".grid{{stroke:#e4e4e4}}.axis{{stroke:#444}}.level{{stroke:#444;stroke-dasharray:6 4}}"
+      ".curve{{fill:none;stroke-width:1.6}}</style>\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+      across * panel_width, down * panel_height);
+  for (int k = 0; k < count; ++k)
+    svg += Panel(plots[static_cast<std::size_t>(k)], k % across * panel_width,
+                 k / across * panel_height)
+               .text();
+  return svg + "</svg>\n";
+}
+
+}  // namespace breccia

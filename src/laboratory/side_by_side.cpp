@@ -1,0 +1,234 @@
+#include "laboratory/side_by_side.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <omp.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "exec/error.hpp"
+#include "io/whole_file.hpp"
+#include "laboratory/run_result.hpp"
+#include "run/machine/memory_plan.hpp"
+#include "run/machine/signals.hpp"
+#include "run/results/result_folder.hpp"
+
+namespace breccia::laboratory {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// The environment without what mpirun leaves in it: a run that a rank starts is no rank.
+std::vector<char*> own_environment() {
+  std::vector<char*> kept;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    constexpr std::array foreign{"OMPI_", "PMIX_", "PMI_", "PRTE_"};
+    if (std::none_of(foreign.begin(), foreign.end(), [&](const char* start) {
+          return std::strncmp(*entry, start, std::strlen(start)) == 0;
+        }))
+      kept.push_back(*entry);
+  }
+  kept.push_back(nullptr);
+  return kept;
+}
+
+/// Starts the program; both streams go to the file `log`. It ends when this process dies, and a
+/// signal of the terminal reaches it only through this process.
+pid_t start(const std::string& program, const std::vector<std::string>& arguments,
+            const std::string& log) {
+  std::vector<char*> words;
+  std::string name = "breccia";
+  words.push_back(name.data());
+  std::vector<std::string> own = arguments;
+  for (std::string& word : own) words.push_back(word.data());
+  words.push_back(nullptr);
+  const std::vector<char*> environment = own_environment();
+  const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (output < 0) throw IoError(log + ": cannot be written: " + std::strerror(errno));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::setpgid(0, 0);
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    ::dup2(output, STDOUT_FILENO);
+    ::dup2(output, STDERR_FILENO);
+    ::execve(program.c_str(), words.data(), environment.data());
+    ::_exit(127);
+  }
+  const int reason = errno;
+  ::close(output);
+  if (child < 0) throw IoError(std::string("cannot start a process: ") + std::strerror(reason));
+  return child;
+}
+
+bool holds_checkpoint(const std::string& folder) {
+  std::error_code error;
+  return !fs::is_empty(folder + "/checkpoints", error) && !error;
+}
+
+/// The error that a run has told, without the word before it.
+std::string told_error(const std::string& log, int exit_code) {
+  try {
+    const std::string text = read_whole_file(log);
+    const std::size_t at = text.rfind("error: ");
+    if (at != std::string::npos) {
+      const std::size_t begin = at + 7;
+      return text.substr(begin, std::min(text.find('\n', begin), text.size()) - begin);
+    }
+  } catch (const Error&) {
+  }
+  return exit_code < 0 ? fmt::format("killed by signal {}", -exit_code)
+                       : fmt::format("exit code {}", exit_code);
+}
+
+class Pool {
+ public:
+  Pool(const std::vector<PlannedRun>& runs, const Workers& workers,
+       const std::function<void(std::size_t, const FinishedRun&)>& tell)
+      : runs_(runs), workers_(workers), tell_(tell), results_(runs.size()) {}
+
+  std::vector<FinishedRun> work() {
+    StopSignals signals;
+    signals.answer_between_steps();
+    bool told = false;
+    std::size_t next = 0;
+    while (next < runs_.size() || !active_.empty()) {
+      const int signal = StopSignals::received();
+      if (signal != 0 && !told) {
+        for (const Active& run : active_) ::kill(run.process, signal);
+        told = true;
+      }
+      while (signal == 0 && next < runs_.size() &&
+             active_.size() < static_cast<std::size_t>(workers_.jobs))
+        begin(next++);
+      if (signal != 0)
+        for (; next < runs_.size(); ++next) results_[next].exit_code = 128 + signal;
+      collect();
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return results_;
+  }
+
+ private:
+  struct Active {
+    std::size_t run;
+    pid_t process;
+    int device;
+    Clock::time_point begin;
+    bool resumed;
+  };
+
+  std::string log_of(std::size_t run) const { return runs_[run].folder + ".log"; }
+
+  void begin(std::size_t run) {
+    const PlannedRun& plan = runs_[run];
+    const std::optional<RunResult> former = read_result(plan.folder);
+    const bool same = former && former->digest == plan.digest && !workers_.force;
+    if (same && former->complete()) {
+      results_[run] = {former->exit_code, true, 0.0, ""};
+      tell_(run, results_[run]);
+      return;
+    }
+    make_folder(fs::path(plan.folder).parent_path().string());
+    launch(run, same && holds_checkpoint(plan.folder));
+  }
+
+  void launch(std::size_t run, bool resume) {
+    const PlannedRun& plan = runs_[run];
+    std::vector<std::string> words;
+    if (resume) {
+      words = {"resume", plan.folder};
+    } else {
+      words = {"run", plan.case_path, "-o", plan.folder, "--force"};
+      for (const std::string& text : plan.overrides) {
+        words.emplace_back("--set");
+        words.push_back(text);
+      }
+    }
+    words.insert(words.end(), {"--quiet", "--threads", std::to_string(workers_.threads)});
+    const int device = free_device();
+    if (!workers_.devices.empty()) {
+      words.emplace_back("--device");
+      words.push_back(workers_.devices[static_cast<std::size_t>(device)]);
+    }
+    if (workers_.allow_scripts) words.emplace_back("--allow-scripts");
+    active_.push_back(
+        {run, start(workers_.program, words, log_of(run)), device, Clock::now(), resume});
+  }
+
+  /// The device with the fewest runs.
+  int free_device() const {
+    std::vector<int> load(std::max<std::size_t>(workers_.devices.size(), 1), 0);
+    for (const Active& run : active_) ++load[static_cast<std::size_t>(run.device)];
+    return static_cast<int>(std::min_element(load.begin(), load.end()) - load.begin());
+  }
+
+  void collect() {
+    for (std::size_t k = 0; k < active_.size();) {
+      int status = 0;
+      const Active ended = active_[k];
+      if (::waitpid(ended.process, &status, WNOHANG) != ended.process) {
+        ++k;
+        continue;
+      }
+      active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(k));
+      finish(ended, WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status));
+    }
+  }
+
+  void finish(const Active& ended, int exit_code) {
+    constexpr int refused = 7;
+    if (exit_code == refused && ended.resumed) {  // its checkpoint is no good
+      launch(ended.run, false);
+      return;
+    }
+    FinishedRun& result = results_[ended.run];
+    result.exit_code = exit_code;
+    result.wall = std::chrono::duration<double>(Clock::now() - ended.begin).count();
+    if (result.complete()) {
+      std::error_code ignored;
+      fs::remove(log_of(ended.run), ignored);
+    } else {
+      result.message = told_error(log_of(ended.run), exit_code);
+    }
+    tell_(ended.run, result);
+  }
+
+  const std::vector<PlannedRun>& runs_;
+  const Workers& workers_;
+  const std::function<void(std::size_t, const FinishedRun&)>& tell_;
+  std::vector<FinishedRun> results_;
+  std::vector<Active> active_;
+};
+
+}  // namespace
+
+Workers workers_for(int asked, std::size_t runs, double bytes) {
+  const int cores = std::max(1, omp_get_num_procs());
+  const double room = bytes > 0.0 ? available_memory() / bytes : 1e6;
+  const int fit = static_cast<int>(std::clamp(room, 1.0, 1e6));
+  Workers workers;
+  workers.jobs = std::min(asked > 0 ? asked : cores, fit);
+  workers.jobs = std::clamp(workers.jobs, 1, std::max(1, static_cast<int>(runs)));
+  workers.threads = std::max(1, cores / workers.jobs);
+  return workers;
+}
+
+std::vector<FinishedRun> run_side_by_side(
+    const std::vector<PlannedRun>& runs, const Workers& workers,
+    const std::function<void(std::size_t, const FinishedRun&)>& tell) {
+  return Pool(runs, workers, tell).work();
+}
+
+}  // namespace breccia::laboratory

@@ -1,0 +1,59 @@
+#pragma once
+// Runs of the program side by side, each a process of its own.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace breccia::laboratory {
+
+/// A run that is wanted.
+struct PlannedRun {
+  std::string name;                    ///< in lines of progress and in tables
+  std::string case_path;               ///< as `breccia run` takes it
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  std::string folder;                  ///< of its results
+  std::string digest;                  ///< of the completed case: what finished runs are known by
+};
+
+/// What became of it.
+struct FinishedRun {
+  int exit_code = 0;    ///< of the program; 9: done, but a check of the case failed
+  bool kept = false;    ///< was finished before; nothing was computed
+  double wall = 0.0;    ///< wall-clock time spent on it now  [s]
+  std::string message;  ///< the error, if it has failed
+
+  /// Whether its numbers count.
+  bool complete() const { return exit_code == 0 || exit_code == 9; }
+};
+
+/// What the runs share.
+struct Workers {
+  int jobs = 1;                      ///< runs at a time
+  int threads = 1;                   ///< of each run
+  std::vector<std::string> devices;  ///< run k computes on device k modulo their number
+  bool force = false;                ///< compute finished runs anew
+  bool allow_scripts = false;        ///< as the option of `breccia run`
+  std::string program = "/proc/self/exe";
+};
+
+/// How many runs fit beside each other: at most one a core and as many as the memory holds.
+/// @param asked  0: as many as fit
+/// @param bytes  of memory that the largest run takes
+Workers workers_for(int asked, std::size_t runs, double bytes);
+
+/// Makes the runs, in their order, as many at a time as there are workers. A folder that holds the
+/// finished run of the same completed case is kept; one whose run was interrupted goes on from its
+/// newest checkpoint; anything else there is computed anew. A failing run stops no other. What a
+/// run says goes to FOLDER.log beside its folder, which is removed when the run is complete.
+///
+/// SIGINT, SIGTERM and SIGUSR1 are handed to the runs, which save their states, and no further run
+/// begins; the runs that were not made have exit code 128 + the number of the signal.
+///
+/// @param tell  called for each run as it ends: its number and what became of it
+/// @throws IoError if a folder cannot be made or no process can be started
+std::vector<FinishedRun> run_side_by_side(
+    const std::vector<PlannedRun>& runs, const Workers& workers,
+    const std::function<void(std::size_t, const FinishedRun&)>& tell);
+
+}  // namespace breccia::laboratory

@@ -1,0 +1,165 @@
+// The command sweep: what is computed, kept, gone on with and told.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "io/whole_file.hpp"
+#include "unit/run/program.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Two balls that collide head-on; the check holds for approach at 2 m/s and below.
+const std::string two_balls = R"(
+breccia = 1
+method = "dem3d"
+energy = { warn = 0.0, stop = 0.0 }
+[time]
+end = "2 ms"
+[output]
+frames = 0
+fields = false
+pictures = false
+[material.rock]
+law = "grain"
+young = "1 GPa"
+[[body]]
+name = "left"
+shape = "element"
+material = "rock"
+center = [-0.011, 0.0, 0.0]
+radius = "10 mm"
+velocity = [2.0, 0.0, 0.0]
+[[body]]
+name = "right"
+shape = "element"
+material = "rock"
+center = [0.011, 0.0, 0.0]
+radius = "10 mm"
+[[probe]]
+name = "right_v"
+on = "right"
+quantity = "velocity_x"
+[[check]]
+name = "rebound"
+value = "probe.right_v.last"
+expected = 0.0
+tolerance = 2.5
+)";
+
+class SweepCommand : public testing::Test {
+ protected:
+  SweepCommand() { replace_file(scratch / "balls.toml", two_balls); }
+  int sweep(const std::string& arguments) {
+    return wait_for(
+        start_program("sweep '" + scratch / "balls.toml' -o '" + scratch / "out' " + arguments,
+                      scratch / "output.txt"));
+  }
+  std::string output() const { return read_whole_file(scratch / "output.txt"); }
+  std::string file(const std::string& name) const {
+    return read_whole_file(scratch / "out/" + name);
+  }
+  static std::size_t count(const std::string& text, const std::string& word) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+      ++found;
+    return found;
+  }
+
+  ScratchFolder scratch;
+};
+
+TEST_F(SweepCommand, ComputesEachCombinationOnceAndTellsOfTheCheckThatFails) {
+  const std::string over = "--over 'body.left.velocity=[1, 0, 0]..[3, 0, 0]:2' --jobs 2";
+  EXPECT_EQ(sweep(over), 9);
+  EXPECT_EQ(count(output(), "  done "), 1U) << output();
+  EXPECT_EQ(count(output(), "check failed"), 1U);
+  const std::string table = file("sweep.csv");
+  EXPECT_EQ(count(table, "\n"), 3U);
+  EXPECT_NE(table.find("\"[3, 0, 0]\",1,check failed,9,2.9"), std::string::npos) << table;
+  EXPECT_NE(file("sweep.svg").find("rebound"), std::string::npos);
+
+  EXPECT_EQ(sweep(over + " --seeds 2"), 9);  // two are there already
+  EXPECT_EQ(count(output(), "kept"), 2U) << output();
+  EXPECT_EQ(count(file("sweep.csv"), "\n"), 5U);
+
+  EXPECT_EQ(sweep(over + " --set check.rebound.tolerance=9"), 0);  // another case
+  EXPECT_EQ(count(output(), "kept"), 0U) << output();
+}
+
+TEST_F(SweepCommand, ReportsARunThatFailsAndKeepsTheOthers) {
+  EXPECT_EQ(sweep("--over energy.stop=0,1e-12"), 4);  // 15 steps a collision cost energy
+  const std::string table = file("sweep.csv");
+  EXPECT_NE(table.find("\n0,1,done,0,"), std::string::npos) << table;
+  EXPECT_NE(table.find("\n1e-12,1,failed,4,"), std::string::npos) << table;
+  EXPECT_NE(file("sweep.md").find("## Runs without a result"), std::string::npos);
+  EXPECT_NE(output().find("failed"), std::string::npos);
+  EXPECT_NE(output().find("energy"), std::string::npos) << output();
+}
+
+TEST_F(SweepCommand, GoesOnWithInterruptedRuns) {
+  const std::string arguments = "--over time.end=0.001,300 --jobs 2 --set checkpoint.wall=0.02";
+  const pid_t program =
+      start_program("sweep '" + scratch / "balls.toml' -o '" + scratch / "out' " + arguments,
+                    scratch / "output.txt");
+  const auto long_run = [&] {
+    for (const auto& entry : fs::directory_iterator(scratch / "out/runs"))
+      if (entry.path().filename().string().starts_with("end=300") && entry.is_directory())
+        return entry.path();
+    return fs::path();
+  };
+  std::error_code none;
+  for (int k = 0; k < 2000; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (fs::exists(scratch / "out/runs", none) && !long_run().empty() &&
+        fs::exists(long_run() / "checkpoints", none) &&
+        !fs::is_empty(long_run() / "checkpoints", none))
+      break;
+  }
+  ::kill(program, SIGTERM);
+  EXPECT_EQ(wait_for(program), 128 + SIGTERM);
+  EXPECT_NE(file("sweep.csv").find("300,1,interrupted"), std::string::npos) << file("sweep.csv");
+  const std::string former = read_whole_file(long_run() / "history.csv");
+
+  const pid_t again =
+      start_program("sweep '" + scratch / "balls.toml' -o '" + scratch / "out' " + arguments,
+                    scratch / "output.txt");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  ::kill(again, SIGTERM);
+  wait_for(again);
+  EXPECT_EQ(read_whole_file(long_run() / "history.csv").substr(0, former.size() / 2),
+            former.substr(0, former.size() / 2));
+  EXPECT_EQ(count(output(), "kept"), 1U) << output();
+  // One that began anew would have taken the place of the former, with one set-up in its log.
+  EXPECT_EQ(count(read_whole_file(long_run() / "log.jsonl"), "\"setup\""), 2U);
+}
+
+TEST_F(SweepCommand, RefusesWrongValuesBeforeAnythingRuns) {
+  EXPECT_EQ(sweep("--over body.left.radius=0.01,-1"), 2);
+  EXPECT_NE(output().find("radius = -1 is outside"), std::string::npos) << output();
+  EXPECT_EQ(sweep("--over seed"), 2);
+  EXPECT_EQ(sweep("--seeds 0"), 2);
+  EXPECT_FALSE(fs::exists(scratch / "out"));
+}
+
+TEST_F(SweepCommand, ExplainsItselfWithinEightyColumns) {
+  EXPECT_EQ(sweep("--help"), 0);
+  std::string line;
+  for (const char c : output())
+    if (c == '\n') {
+      EXPECT_LE(line.size(), 80U) << line;
+      line.clear();
+    } else {
+      line += c;
+    }
+}
+
+}  // namespace
+}  // namespace breccia
