@@ -18,6 +18,7 @@ void add_resume(CLI::App& program, int& exit_code, Communicator* ranks);
 void add_prepare(CLI::App& program);
 void add_check(CLI::App& program, int& exit_code);
 void add_keys(CLI::App& program);
+void add_materials(CLI::App& program);
 void add_info(CLI::App& program);
 void add_render(CLI::App& program);
 void add_report(CLI::App& program);

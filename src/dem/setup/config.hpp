@@ -10,6 +10,7 @@ namespace breccia::dem {
 /// [material.<name>]
 struct MaterialConfig {
   std::string name;
+  std::string use;
   std::string law = "concrete";
   double density = 2400.0;  ///< of the bulk, voids included  [kg/m3]
   double young = 30e9;      ///< E, macroscopic  [Pa]
@@ -48,6 +49,9 @@ struct MaterialConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
+    key("use", use,
+        "material of the program whose numbers it has (breccia materials); keys that stand here "
+        "take their place; empty: none");
     key("law", law, OneOf{"concrete", "parallel", "steel", "interface", "grain"},
         "concrete: cohesive links; parallel: bonds of cement between grains (bonded-particle "
         "rock); "

@@ -37,6 +37,7 @@ struct StrengthConfig {
 /// [material.<name>]
 struct MaterialConfig {
   std::string name;
+  std::string use;
   double density = 2700.0;  ///<  [kg/m3]
   double young = 60e9;      ///< E  [Pa]
   double poisson = 0.25;    ///< nu  [-]
@@ -49,6 +50,9 @@ struct MaterialConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
+    key("use", use,
+        "material of the program whose numbers it has (breccia materials); keys that stand here "
+        "take their place; empty: none");
     key("density", density, "kg/m3", Range{1e-3, 1e6}, "mass per volume");
     key("young", young, "Pa", Range{1.0, 1e15}, "Young's modulus");
     key("poisson", poisson, "-", Range{-1.0, 1.0, Open::both},

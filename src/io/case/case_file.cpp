@@ -2,11 +2,6 @@
 
 #include <fmt/format.h>
 
-// Text such as "[[[a]]]" meets an assertion of toml++ 3.3 before it is reported as an error; a
-// wrong case must not end the program.
-#define TOML_ASSERT(condition) static_cast<void>(0)
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -21,6 +16,7 @@
 #include "io/case/suggestion.hpp"
 #include "io/case/toml_error.hpp"
 #include "io/case/units.hpp"
+#include "io/case/use_materials.hpp"
 #include "io/harmless.hpp"
 
 namespace breccia {
@@ -249,6 +245,7 @@ CaseReader::CaseReader(const std::string& path, const std::vector<std::string>& 
   state_->path = resolved_file(path);
   state_->root = parse(read_case_source(state_->path), state_->path);
   for (const std::string& text : overrides) apply_override(state_->root, text);
+  use_named_materials(state_->root, state_->problems);
   state_->levels.push_back({&state_->root, "", {}, false});
 }
 CaseReader::CaseReader(const CaseText& text, const std::vector<std::string>& overrides)
@@ -256,6 +253,7 @@ CaseReader::CaseReader(const CaseText& text, const std::vector<std::string>& ove
   state_->path = text.origin;
   state_->root = parse(text.text, text.origin);
   for (const std::string& override : overrides) apply_override(state_->root, override);
+  use_named_materials(state_->root, state_->problems);
   state_->levels.push_back({&state_->root, "", {}, false});
 }
 CaseReader::~CaseReader() = default;

@@ -141,7 +141,9 @@ struct AnyValues {
     for (Vec3& point : value) point = {number(range), number(range), number(range)};
   }
   void operator()(const char*, bool& value, const char*) { value = random() % 2 == 0; }
-  void operator()(const char*, std::string& value, const char*) { value = word(); }
+  void operator()(const char* name, std::string& value, const char*) {
+    value = name == std::string("use") ? "" : word();  // a name of no material is a problem
+  }
   void operator()(const char*, std::vector<std::string>& value, const char*) {
     value.assign(random() % 3, word());
   }

@@ -1,0 +1,167 @@
+#include "io/case/material_library.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+
+#include "exec/error.hpp"
+#include "io/case/case_file.hpp"
+#include "io/case/suggestion.hpp"
+#include "io/case/units.hpp"
+#include "io/case/use_materials.hpp"
+
+// The assembler copies the file (as in report/bundle.cpp).
+__asm__(
+    ".pushsection .rodata\n"
+    ".global breccia_materials\n"
+    "breccia_materials:\n"
+    ".incbin \"" BR_MATERIALS_FILE
+    "\"\n"
+    ".global breccia_materials_end\n"
+    "breccia_materials_end:\n"
+    ".byte 0\n"
+    ".popsection\n");
+extern "C" const char breccia_materials[], breccia_materials_end[];
+
+namespace breccia {
+namespace {
+
+constexpr std::array methods{"dem3d", "fdem2d"};
+
+const toml::table& library() {
+  static const toml::table tables =
+      toml::parse(std::string_view(breccia_materials, breccia_materials_end));
+  return tables;
+}
+
+std::string text_of(const toml::table& table, const char* key) {
+  return table[key].value_or(std::string());
+}
+
+MaterialTarget target_of(const std::string& name, const toml::node& node) {
+  MaterialTarget target{name, 0.0, target_unit(name)};
+  if (const auto text = node.value_exact<std::string>()) {
+    std::string problem;
+    target.value = parse_quantity(*text, target.unit, problem);
+    if (!problem.empty()) throw InputError("materials.toml: " + name + ": " + problem);
+  } else {
+    target.value = node.value_or(0.0);
+  }
+  return target;
+}
+
+/// In the order of the file.
+template <class Visit>
+void each_in_order(const toml::table& table, Visit&& visit) {
+  std::vector<std::pair<toml::source_position, std::string>> order;
+  for (const auto& [key, node] : table)
+    order.emplace_back(node.source().begin, std::string(key.str()));
+  std::sort(order.begin(), order.end());
+  for (const auto& [at, key] : order) visit(key, *table.get(key));
+}
+
+/// A value as people write it in a case.
+std::string toml_text(const toml::node& node) {
+  if (const toml::table* table = node.as_table()) {
+    std::string text;
+    each_in_order(*table, [&](const std::string& key, const toml::node& value) {
+      text += (text.empty() ? "{ " : ", ") + key + " = " + toml_text(value);
+    });
+    return text + " }";
+  }
+  if (const auto number = node.value_exact<double>()) return value_text(*number);
+  if (const auto integer = node.value_exact<std::int64_t>()) return value_text(*integer);
+  return value_text(node.value_or(std::string()));
+}
+
+MaterialBlock block_of(const char* method, const toml::table& table) {
+  MaterialBlock block{method, text_of(table, "record"), ""};
+  each_in_order(table, [&](const std::string& key, const toml::node& node) {
+    if (key != "record") block.keys += key + " = " + toml_text(node) + "\n";
+  });
+  return block;
+}
+
+/// Adds to `own` what `given` has beyond it.
+void complete(toml::table& own, const toml::table& given) {
+  for (const auto& [key, node] : given) {
+    if (key.str() == "record") continue;
+    toml::node* const there = own.get(key.str());
+    if (there == nullptr)
+      node.visit([&](const auto& value) { own.insert(key.str(), value); });
+    else if (there->is_table() && node.is_table())
+      complete(*there->as_table(), *node.as_table());
+  }
+}
+
+}  // namespace
+
+std::string target_unit(const std::string& target) {
+  if (target == "poisson") return "-";
+  if (target == "fracture_energy") return "J/m2";
+  if (target == "friction_angle") return "rad";
+  for (const char* stress : {"young", "compression", "tension", "brazilian", "yield"})
+    if (target == stress) return "Pa";
+  return "";
+}
+
+const std::vector<NamedMaterial>& named_materials() {
+  static const std::vector<NamedMaterial> materials = [] {
+    std::vector<NamedMaterial> list;
+    each_in_order(library(), [&](const std::string& name, const toml::node& node) {
+      const toml::table& table = *node.as_table();
+      NamedMaterial material{name, text_of(table, "title"), text_of(table, "source"), {}, {}};
+      if (const toml::table* targets = table["target"].as_table())
+        each_in_order(*targets, [&](const std::string& target, const toml::node& value) {
+          material.targets.push_back(target_of(target, value));
+        });
+      for (const char* method : methods)
+        if (const toml::table* block = table[method].as_table())
+          material.blocks.push_back(block_of(method, *block));
+      list.push_back(std::move(material));
+    });
+    return list;
+  }();
+  return materials;
+}
+
+const NamedMaterial* named_material(const std::string& name) {
+  for (const NamedMaterial& material : named_materials())
+    if (material.name == name) return &material;
+  return nullptr;
+}
+
+void use_named_materials(toml::table& root, std::vector<Problem>& problems) {
+  toml::table* const materials = root["material"].as_table();
+  if (materials == nullptr) return;
+  const std::string method = root["method"].value_or(std::string("dem3d"));
+  for (auto&& [key, node] : *materials) {
+    toml::table* const own = node.as_table();
+    if (own == nullptr) continue;
+    const toml::node* const use = own->get("use");
+    const auto name = use != nullptr ? use->value_exact<std::string>() : std::nullopt;
+    if (!name || name->empty()) continue;
+    const toml::table* const given = library()[*name].as_table();
+    if (given != nullptr && (*given)[method].is_table()) {
+      complete(*own, *(*given)[method].as_table());
+      continue;
+    }
+    std::string text = fmt::format("material.{}.use = \"{}\"", std::string(key.str()), *name);
+    if (given == nullptr) {
+      std::set<std::string> names;
+      for (const NamedMaterial& material : named_materials()) names.insert(material.name);
+      text += " is no material of the program" + suggestion(*name, names) +
+              "\n    'breccia materials' lists them";
+    } else {
+      text += " has no numbers for method " + method;
+    }
+    const bool from_file = use->source().path != nullptr;
+    problems.push_back(
+        {from_file ? use->source().begin.line : 0, (from_file ? "" : "--set ") + text});
+  }
+}
+
+}  // namespace breccia

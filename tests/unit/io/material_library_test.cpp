@@ -1,0 +1,110 @@
+// Materials by name: their numbers follow from the sources that they name, and cases may use them.
+
+#include "io/case/material_library.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dem/setup/config.hpp"
+#include "exec/error.hpp"
+#include "fdem/setup/config.hpp"
+#include "io/case/case_file.hpp"
+
+namespace breccia {
+namespace {
+
+std::string case_with(const std::string& method, const std::string& keys) {
+  return "breccia = 1\nmethod = \"" + method + "\"\n[time]\nend = 1.0\n[material.m]\n" + keys;
+}
+template <class Config>
+Config read(const std::string& keys, const std::vector<std::string>& overrides = {}) {
+  const char* const method = std::is_same_v<Config, dem::Config> ? "dem3d" : "fdem2d";
+  return read_case<Config>(CaseText{case_with(method, keys), "case.toml"}, overrides);
+}
+
+double target(const std::string& material, const std::string& name) {
+  for (const MaterialTarget& t : named_material(material)->targets)
+    if (t.name == name) return t.value;
+  return std::nan("");
+}
+
+TEST(NamedMaterials, ConcretesHaveTheMeanValuesOfModelCode2010) {
+  for (const double f_ck : {20.0, 30.0, 40.0, 60.0, 100.0}) {
+    const std::string name = "C" + std::to_string(static_cast<int>(f_ck));
+    const double f_cm = f_ck + 8.0;
+    const double f_ctm =
+        f_ck <= 50.0 ? 0.3 * std::pow(f_ck, 2.0 / 3.0) : 2.12 * std::log(1.0 + 0.1 * f_cm);
+    EXPECT_NEAR(target(name, "compression"), 1e6 * f_cm, 1.0) << name;
+    EXPECT_NEAR(target(name, "tension"), 1e6 * f_ctm, 6e3) << name;
+    EXPECT_NEAR(target(name, "young"), 21.5e9 * std::cbrt(f_cm / 10.0), 6e7) << name;
+    EXPECT_NEAR(target(name, "fracture_energy"), 73.0 * std::pow(f_cm, 0.18), 0.6) << name;
+  }
+}
+
+TEST(NamedMaterials, TellTheirSourceAndHowLocalNumbersWereFoundAndReadWithoutAProblem) {
+  EXPECT_GE(named_materials().size(), 13U);
+  for (const NamedMaterial& material : named_materials()) {
+    EXPECT_FALSE(material.source.empty()) << material.name;
+    EXPECT_FALSE(material.blocks.empty()) << material.name;
+    for (const MaterialBlock& block : material.blocks) {
+      EXPECT_FALSE(block.record.empty()) << material.name;
+      const std::string use = "use = \"" + material.name + "\"\n";
+      if (block.method == "dem3d") {
+        EXPECT_NEAR(read<dem::Config>(use).materials[0].young, target(material.name, "young"), 1.0);
+        EXPECT_NO_THROW(read<dem::Config>(block.keys)) << block.keys;
+      } else {
+        EXPECT_NEAR(read<fdem::Config>(use).materials[0].young, target(material.name, "young"),
+                    1.0);
+        EXPECT_NO_THROW(read<fdem::Config>(block.keys)) << block.keys;
+      }
+    }
+  }
+}
+
+TEST(NamedMaterials, KeysOfTheCaseAndOfTheCommandLineTakeTheirPlace) {
+  const dem::Config c =
+      read<dem::Config>("use = \"C30\"\ndensity = 2450.0\n", {"material.m.cohesion=9 MPa"});
+  EXPECT_EQ(c.materials[0].density, 2450.0);
+  EXPECT_EQ(c.materials[0].cohesion, 9e6);
+  EXPECT_EQ(c.materials[0].fabric, "even");
+  const fdem::Config f = read<fdem::Config>("use = \"C30\"\njoint = { tension = \"2 MPa\" }\n");
+  EXPECT_EQ(f.materials[0].joint.tension, 2e6);
+  EXPECT_NEAR(f.materials[0].joint.cohesion, 11e6, 1e5);  // of C30, beside the own tension
+}
+
+TEST(NamedMaterials, TheCompletedCaseHoldsTheFullNumbers) {
+  const dem::Config c = read<dem::Config>("use = \"C30\"\n");
+  const std::string text = completed_case(c);
+  EXPECT_NE(text.find("use = \"C30\""), std::string::npos);
+  EXPECT_NE(text.find("fracture_energy = 140.5"), std::string::npos) << text;
+  EXPECT_EQ(completed_case(read_case<dem::Config>(CaseText{text, "case.toml"}, {})), text);
+}
+
+std::string problem(const std::string& method, const std::string& keys) {
+  try {
+    const CaseText text{case_with(method, keys), "case.toml"};
+    if (method == "dem3d")
+      read_case<dem::Config>(text, {});
+    else
+      read_case<fdem::Config>(text, {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(NamedMaterials, NamesTheLineOfAMaterialThatThereIsNot) {
+  EXPECT_NE(
+      problem("dem3d", "use = \"C31\"")
+          .find(
+              "line 6, material.m.use = \"C31\" is no material of the program; did you mean C30?"),
+      std::string::npos)
+      << problem("dem3d", "use = \"C31\"");
+  EXPECT_NE(problem("dem3d", "use = \"sandstone-berea\"").find("has no numbers for method dem3d"),
+            std::string::npos);
+  EXPECT_NE(problem("dem3d", "use = 3").find("use wants a text"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace breccia
