@@ -23,6 +23,7 @@ void add_info(CLI::App& program);
 void add_render(CLI::App& program);
 void add_report(CLI::App& program);
 void add_sweep(CLI::App& program, int& exit_code);
+void add_test(CLI::App& program, int& exit_code);
 void add_bench(CLI::App& program, Communicator* ranks);  ///< bench/command.cpp
 
 }  // namespace breccia::app

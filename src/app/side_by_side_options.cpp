@@ -26,6 +26,7 @@ std::string count_problem(const std::string& text) {
 
 laboratory::Workers SideBySideOptions::workers(std::size_t runs, double bytes) const {
   laboratory::Workers workers = laboratory::workers_for(jobs, runs, bytes);
+  if (threads > 0) workers.threads = threads;
   workers.force = force;
   workers.allow_scripts = allow_scripts;
   if (device == "cpu") return workers;
@@ -43,6 +44,9 @@ laboratory::Workers SideBySideOptions::workers(std::size_t runs, double bytes) c
 
 void add_side_by_side_options(CLI::App& command, SideBySideOptions& options) {
   command.add_option("--jobs", options.jobs, "runs at a time; default: as many as fit")
+      ->type_name("N")
+      ->check([](const std::string& text) { return count_problem(text); });
+  command.add_option("--threads", options.threads, "of each run; default: its share")
       ->type_name("N")
       ->check([](const std::string& text) { return count_problem(text); });
   command.add_option("--device", options.device, "cpu, cuda (all GPUs in turn) or cuda:N")

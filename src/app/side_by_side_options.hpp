@@ -15,7 +15,8 @@ class App;
 namespace breccia::app {
 
 struct SideBySideOptions {
-  int jobs = 0;  ///< 0: as many as there are cores and memory for
+  int jobs = 0;     ///< 0: as many as there are cores and memory for
+  int threads = 0;  ///< of each run; 0: its share of the cores
   std::string device = "cpu";
   bool force = false, allow_scripts = false;
 

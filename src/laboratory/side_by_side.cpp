@@ -221,7 +221,7 @@ Workers workers_for(int asked, std::size_t runs, double bytes) {
   Workers workers;
   workers.jobs = std::min(asked > 0 ? asked : cores, fit);
   workers.jobs = std::clamp(workers.jobs, 1, std::max(1, static_cast<int>(runs)));
-  workers.threads = std::max(1, cores / workers.jobs);
+  workers.threads = asked > 0 ? 1 : std::max(1, cores / workers.jobs);
   return workers;
 }
 

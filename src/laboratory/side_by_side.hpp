@@ -37,8 +37,9 @@ struct Workers {
   std::string program = "/proc/self/exe";
 };
 
-/// How many runs fit beside each other: at most one a core and as many as the memory holds.
-/// @param asked  0: as many as fit
+/// How many runs fit beside each other: at most one a core and as many as the memory holds. Each
+/// has one thread, or its share of the cores if not every core has a run.
+/// @param asked  runs at a time, of one thread each; 0: as many as fit
 /// @param bytes  of memory that the largest run takes
 Workers workers_for(int asked, std::size_t runs, double bytes);
 

@@ -1,0 +1,241 @@
+#include "laboratory/concrete_tests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exec/error.hpp"
+#include "io/whole_file.hpp"
+#include "math/constants.hpp"
+#include "prepare/packing/packing.hpp"
+
+namespace breccia::laboratory {
+namespace {
+
+constexpr double prism_edge = 0.1, prism_height = 0.2;  // m
+constexpr double disc_diameter = 0.1, disc_thickness = 0.05;
+constexpr double beam_length = 0.34, beam_edge = 0.1;
+constexpr double far = 1.0;
+
+/// Of elements that fill a volume [m3] together.  [m]
+double mean_radius(double volume, int elements) {
+  return std::cbrt(0.75 * volume / (pi * elements));
+}
+
+/// Elements as large as the prism's.
+int count_for(const Sample& sample, double volume) {
+  return std::max(
+      100, static_cast<int>(sample.elements * volume / (prism_edge * prism_edge * prism_height)));
+}
+
+dem::SupportConfig support(const std::string& name, const Vec3& min, const Vec3& max,
+                           std::vector<std::string> fix, const Vec3& velocity, double ramp) {
+  dem::SupportConfig s;
+  s.name = name;
+  s.min = min;
+  s.max = max;
+  s.fix = std::move(fix);
+  s.velocity = velocity;
+  s.ramp = ramp;
+  return s;
+}
+ProbeConfig probe(const std::string& name, const std::string& on, const std::string& quantity,
+                  const std::string& reduce) {
+  return {name, on, quantity, reduce};
+}
+
+void add_body(dem::Config& c, const Sample& sample, const Vec3& size) {
+  dem::BodyConfig body;
+  body.name = "specimen";
+  body.material = sample.material.name;
+  body.size = size;
+  body.pack = {count_for(sample, size.x * size.y * size.z), sample.size_ratio, sample.compactness};
+  c.bodies = {body};
+}
+
+/// Layers at both ends that part at `speed`, or approach, and gauges on two sides.
+void load_ends(dem::Config& c, const Vec3& size, double radius, double speed) {
+  const double layer = 0.5 * size.z - 2.0 * radius, side = 0.5 * size.x - 2.0 * radius;
+  const double ramp = 0.1 * c.time.end;
+  c.supports = {
+      support("top", {-far, -far, layer}, {far, far, far}, {"z"}, {0.0, 0.0, 0.5 * speed}, ramp),
+      support("bottom", {-far, -far, -far}, {far, far, -layer}, {"z"}, {0.0, 0.0, -0.5 * speed},
+              ramp),
+      support("right", {side, -far, -0.25 * size.z}, {far, far, 0.25 * size.z}, {}, {}, 0.0),
+      support("left", {-far, -far, -0.25 * size.z}, {-side, far, 0.25 * size.z}, {}, {}, 0.0)};
+  c.probes = {probe("force_top", "top", "force_z", "sum"),
+              probe("force_bottom", "bottom", "force_z", "sum"),
+              probe("top", "top", "position_z", "mean"),
+              probe("bottom", "bottom", "position_z", "mean"),
+              probe("right", "right", "position_x", "mean"),
+              probe("left", "left", "position_x", "mean")};
+}
+
+void load_by_platens(dem::Config& c, const Vec3& size, double speed) {
+  for (const double side : {1.0, -1.0}) {
+    dem::WallConfig wall;
+    wall.name = side > 0.0 ? "top" : "bottom";
+    wall.point = {0.0, 0.0, 0.5 * side * size.z};
+    wall.normal = {0.0, 0.0, -side};
+    wall.velocity = {0.0, 0.0, -0.5 * side * speed};
+    c.walls.push_back(wall);
+    c.probes.push_back(probe("force_" + wall.name, wall.name, "force_z", "sum"));
+    c.probes.push_back(probe(wall.name, wall.name, "position_z", "mean"));
+  }
+}
+
+/// Strips a tenth of the diameter wide press a disc along x.
+void load_strips(dem::Config& c, const Sample& sample, double speed) {
+  const double volume = pi / 4.0 * disc_diameter * disc_diameter * disc_thickness;
+  const double radius = mean_radius(volume * sample.compactness, sample.elements);
+  dem::BodyConfig& body = c.bodies[0];
+  body.shape = "cylinder";
+  body.size = {};
+  body.radius = 0.5 * disc_diameter;
+  body.length = disc_thickness;
+  body.pack.count = sample.elements;
+  const double strip = 0.05 * disc_diameter, depth = 0.5 * disc_diameter - 2.5 * radius;
+  const double ramp = 0.1 * c.time.end;
+  c.supports = {support("top", {depth, -strip, -far}, {far, strip, far}, {"x"},
+                        {-0.5 * speed, 0.0, 0.0}, ramp),
+                support("bottom", {-far, -strip, -far}, {-depth, strip, far}, {"x"},
+                        {0.5 * speed, 0.0, 0.0}, ramp)};
+  c.probes = {probe("force_top", "top", "force_x", "sum"),
+              probe("force_bottom", "bottom", "force_x", "sum"),
+              probe("top", "top", "position_x", "mean"),
+              probe("bottom", "bottom", "position_x", "mean")};
+}
+
+/// A packing without the spheres of the notch. Links reach across 1.44 diameters, the largest ones
+/// of which are 4/3 of the mean, so the notch is four mean radii wide.
+void write_notched(const std::string& path, const Sample& sample, const Vec3& size, double radius,
+                   std::int64_t seed) {
+  prepare::PackingTask task;
+  task.container = {prepare::Container::Shape::box, size, 0.0, 0.0};
+  task.count = count_for(sample, size.x * size.y * size.z);
+  task.size_ratio = sample.size_ratio;
+  task.solid_volume = sample.compactness * size.x * size.y * size.z;
+  task.random = {static_cast<std::uint64_t>(seed), 0};
+  const prepare::Packing packing = prepare::pack(task);
+  std::string text = "x,y,z,radius\n";
+  for (std::size_t e = 0; e < packing.position.size(); ++e) {
+    const Vec3& x = packing.position[e];
+    if (std::abs(x.x) < 2.0 * radius && x.z < beam_notch - 0.5 * size.z) continue;
+    text += fmt::format("{},{},{},{}\n", x.x, x.y, x.z, packing.radius[e]);
+  }
+  replace_file(path, text);
+}
+
+void load_beam(dem::Config& c, const Sample& sample, const Vec3& size, double radius, double speed,
+               const std::string& folder) {
+  const std::string file = fmt::format("beam-{}.csv", c.seed);
+  write_notched(folder + "/" + file, sample, size, radius, c.seed);
+  dem::BodyConfig& body = c.bodies[0];
+  body.shape = "file";
+  body.file = file;
+  body.pack = {};
+  body.volume = size.x * size.y * size.z - 4.0 * radius * beam_notch * size.y;
+  const double below = -0.5 * size.z + 2.0 * radius, width = 1.5 * radius;
+  const auto roller = [&](const char* name, double x) {
+    return support(name, {x - width, -far, -far}, {x + width, far, below}, {"z"}, {}, 0.0);
+  };
+  c.supports = {roller("left", -0.5 * beam_span), roller("right", 0.5 * beam_span),
+                support("top", {-width, -far, -below}, {width, far, far}, {"z"}, {0.0, 0.0, -speed},
+                        0.1 * c.time.end)};
+  c.probes = {
+      probe("force_top", "top", "force_z", "sum"), probe("force_left", "left", "force_z", "sum"),
+      probe("force_right", "right", "force_z", "sum"), probe("top", "top", "position_z", "mean")};
+}
+
+}  // namespace
+
+Sample sample_of(const dem::Config& config, const std::string& material) {
+  Sample sample;
+  const auto found = std::find_if(config.materials.begin(), config.materials.end(),
+                                  [&](const auto& m) { return m.name == material; });
+  if (found == config.materials.end())
+    throw InputError(fmt::format("the case has no material {}; nothing was run", material));
+  if (found->law != "concrete" && found->law != "parallel")
+    throw InputError(
+        fmt::format("material {} has the law {}: only concrete and parallel bonds are "
+                    "tested; nothing was run",
+                    material, found->law));
+  sample.material = *found;
+  sample.contact = config.contact;
+  for (const dem::BodyConfig& body : config.bodies)
+    if (body.material == material && body.pack.count > 0) {
+      sample.size_ratio = body.pack.size_ratio;
+      sample.compactness = body.pack.compactness;
+      break;
+    }
+  if (!config.bodies.empty() && config.links.count == 0 && config.links.per_element == 0.0)
+    sample.range = config.links.range;
+  return sample;
+}
+
+const std::vector<SpecimenTest>& specimen_tests() {
+  const Vec3 prism{prism_edge, prism_edge, prism_height}, cube{prism_edge, prism_edge, prism_edge};
+  static const std::vector<SpecimenTest> tests{
+      {"compression_prism", "compression, prism, smooth ends", Loading::compression, prism},
+      {"compression_cube", "compression, cube, smooth ends", Loading::compression, cube},
+      {"platens_prism", "compression, prism, rough platens", Loading::platens, prism},
+      {"platens_cube", "compression, cube, rough platens", Loading::platens, cube},
+      {"tension", "direct tension, prism", Loading::tension, prism},
+      {"brazilian",
+       "Brazilian, disc",
+       Loading::brazilian,
+       {disc_diameter, disc_diameter, disc_thickness}},
+      {"bending",
+       "three-point bending, notched beam",
+       Loading::bending,
+       {beam_length, beam_edge, beam_edge}}};
+  return tests;
+}
+
+dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t seed,
+                    const std::string& folder) {
+  dem::Config c;
+  c.title = test.title;
+  c.seed = seed;
+  c.local_damping = 0.3;
+  c.materials = {sample.material};
+  c.contact = sample.contact;
+  c.links.range = sample.range;
+  c.output.frames = 0;
+  c.output.fields = c.output.pictures = false;
+  c.energy.stop = 0.1;
+  c.search.margin = 0.5;
+  add_body(c, sample, test.size);
+  const double prism = prism_edge * prism_edge * prism_height;
+  const double radius = mean_radius(prism * sample.compactness, sample.elements);
+  // Speeds and times: strains of 0.5 % in compression at 0.6/s and of 0.05 % in tension at 0.2/s,
+  // as slow as halving the rate changes the strength by less than packings differ.
+  const double height = test.size.z;
+  switch (test.loading) {
+    case Loading::compression:
+      c.time.end = 5e-3 / 0.6;
+      load_ends(c, test.size, radius, -0.6 * height);
+      break;
+    case Loading::platens:
+      c.time.end = 8e-3 / 0.8;
+      load_by_platens(c, test.size, 0.8 * height);
+      break;
+    case Loading::tension:
+      c.time.end = 5e-4 / 0.2;
+      load_ends(c, test.size, radius, 0.2 * height);
+      break;
+    case Loading::brazilian:
+      c.time.end = 4e-3;
+      load_strips(c, sample, 0.05);
+      break;
+    case Loading::bending:
+      c.local_damping = 0.05;  // more would be work of the falling halves
+      c.time.end = 7e-3;
+      load_beam(c, sample, test.size, radius, 0.08, folder);
+      break;
+  }
+  return c;
+}
+
+}  // namespace breccia::laboratory

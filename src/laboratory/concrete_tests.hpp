@@ -1,0 +1,51 @@
+#pragma once
+// The virtual laboratory of the DEM: small specimens of one material, loaded as a laboratory loads
+// them.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dem/setup/config.hpp"
+
+namespace breccia::laboratory {
+
+/// What all specimens are made of.
+struct Sample {
+  dem::MaterialConfig material;
+  dem::ContactConfig contact;
+  double size_ratio = 2.0, compactness = 0.56;  ///< of the packing  [-]
+  double range = 1.443;                         ///< interaction range  [-]
+  int elements =
+      1200;  ///< of the prism and of the disc; the others have as large ones as the prism  [-]
+};
+
+/// The material of a case, packed and linked as the first body of it is.
+/// @throws InputError if there is no such material, or it is no concrete or rock
+Sample sample_of(const dem::Config& config, const std::string& material);
+
+/// The tests that there are.
+enum class Loading { compression, platens, tension, brazilian, bending };
+
+struct SpecimenTest {
+  std::string name;   ///< of files
+  std::string title;  ///< for people
+  Loading loading;
+  Vec3 size;  ///< edges; of the disc: diameter, diameter, thickness  [m]
+};
+
+/// compression between smooth ends of prism and cube, and between rough platens of both; direct
+/// tension; Brazilian; three-point bending of a notched beam.
+const std::vector<SpecimenTest>& specimen_tests();
+
+/// Distance of the beam's supports, depth of its notch.  [m]
+inline constexpr double beam_span = 0.3, beam_notch = 0.033;
+
+/// The case of a test. Ends of prisms are layers of elements that move at a constant speed along z
+/// and are free across; rough platens are walls with the friction of the contacts.
+/// @param folder  gets the file of spheres that a notched beam is made of
+/// @throws IoError if that file cannot be written
+dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t seed,
+                    const std::string& folder);
+
+}  // namespace breccia::laboratory

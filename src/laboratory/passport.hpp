@@ -1,0 +1,65 @@
+#pragma once
+// What tests of a material show, beside what a laboratory measured: curves, numbers, one page.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/case/material_library.hpp"
+#include "io/picture/line_plot.hpp"
+#include "laboratory/concrete_tests.hpp"
+#include "laboratory/statistics.hpp"
+
+namespace breccia::laboratory {
+
+/// A loading curve: strain [-] and stress [Pa] in the sense of the loading; of the beam deflection
+/// [m] and force [N].
+struct LoadCurve {
+  std::string x_name, y_name;  ///< with units
+  std::vector<double> x, y;
+};
+
+/// Of one specimen: its curve, and numbers by name: strength, young, poisson, peak_strain,
+/// fracture_energy.
+struct SpecimenResult {
+  LoadCurve curve;
+  std::map<std::string, double> numbers;  ///<  [SI]
+};
+
+/// Reads the history of a run of the test.
+/// @throws IoError, InputError if it cannot be read or lacks the test's probes
+SpecimenResult specimen_result(const SpecimenTest& test, const std::string& folder);
+
+/// All specimens of a test.
+struct TestResults {
+  SpecimenTest test;
+  std::vector<SpecimenResult> specimens;
+  std::vector<std::string> failures;  ///< of runs without a result
+};
+
+/// A line of the passport.
+struct PassportLine {
+  std::string test, quantity, unit;
+  Spread spread;
+  std::optional<double> target;
+  double tolerance = 0.0;  ///< of the mean, over the target
+  bool pass() const;
+};
+
+/// @param targets  macroscopic numbers of the material; none: the line has no verdict. Means may
+///                 miss them by 3 % (E), 5 % (strengths), 10 % (nu, fracture energy). The splitting
+///                 strength is held against the tensile one (fib Model Code 2010, 5.1.5.1)
+///                 unless there is a target of its own.
+std::vector<PassportLine> passport_lines(const std::vector<TestResults>& results,
+                                         const std::vector<MaterialTarget>& targets);
+
+/// passport.md.
+std::string passport_page(const std::string& material, const Sample& sample,
+                          const std::vector<TestResults>& results,
+                          const std::vector<PassportLine>& lines);
+
+/// One plot a test with the curves of all specimens.
+std::vector<LinePlot> passport_plots(const std::vector<TestResults>& results);
+
+}  // namespace breccia::laboratory

@@ -1,0 +1,153 @@
+// Specimens of the virtual laboratory, and what their curves are reduced to.
+
+#include "laboratory/passport.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "exec/error.hpp"
+#include "io/case/case_file.hpp"
+#include "io/whole_file.hpp"
+#include "math/constants.hpp"
+#include "prepare/checks/check_case.hpp"
+#include "unit/run/program.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia::laboratory {
+namespace {
+
+Sample concrete() {
+  Sample sample;
+  sample.material.name = "c";
+  sample.elements = 300;
+  return sample;
+}
+const SpecimenTest& test_named(const std::string& name) {
+  for (const SpecimenTest& test : specimen_tests())
+    if (test.name == name) return test;
+  throw InputError(name);
+}
+
+TEST(Specimens, AreCasesWithoutAProblemAndReadBackAlike) {
+  const ScratchFolder scratch;
+  for (const SpecimenTest& test : specimen_tests()) {
+    const dem::Config config = case_of(test, concrete(), 2, scratch.path());
+    EXPECT_NO_THROW(dem::check_case(config)) << test.name;
+    const std::string text = completed_case(config);
+    EXPECT_EQ(completed_case(read_case<dem::Config>(CaseText{text, "case.toml"}, {})), text);
+    EXPECT_EQ(config.seed, 2);
+  }
+  EXPECT_GT(read_whole_file(scratch / "beam-2.csv").size(), 10000U);
+}
+
+TEST(Specimens, AreOfTheCasesMaterialPackingAndRange) {
+  dem::Config c;
+  c.materials.resize(1);
+  c.materials[0].name = "c";
+  c.materials[0].cohesion = 7e6;
+  c.bodies.resize(1);
+  c.bodies[0].material = "c";
+  c.bodies[0].pack = {50, 1.5, 0.6};
+  c.links.range = 1.3;
+  const Sample sample = sample_of(c, "c");
+  EXPECT_EQ(sample.material.cohesion, 7e6);
+  EXPECT_EQ(sample.size_ratio, 1.5);
+  EXPECT_EQ(sample.compactness, 0.6);
+  EXPECT_EQ(sample.range, 1.3);
+  EXPECT_THROW(sample_of(c, "d"), InputError);
+  c.materials[0].law = "steel";
+  EXPECT_THROW(sample_of(c, "c"), InputError);
+}
+
+/// A bar of E = 30 GPa and nu = 0.2 that breaks at 3 MPa and then carries a third, pulled at 1/s
+/// with layers 0.18 m apart.
+void write_history(const std::string& folder) {
+  std::string text = "step,time,force_top,force_bottom,top,bottom,right,left\n-,s,N,N,m,m,m,m\n";
+  for (int k = 0; k <= 200; ++k) {
+    const double strain = 1e-6 * k, stress = k <= 100 ? 30e9 * strain : 1e6;
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", k, strain, 0.01 * stress, -0.01 * stress,
+                        0.09 * (1.0 + strain), -0.09 * (1.0 + strain), 0.04 * (1.0 - 0.2 * strain),
+                        -0.04 * (1.0 - 0.2 * strain));
+  }
+  replace_file(folder + "/history.csv", text);
+}
+
+TEST(SpecimenResult, OfABarIsItsModulusRatioAndStrength) {
+  const ScratchFolder scratch;
+  write_history(scratch.path());
+  const SpecimenResult result = specimen_result(test_named("tension"), scratch.path());
+  EXPECT_NEAR(result.numbers.at("strength"), 3e6, 1.0);
+  EXPECT_NEAR(result.numbers.at("peak_strain"), 1e-4, 1e-10);
+  EXPECT_NEAR(result.numbers.at("young"), 30e9, 1e3);
+  EXPECT_NEAR(result.numbers.at("poisson"), 0.2, 1e-6);
+}
+
+TEST(SpecimenResult, OfABeamIsTheWorkOverItsLigament) {
+  const ScratchFolder scratch;
+  std::string text = "time,force_top,top\ns,N,m\n";  // a triangle of 1 kN and 0.4 mm
+  for (int k = 0; k <= 40; ++k)
+    text += fmt::format("{},{},{}\n", k, -1000.0 + 50.0 * std::abs(k - 20), 0.05 - 1e-5 * k);
+  replace_file(scratch / "history.csv", text);
+  const SpecimenResult result = specimen_result(test_named("bending"), scratch.path());
+  EXPECT_NEAR(result.numbers.at("fracture_energy"), 0.5 * 1000.0 * 4e-4 / (0.1 * 0.067), 1e-6);
+}
+
+TEST(SpecimenResult, NamesTheProbeThatIsMissing) {
+  const ScratchFolder scratch;
+  replace_file(scratch / "history.csv", "time\ns\n0\n1\n");
+  EXPECT_THROW(specimen_result(test_named("tension"), scratch.path()), InputError);
+}
+
+TEST(Passport, HoldsMeansAgainstTargetsWithinTheirTolerances) {
+  TestResults tension{test_named("tension"), {}, {}}, disc{test_named("brazilian"), {}, {}};
+  for (const double strength : {2.9e6, 3.1e6}) {
+    tension.specimens.push_back({{}, {{"strength", strength}}});
+    disc.specimens.push_back({{}, {{"strength", 1.1 * strength}}});
+  }
+  const auto lines = passport_lines({tension, disc}, {{"tension", 3e6, "Pa"}});
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_TRUE(lines[0].pass());
+  EXPECT_FALSE(lines[1].pass());  // 10 % off, 5 % are allowed
+  const std::string page = passport_page("c", concrete(), {tension, disc}, lines);
+  EXPECT_NE(
+      page.find("| direct tension, prism | strength | MPa | 3 +- 0.14 (2) | 3 | +0.0 % | pass |"),
+      std::string::npos)
+      << page;
+  EXPECT_NE(page.find("+10.0 % | **fail** |"), std::string::npos) << page;
+}
+
+TEST(TestCommand, WritesThePassportOfAMaterial) {
+  const ScratchFolder scratch;
+  replace_file(scratch / "c.toml", R"(
+breccia = 1
+method = "dem3d"
+[time]
+end = 1.0
+[material.c]
+law = "concrete"
+[[body]]
+name = "b"
+shape = "box"
+material = "c"
+size = [0.1, 0.1, 0.1]
+pack = { count = 100, compactness = 0.56 }
+)");
+  const std::string arguments = "test '" +
+                                scratch / "c.toml' --material c --only tension --seeds 1 " +
+                                "--elements 200 --target 'tension=3 MPa' -o '" + scratch / "out'";
+  const int exit_code = wait_for(start_program(arguments, scratch / "output.txt"));
+  EXPECT_TRUE(exit_code == 0 || exit_code == 9) << read_whole_file(scratch / "output.txt");
+  const std::string page = read_whole_file(scratch / "out/passport.md");
+  EXPECT_NE(page.find("| direct tension, prism | strength | MPa | "), std::string::npos) << page;
+  EXPECT_TRUE(std::filesystem::exists(scratch / "out/curves/tension-1.csv"));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "out/passport.svg"));
+  EXPECT_EQ(wait_for(start_program(arguments + " --only dance", scratch / "output.txt")), 2);
+  EXPECT_NE(read_whole_file(scratch / "output.txt").find("the tests are compression_prism"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace breccia::laboratory
