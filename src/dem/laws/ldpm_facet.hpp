@@ -1,0 +1,213 @@
+#pragma once
+// The facet of the lattice discrete particle model of concrete (LDPM).
+
+#include "math/elementary.hpp"
+#include "math/vec.hpp"
+
+namespace breccia::dem {
+
+/// State of a facet from step to step.
+template <class R>
+struct LdpmFacetStateOf {
+  Vec3Of<R> strain;      ///< e_N, e_M, e_L in the frame of the edge  [-]
+  Vec3Of<R> stress;      ///< s_N, s_M, s_L likewise  [Pa]
+  R largest_normal;      ///< largest e_N so far, at least 0  [-]
+  R largest_tangential;  ///< largest e_T so far  [-]
+};
+using LdpmFacetState = LdpmFacetStateOf<double>;
+
+/// Energies that a facet has spent in one step, over its volume A L.  [J/m3]
+template <class R>
+struct LdpmSpentOf {
+  R fracture;  ///< opened
+  R plastic;   ///< closed, by its normal strain: pore collapse and compaction
+  R friction;  ///< closed, by its tangential strain
+};
+
+/// Constitutive law of a facet between two particles: tension and its strains are positive.
+///
+///   e_T = sqrt(e_M^2 + e_L^2),  E_T = alpha E_0
+///   open, e_N > 0: fracture and cohesion along the effective strain
+///     e   = sqrt(e_N^2 + alpha e_T^2),  tan omega = e_N / (sqrt(alpha) e_T)
+///     s_0 = 2 s_t / (sin omega + sqrt(sin^2 omega + 4 alpha cos^2 omega / r_st^2))
+///     s_b = s_0 exp(-H_0 <e_max - s_0 / E_0> / s_0),  H_0 = H_t (2 omega / pi)^n_t
+///     s   = min(s_b, <s_old + E_0 (e - e_old)>);  s_N = s e_N / e,  s_T = alpha s e_T / e
+///   closed: pore collapse and compaction, bounded by the volumetric strain e_V
+///     s_N = max(-bound, min(0, s_N_old + E_Nc de_N)),  E_Nc = E_d beyond -s_c0, else E_0
+///     bound = s_c0 + <x - e_c0> H_c, x = -e_V;  beyond e_c1 = k_c0 e_c0 exponential, same slope
+///     H_c = (H_c0 - H_c1) / (1 + k_c2 <r_DV - k_c1>) + H_c1,  r_DV = |e_N - e_V| / (e_v0 + <-e_V>)
+///   and friction
+///     |s_T| <= s_s + (mu_0 - mu_inf) s_N0 (1 - exp(s_N / s_N0)) - mu_inf s_N
+///
+/// H_t = 2 E_0 / (l_t / L - 1) makes the energy of a whole rupture in tension s_t^2 l_t / (2 E_0)
+/// for edges of any length L < l_t. Source: Cusatis, Pelessone, Mencarelli 2011, Cem. Concr.
+/// Compos. 33 (9), part I; docs/theory-ldpm.md. The quotient of s_0 is the published one, regular
+/// at omega = 0.
+struct LdpmFacet {
+  double young;               ///< E_0, normal modulus  [Pa]
+  double shear_ratio;         ///< alpha  [-]
+  double tensile_strength;    ///< s_t  [Pa]
+  double tensile_length;      ///< l_t = 2 E_0 G_t / s_t^2  [m]
+  double strength_ratio;      ///< r_st = s_s / s_t  [-]
+  double softening_exponent;  ///< n_t  [-]
+  double unloading;           ///< k_t: reopening starts at k_t (e_max - s_b / E_0)  [-]
+  double yield;               ///< s_c0, start of pore collapse  [Pa]
+  double hardening;           ///< H_c0  [Pa]
+  double final_hardening;     ///< H_c1  [Pa]
+  double compaction_strain;   ///< k_c0: start of compaction over s_c0 / E_0  [-]
+  double deviatoric_start;    ///< k_c1  [-]
+  double deviatoric_slope;    ///< k_c2  [-]
+  double friction;            ///< mu_0  [-]
+  double final_friction;      ///< mu_inf  [-]
+  double friction_stress;     ///< s_N0  [Pa]
+  double densified;           ///< E_d, unloading modulus beyond s_c0  [Pa]
+
+  static constexpr double deviatoric_strain = 0.1;  ///< k_c3 = e_v0 E_0 / s_c0  [-]
+
+  double shear_strength() const { return strength_ratio * tensile_strength; }
+
+  /// Brings a facet of an edge of reference length `length` to a strain.
+  /// @param volumetric  e_V, a third of the volumetric strain of its tetrahedron  [-]
+  template <class R>
+  BR_HD LdpmSpentOf<R> update(const R& length, const Vec3Of<R>& strain, const R& volumetric,
+                              LdpmFacetStateOf<R>& state) const {
+    const LdpmFacetStateOf<R> old = state;
+    const R tangential = strain.y * strain.y + strain.z * strain.z;  // e_T^2
+    state.strain = strain;
+    state.largest_normal = max(old.largest_normal, strain.x);
+    state.largest_tangential = max(old.largest_tangential, sqrt(tangential));
+    const auto open = strain.x > 0.0;
+    const auto closed = !open;
+    if (any(open)) state.stress = opened(length, tangential, old, state);
+    if (any(closed)) state.stress = select(open, state.stress, pressed(volumetric, old, strain));
+
+    const Vec3Of<R> de = strain - old.strain;
+    const R normal_work = 0.5 * (old.stress.x + state.stress.x) * de.x;
+    const R tangential_work =
+        0.5 * ((old.stress.y + state.stress.y) * de.y + (old.stress.z + state.stress.z) * de.z);
+    const R normal = normal_work - (stored_normal(state.stress.x) - stored_normal(old.stress.x));
+    const R sliding =
+        tangential_work - (stored_tangential(state.stress) - stored_tangential(old.stress));
+    const R none = constant<R>(0.0);
+    return {select(open, normal + sliding, none), select(open, none, normal),
+            select(open, none, sliding)};
+  }
+
+  /// Stored energy over the volume A L.  [J/m3]
+  template <class R>
+  BR_HD R stored(const Vec3Of<R>& stress) const {
+    return stored_normal(stress.x) + stored_tangential(stress);
+  }
+
+  /// Opening of the crack at a facet: its strain less the elastic part, times L.  [m]
+  BR_HD Vec3 crack_opening(double length, const LdpmFacetState& s) const {
+    const double across = 1.0 / young, along = 1.0 / (shear_ratio * young);
+    return {length * (s.strain.x - across * s.stress.x), length * (s.strain.y - along * s.stress.y),
+            length * (s.strain.z - along * s.stress.z)};
+  }
+
+ private:
+  template <class R>
+  BR_HD R stored_normal(const R& stress) const {
+    const R beyond = min(stress + yield, constant<R>(0.0));  // below -s_c0
+    const R within = stress - beyond;
+    // u = s_c0^2 / (2 E_0) + (s^2 - s_c0^2) / (2 E_d) below
+    return within * within / (2.0 * young) + beyond * (stress - yield) / (2.0 * densified);
+  }
+  template <class R>
+  BR_HD R stored_tangential(const Vec3Of<R>& stress) const {
+    return (stress.y * stress.y + stress.z * stress.z) / (2.0 * shear_ratio * young);
+  }
+
+  /// Stress of an open facet.
+  template <class R>
+  BR_HD Vec3Of<R> opened(const R& length, const R& tangential, const LdpmFacetStateOf<R>& old,
+                         const LdpmFacetStateOf<R>& now) const {
+    const R one = constant<R>(1.0), none = constant<R>(0.0);
+    const auto open = now.strain.x > 0.0;
+    const R e = select(open, effective(now.strain.x, tangential), one);
+    const R sine = max(now.strain.x / e, constant<R>(1e-300));
+    const R cosine2 = shear_ratio * tangential / (e * e);
+    const R s0 = 2.0 * tensile_strength /
+                 (sine + sqrt(sine * sine +
+                              (4.0 * shear_ratio / (strength_ratio * strength_ratio)) * cosine2));
+    const R largest =
+        effective(now.largest_normal, now.largest_tangential * now.largest_tangential);
+    const R beyond = largest - s0 / young;
+    R bound = s0;
+    const auto softened = open && beyond > 0.0;
+    if (any(softened)) {
+      const R half_tangent = min(sine / (1.0 + sqrt(cosine2)), one);   // tan(omega / 2)
+      const R share = 1.2732395447351628 * arc_tangent(half_tangent);  // 2 omega / pi
+      const R slope =
+          2.0 * young / (tensile_length / length - 1.0) * power_of(share, softening_exponent);
+      bound = select(softened, s0 * exponential<R>(-slope * beyond / s0), s0);
+    }
+    bound = select(e < unloading * (largest - bound / young), none, bound);
+    const R old_e =
+        effective(old.strain.x, old.strain.y * old.strain.y + old.strain.z * old.strain.z);
+    const R old_s = sqrt(old.stress.x * old.stress.x +
+                         (old.stress.y * old.stress.y + old.stress.z * old.stress.z) / shear_ratio);
+    const R s = min(bound, max(none, old_s + young * (e - old_e)));
+    const R over = s / e, across = shear_ratio * over;
+    return {over * now.strain.x, across * now.strain.y, across * now.strain.z};
+  }
+  /// sqrt(e_N^2 + alpha e_T^2)
+  template <class R>
+  BR_HD R effective(const R& normal, const R& tangential_square) const {
+    return sqrt(normal * normal + shear_ratio * tangential_square);
+  }
+
+  /// Stress of a closed facet.
+  template <class R>
+  BR_HD Vec3Of<R> pressed(const R& volumetric, const LdpmFacetStateOf<R>& old,
+                          const Vec3Of<R>& strain) const {
+    const R none = constant<R>(0.0);
+    const auto closed = !(strain.x > 0.0);
+    const R de_m = strain.y - old.strain.y, de_l = strain.z - old.strain.z;
+    const R along = trial(old.stress.x, strain.x - old.strain.x);
+    const R normal = max(-bound(volumetric, strain.x, closed), min(none, along));
+
+    const double shear = shear_ratio * young;
+    const R m = old.stress.y + shear * de_m, l = old.stress.z + shear * de_l;
+    const R square = m * m + l * l;
+    const double cohesion = strength_ratio * tensile_strength;
+    const auto beyond = closed && square > cohesion * cohesion;
+    if (!any(beyond)) return {normal, m, l};
+    const R limit = cohesion - final_friction * normal +
+                    (friction - final_friction) * friction_stress *
+                        (1.0 - exponential<R>(normal / friction_stress));
+    const R size = sqrt(square);
+    const R scale =
+        select(beyond && size > limit, limit / max(size, constant<R>(1e-300)), constant<R>(1.0));
+    return {normal, scale * m, scale * l};
+  }
+  /// s_N + E_Nc de: a step that crosses -s_c0 changes its modulus there.
+  template <class R>
+  BR_HD R trial(const R& stress, const R& de) const {
+    if (!(densified > young) && !(densified < young)) return stress + young * de;
+    const R beyond = min(stress + yield, constant<R>(0.0));
+    // elastic strain from the kink at -s_c0, where both branches are zero
+    const R from = beyond / densified + (stress + yield - beyond) / young;
+    const R to = from + de;
+    return select(to < 0.0, densified * to, young * to) - yield;
+  }
+  /// Largest compressive normal stress.
+  template <class R, class Truth>
+  BR_HD R bound(const R& volumetric, const R& strain, const Truth& closed) const {
+    const R none = constant<R>(0.0);
+    const double e_c0 = yield / young, e_c1 = compaction_strain * e_c0;
+    const R x = -volumetric;
+    const R ratio = abs(strain - volumetric) / (deviatoric_strain * e_c0 + max(x, none));
+    const R slope = (hardening - final_hardening) /
+                        (1.0 + deviatoric_slope * max(ratio - deviatoric_start, none)) +
+                    final_hardening;
+    const R line = yield + max(x - e_c0, none) * slope;
+    const auto compacted = closed && x > e_c1;
+    if (!any(compacted)) return line;
+    const R start = yield + (e_c1 - e_c0) * slope;  // s_c1
+    return select(compacted, start * exponential<R>((x - e_c1) * slope / start), line);
+  }
+};
+
+}  // namespace breccia::dem

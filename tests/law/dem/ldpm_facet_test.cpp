@@ -1,0 +1,225 @@
+// The facet of LDPM against closed answers and against an independent program's numbers.
+//
+// Units here: MPa, mm; strains in 1e-3; energies over volume in mJ/mm3 = MPa.
+
+#include "dem/laws/ldpm_facet.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace breccia::dem {
+namespace {
+
+/// Concrete of public benchmarks of the model (max. grain 12 mm).
+LdpmFacet benchmark() {
+  return {60273.0,       0.25, 3.44, 500.0, 2.6, 0.4, 0.0,   150.0,  0.4 * 60273.0,
+          0.1 * 60273.0, 4.0,  1.0,  5.0,   0.4, 0.0, 600.0, 60273.0};
+}
+
+/// A facet on an edge, led along straight legs.
+class Facet {
+ public:
+  using Volumetric = std::function<double(double)>;
+  explicit Facet(
+      const LdpmFacet& by, double length = 10.0, Volumetric volumetric = [](double) { return 0.0; })
+      : law(by), length_(length), volumetric_(std::move(volumetric)) {}
+
+  /// @returns stress at the end of a leg
+  Vec3 to(double normal, double m = 0.0, double l = 0.0, int steps = 20'000) {
+    const Vec3 from = state.strain, goal{1e-3 * normal, 1e-3 * m, 1e-3 * l};
+    for (int k = 1; k <= steps; ++k) {
+      const double share = static_cast<double>(k) / steps;
+      const Vec3 strain = k == steps ? goal : from + share * (goal - from);
+      const LdpmFacetState before = state;
+      const auto spent = law.update(length_, strain, volumetric_(strain.x), state);
+      const Vec3 de = state.strain - before.strain;
+      work += 0.5 * dot(before.stress + state.stress, de);
+      fracture += spent.fracture, plastic += spent.plastic, friction += spent.friction;
+      least = std::min({least, spent.fracture, spent.plastic, spent.friction});
+    }
+    return state.stress;
+  }
+  double missing() const { return work - fracture - plastic - friction - law.stored(state.stress); }
+
+  LdpmFacet law;
+  LdpmFacetState state{};
+  double work = 0.0, fracture = 0.0, plastic = 0.0, friction = 0.0, least = 0.0;
+
+ private:
+  double length_;
+  Volumetric volumetric_;
+};
+
+void expect_stress(const Vec3& stress, double normal, double m, double l = 0.0) {
+  EXPECT_NEAR(stress.x, normal, 2e-6 * (1.0 + std::fabs(normal)));
+  EXPECT_NEAR(stress.y, m, 2e-6 * (1.0 + std::fabs(m)));
+  EXPECT_NEAR(stress.z, l, 2e-6 * (1.0 + std::fabs(l)));
+}
+
+TEST(LdpmFacet, tension_softens_exponentially) {
+  Facet f(benchmark());
+  for (const auto& [strain, stress] : {std::pair{0.05, 3.01365},
+                                       {0.1, 3.336000},
+                                       {0.2, 3.105757},
+                                       {0.5, 2.506060},
+                                       {1.0, 1.752662},
+                                       {2.0, 0.857258}})
+    expect_stress(f.to(strain), stress, 0.0);
+  EXPECT_NEAR(f.work, 3.709626e-3, 1e-8);
+  EXPECT_NEAR(f.fracture, 3.703529e-3, 1e-8);
+}
+
+TEST(LdpmFacet, rupture_spends_the_fracture_energy_whatever_the_length) {
+  const LdpmFacet law = benchmark();
+  // G_t = s_t^2 l_t / (2 E_0), over the volume A L
+  const double energy =
+      law.tensile_strength * law.tensile_strength * law.tensile_length / (2.0 * law.young);
+  for (const double length : {5.0, 10.0, 100.0}) {
+    Facet f(law, length);
+    f.to(400.0 / length * 10.0, 0.0, 0.0, 400'000);
+    EXPECT_NEAR(f.fracture * length, energy, 2e-4 * energy) << length;
+  }
+}
+
+TEST(LdpmFacet, unloads_elastically_and_opens_again_from_where_it_closed) {
+  Facet f(benchmark());
+  f.to(1.0);
+  expect_stress(f.to(0.98), 0.547202, 0.0);
+  expect_stress(f.to(0.9), 0.0, 0.0);
+  expect_stress(f.to(0.92), 1.205460, 0.0);
+  expect_stress(f.to(1.1), 1.631697, 0.0);
+}
+
+TEST(LdpmFacet, opens_later_with_an_unloading_share) {
+  LdpmFacet law = benchmark();
+  law.unloading = 0.5;
+  Facet f(law);
+  expect_stress(f.to(1.0), 1.752662, 0.0);
+  expect_stress(f.to(0.2), 0.0, 0.0);
+  expect_stress(f.to(0.4), 0.0, 0.0);
+  EXPECT_NEAR(f.to(0.5).x, 0.876369, 1e-3);
+  EXPECT_NEAR(f.to(0.51).x, 1.479099, 1e-3);
+}
+
+TEST(LdpmFacet, mixed_opening_follows_the_direction_of_the_strain) {
+  Facet f(benchmark());
+  expect_stress(f.to(0.05, 0.05), 3.013650, 0.753413);
+  expect_stress(f.to(0.1, 0.1), 3.317102, 0.829275);
+  expect_stress(f.to(0.5, 0.5), 2.580810, 0.645202);
+  expect_stress(f.to(1.0, 1.0), 1.885830, 0.471457);
+  Facet g(benchmark());
+  expect_stress(g.to(0.1, 0.3, -0.2), 3.028513, 2.271385, -1.514256);
+  expect_stress(g.to(0.5, 1.5, -1.0), 2.475524, 1.856643, -1.237762);
+}
+
+TEST(LdpmFacet, shear_without_pressure_is_plastic_at_the_cohesion) {
+  Facet f(benchmark());
+  expect_stress(f.to(0.0, 0.3), 0.0, 4.520475);
+  expect_stress(f.to(0.0, 0.6), 0.0, 8.944);
+  expect_stress(f.to(0.0, 1.0), 0.0, 8.944);
+  expect_stress(f.to(0.0, -1.0), 0.0, -8.944);
+  EXPECT_NEAR(f.friction, 1.090544e-2, 1e-8);
+  Facet g(benchmark());
+  g.to(1e-3);
+  expect_stress(g.to(1e-3, 0.6), 0.059108, 8.866215);
+  expect_stress(g.to(1e-3, 2.0), 0.017751, 8.875284);
+}
+
+TEST(LdpmFacet, confined_compression_hardens_and_stiffens) {
+  Facet f(benchmark(), 10.0, [](double e) { return e; });
+  expect_stress(f.to(-2.0), -120.546, 0.0);
+  expect_stress(f.to(-5.0), -210.546, 0.0);
+  expect_stress(f.to(-10.0), -331.093809, 0.0);
+  expect_stress(f.to(-20.0), -687.446194, 0.0);
+  expect_stress(f.to(-19.0), -627.173194, 0.0);
+  EXPECT_NEAR(f.plastic, 2.950774, 1e-5);
+}
+
+TEST(LdpmFacet, unconfined_compression_has_a_plateau) {
+  Facet f(benchmark(), 10.0, [](double e) { return e / 3.0; });
+  for (const auto& [strain, stress] : {std::pair{-2.0, -120.546},
+                                       {-5.0, -150.0},
+                                       {-10.0, -157.969838},
+                                       {-20.0, -188.576366},
+                                       {-30.0, -218.864651},
+                                       {-60.0, -331.597391}})
+    expect_stress(f.to(strain), stress, 0.0);
+  Facet still(benchmark());
+  expect_stress(still.to(-5.0), -150.0, 0.0);
+  expect_stress(still.to(-20.0), -150.0, 0.0);
+  Facet swollen(benchmark(), 10.0, [](double) { return 1e-3; });
+  expect_stress(swollen.to(-2.0), -120.546, 0.0);
+  expect_stress(swollen.to(-5.0), -150.0, 0.0);
+}
+
+TEST(LdpmFacet, denser_concrete_unloads_stiffer) {
+  LdpmFacet law = benchmark();
+  law.densified = 1.81 * law.young;
+  Facet f(law, 10.0, [](double e) { return e; });
+  expect_stress(f.to(-10.0), -331.093809, 0.0);
+  EXPECT_NEAR(law.stored(f.state.stress), 0.5859532, 1e-7);
+  expect_stress(f.to(-9.5), -276.546744, 0.0);
+  expect_stress(f.to(-8.0), -129.505828, 0.0);
+  expect_stress(f.to(-6.0), -8.959828, 0.0);
+  EXPECT_NEAR(f.missing(), 0.0, 1e-12 * f.work);
+}
+
+TEST(LdpmFacet, friction_grows_with_pressure_and_changes_direction) {
+  Facet f(benchmark(), 10.0, [](double e) { return e; });
+  expect_stress(f.to(-1.0), -60.273, 0.0);
+  expect_stress(f.to(-1.0, 2.0), -60.273, 30.1365);
+  expect_stress(f.to(-1.0, 4.0), -60.273, 31.881805);
+  const Vec3 turned = f.to(-1.0, 4.0, 2.0);
+  EXPECT_NEAR(turned.y, 21.526967, 2e-3);
+  EXPECT_NEAR(turned.z, 23.516786, 2e-3);
+  const Vec3 back = f.to(-1.0, 0.0, 2.0);
+  EXPECT_NEAR(back.y, -27.943441, 2e-3);
+  EXPECT_NEAR(back.z, 15.349711, 2e-3);
+}
+
+TEST(LdpmFacet, opening_turns_the_stress_into_the_direction_of_the_strain) {
+  Facet f(benchmark(), 10.0, [](double e) { return e; });
+  f.to(-1.0);
+  f.to(-1.0, 4.0);
+  expect_stress(f.to(-0.001, 4.0), -0.060273, 8.968108);
+  expect_stress(f.to(0.001, 4.0), 0.008849, 8.849127);
+  expect_stress(f.to(0.1, 4.0), 0.733595, 7.335952);
+}
+
+TEST(LdpmFacet, random_walks_lose_no_energy_and_give_none_back) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int walk = 0; walk < 50; ++walk) {
+    LdpmFacet law = benchmark();
+    if (walk % 2 == 1) law.densified = 1.81 * law.young;
+    Facet f(law, 10.0, [walk](double e) { return 0.1 * (walk % 8) * e; });
+    Vec3 at{};
+    for (int leg = 0; leg < 30; ++leg) {
+      at += Vec3{2.0 * normal(random), normal(random), normal(random)};
+      f.to(at.x, at.y, at.z, 2'000);
+    }
+    EXPECT_NEAR(f.missing(), 0.0, 1e-12 * (std::fabs(f.work) + 1.0)) << walk;
+    EXPECT_GT(f.least, -1e-5) << walk;
+  }
+}
+
+TEST(Elementary, functions_are_those_of_the_library_to_rounding) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int k = 0; k < 20'000; ++k) {
+    const double x = 100.0 * unit(random) - 70.0, y = unit(random), z = std::pow(10.0, -60.0 * y);
+    EXPECT_NEAR(exponential(x) / std::exp(x), 1.0, 1e-15);
+    EXPECT_NEAR(arc_tangent(y), std::atan(y), 1e-15);
+    EXPECT_NEAR(logarithm(z), std::log(z), 1e-15 * (1.0 - std::log(z)));
+    EXPECT_NEAR(power_of(y, 0.4), std::pow(y, 0.4), 1e-14);
+  }
+  EXPECT_EQ(exponential(0.0), 1.0);
+  EXPECT_EQ(logarithm(1.0), 0.0);
+  EXPECT_EQ(arc_tangent(0.0), 0.0);
+}
+
+}  // namespace
+}  // namespace breccia::dem
