@@ -1,0 +1,253 @@
+#include "prepare/ldpm/particles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "exec/error.hpp"
+#include "math/constants.hpp"
+#include "math/elementary.hpp"
+
+namespace breccia::prepare {
+namespace {
+
+constexpr double node_spacing = 1.2;  ///< of surface nodes, over d_0
+constexpr double clearance = 0.2;     ///< of grains, over d_0
+constexpr double narrowing = 0.75;    ///< of the clearance, where grains find no place
+constexpr double least_clearance = 0.01;
+constexpr int tries = 2'000;  ///< of a grain with one clearance
+
+double power(double x, double p) {
+  return exponential(p * logarithm(x));
+}
+int intervals(double length, double spacing) {
+  return std::max(1, static_cast<int>(length / spacing + 0.5));
+}
+
+/// Cosine and sine of a share of a whole turn: those of the library differ between machines.
+struct Turn {
+  double cosine, sine;
+};
+Turn turn_by(double share) {
+  // series at an eighth of the angle, |x| < 0.79, doubled three times
+  const double x = 2.0 * pi * (share - std::floor(share + 0.5)) / 8.0, x2 = x * x;
+  double sine = 0.0, cosine = 0.0;
+  for (int k = 21; k > 0; k -= 2) sine = 1.0 - sine * x2 / ((k + 1.0) * (k + 2.0));
+  for (int k = 20; k >= 0; k -= 2) cosine = 1.0 - cosine * x2 / ((k + 1.0) * (k + 2.0));
+  sine = x * sine;
+  for (int k = 0; k < 3; ++k) {
+    const double doubled = 2.0 * sine * cosine;
+    cosine = cosine * cosine - sine * sine;
+    sine = doubled;
+  }
+  return {cosine, sine};
+}
+
+/// Nodes of a surface, each shifted by its own random numbers.
+class Surface {
+ public:
+  Surface(double spacing, const Random& random) : spacing_(spacing), random_(random) {}
+
+  void add(const Vec3& at) { nodes.push_back(at); }
+  /// Random number in [-1, 1) times the largest shift, `direction` 0 or 1.
+  double shift(double between, int direction) const {
+    return 0.2 * between *
+           (2.0 * random_.uniform(nodes.size(), static_cast<std::uint32_t>(direction)) - 1.0);
+  }
+  double spacing() const { return spacing_; }
+  std::vector<Vec3> nodes;
+
+ private:
+  double spacing_;
+  Random random_;
+};
+
+std::vector<Vec3> box_nodes(const Vec3& size, Surface surface) {
+  const double lengths[3] = {size.x, size.y, size.z};
+  int count[3];
+  for (int c = 0; c < 3; ++c) count[c] = intervals(lengths[c], surface.spacing());
+  for (int i = 0; i <= count[0]; ++i)
+    for (int j = 0; j <= count[1]; ++j)
+      for (int k = 0; k <= count[2]; ++k) {
+        const int at[3] = {i, j, k};
+        double x[3];
+        int faces = 0, shifted = 0;
+        for (int c = 0; c < 3; ++c) faces += at[c] == 0 || at[c] == count[c] ? 1 : 0;
+        if (faces == 0) continue;
+        for (int c = 0; c < 3; ++c) {
+          const double step = lengths[c] / count[c];
+          x[c] = at[c] == count[c] ? 0.5 * lengths[c] : at[c] * step - 0.5 * lengths[c];
+          if (at[c] > 0 && at[c] < count[c]) x[c] += surface.shift(step, shifted++);
+        }
+        surface.add({x[0], x[1], x[2]});
+      }
+  return surface.nodes;
+}
+
+std::vector<Vec3> cylinder_nodes(double radius, double length, Surface surface) {
+  const int rows = intervals(length, surface.spacing());
+  const int round = std::max(6, intervals(2.0 * pi * radius, surface.spacing()));
+  const double row = length / rows;
+  for (int k = 0; k <= rows; ++k)
+    for (int i = 0; i < round; ++i) {
+      const bool rim = k == 0 || k == rows;
+      const Turn t = turn_by((i + 0.5 * (k % 2) + surface.shift(1.0, 0)) / round);
+      const double z = k == rows ? 0.5 * length : k * row - 0.5 * length;
+      surface.add({radius * t.cosine, radius * t.sine, rim ? z : z + surface.shift(row, 1)});
+    }
+  const int rings = intervals(radius, surface.spacing());
+  for (const double z : {-0.5 * length, 0.5 * length}) {
+    for (int ring = 1; ring < rings; ++ring) {
+      const double width = radius / rings, r = width * ring;
+      const int count = std::max(5, intervals(2.0 * pi * r, surface.spacing()));
+      for (int i = 0; i < count; ++i) {
+        const Turn t = turn_by((i + 0.5 * (ring % 2) + surface.shift(1.0, 0)) / count);
+        const double at = r + surface.shift(width, 1);
+        surface.add({at * t.cosine, at * t.sine, z});
+      }
+    }
+    surface.add({0.0, 0.0, z});
+  }
+  return surface.nodes;
+}
+
+/// Particles by cells as wide as two may need to keep from each other.
+class Placed {
+ public:
+  Placed(const Vec3& half, double reach) : half_(half), reach_(reach) {
+    size_[0] = cells(half.x), size_[1] = cells(half.y), size_[2] = cells(half.z);
+    cells_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
+                  static_cast<std::size_t>(size_[2]));
+  }
+  void add(const Vec3& at, double radius, bool grain) {
+    cells_[index(cell(at.x, half_.x, 0), cell(at.y, half_.y, 1), cell(at.z, half_.z, 2))].push_back(
+        {at, radius, grain});
+  }
+  /// Whether a grain keeps off all that are there.
+  bool is_free(const Vec3& at, double radius, double clear) const {
+    const int x = cell(at.x, half_.x, 0), y = cell(at.y, half_.y, 1), z = cell(at.z, half_.z, 2);
+    for (int i = std::max(0, x - 1); i <= std::min(size_[0] - 1, x + 1); ++i)
+      for (int j = std::max(0, y - 1); j <= std::min(size_[1] - 1, y + 1); ++j)
+        for (int k = std::max(0, z - 1); k <= std::min(size_[2] - 1, z + 1); ++k)
+          for (const Item& item : cells_[index(i, j, k)]) {
+            const Vec3 d = at - item.at;
+            const double least = radius + item.radius + (item.grain ? clear : 0.0);
+            if (dot(d, d) < least * least) return false;
+          }
+    return true;
+  }
+
+ private:
+  struct Item {
+    Vec3 at;
+    double radius;
+    bool grain;
+  };
+  int cells(double half) const { return std::clamp(static_cast<int>(2.0 * half / reach_), 1, 400); }
+  int cell(double x, double half, int axis) const {
+    return std::clamp(static_cast<int>((x + half) / (2.0 * half) * size_[axis]), 0,
+                      size_[axis] - 1);
+  }
+  std::size_t index(int i, int j, int k) const {
+    return static_cast<std::size_t>((i * size_[1] + j) * size_[2] + k);
+  }
+  Vec3 half_;
+  double reach_;
+  int size_[3];
+  std::vector<std::vector<Item>> cells_;
+};
+
+/// Whether the cube around a grain lies inside.
+bool holds_cube(const Container& body, const Vec3& at, double radius) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 of{(corner & 1) != 0 ? radius : -radius, (corner & 2) != 0 ? radius : -radius,
+                  (corner & 4) != 0 ? radius : -radius};
+    if (!body.holds(at + of, 0.0)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+double MixDesign::aggregate() const {
+  return 1.0 - cement / cement_density - water_ratio * cement / 1000.0 - air;
+}
+double MixDesign::placed() const {
+  return (1.0 - power(smallest / largest, fuller)) * aggregate();
+}
+
+double cement_of(double density, double water_ratio, double aggregate_ratio) {
+  return density / (1.0 + water_ratio + aggregate_ratio);
+}
+
+std::vector<double> grain_diameters(const MixDesign& mix, double volume, const Random& random) {
+  const double wanted = mix.placed() * volume, q = 3.0 - mix.fuller;
+  const double span = 1.0 - power(mix.smallest / mix.largest, q);
+  std::vector<double> diameters;
+  double filled = 0.0;
+  for (std::uint64_t k = 0;; ++k) {
+    const double d = mix.smallest * power(1.0 - random.uniform(k) * span, -1.0 / q);
+    filled += pi / 6.0 * d * d * d;
+    if (filled > wanted) break;
+    diameters.push_back(d);
+  }
+  std::sort(diameters.begin(), diameters.end(), std::greater<>());
+  return diameters;
+}
+
+std::vector<Vec3> surface_nodes(const Container& body, double spacing, const Random& random) {
+  switch (body.shape) {
+    case Container::Shape::box:
+      return box_nodes(body.size, {spacing, random});
+    case Container::Shape::cylinder:
+      return cylinder_nodes(body.radius, body.length, {spacing, random});
+    case Container::Shape::sphere:
+      break;
+  }
+  throw InputError("bodies of law ldpm are boxes or cylinders");
+}
+
+LdpmParticles place_particles(const Container& body, const MixDesign& mix, const Random& random) {
+  const Random of_nodes{random.seed, random.stream + 0x10000U};
+  const Random of_places{random.seed, random.stream + 0x20000U};
+  LdpmParticles all;
+  all.position = surface_nodes(body, node_spacing * mix.smallest, of_nodes);
+  all.on_surface = static_cast<Index>(all.position.size());
+  all.diameter.assign(all.position.size(), 0.0);
+
+  const std::vector<double> diameters = grain_diameters(mix, body.volume(), random);
+  double clear = clearance * mix.smallest;
+  const Vec3 half = body.half();
+  Placed placed(half, mix.largest + clear);
+  for (const Vec3& node : all.position)
+    placed.add(node, 0.5 * surface_diameter * mix.smallest, false);
+  std::uint64_t tried = 0;
+  for (const double d : diameters) {
+    const double radius = 0.5 * d;
+    Vec3 at{};
+    std::uint64_t last = tried + tries;
+    do {
+      if (tried == last) {
+        clear *= narrowing;
+        last += tries;
+      }
+      if (clear < least_clearance * mix.smallest)
+        throw InputError(fmt::format(
+            "no place for a grain of {:.4g} m after {} of {} others: a smaller share "
+            "of aggregate or a larger body is needed",
+            d, all.position.size() - static_cast<std::size_t>(all.on_surface), diameters.size()));
+      at = {(2.0 * of_places.uniform(tried, 0) - 1.0) * half.x,
+            (2.0 * of_places.uniform(tried, 1) - 1.0) * half.y,
+            (2.0 * of_places.uniform(tried, 2) - 1.0) * half.z};
+      ++tried;
+    } while (!holds_cube(body, at, radius) || !placed.is_free(at, radius, clear));
+    placed.add(at, radius, true);
+    all.position.push_back(at);
+    all.diameter.push_back(d);
+  }
+  return all;
+}
+
+}  // namespace breccia::prepare
