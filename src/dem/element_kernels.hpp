@@ -4,25 +4,23 @@
 #include "core/drift.hpp"
 #include "core/incidence.hpp"
 #include "core/kernel.hpp"
+#include "core/table_over_time.hpp"
 #include "dem/contacts.hpp"
 #include "dem/elements.hpp"
 #include "dem/link_sums.hpp"
 
 namespace breccia::dem {
 
-/// Prescribed motion: in each direction a velocity that grows from zero, linearly.
+/// Prescribed motion: in each direction a velocity times a factor over time.
 struct Motion {
-  Vec3 velocity;  ///<  [m/s]
-  Vec3 ramp;      ///< time to reach it  [s]
+  Vec3 velocity;           ///<  [m/s]
+  AmplitudeTable x, y, z;  ///< factors of its parts
 
-  BR_HD Vec3 at(double time) const {
-    return {share(time, ramp.x) * velocity.x, share(time, ramp.y) * velocity.y,
-            share(time, ramp.z) * velocity.z};
-  }
-
- private:
-  BR_HD static double share(double time, double ramp) {
-    return ramp > 0.0 ? min(1.0, max(0.0, time / ramp)) : 1.0;
+  /// @param times, factors  of all tables
+  BR_HD Vec3 at(double time, const View<const double>& times,
+                const View<const double>& factors) const {
+    return {x.at(time, times, factors) * velocity.x, y.at(time, times, factors) * velocity.y,
+            z.at(time, times, factors) * velocity.z};
   }
 };
 
@@ -120,6 +118,7 @@ struct Kick {
   Vec3 gravity;             ///<  [m/s2]
   double damping;           ///< lambda of Cundall's local damping  [-]
   View<const Motion> motions;
+  View<const double> motion_times, motion_factors;  ///< tables of their factors
   View<const double> mass, inertia;
   View<const ElementState> state;
   View<const Vec3> force, torque;
@@ -226,7 +225,8 @@ struct Kick {
     double x[width_of<R>], y[width_of<R>], z[width_of<R>];
     for (Index k = 0; k < width_of<R>; ++k) {
       const Index way = motion[e + k];
-      const Vec3 v = way >= 0 ? motions[way].at(time + 0.5 * next_dt) : Vec3{};
+      const Vec3 v =
+          way >= 0 ? motions[way].at(time + 0.5 * next_dt, motion_times, motion_factors) : Vec3{};
       x[k] = v.x;
       y[k] = v.y;
       z[k] = v.z;

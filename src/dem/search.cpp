@@ -142,9 +142,12 @@ Pairs near_walls(const World& w) {
   for (const Wall& wall : w.walls) {
     // A wall that moves against the drift uses margins up, too: it may cover one largest margin
     // until it asks for a search.
-    const Vec3 past = wall.velocity - w.travel.drift.velocity;
-    const double reach = (dot(past, past) > 0.0 ? w.parameters.largest_margin : 0.0) +
-                         1e-14 * w.travel.drift.farthest;
+    const Vec3& drift = w.travel.drift.velocity;
+    const bool moves =
+        dot(drift, drift) > 0.0 || w.prescribed.moves(w.prescribed.motions.size() - w.walls.size() +
+                                                      static_cast<std::size_t>(wall_number));
+    const double reach =
+        (moves ? w.parameters.largest_margin : 0.0) + 1e-14 * w.travel.drift.farthest;
     const Buffer<Index> near =
         items_where(w.exec, w.elements.size(),
                     WallNear{wall, reach, w.domain.owned_view(), w.elements.state.view(),

@@ -12,6 +12,7 @@
 #include "dem/links/all.hpp"
 #include "dem/setup/config.hpp"
 #include "dem/setup/model.hpp"
+#include "dem/setup/supports.hpp"
 #include "dem/stepping/kernel_lanes.hpp"
 #include "domain/domain.hpp"
 #include "domain/set_here.hpp"
@@ -90,8 +91,9 @@ struct World : LinkSets {
     state(wall_contacts);
     state(travel);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(contact_pairs, wall_pairs, motions, linked_starts, linked_partners, linked_links,
-         bar_actions, domain.owned_there, domain.migration_reference);
+    each(contact_pairs, wall_pairs, motions, motion_times, motion_factors, linked_starts,
+         linked_partners, linked_links, bar_actions, domain.owned_there,
+         domain.migration_reference);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
@@ -109,7 +111,9 @@ struct World : LinkSets {
   std::vector<std::string> wall_names;
   Buffer<ContactPair> contact_pairs;  ///< by two materials
   Buffer<ContactPair> wall_pairs;     ///< by one material
-  Buffer<Motion> motions;
+  GivenMotions prescribed;            ///< of supports, then of walls
+  Buffer<Motion> motions;             ///< the same where kernels can read them
+  Buffer<double> motion_times, motion_factors;
   // All links by their ends, rows of compressed form: an element's place and global id ascend
   // alike.
   Buffer<Index> linked_starts;    ///< first link of each lower end, and the number of links
@@ -142,6 +146,9 @@ struct World : LinkSets {
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
 /// fit
 World make_world(const Config& config, const Model& model, const Exec& exec);
+
+/// Hands World::prescribed to kernels.
+void place_motions(World& w);
 
 /// All links by their ends, so that a search can leave them out while they hold.
 void set_linked_pairs(World& w);

@@ -138,7 +138,7 @@ struct World {
   Buffer<Hold> holds;
   std::vector<PrescribedMotion> prescribed;
   std::vector<LoadLaw> loads;
-  std::vector<Amplitude> load_amplitudes;
+  std::vector<LoadAmplitude> load_amplitudes;
   Buffer<Index> load_starts;
   Buffer<LoadedEdge> loaded_edges;
   Buffer<EdgeDashpots> dashpots;  ///< of each triangle, where some edge absorbs
@@ -176,7 +176,7 @@ struct World {
 
   // On a device.
   Buffer<Motion> last_motions;        ///< while `motions` are those of the step to come
-  Buffer<AmplitudeTable> amplitudes;  ///< of prescribed motions, then of loads
+  Buffer<AmplitudeTable> amplitudes;  ///< two of each prescribed motion, then of each load
   Buffer<double> amplitude_times, amplitude_factors;
   Buffer<Vec2> prescribed_velocity;
   Buffer<StepClock> clock;

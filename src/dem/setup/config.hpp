@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/case_config.hpp"
+#include "core/table_over_time.hpp"
 
 namespace breccia::dem {
 
@@ -290,7 +291,7 @@ struct WallConfig {
   std::string name;
   Vec3 point{};                ///< on the face  [m]
   Vec3 normal{0.0, 0.0, 1.0};  ///< out of the wall, towards the elements  [-]
-  Vec3 velocity{};             ///<  [m/s]
+  OverTime<Vec3> velocity;     ///<  [m/s]
   double stiffness = 1.0;      ///< over the contact stiffness of an element with its like  [-]
 
   template <class Visit>
@@ -299,7 +300,8 @@ struct WallConfig {
     key.required("name");
     key("point", point, "m", any_number, "a point of the wall's face");
     key("normal", normal, "-", any_number, "direction out of the wall, towards the elements");
-    key("velocity", velocity, "m/s", Range{-1e6, 1e6}, "velocity of the wall");
+    key("velocity", velocity, "m/s", Range{-1e6, 1e6},
+        "velocity of the wall, or a table [[t, x, y, z], ...] of it over time");
     key("stiffness", stiffness, "-", positive,
         "stiffness of its linear contacts over that of two like elements");
   }
@@ -311,8 +313,8 @@ struct SupportConfig {
   std::string on;  ///< group; empty: all
   Vec3 min{-no_limit, -no_limit, -no_limit}, max{no_limit, no_limit, no_limit};  ///<  [m]
   std::vector<std::string> fix{"x", "y", "z"};
-  Vec3 velocity{};    ///< of the fixed directions  [m/s]
-  double ramp = 0.0;  ///< time from rest to that velocity  [s]
+  OverTime<Vec3> velocity;  ///< of the fixed directions  [m/s]
+  double ramp = 0.0;        ///< time from rest to that velocity  [s]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -325,7 +327,8 @@ struct SupportConfig {
         "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
         "that share elements prescribe other directions, or the same motion");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
-        "prescribed velocity of the fixed directions");
+        "prescribed velocity of the fixed directions, or a table [[t, x, y, z], ...] of it over "
+        "time, linear in between and constant beyond its ends");
     key("ramp", ramp, "s", not_negative,
         "time in which that velocity grows from zero, linearly; 0: the elements have it from the "
         "start");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -44,7 +45,7 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
   copy_to(e.orientation, std::vector<Quaternion>(ids.size()));
   copy_to(e.fixed, held.fixed);
   copy_to(e.motion, held.motion);
-  w.motions = filled(w, held.motions);
+  w.prescribed = held.motions;
   double sum = 0.0;
   for (const double r : m.radius) sum += r;
   w.parameters.mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
@@ -224,8 +225,14 @@ void set_contacts(World& w, const Config& config, const Model& m) {
     const double size = norm(wall.normal);
     if (!(size > 0.0)) throw InputError("wall " + wall.name + " has a normal of length 0");
     w.wall_names.push_back(wall.name);
-    w.walls.push_back({wall.point, (1.0 / size) * wall.normal, wall.velocity, wall.stiffness, 0.0});
+    std::array<ScaledAmplitude, 3> velocity;
+    for (int axis = 0; axis < 3; ++axis)
+      velocity[static_cast<std::size_t>(axis)] = scaled_amplitude(wall.velocity, axis, 0.0, 0.0);
+    const auto motion = static_cast<std::size_t>(w.prescribed.add(velocity));
+    w.walls.push_back({wall.point, (1.0 / size) * wall.normal, w.prescribed.velocity(motion, 0.0),
+                       wall.stiffness, 0.0});
   }
+  place_motions(w);
   // A step that resolves the contact of two like elements, for those that nothing else slows down.
   for (std::size_t e = 0; e < m.radius.size(); ++e) {
     const auto material = static_cast<std::size_t>(m.material[e]);
@@ -253,6 +260,12 @@ World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
 
 void move_to(World& w, Space space) {
   move_world(w, space);
+}
+
+void place_motions(World& w) {
+  copy_to(w.motions, w.prescribed.motions);
+  copy_to(w.motion_times, w.prescribed.tables.times);
+  copy_to(w.motion_factors, w.prescribed.tables.factors);
 }
 
 void set_linked_pairs(World& w) {

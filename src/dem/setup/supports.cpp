@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -12,10 +13,6 @@ namespace breccia::dem {
 namespace {
 
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
-
-double part(const Vec3& v, std::size_t axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
 
 std::uint8_t fixed_bits(const SupportConfig& support) {
   static const std::map<std::string, int> words{
@@ -71,14 +68,14 @@ class Holding {
     for (const Owners& owners : owners_) {
       Owners moving = owners;
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (moving[axis] >= 0 && speed(moving[axis], axis) == 0.0) moving[axis] = -1;
+        if (moving[axis] >= 0 && speed(moving[axis], axis).is_zero()) moving[axis] = -1;
       if (moving == Owners{-1, -1, -1}) {
         all_.motion.push_back(-1);
         continue;
       }
-      const auto next = static_cast<std::int16_t>(all_.motions.size());
+      const auto next = static_cast<std::int16_t>(all_.motions.motions.size());
       const auto [entry, is_new] = known.try_emplace(moving, next);
-      if (is_new) all_.motions.push_back(motion_of(moving));
+      if (is_new) all_.motions.add(motion_of(moving));
       all_.motion.push_back(entry->second);
     }
     return std::move(all_);
@@ -97,10 +94,18 @@ class Holding {
   };
 
   const SupportConfig& support(int s) const { return supports_[static_cast<std::size_t>(s)]; }
-  double speed(int s, std::size_t axis) const { return part(support(s).velocity, axis); }
+  ScaledAmplitude speed(int s, std::size_t axis) const {
+    return scaled_amplitude(support(s).velocity, static_cast<int>(axis), support(s).ramp, 0.0);
+  }
   bool alike(int a, int b, std::size_t axis) const {
-    return speed(a, axis) == speed(b, axis) &&
-           (speed(a, axis) == 0.0 || support(a).ramp == support(b).ramp);
+    const ScaledAmplitude of_a = speed(a, axis), of_b = speed(b, axis);
+    return of_a == of_b || (of_a.is_zero() && of_b.is_zero());
+  }
+  std::string motion_text(int s, std::size_t axis) const {
+    const ScaledAmplitude of = speed(s, axis);
+    return fmt::format("{} m/s with a ramp of {} s",
+                       of.amplitude.times.empty() ? fmt::format("{}", of.scale) : "a table of",
+                       of.amplitude.ramp);
   }
 
   void hold(std::size_t s, std::uint8_t bits, std::size_t e) {
@@ -119,21 +124,17 @@ class Holding {
   void tell(const Clash& clash, const Found& found) {
     const SupportConfig &a = support(clash.first), &b = support(clash.second);
     problems_.push_back(fmt::format(
-        "supports {} and {} both prescribe {} of {} element{} (the first is element {}): {} m/s "
-        "with a ramp of {} s, and {} m/s with a ramp of {} s; supports that share elements must "
-        "prescribe other directions, or the same motion",
+        "supports {} and {} both prescribe {} of {} element{} (the first is element {}): {}, and "
+        "{}; supports that share elements must prescribe other directions, or the same motion",
         a.name, b.name, axis_names[clash.axis], found.elements, found.elements == 1 ? "" : "s",
-        found.first, part(a.velocity, clash.axis), a.ramp, part(b.velocity, clash.axis), b.ramp));
+        found.first, motion_text(clash.first, clash.axis), motion_text(clash.second, clash.axis)));
   }
 
-  Motion motion_of(const Owners& owners) const {
-    const auto velocity = [&](std::size_t axis) {
-      return owners[axis] >= 0 ? speed(owners[axis], axis) : 0.0;
-    };
-    const auto ramp = [&](std::size_t axis) {
-      return owners[axis] >= 0 ? support(owners[axis]).ramp : 0.0;
-    };
-    return {{velocity(0), velocity(1), velocity(2)}, {ramp(0), ramp(1), ramp(2)}};
+  std::array<ScaledAmplitude, 3> motion_of(const Owners& owners) const {
+    std::array<ScaledAmplitude, 3> velocity;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (owners[axis] >= 0) velocity[axis] = speed(owners[axis], axis);
+    return velocity;
   }
 
   const std::vector<SupportConfig>& supports_;
@@ -151,9 +152,28 @@ Vec3 chosen(int bits, const Vec3& given, const Vec3& own) {
 
 }  // namespace
 
+bool GivenMotions::moves(std::size_t motion) const {
+  const Motion& m = motions[motion];
+  const auto any = [&](double scale, const AmplitudeTable& of) {
+    if (scale == 0.0) return false;
+    return of.first == of.end ||
+           std::any_of(tables.factors.begin() + of.first, tables.factors.begin() + of.end,
+                       [](double factor) { return factor != 0.0; });
+  };
+  return any(m.velocity.x, m.x) || any(m.velocity.y, m.y) || any(m.velocity.z, m.z);
+}
+
+std::int16_t GivenMotions::add(const std::array<ScaledAmplitude, 3>& velocity) {
+  motions.push_back({{velocity[0].scale, velocity[1].scale, velocity[2].scale},
+                     tables.append(velocity[0].amplitude),
+                     tables.append(velocity[1].amplitude),
+                     tables.append(velocity[2].amplitude)});
+  return static_cast<std::int16_t>(motions.size() - 1);
+}
+
 Vec3 Prescribed::velocity_at_start(std::size_t element, const Vec3& own) const {
   const std::int16_t way = motion[element];
-  const Vec3 given = way >= 0 ? motions[static_cast<std::size_t>(way)].at(0.0) : Vec3{};
+  const Vec3 given = way >= 0 ? motions.velocity(static_cast<std::size_t>(way), 0.0) : Vec3{};
   return chosen(fixed[element], given, own);
 }
 Vec3 Prescribed::spin_at_start(std::size_t element, const Vec3& own) const {

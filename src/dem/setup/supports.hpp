@@ -1,6 +1,7 @@
 #pragma once
 // Which elements supports hold, and how these must move.
 
+#include <array>
 #include <vector>
 
 #include "dem/element_kernels.hpp"
@@ -10,11 +11,25 @@ namespace breccia::dem {
 
 struct Config;
 
+/// Motions that supports and walls prescribe.
+struct GivenMotions {
+  std::vector<Motion> motions;
+  AmplitudeTables tables;
+
+  Vec3 velocity(std::size_t motion, double time) const {
+    return motions[motion].at(time, tables.times_view(), tables.factors_view());
+  }
+  /// Whether it is, or may come to be, other than rest.
+  bool moves(std::size_t motion) const;
+  /// Adds a motion of such velocities along x, y, z. Returns its number.
+  std::int16_t add(const std::array<ScaledAmplitude, 3>& velocity);
+};
+
 /// Directions and motions that the supports of a case prescribe, by element.
 struct Prescribed {
   std::vector<std::uint8_t> fixed;          ///< bits of Fixed  [-]
   std::vector<std::int16_t> motion;         ///< index into motions, -1: stands still  [-]
-  std::vector<Motion> motions;              ///< each combination of supports that there is
+  GivenMotions motions;                     ///< each combination of supports that there is
   std::vector<std::vector<Index>> members;  ///< of each support, ascending
 
   /// Of an element, with one of its own: what is held starts with the motion of its support, so

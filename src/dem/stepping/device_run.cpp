@@ -38,15 +38,20 @@ struct MoveAndWatch {
 
 struct MoveWalls {
   static constexpr const char* name = "dem.move_walls";
-  double dt, largest_travel;
+  StepTime now;
+  double largest_travel;
   Vec3 drift;  ///<  [m/s]
   int search_every;
   View<Wall> walls;
+  View<const Motion> motions;  ///< the last ones are those of walls
+  View<const double> times, factors;
   std::int32_t* host_request;
 
-  BR_HD void set(const StepTime& now) { dt = now.next_dt; }
+  BR_HD void set(const StepTime& moment) { now = moment; }
   BR_HD void operator()(Index k) const {
     Wall& wall = walls[k];
+    const double dt = now.next_dt;
+    wall.velocity = motions[motions.size - walls.size + k].at(now.time + 0.5 * dt, times, factors);
     wall.point += dt * wall.velocity;
     wall.travelled += dt * norm(wall.velocity - drift);
     if (search_every == 0 && wall.travelled > largest_travel) *host_request = 1;
@@ -190,8 +195,15 @@ class ClockedRun : public LaunchedForces<ClockBy<phase>> {
     std::int32_t* const host_request = &clocks_.now->host_request;
     const EndOfStep<StepRule> end = end_of_step(w);
     const MoveAndWatch move{move_kernel(w), every, host_request, w.domain.owned_view(), nullptr};
-    const MoveWalls walls{0.0,   w.parameters.largest_margin, w.travel.drift.velocity,
-                          every, w.device_walls.view(),       host_request};
+    const MoveWalls walls{{},
+                          w.parameters.largest_margin,
+                          w.travel.drift.velocity,
+                          every,
+                          w.device_walls.view(),
+                          w.motions.view(),
+                          w.motion_times.view(),
+                          w.motion_factors.view(),
+                          host_request};
     for_each_part(w.exec,
                   part(w.device_walls.size(), clocks_.opening(walls, end, false),
                        part(w.elements.size(), clocks_.opening(move, end, true), Parts<>{})));

@@ -52,6 +52,8 @@ Kick kick(const World& w) {
           w.parameters.gravity,
           w.parameters.local_damping,
           w.motions.view(),
+          w.motion_times.view(),
+          w.motion_factors.view(),
           w.elements.mass.view(),
           w.elements.inertia.view(),
           w.elements.state.view(),
@@ -74,7 +76,10 @@ View<const Wall> walls_view(const World& w) {
 }
 
 void move_walls(World& w) {
-  for (Wall& wall : w.walls) {
+  const std::size_t first = w.prescribed.motions.size() - w.walls.size();
+  for (std::size_t k = 0; k < w.walls.size(); ++k) {
+    Wall& wall = w.walls[k];
+    wall.velocity = w.prescribed.velocity(first + k, w.time + 0.5 * w.next_dt);
     wall.point += w.next_dt * wall.velocity;
     wall.travelled += w.next_dt * norm(wall.velocity - w.travel.drift.velocity);
   }

@@ -75,6 +75,11 @@ std::vector<std::string> case_problems(const Config& config) {
     if (!std::is_sorted(h.times.begin(), h.times.end(), std::less_equal<>()))
       add(where + ".times: must grow from one to the next");
   };
+  const auto one_table = [&](const std::string& where, const auto& quantity,
+                             const HistoryConfig& h) {
+    if (quantity.is_table() && !h.times.empty())
+      add(where + " is a table over time; times and factors would be a second one");
+  };
   const auto look_up_body = [&](const std::string& where, const std::string& on) {
     if (!on.empty() && std::none_of(config.bodies.begin(), config.bodies.end(),
                                     [&](const BodyConfig& b) { return b.name == on; }))
@@ -93,6 +98,7 @@ std::vector<std::string> case_problems(const Config& config) {
   for (const SupportConfig& s : config.supports) {
     look_up_body("support." + s.name, s.region.on);
     history("support." + s.name, s.history);
+    one_table("support." + s.name + ".velocity", s.velocity, s.history);
     for (const std::string& direction : s.fix)
       if (direction != "x" && direction != "y")
         add("support." + s.name + ".fix: \"" + direction + "\" is no direction; allowed: x, y");
@@ -100,6 +106,9 @@ std::vector<std::string> case_problems(const Config& config) {
   for (const LoadConfig& l : config.loads) {
     look_up_body("load." + l.name, l.region.on);
     history("load." + l.name, l.history);
+    one_table("load." + l.name + ".pressure", l.pressure, l.history);
+    one_table("load." + l.name + ".traction", l.traction, l.history);
+    one_table("load." + l.name + ".force", l.force, l.history);
   }
   for (const ProbeConfig& p : config.probes) {
     if (quantity_named(p.quantity).quantity.axis == 2)

@@ -2,6 +2,7 @@
 // The case file of the FDEM: every key with its unit, range and meaning.
 
 #include "core/case_config.hpp"
+#include "core/table_over_time.hpp"
 #include "fdem/laws/joint_bond.hpp"
 #include "fdem/setup/body_config.hpp"
 
@@ -135,7 +136,7 @@ struct SupportConfig {
   std::string name;
   RegionConfig region;
   std::vector<std::string> fix{"x", "y"};
-  Vec2 velocity{};  ///<  [m/s]
+  OverTime<Vec2> velocity;  ///<  [m/s]
   HistoryConfig history;
 
   template <class Visit>
@@ -144,7 +145,9 @@ struct SupportConfig {
     key.required("name");
     region.each_key(key);
     key("fix", fix, "directions that are prescribed: x, y");
-    key("velocity", velocity, "m/s", any_number, "prescribed velocity of these directions");
+    key("velocity", velocity, "m/s", any_number,
+        "prescribed velocity of these directions, or a table [[t, x, y], ...] of it over time, "
+        "linear in between and constant beyond its ends");
     history.each_key(key);
   }
 };
@@ -154,9 +157,9 @@ struct LoadConfig {
   std::string name;
   RegionConfig region;
   std::string kind = "pressure";
-  double pressure = 0.0;  ///<  [Pa]
-  Vec2 traction{};        ///<  [Pa]
-  Vec2 force{};           ///<  [N/m]
+  OverTime<double> pressure;  ///<  [Pa]
+  OverTime<Vec2> traction;    ///<  [Pa]
+  OverTime<Vec2> force;       ///<  [N/m]
   HistoryConfig history;
 
   template <class Visit>
@@ -168,9 +171,12 @@ struct LoadConfig {
         "pressure: against the edge, and traction: along fixed axes, both per present length; "
         "force: a sum, spread over the edges by their length at the start, that stays as given "
         "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer)");
-    key("pressure", pressure, "Pa", any_number, "pressure, positive pushes");
-    key("traction", traction, "Pa", any_number, "force per area");
-    key("force", force, "N/m", any_number, "force per unit thickness, of all edges together");
+    key("pressure", pressure, "Pa", any_number,
+        "pressure, positive pushes; or a table [[t, p], ...] of it over time");
+    key("traction", traction, "Pa", any_number,
+        "force per area, or a table [[t, x, y], ...] of it over time");
+    key("force", force, "N/m", any_number,
+        "force per unit thickness, of all edges together, or a table [[t, x, y], ...] of it");
     history.each_key(key);
   }
 };

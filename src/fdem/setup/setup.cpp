@@ -196,8 +196,16 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   set_up_bundles(w, tied);
 }
 
-Amplitude amplitude(const HistoryConfig& history) {
-  return {history.ramp, history.times, history.factors};
+/// The factor of a quantity along an axis: its own table, or the table of factors.
+template <class Value>
+Amplitude amplitude(const OverTime<Value>& quantity, int axis, const HistoryConfig& history) {
+  if (quantity.is_table()) return scaled_amplitude(quantity, axis, history.ramp, 0.0).amplitude;
+  return {history.ramp, 0.0, history.times, history.factors};
+}
+
+/// What amplitudes of a quantity are factors of.
+Vec2 scale_of(const OverTime<Vec2>& quantity) {
+  return quantity.is_table() ? Vec2{1.0, 1.0} : quantity.value;
 }
 
 /// Held nodes start with the motion of their support: no jump of velocity at the start does work.
@@ -211,7 +219,7 @@ void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Inde
       Vec2 given;
       if (h.motion[k] >= 0) {
         const PrescribedMotion& p = w.prescribed[at(h.motion[k])];
-        given = p.amplitude.at(0.0) * p.velocity;
+        given = p.at(0.0);
       }
       Vec2& velocity = nodes[t].at[k].velocity;
       if ((h.fixed >> (2 * k) & 1) != 0) velocity.x = given.x;
@@ -231,12 +239,13 @@ void set_up_supports(World& w, const Config& config, const Model& model) {
     for (const std::string& direction : support.fix) {
       bits |= direction == "x" ? 1 : 2;
     }
-    const Vec2 velocity{(bits & 1) != 0 ? support.velocity.x : 0.0,
-                        (bits & 2) != 0 ? support.velocity.y : 0.0};
+    const Vec2 whole = scale_of(support.velocity);
+    const Vec2 velocity{(bits & 1) != 0 ? whole.x : 0.0, (bits & 2) != 0 ? whole.y : 0.0};
     std::int16_t motion = -1;
     if (velocity.x != 0.0 || velocity.y != 0.0) {
       motion = static_cast<std::int16_t>(w.prescribed.size());
-      w.prescribed.push_back({velocity, amplitude(support.history)});
+      w.prescribed.push_back({velocity, amplitude(support.velocity, 0, support.history),
+                              amplitude(support.velocity, 1, support.history)});
     }
     NodeSet set{support.name, corners_in(model, support.region, where)};
     for (const Index n : set.nodes) {
@@ -264,6 +273,17 @@ void set_up_supports(World& w, const Config& config, const Model& model) {
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
 }
 
+/// How a load changes over time, by the quantity that its kind asks for.
+LoadAmplitude load_amplitude(const LoadConfig& load, LoadKind kind) {
+  const auto both = [&](const auto& quantity) {
+    return LoadAmplitude{amplitude(quantity, 0, load.history),
+                         amplitude(quantity, 1, load.history)};
+  };
+  if (kind == LoadKind::traction) return both(load.traction);
+  if (kind == LoadKind::force) return both(load.force);
+  return both(kind == LoadKind::pressure ? load.pressure : OverTime<double>(1.0));
+}
+
 LoadKind kind_of(const LoadConfig& load) {
   if (load.kind == "pressure") return LoadKind::pressure;
   if (load.kind == "traction") return LoadKind::traction;
@@ -276,8 +296,12 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
   for (const LoadConfig& load : config.loads) {
     const auto index = static_cast<std::int16_t>(w.loads.size());
     const LoadKind kind = kind_of(load);
-    w.loads.push_back({kind, 1.0, load.pressure, load.traction, load.force});
-    w.load_amplitudes.push_back(amplitude(load.history));
+    w.loads.push_back({kind,
+                       {1.0, 1.0},
+                       load.pressure.is_table() ? 1.0 : load.pressure.value,
+                       scale_of(load.traction),
+                       scale_of(load.force)});
+    w.load_amplitudes.push_back(load_amplitude(load, kind));
     if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
     const std::size_t first = loaded.size();
     double length = 0.0;
@@ -292,7 +316,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
                         density * w.rocks[material].slow});
       length += own;
       if (kind == LoadKind::absorbing)
-        dashpots[t].at[k] += impedance_p * w.load_amplitudes.back().largest();
+        dashpots[t].at[k] += impedance_p * w.load_amplitudes.back().x.largest();
     }
     for (std::size_t i = first; i < loaded.size(); ++i) loaded[i].share /= length;
   }

@@ -26,7 +26,8 @@ struct ScaleMotions {
   BR_HD void set(const StepTime& moment) { now = moment; }
   BR_HD void operator()(Index i) const {
     const double middle = now.time + 0.5 * now.next_dt;
-    motions[i].velocity = tables[i].at(middle, times, factors) * velocity[i];
+    motions[i].velocity = {tables[2 * i].at(middle, times, factors) * velocity[i].x,
+                           tables[2 * i + 1].at(middle, times, factors) * velocity[i].y};
   }
 };
 
@@ -52,13 +53,14 @@ struct ScaleNextMotions {
 struct ScaleLoads {
   static constexpr const char* name = "fdem.scale_loads";
   StepTime now;
-  Index first;  ///< amplitude of the first load
+  Index first;  ///< first amplitude of the first load
   View<const AmplitudeTable> tables;
   View<const double> times, factors;
   View<LoadLaw> laws;
   BR_HD void set(const StepTime& moment) { now = moment; }
   BR_HD void operator()(Index i) const {
-    laws[i].factor = tables[first + i].at(now.time, times, factors);
+    laws[i].factor = {tables[first + 2 * i].at(now.time, times, factors),
+                      tables[first + 2 * i + 1].at(now.time, times, factors)};
   }
 };
 
@@ -245,7 +247,7 @@ class ClockedRun {
   void load_forces(World& w) const {
     if (w.load_starts.size() < 2) return;
     const ScaleLoads scale{{},
-                           static_cast<Index>(w.prescribed.size()),
+                           2 * static_cast<Index>(w.prescribed.size()),
                            w.amplitudes.view(),
                            w.amplitude_times.view(),
                            w.amplitude_factors.view(),
@@ -276,22 +278,19 @@ class ClockedRun {
 /// Tables that the launches read besides the state.
 void list_amplitudes(World& w) {
   std::vector<AmplitudeTable> tables;
-  std::vector<double> times, factors;
   std::vector<Vec2> velocity;
-  const auto append = [&](const Amplitude& a) {
-    const auto first = static_cast<Index>(times.size());
-    times.insert(times.end(), a.times.begin(), a.times.end());
-    factors.insert(factors.end(), a.factors.begin(), a.factors.end());
-    tables.push_back({a.ramp, first, static_cast<Index>(times.size())});
+  AmplitudeTables all;
+  const auto append = [&](const auto& both) {
+    for (const Amplitude* a : {&both.x, &both.y}) tables.push_back(all.append(*a));
   };
   for (const PrescribedMotion& p : w.prescribed) {
-    append(p.amplitude);
+    append(p);
     velocity.push_back(p.velocity);
   }
-  for (const Amplitude& a : w.load_amplitudes) append(a);
+  for (const LoadAmplitude& a : w.load_amplitudes) append(a);
   copy_to(w.amplitudes, tables);
-  copy_to(w.amplitude_times, times);
-  copy_to(w.amplitude_factors, factors);
+  copy_to(w.amplitude_times, all.times);
+  copy_to(w.amplitude_factors, all.factors);
   copy_to(w.prescribed_velocity, velocity);
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
   if (w.load_starts.size() > 1) copy_to(w.load_laws, w.loads);

@@ -57,8 +57,7 @@ void list_motions(World& w) {
   if (w.prescribed.empty()) return;
   std::vector<Motion> now;
   const double middle = w.time + 0.5 * w.next_dt;
-  for (const PrescribedMotion& p : w.prescribed)
-    now.push_back({p.amplitude.at(middle) * p.velocity});
+  for (const PrescribedMotion& p : w.prescribed) now.push_back({p.at(middle)});
   copy_to(w.motions, now);
 }
 

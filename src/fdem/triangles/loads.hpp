@@ -1,52 +1,24 @@
 #pragma once
 // Forces on edges, and velocities and forces that follow a table over time.
 
-#include <vector>
-
+#include "core/table_over_time.hpp"
 #include "fdem/triangles/triangle_kernels.hpp"
 
 namespace breccia::fdem {
 
-/// A factor over time: a table, linear in between and constant beyond, times a ramp from zero.
-struct Amplitude {
-  double ramp = 0.0;                   ///<  [s]
-  std::vector<double> times, factors;  ///< ascending  [s], [-]
-
-  double at(double time) const;
-  /// Largest size of its factors.  [-]
-  double largest() const;
-};
-
-/// The same where kernels can read it: entries first to end - 1 of all amplitudes' tables.
-struct AmplitudeTable {
-  double ramp;  ///<  [s]
-  Index first, end;
-
-  BR_HD double at(double time, const View<const double>& times,
-                  const View<const double>& factors) const {
-    const double grown = ramp > 0.0 ? min(max(time / ramp, 0.0), 1.0) : 1.0;
-    if (first == end) return grown;
-    Index next = first;  // the first entry later than `time`
-    for (Index step = end - first; step > 0;) {
-      const Index half = step / 2;
-      if (times[next + half] <= time) {
-        next += half + 1;
-        step -= half + 1;
-      } else {
-        step = half;
-      }
-    }
-    if (next == first) return grown * factors[first];
-    if (next == end) return grown * factors[end - 1];
-    const double share = (time - times[next - 1]) / (times[next] - times[next - 1]);
-    return grown * (factors[next - 1] + share * (factors[next] - factors[next - 1]));
-  }
-};
-
 /// A support's velocity over time; the host puts its value of each step into World::motions.
 struct PrescribedMotion {
   Vec2 velocity{};  ///<  [m/s]
-  Amplitude amplitude;
+  Amplitude x, y;   ///< of its parts
+
+  Vec2 at(double time) const { return {x.at(time) * velocity.x, y.at(time) * velocity.y}; }
+};
+
+/// How a load changes over time: its parts along x and y; of a pressure x alone.
+struct LoadAmplitude {
+  Amplitude x, y;
+
+  Vec2 at(double time) const { return {x.at(time), y.at(time)}; }
 };
 
 /// What acts on an edge. Pressure and traction act per present length; a force is dead: it stays as
@@ -56,7 +28,7 @@ enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing };
 /// A load with its value at this moment.
 struct LoadLaw {
   LoadKind kind;
-  double factor;    ///< of the amplitude, now  [-]
+  Vec2 factor;      ///< of the amplitude, now; of what has no direction both are alike  [-]
   double pressure;  ///<  [Pa]
   Vec2 traction;    ///<  [Pa]
   Vec2 force;       ///<  [N/m]
@@ -90,7 +62,7 @@ struct LoadForces {
       const LoadLaw& law = laws[edges[e].load];
       const Vec2 along = b.position - a.position, outward{along.y, -along.x};  // times the length
       if (law.kind == LoadKind::absorbing) {
-        const double size = norm(along), half = 0.5 * size * law.factor;
+        const double size = norm(along), half = 0.5 * size * law.factor.x;
         const Vec2 normal = (1.0 / size) * outward;
         sum.at[k] += half * resisted(edges[e], normal, a.velocity);
         sum.at[next] += half * resisted(edges[e], normal, b.velocity);
@@ -99,7 +71,7 @@ struct LoadForces {
       const Vec2 whole = law.kind == LoadKind::pressure   ? -law.pressure * outward
                          : law.kind == LoadKind::traction ? norm(along) * law.traction
                                                           : edges[e].share * law.force;
-      const Vec2 half = (0.5 * law.factor) * whole;
+      const Vec2 half{(0.5 * law.factor.x) * whole.x, (0.5 * law.factor.y) * whole.y};
       sum.at[k] += half;
       sum.at[next] += half;
     }

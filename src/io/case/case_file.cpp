@@ -224,6 +224,58 @@ struct CaseReader::State {
           number((*array)[k], fmt::format("{}[{}]", key, k), *to[k], unit, range, meaning) && good;
     return good;
   }
+  /// A value, or a table [[t, v, ...], ...] over time; it stays as it was if there is a problem.
+  template <std::size_t parts, class Value>
+  void over_time(const char* name, OverTime<Value>& quantity, const char* unit, const Range& range,
+                 const char* meaning) {
+    const toml::node* node = find(name);
+    if (node == nullptr) return;
+    const toml::array* array = node->as_array();
+    if (array == nullptr || array->empty() || !(*array)[0].is_array())
+      return value_at<parts>(*node, full(name), quantity, unit, range, meaning);
+    OverTime<Value> given = quantity;
+    given.times.assign(array->size(), 0.0);
+    given.values.assign(array->size(), Value{});
+    const std::size_t before = problems.size();
+    for (std::size_t k = 0; k < array->size(); ++k) {
+      const toml::node& node_of_row = (*array)[k];
+      const toml::array* row = node_of_row.as_array();
+      const std::string key = fmt::format("{}[{}]", full(name), k);
+      if (row == nullptr || row->size() != parts + 1) {
+        add(&node_of_row, fmt::format("{} wants a time and {} number{}, as in {}", key, parts,
+                                      parts == 1 ? "" : "s",
+                                      parts == 1   ? "[1e-3, 0.5]"
+                                      : parts == 2 ? "[1e-3, 0.0, 0.5]"
+                                                   : "[1e-3, 0.0, 0.0, 0.5]"));
+        continue;
+      }
+      const std::array<double*, parts> to = parts_of(given.values[k]);
+      number((*row)[0], key + "[0]", given.times[k], "s", any_number, "time of the row");
+      for (std::size_t p = 0; p < parts; ++p)
+        number((*row)[p + 1], fmt::format("{}[{}]", key, p + 1), *to[p], unit, range, meaning);
+      if (k > 0 && problems.size() == before && !(given.times[k] > given.times[k - 1]))
+        add(&node_of_row,
+            fmt::format("{}: its time {} s is not after {} s of the row before; times must grow",
+                        key, number_text(given.times[k]), number_text(given.times[k - 1])));
+    }
+    if (problems.size() == before) quantity = given;
+  }
+  template <std::size_t parts, class Value>
+  void value_at(const toml::node& node, const std::string& key, OverTime<Value>& quantity,
+                const char* unit, const Range& range, const char* meaning) {
+    OverTime<Value> given(quantity.value);
+    const std::array<double*, parts> to = parts_of(given.value);
+    bool good = false;
+    if constexpr (parts == 1)
+      good = number(node, key, *to[0], unit, range, meaning);
+    else
+      good = numbers<parts>(node, key, to, unit, range, meaning);
+    if (good) quantity = given;
+  }
+  static std::array<double*, 1> parts_of(double& v) { return {&v}; }
+  static std::array<double*, 2> parts_of(Vec2& v) { return {&v.x, &v.y}; }
+  static std::array<double*, 3> parts_of(Vec3& v) { return {&v.x, &v.y, &v.z}; }
+
   /// A list, item by item; it stays as it was if there is a problem.
   template <class Item, class Read>
   void list(const char* name, std::vector<Item>& value, const char* example,
@@ -299,6 +351,19 @@ void CaseReader::read(const char* name, Vec2& value, const char* unit, const Ran
                       const char* meaning) {
   if (const toml::node* node = state_->find(name))
     state_->numbers<2>(*node, state_->full(name), {&value.x, &value.y}, unit, range, meaning);
+}
+
+void CaseReader::read(const char* name, OverTime<double>& value, const char* unit,
+                      const Range& range, const char* meaning) {
+  state_->over_time<1>(name, value, unit, range, meaning);
+}
+void CaseReader::read(const char* name, OverTime<Vec2>& value, const char* unit, const Range& range,
+                      const char* meaning) {
+  state_->over_time<2>(name, value, unit, range, meaning);
+}
+void CaseReader::read(const char* name, OverTime<Vec3>& value, const char* unit, const Range& range,
+                      const char* meaning) {
+  state_->over_time<3>(name, value, unit, range, meaning);
 }
 
 void CaseReader::read(const char* name, std::vector<Vec2>& value, const char* unit,

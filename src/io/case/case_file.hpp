@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/keys.hpp"
+#include "core/table_over_time.hpp"
 #include "math/vec.hpp"
 #include "math/vec2.hpp"
 
@@ -38,6 +39,12 @@ class CaseReader {
   void read(const char* name, Vec3& value, const char* unit, const Range& range,
             const char* meaning);
   void read(const char* name, Vec2& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, OverTime<double>& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, OverTime<Vec2>& value, const char* unit, const Range& range,
+            const char* meaning);
+  void read(const char* name, OverTime<Vec3>& value, const char* unit, const Range& range,
             const char* meaning);
   void read(const char* name, std::vector<double>& value, const char* unit, const Range& range,
             const char* meaning);
@@ -126,6 +133,9 @@ std::string value_text(int value);
 std::string value_text(std::int64_t value);
 std::string value_text(const Vec3& value);
 std::string value_text(const Vec2& value);
+std::string value_text(const OverTime<double>& value);
+std::string value_text(const OverTime<Vec2>& value);
+std::string value_text(const OverTime<Vec3>& value);
 std::string value_text(const std::vector<double>& value);
 std::string value_text(const std::vector<Vec2>& value);
 std::string value_text(const std::vector<Vec3>& value);
@@ -150,6 +160,15 @@ inline const char* type_name(const Vec3&) {
 }
 inline const char* type_name(const Vec2&) {
   return "2 numbers";
+}
+inline const char* type_name(const OverTime<double>&) {
+  return "number or table";
+}
+inline const char* type_name(const OverTime<Vec2>&) {
+  return "2 numbers or table";
+}
+inline const char* type_name(const OverTime<Vec3>&) {
+  return "3 numbers or table";
 }
 inline const char* type_name(const std::vector<double>&) {
   return "numbers";

@@ -70,6 +70,31 @@ std::string value_text(const std::vector<double>& value) {
   return list_text(value);
 }
 
+namespace {
+/// A value, or the rows [t, v, ...] of its table.
+template <int parts, class Value>
+std::string over_time_text(const OverTime<Value>& quantity) {
+  if (!quantity.is_table()) return value_text(quantity.value);
+  std::string text;
+  for (std::size_t i = 0; i < quantity.times.size(); ++i) {
+    text += (text.empty() ? "[[" : ", [") + value_text(quantity.times[i]);
+    for (int k = 0; k < parts; ++k) text += ", " + value_text(component(quantity.values[i], k));
+    text += "]";
+  }
+  return text + "]";
+}
+}  // namespace
+
+std::string value_text(const OverTime<double>& value) {
+  return over_time_text<1>(value);
+}
+std::string value_text(const OverTime<Vec2>& value) {
+  return over_time_text<2>(value);
+}
+std::string value_text(const OverTime<Vec3>& value) {
+  return over_time_text<3>(value);
+}
+
 std::string key_text(const std::string& name) {
   const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||

@@ -87,8 +87,8 @@ class NotchedCube {
         {"bottom", "", {-far, -far, -far}, {far, far, -inner}, {"x", "y", "z"}, {}, 0.0}};
   }
   void move(double speed) {
-    config_.supports[0].velocity.z = speed;
-    config_.supports[1].velocity.z = -speed;
+    config_.supports[0].velocity = Vec3{0.0, 0.0, speed};
+    config_.supports[1].velocity = Vec3{0.0, 0.0, -speed};
     for (std::size_t e = 0; e < model_.position.size(); ++e)
       model_.velocity[e].z = speed * std::clamp(model_.position[e].z / (0.5 * width_), -1.0, 1.0);
   }

@@ -142,10 +142,6 @@ void each_link(const Model& model, int body, Visit&& visit) {
                        model.position[static_cast<std::size_t>(link.a)]));
 }
 
-double component(const Vec3& v, int axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 /// u_2 of a body's links from its G_F.
 double opening_for_energy(const Model& model, const Config& config, int number) {
   const BodyConfig& body = config.bodies[static_cast<std::size_t>(number)];

@@ -73,9 +73,9 @@ TEST(FdemLoads, force_stays_as_given_while_traction_and_pressure_follow_their_ed
     l.pressure = 3000.0;
     World w = scene.world();
     const double length = 0.09;
-    const Vec2 before = kind[0] == 'f'   ? l.force
-                        : kind[0] == 't' ? length * l.traction
-                                         : Vec2{length * l.pressure, 0.0};
+    const Vec2 before = kind[0] == 'f'   ? l.force.value
+                        : kind[0] == 't' ? length * l.traction.value
+                                         : Vec2{length * l.pressure.value, 0.0};
     const auto sum = [&] {
       Vec2 all{};
       for (Index t = 0; t < w.triangles.size(); ++t)
