@@ -173,7 +173,7 @@ def spall(r, setting):
     for n in networks(r.cracks()):
         ys = [e[1] for c in n for e in ends(c)]
         if max(ys) - min(ys) > 0.9 * width:
-            planes.append((statistics.mean(c["time"] for c in n), 300.0 - 1e3 * statistics.mean(c["x"] for c in n)))
+            planes.append((min(c["time"] for c in n), 300.0 - 1e3 * statistics.mean(c["x"] for c in n)))
     planes.sort()
     history = r.rows("history.csv")
     free = [row["end"] for row in history if row["time"] < 0.24e-3]
