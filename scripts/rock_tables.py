@@ -302,18 +302,23 @@ def prepare(binary, folder, jobs):
     (folder / "plan.json").write_text(json.dumps(jobs["plan"], indent=1))
 
 
+def finished(out):
+    """Whether a run came to its end; a check that fails (9) stands for the case's own mesh alone."""
+    summary = out / "summary.json"
+    return summary.exists() and json.loads(summary.read_text())["exit_code"] in (0, 9)
+
+
 def run(binary, folder, count):
     jobs = json.loads((folder / "plan.json").read_text())
 
     def work(job):
         out = folder / "runs" / job["id"]
-        if (out / "summary.json").exists():
+        if finished(out):
             return
         begun = time.monotonic()
         done = call([binary, "run", folder / "models" / f"{job['id']}.br", "-o", out, "--force",
                      "--threads", "1", "--no-progress"])
-        # A check of the case may fail (9): it stands for the case's own mesh.
-        state = "" if done.returncode in (0, 9) else f"exit code {done.returncode}: {done.stderr}"
+        state = "" if finished(out) else f"exit code {done.returncode}: {done.stderr}"
         print(f"{job['id']} {time.monotonic() - begun:.1f} s {state}", file=sys.stderr, flush=True)
 
     with concurrent.futures.ThreadPoolExecutor(count) as pool:
@@ -337,12 +342,9 @@ def table(folder):
         rows, cost = {}, 0.0
         for job in jobs:
             done = folder / "runs" / job["id"]
-            if job["campaign"] != name or not (done / "summary.json").exists():
+            if job["campaign"] != name or not finished(done):
                 continue
             result = Result(done)
-            if result.summary["exit_code"] not in (0, 9):
-                print(f"{job['id']}: exit code {result.summary['exit_code']}", file=sys.stderr)
-                continue
             cost += sum(result.summary["stages_s"].values())
             rows.setdefault(json.dumps(job["setting"]), []).append(CAMPAIGNS[name][2](result, job["setting"]))
         if not rows:
