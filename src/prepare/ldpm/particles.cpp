@@ -13,11 +13,10 @@
 namespace breccia::prepare {
 namespace {
 
-constexpr double node_spacing = 1.2;  ///< of surface nodes, over d_0
-constexpr double clearance = 0.2;     ///< of grains, over d_0
-constexpr double narrowing = 0.75;    ///< of the clearance, where grains find no place
+constexpr double clearance = 0.2;   ///< of grains, over d_0
+constexpr double narrowing = 0.75;  ///< of the clearance, where grains find no place
 constexpr double least_clearance = 0.01;
-constexpr int tries = 2'000;  ///< of a grain with one clearance
+constexpr int tries = 10'000;  ///< of a grain with one clearance
 
 double power(double x, double p) {
   return exponential(p * logarithm(x));
@@ -43,74 +42,6 @@ Turn turn_by(double share) {
     sine = doubled;
   }
   return {cosine, sine};
-}
-
-/// Nodes of a surface, each shifted by its own random numbers.
-class Surface {
- public:
-  Surface(double spacing, const Random& random) : spacing_(spacing), random_(random) {}
-
-  void add(const Vec3& at) { nodes.push_back(at); }
-  /// Random number in [-1, 1) times the largest shift, `direction` 0 or 1.
-  double shift(double between, int direction) const {
-    return 0.2 * between *
-           (2.0 * random_.uniform(nodes.size(), static_cast<std::uint32_t>(direction)) - 1.0);
-  }
-  double spacing() const { return spacing_; }
-  std::vector<Vec3> nodes;
-
- private:
-  double spacing_;
-  Random random_;
-};
-
-std::vector<Vec3> box_nodes(const Vec3& size, Surface surface) {
-  const double lengths[3] = {size.x, size.y, size.z};
-  int count[3];
-  for (int c = 0; c < 3; ++c) count[c] = intervals(lengths[c], surface.spacing());
-  for (int i = 0; i <= count[0]; ++i)
-    for (int j = 0; j <= count[1]; ++j)
-      for (int k = 0; k <= count[2]; ++k) {
-        const int at[3] = {i, j, k};
-        double x[3];
-        int faces = 0, shifted = 0;
-        for (int c = 0; c < 3; ++c) faces += at[c] == 0 || at[c] == count[c] ? 1 : 0;
-        if (faces == 0) continue;
-        for (int c = 0; c < 3; ++c) {
-          const double step = lengths[c] / count[c];
-          x[c] = at[c] == count[c] ? 0.5 * lengths[c] : at[c] * step - 0.5 * lengths[c];
-          if (at[c] > 0 && at[c] < count[c]) x[c] += surface.shift(step, shifted++);
-        }
-        surface.add({x[0], x[1], x[2]});
-      }
-  return surface.nodes;
-}
-
-std::vector<Vec3> cylinder_nodes(double radius, double length, Surface surface) {
-  const int rows = intervals(length, surface.spacing());
-  const int round = std::max(6, intervals(2.0 * pi * radius, surface.spacing()));
-  const double row = length / rows;
-  for (int k = 0; k <= rows; ++k)
-    for (int i = 0; i < round; ++i) {
-      const bool rim = k == 0 || k == rows;
-      const Turn t = turn_by((i + 0.5 * (k % 2) + surface.shift(1.0, 0)) / round);
-      const double z = k == rows ? 0.5 * length : k * row - 0.5 * length;
-      surface.add({radius * t.cosine, radius * t.sine, rim ? z : z + surface.shift(row, 1)});
-    }
-  const int rings = intervals(radius, surface.spacing());
-  for (const double z : {-0.5 * length, 0.5 * length}) {
-    for (int ring = 1; ring < rings; ++ring) {
-      const double width = radius / rings, r = width * ring;
-      const int count = std::max(5, intervals(2.0 * pi * r, surface.spacing()));
-      for (int i = 0; i < count; ++i) {
-        const Turn t = turn_by((i + 0.5 * (ring % 2) + surface.shift(1.0, 0)) / count);
-        const double at = r + surface.shift(width, 1);
-        surface.add({at * t.cosine, at * t.sine, z});
-      }
-    }
-    surface.add({0.0, 0.0, z});
-  }
-  return surface.nodes;
 }
 
 /// Particles by cells as wide as two may need to keep from each other.
@@ -159,6 +90,89 @@ class Placed {
   std::vector<std::vector<Item>> cells_;
 };
 
+/// Nodes of a surface: those of edges are given, those of faces thrown at random, no nearer to
+/// others than the spacing, until hardly any more finds a place. No direction is preferred.
+class Surface {
+ public:
+  Surface(const Container& body, double spacing, const Random& random)
+      : spacing_(spacing), random_(random), placed_(body.half(), spacing) {}
+
+  void add(const Vec3& at) {
+    nodes.push_back(at);
+    placed_.add(at, spacing_, false);
+  }
+  /// Inner nodes of an edge of a length, 1.2 spacings apart and shifted at random: place(share).
+  template <class Place>
+  void along(double length, const Place& place) {
+    const int count = intervals(length, 1.2 * spacing_);
+    for (int k = 1; k < count; ++k) add(place((k + 0.2 * (2.0 * draw(0) - 1.0)) / count));
+  }
+  /// Nodes of a face of an area: place(u, v), uniform for u and v in [0, 1).
+  template <class Place>
+  void across(double area, const Place& place) {
+    const int thrown = static_cast<int>(100.0 * area / (spacing_ * spacing_));
+    for (int k = 0; k < thrown; ++k) {
+      const double u = draw(0), v = random_.uniform(drawn_, 1);
+      const Vec3 at = place(u, v);
+      if (placed_.is_free(at, 0.0, 0.0)) add(at);
+    }
+  }
+  std::vector<Vec3> nodes;
+
+ private:
+  double draw(std::uint32_t which) { return random_.uniform(++drawn_, which); }
+
+  double spacing_;
+  Random random_;
+  Placed placed_;
+  std::uint64_t drawn_ = 0;
+};
+
+std::vector<Vec3> box_nodes(const Vec3& size, Surface surface) {
+  const Vec3 h = 0.5 * size;
+  const double signs[2] = {-1.0, 1.0};
+  for (const double x : signs)
+    for (const double y : signs)
+      for (const double z : signs) surface.add({x * h.x, y * h.y, z * h.z});
+  const auto at = [](double share, double half) { return (2.0 * share - 1.0) * half; };
+  for (const double p : signs)
+    for (const double q : signs) {
+      surface.along(size.x, [&](double s) { return Vec3{at(s, h.x), p * h.y, q * h.z}; });
+      surface.along(size.y, [&](double s) { return Vec3{p * h.x, at(s, h.y), q * h.z}; });
+      surface.along(size.z, [&](double s) { return Vec3{p * h.x, q * h.y, at(s, h.z)}; });
+    }
+  for (const double p : signs) {
+    surface.across(size.y * size.z, [&](double u, double v) {
+      return Vec3{p * h.x, at(u, h.y), at(v, h.z)};
+    });
+    surface.across(size.x * size.z, [&](double u, double v) {
+      return Vec3{at(u, h.x), p * h.y, at(v, h.z)};
+    });
+    surface.across(size.x * size.y, [&](double u, double v) {
+      return Vec3{at(u, h.x), at(v, h.y), p * h.z};
+    });
+  }
+  return surface.nodes;
+}
+
+std::vector<Vec3> cylinder_nodes(double radius, double length, Surface surface) {
+  const double h = 0.5 * length;
+  const auto around = [&](double share, double r, double z) {
+    const Turn t = turn_by(share);
+    return Vec3{r * t.cosine, r * t.sine, z};
+  };
+  for (const double z : {-h, h}) {
+    surface.add(around(0.0, radius, z));
+    surface.along(2.0 * pi * radius, [&](double s) { return around(s, radius, z); });
+  }
+  surface.across(2.0 * pi * radius * length,
+                 [&](double u, double v) { return around(u, radius, (2.0 * v - 1.0) * h); });
+  for (const double z : {-h, h})
+    surface.across(pi * radius * radius,
+                   [&](double u, double v) { return around(u, sqrt(v) * radius, z); });
+  return surface.nodes;
+}
+
 /// Whether the cube around a grain lies inside.
 bool holds_cube(const Container& body, const Vec3& at, double radius) {
   for (int corner = 0; corner < 8; ++corner) {
@@ -200,9 +214,9 @@ std::vector<double> grain_diameters(const MixDesign& mix, double volume, const R
 std::vector<Vec3> surface_nodes(const Container& body, double spacing, const Random& random) {
   switch (body.shape) {
     case Container::Shape::box:
-      return box_nodes(body.size, {spacing, random});
+      return box_nodes(body.size, {body, spacing, random});
     case Container::Shape::cylinder:
-      return cylinder_nodes(body.radius, body.length, {spacing, random});
+      return cylinder_nodes(body.radius, body.length, {body, spacing, random});
     case Container::Shape::sphere:
       break;
   }
@@ -213,7 +227,7 @@ LdpmParticles place_particles(const Container& body, const MixDesign& mix, const
   const Random of_nodes{random.seed, random.stream + 0x10000U};
   const Random of_places{random.seed, random.stream + 0x20000U};
   LdpmParticles all;
-  all.position = surface_nodes(body, node_spacing * mix.smallest, of_nodes);
+  all.position = surface_nodes(body, mix.smallest, of_nodes);
   all.on_surface = static_cast<Index>(all.position.size());
   all.diameter.assign(all.position.size(), 0.0);
 

@@ -44,12 +44,12 @@ struct LdpmParticles {
 /// Diameter that a particle on the surface has in the tessellation, over d_0.  [-]
 inline constexpr double surface_diameter = 1.1;
 
-/// Nodes on vertices, edges and faces of a box or cylinder, about `spacing` apart; shifted at
-/// random within their edge or face, so that no five lie on a sphere.
+/// Nodes on vertices, edges and faces of a box or cylinder, at random: on edges about 1.2 spacings
+/// apart, on faces no nearer than one, as many as find a place.
 /// @throws InputError for a sphere
 std::vector<Vec3> surface_nodes(const Container& body, double spacing, const Random& random);
 
-/// Nodes on the surface, 1.2 d_0 apart, and the grains of a mix at random places, the largest
+/// Nodes on the surface, d_0 apart at least, and the grains of a mix at random places, the largest
 /// first: each (d_i + d_j)/2 + 0.2 d_0 from others, d/2 + 1.1 d_0/2 from nodes, within the body.
 ///
 /// Only + - * / and square roots: the same bits on any machine. Cost: about 30 tries a grain.
