@@ -7,6 +7,7 @@
 #include "math/constants.hpp"
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/refusal.hpp"
+#include "prepare/ldpm/body.hpp"
 #include "prepare/packing/linking.hpp"
 #include "prepare/packing/ordering.hpp"
 #include "prepare/packing/packing.hpp"
@@ -57,6 +58,9 @@ class Assembly {
         links = add_bars();
       } else if (body.shape == "element") {
         add({}, body.radius, material().density * ball(body.radius));
+      } else if (material().law == "ldpm") {
+        add_particles();
+        links.kind = BodyLinks::Kind::facets;
       } else {
         is_packed(body) ? add_packing() : add_file();
         if (const auto kind = dem::kind_within(material().law)) {
@@ -119,6 +123,19 @@ class Assembly {
       add(packing.position[i], packing.radius[i], density * ball(packing.radius[i]));
   }
 
+  void add_particles() {
+    const prepare::LdpmBody body = prepare::ldpm_body(
+        container_of(*body_), material(),
+        {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)});
+    const Index first = model_.size();
+    for (std::size_t i = 0; i < body.position.size(); ++i)
+      add(body.position[i], body.radius[i], material().density * body.cells[i].volume,
+          material().density * body.cells[i].inertia, *body_);
+    for (const prepare::LdpmFacet& f : body.facets)
+      model_.facets.push_back(
+          {first + f.a, first + f.b, first + f.c, first + f.d, body_->center + f.center, f.area});
+  }
+
   void add_file() {
     const std::filesystem::path folder = case_folder_;
     const prepare::Spheres spheres = prepare::read_spheres((folder / body_->file).string());
@@ -178,6 +195,7 @@ dem::Model build_model(const dem::Config& config, const std::string& case_folder
   Model& model = assembly.model();
   prepare::reorder(model, prepare::spatial_order(model.position, 2.0 * mean_radius(model)));
   prepare::link_elements(model, assembly.links(), config.links);
+  prepare::link_facets(model);
   prepare::set_stiffness(model, config);
 
   prepare::refuse(prepare::free_overlaps(model, assembly.links()), "with the model");

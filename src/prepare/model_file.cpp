@@ -57,6 +57,13 @@ void each_link_array(Arrays& links, Visit&& array) {
   array("link_share", links.share);
 }
 
+/// Facets of LDPM by member, likewise.
+struct FacetArrays {
+  std::vector<std::array<Index, 4>> corners;
+  std::vector<Vec3> center;
+  std::vector<double> area;
+};
+
 void refuse_misfits(const dem::Model& model) {
   const auto fail = [] {
     throw CheckpointError("the model's elements and links do not fit each other");
@@ -73,6 +80,13 @@ void refuse_misfits(const dem::Model& model) {
     if (before != nullptr && std::tie(link.a, link.b) < std::tie(before->a, before->b)) fail();
     before = &link;
   }
+  std::size_t facets = 0;
+  for (const dem::Model::Link& link : model.links)
+    if (link.kind == dem::LinkKind::ldpm) ++facets;
+  if (facets != model.facets.size()) fail();
+  for (const dem::Model::Facet& f : model.facets)
+    for (const Index corner : {f.a, f.b, f.c, f.d})
+      if (!is_element(corner)) fail();
   for (const std::vector<Index>* ends : {&model.bar_previous, &model.bar_next})
     for (const Index i : *ends)
       if (i != -1 && !is_element(i)) fail();
@@ -213,6 +227,16 @@ void save_model(CheckpointWriter& writer, const dem::Model& model) {
   }
   each_link_array(links,
                   [&](const char* name, const auto& items) { save_array(writer, name, items); });
+  if (model.facets.empty()) return;
+  FacetArrays facets;
+  for (const dem::Model::Facet& f : model.facets) {
+    facets.corners.push_back({f.a, f.b, f.c, f.d});
+    facets.center.push_back(f.center);
+    facets.area.push_back(f.area);
+  }
+  save_array(writer, "facet_corners", facets.corners);
+  save_array(writer, "facet_center", facets.center);
+  save_array(writer, "facet_area", facets.area);
 }
 
 void refuse_misfits(const dem::Model& model, const dem::Config& config) {
@@ -250,9 +274,23 @@ dem::Model load_model(const CheckpointReader& reader) {
   if (links.b.size() != links.a.size() || links.kind.size() != links.a.size() ||
       links.material.size() != links.a.size() || links.share.size() != links.a.size())
     throw CheckpointError("the model's links are not whole");
-  for (std::size_t i = 0; i < links.a.size(); ++i)
-    model.links.push_back({links.a[i], links.b[i], static_cast<dem::LinkKind>(links.kind[i]),
-                           links.material[i], links.share[i]});
+  Index facet = 0;
+  for (std::size_t i = 0; i < links.a.size(); ++i) {
+    const auto kind = static_cast<dem::LinkKind>(links.kind[i]);
+    model.links.push_back({links.a[i], links.b[i], kind, links.material[i], links.share[i],
+                           kind == dem::LinkKind::ldpm ? facet++ : -1});
+  }
+  if (reader.has("model.facet_area")) {
+    const auto corners = load_array<std::array<Index, 4>>(reader, "facet_corners");
+    const auto center = load_array<Vec3>(reader, "facet_center");
+    const auto area = load_array<double>(reader, "facet_area");
+    if (corners.size() != area.size() || center.size() != area.size())
+      throw CheckpointError("the model's facets are not whole");
+    for (std::size_t k = 0; k < area.size(); ++k) {
+      const auto& c = corners[k];
+      model.facets.push_back({c[0], c[1], c[2], c[3], center[k], area[k]});
+    }
+  }
   refuse_misfits(model);
   return model;
 }

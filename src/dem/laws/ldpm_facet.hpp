@@ -64,8 +64,6 @@ struct LdpmFacet {
 
   static constexpr double deviatoric_strain = 0.1;  ///< k_c3 = e_v0 E_0 / s_c0  [-]
 
-  double shear_strength() const { return strength_ratio * tensile_strength; }
-
   /// Brings a facet of an edge of reference length `length` to a strain.
   /// @param volumetric  e_V, a third of the volumetric strain of its tetrahedron  [-]
   template <class R>
@@ -99,11 +97,21 @@ struct LdpmFacet {
     return stored_normal(stress.x) + stored_tangential(stress);
   }
 
-  /// Opening of the crack at a facet: its strain less the elastic part, times L.  [m]
-  BR_HD Vec3 crack_opening(double length, const LdpmFacetState& s) const {
-    const double across = 1.0 / young, along = 1.0 / (shear_ratio * young);
-    return {length * (s.strain.x - across * s.stress.x), length * (s.strain.y - along * s.stress.y),
-            length * (s.strain.z - along * s.stress.z)};
+  /// Opening of a crack with the largest strains so far, less what is elastic.  [m]
+  template <class R>
+  BR_HD R largest_opening(const R& length, const LdpmFacetStateOf<R>& s) const {
+    return length * (effective(s.largest_normal, s.largest_tangential * s.largest_tangential) -
+                     tensile_strength / young);
+  }
+  /// Whether a facet has opened, or slid, so far that it bears 5 % of s_t in tension: by three
+  /// times G_t / s_t.
+  template <class R>
+  BR_HD auto has_cracked(const R& length, const LdpmFacetStateOf<R>& s) const {
+    return largest_opening(length, s) > 1.5 * tensile_strength * tensile_length / young;
+  }
+  /// Whether a facet has lost 5 % of s_t.
+  BR_HD bool has_softened(double length, const LdpmFacetState& s) const {
+    return largest_opening(length, s) > 0.025 * tensile_strength * tensile_length / young;
   }
 
  private:

@@ -3,6 +3,7 @@
 
 #include "dem/links/concrete.hpp"
 #include "dem/links/interface.hpp"
+#include "dem/links/ldpm.hpp"
 #include "dem/links/parallel_bond.hpp"
 #include "dem/links/steel.hpp"
 
@@ -14,7 +15,8 @@ namespace breccia::dem {
   X(ConcreteLinkForces<float>)  \
   X(SteelLinkForces)            \
   X(InterfaceLinkForces)        \
-  X(ParallelBondForces)
+  X(ParallelBondForces)         \
+  X(LdpmFacetForces)
 
 /// All links of a world. A new law is a member here, in the order of LinkKind.
 struct LinkSets {
@@ -22,15 +24,16 @@ struct LinkSets {
   LinkSet<SteelLink> steel;
   LinkSet<InterfaceLink> interface;
   LinkSet<ParallelBond> parallel;
+  LinkSet<LdpmFacet> ldpm;
 
   /// Calls visit(set) for each kind.
   template <class Visit>
   void each_set(Visit&& visit) {
-    visit(concrete), visit(steel), visit(interface), visit(parallel);
+    visit(concrete), visit(steel), visit(interface), visit(parallel), visit(ldpm);
   }
   template <class Visit>
   void each_set(Visit&& visit) const {
-    visit(concrete), visit(steel), visit(interface), visit(parallel);
+    visit(concrete), visit(steel), visit(interface), visit(parallel), visit(ldpm);
   }
 
   /// Links of all kinds, broken ones included.

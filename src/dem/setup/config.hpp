@@ -8,6 +8,80 @@
 
 namespace breccia::dem {
 
+/// [material.<name>.ldpm]: the facet law of LDPM (docs/theory-ldpm.md), besides young, poisson,
+/// tensile_strength s_t and cohesion s_s of the material
+struct LdpmConfig {
+  double tensile_length = 0.5;       ///< l_t  [m]
+  double softening_exponent = 0.4;   ///< n_t  [-]
+  double unloading = 0.0;            ///< k_t  [-]
+  double collapse_strength = 150e6;  ///< s_c0  [Pa]
+  double hardening = 0.4;            ///< H_c0 / E_0  [-]
+  double final_hardening = 0.1;      ///< H_c1 / E_0  [-]
+  double compaction_strain = 4.0;    ///< k_c0  [-]
+  double deviatoric_start = 1.0;     ///< k_c1  [-]
+  double deviatoric_slope = 5.0;     ///< k_c2  [-]
+  double friction = 0.4;             ///< mu_0  [-]
+  double final_friction = 0.0;       ///< mu_inf  [-]
+  double friction_stress = 600e6;    ///< s_N0  [Pa]
+  double densification = 1.0;        ///< E_d / E_0  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("tensile_length", tensile_length, "m", positive,
+        "l_t = 2 E_0 G_t / s_t^2 of the fracture energy G_t; longer than every edge");
+    key("softening_exponent", softening_exponent, "-", not_negative,
+        "n_t, how soon softening ends between tension and shear");
+    key("unloading", unloading, "-", Range{0.0, 1.0, Open::high},
+        "k_t, share of the largest strain at which a closed crack bears tension again");
+    key("collapse_strength", collapse_strength, "Pa", positive,
+        "s_c0, compressive stress at which pores begin to collapse");
+    key("hardening", hardening, "-", not_negative,
+        "H_c0 / E_0, hardening in hydrostatic compression");
+    key("final_hardening", final_hardening, "-", not_negative,
+        "H_c1 / E_0, hardening far from hydrostatic compression");
+    key("compaction_strain", compaction_strain, "-", Range{1.0, no_limit},
+        "k_c0, strain at which compaction begins, over s_c0 / E_0");
+    key("deviatoric_start", deviatoric_start, "-", not_negative,
+        "k_c1, ratio of deviatoric to volumetric strain up to which H_c0 holds");
+    key("deviatoric_slope", deviatoric_slope, "-", not_negative,
+        "k_c2, how soon hardening falls with that ratio");
+    key("friction", friction, "-", not_negative, "mu_0, friction at low pressure");
+    key("final_friction", final_friction, "-", not_negative, "mu_inf, friction at high pressure");
+    key("friction_stress", friction_stress, "Pa", positive,
+        "s_N0, pressure over which friction falls from one to the other");
+    key("densification", densification, "-", positive,
+        "E_d / E_0, stiffness in unloading from beyond s_c0 over the elastic one");
+  }
+};
+
+/// [material.<name>.mix]: a mix design, of which LDPM places the coarse grains
+struct MixConfig {
+  double cement = 315.0;           ///< c  [kg/m3]
+  double water_ratio = 0.5;        ///< w/c  [-]
+  double aggregate_ratio = 0.0;    ///< a/c; 0: by cement  [-]
+  double cement_density = 3150.0;  ///<  [kg/m3]
+  double air = 0.03;               ///<  [-]
+  double smallest = 6e-3;          ///< d_0  [m]
+  double largest = 12e-3;          ///< d_a  [m]
+  double fuller = 0.5;             ///< n_F  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("cement", cement, "kg/m3", Range{10.0, 1000.0},
+        "c, mass of cement over volume of concrete");
+    key("water_ratio", water_ratio, "-", Range{0.1, 2.0}, "w/c, water over cement by mass");
+    key("aggregate_ratio", aggregate_ratio, "-", not_negative,
+        "a/c, aggregate over cement by mass: then c follows from the density of the material; 0: c "
+        "is given");
+    key("cement_density", cement_density, "kg/m3", Range{1000.0, 6000.0}, "density of cement");
+    key("air", air, "-", Range{0.0, 0.5}, "share of the volume that air takes");
+    key("smallest", smallest, "m", positive,
+        "d_0, diameter of the smallest grains that are placed");
+    key("largest", largest, "m", positive, "d_a, diameter of the largest grains");
+    key("fuller", fuller, "-", Range{0.1, 2.5}, "n_F, exponent of the sieve curve (d / d_a)^n_F");
+  }
+};
+
 /// [material.<name>]
 struct MaterialConfig {
   std::string name;
@@ -38,6 +112,9 @@ struct MaterialConfig {
   double bond_radius = 1.0;   ///< lambda: of the bond, over the smaller element's  [-]
   double moment_share = 1.0;  ///< beta of moments in the bond's stresses  [-]
   std::string fabric = "packed", stiffness = "estimated";
+  // ldpm
+  LdpmConfig ldpm;
+  MixConfig mix;
   // steel
   double yield = 500e6;          ///< f_y  [Pa]
   double hardening = 1e9;        ///< H  [Pa]
@@ -53,9 +130,9 @@ struct MaterialConfig {
     key("use", use,
         "material of the program whose numbers it has (breccia materials); keys that stand here "
         "take their place; empty: none");
-    key("law", law, OneOf{"concrete", "parallel", "steel", "interface", "grain"},
+    key("law", law, OneOf{"concrete", "parallel", "ldpm", "steel", "interface", "grain"},
         "concrete: cohesive links; parallel: bonds of cement between grains (bonded-particle "
-        "rock); "
+        "rock); ldpm: particles of the lattice discrete particle model of concrete; "
         "steel: bars; interface: between bars and concrete; grain: contacts only");
     key("density", density, "kg/m3", Range{10.0, 1e6}, "mass per volume of the bulk material");
     key("young", young, "Pa", Range{1e3, 1e13}, "Young's modulus of the bulk material");
@@ -109,6 +186,8 @@ struct MaterialConfig {
     key("stiffness", stiffness, OneOf{"estimated", "measured"},
         "stiffness of links: estimated: by alpha, beta, gamma; measured: times a factor that makes "
         "the modulus of each body, measured when it is built, that of the key young");
+    key.table("ldpm", ldpm, "the facet law of a material of law ldpm");
+    key.table("mix", mix, "the mix design of a material of law ldpm");
     key("yield", yield, "Pa", Range{0.0, 1e15, Open::low}, "yield stress of steel");
     key("hardening", hardening, "Pa", Range{0.0, 1e15}, "plastic hardening modulus of steel");
     key("failure_strain", failure_strain, "-", positive, "plastic strain at which steel ruptures");

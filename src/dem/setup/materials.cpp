@@ -34,10 +34,11 @@ LocalElasticity local_elasticity(const MaterialConfig& a, const MaterialConfig& 
 std::optional<LinkKind> kind_within(const std::string& law) {
   if (law == "concrete") return LinkKind::concrete;
   if (law == "parallel") return LinkKind::parallel;
+  if (law == "ldpm") return LinkKind::ldpm;
   return std::nullopt;
 }
 std::string laws_within() {
-  return "concrete, parallel or ";
+  return "concrete, parallel, ldpm or ";
 }
 
 namespace {
@@ -117,6 +118,28 @@ ParallelBond parallel_bond(const MaterialConfig& m, const ContactConfig& contact
           local_elasticity(m).ratio,
           m.bond_radius,
           m.moment_share};
+}
+
+LdpmFacet ldpm_facet(const MaterialConfig& m) {
+  const LdpmConfig& c = m.ldpm;
+  const double young = m.young / (1.0 - 2.0 * m.poisson);
+  return {young,
+          (1.0 - 4.0 * m.poisson) / (1.0 + m.poisson),
+          m.tensile_strength,
+          c.tensile_length,
+          m.cohesion / m.tensile_strength,
+          c.softening_exponent,
+          c.unloading,
+          c.collapse_strength,
+          c.hardening * young,
+          c.final_hardening * young,
+          c.compaction_strain,
+          c.deviatoric_start,
+          c.deviatoric_slope,
+          c.friction,
+          c.final_friction,
+          c.friction_stress,
+          c.densification * young};
 }
 
 ContactLaw contact_law(const ContactConfig& c) {

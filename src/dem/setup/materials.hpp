@@ -5,6 +5,7 @@
 
 #include "dem/laws/contact.hpp"
 #include "dem/laws/interface_link.hpp"
+#include "dem/laws/ldpm_facet.hpp"
 #include "dem/laws/parallel_bond.hpp"
 #include "dem/laws/steel_link.hpp"
 #include "dem/setup/config.hpp"
@@ -36,6 +37,8 @@ ConcreteLink concrete_law(const MaterialConfig& material, const ContactConfig& c
 SteelLink steel_law(const MaterialConfig& material);
 InterfaceLink interface_law(const MaterialConfig& material, const ContactConfig& contact);
 ParallelBond parallel_bond(const MaterialConfig& material, const ContactConfig& contact);
+/// E_0 and alpha by the affine relation, E_0 = E / (1 - 2 nu), alpha = (1 - 4 nu) / (1 + nu).
+LdpmFacet ldpm_facet(const MaterialConfig& material);
 ContactLaw contact_law(const ContactConfig& contact);
 /// Constants of elements of two materials in contact, and of one with a rigid wall.
 ContactPair contact_pair(const ContactConfig& contact, const MaterialConfig& a,

@@ -10,8 +10,8 @@
 namespace breccia::dem {
 
 /// What joins two elements from the start.
-enum class LinkKind : std::uint8_t { concrete, steel, interface, parallel };
-inline constexpr std::size_t link_kinds = 4;
+enum class LinkKind : std::uint8_t { concrete, steel, interface, parallel, ldpm };
+inline constexpr std::size_t link_kinds = 5;
 
 /// What prepare makes of a case and dem/setup turns into a world. Element i has global id i.
 struct Model {
@@ -31,8 +31,17 @@ struct Model {
     LinkKind kind;
     std::int16_t material;  ///< law of the link: the concrete's, steel's or interface's material
     double share = 1.0;     ///< of a concrete link: its section over pi min(R_a, R_b)^2  [-]
+    Index facet = -1;       ///< of a link of LDPM: index into facets
   };
   std::vector<Link> links;  ///< sorted by a, then b
+
+  /// Of LDPM, between elements a < b, in a tetrahedron with c and d (docs/theory-ldpm.md).
+  struct Facet {
+    Index a, b, c, d;
+    Vec3 center;  ///<  [m]
+    double area;  ///< projected across the edge  [m2]
+  };
+  std::vector<Facet> facets;  ///< in the order of their links, one each
 
   std::vector<Index> bar_previous;  ///< neighbour of a bar's element along its bar, -1 elsewhere
   std::vector<Index> bar_next;      ///< likewise, towards the other end

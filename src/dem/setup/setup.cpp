@@ -138,6 +138,43 @@ void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m)
   copy_to(set.state, whole);
 }
 
+/// Some unit vector across another.
+Vec3 across(const Vec3& n) {
+  const Vec3 size{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  const Vec3 axis = size.x <= size.y && size.x <= size.z ? Vec3{1.0, 0.0, 0.0}
+                    : size.y <= size.z                   ? Vec3{0.0, 1.0, 0.0}
+                                                         : Vec3{0.0, 0.0, 1.0};
+  const Vec3 m = axis - dot(axis, n) * n;
+  return (1.0 / norm(m)) * m;
+}
+
+void set_links(LinkSet<LdpmFacet>& set, const Config& config, const Model& m) {
+  const auto links = grouped(
+      m, config, set, [](const MaterialConfig& c, const Model::Link&) { return ldpm_facet(c); });
+  set_ends(set.a, set.b, links);
+  std::vector<Index> c, d;
+  std::vector<LdpmPlace> places;
+  std::vector<LdpmFrame> frames;
+  for (const Model::Link& link : links) {
+    const Model::Facet& facet = m.facets.at(at(link.facet));
+    const auto x = [&m](Index e) { return m.position[at(e)]; };
+    const Vec3 along = x(link.b) - x(link.a), from_a = facet.center - x(link.a);
+    const double length = norm(along);
+    const Vec3 n = (1.0 / length) * along, first = across(n);
+    c.push_back(facet.c);
+    d.push_back(facet.d);
+    places.push_back({length,
+                      facet.area,
+                      {dot(from_a, n), dot(from_a, first), dot(from_a, cross(n, first))},
+                      six_volumes(x(link.a), x(link.b), x(facet.c), x(facet.d))});
+    frames.push_back({first, 1.0});
+  }
+  copy_to(set.c, c);
+  copy_to(set.d, d);
+  copy_to(set.place, places);
+  copy_to(set.frame, frames);
+}
+
 /// A released pair is D > 1.5 (R_a + R_b) apart. If margins of two elements never exceed half of
 /// R_a + R_b, a new search comes before such a pair can meet again, whenever it was released.
 void limit_margins(World& w, const Model& m) {

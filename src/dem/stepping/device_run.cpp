@@ -122,13 +122,15 @@ class LaunchedForces {
     const auto of = [&](auto& set, Index first_action) {
       return by_(Grouped(link_kernel<Number>(w, set, {}, first_action), set.on_device));
     };
+    const Index before_parallel = w.steel.size() + w.interface.size();
     for_each_part(
         w.exec,
         part(w.steel.size(), of(w.steel, 0),
              part(w.interface.size(), of(w.interface, w.steel.size()),
-                  part(w.parallel.size(), of(w.parallel, w.steel.size() + w.interface.size()),
-                       part(w.contacts.size(), by_(contact_kernel(w)),
-                            part(w.concrete.size(), of(w.concrete, 0), Parts<>{}))))));
+                  part(w.parallel.size(), of(w.parallel, before_parallel),
+                       part(w.ldpm.size(), of(w.ldpm, before_parallel + w.parallel.size()),
+                            part(w.contacts.size(), by_(contact_kernel(w)),
+                                 part(w.concrete.size(), of(w.concrete, 0), Parts<>{})))))));
   }
   By by_;
   StepClock* clock_;

@@ -10,6 +10,7 @@
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/refusal.hpp"
+#include "prepare/ldpm/body.hpp"
 
 namespace breccia {
 namespace {
@@ -56,9 +57,33 @@ class Check {
           fmt::format("{}.poisson = {} is above 1 / alpha = {:.4g}: links would have a negative "
                       "shear stiffness",
                       path, m.poisson, 1.0 / m.alpha));
+    if (m.law == "ldpm") check_ldpm(m, path);
     if (m.law == "interface" && m.bond == "mc90" && !(m.slip1 <= m.slip2 && m.slip2 < m.slip3))
       add(fmt::format("{}: slip1 <= slip2 < slip3 must hold (they are {}, {}, {} m)", path, m.slip1,
                       m.slip2, m.slip3));
+  }
+
+  void check_ldpm(const MaterialConfig& m, const std::string& path) {
+    const MixConfig& mix = m.mix;
+    if (!(m.poisson >= 0.0 && m.poisson < 0.25))
+      add(fmt::format("{}.poisson = {}: law ldpm needs 0 to 0.25", path, m.poisson));
+    if (!(m.tensile_strength > 0.0 && m.cohesion > 0.0))
+      add(path + ": law ldpm needs tensile_strength and cohesion above 0");
+    if (m.fracture_energy != 0.0)
+      add(path + ".fracture_energy has no use with law ldpm; give ldpm.tensile_length");
+    if (!(mix.smallest < mix.largest))
+      add(fmt::format("{}.mix.smallest = {} m must be below largest = {} m", path, mix.smallest,
+                      mix.largest));
+    const prepare::MixDesign design = prepare::mix_of(m);
+    if (!(design.aggregate() > 0.0))
+      add(
+          fmt::format("{}.mix leaves no room for aggregate: cement, water and air take {:.3g} of "
+                      "the volume",
+                      path, 1.0 - design.aggregate()));
+    if (m.ldpm.final_hardening > m.ldpm.hardening)
+      add(path + ".ldpm.final_hardening must not be above hardening");
+    if (m.ldpm.final_friction > m.ldpm.friction)
+      add(path + ".ldpm.final_friction must not be above friction");
   }
 
   void check(const SupportConfig& s) {

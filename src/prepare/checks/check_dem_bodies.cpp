@@ -85,7 +85,10 @@ class DemBodyChecks {
   void check(const BodyConfig& b) {
     check_material(b);
     if (b.shape == "rebar") return check_rebar(b);
-    const bool packed = b.shape == "box" || b.shape == "sphere" || b.shape == "cylinder";
+    const MaterialConfig* of = prepare::item_named(config_.materials, b.material);
+    if (of != nullptr && of->law == "ldpm") check_ldpm(b, *of);
+    const bool packed = (b.shape == "box" || b.shape == "sphere" || b.shape == "cylinder") &&
+                        (of == nullptr || of->law != "ldpm");
     require(!packed || b.pack.count >= 1,
             ".pack.count is missing: how many elements fill the body?");
     require(b.shape != "box" || (b.size.x > 0.0 && b.size.y > 0.0 && b.size.z > 0.0),
@@ -103,6 +106,13 @@ class DemBodyChecks {
     require(b.shape != "file" || !even || b.size.x * b.size.y * b.size.z > 0.0,
             ".size is missing: fabric = \"even\" of {} asks how deep elements lie in their box",
             b.material);
+  }
+
+  void check_ldpm(const BodyConfig& b, const MaterialConfig& m) {
+    require(b.shape == "box" || b.shape == "cylinder",
+            ": bodies of law ldpm are boxes or cylinders, not of shape {}", b.shape);
+    require(b.pack.count == 0,
+            ".pack has no use in a body of law ldpm: its grains follow from {}.mix", m.name);
   }
 
   void check_material(const BodyConfig& b) {
@@ -134,6 +144,10 @@ class DemBodyChecks {
         host != nullptr &&
         (host->shape == "box" || (drawn && (host->shape == "sphere" || host->shape == "cylinder" ||
                                             host->shape == "file")));
+    const MaterialConfig* around =
+        host == nullptr ? nullptr : prepare::item_named(config_.materials, host->material);
+    require(around == nullptr || around->law != "ldpm",
+            ".rebar.in = {:?}: bars in a body of law ldpm are not supported yet", b.rebar.in);
     require(fits, ".rebar.in = {:?} is not a {} body; there are: {}", b.rebar.in,
             drawn ? "packed" : "box", prepare::all_names(config_.bodies));
     if (!fits) return;

@@ -213,7 +213,8 @@ std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<Bo
     const BodyLinks& p = bodies[static_cast<std::size_t>(m.group[i])];
     const BodyLinks& q = bodies[static_cast<std::size_t>(m.group[j])];
     if (m.group[i] == m.group[j])
-      return p.kind == BodyLinks::Kind::range || m.bar_next[i] == b || m.bar_previous[i] == b;
+      return p.kind == BodyLinks::Kind::range || p.kind == BodyLinks::Kind::facets ||
+             m.bar_next[i] == b || m.bar_previous[i] == b;
     return p.host == m.group[j] || q.host == m.group[i];
   };
   struct Deepest {

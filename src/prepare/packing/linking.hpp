@@ -12,9 +12,10 @@ namespace breccia::prepare {
 /// How elements of a body are joined at the start; one a body, in the order of the case.
 struct BodyLinks {
   enum class Kind {
-    none,   ///< grains and single elements
-    range,  ///< every pair in range
-    bars    ///< neighbours along a bar, and the elements of `host` around them
+    none,    ///< grains and single elements
+    range,   ///< every pair in range
+    facets,  ///< particles of one tetrahedron, by link_facets
+    bars     ///< neighbours along a bar, and the elements of `host` around them
   } kind = Kind::none;
   dem::LinkKind link = dem::LinkKind::concrete;  ///< what joins pairs in range
   std::int16_t material = 0;                     ///< of the links within the body

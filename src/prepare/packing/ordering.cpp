@@ -67,6 +67,9 @@ void reorder(dem::Model& model, const std::vector<Index>& order) {
   std::vector<Index> rank(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     rank[static_cast<std::size_t>(order[k])] = static_cast<Index>(k);
+  for (dem::Model::Facet& facet : model.facets)
+    for (Index* corner : {&facet.a, &facet.b, &facet.c, &facet.d})
+      *corner = rank[static_cast<std::size_t>(*corner)];
   for (auto* neighbours : {&model.bar_previous, &model.bar_next})
     for (Index& i : *neighbours)
       if (i >= 0) i = rank[static_cast<std::size_t>(i)];

@@ -73,8 +73,8 @@ struct DemSim {
   template <class Visit>
   static void each_stored(World& w, const Visit& visit) {
     visit.fields("elements", w.elements);
-    w.each_set([&](auto& set) {  // files of before parallel bonds have none
-      if (set.kind != dem::LinkKind::parallel || set.size() > 0) visit.fields(set.name, set);
+    w.each_set([&](auto& set) {  // older files have no parallel bonds, nor facets
+      if (set.kind < dem::LinkKind::parallel || set.size() > 0) visit.fields(set.name, set);
     });
     visit.fields("contacts", w.contacts);
     visit.fields("wall_contacts", w.wall_contacts);

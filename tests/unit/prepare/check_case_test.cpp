@@ -32,6 +32,34 @@ std::string problems_of(const std::string& message) {
   return end == std::string::npos ? "" : message.substr(end);
 }
 
+TEST(CheckDem, refuses_what_ldpm_cannot_do) {
+  using dem::Config;
+  check_case(dem::ldpm_cube());
+  const std::pair<std::function<void(Config&)>, const char*> changes[] = {
+      {[](Config& c) { c.bodies[0].shape = "sphere"; }, "boxes or cylinders"},
+      {[](Config& c) { c.bodies[0].pack.count = 100; }, "pack has no use"},
+      {[](Config& c) { c.materials[0].poisson = 0.25; }, "needs 0 to 0.25"},
+      {[](Config& c) { c.materials[0].cohesion = 0.0; }, "tensile_strength and cohesion"},
+      {[](Config& c) { c.materials[0].fracture_energy = 50.0; }, "ldpm.tensile_length"},
+      {[](Config& c) { c.materials[0].mix.smallest = 0.1; }, "must be below largest"},
+      {[](Config& c) { c.materials[0].mix.cement = 900.0; }, "no room for aggregate"},
+      {[](Config& c) { c.materials[0].ldpm.final_hardening = 0.5; }, "final_hardening"},
+      {[](Config& c) { c.materials[0].ldpm.final_friction = 0.5; }, "final_friction"},
+  };
+  for (const auto& [change, words] : changes) {
+    Config config = dem::ldpm_cube();
+    change(config);
+    EXPECT_NE(refused([&] { check_case(config); }).find(words), std::string::npos) << words;
+  }
+  Config bars = dem::small_slab();
+  for (dem::MaterialConfig& m : bars.materials)
+    if (m.law == "concrete") m.law = "ldpm";
+  EXPECT_NE(refused([&] { check_case(bars); }).find("not supported yet"), std::string::npos);
+  Config brittle = dem::ldpm_cube();
+  brittle.materials[0].ldpm.tensile_length = 5e-3;
+  EXPECT_NE(refused([&] { build_model(brittle, ""); }).find("is too short"), std::string::npos);
+}
+
 TEST(CheckDem, refuses_a_body_with_the_words_of_the_build) {
   using dem::BodyConfig;
   using dem::Config;

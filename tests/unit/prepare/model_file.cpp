@@ -40,6 +40,22 @@ TEST(ModelFile, GivesBackTheModelThatWasBuilt) {
   EXPECT_EQ(bytes_of(read, scratch / "read.br"), bytes);
 }
 
+TEST(ModelFile, GivesBackTheFacetsOfLdpm) {
+  const ScratchFolder scratch;
+  const dem::Model built = build_model(dem::ldpm_cube(), "");
+  const std::string bytes = bytes_of(built, scratch / "built.br");
+  const CheckpointReader reader(scratch / "built.br");
+  const dem::Model read = load_model(reader);
+  ASSERT_EQ(read.facets.size(), built.links.size());
+  EXPECT_EQ(read.links.back().facet, static_cast<Index>(read.facets.size()) - 1);
+  EXPECT_EQ(bytes_of(read, scratch / "read.br"), bytes);
+  dem::Model less = built;
+  less.facets.pop_back();
+  bytes_of(less, scratch / "bad.br");
+  const CheckpointReader bad(scratch / "bad.br");
+  EXPECT_THROW(load_model(bad), CheckpointError);
+}
+
 TEST(ModelFile, RefusesLinksToElementsThatAreNotThere) {
   const ScratchFolder scratch;
   dem::Model model = build_model(dem::small_slab(), "");

@@ -67,6 +67,14 @@ inline Config slab_of_the_paper() {
   return config;
 }
 
+/// A small cube of particles around coarse grains.
+inline Config ldpm_cube() {
+  Config config = case_with_materials();
+  config.materials[0].law = "ldpm";
+  config.bodies = {box_body("cube", {0.04, 0.04, 0.04}, 0, 0.6)};
+  return config;
+}
+
 /// A small reinforced slab.
 inline Config small_slab() {
   Config config = case_with_materials();

@@ -135,7 +135,7 @@ export function curvePanel(runs, measured, store) {
   return {node, start: build};
 }
 
-const KINDS = ["concrete", "steel", "interface", "parallel"]; // as LinkKind of src/dem/model.hpp
+const KINDS = ["concrete", "steel", "interface", "parallel", "ldpm"]; // as LinkKind of src/dem/setup/model.hpp
 
 /** How many links or joints are broken, over time. */
 export function eventPanel(runs, store) {

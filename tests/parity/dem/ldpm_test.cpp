@@ -1,0 +1,103 @@
+// Concrete of LDPM: same bits on threads, packs, a device's schedule and ranks.
+
+#include <gtest/gtest.h>
+
+#include "dem/observe.hpp"
+#include "dem/ranks.hpp"
+#include "domain/simulated_ranks.hpp"
+#include "prepare/build.hpp"
+
+namespace breccia::dem {
+namespace {
+
+/// A small prism that a fast head tears off its foot.
+Config torn_prism() {
+  Config config;
+  MaterialConfig concrete;
+  concrete.name = "concrete";
+  concrete.law = "ldpm";
+  concrete.density = 2338.0;
+  concrete.young = 39e9;
+  concrete.poisson = 0.17647;
+  concrete.tensile_strength = 3.44e6;
+  concrete.cohesion = 8.944e6;
+  concrete.ldpm.tensile_length = 0.1;
+  concrete.ldpm.densification = 1.5;
+  config.materials = {concrete};
+  BodyConfig prism;
+  prism.name = "prism";
+  prism.shape = "box";
+  prism.material = "concrete";
+  prism.size = {0.03, 0.03, 0.045};
+  config.bodies = {prism};
+  SupportConfig foot, head;
+  foot.name = "foot";
+  foot.min = {-1.0, -1.0, -1.0};
+  foot.max = {1.0, 1.0, -0.0224};
+  foot.fix = {"all"};
+  head = foot;
+  head.name = "head";
+  head.min.z = 0.0224;
+  head.max.z = 1.0;
+  head.velocity = {40.0, 0.0, 120.0};
+  head.ramp = 2e-5;
+  config.supports = {foot, head};
+  config.time.end = 1.0;
+  return config;
+}
+
+const Model& model() {
+  static const Model made = build_model(torn_prism(), "");
+  return made;
+}
+constexpr int steps = 200;
+World torn(Space space, int threads, Lanes lanes = widest_lanes()) {
+  Exec exec;
+  exec.space = space;
+  exec.threads = threads;
+  World w = make_world(torn_prism(), model(), exec);
+  w.lanes = lanes;
+  while (w.step < steps) advance(w, {1e300, steps});
+  return w;
+}
+const World& reference() {
+  static const World w = torn(Space::host, 1);
+  return w;
+}
+
+TEST(LdpmFacets, crack_and_let_go_of_their_ends) {
+  const Counts n = count(reference());
+  EXPECT_GT(n.broken_of(LinkKind::ldpm), 100);
+  const auto frames = reference().ldpm.frame.host();
+  EXPECT_TRUE(std::any_of(frames.begin(), frames.end(),
+                          [](const LdpmFrame& f) { return f.bond == ldpm_released; }));
+  World w = reference();
+  const EnergyBalance e = balance(w);
+  EXPECT_GT(e.fracture, 0.0);
+  EXPECT_LT(e.error_relative, 0.05);
+}
+
+TEST(LdpmFacets, end_alike_on_threads_packs_and_a_devices_schedule) {
+  for (const int threads : {2, 3})
+    EXPECT_EQ(state_hash(torn(Space::host, threads)), state_hash(reference())) << threads;
+  for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight})
+    if (lanes <= widest_lanes()) {
+      EXPECT_EQ(state_hash(torn(Space::host, 1, lanes)), state_hash(reference()));
+    }
+  EXPECT_EQ(state_hash(torn(Space::shadow, 1)), state_hash(reference()));
+}
+
+TEST(LdpmFacets, end_alike_on_ranks) {
+  simulate_ranks(3, 5, [&](Communicator& ranks) {
+    World whole = make_world(torn_prism(), model(), {});
+    World part = share_out(whole, ranks, {}, Space::host);
+    for (int i = 0; i < steps; ++i) step(part);
+    collect(part, whole);
+    if (ranks.rank() != 0) return;
+    EXPECT_EQ(state_hash(whole), state_hash(reference()));
+    EXPECT_EQ(count(whole).broken, count(reference()).broken);
+  });
+}
+
+}  // namespace
+}  // namespace breccia::dem
