@@ -15,6 +15,7 @@
 #include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
+#include "run/machine/exec_choice.hpp"
 
 namespace breccia::app {
 namespace {
@@ -56,7 +57,7 @@ struct BenchCommand {
   void execute(Communicator* ranks) const {
     refuse_unknown(ranks);
     Exec exec;
-    collective_try(ranks, [&] { exec = in_precision(exec_of(options, ranks), precision); });
+    collective_try(ranks, [&] { exec = in_precision(exec_on(options.device, options.threads, ranks), precision); });
     if (paced) {
       pace_slab(std::cin, std::cout, exec);
       return;

@@ -21,6 +21,7 @@ ALLOWED = {
     "prepare": {"exec", "math", "core", "io", "dem", "fdem"},
     "run": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare"},
     "report": {"exec", "math", "core", "io"},
+    "api": {"exec", "math", "core", "io", "run"},
     "laboratory": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run", "report"},
     "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run", "report", "laboratory"},
 }

@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/case.hpp"
 #include "app/commands.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
+#include "run/case.hpp"
 #include "run/machine/memory_plan.hpp"
 
 namespace breccia::app {

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/case.hpp"
 #include "app/commands.hpp"
 #include "io/checkpoint.hpp"
+#include "run/case.hpp"
 
 namespace breccia::app {
 namespace {

@@ -17,6 +17,7 @@
 #include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
+#include "run/machine/exec_choice.hpp"
 #include "run/machine/signals.hpp"
 #include "run/run.hpp"
 
@@ -62,7 +63,7 @@ struct ResumeCommand {
     std::optional<CheckpointReader> checkpoint;  // every rank needs the folder of the case
     std::optional<RunState> former;
     collective_try(ranks, [&] {
-      exec = exec_of(options, ranks);
+      exec = exec_on(options.device, options.threads, ranks);
       exec.timers = &timers;
       refuse_fixed_keys(options.overrides);
       if (leads(ranks)) folder.emplace(ResultFolder::open(path));

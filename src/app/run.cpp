@@ -11,6 +11,7 @@
 #include "app/findings.hpp"
 #include "app/run_options.hpp"
 #include "domain/together.hpp"
+#include "run/machine/exec_choice.hpp"
 #include "run/machine/signals.hpp"
 
 namespace breccia::app {
@@ -30,7 +31,7 @@ struct RunCommand {
     Case read;
     std::string out;
     collective_try(ranks, [&] {
-      exec = exec_of(options, ranks);
+      exec = exec_on(options.device, options.threads, ranks);
       exec.timers = &timers;
       read = load_case(path, options.overrides);
       if (!options.allow_scripts) refuse_scripts(read);

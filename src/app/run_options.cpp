@@ -1,16 +1,12 @@
 #include "app/run_options.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <charconv>
 
 #include "domain/mpi_ranks.hpp"
 #include "domain/together.hpp"
-#include "exec/device.hpp"
-#include "exec/error.hpp"
 
 namespace breccia::app {
 namespace {
@@ -63,37 +59,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--no-progress", options.no_progress, "no progress bar or lines");
 }
 
-Exec exec_of(const RunOptions& options, Communicator* ranks) {
-  Exec exec;
-  const int share = std::max(1, omp_get_num_procs() / ranks_on_this_machine(ranks));
-  exec.threads = options.threads > 0 ? options.threads : share;
-  if (options.device == "cpu") return exec;
-  if (options.device != "cuda" && !options.device.starts_with("cuda:"))
-    throw InputError(fmt::format("--device {}: there are cpu, cuda and cuda:N", options.device));
-  int number = 0;
-  if (const std::size_t colon = options.device.find(':'); colon != std::string::npos) {
-    const char* const end = options.device.data() + options.device.size();
-    const auto [stop, error] = std::from_chars(options.device.data() + colon + 1, end, number);
-    if (error != std::errc{} || stop != end || number < 0)
-      throw InputError(
-          fmt::format("--device {}: N is the number of a GPU, from 0", options.device));
-  } else if (const int there = device_count(); there > 0)  // a GPU each, in turn
-    number = number_on_this_machine(ranks) % there;
-  use_device(number);
-  exec.space = Space::cuda;
-  return exec;
-}
-
 RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec,
                 Communicator* ranks) {
-  RunPlan plan;
-  plan.config = read.common();
-  plan.case_name = read.name;
-  plan.case_text = read.text;
-  plan.case_digest = read.digest;
-  plan.case_folder = read.folder;
-  plan.prepared = read.prepared;
-  plan.model_digest = read.model_digest;
+  RunPlan plan = plan_of(read);
   plan.limits = {options.until, options.steps, wall_time(options.max_wall)};
   plan.machine = {processor_name(), options.device, exec.threads,
                   ranks == nullptr ? 1 : ranks->size()};

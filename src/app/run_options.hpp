@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/case.hpp"
 #include "exec/space.hpp"
+#include "run/case.hpp"
 #include "run/run.hpp"
 
 namespace CLI {
@@ -27,9 +27,6 @@ struct RunOptions {
 };
 
 void add_run_options(CLI::App& command, RunOptions& options);
-
-/// @throws InputError for a device that is none, DeviceError if this build or machine has it not
-Exec exec_of(const RunOptions& options, Communicator* ranks);
 
 /// The plan of a run of the case; `timers` are those the method books its stages in.
 RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec, Communicator* ranks);

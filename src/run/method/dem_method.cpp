@@ -1,6 +1,7 @@
 #include "run/method/dem_method.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "dem/energy.hpp"
 #include "dem/observe.hpp"
@@ -68,6 +69,19 @@ struct DemSim {
     });
     add("fracture.fragments", n.fragments);
     add("fracture.largest_fragment_fraction", n.largest_fragment);
+  }
+
+  static void add_arrays(World& w, StateArrays& arrays) {
+    const Buffer<dem::ElementState>& state = w.elements.state;
+    arrays.add_part<Vec3>("position", "m", state, offsetof(dem::ElementState, position));
+    arrays.add_part<Vec3>("velocity", "m/s", state, offsetof(dem::ElementState, velocity));
+    arrays.add_part<Vec3>("spin", "rad/s", state, offsetof(dem::ElementState, spin));
+    arrays.add_part<double>("radius", "m", state, offsetof(dem::ElementState, radius));
+    arrays.add_found("damage", "-", w.elements.size(), [&] { return dem::damage(w); });
+    arrays.add_fields("", w.elements);
+    w.each_set([&](auto& set) {
+      if (set.size() > 0) arrays.add_fields(std::string("links.") + set.name + '.', set);
+    });
   }
 
   template <class Visit>

@@ -1,6 +1,7 @@
 #include "run/method/fdem_method.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "exec/error.hpp"
 #include "fdem/energy.hpp"
@@ -113,6 +114,22 @@ struct FdemSim {
     for (std::size_t i = 0; i < all.mass.size(); ++i)
       pieces.rows.push_back({static_cast<double>(i), all.mass[i] / scaling, all.mass[i] / total});
     return {cracks, pieces};
+  }
+
+  static void add_arrays(World& w, StateArrays& arrays) {
+    const fdem::Triangles& t = w.triangles;
+    const auto of_corners = [&]<class Item>(const char* name, const char* unit,
+                                            const Buffer<Item>& items, std::size_t offset) {
+      arrays.add_part<Vec2>(name, unit, items, offset, 3, sizeof(Item) / 3);
+    };
+    of_corners("position", "m", t.nodes, offsetof(fdem::NodeState, position));
+    of_corners("velocity", "m/s", t.nodes, offsetof(fdem::NodeState, velocity));
+    of_corners("force", "N/m", t.force, 0);
+    arrays.add_found("damage", "-", t.size(), [&] { return fdem::damage(w); });
+    arrays.add_found("stress", "Pa", t.size(), [&] { return fdem::stresses(w); });
+    arrays.add_found("fragment", "-", t.size(), [&] { return fdem::fragments(w).of; });
+    arrays.add_fields("", w.triangles);
+    arrays.add_fields("joints.", w.joints);
   }
 
   template <class Visit>

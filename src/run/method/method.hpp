@@ -10,6 +10,7 @@
 #include "core/step_clock.hpp"
 #include "io/checkpoint.hpp"
 #include "run/frames/frame_output.hpp"
+#include "run/method/state_array.hpp"
 
 namespace breccia {
 
@@ -67,6 +68,10 @@ class Method {
   /// if one must look now: on the host, on several ranks, or for want of memory.
   virtual std::unique_ptr<Method> snapshot() { return nullptr; }
   virtual std::vector<Fact> facts() = 0;
+  /// Of the state as it is: the array of this name or, for an empty one, all of them without their
+  /// numbers. Those of the host's memory change with each step, and stay where they are. Of one
+  /// rank alone.
+  virtual std::vector<StateArray> arrays(const std::string& /*name*/) { return {}; }
   /// What else the end of a run shows.
   virtual std::vector<Table> tables() { return {}; }
 

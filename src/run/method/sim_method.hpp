@@ -25,13 +25,15 @@ namespace breccia {
 /// probe, read_own, find_unsound, state_hash, derive, share_out, collect and rebalance.
 template <class Sim>
 concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vector<Fact>& facts,
-                              Ledger& ledger, const Energies& energies) {
+                              Ledger& ledger, const Energies& energies, StateArrays& arrays) {
   { Sim::balance(ledger, energies, std::int64_t{}) } -> std::same_as<EnergyBalance>;
   // The frame of a world, or what a part has of it; rank 0 knows the whole mesh, too.
   { Sim::frame(w, &w) } -> std::same_as<FramePart>;
   // Counts of the model, and findings about its state.
   sim.add_model(w, facts);
   sim.add_findings(w, facts);
+  // Arrays that others may look at while it runs.
+  Sim::add_arrays(w, arrays);
 };
 
 template <class World>
@@ -144,6 +146,11 @@ class SimMethod final : public Method {
       sim_.add_findings(w, facts);
       return facts;
     });
+  }
+  std::vector<StateArray> arrays(const std::string& name) override {
+    StateArrays arrays(name);
+    Sim::add_arrays(world_.part(), arrays);
+    return std::move(arrays.found);
   }
   std::vector<Table> tables() override {
     if constexpr (requires(const World& w, const Sim& sim) { sim.tables(w); })

@@ -16,7 +16,9 @@
 #include "io/checkpoint.hpp"
 #include "run/method/method.hpp"
 
-namespace breccia::app {
+namespace breccia {
+
+struct RunPlan;
 
 struct Case {
   std::variant<dem::Config, fdem::Config> config;
@@ -38,6 +40,13 @@ struct Case {
 /// a
 ///         prepared model is damaged
 Case load_case(const std::string& path, const std::vector<std::string>& overrides);
+
+/// Reads a case from its text.
+/// @param name    of the case; messages name it as their file
+/// @param folder  where files that the case names are
+/// @throws InputError with every problem at once
+Case case_of_text(const std::string& text, const std::string& name, const std::string& folder,
+                  const std::vector<std::string>& overrides);
 
 /// Reads the files that the case names, as building its model would.
 /// @throws InputError or IoError with every problem at once
@@ -68,7 +77,10 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
 /// @throws InputError if the model cannot be built, or does not fit
 std::unique_ptr<Method> method_to_look_at(const Case& read);
 
+/// What a run of the case is told of it; the rest of the plan as it is by default.
+RunPlan plan_of(const Case& read);
+
 /// Builds the model and adds it to a file. Returns a few words about its size.
 std::string save_model_of(const Case& read, CheckpointWriter& writer);
 
-}  // namespace breccia::app
+}  // namespace breccia

@@ -1,4 +1,4 @@
-#include "app/case.hpp"
+#include "run/case.hpp"
 
 #include <fmt/format.h>
 
@@ -19,8 +19,9 @@
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem_method.hpp"
 #include "run/method/shown.hpp"
+#include "run/run.hpp"
 
-namespace breccia::app {
+namespace breccia {
 namespace {
 
 /// A file that cannot be read is no fault of what is in it. @throws IoError with path and reason
@@ -154,6 +155,15 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
   return completed(std::move(read));
 }
 
+Case case_of_text(const std::string& text, const std::string& name, const std::string& folder,
+                  const std::vector<std::string>& overrides) {
+  Case read;
+  read.config = read_config(CaseText{text, name}, overrides);
+  read.name = name;
+  read.folder = std::filesystem::absolute(folder).lexically_normal().string();
+  return completed(std::move(read));
+}
+
 std::vector<std::string> scripts_of(const Case& read) {
   std::vector<std::string> files;
   const auto* const config = std::get_if<fdem::Config>(&read.config);
@@ -210,7 +220,7 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
                         quiet || (ranks != nullptr && ranks->rank() > 0));
         });
         try {
-          return breccia::make_method(config, model, exec, ranks);
+          return make_method(config, model, exec, ranks);
         } catch (const NumericsError& error) {
           throw NumericsError(fmt::format("step 0, t = 0 s: {}", error.what()));
         }
@@ -220,6 +230,18 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
 
 std::unique_ptr<Method> method_to_look_at(const Case& read) {
   return make_method(read, Exec{}, nullptr);
+}
+
+RunPlan plan_of(const Case& read) {
+  RunPlan plan;
+  plan.config = read.common();
+  plan.case_name = read.name;
+  plan.case_text = read.text;
+  plan.case_digest = read.digest;
+  plan.case_folder = read.folder;
+  plan.prepared = read.prepared;
+  plan.model_digest = read.model_digest;
+  return plan;
 }
 
 std::string save_model_of(const Case& read, CheckpointWriter& writer) {
@@ -234,4 +256,4 @@ std::string save_model_of(const Case& read, CheckpointWriter& writer) {
       read.config);
 }
 
-}  // namespace breccia::app
+}  // namespace breccia

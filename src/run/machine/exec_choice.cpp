@@ -1,0 +1,35 @@
+#include "run/machine/exec_choice.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "domain/mpi_ranks.hpp"
+#include "exec/device.hpp"
+#include "exec/error.hpp"
+
+namespace breccia {
+
+Exec exec_on(const std::string& device, int threads, Communicator* ranks) {
+  Exec exec;
+  const int share = std::max(1, omp_get_num_procs() / ranks_on_this_machine(ranks));
+  exec.threads = threads > 0 ? threads : share;
+  if (device == "cpu") return exec;
+  if (device != "cuda" && !device.starts_with("cuda:"))
+    throw InputError(fmt::format("device {}: there are cpu, cuda and cuda:N", device));
+  int number = 0;
+  if (const std::size_t colon = device.find(':'); colon != std::string::npos) {
+    const char* const end = device.data() + device.size();
+    const auto [stop, error] = std::from_chars(device.data() + colon + 1, end, number);
+    if (error != std::errc{} || stop != end || number < 0)
+      throw InputError(fmt::format("device {}: N is the number of a GPU, from 0", device));
+  } else if (const int there = device_count(); there > 0)  // a GPU each, in turn
+    number = number_on_this_machine(ranks) % there;
+  use_device(number);
+  exec.space = Space::cuda;
+  return exec;
+}
+
+}  // namespace breccia
