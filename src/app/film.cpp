@@ -1,0 +1,132 @@
+#include "app/film.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+#include <vector>
+
+#include "exec/error.hpp"
+
+namespace breccia::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The program on the PATH; empty if it is not there.
+std::string ffmpeg() {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "/usr/bin" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (const std::string file = folder + "/ffmpeg"; ::access(file.c_str(), X_OK) == 0) return file;
+  return {};
+}
+
+/// How ffmpeg encodes a film by the end of its name.
+std::vector<std::string> encoding(const std::string& path) {
+  if (path.ends_with(".gif"))
+    return {"-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse", "-f", "gif"};
+  const std::string even = "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white";  // as 4:2:0 wants it
+  if (path.ends_with(".webm"))
+    return {"-vf", even,      "-c:v", "libvpx-vp9", "-crf",    "30", "-b:v",
+            "0",   "-row-mt", "1",    "-pix_fmt",   "yuv420p", "-f", "webm"};
+  return {"-vf",      even,      "-c:v",      "libx264",    "-crf", "18",
+          "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f",   "mp4"};
+}
+
+}  // namespace
+
+bool is_film(const std::string& path) {
+  return path.ends_with(".mp4") || path.ends_with(".webm") || path.ends_with(".gif");
+}
+
+Film::Film(const std::string& path, int rate, std::string note)
+    : path_(path), temporary_(path + ".tmp"), note_(std::move(note)), rate_(rate) {
+  if (ffmpeg().empty())
+    throw IoError(
+        path +
+        ": films are made by the program ffmpeg, which is not here; install it (Debian: apt "
+        "install ffmpeg), or make a sheet of pictures: --sheet 3x2 -o sheet.png");
+  ::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ended is an error of the write call
+}
+
+Film::~Film() {
+  if (pipe_ >= 0) ::close(pipe_);
+  if (child_ > 0) ::waitpid(child_, nullptr, 0);
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void Film::start(const Image& first) {
+  width_ = first.width;
+  height_ = first.height;
+  std::vector<std::string> words{ffmpeg(),
+                                 "-y",
+                                 "-loglevel",
+                                 "error",
+                                 "-f",
+                                 "rawvideo",
+                                 "-pixel_format",
+                                 "rgb24",
+                                 "-video_size",
+                                 fmt::format("{}x{}", width_, height_),
+                                 "-framerate",
+                                 std::to_string(rate_),
+                                 "-i",
+                                 "-",
+                                 "-metadata",
+                                 "comment=" + note_};
+  for (const std::string& word : encoding(path_)) words.push_back(word);
+  words.push_back("file:" + temporary_);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  int ends[2];
+  if (::pipe(ends) != 0) throw IoError(path_ + ": cannot be written: no pipe to ffmpeg");
+  child_ = ::fork();
+  if (child_ == 0) {
+    ::dup2(ends[0], STDIN_FILENO);
+    ::close(ends[0]);
+    ::close(ends[1]);
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  ::close(ends[0]);
+  pipe_ = ends[1];
+  if (child_ < 0) fail();
+}
+
+void Film::add(const Image& image) {
+  if (child_ < 0) start(image);
+  if (image.width != width_ || image.height != height_)
+    throw InputError(path_ + ": the pictures of a film must be of one size");
+  for (std::size_t sent = 0; sent < image.rgb.size();) {
+    const ssize_t more = ::write(pipe_, image.rgb.data() + sent, image.rgb.size() - sent);
+    if (more < 0 && errno == EINTR) continue;
+    if (more <= 0) fail();
+    sent += static_cast<std::size_t>(more);
+  }
+}
+
+void Film::close() {
+  ::close(pipe_);
+  pipe_ = -1;
+  int status = 0;
+  ::waitpid(child_, &status, 0);
+  child_ = -1;
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail();
+  std::error_code error;
+  fs::rename(temporary_, path_, error);
+  if (error) throw IoError(path_ + ": cannot be written: " + error.message());
+}
+
+void Film::fail() {
+  throw IoError(path_ + ": cannot be written: ffmpeg ended early; its words are above");
+}
+
+}  // namespace breccia::app
