@@ -80,6 +80,7 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   breccia::app::add_report(program);
   breccia::app::add_sweep(program, exit_code);
   breccia::app::add_test(program, exit_code);
+  breccia::app::add_watch(program, exit_code);
   breccia::app::add_shell_file(program);
 #ifdef BR_BENCH
   breccia::app::add_bench(program, ranks);

@@ -135,6 +135,14 @@ ResultFolder ResultFolder::open(const std::string& path) {
   return ResultFolder(path, file);
 }
 
+bool ResultFolder::is_locked(const std::string& path) {
+  const int file = ::open((path + "/" + lock_name).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (file < 0) return false;
+  const bool locked = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return locked;
+}
+
 ResultFolder::ResultFolder(ResultFolder&& other) noexcept
     : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
 

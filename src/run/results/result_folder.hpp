@@ -25,6 +25,9 @@ class ResultFolder {
   /// @throws IoError if there is none, InputError if it holds no run or another process runs in it
   static ResultFolder open(const std::string& path);
 
+  /// Whether a process runs in the folder now; false if that cannot be found out.
+  static bool is_locked(const std::string& path);
+
   ResultFolder(ResultFolder&& other) noexcept;
   ResultFolder& operator=(ResultFolder&&) = delete;
   ~ResultFolder();
