@@ -1,16 +1,22 @@
 // breccia check CASE...: says every problem of the cases without running them.
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands.hpp"
 #include "exec/error.hpp"
+#include "io/case/problems.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
+#include "io/whole_file.hpp"
 #include "run/case.hpp"
+#include "run/machine/forecast.hpp"
 #include "run/machine/memory_plan.hpp"
 
 namespace breccia::app {
@@ -20,33 +26,38 @@ std::string counted(std::size_t count, const char* one, const char* several) {
   return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
+/// A count that is an estimate, to two digits and with a word for it.
+std::string about(double count) {
+  const double tens = std::pow(10.0, std::floor(std::log10(std::max(count, 1.0))) - 1.0);
+  return "about " + count_text(count < 100.0 ? count : std::round(count / tens) * tens);
+}
+
+/// "18 ns", "1.1 us"
+std::string short_time(double seconds) {
+  const bool nanoseconds = seconds < 0.995e-6;
+  if (seconds >= 1e-3) return time_text(seconds);
+  const double number = seconds * (nanoseconds ? 1e9 : 1e6);
+  const char* const unit = nanoseconds ? "ns" : "us";
+  return number < 99.5 ? fmt::format("{:.2g} {}", number, unit)
+                       : fmt::format("{:.0f} {}", number, unit);
+}
+
+/// beam.toml: beam.fixed.toml; a folder: its case.fixed.toml.
+std::string fixed_path(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path file = fs::is_directory(path) ? fs::path(path) / "case.toml" : fs::path(path);
+  return (file.parent_path() / (file.stem().string() + ".fixed.toml")).string();
+}
+
 struct CheckCommand {
   std::vector<std::string> paths, overrides;
-  bool model = false, allow_scripts = false;
+  bool model = false, fix = false, allow_scripts = false;
 
   int execute() const {
     int exit_code = 0;
     for (const std::string& path : paths) {
       try {
-        const Case read = load_case(path, overrides);
-        check_files(read);
-        if (model && !allow_scripts) refuse_scripts(read);
-        std::visit(
-            [&](const auto& config) {
-              const MemoryPlan plan = memory_plan(config);
-              refuse_without_memory(plan, plan.run_bytes, 1, path + ": the model");
-              fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
-                         counted(config.bodies.size(), "body", "bodies"),
-                         counted(config.materials.size(), "material", "materials"),
-                         time_text(config.time.end));
-              if (plan.items > 0.0) fmt::print(", about {} of memory", memory_text(plan.run_bytes));
-              if (const auto files = scripts_of(read); !files.empty())
-                fmt::print(", needs --allow-scripts for {}",
-                           harmless(fmt::format("{}", fmt::join(files, ", "))));
-              fmt::print("\n");
-            },
-            read.config);
-        if (model) tell_of_model(read);
+        check(fix ? fixed(path) : path);
       } catch (const Error& error) {
         std::fflush(stdout);
         std::fputs(fmt::format("error: {}\n", harmless(error.what())).c_str(), stderr);
@@ -54,6 +65,87 @@ struct CheckCommand {
       }
     }
     return exit_code;
+  }
+
+  void check(const std::string& path) const {
+    const Case read = load_case(path, overrides);
+    check_files(read);
+    if (model && !allow_scripts) refuse_scripts(read);
+    std::visit(
+        [&](const auto& config) {
+          const MemoryPlan plan = memory_plan(config);
+          refuse_without_memory(plan, plan.run_bytes, 1, path + ": the model");
+          fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
+                     counted(config.bodies.size(), "body", "bodies"),
+                     counted(config.materials.size(), "material", "materials"),
+                     time_text(config.time.end));
+          if (const auto files = scripts_of(read); !files.empty())
+            fmt::print(", needs --allow-scripts for {}",
+                       harmless(fmt::format("{}", fmt::join(files, ", "))));
+          fmt::print("\n");
+          if (!read.model) tell_forecast(forecast(config, read.folder));
+        },
+        read.config);
+    if (model) tell_of_model(read);
+  }
+
+  static void tell_forecast(const Forecast& f) {
+    if (f.items == 0.0) {
+      fmt::print("  size    known when gmsh has meshed it: check --model\n");
+      return;
+    }
+    fmt::print("  size    {} {}", about(f.items), f.item_name);
+    if (f.bonds > 0.0) fmt::print(", {} {}", about(f.bonds), f.bond_name);
+    fmt::print("\n  step    about {}, ruled by\n          {}\n", short_time(f.step),
+               harmless(f.step_rule));
+    fmt::print("  steps   {}, more as bodies meet and break\n", about(f.steps));
+    fmt::print("  time    {} here ({}), {} on one H200 GPU, output apart\n",
+               rough_duration(f.here_s),
+               counted(static_cast<std::size_t>(omp_get_num_procs()), "core", "cores"),
+               rough_duration(f.gpu_s));
+    fmt::print("  memory  about {}; disk about {}, most of it {}\n", memory_text(f.memory),
+               memory_text(f.disk), f.longest_part);
+  }
+
+  /// Writes the case with what is surely a slip corrected. Returns the path to go on with.
+  std::string fixed(const std::string& path) const {
+    const std::string into = fixed_path(path);
+    std::string from = path, text;
+    std::vector<std::string> told;
+    for (int round = 0; round < 5; ++round) {  // a corrected name shows the slips below it
+      try {
+        text.empty() ? read_keys(from) : read_keys(CaseText{text, into});
+        break;
+      } catch (const CaseError& error) {
+        const std::string old =
+            text.empty()
+                ? read_whole_file(std::filesystem::is_directory(path) ? path + "/case.toml" : path)
+                : text;
+        for (const Problem& problem : error.problems)
+          if (const auto& c = problem.correction)
+            told.push_back(fmt::format("line {}: {} -> {}", c->line, c->old, c->now));
+        const std::string better = corrected(old, error.problems);
+        if (better == old) break;
+        text = better;
+      }
+    }
+    if (text.empty()) {
+      fmt::print("{}: nothing that --fix knows how to correct\n", harmless(path));
+      return path;
+    }
+    replace_file(into, text);
+    fmt::print("{}: {} in {}\n", harmless(path), counted(told.size(), "correction", "corrections"),
+               harmless(into));
+    for (const std::string& line : told) fmt::print("  {}\n", harmless(line));
+    return into;
+  }
+
+  template <class Source>
+  void read_keys(const Source& source) const {
+    if (case_method(source, overrides) == "fdem2d")
+      read_case<fdem::Config>(source, overrides);
+    else
+      read_case<dem::Config>(source, overrides);
   }
 
   static void tell_of_model(const Case& read) {
@@ -88,6 +180,10 @@ void add_check(CLI::App& program, int& exit_code) {
       ->allow_extra_args(false);
   command->add_flag("--model", check->model,
                     "also build and set up the models, and say what is doubtful about them");
+  command->add_flag(
+      "--fix", check->fix,
+      "write CASE.fixed.toml with misspelt keys, words and units corrected, and check "
+      "that");
   command->add_flag("--allow-scripts", check->allow_scripts, allow_scripts_help);
   command->callback([check, &exit_code] { exit_code = check->execute(); });
 }

@@ -1,36 +1,81 @@
-// breccia keys [PREFIX]: every key of a case file.
+// breccia keys [WORDS]: every key of a case file, or those that words are about.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "app/commands.hpp"
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/config.hpp"
-#include "io/case/case_file.hpp"
+#include "io/case/key_pages.hpp"
+#include "io/case/suggestion.hpp"
 
 namespace breccia::app {
+namespace {
+
+struct KeysCommand {
+  std::vector<std::string> words;
+  std::string method;
+  bool json = false, markdown = false, schema = false;
+
+  void execute() const {
+    std::vector<KeyInfo> dem, fdem;
+    if (method != "fdem2d") dem = list_keys<dem::Config>("");
+    if (method != "dem3d") fdem = list_keys<fdem::Config>("");
+    if (schema) {
+      fmt::print("{}", key_schema(list_keys<dem::Config>(""), list_keys<fdem::Config>("")));
+      return;
+    }
+    const std::string wanted = fmt::format("{}", fmt::join(words, " "));
+    const KeyList found = key_list(keys_about(dem, wanted), keys_about(fdem, wanted));
+    if (found.empty()) refuse(wanted, dem, fdem);
+    fmt::print("{}", json       ? keys_as_json(found)
+                     : markdown ? keys_as_markdown(found)
+                                : keys_for_terminal(found));
+  }
+
+  static void refuse(const std::string& wanted, const std::vector<KeyInfo>& dem,
+                     const std::vector<KeyInfo>& fdem) {
+    std::set<std::string> names;
+    for (const auto* keys : {&dem, &fdem})
+      for (const KeyInfo& key : *keys)
+        for (std::size_t at = 0; at < key.path.size();) {
+          const std::size_t end = std::min(key.path.find_first_of(".[", at), key.path.size());
+          if (end > at && key.path[at] != ']' && key.path[at] != '<')
+            names.insert(key.path.substr(at, end - at));
+          at = end + 1;
+        }
+    throw InputError(
+        fmt::format("no key has {} in its name or meaning{}", wanted, suggestion(wanted, names)));
+  }
+};
+
+}  // namespace
 
 void add_keys(CLI::App& program) {
-  const auto prefix = std::make_shared<std::string>();
-  CLI::App* const command = program.add_subcommand(
-      "keys", "every key of a case file: type, unit, default, range, meaning");
-  command->add_option("PREFIX", *prefix, "only keys that begin with this");
-  command->callback([prefix] {
-    const std::vector<KeyInfo> dem = list_keys<dem::Config>(*prefix);
-    const std::vector<KeyInfo> fdem = list_keys<fdem::Config>(*prefix);
-    if (dem.empty() && fdem.empty())
-      throw InputError(fmt::format("no key begins with {}", *prefix));
-    const auto show = [](const char* method, const std::vector<KeyInfo>& keys) {
-      if (!keys.empty()) fmt::print("method = \"{}\"\n{}", method, format_keys(keys));
-    };
-    show("dem3d", dem);
-    if (!dem.empty() && !fdem.empty()) fmt::print("\n");
-    show("fdem2d", fdem);
-  });
+  const auto keys = std::make_shared<KeysCommand>();
+  CLI::App* const command =
+      program.add_subcommand("keys", "every key of a case file: example, allowed values, meaning");
+  command->add_option("WORDS", keys->words,
+                      "only keys that begin with this, or have these words in name or meaning");
+  command->add_option("--method", keys->method, "only keys of this method")
+      ->check(CLI::IsMember({"dem3d", "fdem2d"}));
+  CLI::Option* const json = command->add_flag("--json", keys->json, "as JSON");
+  CLI::Option* const markdown =
+      command->add_flag("--markdown", keys->markdown, "as a page of Markdown")->excludes(json);
+  command
+      ->add_flag("--schema", keys->schema,
+                 "the JSON Schema by which editors complete and check case files")
+      ->excludes(json)
+      ->excludes(markdown);
+  command->footer(
+      "Examples:\n  breccia keys young\n  breccia keys body.pack\n"
+      "  breccia keys --schema > breccia.schema.json");
+  command->callback([keys] { keys->execute(); });
 }
 
 }  // namespace breccia::app

@@ -75,6 +75,10 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   breccia::app::add_check(program, exit_code);
   breccia::app::add_keys(program);
   breccia::app::add_materials(program);
+  breccia::app::add_explain(program);
+  breccia::app::add_new(program);
+  breccia::app::add_demo(program, exit_code);
+  breccia::app::add_doctor(program);
   breccia::app::add_info(program);
   breccia::app::add_render(program);
   breccia::app::add_report(program);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/case.hpp"
+#include "run/case.hpp"
 #include "laboratory/side_by_side.hpp"
 
 namespace CLI {

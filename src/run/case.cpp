@@ -13,6 +13,7 @@
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
 #include "prepare/checks/check_case.hpp"
+#include "prepare/checks/check_regions.hpp"
 #include "prepare/model_file.hpp"
 #include "run/machine/device_plan.hpp"
 #include "run/machine/memory_plan.hpp"
@@ -50,8 +51,11 @@ std::string model_digest(Config config) {
 Case completed(Case read) {
   std::visit(
       [&](const auto& config) {
-        check_case(config);
-        check_shown(config);
+        located(read, [&] {
+          check_case(config);
+          prepare::check_regions(config);
+          check_shown(config);
+        });
         read.text = completed_case(config);
         read.model_digest = model_digest(config);
       },
@@ -150,6 +154,7 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
   refuse_unreadable(path);
   Case read;
   read.config = read_config(path, overrides);
+  read.file = path;
   read.name = case_name(path);
   read.folder = std::filesystem::absolute(case_folder(path)).lexically_normal().string();
   return completed(std::move(read));
@@ -201,7 +206,11 @@ const CaseConfig& Case::common() const {
 
 void check_files(const Case& read) {
   if (read.model) return;  // all files have been read
-  std::visit([&](const auto& config) { prepare::check_files(config, read.folder); }, read.config);
+  std::visit(
+      [&](const auto& config) {
+        located(read, [&] { prepare::check_files(config, read.folder); });
+      },
+      read.config);
 }
 
 std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communicator* ranks,
@@ -214,13 +223,13 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
           refuse_without_memory(plan, plan.run_bytes, ranks_on_this_machine(ranks));
         });
         collective_try(ranks, [&] {
-          model = model_of(read, config);
+          model = located(read, [&] { return model_of(read, config); });
           if (exec.space == Space::cuda)
             plan_device(device_bytes(model) / (ranks == nullptr ? 1 : ranks->size()),
                         quiet || (ranks != nullptr && ranks->rank() > 0));
         });
         try {
-          return make_method(config, model, exec, ranks);
+          return located(read, [&] { return make_method(config, model, exec, ranks); });
         } catch (const NumericsError& error) {
           throw NumericsError(fmt::format("step 0, t = 0 s: {}", error.what()));
         }

@@ -10,9 +10,11 @@
 #include "dem/setup/config.hpp"
 #include "dem/setup/model.hpp"
 #include "domain/communicator.hpp"
+#include "exec/error.hpp"
 #include "exec/space.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/model.hpp"
+#include "io/case/case_file.hpp"
 #include "io/checkpoint.hpp"
 #include "run/method/method.hpp"
 
@@ -26,6 +28,7 @@ struct Case {
   std::string text;    ///< completed: every key with the value used
   std::string digest;  ///< of text
   std::string folder;  ///< where files that the case names are
+  std::string file;    ///< that it was read from; empty: a prepared model
   /// Of what decides the states of a run: the case without its end, output, checkpoints and checks.
   std::string model_digest;
   std::optional<std::variant<dem::Model, fdem::Model>> model;  ///< if it was prepared
@@ -51,6 +54,17 @@ Case case_of_text(const std::string& text, const std::string& name, const std::s
 /// Reads the files that the case names, as building its model would.
 /// @throws InputError or IoError with every problem at once
 void check_files(const Case& read);
+
+/// Calls `work`, whose messages about the case then name its file and lines.
+template <class Work>
+auto located(const Case& read, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    if (read.file.empty()) throw;
+    throw InputError(with_lines(error.what(), read.file));
+  }
+}
 
 /// The files of a case that are programs: gmsh runs a .geo file, which may write files and start
 /// others. None if the model was prepared.

@@ -6,9 +6,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "exec/error.hpp"
 #include "io/case/case_source.hpp"
@@ -125,13 +125,6 @@ void apply_override(toml::table& root, const std::string& text) {
   insert_value(*table, rest, text.substr(equals + 1));
 }
 
-std::string resolved_file(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    return (std::filesystem::path(path) / "case.toml").string();
-  return path;
-}
-
 }  // namespace
 
 struct CaseReader::State {
@@ -161,6 +154,15 @@ struct CaseReader::State {
     problems.push_back({line, (node != nullptr && !from_file ? "--set " : "") + printable(text) +
                                   (*meaning != '\0' ? "\n    " + std::string(meaning) : "")});
   }
+  /// What the problem noted last was meant to be, where it stands in the file.
+  void correct(const toml::source_region& source, const std::string& old, const std::string& now) {
+    if (source.path != nullptr && !now.empty())
+      problems.back().correction = {source.begin.line, source.begin.column, old, now};
+  }
+  void correct(const toml::node& node, const std::string& now) {
+    if (const auto text = node.value_exact<std::string>())
+      correct(node.source(), "\"" + *text + "\"", now);
+  }
   std::string full(const char* name) { return top().path + name; }
   void check_name(const toml::node& node, const char* list, const std::string& name) {
     if (!is_name(name))
@@ -176,10 +178,11 @@ struct CaseReader::State {
     } else if (const auto integer = node.value_exact<std::int64_t>()) {
       value = static_cast<double>(*integer);
     } else if (const auto text = node.value_exact<std::string>()) {
-      std::string problem;
-      const double parsed = parse_quantity(*text, unit, problem);
+      std::string problem, better;
+      const double parsed = parse_quantity(*text, unit, problem, &better);
       if (!problem.empty()) {
         add(&node, key + ": " + problem);
+        correct(node, better);
         return false;
       }
       value = parsed;
@@ -294,7 +297,7 @@ struct CaseReader::State {
 
 CaseReader::CaseReader(const std::string& path, const std::vector<std::string>& overrides)
     : state_(std::make_unique<State>()) {
-  state_->path = resolved_file(path);
+  state_->path = case_file_of(path);
   state_->root = parse(read_case_source(state_->path), state_->path);
   for (const std::string& text : overrides) apply_override(state_->root, text);
   use_named_materials(state_->root, state_->problems);
@@ -393,11 +396,14 @@ void CaseReader::read(const char* name, std::vector<double>& value, const char* 
 void CaseReader::read(const char* name, bool& value, const char*) {
   const toml::node* node = state_->find(name);
   if (node == nullptr) return;
-  if (const auto given = node->value_exact<bool>())
+  if (const auto given = node->value_exact<bool>()) {
     value = *given;
-  else
-    state_->add(node,
-                fmt::format("{} wants true or false, not {}", state_->full(name), type_of(*node)));
+    return;
+  }
+  state_->add(node,
+              fmt::format("{} wants true or false, not {}", state_->full(name), type_of(*node)));
+  if (const auto text = node->value_exact<std::string>(); text == "true" || text == "false")
+    state_->correct(*node, *text);
 }
 
 void CaseReader::read(const char* name, std::string& value, const char*) {
@@ -424,6 +430,8 @@ void CaseReader::read(const char* name, std::string& value, const OneOf& words,
               state_->full(name) + " = \"" + given + "\" is not one of " + words_text(words) +
                   (known.size() > 12 ? suggestion(given, known) : ""),
               meaning);
+  if (const std::string meant = nearest(given, known); !meant.empty())
+    state_->correct(*node, "\"" + meant + "\"");
 }
 
 void CaseReader::read(const char* name, std::vector<std::string>& value, const char*) {
@@ -434,10 +442,13 @@ void CaseReader::read(const char* name, std::vector<std::string>& value, const c
   if (array != nullptr)
     for (const toml::node& item : *array)
       if (const auto text = item.value_exact<std::string>()) given.push_back(*text);
-  if (array == nullptr || given.size() != array->size())
-    state_->add(node, state_->full(name) + " wants a list of texts, as in [\"x\", \"y\"]");
-  else
+  if (array != nullptr && given.size() == array->size()) {
     value = given;
+    return;
+  }
+  state_->add(node, state_->full(name) + " wants a list of texts, as in [\"x\", \"y\"]");
+  if (const auto text = node->value_exact<std::string>())
+    state_->correct(*node, "[\"" + *text + "\"]");
 }
 
 void CaseReader::require(const char* name) {
@@ -470,6 +481,8 @@ std::size_t CaseReader::count(const char* name) {
   if (array == nullptr || (!array->empty() && !array->is_homogeneous<toml::table>())) {
     state_->add(node,
                 fmt::format("{0} wants a list of tables, each headed [[{0}]]", state_->full(name)));
+    const std::string head = "[" + state_->full(name) + "]";
+    if (node->is_table()) state_->correct(node->source(), head, "[" + head + "]");
     return 0;
   }
   std::set<std::string> seen;
@@ -528,27 +541,18 @@ void CaseReader::enter_named(const char* name, const std::string& item) {
 void CaseReader::leave() {
   const State::Level& level = state_->top();
   for (const auto& [key, node] : *level.table)
-    if (const std::string word(key.str()); !level.known.contains(word))
+    if (const std::string word(key.str()); !level.known.contains(word)) {
       state_->add(&node, level.path + word + " is not a key" + suggestion(word, level.known));
+      const std::string meant = nearest(word, level.known);
+      if (!meant.empty() && !level.table->contains(meant))
+        state_->correct(key.source(), word, meant);
+    }
   state_->levels.pop_back();
 }
 
 void CaseReader::finish() {
   leave();
-  if (!state_->problems.empty()) throw InputError(problems_text(state_->problems, state_->path));
-}
-
-std::string case_name(const std::string& path) {
-  const std::filesystem::path file =
-      std::filesystem::absolute(resolved_file(path)).lexically_normal();
-  const std::string folder = file.parent_path().filename().string(), stem = file.stem().string();
-  if (stem == "case") return folder;
-  return folder.empty() ? stem : folder + "_" + stem;
-}
-
-std::string case_folder(const std::string& path) {
-  const std::string folder = std::filesystem::path(resolved_file(path)).parent_path().string();
-  return folder.empty() ? "." : folder;
+  if (!state_->problems.empty()) throw CaseError(state_->problems, state_->path);
 }
 
 }  // namespace breccia

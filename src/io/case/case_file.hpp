@@ -124,6 +124,8 @@ struct ReadKeys {
 /// One key, for people.
 struct KeyInfo {
   std::string path, type, unit, default_text, range, meaning;
+  std::string table_meaning{};  ///< of the table that holds it; empty at the top
+  Range limits{};               ///< of numbers
 };
 
 // How values and ranges are written, in files and on terminals.
@@ -249,34 +251,37 @@ struct WriteKeys {
 struct ListKeys {
   std::string path;
   std::vector<KeyInfo>& keys;
+  std::string table_meaning{};
 
   template <class T>
   void operator()(const char* name, T& value, const char* unit, const Range& range,
                   const char* meaning) {
-    keys.push_back(
-        {path + name, type_name(value), unit, value_text(value), range_text(range), meaning});
+    keys.push_back({path + name, type_name(value), unit, value_text(value), range_text(range),
+                    meaning, table_meaning, range});
   }
   template <class T>
   void operator()(const char* name, T& value, const char* meaning) {
-    keys.push_back({path + name, type_name(value), "", value_text(value), "", meaning});
+    keys.push_back(
+        {path + name, type_name(value), "", value_text(value), "", meaning, table_meaning});
   }
   void operator()(const char* name, std::string& value, const OneOf& words, const char* meaning) {
-    keys.push_back({path + name, "word", "", value_text(value), words_text(words), meaning});
+    keys.push_back(
+        {path + name, "word", "", value_text(value), words_text(words), meaning, table_meaning});
   }
   void required(const char*) { keys.back().default_text = "(required)"; }
   template <class Config>
-  void table(const char* name, Config& config, const char*) {
-    config.each_key(ListKeys{path + name + ".", keys});
+  void table(const char* name, Config& config, const char* meaning) {
+    config.each_key(ListKeys{path + name + ".", keys, meaning});
   }
   template <class Config>
-  void list(const char* name, std::vector<Config>&, const char*) {
+  void list(const char* name, std::vector<Config>&, const char* meaning) {
     Config config;
-    config.each_key(ListKeys{path + name + "[].", keys});
+    config.each_key(ListKeys{path + name + "[].", keys, meaning});
   }
   template <class Config>
-  void named(const char* name, std::vector<Config>&, const char*) {
+  void named(const char* name, std::vector<Config>&, const char* meaning) {
     Config config;
-    config.each_key(ListKeys{path + name + ".<name>.", keys});
+    config.each_key(ListKeys{path + name + ".<name>.", keys, meaning});
   }
 };
 
@@ -324,11 +329,14 @@ std::vector<KeyInfo> list_keys(const std::string& prefix) {
     if (begins_with(key, prefix)) wanted.push_back(std::move(key));
   return wanted;
 }
-/// A table of key, type, default and allowed values, each key with its meaning below it, in 100
-/// columns.
-std::string format_keys(const std::vector<KeyInfo>& keys);
 
-/// cases/rc_slab and cases/rc_slab/case.toml: rc_slab; cases/rc_slab/small.toml: rc_slab_small.
+/// A message about a case with the file and the lines of the keys that its sentences begin with:
+/// of problems that were found after the file had been read.
+std::string with_lines(const std::string& message, const std::string& path);
+
+/// The stem of the file: thesis/beam.toml is beam. A case.toml has the name of its folder, and
+/// files beside it are its variants: cases/rc_slab is rc_slab, cases/rc_slab/small.toml
+/// rc_slab_small.
 std::string case_name(const std::string& path);
 /// The folder that the files a case names are looked for in.
 std::string case_folder(const std::string& path);

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "exec/error.hpp"
+#include "io/case/case_file.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia {
@@ -83,6 +84,28 @@ std::string read_case_source(const std::string& path) {
     throw InputError(path + ": is not a file; nothing was run.");
   if (std::filesystem::file_size(path, ignored) > largest_file) refuse(path, too_large);
   return read_whole_file(path);
+}
+
+std::string case_file_of(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return (std::filesystem::path(path) / "case.toml").string();
+  return path;
+}
+
+std::string case_name(const std::string& path) {
+  const std::filesystem::path file =
+      std::filesystem::absolute(case_file_of(path)).lexically_normal();
+  const std::string folder = file.parent_path().filename().string(), stem = file.stem().string();
+  if (stem == "case") return folder;
+  std::error_code ignored;
+  const bool variant = std::filesystem::exists(file.parent_path() / "case.toml", ignored);
+  return variant && !folder.empty() ? folder + "_" + stem : stem;
+}
+
+std::string case_folder(const std::string& path) {
+  const std::string folder = std::filesystem::path(case_file_of(path)).parent_path().string();
+  return folder.empty() ? "." : folder;
 }
 
 }  // namespace breccia

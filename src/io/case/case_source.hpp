@@ -17,4 +17,7 @@ void check_case_source(std::string_view text, const std::string& origin);
 /// @throws InputError if it is not there, is no file or is too large; IoError if it cannot be read
 std::string read_case_source(const std::string& path);
 
+/// The file of a case: of a folder its case.toml.
+std::string case_file_of(const std::string& path);
+
 }  // namespace breccia

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
+#include <utility>
 
 namespace breccia {
 namespace {
@@ -37,6 +39,53 @@ std::string problems_text(std::vector<Problem> problems, const std::string& wher
   if (told < problems.size())
     text += fmt::format("\n  ... and {} more like these", problems.size() - told);
   return text;
+}
+
+CaseError::CaseError(std::vector<Problem> all, const std::string& where)
+    : InputError(problems_text(all, where)), problems(std::move(all)) {}
+
+namespace {
+
+/// The byte at which a column begins: columns count letters.
+std::size_t byte_of(std::string_view line, std::uint32_t column) {
+  std::size_t at = 0;
+  for (std::uint32_t k = 1; k < column && at < line.size(); ++k) do
+      ++at;
+    while (at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0U) == 0x80U);
+  return at;
+}
+
+void apply(std::vector<std::string>& lines, const Correction& c) {
+  if (c.line == 0 || c.line > lines.size()) return;
+  std::string& line = lines[c.line - 1];
+  std::string old = c.old;
+  std::size_t at = line.find(old, byte_of(line, c.column));
+  if (at == std::string::npos && old.size() > 1 && old.front() == '"') {  // TOML has two quotes
+    old.front() = old.back() = '\'';
+    at = line.find(old, byte_of(line, c.column));
+  }
+  if (at != std::string::npos) line.replace(at, old.size(), c.now);
+}
+
+}  // namespace
+
+std::string corrected(const std::string& text, const std::vector<Problem>& problems) {
+  std::vector<std::string> lines(1);
+  for (const char c : text)
+    if (c == '\n')
+      lines.emplace_back();
+    else
+      lines.back() += c;
+  std::vector<Correction> all;
+  for (const Problem& problem : problems)
+    if (problem.correction) all.push_back(*problem.correction);
+  std::stable_sort(all.begin(), all.end(), [](const Correction& a, const Correction& b) {
+    return std::pair(a.line, a.column) > std::pair(b.line, b.column);
+  });
+  for (const Correction& c : all) apply(lines, c);
+  std::string result;
+  for (std::size_t k = 0; k < lines.size(); ++k) result += (k > 0 ? "\n" : "") + lines[k];
+  return result;
 }
 
 }  // namespace breccia

@@ -23,7 +23,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string suggestion(const std::string& word, const std::set<std::string>& known) {
+std::string nearest(const std::string& word, const std::set<std::string>& known) {
   std::string best;
   std::size_t least = 3 + word.size() / 4;
   for (const std::string& candidate : known)
@@ -31,7 +31,12 @@ std::string suggestion(const std::string& word, const std::set<std::string>& kno
       least = d;
       best = candidate;
     }
-  if (!best.empty()) return "; did you mean " + best + "?";
+  return best;
+}
+
+std::string suggestion(const std::string& word, const std::set<std::string>& known) {
+  if (const std::string best = nearest(word, known); !best.empty())
+    return "; did you mean " + best + "?";
   std::string all;
   for (const std::string& candidate : known) all += (all.empty() ? "" : ", ") + candidate;
   return known.size() <= 12 && !known.empty() ? "; allowed are " + all : "";

@@ -109,25 +109,85 @@ double times_power_of_ten(std::string_view digits, int tens) {
   return value;
 }
 
-/// Whether people write such a unit: nobody means "mPa" or "ks".
-bool is_usual(std::string_view unit) {
-  constexpr std::array<std::string_view, 17> usual{"nm", "um", "mm",  "cm",  "km",  "ns",
-                                                   "us", "ms", "kPa", "MPa", "GPa", "kN",
-                                                   "MN", "GN", "kJ",  "MJ",  "kHz"};
-  return std::find(usual.begin(), usual.end(), unit) != usual.end();
+/// Units as people type them, by what they measure; the first of a row is the one in SI.
+const std::vector<std::vector<std::string>>& usual_units() {
+  static const std::vector<std::vector<std::string>> units{{"m", "nm", "um", "mm", "cm", "km"},
+                                                           {"s", "ns", "us", "ms", "min", "h"},
+                                                           {"Pa", "kPa", "MPa", "GPa", "N/mm2"},
+                                                           {"N", "kN", "MN", "GN"},
+                                                           {"J", "kJ", "MJ"},
+                                                           {"kg/m3", "g/cm3", "t/m3"},
+                                                           {"J/m2", "kJ/m2", "N/m"},
+                                                           {"m/s", "mm/s", "km/h"},
+                                                           {"m/s2", "mm/s2"},
+                                                           {"rad", "deg"},
+                                                           {"rad/s", "deg/s"},
+                                                           {"kg", "g", "t"},
+                                                           {"Hz", "kHz"},
+                                                           {"m2", "mm2", "cm2"},
+                                                           {"m3", "mm3", "cm3"}};
+  return units;
 }
 
-/// The wanted unit with the prefix of the first symbol of another: "GN", "Pa" give "GPa". Empty if
-/// nobody writes it so.
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return result;
+}
+
+/// What is typed for a unit in a hurry, as this program writes it: "N/mm²", "kg/m**3", "degrees".
+std::string plain_unit(std::string_view given) {
+  static const std::vector<std::pair<std::string_view, std::string_view>> spellings{
+      {"\u00b2", "2"},  {"\u00b3", "3"},   {"**", ""},         {"\u00b7", " "},
+      {"\u03bc", "u"},  {"\u00b0", "deg"}, {"degrees", "deg"}, {"degree", "deg"},
+      {"seconds", "s"}, {"second", "s"},   {"sec", "s"},       {"metres", "m"},
+      {"meters", "m"},  {"metre", "m"},    {"meter", "m"},     {"micron", "um"}};
+  std::string text(given);
+  for (const auto& [typed, plain] : spellings)
+    for (std::size_t at = text.find(typed); at != std::string::npos;
+         at = text.find(typed, at + plain.size()))
+      text.replace(at, typed.size(), plain);
+  return text;
+}
+
+/// The unit that was meant by one that is none, or is of another kind, but for its capitals or
+/// spelling: "gpa" is "GPa". Empty if more than one may be meant.
+std::string respelt(std::string_view given, const Unit& target) {
+  const std::string plain = plain_unit(given);
+  if (const auto unit = parse_unit(plain); unit && unit->powers == target.powers && plain != given)
+    return plain;
+  std::string found;
+  for (const auto& row : usual_units())
+    for (const std::string& unit : row)
+      if (lower(unit) == lower(plain) && parse_unit(unit)->powers == target.powers) {
+        if (!found.empty()) return "";
+        found = unit;
+      }
+  return found;
+}
+
+/// Of a force where a pressure is wanted and the like: "GN", "Pa" give "GPa". Empty otherwise: a
+/// metre is no slip for a pascal, nor a kilogram for a kilometre.
 std::string with_prefix_of(std::string_view given, const std::string& wanted) {
-  const std::string_view first = given.substr(0, given.find_first_of("/* ^-0123456789"));
-  for (const NamedUnit& named : named_units())
-    if (named.symbol == first) return wanted;  // "m" is a metre, not a prefix
-  for (const Prefix& prefix : prefixes) {
-    const std::string prefixed = std::string(prefix.symbol) + wanted;
-    if (first.starts_with(prefix.symbol) && find_symbol(first) && find_symbol(wanted) &&
-        find_symbol(prefixed))
-      return is_usual(prefixed) ? prefixed : "";
+  constexpr std::array<std::string_view, 3> alike{"N", "Pa", "J"};
+  const auto names_load = [&](std::string_view unit) {
+    return std::find(alike.begin(), alike.end(), unit) != alike.end();
+  };
+  constexpr std::string_view large = "kMG";
+  const bool prefixed = given.size() > 1 && large.find(given.front()) != std::string_view::npos;
+  const std::string prefix(given.substr(0, prefixed ? 1 : 0));
+  return names_load(given.substr(prefix.size())) && names_load(wanted) ? prefix + wanted : "";
+}
+
+/// "Pa, kPa, MPa or GPa"
+std::string units_like(const std::string& wanted, const Unit& target) {
+  for (const auto& row : usual_units()) {
+    if (parse_unit(row.front())->powers != target.powers) continue;
+    std::string text = row.front();
+    for (std::size_t k = 1; k < row.size(); ++k)
+      text += (k + 1 < row.size() ? ", " : " or ") + row[k];
+    return text;
   }
   return wanted;
 }
@@ -181,10 +241,22 @@ std::string describe_dimension(const Unit& unit) {
   return text + "]";
 }
 
-double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem) {
+double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem,
+                      std::string* better) {
   problem.clear();
+  const auto meant = [&](const std::string& value) {
+    problem += "; try " + value;
+    if (better != nullptr) *better = value;
+  };
   const std::string quoted = "\"" + std::string(text) + "\"";
   std::string_view whole = trimmed(text);
+  const bool negative = whole.starts_with('-');
+  if (const std::string word = lower(whole.substr(negative || whole.starts_with('+') ? 1 : 0));
+      word == "inf" || word == "infinity") {
+    problem = quoted + " is a text";
+    meant(negative ? "-inf" : "inf");
+    return 0.0;
+  }
   if (whole.starts_with('+')) whole.remove_prefix(1);
   const char* const whole_end = whole.data() + whole.size();
   double value = 0.0;
@@ -198,18 +270,20 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
   const Unit target = parse_unit(wanted).value_or(Unit{});
   if (rest.empty()) {
     problem = quoted + " has no unit; write it as a number for " + wanted + ", or with a unit";
+    if (wanted == "-") meant(std::string(digits));
     return 0.0;
   }
+  const std::string number_and = "\"" + std::string(digits) + " ";
   const std::optional<Unit> unit = parse_unit(rest);
-  if (!unit) {
-    problem = "'" + std::string(rest) + "' is not a unit";
-    return 0.0;
-  }
-  if (unit->powers != target.powers) {
-    problem = quoted + " is " + describe_dimension(*unit) + ", " + describe_dimension(target) +
-              " is wanted, in " + wanted + " or the like";
-    if (const std::string hint = with_prefix_of(rest, wanted); !hint.empty())
-      problem += "; try \"" + std::string(digits) + " " + hint + "\"";
+  if (!unit || unit->powers != target.powers) {
+    problem = !unit
+                  ? "'" + std::string(rest) + "' is not a unit"
+                  : quoted + " is " + describe_dimension(*unit) + ", " +
+                        describe_dimension(target) + " is wanted, in " + units_like(wanted, target);
+    if (const std::string spelt = respelt(rest, target); !spelt.empty())
+      meant(number_and + spelt + "\"");
+    else if (const std::string hint = with_prefix_of(rest, wanted); unit && !hint.empty())
+      meant(number_and + hint + "\"");
     return 0.0;
   }
   return times_power_of_ten(digits, unit->tens - target.tens) * (unit->factor / target.factor);

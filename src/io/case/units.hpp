@@ -27,6 +27,8 @@ std::string describe_dimension(const Unit& unit);
 /// nearest to the exact value.
 /// @param wanted  the unit the value must be convertible to, such as "Pa"
 /// @param problem gets what is wrong, empty if all is well
-double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem);
+/// @param better  gets the value as TOML writes it ("30 GPa" in quotes), if one alone can be meant
+double parse_quantity(std::string_view text, const std::string& wanted, std::string& problem,
+                      std::string* better = nullptr);
 
 }  // namespace breccia

@@ -26,13 +26,48 @@ std::string collection(const std::vector<double>& times, std::span<const char* c
       "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
   for (std::size_t frame = 0; frame < times.size(); ++frame) {
     for (std::size_t part = 0; part < parts.size(); ++part) {
-      text += fmt::format(R"(<DataSet timestep="{}" group="" part="{}" file="{}"/>)", times[frame],
-                          part, file_of(parts[part], frame));
+      text += fmt::format(R"(<DataSet timestep="{}" group="" part="{}" name="{}" file="{}"/>)",
+                          times[frame], part, parts[part], file_of(parts[part], frame));
       text += "\n";
     }
   }
   return text + "</Collection>\n</VTKFile>\n";
 }
+
+}  // namespace
+
+namespace {
+
+/// Opens a folder with spheres as spheres, coloured, at the first look.
+constexpr const char* script = R"(# paraview open_in_paraview.py
+import os
+from paraview.simple import *
+
+here = os.path.dirname(os.path.abspath(__file__))
+view = GetActiveViewOrCreate("RenderView")
+elements = PVDReader(FileName=os.path.join(here, "elements.pvd"))
+GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+points = elements.PointData
+shown = Show(elements, view)
+if points.GetArray("radius"):
+    shown.SetRepresentationType("Point Gaussian")
+    shown.ShaderPreset = "Sphere"
+    shown.ScaleByArray = 1
+    shown.SetScaleArray = ["POINTS", "radius"]
+    shown.ScaleTransferFunction = "Piecewise Function"
+    shown.UseScaleFunction = 0
+    shown.GaussianRadius = 1.0
+where = "POINTS" if points.GetArray("damage") else "CELLS"
+ColorBy(shown, (where, "damage"))
+shown.SetScalarBarVisibility(view, True)
+links = PVDReader(FileName=os.path.join(here, "links.pvd"))
+Hide(links, view)
+RenameSource("elements", elements)
+RenameSource("links", links)
+ResetCamera(view)
+GetAnimationScene().GoToLast()
+Render(view)
+)";
 
 }  // namespace
 
@@ -75,6 +110,7 @@ bool ParaviewSeries::collections_are_due() const {
 void ParaviewSeries::write_collections() {
   const Clock::time_point begin = Clock::now();
   const std::span<const char* const> all(kinds);
+  replace_file(folder_ + "/open_in_paraview.py", script);
   replace_file(folder_ + "/elements.pvd", collection(times_, all.first(1)));
   replace_file(folder_ + "/links.pvd", collection(times_, all.last(1)));
   replace_file(folder_ + "/result.pvd", collection(times_, all));

@@ -13,7 +13,9 @@ namespace breccia {
 ///
 ///   fields/elements_0000.vtu  points with every point field and `radius`; vertices, or triangles
 ///   fields/links_0000.vtu     the lines with every line field
-///   elements.pvd, links.pvd   each series with its times; result.pvd: both in one
+///   elements.pvd, links.pvd   each series with its times; result.pvd: both in one,
+///                             as parts of these names
+///   open_in_paraview.py       shows them, spheres as spheres: paraview open_in_paraview.py
 ///
 /// VTK XML, appended raw, zlib blocks; numbers as Float32. The .pvd files are replaced as a whole,
 /// so a run that is killed leaves a series that opens. A few hundred frames are in them as soon as

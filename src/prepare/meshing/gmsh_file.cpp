@@ -1,4 +1,5 @@
-// The format MSH 4.1 of Gmsh (its reference manual, "MSH file format"), text and binary.
+// The formats of Gmsh (its reference manual, "MSH file format"): MSH 4.1, text and binary, and the
+// legacy MSH 2.2, text.
 
 #include <fmt/format.h>
 
@@ -183,11 +184,11 @@ class GmshReader {
       } else if (in_.section == "$Entities") {
         read_entities();
       } else if (in_.section == "$Nodes") {
-        read_nodes();
+        legacy_ ? read_legacy_nodes() : read_nodes();
         has_nodes = true;
       } else if (in_.section == "$Elements") {
         if (!has_nodes) in_.fail("$Elements comes before $Nodes");
-        read_elements();
+        legacy_ ? read_legacy_elements() : read_elements();
         has_elements = true;
       } else {
         in_.skip_section();
@@ -204,15 +205,18 @@ class GmshReader {
  private:
   void read_format() {
     const std::string version(in_.word());
-    if (version != "4.1")
-      in_.fail(fmt::format("the file has version {}; needed is 4.1 (gmsh -format msh41)",
+    if (version != "4.1" && version != "2.2")
+      in_.fail(fmt::format("the file has version {}; needed is 4.1 (gmsh -format msh41) or 2.2",
                            version.substr(0, 10)));
+    legacy_ = version == "2.2";
     const int mode = in_.number<int>(), data_size = in_.number<int>();
     if ((mode != 0 && mode != 1) || data_size != 8)
       in_.fail(
           fmt::format("mode {} with words of {} bytes cannot be read; allowed are 0 (text) "
                       "and 1 (binary) with 8 bytes",
                       mode, data_size));
+    if (legacy_ && mode != 0)
+      in_.fail("files of version 2.2 are read as text only; gmsh -format msh41 makes a newer one");
     in_.rest_of_line();
     in_.binary = mode == 1;
     if (in_.binary && in_.bytes<int>() != 1)
@@ -286,40 +290,69 @@ class GmshReader {
       const Kind kind = kind_of(type);
       for (std::size_t e = 0; e < count; ++e, ++read) {
         RawMesh::Element element{in_.tag(), {}, in_.line()};
-        if (type != 1 && type != 2 && type != 15)
-          in_.fail(
-              fmt::format("element {} is {}; a mesh may hold triangles, and lines that name "
-                          "edges{}",
-                          element.number, kind.name, type == 3 ? " (leave out Recombine)" : ""));
+        refuse_other_than_flat(element, type);
         for (std::size_t k = 0; k < kind.nodes; ++k) element.nodes[k] = in_.tag();
-        add(element, type, dimension, entity);
+        add(element, type, dimension, groups_[{dimension, entity}]);
       }
     }
     if (read != elements)
       in_.fail(fmt::format("$Elements holds {} elements, but says {}", read, elements));
   }
 
-  void add(const RawMesh::Element& element, int type, int dimension, int entity) {
+  /// Number and place, a line each.
+  void read_legacy_nodes() {
+    for (std::size_t left = in_.count("nodes", 8); left > 0; --left) {
+      const std::int64_t number = in_.tag();
+      const double x = in_.real(), y = in_.real(), z = in_.real();
+      raw_.nodes.push_back({number, {x, y, z}, in_.line()});
+      if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
+        in_.fail(fmt::format("node {} has a coordinate that is no number", number));
+    }
+  }
+
+  /// Number, type, tags (the first one is the physical group, 0: none), nodes; a line each.
+  void read_legacy_elements() {
+    for (std::size_t left = in_.count("elements", 8); left > 0; --left) {
+      RawMesh::Element element{in_.tag(), {}, in_.line()};
+      const int type = in_.integer();
+      std::vector<int> group;
+      for (std::size_t tag = 0, tags = in_.count("tags", 2); tag < tags; ++tag) {
+        const int given = in_.integer();
+        if (tag == 0 && given != 0) group.push_back(group_number(given));
+      }
+      refuse_other_than_flat(element, type);
+      for (std::size_t k = 0; k < kind_of(type).nodes; ++k) element.nodes[k] = in_.tag();
+      add(element, type, type == 1 ? 1 : 2, group);
+    }
+  }
+
+  void refuse_other_than_flat(const RawMesh::Element& element, int type) {
+    if (type != 1 && type != 2 && type != 15)
+      in_.fail(fmt::format(
+          "element {} is {}; a mesh may hold triangles, and lines that name "
+          "edges{}",
+          element.number, kind_of(type).name, type == 3 ? " (leave out Recombine)" : ""));
+  }
+
+  void add(const RawMesh::Element& element, int type, int dimension,
+           const std::vector<int>& groups) {
     if (type == 15) {
       raw_.other_nodes.push_back(element.nodes[0]);
       return;
     }
     auto& elements = type == 1 ? raw_.lines : raw_.triangles;
     auto& sets = type == 1 ? raw_.line_sets : raw_.parts;
-    const auto found = groups_.find({dimension, entity});
-    if (found != groups_.end())
-      for (const int group : found->second) {
-        const auto name = names_.find({dimension, group});
-        sets[name != names_.end() ? name->second : std::to_string(group)].push_back(
-            elements.size());
-      }
+    for (const int group : groups) {
+      const auto name = names_.find({dimension, group});
+      sets[name != names_.end() ? name->second : std::to_string(group)].push_back(elements.size());
+    }
     elements.push_back(element);
   }
 
   using DimensionAndTag = std::pair<int, int>;
   Input in_;
   const std::string& name_;
-  bool format_known_ = false;
+  bool format_known_ = false, legacy_ = false;
   std::map<DimensionAndTag, std::string> names_;        ///< of physical groups
   std::map<DimensionAndTag, std::vector<int>> groups_;  ///< physical groups of an entity
   RawMesh raw_;

@@ -12,8 +12,8 @@
 
 namespace breccia::prepare {
 
-/// Reads a mesh: Gmsh 4.1 (.msh, text or binary) or Abaqus (.inp: *NODE, *ELEMENT of types CPS3,
-/// CPE3, S3, S3R, M3D3 and STRI3, and of lines T2D2, T3D2, B21 and B31; *NSET, *ELSET).
+/// Reads a mesh: Gmsh 4.1 (.msh, text or binary) or 2.2 (text), or Abaqus (.inp: *NODE, *ELEMENT of
+/// types CPS3, CPE3, S3, S3R, M3D3 and STRI3, and of lines T2D2, T3D2, B21 and B31; *NSET, *ELSET).
 /// Physical surfaces and element sets become parts; physical lines, sets of line elements and node
 /// sets become edge sets (of a node set: edges of the mesh with both ends in it). Lengths are
 /// metres.

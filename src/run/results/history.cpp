@@ -28,16 +28,29 @@ bool is_empty(const std::string& path) {
   return std::filesystem::file_size(path, error) == 0;
 }
 
+/// A unit for each metre of thickness, where thickness counts.
+std::string per_metre(const std::string& unit) {
+  if (unit == "N" || unit == "J") return unit + "/m";
+  return unit == "kg m/s" ? "kg/s" : unit;
+}
+
 }  // namespace
 
-History::History(const std::string& path, const std::vector<ProbeConfig>& probes) : file_(path) {
+History::History(const std::string& path, const std::vector<ProbeConfig>& probes, bool in_plane)
+    : file_(path) {
   if (!is_empty(path)) return;
   std::string names =
       "step,time,dt,kinetic,elastic,fracture,plastic,friction,damping,contact,work,error_relative";
-  std::string units = "-,s,s,J,J,J,J,J,J,J,J,-";
+  std::string units = "-,s,s";
+  const auto add_unit = [&](const std::string& unit) {
+    units.append(",").append(in_plane ? per_metre(unit) : unit);
+  };
+  constexpr int energies = 8;
+  for (int k = 0; k < energies; ++k) add_unit("J");
+  add_unit("-");
   for (const ProbeConfig& probe : probes) {
     names.append(",").append(quoted(probe.name));
-    units.append(",").append(quantity_named(probe.quantity).unit);
+    add_unit(quantity_named(probe.quantity).unit);
   }
   file_.append(names);
   file_.append(units);

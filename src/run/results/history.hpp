@@ -24,8 +24,9 @@ struct Sample {
 /// significant digits, so that reading them gives the same bits.
 class History {
  public:
-  /// Opens the file to append; a new one gets its two head lines.
-  History(const std::string& path, const std::vector<ProbeConfig>& probes);
+  /// Opens the file to append; a new one gets its two head lines. Forces, momenta and energies of a
+  /// case in the plane are those of each metre of its thickness: N/m, kg/s, J/m.
+  History(const std::string& path, const std::vector<ProbeConfig>& probes, bool in_plane = false);
 
   /// Rows of later steps than `step` go, of this file or another one that begins so: a run that
   /// goes on from there writes them anew.

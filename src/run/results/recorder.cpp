@@ -127,7 +127,7 @@ void Recorder::open(const ResultFolder& folder, Log& log) {
   pictures_ = folder.file("pictures");
   const std::string history = folder.file("history.csv");
   if (resumed_from_) History::cut_to(history, state_.row_step);
-  history_.emplace(history, config_.probes);
+  history_.emplace(history, config_.probes, config_.method == "fdem2d");
   if (config_.output.step_times) {
     const std::string steps = folder.file("steps.csv");
     if (resumed_from_) History::cut_to(steps, *resumed_from_);

@@ -441,7 +441,7 @@ TEST(CaseFile, a_letter_typed_wrong_leads_to_the_right_key) {
 
 TEST(CaseFile, cases_are_named_by_folder_and_file) {
   EXPECT_EQ(case_name("cases/rc_slab/case.toml"), "rc_slab");
-  EXPECT_EQ(case_name("cases/rc_slab/small.toml"), "rc_slab_small");
+  EXPECT_EQ(case_name(std::string(source_dir) + "/cases/rc_slab/small.toml"), "rc_slab_small");
   EXPECT_EQ(case_name(std::string(source_dir) + "/cases/rc_slab"), "rc_slab");
   EXPECT_EQ(case_folder("cases/rc_slab/small.toml"), "cases/rc_slab");
 }

@@ -71,21 +71,38 @@ TEST(Units, what_is_no_quantity_is_refused) {
   EXPECT_NE(problem_of("1", "m"), "");
 }
 
-TEST(Units, a_wrong_dimension_is_named_with_the_unit_to_try) {
+TEST(Units, a_wrong_dimension_is_named_with_the_units_that_fit) {
   EXPECT_EQ(problem_of("30 GN", "Pa"),
-            "\"30 GN\" is a force, a pressure is wanted, in Pa or the like; try \"30 GPa\"");
+            "\"30 GN\" is a force, a pressure is wanted, in Pa, kPa, MPa, GPa or N/mm2; try "
+            "\"30 GPa\"");
   EXPECT_EQ(problem_of("1 ms", "m"),
-            "\"1 ms\" is a time, a length is wanted, in m or the like; try \"1 mm\"");
-  EXPECT_EQ(problem_of("30 m", "Pa"),
-            "\"30 m\" is a length, a pressure is wanted, in Pa or the like; try \"30 Pa\"");
+            "\"1 ms\" is a time, a length is wanted, in m, nm, um, mm, cm or km");
   EXPECT_EQ(problem_of("2 kg", "m/s"),
-            "\"2 kg\" is a mass, a velocity is wanted, in m/s or the like; try \"2 m/s\"");
+            "\"2 kg\" is a mass, a velocity is wanted, in m/s, mm/s or km/h");
 }
 
 TEST(Units, no_unit_is_proposed_that_nobody_means) {
-  EXPECT_EQ(problem_of("8 mm", "Pa"),
-            "\"8 mm\" is a length, a pressure is wanted, in Pa or the like");  // "8 mPa"
-  EXPECT_EQ(problem_of("5 kg", "s"), "\"5 kg\" is a mass, a time is wanted, in s or the like");
+  for (const char* text : {"8 mm", "8 m", "8 kg", "8 ms"})  // no "8 mPa", "8 Pa", "8 kPa"
+    EXPECT_EQ(problem_of(text, "Pa").find("try"), std::string::npos) << text;
+  EXPECT_EQ(problem_of("50 kg", "m").find("try"), std::string::npos);  // no "50 km"
+}
+
+TEST(Units, slips_of_the_pen_are_told_with_what_was_meant) {
+  const std::vector<std::array<const char*, 3>> slips{
+      {"30 gpa", "Pa", "\"30 GPa\""},
+      {"2400 kg/m\u00b3", "kg/m3", "\"2400 kg/m3\""},
+      {"30 degrees", "rad", "\"30 deg\""},
+      {"0.643", "-", "0.643"},
+      {"inf", "m", "inf"},
+      {"-Inf", "m", "-inf"},
+      {"5 kg/m**3", "kg/m3", "\"5 kg/m3\""},
+      {"4 MM", "m", "\"4 mm\""}};
+  for (const auto& [text, wanted, meant] : slips) {
+    std::string problem, better;
+    parse_quantity(text, wanted, problem, &better);
+    EXPECT_EQ(better, meant) << text;
+    EXPECT_TRUE(problem.ends_with("; try " + std::string(meant))) << problem;
+  }
 }
 
 }  // namespace

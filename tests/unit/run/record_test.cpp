@@ -65,6 +65,17 @@ TEST(History, NamesAreInItsFirstLineAndUnitsInItsSecond) {
             "3,0.10000000000000001,0,0,0,0,0,0,0,0,0,0,0.33333333333333331,0.5\n");
 }
 
+TEST(History, SaysForcesAndEnergiesOfEachMetreInThePlane) {
+  const ScratchFolder scratch;
+  History(scratch / "history.csv",
+          {ProbeConfig{"press", "", "force_y", "sum"}, ProbeConfig{"p", "", "momentum_x", "sum"},
+           ProbeConfig{"v", "", "velocity_y", "mean"}},
+          true);
+  const std::string text = read_whole_file(scratch / "history.csv");
+  EXPECT_EQ(text.substr(text.find('\n') + 1),
+            "-,s,s,J/m,J/m,J/m,J/m,J/m,J/m,J/m,J/m,-,N/m,kg/s,m/s\n");
+}
+
 TEST(Record, FramesComeAtTheFirstStepAtOrPastTheirTime) {
   const ScratchFolder scratch;
   run_fake(fake_plan(), scratch / "out");

@@ -1,0 +1,217 @@
+// breccia explain KEY: what a key means, its formula, and the law that it shapes as a curve.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "app/curve.hpp"
+#include "dem/setup/config.hpp"
+#include "exec/error.hpp"
+#include "fdem/laws/joint_bond.hpp"
+#include "fdem/setup/config.hpp"
+#include "io/case/key_pages.hpp"
+#include "io/harmless.hpp"
+#include "io/whole_file.hpp"
+
+namespace breccia::app {
+namespace {
+
+/// A law by its defaults: the keys that shape it, its formula, its curve.
+struct Law {
+  std::string method, table;
+  std::vector<std::string> keys;
+  std::string formula, source;
+  Curve (*curve)();
+};
+
+constexpr double to_mpa = 1e-6, to_um = 1e6;
+
+Curve concrete_tension() {
+  const dem::MaterialConfig m;
+  constexpr double length = 10e-3;  // of a link
+  const double onset = m.tensile_strength * length / m.young;
+  return {"concrete link of 10 mm in tension, by the defaults",
+          "opening [um]",
+          "normal stress [MPa]",
+          {{0.0, 0.0},
+           {to_um * onset, to_mpa * m.tensile_strength},
+           {to_um * onset * (1.0 + m.softening), 0.0},
+           {to_um * onset * (2.0 + m.softening), 0.0}}};
+}
+
+Curve concrete_shear() {
+  const dem::MaterialConfig m;
+  Curve curve{"shear strength of an intact link, by the defaults", "pressure [MPa]",
+              "shear strength [MPa]"};
+  for (const double pressure : {-m.tensile_strength, 0.0, 20e6})
+    curve.points.emplace_back(to_mpa * pressure,
+                              to_mpa * (m.cohesion + pressure * std::tan(m.friction_angle)));
+  return curve;
+}
+
+Curve steel_tension() {
+  const dem::MaterialConfig m;
+  constexpr double percent = 100.0, young = 200e9;
+  const double yields = m.yield / young, last = m.yield + m.hardening * m.failure_strain;
+  const double end = m.failure_strain + last / young;
+  return {"a bar in tension, by the defaults and E = 200 GPa",
+          "strain [%]",
+          "stress [MPa]",
+          {{0.0, 0.0},
+           {percent * yields, to_mpa * m.yield},
+           {percent * end, to_mpa * last},
+           {percent * end, 0.0}}};
+}
+
+Curve bond_slip() {
+  const dem::MaterialConfig m;
+  Curve curve{"bond of a bar (mc90), by the defaults", "slip [mm]", "bond stress [MPa]"};
+  constexpr int parts = 40;
+  for (int k = 0; k <= parts; ++k) {
+    const double slip = m.slip1 * k / parts;
+    curve.points.emplace_back(1e3 * slip, to_mpa * m.bond_strength * std::pow(slip / m.slip1, 0.4));
+  }
+  curve.points.emplace_back(1e3 * m.slip2, to_mpa * m.bond_strength);
+  curve.points.emplace_back(1e3 * m.slip3, to_mpa * m.bond_residual);
+  curve.points.emplace_back(1.25e3 * m.slip3, to_mpa * m.bond_residual);
+  return curve;
+}
+
+Curve joint_opening() {
+  const fdem::StrengthConfig s;
+  const fdem::MaterialConfig m;
+  constexpr double edge = 5e-3;
+  const double elastic = 2.0 * edge * s.tension / (s.stiffness * m.young);
+  const double soft = fdem::exact_softening_factor * s.energy_open / s.tension;
+  Curve curve{"joint of 5 mm that opens, by the defaults", "opening [um]", "traction [MPa]"};
+  constexpr int parts = 60;
+  for (int k = 0; k <= parts / 3; ++k) {
+    const double r = 3.0 * k / parts;
+    curve.points.emplace_back(to_um * elastic * r, to_mpa * s.tension * (2.0 - r) * r);
+  }
+  for (int k = 1; k <= parts; ++k) {
+    const double damage = static_cast<double>(k) / parts;
+    curve.points.emplace_back(to_um * (elastic + soft * damage),
+                              to_mpa * s.tension * fdem::softening(damage));
+  }
+  return curve;
+}
+
+const std::vector<Law>& laws() {
+  static const std::vector<Law> all{
+      {"dem3d",
+       "[material.NAME]",
+       {"tensile_strength", "softening", "fracture_energy"},
+       "sigma = E u / L up to T, then falls with slope E / (zeta L): a link breaks at u = (1 + "
+       "zeta) T L / E; fracture_energy sets zeta so that the area is G_F",
+       "docs/theory.md, cohesive links",
+       concrete_tension},
+      {"dem3d",
+       "[material.NAME]",
+       {"cohesion", "friction_angle"},
+       "shear strength = C + p tan phi_i of an intact link under pressure p",
+       "docs/theory.md, cohesive links",
+       concrete_shear},
+      {"dem3d",
+       "[material.NAME]",
+       {"yield", "hardening", "failure_strain"},
+       "sigma = E eps up to f_y, then f_y + H eps_p; ruptures at eps_p = failure_strain",
+       "docs/theory.md, steel links",
+       steel_tension},
+      {"dem3d",
+       "[material.NAME]",
+       {"bond", "bond_strength", "bond_residual", "slip1", "slip2", "slip3"},
+       "tau = tau_max (s / s_1)^0.4 up to s_1, constant to s_2, falls to tau_f at s_3",
+       "CEB-FIP Model Code 1990; docs/theory.md, interface links",
+       bond_slip},
+      {"fdem2d",
+       "[material.NAME.joint]",
+       {"tension", "energy_open", "stiffness"},
+       "sigma = f_t (2 r - r^2) with r = o / o_p up to o_p = 2 h f_t / p_f, then z(D) f_t with "
+       "D = (o - o_p) / o_t and o_t = 2.5886 G_I / f_t; the area beyond o_p is G_I",
+       "docs/theory-fdem.md, section 2",
+       joint_opening}};
+  return all;
+}
+
+const Law* law_of(const std::string& method, const KeyInfo& key) {
+  const std::string name = key.path.substr(key.path.rfind('.') + 1);
+  for (const Law& law : laws())
+    if (law.method == method && law.table == table_heading(key) &&
+        std::find(law.keys.begin(), law.keys.end(), name) != law.keys.end())
+      return &law;
+  return nullptr;
+}
+
+void print_wrapped(const std::string& text) {
+  for (const std::string& line : wrapped(text, 76)) fmt::print("  {}\n", line);
+}
+
+/// Keys of that very name, or else those that the words find.
+std::vector<KeyInfo> named(const std::vector<KeyInfo>& keys, const std::string& word) {
+  std::vector<KeyInfo> found;
+  for (const KeyInfo& key : keys)
+    if (key.path == word || key.path.ends_with("." + word)) found.push_back(key);
+  return found.empty() ? keys_about(keys, word) : found;
+}
+
+struct ExplainCommand {
+  std::string key, svg;
+
+  void execute() const {
+    const std::pair<const char*, std::vector<KeyInfo>> methods[] = {
+        {"dem3d", named(list_keys<dem::Config>(""), key)},
+        {"fdem2d", named(list_keys<fdem::Config>(""), key)}};
+    constexpr std::size_t most = 8;
+    const std::size_t total = methods[0].second.size() + methods[1].second.size();
+    if (total == 0)
+      throw InputError(key + " is not a key; breccia keys " + key + " searches for words");
+    if (total > 2 * most)
+      throw InputError(
+          fmt::format("{} may be {} keys; name one, as in material.{}", key, total, key));
+    const Law* drawn = nullptr;
+    for (const auto& [method, keys] : methods)
+      for (const KeyInfo& each : keys) {
+        tell(method, each);
+        const Law* const law = law_of(method, each);
+        if (law == nullptr) continue;
+        print_wrapped(law->formula + " (" + law->source + ")");
+        if (law != drawn) fmt::print("\n{}", curve_for_terminal(law->curve()));
+        if (drawn == nullptr && !svg.empty()) replace_file(svg, curve_as_svg(law->curve()));
+        drawn = law;
+      }
+    if (drawn == nullptr && !svg.empty())
+      throw InputError(key + " shapes no law: there is no curve for --svg");
+    if (!svg.empty()) fmt::print("{}: written\n", harmless(svg));
+  }
+
+  static void tell(const std::string& method, const KeyInfo& key) {
+    fmt::print("\n{} {}  (method {})\n", table_heading(key), example_line(key), method);
+    print_wrapped(key.meaning);
+    if (!key.range.empty() && key.range != "any")
+      print_wrapped("allowed: " + key.range +
+                    (key.unit.empty() || key.unit == "-" ? "" : " " + key.unit));
+  }
+};
+
+}  // namespace
+
+void add_explain(CLI::App& program) {
+  const auto explain = std::make_shared<ExplainCommand>();
+  CLI::App* const command =
+      program.add_subcommand("explain", "what a key means, with formula and curve of its law");
+  command->add_option("KEY", explain->key, "its name, or its path as in material.joint.tension")
+      ->required();
+  command->add_option("--svg", explain->svg, "also write the curve to this file")
+      ->type_name("FILE.svg");
+  command->footer("Example: breccia explain tensile_strength");
+  command->callback([explain] { explain->execute(); });
+}
+
+}  // namespace breccia::app

@@ -1,0 +1,95 @@
+// The lines of a case file that later messages are about.
+
+#include <fmt/format.h>
+
+#define TOML_ASSERT(condition) static_cast<void>(0)  // as in case_file.cpp
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "io/case/case_file.hpp"
+#include "io/case/case_source.hpp"
+
+namespace breccia {
+namespace {
+
+/// The item of a list of tables that has a name; null: none.
+const toml::node* item_of(const toml::array& list, const std::string& name) {
+  for (const toml::node& item : list)
+    if ((*item.as_table())["name"].value_or(std::string()) == name) return &item;
+  return nullptr;
+}
+
+/// The part of a key's path up to its first dot, and the rest.
+std::pair<std::string, std::string> parted(const std::string& path) {
+  const std::size_t dot = std::min(path.find('.'), path.size());
+  return {path.substr(0, dot), path.substr(std::min(dot + 1, path.size()))};
+}
+
+/// The line of the deepest part of a key's path that is in the file; 0: none of it is.
+std::uint32_t line_of(const toml::table& root, const std::string& path) {
+  const toml::table* table = &root;
+  std::uint32_t line = 0;
+  for (auto [part, rest] = parted(path); table != nullptr && !part.empty();
+       std::tie(part, rest) = parted(rest)) {
+    const toml::node* below = table->get(part.substr(0, part.find('[')));
+    if (below == nullptr) break;
+    if (const toml::array* list = below->as_array(); list && list->is_homogeneous<toml::table>()) {
+      std::tie(part, rest) = parted(rest);
+      below = item_of(*list, part);
+      if (below == nullptr) break;
+    }
+    line = below->source().begin.line;
+    table = below->as_table();
+  }
+  return line;
+}
+
+/// "body.slab.size" of "body.slab.size needs ...", "support.left" of "support left holds ...".
+std::string key_at_start(const toml::table& root, const std::string& sentence) {
+  const auto end_of_word = [&](std::size_t from) {
+    return std::min(sentence.find_first_of(" :=,;\n", from), sentence.size());
+  };
+  const std::size_t end = end_of_word(0);
+  std::string key = sentence.substr(0, end);
+  if (key.find('.') == std::string::npos && root.contains(key) && sentence.substr(end, 1) == " ")
+    key += "." + sentence.substr(end + 1, end_of_word(end + 1) - end - 1);
+  while (key.ends_with('.')) key.pop_back();
+  return key;
+}
+
+}  // namespace
+
+std::string with_lines(const std::string& message, const std::string& path) {
+  const std::string file = case_file_of(path);
+  toml::table root;
+  try {
+    root = toml::parse_file(file);
+  } catch (const toml::parse_error&) {
+    return message;  // its reader tells
+  }
+  const auto line_text = [&](const std::string& sentence) {
+    const std::uint32_t line = line_of(root, key_at_start(root, sentence));
+    return line > 0 ? fmt::format("line {}, ", line) : std::string();
+  };
+  const std::string alone = line_text(message);  // a sentence without a heading
+  std::string told = alone.empty() ? "" : file + ": " + alone;
+  for (std::size_t at = 0; at < message.size();) {
+    const std::size_t end = std::min(message.find('\n', at), message.size() - 1) + 1;
+    const std::string line = message.substr(at, end - at);
+    const bool item = line.starts_with("  ") && line.find_first_not_of(' ') == 2;
+    told += item ? "  " + line_text(line.substr(2)) + line.substr(2) : line;
+    at = end;
+  }
+  const std::string in_case = " in the case; ";
+  if (const std::size_t at = told.find(in_case); at < told.find('\n'))
+    told.replace(at, in_case.size(), " in " + file + "; ");
+  const std::string with_model = " with the model; ";
+  if (const std::size_t at = told.find(with_model); at < told.find('\n'))
+    told.replace(at, with_model.size(), " with the model of " + file + "; ");
+  return told;
+}
+
+}  // namespace breccia

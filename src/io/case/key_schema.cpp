@@ -1,0 +1,117 @@
+// JSON Schema of case files.
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/case/key_pages.hpp"
+
+namespace breccia {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void add_limits(Json& json, const Range& limits) {
+  const bool open_low = limits.open == Open::low || limits.open == Open::both;
+  const bool open_high = limits.open == Open::high || limits.open == Open::both;
+  if (limits.low > -no_limit) json[open_low ? "exclusiveMinimum" : "minimum"] = limits.low;
+  if (limits.high < no_limit) json[open_high ? "exclusiveMaximum" : "maximum"] = limits.high;
+}
+
+/// A number in SI units, or a text with a unit.
+Json number(const KeyInfo& key) {
+  Json plain{{"type", "number"}};
+  add_limits(plain, key.limits);
+  const Json typed{{"type", "string"}, {"pattern", "^ *[-+]?[0-9.].* *$"}};
+  return {{"anyOf", Json::array({plain, typed})}};
+}
+
+Json array_of(const Json& items, std::size_t count) {
+  Json json{{"type", "array"}, {"items", items}};
+  if (count > 0) json["minItems"] = json["maxItems"] = count;
+  return json;
+}
+
+Json type_of(const KeyInfo& key) {
+  if (key.type == "number") return number(key);
+  if (key.type == "integer") {
+    Json json{{"type", "integer"}};
+    add_limits(json, key.limits);
+    return json;
+  }
+  if (key.type == "3 numbers") return array_of(number(key), 3);
+  if (key.type == "2 numbers") return array_of(number(key), 2);
+  if (key.type == "numbers") return array_of(number(key), 0);
+  if (key.type == "points") return array_of(array_of(number(key), 2), 0);
+  if (key.type == "points in space") return array_of(array_of(number(key), 3), 0);
+  if (key.type == "true/false") return {{"type", "boolean"}};
+  if (key.type == "texts") return array_of({{"type", "string"}}, 0);
+  Json json{{"type", "string"}};
+  if (key.type == "word") {
+    std::istringstream words(key.range);
+    for (std::string word; words >> word;)
+      if (word != "|") json["enum"].push_back(word);
+  }
+  return json;
+}
+
+Json of_key(const KeyInfo& key) {
+  Json json = type_of(key);
+  json["description"] =
+      (key.unit.empty() || key.unit == "-" ? "" : "[" + key.unit + "] ") + key.meaning;
+  if (key.default_text != "(required)")
+    if (const Json usual = Json::parse(key.default_text, nullptr, false); !usual.is_discarded())
+      json["default"] = usual;
+  return json;
+}
+
+Json table() {
+  return {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
+}
+
+/// Puts a key below the tables that its path names.
+void insert(Json& root, const KeyInfo& key) {
+  Json* at = &root;
+  std::string rest = key.path;
+  for (std::size_t dot = rest.find('.'); dot != std::string::npos; dot = rest.find('.')) {
+    std::string part = rest.substr(0, dot);
+    rest = rest.substr(dot + 1);
+    const bool list = part.ends_with("[]");
+    if (list) part.resize(part.size() - 2);
+    if (part == "<name>") {
+      Json& any = (*at)["additionalProperties"];
+      if (!any.is_object()) any = table();
+      at = &any;
+      continue;
+    }
+    Json& below = (*at)["properties"][part];
+    if (below.is_null()) {
+      below = list ? array_of(table(), 0) : table();
+      const bool named = rest.starts_with("<name>");
+      if (!named && !key.table_meaning.empty() && rest.find('.') == std::string::npos)
+        below["description"] = key.table_meaning;
+    }
+    at = list ? &below["items"] : &below;
+  }
+  (*at)["properties"][rest] = of_key(key);
+  if (key.default_text == "(required)") (*at)["required"].push_back(rest);
+}
+
+Json schema_of(const std::vector<KeyInfo>& keys, const std::string& method, bool is_default) {
+  Json json = table();
+  for (const KeyInfo& key : keys) insert(json, key);
+  json["properties"]["method"] = {{"const", method}, {"description", "which method runs the case"}};
+  if (!is_default) json["required"].push_back("method");
+  return json;
+}
+
+}  // namespace
+
+std::string key_schema(const std::vector<KeyInfo>& dem, const std::vector<KeyInfo>& fdem) {
+  const Json schema{
+      {"$schema", "http://json-schema.org/draft-07/schema#"},
+      {"title", "A case of Breccia"},
+      {"oneOf", Json::array({schema_of(dem, "dem3d", true), schema_of(fdem, "fdem2d", false)})}};
+  return schema.dump(1) + "\n";
+}
+
+}  // namespace breccia

@@ -1,0 +1,129 @@
+#include "prepare/checks/check_regions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "io/round_numbers.hpp"
+#include "prepare/checks/by_name.hpp"
+#include "prepare/checks/refusal.hpp"
+
+namespace breccia::prepare {
+namespace {
+
+/// A box with sides along the axes; in the plane the third is of no extent.
+struct Bounds {
+  std::array<double, 3> low{}, high{};  ///<  [m]
+};
+
+/// A body as regions see it.
+struct Outline {
+  std::string name;
+  std::optional<Bounds> bounds;  ///< none: only its file tells
+};
+
+Bounds around(const std::array<double, 3>& center, const std::array<double, 3>& half) {
+  Bounds b;
+  for (std::size_t k = 0; k < 3; ++k) {
+    b.low[k] = center[k] - half[k];
+    b.high[k] = center[k] + half[k];
+  }
+  return b;
+}
+
+/// Along the axis along which they are furthest apart; 0 if they meet.  [m]
+std::pair<double, std::size_t> gap(const Bounds& a, const Bounds& b) {
+  std::pair<double, std::size_t> most{0.0, 0};
+  for (std::size_t k = 0; k < 3; ++k)
+    most = std::max(most, {std::max(a.low[k] - b.high[k], b.low[k] - a.high[k]), k});
+  return most;
+}
+
+std::string place(double x) {
+  return x < 0.0 ? "-" + length_text(-x) : x > 0.0 ? length_text(x) : "0 m";
+}
+
+/// The problem of a region; empty: it may take something, or no outline is known.
+std::string problem_of(const std::string& key, const Bounds& region, const std::string& on,
+                       const std::vector<Outline>& outlines) {
+  const Outline* nearest = nullptr;
+  std::pair<double, std::size_t> least{0.0, 0};
+  for (const Outline& outline : outlines) {
+    if (!on.empty() && outline.name != on) continue;
+    if (!outline.bounds) return "";
+    const auto apart = gap(region, *outline.bounds);
+    if (apart.first <= 1e-9) return "";
+    if (nearest == nullptr || apart < least) {
+      least = apart;
+      nearest = &outline;
+    }
+  }
+  if (nearest == nullptr) return "";
+  constexpr std::array<char, 3> axes{'x', 'y', 'z'};
+  const std::size_t axis = least.second;
+  const bool below = region.high[axis] < nearest->bounds->low[axis];
+  return fmt::format(
+      "{}.{} = {}: the region takes nothing; {} is nearest, {} away, with {} from {} to {}", key,
+      below ? "max" : "min", place(below ? region.high[axis] : region.low[axis]), nearest->name,
+      length_text(least.first), axes[axis], place(nearest->bounds->low[axis]),
+      place(nearest->bounds->high[axis]));
+}
+
+const dem::BodyConfig* host_of(const dem::BodyConfig& body, const dem::Config& config) {
+  return body.shape == "rebar" ? item_named(config.bodies, body.rebar.in) : &body;
+}
+
+Outline outline_of(const dem::BodyConfig& body, const dem::Config& config) {
+  const dem::BodyConfig* const b = host_of(body, config);
+  if (b == nullptr || b->shape == "file") return {body.name, {}};
+  const std::array<double, 3> center{b->center.x, b->center.y, b->center.z};
+  std::array<double, 3> half{b->radius, b->radius, b->radius};
+  if (b->shape == "box") half = {0.5 * b->size.x, 0.5 * b->size.y, 0.5 * b->size.z};
+  if (b->shape == "cylinder") half[2] = 0.5 * b->length;
+  if (b->shape == "element") half = {};
+  return {body.name, around(center, half)};
+}
+
+Outline outline_of(const fdem::BodyConfig& b) {
+  const bool round = b.shape == "disc" || b.shape == "ring";
+  if (!round && b.shape != "plate" && b.shape != "beam") return {b.name, {}};
+  const Vec2 half = round ? Vec2{b.radius, b.radius} : 0.5 * b.size;
+  return {b.name, around({b.center.x, b.center.y, 0.0}, {half.x, half.y, 0.0})};
+}
+
+Bounds bounds_of(const fdem::RegionConfig& r) {
+  return {{r.min.x, r.min.y, 0.0}, {r.max.x, r.max.y, 0.0}};
+}
+
+}  // namespace
+
+void check_regions(const dem::Config& config) {
+  std::vector<Outline> outlines;
+  for (const dem::BodyConfig& body : config.bodies) outlines.push_back(outline_of(body, config));
+  std::vector<std::string> problems;
+  for (const dem::SupportConfig& s : config.supports)
+    problems.push_back(problem_of("support." + s.name,
+                                  {{s.min.x, s.min.y, s.min.z}, {s.max.x, s.max.y, s.max.z}}, s.on,
+                                  outlines));
+  std::erase(problems, "");
+  refuse(problems, "in the case");
+}
+
+void check_regions(const fdem::Config& config) {
+  std::vector<Outline> outlines;
+  for (const fdem::BodyConfig& body : config.bodies) outlines.push_back(outline_of(body));
+  std::vector<std::string> problems;
+  for (const fdem::SupportConfig& s : config.supports)
+    problems.push_back(problem_of("support." + s.name, bounds_of(s.region), s.region.on, outlines));
+  for (const fdem::LoadConfig& load : config.loads)
+    problems.push_back(
+        problem_of("load." + load.name, bounds_of(load.region), load.region.on, outlines));
+  std::erase(problems, "");
+  refuse(problems, "in the case");
+}
+
+}  // namespace breccia::prepare

@@ -1,0 +1,18 @@
+#pragma once
+// Supports and loads whose region lies beside every body: told before a model is built.
+
+#include <string>
+
+#include "dem/setup/config.hpp"
+#include "fdem/setup/config.hpp"
+
+namespace breccia::prepare {
+
+/// Holds each region against the outlines of the bodies that it may take from. Bodies whose outline
+/// only their file tells are not looked at, nor are regions that miss elements by less than their
+/// size: the built model is tested again.
+/// @throws InputError naming each region that takes nothing, the nearest body and how far it is
+void check_regions(const dem::Config& config);
+void check_regions(const fdem::Config& config);
+
+}  // namespace breccia::prepare

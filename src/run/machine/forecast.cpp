@@ -1,0 +1,346 @@
+#include "run/machine/forecast.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <memory>
+#include <numeric>
+
+#include "dem/setup/materials.hpp"
+#include "io/round_numbers.hpp"
+#include "math/constants.hpp"
+#include "prepare/build.hpp"
+#include "prepare/build_fdem.hpp"
+#include "prepare/checks/by_name.hpp"
+#include "prepare/meshing/body_mesh.hpp"
+#include "prepare/meshing/mesh_file.hpp"
+#include "prepare/packing/rebar.hpp"
+#include "prepare/packing/spheres_file.hpp"
+#include "run/machine/memory_plan.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem_method.hpp"
+
+namespace breccia {
+namespace {
+
+constexpr double most_elements = 700.0;   // of a specimen
+constexpr double most_triangles = 500.0;  // likewise
+
+double processor_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Processor time of a step of a specimen, per item; 0 if it cannot be stepped.  [s]
+double pace_of(Method& method, double items) {
+  constexpr int warm = 5, timed = 60;
+  try {
+    while (method.steps() < warm) method.advance({.time = 1e300, .step = warm});
+    const double begin = processor_seconds();
+    while (method.steps() < warm + timed) method.advance({.time = 1e300, .step = warm + timed});
+    const auto steps = static_cast<double>(method.steps() - warm);
+    return steps > 0.0 ? (processor_seconds() - begin) / (steps * items) : 0.0;
+  } catch (const NumericsError&) {
+    return 0.0;
+  }
+}
+
+/// Wall time of steps of so many items on the processors of this machine.  [s]
+double wall_of(double steps, double items, double pace) {
+  constexpr double least_share = 2000.0;  // items that keep a processor busy
+  const double processors = omp_get_num_procs();
+  const double useful = std::clamp(items / least_share, 1.0, processors);
+  return steps * items * pace / (1.0 + 0.85 * (useful - 1.0));
+}
+
+/// Bytes of a result folder, as small cases of both methods leave them.
+struct DiskRates {
+  double element, bond, checkpoint, picture;
+};
+void add_disk(Forecast& f, const CaseConfig& config, std::size_t columns, const DiskRates& rates) {
+  const double frames = config.output.frames + 1.0;
+  const double rows = config.output.history > 0.0 ? config.time.end / config.output.history : 1000;
+  const double pixels = static_cast<double>(config.output.width) * config.output.height;
+  const double fields =
+      config.output.fields ? frames * (rates.element * f.items + rates.bond * f.bonds) : 0.0;
+  const double pictures = config.output.pictures ? frames * rates.picture * pixels : 0.0;
+  const double history = std::min(rows, f.steps) * 19.0 * static_cast<double>(columns);
+  const double kept = std::min<double>(config.checkpoint.keep, f.here_s / config.checkpoint.wall);
+  const double saved = std::max(1.0, std::floor(kept)) * rates.checkpoint * f.items;
+  f.disk = fields + pictures + history + saved;
+  const std::pair<double, const char*> parts[] = {
+      {fields, "fields"}, {pictures, "pictures"}, {history, "history.csv"}, {saved, "checkpoints"}};
+  f.longest_part = std::max_element(std::begin(parts), std::end(parts))->second;
+}
+
+/// The least of the steps that specimens allow, with what rules it.
+void take_step(Forecast& f, double step, const std::string& rule) {
+  if (step > 0.0 && (f.step == 0.0 || step < f.step)) {
+    f.step = step;
+    f.step_rule = rule;
+  }
+}
+
+void finish(Forecast& f, const TimeConfig& time) {
+  if (f.step == 0.0 || f.step > time.max_step) take_step(f, time.max_step, "time.max_step");
+  if (f.step > 0.0) f.steps = std::ceil(time.end / f.step);
+}
+
+// --- DEM
+
+double ball(double radius) {
+  return 4.0 / 3.0 * pi * radius * radius * radius;
+}
+
+/// A body of elements that may be packed, with its numbers.
+struct Packed {
+  dem::BodyConfig body;
+  double count, volume;  ///< elements, of the body  [m3]
+};
+
+Packed packed(const dem::BodyConfig& body, const std::string& folder) {
+  if (body.shape != "file") {
+    const double volume = body.shape == "box"      ? body.size.x * body.size.y * body.size.z
+                          : body.shape == "sphere" ? ball(body.radius)
+                                                   : pi * body.radius * body.radius * body.length;
+    return {body, static_cast<double>(body.pack.count), volume};
+  }
+  const prepare::Spheres spheres = prepare::read_spheres(folder + "/" + body.file);
+  const auto [least, most] = std::minmax_element(spheres.radius.begin(), spheres.radius.end());
+  double solid = 0.0;
+  for (const double r : spheres.radius) solid += ball(r);
+  Packed p{body, static_cast<double>(spheres.radius.size()), solid / 0.6};
+  p.body.shape = "box";
+  p.body.file.clear();
+  p.body.pack.count = static_cast<int>(spheres.radius.size());
+  p.body.pack.size_ratio = std::clamp(*most / *least, 1.0, 10.0);
+  p.body.size = std::cbrt(p.volume) * Vec3{1.0, 1.0, 1.0};
+  return p;
+}
+
+/// A part of the body with elements of the same sizes: as thick as the body where that is thin.
+dem::BodyConfig cut(const Packed& p) {
+  dem::BodyConfig body = p.body;
+  body.center = {};
+  body.velocity = body.spin = {};
+  if (p.count <= most_elements) return body;
+  Vec3 size = body.shape == "box" ? body.size : std::cbrt(p.volume) * Vec3{1.0, 1.0, 1.0};
+  const double wanted = p.volume * most_elements / p.count;
+  for (int turn = 0; turn < 200 && size.x * size.y * size.z > wanted; ++turn) {
+    double& longest = size.x >= size.y && size.x >= size.z ? size.x
+                      : size.y >= size.z                   ? size.y
+                                                           : size.z;
+    longest *= 0.97;
+  }
+  body.shape = "box";
+  body.size = size;
+  body.pack.count = static_cast<int>(std::round(p.count * size.x * size.y * size.z / p.volume));
+  return body;
+}
+
+double least_radius(const dem::Model& model) {
+  return *std::min_element(model.radius.begin(), model.radius.end());
+}
+
+/// Adds what a specimen of one packed body tells.
+double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
+  constexpr double least_elements = 20.0;
+  f.items += p.count;
+  if (p.count < least_elements) return 0.0;  // too few for a specimen
+  dem::Config specimen = config;
+  specimen.bodies = {cut(p)};
+  specimen.walls.clear();
+  specimen.supports.clear();
+  specimen.probes.clear();
+  specimen.checks.clear();
+  if (config.links.count > 0) {
+    double all = 0.0;
+    for (const dem::BodyConfig& body : config.bodies) all += body.pack.count;
+    specimen.links.count = 0;
+    specimen.links.per_element = 2.0 * config.links.count / std::max(all, 1.0);
+  }
+  dem::Model model = build_model(specimen, "");
+  const auto count = static_cast<double>(model.size());
+  const double bonds = static_cast<double>(model.links.size()) / count;
+  if (bonds == 0.0)  // grains: as pressed together, since contacts alone rule
+    for (Vec3& x : model.position) x = 0.97 * x;
+  const std::unique_ptr<Method> method = make_method(specimen, model, Exec{});
+  const double step = method->time_step();
+  const double pace = pace_of(*method, count);
+  const std::string of = p.body.name + ": elements of radius " + length_text(least_radius(model));
+  take_step(f, step, (bonds > 0.0 ? "links of " : "contacts of ") + of);
+  f.bonds += bonds * p.count;
+  return pace * p.count;
+}
+
+/// Bars: a step shorter than sqrt(m / 2 K) of a piece of them, K = E A / L.
+void add_bars(Forecast& f, const dem::Config& config, const dem::BodyConfig& body) {
+  const dem::BodyConfig* const host = prepare::item_named(config.bodies, body.rebar.in);
+  const dem::MaterialConfig* const steel = prepare::item_named(config.materials, body.material);
+  if (host == nullptr || steel == nullptr) return;
+  constexpr double bonded = 5.0;  // links of a bar's element with the concrete around it
+  for (const prepare::Chain& chain : prepare::chains_through(body.rebar, host->size)) {
+    const auto count = static_cast<double>(chain.centres.size());
+    f.items += count;
+    f.bonds += count * (1.0 + bonded) - 1.0;
+    const double piece = *std::min_element(chain.spacing.begin(), chain.spacing.end());
+    take_step(f, config.time.safety * piece * std::sqrt(0.5 * steel->density / steel->young),
+              "bars of " + body.name + " (pieces of " + length_text(piece) + ")");
+  }
+}
+
+// --- FDEM
+
+/// A body of triangles: how many, and the edge of one.
+struct Meshed {
+  double triangles = 0.0, edge = 0.0, border = 0.0;  ///< -, [m], [m]
+};
+
+double area_of(const std::vector<Vec2>& polygon, double& border) {
+  double twice = 0.0;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2& next = polygon[(k + 1) % polygon.size()];
+    twice += cross(polygon[k], next);
+    border += norm(next - polygon[k]);
+  }
+  return 0.5 * std::abs(twice);
+}
+
+Meshed meshed(const fdem::BodyConfig& body, const std::string& folder) {
+  constexpr double equilateral = 0.433;  // area over the square of the edge
+  if (body.shape == "hexagons")
+    return {6.0 * body.hexagons.count, body.hexagons.side,
+            6.0 * body.hexagons.side * body.hexagons.count};
+  if (body.shape == "mesh") {
+    const prepare::Mesh mesh = prepare::read_mesh(folder + "/" + body.file, body.seams == "open");
+    double area = 0.0;
+    const std::vector<Index> own = prepare::triangles_of(body, mesh);
+    for (const Index t : own)
+      area += prepare::signed_area(mesh.point, mesh.triangle[static_cast<std::size_t>(t)]);
+    const auto count = static_cast<double>(own.size());
+    return {count, std::sqrt(area / (count * equilateral)), 4.0 * std::sqrt(area)};
+  }
+  double area = 0.0, border = 0.0;
+  if (body.shape == "outline") {
+    area = area_of(prepare::read_outline(folder + "/" + body.file), border);
+  } else if (body.shape == "disc" || body.shape == "ring") {
+    area = pi * (body.radius * body.radius - body.inner_radius * body.inner_radius);
+    border = 2.0 * pi * (body.radius + body.inner_radius);
+  } else {
+    area = body.size.x * body.size.y;
+    border = 2.0 * (body.size.x + body.size.y);
+  }
+  for (const fdem::HoleConfig& hole : body.holes) area -= pi * hole.radius * hole.radius;
+  if (!(body.mesh_size > 0.0) || !(area > 0.0)) return {};
+  return {area / (equilateral * body.mesh_size * body.mesh_size), body.mesh_size, border};
+}
+
+/// A plate, or a few hexagons, with triangles of the body's size, above those that are there.
+fdem::BodyConfig plate_of(const fdem::BodyConfig& body, const Meshed& mesh, double& top) {
+  fdem::BodyConfig plate;
+  plate.name = body.name;
+  plate.material = body.material;
+  plate.grains = body.grains;
+  plate.weibull = body.weibull;
+  if (body.grains.kind == "picture") plate.grains.kind = "random";
+  const double share = std::min(1.0, most_triangles / mesh.triangles);
+  if (body.shape == "hexagons") {
+    plate.shape = "hexagons";
+    plate.jitter = body.jitter;
+    plate.hexagons = body.hexagons;
+    plate.hexagons.count = std::max(1, static_cast<int>(share * body.hexagons.count));
+    plate.size = std::sqrt(share) * body.size;
+  } else {
+    plate.shape = "plate";
+    plate.structured = true;
+    plate.pattern = body.pattern;
+    plate.mesh_size = mesh.edge;
+    const double side = std::sqrt(0.433 * share * mesh.triangles) * mesh.edge;
+    plate.size = {std::max(side, 2.0 * mesh.edge), std::max(side, 2.0 * mesh.edge)};
+  }
+  plate.center = {0.0, top + 0.5 * plate.size.y};
+  top += plate.size.y + 1e-3 * mesh.edge;
+  return plate;
+}
+
+}  // namespace
+
+Forecast forecast(const dem::Config& config, const std::string& folder) {
+  Forecast f;
+  double pace = 0.0;  // of all items, each step  [s]
+  for (const dem::BodyConfig& body : config.bodies) {
+    if (body.shape == "rebar")
+      add_bars(f, config, body);
+    else if (body.shape == "element")
+      f.items += 1.0;
+    else
+      pace += add_body(f, config, packed(body, folder));
+  }
+  finish(f, config.time);
+  f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
+  f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);
+  f.memory = memory_plan(config).run_bytes;
+  add_disk(f, config, 14 + config.probes.size(), {42.0, 9.1, 830.0, 0.65});
+  return f;
+}
+
+Forecast forecast(const fdem::Config& config, const std::string& folder) {
+  Forecast f;
+  f.item_name = "triangles";
+  f.bond_name = "joints";
+  fdem::Config specimen = config;
+  specimen.bodies.clear();
+  specimen.discontinuities.clear();
+  specimen.supports.clear();
+  specimen.loads.clear();
+  specimen.probes.clear();
+  specimen.checks.clear();
+  double top = 0.0, finest = 0.0;
+  bool free_mesh = false;
+  std::string of;
+  for (const fdem::BodyConfig& body : config.bodies) {
+    const Meshed mesh = meshed(body, folder);
+    if (mesh.triangles < 1.0) {  // gmsh alone knows
+      f.items = 0.0;
+      return f;
+    }
+    specimen.bodies.push_back(plate_of(body, mesh, top));
+    f.items += mesh.triangles;
+    const fdem::MaterialConfig* const m = prepare::item_named(config.materials, body.material);
+    if (m == nullptr || m->joints == "intrinsic")
+      f.bonds += 1.5 * mesh.triangles - 0.5 * mesh.border / mesh.edge;
+    const bool by_gmsh = body.shape != "hexagons" && !body.structured;
+    free_mesh = free_mesh || by_gmsh;
+    if (finest == 0.0 || mesh.edge < finest) {
+      finest = mesh.edge;
+      of = body.name + ", edges of " + length_text(mesh.edge);
+    }
+  }
+  const fdem::Model model = build_model(specimen, folder);
+  const std::unique_ptr<Method> method = make_method(specimen, model, Exec{});
+  // The smallest triangle and sharpest corner of a free mesh rule its step.
+  constexpr double least_of_free_mesh = 0.75;
+  const std::string rule = method->step_rule();
+  take_step(f, (free_mesh ? least_of_free_mesh : 1.0) * method->time_step(),
+            (rule.empty() ? "triangles" : rule) + " (finest mesh: " + of + ")");
+  finish(f, config.time);
+  f.here_s = wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
+  f.gpu_s = f.steps * std::max(16e-6, 4.7e-6 + 0.22e-9 * f.items);
+  f.memory = memory_plan(config).run_bytes;
+  add_disk(f, config, 14 + config.probes.size(), {55.0, 10.0, 760.0, 0.066});
+  return f;
+}
+
+std::string rough_duration(double seconds) {
+  if (seconds < 1.0) return "under 1 s";
+  if (seconds < 100.0) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 6000.0) return fmt::format("{:.2g} min", seconds / 60.0);
+  if (seconds < 172800.0) return fmt::format("{:.2g} h", seconds / 3600.0);
+  return fmt::format("{:.0f} days", seconds / 86400.0);
+}
+
+}  // namespace breccia

@@ -1,0 +1,37 @@
+#pragma once
+// What a run will take, told before its model is built: from small specimens of its bodies.
+
+#include <string>
+
+#include "dem/setup/config.hpp"
+#include "fdem/setup/config.hpp"
+
+namespace breccia {
+
+/// The cost of a run as its start lets expect it: contacts and fragments to come make it dearer.
+/// Everything but counts of packed elements is an estimate, mostly within a third.
+struct Forecast {
+  double items = 0.0;  ///< elements or triangles; 0: only the mesh program tells
+  double bonds = 0.0;  ///< links or joints at the start
+  const char *item_name = "elements", *bond_name = "links";
+  double step = 0.0;         ///< 0: nothing rules it at the start  [s]
+  std::string step_rule;     ///< "joints of beam (mesh_size 5 mm)"
+  double steps = 0.0;        ///< to time.end
+  double here_s = 0.0;       ///< wall time of the steps on all processors of this machine  [s]
+  double gpu_s = 0.0;        ///< on an H200, by bench/notes/gpu.md  [s]
+  double memory = 0.0;       ///< [bytes]
+  double disk = 0.0;         ///< of the result folder at the end  [bytes]
+  std::string longest_part;  ///< of the disk: "pictures", "fields", "history.csv"
+};
+
+/// Packs or meshes at most some hundred elements of each body, sets them up as the case would, and
+/// takes some steps of them: well below a second.
+/// @param folder  where the files that the case names are; they have been checked
+/// @throws InputError if not even a specimen can be built
+Forecast forecast(const dem::Config& config, const std::string& folder);
+Forecast forecast(const fdem::Config& config, const std::string& folder);
+
+/// "12 s", "3.5 min", "2.1 h", "4 days".
+std::string rough_duration(double seconds);
+
+}  // namespace breccia

@@ -1,0 +1,126 @@
+// `breccia check` as people use it: what it says of size and cost, and how it mends slips.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "fdem/setup/config.hpp"
+#include "io/case/case_file.hpp"
+#include "io/whole_file.hpp"
+#include "paths.hpp"
+#include "run/machine/forecast.hpp"
+#include "unit/run/program.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+struct Told {
+  int exit_code;
+  std::string text;
+};
+Told told_by(const ScratchFolder& folder, const std::string& arguments) {
+  const std::string output = folder.path() + "/told.txt";
+  const int code = wait_for(start_program(arguments, output));
+  return {code, read_whole_file(output)};
+}
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+const std::string beam = R"(breccia = 1
+method = "fdem2d"
+[time]
+end = "1 ms"
+[material.stone]
+young = "30 GPa"
+[[body]]
+name = "beam"
+shape = "beam"
+structured = true
+material = "stone"
+size = ["300 mm", "40 mm"]
+mesh_size = "5 mm"
+[[support]]
+name = "left"
+min = ["-151 mm", "-21 mm"]
+max = ["-140 mm", "-19 mm"]
+)";
+
+std::string changed(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Forecast, of_a_plate_is_near_what_the_model_has) {
+  const fdem::Config config = read_case<fdem::Config>(CaseText{beam, "beam.toml"}, {});
+  const Forecast f = forecast(config, ".");
+  EXPECT_NEAR(f.items, 1109.0, 60.0);  // 0.3 x 0.04 m2 over triangles of 5 mm edges
+  EXPECT_NEAR(f.bonds, 1.5 * f.items - 68.0, 1.0);
+  EXPECT_NEAR(f.steps, 1e-3 / f.step, 1.0);
+  EXPECT_GT(f.here_s, 1e-9 * f.steps * f.items);
+  EXPECT_LT(f.here_s, 1e-5 * f.steps * f.items);
+  EXPECT_TRUE(has(f.step_rule, "joints") && has(f.step_rule, "5 mm")) << f.step_rule;
+}
+
+TEST(Forecast, half_the_mesh_size_is_four_times_the_triangles_and_half_the_step) {
+  fdem::Config config = read_case<fdem::Config>(CaseText{beam, "beam.toml"}, {});
+  const Forecast coarse = forecast(config, ".");
+  config.bodies.front().mesh_size *= 0.5;
+  const Forecast fine = forecast(config, ".");
+  EXPECT_NEAR(fine.items / coarse.items, 4.0, 1e-9);
+  EXPECT_NEAR(coarse.step / fine.step, 2.0, 0.1);
+}
+
+TEST(CheckCommand, says_size_step_time_memory_and_disk_within_80_columns) {
+  const ScratchFolder folder;
+  replace_file(folder.path() + "/beam.toml", beam);
+  const Told told = told_by(folder, "check " + folder.path() + "/beam.toml");
+  EXPECT_EQ(told.exit_code, 0) << told.text;
+  for (const char* word :
+       {"triangles", "joints", "step ", "steps ", "core", "GPU", "memory", "disk"})
+    EXPECT_TRUE(has(told.text, word)) << word << " in\n" << told.text;
+  for (std::size_t at = told.text.find('\n') + 1; at < told.text.size();) {
+    const std::size_t end = told.text.find('\n', at);
+    EXPECT_LE(end - at, 80U) << told.text.substr(at, end - at);
+    at = end + 1;
+  }
+}
+
+TEST(CheckCommand, names_line_and_key_of_a_region_that_takes_nothing) {
+  const ScratchFolder folder;
+  replace_file(folder.path() + "/beam.toml", changed(beam, "\"-151 mm\", \"-21 mm\"", "0.4, 0.0"));
+  replace_file(folder.path() + "/beam.toml", changed(read_whole_file(folder.path() + "/beam.toml"),
+                                                     "\"-140 mm\", \"-19 mm\"", "0.5, 0.1"));
+  const Told told = told_by(folder, "check " + folder.path() + "/beam.toml");
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_TRUE(has(told.text, "beam.toml; nothing was run.")) << told.text;
+  EXPECT_TRUE(has(told.text,
+                  "line 16, support.left.min = 400 mm: the region takes nothing; beam is "
+                  "nearest, 250 mm away, with x from -150 mm to 150 mm"))
+      << told.text;
+}
+
+TEST(CheckCommand, fix_writes_the_case_with_slips_corrected_and_checks_that) {
+  const ScratchFolder folder;
+  std::string wrong = changed(beam, "young = \"30 GPa\"", "yung = \"30 gpa\"");
+  wrong = changed(wrong, "\"beam\"\nstructured", "\"baem\"\nstructured");
+  wrong = changed(wrong, "[[support]]", "[support]");
+  replace_file(folder.path() + "/beam.toml", wrong);
+  const Told told = told_by(folder, "check --fix " + folder.path() + "/beam.toml");
+  EXPECT_EQ(told.exit_code, 0) << told.text;
+  EXPECT_EQ(read_whole_file(folder.path() + "/beam.fixed.toml"), beam);
+  EXPECT_EQ(read_whole_file(folder.path() + "/beam.toml"), wrong);
+  EXPECT_TRUE(has(told.text, "line 6: yung -> young")) << told.text;
+}
+
+TEST(CaseName, is_the_stem_and_of_a_case_folder_its_name) {
+  const ScratchFolder folder;
+  const std::string name = std::filesystem::path(folder.path()).filename().string();
+  EXPECT_EQ(case_name(folder.path() + "/beam.toml"), "beam");
+  replace_file(folder.path() + "/case.toml", beam);
+  EXPECT_EQ(case_name(folder.path()), name);
+  EXPECT_EQ(case_name(folder.path() + "/small.toml"), name + "_small");
+}
+
+}  // namespace
+}  // namespace breccia
