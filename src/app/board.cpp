@@ -76,8 +76,9 @@ std::string board(const Watched& run, bool plain) {
                         std::min(100.0, 100.0 * time / run.end_time));
   text += fmt::format("   step {}   dt {}", count_text(last_of(history, "step")),
                       time_text(last_of(history, "dt")));
+  text += fmt::format("\n  energy error {:.2e}", last_of(history, "error_relative"));
   if (run.broken) text += fmt::format("   broken {}", count_text(*run.broken));
-  text += fmt::format("\n  energy error {:.2e}\n", last_of(history, "error_relative"));
+  text += '\n';
   for (const char* name : {"kinetic", "elastic", "fracture", "error_relative"})
     if (const report::Column* const column = history.column(name))
       text += curve_line(*column, plain);

@@ -68,17 +68,17 @@ class Render(unittest.TestCase):
         self.assertIn("9", said)
 
     def test_without_ffmpeg_says_what_to_install(self):
-        said = self.render("film.mp4", code=3, PATH="/nowhere")
+        said = self.render("none.mp4", code=3, PATH="/nowhere")
         self.assertIn("apt install ffmpeg", said)
-        self.assertFalse((self.path / "film.mp4").exists())
+        self.assertFalse((self.path / "none.mp4").exists())
 
     def test_an_ffmpeg_that_fails_leaves_no_film(self):
         folder = self.path / "broken"
         folder.mkdir()
         (folder / "ffmpeg").write_text("#!/bin/sh\nexit 1\n")
         (folder / "ffmpeg").chmod(0o755)
-        self.assertIn("ffmpeg ended early", self.render("film.mp4", code=3, PATH=str(folder)))
-        self.assertEqual([p for p in self.path.iterdir() if "film.mp4" in p.name], [])
+        self.assertIn("ffmpeg ended early", self.render("failed.mp4", code=3, PATH=str(folder)))
+        self.assertEqual([p for p in self.path.iterdir() if "failed.mp4" in p.name], [])
 
     @unittest.skipUnless(shutil.which("ffprobe"), "needs Debian's ffmpeg")
     def test_films_have_all_frames(self):
