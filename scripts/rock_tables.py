@@ -124,8 +124,10 @@ def kalthoff(r, setting):
         return {"angle": math.nan}
     far, when = max(((e, c["time"]) for c in crack for e in ends(c)), key=lambda ec: math.dist(ec[0], tip))
     start = crack[0]["time"]
+    early = max((e for c in crack for e in ends(c) if math.dist(e, tip) < 0.04), key=lambda e: math.dist(e, tip))
     return {
-        "angle, degrees": math.degrees(math.atan2(far[1] - tip[1], far[0] - tip[0])),
+        "angle of the first 40 mm, degrees": math.degrees(math.atan2(early[1] - tip[1], early[0] - tip[0])),
+        "of all, degrees": math.degrees(math.atan2(far[1] - tip[1], far[0] - tip[0])),
         "first break, us": 1e6 * start,
         "length, mm": 1e3 * math.dist(far, tip),
         "mean speed / c_R": math.dist(far, tip) / (when - start) / 2799.0,
@@ -304,8 +306,10 @@ def prepare(binary, folder, jobs):
 
 def finished(out):
     """Whether a run came to its end; a check that fails (9) stands for the case's own mesh alone."""
-    summary = out / "summary.json"
-    return summary.exists() and json.loads(summary.read_text())["exit_code"] in (0, 9)
+    if not (out / "summary.json").exists():
+        return False
+    summary = json.loads((out / "summary.json").read_text())
+    return summary["status"] in ("done", "failed") and summary["exit_code"] in (0, 9)
 
 
 def run(binary, folder, count):
@@ -352,7 +356,7 @@ def table(folder):
         settings = [json.loads(key) for key in rows]
         heads = list(dict.fromkeys(q for found in rows.values() for one in found for q in one))
         columns = ["edges, mm" if key == "edge" else key for key in settings[0]]
-        print(f"\n**{name}** (cases/{CAMPAIGNS[name][0]}; {cost:.0f} s of steps on one core in all)\n")
+        print(f"\n**{name}** (cases/{CAMPAIGNS[name][0]}; {cost:.0f} s of steps in all)\n")
         print("| " + " | ".join([*columns, "n", *heads]) + " |")
         print("|" + "---|" * (len(columns) + 1 + len(heads)))
         for setting, found in zip(settings, rows.values()):
