@@ -39,6 +39,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("SECONDS")
       ->check(problem_of<double>);
   command
+      .add_option("--stage", options.stage,
+                  "end with this stage of the case; resume goes on with the next one")
+      ->type_name("NAME");
+  command
       .add_option("--max-wall", options.max_wall,
                   "save and end (exit code 10) before so much wall-clock time has passed")
       ->type_name("TIME")
@@ -62,7 +66,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
 RunPlan plan_of(const Case& read, const RunOptions& options, const Exec& exec,
                 Communicator* ranks) {
   RunPlan plan = plan_of(read);
-  plan.limits = {options.until, options.steps, wall_time(options.max_wall)};
+  plan.limits = {options.until, options.steps, wall_time(options.max_wall), options.stage};
   plan.machine = {processor_name(), options.device, exec.threads,
                   ranks == nullptr ? 1 : ranks->size()};
   plan.timers = exec.timers;

@@ -21,6 +21,7 @@ struct RunOptions {
   std::optional<std::int64_t> steps;
   std::optional<double> until;  ///<  [s]
   std::string max_wall;         ///< as people write it; empty: none
+  std::string stage;            ///< that the run ends with; empty: the last one
   std::vector<std::string> overrides;
   bool allow_scripts = false;
   bool quiet = false, verbose = false, no_progress = false;

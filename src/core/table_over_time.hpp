@@ -27,7 +27,6 @@ struct OverTime {
       : value{static_cast<double>(parts)...} {}
 
   bool is_table() const { return !times.empty(); }
-  bool operator==(const OverTime&) const = default;
 };
 
 /// The number along axis k of a value.

@@ -286,6 +286,7 @@ World share_parts(World part, Communicator& ranks, const DomainConfig& config, S
   take_time_from_first(ranks, part);
   for (Wall& wall : part.walls) take_from_first(ranks, wall);
   take_from_first(ranks, part.travel.drift);
+  for (ServoState& servo : part.servos) take_from_first(ranks, servo);
   part.ledger = {};  // what this rank books from here on
   Spheres spheres(part, space);
   begin_sharing(part.domain, ranks, config, spheres, 2.0 * part.parameters.mean_radius, 3);
@@ -339,6 +340,7 @@ void collect(World& part, World& whole) {
   whole.wall_contacts = std::move(copy.wall_contacts);
   whole.bar_actions = std::move(copy.bar_actions);
   whole.walls = part.walls;
+  whole.servos = part.servos;
   whole.domain.partition = partition_at(part.domain, part.travel.drift.velocity, part.time);
   copy_time(part, whole);
 }

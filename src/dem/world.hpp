@@ -6,6 +6,7 @@
 
 #include "core/energy.hpp"
 #include "core/incidence.hpp"
+#include "core/stages.hpp"
 #include "core/step_clock.hpp"
 #include "core/travel.hpp"
 #include "dem/element_kernels.hpp"
@@ -78,6 +79,8 @@ struct World : LinkSets {
   double next_dt = 0.0;  ///< the step to come  [s]
   std::int64_t step = 0;
   std::int64_t searches = 0;
+  std::vector<ServoState> servos;  ///< of walls, then of supports; empty: the case has none
+  StageProgress stage;             ///< where it is among the stages of its case
 
   /// Visits the arrays that kernels read: state, and what follows from the case.
   template <class Visit>
@@ -109,6 +112,7 @@ struct World : LinkSets {
   std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<ElementSet> sets;
   std::vector<std::string> wall_names;
+  std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]
   Buffer<ContactPair> contact_pairs;  ///< by two materials
   Buffer<ContactPair> wall_pairs;     ///< by one material
   GivenMotions prescribed;            ///< of supports, then of walls
@@ -146,6 +150,10 @@ struct World : LinkSets {
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
 /// fit
 World make_world(const Config& config, const Model& model, const Exec& exec);
+
+/// Lets the world go on by another stage of its case: gravity, damping, friction, supports, walls.
+/// The state stays as it is. @throws InputError if supports contradict each other
+void configure(World& w, const Config& config);
 
 /// Hands World::prescribed to kernels.
 void place_motions(World& w);

@@ -102,12 +102,14 @@ void copy_time(const World& from, World& to) {
   to.next_dt = from.next_dt;
   to.step = from.step;
   to.searches = from.searches;
+  to.stage = from.stage;
 }
 template <class World>
 void take_time_from_first(Communicator& ranks, World& w) {
   for (double* time : {&w.time, &w.last_dt, &w.next_dt}) take_from_first(ranks, *time);
   take_from_first(ranks, w.step);
   take_from_first(ranks, w.searches);
+  take_from_first(ranks, w.stage);
 }
 
 }  // namespace breccia

@@ -347,6 +347,7 @@ void go_on_with_couples(World& w) {
 void take_common(World& w, Communicator& ranks) {
   take_time_from_first(ranks, w);
   take_from_first(ranks, w.reach.drift);
+  for (ServoState& servo : w.servos) take_from_first(ranks, servo);
   for (Buffer<std::uint8_t>* flags : {&w.exposed.changed, &w.exposed.vertex}) {
     Message message;
     put_bytes(message, flags->data(), at(flags->size()));
@@ -484,6 +485,7 @@ void collect(World& part, World& whole) {
   moved.drift({whole.reach.drift.velocity.x, whole.reach.drift.velocity.y, 0.0}, part.time);
   moved.partition.move(moved.drifted);
   whole.domain.partition = moved.partition;
+  whole.servos = part.servos;
   copy_time(part, whole);
   derive_couples(whole);
 }

@@ -7,6 +7,7 @@
 #include "core/broad_phase.hpp"
 #include "core/drift.hpp"
 #include "core/energy.hpp"
+#include "core/stages.hpp"
 #include "core/step_clock.hpp"
 #include "core/travel.hpp"
 #include "domain/domain.hpp"
@@ -126,6 +127,8 @@ struct World {
   double next_dt = 0.0;  ///< the step to come  [s]
   std::int64_t step = 0;
   std::int64_t searches = 0;
+  std::vector<ServoState> servos;  ///< of supports; empty: the case has none
+  StageProgress stage;             ///< where it is among the stages of its case
 
   // What follows from the case.
   std::vector<std::string> groups;
@@ -137,6 +140,7 @@ struct World {
   Buffer<ContactPair> contact_pairs;
   Buffer<Hold> holds;
   std::vector<PrescribedMotion> prescribed;
+  std::vector<ServoMotion> servo_motions;
   std::vector<LoadLaw> loads;
   std::vector<LoadAmplitude> load_amplitudes;
   Buffer<Index> load_starts;
@@ -192,6 +196,10 @@ void move_to(World& w, Space space);
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
 /// fit
 World make_world(const Config& config, const Model& model, const Exec& exec);
+
+/// Lets the world go on by another stage of its case: gravity, damping, friction, supports, loads.
+/// The state stays as it is. @throws InputError if supports contradict each other
+void configure(World& w, const Config& config);
 
 /// Fills what follows from the state, after loading.
 void derive(World& w);

@@ -146,6 +146,7 @@ NumberTable table_of(const std::string& path, const Lines& all, bool measured) {
       throw InputError(fmt::format("{}:{}: {} fields, but the first line names {} columns", path,
                                    line.number, line.fields.size(), table.columns.size()));
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      if (table.columns[c].unit == "name") continue;
       const std::optional<double> value = number_in(line.fields[c], all.separator);
       if (!value)
         throw InputError(
@@ -153,6 +154,7 @@ NumberTable table_of(const std::string& path, const Lines& all, bool measured) {
       table.columns[c].values.push_back(*value);
     }
   }
+  std::erase_if(table.columns, [](const Column& c) { return c.unit == "name"; });
   return table;
 }
 

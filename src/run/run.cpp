@@ -51,10 +51,6 @@ class OutputTime {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-std::FILE* echo_of(const RunPlan& plan) {
-  return plan.speech == Speech::verbose ? stdout : nullptr;
-}
-
 }  // namespace
 
 void refuse_other_case(const CheckpointReader& checkpoint, const RunPlan& plan) {
@@ -87,14 +83,15 @@ Run::Run(Method& method, const RunPlan& plan, const ResultFolder* folder, const 
       folder_(folder),
       end_time_(plan.limits.time.value_or(plan.config.time.end)),
       end_steps_(plan.limits.steps.value_or(std::numeric_limits<std::int64_t>::max())),
-      recorder_(plan.config, plan.ranks),
+      recorder_(plan.config, method.stages(), plan.ranks),
       checkpoints_(plan.config.checkpoint),
+      stages_(method, plan.config.probes, plan.limits.stage, plan.ranks),
       progress_(stdout, plan.progress) {
   if (former != nullptr) go_on_from(*former);
   on_first(plan_.ranks, [&] {
     const std::string log = folder_->file("log.jsonl");
     if (former != nullptr) Log::cut_to(log, former->step);
-    log_.emplace(log, echo_of(plan_));
+    log_.emplace(log, plan_.speech == Speech::verbose ? stdout : nullptr);
     recorder_.open(*folder_, *log_);
     checkpoints_.open(folder_->file("checkpoints"));
   });
@@ -162,9 +159,12 @@ void Run::start() {
 
 /// Returns the signal that ended the loop, 0 if it got to its end.
 int Run::advance() {
+  if (!finished()) stages_.go_on();
   while (!finished()) {
     const double spent = take_steps();
     if (recorder_.due(method_.time(), method_.steps())) observe();
+    for (const std::string& text : stages_.look())
+      on_first(plan_.ranks, [&] { log_->write(Level::info, "stage", method_.steps(), text); });
     const Decision decision = decide(spent);
     steps_at_once_ = decision.steps_at_once;
     if (decision.signal != 0) return decision.signal;
@@ -200,7 +200,7 @@ StopAt Run::next_stop() const {
   StopAt stop{std::min(end_time_, recorder_.next()),
               std::min({end_steps_, look, checkpoints_.next_step(now), recorder_.next_step(now)})};
   if (plan_.ranks != nullptr) stop.step = std::min(stop.step, now + steps_at_once_);
-  return stop;
+  return stages_.limited(stop);
 }
 
 /// Returns the wall time that they took.  [s]
@@ -223,16 +223,6 @@ void Run::observe() {
   const OutputTime time(plan_.timers, output_);
   method_.verify();
   recorder_.record(method_, background_);
-}
-
-bool Run::finished() const {
-  return method_.time() >= end_time_ || method_.steps() >= end_steps_;
-}
-
-double Run::share() const {
-  const double by_time = end_time_ > 0.0 ? method_.time() / end_time_ : 1.0;
-  const double by_steps = static_cast<double>(method_.steps()) / static_cast<double>(end_steps_);
-  return std::clamp(std::max(by_time, by_steps), 0.0, 1.0);
 }
 
 CheckpointWriter Run::record_state() const {
@@ -326,7 +316,7 @@ int Run::done() {
   }
   Summary now = summary();
   if (!now.energy) now.energy = method_.energy();  // resumed at its end: no row was written
-  if (method_.time() >= plan_.config.time.end) recorder_.judge_end(method_, *now.energy);
+  if (is_whole_case()) recorder_.judge_end(method_, *now.energy);
   on_first(plan_.ranks, [&] { conclude(now); });
   return 0;
 }
@@ -339,7 +329,7 @@ void Run::conclude(Summary& now) {
     log_->warn("end", method_.steps(), doubt);
     now.warnings.push_back(doubt);
   }
-  const bool whole_case = method_.time() >= plan_.config.time.end;
+  const bool whole_case = is_whole_case();
   if (whole_case) now.checks = evaluate_checks(plan_.config.checks, now);
   const std::string table = now.checks.empty() ? "" : check_table(now.checks);
   if (!all_pass(now.checks)) {
@@ -454,6 +444,7 @@ Summary Run::measured() const {
   s.precision = plan_.config.precision;
   s.seed = plan_.config.seed;
   s.warnings = warnings_;
+  s.stages_of_case = stages_.records();
   s.machine = plan_.machine;
   s.steps = method_.steps();
   s.time = method_.time();

@@ -1,6 +1,7 @@
 #pragma once
 // The outer loop: step, observe, save, until the end or a signal.
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "run/results/result_folder.hpp"
 #include "run/results/step_times.hpp"
 #include "run/results/summary.hpp"
+#include "run/stage_control.hpp"
 
 namespace breccia {
 
@@ -27,6 +29,7 @@ struct Limits {
   std::optional<double> time;         ///< simulated time  [s]
   std::optional<std::int64_t> steps;  ///< since the start of the case
   std::optional<double> wall{};       ///< since the program began: then saved, to be resumed  [s]
+  std::string stage{};                ///< ends with this stage; empty: with the case
 };
 
 /// What a run is told besides its method.
@@ -93,8 +96,17 @@ class Run {
   double take_steps();
   Decision decide(double spent) const;
   void observe();
-  bool finished() const;
-  double share() const;
+  bool finished() const {
+    return method_.time() >= end_time_ || method_.steps() >= end_steps_ || stages_.finished();
+  }
+  bool is_whole_case() const {
+    return method_.time() >= plan_.config.time.end || stages_.all_over();
+  }
+  double share() const {
+    const double by_time = end_time_ > 0.0 ? method_.time() / end_time_ : 1.0;
+    const double by_steps = static_cast<double>(method_.steps()) / static_cast<double>(end_steps_);
+    return std::clamp(std::max(by_time, by_steps), 0.0, 1.0);
+  }
   void save_checkpoint();
   /// All of a checkpoint but the method's own.
   CheckpointWriter record_state() const;
@@ -125,6 +137,7 @@ class Run {
   Recorder recorder_;
   Checkpoints checkpoints_;
   StepTimes step_times_;
+  StageControl stages_;
   Progress progress_;
   std::int64_t steps_at_once_ = 1;
   double setup_ = 0.0, loop_ = 0.0, output_ = 0.0;  ///< wall time  [s]

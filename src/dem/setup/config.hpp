@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/case_config.hpp"
-#include "core/table_over_time.hpp"
+#include "dem/setup/drive_config.hpp"
 
 namespace breccia::dem {
 
@@ -365,55 +365,6 @@ struct ContactConfig {
   }
 };
 
-/// [[wall]]: a rigid half-space
-struct WallConfig {
-  std::string name;
-  Vec3 point{};                ///< on the face  [m]
-  Vec3 normal{0.0, 0.0, 1.0};  ///< out of the wall, towards the elements  [-]
-  OverTime<Vec3> velocity;     ///<  [m/s]
-  double stiffness = 1.0;      ///< over the contact stiffness of an element with its like  [-]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("name", name, "name of the wall");
-    key.required("name");
-    key("point", point, "m", any_number, "a point of the wall's face");
-    key("normal", normal, "-", any_number, "direction out of the wall, towards the elements");
-    key("velocity", velocity, "m/s", Range{-1e6, 1e6},
-        "velocity of the wall, or a table [[t, x, y, z], ...] of it over time");
-    key("stiffness", stiffness, "-", positive,
-        "stiffness of its linear contacts over that of two like elements");
-  }
-};
-
-/// [[support]]: prescribed motion of the elements in a region
-struct SupportConfig {
-  std::string name;
-  std::string on;  ///< group; empty: all
-  Vec3 min{-no_limit, -no_limit, -no_limit}, max{no_limit, no_limit, no_limit};  ///<  [m]
-  std::vector<std::string> fix{"x", "y", "z"};
-  OverTime<Vec3> velocity;  ///< of the fixed directions  [m/s]
-  double ramp = 0.0;        ///< time from rest to that velocity  [s]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("name", name, "name of the support");
-    key.required("name");
-    key("on", on, "body whose elements are held; empty: of all bodies");
-    key("min", min, "m", any_number, "lower corner of the region that holds the elements' centres");
-    key("max", max, "m", any_number, "upper corner of that region");
-    key("fix", fix,
-        "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
-        "that share elements prescribe other directions, or the same motion");
-    key("velocity", velocity, "m/s", Range{-1e6, 1e6},
-        "prescribed velocity of the fixed directions, or a table [[t, x, y, z], ...] of it over "
-        "time, linear in between and constant beyond its ends");
-    key("ramp", ramp, "s", not_negative,
-        "time in which that velocity grows from zero, linearly; 0: the elements have it from the "
-        "start");
-  }
-};
-
 /// [search]
 struct SearchConfig {
   double margin = 0.2;  ///< over the mean radius  [-]
@@ -439,6 +390,8 @@ struct Config : CaseConfig {
   ContactConfig contact;
   std::vector<WallConfig> walls;
   std::vector<SupportConfig> supports;
+  std::vector<StageConfig> stages;
+  double stage_friction = -1.0;  ///< no key: of contacts in this stage; below 0: as given  [-]
   SearchConfig search;
 
   template <class Visit>
@@ -453,6 +406,7 @@ struct Config : CaseConfig {
     key.table("contact", contact, "what happens where elements touch");
     key.list("wall", walls, "rigid planes");
     key.list("support", supports, "prescribed motion");
+    key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");
   }
 };

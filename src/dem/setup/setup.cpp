@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -11,6 +10,7 @@
 
 #include "core/world_space.hpp"
 #include "dem/setup/materials.hpp"
+#include "dem/setup/stages.hpp"
 #include "dem/setup/supports.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
@@ -258,14 +258,13 @@ void set_contacts(World& w, const Config& config, const Model& m) {
   }
   w.contact_pairs = filled(w, pairs);
   w.wall_pairs = filled(w, walls);
-  for (const WallConfig& wall : config.walls) {
+  for (std::size_t k = 0; k < config.walls.size(); ++k) {
+    const WallConfig& wall = config.walls[k];
     const double size = norm(wall.normal);
     if (!(size > 0.0)) throw InputError("wall " + wall.name + " has a normal of length 0");
     w.wall_names.push_back(wall.name);
-    std::array<ScaledAmplitude, 3> velocity;
-    for (int axis = 0; axis < 3; ++axis)
-      velocity[static_cast<std::size_t>(axis)] = scaled_amplitude(wall.velocity, axis, 0.0, 0.0);
-    const auto motion = static_cast<std::size_t>(w.prescribed.add(velocity));
+    w.wall_friction.push_back(wall.friction);
+    const std::size_t motion = add_motion(w, wall, k);
     w.walls.push_back({wall.point, (1.0 / size) * wall.normal, w.prescribed.velocity(motion, 0.0),
                        wall.stiffness, 0.0});
   }
@@ -339,7 +338,7 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   w.parameters.local_damping = config.local_damping;
   for (const MaterialConfig& m : config.materials)
     w.parameters.bars.push_back(m.law == "steel" ? 1 : 0);
-  const Prescribed held = prescribed(config, model);
+  const Prescribed held = prescribed(config, support_members(config, model), model.position.size());
   set_elements(w, model, held);
   w.each_set([&](auto& set) { set_links(set, config, model); });
   set_linked_pairs(w);

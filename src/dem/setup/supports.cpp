@@ -45,15 +45,15 @@ std::vector<Index> members_of(const SupportConfig& s, const Model& m) {
 /// Gives each direction of each element to the supports that prescribe it.
 class Holding {
  public:
-  explicit Holding(const Config& config, const Model& model)
-      : supports_(config.supports), owners_(model.position.size(), {-1, -1, -1}) {
-    all_.fixed.assign(model.position.size(), fixed_none);
+  Holding(const Config& config, std::vector<std::vector<Index>> members, std::size_t elements)
+      : supports_(config.supports), walls_(config.walls.size()), owners_(elements, {-1, -1, -1}) {
+    all_.fixed.assign(elements, fixed_none);
+    all_.members = std::move(members);
     for (std::size_t s = 0; s < supports_.size(); ++s) {
       const std::uint8_t bits = fixed_bits(supports_[s]);
-      all_.members.push_back(members_of(supports_[s], model));
-      if (all_.members.back().empty())
+      if (all_.members[s].empty())
         problems_.push_back("support " + supports_[s].name + " holds no element");
-      for (const Index e : all_.members.back()) hold(s, bits, static_cast<std::size_t>(e));
+      for (const Index e : all_.members[s]) hold(s, bits, static_cast<std::size_t>(e));
     }
     for (const auto& [clash, found] : clashes_) tell(clash, found);
     if (problems_.empty()) return;
@@ -68,14 +68,22 @@ class Holding {
     for (const Owners& owners : owners_) {
       Owners moving = owners;
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (moving[axis] >= 0 && speed(moving[axis], axis).is_zero()) moving[axis] = -1;
+        if (moving[axis] >= 0 && speed(moving[axis], axis).is_zero() &&
+            !is_servo(moving[axis], axis))
+          moving[axis] = -1;
       if (moving == Owners{-1, -1, -1}) {
         all_.motion.push_back(-1);
         continue;
       }
       const auto next = static_cast<std::int16_t>(all_.motions.motions.size());
       const auto [entry, is_new] = known.try_emplace(moving, next);
-      if (is_new) all_.motions.add(motion_of(moving));
+      if (is_new) {
+        all_.motions.add(motion_of(moving));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          if (moving[axis] >= 0 && is_servo(moving[axis], axis))
+            all_.motions.servos.push_back(
+                {walls_ + static_cast<std::size_t>(moving[axis]), next, static_cast<int>(axis)});
+      }
       all_.motion.push_back(entry->second);
     }
     return std::move(all_);
@@ -94,14 +102,22 @@ class Holding {
   };
 
   const SupportConfig& support(int s) const { return supports_[static_cast<std::size_t>(s)]; }
+  bool is_servo(int s, std::size_t axis) const {
+    const SupportServoConfig& servo = support(s).servo;
+    return servo.is_on() && servo.axis_number() == static_cast<int>(axis);
+  }
   ScaledAmplitude speed(int s, std::size_t axis) const {
-    return scaled_amplitude(support(s).velocity, static_cast<int>(axis), support(s).ramp, 0.0);
+    if (is_servo(s, axis)) return {};
+    return scaled_amplitude(support(s).velocity, static_cast<int>(axis), support(s).ramp,
+                            support(s).begin);
   }
   bool alike(int a, int b, std::size_t axis) const {
     const ScaledAmplitude of_a = speed(a, axis), of_b = speed(b, axis);
+    if (is_servo(a, axis) || is_servo(b, axis)) return a == b;
     return of_a == of_b || (of_a.is_zero() && of_b.is_zero());
   }
   std::string motion_text(int s, std::size_t axis) const {
+    if (is_servo(s, axis)) return "a servo";
     const ScaledAmplitude of = speed(s, axis);
     return fmt::format("{} m/s with a ramp of {} s",
                        of.amplitude.times.empty() ? fmt::format("{}", of.scale) : "a table of",
@@ -138,6 +154,7 @@ class Holding {
   }
 
   const std::vector<SupportConfig>& supports_;
+  std::size_t walls_;
   std::vector<Owners> owners_;  ///< of each element
   std::map<Clash, Found> clashes_;
   std::vector<std::string> problems_;
@@ -154,6 +171,8 @@ Vec3 chosen(int bits, const Vec3& given, const Vec3& own) {
 
 bool GivenMotions::moves(std::size_t motion) const {
   const Motion& m = motions[motion];
+  for (const ServoMotion& servo : servos)
+    if (static_cast<std::size_t>(servo.motion) == motion) return true;
   const auto any = [&](double scale, const AmplitudeTable& of) {
     if (scale == 0.0) return false;
     return of.first == of.end ||
@@ -180,8 +199,16 @@ Vec3 Prescribed::spin_at_start(std::size_t element, const Vec3& own) const {
   return chosen(fixed[element] >> 3, {}, own);
 }
 
-Prescribed prescribed(const Config& config, const Model& model) {
-  return Holding(config, model).prescribed();
+std::vector<std::vector<Index>> support_members(const Config& config, const Model& model) {
+  std::vector<std::vector<Index>> members;
+  for (const SupportConfig& support : config.supports)
+    members.push_back(members_of(support, model));
+  return members;
+}
+
+Prescribed prescribed(const Config& config, std::vector<std::vector<Index>> members,
+                      std::size_t elements) {
+  return Holding(config, std::move(members), elements).prescribed();
 }
 
 }  // namespace breccia::dem

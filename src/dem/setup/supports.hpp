@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/servo.hpp"
 #include "dem/element_kernels.hpp"
 #include "dem/setup/model.hpp"
 
@@ -15,6 +16,7 @@ struct Config;
 struct GivenMotions {
   std::vector<Motion> motions;
   AmplitudeTables tables;
+  std::vector<ServoMotion> servos;
 
   Vec3 velocity(std::size_t motion, double time) const {
     return motions[motion].at(time, tables.times_view(), tables.factors_view());
@@ -38,9 +40,15 @@ struct Prescribed {
   Vec3 spin_at_start(std::size_t element, const Vec3& own) const;
 };
 
+/// The elements in the region of each support at the start, ascending.
+std::vector<std::vector<Index>> support_members(const Config& config, const Model& model);
+
 /// Several supports may hold one element, if they prescribe different directions or the same
 /// motion.
+/// @param members   of each support
+/// @param elements  how many there are in the whole model
 /// @throws InputError naming supports that hold no element, or that contradict each other
-Prescribed prescribed(const Config& config, const Model& model);
+Prescribed prescribed(const Config& config, std::vector<std::vector<Index>> members,
+                      std::size_t elements);
 
 }  // namespace breccia::dem

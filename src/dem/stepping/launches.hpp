@@ -81,7 +81,10 @@ GatherWide<Number> gather_wide_kernel(World& w) {
 
 inline WallForces wall_kernel(World& w, Index wall) {
   WallContacts& c = w.wall_contacts;
-  return {w.parameters.contact,
+  ContactLaw law = w.parameters.contact;
+  const double own = w.wall_friction[static_cast<std::size_t>(wall)];
+  if (own >= 0.0) law.friction = own;
+  return {law,
           w.last_dt,
           walls_view(w),
           wall,

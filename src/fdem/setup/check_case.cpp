@@ -6,6 +6,7 @@
 
 #include "exec/error.hpp"
 #include "fdem/setup/materials.hpp"
+#include "fdem/setup/stages.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -117,6 +118,7 @@ std::vector<std::string> case_problems(const Config& config) {
       add("probe." + p.name + ".on = \"" + p.on + "\" is neither a body (" +
           names_of(config.bodies) + ") nor a support (" + names_of(config.supports) + ")");
   }
+  for (const std::string& problem : stage_problems(config)) add(problem);
   return problems;
 }
 

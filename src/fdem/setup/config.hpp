@@ -2,6 +2,8 @@
 // The case file of the FDEM: every key with its unit, range and meaning.
 
 #include "core/case_config.hpp"
+#include "core/servo.hpp"
+#include "core/stages.hpp"
 #include "core/table_over_time.hpp"
 #include "fdem/laws/joint_bond.hpp"
 #include "fdem/setup/body_config.hpp"
@@ -121,6 +123,7 @@ struct RegionConfig {
 struct HistoryConfig {
   double ramp = 0.0;                   ///<  [s]
   std::vector<double> times, factors;  ///<  [s], [-]
+  double begin = 0.0;                  ///< no key: where its time begins  [s]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -138,6 +141,7 @@ struct SupportConfig {
   std::vector<std::string> fix{"x", "y"};
   OverTime<Vec2> velocity;  ///<  [m/s]
   HistoryConfig history;
+  SupportServoConfig servo;  ///< instead of the velocity along its axis
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -149,6 +153,7 @@ struct SupportConfig {
         "prescribed velocity of these directions, or a table [[t, x, y], ...] of it over time, "
         "linear in between and constant beyond its ends");
     history.each_key(key);
+    key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
   }
 };
 
@@ -178,6 +183,67 @@ struct LoadConfig {
     key("force", force, "N/m", any_number,
         "force per unit thickness, of all edges together, or a table [[t, x, y], ...] of it");
     history.each_key(key);
+  }
+};
+
+/// [[stage.support]]: what a support prescribes from a stage on
+struct SupportChange {
+  std::string name;
+  std::vector<std::string> fix{"same"};
+  OverTime<Vec2> velocity;  ///<  [m/s]
+  double ramp = 0.0;        ///<  [s]
+  SupportServoConfig servo;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the support");
+    key.required("name");
+    key("fix", fix,
+        "directions that it prescribes from now on; [] sets its corners free; left out: the same "
+        "as before");
+    key("velocity", velocity, "m/s", any_number,
+        "their velocity from now on, or a table of it over time since the stage began; left out: "
+        "they stand still");
+    key("ramp", ramp, "s", not_negative,
+        "time since the stage began in which it grows from zero, linearly");
+    key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
+  }
+};
+
+/// [[stage.load]]: how large a load is from a stage on
+struct LoadChange {
+  std::string name;
+  OverTime<double> pressure;  ///<  [Pa]
+  OverTime<Vec2> traction;    ///<  [Pa]
+  OverTime<Vec2> force;       ///<  [N/m]
+  double ramp = 0.0;          ///<  [s]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the load");
+    key.required("name");
+    key("pressure", pressure, "Pa", any_number,
+        "pressure from now on, or a table of it over time since the stage began; left out: 0");
+    key("traction", traction, "Pa", any_number, "traction from now on, likewise");
+    key("force", force, "N/m", any_number, "force from now on, likewise");
+    key("ramp", ramp, "s", not_negative,
+        "time since the stage began in which it grows from zero, linearly");
+  }
+};
+
+/// [[stage]]
+struct StageConfig : StageEnd {
+  Vec2 gravity{no_limit, no_limit};  ///<  [m/s2]
+  std::vector<SupportChange> supports;
+  std::vector<LoadChange> loads;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    StageEnd::each_key(key);
+    key("gravity", gravity, "m/s2", any_number,
+        "acceleration of gravity from its beginning on; left out (inf): as before");
+    key.list("support", supports, "supports that prescribe something else from its beginning on");
+    key.list("load", loads, "loads that are another from its beginning on");
   }
 };
 
@@ -261,6 +327,8 @@ struct Config : CaseConfig {
   InSituConfig in_situ;
   std::vector<SupportConfig> supports;
   std::vector<LoadConfig> loads;
+  std::vector<StageConfig> stages;
+  double stage_friction = -1.0;  ///< no key: of contacts in this stage; below 0: as given  [-]
   SearchConfig search;
 
   template <class Visit>
@@ -280,6 +348,7 @@ struct Config : CaseConfig {
     key.table("in_situ", in_situ, "stress at the start");
     key.list("support", supports, "prescribed motion");
     key.list("load", loads, "forces on edges");
+    key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");
   }
 };

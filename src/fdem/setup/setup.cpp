@@ -199,8 +199,9 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
 /// The factor of a quantity along an axis: its own table, or the table of factors.
 template <class Value>
 Amplitude amplitude(const OverTime<Value>& quantity, int axis, const HistoryConfig& history) {
-  if (quantity.is_table()) return scaled_amplitude(quantity, axis, history.ramp, 0.0).amplitude;
-  return {history.ramp, 0.0, history.times, history.factors};
+  if (quantity.is_table())
+    return scaled_amplitude(quantity, axis, history.ramp, history.begin).amplitude;
+  return {history.ramp, history.begin, history.times, history.factors};
 }
 
 /// What amplitudes of a quantity are factors of.
@@ -230,10 +231,17 @@ void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Inde
 }
 
 /// Supports: each corner follows the sum of those that hold it, each in its own directions.
-void set_up_supports(World& w, const Config& config, const Model& model) {
+/// Returns the place in World::holds of each triangle of the whole mesh, -1: it is free.
+std::vector<Index> prescribe_supports(World& w, const Config& config) {
+  const std::size_t bodies = w.sets.size() - config.supports.size();
+  std::size_t corners = 0;
+  for (std::size_t b = 0; b < bodies; ++b) corners += w.sets[b].nodes.size();
   std::vector<Hold> holds;
-  std::vector<Index> hold(model.triangle.size(), -1);
-  for (const SupportConfig& support : config.supports) {
+  std::vector<Index> hold(corners / 3, -1);
+  w.prescribed.clear();
+  w.servo_motions.clear();
+  for (std::size_t s = 0; s < config.supports.size(); ++s) {
+    const SupportConfig& support = config.supports[s];
     const std::string where = "support." + support.name;
     int bits = 0;
     for (const std::string& direction : support.fix) {
@@ -242,13 +250,15 @@ void set_up_supports(World& w, const Config& config, const Model& model) {
     const Vec2 whole = scale_of(support.velocity);
     const Vec2 velocity{(bits & 1) != 0 ? whole.x : 0.0, (bits & 2) != 0 ? whole.y : 0.0};
     std::int16_t motion = -1;
-    if (velocity.x != 0.0 || velocity.y != 0.0) {
+    if (velocity.x != 0.0 || velocity.y != 0.0 || (support.servo.is_on() && bits != 0)) {
       motion = static_cast<std::int16_t>(w.prescribed.size());
+      if (support.servo.is_on())
+        w.servo_motions.push_back({s, motion, support.servo.axis_number()});
       w.prescribed.push_back({velocity, amplitude(support.velocity, 0, support.history),
                               amplitude(support.velocity, 1, support.history)});
     }
-    NodeSet set{support.name, corners_in(model, support.region, where)};
-    for (const Index n : set.nodes) {
+    if (bits == 0) continue;  // it lets go
+    for (const Index n : w.sets[bodies + s].nodes) {
       Index& own = hold[at(n / 3)];
       if (own < 0) {
         own = static_cast<Index>(holds.size());
@@ -265,12 +275,20 @@ void set_up_supports(World& w, const Config& config, const Model& model) {
       h.fixed = static_cast<std::uint8_t>(h.fixed | bits << (2 * corner));
       if (motion >= 0) h.motion[corner] = motion;
     }
-    w.sets.push_back(std::move(set));
   }
   copy_to(w.holds, holds);
-  copy_to(w.triangles.hold, hold);
-  start_held(w, holds, hold);
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
+  return hold;
+}
+
+void set_up_supports(World& w, const Config& config, const Model& model) {
+  for (const SupportConfig& support : config.supports)
+    w.sets.push_back({support.name, corners_in(model, support.region, "support." + support.name)});
+  const std::vector<Index> hold = prescribe_supports(w, config);
+  copy_to(w.triangles.hold, hold);
+  std::vector<Hold> holds;
+  copy_to(holds, w.holds);
+  start_held(w, holds, hold);
 }
 
 /// How a load changes over time, by the quantity that its kind asks for.
@@ -290,11 +308,11 @@ LoadKind kind_of(const LoadConfig& load) {
   return load.kind == "force" ? LoadKind::force : LoadKind::absorbing;
 }
 
-void set_up_loads(World& w, const Config& config, const Model& model) {
-  std::vector<LoadedEdge> loaded;
-  std::vector<EdgeDashpots> dashpots;
+/// How large loads are, and how that changes.
+void prescribe_loads(World& w, const Config& config) {
+  w.loads.clear();
+  w.load_amplitudes.clear();
   for (const LoadConfig& load : config.loads) {
-    const auto index = static_cast<std::int16_t>(w.loads.size());
     const LoadKind kind = kind_of(load);
     w.loads.push_back({kind,
                        {1.0, 1.0},
@@ -302,6 +320,16 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
                        scale_of(load.traction),
                        scale_of(load.force)});
     w.load_amplitudes.push_back(load_amplitude(load, kind));
+  }
+}
+
+void set_up_loads(World& w, const Config& config, const Model& model) {
+  std::vector<LoadedEdge> loaded;
+  std::vector<EdgeDashpots> dashpots;
+  prescribe_loads(w, config);
+  for (const LoadConfig& load : config.loads) {
+    const auto index = static_cast<std::int16_t>(&load - config.loads.data());
+    const LoadKind kind = w.loads[at(index)].kind;
     if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
     const std::size_t first = loaded.size();
     double length = 0.0;
@@ -316,7 +344,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
                         density * w.rocks[material].slow});
       length += own;
       if (kind == LoadKind::absorbing)
-        dashpots[t].at[k] += impedance_p * w.load_amplitudes.back().x.largest();
+        dashpots[t].at[k] += impedance_p * w.load_amplitudes[at(index)].x.largest();
     }
     for (std::size_t i = first; i < loaded.size(); ++i) loaded[i].share /= length;
   }
@@ -410,6 +438,25 @@ World make_world(const Config& given, const Model& model, const Exec& exec) {
   for (std::string& doubt : doubts(w, config)) w.warnings.push_back(std::move(doubt));
   begin_ledger(w);
   return w;
+}
+
+void configure(World& w, const Config& config) {
+  w.parameters.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+  w.parameters.local_damping = config.local_damping;
+  std::vector<ContactPair> pairs = contact_table(config);
+  const double friction = config.stage_friction;
+  if (friction >= 0.0)
+    for (ContactPair& pair : pairs) pair.friction = friction;
+  copy_to(w.contact_pairs, pairs);
+  const std::vector<Index> hold = prescribe_supports(w, config);
+  std::vector<Index> ids, own;
+  copy_to(ids, w.triangles.id);
+  for (const Index id : ids) own.push_back(hold[at(id)]);
+  copy_to(w.triangles.hold, own);
+  prescribe_loads(w, config);
+  w.amplitudes.clear();  // listed anew by the next launches
+  w.clock.clear();
+  w.graph.clear();
 }
 
 void derive(World& w) {

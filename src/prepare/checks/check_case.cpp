@@ -6,6 +6,7 @@
 #include <set>
 
 #include "dem/setup/materials.hpp"
+#include "dem/setup/stages.hpp"
 #include "fdem/setup/check_case.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
@@ -44,6 +45,11 @@ class Check {
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
     check_mass_scaling(config_, problems_);
+    for (const std::string& problem : stage_problems(config)) add(problem);
+    for (const StageConfig& stage : config_.stages)
+      for (const SupportChange& change : stage.supports)
+        if (change.fix != std::vector<std::string>{"same"})
+          check_fix("stage." + stage.name + ".support." + change.name, change.fix);
   }
   std::vector<std::string> problems_;
 
@@ -87,21 +93,25 @@ class Check {
   }
 
   void check(const SupportConfig& s) {
-    static const std::set<std::string> words{"x", "y", "z", "spin_x", "spin_y", "spin_z", "all"};
     if (prepare::item_named(config_.bodies, s.name) != nullptr)
       add(fmt::format("support.{0} and body.{0} have one name; a probe could not tell them apart",
                       s.name));
     if (!s.on.empty() && prepare::item_named(config_.bodies, s.on) == nullptr)
       add(fmt::format("support.{}.on = {:?} is not a body; there are: {}", s.name, s.on,
                       prepare::all_names(config_.bodies)));
-    for (const std::string& word : s.fix)
-      if (!words.contains(word))
-        add(fmt::format(
-            "support.{}.fix: {:?} is no degree of freedom; allowed are x, y, z, spin_x, spin_y, "
-            "spin_z, all",
-            s.name, word));
+    check_fix("support." + s.name, s.fix);
     if (!(s.min.x <= s.max.x && s.min.y <= s.max.y && s.min.z <= s.max.z))
       add("support." + s.name + ": min must not be above max");
+  }
+
+  void check_fix(const std::string& where, const std::vector<std::string>& fix) {
+    static const std::set<std::string> words{"x", "y", "z", "spin_x", "spin_y", "spin_z", "all"};
+    for (const std::string& word : fix)
+      if (!words.contains(word))
+        add(
+            fmt::format("{}.fix: {:?} is no degree of freedom; allowed are x, y, z, spin_x, "
+                        "spin_y, spin_z, all",
+                        where, word));
   }
 
   void check(const ProbeConfig& p) {

@@ -6,6 +6,8 @@
 #include "dem/energy.hpp"
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
+#include "dem/servos.hpp"
+#include "dem/setup/stages.hpp"
 #include "run/method/sim_method.hpp"
 
 namespace breccia {
@@ -19,8 +21,20 @@ std::size_t group_count(const dem::World& w) {
   return groups;
 }
 
+std::size_t servo_count(const dem::Config& config) {
+  bool any = false;
+  for (const dem::WallConfig& wall : config.walls) any |= wall.servo.is_on();
+  for (const dem::SupportConfig& support : config.supports) any |= support.servo.is_on();
+  for (const dem::StageConfig& stage : config.stages) {
+    for (const dem::WallChange& wall : stage.walls) any |= wall.servo.is_on();
+    for (const dem::SupportChange& support : stage.supports) any |= support.servo.is_on();
+  }
+  return any ? config.walls.size() + config.supports.size() : 0;
+}
+
 struct DemSim {
   using World = dem::World;
+  using Config = dem::Config;
   double interaction_range;
   std::vector<dem::Model::Bulk> bulk;  ///< of each body
 
@@ -29,6 +43,19 @@ struct DemSim {
 
   static World made(const dem::Config& config, const dem::Model& model, const Exec& exec) {
     return dem::make_world(config, model, exec);
+  }
+  /// How many states of servos a run of the case keeps.
+  static std::size_t servos_of(const Config& config) { return servo_count(config); }
+  /// Servos that a stage gives another task, by name.
+  static std::vector<std::size_t> changed_servos(const Config& config, std::size_t stage) {
+    std::vector<std::size_t> changed;
+    for (std::size_t k = 0; k < config.walls.size(); ++k)
+      for (const dem::WallChange& change : config.stages[stage].walls)
+        if (change.name == config.walls[k].name) changed.push_back(k);
+    for (std::size_t s = 0; s < config.supports.size(); ++s)
+      for (const dem::SupportChange& change : config.stages[stage].supports)
+        if (change.name == config.supports[s].name) changed.push_back(config.walls.size() + s);
+    return changed;
   }
   static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {
     return dem::balance(ledger, all, step);

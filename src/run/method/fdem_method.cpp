@@ -7,6 +7,8 @@
 #include "fdem/energy.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
+#include "fdem/servos.hpp"
+#include "fdem/setup/stages.hpp"
 #include "run/method/sim_method.hpp"
 
 namespace breccia {
@@ -27,8 +29,17 @@ struct Loose {
   }
 };
 
+std::size_t servo_count(const fdem::Config& config) {
+  bool any = false;
+  for (const fdem::SupportConfig& support : config.supports) any |= support.servo.is_on();
+  for (const fdem::StageConfig& stage : config.stages)
+    for (const fdem::SupportChange& support : stage.supports) any |= support.servo.is_on();
+  return any ? config.supports.size() : 0;
+}
+
 struct FdemSim {
   using World = fdem::World;
+  using Config = fdem::Config;
   /// Where a joint lay at the start.
   struct Line {
     Vec2 begin, end;  ///<  [m]
@@ -50,6 +61,20 @@ struct FdemSim {
     fdem::energies(w);
     for (const ProbeConfig& p : config.probes) fdem::probe(w, p);  // refuses what cannot be read
     return w;
+  }
+  /// How many states of servos a run of the case keeps.
+  static std::size_t servos_of(const Config& config) { return servo_count(config); }
+  /// Servos that a stage gives another task, by name.
+  static std::vector<std::size_t> changed_servos(const Config& config, std::size_t stage) {
+    std::vector<std::size_t> changed;
+    for (std::size_t s = 0; s < config.supports.size(); ++s)
+      for (const fdem::SupportChange& change : config.stages[stage].supports)
+        if (change.name == config.supports[s].name) changed.push_back(s);
+    return changed;
+  }
+  /// Corners that a stage sets free may need shorter steps than those it held.
+  static void begun(World& part) {
+    part.next_dt = std::min(part.next_dt, fdem::choose_time_step(part));
   }
   static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t) {
     return fdem::energies(ledger, all).balance;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/energy.hpp"
+#include "core/stages.hpp"
 #include "core/step_clock.hpp"
 #include "io/checkpoint.hpp"
 #include "run/frames/frame_output.hpp"
@@ -51,6 +52,13 @@ class Method {
   virtual std::vector<std::string> warnings() { return {}; }
   /// What rules the time step now, in a word; empty if the method does not tell.
   virtual std::string step_rule() { return {}; }
+
+  /// The stages of the case, in their order.
+  virtual std::vector<StageEnd> stages() const { return {}; }
+  virtual StageProgress stage() const { return {}; }
+  /// Notes where the run is among its stages. A stage that begins changes what it says; the state
+  /// stays, and no energy moves that is not booked. Every rank calls it alike.
+  virtual void set_stage(const StageProgress&) {}
 
   virtual EnergyBalance energy() = 0;
   /// Values of the case's probes, in their order.  [SI]

@@ -56,6 +56,13 @@ class SharedWorld {
   const World& part() const { return part_ ? *part_ : whole_; }
   /// All of it, where only what never changes is as it is now. Rank 0 only.
   const World& mesh() const { return whole_; }
+  /// Calls work(world) for all of it, and for a rank's part: for what the case says of both.
+  template <class Work>
+  void in_both(const Work& work) {
+    work(whole_);
+    if (part_) work(*part_);
+    stale_ = part_.has_value();
+  }
   /// The global ledger, without contributions that ranks have not reported yet. Rank 0
   /// only.
   auto& ledger() { return whole_.ledger; }

@@ -1,6 +1,7 @@
 #pragma once
 // One method for every kind of world: steps, looks, saves, alone or on ranks.
 
+#include <algorithm>
 #include <concepts>
 #include <memory>
 #include <string>
@@ -45,15 +46,24 @@ template <Simulation Sim>
 class SimMethod final : public Method {
  public:
   using World = typename Sim::World;
+  using Config = typename Sim::Config;
 
-  template <class Config, class Model>
+  template <class Model>
   SimMethod(const Config& config, const Model& model, const Exec& exec, Communicator* ranks)
-      : world_([&](const Exec& where) { return Sim::made(config, model, where); },
+      : world_([&](const Exec& where) { return made(config, model, where); },
                in_precision(exec, config.precision), ranks, config.domain),
         sim_(model, world_.mesh()),
-        probes_(config.probes) {}
+        probes_(config.probes),
+        case_(config),
+        now_(config_at(config, {})) {}
 
-  Advanced advance(const StopAt& stop) override { return world_.advance_to(stop); }
+  Advanced advance(const StopAt& stop) override {
+    if (world_.part().servos.empty()) return world_.advance_to(stop);
+    const std::int64_t next = (steps() / servo_every + 1) * servo_every;
+    const Advanced taken = world_.advance_to({stop.time, std::min(stop.step, next)});
+    if (taken.steps > 0 && steps() % servo_every == 0) correct_all_servos();
+    return taken;
+  }
   std::int64_t steps() const override { return world_.part().step; }
   double time() const override { return world_.part().time; }
   double time_step() const override {
@@ -68,20 +78,29 @@ class SimMethod final : public Method {
     return {};
   }
 
+  std::vector<StageEnd> stages() const override {
+    return {case_.stages.begin(), case_.stages.end()};
+  }
+  StageProgress stage() const override { return world_.part().stage; }
+  void set_stage(const StageProgress& now) override {
+    const bool begins = now.index != world_.part().stage.index;
+    world_.in_both([&](World& w) { w.stage = now; });
+    if (!begins) return;
+    now_ = config_at(case_, now);
+    change_gravity(now_);
+    world_.in_both([&](World& w) {
+      configure(w, now_);
+      if (w.servos.empty()) return;
+      for (const std::size_t k : Sim::changed_servos(case_, static_cast<std::size_t>(now.index)))
+        w.servos[k] = {};
+      place_servos(w);
+    });
+    if constexpr (requires(World & w) { Sim::begun(w); })
+      at_once(world_.ranks(), [&] { Sim::begun(world_.part()); });
+  }
+
   EnergyBalance energy() override {
-    World& w = world_.part();
-    Energies all = held(w);
-    if (!single_rank()) {
-      Message message;
-      put_value(message, all);
-      put_value(message, std::exchange(w.ledger, {}));  // rank 0 keeps what has been booked
-      all = {};
-      for (const Message& told : world_.told(std::move(message))) {
-        Unpacking from(told);
-        all = all + from.value<Energies>();
-        world_.ledger().add(from.value<Ledger>());
-      }
-    }
+    const Energies all = energies_of_all();
     if (!leads(world_.ranks())) return {};
     return Sim::balance(world_.ledger(), all, steps());
   }
@@ -165,18 +184,25 @@ class SimMethod final : public Method {
     world_.with_whole([&](World& w) { each_stored(w, Saving{writer}); });
   }
   void load(const CheckpointReader* reader) override {
+    if (!case_.stages.empty()) take_stage(reader);
     world_.renew([&](World& w) {
       const LoadCheck<World> check(w);
       each_stored(w, Loading{*reader});
       check.refuse_misfits(w);
       derive(w);
     });
+    if (!world_.part().servos.empty()) world_.in_both([](World& w) { place_servos(w); });
   }
 
  private:
   /// A copy whose steps are not booked.
   SimMethod(const SimMethod& other)
-      : Method(), world_(other.world_), sim_(other.sim_), probes_(other.probes_) {
+      : Method(),
+        world_(other.world_),
+        sim_(other.sim_),
+        probes_(other.probes_),
+        case_(other.case_),
+        now_(other.now_) {
     world_.forget_timers();
   }
 
@@ -210,8 +236,112 @@ class SimMethod final : public Method {
       from.fields(prefix, state);
     }
   };
+  template <class Model>
+  static World made(const Config& config, const Model& model, const Exec& where) {
+    World w = Sim::made(config_at(config, {}), model, where);
+    w.servos.resize(Sim::servos_of(config));
+    for (std::size_t k = 1; k < config.stages.size();
+         ++k) {  // whether each can be, before any runs
+      StageProgress later;
+      later.index = static_cast<std::int32_t>(k);
+      configure(w, config_at(config, later));
+    }
+    if (config.stages.size() > 1) configure(w, config_at(config, {}));
+    return w;
+  }
+
+  /// Of all ranks, with what they have booked, on rank 0.
+  Energies energies_of_all() {
+    World& w = world_.part();
+    Energies all = held(w);
+    if (single_rank()) return all;
+    Message message;
+    put_value(message, all);
+    put_value(message, std::exchange(w.ledger, {}));  // rank 0 keeps what has been booked
+    all = {};
+    for (const Message& told : world_.told(std::move(message))) {
+      Unpacking from(told);
+      all = all + from.value<Energies>();
+      world_.ledger().add(from.value<Ledger>());
+    }
+    return all;
+  }
+  /// Every rank finds the same velocities from what all of them push with.
+  void correct_all_servos() {
+    if (slows(now_)) share_by_rest();
+    std::vector<ServoReading> sums = read_servos(world_.part(), now_);
+    if (!single_rank())
+      at_once(world_.ranks(), [&] {
+        for (ServoReading& sum : sums) {
+          ServoReading all;
+          for (const ServoReading& own : from_each(*world_.ranks(), sum)) all = all + own;
+          sum = all;
+        }
+      });
+    correct_servos(world_.part(), now_, sums);
+  }
   template <class Visit>
-  static void each_stored(World& w, const Visit& visit) {
+  static void each_servo(const Config& now, const Visit& visit) {
+    std::size_t k = 0;
+    if constexpr (requires { now.walls; })
+      for (const auto& wall : now.walls) visit(wall.servo, k++);
+    for (const auto& support : now.supports) visit(support.servo, k++);
+  }
+  static bool slows(const Config& now) {
+    bool any = false;
+    each_servo(now, [&](const ServoConfig& servo, std::size_t) {
+      any |= servo.is_on() && servo.slow > 0.0;
+    });
+    return any;
+  }
+  /// Servos that are slowed learn from time to time how far from rest the model is.
+  void share_by_rest() {
+    constexpr std::int64_t every = 10 * servo_every;
+    if (steps() % every != 0) return;
+    const EnergyBalance e = energy();
+    double share = e.elastic > 0.0 ? e.kinetic / e.elastic : 0.0;
+    if (!single_rank()) at_once(world_.ranks(), [&] { take_from_first(*world_.ranks(), share); });
+    each_servo(now_, [&](const ServoConfig& servo, std::size_t k) {
+      if (servo.slow > 0.0)
+        world_.part().servos[k].share = share > servo.slow ? servo.slow / share : 1.0;
+    });
+  }
+  /// Work of gravity is the way along it: where gravity changes, the ledger counts it from here on.
+  void change_gravity(const Config& config) {
+    const auto gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+    const auto change = gravity - world_.part().parameters.gravity;
+    if (!(dot(change, change) > 0.0)) return;
+    const Energies before = energies_of_all();
+    world_.in_both([&](World& w) { w.parameters.gravity = gravity; });
+    const Energies after = energies_of_all();
+    if (!leads(world_.ranks())) return;
+    const auto missing = [this](const Energies& all) {
+      Ledger ledger = world_.ledger();
+      return Sim::balance(ledger, all, steps()).missing();
+    };
+    world_.ledger().start_potential.add(missing(before) - missing(after));
+  }
+  /// The stage that a checkpoint is in, on all ranks, and the case as it is then.
+  void take_stage(const CheckpointReader* reader) {
+    StageProgress now;
+    on_first(world_.ranks(), [&] {
+      now = reader->value<StageProgress>("stage");
+      if (now.index < 0 || static_cast<std::size_t>(now.index) >= case_.stages.size())
+        throw CheckpointError("the checkpoint's section stage leads to no stage of the case");
+    });
+    if (!single_rank()) at_once(world_.ranks(), [&] { take_from_first(*world_.ranks(), now); });
+    now_ = config_at(case_, now);
+    world_.in_both([&](World& w) {
+      w.stage = now;
+      configure(w, now_);
+    });
+  }
+
+  template <class Visit>
+  void each_stored(World& w, const Visit& visit) {
+    if (!case_.stages.empty()) visit("stage", w.stage);
+    for (std::size_t k = 0; k < w.servos.size(); ++k)
+      visit("servos." + std::to_string(k), w.servos[k]);
     visit("step", w.step);
     visit("time", w.time);
     visit("last_dt", w.last_dt);
@@ -226,6 +356,8 @@ class SimMethod final : public Method {
   SharedWorld<World> world_;
   Sim sim_;
   std::vector<ProbeConfig> probes_;
+  Config case_;
+  Config now_;  ///< as it is in the present stage
 };
 
 }  // namespace breccia

@@ -36,7 +36,8 @@ std::string per_metre(const std::string& unit) {
 
 }  // namespace
 
-History::History(const std::string& path, const std::vector<ProbeConfig>& probes, bool in_plane)
+History::History(const std::string& path, const std::vector<ProbeConfig>& probes, bool in_plane,
+                 bool stages)
     : file_(path) {
   if (!is_empty(path)) return;
   std::string names =
@@ -52,6 +53,10 @@ History::History(const std::string& path, const std::vector<ProbeConfig>& probes
     names.append(",").append(quoted(probe.name));
     add_unit(quantity_named(probe.quantity).unit);
   }
+  if (stages) {
+    names += ",stage";
+    units += ",name";
+  }
   file_.append(names);
   file_.append(units);
 }
@@ -64,6 +69,7 @@ void History::write(const Sample& sample) {
         e.damping, e.contact, e.work, e.error_relative})
     row += fmt::format(",{:.17g}", number);
   for (const double number : sample.probes) row += fmt::format(",{:.17g}", number);
+  if (!sample.stage.empty()) row.append(",").append(quoted(sample.stage));
   file_.append(row);
 }
 

@@ -18,6 +18,7 @@ struct Sample {
   double time_step = 0.0;  ///<  [s]
   EnergyBalance energy;    ///<  [J]
   std::vector<double> probes;
+  std::string stage;  ///< empty: the case has none
 };
 
 /// A CSV file: names in the first line, units in the second, then a row a sample. Numbers carry 17
@@ -26,7 +27,9 @@ class History {
  public:
   /// Opens the file to append; a new one gets its two head lines. Forces, momenta and energies of a
   /// case in the plane are those of each metre of its thickness: N/m, kg/s, J/m.
-  History(const std::string& path, const std::vector<ProbeConfig>& probes, bool in_plane = false);
+  /// @param stages  whether its last column names the stage of each row
+  History(const std::string& path, const std::vector<ProbeConfig>& probes, bool in_plane = false,
+          bool stages = false);
 
   /// Rows of later steps than `step` go, of this file or another one that begins so: a run that
   /// goes on from there writes them anew.

@@ -98,8 +98,10 @@ void RecordState::load(const CheckpointReader& reader) {
   }
 }
 
-Recorder::Recorder(const CaseConfig& config, Communicator* ranks)
+Recorder::Recorder(const CaseConfig& config, const std::vector<StageEnd>& stages,
+                   Communicator* ranks)
     : config_(config),
+      stages_(stages),
       ranks_(ranks),
       rows_(row_schedule(config)),
       frames_(frame_schedule(config)),
@@ -127,7 +129,7 @@ void Recorder::open(const ResultFolder& folder, Log& log) {
   pictures_ = folder.file("pictures");
   const std::string history = folder.file("history.csv");
   if (resumed_from_) History::cut_to(history, state_.row_step);
-  history_.emplace(history, config_.probes, config_.method == "fdem2d");
+  history_.emplace(history, config_.probes, config_.method == "fdem2d", !stages_.empty());
   if (config_.output.step_times) {
     const std::string steps = folder.file("steps.csv");
     if (resumed_from_) History::cut_to(steps, *resumed_from_);
@@ -215,7 +217,10 @@ void Recorder::write_row(Method& method) {
   const std::vector<double> probes = method.probes();
   last_energy_ = method.energy();
   on_first(ranks_, [&] {
-    history_->write({method.steps(), method.time(), method.time_step(), *last_energy_, probes});
+    const std::string stage =
+        stages_.empty() ? "" : stages_[static_cast<std::size_t>(method.stage().index)].name;
+    history_->write(
+        {method.steps(), method.time(), method.time_step(), *last_energy_, probes, stage});
     for (std::size_t i = 0; i < std::min(probes.size(), state_.probes.size()); ++i) {
       ProbeRange& range = state_.probes[i];
       range.last = probes[i];

@@ -57,7 +57,8 @@ struct RecordState {
 /// the run. Of several ranks each has one; that of rank 0 writes.
 class Recorder {
  public:
-  explicit Recorder(const CaseConfig& config, Communicator* ranks);
+  /// @param stages  of the case
+  Recorder(const CaseConfig& config, const std::vector<StageEnd>& stages, Communicator* ranks);
   /// Goes on with an older record, which had come to that state.
   /// @param time, step  then  [s], [-]
   void resume(const RecordState& state, double time, std::int64_t step);
@@ -101,6 +102,7 @@ class Recorder {
   bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
 
   CaseConfig config_;
+  std::vector<StageEnd> stages_;
   Communicator* ranks_;
   RecordState state_;
   std::string pictures_;

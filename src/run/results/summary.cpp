@@ -92,6 +92,11 @@ Json json_of(const Summary& s) {
   if (s.state_hash) json["state_hash"] = fmt::format("{:016x}", *s.state_hash);
   for (const ProbeRange& probe : s.probes)
     json["probe"][probe.name] = {{"last", probe.last}, {"min", probe.min}, {"max", probe.max}};
+  for (const StageRecord& stage : s.stages_of_case) {
+    Json one{{"name", stage.name}, {"begin", stage.begin}};
+    if (!stage.ended_by.empty()) one.update({{"end", stage.end}, {"ended_by", stage.ended_by}});
+    json["stage"].push_back(std::move(one));
+  }
   if (!s.checks.empty()) {
     json["checks"] = Json::array();
     for (const CheckResult& check : s.checks) json["checks"].push_back(check_json(check));

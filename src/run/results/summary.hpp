@@ -22,6 +22,13 @@ struct CheckResult {
   bool pass = false;
 };
 
+/// A stage that a run came to.
+struct StageRecord {
+  std::string name;
+  double begin = 0.0, end = 0.0;  ///<  [s]
+  std::string ended_by;           ///< time, rest, probe or drop; empty: it goes on
+};
+
 /// The newest, smallest and largest value of a probe over the rows of history.csv.
 struct ProbeRange {
   std::string name;
@@ -54,6 +61,7 @@ struct Summary {
   std::optional<std::uint64_t> state_hash;
   std::vector<ProbeRange> probes;
   std::vector<CheckResult> checks;
+  std::vector<StageRecord> stages_of_case;
 };
 
 /// The text of summary.json; its numbers read back to the same bits.

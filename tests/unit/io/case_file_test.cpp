@@ -135,9 +135,15 @@ struct AnyValues {
     for (double* part : {&value.x, &value.y, &value.z})
       if (random() % 4 != 0) *part = number(range);
   }
-  void operator()(const char*, OverTime<Vec3>& value, const char*, const Range& range,
+  template <class Value>
+  void operator()(const char*, OverTime<Value>& value, const char*, const Range& range,
                   const char*) {
-    const auto some = [&] { return Vec3{number(range), number(range), number(range)}; };
+    const auto some = [&] {
+      if constexpr (std::is_same_v<Value, double>)
+        return number(range);
+      else
+        return Vec3{number(range), number(range), number(range)};
+    };
     value.value = some();
     for (std::size_t k = random() % 3; k > 0; --k) {
       value.times.push_back(static_cast<double>(value.times.size()) + between(0.0, 0.9));

@@ -40,7 +40,7 @@ TEST(OverTime, one_value_or_a_table_with_units) {
       read<dem::Config>(dem_case + "[[0.0, 0.0, 0.0, 0.0], [\"2 ms\", 1, 2, \"3 mm/s\"]]\n");
   const OverTime<Vec3>& velocity = table.supports[0].velocity;
   ASSERT_EQ(velocity.times, (std::vector<double>{0.0, 2e-3}));
-  EXPECT_EQ(velocity.values[1], (Vec3{1.0, 2.0, 3e-3}));
+  EXPECT_EQ(norm(velocity.values[1] - Vec3{1.0, 2.0, 3e-3}), 0.0);
   const auto plane = read<fdem::Config>(R"([time]
 end = 1.0
 [[load]]
@@ -49,15 +49,15 @@ pressure = [[0, 0], ["10 us", "5 MPa"], ["1 ms", 0]]
 force = [[0, 1, 2], [1, 3, 4]]
 )");
   EXPECT_EQ(plane.loads[0].pressure.values, (std::vector<double>{0.0, 5e6, 0.0}));
-  EXPECT_EQ(plane.loads[0].force.values[1], (Vec2{3.0, 4.0}));
+  EXPECT_EQ(norm(plane.loads[0].force.values[1] - Vec2{3.0, 4.0}), 0.0);
 }
 
 TEST(OverTime, the_completed_case_gives_the_same_table) {
   const auto config =
       read<dem::Config>(dem_case + "[[0.0, 0.0, 0.0, 0.0], [\"2 ms\", 1, 2, \"3 mm/s\"]]\n");
   const auto again = read<dem::Config>(completed_case(config));
-  EXPECT_EQ(again.supports[0].velocity, config.supports[0].velocity);
-  EXPECT_EQ(again.walls[0].velocity, config.walls[0].velocity);
+  EXPECT_EQ(value_text(again.supports[0].velocity), value_text(config.supports[0].velocity));
+  EXPECT_FALSE(again.walls[0].velocity.is_table());
 }
 
 TEST(OverTime, wrong_tables_are_refused_by_line_and_key) {

@@ -1,0 +1,111 @@
+#pragma once
+// Servos: walls and supports that are moved so that they push with a given force.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/energy.hpp"
+#include "core/keys.hpp"
+#include "core/table_over_time.hpp"
+
+namespace breccia {
+
+/// Steps from one correction of a servo's velocity to the next.
+inline constexpr std::int64_t servo_every = 10;
+
+/// [wall.servo]
+struct ServoConfig {
+  OverTime<double> force;     ///< in the plane per thickness  [N]
+  OverTime<double> pressure;  ///<  [Pa]
+  double area = 0.0;          ///< in the plane a length  [m2]
+  double speed = 0.0;         ///< 0: there is no servo  [m/s]
+  double slow = 0.0;          ///< kinetic over elastic energy; 0: never  [-]
+  double gain = 1.0;          ///<  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("force", force, "N", any_number,
+        "force with which it pushes (in a plane case per metre of thickness), or a table [[t, F], "
+        "...] of it over time");
+    key("pressure", pressure, "Pa", any_number,
+        "pressure on `area`, added to the force, or a table [[t, p], ...] of it over time");
+    key("area", area, "m2", not_negative,
+        "area that the pressure acts on; in a plane case the number is a length");
+    key("speed", speed, "m/s", Range{0.0, 1e6}, "it never moves faster than this");
+    key.required("speed");
+    key("slow", slow, "-", Range{0.0, 1.0},
+        "while kinetic over elastic energy is above this, its greatest speed is less in the same "
+        "ratio; 0: never");
+    key("gain", gain, "-", Range{0.0, 2.0, Open::low},
+        "how fast it answers: 1 takes half of what is missing in the time between two corrections, "
+        "if nothing gives way but what it touches");
+  }
+  bool is_on() const { return speed > 0.0; }
+  /// Force that it is to push with.  [N]
+  double target(double time, double begin) const {
+    const auto now = [&](const OverTime<double>& of) {
+      const ScaledAmplitude a = scaled_amplitude(of, 0, 0.0, begin);
+      return a.scale * a.amplitude.at(time);
+    };
+    return now(force) + area * now(pressure);
+  }
+};
+
+/// [support.servo]
+struct SupportServoConfig : ServoConfig {
+  std::string axis = "x";
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    ServoConfig::each_key(key);
+    key("axis", axis, OneOf{"x", "y", "z"},
+        "along which it is moved and pushes; a positive force pushes towards greater coordinates");
+  }
+  int axis_number() const { return axis == "x" ? 0 : axis == "y" ? 1 : 2; }
+};
+
+/// What a servo finds: of a part, or added up over all parts.
+struct ServoReading {
+  ExactSum force;      ///< that it pushes with  [N]
+  ExactSum stiffness;  ///< of what it touches  [N/m]
+};
+BR_HD inline ServoReading operator+(ServoReading a, const ServoReading& b) {
+  a.force.add(b.force);
+  a.stiffness.add(b.stiffness);
+  return a;
+}
+
+/// A part of a run's state.
+struct ServoState {
+  double velocity = 0.0;  ///< in the direction in which it pushes  [m/s]
+  double steady = 0.0;    ///< the part of it that lasts once the force is right  [m/s]
+  double share = 1.0;     ///< of its greatest speed, by the kinetic energy  [-]
+
+  /// Corrects the velocity by what is missing and by its sum over time (proportional and integral
+  /// control, so that what gives way steadily meets the force without an error).
+  /// @param stiffness  of what it touches; 0: nothing  [N/m]
+  /// @param span       until the next correction  [s]
+  void correct(const ServoConfig& servo, double missing, double stiffness, double span) {
+    constexpr double first_share = 0.5, ratio = 1.0 / 50.0;
+    const double most = share * servo.speed;
+    if (!(stiffness > 0.0)) {
+      steady = 0.0;
+      velocity = missing > 0.0 ? most : missing < 0.0 ? -most : 0.0;
+      return;
+    }
+    const double gain = servo.gain * first_share / (stiffness * span);
+    if (gain * missing < most && gain * missing > -most)
+      steady = std::clamp(steady + ratio * gain * missing, -most, most);
+    velocity = std::clamp(gain * missing + steady, -most, most);
+  }
+};
+
+/// A motion, or one axis of it, that follows a servo.
+struct ServoMotion {
+  std::size_t servo;  ///< walls first, then supports
+  std::int16_t motion;
+  int axis;  ///< -1: along the wall's normal
+};
+
+}  // namespace breccia

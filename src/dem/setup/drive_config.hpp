@@ -1,0 +1,129 @@
+#pragma once
+// The case file of the DEM: what drives a model, walls, supports and stages.
+
+#include <string>
+#include <vector>
+
+#include "core/keys.hpp"
+#include "core/servo.hpp"
+#include "core/stages.hpp"
+#include "core/table_over_time.hpp"
+
+namespace breccia::dem {
+
+/// [[wall]]: a rigid half-space
+struct WallConfig {
+  std::string name;
+  Vec3 point{};                ///< on the face  [m]
+  Vec3 normal{0.0, 0.0, 1.0};  ///< out of the wall, towards the elements  [-]
+  OverTime<Vec3> velocity;     ///<  [m/s]
+  double stiffness = 1.0;      ///< over the contact stiffness of an element with its like  [-]
+  double friction = -1.0;      ///< of its contacts; below 0: that of contacts  [-]
+  ServoConfig servo{};         ///< instead of the velocity
+  double begin = 0.0;          ///< no key: where its time begins  [s]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the wall");
+    key.required("name");
+    key("point", point, "m", any_number, "a point of the wall's face");
+    key("normal", normal, "-", any_number, "direction out of the wall, towards the elements");
+    key("velocity", velocity, "m/s", Range{-1e6, 1e6},
+        "velocity of the wall, or a table [[t, x, y, z], ...] of it over time");
+    key("stiffness", stiffness, "-", positive,
+        "stiffness of its linear contacts over that of two like elements");
+    key("friction", friction, "-", Range{-1.0, no_limit},
+        "coefficient of friction of its contacts; below 0: that of all contacts");
+    key.table("servo", servo, "moves it along its normal so that it pushes with a given force");
+  }
+};
+
+/// [[support]]: prescribed motion of the elements in a region
+struct SupportConfig {
+  std::string name;
+  std::string on;  ///< group; empty: all
+  Vec3 min{-no_limit, -no_limit, -no_limit}, max{no_limit, no_limit, no_limit};  ///<  [m]
+  std::vector<std::string> fix{"x", "y", "z"};
+  OverTime<Vec3> velocity;     ///< of the fixed directions  [m/s]
+  double ramp = 0.0;           ///< time from rest to that velocity  [s]
+  SupportServoConfig servo{};  ///< instead of the velocity along its axis
+  double begin = 0.0;          ///< no key: where its time begins  [s]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the support");
+    key.required("name");
+    key("on", on, "body whose elements are held; empty: of all bodies");
+    key("min", min, "m", any_number, "lower corner of the region that holds the elements' centres");
+    key("max", max, "m", any_number, "upper corner of that region");
+    key("fix", fix,
+        "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
+        "that share elements prescribe other directions, or the same motion");
+    key("velocity", velocity, "m/s", Range{-1e6, 1e6},
+        "prescribed velocity of the fixed directions, or a table [[t, x, y, z], ...] of it over "
+        "time, linear in between and constant beyond its ends");
+    key("ramp", ramp, "s", not_negative,
+        "time in which that velocity grows from zero, linearly; 0: the elements have it from the "
+        "start");
+    key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
+  }
+};
+
+/// [[stage.support]]: what a support prescribes from a stage on
+struct SupportChange {
+  std::string name;
+  std::vector<std::string> fix{"same"};
+  OverTime<Vec3> velocity;  ///<  [m/s]
+  double ramp = 0.0;        ///<  [s]
+  SupportServoConfig servo;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the support");
+    key.required("name");
+    key("fix", fix,
+        "degrees of freedom that it prescribes from now on; [] sets its elements free; left out: "
+        "the same as before");
+    key("velocity", velocity, "m/s", Range{-1e6, 1e6},
+        "their velocity from now on, or a table of it over time since the stage began; left out: "
+        "they stand still");
+    key("ramp", ramp, "s", not_negative,
+        "time since the stage began in which it grows from zero, linearly");
+    key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
+  }
+};
+
+/// [[stage.wall]]: how a wall moves from a stage on
+struct WallChange {
+  std::string name;
+  OverTime<Vec3> velocity;  ///<  [m/s]
+  ServoConfig servo;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the wall");
+    key.required("name");
+    key("velocity", velocity, "m/s", Range{-1e6, 1e6},
+        "its velocity from now on, or a table of it over time since the stage began; left out: it "
+        "stands still");
+    key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
+  }
+};
+
+/// [[stage]]
+struct StageConfig : StageEnd {
+  Vec3 gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
+  std::vector<SupportChange> supports;
+  std::vector<WallChange> walls;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    StageEnd::each_key(key);
+    key("gravity", gravity, "m/s2", Range{-1e6, no_limit},
+        "acceleration of gravity from its beginning on; left out (inf): as before");
+    key.list("support", supports, "supports that prescribe something else from its beginning on");
+    key.list("wall", walls, "walls that move otherwise from its beginning on");
+  }
+};
+
+}  // namespace breccia::dem

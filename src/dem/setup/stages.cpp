@@ -1,0 +1,116 @@
+#include "dem/setup/stages.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/named.hpp"
+#include "dem/world.hpp"
+
+namespace breccia::dem {
+
+Config config_at(Config config, const StageProgress& progress) {
+  for (std::size_t k = 0; k < config.stages.size() && k <= static_cast<std::size_t>(progress.index);
+       ++k) {
+    const StageConfig& stage = config.stages[k];
+    const double begin = progress.begin[k];
+    if (stage.local_damping >= 0.0) config.local_damping = stage.local_damping;
+    if (stage.friction >= 0.0) config.stage_friction = stage.friction;
+    if (stage.gravity.x < no_limit) config.gravity = stage.gravity;
+    for (const SupportChange& change : stage.supports)
+      if (SupportConfig* const s = find_named(config.supports, change.name)) {
+        if (change.fix != std::vector<std::string>{"same"}) s->fix = change.fix;
+        s->velocity = change.velocity;
+        s->ramp = change.ramp;
+        s->servo = change.servo;
+        s->begin = begin;
+      }
+    for (const WallChange& change : stage.walls)
+      if (WallConfig* const wall = find_named(config.walls, change.name)) {
+        wall->velocity = change.velocity;
+        wall->servo = change.servo;
+        wall->begin = begin;
+      }
+  }
+  return config;
+}
+
+std::size_t add_motion(World& w, const WallConfig& wall, std::size_t k) {
+  std::array<ScaledAmplitude, 3> velocity;
+  for (int axis = 0; axis < 3 && !wall.servo.is_on(); ++axis)
+    velocity[static_cast<std::size_t>(axis)] =
+        scaled_amplitude(wall.velocity, axis, 0.0, wall.begin);
+  const std::int16_t motion = w.prescribed.add(velocity);
+  if (wall.servo.is_on()) w.prescribed.servos.push_back({k, motion, -1});
+  return static_cast<std::size_t>(motion);
+}
+
+std::vector<std::string> stage_problems(const Config& config) {
+  std::vector<std::string> problems = breccia::stage_problems(
+      {config.stages.begin(), config.stages.end()}, names_of(config.probes));
+  const std::vector<std::string> supports = names_of(config.supports);
+  const std::vector<std::string> walls = names_of(config.walls);
+  for (const StageConfig& stage : config.stages) {
+    const std::string where = "stage." + stage.name;
+    for (const SupportChange& change : stage.supports)
+      add_unknown(where + ".support.name", change.name, "support", supports, problems);
+    for (const WallChange& change : stage.walls)
+      add_unknown(where + ".wall.name", change.name, "wall", walls, problems);
+  }
+  const auto servo = [&](const std::string& where, const ServoConfig& s, const auto& velocity) {
+    if (!s.is_on()) return;
+    if (velocity.is_table() || norm(velocity.value) > 0.0)
+      problems.push_back(where + ": it has a velocity and a servo, which decides that");
+    if ((s.pressure.is_table() || s.pressure.value != 0.0) && !(s.area > 0.0))
+      problems.push_back(where + ".servo.area: the pressure needs an area to act on");
+  };
+  StageProgress progress;
+  for (std::size_t k = 0; k < std::max<std::size_t>(config.stages.size(), 1); ++k) {
+    progress.index = static_cast<std::int32_t>(k);
+    const Config now = config_at(config, progress);
+    const std::string stage = config.stages.empty() ? "" : "stage." + config.stages[k].name + ": ";
+    for (const WallConfig& wall : now.walls)
+      servo(stage + "wall." + wall.name, wall.servo, wall.velocity);
+    for (const SupportConfig& s : now.supports) {
+      servo(stage + "support." + s.name, s.servo, s.velocity);
+      if (s.servo.is_on() && std::find(s.fix.begin(), s.fix.end(), s.servo.axis) == s.fix.end() &&
+          std::find(s.fix.begin(), s.fix.end(), "all") == s.fix.end())
+        problems.push_back(stage + "support." + s.name + ".servo.axis = \"" + s.servo.axis +
+                           "\": it does not fix that direction");
+    }
+  }
+  std::sort(problems.begin(), problems.end());
+  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
+  return problems;
+}
+
+void configure(World& w, const Config& config) {
+  w.parameters.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+  w.parameters.local_damping = config.local_damping;
+  w.parameters.contact.friction =
+      config.stage_friction < 0.0 ? config.contact.friction : config.stage_friction;
+  const std::size_t bodies = w.sets.size() - config.supports.size();
+  std::size_t elements = 0;
+  for (std::size_t b = 0; b < bodies; ++b)
+    elements += static_cast<std::size_t>(w.sets[b].members.size());
+  std::vector<std::vector<Index>> members(config.supports.size());
+  for (std::size_t s = 0; s < members.size(); ++s) copy_to(members[s], w.sets[bodies + s].members);
+  Prescribed held = prescribed(config, std::move(members), elements);
+  std::vector<GlobalId> ids;
+  copy_to(ids, w.elements.id);
+  std::vector<std::uint8_t> fixed;
+  std::vector<std::int16_t> motion;
+  for (const GlobalId id : ids) {
+    fixed.push_back(held.fixed[static_cast<std::size_t>(id)]);
+    motion.push_back(held.motion[static_cast<std::size_t>(id)]);
+  }
+  copy_to(w.elements.fixed, fixed);
+  copy_to(w.elements.motion, motion);
+  w.prescribed = std::move(held.motions);
+  for (std::size_t k = 0; k < config.walls.size(); ++k) add_motion(w, config.walls[k], k);
+  place_motions(w);
+  // A wall that stood still has no contacts listed around it: the next step searches.
+  for (Wall& wall : w.walls) wall.travelled = 2.0 * w.parameters.largest_margin;
+  w.graph.clear();
+}
+
+}  // namespace breccia::dem

@@ -1,0 +1,22 @@
+#pragma once
+// A case as it is in one of its stages.
+
+#include <string>
+#include <vector>
+
+#include "dem/setup/config.hpp"
+
+namespace breccia::dem {
+
+struct World;
+
+/// The case with what its stages up to the present one have changed.
+Config config_at(Config config, const StageProgress& progress);
+
+/// Adds the motion of wall k to World::prescribed. Returns its number.
+std::size_t add_motion(World& w, const WallConfig& wall, std::size_t k);
+
+/// What is wrong with the stages of a case, as sentences.
+std::vector<std::string> stage_problems(const Config& config);
+
+}  // namespace breccia::dem

@@ -1,0 +1,180 @@
+// Servos: they reach and hold their force, what gives way is what closed answers say, and threads,
+// a device's schedule, ranks and a resumed run move them alike.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "dem/setup/stages.hpp"
+#include "domain/simulated_ranks.hpp"
+#include "physics/dem/scene.hpp"
+#include "physics/fdem/scene.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem_method.hpp"
+#include "run/stage_control.hpp"
+
+namespace breccia {
+namespace {
+
+ServoConfig pushing(const OverTime<double>& force, double speed) {
+  ServoConfig servo;
+  servo.force = force;
+  servo.speed = speed;
+  return servo;
+}
+
+constexpr int spheres = 6;
+constexpr double push = 2e3;  ///<  [N]
+
+/// A column of grains on a floor, under a wall that a servo moves.
+dem::testing::Scene column() {
+  dem::testing::Scene s;
+  s.material("g", "grain", 1e9, 0.2, 2500.0);
+  s.config.time = {.end = 1.0, .safety = 0.3};
+  s.config.local_damping = 0.4;
+  for (int i = 0; i < spheres; ++i) s.sphere({0.0, 0.0, 0.01 + 0.02 * i}, 0.01);
+  s.wall({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+  s.config.walls.back().name = "floor";
+  s.wall({0.0, 0.0, 0.02 * spheres + 1e-5}, {0.0, 0.0, -1.0});
+  s.config.walls.back().name = "top";
+  s.config.walls.back().servo = pushing(push, 0.5);
+  s.config.probes = {{"force", "top", "force_z", "mean"}, {"place", "top", "position_z", "mean"}};
+  return s;
+}
+
+/// A plate that a support presses along x with a table of pressures.
+fdem::testing::Scene plate() {
+  using fdem::testing::far;
+  fdem::testing::Scene s;
+  s.material(30e9, 0.2, 2500.0).damping = 0.5;
+  s.body("plate", prepare::crossed_rectangle({{0.0, 0.0}, {0.1, 0.04}}, 0.01));
+  s.support("left", {-far, -far}, {-0.0499, far}, {"x"});
+  fdem::SupportConfig& right = s.support("right", {0.0499, -far}, {far, far}, {"x"});
+  right.servo.pressure = -5e6;
+  right.servo.area = 0.04;
+  right.servo.speed = 0.5;
+  s.config.time.end = 1.0;
+  s.config.probes = {{"force", "right", "force_x", "sum"},
+                     {"place", "right", "position_x", "mean"}};
+  return s;
+}
+
+void run_to(Method& method, double end) {
+  while (method.time() < end) method.advance({end, 1'000'000'000});
+}
+
+TEST(Servo, wall_presses_a_column_as_far_as_its_springs_say) {
+  const dem::testing::Scene s = column();
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, 0.02);
+  const std::vector<double> probes = method->probes();
+  EXPECT_NEAR(probes[0], push, 1e-3 * push);
+  // Two contacts with walls and five between spheres, of whose stiffness World knows the constants.
+  const dem::World w = s.world();
+  const double between = w.contact_pairs.data()[0].normal * 0.01 / 2.0;
+  const double at_wall = w.wall_pairs.data()[0].normal * 0.01 / 2.0;
+  const double shorter = push * (2.0 / at_wall + (spheres - 1) / between);
+  EXPECT_NEAR(0.02 * spheres - probes[1], shorter, 2e-3 * shorter);
+  EXPECT_LT(method->energy().error_relative, 1e-2);
+}
+
+TEST(Servo, wall_follows_a_table_of_its_force) {
+  dem::testing::Scene s = column();
+  OverTime<double> up;
+  up.times = {0.0, 5e-3, 45e-3};
+  up.values = {0.5 * push, 0.5 * push, 1.5 * push};
+  s.config.walls.back().servo = pushing(up, 0.5);
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  for (double t = 20e-3; t < 45e-3; t += 5e-3) {
+    run_to(*method, t);
+    const double asked = push * (0.5 + (method->time() - 5e-3) / 40e-3);
+    EXPECT_NEAR(method->probes()[0], asked, 0.01 * asked) << t;
+  }
+}
+
+TEST(Servo, support_presses_a_plate_as_far_as_hooke_says) {
+  const fdem::testing::Scene s = plate();
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, 3e-3);
+  const std::vector<double> probes = method->probes();
+  EXPECT_NEAR(probes[0], 2e5, 1e-3 * 2e5);  // what the plate does to it
+  const double shorter = 5e6 * 0.1 / 30e9;
+  EXPECT_NEAR(0.05 - probes[1], shorter, 0.01 * shorter);
+  EXPECT_LT(method->energy().error_relative, 1e-2);
+}
+
+template <class Scene>
+void expect_alike(const Scene& s, double end) {
+  const auto host = make_method(s.config, s.model, {}, nullptr);
+  run_to(*host, 0.5 * end);
+  const std::string path =
+      std::filesystem::temp_directory_path() / ("servo_" + std::to_string(::getpid()) + ".br");
+  CheckpointWriter writer;
+  host->save(writer);
+  writer.write(path);
+  run_to(*host, end);
+  const std::uint64_t hash = host->state_hash();
+  const CheckpointReader reader(path);
+  const auto later = make_method(s.config, s.model, {}, nullptr);
+  later->load(&reader);
+  run_to(*later, end);
+  EXPECT_EQ(later->state_hash(), hash) << "resumed";
+  Exec shadow;
+  shadow.space = Space::shadow;
+  const auto launched = make_method(s.config, s.model, shadow, nullptr);
+  run_to(*launched, end);
+  EXPECT_EQ(launched->state_hash(), hash) << "by launches";
+  simulate_ranks(3, 5, [&](Communicator& ranks) {
+    const auto part = make_method(s.config, s.model, {}, &ranks);
+    run_to(*part, 0.2 * end);
+    part->load(ranks.rank() == 0 ? &reader : nullptr);
+    run_to(*part, end);
+    const std::uint64_t on_ranks = part->state_hash();
+    if (ranks.rank() != 0) return;
+    EXPECT_EQ(on_ranks, hash) << "resumed on ranks";
+  });
+  std::filesystem::remove(path);
+}
+
+TEST(Servo, of_walls_has_the_same_bits_everywhere) {
+  dem::testing::Scene s = column();
+  s.config.walls.back().servo.slow = 1e-3;
+  expect_alike(s, 2e-3);
+}
+TEST(Servo, of_supports_of_spheres_has_the_same_bits_everywhere) {
+  dem::testing::Scene s = column();
+  s.config.walls.pop_back();
+  dem::SupportConfig head;
+  head.name = "head";
+  head.min.z = 0.02 * (spheres - 1);
+  head.fix = {"all"};
+  static_cast<ServoConfig&>(head.servo) = pushing(-push, 0.5);
+  head.servo.axis = "z";
+  s.config.supports = {head};
+  s.config.probes.clear();
+  expect_alike(s, 2e-3);
+}
+TEST(Servo, of_supports_of_triangles_has_the_same_bits_everywhere) {
+  expect_alike(plate(), 2e-5);
+}
+
+TEST(Servo, that_cannot_act_is_a_problem) {
+  dem::testing::Scene s = column();
+  s.config.walls.back().velocity = {0.0, 0.0, -1.0};
+  s.config.walls.back().servo.pressure = 1e6;
+  dem::SupportConfig head;
+  head.name = "head";
+  head.fix = {"x"};
+  static_cast<ServoConfig&>(head.servo) = pushing(1.0, 1.0);
+  head.servo.axis = "z";
+  s.config.supports = {head};
+  std::string said;
+  for (const std::string& problem : dem::stage_problems(s.config)) said += problem + "\n";
+  EXPECT_NE(said.find("wall.top: it has a velocity and a servo"), std::string::npos) << said;
+  EXPECT_NE(said.find("wall.top.servo.area: the pressure needs an area"), std::string::npos);
+  EXPECT_NE(said.find("support.head.servo.axis = \"z\": it does not fix that direction"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace breccia

@@ -1,0 +1,122 @@
+// A case with stages as scripts see it: what its files tell, and runs that end or are killed in one
+// stage and go on.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/whole_file.hpp"
+#include "report/table.hpp"
+#include "unit/run/program.hpp"
+#include "unit/run/scratch_folder.hpp"
+
+namespace breccia {
+namespace {
+
+/// Two balls that a wall brings together, one held, then free.
+const std::string staged = R"(
+[time]
+end = "40 ms"
+safety = 0.2
+[output]
+frames = 0
+[material.rock]
+law = "grain"
+young = "1 GPa"
+[[body]]
+name = "low"
+shape = "element"
+material = "rock"
+center = [0.0, 0.0, 0.010]
+radius = "10 mm"
+[[body]]
+name = "high"
+shape = "element"
+material = "rock"
+center = [0.0, 0.0, 0.031]
+radius = "10 mm"
+[[wall]]
+name = "floor"
+[[support]]
+name = "held"
+on = "high"
+[[probe]]
+name = "place"
+on = "high"
+quantity = "position_z"
+[[stage]]
+name = "lower"
+[[stage.support]]
+name = "held"
+velocity = [0.0, 0.0, "-0.5 m/s"]
+)";
+const std::string ends =
+    "[[stage]]\nname = \"free\"\nuntil = \"4 ms\"\ngravity = [0.0, 0.0, -9.81]\n"
+    "[[stage.support]]\nname = \"held\"\nfix = []\n";
+std::string with_end(const std::string& rule) {
+  std::string text = staged;
+  const std::string name = "name = \"lower\"\n";
+  return text.insert(text.find(name) + name.size(), rule) + ends;
+}
+
+class StagedProgram : public ::testing::Test {
+ protected:
+  StagedProgram() { replace_file(path("case.toml"), with_end("when = \"place < 0.0295\"\n")); }
+  std::string path(const std::string& name) const { return folder_ / name; }
+  int run(const std::string& arguments) const {
+    return wait_for(start_program(arguments + " --threads 1", path("output.txt")));
+  }
+  std::string output() const { return read_whole_file(path("output.txt")); }
+  nlohmann::json summary(const std::string& out) const {
+    return nlohmann::json::parse(read_whole_file(path(out + "/summary.json")));
+  }
+  ScratchFolder folder_;
+};
+
+TEST_F(StagedProgram, TellsItsStagesAndEndsWithTheLast) {
+  ASSERT_EQ(run("run " + path("case.toml") + " -o " + path("out")), 0) << output();
+  const nlohmann::json s = summary("out");
+  ASSERT_EQ(s["stage"].size(), 2U);
+  EXPECT_EQ(s["stage"][0]["name"], "lower");
+  EXPECT_EQ(s["stage"][0]["ended_by"], "probe");
+  EXPECT_NEAR(s["stage"][0]["end"], 3e-3, 2e-3);
+  EXPECT_EQ(s["stage"][1]["ended_by"], "time");
+  EXPECT_NEAR(s["time"], s["stage"][1]["begin"].get<double>() + 4e-3, 1e-4);
+  const std::string history = read_whole_file(path("out/history.csv"));
+  EXPECT_NE(history.find(",place,stage\n"), std::string::npos);
+  EXPECT_NE(history.find(",lower\n"), std::string::npos);
+  EXPECT_NE(history.find(",free\n"), std::string::npos);
+  EXPECT_EQ(report::read_table(path("out/history.csv")).column("stage"), nullptr);
+  EXPECT_NE(report::read_table(path("out/history.csv")).column("place"), nullptr);
+}
+
+TEST_F(StagedProgram, GoesOnFromAnyStageToTheSameEnd) {
+  ASSERT_EQ(run("run " + path("case.toml") + " -o " + path("whole")), 0) << output();
+  const nlohmann::json whole = summary("whole");
+  ASSERT_EQ(run("run " + path("case.toml") + " --stage lower -o " + path("first")), 0) << output();
+  EXPECT_EQ(summary("first")["stage"].size(), 1U);
+  EXPECT_NE(summary("first")["state_hash"], whole["state_hash"]);
+  ASSERT_EQ(run("resume " + path("first")), 0) << output();
+  EXPECT_EQ(summary("first")["state_hash"], whole["state_hash"]);
+  EXPECT_EQ(summary("first")["stage"], whole["stage"]);
+  EXPECT_EQ(read_whole_file(path("first/history.csv")), read_whole_file(path("whole/history.csv")));
+  const auto steps = whole["steps"].get<std::int64_t>();
+  ASSERT_EQ(run("run " + path("case.toml") + " --steps " + std::to_string(steps - 30) + " -o " +
+                path("cut")),
+            0)
+      << output();
+  EXPECT_EQ(summary("cut")["stage"].size(), 2U);
+  ASSERT_EQ(run("resume " + path("cut")), 0) << output();
+  EXPECT_EQ(summary("cut")["state_hash"], whole["state_hash"]);
+}
+
+TEST_F(StagedProgram, RefusesStagesThatCannotBe) {
+  EXPECT_EQ(run("run " + path("case.toml") + " --stage fall -o " + path("out")), 2) << output();
+  EXPECT_NE(output().find("there are: lower, free"), std::string::npos) << output();
+  replace_file(path("endless.toml"), with_end(""));
+  EXPECT_EQ(run("check " + path("endless.toml")), 2);
+  EXPECT_NE(output().find("stage.lower never ends"), std::string::npos) << output();
+}
+
+}  // namespace
+}  // namespace breccia
