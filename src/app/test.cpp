@@ -10,35 +10,18 @@
 #include "run/case.hpp"
 #include "app/commands.hpp"
 #include "app/side_by_side_options.hpp"
+#include "app/targets.hpp"
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
-#include "io/case/material_library.hpp"
-#include "io/case/units.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
 #include "laboratory/passport.hpp"
-#include "laboratory/run_result.hpp"
+#include "laboratory/specimen_runs.hpp"
 #include "run/results/result_folder.hpp"
 
 namespace breccia::app {
 namespace {
 
 namespace lab = laboratory;
-
-/// "tension=2.9 MPa".
-MaterialTarget target_from(const std::string& text) {
-  const std::size_t equals = std::min(text.find('='), text.size());
-  MaterialTarget target{text.substr(0, equals), 0.0, target_unit(text.substr(0, equals))};
-  if (target.unit.empty() || equals == text.size())
-    throw InputError(fmt::format(
-        "--target {}: it is not NAME=VALUE with young, poisson, compression, tension, brazilian "
-        "or fracture_energy; nothing was run",
-        text));
-  std::string problem;
-  target.value = parse_quantity(text.substr(equals + 1), target.unit, problem);
-  if (!problem.empty()) throw InputError("--target " + text + ": " + problem + "; nothing was run");
-  return target;
-}
 
 struct TestCommand {
   std::string path, material, folder;
@@ -53,54 +36,23 @@ struct TestCommand {
       throw InputError(path + ": only materials of method dem3d are tested; nothing was run");
     lab::Sample sample = lab::sample_of(*config, material);
     sample.elements = elements;
-    const std::vector<MaterialTarget> wanted = all_targets(sample.material.use);
+    const std::vector<MaterialTarget> wanted = all_targets(targets, sample.material.use);
     const std::string out = folder.empty() ? "out/" + read.name + "_" + material + "_test" : folder;
-    std::vector<lab::TestResults> results;
-    std::vector<lab::PlannedRun> runs;
-    double bytes = 0.0;
-    make_folder(out + "/cases");
-    for (const lab::SpecimenTest& test : chosen()) {
-      results.push_back({test, {}, {}});
-      for (int seed = 1; seed <= seeds; ++seed) {
-        lab::PlannedRun run;
-        run.name = fmt::format("{} {}", test.name, seed);
-        run.case_path = fmt::format("{}/cases/{}-{}.toml", out, test.name, seed);
-        replace_file(run.case_path,
-                     completed_case(lab::case_of(test, sample, seed, out + "/cases")));
-        const Case specimen = load_case(run.case_path, {});
-        run.digest = specimen.digest;
-        run.folder = fmt::format("{}/runs/{}-{}", out, test.name, seed);
-        bytes = std::max(bytes, run_bytes(specimen));
-        runs.push_back(run);
-      }
-    }
-    const lab::Workers workers = options.workers(runs.size(), bytes);
-    fmt::print("{}: {} specimens, {} at a time\n", harmless(material), runs.size(), workers.jobs);
-    const auto ended = lab::run_side_by_side(runs, workers, tell_of(runs));
     int exit_code = 0;
-    for (std::size_t k = 0; k < runs.size(); ++k) {
-      lab::TestResults& result = results[k / static_cast<std::size_t>(seeds)];
-      if (ended[k].complete()) {
-        result.specimens.push_back(lab::specimen_result(result.test, runs[k].folder));
-        write_curve(result.specimens.back().curve, out, runs[k].name);
-      } else {
-        result.failures.push_back(ended[k].message);
-        if (exit_code == 0) exit_code = std::abs(ended[k].exit_code);
-      }
-    }
+    const auto results = lab::run_specimens(chosen(), sample, bench(out), exit_code);
+    for (const lab::TestResults& result : results)
+      for (std::size_t k = 0; k < result.specimens.size(); ++k)
+        write_curve(result.specimens[k].curve, out, fmt::format("{}-{}", result.test.name, k + 1));
     const auto lines = lab::passport_lines(results, wanted);
     replace_file(out + "/passport.md", lab::passport_page(material, sample, results, lines));
     replace_file(out + "/passport.svg", svg_of(lab::passport_plots(results), 2));
     return tell(lines, out, exit_code);
   }
 
-  /// Those of the named material that it uses, and those of the command line in their place.
-  std::vector<MaterialTarget> all_targets(const std::string& use) const {
-    std::vector<MaterialTarget> all;
-    for (const std::string& text : targets) all.push_back(target_from(text));
-    if (const NamedMaterial* const named = use.empty() ? nullptr : named_material(use))
-      all.insert(all.end(), named->targets.begin(), named->targets.end());
-    return all;
+  lab::Bench bench(const std::string& out) const {
+    return {out, 1, seeds,
+            [this](std::size_t runs, double bytes) { return options.workers(runs, bytes); },
+            tell_of};
   }
 
   std::vector<lab::SpecimenTest> chosen() const {
@@ -118,12 +70,11 @@ struct TestCommand {
 
   static void write_curve(const lab::LoadCurve& curve, const std::string& out,
                           const std::string& name) {
-    std::string text = curve.x_name + "," + curve.y_name + "\n", file = name;
-    std::replace(file.begin(), file.end(), ' ', '-');
+    std::string text = curve.x_name + "," + curve.y_name + "\n";
     for (std::size_t k = 0; k < curve.x.size(); ++k)
       text += fmt::format("{},{}\n", curve.x[k], curve.y[k]);
     make_folder(out + "/curves");
-    replace_file(out + "/curves/" + file + ".csv", text);
+    replace_file(out + "/curves/" + name + ".csv", text);
   }
 
   static int tell(const std::vector<lab::PassportLine>& lines, const std::string& out,

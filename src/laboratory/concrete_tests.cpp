@@ -129,7 +129,7 @@ void write_notched(const std::string& path, const Sample& sample, const Vec3& si
 
 void load_beam(dem::Config& c, const Sample& sample, const Vec3& size, double radius, double speed,
                const std::string& folder) {
-  const std::string file = fmt::format("beam-{}.csv", c.seed);
+  const std::string file = fmt::format("beam-{}-{}.csv", sample.elements, c.seed);
   write_notched(folder + "/" + file, sample, size, radius, c.seed);
   dem::BodyConfig& body = c.bodies[0];
   body.shape = "file";

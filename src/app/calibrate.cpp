@@ -1,0 +1,113 @@
+// breccia calibrate CASE --material NAME: local numbers of a material from macroscopic targets.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/case.hpp"
+#include "app/commands.hpp"
+#include "app/side_by_side_options.hpp"
+#include "app/targets.hpp"
+#include "exec/error.hpp"
+#include "io/harmless.hpp"
+#include "io/whole_file.hpp"
+#include "laboratory/calibration.hpp"
+#include "laboratory/specimen_runs.hpp"
+#include "run/machine/machine.hpp"
+
+namespace breccia::app {
+namespace {
+
+namespace lab = laboratory;
+
+struct CalibrateCommand {
+  std::string path, material, folder;
+  std::vector<std::string> overrides, targets;
+  int seeds = 2, elements = 1200, steps = 8;
+  SideBySideOptions options;
+
+  int execute() const {
+    const Case read = load_case(path, overrides);
+    const auto* const config = std::get_if<dem::Config>(&read.config);
+    if (config == nullptr)
+      throw InputError(path + ": only materials of method dem3d are calibrated; nothing was run");
+    lab::Sample sample = lab::sample_of(*config, material);
+    sample.elements = elements;
+    lab::Calibration calibration(sample.material, all_targets(targets, sample.material.use));
+    const std::string out =
+        folder.empty() ? "out/" + read.name + "_" + material + "_calibration" : folder;
+    const std::string circumstances = fmt::format(
+        "Calibrated by breccia {} on {} packings of {} elements in the prism, compactness {}, "
+        "size ratio {}, interaction range {}.",
+        this_build().version, seeds, elements, sample.compactness, sample.size_ratio, sample.range);
+    const lab::Bench bench{
+        out, 1, seeds,
+        [this](std::size_t runs, double bytes) { return options.workers(runs, bytes); }, tell_of};
+    int exit_code = 0;
+    for (int step = 1; step <= steps && !calibration.converged() && exit_code == 0; ++step) {
+      sample.material = calibration.material();
+      const auto results = lab::run_specimens(calibration.tests(), sample, bench, exit_code);
+      if (exit_code > 128) return exit_code;  // ended by a signal: what was computed is kept
+      calibration.take(results);
+      fmt::print("step {}: {}\n", step, calibration.progress());
+      std::fflush(stdout);
+      replace_file(out + "/calibration.md", calibration.page(material, circumstances));
+      replace_file(out + "/calibration.svg", svg_of({calibration.plot()}));
+      replace_file(out + "/material.toml", calibration.block(circumstances));
+    }
+    fmt::print("{}  material {}/material.toml  steps {}/calibration.md\n",
+               calibration.converged() ? "every target is met" : "not every target is met",
+               harmless(out), harmless(out));
+    constexpr int check_failed = 9;
+    return exit_code != 0 ? exit_code : calibration.converged() ? 0 : check_failed;
+  }
+};
+
+}  // namespace
+
+void add_calibrate(CLI::App& program, int& exit_code) {
+  const auto calibrate = std::make_shared<CalibrateCommand>();
+  CLI::App* const command =
+      program.add_subcommand("calibrate", "find local numbers of a material from macroscopic ones");
+  command->add_option("CASE", calibrate->path, "a case of method dem3d")->required();
+  command->add_option("--material", calibrate->material, "a material of it: where to begin")
+      ->type_name("NAME")
+      ->required();
+  const auto each = [&](const char* name, std::vector<std::string>& values, const char* help,
+                        const char* type) {
+    command->add_option(name, values, help)
+        ->type_name(type)
+        ->take_all()
+        ->expected(1)
+        ->allow_extra_args(false);
+  };
+  each("--target", calibrate->targets, "a number it must show; may be repeated", "NAME=VALUE");
+  const auto count = [&](const char* name, int& value, const char* help) {
+    command->add_option(name, value, help)->type_name("N")->check([](const std::string& text) {
+      return count_problem(text);
+    });
+  };
+  count("--seeds", calibrate->seeds, "packings of each specimen; default: 2");
+  count("--elements", calibrate->elements, "elements of the prism; default: 1200");
+  count("--steps", calibrate->steps, "steps at most; default: 8");
+  each("--set", calibrate->overrides, "override a key of the case", "KEY=VALUE");
+  command->add_option("-o,--out", calibrate->folder, "default: out/<case>_<material>_calibration")
+      ->type_name("DIR");
+  add_side_by_side_options(*command, calibrate->options);
+  command->footer(
+      "Each target is followed by one key: young, poisson, tension by tensile_strength,\n"
+      "compression by cohesion, fracture_energy; others stay as they are. A material\n"
+      "with the key use has the targets of its name; --target takes their place.\n"
+      "\n"
+      "A step makes the specimens that show the targets ('breccia test'), then every\n"
+      "key follows its target by a secant. It ends when all means are within 3 % (E),\n"
+      "5 % (strengths), 10 % (nu, fracture energy), else with exit code 9.\n"
+      "\n"
+      "DIR/material.toml is the material with its record, calibration.md and .svg the\n"
+      "steps. Called again, the command takes what was computed from DIR/runs.");
+  command->callback([calibrate, &exit_code] { exit_code = calibrate->execute(); });
+}
+
+}  // namespace breccia::app

@@ -1,0 +1,38 @@
+#include "app/targets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exec/error.hpp"
+#include "io/case/units.hpp"
+
+namespace breccia::app {
+namespace {
+
+MaterialTarget target_from(const std::string& text) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  MaterialTarget target{text.substr(0, equals), 0.0, target_unit(text.substr(0, equals))};
+  if (target.unit.empty() || equals == text.size())
+    throw InputError(fmt::format(
+        "--target {}: it is not NAME=VALUE with young, poisson, compression, tension, brazilian "
+        "or fracture_energy; nothing was run",
+        text));
+  std::string problem;
+  target.value = parse_quantity(text.substr(equals + 1), target.unit, problem);
+  if (!problem.empty()) throw InputError("--target " + text + ": " + problem + "; nothing was run");
+  return target;
+}
+
+}  // namespace
+
+std::vector<MaterialTarget> all_targets(const std::vector<std::string>& texts,
+                                        const std::string& use) {
+  std::vector<MaterialTarget> all;
+  for (const std::string& text : texts) all.push_back(target_from(text));
+  if (const NamedMaterial* const named = use.empty() ? nullptr : named_material(use))
+    all.insert(all.end(), named->targets.begin(), named->targets.end());
+  return all;
+}
+
+}  // namespace breccia::app
