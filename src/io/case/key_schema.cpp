@@ -32,6 +32,12 @@ Json array_of(const Json& items, std::size_t count) {
 }
 
 Json type_of(const KeyInfo& key) {
+  if (const std::size_t at = key.type.find(" or table"); at != std::string::npos) {
+    KeyInfo one = key;
+    one.type = key.type.substr(0, at);
+    const Json row{{"type", "array"}, {"minItems", 2}};  // a time and a value
+    return {{"anyOf", Json::array({type_of(one), array_of(row, 0)})}};
+  }
   if (key.type == "number") return number(key);
   if (key.type == "integer") {
     Json json{{"type", "integer"}};
