@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/case.hpp"
+#include "run/case.hpp"
 #include "app/commands.hpp"
 #include "app/side_by_side_options.hpp"
 #include "app/targets.hpp"
