@@ -150,6 +150,11 @@ struct AnyValues {
       value.values.push_back(some());
     }
   }
+  void operator()(const char*, std::vector<double>& value, const char*, const Range& range,
+                  const char*) {
+    value.resize(random() % 4);
+    for (double& one : value) one = number(range);
+  }
   void operator()(const char*, std::vector<Vec3>& value, const char*, const Range& range,
                   const char*) {
     value.resize(1 + random() % 4);

@@ -117,7 +117,7 @@ TEST(Linking, LinksAreUniqueOrderedAndBetweenTheRightElements) {
   Config config = small_slab();
   config.bodies.push_back(sphere_body("rock", {0.0, 0.0, 0.09}, 0.039, 60, 0.5));
   const Model m = build_model(config, ".");
-  int of_kind[3] = {};
+  int of_kind[link_kinds] = {};
   for (std::size_t k = 0; k < m.links.size(); ++k) {
     const Model::Link& link = m.links[k];
     ASSERT_LT(link.a, link.b);
@@ -140,7 +140,8 @@ TEST(Linking, LinksAreUniqueOrderedAndBetweenTheRightElements) {
         EXPECT_EQ(link.material, 1);
         break;
       case LinkKind::parallel:
-        ADD_FAILURE() << "no body of the case has parallel bonds";
+      case LinkKind::ldpm:
+        ADD_FAILURE() << "no body of the case has parallel bonds or facets";
         break;
       case LinkKind::interface:
         EXPECT_EQ(groups, (std::set<int>{0, 1}));
