@@ -57,7 +57,9 @@ struct BenchCommand {
   void execute(Communicator* ranks) const {
     refuse_unknown(ranks);
     Exec exec;
-    collective_try(ranks, [&] { exec = in_precision(exec_on(options.device, options.threads, ranks), precision); });
+    collective_try(ranks, [&] {
+      exec = in_precision(exec_on(options.device, options.threads, ranks), precision);
+    });
     if (paced) {
       pace_slab(std::cin, std::cout, exec);
       return;

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "run/case.hpp"
 #include "app/commands.hpp"
 #include "app/side_by_side_options.hpp"
 #include "app/targets.hpp"
@@ -15,6 +14,7 @@
 #include "io/whole_file.hpp"
 #include "laboratory/calibration.hpp"
 #include "laboratory/specimen_runs.hpp"
+#include "run/case.hpp"
 #include "run/machine/machine.hpp"
 
 namespace breccia::app {

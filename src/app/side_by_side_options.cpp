@@ -64,10 +64,11 @@ std::function<void(std::size_t, const laboratory::FinishedRun&)> tell_of(
     const std::vector<laboratory::PlannedRun>& runs) {
   const auto ended = std::make_shared<std::size_t>(0);
   return [ended, &runs](std::size_t run, const laboratory::FinishedRun& result) {
-    const std::string state = result.kept             ? "kept"
-                              : result.exit_code == 0 ? "done"
-                              : result.exit_code == 9 ? "check failed"
-                                                      : "failed";
+    const std::string state = result.kept              ? "kept"
+                              : result.exit_code == 0  ? "done"
+                              : result.exit_code == 9  ? "check failed"
+                              : result.exit_code > 128 ? "interrupted"
+                                                       : "failed";
     std::string line = fmt::format("{:>5} of {}  {:<12} {:>7.1f} s  {}", ++*ended, runs.size(),
                                    state, result.wall, runs[run].name);
     if (!result.message.empty()) line += ": " + result.message;

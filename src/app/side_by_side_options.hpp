@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "run/case.hpp"
 #include "laboratory/side_by_side.hpp"
+#include "run/case.hpp"
 
 namespace CLI {
 class App;

@@ -9,11 +9,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "run/case.hpp"
 #include "app/commands.hpp"
 #include "app/side_by_side_options.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
+#include "run/case.hpp"
 #include "run/machine/memory_plan.hpp"
 #include "run/results/result_folder.hpp"
 

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "run/case.hpp"
 #include "app/commands.hpp"
 #include "app/side_by_side_options.hpp"
 #include "app/targets.hpp"
@@ -16,6 +15,7 @@
 #include "io/whole_file.hpp"
 #include "laboratory/passport.hpp"
 #include "laboratory/specimen_runs.hpp"
+#include "run/case.hpp"
 #include "run/results/result_folder.hpp"
 
 namespace breccia::app {

@@ -139,7 +139,10 @@ struct Outcome {
 };
 inline void PrintTo(const Outcome& o, std::ostream* out) {
   *out << std::hex << o.hash << std::dec << ", " << o.searches << " searches, " << o.cracks
-       << " cracks, " << o.candidates << " candidates, kinetic " << o.energies[0];
+       << " cracks, " << o.candidates << " candidates, step " << std::hexfloat << o.dt
+       << ", energies";
+  for (const double energy : o.energies) *out << ' ' << energy;
+  *out << std::defaultfloat;
 }
 inline Outcome outcome_of(dem::World& w) {
   const EnergyBalance e = dem::balance(w);

@@ -267,10 +267,10 @@ struct CoupleForces {
     // Work is booked of the forces that act: as they are stored.
     const CoupleForce last = converted<double>(stored);
     stored = converted<Number>(sum);
-    sum = converted<double>(stored);
+    const CoupleForce now = converted<double>(stored);  // in `sum` g++ 12 leaves half unrounded
     for (int k = 0; k < 3; ++k) {
-      kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.on_a.at[k], va[k]);
-      kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.on_b.at[k], vb[k]);
+      kept.work -= 0.5 * dt * dot(last.on_a.at[k] + now.on_a.at[k], va[k]);
+      kept.work -= 0.5 * dt * dot(last.on_b.at[k] + now.on_b.at[k], vb[k]);
     }
     rubbing.book(kept.slid, kept.sprung);
     if (!touching) {

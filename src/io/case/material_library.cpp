@@ -17,10 +17,12 @@
 __asm__(
     ".pushsection .rodata\n"
     ".global breccia_materials\n"
+    ".hidden breccia_materials\n"
     "breccia_materials:\n"
     ".incbin \"" BR_MATERIALS_FILE
     "\"\n"
     ".global breccia_materials_end\n"
+    ".hidden breccia_materials_end\n"
     "breccia_materials_end:\n"
     ".byte 0\n"
     ".popsection\n");

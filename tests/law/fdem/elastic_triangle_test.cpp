@@ -9,8 +9,8 @@
 namespace breccia::fdem {
 namespace {
 
-using testing::Scene;
 using testing::rotated;
+using testing::Scene;
 
 constexpr double young = 60e9, poisson = 0.25;
 
@@ -28,7 +28,8 @@ struct Example {
   Mat2 shape_inverse = inverse(columns(reference[1] - reference[0], reference[2] - reference[0]));
 
   explicit Example(const Mat2& stretch = {1.002, 0.0005, 0.0005, 0.9985}) {
-    for (int k = 0; k < 3; ++k) x[k] = rotated(stretch * reference[k], pi / 6.0) + Vec2{3e-3, -1e-3};
+    for (int k = 0; k < 3; ++k)
+      x[k] = rotated(stretch * reference[k], pi / 6.0) + Vec2{3e-3, -1e-3};
   }
   Deformation<double> now() const { return deformation(shape_inverse, x, v); }
 };

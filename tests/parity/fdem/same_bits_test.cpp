@@ -74,6 +74,28 @@ TEST(FdemSameBits, for_any_width_of_vector) {
   }
 }
 
+/// The ledger, too: a hash holds no work of couples.
+TEST(FdemSameBits, of_every_number_of_couples_for_any_width_of_vector) {
+  for (const char* precision : {"double", "mixed"}) {
+    Scene scene = impact();
+    scene.config.precision = precision;
+    fdem::World one = scene.world(1), w = scene.world(1);
+    one.lanes = Lanes::one;
+    for (int i = 0; i < 400; ++i) {
+      fdem::step(one);
+      fdem::step(w);
+    }
+    ASSERT_EQ(one.couples.size(), w.couples.size());
+    ASSERT_GT(w.couples.size(), 100);
+    const auto bytes = [](const fdem::World& world, Index i) {
+      const fdem::CoupleState& s = world.couples.history.state.data()[i];
+      return std::string(reinterpret_cast<const char*>(&s), sizeof s);
+    };
+    for (Index i = 0; i < w.couples.size(); ++i)
+      EXPECT_EQ(bytes(one, i), bytes(w, i)) << precision << ", couple " << i;
+  }
+}
+
 TEST(FdemSameBits, for_any_margin_of_search) {
   EXPECT_EQ(hash_after(world(1, 0.02)), reference());
   EXPECT_EQ(hash_after(world(1, 0.8)), reference());

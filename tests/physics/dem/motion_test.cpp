@@ -335,7 +335,8 @@ TEST(Motion, the_same_scene_turned_or_shifted_moves_the_same) {
       s.model.spin[i] = turn(s.model.spin[i]);
     }
     World w = s.world();
-    for (int i = 0; i < 200; ++i) step(w);
+    // Links that soften are past a bifurcation: rounding grows by 10 in 25 steps.
+    for (int i = 0; i < 100; ++i) step(w);
     return w;
   };
   const auto same = [](const Vec3& x) { return x; };

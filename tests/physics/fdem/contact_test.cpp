@@ -12,8 +12,8 @@ namespace {
 
 using testing::far;
 using testing::nodes;
-using testing::Scene;
 using testing::rotated;
+using testing::Scene;
 
 double overlap(const World& w, Index a, Index b) {
   Vec2 xa[3], xb[3], v[3];

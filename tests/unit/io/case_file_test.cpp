@@ -113,7 +113,8 @@ struct AnyValues {
       return between(range.low + 0.1 * (range.high - range.low),
                      range.high - 0.1 * (range.high - range.low));
     const double size = between(0.1, 1.0) * std::pow(10.0, static_cast<int>(random() % 40) - 20);
-    return std::isinf(range.low) && random() % 2 == 0 ? -size : size;
+    if (std::isinf(range.low)) return random() % 2 == 0 ? -size : size;
+    return range.low + size;
   }
   std::string word() {
     static const std::vector<std::string> parts{"c30", " ",      "\"", "\\", "[x]", ".",

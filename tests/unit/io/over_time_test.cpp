@@ -63,16 +63,17 @@ TEST(OverTime, the_completed_case_gives_the_same_table) {
 TEST(OverTime, wrong_tables_are_refused_by_line_and_key) {
   const std::string back =
       refusal<dem::Config>(dem_case + "[[0.0, 0, 0, 0],\n[2.0, 1, 0, 0],\n" + "[1.0, 0, 0, 0]]\n");
-  EXPECT_NE(back.find("line 9, support.velocity[2]: its time 1 s is not after 2 s of the row "
+  EXPECT_NE(back.find("line 9, support.grip.velocity[2]: its time 1 s is not after 2 s of the row "
                       "before; times must grow"),
             std::string::npos)
       << back;
   const std::string narrow = refusal<dem::Config>(dem_case + "[[0.0, 0.0]]\n");
-  EXPECT_NE(narrow.find("line 7, support.velocity[0] wants a time and 3 numbers"),
+  EXPECT_NE(narrow.find("line 7, support.grip.velocity[0] wants a time and 3 numbers"),
             std::string::npos)
       << narrow;
   const std::string fast = refusal<dem::Config>(dem_case + "[[0.0, 0, 0, 1e9]]\n");
-  EXPECT_NE(fast.find("support.velocity[0][3] = 1000000000 is outside"), std::string::npos) << fast;
+  EXPECT_NE(fast.find("support.grip.velocity[0][3] = 1000000000 is outside"), std::string::npos)
+      << fast;
   EXPECT_NE(refusal<dem::Config>(dem_case + "[[\"2 mm\", 0, 0, 1]]\n").find("velocity[0][0]"),
             std::string::npos);
 }

@@ -56,6 +56,7 @@ TEST(Calibration, FindsFiveKeysWithinSixSteps) {
 
 TEST(Calibration, LeavesKeysWithoutATargetAloneAndMakesOnlyTheTestsItNeeds) {
   dem::MaterialConfig start;
+  start.fracture_energy = 100.0;
   Calibration calibration(start, {{"tension", 2.9e6, "Pa"}, {"tension", 9e6, "Pa"}});
   ASSERT_EQ(calibration.tests().size(), 1U);
   EXPECT_EQ(calibration.tests()[0].name, "tension");

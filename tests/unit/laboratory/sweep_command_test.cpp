@@ -116,13 +116,16 @@ TEST_F(SweepCommand, GoesOnWithInterruptedRuns) {
     return fs::path();
   };
   std::error_code none;
-  for (int k = 0; k < 2000; ++k) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    if (fs::exists(scratch / "out/runs", none) && !long_run().empty() &&
-        fs::exists(long_run() / "checkpoints", none) &&
-        !fs::is_empty(long_run() / "checkpoints", none))
-      break;
-  }
+  const auto wait_until = [](const auto& is_so) {
+    for (int k = 0; k < 6000 && !is_so(); ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  };
+  wait_until([&] {
+    return fs::exists(scratch / "output.txt", none) &&
+           output().find("1 of 2") != std::string::npos && !long_run().empty() &&
+           fs::exists(long_run() / "checkpoints", none) &&
+           !fs::is_empty(long_run() / "checkpoints", none);
+  });
   ::kill(program, SIGTERM);
   EXPECT_EQ(wait_for(program), 128 + SIGTERM);
   EXPECT_NE(file("sweep.csv").find("300,1,interrupted"), std::string::npos) << file("sweep.csv");
@@ -131,7 +134,10 @@ TEST_F(SweepCommand, GoesOnWithInterruptedRuns) {
   const pid_t again =
       start_program("sweep '" + scratch / "balls.toml' -o '" + scratch / "out' " + arguments,
                     scratch / "output.txt");
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  wait_until([&] {
+    return count(output(), "kept") == 1 &&
+           count(read_whole_file(long_run() / "log.jsonl"), "\"setup\"") == 2;
+  });
   ::kill(again, SIGTERM);
   wait_for(again);
   EXPECT_EQ(read_whole_file(long_run() / "history.csv").substr(0, former.size() / 2),

@@ -42,7 +42,7 @@ TEST(CheckDem, refuses_what_ldpm_cannot_do) {
       {[](Config& c) { c.materials[0].cohesion = 0.0; }, "tensile_strength and cohesion"},
       {[](Config& c) { c.materials[0].fracture_energy = 50.0; }, "ldpm.tensile_length"},
       {[](Config& c) { c.materials[0].mix.smallest = 0.1; }, "must be below largest"},
-      {[](Config& c) { c.materials[0].mix.cement = 900.0; }, "no room for aggregate"},
+      {[](Config& c) { c.materials[0].mix.cement = 1300.0; }, "no room for aggregate"},
       {[](Config& c) { c.materials[0].ldpm.final_hardening = 0.5; }, "final_hardening"},
       {[](Config& c) { c.materials[0].ldpm.final_friction = 0.5; }, "final_friction"},
   };

@@ -15,7 +15,7 @@ Spheres spheres_of(const std::string& text) {
   return read_spheres(folder / "spheres.txt");
 }
 
-TEST(SpheresFile, a_dump_of_lammps_or_liggghts_gives_its_last_snapshot) {
+TEST(SpheresText, a_dump_of_lammps_or_liggghts_gives_its_last_snapshot) {
   const std::string head =
       "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff ff\n"
       "0 1\n0 1\n0 1\n";
@@ -28,7 +28,7 @@ TEST(SpheresFile, a_dump_of_lammps_or_liggghts_gives_its_last_snapshot) {
   EXPECT_THROW(spheres_of(head + "ITEM: ATOMS x y z radius\n1 1 1 -1\n"), InputError);
 }
 
-TEST(SpheresFile, a_list_of_yade_has_blanks_between_its_numbers) {
+TEST(SpheresText, a_list_of_yade_has_blanks_between_its_numbers) {
   const Spheres s = spheres_of("#format x_y_z_r\n0.1\t0.2\t0.3\t0.01\n0.4 0.5 0.6 0.02\n");
   ASSERT_EQ(s.radius.size(), 2U);
   EXPECT_EQ(s.position[1].x, 0.4);
@@ -36,7 +36,7 @@ TEST(SpheresFile, a_list_of_yade_has_blanks_between_its_numbers) {
   EXPECT_THROW(spheres_of("0.1 0.2 0.3 0.01\n0.1 0.2 0.3\n"), InputError);
 }
 
-TEST(SpheresFile, commas_are_read_as_before) {
+TEST(SpheresText, commas_are_read_as_before) {
   EXPECT_EQ(spheres_of("x,y,z,radius\n0,0,0,0.5\n").radius.size(), 1U);
 }
 

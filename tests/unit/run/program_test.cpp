@@ -518,7 +518,8 @@ TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
   EXPECT_EQ(run("report " + path("out")), 0) << output();
   EXPECT_TRUE(fs::exists(path("out/report.html")));
   EXPECT_EQ(run("keys time"), 0) << output();
-  EXPECT_NE(output().find("time.end"), std::string::npos) << output();
+  EXPECT_NE(output().find("simulated time at which the run is done"), std::string::npos)
+      << output();
   EXPECT_EQ(run("keys no_such_prefix"), 2);
   EXPECT_EQ(run("--version"), 0);
   EXPECT_EQ(run("run --help"), 0);

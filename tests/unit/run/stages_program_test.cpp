@@ -64,7 +64,8 @@ class StagedProgram : public ::testing::Test {
   StagedProgram() { replace_file(path("case.toml"), with_end("when = \"place < 0.0295\"\n")); }
   std::string path(const std::string& name) const { return folder_ / name; }
   int run(const std::string& arguments) const {
-    return wait_for(start_program(arguments + " --threads 1", path("output.txt")));
+    const bool steps = !arguments.starts_with("check");
+    return wait_for(start_program(arguments + (steps ? " --threads 1" : ""), path("output.txt")));
   }
   std::string output() const { return read_whole_file(path("output.txt")); }
   nlohmann::json summary(const std::string& out) const {
