@@ -1,14 +1,12 @@
 #include "report/scene.hpp"
 
-// A wrong case must not end the program: see io/case/case_file.cpp.
 #define TOML_ASSERT(condition) static_cast<void>(0)
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <limits>
 
 #include "exec/error.hpp"
 #include "io/case/case_source.hpp"
+#include "io/case/toml.hpp"
 
 namespace breccia::report {
 namespace {

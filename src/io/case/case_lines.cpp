@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #define TOML_ASSERT(condition) static_cast<void>(0)  // as in case_file.cpp
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <tuple>
 #include <utility>
 
 #include "io/case/case_file.hpp"
 #include "io/case/case_source.hpp"
+#include "io/case/toml.hpp"
 
 namespace breccia {
 namespace {

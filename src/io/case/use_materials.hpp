@@ -1,14 +1,10 @@
 #pragma once
 // [material.<name>] use = "...": keys from the materials that the program brings along.
 
-// Text such as "[[[a]]]" meets an assertion of toml++ 3.3 before it is reported as an error; a
-// wrong case must not end the program.
-#define TOML_ASSERT(condition) static_cast<void>(0)
-#include <toml++/toml.h>
-
 #include <vector>
 
 #include "io/case/problems.hpp"
+#include "io/case/toml.hpp"
 
 namespace breccia {
 
