@@ -1,6 +1,5 @@
 #include "report/scene.hpp"
 
-#define TOML_ASSERT(condition) static_cast<void>(0)
 #include <algorithm>
 #include <limits>
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#define TOML_ASSERT(condition) static_cast<void>(0)  // as in case_file.cpp
 #include <algorithm>
 #include <tuple>
 #include <utility>
