@@ -314,6 +314,7 @@ def finished(out):
 
 def run(binary, folder, count):
     jobs = json.loads((folder / "plan.json").read_text())
+    jobs.reverse()  # the longest runs stand last
 
     def work(job):
         out = folder / "runs" / job["id"]
