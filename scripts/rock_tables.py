@@ -253,7 +253,8 @@ def triaxial_runs():
             for setting, sets in over_meshes("rock", (edge,)):
                 yield ({"pressure": pressure, **setting},
                        {**sets, "load.cell_left.pressure": 1e6 * pressure,
-                        "load.cell_right.pressure": 1e6 * pressure})
+                        "load.cell_right.pressure": 1e6 * pressure,
+                        "time.end": 1.8e-3 if pressure > 15.0 else 1.4e-3})
 
 
 def dominoes_runs():

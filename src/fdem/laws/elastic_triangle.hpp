@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "math/elementary.hpp"
 #include "math/vec2.hpp"
 
 namespace breccia::fdem {
@@ -61,12 +62,13 @@ struct ElasticLaw {
 
 /// A material's law, and its energy.
 struct ElasticTriangle : ElasticLaw<double> {
-  /// Energy per reference area. Host only: it needs a logarithm.  [J/m2 per unit thickness]
+  /// Energy per reference area; no number where the triangle is turned inside out.
+  /// [J/m2 per unit thickness]
   BR_HD double energy(const Deformation<double>& d) const {
     const Mat2& f = d.gradient;
     const double trace = f.xx * f.xx + f.xy * f.xy + f.yx * f.yx + f.yy * f.yy;
     const double j = d.jacobian;
-    const double log_j = std::log(j);
+    const double log_j = j > 0.0 ? logarithm(j) : NAN;
     const Sym2 strain{0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
                       0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0), 0.5 * (f.xx * f.xy + f.yx * f.yy)};
     return 0.5 * shear * (trace - 2.0 - 2.0 * log_j) + 0.25 * lambda * (j * j - 1.0 - 2.0 * log_j) +

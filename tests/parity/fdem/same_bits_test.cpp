@@ -93,6 +93,17 @@ TEST(FdemSameBits, of_every_number_of_couples_for_any_width_of_vector) {
     };
     for (Index i = 0; i < w.couples.size(); ++i)
       EXPECT_EQ(bytes(one, i), bytes(w, i)) << precision << ", couple " << i;
+    Exec wide = in_precision({}, precision);
+    wide.space = Space::shadow;
+    fdem::World shadow = fdem::make_world(scene.config, scene.model, wide);
+    for (int i = 0; i < 400; ++i) fdem::step(shadow);
+    const EnergyBalance host = fdem::energies(w).balance, device = fdem::energies(shadow).balance;
+    EXPECT_EQ(device.elastic, host.elastic) << precision;
+    EXPECT_EQ(device.friction, host.friction) << precision;
+    EXPECT_EQ(device.contact, host.contact) << precision;
+    EXPECT_EQ(device.fracture, host.fracture) << precision;
+    EXPECT_EQ(device.damping, host.damping) << precision;
+    EXPECT_EQ(device.kinetic, host.kinetic) << precision;
   }
 }
 
