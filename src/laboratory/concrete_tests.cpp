@@ -85,6 +85,50 @@ void load_by_platens(dem::Config& c, const Vec3& size, double speed) {
   }
 }
 
+/// Strain rate of the shearing, and the strain to which it goes, larger under more pressure.
+constexpr double triaxial_rate = 1.5;  // 1/s
+double triaxial_strain(double pressure) {
+  return 0.01 + 0.05 * std::sqrt(pressure / 100e6);
+}
+
+/// Six smooth walls; the sides go on pressing when the ends move.
+void load_triaxially(dem::Config& c, const Vec3& size, double pressure) {
+  constexpr double confined = 4e-3;  // s; the pressure is whole after 3 ms
+  const auto add = [&](const char* name, const Vec3& outwards, double half, double area) {
+    dem::WallConfig wall;
+    wall.name = name;
+    wall.point = half * outwards;
+    wall.normal = -outwards;
+    wall.friction = 0.0;
+    wall.servo.pressure.times = {0.0, 2e-3, 3e-3};
+    wall.servo.pressure.values = {0.0, 0.9 * pressure, pressure};
+    wall.servo.speed = 1.0;
+    wall.servo.area = area;
+    c.walls.push_back(wall);
+  };
+  add("top", {0.0, 0.0, 1.0}, 0.5 * size.z, size.x * size.y);
+  add("bottom", {0.0, 0.0, -1.0}, 0.5 * size.z, size.x * size.y);
+  add("right", {1.0, 0.0, 0.0}, 0.5 * size.x, size.y * size.z);
+  add("left", {-1.0, 0.0, 0.0}, 0.5 * size.x, size.y * size.z);
+  add("back", {0.0, 1.0, 0.0}, 0.5 * size.y, size.x * size.z);
+  add("front", {0.0, -1.0, 0.0}, 0.5 * size.y, size.x * size.z);
+  dem::StageConfig confine, shear;
+  confine.name = "confine";
+  confine.until = confined;
+  shear.name = "shear";
+  for (const double side : {1.0, -1.0}) {
+    dem::WallChange change;
+    change.name = side > 0.0 ? "top" : "bottom";
+    change.velocity = Vec3{0.0, 0.0, -0.5 * side * triaxial_rate * size.z};
+    shear.walls.push_back(change);
+    c.probes.push_back(probe("force_" + change.name, change.name, "force_z", "sum"));
+    c.probes.push_back(probe(change.name, change.name, "position_z", "mean"));
+  }
+  c.probes.push_back(probe("force_side", "right", "force_x", "sum"));
+  c.stages = {confine, shear};
+  c.time.end = confined + triaxial_strain(pressure) / triaxial_rate;
+}
+
 /// Strips a tenth of the diameter wide press a disc along x.
 void load_strips(dem::Config& c, const Sample& sample, double speed) {
   const double volume = pi / 4.0 * disc_diameter * disc_diameter * disc_thickness;
@@ -189,7 +233,10 @@ const std::vector<SpecimenTest>& specimen_tests() {
       {"bending",
        "three-point bending, notched beam",
        Loading::bending,
-       {beam_length, beam_edge, beam_edge}}};
+       {beam_length, beam_edge, beam_edge}},
+      {"triaxial_5", "triaxial compression at 5 MPa", Loading::triaxial, prism, 5e6},
+      {"triaxial_20", "triaxial compression at 20 MPa", Loading::triaxial, prism, 20e6},
+      {"triaxial_100", "triaxial compression at 100 MPa", Loading::triaxial, prism, 100e6}};
   return tests;
 }
 
@@ -233,6 +280,9 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
       c.local_damping = 0.05;  // more would be work of the falling halves
       c.time.end = 7e-3;
       load_beam(c, sample, test.size, radius, 0.08, folder);
+      break;
+    case Loading::triaxial:
+      load_triaxially(c, test.size, test.pressure);
       break;
   }
   return c;

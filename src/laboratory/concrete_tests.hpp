@@ -25,17 +25,19 @@ struct Sample {
 Sample sample_of(const dem::Config& config, const std::string& material);
 
 /// The tests that there are.
-enum class Loading { compression, platens, tension, brazilian, bending };
+enum class Loading { compression, platens, tension, brazilian, bending, triaxial };
 
 struct SpecimenTest {
   std::string name;   ///< of files
   std::string title;  ///< for people
   Loading loading;
-  Vec3 size;  ///< edges; of the disc: diameter, diameter, thickness  [m]
+  Vec3 size;              ///< edges; of the disc: diameter, diameter, thickness  [m]
+  double pressure = 0.0;  ///< on the sides of a triaxial test  [Pa]
 };
 
 /// compression between smooth ends of prism and cube, and between rough platens of both; direct
-/// tension; Brazilian; three-point bending of a notched beam.
+/// tension; Brazilian; three-point bending of a notched beam; triaxial compression at three
+/// pressures.
 const std::vector<SpecimenTest>& specimen_tests();
 
 /// Distance of the beam's supports, depth of its notch.  [m]
@@ -43,6 +45,8 @@ inline constexpr double beam_span = 0.3, beam_notch = 0.033;
 
 /// The case of a test. Ends of prisms are layers of elements that move at a constant speed along z
 /// and are free across; rough platens are walls with the friction of the contacts.
+/// In triaxial tests six smooth walls press on a prism; then the upper and the lower one approach
+/// while servos hold the pressure of the others.
 /// @param folder  gets the file of spheres that a notched beam is made of
 /// @throws IoError if that file cannot be written
 dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t seed,

@@ -79,7 +79,8 @@ SpecimenResult of_prism(const SpecimenTest& test, const report::NumberTable& tab
   SpecimenResult result{{"strain [-]", "stress [Pa]", strain, stress}, {}};
   result.numbers["strength"] = stress[peak];
   result.numbers["peak_strain"] = strain[peak];
-  if (test.loading == Loading::platens) return result;  // their own give is in the strain
+  if (test.loading == Loading::platens || test.loading == Loading::triaxial)
+    return result;  // the give of walls is in the strain
   result.numbers["young"] = slope_between(strain, stress, stress, 0.1, 0.4);
   const Values right = column(table, "right", folder), left = column(table, "left", folder);
   const Values across = scaled(growth(right, left), -sense / (right[0] - left[0]));
