@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "exec/error.hpp"
 #include "io/case/units.hpp"
@@ -18,8 +19,12 @@ MaterialTarget target_from(const std::string& text) {
         "--target {}: it is not NAME=VALUE with young, poisson, compression, tension, brazilian "
         "or fracture_energy; nothing was run",
         text));
+  const char* const value = text.c_str() + equals + 1;
+  char* end = nullptr;
+  target.value = std::strtod(value, &end);
+  if (end != value && *end == '\0') return target;  // a plain number is in SI units, as in a case
   std::string problem;
-  target.value = parse_quantity(text.substr(equals + 1), target.unit, problem);
+  target.value = parse_quantity(value, target.unit, problem);
   if (!problem.empty()) throw InputError("--target " + text + ": " + problem + "; nothing was run");
   return target;
 }

@@ -126,7 +126,8 @@ void add_test(CLI::App& program, int& exit_code) {
   add_side_by_side_options(*command, test->options);
   command->footer(
       "Tests: compression_prism, compression_cube (smooth ends), platens_prism,\n"
-      "platens_cube (rough platens), tension, brazilian, bending (a notched beam).\n"
+      "platens_cube (rough platens), tension, brazilian, bending (a notched beam),\n"
+      "triaxial_5, triaxial_20, triaxial_100 (pressure in MPa).\n"
       "\n"
       "Targets: young, poisson, compression, tension, brazilian, fracture_energy, as in\n"
       "--target 'tension=2.9 MPa'; a material with the key use has those of its name.\n"
