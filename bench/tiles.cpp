@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/set_up.hpp"
 #include "dem/ranks.hpp"
 #include "fdem/ranks.hpp"
 #include "prepare/build.hpp"
@@ -241,7 +242,7 @@ void hold_below(fdem::World& w, const Plate& plate, const std::vector<Index>& tr
     const Index bits = plate.held(t);
     hold.push_back(bits == 0 ? -1 : bits);
   }
-  copy_to(w.holds, holds);
+  copy_to(w.given.change(SetUp{}).holds, holds);
   copy_to(w.triangles.hold, hold);
 }
 
@@ -250,7 +251,7 @@ void number_triangles(fdem::World& w, const Plate& plate, const std::vector<Inde
                       const std::vector<Index>& vertex) {
   copy_to(w.triangles.id, triangles);
   for (Index& v : w.vertex) v = vertex[at(v)];
-  w.open_vertex = plate.rim();
+  w.given.change(SetUp{}).open_vertex = plate.rim();
   w.node_vertex.clear();  // both follow from these
   w.border_vertex.clear();
   w.exposed.vertex.resize(plate.vertices());
@@ -287,8 +288,9 @@ dem::World tiled_slabs(dem::Config config, int count, Communicator* ranks, const
     const int first = std::min(tiles.first, count - 1), built = std::max(1, tiles.last - first);
     w = dem::make_world(config, side_by_side(slab, TileRun{first, first + built, count}),
                         on_host(exec));
-    w.parameters.mean_radius = std::accumulate(slab.radius.begin(), slab.radius.end(), 0.0) /
-                               static_cast<double>(slab.size());
+    w.given.change(SetUp{}).mean_radius =
+        std::accumulate(slab.radius.begin(), slab.radius.end(), 0.0) /
+        static_cast<double>(slab.size());
     if (ranks == nullptr) return;
     number_elements(w, first * slab.size());
     w.each_set([&](auto& set) { number_links(set.groups, set.numbers, tiles, built); });
@@ -333,10 +335,10 @@ fdem::World tiled_plate(const PlateTiles& tiles, Communicator* ranks, const Exec
     const std::vector<Index> triangles = plate.triangles_of(run);
     PlatePart part = part_of(plate, triangles);
     w = fdem::make_world(config, part.model, on_host(exec));
-    const fdem::Parameters of_tile =
-        fdem::make_world(config, plate.tile().model(), on_host(exec)).parameters;
-    w.parameters.mean_edge = of_tile.mean_edge;
-    w.parameters.skin = of_tile.skin;
+    const fdem::Case of_tile = *fdem::make_world(config, plate.tile().model(), on_host(exec)).given;
+    fdem::Case& given = w.given.change(SetUp{});
+    given.mean_edge = of_tile.mean_edge;
+    given.skin = of_tile.skin;
     number_triangles(w, plate, triangles, part.vertex);
     if (ranks == nullptr) return;
     number_joints(w, triangles);

@@ -2,6 +2,7 @@
 """Holds #include lines to the direction of the layers, and files to one job.
 
 The benchmarks in bench, beside src, may include every layer and no layer includes them.
+The key to writing the constants of a run, core/set_up.hpp, is for the folders `setup` and the benchmarks.
 
 Usage: check_includes.py [SOURCE_FOLDER]   (default: src beside this script's folder)
 Exit status 0 if all is well, 1 with a line for each violation.
@@ -27,6 +28,7 @@ ALLOWED = {
 }
 ALLOWED["bench"] = set(ALLOWED)
 LONGEST = 500
+KEY = "core/set_up.hpp"
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 
@@ -46,6 +48,8 @@ def violations(source):
             found = INCLUDE.match(line)
             if not found:
                 continue
+            if found.group(1) == KEY and "setup" not in inside.parts and layer != "bench":
+                yield f"{path}:{number}: constants of a run are written in setup alone; read World::given"
             target = found.group(1).split("/")[0]
             if target in ALLOWED and target != layer and target not in ALLOWED[layer]:
                 yield f"{path}:{number}: {layer} must not see {target}"

@@ -11,7 +11,8 @@
 
 namespace breccia {
 
-/// Pairs of elements, each once, in ascending order of their keys.
+/// Pairs of elements, each once, in ascending order of their keys. One item a pair, written by the
+/// search; a and b also where elements change places.
 struct Pairs {
   Buffer<PairKey> key;  ///< lower and higher global id  [-]
   Buffer<Index> a, b;   ///< where they lie in memory; a has the lower global id  [-]

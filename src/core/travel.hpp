@@ -32,7 +32,8 @@ struct MarginRule {
   }
 };
 
-/// Where the elements (or nodes) stood at the last search, and how far each may go.
+/// Where the elements (or nodes) stood at the last search, and how far each may go. One item each,
+/// written by the search.
 struct Travel {
   Buffer<Vec3> reference;  ///< position at the last search  [m]
   Buffer<double> margin;   ///< how far from there, the drift taken off  [m]

@@ -7,11 +7,12 @@
 
 namespace breccia::dem {
 
-/// History of the contact of a pair of elements, kept between searches.
+/// History of the contact of a pair of elements, kept between searches. One item a pair, written by
+/// the forces of contacts (pairs) and carried over by the search; of walls: by theirs (walls).
 struct ContactHistory {
-  Buffer<ContactState> state;
-  Buffer<double> slid;    ///< energy spent on sliding and rolling so far  [J]
-  Buffer<double> damped;  ///< energy taken by the dashpot so far  [J]
+  Buffer<ContactState> state;  ///< shear, rolling moment and overlap when last seen  [N, N m, m]
+  Buffer<double> slid;         ///< energy spent on sliding and rolling so far  [J]
+  Buffer<double> damped;       ///< energy taken by the dashpot so far  [J]
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -37,21 +37,22 @@ struct ElementStateOf {
 using ElementState = ElementStateOf<double>;
 
 /// Rigid spheres with six degrees of freedom. Bars are spheres too, with the mass of their piece of
-/// bar.
+/// bar. One item for each element, its ghosts included; who writes it, in brackets, in the words of
+/// World. Constant: written by set-up; all of it moves with its element between ranks.
 struct Elements {
-  Buffer<GlobalId> id;             ///< number of the element, kept for ever  [-]
-  Buffer<std::int16_t> group;      ///< body it belongs to, index into Model::groups  [-]
-  Buffer<std::int16_t> material;   ///< index into the case's materials  [-]
-  Buffer<double> mass;             ///<  [kg]
-  Buffer<double> inertia;          ///< the same about every axis  [kg m2]
-  Buffer<ElementState> state;      ///< position, velocity, spin, radius
-  Buffer<Quaternion> orientation;  ///< since the start  [-]
-  Buffer<Vec3> force;              ///< sum of all interactions at this time  [N]
-  Buffer<Vec3> torque;             ///< about the centre  [N m]
-  Buffer<std::uint8_t> fixed;      ///< prescribed degrees of freedom, bits of Fixed  [-]
-  Buffer<std::int16_t> motion;     ///< index of the prescribed motion, -1: stands still  [-]
-  Buffer<double> damping_work;     ///< taken out by local damping so far  [J]
-  Buffer<double> load_work;        ///< put in by prescribed motion so far  [J]
+  Buffer<GlobalId> id;             ///< number of the element, kept for ever  [-]  (constant)
+  Buffer<std::int16_t> group;      ///< body, index into Model::groups  [-]  (constant)
+  Buffer<std::int16_t> material;   ///< index into the case's materials  [-]  (constant)
+  Buffer<double> mass;             ///<  [kg]  (constant)
+  Buffer<double> inertia;          ///< the same about every axis  [kg m2]  (constant)
+  Buffer<ElementState> state;      ///< position, velocity, spin (move); radius (constant)
+  Buffer<Quaternion> orientation;  ///< since the start  [-]  (move)
+  Buffer<Vec3> force;              ///< sum of all interactions at this time  [N]  (sums, walls)
+  Buffer<Vec3> torque;             ///< about the centre  [N m]  (sums, walls)
+  Buffer<std::uint8_t> fixed;      ///< prescribed degrees of freedom, bits of Fixed  [-]  (stage)
+  Buffer<std::int16_t> motion;     ///< index into GivenMotions, -1: stands still  [-]  (stage)
+  Buffer<double> damping_work;     ///< taken out by local damping so far  [J]  (move)
+  Buffer<double> load_work;        ///< put in by prescribed motion so far  [J]  (move)
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -121,7 +121,7 @@ Energies contact_shares(const World& w, const List& c, const Buffer<ContactPair>
                         Index materials, const Buffer<double>& wall_stiffness) {
   return fold(
       w.exec, c.size(), Energies{},
-      ContactShares{w.domain.owned_view(), w.parameters.contact, w.elements.material.view(),
+      ContactShares{w.domain.owned_view(), w.given->contact, w.elements.material.view(),
                     w.elements.state.view(), pairs.view(), materials, wall_stiffness.view(),
                     c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
                     c.history.slid.view(), c.history.damped.view(), c.history.work_of_walls()},
@@ -143,15 +143,15 @@ Energies held(const World& w) {
   for (const Wall& wall : w.walls) factors.push_back(wall.stiffness);
   Buffer<double> wall_stiffness(w.exec.space);
   copy_to(wall_stiffness, factors);
-  all =
-      all + contact_shares(w, w.contacts, w.contact_pairs, w.parameters.materials, wall_stiffness);
-  all = all + contact_shares(w, w.wall_contacts, w.wall_pairs, 0, wall_stiffness);
+  all = all +
+        contact_shares(w, w.contacts, w.given->contact_pairs, w.given->materials, wall_stiffness);
+  all = all + contact_shares(w, w.wall_contacts, w.given->wall_pairs, 0, wall_stiffness);
   all = all + fold(w.exec, e.size(), Energies{},
                    ElementShares{owned, kick(w), e.damping_work.view(), e.load_work.view()}, Sum{});
-  if (dot(w.parameters.gravity, w.parameters.gravity) > 0.0)
+  if (dot(w.given->gravity, w.given->gravity) > 0.0)
     all.potential =
         fold(w.exec, e.size(), ExactSum(),
-             GravityPotential{owned, w.parameters.gravity, e.state.view(), e.mass.view()}, Sum{});
+             GravityPotential{owned, w.given->gravity, e.state.view(), e.mass.view()}, Sum{});
   return all;
 }
 

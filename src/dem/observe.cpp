@@ -212,7 +212,7 @@ Unsound find_unsound(const World& w) {
   const Elements host = host_copy(e);
   const auto ids = host.id.host();
   const auto i = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
-  const std::string group = w.sets.at(static_cast<std::size_t>(host.group.data()[i])).name;
+  const std::string group = w.given->sets.at(static_cast<std::size_t>(host.group.data()[i])).name;
   char message[400];  // snprintf, because nvcc does not take fmt's headers
   std::snprintf(
       message, sizeof message,
@@ -220,7 +220,7 @@ Unsound find_unsound(const World& w) {
       "step of %.3e s, or is not finite; a smaller time.safety (now %g) may help",
       static_cast<long long>(w.step), w.time, bad, group.c_str(),
       norm(host.state.data()[i].velocity - w.travel.drift.velocity), host.state.data()[i].radius,
-      w.last_dt, w.parameters.time.safety);
+      w.last_dt, w.given->time.safety);
   return {bad, message};
 }
 
@@ -273,9 +273,9 @@ struct ForceOnWall {
 
 /// The wall of a probe; none: the probe reads elements.
 std::optional<std::size_t> wall_of(const World& w, const ProbeConfig& p) {
-  const auto name = std::find(w.wall_names.begin(), w.wall_names.end(), p.on);
-  if (p.on.empty() || name == w.wall_names.end()) return std::nullopt;
-  return static_cast<std::size_t>(name - w.wall_names.begin());
+  const auto name = std::find(w.given->wall_names.begin(), w.given->wall_names.end(), p.on);
+  if (p.on.empty() || name == w.given->wall_names.end()) return std::nullopt;
+  return static_cast<std::size_t>(name - w.given->wall_names.begin());
 }
 
 /// A wall's place and velocity, which rank 0 knows as well as all, and what this rank's elements
@@ -311,9 +311,10 @@ double probe(const World& w, const ProbeConfig& p) {
   if (const auto wall = wall_of(w, p)) return read_wall(w, p, *wall).sum.value();
   View<const Index> members{};
   if (!p.on.empty()) {
-    const auto set = std::find_if(w.sets.begin(), w.sets.end(),
+    const auto set = std::find_if(w.given->sets.begin(), w.given->sets.end(),
                                   [&](const ElementSet& s) { return s.name == p.on; });
-    if (set == w.sets.end()) throw InputError("probe " + p.name + ": there is no group " + p.on);
+    if (set == w.given->sets.end())
+      throw InputError("probe " + p.name + ": there is no group " + p.on);
     members = set->members.view();
   }
   return read(w, p, members).reduced(p.reduce);
@@ -321,12 +322,12 @@ double probe(const World& w, const ProbeConfig& p) {
 
 Readings read_own(World& part, const ProbeConfig& p) {
   if (const auto wall = wall_of(part, p)) return read_wall(part, p, *wall);
-  const auto set = std::find_if(part.sets.begin(), part.sets.end(),
+  const auto set = std::find_if(part.given->sets.begin(), part.given->sets.end(),
                                 [&](const ElementSet& s) { return s.name == p.on; });
-  if (set == part.sets.end()) return read(part, p, {});
-  keep_here(set->here, part.domain, part.elements.id, std::as_const(set->members).host(), 1,
-            part.exec.space);
-  return read(part, p, std::as_const(set->here.places).view());
+  if (set == part.given->sets.end()) return read(part, p, {});
+  SetHere& here = part.sets_here[static_cast<std::size_t>(set - part.given->sets.begin())];
+  keep_here(here, part.domain, part.elements.id, set->members.host(), 1, part.exec.space);
+  return read(part, p, std::as_const(here.places).view());
 }
 
 Counts count(const World& w) {

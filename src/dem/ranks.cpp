@@ -194,7 +194,7 @@ class Spheres final : public Shareable {
   bool has_left() const override {
     return fold(w_.exec, w_.elements.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
   }
-  double largest_margin() const override { return w_.parameters.largest_margin; }
+  double largest_margin() const override { return w_.given->largest_margin; }
   void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
     Migration journey(w_, owner);
     journey.add_copies(around);
@@ -289,7 +289,7 @@ World share_parts(World part, Communicator& ranks, const DomainConfig& config, S
   for (ServoState& servo : part.servos) take_from_first(ranks, servo);
   part.ledger = {};  // what this rank books from here on
   Spheres spheres(part, space);
-  begin_sharing(part.domain, ranks, config, spheres, 2.0 * part.parameters.mean_radius, 3);
+  begin_sharing(part.domain, ranks, config, spheres, 2.0 * part.given->mean_radius, 3);
   part.domain.drifted_until = part.time;
   share_anew(part.domain, spheres, true);
   select_active_ghosts(part);

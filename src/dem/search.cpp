@@ -146,8 +146,7 @@ Pairs near_walls(const World& w) {
     const bool moves =
         dot(drift, drift) > 0.0 || w.prescribed.moves(w.prescribed.motions.size() - w.walls.size() +
                                                       static_cast<std::size_t>(wall_number));
-    const double reach =
-        (moves ? w.parameters.largest_margin : 0.0) + 1e-14 * w.travel.drift.farthest;
+    const double reach = (moves ? w.given->largest_margin : 0.0) + 1e-14 * w.travel.drift.farthest;
     const Buffer<Index> near =
         items_where(w.exec, w.elements.size(),
                     WallNear{wall, reach, w.domain.owned_view(), w.elements.state.view(),
@@ -287,7 +286,7 @@ struct MotionOf {
 Drift choose_drift(const World& w) {
   const CommonMotion own = fold(w.exec, w.elements.size(), CommonMotion{},
                                 MotionOf{w.elements.state.view(), w.domain.owned_view()}, Sum{});
-  return of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.parameters.mean_radius);
+  return of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.given->mean_radius);
 }
 
 /// The pairs that may touch until the next search.
@@ -321,8 +320,8 @@ void search(World& w) {
 
 MarginRule margin_rule(const World& w) {
   constexpr double horizon = 50.0;  // steps for which a fast element's margin shall last
-  return {w.parameters.search.margin * w.parameters.mean_radius, horizon * w.next_dt,
-          w.parameters.largest_margin};
+  return {w.given->search.margin * w.given->mean_radius, horizon * w.next_dt,
+          w.given->largest_margin};
 }
 
 void ask_for_search(World& w) {
@@ -339,10 +338,10 @@ void ask_for_search(World& w) {
 bool contacts_are_due(const World& w) {
   const StageTime timed(w.exec, "travel");
   const bool used = w.domain.single_rank() ? w.margin_used : w.domain.ranks->finish_any_of() != 0;
-  if (w.parameters.search.every > 0)  // the paper's rule
-    return w.step % w.parameters.search.every == 0;
+  if (w.given->search.every > 0)  // the paper's rule
+    return w.step % w.given->search.every == 0;
   for (const Wall& wall : w.walls)
-    if (wall.travelled > w.parameters.largest_margin) return true;
+    if (wall.travelled > w.given->largest_margin) return true;
   return used;
 }
 

@@ -61,19 +61,20 @@ ServoReading read_wall(const World& w, std::size_t wall) {
   const WallContacts& c = w.wall_contacts;
   return fold(w.exec, end - begin, ServoReading{},
               WallPush{w.domain.owned_view(), begin, w.walls[wall].normal, w.walls[wall].stiffness,
-                       w.parameters.contact.hertz, c.pairs.a.view(), c.history.on_wall.view(),
+                       w.given->contact.hertz, c.pairs.a.view(), c.history.on_wall.view(),
                        c.history.state.view(), w.elements.material.view(), w.elements.state.view(),
-                       w.wall_pairs.view()},
+                       w.given->wall_pairs.view()},
               Sum{});
 }
 
-ServoReading read_support(World& part, ElementSet& set, int axis) {
-  const Vec3& g = part.parameters.gravity;
-  View<const Index> members = std::as_const(set.members).view();
+ServoReading read_support(World& part, std::size_t number, int axis) {
+  const ElementSet& set = part.given->sets[number];
+  const Vec3& g = part.given->gravity;
+  View<const Index> members = set.members.view();
   if (!part.domain.single_rank()) {
-    keep_here(set.here, part.domain, part.elements.id, std::as_const(set.members).host(), 1,
-              part.exec.space);
-    members = std::as_const(set.here.places).view();
+    SetHere& here = part.sets_here[number];
+    keep_here(here, part.domain, part.elements.id, set.members.host(), 1, part.exec.space);
+    members = std::as_const(here.places).view();
   }
   return fold(part.exec, members.size, ServoReading{},
               SupportPush{part.domain.owned_view(), axis,
@@ -83,7 +84,7 @@ ServoReading read_support(World& part, ElementSet& set, int axis) {
                           members, std::as_const(part.elements.force).view(),
                           std::as_const(part.elements.mass).view(),
                           std::as_const(part.elements.material).view(),
-                          std::as_const(part.elements.state).view(), part.wall_pairs.view()},
+                          std::as_const(part.elements.state).view(), part.given->wall_pairs.view()},
               Sum{});
 }
 
@@ -93,12 +94,11 @@ std::vector<ServoReading> read_servos(World& part, const Config& now) {
   std::vector<ServoReading> readings;
   for (std::size_t k = 0; k < now.walls.size(); ++k)
     readings.push_back(now.walls[k].servo.is_on() ? read_wall(part, k) : ServoReading{});
-  const std::size_t bodies = part.sets.size() - now.supports.size();
+  const std::size_t bodies = part.given->sets.size() - now.supports.size();
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
     const SupportServoConfig& servo = now.supports[s].servo;
-    readings.push_back(servo.is_on()
-                           ? read_support(part, part.sets[bodies + s], servo.axis_number())
-                           : ServoReading{});
+    readings.push_back(servo.is_on() ? read_support(part, bodies + s, servo.axis_number())
+                                     : ServoReading{});
   }
   return readings;
 }

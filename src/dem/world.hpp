@@ -1,14 +1,15 @@
 #pragma once
 // Everything a DEM run consists of between two steps.
 
-#include <string>
 #include <vector>
 
 #include "core/energy.hpp"
 #include "core/incidence.hpp"
+#include "core/read_only.hpp"
 #include "core/stages.hpp"
 #include "core/step_clock.hpp"
 #include "core/travel.hpp"
+#include "dem/case.hpp"
 #include "dem/element_kernels.hpp"
 #include "dem/links/all.hpp"
 #include "dem/setup/config.hpp"
@@ -38,49 +39,47 @@ struct LinkPlan {
 /// tiles, so that the order of sums is the same for any number of threads and ranks.
 inline constexpr Index sweep_tile = 256;
 
-/// A named set of elements that probes read: a body or a support.
-struct ElementSet {
-  std::string name;
-  Buffer<Index> members;  ///< in the whole model, ascending
-  SetHere here{};         ///< in a rank's part, for its probes
-};
-
-/// Numbers that stay as the case gave them.
-struct Parameters {
-  TimeConfig time;
-  SearchConfig search;
-  Vec3 gravity{};
-  double local_damping = 0.0;
-  double mean_radius = 0.0;     ///< of all elements  [m]
-  double largest_margin = 0.0;  ///< half the smallest radius of linked concrete  [m]
-  ContactLaw contact{};
-  double contact_step = no_limit;  ///< that resolves a contact of two like elements  [s]
-  Index materials = 0;
-  std::vector<std::uint8_t> bars;  ///< by material: 1 where its elements are bars
-};
-
-struct World : LinkSets {
+/// Each line tells meaning and unit, then (length; who writes it). Lengths: elements, contacts, ...
+/// of this rank, ghosts included; no length: one number. Writers, in the order of a run:
+///
+///   set-up   make_world()
+///   stage    configure(), where a stage of the case begins and after loading a checkpoint
+///   servo    correct_servos(), every servo_every steps
+///   move, search, pairs, sums, walls, dt
+///            within a step, by dem/stepping/step.hpp: moving elements and walls; find_contacts();
+///            forces of links and contacts; sums of elements; forces of walls; the next step
+///   ranks    when elements change ranks (dem/ranks.cpp) or the world changes its space
+///   derive   derive(), after set-up, loading and ranks; advance: advance(), on a device
+///
+/// What ranks write moves with its element, link or contact.
+struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see dem/links/
   /// Empty, every array in the space of `how`.
   explicit World(const Exec& how);
 
-  Exec exec;
-  Lanes lanes;
-  Parameters parameters;
+  Exec exec;             ///< (ranks: its space)
+  Lanes lanes;           ///< (set-up)
+  ReadOnly<Case> given;  ///< constants: dem/case.hpp (set-up, stage)
 
-  // State: what a checkpoint holds.
-  Elements elements;  // and the links, in LinkSets
-  Contacts contacts;  ///< between elements
-  WallContacts wall_contacts;
-  Travel travel;  ///< since the last search
-  std::vector<Wall> walls;
-  Ledger ledger;
-  double time = 0.0;     ///< of positions and forces  [s]
-  double last_dt = 0.0;  ///< the step that led here  [s]
-  double next_dt = 0.0;  ///< the step to come  [s]
-  std::int64_t step = 0;
-  std::int64_t searches = 0;
-  std::vector<ServoState> servos;  ///< of walls, then of supports; empty: the case has none
-  StageProgress stage;             ///< where it is among the stages of its case
+  // Prescribed motions: constant but for those that servos lead.
+  GivenMotions prescribed;        ///< of supports, then of walls (set-up, stage, servo)
+  Buffer<Motion> motions;         ///< their motions, for kernels (motions; set-up, stage, servo)
+  Buffer<double> motion_times;    ///< their tables, for kernels  [s]  (entries; set-up, stage)
+  Buffer<double> motion_factors;  ///< likewise  [-]  (entries; set-up, stage)
+
+  // State: what a checkpoint holds, and the links in LinkSets.
+  Elements elements;               ///< (elements; see its lines)
+  Contacts contacts;               ///< between elements (contacts; search, pairs, ranks)
+  WallContacts wall_contacts;      ///< (contacts with walls; search, walls, ranks)
+  Travel travel;                   ///< since the last search (elements; search, ranks)
+  std::vector<Wall> walls;         ///< (walls; set-up, move; its way, search and stage, too)
+  Ledger ledger;                   ///< (search, stage, probes)
+  double time = 0.0;               ///< of positions and forces  [s]  (move)
+  double last_dt = 0.0;            ///< the step that led here  [s]  (move)
+  double next_dt = 0.0;            ///< the step to come  [s]  (dt)
+  std::int64_t step = 0;           ///< steps taken  [-]  (end of a step)
+  std::int64_t searches = 0;       ///< [-]  (search)
+  std::vector<ServoState> servos;  ///< of walls, then of supports; empty: none (servos; servo)
+  StageProgress stage;             ///< where it is among the stages of its case (stage)
 
   /// Visits the arrays that kernels read: state, and what follows from the case.
   template <class Visit>
@@ -93,10 +92,10 @@ struct World : LinkSets {
     state(contacts);
     state(wall_contacts);
     state(travel);
+    given.each_array(visit);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(contact_pairs, wall_pairs, motions, motion_times, motion_factors, linked_starts,
-         linked_partners, linked_links, bar_actions, domain.owned_there,
-         domain.migration_reference);
+    each(motions, motion_times, motion_factors, linked_starts, linked_partners, linked_links,
+         bar_actions, domain.owned_there, domain.migration_reference);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
@@ -108,43 +107,40 @@ struct World : LinkSets {
     each_set([&](auto& set) { each(set.on_device.laws, set.on_device.ends); });
   }
 
-  // What follows from the case.
-  std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
-  std::vector<ElementSet> sets;
-  std::vector<std::string> wall_names;
-  std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]
-  Buffer<ContactPair> contact_pairs;  ///< by two materials
-  Buffer<ContactPair> wall_pairs;     ///< by one material
-  GivenMotions prescribed;            ///< of supports, then of walls
-  Buffer<Motion> motions;             ///< the same where kernels can read them
-  Buffer<double> motion_times, motion_factors;
+  // Which part of the whole it is, and where its elements lie: constant between two migrations.
+  Domain domain;                   ///< (ranks; its ghosts that follow their owners: search)
+  std::vector<SetHere> sets_here;  ///< places of Case::sets on this rank (sets; probes, servo)
   // All links by their ends, rows of compressed form: an element's place and global id ascend
   // alike.
-  Buffer<Index> linked_starts;    ///< first link of each lower end, and the number of links
-  Buffer<Index> linked_partners;  ///< the higher end of each
-  Buffer<Index> linked_links;     ///< its place among the links of all kinds
+  Buffer<Index> linked_starts;    ///< first link of each lower end, and the end  [-]
+                                  ///< (elements + 1; set-up, ranks)
+  Buffer<Index> linked_partners;  ///< place of the higher end  [-]  (links; set-up, ranks)
+  Buffer<Index> linked_links;     ///< place among links of all kinds  [-]  (links; set-up, ranks)
+  LinkPlan link_plan;             ///< how threads share swept links; `deferred`: sums (derive)
+  Incidence bar_incidence;        ///< of all links but swept ones, kind by kind (elements; derive)
 
-  // Which part of the whole it is.
-  Domain domain;
+  // What follows from a search.
+  Buffer<Index> held_partners;    ///< linked_partners, -1 where the link has let go  [-]
+                                  ///< (links; search)
+  Incidence contact_incidence;    ///< (elements; search, derive)
+  BroadPhase broad_phase;         ///< scratch of the search (search)
+  std::vector<Index> wall_begin;  ///< first contact of each wall, and the end  [-]
+                                  ///< (walls + 1; search, derive)
 
-  // What follows from the state.
-  Buffer<Index> held_partners;  ///< linked_partners, -1 where the link has let go; for a search
-  Incidence bar_incidence, contact_incidence;  ///< bars: all links but swept ones, kind by kind
-  LinkPlan link_plan;
-  BroadPhase broad_phase;
-  std::vector<Index> wall_begin;  ///< first contact of each wall, and the end
-  Buffer<PairForce> bar_actions, contact_actions;
-  Buffer<LinkSums> link_sums;  ///< of each element, zero between steps
-  Buffer<double> critical;     ///< [s2]
-  bool margin_used = false;    ///< some element has used its margin up
+  // What follows from a step, overwritten by the next one.
+  Buffer<PairForce> bar_actions;      ///< [N, N m, N/m]  (links but swept ones; pairs, ranks)
+  Buffer<PairForce> contact_actions;  ///< zero where apart  [N, N m, N/m]  (contacts; pairs)
+  Buffer<LinkSums> link_sums;  ///< zero between steps  [N, N m, N/m]  (elements; pairs, sums)
+  Buffer<double> critical;     ///< inertia over stiffness  [s2]  (elements; sums, walls)
+  bool margin_used = false;    ///< some element has used its margin up (move)
 
   // On a device.
-  LinkRows rows_a, rows_b;         ///< concrete links that start, and that end, at each element
-  Stored<ActionsOf> link_actions;  ///< of concrete links
-  Buffer<Wall> device_walls;
-  Buffer<StepClock> clock;
-  Buffer<std::int32_t> beyond;  ///< one: 1 if an element has used its margin up; ranks only
-  StepGraph graph;              ///< of a few steps
+  LinkRows rows_a, rows_b;  ///< concrete links that start, that end, at each (elements; derive)
+  Stored<ActionsOf> link_actions;  ///< [N, N m, N/m]  (concrete links; pairs)
+  Buffer<Wall> device_walls;       ///< `walls`, for kernels (walls; move, search)
+  Buffer<StepClock> clock;         ///< time there (2; move)
+  Buffer<std::int32_t> beyond;     ///< 1: an element has used its margin up; ranks only (1; move)
+  StepGraph graph;                 ///< of a few steps (advance)
 };
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
@@ -154,6 +150,8 @@ World make_world(const Config& config, const Model& model, const Exec& exec);
 /// Lets the world go on by another stage of its case: gravity, damping, friction, supports, walls.
 /// The state stays as it is. @throws InputError if supports contradict each other
 void configure(World& w, const Config& config);
+/// Gravity alone: the ledger asks what a change of it is worth.
+void set_gravity(World& w, const Vec3& gravity);
 
 /// Hands World::prescribed to kernels.
 void place_motions(World& w);

@@ -149,23 +149,23 @@ Energies held(const World& w) {
                       TriangleShares{owned,
                                      {kick(w), t.external.view(), {}, {}, {}, {}},
                                      t.material.view(),
-                                     w.laws.view(),
+                                     w.given->laws.view(),
                                      t.shape_inverse.view(),
                                      t.viscous_work.view(),
                                      t.damping_work.view(),
                                      t.load_work.view()},
                       Sum{});
   const Joints& j = w.joints;
-  all = all +
-        fold(w.exec, j.size(), Energies{},
-             JointShares{owned, by_number(t.nodes.view()), w.bonds.view(), w.joint_ends.view(),
-                         j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
-                         j.stage.view(), j.points.view(), j.work.view(), j.inherited_work.view()},
-             Sum{});
+  all = all + fold(w.exec, j.size(), Energies{},
+                   JointShares{owned, by_number(t.nodes.view()), w.given->bonds.view(),
+                               w.joint_ends.view(), j.law.view(), j.length.view(),
+                               j.strength.view(), j.preset.view(), j.stage.view(), j.points.view(),
+                               j.work.view(), j.inherited_work.view()},
+                   Sum{});
   all = all + fold(w.exec, w.couples.size(), Energies{},
                    CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()},
                    Sum{});
-  const Vec2 gravity = w.parameters.gravity;
+  const Vec2 gravity = w.given->gravity;
   if (dot(gravity, gravity) > 0.0)
     all.potential = fold(w.exec, t.size(), ExactSum{},
                          GravityPotential{owned, gravity, t.nodes.view(), t.mass.view()}, Sum{});

@@ -163,9 +163,9 @@ Unsound find_unsound(const World& w) {
       "step %lld, t = %.6e s: triangle %d (%s) is %s: %.3g of its area is left, it moves at %.3e "
       "m/s in steps of %.3e s; a smaller time.safety (now %g) may help",
       static_cast<long long>(w.step), w.time, bad,
-      w.groups[static_cast<std::size_t>(host.group.data()[i])].c_str(),
+      w.given->groups[static_cast<std::size_t>(host.group.data()[i])].c_str(),
       jacobian > 0.0 ? "too fast or not finite" : "inside out", jacobian, norm(v[0]), w.last_dt,
-      w.parameters.time.safety);
+      w.given->time.safety);
   return {bad, message};
 }
 
@@ -196,7 +196,7 @@ std::vector<Sym2> stresses(const World& w) {
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
   const Triangles& t = *triangles;
   std::vector<ElasticTriangle> laws;
-  copy_to(laws, w.laws);
+  copy_to(laws, w.given->laws);
   std::vector<Sym2> all;
   all.reserve(at(t.size()));
   for (Index i = 0; i < t.size(); ++i) {
@@ -213,9 +213,9 @@ double probe(const World& w, const ProbeConfig& p) {
     throw InputError("probe " + p.name + ".quantity: " + no_z(p.quantity));
   Buffer<Index> members(w.exec.space);
   if (!p.on.empty()) {
-    const auto set = std::find_if(w.sets.begin(), w.sets.end(),
+    const auto set = std::find_if(w.given->sets.begin(), w.given->sets.end(),
                                   [&](const NodeSet& s) { return s.name == p.on; });
-    if (set == w.sets.end())
+    if (set == w.given->sets.end())
       throw InputError("probe " + p.name + ".on: there is no body or support \"" + p.on + "\"");
     copy_to(members, set->nodes);
   }
@@ -223,11 +223,12 @@ double probe(const World& w, const ProbeConfig& p) {
 }
 
 Readings read_own(World& part, const ProbeConfig& p) {
-  const auto set = std::find_if(part.sets.begin(), part.sets.end(),
+  const auto set = std::find_if(part.given->sets.begin(), part.given->sets.end(),
                                 [&](const NodeSet& s) { return s.name == p.on; });
-  if (set == part.sets.end()) return read(part, p, Buffer<Index>(part.exec.space));
-  keep_here(set->here, part.domain, part.triangles.id, set->nodes, 3, part.exec.space);
-  return read(part, p, set->here.places);
+  if (set == part.given->sets.end()) return read(part, p, Buffer<Index>(part.exec.space));
+  SetHere& here = part.sets_here[static_cast<std::size_t>(set - part.given->sets.begin())];
+  keep_here(here, part.domain, part.triangles.id, set->nodes, 3, part.exec.space);
+  return read(part, p, here.places);
 }
 
 double mode_of(const Joints& joints, Index i) {

@@ -176,7 +176,7 @@ void settle_in(World& w, Space space) {
   for (Index i = 0; i < joints; ++i)
     ends.push_back(JointEnds::of(w.joints.edge_a.data()[i], w.joints.edge_b.data()[i]));
   copy_to(w.joint_ends, ends);
-  if (w.extrinsic) {
+  if (w.given->extrinsic) {
     w.stress.resize(count);
     w.overshoot.resize(joints);
   }
@@ -359,7 +359,7 @@ void take_common(World& w, Communicator& ranks) {
 
 void note_mesh(World& whole) {
   WholeMesh& mesh = whole.mesh;
-  mesh.tied.assign(whole.open_vertex.size(), 0);
+  mesh.tied.assign(whole.given->open_vertex.size(), 0);
   for (const Index node : whole.bundles.nodes.host()) mesh.tied[at(whole.vertex[at(node)])] = 1;
   mesh.bundled = whole.bundles.nodes.size() > 0;
   copy_to(mesh.loaded, whole.loaded_edges);
@@ -407,7 +407,7 @@ void refresh_ghosts(World& w) {
 void select_active_ghosts(World& w) {
   // Waking joints look at triangles that nothing ties yet; on a device the list costs more than
   // it saves.
-  if (w.domain.single_rank() || w.extrinsic || w.exec.space != Space::host) return;
+  if (w.domain.single_rank() || w.given->extrinsic || w.exec.space != Space::host) return;
   w.domain.select_active_ghosts(w.triangles.id, w.couples.pairs.a, w.couples.pairs.b);
 }
 
@@ -430,7 +430,7 @@ World share_parts(World part, const std::vector<std::uint8_t>& own, Communicator
   take_common(part, ranks);
   part.ledger = {};  // what this rank books from here on
   Mesh mesh(part, space);
-  begin_sharing(part.domain, ranks, config, mesh, part.parameters.mean_edge, 2);
+  begin_sharing(part.domain, ranks, config, mesh, part.given->mean_edge, 2);
   copy_to(part.domain.owned, own);
   part.domain.drifted_until = part.time;
   share_anew(part.domain, mesh, true);

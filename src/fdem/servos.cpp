@@ -33,22 +33,24 @@ struct SupportPush {
   }
 };
 
-ServoReading read_support(World& part, NodeSet& set, int axis) {
+ServoReading read_support(World& part, std::size_t number, int axis) {
+  const NodeSet& set = part.given->sets[number];
   Buffer<Index> all(part.exec.space);
   View<const Index> corners;
   if (part.domain.single_rank()) {
     copy_to(all, set.nodes);
     corners = std::as_const(all).view();
   } else {
-    keep_here(set.here, part.domain, part.triangles.id, set.nodes, 3, part.exec.space);
-    corners = std::as_const(set.here.places).view();
+    SetHere& here = part.sets_here[number];
+    keep_here(here, part.domain, part.triangles.id, set.nodes, 3, part.exec.space);
+    corners = std::as_const(here.places).view();
   }
-  const Vec2& g = part.parameters.gravity;
+  const Vec2& g = part.given->gravity;
   return fold(part.exec, corners.size, ServoReading{},
               SupportPush{part.domain.owned_view(), axis, axis == 0 ? g.x : g.y, corners,
                           std::as_const(part.triangles.force).view(),
                           std::as_const(part.triangles.mass).view(),
-                          std::as_const(part.triangles.material).view(), part.laws.view()},
+                          std::as_const(part.triangles.material).view(), part.given->laws.view()},
               Sum{});
 }
 
@@ -56,12 +58,11 @@ ServoReading read_support(World& part, NodeSet& set, int axis) {
 
 std::vector<ServoReading> read_servos(World& part, const Config& now) {
   std::vector<ServoReading> readings;
-  const std::size_t bodies = part.sets.size() - now.supports.size();
+  const std::size_t bodies = part.given->sets.size() - now.supports.size();
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
     const SupportServoConfig& servo = now.supports[s].servo;
-    readings.push_back(servo.is_on()
-                           ? read_support(part, part.sets[bodies + s], servo.axis_number())
-                           : ServoReading{});
+    readings.push_back(servo.is_on() ? read_support(part, bodies + s, servo.axis_number())
+                                     : ServoReading{});
   }
   return readings;
 }

@@ -1,12 +1,12 @@
 #pragma once
 // Everything an FDEM run consists of between two steps.
 
-#include <string>
 #include <vector>
 
 #include "core/broad_phase.hpp"
 #include "core/drift.hpp"
 #include "core/energy.hpp"
+#include "core/read_only.hpp"
 #include "core/stages.hpp"
 #include "core/step_clock.hpp"
 #include "core/travel.hpp"
@@ -15,26 +15,18 @@
 #include "exec/lanes.hpp"
 #include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
-#include "fdem/setup/config.hpp"
-#include "fdem/setup/effective.hpp"
+#include "fdem/case.hpp"
 #include "fdem/setup/model.hpp"
 #include "fdem/triangles/loads.hpp"
 
 namespace breccia::fdem {
 
-/// A named set of corners that probes read: a body, a support or a line of the mesh.
-struct NodeSet {
-  std::string name;
-  std::vector<Index> nodes;  ///< 3 triangle + corner, ascending, in the whole mesh
-  SetHere here{};            ///< in a rank's part, for its probes
-};
-
 /// Where the triangles that can touch stood at the last search, and how far each may go from there,
 /// the drift taken off.
 struct TravelOfTriangles {
-  Buffer<Index> triangle;     ///< those that can touch, ascending by global id
-  Buffer<Corners> reference;  ///< their corners at the search  [m]
-  Buffer<double> margin;      ///<  [m]
+  Buffer<Index> triangle;     ///< those that can touch, ascending by global id  [-]  (search)
+  Buffer<Corners> reference;  ///< their corners at the search  [m]  (search)
+  Buffer<double> margin;      ///< how far each may go from there  [m]  (search)
   PlaneDrift drift;
 
   template <class Visit>
@@ -48,8 +40,9 @@ struct TravelOfTriangles {
 /// Where joints have opened. A vertex becomes contact-active at a step fixed by the physics, not at
 /// the next search, so results do not depend on when searches happen.
 struct ExposedVertices {
-  Buffer<std::uint8_t> changed;  ///< flags of Change since the vertices were marked last
-  Buffer<std::uint8_t> vertex;   ///< 1: a joint at this vertex of the mesh is damaged
+  Buffer<std::uint8_t>
+      changed;                  ///< flags of Change since the last marking  [-]  (2; pairs, search)
+  Buffer<std::uint8_t> vertex;  ///< 1: a joint here is damaged  [-]  (vertices; search)
 };
 
 /// What a rank knows of the whole mesh besides its part of it.
@@ -70,24 +63,30 @@ enum class JointPack : std::uint8_t {
   done    ///< and evaluated in this step: they are whole and stay so
 };
 
-/// Numbers that stay as the case gave them.
-struct Parameters {
-  TimeConfig time;
-  Vec2 gravity{};
-  Sym2 in_situ{};  ///< stress at the start  [Pa]
-  double local_damping = 0.0;
-  double mean_edge = 0.0;  ///<  [m]
-  double skin = 0.0;       ///< margin of the search between two triangles at rest  [m]
-  bool conservative = false;
-  Index materials = 0;
-};
-
+/// Each line tells meaning and unit, then (length; who writes it). Lengths: triangles, joints, ...
+/// of this rank, ghosts included; no length: one number. Writers, in the order of a run:
+///
+///   set-up   make_world()
+///   stage    configure(), where a stage of the case begins and after loading a checkpoint
+///   servo    correct_servos(), every servo_every steps
+///   move, search, insertion, pairs, sums, loads, bundles, dt
+///            within a step, by fdem/stepping/step.hpp: moving triangles; find_couples(); joints
+///            that wake; forces of joints and couples; forces of triangles; forces on edges;
+///            corners that move as one; the next step
+///   ranks    when triangles change ranks (fdem/ranks.cpp) or the world changes its space
+///   derive   derive(), after loading and ranks; advance: advance(), on a device
+///
+/// What ranks write moves with its triangle, joint or couple.
 struct World {
   explicit World(const Exec& how);
 
-  Exec exec;
-  Lanes lanes;
-  Parameters parameters;
+  Exec exec;             ///< (ranks: its space)
+  Lanes lanes;           ///< (set-up)
+  ReadOnly<Case> given;  ///< constants: fdem/case.hpp (set-up, stage)
+
+  // Prescribed motions: constant but for those that servos lead.
+  std::vector<PrescribedMotion> prescribed;  ///< (motions; set-up, stage, servo)
+  std::vector<ServoMotion> servo_motions;    ///< which of them servos lead (set-up, stage)
 
   /// Visits the arrays that kernels read: state, and what follows from the case.
   template <class Visit>
@@ -99,12 +98,12 @@ struct World {
     state(joints);
     state(couples);
     state(reach);
+    given.each_array(visit);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(triangles.external, joints.force.in_double, joints.force.in_single, joints.preset,
-         exposed.changed, exposed.vertex, laws, bonds, contact_pairs, holds, load_starts,
-         loaded_edges, dashpots, bundles.starts, bundles.nodes, bundles.leader, joint_ends, edges,
-         motions, last_motions, load_laws, stress, overshoot, reached, domain.owned_there,
-         domain.migration_reference);
+         exposed.changed, exposed.vertex, load_starts, loaded_edges, dashpots, bundles.starts,
+         bundles.nodes, bundles.leader, joint_ends, edges, motions, last_motions, load_laws, stress,
+         overshoot, reached, domain.owned_there, domain.migration_reference);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
@@ -116,78 +115,69 @@ struct World {
   }
 
   // State: what a checkpoint holds.
-  Triangles triangles;
-  Joints joints;
-  Couples couples;
-  TravelOfTriangles reach;
-  ExposedVertices exposed;
-  Ledger ledger;
-  double time = 0.0;     ///< of positions and forces  [s]
-  double last_dt = 0.0;  ///< the step that led here  [s]
-  double next_dt = 0.0;  ///< the step to come  [s]
-  std::int64_t step = 0;
-  std::int64_t searches = 0;
-  std::vector<ServoState> servos;  ///< of supports; empty: the case has none
-  StageProgress stage;             ///< where it is among the stages of its case
+  Triangles triangles;        ///< (triangles; see its lines)
+  Joints joints;              ///< (joints; see its lines)
+  Couples couples;            ///< (couples; search, pairs, ranks)
+  TravelOfTriangles reach;    ///< since the last search (triangles that can touch; search, ranks)
+  ExposedVertices exposed;    ///< (vertices of the whole mesh; pairs, search)
+  Ledger ledger;              ///< (search, stage, probes)
+  double time = 0.0;          ///< of positions and forces  [s]  (move)
+  double last_dt = 0.0;       ///< the step that led here  [s]  (move)
+  double next_dt = 0.0;       ///< the step to come  [s]  (dt, search, insertion)
+  std::int64_t step = 0;      ///< steps taken  [-]  (end of a step)
+  std::int64_t searches = 0;  ///< [-]  (search)
+  std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
+  StageProgress stage;             ///< where it is among the stages of its case (stage)
 
-  // What follows from the case.
-  std::vector<std::string> groups;
-  std::vector<EffectiveRock> rocks;   ///< each material with its joints
-  std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
-  std::vector<NodeSet> sets;          ///< bodies first
-  Buffer<ElasticTriangle> laws;
-  Buffer<JointBond> bonds;
-  Buffer<ContactPair> contact_pairs;
-  Buffer<Hold> holds;
-  std::vector<PrescribedMotion> prescribed;
-  std::vector<ServoMotion> servo_motions;
-  std::vector<LoadLaw> loads;
-  std::vector<LoadAmplitude> load_amplitudes;
-  Buffer<Index> load_starts;
-  Buffer<LoadedEdge> loaded_edges;
-  Buffer<EdgeDashpots> dashpots;  ///< of each triangle, where some edge absorbs
-  Bundles bundles;
-  Buffer<JointEnds> joint_ends;
-  Buffer<EdgeJoints> edges;   ///< joints of each triangle by slot
-  bool extrinsic = false;     ///< some joints are dormant, or were
-  std::vector<Index> across;  ///< the same edge of the neighbour, -1: there is none
-  std::vector<Index> vertex;  ///< vertex of the mesh at each node
-  /// What a vertex of the mesh touches: bit 0 the border or an edge that nothing joins, bit 1 such
-  /// an edge between two triangles.
-  std::vector<std::uint8_t> open_vertex;
+  // Which part of the whole it is, and how its triangles lie in the mesh: constant between two
+  // migrations.
+  Domain domain;                   ///< (ranks; its ghosts that follow their owners: search)
+  WholeMesh mesh;                  ///< (ranks)
+  Halo tied_forces;                ///< ghosts whose corners move as one with own ones (ranks)
+  std::vector<SetHere> sets_here;  ///< places of Case::sets on this rank (sets; probes, servo)
+  std::vector<Index> across;  ///< edge of the neighbour, -1: none here  [-]  (3 triangles; ranks)
+  std::vector<Index> vertex;  ///< vertex of the whole mesh at each node  [-]  (3 triangles; ranks)
+  Buffer<EdgeJoints> edges;   ///< joints of each triangle by slot  [-]  (triangles; set-up, ranks)
+  Buffer<JointEnds> joint_ends;     ///< nodes  [-]  (joints; set-up, ranks)
+  Buffer<Index> load_starts;        ///< first loaded edge of each triangle, and the end  [-]
+                                    ///< (loaded triangles + 1; set-up, ranks)
+  Buffer<LoadedEdge> loaded_edges;  ///< (loaded edges; set-up, ranks)
+  Buffer<EdgeDashpots> dashpots;    ///< [Pa s/m]  (triangles, none if no edge absorbs; ranks)
+  Bundles bundles;  ///< corners that may move as one (set-up, ranks); leaders: (derive, insertion)
+  Buffer<Index> node_vertex;           ///< `vertex`, for kernels (3 triangles; search)
+  Buffer<Index> edge_across;           ///< `across`, for kernels (3 triangles; search)
+  Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
-  // Which part of the whole it is.
-  Domain domain;
-  WholeMesh mesh;
-  Halo tied_forces;  ///< ghosts whose corners move as one with own ones
-  /// Of each joint_pack joints; empty: all of them wait for ghosts. On the host.
+  // What follows from a search.
+  Incidence couple_incidence;  ///< (triangles; search, derive)
+  BroadPhase broad_phase;      ///< scratch of the search (search)
+  Buffer<Index> parent_joint;  ///< see CoupleForces  [-]  (couples; search, derive)
+  Buffer<Index> reach_place;   ///< in `reach`, -1: a ghost, or it cannot touch  [-]
+                               ///< (triangles; search, derive)
+
+  // What follows from a step, overwritten by the next one.
+  Buffer<Motion> motions;        ///< of supports, mid-step  [m/s]  (motions; move)
+  Buffer<LoadLaw> load_laws;     ///< Case::loads with their factors now (loads; loads)
+  Buffer<Sym2> stress;           ///< where joints are extrinsic  [Pa]  (triangles; insertion)
+  Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
+                                 ///< (joints; insertion)
+  Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached  [-]  (1; insertion)
+  bool margin_used = false;      ///< some own triangle has used its margin up (move)
+  /// Of each joint_pack joints; empty: all of them wait for ghosts. On the host. (joints /
+  /// joint_pack; ranks; `done` within a step: pairs)
   std::vector<JointPack> joint_packs;
 
-  // What follows from the state.
-  Buffer<Index> node_vertex;           ///< `vertex`, where kernels can read it
-  Buffer<Index> edge_across;           ///< `across`, likewise
-  Buffer<std::uint8_t> border_vertex;  ///< `open_vertex`, likewise
-  Buffer<Motion> motions;
-  Buffer<LoadLaw> load_laws;
-  Buffer<Sym2> stress;           ///< of each triangle, where joints are extrinsic  [Pa]
-  Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
-  Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached
-  Buffer<Index> parent_joint;    ///< of each couple, see CoupleForces
-  Buffer<Index> reach_place;     ///< of each triangle in `reach`, -1: a ghost, or it cannot touch
-  bool margin_used = false;      ///< some own triangle has used its margin up
-  Incidence couple_incidence;
-  BroadPhase broad_phase;
-
   // On a device.
-  Buffer<Motion> last_motions;        ///< while `motions` are those of the step to come
-  Buffer<AmplitudeTable> amplitudes;  ///< two of each prescribed motion, then of each load
-  Buffer<double> amplitude_times, amplitude_factors;
-  Buffer<Vec2> prescribed_velocity;
-  Buffer<StepClock> clock;
+  Buffer<Motion>
+      last_motions;  ///< while `motions` are those of the step to come (motions; bundles)
+  Buffer<AmplitudeTable> amplitudes;  ///< two of each motion, then of each load (advance)
+  Buffer<double> amplitude_times, amplitude_factors;  ///< their entries  [s], [-]  (advance)
+  Buffer<Vec2> prescribed_velocity;                   ///< [m/s]  (motions; advance, servo)
+  Buffer<StepClock> clock;                            ///< time there (2; move)
   /// Of a move launched at once: 1 if margin_used; and bit k if flag k of ExposedVertices::changed
-  /// is set.
+  /// is set. (2; move)
   Buffer<std::int32_t> device_flags;
-  StepGraph graph;  ///< of a few steps
+  StepGraph graph;  ///< of a few steps (advance)
 };
 
 /// Moves a world's arrays to another space; derive() must follow.
@@ -200,6 +190,8 @@ World make_world(const Config& config, const Model& model, const Exec& exec);
 /// Lets the world go on by another stage of its case: gravity, damping, friction, supports, loads.
 /// The state stays as it is. @throws InputError if supports contradict each other
 void configure(World& w, const Config& config);
+/// Gravity alone: the ledger asks what a change of it is worth.
+void set_gravity(World& w, const Vec2& gravity);
 
 /// Fills what follows from the state, after loading.
 void derive(World& w);

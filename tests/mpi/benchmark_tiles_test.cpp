@@ -57,7 +57,7 @@ TEST(TiledPlate, moves_alike_on_any_number_of_ranks) {
 
 TEST(TiledPlate, is_whole_across_the_sides_of_tiles) {
   const fdem::World w = tiled_plate(four, nullptr, Exec{});
-  std::vector<std::uint8_t> rim(w.open_vertex.size(), 0);
+  std::vector<std::uint8_t> rim(w.given->open_vertex.size(), 0);
   Index joined = 0;
   for (std::size_t edge = 0; edge < w.across.size(); ++edge) {
     const std::size_t next = edge / 3 * 3 + (edge + 1) % 3;
@@ -67,7 +67,7 @@ TEST(TiledPlate, is_whole_across_the_sides_of_tiles) {
     else
       ++joined;
   }
-  EXPECT_EQ(rim, w.open_vertex);
+  EXPECT_EQ(rim, w.given->open_vertex);
   for (const Index t : w.reach.triangle.host()) {
     const std::size_t first = 3 * static_cast<std::size_t>(t);
     EXPECT_TRUE(std::any_of(w.vertex.begin() + first, w.vertex.begin() + first + 3,

@@ -71,8 +71,8 @@ TEST(Servo, wall_presses_a_column_as_far_as_its_springs_say) {
   EXPECT_NEAR(probes[0], push, 1e-3 * push);
   // Two contacts with walls and five between spheres, of whose stiffness World knows the constants.
   const dem::World w = s.world();
-  const double between = w.contact_pairs.data()[0].normal * 0.01 / 2.0;
-  const double at_wall = w.wall_pairs.data()[0].normal * 0.01 / 2.0;
+  const double between = w.given->contact_pairs.data()[0].normal * 0.01 / 2.0;
+  const double at_wall = w.given->wall_pairs.data()[0].normal * 0.01 / 2.0;
   const double shorter = push * (2.0 / at_wall + (spheres - 1) / between);
   EXPECT_NEAR(0.02 * spheres - probes[1], shorter, 2e-3 * shorter);
   EXPECT_LT(method->energy().error_relative, 1e-2);

@@ -12,9 +12,9 @@ namespace breccia::dem {
 /// History of cohesive links from step to step.
 template <class Number>
 struct LinkHistory {
-  Buffer<Number> opening;   ///< largest so far, or link_broken, link_released  [m]
-  PlanesOf<Number> shear;   ///< F_s on b  [N]
-  PlanesOf<Number> moment;  ///< M on b  [N m]
+  Buffer<Number> opening;   ///< largest so far, or link_broken, link_released  [m]  (pairs)
+  PlanesOf<Number> shear;   ///< F_s on b  [N]  (pairs)
+  PlanesOf<Number> moment;  ///< M on b  [N m]  (pairs)
 };
 
 /// Cohesive links. Never removed: a broken one answers as the contact that is left of it.
@@ -25,13 +25,13 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
   static constexpr bool swept = true;
 
   Precision precision = Precision::full;  ///< of `kept`
-  Buffer<double> length;                  ///< D_eq  [m]
-  Buffer<double> stiffness;               ///< K_n  [N/m]
-  Buffer<double> area;                    ///< S  [m2]
+  Buffer<double> length;                  ///< D_eq  [m]  (set-up; pairs: compaction)
+  Buffer<double> stiffness;               ///< K_n  [N/m]  (constant)
+  Buffer<double> area;                    ///< S  [m2]  (constant)
   Stored<LinkHistory> kept;
-  Buffer<double> slid;     ///< energy spent on sliding so far  [J]
-  Buffer<double> yielded;  ///< energy spent on plastic moments so far  [J]
-  Buffer<double> broke;    ///< energy that its rupture spent  [J]
+  Buffer<double> slid;     ///< energy spent on sliding so far  [J]  (pairs)
+  Buffer<double> yielded;  ///< energy spent on plastic moments so far  [J]  (pairs)
+  Buffer<double> broke;    ///< energy that its rupture spent  [J]  (pairs)
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -15,12 +15,13 @@ struct LinkArrays<InterfaceLink> : LinkEnds {
   static constexpr bool swept = false;
 
   Buffer<Index> before,
-      after;  ///< neighbours of a along its bar (a itself at an end): they give the axis
-  Buffer<double> stiffness;  ///< K_tr  [N/m]
-  Buffer<double> area;       ///< S, share of the bar's surface  [m2]
-  Buffer<InterfaceState> state;
-  Buffer<double> slid;   ///< energy spent on bond slip and friction so far  [J]
-  Buffer<double> broke;  ///< energy that its rupture spent  [J]
+      after;  ///< neighbours of a along its bar (a itself at an end): they give the axis  [-]
+              ///< (ends)
+  Buffer<double> stiffness;      ///< K_tr  [N/m]  (constant)
+  Buffer<double> area;           ///< S, share of the bar's surface  [m2]  (constant)
+  Buffer<InterfaceState> state;  ///< (pairs)
+  Buffer<double> slid;           ///< energy spent on bond slip and friction so far  [J]  (pairs)
+  Buffer<double> broke;          ///< energy that its rupture spent  [J]  (pairs)
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -37,13 +37,13 @@ struct LinkArrays<LdpmFacet> : LinkEnds {
   static constexpr const char* name = "ldpm";
   static constexpr bool swept = false;
 
-  Buffer<Index> c, d;  ///< the other corners of its tetrahedron
-  Buffer<LdpmPlace> place;
-  Buffer<LdpmFrame> frame;
-  Buffer<LdpmFacetState> state;
-  Buffer<double> opened;     ///< energy spent while open: on fracture  [J]
-  Buffer<double> compacted;  ///< while closed, by normal strains  [J]
-  Buffer<double> slid;       ///< while closed, by tangential strains  [J]
+  Buffer<Index> c, d;            ///< the other corners of its tetrahedron  [-]  (ends)
+  Buffer<LdpmPlace> place;       ///< (constant)
+  Buffer<LdpmFrame> frame;       ///< (pairs)
+  Buffer<LdpmFacetState> state;  ///< (pairs)
+  Buffer<double> opened;         ///< energy spent while open: on fracture  [J]  (pairs)
+  Buffer<double> compacted;      ///< while closed, by normal strains  [J]  (pairs)
+  Buffer<double> slid;           ///< while closed, by tangential strains  [J]  (pairs)
 
   template <class Visit>
   void each_field(Visit&& field) {

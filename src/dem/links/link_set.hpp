@@ -14,9 +14,10 @@
 
 namespace breccia::dem {
 
-/// Elements that links join, a's global id below b's.
+/// Elements that links join, a's global id below b's. One item a link; written by set-up, and where
+/// elements change places.
 struct LinkEnds {
-  Buffer<Index> a, b;  ///< places in memory
+  Buffer<Index> a, b;  ///< places in memory  [-]
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -36,8 +37,9 @@ struct LinkEnds {
   Index size() const { return a.size(); }
 };
 
-/// The arrays of all links of a law: ends, constants, state, what they have spent. One definition a
-/// law, with
+/// The arrays of all links of a law: ends, constants, state, what they have spent. One item a link;
+/// in brackets who writes it, in the words of World: constant (set-up alone) or pairs (its kernel
+/// of forces); all of it moves with its link between ranks. One definition a law, with
 ///
 ///   kind, name             its LinkKind, and its word in files
 ///   swept                  whether the host sums its forces as they come (concrete alone)
@@ -51,14 +53,15 @@ struct LinkArrays;
 /// Neighbouring links of one material: one loop.
 template <class Law>
 struct LinkGroup {
-  Law law;
-  Index begin = 0, end = 0;
-  std::int16_t material = 0;
+  Law law;                    ///< (constant)
+  Index begin = 0, end = 0;   ///< of its links here (set-up, ranks)
+  std::int16_t material = 0;  ///< (constant)
   std::vector<Index> starts;  ///< first link of each element a, and the end; swept on the host only
   Index first_number = 0, end_number = 0;  ///< of its links in the whole model; ranks only
 };
 
-/// The laws of all groups where a device's kernels can read them, in the order of the groups.
+/// The laws of all groups where a device's kernels can read them, in the order of the groups;
+/// filled by derive().
 template <class Law>
 struct GroupLaws {
   Buffer<Law> laws;

@@ -14,11 +14,11 @@ struct LinkArrays<ParallelBond> : LinkEnds {
   static constexpr const char* name = "parallel";
   static constexpr bool swept = false;
 
-  Buffer<double> length;     ///< D_eq  [m]
-  Buffer<double> stiffness;  ///< K_n  [N/m]
-  Buffer<ParallelBondState> state;
-  Buffer<double> slid;   ///< energy spent on sliding after rupture so far  [J]
-  Buffer<double> broke;  ///< energy that its rupture spent  [J]
+  Buffer<double> length;            ///< D_eq  [m]  (constant)
+  Buffer<double> stiffness;         ///< K_n  [N/m]  (constant)
+  Buffer<ParallelBondState> state;  ///< (pairs)
+  Buffer<double> slid;              ///< energy spent on sliding after rupture so far  [J]  (pairs)
+  Buffer<double> broke;             ///< energy that its rupture spent  [J]  (pairs)
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -14,10 +14,10 @@ struct LinkArrays<SteelLink> : LinkEnds {
   static constexpr const char* name = "steel";
   static constexpr bool swept = false;
 
-  Buffer<double> length;  ///< L_s  [m]
-  Buffer<SteelState> state;
-  Buffer<double> yielded;  ///< energy spent on yielding so far  [J]
-  Buffer<double> broke;    ///< energy that its rupture spent  [J]
+  Buffer<double> length;     ///< L_s  [m]  (constant)
+  Buffer<SteelState> state;  ///< (pairs)
+  Buffer<double> yielded;    ///< energy spent on yielding so far  [J]  (pairs)
+  Buffer<double> broke;      ///< energy that its rupture spent  [J]  (pairs)
 
   template <class Visit>
   void each_field(Visit&& field) {

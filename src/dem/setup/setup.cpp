@@ -8,6 +8,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/set_up.hpp"
 #include "core/world_space.hpp"
 #include "dem/setup/materials.hpp"
 #include "dem/setup/stages.hpp"
@@ -19,6 +20,10 @@
 
 namespace breccia::dem {
 namespace {
+
+Case& set_up(World& w) {
+  return w.given.change(SetUp{});
+}
 
 template <class T>
 Buffer<T> filled(const World& w, const std::vector<T>& items) {
@@ -48,7 +53,7 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
   w.prescribed = held.motions;
   double sum = 0.0;
   for (const double r : m.radius) sum += r;
-  w.parameters.mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
+  set_up(w).mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
 }
 
 /// The links of one kind, sorted into groups of one material and, of concrete, bodies of one bulk,
@@ -183,7 +188,7 @@ void limit_margins(World& w, const Model& m) {
     if (link.kind != LinkKind::steel && link.kind != LinkKind::interface)
       least = std::min({least, radius_of(m, link.a), radius_of(m, link.b)});
   if (least == no_limit) least = *std::max_element(m.radius.begin(), m.radius.end());
-  w.parameters.largest_margin = 0.5 * least;
+  set_up(w).largest_margin = 0.5 * least;
 }
 
 void set_links(LinkSet<SteelLink>& set, const Config& config, const Model& m) {
@@ -237,33 +242,36 @@ void set_links(LinkSet<InterfaceLink>& set, const Config& config, const Model& m
 
 /// Bodies and supports, for probes.
 void set_sets(World& w, const Config& config, const Model& m, const Prescribed& held) {
+  std::vector<ElementSet>& sets = set_up(w).sets;
   for (std::size_t g = 0; g < m.groups.size(); ++g) {
     std::vector<Index> members;
     for (std::size_t e = 0; e < m.group.size(); ++e)
       if (m.group[e] == static_cast<std::int16_t>(g)) members.push_back(static_cast<Index>(e));
-    w.sets.push_back({m.groups[g], filled(w, members)});
+    sets.push_back({m.groups[g], filled(w, members)});
   }
   for (std::size_t s = 0; s < config.supports.size(); ++s)
-    w.sets.push_back({config.supports[s].name, filled(w, held.members[s])});
+    sets.push_back({config.supports[s].name, filled(w, held.members[s])});
+  w.sets_here.resize(sets.size());
 }
 
 void set_contacts(World& w, const Config& config, const Model& m) {
-  w.parameters.contact = contact_law(config.contact);
-  w.parameters.materials = static_cast<Index>(config.materials.size());
+  Case& given = set_up(w);
+  given.contact = contact_law(config.contact);
+  given.materials = static_cast<Index>(config.materials.size());
   std::vector<ContactPair> pairs, walls;
   for (const MaterialConfig& a : config.materials) {
     for (const MaterialConfig& b : config.materials)
       pairs.push_back(contact_pair(config.contact, a, b));
     walls.push_back(wall_pair(config.contact, a));
   }
-  w.contact_pairs = filled(w, pairs);
-  w.wall_pairs = filled(w, walls);
+  given.contact_pairs = filled(w, pairs);
+  given.wall_pairs = filled(w, walls);
   for (std::size_t k = 0; k < config.walls.size(); ++k) {
     const WallConfig& wall = config.walls[k];
     const double size = norm(wall.normal);
     if (!(size > 0.0)) throw InputError("wall " + wall.name + " has a normal of length 0");
-    w.wall_names.push_back(wall.name);
-    w.wall_friction.push_back(wall.friction);
+    given.wall_names.push_back(wall.name);
+    given.wall_friction.push_back(wall.friction);
     const std::size_t motion = add_motion(w, wall, k);
     w.walls.push_back({wall.point, (1.0 / size) * wall.normal, w.prescribed.velocity(motion, 0.0),
                        wall.stiffness, 0.0});
@@ -283,7 +291,7 @@ void set_contacts(World& w, const Config& config, const Model& m) {
       const ContactPair& pair = pairs[material * config.materials.size() + material];
       step = std::sqrt(2.0 * m.mass[e] / (pair.normal * 0.5 * r));
     }
-    w.parameters.contact_step = std::min(w.parameters.contact_step, config.time.safety * step);
+    given.contact_step = std::min(given.contact_step, config.time.safety * step);
   }
 }
 
@@ -332,12 +340,12 @@ namespace {
 World made(const Config& config, const Model& model, const Exec& exec) {
   if (model.size() == 0) throw InputError("the case has no elements");
   World w(exec);
-  w.parameters.time = config.time;
-  w.parameters.search = config.search;
-  w.parameters.gravity = config.gravity;
-  w.parameters.local_damping = config.local_damping;
-  for (const MaterialConfig& m : config.materials)
-    w.parameters.bars.push_back(m.law == "steel" ? 1 : 0);
+  Case& given = set_up(w);
+  given.time = config.time;
+  given.search = config.search;
+  given.gravity = config.gravity;
+  given.local_damping = config.local_damping;
+  for (const MaterialConfig& m : config.materials) given.bars.push_back(m.law == "steel" ? 1 : 0);
   const Prescribed held = prescribed(config, support_members(config, model), model.position.size());
   set_elements(w, model, held);
   w.each_set([&](auto& set) { set_links(set, config, model); });

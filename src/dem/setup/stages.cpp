@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/named.hpp"
+#include "core/set_up.hpp"
 #include "dem/world.hpp"
 
 namespace breccia::dem {
@@ -83,17 +84,23 @@ std::vector<std::string> stage_problems(const Config& config) {
   return problems;
 }
 
+void set_gravity(World& w, const Vec3& gravity) {
+  w.given.change(SetUp{}).gravity = gravity;
+}
+
 void configure(World& w, const Config& config) {
-  w.parameters.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
-  w.parameters.local_damping = config.local_damping;
-  w.parameters.contact.friction =
+  Case& given = w.given.change(SetUp{});
+  given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+  given.local_damping = config.local_damping;
+  given.contact.friction =
       config.stage_friction < 0.0 ? config.contact.friction : config.stage_friction;
-  const std::size_t bodies = w.sets.size() - config.supports.size();
+  const std::size_t bodies = w.given->sets.size() - config.supports.size();
   std::size_t elements = 0;
   for (std::size_t b = 0; b < bodies; ++b)
-    elements += static_cast<std::size_t>(w.sets[b].members.size());
+    elements += static_cast<std::size_t>(w.given->sets[b].members.size());
   std::vector<std::vector<Index>> members(config.supports.size());
-  for (std::size_t s = 0; s < members.size(); ++s) copy_to(members[s], w.sets[bodies + s].members);
+  for (std::size_t s = 0; s < members.size(); ++s)
+    copy_to(members[s], w.given->sets[bodies + s].members);
   Prescribed held = prescribed(config, std::move(members), elements);
   std::vector<GlobalId> ids;
   copy_to(ids, w.elements.id);
@@ -109,7 +116,7 @@ void configure(World& w, const Config& config) {
   for (std::size_t k = 0; k < config.walls.size(); ++k) add_motion(w, config.walls[k], k);
   place_motions(w);
   // A wall that stood still has no contacts listed around it: the next step searches.
-  for (Wall& wall : w.walls) wall.travelled = 2.0 * w.parameters.largest_margin;
+  for (Wall& wall : w.walls) wall.travelled = 2.0 * w.given->largest_margin;
   w.graph.clear();
 }
 

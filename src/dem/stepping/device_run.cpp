@@ -90,7 +90,7 @@ struct Grouped {
 };
 
 EndOfStep<StepRule> end_of_step(const World& w) {
-  return {step_rule(w), w.parameters.time.evaluate_every};
+  return {step_rule(w), w.given->time.evaluate_every};
 }
 
 /// A step by launches. `By` wraps each kernel: to run at once, or by the device's clock.
@@ -193,12 +193,12 @@ class ClockedRun : public LaunchedForces<ClockBy<phase>> {
       : LaunchedForces<ClockBy<phase>>({clocks}, clocks.now), clocks_(clocks) {}
 
   void move_boundary(World& w) const {
-    const int every = w.parameters.search.every;
+    const int every = w.given->search.every;
     std::int32_t* const host_request = &clocks_.now->host_request;
     const EndOfStep<StepRule> end = end_of_step(w);
     const MoveAndWatch move{move_kernel(w), every, host_request, w.domain.owned_view(), nullptr};
     const MoveWalls walls{{},
-                          w.parameters.largest_margin,
+                          w.given->largest_margin,
                           w.travel.drift.velocity,
                           every,
                           w.device_walls.view(),

@@ -57,12 +57,18 @@ void each_bar_set(World& w, const Visit& visit) {
 
 inline ContactForces contact_kernel(World& w) {
   Contacts& c = w.contacts;
-  return {w.parameters.contact,    w.last_dt,
-          elements_view(w),        w.elements.material.view(),
-          w.contact_pairs.view(),  w.parameters.materials,
-          c.pairs.a.view(),        c.pairs.b.view(),
-          c.history.state.view(),  c.history.slid.view(),
-          c.history.damped.view(), w.contact_actions.view()};
+  return {w.given->contact,
+          w.last_dt,
+          elements_view(w),
+          w.elements.material.view(),
+          w.given->contact_pairs.view(),
+          w.given->materials,
+          c.pairs.a.view(),
+          c.pairs.b.view(),
+          c.history.state.view(),
+          c.history.slid.view(),
+          c.history.damped.view(),
+          w.contact_actions.view()};
 }
 
 inline GatherForces gather_kernel(World& w) {
@@ -81,8 +87,8 @@ GatherWide<Number> gather_wide_kernel(World& w) {
 
 inline WallForces wall_kernel(World& w, Index wall) {
   WallContacts& c = w.wall_contacts;
-  ContactLaw law = w.parameters.contact;
-  const double own = w.wall_friction[static_cast<std::size_t>(wall)];
+  ContactLaw law = w.given->contact;
+  const double own = w.given->wall_friction[static_cast<std::size_t>(wall)];
   if (own >= 0.0) law.friction = own;
   return {law,
           w.last_dt,
@@ -90,7 +96,7 @@ inline WallForces wall_kernel(World& w, Index wall) {
           wall,
           elements_view(w),
           w.elements.material.view(),
-          w.wall_pairs.view(),
+          w.given->wall_pairs.view(),
           c.pairs.a.view(),
           w.wall_begin[static_cast<std::size_t>(wall)],
           c.history.state.view(),

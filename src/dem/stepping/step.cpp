@@ -49,8 +49,8 @@ Kick kick(const World& w) {
   return {w.time,
           w.last_dt,
           w.next_dt,
-          w.parameters.gravity,
-          w.parameters.local_damping,
+          w.given->gravity,
+          w.given->local_damping,
           w.motions.view(),
           w.motion_times.view(),
           w.motion_factors.view(),
@@ -64,7 +64,7 @@ Kick kick(const World& w) {
 }
 
 StepRule step_rule(const World& w) {
-  return {w.parameters.time.safety, w.parameters.time.max_step, w.parameters.contact_step};
+  return {w.given->time.safety, w.given->time.max_step, w.given->contact_step};
 }
 
 View<const Wall> walls_view(const World& w) {
@@ -111,7 +111,7 @@ void StepwiseRun::wall_forces(World& w) const {
 }
 
 void StepwiseRun::choose_step(World& w) const {
-  if (w.step % w.parameters.time.evaluate_every != 0) return;
+  if (w.step % w.given->time.evaluate_every != 0) return;
   const StageTime timed(w.exec, "time_step");
   const double least = w.exec.space != Space::host ? least_there(w) : least_here(w);
   w.next_dt = step_rule(w)(w.domain.least(least), w.last_dt);

@@ -84,15 +84,15 @@ void share_marks(const World& w, Buffer<std::uint8_t>& marked) {
 
 /// The mesh where kernels can read it.
 OpenVertices open_vertices(World& w) {
-  if (static_cast<std::size_t>(w.border_vertex.size()) != w.open_vertex.size())
-    copy_to(w.border_vertex, w.open_vertex);
+  if (static_cast<std::size_t>(w.border_vertex.size()) != w.given->open_vertex.size())
+    copy_to(w.border_vertex, w.given->open_vertex);
   return {node_vertices(w), w.border_vertex.view(), std::as_const(w.exposed.vertex).view()};
 }
 
 /// Marks the vertices of damaged joints.
 void mark_opened(World& w) {
   const OpenVertices vertices = open_vertices(w);
-  Buffer<std::uint8_t> marked(w.exec.space, static_cast<Index>(w.open_vertex.size()));
+  Buffer<std::uint8_t> marked(w.exec.space, static_cast<Index>(w.given->open_vertex.size()));
   for_each(w.exec, w.joints.size(),
            MarkDamaged{std::as_const(w.joints.stage).view(), w.joints.edge_a.view(),
                        vertices.vertex_of, marked.view()});
@@ -123,7 +123,7 @@ void book_dropped(World& w, const Pairs& found) {
 PlaneDrift choose_drift(const World& w) {
   const CommonMotion own = fold(w.exec, w.triangles.size(), CommonMotion{},
                                 MotionOf{w.triangles.nodes.view(), w.domain.owned_view()}, Sum{});
-  const Drift all = of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.parameters.mean_edge);
+  const Drift all = of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.given->mean_edge);
   return {{all.velocity.x, all.velocity.y}, all.since, all.farthest};
 }
 
@@ -214,7 +214,7 @@ void search(World& w) {
 
 MarginRule margin_rule(const World& w) {
   constexpr double horizon = 30.0;  // steps for which a fast triangle's margin shall last
-  return {w.parameters.skin, horizon * w.next_dt, 0.5 * w.parameters.mean_edge};
+  return {w.given->skin, horizon * w.next_dt, 0.5 * w.given->mean_edge};
 }
 
 void ask_for_search(World& w) {

@@ -69,7 +69,7 @@ Woken wake(World& w, const Buffer<Index>& joints) {
   Buffer<double> held(w.exec.space, count);
   Buffer<Index> triangles(w.exec.space, 2 * count), vertex(w.exec.space, 2 * count);
   for_each(w.exec, count,
-           Wake{overshoot_kernel(w).stress, w.bonds.view(), w.joints.law.view(),
+           Wake{overshoot_kernel(w).stress, w.given->bonds.view(), w.joints.law.view(),
                 w.joints.strength.view(), w.joints.length.view(), std::as_const(w.overshoot).view(),
                 node_vertices(w), w.domain.owned_view(), joints.view(), w.joints.stage.view(),
                 w.joints.preset.view(), held.view(), triangles.view(), vertex.view()});
@@ -98,7 +98,7 @@ void tie_corners(World& w, bool all, const std::vector<Index>& changed) {
 }  // namespace
 
 void insert_joints(World& w) {
-  if (!w.extrinsic) return;
+  if (!w.given->extrinsic) return;
   const StageTime timed(w.exec, "joint_insertion");
   for_each(w.exec, w.triangles.size(), stress_kernel(w));
   for_each(w.exec, w.joints.size(), overshoot_kernel(w));

@@ -184,13 +184,13 @@ struct TieCorners {
 
 inline TriangleStress stress_kernel(World& w) {
   const Triangles& t = w.triangles;
-  return {t.nodes.view(), t.material.view(), w.laws.view(), t.shape_inverse.view(),
+  return {t.nodes.view(), t.material.view(), w.given->laws.view(), t.shape_inverse.view(),
           w.stress.view()};
 }
 inline Overshoot overshoot_kernel(World& w) {
   const Triangles& t = w.triangles;
   return {{by_number(t.nodes.view()), w.joint_ends.view(), std::as_const(w.stress).view()},
-          w.bonds.view(),
+          w.given->bonds.view(),
           w.joints.law.view(),
           w.joints.strength.view(),
           std::as_const(w.joints.stage).view(),

@@ -43,21 +43,24 @@ struct JointWork {
 
 /// Cohesive joints. Edge 3 t + k leads from corner k of triangle t to the next one. Side a is the
 /// triangle with the lower global id; its edge's first node lies at the second node of side b's.
+/// One item for each joint, `force` has one more that stays zero; who writes it, in brackets, in
+/// the words of World. Constant: written by set-up; all of it moves with its joint between ranks.
 struct Joints {
-  Buffer<Index> edge_a, edge_b;   ///< the two edges that it joins
-  Buffer<Index> law;              ///< index into World::bonds  [-]
-  Buffer<double> length;          ///< at the start  [m]
-  Buffer<double> strength;        ///< over its law's  [-]
-  Buffer<Vec2> preset;            ///< opening and slip at which it was joined; empty: none  [m]
-  Buffer<JointStage> stage;       ///<  [-]
-  Buffer<JointPoints> points;     ///< damage and largest opening and slip
-  Stored<JointForcesOf> force;    ///< of this time  [N/m]
-  Buffer<JointWork> work;         ///< taken up so far  [J/m]
-  Buffer<double> broke_at;        ///< time of its break, -1: whole, -2: broken from the start  [s]
-  Buffer<double> pressing;        ///< compressive force when it broke  [N/m]
-  Buffer<double> shear_at_break;  ///< force on side a along its edge when it broke  [N/m]
-  Buffer<JointWork>
-      inherited_work;  ///< of its work, what the contact of its faces began with  [J/m]
+  Buffer<Index> edge_a, edge_b;      ///< the two edges that it joins  [-]  (set-up, ranks)
+  Buffer<Index> law;                 ///< index into Case::bonds  [-]  (constant)
+  Buffer<double> length;             ///< at the start  [m]  (constant)
+  Buffer<double> strength;           ///< over its law's  [-]  (constant)
+  Buffer<Vec2> preset;               ///< opening and slip at which it was joined; empty: none  [m]
+                                     ///< (set-up, insertion)
+  Buffer<JointStage> stage;          ///<  [-]  (insertion, pairs)
+  Buffer<JointPoints> points;        ///< damage and largest opening and slip  (pairs)
+  Stored<JointForcesOf> force;       ///< of this time  [N/m]  (pairs)
+  Buffer<JointWork> work;            ///< taken up so far  [J/m]  (pairs)
+  Buffer<double> broke_at;           ///< -1: whole, -2: broken from the start  [s]  (pairs)
+  Buffer<double> pressing;           ///< compressive force when it broke  [N/m]  (pairs)
+  Buffer<double> shear_at_break;     ///< on side a along its edge  [N/m]  (pairs)
+  Buffer<JointWork> inherited_work;  ///< of its work, what contact of its faces began with  [J/m]
+                                     ///< (pairs)
 
   template <class Visit>
   void each_field(Visit&& field) {

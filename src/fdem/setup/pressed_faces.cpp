@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "core/set_up.hpp"
 #include "fdem/stepping/launches.hpp"
 
 namespace breccia::fdem {
@@ -28,7 +29,7 @@ struct Given {
     copy_to(nodes, w.triangles.nodes);
     copy_to(material, w.triangles.material);
     copy_to(edges, w.edges);
-    copy_to(contacts, w.contact_pairs);
+    copy_to(contacts, w.given->contact_pairs);
   }
   Vec2 corner(Index t, Index k) const { return nodes[at(t)].at[k % 3].position; }
   const ContactPair& contact(Index t, Index u) const {
@@ -140,13 +141,13 @@ void warn(World& w, const Given& given, const std::vector<Index>& unable) {
                 "pulls at them, or rubs more than their friction holds; they start unloaded, and "
                 "what they hold moves at once",
                 unable.size(), place.x, place.y);
-  w.warnings.emplace_back(text);
+  w.given.change(SetUp{}).warnings.emplace_back(text);
 }
 
 }  // namespace
 
 std::vector<PressedFace> press_faces(World& w) {
-  const Sym2& stress = w.parameters.in_situ;
+  const Sym2& stress = w.given->in_situ;
   if (stress.xx == 0.0 && stress.yy == 0.0 && stress.xy == 0.0) return {};
   Given given(w);
   std::vector<PressedFace> faces;

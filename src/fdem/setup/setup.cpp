@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/set_up.hpp"
 #include "core/world_space.hpp"
 #include "exec/error.hpp"
 #include "fdem/observe.hpp"
@@ -18,6 +19,10 @@
 
 namespace breccia::fdem {
 namespace {
+
+Case& set_up(World& w) {
+  return w.given.change(SetUp{});
+}
 
 void set_up_triangles(World& w, const Config& config, const Model& model) {
   std::vector<GlobalId> id(model.triangle.size());
@@ -47,8 +52,9 @@ void set_up_triangles(World& w, const Config& config, const Model& model) {
     edges += edge;
     viscosity.push_back(m.damping * 2.0 * edge * std::sqrt(m.young * m.density));
   }
-  w.parameters.mean_edge = edges / static_cast<double>(model.triangle.size());
-  w.parameters.skin = config.search.margin * w.parameters.mean_edge;
+  Case& given = set_up(w);
+  given.mean_edge = edges / static_cast<double>(model.triangle.size());
+  given.skin = config.search.margin * given.mean_edge;
   Triangles& triangles = w.triangles;
   copy_to(triangles.id, id);
   copy_to(triangles.group, model.group);
@@ -93,7 +99,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   std::vector<Index> law;
   std::vector<double> length, strength;
   std::vector<Vec2> preset;
-  w.open_vertex.assign(model.point.size(), 0);
+  Case& given = set_up(w);
+  given.open_vertex.assign(model.point.size(), 0);
   w.across.assign(3 * model.triangle.size(), -1);
   std::vector<std::uint8_t> tied(model.point.size(), 0);  // 1: corners here move as one
   std::vector<JointStage> stage;
@@ -101,8 +108,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   const auto next = [](Index edge) { return 3 * (edge / 3) + (edge + 1) % 3; };
   for (const MeshEdge& e : mesh_edges(model)) {
     const auto open = [&](std::uint8_t bits) {
-      w.open_vertex[at(e.low)] |= bits;
-      w.open_vertex[at(e.high)] |= bits;
+      given.open_vertex[at(e.low)] |= bits;
+      given.open_vertex[at(e.high)] |= bits;
     };
     if (e.b < 0) {
       open(1);
@@ -132,7 +139,7 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     stage.push_back(dormant ? JointStage::dormant : JointStage::whole);
     if (dormant) {
       tied[at(e.low)] = tied[at(e.high)] = 1;
-      w.extrinsic = true;
+      given.extrinsic = true;
     }
     const auto joint = static_cast<Index>(edge_a.size());
     slot(e.a) = 2 * joint;
@@ -162,14 +169,14 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   copy_to(w.joint_ends, ends);
   const auto count = static_cast<Index>(edge_a.size());
   Joints& j = w.joints;
-  copy_to(w.bonds, table.bonds);
+  copy_to(given.bonds, table.bonds);
   copy_to(w.edges, edges);
   copy_to(j.edge_a, edge_a);
   copy_to(j.edge_b, edge_b);
   copy_to(j.law, law);
   copy_to(j.length, length);
   copy_to(j.strength, strength);
-  if (w.extrinsic || config.in_situ.any()) copy_to(j.preset, preset);
+  if (given.extrinsic || config.in_situ.any()) copy_to(j.preset, preset);
   copy_to(j.broke_at, std::vector<double>(edge_a.size(), -1.0));
   copy_to(j.stage, stage);
   j.points.resize(count);
@@ -186,9 +193,9 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
                    cross(model.point[at(corners[1])] - from, model.point[at(corners[2])] - from));
   }
   const std::vector<Index> material(model.material.begin(), model.material.end());
-  w.rocks =
+  given.rocks =
       effective_rocks(config, {material, area, edge_a, edge_b, law, length, stage, table.bonds});
-  if (w.extrinsic) {
+  if (given.extrinsic) {
     w.stress.resize(w.triangles.size());
     w.overshoot.resize(count);
     w.reached.resize(1);
@@ -233,9 +240,9 @@ void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Inde
 /// Supports: each corner follows the sum of those that hold it, each in its own directions.
 /// Returns the place in World::holds of each triangle of the whole mesh, -1: it is free.
 std::vector<Index> prescribe_supports(World& w, const Config& config) {
-  const std::size_t bodies = w.sets.size() - config.supports.size();
+  const std::size_t bodies = w.given->sets.size() - config.supports.size();
   std::size_t corners = 0;
-  for (std::size_t b = 0; b < bodies; ++b) corners += w.sets[b].nodes.size();
+  for (std::size_t b = 0; b < bodies; ++b) corners += w.given->sets[b].nodes.size();
   std::vector<Hold> holds;
   std::vector<Index> hold(corners / 3, -1);
   w.prescribed.clear();
@@ -258,7 +265,7 @@ std::vector<Index> prescribe_supports(World& w, const Config& config) {
                               amplitude(support.velocity, 1, support.history)});
     }
     if (bits == 0) continue;  // it lets go
-    for (const Index n : w.sets[bodies + s].nodes) {
+    for (const Index n : w.given->sets[bodies + s].nodes) {
       Index& own = hold[at(n / 3)];
       if (own < 0) {
         own = static_cast<Index>(holds.size());
@@ -276,18 +283,20 @@ std::vector<Index> prescribe_supports(World& w, const Config& config) {
       if (motion >= 0) h.motion[corner] = motion;
     }
   }
-  copy_to(w.holds, holds);
+  copy_to(set_up(w).holds, holds);
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
   return hold;
 }
 
 void set_up_supports(World& w, const Config& config, const Model& model) {
   for (const SupportConfig& support : config.supports)
-    w.sets.push_back({support.name, corners_in(model, support.region, "support." + support.name)});
+    set_up(w).sets.push_back(
+        {support.name, corners_in(model, support.region, "support." + support.name)});
+  w.sets_here.resize(w.given->sets.size());
   const std::vector<Index> hold = prescribe_supports(w, config);
   copy_to(w.triangles.hold, hold);
   std::vector<Hold> holds;
-  copy_to(holds, w.holds);
+  copy_to(holds, w.given->holds);
   start_held(w, holds, hold);
 }
 
@@ -310,16 +319,17 @@ LoadKind kind_of(const LoadConfig& load) {
 
 /// How large loads are, and how that changes.
 void prescribe_loads(World& w, const Config& config) {
-  w.loads.clear();
-  w.load_amplitudes.clear();
+  Case& given = set_up(w);
+  given.loads.clear();
+  given.load_amplitudes.clear();
   for (const LoadConfig& load : config.loads) {
     const LoadKind kind = kind_of(load);
-    w.loads.push_back({kind,
-                       {1.0, 1.0},
-                       load.pressure.is_table() ? 1.0 : load.pressure.value,
-                       scale_of(load.traction),
-                       scale_of(load.force)});
-    w.load_amplitudes.push_back(load_amplitude(load, kind));
+    given.loads.push_back({kind,
+                           {1.0, 1.0},
+                           load.pressure.is_table() ? 1.0 : load.pressure.value,
+                           scale_of(load.traction),
+                           scale_of(load.force)});
+    given.load_amplitudes.push_back(load_amplitude(load, kind));
   }
 }
 
@@ -329,7 +339,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
   prescribe_loads(w, config);
   for (const LoadConfig& load : config.loads) {
     const auto index = static_cast<std::int16_t>(&load - config.loads.data());
-    const LoadKind kind = w.loads[at(index)].kind;
+    const LoadKind kind = w.given->loads[at(index)].kind;
     if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
     const std::size_t first = loaded.size();
     double length = 0.0;
@@ -339,12 +349,12 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
       const double density = config.materials[material].density;
       const double own = norm(model.point[at(model.triangle[t][(k + 1) % 3])] -
                               model.point[at(model.triangle[t][k])]);
-      const double impedance_p = density * w.rocks[material].fast;
+      const double impedance_p = density * w.given->rocks[material].fast;
       loaded.push_back({edge / 3, static_cast<std::int16_t>(k), index, own, impedance_p,
-                        density * w.rocks[material].slow});
+                        density * w.given->rocks[material].slow});
       length += own;
       if (kind == LoadKind::absorbing)
-        dashpots[t].at[k] += impedance_p * w.load_amplitudes[at(index)].x.largest();
+        dashpots[t].at[k] += impedance_p * w.given->load_amplitudes[at(index)].x.largest();
     }
     for (std::size_t i = first; i < loaded.size(); ++i) loaded[i].share /= length;
   }
@@ -364,13 +374,14 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
 }
 
 void set_up_bodies(World& w, const Model& model) {
-  w.groups = model.groups;
+  Case& given = set_up(w);
+  given.groups = model.groups;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     NodeSet set{model.groups[g], {}};
     for (Index t = 0; t < model.size(); ++t)
       if (static_cast<std::size_t>(model.group[at(t)]) == g)
         for (Index k = 0; k < 3; ++k) set.nodes.push_back(3 * t + k);
-    w.sets.push_back(std::move(set));
+    given.sets.push_back(std::move(set));
   }
 }
 
@@ -378,13 +389,13 @@ void set_up_bodies(World& w, const Model& model) {
 void refuse_endless(const World& w) {
   constexpr double most = 1e15;
   const RuledStep least = ruled_step(w, true);
-  const double dt = std::min(w.next_dt, w.parameters.time.safety * least.step);
-  if (dt * most > w.parameters.time.end) return;
+  const double dt = std::min(w.next_dt, w.given->time.safety * least.step);
+  if (dt * most > w.given->time.end) return;
   char text[200];
   std::snprintf(text, sizeof text,
                 "the stable time step is %.3g s, ruled by %s: time.end = %.3g s is more than 1e15 "
                 "steps away; see the densities, moduli and stiffnesses of the materials",
-                dt, least.term, w.parameters.time.end);
+                dt, least.term, w.given->time.end);
   throw InputError(text);
 }
 
@@ -411,18 +422,19 @@ Config with_inertia(Config config) {
 
 }  // namespace
 
-World make_world(const Config& given, const Model& model, const Exec& exec) {
-  const Config config = with_inertia(given);
+World make_world(const Config& asked, const Model& model, const Exec& exec) {
+  const Config config = with_inertia(asked);
   if (model.size() == 0) throw InputError("the model holds no triangles");
   World w(exec);
-  w.parameters.time = config.time;
-  w.parameters.gravity = config.gravity;
-  w.parameters.in_situ = {config.in_situ.xx, config.in_situ.yy, config.in_situ.xy};
-  w.parameters.local_damping = config.local_damping;
-  w.parameters.conservative = config.contact.conservative;
-  w.parameters.materials = static_cast<Index>(config.materials.size());
-  copy_to(w.laws, elastic_table(config));
-  copy_to(w.contact_pairs, contact_table(config));
+  Case& given = set_up(w);
+  given.time = config.time;
+  given.gravity = config.gravity;
+  given.in_situ = {config.in_situ.xx, config.in_situ.yy, config.in_situ.xy};
+  given.local_damping = config.local_damping;
+  given.conservative = config.contact.conservative;
+  given.materials = static_cast<Index>(config.materials.size());
+  copy_to(given.laws, elastic_table(config));
+  copy_to(given.contact_pairs, contact_table(config));
   set_up_bodies(w, model);
   set_up_triangles(w, config, model);
   set_up_joints(w, config, model);
@@ -435,19 +447,24 @@ World make_world(const Config& given, const Model& model, const Exec& exec) {
   load_faces(w, faces);
   evaluate_forces(w);
   refuse_endless(w);
-  for (std::string& doubt : doubts(w, config)) w.warnings.push_back(std::move(doubt));
+  for (std::string& doubt : doubts(w, config)) given.warnings.push_back(std::move(doubt));
   begin_ledger(w);
   return w;
 }
 
+void set_gravity(World& w, const Vec2& gravity) {
+  set_up(w).gravity = gravity;
+}
+
 void configure(World& w, const Config& config) {
-  w.parameters.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
-  w.parameters.local_damping = config.local_damping;
+  Case& given = set_up(w);
+  given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+  given.local_damping = config.local_damping;
   std::vector<ContactPair> pairs = contact_table(config);
   const double friction = config.stage_friction;
   if (friction >= 0.0)
     for (ContactPair& pair : pairs) pair.friction = friction;
-  copy_to(w.contact_pairs, pairs);
+  copy_to(given.contact_pairs, pairs);
   const std::vector<Index> hold = prescribe_supports(w, config);
   std::vector<Index> ids, own;
   copy_to(ids, w.triangles.id);

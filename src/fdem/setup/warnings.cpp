@@ -50,9 +50,9 @@ void look_for_slivers(const World& w, std::vector<std::string>& found) {
                 "triangle %d (%s) at (%.6g, %.6g) m, with edges of %.3g to %.3g m, needs a time "
                 "step %.3g times shorter than the median triangle (%.3g s, ruled by %s); %lld "
                 "triangles are within a factor of 2 of it. Slivers of the mesh? See docs/meshes.md",
-                ruling, w.groups[at(triangles->group.data()[ruling])].c_str(), middle(nodes).x,
-                middle(nodes).y, shortest, longest, *half / least, least, ruling_term(w),
-                static_cast<long long>(many));
+                ruling, w.given->groups[at(triangles->group.data()[ruling])].c_str(),
+                middle(nodes).x, middle(nodes).y, shortest, longest, *half / least, least,
+                ruling_term(w), static_cast<long long>(many));
   found.emplace_back(text);
 }
 
@@ -70,7 +70,7 @@ void look_for_long_edges(const World& w, const Config& config, std::vector<std::
   const OnHost<Joints> joints(w.joints, w.exec.space);
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
   std::vector<JointBond> bonds;
-  copy_to(bonds, w.bonds);
+  copy_to(bonds, w.given->bonds);
   const auto material = [&](Index edge) -> const MaterialConfig& {
     return config.materials[at(triangles->material.data()[edge / 3])];
   };

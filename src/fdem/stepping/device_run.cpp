@@ -129,7 +129,7 @@ bool scales_next(const World& w) {
 }
 
 EndOfStep<AllowedStep> end_of_step(const World& w) {
-  return {allowed_step(w), w.parameters.time.evaluate_every};
+  return {allowed_step(w), w.given->time.evaluate_every};
 }
 
 ScaleMotions scale_motions(World& w) {
@@ -222,7 +222,7 @@ class ClockedRun {
   void receive_ghosts(World&) const {}
   void search_if_due(World&) const {}
   void insert_joints(World& w) const {
-    if (!w.extrinsic) return;
+    if (!w.given->extrinsic) return;
     for_each(w.exec, w.triangles.size(), timed(stress_kernel(w)));
     for_each(w.exec, w.joints.size(), timed(overshoot_kernel(w)));
     for_each(w.exec, 1, timed(WatchReached{w.reached.view(), &clocks_.now->host_request}));
@@ -238,7 +238,7 @@ class ClockedRun {
     const Index triangles = w.triangles.size();
     const Index threads = triangles < most_threads ? triangles : most_threads;
     const NoteStable stable{
-        stable_step(w), triangles, threads, w.parameters.time.evaluate_every, {clocks_.now}};
+        stable_step(w), triangles, threads, w.given->time.evaluate_every, {clocks_.now}};
     with_number(w.exec.precision, [&](auto number) {
       const auto sums = timed(triangle_kernel<decltype(number)>(w));
       for_each_part(w.exec, part(threads, timed(stable), part(triangles, sums, Parts<>{})));
@@ -287,13 +287,13 @@ void list_amplitudes(World& w) {
     append(p);
     velocity.push_back(p.velocity);
   }
-  for (const LoadAmplitude& a : w.load_amplitudes) append(a);
+  for (const LoadAmplitude& a : w.given->load_amplitudes) append(a);
   copy_to(w.amplitudes, tables);
   copy_to(w.amplitude_times, all.times);
   copy_to(w.amplitude_factors, all.factors);
   copy_to(w.prescribed_velocity, velocity);
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
-  if (w.load_starts.size() > 1) copy_to(w.load_laws, w.loads);
+  if (w.load_starts.size() > 1) copy_to(w.load_laws, w.given->loads);
 }
 
 /// Velocities of supports for the step to come.

@@ -26,9 +26,16 @@ struct StableStepOf {
 
 Kick kick(const World& w) {
   const Triangles& t = w.triangles;
-  return {w.last_dt,      w.next_dt,        w.parameters.gravity, w.parameters.local_damping,
-          w.holds.view(), w.motions.view(), t.mass.view(),        t.nodes.view(),
-          t.force.view(), t.hold.view()};
+  return {w.last_dt,
+          w.next_dt,
+          w.given->gravity,
+          w.given->local_damping,
+          w.given->holds.view(),
+          w.motions.view(),
+          t.mass.view(),
+          t.nodes.view(),
+          t.force.view(),
+          t.hold.view()};
 }
 
 StableStep stable_step(const World& w) {
@@ -36,21 +43,21 @@ StableStep stable_step(const World& w) {
   const Pairs& pairs = w.couples.pairs;
   return {t.nodes.view(),
           t.material.view(),
-          w.laws.view(),
+          w.given->laws.view(),
           t.viscosity.view(),
           t.mass.view(),
-          w.contact_pairs.view(),
-          w.parameters.materials,
+          w.given->contact_pairs.view(),
+          w.given->materials,
           w.edges.view(),
-          w.bonds.view(),
+          w.given->bonds.view(),
           w.joints.law.view(),
           w.joints.stage.view(),
           t.hold.view(),
-          w.holds.view(),
+          w.given->holds.view(),
           w.dashpots.view(),
           {t.nodes.view(), t.shape_inverse.view(), w.couple_incidence.view(), pairs.a.view(),
            pairs.b.view(), w.joints.edge_a.view(), w.joints.edge_b.view()},
-          w.parameters.time.evaluate_every};
+          w.given->time.evaluate_every};
 }
 
 void list_motions(World& w) {
@@ -62,7 +69,7 @@ void list_motions(World& w) {
 }
 
 AllowedStep allowed_step(const World& w) {
-  return {w.parameters.time.safety, w.parameters.time.max_step};
+  return {w.given->time.safety, w.given->time.max_step};
 }
 
 double choose_time_step(const World& w) {
@@ -106,8 +113,9 @@ void StepwiseRun::insert_joints(World& w) const {
 void StepwiseRun::load_forces(World& w) const {
   if (w.load_starts.size() > 1) {
     const StageTime timed(w.exec, "load_forces");
-    std::vector<LoadLaw> now = w.loads;
-    for (std::size_t i = 0; i < now.size(); ++i) now[i].factor = w.load_amplitudes[i].at(w.time);
+    std::vector<LoadLaw> now = w.given->loads;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      now[i].factor = w.given->load_amplitudes[i].at(w.time);
     copy_to(w.load_laws, now);
     for_each(w.exec, w.load_starts.size() - 1, load_kernel(w));
   }
@@ -124,7 +132,7 @@ void StepwiseRun::bundle_forces(World& w) const {
 }
 
 void StepwiseRun::choose_step(World& w) const {
-  if (w.step % w.parameters.time.evaluate_every == 0) w.next_dt = choose_time_step(w);
+  if (w.step % w.given->time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }
 
 void StepwiseRun::advance_time(World& w) {

@@ -25,21 +25,23 @@ struct CornerVectors {
 };
 using Corners = CornerVectors<double>;
 
-/// Deformable triangles, three nodes each.
+/// Deformable triangles, three nodes each. One item for each triangle, ghosts included; who writes
+/// it, in brackets, in the words of World. Constant: written by set-up; all of it moves with its
+/// triangle between ranks.
 struct Triangles {
-  Buffer<GlobalId> id;          ///< number of the triangle, kept for ever  [-]
-  Buffer<std::int16_t> group;   ///< body it belongs to  [-]
-  Buffer<Index> material;       ///< index into the case's materials  [-]
-  Buffer<TriangleNodes> nodes;  ///< positions and velocities
-  Buffer<Mat2> shape_inverse;   ///< of the reference edges as columns  [1/m]
-  Buffer<double> mass;          ///< of each corner, per unit thickness  [kg/m]
-  Buffer<double> viscosity;     ///< eta  [Pa s]
-  Buffer<Corners> force;        ///< sum of all that acts at this time  [N/m]
-  Buffer<Corners> external;     ///< the part of it that loads put in; empty without loads  [N/m]
-  Buffer<Index> hold;           ///< prescribed motion, index into World::holds, -1: free  [-]
-  Buffer<double> viscous_work;  ///< taken out by viscosity so far  [J/m]
-  Buffer<double> damping_work;  ///< taken out by local damping so far  [J/m]
-  Buffer<double> load_work;     ///< put in by loads and prescribed motion so far  [J/m]
+  Buffer<GlobalId> id;          ///< number of the triangle, kept for ever  [-]  (constant)
+  Buffer<std::int16_t> group;   ///< body it belongs to  [-]  (constant)
+  Buffer<Index> material;       ///< index into the case's materials  [-]  (constant)
+  Buffer<TriangleNodes> nodes;  ///< positions and velocities  (move)
+  Buffer<Mat2> shape_inverse;   ///< of the reference edges as columns  [1/m]  (constant)
+  Buffer<double> mass;          ///< of each corner, per unit thickness  [kg/m]  (constant)
+  Buffer<double> viscosity;     ///< eta  [Pa s]  (constant)
+  Buffer<Corners> force;        ///< sum of all that acts now  [N/m]  (sums, loads, bundles)
+  Buffer<Corners> external;     ///< the part of it by loads; empty: no loads  [N/m]  (loads)
+  Buffer<Index> hold;           ///< index into Case::holds, -1: free  [-]  (stage)
+  Buffer<double> viscous_work;  ///< taken out by viscosity so far  [J/m]  (sums)
+  Buffer<double> damping_work;  ///< taken out by local damping so far  [J/m]  (move)
+  Buffer<double> load_work;     ///< put in by loads and prescribed motion  [J/m]  (move)
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -50,7 +50,7 @@ class DemFrame {
     Frame& f = part_.frame;
     f.step = w_.step;
     f.time = w_.time;
-    for (std::size_t g = 0; g < all.bodies; ++g) f.groups.push_back(w_.sets[g].name);
+    for (std::size_t g = 0; g < all.bodies; ++g) f.groups.push_back(w_.given->sets[g].name);
     add_elements();
     add_links(all);
     FramePlaces& places = part_.places;
@@ -104,7 +104,7 @@ class DemFrame {
     const std::vector<double> lost = damage(w_);
     f.point_fields.push_back(
         scalar("damage", [&](Index i) { return lost[static_cast<std::size_t>(i)]; }));
-    const std::vector<std::uint8_t>& bars = w_.parameters.bars;
+    const std::vector<std::uint8_t>& bars = w_.given->bars;
     if (std::find(bars.begin(), bars.end(), 1) != bars.end())
       f.point_fields.push_back(scalar(
           "bar", [&](Index i) { return bars[static_cast<std::size_t>(e.material.data()[i])]; }));

@@ -199,7 +199,7 @@ FramePart fdem_frame(World& w, const World* mesh) {
   Frame& f = part.frame;
   f.step = w.step;
   f.time = w.time;
-  f.groups = w.groups;
+  f.groups = w.given->groups;
   const std::size_t points = 3 * own.triangles.size() + 2 * own.lines.size();
   f.position.resize(points);
   f.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});

@@ -67,7 +67,7 @@ struct DemSim {
     add("model.elements", w.elements.size());
     const std::size_t groups = group_count(w);
     for (std::size_t g = 0; g < groups; ++g)
-      add("model.elements_by_group." + w.sets[g].name, w.sets[g].members.size());
+      add("model.elements_by_group." + w.given->sets[g].name, w.given->sets[g].members.size());
     add("model.links", w.links());
     w.each_set(
         [&](const auto& set) { add(std::string("model.links_by_kind.") + set.name, set.size()); });
@@ -75,7 +75,7 @@ struct DemSim {
     for (std::size_t g = 0; g < bulk.size(); ++g) {
       const dem::Model::Bulk& s = bulk[g];
       if (!(s.young > 0.0)) continue;
-      const std::string path = "model.elasticity." + w.sets[g].name + '.';
+      const std::string path = "model.elasticity." + w.given->sets[g].name + '.';
       add(path + "young", s.young);
       add(path + "poisson", s.poisson);
       add(path + "packed_young", s.packed_young);

@@ -85,11 +85,11 @@ struct FdemSim {
   static void add_model(const World& w, std::vector<Fact>& facts) {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     add("model.triangles", w.triangles.size());
-    for (std::size_t g = 0; g < w.groups.size(); ++g)
-      add("model.triangles_by_group." + w.groups[g],
-          static_cast<double>(w.sets[g].nodes.size() / 3));
+    for (std::size_t g = 0; g < w.given->groups.size(); ++g)
+      add("model.triangles_by_group." + w.given->groups[g],
+          static_cast<double>(w.given->sets[g].nodes.size() / 3));
     add("model.joints", w.joints.size());
-    for (const fdem::EffectiveRock& rock : w.rocks) {
+    for (const fdem::EffectiveRock& rock : w.given->rocks) {
       const std::string path = "model.rock." + rock.material + ".";
       add(path + "young", rock.young);
       add(path + "poisson", rock.poisson);
@@ -133,7 +133,7 @@ struct FdemSim {
     }
     Table pieces{"fragments", {"fragment", "mass", "share"}, {"-", "kg/m", "-"}, {}};
     const fdem::Fragments all = fdem::fragments(w);
-    const double scaling = w.parameters.time.mass_scaling;
+    const double scaling = w.given->time.mass_scaling;
     double total = 0.0;
     for (const double m : all.mass) total += m;
     for (std::size_t i = 0; i < all.mass.size(); ++i)

@@ -71,7 +71,7 @@ class SimMethod final : public Method {
     return w.step > 0 ? w.last_dt : w.next_dt;
   }
   std::int64_t searches() const override { return world_.part().searches; }
-  std::vector<std::string> warnings() override { return world_.mesh().warnings; }
+  std::vector<std::string> warnings() override { return world_.mesh().given->warnings; }
   std::string step_rule() override {
     if constexpr (requires(const World& w) { Sim::step_rule(w); })
       return world_.of_whole([](const World& w) { return std::string(Sim::step_rule(w)); });
@@ -309,10 +309,10 @@ class SimMethod final : public Method {
   /// Work of gravity is the way along it: where gravity changes, the ledger counts it from here on.
   void change_gravity(const Config& config) {
     const auto gravity = (1.0 / config.time.mass_scaling) * config.gravity;
-    const auto change = gravity - world_.part().parameters.gravity;
+    const auto change = gravity - world_.part().given->gravity;
     if (!(dot(change, change) > 0.0)) return;
     const Energies before = energies_of_all();
-    world_.in_both([&](World& w) { w.parameters.gravity = gravity; });
+    world_.in_both([&](World& w) { set_gravity(w, gravity); });
     const Energies after = energies_of_all();
     if (!leads(world_.ranks())) return;
     const auto missing = [this](const Energies& all) {

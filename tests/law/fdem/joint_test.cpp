@@ -164,7 +164,7 @@ TEST(Joint, between_two_materials_is_the_weaker_one) {
   scene.config.materials.push_back(strong);
   scene.model.material[1] = 1;
   const World w = scene.world();
-  const JointBond& b = w.bonds.data()[w.joints.law.data()[0]];
+  const JointBond& b = w.given->bonds.data()[w.joints.law.data()[0]];
   EXPECT_EQ(b.tension, 3e6);
   EXPECT_NEAR(b.softening_open, 3.0 * 5.0, 1e-12);
   EXPECT_NEAR(b.stiffness, 150e9, 1.0);

@@ -48,7 +48,7 @@ TEST(Collision, a_linear_contact_lasts_pi_root_m_over_k) {
   s.sphere({0.0, 0.0, 0.0}, 0.01, {0.5, 0.0, 0.0});
   s.sphere({0.0201, 0.0, 0.0}, 0.01, {-0.5, 0.0, 0.0});
   World w = s.world();
-  const double k = w.contact_pairs.data()[0].normal * 1e-4 / 0.02;
+  const double k = w.given->contact_pairs.data()[0].normal * 1e-4 / 0.02;
   const double reduced = 0.5 * s.model.mass[0], omega = std::sqrt(k / reduced);
   const Collision c = collide(w);
   EXPECT_NEAR(c.duration, pi / omega, 0.01 * pi / omega);

@@ -58,7 +58,7 @@ Passage passage(double stiffness, const char* plane, double absorbed = 1.0) {
   end.times = {0.0};
   end.factors = {absorbed};
   World w = scene.world();
-  const double c = w.rocks[0].fast;
+  const double c = w.given->rocks[0].fast;
   // the middle of the pulse passes 0.3 m at 0.3/c + pulse/2
   double top = 0.0, arrival = 0.0, back = 0.0;
   while (w.time < 0.3 / c + pulse) {
@@ -121,8 +121,8 @@ TEST(FdemEffective, modulus_is_that_of_a_pressed_plate) {
     const double stretch = (mean(0.0245, 0.026) - 0.025) / 0.05;
     const double young = 1e6 / stretch;
     std::printf("p_f = %g E: E/E_0 %.4f, told %.4f, nu %.4f\n", stiffness, young / 30e9,
-                w.rocks[0].young / 30e9, w.rocks[0].poisson);
-    EXPECT_NEAR(young, w.rocks[0].young, 0.015 * young);
+                w.given->rocks[0].young / 30e9, w.given->rocks[0].poisson);
+    EXPECT_NEAR(young, w.given->rocks[0].young, 0.015 * young);
   }
 }
 

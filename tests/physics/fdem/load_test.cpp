@@ -107,7 +107,7 @@ TEST(FdemLoads, column_stands_on_its_support) {
   // what the ground's corners do not carry by themselves
   const double own = testing::value(w, "ground", "force_y", "sum");
   double mass = 0.0;
-  for (const NodeSet& set : w.sets)
+  for (const NodeSet& set : w.given->sets)
     if (set.name == "ground")
       for (const Index n : set.nodes) mass += w.triangles.mass.data()[n / 3];
   EXPECT_NEAR(-own + 10.0 * mass, weight, 1e-3 * weight);

@@ -79,7 +79,7 @@ TEST(FdemPressedFaces, bear_stress_in_situ_from_the_start) {
         EXPECT_LT(b.friction, 1e-6 * start);
         EXPECT_LT(b.error_relative, 1e-6);
         for (const Sym2& s : stresses(w)) EXPECT_NEAR(s.yy, -5e6, 0.02e6);
-        for (const std::string& said : w.warnings)
+        for (const std::string& said : w.given->warnings)
           EXPECT_EQ(said.find("in situ"), std::string::npos) << said;
       }
 }
@@ -96,8 +96,9 @@ TEST(FdemPressedFaces, have_the_same_bits_in_the_shadow_space) {
 
 TEST(FdemPressedFaces, say_which_faces_cannot_bear_it) {
   World w = cracked("intrinsic", 4e6).world();  // friction holds 2.5 MPa
-  ASSERT_FALSE(w.warnings.empty());
-  EXPECT_NE(w.warnings[0].find("6 pairs of faces"), std::string::npos) << w.warnings[0];
+  ASSERT_FALSE(w.given->warnings.empty());
+  EXPECT_NE(w.given->warnings[0].find("6 pairs of faces"), std::string::npos)
+      << w.given->warnings[0];
   EXPECT_GT(fastest_after(w, 100), 0.01);
 }
 

@@ -108,7 +108,7 @@ void stir(World& w, const Map& map) {
 /// Velocity at the time of the positions: half a step on from where it is kept.
 inline Vec2 velocity_now(const World& w, Index t, int k) {
   const Vec2 force =
-      w.triangles.force.data()[t].at[k] + w.triangles.mass.data()[t] * w.parameters.gravity;
+      w.triangles.force.data()[t].at[k] + w.triangles.mass.data()[t] * w.given->gravity;
   return nodes(w, t).at[k].velocity + (0.5 * w.last_dt / w.triangles.mass.data()[t]) * force;
 }
 

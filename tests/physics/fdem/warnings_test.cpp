@@ -13,9 +13,9 @@ TEST(FdemWarnings, name_the_sliver_that_rules_the_step) {
   Scene scene;
   scene.material();
   scene.body("plate", prepare::equilateral_rectangle({{0.0, 0.0}, {0.02, 0.01}}, 1e-3));
-  EXPECT_TRUE(scene.world().warnings.empty());
+  EXPECT_TRUE(scene.world().given->warnings.empty());
   scene.triangle("sliver", {0.05, 0.0}, {0.051, 0.0}, {0.0505, 1e-5});
-  const std::vector<std::string> said = scene.world().warnings;
+  const std::vector<std::string> said = scene.world().given->warnings;
   ASSERT_EQ(said.size(), 1U);
   EXPECT_NE(said[0].find("(sliver) at (0.0505, 3.33333e-06) m"), std::string::npos) << said[0];
   EXPECT_NE(said[0].find("times shorter than the median"), std::string::npos) << said[0];
@@ -32,7 +32,7 @@ TEST(FdemWarnings, tell_where_edges_are_too_long_for_the_process_zone) {
     m.joint.tension = 10e6;
     m.joint.energy_open = energy;
     scene.body("plate", prepare::crossed_rectangle({{0.0, 0.0}, {0.03, 0.03}}, edge));
-    const std::vector<std::string> all = scene.world().warnings;
+    const std::vector<std::string> all = scene.world().given->warnings;
     return all.empty() ? "" : all[0];
   };
   EXPECT_EQ(said(1e-3, 11.0, "intrinsic"), "");

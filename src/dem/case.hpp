@@ -1,0 +1,50 @@
+#pragma once
+// What a case gives to a DEM run: written by set-up, read by all else.
+//
+// `stage` marks what configure() writes anew where a stage of the case begins, and after loading a
+// checkpoint. Constants of single elements and links (mass, length, ...) lie beside their state,
+// with which they migrate: dem/elements.hpp, dem/links/.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dem/laws/contact.hpp"
+#include "dem/setup/config.hpp"
+#include "exec/buffer.hpp"
+
+namespace breccia::dem {
+
+/// A named set of elements that probes and servos read: a body or a support.
+struct ElementSet {
+  std::string name;
+  Buffer<Index> members;  ///< global ids in the whole model, ascending  [-]
+};
+
+struct Case {
+  TimeConfig time;
+  SearchConfig search;
+  Vec3 gravity{};                  ///< stage  [m/s2]
+  double local_damping = 0.0;      ///< stage  [-]
+  double mean_radius = 0.0;        ///< of all elements  [m]
+  double largest_margin = 0.0;     ///< half the smallest radius of linked concrete  [m]
+  ContactLaw contact{};            ///< stage: its friction
+  double contact_step = no_limit;  ///< that resolves a contact of two like elements  [s]
+  Index materials = 0;             ///< how many there are  [-]
+  std::vector<std::uint8_t> bars;  ///< 1: its elements are bars  [-]  (materials)
+
+  std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
+  std::vector<ElementSet> sets;       ///< bodies, then supports
+  std::vector<std::string> wall_names;
+  std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]  (walls)
+  Buffer<ContactPair> contact_pairs;  ///< of materials p, q at p materials + q  (materials^2)
+  Buffer<ContactPair> wall_pairs;     ///< of a material with a wall  (materials)
+
+  /// Visits the arrays that kernels read.
+  template <class Visit>
+  void each_array(Visit&& visit) {
+    visit(contact_pairs), visit(wall_pairs);
+  }
+};
+
+}  // namespace breccia::dem

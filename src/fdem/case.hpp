@@ -1,0 +1,59 @@
+#pragma once
+// What a case gives to an FDEM run: written by set-up, read by all else.
+//
+// `stage` marks what configure() writes anew where a stage of the case begins, and after loading a
+// checkpoint. Constants of single triangles and joints (mass, shape, length, strength) lie beside
+// their state, with which they migrate: fdem/triangles/triangles.hpp, fdem/joints/joints.hpp.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "exec/buffer.hpp"
+#include "fdem/contact/couples.hpp"
+#include "fdem/setup/config.hpp"
+#include "fdem/setup/effective.hpp"
+#include "fdem/triangles/loads.hpp"
+#include "fdem/triangles/motion_kernels.hpp"
+
+namespace breccia::fdem {
+
+/// A named set of corners that probes and servos read: a body, a support or a line of the mesh.
+struct NodeSet {
+  std::string name;
+  std::vector<Index> nodes;  ///< 3 triangle + corner, ascending, in the whole mesh  [-]
+};
+
+struct Case {
+  TimeConfig time;
+  Vec2 gravity{};              ///< stage  [m/s2]
+  Sym2 in_situ{};              ///< stress at the start  [Pa]
+  double local_damping = 0.0;  ///< stage  [-]
+  double mean_edge = 0.0;      ///<  [m]
+  double skin = 0.0;           ///< margin of the search between two triangles at rest  [m]
+  bool conservative = false;   ///< whether forces of contact are
+  bool extrinsic = false;      ///< some joints are dormant, or were
+  Index materials = 0;         ///< how many there are  [-]
+
+  std::vector<std::string> groups;             ///< names of bodies  (bodies)
+  std::vector<EffectiveRock> rocks;            ///< each material with its joints  (materials)
+  std::vector<std::string> warnings;           ///< what set-up found doubtful, for people
+  std::vector<NodeSet> sets;                   ///< bodies, then supports
+  std::vector<LoadLaw> loads;                  ///< stage: sizes; all factors 1  (loads)
+  std::vector<LoadAmplitude> load_amplitudes;  ///< stage: factors over time  (loads)
+  Buffer<ElasticTriangle> laws;                ///<  (materials)
+  Buffer<JointBond> bonds;                     ///< indexed by Joints::law  (laws of joints)
+  Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
+  Buffer<Hold> holds;                 ///< stage; indexed by Triangles::hold  (held triangles)
+  /// What a vertex of the mesh touches: bit 0 the border or an edge that nothing joins, bit 1 such
+  /// an edge between two triangles.  [-]  (vertices of the whole mesh)
+  std::vector<std::uint8_t> open_vertex;
+
+  /// Visits the arrays that kernels read.
+  template <class Visit>
+  void each_array(Visit&& visit) {
+    visit(laws), visit(bonds), visit(contact_pairs), visit(holds);
+  }
+};
+
+}  // namespace breccia::fdem
