@@ -1,30 +1,15 @@
 #include "dem/ranks.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "dem/energy.hpp"
+#include "dem/relations.hpp"
 #include "domain/drift.hpp"
 #include "domain/sharing.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia::dem {
 namespace {
-
-/// Numbers memory indices of a link's ends by `number`: to global ids before a journey, to places
-/// in memory after it.
-template <class Number>
-void renumber(Buffer<Index>& ends, Number& number) {
-  for (Index& end : ends.host()) end = number(end);
-}
-template <class Number>
-void renumber_all(World& w, Number number) {
-  w.each_set([&](auto& set) {
-    set.each_end([&](const char*, Buffer<Index>& ends) { renumber(ends, number); });
-  });
-  for (Buffer<Index>* ends : {&w.contacts.pairs.a, &w.contacts.pairs.b, &w.wall_contacts.pairs.a})
-    renumber(*ends, number);
-}
 
 /// Sends everything to the ranks that need it: elements and what ties them together.
 class Migration {
@@ -48,15 +33,15 @@ class Migration {
     const int ranks = w_.domain.ranks->size();
     std::vector<SendLists> links(link_kinds, SendLists(ranks));
     SendLists contacts(ranks), walls(ranks);
-    w_.each_set([&](const auto& set) { tie_ends(set, links[static_cast<std::size_t>(set.kind)]); });
-    for (Index i = 0; i < w_.contacts.size(); ++i)
-      shared_items_.keep_together(
-          std::array{w_.contacts.pairs.a.data()[i], w_.contacts.pairs.b.data()[i]}, i, contacts);
-    const Pairs& at_walls = w_.wall_contacts.pairs;
-    for (Index i = 0; i < at_walls.size(); ++i)
-      shared_items_.keep_together(std::array{at_walls.a.data()[i]}, i, walls);
+    w_.each_set([&](const auto& set) {
+      shared_items_.keep_all_together(element_ends(w_, set.name), set.size(),
+                                      links[static_cast<std::size_t>(set.kind)]);
+    });
+    shared_items_.keep_all_together(element_ends(w_, "contacts"), w_.contacts.size(), contacts);
+    shared_items_.keep_all_together(element_ends(w_, "wall_contacts"), w_.wall_contacts.size(),
+                                    walls);
 
-    renumber_all(w_, [this](Index e) { return w_.elements.id.data()[e]; });
+    renumber_relations(w_, [this](Index e) { return w_.elements.id.data()[e]; });
     Communicator& all = *w_.domain.ranks;
     redistribute(all, together(w_.elements, w_.travel), elements_, w_.elements.id);
     std::vector<Buffer<PairForce>> on_links = split_actions();
@@ -72,21 +57,11 @@ class Migration {
     redistribute(all, w_.contacts, contacts, w_.contacts.pairs.key);
     redistribute(all, w_.wall_contacts, walls, w_.wall_contacts.pairs.key);
     join_actions(on_links);
-    renumber_all(w_, [places = Places(w_.elements.id)](Index id) mutable { return places.of(id); });
+    Places places(w_.elements.id);
+    renumber_relations(w_, [&places](Index id) { return places.of(id); });
   }
 
  private:
-  template <class Links>
-  void tie_ends(const Links& links, SendLists& items) {
-    std::vector<const Index*> arrays;
-    links.each_end([&](const char*, const Buffer<Index>& end) { arrays.push_back(end.data()); });
-    std::vector<Index> ends(arrays.size());
-    for (Index i = 0; i < links.size(); ++i) {
-      for (std::size_t k = 0; k < ends.size(); ++k) ends[k] = arrays[k][i];
-      shared_items_.keep_together(ends, i, items);
-    }
-  }
-
   /// Bar forces are output between steps, so they migrate with their links.
   std::vector<Buffer<PairForce>> split_actions() const {
     std::vector<Buffer<PairForce>> on_links(link_kinds);
@@ -203,12 +178,7 @@ class Spheres final : public Shareable {
   void settle_in() override {
     w_.each_set([](auto& set) { divide(set); });
     w_.domain.tied.assign(static_cast<std::size_t>(w_.elements.size()), 0);
-    w_.each_set([&](const auto& set) {
-      set.each_end([&](const char*, const Buffer<Index>& ends) {
-        for (const Index e : ends.host())
-          if (e >= 0) w_.domain.tied[static_cast<std::size_t>(e)] = 1;
-      });
-    });
+    mark_joined(w_, w_.domain.tied);
     move_to(w_, space_);
     set_linked_pairs(w_);
     derive(w_);

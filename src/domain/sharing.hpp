@@ -86,6 +86,14 @@ class SharedItems {
     if (!domain_.owns(members[0])) return;
     for (const Index e : members) items.add(owner_of(e), item);
   }
+  /// `count` items, each with one member in every array.
+  void keep_all_together(const std::vector<const Index*>& arrays, Index count, SendLists& items) {
+    std::vector<Index> members(arrays.size());
+    for (Index i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < members.size(); ++k) members[k] = arrays[k][i];
+      keep_together(members, i, items);
+    }
+  }
   int owner_of(Index e) const { return owner_[static_cast<std::size_t>(e)]; }
 
  private:

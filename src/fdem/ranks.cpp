@@ -7,6 +7,7 @@
 #include "exec/for_each.hpp"
 #include "fdem/energy.hpp"
 #include "fdem/joints/rings.hpp"
+#include "fdem/relations.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -102,9 +103,7 @@ class Migration {
           rings.add_triangles(w_.vertex[at(node)], members);
       shared_items_.keep_together(members, i, joints);
     }
-    const Pairs& pairs = w_.couples.pairs;
-    for (Index i = 0; i < pairs.size(); ++i)
-      shared_items_.keep_together(std::array{pairs.a.data()[i], pairs.b.data()[i]}, i, couples);
+    shared_items_.keep_all_together(element_ends(w_, "couples"), w_.couples.size(), couples);
   }
 
   Index id_of(Index t) const { return w_.triangles.id.data()[t]; }
@@ -124,19 +123,13 @@ class Migration {
         n.vertex[k] = w_.vertex[at(3 * t + k)];
       }
     }
-    for (Buffer<Index>* edges : {&w_.joints.edge_a, &w_.joints.edge_b})
-      for (Index& edge : edges->host()) edge = global(edge);
-    for (Buffer<Index>* ends : {&w_.couples.pairs.a, &w_.couples.pairs.b, &w_.reach.triangle})
-      for (Index& t : ends->host()) t = id_of(t);
+    renumber_relations(w_, [this](Index t) { return id_of(t); });
   }
 
   /// And back again. Edges whose joint or neighbour is not here are those of ghosts.
   void arrive() {
     Places triangles(w_.triangles.id), joints(w_.mesh.joint_number);
-    for (Buffer<Index>* edges : {&w_.joints.edge_a, &w_.joints.edge_b})
-      for (Index& edge : edges->host()) edge = 3 * triangles.of(edge / 3) + edge % 3;
-    for (Buffer<Index>* ends : {&w_.couples.pairs.a, &w_.couples.pairs.b, &w_.reach.triangle})
-      for (Index& t : ends->host()) t = triangles.of(t);
+    renumber_relations(w_, [&triangles](Index id) { return triangles.of(id); });
     const Index count = w_.triangles.size();
     w_.edges.resize(count);
     if (w_.mesh.absorbs) w_.dashpots.resize(count);
@@ -213,15 +206,13 @@ void settle_in(World& w, Space space) {
       if (d.tied[at(ghost.element)] != 0) in_rings.push_back(ghost);
     w.tied_forces.build(*d.ranks, w.triangles.id, in_rings, space);
   }
+  mark_joined(w, d.tied);
   w.joint_packs.clear();
-  if (space == Space::host)
-    w.joint_packs.assign(at((joints + joint_pack - 1) / joint_pack), JointPack::inner);
+  if (space != Space::host) return;
+  w.joint_packs.assign(at((joints + joint_pack - 1) / joint_pack), JointPack::inner);
   for (const Buffer<Index>* edges : {&w.joints.edge_a, &w.joints.edge_b})
-    for (Index i = 0; i < joints; ++i) {
-      const Index t = edges->data()[i] / 3;
-      d.tied[at(t)] = 1;
-      if (space == Space::host && !d.owns(t)) w.joint_packs[at(i / joint_pack)] = JointPack::outer;
-    }
+    for (Index i = 0; i < joints; ++i)
+      if (!d.owns(edges->data()[i] / 3)) w.joint_packs[at(i / joint_pack)] = JointPack::outer;
 }
 
 /// Square of a triangle's largest speed.

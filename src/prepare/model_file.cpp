@@ -6,6 +6,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "dem/setup/model_arrays.hpp"
 #include "exec/error.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 
@@ -23,21 +24,6 @@ std::vector<T> load_array(const CheckpointReader& reader, const std::string& nam
   std::vector<T> items(section.count);
   if (!items.empty()) std::memcpy(items.data(), section.bytes.data(), section.bytes.size());
   return items;
-}
-
-/// Every array of a model with one item an element.
-template <class Model, class Visit>
-void each_element_array(Model& model, Visit&& array) {
-  array("group", model.group);
-  array("material", model.material);
-  array("radius", model.radius);
-  array("mass", model.mass);
-  array("inertia", model.inertia);
-  array("position", model.position);
-  array("velocity", model.velocity);
-  array("spin", model.spin);
-  array("bar_previous", model.bar_previous);
-  array("bar_next", model.bar_next);
 }
 
 /// Links by member, so that no padding reaches the file.
@@ -71,12 +57,12 @@ void refuse_misfits(const dem::Model& model) {
   each_element_array(model, [&](const char*, const auto& items) {
     if (items.size() != model.position.size()) fail();
   });
-  const auto is_element = [&](Index i) { return i >= 0 && i < model.size(); };
+  each_element_number(model, [&](Index number, int least) {
+    if (number < least || number >= model.size()) fail();
+  });
   const dem::Model::Link* before = nullptr;
   for (const dem::Model::Link& link : model.links) {
-    if (!is_element(link.a) || !is_element(link.b) || link.a >= link.b ||
-        static_cast<std::size_t>(link.kind) >= dem::link_kinds)
-      fail();
+    if (link.a >= link.b || static_cast<std::size_t>(link.kind) >= dem::link_kinds) fail();
     if (before != nullptr && std::tie(link.a, link.b) < std::tie(before->a, before->b)) fail();
     before = &link;
   }
@@ -84,12 +70,6 @@ void refuse_misfits(const dem::Model& model) {
   for (const dem::Model::Link& link : model.links)
     if (link.kind == dem::LinkKind::ldpm) ++facets;
   if (facets != model.facets.size()) fail();
-  for (const dem::Model::Facet& f : model.facets)
-    for (const Index corner : {f.a, f.b, f.c, f.d})
-      if (!is_element(corner)) fail();
-  for (const std::vector<Index>* ends : {&model.bar_previous, &model.bar_next})
-    for (const Index i : *ends)
-      if (i != -1 && !is_element(i)) fail();
   if (!model.bulk.empty() && model.bulk.size() != model.groups.size()) fail();
   const auto groups = static_cast<std::int16_t>(model.groups.size());
   if (std::any_of(model.group.begin(), model.group.end(),

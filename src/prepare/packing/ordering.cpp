@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "dem/setup/model_arrays.hpp"
 #include "exec/types.hpp"
 
 namespace breccia::prepare {
@@ -54,25 +55,13 @@ std::vector<Index> spatial_order(const std::vector<Vec3>& position, double edge)
 
 void reorder(dem::Model& model, const std::vector<Index>& order) {
   BR_ASSERT(model.links.empty());
-  permute(model.group, order);
-  permute(model.material, order);
-  permute(model.radius, order);
-  permute(model.mass, order);
-  permute(model.inertia, order);
-  permute(model.position, order);
-  permute(model.velocity, order);
-  permute(model.spin, order);
-  permute(model.bar_previous, order);
-  permute(model.bar_next, order);
+  each_element_array(model, [&](const char*, auto& items) { permute(items, order); });
   std::vector<Index> rank(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     rank[static_cast<std::size_t>(order[k])] = static_cast<Index>(k);
-  for (dem::Model::Facet& facet : model.facets)
-    for (Index* corner : {&facet.a, &facet.b, &facet.c, &facet.d})
-      *corner = rank[static_cast<std::size_t>(*corner)];
-  for (auto* neighbours : {&model.bar_previous, &model.bar_next})
-    for (Index& i : *neighbours)
-      if (i >= 0) i = rank[static_cast<std::size_t>(i)];
+  each_element_number(model, [&](Index& element, int) {
+    if (element >= 0) element = rank[static_cast<std::size_t>(element)];
+  });
 }
 
 }  // namespace breccia::prepare

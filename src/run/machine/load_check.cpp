@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "dem/relations.hpp"
 #include "exec/error.hpp"
+#include "fdem/relations.hpp"
 
 namespace breccia {
 namespace {
@@ -34,8 +36,25 @@ std::vector<T> on_host(const Buffer<T>& array) {
   return items;
 }
 
-bool is_place(Index place, std::size_t count) {
-  return place >= 0 && static_cast<std::size_t>(place) < count;
+template <class Array>
+std::string section_of(const Relation<Array>& r) {
+  return std::string(r.state) + "." + r.name;
+}
+
+/// What the model decides must come back as it was.
+template <class World>
+void collect_relations(const World& w, Collector& c) {
+  each_relation(w, [&](const auto& r) {
+    if (r.from == RelationFrom::model) c.add(section_of(r), r.numbers);
+  });
+}
+
+template <class World>
+void refuse_wrong_relations(const World& w) {
+  each_relation(w, [](const auto& r) {
+    for (const Index number : on_host(r.numbers))
+      if (!r.holds(number)) refuse(section_of(r), fmt::format("leads to {}", number));
+  });
 }
 
 template <class T>
@@ -45,16 +64,12 @@ void refuse_size(const char* section, const Buffer<T>& array, Index expected) {
 }
 
 /// Keys ascend, and belong to what the places lead to.
-/// @param ends  how many there are that a and b may lead to
-/// @param key   of the pair of two such places
+/// @param key  of the pair of two such places
 template <class Key>
-void refuse_wrong_pairs(const std::string& name, const Pairs& pairs, std::size_t ends_a,
-                        std::size_t ends_b, const Key& key) {
+void refuse_wrong_pairs(const std::string& name, const Pairs& pairs, const Key& key) {
   const auto keys = on_host(pairs.key);
   const auto a = on_host(pairs.a), b = on_host(pairs.b);
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (!is_place(a[i], ends_a)) refuse(name + ".a", fmt::format("leads to {}", a[i]));
-    if (!is_place(b[i], ends_b)) refuse(name + ".b", fmt::format("leads to {}", b[i]));
     if (keys[i] != key(a[i], b[i]) || (i > 0 && keys[i] <= keys[i - 1]))
       refuse(name + ".key", fmt::format("is not that of the pairs (item {})", i));
   }
@@ -69,7 +84,6 @@ class KeyOfIds {
                    high = ids_[static_cast<std::size_t>(b)];
     return low < high ? pair_key(low, high) : ~PairKey{0};
   }
-  std::size_t size() const { return ids_.size(); }
 
  private:
   std::vector<GlobalId> ids_;
@@ -93,11 +107,7 @@ std::vector<Repeated> repeated_by(const dem::World& w) {
   c.add("elements.material", w.elements.material);
   c.add("elements.fixed", w.elements.fixed);
   c.add("elements.motion", w.elements.motion);
-  w.each_set([&](const auto& set) {
-    set.each_end([&](const char* end, const auto& array) {
-      c.add(std::string(set.name) + "." + end, array);
-    });
-  });
+  collect_relations(w, c);
   return std::move(c.all);
 }
 
@@ -105,11 +115,7 @@ std::vector<Repeated> repeated_by(const fdem::World& w) {
   Collector c;
   c.add("triangles.id", w.triangles.id);
   c.add("triangles.group", w.triangles.group);
-  c.add("triangles.material", w.triangles.material);
-  c.add("triangles.hold", w.triangles.hold);
-  c.add("joints.edge_a", w.joints.edge_a);
-  c.add("joints.edge_b", w.joints.edge_b);
-  c.add("joints.law", w.joints.law);
+  collect_relations(w, c);
   return std::move(c.all);
 }
 
@@ -121,24 +127,25 @@ void refuse_changed(const std::vector<Repeated>& built, const std::vector<Repeat
 
 void refuse_wrong_places(const dem::World& w) {
   refuse_wrong_clock(w);
+  refuse_wrong_relations(w);
   const KeyOfIds key(w.elements.id);
-  refuse_wrong_pairs("contacts", w.contacts.pairs, key.size(), key.size(), key);
+  refuse_wrong_pairs("contacts", w.contacts.pairs, key);
   const auto ids = on_host(w.elements.id);
   const auto wall_key = [&](Index element, Index wall) {
     return static_cast<PairKey>(wall) << 32 |
            static_cast<std::uint32_t>(ids[static_cast<std::size_t>(element)]);
   };
-  refuse_wrong_pairs("wall_contacts", w.wall_contacts.pairs, key.size(), w.walls.size(), wall_key);
+  refuse_wrong_pairs("wall_contacts", w.wall_contacts.pairs, wall_key);
   refuse_size("travel.reference", w.travel.reference, w.elements.size());
 }
 
 void refuse_wrong_places(const fdem::World& w) {
   refuse_wrong_clock(w);
-  const KeyOfIds key(w.triangles.id);
-  refuse_wrong_pairs("couples", w.couples.pairs, key.size(), key.size(), key);
+  refuse_wrong_relations(w);
+  refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.triangles.id));
   const auto near = on_host(w.reach.triangle);
-  for (std::size_t i = 0; i < near.size(); ++i)
-    if (!is_place(near[i], key.size()) || (i > 0 && near[i] <= near[i - 1]))
+  for (std::size_t i = 1; i < near.size(); ++i)
+    if (near[i] <= near[i - 1])
       refuse("reach.triangle", fmt::format("leads to {} (item {})", near[i], i));
   for (const fdem::JointStage stage : on_host(w.joints.stage))
     if (stage > fdem::JointStage::dormant)
