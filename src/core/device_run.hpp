@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/stepping.hpp"
 #include "core/timed.hpp"
 #include "exec/device.hpp"
 #include "exec/launch_times.hpp"
@@ -33,6 +34,45 @@ struct StepClocks {
   ClockedLaunch<Kernel, phase> timed(const Kernel& kernel) const {
     return {kernel, now};
   }
+};
+
+/// Wraps kernels to run at once, with the times that they are made with.
+struct AtOnce {
+  template <class Kernel>
+  PlainLaunch<Kernel> operator()(const Kernel& kernel) const {
+    return PlainLaunch(kernel);
+  }
+};
+/// Wraps kernels to be led by the clock of a step.
+template <Phase phase>
+struct ByClock {
+  StepClocks clocks;
+  template <class Kernel>
+  ClockedLaunch<Kernel, phase> operator()(const Kernel& kernel) const {
+    return clocks.timed<phase>(kernel);
+  }
+};
+
+/// Parts of a step that have no launch where a device's clock leads. One device holds all: it has
+/// no ghosts. When a search is due the clock halts. The first launch of the next step advances
+/// time, chooses the step and counts it.
+struct ClockLed {
+  template <class World>
+  void send_ghosts(World&) const {}
+  template <class World>
+  void move_interior(World&) const {}
+  template <class World>
+  void ask_for_search(World&) const {}
+  template <class World>
+  void inner_joint_forces(World&) const {}
+  template <class World>
+  void receive_ghosts(World&) const {}
+  template <class World>
+  void search_if_due(World&) const {}
+  template <class World>
+  void choose_step(World&) const {}
+  template <class World>
+  void count_step(World&) const {}
 };
 
 /// Starts the device's clocks at the host's time, before a step or after its move.

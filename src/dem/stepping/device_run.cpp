@@ -136,13 +136,7 @@ class LaunchedForces {
   StepClock* clock_;
 };
 
-/// Launches at once, with the times that kernels are made with.
-struct AtOnceBy {
-  template <class Kernel>
-  PlainLaunch<Kernel> operator()(const Kernel& kernel) const {
-    return PlainLaunch(kernel);
-  }
-};
+/// Launches at once.
 class DeviceRun : public StepwiseRun {
  public:
   void move_boundary(World& w) const {
@@ -170,27 +164,19 @@ class DeviceRun : public StepwiseRun {
   }
 
  private:
-  static LaunchedForces<AtOnceBy> forces(World& w) {
+  static LaunchedForces<AtOnce> forces(World& w) {
     return {{}, sums_note_least(w) ? w.clock.data() : nullptr};
   }
   std::optional<ShadowLaunches> launches_;
 };
 
-/// Launches that a device's clock leads. One device holds all: it has no ghosts. When a search is
-/// due its clock halts, and after it take_forces() goes on by a run that stands `after_search`.
+/// Launches that a device's clock leads; after a search take_forces() goes on by a run that stands
+/// `after_search`.
 template <Phase phase>
-struct ClockBy {
-  StepClocks clocks;
-  template <class Kernel>
-  ClockedLaunch<Kernel, phase> operator()(const Kernel& kernel) const {
-    return clocks.timed<phase>(kernel);
-  }
-};
-template <Phase phase>
-class ClockedRun : public LaunchedForces<ClockBy<phase>> {
+class ClockedRun : public LaunchedForces<ByClock<phase>>, public ClockLed {
  public:
   explicit ClockedRun(const StepClocks& clocks)
-      : LaunchedForces<ClockBy<phase>>({clocks}, clocks.now), clocks_(clocks) {}
+      : LaunchedForces<ByClock<phase>>({clocks}, clocks.now), clocks_(clocks) {}
 
   void move_boundary(World& w) const {
     const int every = w.given->search.every;
@@ -210,10 +196,6 @@ class ClockedRun : public LaunchedForces<ClockBy<phase>> {
                   part(w.device_walls.size(), clocks_.opening(walls, end, false),
                        part(w.elements.size(), clocks_.opening(move, end, true), Parts<>{})));
   }
-  void send_ghosts(World&) const {}
-  void move_interior(World&) const {}
-  void receive_ghosts(World&) const {}
-  void search_if_due(World&) const {}
   void wall_forces(World& w) const {
     if (w.walls.empty()) return;
     for (Index k = 0; k < w.device_walls.size(); ++k) {
@@ -224,8 +206,6 @@ class ClockedRun : public LaunchedForces<ClockBy<phase>> {
                     this->by_(NoteCritical{std::as_const(w.critical).view()}),
                     NoteLeast{clocks_.now});
   }
-  void choose_step(World&) const {}  // the first launch of the next step does
-  void count_step(World&) const {}
 
  private:
   StepClocks clocks_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/stepping.hpp"
 #include "dem/ranks.hpp"
 #include "dem/stepping/launches.hpp"
 #include "exec/for_each.hpp"
@@ -83,8 +84,7 @@ void move_walls(World& w) {
     wall.point += w.next_dt * wall.velocity;
     wall.travelled += w.next_dt * norm(wall.velocity - w.travel.drift.velocity);
   }
-  w.time += w.next_dt;
-  w.last_dt = w.next_dt;
+  advance_time(w);
 }
 
 void StepwiseRun::send_ghosts(World& w) const {
@@ -118,23 +118,13 @@ void StepwiseRun::choose_step(World& w) const {
 }
 
 void step(World& w) {
-  if (w.exec.space != Space::host)
-    take_step_on_device(w);
-  else
-    take_step(HostRun{}, w);
+  step_by<HostRun>(w);
 }
-
 void evaluate_forces(World& w) {
-  if (w.exec.space != Space::host)
-    take_forces_on_device(w);
-  else
-    take_forces(HostRun{}, w);
+  evaluate_forces_by<HostRun>(w);
 }
-
 Advanced advance(World& w, const StopAt& stop) {
-  if (w.exec.space != Space::host && w.domain.single_rank()) return advance_on_device(w, stop);
-  step(w);
-  return {1, w.last_dt, w.last_dt};
+  return advance_by_steps(w, stop);
 }
 
 }  // namespace breccia::dem

@@ -163,7 +163,7 @@ void launch_pairs(World& w, const By& by) {
         part(couples, by(Bounded<CoupleForces<Number>, 5>{couple_kernel<Number>(w)}), Parts<>{}));
 }
 
-/// Launches at once, with the times that kernels are made with.
+/// Launches at once.
 class DeviceRun : public StepwiseRun {
  public:
   void move_boundary(World& w) const {
@@ -181,28 +181,28 @@ class DeviceRun : public StepwiseRun {
     const StageTime timed(w.exec, "forces");
     launches_.emplace();
     for_each(w.exec, 1, Fence{});
-    with_number(w.exec.precision, [&](auto number) { launch_pairs<decltype(number)>(w, at_once); });
+    with_number(w.exec.precision,
+                [&](auto number) { launch_pairs<decltype(number)>(w, AtOnce{}); });
   }
   void sum_forces(World& w) {
     const StageTime timed(w.exec, "forces");
     with_number(w.exec.precision, [&](auto number) {
-      const auto sums = at_once(triangle_kernel<decltype(number)>(w));
+      const auto sums = AtOnce{}(triangle_kernel<decltype(number)>(w));
       for_each_part(w.exec, part(w.triangles.size(), sums, Parts<>{}));
     });
     launches_.reset();
   }
 
  private:
-  static constexpr auto at_once = [](const auto& kernel) { return PlainLaunch(kernel); };
   std::optional<ShadowLaunches> launches_;
 };
 
-/// Launches that a device's clock leads. One device holds all: it has no ghosts. When a search is
-/// due its clock halts, and after it take_forces() goes on by a run that stands `after_search`.
+/// Launches that a device's clock leads; after a search take_forces() goes on by a run that stands
+/// `after_search`.
 template <Phase phase>
-class ClockedRun {
+class ClockedRun : public ClockLed {
  public:
-  explicit ClockedRun(const StepClocks& clocks) : clocks_(clocks) {}
+  explicit ClockedRun(const StepClocks& clocks) : clocks_(clocks), timed_{clocks} {}
 
   void move_boundary(World& w) const {
     const auto motions = static_cast<Index>(w.prescribed.size());
@@ -215,22 +215,14 @@ class ClockedRun {
     for_each(w.exec, motions, clocks_.opening(scale_motions(w), end, true));
     for_each_part(w.exec, part(triangles, clocks_.timed<Phase::in_move>(move), Parts<>{}));
   }
-  void send_ghosts(World&) const {}
-  void move_interior(World&) const {}
-  void ask_for_search(World&) const {}
-  void inner_joint_forces(World&) const {}
-  void receive_ghosts(World&) const {}
-  void search_if_due(World&) const {}
   void insert_joints(World& w) const {
     if (!w.given->extrinsic) return;
-    for_each(w.exec, w.triangles.size(), timed(stress_kernel(w)));
-    for_each(w.exec, w.joints.size(), timed(overshoot_kernel(w)));
-    for_each(w.exec, 1, timed(WatchReached{w.reached.view(), &clocks_.now->host_request}));
+    for_each(w.exec, w.triangles.size(), timed_(stress_kernel(w)));
+    for_each(w.exec, w.joints.size(), timed_(overshoot_kernel(w)));
+    for_each(w.exec, 1, timed_(WatchReached{w.reached.view(), &clocks_.now->host_request}));
   }
   void pair_forces(World& w) const {
-    with_number(w.exec.precision, [&](auto number) {
-      launch_pairs<decltype(number)>(w, [&](const auto& kernel) { return timed(kernel); });
-    });
+    with_number(w.exec.precision, [&](auto number) { launch_pairs<decltype(number)>(w, timed_); });
   }
   /// Notes the stable step, too.
   void sum_forces(World& w) const {
@@ -240,8 +232,8 @@ class ClockedRun {
     const NoteStable stable{
         stable_step(w), triangles, threads, w.given->time.evaluate_every, {clocks_.now}};
     with_number(w.exec.precision, [&](auto number) {
-      const auto sums = timed(triangle_kernel<decltype(number)>(w));
-      for_each_part(w.exec, part(threads, timed(stable), part(triangles, sums, Parts<>{})));
+      const auto sums = timed_(triangle_kernel<decltype(number)>(w));
+      for_each_part(w.exec, part(threads, timed_(stable), part(triangles, sums, Parts<>{})));
     });
   }
   void load_forces(World& w) const {
@@ -252,8 +244,8 @@ class ClockedRun {
                            w.amplitude_times.view(),
                            w.amplitude_factors.view(),
                            w.load_laws.view()};
-    for_each(w.exec, w.load_laws.size(), timed(scale));
-    for_each(w.exec, w.load_starts.size() - 1, timed(load_kernel(w)));
+    for_each(w.exec, w.load_laws.size(), timed_(scale));
+    for_each(w.exec, w.load_starts.size() - 1, timed_(load_kernel(w)));
   }
   void bundle_forces(World& w) const {
     if (w.bundles.starts.size() < 2) return;
@@ -261,18 +253,12 @@ class ClockedRun {
                                 clocks_.now};
     const Index threads = (w.bundles.starts.size() - 1) * BundlesWide::width;
     for_each_part(w.exec, part(scales_next(w) ? w.motions.size() : 0, next,
-                               part(threads, timed(BundlesWide{bundle_kernel(w)}), Parts<>{})));
+                               part(threads, timed_(BundlesWide{bundle_kernel(w)}), Parts<>{})));
   }
-  void choose_step(World&) const {}  // the first launch of the next step does
-  void count_step(World&) const {}
 
  private:
-  template <class Kernel>
-  ClockedLaunch<Kernel, phase> timed(const Kernel& kernel) const {
-    return clocks_.timed<phase>(kernel);
-  }
-
   StepClocks clocks_;
+  ByClock<phase> timed_;
 };
 
 /// Tables that the launches read besides the state.

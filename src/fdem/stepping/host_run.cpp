@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "core/stepping.hpp"
 #include "exec/for_each.hpp"
 #include "fdem/stepping/kernel_lanes.hpp"
 #include "fdem/stepping/launches.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/stepping.hpp"
 #include "exec/for_each.hpp"
 #include "fdem/ranks.hpp"
 #include "fdem/stepping/launches.hpp"
@@ -135,29 +136,14 @@ void StepwiseRun::choose_step(World& w) const {
   if (w.step % w.given->time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }
 
-void StepwiseRun::advance_time(World& w) {
-  w.time += w.next_dt;
-  w.last_dt = w.next_dt;
-}
-
 void step(World& w) {
-  if (w.exec.space != Space::host)
-    take_step_on_device(w);
-  else
-    take_step(HostRun{}, w);
+  step_by<HostRun>(w);
 }
-
 void evaluate_forces(World& w) {
-  if (w.exec.space != Space::host)
-    take_forces_on_device(w);
-  else
-    take_forces(HostRun{}, w);
+  evaluate_forces_by<HostRun>(w);
 }
-
 Advanced advance(World& w, const StopAt& stop) {
-  if (w.exec.space != Space::host && w.domain.single_rank()) return advance_on_device(w, stop);
-  step(w);
-  return {1, w.last_dt, w.last_dt};
+  return advance_by_steps(w, stop);
 }
 
 }  // namespace breccia::fdem

@@ -55,9 +55,6 @@ struct StepwiseRun {
   void bundle_forces(World& w) const;
   void choose_step(World& w) const;
   void count_step(World& w) const { w.step += 1; }
-
- protected:
-  static void advance_time(World& w);
 };
 
 /// Loops on the host, over packs, shared by threads.

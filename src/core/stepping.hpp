@@ -1,0 +1,42 @@
+#pragma once
+// Where a step is carried out, alike for all methods: on the host by loops, on a device by
+// launches. A method has take_step(run, w) and take_forces(run, w), which order the work, a
+// HostRun, and for devices take_step_on_device, take_forces_on_device and advance_on_device.
+
+#include "core/step_clock.hpp"
+#include "exec/space.hpp"
+
+namespace breccia {
+
+template <class HostRun, class World>
+void step_by(World& w) {
+  if (w.exec.space != Space::host)
+    take_step_on_device(w);
+  else
+    take_step(HostRun{}, w);
+}
+
+template <class HostRun, class World>
+void evaluate_forces_by(World& w) {
+  if (w.exec.space != Space::host)
+    take_forces_on_device(w);
+  else
+    take_forces(HostRun{}, w);
+}
+
+/// One step; on a device that holds all of a world, as many as advance_on_device() takes.
+template <class World>
+Advanced advance_by_steps(World& w, const StopAt& stop) {
+  if (w.exec.space != Space::host && w.domain.single_rank()) return advance_on_device(w, stop);
+  step(w);
+  return {1, w.last_dt, w.last_dt};
+}
+
+/// The time of positions, when all of them have moved.
+template <class World>
+void advance_time(World& w) {
+  w.time += w.next_dt;
+  w.last_dt = w.next_dt;
+}
+
+}  // namespace breccia
