@@ -124,9 +124,12 @@ class Assembly {
   }
 
   void add_particles() {
-    const prepare::LdpmBody body = prepare::ldpm_body(
-        container_of(*body_), material(),
-        {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)});
+    const prepare::LdpmBody body =
+        body_->shape == "file"
+            ? prepare::ldpm_body(prepare::read_ldpm_mesh(path_of_file()), material())
+            : prepare::ldpm_body(
+                  container_of(*body_), material(),
+                  {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)});
     const Index first = model_.size();
     for (std::size_t i = 0; i < body.position.size(); ++i)
       add(body.position[i], body.radius[i], material().density * body.cells[i].volume,
@@ -136,9 +139,11 @@ class Assembly {
           {first + f.a, first + f.b, first + f.c, first + f.d, body_->center + f.center, f.area});
   }
 
+  std::string path_of_file() const {
+    return (std::filesystem::path(case_folder_) / body_->file).string();
+  }
   void add_file() {
-    const std::filesystem::path folder = case_folder_;
-    const prepare::Spheres spheres = prepare::read_spheres((folder / body_->file).string());
+    const prepare::Spheres spheres = prepare::read_spheres(path_of_file());
     double solid = 0.0;
     for (const double r : spheres.radius) solid += ball(r);
     const double volume = body_->bulk_volume();

@@ -290,7 +290,7 @@ struct BodyConfig {
   RebarConfig rebar;
   Vec3 velocity{};      ///< at the start  [m/s]
   Vec3 spin{};          ///< at the start, of every element about the body's centre  [rad/s]
-  std::string file;     ///< CSV of x, y, z, radius in metres
+  std::string file;     ///< CSV of x, y, z, radius in metres; of LDPM its tetrahedra
   double volume = 0.0;  ///< of the bulk that a file's spheres stand for; 0: of the box `size`  [m3]
 
   /// Of what a file's spheres stand for; 0: of nothing but themselves.  [m3]
@@ -302,7 +302,7 @@ struct BodyConfig {
     key.required("name");
     key("shape", shape, OneOf{"box", "sphere", "cylinder", "element", "rebar", "file"},
         "box, sphere, cylinder: a packing; element: one sphere; rebar: bars; file: spheres "
-        "from a CSV");
+        "from a CSV, or particles and tetrahedra of law ldpm");
     key("material", material, "name of a material");
     key.required("material");
     key("center", center, "m", any_number, "centre of the body");
@@ -315,7 +315,10 @@ struct BodyConfig {
     key("velocity", velocity, "m/s", Range{-1e6, 1e6}, "velocity at the start");
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
         "angular velocity of the body about its centre at the start");
-    key("file", file, "CSV file of x,y,z,radius in metres, beside the case file");
+    key("file", file,
+        "CSV file of x,y,z,radius in metres, beside the case file; of law ldpm: "
+        "<name>-data-tets.dat of a public preprocessor, with <name>-data-particles.dat beside it, "
+        "in mm");
     key("volume", volume, "m3", not_negative,
         "volume of concrete that the spheres of a file stand for, voids included: it gives their "
         "mass; 0: that of the box size. Grains of a file have their own volume unless either is "

@@ -97,8 +97,8 @@ class DemBodyChecks {
     require(b.shape != "cylinder" || b.length > 0.0, ".length must be above 0");
     require(b.shape != "file" || !b.file.empty(), ".file is missing: a CSV of x,y,z,radius");
     const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
-    const bool bulk =
-        b.shape == "file" && material != nullptr && dem::kind_within(material->law).has_value();
+    const bool bulk = b.shape == "file" && material != nullptr && material->law != "ldpm" &&
+                      dem::kind_within(material->law).has_value();
     require(!bulk || b.bulk_volume() > 0.0,
             ".volume is missing: spheres of concrete do not fill space, so their mass is density "
             "times the volume that they stand for; give volume in m3, or the size of a box");
@@ -109,8 +109,9 @@ class DemBodyChecks {
   }
 
   void check_ldpm(const BodyConfig& b, const MaterialConfig& m) {
-    require(b.shape == "box" || b.shape == "cylinder",
-            ": bodies of law ldpm are boxes or cylinders, not of shape {}", b.shape);
+    require(b.shape == "box" || b.shape == "cylinder" || b.shape == "file",
+            ": bodies of law ldpm are boxes or cylinders, or read from a file, not of shape {}",
+            b.shape);
     require(b.pack.count == 0,
             ".pack has no use in a body of law ldpm: its grains follow from {}.mix", m.name);
   }

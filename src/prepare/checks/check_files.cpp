@@ -3,8 +3,10 @@
 
 #include "io/picture/picture.hpp"
 #include "io/whole_file.hpp"
+#include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_case.hpp"
 #include "prepare/checks/refusal.hpp"
+#include "prepare/ldpm/mesh_file.hpp"
 #include "prepare/meshing/body_mesh.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/meshing/mesh_file.hpp"
@@ -62,7 +64,13 @@ void check_files(const dem::Config& config, const std::string& case_folder) {
   FileChecks files(case_folder);
   for (const dem::BodyConfig& body : config.bodies)
     if (body.shape == "file")
-      files.check(body.name, body.file, [](const std::string& path) { read_spheres(path); });
+      files.check(body.name, body.file, [&](const std::string& path) {
+        const dem::MaterialConfig* of = item_named(config.materials, body.material);
+        if (of != nullptr && of->law == "ldpm")
+          read_ldpm_mesh(path);
+        else
+          read_spheres(path);
+      });
   files.refuse_all();
 }
 

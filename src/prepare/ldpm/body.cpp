@@ -62,11 +62,19 @@ LdpmBody ldpm_body(const Container& container, const dem::MaterialConfig& materi
                    const Random& random) {
   const MixDesign mix = mix_of(material);
   LdpmParticles particles = place_particles(container, mix, random);
-  std::vector<double> diameter = particles.diameter;
-  std::fill_n(diameter.begin(), particles.on_surface, surface_diameter * mix.smallest);
+  auto tetrahedra = tetrahedra_of(particles.position, mix.smallest);
+  return ldpm_body(
+      {std::move(particles.position), std::move(particles.diameter), std::move(tetrahedra)},
+      material);
+}
+
+LdpmBody ldpm_body(const LdpmMesh& mesh, const dem::MaterialConfig& material) {
+  std::vector<double> diameter = mesh.diameter;
+  for (double& d : diameter)
+    if (d == 0.0) d = surface_diameter * material.mix.smallest;
   LdpmBody body;
-  body.position = std::move(particles.position);
-  body.facets = facets_of(body.position, diameter, tetrahedra_of(body.position, mix.smallest));
+  body.position = mesh.position;
+  body.facets = facets_of(body.position, diameter, mesh.tetrahedra);
   body.cells = cells_of(body.position, body.facets);
   body.radius = contact_radii(body);
   double longest = 0.0;

@@ -2,6 +2,7 @@
 // A body of law ldpm, and the links of its facets.
 
 #include "dem/setup/model.hpp"
+#include "prepare/ldpm/mesh_file.hpp"
 #include "prepare/ldpm/particles.hpp"
 #include "prepare/ldpm/tessellation.hpp"
 
@@ -21,6 +22,8 @@ struct LdpmBody {
 /// @throws InputError if an edge is so long that the law cannot soften: 0.99 l_t or more
 LdpmBody ldpm_body(const Container& container, const dem::MaterialConfig& material,
                    const Random& random);
+/// The body of a mesh that was read; its surface particles have 1.1 of the mix's `smallest`.
+LdpmBody ldpm_body(const LdpmMesh& mesh, const dem::MaterialConfig& material);
 
 /// Adds a link for each of the model's facets, whose ends may have changed their order; links and
 /// facets are sorted by ends.

@@ -102,7 +102,9 @@ struct Packed {
   double count, volume;  ///< elements, of the body  [m3]
 };
 
-Packed packed(const dem::BodyConfig& body, const std::string& folder) {
+Packed packed(const dem::Config& config, const dem::BodyConfig& body, const std::string& folder) {
+  const dem::MaterialConfig* const of = prepare::item_named(config.materials, body.material);
+  if (of != nullptr && of->law == "ldpm") return {body, 0.0, 0.0};  // its mix says how many
   if (body.shape != "file") {
     const double volume = body.shape == "box"      ? body.size.x * body.size.y * body.size.z
                           : body.shape == "sphere" ? ball(body.radius)
@@ -278,7 +280,7 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
     else if (body.shape == "element")
       f.items += 1.0;
     else
-      pace += add_body(f, config, packed(body, folder));
+      pace += add_body(f, config, packed(config, body, folder));
   }
   finish(f, config.time);
   f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
