@@ -101,10 +101,10 @@ class Surface {
     nodes.push_back(at);
     placed_.add(at, spacing_, false);
   }
-  /// Inner nodes of an edge of a length, 1.2 spacings apart and shifted at random: place(share).
+  /// Inner nodes of an edge of a length, 1.4 spacings apart and shifted at random: place(share).
   template <class Place>
   void along(double length, const Place& place) {
-    const int count = intervals(length, 1.2 * spacing_);
+    const int count = intervals(length, 1.4 * spacing_);
     for (int k = 1; k < count; ++k) add(place((k + 0.2 * (2.0 * draw(0) - 1.0)) / count));
   }
   /// Nodes of a face of an area: place(u, v), uniform for u and v in [0, 1).

@@ -44,7 +44,7 @@ struct LdpmParticles {
 /// Diameter that a particle on the surface has in the tessellation, over d_0.  [-]
 inline constexpr double surface_diameter = 1.1;
 
-/// Nodes on vertices, edges and faces of a box or cylinder, at random: on edges about 1.2 spacings
+/// Nodes on vertices, edges and faces of a box or cylinder, at random: on edges about 1.4 spacings
 /// apart, on faces no nearer than one, as many as find a place.
 /// @throws InputError for a sphere
 std::vector<Vec3> surface_nodes(const Container& body, double spacing, const Random& random);
