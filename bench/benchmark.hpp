@@ -37,6 +37,10 @@ std::vector<Measurement> measure_burst(const Exec& exec);
 /// Packings of a box at the compactness of the slab.
 std::vector<Measurement> measure_packing(const Exec& exec);
 
+/// Whole steps of the cube of cases/ldpm_cube: elastic, while tension cracks it, and while it is
+/// crushed; with the hash at the end of each.
+std::vector<Measurement> measure_facets(const Exec& exec);
+
 /// Whole FDEM steps of plates of 10^4 to 10^6 joined triangles, by stage.
 std::vector<Measurement> measure_triangles(const Exec& exec);
 /// Whole FDEM steps of a plate of 50 million triangles. Nothing on a host.

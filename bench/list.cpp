@@ -9,6 +9,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"search", "the contact search alone, up to a million spheres", measure_search},
       {"burst", "the search when fragments fly far apart", measure_burst},
       {"packing", "disordered packings of a box", measure_packing},
+      {"facets", "LDPM: a cube of concrete, whole, pulled apart, crushed", measure_facets},
       {"triangles", "FDEM: plates of 10,000 to a million joined triangles", measure_triangles},
       {"contact", "FDEM: hexagons from far apart to pressed together", measure_contact},
       {"heap", "FDEM: as many hexagons as the moving box, on a GPU a hundred times", measure_heap},

@@ -31,6 +31,8 @@ void fetch(const MoveElements& kernel, Index first) {
 
 template <class Kernel>
 BR_WHOLE Index BR_PACKS::run(const Kernel& kernel, Index begin, Index end) {
+  if constexpr (requires { kernel.template sweep<WidestPack>(begin, end); })
+    return kernel.template sweep<WidestPack>(begin, end);
   Index i = begin;
   for (; i + width <= end; i += width) {
     if constexpr (std::is_void_v<decltype(run_at<WidestPack>(kernel, i))>)

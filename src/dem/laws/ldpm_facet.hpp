@@ -1,6 +1,8 @@
 #pragma once
 // The facet of the lattice discrete particle model of concrete (LDPM).
 
+#include <type_traits>
+
 #include "math/elementary.hpp"
 #include "math/vec.hpp"
 
@@ -9,10 +11,10 @@ namespace breccia::dem {
 /// State of a facet from step to step.
 template <class R>
 struct LdpmFacetStateOf {
-  Vec3Of<R> strain;      ///< e_N, e_M, e_L in the frame of the edge  [-]
-  Vec3Of<R> stress;      ///< s_N, s_M, s_L likewise  [Pa]
-  R largest_normal;      ///< largest e_N so far, at least 0  [-]
-  R largest_tangential;  ///< largest e_T so far  [-]
+  Vec3Of<R> strain;  ///< e_N, e_M, e_L in the frame of the edge  [-]
+  Vec3Of<R> stress;  ///< s_N, s_M, s_L likewise  [Pa]
+  R largest_normal;  ///< largest e_N so far, at least 0  [-]
+  R largest_square;  ///< largest e_T^2 so far  [-]
 };
 using LdpmFacetState = LdpmFacetStateOf<double>;
 
@@ -65,18 +67,19 @@ struct LdpmFacet {
   static constexpr double deviatoric_strain = 0.1;  ///< k_c3 = e_v0 E_0 / s_c0  [-]
 
   /// Brings a facet of an edge of reference length `length` to a strain.
-  /// @param volumetric  e_V, a third of the volumetric strain of its tetrahedron  [-]
-  template <class R>
-  BR_HD LdpmSpentOf<R> update(const R& length, const Vec3Of<R>& strain, const R& volumetric,
-                              LdpmFacetStateOf<R>& state) const {
+  /// @param volumetric  e_V, a third of the volumetric strain of its tetrahedron, or a function
+  ///                    that gives it and is called only where pores collapse  [-]
+  template <class R, class Volumetric>
+  BR_HD LdpmSpentOf<R> update(const R& length, const Vec3Of<R>& strain,
+                              const Volumetric& volumetric, LdpmFacetStateOf<R>& state) const {
     const LdpmFacetStateOf<R> old = state;
-    const R tangential = strain.y * strain.y + strain.z * strain.z;  // e_T^2
+    const R square = strain.y * strain.y + strain.z * strain.z;  // e_T^2
     state.strain = strain;
     state.largest_normal = max(old.largest_normal, strain.x);
-    state.largest_tangential = max(old.largest_tangential, sqrt(tangential));
+    state.largest_square = max(old.largest_square, square);
     const auto open = strain.x > 0.0;
     const auto closed = !open;
-    if (any(open)) state.stress = opened(length, tangential, old, state);
+    if (any(open)) state.stress = opened(length, square, old, state);
     if (any(closed)) state.stress = select(open, state.stress, pressed(volumetric, old, strain));
 
     const Vec3Of<R> de = strain - old.strain;
@@ -97,21 +100,21 @@ struct LdpmFacet {
     return stored_normal(stress.x) + stored_tangential(stress);
   }
 
-  /// Opening of a crack with the largest strains so far, less what is elastic.  [m]
+  /// Whether the largest strains, less s_t / E_0, have opened an edge by `times` s_t l_t / E_0.
   template <class R>
-  BR_HD R largest_opening(const R& length, const LdpmFacetStateOf<R>& s) const {
-    return length * (effective(s.largest_normal, s.largest_tangential * s.largest_tangential) -
-                     tensile_strength / young);
+  BR_HD auto has_opened_by(double times, const R& length, const LdpmFacetStateOf<R>& s) const {
+    const R limit = (tensile_strength / young) * (length + times * tensile_length);
+    return length * length * effective_square(s.largest_normal, s.largest_square) > limit * limit;
   }
   /// Whether a facet has opened, or slid, so far that it bears 5 % of s_t in tension: by three
   /// times G_t / s_t.
   template <class R>
   BR_HD auto has_cracked(const R& length, const LdpmFacetStateOf<R>& s) const {
-    return largest_opening(length, s) > 1.5 * tensile_strength * tensile_length / young;
+    return has_opened_by(1.5, length, s);
   }
   /// Whether a facet has lost 5 % of s_t.
   BR_HD bool has_softened(double length, const LdpmFacetState& s) const {
-    return largest_opening(length, s) > 0.025 * tensile_strength * tensile_length / young;
+    return has_opened_by(0.025, length, s);
   }
 
  private:
@@ -120,61 +123,74 @@ struct LdpmFacet {
     const R beyond = min(stress + yield, constant<R>(0.0));  // below -s_c0
     const R within = stress - beyond;
     // u = s_c0^2 / (2 E_0) + (s^2 - s_c0^2) / (2 E_d) below
-    return within * within / (2.0 * young) + beyond * (stress - yield) / (2.0 * densified);
+    return (0.5 / young) * (within * within) + (0.5 / densified) * (beyond * (stress - yield));
   }
   template <class R>
   BR_HD R stored_tangential(const Vec3Of<R>& stress) const {
-    return (stress.y * stress.y + stress.z * stress.z) / (2.0 * shear_ratio * young);
+    return (0.5 / (shear_ratio * young)) * (stress.y * stress.y + stress.z * stress.z);
   }
 
-  /// Stress of an open facet.
+  /// Stress of an open facet. Sine and cosine of omega are e_N / e and sqrt(alpha) e_T / e.
   template <class R>
-  BR_HD Vec3Of<R> opened(const R& length, const R& tangential, const LdpmFacetStateOf<R>& old,
+  BR_HD Vec3Of<R> opened(const R& length, const R& square, const LdpmFacetStateOf<R>& old,
                          const LdpmFacetStateOf<R>& now) const {
     const R one = constant<R>(1.0), none = constant<R>(0.0);
     const auto open = now.strain.x > 0.0;
-    const R e = select(open, effective(now.strain.x, tangential), one);
-    const R sine = max(now.strain.x / e, constant<R>(1e-300));
-    const R cosine2 = shear_ratio * tangential / (e * e);
-    const R s0 = 2.0 * tensile_strength /
-                 (sine + sqrt(sine * sine +
-                              (4.0 * shear_ratio / (strength_ratio * strength_ratio)) * cosine2));
-    const R largest =
-        effective(now.largest_normal, now.largest_tangential * now.largest_tangential);
-    const R beyond = largest - s0 / young;
+    const R normal = max(now.strain.x, constant<R>(1e-300));
+    const R along = normal * normal, across = shear_ratio * square;
+    const R e = select(open, sqrt(along + across), one), over_e = 1.0 / e;
+    const double softer = 4.0 * shear_ratio / (strength_ratio * strength_ratio);
+    const R divisor = normal + sqrt(along + softer * across);
+    const R s0 = 2.0 * tensile_strength * e / divisor;
+    const R largest = sqrt(effective_square(now.largest_normal, now.largest_square));
+    const R beyond = largest - (1.0 / young) * s0;
+    const R old_square = old.strain.y * old.strain.y + old.strain.z * old.strain.z;
+    const R old_e = sqrt(effective_square(old.strain.x, old_square));
+    const R old_s =
+        sqrt(old.stress.x * old.stress.x +
+             (1.0 / shear_ratio) * (old.stress.y * old.stress.y + old.stress.z * old.stress.z));
+    const R elastic = max(none, old_s + young * (e - old_e));
     R bound = s0;
-    const auto softened = open && beyond > 0.0;
+    auto softened = open && beyond > 0.0;
     if (any(softened)) {
-      const R half_tangent = min(sine / (1.0 + sqrt(cosine2)), one);   // tan(omega / 2)
-      const R share = 1.2732395447351628 * arc_tangent(half_tangent);  // 2 omega / pi
-      const R slope =
-          2.0 * young / (tensile_length / length - 1.0) * power_of(share, softening_exponent);
-      bound = select(softened, s0 * exponential<R>(-slope * beyond / s0), s0);
+      // H_t beyond / s_0. exp(-x) >= 1 - x: a facet that has unloaded below that needs no more.
+      const R fall = (young / tensile_strength) * (beyond * divisor * over_e) *
+                     (length / (tensile_length - length));
+      if (!(unloading > 0.0)) softened = softened && elastic > s0 * (0.999999 - fall);
+      if (any(softened)) {
+        const R half_tangent = min(normal / (e + sqrt(across)), one);    // tan(omega / 2)
+        const R share = 1.2732395447351628 * arc_tangent(half_tangent);  // 2 omega / pi
+        const R softening = exponential<R>(-fall * power_of(share, softening_exponent));
+        bound = select(softened, s0 * softening, s0);
+      }
     }
-    bound = select(e < unloading * (largest - bound / young), none, bound);
-    const R old_e =
-        effective(old.strain.x, old.strain.y * old.strain.y + old.strain.z * old.strain.z);
-    const R old_s = sqrt(old.stress.x * old.stress.x +
-                         (old.stress.y * old.stress.y + old.stress.z * old.stress.z) / shear_ratio);
-    const R s = min(bound, max(none, old_s + young * (e - old_e)));
-    const R over = s / e, across = shear_ratio * over;
-    return {over * now.strain.x, across * now.strain.y, across * now.strain.z};
+    if (unloading > 0.0)
+      bound = select(e < unloading * (largest - (1.0 / young) * bound), none, bound);
+    const R s = min(bound, elastic);
+    const R over = s * over_e, tangential = shear_ratio * over;
+    return {over * now.strain.x, tangential * now.strain.y, tangential * now.strain.z};
   }
-  /// sqrt(e_N^2 + alpha e_T^2)
+  /// e_N^2 + alpha e_T^2
   template <class R>
-  BR_HD R effective(const R& normal, const R& tangential_square) const {
-    return sqrt(normal * normal + shear_ratio * tangential_square);
+  BR_HD R effective_square(const R& normal, const R& tangential_square) const {
+    return normal * normal + shear_ratio * tangential_square;
   }
 
   /// Stress of a closed facet.
-  template <class R>
-  BR_HD Vec3Of<R> pressed(const R& volumetric, const LdpmFacetStateOf<R>& old,
+  template <class R, class Volumetric>
+  BR_HD Vec3Of<R> pressed(const Volumetric& volumetric, const LdpmFacetStateOf<R>& old,
                           const Vec3Of<R>& strain) const {
     const R none = constant<R>(0.0);
     const auto closed = !(strain.x > 0.0);
     const R de_m = strain.y - old.strain.y, de_l = strain.z - old.strain.z;
-    const R along = trial(old.stress.x, strain.x - old.strain.x);
-    const R normal = max(-bound(volumetric, strain.x, closed), min(none, along));
+    R normal = min(none, trial(old.stress.x, strain.x - old.strain.x));
+    // The bound is nowhere below s_c0.
+    if (any(closed && normal < -yield)) {
+      if constexpr (std::is_invocable_v<const Volumetric&>)
+        normal = max(-bound<R>(volumetric(), strain.x, closed), normal);
+      else
+        normal = max(-bound<R>(volumetric, strain.x, closed), normal);
+    }
 
     const double shear = shear_ratio * young;
     const R m = old.stress.y + shear * de_m, l = old.stress.z + shear * de_l;
@@ -206,9 +222,11 @@ struct LdpmFacet {
     const R none = constant<R>(0.0);
     const double e_c0 = yield / young, e_c1 = compaction_strain * e_c0;
     const R x = -volumetric;
-    const R ratio = abs(strain - volumetric) / (deviatoric_strain * e_c0 + max(x, none));
-    const R slope = (hardening - final_hardening) /
-                        (1.0 + deviatoric_slope * max(ratio - deviatoric_start, none)) +
+    // r_DV = deviator / scale
+    const R deviator = abs(strain - volumetric);
+    const R scale = deviatoric_strain * e_c0 + max(x, none);
+    const R excess = max(deviator - deviatoric_start * scale, none);
+    const R slope = (hardening - final_hardening) * scale / (scale + deviatoric_slope * excess) +
                     final_hardening;
     const R line = yield + max(x - e_c0, none) * slope;
     const auto compacted = closed && x > e_c1;

@@ -3,7 +3,7 @@
 
 #include "dem/laws/ldpm_facet.hpp"
 #include "dem/links/link_set.hpp"
-#include "math/lanes.hpp"
+#include "math/records.hpp"
 
 namespace breccia::dem {
 
@@ -85,6 +85,17 @@ struct LinkArrays<LdpmFacet> : LinkEnds {
 };
 using LdpmFacets = LinkArrays<LdpmFacet>;
 
+/// What all facets of an edge share in a step.
+template <class R>
+struct LdpmEdgeOf {
+  Vec3Of<R> n, m;  ///< frame, with l = n x m  [-]
+  Vec3Of<R> turn;  ///< of b against a, in the frame  [rad]
+  Vec3Of<R> jump;  ///< of b against a in the middle of the edge, likewise  [m]
+  R distance;      ///< of the ends  [m]
+  R parted;        ///< 1 where the facets have let go, or are to, of their ends; else 0
+  R fill[2];       ///< as long as two packs
+};
+
 /// Forces of facets, one facet or a pack of neighbours at a time.
 struct LdpmFacetForces {
   static constexpr const char* name = "dem.ldpm_facets";
@@ -101,40 +112,48 @@ struct LdpmFacetForces {
   Index first_action;  ///< action of facet 0
 
   template <class R>
-  struct Loaded {
-    Indices<R> a, b, c, d;
+  struct Facet {
     R length, area;
     Vec3Of<R> center;
     R volume;
     LdpmFrameOf<R> frame;
     LdpmFacetStateOf<R> state;
+  };
+  template <class R>
+  struct Loaded {
+    Indices<R> a, b;
+    Facet<R> facet;
     LinkEnd<R> end_a, end_b;
-    Vec3Of<R> at_c, at_d;
+  };
+  /// e_V of the tetrahedra of a facet and its neighbours, from their corners.
+  template <class R>
+  struct Volumetric {
+    const LdpmFacetForces& kernel;
+    Index i;
+    const R& volume;
+
+    BR_HD R operator()() const {
+      const R now =
+          six_volumes(corner(kernel.a), corner(kernel.b), corner(kernel.c), corner(kernel.d));
+      return (now - volume) / (3.0 * volume);
+    }
+    BR_HD Vec3Of<R> corner(const View<const Index>& of) const {
+      R numbers[4];
+      gather_records(kernel.elements.state, load_indices<R>(of, i), numbers);
+      return {numbers[0], numbers[1], numbers[2]};
+    }
   };
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   template <class R>
   BR_HD void load_early(Index i, Loaded<R>& loaded) const {
     loaded.a = load_indices_now<R>(a, i);
     loaded.b = load_indices_now<R>(b, i);
-    loaded.c = load_indices_now<R>(c, i);
-    loaded.d = load_indices_now<R>(d, i);
-    R p[6], f[4], s[8];
-    gather_records(place, consecutive<R>(i), p);
-    gather_records(View<const LdpmFrame>(frame), consecutive<R>(i), f);
-    gather_records(View<const LdpmFacetState>(state), consecutive<R>(i), s);
-    loaded.length = p[0];
-    loaded.area = p[1];
-    loaded.center = {p[2], p[3], p[4]};
-    loaded.volume = p[5];
-    loaded.frame = {{f[0], f[1], f[2]}, f[3]};
-    loaded.state = {{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, s[6], s[7]};
+    load_facet(i, loaded.facet);
   }
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
     loaded.end_a = load_end<R>(elements.state, loaded.a);
     loaded.end_b = load_end<R>(elements.state, loaded.b);
-    loaded.at_c = place_of(loaded.c);
-    loaded.at_d = place_of(loaded.d);
   }
   BR_WHOLE BR_HD void operator()(Index i) const { run_at<double>(*this, i); }
   template <class R>
@@ -144,58 +163,168 @@ struct LdpmFacetForces {
   /// @returns false, having done nothing, if the facets of a pack are to be taken one by one
   template <class R>
   BR_HD bool update(const LdpmFacet& by, Index i, const Loaded<R>& loaded) const {
-    const PairEnd<R>&one = loaded.end_a.motion, &other = loaded.end_b.motion;
-    const R none = constant<R>(0.0), length = loaded.length;
-    const PairMotion<R> motion = pair_motion<R>(one, other, none, dt);
-    const R reach = 1.5 * max(length, loaded.end_a.radius + loaded.end_b.radius);
-    const auto parted = loaded.frame.bond < 0.0 || motion.distance > reach;
-    if (any(parted)) {
-      if constexpr (width_of<R> == 1) release(by, i, loaded);
+    const LdpmEdgeOf<R> edge =
+        edge_of(loaded.end_a, loaded.end_b, loaded.facet.length, loaded.facet.frame);
+    if (any(edge.parted > 0.0)) {
+      if constexpr (width_of<R> == 1) release(by, i, loaded.facet);
       return width_of<R> == 1;
     }
-    // The frame of the edge, and the facet's centre from the middle of the edge in it
-    const Vec3Of<R>& n = motion.normal;
-    const Vec3Of<R> across = motion.tangential(motion.rotated_with_pair(loaded.frame.m));
-    const Vec3Of<R> m = (1.0 / norm(across)) * across, l = cross(n, m);
-    const Vec3Of<R> from_a = loaded.center.x * n + loaded.center.y * m + loaded.center.z * l;
-    const Vec3Of<R> lever = from_a - motion.arm_a * n;
+    move(by, i, loaded.facet, edge);
+    return true;
+  }
 
-    LdpmFacetStateOf<R> kept = loaded.state;
-    const Vec3Of<R> jump = motion.slip + cross(motion.turn, lever);
-    const R over = 1.0 / length;
-    const Vec3Of<R> strain =
-        kept.strain + over * Vec3Of<R>{stretched(one, other, motion.distance) + dot(n, jump),
-                                       dot(m, jump), dot(l, jump)};
-    const R volume = six_volumes(one.position, other.position, loaded.at_c, loaded.at_d);
-    const R volumetric = (volume - loaded.volume) / (3.0 * loaded.volume);
-    const LdpmSpentOf<R> spent = by.update(length, strain, volumetric, kept);
+#if !defined(__CUDACC__)
+  /// Packs of the facets [begin, end), as long as there are whole ones: neighbours on one edge
+  /// share its motion, which is computed once for them. @returns the first facet that is left
+  template <class R>
+  Index sweep(Index begin, Index end) const {
+    constexpr Index width = width_of<R>, room = 4 * width;
+    static_assert(sizeof(LdpmEdgeOf<double>) == 16 * sizeof(double));
+    alignas(64) LdpmEdgeOf<double> edges[room];  // a ring: packs of them, made ahead
+    View<LdpmEdgeOf<double>> ring;
+    ring.data = edges;
+    ring.size = room;
+    Index starts[room];  // first facet of each
+    Index made = 0, unmade = begin, edge = -1, next = begin;
+    const auto make = [&] {
+      Index leads[width], from[width], to[width], count = 0;
+      for (; count < width && unmade < end; ++count) {
+        leads[count] = starts[(made + count) % room] = unmade;
+        from[count] = a[unmade], to[count] = b[unmade];
+        do ++unmade;
+        while (unmade < end && a[unmade] == from[count] && b[unmade] == to[count]);
+      }
+      for (Index k = count; k < width; ++k)
+        leads[k] = leads[count - 1], from[k] = from[count - 1], to[k] = to[count - 1];
+      R p[2], f[4];
+      gather_records(place, indices<R>(leads), p);
+      gather_records(View<const LdpmFrame>(frame), indices<R>(leads), f);
+      const LdpmEdgeOf<R> all = edge_of(load_end<R>(elements.state, indices<R>(from)),
+                                        load_end<R>(elements.state, indices<R>(to)), p[0],
+                                        LdpmFrameOf<R>{{f[0], f[1], f[2]}, f[3]});
+      const R numbers[16] = {all.n.x,      all.n.y,    all.n.z,     all.m.x,
+                             all.m.y,      all.m.z,    all.turn.x,  all.turn.y,
+                             all.turn.z,   all.jump.x, all.jump.y,  all.jump.z,
+                             all.distance, all.parted, all.fill[0], all.fill[1]};
+      store_records(ring, made % room, numbers);
+      made += count;
+    };
+    const LdpmFacet by = law;  // no store can change it
+    Index i = begin;
+    for (; i + width <= end; i += width) {
+      fetch(i + 4 * width, width);
+      Index of[width];
+      for (Index k = 0; k < width; ++k) {
+        if (i + k == next) {
+          if (++edge == made) make();
+          next = edge + 1 < made ? starts[(edge + 1) % room] : unmade;
+        }
+        of[k] = edge % room;
+      }
+      Facet<R> facet;
+      load_facet(i, facet);
+      R e[16];
+      gather_records(View<const LdpmEdgeOf<double>>(ring), indices<R>(of), e);
+      const LdpmEdgeOf<R> own{{e[0], e[1], e[2]},
+                              {e[3], e[4], e[5]},
+                              {e[6], e[7], e[8]},
+                              {e[9], e[10], e[11]},
+                              e[12],
+                              e[13],
+                              {e[14], e[15]}};
+      if (any(own.parted > 0.0))
+        for (Index k = 0; k < width; ++k) (*this)(i + k);
+      else
+        move(by, i, facet, own);
+    }
+    return i;
+  }
+#endif
 
-    const R weight = loaded.area * length;
+ private:
+  /// Asks the memory for what facets keep: more arrays than the processor foresees.
+  void fetch(Index first, Index count) const {
+    const auto ask = [=](const auto& array) {
+      const auto* items = reinterpret_cast<const char*>(array.data + first);
+      const auto bytes = static_cast<Index>(sizeof *array.data) * count;
+      for (Index byte = 0; byte < bytes; byte += 64) __builtin_prefetch(items + byte);
+    };
+    ask(place), ask(frame), ask(state), ask(opened);
+    const auto* to = reinterpret_cast<const char*>(actions.data + first_action + first);
+    const auto bytes = static_cast<Index>(sizeof(PairForce)) * count;
+    for (Index byte = 0; byte < bytes; byte += 64) __builtin_prefetch(to + byte, 1);
+  }
+  template <class R>
+  BR_HD void load_facet(Index i, Facet<R>& facet) const {
+    R p[6], f[4], s[8];
+    load_records(place, i, p);
+    load_records(frame, i, f);
+    load_records(state, i, s);
+    facet.length = p[0];
+    facet.area = p[1];
+    facet.center = {p[2], p[3], p[4]};
+    facet.volume = p[5];
+    facet.frame = {{f[0], f[1], f[2]}, f[3]};
+    facet.state = {{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, s[6], s[7]};
+  }
+  /// @param old  frame of the edge before the step, the bond of one of its facets
+  template <class R>
+  BR_HD LdpmEdgeOf<R> edge_of(const LinkEnd<R>& end_a, const LinkEnd<R>& end_b, const R& length,
+                              const LdpmFrameOf<R>& old) const {
+    const PairEnd<R>&one = end_a.motion, &other = end_b.motion;
+    const R none = constant<R>(0.0);
+    const PairMotion<R> motion = pair_motion<R>(one, other, none, dt);
+    const R reach = 1.5 * max(length, end_a.radius + end_b.radius);
+    LdpmEdgeOf<R> edge;
+    edge.distance = motion.distance;
+    edge.parted = select(old.bond < 0.0 || motion.distance > reach, constant<R>(1.0), none);
+    edge.fill[0] = edge.fill[1] = none;
+    // Newton's step from 1 makes m a unit vector: it was one.
+    const Vec3Of<R>& n = edge.n = motion.normal;
+    const Vec3Of<R> across = motion.tangential(motion.rotated_with_pair(old.m));
+    edge.m = (1.5 - 0.5 * dot(across, across)) * across;
+    const Vec3Of<R> l = cross(n, edge.m);
+    edge.turn = {dot(n, motion.turn), dot(edge.m, motion.turn), dot(l, motion.turn)};
+    edge.jump = {stretched(one, other, motion.distance), dot(edge.m, motion.slip),
+                 dot(l, motion.slip)};
+    return edge;
+  }
+  /// A facet that holds: its strains, stresses and energies, force, torques and stiffness.
+  template <class R>
+  BR_HD void move(const LdpmFacet& by, Index i, const Facet<R>& facet,
+                  const LdpmEdgeOf<R>& edge) const {
+    LdpmFacetStateOf<R> kept = facet.state;
+    const Vec3Of<R>& center = facet.center;
+    const Vec3Of<R> lever{center.x - 0.5 * edge.distance, center.y, center.z};
+    const Vec3Of<R> jump = cross(edge.turn, lever) + edge.jump;
+    const R over = 1.0 / facet.length;
+    const LdpmSpentOf<R> spent = by.update(facet.length, kept.strain + over * jump,
+                                           Volumetric<R>{*this, i, facet.volume}, kept);
+
+    const R weight = facet.area * facet.length;
     add(opened, i, weight * spent.fracture);
     add(compacted, i, weight * spent.plastic);
     add(slid, i, weight * spent.friction);
     const R s[8] = {kept.strain.x, kept.strain.y, kept.strain.z,       kept.stress.x,
-                    kept.stress.y, kept.stress.z, kept.largest_normal, kept.largest_tangential};
-    store_records(state, i, s);
-    const R bond = select(by.has_cracked(length, kept), none, loaded.frame.bond);
-    const R f[4] = {m.x, m.y, m.z, bond};
-    store_records(frame, i, f);
+                    kept.stress.y, kept.stress.z, kept.largest_normal, kept.largest_square};
+    write_records(state, i, s);
+    const R bond = select(by.has_cracked(facet.length, kept), constant<R>(0.0), facet.frame.bond);
+    const R f[4] = {edge.m.x, edge.m.y, edge.m.z, bond};
+    write_records(frame, i, f);
 
-    const R area = -loaded.area;
-    const Vec3Of<R> force =
-        (area * kept.stress.x) * n + (area * kept.stress.y) * m + (area * kept.stress.z) * l;
-    write(by, i, motion, from_a, force, loaded.area * over);
-    return true;
+    const Vec3Of<R> force = -facet.area * kept.stress;  // on b, in the frame
+    write(by, i, edge, center, force, facet.area * over);
   }
-
- private:
-  /// Change of the distance in the last step, exactly: a rigid turn is none.
+  /// Change of the distance in the last step: a rigid turn is none. With the old distance D sqrt(1
+  /// - y) it is D (1 - sqrt(1 - y)), by its series: y^6 is below rounding.
   template <class R>
   BR_HD R stretched(const PairEnd<R>& one, const PairEnd<R>& other, const R& distance) const {
     const Vec3Of<R> apart = other.position - one.position;
     const Vec3Of<R> step = constant<R>(dt) * (other.velocity - one.velocity);
-    const Vec3Of<R> before = apart - step;
-    return dot(step, apart + before) / (distance + norm(before));
+    const R over = 1.0 / distance;
+    const R half = 0.5 * over * dot(step, (apart + apart) - step);  // D y / 2
+    const R y = 2.0 * over * half;
+    return half * (1.0 + y * (0.25 + y * (0.125 + y * (5.0 / 64.0 + y * (7.0 / 128.0)))));
   }
   template <class R>
   BR_HD static void add(const View<double>& energy, Index i, const R& spent) {
@@ -204,46 +333,46 @@ struct LdpmFacetForces {
   /// Writes force and torques of a facet, and its stiffness: with k = E A / L and r from a particle
   /// to the facet, K = k (alpha I + (1 - alpha) n n^T), and K^theta is at most k (alpha r.r + (1 -
   /// alpha) |r x n|^2) I.
+  /// @param center, force  from a, and on b, in the frame n, m, l of the edge
   template <class R>
-  BR_HD void write(const LdpmFacet& by, Index i, const PairMotion<R>& motion,
-                   const Vec3Of<R>& from_a, const Vec3Of<R>& force, const R& area_by_length) const {
-    const Vec3Of<R>& n = motion.normal;
-    const Vec3Of<R> from_b = from_a - motion.distance * n;
-    const Vec3Of<R> on_a = -cross(from_a, force), on_b = cross(from_b, force);
-    const R numbers[9] = {on_a.x,  on_a.y, on_a.z, force.x, force.y,
-                          force.z, on_b.x, on_b.y, on_b.z};
+  BR_HD void write(const LdpmFacet& by, Index i, const LdpmEdgeOf<R>& edge, const Vec3Of<R>& center,
+                   const Vec3Of<R>& force, const R& area_by_length) const {
+    const Vec3Of<R>&n = edge.n, &m = edge.m, l = cross(n, m);
+    const auto outward = [&](const Vec3Of<R>& v) { return v.x * n + v.y * m + v.z * l; };
+    const Vec3Of<R> on_b = outward(force), turn = cross(center, force);
+    const Vec3Of<R> turn_a = -outward(turn);
+    // from b: center - D n
+    const Vec3Of<R> turn_b =
+        outward({turn.x, turn.y + edge.distance * force.z, turn.z - edge.distance * force.y});
+    const R numbers[9] = {turn_a.x, turn_a.y, turn_a.z, on_b.x,  on_b.y,
+                          on_b.z,   turn_b.x, turn_b.y, turn_b.z};
     const double alpha = by.shear_ratio;
     const R k = max(by.young, by.densified) * area_by_length;
     const R across = alpha * k, stretch = (1.0 - alpha) * k;
-    const Vec3Of<R> turn = cross(from_a, n), along = stretch * n;  // turn of b, too
-    const R tilt = stretch * dot(turn, turn);
-    const R stiffness[9] = {across * dot(from_a, from_a) + tilt,
+    const R aside = center.y * center.y + center.z * center.z;  // |r x n|^2, of a and of b
+    const R beyond = center.x - edge.distance;
+    const Vec3Of<R> along = stretch * n;
+    const R stiffness[9] = {across * (center.x * center.x) + k * aside,
                             across + along.x * n.x,
                             across + along.y * n.y,
                             across + along.z * n.z,
                             along.x * n.y,
                             along.x * n.z,
                             along.y * n.z,
-                            across * dot(from_b, from_b) + tilt,
+                            across * (beyond * beyond) + k * aside,
                             constant<R>(0.0)};
     write_actions(actions, first_action + i, numbers, stiffness);
   }
   /// A facet whose ends have parted for good.
-  BR_HD void release(const LdpmFacet& by, Index i, const Loaded<double>& loaded) const {
-    if (loaded.frame.bond >= 0.0) {
-      opened[i] += loaded.area * loaded.length * by.stored(loaded.state.stress);
-      const LdpmFacetState& s = loaded.state;
-      state[i] = {s.strain, {}, s.largest_normal, s.largest_tangential};
-      frame[i] = {loaded.frame.m, ldpm_released};
+  BR_HD void release(const LdpmFacet& by, Index i, const Facet<double>& facet) const {
+    if (facet.frame.bond >= 0.0) {
+      opened[i] += facet.area * facet.length * by.stored(facet.state.stress);
+      const LdpmFacetState& s = facet.state;
+      state[i] = {s.strain, {}, s.largest_normal, s.largest_square};
+      frame[i] = {facet.frame.m, ldpm_released};
     }
     const double nothing[9] = {};
     write_actions(actions, first_action + i, nothing, nothing);
-  }
-  template <class R>
-  BR_HD Vec3Of<R> place_of(const Indices<R>& i) const {
-    R numbers[4];
-    gather_records(elements.state, i, numbers);
-    return {numbers[0], numbers[1], numbers[2]};
   }
 };
 template <class>

@@ -1,0 +1,78 @@
+#pragma once
+// Records of doubles that lie side by side, read and written by packs.
+
+#include "math/lanes.hpp"
+
+namespace breccia {
+
+/// Reads records first, first + 1, ... of an array, of `count` doubles each: columns[k] is number k
+/// of every record. As gather_records, with one address for all.
+template <int count, class R, class Record>
+BR_HD inline void load_records(const View<Record>& records, Index first, R (&columns)[count]) {
+  static_assert(sizeof(Record) == count * sizeof(double));
+  if constexpr (width_of<R> == 1) {
+    gather_records(View<const Record>(records), Indices<double>{first}, columns);
+  } else {
+    BR_ASSERT(first >= 0 && first + width_of<R> <= records.size);
+#if !defined(__CUDACC__) && defined(__AVX512F__)
+    const auto* from = reinterpret_cast<const double*>(records.data + first);
+    if constexpr (count == 8) {
+      for (int k = 0; k < 8; ++k) __builtin_memcpy(&columns[k], from + 8 * k, sizeof columns[k]);
+      transpose(columns);
+      return;
+    } else if constexpr (count == 4) {  // two records a pack
+      const __m512d r01 = _mm512_loadu_pd(from), r23 = _mm512_loadu_pd(from + 8);
+      const __m512d r45 = _mm512_loadu_pd(from + 16), r67 = _mm512_loadu_pd(from + 24);
+      const __m512i low = _mm512_setr_epi64(0, 4, 8, 12, 1, 5, 9, 13);
+      const __m512i high = _mm512_setr_epi64(2, 6, 10, 14, 3, 7, 11, 15);
+      const __m512d a = _mm512_permutex2var_pd(r01, low, r23);
+      const __m512d b = _mm512_permutex2var_pd(r45, low, r67);
+      const __m512d c = _mm512_permutex2var_pd(r01, high, r23);
+      const __m512d d = _mm512_permutex2var_pd(r45, high, r67);
+      columns[0] = _mm512_shuffle_f64x2(a, b, 0x44);
+      columns[1] = _mm512_shuffle_f64x2(a, b, 0xee);
+      columns[2] = _mm512_shuffle_f64x2(c, d, 0x44);
+      columns[3] = _mm512_shuffle_f64x2(c, d, 0xee);
+      return;
+    } else
+#endif
+      gather_records(View<const Record>(records), consecutive<R>(first), columns);
+  }
+}
+
+/// Writes them: store_records by whole packs where records are as long as one or half of it.
+template <int count, class R, class Record>
+BR_HD inline void write_records(const View<Record>& records, Index first,
+                                const R (&columns)[count]) {
+#if !defined(__CUDACC__) && defined(__AVX512F__)
+  if constexpr (width_of<R> == 8) {
+    static_assert(sizeof(Record) == count * sizeof(double));
+    BR_ASSERT(first >= 0 && first + 8 <= records.size);
+    auto* to = reinterpret_cast<double*>(records.data + first);
+    if constexpr (count == 8) {
+      Pack8 rows[8];
+      for (int k = 0; k < 8; ++k) rows[k] = columns[k];
+      transpose(rows);
+      for (int k = 0; k < 8; ++k) __builtin_memcpy(to + 8 * k, &rows[k], sizeof rows[k]);
+      return;
+    } else if constexpr (count == 4) {
+      const __m512i low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
+      const __m512i high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
+      const __m512d ab_low = _mm512_permutex2var_pd(columns[0], low, columns[1]);
+      const __m512d ab_high = _mm512_permutex2var_pd(columns[0], high, columns[1]);
+      const __m512d cd_low = _mm512_permutex2var_pd(columns[2], low, columns[3]);
+      const __m512d cd_high = _mm512_permutex2var_pd(columns[2], high, columns[3]);
+      const __m512i even = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+      const __m512i odd = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+      _mm512_storeu_pd(to, _mm512_permutex2var_pd(ab_low, even, cd_low));
+      _mm512_storeu_pd(to + 8, _mm512_permutex2var_pd(ab_low, odd, cd_low));
+      _mm512_storeu_pd(to + 16, _mm512_permutex2var_pd(ab_high, even, cd_high));
+      _mm512_storeu_pd(to + 24, _mm512_permutex2var_pd(ab_high, odd, cd_high));
+      return;
+    }
+  }
+#endif
+  store_records(records, first, columns);
+}
+
+}  // namespace breccia
