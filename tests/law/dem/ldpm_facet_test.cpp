@@ -189,6 +189,48 @@ TEST(LdpmFacet, opening_turns_the_stress_into_the_direction_of_the_strain) {
   expect_stress(f.to(0.1, 4.0), 0.733595, 7.335952);
 }
 
+/// Concrete of the public single tetrahedra, on an edge of 1 mm.
+TEST(LdpmFacet, of_the_single_tetrahedra_opens_and_closes_with_the_error_of_one_step) {
+  LdpmFacet law = benchmark();
+  law.young = law.densified = 30000.0;
+  law.shear_ratio = 0.2;
+  law.tensile_strength = 3.0;
+  law.tensile_length = 250.0;
+  law.strength_ratio = 2.5;
+  law.softening_exponent = 0.2;
+  law.yield = 120.0;
+  law.hardening = 0.33 * law.young;
+  law.final_hardening = 0.1 * law.young;
+  law.compaction_strain = 3.0;
+  law.deviatoric_start = 0.5;
+  Facet f(law, 1.0);
+  expect_stress(f.to(0.1), 3.0, 0.0);
+  expect_stress(f.to(1.0), 2.790786, 0.0);
+  expect_stress(f.to(20.0), 0.606663, 0.0);
+  expect_stress(f.to(10.0), 0.0, 0.0);
+  // The step that closes it pulls E_0 de into compression: 20,000 steps of 5e-7.
+  EXPECT_NEAR(f.to(0.0).x, -0.015, 1e-6);
+}
+
+/// What is called only where pores collapse gives what the number does.
+TEST(LdpmFacet, asks_for_the_volumetric_strain_where_pores_collapse) {
+  const LdpmFacet law = benchmark();
+  LdpmFacetState given{}, asked{};
+  int times = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double normal = -5e-3 * std::sin(0.02 * k);
+    const auto volumetric = [&] { return ++times, 0.6 * normal; };
+    law.update(10.0, Vec3{normal, 0.1 * normal, 0.0}, 0.6 * normal, given);
+    const int before = times;
+    law.update(10.0, Vec3{normal, 0.1 * normal, 0.0}, volumetric, asked);
+    EXPECT_EQ(asked.stress.x, given.stress.x) << k;
+    if (given.stress.x > -law.yield) {
+      EXPECT_EQ(times, before) << k;
+    }
+  }
+  EXPECT_GT(times, 50);
+}
+
 TEST(LdpmFacet, random_walks_lose_no_energy_and_give_none_back) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;

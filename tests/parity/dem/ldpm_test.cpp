@@ -1,11 +1,15 @@
 // Concrete of LDPM: same bits on threads, packs, a device's schedule and ranks.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "domain/simulated_ranks.hpp"
 #include "prepare/build.hpp"
+#include "run/method/dem_method.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -78,13 +82,42 @@ TEST(LdpmFacets, crack_and_let_go_of_their_ends) {
 }
 
 TEST(LdpmFacets, end_alike_on_threads_packs_and_a_devices_schedule) {
-  for (const int threads : {2, 3})
+  for (const int threads : {2, 3, 7})
     EXPECT_EQ(state_hash(torn(Space::host, threads)), state_hash(reference())) << threads;
   for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight})
     if (lanes <= widest_lanes()) {
       EXPECT_EQ(state_hash(torn(Space::host, 1, lanes)), state_hash(reference()));
     }
   EXPECT_EQ(state_hash(torn(Space::shadow, 1)), state_hash(reference()));
+}
+
+TEST(LdpmFacets, resume_to_the_same_bits_on_other_threads_and_on_ranks) {
+  const auto whole = make_method(torn_prism(), model(), {}, nullptr);
+  while (whole->steps() < steps / 2) whole->advance({1e300, steps / 2});
+  const std::string path =
+      std::filesystem::temp_directory_path() / ("ldpm_" + std::to_string(::getpid()) + ".br");
+  CheckpointWriter writer;
+  whole->save(writer);
+  writer.write(path);
+  while (whole->steps() < steps) whole->advance({1e300, steps});
+  EXPECT_EQ(whole->state_hash(), state_hash(reference()));
+  const CheckpointReader reader(path);
+  Exec three;
+  three.threads = 3;
+  const auto later = make_method(torn_prism(), model(), three, nullptr);
+  later->load(&reader);
+  EXPECT_EQ(later->steps(), steps / 2);
+  while (later->steps() < steps) later->advance({1e300, steps});
+  EXPECT_EQ(later->state_hash(), state_hash(reference()));
+  simulate_ranks(3, 5, [&](Communicator& ranks) {
+    const auto part = make_method(torn_prism(), model(), {}, &ranks);
+    part->load(ranks.rank() == 0 ? &reader : nullptr);
+    while (part->steps() < steps) part->advance({1e300, steps});
+    const std::uint64_t hash = part->state_hash();
+    if (ranks.rank() != 0) return;
+    EXPECT_EQ(hash, state_hash(reference()));
+  });
+  std::filesystem::remove(path);
 }
 
 TEST(LdpmFacets, end_alike_on_ranks) {

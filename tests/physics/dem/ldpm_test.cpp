@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -67,6 +68,123 @@ TEST(Ldpm, a_displaced_corner_of_the_public_tetrahedron_needs_the_published_forc
     for (std::size_t k = 0; k < 6; ++k)
       EXPECT_NEAR(found[k], holding[at(e)][k], 1e-6) << e << ' ' << k;
   }
+}
+
+/// Eigenvalues of a symmetric matrix, ascending, by Jacobi's rotations.
+std::vector<double> eigenvalues(std::vector<std::vector<double>> m) {
+  const std::size_t n = m.size();
+  for (int sweep = 0; sweep < 30; ++sweep)
+    for (std::size_t p = 0; p < n; ++p)
+      for (std::size_t q = p + 1; q < n; ++q) {
+        if (m[p][q] == 0.0) continue;
+        const double angle = 0.5 * std::atan2(2.0 * m[p][q], m[q][q] - m[p][p]);
+        const double c = std::cos(angle), s = std::sin(angle);
+        for (std::size_t k = 0; k < n; ++k) {
+          const double kp = m[k][p], kq = m[k][q];
+          m[k][p] = c * kp - s * kq, m[k][q] = s * kp + c * kq;
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+          const double pk = m[p][k], qk = m[q][k];
+          m[p][k] = c * pk - s * qk, m[q][k] = s * pk + c * qk;
+        }
+      }
+  std::vector<double> values;
+  for (std::size_t k = 0; k < n; ++k) values.push_back(m[k][k]);
+  std::sort(values.begin(), values.end());
+  return values;
+}
+/// Stiffness of the tetrahedron against displacements and turns of its corners.
+std::vector<std::vector<double>> stiffness_of_tetrahedron() {
+  const double tiny = 1e-8, dt = 1e-9;
+  std::vector<std::vector<double>> k(24, std::vector<double>(24));
+  for (int column = 0; column < 24; ++column) {
+    World w = tetrahedron().world();
+    for (ElementState& s : w.elements.state.host()) s.velocity = s.spin = {};
+    ElementState& s = w.elements.state.data()[column / 6];
+    double moved[6] = {};
+    moved[column % 6] = tiny;
+    s.position += Vec3{moved[0], moved[1], moved[2]};
+    s.velocity = (1.0 / dt) * Vec3{moved[0], moved[1], moved[2]};
+    s.spin = (1.0 / dt) * Vec3{moved[3], moved[4], moved[5]};
+    w.last_dt = dt;
+    evaluate_forces(w);
+    for (Index e = 0; e < 4; ++e) {
+      const Vec3 f = w.elements.force.data()[e], t = w.elements.torque.data()[e];
+      const std::array<double, 6> found{f.x, f.y, f.z, t.x, t.y, t.z};
+      for (std::size_t row = 0; row < 6; ++row)
+        k[6 * at(e) + row][static_cast<std::size_t>(column)] = -found[row] / tiny;
+    }
+  }
+  return k;
+}
+
+TEST(Ldpm, the_tetrahedron_has_the_published_stiffnesses_and_six_free_motions) {
+  auto k = stiffness_of_tetrahedron();
+  for (std::size_t i = 0; i < 24; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_NEAR(k[i][j], k[j][i], 1e-2) << i << ' ' << j;
+      k[i][j] = k[j][i] = 0.5 * (k[i][j] + k[j][i]);
+    }
+  const std::vector<double> found = eigenvalues(k);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(found[i], 0.0, 2e-3) << i;
+  const double published[] = {19.6223, 19.6223, 20.5656, 20.5656, 20.5656, 24.2529,
+                              24.2529, 24.2529, 39.2837, 1875.97, 1875.97, 1875.97,
+                              3303.13, 3303.13, 4454.09, 4454.09, 4454.09, 7071.07};
+  for (std::size_t i = 0; i < 18; ++i)
+    EXPECT_NEAR(found[6 + i], published[i], 2e-5 * published[i] + 2e-3) << i;
+}
+
+// The bound of turns takes the largest of the three stiffnesses of each facet, and adds those.
+TEST(Ldpm, the_step_is_stable_and_over_half_as_long_as_may_be) {
+  auto k = stiffness_of_tetrahedron();
+  const World w = tetrahedron().world();
+  for (std::size_t i = 0; i < 24; ++i)
+    for (std::size_t j = 0; j < 24; ++j) {
+      const auto of = [&](std::size_t dof) {
+        return (dof % 6 < 3 ? w.elements.mass.data() : w.elements.inertia.data())[dof / 6];
+      };
+      k[i][j] /= std::sqrt(of(i) * of(j));
+    }
+  const double stable = 2.0 / std::sqrt(eigenvalues(k).back());
+  const double taken = step_rule(w)(w.critical.data()[0], 0.0) / w.parameters.time.safety;
+  EXPECT_LT(taken, stable);
+  EXPECT_GT(taken, 0.5 * stable);
+}
+
+/// Corner 1 out by 0.02, in by 0.2, out again, 1e-4 a step: what an independent program gives.
+TEST(Ldpm, a_tetrahedron_opened_and_crushed_follows_the_published_stresses) {
+  Scene s = tetrahedron();
+  LdpmConfig& c = s.config.materials[0].ldpm;
+  c.softening_exponent = 0.2;
+  c.collapse_strength = 120.0;
+  c.hardening = 0.33;
+  c.compaction_strain = 3.0;
+  c.deviatoric_start = 0.5;
+  c.friction_stress = 600.0;
+  World w = s.world();
+  double at_corner = 0.0;
+  const auto reach = [&](double a) {
+    const int steps = static_cast<int>(std::lround(std::fabs(a - at_corner) / 1e-4));
+    for (int k = 1; k <= steps; ++k) {
+      const double to = at_corner + (a - at_corner) * k / steps;
+      bring(w, [&](const Vec3& x) { return x.x > 0.6 ? Vec3{1.0 + to, 0.0, 0.0} : x; });
+    }
+    at_corner = a;
+    return w.ldpm.state.data()[0].stress.x;  // facets are sorted by their ends: of edge 0-1
+  };
+  ASSERT_EQ(w.ldpm.a.data()[0] + w.ldpm.b.data()[0], 1);
+  EXPECT_NEAR(reach(0.01), 1.354499, 1e-6);
+  const LdpmFacetState& of_12 = w.ldpm.state.data()[6];  // of an edge that turns
+  EXPECT_NEAR(of_12.stress.x, 2.054748, 0.02);
+  EXPECT_NEAR(std::hypot(of_12.stress.y, of_12.stress.z), 0.711785, 0.02);
+  EXPECT_NEAR(reach(0.02), 0.606663, 1e-6);
+  const double closed = reach(0.0);  // -3, an increment beyond, if no rounding keeps it open
+  EXPECT_GT(closed, -3.0 - 1e-6);
+  EXPECT_LT(closed, 1e-6);
+  EXPECT_NEAR(reach(-0.09), -237.871033, 1e-5);
+  EXPECT_NEAR(reach(-0.2), -602.149170, 1e-5);
+  EXPECT_NEAR(reach(-0.09), 0.0, 1e-6);
+  EXPECT_NEAR(reach(0.02), 0.606663, 1e-6);
 }
 
 Config cube() {
