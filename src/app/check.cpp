@@ -91,7 +91,7 @@ struct CheckCommand {
 
   static void tell_forecast(const Forecast& f) {
     if (f.items == 0.0) {
-      fmt::print("  size    known when gmsh has meshed it: check --model\n");
+      fmt::print("  size    known when bodies are meshed or filled: check --model\n");
       return;
     }
     fmt::print("  size    {} {}", about(f.items), f.item_name);
