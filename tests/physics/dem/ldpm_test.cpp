@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dem/energy.hpp"
+#include "dem/setup/materials.hpp"
 #include "prepare/build.hpp"
 #include "prepare/ldpm/body.hpp"
 #include "scene.hpp"
@@ -226,6 +227,53 @@ TEST(Ldpm, all_around_compression_strains_every_facet_alike) {
     virial += w.ldpm.place.data()[i].area * w.ldpm.place.data()[i].length * s.stress.x;
   }
   EXPECT_NEAR(virial / (3.0 * 0.04 * 0.04 * 0.04), normal * strain, 1e-8 * normal * 1e-4);
+}
+
+/// Far beyond pore collapse, where e_V = ((1 + e)^3 - 1) / 3 differs from e by 2 %.
+TEST(Ldpm, all_around_crushing_of_a_body_is_that_of_one_facet) {
+  const Config config = cube();
+  World w = make_world(config, build_model(config, ""), {});
+  const LdpmFacet law = ldpm_facet(config.materials[0]);
+  LdpmFacetState one{};
+  constexpr int steps = 200;
+  double last = 0.0;
+  for (int k = 1; k <= steps; ++k) {
+    const double strain = -0.02 * k / steps;
+    bring(w, [&](const Vec3& x) { return ((1.0 + strain) / (1.0 + last)) * x; });
+    const double volumetric = ((1.0 + strain) * (1.0 + strain) * (1.0 + strain) - 1.0) / 3.0;
+    law.update(0.01, Vec3{strain, 0.0, 0.0}, volumetric, one);
+    last = strain;
+  }
+  EXPECT_LT(one.stress.x, -600e6);
+  for (const LdpmFacetState& s : w.ldpm.state.host()) {
+    EXPECT_NEAR(s.stress.x, one.stress.x, 1e-8 * std::fabs(one.stress.x));
+    EXPECT_LT(std::hypot(s.stress.y, s.stress.z), 1e-6 * std::fabs(one.stress.x));
+  }
+}
+
+/// u_z = e z alone: each facet has the strain of its direction, and the body E_0 by the mean of
+/// n_z^4 + alpha n_z^2 (1 - n_z^2), which is that of a body without texture to some per cent.
+TEST(Ldpm, a_body_held_aside_is_as_stiff_as_its_facets_say) {
+  const Config config = cube();
+  World w = make_world(config, build_model(config, ""), {});
+  const LdpmFacet law = ldpm_facet(config.materials[0]);
+  const double strain = -1e-5;
+  bring(w, [&](const Vec3& x) { return Vec3{x.x, x.y, (1.0 + strain) * x.z}; });
+  double virial = 0.0;
+  for (Index i = 0; i < w.ldpm.size(); ++i) {
+    const Vec3 a = state(w, w.ldpm.a.data()[i]).position, b = state(w, w.ldpm.b.data()[i]).position;
+    const double nz = (b.z - a.z) / norm(b - a), square = nz * nz;
+    const LdpmFacetState& s = w.ldpm.state.data()[i];
+    EXPECT_NEAR(s.strain.x, strain * square, 3e-5 * std::fabs(strain));
+    EXPECT_NEAR(std::hypot(s.strain.y, s.strain.z),
+                std::fabs(strain * nz) * std::sqrt(std::fabs(1.0 - square)),
+                3e-5 * std::fabs(strain));
+    const LdpmPlace& p = w.ldpm.place.data()[i];
+    virial += p.area * p.length * law.young * strain * square *
+              (square + law.shear_ratio * (1.0 - square));
+  }
+  const double mean = virial / (0.04 * 0.04 * 0.04) / (law.young * strain);
+  EXPECT_NEAR(mean, 3.0 * (0.2 + law.shear_ratio * (1.0 / 3.0 - 0.2)), 0.03);
 }
 
 TEST(Ldpm, a_rigid_turn_strains_nothing) {
