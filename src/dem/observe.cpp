@@ -128,12 +128,13 @@ struct ConcreteDamage {
   ConcreteLink law;
   Index first;
   View<const Number> opening;
-  View<const double> length, stiffness, area;
+  View<const double> length, stiffness, area, rate;
 
   BR_HD void operator()(Index k) const {
     const Index i = first + k;
-    const LinkConstants<double> link{length[i], stiffness[i], area[i], 0.0, 0.0};
     const double so_far = opening[i];
+    LinkConstants<double> link{length[i], stiffness[i], area[i], 0.0, 0.0};
+    if (law.rated()) link.factor = law.factor_of(link, so_far, rate[i]);
     add(i, so_far < 0.0 ? 1.0 : law.tension(link).damage(so_far));
   }
 };
@@ -167,7 +168,7 @@ Buffer<double> damage_of(const World& w) {
           for_each(w.exec, g.end - g.begin,
                    ConcreteDamage<Number>{
                        add, g.law, g.begin, set.kept.template as<Number>().opening.view(),
-                       set.length.view(), set.stiffness.view(), set.area.view()});
+                       set.length.view(), set.stiffness.view(), set.area.view(), set.rate.view()});
       } else {
         const auto is_broken = set.template broken<Number>();
         for_each(w.exec, set.size(),
@@ -367,12 +368,11 @@ Vec3 link_force(const ConcreteLink& law, const ConcreteLinks& links, const Eleme
   const ElementState& a = elements.state.data()[links.a.data()[i]];
   const ElementState& b = elements.state.data()[links.b.data()[i]];
   const double touching = a.radius + b.radius;
-  const LinkConstants<double> link{links.length.data()[i], links.stiffness.data()[i],
-                                   links.area.data()[i], 0.5 * touching, touching};
+  const double opening = link_opening(links, i);
+  const LinkConstants<double> link = links.constants(law, i, opening, touching);
   const Vec3 d = b.position - a.position;
   const double distance = norm(d);
-  const double pull =
-      law.normal_force(link, distance - link.length, link_opening(links, i)) / distance;
+  const double pull = law.normal_force(link, distance - link.length, opening) / distance;
   const Vec3 shear = with_number(links.precision, [&](auto number) {
     return links.kept.as<decltype(number)>().shear.view()[i];
   });

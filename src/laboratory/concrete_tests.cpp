@@ -247,6 +247,7 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
   c.seed = seed;
   c.local_damping = 0.3;
   c.materials = {sample.material};
+  c.materials[0].rate = "none";  // all of them are quasi-static, though they load in milliseconds
   c.contact = sample.contact;
   c.links.range = sample.range;
   c.output.frames = 0;

@@ -3,6 +3,7 @@
 
 #include "dem/laws/pair_motion.hpp"
 #include "dem/laws/tension_softening.hpp"
+#include "math/elementary.hpp"
 
 namespace breccia::dem {
 
@@ -12,6 +13,7 @@ struct LinkState {
   R opening;         ///< largest opening so far, >= 0; link_broken or link_released afterwards  [m]
   Vec3Of<R> shear;   ///< F_s on b, world frame  [N]
   Vec3Of<R> moment;  ///< M on b, world frame  [N m]
+  R rate = {};  ///< smoothed strain rate [1/s]; minus DIF [-] from the peak on; rated laws only
 };
 inline constexpr double link_broken =
     -1.0;  ///< LinkState::opening of a link that answers as a contact
@@ -33,11 +35,33 @@ struct LinkResponse {
 /// Constants of one link.
 template <class R>
 struct LinkConstants {
-  R length;     ///< D_eq, at which it is free of force  [m]
-  R stiffness;  ///< K_n  [N/m]
-  R area;       ///< S, pi min(R_a, R_b)^2 times the share of fabric  [m2]
-  R radius;     ///< r, mean of the two  [m]
-  R touching;   ///< R_a + R_b  [m]
+  R length;                     ///< D_eq, at which it is free of force  [m]
+  R stiffness;                  ///< K_n  [N/m]
+  R area;                       ///< S, pi min(R_a, R_b)^2 times the share of fabric  [m2]
+  R radius;                     ///< r, mean of the two  [m]
+  R touching;                   ///< R_a + R_b  [m]
+  R factor = constant<R>(1.0);  ///< DIF: dynamic over static tensile strength  [-]
+};
+
+/// Tensile strength over strain rate e, dynamic over static (DIF):
+///
+///   DIF = (e / e_s)^delta                          up to the bend e_1, e_s = 1e-6/s
+///   DIF = (e_1 / e_s)^delta (e / e_1)^(1/3)        beyond, until 160/s, as far as tests go
+///
+/// Malvar and Ross 1998: delta = 1 / (1 + 8 f_c / 10 MPa), e_1 = 1/s. fib Model Code
+/// 2010, 5.1.11.2: delta = 0.018, e_1 = 10/s.
+struct RateCurve {
+  double exponent;  ///< delta; 0: strength does not depend on rate  [-]
+  double bend;      ///< ln(e_1 / e_s)  [-]
+  double speed;  ///< of the wave in a bar over the crossings that count: D / time constant  [m/s]
+
+  template <class R>
+  BR_HD R factor(const R& rate) const {
+    const R held = min(max(rate, constant<R>(1e-6)), constant<R>(160.0));
+    const R x = logarithm<R>(1e6 * held);
+    const R beyond = max(x - bend, constant<R>(0.0));
+    return exponential<R>(exponent * (x - beyond) + beyond * (1.0 / 3.0));
+  }
 };
 
 /// Cohesive link and, after rupture, the contact that is left of it (docs/theory.md, cohesive
@@ -52,6 +76,8 @@ struct LinkConstants {
 ///   shear        F_s += -K_t du_s, cut at S C (1 - damage) - N tan phi
 ///   moment       M += -K_r dtheta, cut at eta r min(|N| in compression + S T (1 - damage), S s_M)
 ///   wear         plastic slip ds and turn dtheta_p: kappa += w_s |ds| + w_m r |dtheta_p|
+///   rate         T grows to T DIF of the link's own strain rate, smoothed over some crossings of
+///                waves and held from the peak on; u_2 stays
 ///   after rupture compression against D_eq, friction mu_b, no cohesion; parted for good beyond
 ///                1.5 times the larger of D_eq and R_a + R_b
 ///
@@ -77,11 +103,13 @@ struct ConcreteLink {
   double compaction_slope;      ///< H_c < 1, tangent beyond it over K_n  [-]
   double crushing_strength;     ///< Y_b, 0: none  [Pa]
   double crushing_slope;        ///< H_b < 1  [-]
+  RateCurve rate;               ///< of T
 
   /// One step of a link (R = double) or of a pack of links.
   template <class R>
-  BR_HD LinkResponse<R> response(const LinkConstants<R>& link, const PairMotion<R>& motion,
+  BR_HD LinkResponse<R> response(LinkConstants<R> link, const PairMotion<R>& motion,
                                  LinkState<R>& state) const {
+    if (rated()) quicken(link, motion, state);
     const R zero = constant<R>(0.0);
     const R kt = shear_ratio * link.stiffness;
     const R kr = rolling_ratio * kt * link.radius * link.radius;
@@ -131,9 +159,28 @@ struct ConcreteLink {
   /// Whether sliding and rolling use links up.
   BR_HD bool wears() const { return slip_wear > 0.0 || turn_wear > 0.0; }
 
+  /// Whether T depends on the strain rate.
+  BR_HD bool rated() const { return rate.exponent > 0.0; }
+
   template <class R>
   BR_HD TensionSoftening<R> tension(const LinkConstants<R>& link) const {
-    return {link.stiffness, tensile_strength * link.area, softening, rupture_opening};
+    const R slow = tensile_strength * link.area;  // S T
+    TensionSoftening<R> t{link.stiffness, link.factor * slow, softening, rupture_opening > 0.0,
+                          constant<R>(rupture_opening)};
+    if (!rated()) return t;
+    if (!t.ends_given) t.last = slow * (1.0 + softening) / link.stiffness;
+    t.ends_given = true;
+    t.last = max(t.last, 1.02 * t.onset());  // a link that is brittle at this rate
+    return t;
+  }
+  /// DIF of a link as it stands. Until its peak it is undamaged: its strength is at least what it
+  /// has borne.  [-]
+  template <class R>
+  BR_HD R factor_of(const LinkConstants<R>& link, const R& opening, const R& kept_rate) const {
+    const R one = constant<R>(1.0);
+    if (!rated()) return one;
+    const R borne = (1.0 + 1e-9) * link.stiffness * opening / (tensile_strength * link.area);
+    return select(kept_rate < 0.0, -1.0 * kept_rate, max(one, borne));
   }
   /// N of a link at a stretch u, tension positive.  [N]
   BR_HD double normal_force(const LinkConstants<double>& link, double stretch,
@@ -184,6 +231,33 @@ struct ConcreteLink {
     R spent;    ///< [J]
     R plastic;  ///< slip, or turn, beyond the elastic one  [m or rad]
   };
+
+  /// The strength of this step by the strain rate: e' = (e + dD/(D tau)) / (1 + dt/tau), held from
+  /// the step on in which the link is stretched beyond it. The curve is asked only by links beyond
+  /// their static strength.
+  template <class R>
+  BR_HD void quicken(LinkConstants<R>& link, const PairMotion<R>& motion,
+                     LinkState<R>& state) const {
+    const R crossed = rate.speed * motion.time / link.length;  // dt / tau
+    const R gained = rate.speed * motion.extension / (link.length * link.length);
+    const auto waits = state.opening >= 0.0 && state.rate >= 0.0;
+    const R smooth = max(constant<R>(0.0), (state.rate + gained) / (1.0 + crossed));
+    state.rate = select(waits, smooth, state.rate);
+    link.factor = factor_of(link, state.opening, state.rate);
+    const R stretch = max(state.opening, motion.distance - link.length);
+    hold_factor(link, waits, stretch, state);
+  }
+  /// Holds the factor of waiting links whose opening reaches beyond their dynamic strength.
+  template <class R, class Truth>
+  BR_HD void hold_factor(LinkConstants<R>& link, const Truth& waits, const R& opening,
+                         LinkState<R>& state) const {
+    const R slow = tensile_strength * link.area, elastic = link.stiffness * opening;
+    const auto beyond = waits && elastic > link.factor * slow;
+    if (!any(beyond)) return;
+    const R dynamic = max(link.factor, rate.factor(state.rate));
+    link.factor = select(beyond, dynamic, link.factor);
+    state.rate = select(beyond && elastic > link.factor * slow, -1.0 * link.factor, state.rate);
+  }
 
   /// Tension with softening, compression without limit.
   template <class R>
@@ -280,10 +354,11 @@ struct ConcreteLink {
   /// and rolling have been booked, so that `broke` takes back what the ledger reads off the opening
   /// (TensionSoftening::spent), but for what a stretched link stored.
   template <class R>
-  BR_HD void wear_out(const Stand<R>& s, const LinkConstants<R>& link, const PairMotion<R>& motion,
+  BR_HD void wear_out(const Stand<R>& s, LinkConstants<R>& link, const PairMotion<R>& motion,
                       const R& wear, LinkState<R>& state, LinkResponse<R>& r) const {
     const auto worn = wear > 0.0;
     if (!any(worn)) return;
+    if (rated()) hold_factor(link, worn && state.rate >= 0.0, s.opening + wear, state);
     const TensionSoftening<R> t = tension(link);
     // a little beyond u_2, so that rounding cannot keep the link whole
     const R last = (1.0 + 1e-6) * t.rupture();

@@ -27,6 +27,7 @@ struct PairMotion {
   Vec3Of<R> turn;       ///< rotation of b against a in this step  [rad]
   Vec3Of<R> half_turn;  ///< h = tan(angle / 2) axis: how the pair's frame turned in this step  [-]
   R turn_scale;         ///< 2 / (1 + h.h)  [-]
+  R time;               ///< the step that brought the pair here  [s]
 
   /// A vector kept by the pair (shear force, moment), turned with the pair: Cayley's form of the
   /// rotation that brings the old normal to the new one and spins about it by the mean spin. It
@@ -89,6 +90,7 @@ BR_HD PairMotion<R> pair_motion(const PairEnd<R>& a, const PairEnd<R>& b, const 
   m.slip = step * m.tangential(sliding);
   m.turn = step * (b.spin - a.spin);
   m.turn_scale = turn_scale(m.half_turn);
+  m.time = step;
   return m;
 }
 

@@ -15,16 +15,17 @@ namespace breccia::dem {
 /// Source: docs/theory.md, cohesive links; envelope of Durand 2012's reference law (Rousseau 2008).
 template <class R>
 struct TensionSoftening {
-  R stiffness;        ///< K  [N/m]
-  R strength;         ///< F_t  [N]
-  double softening;   ///< zeta >= 0, elastic over softening stiffness; 0 is brittle  [-]
-  double last = 0.0;  ///< u_2 > u_1, which rules instead of zeta; 0: zeta rules  [m]
+  R stiffness;              ///< K  [N/m]
+  R strength;               ///< F_t  [N]
+  double softening;         ///< zeta >= 0, elastic over softening stiffness; 0 is brittle  [-]
+  bool ends_given = false;  ///< whether u_2 is given, which rules instead of zeta
+  R last = {};              ///< u_2 > u_1, if given  [m]
 
   BR_HD R onset() const { return strength / stiffness; }
-  BR_HD R rupture() const { return last > 0.0 ? constant<R>(last) : onset() * (1.0 + softening); }
+  BR_HD R rupture() const { return ends_given ? last : onset() * (1.0 + softening); }
   /// K u_2  [N]
   BR_HD R elastic_at_rupture() const {
-    return last > 0.0 ? last * stiffness : strength * (1.0 + softening);
+    return ends_given ? last * stiffness : strength * (1.0 + softening);
   }
 
   /// 1 - secant stiffness / K after a largest opening.  [-]
@@ -46,7 +47,7 @@ struct TensionSoftening {
  private:
   /// 1 / zeta
   BR_HD R inverse() const {
-    if (last > 0.0) return strength / (last * stiffness - strength);
+    if (ends_given) return strength / (last * stiffness - strength);
     return constant<R>(softening > 1e-12 ? 1.0 / softening : 1e12);
   }
 };

@@ -32,6 +32,8 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
   Buffer<double> slid;     ///< energy spent on sliding so far  [J]  (pairs)
   Buffer<double> yielded;  ///< energy spent on plastic moments so far  [J]  (pairs)
   Buffer<double> broke;    ///< energy that its rupture spent  [J]  (pairs)
+  bool rated = false;      ///< whether the strength of some link depends on its strain rate  (constant)
+  Buffer<double> rate;     ///< LinkState::rate; empty if not rated  [1/s or -]
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -48,6 +50,15 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
     field("slid", "J", slid);
     field("yielded", "J", yielded);
     field("broke", "J", broke);
+    if (rated) field("rate", "1/s", rate);
+  }
+  /// Constants of a link as it stands. All arrays on the host.
+  LinkConstants<double> constants(const ConcreteLink& law, Index i, double opening,
+                                  double touching) const {
+    LinkConstants<double> link{length.data()[i], stiffness.data()[i], area.data()[i],
+                               0.5 * touching, touching};
+    if (law.rated()) link.factor = law.factor_of(link, opening, rate.data()[i]);
+    return link;
   }
 
   template <class Number>
@@ -82,7 +93,7 @@ struct ConcreteLinkForces {
   View<const double> stiffness, area;
   View<Number> opening;
   PlanesView<Number> shear, moment;
-  View<double> slid, yielded, broke;
+  View<double> slid, yielded, broke, rate;
   View<PairForceOf<Number>> actions;
   Index first_action;  ///< action of link 0
   std::int64_t step;   ///< steps taken before
@@ -121,6 +132,7 @@ struct ConcreteLinkForces {
     const LinkConstants<R> link{loaded.length, loaded.stiffness, loaded.area, 0.5 * touching,
                                 touching};
     LinkState<R> state = loaded.state;
+    if (by.rated()) state.rate = load<R>(rate, i);
     const LinkResponse<R> r = by.response(link, motion, state);
 
     if constexpr (std::is_same_v<Number, float>) {
@@ -132,6 +144,7 @@ struct ConcreteLinkForces {
     store(opening, i, state.opening);
     store(shear, i, state.shear);
     store(moment, i, state.moment);
+    if (by.rated()) store(rate, i, state.rate);
     if (any(r.shortened != 0.0)) store(length, i, link.length - r.shortened);
     if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);
     if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
@@ -167,6 +180,7 @@ ConcreteLinkForces<Number> forces_of(ConcreteLinks& c, const ConcreteLink& law, 
           c.slid.view(),
           c.yielded.view(),
           c.broke.view(),
+          c.rate.view(),
           actions.view(),
           0,
           in.step};
@@ -180,12 +194,13 @@ struct ConcreteShares {
   View<const double> length, stiffness, area;
   View<const Number> opening;
   PlanesView<const Number> shear, moment;
-  View<const double> slid, yielded, broke;
+  View<const double> slid, yielded, broke, rate;
 
   BR_HD Energies operator()(const ConcreteLink& law, Index i) const {
     Energies s;
     const double touching = state_of[a[i]].radius + state_of[b[i]].radius;
-    const LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
+    LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
+    if (law.rated()) link.factor = law.factor_of<double>(link, opening[i], rate[i]);
     const double stretch = norm(state_of[b[i]].position - state_of[a[i]].position) - length[i];
     const LinkState<double> state{opening[i], shear[i], moment[i]};
     s.elastic.add(law.stored(link, stretch, state));
@@ -211,7 +226,8 @@ ConcreteShares<Number> shares_of(const ConcreteLinks& c, const View<const Elemen
           kept.moment.view(),
           c.slid.view(),
           c.yielded.view(),
-          c.broke.view()};
+          c.broke.view(),
+          c.rate.view()};
 }
 
 /// How far a link has gone. All arrays on the host.
@@ -221,7 +237,7 @@ inline LinkStage stage_of(const ConcreteLink& law, const ConcreteLinks& c, const
     return c.kept.as<decltype(number)>().opening.data()[i];
   });
   if (opening < 0.0) return LinkStage::broken;
-  const double onset = law.tensile_strength * c.area.data()[i] / c.stiffness.data()[i];
+  const double onset = law.tension(c.constants(law, i, opening, 0.0)).onset();
   return opening > onset ? LinkStage::softened : LinkStage::whole;
 }
 

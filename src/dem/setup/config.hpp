@@ -91,21 +91,24 @@ struct MaterialConfig {
   double young = 30e9;      ///< E, macroscopic  [Pa]
   double poisson = 0.2;     ///< nu, macroscopic  [-]
   // concrete (docs/theory.md, cohesive links)
-  double tensile_strength = 2.2e6;                ///< T, local  [Pa]
-  double cohesion = 5.5e6;                        ///< C, local  [Pa]
-  double softening = 5.0;                         ///< zeta: initial over softening stiffness  [-]
-  double fracture_energy = 0.0;                   ///< G_F, macroscopic; 0: by zeta  [J/m2]
-  double friction_angle = 0.5235987755982988;     ///< phi_i of intact links  [rad]
-  double rolling_stiffness = 1.0;                 ///< beta_r  [-]
-  double rolling_limit = 0.17;                    ///< eta  [-]
-  double rolling_cap = 0.0;                       ///< s_M; 0: none  [Pa]
-  double broken_friction = -1.0;                  ///< mu_b; below 0: that of contacts  [-]
-  double broken_rolling_limit = -1.0;             ///< eta_b; below 0: eta  [-]
-  double slip_wear = 0.0, turn_wear = 0.0;        ///< w_s, w_m  [-]
-  double compaction_strength = 0.0;               ///< Y_c; 0: none  [Pa]
-  double compaction_slope = 0.4;                  ///< H_c  [-]
-  double crushing_strength = 0.0;                 ///< Y_b; 0: none  [Pa]
-  double crushing_slope = 0.4;                    ///< H_b  [-]
+  double tensile_strength = 2.2e6;             ///< T, local  [Pa]
+  double cohesion = 5.5e6;                     ///< C, local  [Pa]
+  double softening = 5.0;                      ///< zeta: initial over softening stiffness  [-]
+  double fracture_energy = 0.0;                ///< G_F, macroscopic; 0: by zeta  [J/m2]
+  double friction_angle = 0.5235987755982988;  ///< phi_i of intact links  [rad]
+  double rolling_stiffness = 1.0;              ///< beta_r  [-]
+  double rolling_limit = 0.17;                 ///< eta  [-]
+  double rolling_cap = 0.0;                    ///< s_M; 0: none  [Pa]
+  double broken_friction = -1.0;               ///< mu_b; below 0: that of contacts  [-]
+  double broken_rolling_limit = -1.0;          ///< eta_b; below 0: eta  [-]
+  double slip_wear = 0.0, turn_wear = 0.0;     ///< w_s, w_m  [-]
+  double compaction_strength = 0.0;            ///< Y_c; 0: none  [Pa]
+  double compaction_slope = 0.4;               ///< H_c  [-]
+  double crushing_strength = 0.0;              ///< Y_b; 0: none  [Pa]
+  double crushing_slope = 0.4;                 ///< H_b  [-]
+  std::string rate = "none";
+  double rate_strength = 30e6;                    ///< f_c, static, of malvar_ross  [Pa]
+  double rate_crossings = 5.0;                    ///< time constant over D / c  [-]
   double alpha = 3.9, beta = 3.125, gamma = 5.0;  ///< macro-micro constants  [-]
   std::string shear = "plastic";
   // parallel: the strengths and constants above, and
@@ -172,6 +175,15 @@ struct MaterialConfig {
         "Y_b, compressive stress at which broken links yield until their ends touch; 0: never");
     key("crushing_slope", crushing_slope, "-", Range{0.0, 1.0, Open::high},
         "H_b, stiffness of a link beyond crushing_strength over the elastic one");
+    key("rate", rate, OneOf{"none", "malvar_ross", "mc2010"},
+        "how the tensile strength of a link grows with its own strain rate: none; malvar_ross: by "
+        "Malvar and Ross 1998; mc2010: by the fib Model Code 2010; a quasi-static test in a few ms "
+        "needs none");
+    key("rate_strength", rate_strength, "Pa", Range{1e6, 1e9},
+        "f_c, static compressive strength, on which the exponent of malvar_ross depends");
+    key("rate_crossings", rate_crossings, "-", Range{1.0, 1000.0},
+        "time over which a link's strain rate is smoothed, in crossings of the link by a wave of "
+        "speed sqrt(E / density)");
     key("alpha", alpha, "-", positive, "macro-micro constant of Poisson's ratio");
     key("beta", beta, "-", positive, "macro-micro constant of the stiffness");
     key("gamma", gamma, "-", positive, "macro-micro constant of the stiffness");

@@ -63,6 +63,14 @@ double link_stiffness(const Model& m, const Model::Link& link, const MaterialCon
   return modulus * pi * least * least * link.share / norm(apart);
 }
 
+RateCurve rate_curve(const MaterialConfig& m) {
+  if (m.rate == "none") return {};
+  const bool malvar = m.rate == "malvar_ross";
+  const double exponent = malvar ? 1.0 / (1.0 + 8.0 * m.rate_strength / 10e6) : 0.018;
+  const double bend = std::log((malvar ? 1.0 : 10.0) / 1e-6);
+  return {exponent, bend, std::sqrt(m.young / m.density) / m.rate_crossings};
+}
+
 ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact) {
   const LocalElasticity local = local_elasticity(m);
   ConcreteLink law{};
@@ -85,6 +93,7 @@ ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact)
   law.compaction_slope = m.compaction_slope;
   law.crushing_strength = m.crushing_strength;
   law.crushing_slope = m.crushing_slope;
+  law.rate = rate_curve(m);
   return law;
 }
 

@@ -33,6 +33,8 @@ std::string laws_within();
 double link_section(const Model& model, const Model::Link& link);
 double link_stiffness(const Model& model, const Model::Link& link, const MaterialConfig& material);
 
+/// Tensile strength over strain rate; of "none" with the exponent 0.
+RateCurve rate_curve(const MaterialConfig& material);
 ConcreteLink concrete_law(const MaterialConfig& material, const ContactConfig& contact);
 SteelLink steel_law(const MaterialConfig& material);
 InterfaceLink interface_law(const MaterialConfig& material, const ContactConfig& contact);
