@@ -93,7 +93,8 @@ TEST(CaseFile, overrides_count_last_and_find_items_by_name_or_number) {
 }
 
 TEST(CaseFile, the_completed_case_reads_back_to_the_same_case) {
-  for (const char* name : {"/cases/rc_slab/case.toml", "/cases/rc_slab/small.toml"}) {
+  for (const char* name :
+       {"/cases/rc_slab/case.toml", "/cases/rc_slab/rock.toml", "/cases/rc_slab/small.toml"}) {
     const std::string text =
         completed_case(read_case<dem::Config>(source_dir + std::string(name), {}));
     const CaseText file(text);
