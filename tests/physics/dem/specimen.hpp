@@ -48,8 +48,8 @@ struct Curve {
 };
 
 /// Pulls the ends apart (rate > 0) or together at a constant rate of strain [1/s], until the stress
-/// has fallen to 0.9 of its peak. Ends: layers 1.5 mean radii thick, free across and to turn; all
-/// elements start with the velocities of a uniform strain, so that no shock runs through.
+/// has fallen to a share of its peak. Ends: layers 1.5 mean radii thick, free across and to turn;
+/// all elements start with the velocities of a uniform strain, so that no shock runs through.
 class LoadTest {
  public:
   LoadTest(const Specimen& specimen, Model model, double rate)
@@ -76,10 +76,11 @@ class LoadTest {
     world_ = std::make_unique<World>(make_world(config, model_, {}));
   }
 
-  Curve run() {
+  /// @param fallen  share of its peak at which the stress ends the test
+  Curve run(double fallen = 0.9) {
     Curve curve;
     double strain = 0.0, stress = 0.0;
-    while (strain < 1e-4 || stress > 0.9 * curve.strength) {
+    while (strain < 1e-4 || stress > fallen * curve.strength) {
       step(*world_);
       strain = std::fabs(rate_) * world_->time;
       stress = stress_now();
@@ -120,8 +121,9 @@ class LoadTest {
   std::unique_ptr<World> world_;
 };
 
-inline Curve pulled(const Specimen& specimen, const Model& model, double rate = 0.2) {
-  return LoadTest(specimen, model, rate).run();
+inline Curve pulled(const Specimen& specimen, const Model& model, double rate = 0.2,
+                    double fallen = 0.9) {
+  return LoadTest(specimen, model, rate).run(fallen);
 }
 inline Curve pressed(const Specimen& specimen, const Model& model) {
   return LoadTest(specimen, model, -0.5).run();
