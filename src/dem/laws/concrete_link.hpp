@@ -107,53 +107,12 @@ struct ConcreteLink {
 
   /// One step of a link (R = double) or of a pack of links.
   template <class R>
-  BR_HD LinkResponse<R> response(LinkConstants<R> link, const PairMotion<R>& motion,
+  BR_HD LinkResponse<R> response(const LinkConstants<R>& link, const PairMotion<R>& motion,
                                  LinkState<R>& state) const {
-    if (rated()) quicken(link, motion, state);
-    const R zero = constant<R>(0.0);
-    const R kt = shear_ratio * link.stiffness;
-    const R kr = rolling_ratio * kt * link.radius * link.radius;
-
-    // 1. Normal force.
-    Stand<R> s = stretched(link, motion, state.opening);
-    if (compaction_strength > 0.0 || crushing_strength > 0.0) compact(s, link, motion);
-
-    // 2. Shear force and moment: carried with the pair, then this step's increment.
-    const Vec3Of<R> shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
-    const Vec3Of<R> moment_before = motion.rotated_with_pair(state.moment);
-    const Vec3Of<R> shear_trial = shear_before - kt * motion.slip;
-    const Vec3Of<R> moment_trial = moment_before - kr * motion.turn;
-
-    // 3. Their limits.
-    const R shear_limit = limit_shear(s, link, dot(shear_trial, shear_trial));
-    const auto survives = s.holds && !s.sheared;
-    const auto acts = survives || (s.pressed && !s.parted);
-    const R moment_limit = limit_moment(s, link, survives);
-    const Cut<R> slide = cut(shear_before, shear_trial, shear_limit, acts, kt);
-    const Cut<R> roll = cut(moment_before, moment_trial, moment_limit, acts, kr);
-
-    LinkResponse<R> r;
-    r.normal = select(acts, s.normal, zero);
-    r.shear = slide.kept;
-    r.moment = roll.kept;
-    r.active = select(acts, constant<R>(1.0), zero);
-    r.shortened = s.shortened;
-    r.slid = slide.spent;
-    r.yielded = roll.spent;
-    r.broke = zero;
-
-    // 4. What is kept.
-    state.opening = select(s.intact, s.opening, state.opening);
-    if (wears()) {
-      const R wear = slip_wear * slide.plastic + turn_wear * link.radius * roll.plastic;
-      wear_out(s, link, motion, select(survives, wear, zero), state, r);
-    }
-    if (any(s.torn || s.sheared)) rupture(s, link, state, r);
-    r.yielded = r.yielded + s.crushed;
-    state.opening = select(s.parted, constant<R>(link_released), state.opening);
-    state.shear = r.shear;
-    state.moment = r.moment;
-    return r;
+    if (!rated()) return answer<false>(link, motion, state);
+    LinkConstants<R> dynamic = link;
+    quicken(dynamic, motion, state);
+    return answer<true>(dynamic, motion, state);
   }
 
   /// Whether sliding and rolling use links up.
@@ -164,14 +123,7 @@ struct ConcreteLink {
 
   template <class R>
   BR_HD TensionSoftening<R> tension(const LinkConstants<R>& link) const {
-    const R slow = tensile_strength * link.area;  // S T
-    TensionSoftening<R> t{link.stiffness, link.factor * slow, softening, rupture_opening > 0.0,
-                          constant<R>(rupture_opening)};
-    if (!rated()) return t;
-    if (!t.ends_given) t.last = slow * (1.0 + softening) / link.stiffness;
-    t.ends_given = true;
-    t.last = max(t.last, 1.02 * t.onset());  // a link that is brittle at this rate
-    return t;
+    return rated() ? tension_of<true>(link) : tension_of<false>(link);
   }
   /// DIF of a link as it stands. Until its peak it is undamaged: its strength is at least what it
   /// has borne.  [-]
@@ -232,6 +184,71 @@ struct ConcreteLink {
     R plastic;  ///< slip, or turn, beyond the elastic one  [m or rad]
   };
 
+  template <bool dynamic, class R>
+  BR_HD TensionSoftening<R> tension_of(const LinkConstants<R>& link) const {
+    const R slow = tensile_strength * link.area;  // S T
+    TensionSoftening<R> t{link.stiffness, slow, softening, rupture_opening > 0.0,
+                          constant<R>(rupture_opening)};
+    if constexpr (dynamic) {
+      if (!t.ends_given) t.last = slow * (1.0 + softening) / link.stiffness;
+      t.ends_given = true;
+      t.strength = link.factor * slow;
+      t.last = max(t.last, 1.02 * t.onset());  // a link that is brittle at this rate
+    }
+    return t;
+  }
+
+  /// One step at the strength that `link` has now.
+  /// @tparam dynamic  whether that is another than the static one
+  template <bool dynamic, class R>
+  BR_HD LinkResponse<R> answer(const LinkConstants<R>& link, const PairMotion<R>& motion,
+                               LinkState<R>& state) const {
+    const R zero = constant<R>(0.0);
+    const R kt = shear_ratio * link.stiffness;
+    const R kr = rolling_ratio * kt * link.radius * link.radius;
+
+    // 1. Normal force.
+    Stand<R> s = stretched<dynamic>(link, motion, state.opening);
+    if (compaction_strength > 0.0 || crushing_strength > 0.0) compact(s, link, motion);
+
+    // 2. Shear force and moment: carried with the pair, then this step's increment.
+    const Vec3Of<R> shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
+    const Vec3Of<R> moment_before = motion.rotated_with_pair(state.moment);
+    const Vec3Of<R> shear_trial = shear_before - kt * motion.slip;
+    const Vec3Of<R> moment_trial = moment_before - kr * motion.turn;
+
+    // 3. Their limits.
+    const R shear_limit = limit_shear(s, link, dot(shear_trial, shear_trial));
+    const auto survives = s.holds && !s.sheared;
+    const auto acts = survives || (s.pressed && !s.parted);
+    const R moment_limit = limit_moment(s, link, survives);
+    const Cut<R> slide = cut(shear_before, shear_trial, shear_limit, acts, kt);
+    const Cut<R> roll = cut(moment_before, moment_trial, moment_limit, acts, kr);
+
+    LinkResponse<R> r;
+    r.normal = select(acts, s.normal, zero);
+    r.shear = slide.kept;
+    r.moment = roll.kept;
+    r.active = select(acts, constant<R>(1.0), zero);
+    r.shortened = s.shortened;
+    r.slid = slide.spent;
+    r.yielded = roll.spent;
+    r.broke = zero;
+
+    // 4. What is kept.
+    state.opening = select(s.intact, s.opening, state.opening);
+    if (wears()) {
+      const R wear = slip_wear * slide.plastic + turn_wear * link.radius * roll.plastic;
+      wear_out<dynamic>(s, link, motion, select(survives, wear, zero), state, r);
+    }
+    if (any(s.torn || s.sheared)) rupture<dynamic>(s, link, state, r);
+    r.yielded = r.yielded + s.crushed;
+    state.opening = select(s.parted, constant<R>(link_released), state.opening);
+    state.shear = r.shear;
+    state.moment = r.moment;
+    return r;
+  }
+
   /// The strength of this step by the strain rate: e' = (e + dD/(D tau)) / (1 + dt/tau), held from
   /// the step on in which the link is stretched beyond it. The curve is asked only by links beyond
   /// their static strength.
@@ -260,11 +277,11 @@ struct ConcreteLink {
   }
 
   /// Tension with softening, compression without limit.
-  template <class R>
+  template <bool dynamic, class R>
   BR_HD Stand<R> stretched(const LinkConstants<R>& link, const PairMotion<R>& motion,
                            const R& opening_before) const {
     const R zero = constant<R>(0.0), one = constant<R>(1.0), kn = link.stiffness;
-    const TensionSoftening<R> t = tension(link);
+    const TensionSoftening<R> t = tension_of<dynamic>(link);
     Stand<R> s;
     s.stretch = motion.distance - link.length;
     s.intact = opening_before >= 0.0;
@@ -353,13 +370,13 @@ struct ConcreteLink {
   /// Wear opens a link, until it is torn in the next step. It spends nothing of its own: sliding
   /// and rolling have been booked, so that `broke` takes back what the ledger reads off the opening
   /// (TensionSoftening::spent), but for what a stretched link stored.
-  template <class R>
-  BR_HD void wear_out(const Stand<R>& s, LinkConstants<R>& link, const PairMotion<R>& motion,
+  template <bool dynamic, class R>
+  BR_HD void wear_out(const Stand<R>& s, LinkConstants<R> link, const PairMotion<R>& motion,
                       const R& wear, LinkState<R>& state, LinkResponse<R>& r) const {
     const auto worn = wear > 0.0;
     if (!any(worn)) return;
-    if (rated()) hold_factor(link, worn && state.rate >= 0.0, s.opening + wear, state);
-    const TensionSoftening<R> t = tension(link);
+    if constexpr (dynamic) hold_factor(link, worn && state.rate >= 0.0, s.opening + wear, state);
+    const TensionSoftening<R> t = tension_of<dynamic>(link);
     // a little beyond u_2, so that rounding cannot keep the link whole
     const R last = (1.0 + 1e-6) * t.rupture();
     const R after = max(s.opening, min(s.opening + wear, last));
@@ -371,11 +388,11 @@ struct ConcreteLink {
     state.opening = select(worn, after, state.opening);
   }
 
-  template <class R>
+  template <bool dynamic, class R>
   BR_HD void rupture(const Stand<R>& s, const LinkConstants<R>& link, LinkState<R>& state,
                      LinkResponse<R>& r) const {
     const R zero = constant<R>(0.0);
-    const TensionSoftening<R> t = tension(link);
+    const TensionSoftening<R> t = tension_of<dynamic>(link);
     const auto ends = s.torn || s.sheared;
     const R stored = constant<R>(0.5) * s.health * link.stiffness * s.stretch * s.stretch;
     const R spent =
