@@ -32,8 +32,8 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
   Buffer<double> slid;     ///< energy spent on sliding so far  [J]  (pairs)
   Buffer<double> yielded;  ///< energy spent on plastic moments so far  [J]  (pairs)
   Buffer<double> broke;    ///< energy that its rupture spent  [J]  (pairs)
-  bool rated = false;      ///< whether the strength of some link depends on its strain rate  (constant)
-  Buffer<double> rate;     ///< LinkState::rate; empty if not rated  [1/s or -]
+  bool rated = false;  ///< whether the strength of some link depends on its strain rate  (constant)
+  Buffer<double> rate;  ///< LinkState::rate; empty if not rated  [1/s or -]
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -135,9 +135,9 @@ material = "c"
 size = [0.1, 0.1, 0.1]
 pack = { count = 100, compactness = 0.56 }
 )");
-  const std::string arguments = "test '" +
-                                scratch / "c.toml' --material c --only tension --seeds 1 " +
-                                "--elements 200 --target tension=3e6 --target poisson=0.2 -o '" + scratch / "out'";
+  const std::string arguments =
+      "test '" + scratch / "c.toml' --material c --only tension --seeds 1 " +
+      "--elements 200 --target tension=3e6 --target poisson=0.2 -o '" + scratch / "out'";
   const int exit_code = wait_for(start_program(arguments, scratch / "output.txt"));
   EXPECT_TRUE(exit_code == 0 || exit_code == 9) << read_whole_file(scratch / "output.txt");
   const std::string page = read_whole_file(scratch / "out/passport.md");
