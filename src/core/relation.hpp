@@ -11,7 +11,7 @@
 
 namespace breccia {
 
-/// What a relation leads to: elements (or triangles), which have new places wherever they change
+/// The target of a relation: elements (or triangles), which have new places wherever they change
 /// ranks, or what lies alike on all ranks.
 enum class RelationTo : std::uint8_t { elements, common };
 /// Where its numbers come from: the model that the case builds, or the last search.

@@ -51,7 +51,7 @@ inline constexpr Index sweep_tile = 256;
 ///   ranks    when elements change ranks (dem/ranks.cpp) or the world changes its space
 ///   derive   derive(), after set-up, loading and ranks; advance: advance(), on a device
 ///
-/// What ranks write moves with its element, link or contact.
+/// An array that ranks write moves with its element, link or contact.
 struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see dem/links/
   /// Empty, every array in the space of `how`.
   explicit World(const Exec& how);
@@ -119,7 +119,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
   LinkPlan link_plan;             ///< how threads share swept links; `deferred`: sums (derive)
   Incidence bar_incidence;        ///< of all links but swept ones, kind by kind (elements; derive)
 
-  // What follows from a search.
+  // Results of a search.
   Buffer<Index> held_partners;    ///< linked_partners, -1 where the link has let go  [-]
                                   ///< (links; search)
   Incidence contact_incidence;    ///< (elements; search, derive)
@@ -127,7 +127,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
   std::vector<Index> wall_begin;  ///< first contact of each wall, and the end  [-]
                                   ///< (walls + 1; search, derive)
 
-  // What follows from a step, overwritten by the next one.
+  // Results of a step, overwritten by the next one.
   Buffer<PairForce> bar_actions;      ///< [N, N m, N/m]  (links but swept ones; pairs, ranks)
   Buffer<PairForce> contact_actions;  ///< zero where apart  [N, N m, N/m]  (contacts; pairs)
   Buffer<LinkSums> link_sums;  ///< zero between steps  [N, N m, N/m]  (elements; pairs, sums)

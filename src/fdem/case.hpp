@@ -1,5 +1,5 @@
 #pragma once
-// What a case gives to an FDEM run: written by set-up, read by all else.
+// Constants that a case gives to an FDEM run: written by set-up, read by all else.
 //
 // `stage` marks what configure() writes anew where a stage of the case begins, and after loading a
 // checkpoint. Constants of single triangles and joints (mass, shape, length, strength) lie beside

@@ -76,7 +76,7 @@ enum class JointPack : std::uint8_t {
 ///   ranks    when triangles change ranks (fdem/ranks.cpp) or the world changes its space
 ///   derive   derive(), after loading and ranks; advance: advance(), on a device
 ///
-/// What ranks write moves with its triangle, joint or couple.
+/// An array that ranks write moves with its triangle, joint or couple.
 struct World {
   explicit World(const Exec& how);
 
@@ -148,14 +148,14 @@ struct World {
   Buffer<Index> edge_across;           ///< `across`, for kernels (3 triangles; search)
   Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
-  // What follows from a search.
+  // Results of a search.
   Incidence couple_incidence;  ///< (triangles; search, derive)
   BroadPhase broad_phase;      ///< scratch of the search (search)
   Buffer<Index> parent_joint;  ///< see CoupleForces  [-]  (couples; search, derive)
   Buffer<Index> reach_place;   ///< in `reach`, -1: a ghost, or it cannot touch  [-]
                                ///< (triangles; search, derive)
 
-  // What follows from a step, overwritten by the next one.
+  // Results of a step, overwritten by the next one.
   Buffer<Motion> motions;        ///< of supports, mid-step  [m/s]  (motions; move)
   Buffer<LoadLaw> load_laws;     ///< Case::loads with their factors now (loads; loads)
   Buffer<Sym2> stress;           ///< where joints are extrinsic  [Pa]  (triangles; insertion)

@@ -85,7 +85,7 @@ struct LinkArrays<LdpmFacet> : LinkEnds {
 };
 using LdpmFacets = LinkArrays<LdpmFacet>;
 
-/// What all facets of an edge share in a step.
+/// Numbers that all facets of an edge share in a step.
 template <class R>
 struct LdpmEdgeOf {
   Vec3Of<R> n, m;  ///< frame, with l = n x m  [-]
