@@ -134,6 +134,8 @@ struct ProbeConfig {
   std::string on;  ///< body, support or wall; empty: all elements
   std::string quantity = "velocity_z";
   std::string reduce = "mean";
+  std::vector<double> min{}, max{};  ///< corners of a box in space; empty: no box  [m]
+  std::vector<double> about{};       ///< point of torque and angular momentum; empty: 0  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -143,8 +145,17 @@ struct ProbeConfig {
         "body or support whose elements are read, or a wall: its force (that of all elements on "
         "it), "
         "position, velocity; empty reads all elements");
-    key("quantity", quantity, quantity_words(3), "what is read from each element");
+    key("quantity", quantity, quantity_words(in_space | in_plane | of_wall),
+        "what is read from each element; stress, strain and displacement of a region, broken links "
+        "or joints, opening and slip of cracks: docs/measures.md");
     key("reduce", reduce, OneOf{"mean", "sum", "min", "max"}, "how the elements' values combine");
+    key("min", min, "m", any_number,
+        "lower corner of a box that stands still: what is inside at the time is read (of "
+        "displacement and strain, what was inside at the start); stress of spheres needs it; left "
+        "out: no box");
+    key("max", max, "m", any_number, "upper corner of that box");
+    key("about", about, "m", any_number,
+        "the point that torque and angular momentum are about; left out: the origin");
   }
 };
 

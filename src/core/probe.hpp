@@ -2,6 +2,7 @@
 // Readings of probes for both methods: sum and range of a quantity over items.
 
 #include <string>
+#include <vector>
 
 #include "core/energy.hpp"
 #include "core/quantity.hpp"
@@ -14,14 +15,29 @@ struct Readings {
   double low = 1e300, high = -1e300;
   Index low_at = -1, high_at = -1;  ///< where they were read; of equal numbers the last one
   Index count = 0;
+  ExactSum weight;  ///< of what is in the sum; 0: each item counts alike
 
   Readings() = default;
   /// @param at  number of the item in the whole model
   BR_HD Readings(double value, Index at)
       : sum(value), low(value), high(value), low_at(at), high_at(at), count(1) {}
 
-  /// By the word of the case: min, max, sum or mean.
+  /// An item that counts by its weight.
+  BR_HD static Readings weighted(double value, double weight, Index at) {
+    Readings one(value, at);
+    one.sum = ExactSum(value * weight);
+    one.weight = ExactSum(weight);
+    return one;
+  }
+
+  /// By the word of the case: min, max, sum or mean. Nothing read gives 0.
   double reduced(const std::string& word) const {
+    const double whole = weight.value();
+    if (whole > 0.0) {
+      if (word == "mean") return sum.value() / whole;
+    } else if (count == 0) {
+      return 0.0;
+    }
     if (word == "min") return low;
     if (word == "max") return high;
     return word == "sum" ? sum.value() : sum.value() / static_cast<double>(count);
@@ -38,7 +54,13 @@ BR_HD inline Readings operator+(Readings a, const Readings& b) {
     a.high_at = b.high_at;
   }
   a.count += b.count;
+  a.weight.add(b.weight);
   return a;
 }
+
+struct ProbeConfig;
+/// What is wrong with a probe's quantity and how it is read, as sentences.
+/// @param of  the bearer that it reads: elements in space or in the plane, or a wall
+std::vector<std::string> probe_problems(const ProbeConfig& probe, Bearer of);
 
 }  // namespace breccia

@@ -11,9 +11,33 @@ namespace breccia {
 
 /// A quantity as kernels read it.
 struct Quantity {
-  enum class Kind : std::uint8_t { position, velocity, force, momentum, speed, kinetic, damage };
+  enum class Kind : std::uint8_t {
+    position,
+    displacement,
+    velocity,
+    force,
+    torque,
+    momentum,
+    angular_momentum,
+    speed,
+    kinetic,
+    stress,
+    strain,
+    damage,
+    broken,
+    opening,
+    slip
+  };
   Kind kind;
-  int axis = -1;  ///< 0, 1, 2: x, y, z; -1: it has no direction
+  int axis = -1;   ///< 0, 1, 2: x, y, z; -1: it has no direction
+  int other = -1;  ///< second axis of a tensor's component
+};
+
+/// What has a quantity: flags.
+enum Bearer : unsigned {
+  in_space = 1,  ///< elements of the DEM
+  in_plane = 2,  ///< corners, triangles and joints of the FDEM
+  of_wall = 4    ///< a wall of the DEM
 };
 
 /// A quantity by its word in a case.
@@ -21,23 +45,48 @@ struct NamedQuantity {
   const char* word;
   const char* unit;  ///< of the numbers in history.csv
   Quantity quantity;
+  unsigned of;  ///< flags of Bearer
 };
 inline constexpr NamedQuantity quantities[] = {
-    {"position_x", "m", {Quantity::Kind::position, 0}},
-    {"position_y", "m", {Quantity::Kind::position, 1}},
-    {"position_z", "m", {Quantity::Kind::position, 2}},
-    {"velocity_x", "m/s", {Quantity::Kind::velocity, 0}},
-    {"velocity_y", "m/s", {Quantity::Kind::velocity, 1}},
-    {"velocity_z", "m/s", {Quantity::Kind::velocity, 2}},
-    {"force_x", "N", {Quantity::Kind::force, 0}},
-    {"force_y", "N", {Quantity::Kind::force, 1}},
-    {"force_z", "N", {Quantity::Kind::force, 2}},
-    {"momentum_x", "kg m/s", {Quantity::Kind::momentum, 0}},
-    {"momentum_y", "kg m/s", {Quantity::Kind::momentum, 1}},
-    {"momentum_z", "kg m/s", {Quantity::Kind::momentum, 2}},
-    {"speed", "m/s", {Quantity::Kind::speed}},
-    {"kinetic", "J", {Quantity::Kind::kinetic}},
-    {"damage", "-", {Quantity::Kind::damage}},
+    {"position_x", "m", {Quantity::Kind::position, 0}, in_space | in_plane | of_wall},
+    {"position_y", "m", {Quantity::Kind::position, 1}, in_space | in_plane | of_wall},
+    {"position_z", "m", {Quantity::Kind::position, 2}, in_space | of_wall},
+    {"displacement_x", "m", {Quantity::Kind::displacement, 0}, in_space | in_plane | of_wall},
+    {"displacement_y", "m", {Quantity::Kind::displacement, 1}, in_space | in_plane | of_wall},
+    {"displacement_z", "m", {Quantity::Kind::displacement, 2}, in_space | of_wall},
+    {"velocity_x", "m/s", {Quantity::Kind::velocity, 0}, in_space | in_plane | of_wall},
+    {"velocity_y", "m/s", {Quantity::Kind::velocity, 1}, in_space | in_plane | of_wall},
+    {"velocity_z", "m/s", {Quantity::Kind::velocity, 2}, in_space | of_wall},
+    {"force_x", "N", {Quantity::Kind::force, 0}, in_space | in_plane | of_wall},
+    {"force_y", "N", {Quantity::Kind::force, 1}, in_space | in_plane | of_wall},
+    {"force_z", "N", {Quantity::Kind::force, 2}, in_space | of_wall},
+    {"torque_x", "N m", {Quantity::Kind::torque, 0}, in_space | of_wall},
+    {"torque_y", "N m", {Quantity::Kind::torque, 1}, in_space | of_wall},
+    {"torque_z", "N m", {Quantity::Kind::torque, 2}, in_space | in_plane | of_wall},
+    {"momentum_x", "kg m/s", {Quantity::Kind::momentum, 0}, in_space | in_plane},
+    {"momentum_y", "kg m/s", {Quantity::Kind::momentum, 1}, in_space | in_plane},
+    {"momentum_z", "kg m/s", {Quantity::Kind::momentum, 2}, in_space},
+    {"angular_momentum_x", "kg m2/s", {Quantity::Kind::angular_momentum, 0}, in_space},
+    {"angular_momentum_y", "kg m2/s", {Quantity::Kind::angular_momentum, 1}, in_space},
+    {"angular_momentum_z", "kg m2/s", {Quantity::Kind::angular_momentum, 2}, in_space | in_plane},
+    {"speed", "m/s", {Quantity::Kind::speed}, in_space | in_plane | of_wall},
+    {"kinetic", "J", {Quantity::Kind::kinetic}, in_space | in_plane},
+    {"stress_xx", "Pa", {Quantity::Kind::stress, 0, 0}, in_space | in_plane},
+    {"stress_yy", "Pa", {Quantity::Kind::stress, 1, 1}, in_space | in_plane},
+    {"stress_zz", "Pa", {Quantity::Kind::stress, 2, 2}, in_space},
+    {"stress_xy", "Pa", {Quantity::Kind::stress, 0, 1}, in_space | in_plane},
+    {"stress_yz", "Pa", {Quantity::Kind::stress, 1, 2}, in_space},
+    {"stress_xz", "Pa", {Quantity::Kind::stress, 0, 2}, in_space},
+    {"strain_xx", "-", {Quantity::Kind::strain, 0, 0}, in_space | in_plane},
+    {"strain_yy", "-", {Quantity::Kind::strain, 1, 1}, in_space | in_plane},
+    {"strain_zz", "-", {Quantity::Kind::strain, 2, 2}, in_space},
+    {"strain_xy", "-", {Quantity::Kind::strain, 0, 1}, in_space | in_plane},
+    {"strain_yz", "-", {Quantity::Kind::strain, 1, 2}, in_space},
+    {"strain_xz", "-", {Quantity::Kind::strain, 0, 2}, in_space},
+    {"damage", "-", {Quantity::Kind::damage}, in_space | in_plane},
+    {"broken", "-", {Quantity::Kind::broken}, in_space | in_plane},
+    {"opening", "m", {Quantity::Kind::opening}, in_plane},
+    {"slip", "m", {Quantity::Kind::slip}, in_plane},
 };
 
 /// @throws InputError if it is none
@@ -47,11 +96,11 @@ inline const NamedQuantity& quantity_named(const std::string& word) {
   throw InputError(word + " is no quantity that a probe reads");
 }
 
-/// The words of the quantities in space, or in the plane.
-inline OneOf quantity_words(int axes) {
+/// The words of what one of these bearers has.
+inline OneOf quantity_words(unsigned of) {
   OneOf words{};
   for (const NamedQuantity& named : quantities)
-    if (named.quantity.axis < axes) words.words.emplace_back(named.word);
+    if ((named.of & of) != 0) words.words.emplace_back(named.word);
   return words;
 }
 

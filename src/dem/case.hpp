@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/gauge.hpp"
 #include "dem/laws/contact.hpp"
 #include "dem/setup/config.hpp"
 #include "exec/buffer.hpp"
@@ -36,14 +37,19 @@ struct Case {
   std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<ElementSet> sets;       ///< bodies, then supports
   std::vector<std::string> wall_names;
+  std::vector<Vec3> wall_starts;      ///< points of walls at the start  [m]  (walls)
   std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]  (walls)
   Buffer<ContactPair> contact_pairs;  ///< of materials p, q at p materials + q  (materials^2)
   Buffer<ContactPair> wall_pairs;     ///< of a material with a wall  (materials)
 
+  Buffer<Vec3> starts;  ///< places at the start, by global id; empty: no probe needs them
+                        ///< [m]  (elements of the whole model)
+  std::vector<ProbeFit> strain_fits;  ///< of probes of strain
+
   /// Visits the arrays that kernels read.
   template <class Visit>
   void each_array(Visit&& visit) {
-    visit(contact_pairs), visit(wall_pairs);
+    visit(contact_pairs), visit(wall_pairs), visit(starts);
   }
 };
 

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "core/on_host.hpp"
 #include "core/pieces.hpp"
-#include "core/probe.hpp"
 #include "core/rows.hpp"
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
@@ -51,47 +49,6 @@ struct FindUnsound {
     const bool finite = sum - sum == 0.0;            // false for NaN and infinity
     const bool slow = travelled <= radius * radius;  // false for NaN, too
     return finite && slow ? Unsound::none : id[e];
-  }
-};
-
-/// What a probe reads.
-struct ReadProbe {
-  OwnedView owned;
-  Quantity quantity;
-  View<const Index> members;  ///< empty: all elements
-  View<const GlobalId> id;
-  Kick kick;  ///< velocities are read at the time of the positions
-  View<const double> damage;
-
-  BR_HD double part(const Vec3& v) const {
-    return quantity.axis == 0 ? v.x : quantity.axis == 1 ? v.y : v.z;
-  }
-  BR_HD double value(Index e) const {
-    const ElementState& s = kick.state[e];
-    const Kick::Result next = kick(e);
-    const Vec3 velocity = kick.between(s.velocity, next.velocity);
-    switch (quantity.kind) {
-      case Quantity::Kind::position:
-        return part(s.position);
-      case Quantity::Kind::velocity:
-        return part(velocity);
-      case Quantity::Kind::force:
-        return part(kick.force[e]);
-      case Quantity::Kind::momentum:
-        return kick.mass[e] * part(velocity);
-      case Quantity::Kind::speed:
-        return norm(velocity);
-      case Quantity::Kind::damage:
-        return damage[e];
-      case Quantity::Kind::kinetic:
-        break;
-    }
-    const Vec3 spin = kick.between(s.spin, next.spin);
-    return 0.5 * kick.mass[e] * dot(velocity, velocity) + 0.5 * kick.inertia[e] * dot(spin, spin);
-  }
-  BR_HD Readings operator()(Index i) const {
-    const Index e = members.size > 0 ? members[i] : i;
-    return owned(e) ? Readings(value(e), id[e]) : Readings();
   }
 };
 
@@ -154,33 +111,6 @@ struct Damage {
   }
 };
 
-/// Mean damage of the links of each element; a broken link counts 1.
-Buffer<double> damage_of(const World& w) {
-  const Index count = w.elements.size();
-  Buffer<Index> links(w.exec.space, count), lost(w.exec.space, count);
-  Buffer<double> damage(w.exec.space, count);
-  w.each_set([&](const auto& set) {
-    const AddDamage add{set.a.view(), set.b.view(), links.view(), lost.view()};
-    with_number(w.exec.precision, [&](auto number) {
-      using Number = decltype(number);
-      if constexpr (std::remove_reference_t<decltype(set)>::kind == LinkKind::concrete) {
-        for (const auto& g : set.groups)
-          for_each(w.exec, g.end - g.begin,
-                   ConcreteDamage<Number>{
-                       add, g.law, g.begin, set.kept.template as<Number>().opening.view(),
-                       set.length.view(), set.stiffness.view(), set.area.view(), set.rate.view()});
-      } else {
-        const auto is_broken = set.template broken<Number>();
-        for_each(w.exec, set.size(),
-                 BrokenDamage<std::remove_const_t<decltype(is_broken)>>{add, is_broken});
-      }
-    });
-  });
-  for_each(w.exec, count,
-           Damage{std::as_const(links).view(), std::as_const(lost).view(), damage.view()});
-  return damage;
-}
-
 /// Calls visit(kind, a, b, broken) for each link, with both its ends.
 template <class Visit>
 void each_link(const World& w, const Visit& visit) {
@@ -235,100 +165,36 @@ MotionNow motion_now(const World& w) {
   return now;
 }
 
+Buffer<double> damage_of(const World& w) {
+  const Index count = w.elements.size();
+  Buffer<Index> links(w.exec.space, count), lost(w.exec.space, count);
+  Buffer<double> damage(w.exec.space, count);
+  w.each_set([&](const auto& set) {
+    const AddDamage add{set.a.view(), set.b.view(), links.view(), lost.view()};
+    with_number(w.exec.precision, [&](auto number) {
+      using Number = decltype(number);
+      if constexpr (std::remove_reference_t<decltype(set)>::kind == LinkKind::concrete) {
+        for (const auto& g : set.groups)
+          for_each(w.exec, g.end - g.begin,
+                   ConcreteDamage<Number>{
+                       add, g.law, g.begin, set.kept.template as<Number>().opening.view(),
+                       set.length.view(), set.stiffness.view(), set.area.view(), set.rate.view()});
+      } else {
+        const auto is_broken = set.template broken<Number>();
+        for_each(w.exec, set.size(),
+                 BrokenDamage<std::remove_const_t<decltype(is_broken)>>{add, is_broken});
+      }
+    });
+  });
+  for_each(w.exec, count,
+           Damage{std::as_const(links).view(), std::as_const(lost).view(), damage.view()});
+  return damage;
+}
+
 std::vector<double> damage(const World& w) {
   std::vector<double> values;
   copy_to(values, damage_of(w));
   return values;
-}
-
-namespace {
-
-Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
-  const Elements& e = w.elements;
-  const Quantity quantity = quantity_named(p.quantity).quantity;
-  Buffer<double> lost(w.exec.space);
-  if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
-  return fold(w.exec, p.on.empty() ? e.size() : members.size, Readings{},
-              ReadProbe{w.domain.owned_view(), quantity, members, e.id.view(), kick(w),
-                        std::as_const(lost).view()},
-              Sum{});
-}
-
-}  // namespace
-
-namespace {
-
-struct ForceOnWall {
-  OwnedView owned;
-  Index first;  ///< contact of the wall
-  int axis;
-  View<const Index> a;
-  View<const Vec3> on_wall;
-  BR_HD ExactSum operator()(Index k) const {
-    const Index i = first + k;
-    if (!owned(a[i])) return ExactSum();
-    const Vec3& f = on_wall[i];
-    return ExactSum(axis == 0 ? f.x : axis == 1 ? f.y : f.z);
-  }
-};
-
-/// The wall of a probe; none: the probe reads elements.
-std::optional<std::size_t> wall_of(const World& w, const ProbeConfig& p) {
-  const auto name = std::find(w.given->wall_names.begin(), w.given->wall_names.end(), p.on);
-  if (p.on.empty() || name == w.given->wall_names.end()) return std::nullopt;
-  return static_cast<std::size_t>(name - w.given->wall_names.begin());
-}
-
-/// A wall's place and velocity, which rank 0 knows as well as all, and what this rank's elements
-/// push it with.
-Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
-  const Quantity quantity = quantity_named(p.quantity).quantity;
-  const bool first = w.domain.single_rank() || w.domain.ranks->rank() == 0;
-  const Wall& own = w.walls[wall];
-  const auto part = [&](const Vec3& v) {
-    return quantity.axis == 0 ? v.x : quantity.axis == 1 ? v.y : v.z;
-  };
-  if (quantity.kind != Quantity::Kind::force) {
-    const double value = quantity.kind == Quantity::Kind::position   ? part(own.point)
-                         : quantity.kind == Quantity::Kind::velocity ? part(own.velocity)
-                                                                     : norm(own.velocity);
-    return first ? Readings(value, 0) : Readings();
-  }
-  Readings read;
-  if (first) read = Readings(0.0, 0);
-  if (wall + 1 >= w.wall_begin.size()) return read;  // no search yet
-  const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
-  read.sum.add(
-      fold(w.exec, end - begin, ExactSum(),
-           ForceOnWall{w.domain.owned_view(), begin, quantity.axis, w.wall_contacts.pairs.a.view(),
-                       w.wall_contacts.history.on_wall.view()},
-           Sum{}));
-  return read;
-}
-
-}  // namespace
-
-double probe(const World& w, const ProbeConfig& p) {
-  if (const auto wall = wall_of(w, p)) return read_wall(w, p, *wall).sum.value();
-  View<const Index> members{};
-  if (!p.on.empty()) {
-    const auto set = std::find_if(w.given->sets.begin(), w.given->sets.end(),
-                                  [&](const ElementSet& s) { return s.name == p.on; });
-    if (set == w.given->sets.end())
-      throw InputError("probe " + p.name + ": there is no group " + p.on);
-    members = set->members.view();
-  }
-  return read(w, p, members).reduced(p.reduce);
-}
-
-Readings read_own(World& part, const ProbeConfig& p) {
-  if (const auto wall = wall_of(part, p)) return read_wall(part, p, *wall);
-  const auto set = std::find_if(part.given->sets.begin(), part.given->sets.end(),
-                                [&](const ElementSet& s) { return s.name == p.on; });
-  if (set == part.given->sets.end()) return read(part, p, {});
-  SetHere& here = part.sets_here[static_cast<std::size_t>(set - part.given->sets.begin())];
-  keep_here(here, part.domain, part.elements.id, set->members.host(), 1, part.exec.space);
-  return read(part, p, std::as_const(here.places).view());
 }
 
 Counts count(const World& w) {

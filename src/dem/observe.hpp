@@ -20,6 +20,8 @@ Unsound find_unsound(const World& w);
 
 /// Share of each element's initial cohesive and interface links that are damaged or broken.  [-]
 std::vector<double> damage(const World& w);
+/// Mean damage of the links of each element, where the world lies; a broken link counts 1.  [-]
+Buffer<double> damage_of(const World& w);
 
 /// Velocities and spins of all elements at the time of the positions; those of ghosts mean nothing.
 struct MotionNow {

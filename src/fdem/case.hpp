@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/gauge.hpp"
 #include "exec/buffer.hpp"
 #include "fdem/contact/couples.hpp"
 #include "fdem/setup/config.hpp"
@@ -49,10 +50,14 @@ struct Case {
   /// an edge between two triangles.  [-]  (vertices of the whole mesh)
   std::vector<std::uint8_t> open_vertex;
 
+  Buffer<Vec2> starts;  ///< places of corners at the start, by global number; empty: no probe needs
+                        ///< them  [m]  (3 triangles of the whole mesh)
+  std::vector<ProbeFit> strain_fits;  ///< of probes of strain
+
   /// Visits the arrays that kernels read.
   template <class Visit>
   void each_array(Visit&& visit) {
-    visit(laws), visit(bonds), visit(contact_pairs), visit(holds);
+    visit(laws), visit(bonds), visit(contact_pairs), visit(holds), visit(starts);
   }
 };
 

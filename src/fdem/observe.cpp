@@ -6,11 +6,9 @@
 
 #include "core/on_host.hpp"
 #include "core/pieces.hpp"
-#include "core/probe.hpp"
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
-#include "fdem/setup/check_case.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -54,56 +52,6 @@ struct FindUnsound {
     return finite && jacobian > 0.0 && dt * dt * fastest <= area ? Unsound::none : id[t];
   }
 };
-
-/// What a probe reads.
-struct ReadProbe {
-  OwnedView owned;
-  Quantity quantity;
-  View<const Index> members;  ///< corners; empty: all
-  View<const GlobalId> id;
-  Kick kick;  ///< velocities are read at the time of the positions
-  View<const double> damage;
-
-  BR_HD double part(const Vec2& v) const { return quantity.axis == 0 ? v.x : v.y; }
-  BR_HD double value(Index n) const {
-    const Index t = n / 3, k = n % 3;
-    const NodeState& node = kick.nodes[t].at[k];
-    const Vec2 velocity = kick.between(node.velocity, kick(t).velocity[k]);
-    switch (quantity.kind) {
-      case Quantity::Kind::position:
-        return part(node.position);
-      case Quantity::Kind::velocity:
-        return part(velocity);
-      case Quantity::Kind::force:
-        return part(kick.force[t].at[k]);
-      case Quantity::Kind::momentum:
-        return kick.mass[t] * part(velocity);
-      case Quantity::Kind::speed:
-        return norm(velocity);
-      case Quantity::Kind::damage:
-        return damage[t];
-      case Quantity::Kind::kinetic:
-        break;
-    }
-    return 0.5 * kick.mass[t] * dot(velocity, velocity);
-  }
-  BR_HD Readings operator()(Index i) const {
-    const Index n = members.size > 0 ? members[i] : i;
-    if (!owned(n / 3)) return Readings();
-    return Readings(value(n), 3 * id[n / 3] + n % 3);
-  }
-};
-
-Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members) {
-  Buffer<double> lost(w.exec.space);
-  const Quantity quantity = quantity_named(p.quantity).quantity;
-  if (quantity.kind == Quantity::Kind::damage) copy_to(lost, damage(w));
-  const Triangles& t = w.triangles;
-  return fold(w.exec, p.on.empty() ? 3 * t.size() : members.size(), Readings{},
-              ReadProbe{w.domain.owned_view(), quantity, members.view(), t.id.view(), kick(w),
-                        std::as_const(lost).view()},
-              Sum{});
-}
 
 /// Velocities of a triangle's corners at the time of the positions.
 struct CentreVelocities {
@@ -206,29 +154,6 @@ std::vector<Sym2> stresses(const World& w) {
         deformation(t.shape_inverse.data()[i], x, v), 0.0));
   }
   return all;
-}
-
-double probe(const World& w, const ProbeConfig& p) {
-  if (quantity_named(p.quantity).quantity.axis == 2)
-    throw InputError("probe " + p.name + ".quantity: " + no_z(p.quantity));
-  Buffer<Index> members(w.exec.space);
-  if (!p.on.empty()) {
-    const auto set = std::find_if(w.given->sets.begin(), w.given->sets.end(),
-                                  [&](const NodeSet& s) { return s.name == p.on; });
-    if (set == w.given->sets.end())
-      throw InputError("probe " + p.name + ".on: there is no body or support \"" + p.on + "\"");
-    copy_to(members, set->nodes);
-  }
-  return read(w, p, members).reduced(p.reduce);
-}
-
-Readings read_own(World& part, const ProbeConfig& p) {
-  const auto set = std::find_if(part.given->sets.begin(), part.given->sets.end(),
-                                [&](const NodeSet& s) { return s.name == p.on; });
-  if (set == part.given->sets.end()) return read(part, p, Buffer<Index>(part.exec.space));
-  SetHere& here = part.sets_here[static_cast<std::size_t>(set - part.given->sets.begin())];
-  keep_here(here, part.domain, part.triangles.id, set->nodes, 3, part.exec.space);
-  return read(part, p, here.places);
 }
 
 double mode_of(const Joints& joints, Index i) {

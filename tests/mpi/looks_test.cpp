@@ -49,8 +49,8 @@ Seen seen(int count, const AScene& scene, int steps, int every, Space space = Sp
 std::vector<ProbeConfig> probes(const std::string& body, const std::string& last_axis) {
   std::vector<ProbeConfig> all;
   for (const std::string& on : {std::string(), body})
-    for (std::string quantity :
-         {"position_", "velocity_", "force_", "momentum_", "speed", "damage", "kinetic"}) {
+    for (std::string quantity : {"position_", "velocity_", "force_", "momentum_", "displacement_",
+                                 "speed", "damage", "kinetic", "broken"}) {
       if (quantity.ends_with("_")) quantity += last_axis;
       for (const char* reduce : {"min", "max", "sum", "mean"})
         all.push_back({quantity + reduce, on, quantity, reduce});

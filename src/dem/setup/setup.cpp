@@ -256,6 +256,32 @@ void set_sets(World& w, const Config& config, const Model& m, const Prescribed& 
   w.sets_here.resize(sets.size());
 }
 
+/// Where elements stand, for probes that read how far they have gone.
+void set_starts(World& w, const Config& config, const Model& m) {
+  Case& given = set_up(w);
+  bool any = false;
+  for (const ProbeConfig& p : config.probes) {
+    const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
+    any |= kind == Quantity::Kind::displacement || kind == Quantity::Kind::strain;
+    if (kind != Quantity::Kind::strain) continue;
+    std::vector<Index> members(m.position.size());
+    std::iota(members.begin(), members.end(), 0);
+    for (const ElementSet& set : given.sets)
+      if (set.name == p.on) copy_to(members, set.members);
+    const ReadBox box(p.min, p.max);
+    std::vector<Vec3> points;
+    for (const Index e : members)
+      if (box.holds(m.position[at(e)])) points.push_back(m.position[at(e)]);
+    bool fits = false;
+    given.strain_fits.push_back({p.name, strain_fit(points, 3, fits)});
+    if (!fits)
+      throw InputError(fmt::format(
+          "probe.{}: strain needs elements that do not lie in a plane; its region holds {}", p.name,
+          points.size()));
+  }
+  if (any) copy_to(given.starts, m.position);
+}
+
 void set_contacts(World& w, const Config& config, const Model& m) {
   Case& given = set_up(w);
   given.contact = contact_law(config.contact);
@@ -273,6 +299,7 @@ void set_contacts(World& w, const Config& config, const Model& m) {
     const double size = norm(wall.normal);
     if (!(size > 0.0)) throw InputError("wall " + wall.name + " has a normal of length 0");
     given.wall_names.push_back(wall.name);
+    given.wall_starts.push_back(wall.point);
     given.wall_friction.push_back(wall.friction);
     const std::size_t motion = add_motion(w, wall, k);
     w.walls.push_back({wall.point, (1.0 / size) * wall.normal, w.prescribed.velocity(motion, 0.0),
@@ -354,6 +381,7 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   set_linked_pairs(w);
   limit_margins(w, model);
   set_sets(w, config, model, held);
+  set_starts(w, config, model);
   set_contacts(w, config, model);
   derive(w);
   find_contacts(w);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 
+#include "core/probe.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/materials.hpp"
 #include "fdem/setup/stages.hpp"
@@ -42,15 +43,6 @@ void look_for_loose_grains(const Config& config, const BodyConfig& body,
 }
 
 }  // namespace
-
-std::string no_z(const std::string& quantity) {
-  std::string words;
-  for (const std::string& word : quantity_words(2).words)
-    words += (words.empty() ? "" : ", ") + word;
-  return "\"" + quantity +
-         "\" (it is also taken if none is given) has a z, which a plane case lacks; allowed: " +
-         words;
-}
 
 std::vector<std::string> case_problems(const Config& config) {
   std::vector<std::string> problems;
@@ -112,8 +104,7 @@ std::vector<std::string> case_problems(const Config& config) {
     one_table("load." + l.name + ".force", l.force, l.history);
   }
   for (const ProbeConfig& p : config.probes) {
-    if (quantity_named(p.quantity).quantity.axis == 2)
-      add("probe." + p.name + ".quantity: " + no_z(p.quantity));
+    for (const std::string& problem : probe_problems(p, in_plane)) add(problem);
     if (!p.on.empty() && places.count(p.on) == 0)
       add("probe." + p.name + ".on = \"" + p.on + "\" is neither a body (" +
           names_of(config.bodies) + ") nor a support (" + names_of(config.supports) + ")");

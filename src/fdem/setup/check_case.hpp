@@ -11,7 +11,4 @@ namespace breccia::fdem {
 /// prepare/checks/check_bodies.hpp.
 std::vector<std::string> case_problems(const Config& config);
 
-/// Why a probe cannot read this, and what it can read.
-std::string no_z(const std::string& quantity);
-
 }  // namespace breccia::fdem

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/probe.hpp"
 #include "dem/setup/materials.hpp"
 #include "dem/setup/stages.hpp"
 #include "fdem/setup/check_case.hpp"
@@ -116,8 +117,10 @@ class Check {
 
   void check(const ProbeConfig& p) {
     if (p.on.empty() || prepare::item_named(config_.bodies, p.on) != nullptr ||
-        prepare::item_named(config_.supports, p.on) != nullptr)
+        prepare::item_named(config_.supports, p.on) != nullptr) {
+      for (const std::string& problem : probe_problems(p, in_space)) add(problem);
       return;
+    }
     if (prepare::item_named(config_.walls, p.on) != nullptr) return check_wall_probe(p);
     add(fmt::format("probe.{}.on = {:?} is neither a body ({}) nor a support ({}) nor a wall ({})",
                     p.name, p.on, prepare::all_names(config_.bodies),
@@ -129,16 +132,7 @@ class Check {
         prepare::item_named(config_.supports, p.on) != nullptr)
       add(fmt::format(
           "wall.{0} has the name of a body or support; a probe could not tell them apart", p.on));
-    const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
-    if (kind != Quantity::Kind::force && kind != Quantity::Kind::position &&
-        kind != Quantity::Kind::velocity && kind != Quantity::Kind::speed)
-      add(
-          fmt::format("probe.{}.quantity = {:?} is none of a wall; allowed are position, velocity, "
-                      "force (with _x, _y, _z) and speed",
-                      p.name, p.quantity));
-    if (p.reduce != "mean" && p.reduce != "sum")
-      add(fmt::format("probe.{}.reduce = {:?}: a wall has one value; leave the key out", p.name,
-                      p.reduce));
+    for (const std::string& problem : probe_problems(p, of_wall)) add(problem);
   }
 
   const Config& config_;

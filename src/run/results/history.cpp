@@ -31,6 +31,8 @@ bool is_empty(const std::string& path) {
 /// A unit for each metre of thickness, where thickness counts.
 std::string per_metre(const std::string& unit) {
   if (unit == "N" || unit == "J") return unit + "/m";
+  if (unit == "N m") return "N";
+  if (unit == "kg m2/s") return "kg m/s";
   return unit == "kg m/s" ? "kg/s" : unit;
 }
 

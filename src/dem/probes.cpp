@@ -1,0 +1,353 @@
+// What probes read: quantities of elements and walls, the stress of a box, broken links.
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/case_config.hpp"
+#include "core/gauge.hpp"
+#include "core/probe.hpp"
+#include "dem/observe.hpp"
+#include "exec/error.hpp"
+#include "exec/for_each.hpp"
+
+namespace breccia::dem {
+namespace {
+
+/// Quantities of elements.
+struct ReadProbe {
+  OwnedView owned;
+  Quantity quantity;
+  View<const Index> members;  ///< empty: all elements
+  View<const GlobalId> id;
+  Kick kick;  ///< velocities are read at the time of the positions
+  View<const double> damage;
+  View<const Vec3> starts;  ///< by global id
+  ReadBox box;
+  Vec3 about;     ///<  [m]
+  StrainFit fit;  ///< of a probe of strain
+
+  BR_HD double part(const Vec3& v) const { return on_axis(v, quantity.axis); }
+  BR_HD bool from_start() const {
+    return quantity.kind == Quantity::Kind::displacement || quantity.kind == Quantity::Kind::strain;
+  }
+  BR_HD double value(Index e) const {
+    const ElementState& s = kick.state[e];
+    const Kick::Result next = kick(e);
+    const Vec3 velocity = kick.between(s.velocity, next.velocity);
+    const Vec3 spin = kick.between(s.spin, next.spin);
+    switch (quantity.kind) {
+      case Quantity::Kind::position:
+        return part(s.position);
+      case Quantity::Kind::displacement:
+        return part(s.position - starts[id[e]]);
+      case Quantity::Kind::strain:
+        return fit.term(starts[id[e]], s.position - starts[id[e]], quantity.axis, quantity.other);
+      case Quantity::Kind::velocity:
+        return part(velocity);
+      case Quantity::Kind::force:
+        return part(kick.force[e]);
+      case Quantity::Kind::torque:
+        return part(cross(s.position - about, kick.force[e]) + kick.torque[e]);
+      case Quantity::Kind::momentum:
+        return kick.mass[e] * part(velocity);
+      case Quantity::Kind::angular_momentum:
+        return part(kick.mass[e] * cross(s.position - about, velocity) + kick.inertia[e] * spin);
+      case Quantity::Kind::speed:
+        return norm(velocity);
+      case Quantity::Kind::damage:
+        return damage[e];
+      default:
+        break;
+    }
+    return 0.5 * kick.mass[e] * dot(velocity, velocity) + 0.5 * kick.inertia[e] * dot(spin, spin);
+  }
+  BR_HD Readings operator()(Index i) const {
+    const Index e = members.size > 0 ? members[i] : i;
+    if (!owned(e)) return Readings();
+    if (!box.holds(from_start() ? starts[id[e]] : kick.state[e].position)) return Readings();
+    return Readings(value(e), id[e]);
+  }
+};
+
+/// What an interaction adds to the volume times the mean stress of a box (Weber, Love): its force,
+/// on the way between its ends that lies inside. Tension is positive.  [N m]
+struct BranchStress {
+  ReadBox box;
+  int i, j;
+
+  /// @param force  on the end at q
+  BR_HD double operator()(const Vec3& p, const Vec3& q, const Vec3& force) const {
+    const Vec3 way = q - p;
+    const double both = on_axis(force, i) * on_axis(way, j) + on_axis(force, j) * on_axis(way, i);
+    return both == 0.0 ? 0.0 : -0.5 * both * box.share(p, q);
+  }
+};
+
+/// Of concrete links, by what they keep.
+template <class Number>
+struct ConcreteStress {
+  OwnedView owned;
+  BranchStress branch;
+  ConcreteLink law;
+  Index first;
+  View<const ElementState> state;
+  View<const Index> a, b;
+  View<const double> length, stiffness, area, rate;
+  View<const Number> opening;
+  PlanesView<const Number> shear;
+
+  BR_HD ExactSum operator()(Index k) const {
+    const Index i = first + k;
+    if (!owned(a[i])) return ExactSum();
+    const ElementState &s = state[a[i]], &t = state[b[i]];
+    const double touching = s.radius + t.radius;
+    LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
+    const Vec3 d = t.position - s.position;
+    const double distance = norm(d), largest = opening[i];
+    if (law.rated()) link.factor = law.factor_of(link, largest, rate[i]);
+    const double pull = law.normal_force(link, distance - length[i], largest) / distance;
+    const Vec3 on_b = Vec3(shear[i]) - pull * d;
+    return ExactSum(branch(s.position, t.position, on_b));
+  }
+};
+
+/// Of interactions that write their actions.
+struct ActionStress {
+  OwnedView owned;
+  BranchStress branch;
+  View<const ElementState> state;
+  View<const Index> a, b;
+  View<const PairForce> actions;
+  Index first;  ///< action of interaction 0
+
+  BR_HD ExactSum operator()(Index i) const {
+    if (!owned(a[i])) return ExactSum();
+    return ExactSum(
+        branch(state[a[i]].position, state[b[i]].position, actions[first + i].force_on_b()));
+  }
+};
+
+/// Where a wall is touched: the foot of the perpendicular from an element's centre.
+BR_HD inline Vec3 foot_on(const Wall& wall, const Vec3& x) {
+  return x - dot(x - wall.point, wall.normal) * wall.normal;
+}
+
+struct WallStress {
+  OwnedView owned;
+  BranchStress branch;
+  View<const ElementState> state;
+  View<const Wall> walls;
+  View<const Index> a, b;
+  View<const Vec3> on_wall;
+
+  BR_HD ExactSum operator()(Index i) const {
+    if (!owned(a[i])) return ExactSum();
+    const Vec3& x = state[a[i]].position;
+    return ExactSum(branch(x, foot_on(walls[b[i]], x), on_wall[i]));
+  }
+};
+
+template <class Law>
+ExactSum link_stress(const World& w, const LinkSet<Law>& set, const BranchStress& branch,
+                     Index& first_action) {
+  const OwnedView owned = w.domain.owned_view();
+  const auto state = w.elements.state.view();
+  ExactSum sum;
+  if constexpr (LinkSet<Law>::kind == LinkKind::concrete) {
+    with_number(w.exec.precision, [&](auto number) {
+      using Number = decltype(number);
+      const LinkHistory<Number>& kept = set.kept.template as<Number>();
+      for (const auto& g : set.groups)
+        sum.add(fold(
+            w.exec, g.end - g.begin, ExactSum(),
+            ConcreteStress<Number>{owned, branch, g.law, g.begin, state, set.a.view(), set.b.view(),
+                                   set.length.view(), set.stiffness.view(), set.area.view(),
+                                   set.rate.view(), kept.opening.view(), kept.shear.view()},
+            Sum{}));
+    });
+  } else {
+    sum = fold(w.exec, set.size(), ExactSum(),
+               ActionStress{owned, branch, state, set.a.view(), set.b.view(), w.bar_actions.view(),
+                            first_action},
+               Sum{});
+    first_action += set.size();
+  }
+  return sum;
+}
+
+bool is_first(const World& w) {
+  return w.domain.single_rank() || w.domain.ranks->rank() == 0;
+}
+
+/// Mean stress of a box from links, contacts and walls; the first rank adds the volume.
+Readings read_stress(const World& w, const ProbeConfig& p) {
+  const Quantity quantity = quantity_named(p.quantity).quantity;
+  const BranchStress branch{ReadBox(p.min, p.max), quantity.axis, quantity.other};
+  const OwnedView owned = w.domain.owned_view();
+  const auto state = w.elements.state.view();
+  Readings r;
+  Index first_action = 0;
+  w.each_set([&](const auto& set) { r.sum.add(link_stress(w, set, branch, first_action)); });
+  const auto& pairs = w.contacts.pairs;
+  r.sum.add(fold(w.exec, w.contacts.size(), ExactSum(),
+                 ActionStress{owned, branch, state, pairs.a.view(), pairs.b.view(),
+                              w.contact_actions.view(), 0},
+                 Sum{}));
+  const auto& at_walls = w.wall_contacts.pairs;
+  r.sum.add(fold(w.exec, w.wall_contacts.size(), ExactSum(),
+                 WallStress{owned, branch, state, walls_view(w), at_walls.a.view(),
+                            at_walls.b.view(), w.wall_contacts.history.on_wall.view()},
+                 Sum{}));
+  if (is_first(w)) r.weight = ExactSum(branch.box.volume());
+  return r;
+}
+
+struct Mark {
+  static constexpr const char* name = "dem.mark_members";
+  View<const Index> members;
+  View<std::uint8_t> marked;
+  BR_HD void operator()(Index i) const { marked[members[i]] = 1; }
+};
+/// 1 for each broken link of a set of elements, 0 for each other one.
+template <class Broken>
+struct ReadBroken {
+  OwnedView owned;
+  ReadBox box;
+  View<const std::uint8_t> marked;  ///< empty: all elements
+  View<const ElementState> state;
+  View<const GlobalId> id;
+  View<const Index> a, b;
+  Broken is_broken;
+
+  BR_HD Readings operator()(Index i) const {
+    const Index p = a[i], q = b[i];
+    if (!owned(p) || (marked.size > 0 && marked[p] == 0 && marked[q] == 0)) return Readings();
+    if (!box.holds(0.5 * (state[p].position + state[q].position))) return Readings();
+    return Readings(is_broken(i) ? 1.0 : 0.0, id[p]);
+  }
+};
+
+Readings read_broken(const World& w, const ProbeConfig& p, View<const Index> members) {
+  Buffer<std::uint8_t> marked(w.exec.space);
+  if (!p.on.empty()) {
+    copy_to(marked, std::vector<std::uint8_t>(static_cast<std::size_t>(w.elements.size()), 0));
+    for_each(w.exec, members.size, Mark{members, marked.view()});
+  }
+  Readings all;
+  w.each_set([&](const auto& set) {
+    with_number(w.exec.precision, [&](auto number) {
+      const auto is_broken = set.template broken<decltype(number)>();
+      all = all + fold(w.exec, set.size(), Readings{},
+                       ReadBroken<std::remove_const_t<decltype(is_broken)>>{
+                           w.domain.owned_view(), ReadBox(p.min, p.max),
+                           std::as_const(marked).view(), w.elements.state.view(),
+                           w.elements.id.view(), set.a.view(), set.b.view(), is_broken},
+                       Sum{});
+    });
+  });
+  return all;
+}
+
+StrainFit fit_of(const World& w, const ProbeConfig& p) {
+  for (const ProbeFit& fit : w.given->strain_fits)
+    if (fit.probe == p.name) return fit.fit;
+  return {};
+}
+
+Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
+  const Elements& e = w.elements;
+  const Quantity quantity = quantity_named(p.quantity).quantity;
+  if (quantity.kind == Quantity::Kind::stress) return read_stress(w, p);
+  if (quantity.kind == Quantity::Kind::broken) return read_broken(w, p, members);
+  Buffer<double> lost(w.exec.space);
+  if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
+  return fold(w.exec, p.on.empty() ? e.size() : members.size, Readings{},
+              ReadProbe{w.domain.owned_view(), quantity, members, e.id.view(), kick(w),
+                        std::as_const(lost).view(), w.given->starts.view(), ReadBox(p.min, p.max),
+                        point_of(p.about), fit_of(w, p)},
+              Sum{});
+}
+
+/// A component of the force on a wall, or of its torque about a point.
+struct PushOnWall {
+  OwnedView owned;
+  Index first;  ///< contact of the wall
+  int axis;
+  bool turns;
+  Wall wall;
+  Vec3 about;  ///<  [m]
+  View<const ElementState> state;
+  View<const Index> a;
+  View<const Vec3> on_wall;
+  BR_HD ExactSum operator()(Index k) const {
+    const Index i = first + k;
+    if (!owned(a[i])) return ExactSum();
+    const Vec3& f = on_wall[i];
+    if (!turns) return ExactSum(on_axis(f, axis));
+    return ExactSum(on_axis(cross(foot_on(wall, state[a[i]].position) - about, f), axis));
+  }
+};
+
+/// The wall of a probe; none: the probe reads elements.
+std::optional<std::size_t> wall_of(const World& w, const ProbeConfig& p) {
+  const auto name = std::find(w.given->wall_names.begin(), w.given->wall_names.end(), p.on);
+  if (p.on.empty() || name == w.given->wall_names.end()) return std::nullopt;
+  return static_cast<std::size_t>(name - w.given->wall_names.begin());
+}
+
+/// A wall's place and velocity, which rank 0 knows as well as all, and what this rank's elements
+/// push it with.
+Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
+  const Quantity quantity = quantity_named(p.quantity).quantity;
+  const bool first = is_first(w);
+  const Wall& own = w.walls[wall];
+  const bool turns = quantity.kind == Quantity::Kind::torque;
+  if (quantity.kind != Quantity::Kind::force && !turns) {
+    const auto part = [&](const Vec3& v) { return on_axis(v, quantity.axis); };
+    const double value = quantity.kind == Quantity::Kind::position   ? part(own.point)
+                         : quantity.kind == Quantity::Kind::velocity ? part(own.velocity)
+                         : quantity.kind == Quantity::Kind::displacement
+                             ? part(own.point - w.given->wall_starts[wall])
+                             : norm(own.velocity);
+    return first ? Readings(value, 0) : Readings();
+  }
+  Readings read;
+  if (first) read = Readings(0.0, 0);
+  if (wall + 1 >= w.wall_begin.size()) return read;  // no search yet
+  const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
+  read.sum.add(
+      fold(w.exec, end - begin, ExactSum(),
+           PushOnWall{w.domain.owned_view(), begin, quantity.axis, turns, own, point_of(p.about),
+                      w.elements.state.view(), w.wall_contacts.pairs.a.view(),
+                      w.wall_contacts.history.on_wall.view()},
+           Sum{}));
+  return read;
+}
+
+}  // namespace
+
+double probe(const World& w, const ProbeConfig& p) {
+  if (const auto wall = wall_of(w, p)) return read_wall(w, p, *wall).sum.value();
+  View<const Index> members{};
+  if (!p.on.empty()) {
+    const auto set = std::find_if(w.given->sets.begin(), w.given->sets.end(),
+                                  [&](const ElementSet& s) { return s.name == p.on; });
+    if (set == w.given->sets.end())
+      throw InputError("probe " + p.name + ": there is no group " + p.on);
+    members = set->members.view();
+  }
+  return read(w, p, members).reduced(p.reduce);
+}
+
+Readings read_own(World& part, const ProbeConfig& p) {
+  if (const auto wall = wall_of(part, p)) return read_wall(part, p, *wall);
+  const auto set = std::find_if(part.given->sets.begin(), part.given->sets.end(),
+                                [&](const ElementSet& s) { return s.name == p.on; });
+  if (set == part.given->sets.end()) return read(part, p, {});
+  SetHere& here = part.sets_here[static_cast<std::size_t>(set - part.given->sets.begin())];
+  keep_here(here, part.domain, part.elements.id, set->members.host(), 1, part.exec.space);
+  return read(part, p, std::as_const(here.places).view());
+}
+
+}  // namespace breccia::dem

@@ -1,0 +1,233 @@
+// Probes of regions: stress, strain, torque, displacement, angular momentum, broken links against
+// closed answers.
+
+#include <gtest/gtest.h>
+
+#include "core/probe.hpp"
+#include "physics/dem/scene.hpp"
+
+namespace breccia::dem {
+namespace {
+
+using testing::Scene;
+
+double value(const World& w, const std::string& quantity, const std::string& on = "",
+             const char* reduce = "mean", const std::vector<double>& min = {},
+             const std::vector<double>& max = {}, const std::vector<double>& about = {}) {
+  return probe(w, {"p", on, quantity, reduce, min, max, about});
+}
+
+/// Grains of a cubic lattice between six walls, which press on them.
+Scene pressed_box(int side) {
+  Scene s;
+  s.material("grain", "grain", 1e8, 0.2, 2500.0);
+  s.config.local_damping = 0.5;
+  s.config.contact.friction = 0.0;  // otherwise side walls bear a part
+  const double pitch = 0.01998, edge = pitch * side;
+  for (int i = 0; i < side * side * side; ++i)
+    s.sphere({pitch * (i % side + 0.5), pitch * (i / side % side + 0.5),
+              pitch * (i / side / side + 0.5)},
+             0.01);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {1.0, -1.0}) {
+      Vec3 normal{}, point{};
+      (axis == 0 ? normal.x : axis == 1 ? normal.y : normal.z) = sign;
+      if (sign < 0.0) point = {edge, edge, edge};
+      s.wall(point, normal);
+      s.config.walls.back().name = std::string(sign > 0.0 ? "low " : "high ") + "xyz"[axis];
+    }
+  return s;
+}
+
+TEST(Measures, stress_of_a_box_between_pressing_walls_is_their_pressure) {
+  const int side = 3;
+  Scene s = pressed_box(side);
+  s.config.walls[5].point.z -= 2e-5;  // the pressure along z is another one
+  World w = s.world();
+  for (int i = 0; i < 20'000; ++i) step(w);
+  const double edge = 0.01998 * side;
+  const std::vector<double> low{0.0, 0.0, 0.0}, high{edge, edge, edge - 2e-5};
+  for (const char* axis : {"x", "y", "z"}) {
+    const double area = axis[0] == 'z' ? edge * edge : edge * (edge - 2e-5);
+    const double pressure =
+        value(w, std::string("force_") + axis, std::string("high ") + axis, "sum") / area;
+    EXPECT_GT(pressure, 0.0);
+    EXPECT_NEAR(value(w, std::string("stress_") + axis + axis, "", "mean", low, high), -pressure,
+                1e-9 * pressure);
+    // So has any box through which the whole section runs.
+    if (axis[0] != 'z') continue;
+    EXPECT_NEAR(value(w, "stress_zz", "", "mean", {0.0, 0.0, 0.013}, {edge, edge, 0.0371}),
+                -pressure, 1e-9 * pressure);
+  }
+  const double shear = value(w, "stress_xz", "", "mean", low, high);
+  EXPECT_NEAR(shear, 0.0, 1e-9 * std::abs(value(w, "stress_zz", "", "mean", low, high)));
+}
+
+/// A prism of linked elements, irregular, held below and pulled above.
+Scene prism() {
+  Scene s;
+  s.material("c", "concrete", 30e9, 0.2, 2400.0);
+  s.config.local_damping = 0.5;
+  const int side = 3, height = 7;
+  const auto shaken = [](int i, int k) { return 5e-4 * std::sin(7.0 * i + 3.0 * k); };
+  for (int i = 0; i < side * side * height; ++i)
+    s.sphere({0.021 * (i % side) + shaken(i, 0), 0.021 * (i / side % side) + shaken(i, 1),
+              0.021 * (i / side / side) + shaken(i, 2)},
+             0.01);
+  for (Index a = 0; a < s.model.size(); ++a)
+    for (Index b = a + 1; b < s.model.size(); ++b)
+      if (norm(s.model.position[at(b)] - s.model.position[at(a)]) < 0.031) s.link(a, b);
+  SupportConfig foot, head;
+  foot.name = "foot";
+  foot.max.z = 0.005;
+  foot.fix = {"all"};
+  head.name = "head";
+  head.min.z = 0.12;
+  head.fix = {"z"};
+  OverTime<Vec3> pull;
+  pull.times = {0.0, 1e-4, 2e-4};
+  pull.values = {{}, {0.0, 0.0, 0.02}, {}};
+  head.velocity = pull;
+  s.config.supports = {foot, head};
+  return s;
+}
+
+TEST(Measures, stress_of_a_pulled_prism_is_force_over_section) {
+  const Scene s = prism();
+  World w = s.world();
+  for (int i = 0; i < 20'000; ++i) step(w);
+  const double force = -value(w, "force_z", "head", "sum"), section = 0.1 * 0.1;
+  EXPECT_GT(force, 10.0);
+  EXPECT_NEAR(value(w, "stress_zz", "", "mean", {-0.02, -0.02, 0.03}, {0.08, 0.08, 0.1}),
+              force / section, 1e-6 * force / section);
+  EXPECT_NEAR(value(w, "stress_zz", "", "mean", {-0.02, -0.02, 0.0512}, {0.08, 0.08, 0.0613}),
+              force / section, 1e-6 * force / section);
+  EXPECT_NEAR(value(w, "stress_xx", "", "mean", {-0.02, -0.02, 0.03}, {0.08, 0.08, 0.1}), 0.0,
+              0.1 * force / section);
+  EXPECT_NEAR(value(w, "torque_x", "head", "sum") + value(w, "torque_x", "foot", "sum"), 0.0,
+              1e-6 * force * 0.02);
+}
+
+TEST(Measures, strain_and_displacement_of_a_uniform_flow_are_exact) {
+  Scene s;
+  s.material("grain", "grain", 1e8, 0.2, 2500.0);
+  const double g[3][3] = {{2.0, 1.0, 0.0}, {3.0, -1.0, 0.5}, {0.0, 0.25, 4.0}};
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 x{0.1 * (i % 3), 0.1 * (i / 3 % 3) + 0.01 * (i % 2), 0.1 * (i / 9)};
+    s.sphere(x, 0.01,
+             {g[0][0] * x.x + g[0][1] * x.y + g[0][2] * x.z,
+              g[1][0] * x.x + g[1][1] * x.y + g[1][2] * x.z,
+              g[2][0] * x.x + g[2][1] * x.y + g[2][2] * x.z});
+  }
+  s.wall({0.0, 0.0, -1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, -0.5});
+  const char* axes = "xyz";
+  const std::vector<double> min{-1.0, -1.0, 0.05}, max{1.0, 1.0, 1.0};
+  for (const char* word :
+       {"strain_xx", "strain_yy", "strain_zz", "strain_xy", "strain_yz", "strain_xz"}) {
+    s.config.probes.push_back({word, "", word, "mean"});
+    s.config.probes.push_back({std::string(word) + " above", "", word, "mean", min, max});
+  }
+  World w = s.world();
+  while (w.time < 1e-3) step(w);
+  for (const ProbeConfig& p : s.config.probes) {
+    const std::size_t i = std::string(axes).find(p.quantity[7]),
+                      j = std::string(axes).find(p.quantity[8]);
+    EXPECT_NEAR(probe(w, p), 0.5 * w.time * (g[i][j] + g[j][i]), 1e-12) << p.name;
+  }
+  EXPECT_NEAR(value(w, "displacement_z", "", "max"), w.time * 0.25 * 0.21 + w.time * 4.0 * 0.2,
+              1e-12);
+  EXPECT_NEAR(value(w, "displacement_z", "wall"), -0.5 * w.time, 1e-12);
+}
+
+TEST(Measures, a_spinning_body_keeps_its_angular_momentum) {
+  Scene s;
+  s.material("c", "concrete", 30e9, 0.2, 2400.0);
+  const Vec3 spin{3.0, -5.0, 20.0}, along{1.0, 2.0, -3.0};
+  double mass = 0.0;
+  Vec3 expected{}, centre{};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 x{0.02 * (i & 1), 0.02 * (i >> 1 & 1), 0.02 * (i >> 2)};
+    s.sphere(x, 0.01, along + cross(spin, x), spin);
+    const double m = s.model.mass.back();
+    mass += m;
+    centre += m * x;
+    expected += m * cross(x, along + cross(spin, x)) + s.model.inertia.back() * spin;
+  }
+  for (Index a = 0; a < 8; ++a)
+    for (Index b = a + 1; b < 8; ++b) s.link(a, b);
+  World w = s.world();
+  const auto angular = [&](const std::vector<double>& about) {
+    return Vec3{value(w, "angular_momentum_x", "", "sum", {}, {}, about),
+                value(w, "angular_momentum_y", "", "sum", {}, {}, about),
+                value(w, "angular_momentum_z", "", "sum", {}, {}, about)};
+  };
+  EXPECT_LT(norm(angular({}) - expected), 1e-14 * norm(expected));
+  for (int i = 0; i < 500; ++i) step(w);
+  EXPECT_LT(norm(angular({}) - expected), 1e-11 * norm(expected));
+  const Vec3 point{1.0, -2.0, 0.5};
+  EXPECT_LT(norm(angular({1.0, -2.0, 0.5}) -
+                 (expected - mass * cross(point, along + cross(spin, (1.0 / mass) * centre)))),
+            1e-11 * norm(expected) + 1e-11 * mass * norm(point) * norm(along));
+}
+
+TEST(Measures, torque_of_a_wall_is_its_force_times_the_arm) {
+  Scene s;
+  s.material("grain", "grain", 1e7, 0.2, 2500.0);
+  s.config.gravity = {0.0, 0.0, -9.81};
+  s.config.local_damping = 0.3;
+  s.sphere({0.3, 0.1, 0.01}, 0.01);
+  s.wall({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+  World w = s.world();
+  for (int i = 0; i < 20'000; ++i) step(w);
+  const double weight = 9.81 * s.model.mass[0];
+  EXPECT_NEAR(value(w, "torque_y", "wall", "sum"), 0.3 * weight, 1e-6 * weight);
+  EXPECT_NEAR(value(w, "torque_x", "wall", "sum"), -0.1 * weight, 1e-6 * weight);
+  EXPECT_NEAR(value(w, "torque_y", "wall", "sum", {}, {}, {0.3, 0.0, 0.0}), 0.0, 1e-6 * weight);
+}
+
+TEST(Measures, broken_links_are_counted_where_they_are) {
+  Scene s = prism();
+  OverTime<Vec3> tear;
+  tear.value = {0.0, 0.0, 2.0};
+  s.config.supports[1].velocity = tear;
+  World w = s.world();
+  for (int i = 0; i < 600; ++i) step(w);
+  const double broken = count(w).broken[static_cast<std::size_t>(LinkKind::concrete)];
+  EXPECT_GT(broken, 3.0);
+  EXPECT_EQ(value(w, "broken", "", "sum"), broken);
+  EXPECT_NEAR(value(w, "broken"), broken / w.concrete.size(), 1e-15);
+  const double below = value(w, "broken", "", "sum", {-1.0, -1.0, -1.0}, {1.0, 1.0, 0.0451234});
+  const double above = value(w, "broken", "", "sum", {-1.0, -1.0, 0.0451234}, {1.0, 1.0, 1.0});
+  EXPECT_EQ(below + above, broken);
+  EXPECT_LE(value(w, "broken", "head", "sum"), broken);
+}
+
+TEST(Measures, what_an_object_does_not_have_is_refused) {
+  const auto told = [](const ProbeConfig& p, Bearer of) {
+    const std::vector<std::string> problems = probe_problems(p, of);
+    return problems.empty() ? std::string() : problems.front();
+  };
+  EXPECT_EQ(told({"p", "", "stress_zz", "mean", {0, 0, 0}, {1, 1, 1}, {}}, in_space), "");
+  EXPECT_NE(told({"p", "", "stress_zz", "mean"}, in_space).find("give min and max"),
+            std::string::npos);
+  EXPECT_NE(told({"p", "", "opening", "mean"}, in_space).find("none of spheres; allowed: position"),
+            std::string::npos);
+  EXPECT_NE(told({"p", "w", "kinetic", "mean"}, of_wall).find("none of a wall"), std::string::npos);
+  EXPECT_NE(told({"p", "w", "force_x", "max"}, of_wall).find("one value"), std::string::npos);
+  EXPECT_NE(told({"p", "", "torque_x", "sum"}, in_plane).find("a plane case lacks"),
+            std::string::npos);
+  EXPECT_EQ(told({"p", "", "torque_z", "sum", {}, {}, {0, 0}}, in_plane), "");
+  EXPECT_NE(told({"p", "", "torque_z", "sum", {}, {}, {0, 0, 0}}, in_plane).find("2 coordinates"),
+            std::string::npos);
+  EXPECT_NE(told({"p", "", "speed", "mean", {}, {}, {0, 0, 0}}, in_space).find("has none"),
+            std::string::npos);
+  EXPECT_NE(told({"p", "", "speed", "mean", {0, 0, 0}, {}, {}}, in_space).find("both min and max"),
+            std::string::npos);
+  EXPECT_NE(told({"p", "", "speed", "mean", {0, 0, 2}, {1, 1, 1}, {}}, in_space).find("below"),
+            std::string::npos);
+  EXPECT_NE(told({"p", "", "stress_xx", "sum"}, in_plane).find("do not add up"), std::string::npos);
+  EXPECT_NE(told({"p", "", "strain_xx", "max"}, in_plane).find("one value"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace breccia::dem
