@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <functional>
 
@@ -273,6 +274,63 @@ TEST(Stages, end_at_rest_and_when_a_load_has_fallen) {
   EXPECT_EQ(r[0].ended_by, "rest");
   EXPECT_EQ(r[1].ended_by, "drop");
   EXPECT_LT(method->time(), 0.1);
+}
+
+/// An element that many links hold, itself held at first: those around it alone allow longer steps,
+/// and the step is looked at rarely.
+dem::testing::Scene hub() {
+  dem::testing::Scene s;
+  s.material("c", "concrete", 30e9, 0.2, 2400.0).tensile_strength = 1e9;
+  s.config.materials[0].cohesion = 1e9;
+  s.config.time = {.end = 1.0, .safety = 0.2};
+  s.config.time.max_step = 1.0;
+  s.config.time.evaluate_every = 1000;
+  s.sphere({0.0, 0.0, 0.0}, 0.01);
+  for (const double x : {-1.0, 0.0, 1.0})
+    for (const double y : {-1.0, 0.0, 1.0})
+      for (const double z : {-1.0, 0.0, 1.0}) {
+        if (x == 0.0 && y == 0.0 && z == 0.0) continue;
+        s.sphere({0.04 * x, 0.04 * y, 0.04 * z}, 0.01, {0.0, 0.01 * x, 0.02 * z + 0.01});
+        s.link(0, s.model.size() - 1);
+      }
+  dem::SupportConfig hand;
+  hand.name = "hand";
+  hand.min = {-0.01, -0.01, -0.01};
+  hand.max = {0.01, 0.01, 0.01};
+  hand.fix = {"all"};
+  s.config.supports = {hand};
+  dem::StageConfig hold, go;
+  hold.name = "hold";
+  hold.until = 2e-5;
+  go.name = "go";
+  go.supports = {{"hand", {}, {}, 0.0, {}}};
+  go.until = 1e-4;
+  s.config.stages = {hold, go};
+  return s;
+}
+
+TEST(Stages, elements_that_are_set_free_shorten_the_step_at_once) {
+  const auto longest_steps = [](const dem::testing::Scene& s) {
+    const auto method = make_method(s.config, s.model, {}, nullptr);
+    StageControl stages(*method, s.config.probes, "", nullptr);
+    std::array<double, 2> longest{};
+    while (!stages.finished()) {
+      const auto stage = static_cast<std::size_t>(method->stage().index);
+      const Advanced taken = method->advance(stages.limited({1.0, 1'000'000}));
+      longest[stage] = std::max(longest[stage], taken.dt_max);
+      stages.look();
+    }
+    EXPECT_LT(method->energy().error_relative, 5e-3);
+    return longest;
+  };
+  dem::testing::Scene s = hub();
+  const std::array<double, 2> rarely = longest_steps(s);
+  EXPECT_LT(rarely[1], 0.7 * rarely[0]);
+  expect_alike(s);
+  s.config.time.evaluate_every = 1;
+  const std::array<double, 2> always = longest_steps(s);
+  EXPECT_EQ(always[0], rarely[0]);
+  EXPECT_NEAR(always[1], rarely[1], 0.05 * rarely[1]);
 }
 
 TEST(Stages, that_cannot_end_or_name_what_is_not_there_are_problems) {

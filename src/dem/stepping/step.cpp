@@ -123,6 +123,16 @@ void step(World& w) {
 void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
+
+double step_allowed_now(const World& w) {
+  World trial = w;  // a force law may note what it sees, so it looks at a copy
+  trial.graph.clear();
+  trial.last_dt = 0.0;  // nothing has moved since
+  trial.step = 0;       // a step that evaluates
+  evaluate_forces(trial);
+  return trial.next_dt;
+}
+
 Advanced advance(World& w, const StopAt& stop) {
   return advance_by_steps(w, stop);
 }

@@ -37,6 +37,10 @@ void take_step(Run&& run, World& w) {
   run.count_step(w);
 }
 
+/// The step that all elements allow where they are, after some have been set free. All ranks call
+/// it; the world stays as it is.  [s]
+double step_allowed_now(const World& w);
+
 /// Parts that all runs of one step at a time share: ghosts, the search, the time step.
 struct StepwiseRun {
   void send_ghosts(World& w) const;

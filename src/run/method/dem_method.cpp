@@ -8,6 +8,7 @@
 #include "dem/ranks.hpp"
 #include "dem/servos.hpp"
 #include "dem/setup/stages.hpp"
+#include "dem/stepping/step.hpp"
 #include "run/method/sim_method.hpp"
 
 namespace breccia {
@@ -56,6 +57,10 @@ struct DemSim {
       for (const dem::SupportChange& change : config.stages[stage].supports)
         if (change.name == config.supports[s].name) changed.push_back(config.walls.size() + s);
     return changed;
+  }
+  /// Elements that a stage sets free may need shorter steps than those it held.
+  static void begun(World& part) {
+    part.next_dt = std::min(part.next_dt, dem::step_allowed_now(part));
   }
   static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {
     return dem::balance(ledger, all, step);
