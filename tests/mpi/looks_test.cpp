@@ -59,6 +59,9 @@ std::vector<ProbeConfig> probes(const std::string& body, const std::string& last
 }
 Scene probed(Scene scene, const std::string& body) {
   scene.config.probes = probes(body, "y");
+  for (const std::string quantity :
+       {"stress_xy", "strain_yy", "torque_z", "angular_momentum_z", "opening", "slip"})
+    scene.config.probes.push_back({quantity, body, quantity, "mean"});
   return scene;
 }
 
@@ -68,6 +71,10 @@ Slab damped_piece() {
   piece.config.gravity = {0.0, 0.0, -9.81};
   piece.config.local_damping = 0.1;
   piece.config.probes = probes(piece.config.bodies[0].name, "z");
+  piece.config.probes.push_back(
+      {"box", "", "stress_zz", "mean", {-0.05, -0.04, -0.03}, {0.05, 0.06, 0.05}});
+  for (const std::string quantity : {"strain_xz", "torque_y", "angular_momentum_x"})
+    piece.config.probes.push_back({quantity, piece.config.bodies[0].name, quantity, "mean"});
   return piece;
 }
 
