@@ -106,6 +106,7 @@ void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>
 void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m) {
   for (const MaterialConfig& c : config.materials)
     set.rated = set.rated || (c.law == "concrete" && c.rate != "none");
+  if (set.rated) move_array(set.rate, set.length.space());  // place_arrays() left it out
   const auto links = grouped(m, config, set, [&](const MaterialConfig& c, const Model::Link& link) {
     ConcreteLink law = concrete_law(c, config.contact);
     law.modulus *= m.bulk_of(link.a).factor;
