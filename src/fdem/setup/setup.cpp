@@ -14,6 +14,7 @@
 #include "fdem/setup/mesh_edges.hpp"
 #include "fdem/setup/pressed_faces.hpp"
 #include "fdem/setup/regions.hpp"
+#include "fdem/setup/starts.hpp"
 #include "fdem/setup/warnings.hpp"
 #include "fdem/world.hpp"
 
@@ -385,35 +386,6 @@ void set_up_bodies(World& w, const Model& model) {
   }
 }
 
-/// Where corners stand, for probes that read how far they have gone.
-void set_up_starts(World& w, const Config& config, const Model& model) {
-  Case& given = set_up(w);
-  std::vector<Vec2> starts;
-  for (const auto& triangle : model.triangle)
-    for (const Index vertex : triangle) starts.push_back(model.point[at(vertex)]);
-  bool any = false;
-  for (const ProbeConfig& p : config.probes) {
-    const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
-    any |= kind == Quantity::Kind::displacement || kind == Quantity::Kind::strain;
-    if (kind != Quantity::Kind::strain) continue;
-    std::vector<Index> corners(starts.size());
-    std::iota(corners.begin(), corners.end(), 0);
-    for (const NodeSet& set : given.sets)
-      if (set.name == p.on) corners = set.nodes;
-    const ReadBox box(p.min, p.max);
-    std::vector<Vec3> points;
-    for (const Index n : corners)
-      if (const Vec3 x{starts[at(n)].x, starts[at(n)].y, 0.0}; box.holds(x)) points.push_back(x);
-    bool fits = false;
-    given.strain_fits.push_back({p.name, strain_fit(points, 2, fits)});
-    if (!fits)
-      throw InputError("probe." + p.name +
-                       ": strain needs corners that do not lie on a line; its region holds " +
-                       std::to_string(points.size()));
-  }
-  if (any) copy_to(given.starts, starts);
-}
-
 /// No machine takes more steps than this, and time, a sum of them, would stop.
 void refuse_endless(const World& w) {
   constexpr double most = 1e15;
@@ -468,7 +440,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   set_up_triangles(w, config, model);
   set_up_joints(w, config, model);
   set_up_supports(w, config, model);
-  set_up_starts(w, config, model);
+  set_up_starts(set_up(w), config, model);
   set_up_loads(w, config, model);
   w.exposed.changed.resize(2);
   w.exposed.vertex.resize(static_cast<Index>(model.point.size()));
