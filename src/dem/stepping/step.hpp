@@ -12,7 +12,8 @@ namespace breccia::dem {
 template <class Run>
 void take_forces(Run&& run, World& w) {
   // 3. One force per interaction, then one sum per element: no atomics              (section 4.2)
-  //    Links and contacts that end here mark themselves.
+  //    Links and contacts that end here mark themselves. The host evaluates concrete links inside
+  //    sum_forces, tile by tile.
   run.pair_forces(w);
   run.sum_forces(w);
   run.wall_forces(w);
@@ -25,7 +26,7 @@ void take_forces(Run&& run, World& w) {
 template <class Run>
 void take_step(Run&& run, World& w) {
   // 1. Newton's laws: accelerations, velocities, positions                          (section 4.4)
-  run.move_boundary(w);
+  run.move_boundary(w);  // on one rank: all of them
   run.send_ghosts(w);  // while the interior moves
   run.move_interior(w);
   run.receive_ghosts(w);
