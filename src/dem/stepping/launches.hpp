@@ -43,7 +43,8 @@ auto link_kernel(World& w, LinkSet<Law>& set, const Law& law, Index first_action
   }
 }
 
-/// Calls visit(set, first_action) for each kind of links whose forces the host does not sum by tiles.
+/// Calls visit(set, first_action) for each kind of links whose forces the host does not sum by
+/// tiles.
 template <class Visit>
 void each_bar_set(World& w, const Visit& visit) {
   Index first = 0;

@@ -27,7 +27,7 @@ template <class Run>
 void take_step(Run&& run, World& w) {
   // 1. Newton's laws: accelerations, velocities, positions                          (section 4.4)
   run.move_boundary(w);  // on one rank: all of them
-  run.send_ghosts(w);  // while the interior moves
+  run.send_ghosts(w);    // while the interior moves
   run.move_interior(w);
   run.receive_ghosts(w);
 
