@@ -1,5 +1,5 @@
 #pragma once
-// What probes of regions need: a box in space, a point, where things stood, the best linear
+// Means of probes of regions: a box in space, a point, where things stood, the best linear
 // displacement.
 
 #include <string>
@@ -74,7 +74,7 @@ struct StrainFit {
   Vec3 centre{};      ///< of the points at the start  [m]
   Vec3 inverse[3]{};  ///< rows of the inverse of their mean (X - centre) (X - centre)^T  [1/m2]
 
-  /// What a point adds to strain (i, j), before the mean over all points.  [-]
+  /// Share of a point in strain (i, j), before the mean over all points.  [-]
   BR_HD double term(const Vec3& start, const Vec3& displacement, int i, int j) const {
     const Vec3 from = start - centre;
     const Vec3 weight{dot(inverse[0], from), dot(inverse[1], from), dot(inverse[2], from)};

@@ -59,7 +59,7 @@ BR_HD inline Readings operator+(Readings a, const Readings& b) {
 }
 
 struct ProbeConfig;
-/// What is wrong with a probe's quantity and how it is read, as sentences.
+/// Problems of a probe's quantity and of how it is read, as sentences.
 /// @param of  the bearer that it reads: elements in space or in the plane, or a wall
 std::vector<std::string> probe_problems(const ProbeConfig& probe, Bearer of);
 

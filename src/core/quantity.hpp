@@ -33,7 +33,7 @@ struct Quantity {
   int other = -1;  ///< second axis of a tensor's component
 };
 
-/// What has a quantity: flags.
+/// Bearers of a quantity: flags.
 enum Bearer : unsigned {
   in_space = 1,  ///< elements of the DEM
   in_plane = 2,  ///< corners, triangles and joints of the FDEM

@@ -1,4 +1,4 @@
-// What probes read: quantities of elements and walls, the stress of a box, broken links.
+// Readings of probes: quantities of elements and walls, the stress of a box, broken links.
 
 #include <algorithm>
 #include <optional>
@@ -70,7 +70,7 @@ struct ReadProbe {
   }
 };
 
-/// What an interaction adds to the volume times the mean stress of a box (Weber, Love): its force,
+/// Share of an interaction in the volume times the mean stress of a box (Weber, Love): its force,
 /// on the way between its ends that lies inside. Tension is positive.  [N m]
 struct BranchStress {
   ReadBox box;

@@ -46,7 +46,7 @@ struct Case {
   Buffer<JointBond> bonds;                     ///< indexed by Joints::law  (laws of joints)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
   Buffer<Hold> holds;                 ///< stage; indexed by Triangles::hold  (held triangles)
-  /// What a vertex of the mesh touches: bit 0 the border or an edge that nothing joins, bit 1 such
+  /// Each vertex of the mesh: bit 0: at the border or an edge that nothing joins, bit 1 such
   /// an edge between two triangles.  [-]  (vertices of the whole mesh)
   std::vector<std::uint8_t> open_vertex;
 

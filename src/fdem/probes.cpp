@@ -1,4 +1,4 @@
-// What probes read: quantities of corners, stresses of triangles, cracks of joints.
+// Readings of probes: quantities of corners, stresses of triangles, cracks of joints.
 
 #include <algorithm>
 #include <utility>
