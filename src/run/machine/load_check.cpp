@@ -41,7 +41,7 @@ std::string section_of(const Relation<Array>& r) {
   return std::string(r.state) + "." + r.name;
 }
 
-/// What the model decides must come back as it was.
+/// Numbers that the model decides must come back as they were.
 template <class World>
 void collect_relations(const World& w, Collector& c) {
   each_relation(w, [&](const auto& r) {
