@@ -80,12 +80,7 @@ struct Grouped {
   }
   BR_HD void load_late(Index i, Loaded& loaded) const { kernel.load_late(i, loaded.link); }
   BR_HD void update(Index i, const Loaded& loaded) const {
-    if constexpr (std::is_same_v<Law, InterfaceLink>) {  // it holds a table
-      kernel.update(laws[loaded.group], i, loaded.link);
-    } else {
-      const Law law = laws[loaded.group];
-      kernel.update(law, i, loaded.link);
-    }
+    kernel.update(laws[loaded.group], i, loaded.link);  // by reference: a copy fills registers
   }
 };
 
