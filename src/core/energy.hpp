@@ -22,6 +22,7 @@ class ExactSum {
   BR_HD explicit ExactSum(double value) { add(value); }
 
   BR_HD void add(double value) {
+    if (value == 0.0) return;  // most of what most items have spent
     const double scaled_high = value < 0.0 ? -value : value;
     if (!(scaled_high < limit) || quanta_ == overflown) {
       quanta_ = overflown;

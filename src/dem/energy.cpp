@@ -68,9 +68,8 @@ struct ContactShares {
   View<const double> slid, damped;
   View<const double> driven;  ///< likewise
 
-  BR_HD Energies operator()(Index i) const {
-    Energies s;
-    if (!owned(a[i])) return s;
+  BR_HD void add_to(Energies& s, Index i) const {
+    if (!owned(a[i])) return;
     const double overlap = state[i].overlap;
     if (overlap > 0.0) {
       const double ra = state_of[a[i]].radius;
@@ -89,7 +88,6 @@ struct ContactShares {
     s.friction.add(slid[i]);
     s.contact.add(damped[i]);
     if (driven.size > 0) s.work.add(driven[i]);
-    return s;
   }
 };
 
@@ -98,21 +96,19 @@ struct ElementShares {
   Kick kick;
   View<const double> damping_work, load_work;
 
-  BR_HD Energies operator()(Index e) const {
-    Energies s;
-    if (!owned(e)) return s;
+  BR_HD void add_to(Energies& s, Index e) const {
+    if (!owned(e)) return;
     s.damping.add(damping_work[e]);
     s.work.add(load_work[e]);
     // Moving books the work of these forces in the last and the next step; half is done.
     const Kick::Given of = kick.given<double>(e);
-    if (of.fixed == 0 && !(kick.damping > 0.0)) return s;
+    if (of.fixed == 0 && !(kick.damping > 0.0)) return;
     const ElementState now = read_record(kick.state, e);
     const Kick::Result next = kick(e, now, of);
     const Vec3 came = (0.5 * kick.last_dt) * now.velocity;
     s.damping.add(dot(next.damped_force, came));
     s.damping.add(dot(next.damped_torque, (0.5 * kick.last_dt) * now.spin));
     if (of.fixed != 0) s.work.add(dot(kick.reaction(e, now.velocity, next, of), came));
-    return s;
   }
 };
 

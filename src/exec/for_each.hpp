@@ -95,6 +95,16 @@ void for_each_run(const Exec& exec, Index count, Index grain, const Run& run) {
   for (Index r = 0; r < runs; ++r) one(r);
 }
 
+/// One item more of a fold on the host. A kernel of large values may have add_to(value, i) in place
+/// of operator()(i): it adds the numbers that an item has, and leaves the value's others alone.
+template <class Value, class Kernel, class Combine>
+inline void fold_item(Value& value, const Kernel& kernel, Index i, const Combine& combine) {
+  if constexpr (requires { kernel.add_to(value, i); })
+    kernel.add_to(value, i);
+  else
+    value = combine(value, kernel(i));
+}
+
 /// neutral, kernel(0), kernel(1), ... combined into one value, on the host in fixed chunks of
 /// `fold_chunk`. The combination must not depend on order (least, largest, sums of whole numbers,
 /// ExactSum), so that threads and devices all give the same bits.
@@ -126,7 +136,7 @@ Value fold(const Exec& exec, Index count, Value neutral, const Kernel& kernel,
     const KernelScope scope;
     Value value = neutral;
     const Index end = std::min(count, (chunk + 1) * fold_chunk);
-    for (Index i = chunk * fold_chunk; i < end; ++i) value = combine(value, kernel(i));
+    for (Index i = chunk * fold_chunk; i < end; ++i) fold_item(value, kernel, i, combine);
     partial[static_cast<std::size_t>(chunk)].value = value;
   };
   if (exec.threads <= 1 || chunks < 2) {

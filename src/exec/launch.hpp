@@ -181,6 +181,18 @@ __global__ void __launch_bounds__(threads) launch_and_note(Index count, Kernel k
   if (threadIdx.x == 0) note(least);
 }
 
+/// The value of one item of a fold.
+template <class Value, class Kernel>
+__device__ Value item_value(const Value& neutral, const Kernel& kernel, Index i) {
+  if constexpr (requires(Value & value) { kernel.add_to(value, i); }) {
+    Value value = neutral;
+    kernel.add_to(value, i);
+    return value;
+  } else {
+    return kernel(i);
+  }
+}
+
 /// One value a block: each thread folds every n-th item, then the block its threads.
 template <class Value, class Kernel, class Combine>
 __global__ void __launch_bounds__(block_size)
@@ -194,7 +206,7 @@ __global__ void __launch_bounds__(block_size)
   value = neutral;
   for (std::int64_t i = blockIdx.x * std::int64_t{block_size} + threadIdx.x; i < count;
        i += gridDim.x * std::int64_t{block_size})
-    value = combine(value, kernel(static_cast<Index>(i)));
+    value = combine(value, item_value(neutral, kernel, static_cast<Index>(i)));
   for (unsigned half = block_size / 2; half > 0; half /= 2) {
     __syncthreads();
     if (threadIdx.x < half)

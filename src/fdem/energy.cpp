@@ -18,9 +18,8 @@ struct TriangleShares {
   View<const Mat2> shape_inverse;
   View<const double> viscous_work, damping_work, load_work;
 
-  BR_HD Energies operator()(Index t) const {
-    Energies s;
-    if (!owned(t)) return s;
+  BR_HD void add_to(Energies& s, Index t) const {
+    if (!owned(t)) return;
     const Kick& kick = move.kick;
     const Kick::Result next = kick(t);
     const double span = 0.5 * (kick.last_dt + kick.next_dt);
@@ -45,7 +44,6 @@ struct TriangleShares {
     s.damping.add(viscous_work[t]);
     s.damping.add(damping_work[t]);
     s.work.add(load_work[t]);
-    return s;
   }
 };
 
@@ -74,9 +72,8 @@ struct JointShares {
   View<const JointPoints> points;
   View<const JointWork> work, inherited_work;
 
-  BR_HD Energies operator()(Index i) const {
-    Energies s;
-    if (stage[i] == JointStage::dormant || !owned(ends[i].a0 / 3)) return s;
+  BR_HD void add_to(Energies& s, Index i) const {
+    if (stage[i] == JointStage::dormant || !owned(ends[i].a0 / 3)) return;
     if (stage[i] != JointStage::whole) {
       s.fracture.add(work[i].open);
       s.sliding.add(work[i].slide);
@@ -84,7 +81,7 @@ struct JointShares {
     if (stage[i] == JointStage::broken) {
       s.fracture.add(-inherited_work[i].open);
       s.sliding.add(-inherited_work[i].slide);
-      return s;
+      return;
     }
     const JointEnds& e = ends[i];
     const JointOpening<double> o = opening_of(nodes[e.a0].position, nodes[e.a1].position,
@@ -94,10 +91,9 @@ struct JointShares {
         stored_in(bonds[law[i]], strength[i], length[i], offset, o, points[i]);
     s.elastic.add(held.open);
     s.elastic.add(held.slide);
-    if (stage[i] == JointStage::whole) return s;
+    if (stage[i] == JointStage::whole) return;
     s.fracture.add(-held.open);
     s.sliding.add(-held.slide);
-    return s;
   }
 };
 
@@ -105,14 +101,12 @@ struct CoupleShares {
   OwnedView owned;  ///< the owner of a books it
   View<const Index> a;
   View<const CoupleState> state;
-  BR_HD Energies operator()(Index i) const {
-    Energies s;
-    if (!owned(a[i])) return s;
+  BR_HD void add_to(Energies& s, Index i) const {
+    if (!owned(a[i])) return;
     s.elastic.add(state[i].work - state[i].slid);
     s.friction.add(state[i].slid);
     s.friction.add(state[i].rubbed);
     s.contact.add(state[i].lost);
-    return s;
   }
 };
 

@@ -196,8 +196,7 @@ struct ConcreteShares {
   PlanesView<const Number> shear, moment;
   View<const double> slid, yielded, broke, rate;
 
-  BR_HD Energies operator()(const ConcreteLink& law, Index i) const {
-    Energies s;
+  BR_HD void add_to(Energies& s, const ConcreteLink& law, Index i) const {
     const double touching = state_of[a[i]].radius + state_of[b[i]].radius;
     LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
     if (law.rated()) link.factor = law.factor_of<double>(link, opening[i], rate[i]);
@@ -208,7 +207,6 @@ struct ConcreteShares {
     if (state.opening >= 0.0) s.fracture.add(law.tension(link).spent(state.opening));
     s.plastic.add(yielded[i]);
     s.friction.add(slid[i]);
-    return s;
   }
 };
 

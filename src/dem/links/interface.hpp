@@ -181,13 +181,11 @@ struct InterfaceShares {
   View<const InterfaceState> state;
   View<const double> slid, broke;
 
-  BR_HD Energies operator()(const InterfaceLink& law, Index i) const {
-    Energies s;
+  BR_HD void add_to(Energies& s, const InterfaceLink& law, Index i) const {
     s.elastic.add(law.stored(stiffness[i], area[i], state[i]));
     s.fracture.add(broke[i]);
     s.fracture.add(law.spent(stiffness[i], area[i], state[i]));
     s.friction.add(slid[i]);
-    return s;
   }
 };
 

@@ -402,13 +402,11 @@ struct LdpmShares {
   View<const LdpmFacetState> state;
   View<const double> opened, compacted, slid;
 
-  BR_HD Energies operator()(const LdpmFacet& law, Index i) const {
-    Energies s;
+  BR_HD void add_to(Energies& s, const LdpmFacet& law, Index i) const {
     s.elastic.add(place[i].area * place[i].length * law.stored(state[i].stress));
     s.fracture.add(opened[i]);
     s.plastic.add(compacted[i]);
     s.friction.add(slid[i]);
-    return s;
   }
 };
 template <class>

@@ -124,16 +124,16 @@ struct LinkSpace {
 };
 
 /// Energies of one group of links.
-/// @tparam Shares  a kernel with operator()(law, link)
+/// @tparam Shares  a kernel with add_to(energies, law, link)
 template <class Law, class Shares>
 struct GroupEnergies {
   OwnedView owned;
   Law law;
   Index first;
   Shares shares;
-  BR_HD Energies operator()(Index k) const {
+  BR_HD void add_to(Energies& sum, Index k) const {
     const Index i = first + k;
-    return owned(shares.a[i]) ? shares(law, i) : Energies{};
+    if (owned(shares.a[i])) shares.add_to(sum, law, i);
   }
 };
 

@@ -131,8 +131,7 @@ struct ParallelShares {
   View<const ParallelBondState> state;
   View<const double> slid, broke;
 
-  BR_HD Energies operator()(const ParallelBond& law, Index i) const {
-    Energies s;
+  BR_HD void add_to(Energies& s, const ParallelBond& law, Index i) const {
     const ElementState &one = state_of[a[i]], &other = state_of[b[i]];
     const Vec3 d = other.position - one.position;
     const double distance = norm(d);
@@ -140,7 +139,6 @@ struct ParallelShares {
     s.elastic.add(law.stored(k, (1.0 / distance) * d, distance - length[i], state[i]));
     s.fracture.add(broke[i]);
     s.friction.add(slid[i]);
-    return s;
   }
 };
 template <class>

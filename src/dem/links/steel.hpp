@@ -149,8 +149,7 @@ struct SteelShares {
   View<const SteelState> state;
   View<const double> yielded, broke;
 
-  BR_HD Energies operator()(const SteelLink& law, Index i) const {
-    Energies s;
+  BR_HD void add_to(Energies& s, const SteelLink& law, Index i) const {
     const Vec3 d = state_of[b[i]].position - state_of[a[i]].position;
     const double distance = norm(d), r = min(state_of[a[i]].radius, state_of[b[i]].radius);
     s.elastic.add(law.stored(length[i], r, distance - length[i], state[i]));
@@ -158,7 +157,6 @@ struct SteelShares {
       s.elastic.add(law.stored_moment(length[i], r, (1.0 / distance) * d, state[i]));
     s.fracture.add(broke[i]);
     s.plastic.add(yielded[i]);
-    return s;
   }
 };
 
