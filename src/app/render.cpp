@@ -18,8 +18,10 @@
 #include "io/harmless.hpp"
 #include "io/picture/field_colors.hpp"
 #include "io/picture/picture.hpp"
+#include "io/picture/vector_picture.hpp"
 #include "io/round_numbers.hpp"
 #include "io/vtu/vtu_reader.hpp"
+#include "io/whole_file.hpp"
 
 namespace breccia::app {
 namespace {
@@ -36,7 +38,7 @@ struct Shots {
     const Frame first = read_frame(folder, 0);
     options.extent = bulk_extent(first);  // the camera of the run's own pictures
     options.field = color ? *color : has_field(first, "damage") ? "damage" : "";
-    if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
+    if (options.field == "damage" && !options.range) options.range = ValueRange{0.0, 1.0};
   }
   Image picture(int number) const { return render(read_frame(folder, number), options); }
   /// The frame nearest to a time.
@@ -75,6 +77,23 @@ Image grid(const std::vector<Image>& images, int columns) {
   return whole;
 }
 
+bool is_drawing(const std::string& file) {
+  return file.ends_with(".svg") || file.ends_with(".pdf");
+}
+
+/// The ends of "0:2.5e6". @throws InputError for another text
+ValueRange range_of(const std::string& text) {
+  ValueRange range{};
+  const char* const end = text.data() + text.size();
+  const auto [colon, first] = std::from_chars(text.data(), end, range.low);
+  if (first == std::errc{} && colon != end && *colon == ':') {
+    const auto [last, second] = std::from_chars(colon + 1, end, range.high);
+    if (second == std::errc{} && last == end && range.low < range.high) return range;
+  }
+  throw InputError("--range " + text +
+                   ": two numbers in SI units, the lower first, such as 0:2.5e6");
+}
+
 /// Columns and rows of "3x2".
 struct Sheet {
   int columns = 0, rows = 0;
@@ -91,7 +110,8 @@ std::optional<Sheet> sheet_of(const std::string& text) {
 }
 
 struct RenderCommand {
-  std::string folder, file, sheet;
+  std::string folder, file, sheet, range;
+  std::vector<std::string> hidden;
   std::vector<std::string> beside;
   std::optional<std::string> color;
   std::optional<int> frame;
@@ -99,11 +119,15 @@ struct RenderCommand {
   RenderOptions options;
 
   void execute() {
-    const bool film = is_film(file);
-    if (!file.empty() && !film && !file.ends_with(".png"))
+    const bool film = is_film(file), drawing = is_drawing(file);
+    if (!file.empty() && !film && !drawing && !file.ends_with(".png"))
       throw InputError(file +
-                       ": pictures are PNG files, films .mp4, .webm or .gif; end the name with "
-                       "one of these");
+                       ": pictures are .png, drawings of plane cases .svg or .pdf, films .mp4, "
+                       ".webm or .gif; end the name with one of these");
+    if (drawing && (!sheet.empty() || !beside.empty()))
+      throw InputError("--sheet and --panels make PNG pictures, no " + file);
+    options.hidden = {hidden.begin(), hidden.end()};
+    if (!range.empty()) options.range = range_of(range);
     if (int(film) + int(!sheet.empty()) + int(frame.has_value()) > 1)
       throw InputError("a film, a --sheet and a --frame: choose one of them");
     std::vector<Shots> shots{{folder, options, color}};
@@ -113,6 +137,8 @@ struct RenderCommand {
     const std::string path = file.empty() ? folder + "/render.png" : file;
     if (film)
       write_film(path, shots, numbers);
+    else if (drawing)
+      write_drawing(path, shots.front(), numbers.front());
     else
       write_picture(path, shots, numbers);
   }
@@ -168,6 +194,14 @@ struct RenderCommand {
       fmt::print("{}  {} of {} frames\n", harmless(path), numbers.size(), times.size());
   }
 
+  static void write_drawing(const std::string& path, const Shots& shots, int number) {
+    const Frame shown = read_frame(shots.folder, number);
+    replace_file(path, path.ends_with(".svg") ? svg_content(shown, shots.options)
+                                              : pdf_content(shown, shots.options));
+    fmt::print("{}  frame {} of {}, {}\n", harmless(path), number, shots.times.size(),
+               time_text(shots.times.at(static_cast<std::size_t>(number))));
+  }
+
   void write_film(const std::string& path, const std::vector<Shots>& shots,
                   const std::vector<int>& numbers) const {
     Film film(path, rate, "breccia render " + folder);
@@ -186,8 +220,10 @@ void add_render(CLI::App& program) {
       program.add_subcommand("render", "draw a picture, a sheet of pictures or a film of a run");
   command->add_option("DIR", render->folder, "the result folder of the run")->required();
   command
-      ->add_option("-o,--out", render->file,
-                   "the picture, or a film: .mp4, .webm, .gif; default: DIR/render.png")
+      ->add_option(
+          "-o,--out", render->file,
+          "a picture .png, a drawing of a plane case .svg or .pdf, or a film\n.mp4, .webm or .gif; "
+          "default: DIR/render.png")
       ->type_name("FILE");
   command->add_option("--color", render->color, "field that colours it; default: damage")
       ->type_name("FIELD");
@@ -196,6 +232,11 @@ void add_render(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--clip", render->options.clip, "cut away one side of a plane such as x=0")
       ->type_name("PLANE");
+  command->add_option("--range", render->range, "values at the ends of the colours, in SI units")
+      ->type_name("LOW:HIGH");
+  command->add_option("--map", render->options.map, "colours: viridis, diverging, damage, ground")
+      ->type_name("NAME");
+  command->add_option("--hide", render->hidden, "bodies that are not drawn")->type_name("NAME ...");
   command->add_option("--frame", render->frame, "number of the frame; default: the last")
       ->type_name("N");
   command->add_option("--sheet", render->sheet, "pictures from start to end in columns x rows")

@@ -139,10 +139,10 @@ std::string lower(std::string_view text) {
 /// What is typed for a unit in a hurry, as this program writes it: "N/mm²", "kg/m**3", "degrees".
 std::string plain_unit(std::string_view given) {
   static const std::vector<std::pair<std::string_view, std::string_view>> spellings{
-      {"\u00b2", "2"},  {"\u00b3", "3"},   {"**", ""},         {"\u00b7", " "},
-      {"\u03bc", "u"},  {"\u00b0", "deg"}, {"degrees", "deg"}, {"degree", "deg"},
-      {"seconds", "s"}, {"second", "s"},   {"sec", "s"},       {"metres", "m"},
-      {"meters", "m"},  {"metre", "m"},    {"meter", "m"},     {"micron", "um"}};
+      {"\u00b2", "2"}, {"\u00b3", "3"},   {"**", ""},         {"\u00b7", " "},   {"\u03bc", "u"},
+      {"\u00b5", "u"}, {"\u00b0", "deg"}, {"degrees", "deg"}, {"degree", "deg"}, {"seconds", "s"},
+      {"second", "s"}, {"sec", "s"},      {"metres", "m"},    {"meters", "m"},   {"metre", "m"},
+      {"meter", "m"},  {"micron", "um"}};
   std::string text(given);
   for (const auto& [typed, plain] : spellings)
     for (std::size_t at = text.find(typed); at != std::string::npos;

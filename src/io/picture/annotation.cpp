@@ -15,55 +15,6 @@ constexpr Color ink{0.13F, 0.14F, 0.16F}, faint{0.42F, 0.43F, 0.46F};
 constexpr int bar_width = 12;  ///< of a legend's bar  [dots]
 constexpr int margin = 12;     ///< around everything  [dots]
 
-void set_pixel(Image& image, int x, int y, const Color& color, float share) {
-  if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
-  const std::size_t place = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                            static_cast<std::size_t>(x);
-  const std::array channels{color.red, color.green, color.blue};
-  for (std::size_t c = 0; c < 3; ++c) {
-    std::uint8_t& byte = image.rgb[3 * place + c];
-    const float before = static_cast<float>(byte);
-    byte = static_cast<std::uint8_t>(before + share * (255.0F * channels[c] - before) + 0.5F);
-  }
-}
-
-void fill_rectangle(Image& image, int left, int top, int right, int bottom, const Color& color) {
-  for (int y = top; y < bottom; ++y) {
-    for (int x = left; x < right; ++x) set_pixel(image, x, y, color, 1.0F);
-  }
-}
-
-/// Fades what lies under annotations, so that they can be read; on the white ground nothing
-/// changes.
-void draw_veil(Image& image, int left, int top, int right, int bottom, int scale) {
-  constexpr Color white{1.0F, 1.0F, 1.0F};
-  constexpr float share = 0.8F;
-  const int edge = 4 * scale;  // around it
-  for (int y = top - edge; y < bottom + edge; ++y) {
-    for (int x = left - edge; x < right + edge; ++x) set_pixel(image, x, y, white, share);
-  }
-}
-
-/// A smooth straight stroke: a pixel takes the colour by its distance from the line.
-void draw_stroke(Image& image, double from_x, double from_y, double to_x, double to_y, double width,
-                 const Color& color) {
-  const double along_x = to_x - from_x, along_y = to_y - from_y;
-  const double square = std::max(1e-12, along_x * along_x + along_y * along_y);
-  const double reach = 0.5 * width + 1.0;
-  const int right = static_cast<int>(std::max(from_x, to_x) + reach);
-  const int bottom = static_cast<int>(std::max(from_y, to_y) + reach);
-  for (int y = static_cast<int>(std::min(from_y, to_y) - reach); y <= bottom; ++y) {
-    for (int x = static_cast<int>(std::min(from_x, to_x) - reach); x <= right; ++x) {
-      const double dx = x + 0.5 - from_x, dy = y + 0.5 - from_y;
-      const double share = std::clamp((dx * along_x + dy * along_y) / square, 0.0, 1.0);
-      const double off_x = dx - share * along_x, off_y = dy - share * along_y;
-      const double distance = std::sqrt(off_x * off_x + off_y * off_y);
-      const double covered = std::clamp(0.5 * width + 0.5 - distance, 0.0, 1.0);
-      if (covered > 0.0) set_pixel(image, x, y, color, static_cast<float>(covered));
-    }
-  }
-}
-
 /// Width of the legend with its margins; 0 if there is nothing to explain.  [pixels]
 int legend_width(const Legend& legend, int scale) {
   int width = text_width(legend.title, scale);
@@ -79,33 +30,33 @@ int legend_width(const Legend& legend, int scale) {
   return width == 0 ? 0 : width + 2 * margin * scale;
 }
 
-int bar_length(const Image& image) {
-  return image.height * 2 / 5;
+int bar_length(const Paper& paper) {
+  return paper.height * 2 / 5;
 }
 
 /// Height of the legend without margins.  [pixels]
-int legend_height(const Image& image, const Legend& legend, int scale) {
+int legend_height(const Paper& paper, const Legend& legend, int scale) {
   const int line = (font_height + 4) * scale;
   int lines = static_cast<int>(legend.swatches.size()) + (legend.title.empty() ? 0 : 1);
   if (!legend.bar) return lines * line;
   if (!legend.bar->note.empty()) ++lines;
-  return (lines + 1) * line + 4 * scale + bar_length(image);
+  return (lines + 1) * line + 4 * scale + bar_length(paper);
 }
 
 /// The bar with frame, ticks and numbers; (left, top) is its upper corner.
-void draw_bar(Image& image, const Legend::Bar& bar, int left, int top, int scale) {
-  const int length = bar_length(image), right = left + bar_width * scale;
-  fill_rectangle(image, left - 1, top - 1, right + 1, top + length + 1, faint);
+void draw_bar(Paper& paper, const Legend::Bar& bar, int left, int top, int scale) {
+  const int length = bar_length(paper), right = left + bar_width * scale;
+  paper.fill(left - 1, top - 1, right + 1, top + length + 1, faint);
   for (int y = 0; y < length; ++y) {
     const float share = 1.0F - (static_cast<float>(y) + 0.5F) / static_cast<float>(length);
-    fill_rectangle(image, left, top + y, right, top + y + 1, map_color(bar.map, share));
+    paper.fill(left, top + y, right, top + y + 1, map_color(bar.map, share));
   }
   const double width = bar.range.high - bar.range.low;
   for (const Tick& tick : bar.ticks) {
     const double share = width > 0.0 ? (tick.value - bar.range.low) / width : 0.0;
     const int y = top + static_cast<int>((1.0 - share) * (length - 1) + 0.5);
-    fill_rectangle(image, right + 1, y - scale / 2, right + 3 * scale, y - scale / 2 + scale, ink);
-    draw_text(image, right + 5 * scale, y - 7 * scale / 2, tick.text, scale, ink);
+    paper.fill(right + 1, y - scale / 2, right + 3 * scale, y - scale / 2 + scale, ink);
+    paper.write(right + 5 * scale, y - 7 * scale / 2, tick.text, scale, ink);
   }
 }
 
@@ -133,60 +84,60 @@ Window scene_window(const RenderOptions& options, const Legend& legend) {
   return window;
 }
 
-void draw_title(Image& image, const std::string& title, const Frame& frame, int scale) {
+void draw_title(Paper& paper, const std::string& title, const Frame& frame, int scale) {
   const int left = margin * scale, top = margin * scale, gap = 12 * scale;
   const std::string time = "t = " + time_text(frame.time),
                     step = fmt::format("step {}", frame.step);
   const int time_at = title.empty() ? left : left + text_width(title, scale) + gap;
   const int step_at = time_at + text_width(time, scale) + gap;
-  draw_veil(image, left, top, step_at + text_width(step, scale), top + font_height * scale, scale);
-  draw_text(image, left, top, title, scale, ink);
-  draw_text(image, time_at, top, time, scale, ink);
-  draw_text(image, step_at, top, step, scale, faint);
+  paper.veil(left, top, step_at + text_width(step, scale), top + font_height * scale, scale);
+  paper.write(left, top, title, scale, ink);
+  paper.write(time_at, top, time, scale, ink);
+  paper.write(step_at, top, step, scale, faint);
 }
 
-void draw_legend(Image& image, const Legend& legend, int scale) {
-  const int left = image.width - legend_width(legend, scale) + margin * scale;
+void draw_legend(Paper& paper, const Legend& legend, int scale) {
+  const int left = paper.width - legend_width(legend, scale) + margin * scale;
   const int line = (font_height + 4) * scale;
-  int y = image.height / 7;
-  const int height = legend_height(image, legend, scale);
-  if (height > 0) draw_veil(image, left, y, image.width - margin * scale, y + height, scale);
+  int y = paper.height / 7;
+  const int height = legend_height(paper, legend, scale);
+  if (height > 0) paper.veil(left, y, paper.width - margin * scale, y + height, scale);
   if (!legend.title.empty()) {
-    draw_text(image, left, y, legend.title, scale, ink);
+    paper.write(left, y, legend.title, scale, ink);
     y += line;
   }
   if (legend.bar) {
     if (!legend.bar->note.empty()) {
-      draw_text(image, left, y, legend.bar->note, scale, faint);
+      paper.write(left, y, legend.bar->note, scale, faint);
       y += line;
     }
     y += 4 * scale;
-    draw_bar(image, *legend.bar, left, y, scale);
-    y += bar_length(image) + line;
+    draw_bar(paper, *legend.bar, left, y, scale);
+    y += bar_length(paper) + line;
   }
   for (const Legend::Swatch& swatch : legend.swatches) {
     const int size = 8 * scale;
-    fill_rectangle(image, left - 1, y - 1, left + bar_width * scale + 1, y + size + 1, faint);
-    fill_rectangle(image, left, y, left + bar_width * scale, y + size, swatch.color);
-    draw_text(image, left + (bar_width + 5) * scale, y + scale / 2, swatch.name, scale, ink);
+    paper.fill(left - 1, y - 1, left + bar_width * scale + 1, y + size + 1, faint);
+    paper.fill(left, y, left + bar_width * scale, y + size, swatch.color);
+    paper.write(left + (bar_width + 5) * scale, y + scale / 2, swatch.name, scale, ink);
     y += line;
   }
 }
 
-void draw_scale_bar(Image& image, double resolution, int scale) {
-  const double length = round_step_below(0.22 * image.width / resolution);
-  const int left = margin * scale, bottom = image.height - margin * scale;
+void draw_scale_bar(Paper& paper, double resolution, int scale) {
+  const double length = round_step_below(0.22 * paper.width / resolution);
+  const int left = margin * scale, bottom = paper.height - margin * scale;
   const int right = left + static_cast<int>(length * resolution + 0.5);
-  draw_veil(image, left, bottom - (font_height + 5) * scale, right, bottom, scale);
-  fill_rectangle(image, left, bottom - scale, right, bottom, ink);
-  fill_rectangle(image, left, bottom - 4 * scale, left + scale, bottom, ink);
-  fill_rectangle(image, right - scale, bottom - 4 * scale, right, bottom, ink);
+  paper.veil(left, bottom - (font_height + 5) * scale, right, bottom, scale);
+  paper.fill(left, bottom - scale, right, bottom, ink);
+  paper.fill(left, bottom - 4 * scale, left + scale, bottom, ink);
+  paper.fill(right - scale, bottom - 4 * scale, right, bottom, ink);
   const std::string text = length_text(length);
-  draw_text(image, (left + right - text_width(text, scale)) / 2, bottom - (font_height + 5) * scale,
-            text, scale, ink);
+  paper.write((left + right - text_width(text, scale)) / 2, bottom - (font_height + 5) * scale,
+              text, scale, ink);
 }
 
-void draw_axes(Image& image, const Axes& axes, int scale) {
+void draw_axes(Paper& paper, const Axes& axes, int scale) {
   struct Arrow {
     const char* name;
     Color color;
@@ -199,8 +150,8 @@ void draw_axes(Image& image, const Axes& axes, int scale) {
     return dot(a.direction, axes.toward) < dot(b.direction, axes.toward);
   });
   const double length = 22.0 * scale;
-  const double u = image.width - margin * scale - 1.6 * length;
-  const double v = image.height - margin * scale - 0.9 * length;
+  const double u = paper.width - margin * scale - 1.6 * length;
+  const double v = paper.height - margin * scale - 0.9 * length;
   const auto each_arrow = [&](const auto& draw) {
     for (const Arrow& arrow : arrows) {
       const double du = length * dot(arrow.direction, axes.right);
@@ -211,12 +162,12 @@ void draw_axes(Image& image, const Axes& axes, int scale) {
     }
   };
   each_arrow([&](const Arrow&, double du, double dv, double far) {  // light ground
-    draw_stroke(image, u, v, u + far * du, v + far * dv, 11.0 * scale, {1.0F, 1.0F, 1.0F});
+    paper.stroke(u, v, u + far * du, v + far * dv, 11.0 * scale, {1.0F, 1.0F, 1.0F});
   });
   each_arrow([&](const Arrow& arrow, double du, double dv, double far) {
-    draw_stroke(image, u, v, u + du, v + dv, 1.5 * scale, arrow.color);
-    draw_text(image, static_cast<int>(u + far * du - 2.5 * scale),
-              static_cast<int>(v + far * dv - 4.5 * scale), arrow.name, scale, arrow.color);
+    paper.stroke(u, v, u + du, v + dv, 1.5 * scale, arrow.color);
+    paper.write(static_cast<int>(u + far * du - 2.5 * scale),
+                static_cast<int>(v + far * dv - 4.5 * scale), arrow.name, scale, arrow.color);
   });
 }
 

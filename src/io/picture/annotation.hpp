@@ -5,6 +5,7 @@
 
 #include "io/picture/camera.hpp"
 #include "io/picture/field_colors.hpp"
+#include "io/picture/paper.hpp"
 
 namespace breccia {
 
@@ -14,11 +15,11 @@ int text_scale(const RenderOptions& options);
 /// Room that the scene gets beside the annotations.
 Window scene_window(const RenderOptions& options, const Legend& legend);
 
-void draw_title(Image& image, const std::string& title, const Frame& frame, int scale);
-void draw_legend(Image& image, const Legend& legend, int scale);
+void draw_title(Paper& paper, const std::string& title, const Frame& frame, int scale);
+void draw_legend(Paper& paper, const Legend& legend, int scale);
 /// A bar of round length, true everywhere in the picture since the projection is parallel.
-void draw_scale_bar(Image& image, double resolution, int scale);
+void draw_scale_bar(Paper& paper, double resolution, int scale);
 /// Directions of x, y and z in the lower right corner.
-void draw_axes(Image& image, const Axes& axes, int scale);
+void draw_axes(Paper& paper, const Axes& axes, int scale);
 
 }  // namespace breccia

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "exec/error.hpp"
+
 namespace breccia {
 namespace {
 
@@ -25,6 +27,8 @@ constexpr std::array diverging{from_bytes(0x3b4cc0), from_bytes(0x6282ea), from_
 constexpr std::array damage{from_bytes(0xded6c6), from_bytes(0xe9ca9a), from_bytes(0xf0a85a),
                             from_bytes(0xe67a2e), from_bytes(0xcf4620), from_bytes(0xa81c18),
                             from_bytes(0x6e0a14)};
+constexpr std::array ground{from_bytes(0xe4dfd4), from_bytes(0xecdcbd), from_bytes(0xf3cf9f),
+                            from_bytes(0xf2b98b), from_bytes(0xeaa184)};
 constexpr std::array categories{from_bytes(0xded6c6), from_bytes(0x4a78a8), from_bytes(0x5c5f66),
                                 from_bytes(0x6aa56b), from_bytes(0xd98c3f), from_bytes(0x8d6bb1),
                                 from_bytes(0x46a3a8), from_bytes(0xc25b6e), from_bytes(0x9a8a3c),
@@ -36,6 +40,8 @@ std::span<const Color> nodes_of(ColorMap map) {
       return diverging;
     case ColorMap::damage:
       return damage;
+    case ColorMap::ground:
+      return ground;
     case ColorMap::viridis:
       break;
   }
@@ -52,6 +58,15 @@ Color blend(const Color& a, const Color& b, float share) {
 Color shaded(const Color& color, float factor) {
   return {std::min(1.0F, factor * color.red), std::min(1.0F, factor * color.green),
           std::min(1.0F, factor * color.blue)};
+}
+
+ColorMap map_named(const std::string& name) {
+  if (name == "viridis") return ColorMap::viridis;
+  if (name == "diverging") return ColorMap::diverging;
+  if (name == "damage") return ColorMap::damage;
+  if (name == "ground") return ColorMap::ground;
+  throw InputError("no map of colours \"" + name +
+                   "\"; there are viridis, diverging, damage and ground");
 }
 
 Color map_color(ColorMap map, float share) {

@@ -2,6 +2,7 @@
 // From a number to a colour.
 
 #include <cstddef>
+#include <string>
 
 namespace breccia {
 
@@ -20,7 +21,11 @@ enum class ColorMap {
   viridis,    ///< dark blue to yellow, even steps of lightness: for what has no sign
   diverging,  ///< blue through light grey to red: for what has one; 0.5 is zero
   damage,     ///< light concrete over orange to dark red
+  ground,     ///< `damage` in pale: the ground on which cracks are drawn
 };
+
+/// A map by its name here. @throws InputError listing the names
+ColorMap map_named(const std::string& name);
 
 /// The colour at `share`, which is held to 0..1; magenta for what is not a number.
 Color map_color(ColorMap map, float share);

@@ -303,7 +303,7 @@ void fill_default_colors(const Frame& frame, Coloring& coloring) {
   }
   const FrameField* state = field_named(frame.line_fields, "state");
   if (state != nullptr && state->values.size() == coloring.lines.size()) {
-    for (const float value : state->values) coloring.broken_lines.push_back(value == 2.0F);
+    for (const float value : state->values) coloring.hidden_lines.push_back(value == 2.0F);
   }
   const std::vector<std::size_t> groups = point_groups(frame);
   const GroupTints tints = group_tints(frame, groups);
@@ -313,6 +313,31 @@ void fill_default_colors(const Frame& frame, Coloring& coloring) {
   coloring.legend.swatches = tints.others;
   const Legend::Swatch main{tints.tint[tints.main], group_name(frame, tints.main)};
   coloring.legend.swatches.insert(coloring.legend.swatches.begin(), main);
+}
+
+/// Broken joints as lines over the triangles, by mode: opened, slid, or of both.
+void show_cracks(const Frame& frame, Coloring& coloring) {
+  const FrameField* mode = field_named(frame.line_fields, "mode");
+  const FrameField* damage = field_named(frame.line_fields, "damage");
+  const std::size_t count = coloring.lines.size();
+  if (frame.triangles.empty() || mode == nullptr || damage == nullptr ||
+      mode->values.size() != count || damage->values.size() != count)
+    return;
+  const std::array swatches{Legend::Swatch{{0.10F, 0.10F, 0.12F}, "crack, opened"},
+                            Legend::Swatch{{0.45F, 0.16F, 0.55F}, "crack, both"},
+                            Legend::Swatch{{0.10F, 0.32F, 0.72F}, "crack, slid"}};
+  std::array<bool, swatches.size()> seen{};
+  coloring.cracks = true;
+  coloring.hidden_lines.assign(count, true);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(damage->values[i] >= 1.0F)) continue;
+    const std::size_t kind = mode->values[i] < 1.0F / 3 ? 0 : mode->values[i] < 2.0F / 3 ? 1 : 2;
+    coloring.lines[i] = swatches[kind].color;
+    coloring.hidden_lines[i] = false;
+    seen[kind] = true;
+  }
+  for (std::size_t kind = 0; kind < swatches.size(); ++kind)
+    if (seen[kind]) coloring.legend.swatches.push_back(swatches[kind]);
 }
 
 /// Triangles take the mean of their nodes.
@@ -343,10 +368,13 @@ bool colors_lines(const Frame& frame, const std::string& field) {
 }
 
 Coloring color_frame(const Frame& frame, const std::string& field,
-                     const std::optional<ValueRange>& range) {
+                     const std::optional<ValueRange>& range, const std::string& map) {
   Coloring coloring;
   fill_default_colors(frame, coloring);
-  if (field.empty()) return coloring;
+  if (field.empty()) {
+    show_cracks(frame, coloring);
+    return coloring;
+  }
   const std::optional<Selected> selected = find(frame, field);
   if (!selected) {
     throw InputError(fmt::format("field = \"{}\" is not in this frame; it has {}", field,
@@ -361,6 +389,9 @@ Coloring color_frame(const Frame& frame, const std::string& field,
   } else {
     const Spread spread = spread_of(values);
     coloring.legend.bar = bar_of(field, spread, range);
+    if (coloring.legend.bar->map == ColorMap::damage && selected->carrier == Carrier::triangles)
+      coloring.legend.bar->map = ColorMap::ground;
+    if (!map.empty()) coloring.legend.bar->map = map_named(map);
     finish_legend(coloring.legend, field, selected->field->unit, spread.whole);
     colors = mapped_colors(*coloring.legend.bar, values);
   }
@@ -373,7 +404,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
       break;
     case Carrier::lines:
       coloring.lines = std::move(colors);
-      if (field == "state") coloring.broken_lines.clear();
+      if (field == "state") coloring.hidden_lines.clear();
       std::fill(coloring.points.begin(), coloring.points.end(), pale);
       break;
     case Carrier::none:
@@ -382,6 +413,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
       coloring.triangles = std::move(colors);
       break;
   }
+  if (!coloring.of_lines) show_cracks(frame, coloring);
   return coloring;
 }
 

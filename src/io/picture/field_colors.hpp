@@ -32,14 +32,17 @@ struct Legend {
 struct Coloring {
   std::vector<Color> points, lines, triangles;
   bool of_lines = false;           ///< the field is one of the lines
-  std::vector<bool> broken_lines;  ///< not to be drawn; empty: all are
+  bool cracks = false;             ///< lines are cracks over triangles, drawn with any field
+  std::vector<bool> hidden_lines;  ///< not to be drawn; empty: all are
   std::vector<bool> bars;          ///< points that show through others; empty: none
   std::vector<float> veil;         ///< by point, how much of a bar behind it shows: 0 to 1
   Legend legend;
 };
 
-/// @throws InputError if the frame has no such field (lists what it has), or one of wrong length
+/// @param map  name of the map of colours; empty: by the field
+/// @throws InputError if the frame has no such field (lists what it has), or one of wrong length,
+///                    or there is no such map
 Coloring color_frame(const Frame& frame, const std::string& field,
-                     const std::optional<ValueRange>& range);
+                     const std::optional<ValueRange>& range, const std::string& map = {});
 
 }  // namespace breccia

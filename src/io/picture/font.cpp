@@ -1,205 +1,122 @@
+// The only file that sees stb_truetype.
+
 #include "io/picture/font.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
+
+#include "io/picture/pixel.hpp"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#define STB_TRUETYPE_IMPLEMENTATION
+#define STBTT_STATIC
+#include <stb/stb_truetype.h>
+#pragma GCC diagnostic pop
+
+// The assembler copies the file (as in report/bundle.cpp).
+__asm__(
+    ".pushsection .rodata\n"
+    ".global breccia_letters\n"
+    ".hidden breccia_letters\n"
+    "breccia_letters:\n"
+    ".incbin \"" BR_LETTERS_FILE
+    "\"\n"
+    ".popsection\n");
+extern "C" const unsigned char breccia_letters[];
 
 namespace breccia {
 namespace {
 
-constexpr int dots_wide = 5, dots_high = font_height, glyphs_a_row = 16;
+const stbtt_fontinfo& typeface() {
+  static const stbtt_fontinfo font = [] {
+    stbtt_fontinfo made;
+    stbtt_InitFont(&made, breccia_letters, 0);
+    return made;
+  }();
+  return font;
+}
 
-// The letters from space (32) to tilde (126), sixteen a row, and a box for all others.
-constexpr std::string_view letters = R"(
-..... ..#.. .#.#. .#.#. ..#.. ##... .##.. ..#.. ...#. .#... ..... ..... ..... ..... ..... ....#
-..... ..#.. .#.#. .#.#. .#### ##..# #..#. ..#.. ..#.. ..#.. ..#.. ..#.. ..... ..... ..... ....#
-..... ..#.. .#.#. ##### #.#.. ...#. #.#.. .#... .#... ...#. #.#.# ..#.. ..... ..... ..... ...#.
-..... ..#.. ..... .#.#. .###. ..#.. .#... ..... .#... ...#. .###. ##### ..... .###. ..... ..#..
-..... ..#.. ..... ##### ..#.# .#... #.#.# ..... .#... ...#. #.#.# ..#.. ..... ..... ..... .#...
-..... ..... ..... .#.#. ####. #..## #..#. ..... ..#.. ..#.. ..#.. ..#.. .##.. ..... .##.. #....
-..... ..#.. ..... .#.#. ..#.. ...## .##.# ..... ...#. .#... ..... ..... .##.. ..... .##.. #....
-..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..#.. ..... ..... .....
-..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... .#... ..... ..... .....
-.###. ..#.. .###. ##### ...#. ##### ..##. ##### .###. .###. ..... ..... ...#. ..... .#... .###.
-#...# .##.. #...# ...#. ..##. #.... .#... ....# #...# #...# ..... ..... ..#.. ..... ..#.. #...#
-#...# ..#.. ....# ..#.. .#.#. ####. #.... ...#. #...# #...# .##.. .##.. .#... ##### ...#. ....#
-#...# ..#.. ...#. ...#. #..#. ....# ####. ..#.. .###. .#### .##.. .##.. #.... ..... ....# ...#.
-#...# ..#.. ..#.. ....# ##### ....# #...# .#... #...# ....# ..... ..... .#... ##### ...#. ..#..
-#...# ..#.. .#... #...# ...#. #...# #...# .#... #...# ...#. .##.. .##.. ..#.. ..... ..#.. .....
-.###. .###. ##### .###. ...#. .###. .###. .#... .###. .##.. .##.. .##.. ...#. ..... .#... ..#..
-..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..#.. ..... ..... ..... .....
-..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... .#... ..... ..... ..... .....
-.###. .###. ####. .###. ####. ##### ##### .###. #...# .###. ..### #...# #.... #...# #...# .###.
-#...# #...# #...# #...# #...# #.... #.... #...# #...# ..#.. ...#. #..#. #.... ##.## #...# #...#
-....# #...# #...# #.... #...# #.... #.... #.... #...# ..#.. ...#. #.#.. #.... #.#.# ##..# #...#
-.##.# ##### ####. #.... #...# ####. ####. #.### ##### ..#.. ...#. ##... #.... #.#.# #.#.# #...#
-#.#.# #...# #...# #.... #...# #.... #.... #...# #...# ..#.. ...#. #.#.. #.... #...# #..## #...#
-#.#.# #...# #...# #...# #...# #.... #.... #...# #...# ..#.. #..#. #..#. #.... #...# #...# #...#
-.###. #...# ####. .###. ####. ##### #.... .#### #...# .###. .##.. #...# ##### #...# #...# .###.
-..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... .....
-..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... .....
-####. .###. ####. .#### ##### #...# #...# #...# #...# #...# ##### .###. #.... .###. ..#.. .....
-#...# #...# #...# #.... ..#.. #...# #...# #...# #...# #...# ....# .#... #.... ...#. .#.#. .....
-#...# #...# #...# #.... ..#.. #...# #...# #...# .#.#. #...# ...#. .#... .#... ...#. #...# .....
-####. #...# ####. .###. ..#.. #...# #...# #.#.# ..#.. .#.#. ..#.. .#... ..#.. ...#. ..... .....
-#.... #.#.# #.#.. ....# ..#.. #...# #...# #.#.# .#.#. ..#.. .#... .#... ...#. ...#. ..... .....
-#.... #..#. #..#. ....# ..#.. #...# .#.#. #.#.# #...# ..#.. #.... .#... ....# ...#. ..... .....
-#.... .##.# #...# ####. ..#.. .###. ..#.. .#.#. #...# ..#.. ##### .###. ....# .###. ..... #####
-..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... .....
-..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... ..... .....
-.#... ..... #.... ..... ....# ..... ..##. ..... #.... ..#.. ...#. #.... .##.. ..... ..... .....
-..#.. ..... #.... ..... ....# ..... .#... ..... #.... ..... ..... #.... ..#.. ..... ..... .....
-...#. .###. ####. .###. .#### .###. .#... .#### ####. ..#.. ...#. #..#. ..#.. ####. ####. .###.
-..... ....# #...# #...# #...# #...# ###.. #...# #...# ..#.. ...#. #.#.. ..#.. #.#.# #...# #...#
-..... .#### #...# #.... #...# ##### .#... #...# #...# ..#.. ...#. ##... ..#.. #.#.# #...# #...#
-..... #...# #...# #...# #...# #.... .#... #...# #...# ..#.. ...#. #.#.. ..#.. #.#.# #...# #...#
-..... .#### ####. .###. .#### .###. .#... .#### #...# ..#.. ...#. #..#. ..#.. #.#.# #...# .###.
-..... ..... ..... ..... ..... ..... ..... ....# ..... ..... #..#. ..... ..... ..... ..... .....
-..... ..... ..... ..... ..... ..... ..... .###. ..... ..... .##.. ..... ..... ..... ..... .....
-..... ..... ..... ..... .#... ..... ..... ..... ..... ..... ..... ...#. ..#.. .#... ..... #####
-..... ..... ..... ..... .#... ..... ..... ..... ..... ..... ..... ..#.. ..#.. ..#.. ..... #...#
-####. .#### .#.## .#### ###.. #...# #...# #.#.# #...# #...# ##### ..#.. ..#.. ..#.. .#... #...#
-#...# #...# .##.. #.... .#... #...# #...# #.#.# .#.#. #...# ...#. .#... ..#.. ...#. #.#.# #...#
-#...# #...# .#... .###. .#... #...# #...# #.#.# ..#.. #...# ..#.. ..#.. ..#.. ..#.. ...#. #...#
-#...# #...# .#... ....# .#... #...# .#.#. #.#.# .#.#. #...# .#... ..#.. ..#.. ..#.. ..... #...#
-####. .#### .#... ####. ..##. .#### ..#.. .#.#. #...# .#### ##### ...#. ..#.. .#... ..... #####
-#.... ....# ..... ..... ..... ..... ..... ..... ..... ....# ..... ..... ..... ..... ..... .....
-#.... ....# ..... ..... ..... ..... ..... ..... ..... .###. ..... ..... ..... ..... ..... .....
-)";
+constexpr double capitals = 0.729;  ///< height of capital letters  [em]
 
-/// A grid of dots, filled or not; outside it is empty.
-struct Dots {
-  int width, height;
-  std::vector<bool> filled;
+/// Pixels a unit of the typeface, so that capitals are seven units of text high.
+float size_of(int scale) {
+  return stbtt_ScaleForMappingEmToPixels(&typeface(), static_cast<float>(7.0 * scale / capitals));
+}
 
-  bool at(int x, int y) const {
-    if (x < 0 || y < 0 || x >= width || y >= height) return false;
-    return filled[static_cast<std::size_t>(y * width + x)];
-  }
+struct Glyph {
+  int number;
+  float at;  ///< left end of its room  [pixels]
 };
-
-Dots glyph_dots(int glyph) {
-  Dots dots{dots_wide, dots_high, std::vector<bool>(dots_wide * dots_high)};
-  constexpr int line = glyphs_a_row * (dots_wide + 1);  // with its line end
-  for (int y = 0; y < dots_high; ++y) {
-    const int row = 1 + (glyph / glyphs_a_row * dots_high + y) * line;
-    for (int x = 0; x < dots_wide; ++x) {
-      const int place = row + glyph % glyphs_a_row * (dots_wide + 1) + x;
-      dots.filled[static_cast<std::size_t>(y * dots_wide + x)] =
-          letters[static_cast<std::size_t>(place)] == '#';
-    }
-  }
-  return dots;
-}
-
-/// Twice as large, with the steps of slanted strokes rounded: the rule known as EPX (E. Johnston,
-/// 1992): a quarter of a dot takes the state of its two outer neighbours where only they agree.
-Dots doubled(const Dots& dots) {
-  Dots large{2 * dots.width, 2 * dots.height, {}};
-  large.filled.resize(4 * dots.filled.size());
-  for (int y = 0; y < dots.height; ++y) {
-    for (int x = 0; x < dots.width; ++x) {
-      const bool above = dots.at(x, y - 1), below = dots.at(x, y + 1);
-      const bool left = dots.at(x - 1, y), right = dots.at(x + 1, y);
-      const bool distinct = above != below && left != right;
-      for (int part = 0; part < 4; ++part) {
-        const bool vertical = part < 2 ? above : below;
-        const bool horizontal = part % 2 == 0 ? left : right;
-        const bool rounded = distinct && vertical == horizontal;
-        const int place = (2 * y + part / 2) * large.width + 2 * x + part % 2;
-        large.filled[static_cast<std::size_t>(place)] = rounded ? vertical : dots.at(x, y);
-      }
-    }
-  }
-  return large;
-}
-
-/// First and one past the last column of a glyph that count for its width. Digits are equally wide.
-struct Columns {
-  int first, end;
+struct Line {
+  std::vector<Glyph> glyphs;
+  float width = 0.0F;  ///<  [pixels]
 };
-Columns columns_of(int glyph) {
-  if (glyph == 0) return {0, 3};
-  if (glyph >= '0' - ' ' && glyph <= '9' - ' ') return {0, dots_wide};
-  const Dots dots = glyph_dots(glyph);
-  Columns columns{dots_wide, 0};
-  for (int x = 0; x < dots_wide; ++x) {
-    for (int y = 0; y < dots_high; ++y) {
-      if (!dots.at(x, y)) continue;
-      columns.first = std::min(columns.first, x);
-      columns.end = std::max(columns.end, x + 1);
-    }
+Line set_line(std::string_view text, int scale) {
+  Line line;
+  const float size = size_of(scale);
+  for (const char32_t letter : code_points(text)) {
+    const int number = stbtt_FindGlyphIndex(&typeface(), static_cast<int>(letter));
+    int advance = 0, bearing = 0;
+    stbtt_GetGlyphHMetrics(&typeface(), number, &advance, &bearing);
+    line.glyphs.push_back({number, line.width});
+    line.width += size * static_cast<float>(advance);
   }
-  return columns;
-}
-
-/// Glyph numbers of a text in UTF-8; a few signs of units become their plain form.
-std::vector<int> glyphs_of(std::string_view text) {
-  constexpr int box = 95;
-  std::vector<int> glyphs;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    if (byte < 128) {
-      glyphs.push_back(byte >= 32 && byte < 127 ? byte - 32 : box);
-      continue;
-    }
-    const unsigned char next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
-    while (i + 1 < text.size() && (static_cast<unsigned char>(text[i + 1]) & 0xC0) == 0x80) ++i;
-    char plain = 127;
-    if (byte == 0xC2 && next == 0xB2) plain = '2';  // superscripts
-    if (byte == 0xC2 && next == 0xB3) plain = '3';
-    if (byte == 0xC2 && next == 0xB5) plain = 'u';  // micro
-    if (byte == 0xC2 && next == 0xB7) plain = '.';  // middle dot
-    if (byte == 0xC3 && next == 0x97) plain = 'x';  // times
-    glyphs.push_back(plain - 32);
-  }
-  return glyphs;
-}
-
-void mix_pixel(Image& image, int x, int y, const Color& color, float share) {
-  if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
-  const std::array channels{color.red, color.green, color.blue};
-  auto* pixel =
-      &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                      static_cast<std::size_t>(x))];
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float before = static_cast<float>(pixel[c]);
-    pixel[c] = static_cast<std::uint8_t>(before + share * (255.0F * channels[c] - before) + 0.5F);
-  }
+  return line;
 }
 
 }  // namespace
 
-int text_width(std::string_view text, int scale) {
-  int width = 0;
-  for (const int glyph : glyphs_of(text)) {
-    const Columns columns = columns_of(glyph);
-    width += (columns.end - columns.first + 1) * scale;
+std::u32string code_points(std::string_view text) {
+  std::u32string points;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+    const unsigned char first = byte(i);
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xC2 ? 0
+                               : first < 0xE0 ? 2
+                               : first < 0xF0 ? 3
+                               : first < 0xF5 ? 4
+                                              : 0;
+    char32_t point = length < 2 ? first : first & (0x7FU >> length);
+    bool good = length > 0 && i + length <= text.size();
+    for (std::size_t k = 1; good && k < length; ++k) {
+      good = (byte(i + k) & 0xC0U) == 0x80U;
+      point = (point << 6) | (byte(i + k) & 0x3FU);
+    }
+    points.push_back(good ? point : U'\uFFFD');
+    i += good ? length : 1;
   }
-  return std::max(0, width - scale);
+  return points;
+}
+
+int text_width(std::string_view text, int scale) {
+  return static_cast<int>(std::ceil(set_line(text, scale).width));
 }
 
 void draw_text(Image& image, int x, int y, std::string_view text, int scale, const Color& color) {
-  // Doubled twice, a dot has 4 parts; where those do not divide by the scale each counts as 3.
-  const int repeat = 4 % scale == 0 ? 1 : 3;
-  const int part = 4 * repeat / scale;
-  for (const int glyph : glyphs_of(text)) {
-    const Columns columns = columns_of(glyph);
-    const Dots dots = doubled(doubled(glyph_dots(glyph)));
-    for (int row = 0; row < dots_high * scale; ++row) {
-      for (int column = columns.first * scale; column < columns.end * scale; ++column) {
-        int covered = 0;
-        for (int k = 0; k < part * part; ++k) {
-          const int fine_x = column * part + k % part, fine_y = row * part + k / part;
-          covered += dots.at(fine_x / repeat, fine_y / repeat) ? 1 : 0;
-        }
-        if (covered == 0) continue;
-        const float share = static_cast<float>(covered) / static_cast<float>(part * part);
-        mix_pixel(image, x + column - columns.first * scale, y + row, color, share);
+  const float size = size_of(scale);
+  const int base = y + 7 * scale;
+  std::vector<unsigned char> cover;
+  for (const Glyph& glyph : set_line(text, scale).glyphs) {
+    const float whole = std::floor(glyph.at), part = glyph.at - whole;
+    int left = 0, top = 0, right = 0, bottom = 0;
+    stbtt_GetGlyphBitmapBoxSubpixel(&typeface(), glyph.number, size, size, part, 0.0F, &left, &top,
+                                    &right, &bottom);
+    const int wide = right - left, high = bottom - top;
+    if (wide <= 0 || high <= 0) continue;
+    cover.assign(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high), 0);
+    stbtt_MakeGlyphBitmapSubpixel(&typeface(), cover.data(), wide, high, wide, size, size, part,
+                                  0.0F, glyph.number);
+    for (int row = 0; row < high; ++row)
+      for (int column = 0; column < wide; ++column) {
+        const auto share = cover[static_cast<std::size_t>(row * wide + column)];
+        if (share > 0)
+          mix_pixel(image, x + static_cast<int>(whole) + left + column, base + top + row, color,
+                    static_cast<float>(share) / 255.0F);
       }
-    }
-    x += (columns.end - columns.first + 1) * scale;
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Text on pictures: Breccia's own bitmap letters, five dots wide and seven high.
+// Text on pictures, in letters of DejaVu Sans that lie in the program.
 
 #include <string_view>
 
@@ -8,13 +8,16 @@
 
 namespace breccia {
 
-constexpr int font_height = 9;  ///< dots, two of them below the base line
+constexpr int font_height = 9;  ///< units of text, two of them below the base line; capitals have 7
 
-/// Width of a line of text when one dot is `scale` pixels wide.  [pixels]
+/// Width of a line of text in UTF-8 when one unit is `scale` pixels.  [pixels]
 int text_width(std::string_view text, int scale);
 
-/// Writes a line of text; (x, y) is its upper left corner. Letters without a form show as a box.
-/// `scale` is 1, 2, 3, 4, 6 or 12; what falls outside the image is left out.
+/// Writes a line of text; (x, y) is its upper left corner. Letters without a form show as a box;
+/// what falls outside the image is left out. Every machine draws the same bits.
 void draw_text(Image& image, int x, int y, std::string_view text, int scale, const Color& color);
+
+/// The code points of a text in UTF-8; U+FFFD for bytes that are none.
+std::u32string code_points(std::string_view text);
 
 }  // namespace breccia

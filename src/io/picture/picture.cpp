@@ -8,6 +8,7 @@
 #include "exec/tasks.hpp"
 #include "io/picture/annotation.hpp"
 #include "io/picture/field_colors.hpp"
+#include "io/picture/hidden.hpp"
 #include "io/picture/shading.hpp"
 
 namespace breccia {
@@ -23,21 +24,6 @@ struct Scene {
   std::vector<ScreenPoint> points;
   std::vector<ItemLook> looks;
 };
-
-void check(const Frame& frame, const RenderOptions& options) {
-  if (options.width < 16 || options.height < 16 || options.width > 16384 ||
-      options.height > 16384) {
-    throw InputError("a picture of " + std::to_string(options.width) + " x " +
-                     std::to_string(options.height) + " pixels; 16 to 16384 are possible");
-  }
-  const auto count = static_cast<std::int64_t>(frame.position.size());
-  const auto known = [count](std::int32_t point) { return point >= 0 && point < count; };
-  const bool good = frame.lines.size() % 2 == 0 && frame.triangles.size() % 3 == 0 &&
-                    (frame.radius.empty() || frame.radius.size() == frame.position.size()) &&
-                    std::all_of(frame.lines.begin(), frame.lines.end(), known) &&
-                    std::all_of(frame.triangles.begin(), frame.triangles.end(), known);
-  if (!good) throw InputError("a frame whose lines, triangles or radii do not fit its points");
-}
 
 /// A flat frame has nothing to show from the side: there the slanted view looks from above.
 Axes axes_for(const Extent& extent, const RenderOptions& options) {
@@ -135,7 +121,8 @@ class Bands {
 void draw_lines(Canvas& canvas, const Frame& frame, const Coloring& coloring, Scene& scene,
                 int threads) {
   const std::vector<Color>& colors = coloring.lines;
-  const int thickness = std::max(2, canvas.height / 480);
+  const int thickness =
+      std::max(coloring.cracks ? 3 : 2, canvas.height / (coloring.cracks ? 360 : 480));
   const double lift = frame.triangles.empty() ? 0.0 : 2.0;  // lines on the edges of triangles show
   const Vec3 lamp = lamp_direction();
   const std::size_t first = scene.looks.size();
@@ -149,7 +136,7 @@ void draw_lines(Canvas& canvas, const Frame& frame, const Coloring& coloring, Sc
   };
   for (std::size_t line = 0; line < colors.size(); ++line) {
     scene.looks.push_back({});
-    if (!coloring.broken_lines.empty() && coloring.broken_lines[line]) continue;
+    if (!coloring.hidden_lines.empty() && coloring.hidden_lines[line]) continue;
     const auto [a, b] = ends(line);
     // A thin cylinder is as bright as its steepest side towards the lamp.
     const Vec3 axis{b.u - a.u, a.v - b.v, b.depth - a.depth};
@@ -207,15 +194,71 @@ float relief_of(const Frame& frame, double resolution) {
   return static_cast<float>(std::clamp(1.5 * resolution * *middle, 2.0, 1e4));
 }
 
+/// Pixels that are drawn side by side for one of the picture: edges of triangles and cracks come
+/// out smooth, and gaps between triangles narrower than a pixel leave no holes. Spheres have
+/// outlines of their own.
+int fineness(const Frame& frame, const RenderOptions& options) {
+  if (frame.triangles.empty()) return 1;
+  const double pixels = 1.0 * options.width * options.height;
+  return pixels <= 4e6 ? 3 : pixels <= 16e6 ? 2 : 1;
+}
+
+/// The mean of each block of `fine` times `fine` pixels.
+Image reduced(const Image& large, int fine, int threads) {
+  Image image{large.width / fine, large.height / fine, {}};
+  const auto width = static_cast<std::size_t>(image.width), step = static_cast<std::size_t>(fine);
+  image.rgb.resize(3 * width * static_cast<std::size_t>(image.height));
+  const unsigned block = static_cast<unsigned>(fine * fine);
+  for_each_task(threads, image.height, [&](int y) {
+    const std::size_t row = 3 * step * width;  // bytes of a row of the large image
+    const std::uint8_t* const from = &large.rgb[static_cast<std::size_t>(y) * step * row];
+    for (std::size_t x = 0; x < width; ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        unsigned sum = block / 2;
+        for (std::size_t k = 0; k < step * step; ++k)
+          sum += from[k / step * row + 3 * (step * x + k % step) + c];
+        image.rgb[3 * (static_cast<std::size_t>(y) * width + x) + c] =
+            static_cast<std::uint8_t>(sum / block);
+      }
+  });
+  return image;
+}
+
 }  // namespace
 
+void check_frame(const Frame& frame, const RenderOptions& options) {
+  if (options.width < 16 || options.height < 16 || options.width > 16384 ||
+      options.height > 16384) {
+    throw InputError("a picture of " + std::to_string(options.width) + " x " +
+                     std::to_string(options.height) + " pixels; 16 to 16384 are possible");
+  }
+  const auto count = static_cast<std::int64_t>(frame.position.size());
+  const auto known = [count](std::int32_t point) { return point >= 0 && point < count; };
+  const bool good = frame.lines.size() % 2 == 0 && frame.triangles.size() % 3 == 0 &&
+                    (frame.radius.empty() || frame.radius.size() == frame.position.size()) &&
+                    std::all_of(frame.lines.begin(), frame.lines.end(), known) &&
+                    std::all_of(frame.triangles.begin(), frame.triangles.end(), known);
+  if (!good) throw InputError("a frame whose lines, triangles or radii do not fit its points");
+}
+
 Image render(const Frame& frame, const RenderOptions& options, int threads) {
-  check(frame, options);
-  const Coloring coloring = color_frame(frame, options.field, options.range);
+  check_frame(frame, options);
+  if (!options.hidden.empty()) {
+    RenderOptions of_rest = options;
+    of_rest.hidden.clear();
+    if (!of_rest.extent) of_rest.extent = bulk_extent(frame);
+    return render(without_groups(frame, options.hidden), of_rest, threads);
+  }
+  Coloring coloring = color_frame(frame, options.field, options.range, options.map);
+  if (options.show_links && coloring.cracks) coloring.hidden_lines.clear();
+  const int fine = fineness(frame, options);
   const Extent extent = options.extent ? *options.extent : bulk_extent(frame);
   const Axes axes = axes_for(extent, options);
   Scene scene{
       fitted_camera(axes, extent, scene_window(options, coloring.legend)), std::nullopt, {}, {}};
+  scene.camera.u *= fine;
+  scene.camera.v *= fine;
+  scene.camera.resolution *= fine;
   if (const std::optional<Clip> clip = clip_of(options.clip, axes)) {
     scene.clip = on_screen(*clip, scene.camera);
   }
@@ -225,8 +268,8 @@ Image render(const Frame& frame, const RenderOptions& options, int threads) {
   scene.looks.reserve(frame.position.size() + frame.lines.size() / 2 + frame.triangles.size() / 3);
   for (const Color& color : coloring.points) scene.looks.push_back({color, {}});
 
-  Canvas canvas(options.width, options.height);
-  const bool links = options.show_links || coloring.of_lines;
+  Canvas canvas(fine * options.width, fine * options.height);
+  const bool links = options.show_links || coloring.of_lines || coloring.cracks;
   if (options.show_spheres && !frame.radius.empty()) {
     const double beside_links =
         coloring.of_lines ? sphere_share_beside_colours : sphere_share_beside_links;
@@ -237,14 +280,18 @@ Image render(const Frame& frame, const RenderOptions& options, int threads) {
 
   const float relief = relief_of(frame, scene.camera.resolution);
   Image image = shade(canvas, scene.looks, scene.clip, relief, threads);
-  smooth_outlines(image, canvas, scene.looks, threads);
+  if (fine > 1)
+    image = reduced(image, fine, threads);
+  else
+    smooth_outlines(image, canvas, scene.looks, threads);
   if (!coloring.bars.empty() && options.show_spheres && !frame.radius.empty())
     draw_bars(image, canvas, coloring, scene, relief, threads);
   const int scale = text_scale(options);
-  draw_title(image, options.title, frame, scale);
-  draw_legend(image, coloring.legend, scale);
-  draw_scale_bar(image, scene.camera.resolution, scale);
-  draw_axes(image, axes, scale);
+  ImagePaper paper(image);
+  draw_title(paper, options.title, frame, scale);
+  draw_legend(paper, coloring.legend, scale);
+  draw_scale_bar(paper, scene.camera.resolution / fine, scale);
+  draw_axes(paper, axes, scale);
   return image;
 }
 

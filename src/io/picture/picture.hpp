@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ struct RenderOptions {
   int width = 1280, height = 960;  ///<  [pixels]
   bool show_spheres = true;        ///< draw the elements
   bool show_links = false;         ///< draw the lines, with smaller spheres; on for a line field
+  std::string map = {};  ///< of colours: viridis, diverging, damage or ground; empty: by the field
+  std::set<std::string> hidden = {};     ///< groups that are not drawn
   std::optional<ValueRange> range = {};  ///< default: the values of this frame, rounded outwards
   std::optional<Extent> extent = {};     ///< default: bulk_extent(frame); fix it for a series
   std::string title = {};                ///< stands before the time in the first line
@@ -59,6 +62,9 @@ bool has_field(const Frame& frame, const std::string& field);
 
 /// Whether a picture by this field shows the lines for their colours.
 bool colors_lines(const Frame& frame, const std::string& field);
+
+/// @throws InputError if a picture's size makes no sense, or a frame's parts do not fit each other
+void check_frame(const Frame& frame, const RenderOptions& options);
 
 /// Draws the frame: parallel projection, shaded spheres, lines and triangles, colour bar, scale
 /// bar, title with time. The first frame of a run gives the extent of its whole series:

@@ -412,7 +412,7 @@ TEST(picture, texts_over_elements_stand_on_light_ground) {
     const char* what;
     int left, top, right, bottom;  ///< pixels
   };
-  for (const Place& place : {Place{"title", 14, 14, 120, 20}, Place{"legend", 770, 116, 785, 122},
+  for (const Place& place : {Place{"title", 14, 14, 120, 20}, Place{"legend", 765, 114, 790, 124},
                              Place{"scale bar", 10, 775, 100, 789}}) {
     double light = 0.0, most = 0.0, least = 255.0;
     for (int y = place.top; y < place.bottom; ++y)
