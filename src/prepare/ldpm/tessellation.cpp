@@ -107,6 +107,22 @@ class Triangulation {
   qhT qhull_;
 };
 
+/// Six points far away, so that points on a plane face are not all on one facet of the hull, which
+/// Qhull would take in the square of their number. Spheres around tetrahedra do not reach them.
+void add_far_points(std::vector<double>& coordinates) {
+  double low[3], high[3];
+  for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = high[axis] = coordinates[axis];
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    low[k % 3] = std::min(low[k % 3], coordinates[k]);
+    high[k % 3] = std::max(high[k % 3], coordinates[k]);
+  }
+  const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const double side : {-300.0, 300.0})
+      for (std::size_t k = 0; k < 3; ++k)
+        coordinates.push_back(0.5 * (low[k] + high[k]) + (k == axis ? side * size : 0.0));
+}
+
 }  // namespace
 
 double six_volumes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -118,9 +134,12 @@ std::vector<Tetrahedron> tetrahedra_of(const std::vector<Vec3>& points, double s
   std::vector<double> coordinates;
   for (const Vec3& p : points)
     for (const double x : {p.x, p.y, p.z}) coordinates.push_back(x / scale);
+  add_far_points(coordinates);
+  const auto count = static_cast<Index>(points.size());
   std::vector<Tetrahedron> tetrahedra;
   Triangulation(coordinates).each_simplex([&](Tetrahedron t) {
     std::sort(t.begin(), t.end());
+    if (t[3] >= count) return;
     const double six =
         six_volumes(points[at(t[0])], points[at(t[1])], points[at(t[2])], points[at(t[3])]);
     if (std::abs(six) > 6e-9 * scale * scale * scale) tetrahedra.push_back(t);
