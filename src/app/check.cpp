@@ -99,10 +99,9 @@ struct CheckCommand {
     fmt::print("\n  step    about {}, ruled by\n          {}\n", short_time(f.step),
                harmless(f.step_rule));
     fmt::print("  steps   {}, more as bodies meet and break\n", about(f.steps));
-    fmt::print("  time    {} here ({}), {} on one H200 GPU, output apart\n",
-               rough_duration(f.here_s),
+    fmt::print("  time    {} here ({}), {}output apart\n", rough_duration(f.here_s),
                counted(static_cast<std::size_t>(omp_get_num_procs()), "core", "cores"),
-               rough_duration(f.gpu_s));
+               f.gpu_s > 0.0 ? rough_duration(f.gpu_s) + " on one H200 GPU, " : "");
     fmt::print("  memory  about {}; disk about {}, most of it {}\n", memory_text(f.memory),
                memory_text(f.disk), f.longest_part);
   }

@@ -15,6 +15,7 @@
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
 #include "prepare/checks/by_name.hpp"
+#include "prepare/ldpm/body.hpp"
 #include "prepare/meshing/body_mesh.hpp"
 #include "prepare/meshing/mesh_file.hpp"
 #include "prepare/packing/rebar.hpp"
@@ -56,6 +57,8 @@ double wall_of(double steps, double items, double pace) {
   const double useful = std::clamp(items / least_share, 1.0, processors);
   return steps * items * pace / (1.0 + 0.85 * (useful - 1.0));
 }
+
+constexpr double bytes_of_facet = 450.0;  // of cases/rc_slab_ldpm, elements included
 
 /// Bytes of a result folder, as small cases of both methods leave them.
 struct DiskRates {
@@ -99,12 +102,37 @@ double ball(double radius) {
 /// A body of elements that may be packed, with its numbers.
 struct Packed {
   dem::BodyConfig body;
-  double count, volume;  ///< elements, of the body  [m3]
+  double count, volume;    ///< elements, of the body  [m3]
+  std::string folder{};    ///< of a body that is read, not cut
+  bool particles = false;  ///< of LDPM: its mix says how many
 };
 
-Packed packed(const dem::Config& config, const dem::BodyConfig& body, const std::string& folder) {
+bool is_ldpm(const dem::Config& config, const dem::BodyConfig& body) {
   const dem::MaterialConfig* const of = prepare::item_named(config.materials, body.material);
-  if (of != nullptr && of->law == "ldpm") return {body, 0.0, 0.0};  // its mix says how many
+  return of != nullptr && of->law == "ldpm";
+}
+double surface(const dem::BodyConfig& b) {
+  return b.shape == "box" ? 2.0 * (b.size.x * b.size.y + b.size.y * b.size.z + b.size.z * b.size.x)
+                          : 2.0 * pi * b.radius * (b.radius + b.length);
+}
+/// Grains of a mix, and nodes on faces: discs thrown at random until none fits cover 0.547 of them.
+Packed particles(const dem::Config& config, const dem::BodyConfig& body,
+                 const std::string& folder) {
+  if (body.shape == "file") {
+    const auto mesh = prepare::read_ldpm_mesh(folder + "/" + body.file);
+    return {body, static_cast<double>(mesh.position.size()), 0.0, folder, true};
+  }
+  const prepare::MixDesign mix =
+      prepare::mix_of(*prepare::item_named(config.materials, body.material));
+  const double volume = prepare::container_of(body).volume();
+  const double sample = 3000.0 * mix.largest * mix.largest * mix.largest;
+  const auto grains = static_cast<double>(prepare::grain_diameters(mix, sample, {1, 0}).size());
+  const double nodes = 0.547 / (0.25 * pi) * surface(body) / (mix.smallest * mix.smallest);
+  return {body, std::round(grains * volume / sample + nodes), volume, "", true};
+}
+
+Packed packed(const dem::Config& config, const dem::BodyConfig& body, const std::string& folder) {
+  if (is_ldpm(config, body)) return particles(config, body, folder);
   if (body.shape != "file") {
     const double volume = body.shape == "box"      ? body.size.x * body.size.y * body.size.z
                           : body.shape == "sphere" ? ball(body.radius)
@@ -129,7 +157,7 @@ dem::BodyConfig cut(const Packed& p) {
   dem::BodyConfig body = p.body;
   body.center = {};
   body.velocity = body.spin = {};
-  if (p.count <= most_elements) return body;
+  if (p.count <= most_elements || !p.folder.empty()) return body;
   Vec3 size = body.shape == "box" ? body.size : std::cbrt(p.volume) * Vec3{1.0, 1.0, 1.0};
   const double wanted = p.volume * most_elements / p.count;
   for (int turn = 0; turn < 200 && size.x * size.y * size.z > wanted; ++turn) {
@@ -140,6 +168,7 @@ dem::BodyConfig cut(const Packed& p) {
   }
   body.shape = "box";
   body.size = size;
+  if (p.particles) return body;
   body.pack.count = static_cast<int>(std::round(p.count * size.x * size.y * size.z / p.volume));
   return body;
 }
@@ -165,7 +194,7 @@ double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
     specimen.links.count = 0;
     specimen.links.per_element = 2.0 * config.links.count / std::max(all, 1.0);
   }
-  dem::Model model = build_model(specimen, "");
+  dem::Model model = build_model(specimen, p.folder);
   const auto count = static_cast<double>(model.size());
   const double bonds = static_cast<double>(model.links.size()) / count;
   if (bonds == 0.0)  // grains: as pressed together, since contacts alone rule
@@ -274,18 +303,21 @@ fdem::BodyConfig plate_of(const fdem::BodyConfig& body, const Meshed& mesh, doub
 Forecast forecast(const dem::Config& config, const std::string& folder) {
   Forecast f;
   double pace = 0.0;  // of all items, each step  [s]
+  double facets = 0.0;
   for (const dem::BodyConfig& body : config.bodies) {
+    const double bonds = f.bonds;
     if (body.shape == "rebar")
       add_bars(f, config, body);
     else if (body.shape == "element")
       f.items += 1.0;
     else
       pace += add_body(f, config, packed(config, body, folder));
+    if (is_ldpm(config, body)) facets += f.bonds - bonds;
   }
   finish(f, config.time);
   f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
-  f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);
-  f.memory = memory_plan(config).run_bytes;
+  if (facets == 0.0) f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);
+  f.memory = memory_plan(config).run_bytes + bytes_of_facet * facets;
   add_disk(f, config, 14 + config.probes.size(), {42.0, 9.1, 830.0, 0.65});
   return f;
 }

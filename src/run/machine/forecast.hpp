@@ -18,7 +18,7 @@ struct Forecast {
   std::string step_rule;     ///< "joints of beam (mesh_size 5 mm)"
   double steps = 0.0;        ///< to time.end
   double here_s = 0.0;       ///< wall time of the steps on all processors of this machine  [s]
-  double gpu_s = 0.0;        ///< on an H200, by bench/notes/gpu.md  [s]
+  double gpu_s = 0.0;        ///< on an H200, by bench/notes/gpu.md; 0: not measured  [s]
   double memory = 0.0;       ///< [bytes]
   double disk = 0.0;         ///< of the result folder at the end  [bytes]
   std::string longest_part;  ///< of the disk: "pictures", "fields", "history.csv"

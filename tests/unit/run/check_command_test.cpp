@@ -4,10 +4,12 @@
 
 #include <filesystem>
 
+#include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
 #include "io/case/case_file.hpp"
 #include "io/whole_file.hpp"
 #include "paths.hpp"
+#include "prepare/build.hpp"
 #include "run/machine/forecast.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -69,6 +71,19 @@ TEST(Forecast, half_the_mesh_size_is_four_times_the_triangles_and_half_the_step)
   const Forecast fine = forecast(config, ".");
   EXPECT_NEAR(fine.items / coarse.items, 4.0, 1e-9);
   EXPECT_NEAR(coarse.step / fine.step, 2.0, 0.1);
+}
+
+TEST(Forecast, of_concrete_by_its_grains_is_near_what_the_model_has) {
+  const std::string path = std::string(source_dir) + "/cases/ldpm_cube/small.toml";
+  dem::Config config = read_case<dem::Config>(path, {});
+  config.bodies.front().size = {0.12, 0.1, 0.05};  // more than a specimen
+  const Forecast f = forecast(config, ".");
+  const dem::Model model = build_model(config, ".");
+  EXPECT_NEAR(f.items / model.size(), 1.0, 0.06);
+  EXPECT_NEAR(f.bonds / static_cast<double>(model.links.size()), 1.0, 0.06);
+  EXPECT_NEAR(f.step, 0.69e-6, 0.1e-6);
+  EXPECT_GT(f.memory, 400.0 * f.bonds);
+  EXPECT_EQ(f.gpu_s, 0.0);
 }
 
 TEST(CheckCommand, says_size_step_time_memory_and_disk_within_80_columns) {
