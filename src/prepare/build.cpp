@@ -99,21 +99,30 @@ class Assembly {
     model_.bar_next.push_back(-1);
   }
 
-  void add_packing() {
-    const Container container = container_of(*body_);
-    std::vector<Bar> bars;
-    double volume = container.volume();
+  /// Bars in the body, and the volume of their steel.
+  struct Bars {
+    std::vector<Bar> axes;
+    double volume = 0.0;  ///<  [m3]
+  };
+  Bars bars_within() const {
+    Bars bars;
     for (const BodyConfig& other : config_.bodies) {
       if (other.shape != "rebar" || other.rebar.in != body_->name) continue;
       const auto chains = prepare::chains_through(other.rebar, body_->size);
-      volume -= prepare::bars_volume(chains);
+      bars.volume += prepare::bars_volume(chains);
       for (const prepare::Chain& chain : chains)
-        bars.insert(bars.end(), chain.segments.begin(), chain.segments.end());
+        bars.axes.insert(bars.axes.end(), chain.segments.begin(), chain.segments.end());
     }
+    return bars;
+  }
+  void add_packing() {
+    const Container container = container_of(*body_);
+    const Bars bars = bars_within();
+    const double volume = container.volume() - bars.volume;
     const double compactness = body_->pack.compactness;
     const prepare::Packing packing = prepare::pack(
         {.container = container,
-         .obstacles = bars,
+         .obstacles = bars.axes,
          .count = body_->pack.count,
          .size_ratio = body_->pack.size_ratio,
          .solid_volume = compactness * volume,
@@ -129,7 +138,8 @@ class Assembly {
             ? prepare::ldpm_body(prepare::read_ldpm_mesh(path_of_file()), material())
             : prepare::ldpm_body(
                   container_of(*body_), material(),
-                  {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)});
+                  {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)},
+                  bars_within().axes);
     const Index first = model_.size();
     for (std::size_t i = 0; i < body.position.size(); ++i)
       add(body.position[i], body.radius[i], material().density * body.cells[i].volume,

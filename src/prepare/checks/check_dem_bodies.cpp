@@ -145,10 +145,6 @@ class DemBodyChecks {
         host != nullptr &&
         (host->shape == "box" || (drawn && (host->shape == "sphere" || host->shape == "cylinder" ||
                                             host->shape == "file")));
-    const MaterialConfig* around =
-        host == nullptr ? nullptr : prepare::item_named(config_.materials, host->material);
-    require(around == nullptr || around->law != "ldpm",
-            ".rebar.in = {:?}: bars in a body of law ldpm are not supported yet", b.rebar.in);
     require(fits, ".rebar.in = {:?} is not a {} body; there are: {}", b.rebar.in,
             drawn ? "packed" : "box", prepare::all_names(config_.bodies));
     if (!fits) return;

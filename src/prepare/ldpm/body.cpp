@@ -59,9 +59,9 @@ MixDesign mix_of(const dem::MaterialConfig& m) {
 }
 
 LdpmBody ldpm_body(const Container& container, const dem::MaterialConfig& material,
-                   const Random& random) {
+                   const Random& random, const std::vector<Capsule>& bars) {
   const MixDesign mix = mix_of(material);
-  LdpmParticles particles = place_particles(container, mix, random);
+  LdpmParticles particles = place_particles(container, mix, random, bars);
   auto tetrahedra = tetrahedra_of(particles.position, mix.smallest);
   return ldpm_body(
       {std::move(particles.position), std::move(particles.diameter), std::move(tetrahedra)},

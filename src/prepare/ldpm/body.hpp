@@ -18,10 +18,10 @@ struct LdpmBody {
   std::vector<LdpmFacet> facets;
 };
 
-/// Radii are such that only particles of one edge overlap.
+/// Radii are such that only particles of one edge overlap. Cells fill the body, bars or not.
 /// @throws InputError if an edge is so long that the law cannot soften: 0.99 l_t or more
 LdpmBody ldpm_body(const Container& container, const dem::MaterialConfig& material,
-                   const Random& random);
+                   const Random& random, const std::vector<Capsule>& bars = {});
 /// The body of a mesh that was read; its surface particles have 1.1 of the mix's `smallest`.
 LdpmBody ldpm_body(const LdpmMesh& mesh, const dem::MaterialConfig& material);
 

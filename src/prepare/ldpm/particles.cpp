@@ -183,6 +183,18 @@ bool holds_cube(const Container& body, const Vec3& at, double radius) {
   return true;
 }
 
+bool keeps_off(const std::vector<Capsule>& bars, const Vec3& at, double radius) {
+  for (const Capsule& bar : bars)
+    if (norm(from_axis(bar, at)) < radius + bar.radius) return false;
+  return true;
+}
+/// Of cylinders between the ends of axes.  [m3]
+double volume_of(const std::vector<Capsule>& bars) {
+  double volume = 0.0;
+  for (const Capsule& bar : bars) volume += pi * bar.radius * bar.radius * norm(bar.b - bar.a);
+  return volume;
+}
+
 }  // namespace
 
 double MixDesign::aggregate() const {
@@ -223,7 +235,8 @@ std::vector<Vec3> surface_nodes(const Container& body, double spacing, const Ran
   throw InputError("bodies of law ldpm are boxes or cylinders");
 }
 
-LdpmParticles place_particles(const Container& body, const MixDesign& mix, const Random& random) {
+LdpmParticles place_particles(const Container& body, const MixDesign& mix, const Random& random,
+                              const std::vector<Capsule>& bars) {
   const Random of_nodes{random.seed, random.stream + 0x10000U};
   const Random of_places{random.seed, random.stream + 0x20000U};
   LdpmParticles all;
@@ -231,7 +244,8 @@ LdpmParticles place_particles(const Container& body, const MixDesign& mix, const
   all.on_surface = static_cast<Index>(all.position.size());
   all.diameter.assign(all.position.size(), 0.0);
 
-  const std::vector<double> diameters = grain_diameters(mix, body.volume(), random);
+  const std::vector<double> diameters =
+      grain_diameters(mix, body.volume() - volume_of(bars), random);
   double clear = clearance * mix.smallest;
   const Vec3 half = body.half();
   Placed placed(half, mix.largest + clear);
@@ -256,7 +270,8 @@ LdpmParticles place_particles(const Container& body, const MixDesign& mix, const
             (2.0 * of_places.uniform(tried, 1) - 1.0) * half.y,
             (2.0 * of_places.uniform(tried, 2) - 1.0) * half.z};
       ++tried;
-    } while (!holds_cube(body, at, radius) || !placed.is_free(at, radius, clear));
+    } while (!holds_cube(body, at, radius) || !placed.is_free(at, radius, clear) ||
+             !keeps_off(bars, at, radius));
     placed.add(at, radius, true);
     all.position.push_back(at);
     all.diameter.push_back(d);

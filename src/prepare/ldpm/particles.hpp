@@ -50,10 +50,12 @@ inline constexpr double surface_diameter = 1.1;
 std::vector<Vec3> surface_nodes(const Container& body, double spacing, const Random& random);
 
 /// Nodes on the surface, d_0 apart at least, and the grains of a mix at random places, the largest
-/// first: each (d_i + d_j)/2 + 0.2 d_0 from others, d/2 + 1.1 d_0/2 from nodes, within the body.
+/// first: each (d_i + d_j)/2 + 0.2 d_0 from others, d/2 + 1.1 d_0/2 from nodes, within the body and
+/// beside its bars. Bars take their volume from that of the mix.
 ///
 /// Only + - * / and square roots: the same bits on any machine. Cost: about 30 tries a grain.
 /// @throws InputError if a grain finds no place
-LdpmParticles place_particles(const Container& body, const MixDesign& mix, const Random& random);
+LdpmParticles place_particles(const Container& body, const MixDesign& mix, const Random& random,
+                              const std::vector<Capsule>& bars = {});
 
 }  // namespace breccia::prepare

@@ -120,6 +120,60 @@ TEST(LdpmFacets, resume_to_the_same_bits_on_other_threads_and_on_ranks) {
   std::filesystem::remove(path);
 }
 
+/// The prism with a bar through it, which bears after the prism has been torn.
+Config barred_prism() {
+  Config config = torn_prism();
+  config.bodies[0].size = {0.04, 0.04, 0.045};
+  MaterialConfig steel;
+  steel.name = "b500";
+  steel.law = "steel";
+  steel.density = 7850.0;
+  steel.young = 200e9;
+  MaterialConfig bond;
+  bond.name = "bond";
+  bond.law = "interface";
+  config.materials.push_back(steel);
+  config.materials.push_back(bond);
+  BodyConfig bar;
+  bar.name = "bar";
+  bar.shape = "rebar";
+  bar.material = "b500";
+  bar.rebar.in = "prism";
+  bar.rebar.interface_law = "bond";
+  bar.rebar.diameter = 4e-3;
+  bar.rebar.drawn.emplace_back().points = {{0.0, 0.0, -0.02}, {0.0, 0.0, 0.02}};
+  config.bodies.push_back(bar);
+  return config;
+}
+
+TEST(LdpmFacets, with_a_bar_end_alike_on_threads_packs_a_devices_schedule_and_ranks) {
+  const Config config = barred_prism();
+  const Model barred = build_model(config, "");
+  const auto ended = [&](Space space, int threads, Lanes lanes) {
+    Exec exec;
+    exec.space = space;
+    exec.threads = threads;
+    World w = make_world(config, barred, exec);
+    w.lanes = lanes;
+    while (w.step < steps) advance(w, {1e300, steps});
+    return state_hash(w);
+  };
+  const std::uint64_t one = ended(Space::host, 1, Lanes::one);
+  EXPECT_EQ(ended(Space::host, 3, widest_lanes()), one);
+  EXPECT_EQ(ended(Space::shadow, 1, Lanes::one), one);
+  simulate_ranks(3, 5, [&](Communicator& ranks) {
+    World whole = make_world(config, barred, {});
+    World part = share_out(whole, ranks, {}, Space::host);
+    for (int i = 0; i < steps; ++i) step(part);
+    collect(part, whole);
+    if (ranks.rank() != 0) return;
+    EXPECT_EQ(state_hash(whole), one);
+    const Counts n = count(whole);
+    EXPECT_GT(n.broken_of(LinkKind::ldpm), 100);
+    EXPECT_GT(n.broken_of(LinkKind::interface), 0);
+  });
+}
+
 TEST(LdpmFacets, end_alike_on_ranks) {
   simulate_ranks(3, 5, [&](Communicator& ranks) {
     World whole = make_world(torn_prism(), model(), {});

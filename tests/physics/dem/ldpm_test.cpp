@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dem/energy.hpp"
+#include "dem/observe.hpp"
 #include "dem/setup/materials.hpp"
 #include "prepare/build.hpp"
 #include "prepare/ldpm/body.hpp"
@@ -313,6 +314,66 @@ TEST(Ldpm, a_released_cube_swings_and_loses_no_energy) {
   const EnergyBalance e = balance(w);
   EXPECT_GT(e.kinetic, 0.1 * w.ledger.start);
   EXPECT_LT(std::fabs(e.missing()), 1e-5 * e.start);
+}
+
+/// A prism torn in two hangs on its bar, which yields: sigma_y A_s and what it has hardened.
+TEST(Ldpm, a_torn_prism_hangs_on_its_bar) {
+  Config config = cube();
+  config.materials[0].ldpm.tensile_length = 0.1;
+  MaterialConfig steel, bond;
+  steel.name = "b500";
+  steel.law = "steel";
+  steel.density = 7850.0;
+  steel.young = 200e9;
+  steel.poisson = 0.3;
+  steel.yield = 500e6;
+  steel.hardening = 1e9;
+  bond.name = "bond";
+  bond.law = "interface";
+  config.materials.push_back(steel);
+  config.materials.push_back(bond);
+  config.bodies[0].size = {0.03, 0.03, 0.06};
+  BodyConfig bar;
+  bar.name = "bar";
+  bar.shape = "rebar";
+  bar.material = "b500";
+  bar.rebar.in = "cube";
+  bar.rebar.interface_law = "bond";
+  bar.rebar.diameter = 4e-3;
+  bar.rebar.drawn.emplace_back().points = {{0.0, 0.0, -0.028}, {0.0, 0.0, 0.028}};
+  config.bodies.push_back(bar);
+  SupportConfig foot, head;
+  foot.name = "foot";
+  foot.min = {-1.0, -1.0, -1.0};
+  foot.max = {1.0, 1.0, -0.02};
+  foot.fix = {"all"};
+  head = foot;
+  head.name = "head";
+  head.min.z = 0.02;
+  head.max.z = 1.0;
+  head.velocity = {0.0, 0.0, 2.0};
+  head.ramp = 5e-5;
+  config.supports = {foot, head};
+  const auto pull_of = [](const Config& of) {
+    const Model model = build_model(of, "");
+    World w = make_world(of, model, {});
+    double pull = 0.0;
+    int late = 0;
+    while (w.time < 1.5e-4) {
+      step(w);
+      if (w.time < 1.0e-4) continue;
+      ++late;
+      pull -= probe(w, {"", "head", "force_z", "sum"});
+    }
+    EXPECT_LT(std::fabs(balance(w).error_relative), 0.02);
+    return pull / late;
+  };
+  const double section = 3.14159265 * 4e-6;
+  const double with_bar = pull_of(config);
+  EXPECT_GT(with_bar, 500e6 * section);
+  EXPECT_LT(with_bar, 1.2 * 500e6 * section);
+  config.bodies.pop_back();
+  EXPECT_LT(std::fabs(pull_of(config)), 0.05 * 500e6 * section);
 }
 
 }  // namespace

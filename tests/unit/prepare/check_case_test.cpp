@@ -51,10 +51,6 @@ TEST(CheckDem, refuses_what_ldpm_cannot_do) {
     change(config);
     EXPECT_NE(refused([&] { check_case(config); }).find(words), std::string::npos) << words;
   }
-  Config bars = dem::small_slab();
-  for (dem::MaterialConfig& m : bars.materials)
-    if (m.law == "concrete") m.law = "ldpm";
-  EXPECT_NE(refused([&] { check_case(bars); }).find("not supported yet"), std::string::npos);
   Config brittle = dem::ldpm_cube();
   brittle.materials[0].ldpm.tensile_length = 5e-3;
   EXPECT_NE(refused([&] { build_model(brittle, ""); }).find("is too short"), std::string::npos);

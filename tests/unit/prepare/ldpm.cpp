@@ -74,6 +74,24 @@ TEST(LdpmGeometry, grains_keep_off_each_other_and_off_the_surface) {
   for (Index i = 0; i < p.on_surface; ++i) EXPECT_NEAR(cube.depth(p.position[at(i)]), 0.0, 1e-15);
 }
 
+TEST(LdpmGeometry, grains_keep_off_bars_which_take_their_volume) {
+  const std::vector<Capsule> bars{{{-0.02, 0.0, 0.0}, {0.02, 0.0, 0.0}, 0.008},
+                                  {{0.0, -0.02, 0.012}, {0.0, 0.02, 0.012}, 0.004}};
+  const LdpmParticles p = place_particles(cube, mix, {1, 0}, bars);
+  const auto count = static_cast<Index>(p.position.size());
+  double solid = 0.0;
+  for (Index i = p.on_surface; i < count; ++i) {
+    const double d = p.diameter[at(i)];
+    solid += pi / 6.0 * d * d * d;
+    for (const Capsule& bar : bars)
+      EXPECT_GE(norm(from_axis(bar, p.position[at(i)])), 0.5 * d + bar.radius);
+  }
+  const double steel = pi * 0.04 * (0.008 * 0.008 + 0.004 * 0.004);
+  const double wanted = mix.placed() * (cube.volume() - steel);
+  EXPECT_LE(solid, wanted);
+  EXPECT_GT(solid, wanted - pi / 6.0 * 12e-3 * 12e-3 * 12e-3);
+}
+
 TEST(LdpmGeometry, a_mix_that_does_not_fit_is_refused) {
   MixDesign dense = mix;
   dense.cement = 1.0;

@@ -113,6 +113,16 @@ TEST(Linking, ABarWithFewConcreteElementsIsLinkedToAllOfThem) {
   EXPECT_EQ(pairs_of(m, LinkKind::interface), (Pairs{{0, 1}, {0, 2}, {0, 3}}));
 }
 
+TEST(Linking, BarsAreBondedToTheParticlesAroundThem) {
+  Config config = small_slab();
+  config.materials[0].law = "ldpm";
+  config.bodies[0].pack.count = 0;
+  const Model m = build_model(config, "");
+  EXPECT_EQ(pairs_of(m, LinkKind::interface), interface_by_definition(m, 1, 0, 1.4));
+  EXPECT_EQ(pairs_of(m, LinkKind::steel).size(), 8u * 7u);
+  EXPECT_FALSE(m.facets.empty());
+}
+
 TEST(Linking, LinksAreUniqueOrderedAndBetweenTheRightElements) {
   Config config = small_slab();
   config.bodies.push_back(sphere_body("rock", {0.0, 0.0, 0.09}, 0.039, 60, 0.5));
