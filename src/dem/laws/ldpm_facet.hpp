@@ -41,37 +41,44 @@ struct LdpmSpentOf {
 ///   and friction
 ///     |s_T| <= s_s + (mu_0 - mu_inf) s_N0 (1 - exp(s_N / s_N0)) - mu_inf s_N
 ///
+///   rate, if asked for: s_0 and s_s are F = 1 + c_1 asinh(e' / c_0) times themselves, e' = <de> /
+///   dt of the step
+///
 /// H_t = 2 E_0 / (l_t / L - 1) makes the energy of a whole rupture in tension s_t^2 l_t / (2 E_0)
 /// for edges of any length L < l_t. Source: Cusatis, Pelessone, Mencarelli 2011, Cem. Concr.
 /// Compos. 33 (9), part I; docs/theory-ldpm.md. The quotient of s_0 is the published one, regular
 /// at omega = 0.
 struct LdpmFacet {
-  double young;               ///< E_0, normal modulus  [Pa]
-  double shear_ratio;         ///< alpha  [-]
-  double tensile_strength;    ///< s_t  [Pa]
-  double tensile_length;      ///< l_t = 2 E_0 G_t / s_t^2  [m]
-  double strength_ratio;      ///< r_st = s_s / s_t  [-]
-  double softening_exponent;  ///< n_t  [-]
-  double unloading;           ///< k_t: reopening starts at k_t (e_max - s_b / E_0)  [-]
-  double yield;               ///< s_c0, start of pore collapse  [Pa]
-  double hardening;           ///< H_c0  [Pa]
-  double final_hardening;     ///< H_c1  [Pa]
-  double compaction_strain;   ///< k_c0: start of compaction over s_c0 / E_0  [-]
-  double deviatoric_start;    ///< k_c1  [-]
-  double deviatoric_slope;    ///< k_c2  [-]
-  double friction;            ///< mu_0  [-]
-  double final_friction;      ///< mu_inf  [-]
-  double friction_stress;     ///< s_N0  [Pa]
-  double densified;           ///< E_d, unloading modulus beyond s_c0  [Pa]
+  double young;                  ///< E_0, normal modulus  [Pa]
+  double shear_ratio;            ///< alpha  [-]
+  double tensile_strength;       ///< s_t  [Pa]
+  double tensile_length;         ///< l_t = 2 E_0 G_t / s_t^2  [m]
+  double strength_ratio;         ///< r_st = s_s / s_t  [-]
+  double softening_exponent;     ///< n_t  [-]
+  double unloading;              ///< k_t: reopening starts at k_t (e_max - s_b / E_0)  [-]
+  double yield;                  ///< s_c0, start of pore collapse  [Pa]
+  double hardening;              ///< H_c0  [Pa]
+  double final_hardening;        ///< H_c1  [Pa]
+  double compaction_strain;      ///< k_c0: start of compaction over s_c0 / E_0  [-]
+  double deviatoric_start;       ///< k_c1  [-]
+  double deviatoric_slope;       ///< k_c2  [-]
+  double friction;               ///< mu_0  [-]
+  double final_friction;         ///< mu_inf  [-]
+  double friction_stress;        ///< s_N0  [Pa]
+  double densified;              ///< E_d, unloading modulus beyond s_c0  [Pa]
+  double rate_factor = 0.0;      ///< c_1; 0: strengths do not depend on rate  [-]
+  double rate_reference = 1e-5;  ///< c_0  [1/s]
 
   static constexpr double deviatoric_strain = 0.1;  ///< k_c3 = e_v0 E_0 / s_c0  [-]
 
   /// Brings a facet of an edge of reference length `length` to a strain.
   /// @param volumetric  e_V, a third of the volumetric strain of its tetrahedron, or a function
   ///                    that gives it and is called only where pores collapse  [-]
+  /// @param dt          time in which it comes there; 0: slowly  [s]
   template <class R, class Volumetric>
   BR_HD LdpmSpentOf<R> update(const R& length, const Vec3Of<R>& strain,
-                              const Volumetric& volumetric, LdpmFacetStateOf<R>& state) const {
+                              const Volumetric& volumetric, LdpmFacetStateOf<R>& state,
+                              double dt = 0.0) const {
     const LdpmFacetStateOf<R> old = state;
     const R square = strain.y * strain.y + strain.z * strain.z;  // e_T^2
     state.strain = strain;
@@ -79,8 +86,11 @@ struct LdpmFacet {
     state.largest_square = max(old.largest_square, square);
     const auto open = strain.x > 0.0;
     const auto closed = !open;
-    if (any(open)) state.stress = opened(length, square, old, state);
-    if (any(closed)) state.stress = select(open, state.stress, pressed(volumetric, old, strain));
+    R faster = constant<R>(1.0);  // F
+    if (rate_factor > 0.0 && dt > 0.0) faster = dynamic_factor(old.strain, strain, dt);
+    if (any(open)) state.stress = opened(length, square, old, state, faster);
+    if (any(closed))
+      state.stress = select(open, state.stress, pressed(volumetric, old, strain, faster));
 
     const Vec3Of<R> de = strain - old.strain;
     const R normal_work = 0.5 * (old.stress.x + state.stress.x) * de.x;
@@ -133,7 +143,7 @@ struct LdpmFacet {
   /// Stress of an open facet. Sine and cosine of omega are e_N / e and sqrt(alpha) e_T / e.
   template <class R>
   BR_HD Vec3Of<R> opened(const R& length, const R& square, const LdpmFacetStateOf<R>& old,
-                         const LdpmFacetStateOf<R>& now) const {
+                         const LdpmFacetStateOf<R>& now, const R& faster) const {
     const R one = constant<R>(1.0), none = constant<R>(0.0);
     const auto open = now.strain.x > 0.0;
     const R normal = max(now.strain.x, constant<R>(1e-300));
@@ -141,7 +151,8 @@ struct LdpmFacet {
     const R e = select(open, sqrt(along + across), one), over_e = 1.0 / e;
     const double softer = 4.0 * shear_ratio / (strength_ratio * strength_ratio);
     const R divisor = normal + sqrt(along + softer * across);
-    const R s0 = 2.0 * tensile_strength * e / divisor;
+    R s0 = 2.0 * tensile_strength * e / divisor;
+    if (rate_factor > 0.0) s0 = faster * s0;
     const R largest = sqrt(effective_square(now.largest_normal, now.largest_square));
     const R beyond = largest - (1.0 / young) * s0;
     const R old_square = old.strain.y * old.strain.y + old.strain.z * old.strain.z;
@@ -154,8 +165,9 @@ struct LdpmFacet {
     auto softened = open && beyond > 0.0;
     if (any(softened)) {
       // H_t beyond / s_0. exp(-x) >= 1 - x: a facet that has unloaded below that needs no more.
-      const R fall = (young / tensile_strength) * (beyond * divisor * over_e) *
-                     (length / (tensile_length - length));
+      R fall = (young / tensile_strength) * (beyond * divisor * over_e) *
+               (length / (tensile_length - length));
+      if (rate_factor > 0.0) fall = fall / faster;
       if (!(unloading > 0.0)) softened = softened && elastic > s0 * (0.999999 - fall);
       if (any(softened)) {
         const R half_tangent = min(normal / (e + sqrt(across)), one);    // tan(omega / 2)
@@ -176,10 +188,21 @@ struct LdpmFacet {
     return normal * normal + shear_ratio * tangential_square;
   }
 
+  /// Dynamic over static strength, by the rate of the effective strain.  [-]
+  template <class R>
+  BR_HD R dynamic_factor(const Vec3Of<R>& old, const Vec3Of<R>& now, double dt) const {
+    const auto effective = [&](const Vec3Of<R>& e) {
+      return sqrt(effective_square(e.x, e.y * e.y + e.z * e.z));
+    };
+    const R gained = max(effective(now) - effective(old), constant<R>(0.0));
+    const R y = min((1.0 / (dt * rate_reference)) * gained, constant<R>(1e100));
+    return 1.0 + rate_factor * logarithm<R>(y + sqrt(y * y + 1.0));
+  }
+
   /// Stress of a closed facet.
   template <class R, class Volumetric>
   BR_HD Vec3Of<R> pressed(const Volumetric& volumetric, const LdpmFacetStateOf<R>& old,
-                          const Vec3Of<R>& strain) const {
+                          const Vec3Of<R>& strain, const R& faster) const {
     const R none = constant<R>(0.0);
     const auto closed = !(strain.x > 0.0);
     const R de_m = strain.y - old.strain.y, de_l = strain.z - old.strain.z;
@@ -198,9 +221,10 @@ struct LdpmFacet {
     const double cohesion = strength_ratio * tensile_strength;
     const auto beyond = closed && square > cohesion * cohesion;
     if (!any(beyond)) return {normal, m, l};
-    const R limit = cohesion - final_friction * normal +
-                    (friction - final_friction) * friction_stress *
-                        (1.0 - exponential<R>(normal / friction_stress));
+    R limit = cohesion - final_friction * normal +
+              (friction - final_friction) * friction_stress *
+                  (1.0 - exponential<R>(normal / friction_stress));
+    if (rate_factor > 0.0) limit = limit + (faster - 1.0) * cohesion;
     const R size = sqrt(square);
     const R scale =
         select(beyond && size > limit, limit / max(size, constant<R>(1e-300)), constant<R>(1.0));

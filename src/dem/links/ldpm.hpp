@@ -299,7 +299,7 @@ struct LdpmFacetForces {
     const Vec3Of<R> jump = cross(edge.turn, lever) + edge.jump;
     const R over = 1.0 / facet.length;
     const LdpmSpentOf<R> spent = by.update(facet.length, kept.strain + over * jump,
-                                           Volumetric<R>{*this, i, facet.volume}, kept);
+                                           Volumetric<R>{*this, i, facet.volume}, kept, dt);
 
     const R weight = facet.area * facet.length;
     add(opened, i, weight * spent.fracture);

@@ -24,6 +24,8 @@ struct LdpmConfig {
   double final_friction = 0.0;       ///< mu_inf  [-]
   double friction_stress = 600e6;    ///< s_N0  [Pa]
   double densification = 1.0;        ///< E_d / E_0  [-]
+  double rate_factor = 0.0;          ///< c_1; 0: strengths do not depend on rate  [-]
+  double rate_reference = 1e-5;      ///< c_0  [1/s]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -51,6 +53,10 @@ struct LdpmConfig {
         "s_N0, pressure over which friction falls from one to the other");
     key("densification", densification, "-", positive,
         "E_d / E_0, stiffness in unloading from beyond s_c0 over the elastic one");
+    key("rate_factor", rate_factor, "-", Range{0.0, 1.0},
+        "c_1: strengths in tension and shear grow to 1 + c_1 asinh(strain rate / c_0) times "
+        "themselves; published: 0.05; 0: they do not");
+    key("rate_reference", rate_reference, "1/s", positive, "c_0, strain rate of slow tests");
   }
 };
 

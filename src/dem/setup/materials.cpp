@@ -148,7 +148,9 @@ LdpmFacet ldpm_facet(const MaterialConfig& m) {
           c.friction,
           c.final_friction,
           c.friction_stress,
-          c.densification * young};
+          c.densification * young,
+          c.rate_factor,
+          c.rate_reference};
 }
 
 ContactLaw contact_law(const ContactConfig& c) {

@@ -72,6 +72,51 @@ TEST(LdpmFacet, tension_softens_exponentially) {
   EXPECT_NEAR(f.fracture, 3.703529e-3, 1e-8);
 }
 
+/// F = 1 + 0.05 asinh(1e5) = 1.610304 at 1/s; slow, or unasked, it is 1.
+TEST(LdpmFacet, strengths_grow_with_the_strain_rate_if_asked) {
+  const double faster = 1.0 + 0.05 * std::asinh(1e5), dt = 1e-9;
+  EXPECT_NEAR(faster, 1.610304, 1e-6);
+  LdpmFacet law = benchmark();
+  const auto peak_of = [&](const LdpmFacet& by, double step) {
+    LdpmFacetState s{};
+    double peak = 0.0;
+    for (int k = 1; k <= 150'000; ++k) {
+      by.update(10.0, Vec3{k * dt, 0.0, 0.0}, 0.0, s, step);
+      peak = std::max(peak, s.stress.x);
+    }
+    return peak;
+  };
+  EXPECT_NEAR(peak_of(law, dt), 3.44, 2e-4);
+  law.rate_factor = 0.05;
+  EXPECT_NEAR(peak_of(law, 0.0), 3.44, 2e-4);
+  EXPECT_NEAR(peak_of(law, dt), 3.44 * faster, 2e-4);
+
+  // Softening from F s_0: s_b = F s_0 exp(-H_t <e - F s_0 / E_0> / (F s_0)).
+  LdpmFacetState s{};
+  for (int k = 1; k <= 500'000; ++k) law.update(10.0, Vec3{k * dt, 0.0, 0.0}, 0.0, s, dt);
+  const double s0 = 3.44 * faster, hardening = 2.0 * 60273.0 / 49.0;
+  EXPECT_NEAR(s.stress.x, s0 * std::exp(-hardening * (5e-4 - s0 / 60273.0) / s0), 1e-5);
+
+  // Sliding under pressure: e' = sqrt(alpha) e_T' = 1/s.
+  LdpmFacetState slid{};
+  law.update(10.0, Vec3{-1e-3, 0.0, 0.0}, -1e-3, slid, 0.0);
+  const double pressure = -slid.stress.x;
+  LdpmFacet frictionless = law;
+  frictionless.friction = 0.0;
+  for (const LdpmFacet* by : {&law, &frictionless}) {
+    LdpmFacetState t = slid;
+    double last = 0.0;
+    for (int k = 1; k <= 1'000'000; ++k) {
+      const double e_t = 2e-3 * k * 1e-3 * 4.0;  // e / e' large against e_N
+      by->update(10.0, Vec3{-1e-3, e_t, 0.0}, -1e-3, t, 4e-6);
+      last = t.stress.y;
+    }
+    const double mu = by->friction;
+    EXPECT_NEAR(last, 2.6 * 3.44 * faster + mu * 600.0 * (1.0 - std::exp(-pressure / 600.0)),
+                1e-4 * last);
+  }
+}
+
 TEST(LdpmFacet, rupture_spends_the_fracture_energy_whatever_the_length) {
   const LdpmFacet law = benchmark();
   // G_t = s_t^2 l_t / (2 E_0), over the volume A L

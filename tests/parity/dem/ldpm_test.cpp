@@ -120,10 +120,12 @@ TEST(LdpmFacets, resume_to_the_same_bits_on_other_threads_and_on_ranks) {
   std::filesystem::remove(path);
 }
 
-/// The prism with a bar through it, which bears after the prism has been torn.
+/// The prism with a bar through it, which bears after the prism has been torn; strengths depend on
+/// rate.
 Config barred_prism() {
   Config config = torn_prism();
   config.bodies[0].size = {0.04, 0.04, 0.045};
+  config.materials[0].ldpm.rate_factor = 0.05;
   MaterialConfig steel;
   steel.name = "b500";
   steel.law = "steel";
