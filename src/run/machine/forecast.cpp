@@ -143,7 +143,10 @@ Packed packed(const dem::Config& config, const dem::BodyConfig& body, const std:
   const auto [least, most] = std::minmax_element(spheres.radius.begin(), spheres.radius.end());
   double solid = 0.0;
   for (const double r : spheres.radius) solid += ball(r);
-  Packed p{body, static_cast<double>(spheres.radius.size()), solid / 0.6};
+  const auto count = static_cast<double>(spheres.radius.size());
+  constexpr double most_read = 20000.0;  // a file of no more is its own specimen
+  if (count <= most_read) return {body, count, solid / 0.6, folder};
+  Packed p{body, count, solid / 0.6};
   p.body.shape = "box";
   p.body.file.clear();
   p.body.pack.count = static_cast<int>(spheres.radius.size());
