@@ -30,18 +30,25 @@ struct CalibrateCommand {
 
   int execute() const {
     const Case read = load_case(path, overrides);
-    const auto* const config = std::get_if<dem::Config>(&read.config);
-    if (config == nullptr)
-      throw InputError(path + ": only materials of method dem3d are calibrated; nothing was run");
-    lab::Sample sample = lab::sample_of(*config, material);
+    if (const auto* const concrete = std::get_if<dem::Config>(&read.config)) {
+      const lab::Sample sample = lab::sample_of(*concrete, material);
+      return find(read, sample,
+                  fmt::format("packings of {} elements in the prism, compactness {}, size ratio "
+                              "{}, interaction range {}",
+                              elements, sample.compactness, sample.size_ratio, sample.range));
+    }
+    return find(read, lab::rock_sample_of(std::get<fdem::Config>(read.config), material),
+                fmt::format("meshes of {} triangles in the plate of 50 x 100 mm", elements));
+  }
+
+  template <class Sample>
+  int find(const Case& read, Sample sample, const std::string& specimens) const {
     sample.elements = elements;
     lab::Calibration calibration(sample.material, all_targets(targets, sample.material.use));
     const std::string out =
         folder.empty() ? "out/" + read.name + "_" + material + "_calibration" : folder;
-    const std::string circumstances = fmt::format(
-        "Calibrated by breccia {} on {} packings of {} elements in the prism, compactness {}, "
-        "size ratio {}, interaction range {}.",
-        this_build().version, seeds, elements, sample.compactness, sample.size_ratio, sample.range);
+    const std::string circumstances =
+        fmt::format("Calibrated by breccia {} on {} {}.", this_build().version, seeds, specimens);
     const lab::Bench bench{
         out, 1, seeds,
         [this](std::size_t runs, double bytes) { return options.workers(runs, bytes); }, tell_of};
@@ -71,7 +78,7 @@ void add_calibrate(CLI::App& program, int& exit_code) {
   const auto calibrate = std::make_shared<CalibrateCommand>();
   CLI::App* const command =
       program.add_subcommand("calibrate", "find local numbers of a material from macroscopic ones");
-  command->add_option("CASE", calibrate->path, "a case of method dem3d")->required();
+  command->add_option("CASE", calibrate->path, "a case")->required();
   command->add_option("--material", calibrate->material, "a material of it: where to begin")
       ->type_name("NAME")
       ->required();
@@ -90,20 +97,23 @@ void add_calibrate(CLI::App& program, int& exit_code) {
     });
   };
   count("--seeds", calibrate->seeds, "packings of each specimen; default: 2");
-  count("--elements", calibrate->elements, "elements of the prism; default: 1200");
+  count("--elements", calibrate->elements,
+        "elements of the prism, triangles of the plate; default: 1200");
   count("--steps", calibrate->steps, "steps at most; default: 8");
   each("--set", calibrate->overrides, "override a key of the case", "KEY=VALUE");
   command->add_option("-o,--out", calibrate->folder, "default: out/<case>_<material>_calibration")
       ->type_name("DIR");
   add_side_by_side_options(*command, calibrate->options);
   command->footer(
-      "Each target is followed by one key: young, poisson, tension by tensile_strength,\n"
-      "compression by cohesion, fracture_energy; others stay as they are. A material\n"
-      "with the key use has the targets of its name; --target takes their place.\n"
+      "Each target is mostly the work of one key. Concrete (DEM): young, poisson, tension\n"
+      "by tensile_strength, compression by cohesion, fracture_energy. Rock (FDEM): young,\n"
+      "poisson, brazilian (or tension) by joint.tension, compression by joint.cohesion,\n"
+      "friction_angle. Other keys stay. A material with the key use has the targets of\n"
+      "its name; --target takes their place.\n"
       "\n"
-      "A step makes the specimens that show the targets ('breccia test'), then every\n"
-      "key follows its target by a secant. It ends when all means are within 3 % (E),\n"
-      "5 % (strengths), 10 % (nu, fracture energy), else with exit code 9.\n"
+      "A step makes the specimens that show the targets ('breccia test'), then all keys\n"
+      "move by secants. It ends when all means are within 3 % (E), 5 % (strengths,\n"
+      "friction angle), 10 % (nu, fracture energy), else with exit code 9.\n"
       "\n"
       "DIR/material.toml is the material with its record, calibration.md and .svg the\n"
       "steps. Called again, the command takes what was computed from DIR/runs.");

@@ -9,7 +9,7 @@ namespace breccia::app {
 
 struct Curve {
   std::string title, x_label, y_label;              ///< labels with their units
-  std::vector<std::pair<double, double>> points{};  ///< in those units, x rising
+  std::vector<std::pair<double, double>> points{};  ///< in those units
 };
 
 /// 12 lines of at most 80 columns. Each letter holds 2 x 4 dots (Unicode, Braille patterns).

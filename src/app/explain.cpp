@@ -12,6 +12,7 @@
 #include "app/commands.hpp"
 #include "app/curve.hpp"
 #include "dem/setup/config.hpp"
+#include "dem/setup/materials.hpp"
 #include "exec/error.hpp"
 #include "fdem/laws/joint_bond.hpp"
 #include "fdem/setup/config.hpp"
@@ -53,6 +54,33 @@ Curve concrete_shear() {
     curve.points.emplace_back(to_mpa * pressure,
                               to_mpa * (m.cohesion + pressure * std::tan(m.friction_angle)));
   return curve;
+}
+
+Curve strain_rate() {
+  dem::MaterialConfig m;
+  m.rate = "malvar_ross";
+  const dem::RateCurve rate = dem::rate_curve(m);
+  Curve curve{"tensile strength over strain rate (malvar_ross, f_c = 30 MPa)",
+              "log10 of the strain rate in 1/s", "dynamic over static strength [-]"};
+  constexpr int parts = 60;
+  for (int k = 0; k <= parts; ++k) {
+    const double power = -6.0 + 8.5 * k / parts;
+    curve.points.emplace_back(power, rate.factor<double>(std::pow(10.0, power)));
+  }
+  return curve;
+}
+
+Curve crushing() {
+  constexpr double young = 30e9, onset = 60e6, slope = 0.4;  // by default there is none
+  constexpr double yields = onset / young, last = 5.0 * yields;
+  constexpr double highest = onset + slope * young * (last - yields);
+  return {"link under pressure, E = 30 GPa, Y_c = 60 MPa, H_c = 0.4, pressed and let go",
+          "shortening over length [%]",
+          "compressive stress [MPa]",
+          {{0.0, 0.0},
+           {100.0 * yields, to_mpa * onset},
+           {100.0 * last, to_mpa * highest},
+           {100.0 * (last - highest / young), 0.0}}};
 }
 
 Curve steel_tension() {
@@ -114,10 +142,25 @@ const std::vector<Law>& laws() {
        concrete_tension},
       {"dem3d",
        "[material.NAME]",
-       {"cohesion", "friction_angle"},
-       "shear strength = C + p tan phi_i of an intact link under pressure p",
+       {"cohesion", "friction_angle", "friction_cap"},
+       "shear strength = C + min(p tan phi_i, s_F) of an intact link under pressure p",
        "docs/theory.md, cohesive links",
        concrete_shear},
+      {"dem3d",
+       "[material.NAME]",
+       {"rate", "rate_strength", "rate_crossings"},
+       "T grows to T (e / 1e-6)^delta; malvar_ross: delta = 1 / (1 + 8 f_c / 10 MPa), a third from "
+       "e = 1/s on; mc2010: 0.018, a third from 10/s on; constant from 160/s on",
+       "Malvar and Ross 1998; fib Model Code 2010; docs/theory.md, strain rate",
+       strain_rate},
+      {"dem3d",
+       "[material.NAME]",
+       {"compaction_strength", "compaction_slope", "crushing_strength", "crushing_slope"},
+       "beyond Y the stress grows with H E; what is let go unloads with E. Y_c, H_c for whole "
+       "links "
+       "and broken ones that touch, Y_b, H_b for broken ones that do not",
+       "docs/theory.md, concrete under pressure",
+       crushing},
       {"dem3d",
        "[material.NAME]",
        {"yield", "hardening", "failure_strain"},

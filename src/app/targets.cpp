@@ -16,8 +16,8 @@ MaterialTarget target_from(const std::string& text) {
   MaterialTarget target{text.substr(0, equals), 0.0, target_unit(text.substr(0, equals))};
   if (target.unit.empty() || equals == text.size())
     throw InputError(fmt::format(
-        "--target {}: it is not NAME=VALUE with young, poisson, compression, tension, brazilian "
-        "or fracture_energy; nothing was run",
+        "--target {}: it is not NAME=VALUE with young, poisson, compression, tension, brazilian, "
+        "fracture_energy or friction_angle; nothing was run",
         text));
   const char* const value = text.c_str() + equals + 1;
   char* end = nullptr;

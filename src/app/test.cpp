@@ -23,42 +23,61 @@ namespace {
 
 namespace lab = laboratory;
 
+std::string specimens_of(const lab::Sample& s) {
+  return fmt::format(
+      "Specimens of spheres, {} in the prism of 0.1 x 0.1 x 0.2 m and in the disc, and as large "
+      "ones as the prism's in the others; compactness {}, interaction range {}.",
+      s.elements, s.compactness, s.range);
+}
+std::string specimens_of(const lab::RockSample& s) {
+  return fmt::format(
+      "Plane specimens (plane stress) of about {} triangles each: a plate of 50 x 100 mm, a disc "
+      "of 50 mm.",
+      s.elements);
+}
+
 struct TestCommand {
   std::string path, material, folder;
   std::vector<std::string> overrides, targets, only;
   int seeds = 3, elements = 1200;
+  std::int64_t first_seed = 1;
   SideBySideOptions options;
 
   int execute() const {
     const Case read = load_case(path, overrides);
-    const auto* const config = std::get_if<dem::Config>(&read.config);
-    if (config == nullptr)
-      throw InputError(path + ": only materials of method dem3d are tested; nothing was run");
-    lab::Sample sample = lab::sample_of(*config, material);
+    if (const auto* const concrete = std::get_if<dem::Config>(&read.config))
+      return make(read, lab::sample_of(*concrete, material), lab::specimen_tests());
+    return make(read, lab::rock_sample_of(std::get<fdem::Config>(read.config), material),
+                lab::rock_tests());
+  }
+
+  template <class Sample>
+  int make(const Case& read, Sample sample, const std::vector<lab::SpecimenTest>& tests) const {
     sample.elements = elements;
     const std::vector<MaterialTarget> wanted = all_targets(targets, sample.material.use);
     const std::string out = folder.empty() ? "out/" + read.name + "_" + material + "_test" : folder;
     int exit_code = 0;
-    const auto results = lab::run_specimens(chosen(), sample, bench(out), exit_code);
+    const auto results = lab::run_specimens(chosen(tests), sample, bench(out), exit_code);
     for (const lab::TestResults& result : results)
       for (std::size_t k = 0; k < result.specimens.size(); ++k)
         write_curve(result.specimens[k].curve, out, fmt::format("{}-{}", result.test.name, k + 1));
     const auto lines = lab::passport_lines(results, wanted);
-    replace_file(out + "/passport.md", lab::passport_page(material, sample, results, lines));
+    replace_file(out + "/passport.md",
+                 lab::passport_page(material, specimens_of(sample), results, lines));
     replace_file(out + "/passport.svg", svg_of(lab::passport_plots(results), 2));
     return tell(lines, out, exit_code);
   }
 
   lab::Bench bench(const std::string& out) const {
-    return {out, 1, seeds,
+    return {out, first_seed, seeds,
             [this](std::size_t runs, double bytes) { return options.workers(runs, bytes); },
             tell_of};
   }
 
-  std::vector<lab::SpecimenTest> chosen() const {
+  std::vector<lab::SpecimenTest> chosen(const std::vector<lab::SpecimenTest>& all) const {
     std::vector<lab::SpecimenTest> tests;
     std::string names;
-    for (const lab::SpecimenTest& test : lab::specimen_tests()) {
+    for (const lab::SpecimenTest& test : all) {
       names += " " + test.name;
       if (only.empty() || std::find(only.begin(), only.end(), test.name) != only.end())
         tests.push_back(test);
@@ -100,8 +119,8 @@ void add_test(CLI::App& program, int& exit_code) {
   const auto test = std::make_shared<TestCommand>();
   CLI::App* const command =
       program.add_subcommand("test", "the virtual laboratory on one material of a case");
-  command->add_option("CASE", test->path, "a case of method dem3d")->required();
-  command->add_option("--material", test->material, "a material of it, of law concrete or parallel")
+  command->add_option("CASE", test->path, "a case")->required();
+  command->add_option("--material", test->material, "a material of it that breaks")
       ->type_name("NAME")
       ->required();
   const auto each = [&](const char* name, std::vector<std::string>& values, const char* help,
@@ -117,7 +136,11 @@ void add_test(CLI::App& program, int& exit_code) {
   command->add_option("--seeds", test->seeds, "packings of each specimen; default: 3")
       ->type_name("N")
       ->check([](const std::string& text) { return count_problem(text); });
-  command->add_option("--elements", test->elements, "elements of the prism; default: 1200")
+  command->add_option("--first-seed", test->first_seed, "seed of the first one; default: 1")
+      ->type_name("N");
+  command
+      ->add_option("--elements", test->elements,
+                   "elements of the prism, triangles of the plate; default: 1200")
       ->type_name("N")
       ->check(CLI::Range(200, 1000000));
   each("--set", test->overrides, "override a key of the case", "KEY=VALUE");
@@ -125,11 +148,13 @@ void add_test(CLI::App& program, int& exit_code) {
       ->type_name("DIR");
   add_side_by_side_options(*command, test->options);
   command->footer(
-      "Tests: compression_prism, compression_cube (smooth ends), platens_prism,\n"
+      "Tests of concrete (DEM): compression_prism, compression_cube (smooth ends), platens_prism,\n"
       "platens_cube (rough platens), tension, brazilian, bending (a notched beam),\n"
-      "triaxial_5, triaxial_20, triaxial_100 (pressure in MPa).\n"
+      "bending_plain, triaxial_5, _20, _50, _100, _200 (pressure in MPa), oedometer.\n"
+      "Tests of rock (FDEM): plate, plate_10 (10 MPa on its sides), disc.\n"
       "\n"
-      "Targets: young, poisson, compression, tension, brazilian, fracture_energy, as in\n"
+      "Targets: young, poisson, compression, tension, brazilian, fracture_energy,\n"
+      "friction_angle, as in\n"
       "--target 'tension=2.9 MPa'; a material with the key use has those of its name.\n"
       "The exit code is 9 if a mean misses its target.\n"
       "\n"

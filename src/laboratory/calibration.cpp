@@ -3,139 +3,259 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "exec/error.hpp"
 #include "io/case/case_file.hpp"
+#include "laboratory/rock_tests.hpp"
 
 namespace breccia::laboratory {
 namespace {
 
-using Material = dem::MaterialConfig;
+using Concrete = dem::MaterialConfig;
+using Rock = fdem::MaterialConfig;
 
-constexpr std::array knobs{
-    Knob{"young", "young", "compression_prism", "young", &Material::young, 1.0, 0.03},
-    Knob{"poisson", "poisson", "compression_prism", "poisson", &Material::poisson, 1.0, 0.10},
-    Knob{"tensile_strength", "tension", "tension", "strength", &Material::tensile_strength, 1.0,
-         0.05},
-    Knob{"cohesion", "compression", "compression_prism", "strength", &Material::cohesion, 0.6,
-         0.05},
-    Knob{"fracture_energy", "fracture_energy", "bending", "fracture_energy",
-         &Material::fracture_energy, 1.0, 0.10}};
+template <double Concrete::*value>
+double get(const Concrete& m) {
+  return m.*value;
+}
+template <double Concrete::*value>
+void set(Concrete& m, double number) {
+  m.*value = number;
+}
+
+constexpr double all = 1e300;
+
+/// Twice the cohesion gives 1.5 times the compressive strength. Shares are about those that
+/// calibrations of concretes end with: links of a packing show 1.3 to 1.7 T in tension where
+/// softening gives their energy, and 3.5 T where G_F does; they show 2.5 times their G_F, and 1.4
+/// times their nu.
+std::vector<Knob<Concrete>> knobs_for(const Concrete& m, bool by_energy) {
+  return {
+      {"young", "young", "compression_prism", "young", get<&Concrete::young>, set<&Concrete::young>,
+       1.0, 0.03, 1.0, 0.0, all},
+      {"poisson", "poisson", "compression_prism", "poisson", get<&Concrete::poisson>,
+       set<&Concrete::poisson>, 1.0, 0.10, 0.72, 0.01, 1.0 / m.alpha},
+      {"tensile_strength", "tension", "tension", "strength", get<&Concrete::tensile_strength>,
+       set<&Concrete::tensile_strength>, 1.0, 0.05, by_energy ? 0.29 : 0.7, 0.0, all},
+      {"cohesion", "compression", "compression_prism", "strength", get<&Concrete::cohesion>,
+       set<&Concrete::cohesion>, 0.6, 0.05, 0.0, 0.0, all},
+      {"fracture_energy", "fracture_energy", "bending", "fracture_energy",
+       get<&Concrete::fracture_energy>, set<&Concrete::fracture_energy>, 1.0, 0.10, 0.4, 0.0, all}};
+}
+
+/// Uniaxial strength of Mohr and Coulomb over the cohesion.
+double strength_over_cohesion(const Rock& m) {
+  const double phi = m.joint.friction_angle;
+  return 2.0 * std::cos(phi) / (1.0 - std::sin(phi));
+}
+
+/// The cohesion is sought as the uniaxial strength that it gives, which the angle then does not
+/// change; the angle is set before it.
+std::vector<Knob<Rock>> knobs_for(const Rock&, bool) {
+  constexpr double steepest = 1.3;  // rad
+  const auto f_t = [](const Rock& r) { return r.joint.tension; };
+  const auto set_f_t = [](Rock& r, double x) { r.joint.tension = x; };
+  const auto disc = [&](const char* target) {
+    return Knob<Rock>{
+        "joint.tension", target, "disc", "strength", f_t, set_f_t, 1.0, 0.05, 0.9, 0.0, all};
+  };
+  return {{"young", "young", "plate", "young", [](const Rock& r) { return r.young; },
+           [](Rock& r, double x) { r.young = x; }, 1.0, 0.03, 1.05, 0.0, all},
+          {"poisson", "poisson", "plate", "poisson", [](const Rock& r) { return r.poisson; },
+           [](Rock& r, double x) { r.poisson = x; }, 1.0, 0.10, 1.0, 0.01, 0.49},
+          disc("brazilian"),
+          disc("tension"),
+          {"joint.friction_angle", "friction_angle", "plate_10", "friction_angle",
+           [](const Rock& r) { return r.joint.friction_angle; },
+           [](Rock& r, double x) { r.joint.friction_angle = x; }, 1.0, 0.05, 1.0, 0.0, steepest,
+           "plate"},
+          {"joint.cohesion times 2 cos(phi) / (1 - sin(phi))", "compression", "plate", "strength",
+           [](const Rock& r) { return r.joint.cohesion * strength_over_cohesion(r); },
+           [](Rock& r, double x) { r.joint.cohesion = x / strength_over_cohesion(r); }, 1.0, 0.05,
+           1.0, 0.0, all}};
+}
+
+const std::vector<SpecimenTest>& tests_for(const Concrete&) {
+  return specimen_tests();
+}
+const std::vector<SpecimenTest>& tests_for(const Rock&) {
+  return rock_tests();
+}
 
 /// A key changes by at most this factor from step to step.
 constexpr double largest_change = 1.6;
 /// A secant needs keys that differ by more than the scatter of packings can hide.
 constexpr double least_difference = 0.02;
 
-const SpecimenTest& test_named(const std::string& name) {
-  const auto& tests = specimen_tests();
-  return *std::find_if(tests.begin(), tests.end(), [&](const auto& t) { return t.name == name; });
+/// Solves a x = b by elimination with pivots; empty if a is singular.
+std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<double> b) {
+  const std::size_t n = b.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < n; ++i)
+      if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
+    if (std::abs(a[pivot][k]) < 1e-9) return {};
+    std::swap(a[k], a[pivot]);
+    std::swap(b[k], b[pivot]);
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double factor = a[i][k] / a[k][k];
+      for (std::size_t j = k; j < n; ++j) a[i][j] -= factor * a[k][j];
+      b[i] -= factor * b[k];
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    for (std::size_t j = k + 1; j < n; ++j) b[k] -= a[k][j] * b[j];
+    b[k] /= a[k][k];
+  }
+  return b;
 }
 
 }  // namespace
 
-Calibration::Calibration(Material start, std::vector<MaterialTarget> targets)
+template <class Material>
+Calibration<Material>::Calibration(Material start, std::vector<MaterialTarget> targets)
     : material_(std::move(start)) {
-  for (const Knob& knob : knobs)
-    for (const MaterialTarget& target : targets)
-      if (target.name == knob.target) {
-        if (!(target.value > 0.0))
-          throw InputError(fmt::format("target {} must be above 0; nothing was run", target.name));
-        aims_.push_back({knob, target.value});
-        break;  // the first one counts
-      }
-  if (aims_.empty())
-    throw InputError(
-        "there is no target to calibrate by: --target takes young, poisson, tension, compression "
-        "and fracture_energy; nothing was run");
-  // Start: E is what the material is asked for; cohesion begins at the material's own. The other
-  // shares are about those that calibrations of concretes end with: links of a packing show 1.3 to
-  // 1.7 T in tension where softening gives their energy, and 3.5 T where G_F does; they show 2.5
-  // times their G_F, and 1.4 times their nu.
-  const bool by_energy = std::any_of(aims_.begin(), aims_.end(), [](const Aim& a) {
-    return a.knob.value == &Material::fracture_energy;
-  });
-  for (const Aim& aim : aims_) {
-    const auto value = aim.knob.value;
-    if (value == &Material::cohesion) continue;
-    const double share = value == &Material::tensile_strength  ? by_energy ? 0.29 : 0.7
-                         : value == &Material::fracture_energy ? 0.4
-                         : value == &Material::poisson         ? 0.72
-                                                               : 1.0;
-    material_.*value = share * aim.target;
+  const auto asked = [&](const char* name) {
+    return std::find_if(targets.begin(), targets.end(),  // the first one counts
+                        [&](const MaterialTarget& t) { return t.name == name; });
+  };
+  std::string names;
+  for (const auto& knob : knobs_for(material_, asked("fracture_energy") != targets.end())) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", knob.target);
+    const auto target = asked(knob.target);
+    const bool taken = std::any_of(aims_.begin(), aims_.end(), [&](const Aim& a) {
+      return std::string_view(a.knob.key) == knob.key;  // brazilian rules, not tension
+    });
+    if (target == targets.end() || taken) continue;
+    if (!(target->value > 0.0))
+      throw InputError(fmt::format("target {} must be above 0; nothing was run", target->name));
+    aims_.push_back({knob, target->value});
   }
+  if (aims_.empty())
+    throw InputError("there is no target to calibrate by: --target takes " + names +
+                     "; nothing was run");
+  for (const Aim& aim : aims_)
+    if (aim.knob.share > 0.0)
+      aim.knob.set(material_, std::clamp(aim.knob.share * aim.target, aim.knob.low, aim.knob.high));
+  slopes_.assign(aims_.size(), Row(aims_.size(), 0.0));
+  for (std::size_t i = 0; i < aims_.size(); ++i) slopes_[i][i] = aims_[i].knob.sensitivity;
 }
 
-std::vector<SpecimenTest> Calibration::tests() const {
+template <class Material>
+std::vector<SpecimenTest> Calibration<Material>::tests() const {
   std::vector<SpecimenTest> tests;
-  for (const SpecimenTest& test : specimen_tests())
-    if (std::any_of(aims_.begin(), aims_.end(),
-                    [&](const Aim& a) { return test.name == a.knob.test; }))
+  for (const SpecimenTest& test : tests_for(material_))
+    if (std::any_of(aims_.begin(), aims_.end(), [&](const Aim& a) {
+          return test.name == a.knob.test || test.name == a.knob.also;
+        }))
       tests.push_back(test);
   return tests;
 }
 
-double Calibration::misfit(const CalibrationStep& step, const Aim& aim) const {
+template <class Material>
+double Calibration<Material>::misfit(const CalibrationStep<Material>& step, const Aim& aim) const {
   return step.shown.at(aim.knob.target).mean / aim.target - 1.0;
 }
 
-double Calibration::worst(const CalibrationStep& step) const {
+template <class Material>
+double Calibration<Material>::worst(const CalibrationStep<Material>& step) const {
   double worst = 0.0;
   for (const Aim& aim : aims_)
     worst = std::max(worst, std::abs(misfit(step, aim)) / aim.knob.tolerance);
   return worst;
 }
 
-bool Calibration::converged() const {
+template <class Material>
+bool Calibration<Material>::converged() const {
   return !steps_.empty() && worst(steps_.back()) <= 1.0;
 }
 
-const CalibrationStep& Calibration::best() const {
+template <class Material>
+const CalibrationStep<Material>& Calibration<Material>::best() const {
   return *std::min_element(steps_.begin(), steps_.end(),
                            [&](const auto& a, const auto& b) { return worst(a) < worst(b); });
 }
 
-void Calibration::take(const std::vector<TestResults>& results) {
-  CalibrationStep step{material_, {}};
+template <class Material>
+void Calibration<Material>::take(const std::vector<TestResults>& results) {
+  CalibrationStep<Material> step{material_, {}};
   for (const Aim& aim : aims_) {
     std::vector<double> values;
-    for (const TestResults& result : results)
-      if (result.test.name == aim.knob.test)
-        for (const SpecimenResult& specimen : result.specimens)
-          values.push_back(specimen.numbers.at(aim.knob.number));
+    if (std::string_view(aim.knob.number) == "friction_angle") {
+      values = friction_angles(results);
+    } else {
+      for (const TestResults& result : results)
+        if (result.test.name == aim.knob.test)
+          for (const SpecimenResult& specimen : result.specimens)
+            values.push_back(specimen.numbers.at(aim.knob.number));
+    }
     const Spread spread = spread_of(values);
     if (spread.n == 0 || !(spread.mean > 0.0))
       throw InputError(fmt::format("no specimen of {} shows its {}: calibration cannot go on",
-                                   test_named(aim.knob.test).title, aim.knob.target));
+                                   aim.knob.test, aim.knob.target));
     step.shown[aim.knob.target] = spread;
   }
   steps_.push_back(step);
+  learn();
   choose_next();
 }
 
-void Calibration::choose_next() {
-  const CalibrationStep& last = steps_.back();
-  for (const Aim& aim : aims_) {
-    const double value = last.material.*aim.knob.value;
-    double slope = aim.knob.sensitivity;
-    if (steps_.size() > 1) {
-      const CalibrationStep& former = steps_[steps_.size() - 2];
-      const double apart = std::log(value / former.material.*aim.knob.value);
-      const double change =
-          std::log(last.shown.at(aim.knob.target).mean / former.shown.at(aim.knob.target).mean);
-      if (std::abs(apart) > least_difference)
-        slope = std::clamp(change / apart, 0.4 * slope, 2.5 * slope);
+template <class Material>
+typename Calibration<Material>::Row Calibration<Material>::logs_of_keys(
+    const CalibrationStep<Material>& step) const {
+  Row row;
+  for (const Aim& aim : aims_) row.push_back(std::log(aim.knob.get(step.material)));
+  return row;
+}
+
+template <class Material>
+typename Calibration<Material>::Row Calibration<Material>::logs_of_shown(
+    const CalibrationStep<Material>& step) const {
+  Row row;
+  for (const Aim& aim : aims_) row.push_back(std::log(1.0 + misfit(step, aim)));
+  return row;
+}
+
+/// J += (dy - J dx) dx^T / (dx . dx); a target keeps to its own key, within bounds.
+template <class Material>
+void Calibration<Material>::learn() {
+  if (steps_.size() < 2) return;
+  const Row x = logs_of_keys(steps_.back()), y = logs_of_shown(steps_.back());
+  const Row x0 = logs_of_keys(steps_[steps_.size() - 2]);
+  const Row y0 = logs_of_shown(steps_[steps_.size() - 2]);
+  double squared = 0.0;
+  for (std::size_t j = 0; j < x.size(); ++j) squared += (x[j] - x0[j]) * (x[j] - x0[j]);
+  if (squared < least_difference * least_difference) return;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    double missed = y[i] - y0[i];
+    for (std::size_t j = 0; j < x.size(); ++j) missed -= slopes_[i][j] * (x[j] - x0[j]);
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      const double slope = slopes_[i][j] + missed * (x[j] - x0[j]) / squared;
+      const double own = aims_[i].knob.sensitivity;
+      slopes_[i][j] =
+          i == j ? std::clamp(slope, 0.4 * own, 2.5 * own) : std::clamp(slope, -0.5, 0.5);
     }
-    const double wanted = std::pow(1.0 + misfit(last, aim), -1.0 / slope);
-    double& next = material_.*aim.knob.value;
-    next = value * std::clamp(wanted, 1.0 / largest_change, largest_change);
-    if (std::string_view(aim.knob.key) == "poisson") next = std::min(next, 1.0 / material_.alpha);
   }
 }
 
-std::string Calibration::progress() const {
+template <class Material>
+void Calibration<Material>::choose_next() {
+  const CalibrationStep<Material>& from = best();
+  const Row y = logs_of_shown(from), x = logs_of_keys(from);
+  Row change = solved(slopes_, y);
+  if (change.empty())
+    for (std::size_t i = 0; i < y.size(); ++i) change.push_back(y[i] / aims_[i].knob.sensitivity);
+  material_ = from.material;
+  for (std::size_t i = 0; i < aims_.size(); ++i) {
+    const double most = std::log(largest_change);
+    const double next = std::exp(x[i] - std::clamp(change[i], -most, most));
+    aims_[i].knob.set(material_, std::clamp(next, aims_[i].knob.low, aims_[i].knob.high));
+  }
+}
+
+template <class Material>
+std::string Calibration<Material>::progress() const {
   std::string text;
   for (const Aim& aim : aims_)
     text += fmt::format("{}{} {:+.1f} %", text.empty() ? "" : ", ", aim.knob.target,
@@ -143,7 +263,9 @@ std::string Calibration::progress() const {
   return text;
 }
 
-std::string Calibration::page(const std::string& material, const std::string& circumstances) const {
+template <class Material>
+std::string Calibration<Material>::page(const std::string& material,
+                                        const std::string& circumstances) const {
   std::string text =
       fmt::format("# Calibration of {}\n\n{}\n\n![misfits](calibration.svg)\n\n| step |", material,
                   circumstances);
@@ -156,7 +278,7 @@ std::string Calibration::page(const std::string& material, const std::string& ci
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     text += fmt::format("| {}{} |", k + 1, &steps_[k] == &best() ? ", best" : "");
     for (const Aim& aim : aims_)
-      text += fmt::format(" {} | {}, {:+.1f} % |", short_number(steps_[k].material.*aim.knob.value),
+      text += fmt::format(" {} | {}, {:+.1f} % |", short_number(aim.knob.get(steps_[k].material)),
                           spread_text(steps_[k].shown.at(aim.knob.target)),
                           100.0 * misfit(steps_[k], aim));
     text += "\n";
@@ -165,8 +287,9 @@ std::string Calibration::page(const std::string& material, const std::string& ci
          block(circumstances) + "```\n";
 }
 
-std::string Calibration::block(const std::string& circumstances) const {
-  const CalibrationStep& step = best();
+template <class Material>
+std::string Calibration<Material>::block(const std::string& circumstances) const {
+  const CalibrationStep<Material>& step = best();
   std::string text = "# " + circumstances + "\n";
   for (const Aim& aim : aims_)
     text += fmt::format("# {}: shown {}, target {}, {:+.1f} %\n", aim.knob.target,
@@ -175,12 +298,13 @@ std::string Calibration::block(const std::string& circumstances) const {
   WriteKeys keys;
   Material material = step.material;
   for (const Aim& aim : aims_)  // four digits are more than packings leave
-    material.*aim.knob.value = std::stod(fmt::format("{:.4g}", material.*aim.knob.value));
+    aim.knob.set(material, std::stod(fmt::format("{:.4g}", aim.knob.get(material))));
   material.each_key(keys);
   return text + "[material." + key_text(material.name) + "]\n" + keys.own;
 }
 
-LinePlot Calibration::plot() const {
+template <class Material>
+LinePlot Calibration<Material>::plot() const {
   LinePlot plot{
       "Misfit of each target", "step", "shown over target, less 1 [%]", {}, {{"", 0.0}}, {}};
   for (const Aim& aim : aims_) {
@@ -195,5 +319,8 @@ LinePlot Calibration::plot() const {
   }
   return plot;
 }
+
+template class Calibration<dem::MaterialConfig>;
+template class Calibration<fdem::MaterialConfig>;
 
 }  // namespace breccia::laboratory

@@ -1,11 +1,12 @@
 #pragma once
-// From macroscopic numbers of a concrete to its local ones: each target is mostly the work of one
-// key, so each key follows its own target by secants, all at once.
+// From macroscopic numbers of a concrete or a rock to its local ones: each target is mostly the
+// work of one key; what the keys do to the other targets is learnt from step to step.
 
 #include <map>
 #include <string>
 #include <vector>
 
+#include "fdem/setup/config.hpp"
 #include "io/case/material_library.hpp"
 #include "io/picture/line_plot.hpp"
 #include "laboratory/passport.hpp"
@@ -13,33 +14,42 @@
 namespace breccia::laboratory {
 
 /// A key of the material and the target that it is found by.
+template <class Material>
 struct Knob {
   const char* key;     ///< as in [material.<name>]
   const char* target;  ///< as in MaterialTarget
   const char* test;    ///< the specimen test that shows it
   const char* number;  ///< of its results
-  double dem::MaterialConfig::*value;
-  /// d log(shown) / d log(key) before two steps are known. Twice the cohesion gives 1.5 times the
-  /// compressive strength.
-  double sensitivity;
-  double tolerance;  ///< of the mean, over the target
+  double (*get)(const Material&);
+  void (*set)(Material&, double);
+  double sensitivity;     ///< d log(shown) / d log(key) at first  [-]
+  double tolerance;       ///< of the mean, over the target
+  double share;           ///< first value over the target; 0: the material's own
+  double low, high;       ///< what the key may be
+  const char* also = "";  ///< another test that the number needs
 };
 
 /// One set of keys, and what it has shown.
+template <class Material>
 struct CalibrationStep {
-  dem::MaterialConfig material;
+  Material material;
   std::map<std::string, Spread> shown;  ///< by target
 };
 
+/// Broyden's secants in the logarithms of keys and shown numbers: d log(shown_i) / d log(key_j)
+/// begins with each target's own key and takes up what each step has shown, so that five numbers
+/// need no trial of each key alone. A step starts from the best one so far.
+/// @tparam Material  dem::MaterialConfig or fdem::MaterialConfig
+template <class Material>
 class Calibration {
  public:
   /// @throws InputError if no target is one that a key follows, or a target is not above 0
-  Calibration(dem::MaterialConfig start, std::vector<MaterialTarget> targets);
+  Calibration(Material start, std::vector<MaterialTarget> targets);
 
   /// The tests that show the targets.
   std::vector<SpecimenTest> tests() const;
   /// The keys to try next: at first the closed-form start.
-  const dem::MaterialConfig& material() const { return material_; }
+  const Material& material() const { return material_; }
   /// Takes what they have shown, and chooses the next ones. @throws InputError if a target was not
   /// shown, since no specimen has come to its end
   void take(const std::vector<TestResults>& results);
@@ -47,8 +57,8 @@ class Calibration {
   /// Whether all means of the last step are within the tolerances.
   bool converged() const;
   /// The step whose largest misfit over its tolerance is least.
-  const CalibrationStep& best() const;
-  const std::vector<CalibrationStep>& steps() const { return steps_; }
+  const CalibrationStep<Material>& best() const;
+  const std::vector<CalibrationStep<Material>>& steps() const { return steps_; }
 
   /// One line about the last step: shown over target, in percent.
   std::string progress() const;
@@ -61,16 +71,24 @@ class Calibration {
 
  private:
   struct Aim {
-    Knob knob;
+    Knob<Material> knob;
     double target;
   };
-  double misfit(const CalibrationStep& step, const Aim& aim) const;
-  double worst(const CalibrationStep& step) const;
+  using Row = std::vector<double>;
+  double misfit(const CalibrationStep<Material>& step, const Aim& aim) const;
+  double worst(const CalibrationStep<Material>& step) const;
+  Row logs_of_keys(const CalibrationStep<Material>& step) const;
+  Row logs_of_shown(const CalibrationStep<Material>& step) const;  ///< over the targets
+  void learn();
   void choose_next();
 
-  dem::MaterialConfig material_;
+  Material material_;
   std::vector<Aim> aims_;
-  std::vector<CalibrationStep> steps_;
+  std::vector<Row> slopes_;  ///< [target][key]
+  std::vector<CalibrationStep<Material>> steps_;
 };
+
+extern template class Calibration<dem::MaterialConfig>;
+extern template class Calibration<fdem::MaterialConfig>;
 
 }  // namespace breccia::laboratory

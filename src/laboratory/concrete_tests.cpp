@@ -15,7 +15,7 @@ namespace {
 
 constexpr double prism_edge = 0.1, prism_height = 0.2;  // m
 constexpr double disc_diameter = 0.1, disc_thickness = 0.05;
-constexpr double beam_length = 0.34, beam_edge = 0.1;
+constexpr double beam_length = 0.34, beam_edge = 0.1, beam_notch = 0.033;
 constexpr double far = 1.0;
 
 /// Of elements that fill a volume [m3] together.  [m]
@@ -129,6 +129,24 @@ void load_triaxially(dem::Config& c, const Vec3& size, double pressure) {
   c.time.end = confined + triaxial_strain(pressure) / triaxial_rate;
 }
 
+/// Smooth walls that stand still around a specimen whose ends approach.
+void load_between_sides(dem::Config& c, const Vec3& size, double speed) {
+  load_by_platens(c, size, speed);
+  const auto add = [&](const char* name, const Vec3& outwards, double half) {
+    dem::WallConfig wall;
+    wall.name = name;
+    wall.point = half * outwards;
+    wall.normal = -outwards;
+    c.walls.push_back(wall);
+  };
+  add("right", {1.0, 0.0, 0.0}, 0.5 * size.x);
+  add("left", {-1.0, 0.0, 0.0}, 0.5 * size.x);
+  add("back", {0.0, 1.0, 0.0}, 0.5 * size.y);
+  add("front", {0.0, -1.0, 0.0}, 0.5 * size.y);
+  for (dem::WallConfig& wall : c.walls) wall.friction = 0.0;
+  c.probes.push_back(probe("force_side", "right", "force_x", "sum"));
+}
+
 /// Strips a tenth of the diameter wide press a disc along x.
 void load_strips(dem::Config& c, const Sample& sample, double speed) {
   const double volume = pi / 4.0 * disc_diameter * disc_diameter * disc_thickness;
@@ -171,7 +189,7 @@ void write_notched(const std::string& path, const Sample& sample, const Vec3& si
   replace_file(path, text);
 }
 
-void load_beam(dem::Config& c, const Sample& sample, const Vec3& size, double radius, double speed,
+void cut_notch(dem::Config& c, const Sample& sample, const Vec3& size, double radius,
                const std::string& folder) {
   const std::string file = fmt::format("beam-{}-{}.csv", sample.elements, c.seed);
   write_notched(folder + "/" + file, sample, size, radius, c.seed);
@@ -180,6 +198,9 @@ void load_beam(dem::Config& c, const Sample& sample, const Vec3& size, double ra
   body.file = file;
   body.pack = {};
   body.volume = size.x * size.y * size.z - 4.0 * radius * beam_notch * size.y;
+}
+
+void load_beam(dem::Config& c, const Vec3& size, double radius, double speed) {
   const double below = -0.5 * size.z + 2.0 * radius, width = 1.5 * radius;
   const auto roller = [&](const char* name, double x) {
     return support(name, {x - width, -far, -far}, {x + width, far, below}, {"z"}, {}, 0.0);
@@ -233,10 +254,19 @@ const std::vector<SpecimenTest>& specimen_tests() {
       {"bending",
        "three-point bending, notched beam",
        Loading::bending,
+       {beam_length, beam_edge, beam_edge},
+       0.0,
+       beam_notch},
+      {"bending_plain",
+       "three-point bending, plain beam",
+       Loading::bending,
        {beam_length, beam_edge, beam_edge}},
       {"triaxial_5", "triaxial compression at 5 MPa", Loading::triaxial, prism, 5e6},
       {"triaxial_20", "triaxial compression at 20 MPa", Loading::triaxial, prism, 20e6},
-      {"triaxial_100", "triaxial compression at 100 MPa", Loading::triaxial, prism, 100e6}};
+      {"triaxial_50", "triaxial compression at 50 MPa", Loading::triaxial, prism, 50e6},
+      {"triaxial_100", "triaxial compression at 100 MPa", Loading::triaxial, prism, 100e6},
+      {"triaxial_200", "triaxial compression at 200 MPa", Loading::triaxial, prism, 200e6},
+      {"oedometer", "oedometer, cube", Loading::oedometer, cube}};
   return tests;
 }
 
@@ -280,11 +310,19 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
     case Loading::bending:
       c.local_damping = 0.05;  // more would be work of the falling halves
       c.time.end = 7e-3;
-      load_beam(c, sample, test.size, radius, 0.08, folder);
+      if (test.notch > 0.0) cut_notch(c, sample, test.size, radius, folder);
+      load_beam(c, test.size, radius, 0.08);
       break;
     case Loading::triaxial:
       load_triaxially(c, test.size, test.pressure);
       break;
+    case Loading::oedometer:
+      c.time.end = 0.12 / 4.0;
+      load_between_sides(c, test.size, 4.0 * height);
+      break;
+    case Loading::plate:
+    case Loading::plane_disc:
+      throw InputError(test.title + " is a test of plane cases");
   }
   return c;
 }

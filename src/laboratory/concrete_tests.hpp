@@ -24,8 +24,18 @@ struct Sample {
 /// @throws InputError if there is no such material, or it is no concrete or rock
 Sample sample_of(const dem::Config& config, const std::string& material);
 
-/// The tests that there are.
-enum class Loading { compression, platens, tension, brazilian, bending, triaxial };
+/// The tests that there are; plate and plane_disc are the FDEM's.
+enum class Loading {
+  compression,
+  platens,
+  tension,
+  brazilian,
+  bending,
+  triaxial,
+  oedometer,
+  plate,
+  plane_disc
+};
 
 struct SpecimenTest {
   std::string name;   ///< of files
@@ -33,20 +43,21 @@ struct SpecimenTest {
   Loading loading;
   Vec3 size;              ///< edges; of the disc: diameter, diameter, thickness  [m]
   double pressure = 0.0;  ///< on the sides of a triaxial test  [Pa]
+  double notch = 0.0;     ///< depth of a beam's  [m]
 };
 
 /// compression between smooth ends of prism and cube, and between rough platens of both; direct
-/// tension; Brazilian; three-point bending of a notched beam; triaxial compression at three
-/// pressures.
+/// tension; Brazilian; three-point bending of a notched and of a plain beam; triaxial compression
+/// at five pressures; compression between sides that stand still (oedometer).
 const std::vector<SpecimenTest>& specimen_tests();
 
-/// Distance of the beam's supports, depth of its notch.  [m]
-inline constexpr double beam_span = 0.3, beam_notch = 0.033;
+/// Distance of the beam's supports.  [m]
+inline constexpr double beam_span = 0.3;
 
 /// The case of a test. Ends of prisms are layers of elements that move at a constant speed along z
 /// and are free across; rough platens are walls with the friction of the contacts.
 /// In triaxial tests six smooth walls press on a prism; then the upper and the lower one approach
-/// while servos hold the pressure of the others.
+/// while servos hold the pressure of the others; in the oedometer these stand still.
 /// @param folder  gets the file of spheres that a notched beam is made of
 /// @throws IoError if that file cannot be written
 dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t seed,

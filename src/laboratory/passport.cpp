@@ -15,6 +15,9 @@ namespace {
 
 using Values = std::vector<double>;
 
+/// Between which shares of the peak E and nu are read: EN 12390-13.
+constexpr double elastic_from = 0.1, elastic_to = 1.0 / 3.0;
+
 Values column(const report::NumberTable& table, const char* name, const std::string& folder) {
   const report::Column* const found = table.column(name);
   if (found == nullptr || found->values.empty())
@@ -69,6 +72,15 @@ Values load_of(const report::NumberTable& table, const std::string& folder) {
   return scaled(force, std::abs(*low) > std::abs(*high) ? -1.0 : 1.0);
 }
 
+/// Stress at three times the strain of the peak, over the peak's; means over a tenth of that
+/// strain.
+double residual_of(const Values& strain, const Values& stress, std::size_t peak) {
+  double sum = 0.0, n = 0.0;
+  for (std::size_t k = peak; k < strain.size(); ++k)
+    if (std::abs(strain[k] - 3.0 * strain[peak]) < 0.15 * strain[peak]) sum += stress[k], n += 1.0;
+  return sum / (n * stress[peak]);
+}
+
 SpecimenResult of_prism(const SpecimenTest& test, const report::NumberTable& table,
                         const std::string& folder) {
   const Values top = column(table, "top", folder), bottom = column(table, "bottom", folder);
@@ -79,12 +91,41 @@ SpecimenResult of_prism(const SpecimenTest& test, const report::NumberTable& tab
   SpecimenResult result{{"strain [-]", "stress [Pa]", strain, stress}, {}};
   result.numbers["strength"] = stress[peak];
   result.numbers["peak_strain"] = strain[peak];
+  if (test.loading == Loading::platens || test.loading == Loading::compression)
+    result.numbers["residual"] = residual_of(strain, stress, peak);
   if (test.loading == Loading::platens || test.loading == Loading::triaxial)
     return result;  // the give of walls is in the strain
-  result.numbers["young"] = slope_between(strain, stress, stress, 0.1, 0.4);
+  result.numbers["young"] = slope_between(strain, stress, stress, elastic_from, elastic_to);
   const Values right = column(table, "right", folder), left = column(table, "left", folder);
   const Values across = scaled(growth(right, left), -sense / (right[0] - left[0]));
-  result.numbers["poisson"] = slope_between(strain, across, stress, 0.1, 0.4);
+  result.numbers["poisson"] = slope_between(strain, across, stress, elastic_from, elastic_to);
+  return result;
+}
+
+/// y where x first reaches a value; not a number if it never does.
+double first_at(const Values& x, const Values& y, double value) {
+  for (std::size_t k = 1; k < x.size(); ++k)
+    if (x[k] >= value) return y[k - 1] + (y[k] - y[k - 1]) * (value - x[k - 1]) / (x[k] - x[k - 1]);
+  return std::nan("");
+}
+
+SpecimenResult of_oedometer(const SpecimenTest& test, const report::NumberTable& table,
+                            const std::string& folder) {
+  const Values top = column(table, "top", folder), bottom = column(table, "bottom", folder);
+  const Values strain = scaled(growth(top, bottom), -1.0 / (top[0] - bottom[0]));
+  const Values stress = scaled(load_of(table, folder), 1.0 / (test.size.x * test.size.y));
+  const Values side = column(table, "force_side", folder);
+  SpecimenResult result{{"strain [-]", "stress [Pa]", strain, stress}, {}};
+  auto& n = result.numbers;
+  n["strain_100"] = first_at(stress, strain, 100e6);
+  n["strain_1000"] = first_at(stress, strain, 1e9);
+  // over a fifth of the stress to both sides: platens meet one sphere after the other
+  const auto tangent = [&](double at) {
+    return 0.4 * at / (first_at(stress, strain, 1.2 * at) - first_at(stress, strain, 0.8 * at));
+  };
+  n["tangent_300"] = tangent(300e6);
+  n["tangent_1000"] = tangent(1e9);
+  n["side_ratio"] = std::abs(first_at(stress, side, 1e9)) / (1e9 * test.size.y * test.size.z);
   return result;
 }
 
@@ -99,6 +140,34 @@ SpecimenResult of_disc(const SpecimenTest& test, const report::NumberTable& tabl
   return result;
 }
 
+/// A plate in plane stress, of unit thickness.
+SpecimenResult of_plate(const SpecimenTest& test, const report::NumberTable& table,
+                        const std::string& folder) {
+  const Values top = column(table, "top", folder), bottom = column(table, "bottom", folder);
+  const Values strain = scaled(growth(top, bottom), -1.0 / (top[0] - bottom[0]));
+  const Values stress = scaled(load_of(table, folder), 1.0 / test.size.x);
+  const std::size_t peak = peak_of(stress);
+  SpecimenResult result{{"strain [-]", "stress [Pa]", strain, stress}, {}};
+  result.numbers["strength"] = stress[peak];
+  result.numbers["peak_strain"] = strain[peak];
+  if (test.pressure > 0.0) return result;  // the sides have been pressed meanwhile
+  result.numbers["young"] = slope_between(strain, stress, stress, elastic_from, elastic_to);
+  const Values right = column(table, "right", folder), left = column(table, "left", folder);
+  const Values across = scaled(growth(right, left), 1.0 / test.size.x);
+  result.numbers["poisson"] = slope_between(strain, across, stress, elastic_from, elastic_to);
+  return result;
+}
+
+SpecimenResult of_plane_disc(const SpecimenTest& test, const report::NumberTable& table,
+                             const std::string& folder) {
+  const Values top = column(table, "top", folder), bottom = column(table, "bottom", folder);
+  const Values closing = scaled(growth(top, bottom), -1.0 / test.size.x);
+  const Values stress = scaled(load_of(table, folder), 2.0 / (pi * test.size.x));
+  SpecimenResult result{{"closing over diameter [-]", "2 P / (pi d t) [Pa]", closing, stress}, {}};
+  result.numbers["strength"] = stress[peak_of(stress)];
+  return result;
+}
+
 SpecimenResult of_beam(const SpecimenTest& test, const report::NumberTable& table,
                        const std::string& folder) {
   const Values top = column(table, "top", folder);
@@ -107,11 +176,11 @@ SpecimenResult of_beam(const SpecimenTest& test, const report::NumberTable& tabl
   const auto [low, high] = std::minmax_element(force.begin(), force.end());
   force = scaled(force, std::abs(*low) > std::abs(*high) ? -1.0 : 1.0);
   SpecimenResult result{{"deflection [m]", "force [N]", deflection, force}, {}};
-  const double ligament = test.size.y * (test.size.z - beam_notch);
+  const double depth = test.size.z - test.notch;
   const double peak = force[peak_of(force)];
-  result.numbers["fracture_energy"] = work(result.curve) / ligament;
+  if (test.notch > 0.0)  // a plain beam's holds work spread over its length
+    result.numbers["fracture_energy"] = work(result.curve) / (test.size.y * depth);
   // Of the section above the notch, by the theory of beams.
-  const double depth = test.size.z - beam_notch;
   result.numbers["strength"] = 1.5 * peak * beam_span / (test.size.y * depth * depth);
   return result;
 }
@@ -126,12 +195,12 @@ std::optional<double> target_of(const std::vector<MaterialTarget>& targets,
 /// Which target a number of a test is held against.
 std::string target_name(const SpecimenTest& test, const std::string& number,
                         const std::vector<MaterialTarget>& targets) {
-  if (test.name == "compression_prism") {
+  if (test.name == "compression_prism" || test.name == "plate") {
     if (number == "strength") return "compression";
     if (number == "young" || number == "poisson") return number;
   }
   if (test.name == "tension" && number == "strength") return "tension";
-  if (test.name == "brazilian" && number == "strength")
+  if ((test.name == "brazilian" || test.name == "disc") && number == "strength")
     return target_of(targets, "brazilian") ? "brazilian" : "tension";
   if (test.name == "bending" && number == "fracture_energy") return number;
   return "";
@@ -146,10 +215,18 @@ struct Shown {
   const char *name, *words, *unit;
   double factor;
 };
-constexpr std::array shown{Shown{"strength", "strength", "MPa", 1e-6},
-                           Shown{"peak_strain", "strain at the peak", "1e-3", 1e3},
-                           Shown{"young", "E", "GPa", 1e-9}, Shown{"poisson", "nu", "-", 1.0},
-                           Shown{"fracture_energy", "fracture energy", "J/m2", 1.0}};
+constexpr std::array shown{
+    Shown{"strength", "strength", "MPa", 1e-6},
+    Shown{"peak_strain", "strain at the peak", "1e-3", 1e3},
+    Shown{"young", "E", "GPa", 1e-9},
+    Shown{"poisson", "nu", "-", 1.0},
+    Shown{"residual", "stress at 3 times that strain, over the peak", "-", 1.0},
+    Shown{"fracture_energy", "fracture energy", "J/m2", 1.0},
+    Shown{"strain_100", "strain at 0.1 GPa", "%", 100.0},
+    Shown{"strain_1000", "strain at 1 GPa", "%", 100.0},
+    Shown{"tangent_300", "tangent at 0.3 GPa", "GPa", 1e-9},
+    Shown{"tangent_1000", "tangent at 1 GPa", "GPa", 1e-9},
+    Shown{"side_ratio", "lateral over axial stress at 1 GPa", "-", 1.0}};
 const Shown& shown_of(const std::string& name) {
   return *std::find_if(shown.begin(), shown.end(), [&](const Shown& s) { return name == s.name; });
 }
@@ -163,9 +240,33 @@ SpecimenResult specimen_result(const SpecimenTest& test, const std::string& fold
       return of_disc(test, table, folder);
     case Loading::bending:
       return of_beam(test, table, folder);
+    case Loading::plate:
+      return of_plate(test, table, folder);
+    case Loading::plane_disc:
+      return of_plane_disc(test, table, folder);
+    case Loading::oedometer:
+      return of_oedometer(test, table, folder);
     default:
       return of_prism(test, table, folder);
   }
+}
+
+std::vector<double> friction_angles(const std::vector<TestResults>& results) {
+  const TestResults *free = nullptr, *pressed = nullptr;
+  for (const TestResults& result : results) {
+    if (result.test.loading != Loading::plate) continue;
+    (result.test.pressure > 0.0 ? pressed : free) = &result;
+  }
+  Values angles;
+  if (free == nullptr || pressed == nullptr || free->specimens.size() != pressed->specimens.size())
+    return angles;
+  for (std::size_t k = 0; k < free->specimens.size(); ++k) {
+    const double more =
+        pressed->specimens[k].numbers.at("strength") - free->specimens[k].numbers.at("strength");
+    const double n = more / pressed->test.pressure;  // (1 + sin phi) / (1 - sin phi)
+    angles.push_back(std::asin(std::clamp((n - 1.0) / (n + 1.0), 0.0, 1.0)));
+  }
+  return angles;
 }
 
 bool PassportLine::pass() const {
@@ -186,21 +287,40 @@ std::vector<PassportLine> passport_lines(const std::vector<TestResults>& results
       lines.push_back({result.test.title, number.name, number.unit, spread_of(values),
                        target_of(targets, target), tolerance_of(target)});
     }
+  if (const Values angles = friction_angles(results); !angles.empty())
+    lines.push_back({"plates, free and pressed", "friction_angle", "rad", spread_of(angles),
+                     target_of(targets, "friction_angle"), tolerance_of("friction_angle")});
   return lines;
 }
 
-std::string passport_page(const std::string& material, const Sample& sample,
+/// Ratios of the means of two tests; nothing without a pair of them.
+std::string ratios_of(const std::vector<PassportLine>& lines) {
+  const auto mean = [&](const std::string& title) {
+    for (const PassportLine& line : lines)
+      if (line.test == title && line.quantity == "strength") return line.spread.mean;
+    return std::nan("");
+  };
+  std::string rows;
+  const auto ratio = [&](const char* words, std::size_t a, std::size_t b) {
+    const double value = mean(specimen_tests()[a].title) / mean(specimen_tests()[b].title);
+    if (std::isfinite(value)) rows += fmt::format("| {} | {} |\n", words, short_number(value));
+  };
+  ratio("compression over tension", 0, 4);
+  ratio("rough cube over rough prism (real concrete: 1.20 to 1.25)", 3, 2);
+  ratio("rough prism over smooth prism", 2, 0);
+  ratio("splitting over tension", 5, 4);
+  return rows.empty() ? "" : "\n| ratio of means | shown |\n|---|---|\n" + rows;
+}
+
+std::string passport_page(const std::string& material, const std::string& specimens,
                           const std::vector<TestResults>& results,
                           const std::vector<PassportLine>& lines) {
   std::string text = fmt::format(
-      "# Passport of {}\n\nSpecimens of spheres, {} in the prism of 0.1 x 0.1 x 0.2 m and in the "
-      "disc, "
-      "and as large ones as the prism's in the others; compactness {}, interaction range {}. Mean, "
-      "+- the deviation of the "
-      "sample, and number of packings.\n\n![curves](passport.svg)\n\n"
+      "# Passport of {}\n\n{} Mean, +- the deviation of the sample, and number of packings or "
+      "meshes.\n\n![curves](passport.svg)\n\n"
       "| test | quantity | unit | shown | target | misfit | verdict "
       "|\n|---|---|---|---|---|---|---|\n",
-      material, sample.elements, sample.compactness, sample.range);
+      material, specimens);
   for (const PassportLine& line : lines) {
     const Shown& s = shown_of(line.quantity);
     text += fmt::format("| {} | {} | {} | {} |", line.test, s.words, s.unit,
@@ -212,20 +332,7 @@ std::string passport_page(const std::string& material, const Sample& sample,
     else
       text += " - | - | - |\n";
   }
-  const auto mean = [&](const std::string& title) {
-    for (const PassportLine& line : lines)
-      if (line.test == title && line.quantity == "strength") return line.spread.mean;
-    return std::nan("");
-  };
-  const auto ratio = [&](const char* words, std::size_t a, std::size_t b) {
-    const double value = mean(specimen_tests()[a].title) / mean(specimen_tests()[b].title);
-    if (std::isfinite(value)) text += fmt::format("| {} | {} |\n", words, short_number(value));
-  };
-  text += "\n| ratio of means | shown |\n|---|---|\n";
-  ratio("compression over tension", 0, 4);
-  ratio("rough cube over rough prism (real concrete: 1.20 to 1.25)", 3, 2);
-  ratio("rough prism over smooth prism", 2, 0);
-  ratio("splitting over tension", 5, 4);
+  text += ratios_of(lines);
   std::string failures;
   for (const TestResults& result : results)
     for (const std::string& failure : result.failures)

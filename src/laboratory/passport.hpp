@@ -21,7 +21,8 @@ struct LoadCurve {
 };
 
 /// Of one specimen: its curve, and numbers by name: strength, young, poisson, peak_strain,
-/// fracture_energy.
+/// fracture_energy; residual (stress at three times the strain of the peak, over it); of the
+/// oedometer strain_100, strain_1000 (at stresses in MPa), tangent_300, tangent_1000, side_ratio.
 struct SpecimenResult {
   LoadCurve curve;
   std::map<std::string, double> numbers;  ///<  [SI]
@@ -37,6 +38,10 @@ struct TestResults {
   std::vector<SpecimenResult> specimens;
   std::vector<std::string> failures;  ///< of runs without a result
 };
+
+/// Of plates without and with a pressure on their sides, mesh by mesh: sin phi = (N - 1) / (N + 1),
+/// N the gain of strength over the pressure. Empty where either is missing.  [rad]
+std::vector<double> friction_angles(const std::vector<TestResults>& results);
 
 /// A line of the passport.
 struct PassportLine {
@@ -55,7 +60,8 @@ std::vector<PassportLine> passport_lines(const std::vector<TestResults>& results
                                          const std::vector<MaterialTarget>& targets);
 
 /// passport.md.
-std::string passport_page(const std::string& material, const Sample& sample,
+/// @param specimens  a sentence about their size and elements
+std::string passport_page(const std::string& material, const std::string& specimens,
                           const std::vector<TestResults>& results,
                           const std::vector<PassportLine>& lines);
 

@@ -13,9 +13,11 @@
 #include "run/results/result_folder.hpp"
 
 namespace breccia::laboratory {
+namespace {
 
-std::vector<TestResults> run_specimens(const std::vector<SpecimenTest>& tests, const Sample& sample,
-                                       const Bench& bench, int& exit_code) {
+template <class Material>
+std::vector<TestResults> run_all(const std::vector<SpecimenTest>& tests, const Material& sample,
+                                 const Bench& bench, int& exit_code) {
   std::vector<TestResults> results;
   std::vector<PlannedRun> runs;
   double bytes = 0.0;
@@ -25,8 +27,8 @@ std::vector<TestResults> run_specimens(const std::vector<SpecimenTest>& tests, c
     results.push_back({test, {}, {}});
     for (int k = 0; k < bench.seeds; ++k) {
       const std::int64_t seed = bench.first_seed + k;
-      const dem::Config config = case_of(test, sample, seed, cases);
-      dem::check_case(config);
+      const auto config = case_of(test, sample, seed, cases);
+      check_case(config);
       const std::string text = completed_case(config);
       PlannedRun run;
       run.digest = case_digest(text);
@@ -50,6 +52,18 @@ std::vector<TestResults> run_specimens(const std::vector<SpecimenTest>& tests, c
     }
   }
   return results;
+}
+
+}  // namespace
+
+std::vector<TestResults> run_specimens(const std::vector<SpecimenTest>& tests, const Sample& sample,
+                                       const Bench& bench, int& exit_code) {
+  return run_all(tests, sample, bench, exit_code);
+}
+std::vector<TestResults> run_specimens(const std::vector<SpecimenTest>& tests,
+                                       const RockSample& sample, const Bench& bench,
+                                       int& exit_code) {
+  return run_all(tests, sample, bench, exit_code);
 }
 
 }  // namespace breccia::laboratory

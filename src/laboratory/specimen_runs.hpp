@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "laboratory/passport.hpp"
+#include "laboratory/rock_tests.hpp"
 #include "laboratory/side_by_side.hpp"
 
 namespace breccia::laboratory {
@@ -30,5 +31,8 @@ struct Bench {
 /// @param exit_code  gets that of the first run without a result, if it was 0
 std::vector<TestResults> run_specimens(const std::vector<SpecimenTest>& tests, const Sample& sample,
                                        const Bench& bench, int& exit_code);
+std::vector<TestResults> run_specimens(const std::vector<SpecimenTest>& tests,
+                                       const RockSample& sample, const Bench& bench,
+                                       int& exit_code);
 
 }  // namespace breccia::laboratory

@@ -73,7 +73,7 @@ struct RateCurve {
 ///                unloading along the secant to the largest opening kappa
 ///   compression  N = K_n u >= -S (Y + K p H/(1 - H)), p = (D_0 - D_eq) / D_0; beyond it D_eq
 ///                yields; Y = Y_c, H = H_c, of broken links that do not touch Y_b, H_b
-///   shear        F_s += -K_t du_s, cut at S C (1 - damage) - N tan phi
+///   shear        F_s += -K_t du_s, cut at S C (1 - damage) + min(-N tan phi, S s_F)
 ///   moment       M += -K_r dtheta, cut at eta r min(|N| in compression + S T (1 - damage), S s_M)
 ///   wear         plastic slip ds and turn dtheta_p: kappa += w_s |ds| + w_m r |dtheta_p|
 ///   rate         T grows to T DIF of the link's own strain rate, smoothed over some crossings of
@@ -90,6 +90,7 @@ struct ConcreteLink {
   double rupture_opening;       ///< u_2, which rules instead of zeta; 0: zeta rules  [m]
   double friction;              ///< tan phi_i of the intact link  [-]
   double broken_friction;       ///< mu_b  [-]
+  double friction_cap;          ///< s_F, 0: none  [Pa]
   double shear_ratio;           ///< K_t / K_n  [-]
   double rolling_ratio;         ///< beta_r = K_r / (K_t r^2)  [-]
   double rolling_limit;         ///< eta of the intact link  [-]
@@ -329,12 +330,19 @@ struct ConcreteLink {
     const R zero = constant<R>(0.0);
     const R cohesive = select(s.holds, s.health, zero);
     const R slope = select(s.holds, constant<R>(friction), constant<R>(broken_friction));
-    R limit = max(zero, cohesion * link.area * cohesive - s.normal * slope);
+    R limit = max(zero, cohesion * link.area * cohesive + rubbing(link, s.normal, slope));
     const auto beyond = trial_squared > zero && trial_squared > limit * limit;
     s.sheared = s.holds && beyond && constant<R>(brittle_shear) > 0.5;
     if (any(s.sheared))
-      limit = select(s.sheared, max(zero, -1.0 * broken_friction * s.normal), limit);
+      limit = select(s.sheared, max(zero, rubbing(link, s.normal, constant<R>(broken_friction))),
+                     limit);
     return limit;
+  }
+  /// What friction bears in shear, below zero in tension.  [N]
+  template <class R>
+  BR_HD R rubbing(const LinkConstants<R>& link, const R& normal, const R& slope) const {
+    const R force = -1.0 * (normal * slope);
+    return friction_cap > 0.0 ? min(force, friction_cap * link.area) : force;
   }
 
   template <class R>

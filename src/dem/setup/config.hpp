@@ -106,6 +106,7 @@ struct MaterialConfig {
   double rolling_limit = 0.17;                 ///< eta  [-]
   double rolling_cap = 0.0;                    ///< s_M; 0: none  [Pa]
   double broken_friction = -1.0;               ///< mu_b; below 0: that of contacts  [-]
+  double friction_cap = 0.0;                   ///< s_F; 0: none  [Pa]
   double broken_rolling_limit = -1.0;          ///< eta_b; below 0: eta  [-]
   double slip_wear = 0.0, turn_wear = 0.0;     ///< w_s, w_m  [-]
   double compaction_strength = 0.0;            ///< Y_c; 0: none  [Pa]
@@ -166,6 +167,8 @@ struct MaterialConfig {
         "s_M, largest normal stress that the limit of the moments counts; 0: no bound");
     key("broken_friction", broken_friction, "-", Range{-1.0, no_limit},
         "mu_b, friction coefficient of broken links; below 0: contact.friction");
+    key("friction_cap", friction_cap, "Pa", not_negative,
+        "s_F, largest shear stress that friction bears in a link, whole or broken; 0: no bound");
     key("broken_rolling_limit", broken_rolling_limit, "-", Range{-1.0, no_limit},
         "eta_b, plastic limit of the moments of broken links; below 0: rolling_limit");
     key("slip_wear", slip_wear, "-", not_negative,

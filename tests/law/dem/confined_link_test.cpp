@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -106,6 +107,25 @@ TEST(ConfinedLink, yields_under_pressure_along_a_line_and_keeps_its_shortening) 
     EXPECT_NEAR(rig.last.normal, -limit - slope * stiffness * 1e-6, 1e-9 * limit);
     EXPECT_NEAR(rig.held(), rig.work, 1e-9 * rig.work);
   }
+}
+
+TEST(ConfinedLink, friction_bears_no_more_than_its_bound) {
+  const double bound = 3e6;
+  for (const double pressure : {10e6, 40e6})
+    for (const bool brittle : {false, true}) {
+      Rig rig;
+      rig.law.friction_cap = bound;
+      rig.law.brittle_shear = brittle ? 1.0 : 0.0;
+      rig.law.crushing_strength = 0.0;
+      rig.move(first_length - pressure * area / stiffness, 100);
+      const double slip = (cohesion + 0.25 * pressure) * area / (0.18 * stiffness);
+      for (int i = 0; i < 2000; ++i) rig.slide(slip / 1000);
+      EXPECT_EQ(rig.intact(), !brittle);
+      const double whole = cohesion + std::min(0.176 * pressure, bound);
+      const double left = std::min(0.25 * pressure, bound);
+      EXPECT_NEAR(norm(rig.last.shear), (brittle ? left : whole) * area, 1e-6 * whole * area);
+      EXPECT_NEAR(rig.held(), rig.work, 1e-9 * rig.work);
+    }
 }
 
 TEST(ConfinedLink, broken_under_pressure_falls_to_the_crushed_strength_and_pays_for_it) {
@@ -271,6 +291,7 @@ TEST(ConfinedLink, of_a_material_without_these_keys_has_none_of_these_bounds) {
   EXPECT_EQ(law.broken_friction, 0.37);
   EXPECT_EQ(law.broken_rolling_limit, 0.13);
   EXPECT_EQ(law.rolling_cap, 0.0);
+  EXPECT_EQ(law.friction_cap, 0.0);
   EXPECT_EQ(law.compaction_strength, 0.0);
   EXPECT_EQ(law.crushing_strength, 0.0);
   EXPECT_FALSE(law.wears());

@@ -12,7 +12,8 @@ namespace breccia::laboratory {
 namespace {
 
 /// A concrete whose strengths depend on all keys, as those of packings do.
-std::vector<TestResults> shown_by(const dem::MaterialConfig& m, const Calibration& calibration) {
+std::vector<TestResults> shown_by(const dem::MaterialConfig& m,
+                                  const Calibration<dem::MaterialConfig>& calibration) {
   const double f_t =
       1.5e6 * std::pow(m.tensile_strength / 1e6, 0.9) * std::pow(m.fracture_energy / 100.0, 0.08);
   const double f_c = 9e6 * std::pow(m.cohesion / 1e6, 0.45) * std::pow(f_t / 1e6, 0.3);
@@ -44,7 +45,7 @@ TEST(Calibration, FindsFiveKeysWithinSixSteps) {
   while (calibration.steps().size() < 6 && !calibration.converged())
     calibration.take(shown_by(calibration.material(), calibration));
   EXPECT_TRUE(calibration.converged()) << calibration.progress();
-  const CalibrationStep& best = calibration.best();
+  const CalibrationStep<dem::MaterialConfig>& best = calibration.best();
   EXPECT_NEAR(best.shown.at("tension").mean, 2.9e6, 0.05 * 2.9e6);
   EXPECT_NEAR(best.shown.at("compression").mean, 38e6, 0.05 * 38e6);
   EXPECT_NEAR(best.material.young, 33.6e9 / 0.93, 0.03 * 36e9);
@@ -66,10 +67,65 @@ TEST(Calibration, LeavesKeysWithoutATargetAloneAndMakesOnlyTheTestsItNeeds) {
   EXPECT_EQ(calibration.material().young, start.young);
 }
 
+/// A concrete whose keys work on each other's targets: more cohesion raises the ratio and the
+/// tensile strength, and more of the key poisson lowers the compressive strength.
+TEST(Calibration, LearnsWhatKeysDoToOtherTargets) {
+  dem::MaterialConfig start;
+  Calibration calibration(start, c30);
+  while (calibration.steps().size() < 8 && !calibration.converged()) {
+    const dem::MaterialConfig& m = calibration.material();
+    const double f_c = 20e6 * std::pow(m.cohesion / 1e6, 0.5) * std::pow(m.poisson / 0.1, -0.5);
+    const double nu = 1.2 * m.poisson * std::pow(m.cohesion / 10e6, 0.5);
+    const double f_t = 2e6 * std::pow(m.tensile_strength / 1e6, 0.7) *
+                       std::pow(m.fracture_energy / 50.0, 0.2) * std::pow(m.cohesion / 10e6, 0.2);
+    const double g_f = 2.0 * m.fracture_energy * std::pow(m.tensile_strength / 1e6, 0.3);
+    std::vector<TestResults> results;
+    for (const SpecimenTest& test : calibration.tests()) {
+      SpecimenResult s;
+      s.numbers = {{"young", m.young}, {"poisson", nu}, {"fracture_energy", g_f}};
+      s.numbers["strength"] = test.name == "tension" ? f_t : f_c;
+      results.push_back({test, {s}, {}});
+    }
+    calibration.take(results);
+  }
+  EXPECT_TRUE(calibration.converged()) << calibration.page("c", "as a test");
+}
+
+/// Plates by Mohr and Coulomb, a little stronger than their joints; a disc a tenth too strong.
+TEST(Calibration, FindsTheKeysOfARock) {
+  fdem::MaterialConfig start;
+  start.name = "granite";
+  Calibration calibration(start, {{"young", 69e9, "Pa"},
+                                  {"compression", 200e6, "Pa"},
+                                  {"brazilian", 9.3e6, "Pa"},
+                                  {"tension", 99e6, "Pa"},
+                                  {"friction_angle", 1.03, "rad"}});
+  ASSERT_EQ(calibration.tests().size(), 3U);
+  while (calibration.steps().size() < 5 && !calibration.converged()) {
+    const fdem::MaterialConfig& m = calibration.material();
+    const double sine = std::sin(0.97 * m.joint.friction_angle);
+    std::vector<TestResults> results;
+    for (const SpecimenTest& test : calibration.tests()) {
+      SpecimenResult s;
+      const double f_c = 2.15 * m.joint.cohesion * std::cos(m.joint.friction_angle) / (1.0 - sine);
+      s.numbers = {{"young", 0.92 * m.young}};
+      s.numbers["strength"] = test.name == "disc"
+                                  ? 1.1 * m.joint.tension
+                                  : f_c + test.pressure * (1.0 + sine) / (1.0 - sine);
+      results.push_back({test, {s, s}, {}});
+    }
+    calibration.take(results);
+  }
+  EXPECT_TRUE(calibration.converged()) << calibration.page("granite", "as a test");
+  EXPECT_NEAR(calibration.best().material.joint.tension, 9.3e6 / 1.1, 0.05 * 9.3e6);
+  EXPECT_EQ(calibration.best().shown.count("tension"), 0U);  // the disc's target rules
+  EXPECT_NE(calibration.block("as a test").find("[material.granite]"), std::string::npos);
+}
+
 TEST(Calibration, RefusesToGoOnWithoutTargetsOrResults) {
-  EXPECT_THROW(Calibration({}, {}), InputError);
-  EXPECT_THROW(Calibration({}, {{"tension", -1.0, "Pa"}}), InputError);
-  Calibration calibration({}, c30);
+  EXPECT_THROW(Calibration(dem::MaterialConfig{}, {}), InputError);
+  EXPECT_THROW(Calibration(dem::MaterialConfig{}, {{"tension", -1.0, "Pa"}}), InputError);
+  Calibration calibration(dem::MaterialConfig{}, c30);
   EXPECT_THROW(calibration.take({}), InputError);
 }
 

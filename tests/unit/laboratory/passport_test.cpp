@@ -11,6 +11,7 @@
 #include "exec/error.hpp"
 #include "io/case/case_file.hpp"
 #include "io/whole_file.hpp"
+#include "laboratory/rock_tests.hpp"
 #include "math/constants.hpp"
 #include "prepare/checks/check_case.hpp"
 #include "unit/run/program.hpp"
@@ -101,6 +102,64 @@ TEST(SpecimenResult, NamesTheProbeThatIsMissing) {
   EXPECT_THROW(specimen_result(test_named("tension"), scratch.path()), InputError);
 }
 
+TEST(SpecimenResult, OfAnOedometerIsItsStrainsAndTangents) {
+  const ScratchFolder scratch;
+  std::string text = "time,force_top,force_bottom,force_side,top,bottom\ns,N,N,N,m,m\n";
+  for (int k = 0; k <= 200; ++k) {  // 20 GPa up to 0.2 GPa, 10 GPa beyond; sides bear 40 %
+    const double strain = 5e-4 * k;
+    const double stress = strain < 0.01 ? 20e9 * strain : 0.2e9 + 10e9 * (strain - 0.01);
+    text += fmt::format("{},{},{},{},{},{}\n", k, 0.01 * stress, -0.01 * stress, 4e-3 * stress,
+                        0.05 * (1.0 - strain), -0.05 * (1.0 - strain));
+  }
+  replace_file(scratch / "history.csv", text);
+  const auto numbers = specimen_result(test_named("oedometer"), scratch.path()).numbers;
+  EXPECT_NEAR(numbers.at("strain_100"), 0.005, 1e-9);
+  EXPECT_NEAR(numbers.at("strain_1000"), 0.09, 1e-9);
+  EXPECT_NEAR(numbers.at("tangent_300"), 10e9, 1e3);
+  EXPECT_NEAR(numbers.at("side_ratio"), 0.4, 1e-9);
+}
+
+TEST(SpecimenResult, OfAPrismHoldsWhatIsLeftAfterThePeak) {
+  const ScratchFolder scratch;
+  std::string text = "time,force_top,force_bottom,top,bottom,right,left\ns,N,N,m,m,m,m\n";
+  for (int k = 0; k <= 400; ++k) {
+    const double strain = 1e-5 * k, stress = k <= 100 ? 30e9 * strain : 3e6;
+    text += fmt::format("{},{},{},{},{},0.04,-0.04\n", k, 0.01 * stress, -0.01 * stress,
+                        0.09 * (1.0 - strain), -0.09 * (1.0 - strain));
+  }
+  replace_file(scratch / "history.csv", text);
+  const auto numbers = specimen_result(test_named("compression_prism"), scratch.path()).numbers;
+  EXPECT_NEAR(numbers.at("residual"), 0.1, 1e-9);
+}
+
+/// N = 5: phi = asin(4/6).
+TEST(FrictionAngle, IsThatOfPlatesFreeAndPressed) {
+  const std::vector<SpecimenTest>& tests = rock_tests();
+  const auto plate = [](const SpecimenTest& test, double strength) {
+    return TestResults{test, {{{}, {{"strength", strength}}}}, {}};
+  };
+  const auto angles = friction_angles({plate(tests[0], 60e6), plate(tests[1], 110e6)});
+  ASSERT_EQ(angles.size(), 1U);
+  EXPECT_NEAR(angles[0], std::asin(4.0 / 6.0), 1e-12);
+  EXPECT_TRUE(friction_angles({plate(tests[0], 60e6)}).empty());
+}
+
+TEST(RockSpecimens, AreCasesWithoutAProblem) {
+  RockSample sample;
+  sample.material.name = "granite";
+  for (const SpecimenTest& test : rock_tests()) {
+    const fdem::Config config = case_of(test, sample, 2, "");
+    EXPECT_NO_THROW(fdem::check_case(config)) << test.name;
+    EXPECT_EQ(config.loads.size(), test.pressure > 0.0 ? 2U : 0U);
+  }
+  fdem::Config c;
+  c.materials.resize(1);
+  c.materials[0].name = "steel";
+  c.materials[0].joints = "none";
+  EXPECT_THROW(rock_sample_of(c, "steel"), InputError);
+  EXPECT_THROW(rock_sample_of(c, "rock"), InputError);
+}
+
 TEST(Passport, HoldsMeansAgainstTargetsWithinTheirTolerances) {
   TestResults tension{test_named("tension"), {}, {}}, disc{test_named("brazilian"), {}, {}};
   for (const double strength : {2.9e6, 3.1e6}) {
@@ -111,7 +170,7 @@ TEST(Passport, HoldsMeansAgainstTargetsWithinTheirTolerances) {
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_TRUE(lines[0].pass());
   EXPECT_FALSE(lines[1].pass());  // 10 % off, 5 % are allowed
-  const std::string page = passport_page("c", concrete(), {tension, disc}, lines);
+  const std::string page = passport_page("c", "Spheres.", {tension, disc}, lines);
   EXPECT_NE(
       page.find("| direct tension, prism | strength | MPa | 3 +- 0.14 (2) | 3 | +0.0 % | pass |"),
       std::string::npos)

@@ -62,6 +62,9 @@ TEST_F(FirstHour, explain_tells_formula_and_draws_the_law) {
   EXPECT_NE(svg.find("2.2"), std::string::npos);  // the strength, on the axis
   EXPECT_EQ(run("explain joint.tension"), 0) << told;
   EXPECT_TRUE(says("G_I")) << told;
+  EXPECT_EQ(run("explain rate --svg rate.svg"), 0) << told;
+  EXPECT_TRUE(says("Malvar and Ross") && says("log10 of the strain rate in 1/s")) << told;
+  EXPECT_NE(read_whole_file(folder / "rate.svg").find("9.43"), std::string::npos);
   EXPECT_EQ(run("explain tensile_strenght"), 2);
 }
 

@@ -1,0 +1,158 @@
+#include "laboratory/rock_tests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exec/error.hpp"
+#include "math/constants.hpp"
+
+namespace breccia::laboratory {
+namespace {
+
+constexpr double plate_width = 0.05, plate_height = 0.1, disc_diameter = 0.05;  // m
+constexpr double far = 1.0;
+constexpr double strain_rate = 4.0;  // 1/s
+
+/// Edge of so many equilateral triangles in an area.  [m]
+double edge_for(double area, int triangles) {
+  return std::sqrt(4.0 * area / (std::sqrt(3.0) * triangles));
+}
+
+/// Axial stress by Mohr and Coulomb.  [Pa]
+double strength_of(const fdem::StrengthConfig& joint, double pressure) {
+  const double sine = std::sin(joint.friction_angle), cosine = std::cos(joint.friction_angle);
+  return (2.0 * joint.cohesion * cosine + pressure * (1.0 + sine)) / (1.0 - sine);
+}
+
+fdem::SupportConfig support(const char* name, const Vec2& min, const Vec2& max, double speed,
+                            double ramp) {
+  fdem::SupportConfig s;
+  s.name = name;
+  s.region.on = "specimen";
+  s.region.min = min;
+  s.region.max = max;
+  s.fix = {"y"};
+  s.velocity = Vec2{0.0, speed};
+  s.history.ramp = ramp;
+  return s;
+}
+
+ProbeConfig probe(const char* name, const char* on, const char* quantity, const char* reduce) {
+  return {name, on, quantity, reduce};
+}
+
+void add_end_probes(fdem::Config& c) {
+  c.probes = {probe("force_top", "top", "force_y", "sum"),
+              probe("force_bottom", "bottom", "force_y", "sum"),
+              probe("top", "top", "position_y", "mean"),
+              probe("bottom", "bottom", "position_y", "mean")};
+}
+
+fdem::BodyConfig body_of(const RockSample& sample, double area, std::int64_t seed) {
+  fdem::BodyConfig body;
+  body.name = "specimen";
+  body.material = sample.material.name;
+  body.jitter = 0.1;
+  // edges that differ by up to 2 % make another mesh of each seed
+  body.mesh_size =
+      edge_for(area, sample.elements) * (1.0 + 0.01 * (static_cast<double>((seed + 2) % 5) - 2.0));
+  return body;
+}
+
+/// Smooth ends approach; a pressure on the sides comes first.
+void press_plate(fdem::Config& c, const RockSample& sample, double pressure) {
+  const double x = 0.5 * plate_width, y = 0.5 * plate_height, thin = 1e-3 * plate_width;
+  const double expected = strength_of(sample.material.joint, pressure) / sample.material.young;
+  const double ramp = pressure > 0.0 ? 1e-4 : 5e-5;
+  c.bodies = {body_of(sample, plate_width * plate_height, c.seed)};
+  c.bodies[0].shape = "plate";
+  c.bodies[0].size = {plate_width, plate_height};
+  const double speed = 0.5 * strain_rate * plate_height;
+  c.supports = {support("top", {-far, y - thin}, {far, far}, -speed, ramp),
+                support("bottom", {-far, -far}, {far, thin - y}, speed, ramp)};
+  for (const double side : {-1.0, 1.0}) {
+    if (!(pressure > 0.0)) break;
+    fdem::LoadConfig load;
+    load.name = side < 0.0 ? "left" : "right";
+    load.region.on = "specimen";
+    load.region.min = side < 0.0 ? Vec2{-far, -far} : Vec2{x - thin, -far};
+    load.region.max = side < 0.0 ? Vec2{thin - x, far} : Vec2{far, far};
+    load.pressure = pressure;
+    load.history.ramp = ramp;
+    c.loads.push_back(load);
+  }
+  c.time.end = ramp + (1.35 * expected + 2e-4) / strain_rate;
+  add_end_probes(c);
+  for (const double side : {-1.0, 1.0}) {
+    ProbeConfig across = probe(side < 0.0 ? "left" : "right", "specimen", "displacement_x", "mean");
+    const double strip = 0.02 * plate_width;
+    across.min = {side < 0.0 ? -far : x - strip, -0.5 * y};
+    across.max = {side < 0.0 ? strip - x : far, 0.5 * y};
+    c.probes.push_back(across);
+  }
+}
+
+void press_disc(fdem::Config& c, const RockSample& sample) {
+  const double radius = 0.5 * disc_diameter, strip = 0.1 * radius;
+  const double depth = 0.98 * std::sqrt(radius * radius - strip * strip);
+  c.bodies = {body_of(sample, pi * radius * radius, c.seed)};
+  c.bodies[0].shape = "disc";
+  c.bodies[0].radius = radius;
+  // closing over diameter at the peak, by the elastic disc between strips: about 6 f_t/E
+  const double closing = 9.0 * sample.material.joint.tension / sample.material.young;
+  const double ramp = 5e-5, speed = 0.5 * strain_rate / 4.0 * disc_diameter;
+  c.supports = {support("top", {-strip, depth}, {strip, far}, -speed, ramp),
+                support("bottom", {-strip, -far}, {strip, -depth}, speed, ramp)};
+  c.time.end = ramp + closing / (strain_rate / 4.0);
+  add_end_probes(c);
+}
+
+}  // namespace
+
+RockSample rock_sample_of(const fdem::Config& config, const std::string& material) {
+  const auto found = std::find_if(config.materials.begin(), config.materials.end(),
+                                  [&](const auto& m) { return m.name == material; });
+  if (found == config.materials.end())
+    throw InputError(fmt::format("the case has no material {}; nothing was run", material));
+  if (found->joints == "none")
+    throw InputError(
+        fmt::format("material {} has no joints: it does not break; nothing was run", material));
+  RockSample sample;
+  sample.material = *found;
+  sample.joints = config.joints;
+  return sample;
+}
+
+const std::vector<SpecimenTest>& rock_tests() {
+  const Vec3 plate{plate_width, plate_height, 1.0};
+  static const std::vector<SpecimenTest> tests{
+      {"plate", "compression, plate, smooth ends", Loading::plate, plate},
+      {"plate_10", "compression, plate, 10 MPa on its sides", Loading::plate, plate, 10e6},
+      {"disc", "Brazilian, disc", Loading::plane_disc, {disc_diameter, disc_diameter, 1.0}}};
+  return tests;
+}
+
+fdem::Config case_of(const SpecimenTest& test, const RockSample& sample, std::int64_t seed,
+                     const std::string&) {
+  fdem::Config c;
+  c.title = test.title;
+  c.seed = seed;
+  c.method = "fdem2d";
+  c.plane = "stress";
+  c.joints = sample.joints;
+  c.materials = {sample.material};
+  c.materials[0].damping = 0.5;  // a slow test within a millisecond
+  c.time.evaluate_every = 100;
+  c.output.frames = 0;
+  c.output.fields = c.output.pictures = false;
+  c.energy.stop = 0.1;
+  if (test.loading == Loading::plane_disc)
+    press_disc(c, sample);
+  else
+    press_plate(c, sample, test.pressure);
+  return c;
+}
+
+}  // namespace breccia::laboratory
