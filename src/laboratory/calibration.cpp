@@ -234,7 +234,7 @@ void Calibration<Material>::learn() {
       const double slope = slopes_[i][j] + missed * (x[j] - x0[j]) / squared;
       const double own = aims_[i].knob.sensitivity;
       slopes_[i][j] =
-          i == j ? std::clamp(slope, 0.4 * own, 2.5 * own) : std::clamp(slope, -0.5, 0.5);
+          i == j ? std::clamp(slope, 0.4 * own, 2.5 * own) : std::clamp(slope, -1.5, 1.5);
     }
   }
 }
