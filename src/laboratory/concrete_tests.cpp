@@ -317,7 +317,7 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
       load_triaxially(c, test.size, test.pressure);
       break;
     case Loading::oedometer:
-      c.time.end = 0.12 / 4.0;
+      c.time.end = 0.14 / 4.0;
       load_between_sides(c, test.size, 4.0 * height);
       break;
     case Loading::plate:

@@ -116,6 +116,7 @@ TEST(SpecimenResult, OfAnOedometerIsItsStrainsAndTangents) {
   EXPECT_NEAR(numbers.at("strain_100"), 0.005, 1e-9);
   EXPECT_NEAR(numbers.at("strain_1000"), 0.09, 1e-9);
   EXPECT_NEAR(numbers.at("tangent_300"), 10e9, 1e3);
+  EXPECT_NEAR(numbers.at("tangent_800"), 10e9, 1e3);
   EXPECT_NEAR(numbers.at("side_ratio"), 0.4, 1e-9);
 }
 
