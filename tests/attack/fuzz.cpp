@@ -1,0 +1,123 @@
+// Every parser of the program fed with bytes from outside: one text for libFuzzer (clang,
+// -DBR_FUZZ=ON) and for a plain loop that mutates the files of a corpus.
+//
+//   attack_fuzz PARSER SECONDS SEED FILE...    prints "runs"; a finding ends it by its signal, the
+//                                              input then stands in attack_fuzz.PARSER.last
+// Parsers: case gmsh abaqus csv vtu units checkpoint.
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "exec/error.hpp"
+#include "io/case/units.hpp"
+#include "io/checkpoint.hpp"
+#include "io/vtu/vtu_reader.hpp"
+#include "mutants.hpp"
+#include "prepare/csv_numbers.hpp"
+#include "prepare/meshing/mesh_file.hpp"
+#include "run/case.hpp"
+
+namespace breccia::attack {
+namespace {
+
+std::string scratch() {
+  static const std::string folder =
+      (std::filesystem::temp_directory_path() / ("attack_fuzz." + std::to_string(::getpid())))
+          .string();
+  std::filesystem::create_directories(folder + "/fields");
+  return folder;
+}
+std::string as_file(const std::string& name, const std::string& text) {
+  const std::string path = scratch() + "/" + name;
+  std::ofstream(path, std::ios::binary) << text;
+  return path;
+}
+
+/// Whatever the bytes are: a result, or one of the program's own errors.
+void parse(const std::string& parser, const std::string& text) {
+  try {
+    if (parser == "case") {
+      case_of_text(text, "fuzzed", "", {});
+    } else if (parser == "gmsh") {
+      prepare::parse_gmsh(text, "fuzzed.msh");
+    } else if (parser == "abaqus") {
+      prepare::parse_abaqus(text, "fuzzed.inp");
+    } else if (parser == "csv") {
+      prepare::read_csv(as_file("fuzzed.csv", text), 4, "x,y,z,r",
+                        [](const auto&) { return true; });
+    } else if (parser == "vtu") {
+      as_file("fields/elements_000000.vtu", text);
+      as_file("fields/links_000000.vtu", text);
+      as_file("elements.pvd", text.starts_with("<?xml") && text.find("Collection") != text.npos
+                                  ? text
+                                  : "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\">\n"
+                                    "<Collection>\n<DataSet timestep=\"0\" part=\"0\" "
+                                    "file=\"fields/elements_000000.vtu\"/>\n</Collection>\n"
+                                    "</VTKFile>\n");
+      frame_times(scratch());
+      read_frame(scratch(), 0);
+    } else if (parser == "units") {
+      std::string problem, better;
+      parse_quantity(text, "Pa", problem, &better);
+      parse_unit(text);
+    } else if (parser == "checkpoint") {
+      CheckpointReader reader(as_file("fuzzed.br", text));
+    } else {
+      std::fprintf(stderr, "no parser %s\n", parser.c_str());
+      std::exit(2);
+    }
+  } catch (const Error&) {
+  }
+}
+
+}  // namespace
+}  // namespace breccia::attack
+
+#ifdef BR_LIBFUZZER
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  static const char* const parser = std::getenv("ATTACK_PARSER");
+  breccia::attack::parse(parser == nullptr ? "case" : parser,
+                         {reinterpret_cast<const char*>(bytes), size});
+  return 0;
+}
+#else
+int main(int arguments, char** argument) {
+  using namespace breccia::attack;
+  using Clock = std::chrono::steady_clock;
+  if (arguments < 5) {
+    std::fputs("attack_fuzz PARSER SECONDS SEED FILE...\n", stderr);
+    return 2;
+  }
+  const std::string parser = argument[1];
+  const auto end = Clock::now() + std::chrono::duration<double>(std::atof(argument[2]));
+  Random random(std::strtoul(argument[3], nullptr, 10));
+  std::vector<std::string> corpus;
+  for (int k = 4; k < arguments; ++k) {
+    std::ifstream file(argument[k], std::ios::binary);
+    corpus.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    parse(parser, corpus.back());  // as it is: former findings, too
+  }
+  const std::string last = "attack_fuzz." + parser + ".last";
+  long runs = 0;
+  for (; Clock::now() < end; ++runs) {
+    std::string text = corpus[below(random, corpus.size())];
+    for (std::size_t n = 1 + below(random, 4); n-- > 0;) mutate(text, random);
+    if (random() % 8 == 0 && !text.empty())  // a part of another file
+      text.insert(below(random, text.size()), corpus[below(random, corpus.size())], 0,
+                  below(random, 256));
+    std::ofstream(last, std::ios::binary) << text;
+    ::alarm(5);
+    parse(parser, text);
+  }
+  std::filesystem::remove(last);
+  std::filesystem::remove_all(scratch());
+  std::printf("%ld\n", runs);
+  return 0;
+}
+#endif
