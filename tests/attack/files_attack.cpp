@@ -1,9 +1,9 @@
 // Damaged and forged checkpoints by the thousand, each loaded in a child of its own or in a batch.
 //
 //   attack_files damaged FILE.br RUNS SEED          prints "runs silent crashes hangs"
-//   attack_files forged CASE FILE.br RUNS SEED      prints "runs refused ran crashes hangs"
-// FILE.br of `forged` is a checkpoint of CASE. Findings go to standard error with their number: the
-// n-th mutant of a seed is always the same.
+//   attack_files forged MODEL.br FILE.br RUNS SEED  prints "runs refused ran crashes hangs"
+// FILE.br of `forged` is a checkpoint of the case of MODEL.br, or MODEL.br itself. Findings go to
+// standard error with their number: the n-th mutant of a seed is always the same.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -124,29 +124,24 @@ void forge(const CheckpointReader& reader, const std::string& to, Random& random
 
 int forged(const std::string& path, const std::string& good, long runs, unsigned long seed,
            const std::string& bad) {
-  const Case read = load_case(path, {});
-  Case built = read;
-  {
-    CheckpointWriter writer;
-    save_model_of(read, writer);
-    writer.write(bad);
-    std::filesystem::rename(bad, bad + ".model.br");
-  }
-  take_prepared(built, bad + ".model.br");
+  const Case built = load_case(path, {});
+  const bool model = path == good;
   const CheckpointReader reader(good);
   Counts counts;
   for (long run = 0; run < runs; ++run)
     count(counts, run, [&] {
       Random random = random_of(seed, run);
       forge(reader, bad, random);
-      const std::unique_ptr<Method> method = make_method(built, Exec{}, nullptr);
-      const CheckpointReader forgery(bad);
-      method->load(&forgery);
+      const std::unique_ptr<Method> method =
+          make_method(model ? load_case(bad, {}) : built, Exec{}, nullptr);
+      if (!model) {
+        const CheckpointReader forgery(bad);
+        method->load(&forgery);
+      }
       const std::int64_t end = method->steps() + 20;
       for (int n = 0; n < 20 && method->steps() < end; ++n) method->advance({1.0, end});
       return accepted;
     });
-  std::filesystem::remove(bad + ".model.br");
   std::printf("%ld %ld %ld %ld %ld\n", runs, counts.refused, counts.accepted, counts.crashes,
               counts.hangs);
   return counts.crashes + counts.hangs > 0;
@@ -169,7 +164,7 @@ int main(int arguments, char** argument) {
     result = forged(argument[2], argument[3], std::atol(argument[4]),
                     std::strtoul(argument[5], nullptr, 10), bad);
   else
-    std::fputs("attack_files damaged FILE RUNS SEED | forged CASE FILE RUNS SEED\n", stderr);
+    std::fputs("attack_files damaged FILE RUNS SEED | forged MODEL FILE RUNS SEED\n", stderr);
   std::filesystem::remove(bad);
   return result;
 }

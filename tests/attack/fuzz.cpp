@@ -43,7 +43,7 @@ std::string as_file(const std::string& name, const std::string& text) {
 void parse(const std::string& parser, const std::string& text) {
   try {
     if (parser == "case") {
-      case_of_text(text, "fuzzed", "", {});
+      case_of_text(text, "fuzzed", ".", {});
     } else if (parser == "gmsh") {
       prepare::parse_gmsh(text, "fuzzed.msh");
     } else if (parser == "abaqus") {
@@ -52,13 +52,13 @@ void parse(const std::string& parser, const std::string& text) {
       prepare::read_csv(as_file("fuzzed.csv", text), 4, "x,y,z,r",
                         [](const auto&) { return true; });
     } else if (parser == "vtu") {
-      as_file("fields/elements_000000.vtu", text);
-      as_file("fields/links_000000.vtu", text);
+      as_file("fields/elements_0000.vtu", text);
+      as_file("fields/links_0000.vtu", text);
       as_file("elements.pvd", text.starts_with("<?xml") && text.find("Collection") != text.npos
                                   ? text
                                   : "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\">\n"
                                     "<Collection>\n<DataSet timestep=\"0\" part=\"0\" "
-                                    "file=\"fields/elements_000000.vtu\"/>\n</Collection>\n"
+                                    "file=\"fields/elements_0000.vtu\"/>\n</Collection>\n"
                                     "</VTKFile>\n");
       frame_times(scratch());
       read_frame(scratch(), 0);

@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""Damaged checkpoints (none may be loaded) and forged ones, digests right (none may crash)."""
+
+import os
+import subprocess
+import sys
+
+from common import Attack, TOOLS, arguments, breccia, checkpoints, run
+
+
+def main():
+    options = arguments(__doc__, 2000).parse_args()
+    result = 0
+    for case in ("dem", "fdem"):
+        for kind in ("damaged", "forged", "forged model"):
+            attack = Attack(f"{kind}, {case}", "files")
+            run(case, attack.path("r"))
+            breccia("prepare", os.path.join(os.path.dirname(__file__), case + ".toml"), "-o",
+                    attack.path("m.br"))
+            good = (checkpoints(attack.path("r")) or ["none"])[-1]
+            model = attack.path("m.br")
+            words = {"damaged": ["damaged", good], "forged": ["forged", model, good],
+                     "forged model": ["forged", model, model]}[kind]
+            # A forged file costs a process and twenty steps, a damaged one the reading alone.
+            runs = options.runs if kind == "damaged" else max(1, options.runs // 10)
+            done = subprocess.run([os.path.join(TOOLS, "attack_files"), *words, str(runs),
+                                   str(options.seed)], capture_output=True, text=True,
+                                  env=dict(os.environ, TMPDIR=attack.folder))
+            sys.stderr.write(done.stderr)
+            counts = [int(word) for word in done.stdout.split()]
+            if attack.expect(len(counts) > 3, f"attack_files ended with {done.returncode}"):
+                attack.runs = counts[0]
+                attack.findings += sum(counts[1:] if kind == "damaged" else counts[3:])
+                if kind != "damaged":
+                    attack.note = f"({counts[1]} refused, {counts[2]} ran)"
+            result |= attack.end()
+    return result
+
+
+if __name__ == "__main__":
+    sys.exit(main())

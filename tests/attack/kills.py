@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""SIGKILL at random instants of a run, alone and as one of three ranks, and SIGSTOP of a rank: what
+is resumed ends with the hash of the run that nobody disturbed."""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from common import Attack, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash
+
+STEPS = 400
+INTERVAL = 20  # steps between checkpoints, as the cases say
+
+
+def ranks_of(launcher):
+    """The processes of the program below mpirun, which may have helpers between."""
+    below, found = [launcher], []
+    while below:
+        parent = below.pop()
+        try:
+            with open(f"/proc/{parent}/task/{parent}/children") as file:
+                children = [int(word) for word in file.read().split()]
+            for child in children:
+                below.append(child)
+                if os.readlink(f"/proc/{child}/exe") == os.path.realpath(PROGRAM):
+                    found.append(child)
+        except OSError:
+            pass
+    return found
+
+
+def disturb(attack, case, random_, ranks, stop, longest):
+    folder = attack.path("run")
+    shutil.rmtree(folder, ignore_errors=True)
+    words = [PROGRAM, *run_words(case, folder, STEPS)]
+    if ranks > 1:
+        words = ["mpirun", "--oversubscribe", "--allow-run-as-root", "-n", str(ranks), *words,
+                 "--set", "domain.patience=3"]
+    child = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                             env=dict(os.environ, GOMP_SPINCOUNT="2000"))
+    time.sleep(random_.uniform(0.02, longest))
+    targets = ranks_of(child.pid) if ranks > 1 else [child.pid]
+    hit = bool(targets) and child.poll() is None
+    if hit:
+        os.kill(random_.choice(targets), signal.SIGSTOP if stop else signal.SIGKILL)
+    try:
+        code = child.wait(HANG)
+    except subprocess.TimeoutExpired:
+        attack.expect(False, f"{case}: did not end in {HANG} s after the signal")
+        for process in ranks_of(child.pid) + [child.pid]:
+            os.kill(process, signal.SIGKILL)
+        child.wait()
+        return
+    for process in targets:
+        if ranks > 1 and os.path.exists(f"/proc/{process}"):
+            time.sleep(1)
+            attack.expect(not os.path.exists(f"/proc/{process}"), f"rank {process} is left behind")
+    attack.runs += 1
+    attack.live += hit and code != 0
+    for path in checkpoints(folder):
+        told, text = breccia("info", path)
+        attack.expect(told == 0, f"{path}: info ends with {told}: {text}")
+    if not checkpoints(folder):
+        attack.early += 1
+        return
+    newest = int(os.path.basename(checkpoints(folder)[-1]).split("_")[1].split(".")[0])
+    attack.expect(newest % INTERVAL == 0 or code == 0 or stop or ranks > 1,
+                  f"a checkpoint of step {newest}")
+    if code != 0:
+        told, text = resume(folder)
+        attack.expect(told == 0, f"{case}: resume ends with {told}: {text}")
+    attack.resumed += 1
+    attack.expect(state_hash(folder) == attack.hash, f"{case}: hash {state_hash(folder)}")
+    left = [name for name in os.listdir(folder) if name.endswith(".tmp")]
+    attack.expect(not left, f"left behind: {left}")
+
+
+def main():
+    options = arguments(__doc__, 20).parse_args()
+    result = 0
+    random_ = random.Random(options.seed)
+    kinds = [("kill -9", 1, False, options.runs), ("kill -9 of one of 3 ranks", 3, False, options.runs // 4),
+             ("SIGSTOP of one of 3 ranks", 3, True, options.runs // 10)]
+    for name, ranks, stop, runs in kinds:
+        if ranks > 1 and shutil.which("mpirun") is None:
+            continue
+        for case in ("dem", "fdem"):
+            attack = Attack(f"{name}, {case}", "trials")
+            attack.live = attack.early = attack.resumed = 0
+            begun = time.time()
+            code, text = run(case, attack.path("good"), STEPS)
+            attack.expect(code == 0, f"undisturbed: {code}: {text}")
+            longest = max(0.3, 1.2 * (time.time() - begun)) * (3 if ranks > 1 else 1)
+            attack.hash = state_hash(attack.path("good"))
+            while attack.runs < max(1, runs // 2) and time.time() - attack.begun < options.seconds / 6:
+                disturb(attack, case, random_, ranks, stop, longest)
+            attack.note = f"({attack.live} hit a live run, {attack.early} before a checkpoint, {attack.resumed} compared)"
+            result |= attack.end()
+    return result
+
+
+if __name__ == "__main__":
+    sys.exit(main())
