@@ -1,6 +1,7 @@
 // breccia: how concrete and rock break. Exit codes: docs of the commands, exec/error.hpp.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -131,6 +132,14 @@ int guarded(int argc, char** argv, breccia::Communicator* ranks) {
   return exit_code;
 }
 
+/// Not even memory for the message of an error, or for MPI to end well: mpirun then ends the
+/// others.
+[[noreturn]] void end_without_memory() {
+  constexpr std::string_view message = "error: not enough memory\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
+  std::_Exit(memory_error);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -146,5 +155,7 @@ int main(int argc, char** argv) {
   } catch (const breccia::Error& error) {  // of MPI itself
     write_error(error.what());
     return error.exit_code();
+  } catch (const std::bad_alloc&) {
+    end_without_memory();
   }
 }

@@ -126,6 +126,8 @@ void* or_throw(void* memory) {
 
 }  // namespace
 
+#pragma GCC visibility push(default)
+
 void* operator new(size_t size) {
   return or_throw(allocate(size));
 }
@@ -245,3 +247,5 @@ int statvfs(const char* path, struct statvfs* about) {
 }
 
 }  // extern "C"
+
+#pragma GCC visibility pop

@@ -71,7 +71,7 @@ def disturb(attack, case, random_, ranks, stop, longest):
     attack.expect(newest % INTERVAL == 0 or code == 0 or stop or ranks > 1,
                   f"a checkpoint of step {newest}")
     if code != 0:
-        told, text = resume(folder)
+        told, text = resume(folder, "--steps", str(STEPS))
         attack.expect(told == 0, f"{case}: resume ends with {told}: {text}")
     attack.resumed += 1
     attack.expect(state_hash(folder) == attack.hash, f"{case}: hash {state_hash(folder)}")
