@@ -5,10 +5,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <new>
 #include <set>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 #include "app/commands.hpp"
@@ -132,17 +136,27 @@ int guarded(int argc, char** argv, breccia::Communicator* ranks) {
   return exit_code;
 }
 
-/// Not even memory for the message of an error, or for MPI to end well: mpirun then ends the
-/// others.
-[[noreturn]] void end_without_memory() {
-  constexpr std::string_view message = "error: not enough memory\n";
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
-  std::_Exit(memory_error);
+std::terminate_handler other_terminate = nullptr;  ///< tells of the other errors
+
+/// Ends with the exit code of memory if there was none even for the message of an error, or in a
+/// destructor of a library, which may not throw. mpirun then ends the other ranks.
+[[noreturn]] void end_at_once() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view message = "error: not enough memory\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
+    std::_Exit(memory_error);
+  } catch (...) {
+    other_terminate();
+  }
+  std::abort();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  other_terminate = std::set_terminate(end_at_once);
   breccia::let_waiting_threads_sleep(argv);
   breccia::ignore_quota_signal();
   try {
@@ -155,7 +169,5 @@ int main(int argc, char** argv) {
   } catch (const breccia::Error& error) {  // of MPI itself
     write_error(error.what());
     return error.exit_code();
-  } catch (const std::bad_alloc&) {
-    end_without_memory();
   }
 }

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""All attacks, one table. `--quick`: a minute, for each change; else for a night (--hours)."""
+
+import argparse
+import os
+import subprocess
+import sys
+
+from common import COLUMNS, HERE
+
+QUICK = {  # some 5 to 15 s each
+    "files.py": ["--runs", "1500"],
+    "parsers.py": ["--seconds", "7"],
+    "kills.py": ["--runs", "4", "--seconds", "18"],
+    "faults.py": ["--every", "199", "--seconds", "12"],
+    "power_cut.py": ["--runs", "8", "--seconds", "6"],
+    "cases.py": ["--runs", "15", "--seconds", "16"],
+}
+WHOLE = {  # and the share of the night
+    "files.py": (["--runs", "50000"], 0),
+    "parsers.py": ([], 0.3),
+    "kills.py": (["--runs", "2000"], 0.3),
+    "faults.py": ([], 0.3),
+    "power_cut.py": (["--runs", "1000"], 0.05),
+    "cases.py": (["--runs", "5000"], 0.1),
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--hours", type=float, default=8)
+    parser.add_argument("--seed", default="1")
+    parser.add_argument("only", nargs="*", help="files of attacks; default: all")
+    options = parser.parse_args()
+    print(COLUMNS.format("attack", "runs", "findings", "of", "time"))
+    result = 0
+    for name in options.only or QUICK:
+        words = QUICK[name]
+        if not options.quick:
+            words, share = WHOLE[name]
+            words = words + (["--seconds", str(share * options.hours * 3600)] if share else [])
+        result |= subprocess.run([sys.executable, os.path.join(HERE, name), *words, "--seed",
+                                  options.seed]).returncode
+    return 1 if result else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
