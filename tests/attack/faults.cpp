@@ -4,6 +4,7 @@
 //   FAULT_CALL=K    the K-th call (from 1) of open, read, write, fsync, rename, ftruncate, statvfs,
 //                   unlink or mkdir on something below FAULT_BELOW fails with FAULT_ERRNO
 //   FAULT_ALLOC=K   the K-th call of operator new or aligned_alloc finds no memory
+//                   (counted from the first signal handler on, which main sets first of all)
 //   FAULT_STAYS=1   and every one after it, too
 //   FAULT_COUNT=F   writes the numbers of calls and allocations to the file F at the end
 //   FAULT_RECORD=F  writes each change below FAULT_BELOW to F: what a power cut may leave of it
@@ -12,6 +13,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,6 +29,7 @@
 namespace {
 
 std::atomic<long> calls{0}, allocations{0};
+std::atomic<bool> in_main{false};  ///< before, an exception could reach nobody
 
 long number(const char* name) {
   const char* const text = ::getenv(name);
@@ -113,11 +116,12 @@ int open_as(const char* name, const char* path, int flags, mode_t mode) {
 }
 
 void* allocate(size_t size) {
-  return hits(++allocations, wanted().alloc) ? nullptr : ::malloc(size == 0 ? 1 : size);
+  return (in_main && hits(++allocations, wanted().alloc)) ? nullptr
+                                                          : ::malloc(size == 0 ? 1 : size);
 }
 void* allocate_aligned(size_t alignment, size_t size) {
   static const auto call = real<void* (*)(size_t, size_t)>("aligned_alloc");
-  return hits(++allocations, wanted().alloc) ? nullptr : call(alignment, size);
+  return (in_main && hits(++allocations, wanted().alloc)) ? nullptr : call(alignment, size);
 }
 void* or_throw(void* memory) {
   if (memory == nullptr) throw std::bad_alloc();
@@ -201,6 +205,17 @@ ssize_t pread64(int file, void* bytes, size_t size, off64_t offset) {
 ssize_t pread(int file, void* bytes, size_t size, off_t offset) {
   static const auto call = real<ssize_t (*)(int, void*, size_t, off_t)>("pread");
   return fails(file) ? -1 : call(file, bytes, size, offset);
+}
+int sigaction(int number, const struct sigaction* action, struct sigaction* old) {
+  static const auto call =
+      real<int (*)(int, const struct sigaction*, struct sigaction*)>("sigaction");
+  in_main = true;
+  return call(number, action, old);
+}
+sighandler_t signal(int number, sighandler_t handler) {
+  static const auto call = real<sighandler_t (*)(int, sighandler_t)>("signal");
+  in_main = true;
+  return call(number, handler);
 }
 int fsync(int file) {
   static const auto call = real<int (*)(int)>("fsync");

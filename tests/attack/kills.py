@@ -33,6 +33,15 @@ def ranks_of(launcher):
     return found
 
 
+def lives(process):
+    """Not one that has ended and that nobody has asked for its exit code."""
+    try:
+        with open(f"/proc/{process}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 def disturb(attack, case, random_, ranks, stop, longest):
     folder = attack.path("run")
     shutil.rmtree(folder, ignore_errors=True)
@@ -56,9 +65,9 @@ def disturb(attack, case, random_, ranks, stop, longest):
         child.wait()
         return
     for process in targets:
-        if ranks > 1 and os.path.exists(f"/proc/{process}"):
+        if ranks > 1 and lives(process):
             time.sleep(1)
-            attack.expect(not os.path.exists(f"/proc/{process}"), f"rank {process} is left behind")
+            attack.expect(not lives(process), f"rank {process} is left behind")
     attack.runs += 1
     attack.live += hit and code != 0
     for path in checkpoints(folder):
