@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <new>
 #include <string>
 
 #include "exec/launch_times.hpp"
@@ -39,9 +40,12 @@ class StageTime {
   StageTime(const StageTime&) = delete;
   StageTime& operator=(const StageTime&) = delete;
   ~StageTime() {
-    if (timers_ == nullptr) return;
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-    timers_->add(stage_, spent.count());
+    try {
+      if (timers_ == nullptr) return;
+      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+      timers_->add(stage_, spent.count());
+    } catch (const std::bad_alloc&) {  // time that is not booked harms nobody
+    }
   }
 
  private:
