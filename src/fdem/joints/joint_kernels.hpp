@@ -54,7 +54,7 @@ struct JointForces {
   struct Loaded {
     Indices<R> end[4], law;  ///< corners a0, a1, b0, b1
     R length, strength;
-    JointStage stage;  ///< of a pack: whole if all are
+    JointStage stage;  ///< of a pack: whole if one is
     R corner[4][4];    ///< position and velocity
   };
   BR_HD void set(const StepTime& now) {
@@ -65,7 +65,7 @@ struct JointForces {
   BR_HD void load_early(Index i, Loaded<R>& loaded) const {
     loaded.stage = stage[i];
     for (Index k = 1; k < width_of<R>; ++k)
-      if (stage[i + k] != JointStage::whole) loaded.stage = stage[i + k];
+      if (stage[i + k] == JointStage::whole) loaded.stage = JointStage::whole;
     if (left<R>(loaded)) return;
     Index at[4][width_of<R>];
     for (Index k = 0; k < width_of<R>; ++k) {
@@ -85,13 +85,29 @@ struct JointForces {
     if (left<R>(loaded)) return;
     for (int k = 0; k < 4; ++k) gather_records_now(nodes, loaded.end[k], loaded.corner[k]);
   }
-  /// Joint i, or i and its neighbours in a pack. @returns false, with nothing written, unless all
-  /// of them are whole and stay so, or the one is dormant
+  /// One joint: false, with nothing written, unless it is whole and stays so, or is dormant. Of i
+  /// and its neighbours in a pack: those of which nothing is written, a bit for each.
   template <class R>
-  BR_HD bool update(Index i, const Loaded<R>& loaded) const {
-    if constexpr (width_of<R> == 1)
+  BR_HD auto update(Index i, const Loaded<R>& loaded) const {
+    R numbers[4];
+    if constexpr (width_of<R> == 1) {
       if (loaded.stage == JointStage::dormant) return true;
-    return loaded.stage == JointStage::whole && stay_whole(i, loaded);
+      if (loaded.stage != JointStage::whole || forces_of_whole(i, loaded, numbers)) return false;
+      store_four<Number>(force, i, numbers);
+      return true;
+    } else {
+      constexpr unsigned all = (1U << width_of<R>)-1U;
+      if (left<R>(loaded)) return all;
+      const auto beyond = forces_of_whole(i, loaded, numbers);
+      unsigned others = 0;
+      for (Index k = 0; k < width_of<R>; ++k)
+        if (stage[i + k] != JointStage::whole || beyond[k] != 0) others |= 1U << k;
+      if (others == 0)
+        store_four<Number>(force, i, numbers);
+      else if (others != all)
+        store_but(others, i, numbers);
+      return others;
+    }
   }
 
   BR_HD void operator()(Index i) const {
@@ -121,15 +137,18 @@ struct JointForces {
     const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
     JointPoints state{};
     if (before != JointStage::whole) state = points[i];
-    if (bond.by_rock() && failure_of(state.point[1]) == Failure::none)
-      fail_with_rock(i, bond, o, offset, state);
+    BondTraction<double> answer[3];
+    const bool asks_rock = bond.by_rock() && failure_of(state.point[1]) == Failure::none;
+    if (!asks_rock || fails_with_rock(i, bond, o, offset, state, answer))
+      for (int q = 0; q < 3; ++q)
+        answer[q] = response(bond, strength[i], h, o.open[q] + offset.x, o.slide[q] + offset.y,
+                             state.point[q]);
     Vec2 traction[3];
     double pressure = 0.0, drag = 0.0;
     int failed = 0;
     bool damaged = false;
     for (int q = 0; q < 3; ++q) {
-      const BondTraction<double> t = response(bond, strength[i], h, o.open[q] + offset.x,
-                                              o.slide[q] + offset.y, state.point[q]);
+      const BondTraction<double>& t = answer[q];
       traction[q] = t.shear * o.along + t.normal * o.across;
       const double weight = (q == 1 ? -4.0 : -1.0) * h / 6.0;
       pressure += weight * t.normal;
@@ -159,14 +178,23 @@ struct JointForces {
   }
 
  private:
-  /// Whether a pack is not to be taken as one.
+  /// Whether none of a pack is whole.
   template <class R>
   BR_HD static bool left(const Loaded<R>& loaded) {
     return width_of<R> != 1 && loaded.stage != JointStage::whole;
   }
-  /// Forces of joints that are whole. @returns false, with nothing written, unless all stay so
   template <class R>
-  BR_HD bool stay_whole(Index i, const Loaded<R>& loaded) const {
+  void store_but(unsigned others, Index i, const R (&numbers)[4]) const {
+    for (Index k = 0; k < width_of<R>; ++k) {
+      if ((others >> k & 1U) != 0) continue;
+      const double own[4] = {numbers[0][k], numbers[1][k], numbers[2][k], numbers[3][k]};
+      store_four<Number>(force, i + k, own);
+    }
+  }
+  /// Forces of joints that are whole. @returns which do not stay so: of those and of all others the
+  /// numbers mean nothing
+  template <class R>
+  BR_HD auto forces_of_whole(Index i, const Loaded<R>& loaded, R (&numbers)[4]) const {
     const R &share = loaded.strength, &h = loaded.length;
     const auto& corner = loaded.corner;
     const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
@@ -192,40 +220,43 @@ struct JointForces {
     const R along = stress_along(o.along, stretch, normal, bond[8], bond[9], in_situ);
     const auto failing = may_fail(tension, cohesion, bond[3], normal, shear, along);
     beyond = beyond || (bond[8] > 0.0 && failing);
-    if (any(beyond)) return false;
     const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
     const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
     const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
-    const R numbers[4] = {first.x, first.y, second.x, second.y};
-    store_four<Number>(force, i, numbers);
-    return true;
+    numbers[0] = first.x;
+    numbers[1] = first.y;
+    numbers[2] = second.x;
+    numbers[3] = second.y;
+    return beyond;
   }
   /// Weight of an integration point in a mean.  [-]
   BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
 
   /// Lets all points of a joint fail where the mean stress of the rock there fails near its edge.
-  BR_HD void fail_with_rock(Index i, const JointBond& bond, const JointOpening<double>& o,
-                            const Vec2& offset, JointPoints& state) const {
+  /// @param answer  of its points by the law of edges
+  /// @returns false where it does not fail: `state` and `answer` are those of this step then
+  BR_HD bool fails_with_rock(Index i, const JointBond& bond, const JointOpening<double>& o,
+                             const Vec2& offset, JointPoints& state,
+                             BondTraction<double> (&answer)[3]) const {
     const double h = length[i], share = strength[i];
-    JointPoints now = state;
-    BondTraction<double> carried[3];
     double normal = 0.0, shear = 0.0;
+    bool half_soft = false;  // it goes its own way to the end
     for (int q = 0; q < 3; ++q) {
-      carried[q] =
-          response(bond, share, h, o.open[q] + offset.x, o.slide[q] + offset.y, now.point[q]);
-      normal += weight_of(q) * carried[q].normal;
-      shear += weight_of(q) * carried[q].shear;
-      // Half soft it goes its own way to the end.
-      if (softening(now.point[q].damage) < 0.5) return;
+      BondState<double>& point = state.point[q];
+      answer[q] = response(bond, share, h, o.open[q] + offset.x, o.slide[q] + offset.y, point);
+      normal += weight_of(q) * answer[q].normal;
+      shear += weight_of(q) * answer[q].shear;
+      half_soft = half_soft || (point.damage > 0.0 && softening(point.damage) < 0.5);
     }
+    if (half_soft) return false;
     const double along =
         stress_along(o.along, o.size / h - 1.0, normal, bond.young, bond.poisson, in_situ);
     const Failure how = failure_of(rock_failure(bond, share, {normal, shear, along}));
-    if (how == Failure::none) return;
+    if (how == Failure::none) return false;
     for (int q = 0; q < 3; ++q)
-      fail(bond, share, h, how, o.open[q] + offset.x, o.slide[q] + offset.y, carried[q],
-           now.point[q]);
-    state = now;
+      fail(bond, share, h, how, o.open[q] + offset.x, o.slide[q] + offset.y, answer[q],
+           state.point[q]);
+    return true;
   }
   /// A joint that softens in this step had stored this much before it: all it had taken up.
   BR_HD void begin_work(Index i, const JointBond& bond, const Vec2& offset, const NodeState& a0,

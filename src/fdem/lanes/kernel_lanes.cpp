@@ -10,10 +10,11 @@ namespace {
 constexpr Index width = width_of<WidestPack>;
 
 template <class Kernel>
-Index run_whole(const Kernel& joints, Index begin, Index end) {
+LeftJoints run_whole(const Kernel& joints, Index begin, Index end) {
   Index i = begin;
-  while (i + width <= end && run_at<WidestPack>(joints, i)) i += width;
-  return i;
+  for (; i + width <= end; i += width)
+    if (const unsigned others = run_at<WidestPack>(joints, i); others != 0) return {i, others};
+  return {i, 0};
 }
 template <class Kernel>
 Index run_all(const Kernel& triangles, Index begin, Index end) {
@@ -24,10 +25,10 @@ Index run_all(const Kernel& triangles, Index begin, Index end) {
 
 }  // namespace
 
-Index BR_PACKS::run(const JointForces<double>& kernel, Index begin, Index end) {
+LeftJoints BR_PACKS::run(const JointForces<double>& kernel, Index begin, Index end) {
   return run_whole(kernel, begin, end);
 }
-Index BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index end) {
+LeftJoints BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index end) {
   return run_whole(kernel, begin, end);
 }
 

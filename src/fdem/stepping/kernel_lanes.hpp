@@ -23,17 +23,23 @@ struct MovedTo {
   bool beyond;
 };
 
+/// A pack of joints, from `first` on, and those of it that are left to slow(), a bit for each.
+struct LeftJoints {
+  Index first;
+  unsigned others;
+};
+
 /// Joints from `begin` on as long as they are whole and stay so. @returns where that ends; from
-/// there on nothing is written
+/// there on nothing is written, but forces of joints that are whole and stay so
 Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end);
 Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
 
 /// Builds of lanes/kernel_lanes.cpp for one width each. Return where they stop: at what does not
 /// fill a pack, or at a pack that is not as most are. Both are left to the caller, whose build runs
-/// on every processor.
+/// on every processor; of a pack of joints only the others.
 struct PacksAvx2 {
-  static Index run(const JointForces<double>& kernel, Index begin, Index end);
-  static Index run(const JointForces<float>& kernel, Index begin, Index end);
+  static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end);
+  static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
@@ -41,8 +47,8 @@ struct PacksAvx2 {
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
-  static Index run(const JointForces<double>& kernel, Index begin, Index end);
-  static Index run(const JointForces<float>& kernel, Index begin, Index end);
+  static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end);
+  static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
