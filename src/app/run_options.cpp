@@ -24,7 +24,10 @@ std::string problem_of(const std::string& text) {
 }  // namespace
 
 void add_run_options(CLI::App& command, RunOptions& options) {
-  command.add_option("--device", options.device, "where to compute: cpu, cuda or cuda:N")
+  command
+      .add_option(
+          "--device", options.device,
+          "where to compute: cpu, cuda or cuda:N; +tiles behind it tries steps by tiles (DEM)")
       ->type_name("NAME")
       ->capture_default_str();
   command

@@ -51,7 +51,9 @@ struct Wall {
 };
 
 /// Contacts between elements.
-struct ContactForces {
+/// @tparam Actions  where actions go
+template <class Actions>
+struct ContactForcesTo {
   static constexpr const char* name = "dem.contacts";
   ContactLaw law;
   double dt;
@@ -62,11 +64,18 @@ struct ContactForces {
   View<const Index> a, b;
   View<ContactState> state;
   View<double> slid, damped;
-  View<PairForce> actions;  ///< zero for pairs that were apart when last seen
+  Actions actions;  ///< zero for pairs that were apart when last seen
 
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
-  BR_HD void operator()(Index i) const {
-    const Index ia = a[i], ib = b[i];
+  BR_HD void operator()(Index i) const { of_pair(i, a[i], b[i]); }
+  /// Whether two elements do not touch.
+  BR_HD bool apart(Index ia, Index ib) const {
+    const double sum = elements.radius(ia) + elements.radius(ib);
+    const Vec3 d = elements.state[ib].position - elements.state[ia].position;
+    return dot(d, d) >= sum * sum;
+  }
+  /// Contact i, between the elements at two places.
+  BR_HD void of_pair(Index i, Index ia, Index ib) const {
     const PairEnd<double> end_a = elements.end(ia), end_b = elements.end(ib);
     const double radius_a = elements.radius(ia), radius_b = elements.radius(ib);
     const double sum = radius_a + radius_b;
@@ -90,6 +99,7 @@ struct ContactForces {
                      r.rolling_stiffness);
   }
 };
+using ContactForces = ContactForcesTo<View<PairForce>>;
 
 /// Contacts of elements with walls, one wall at a time: adds to force and torque of its own
 /// element.

@@ -311,7 +311,7 @@ struct MoveElements {
       store(
           load_work, e,
           load<R>(load_work, e) + 0.5 * dot(kick.reaction(e, now.velocity, r, of), before + after));
-    const Vec3Of<R> position = now.position + after;
+    const Vec3Of<R> position = place_after(now, r);
     const R s[10] = {position.x,   position.y, position.z, r.velocity.x, r.velocity.y,
                      r.velocity.z, r.spin.x,   r.spin.y,   r.spin.z,     now.radius};
     store_records(state, e, s);
@@ -319,6 +319,11 @@ struct MoveElements {
     const R numbers[4] = {q.w, q.x, q.y, q.z};
     store_records(orientation, e, numbers);
     return used.too_far || any(used.beyond<R>(position, loaded.reference, loaded.margin));
+  }
+  /// Where an element goes.  [m]
+  template <class R>
+  BR_HD Vec3Of<R> place_after(const ElementStateOf<R>& now, const Kick::ResultOf<R>& r) const {
+    return now.position + constant<R>(kick.next_dt) * r.velocity;
   }
   BR_WHOLE BR_HD bool operator()(Index e) const { return run_at<double>(*this, e); }
 };

@@ -66,6 +66,44 @@ BR_HD inline void write_actions(const View<PairForceOf<Number>>& actions, Index 
 #endif
 }
 
+/// Actions that lie in a tile's own memory (stepping/tile_memory.hpp), each written by its thread;
+/// and the place of the present item among all of its kind.
+struct TileActions {
+  PairForce* records;
+  Index number;
+  bool books;  ///< whether this tile books what the item spends
+};
+BR_HD inline void write_actions(const TileActions& actions, Index at, const double (&numbers)[9],
+                                const double (&stiffness)[9]) {
+  PairForce action;
+  for (int k = 0; k < 9; ++k) action.numbers[k] = numbers[k];
+  for (int k = 0; k < 9; ++k) action.stiffness[k] = static_cast<float>(stiffness[k]);
+  action.stiffness[9] = 0.0F;
+#if defined(__CUDA_ARCH__)
+  int4 parts[sizeof(PairForce) / sizeof(int4)];
+  __builtin_memcpy(parts, &action, sizeof action);
+  auto* const to = reinterpret_cast<int4*>(actions.records + at);
+  for (std::size_t k = 0; k < sizeof(PairForce) / sizeof(int4); ++k) to[k] = parts[k];
+#else
+  actions.records[at] = action;
+#endif
+}
+
+/// Adds to the energy that item i, or each of a pack, has spent so far.
+template <class Actions, class R>
+BR_HD inline void book(const Actions&, const View<double>& spent, Index i, const R& more) {
+  store(spent, i, load<R>(spent, i) + more);
+}
+/// One thread alone adds to a number, so that an addition without an answer gives the same bits.
+BR_HD inline void book(const TileActions& actions, const View<double>& spent, Index, double more) {
+  if (!actions.books) return;
+#if defined(__CUDA_ARCH__)
+  atomicAdd(spent.data + actions.number, more);
+#else
+  spent[actions.number] += more;
+#endif
+}
+
 #if !defined(__CUDACC__) && defined(__AVX512F__)
 /// Nine numbers of eight actions, by number, as rows in single precision.
 struct SingleRows {
@@ -154,11 +192,10 @@ inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
 
 /// Books force f and moment M on b of interaction `at`, and of its neighbours in a pack, with
 /// tangent stiffnesses (Durand 2012, 4.4; docs/theory.md, time step).
-template <class R, class Number>
-BR_HD void write_pair_force(const View<PairForceOf<Number>>& actions, Index at,
-                            const PairMotion<R>& motion, const Vec3Of<R>& f,
-                            const Vec3Of<R>& moment, const R& normal, const R& shear,
-                            const R& bending, const R& twist) {
+template <class R, class Actions>
+BR_HD void write_pair_force(const Actions& actions, Index at, const PairMotion<R>& motion,
+                            const Vec3Of<R>& f, const Vec3Of<R>& moment, const R& normal,
+                            const R& shear, const R& bending, const R& twist) {
   const Vec3Of<R> lever = cross(motion.normal, f);
   const Vec3Of<R> torque_a = -(motion.arm_a * lever) - moment;
   const Vec3Of<R> torque_b = moment - motion.arm_b * lever;

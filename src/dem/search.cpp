@@ -360,6 +360,7 @@ void derive_contacts(World& w) {
   w.contact_actions.clear();
   w.contact_actions.resize(w.contacts.size());  // all zero: ContactForces writes what touches
   divide_by_wall(w);
+  w.tiles.contacts_known = false;
 }
 
 namespace {
@@ -398,6 +399,7 @@ void derive(World& w) {
   if (w.exec.space == Space::host) w.link_sums.resize(w.elements.size());
   w.critical.resize(w.elements.size());
   plan_sweep(w);
+  w.tiles.forget();
   derive_contacts(w);
 }
 

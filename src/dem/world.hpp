@@ -16,6 +16,7 @@
 #include "dem/setup/model.hpp"
 #include "dem/setup/supports.hpp"
 #include "dem/stepping/kernel_lanes.hpp"
+#include "dem/tiles/tile_plan.hpp"
 #include "domain/domain.hpp"
 #include "domain/set_here.hpp"
 #include "exec/step_graph.hpp"
@@ -141,6 +142,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
   Buffer<StepClock> clock;         ///< time there (2; move)
   Buffer<std::int32_t> beyond;     ///< 1: an element has used its margin up; ranks only (1; move)
   StepGraph graph;                 ///< of a few steps (advance)
+  Tiles tiles;                     ///< where a device's own memory holds the model (advance)
 };
 
 /// A world at rest in its first state, forces evaluated. @throws InputError naming what does not

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "exec/error.hpp"
+#include "exec/multiprocessors.hpp"
 
 #if defined(BR_CUDA)
 #include "exec/cuda.hpp"
@@ -88,6 +89,20 @@ DeviceInfo device_info() {
   return info;
 }
 
+Multiprocessors multiprocessors() {
+  int number = 0, count = 0, memory = 0, resident = 0;
+  check_device(cudaGetDevice(&number), "asking for its number");
+  const auto ask = [&](cudaDeviceAttr what, int& answer) {
+    check_device(cudaDeviceGetAttribute(&answer, what, number), "asking for its multiprocessors");
+  };
+  ask(cudaDevAttrMultiProcessorCount, count);
+  ask(cudaDevAttrMaxSharedMemoryPerBlockOptin, memory);
+  ask(cudaDevAttrCooperativeLaunch, resident);
+  if (resident == 0) return {};
+  constexpr int kept = 2048;  // for what kernels declare of it
+  return {count, static_cast<std::size_t>(memory - kept)};
+}
+
 void wait_for_device() {
   check_device(cudaStreamSynchronize(device_stream()), "a kernel");
 }
@@ -113,6 +128,9 @@ void use_device(int) {
 }
 DeviceInfo device_info() {
   refuse();
+}
+Multiprocessors multiprocessors() {
+  return {};
 }
 void wait_for_device() {}
 SecondStream::SecondStream() = default;

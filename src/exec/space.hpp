@@ -26,6 +26,7 @@ struct Exec {
   int threads = 1;                ///< host threads, >= 1
   StageTimers* timers = nullptr;  ///< where stages book their wall time; may be absent
   Precision precision = Precision::full;
+  Index tiles = 0;  ///< most tiles that steps of a device are taken by (dem/tiles); 0: by launches
 };
 
 /// True on a thread that is inside a kernel: the only place where shadow arrays may be read.

@@ -79,8 +79,9 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
 using ConcreteLinks = LinkArrays<ConcreteLink>;
 
 /// Cohesive links of one material, one link (R = double) or a pack of neighbours at a time.
-/// @tparam Number  what the links' history and actions are stored in
-template <class Number>
+/// @tparam Number   what the links' history and actions are stored in
+/// @tparam Actions  where actions go
+template <class Number, class Actions = View<PairForceOf<Number>>>
 struct ConcreteLinkForces {
   static constexpr const char* name = "dem.concrete_links";
   static constexpr int least_blocks = sizeof(Number) == sizeof(double) ? 4 : 0;  // 128 registers
@@ -94,7 +95,7 @@ struct ConcreteLinkForces {
   View<Number> opening;
   PlanesView<Number> shear, moment;
   View<double> slid, yielded, broke, rate;
-  View<PairForceOf<Number>> actions;
+  Actions actions;
   Index first_action;  ///< action of link 0
   std::int64_t step;   ///< steps taken before
 
@@ -146,9 +147,9 @@ struct ConcreteLinkForces {
     store(moment, i, state.moment);
     if (by.rated()) store(rate, i, state.rate);
     if (any(r.shortened != 0.0)) store(length, i, link.length - r.shortened);
-    if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);
-    if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
-    if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
+    if (any(r.slid != 0.0)) book(actions, slid, i, r.slid);
+    if (any(r.yielded != 0.0)) book(actions, yielded, i, r.yielded);
+    if (any(r.broke != 0.0)) book(actions, broke, i, r.broke);
 
     const R kn = r.active * link.stiffness, kt = by.shear_ratio * kn;
     const R kr = by.rolling_ratio * kt * link.radius * link.radius;

@@ -78,7 +78,9 @@ BR_HD void store_state(const View<InterfaceState>& states, Index first,
 }
 
 /// Bonds between bars and concrete.
-struct InterfaceLinkForces {
+/// @tparam Actions  where actions go
+template <class Actions>
+struct InterfaceLinkForcesTo {
   static constexpr const char* name = "dem.interface_links";
   using Law = InterfaceLink;
   Law law;
@@ -88,7 +90,7 @@ struct InterfaceLinkForces {
   View<const double> stiffness, area;
   View<InterfaceState> state;
   View<double> slid, broke;
-  View<PairForce> actions;
+  Actions actions;
   Index first_action;  ///< action of link 0
 
   template <class R>
@@ -139,8 +141,8 @@ struct InterfaceLinkForces {
                          r))
       return false;
     store_state(state, i, kept);
-    if (any(r.slid != 0.0)) store(slid, i, load<R>(slid, i) + r.slid);
-    if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
+    if (any(r.slid != 0.0)) book(actions, slid, i, r.slid);
+    if (any(r.broke != 0.0)) book(actions, broke, i, r.broke);
     const R k = r.active * transverse, none = constant<R>(0.0);
     write_pair_force(actions, first_action + i, motion, r.force, Vec3Of<R>{}, k, k, none, none);
     return true;
@@ -154,6 +156,7 @@ struct InterfaceLinkForces {
     return {numbers[0], numbers[1], numbers[2]};
   }
 };
+using InterfaceLinkForces = InterfaceLinkForcesTo<View<PairForce>>;
 
 template <class>
 InterfaceLinkForces forces_of(InterfaceLinks& b, const InterfaceLink& law, const LinkSpace& in,

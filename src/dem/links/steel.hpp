@@ -61,7 +61,9 @@ BR_HD void store_state(const View<SteelState>& states, Index first, const SteelS
   store_records(states, first, s);
 }
 /// Pieces of bar.
-struct SteelLinkForces {
+/// @tparam Actions  where actions go
+template <class Actions>
+struct SteelLinkForcesTo {
   static constexpr const char* name = "dem.steel_links";
   using Law = SteelLink;
   Law law;
@@ -71,7 +73,7 @@ struct SteelLinkForces {
   View<const double> length;
   View<SteelState> state;
   View<double> yielded, broke;
-  View<PairForce> actions;
+  Actions actions;
   Index first_action;  ///< action of link 0
 
   template <class R>
@@ -114,8 +116,8 @@ struct SteelLinkForces {
     else if (!by.elastic_response(k, own_length, radius, motion, kept, r))
       return false;
     store_state(state, i, kept);
-    if (any(r.yielded != 0.0)) store(yielded, i, load<R>(yielded, i) + r.yielded);
-    if (any(r.broke != 0.0)) store(broke, i, load<R>(broke, i) + r.broke);
+    if (any(r.yielded != 0.0)) book(actions, yielded, i, r.yielded);
+    if (any(r.broke != 0.0)) book(actions, broke, i, r.broke);
     const auto whole = kept.hardening >= 0.0;
     const R none = constant<R>(0.0);
     write_pair_force(actions, first_action + i, motion, r.shear - r.normal * motion.normal,
@@ -124,6 +126,7 @@ struct SteelLinkForces {
     return true;
   }
 };
+using SteelLinkForces = SteelLinkForcesTo<View<PairForce>>;
 
 template <class>
 SteelLinkForces forces_of(SteelLinks& s, const SteelLink& law, const LinkSpace& in,

@@ -5,6 +5,7 @@
 
 #include "dem/stepping/launches.hpp"
 #include "dem/stepping/step.hpp"
+#include "dem/tiles/tile_run.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia::dem {
@@ -216,6 +217,7 @@ void take_forces_on_device(World& w) {
 }
 
 Advanced advance_on_device(World& w, const StopAt& stop) {
+  if (runs_by_tiles(w)) return advance_by_tiles(w, stop);
   const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
   const bool walls = !w.walls.empty();
   if (walls) copy_to(w.device_walls, w.walls);

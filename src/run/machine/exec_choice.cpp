@@ -12,19 +12,33 @@
 
 namespace breccia {
 
-Exec exec_on(const std::string& device, int threads, Communicator* ranks) {
+namespace {
+
+/// Takes an ending off a word. @returns whether it was there
+bool take_off(std::string& word, const std::string& ending) {
+  if (!word.ends_with(ending)) return false;
+  word.resize(word.size() - ending.size());
+  return true;
+}
+
+}  // namespace
+
+Exec exec_on(const std::string& wanted, int threads, Communicator* ranks) {
   Exec exec;
+  std::string device = wanted;
+  constexpr Index any_number = 1 << 16;
+  if (device.starts_with("cuda") && take_off(device, "+tiles")) exec.tiles = any_number;
   const int share = std::max(1, omp_get_num_procs() / ranks_on_this_machine(ranks));
   exec.threads = threads > 0 ? threads : share;
   if (device == "cpu") return exec;
   if (device != "cuda" && !device.starts_with("cuda:"))
-    throw InputError(fmt::format("device {}: there are cpu, cuda and cuda:N", device));
+    throw InputError(fmt::format("device {}: there are cpu, cuda and cuda:N", wanted));
   int number = 0;
   if (const std::size_t colon = device.find(':'); colon != std::string::npos) {
     const char* const end = device.data() + device.size();
     const auto [stop, error] = std::from_chars(device.data() + colon + 1, end, number);
     if (error != std::errc{} || stop != end || number < 0)
-      throw InputError(fmt::format("device {}: N is the number of a GPU, from 0", device));
+      throw InputError(fmt::format("device {}: N is the number of a GPU, from 0", wanted));
   } else if (const int there = device_count(); there > 0)  // a GPU each, in turn
     number = number_on_this_machine(ranks) % there;
   use_device(number);

@@ -1,0 +1,65 @@
+#pragma once
+// A world as its tiles see it, and the words that they tell each other.
+
+#include "core/timed.hpp"
+#include "dem/element_kernels.hpp"
+#include "dem/links/all.hpp"
+#include "dem/tiles/tile_plan.hpp"
+#include "dem/world.hpp"
+
+namespace breccia::dem {
+
+/// Writes a number for other tiles.
+BR_HD inline void put(TileWord* to, std::uint64_t bits, std::uint32_t tag) {
+  const auto low = static_cast<std::uint32_t>(bits), high = static_cast<std::uint32_t>(bits >> 32);
+#if defined(__CUDA_ARCH__)
+  asm volatile(
+      "st.volatile.global.v4.u32 [%0], {%1, %2, %3, %4};" ::"l"(__cvta_generic_to_global(to)),
+      "r"(low), "r"(tag), "r"(high), "r"(tag)
+      : "memory");
+#else
+  *to = {low, tag, high, tag};
+#endif
+}
+/// @returns whether the number with that tag is there
+BR_HD inline bool get(const TileWord* from, std::uint64_t& bits, std::uint32_t tag) {
+  TileWord word;
+#if defined(__CUDA_ARCH__)
+  asm volatile("ld.volatile.global.v4.u32 {%0, %1, %2, %3}, [%4];"
+               : "=r"(word.low), "=r"(word.tag), "=r"(word.high), "=r"(word.same_tag)
+               : "l"(__cvta_generic_to_global(from))
+               : "memory");
+#else
+  word = *from;
+#endif
+  bits = std::uint64_t{word.high} << 32 | word.low;
+  return word.tag == tag && word.same_tag == tag;
+}
+
+/// A world as its tiles see it.
+struct TileCase {
+  ConcreteLinkForces<double> concrete;
+  SteelLinkForces steel;
+  InterfaceLinkForces interface;
+  ContactForces contacts, twins;  ///< of elements that are a; as those that are b follow them
+  MoveElements move;
+  View<Vec3> force, torque;
+  View<double> critical;
+  View<const ConcreteLink> concrete_laws;
+  View<const SteelLink> steel_laws;
+  View<const InterfaceLink> interface_laws;
+  EndOfStep<StepRule> end;
+  TilesView tiles;
+  TileWord *forces, *least;
+  std::uint32_t tag;  ///< before the first step
+  StepClock start;
+  StepClock* clock;  ///< where time is left
+};
+
+/// What a tile hears of all, and tells them.
+struct TileNews {
+  double least = largest_least;  ///< critical number  [s2]
+  bool near = false;             ///< some element may use its margin up in the move to come
+};
+
+}  // namespace breccia::dem

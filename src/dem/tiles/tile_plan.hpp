@@ -1,0 +1,241 @@
+#pragma once
+// How a model is shared out to the multiprocessors of a device, each with the memory of its own:
+// tiles of elements, what each has to know of its neighbours, and where everything lies in it.
+
+#include <memory>
+#include <vector>
+
+#include "dem/contacts.hpp"
+#include "dem/laws/concrete_link.hpp"
+#include "dem/laws/interface_link.hpp"
+#include "dem/laws/steel_link.hpp"
+
+namespace breccia::dem {
+
+struct World;
+
+/// Elements and links of a tile by their places in it.
+using TilePlace = std::uint16_t;
+
+/// A link that a tile evaluates: one end at least is its own.
+struct TileLink {
+  TilePlace a, b;
+  std::uint32_t number : 28;  ///< among the links of its kind
+  std::uint32_t group : 4;
+};
+/// The neighbours of a bond's element along its bar.
+struct TileAxis {
+  TilePlace before, after;
+};
+/// A contact as one of its ends sees it, an element of the tile.
+struct TileContact {
+  Index pair;  ///< among all contacts
+  TilePlace own, partner;
+  Index side;  ///< of `own`: 0 for a, 1 for b
+};
+
+/// A tile: its own elements come first, then those that its links lead to, then further ones that
+/// its contacts lead to. Counts, and where its part of each list of the plan begins.
+struct Tile {
+  Index own, linked, touched;  ///< elements  [-]
+  Index concrete, steel, interface, contacts;
+  Index row_entries;
+  Index first_own, first_linked, first_touched, first_link, first_axis, first_row, first_start,
+      first_contact;
+
+  BR_HD Index elements() const { return own + linked + touched; }
+  BR_HD Index bars() const { return steel + interface; }
+  BR_HD Index links() const { return concrete + bars(); }
+};
+
+/// Groups of links by kind: each has a law.
+struct TileGroups {
+  Index concrete, steel, interface;
+};
+
+/// Torque on and force on an element.
+struct ElementLoad {
+  Vec3 force, torque;  ///<  [N], [N m]
+};
+
+/// Where everything lies in the memory of a tile.
+struct TileMemory {
+  ElementState* state;  ///< of all elements
+  double *mass, *inertia;
+  Index* place;  ///< in the arrays of the world
+  std::int16_t *material, *motion;
+  std::uint8_t* fixed;
+  ElementLoad* load;  ///< of its own elements
+  Quaternion* orientation;
+  Vec3* reference;
+  double *margin, *damping_work, *load_work, *critical;
+
+  TileLink *concrete, *steel, *interface;
+  double *length, *stiffness, *area, *opening, *shear, *moment;  ///< of concrete links
+  double* bar_length;
+  SteelState* bar_state;
+  TileAxis* axis;
+  double *bond_stiffness, *bond_area;
+  InterfaceState* bond_state;
+
+  PairForce* actions;  ///< of concrete links, behind those of bars
+  ElementLoad*
+      received;  ///< of others' elements; in the memory of `actions`, when these are summed
+  PairForce* bar_actions;  ///< of steel links, then bonds
+  TilePlace* rows;  ///< own elements by the length of their rows; first action of each as a, as b,
+                    ///< and the end; then actions from `bar_actions` on
+  TilePlace* starts;  ///< first contact of each own element, and the end
+  TileContact* contacts;
+  std::uint8_t *touching,  ///< whether a contact's ends have touched when they were last looked at
+      *acts;               ///< whether it has an action in this step
+
+  ConcreteLink* concrete_laws;
+  SteelLink* steel_laws;
+  InterfaceLink* interface_laws;
+  StepClock* clocks;  ///< two, in turns
+
+  BR_HD static Index row_numbers(const Tile& tile) { return 3 * tile.own + 1 + tile.row_entries; }
+  /// @returns the bytes that it takes from `base` on
+  BR_HD std::size_t lay_out(const Tile& tile, const TileGroups& groups, std::byte* base);
+};
+
+namespace detail {
+
+/// Takes pieces of memory one after the other.
+struct Pieces {
+  std::byte* base;
+  std::size_t used = 0;
+
+  template <class T>
+  BR_HD void take(T*& piece, Index count) {
+    constexpr std::size_t line = 16;
+    used = (used + line - 1) / line * line;
+    piece = reinterpret_cast<T*>(base + used);
+    used += static_cast<std::size_t>(count) * sizeof(T);
+  }
+};
+
+}  // namespace detail
+
+BR_HD inline std::size_t TileMemory::lay_out(const Tile& tile, const TileGroups& groups,
+                                             std::byte* base) {
+  detail::Pieces pieces{base};
+  const Index own = tile.own, all = tile.elements(), bars = tile.steel, bonds = tile.interface;
+  pieces.take(clocks, 2);
+  pieces.take(concrete_laws, groups.concrete);
+  pieces.take(steel_laws, groups.steel);
+  pieces.take(interface_laws, groups.interface);
+  pieces.take(state, all);
+  pieces.take(mass, all);
+  pieces.take(inertia, all);
+  pieces.take(place, all);
+  pieces.take(material, all);
+  pieces.take(motion, all);
+  pieces.take(fixed, all);
+  pieces.take(load, own);
+  pieces.take(orientation, own);
+  pieces.take(reference, own);
+  pieces.take(margin, own);
+  pieces.take(damping_work, own);
+  pieces.take(load_work, own);
+  pieces.take(critical, own);
+  pieces.take(concrete, tile.concrete);
+  pieces.take(length, tile.concrete);
+  pieces.take(stiffness, tile.concrete);
+  pieces.take(area, tile.concrete);
+  pieces.take(opening, tile.concrete);
+  pieces.take(shear, 3 * tile.concrete);
+  pieces.take(moment, 3 * tile.concrete);
+  pieces.take(steel, bars);
+  pieces.take(bar_length, bars);
+  pieces.take(bar_state, bars);
+  pieces.take(interface, bonds);
+  pieces.take(axis, bonds);
+  pieces.take(bond_stiffness, bonds);
+  pieces.take(bond_area, bonds);
+  pieces.take(bond_state, bonds);
+  pieces.take(rows, row_numbers(tile));
+  pieces.take(starts, own + 1);
+  pieces.take(contacts, tile.contacts);
+  pieces.take(touching, tile.contacts);
+  pieces.take(acts, tile.contacts);
+  pieces.take(bar_actions, tile.bars());
+  detail::Pieces also = pieces;
+  also.take(received, all - own);
+  pieces.take(actions, tile.concrete);
+  return pieces.used > also.used ? pieces.used : also.used;
+}
+
+/// What tiles hold, for a launch.
+struct TilesView {
+  View<const Tile> tiles;
+  TileGroups groups;
+  View<const Index> own, linked, touched;  ///< places of elements
+  View<const TileLink> links;
+  View<const TileAxis> axes;
+  View<const TilePlace> rows, starts;
+  View<const TileContact> contacts;
+};
+
+/// What a tile tells another: a number, with the step's number beside each half, so that it is
+/// known to be whole and new without any order between writes.
+struct alignas(16) TileWord {
+  std::uint32_t low, tag, high, same_tag;
+};
+
+/// A model's tiles. Elements and links are shared out once, contacts after each search.
+struct TilePlan {
+  std::vector<Tile> tiles;
+  TileGroups groups{};
+  std::size_t bytes = 0;           ///< that the largest tile needs
+  std::vector<Index> tile_of;      ///< of each element
+  std::vector<Index> own, linked;  ///< elements, ascending in each tile
+
+  // In the space of the world.
+  Buffer<Tile> tiles_there;
+  Buffer<Index> own_there, linked_there, touched_there;
+  Buffer<TileLink> links;
+  Buffer<TileAxis> axes;
+  Buffer<TilePlace> rows, starts;
+  Buffer<TileContact> contacts;
+  Buffer<TileWord> forces;  ///< of each element, six words, for even and odd steps
+  Buffer<TileWord> least;   ///< from each tile to each, likewise
+  // Contacts whose b is in another tile than a are followed by both; that of b keeps its own state.
+  Buffer<ContactState> twin_state;
+  Buffer<double> twin_slid, twin_damped;
+  Buffer<PairForce> twin_actions;
+  std::uint32_t tag = 0;  ///< of the last step that was exchanged
+
+  explicit TilePlan(Space space);
+  TilesView view() const;
+};
+
+/// Shares a world out to at most `count` tiles. @returns null if links cannot be told by tiles
+std::unique_ptr<TilePlan> share_out_to_tiles(const World& w, Index count);
+/// Gives tiles their contacts, after a search.
+void tell_contacts(const World& w, TilePlan& plan);
+
+/// The tiles of a world, once they were asked for. A copy of a world has none.
+class Tiles {
+ public:
+  Tiles() = default;
+  Tiles(const Tiles&) {}
+  Tiles(Tiles&&) noexcept = default;
+  Tiles& operator=(const Tiles&) {
+    forget();
+    return *this;
+  }
+  Tiles& operator=(Tiles&&) noexcept = default;
+  ~Tiles() = default;
+
+  /// After elements or links have changed places.
+  void forget() {
+    plan.reset();
+    known = false;
+  }
+  std::unique_ptr<TilePlan> plan;
+  bool known = false;           ///< whether `plan` tells how it stands; null: no tiles
+  bool contacts_known = false;  ///< whether it has heard of the last search
+};
+
+}  // namespace breccia::dem

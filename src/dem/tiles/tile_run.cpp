@@ -1,0 +1,358 @@
+// A launch of tiles, one a multiprocessor; in Space::shadow the processor takes tile after tile,
+// phase by phase.
+
+#include "dem/tiles/tile_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "core/device_run.hpp"
+#include "dem/stepping/launches.hpp"
+#include "dem/stepping/step.hpp"
+#include "dem/tiles/tile_step.hpp"
+#include "exec/error.hpp"
+#include "exec/multiprocessors.hpp"
+
+namespace breccia::dem {
+namespace {
+
+/// Ends the step that a clock holds open, if there is one, by what all tiles have told.
+/// @returns whether tiles leave: at the end, or when a search is near
+BR_HD bool end_step(const EndOfStep<StepRule>& end, const TileNews& news, StepClock& clock) {
+  if (clock.open != 0) clock.least = ordered_bits(news.least);
+  end(clock);
+  clock.host_request = news.near ? 1 : 0;
+  return clock.halted != 0 || news.near;
+}
+
+/// Time as the forces of a step see it, after its move.
+BR_HD StepTime moved(const StepTime& now) {
+  return {now.time + now.next_dt, now.next_dt, now.next_dt, now.step};
+}
+/// The longest step that may follow one: StepRule lets it grow by a twentieth.
+BR_HD float longest_after(double dt) {
+  return 1.0501F * static_cast<float>(dt);
+}
+BR_HD float span_after(double dt) {
+  return 0.5F * (static_cast<float>(dt) + longest_after(dt));
+}
+
+#if defined(__CUDACC__)
+
+/// What threads of a block find together.
+template <int threads>
+__device__ TileNews news_of_block(TileNews own, TileNews* of_warp) {
+  for (int half = 16; half > 0; half /= 2)
+    own.least = fmin(own.least, __shfl_down_sync(~0U, own.least, half));
+  own.near = __any_sync(~0U, own.near ? 1 : 0) != 0;
+  if (threadIdx.x % 32 == 0) of_warp[threadIdx.x / 32] = own;
+  __syncthreads();
+  own = of_warp[0];
+  for (int warp = 1; warp < threads / 32; ++warp) {
+    own.least = fmin(own.least, of_warp[warp].least);
+    own.near = own.near || of_warp[warp].near;
+  }
+  return own;
+}
+
+/// Loads of others' elements: a few words are asked for before the first has come.
+template <int threads>
+__device__ void receive(const TileStep& tile, std::uint32_t tag) {
+  constexpr int at_once = 4;
+  const Index numbers = tile.received();
+  for (auto k = static_cast<Index>(threadIdx.x); k < numbers; k += at_once * threads) {
+    std::uint64_t bits[at_once];
+    bool came[at_once];
+#pragma unroll
+    for (int j = 0; j < at_once; ++j) {
+      const Index at = k + j * threads;
+      came[j] = get(tile.received_word(at < numbers ? at : k, tag), bits[j], tag);
+    }
+#pragma unroll
+    for (int j = 0; j < at_once; ++j) {
+      const Index at = k + j * threads;
+      if (at >= numbers) break;
+      while (!came[j]) came[j] = get(tile.received_word(at, tag), bits[j], tag);
+      tile.receive(at, bits[j]);
+    }
+  }
+}
+
+template <int threads>
+__global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant__ TileCase all) {
+  extern __shared__ __align__(16) std::byte memory[];
+  __shared__ TileNews told[threads / 32], heard[threads / 32];
+  const auto thread = static_cast<Index>(threadIdx.x), number = static_cast<Index>(blockIdx.x);
+  const TileStep tile(all, number, memory);
+  tile.enter(thread, threads);
+  __syncthreads();
+  TileNews news;
+  news.near = tile.near_at_entry(thread, threads);
+  std::uint32_t tag = all.tag;
+  int current = 0;
+  bool first = true;
+  for (;;) {
+    // Tiles tell each other what they have found, and hear of all.
+    ++tag;
+    const Index tiles = all.tiles.tiles.size;
+    const TileNews own = news_of_block<threads>(news, told);
+    for (Index to = thread; to < tiles; to += threads)
+      put(tile.news_word(tag, number, to), TileStep::packed(own), tag);
+    news = TileNews{};
+    for (Index from = thread; from < tiles; from += threads) {
+      std::uint64_t bits = 0;
+      while (!get(tile.news_word(tag, from, number), bits, tag)) {
+      }
+      TileStep::hear(news, bits);
+    }
+    if (!first) receive<threads>(tile, tag);
+    first = false;
+    news = news_of_block<threads>(news, heard);
+    StepClock clock = tile.memory.clocks[current];
+    if (end_step(all.end, news, clock)) {
+      if (number == 0 && thread == 0) *all.clock = clock;
+      break;
+    }
+    tile.move(clock.now, thread, threads);
+    clock.open = step_open;
+    current = 1 - current;
+    if (thread == 0) tile.memory.clocks[current] = clock;
+    const double dt = clock.now.next_dt;
+    __syncthreads();
+    tile.pair_forces(dt, thread, threads);
+    __syncthreads();
+    news = TileNews{};
+    const float span = span_after(dt), longest = longest_after(dt);
+    for (Index i = thread; i < tile.sum_items(); i += threads)
+      tile.sum(i, tag + 1, span, longest, news);
+  }
+  tile.leave(thread, threads);
+  if (tile.memory.clocks[current].open != 0) tile.leave_actions(thread, threads);
+}
+
+#endif
+
+/// All tiles on this processor.
+class TilesInTurn {
+ public:
+  TilesInTurn(const TileCase& all, std::size_t bytes) : all_(all) {
+    const std::size_t count = static_cast<std::size_t>(all.tiles.tiles.size);
+    const std::size_t lines = bytes / sizeof(Line) + 1;
+    memory_.assign(count * lines, Line{});
+    for (std::size_t t = 0; t < count; ++t)
+      tiles_.emplace_back(all_, static_cast<Index>(t), memory_[t * lines].bytes);
+  }
+
+  void run() {
+    const KernelScope scope;
+    std::vector<TileNews> told(tiles_.size());
+    for (const TileStep& tile : tiles_) tile.enter(0, 1);
+    for (std::size_t t = 0; t < tiles_.size(); ++t) told[t].near = tiles_[t].near_at_entry(0, 1);
+    std::uint32_t tag = all_.tag;
+    StepClock clock = all_.start;
+    for (bool first = true;; first = false) {
+      const TileNews news = exchange(told, ++tag, first);
+      if (end_step(all_.end, news, clock)) {
+        *all_.clock = clock;
+        break;
+      }
+      for (const TileStep& tile : tiles_) tile.move(clock.now, 0, 1);
+      clock.open = step_open;
+      const StepTime now = moved(clock.now);
+      for (std::size_t t = 0; t < tiles_.size(); ++t) {
+        tiles_[t].pair_forces(now.last_dt, 0, 1);
+        told[t] = sums(tiles_[t], tag + 1, now.last_dt);
+      }
+      evaluated_ = true;
+    }
+    for (const TileStep& tile : tiles_) {
+      tile.leave(0, 1);
+      if (evaluated_) tile.leave_actions(0, 1);
+    }
+  }
+
+ private:
+  struct alignas(64) Line {
+    std::byte bytes[64];
+  };
+  /// The sums of one element, by lanes that meet.
+  struct Sums {
+    const TileStep* tile;
+    std::uint32_t tag;
+    double dt;
+    Index element;
+    TileNews news;
+  };
+  static TileNews sums(const TileStep& tile, std::uint32_t tag, double dt) {
+    Sums sums{&tile, tag, dt, 0, {}};
+    for (; sums.element < tile.tile.own; ++sums.element)
+      lockstep::run(
+          TileStep::width,
+          [](void* context, int lane) {
+            auto* const of = static_cast<Sums*>(context);
+            of->tile->sum(of->element * TileStep::width + lane, of->tag, span_after(of->dt),
+                          longest_after(of->dt), of->news);
+          },
+          &sums);
+    return sums.news;
+  }
+  /// Every tile hears the same.
+  TileNews exchange(const std::vector<TileNews>& told, std::uint32_t tag, bool first) const {
+    const auto count = static_cast<Index>(tiles_.size());
+    for (const TileStep& tile : tiles_)
+      for (Index to = 0; to < count; ++to)
+        put(tile.news_word(tag, tile.number, to), TileStep::packed(told[at(tile.number)]), tag);
+    TileNews all;
+    for (const TileStep& tile : tiles_) {
+      TileNews news;
+      for (Index from = 0; from < count; ++from) {
+        std::uint64_t bits = 0;
+        const bool came = get(tile.news_word(tag, from, tile.number), bits, tag);
+        BR_ASSERT(came);
+        if (came) TileStep::hear(news, bits);
+      }
+      for (Index k = 0; !first && k < tile.received(); ++k) {
+        std::uint64_t bits = 0;
+        [[maybe_unused]] const bool came = get(tile.received_word(k, tag), bits, tag);
+        BR_ASSERT(came);
+        tile.receive(k, bits);
+      }
+      all = news;
+    }
+    return all;
+  }
+
+  const TileCase& all_;
+  std::vector<Line> memory_;
+  std::vector<TileStep> tiles_;  ///< over `memory_`
+  bool evaluated_ = false;
+};
+
+/// Contacts of tiles whose elements are their ends b.
+ContactForces twins_of(const ContactForces& contacts, TilePlan& plan) {
+  ContactForces twins = contacts;
+  twins.state = plan.twin_state.view();
+  twins.slid = plan.twin_slid.view();
+  twins.damped = plan.twin_damped.view();
+  twins.actions = plan.twin_actions.view();
+  return twins;
+}
+
+TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
+  const ContactForces contacts = contact_kernel(w);
+  auto interface = link_kernel<double>(w, w.interface, {}, w.steel.size());
+  StepClock start;
+  const EndOfStep<StepRule> end{step_rule(w), w.given->time.evaluate_every};
+  start.to_evaluation = end.to_evaluation(w.step);
+  start.now = {w.time, w.last_dt, w.next_dt, w.step};
+  start.stop = stop;
+  start.least = ordered_bits(largest_least);
+  return {link_kernel<double>(w, w.concrete, {}, 0),
+          link_kernel<double>(w, w.steel, {}, 0),
+          interface,
+          contacts,
+          twins_of(contacts, plan),
+          move_kernel(w),
+          w.elements.force.view(),
+          w.elements.torque.view(),
+          w.critical.view(),
+          std::as_const(w.concrete.on_device.laws).view(),
+          std::as_const(w.steel.on_device.laws).view(),
+          std::as_const(w.interface.on_device.laws).view(),
+          end,
+          plan.view(),
+          plan.forces.data(),
+          plan.least.data(),
+          plan.tag,
+          start,
+          w.clock.data()};
+}
+
+void launch([[maybe_unused]] const World& w, const TileCase& all, std::size_t bytes) {
+#if defined(__CUDACC__)
+  if (w.exec.space == Space::cuda) {
+    constexpr int threads = 384;
+    return launch_resident(launch_tiles<threads>, all.tiles.tiles.size, threads, bytes, all);
+  }
+#endif
+  BR_ASSERT(w.exec.space == Space::shadow);
+  TilesInTurn(all, bytes).run();
+}
+
+/// Whether all that a world has is what tiles know.
+bool is_covered(const World& w) {
+  return w.domain.single_rank() && w.exec.space != Space::host &&
+         w.exec.precision == Precision::full && w.walls.empty() && w.prescribed.motions.empty() &&
+         w.given->search.every == 0 && w.parallel.size() == 0 && w.ldpm.size() == 0 &&
+         !w.concrete.rated && w.elements.size() > 0 && w.links() > 0;
+}
+
+/// Multiprocessors that may have a tile, and the memory of each.
+Multiprocessors multiprocessors_for(const World& w) {
+  if (w.exec.tiles <= 0) return {};
+  if (w.exec.space != Space::cuda) return {w.exec.tiles, std::size_t{1} << 30};
+  const Multiprocessors all = multiprocessors();
+  return {std::min(all.count, w.exec.tiles), all.memory};
+}
+
+/// Whether the last search has left tiles a list that fits them.
+bool has_contacts(World& w) {
+  TilePlan& plan = *w.tiles.plan;
+  if (!w.tiles.contacts_known) {
+    tell_contacts(w, plan);
+    w.tiles.contacts_known = true;
+  }
+  const Vec3& drift = w.travel.drift.velocity;
+  return plan.bytes <= multiprocessors_for(w).memory && !(dot(drift, drift) > 0.0);
+}
+
+}  // namespace
+
+bool runs_by_tiles(World& w) {
+  if (!w.tiles.known) {
+    w.tiles.forget();
+    w.tiles.known = true;
+    const Index elements = w.elements.size();
+    const auto [most, memory] = multiprocessors_for(w);
+    constexpr Index least_elements = 8;      // of a tile
+    constexpr std::size_t link_bytes = 190;  // about; here for a quick answer
+    if (most > 0 && is_covered(w) && at(w.links()) * link_bytes < at(most) * memory)
+      w.tiles.plan = share_out_to_tiles(w, std::clamp(elements / least_elements, Index{1}, most));
+  }
+  return w.tiles.plan != nullptr && !LaunchTimes::wanted() && has_contacts(w);
+}
+
+Advanced advance_by_tiles(World& w, const StopAt& stop) {
+  constexpr std::chrono::milliseconds slice{50};
+  constexpr std::int64_t most_steps = 2000;  // of a launch
+  const auto begin = std::chrono::steady_clock::now();
+  const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
+  const EndOfStep<StepRule> end{step_rule(w), w.given->time.evaluate_every};
+  const auto is_over = [&] {
+    return w.time >= stop.time || w.step >= stop.step ||
+           std::chrono::steady_clock::now() - begin > slice;
+  };
+  Advanced taken;
+  w.clock.resize(2);
+  do {
+    TilePlan& plan = *w.tiles.plan;
+    launch(w, case_of(w, plan, {stop.time, std::min(stop.step, w.step + most_steps)}), plan.bytes);
+    const std::int64_t before = w.step;
+    const StepClock clock = read_clock(w.clock, end, host, taken);
+    plan.tag += static_cast<std::uint32_t>(w.step - before) + 1;
+    if (clock.host_request == 0) continue;
+    // A search is near: single steps until it has come.
+    const std::int64_t searches = w.searches;
+    for (int k = 0; k < 4 && w.searches == searches && !is_over(); ++k) {
+      take_step_on_device(w);
+      taken.dt_min = taken.steps > 0 ? min(taken.dt_min, w.last_dt) : w.last_dt;
+      taken.dt_max = max(taken.dt_max, w.last_dt);
+      ++taken.steps;
+    }
+    w.clock.resize(2);
+  } while (!is_over() && runs_by_tiles(w));
+  return taken;
+}
+
+}  // namespace breccia::dem

@@ -1,0 +1,75 @@
+// Steps by tiles, each in the memory of a multiprocessor, carried out by the processor: the bits of
+// the host.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "dem/energy.hpp"
+#include "dem/observe.hpp"
+#include "dem/tiles/tile_run.hpp"
+#include "io/case/case_file.hpp"
+#include "paths.hpp"
+#include "physics/dem/scene.hpp"
+#include "prepare/build.hpp"
+
+namespace breccia::dem {
+namespace {
+
+const std::string small_case = std::string(source_dir) + "/cases/rc_slab/small.toml";
+
+/// Concrete, bars, bonds, and an impactor that comes to touch what it breaks.
+World small_slab(Index tiles) {
+  const auto config = read_case<Config>(small_case, {});
+  static const Model model = build_model(config, std::string(source_dir) + "/cases/rc_slab");
+  Exec exec;
+  if (tiles > 0) exec.space = Space::shadow;
+  exec.tiles = tiles;
+  return make_world(config, model, exec);
+}
+/// As many steps as the impact needs to break links, some at a time.
+void run(World& w, std::int64_t at_once) {
+  constexpr std::int64_t steps = 200;
+  while (w.step < steps) advance(w, {1e300, std::min(steps, w.step + at_once)});
+}
+
+TEST(Tiles, end_with_the_bits_of_the_host) {
+  World host = small_slab(0);
+  run(host, 200);
+  EXPECT_GT(count(host).broken_of(LinkKind::concrete), 100);
+  EXPECT_GT(host.searches, 2);
+  const EnergyBalance energy = balance(host);
+  for (const Index tiles : {6, 40}) {
+    World w = small_slab(tiles);
+    ASSERT_TRUE(runs_by_tiles(w));
+    EXPECT_EQ(static_cast<Index>(w.tiles.plan->tiles.size()), tiles);
+    run(w, tiles == 6 ? 37 : 200);  // leaving tiles and coming back changes nothing
+    EXPECT_EQ(state_hash(w), state_hash(host)) << tiles;
+    EXPECT_EQ(w.time, host.time);
+    EXPECT_EQ(w.searches, host.searches);
+    const EnergyBalance now = balance(w);
+    EXPECT_EQ(now.elastic, energy.elastic) << tiles;
+    EXPECT_EQ(now.fracture, energy.fracture) << tiles;
+    EXPECT_EQ(now.plastic, energy.plastic) << tiles;
+    EXPECT_EQ(now.friction, energy.friction) << tiles;
+    EXPECT_EQ(now.work, energy.work) << tiles;
+  }
+}
+
+TEST(Tiles, leave_walls_to_launches) {
+  testing::Scene scene;
+  scene.material("m", "concrete", 30e9, 0.2, 2400.0);
+  const Index a = scene.sphere({0.0, 0.0, 0.02}, 0.01), b = scene.sphere({0.021, 0.0, 0.02}, 0.01);
+  scene.link(a, b);
+  Exec exec;
+  exec.space = Space::shadow;
+  exec.tiles = 2;
+  World free = make_world(scene.config, scene.model, exec);
+  EXPECT_TRUE(runs_by_tiles(free));
+  scene.wall({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+  World walled = make_world(scene.config, scene.model, exec);
+  EXPECT_FALSE(runs_by_tiles(walled));
+}
+
+}  // namespace
+}  // namespace breccia::dem
