@@ -114,6 +114,7 @@ std::vector<Measurement> measure_scene(const Exec& exec, double scale) {
 void report_slabs(const Exec& exec, int copies, int steps, std::vector<Measurement>& result) {
   dem::Config config = slab_scene(1.0);
   config.supports.clear();
+  if (exec.space == Space::cuda) return_free_memory();  // of scenes before
   dem::World w(exec);
   const double setup = seconds_of(
       [&] { w = dem::make_world(config, side_by_side(build_model(config, ""), copies), exec); });

@@ -89,6 +89,15 @@ DeviceInfo device_info() {
   return info;
 }
 
+void return_free_memory() {
+  int number = 0;
+  cudaMemPool_t pool = nullptr;
+  wait_for_device();
+  check_device(cudaGetDevice(&number), "asking for its number");
+  check_device(cudaDeviceGetDefaultMemPool(&pool, number), "finding its memory pool");
+  check_device(cudaMemPoolTrimTo(pool, 0), "giving memory back");
+}
+
 Multiprocessors multiprocessors() {
   int number = 0, count = 0, memory = 0, resident = 0;
   check_device(cudaGetDevice(&number), "asking for its number");
@@ -129,6 +138,7 @@ void use_device(int) {
 DeviceInfo device_info() {
   refuse();
 }
+void return_free_memory() {}
 Multiprocessors multiprocessors() {
   return {};
 }

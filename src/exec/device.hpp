@@ -23,6 +23,9 @@ void use_device(int number);
 /// Of the GPU in use. @throws DeviceError
 DeviceInfo device_info();
 
+/// Gives the GPU back what this process keeps of its memory and does not use.
+void return_free_memory();
+
 /// While one lives, launches and copies of this thread go on a second stream, beside those of the
 /// run. Nothing where no GPU is in use.
 class SecondStream {
