@@ -37,7 +37,7 @@ std::string short_time(double seconds) {
   const bool nanoseconds = seconds < 0.995e-6;
   if (seconds >= 1e-3) return time_text(seconds);
   const double number = seconds * (nanoseconds ? 1e9 : 1e6);
-  const char* const unit = nanoseconds ? "ns" : "µs";
+  const char* const unit = nanoseconds ? "ns" : "us";
   return number < 99.5 ? fmt::format("{:.2g} {}", number, unit)
                        : fmt::format("{:.0f} {}", number, unit);
 }

@@ -49,7 +49,7 @@ ScaledUnit scaled_unit(const std::string& unit, double largest) {
     double size;
   };
   constexpr std::array prefixes{Prefix{"G", 1e9}, Prefix{"M", 1e6},  Prefix{"k", 1e3},
-                                Prefix{"", 1.0},  Prefix{"m", 1e-3}, Prefix{"µ", 1e-6},
+                                Prefix{"", 1.0},  Prefix{"m", 1e-3}, Prefix{"u", 1e-6},
                                 Prefix{"n", 1e-9}};
   for (const Prefix& prefix : prefixes) {
     if (largest >= 0.9999 * prefix.size) return {1.0 / prefix.size, prefix.name + plain};
@@ -87,13 +87,13 @@ std::string time_text(double seconds) {
   if (size == 0.0) return "0 s";
   if (size >= 0.9999) return fmt::format("{:.4g} s", seconds);
   if (size >= 0.9999e-3) return fmt::format("{:.4g} ms", 1e3 * seconds);
-  return fmt::format("{:.4g} µs", 1e6 * seconds);
+  return fmt::format("{:.4g} us", 1e6 * seconds);
 }
 
 std::string length_text(double metres) {
   if (metres >= 0.9999) return fmt::format("{:.4g} m", metres);
   if (metres >= 0.9999e-3) return fmt::format("{:.4g} mm", 1e3 * metres);
-  return fmt::format("{:.4g} µm", 1e6 * metres);
+  return fmt::format("{:.4g} um", 1e6 * metres);
 }
 
 std::string count_text(double count) {

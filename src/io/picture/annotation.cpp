@@ -15,9 +15,20 @@ constexpr Color ink{0.13F, 0.14F, 0.16F}, faint{0.42F, 0.43F, 0.46F};
 constexpr int bar_width = 12;  ///< of a legend's bar  [dots]
 constexpr int margin = 12;     ///< around everything  [dots]
 
+/// Text of this program, which is plain ASCII for terminals, with the sign of micro.
+std::string typeset(std::string text) {
+  for (const std::string_view before : {" ", "["})
+    for (const std::string_view unit : {"us", "um", "uN", "uPa", "uJ", "uW", "uHz"}) {
+      const std::string plain = std::string(before) + std::string(unit);
+      for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at))
+        text.replace(at + 1, 1, "\u00b5");
+    }
+  return text;
+}
+
 /// Width of the legend with its margins; 0 if there is nothing to explain.  [pixels]
 int legend_width(const Legend& legend, int scale) {
-  int width = text_width(legend.title, scale);
+  int width = text_width(typeset(legend.title), scale);
   if (legend.bar) {
     for (const Tick& tick : legend.bar->ticks) {
       width = std::max(width, (bar_width + 5) * scale + text_width(tick.text, scale));
@@ -86,7 +97,7 @@ Window scene_window(const RenderOptions& options, const Legend& legend) {
 
 void draw_title(Paper& paper, const std::string& title, const Frame& frame, int scale) {
   const int left = margin * scale, top = margin * scale, gap = 12 * scale;
-  const std::string time = "t = " + time_text(frame.time),
+  const std::string time = typeset("t = " + time_text(frame.time)),
                     step = fmt::format("step {}", frame.step);
   const int time_at = title.empty() ? left : left + text_width(title, scale) + gap;
   const int step_at = time_at + text_width(time, scale) + gap;
@@ -103,7 +114,7 @@ void draw_legend(Paper& paper, const Legend& legend, int scale) {
   const int height = legend_height(paper, legend, scale);
   if (height > 0) paper.veil(left, y, paper.width - margin * scale, y + height, scale);
   if (!legend.title.empty()) {
-    paper.write(left, y, legend.title, scale, ink);
+    paper.write(left, y, typeset(legend.title), scale, ink);
     y += line;
   }
   if (legend.bar) {
@@ -132,7 +143,7 @@ void draw_scale_bar(Paper& paper, double resolution, int scale) {
   paper.fill(left, bottom - scale, right, bottom, ink);
   paper.fill(left, bottom - 4 * scale, left + scale, bottom, ink);
   paper.fill(right - scale, bottom - 4 * scale, right, bottom, ink);
-  const std::string text = length_text(length);
+  const std::string text = typeset(length_text(length));
   paper.write((left + right - text_width(text, scale)) / 2, bottom - (font_height + 5) * scale,
               text, scale, ink);
 }

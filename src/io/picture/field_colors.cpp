@@ -320,8 +320,8 @@ void show_cracks(const Frame& frame, Coloring& coloring) {
   const FrameField* mode = field_named(frame.line_fields, "mode");
   const FrameField* damage = field_named(frame.line_fields, "damage");
   const std::size_t count = coloring.lines.size();
-  if (frame.triangles.empty() || mode == nullptr || damage == nullptr ||
-      mode->values.size() != count || damage->values.size() != count)
+  if (frame.triangles.empty() || !has_cracks(frame) || mode->values.size() != count ||
+      damage->values.size() != count)
     return;
   const std::array swatches{Legend::Swatch{{0.10F, 0.10F, 0.12F}, "crack, opened"},
                             Legend::Swatch{{0.45F, 0.16F, 0.55F}, "crack, both"},
@@ -360,6 +360,11 @@ std::vector<Color> triangle_means(const Frame& frame, const std::vector<float>& 
 
 bool has_field(const Frame& frame, const std::string& field) {
   return field.empty() || find(frame, field).has_value();
+}
+
+bool has_cracks(const Frame& frame) {
+  return field_named(frame.line_fields, "mode") != nullptr &&
+         field_named(frame.line_fields, "damage") != nullptr;
 }
 
 bool colors_lines(const Frame& frame, const std::string& field) {

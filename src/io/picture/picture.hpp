@@ -63,6 +63,9 @@ bool has_field(const Frame& frame, const std::string& field);
 /// Whether a picture by this field shows the lines for their colours.
 bool colors_lines(const Frame& frame, const std::string& field);
 
+/// Whether the lines have what tells cracks apart: pictures of triangles show them with any field.
+bool has_cracks(const Frame& frame);
+
 /// @throws InputError if a picture's size makes no sense, or a frame's parts do not fit each other
 void check_frame(const Frame& frame, const RenderOptions& options);
 

@@ -62,9 +62,10 @@ class Sight {
       column(Carrier::triangles, f.triangles, whole ? &whole->triangles : nullptr, 3);
     fields(Carrier::points, f.point_fields, whole ? &whole->point_fields : nullptr, field);
     fields(Carrier::triangles, f.triangle_fields, whole ? &whole->triangle_fields : nullptr, field);
-    if (!colors_lines(f, field)) return;
+    const bool cracks = places_.triangles > 0 && has_cracks(f);
+    if (!cracks && !colors_lines(f, field)) return;
     column(Carrier::lines, f.lines, whole ? &whole->lines : nullptr, 2);
-    fields(Carrier::lines, f.line_fields, whole ? &whole->line_fields : nullptr, field);
+    fields(Carrier::lines, f.line_fields, whole ? &whole->line_fields : nullptr, field, cracks);
   }
 
   Message packed() const {
@@ -112,9 +113,10 @@ class Sight {
                         whole ? reinterpret_cast<std::byte*>(whole->data()) : nullptr});
   }
   void fields(Carrier carrier, const std::vector<FrameField>& own, std::vector<FrameField>* whole,
-              const std::string& shown) {
+              const std::string& shown, bool cracks = false) {
     for (const FrameField& field : own) {
-      const bool wanted = field.name == shown || shown.starts_with(field.name + "_") ||
+      const bool of_cracks = cracks && (field.name == "mode" || field.name == "damage");
+      const bool wanted = of_cracks || field.name == shown || shown.starts_with(field.name + "_") ||
                           field.name == "group" || field.name == "bar" || field.name == "kind" ||
                           field.name == "state";
       if (!wanted) continue;

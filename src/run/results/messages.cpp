@@ -124,7 +124,7 @@ std::string closing_text(const Summary& s, std::int64_t frames, const std::strin
   text += '\n';
   if (const std::string shares = stage_shares(s); !shares.empty()) {
     text += fmt::format("stage   {}", shares);
-    if (s.step_median > 0.0) text += fmt::format("{:.4g} µs a step", s.step_median);
+    if (s.step_median > 0.0) text += fmt::format("{:.4g} us a step", s.step_median);
     if (const auto links = fact(s, "model.links"); links && s.step_median > 0.0 && *links > 0.0)
       text += fmt::format("   {:.1f} M link-steps/s", *links / s.step_median);
     text += '\n';
