@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/named.hpp"
+
 namespace breccia {
 namespace {
 
@@ -48,8 +50,9 @@ const char* word_of(StageCause cause) {
 }
 
 std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
-                                        const std::vector<std::string>& probes) {
-  std::vector<std::string> problems;
+                                        const std::vector<std::string>& probes,
+                                        const std::vector<std::string>& bodies) {
+  std::vector<std::string> problems, gone;
   const auto is_probe = [&](const std::string& name) {
     return std::find(probes.begin(), probes.end(), name) != probes.end();
   };
@@ -74,6 +77,12 @@ std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
       else if (!is_probe(rule->probe))
         problems.push_back(where + ".when: \"" + rule->probe +
                            "\" is not a probe; there are: " + list_of(probes));
+    }
+    for (const std::string& body : s.remove) {
+      add_unknown(where + ".remove", body, "body", bodies, problems);
+      if (std::find(gone.begin(), gone.end(), body) != gone.end())
+        problems.push_back(where + ".remove: \"" + body + "\" has been taken out before");
+      gone.push_back(body);
     }
     if (s.drop > 0.0 && !is_probe(s.drop_of))
       problems.push_back(where + ".drop_of = \"" + s.drop_of +

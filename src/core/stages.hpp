@@ -20,10 +20,11 @@ struct StageEnd {
   double until = 0.0;  ///< after its beginning; 0: not by time  [s]
   double rest = 0.0;   ///< kinetic over elastic energy; 0: not at rest  [-]
   std::string when;
-  double drop = 0.0;            ///< share of the peak of `drop_of`; 0: not by it  [-]
-  std::string drop_of;          ///< a probe
-  double local_damping = -1.0;  ///< from now on; below 0: as before  [-]
-  double friction = -1.0;       ///< likewise  [-]
+  double drop = 0.0;                ///< share of the peak of `drop_of`; 0: not by it  [-]
+  std::string drop_of;              ///< a probe
+  double local_damping = -1.0;      ///< from now on; below 0: as before  [-]
+  double friction = -1.0;           ///< likewise  [-]
+  std::vector<std::string> remove;  ///< bodies
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -46,6 +47,9 @@ struct StageEnd {
     key("friction", friction, "-", Range{-1.0, no_limit},
         "friction of all contacts, with walls, too, from its beginning on; links that are broken "
         "keep theirs; below 0: as before");
+    key("remove", remove,
+        "bodies that are taken out as it begins, with all that joined them and what they touched; "
+        "the energy they held leaves the model as work");
   }
   /// Whether it has an end of its own; a last stage may go on to the end of the case.
   bool ends() const { return until > 0.0 || rest > 0.0 || !when.empty() || drop > 0.0; }
@@ -79,9 +83,11 @@ struct StageProgress {
   bool over(std::size_t stage) const { return cause[stage] != StageCause::none; }
 };
 
-/// Problems of ends: names twice, probes that are not there, no end before the last.
+/// Problems of ends: names twice, probes and bodies that are not there, no end before the last.
 /// @param probes  names of the case's probes
+/// @param bodies  names of the case's bodies
 std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
-                                        const std::vector<std::string>& probes);
+                                        const std::vector<std::string>& probes,
+                                        const std::vector<std::string>& bodies);
 
 }  // namespace breccia

@@ -36,6 +36,7 @@ struct Case {
 
   std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<ElementSet> sets;       ///< bodies, then supports
+  std::vector<std::uint8_t> removed;  ///< stage; 1: taken out by now  (bodies)
   std::vector<std::string> wall_names;
   std::vector<Vec3> wall_starts;      ///< points of walls at the start  [m]  (walls)
   std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]  (walls)

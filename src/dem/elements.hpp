@@ -23,7 +23,12 @@ enum Fixed : std::uint8_t {
   fixed_spin_x = 8,
   fixed_spin_y = 16,
   fixed_spin_z = 32,
+  fixed_gone = 64,  ///< the element has been taken out of the model; all other bits are set, too
 };
+
+BR_HD constexpr bool is_gone(std::uint8_t fixed) {
+  return (fixed & fixed_gone) != 0;
+}
 
 /// What pairs read of an element, side by side in memory: they meet elements at random. The
 /// position is at the time of the step, velocity and spin are half a step earlier (leapfrog).

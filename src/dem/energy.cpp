@@ -49,7 +49,7 @@ Energies link_energies(const World& w, const LinkSet<Law>& set) {
   for (const LinkGroup<Law>& g : set.groups)
     all = all + fold(w.exec, g.end - g.begin, Energies{},
                      GroupEnergies<Law, std::remove_const_t<decltype(shares)>>{
-                         w.domain.owned_view(), g.law, g.begin, shares},
+                         w.domain.owned_view(), g.law, g.begin, shares, w.elements.fixed.view()},
                      Sum{});
   return all;
 }

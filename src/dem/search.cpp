@@ -63,11 +63,13 @@ struct MayTouch {
   View<const Index> a, b;
   View<const ElementState> state;
   View<const double> margin;
+  View<const std::uint8_t> fixed;
   double rounding;  ///< of the drift's way  [m]
 
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
     if (!owned(p) && !owned(q)) return false;
+    if (is_gone(fixed[p]) || is_gone(fixed[q])) return false;
     const Vec3 d = state[q].position - state[p].position;
     const double reach =
         (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12) + rounding;
@@ -114,7 +116,9 @@ struct WallNear {
   OwnedView owned;
   View<const ElementState> state;
   View<const double> margin;
+  View<const std::uint8_t> fixed;
   BR_HD bool operator()(Index e) const {
+    if (is_gone(fixed[e])) return false;
     const double height = dot(state[e].position - wall.point, wall.normal);
     return owned(e) && height <= state[e].radius + margin[e] + reach;
   }
@@ -150,7 +154,7 @@ Pairs near_walls(const World& w) {
     const Buffer<Index> near =
         items_where(w.exec, w.elements.size(),
                     WallNear{wall, reach, w.domain.owned_view(), w.elements.state.view(),
-                             w.travel.margin.view()});
+                             w.travel.margin.view(), w.elements.fixed.view()});
     const Index first = pairs.size();
     resize_fields(pairs, first + near.size());
     for_each(w.exec, near.size(),
@@ -302,11 +306,11 @@ void search(World& w) {
   sphere_boxes(w.exec, position, radius, w.travel.margin, boxes, w.travel.drift.farthest);
   Pairs found(w.exec.space);
   w.broad_phase.search(w.exec, boxes, w.elements.id, found, held_pairs(w));
-  const Buffer<Index> near =
-      items_where(w.exec, found.size(),
-                  MayTouch{w.domain.owned_view(), std::as_const(found.a).view(),
-                           std::as_const(found.b).view(), w.elements.state.view(),
-                           std::as_const(w.travel.margin).view(), 1e-14 * w.travel.drift.farthest});
+  const Buffer<Index> near = items_where(
+      w.exec, found.size(),
+      MayTouch{w.domain.owned_view(), std::as_const(found.a).view(), std::as_const(found.b).view(),
+               w.elements.state.view(), std::as_const(w.travel.margin).view(),
+               std::as_const(w.elements.fixed).view(), 1e-14 * w.travel.drift.farthest});
   gather_fields(w.exec, near, found);
   book_dropped(w, w.contacts, found);
   w.contacts.replace(w.exec, std::move(found));

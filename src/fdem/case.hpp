@@ -37,6 +37,8 @@ struct Case {
   Index materials = 0;         ///< how many there are  [-]
 
   std::vector<std::string> groups;             ///< names of bodies  (bodies)
+  std::vector<std::uint8_t> removed;           ///< stage; 1: taken out by now  (bodies)
+  std::vector<NodeSet> removable;              ///< vertices of bodies that stages take out
   std::vector<EffectiveRock> rocks;            ///< each material with its joints  (materials)
   std::vector<std::string> warnings;           ///< what set-up found doubtful, for people
   std::vector<NodeSet> sets;                   ///< bodies, then supports

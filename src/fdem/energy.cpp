@@ -21,6 +21,10 @@ struct TriangleShares {
   BR_HD void add_to(Energies& s, Index t) const {
     if (!owned(t)) return;
     const Kick& kick = move.kick;
+    s.damping.add(viscous_work[t]);
+    s.damping.add(damping_work[t]);
+    s.work.add(load_work[t]);
+    if (is_gone(kick.holds, kick.hold[t])) return;
     const Kick::Result next = kick(t);
     const double span = 0.5 * (kick.last_dt + kick.next_dt);
     for (int k = 0; k < 3; ++k) {
@@ -41,9 +45,6 @@ struct TriangleShares {
     const Mat2& inverse_shape = shape_inverse[t];
     const double area = 0.5 / determinant(inverse_shape);
     s.elastic.add(area * laws[material[t]].energy(deformation(inverse_shape, x, v)));
-    s.damping.add(viscous_work[t]);
-    s.damping.add(damping_work[t]);
-    s.work.add(load_work[t]);
   }
 };
 
@@ -74,6 +75,13 @@ struct JointShares {
 
   BR_HD void add_to(Energies& s, Index i) const {
     if (stage[i] == JointStage::dormant || !owned(ends[i].a0 / 3)) return;
+    if (stage[i] == JointStage::cut) {  // after that it took work out of the model
+      s.fracture.add(inherited_work[i].open);
+      s.sliding.add(inherited_work[i].slide);
+      s.work.add(inherited_work[i].open - work[i].open);
+      s.work.add(inherited_work[i].slide - work[i].slide);
+      return;
+    }
     if (stage[i] != JointStage::whole) {
       s.fracture.add(work[i].open);
       s.sliding.add(work[i].slide);

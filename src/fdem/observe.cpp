@@ -9,6 +9,7 @@
 #include "core/state_hash.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
+#include "fdem/setup/removal.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -188,7 +189,7 @@ Fragments fragments(const World& w) {
   copy_to(stage, w.joints.stage);
   std::vector<std::uint8_t> broken;
   broken.reserve(stage.size());
-  for (const JointStage now : stage) broken.push_back(now == JointStage::broken ? 1 : 0);
+  for (const JointStage now : stage) broken.push_back(is_parted(now) ? 1 : 0);
   return fragments(w, broken);
 }
 
@@ -200,9 +201,13 @@ Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
   copy_to(mass, w.triangles.mass);
   std::vector<EdgeJoints> edges;
   copy_to(edges, w.edges);
+  const std::vector<std::uint8_t> gone = gone_triangles(w);
+  for (std::size_t t = 0; t < mass.size(); ++t)
+    if (gone[t] != 0) mass[t] = 0.0;
   Pieces pieces(mass.size());
   for (std::size_t i = 0; i < broken.size(); ++i)
-    if (broken[i] == 0) pieces.join(edge_a[i] / 3, edge_b[i] / 3);
+    if (broken[i] == 0 && gone[at(edge_a[i] / 3)] == 0 && gone[at(edge_b[i] / 3)] == 0)
+      pieces.join(edge_a[i] / 3, edge_b[i] / 3);
   for (std::size_t edge = 0; edge < w.across.size(); ++edge)
     if (edges[edge / 3].at[edge % 3] == edge_bonded)
       pieces.join(static_cast<Index>(edge / 3), w.across[edge] / 3);

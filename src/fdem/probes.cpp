@@ -73,7 +73,7 @@ struct ReadProbe {
   BR_HD Readings operator()(Index i) const {
     const Index n = members.size > 0 ? members[i] : i;
     const Index t = n / 3, k = n % 3;
-    if (!owned(t)) return Readings();
+    if (!owned(t) || is_gone(kick.holds, kick.hold[t])) return Readings();
     const Vec2 place = from_start() ? starts[3 * id[t] + k] : kick.nodes[t].at[k].position;
     if (!box.holds(in_the_plane(place))) return Readings();
     return Readings(value(t, k), 3 * id[t] + k);
@@ -99,9 +99,12 @@ struct ReadStress {
   View<const TriangleNodes> nodes;
   View<const Mat2> shape_inverse;
   View<const ElasticTriangle> laws;
+  View<const Index> hold;
+  View<const Hold> holds;
 
   BR_HD Readings operator()(Index t) const {
-    if (!owned(t) || (marked.size > 0 && marked[t] == 0)) return Readings();
+    if (!owned(t) || is_gone(holds, hold[t]) || (marked.size > 0 && marked[t] == 0))
+      return Readings();
     if (!box.holds(in_the_plane(middle_of(nodes[t])))) return Readings();
     Vec2 x[3], v[3];
     split(nodes[t], x, v);
@@ -174,7 +177,8 @@ Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members
   if (kind == Kind::stress)
     return fold(w.exec, t.size(), Readings{},
                 ReadStress{owned, quantity, box, marked, t.id.view(), t.material.view(),
-                           t.nodes.view(), t.shape_inverse.view(), w.given->laws.view()},
+                           t.nodes.view(), t.shape_inverse.view(), w.given->laws.view(),
+                           t.hold.view(), w.given->holds.view()},
                 Sum{});
   const Joints& j = w.joints;
   return fold(w.exec, j.size(), Readings{},

@@ -14,6 +14,7 @@
 #include "prepare/meshing/body_mesh.hpp"
 #include "prepare/meshing/crack_path.hpp"
 #include "prepare/meshing/heterogeneity.hpp"
+#include "prepare/meshing/joint_sets.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/meshing/mesh_order.hpp"
 #include "prepare/meshing/mesh_overlap.hpp"
@@ -41,8 +42,11 @@ class Assembly {
     for (const DiscontinuityConfig& d : discontinuities)
       for (std::size_t k = 1; d.embedded && k < d.points.size(); ++k)
         context.lines.push_back({d.points[k - 1], d.points[k]});
+    for (const BodyConfig& body : bodies)
+      if (body.shape == "part") prepare::add_outline(body, edge_of(body.of), context.lines);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       model_.groups.push_back(bodies[b].name);
+      if (bodies[b].shape == "part") continue;
       context.number = static_cast<std::uint32_t>(b);
       try {
         add(static_cast<std::int16_t>(b), context);
@@ -50,6 +54,8 @@ class Assembly {
         problems_.push_back("body." + bodies[b].name + ": " + error.what());
       }
     }
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      if (bodies[b].shape == "part") take_part(b);
     prepare::refuse(problems_, "with the model");
   }
   Model& model() { return model_; }
@@ -84,6 +90,29 @@ class Assembly {
       add_triangle(*placed, placed->mesh.triangle[static_cast<std::size_t>(t)], group);
     }
     add_edge_sets(*placed);
+  }
+
+  double edge_of(const std::string& name) const {
+    for (const BodyConfig& body : bodies_)
+      if (body.name == name) return body.mesh_size;
+    return 0.0;
+  }
+
+  /// Triangles of another body whose centroid lies in a part of it become those of the part.
+  void take_part(std::size_t number) {
+    const BodyConfig& part = bodies_[number];
+    const auto host = index_of(model_.groups, part.of);
+    bool any = false;
+    for (std::size_t t = 0; t < model_.triangle.size(); ++t) {
+      if (model_.group[t] != host) continue;
+      if (!prepare::in_part(part, prepare::centroid(model_.point, model_.triangle[t]))) continue;
+      model_.group[t] = static_cast<std::int16_t>(number);
+      model_.material[t] = index_of(names_.materials, part.material);
+      any = true;
+    }
+    if (!any)
+      problems_.push_back(
+          fmt::format("body.{}: no triangle of body.{} lies in it", part.name, part.of));
   }
 
   void add_triangle(Placed& placed, const prepare::Triangle& triangle, std::int16_t group) {
@@ -236,15 +265,16 @@ class BodyInModel {
 };
 
 /// Cracks at the start: notches first, then discontinuities; on an edge of several, the last
-/// counts.
+/// counts. Those behind the first `single` are of sets, whose lines may miss all bodies.
 void crack(Model& model, const std::vector<prepare::Edge>& notches,
-           const std::vector<DiscontinuityConfig>& discontinuities, const FdemNames& names,
-           std::vector<std::string>& problems) {
+           const std::vector<DiscontinuityConfig>& discontinuities, std::size_t single,
+           const FdemNames& names, std::vector<std::string>& problems) {
   std::map<prepare::Edge, std::int16_t> material;
   for (const prepare::Edge& edge : notches) material[edge] = -1;
-  for (const DiscontinuityConfig& d : discontinuities) {
+  for (std::size_t k = 0; k < discontinuities.size(); ++k) {
+    const DiscontinuityConfig& d = discontinuities[k];
     const auto edges = prepare::edges_along(d.points, model.point, model.triangle);
-    if (edges.empty())
+    if (edges.empty() && k < single)
       problems.push_back("discontinuity." + d.name + ": meets no edge between two triangles");
     for (const prepare::Edge& edge : edges)
       material[edge] = d.kind == "open" ? std::int16_t{-1} : index_of(names.joints, d.material);
@@ -284,9 +314,23 @@ FdemNames names_of(const fdem::Config& config) {
 fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
                              const std::vector<DiscontinuityConfig>& discontinuities,
                              const FdemNames& names, std::int64_t seed,
-                             const std::string& case_folder) {
-  prepare::refuse(prepare::body_problems(bodies, discontinuities, names), "with the model");
-  Assembly assembly(bodies, discontinuities, names, seed, case_folder);
+                             const std::string& case_folder,
+                             const std::vector<fdem::JointSetConfig>& joint_sets) {
+  std::vector<std::string> faults = prepare::body_problems(bodies, discontinuities, names);
+  std::vector<DiscontinuityConfig> cracks = discontinuities;
+  for (std::size_t k = 0; k < joint_sets.size(); ++k) {
+    for (const std::string& fault : prepare::joint_set_problems(joint_sets[k], names.joints))
+      faults.push_back(fault);
+    if (!faults.empty()) continue;
+    try {
+      const auto lines = prepare::lines_of_set(joint_sets[k], seed, k, case_folder);
+      cracks.insert(cracks.end(), lines.begin(), lines.end());
+    } catch (const InputError& error) {
+      faults.push_back("joint_set." + joint_sets[k].name + ": " + error.what());
+    }
+  }
+  prepare::refuse(faults, "with the model");
+  Assembly assembly(bodies, cracks, names, seed, case_folder);
   Model& model = assembly.model();
   prepare::order_along_curve(model);
 
@@ -303,17 +347,15 @@ fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
     const auto edges = body.open_edges(problems);
     notches.insert(notches.end(), edges.begin(), edges.end());
   }
-  crack(model, notches, discontinuities, names, problems);
+  crack(model, notches, cracks, discontinuities.size(), names, problems);
   check_overlaps(model, problems);
   prepare::refuse(problems, "with the model");
   return std::move(model);
 }
 
 fdem::Model build_model(const fdem::Config& config, const std::string& case_folder) {
-  FdemNames names;
-  for (const fdem::MaterialConfig& m : config.materials) names.materials.push_back(m.name);
-  for (const fdem::JointConfig& j : config.joint_laws) names.joints.push_back(j.name);
-  return build_fdem_model(config.bodies, config.discontinuities, names, config.seed, case_folder);
+  return build_fdem_model(config.bodies, config.discontinuities, names_of(config), config.seed,
+                          case_folder, config.joint_sets);
 }
 
 }  // namespace breccia

@@ -30,7 +30,8 @@ FdemNames names_of(const fdem::Config& config);
 fdem::Model build_fdem_model(const std::vector<fdem::BodyConfig>& bodies,
                              const std::vector<fdem::DiscontinuityConfig>& discontinuities,
                              const FdemNames& names, std::int64_t seed,
-                             const std::string& case_folder);
+                             const std::string& case_folder,
+                             const std::vector<fdem::JointSetConfig>& joint_sets = {});
 fdem::Model build_model(const fdem::Config& config, const std::string& case_folder);
 
 }  // namespace breccia

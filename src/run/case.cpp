@@ -80,6 +80,7 @@ std::string model_keys(const fdem::Config& config) {
   part.joint_laws = config.joint_laws;
   part.bodies = config.bodies;
   part.discontinuities = config.discontinuities;
+  part.joint_sets = config.joint_sets;
   return completed_case(part);
 }
 

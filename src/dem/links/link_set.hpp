@@ -131,9 +131,15 @@ struct GroupEnergies {
   Law law;
   Index first;
   Shares shares;
+  View<const std::uint8_t> fixed;
   BR_HD void add_to(Energies& sum, Index k) const {
     const Index i = first + k;
-    if (owned(shares.a[i])) shares.add_to(sum, law, i);
+    if (!owned(shares.a[i])) return;
+    if (!is_gone(fixed[shares.a[i]])) return shares.add_to(sum, law, i);
+    Energies spent;
+    shares.add_to(spent, law, i);
+    spent.elastic = ExactSum();  // it left with its element
+    sum = sum + spent;
   }
 };
 

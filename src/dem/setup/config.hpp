@@ -415,7 +415,8 @@ struct Config : CaseConfig {
   std::vector<WallConfig> walls;
   std::vector<SupportConfig> supports;
   std::vector<StageConfig> stages;
-  double stage_friction = -1.0;  ///< no key: of contacts in this stage; below 0: as given  [-]
+  double stage_friction = -1.0;      ///< no key: of contacts in this stage; below 0: as given  [-]
+  std::vector<std::string> removed;  ///< no key: bodies that are gone by now
   SearchConfig search;
 
   template <class Visit>

@@ -43,6 +43,10 @@ struct SupportConfig {
   std::string name;
   std::string on;  ///< group; empty: all
   Vec3 min{-no_limit, -no_limit, -no_limit}, max{no_limit, no_limit, no_limit};  ///<  [m]
+  Vec3 center{};                                                                 ///<  [m]
+  double radius = 0.0;   ///< of a cylinder or sphere; 0: none  [m]
+  std::string around;    ///< axis of the cylinder; empty: a sphere
+  bool outside = false;  ///< of box, cylinder or sphere
   std::vector<std::string> fix{"x", "y", "z"};
   OverTime<Vec3> velocity;     ///< of the fixed directions  [m/s]
   double ramp = 0.0;           ///< time from rest to that velocity  [s]
@@ -56,6 +60,12 @@ struct SupportConfig {
     key("on", on, "body whose elements are held; empty: of all bodies");
     key("min", min, "m", any_number, "lower corner of the region that holds the elements' centres");
     key("max", max, "m", any_number, "upper corner of that region");
+    key("center", center, "m", any_number, "a point of the cylinder's axis; centre of the sphere");
+    key("radius", radius, "m", not_negative,
+        "the region takes only what lies in this cylinder or sphere, too; 0: none");
+    key("around", around, OneOf{"", "x", "y", "z"},
+        "direction of the axis of that cylinder; empty: it is a sphere");
+    key("outside", outside, "the region takes what box, cylinder or sphere leave out");
     key("fix", fix,
         "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
         "that share elements prescribe other directions, or the same motion");

@@ -14,6 +14,7 @@ Config config_at(Config config, const StageProgress& progress) {
        ++k) {
     const StageConfig& stage = config.stages[k];
     const double begin = progress.begin[k];
+    config.removed.insert(config.removed.end(), stage.remove.begin(), stage.remove.end());
     if (stage.local_damping >= 0.0) config.local_damping = stage.local_damping;
     if (stage.friction >= 0.0) config.stage_friction = stage.friction;
     if (stage.gravity.x < no_limit) config.gravity = stage.gravity;
@@ -46,8 +47,9 @@ std::size_t add_motion(World& w, const WallConfig& wall, std::size_t k) {
 }
 
 std::vector<std::string> stage_problems(const Config& config) {
-  std::vector<std::string> problems = breccia::stage_problems(
-      {config.stages.begin(), config.stages.end()}, names_of(config.probes));
+  std::vector<std::string> problems =
+      breccia::stage_problems({config.stages.begin(), config.stages.end()}, names_of(config.probes),
+                              names_of(config.bodies));
   const std::vector<std::string> supports = names_of(config.supports);
   const std::vector<std::string> walls = names_of(config.walls);
   for (const StageConfig& stage : config.stages) {
@@ -102,6 +104,17 @@ void configure(World& w, const Config& config) {
   for (std::size_t s = 0; s < members.size(); ++s)
     copy_to(members[s], w.given->sets[bodies + s].members);
   Prescribed held = prescribed(config, std::move(members), elements);
+  given.removed.assign(bodies, 0);
+  for (std::size_t b = 0; b < bodies; ++b)
+    if (std::count(config.removed.begin(), config.removed.end(), given.sets[b].name) > 0) {
+      given.removed[b] = 1;
+      std::vector<Index> members_of_body;
+      copy_to(members_of_body, given.sets[b].members);
+      for (const Index e : members_of_body) {
+        held.fixed[static_cast<std::size_t>(e)] = 0x3f | fixed_gone;
+        held.motion[static_cast<std::size_t>(e)] = -1;
+      }
+    }
   std::vector<GlobalId> ids;
   copy_to(ids, w.elements.id);
   std::vector<std::uint8_t> fixed;

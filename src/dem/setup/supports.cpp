@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 
+#include "core/region.hpp"
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
 
@@ -35,9 +36,10 @@ std::vector<Index> members_of(const SupportConfig& s, const Model& m) {
   for (std::size_t e = 0; e < m.position.size(); ++e) {
     if (!s.on.empty() && m.groups[static_cast<std::size_t>(m.group[e])] != s.on) continue;
     const Vec3& x = m.position[e];
-    const bool inside = x.x >= s.min.x && x.y >= s.min.y && x.z >= s.min.z && x.x <= s.max.x &&
-                        x.y <= s.max.y && x.z <= s.max.z;
-    if (inside) members.push_back(static_cast<Index>(e));
+    bool inside = x.x >= s.min.x && x.y >= s.min.y && x.z >= s.min.z && x.x <= s.max.x &&
+                  x.y <= s.max.y && x.z <= s.max.z;
+    if (s.radius > 0.0) inside = inside && in_round(s.center, s.radius, s.around, x);
+    if (inside != s.outside) members.push_back(static_cast<Index>(e));
   }
   return members;
 }

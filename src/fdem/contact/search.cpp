@@ -179,7 +179,9 @@ void place_reach(World& w) {
 /// The couples that may touch, or be near each other, until the next search.
 void search(World& w) {
   const OpenVertices vertices = open_vertices(w);
-  w.reach.triangle = items_where(w.exec, w.triangles.size(), Touchable{vertices});
+  w.reach.triangle = items_where(
+      w.exec, w.triangles.size(),
+      Touchable{vertices, std::as_const(w.triangles.hold).view(), w.given->holds.view()});
   const Index count = w.reach.triangle.size();
   w.reach.reference.resize(count);
   w.reach.margin.resize(count);

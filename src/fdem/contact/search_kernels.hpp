@@ -14,7 +14,7 @@ struct MarkDamaged {
   View<const Index> edge_a, vertex_of;
   View<std::uint8_t> marked;
   BR_HD void operator()(Index i) const {
-    if (!is_damaged(stage[i])) return;
+    if (!is_damaged(stage[i]) && stage[i] != JointStage::cut) return;
     set_flag(marked, vertex_of[edge_a[i]]);
     set_flag(marked, vertex_of[JointEnds::next_corner(edge_a[i])]);
   }
@@ -29,10 +29,14 @@ struct OpenVertices {
   BR_HD int open(Index vertex) const { return border[vertex] | (damaged[vertex] != 0 ? 4 : 0); }
 };
 
-/// Triangles with a corner at the border, at an edge that nothing joins, or at a damaged joint.
+/// Triangles with a corner at the border, at an edge that nothing joins, or at a damaged joint, but
+/// those that have been taken out.
 struct Touchable {
   OpenVertices vertices;
+  View<const Index> hold;
+  View<const Hold> holds;
   BR_HD bool operator()(Index t) const {
+    if (is_gone(holds, hold[t])) return false;
     int open = 0;
     for (Index k = 0; k < 3; ++k) open |= vertices.open(vertices.vertex_of[3 * t + k]);
     return open != 0;
@@ -77,7 +81,7 @@ struct MayTouch {
     const int edge = common[0] && common[1] ? 0 : common[1] && common[2] ? 1 : 2;
     const Index entry = edges[p].at[edge];
     if (entry < 0) return entry == edge_free;
-    return stage[pair_of(entry)] == JointStage::broken;
+    return is_parted(stage[pair_of(entry)]);
   }
 };
 

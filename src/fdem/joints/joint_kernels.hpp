@@ -120,16 +120,16 @@ struct JointForces {
     if (before == JointStage::dormant) return;
     const JointForce last = converted<double>(force[i]);
     const bool acted = dot(last.first, last.first) + dot(last.second, last.second) > 0.0;
-    if (before == JointStage::broken && !acted) return;
+    if (is_parted(before) && !acted) return;
     const JointEnds& e = ends[i];
     const NodeState &a0 = nodes[e.a0], &a1 = nodes[e.a1], &b0 = nodes[e.b0], &b1 = nodes[e.b1];
     const Vec2 first = dt * (a0.velocity - b0.velocity), second = dt * (a1.velocity - b1.velocity);
     const JointOpening<double> o = opening_of(a0.position, a1.position, b0.position, b1.position);
     const double h = length[i];
     const bool collapsed = !(o.size > 1e-12 * h);  // of the middle line no length is left
-    if (before == JointStage::broken || collapsed) {
+    if (is_parted(before) || collapsed) {
       if (!collapsed) book_work(i, o, first, second, JointForce{});
-      if (before != JointStage::broken) finish(i);
+      if (!is_parted(before)) finish(i);
       force[i] = {};
       return;
     }

@@ -9,12 +9,18 @@
 namespace breccia::fdem {
 
 /// How far a joint has gone.
-/// dormant: its triangles move as one until the stress between them reaches its strength.
-enum class JointStage : std::uint8_t { whole, softened, broken, dormant };
+/// dormant: its triangles move as one until the stress between them reaches its strength;
+/// cut: a body at it has been taken out of the model.
+enum class JointStage : std::uint8_t { whole, softened, broken, dormant, cut };
 
 /// Whether a joint has lost some of its strength.
 BR_HD constexpr bool is_damaged(JointStage stage) {
   return stage == JointStage::softened || stage == JointStage::broken;
+}
+
+/// Whether nothing joins its triangles any more.
+BR_HD constexpr bool is_parted(JointStage stage) {
+  return stage == JointStage::broken || stage == JointStage::cut;
 }
 
 /// Integration points: at the first end, in the middle, at the second end; weights 1/6, 4/6, 1/6.
@@ -46,21 +52,22 @@ struct JointWork {
 /// One item for each joint, `force` has one more that stays zero; who writes it, in brackets, in
 /// the words of World. Constant: written by set-up; all of it moves with its joint between ranks.
 struct Joints {
-  Buffer<Index> edge_a, edge_b;      ///< the two edges that it joins  [-]  (set-up, ranks)
-  Buffer<Index> law;                 ///< index into Case::bonds  [-]  (constant)
-  Buffer<double> length;             ///< at the start  [m]  (constant)
-  Buffer<double> strength;           ///< over its law's  [-]  (constant)
-  Buffer<Vec2> preset;               ///< opening and slip at which it was joined; empty: none  [m]
-                                     ///< (set-up, insertion)
-  Buffer<JointStage> stage;          ///<  [-]  (insertion, pairs)
-  Buffer<JointPoints> points;        ///< damage and largest opening and slip  (pairs)
-  Stored<JointForcesOf> force;       ///< of this time  [N/m]  (pairs)
-  Buffer<JointWork> work;            ///< taken up so far  [J/m]  (pairs)
-  Buffer<double> broke_at;           ///< -1: whole, -2: broken from the start  [s]  (pairs)
-  Buffer<double> pressing;           ///< compressive force when it broke  [N/m]  (pairs)
-  Buffer<double> shear_at_break;     ///< on side a along its edge  [N/m]  (pairs)
-  Buffer<JointWork> inherited_work;  ///< of its work, what contact of its faces began with  [J/m]
-                                     ///< (pairs)
+  Buffer<Index> edge_a, edge_b;   ///< the two edges that it joins  [-]  (set-up, ranks)
+  Buffer<Index> law;              ///< index into Case::bonds  [-]  (constant)
+  Buffer<double> length;          ///< at the start  [m]  (constant)
+  Buffer<double> strength;        ///< over its law's  [-]  (constant)
+  Buffer<Vec2> preset;            ///< opening and slip at which it was joined; empty: none  [m]
+                                  ///< (set-up, insertion)
+  Buffer<JointStage> stage;       ///<  [-]  (insertion, pairs, stage)
+  Buffer<JointPoints> points;     ///< damage and largest opening and slip  (pairs)
+  Stored<JointForcesOf> force;    ///< of this time  [N/m]  (pairs)
+  Buffer<JointWork> work;         ///< taken up so far  [J/m]  (pairs)
+  Buffer<double> broke_at;        ///< below 0: it is not broken  [s]  (pairs)
+  Buffer<double> pressing;        ///< compressive force when it broke  [N/m]  (pairs)
+  Buffer<double> shear_at_break;  ///< on side a along its edge  [N/m]  (pairs)
+  /// Of its work, what contact of its faces began with; of a joint that is cut, what it had spent
+  /// by then.  [J/m]  (pairs, stage)
+  Buffer<JointWork> inherited_work;
 
   template <class Visit>
   void each_field(Visit&& field) {

@@ -118,7 +118,9 @@ struct BodyConfig {
   double jitter = 0.0;        ///< over the edge length  [-]
   bool structured = false;
   std::string pattern = "equilateral";
-  Vec2 velocity{};  ///< at the start  [m/s]
+  Vec2 velocity{};            ///< at the start  [m/s]
+  std::string of;             ///< of a part: the body that it is a part of
+  std::vector<Vec2> corners;  ///< of a part  [m]
   std::string file;
   std::vector<std::string> parts;  ///< physical groups of the file
   std::string seams = "refuse";
@@ -133,9 +135,10 @@ struct BodyConfig {
     key("name", name, "name of the body: its triangles form a group of this name");
     key.required("name");
     key("shape", shape,
-        OneOf{"disc", "plate", "ring", "beam", "hexagons", "outline", "geo", "mesh"},
+        OneOf{"disc", "plate", "ring", "beam", "hexagons", "outline", "geo", "mesh", "part"},
         "plate, beam: a rectangle; hexagons: many free elements of six triangles; outline: a "
-        "polygon from a CSV file; geo: a file for gmsh; mesh: triangles from a file");
+        "polygon from a CSV file; geo: a file for gmsh; mesh: triangles from a file; part: what of "
+        "another body lies in a circle, rectangle or polygon, joined to it as before");
     key("material", material, "name of a material; with grains: of what is no mineral");
     key.required("material");
     key("center", center, "m", any_number,
@@ -155,6 +158,9 @@ struct BodyConfig {
     key("pattern", pattern, OneOf{"equilateral", "crossed"},
         "regular mesh of rows of nearly equilateral triangles, or of squares with both diagonals");
     key("velocity", velocity, "m/s", any_number, "velocity at the start");
+    key("of", of, "part: the body that it is a part of");
+    key("corners", corners, "m", any_number,
+        "part: corners of its polygon; left out: radius or size say what it is");
     key("file", file, "file beside the case file: .csv of x,y; .geo; .msh (Gmsh 4.1); .inp");
     key("parts", parts,
         "physical surfaces (.msh, .geo) or element sets (.inp) that are this body; empty: all. "
@@ -189,6 +195,54 @@ struct DiscontinuityConfig {
     key("material", material, "cohesive: name of a joint law");
     key("embedded", embedded,
         "new meshes follow the lines; false: edges of the mesh near the lines are taken");
+  }
+};
+
+/// [[joint_set]]: many discontinuities of one kind, from a file or at random
+struct JointSetConfig {
+  std::string name;
+  std::string kind = "open";
+  std::string material;
+  bool embedded = true;
+  std::string file;
+  Vec2 min{}, max{};       ///< rectangle that it fills  [m]
+  double intensity = 0.0;  ///< P21: length of lines over area  [1/m]
+  double angle = 0.0;      ///< mean  [rad]
+  double spread = 0.0;     ///< standard deviation of angles  [rad]
+  std::string length_law = "constant";
+  double length = 0.0;             ///< mean  [m]
+  double length_deviation = 0.0;   ///<  [m]
+  double length_exponent = 2.5;    ///<  [-]
+  double least = 0.0, most = 0.0;  ///< lengths; 0: no limit  [m]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name, for messages");
+    key.required("name");
+    key("kind", kind, OneOf{"open", "cohesive"},
+        "open: broken at the start, with contact only; cohesive: joints with a law of their own");
+    key("material", material, "cohesive: name of a joint law");
+    key("embedded", embedded,
+        "new meshes follow the lines; false: edges of the mesh near the lines are taken");
+    key("file", file,
+        "file beside the case file: .csv with a line x1,y1,x2,y2 for each, or .wkt with LINESTRING "
+        "and MULTILINESTRING, in metres; empty: at random, by the keys below");
+    key("min", min, "m", any_number, "lower corner of the rectangle that random lines fill");
+    key("max", max, "m", any_number, "upper corner of that rectangle");
+    key("intensity", intensity, "1/m", not_negative,
+        "P21 of random lines: their length in the rectangle over its area, met exactly");
+    key("angle", angle, "rad", any_number, "mean angle of the lines from the x axis");
+    key("spread", spread, "rad", Range{0.0, 1.5708},
+        "standard deviation of their angles, by the normal distribution");
+    key("length_law", length_law, OneOf{"constant", "exponential", "lognormal", "power"},
+        "how long they are: all as length; exponential or lognormal with that mean; power: density "
+        "l^-length_exponent from least to most");
+    key("length", length, "m", not_negative, "mean length before least and most");
+    key("length_deviation", length_deviation, "m", not_negative,
+        "standard deviation of lognormal lengths");
+    key("length_exponent", length_exponent, "-", positive, "exponent of the power law");
+    key("least", least, "m", not_negative, "shorter ones are drawn again; 0: no limit");
+    key("most", most, "m", not_negative, "longer ones are drawn again; 0: no limit");
   }
 };
 

@@ -109,6 +109,10 @@ struct RegionConfig {
   std::string on;
   std::string edges;
   Vec2 min{-no_limit, -no_limit}, max{no_limit, no_limit};  ///<  [m]
+  Vec2 center{};                                            ///<  [m]
+  double radius = 0.0;                                      ///< of a circle; 0: none  [m]
+  std::vector<Vec2> polygon;                                ///< empty: none  [m]
+  bool outside = false;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -116,6 +120,12 @@ struct RegionConfig {
     key("edges", edges, "named line of a mesh file that it takes; empty: all");
     key("min", min, "m", any_number, "lower corner of the region it takes");
     key("max", max, "m", any_number, "upper corner of that region");
+    key("center", center, "m", any_number, "centre of the circle that radius asks for");
+    key("radius", radius, "m", not_negative,
+        "the region takes only what lies in this circle, too; 0: no circle");
+    key("polygon", polygon, "m", any_number,
+        "the region takes only what lies in this polygon, too, given by its corners; empty: none");
+    key("outside", outside, "the region takes what box, circle and polygon leave out");
   }
 };
 
@@ -322,13 +332,15 @@ struct Config : CaseConfig {
   std::vector<FrictionConfig> frictions;
   std::vector<BodyConfig> bodies;
   std::vector<DiscontinuityConfig> discontinuities;
+  std::vector<JointSetConfig> joint_sets;
   JointsConfig joints;
   ContactConfig contact;
   InSituConfig in_situ;
   std::vector<SupportConfig> supports;
   std::vector<LoadConfig> loads;
   std::vector<StageConfig> stages;
-  double stage_friction = -1.0;  ///< no key: of contacts in this stage; below 0: as given  [-]
+  double stage_friction = -1.0;      ///< no key: of contacts in this stage; below 0: as given  [-]
+  std::vector<std::string> removed;  ///< no key: bodies that are gone by now
   SearchConfig search;
 
   template <class Visit>
@@ -343,6 +355,7 @@ struct Config : CaseConfig {
     key.list("friction", frictions, "coefficients of friction by pairs of materials");
     key.list("body", bodies, "what there is");
     key.list("discontinuity", discontinuities, "cracks and weak planes at the start");
+    key.list("joint_set", joint_sets, "many cracks or weak planes, from a file or at random");
     key.table("joints", joints, "what all joints share");
     key.table("contact", contact, "what happens where triangles touch");
     key.table("in_situ", in_situ, "stress at the start");

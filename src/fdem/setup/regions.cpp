@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/region.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/mesh_edges.hpp"
 
@@ -40,8 +41,11 @@ class Region {
     if (group_ >= 0 && model_.group[triangle] != group_) return false;
     if (!config_.edges.empty() && on_lines_.count(vertex) == 0) return false;
     const Vec2& x = model_.point[static_cast<std::size_t>(vertex)];
-    return x.x >= config_.min.x && x.y >= config_.min.y && x.x <= config_.max.x &&
-           x.y <= config_.max.y;
+    bool inside = x.x >= config_.min.x && x.y >= config_.min.y && x.x <= config_.max.x &&
+                  x.y <= config_.max.y;
+    if (config_.radius > 0.0) inside = inside && in_circle(config_.center, config_.radius, x);
+    if (!config_.polygon.empty()) inside = inside && in_polygon(config_.polygon, x);
+    return inside != config_.outside;
   }
   bool takes_line(Index a, Index b) const {
     return config_.edges.empty() || lines_.count(std::minmax(a, b)) != 0;

@@ -14,6 +14,7 @@
 #include "fdem/setup/mesh_edges.hpp"
 #include "fdem/setup/pressed_faces.hpp"
 #include "fdem/setup/regions.hpp"
+#include "fdem/setup/removal.hpp"
 #include "fdem/setup/starts.hpp"
 #include "fdem/setup/warnings.hpp"
 #include "fdem/world.hpp"
@@ -246,6 +247,13 @@ std::vector<Index> prescribe_supports(World& w, const Config& config) {
   for (std::size_t b = 0; b < bodies; ++b) corners += w.given->sets[b].nodes.size();
   std::vector<Hold> holds;
   std::vector<Index> hold(corners / 3, -1);
+  Case& given = set_up(w);
+  given.removed = removed_bodies(config, given.groups);
+  for (std::size_t b = 0; b < bodies; ++b) {
+    if (given.removed[b] == 0) continue;
+    if (holds.empty()) holds.push_back({.fixed = 0x3f, .gone = 1});
+    for (const Index n : given.sets[b].nodes) hold[at(n / 3)] = 0;
+  }
   w.prescribed.clear();
   w.servo_motions.clear();
   for (std::size_t s = 0; s < config.supports.size(); ++s) {
@@ -268,6 +276,7 @@ std::vector<Index> prescribe_supports(World& w, const Config& config) {
     if (bits == 0) continue;  // it lets go
     for (const Index n : w.given->sets[bodies + s].nodes) {
       Index& own = hold[at(n / 3)];
+      if (own >= 0 && holds[at(own)].gone != 0) continue;
       if (own < 0) {
         own = static_cast<Index>(holds.size());
         holds.emplace_back();
@@ -284,7 +293,7 @@ std::vector<Index> prescribe_supports(World& w, const Config& config) {
       if (motion >= 0) h.motion[corner] = motion;
     }
   }
-  copy_to(set_up(w).holds, holds);
+  copy_to(given.holds, holds);
   w.motions.resize(static_cast<Index>(w.prescribed.size()));
   return hold;
 }
@@ -374,9 +383,10 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
   w.triangles.external.resize(w.triangles.size());
 }
 
-void set_up_bodies(World& w, const Model& model) {
+void set_up_bodies(World& w, const Config& config, const Model& model) {
   Case& given = set_up(w);
   given.groups = model.groups;
+  given.removable = removable_bodies(config, model);
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     NodeSet set{model.groups[g], {}};
     for (Index t = 0; t < model.size(); ++t)
@@ -436,7 +446,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.materials = static_cast<Index>(config.materials.size());
   copy_to(given.laws, elastic_table(config));
   copy_to(given.contact_pairs, contact_table(config));
-  set_up_bodies(w, model);
+  set_up_bodies(w, config, model);
   set_up_triangles(w, config, model);
   set_up_joints(w, config, model);
   set_up_supports(w, config, model);

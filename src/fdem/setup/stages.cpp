@@ -11,6 +11,7 @@ Config config_at(Config config, const StageProgress& progress) {
        ++k) {
     const StageConfig& stage = config.stages[k];
     const double begin = progress.begin[k];
+    config.removed.insert(config.removed.end(), stage.remove.begin(), stage.remove.end());
     if (stage.local_damping >= 0.0) config.local_damping = stage.local_damping;
     if (stage.friction >= 0.0) config.stage_friction = stage.friction;
     if (stage.gravity.x < no_limit) config.gravity = stage.gravity;
@@ -33,8 +34,9 @@ Config config_at(Config config, const StageProgress& progress) {
 }
 
 std::vector<std::string> stage_problems(const Config& config) {
-  std::vector<std::string> problems = breccia::stage_problems(
-      {config.stages.begin(), config.stages.end()}, breccia::names_of(config.probes));
+  std::vector<std::string> problems =
+      breccia::stage_problems({config.stages.begin(), config.stages.end()},
+                              breccia::names_of(config.probes), breccia::names_of(config.bodies));
   const std::vector<std::string> supports = breccia::names_of(config.supports);
   const std::vector<std::string> loads = breccia::names_of(config.loads);
   for (const StageConfig& stage : config.stages) {

@@ -12,8 +12,13 @@ namespace breccia::fdem {
 /// motion is motion[k].
 struct Hold {
   std::uint8_t fixed = 0;
+  std::uint8_t gone = 0;  ///< 1: the triangle has been taken out of the model
   std::int16_t motion[3] = {-1, -1, -1};
 };
+/// @param hold  of a triangle
+BR_HD inline bool is_gone(const View<const Hold>& holds, Index hold) {
+  return hold >= 0 && holds[hold].gone != 0;
+}
 
 /// A velocity that follows a table of factors over time, here and now.
 struct Motion {

@@ -316,7 +316,7 @@ struct StableStep {
     const Index entry = edges[t].at[k];
     if (entry < 0) return 0.0;
     const JointStage now = stage[pair_of(entry)];
-    if (now == JointStage::broken || now == JointStage::dormant) return 0.0;
+    if (is_parted(now) || now == JointStage::dormant) return 0.0;
     return bonds[bond_of[pair_of(entry)]].stiffness;
   }
   /// An edge that may touch adds the stiffness of two faces pressed together, 3 p L (1/H + 1/H).
@@ -325,9 +325,7 @@ struct StableStep {
     const double over_height = dot(edge, edge) / (2.0 * area);  // L / H
     return 6.0 * contacts[material[t] * materials + material[t]].penalty * over_height;
   }
-  BR_HD bool is_broken(Index entry) const {
-    return entry >= 0 && stage[pair_of(entry)] == JointStage::broken;
-  }
+  BR_HD bool is_broken(Index entry) const { return entry >= 0 && is_parted(stage[pair_of(entry)]); }
   /// Bits of the edges that nothing joins.
   BR_HD int exposed_edges(Index t) const {
     int exposed = 0;

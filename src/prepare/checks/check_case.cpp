@@ -13,6 +13,7 @@
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/ldpm/body.hpp"
+#include "prepare/meshing/joint_sets.hpp"
 
 namespace breccia {
 namespace {
@@ -154,6 +155,9 @@ void check_case(const Config& config) {
        {prepare::body_problems(config.bodies, config.discontinuities, names_of(config)),
         prepare::overlap_problems(config.bodies)})
     problems.insert(problems.end(), more.begin(), more.end());
+  for (const JointSetConfig& set : config.joint_sets)
+    for (const std::string& problem : prepare::joint_set_problems(set, names_of(config).joints))
+      problems.push_back(problem);
   check_mass_scaling(config, problems);
   prepare::refuse(problems, "in the case");
 }

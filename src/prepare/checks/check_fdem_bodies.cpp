@@ -55,6 +55,7 @@ class BodyChecks {
       path_ = "body." + b.name;
       require(seen.insert(b.name).second, "another body has this name");
       check(b);
+      if (b.shape == "part") check_part(b, bodies);
     }
     for (const DiscontinuityConfig& d : discontinuities) check(d);
   }
@@ -94,7 +95,7 @@ class BodyChecks {
               "shape hexagons needs the table [body.hexagons] with count and side");
       require((b.size.x > 0.0) == (b.size.y > 0.0),
               "size must be two lengths above 0, or left out");
-    } else if (b.shape != "geo" && b.shape != "mesh") {
+    } else if (b.shape != "geo" && b.shape != "mesh" && b.shape != "part") {
       require(b.mesh_size > 0.0, "shape {} needs mesh_size, the edge length of its triangles",
               b.shape);
       if (b.mesh_size > 0.0)
@@ -116,6 +117,18 @@ class BodyChecks {
     require(cut || b.holes.empty(), "a body of shape {} can have no holes", b.shape);
     check_notches(b, cut);
     if (!b.grains.kind.empty()) check_grains(b);
+  }
+
+  void check_part(const BodyConfig& b, const std::vector<BodyConfig>& bodies) {
+    const auto host = std::find_if(bodies.begin(), bodies.end(),
+                                   [&](const BodyConfig& each) { return each.name == b.of; });
+    require(host != bodies.end() && host->shape != "part",
+            "of = \"{}\" must name a body that is no part", b.of);
+    const int ways = (b.corners.empty() ? 0 : 1) + (b.radius > 0.0 ? 1 : 0) +
+                     (b.size.x > 0.0 && b.size.y > 0.0 ? 1 : 0);
+    require(ways == 1, "a part needs radius, size or corners, one of them");
+    require(b.corners.empty() || b.corners.size() >= 3, "a polygon has three corners or more");
+    require(norm(b.velocity) == 0.0, "a part moves as the body that it is of");
   }
 
   void check_file(const BodyConfig& b) {

@@ -8,6 +8,7 @@
 #include "prepare/checks/refusal.hpp"
 #include "prepare/ldpm/mesh_file.hpp"
 #include "prepare/meshing/body_mesh.hpp"
+#include "prepare/meshing/joint_sets.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/meshing/mesh_file.hpp"
 #include "prepare/packing/spheres_file.hpp"
@@ -19,12 +20,11 @@ class FileChecks {
  public:
   explicit FileChecks(const std::string& case_folder) : folder_(case_folder) {}
 
-  /// Reads a file of a body and notes what is wrong with it.
-  void check(const std::string& body, const std::string& file,
+  /// Reads a file and notes what is wrong with it.
+  /// @param key  of what names it
+  void check(const std::string& key, const std::string& file,
              const std::function<void(const std::string& path)>& read) {
-    const auto note = [&](const Error& error) {
-      problems_.push_back("body." + body + ": " + error.what());
-    };
+    const auto note = [&](const Error& error) { problems_.push_back(key + ": " + error.what()); };
     try {
       read((folder_ / file).string());
     } catch (const IoError& error) {
@@ -64,7 +64,7 @@ void check_files(const dem::Config& config, const std::string& case_folder) {
   FileChecks files(case_folder);
   for (const dem::BodyConfig& body : config.bodies)
     if (body.shape == "file")
-      files.check(body.name, body.file, [&](const std::string& path) {
+      files.check("body." + body.name, body.file, [&](const std::string& path) {
         const dem::MaterialConfig* of = item_named(config.materials, body.material);
         if (of != nullptr && of->law == "ldpm")
           read_ldpm_mesh(path);
@@ -78,10 +78,16 @@ void check_files(const fdem::Config& config, const std::string& case_folder) {
   FileChecks files(case_folder);
   for (const fdem::BodyConfig& body : config.bodies) {
     if (!body.file.empty())
-      files.check(body.name, body.file, [&](const std::string& path) { read_body(body, path); });
+      files.check("body." + body.name, body.file,
+                  [&](const std::string& path) { read_body(body, path); });
     if (body.grains.kind == "picture")
-      files.check(body.name, body.grains.file, [](const std::string& path) { read_png(path); });
+      files.check("body." + body.name, body.grains.file,
+                  [](const std::string& path) { read_png(path); });
   }
+  for (const fdem::JointSetConfig& set : config.joint_sets)
+    if (!set.file.empty())
+      files.check("joint_set." + set.name, set.file,
+                  [&](const std::string&) { lines_of_set(set, config.seed, 0, case_folder); });
   files.refuse_all();
 }
 

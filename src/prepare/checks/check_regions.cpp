@@ -95,8 +95,43 @@ Outline outline_of(const fdem::BodyConfig& b) {
   return {b.name, around({b.center.x, b.center.y, 0.0}, {half.x, half.y, 0.0})};
 }
 
+void cut_to(Bounds& b, const std::array<double, 3>& low, const std::array<double, 3>& high) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    b.low[k] = std::max(b.low[k], low[k]);
+    b.high[k] = std::min(b.high[k], high[k]);
+  }
+}
+constexpr std::array<double, 3> nowhere_low{-no_limit, -no_limit, -no_limit},
+    nowhere_high{no_limit, no_limit, no_limit};
+
 Bounds bounds_of(const fdem::RegionConfig& r) {
-  return {{r.min.x, r.min.y, 0.0}, {r.max.x, r.max.y, 0.0}};
+  if (r.outside) return {nowhere_low, nowhere_high};
+  Bounds b{{r.min.x, r.min.y, 0.0}, {r.max.x, r.max.y, 0.0}};
+  if (r.radius > 0.0)
+    cut_to(b, {r.center.x - r.radius, r.center.y - r.radius, 0.0},
+           {r.center.x + r.radius, r.center.y + r.radius, 0.0});
+  if (r.polygon.empty()) return b;
+  Vec2 low = r.polygon[0], high = low;
+  for (const Vec2& p : r.polygon) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  cut_to(b, {low.x, low.y, 0.0}, {high.x, high.y, 0.0});
+  return b;
+}
+Bounds bounds_of(const dem::SupportConfig& s) {
+  if (s.outside) return {nowhere_low, nowhere_high};
+  Bounds b{{s.min.x, s.min.y, s.min.z}, {s.max.x, s.max.y, s.max.z}};
+  if (!(s.radius > 0.0)) return b;
+  std::array<double, 3> low{s.center.x - s.radius, s.center.y - s.radius, s.center.z - s.radius},
+      high{s.center.x + s.radius, s.center.y + s.radius, s.center.z + s.radius};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (s.around == std::string(1, "xyz"[k])) {
+      low[k] = -no_limit;
+      high[k] = no_limit;
+    }
+  cut_to(b, low, high);
+  return b;
 }
 
 }  // namespace
@@ -106,9 +141,7 @@ void check_regions(const dem::Config& config) {
   for (const dem::BodyConfig& body : config.bodies) outlines.push_back(outline_of(body, config));
   std::vector<std::string> problems;
   for (const dem::SupportConfig& s : config.supports)
-    problems.push_back(problem_of("support." + s.name,
-                                  {{s.min.x, s.min.y, s.min.z}, {s.max.x, s.max.y, s.max.z}}, s.on,
-                                  outlines));
+    problems.push_back(problem_of("support." + s.name, bounds_of(s), s.on, outlines));
   std::erase(problems, "");
   refuse(problems, "in the case");
 }

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/region.hpp"
 #include "exec/error.hpp"
+#include "math/constants.hpp"
 #include "prepare/csv_numbers.hpp"
 #include "prepare/meshing/clean_lines.hpp"
 #include "prepare/meshing/mesh_check.hpp"
@@ -101,6 +103,30 @@ Mesh hexagon_field(const BodyConfig& body, const Random& random) {
 }
 
 }  // namespace
+
+bool in_part(const BodyConfig& part, const Vec2& x) {
+  if (!part.corners.empty()) return in_polygon(part.corners, x - part.center);
+  if (part.radius > 0.0) return in_circle(part.center, part.radius, x);
+  const Vec2 away = x - part.center;
+  return std::abs(away.x) <= 0.5 * part.size.x && std::abs(away.y) <= 0.5 * part.size.y;
+}
+
+void add_outline(const BodyConfig& part, double edge, std::vector<Line>& lines) {
+  std::vector<Vec2> corners = part.corners;
+  const Vec2 half = 0.5 * part.size;
+  if (corners.empty() && part.radius > 0.0) {
+    const double pieces = 2.0 * pi * part.radius / std::max(edge, 0.02 * part.radius);
+    const int count = std::max(12, static_cast<int>(std::lround(pieces)));
+    for (int k = 0; k < count; ++k) {
+      const double angle = 2.0 * pi * k / count;
+      corners.push_back(part.radius * Vec2{std::cos(angle), std::sin(angle)});
+    }
+  } else if (corners.empty()) {
+    corners = {-half, {half.x, -half.y}, half, {-half.x, half.y}};
+  }
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    lines.push_back({part.center + corners[k], part.center + corners[(k + 1) % corners.size()]});
+}
 
 double distance(const Vec2& point, const Line& line) {
   const Vec2 along = line[1] - line[0];

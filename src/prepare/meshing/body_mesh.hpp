@@ -31,6 +31,13 @@ std::vector<Index> triangles_of(const fdem::BodyConfig& body, const Mesh& mesh);
 /// @throws InputError if it has fewer than three corners, no area, or crosses itself
 std::vector<Vec2> read_outline(const std::string& path);
 
+/// Whether a point lies in a body of shape part.
+bool in_part(const fdem::BodyConfig& part, const Vec2& x);
+/// Adds the outline of a body of shape part.
+/// @param edge  of the mesh of the body that it is a part of; 0: unknown  [m]
+void add_outline(const fdem::BodyConfig& part, double edge,
+                 std::vector<std::array<Vec2, 2>>& lines);
+
 /// The distance of a point from a straight line between two points.  [m]
 double distance(const Vec2& point, const std::array<Vec2, 2>& line);
 

@@ -94,7 +94,7 @@ class DemFrame {
     f.radius.reserve(own_.size());
     for (const Index i : own_) {
       f.position.push_back(e.state.data()[i].position);
-      f.radius.push_back(e.state.data()[i].radius);
+      f.radius.push_back(is_gone(e.fixed.data()[i]) ? 0.0 : e.state.data()[i].radius);
       if (!w_.domain.single_rank()) part_.places.point.push_back(e.id.data()[i]);
     }
     const MotionNow now = motion_now(w_);

@@ -10,6 +10,7 @@
 #include "exec/tasks.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
+#include "fdem/setup/removal.hpp"
 #include "run/method/fdem_method.hpp"
 
 namespace breccia {
@@ -21,14 +22,37 @@ using namespace fdem;
 struct Placed {
   std::vector<Index> fragment;  ///< of each own triangle
   std::vector<Index> line;      ///< place of each own line
-  std::int64_t lines, triangles;
+  std::int64_t lines;
 };
 
 /// The triangles, and the joints that have softened or broken, of this rank: by their places in
 /// memory.
 struct Own {
   std::vector<Index> triangles, lines;
+  std::vector<std::int32_t> place;  ///< of triangles in the frame, by global id; empty: their ids
+  std::int64_t shown = 0;           ///< triangles in the frame of the whole
+
+  std::int32_t place_of(GlobalId id) const {
+    return place.empty() ? static_cast<std::int32_t>(id) : place[at(id)];
+  }
 };
+
+/// Frames leave out bodies that have been taken out.
+void leave_out_removed(const Case& given, Own& own) {
+  own.shown = 0;
+  for (std::size_t b = 0; b < given.groups.size(); ++b)
+    if (given.removed[b] == 0)
+      own.shown += static_cast<std::int64_t>(given.sets[b].nodes.size() / 3);
+  std::size_t all = 0;
+  for (std::size_t b = 0; b < given.groups.size(); ++b) all += given.sets[b].nodes.size() / 3;
+  if (static_cast<std::size_t>(own.shown) == all) return;
+  own.place.assign(all, 1);
+  for (std::size_t b = 0; b < given.groups.size(); ++b)
+    if (given.removed[b] != 0)
+      for (const Index n : given.sets[b].nodes) own.place[at(n / 3)] = 0;
+  std::int32_t count = 0;
+  for (std::int32_t& one : own.place) one = std::exchange(count, count + one);
+}
 
 /// Rank 0: fragments and places of lines, from what all ranks have told.
 std::vector<Message> placed_on_first(const std::vector<Message>& told, const World& mesh) {
@@ -53,7 +77,6 @@ std::vector<Message> placed_on_first(const std::vector<Message>& told, const Wor
     put_array(answer, triangles[r]);
     put_array(answer, lines[r]);
     put_value(answer, count);
-    put_value(answer, mesh.triangles.size());
   }
   return answers;
 }
@@ -63,10 +86,10 @@ Placed placed(const World& w, const Triangles& triangles, const Joints& joints, 
               const World* mesh) {
   Placed placed;
   if (w.domain.single_rank()) {
-    placed.fragment = fragments(w).of;
+    const std::vector<Index> of = fragments(w).of;
+    for (const Index t : own.triangles) placed.fragment.push_back(of[at(t)]);
     for (std::size_t l = 0; l < own.lines.size(); ++l) placed.line.push_back(static_cast<Index>(l));
     placed.lines = static_cast<std::int64_t>(own.lines.size());
-    placed.triangles = w.triangles.size();
     return placed;
   }
   std::vector<Index> ids, lines, broken;
@@ -85,7 +108,6 @@ Placed placed(const World& w, const Triangles& triangles, const Joints& joints, 
   placed.fragment = from.array<Index>();
   placed.line = from.array<Index>();
   placed.lines = from.value<Index>();
-  placed.triangles = from.value<Index>();
   return placed;
 }
 
@@ -113,7 +135,8 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
   each_of(count, w.exec.threads, [&](std::size_t k) {
     const Index i = own.triangles[k];
     for (std::size_t c = 0; c < 3; ++c) {
-      f.triangles[3 * k + c] = static_cast<std::int32_t>(3 * at(t.id.data()[i]) + c);
+      f.triangles[3 * k + c] =
+          static_cast<std::int32_t>(3 * own.place_of(t.id.data()[i]) + static_cast<int>(c));
       put_point(f, 3 * k + c, t.nodes.data()[i].at[c].position, velocity[at(i)].at[c]);
     }
   });
@@ -150,7 +173,7 @@ void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& 
   for (std::size_t l = 0; l < own.lines.size(); ++l) {
     const Index i = own.lines[l];
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
-    auto place = static_cast<std::int32_t>(3 * placed.triangles + 2 * placed.line[l]);
+    auto place = static_cast<std::int32_t>(3 * own.shown + 2 * placed.line[l]);
     for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}}) {
       const NodeState &a = nodes[on_a], &b = nodes[on_b];
       f.lines.push_back(place++);
@@ -172,11 +195,11 @@ void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& 
 /// Where the items of a part stand in the whole.
 FramePlaces places_of(const Triangles& t, const Own& own, const Placed& placed) {
   FramePlaces places;
-  for (const Index i : own.triangles) places.triangle.push_back(t.id.data()[i]);
+  for (const Index i : own.triangles) places.triangle.push_back(own.place_of(t.id.data()[i]));
   places.line.assign(placed.line.begin(), placed.line.end());
   for (const std::int32_t id : places.triangle)
     for (std::int32_t c = 0; c < 3; ++c) places.point.push_back(3 * id + c);
-  const auto behind = static_cast<std::int32_t>(3 * placed.triangles);
+  const auto behind = static_cast<std::int32_t>(3 * own.shown);
   for (const std::int32_t line : places.line)
     for (std::int32_t end = 0; end < 2; ++end) places.point.push_back(behind + 2 * line + end);
   return places;
@@ -188,8 +211,10 @@ FramePart fdem_frame(World& w, const World* mesh) {
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
   const OnHost<Joints> joints(w.joints, w.exec.space);
   Own own;
+  leave_out_removed(*w.given, own);
+  const std::vector<std::uint8_t> gone = gone_triangles(w);
   for (Index t = 0; t < triangles->size(); ++t)
-    if (w.domain.owns(t)) own.triangles.push_back(t);
+    if (w.domain.owns(t) && gone[at(t)] == 0) own.triangles.push_back(t);
   for (Index i = 0; i < joints->size(); ++i)
     if (is_damaged(joints->stage.data()[i]) && w.domain.owns(joints->edge_a.data()[i] / 3))
       own.lines.push_back(i);
@@ -208,9 +233,9 @@ FramePart fdem_frame(World& w, const World* mesh) {
   add_lines(*triangles, *joints, velocity, own, known, f);
   if (!w.domain.single_rank()) part.places = places_of(*triangles, own, known);
   part.places.whole = w.domain.single_rank();
-  part.places.triangles = known.triangles;
+  part.places.triangles = own.shown;
   part.places.lines = known.lines;
-  part.places.points = 3 * known.triangles + 2 * known.lines;
+  part.places.points = 3 * own.shown + 2 * known.lines;
   return part;
 }
 

@@ -340,6 +340,7 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   bool free_mesh = false;
   std::string of;
   for (const fdem::BodyConfig& body : config.bodies) {
+    if (body.shape == "part") continue;  // counted with the body that it is of
     const Meshed mesh = meshed(body, folder);
     if (mesh.triangles < 1.0) {  // gmsh alone knows
       f.items = 0.0;

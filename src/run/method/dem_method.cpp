@@ -7,6 +7,7 @@
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "dem/servos.hpp"
+#include "dem/setup/removal.hpp"
 #include "dem/setup/stages.hpp"
 #include "dem/stepping/step.hpp"
 #include "run/method/sim_method.hpp"

@@ -8,6 +8,7 @@
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
 #include "fdem/servos.hpp"
+#include "fdem/setup/removal.hpp"
 #include "fdem/setup/stages.hpp"
 #include "run/method/sim_method.hpp"
 

@@ -88,8 +88,19 @@ class SimMethod final : public Method {
     if (!begins) return;
     now_ = config_at(case_, now);
     change_gravity(now_);
-    world_.in_both([&](World& w) {
+    const bool removes = !case_.stages[static_cast<std::size_t>(now.index)].remove.empty();
+    const auto change = [&](World& w) {
       configure(w, now_);
+      if (removes) {
+        open_around_removed(w);
+        cut_off_removed(w);
+      }
+    };
+    if (removes)
+      booked([&] { world_.in_both(change); });
+    else
+      world_.in_both(change);
+    world_.in_both([&](World& w) {
       if (w.servos.empty()) return;
       for (const std::size_t k : Sim::changed_servos(case_, static_cast<std::size_t>(now.index)))
         w.servos[k] = {};
@@ -310,9 +321,14 @@ class SimMethod final : public Method {
   void change_gravity(const Config& config) {
     const auto gravity = (1.0 / config.time.mass_scaling) * config.gravity;
     const auto change = gravity - world_.part().given->gravity;
-    if (!(dot(change, change) > 0.0)) return;
+    if (dot(change, change) > 0.0)
+      booked([&] { world_.in_both([&](World& w) { set_gravity(w, gravity); }); });
+  }
+  /// Counts the energy that a change of the model between two steps puts in as work.
+  template <class Change>
+  void booked(const Change& change) {
     const Energies before = energies_of_all();
-    world_.in_both([&](World& w) { set_gravity(w, gravity); });
+    change();
     const Energies after = energies_of_all();
     if (!leads(world_.ranks())) return;
     const auto missing = [this](const Energies& all) {
@@ -334,6 +350,7 @@ class SimMethod final : public Method {
     world_.in_both([&](World& w) {
       w.stage = now;
       configure(w, now_);
+      open_around_removed(w);
     });
   }
 

@@ -1,0 +1,238 @@
+// Bodies that a stage takes out: what is left goes on as if they had never been there, what they
+// held is booked, and threads, a device's schedule, ranks and resumed runs agree.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "domain/simulated_ranks.hpp"
+#include "fdem/setup/stages.hpp"
+#include "physics/dem/scene.hpp"
+#include "physics/fdem/scene.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem_method.hpp"
+#include "run/stage_control.hpp"
+
+namespace breccia {
+namespace {
+
+/// A strip, of which all that lies right of x = 0.02 is a body of its own, is held at both ends
+/// under a stress, then loses that body.
+fdem::testing::Scene dug(const char* joints) {
+  using fdem::testing::far;
+  fdem::testing::Scene s;
+  s.material(30e9, 0.2, 2500.0).joints = joints;
+  s.config.materials[0].joint.tension = 1e9;
+  s.config.materials[0].joint.cohesion = 1e9;
+  s.body("left", prepare::crossed_rectangle({{0.0, 0.0}, {0.08, 0.02}}, 0.01));
+  s.model.groups.emplace_back("right");
+  for (std::size_t t = 0; t < s.model.triangle.size(); ++t) {
+    double x = 0.0;
+    for (const Index v : s.model.triangle[t]) x += s.model.point[static_cast<std::size_t>(v)].x / 3;
+    if (x > 0.02) s.model.group[t] = 1;
+  }
+  s.support("foot", {-far, -far}, {-0.0399, far}, {"x", "y"});
+  s.support("head", {0.0399, -far}, {far, far}, {"x", "y"});
+  s.config.time.end = 1.0;
+  s.config.probes = {{"right", "right", "speed", "max"}, {"left", "left", "velocity_x", "max"}};
+  fdem::StageConfig pull, swing, end;
+  pull.name = "pull";
+  pull.supports = {{"head", {"same"}, {0.5, 0.0}, 1e-5, {}}};
+  pull.until = 4e-5;
+  swing.name = "swing";
+  swing.remove = {"right"};
+  swing.until = 6e-5;
+  end.name = "end";
+  end.until = 2e-5;
+  s.config.stages = {pull, swing, end};
+  return s;
+}
+
+/// A column of linked spheres on a loose one, the prop, and a bar beside it that concrete holds.
+dem::testing::Scene propped() {
+  dem::testing::Scene s;
+  s.material("c", "concrete", 30e9, 0.2, 2400.0);
+  s.config.time = {.end = 1.0, .safety = 0.3};
+  s.config.gravity = {0.0, 0.0, -1000.0};
+  for (int i = 0; i < 4; ++i) {
+    s.sphere({0.0, 0.0, 0.03 + 0.0199 * i}, 0.01);
+    if (i > 0) s.link(i - 1, i);
+  }
+  s.sphere({0.0, 0.0, 0.0101}, 0.01);  // a prop on the wall, which bears all
+  s.sphere({0.0199, 0.0, 0.03}, 0.01);
+  s.link(0, 5);
+  s.model.groups = {"column", "prop", "side"};
+  s.model.group[4] = 1;
+  s.model.group[5] = 2;
+  s.wall({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+  s.config.probes = {{"column", "column", "velocity_z", "min"}};
+  dem::StageConfig stand, fall, end;
+  stand.name = "stand";
+  stand.until = 2e-4;
+  stand.local_damping = 0.5;
+  fall.name = "fall";
+  fall.remove = {"prop"};
+  fall.local_damping = 0.0;
+  fall.until = 4e-4;
+  end.name = "end";
+  end.remove = {"side"};
+  end.until = 1e-4;
+  s.config.stages = {stand, fall, end};
+  return s;
+}
+
+void run_to(Method& method, const CaseConfig& config, Communicator* ranks) {
+  StageControl stages(method, config.probes, "", ranks);
+  while (!stages.finished()) {
+    method.advance(stages.limited({1.0, method.steps() + 37}));
+    stages.look();
+  }
+}
+
+template <class Scene>
+std::uint64_t end_of(const Scene& s, Exec exec = {}, Communicator* ranks = nullptr) {
+  const auto method = make_method(s.config, s.model, exec, ranks);
+  run_to(*method, s.config, ranks);
+  return method->state_hash();
+}
+
+template <class Scene>
+void expect_alike(const Scene& s) {
+  const std::uint64_t host = end_of(s);
+  Exec threads, shadow;
+  threads.threads = 3;
+  shadow.space = Space::shadow;
+  EXPECT_EQ(end_of(s, threads), host);
+  EXPECT_EQ(end_of(s, shadow), host);
+  for (const int count : {2, 3})
+    simulate_ranks(count, 5, [&](Communicator& ranks) {
+      const std::uint64_t hash = end_of(s, {}, &ranks);
+      if (ranks.rank() != 0) return;
+      EXPECT_EQ(hash, host) << count << " ranks";
+    });
+}
+
+/// Saved while the body is still there, just gone and long gone; continued alone and on ranks.
+template <class Scene>
+void expect_resumed(const Scene& s) {
+  const std::uint64_t whole = end_of(s);
+  const std::string path =
+      std::filesystem::temp_directory_path() / ("removal_" + std::to_string(::getpid()) + ".br");
+  for (const double share : {0.2, 0.45, 0.9}) {
+    double end = 0.0;
+    for (const auto& stage : s.config.stages) end += stage.until;
+    const auto before = make_method(s.config, s.model, {}, nullptr);
+    StageControl stages(*before, s.config.probes, "", nullptr);
+    while (before->time() < share * end) {
+      before->advance(stages.limited({share * end, 1'000'000}));
+      stages.look();
+    }
+    CheckpointWriter writer;
+    before->save(writer);
+    writer.write(path);
+    const CheckpointReader reader(path);
+    const auto after = make_method(s.config, s.model, {}, nullptr);
+    after->load(&reader);
+    run_to(*after, s.config, nullptr);
+    EXPECT_EQ(after->state_hash(), whole) << share;
+    simulate_ranks(2, 5, [&](Communicator& ranks) {
+      const auto on_ranks = make_method(s.config, s.model, {}, &ranks);
+      on_ranks->load(ranks.rank() == 0 ? &reader : nullptr);
+      run_to(*on_ranks, s.config, &ranks);
+      const std::uint64_t hash = on_ranks->state_hash();
+      if (ranks.rank() == 0) EXPECT_EQ(hash, whole) << share << " on two ranks";
+    });
+  }
+  std::filesystem::remove(path);
+}
+
+/// As a body leaves nothing is missed; what it held is work that has left the model.
+template <class Scene>
+void expect_booked(const Scene& s, double at_most) {
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  StageControl stages(*method, s.config.probes, "", nullptr);
+  while (!stages.finished()) {
+    method->advance(stages.limited({1.0, 1'000'000}));
+    const EnergyBalance before = method->energy();
+    const std::int32_t index = method->stage().index;
+    stages.look();
+    const EnergyBalance after = method->energy();
+    if (method->stage().index == index) continue;
+    EXPECT_NEAR(after.missing(), before.missing(), 1e-12 * before.total());
+    if (index != 0) continue;
+    EXPECT_LT(after.elastic, 0.9 * before.elastic);
+    EXPECT_NEAR(after.work - before.work, after.total() - before.total(), 1e-9 * before.total());
+  }
+  EXPECT_LT(method->energy().error_relative, at_most);
+}
+
+TEST(Removal, of_joined_triangles_is_alike_on_threads_schedule_and_ranks) {
+  for (const char* joints : {"intrinsic", "extrinsic", "none"}) expect_alike(dug(joints));
+}
+TEST(Removal, of_joined_triangles_is_resumed) {
+  for (const char* joints : {"intrinsic", "extrinsic", "none"}) expect_resumed(dug(joints));
+}
+TEST(Removal, of_joined_triangles_is_booked) {
+  for (const char* joints : {"intrinsic", "extrinsic", "none"}) expect_booked(dug(joints), 1e-3);
+}
+TEST(Removal, of_spheres_is_alike_on_threads_schedule_and_ranks) {
+  expect_alike(propped());
+}
+TEST(Removal, of_spheres_is_resumed) {
+  expect_resumed(propped());
+}
+TEST(Removal, of_spheres_is_booked) {
+  expect_booked(propped(), 1e-2);
+}
+
+/// A bar under uniform stress whose half is taken out: the free face moves back with sigma over
+/// rho c, as the elastic wave from a cut must.
+TEST(Removal, unloads_the_face_by_a_wave) {
+  using fdem::testing::far;
+  fdem::testing::Scene s = dug("none");
+  s.config.materials[0].poisson = 0.0;
+  s.config.stages[0].supports.clear();
+  s.config.in_situ.xx = -10e6;
+  s.config.stages[0].until = 1e-6;
+  s.config.stages[1].until = 8e-6;  // a wave crosses the 60 mm that are left in 17 us
+  s.config.stages.pop_back();
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, s.config, nullptr);
+  EXPECT_EQ(method->probes()[0], 0.0);
+  const double front = 10e6 / std::sqrt(2500.0 * 30e9);
+  EXPECT_NEAR(method->probes()[1], front, 0.2 * front);  // the wave rings in a mesh of 10 mm
+  const Frame frame = method->frame();
+  const std::size_t left = frame.triangles.size() / 3;
+  EXPECT_EQ(left, s.model.triangle.size() * 3 / 4);
+  EXPECT_EQ(frame.triangle_fields[0].values.size(), left);
+}
+
+/// A sphere on a prop that goes falls freely.
+TEST(Removal, lets_what_stood_on_a_prop_fall) {
+  dem::testing::Scene s = propped();
+  s.config.stages.pop_back();
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, s.config, nullptr);
+  // 4e-4 s at 1000 m/s2, and the spring-back of the column by less than a tenth of it
+  EXPECT_NEAR(method->probes()[0], -0.4, 0.06);
+}
+
+TEST(Removal, of_bodies_that_are_not_there_or_are_gone_is_a_problem) {
+  fdem::Config config;
+  config.bodies.emplace_back().name = "core";
+  fdem::StageConfig first, second;
+  first.name = "a";
+  first.until = 1.0;
+  first.remove = {"core", "cor"};
+  second.name = "b";
+  second.remove = {"core"};
+  config.stages = {first, second};
+  const std::vector<std::string> said = fdem::stage_problems(config);
+  ASSERT_EQ(said.size(), 2U);
+  EXPECT_EQ(said[0], "stage.a.remove = \"cor\" is no body; there are: core");
+  EXPECT_EQ(said[1], "stage.b.remove: \"core\" has been taken out before");
+}
+
+}  // namespace
+}  // namespace breccia
