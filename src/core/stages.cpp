@@ -78,6 +78,10 @@ std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
         problems.push_back(where + ".when: \"" + rule->probe +
                            "\" is not a probe; there are: " + list_of(probes));
     }
+    if (i == 0 && !s.remove.empty())
+      problems.push_back(where +
+                         ".remove: the first stage begins with the case, and cannot take out what "
+                         "it brings; leave the body out, or begin with another stage");
     for (const std::string& body : s.remove) {
       add_unknown(where + ".remove", body, "body", bodies, problems);
       if (std::find(gone.begin(), gone.end(), body) != gone.end())

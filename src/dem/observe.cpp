@@ -200,7 +200,10 @@ std::vector<double> damage(const World& w) {
 Counts count(const World& w) {
   Counts n;
   Pieces pieces(at(w.elements.size()));
+  const OnHost fixed(w.elements.fixed, w.exec.space);
+  const auto gone = [&](Index e) { return is_gone(fixed->data()[e]); };
   each_link(w, [&](LinkKind kind, Index a, Index b, bool broken) {
+    if (gone(a) || gone(b)) return;
     if (!broken)
       pieces.join(a, b);
     else
@@ -213,6 +216,7 @@ Counts count(const World& w) {
   std::vector<double> mass(at(masses->size()), 0.0);
   double total = 0.0;
   for (Index i = 0; i < masses->size(); ++i) {
+    if (gone(i)) continue;
     mass[at(pieces.root(i))] += masses->data()[i];
     total += masses->data()[i];
   }

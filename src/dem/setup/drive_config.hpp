@@ -43,15 +43,15 @@ struct SupportConfig {
   std::string name;
   std::string on;  ///< group; empty: all
   Vec3 min{-no_limit, -no_limit, -no_limit}, max{no_limit, no_limit, no_limit};  ///<  [m]
-  Vec3 center{};                                                                 ///<  [m]
-  double radius = 0.0;   ///< of a cylinder or sphere; 0: none  [m]
-  std::string around;    ///< axis of the cylinder; empty: a sphere
-  bool outside = false;  ///< of box, cylinder or sphere
   std::vector<std::string> fix{"x", "y", "z"};
   OverTime<Vec3> velocity;     ///< of the fixed directions  [m/s]
   double ramp = 0.0;           ///< time from rest to that velocity  [s]
   SupportServoConfig servo{};  ///< instead of the velocity along its axis
   double begin = 0.0;          ///< no key: where its time begins  [s]
+  Vec3 center{};               ///<  [m]
+  double radius = 0.0;         ///< of a cylinder or sphere; 0: none  [m]
+  std::string around{};        ///< axis of the cylinder; empty: a sphere
+  bool outside = false;        ///< of box, cylinder or sphere
 
   template <class Visit>
   void each_key(Visit&& key) {

@@ -72,7 +72,20 @@ void cut_off_removed(World& w) {
     for (std::size_t e = 0; e < state.size(); ++e)
       if (is_gone(fixed[e])) state[e].velocity = state[e].spin = {};
   });
+  // What contacts with them hold leaves, too; the next step's search drops them.
+  const auto part = [&](auto& contacts, bool of_elements) {
+    std::vector<Index> a, b;
+    copy_to(a, contacts.pairs.a);
+    copy_to(b, contacts.pairs.b);
+    change_array(contacts.history.state, [&](std::vector<ContactState>& state) {
+      for (std::size_t i = 0; i < state.size(); ++i)
+        if (gone(a[i]) || (of_elements && gone(b[i]))) state[i] = {};
+    });
+  };
+  part(w.contacts, true);
+  part(w.wall_contacts, false);
   w.each_set([&](auto& set) {
+    if (set.size() == 0) return;
     std::vector<Index> a, b;
     copy_to(a, set.a);
     copy_to(b, set.b);
@@ -84,7 +97,7 @@ void cut_off_removed(World& w) {
       if (!links.empty()) let_go(set, group.law, links);
     }
   });
-  // The next step searches: contacts with them end.
+  // The next step searches.
   change_array(w.travel.reference, [&](auto& reference) {
     for (std::size_t e = 0; e < reference.size() && e < fixed.size(); ++e)
       if (is_gone(fixed[e])) reference[e] = {1e150, 0.0, 0.0};

@@ -54,6 +54,9 @@ std::vector<std::string> stage_problems(const Config& config) {
   const std::vector<std::string> walls = names_of(config.walls);
   for (const StageConfig& stage : config.stages) {
     const std::string where = "stage." + stage.name;
+    if (!stage.remove.empty() && config.search.every > 0)
+      problems.push_back(where +
+                         ".remove needs search.every = 0: contacts with the body end at a search");
     for (const SupportChange& change : stage.supports)
       add_unknown(where + ".support.name", change.name, "support", supports, problems);
     for (const WallChange& change : stage.walls)

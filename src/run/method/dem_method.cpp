@@ -10,6 +10,7 @@
 #include "dem/setup/removal.hpp"
 #include "dem/setup/stages.hpp"
 #include "dem/stepping/step.hpp"
+#include "run/method/dem_tables.hpp"
 #include "run/method/sim_method.hpp"
 
 namespace breccia {
@@ -103,6 +104,8 @@ struct DemSim {
     add("fracture.fragments", n.fragments);
     add("fracture.largest_fragment_fraction", n.largest_fragment);
   }
+
+  static std::vector<Table> tables(const World& w) { return dem_tables(w); }
 
   static void add_arrays(World& w, StateArrays& arrays) {
     const Buffer<dem::ElementState>& state = w.elements.state;

@@ -1,0 +1,136 @@
+#include "run/method/dem_tables.hpp"
+
+#include <algorithm>
+
+#include "core/on_host.hpp"
+#include "core/pieces.hpp"
+#include "dem/observe.hpp"
+
+namespace breccia {
+namespace {
+
+using dem::ElementState;
+using dem::is_gone;
+
+/// Where a pair is: its ends by global id, the middle between its surfaces, the way from a to b.
+struct PairPlace {
+  double a, b;
+  Vec3 middle, normal;
+
+  PairPlace(const dem::Elements& e, Index i, Index j) : a(e.id.data()[i]), b(e.id.data()[j]) {
+    const ElementState &one = e.state.data()[i], &other = e.state.data()[j];
+    const Vec3 way = other.position - one.position;
+    const double distance = norm(way);
+    if (distance > 0.0) normal = (1.0 / distance) * way;
+    middle = one.position + (one.radius + 0.5 * (distance - one.radius - other.radius)) * normal;
+  }
+  std::vector<double> row() const {
+    return {a, b, middle.x, middle.y, middle.z, normal.x, normal.y, normal.z};
+  }
+};
+
+Table broken_links(const dem::World& w, const dem::Elements& e) {
+  Table table{"broken_links",
+              {"a", "b", "x", "y", "z", "nx", "ny", "nz", "kind"},
+              {"-", "-", "m", "m", "m", "-", "-", "-", "-"},
+              {}};
+  w.each_set([&](const auto& set) {
+    const OnHost links(set.arrays(), w.exec.space);
+    with_number(w.exec.precision, [&](auto number) {
+      const auto is_broken = links->template broken<decltype(number)>();
+      for (Index i = 0; i < links->size(); ++i) {
+        const Index a = links->a.data()[i], b = links->b.data()[i];
+        if (!is_broken(i) || is_gone(e.fixed.data()[a]) || is_gone(e.fixed.data()[b])) continue;
+        table.rows.push_back(PairPlace(e, a, b).row());
+        table.rows.back().push_back(static_cast<double>(set.kind));
+      }
+    });
+  });
+  return table;
+}
+
+Table fragments(const dem::World& w, const dem::Elements& e) {
+  Pieces pieces(static_cast<std::size_t>(e.size()));
+  w.each_set([&](const auto& set) {
+    const OnHost links(set.arrays(), w.exec.space);
+    with_number(w.exec.precision, [&](auto number) {
+      const auto is_broken = links->template broken<decltype(number)>();
+      for (Index i = 0; i < links->size(); ++i)
+        if (!is_broken(i)) pieces.join(links->a.data()[i], links->b.data()[i]);
+    });
+  });
+  const dem::MotionNow now = dem::motion_now(w);
+  struct Piece {
+    double mass = 0.0, elements = 0.0;
+    Vec3 moment{}, momentum{};
+  };
+  std::vector<Piece> of(static_cast<std::size_t>(e.size()));
+  double total = 0.0;
+  for (Index i = 0; i < e.size(); ++i) {
+    if (is_gone(e.fixed.data()[i])) continue;
+    Piece& piece = of[static_cast<std::size_t>(pieces.root(i))];
+    const double m = e.mass.data()[i];
+    piece.mass += m;
+    piece.elements += 1.0;
+    piece.moment += m * e.state.data()[i].position;
+    piece.momentum += m * now.velocity[static_cast<std::size_t>(i)];
+    total += m;
+  }
+  std::erase_if(of, [](const Piece& piece) { return piece.elements == 0.0; });
+  std::stable_sort(of.begin(), of.end(),
+                   [](const Piece& a, const Piece& b) { return a.mass > b.mass; });
+  Table table{"fragments",
+              {"fragment", "mass", "share", "elements", "x", "y", "z", "vx", "vy", "vz"},
+              {"-", "kg", "-", "-", "m", "m", "m", "m/s", "m/s", "m/s"},
+              {}};
+  for (const Piece& piece : of) {
+    const Vec3 x = (1.0 / piece.mass) * piece.moment, v = (1.0 / piece.mass) * piece.momentum;
+    table.rows.push_back({static_cast<double>(table.rows.size()),
+                          piece.mass / w.given->time.mass_scaling, piece.mass / total,
+                          piece.elements, x.x, x.y, x.z, v.x, v.y, v.z});
+  }
+  return table;
+}
+
+/// The normal force of a contact: of its spring, whose energy is known, and its dashpot.  [N]
+double pressure_of(const dem::World& w, const dem::Elements& e, Index a, Index b,
+                   const std::vector<dem::ContactPair>& constants, const dem::ContactState& state) {
+  const double ra = e.state.data()[a].radius, rb = e.state.data()[b].radius;
+  const dem::ContactLaw::Pair pair{ra * rb / (ra + rb), std::min(ra, rb), ra + rb, 0.0, 0.0};
+  const auto of =
+      static_cast<std::size_t>(e.material.data()[a] * w.given->materials + e.material.data()[b]);
+  const dem::ContactLaw& law = w.given->contact;
+  const double power = law.hertz ? 2.5 : 2.0;  // of the overlap, in the energy
+  return power * law.stored_normal(constants[of], pair, state.overlap) / state.overlap +
+         state.dashpot;
+}
+
+Table contacts(const dem::World& w, const dem::Elements& e) {
+  Table table{"contacts",
+              {"a", "b", "x", "y", "z", "nx", "ny", "nz", "pressing", "shear"},
+              {"-", "-", "m", "m", "m", "-", "-", "-", "N", "N"},
+              {}};
+  std::vector<Index> a, b;
+  copy_to(a, w.contacts.pairs.a);
+  copy_to(b, w.contacts.pairs.b);
+  std::vector<dem::ContactState> state;
+  copy_to(state, w.contacts.history.state);
+  std::vector<dem::ContactPair> constants;
+  copy_to(constants, w.given->contact_pairs);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    if (!(state[i].overlap > 0.0)) continue;
+    table.rows.push_back(PairPlace(e, a[i], b[i]).row());
+    table.rows.back().push_back(pressure_of(w, e, a[i], b[i], constants, state[i]));
+    table.rows.back().push_back(norm(state[i].shear));
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<Table> dem_tables(const dem::World& w) {
+  const OnHost elements(w.elements, w.exec.space);
+  return {fragments(w, *elements), broken_links(w, *elements), contacts(w, *elements)};
+}
+
+}  // namespace breccia

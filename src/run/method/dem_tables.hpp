@@ -1,0 +1,17 @@
+#pragma once
+// Lists that a DEM run leaves as it ends: pieces, broken links, contacts.
+
+#include <vector>
+
+#include "dem/world.hpp"
+#include "run/method/method.hpp"
+
+namespace breccia {
+
+/// fragments: pieces that links hold together, the heaviest first, with place and velocity;
+/// broken_links: where they are and which way they pointed; contacts: those that press, with their
+/// forces.
+/// @param w  all of it
+std::vector<Table> dem_tables(const dem::World& w);
+
+}  // namespace breccia
