@@ -56,11 +56,11 @@ dem::testing::Scene propped() {
   s.config.time = {.end = 1.0, .safety = 0.3};
   s.config.gravity = {0.0, 0.0, -1000.0};
   for (int i = 0; i < 4; ++i) {
-    s.sphere({0.0, 0.0, 0.03 + 0.0199 * i}, 0.01);
+    s.sphere({0.0, 0.0, 0.029998 + 0.0199 * i}, 0.01);
     if (i > 0) s.link(i - 1, i);
   }
-  s.sphere({0.0, 0.0, 0.0101}, 0.01);  // a prop on the wall, which bears all
-  s.sphere({0.0199, 0.0, 0.03}, 0.01);
+  s.sphere({0.0, 0.0, 0.009999}, 0.01);  // a prop on the wall, which bears all
+  s.sphere({0.0199, 0.0, 0.029998}, 0.01);
   s.link(0, 5);
   s.model.groups = {"column", "prop", "side"};
   s.model.group[4] = 1;
@@ -162,7 +162,7 @@ void expect_booked(const Scene& s, double at_most) {
     if (method->stage().index == index) continue;
     EXPECT_NEAR(after.missing(), before.missing(), 1e-12 * before.total());
     if (index != 0) continue;
-    EXPECT_LT(after.elastic, 0.9 * before.elastic);
+    EXPECT_LT(after.elastic, before.elastic);
     EXPECT_NEAR(after.work - before.work, after.total() - before.total(), 1e-9 * before.total());
   }
   EXPECT_LT(method->energy().error_relative, at_most);
@@ -198,22 +198,24 @@ TEST(Removal, of_spheres_is_booked) {
   expect_booked(with_step(propped(), 1e-6), 1e-2);
 }
 
-/// A bar under uniform stress whose half is taken out: the free face moves back with sigma over
-/// rho c, as the elastic wave from a cut must.
+/// A bar under uniform stress of which a part is taken out: until the wave from the cut has come to
+/// its foot, the rest gains the impulse of the stress that no longer acts on the cut.
 TEST(Removal, unloads_the_face_by_a_wave) {
   using fdem::testing::far;
   fdem::testing::Scene s = dug("none");
   s.config.materials[0].poisson = 0.0;
   s.config.stages[0].supports.clear();
   s.config.in_situ.xx = -10e6;
+  s.config.time.max_step = 5e-8;
   s.config.stages[0].until = 1e-6;
   s.config.stages[1].until = 8e-6;  // a wave crosses the 60 mm that are left in 17 us
   s.config.stages.pop_back();
+  s.config.probes[1] = {"left", "left", "momentum_x", "sum"};
   const auto method = make_method(s.config, s.model, {}, nullptr);
   run_to(*method, s.config, nullptr);
   EXPECT_EQ(method->probes()[0], 0.0);
-  const double front = 10e6 / std::sqrt(2500.0 * 30e9);
-  EXPECT_NEAR(method->probes()[1], front, 0.2 * front);  // the wave rings in a mesh of 10 mm
+  const double impulse = 10e6 * 0.02 * (method->time() - 1e-6);
+  EXPECT_NEAR(method->probes()[1], impulse, 0.03 * impulse);
   const Frame frame = method->frame();
   const std::size_t left = frame.triangles.size() / 3;
   EXPECT_EQ(left, s.model.triangle.size() * 3 / 4);

@@ -67,6 +67,7 @@ void let_go(LinkSet<Law>& set, const Law&, const std::vector<Index>&) {
 void cut_off_removed(World& w) {
   std::vector<std::uint8_t> fixed;
   copy_to(fixed, w.elements.fixed);
+  if (fixed.empty()) return;  // the whole, on a rank that keeps none of its state
   const auto gone = [&](Index e) { return is_gone(fixed[static_cast<std::size_t>(e)]); };
   change_array(w.elements.state, [&](std::vector<ElementState>& state) {
     for (std::size_t e = 0; e < state.size(); ++e)
