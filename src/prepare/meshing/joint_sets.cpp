@@ -117,6 +117,9 @@ class Drawn {
 
   std::vector<std::vector<Vec2>> lines() {
     const Vec2 size = set_.max - set_.min;
+    // Of middles beyond the rectangle; the same for all lengths, or long lines were too few.
+    const double longest = set_.length_law == "constant" ? set_.length : 10.0 * set_.length;
+    const double reach = 0.5 * (set_.most > 0.0 ? set_.most : longest);
     double missing = set_.intensity * size.x * size.y;
     std::vector<std::vector<Vec2>> all;
     constexpr std::uint64_t most_lines = 1'000'000;
@@ -124,7 +127,6 @@ class Drawn {
       const double length = drawn_length();
       const double angle = set_.angle + set_.spread * normal(0);
       const Vec2 half = (0.5 * length) * Vec2{std::cos(angle), std::sin(angle)};
-      const double reach = 0.5 * length;  // of middles beyond the rectangle
       const Vec2 middle{set_.min.x - reach + (size.x + 2.0 * reach) * random_.uniform(line_, 2),
                         set_.min.y - reach + (size.y + 2.0 * reach) * random_.uniform(line_, 3)};
       Vec2 from = middle - half, to = middle + half;

@@ -11,9 +11,9 @@ namespace breccia::prepare {
 
 /// The lines of a set, each a discontinuity that carries the set's name.
 ///
-/// Random ones: middles are uniform in the rectangle, grown by half of the longest line; angles and
-/// lengths are independent. Lines are cut at the rectangle; the last one ends where the intensity
-/// is met. A function of seed and number.
+/// Random ones: middles are uniform in the rectangle, grown by half of `most`, or of ten means;
+/// angles and lengths are independent. Lines are cut at the rectangle; the last one ends where the
+/// intensity is met. A function of seed and number.
 ///
 /// @param number  of the set in its case
 /// @throws InputError  if the file says something else, or no length fits
