@@ -29,6 +29,7 @@ void add_report(CLI::App& program);
 void add_sweep(CLI::App& program, int& exit_code);
 void add_test(CLI::App& program, int& exit_code);
 void add_watch(CLI::App& program, int& exit_code);
+void add_verify(CLI::App& program, int& exit_code);
 void add_shell_file(CLI::App& program);
 void add_calibrate(CLI::App& program, int& exit_code);
 void add_bench(CLI::App& program, Communicator* ranks);  ///< bench/command.cpp

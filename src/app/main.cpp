@@ -90,6 +90,7 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   breccia::app::add_sweep(program, exit_code);
   breccia::app::add_test(program, exit_code);
   breccia::app::add_watch(program, exit_code);
+  breccia::app::add_verify(program, exit_code);
   breccia::app::add_shell_file(program);
   breccia::app::add_calibrate(program, exit_code);
 #ifdef BR_BENCH

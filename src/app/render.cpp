@@ -14,6 +14,7 @@
 
 #include "app/commands.hpp"
 #include "app/film.hpp"
+#include "app/run_notes.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "io/picture/field_colors.hpp"
@@ -186,12 +187,27 @@ struct RenderCommand {
     const std::vector<double>& times = shots.front().times;
     std::vector<Image> images;
     for (const int number : numbers) images.push_back(panels(shots, number));
-    write_png(path, images.size() == 1 ? images.front() : grid(images, sheet_of(sheet)->columns));
+    const Image image =
+        images.size() == 1 ? images.front() : grid(images, sheet_of(sheet)->columns);
+    write_png(path, with_notes(png_content(image), notes_for(shots, numbers)));
     if (numbers.size() == 1)
       fmt::print("{}  frame {} of {}, {}\n", harmless(path), numbers.front(), times.size(),
                  time_text(times.at(static_cast<std::size_t>(numbers.front()))));
     else
       fmt::print("{}  {} of {} frames\n", harmless(path), numbers.size(), times.size());
+  }
+
+  /// Of the run and, for one frame of one run, of how to draw it again.
+  std::vector<PngNote> notes_for(const std::vector<Shots>& shots,
+                                 const std::vector<int>& numbers) const {
+    std::vector<PngNote> notes = run_notes(folder);
+    if (notes.empty() || shots.size() > 1 || numbers.size() > 1 || !sheet.empty()) return notes;
+    const int number = numbers.front();
+    const double time = shots.front().times.at(static_cast<std::size_t>(number));
+    if (const auto moment = moment_of_frame(folder, number, time))
+      for (PngNote& one : notes_of_picture(*moment, shots.front().options))
+        notes.push_back(std::move(one));
+    return notes;
   }
 
   static void write_drawing(const std::string& path, const Shots& shots, int number) {
@@ -204,7 +220,7 @@ struct RenderCommand {
 
   void write_film(const std::string& path, const std::vector<Shots>& shots,
                   const std::vector<int>& numbers) const {
-    Film film(path, rate, "breccia render " + folder);
+    Film film(path, rate, run_line(folder));
     for (const int number : numbers) film.add(panels(shots, number));
     film.close();
     fmt::print("{}  {} frames, {:.1f} s\n", harmless(path), numbers.size(),

@@ -92,6 +92,8 @@ Run::Run(Method& method, const RunPlan& plan, const ResultFolder* folder, const 
     const std::string log = folder_->file("log.jsonl");
     if (former != nullptr) Log::cut_to(log, former->step);
     log_.emplace(log, plan_.speech == Speech::verbose ? stdout : nullptr);
+    recorder_.describe(notes_of_case(plan_.case_name, plan_.case_text,
+                                     static_cast<std::int64_t>(plan_.config.seed)));
     recorder_.open(*folder_, *log_);
     checkpoints_.open(folder_->file("checkpoints"));
   });

@@ -191,10 +191,7 @@ void Recorder::record(Method& method, Background& background) {
 /// A picture besides those of frames; a run that is resumed draws it anew.
 void Recorder::write_picture_of_step(Method& method) {
   const FrameOutput output = method.frame_output({false, picture_options()});
-  on_first(ranks_, [&] {
-    if (!state_.extent) state_.extent = output.extent;
-    write_png(fmt::format("{}/step_{}.png", pictures_, method.steps()), output.png);
-  });
+  write_picture(fmt::format("step_{}.png", method.steps()), method, output);
 }
 
 void Recorder::record_last(Method& method, Background& background) {
@@ -259,16 +256,28 @@ RenderOptions Recorder::picture_options() const {
   return options;
 }
 
+/// With the texts that `verify` makes it again from. Several ranks would have to gather their
+/// states for a hash: their pictures have none.
+void Recorder::write_picture(const std::string& name, Method& method, const FrameOutput& output) {
+  PictureMoment moment{method.steps(), method.time()};
+  if (ranks_ == nullptr) moment.hash = method.state_hash();
+  on_first(ranks_, [&] {
+    if (!state_.extent) state_.extent = output.extent;
+    std::vector<PngNote> notes = notes_;
+    for (PngNote& one : notes_of_picture(moment, picture_options()))
+      notes.push_back(std::move(one));
+    write_png(pictures_ + "/" + name, with_notes(output.png, notes));
+  });
+}
+
 void Recorder::write_frame_of(Method& method, std::int64_t number) {
   FrameWish wish{config_.output.fields, std::nullopt};
   if (config_.output.pictures) wish.picture = picture_options();
   const FrameOutput output = method.frame_output(wish);
   on_first(ranks_, [&] {
     if (series_) series_->write(output.files);
-    if (!config_.output.pictures) return;
-    if (!state_.extent) state_.extent = output.extent;
-    write_png(fmt::format("{}/{:04}.png", pictures_, number), output.png);
   });
+  if (config_.output.pictures) write_picture(fmt::format("{:04}.png", number), method, output);
 }
 
 }  // namespace breccia

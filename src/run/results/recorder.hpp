@@ -15,6 +15,7 @@
 #include "run/method/method.hpp"
 #include "run/results/history.hpp"
 #include "run/results/log.hpp"
+#include "run/results/picture_notes.hpp"
 #include "run/results/result_folder.hpp"
 #include "run/results/step_table.hpp"
 #include "run/results/summary.hpp"
@@ -65,6 +66,9 @@ class Recorder {
   /// Opens the files of a new record, or cuts those of an older one to its state. Rank 0 only.
   void open(const ResultFolder& folder, Log& log);
 
+  /// Texts that every picture holds beside its own.
+  void describe(std::vector<PngNote> notes) { notes_ = std::move(notes); }
+
   /// Whether a row, a frame or a picture is due. Cheap: asked every step.
   bool due(double time, std::int64_t step) const { return time >= next() || is_picture_step(step); }
   /// When the next row or frame is due.  [s]
@@ -98,6 +102,7 @@ class Recorder {
   void write_frame_of(Method& method, std::int64_t number);
   void write_picture_of_step(Method& method);
   RenderOptions picture_options() const;
+  void write_picture(const std::string& name, Method& method, const FrameOutput& output);
   bool is_picture_step(std::int64_t step) const;
   bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
 
@@ -106,6 +111,7 @@ class Recorder {
   Communicator* ranks_;
   RecordState state_;
   std::string pictures_;
+  std::vector<PngNote> notes_;  ///< of the case
   Log* log_ = nullptr;
   std::optional<History> history_;
   std::optional<ParaviewSeries> series_;

@@ -1,0 +1,21 @@
+#pragma once
+// What pictures and films of a result folder tell of its run.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "run/results/picture_notes.hpp"
+
+namespace breccia::app {
+
+/// Of the run in the folder; empty where its case.toml or summary.json is not there.
+std::vector<PngNote> run_notes(const std::string& folder);
+
+/// The moment of a frame by the run's log; none if the log does not tell.
+std::optional<PictureMoment> moment_of_frame(const std::string& folder, int number, double time);
+
+/// One line about the run, for a film.
+std::string run_line(const std::string& folder);
+
+}  // namespace breccia::app

@@ -1,0 +1,137 @@
+"""Pictures that say of which run they are, and `breccia verify`, which makes them again."""
+
+import os
+import pathlib
+import struct
+import subprocess
+import tempfile
+import unittest
+import zlib
+
+PROGRAM = os.environ["BRECCIA"]
+CASE = """
+method = "dem3d"
+title = "two balls"
+energy = { warn = 0.0, stop = 0.0 }
+time.end = "2 ms"
+output = { frames = 4, color = "velocity", width = 201, height = 150, picture_steps = [3] }
+material.rock = { law = "grain", young = "1 GPa" }
+[[body]]
+name = "left"
+shape = "element"
+material = "rock"
+center = [-0.011, 0.0, 0.0]
+radius = "10 mm"
+velocity = [2.0, 0.0, 0.0]
+[[body]]
+name = "right"
+shape = "element"
+material = "rock"
+center = [0.011, 0.0, 0.0]
+radius = "10 mm"
+"""
+
+
+def chunks(png):
+    place = 8
+    while place < len(png):
+        length, kind = struct.unpack(">I4s", png[place : place + 8])
+        yield kind, png[place + 8 : place + 8 + length]
+        place += 12 + length
+
+
+def packed(parts):
+    out = b"\x89PNG\r\n\x1a\n"
+    for kind, data in parts:
+        out += struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    return out
+
+
+def texts(png):
+    found = {}
+    for kind, data in chunks(png):
+        if kind == b"iTXt":
+            word, rest = data.split(b"\0", 1)
+            found[word.decode()] = zlib.decompress(rest[4:]).decode()
+    return found
+
+
+def with_changed_pixel(png):
+    pixels = zlib.decompress(b"".join(data for kind, data in chunks(png) if kind == b"IDAT"))
+    pixels = pixels[:-1] + bytes([pixels[-1] ^ 1])
+    parts = [part for part in chunks(png) if part[0] not in (b"IDAT", b"IEND")]
+    return packed([*parts, (b"IDAT", zlib.compress(pixels)), (b"IEND", b"")])
+
+
+class Verify(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.path = pathlib.Path(cls.scratch.name)
+        (cls.path / "balls.toml").write_text(CASE)
+        words = [PROGRAM, "run", cls.path / "balls.toml", "-o", cls.path / "out", "-q"]
+        subprocess.run([*words, "--threads", "1"], check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def verify(self, picture, *words, code):
+        done = subprocess.run(
+            [PROGRAM, "verify", self.path / picture, *words], capture_output=True, text=True, cwd=self.path
+        )
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def test_pictures_of_a_run_are_made_again(self):
+        for name in ("0000", "0002", "0004", "step_3"):
+            said = self.verify(f"out/pictures/{name}.png", "--threads", "2", code=0)
+            self.assertIn("the same picture: balls", said)
+        found = texts((self.path / "out/pictures/0004.png").read_bytes())
+        self.assertEqual(found["Case file"], (self.path / "out/case.toml").read_text())
+        self.assertIn(f'"state_hash": "{found["State hash"]}"', (self.path / "out/summary.json").read_text())
+
+    def test_a_rendered_picture_is_made_again(self):
+        words = ["--color", "", "--view", "y", "--hide", "left", "--frame", "2", "--width", "190", "--height", "140"]
+        subprocess.run([PROGRAM, "render", "out", "-o", "drawn.png", *words], check=True, cwd=self.path, stdout=subprocess.DEVNULL)
+        self.assertIn("190 x 140", self.verify("drawn.png", code=0))
+
+    def test_a_changed_pixel_is_found(self):
+        png = (self.path / "out/pictures/0002.png").read_bytes()
+        (self.path / "changed.png").write_bytes(with_changed_pixel(png))
+        self.assertIn("1 of 30150 pixels differ", self.verify("changed.png", code=9))
+
+    def change_text(self, word, old, new):
+        parts = []
+        for kind, data in chunks((self.path / "out/pictures/0002.png").read_bytes()):
+            if kind == b"iTXt" and data.startswith(word.encode() + b"\0"):
+                text = zlib.decompress(data[len(word) + 5 :]).decode()
+                self.assertIn(old, text)
+                data = data[: len(word) + 5] + zlib.compress(text.replace(old, new).encode())
+            parts.append((kind, data))
+        (self.path / "changed.png").write_bytes(packed(parts))
+
+    def test_another_case_is_found(self):
+        self.change_text("Case file", "[2.0, ", "[2.5, ")
+        self.assertIn("hash", self.verify("changed.png", code=9))
+
+    def test_another_version_is_refused(self):
+        self.change_text("Software", "breccia ", "breccia 0.0.1-")
+        self.assertIn("is by breccia 0.0.1-", self.verify("changed.png", code=2))
+
+    def test_damaged_options_are_refused(self):
+        self.change_text("Picture", '"width":201', '"width":"many"')
+        self.assertIn("damaged", self.verify("changed.png", code=2))
+
+    def test_a_picture_of_no_run_is_refused(self):
+        parts = chunks((self.path / "out/pictures/0002.png").read_bytes())
+        (self.path / "plain.png").write_bytes(packed([part for part in parts if part[0] != b"iTXt"]))
+        self.assertIn("does not say of which run", self.verify("plain.png", code=2))
+
+    def test_a_sheet_names_its_case_only(self):
+        subprocess.run([PROGRAM, "render", "out", "-o", "sheet.png", "--sheet", "2x2"], check=True, cwd=self.path, stdout=subprocess.DEVNULL)
+        self.assertIn("a sheet", self.verify("sheet.png", code=2))
+
+
+if __name__ == "__main__":
+    unittest.main()
