@@ -92,45 +92,11 @@ Table fragments(const dem::World& w, const dem::Elements& e) {
   return table;
 }
 
-/// The normal force of a contact: of its spring, whose energy is known, and its dashpot.  [N]
-double pressure_of(const dem::World& w, const dem::Elements& e, Index a, Index b,
-                   const std::vector<dem::ContactPair>& constants, const dem::ContactState& state) {
-  const double ra = e.state.data()[a].radius, rb = e.state.data()[b].radius;
-  const dem::ContactLaw::Pair pair{ra * rb / (ra + rb), std::min(ra, rb), ra + rb, 0.0, 0.0};
-  const auto of =
-      static_cast<std::size_t>(e.material.data()[a] * w.given->materials + e.material.data()[b]);
-  const dem::ContactLaw& law = w.given->contact;
-  const double power = law.hertz ? 2.5 : 2.0;  // of the overlap, in the energy
-  return power * law.stored_normal(constants[of], pair, state.overlap) / state.overlap +
-         state.dashpot;
-}
-
-Table contacts(const dem::World& w, const dem::Elements& e) {
-  Table table{"contacts",
-              {"a", "b", "x", "y", "z", "nx", "ny", "nz", "pressing", "shear"},
-              {"-", "-", "m", "m", "m", "-", "-", "-", "N", "N"},
-              {}};
-  std::vector<Index> a, b;
-  copy_to(a, w.contacts.pairs.a);
-  copy_to(b, w.contacts.pairs.b);
-  std::vector<dem::ContactState> state;
-  copy_to(state, w.contacts.history.state);
-  std::vector<dem::ContactPair> constants;
-  copy_to(constants, w.given->contact_pairs);
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    if (!(state[i].overlap > 0.0)) continue;
-    table.rows.push_back(PairPlace(e, a[i], b[i]).row());
-    table.rows.back().push_back(pressure_of(w, e, a[i], b[i], constants, state[i]));
-    table.rows.back().push_back(norm(state[i].shear));
-  }
-  return table;
-}
-
 }  // namespace
 
 std::vector<Table> dem_tables(const dem::World& w) {
   const OnHost elements(w.elements, w.exec.space);
-  return {fragments(w, *elements), broken_links(w, *elements), contacts(w, *elements)};
+  return {fragments(w, *elements), broken_links(w, *elements)};
 }
 
 }  // namespace breccia

@@ -256,11 +256,10 @@ RenderOptions Recorder::picture_options() const {
   return options;
 }
 
-/// With the texts that `verify` makes it again from. Several ranks would have to gather their
-/// states for a hash: their pictures have none.
+/// With the texts that `verify` makes it again from. No hash of the state: several ranks would have
+/// to gather it for each picture, and their pictures have the bytes of one process.
 void Recorder::write_picture(const std::string& name, Method& method, const FrameOutput& output) {
-  PictureMoment moment{method.steps(), method.time()};
-  if (ranks_ == nullptr) moment.hash = method.state_hash();
+  const PictureMoment moment{method.steps(), method.time()};
   on_first(ranks_, [&] {
     if (!state_.extent) state_.extent = output.extent;
     std::vector<PngNote> notes = notes_;

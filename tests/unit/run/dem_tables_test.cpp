@@ -1,4 +1,4 @@
-// Lists that a DEM run leaves: contacts with the forces that act, broken links, pieces.
+// Lists that a DEM run leaves: broken links, pieces.
 
 #include "run/method/dem_tables.hpp"
 
@@ -13,30 +13,6 @@ const Table& named(const std::vector<Table>& tables, const std::string& name) {
   for (const Table& table : tables)
     if (table.name == name) return table;
   throw std::runtime_error(name);
-}
-
-TEST(DemTables, tell_the_forces_that_act_in_contacts) {
-  for (const bool hertz : {false, true}) {
-    dem::testing::Scene s;
-    s.material("c", "concrete", 30e9, 0.2, 2400.0);
-    s.config.contact.law = hertz ? "hertz" : "linear";
-    s.config.contact.friction = 0.5;
-    s.sphere({0.0, 0.0, 0.0}, 0.01, {1.0, 0.2, 0.0});
-    s.sphere({0.0199, 0.0, 0.0}, 0.01);
-    s.sphere({0.5, 0.0, 0.0}, 0.01);
-    dem::World w = s.world();
-    for (int i = 0; i < 5; ++i) dem::step(w);
-    const Table& contacts = named(dem_tables(w), "contacts");
-    ASSERT_EQ(contacts.rows.size(), 1U);
-    const std::vector<double>& row = contacts.rows[0];
-    EXPECT_EQ(row[0], 0.0);
-    EXPECT_EQ(row[1], 1.0);
-    EXPECT_NEAR(row[5], 1.0, 1e-3);  // along x
-    const Vec3 force = w.contact_actions.data()[0].force_on_b();
-    const Vec3 normal{row[5], row[6], row[7]};
-    EXPECT_NEAR(row[8], dot(force, normal), 1e-9 * norm(force));
-    EXPECT_NEAR(row[9], norm(force - dot(force, normal) * normal), 1e-9 * norm(force));
-  }
 }
 
 TEST(DemTables, list_broken_links_and_pieces) {
