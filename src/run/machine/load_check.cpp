@@ -148,8 +148,7 @@ void refuse_wrong_places(const fdem::World& w) {
     if (near[i] <= near[i - 1])
       refuse("reach.triangle", fmt::format("leads to {} (item {})", near[i], i));
   for (const fdem::JointStage stage : on_host(w.joints.stage))
-    if (stage > fdem::JointStage::cut)
-      refuse("joints.stage", "holds what is no stage of a joint");
+    if (stage > fdem::JointStage::cut) refuse("joints.stage", "holds what is no stage of a joint");
 }
 
 }  // namespace breccia
