@@ -1,5 +1,5 @@
 #pragma once
-// What pictures and films of a result folder tell of its run.
+// Notes on its run that pictures and films of a result folder carry.
 
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// What regions take besides a box: circles, cylinders, spheres, polygons, and all that lies
+// Forms of regions besides a box: circles, cylinders, spheres, polygons, and all that lies
 // outside.
 
 #include <string>

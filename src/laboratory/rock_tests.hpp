@@ -10,7 +10,7 @@
 
 namespace breccia::laboratory {
 
-/// What all plane specimens are made of.
+/// Material of all plane specimens.
 struct RockSample {
   fdem::MaterialConfig material;
   fdem::JointsConfig joints;

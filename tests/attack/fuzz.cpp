@@ -39,7 +39,7 @@ std::string as_file(const std::string& name, const std::string& text) {
   return path;
 }
 
-/// Whatever the bytes are: a result, or one of the program's own errors.
+/// A result for any bytes, or one of the program's own errors.
 void parse(const std::string& parser, const std::string& text) {
   try {
     if (parser == "case") {

@@ -338,7 +338,7 @@ struct ConcreteLink {
                      limit);
     return limit;
   }
-  /// What friction bears in shear, below zero in tension.  [N]
+  /// Shear force that friction bears, below zero in tension.  [N]
   template <class R>
   BR_HD R rubbing(const LinkConstants<R>& link, const R& normal, const R& slope) const {
     const R force = -1.0 * (normal * slope);

@@ -73,7 +73,7 @@ void cut_off_removed(World& w) {
     for (std::size_t e = 0; e < state.size(); ++e)
       if (is_gone(fixed[e])) state[e].velocity = state[e].spin = {};
   });
-  // What contacts with them hold leaves, too; the next step's search drops them.
+  // Energy of contacts with them leaves, too; the next step's search drops them.
   const auto part = [&](auto& contacts, bool of_elements) {
     std::vector<Index> a, b;
     copy_to(a, contacts.pairs.a);

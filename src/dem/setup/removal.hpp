@@ -6,7 +6,7 @@
 
 namespace breccia::dem {
 
-/// What elements that are gone need of a mesh: nothing.
+/// Elements that are gone need nothing of a mesh.
 inline void open_around_removed(World&) {}
 /// Brings the elements that are gone to a stop and lets go of the links that join them to others,
 /// as their stage begins. @throws InputError if such a link is none of concrete, of a parallel bond

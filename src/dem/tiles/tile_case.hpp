@@ -56,7 +56,7 @@ struct TileCase {
   StepClock* clock;  ///< where time is left
 };
 
-/// What a tile hears of all, and tells them.
+/// Numbers that a tile hears of all, and tells them.
 struct TileNews {
   double least = largest_least;  ///< critical number  [s2]
   bool near = false;             ///< some element may use its margin up in the move to come

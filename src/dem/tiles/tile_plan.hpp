@@ -166,7 +166,7 @@ BR_HD inline std::size_t TileMemory::lay_out(const Tile& tile, const TileGroups&
   return pieces.used > also.used ? pieces.used : also.used;
 }
 
-/// What tiles hold, for a launch.
+/// Contents of tiles, for a launch.
 struct TilesView {
   View<const Tile> tiles;
   TileGroups groups;
@@ -177,7 +177,7 @@ struct TilesView {
   View<const TileContact> contacts;
 };
 
-/// What a tile tells another: a number, with the step's number beside each half, so that it is
+/// A number that a tile tells another, with the step's number beside each half, so that it is
 /// known to be whole and new without any order between writes.
 struct alignas(16) TileWord {
   std::uint32_t low, tag, high, same_tag;

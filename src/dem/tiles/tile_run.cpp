@@ -40,7 +40,7 @@ BR_HD float span_after(double dt) {
 
 #if defined(__CUDACC__)
 
-/// What threads of a block find together.
+/// Findings of a block's threads together.
 template <int threads>
 __device__ TileNews news_of_block(TileNews own, TileNews* of_warp) {
   for (int half = 16; half > 0; half /= 2)

@@ -228,7 +228,7 @@ struct TileStep {
     news.least = min(news.least, critical);
     news.near = news.near || is_far(e, farthest);
   }
-  /// The same question of the forces that the tile has entered with.
+  /// This question of the forces that the tile has entered with.
   BR_HD bool near_at_entry(Index thread, Index threads) const {
     const StepTime& now = all.start.now;
     const auto span = static_cast<float>(0.5 * (now.last_dt + now.next_dt)),
@@ -405,7 +405,7 @@ struct TileStep {
     memory.touching[k] = world.state[contact.pair].overlap > 0.0 ? 1 : 0;
   }
 
-  /// What one of the threads of an element adds up, of what it gets as one of two ends.
+  /// Sums of one of an element's threads, of the actions on it as one of two ends.
   struct PartSum {
     double first, second;  ///< torque on a, force on b; or force on b, torque on b
     float straight[2], turning[2];

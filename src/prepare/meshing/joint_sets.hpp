@@ -21,7 +21,7 @@ std::vector<fdem::DiscontinuityConfig> lines_of_set(const fdem::JointSetConfig& 
                                                     std::int64_t seed, std::size_t number,
                                                     const std::string& case_folder);
 
-/// What is wrong with the keys of a set.
+/// Problems of the keys of a set.
 std::vector<std::string> joint_set_problems(const fdem::JointSetConfig& set,
                                             const std::vector<std::string>& joints);
 

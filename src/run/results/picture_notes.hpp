@@ -1,5 +1,5 @@
 #pragma once
-// What a picture tells of its run, so that it can be made again.
+// Notes of a picture on its run, from which it can be made again.
 
 #include <cstdint>
 #include <optional>
