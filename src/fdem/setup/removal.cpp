@@ -13,7 +13,8 @@ bool any_removed(const World& w) {
   return std::find(removed.begin(), removed.end(), 1) != removed.end();
 }
 
-/// Energy that a joint that is not broken has spent by now: the work it took up, less what it still holds.
+/// Energy that a joint that is not broken has spent by now: the work it took up, less what it still
+/// holds.
 JointWork spent_by(const World& w, const std::vector<JointBond>& bonds,
                    const View<const NodeState>& nodes, const Joints& j, Index i) {
   if (j.stage.data()[i] != JointStage::softened) return {};
