@@ -8,27 +8,10 @@ import subprocess
 import tempfile
 import unittest
 
+from two_balls import case_with
+
 PROGRAM = os.environ["BRECCIA"]
-CASE = """
-method = "dem3d"
-energy = { warn = 0.0, stop = 0.0 }
-time.end = "2 ms"
-output = { frames = 4, pictures = false }
-material.rock = { law = "grain", young = "1 GPa" }
-[[body]]
-name = "left"
-shape = "element"
-material = "rock"
-center = [-0.011, 0.0, 0.0]
-radius = "10 mm"
-velocity = [2.0, 0.0, 0.0]
-[[body]]
-name = "right"
-shape = "element"
-material = "rock"
-center = [0.011, 0.0, 0.0]
-radius = "10 mm"
-"""
+CASE = case_with('output = { frames = 4, pictures = false }')
 
 
 def size_of(png):

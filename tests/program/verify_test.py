@@ -8,28 +8,13 @@ import tempfile
 import unittest
 import zlib
 
+from two_balls import case_with
+
 PROGRAM = os.environ["BRECCIA"]
-CASE = """
-method = "dem3d"
-title = "two balls"
-energy = { warn = 0.0, stop = 0.0 }
-time.end = "2 ms"
-output = { frames = 4, color = "velocity", width = 201, height = 150, picture_steps = [3] }
-material.rock = { law = "grain", young = "1 GPa" }
-[[body]]
-name = "left"
-shape = "element"
-material = "rock"
-center = [-0.011, 0.0, 0.0]
-radius = "10 mm"
-velocity = [2.0, 0.0, 0.0]
-[[body]]
-name = "right"
-shape = "element"
-material = "rock"
-center = [0.011, 0.0, 0.0]
-radius = "10 mm"
-"""
+CASE = case_with(
+    'title = "two balls"\n'
+    'output = { frames = 4, color = "velocity", width = 201, height = 150, picture_steps = [3] }'
+)
 
 
 def chunks(png):
