@@ -41,7 +41,7 @@ std::vector<Knob<Concrete>> knobs_for(const Concrete& m, bool by_energy) {
       {"cohesion", "compression", "compression_prism", "strength", get<&Concrete::cohesion>,
        set<&Concrete::cohesion>, 0.6, 0.05, 0.0, 0.0, all},
       {"fracture_energy", "fracture_energy", "bending", "fracture_energy",
-       get<&Concrete::fracture_energy>, set<&Concrete::fracture_energy>, 1.0, 0.10, 0.4, 0.0, all}};
+       get<&Concrete::fracture_energy>, set<&Concrete::fracture_energy>, 1.0, 0.10, 0.9, 0.0, all}};
 }
 
 /// Uniaxial strength of Mohr and Coulomb over the cohesion.

@@ -201,7 +201,11 @@ void cut_notch(dem::Config& c, const Sample& sample, const Vec3& size, double ra
 }
 
 void load_beam(dem::Config& c, const Vec3& size, double radius, double speed) {
-  const double below = -0.5 * size.z + 2.0 * radius, width = 1.5 * radius;
+  // Lines across the beam, as thin as holds three elements: all elements of a support keep one
+  // height, so that wide ones clamp the ends of the beam (three radii: a fifth of the moment at the
+  // peak, a third after it). An element takes some 4.4 R^2 of a face.
+  const double width = std::max(0.5 * radius, 3.0 * 4.4 * radius * radius / (2.0 * size.y));
+  const double below = -0.5 * size.z + 2.0 * radius;
   const auto roller = [&](const char* name, double x) {
     return support(name, {x - width, -far, -far}, {x + width, far, below}, {"z"}, {}, 0.0);
   };
