@@ -28,7 +28,7 @@ constexpr double all = 1e300;
 
 /// Twice the cohesion gives 1.5 times the compressive strength. Shares are about those that
 /// calibrations of concretes end with: links of a packing show 1.3 to 1.7 T in tension where
-/// softening gives their energy, and 3.5 T where G_F does; they show 2.5 times their G_F, and 1.4
+/// softening gives their energy, and 4 T where G_F does; they show their G_F, and 1.4
 /// times their nu, which grows with the 1.5th power of the key.
 std::vector<Knob<Concrete>> knobs_for(const Concrete& m, bool by_energy) {
   return {
@@ -37,11 +37,11 @@ std::vector<Knob<Concrete>> knobs_for(const Concrete& m, bool by_energy) {
       {"poisson", "poisson", "compression_prism", "poisson", get<&Concrete::poisson>,
        set<&Concrete::poisson>, 1.5, 0.10, 0.72, 0.01, 1.0 / m.alpha},
       {"tensile_strength", "tension", "tension", "strength", get<&Concrete::tensile_strength>,
-       set<&Concrete::tensile_strength>, 1.0, 0.05, by_energy ? 0.29 : 0.7, 0.0, all},
+       set<&Concrete::tensile_strength>, 1.0, 0.05, by_energy ? 0.25 : 0.7, 0.0, all},
       {"cohesion", "compression", "compression_prism", "strength", get<&Concrete::cohesion>,
        set<&Concrete::cohesion>, 0.6, 0.05, 0.0, 0.0, all},
       {"fracture_energy", "fracture_energy", "bending", "fracture_energy",
-       get<&Concrete::fracture_energy>, set<&Concrete::fracture_energy>, 1.0, 0.10, 0.9, 0.0, all}};
+       get<&Concrete::fracture_energy>, set<&Concrete::fracture_energy>, 1.0, 0.10, 1.0, 0.0, all}};
 }
 
 /// Uniaxial strength of Mohr and Coulomb over the cohesion.

@@ -13,6 +13,7 @@
 #include "io/whole_file.hpp"
 #include "laboratory/rock_tests.hpp"
 #include "math/constants.hpp"
+#include "prepare/build.hpp"
 #include "prepare/checks/check_case.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -42,6 +43,25 @@ TEST(Specimens, AreCasesWithoutAProblemAndReadBackAlike) {
     EXPECT_EQ(config.seed, 2);
   }
   EXPECT_GT(read_whole_file(scratch / "beam-300-2.csv").size(), 10000U);
+}
+
+/// All elements of a support keep one height: a wide one clamps the end of the beam.
+TEST(Specimens, BeamsLieOnLinesThatHoldAFewElements) {
+  for (const int elements : {600, 2400}) {
+    Sample sample = concrete();
+    sample.elements = elements;
+    const dem::Config config = case_of(test_named("bending_plain"), sample, 1, ".");
+    const double radius = std::cbrt(0.75 * 0.002 * sample.compactness / (pi * elements));
+    const dem::Model model = build_model(config, ".");
+    for (const dem::SupportConfig& s : config.supports) {
+      EXPECT_LE(s.max.x - s.min.x, 1.2 * radius) << s.name;
+      int held = 0;
+      for (const Vec3& x : model.position)
+        held += x.x >= s.min.x && x.x <= s.max.x && x.z >= s.min.z && x.z <= s.max.z;
+      EXPECT_GE(held, 1) << s.name << " of " << elements;
+      EXPECT_LE(held, 9) << s.name << " of " << elements;
+    }
+  }
 }
 
 TEST(Specimens, AreOfTheCasesMaterialPackingAndRange) {
