@@ -1,0 +1,243 @@
+#!/usr/bin/env python3
+"""Impact on the slab of cases/rc_slab over packings, for its README and docs/validation-concrete.md.
+
+    scripts/impact_tables.py ball [--seeds 10] [--concrete NAME,...] [--bars yes,no]
+    scripts/impact_tables.py hard [--seeds 5] [--speeds 20,30,45,60] [--concrete NAME,...] [--bars yes,no]
+    scripts/impact_tables.py print ball|hard
+
+"ball" is the case as it is: the ball of concrete at 30 m/s. "hard" replaces it by one rigid sphere of its mass and size
+and writes the formulas beside it. Each row is a `breccia sweep` over seeds in out/impact/, and is kept: called again,
+only what is missing is run. "print" makes the table of all finished rows.
+"""
+import argparse
+import collections
+import csv
+import json
+import math
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import frames  # noqa: E402
+import impact_formulas  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+OUT = ROOT / "out" / "impact"
+
+MASS, DIAMETER, THICKNESS = 14.5, 0.226, 0.1
+
+# Concretes of the slab: as the case has it; with friction bounded under pressure; C30 of `breccia materials`; links as
+# packed, without the bulk's fabric at faces.
+CONCRETES = {
+    "case": {},
+    "friction_cap": {"friction_cap": '"3 MPa"', "broken_friction": "0.6", "broken_rolling_limit": "1.0"},
+    "C30": {"use": '"C30"'},
+    "packed": {"fabric": '"packed"', "stiffness": '"estimated"'},
+}
+# Prisms of 2,000 and 1,200 elements of these concretes: docs/validation-concrete.md.
+STRENGTH = {"case": 32.3e6, "friction_cap": 32.3e6, "C30": 38e6, "packed": 26.3e6}
+
+
+def body(text, name):
+    """Where the [[body]] of this name begins and ends, comments before it included."""
+    blocks = [m.start() for m in re.finditer(r"^\[\[?\w", text, re.M)] + [len(text)]
+    for start, end in zip(blocks, blocks[1:]):
+        if text.startswith("[[body]]", start) and f'name = "{name}"' in text[start:end]:
+            return start, end
+    raise SystemExit(f"no body {name}")
+
+
+def variant(concrete, bars, speed=None, end=None):
+    """The text of cases/rc_slab/case.toml with another concrete, without bars, with a hard missile."""
+    text = (ROOT / "cases" / "rc_slab" / "case.toml").read_text()
+    text = text[: text.index("[[check]]")]
+    text = text.replace("frames = 20", "frames = 2")
+    changes = CONCRETES[concrete]
+    if "use" in changes:
+        start = text.index("[material.c30]")
+        text = text[:start] + f"[material.c30]\nuse = {changes['use']}\n\n" + text[text.index("[material.b500]"):]
+    else:
+        for key, value in changes.items():
+            text, found = re.subn(rf"(?m)^{key} = .*$", f"{key} = {value}", text, count=1)
+            if not found:
+                text = text.replace("[material.c30]\n", f"[material.c30]\n{key} = {value}\n")
+    if not bars:
+        start, stop = body(text, "steel")
+        text = text[:start] + text[stop:]
+        text = text.replace("count = 79211", "range = 1.443")
+    if speed is not None:
+        start, stop = body(text, "impactor")
+        volume = 4 / 3 * math.pi * (DIAMETER / 2) ** 3
+        text = text[:start] + (
+            '[[body]]\nname = "impactor"\nshape = "element"\nmaterial = "missile"\n'
+            f"center = [0.0, 0.0, 0.164]\nradius = {DIAMETER / 2}\nvelocity = [0.0, 0.0, {-speed}]\n\n") + text[stop:]
+        text = text.replace("[material.b500]", '[material.missile]\nlaw = "grain"\n'
+                            f'density = {MASS / volume}\nyoung = "200 GPa"\npoisson = 0.3\n\n[material.b500]')
+        text = text.replace("[[probe]]", '[[probe]]\nname = "rock_place"\non = "impactor"\nquantity = "position_z"\n'
+                            'reduce = "mean"\n\n[[probe]]', 1)
+        text = text.replace("count = 79211", "range = 1.443")
+    if end:
+        text = re.sub(r'end = "8 ms"', f'end = "{end} ms"', text)
+    return text
+
+
+def name_of(kind, concrete, bars, speed=None):
+    return f"{kind}-{concrete}-{'bars' if bars else 'plain'}" + (f"-{speed:g}" if speed else "")
+
+
+def sweep(name, text, seeds, jobs):
+    OUT.mkdir(parents=True, exist_ok=True)
+    case = OUT / f"{name}.toml"
+    if not case.exists() or case.read_text() != text:
+        case.write_text(text)
+    done = subprocess.run([ROOT / "build/release/breccia", "sweep", case, "--seeds", str(seeds), "-o", OUT / name,
+                           "--jobs", str(jobs), "--threads", "1"], stdout=subprocess.DEVNULL)
+    print(name, "exit code", done.returncode, flush=True)
+
+
+def runs_of(name):
+    """Folders of the runs of a row that are done."""
+    with open(OUT / name / "sweep.csv") as file:
+        return [pathlib.Path(row["folder"]) for row in csv.DictReader(file) if row["status"] == "done"]
+
+
+def history(folder):
+    with open(folder / "history.csv") as file:
+        return list(csv.DictReader(file))[1:]
+
+
+def blocks(folder):
+    """Pieces of five elements and more, without the largest one."""
+    with open(folder / "fragments.csv") as file:
+        return sum(1 for row in list(csv.DictReader(file))[2:] if int(row["elements"]) >= 5)
+
+
+def holes(folder):
+    """Diameters of the circles as large as what the slab lost of its struck and of its far face, m: elements of the
+    outermost 15 mm that unbroken links no longer tie to its largest piece."""
+    start, end, links = frames.first(folder), frames.last(folder), frames.last(folder, "links")
+    height = {i: p[2] for i, p in zip(start["id"], start["points"])}
+    root = list(range(len(end["id"])))
+
+    def top(k):
+        while root[k] != k:
+            root[k] = root[root[k]]
+            k = root[k]
+        return k
+
+    ends = links["connectivity"]
+    for k, state in enumerate(links["state"]):
+        if state < 2:
+            root[top(int(ends[2 * k]))] = top(int(ends[2 * k + 1]))
+    slab = [k for k, g in enumerate(end["group"]) if g == 0]
+    count = collections.Counter(top(k) for k in slab)
+    largest = count.most_common(1)[0][0]
+    result = []
+    for sense in (1, -1):
+        face = [k for k in slab if sense * height[end["id"][k]] > THICKNESS / 2 - 0.015]
+        lost = sum(1 for k in face if top(k) != largest)
+        result.append(2 * math.sqrt(lost / len(face) / math.pi))
+    return result
+
+
+def mean(values, digits):
+    values = [float(v) for v in values]
+    spread = statistics.stdev(values) if len(values) > 1 else 0.0
+    return f"{statistics.mean(values):,.{digits}f} +- {spread:,.{digits}f}"
+
+
+def velocity(folder):
+    return float(history(folder)[-1]["rock_velocity"])
+
+
+def force(folder):
+    return max(float(r["rock_force"]) for r in history(folder)) * 1e-3
+
+
+def slowing(folder):
+    """Of the last millisecond, m/s."""
+    rows = history(folder)
+    t = float(rows[-1]["time"])
+    before = next(r for r in rows if float(r["time"]) >= t - 1e-3)
+    return float(rows[-1]["rock_velocity"]) - float(before["rock_velocity"])
+
+
+def depth(folder):
+    """How far the tip went below the struck face, mm."""
+    return 1e3 * (THICKNESS / 2 + DIAMETER / 2 - min(float(r["rock_place"]) for r in history(folder)))
+
+
+def broken(folder):
+    return json.loads((folder / "summary.json").read_text())["fracture"]["broken_links"]
+
+
+def pieces(folder):
+    return json.loads((folder / "summary.json").read_text())["fracture"]["fragments"]
+
+
+def table_of_ball():
+    print("| concrete | bars | n | ball after 8 ms, m/s | largest force, kN | broken links | pieces | of 5 elements and more |\n"
+          "|---|---|---|---|---|---|---|---|")
+    for concrete in CONCRETES:
+        for bars in (True, False):
+            name = name_of("ball", concrete, bars)
+            if not (OUT / name / "sweep.csv").exists():
+                continue
+            runs = runs_of(name)
+            print(f"| {concrete} | {'yes' if bars else 'no'} | {len(runs)} | " + " | ".join(
+                mean([value(r) for r in runs], digits)
+                for value, digits in ((velocity, 2), (force, 0), (broken, 0), (pieces, 0), (blocks, 0))) + " |")
+
+
+def table_of_hard():
+    print("| concrete | bars | m/s | n | velocity at the end, m/s | slowing by, m/s each ms | tip below the face, mm | "
+          "largest force, kN | lost of the struck, of the far face, mm across | NDRC: depth, mm; leaves, m/s | CEA-EDF leaves, m/s |\n"
+          "|---|---|---|---|---|---|---|---|---|---|---|")
+    percent = 100 * 7 * math.pi / 4 * 0.008**2 / THICKNESS
+    for concrete in CONCRETES:
+        for bars in (True, False):
+            for folder in sorted(OUT.glob(name_of("hard", concrete, bars) + "-*/"), key=lambda f: float(f.name.split("-")[-1])):
+                if not (folder / "sweep.csv").exists():
+                    continue
+                speed, runs = float(folder.name.split("-")[-1]), runs_of(folder.name)
+                f_c = STRENGTH[concrete]
+                x = impact_formulas.ndrc_depth(DIAMETER, MASS, f_c, speed, 1.0)[0] * DIAMETER
+                through = impact_formulas.speed_for(THICKNESS, DIAMETER, MASS, f_c, 1.0, impact_formulas.perforated)
+                cea = impact_formulas.cea_edf(DIAMETER, THICKNESS, MASS, f_c, 2400, percent if bars else 0.0)
+                left = lambda limit: math.sqrt(max(0.0, speed**2 - limit**2))  # noqa: E731
+                faces = list(zip(*(holes(r) for r in runs)))
+                print(f"| {concrete} | {'yes' if bars else 'no'} | {speed:g} | {len(runs)} | " + " | ".join(
+                    mean([value(r) for r in runs], digits)
+                    for value, digits in ((velocity, 1), (slowing, 2), (depth, 0), (force, 0)))
+                    + f" | {mean([1e3 * v for v in faces[0]], 0)}; {mean([1e3 * v for v in faces[1]], 0)} | "
+                    f"{1e3 * x:.0f}; {left(through):.0f} | {left(cea):.0f} |")
+
+
+def main():
+    p = argparse.ArgumentParser()
+    p.add_argument("what", choices=["ball", "hard", "print"])
+    p.add_argument("table", nargs="?", choices=["ball", "hard"])
+    p.add_argument("--seeds", type=int)
+    p.add_argument("--speeds", default="20,30,45,60")
+    p.add_argument("--end", type=float, default=8)
+    p.add_argument("--concrete", default="case")
+    p.add_argument("--bars", default="yes,no")
+    p.add_argument("--jobs", type=int, default=2)
+    given = p.parse_args()
+    if given.what == "print":
+        return table_of_hard() if given.table == "hard" else table_of_ball()
+    for concrete in given.concrete.split(","):
+        for bars in (b == "yes" for b in given.bars.split(",")):
+            if given.what == "ball":
+                sweep(name_of("ball", concrete, bars), variant(concrete, bars), given.seeds or 10, given.jobs)
+            elif given.what == "hard":
+                for speed in map(float, given.speeds.split(",")):
+                    sweep(name_of("hard", concrete, bars, speed), variant(concrete, bars, speed, given.end),
+                          given.seeds or 5, given.jobs)
+
+
+if __name__ == "__main__":
+    main()
