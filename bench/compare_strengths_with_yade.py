@@ -107,8 +107,35 @@ def one(breccia, out, spec, seed, material):
             "yade": numbers([float(r["strain"]) for r in yade], [float(r["stress"]) for r in yade]), "links": (ours, links)}
 
 
+def draw(out, height, name, spec, seeds):
+    """Stress (MPa) over strain (1e-3) of one test in both programs, a line a packing."""
+    width, tall, left, top, most_x, most_y = 640, 360, 60, 20, 5.0, 40.0
+    place = lambda x, y: f"{left + (width - left - 20) * x / most_x:.1f},{tall - 40 - (tall - 40 - top) * y / most_y:.1f}"  # noqa: E731
+    lines = []
+    for seed in range(1, seeds + 1):
+        key = spec.replace(" ", "-") + f"-{seed}"
+        yade = rows(out / f"{key}-yade.csv")
+        for colour, strain, stress in (("#1f5fa8", *breccia_curve(out / key, height)),
+                                       ("#c8501e", [float(r["strain"]) for r in yade], [float(r["stress"]) for r in yade])):
+            step = max(1, len(strain) // 200)
+            points = [place(1e3 * abs(x), 1e-6 * abs(y)) for x, y in list(zip(strain, stress))[::step] if 1e3 * abs(x) <= most_x]
+            lines.append(f'<polyline fill="none" stroke="{colour}" stroke-width="1.5" points="{" ".join(points)}"/>')
+    for x in range(0, 6):
+        a, b = place(x, 0).split(",")
+        lines.append(f'<text x="{a}" y="{float(b) + 16}" text-anchor="middle">{x}</text>')
+    for y in range(0, 41, 10):
+        a, b = place(0, y).split(",")
+        lines.append(f'<text x="{float(a) - 8}" y="{float(b) + 4}" text-anchor="end">{y}</text>')
+    corner, end, up = place(0, 0), place(most_x, 0), place(0, most_y)
+    lines.append(f'<polyline fill="none" stroke="#444" points="{up} {corner} {end}"/>')
+    lines.append(f'<text x="{width / 2}" y="{tall - 6}" text-anchor="middle">strain, 1e-3</text><text x="{left + 12}" y="14">stress, MPa</text>'
+                 f'<text x="{width - 150}" y="34" fill="#1f5fa8">Breccia</text><text x="{width - 150}" y="52" fill="#c8501e">YADE Cpm</text>')
+    name.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {tall}" font-family="sans-serif" font-size="12">'
+                    '<rect width="100%" height="100%" fill="white"/>' + "".join(lines) + "</svg>\n")
+
+
 def text(values, digits=2):
-    spread = statistics.stdev(values) if len(values) > 1 else 0.0
+    spread = statistics.stdev(values) if len(values) > 1 and not any(map(math.isnan, values)) else 0.0
     return f"{statistics.mean(values):.{digits}f} +- {spread:.{digits}f}"
 
 
@@ -127,6 +154,7 @@ def main():
         print(f"{spec[0]}: links of seed 1 {links[0]:,} in Breccia, {links[1]:,} in YADE; strength "
               + "; ".join(f"{who} {text([f[who]['strength'] for f in found[spec[0]]])}" for who in ("breccia", "yade")),
               flush=True)
+    draw(given.out, 0.2, given.out / "compression_941.svg", "compression 941", given.seeds)
     print(f"\nn = {given.seeds}\n\n| | Breccia | YADE Cpm |\n|---|---|---|")
 
     def row(title, value, digits=2):
