@@ -62,8 +62,9 @@ struct ElasticLaw {
 
 /// A material's law, and its energy.
 struct ElasticTriangle : ElasticLaw<double> {
-  /// Energy per reference area; no number where the triangle is turned inside out.
-  /// [J/m2 per unit thickness]
+  /// Energy per reference area, with what it held at the start: S_0 : C^-1 S_0 / 2 by Hooke's law,
+  /// which makes it that of a rock without stress that was strained since. No number where the
+  /// triangle is turned inside out.  [J/m2 per unit thickness]
   BR_HD double energy(const Deformation<double>& d) const {
     const Mat2& f = d.gradient;
     const double trace = f.xx * f.xx + f.xy * f.xy + f.yx * f.yx + f.yy * f.yy;
@@ -72,7 +73,12 @@ struct ElasticTriangle : ElasticLaw<double> {
     const Sym2 strain{0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
                       0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0), 0.5 * (f.xx * f.xy + f.yx * f.yy)};
     return 0.5 * shear * (trace - 2.0 - 2.0 * log_j) + 0.25 * lambda * (j * j - 1.0 - 2.0 * log_j) +
-           contract(preset, strain);
+           contract(preset, strain) + energy_at_start();
+  }
+  BR_HD double energy_at_start() const {
+    const double trace = preset.xx + preset.yy;
+    return 0.25 / shear *
+           (contract(preset, preset) - 0.5 * lambda / (lambda + shear) * trace * trace);
   }
 };
 

@@ -41,10 +41,6 @@ std::vector<std::string> stage_problems(const Config& config) {
   const std::vector<std::string> loads = breccia::names_of(config.loads);
   for (const StageConfig& stage : config.stages) {
     const std::string where = "stage." + stage.name;
-    if (config.in_situ.any() && !stage.remove.empty())
-      problems.push_back(where +
-                         ".remove: no body can be taken out of rock that is under [in_situ] stress "
-                         "(the ledger would be wrong); load it by supports or pressures instead");
     for (const SupportChange& change : stage.supports) {
       add_unknown(where + ".support.name", change.name, "support", supports, problems);
       for (const std::string& word : change.fix)

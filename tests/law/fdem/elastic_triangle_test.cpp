@@ -122,6 +122,23 @@ TEST(ElasticTriangle, energy_holds_for_any_change_of_area) {
   EXPECT_TRUE(std::isnan(law.energy({{-1.0, 0.0, 0.0, 1.0}, {}, -1.0})));
 }
 
+/// A rock under stress in situ holds the energy of Hooke's law, and none where that has gone.
+TEST(ElasticTriangle, energy_of_a_stress_in_situ_is_that_of_its_strain) {
+  for (const bool plane_stress : {true, false}) {
+    ElasticTriangle law = law_of(plane_stress);
+    const double scale = 1e-6;
+    const Sym2 strain{-3.0 * scale, 1.0 * scale, 2.0 * scale};
+    const double trace = strain.xx + strain.yy;
+    law.preset = {law.lambda * trace + 2.0 * law.shear * strain.xx,
+                  law.lambda * trace + 2.0 * law.shear * strain.yy, 2.0 * law.shear * strain.xy};
+    const double held = 0.5 * contract(law.preset, strain);
+    const Deformation<double> none{{1.0, 0.0, 0.0, 1.0}, {}, 1.0};
+    EXPECT_NEAR(law.energy(none), held, 1e-12 * held);
+    const Mat2 back{1.0 - strain.xx, -strain.xy, -strain.xy, 1.0 - strain.yy};
+    EXPECT_NEAR(law.energy({back, {}, determinant(back)}), 0.0, 1e-4 * held);
+  }
+}
+
 TEST(ElasticTriangle, viscosity_answers_the_rate_of_strain_and_no_spin) {
   Example e;
   for (int k = 0; k < 3; ++k) {
