@@ -12,6 +12,7 @@
 #include "core/gauge.hpp"
 #include "exec/buffer.hpp"
 #include "fdem/contact/couples.hpp"
+#include "fdem/fluid/spreading.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/effective.hpp"
 #include "fdem/triangles/loads.hpp"
@@ -23,6 +24,13 @@ namespace breccia::fdem {
 struct NodeSet {
   std::string name;
   std::vector<Index> nodes;  ///< 3 triangle + corner, ascending, in the whole mesh  [-]
+};
+
+/// Where a fluid comes from, and how it spreads.
+struct FluidSource {
+  std::int16_t load;            ///< index into Case::loads
+  double speed;                 ///< of its front; 0: it fills cracks at once  [m/s]
+  std::vector<Index> vertices;  ///< at which it is from the start on  [-]
 };
 
 struct Case {
@@ -43,9 +51,13 @@ struct Case {
   std::vector<std::string> warnings;           ///< what set-up found doubtful, for people
   std::vector<NodeSet> sets;                   ///< bodies, then supports
   std::vector<LoadLaw> loads;                  ///< stage: sizes; all factors 1  (loads)
+  std::vector<std::string> load_names;         ///<  (loads)
   std::vector<LoadAmplitude> load_amplitudes;  ///< stage: factors over time  (loads)
-  Buffer<ElasticTriangle> laws;                ///<  (materials)
-  Buffer<JointBond> bonds;                     ///< indexed by Joints::law  (laws of joints)
+  std::vector<LoadedEdge> loaded;              ///< by global id, ascending; without cracks
+  std::vector<FluidSource> fluids;             ///< empty: no load is a fluid
+  std::vector<CrackSide> open_cracks;  ///< edges open from the start, where there are fluids
+  Buffer<ElasticTriangle> laws;        ///< stage  (materials)
+  Buffer<JointBond> bonds;             ///< indexed by Joints::law  (laws of joints)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
   Buffer<Hold> holds;                 ///< stage; indexed by Triangles::hold  (held triangles)
   /// Each vertex of the mesh: bit 0: at the border or an edge that nothing joins, bit 1 such

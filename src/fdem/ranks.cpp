@@ -6,6 +6,7 @@
 #include "domain/sharing.hpp"
 #include "exec/for_each.hpp"
 #include "fdem/energy.hpp"
+#include "fdem/fluid/fluid.hpp"
 #include "fdem/joints/rings.hpp"
 #include "fdem/relations.hpp"
 
@@ -60,10 +61,10 @@ class Migration {
     Triangles& t = w_.triangles;
     auto lie = one_field(lies_);
     auto external = one_field(t.external);
-    if (w_.mesh.loaded.empty())
-      redistribute(all, together(t, lie), triangles_, t.id);
-    else
+    if (w_.mesh.loaded)
       redistribute(all, together(t, lie, external), triangles_, t.id);
+    else
+      redistribute(all, together(t, lie), triangles_, t.id);
 
     Joints& j = w_.joints;
     Buffer<Index>& number = w_.mesh.joint_number;
@@ -173,19 +174,7 @@ void settle_in(World& w, Space space) {
     w.stress.resize(count);
     w.overshoot.resize(joints);
   }
-  std::vector<LoadedEdge> loaded;
-  std::vector<Index> starts;
-  Places places(w.triangles.id);
-  for (LoadedEdge edge : w.mesh.loaded) {
-    edge.triangle = places.find(edge.triangle);
-    if (edge.triangle < 0) continue;
-    if (loaded.empty() || loaded.back().triangle != edge.triangle)
-      starts.push_back(static_cast<Index>(loaded.size()));
-    loaded.push_back(edge);
-  }
-  starts.push_back(static_cast<Index>(loaded.size()));
-  copy_to(w.loaded_edges, loaded);
-  copy_to(w.load_starts, starts);
+  list_loaded_edges(w);
 
   // Rings without an owned triangle may be incomplete; nobody here needs them.
   std::vector<Index> first{0}, nodes;
@@ -339,6 +328,7 @@ void take_common(World& w, Communicator& ranks) {
   take_time_from_first(ranks, w);
   take_from_first(ranks, w.reach.drift);
   for (ServoState& servo : w.servos) take_from_first(ranks, servo);
+  take_from_first(ranks, w.fluid.time);
   for (Buffer<std::uint8_t>* flags : {&w.exposed.changed, &w.exposed.vertex}) {
     Message message;
     put_bytes(message, flags->data(), at(flags->size()));
@@ -353,7 +343,7 @@ void note_mesh(World& whole) {
   mesh.tied.assign(whole.given->open_vertex.size(), 0);
   for (const Index node : whole.bundles.nodes.host()) mesh.tied[at(whole.vertex[at(node)])] = 1;
   mesh.bundled = whole.bundles.nodes.size() > 0;
-  copy_to(mesh.loaded, whole.loaded_edges);
+  mesh.loaded = whole.triangles.external.size() > 0;
   mesh.absorbs = whole.dashpots.size() > 0;
   mesh.preset = whole.joints.preset.size() > 0;
 }
@@ -477,6 +467,7 @@ void collect(World& part, World& whole) {
   moved.partition.move(moved.drifted);
   whole.domain.partition = moved.partition;
   whole.servos = part.servos;
+  whole.fluid = part.fluid;
   copy_time(part, whole);
   derive_couples(whole);
 }

@@ -45,11 +45,17 @@ struct ExposedVertices {
   Buffer<std::uint8_t> vertex;  ///< 1: a joint here is damaged  [-]  (vertices; search)
 };
 
+/// Where fluid presses on cracks: the same on all ranks.
+struct FluidState {
+  double time = -1.0;           ///< when it spread last; below 0: not yet  [s]
+  std::vector<LoadedEdge> wet;  ///< sides of cracks, two by two, by global id
+};
+
 /// What a rank knows of the whole mesh besides its part of it.
 struct WholeMesh {
   Buffer<Index> joint_number;      ///< of the local joints in the whole mesh, ascending
   std::vector<std::uint8_t> tied;  ///< 1: some corners at this vertex move as one, or did
-  std::vector<LoadedEdge> loaded;  ///< by global id
+  bool loaded = false;             ///< some edges bear loads, or may
   bool bundled = false;            ///< there are such vertices
   bool absorbs = false;            ///< some edges take waves up
   bool preset = false;             ///< joints keep an opening at which they were joined
@@ -128,6 +134,7 @@ struct World {
   std::int64_t searches = 0;  ///< [-]  (search)
   std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
   StageProgress stage;             ///< where it is among the stages of its case (stage)
+  FluidState fluid;                ///< (fluid: spread_fluid(), every servo_every steps)
 
   // Which part of the whole it is, and how its triangles lie in the mesh: constant between two
   // migrations.

@@ -99,6 +99,8 @@ std::vector<std::string> case_problems(const Config& config) {
   for (const LoadConfig& l : config.loads) {
     look_up_body("load." + l.name, l.region.on);
     history("load." + l.name, l.history);
+    if (l.speed > 0.0 && l.kind != "fluid")
+      add("load." + l.name + ".speed: only a fluid has one; kind is \"" + l.kind + "\"");
     one_table("load." + l.name + ".pressure", l.pressure, l.history);
     one_table("load." + l.name + ".traction", l.traction, l.history);
     one_table("load." + l.name + ".force", l.force, l.history);

@@ -50,6 +50,8 @@ struct MaterialConfig {
   double contact_stiffness = 10.0;    ///< p_n over E  [-]
   double tangential_stiffness = 0.1;  ///< p_t over p_n  [-]
   double friction = 0.6;              ///< of contact  [-]
+  double young_now = 0.0;             ///< no key: of its triangles in this stage; 0: young  [Pa]
+  double in_situ_share = 1.0;         ///< no key: of the stress in situ that they bear  [-]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -175,6 +177,7 @@ struct LoadConfig {
   OverTime<double> pressure;  ///<  [Pa]
   OverTime<Vec2> traction;    ///<  [Pa]
   OverTime<Vec2> force;       ///<  [N/m]
+  double speed = 0.0;         ///< of a fluid's front; 0: at once  [m/s]
   HistoryConfig history;
 
   template <class Visit>
@@ -182,16 +185,20 @@ struct LoadConfig {
     key("name", name, "name of the load");
     key.required("name");
     region.each_key(key);
-    key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing"},
+    key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing", "fluid"},
         "pressure: against the edge, and traction: along fixed axes, both per present length; "
         "force: a sum, spread over the edges by their length at the start, that stays as given "
-        "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer)");
+        "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer); fluid: a pressure "
+        "on the border in the region, which spreads through broken joints and open cracks that are "
+        "connected to the region");
     key("pressure", pressure, "Pa", any_number,
         "pressure, positive pushes; or a table [[t, p], ...] of it over time");
     key("traction", traction, "Pa", any_number,
         "force per area, or a table [[t, x, y], ...] of it over time");
     key("force", force, "N/m", any_number,
         "force per unit thickness, of all edges together, or a table [[t, x, y], ...] of it");
+    key("speed", speed, "m/s", not_negative,
+        "fluid: how fast its front runs in cracks that are broken; 0: it fills them as they break");
     history.each_key(key);
   }
 };
@@ -241,11 +248,35 @@ struct LoadChange {
   }
 };
 
+/// [[stage.material]]: what a material is from a stage on
+struct MaterialChange {
+  std::string name;
+  double young = 0.0;      ///< 0: as before  [Pa]
+  double in_situ = -1.0;   ///< below 0: as before  [-]
+  double friction = -1.0;  ///< below 0: as before  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the material");
+    key.required("name");
+    key("young", young, "Pa", not_negative,
+        "Young's modulus of its triangles from now on; joints and contacts keep their stiffnesses; "
+        "0: as before");
+    key("in_situ", in_situ, "-", Range{-1.0, 1.0},
+        "share of the stress at the start that it bears from now on: a core that is dug slowly "
+        "bears less and less; below 0: as before");
+    key("friction", friction, "-", Range{-1.0, no_limit},
+        "coefficient of friction of its contacts from now on; between two materials the lower one "
+        "counts; below 0: as before");
+  }
+};
+
 /// [[stage]]
 struct StageConfig : StageEnd {
   Vec2 gravity{no_limit, no_limit};  ///<  [m/s2]
   std::vector<SupportChange> supports;
   std::vector<LoadChange> loads;
+  std::vector<MaterialChange> materials;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -254,6 +285,7 @@ struct StageConfig : StageEnd {
         "acceleration of gravity from its beginning on; left out (inf): as before");
     key.list("support", supports, "supports that prescribe something else from its beginning on");
     key.list("load", loads, "loads that are another from its beginning on");
+    key.list("material", materials, "materials that are softer or stiffer from its beginning on");
   }
 };
 

@@ -129,9 +129,10 @@ std::vector<ElasticTriangle> elastic_table(const Config& config) {
           "material." + m.name +
           ".poisson: must be below 0.5 in plane strain; plane = \"stress\" takes more");
     ElasticTriangle law{};
-    law.lambda = plane_lambda(m.young, m.poisson, stress);
-    law.shear = shear_modulus(m.young, m.poisson);
-    law.preset = {config.in_situ.xx, config.in_situ.yy, config.in_situ.xy};
+    const double young = m.young_now > 0.0 ? m.young_now : m.young, share = m.in_situ_share;
+    law.lambda = plane_lambda(young, m.poisson, stress);
+    law.shear = shear_modulus(young, m.poisson);
+    law.preset = {share * config.in_situ.xx, share * config.in_situ.yy, share * config.in_situ.xy};
     laws.push_back(law);
   }
   return laws;

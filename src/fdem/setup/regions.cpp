@@ -73,7 +73,7 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& config,
 }
 
 std::vector<Index> edges_in(const Model& model, const RegionConfig& config,
-                            const std::string& where) {
+                            const std::string& where, bool needed) {
   const Region region(model, config, where);
   std::vector<Index> edges;
   for (const MeshEdge& e : mesh_edges(model))
@@ -81,9 +81,20 @@ std::vector<Index> edges_in(const Model& model, const RegionConfig& config,
         region.takes(static_cast<std::size_t>(e.a / 3), e.low) &&
         region.takes(static_cast<std::size_t>(e.a / 3), e.high))
       edges.push_back(e.a);
-  if (edges.empty()) throw InputError(where + ": its region holds no edge on the border");
+  if (edges.empty() && needed) throw InputError(where + ": its region holds no edge on the border");
   std::sort(edges.begin(), edges.end());
   return edges;
+}
+
+std::vector<Index> vertices_in(const Model& model, const RegionConfig& config,
+                               const std::string& where) {
+  std::vector<Index> vertices;
+  for (const Index corner : corners_in(model, config, where))
+    vertices.push_back(
+        model.triangle[static_cast<std::size_t>(corner / 3)][static_cast<std::size_t>(corner % 3)]);
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
 }
 
 }  // namespace breccia::fdem

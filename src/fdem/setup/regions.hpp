@@ -15,8 +15,13 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& region,
                               const std::string& where);
 
 /// Edges 3 t + k on the border of the mesh with both ends in a region.
+/// @param needed  whether there must be some
 /// @throws InputError likewise
 std::vector<Index> edges_in(const Model& model, const RegionConfig& region,
-                            const std::string& where);
+                            const std::string& where, bool needed = true);
+
+/// Vertices in a region. @throws InputError likewise
+std::vector<Index> vertices_in(const Model& model, const RegionConfig& region,
+                               const std::string& where);
 
 }  // namespace breccia::fdem

@@ -10,6 +10,7 @@
 #include "core/world_space.hpp"
 #include "exec/error.hpp"
 #include "fdem/observe.hpp"
+#include "fdem/setup/loads.hpp"
 #include "fdem/setup/materials.hpp"
 #include "fdem/setup/mesh_edges.hpp"
 #include "fdem/setup/pressed_faces.hpp"
@@ -127,6 +128,9 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
             : table.of_pair[static_cast<std::size_t>(model.material[a]) * config.materials.size() +
                             static_cast<std::size_t>(model.material[b])];
     if (found == BondTable::nothing) {
+      if (weak != discontinuities.end())
+        given.open_cracks.push_back({e.a, e.b, w.vertex[at(e.a)], w.vertex[at(next(e.a))],
+                                     norm(model.point[at(e.high)] - model.point[at(e.low)]), 0.0});
       open(3);
       continue;
     }
@@ -203,19 +207,6 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     w.reached.resize(1);
   }
   set_up_bundles(w, tied);
-}
-
-/// The factor of a quantity along an axis: its own table, or the table of factors.
-template <class Value>
-Amplitude amplitude(const OverTime<Value>& quantity, int axis, const HistoryConfig& history) {
-  if (quantity.is_table())
-    return scaled_amplitude(quantity, axis, history.ramp, history.begin).amplitude;
-  return {history.ramp, history.begin, history.times, history.factors};
-}
-
-/// What amplitudes of a quantity are factors of.
-Vec2 scale_of(const OverTime<Vec2>& quantity) {
-  return quantity.is_table() ? Vec2{1.0, 1.0} : quantity.value;
 }
 
 /// Held nodes start with the motion of their support: no jump of velocity at the start does work.
@@ -310,79 +301,6 @@ void set_up_supports(World& w, const Config& config, const Model& model) {
   start_held(w, holds, hold);
 }
 
-/// How a load changes over time, by the quantity that its kind asks for.
-LoadAmplitude load_amplitude(const LoadConfig& load, LoadKind kind) {
-  const auto both = [&](const auto& quantity) {
-    return LoadAmplitude{amplitude(quantity, 0, load.history),
-                         amplitude(quantity, 1, load.history)};
-  };
-  if (kind == LoadKind::traction) return both(load.traction);
-  if (kind == LoadKind::force) return both(load.force);
-  return both(kind == LoadKind::pressure ? load.pressure : OverTime<double>(1.0));
-}
-
-LoadKind kind_of(const LoadConfig& load) {
-  if (load.kind == "pressure") return LoadKind::pressure;
-  if (load.kind == "traction") return LoadKind::traction;
-  return load.kind == "force" ? LoadKind::force : LoadKind::absorbing;
-}
-
-/// How large loads are, and how that changes.
-void prescribe_loads(World& w, const Config& config) {
-  Case& given = set_up(w);
-  given.loads.clear();
-  given.load_amplitudes.clear();
-  for (const LoadConfig& load : config.loads) {
-    const LoadKind kind = kind_of(load);
-    given.loads.push_back({kind,
-                           {1.0, 1.0},
-                           load.pressure.is_table() ? 1.0 : load.pressure.value,
-                           scale_of(load.traction),
-                           scale_of(load.force)});
-    given.load_amplitudes.push_back(load_amplitude(load, kind));
-  }
-}
-
-void set_up_loads(World& w, const Config& config, const Model& model) {
-  std::vector<LoadedEdge> loaded;
-  std::vector<EdgeDashpots> dashpots;
-  prescribe_loads(w, config);
-  for (const LoadConfig& load : config.loads) {
-    const auto index = static_cast<std::int16_t>(&load - config.loads.data());
-    const LoadKind kind = w.given->loads[at(index)].kind;
-    if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
-    const std::size_t first = loaded.size();
-    double length = 0.0;
-    for (const Index edge : edges_in(model, load.region, "load." + load.name)) {
-      const auto t = at(edge / 3), k = at(edge % 3);
-      const auto material = static_cast<std::size_t>(model.material[t]);
-      const double density = config.materials[material].density;
-      const double own = norm(model.point[at(model.triangle[t][(k + 1) % 3])] -
-                              model.point[at(model.triangle[t][k])]);
-      const double impedance_p = density * w.given->rocks[material].fast;
-      loaded.push_back({edge / 3, static_cast<std::int16_t>(k), index, own, impedance_p,
-                        density * w.given->rocks[material].slow});
-      length += own;
-      if (kind == LoadKind::absorbing)
-        dashpots[t].at[k] += impedance_p * w.given->load_amplitudes[at(index)].x.largest();
-    }
-    for (std::size_t i = first; i < loaded.size(); ++i) loaded[i].share /= length;
-  }
-  if (loaded.empty()) return;
-  std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedEdge& a, const LoadedEdge& b) {
-    return a.triangle < b.triangle;
-  });
-  std::vector<Index> starts;
-  for (std::size_t i = 0; i < loaded.size(); ++i)
-    if (i == 0 || loaded[i].triangle != loaded[i - 1].triangle)
-      starts.push_back(static_cast<Index>(i));
-  starts.push_back(static_cast<Index>(loaded.size()));
-  copy_to(w.load_starts, starts);
-  copy_to(w.loaded_edges, loaded);
-  copy_to(w.dashpots, dashpots);
-  w.triangles.external.resize(w.triangles.size());
-}
-
 void set_up_bodies(World& w, const Config& config, const Model& model) {
   Case& given = set_up(w);
   given.groups = model.groups;
@@ -472,6 +390,7 @@ void configure(World& w, const Config& config) {
   Case& given = set_up(w);
   given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
   given.local_damping = config.local_damping;
+  copy_to(given.laws, elastic_table(config));
   std::vector<ContactPair> pairs = contact_table(config);
   const double friction = config.stage_friction;
   if (friction >= 0.0)

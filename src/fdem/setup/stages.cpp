@@ -22,6 +22,12 @@ Config config_at(Config config, const StageProgress& progress) {
         s->history = {change.ramp, {}, {}, begin};
         s->servo = change.servo;
       }
+    for (const MaterialChange& change : stage.materials)
+      if (MaterialConfig* const m = find_named(config.materials, change.name)) {
+        if (change.young > 0.0) m->young_now = change.young;
+        if (change.in_situ >= 0.0) m->in_situ_share = change.in_situ;
+        if (change.friction >= 0.0) m->friction = change.friction;
+      }
     for (const LoadChange& change : stage.loads)
       if (LoadConfig* const load = find_named(config.loads, change.name)) {
         load->pressure = change.pressure;
@@ -48,6 +54,9 @@ std::vector<std::string> stage_problems(const Config& config) {
           problems.push_back(where + ".support." + change.name + ".fix: \"" + word +
                              "\" is no direction; allowed: x, y");
     }
+    for (const MaterialChange& change : stage.materials)
+      add_unknown(where + ".material.name", change.name, "material", names_of(config.materials),
+                  problems);
     for (const LoadChange& change : stage.loads) {
       add_unknown(where + ".load.name", change.name, "load", loads, problems);
       for (const LoadConfig& load : config.loads)

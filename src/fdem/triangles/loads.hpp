@@ -22,8 +22,8 @@ struct LoadAmplitude {
 };
 
 /// What acts on an edge. Pressure and traction act per present length; a force is dead: it stays as
-/// given however its edges deform.
-enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing };
+/// given however its edges deform. A fluid is a pressure that spreads into cracks.
+enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing, fluid };
 
 /// A load with its value at this moment.
 struct LoadLaw {
@@ -38,8 +38,8 @@ struct LoadLaw {
 struct LoadedEdge {
   Index triangle;
   std::int16_t edge;
-  std::int16_t load;                ///< index into the laws
-  double share;                     ///< of the load's edges, by length at the start  [-]
+  std::int16_t load;  ///< index into the laws
+  double share;       ///< of the load's edges, by length at the start; of a fluid: filled part  [-]
   double impedance_p, impedance_s;  ///< rho c_p and rho c_s of its triangle  [Pa s/m]
 };
 
@@ -68,7 +68,8 @@ struct LoadForces {
         sum.at[next] += half * resisted(edges[e], normal, b.velocity);
         continue;
       }
-      const Vec2 whole = law.kind == LoadKind::pressure   ? -law.pressure * outward
+      const Vec2 whole = law.kind == LoadKind::pressure ? -law.pressure * outward
+                         : law.kind == LoadKind::fluid  ? (-law.pressure * edges[e].share) * outward
                          : law.kind == LoadKind::traction ? norm(along) * law.traction
                                                           : edges[e].share * law.force;
       const Vec2 half{(0.5 * law.factor.x) * whole.x, (0.5 * law.factor.y) * whole.y};

@@ -5,6 +5,7 @@
 
 #include "exec/error.hpp"
 #include "fdem/energy.hpp"
+#include "fdem/fluid/fluid.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
 #include "fdem/servos.hpp"
@@ -77,6 +78,9 @@ struct FdemSim {
   static void begun(World& part) {
     part.next_dt = std::min(part.next_dt, fdem::choose_time_step(part));
   }
+  static bool has_fluid(const World& w) { return !w.given->fluids.empty(); }
+  static void spread(World& part) { fdem::spread_fluid(part); }
+  static void restore(World& part) { fdem::restore_fluid(part); }
   static EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t) {
     return fdem::energies(ledger, all).balance;
   }
@@ -117,6 +121,13 @@ struct FdemSim {
     const fdem::Fragments pieces = fdem::fragments(w);
     double total = 0.0;
     for (const double m : pieces.mass) total += m;
+    for (const fdem::FluidSource& fluid : w.given->fluids) {
+      const auto load = static_cast<std::size_t>(fluid.load);
+      const fdem::FilledPart filled = fdem::filled_part(w, load);
+      const std::string path = "fluid." + w.given->load_names[load] + ".";
+      add(path + "length", filled.length);
+      add(path + "volume", filled.volume);
+    }
     add("fracture.fragments", static_cast<double>(pieces.mass.size()));
     add("fracture.largest_fragment_fraction", pieces.mass.front() / total);
   }
@@ -174,6 +185,7 @@ struct FdemSim {
     visit.fields("couples", w.couples);
     visit.fields("reach", w.reach);
     visit("reach.drift", w.reach.drift);
+    if (has_fluid(w)) visit("fluid.time", w.fluid.time);
   }
 };
 

@@ -58,10 +58,14 @@ class SimMethod final : public Method {
         now_(config_at(config, {})) {}
 
   Advanced advance(const StopAt& stop) override {
-    if (world_.part().servos.empty()) return world_.advance_to(stop);
+    const bool servos = !world_.part().servos.empty(), fluid = has_fluid(world_.part());
+    if (!servos && !fluid) return world_.advance_to(stop);
     const std::int64_t next = (steps() / servo_every + 1) * servo_every;
     const Advanced taken = world_.advance_to({stop.time, std::min(stop.step, next)});
-    if (taken.steps > 0 && steps() % servo_every == 0) correct_all_servos();
+    if (taken.steps == 0 || steps() % servo_every != 0) return taken;
+    if (servos) correct_all_servos();
+    if constexpr (requires(World & w) { Sim::spread(w); })
+      if (fluid) at_once(world_.ranks(), [&] { Sim::spread(world_.part()); });
     return taken;
   }
   std::int64_t steps() const override { return world_.part().step; }
@@ -88,7 +92,10 @@ class SimMethod final : public Method {
     if (!begins) return;
     now_ = config_at(case_, now);
     change_gravity(now_);
-    const bool removes = !case_.stages[static_cast<std::size_t>(now.index)].remove.empty();
+    const auto& stage = case_.stages[static_cast<std::size_t>(now.index)];
+    const bool removes = !stage.remove.empty();
+    bool books = removes;
+    if constexpr (requires { stage.materials; }) books |= !stage.materials.empty();
     const auto change = [&](World& w) {
       configure(w, now_);
       if (removes) {
@@ -96,7 +103,7 @@ class SimMethod final : public Method {
         cut_off_removed(w);
       }
     };
-    if (removes)
+    if (books)
       booked([&] { world_.in_both(change); });
     else
       world_.in_both(change);
@@ -203,9 +210,16 @@ class SimMethod final : public Method {
       derive(w);
     });
     if (!world_.part().servos.empty()) world_.in_both([](World& w) { place_servos(w); });
+    if constexpr (requires(World & w) { Sim::restore(w); })
+      if (has_fluid(world_.part())) at_once(world_.ranks(), [&] { Sim::restore(world_.part()); });
   }
 
  private:
+  /// Whether something spreads between steps.
+  static bool has_fluid(const World& w) {
+    if constexpr (requires { Sim::has_fluid(w); }) return Sim::has_fluid(w);
+    return false;
+  }
   /// A copy whose steps are not booked.
   SimMethod(const SimMethod& other)
       : Method(),

@@ -1,0 +1,95 @@
+#include "fdem/setup/loads.hpp"
+
+#include <algorithm>
+
+#include "core/set_up.hpp"
+#include "fdem/fluid/fluid.hpp"
+#include "fdem/setup/regions.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+Case& set_up(World& w) {
+  return w.given.change(SetUp{});
+}
+
+/// How a load changes over time, by the quantity that its kind asks for.
+LoadAmplitude load_amplitude(const LoadConfig& load, LoadKind kind) {
+  const auto both = [&](const auto& quantity) {
+    return LoadAmplitude{amplitude(quantity, 0, load.history),
+                         amplitude(quantity, 1, load.history)};
+  };
+  if (kind == LoadKind::traction) return both(load.traction);
+  if (kind == LoadKind::force) return both(load.force);
+  return both(kind == LoadKind::absorbing ? OverTime<double>(1.0) : load.pressure);
+}
+
+LoadKind kind_of(const LoadConfig& load) {
+  if (load.kind == "pressure") return LoadKind::pressure;
+  if (load.kind == "traction") return LoadKind::traction;
+  if (load.kind == "fluid") return LoadKind::fluid;
+  return load.kind == "force" ? LoadKind::force : LoadKind::absorbing;
+}
+
+}  // namespace
+
+void prescribe_loads(World& w, const Config& config) {
+  Case& given = set_up(w);
+  given.loads.clear();
+  given.load_amplitudes.clear();
+  given.load_names.clear();
+  for (const LoadConfig& load : config.loads) {
+    const LoadKind kind = kind_of(load);
+    given.load_names.push_back(load.name);
+    given.loads.push_back({kind,
+                           {1.0, 1.0},
+                           load.pressure.is_table() ? 1.0 : load.pressure.value,
+                           scale_of(load.traction),
+                           scale_of(load.force)});
+    given.load_amplitudes.push_back(load_amplitude(load, kind));
+  }
+}
+
+void set_up_loads(World& w, const Config& config, const Model& model) {
+  std::vector<LoadedEdge> loaded;
+  std::vector<EdgeDashpots> dashpots;
+  prescribe_loads(w, config);
+  for (const LoadConfig& load : config.loads) {
+    const auto index = static_cast<std::int16_t>(&load - config.loads.data());
+    const LoadKind kind = w.given->loads[at(index)].kind;
+    if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
+    const std::size_t first = loaded.size();
+    double length = 0.0;
+    if (kind == LoadKind::fluid)
+      set_up(w).fluids.push_back(
+          {index, load.speed, vertices_in(model, load.region, "load." + load.name)});
+    for (const Index edge :
+         edges_in(model, load.region, "load." + load.name, kind != LoadKind::fluid)) {
+      const auto t = at(edge / 3), k = at(edge % 3);
+      const auto material = static_cast<std::size_t>(model.material[t]);
+      const double density = config.materials[material].density;
+      const double own = norm(model.point[at(model.triangle[t][(k + 1) % 3])] -
+                              model.point[at(model.triangle[t][k])]);
+      const double impedance_p = density * w.given->rocks[material].fast;
+      loaded.push_back({edge / 3, static_cast<std::int16_t>(k), index, own, impedance_p,
+                        density * w.given->rocks[material].slow});
+      length += own;
+      if (kind == LoadKind::absorbing)
+        dashpots[t].at[k] += impedance_p * w.given->load_amplitudes[at(index)].x.largest();
+    }
+    for (std::size_t i = first; i < loaded.size(); ++i)
+      loaded[i].share = kind == LoadKind::fluid ? 1.0 : loaded[i].share / length;
+  }
+  if (loaded.empty() && w.given->fluids.empty()) return;
+  std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedEdge& a, const LoadedEdge& b) {
+    return a.triangle < b.triangle;
+  });
+  set_up(w).loaded = std::move(loaded);
+  if (w.given->fluids.empty()) set_up(w).open_cracks.clear();
+  spread_fluid(w);
+  list_loaded_edges(w);
+  copy_to(w.dashpots, dashpots);
+  w.triangles.external.resize(w.triangles.size());
+}
+
+}  // namespace breccia::fdem

@@ -1,0 +1,74 @@
+// Fluid that follows cracks: threads, a device's schedule, ranks and resumed runs agree, and the
+// ledger books its work.
+
+#include <algorithm>
+
+#include "parity/staged_runs.hpp"
+#include "physics/fdem/scene.hpp"
+
+namespace breccia {
+namespace {
+
+using namespace breccia::testing;
+
+/// A block with an open crack of 40 mm in its middle, from one end of which fluid comes.
+fdem::testing::Scene flooded(const char* joints, double speed) {
+  fdem::testing::Scene s;
+  fdem::MaterialConfig& rock = s.material(30e9, 0.2, 2500.0);
+  rock.joints = joints;
+  rock.joint.tension = 4e6;
+  rock.joint.cohesion = 20e6;
+  rock.joint.energy_open = 20.0;
+  rock.friction = 0.5;
+  s.body("rock", prepare::crossed_rectangle({{0.0, 0.0}, {0.1, 0.06}}, 0.01));
+  std::vector<std::pair<double, Index>> line;
+  for (std::size_t i = 0; i < s.model.point.size(); ++i) {
+    const Vec2& x = s.model.point[i];
+    if (std::abs(x.y) < 1e-9 && std::abs(x.x) < 0.0201)
+      if (std::abs(std::remainder(x.x, 0.01)) < 1e-9) line.emplace_back(x.x, static_cast<Index>(i));
+  }
+  std::sort(line.begin(), line.end());
+  for (std::size_t i = 0; i + 1 < line.size(); ++i)
+    s.model.discontinuities.push_back({{line[i].second, line[i + 1].second}, -1});
+  fdem::LoadConfig& water = s.load("water", "fluid", {-0.021, -0.001}, {-0.019, 0.001});
+  water.pressure.times = {0.0, 1e-5, 1e-4};
+  water.pressure.values = {0.0, 40e6, 10e6};
+  water.speed = speed;
+  s.config.time.end = 1.0;
+  s.config.time.max_step = 5e-8;
+  fdem::StageConfig fill, more;
+  fill.name = "fill";
+  fill.until = 2e-5;
+  more.name = "more";
+  more.until = 1e-5;
+  more.loads = {{"water", 20e6, {}, {}, 0.0}};
+  s.config.stages = {fill, more};
+  return s;
+}
+
+TEST(Fluid, in_cracks_is_alike_on_threads_schedule_and_ranks) {
+  expect_alike(flooded("intrinsic", 800.0));
+  expect_alike(flooded("extrinsic", 0.0));
+}
+TEST(Fluid, in_cracks_is_resumed) {
+  expect_resumed(flooded("intrinsic", 800.0));
+}
+TEST(Fluid, that_runs_faster_fills_more) {
+  double last = 0.0;
+  for (const double speed : {100.0, 800.0, 0.0}) {
+    const fdem::testing::Scene s = flooded("intrinsic", speed);
+    const auto method = make_method(s.config, s.model, {}, nullptr);
+    run_to(*method, s.config, nullptr);
+    double length = 0.0;
+    for (const Fact& fact : method->facts())
+      if (fact.path == "fluid.water.length") length = fact.value;
+    EXPECT_GT(length, 1.2 * last) << speed;
+    last = length;
+    EXPECT_LT(method->energy().error_relative, 2e-3) << speed;
+    EXPECT_GT(method->energy().work, 0.0);
+  }
+  EXPECT_GT(last, 0.06);  // it has left the crack of 40 mm
+}
+
+}  // namespace
+}  // namespace breccia
