@@ -11,10 +11,12 @@
 
 #include "app/commands.hpp"
 #include "exec/error.hpp"
+#include "io/case/case_file.hpp"
 #include "io/case/problems.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
+#include "prepare/checks/check_regions.hpp"
 #include "run/case.hpp"
 #include "run/machine/forecast.hpp"
 #include "run/machine/memory_plan.hpp"
@@ -83,6 +85,10 @@ struct CheckCommand {
             fmt::print(", needs --allow-scripts for {}",
                        harmless(fmt::format("{}", fmt::join(files, ", "))));
           fmt::print("\n");
+          if constexpr (requires { config.walls; })
+            for (const std::string& doubt : prepare::doubtful_walls(config))
+              fmt::print("  note    {}\n",
+                         harmless(read.file.empty() ? doubt : with_lines(doubt, read.file)));
           if (!read.model) tell_forecast(forecast(config, read.folder));
         },
         read.config);

@@ -4,6 +4,7 @@
 #include "core/pair_list.hpp"
 #include "dem/laws/contact.hpp"
 #include "dem/links/link_set.hpp"
+#include "dem/wall.hpp"
 
 namespace breccia::dem {
 
@@ -40,15 +41,6 @@ struct WallHistory : ContactHistory {
 using Contacts = PairList<ContactHistory>;
 /// Elements and walls that may touch: b is the wall, and the key is of wall and element.
 using WallContacts = PairList<WallHistory>;
-
-/// A rigid half-space.
-struct Wall {
-  Vec3 point;        ///< at the present time  [m]
-  Vec3 normal;       ///< unit, out of the wall
-  Vec3 velocity;     ///<  [m/s]
-  double stiffness;  ///< factor on linear contacts  [-]
-  double travelled;  ///< since the last search  [m]
-};
 
 /// Contacts between elements.
 /// @tparam Actions  where actions go
@@ -126,21 +118,22 @@ struct WallForces {
     const Index i = first + k, e = a[i];
     const PairEnd<double> end = elements.end(e);
     const double radius = elements.radius(e), mass = elements.mass[e];
-    const double height = dot(end.position - wall.point, wall.normal);
+    const auto [out, height] = touch(wall, end.position);
     ContactState kept = state[i];
     const double overlap = radius - height;
     if (kept.overlap <= 0.0 && overlap <= 0.0) return;
 
     PairMotion<double> motion{};
-    motion.normal = -wall.normal;
+    motion.normal = -out;
     motion.distance = motion.arm_a = height;
-    const Vec3 dv = wall.velocity - end.velocity;
+    const Vec3 surface = wall.velocity_at(end.position - height * out);
+    const Vec3 dv = surface - end.velocity;
     motion.slip = dt * motion.tangential(dv - cross(height * end.spin, motion.normal));
-    motion.turn = -(dt * end.spin);
-    motion.half_turn = (0.25 * dt * dot(motion.normal, end.spin)) * motion.normal;
+    motion.turn = dt * (wall.spin - end.spin);
+    motion.half_turn = (0.25 * dt * dot(motion.normal, end.spin + wall.spin)) * motion.normal;
     motion.turn_scale = turn_scale(motion.half_turn);
 
-    const ContactLaw::Pair pair{radius, radius, 2.0 * radius, mass, radius};
+    const ContactLaw::Pair pair{wall.curved(radius), radius, 2.0 * radius, mass, radius};
     ContactPair constants = pairs[material[e]];
     if (!law.hertz) constants.normal *= wall.stiffness;
     const ContactResponse r =
@@ -153,7 +146,8 @@ struct WallForces {
     wall_force[i] = on_wall;
     force[e] -= on_wall;
     torque[e] += -(height * cross(motion.normal, on_wall)) - r.moment;
-    driven[i] -= dt * dot(on_wall, wall.velocity);
+    driven[i] -= dt * dot(on_wall, surface);
+    if (wall.turns()) driven[i] -= dt * dot(r.moment, wall.spin);
     // Stiffnesses add, so their critical times squared add like resistances in parallel; the wall's
     // largest stiffness stands for all its directions.
     const double stiffest = max(r.normal_stiffness, r.shear_stiffness);

@@ -61,8 +61,8 @@ struct ContactShares {
   View<const std::int16_t> material;
   View<const ElementState> state_of;
   View<const ContactPair> pairs;
-  Index materials;                    ///< 0: contacts with walls, one pair a material
-  View<const double> wall_stiffness;  ///< of each wall; empty between elements
+  Index materials;         ///< 0: contacts with walls, one pair a material
+  View<const Wall> walls;  ///< empty between elements
   View<const Index> a, b;
   View<const ContactState> state;
   View<const double> slid, damped;
@@ -80,8 +80,10 @@ struct ContactShares {
             law.stored_normal(pairs[material[a[i]] * materials + material[b[i]]], pair, overlap));
       } else {
         ContactPair constants = pairs[material[a[i]]];
-        if (!law.hertz) constants.normal *= wall_stiffness[b[i]];
-        s.elastic.add(law.stored_normal(constants, {ra, ra, 2.0 * ra, 0.0, 0.0}, overlap));
+        const Wall& wall = walls[b[i]];
+        if (!law.hertz) constants.normal *= wall.stiffness;
+        s.elastic.add(
+            law.stored_normal(constants, {wall.curved(ra), ra, 2.0 * ra, 0.0, 0.0}, overlap));
       }
       s.elastic.add(state[i].stored);
     }
@@ -114,11 +116,11 @@ struct ElementShares {
 
 template <class List>
 Energies contact_shares(const World& w, const List& c, const Buffer<ContactPair>& pairs,
-                        Index materials, const Buffer<double>& wall_stiffness) {
+                        Index materials, const Buffer<Wall>& walls) {
   return fold(
       w.exec, c.size(), Energies{},
       ContactShares{w.domain.owned_view(), w.given->contact, w.elements.material.view(),
-                    w.elements.state.view(), pairs.view(), materials, wall_stiffness.view(),
+                    w.elements.state.view(), pairs.view(), materials, walls.view(),
                     c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
                     c.history.slid.view(), c.history.damped.view(), c.history.work_of_walls()},
       Sum{});
@@ -135,13 +137,10 @@ Energies held(const World& w) {
   with_number(w.exec.precision, [&](auto number) {
     w.each_set([&](const auto& set) { all = all + link_energies<decltype(number)>(w, set); });
   });
-  std::vector<double> factors;
-  for (const Wall& wall : w.walls) factors.push_back(wall.stiffness);
-  Buffer<double> wall_stiffness(w.exec.space);
-  copy_to(wall_stiffness, factors);
-  all = all +
-        contact_shares(w, w.contacts, w.given->contact_pairs, w.given->materials, wall_stiffness);
-  all = all + contact_shares(w, w.wall_contacts, w.given->wall_pairs, 0, wall_stiffness);
+  Buffer<Wall> walls(w.exec.space);
+  copy_to(walls, w.walls);
+  all = all + contact_shares(w, w.contacts, w.given->contact_pairs, w.given->materials, walls);
+  all = all + contact_shares(w, w.wall_contacts, w.given->wall_pairs, 0, walls);
   all = all + fold(w.exec, e.size(), Energies{},
                    ElementShares{owned, kick(w), e.damping_work.view(), e.load_work.view()}, Sum{});
   if (dot(w.given->gravity, w.given->gravity) > 0.0)

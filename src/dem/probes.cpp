@@ -128,9 +128,10 @@ struct ActionStress {
   }
 };
 
-/// Where a wall is touched: the foot of the perpendicular from an element's centre.
+/// Where a wall is touched: its point nearest to an element's centre.
 BR_HD inline Vec3 foot_on(const Wall& wall, const Vec3& x) {
-  return x - dot(x - wall.point, wall.normal) * wall.normal;
+  const WallTouch at = touch(wall, x);
+  return x - at.height * at.normal;
 }
 
 struct WallStress {

@@ -119,7 +119,7 @@ struct WallNear {
   View<const std::uint8_t> fixed;
   BR_HD bool operator()(Index e) const {
     if (is_gone(fixed[e])) return false;
-    const double height = dot(state[e].position - wall.point, wall.normal);
+    const double height = touch(wall, state[e].position).height;
     return owned(e) && height <= state[e].radius + margin[e] + reach;
   }
 };
@@ -147,9 +147,9 @@ Pairs near_walls(const World& w) {
     // A wall that moves against the drift uses margins up, too: it may cover one largest margin
     // until it asks for a search.
     const Vec3& drift = w.travel.drift.velocity;
-    const bool moves =
-        dot(drift, drift) > 0.0 || w.prescribed.moves(w.prescribed.motions.size() - w.walls.size() +
-                                                      static_cast<std::size_t>(wall_number));
+    const bool moves = dot(drift, drift) > 0.0 || wall.turns() ||
+                       w.prescribed.moves(w.prescribed.motions.size() - w.walls.size() +
+                                          static_cast<std::size_t>(wall_number));
     const double reach = (moves ? w.given->largest_margin : 0.0) + 1e-14 * w.travel.drift.farthest;
     const Buffer<Index> near =
         items_where(w.exec, w.elements.size(),

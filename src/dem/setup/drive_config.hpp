@@ -11,7 +11,7 @@
 
 namespace breccia::dem {
 
-/// [[wall]]: a rigid half-space
+/// [[wall]]: a rigid body that is met from outside
 struct WallConfig {
   std::string name;
   Vec3 point{};                ///< on the face  [m]
@@ -21,13 +21,32 @@ struct WallConfig {
   double friction = -1.0;      ///< of its contacts; below 0: that of contacts  [-]
   ServoConfig servo{};         ///< instead of the velocity
   double begin = 0.0;          ///< no key: where its time begins  [s]
+  std::string shape = "plane";
+  double radius = 0.0;  ///< of cylinder or sphere  [m]
+  double length = 0.0;  ///< of cylinder or box, behind the face  [m]
+  Vec2 size{};          ///< of a box's face  [m]
+  Vec3 along{};         ///< of a box; zero: some direction across the normal  [-]
+  Vec3 spin{};          ///<  [rad/s]
 
   template <class Visit>
   void each_key(Visit&& key) {
     key("name", name, "name of the wall");
     key.required("name");
-    key("point", point, "m", any_number, "a point of the wall's face");
-    key("normal", normal, "-", any_number, "direction out of the wall, towards the elements");
+    key("shape", shape, OneOf{"plane", "cylinder", "box", "sphere"},
+        "plane: all that lies behind its face; cylinder, box: a round or rectangular face and what "
+        "lies behind it, to length: platens, rollers, punches; sphere: around point");
+    key("point", point, "m", any_number,
+        "a point of the wall's face; the middle of a round or rectangular one; centre of a sphere");
+    key("normal", normal, "-", any_number,
+        "direction out of the wall's face, towards the elements");
+    key("radius", radius, "m", not_negative, "radius of a cylinder or sphere");
+    key("length", length, "m", not_negative, "how far a cylinder or box reaches behind its face");
+    key("size", size, "m", not_negative, "sides of a box's face: along, and across");
+    key("along", along, "-", any_number,
+        "direction of the first side of a box's face, or near it; [0, 0, 0]: some direction across "
+        "the normal");
+    key("spin", spin, "rad/s", Range{-1e6, 1e6},
+        "how fast it turns about an axis through point; a plane only about its normal");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
         "velocity of the wall, or a table [[t, x, y, z], ...] of it over time");
     key("stiffness", stiffness, "-", positive,
@@ -108,6 +127,7 @@ struct WallChange {
   std::string name;
   OverTime<Vec3> velocity;  ///<  [m/s]
   ServoConfig servo;
+  Vec3 spin{};  ///<  [rad/s]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -116,6 +136,8 @@ struct WallChange {
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
         "its velocity from now on, or a table of it over time since the stage began; left out: it "
         "stands still");
+    key("spin", spin, "rad/s", Range{-1e6, 1e6},
+        "how fast it turns from now on; left out: no more");
     key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
   }
 };

@@ -13,6 +13,7 @@
 #include "dem/setup/materials.hpp"
 #include "dem/setup/stages.hpp"
 #include "dem/setup/supports.hpp"
+#include "dem/setup/walls.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
 #include "exec/sort_scan.hpp"
@@ -297,14 +298,13 @@ void set_contacts(World& w, const Config& config, const Model& m) {
   given.wall_pairs = filled(w, walls);
   for (std::size_t k = 0; k < config.walls.size(); ++k) {
     const WallConfig& wall = config.walls[k];
-    const double size = norm(wall.normal);
-    if (!(size > 0.0)) throw InputError("wall " + wall.name + " has a normal of length 0");
+    const std::vector<std::string> problems = wall_problems(wall);
+    if (!problems.empty()) throw InputError(problems[0]);
     given.wall_names.push_back(wall.name);
     given.wall_starts.push_back(wall.point);
     given.wall_friction.push_back(wall.friction);
     const std::size_t motion = add_motion(w, wall, k);
-    w.walls.push_back({wall.point, (1.0 / size) * wall.normal, w.prescribed.velocity(motion, 0.0),
-                       wall.stiffness, 0.0});
+    w.walls.push_back(wall_of(wall, w.prescribed.velocity(motion, 0.0)));
   }
   place_motions(w);
   // A step that resolves the contact of two like elements, for those that nothing else slows down.

@@ -30,6 +30,7 @@ Config config_at(Config config, const StageProgress& progress) {
       if (WallConfig* const wall = find_named(config.walls, change.name)) {
         wall->velocity = change.velocity;
         wall->servo = change.servo;
+        wall->spin = change.spin;
         wall->begin = begin;
       }
   }
@@ -132,7 +133,10 @@ void configure(World& w, const Config& config) {
   for (std::size_t k = 0; k < config.walls.size(); ++k) add_motion(w, config.walls[k], k);
   place_motions(w);
   // A wall that stood still has no contacts listed around it: the next step searches.
-  for (Wall& wall : w.walls) wall.travelled = 2.0 * w.given->largest_margin;
+  for (std::size_t k = 0; k < config.walls.size(); ++k) {
+    w.walls[k].spin = config.walls[k].spin;
+    w.walls[k].travelled = 2.0 * w.given->largest_margin;
+  }
   w.graph.clear();
 }
 

@@ -53,8 +53,7 @@ struct MoveWalls {
     Wall& wall = walls[k];
     const double dt = now.next_dt;
     wall.velocity = motions[motions.size - walls.size + k].at(now.time + 0.5 * dt, times, factors);
-    wall.point += dt * wall.velocity;
-    wall.travelled += dt * norm(wall.velocity - drift);
+    wall.move(dt, drift);
     if (search_every == 0 && wall.travelled > largest_travel) *host_request = 1;
   }
 };

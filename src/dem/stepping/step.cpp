@@ -81,8 +81,7 @@ void move_walls(World& w) {
   for (std::size_t k = 0; k < w.walls.size(); ++k) {
     Wall& wall = w.walls[k];
     wall.velocity = w.prescribed.velocity(first + k, w.time + 0.5 * w.next_dt);
-    wall.point += w.next_dt * wall.velocity;
-    wall.travelled += w.next_dt * norm(wall.velocity - w.travel.drift.velocity);
+    wall.move(w.next_dt, w.travel.drift.velocity);
   }
   advance_time(w);
 }

@@ -8,6 +8,7 @@
 #include "core/probe.hpp"
 #include "dem/setup/materials.hpp"
 #include "dem/setup/stages.hpp"
+#include "dem/setup/walls.hpp"
 #include "fdem/setup/check_case.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
@@ -42,8 +43,7 @@ class Check {
     for (const std::string& problem : prepare::body_problems(config)) add(problem);
     for (const std::string& problem : prepare::overlap_problems(config.bodies)) add(problem);
     for (const WallConfig& w : config_.walls)
-      if (!(norm(w.normal) > 0.0))
-        add("wall." + w.name + ".normal has length 0; it must point somewhere");
+      for (const std::string& problem : wall_problems(w)) add(problem);
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
     check_mass_scaling(config_, problems_);

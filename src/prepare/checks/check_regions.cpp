@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "dem/setup/walls.hpp"
 #include "io/round_numbers.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/refusal.hpp"
@@ -134,7 +135,68 @@ Bounds bounds_of(const dem::SupportConfig& s) {
   return b;
 }
 
+Vec3 nearest_in(const Bounds& b, const Vec3& x) {
+  return {std::clamp(x.x, b.low[0], b.high[0]), std::clamp(x.y, b.low[1], b.high[1]),
+          std::clamp(x.z, b.low[2], b.high[2])};
+}
+
+/// Height of a box's nearest point above a wall, by projecting to and fro: both are convex.  [m]
+double height_above(const dem::Wall& wall, const Bounds& b) {
+  Vec3 x = nearest_in(b, wall.point);
+  double height = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const dem::WallTouch at = dem::touch(wall, x);
+    height = at.height;
+    if (height <= 0.0) break;
+    x = nearest_in(b, x - height * at.normal);
+  }
+  return height;
+}
+
+/// Height of a box's farthest corner above a plane.  [m]
+double farthest_above(const dem::Wall& plane, const Bounds& b) {
+  const Vec3 corner{plane.normal.x > 0.0 ? b.high[0] : b.low[0],
+                    plane.normal.y > 0.0 ? b.high[1] : b.low[1],
+                    plane.normal.z > 0.0 ? b.high[2] : b.low[2]};
+  return dot(corner - plane.point, plane.normal);
+}
+
 }  // namespace
+
+std::vector<std::string> doubtful_walls(const dem::Config& config) {
+  std::vector<Outline> outlines;
+  for (const dem::BodyConfig& body : config.bodies) {
+    outlines.push_back(outline_of(body, config));
+    if (!outlines.back().bounds) return {};
+    if (body.shape != "element") continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      outlines.back().bounds->low[k] -= body.radius;
+      outlines.back().bounds->high[k] += body.radius;
+    }
+  }
+  std::vector<std::string> doubts;
+  for (const dem::WallConfig& asked : config.walls) {
+    const dem::Wall wall = dem::wall_of(asked, {});
+    const Outline* nearest = nullptr;
+    double least = no_limit;
+    for (const Outline& outline : outlines) {
+      const double height = height_above(wall, *outline.bounds);
+      if (asked.shape == "plane" && farthest_above(wall, *outline.bounds) < 0.0)
+        doubts.push_back(
+            fmt::format("wall.{}.normal: all of {} lies behind the wall, which will "
+                        "throw it out; does the normal point away from it?",
+                        asked.name, outline.name));
+      if (height >= least) continue;
+      least = height;
+      nearest = &outline;
+    }
+    if (nearest != nullptr && least > 1e-9)
+      doubts.push_back(fmt::format(
+          "wall.{}.point: no body touches the wall at the start; {} is nearest, {} away",
+          asked.name, nearest->name, length_text(least)));
+  }
+  return doubts;
+}
 
 void check_regions(const dem::Config& config) {
   std::vector<Outline> outlines;

@@ -2,6 +2,7 @@
 // Supports and loads whose region lies beside every body: told before a model is built.
 
 #include <string>
+#include <vector>
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
@@ -14,5 +15,9 @@ namespace breccia::prepare {
 /// @throws InputError naming each region that takes nothing, the nearest body and how far it is
 void check_regions(const dem::Config& config);
 void check_regions(const fdem::Config& config);
+
+/// Walls that no body touches at the start: which body is nearest, and how far it is, or that all
+/// of it lies behind the wall. Bodies whose outline only their file tells are not looked at.
+std::vector<std::string> doubtful_walls(const dem::Config& config);
 
 }  // namespace breccia::prepare

@@ -9,6 +9,7 @@
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
+#include "prepare/checks/check_regions.hpp"
 #include "unit/prepare/fdem_scenes.hpp"
 #include "unit/prepare/models.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -30,6 +31,40 @@ std::string refused(const std::function<void()>& work) {
 std::string problems_of(const std::string& message) {
   const std::size_t end = message.find('\n');
   return end == std::string::npos ? "" : message.substr(end);
+}
+
+/// Of a box of 0.2 x 0.2 x 0.1 m around the origin: walls that touch it are not told of.
+TEST(CheckDem, tells_of_walls_that_nothing_touches_at_the_start) {
+  using dem::WallConfig;
+  dem::Config config = dem::case_with_materials();
+  config.bodies = {dem::box_body("slab", {0.2, 0.2, 0.1}, 100, 0.56)};
+  WallConfig floor, high, turned, ball, punch;
+  floor.name = "floor";
+  floor.point = {0.0, 0.0, -0.05};
+  high.name = "high";
+  high.point = {5.0, 0.0, 0.053};
+  high.normal = {0.0, 0.0, -1.0};
+  turned.name = "turned";
+  turned.point = {0.0, 0.0, 0.06};
+  ball.name = "ball";
+  ball.shape = "sphere";
+  ball.point = {0.13, 0.0, 0.09};  // 50 mm from the edge
+  ball.radius = 0.04;
+  punch.name = "punch";
+  punch.shape = "cylinder";
+  punch.point = {0.0, 0.0, 0.05};
+  punch.normal = {0.0, 0.0, -1.0};
+  punch.radius = punch.length = 0.02;
+  config.walls = {floor, high, turned, ball, punch};
+  const std::vector<std::string> told = prepare::doubtful_walls(config);
+  ASSERT_EQ(told.size(), 3U);
+  EXPECT_EQ(told[0],
+            "wall.high.point: no body touches the wall at the start; slab is nearest, 3 mm away");
+  EXPECT_EQ(told[1],
+            "wall.turned.normal: all of slab lies behind the wall, which will throw it out; does "
+            "the normal point away from it?");
+  EXPECT_EQ(told[2],
+            "wall.ball.point: no body touches the wall at the start; slab is nearest, 10 mm away");
 }
 
 TEST(CheckDem, refuses_what_ldpm_cannot_do) {
