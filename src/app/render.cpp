@@ -29,19 +29,28 @@ namespace {
 
 /// The frames of a run, and how pictures of them look: alike, so that they can be compared.
 struct Shots {
-  std::string folder;
+  std::string folder, fit;
   std::vector<double> times;  ///<  [s]
   RenderOptions options;
 
-  Shots(std::string from, const RenderOptions& wanted, const std::optional<std::string>& color)
-      : folder(std::move(from)), times(frame_times(folder)), options(wanted) {
+  Shots(std::string from, const RenderOptions& wanted, const std::optional<std::string>& color,
+        std::string fitted)
+      : folder(std::move(from)),
+        fit(std::move(fitted)),
+        times(frame_times(folder)),
+        options(wanted) {
     if (times.empty()) throw InputError(folder + ": this folder holds no frames");
-    const Frame first = read_frame(folder, 0);
-    options.extent = bulk_extent(first);  // the camera of the run's own pictures
-    options.field = color ? *color : has_field(first, "damage") ? "damage" : "";
+    first_ = read_frame(folder, 0);
+    options.field = color ? *color : has_field(first_, "damage") ? "damage" : "";
     if (options.field == "damage" && !options.range) options.range = ValueRange{0.0, 1.0};
+    if (fit != "frame") options.extent = extent_of_run();
   }
-  Image picture(int number) const { return render(read_frame(folder, number), options); }
+  Frame frame(int number) const {
+    Frame frame = number == 0 ? first_ : read_frame(folder, number);
+    if (needs_displacement(options)) add_displacement(frame, first_);
+    return frame;
+  }
+  Image picture(int number) const { return render(frame(number), options); }
   /// The frame nearest to a time.
   int at_time(double time) const {
     const auto nearer = [time](double a, double b) {
@@ -51,12 +60,31 @@ struct Shots {
   }
   /// Widens a range to that of a frame's colours.
   void widen(std::optional<ValueRange>& range, int number) const {
-    const auto bar = color_frame(read_frame(folder, number), options.field, {}).legend.bar;
+    const auto bar = color_frame(frame(number), options.field, {}).legend.bar;
     if (!bar) return;
     range = range ? ValueRange{std::min(range->low, bar->range.low),
                                std::max(range->high, bar->range.high)}
                   : bar->range;
   }
+
+ private:
+  /// Of the first frame or, for a camera that follows, of the run at some moments.
+  Extent extent_of_run() const {
+    constexpr int moments = 8;
+    const auto extent = [&](const Frame& of) { return bulk_extent(as_moved(of)); };
+    const Extent start = extent(frame(0));
+    if (fit == "first") return start;
+    Extent all = start;
+    const int last = static_cast<int>(times.size()) - 1;
+    for (int k = 1; k <= moments; ++k)
+      if (const int number = k * last / moments; number > (k - 1) * last / moments)
+        all = grown_extent(all, start, as_moved(frame(number)), 0.0);
+    return all;
+  }
+  Frame as_moved(Frame of) const {
+    return options.scale == 1.0 ? of : displaced(of, options.scale);
+  }
+  Frame first_;
 };
 
 /// Images of one size in rows from the top; places that are left are white.
@@ -87,8 +115,9 @@ ValueRange range_of(const std::string& text) {
   ValueRange range{};
   const char* const end = text.data() + text.size();
   const auto [colon, first] = std::from_chars(text.data(), end, range.low);
-  if (first == std::errc{} && colon != end && *colon == ':') {
-    const auto [last, second] = std::from_chars(colon + 1, end, range.high);
+  const std::size_t between = std::string_view(colon, end).starts_with("..") ? 2 : 1;
+  if (first == std::errc{} && colon != end && (*colon == ':' || between == 2)) {
+    const auto [last, second] = std::from_chars(colon + between, end, range.high);
     if (second == std::errc{} && last == end && range.low < range.high) return range;
   }
   throw InputError("--range " + text +
@@ -111,7 +140,8 @@ std::optional<Sheet> sheet_of(const std::string& text) {
 }
 
 struct RenderCommand {
-  std::string folder, file, sheet, range;
+  std::string folder, file, sheet, range, size, fit = "run";
+  std::optional<std::string> title;
   std::vector<std::string> hidden;
   std::vector<std::string> beside;
   std::optional<std::string> color;
@@ -129,12 +159,14 @@ struct RenderCommand {
       throw InputError("--sheet and --panels make PNG pictures, no " + file);
     options.hidden = {hidden.begin(), hidden.end()};
     if (!range.empty()) options.range = range_of(range);
+    if (!size.empty()) set_size();
     if (int(film) + int(!sheet.empty()) + int(frame.has_value()) > 1)
       throw InputError("a film, a --sheet and a --frame: choose one of them");
-    std::vector<Shots> shots{{folder, options, color}};
-    for (const std::string& other : beside) shots.emplace_back(other, options, color);
+    std::vector<Shots> shots{{folder, titled(folder), color, fit}};
+    for (const std::string& other : beside) shots.emplace_back(other, titled(other), color, fit);
     const std::vector<int> numbers = numbers_of(static_cast<int>(shots.front().times.size()), film);
     if (numbers.size() > 1 || shots.size() > 1) share_range(shots, numbers);
+    if (options.height == 0) share_height(shots, numbers.back());
     const std::string path = file.empty() ? folder + "/render.png" : file;
     if (film)
       write_film(path, shots, numbers);
@@ -142,6 +174,43 @@ struct RenderCommand {
       write_drawing(path, shots.front(), numbers.front());
     else
       write_picture(path, shots, numbers);
+  }
+
+  /// Width and height of "1600x1200", or a width alone.
+  void set_size() {
+    const char* const end = size.data() + size.size();
+    const auto [x, first] = std::from_chars(size.data(), end, options.width);
+    bool good = first == std::errc{};
+    options.height = 0;
+    if (good && x != end) {
+      const auto [last, second] = std::from_chars(x + 1, end, options.height);
+      good = *x == 'x' && second == std::errc{} && last == end && options.height >= 16;
+    }
+    if (!good) throw InputError("--size " + size + ": pixels, such as 1600x1200 or 1600");
+  }
+
+  /// With the title that is asked for or, without one, that of the run's case.
+  RenderOptions titled(const std::string& of) const {
+    RenderOptions with = options;
+    with.title = title ? *title : run_title(of);
+    return with;
+  }
+
+  /// Pictures side by side are of one size.
+  static void share_height(std::vector<Shots>& shots, int number) {
+    const double time = shots.front().times.at(static_cast<std::size_t>(number));
+    int height = 0;
+    for (const Shots& s : shots)
+      height = std::max(height, picture_height(s.frame(s.at_time(time)), s.options));
+    for (Shots& s : shots) s.options.height = height;
+  }
+
+  static void warn_if_blank(const Image& image, const Shots& shots, int number) {
+    if (image.model_pixels > 0) return;
+    fmt::print(stderr, "warning: {}\n",
+               harmless(fmt::format("nothing of the model is in the picture of frame {} of {}: "
+                                    "--fit frame shows where it is; --clip and --hide take away",
+                                    number, shots.folder)));
   }
 
   /// The frames of the first folder that are shown.
@@ -153,8 +222,8 @@ struct RenderCommand {
     if (film) {
       for (int i = 0; i < count; ++i) numbers.push_back(i);
     } else if (!sheet.empty()) {
-      const Sheet size = *sheet_of(sheet);
-      const int shown = std::min(size.columns * size.rows, count);
+      const Sheet places = *sheet_of(sheet);
+      const int shown = std::min(places.columns * places.rows, count);
       for (int i = 0; i < shown; ++i)
         numbers.push_back(shown == 1 ? count - 1 : i * (count - 1) / (shown - 1));
     } else {
@@ -175,10 +244,14 @@ struct RenderCommand {
 
   /// A frame of the first folder, and those of the same time beside it.
   static Image panels(const std::vector<Shots>& shots, int number) {
-    if (shots.size() == 1) return shots.front().picture(number);
     std::vector<Image> images;
     const double time = shots.front().times.at(static_cast<std::size_t>(number));
-    for (const Shots& s : shots) images.push_back(s.picture(s.at_time(time)));
+    for (const Shots& s : shots) {
+      const int there = &s == &shots.front() ? number : s.at_time(time);
+      images.push_back(s.picture(there));
+      warn_if_blank(images.back(), s, there);
+    }
+    if (images.size() == 1) return images.front();
     return grid(images, static_cast<int>(images.size()));
   }
 
@@ -205,13 +278,22 @@ struct RenderCommand {
     const int number = numbers.front();
     const double time = shots.front().times.at(static_cast<std::size_t>(number));
     if (const auto moment = moment_of_frame(folder, number, time))
-      for (PngNote& one : notes_of_picture(*moment, shots.front().options))
+      for (PngNote& one : notes_of_picture(*moment, options_of_picture(shots.front(), number)))
         notes.push_back(std::move(one));
     return notes;
   }
 
+  /// With the extent that the picture shows.
+  static RenderOptions options_of_picture(const Shots& shots, int number) {
+    RenderOptions with = shots.options;
+    if (with.extent) return with;
+    const Frame frame = shots.frame(number);
+    with.extent = bulk_extent(with.scale == 1.0 ? frame : displaced(frame, with.scale));
+    return with;
+  }
+
   static void write_drawing(const std::string& path, const Shots& shots, int number) {
-    const Frame shown = read_frame(shots.folder, number);
+    const Frame shown = shots.frame(number);
     replace_file(path, path.ends_with(".svg") ? svg_content(shown, shots.options)
                                               : pdf_content(shown, shots.options));
     fmt::print("{}  frame {} of {}, {}\n", harmless(path), number, shots.times.size(),
@@ -227,6 +309,49 @@ struct RenderCommand {
                static_cast<double>(numbers.size()) / rate);
   }
 };
+
+}  // namespace
+
+namespace {
+
+/// Options of what is drawn beside colours, and of the picture as a whole.
+void add_looks(CLI::App& command, RenderCommand& render) {
+  RenderOptions& options = render.options;
+  options.height = 0;
+  command
+      .add_option("--fit", render.fit,
+                  "the camera shows where bodies are at the start and as far as\nthey go (run), in "
+                  "each frame (frame), or at the start (first)")
+      ->type_name("WHEN")
+      ->check(CLI::IsMember({"run", "frame", "first"}))
+      ->capture_default_str();
+  command.add_flag("--links", options.show_links, "draw the links as well");
+  command.add_flag("--xray", options.xray,
+                   "fade what bars, cracks and broken links lie in, and draw these");
+  command.add_option("--arrows", options.arrows, "vectors: velocity, displacement, force")
+      ->type_name("FIELD");
+  command.add_flag(
+      "--crosses", options.crosses,
+      "principal stresses in the plane of the picture: tension red,\ncompression blue");
+  command.add_option("--scale", options.scale, "draw displacements so many times")
+      ->type_name("N")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  command.add_flag_callback(
+      "--no-walls", [&options] { options.walls = false; },
+      "leave out walls and marks on what is held");
+  command.add_flag("--transparent", options.transparent, "no ground, for slides and posters");
+  command.add_option("--title", render.title, "first line; default: that of the case")
+      ->type_name("TEXT");
+  command
+      .add_option("--size", render.size,
+                  "pixels, such as 1600x1200, or a width: then as high as the model\nneeds; "
+                  "default: 1280")
+      ->type_name("WxH");
+  command.add_option("--width", options.width, "of a picture, in pixels")->type_name("PIXELS");
+  command.add_option("--height", options.height, "of a picture, in pixels; default: by the model")
+      ->type_name("PIXELS");
+}
 
 }  // namespace
 
@@ -250,7 +375,9 @@ void add_render(CLI::App& program) {
       ->type_name("PLANE");
   command->add_option("--range", render->range, "values at the ends of the colours, in SI units")
       ->type_name("LOW:HIGH");
-  command->add_option("--map", render->options.map, "colours: viridis, diverging, damage, ground")
+  command
+      ->add_option("--map", render->options.map,
+                   "colours: viridis, magma, diverging, damage, ground, gray")
       ->type_name("NAME");
   command->add_option("--hide", render->hidden, "bodies that are not drawn")->type_name("NAME ...");
   command->add_option("--frame", render->frame, "number of the frame; default: the last")
@@ -266,13 +393,7 @@ void add_render(CLI::App& program) {
       ->type_name("N")
       ->check(CLI::Range(1, 120))
       ->capture_default_str();
-  command->add_option("--width", render->options.width, "of a picture, in pixels")
-      ->type_name("PIXELS")
-      ->capture_default_str();
-  command->add_option("--height", render->options.height, "of a picture, in pixels")
-      ->type_name("PIXELS")
-      ->capture_default_str();
-  command->add_flag("--links", render->options.show_links, "draw the links as well");
+  add_looks(*command, *render);
   command->callback([render] { render->execute(); });
 }
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "exec/error.hpp"
+#include "io/case/toml.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia::app {
@@ -75,6 +76,18 @@ std::optional<PictureMoment> moment_of_frame(const std::string& folder, int numb
   if (moment && moment->step == run.steps && !run.hash.empty())
     moment->hash = std::strtoull(run.hash.c_str(), nullptr, 16);
   return moment;
+}
+
+std::string run_title(const std::string& folder) {
+  const std::string text = text_of(folder + "/case.toml");
+  try {
+    const toml::table file = toml::parse(text);
+    if (const std::string title = file["title"].value_or(std::string()); !title.empty())
+      return title;
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+  return RunFacts(folder).name;
 }
 
 std::string run_line(const std::string& folder) {

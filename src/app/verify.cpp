@@ -50,7 +50,8 @@ class ScratchFolder {
 std::int64_t unlike_pixels(const Image& a, const Image& b) {
   std::int64_t count = 0;
   for (std::size_t i = 0; i + 2 < a.rgb.size(); i += 3)
-    count += a.rgb[i] != b.rgb[i] || a.rgb[i + 1] != b.rgb[i + 1] || a.rgb[i + 2] != b.rgb[i + 2];
+    count += a.rgb[i] != b.rgb[i] || a.rgb[i + 1] != b.rgb[i + 1] || a.rgb[i + 2] != b.rgb[i + 2] ||
+             (!a.alpha.empty() && a.alpha[i / 3] != b.alpha[i / 3]);
   return count;
 }
 
@@ -65,7 +66,7 @@ struct VerifyCommand {
       throw InputError(fmt::format(
           "{}: the picture is by breccia {}, this is {}; another version may give other bits",
           picture, recipe.version, this_build().version));
-    const Image shown = read_png(picture);
+    const Image shown = read_png_with_alpha(picture);
     StopSignals signals;
     const ScratchFolder scratch;
     const Case read = case_of(recipe, scratch.file("input"));
@@ -143,7 +144,11 @@ struct VerifyCommand {
   }
 
   static Image drawn_again(const PictureRecipe& recipe, Method& method, const std::string& out) {
-    if (recipe.moment.frame) return render(read_frame(out, *recipe.moment.frame), recipe.options);
+    if (recipe.moment.frame) {
+      Frame frame = read_frame(out, *recipe.moment.frame);
+      if (needs_displacement(recipe.options)) add_displacement(frame, read_frame(out, 0));
+      return render(frame, recipe.options);
+    }
     return render(method.frame(), recipe.options);
   }
 
@@ -151,6 +156,7 @@ struct VerifyCommand {
     if (again.width != shown.width || again.height != shown.height)
       return fmt::format("it is drawn with {} x {} pixels, the picture has {} x {}", again.width,
                          again.height, shown.width, shown.height);
+    if (again.alpha.empty() != shown.alpha.empty()) return "one of them is transparent";
     const std::int64_t count = unlike_pixels(again, shown);
     if (count == 0) return {};
     return fmt::format("{} of {} pixels differ", count, shown.rgb.size() / 3);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/keys.hpp"
+#include "core/output_config.hpp"
 #include "core/quantity.hpp"
 #include "math/vec.hpp"
 
@@ -34,40 +35,6 @@ struct TimeConfig {
         "inertia is so many times that of the bodies, weight stays: the time step grows with its "
         "square root. For quasi-static runs alone: energy.kinetic_share in summary.json tells "
         "whether inertia had a part");
-  }
-};
-
-/// [output]
-struct OutputConfig {
-  int frames = 20;          ///< frames over the whole run, besides the one at the start  [-]
-  double history = 0.0;     ///< time between history rows; 0: 1000 rows over the run  [s]
-  bool fields = true;       ///< write ParaView files
-  bool pictures = true;     ///< write a PNG a frame
-  bool report = false;      ///< write report.html at the end
-  bool step_times = false;  ///< write steps.csv
-  std::vector<double> picture_steps;  ///< steps since the start of the case  [-]
-  std::string color = "damage";
-  std::string view = "iso";
-  int width = 1280, height = 960;
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("frames", frames, "-", Range{0, 100000}, "frames over the whole run, besides the first");
-    key("history", history, "s", not_negative,
-        "time between two rows of history.csv; 0 writes 1000 rows over the run");
-    key("fields", fields, "write the frames as ParaView files");
-    key("pictures", pictures, "write one PNG picture a frame");
-    key("report", report, "write report.html when the run is done, as `breccia report` does");
-    key("step_times", step_times,
-        "write steps.csv, a row a step: its simulated time, the wall time it took, searches for "
-        "contacts in it; a GPU then computes one step at a time");
-    key("picture_steps", picture_steps, "-", not_negative,
-        "steps of which a picture is drawn, as pictures/step_<number>.png, besides those of "
-        "frames");
-    key("color", color, "field that colours the pictures");
-    key("view", view, OneOf{"iso", "x", "y", "z"}, "camera of the pictures");
-    key("width", width, "-", Range{64, 16384}, "width of the pictures in pixels");
-    key("height", height, "-", Range{64, 16384}, "height of the pictures in pixels");
   }
 };
 

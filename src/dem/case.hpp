@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/gauge.hpp"
+#include "core/output_config.hpp"
 #include "dem/laws/contact.hpp"
 #include "dem/setup/config.hpp"
 #include "exec/buffer.hpp"
@@ -33,6 +34,8 @@ struct Case {
   double contact_step = no_limit;  ///< that resolves a contact of two like elements  [s]
   Index materials = 0;             ///< how many there are  [-]
   std::vector<std::uint8_t> bars;  ///< 1: its elements are bars  [-]  (materials)
+  std::vector<double> densities;   ///< of bodies  [kg/m3]  (materials)
+  MoreFields shown;                ///< in frames
 
   std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<ElementSet> sets;       ///< bodies, then supports
@@ -43,7 +46,7 @@ struct Case {
   Buffer<ContactPair> contact_pairs;  ///< of materials p, q at p materials + q  (materials^2)
   Buffer<ContactPair> wall_pairs;     ///< of a material with a wall  (materials)
 
-  Buffer<Vec3> starts;  ///< places at the start, by global id; empty: no probe needs them
+  Buffer<Vec3> starts;  ///< places at the start, by global id; empty: nothing needs them
                         ///< [m]  (elements of the whole model)
   std::vector<ProbeFit> strain_fits;  ///< of probes of strain
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/gauge.hpp"
+#include "core/output_config.hpp"
 #include "exec/buffer.hpp"
 #include "fdem/contact/couples.hpp"
 #include "fdem/fluid/spreading.hpp"
@@ -42,6 +43,7 @@ struct Case {
   double skin = 0.0;           ///< margin of the search between two triangles at rest  [m]
   bool conservative = false;   ///< whether forces of contact are
   bool extrinsic = false;      ///< some joints are dormant, or were
+  MoreFields shown;            ///< in frames
   Index materials = 0;         ///< how many there are  [-]
 
   std::vector<std::string> groups;             ///< names of bodies  (bodies)
@@ -64,7 +66,7 @@ struct Case {
   /// an edge between two triangles.  [-]  (vertices of the whole mesh)
   std::vector<std::uint8_t> open_vertex;
 
-  Buffer<Vec2> starts;  ///< places of corners at the start, by global number; empty: no probe needs
+  Buffer<Vec2> starts;  ///< places of corners at the start, by global number; empty: nothing needs
                         ///< them  [m]  (3 triangles of the whole mesh)
   std::vector<ProbeFit> strain_fits;  ///< of probes of strain
 

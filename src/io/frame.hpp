@@ -17,8 +17,14 @@ enum class Carrier : std::uint8_t { points, lines, triangles, none };
 struct FrameField {
   std::string name;  ///< "damage", "velocity", ...
   std::string unit;
-  int components = 1;         ///< 1 or 3
+  int components = 1;         ///< 1, 3, or 6: xx, yy, zz, xy, yz, xz of a symmetric tensor
   std::vector<float> values;  ///< components of item 0, then of item 1, ...
+};
+
+/// A rigid plane.
+struct FrameWall {
+  Vec3 point;   ///< on its face  [m]
+  Vec3 normal;  ///< unit, out of the wall
 };
 
 /// Geometry and fields of one moment. Lines and triangles index `position`.
@@ -33,6 +39,7 @@ struct Frame {
   std::vector<std::int32_t> triangles;      ///< three indices a triangle
   std::vector<FrameField> triangle_fields;  ///< one item a triangle
   std::vector<std::string> groups;          ///< names for the point field "group"; may be empty
+  std::vector<FrameWall> walls;
 };
 
 /// Where the items of a part of a frame stand in the whole. Such a part has the items of one rank;

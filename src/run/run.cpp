@@ -253,9 +253,9 @@ void Run::save_checkpoint() {
   method_.verify();
   const std::int64_t step = method_.steps();
   const std::string path = checkpoints_.begin(step);
+  on_first(plan_.ranks, [&] { background_.finish(); });  // pictures note what they show
   const auto state = std::make_shared<CheckpointWriter>(record_state());
   on_first(plan_.ranks, [&] {
-    background_.finish();
     recorder_.sync();
     log_->write(Level::info, "checkpoint", step, path);
   });

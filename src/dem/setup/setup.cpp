@@ -258,10 +258,10 @@ void set_sets(World& w, const Config& config, const Model& m, const Prescribed& 
   w.sets_here.resize(sets.size());
 }
 
-/// Where elements stand, for probes that read how far they have gone.
+/// Where elements stand, for probes and frames that show how far they have gone.
 void set_starts(World& w, const Config& config, const Model& m) {
   Case& given = set_up(w);
-  bool any = false;
+  bool any = given.shown.displacement;
   for (const ProbeConfig& p : config.probes) {
     const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
     any |= kind == Quantity::Kind::displacement || kind == Quantity::Kind::strain;
@@ -375,7 +375,11 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   given.search = config.search;
   given.gravity = config.gravity;
   given.local_damping = config.local_damping;
-  for (const MaterialConfig& m : config.materials) given.bars.push_back(m.law == "steel" ? 1 : 0);
+  for (const MaterialConfig& m : config.materials) {
+    given.bars.push_back(m.law == "steel" ? 1 : 0);
+    given.densities.push_back(config.time.mass_scaling * m.density);
+  }
+  given.shown = config.output.more_fields();
   const Prescribed held = prescribed(config, support_members(config, model), model.position.size());
   set_elements(w, model, held);
   w.each_set([&](auto& set) { set_links(set, config, model); });

@@ -360,6 +360,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.gravity = config.gravity;
   given.in_situ = {config.in_situ.xx, config.in_situ.yy, config.in_situ.xy};
   given.local_damping = config.local_damping;
+  given.shown = config.output.more_fields();
   given.conservative = config.contact.conservative;
   given.materials = static_cast<Index>(config.materials.size());
   copy_to(given.laws, elastic_table(config));

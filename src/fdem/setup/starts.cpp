@@ -10,7 +10,7 @@ void set_up_starts(Case& given, const Config& config, const Model& model) {
   std::vector<Vec2> starts;
   for (const auto& triangle : model.triangle)
     for (const Index vertex : triangle) starts.push_back(model.point[at(vertex)]);
-  bool any = false;
+  bool any = given.shown.displacement;
   for (const ProbeConfig& p : config.probes) {
     const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
     any |= kind == Quantity::Kind::displacement || kind == Quantity::Kind::strain;

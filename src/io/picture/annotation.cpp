@@ -38,6 +38,8 @@ int legend_width(const Legend& legend, int scale) {
   for (const Legend::Swatch& swatch : legend.swatches) {
     width = std::max(width, (bar_width + 5) * scale + text_width(swatch.name, scale));
   }
+  for (const std::string& note : legend.notes)
+    width = std::max(width, text_width(typeset(note), scale));
   return width == 0 ? 0 : width + 2 * margin * scale;
 }
 
@@ -48,7 +50,8 @@ int bar_length(const Paper& paper) {
 /// Height of the legend without margins.  [pixels]
 int legend_height(const Paper& paper, const Legend& legend, int scale) {
   const int line = (font_height + 4) * scale;
-  int lines = static_cast<int>(legend.swatches.size()) + (legend.title.empty() ? 0 : 1);
+  int lines = static_cast<int>(legend.swatches.size() + legend.notes.size()) +
+              (legend.title.empty() ? 0 : 1);
   if (!legend.bar) return lines * line;
   if (!legend.bar->note.empty()) ++lines;
   return (lines + 1) * line + 4 * scale + bar_length(paper);
@@ -74,12 +77,29 @@ void draw_bar(Paper& paper, const Legend::Bar& bar, int left, int top, int scale
 }  // namespace
 
 int text_scale(const RenderOptions& options) {
-  const int fitting = std::min(options.height / 400, options.width / 520);
+  const int fitting = std::min(options.height / 200, options.width / 520);
   constexpr std::array scales{12, 6, 4, 3, 2, 1};
   for (const int scale : scales) {
     if (scale <= fitting) return scale;
   }
   return 1;
+}
+
+int fitted_height(const RenderOptions& options, const Legend& legend, double aspect) {
+  constexpr double lowest = 0.28, highest = 0.75;  // of the width
+  RenderOptions tall = options;
+  tall.height = static_cast<int>(highest * options.width);
+  const int scale = text_scale(tall);
+  const Window window = scene_window(tall, legend);
+  const double beside = tall.height - (window.bottom - window.top);
+  const double wanted = beside + aspect * (window.right - window.left);
+  // The legend, whose bar is 2/5 of the height, begins at 1/7.
+  const int line = (font_height + 4) * scale;
+  const double lines = static_cast<double>(legend.swatches.size() + legend.notes.size()) +
+                       (legend.title.empty() ? 0.0 : 1.0) + (legend.bar ? 2.5 : 0.0);
+  const double of_legend = lines * line / (1.0 - 1.0 / 7.0 - (legend.bar ? 0.4 : 0.0));
+  const double height = std::max({wanted, of_legend, lowest * options.width});
+  return std::max(16, static_cast<int>(std::min<double>(height, tall.height)));
 }
 
 Window scene_window(const RenderOptions& options, const Legend& legend) {
@@ -131,6 +151,10 @@ void draw_legend(Paper& paper, const Legend& legend, int scale) {
     paper.fill(left - 1, y - 1, left + bar_width * scale + 1, y + size + 1, faint);
     paper.fill(left, y, left + bar_width * scale, y + size, swatch.color);
     paper.write(left + (bar_width + 5) * scale, y + scale / 2, swatch.name, scale, ink);
+    y += line;
+  }
+  for (const std::string& note : legend.notes) {
+    paper.write(left, y, typeset(note), scale, faint);
     y += line;
   }
 }

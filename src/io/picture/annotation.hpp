@@ -9,8 +9,11 @@
 
 namespace breccia {
 
-/// Pixels a dot of text: 2 at a height of 960.
+/// Pixels a dot of text: 2 at a width of 1280.
 int text_scale(const RenderOptions& options);
+
+/// Height of a picture whose scene is `aspect` times as high as wide.  [pixels]
+int fitted_height(const RenderOptions& options, const Legend& legend, double aspect);
 
 /// Room that the scene gets beside the annotations.
 Window scene_window(const RenderOptions& options, const Legend& legend);

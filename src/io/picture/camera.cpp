@@ -4,8 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include "exec/error.hpp"
 
@@ -31,126 +29,7 @@ Vec3 corner(const Extent& extent, int number) {
           (number & 4) != 0 ? extent.high.z : extent.low.z};
 }
 
-/// Of the spheres within the box, the farthest places in the four directions of the slanted view;
-/// in those of the other views the box itself is as tight.
-std::array<Vec3, 4> outline_of(const Frame& frame, const Extent& extent) {
-  const Axes axes = axes_of_view("iso");
-  const std::array directions{axes.right, -axes.right, axes.up, -axes.up};
-  std::array<double, 4> reach{-1e300, -1e300, -1e300, -1e300};
-  std::array<Vec3, 4> outline;
-  outline.fill(0.5 * (extent.low + extent.high));
-  for (std::size_t i = 0; i < frame.position.size(); ++i) {
-    const Vec3& p = frame.position[i];
-    const double r = i < frame.radius.size() ? frame.radius[i] : 0.0;
-    const bool inside = p.x - r >= extent.low.x && p.x + r <= extent.high.x &&
-                        p.y - r >= extent.low.y && p.y + r <= extent.high.y &&
-                        p.z - r >= extent.low.z && p.z + r <= extent.high.z;
-    if (!inside) continue;
-    for (std::size_t d = 0; d < directions.size(); ++d) {
-      const double there = dot(p, directions[d]) + r;
-      if (there <= reach[d]) continue;
-      reach[d] = there;
-      outline[d] = p + r * directions[d];
-    }
-  }
-  return outline;
-}
-
-bool is_finite(const Vec3& point) {
-  return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
-}
-
-/// Where one coordinate of the bulk lies: the middle 98 in 100 items and what is near them.
-struct Span {
-  double low, high;
-};
-Span bulk_span(std::vector<double> values) {
-  constexpr double outside = 0.01;  // share on either side that may have flown off
-  constexpr double near = 0.25;     // of the bulk's width: still counts as part of it
-  const auto count = static_cast<double>(values.size() - 1);
-  const auto first = static_cast<std::ptrdiff_t>(outside * count);
-  const auto last = static_cast<std::ptrdiff_t>((1.0 - outside) * count + 0.999);
-  std::nth_element(values.begin(), values.begin() + first, values.end());
-  const double low = values[static_cast<std::size_t>(first)];
-  std::nth_element(values.begin(), values.begin() + last, values.end());
-  const double high = values[static_cast<std::size_t>(last)];
-  return {low - near * (high - low), high + near * (high - low)};
-}
-
-/// The body of each item of a field "group", in whole numbers; nothing if there is none.
-std::vector<std::size_t> groups_in(const std::vector<FrameField>& fields, std::size_t items) {
-  std::vector<std::size_t> groups;
-  for (const FrameField& field : fields) {
-    if (field.name != "group" || field.components != 1 || field.values.size() != items) continue;
-    for (const float value : field.values)
-      groups.push_back(value >= 0.0F && value < 1e6F ? static_cast<std::size_t>(value) : 0);
-    return groups;
-  }
-  return groups;
-}
-
-/// The points of each body; those of all triangles' corners, or all, where the frame tells of none.
-std::vector<std::vector<std::size_t>> bodies_of(const Frame& frame) {
-  std::vector<std::vector<std::size_t>> bodies;
-  const auto add = [&bodies](std::size_t body, std::size_t point) {
-    if (body >= bodies.size()) bodies.resize(body + 1);
-    bodies[body].push_back(point);
-  };
-  const std::vector<std::size_t> of_triangle =
-      groups_in(frame.triangle_fields, frame.triangles.size() / 3);
-  for (std::size_t t = 0; t < of_triangle.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      add(of_triangle[t], static_cast<std::size_t>(frame.triangles[3 * t + k]));
-  if (!bodies.empty()) return bodies;
-  const std::vector<std::size_t> of_point = groups_in(frame.point_fields, frame.position.size());
-  for (std::size_t i = 0; i < frame.position.size(); ++i)
-    add(of_point.empty() ? 0 : of_point[i], i);
-  return bodies;
-}
-
-/// Widens an extent by the bulk of a body. A body of few points is bulk as a whole.
-void add_bulk(Extent& extent, const Frame& frame, const std::vector<std::size_t>& body) {
-  std::vector<double> x, y, z;
-  for (const std::size_t i : body) {
-    const Vec3& point = frame.position[i];
-    if (!is_finite(point)) continue;
-    x.push_back(point.x);
-    y.push_back(point.y);
-    z.push_back(point.z);
-  }
-  if (x.empty()) return;
-  const Span in_x = bulk_span(std::move(x)), in_y = bulk_span(std::move(y)),
-             in_z = bulk_span(std::move(z));
-  const auto widen = [&extent](const Vec3& low, const Vec3& high) {
-    extent.low = {std::min(extent.low.x, low.x), std::min(extent.low.y, low.y),
-                  std::min(extent.low.z, low.z)};
-    extent.high = {std::max(extent.high.x, high.x), std::max(extent.high.y, high.y),
-                   std::max(extent.high.z, high.z)};
-  };
-  bool any = false;
-  for (const std::size_t i : body) {
-    const Vec3& p = frame.position[i];
-    const bool inside = p.x >= in_x.low && p.x <= in_x.high && p.y >= in_y.low &&
-                        p.y <= in_y.high && p.z >= in_z.low && p.z <= in_z.high;
-    if (!inside) continue;
-    const double r = i < frame.radius.size() ? frame.radius[i] : 0.0;
-    widen(p - Vec3{r, r, r}, p + Vec3{r, r, r});
-    any = true;
-  }
-  if (!any) widen({in_x.low, in_y.low, in_z.low}, {in_x.high, in_y.high, in_z.high});
-}
-
 }  // namespace
-
-Extent bulk_extent(const Frame& frame) {
-  constexpr double far = std::numeric_limits<double>::infinity();
-  Extent extent{{far, far, far}, {-far, -far, -far}};
-  for (const std::vector<std::size_t>& body : bodies_of(frame)) add_bulk(extent, frame, body);
-  if (extent.low.x > extent.high.x) return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
-  extent.outline = outline_of(frame, extent);
-  extent.outline_points = static_cast<std::int64_t>(extent.outline.size());
-  return extent;
-}
 
 Axes axes_of_view(const std::string& view) {
   if (view == "x") return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
@@ -184,6 +63,38 @@ Camera fitted_camera(const Axes& axes, const Extent& extent, const Window& windo
                       0.5 * dot(extent.low + extent.high, axes.toward) * axes.toward;
   return {axes, centre, 0.5 * (window.left + window.right), 0.5 * (window.top + window.bottom),
           resolution < none ? resolution : 1.0};
+}
+
+Camera camera_at(const Viewpoint& from, const Window& window) {
+  const Vec3 way = from.eye - from.target;
+  const double distance = norm(way);
+  const Vec3 sideways = cross(from.up, way);
+  const bool good = distance > 0.0 && norm(sideways) > 1e-9 * distance * norm(from.up) &&
+                    from.field_of_view > 0.0 && from.field_of_view < 3.1;
+  if (!good)
+    throw InputError(
+        "a camera needs an eye away from its target, an upward direction that is not along its "
+        "line of sight, and an angle between 0 and 178 degrees");
+  const Vec3 toward = (1.0 / distance) * way, right = (1.0 / norm(sideways)) * sideways;
+  const double high = 2.0 * distance * std::tan(0.5 * from.field_of_view);
+  return {{right, cross(toward, right), toward},
+          from.target,
+          0.5 * (window.left + window.right),
+          0.5 * (window.top + window.bottom),
+          (window.bottom - window.top) / high};
+}
+
+Extent cut_extent(const Extent& extent, const Clip& clip) {
+  Extent cut = extent;
+  const auto limit = [&](double normal, double& low, double& high) {
+    if (normal > 0.5) high = std::max(low, std::min(high, clip.offset));
+    if (normal < -0.5) low = std::min(high, std::max(low, -clip.offset));
+  };
+  limit(clip.normal.x, cut.low.x, cut.high.x);
+  limit(clip.normal.y, cut.low.y, cut.high.y);
+  limit(clip.normal.z, cut.low.z, cut.high.z);
+  cut.outline_points = 0;
+  return cut;
 }
 
 std::optional<Clip> clip_of(const std::string& text, const Axes& axes) {

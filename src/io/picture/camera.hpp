@@ -42,6 +42,10 @@ struct Camera {
 /// The camera that shows the whole extent as large as the window allows.
 Camera fitted_camera(const Axes& axes, const Extent& extent, const Window& window);
 
+/// The free camera: the window is as high as its angle takes in at the target.
+/// @throws InputError if eye, target, up or angle make no sense
+Camera camera_at(const Viewpoint& from, const Window& window);
+
 /// A plane; what lies on the side of its normal is dropped.
 struct Clip {
   Vec3 normal;
@@ -49,6 +53,9 @@ struct Clip {
 
   bool keeps(const Vec3& point) const { return dot(point, normal) <= offset; }
 };
+
+/// What a plane at right angles to an axis leaves of an extent.
+Extent cut_extent(const Extent& extent, const Clip& clip);
 
 /// Reads RenderOptions::clip; nothing for an empty text. @throws InputError with what is allowed
 std::optional<Clip> clip_of(const std::string& text, const Axes& axes);

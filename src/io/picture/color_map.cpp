@@ -29,6 +29,12 @@ constexpr std::array damage{from_bytes(0xded6c6), from_bytes(0xe9ca9a), from_byt
                             from_bytes(0x6e0a14)};
 constexpr std::array ground{from_bytes(0xe4dfd4), from_bytes(0xecdcbd), from_bytes(0xf3cf9f),
                             from_bytes(0xf2b98b), from_bytes(0xeaa184)};
+// Magma by the authors of viridis.
+constexpr std::array magma{from_bytes(0x000004), from_bytes(0x180f3d), from_bytes(0x440f76),
+                           from_bytes(0x721f81), from_bytes(0x9e2f7f), from_bytes(0xcd4071),
+                           from_bytes(0xf1605d), from_bytes(0xfd9668), from_bytes(0xfeca8d),
+                           from_bytes(0xfcfdbf)};
+constexpr std::array gray{from_bytes(0x202020), from_bytes(0xf0f0f0)};
 constexpr std::array categories{from_bytes(0xded6c6), from_bytes(0x4a78a8), from_bytes(0x5c5f66),
                                 from_bytes(0x6aa56b), from_bytes(0xd98c3f), from_bytes(0x8d6bb1),
                                 from_bytes(0x46a3a8), from_bytes(0xc25b6e), from_bytes(0x9a8a3c),
@@ -42,6 +48,10 @@ std::span<const Color> nodes_of(ColorMap map) {
       return damage;
     case ColorMap::ground:
       return ground;
+    case ColorMap::magma:
+      return magma;
+    case ColorMap::gray:
+      return gray;
     case ColorMap::viridis:
       break;
   }
@@ -65,8 +75,10 @@ ColorMap map_named(const std::string& name) {
   if (name == "diverging") return ColorMap::diverging;
   if (name == "damage") return ColorMap::damage;
   if (name == "ground") return ColorMap::ground;
+  if (name == "magma") return ColorMap::magma;
+  if (name == "gray") return ColorMap::gray;
   throw InputError("no map of colours \"" + name +
-                   "\"; there are viridis, diverging, damage and ground");
+                   "\"; there are viridis, magma, diverging, damage, ground and gray");
 }
 
 Color map_color(ColorMap map, float share) {

@@ -21,6 +21,8 @@ enum class ColorMap {
   viridis,    ///< dark blue to yellow, even steps of lightness: for what has no sign
   diverging,  ///< blue through light grey to red: for what has one; 0.5 is zero
   damage,     ///< light concrete over orange to dark red
+  magma,      ///< black over purple and orange to light yellow, even steps of lightness
+  gray,       ///< dark to light
   ground,     ///< `damage` in pale: the ground on which cracks are drawn
 };
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "exec/error.hpp"
+#include "io/picture/line_colors.hpp"
 
 namespace breccia {
 namespace {
@@ -47,12 +48,21 @@ std::optional<Selected> find(const Frame& frame, const std::string& name) {
       return Selected{carrier, field, field->components == 1 ? 0 : -1};
     }
   }
+  constexpr std::array parts{"_xx", "_yy", "_zz", "_xy", "_yz", "_xz"};
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    if (!name.ends_with(parts[part])) continue;
+    for (const Carrier carrier : carriers)
+      if (const FrameField* field =
+              field_named(fields_of(frame, carrier), name.substr(0, name.size() - 3));
+          field != nullptr && field->components == 6)
+        return Selected{carrier, field, static_cast<int>(part)};
+  }
   if (name.size() < 3 || name[name.size() - 2] != '_') return std::nullopt;
   const int component = name.back() - 'x';
   const std::string vector_name = name.substr(0, name.size() - 2);
   for (const Carrier carrier : carriers) {
     const FrameField* field = field_named(fields_of(frame, carrier), vector_name);
-    if (field != nullptr && component >= 0 && component < field->components) {
+    if (field != nullptr && component >= 0 && component < 3 && field->components == 3) {
       return Selected{carrier, field, component};
     }
   }
@@ -239,6 +249,13 @@ std::vector<Color> category_colors(const Frame& frame, const Selected& selected,
   for (const float value : values) {
     if (value == value) numbers.emplace(value, 0);
   }
+  const bool states = selected.field->name == "state" && selected.carrier == Carrier::lines;
+  constexpr std::array of_states{Color{0.70F, 0.71F, 0.73F}, Color{0.93F, 0.60F, 0.18F},
+                                 Color{0.80F, 0.12F, 0.10F}};
+  const auto color_of = [&](std::size_t place, float value) {
+    const bool known = states && (value == 0.0F || value == 1.0F || value == 2.0F);
+    return known ? of_states[static_cast<std::size_t>(value)] : category_color(place);
+  };
   std::size_t number = 0;
   legend.title = selected.field->name;
   for (auto& [value, place] : numbers) {
@@ -246,11 +263,11 @@ std::vector<Color> category_colors(const Frame& frame, const Selected& selected,
     if (place == most_swatches) legend.swatches.push_back({{1.0F, 1.0F, 1.0F}, "..."});
     if (place >= most_swatches) continue;
     legend.swatches.push_back(
-        {category_color(place), category_name(frame, selected, static_cast<double>(value))});
+        {color_of(place, value), category_name(frame, selected, static_cast<double>(value))});
   }
   std::vector<Color> colors(values.size(), Color{1.0F, 0.0F, 1.0F});
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] == values[i]) colors[i] = category_color(numbers.at(values[i]));
+    if (values[i] == values[i]) colors[i] = color_of(numbers.at(values[i]), values[i]);
   }
   return colors;
 }
@@ -358,6 +375,10 @@ std::vector<Color> triangle_means(const Frame& frame, const std::vector<float>& 
 
 }  // namespace
 
+const FrameField* field_of(const Frame& frame, Carrier carrier, const std::string& name) {
+  return field_named(fields_of(frame, carrier), name);
+}
+
 bool has_field(const Frame& frame, const std::string& field) {
   return field.empty() || find(frame, field).has_value();
 }
@@ -409,6 +430,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
       break;
     case Carrier::lines:
       coloring.lines = std::move(colors);
+      if (coloring.legend.bar && !frame.radius.empty()) size_lines(values, coloring);
       if (field == "state") coloring.hidden_lines.clear();
       std::fill(coloring.points.begin(), coloring.points.end(), pale);
       break;

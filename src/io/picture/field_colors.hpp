@@ -26,6 +26,7 @@ struct Legend {
   std::string title;  ///< "velocity [m/s]"; empty: no field
   std::optional<Bar> bar;
   std::vector<Swatch> swatches;
+  std::vector<std::string> notes;  ///< below them
 };
 
 /// A colour an item.
@@ -34,15 +35,22 @@ struct Coloring {
   bool of_lines = false;           ///< the field is one of the lines
   bool cracks = false;             ///< lines are cracks over triangles, drawn with any field
   std::vector<bool> hidden_lines;  ///< not to be drawn; empty: all are
+  std::vector<float> line_widths;  ///< factors; empty: all 1
+  std::vector<bool> inside;        ///< points that an x-ray shows; empty: it shows cracks alone
   std::vector<bool> bars;          ///< points that show through others; empty: none
   std::vector<float> veil;         ///< by point, how much of a bar behind it shows: 0 to 1
   Legend legend;
 };
+
+/// A field of points, lines or triangles by its name; null if there is none.
+const FrameField* field_of(const Frame& frame, Carrier carrier, const std::string& name);
 
 /// @param map  name of the map of colours; empty: by the field
 /// @throws InputError if the frame has no such field (lists what it has), or one of wrong length,
 ///                    or there is no such map
 Coloring color_frame(const Frame& frame, const std::string& field,
                      const std::optional<ValueRange>& range, const std::string& map = {});
+/// As the options say.
+Coloring color_frame(const Frame& frame, const RenderOptions& options);
 
 }  // namespace breccia

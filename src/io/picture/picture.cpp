@@ -5,54 +5,39 @@
 #include <cmath>
 
 #include "exec/error.hpp"
-#include "exec/tasks.hpp"
 #include "io/picture/annotation.hpp"
-#include "io/picture/field_colors.hpp"
-#include "io/picture/hidden.hpp"
-#include "io/picture/shading.hpp"
+#include "io/picture/layout.hpp"
+#include "io/picture/scene.hpp"
+#include "io/picture/walls.hpp"
 
 namespace breccia {
 namespace {
 
 constexpr double sphere_share_beside_links = 0.4;    ///< of the radius, so that links show
 constexpr double sphere_share_beside_colours = 0.2;  ///< of the radius, where links carry the field
+constexpr std::uint8_t white = 255, black = 0;
 
-/// The items to draw, in the order of their numbers: spheres, then lines, then triangles.
-struct Scene {
-  Camera camera;
-  std::optional<ScreenClip> clip;
-  std::vector<ScreenPoint> points;
-  std::vector<ItemLook> looks;
-};
-
-/// A flat frame has nothing to show from the side: there the slanted view looks from above.
-Axes axes_for(const Extent& extent, const RenderOptions& options) {
-  const bool flat = extent.low.z == extent.high.z;
-  return axes_of_view(flat && options.view == "iso" ? "z" : options.view);
+/// `share` of another picture in a pixel.
+void mix(Image& image, const Image& other, std::size_t pixel, float share) {
+  for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c) {
+    const float here = image.rgb[c], there = other.rgb[c];
+    image.rgb[c] = static_cast<std::uint8_t>(here + share * (there - here) + 0.5F);
+  }
 }
 
-/// Spheres come first, so that their place in the list is their item.
-void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scene, int threads) {
-  constexpr double smallest = 0.75;  // pixels: nothing that flies about is lost
-  std::vector<ScreenSphere> spheres(frame.position.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    const ScreenPoint& point = scene.points[i];
-    const double radius = std::max(smallest, share * scene.camera.resolution * frame.radius[i]);
-    spheres[i] = {static_cast<float>(point.u), static_cast<float>(point.v),
-                  static_cast<float>(point.depth), static_cast<float>(radius)};
-    scene.looks[i].sphere = spheres[i];
-  }
-  draw_spheres(canvas, spheres, scene.clip, threads);
+/// The spheres of a scene that are chosen.
+std::vector<ScreenSphere> chosen_of(const Scene& scene, const std::vector<bool>& chosen) {
+  std::vector<ScreenSphere> spheres(chosen.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    if (chosen[i]) spheres[i] = scene.looks[i].sphere;
+  return spheres;
 }
 
 /// Reinforcement that others hide, drawn over them as if they were veils.
 void draw_bars(Image& image, const Canvas& canvas, const Coloring& coloring, const Scene& scene,
                float relief, int threads) {
-  std::vector<ScreenSphere> bars(coloring.bars.size());
-  for (std::size_t i = 0; i < bars.size(); ++i)
-    if (coloring.bars[i]) bars[i] = scene.looks[i].sphere;
   Canvas behind(image.width, image.height);
-  draw_spheres(behind, bars, scene.clip, threads);
+  draw_spheres(behind, chosen_of(scene, coloring.bars), scene.clip, threads);
   Image own = shade(behind, scene.looks, scene.clip, relief, threads);
   smooth_outlines(own, behind, scene.looks, threads);
   for (int y = 0; y < image.height; ++y)
@@ -63,126 +48,36 @@ void draw_bars(Image& image, const Canvas& canvas, const Coloring& coloring, con
         continue;
       const auto item = static_cast<std::size_t>(front);
       const float veil = item < coloring.veil.size() ? coloring.veil[item] : 0.0F;
-      const std::size_t pixel =
-          3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-               static_cast<std::size_t>(x));
-      for (std::size_t c = pixel; c < pixel + 3; ++c) {
-        const float here = image.rgb[c], there = own.rgb[c];
-        image.rgb[c] = static_cast<std::uint8_t>(here + veil * (there - here) + 0.5F);
-      }
+      mix(image, own,
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+              static_cast<std::size_t>(x),
+          veil);
     }
 }
 
-/// work(i) for every i in [0, count), a few thousand by one thread at a time.
-template <class Work>
-void for_chunks(int threads, std::size_t count, const Work& work) {
-  constexpr std::size_t chunk = 4096;
-  for_each_task(threads, static_cast<int>((count + chunk - 1) / chunk), [&](int number) {
-    const std::size_t begin = chunk * static_cast<std::size_t>(number);
-    for (std::size_t i = begin; i < std::min(count, begin + chunk); ++i) work(i);
-  });
-}
-
-/// Flat items by the bands of rows that they may cover, and each band drawn by one thread, its
-/// items in their order.
-class Bands {
- public:
-  Bands(const Canvas& canvas, int threads)
-      : height_(canvas.height),
-        threads_(threads),
-        items_(static_cast<std::size_t>(threads > 1 ? (canvas.height + band - 1) / band : 1)) {}
-
-  /// Notes an item between two heights of the picture, give or take `reach`.  [pixels]
-  void add(std::size_t item, double top, double bottom, double reach) {
-    if (!(bottom + reach >= 0.0 && top - reach <= height_)) return;
-    const auto band_of = [this](double v) {
-      const double row = std::clamp(v, 0.0, height_ - 1.0);
-      return items_.size() == 1 ? 0 : static_cast<std::size_t>(row) / band;
-    };
-    for (std::size_t b = band_of(top - reach); b <= band_of(bottom + reach); ++b)
-      items_[b].push_back(item);
-  }
-  /// draw(item, rows) for all
-  template <class Draw>
-  void draw(const Draw& draw_item) const {
-    for_each_task(threads_, static_cast<int>(items_.size()), [&](int b) {
-      Rows rows{0, height_ - 1};
-      if (items_.size() > 1) rows = {b * band, std::min(height_, (b + 1) * band) - 1};
-      for (const std::size_t item : items_[static_cast<std::size_t>(b)]) draw_item(item, rows);
-    });
-  }
-
- private:
-  static constexpr int band = 32;  // pixels
-  int height_, threads_;
-  std::vector<std::vector<std::size_t>> items_;
-};
-
-void draw_lines(Canvas& canvas, const Frame& frame, const Coloring& coloring, Scene& scene,
-                int threads) {
-  const std::vector<Color>& colors = coloring.lines;
-  const int thickness =
-      std::max(coloring.cracks ? 3 : 2, canvas.height / (coloring.cracks ? 360 : 480));
-  const double lift = frame.triangles.empty() ? 0.0 : 2.0;  // lines on the edges of triangles show
-  const Vec3 lamp = lamp_direction();
-  const std::size_t first = scene.looks.size();
-  Bands bands(canvas, threads);
-  const auto ends = [&](std::size_t line) {
-    ScreenPoint a = scene.points[static_cast<std::size_t>(frame.lines[2 * line])];
-    ScreenPoint b = scene.points[static_cast<std::size_t>(frame.lines[2 * line + 1])];
-    a.depth += lift;
-    b.depth += lift;
-    return std::pair{a, b};
-  };
-  for (std::size_t line = 0; line < colors.size(); ++line) {
-    scene.looks.push_back({});
-    if (!coloring.hidden_lines.empty() && coloring.hidden_lines[line]) continue;
-    const auto [a, b] = ends(line);
-    // A thin cylinder is as bright as its steepest side towards the lamp.
-    const Vec3 axis{b.u - a.u, a.v - b.v, b.depth - a.depth};
-    const double along = dot(axis, lamp), square = dot(axis, axis);
-    const double across = square > 0.0 ? std::max(0.0, 1.0 - along * along / square) : 1.0;
-    const auto light = static_cast<float>(0.55 + 0.45 * std::sqrt(across));
-    scene.looks.back().color = shaded(colors[line], light);
-    bands.add(line, std::min(a.v, b.v), std::max(a.v, b.v), thickness + 1.0);
-  }
-  bands.draw([&](std::size_t line, Rows rows) {
-    const auto [a, b] = ends(line);
-    const auto item = static_cast<std::int32_t>(first + line);
-    draw_line(canvas, rows, a, b, thickness, item, scene.clip);
-  });
-}
-
-void draw_triangles(Canvas& canvas, const Frame& frame, const std::vector<Color>& colors,
-                    Scene& scene, int threads) {
-  const Vec3 lamp = lamp_direction();
-  const std::size_t first = scene.looks.size();
-  Bands bands(canvas, threads);
-  const auto corners = [&](std::size_t triangle) {
-    const auto corner = [&](std::size_t k) {
-      return scene.points[static_cast<std::size_t>(frame.triangles[3 * triangle + k])];
-    };
-    return std::array{corner(0), corner(1), corner(2)};
-  };
-  scene.looks.resize(first + colors.size());
-  for_chunks(threads, colors.size(), [&](std::size_t triangle) {
-    const auto [a, b, c] = corners(triangle);
-    const Vec3 normal = cross(Vec3{b.u - a.u, a.v - b.v, b.depth - a.depth},
-                              Vec3{c.u - a.u, a.v - c.v, c.depth - a.depth});
-    const double size = norm(normal);
-    const double facing = size > 0.0 ? std::fabs(dot(normal, lamp)) / size / lamp.z : 1.0;
-    const auto light = static_cast<float>(0.5 + 0.5 * std::min(1.0, facing));
-    scene.looks[first + triangle].color = shaded(colors[triangle], light);
-  });
-  for (std::size_t triangle = 0; triangle < colors.size(); ++triangle) {
-    const auto [a, b, c] = corners(triangle);
-    bands.add(triangle, std::min({a.v, b.v, c.v}), std::max({a.v, b.v, c.v}), 1.0);
-  }
-  bands.draw([&](std::size_t triangle, Rows rows) {
-    const auto [a, b, c] = corners(triangle);
-    const auto item = static_cast<std::int32_t>(first + triangle);
-    draw_triangle(canvas, rows, a, b, c, item, scene.clip);
-  });
+/// Spheres that are faded, and what lies among them: bars, other bodies, lines.
+Image see_through(const Canvas& canvas, const Frame& frame, const Coloring& coloring, Scene& scene,
+                  float relief, int threads, std::uint8_t ground) {
+  constexpr float left = 0.22F;    // of what is faded
+  constexpr float before = 0.16F;  // of what is faded, over what it hides
+  Canvas within(canvas.width, canvas.height);
+  draw_spheres(within, chosen_of(scene, coloring.inside), scene.clip, threads);
+  draw_lines(within, frame, coloring, scene, threads);
+  Image veil = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
+  smooth_outlines(veil, canvas, scene.looks, threads);
+  Image image = shade(within, scene.looks, scene.clip, relief, threads, ground);
+  smooth_outlines(image, within, scene.looks, threads);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::size_t at = canvas.row(y) + static_cast<std::size_t>(x);
+      const bool shows = within.item[at] != Canvas::none;
+      if (shows && within.depth[at] >= canvas.depth[at] - 0.5F) continue;
+      mix(image, veil,
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+              static_cast<std::size_t>(x),
+          shows ? before : left);
+    }
+  return image;
 }
 
 /// Depth that looks deep: about a radius of the usual sphere.  [pixels]
@@ -224,11 +119,108 @@ Image reduced(const Image& large, int fine, int threads) {
   return image;
 }
 
+/// From the pictures before white and before black: what is alike in both is opaque.
+Image without_ground(const Image& on_white, const Image& on_black) {
+  Image image = on_black;
+  const std::size_t pixels = image.rgb.size() / 3;
+  image.alpha.resize(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    int through = 255;
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
+      through = std::min(through, std::max(0, on_white.rgb[c] - on_black.rgb[c]));
+    const int alpha = 255 - through;
+    image.alpha[i] = static_cast<std::uint8_t>(alpha);
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
+      image.rgb[c] = static_cast<std::uint8_t>(
+          alpha > 0 ? std::min(255, (on_black.rgb[c] * 255 + alpha / 2) / alpha) : 255);
+  }
+  return image;
+}
+
+/// Draws the items. @param fine  pixels of the canvas for one of the picture
+Image draw_items(Canvas& canvas, const Frame& frame, const RenderOptions& options,
+                 const Coloring& coloring, Scene& scene, int threads, std::uint8_t ground) {
+  const bool links = options.show_links || coloring.of_lines || coloring.cracks;
+  const bool spheres = options.show_spheres && !frame.radius.empty();
+  const bool through = options.xray && spheres;
+  if (spheres) {
+    const double beside_links =
+        coloring.of_lines ? sphere_share_beside_colours : sphere_share_beside_links;
+    place_spheres(canvas, frame, links && !through ? beside_links : 1.0, scene, threads);
+  }
+  const int fine = canvas.width / options.width;
+  const float relief = relief_of(frame, scene.camera.resolution);
+  if (through) return see_through(canvas, frame, coloring, scene, relief, threads, ground);
+  if (links) draw_lines(canvas, frame, coloring, scene, threads);
+  draw_triangles(canvas, frame, coloring.triangles, scene, threads);
+  Image image = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
+  if (fine > 1)
+    image = reduced(image, fine, threads);
+  else
+    smooth_outlines(image, canvas, scene.looks, threads);
+  if (!coloring.bars.empty() && spheres) draw_bars(image, canvas, coloring, scene, relief, threads);
+  return image;
+}
+
+std::int64_t covered(const Canvas& canvas) {
+  return std::count_if(canvas.item.begin(), canvas.item.end(),
+                       [](std::int32_t item) { return item != Canvas::none; });
+}
+
+/// Whether the point of a frame is on the surface that shows: a sphere may stand half a radius
+/// behind what its neighbours show.
+bool is_seen(const Canvas& canvas, const Frame& frame, const Scene& scene, std::size_t point) {
+  const ScreenPoint& p = scene.points[point];
+  if (scene.clip && scene.clip->beyond(p.u, p.v, p.depth) > 0.0) return false;
+  if (frame.radius.empty()) return true;
+  if (!(p.u >= 0.0 && p.v >= 0.0 && p.u < canvas.width && p.v < canvas.height)) return false;
+  const std::size_t at = canvas.row(static_cast<int>(p.v)) + static_cast<std::size_t>(p.u);
+  const double radius = scene.camera.resolution * frame.radius[point];
+  return frame.radius[point] > 0.0 && p.depth + 1.6 * radius >= canvas.depth[at];
+}
+
+/// A picture on a ground of white or black.
+Image render_on(const Frame& frame, const RenderOptions& options, int threads,
+                std::uint8_t ground) {
+  const Layout layout(frame, options);
+  const Coloring& coloring = layout.coloring;
+  const int fine = fineness(frame, options);
+  const Camera camera = layout.camera(options);
+  Scene scene{camera, std::nullopt, {}, {}};
+  scene.camera.u *= fine;
+  scene.camera.v *= fine;
+  scene.camera.resolution *= fine;
+  if (const std::optional<Clip> clip = clip_of(options.clip, layout.axes))
+    scene.clip = on_screen(*clip, scene.camera);
+  scene.points.resize(frame.position.size());
+  for_chunks(threads, scene.points.size(),
+             [&](std::size_t i) { scene.points[i] = scene.camera.project(frame.position[i]); });
+  scene.looks.reserve(frame.position.size() + frame.lines.size() / 2 + frame.triangles.size() / 3);
+  for (const Color& color : coloring.points) scene.looks.push_back({color, {}});
+
+  Canvas canvas(fine * options.width, fine * options.height);
+  Image image = draw_items(canvas, frame, options, coloring, scene, threads, ground);
+  image.model_pixels = covered(canvas) / (fine * fine);
+  const int scale = text_scale(options);
+  ImagePaper paper(image);
+  if (options.walls && !frame.walls.empty()) {
+    draw_walls(image, frame.walls, canvas, scene, layout.extent, fine, scale);
+    draw_wall_edges(paper, frame.walls, camera, layout.extent, scale);
+  }
+  layout.overlay.draw(
+      paper, {camera, [&](std::size_t i) { return is_seen(canvas, frame, scene, i); }}, scale);
+  draw_title(paper, options.title, frame, scale);
+  draw_legend(paper, coloring.legend, scale);
+  draw_scale_bar(paper, camera.resolution, scale);
+  draw_axes(paper, layout.axes, scale);
+  return image;
+}
+
 }  // namespace
 
 void check_frame(const Frame& frame, const RenderOptions& options) {
-  if (options.width < 16 || options.height < 16 || options.width > 16384 ||
-      options.height > 16384) {
+  const bool fits = options.height == 0 || (options.height >= 16 && options.height <= 16384);
+  if (options.width < 16 || !fits || options.width > 16384) {
     throw InputError("a picture of " + std::to_string(options.width) + " x " +
                      std::to_string(options.height) + " pixels; 16 to 16384 are possible");
   }
@@ -243,55 +235,12 @@ void check_frame(const Frame& frame, const RenderOptions& options) {
 
 Image render(const Frame& frame, const RenderOptions& options, int threads) {
   check_frame(frame, options);
-  if (!options.hidden.empty()) {
-    RenderOptions of_rest = options;
-    of_rest.hidden.clear();
-    if (!of_rest.extent) of_rest.extent = bulk_extent(frame);
-    return render(without_groups(frame, options.hidden), of_rest, threads);
+  if (options.scale != 1.0 || !options.hidden.empty() || options.height == 0) {
+    const AsDrawn drawn(frame, options);
+    return render(drawn.frame, drawn.options, threads);
   }
-  Coloring coloring = color_frame(frame, options.field, options.range, options.map);
-  if (options.show_links && coloring.cracks) coloring.hidden_lines.clear();
-  const int fine = fineness(frame, options);
-  const Extent extent = options.extent ? *options.extent : bulk_extent(frame);
-  const Axes axes = axes_for(extent, options);
-  Scene scene{
-      fitted_camera(axes, extent, scene_window(options, coloring.legend)), std::nullopt, {}, {}};
-  scene.camera.u *= fine;
-  scene.camera.v *= fine;
-  scene.camera.resolution *= fine;
-  if (const std::optional<Clip> clip = clip_of(options.clip, axes)) {
-    scene.clip = on_screen(*clip, scene.camera);
-  }
-  scene.points.resize(frame.position.size());
-  for_chunks(threads, scene.points.size(),
-             [&](std::size_t i) { scene.points[i] = scene.camera.project(frame.position[i]); });
-  scene.looks.reserve(frame.position.size() + frame.lines.size() / 2 + frame.triangles.size() / 3);
-  for (const Color& color : coloring.points) scene.looks.push_back({color, {}});
-
-  Canvas canvas(fine * options.width, fine * options.height);
-  const bool links = options.show_links || coloring.of_lines || coloring.cracks;
-  if (options.show_spheres && !frame.radius.empty()) {
-    const double beside_links =
-        coloring.of_lines ? sphere_share_beside_colours : sphere_share_beside_links;
-    place_spheres(canvas, frame, links ? beside_links : 1.0, scene, threads);
-  }
-  if (links) draw_lines(canvas, frame, coloring, scene, threads);
-  draw_triangles(canvas, frame, coloring.triangles, scene, threads);
-
-  const float relief = relief_of(frame, scene.camera.resolution);
-  Image image = shade(canvas, scene.looks, scene.clip, relief, threads);
-  if (fine > 1)
-    image = reduced(image, fine, threads);
-  else
-    smooth_outlines(image, canvas, scene.looks, threads);
-  if (!coloring.bars.empty() && options.show_spheres && !frame.radius.empty())
-    draw_bars(image, canvas, coloring, scene, relief, threads);
-  const int scale = text_scale(options);
-  ImagePaper paper(image);
-  draw_title(paper, options.title, frame, scale);
-  draw_legend(paper, coloring.legend, scale);
-  draw_scale_bar(paper, scene.camera.resolution / fine, scale);
-  draw_axes(paper, axes, scale);
+  Image image = render_on(frame, options, threads, white);
+  if (options.transparent) image = without_ground(image, render_on(frame, options, threads, black));
   return image;
 }
 

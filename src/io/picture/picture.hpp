@@ -16,7 +16,9 @@ namespace breccia {
 /// Eight bits a channel; rows from the top, pixels from the left, red green blue.
 struct Image {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;  ///< 3 width height bytes
+  std::vector<std::uint8_t> rgb;         ///< 3 width height bytes
+  std::vector<std::uint8_t> alpha = {};  ///< width height bytes; empty: opaque
+  std::int64_t model_pixels = 0;         ///< of a rendered frame: where items of it show
 };
 
 /// The part of space that a picture shows: a box, cut off at the corners where points on the
@@ -32,12 +34,20 @@ struct ValueRange {
   double low, high;
 };
 
+/// A free camera. The projection is parallel: the picture is as high as what the angle takes in at
+/// the target.
+struct Viewpoint {
+  Vec3 eye, target;            ///<  [m]
+  Vec3 up = {0, 0, 1};         ///< about upwards in the picture
+  double field_of_view = 0.6;  ///< from the lower to the upper border  [rad]
+};
+
 /// View, clip plane, field and size of a picture. `view` is one of
 ///   iso  from above, front and right, z up        x  from +x, y to the right, z up
 ///   y    from the front (-y), x right, z up       z  from above, x right, y up
 /// `clip` is empty or a plane such as "x=0": what lies between it and the viewer is dropped and the
 /// cut is shown (seen along the plane: what lies beyond in the direction of the axis is dropped).
-/// "x<0.1" and "x>0.1" say which side stays.
+/// "x<0.1" and "x>0.1" say which side stays. A height of 0 is as much as the model needs.
 struct RenderOptions {
   std::string field = "damage";  ///< of points, lines or triangles; "velocity": its length,
                                  ///< "velocity_z": a component; "": one colour a group
@@ -51,11 +61,35 @@ struct RenderOptions {
   std::optional<ValueRange> range = {};  ///< default: the values of this frame, rounded outwards
   std::optional<Extent> extent = {};     ///< default: bulk_extent(frame); fix it for a series
   std::string title = {};                ///< stands before the time in the first line
+  std::optional<Viewpoint> camera = {};  ///< instead of `view` and `extent`
+  std::string arrows = {};               ///< a field of vectors of points
+  bool crosses = false;                  ///< principal stresses in the plane of the picture
+  bool xray = false;                     ///< what bars, cracks and broken links lie in is faded
+  bool walls = true;                     ///< draw walls, and marks on what supports hold
+  bool transparent = false;              ///< no ground
+  double scale = 1.0;                    ///< of displacements  [-]
 };
 
 /// The box around the bulk of each body of a frame, by its field "group": a small body far from a
 /// large one is shown, while a few fragments of a body that flew far do not widen the box.
 Extent bulk_extent(const Frame& frame);
+
+/// The extent for a later frame: the given one, widened where a body leaves it. What flies far
+/// widens it to four times the first extent at most; then the largest body alone counts, and where
+/// that has gone as well, the extent is that of the frame.
+/// @param share  of what is missing that is added on top, so that the next frames fit, too  [-]
+Extent grown_extent(const Extent& extent, const Extent& first, const Frame& frame, double share);
+
+/// The frame with `scale` times its displacements. @throws InputError if it has no such field
+Frame displaced(const Frame& frame, double scale);
+/// Adds the field "displacement" from the first frame of the run, where the frame lacks it.
+/// @throws InputError if the frames have not the same bodies
+void add_displacement(Frame& frame, const Frame& first);
+/// Whether a picture shows displacements.
+bool needs_displacement(const RenderOptions& options);
+
+/// The height of a picture of height 0.  [pixels]
+int picture_height(const Frame& frame, const RenderOptions& options);
 
 /// Whether `field` of RenderOptions names something this frame has.
 bool has_field(const Frame& frame, const std::string& field);
@@ -94,5 +128,7 @@ void write_png(const std::string& path, const std::string& content);
 /// @throws IoError    if the file cannot be read
 /// @throws InputError if it is no PNG, damaged, or has more than 2^28 pixels
 Image read_png(const std::string& path);
+/// Likewise with its transparency.
+Image read_png_with_alpha(const std::string& path);
 
 }  // namespace breccia

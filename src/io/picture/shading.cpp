@@ -96,10 +96,10 @@ void add_lamp(const Lighting& lamp, Stretch stretch, const Directions& direction
     float shine = half * half / half_squared;
     shine = shine * shine * shine * shine;
     shine = shine * shine * shine * shine;
-    // On a sphere the direction has length 1; inside it lies the face of a cut, darker at its edge.
-    const float face = squared > 0.80F ? 0.80F * lamp.cut : lamp.cut;
-    const float on_face = squared < 0.98F ? face : ball;
-    light[x] *= squared == 0.0F ? 1.0F : on_face;
+    // On a sphere the direction has length 1; inside it lies the face of a cut, which is flat.
+    const bool face = squared < 0.98F && squared > 0.0F;
+    const float lit = light[x] * (squared == 0.0F ? 1.0F : ball);
+    light[x] = face ? lamp.cut : lit;
     gloss[x] = squared < 0.98F ? 0.0F : 0.07F * shine;
   }
 }
@@ -116,7 +116,7 @@ Vec3 lamp_direction() {
 }
 
 Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
-            const std::optional<ScreenClip>& clip, float relief, int threads) {
+            const std::optional<ScreenClip>& clip, float relief, int threads, std::uint8_t ground) {
   const Vec3 lamp = lamp_direction();
   Lighting lighting{static_cast<float>(lamp.x), static_cast<float>(lamp.y),
                     static_cast<float>(lamp.z), 1.0F};
@@ -126,7 +126,7 @@ Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
   }
   const auto width = static_cast<std::size_t>(canvas.width);
   Image image{canvas.width, canvas.height, {}};
-  image.rgb.assign(3 * width * static_cast<std::size_t>(canvas.height), 255);
+  image.rgb.assign(3 * width * static_cast<std::size_t>(canvas.height), ground);
   constexpr int band = 16;  // rows that one thread takes
   for_each_task(threads, (canvas.height + band - 1) / band, [&](int number) {
     std::vector<float> light(width), gloss(width);

@@ -19,10 +19,12 @@ struct ItemLook {
 Vec3 lamp_direction();
 
 /// Lights every pixel: diffuse and a little gloss on spheres, darker where nearer things stand
-/// around a pixel (after C. Boucheny's eye-dome lighting, 2009), white where nothing is.
-/// `relief` is the difference in depth that counts as deep  [pixels]
+/// around a pixel (after C. Boucheny's eye-dome lighting, 2009), the ground where nothing is. Faces
+/// of a cut are flat. `ground` is a shade of grey, 255: white. `relief` is the difference in depth
+/// that counts as deep  [pixels]
 Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
-            const std::optional<ScreenClip>& clip, float relief, int threads);
+            const std::optional<ScreenClip>& clip, float relief, int threads,
+            std::uint8_t ground = 255);
 
 /// Softens the steps on the outlines of spheres: a pixel that an outline crosses takes part of the
 /// colour of either side, by the distance of its centre from the outline.

@@ -12,7 +12,7 @@
 #include "exec/error.hpp"
 #include "io/picture/annotation.hpp"
 #include "io/picture/font.hpp"
-#include "io/picture/hidden.hpp"
+#include "io/picture/layout.hpp"
 
 namespace breccia {
 namespace {
@@ -30,7 +30,7 @@ class Page : public Paper {
 
 class SvgPage : public Page {
  public:
-  using Page::Page;
+  SvgPage(int wide, int high, bool transparent) : Page(wide, high), transparent_(transparent) {}
   void fill(int left, int top, int right, int bottom, const Color& color) override {
     add("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", left, top,
         right - left, bottom - top, name_of(color));
@@ -66,8 +66,12 @@ class SvgPage : public Page {
     return fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
         "width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" font-family=\"DejaVu Sans, Verdana, "
-        "sans-serif\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n{2}</svg>\n",
-        width, height, body_);
+        "sans-serif\">\n{2}{3}</svg>\n",
+        width, height,
+        transparent_
+            ? std::string()
+            : fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", width, height),
+        body_);
   }
 
  private:
@@ -79,6 +83,7 @@ class SvgPage : public Page {
     const auto byte = [](float channel) { return static_cast<int>(255.0F * channel + 0.5F); };
     return fmt::format("#{:02x}{:02x}{:02x}", byte(color.red), byte(color.green), byte(color.blue));
   }
+  bool transparent_;
   std::string body_;
 };
 
@@ -170,16 +175,22 @@ Shade shade_of(const Color& color) {
   return {byte(color.red), byte(color.green), byte(color.blue)};
 }
 
-std::string drawn(Page& page, const Frame& all, const RenderOptions& options) {
-  const Frame frame = options.hidden.empty() ? all : without_groups(all, options.hidden);
+AsDrawn plane_drawing(const Frame& frame, const RenderOptions& options) {
   if (frame.triangles.empty())
     throw InputError("SVG and PDF are for plane cases; pictures of spheres are PNG files");
   if (!options.clip.empty()) throw InputError("SVG and PDF know no clip planes; use PNG");
   check_frame(frame, options);
-  Coloring coloring = color_frame(frame, options.field, options.range, options.map);
-  const Extent extent = options.extent ? *options.extent : bulk_extent(all);
-  const Axes axes = axes_of_view("z");
-  const Camera camera = fitted_camera(axes, extent, scene_window(options, coloring.legend));
+  RenderOptions from_above = options;
+  from_above.view = "z";
+  return {frame, from_above};
+}
+
+std::string drawn(const AsDrawn& drawing, Page& page) {
+  const Frame& frame = drawing.frame;
+  const RenderOptions& options = drawing.options;
+  const Layout layout(frame, options);
+  const Coloring& coloring = layout.coloring;
+  const Camera camera = layout.camera(options);
   const auto at = [&](std::int32_t point) {
     return camera.project(frame.position[static_cast<std::size_t>(point)]);
   };
@@ -194,28 +205,31 @@ std::string drawn(Page& page, const Frame& all, const RenderOptions& options) {
   const int scale = text_scale(options);
   if (options.show_links || coloring.of_lines || coloring.cracks)
     for (std::size_t i = 0; i < coloring.lines.size(); ++i) {
-      if (!options.show_links && !coloring.hidden_lines.empty() && coloring.hidden_lines[i])
-        continue;
+      if (!coloring.hidden_lines.empty() && coloring.hidden_lines[i]) continue;
       const ScreenPoint a = at(frame.lines[2 * i]), b = at(frame.lines[2 * i + 1]);
-      page.stroke(a.u, a.v, b.u, b.v, 1.3 * scale, coloring.lines[i]);
+      const double width = coloring.line_widths.empty() ? 1.0 : coloring.line_widths[i];
+      page.stroke(a.u, a.v, b.u, b.v, 1.3 * scale * width, coloring.lines[i]);
     }
+  layout.overlay.draw(page, {camera, [](std::size_t) { return true; }}, scale);
   draw_title(page, options.title, frame, scale);
   draw_legend(page, coloring.legend, scale);
   draw_scale_bar(page, camera.resolution, scale);
-  draw_axes(page, axes, scale);
+  draw_axes(page, layout.axes, scale);
   return page.content();
 }
 
 }  // namespace
 
 std::string svg_content(const Frame& frame, const RenderOptions& options) {
-  SvgPage page(options.width, options.height);
-  return drawn(page, frame, options);
+  const AsDrawn drawing = plane_drawing(frame, options);
+  SvgPage page(drawing.options.width, drawing.options.height, options.transparent);
+  return drawn(drawing, page);
 }
 
 std::string pdf_content(const Frame& frame, const RenderOptions& options) {
-  PdfPage page(options.width, options.height);
-  return drawn(page, frame, options);
+  const AsDrawn drawing = plane_drawing(frame, options);
+  PdfPage page(drawing.options.width, drawing.options.height);
+  return drawn(drawing, page);
 }
 
 }  // namespace breccia

@@ -108,6 +108,15 @@ class VtuFile {
 
   const std::vector<std::string>& groups() const { return groups_; }
 
+  /// Point and normal of each wall.
+  std::vector<double> numbers_of_walls() const {
+    for (const Array& array : arrays_)
+      if (array.section == "FieldData" && array.name == "walls" && array.components == 6 &&
+          array.tuples < 1U << 20)
+        return values<double>(array, array.tuples);
+    return {};
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     throw IoError(path_ + ": cannot read: " + what);
   }
@@ -116,7 +125,7 @@ class VtuFile {
   struct Array {
     std::string section, name, type, unit;
     int components;
-    std::size_t offset;
+    std::size_t offset, tuples;
   };
 
   std::size_t number(const Tag& tag, const std::string& name, std::size_t otherwise) const {
@@ -146,7 +155,8 @@ class VtuFile {
         const std::size_t components = number(tag, "NumberOfComponents", 1);
         if (components < 1 || components > 64) fail("its NumberOfComponents is damaged");
         arrays_.push_back({section, word(tag, "Name"), word(tag, "type"), "",
-                           static_cast<int>(components), number(tag, "offset", 0)});
+                           static_cast<int>(components), number(tag, "offset", 0),
+                           number(tag, "NumberOfTuples", 0)});
       } else if (tag.name == "InformationKey" && !arrays_.empty()) {
         arrays_.back().unit = unescaped(tag.text);
       } else if (tag.name == "Array" && word(tag, "Name") == "groups") {
@@ -304,6 +314,10 @@ Frame read_frame(const std::string& folder, int index) {
   frame.time = elements.array<double>("FieldData", "TIME", 1).front();
   frame.step = elements.array<std::int64_t>("FieldData", "CYCLE", 1).front();
   frame.groups = elements.groups();
+  const auto walls = elements.numbers_of_walls();
+  for (std::size_t i = 0; i + 5 < walls.size(); i += 6)
+    frame.walls.push_back(
+        {{walls[i], walls[i + 1], walls[i + 2]}, {walls[i + 3], walls[i + 4], walls[i + 5]}});
   const auto coordinates = elements.array<double>("Points", "Points", elements.points());
   for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3) {
     frame.position.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});

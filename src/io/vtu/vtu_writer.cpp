@@ -157,6 +157,18 @@ void FrameBlocks::list_field_data(Document& document) {
         part_.groups.size(), codes);
     document.text.back() += "\n";
   }
+  if (!part_.walls.empty())
+    place(document,
+          add_made<double>(6 * part_.walls.size(),
+                           [walls = part_.walls](std::size_t i) {
+                             const FrameWall& wall = walls[i / 6];
+                             const Vec3& v = i % 6 < 3 ? wall.point : wall.normal;
+                             return i % 3 == 0 ? v.x : i % 3 == 1 ? v.y : v.z;
+                           }),
+          type_name<double>(),
+          fmt::format(R"(Name="walls" NumberOfComponents="6" NumberOfTuples="{}")",
+                      part_.walls.size()),
+          "");
   document.text.back() += "</FieldData>\n";
 }
 

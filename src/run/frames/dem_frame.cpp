@@ -7,6 +7,7 @@
 
 #include "core/on_host.hpp"
 #include "dem/observe.hpp"
+#include "dem/stress.hpp"
 #include "domain/drift.hpp"
 #include "run/method/dem_method.hpp"
 
@@ -51,7 +52,16 @@ class DemFrame {
     f.step = w_.step;
     f.time = w_.time;
     for (std::size_t g = 0; g < all.bodies; ++g) f.groups.push_back(w_.given->sets[g].name);
+    for (const Wall& wall : w_.walls) f.walls.push_back({wall.point, wall.normal});
     add_elements();
+    if (w_.given->sets.size() > all.bodies) {
+      constexpr std::uint8_t places = fixed_x | fixed_y | fixed_z;
+      f.point_fields.push_back(scalar("held", [&](Index i) {
+        const std::uint8_t fixed = elements_->fixed.data()[i];
+        return is_gone(fixed) ? 0 : fixed & places;
+      }));
+    }
+    add_more();
     add_links(all);
     FramePlaces& places = part_.places;
     places.whole = w_.domain.single_rank();
@@ -113,6 +123,32 @@ class DemFrame {
     const Partition partition = partition_at(w_.domain, w_.travel.drift.velocity, w_.time);
     f.point_fields.push_back(
         scalar("rank", [&](Index i) { return partition.owner(e.state.data()[i].position); }));
+  }
+
+  /// Fields that the case asks for.
+  void add_more() {
+    const Elements& e = *elements_;
+    const MoreFields& more = w_.given->shown;
+    Frame& f = part_.frame;
+    std::vector<Vec3> of(static_cast<std::size_t>(e.size()));
+    if (more.displacement) {
+      const OnHost starts(w_.given->starts, w_.exec.space);
+      for (const Index i : own_)
+        of[static_cast<std::size_t>(i)] =
+            e.state.data()[i].position - starts->data()[e.id.data()[i]];
+      f.point_fields.push_back(vector("displacement", "m", of));
+    }
+    if (more.force) {
+      for (const Index i : own_) of[static_cast<std::size_t>(i)] = e.force.data()[i];
+      f.point_fields.push_back(vector("force", "N", of));
+    }
+    if (!more.stress) return;
+    const std::vector<Stress> all = stresses(w_);
+    FrameField field{"stress", "Pa", 6, {}};
+    for (const Index i : own_)
+      for (const double part : all[static_cast<std::size_t>(i)])
+        field.values.push_back(static_cast<float>(part));
+    f.point_fields.push_back(std::move(field));
   }
 
   // Links: kind 0 concrete, 1 steel, 2 interface; state 0 whole, 1 softened or yielded, 2 broken.

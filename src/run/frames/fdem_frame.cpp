@@ -111,6 +111,30 @@ Placed placed(const World& w, const Triangles& triangles, const Joints& joints, 
   return placed;
 }
 
+/// Fields of points besides velocity, in the order in which frames hold them.
+struct PointFields {
+  FrameField *displacement = nullptr, *force = nullptr, *held = nullptr;
+
+  /// Adds them, of so many points.
+  PointFields(const Case& given, std::size_t points, Frame& f) {
+    f.point_fields.reserve(4);
+    const auto add = [&](const char* name, const char* unit, int components) {
+      f.point_fields.push_back(
+          {name, unit, components,
+           std::vector<float>(static_cast<std::size_t>(components) * points, 0.0F)});
+      return &f.point_fields.back();
+    };
+    if (given.shown.displacement) displacement = add("displacement", "m", 3);
+    if (given.shown.force) force = add("force", "N/m", 3);
+    if (given.holds.size() > 0) held = add("held", "-", 1);
+  }
+  static void put(FrameField* field, std::size_t place, const Vec2& value) {
+    if (field == nullptr) return;
+    field->values[3 * place] = static_cast<float>(value.x);
+    field->values[3 * place + 1] = static_cast<float>(value.y);
+  }
+};
+
 void put_point(Frame& f, std::size_t place, const Vec2& position, const Vec2& velocity) {
   f.position[place] = {position.x, position.y, 0.0};
   const double v[] = {velocity.x, velocity.y, 0.0};
@@ -163,6 +187,36 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
   const Partition partition = partition_at(w.domain, {drift.x, drift.y, 0.0}, w.time);
   field("rank", "-",
         [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
+}
+
+/// Of corners; of the ends of cracks the mean of both sides.
+void add_more(const World& w, const Triangles& t, const Joints& j, const Own& own, Frame& f) {
+  const std::size_t points = 3 * own.triangles.size() + 2 * own.lines.size();
+  const PointFields fields(*w.given, points, f);
+  const OnHost starts(w.given->starts, w.exec.space);
+  const OnHost holds(w.given->holds, w.exec.space);
+  const auto way = [&](Index node) {
+    return t.nodes.data()[node / 3].at[node % 3].position -
+           starts->data()[3 * t.id.data()[node / 3] + node % 3];
+  };
+  each_of(own.triangles.size(), w.exec.threads, [&](std::size_t k) {
+    const Index i = own.triangles[k], hold = t.hold.data()[i];
+    for (int c = 0; c < 3; ++c) {
+      const std::size_t place = 3 * k + static_cast<std::size_t>(c);
+      if (fields.displacement != nullptr)
+        PointFields::put(fields.displacement, place, way(3 * i + c));
+      PointFields::put(fields.force, place, t.force.data()[i].at[c]);
+      if (fields.held != nullptr && hold >= 0)
+        fields.held->values[place] = static_cast<float>(holds->data()[hold].fixed >> (2 * c) & 3);
+    }
+  });
+  if (fields.displacement == nullptr) return;
+  std::size_t point = 3 * own.triangles.size();
+  for (const Index i : own.lines) {
+    const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
+    for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}})
+      PointFields::put(fields.displacement, point++, 0.5 * (way(on_a) + way(on_b)));
+  }
 }
 
 void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& velocity,
@@ -231,6 +285,7 @@ FramePart fdem_frame(World& w, const World* mesh) {
   const std::vector<Corners> velocity = velocities_now(w);
   add_triangles(w, *triangles, velocity, own, known, f);
   add_lines(*triangles, *joints, velocity, own, known, f);
+  add_more(w, *triangles, *joints, own, f);
   if (!w.domain.single_rank()) part.places = places_of(*triangles, own, known);
   part.places.whole = w.domain.single_rank();
   part.places.triangles = own.shown;

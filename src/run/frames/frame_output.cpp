@@ -4,16 +4,28 @@
 
 namespace breccia {
 
-Image drawn(const Frame& whole, RenderOptions options, int threads, FrameOutput& output) {
-  if (!options.extent) options.extent = bulk_extent(whole);
+Image drawn(const Frame& whole, const FrameWish& wish, int threads, FrameOutput& output) {
+  constexpr double ahead = 0.5;  // of what leaves the picture: the next frames are to fit, too
+  RenderOptions options = *wish.picture;
+  const bool moved = options.scale != 1.0;
+  const Frame frame = moved ? displaced(whole, options.scale) : Frame();
+  const Frame& seen = moved ? frame : whole;
+  if (!options.extent)
+    options.extent = bulk_extent(seen);
+  else if (wish.grows_from)
+    options.extent = grown_extent(*options.extent, *wish.grows_from, seen, ahead);
+  options.scale = 1.0;
   output.extent = *options.extent;
-  return render(whole, options, threads);
+  Image image = render(seen, options, threads);
+  output.height = image.height;
+  output.blank = image.model_pixels == 0;
+  return image;
 }
 
 FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads) {
   FrameOutput output;
   Image image;
-  if (wish.picture) image = drawn(whole, *wish.picture, threads, output);
+  if (wish.picture) image = drawn(whole, wish, threads, output);
   const FramePlaces places = places_in(whole);
   std::optional<FrameBlocks> files;
   if (wish.files) files.emplace(whole, places);

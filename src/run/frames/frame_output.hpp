@@ -13,19 +13,23 @@ namespace breccia {
 struct FrameWish {
   bool files = true;
   std::optional<RenderOptions> picture;  ///< without an extent: that of this frame
+  /// The extent of the first frame, if the picture's is to grow with what leaves it.
+  std::optional<Extent> grows_from = {};
 };
 
 struct FrameOutput {
   FrameContents files;  ///< empty if not wished
   std::string png;      ///< likewise
   Extent extent{};      ///< that the picture shows
+  int height = 0;       ///< of the picture  [pixels]
+  bool blank = false;   ///< nothing of the model is in the picture
 };
 
 /// Blocks are compressed, and the picture is encoded meanwhile, by that many threads: the same
 /// bytes for any number of them.
 FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads);
 
-/// The picture that is wished for; notes the extent.
-Image drawn(const Frame& whole, RenderOptions options, int threads, FrameOutput& output);
+/// The picture that is wished for; notes what it shows.
+Image drawn(const Frame& whole, const FrameWish& wish, int threads, FrameOutput& output);
 
 }  // namespace breccia

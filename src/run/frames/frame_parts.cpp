@@ -39,7 +39,8 @@ std::vector<int> workers(const FrameBlocks& files, int ranks, const FrameWish& w
   // A pixel takes as long as some fifteen bytes of a block.
   if (wish.picture)
     cost[0] = 15 * static_cast<std::size_t>(wish.picture->width) *
-              static_cast<std::size_t>(wish.picture->height);
+              static_cast<std::size_t>(wish.picture->height > 0 ? wish.picture->height
+                                                                : wish.picture->width * 3 / 4);
   std::vector<int> worker;
   for (const FrameBlocks::Block& block : files.blocks()) {
     const auto idlest = std::min_element(cost.begin(), cost.end());
@@ -54,18 +55,20 @@ std::vector<int> workers(const FrameBlocks& files, int ranks, const FrameWish& w
 class Sight {
  public:
   /// @param whole  gets as many items as there are in all; null on ranks other than 0
-  Sight(const FramePart& part, const std::string& field, Frame* whole) : places_(part.places) {
+  Sight(const FramePart& part, const RenderOptions& options, Frame* whole)
+      : places_(part.places), options_(options) {
     const Frame& f = part.frame;
     column(Carrier::points, f.position, whole ? &whole->position : nullptr, 1);
     if (places_.has_spheres) column(Carrier::points, f.radius, whole ? &whole->radius : nullptr, 1);
     if (places_.triangles > 0)
       column(Carrier::triangles, f.triangles, whole ? &whole->triangles : nullptr, 3);
-    fields(Carrier::points, f.point_fields, whole ? &whole->point_fields : nullptr, field);
-    fields(Carrier::triangles, f.triangle_fields, whole ? &whole->triangle_fields : nullptr, field);
+    fields(Carrier::points, f.point_fields, whole ? &whole->point_fields : nullptr);
+    fields(Carrier::triangles, f.triangle_fields, whole ? &whole->triangle_fields : nullptr);
     const bool cracks = places_.triangles > 0 && has_cracks(f);
-    if (!cracks && !colors_lines(f, field)) return;
+    const bool lines = cracks || options.show_links || options.xray;
+    if (!lines && !colors_lines(f, options.field)) return;
     column(Carrier::lines, f.lines, whole ? &whole->lines : nullptr, 2);
-    fields(Carrier::lines, f.line_fields, whole ? &whole->line_fields : nullptr, field, cracks);
+    fields(Carrier::lines, f.line_fields, whole ? &whole->line_fields : nullptr, cracks);
   }
 
   Message packed() const {
@@ -113,12 +116,18 @@ class Sight {
                         whole ? reinterpret_cast<std::byte*>(whole->data()) : nullptr});
   }
   void fields(Carrier carrier, const std::vector<FrameField>& own, std::vector<FrameField>* whole,
-              const std::string& shown, bool cracks = false) {
+              bool cracks = false) {
+    const std::string& shown = options_.field;
+    const auto is_shown = [&](const std::string& name) {
+      return name == shown || shown.starts_with(name + "_") || name == options_.arrows ||
+             (options_.crosses && name.starts_with("stress")) ||
+             (options_.scale != 1.0 && name == "displacement");
+    };
     for (const FrameField& field : own) {
       const bool of_cracks = cracks && (field.name == "mode" || field.name == "damage");
-      const bool wanted = of_cracks || field.name == shown || shown.starts_with(field.name + "_") ||
-                          field.name == "group" || field.name == "bar" || field.name == "kind" ||
-                          field.name == "state";
+      const bool wanted = of_cracks || is_shown(field.name) || field.name == "group" ||
+                          field.name == "bar" || field.name == "kind" || field.name == "state" ||
+                          field.name == "held";
       if (!wanted) continue;
       if (whole != nullptr) whole->push_back({field.name, field.unit, field.components, {}});
       column(carrier, field.values, whole ? &whole->back().values : nullptr,
@@ -127,6 +136,7 @@ class Sight {
   }
 
   const FramePlaces& places_;
+  const RenderOptions& options_;
   std::vector<Column> columns_;
 };
 
@@ -142,12 +152,13 @@ FrameOfParts::FrameOfParts(FramePart part, const FrameWish& wish, Communicator& 
 /// Everything that the picture shows comes to rank 0.
 void FrameOfParts::see() {
   const bool draws = ranks_.rank() == 0;
-  const Sight sight(part_, wish_.picture->field, draws ? &seen_ : nullptr);
+  const Sight sight(part_, *wish_.picture, draws ? &seen_ : nullptr);
   const std::vector<Message> messages = told_to_first(ranks_, sight.packed());
   if (!draws) return;
   seen_.step = part_.frame.step;
   seen_.time = part_.frame.time;
   seen_.groups = part_.frame.groups;
+  seen_.walls = part_.frame.walls;
   for (const Message& message : messages) sight.take(message);
 }
 
@@ -219,7 +230,7 @@ Message FrameOfParts::share() {
   }
 
   Image image;
-  if (wish_.picture && self == 0) image = drawn(seen_, *wish_.picture, threads_, output_);
+  if (wish_.picture && self == 0) image = drawn(seen_, wish_, threads_, output_);
   std::vector<std::string> packed(own.size());
   for_each_task(threads_, 1 + static_cast<int>(own.size()), [&](int task) {
     const std::size_t k = static_cast<std::size_t>(task) - 1;

@@ -14,7 +14,7 @@ namespace breccia {
 class FrameOfParts {
  public:
   /// On every rank, with its part of the frame. Of the picture that is wished for, ranks other than
-  /// 0 use field and size.
+  /// 0 use what names fields, and size.
   FrameOfParts(FramePart part, const FrameWish& wish, Communicator& ranks, int threads);
 
   /// Every rank at once. On ranks other than 0 the result is empty.

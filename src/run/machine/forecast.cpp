@@ -67,7 +67,9 @@ struct DiskRates {
 void add_disk(Forecast& f, const CaseConfig& config, std::size_t columns, const DiskRates& rates) {
   const double frames = config.output.frames + 1.0;
   const double rows = config.output.history > 0.0 ? config.time.end / config.output.history : 1000;
-  const double pixels = static_cast<double>(config.output.width) * config.output.height;
+  const double width = config.output.width;
+  const double pixels =
+      width * (config.output.height > 0 ? 1.0 * config.output.height : 0.75 * width);
   const double fields =
       config.output.fields ? frames * (rates.element * f.items + rates.bond * f.bonds) : 0.0;
   const double pictures = config.output.pictures ? frames * rates.picture * pixels : 0.0;

@@ -8,6 +8,7 @@
 
 #include "exec/error.hpp"
 #include "io/case/suggestion.hpp"
+#include "io/picture/color_map.hpp"
 #include "io/picture/picture.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem_method.hpp"
@@ -72,6 +73,39 @@ std::string problem_of(const CheckConfig& c, const std::vector<ProbeConfig>& pro
   return where + " is not of a probe; there are: " + (known.empty() ? "none" : known);
 }
 
+/// Problems of keys by which pictures are drawn: each is found by drawing one.
+std::vector<std::string> problems_of_pictures(const OutputConfig& output, const Frame& frame) {
+  std::vector<std::string> problems;
+  const std::set<std::string> more{"displacement", "force", "stress"};
+  for (const std::string& name : output.more)
+    if (!more.contains(name))
+      problems.push_back(fmt::format("output.more: {:?} is none of displacement, force, stress{}",
+                                     name, suggestion(name, more)));
+  if (!output.range.empty() && (output.range.size() != 2 || !(output.range[0] < output.range[1])))
+    problems.push_back("output.range needs two values, the lower first, such as [0, 2.5e6]");
+  const auto try_out = [&](const char* key, RenderOptions options) {
+    options.field = "";
+    options.view = output.view;
+    options.width = options.height = 64;
+    try {
+      render(frame, options);
+    } catch (const InputError& error) {
+      problems.push_back(fmt::format("output.{}: {}", key, error.what()));
+    }
+  };
+  if (!output.clip.empty()) try_out("clip", {.clip = output.clip});
+  if (!output.arrows.empty()) try_out("arrows", {.arrows = output.arrows});
+  if (!output.hide.empty()) try_out("hide", {.hidden = {output.hide.begin(), output.hide.end()}});
+  if (!output.map.empty()) {
+    try {
+      map_named(output.map);
+    } catch (const InputError& error) {
+      problems.push_back(fmt::format("output.map: {}", error.what()));
+    }
+  }
+  return problems;
+}
+
 void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
   const Shown shown = shown_by(specimen);
   std::vector<std::string> problems;
@@ -82,6 +116,8 @@ void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
         fmt::format("output.color = {:?} is no field of the frames; allowed are {}, and \"\" for "
                     "none",
                     config.output.color, fmt::join(field_names(shown.frame), ", ")));
+  for (std::string& problem : problems_of_pictures(config.output, shown.frame))
+    problems.push_back(std::move(problem));
   std::erase(problems, "");
   if (problems.empty()) return;
   throw InputError(fmt::format("{} problem{} in the case; nothing was run.\n  {}", problems.size(),
@@ -94,6 +130,7 @@ void check_shown(const dem::Config& config) {
   dem::Config one;
   one.materials.emplace_back();
   one.domain.show = config.domain.show;
+  one.output = config.output;
   dem::Model model;  // one element a body
   for (const dem::BodyConfig& body : config.bodies) {
     model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
@@ -112,6 +149,7 @@ void check_shown(const fdem::Config& config) {
   fdem::Config one;
   one.materials.emplace_back();
   one.domain.show = config.domain.show;
+  one.output = config.output;
   fdem::Model model;  // one triangle a body
   for (const fdem::BodyConfig& body : config.bodies) {
     const auto first = static_cast<Index>(model.point.size());

@@ -26,6 +26,17 @@ Json json_of(const RenderOptions& o) {
             {"width", o.width}, {"height", o.height},     {"spheres", o.show_spheres},
             {"map", o.map},     {"links", o.show_links},  {"hidden", o.hidden},
             {"title", o.title}, {"range", Json(nullptr)}, {"extent", Json(nullptr)}};
+  json["xray"] = o.xray;
+  json["crosses"] = o.crosses;
+  json["walls"] = o.walls;
+  json["arrows"] = o.arrows;
+  json["scale"] = o.scale;
+  json["transparent"] = o.transparent;
+  if (o.camera)
+    json["camera"] = {{"eye", json_of(o.camera->eye)},
+                      {"target", json_of(o.camera->target)},
+                      {"up", json_of(o.camera->up)},
+                      {"field_of_view", o.camera->field_of_view}};
   if (o.range) json["range"] = {o.range->low, o.range->high};
   if (o.extent) {
     json["extent"] = {{"low", json_of(o.extent->low)},
@@ -49,6 +60,17 @@ RenderOptions options_of(const Json& json) {
   json.at("links").get_to(o.show_links);
   json.at("hidden").get_to(o.hidden);
   json.at("title").get_to(o.title);
+  json.at("xray").get_to(o.xray);
+  json.at("crosses").get_to(o.crosses);
+  json.at("walls").get_to(o.walls);
+  json.at("arrows").get_to(o.arrows);
+  json.at("scale").get_to(o.scale);
+  json.at("transparent").get_to(o.transparent);
+  if (json.contains("camera")) {
+    const Json& camera = json.at("camera");
+    o.camera = Viewpoint{vector_of(camera.at("eye")), vector_of(camera.at("target")),
+                         vector_of(camera.at("up")), camera.at("field_of_view").get<double>()};
+  }
   if (const Json& range = json.at("range"); !range.is_null())
     o.range = ValueRange{range.at(0).get<double>(), range.at(1).get<double>()};
   if (const Json& extent = json.at("extent"); !extent.is_null()) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "domain/together.hpp"
 
@@ -70,6 +71,8 @@ void RecordState::save(CheckpointWriter& writer) const {
   writer.value("run.frame_time", frame_time);
   writer.value("run.frames", frames);
   if (extent) writer.value("run.extent", *extent);
+  if (first) writer.value("run.first_extent", *first);
+  writer.value("run.height", height);
   writer.value("run.unbalanced", unbalanced);
   writer.value("run.moving", moving);
   std::vector<double> ranges;
@@ -84,6 +87,9 @@ void RecordState::load(const CheckpointReader& reader) {
   frame_time = reader.value<double>("run.frame_time");
   frames = reader.value<std::int64_t>("run.frames");
   if (reader.has("run.extent")) extent = reader.value<Extent>("run.extent");
+  first = extent;
+  if (reader.has("run.first_extent")) first = reader.value<Extent>("run.first_extent");
+  if (reader.has("run.height")) height = reader.value<std::int64_t>("run.height");
   if (reader.has("run.unbalanced")) unbalanced = reader.value<EnergyWatch::Rows>("run.unbalanced");
   if (reader.has("run.moving")) moving = reader.value<KineticShare>("run.moving");
   const CheckpointReader::Section& ranges = reader.section("run.probes", sizeof(double));
@@ -190,7 +196,9 @@ void Recorder::record(Method& method, Background& background) {
 
 /// A picture besides those of frames; a run that is resumed draws it anew.
 void Recorder::write_picture_of_step(Method& method) {
-  const FrameOutput output = method.frame_output({false, picture_options()});
+  FrameWish wish = wish_of_picture();
+  wish.files = false;
+  const FrameOutput output = method.frame_output(wish);
   write_picture(fmt::format("step_{}.png", method.steps()), method, output);
 }
 
@@ -245,15 +253,33 @@ void Recorder::write_frame(Method& method, Background& background) {
 }
 
 RenderOptions Recorder::picture_options() const {
+  const OutputConfig& wanted = config_.output;
   RenderOptions options;
-  options.field = config_.output.color;
-  options.view = config_.output.view;
-  options.width = config_.output.width;
-  options.height = config_.output.height;
-  options.extent = state_.extent;
+  options.field = wanted.color;
+  options.view = wanted.view;
+  options.clip = wanted.clip;
+  options.map = wanted.map;
+  options.arrows = wanted.arrows;
+  options.hidden = {wanted.hide.begin(), wanted.hide.end()};
+  options.show_links = wanted.links;
+  options.xray = wanted.xray;
+  options.crosses = wanted.crosses;
+  options.walls = wanted.walls;
+  options.transparent = wanted.transparent;
+  options.scale = wanted.scale;
+  options.width = wanted.width;
+  options.height = wanted.height > 0 ? wanted.height : static_cast<int>(state_.height);
+  if (wanted.fit != "frame") options.extent = state_.extent;
   if (options.field == "damage") options.range = ValueRange{0.0, 1.0};
+  if (wanted.range.size() == 2) options.range = ValueRange{wanted.range[0], wanted.range[1]};
   options.title = config_.title;
   return options;
+}
+
+FrameWish Recorder::wish_of_picture() const {
+  FrameWish wish{config_.output.fields, picture_options(), {}};
+  if (config_.output.fit == "run") wish.grows_from = state_.first;
+  return wish;
 }
 
 /// With the texts that `verify` makes it again from. No hash of the state: several ranks would have
@@ -261,17 +287,27 @@ RenderOptions Recorder::picture_options() const {
 void Recorder::write_picture(const std::string& name, Method& method, const FrameOutput& output) {
   const PictureMoment moment{method.steps(), method.time()};
   on_first(ranks_, [&] {
-    if (!state_.extent) state_.extent = output.extent;
+    RenderOptions options = picture_options();
+    options.extent = output.extent;
+    options.height = output.height;
+    if (!state_.first) state_.first = output.extent;
+    state_.extent = output.extent;
+    state_.height = output.height;
     std::vector<PngNote> notes = notes_;
-    for (PngNote& one : notes_of_picture(moment, picture_options()))
-      notes.push_back(std::move(one));
+    for (PngNote& one : notes_of_picture(moment, options)) notes.push_back(std::move(one));
     write_png(pictures_ + "/" + name, with_notes(output.png, notes));
+    if (!output.blank || std::exchange(told_blank_, true)) return;
+    log_->warn("picture", method.steps(),
+               fmt::format("nothing of the model is in the picture {}: output.fit = {:?}, "
+                           "output.clip = {:?}, output.hide; \"run\" and \"frame\" follow what "
+                           "flies",
+                           name, config_.output.fit, config_.output.clip));
   });
 }
 
 void Recorder::write_frame_of(Method& method, std::int64_t number) {
-  FrameWish wish{config_.output.fields, std::nullopt};
-  if (config_.output.pictures) wish.picture = picture_options();
+  FrameWish wish{config_.output.fields, std::nullopt, {}};
+  if (config_.output.pictures) wish = wish_of_picture();
   const FrameOutput output = method.frame_output(wish);
   on_first(ranks_, [&] {
     if (series_) series_->write(output.files);

@@ -45,7 +45,9 @@ struct RecordState {
   std::int64_t frame_step = -1;    ///< of the last frame that the schedule asked for
   double frame_time = 0.0;         ///< likewise  [s]
   std::int64_t frames = 0;         ///< in the folder, that the schedule asked for
-  std::optional<Extent> extent;    ///< of the pictures, from the first frame  [m]
+  std::optional<Extent> first;     ///< extent of the first picture  [m]
+  std::optional<Extent> extent;    ///< of the last picture  [m]
+  std::int64_t height = 0;         ///< of the pictures; 0: not known yet  [pixels]
   std::vector<ProbeRange> probes;  ///< over the rows that the schedule asked for
   EnergyWatch::Rows unbalanced;    ///< likewise
   KineticShare moving;             ///< likewise
@@ -102,6 +104,7 @@ class Recorder {
   void write_frame_of(Method& method, std::int64_t number);
   void write_picture_of_step(Method& method);
   RenderOptions picture_options() const;
+  FrameWish wish_of_picture() const;
   void write_picture(const std::string& name, Method& method, const FrameOutput& output);
   bool is_picture_step(std::int64_t step) const;
   bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
@@ -122,6 +125,7 @@ class Recorder {
   std::optional<std::int64_t> resumed_from_;  ///< a step
   std::optional<EnergyBalance> last_energy_;
   EnergyWatch watch_;
+  bool told_blank_ = false;
 };
 
 }  // namespace breccia

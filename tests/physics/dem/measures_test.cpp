@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/probe.hpp"
+#include "dem/stress.hpp"
 #include "physics/dem/scene.hpp"
 
 namespace breccia::dem {
@@ -106,6 +109,34 @@ TEST(Measures, stress_of_a_pulled_prism_is_force_over_section) {
               0.1 * force / section);
   EXPECT_NEAR(value(w, "torque_x", "head", "sum") + value(w, "torque_x", "foot", "sum"), 0.0,
               1e-6 * force * 0.02);
+}
+
+/// Sum of stress times volume over all elements.  [N m]
+Stress moments_of(const World& w, double density) {
+  const std::vector<Stress> all = stresses(w);
+  Stress sum{};
+  for (Index e = 0; e < w.elements.size(); ++e)
+    for (std::size_t k = 0; k < sum.size(); ++k)
+      sum[k] += all[at(e)][k] * w.elements.mass.data()[e] / density;
+  return sum;
+}
+
+TEST(Measures, stresses_of_elements_have_the_mean_of_a_box_around_them) {
+  const Scene pulled = prism(), pressed = pressed_box(3);
+  for (const Scene* s : {&pulled, &pressed}) {
+    World w = s->world();
+    for (int i = 0; i < 5000; ++i) step(w);
+    const Stress sum = moments_of(w, s->config.materials[0].density);
+    const std::vector<double> low{-0.02, -0.02, -0.02}, high{0.1, 0.1, 0.2};
+    const double volume = 0.12 * 0.12 * 0.22;
+    const char* const names[] = {"stress_xx", "stress_yy", "stress_zz",
+                                 "stress_xy", "stress_yz", "stress_xz"};
+    const double scale = std::fabs(sum[2]);
+    EXPECT_GT(scale, 0.0);
+    for (std::size_t k = 0; k < 6; ++k)
+      EXPECT_NEAR(sum[k], volume * value(w, names[k], "", "mean", low, high), 1e-9 * scale)
+          << names[k];
+  }
 }
 
 TEST(Measures, strain_and_displacement_of_a_uniform_flow_are_exact) {

@@ -1,0 +1,52 @@
+#include "io/picture/layout.hpp"
+
+#include "io/picture/annotation.hpp"
+#include "io/picture/hidden.hpp"
+
+namespace breccia {
+namespace {
+
+/// A flat frame has nothing to show from the side: there the slanted view looks from above.
+Axes axes_for(const Extent& extent, const RenderOptions& options) {
+  const bool flat = extent.low.z == extent.high.z;
+  return axes_of_view(flat && options.view == "iso" ? "z" : options.view);
+}
+
+}  // namespace
+
+AsDrawn::AsDrawn(const Frame& whole, const RenderOptions& wanted) : frame(whole), options(wanted) {
+  if (options.scale != 1.0) frame = displaced(frame, options.scale);
+  if (!options.extent) options.extent = bulk_extent(frame);
+  if (!options.hidden.empty()) frame = without_groups(frame, options.hidden);
+  options.scale = 1.0;
+  options.hidden.clear();
+  if (options.height == 0) options.height = picture_height(frame, options);
+}
+
+Layout::Layout(const Frame& frame, const RenderOptions& options)
+    : coloring(color_frame(frame, options)),
+      extent(options.extent ? *options.extent : bulk_extent(frame)),
+      axes(options.camera ? camera_at(*options.camera, {0, 0, 1, 1}).axes
+                          : axes_for(extent, options)),
+      overlay(frame, options, coloring.legend) {
+  if (const std::optional<Clip> clip = clip_of(options.clip, axes))
+    extent = cut_extent(extent, *clip);
+}
+
+Camera Layout::camera(const RenderOptions& options) const {
+  const Window window = scene_window(options, coloring.legend);
+  return options.camera ? camera_at(*options.camera, window) : fitted_camera(axes, extent, window);
+}
+
+int picture_height(const Frame& frame, const RenderOptions& options) {
+  if (options.height > 0) return options.height;
+  if (options.scale != 1.0 || !options.hidden.empty())
+    return AsDrawn(frame, options).options.height;
+  const Layout layout(frame, options);
+  if (options.camera) return options.width * 3 / 4;
+  const Camera unit = fitted_camera(layout.axes, layout.extent, {0.0, 0.0, 1.0, 1e9});
+  const Camera tall = fitted_camera(layout.axes, layout.extent, {0.0, 0.0, 1e9, 1.0});
+  return fitted_height(options, layout.coloring.legend, unit.resolution / tall.resolution);
+}
+
+}  // namespace breccia

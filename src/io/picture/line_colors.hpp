@@ -1,0 +1,13 @@
+#pragma once
+// Widths of lines that a field colours.
+
+#include <vector>
+
+#include "io/picture/field_colors.hpp"
+
+namespace breccia {
+
+/// Wide lines for large values; those of the smallest, which would cover the others, are left out.
+void size_lines(const std::vector<float>& values, Coloring& coloring);
+
+}  // namespace breccia

@@ -1,0 +1,45 @@
+#pragma once
+// What is drawn over the items of a picture: arrows, crosses of stress, marks on what is held.
+
+#include <functional>
+
+#include "io/picture/camera.hpp"
+#include "io/picture/field_colors.hpp"
+#include "io/picture/paper.hpp"
+
+namespace breccia {
+
+/// Where the points of a frame lie on the paper, and which of them one sees.
+struct OnPaper {
+  Camera camera;                           ///< in pixels of the paper
+  std::function<bool(std::size_t)> shows;  ///< a point
+};
+
+/// Adds to the legend what the marks mean, and gives what draws them.
+/// @throws InputError if the frame lacks the field of arrows or stresses (says how to get it)
+class Overlay {
+ public:
+  Overlay(const Frame& frame, const RenderOptions& options, Legend& legend);
+
+  /// @param scale  of text
+  void draw(Paper& paper, const OnPaper& on, int scale) const;
+
+ private:
+  struct Tensor {
+    double xx, yy, zz, xy, yz, xz;
+  };
+  Tensor stress_of(std::size_t item) const;
+  std::vector<Vec3> places_of_stress() const;
+  void draw_arrows(Paper& paper, const OnPaper& on, int scale) const;
+  void draw_crosses(Paper& paper, const OnPaper& on, int scale) const;
+  void draw_held(Paper& paper, const OnPaper& on, int scale) const;
+
+  const Frame& frame_;
+  const FrameField* arrows_ = nullptr;
+  const FrameField* held_ = nullptr;
+  std::vector<const FrameField*> stress_;  ///< one of six components, or three
+  double longest_ = 0.0;                   ///< arrow, in the unit of its field
+  double largest_ = 0.0;                   ///< principal stress  [Pa]
+};
+
+}  // namespace breccia
