@@ -27,6 +27,13 @@
 namespace breccia::app {
 namespace {
 
+/// Damage, or of grains that nothing links how fast they are.
+std::string usual_field(const Frame& frame) {
+  const bool linked = !frame.triangles.empty() || !frame.lines.empty();
+  const char* const field = linked ? "damage" : "velocity";
+  return has_field(frame, field) ? field : "";
+}
+
 /// The frames of a run, and how pictures of them look: alike, so that they can be compared.
 struct Shots {
   std::string folder, fit;
@@ -41,7 +48,7 @@ struct Shots {
         options(wanted) {
     if (times.empty()) throw InputError(folder + ": this folder holds no frames");
     first_ = read_frame(folder, 0);
-    options.field = color ? *color : has_field(first_, "damage") ? "damage" : "";
+    options.field = color ? *color : usual_field(first_);
     if (options.field == "damage" && !options.range) options.range = ValueRange{0.0, 1.0};
     if (fit != "frame") options.extent = extent_of_run();
   }
@@ -110,16 +117,20 @@ bool is_drawing(const std::string& file) {
   return file.ends_with(".svg") || file.ends_with(".pdf");
 }
 
-/// The ends of "0:2.5e6". @throws InputError for another text
+/// The ends of "0:2.5e6" or "0..2.5e6". @throws InputError for another text
 ValueRange range_of(const std::string& text) {
+  const auto number = [](std::string_view part, double& value) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return error == std::errc{} && end == part.data() + part.size();
+  };
   ValueRange range{};
-  const char* const end = text.data() + text.size();
-  const auto [colon, first] = std::from_chars(text.data(), end, range.low);
-  const std::size_t between = std::string_view(colon, end).starts_with("..") ? 2 : 1;
-  if (first == std::errc{} && colon != end && (*colon == ':' || between == 2)) {
-    const auto [last, second] = std::from_chars(colon + between, end, range.high);
-    if (second == std::errc{} && last == end && range.low < range.high) return range;
-  }
+  for (const std::string_view between : {":", ".."})
+    if (const std::size_t at = text.find(between); at != std::string::npos) {
+      const std::string_view whole = text;
+      if (number(whole.substr(0, at), range.low) &&
+          number(whole.substr(at + between.size()), range.high) && range.low < range.high)
+        return range;
+    }
   throw InputError("--range " + text +
                    ": two numbers in SI units, the lower first, such as 0:2.5e6");
 }
@@ -366,7 +377,8 @@ void add_render(CLI::App& program) {
           "a picture .png, a drawing of a plane case .svg or .pdf, or a film\n.mp4, .webm or .gif; "
           "default: DIR/render.png")
       ->type_name("FILE");
-  command->add_option("--color", render->color, "field that colours it; default: damage")
+  command
+      ->add_option("--color", render->color, "field that colours it; default: damage, or velocity")
       ->type_name("FIELD");
   command->add_option("--view", render->options.view, "camera: iso, x, y or z")
       ->type_name("VIEW")

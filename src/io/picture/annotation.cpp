@@ -43,8 +43,23 @@ int legend_width(const Legend& legend, int scale) {
   return width == 0 ? 0 : width + 2 * margin * scale;
 }
 
-int bar_length(const Paper& paper) {
-  return paper.height * 2 / 5;
+constexpr int axes_room = 62;  ///< below the legend  [dots]
+constexpr double least_bar = 0.2, usual_bar = 0.4, above_legend = 1.0 / 7.0;  ///< of the height
+
+/// Height of the lines of a legend that has a bar, or none.  [pixels]
+double lines_height(const Legend& legend, int scale) {
+  const double lines = static_cast<double>(legend.swatches.size() + legend.notes.size()) +
+                       (legend.title.empty() ? 0.0 : 1.0) + (legend.bar ? 1.5 : 0.0) +
+                       (legend.bar && !legend.bar->note.empty() ? 1.0 : 0.0);
+  return lines * (font_height + 4) * scale;
+}
+
+/// Shorter where lines and axes would not fit.
+int bar_length(const Paper& paper, const Legend& legend, int scale) {
+  const double height = paper.height;
+  const double left =
+      (1.0 - above_legend) * height - lines_height(legend, scale) - axes_room * scale;
+  return static_cast<int>(std::clamp(left, least_bar * height, usual_bar * height));
 }
 
 /// Height of the legend without margins.  [pixels]
@@ -54,12 +69,12 @@ int legend_height(const Paper& paper, const Legend& legend, int scale) {
               (legend.title.empty() ? 0 : 1);
   if (!legend.bar) return lines * line;
   if (!legend.bar->note.empty()) ++lines;
-  return (lines + 1) * line + 4 * scale + bar_length(paper);
+  return (lines + 1) * line + 4 * scale + bar_length(paper, legend, scale);
 }
 
 /// The bar with frame, ticks and numbers; (left, top) is its upper corner.
-void draw_bar(Paper& paper, const Legend::Bar& bar, int left, int top, int scale) {
-  const int length = bar_length(paper), right = left + bar_width * scale;
+void draw_bar(Paper& paper, const Legend::Bar& bar, int left, int top, int length, int scale) {
+  const int right = left + bar_width * scale;
   paper.fill(left - 1, top - 1, right + 1, top + length + 1, faint);
   for (int y = 0; y < length; ++y) {
     const float share = 1.0F - (static_cast<float>(y) + 0.5F) / static_cast<float>(length);
@@ -77,7 +92,7 @@ void draw_bar(Paper& paper, const Legend::Bar& bar, int left, int top, int scale
 }  // namespace
 
 int text_scale(const RenderOptions& options) {
-  const int fitting = std::min(options.height / 200, options.width / 520);
+  const int fitting = std::min(options.height / 170, options.width / 520);
   constexpr std::array scales{12, 6, 4, 3, 2, 1};
   for (const int scale : scales) {
     if (scale <= fitting) return scale;
@@ -93,11 +108,8 @@ int fitted_height(const RenderOptions& options, const Legend& legend, double asp
   const Window window = scene_window(tall, legend);
   const double beside = tall.height - (window.bottom - window.top);
   const double wanted = beside + aspect * (window.right - window.left);
-  // The legend, whose bar is 2/5 of the height, begins at 1/7.
-  const int line = (font_height + 4) * scale;
-  const double lines = static_cast<double>(legend.swatches.size() + legend.notes.size()) +
-                       (legend.title.empty() ? 0.0 : 1.0) + (legend.bar ? 2.5 : 0.0);
-  const double of_legend = lines * line / (1.0 - 1.0 / 7.0 - (legend.bar ? 0.4 : 0.0));
+  const double of_legend = (lines_height(legend, scale) + axes_room * scale) /
+                           (1.0 - above_legend - (legend.bar ? least_bar : 0.0));
   const double height = std::max({wanted, of_legend, lowest * options.width});
   return std::max(16, static_cast<int>(std::min<double>(height, tall.height)));
 }
@@ -130,7 +142,7 @@ void draw_title(Paper& paper, const std::string& title, const Frame& frame, int 
 void draw_legend(Paper& paper, const Legend& legend, int scale) {
   const int left = paper.width - legend_width(legend, scale) + margin * scale;
   const int line = (font_height + 4) * scale;
-  int y = paper.height / 7;
+  int y = static_cast<int>(above_legend * paper.height);
   const int height = legend_height(paper, legend, scale);
   if (height > 0) paper.veil(left, y, paper.width - margin * scale, y + height, scale);
   if (!legend.title.empty()) {
@@ -143,8 +155,9 @@ void draw_legend(Paper& paper, const Legend& legend, int scale) {
       y += line;
     }
     y += 4 * scale;
-    draw_bar(paper, *legend.bar, left, y, scale);
-    y += bar_length(paper) + line;
+    const int length = bar_length(paper, legend, scale);
+    draw_bar(paper, *legend.bar, left, y, length, scale);
+    y += length + line;
   }
   for (const Legend::Swatch& swatch : legend.swatches) {
     const int size = 8 * scale;

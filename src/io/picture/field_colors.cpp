@@ -41,8 +41,11 @@ const FrameField* field_named(const std::vector<FrameField>& fields, const std::
   return nullptr;
 }
 
-std::optional<Selected> find(const Frame& frame, const std::string& name) {
-  constexpr std::array carriers{Carrier::points, Carrier::triangles, Carrier::lines};
+/// @param lines_first  of two fields of a name that of lines counts
+std::optional<Selected> find(const Frame& frame, const std::string& name,
+                             bool lines_first = false) {
+  std::array carriers{Carrier::points, Carrier::triangles, Carrier::lines};
+  if (lines_first) std::rotate(carriers.begin(), carriers.end() - 1, carriers.end());
   for (const Carrier carrier : carriers) {
     if (const FrameField* field = field_named(fields_of(frame, carrier), name)) {
       return Selected{carrier, field, field->components == 1 ? 0 : -1};
@@ -394,14 +397,15 @@ bool colors_lines(const Frame& frame, const std::string& field) {
 }
 
 Coloring color_frame(const Frame& frame, const std::string& field,
-                     const std::optional<ValueRange>& range, const std::string& map) {
+                     const std::optional<ValueRange>& range, const std::string& map,
+                     bool lines_first) {
   Coloring coloring;
   fill_default_colors(frame, coloring);
   if (field.empty()) {
     show_cracks(frame, coloring);
     return coloring;
   }
-  const std::optional<Selected> selected = find(frame, field);
+  const std::optional<Selected> selected = find(frame, field, lines_first);
   if (!selected) {
     throw InputError(fmt::format("field = \"{}\" is not in this frame; it has {}", field,
                                  names_of_fields(frame)));

@@ -46,10 +46,12 @@ struct Coloring {
 const FrameField* field_of(const Frame& frame, Carrier carrier, const std::string& name);
 
 /// @param map  name of the map of colours; empty: by the field
+/// @param lines_first  of two fields of that name the one of lines counts
 /// @throws InputError if the frame has no such field (lists what it has), or one of wrong length,
 ///                    or there is no such map
 Coloring color_frame(const Frame& frame, const std::string& field,
-                     const std::optional<ValueRange>& range, const std::string& map = {});
+                     const std::optional<ValueRange>& range, const std::string& map = {},
+                     bool lines_first = false);
 /// As the options say.
 Coloring color_frame(const Frame& frame, const RenderOptions& options);
 

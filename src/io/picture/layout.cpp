@@ -12,6 +12,18 @@ Axes axes_for(const Extent& extent, const RenderOptions& options) {
   return axes_of_view(flat && options.view == "iso" ? "z" : options.view);
 }
 
+/// What a cut leaves, if that can be shown larger than the whole: else the camera stays.
+Extent nearer(const Extent& whole, const Extent& cut, const Axes& axes,
+              const RenderOptions& options) {
+  const double height = options.height > 0 ? options.height : 0.75 * options.width;
+  const Window window{0.0, 0.0, 1.0 * options.width, height};
+  constexpr double gain = 1.05;
+  return fitted_camera(axes, cut, window).resolution >
+                 gain * fitted_camera(axes, whole, window).resolution
+             ? cut
+             : whole;
+}
+
 }  // namespace
 
 AsDrawn::AsDrawn(const Frame& whole, const RenderOptions& wanted) : frame(whole), options(wanted) {
@@ -30,7 +42,7 @@ Layout::Layout(const Frame& frame, const RenderOptions& options)
                           : axes_for(extent, options)),
       overlay(frame, options, coloring.legend) {
   if (const std::optional<Clip> clip = clip_of(options.clip, axes))
-    extent = cut_extent(extent, *clip);
+    extent = nearer(extent, cut_extent(extent, *clip), axes, options);
 }
 
 Camera Layout::camera(const RenderOptions& options) const {

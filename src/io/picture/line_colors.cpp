@@ -40,7 +40,7 @@ double length_of(const Frame& frame, std::size_t line) {
               frame.position[static_cast<std::size_t>(frame.lines[2 * line + 1])]);
 }
 
-/// Links that broke, of elements that still lie side by side, instead of all others.
+/// Bars, and links that broke, of elements that still lie side by side, instead of all others.
 void show_broken(const Frame& frame, Coloring& coloring) {
   const FrameField* state = line_field(frame, "state");
   if (state == nullptr) return;
@@ -50,11 +50,18 @@ void show_broken(const Frame& frame, Coloring& coloring) {
   const FrameField* kind = line_field(frame, "kind");
   std::array<bool, swatches.size()> seen{};
   coloring.hidden_lines.assign(coloring.lines.size(), true);
+  coloring.line_widths.assign(coloring.lines.size(), 0.75F);
   for (std::size_t i = 0; i < coloring.lines.size(); ++i) {
     const double reach = frame.radius[static_cast<std::size_t>(frame.lines[2 * i])] +
                          frame.radius[static_cast<std::size_t>(frame.lines[2 * i + 1])];
-    if (state->values[i] != 2.0F || !(length_of(frame, i) < 2.0 * reach)) continue;
     const float number = kind != nullptr ? kind->values[i] : 0.0F;
+    if (number == 1.0F && state->values[i] != 2.0F) {  // a bar, between its elements
+      coloring.hidden_lines[i] = false;
+      coloring.lines[i] = coloring.points[static_cast<std::size_t>(frame.lines[2 * i])];
+      coloring.line_widths[i] = 2.0F;
+      continue;
+    }
+    if (state->values[i] != 2.0F || !(length_of(frame, i) < 2.0 * reach)) continue;
     const std::size_t which = number == 1.0F ? 1 : number == 2.0F ? 2 : 0;
     coloring.hidden_lines[i] = false;
     coloring.lines[i] = swatches[which].color;
@@ -108,7 +115,9 @@ void size_lines(const std::vector<float>& values, Coloring& coloring) {
 }
 
 Coloring color_frame(const Frame& frame, const RenderOptions& options) {
-  Coloring coloring = color_frame(frame, options.field, options.range, options.map);
+  const bool of_spheres = !frame.radius.empty();
+  Coloring coloring = color_frame(frame, options.field, options.range, options.map,
+                                  options.show_links && of_spheres);
   if (coloring.cracks && (options.show_links || options.xray)) show_softened(frame, coloring);
   if (!options.xray) return coloring;
   for (Color& color : coloring.triangles) color = blend(color, paper, 0.8F);

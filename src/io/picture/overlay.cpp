@@ -14,7 +14,7 @@ namespace breccia {
 namespace {
 
 constexpr Color ink{0.10F, 0.11F, 0.13F}, white{1.0F, 1.0F, 1.0F};
-constexpr Color pulls{0.80F, 0.14F, 0.12F}, presses{0.13F, 0.33F, 0.75F};
+constexpr Color pulls{0.80F, 0.14F, 0.12F}, presses{0.07F, 0.55F, 0.87F};
 constexpr Color support{0.05F, 0.45F, 0.42F};
 constexpr double cell = 17.0;  ///< of the grid by which marks are thinned  [units of text]
 
@@ -238,7 +238,8 @@ void Overlay::draw_crosses(Paper& paper, const OnPaper& on, int scale) const {
 
 void Overlay::draw_held(Paper& paper, const OnPaper& on, int scale) const {
   struct None {};
-  Sums<None> taken{6.0 * scale, {}};
+  const bool plane = frame_.radius.empty();
+  Sums<None> taken{(plane ? 6.0 : 11.0) * scale, {}};
   for (std::size_t i = 0; i < std::min(frame_.position.size(), held_->values.size()); ++i) {
     const ScreenPoint p = on.camera.project(frame_.position[i]);
     if (!(held_->values[i] > 0.0F) || !is_on(paper, p) || !on.shows(i)) continue;
@@ -248,8 +249,8 @@ void Overlay::draw_held(Paper& paper, const OnPaper& on, int scale) const {
     mark.u = p.u, mark.v = p.v;
   }
   for (const auto& [place, mark] : taken.cells) {
-    paper.stroke(mark.u, mark.v, mark.u, mark.v, 3.6 * scale, white);
-    paper.stroke(mark.u, mark.v, mark.u, mark.v, 2.6 * scale, support);
+    paper.stroke(mark.u, mark.v, mark.u, mark.v, (plane ? 4.6 : 3.6) * scale, white);
+    paper.stroke(mark.u, mark.v, mark.u, mark.v, (plane ? 3.4 : 2.6) * scale, support);
   }
 }
 

@@ -55,20 +55,26 @@ void open_sky(const Canvas& canvas, int y, Stretch stretch, float relief,
 /// Where on its item each pixel of a row lies: direction from the centre over the radius, to the
 /// right, up and towards the viewer. Flat items have zeros.
 struct Directions {
-  explicit Directions(std::size_t width) : right(width), up(width), toward(width) {}
+  explicit Directions(std::size_t width) : right(width), up(width), toward(width), face(width) {}
   std::vector<float> right, up, toward;
+  std::vector<float> face;  ///< 1 on the plane of a cut
 };
 
-void find_directions(const Canvas& canvas, std::span<const ItemLook> looks, int y, Stretch stretch,
+void find_directions(const Canvas& canvas, std::span<const ItemLook> looks,
+                     const std::optional<ScreenClip>& clip, int y, Stretch stretch,
                      Directions& directions) {
+  constexpr double thin = 0.05;  // pixels
+
   const float* const depth = &canvas.depth[canvas.row(y)];
   const std::int32_t* const item = &canvas.item[canvas.row(y)];
   for (int x = stretch.first; x <= stretch.last; ++x) {
     const auto place = static_cast<std::size_t>(x);
     directions.right[place] = directions.up[place] = directions.toward[place] = 0.0F;
+    directions.face[place] = 0.0F;
     if (item[x] == Canvas::none) continue;
     const ScreenSphere& sphere = looks[static_cast<std::size_t>(item[x])].sphere;
     if (!(sphere.radius > 0.0F)) continue;
+    if (clip && clip->beyond(x + 0.5, y + 0.5, depth[x]) > -thin) directions.face[place] = 1.0F;
     const float inverse = 1.0F / sphere.radius;
     directions.right[place] = (static_cast<float>(x) + 0.5F - sphere.u) * inverse;
     directions.up[place] = (sphere.v - static_cast<float>(y) - 0.5F) * inverse;
@@ -96,11 +102,10 @@ void add_lamp(const Lighting& lamp, Stretch stretch, const Directions& direction
     float shine = half * half / half_squared;
     shine = shine * shine * shine * shine;
     shine = shine * shine * shine * shine;
-    // On a sphere the direction has length 1; inside it lies the face of a cut, which is flat.
-    const bool face = squared < 0.98F && squared > 0.0F;
     const float lit = light[x] * (squared == 0.0F ? 1.0F : ball);
-    light[x] = face ? lamp.cut : lit;
-    gloss[x] = squared < 0.98F ? 0.0F : 0.07F * shine;
+    const float face = directions.face[x];
+    light[x] = face > 0.0F ? lamp.cut : lit;
+    gloss[x] = squared == 0.0F || face > 0.0F ? 0.0F : 0.07F * shine;
   }
 }
 
@@ -135,7 +140,7 @@ Image shade(const Canvas& canvas, std::span<const ItemLook> looks,
       const Stretch stretch = covered(canvas, y);
       if (stretch.first > stretch.last) continue;
       open_sky(canvas, y, stretch, relief, light);
-      find_directions(canvas, looks, y, stretch, directions);
+      find_directions(canvas, looks, clip, y, stretch, directions);
       add_lamp(lighting, stretch, directions, light, gloss);
       const std::int32_t* const item = &canvas.item[canvas.row(y)];
       std::uint8_t* const row = &image.rgb[3 * width * static_cast<std::size_t>(y)];

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "io/picture/picture.hpp"
 #include "io/file.hpp"
+#include "io/picture/picture.hpp"
 #include "io/whole_file.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -33,14 +33,14 @@ struct Ran {
   int code;
 
   explicit Ran(const std::string& output) {
-    write((folder / "case.toml"), falling_case(output));
+    write(folder / "case.toml", falling_case(output));
     code = run("run " + (folder / "case.toml") + " -o " + out() + " --threads 1");
   }
-  std::string out() const { return (folder / "out"); }
+  std::string out() const { return folder / "out"; }
   int run(const std::string& arguments) {
-    const int code = wait_for(start_program(arguments, (folder / "words")));
-    text = read_whole_file((folder / "words"));
-    return code;
+    const int ended = wait_for(start_program(arguments, folder / "words"));
+    text = read_whole_file(folder / "words");
+    return ended;
   }
   static void write(const std::string& path, const std::string& text) { replace_file(path, text); }
   double shown(const std::string& picture) const {
