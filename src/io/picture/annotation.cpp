@@ -81,7 +81,13 @@ void draw_bar(Paper& paper, const Legend::Bar& bar, int left, int top, int lengt
     paper.fill(left, top + y, right, top + y + 1, map_color(bar.map, share));
   }
   const double width = bar.range.high - bar.range.low;
-  for (const Tick& tick : bar.ticks) {
+  // In a short bar every second number, or fewer, so that they do not touch.
+  const std::size_t count = bar.ticks.size();
+  const double apart = count > 1 ? (bar.ticks[1].value - bar.ticks[0].value) / width * length : 1e9;
+  std::size_t every = 1;
+  while (every < count && static_cast<double>(every) * apart < font_height * scale) ++every;
+  for (std::size_t k = 0; k < count; k += every) {
+    const Tick& tick = bar.ticks[k];
     const double share = width > 0.0 ? (tick.value - bar.range.low) / width : 0.0;
     const int y = top + static_cast<int>((1.0 - share) * (length - 1) + 0.5);
     paper.fill(right + 1, y - scale / 2, right + 3 * scale, y - scale / 2 + scale, ink);

@@ -219,7 +219,7 @@ void Overlay::draw_crosses(Paper& paper, const OnPaper& on, int scale) const {
   const auto nearly_all = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 49 / 50);
   std::nth_element(sizes.begin(), nearly_all, sizes.end());
   if (!(*nearly_all > 0.0)) return;
-  const double longest = 0.62 * 1.3 * cell * scale, unit = longest / *nearly_all;
+  const double longest = 0.46 * 1.3 * cell * scale, unit = longest / *nearly_all;
   for (const auto& [thick, halo] : {std::pair{2.6, true}, std::pair{1.2, false}})
     for (const Cross& c : crosses) {
       const auto bar = [&, thick = thick, halo = halo](double value, double right, double up) {

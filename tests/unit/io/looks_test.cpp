@@ -165,6 +165,10 @@ TEST(looks, arrows_point_along_their_vectors_and_the_legend_says_how_long) {
   const auto is_ink = [](const Pixel& p) { return p[0] + p[1] + p[2] < 420; };
   const Found upwards = find(render(frame, options), is_ink);
   ASSERT_GT(upwards.count, 30);
+  for (std::size_t i = 0; i < 6; ++i) frame.point_fields[0].values[3 * i + 1] = -3.0F;
+  const Found downwards = find(render(frame, options), is_ink);
+  EXPECT_LT(upwards.top, downwards.top - 10);
+  EXPECT_LT(upwards.bottom, downwards.bottom - 10);
   for (std::size_t i = 0; i < 6; ++i)
     std::swap(frame.point_fields[0].values[3 * i], frame.point_fields[0].values[3 * i + 1]);
   const Found sideways = find(render(frame, options), is_ink);

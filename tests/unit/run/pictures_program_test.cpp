@@ -76,6 +76,19 @@ TEST(PicturesProgram, the_camera_follows_what_falls_and_says_when_it_does_not) {
   EXPECT_NE(told.find("nothing of the model is in the picture 0003.png"), std::string::npos);
 }
 
+TEST(PicturesProgram, a_run_that_is_resumed_draws_the_pictures_of_one_without_a_break) {
+  Ran ran("");
+  ASSERT_EQ(ran.code, 0) << ran.text;
+  const std::string broken = ran.folder / "broken";
+  ASSERT_EQ(
+      ran.run("run " + (ran.folder / "case.toml") + " -o " + broken + " --threads 1 --until 0.25"),
+      0)
+      << ran.text;
+  ASSERT_EQ(ran.run("resume " + broken + " --threads 1 --until 0.5"), 0) << ran.text;
+  for (const char* picture : {"/pictures/0002.png", "/pictures/0003.png"})
+    EXPECT_EQ(read_whole_file(broken + picture), read_whole_file(ran.out() + picture)) << picture;
+}
+
 TEST(PicturesProgram, pictures_of_a_case_and_of_render_know_the_same_looks) {
   Ran ran(
       "arrows = \"displacement\"\ncrosses = true\nscale = 0.5\nxray = true\nlinks = true\n"
