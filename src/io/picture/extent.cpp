@@ -168,7 +168,7 @@ Extent bulk_extent(const Frame& frame) {
 }
 
 Extent grown_extent(const Extent& extent, const Extent& first, const Frame& frame, double share) {
-  constexpr double farthest = 4.0;  // times the first extent
+  constexpr double farthest = 4.0, of_largest = 12.0;  // times the first extent
   const Extent now = bulk_extent(frame);
   if (frame.position.empty() || shows(extent, now)) return extent;
   const Extent all = joined(extent, now, share);
@@ -180,7 +180,7 @@ Extent grown_extent(const Extent& extent, const Extent& first, const Frame& fram
                              [](const auto& a, const auto& b) { return a.size() < b.size(); }));
   if (shows(extent, largest)) return extent;
   const Extent with_largest = joined(extent, largest, share);
-  if (size_of(with_largest) <= farthest * size_of(first)) return with_largest;
+  if (size_of(with_largest) <= of_largest * size_of(first)) return with_largest;
   return with_outline(largest, frame);
 }
 

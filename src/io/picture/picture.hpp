@@ -75,8 +75,8 @@ struct RenderOptions {
 Extent bulk_extent(const Frame& frame);
 
 /// The extent for a later frame: the given one, widened where a body leaves it. What flies far
-/// widens it to four times the first extent at most; then the largest body alone counts, and where
-/// that has gone as well, the extent is that of the frame.
+/// widens it to four times the first extent at most, the largest body to twelve; where that has
+/// gone farther, the extent is that of the body.
 /// @param share  of what is missing that is added on top, so that the next frames fit, too  [-]
 Extent grown_extent(const Extent& extent, const Extent& first, const Frame& frame, double share);
 
