@@ -69,6 +69,20 @@ struct EnergyConfig {
   }
 };
 
+/// [audit]: steps that are done twice, to find a machine that computes wrong; no key of it changes
+/// a bit of the results
+struct AuditConfig {
+  std::int64_t every = 0;  ///< mean distance of steps that are repeated; 0: none  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("every", every, "-", Range{0, 1e12},
+        "one step in so many, drawn at random, is done twice, and the bits of both results are "
+        "compared: a difference ends the run with exit code 5. Each costs some copies of the "
+        "state; 0 switches it off");
+  }
+};
+
 /// [domain]: how a case is shared out among ranks; no key of it changes a bit of the results
 struct DomainConfig {
   bool balance = true;
@@ -160,6 +174,7 @@ struct CaseConfig {
   CheckpointConfig checkpoint;
   DomainConfig domain;
   EnergyConfig energy;
+  AuditConfig audit;
   std::vector<ProbeConfig> probes;
   std::vector<CheckConfig> checks;
 
@@ -179,6 +194,7 @@ struct CaseConfig {
     key.table("checkpoint", checkpoint, "when the state is saved");
     key.table("domain", domain, "how ranks share the work; never changes a result");
     key.table("energy", energy, "when energies that do not add up are a warning, and when an end");
+    key.table("audit", audit, "steps that are done twice, to find a machine that computes wrong");
     key.list("probe", probes, "columns of history.csv");
     key.list("check", checks, "numbers the case must show");
   }

@@ -185,6 +185,11 @@ CheckpointReader::CheckpointReader(const std::string& path) : path_(path) {
   if (got != frame.whole) refuse("is damaged: " + mismatch(got, frame.whole));
 }
 
+CheckpointReader::CheckpointReader(const CheckpointWriter& held) : path_("a state in memory") {
+  for (const CheckpointWriter::Section& s : held.sections_)
+    sections_.push_back({s.name, s.count, s.item_bytes, s.bytes});
+}
+
 void CheckpointReader::read_table(const std::vector<std::byte>& bytes, const Frame& frame) {
   if (const Digest got = digest(bytes); got != frame.table)
     refuse("its table of sections is damaged: " + mismatch(got, frame.table));

@@ -59,6 +59,7 @@ class CheckpointWriter {
     std::uint64_t item_bytes = 0;
   };
   std::vector<Section> sections_;
+  friend class CheckpointReader;
 };
 
 /// A checkpoint that has been read and fully verified.
@@ -68,6 +69,8 @@ class CheckpointReader {
   /// @throws IoError if the file cannot be read, CheckpointError naming what is wrong and the
   ///         section if it is damaged, truncated or of another version
   explicit CheckpointReader(const std::string& path);
+  /// Reads what a writer holds, which must outlive it: a state that is kept in memory.
+  explicit CheckpointReader(const CheckpointWriter& held);
   // The sections' bytes lie in the reader: it can be moved, not copied.
   CheckpointReader(CheckpointReader&&) = default;
   CheckpointReader& operator=(CheckpointReader&&) = default;

@@ -17,6 +17,7 @@
 #include "prepare/model_file.hpp"
 #include "run/machine/device_plan.hpp"
 #include "run/machine/memory_plan.hpp"
+#include "run/method/audited_method.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem_method.hpp"
 #include "run/method/shown.hpp"
@@ -42,6 +43,7 @@ std::string model_digest(Config config) {
   config.checkpoint = {};
   config.domain = {};
   config.energy = {};
+  config.audit = {};
   config.probes.clear();
   config.checks.clear();
   return case_digest(completed_case(config));
@@ -230,7 +232,8 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
                         quiet || (ranks != nullptr && ranks->rank() > 0));
         });
         try {
-          return located(read, [&] { return make_method(config, model, exec, ranks); });
+          return audited(located(read, [&] { return make_method(config, model, exec, ranks); }),
+                         config.audit, config.seed, ranks);
         } catch (const NumericsError& error) {
           throw NumericsError(fmt::format("step 0, t = 0 s: {}", error.what()));
         }

@@ -87,9 +87,18 @@ def resume(folder, *more, **how):
 
 
 def state_hash(folder):
+    return told(folder, "state_hash")
+
+
+def status(folder):
+    return told(folder, "status")
+
+
+def told(folder, key):
+    """What summary.json says, if it is there."""
     try:
         with open(os.path.join(folder, "summary.json")) as file:
-            return json.load(file).get("state_hash")
+            return json.load(file).get(key)
     except (OSError, ValueError):
         return None
 

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 
-from common import Attack, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash
+from common import Attack, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash, status
 
 STEPS = 400
 INTERVAL = 20  # steps between checkpoints, as the cases say
@@ -42,6 +42,20 @@ def lives(process):
         return False
 
 
+def end_of(child, folder, stopped):
+    """The exit code. A rank that is stopped after the run has ended is awaited by nobody but mpirun."""
+    begun = time.time()
+    while True:
+        try:
+            return child.wait(1)
+        except subprocess.TimeoutExpired:
+            if time.time() - begun > HANG:
+                raise
+        if stopped and status(folder) == "done" and time.time() - begun > 10:
+            for process in filter(lives, stopped):
+                os.kill(process, signal.SIGCONT)
+
+
 def disturb(attack, case, random_, ranks, stop, longest):
     folder = attack.path("run")
     shutil.rmtree(folder, ignore_errors=True)
@@ -51,13 +65,18 @@ def disturb(attack, case, random_, ranks, stop, longest):
                  "--set", "domain.patience=3"]
     child = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                              env=dict(os.environ, GOMP_SPINCOUNT="2000"))
+    if stop:  # before MPI has started, no rank can know of another
+        begun = time.time()
+        while not os.path.exists(os.path.join(folder, "summary.json")) and time.time() - begun < HANG:
+            time.sleep(0.01)
+        longest /= 3
     time.sleep(random_.uniform(0.02, longest))
     targets = ranks_of(child.pid) if ranks > 1 else [child.pid]
     hit = bool(targets) and child.poll() is None
     if hit:
         os.kill(random_.choice(targets), signal.SIGSTOP if stop else signal.SIGKILL)
     try:
-        code = child.wait(HANG)
+        code = end_of(child, folder, targets if stop else [])
     except subprocess.TimeoutExpired:
         attack.expect(False, f"{case}: did not end in {HANG} s after the signal")
         for process in ranks_of(child.pid) + [child.pid]:

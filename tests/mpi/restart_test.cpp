@@ -5,6 +5,7 @@
 
 #include "core/state_hash.hpp"
 #include "mpi/on_ranks.hpp"
+#include "run/method/audited_method.hpp"
 
 namespace breccia {
 namespace {
@@ -48,6 +49,21 @@ void expect_equal_ends(const AScene& scene, int pairs, int end, std::uint64_t se
   }
 }
 
+TEST(RestartOnRanks, steps_that_are_done_twice_change_no_bit) {
+  const auto scene = impact("intrinsic");
+  const Outcome whole = alone(scene, 200);
+  simulate_ranks(5, 77, [&](Communicator& ranks) {
+    const auto method = audited(method_of(scene, Exec{}, &ranks), AuditConfig{9}, 1, &ranks);
+    while (method->steps() < 200) method->advance({1e300, 200});
+    const std::uint64_t hash = method->state_hash();
+    double repeated = 0.0;
+    for (const Fact& fact : method->facts())
+      if (fact.path == "audit.repeated_steps") repeated = fact.value;
+    if (ranks.rank() != 0) return;
+    EXPECT_EQ(hash, whole.hash);
+    EXPECT_GT(repeated, 12.0);
+  });
+}
 TEST(RestartOnRanks, spheres_end_alike_for_forty_pairs) {
   expect_equal_ends(slab_piece(), 40, 150, 1);
 }

@@ -18,6 +18,7 @@ namespace breccia {
 /// What is to go wrong in a run of the fake method.
 struct Trouble {
   std::int64_t spoil_at = -1;   ///< verify() fails from this step on
+  std::int64_t flip_at = -1;    ///< the first time that this step is done, a bit of it is wrong
   std::int64_t lose_at = -1;    ///< this step fails and knows no more than an element's place
   std::int64_t signal_at = -1;  ///< the process gets `signal` during this step
   int signal = SIGTERM;
@@ -43,6 +44,10 @@ class FakeMethod : public Method {
     }
     time_ += last_step_;
     ++steps_;
+    if (steps_ == trouble_.flip_at) {
+      position_[2] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(position_[2]) ^ 1);
+      trouble_.flip_at = -1;
+    }
     if (steps_ == trouble_.lose_at) throw NumericsError("the element at place 3 is lost");
     if (steps_ == trouble_.signal_at) ::raise(trouble_.signal);
     return {1, last_step_, last_step_};

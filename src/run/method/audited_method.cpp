@@ -1,0 +1,112 @@
+#include "run/method/audited_method.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "core/random.hpp"
+#include "exec/error.hpp"
+
+namespace breccia {
+namespace {
+
+class AuditedMethod final : public Method {
+ public:
+  AuditedMethod(std::unique_ptr<Method> method, std::int64_t every, std::int64_t seed,
+                Communicator* ranks)
+      : method_(std::move(method)),
+        every_(every),
+        draws_{static_cast<std::uint64_t>(seed), stream},
+        ranks_(ranks) {}
+
+  Advanced advance(const StopAt& stop) override {
+    if (!next_) next_ = drawn_from(steps());
+    if (steps() < *next_) return method_->advance({stop.time, std::min(stop.step, *next_)});
+    const Advanced taken = repeated(stop);
+    next_ = drawn_from(steps());
+    return taken;
+  }
+
+  std::int64_t steps() const override { return method_->steps(); }
+  double time() const override { return method_->time(); }
+  double time_step() const override { return method_->time_step(); }
+  std::int64_t searches() const override { return method_->searches(); }
+  std::vector<std::string> warnings() override { return method_->warnings(); }
+  std::string step_rule() override { return method_->step_rule(); }
+  std::vector<StageEnd> stages() const override { return method_->stages(); }
+  StageProgress stage() const override { return method_->stage(); }
+  void set_stage(const StageProgress& stage) override { method_->set_stage(stage); }
+  EnergyBalance energy() override { return method_->energy(); }
+  std::vector<double> probes() override { return method_->probes(); }
+  std::uint64_t state_hash() override { return method_->state_hash(); }
+  void verify() override { method_->verify(); }
+  Frame frame() override { return method_->frame(); }
+  FrameOutput frame_output(const FrameWish& wish) override { return method_->frame_output(wish); }
+  std::unique_ptr<Method> snapshot() override { return method_->snapshot(); }
+  std::vector<Fact> facts() override {
+    std::vector<Fact> facts = method_->facts();
+    if (leads(ranks_)) facts.push_back({"audit.repeated_steps", static_cast<double>(repeated_)});
+    return facts;
+  }
+  std::vector<StateArray> arrays(const std::string& name) override { return method_->arrays(name); }
+  std::vector<Table> tables() override { return method_->tables(); }
+  void save(CheckpointWriter& writer) override { method_->save(writer); }
+  void load(const CheckpointReader* reader) override {
+    method_->load(reader);
+    next_.reset();
+  }
+
+ private:
+  static constexpr std::uint32_t stream = 0x61756474;  ///< of random numbers
+
+  /// How many steps are done when the next one is repeated: `step` to `step` + 2 `every` - 2, each
+  /// as likely.
+  std::int64_t drawn_from(std::int64_t step) const {
+    const double share = draws_.uniform(static_cast<std::uint64_t>(step));
+    return step + static_cast<std::int64_t>(share * static_cast<double>(2 * every_ - 1));
+  }
+
+  Advanced repeated(const StopAt& stop) {
+    CheckpointWriter before;
+    method_->save(before);
+    const std::int64_t from = steps();
+    const Advanced taken = method_->advance({stop.time, from + 1});
+    const std::int64_t to = steps();
+    const std::uint64_t first = method_->state_hash();
+
+    std::optional<CheckpointReader> kept;
+    if (leads(ranks_)) kept.emplace(before);
+    method_->load(kept ? &*kept : nullptr);
+    while (steps() < to && method_->advance({stop.time, to}).steps > 0) {
+    }
+    const std::uint64_t second = method_->state_hash();
+    on_first(ranks_, [&] {
+      if (steps() == to && first == second) return;
+      throw DeviceError(fmt::format(
+          "step {} was done twice, with different results (state {:016x}, then {:016x}): memory or "
+          "processor of this machine fails, or the program does; resume from the newest checkpoint "
+          "on another machine",
+          to, first, second));
+    });
+    repeated_ += to - from;
+    return taken;
+  }
+
+  std::unique_ptr<Method> method_;
+  std::int64_t every_;
+  Random draws_;
+  Communicator* ranks_;
+  std::optional<std::int64_t> next_;  ///< steps that are done when one is repeated
+  std::int64_t repeated_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> audited(std::unique_ptr<Method> method, const AuditConfig& audit,
+                                std::int64_t seed, Communicator* ranks) {
+  if (audit.every == 0) return method;
+  return std::make_unique<AuditedMethod>(std::move(method), audit.every, seed, ranks);
+}
+
+}  // namespace breccia
