@@ -10,10 +10,12 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "app/board.hpp"
 #include "app/commands.hpp"
+#include "app/serve.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
@@ -33,12 +35,29 @@ bool shows_utf8() {
   return false;
 }
 
-struct WatchCommand {
+class WatchCommand {
+ public:
   std::string folder;
   double every = 1.0;  ///<  [s]
-  bool once = false;
+  bool once = false, serves = false;
+  int port = 0;
 
   int execute() const {
+    std::optional<ReportServer> server;
+    if (serves) {
+      look(0.0);  // whether it is a run's folder
+      server.emplace(folder, port);
+      fmt::print("report  {}\n        for browsers of this machine, until Ctrl-C\n",
+                 server->address());
+      std::fflush(stdout);
+    }
+    const int exit_code = show();
+    while (server && !once) std::this_thread::sleep_for(std::chrono::seconds(1));
+    return exit_code;
+  }
+
+ private:
+  int show() const {
     const bool terminal = ::isatty(STDOUT_FILENO) != 0;
     const bool plain = !shows_utf8();
     const double end_time = end_of_case();
@@ -125,6 +144,12 @@ void add_watch(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(0.05, 3600.0))
       ->capture_default_str();
   command->add_flag("--once", watch->once, "look once");
+  command->add_flag(
+      "--serve", watch->serves,
+      "and show its report to browsers of this machine, with new frames as they come");
+  command->add_option("--port", watch->port, "of --serve; default: one that is free")
+      ->type_name("N")
+      ->check(CLI::Range(1, 65535));
   command->callback([watch, &exit_code] { exit_code = watch->execute(); });
 }
 

@@ -191,14 +191,18 @@ std::string escaped_html(const std::string& text) {
   return safe;
 }
 
-Page page_of(const std::vector<Record>& runs, const std::optional<Measured>& measured,
-             std::size_t limit) {
+namespace {
+
+/// @param live  JSON for a page that keeps up with a run; empty: the page asks nobody
+Page written(const std::vector<Record>& runs, const std::optional<Measured>& measured,
+             std::size_t limit, const std::string& live) {
   Writer writer;
   std::string data = "{\"runs\":[";
   for (std::size_t r = 0; r < runs.size(); ++r)
     data += (r == 0 ? "" : ",") + writer.run(runs[r], limit / runs.size());
   data += "]";
   if (measured) data += ",\"measured\":" + dumped(measured_json(*measured));
+  if (!live.empty()) data += ",\"live\":" + live;
   data += "}";
   std::string blobs;
   for (std::size_t b = 0; b < writer.blobs().size(); ++b)
@@ -208,11 +212,23 @@ Page page_of(const std::vector<Record>& runs, const std::optional<Measured>& mea
   for (const Record& run : runs) title += (title.empty() ? "" : " and ") + run.text("case.name");
   const std::string safe_title = escaped_html(title), safe_data = script_safe(std::move(data));
   return {filled(page_template(), {{"@TITLE@", safe_title},
+                                   {"@CONNECT@", live.empty() ? "" : "; connect-src 'self'"},
                                    {"@STYLE@", page_style()},
                                    {"@DATA@", safe_data},
                                    {"@BLOBS@", blobs},
                                    {"@PROGRAM@", page_program()}}),
           writer.notes()};
+}
+
+}  // namespace
+
+Page page_of(const std::vector<Record>& runs, const std::optional<Measured>& measured,
+             std::size_t limit) {
+  return written(runs, measured, limit, "");
+}
+
+Page live_page_of(const Record& run, const std::string& state) {
+  return written({run}, std::nullopt, page_bytes, state);
 }
 
 }  // namespace breccia::report

@@ -122,7 +122,7 @@ def main():
             begun = time.time()
             code, text = run(case, attack.path("good"), STEPS)
             attack.expect(code == 0, f"undisturbed: {code}: {text}")
-            longest = max(0.3, 1.2 * (time.time() - begun)) * (3 if ranks > 1 else 1)
+            longest = max(0.05, 1.2 * (time.time() - begun)) * (3 if ranks > 1 else 1)
             attack.hash = state_hash(attack.path("good"))
             while attack.runs < max(1, runs // 2) and time.time() - attack.begun < options.seconds / 6:
                 disturb(attack, case, random_, ranks, stop, longest)

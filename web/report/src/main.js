@@ -3,6 +3,7 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import {count, duration, make, sentence, timeText} from "./format.js";
+import {keepUp, restore} from "./live.js";
 import {readTable} from "./packed.js";
 import * as panels from "./panels.js";
 import {ViewPanel} from "./view_panel.js";
@@ -69,10 +70,14 @@ async function build() {
       make("div", {class: "side"}, side.map((p) => p.node))),
     make("div", {class: "grid"}, below.map((p) => p.node)),
     make("div", {class: "wide"}, wide.map((p) => p.node)), remarks(runs),
-    make("footer", {}, "Written by breccia report. This page is one file and asks no server for anything. It holds three.js and uPlot (MIT licence).")));
+    make("footer", {}, `Written by breccia report. ${data.live ? "It asks its own server for news, and nobody else." : "This page is one file and asks no server for anything."} It holds three.js and uPlot (MIT licence).`)));
   for (const p of [...side, ...below]) p.start?.();
   if (view) await view.start();
   else store.setTime(runs[0].summary.time);
+  if (data.live) {
+    restore(view, store);
+    keepUp(data.live, view, store);
+  }
   document.documentElement.dataset.ready = "true";
 }
 

@@ -46,13 +46,41 @@ export class ViewPanel {
     this.node.tabIndex = -1;
   }
 
+  /** Camera and colouring, as choose() takes them. */
+  chosen() {
+    return {camera: this.views[0].viewer?.cameraState(), coloring: this.coloring.name};
+  }
+
+  choose({camera, coloring}) {
+    if (camera) this.each((v) => v.setCamera(camera));
+    this.pickColoring(coloring);
+  }
+
+  pickColoring(name) {
+    const found = this.colorings.find((c) => c.name === name);
+    if (!found || found === this.coloring) return;
+    this.coloring = found;
+    this.fieldPick.value = name;
+    this.range = null;
+    this.map = null;
+    this.recolor();
+  }
+
+  /** The camera as `breccia render --camera FILE` reads it. */
+  async copyCamera() {
+    const viewer = this.views[0].viewer;
+    if (!viewer) return;
+    const text = viewer.cameraText();
+    try {
+      await navigator.clipboard.writeText(text);
+      this.caption.textContent = "camera copied: paste it into a file for breccia render --camera";
+    } catch {
+      save(new Blob([text], {type: "text/plain"}), "camera.toml"); // no clipboard for pages from a disk
+    }
+  }
+
   controls() {
-    const field = make("select", {onchange: () => {
-      this.coloring = this.colorings.find((c) => c.name === field.value);
-      this.range = null;
-      this.map = null;
-      this.recolor();
-    }}, this.colorings.map((c) => make("option", {value: c.name, selected: c === this.coloring}, c.label)));
+    const field = this.fieldPick = make("select", {onchange: () => this.pickColoring(field.value)}, this.colorings.map((c) => make("option", {value: c.name, selected: c === this.coloring}, c.label)));
     this.mapPick = make("select", {"aria-label": "colours", onchange: () => {
       this.map = this.mapPick.value;
       this.recolor();
@@ -106,7 +134,8 @@ export class ViewPanel {
     if (!this.plane) list.push(this.clipControl());
     list.push(make("div", {class: "group"}, (this.plane ? ["z"] : ["iso", "x", "y", "z"]).map((view) =>
       make("button", {type: "button", onclick: () => this.each((v) => v.look(view))}, this.plane ? "fit" : view)),
-      make("button", {type: "button", onclick: () => this.savePicture()}, "save picture")));
+      make("button", {type: "button", onclick: () => this.savePicture()}, "save picture"),
+      make("button", {type: "button", onclick: () => this.copyCamera()}, "copy camera")));
     return list;
   }
 

@@ -306,6 +306,27 @@ export class Viewer {
     this.frameCamera();
   }
 
+  /** As cameraState() of another page of this run gave it. */
+  setCamera({position, target, zoom}) {
+    this.camera.position.fromArray(position);
+    this.controls.target.fromArray(target);
+    this.camera.zoom = zoom;
+    this.controls.update();
+    this.frameCamera();
+  }
+
+  cameraState() {
+    return {position: this.camera.position.toArray(), target: this.controls.target.toArray(), zoom: this.camera.zoom};
+  }
+
+  /** Eye, target and angle of a parallel view: the picture is as high as the angle takes in at the target. */
+  cameraText() {
+    const eye = this.camera.position, target = this.controls.target, up = this.camera.up;
+    const angle = 2 * Math.atan(this.camera.top / this.camera.zoom / eye.distanceTo(target));
+    const list = (v) => `[${v.toArray().map((x) => Number(x.toPrecision(6))).join(", ")}]`;
+    return `[[key]]\neye = ${list(eye)}\ntarget = ${list(target)}\nup = ${list(up)}\nangle = "${Number(((angle * 180) / Math.PI).toPrecision(6))} deg"\n`;
+  }
+
   redraw() {
     if (this.waiting) return;
     this.waiting = true;
