@@ -71,8 +71,10 @@ std::vector<Field> read_frame(const std::string& folder, int number) {
     std::vector<Field> fields;
     const auto real = [&](const std::string& of, std::vector<breccia::FrameField>& from) {
       for (breccia::FrameField& f : from)
-        fields.push_back(
-            keeping(of + f.name, f.unit, NumberType::float32, std::move(f.values), f.components));
+        fields.push_back(f.integers ? keeping(of + f.name, f.unit, NumberType::int32,
+                                              std::move(*f.integers), f.components)
+                                    : keeping(of + f.name, f.unit, NumberType::float32,
+                                              std::move(f.values), f.components));
     };
     const auto indices = [&](const char* name, std::vector<std::int32_t>& from, int each) {
       if (!from.empty())

@@ -3,7 +3,9 @@
 // fields.
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "math/vec.hpp"
@@ -19,6 +21,8 @@ struct FrameField {
   std::string unit;
   int components = 1;         ///< 1, 3, or 6: xx, yy, zz, xy, yz, xz of a symmetric tensor
   std::vector<float> values;  ///< components of item 0, then of item 1, ...
+  /// Of ids, kinds and the like: `values` as they are before they are rounded.
+  std::optional<std::vector<std::int32_t>> integers = {};
 };
 
 /// A rigid plane.
@@ -26,6 +30,13 @@ struct FrameWall {
   Vec3 point;   ///< on its face  [m]
   Vec3 normal;  ///< unit, out of the wall
 };
+
+/// A field of whole numbers, one an item.
+inline FrameField whole_numbers(const char* name, std::vector<std::int32_t> numbers) {
+  FrameField field{name, "-", 1, {numbers.begin(), numbers.end()}};
+  field.integers = std::move(numbers);
+  return field;
+}
 
 /// Geometry and fields of one moment. Lines and triangles index `position`.
 struct Frame {

@@ -32,7 +32,9 @@ void sort_by_id(Shot& shot) {
   if (id == nullptr || shot.plane) return;
   std::vector<std::size_t> order(shot.elements());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto earlier = [&](std::size_t a, std::size_t b) { return id->values[a] < id->values[b]; };
+  const auto earlier = [&](std::size_t a, std::size_t b) {
+    return id->integers ? (*id->integers)[a] < (*id->integers)[b] : id->values[a] < id->values[b];
+  };
   if (std::is_sorted(order.begin(), order.end(), earlier)) return;
   std::stable_sort(order.begin(), order.end(), earlier);
   const Shot old = shot;

@@ -101,7 +101,9 @@ class VtuFile {
     std::vector<FrameField> result;
     for (const Array& array : arrays_) {
       if (array.section != section) continue;
-      result.push_back({array.name, array.unit, array.components, values<float>(array, items)});
+      FrameField& field = result.emplace_back(
+          FrameField{array.name, array.unit, array.components, values<float>(array, items)});
+      if (array.type == "Int32") field.integers = values<std::int32_t>(array, items);
     }
     return result;
   }
@@ -151,6 +153,8 @@ class VtuFile {
       if (tag.name == "Piece") {
         points_ = number(tag, "NumberOfPoints", 0);
         cells_ = number(tag, "NumberOfCells", 0);
+      } else if (word(tag, "Name") == "groups" && section == "FieldData") {
+        read_groups(tag.text);  // older files have an array of texts there
       } else if (tag.name == "DataArray") {
         const std::size_t components = number(tag, "NumberOfComponents", 1);
         if (components < 1 || components > 64) fail("its NumberOfComponents is damaged");
@@ -159,8 +163,6 @@ class VtuFile {
                            number(tag, "NumberOfTuples", 0)});
       } else if (tag.name == "InformationKey" && !arrays_.empty()) {
         arrays_.back().unit = unescaped(tag.text);
-      } else if (tag.name == "Array" && word(tag, "Name") == "groups") {
-        read_groups(tag.text);
       } else if (tag.name == "PointData" || tag.name == "CellData" || tag.name == "Points" ||
                  tag.name == "Cells" || tag.name == "FieldData") {
         section = tag.name;

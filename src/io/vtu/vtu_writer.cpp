@@ -152,9 +152,10 @@ void FrameBlocks::list_field_data(Document& document) {
       for (const char c : name) codes += fmt::format("{} ", static_cast<unsigned char>(c));
       codes += "0 ";
     }
+    // As numbers: readers other than VTK's know no arrays of texts.
     document.text.back() += fmt::format(
-        R"(<Array type="String" Name="groups" NumberOfTuples="{}" format="ascii">{}</Array>)",
-        part_.groups.size(), codes);
+        R"(<DataArray type="UInt8" Name="groups" NumberOfTuples="{}" format="ascii">{}</DataArray>)",
+        std::count(codes.begin(), codes.end(), ' '), codes);
     document.text.back() += "\n";
   }
   if (!part_.walls.empty())
@@ -174,18 +175,26 @@ void FrameBlocks::list_field_data(Document& document) {
 
 void FrameBlocks::list_fields(Document& document, const std::vector<FrameField>& fields,
                               Carrier carrier) {
-  for (const FrameField& field : fields)
-    list_field(document, field.name, field.unit, static_cast<std::size_t>(field.components),
-               field.values, carrier);
+  for (const FrameField& field : fields) {
+    const auto width = static_cast<std::size_t>(field.components);
+    if (field.integers)
+      list_field(document, field.name, field.unit, width, *field.integers, carrier);
+    else
+      list_field(document, field.name, field.unit, width, field.values, carrier);
+  }
 }
 
+template <class Number>
 void FrameBlocks::list_field(Document& document, const std::string& name, const std::string& unit,
-                             std::size_t width, const std::vector<float>& values, Carrier carrier) {
+                             std::size_t width, const std::vector<Number>& values,
+                             Carrier carrier) {
   if (values.size() != own_items(carrier) * width)
     throw InputError(fmt::format("field {} has {} values for {} items of {}", name, values.size(),
                                  own_items(carrier), width));
-  place(document, add_carried(carrier, width, std::span<const float>(values)), type_name<float>(),
-        fmt::format(R"(Name="{}" NumberOfComponents="{}")", escaped(name), width), unit);
+  place(document, add_carried(carrier, width, std::span<const Number>(values)), type_name<Number>(),
+        fmt::format(R"(Name="{}")", escaped(name)) +
+            (width == 1 ? "" : fmt::format(R"( NumberOfComponents="{}")", width)),
+        unit);
 }
 
 void FrameBlocks::list_cells(Document& document, Cells cells) {

@@ -63,8 +63,9 @@ class FrameBlocks {
   void list(Document& document, Cells cells);
   void list_field_data(Document& document);
   void list_fields(Document& document, const std::vector<FrameField>& fields, Carrier carrier);
+  template <class Number>
   void list_field(Document& document, const std::string& name, const std::string& unit,
-                  std::size_t width, const std::vector<float>& values, Carrier carrier);
+                  std::size_t width, const std::vector<Number>& values, Carrier carrier);
   void list_cells(Document& document, Cells cells);
   /// Notes an array in a document.
   void place(Document& document, std::size_t array, const char* type, const std::string& attributes,

@@ -87,6 +87,13 @@ class DemFrame {
     for (const Index i : own_) field.values.push_back(static_cast<float>(value(i)));
     return field;
   }
+  template <class Value>
+  FrameField number(const char* name, const Value& value) const {
+    std::vector<std::int32_t> numbers;
+    numbers.reserve(own_.size());
+    for (const Index i : own_) numbers.push_back(static_cast<std::int32_t>(value(i)));
+    return whole_numbers(name, std::move(numbers));
+  }
   FrameField vector(const char* name, const char* unit, const std::vector<Vec3>& of) const {
     FrameField field{name, unit, 3, {}};
     field.values.reserve(3 * own_.size());
@@ -110,19 +117,19 @@ class DemFrame {
     const MotionNow now = motion_now(w_);
     f.point_fields.push_back(vector("velocity", "m/s", now.velocity));
     f.point_fields.push_back(vector("spin", "rad/s", now.spin));
-    f.point_fields.push_back(scalar("group", [&](Index i) { return e.group.data()[i]; }));
+    f.point_fields.push_back(number("group", [&](Index i) { return e.group.data()[i]; }));
     const std::vector<double> lost = damage(w_);
     f.point_fields.push_back(
         scalar("damage", [&](Index i) { return lost[static_cast<std::size_t>(i)]; }));
     const std::vector<std::uint8_t>& bars = w_.given->bars;
     if (std::find(bars.begin(), bars.end(), 1) != bars.end())
-      f.point_fields.push_back(scalar(
+      f.point_fields.push_back(number(
           "bar", [&](Index i) { return bars[static_cast<std::size_t>(e.material.data()[i])]; }));
-    f.point_fields.push_back(scalar("id", [&](Index i) { return e.id.data()[i]; }));
+    f.point_fields.push_back(number("id", [&](Index i) { return e.id.data()[i]; }));
     if (!w_.domain.config.show) return;
     const Partition partition = partition_at(w_.domain, w_.travel.drift.velocity, w_.time);
     f.point_fields.push_back(
-        scalar("rank", [&](Index i) { return partition.owner(e.state.data()[i].position); }));
+        number("rank", [&](Index i) { return partition.owner(e.state.data()[i].position); }));
   }
 
   /// Fields that the case asks for.
@@ -158,7 +165,7 @@ class DemFrame {
     Index first_action = 0;
     w_.each_set([&](const auto& set) {
       const OnHost arrays(set.arrays(), w_.exec.space);
-      kind_ = static_cast<float>(set.kind);
+      kind_ = static_cast<std::int32_t>(set.kind);
       for (const auto& g : set.groups)
         for (Index i = g.begin; i < g.end; ++i) {
           if (!w_.domain.owns(arrays->a.data()[i])) continue;
@@ -167,31 +174,33 @@ class DemFrame {
             pull = norm(link_force(g.law, *arrays, *elements_, i));
           else
             pull = norm(actions->data()[first_action + i].force_on_b());
-          add_line(*arrays, i, static_cast<float>(stage_of(g.law, *arrays, *elements_, i)), pull);
+          add_line(*arrays, i, static_cast<std::int32_t>(stage_of(g.law, *arrays, *elements_, i)),
+                   pull);
           if (!w_.domain.single_rank())
             part_.places.line.push_back(static_cast<std::int32_t>(before + set.numbers.data()[i]));
         }
       before += all.items[static_cast<std::size_t>(set.kind)];
       if (!set.swept) first_action += set.size();
     });
-    part_.frame.line_fields.push_back(std::move(kinds_));
-    part_.frame.line_fields.push_back(std::move(states_));
+    part_.frame.line_fields.push_back(whole_numbers("kind", std::move(kinds_)));
+    part_.frame.line_fields.push_back(whole_numbers("state", std::move(states_)));
     part_.frame.line_fields.push_back(std::move(force_));
   }
 
   template <class Links>
-  void add_line(const Links& links, Index i, float state, double pull) {
+  void add_line(const Links& links, Index i, std::int32_t state, double pull) {
     for (const Buffer<Index>* ends : {&links.a, &links.b})
       part_.frame.lines.push_back(elements_->id.data()[ends->data()[i]]);
     force_.values.push_back(static_cast<float>(pull));  // |force on b|
-    kinds_.values.push_back(kind_);
-    states_.values.push_back(state);
+    kinds_.push_back(kind_);
+    states_.push_back(state);
   }
   const dem::World& w_;
   OnHost<Elements> elements_;
   std::vector<Index> own_;
-  float kind_ = 0.0F;  ///< of the lines that are added now
-  FrameField kinds_{"kind", "-", 1, {}}, states_{"state", "-", 1, {}}, force_{"force", "N", 1, {}};
+  std::int32_t kind_ = 0;  ///< of the lines that are added now
+  std::vector<std::int32_t> kinds_, states_;
+  FrameField force_{"force", "N", 1, {}};
   FramePart part_;
 };
 

@@ -171,6 +171,13 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
       made.values[k] = static_cast<float>(value(own.triangles[k], k));
     });
   };
+  const auto number = [&](const char* name, const auto& value) {
+    std::vector<std::int32_t> numbers(count);
+    each_of(count, w.exec.threads, [&](std::size_t k) {
+      numbers[k] = static_cast<std::int32_t>(value(own.triangles[k], k));
+    });
+    f.triangle_fields.push_back(whole_numbers(name, std::move(numbers)));
+  };
   const std::vector<Sym2> stress = stresses(w);
   const std::vector<double> lost = damage(w);
   field("stress_xx", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xx; });
@@ -179,14 +186,14 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
   field("pressure", "Pa",
         [&](Index i, std::size_t) { return -0.5 * (stress[at(i)].xx + stress[at(i)].yy); });
   field("damage", "-", [&](Index i, std::size_t) { return lost[at(i)]; });
-  field("group", "-", [&](Index i, std::size_t) { return t.group.data()[i]; });
-  field("material", "-", [&](Index i, std::size_t) { return t.material.data()[i]; });
-  field("fragment", "-", [&](Index, std::size_t k) { return placed.fragment[k]; });
+  number("group", [&](Index i, std::size_t) { return t.group.data()[i]; });
+  number("material", [&](Index i, std::size_t) { return t.material.data()[i]; });
+  number("fragment", [&](Index, std::size_t k) { return placed.fragment[k]; });
   if (!w.domain.config.show) return;
   const Vec2 drift = w.reach.drift.velocity;
   const Partition partition = partition_at(w.domain, {drift.x, drift.y, 0.0}, w.time);
-  field("rank", "-",
-        [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
+  number("rank",
+         [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
 }
 
 /// Of corners; of the ends of cracks the mean of both sides.

@@ -47,14 +47,17 @@ Frame small_frame(double time, int count) {
     damage.values.push_back(0.5F * static_cast<float>(i));
     for (const float v : {1.0F, -2.0F, static_cast<float>(i)}) velocity.values.push_back(v);
   }
-  FrameField kind{"kind", "-", 1, {}}, force{"force", "N", 1, {}};
+  std::vector<std::int32_t> kinds, ids;
+  for (int i = 0; i < count; ++i)
+    ids.push_back((1 << 24) + 1 + i);  // no float is the first of them
+  FrameField force{"force", "N", 1, {}};
   for (int i = 0; i + 1 < count; ++i) {
     frame.lines.insert(frame.lines.end(), {i, i + 1});
-    kind.values.push_back(static_cast<float>(i % 3));
+    kinds.push_back(i % 3);
     force.values.push_back(-100.0F * static_cast<float>(i));
   }
-  frame.point_fields = {damage, velocity};
-  frame.line_fields = {kind, force};
+  frame.point_fields = {damage, velocity, whole_numbers("id", ids)};
+  frame.line_fields = {whole_numbers("kind", kinds), force};
   return frame;
 }
 
@@ -75,7 +78,14 @@ nlohmann::json fields_json(const std::vector<FrameField>& fields) {
       low = i == 0 ? field.values[i] : std::min(low, field.values[i]);
       high = i == 0 ? field.values[i] : std::max(high, field.values[i]);
     }
-    result[field.name] = {field.components, field.unit, low, high};
+    nlohmann::json& found = result[field.name];
+    found = {field.components, field.unit, low, high, field.integers ? "int" : "float"};
+    if (field.integers && !field.integers->empty()) {  // exact, however large
+      const auto [least, most] =
+          std::minmax_element(field.integers->begin(), field.integers->end());
+      found[2] = *least;
+      found[3] = *most;
+    }
   }
   return result;
 }
@@ -122,6 +132,7 @@ void expect_same_fields(const std::vector<FrameField>& a, const std::vector<Fram
     EXPECT_EQ(a[i].unit, b[i].unit);
     EXPECT_EQ(a[i].components, b[i].components);
     EXPECT_EQ(a[i].values, b[i].values);
+    EXPECT_EQ(a[i].integers, b[i].integers);
   }
 }
 
@@ -149,7 +160,10 @@ void expect_same(const Frame& a, const Frame& b) {
 TEST_F(ParaviewSeriesTest, vtk_reads_every_field_count_and_time_with_and_without_links) {
   Frame without_links = small_frame(3e-4, 5);
   without_links.lines.clear();
-  for (FrameField& field : without_links.line_fields) field.values.clear();
+  for (FrameField& field : without_links.line_fields) {
+    field.values.clear();
+    if (field.integers) field.integers->clear();
+  }
   const std::vector<Frame> frames{small_frame(0.0, 7), without_links, small_frame(1.0 / 3.0, 1),
                                   small_frame(0.5, 0)};
   ParaviewSeries series(folder);
@@ -162,6 +176,16 @@ TEST_F(ParaviewSeriesTest, vtk_reads_the_full_slab_and_frames_of_triangles) {
   ParaviewSeries series(folder);
   for (const Frame& frame : frames) series.write(frame);
   expect_vtk_reads(folder, frames);
+}
+
+TEST_F(ParaviewSeriesTest, meshio_reads_every_field_with_its_type) {
+  Frame alone = triangle_frame(0.25);
+  alone.point_fields.front().values.front() = -7.5F;
+  ParaviewSeries series(folder);
+  series.write(alone);
+  const std::string command = fmt::format(
+      "/usr/bin/python3 '{0}/tests/unit/io/read_with_meshio.py' '{1}' 2>&1", source_dir, folder);
+  EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
 TEST_F(ParaviewSeriesTest, what_was_written_is_read_back) {

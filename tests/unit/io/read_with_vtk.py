@@ -3,7 +3,7 @@
 
 usage: read_with_vtk.py FOLDER EXPECTED.json
 EXPECTED: a list of {"time", "step", "points", "cells", "cell_type", "links", "point_fields", "line_fields",
-"groups"}; a field is name: [components, unit, minimum, maximum] of its first component. Needs Debian's python3-vtk9.
+"groups"}; a field is name: [components, unit, minimum, maximum, type] of its first component. Needs Debian's python3-vtk9.
 """
 import json
 import os
@@ -49,11 +49,11 @@ def read(path):
 def check_fields(what, data, wanted):
     found = {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())}
     expect(f"fields of {what}", found, set(wanted))
-    for name, (components, unit, low, high) in wanted.items():
+    for name, (components, unit, low, high, kind) in wanted.items():
         array = data.GetArray(name)
         expect(f"components of {what} {name}", array.GetNumberOfComponents(), components)
         expect(f"unit of {what} {name}", array.GetInformation().Get(vtkDataArray.UNITS_LABEL()), unit)
-        expect(f"type of {what} {name}", array.GetDataTypeAsString(), "float")
+        expect(f"type of {what} {name}", array.GetDataTypeAsString(), kind)
         if array.GetNumberOfTuples() > 0:
             expect(f"range of {what} {name}", list(array.GetRange(0)), [low, high])
 
@@ -61,8 +61,9 @@ def check_fields(what, data, wanted):
 def check_time(what, grid, wanted):
     expect(f"TIME of {what}", grid.GetFieldData().GetArray("TIME").GetValue(0), wanted["time"])
     expect(f"CYCLE of {what}", grid.GetFieldData().GetArray("CYCLE").GetValue(0), wanted["step"])
-    names = grid.GetFieldData().GetAbstractArray("groups")
-    found = [names.GetValue(i) for i in range(names.GetNumberOfValues())] if names else []
+    codes = grid.GetFieldData().GetArray("groups")
+    text = bytes(int(codes.GetValue(i)) for i in range(codes.GetNumberOfValues())) if codes else b""
+    found = text.decode().split("\0")[:-1]
     expect(f"groups of {what}", found, wanted["groups"])
 
 

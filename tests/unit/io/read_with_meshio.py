@@ -1,0 +1,21 @@
+#!/usr/bin/env python3
+"""Opens the files of the frame that paraview.cpp writes with meshio (Debian's python3-meshio), which knows VTK's format
+by itself; passes with a word where it is not installed."""
+
+import sys
+
+try:
+    import meshio
+except ImportError:
+    print("no meshio here (package python3-meshio): its reading is not tested")
+    sys.exit(0)
+
+folder = sys.argv[1]
+elements = meshio.read(f"{folder}/fields/elements_0000.vtu")
+lines = meshio.read(f"{folder}/fields/links_0000.vtu")
+ids = elements.point_data["id"]
+assert elements.cells[0].type == "triangle" and elements.cells[0].data.tolist() == [[0, 1, 2], [1, 2, 3]], elements
+assert ids.dtype == "int32" and ids.tolist() == [2**24 + 1 + i for i in range(4)], ids
+assert elements.point_data["damage"].dtype == "float32" and elements.point_data["damage"][0] == -7.5
+assert elements.point_data["velocity"].shape == (4, 3)
+assert lines.cells[0].type == "line" and lines.cell_data["kind"][0].tolist() == [0, 1, 2]
