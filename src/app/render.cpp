@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/camera_path.hpp"
 #include "app/commands.hpp"
 #include "app/film.hpp"
 #include "app/run_notes.hpp"
@@ -57,7 +58,16 @@ struct Shots {
     if (needs_displacement(options)) add_displacement(frame, first_);
     return frame;
   }
-  Image picture(int number) const { return render(frame(number), options); }
+  /// @param path   null: the camera stands as the options say
+  /// @param share  of the film that is over
+  Image picture(int number, const CameraPath* path, double share) const {
+    if (path == nullptr) return render(frame(number), options);
+    RenderOptions seen = options;
+    const Frame shown = frame(number);
+    if (!seen.extent) seen.extent = bulk_extent(shown);
+    path->apply(seen, times.at(static_cast<std::size_t>(number)), share);
+    return render(shown, seen);
+  }
   /// The frame nearest to a time.
   int at_time(double time) const {
     const auto nearer = [time](double a, double b) {
@@ -151,7 +161,7 @@ std::optional<Sheet> sheet_of(const std::string& text) {
 }
 
 struct RenderCommand {
-  std::string folder, file, sheet, range, size, fit = "run";
+  std::string folder, file, sheet, range, size, camera, fit = "run";
   std::optional<std::string> title;
   std::vector<std::string> hidden;
   std::vector<std::string> beside;
@@ -159,6 +169,7 @@ struct RenderCommand {
   std::optional<int> frame;
   int rate = 10;
   RenderOptions options;
+  std::optional<CameraPath> path_of_camera = {};
 
   void execute() {
     const bool film = is_film(file), drawing = is_drawing(file);
@@ -171,8 +182,12 @@ struct RenderCommand {
     options.hidden = {hidden.begin(), hidden.end()};
     if (!range.empty()) options.range = range_of(range);
     if (!size.empty()) set_size();
-    if (int(film) + int(!sheet.empty()) + int(frame.has_value()) > 1)
-      throw InputError("a film, a --sheet and a --frame: choose one of them");
+    if (!camera.empty()) path_of_camera.emplace(camera);
+    const bool turns = film && path_of_camera && path_of_camera->pictures() > 0;
+    if (int(film && !turns) + int(!sheet.empty()) + int(frame.has_value()) > 1)
+      throw InputError(
+          "a film, a --sheet and a --frame: choose one of them (a film of one frame needs a "
+          "--camera with turntable.pictures)");
     std::vector<Shots> shots{{folder, titled(folder), color, fit}};
     for (const std::string& other : beside) shots.emplace_back(other, titled(other), color, fit);
     const std::vector<int> numbers = numbers_of(static_cast<int>(shots.front().times.size()), film);
@@ -230,8 +245,15 @@ struct RenderCommand {
       throw InputError(fmt::format("frame {} does not exist: {} holds {} frames, counted from 0",
                                    *frame, folder, count));
     std::vector<int> numbers;
-    if (film) {
-      for (int i = 0; i < count; ++i) numbers.push_back(i);
+    if (film && frame) {
+      numbers.assign(static_cast<std::size_t>(path_of_camera->pictures()), *frame);
+    } else if (film) {
+      const int pictures =
+          path_of_camera && path_of_camera->pictures() > 0 ? path_of_camera->pictures() : count;
+      for (int i = 0; i < pictures; ++i)
+        numbers.push_back(pictures == 1 ? count - 1
+                                        : static_cast<int>(std::lround(double(i) * (count - 1) /
+                                                                       (pictures - 1))));
     } else if (!sheet.empty()) {
       const Sheet places = *sheet_of(sheet);
       const int shown = std::min(places.columns * places.rows, count);
@@ -254,23 +276,29 @@ struct RenderCommand {
   }
 
   /// A frame of the first folder, and those of the same time beside it.
-  static Image panels(const std::vector<Shots>& shots, int number) {
+  /// @param share  of the film that is over
+  Image panels(const std::vector<Shots>& shots, int number, double share) const {
     std::vector<Image> images;
     const double time = shots.front().times.at(static_cast<std::size_t>(number));
     for (const Shots& s : shots) {
       const int there = &s == &shots.front() ? number : s.at_time(time);
-      images.push_back(s.picture(there));
+      images.push_back(s.picture(there, path_of_camera ? &*path_of_camera : nullptr, share));
       warn_if_blank(images.back(), s, there);
     }
     if (images.size() == 1) return images.front();
     return grid(images, static_cast<int>(images.size()));
   }
 
+  static double share_at(std::size_t picture, std::size_t count) {
+    return count > 1 ? double(picture) / double(count - 1) : 0.0;
+  }
+
   void write_picture(const std::string& path, const std::vector<Shots>& shots,
                      const std::vector<int>& numbers) const {
     const std::vector<double>& times = shots.front().times;
     std::vector<Image> images;
-    for (const int number : numbers) images.push_back(panels(shots, number));
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      images.push_back(panels(shots, numbers[i], share_at(i, numbers.size())));
     const Image image =
         images.size() == 1 ? images.front() : grid(images, sheet_of(sheet)->columns);
     write_png(path, with_notes(png_content(image), notes_for(shots, numbers)));
@@ -285,7 +313,8 @@ struct RenderCommand {
   std::vector<PngNote> notes_for(const std::vector<Shots>& shots,
                                  const std::vector<int>& numbers) const {
     std::vector<PngNote> notes = run_notes(folder);
-    if (notes.empty() || shots.size() > 1 || numbers.size() > 1 || !sheet.empty()) return notes;
+    if (notes.empty() || shots.size() > 1 || numbers.size() > 1 || !sheet.empty() || path_of_camera)
+      return notes;
     const int number = numbers.front();
     const double time = shots.front().times.at(static_cast<std::size_t>(number));
     if (const auto moment = moment_of_frame(folder, number, time))
@@ -314,7 +343,8 @@ struct RenderCommand {
   void write_film(const std::string& path, const std::vector<Shots>& shots,
                   const std::vector<int>& numbers) const {
     Film film(path, rate, run_line(folder));
-    for (const int number : numbers) film.add(panels(shots, number));
+    for (std::size_t i = 0; i < numbers.size(); ++i)  // a turn's last picture is not its first
+      film.add(panels(shots, numbers[i], double(i) / double(numbers.size())));
     film.close();
     fmt::print("{}  {} frames, {:.1f} s\n", harmless(path), numbers.size(),
                static_cast<double>(numbers.size()) / rate);
@@ -383,6 +413,10 @@ void add_render(CLI::App& program) {
   command->add_option("--view", render->options.view, "camera: iso, x, y or z")
       ->type_name("VIEW")
       ->capture_default_str();
+  command
+      ->add_option("--camera", render->camera,
+                   "a camera file: keys in time, a turntable (docs/pictures.md)")
+      ->type_name("FILE.toml");
   command->add_option("--clip", render->options.clip, "cut away one side of a plane such as x=0")
       ->type_name("PLANE");
   command->add_option("--range", render->range, "values at the ends of the colours, in SI units")

@@ -73,8 +73,14 @@ def disturb(attack, case, random_, ranks, stop, longest):
     time.sleep(random_.uniform(0.02, longest))
     targets = ranks_of(child.pid) if ranks > 1 else [child.pid]
     hit = bool(targets) and child.poll() is None
-    if hit:
-        os.kill(random_.choice(targets), signal.SIGSTOP if stop else signal.SIGKILL)
+    if not hit:  # the run is over, or a busy machine has not yet begun it
+        child.kill()
+        child.wait()
+        for process in targets:
+            if lives(process):
+                os.kill(process, signal.SIGKILL)
+        return
+    os.kill(random_.choice(targets), signal.SIGSTOP if stop else signal.SIGKILL)
     try:
         code = end_of(child, folder, targets if stop else [])
     except subprocess.TimeoutExpired:
@@ -88,7 +94,7 @@ def disturb(attack, case, random_, ranks, stop, longest):
             time.sleep(1)
             attack.expect(not lives(process), f"rank {process} is left behind")
     attack.runs += 1
-    attack.live += hit and code != 0
+    attack.live += code != 0
     for path in checkpoints(folder):
         told, text = breccia("info", path)
         attack.expect(told == 0, f"{path}: info ends with {told}: {text}")
