@@ -1,0 +1,198 @@
+// breccia mesh info FILE, breccia convert IN OUT: what a mesh or packing is, and other formats.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "app/commands.hpp"
+#include "app/geometry.hpp"
+#include "exec/error.hpp"
+#include "io/harmless.hpp"
+#include "io/round_numbers.hpp"
+#include "io/whole_file.hpp"
+#include "prepare/meshing/mesh_check.hpp"
+
+namespace breccia::app {
+namespace {
+
+template <class... Values>
+void show(const char* head, fmt::format_string<Values...> form, Values&&... values) {
+  fmt::print("  {:<11} {}\n", head, harmless(fmt::format(form, std::forward<Values>(values)...)));
+}
+
+std::string place_text(const Vec2& p) {
+  return fmt::format("({:.4g}, {:.4g}) m", p.x, p.y);
+}
+
+/// The smallest of a mesh, and the triangle that has it.
+struct Least {
+  double value = 1e300;
+  Index triangle = -1;
+  void take(double other, Index t) {
+    if (other < value) *this = {other, t};
+  }
+};
+
+void describe_mesh(const prepare::Mesh& mesh) {
+  Vec2 low = mesh.point.front(), high = low;
+  for (const Vec2& p : mesh.point) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  Least height, angle, quality;
+  double area = 0.0, mean_quality = 0.0;
+  std::size_t flat = 0;
+  for (std::size_t i = 0; i < mesh.triangle.size(); ++i) {
+    const auto t = static_cast<Index>(i);
+    const prepare::Triangle& corners = mesh.triangle[i];
+    std::array<double, 3> side{};  // opposite to corner k  [m]
+    for (std::size_t k = 0; k < 3; ++k)
+      side[k] = norm(prepare::at(mesh.point, corners[(k + 1) % 3]) -
+                     prepare::at(mesh.point, corners[(k + 2) % 3]));
+    const double twice = 2.0 * prepare::signed_area(mesh.point, corners);
+    area += 0.5 * twice;
+    height.take(twice / *std::max_element(side.begin(), side.end()), t);
+    double sharpest = std::numbers::pi;
+    for (std::size_t k = 0; k < 3; ++k)
+      sharpest = std::min(
+          sharpest, std::asin(std::min(1.0, twice / (side[(k + 1) % 3] * side[(k + 2) % 3]))));
+    angle.take(sharpest, t);
+    // Twice the inscribed circle's radius over the circumscribed one's.
+    const double sum = side[0] + side[1] + side[2];
+    const double q = 4.0 * twice * twice / (side[0] * side[1] * side[2] * sum);
+    quality.take(q, t);
+    mean_quality += q / static_cast<double>(mesh.triangle.size());
+    flat += q < 0.5;
+  }
+  const std::vector<prepare::MeshEdge> edges = prepare::edges_of(mesh.triangle);
+  double shortest = 1e300, longest = 0.0, mean = 0.0;
+  std::size_t rim = 0;
+  for (const prepare::MeshEdge& edge : edges) {
+    const double length =
+        norm(prepare::at(mesh.point, edge.ends[1]) - prepare::at(mesh.point, edge.ends[0]));
+    shortest = std::min(shortest, length);
+    longest = std::max(longest, length);
+    mean += length / static_cast<double>(edges.size());
+    rim += edge.triangles[1] < 0;
+  }
+  const auto centre = [&](Index t) {
+    return place_text(prepare::centroid(mesh.point, mesh.triangle[static_cast<std::size_t>(t)]));
+  };
+  const auto count = [](std::size_t n) { return count_text(static_cast<double>(n)); };
+  show("triangles", "{}, vertices {}", count(mesh.triangle.size()), count(mesh.point.size()));
+  show("edges", "{}, {} of them on the rim", count(edges.size()), count(rim));
+  show("extent", "{} x {}, from {}", length_text(high.x - low.x), length_text(high.y - low.y),
+       place_text(low));
+  show("area", "{:.6g} m2", area);
+  show("edge length", "{} to {}, mean {}", length_text(shortest), length_text(longest),
+       length_text(mean));
+  show("least angle", "{:.1f} deg, at {}", angle.value * 180.0 / std::numbers::pi,
+       centre(angle.triangle));
+  show("quality", "mean {:.3f}, least {:.3f} at {}", mean_quality, quality.value,
+       centre(quality.triangle));
+  show("", "{} below 0.5; equilateral triangles have 1", count(flat));
+  constexpr double wave = 5000.0;  // of granite  [m/s]
+  show("step", "ruled by the height {} at {}:", length_text(height.value), centre(height.triangle));
+  show("", "a wave of {:.0f} m/s crosses it in {}", wave, time_text(height.value / wave));
+  for (const prepare::Part& part : mesh.parts) {
+    double of_part = 0.0;
+    for (const Index t : part.triangles)
+      of_part += prepare::signed_area(mesh.point, mesh.triangle[static_cast<std::size_t>(t)]);
+    show("part", "{}: {} triangles, {:.4g} m2", part.name, count(part.triangles.size()), of_part);
+  }
+  for (const prepare::EdgeSet& set : mesh.edge_sets) {
+    double length = 0.0;
+    for (const prepare::Edge& edge : set.edges)
+      length += norm(prepare::at(mesh.point, edge[1]) - prepare::at(mesh.point, edge[0]));
+    show("line", "{}: {} edges, {}", set.name, count(set.edges.size()), length_text(length));
+  }
+}
+
+void describe_spheres(const Geometry& g) {
+  constexpr double far = 1e300;
+  Vec3 low{far, far, far}, high{-far, -far, -far};
+  double volume = 0.0, mean = 0.0, least = far, most = 0.0;
+  for (std::size_t i = 0; i < g.center.size(); ++i) {
+    const Vec3& p = g.center[i];
+    const double r = g.radius[i];
+    low = {std::min(low.x, p.x - r), std::min(low.y, p.y - r), std::min(low.z, p.z - r)};
+    high = {std::max(high.x, p.x + r), std::max(high.y, p.y + r), std::max(high.z, p.z + r)};
+    volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    mean += r / static_cast<double>(g.center.size());
+    least = std::min(least, r);
+    most = std::max(most, r);
+  }
+  const Vec3 size = high - low;
+  show("spheres", "{}", count_text(static_cast<double>(g.center.size())));
+  show("extent", "{} x {} x {}, from ({:.4g}, {:.4g}, {:.4g}) m", length_text(size.x),
+       length_text(size.y), length_text(size.z), low.x, low.y, low.z);
+  show("radius", "{} to {}, mean {}", length_text(least), length_text(most), length_text(mean));
+  show("volume", "{:.6g} m3 of spheres, {:.3f} of the box around them", volume,
+       volume / (size.x * size.y * size.z));
+  for (std::size_t b = 0; b < g.groups.size(); ++b) {
+    const auto count = std::count(g.group.begin(), g.group.end(), static_cast<std::int32_t>(b));
+    show("body", "{}: {} spheres", g.groups[b], count_text(static_cast<double>(count)));
+  }
+}
+
+void describe(const std::string& path, int frame) {
+  const Geometry g = read_geometry(path, frame);
+  if (!g.is_mesh() && g.center.empty()) throw InputError(path + ": holds no mesh and no spheres");
+  fmt::print("{}\n", harmless(path));
+  if (g.is_mesh())
+    describe_mesh(g.mesh);
+  else
+    describe_spheres(g);
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& program) {
+  CLI::App* const mesh = program.add_subcommand("mesh", "look at meshes and packings");
+  mesh->require_subcommand(1);
+  CLI::App* const info =
+      mesh->add_subcommand("info", "size, edges, angles, quality, parts, what rules the step");
+  const auto path = std::make_shared<std::string>();
+  const auto frame = std::make_shared<int>(-1);
+  info->add_option("FILE", *path,
+                   "a mesh (.msh, .inp), spheres (.csv, .txt, a dump of LAMMPS), a prepared model\n"
+                   "(.br) or a result folder")
+      ->required();
+  info->add_option("--frame", *frame, "of a result folder; default: the last")->type_name("N");
+  info->callback([path, frame] { describe(*path, *frame); });
+}
+
+void add_convert(CLI::App& program) {
+  struct Words {
+    std::string from, to;
+    int frame = -1;
+  };
+  const auto words = std::make_shared<Words>();
+  CLI::App* const convert =
+      program.add_subcommand("convert", "write a mesh or a packing in another format");
+  convert
+      ->add_option("IN", words->from,
+                   "a mesh (.msh, .inp), spheres (.csv, .txt, a dump of LAMMPS), a prepared model\n"
+                   "(.br) or a result folder")
+      ->required();
+  convert
+      ->add_option("OUT", words->to,
+                   "of a mesh .msh (Gmsh 2.2), .inp (Abaqus) or .vtu; of spheres .csv or .vtu")
+      ->required();
+  convert->add_option("--frame", words->frame, "of a result folder; default: the last")
+      ->type_name("N");
+  convert->callback([words] {
+    const Geometry g = read_geometry(words->from, words->frame);
+    replace_file(words->to, written_geometry(g, words->to));
+    const std::size_t count = g.is_mesh() ? g.mesh.triangle.size() : g.center.size();
+    fmt::print("{}  {} {}\n", harmless(words->to), count_text(static_cast<double>(count)),
+               g.is_mesh() ? "triangles" : "spheres");
+  });
+}
+
+}  // namespace breccia::app
