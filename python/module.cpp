@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "breccia/breccia.hpp"
+#include "dlpack.hpp"
 
 namespace {
 
@@ -91,6 +92,22 @@ std::function<bool()> question(const py::object& stop, const py::object& sim) {
   };
 }
 
+/// Doubles in a row, converted from what Python has.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+py::list stages_of(const br::Simulation& sim) {
+  py::list all;
+  for (const br::Stage& s : sim.stages()) {
+    py::dict stage;
+    stage["name"] = s.name;
+    stage["begin"] = s.begin;
+    stage["end"] = s.ended_by.empty() ? py::object(py::none()) : py::float_(s.end);
+    stage["ended_by"] = s.ended_by.empty() ? py::object(py::none()) : py::str(s.ended_by);
+    all.append(stage);
+  }
+  return all;
+}
+
 br::Options options_of(const std::string& device, int threads, bool allow_scripts) {
   br::Options options;
   options.device = device;
@@ -115,6 +132,20 @@ bool run_to(const py::object& self, double until, const py::object& stop, std::i
   auto& sim = self.cast<br::Simulation&>();
   const py::gil_scoped_release unlocked;
   return sim.run(until, question(stop, self), every);
+}
+
+/// A force law that asks Python: law(sim) gives an array of the forces on the items.
+br::ForceLaw asking(const py::object& law, br::Simulation* of) {
+  const std::shared_ptr<py::object> kept(new py::object(law), [](py::object* gone) {
+    const py::gil_scoped_acquire locked;
+    delete gone;
+  });
+  return [kept, of](std::vector<double>& force) {
+    const py::gil_scoped_acquire locked;
+    const auto numbers =
+        py::cast<Numbers>((*kept)(py::cast(of, py::return_value_policy::reference)));
+    force.assign(numbers.data(), numbers.data() + numbers.size());
+  };
 }
 
 int run_case(const br::Case& of, const std::string& folder, const std::string& device, int threads,
@@ -178,6 +209,22 @@ PYBIND11_MODULE(_breccia, module) {
                              "Counts and findings by their paths in summary.json.")
       .def_property_readonly("hash", &br::Simulation::hash,
                              "Of all positions and velocities: state_hash of summary.json.")
+      .def_property_readonly("stages", &stages_of,
+                             "Stages that have begun, as dicts: name, begin, end [s], ended_by.")
+      .def_property_readonly("items", &br::Simulation::items,
+                             "Elements, or in 2D triangles: rows of the arrays.")
+      .def("_add_force",
+           [](py::object& self, const std::vector<std::int64_t>& on, const py::object& law) {
+             auto& sim = self.cast<br::Simulation&>();
+             return sim.add_force(on, asking(law, &sim));
+           })
+      .def("_work_of_force", &br::Simulation::work_of_force)
+      .def("_dlpack",
+           [](const py::object& self, const std::string& name) {
+             return dlpack::capsule_of(self.cast<const br::Simulation&>().field_there(name), self);
+           })
+      .def("_gpu", [](const br::Simulation& sim,
+                      const std::string& name) { return sim.field_there(name).gpu; })
       .def("_names",
            [](const br::Simulation& sim) {
              std::map<std::string, std::string> units;
@@ -191,6 +238,11 @@ PYBIND11_MODULE(_breccia, module) {
   module.def("run", &run_case, py::arg("case"), py::arg("folder"), py::arg("device"),
              py::arg("threads"), py::arg("allow_scripts"), py::arg("replace"), py::arg("quiet"));
   module.def("frame_times", &br::frame_times, py::arg("folder"));
+  module.def("frame_units", [](const std::string& folder, int number) {
+    std::map<std::string, std::string> units;
+    for (const br::Field& field : br::read_frame(folder, number)) units[field.name] = field.unit;
+    return units;
+  });
   module.def("read_frame", [](const std::string& folder, int number) {
     py::dict frame;
     for (const br::Field& field : br::read_frame(folder, number))

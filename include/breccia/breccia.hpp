@@ -79,6 +79,7 @@ struct Field {
   /// That holds the numbers. If null, they are the simulation's own: they change with each step,
   /// and end with it.
   std::shared_ptr<const void> memory;
+  int gpu = -1;  ///< whose memory `data` is; below 0: the host's
 
   /// A number of a field of doubles.
   double operator()(std::int64_t item, std::int64_t component = 0) const {
@@ -87,6 +88,18 @@ struct Field {
     return *reinterpret_cast<const double*>(at);
   }
 };
+
+/// Where a simulation is among the stages of its case.
+struct Stage {
+  std::string name;
+  double begin = 0.0, end = 0.0;  ///<  [s]; end 0: it goes on
+  std::string ended_by;           ///< time, rest, probe or drop; empty: it goes on
+};
+
+/// Forces of your own on items of a simulation, at the time of its positions.
+/// @param force  of item 0, then of item 1, ...: x, y, z of an element [N]; in 2D x, y of the three
+///               corners of a triangle [N/m]. Zero when the law is asked.
+using ForceLaw = std::function<void(std::vector<double>& force)>;
 
 /// Where a simulation computes.
 struct Options {
@@ -105,11 +118,12 @@ class BR_API Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
+  /// None when the last stage of the case is over.
   /// @throws Error naming step, time and element if numbers go wrong
   void step(std::int64_t count = 1);
-  /// Steps to the first step at or past `until`.  [s]
+  /// Steps to the first step at or past `until` [s], or to the end of the last stage.
   /// @param stop   asked every so many steps; true ends the run there. It may throw.
-  /// @returns whether `until` was reached
+  /// @returns whether it got there
   bool run(double until, const std::function<bool()>& stop = {}, std::int64_t every = 100);
 
   double time() const;         ///< simulated so far  [s]
@@ -126,11 +140,29 @@ class BR_API Simulation {
   /// Of all positions and velocities, by global id: `state_hash` of summary.json.
   std::string hash() const;
 
+  /// Stages that have begun; none if the case has none.
+  std::vector<Stage> stages() const;
+
+  /// Adds forces to those of the case from now on: law() is asked once a step, when all other
+  /// forces are known, and may read this simulation, not step it. Local damping acts on them as on
+  /// other forces; their work is part of energies().at("work"). The time step does not know how
+  /// stiff they are.
+  /// @param items  rows of the arrays: elements or triangles
+  /// @returns its number. @throws Error if there is no such item
+  int add_force(std::vector<std::int64_t> items, ForceLaw law);
+  /// Of a force since it was added.  [J; in 2D J/m]
+  double work_of_force(int number) const;
+  /// Rows of the arrays that forces act on: elements or triangles.
+  std::int64_t items() const;
+
   /// The arrays of the state, without their numbers.
   std::vector<Field> fields() const;
   /// On the CPU without a copy, but for what is worked out: damage, stress, fragment.
   /// @throws Error if there is none of that name
   Field field(const std::string& name) const;
+  /// Of a GPU without a copy, too: in its memory (Field::gpu), complete on return, to be read until
+  /// the next step.
+  Field field_there(const std::string& name) const;
 
  private:
   struct State;

@@ -11,6 +11,14 @@ from . import _breccia
 from ._breccia import FileError
 
 
+def column(values):
+    """Numbers as an array of float; words, such as names of stages, as one of str."""
+    try:
+        return numpy.array(values, dtype=float)
+    except ValueError:
+        return numpy.array(values, dtype=str)
+
+
 class Table(Mapping):
     """A CSV file of a run: columns by name as numpy arrays, and their units.
 
@@ -28,9 +36,8 @@ class Table(Mapping):
         names, units, numbers = rows[0], rows[1], rows[2:]
         if numbers and len(numbers[-1]) < len(names):  # of a run that is writing it now
             numbers.pop()
-        values = numpy.array(numbers, dtype=float).reshape(len(numbers), len(names))
         self.units = dict(zip(names, units))
-        self._columns = {name: values[:, i] for i, name in enumerate(names)}
+        self._columns = {name: column([row[i] for row in numbers]) for i, name in enumerate(names)}
 
     def __getitem__(self, name):
         return self._columns[name]
@@ -55,11 +62,16 @@ class Frames(Sequence):
     """Frames of a run: frames.times [s], frames[i] a dict of arrays named as in ParaView.
 
     "position", "radius", "lines", "triangles", and fields as "points.velocity", in float32.
+    frames.units has the units of all.
     """
 
     def __init__(self, folder):
         self._folder = folder
         self.times = numpy.array(_breccia.frame_times(folder))
+
+    @property
+    def units(self):
+        return _breccia.frame_units(self._folder, 0) if len(self.times) else {}
 
     def __getitem__(self, number):
         if isinstance(number, slice):

@@ -2,6 +2,7 @@
 // Arrays of the library's inside as fields of the public header.
 
 #include "breccia/breccia.hpp"
+#include "exec/device.hpp"
 #include "run/method/state_array.hpp"
 
 namespace br {
@@ -23,8 +24,10 @@ inline NumberType number_type_of(breccia::NumberType type) {
 }
 
 inline Field field_of(breccia::StateArray&& array) {
-  return {std::move(array.name),  std::move(array.unit),    number_type_of(array.type), array.data,
-          std::move(array.shape), std::move(array.strides), std::move(array.memory)};
+  return {std::move(array.name),      std::move(array.unit),
+          number_type_of(array.type), array.data,
+          std::move(array.shape),     std::move(array.strides),
+          std::move(array.memory),    array.on_device ? breccia::device_in_use() : -1};
 }
 
 }  // namespace br

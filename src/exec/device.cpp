@@ -78,6 +78,10 @@ void use_device(int number) {
                "setting its memory pool up");
 }
 
+int device_in_use() {
+  return used_device;
+}
+
 DeviceInfo device_info() {
   int number = 0;
   check_device(cudaGetDevice(&number), "asking for its number");
@@ -134,6 +138,9 @@ int device_count() {
 }
 void use_device(int) {
   refuse();
+}
+int device_in_use() {
+  return -1;
 }
 DeviceInfo device_info() {
   refuse();

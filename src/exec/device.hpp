@@ -20,6 +20,9 @@ int device_count();
 /// is no such GPU (tells how many there are)
 void use_device(int number);
 
+/// Number of the GPU that this process computes on; below 0: none.
+int device_in_use();
+
 /// Of the GPU in use. @throws DeviceError
 DeviceInfo device_info();
 

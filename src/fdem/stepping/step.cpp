@@ -132,6 +132,10 @@ void StepwiseRun::bundle_forces(World& w) const {
   for_each(w.exec, w.bundles.starts.size() - 1, bundle_kernel(w));
 }
 
+void share_bundle_forces(World& w) {
+  StepwiseRun{}.bundle_forces(w);
+}
+
 void StepwiseRun::choose_step(World& w) const {
   if (w.step % w.given->time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }

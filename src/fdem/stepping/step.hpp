@@ -57,6 +57,9 @@ struct StepwiseRun {
   void count_step(World& w) const { w.step += 1; }
 };
 
+/// Corners that move as one share their force anew, after some have got more of it.
+void share_bundle_forces(World& w);
+
 /// Loops on the host, over packs, shared by threads.
 struct HostRun : StepwiseRun {
   void move_boundary(World& w) const;

@@ -120,6 +120,18 @@ struct DemSim {
     });
   }
 
+  static constexpr Index force_numbers = 3;
+  static Index force_items(const World& w) { return w.elements.size(); }
+  static void add_forces(World& w, const OwnForces& own) { add_to(w.elements.force, own); }
+  static double book_forces(World& w, const OwnForces& own) {
+    const OnHost state(w.elements.state, w.exec.space);
+    return book_to(w.elements.load_work, own, [&](std::size_t i) {
+      const double* const f = own.numbers.data() + 3 * i;
+      const Vec3& v = state->host()[static_cast<std::size_t>(own.items[i])].velocity;
+      return 0.5 * w.last_dt * dot(Vec3{f[0], f[1], f[2]}, v);
+    });
+  }
+
   template <class Visit>
   static void each_stored(World& w, const Visit& visit) {
     visit.fields("elements", w.elements);

@@ -11,6 +11,7 @@
 #include "fdem/servos.hpp"
 #include "fdem/setup/removal.hpp"
 #include "fdem/setup/stages.hpp"
+#include "fdem/stepping/step.hpp"
 #include "run/method/sim_method.hpp"
 
 namespace breccia {
@@ -167,6 +168,23 @@ struct FdemSim {
     arrays.add_found("fragment", "-", t.size(), [&] { return fdem::fragments(w).of; });
     arrays.add_fields("", w.triangles);
     arrays.add_fields("joints.", w.joints);
+  }
+
+  static constexpr Index force_numbers = 6;
+  static Index force_items(const World& w) { return w.triangles.size(); }
+  static void add_forces(World& w, const OwnForces& own) {
+    add_to(w.triangles.force, own);
+    fdem::share_bundle_forces(w);
+  }
+  static double book_forces(World& w, const OwnForces& own) {
+    const OnHost nodes(w.triangles.nodes, w.exec.space);
+    return book_to(w.triangles.load_work, own, [&](std::size_t i) {
+      const double* const f = own.numbers.data() + 6 * i;
+      const fdem::TriangleNodes& n = nodes->host()[static_cast<std::size_t>(own.items[i])];
+      double power = 0.0;
+      for (int k = 0; k < 3; ++k) power += dot(Vec2{f[2 * k], f[2 * k + 1]}, n.at[k].velocity);
+      return 0.5 * w.last_dt * power;
+    });
   }
 
   template <class Visit>

@@ -11,6 +11,7 @@
 #include "core/step_clock.hpp"
 #include "io/checkpoint.hpp"
 #include "run/frames/frame_output.hpp"
+#include "run/method/own_forces.hpp"
 #include "run/method/state_array.hpp"
 
 namespace breccia {
@@ -79,7 +80,17 @@ class Method {
   /// Of the state as it is: the array of this name or, for an empty one, all of them without their
   /// numbers. Those of the host's memory change with each step, and stay where they are. Of one
   /// rank alone.
-  virtual std::vector<StateArray> arrays(const std::string& /*name*/) { return {}; }
+  virtual std::vector<StateArray> arrays(const std::string& /*name*/, Wanted = Wanted::on_host) {
+    return {};
+  }
+  /// Lets more forces act beside all others of this moment, in the step to come. Of one rank alone.
+  virtual void add_forces(const OwnForces&) {}
+  /// Books half the work of forces along the last step: of those of its beginning when it has been
+  /// taken, of those of its end when they have been added. Returns it.  [J; in 2D J/m]
+  virtual double book_forces(const OwnForces&) { return 0.0; }
+  /// Numbers of a force on an item: 3 of an element, 6 of the corners of a triangle; and items.
+  virtual Index force_numbers() const { return 0; }
+  virtual Index force_items() const { return 0; }
   /// What else the end of a run shows.
   virtual std::vector<Table> tables() { return {}; }
 

@@ -26,7 +26,8 @@ namespace breccia {
 /// probe, read_own, find_unsound, state_hash, derive, share_out, collect and rebalance.
 template <class Sim>
 concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vector<Fact>& facts,
-                              Ledger& ledger, const Energies& energies, StateArrays& arrays) {
+                              Ledger& ledger, const Energies& energies, StateArrays& arrays,
+                              const OwnForces& own) {
   { Sim::balance(ledger, energies, std::int64_t{}) } -> std::same_as<EnergyBalance>;
   // The frame of a world, or what a part has of it; rank 0 knows the whole mesh, too.
   { Sim::frame(w, &w) } -> std::same_as<FramePart>;
@@ -35,6 +36,9 @@ concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vecto
   sim.add_findings(w, facts);
   // Arrays that others may look at while it runs.
   Sim::add_arrays(w, arrays);
+  // Forces of the program that holds the simulation.
+  Sim::add_forces(w, own);
+  { Sim::book_forces(w, own) } -> std::same_as<double>;
 };
 
 template <class World>
@@ -184,11 +188,15 @@ class SimMethod final : public Method {
       return facts;
     });
   }
-  std::vector<StateArray> arrays(const std::string& name) override {
-    StateArrays arrays(name);
+  std::vector<StateArray> arrays(const std::string& name, Wanted where) override {
+    StateArrays arrays(name, where);
     Sim::add_arrays(world_.part(), arrays);
     return std::move(arrays.found);
   }
+  void add_forces(const OwnForces& own) override { Sim::add_forces(world_.part(), own); }
+  double book_forces(const OwnForces& own) override { return Sim::book_forces(world_.part(), own); }
+  Index force_numbers() const override { return Sim::force_numbers; }
+  Index force_items() const override { return Sim::force_items(world_.part()); }
   std::vector<Table> tables() override {
     if constexpr (requires(const World& w, const Sim& sim) { sim.tables(w); })
       return world_.of_whole([this](const World& w) { return sim_.tables(w); });

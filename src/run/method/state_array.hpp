@@ -2,7 +2,8 @@
 // Arrays of a running simulation as other programs see them: numbers with a shape, where they lie.
 //
 // The lists are those of each_field, so that an array that a state carries is there by itself. On
-// the host its numbers are the state's own; on a device they are copied first.
+// the host its numbers are the state's own; those of a device are copied first, unless they are
+// wanted where they lie.
 
 #include <cstdint>
 #include <memory>
@@ -44,7 +45,11 @@ struct StateArray {
   std::vector<std::int64_t> shape;     ///< items first
   std::vector<std::int64_t> strides;   ///<  [bytes]
   std::shared_ptr<const void> memory;  ///< that holds the numbers; null: the simulation does
+  bool on_device = false;              ///< `data` is memory of the GPU in use
 };
+
+/// Where numbers of a device are wanted.
+enum class Wanted : std::uint8_t { on_host, where_they_lie };
 
 /// Numbers that make up one item of an array: their type and shape. Other items are not shown.
 template <class T>
@@ -80,7 +85,8 @@ struct ItemLayout<Sym2Of<R>> {
 class StateArrays {
  public:
   /// @param wanted  name of an array; empty: names, units and shapes of all, without data
-  explicit StateArrays(std::string wanted) : wanted_(std::move(wanted)) {}
+  explicit StateArrays(std::string wanted, Wanted where = Wanted::on_host)
+      : wanted_(std::move(wanted)), where_(where) {}
 
   std::vector<StateArray> found;
 
@@ -156,8 +162,9 @@ class StateArrays {
     array.name = name;
     array.unit = unit;
     if (wanted_.empty()) return array;
-    if (items.space() == Space::host) {
+    if (items.space() == Space::host || where_ == Wanted::where_they_lie) {
       array.data = items.data();
+      array.on_device = items.space() == Space::cuda;
     } else {
       const auto copy = std::make_shared<Buffer<T>>(host_copy(items));
       array.data = copy->data();
@@ -167,6 +174,7 @@ class StateArrays {
   }
 
   std::string wanted_;
+  Wanted where_;
 };
 
 }  // namespace breccia
