@@ -5,13 +5,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "exec/error.hpp"
+#include "io/file.hpp"
+#include "io/whole_file.hpp"
 
 namespace breccia::app {
 namespace {
@@ -37,6 +41,28 @@ std::vector<std::string> encoding(const std::string& path) {
             "0",   "-row-mt", "1",    "-pix_fmt",   "yuv420p", "-f", "webm"};
   return {"-vf",      even,      "-c:v",      "libx264",    "-crf", "18",
           "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f",   "mp4"};
+}
+
+/// Puts a comment behind the head of a GIF: ffmpeg writes none there (GIF89a, sections 18 and 24).
+void add_comment(const std::string& path, const std::string& note) {
+  const std::string film = read_whole_file(path);
+  constexpr std::size_t signature = 6, screen = 7, flags = 10, most = 255;
+  if (film.size() < signature + screen) throw IoError(path + ": ffmpeg left no film");
+  const int packed = static_cast<unsigned char>(film[flags]);
+  std::size_t head = signature + screen;
+  if ((packed & 0x80) != 0) head += std::size_t{3} << ((packed & 7) + 1);  // its colours
+  head = std::min(head, film.size());
+  std::string comment("\x21\xfe");
+  for (std::size_t from = 0; from < note.size(); from += most) {
+    const std::string part = note.substr(from, most);
+    comment += static_cast<char>(static_cast<unsigned char>(part.size()));
+    comment += part;
+  }
+  comment += '\0';
+  const std::string_view all = film;
+  const Bytes pieces[] = {bytes_of(all.substr(0, head)), bytes_of(comment),
+                          bytes_of(all.substr(head))};
+  replace_file(path, pieces);
 }
 
 }  // namespace
@@ -120,6 +146,7 @@ void Film::close() {
   ::waitpid(child_, &status, 0);
   child_ = -1;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail();
+  if (path_.ends_with(".gif")) add_comment(temporary_, note_);
   std::error_code error;
   fs::rename(temporary_, path_, error);
   if (error) throw IoError(path_ + ": cannot be written: " + error.message());

@@ -1,5 +1,6 @@
 """Films, sheets and panels of a run, as `breccia render` makes them."""
 
+import json
 import os
 import pathlib
 import shutil
@@ -72,6 +73,31 @@ class Render(unittest.TestCase):
             entries = "stream=codec_name,width,height,nb_read_frames"
             found = subprocess.check_output([*probe, entries, self.path / name], text=True)
             self.assertEqual(found.strip(), f"{codec},402,150,5")
+
+    @unittest.skipUnless(shutil.which("ffprobe"), "needs Debian's ffmpeg")
+    def test_films_name_their_run(self):
+        summary = json.loads((self.path / "out/summary.json").read_text())
+        version, last = summary["breccia"]["version"], summary["state_hash"]
+        line = f"breccia {version}, case balls, seed 1, state hash {last} at step {summary['steps']}"
+        for name in ("film.mp4", "film.webm", "film.gif"):
+            self.render(name)
+            probe = ["ffprobe", "-v", "error", "-of", "default=nk=1:nw=1", "-show_entries"]
+            probe += ["format_tags:stream_tags=comment", self.path / name]
+            found = subprocess.check_output(probe, text=True)
+            if name.endswith(".gif"):  # ffprobe reads no comment of a GIF
+                found = self.comment_of_gif((self.path / name).read_bytes())
+            self.assertIn(line, found, name)
+
+    def comment_of_gif(self, gif):
+        """The first extension of the file, as GIF89a has it."""
+        self.assertEqual(gif[:6], b"GIF89a")
+        place = 13 + (3 << ((gif[10] & 7) + 1) if gif[10] & 0x80 else 0)
+        self.assertEqual(gif[place : place + 2], b"\x21\xfe")
+        place, text = place + 2, b""
+        while gif[place]:
+            text += gif[place + 1 : place + 1 + gif[place]]
+            place += 1 + gif[place]
+        return text.decode()
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Pictures that say of which run they are, and `breccia verify`, which makes them again."""
 
+import json
 import os
 import pathlib
 import struct
@@ -11,6 +12,7 @@ import zlib
 from two_balls import case_with
 
 PROGRAM = os.environ["BRECCIA"]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = case_with(
     'title = "two balls"\n'
     'output = { frames = 4, color = "velocity", width = 201, height = 150, picture_steps = [3] }'
@@ -115,6 +117,36 @@ class Verify(unittest.TestCase):
     def test_a_sheet_names_its_case_only(self):
         subprocess.run([PROGRAM, "render", "out", "-o", "sheet.png", "--sheet", "2x2"], check=True, cwd=self.path, stdout=subprocess.DEVNULL)
         self.assertIn("a sheet", self.verify("sheet.png", code=2))
+
+    def of_other_case(self, name, *words):
+        """Pictures of a run of 200 steps: of its last state, and of its last stored frame with the hash."""
+        few = ["--steps", "200", "--set", "output.picture_steps=[200]", "--set", "output.width=200"]
+        words = [PROGRAM, "run", *words, "-o", self.path / name, "-q", "--threads", "1", *few]
+        subprocess.run([*words, "--set", "output.height=150"], check=True)
+        drawn = [PROGRAM, "render", self.path / name, "-o", self.path / f"{name}.png", "--width", "190"]
+        subprocess.run(drawn, check=True, stdout=subprocess.DEVNULL)
+        state = self.verify(f"{name}/pictures/step_200.png", "--threads", "2", code=0)
+        self.assertRegex(state, "the same picture: .*, step 200, hash")
+        drawn = self.verify(f"{name}.png", code=0)
+        self.assertRegex(drawn, "the same picture: .*, step 200, hash")
+        self.assertNotIn("names none", drawn)
+
+    def test_joints_in_the_plane(self):
+        self.of_other_case("beam", ROOT / "cases/three_point_bending/small.toml")
+
+    def test_facets_of_particles(self):
+        self.of_other_case("facets", ROOT / "cases/ldpm_cube/small.toml")
+
+    def test_stages(self):
+        stages = (
+            '[[stage]]\nname = "fly"\nuntil = "0.2 ms"\n'
+            '[[stage]]\nname = "fall"\ngravity = [0.0, 0.0, -1e5]\n'
+        )
+        case = case_with('time.max_step = "2 us"') + stages
+        (self.path / "staged.toml").write_text(case)
+        self.of_other_case("staged", self.path / "staged.toml")
+        summary = json.loads((self.path / "staged/summary.json").read_text())
+        self.assertEqual(len(summary["stage"]), 2, "the picture is of the second stage")
 
 
 if __name__ == "__main__":
