@@ -8,7 +8,7 @@
 ///
 /// A simulation steps as `breccia run` does, to the same bits (hash). It writes nothing; br::run
 /// writes a result folder as the program would. In 2D quantities are per metre of thickness.
-/// find_package(breccia) gives the target breccia::breccia; docs/library.md has an example.
+/// find_package(breccia) gives the target breccia::breccia; docs/install.md has an example.
 
 #include <cstddef>
 #include <cstdint>

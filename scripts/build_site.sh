@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Builds the site of the documents in build/site/html, which needs no network, and checks every link of it.
+# scripts/build_site.sh [PROGRAM [PYTHON_PACKAGE]]: those of build/release unless named.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=${1:-build/release/breccia}
+package=${2:-$(dirname "$program")/python}
+stage=build/site/stage
+katex=/usr/share/javascript/katex
+for file in "$program" "$package/breccia/__init__.py" $katex/katex.js; do
+  [ -e "$file" ] || { echo "$0: no $file (built by cmake --preset test; KaTeX: package libjs-katex)" >&2; exit 3; }
+done
+for tool in mkdocs doxygen; do
+  command -v $tool > /dev/null || { echo "$0: no $tool (packages mkdocs-material and doxygen)" >&2; exit 3; }
+done
+
+rm -rf build/site
+mkdir -p $stage/docs/reference $stage/katex
+python3 scripts/stage_site.py $stage
+
+"$program" keys --markdown > $stage/docs/reference/keys.md
+python3 scripts/reference_commands.py "$program" > $stage/docs/reference/commands.md
+PYTHONPATH=$package /usr/bin/python3 scripts/reference_python.py > $stage/docs/reference/python.md
+python3 scripts/reference_cpp.py include/breccia/breccia.hpp > $stage/docs/reference/cpp.md
+
+cp $katex/katex.min.css $katex/katex.min.js $katex/contrib/auto-render.js $stage/katex/
+mkdir $stage/katex/fonts && cp -L $katex/fonts/*.woff2 $stage/katex/fonts/
+echo 'document.addEventListener("DOMContentLoaded", () => renderMathInElement(document.body, {delimiters: [
+  {left: "\\(", right: "\\)", display: false}, {left: "\\[", right: "\\]", display: true}], throwOnError: true}));' > $stage/katex/start.js
+
+/usr/bin/mkdocs build --strict --quiet
+python3 scripts/check_links.py build/site/html
+du -sh build/site/html
