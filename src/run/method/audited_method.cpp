@@ -22,7 +22,14 @@ class AuditedMethod final : public Method {
 
   Advanced advance(const StopAt& stop) override {
     if (!next_) next_ = drawn_from(steps());
-    if (steps() < *next_) return method_->advance({stop.time, std::min(stop.step, *next_)});
+    if (steps() < *next_) {
+      pushed_ = false;
+      return method_->advance({stop.time, std::min(stop.step, *next_)});
+    }
+    if (std::exchange(pushed_, false)) {
+      next_ = drawn_from(steps() + 1);
+      return method_->advance(stop);
+    }
     const Advanced taken = repeated(stop);
     next_ = drawn_from(steps());
     return taken;
@@ -49,7 +56,17 @@ class AuditedMethod final : public Method {
     if (leads(ranks_)) facts.push_back({"audit.repeated_steps", static_cast<double>(repeated_)});
     return facts;
   }
-  std::vector<StateArray> arrays(const std::string& name) override { return method_->arrays(name); }
+  std::vector<StateArray> arrays(const std::string& name, Wanted wanted) override {
+    return method_->arrays(name, wanted);
+  }
+  /// A step with them is not repeated: they are of its caller, and no part of the state.
+  void add_forces(const OwnForces& forces) override {
+    method_->add_forces(forces);
+    pushed_ = true;
+  }
+  double book_forces(const OwnForces& forces) override { return method_->book_forces(forces); }
+  Index force_numbers() const override { return method_->force_numbers(); }
+  Index force_items() const override { return method_->force_items(); }
   std::vector<Table> tables() override { return method_->tables(); }
   void save(CheckpointWriter& writer) override { method_->save(writer); }
   void load(const CheckpointReader* reader) override {
@@ -99,6 +116,7 @@ class AuditedMethod final : public Method {
   Communicator* ranks_;
   std::optional<std::int64_t> next_;  ///< steps that are done when one is repeated
   std::int64_t repeated_ = 0;
+  bool pushed_ = false;  ///< forces of the caller act in the step to come
 };
 
 }  // namespace

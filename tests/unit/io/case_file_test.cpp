@@ -133,6 +133,9 @@ struct AnyValues {
     value =
         static_cast<Integer>(between(std::max(range.low, 1.0), std::min(range.high, 2147483647.0)));
   }
+  void operator()(const char*, Vec2& value, const char*, const Range& range, const char*) {
+    value = {number(range), number(range)};
+  }
   void operator()(const char*, Vec3& value, const char*, const Range& range, const char*) {
     for (double* part : {&value.x, &value.y, &value.z})
       if (random() % 4 != 0) *part = number(range);
