@@ -150,6 +150,11 @@ void check_shown(const fdem::Config& config) {
   one.materials.emplace_back();
   one.domain.show = config.domain.show;
   one.output = config.output;
+  for (const fdem::LoadConfig& load : config.loads)
+    if (load.kind == "fluid") {
+      one.loads.emplace_back().name = load.name;
+      one.loads.back().kind = load.kind;
+    }
   fdem::Model model;  // one triangle a body
   for (const fdem::BodyConfig& body : config.bodies) {
     const auto first = static_cast<Index>(model.point.size());
