@@ -1,6 +1,7 @@
 """The package against the program: same bits, same texts, no copies."""
 
 import gc
+import importlib.util
 import os
 import pathlib
 import runpy
@@ -398,11 +399,15 @@ class Results(unittest.TestCase):
         self.assertEqual(set(run.frames.units), set(run.frames[0]))
         with self.assertRaises(IndexError):
             run.frames[3]
-        try:
-            import pandas  # noqa: F401
-        except ImportError:
-            return
-        self.assertEqual(run.history.frame.attrs["units"]["kinetic"], "J")
+
+    @unittest.skipUnless(importlib.util.find_spec("pandas"), "needs python3-pandas")
+    @in_folder
+    def test_pandas_has_columns_and_units(self, folder):
+        run = br.run(balls(), folder / "out")
+        frame = run.history.frame
+        self.assertEqual(frame.attrs["units"]["kinetic"], "J")
+        self.assertEqual(list(frame.columns), list(run.history))
+        numpy.testing.assert_array_equal(frame["left_x"].to_numpy(), run.history["left_x"])
 
     def test_a_folder_without_a_run_is_named(self):
         with self.assertRaisesRegex(br.FileError, "/nowhere/summary.json"):
