@@ -167,7 +167,7 @@ struct RenderCommand {
   std::vector<std::string> beside;
   std::optional<std::string> color;
   std::optional<int> frame;
-  int rate = 10;
+  int rate = 10, dpi = 0;
   RenderOptions options;
   std::optional<CameraPath> path_of_camera = {};
 
@@ -297,10 +297,16 @@ struct RenderCommand {
                      const std::vector<int>& numbers) const {
     const std::vector<double>& times = shots.front().times;
     std::vector<Image> images;
+<<<<<<< ours
     for (std::size_t i = 0; i < numbers.size(); ++i)
       images.push_back(panels(shots, numbers[i], share_at(i, numbers.size())));
     const Image image =
         images.size() == 1 ? images.front() : grid(images, sheet_of(sheet)->columns);
+=======
+    for (const int number : numbers) images.push_back(panels(shots, number));
+    Image image = images.size() == 1 ? images.front() : grid(images, sheet_of(sheet)->columns);
+    image.dpi = dpi;
+>>>>>>> theirs
     write_png(path, with_notes(png_content(image), notes_for(shots, numbers)));
     if (numbers.size() == 1)
       fmt::print("{}  frame {} of {}, {}\n", harmless(path), numbers.front(), times.size(),
@@ -381,6 +387,12 @@ void add_looks(CLI::App& command, RenderCommand& render) {
   command.add_flag_callback(
       "--no-walls", [&options] { options.walls = false; },
       "leave out walls and marks on what is held");
+  command.add_flag("--log", options.log, "colours by the logarithm of the field");
+  command.add_flag("--edges", options.edges, "draw the edges of triangles");
+  command.add_flag("--no-legend", options.bare, "without title, legend, scale bar and axes");
+  command.add_option("--dpi", render.dpi, "dots an inch, noted in the PNG for printers")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000));
   command.add_flag("--transparent", options.transparent, "no ground, for slides and posters");
   command.add_option("--title", render.title, "first line; default: that of the case")
       ->type_name("TEXT");

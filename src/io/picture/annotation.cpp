@@ -116,6 +116,7 @@ int fitted_height(const RenderOptions& options, const Legend& legend, double asp
   const double wanted = beside + aspect * (window.right - window.left);
   const double of_legend = (lines_height(legend, scale) + axes_room * scale) /
                            (1.0 - above_legend - (legend.bar ? least_bar : 0.0));
+  if (options.bare) return std::max(16, static_cast<int>(std::min<double>(wanted, tall.height)));
   const double height = std::max({wanted, of_legend, lowest * options.width});
   return std::max(16, static_cast<int>(std::min<double>(height, tall.height)));
 }
@@ -123,6 +124,8 @@ int fitted_height(const RenderOptions& options, const Legend& legend, double asp
 Window scene_window(const RenderOptions& options, const Legend& legend) {
   const int scale = text_scale(options);
   const double edge = margin * scale;
+  if (options.bare)
+    return {0.25 * edge, 0.25 * edge, options.width - 0.25 * edge, options.height - 0.25 * edge};
   const double right = options.width - legend_width(legend, scale);
   const double bottom = options.height - edge - 2.0 * font_height * scale;
   const Window window{edge, edge + 2.0 * font_height * scale,

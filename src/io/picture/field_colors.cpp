@@ -230,6 +230,35 @@ std::vector<Color> mapped_colors(const Legend::Bar& bar, const std::vector<float
   return colors;
 }
 
+/// By the logarithm of sizes: values, the bar's range and its ticks are logarithms then.
+std::vector<Color> log_colors(Legend& legend, const std::string& name, const std::string& unit,
+                              std::vector<float>& values, const std::optional<ValueRange>& wanted,
+                              const std::string& map) {
+  constexpr double decades = 1e-4;
+  double largest = 0.0;
+  for (float& value : values) {
+    value = std::fabs(value);
+    if (std::isfinite(value)) largest = std::max<double>(largest, value);
+  }
+  if (wanted) largest = std::max(std::fabs(wanted->low), std::fabs(wanted->high));
+  if (!(largest > 0.0)) largest = 1.0;
+  const double least = wanted && wanted->low > 0.0 ? wanted->low : decades * largest;
+  const ScaledUnit scaled = scaled_unit(unit, largest);
+  Legend::Bar bar{map.empty() ? ColorMap::viridis : map_named(map),
+                  {std::log10(least), std::log10(largest)},
+                  {},
+                  ""};
+  for (int power = static_cast<int>(std::ceil(bar.range.low + std::log10(scaled.factor) - 1e-9));
+       power <= bar.range.high + std::log10(scaled.factor) + 1e-9; ++power)
+    bar.ticks.push_back(
+        {power - std::log10(scaled.factor), fmt::format("{:g}", std::pow(10.0, power))});
+  legend.title = scaled.unit.empty() ? name : fmt::format("{} [{}]", name, scaled.unit);
+  legend.bar = bar;
+  for (float& value : values)
+    value = static_cast<float>(std::log10(std::max<double>(value, least)));
+  return mapped_colors(bar, values);
+}
+
 /// The name of a category in a legend: groups have names, and so have kinds and states of links.
 std::string category_name(const Frame& frame, const Selected& selected, double value) {
   constexpr std::array kinds{"concrete", "steel", "interface"};
@@ -398,7 +427,7 @@ bool colors_lines(const Frame& frame, const std::string& field) {
 
 Coloring color_frame(const Frame& frame, const std::string& field,
                      const std::optional<ValueRange>& range, const std::string& map,
-                     bool lines_first) {
+                     bool lines_first, bool log) {
   Coloring coloring;
   fill_default_colors(frame, coloring);
   if (field.empty()) {
@@ -412,7 +441,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
   }
   coloring.legend = {};
   coloring.of_lines = selected->carrier == Carrier::lines;
-  const std::vector<float> values = scalar_values(frame, *selected);
+  std::vector<float> values = scalar_values(frame, *selected);
   std::vector<Color> colors;
   if (is_category(field)) {
     colors = category_colors(frame, *selected, values, coloring.legend);
@@ -422,8 +451,12 @@ Coloring color_frame(const Frame& frame, const std::string& field,
     if (coloring.legend.bar->map == ColorMap::damage && selected->carrier == Carrier::triangles)
       coloring.legend.bar->map = ColorMap::ground;
     if (!map.empty()) coloring.legend.bar->map = map_named(map);
-    finish_legend(coloring.legend, field, selected->field->unit, spread.whole);
-    colors = mapped_colors(*coloring.legend.bar, values);
+    if (log) {
+      colors = log_colors(coloring.legend, field, selected->field->unit, values, range, map);
+    } else {
+      finish_legend(coloring.legend, field, selected->field->unit, spread.whole);
+      colors = mapped_colors(*coloring.legend.bar, values);
+    }
   }
   switch (selected->carrier) {
     case Carrier::points:
@@ -434,7 +467,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
       break;
     case Carrier::lines:
       coloring.lines = std::move(colors);
-      if (coloring.legend.bar && !frame.radius.empty()) size_lines(values, coloring);
+      if (coloring.legend.bar && !log && !frame.radius.empty()) size_lines(values, coloring);
       if (field == "state") coloring.hidden_lines.clear();
       std::fill(coloring.points.begin(), coloring.points.end(), pale);
       break;

@@ -47,11 +47,12 @@ const FrameField* field_of(const Frame& frame, Carrier carrier, const std::strin
 
 /// @param map  name of the map of colours; empty: by the field
 /// @param lines_first  of two fields of that name the one of lines counts
+/// @param log  colours follow the logarithm: four powers of ten, if no range is given
 /// @throws InputError if the frame has no such field (lists what it has), or one of wrong length,
 ///                    or there is no such map
 Coloring color_frame(const Frame& frame, const std::string& field,
                      const std::optional<ValueRange>& range, const std::string& map = {},
-                     bool lines_first = false);
+                     bool lines_first = false, bool log = false);
 /// As the options say.
 Coloring color_frame(const Frame& frame, const RenderOptions& options);
 

@@ -117,7 +117,7 @@ void size_lines(const std::vector<float>& values, Coloring& coloring) {
 Coloring color_frame(const Frame& frame, const RenderOptions& options) {
   const bool of_spheres = !frame.radius.empty();
   Coloring coloring = color_frame(frame, options.field, options.range, options.map,
-                                  options.show_links && of_spheres);
+                                  options.show_links && of_spheres, options.log);
   if (coloring.cracks && (options.show_links || options.xray)) show_softened(frame, coloring);
   if (!options.xray) return coloring;
   for (Color& color : coloring.triangles) color = blend(color, paper, 0.8F);

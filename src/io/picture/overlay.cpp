@@ -71,7 +71,8 @@ const FrameField* vectors(const Frame& frame, const std::string& name) {
 
 }  // namespace
 
-Overlay::Overlay(const Frame& frame, const RenderOptions& options, Legend& legend) : frame_(frame) {
+Overlay::Overlay(const Frame& frame, const RenderOptions& options, Legend& legend)
+    : frame_(frame), edges_(options.edges) {
   if (!options.arrows.empty()) {
     arrows_ = vectors(frame, options.arrows);
     if (arrows_ == nullptr) {
@@ -254,7 +255,21 @@ void Overlay::draw_held(Paper& paper, const OnPaper& on, int scale) const {
   }
 }
 
+void Overlay::draw_edges(Paper& paper, const OnPaper& on, int scale) const {
+  constexpr Color gray{0.45F, 0.46F, 0.48F};
+  for (std::size_t t = 0; t + 2 < frame_.triangles.size(); t += 3)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto corner = [&](std::size_t c) {
+        return on.camera.project(
+            frame_.position[static_cast<std::size_t>(frame_.triangles[t + c % 3])]);
+      };
+      const ScreenPoint a = corner(k), b = corner(k + 1);
+      if (is_on(paper, a) || is_on(paper, b)) paper.stroke(a.u, a.v, b.u, b.v, 0.25 * scale, gray);
+    }
+}
+
 void Overlay::draw(Paper& paper, const OnPaper& on, int scale) const {
+  if (edges_) draw_edges(paper, on, scale);
   if (held_ != nullptr) draw_held(paper, on, scale);
   if (!stress_.empty()) draw_crosses(paper, on, scale);
   if (arrows_ != nullptr) draw_arrows(paper, on, scale);

@@ -33,10 +33,12 @@ class Overlay {
   void draw_arrows(Paper& paper, const OnPaper& on, int scale) const;
   void draw_crosses(Paper& paper, const OnPaper& on, int scale) const;
   void draw_held(Paper& paper, const OnPaper& on, int scale) const;
+  void draw_edges(Paper& paper, const OnPaper& on, int scale) const;
 
   const Frame& frame_;
   const FrameField* arrows_ = nullptr;
   const FrameField* held_ = nullptr;
+  bool edges_ = false;
   std::vector<const FrameField*> stress_;  ///< one of six components, or three
   double longest_ = 0.0;                   ///< arrow, in the unit of its field
   double largest_ = 0.0;                   ///< principal stress  [Pa]

@@ -209,6 +209,7 @@ Image render_on(const Frame& frame, const RenderOptions& options, int threads,
   }
   layout.overlay.draw(
       paper, {camera, [&](std::size_t i) { return is_seen(canvas, frame, scene, i); }}, scale);
+  if (options.bare) return image;
   draw_title(paper, options.title, frame, scale);
   draw_legend(paper, coloring.legend, scale);
   draw_scale_bar(paper, camera.resolution, scale);

@@ -19,6 +19,7 @@ struct Image {
   std::vector<std::uint8_t> rgb;         ///< 3 width height bytes
   std::vector<std::uint8_t> alpha = {};  ///< width height bytes; empty: opaque
   std::int64_t model_pixels = 0;         ///< of a rendered frame: where items of it show
+  int dpi = 0;                           ///< for printers; 0: not said
 };
 
 /// The part of space that a picture shows: a box, cut off at the corners where points on the
@@ -68,6 +69,9 @@ struct RenderOptions {
   bool walls = true;                     ///< draw walls, and marks on what supports hold
   bool transparent = false;              ///< no ground
   double scale = 1.0;                    ///< of displacements  [-]
+  bool log = false;                      ///< colours by the logarithm of the field
+  bool edges = false;                    ///< edges of triangles
+  bool bare = false;                     ///< without title, legend, scale bar and axes
 };
 
 /// The box around the bulk of each body of a frame, by its field "group": a small body far from a

@@ -33,6 +33,10 @@ bool encode(const Image& image, std::string& content, std::vector<std::uint8_t>&
                static_cast<png_uint_32>(image.height), 8,
                image.alpha.empty() ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  if (image.dpi > 0) {
+    const auto per_metre = static_cast<png_uint_32>(image.dpi / 0.0254 + 0.5);
+    png_set_pHYs(png, info, per_metre, per_metre, PNG_RESOLUTION_METER);
+  }
   png_set_compression_level(png, 1);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_write_info(png, info);

@@ -211,6 +211,7 @@ std::string drawn(const AsDrawn& drawing, Page& page) {
       page.stroke(a.u, a.v, b.u, b.v, 1.3 * scale * width, coloring.lines[i]);
     }
   layout.overlay.draw(page, {camera, [](std::size_t) { return true; }}, scale);
+  if (options.bare) return page.content();
   draw_title(page, options.title, frame, scale);
   draw_legend(page, coloring.legend, scale);
   draw_scale_bar(page, camera.resolution, scale);

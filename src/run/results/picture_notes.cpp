@@ -32,6 +32,9 @@ Json json_of(const RenderOptions& o) {
   json["arrows"] = o.arrows;
   json["scale"] = o.scale;
   json["transparent"] = o.transparent;
+  json["log"] = o.log;
+  json["edges"] = o.edges;
+  json["bare"] = o.bare;
   if (o.camera)
     json["camera"] = {{"eye", json_of(o.camera->eye)},
                       {"target", json_of(o.camera->target)},
@@ -66,6 +69,9 @@ RenderOptions options_of(const Json& json) {
   json.at("arrows").get_to(o.arrows);
   json.at("scale").get_to(o.scale);
   json.at("transparent").get_to(o.transparent);
+  json.at("log").get_to(o.log);
+  json.at("edges").get_to(o.edges);
+  json.at("bare").get_to(o.bare);
   if (json.contains("camera")) {
     const Json& camera = json.at("camera");
     o.camera = Viewpoint{vector_of(camera.at("eye")), vector_of(camera.at("target")),

@@ -364,6 +364,44 @@ TEST(looks, links_are_wide_by_their_force_and_red_where_they_broke) {
   EXPECT_GT(find(render(frame, options), is_red).width(), 150);
 }
 
+TEST(looks, colours_by_logarithm_have_even_steps_for_powers_of_ten) {
+  Frame frame = spheres({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, 0.4);
+  frame.point_fields = {{"pull", "N", 1, {1.0F, 100.0F, 10000.0F}}};
+  RenderOptions options = plain();
+  options.field = "pull";
+  options.log = true;
+  options.map = "gray";
+  const Coloring coloring = color_frame(frame, options);
+  const auto& p = coloring.points;
+  EXPECT_NEAR(p[1].red, 0.5F * (p[0].red + p[2].red), 1e-3);
+  EXPECT_GT(p[2].red, p[0].red + 0.5F);
+  ASSERT_EQ(coloring.legend.bar->ticks.size(), 5U);
+  EXPECT_EQ(coloring.legend.bar->ticks[4].text, "10");
+  EXPECT_EQ(coloring.legend.title, "pull [kN]");
+}
+
+TEST(looks, edges_of_triangles_are_drawn_and_words_are_left_out_if_asked_for) {
+  RenderOptions options = plain("z");
+  const std::string usual = svg_content(plate(1.0), options);
+  options.edges = options.bare = true;
+  const std::string bare = svg_content(plate(1.0), options);
+  EXPECT_NE(usual.find("<text"), std::string::npos);
+  EXPECT_EQ(bare.find("<text"), std::string::npos);
+  const auto strokes = [](const std::string& svg) {
+    std::size_t count = 0;
+    for (std::size_t at = svg.find("linecap"); at != std::string::npos;
+         at = svg.find("linecap", at + 1))
+      ++count;
+    return count;
+  };
+  EXPECT_EQ(strokes(bare), 6U);
+  Image image = render(plate(1.0), options);
+  const Found all = find(image, [](const Pixel& p) { return p[2] < 225; });
+  EXPECT_EQ(all.top, image.height / 10);  // the plate fills the page
+  image.dpi = 300;
+  EXPECT_NE(png_content(image).find("pHYs"), std::string::npos);
+}
+
 TEST(looks, frames_in_files_keep_walls_and_tensors) {
   const std::string folder =
       (std::filesystem::temp_directory_path() / ("looks" + std::to_string(::getpid()))).string();

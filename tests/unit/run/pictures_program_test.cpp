@@ -101,7 +101,8 @@ TEST(PicturesProgram, pictures_of_a_case_and_of_render_know_the_same_looks) {
   const std::string picture = ran.folder / "a.png";
   EXPECT_EQ(ran.run("render " + ran.out() + " -o " + picture +
                     " --arrows displacement --scale 2 --crosses --xray --links --transparent "
-                    "--size 640x480 --title Falls --range 0..1 --map gray --no-walls"),
+                    "--size 640x480 --title Falls --range 0..1 --map gray --no-walls --log --edges "
+                    "--no-legend --dpi 300"),
             0)
       << ran.text;
   const Image image = read_png_with_alpha(picture);
