@@ -297,16 +297,10 @@ struct RenderCommand {
                      const std::vector<int>& numbers) const {
     const std::vector<double>& times = shots.front().times;
     std::vector<Image> images;
-<<<<<<< ours
     for (std::size_t i = 0; i < numbers.size(); ++i)
       images.push_back(panels(shots, numbers[i], share_at(i, numbers.size())));
-    const Image image =
-        images.size() == 1 ? images.front() : grid(images, sheet_of(sheet)->columns);
-=======
-    for (const int number : numbers) images.push_back(panels(shots, number));
     Image image = images.size() == 1 ? images.front() : grid(images, sheet_of(sheet)->columns);
     image.dpi = dpi;
->>>>>>> theirs
     write_png(path, with_notes(png_content(image), notes_for(shots, numbers)));
     if (numbers.size() == 1)
       fmt::print("{}  frame {} of {}, {}\n", harmless(path), numbers.front(), times.size(),
