@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the site of the documents in build/site/html, which needs no network, and checks every link of it.
 # scripts/build_site.sh [PROGRAM [PYTHON_PACKAGE]]: those of build/release unless named.
+# With BRECCIA_RESULTS=DIR the gallery and the table of checks are of the small cases in DIR, which are run if they are not there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${1:-build/release/breccia}
@@ -22,6 +23,8 @@ python3 scripts/stage_site.py $stage
 python3 scripts/reference_commands.py "$program" > $stage/docs/reference/commands.md
 PYTHONPATH=$package /usr/bin/python3 scripts/reference_python.py > $stage/docs/reference/python.md
 python3 scripts/reference_cpp.py include/breccia/breccia.hpp > $stage/docs/reference/cpp.md
+python3 scripts/reference_speed.py bench/results > $stage/docs/reference/speed.md
+python3 scripts/build_gallery.py $stage/docs/gallery --program "$program" --results "${BRECCIA_RESULTS:-build/gallery}" ${BRECCIA_RESULTS:+--run}
 
 cp $katex/katex.min.css $katex/katex.min.js $katex/contrib/auto-render.js $stage/katex/
 mkdir $stage/katex/fonts && cp -L $katex/fonts/*.woff2 $stage/katex/fonts/

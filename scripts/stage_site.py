@@ -2,7 +2,7 @@
 """Copies the pages of the repository, and what they link to, into FOLDER, each to its own path.
 
 stage_site.py FOLDER. A link to a folder becomes one to its README.md, as sites of repositories show it. Exit code 1 if a page links
-to what the repository does not hold; pages that are generated (docs/reference) are looked for later, by check_links.py.
+to what the repository does not hold; pages that are generated (docs/reference, docs/gallery) are looked for later, by check_links.py.
 """
 import pathlib
 import re
@@ -33,7 +33,7 @@ def staged(page, tracked, folders, wanted, missing):
             wanted.add(path)
         elif path in folders and f"{path}/README.md" in tracked:
             return f"{match[1]}{target.rstrip('/')}/README.md{'#' + anchor if anchor else ''}{match[3]}"
-        elif not path.startswith("docs/reference/"):
+        elif not path.startswith(("docs/reference/", "docs/gallery/")):
             missing.append(f"{page}: {match[2]}")
         return match[0]
 
