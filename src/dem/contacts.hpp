@@ -128,6 +128,7 @@ struct WallForces {
     motion.distance = motion.arm_a = height;
     const Vec3 surface = wall.velocity_at(end.position - height * out);
     const Vec3 dv = surface - end.velocity;
+    motion.extension = dt * dot(dv, motion.normal);
     motion.slip = dt * motion.tangential(dv - cross(height * end.spin, motion.normal));
     motion.turn = dt * (wall.spin - end.spin);
     motion.half_turn = (0.25 * dt * dot(motion.normal, end.spin + wall.spin)) * motion.normal;

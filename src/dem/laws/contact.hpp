@@ -58,9 +58,14 @@ struct ContactLaw {
                                  double approach, const PairMotion<double>& motion,
                                  ContactState& state) const {
     ContactResponse r{};
+    // Forces of a step work on half of the way before it and half of the way after it, also where a
+    // part of that way is a gap.
+    const Vec3 shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
+    const Vec3 moment_before = motion.rotated_with_pair(state.moment);
     if (overlap <= 0.0) {
-      r.slid = state.stored;
-      r.damped = 0.5 * state.dashpot * (-state.overlap);
+      r.slid = state.stored - 0.5 * dot(shear_before, motion.slip) -
+               0.5 * dot(moment_before, motion.turn);
+      r.damped = -0.5 * state.dashpot * motion.extension;
       state = {};
       return r;
     }
@@ -82,11 +87,10 @@ struct ContactLaw {
     if (damping > 0.0)
       dashpot = max(2.0 * damping * sqrt(pair.mass * r.normal_stiffness) * approach, -elastic);
     r.pressure = elastic + dashpot;
-    r.damped = 0.5 * (state.dashpot + dashpot) * (overlap - state.overlap);
+    r.damped = 0.5 * (state.dashpot + dashpot) *
+               (state.overlap > 0.0 ? overlap - state.overlap : -motion.extension);
 
     // Shear and rolling.
-    const Vec3 shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
-    const Vec3 moment_before = motion.rotated_with_pair(state.moment);
     r.shear = shear_before - shear_stiffness * motion.slip;
     r.moment = moment_before - rolling_stiffness * motion.turn;
     cut(r.shear, friction * r.pressure);
