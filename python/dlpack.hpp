@@ -60,7 +60,7 @@ inline DataType type_of(br::NumberType type) {
   return {code_float, 64, 1};
 }
 
-/// What a capsule keeps alive: the field, and the simulation whose memory it may be.
+/// A capsule keeps these alive: the field, and the simulation whose memory it may be.
 struct Kept {
   br::Field field;
   py::object owner;

@@ -140,7 +140,7 @@ TEST(Removal, of_rock_under_stress_is_booked) {
     s.config.supports[0].fix = {};
     expect_booked(s, 1e-2);
     expect_alike(s);
-    // What all of it held at the start, by Hooke's law of plane stress.
+    // Energy that all of it held at the start, by Hooke's law of plane stress.
     const auto method = make_method(s.config, s.model, {}, nullptr);
     const double held = 0.5 *
                         (20e6 * 20e6 + 8e6 * 8e6 - 2.0 * 0.2 * 20e6 * 8e6 + 2.0 * 1.2 * 3e6 * 3e6) /

@@ -14,7 +14,7 @@ Amplitude amplitude(const OverTime<Value>& quantity, int axis, const HistoryConf
   return {history.ramp, history.begin, history.times, history.factors};
 }
 
-/// What amplitudes of a quantity are factors of.
+/// The quantity that amplitudes are factors of.
 inline Vec2 scale_of(const OverTime<Vec2>& quantity) {
   return quantity.is_table() ? Vec2{1.0, 1.0} : quantity.value;
 }

@@ -54,7 +54,7 @@ struct Clip {
   bool keeps(const Vec3& point) const { return dot(point, normal) <= offset; }
 };
 
-/// What a plane at right angles to an axis leaves of an extent.
+/// The part of an extent that a plane at right angles to an axis leaves.
 Extent cut_extent(const Extent& extent, const Clip& clip);
 
 /// Reads RenderOptions::clip; nothing for an empty text. @throws InputError with what is allowed

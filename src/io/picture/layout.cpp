@@ -12,7 +12,7 @@ Axes axes_for(const Extent& extent, const RenderOptions& options) {
   return axes_of_view(flat && options.view == "iso" ? "z" : options.view);
 }
 
-/// What a cut leaves, if that can be shown larger than the whole: else the camera stays.
+/// The part that a cut leaves, if it can be shown larger than the whole: else the camera stays.
 Extent nearer(const Extent& whole, const Extent& cut, const Axes& axes,
               const RenderOptions& options) {
   const double height = options.height > 0 ? options.height : 0.75 * options.width;

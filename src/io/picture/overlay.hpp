@@ -1,5 +1,5 @@
 #pragma once
-// What is drawn over the items of a picture: arrows, crosses of stress, marks on what is held.
+// Marks over the items of a picture: arrows, crosses of stress, dots where supports hold.
 
 #include <functional>
 

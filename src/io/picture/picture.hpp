@@ -132,7 +132,7 @@ void write_png(const std::string& path, const std::string& content);
 /// @throws IoError    if the file cannot be read
 /// @throws InputError if it is no PNG, damaged, or has more than 2^28 pixels
 Image read_png(const std::string& path);
-/// Likewise with its transparency.
+/// Reads a PNG with its transparency.
 Image read_png_with_alpha(const std::string& path);
 
 }  // namespace breccia

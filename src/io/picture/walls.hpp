@@ -12,7 +12,7 @@ namespace breccia {
 void draw_walls(Image& image, const std::vector<FrameWall>& walls, const Canvas& canvas,
                 const Scene& scene, const Extent& extent, int fine, int scale);
 
-/// Those seen from their edge alone, as strokes.  @param camera  in pixels of the paper
+/// Draws walls that are seen from their edge as strokes.  @param camera  in pixels of the paper
 void draw_wall_edges(Paper& paper, const std::vector<FrameWall>& walls, const Camera& camera,
                      const Extent& extent, int scale);
 

@@ -4,7 +4,7 @@ import {make} from "./format.js";
 
 const KEY = "breccia view", PAUSE = 2000; // [ms]
 
-/** What the reader has chosen, kept over a loading of the page. */
+/** Keeps the reader's choices over a loading of the page. */
 function keep(view, store) {
   const film = view?.film, last = film ? film.times[film.times.length - 1] : null;
   sessionStorage.setItem(KEY, JSON.stringify({...view?.chosen(), time: store.time === last ? null : store.time, scroll: window.scrollY}));
