@@ -13,6 +13,7 @@ using fdem::BodyConfig;
 using fdem::DiscontinuityConfig;
 
 constexpr double most_triangles = 2e8;
+constexpr double least_width = 1e-4;  ///< of a body, over mesh_size: nobody meshes thinner ones [-]
 
 std::string list_of(const std::vector<std::string>& names) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
@@ -102,6 +103,11 @@ class BodyChecks {
         require(area / (0.433 * b.mesh_size * b.mesh_size) < most_triangles,
                 "mesh_size = {} m would give more than {:.0e} triangles", b.mesh_size,
                 most_triangles);
+      const double width = rectangle ? std::min(b.size.x, b.size.y) : b.radius;
+      if (rectangle || b.shape == "disc" || b.shape == "ring")
+        require(!(width > 0.0) || width >= least_width * b.mesh_size,
+                "{} = {} m is too thin for mesh_size = {} m: at least {} of it is needed",
+                rectangle ? "size" : "radius", width, b.mesh_size, least_width);
     }
     if (from_file) check_file(b);
     require(from_file || b.file.empty(), "shape {} reads no file", b.shape);

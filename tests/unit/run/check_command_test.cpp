@@ -86,13 +86,19 @@ TEST(Forecast, of_concrete_by_its_grains_is_near_what_the_model_has) {
   EXPECT_EQ(f.gpu_s, 0.0);
 }
 
-TEST(CheckCommand, calls_no_case_good_that_it_then_refuses) {
+TEST(CheckCommand, refuses_a_body_that_nobody_can_mesh) {
   const ScratchFolder folder;
-  replace_file(folder.path() + "/beam.toml", beam);
-  const Told told = told_by(
-      folder, "check " + folder.path() + "/beam.toml --set 'body.0.size=[\"1e-9 mm\", \"50 mm\"]'");
-  EXPECT_EQ(told.exit_code, 2) << told.text;
-  EXPECT_FALSE(has(told.text, "good")) << told.text;
+  const std::string wide = "\"300 mm\"";
+  std::string thin = beam;
+  thin.replace(thin.find(wide), wide.size(), "\"1e-9 mm\"");
+  replace_file(folder.path() + "/thin.toml", thin);
+  for (const char* command : {"check ", "run --steps 1 -q -o thin_out "}) {
+    const Told told = told_by(folder, command + folder.path() + "/thin.toml");
+    EXPECT_EQ(told.exit_code, 2) << told.text;
+    EXPECT_TRUE(has(told.text, "line ") && has(told.text, "size = 1e-12 m is too thin"))
+        << told.text;
+    EXPECT_FALSE(has(told.text, "good")) << told.text;
+  }
 }
 
 TEST(CheckCommand, says_size_step_time_memory_and_disk_within_80_columns) {
