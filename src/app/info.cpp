@@ -23,38 +23,39 @@ namespace fs = std::filesystem;
 
 /// Prints what files say, which must not steer the terminal.
 template <class... Values>
-void show(fmt::format_string<Values...> form, Values&&... values) {
+void print_harmless(fmt::format_string<Values...> form, Values&&... values) {
   fmt::print("{}", harmless(fmt::format(form, std::forward<Values>(values)...)));
 }
 
 void describe_state(const std::string& path) {
   const CheckpointReader reader(path);
-  show("{}\n", path);
+  print_harmless("{}\n", path);
   if (reader.has("run.case_name"))
-    show("  a state of case {} ({}, {} precision), step {}, {}\n", reader.text("run.case_name"),
-         reader.text("run.method"),
-         reader.has("run.precision") ? reader.text("run.precision") : "double",
-         count_text(static_cast<double>(reader.value<std::int64_t>("run.step"))),
-         time_text(reader.value<double>("run.time")));
-  if (reader.has("case.name")) show("  the model of case {}\n", reader.text("case.name"));
-  show("  {:<32} {:>12} {:>12}\n", "section", "items", "bytes");
+    print_harmless("  a state of case {} ({}, {} precision), step {}, {}\n",
+                   reader.text("run.case_name"), reader.text("run.method"),
+                   reader.has("run.precision") ? reader.text("run.precision") : "double",
+                   count_text(static_cast<double>(reader.value<std::int64_t>("run.step"))),
+                   time_text(reader.value<double>("run.time")));
+  if (reader.has("case.name")) print_harmless("  the model of case {}\n", reader.text("case.name"));
+  print_harmless("  {:<32} {:>12} {:>12}\n", "section", "items", "bytes");
   for (const CheckpointReader::Section& section : reader.sections())
-    show("  {:<32} {:>12} {:>12}\n", section.name, section.count, section.bytes.size());
+    print_harmless("  {:<32} {:>12} {:>12}\n", section.name, section.count, section.bytes.size());
 }
 
 void describe_folder(const std::string& path) {
   const std::string summary = path + "/summary.json";
   if (!fs::exists(summary))
     throw InputError(path + ": this folder holds no run (there is no summary.json)");
-  show("{}", read_whole_file(summary));
+  print_harmless("{}", read_whole_file(summary));
   if (fs::exists(path + "/elements.pvd")) {
     const std::vector<double> times = frame_times(path);
     if (!times.empty())
-      show("frames: {}, from {} to {}\n", times.size(), time_text(times.front()),
-           time_text(times.back()));
+      print_harmless("frames: {}, from {} to {}\n", times.size(), time_text(times.front()),
+                     time_text(times.back()));
   }
   for (const CheckpointFile& file : list_checkpoints(path + "/checkpoints"))
-    show("checkpoint: {}, step {}\n", file.path, count_text(static_cast<double>(file.step)));
+    print_harmless("checkpoint: {}, step {}\n", file.path,
+                   count_text(static_cast<double>(file.step)));
 }
 
 void describe_table(const std::string& path) {
@@ -63,8 +64,8 @@ void describe_table(const std::string& path) {
   const std::size_t units_end = text.find('\n', names_end + 1);
   if (units_end == std::string::npos) throw InputError(path + ": this is no history of a run");
   const auto lines = std::count(text.begin(), text.end(), '\n');
-  show("{}\n  {} rows\n  columns: {}\n  units:   {}\n", path, lines - 2, text.substr(0, names_end),
-       text.substr(names_end + 1, units_end - names_end - 1));
+  print_harmless("{}\n  {} rows\n  columns: {}\n  units:   {}\n", path, lines - 2,
+                 text.substr(0, names_end), text.substr(names_end + 1, units_end - names_end - 1));
 }
 
 void describe(const std::string& path) {
@@ -72,7 +73,7 @@ void describe(const std::string& path) {
   const std::string kind = fs::path(path).extension().string();
   if (kind == ".csv") return describe_table(path);
   if (kind == ".json" || kind == ".toml") {
-    show("{}", read_whole_file(path));
+    print_harmless("{}", read_whole_file(path));
     return;
   }
   describe_state(path);

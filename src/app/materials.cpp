@@ -53,7 +53,7 @@ void list_all() {
   }
 }
 
-void show(const std::string& name) {
+void describe_material(const std::string& name) {
   const NamedMaterial* const material = named_material(name);
   if (material == nullptr) {
     std::set<std::string> names;
@@ -85,7 +85,7 @@ void add_materials(CLI::App& program) {
       "  density = 2450.0   # keys that stand there take the place of the material's\n"
       "\n"
       "The completed case.toml of a run holds the full numbers.");
-  command->callback([name] { name->empty() ? list_all() : show(*name); });
+  command->callback([name] { name->empty() ? list_all() : describe_material(*name); });
 }
 
 }  // namespace breccia::app

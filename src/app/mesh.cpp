@@ -21,7 +21,7 @@ namespace breccia::app {
 namespace {
 
 template <class... Values>
-void show(const char* head, fmt::format_string<Values...> form, Values&&... values) {
+void print_line(const char* head, fmt::format_string<Values...> form, Values&&... values) {
   fmt::print("  {:<11} {}\n", head, harmless(fmt::format(form, std::forward<Values>(values)...)));
 }
 
@@ -84,32 +84,34 @@ void describe_mesh(const prepare::Mesh& mesh) {
     return place_text(prepare::centroid(mesh.point, mesh.triangle[static_cast<std::size_t>(t)]));
   };
   const auto count = [](std::size_t n) { return count_text(static_cast<double>(n)); };
-  show("triangles", "{}, vertices {}", count(mesh.triangle.size()), count(mesh.point.size()));
-  show("edges", "{}, {} of them on the rim", count(edges.size()), count(rim));
-  show("extent", "{} x {}, from {}", length_text(high.x - low.x), length_text(high.y - low.y),
-       place_text(low));
-  show("area", "{:.6g} m2", area);
-  show("edge length", "{} to {}, mean {}", length_text(shortest), length_text(longest),
-       length_text(mean));
-  show("least angle", "{:.1f} deg, at {}", angle.value * 180.0 / std::numbers::pi,
-       centre(angle.triangle));
-  show("quality", "mean {:.3f}, least {:.3f} at {}", mean_quality, quality.value,
-       centre(quality.triangle));
-  show("", "{} below 0.5; equilateral triangles have 1", count(flat));
+  print_line("triangles", "{}, vertices {}", count(mesh.triangle.size()), count(mesh.point.size()));
+  print_line("edges", "{}, {} of them on the rim", count(edges.size()), count(rim));
+  print_line("extent", "{} x {}, from {}", length_text(high.x - low.x), length_text(high.y - low.y),
+             place_text(low));
+  print_line("area", "{:.6g} m2", area);
+  print_line("edge length", "{} to {}, mean {}", length_text(shortest), length_text(longest),
+             length_text(mean));
+  print_line("least angle", "{:.1f} deg, at {}", angle.value * 180.0 / std::numbers::pi,
+             centre(angle.triangle));
+  print_line("quality", "mean {:.3f}, least {:.3f} at {}", mean_quality, quality.value,
+             centre(quality.triangle));
+  print_line("", "{} below 0.5; equilateral triangles have 1", count(flat));
   constexpr double wave = 5000.0;  // of granite  [m/s]
-  show("step", "ruled by the height {} at {}:", length_text(height.value), centre(height.triangle));
-  show("", "a wave of {:.0f} m/s crosses it in {}", wave, time_text(height.value / wave));
+  print_line("step", "ruled by the height {} at {}:", length_text(height.value),
+             centre(height.triangle));
+  print_line("", "a wave of {:.0f} m/s crosses it in {}", wave, time_text(height.value / wave));
   for (const prepare::Part& part : mesh.parts) {
     double of_part = 0.0;
     for (const Index t : part.triangles)
       of_part += prepare::signed_area(mesh.point, mesh.triangle[static_cast<std::size_t>(t)]);
-    show("part", "{}: {} triangles, {:.4g} m2", part.name, count(part.triangles.size()), of_part);
+    print_line("part", "{}: {} triangles, {:.4g} m2", part.name, count(part.triangles.size()),
+               of_part);
   }
   for (const prepare::EdgeSet& set : mesh.edge_sets) {
     double length = 0.0;
     for (const prepare::Edge& edge : set.edges)
       length += norm(prepare::at(mesh.point, edge[1]) - prepare::at(mesh.point, edge[0]));
-    show("line", "{}: {} edges, {}", set.name, count(set.edges.size()), length_text(length));
+    print_line("line", "{}: {} edges, {}", set.name, count(set.edges.size()), length_text(length));
   }
 }
 
@@ -128,15 +130,16 @@ void describe_spheres(const Geometry& g) {
     most = std::max(most, r);
   }
   const Vec3 size = high - low;
-  show("spheres", "{}", count_text(static_cast<double>(g.center.size())));
-  show("extent", "{} x {} x {}, from ({:.4g}, {:.4g}, {:.4g}) m", length_text(size.x),
-       length_text(size.y), length_text(size.z), low.x, low.y, low.z);
-  show("radius", "{} to {}, mean {}", length_text(least), length_text(most), length_text(mean));
-  show("volume", "{:.6g} m3 of spheres, {:.3f} of the box around them", volume,
-       volume / (size.x * size.y * size.z));
+  print_line("spheres", "{}", count_text(static_cast<double>(g.center.size())));
+  print_line("extent", "{} x {} x {}, from ({:.4g}, {:.4g}, {:.4g}) m", length_text(size.x),
+             length_text(size.y), length_text(size.z), low.x, low.y, low.z);
+  print_line("radius", "{} to {}, mean {}", length_text(least), length_text(most),
+             length_text(mean));
+  print_line("volume", "{:.6g} m3 of spheres, {:.3f} of the box around them", volume,
+             volume / (size.x * size.y * size.z));
   for (std::size_t b = 0; b < g.groups.size(); ++b) {
     const auto count = std::count(g.group.begin(), g.group.end(), static_cast<std::int32_t>(b));
-    show("body", "{}: {} spheres", g.groups[b], count_text(static_cast<double>(count)));
+    print_line("body", "{}: {} spheres", g.groups[b], count_text(static_cast<double>(count)));
   }
 }
 

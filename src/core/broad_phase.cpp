@@ -18,10 +18,6 @@ constexpr Index none = std::numeric_limits<Index>::max();
 /// packing, which find about five each.
 constexpr Index slots_each = 12;
 
-struct LowerIndex {
-  BR_HD Index operator()(Index a, Index b) const { return a < b ? a : b; }
-};
-
 /// Sizes of all boxes together, from which the cells follow.
 struct Extent {
   double plane = -1.0;                                   ///< longest edge in x or y  [m]
@@ -67,8 +63,8 @@ struct JoinExtents {
     both.reach = max(a.reach, b.reach);
     both.lowest = min(a.lowest, b.lowest);
     both.highest = max(a.highest, b.highest);
-    both.infinite = LowerIndex{}(a.infinite, b.infinite);
-    both.swapped = LowerIndex{}(a.swapped, b.swapped);
+    both.infinite = Least{}(a.infinite, b.infinite);
+    both.swapped = Least{}(a.swapped, b.swapped);
     return both;
   }
 };
@@ -357,9 +353,9 @@ void BroadPhase::rank_elements(const Exec& exec, const Buffer<GlobalId>& ids) {
   rank_of_.resize(count);
   for_each(exec, count, NoteId{ids.view(), by_id_.view()});
   const NotAscending not_ascending{by_id_.view()};
-  if (fold(exec, count - 1, none, not_ascending, LowerIndex{}) != none) {
+  if (fold(exec, count - 1, none, not_ascending, Least{}) != none) {
     sort_by_key(exec, by_id_);
-    const Index twin = fold(exec, count - 1, none, not_ascending, LowerIndex{});
+    const Index twin = fold(exec, count - 1, none, not_ascending, Least{});
     if (twin != none)
       throw InputError("two elements have the global id " +
                        std::to_string(item_of(by_id_, twin).key));

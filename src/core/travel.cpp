@@ -9,11 +9,7 @@
 namespace breccia {
 namespace {
 
-constexpr Index none = std::numeric_limits<Index>::max();
-
-struct LowerIndex {
-  BR_HD Index operator()(Index a, Index b) const { return a < b ? a : b; }
-};
+constexpr Index all_finite = std::numeric_limits<Index>::max();
 
 struct ChooseMargin {
   static constexpr const char* name = "core.choose_margin";
@@ -26,7 +22,7 @@ struct ChooseMargin {
 
 struct LostMargin {
   View<const double> margin;
-  BR_HD Index operator()(Index i) const { return std::isfinite(margin[i]) ? none : i; }
+  BR_HD Index operator()(Index i) const { return std::isfinite(margin[i]) ? all_finite : i; }
 };
 
 struct BoxSphere {
@@ -57,8 +53,8 @@ void begin_travel(const Exec& exec, const MarginRule& rule, const Buffer<Vec3>& 
   travel.margin.resize(position.size());
   for_each(exec, position.size(), ChooseMargin{rule, velocity.view(), travel.margin.view()});
   const Index lost =
-      fold(exec, position.size(), none, LostMargin{travel.margin.view()}, LowerIndex{});
-  if (lost != none)
+      fold(exec, position.size(), all_finite, LostMargin{travel.margin.view()}, Least{});
+  if (lost != all_finite)
     throw NumericsError("the element at place " + std::to_string(lost) +
                         " in memory has a velocity that is not a finite number");
 }

@@ -11,8 +11,8 @@
 namespace breccia::laboratory {
 namespace {
 
-constexpr double plate_width = 0.05, plate_height = 0.1, disc_diameter = 0.05;  // m
-constexpr double far = 1.0;
+constexpr double plate_width = 0.05, plate_height = 0.1, plane_disc_diameter = 0.05;  // m
+constexpr double outside = 1.0;
 constexpr double strain_rate = 4.0;  // 1/s
 
 /// Edge of so many equilateral triangles in an area.  [m]
@@ -70,15 +70,15 @@ void press_plate(fdem::Config& c, const RockSample& sample, double pressure) {
   c.bodies[0].shape = "plate";
   c.bodies[0].size = {plate_width, plate_height};
   const double speed = 0.5 * strain_rate * plate_height;
-  c.supports = {support("top", {-far, y - thin}, {far, far}, -speed, ramp),
-                support("bottom", {-far, -far}, {far, thin - y}, speed, ramp)};
+  c.supports = {support("top", {-outside, y - thin}, {outside, outside}, -speed, ramp),
+                support("bottom", {-outside, -outside}, {outside, thin - y}, speed, ramp)};
   for (const double side : {-1.0, 1.0}) {
     if (!(pressure > 0.0)) break;
     fdem::LoadConfig load;
     load.name = side < 0.0 ? "left" : "right";
     load.region.on = "specimen";
-    load.region.min = side < 0.0 ? Vec2{-far, -far} : Vec2{x - thin, -far};
-    load.region.max = side < 0.0 ? Vec2{thin - x, far} : Vec2{far, far};
+    load.region.min = side < 0.0 ? Vec2{-outside, -outside} : Vec2{x - thin, -outside};
+    load.region.max = side < 0.0 ? Vec2{thin - x, outside} : Vec2{outside, outside};
     load.pressure = pressure;
     load.history.ramp = ramp;
     c.loads.push_back(load);
@@ -88,23 +88,23 @@ void press_plate(fdem::Config& c, const RockSample& sample, double pressure) {
   for (const double side : {-1.0, 1.0}) {
     ProbeConfig across = probe(side < 0.0 ? "left" : "right", "specimen", "displacement_x", "mean");
     const double strip = 0.02 * plate_width;
-    across.min = {side < 0.0 ? -far : x - strip, -0.5 * y};
-    across.max = {side < 0.0 ? strip - x : far, 0.5 * y};
+    across.min = {side < 0.0 ? -outside : x - strip, -0.5 * y};
+    across.max = {side < 0.0 ? strip - x : outside, 0.5 * y};
     c.probes.push_back(across);
   }
 }
 
 void press_disc(fdem::Config& c, const RockSample& sample) {
-  const double radius = 0.5 * disc_diameter, strip = 0.1 * radius;
+  const double radius = 0.5 * plane_disc_diameter, strip = 0.1 * radius;
   const double depth = 0.98 * std::sqrt(radius * radius - strip * strip);
   c.bodies = {body_of(sample, pi * radius * radius, c.seed)};
   c.bodies[0].shape = "disc";
   c.bodies[0].radius = radius;
   // closing over diameter at the peak, by the elastic disc between strips: about 6 f_t/E
   const double closing = 9.0 * sample.material.joint.tension / sample.material.young;
-  const double ramp = 5e-5, speed = 0.5 * strain_rate / 4.0 * disc_diameter;
-  c.supports = {support("top", {-strip, depth}, {strip, far}, -speed, ramp),
-                support("bottom", {-strip, -far}, {strip, -depth}, speed, ramp)};
+  const double ramp = 5e-5, speed = 0.5 * strain_rate / 4.0 * plane_disc_diameter;
+  c.supports = {support("top", {-strip, depth}, {strip, outside}, -speed, ramp),
+                support("bottom", {-strip, -outside}, {strip, -depth}, speed, ramp)};
   c.time.end = ramp + closing / (strain_rate / 4.0);
   add_end_probes(c);
 }
@@ -130,7 +130,10 @@ const std::vector<SpecimenTest>& rock_tests() {
   static const std::vector<SpecimenTest> tests{
       {"plate", "compression, plate, smooth ends", Loading::plate, plate},
       {"plate_10", "compression, plate, 10 MPa on its sides", Loading::plate, plate, 10e6},
-      {"disc", "Brazilian, disc", Loading::plane_disc, {disc_diameter, disc_diameter, 1.0}}};
+      {"disc",
+       "Brazilian, disc",
+       Loading::plane_disc,
+       {plane_disc_diameter, plane_disc_diameter, 1.0}}};
   return tests;
 }
 

@@ -59,7 +59,7 @@ bool is_names(const std::string& line) {
 }
 
 /// A line in a message.
-std::string quoted(const std::string& line) {
+std::string in_quotes(const std::string& line) {
   constexpr std::size_t most = 80;
   return "\"" + (line.size() > most ? line.substr(0, most) + "..." : line) + "\"";
 }
@@ -82,7 +82,7 @@ void read_csv(const std::string& path, std::size_t count, const std::string& wan
     const auto values = numbers(text);
     if (!values || values->size() != count || !take(*values))
       throw InputError(fmt::format("{}, line {}{} is not {}", path, line,
-                                   is_ours ? ": " + quoted(text) : "", wanted));
+                                   is_ours ? ": " + in_quotes(text) : "", wanted));
     is_ours = true;
   }
 }

@@ -10,7 +10,7 @@
 #include "fdem/observe.hpp"
 
 namespace breccia {
-namespace {
+namespace benchmark_tiles_test {
 
 /// The hash after some steps, of the parts of all ranks together.
 template <class World>
@@ -103,5 +103,5 @@ TEST(PlateTiles, make_about_as_many_triangles_as_asked_for) {
     }
 }
 
-}  // namespace
+}  // namespace benchmark_tiles_test
 }  // namespace breccia

@@ -7,7 +7,7 @@
 #include "mpi/on_ranks.hpp"
 
 namespace breccia {
-namespace {
+namespace boundary_test {
 
 using namespace mpi_testing;
 
@@ -89,5 +89,5 @@ TEST(Awaited, whole_joints_between_own_triangles_go_ahead_and_leave_nothing_but_
   EXPECT_GT(4 * ahead, all) << ahead << " of " << all;
 }
 
-}  // namespace
+}  // namespace boundary_test
 }  // namespace breccia

@@ -9,7 +9,7 @@
 #include "mpi/on_ranks.hpp"
 
 namespace breccia {
-namespace {
+namespace dem_ranks_test {
 
 using namespace mpi_testing;
 
@@ -150,5 +150,5 @@ TEST(DemRanks, hold_no_copy_whose_critical_number_is_below_its_owners) {
   EXPECT_GT(above, 100);
 }
 
-}  // namespace
+}  // namespace dem_ranks_test
 }  // namespace breccia

@@ -6,7 +6,7 @@
 #include "mpi/on_ranks.hpp"
 
 namespace breccia {
-namespace {
+namespace fdem_ranks_test {
 
 using namespace mpi_testing;
 
@@ -142,5 +142,5 @@ TEST(FdemRanks, write_the_same_bytes_and_go_on_from_those_of_any_other_number_of
   }
 }
 
-}  // namespace
+}  // namespace fdem_ranks_test
 }  // namespace breccia

@@ -7,7 +7,7 @@
 #include "run/frames/frame_parts.hpp"
 
 namespace breccia {
-namespace {
+namespace frames_test {
 
 using namespace mpi_testing;
 
@@ -230,5 +230,5 @@ TEST(Frames, without_a_picture_or_without_files_have_the_other_alone) {
   });
 }
 
-}  // namespace
+}  // namespace frames_test
 }  // namespace breccia

@@ -14,7 +14,7 @@
 #include "mpi/on_ranks.hpp"
 
 namespace breccia {
-namespace {
+namespace looks_test {
 
 using namespace mpi_testing;
 
@@ -192,5 +192,5 @@ TEST(Readings, take_the_last_of_equal_numbers_in_whatever_order_they_come) {
   }
 }
 
-}  // namespace
+}  // namespace looks_test
 }  // namespace breccia

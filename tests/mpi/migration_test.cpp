@@ -8,7 +8,7 @@
 #include "mpi/on_ranks.hpp"
 
 namespace breccia {
-namespace {
+namespace migration_test {
 
 using namespace mpi_testing;
 
@@ -115,5 +115,5 @@ TEST(Migration, twenty_thousand_moves_of_spheres_lose_and_double_none) {
   expect_all_kept(slab_piece(), 150, 5, 20000);
 }
 
-}  // namespace
+}  // namespace migration_test
 }  // namespace breccia

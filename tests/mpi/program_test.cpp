@@ -15,7 +15,7 @@
 #include "paths.hpp"
 
 namespace breccia {
-namespace {
+namespace program_test {
 
 namespace fs = std::filesystem;
 
@@ -298,5 +298,5 @@ TEST_F(FateOfRank, without_memory_ends_all_with_exit_code_5_and_one_message) {
   }
 }
 
-}  // namespace
+}  // namespace program_test
 }  // namespace breccia

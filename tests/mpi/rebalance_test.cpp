@@ -8,7 +8,7 @@
 #include "mpi/timed_rank.hpp"
 
 namespace breccia {
-namespace {
+namespace rebalance_test {
 
 using namespace mpi_testing;
 
@@ -115,5 +115,5 @@ TEST(Rebalance, is_left_out_where_borders_are_to_stay) {
   EXPECT_EQ(still.counts.cuts, 1);
 }
 
-}  // namespace
+}  // namespace rebalance_test
 }  // namespace breccia

@@ -8,7 +8,7 @@
 #include "run/method/audited_method.hpp"
 
 namespace breccia {
-namespace {
+namespace restart_test {
 
 using namespace mpi_testing;
 
@@ -74,5 +74,5 @@ TEST(RestartOnRanks, triangles_that_move_as_one_end_alike_for_twenty_pairs) {
   expect_equal_ends(impact("extrinsic"), 20, 200, 3);
 }
 
-}  // namespace
+}  // namespace restart_test
 }  // namespace breccia

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace breccia {
-namespace {
+namespace shared_reduction_test {
 
 /// What a rank votes for in a round.
 std::uint64_t vote_of(std::size_t rank, std::uint64_t round) {
@@ -58,5 +58,5 @@ TEST(SharedReduction, telling_does_not_wait_and_hearing_does) {
   EXPECT_EQ(sum, 12U);
 }
 
-}  // namespace
+}  // namespace shared_reduction_test
 }  // namespace breccia

@@ -10,7 +10,7 @@
 #include "domain/simulated_ranks.hpp"
 
 namespace breccia {
-namespace {
+namespace sharing_sets_test {
 
 constexpr MigrationBuffer migration_buffer{.margin = 0.2, .buffer = 0.25, .per_size = 0.25};
 constexpr int ranks_count = 6;
@@ -109,5 +109,5 @@ TEST(SharingSets, a_few_large_elements_do_not_make_copies_of_all_others) {
   EXPECT_GT(some.by_one_width, 3 * some.ghosts);
 }
 
-}  // namespace
+}  // namespace sharing_sets_test
 }  // namespace breccia

@@ -11,7 +11,7 @@
 #include "run/method/fdem_method.hpp"
 
 namespace breccia {
-namespace {
+namespace own_forces_test {
 
 dem::testing::Scene column() {
   dem::testing::Scene s;
@@ -108,5 +108,5 @@ TEST(OwnForces, on_corners_that_move_as_one_are_shared_by_them) {
   expect_alike(strip("extrinsic"), 2e3);
 }
 
-}  // namespace
+}  // namespace own_forces_test
 }  // namespace breccia

@@ -9,7 +9,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia {
-namespace {
+namespace removal_test {
 
 using namespace breccia::testing;
 
@@ -206,5 +206,5 @@ TEST(Removal, of_bodies_that_are_not_there_or_are_gone_is_a_problem) {
   EXPECT_NE(more[1].find("stage.a.remove: the first stage"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace removal_test
 }  // namespace breccia

@@ -14,7 +14,7 @@
 #include "run/stage_control.hpp"
 
 namespace breccia {
-namespace {
+namespace servos_test {
 
 ServoConfig pushing(const OverTime<double>& force, double speed) {
   ServoConfig servo;
@@ -176,5 +176,5 @@ TEST(Servo, that_cannot_act_is_a_problem) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace servos_test
 }  // namespace breccia

@@ -17,7 +17,7 @@
 #include "run/stage_control.hpp"
 
 namespace breccia {
-namespace {
+namespace stages_test {
 
 /// A column of linked spheres between a wall below and a support above, beside a loose sphere that
 /// rubs on the wall: it is held, then pulled, then falls onto the wall that rises.
@@ -357,5 +357,5 @@ TEST(Stages, that_cannot_end_or_name_what_is_not_there_are_problems) {
   EXPECT_EQ(said.size(), 5U);
 }
 
-}  // namespace
+}  // namespace stages_test
 }  // namespace breccia

@@ -10,7 +10,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia {
-namespace {
+namespace tables_over_time_test {
 
 /// Up and down again: 0 at 0, 1 at a, 0 at 3 a.
 template <class Value>
@@ -140,5 +140,5 @@ TEST(TablesOverTime, drive_triangles_by_a_devices_schedule_and_on_ranks_alike) {
   });
 }
 
-}  // namespace
+}  // namespace tables_over_time_test
 }  // namespace breccia

@@ -24,9 +24,9 @@ constexpr std::array viridis{from_bytes(0x440154), from_bytes(0x482878), from_by
 constexpr std::array diverging{from_bytes(0x3b4cc0), from_bytes(0x6282ea), from_bytes(0x8db0fe),
                                from_bytes(0xb8d0f9), from_bytes(0xdddddd), from_bytes(0xf5c4ad),
                                from_bytes(0xf49a7b), from_bytes(0xde604d), from_bytes(0xb40426)};
-constexpr std::array damage{from_bytes(0xded6c6), from_bytes(0xe9ca9a), from_bytes(0xf0a85a),
-                            from_bytes(0xe67a2e), from_bytes(0xcf4620), from_bytes(0xa81c18),
-                            from_bytes(0x6e0a14)};
+constexpr std::array damage_colors{from_bytes(0xded6c6), from_bytes(0xe9ca9a), from_bytes(0xf0a85a),
+                                   from_bytes(0xe67a2e), from_bytes(0xcf4620), from_bytes(0xa81c18),
+                                   from_bytes(0x6e0a14)};
 constexpr std::array ground{from_bytes(0xe4dfd4), from_bytes(0xecdcbd), from_bytes(0xf3cf9f),
                             from_bytes(0xf2b98b), from_bytes(0xeaa184)};
 // Magma by the authors of viridis.
@@ -45,7 +45,7 @@ std::span<const Color> nodes_of(ColorMap map) {
     case ColorMap::diverging:
       return diverging;
     case ColorMap::damage:
-      return damage;
+      return damage_colors;
     case ColorMap::ground:
       return ground;
     case ColorMap::magma:

@@ -11,7 +11,7 @@
 namespace breccia {
 namespace {
 
-constexpr Color paper{1.0F, 1.0F, 1.0F};
+constexpr Color ground_color{1.0F, 1.0F, 1.0F};
 
 const FrameField* line_field(const Frame& frame, const char* name) {
   const FrameField* field = field_of(frame, Carrier::lines, name);
@@ -120,7 +120,7 @@ Coloring color_frame(const Frame& frame, const RenderOptions& options) {
                                   options.show_links && of_spheres, options.log);
   if (coloring.cracks && (options.show_links || options.xray)) show_softened(frame, coloring);
   if (!options.xray) return coloring;
-  for (Color& color : coloring.triangles) color = blend(color, paper, 0.8F);
+  for (Color& color : coloring.triangles) color = blend(color, ground_color, 0.8F);
   if (frame.radius.empty()) return coloring;
   if (!options.show_links && !coloring.of_lines) show_broken(frame, coloring);
   coloring.inside = inside_of(frame);

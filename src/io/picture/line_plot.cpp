@@ -11,9 +11,10 @@
 namespace breccia {
 namespace {
 
-constexpr int panel_width = 480, panel_height = 340;         // pixels
-constexpr int left = 68, right = 16, top = 34, bottom = 48;  // pixels around the axes
-constexpr std::size_t most_points = 1500;                    // of a curve that are drawn
+constexpr int panel_width = 480, panel_height = 340;  // pixels
+constexpr int left_rim = 68, right_rim = 16, top_rim = 34,
+              bottom_rim = 48;             // pixels around the axes
+constexpr std::size_t most_points = 1500;  // of a curve that are drawn
 constexpr std::array colors{"#1f5fa8", "#c8502b", "#2f8f4e", "#7d4aa0",  // legible on white
                             "#b58a00", "#00838f", "#8a4b2a", "#5a5a5a"};
 
@@ -58,7 +59,7 @@ class Panel {
   }
 
  private:
-  int middle() const { return x_ + left + (panel_width - left - right) / 2; }
+  int middle() const { return x_ + left_rim + (panel_width - left_rim - right_rim) / 2; }
 
   bool take_spans() {
     Span x, y;
@@ -79,12 +80,12 @@ class Panel {
   }
 
   double place_x(double value) const {
-    const double width = panel_width - left - right;
-    return x_ + left + width * (value - x_span_.low) / (x_span_.high - x_span_.low);
+    const double width = panel_width - left_rim - right_rim;
+    return x_ + left_rim + width * (value - x_span_.low) / (x_span_.high - x_span_.low);
   }
   double place_y(double value) const {
-    const double height = panel_height - top - bottom;
-    return y_ + top + height * (y_span_.high - value) / (y_span_.high - y_span_.low);
+    const double height = panel_height - top_rim - bottom_rim;
+    return y_ + top_rim + height * (y_span_.high - value) / (y_span_.high - y_span_.low);
   }
 
   static std::string label(double x, double y, const std::string& text, const char* anchor,
@@ -110,8 +111,8 @@ class Panel {
   }
 
   std::string axes() const {
-    const double x0 = x_ + left, x1 = x_ + panel_width - right;
-    const double y0 = y_ + panel_height - bottom, y1 = y_ + top;
+    const double x0 = x_ + left_rim, x1 = x_ + panel_width - right_rim;
+    const double y0 = y_ + panel_height - bottom_rim, y1 = y_ + top_rim;
     std::string svg;
     const int power_y = power_of(y_span_), power_x = power_of(x_span_);
     for (const Tick& tick : ticks_of(y_span_, std::pow(10.0, -power_y))) {
@@ -141,8 +142,9 @@ class Panel {
   }
 
   std::string drawn(const PlotLevel& level) const {
-    return rule(x_ + left, place_y(level.y), x_ + panel_width - right, place_y(level.y), "level") +
-           label(x_ + panel_width - right - 2, place_y(level.y) - 4, level.name, "end");
+    return rule(x_ + left_rim, place_y(level.y), x_ + panel_width - right_rim, place_y(level.y),
+                "level") +
+           label(x_ + panel_width - right_rim - 2, place_y(level.y) - 4, level.name, "end");
   }
 
   std::string drawn(const PlotSeries& series, const char* color) const {
@@ -175,10 +177,10 @@ class Panel {
     int line = 0;
     for (std::size_t s = 0; s < plot_.series.size(); ++s) {
       if (plot_.series[s].name.empty()) continue;
-      const int y = y_ + top + 14 + 15 * line++;
+      const int y = y_ + top_rim + 14 + 15 * line++;
       svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"12\" height=\"3\" fill=\"{}\"/>\n",
-                         x_ + left + 10, y - 5, color_of(s));
-      svg += label(x_ + left + 27, y, plot_.series[s].name, "start");
+                         x_ + left_rim + 10, y - 5, color_of(s));
+      svg += label(x_ + left_rim + 27, y, plot_.series[s].name, "start");
     }
     return svg;
   }

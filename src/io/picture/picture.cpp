@@ -15,7 +15,7 @@ namespace {
 
 constexpr double sphere_share_beside_links = 0.4;    ///< of the radius, so that links show
 constexpr double sphere_share_beside_colours = 0.2;  ///< of the radius, where links carry the field
-constexpr std::uint8_t white = 255, black = 0;
+constexpr std::uint8_t white_byte = 255, black_byte = 0;
 
 /// `share` of another picture in a pixel.
 void mix(Image& image, const Image& other, std::size_t pixel, float share) {
@@ -240,8 +240,9 @@ Image render(const Frame& frame, const RenderOptions& options, int threads) {
     const AsDrawn drawn(frame, options);
     return render(drawn.frame, drawn.options, threads);
   }
-  Image image = render_on(frame, options, threads, white);
-  if (options.transparent) image = without_ground(image, render_on(frame, options, threads, black));
+  Image image = render_on(frame, options, threads, white_byte);
+  if (options.transparent)
+    image = without_ground(image, render_on(frame, options, threads, black_byte));
   return image;
 }
 

@@ -14,7 +14,7 @@ namespace {
 using Line = std::array<Vec2, 2>;
 
 constexpr double band = 3.0;  ///< width of the search on each side, over the mean edge  [-]
-constexpr double reach =
+constexpr double path_reach =
     0.75;  ///< an end is in the mesh if a vertex is so near, over the mean edge
 
 /// The part of a mesh near a line: vertices and edges that a path may use.
@@ -76,14 +76,14 @@ class Band {
         nearest = v;
       }
       const double aside = distance(place, line);
-      if (aside > reach * mean_edge_) continue;
+      if (aside > path_reach * mean_edge_) continue;
       const double along = dot(place - line[0], line[1] - line[0]) / length + 2.0 * aside;
       if (along < earliest || (along == earliest && v < first)) {
         earliest = along;
         first = v;
       }
     }
-    return least <= reach * mean_edge_ ? nearest : first;
+    return least <= path_reach * mean_edge_ ? nearest : first;
   }
 
   /// Dijkstra's shortest path; ties go to the lower vertex.

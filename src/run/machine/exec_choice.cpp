@@ -26,8 +26,8 @@ bool take_off(std::string& word, const std::string& ending) {
 Exec exec_on(const std::string& wanted, int threads, Communicator* ranks) {
   Exec exec;
   std::string device = wanted;
-  constexpr Index any_number = 1 << 16;
-  if (device.starts_with("cuda") && take_off(device, "+tiles")) exec.tiles = any_number;
+  constexpr Index most_tiles = 1 << 16;
+  if (device.starts_with("cuda") && take_off(device, "+tiles")) exec.tiles = most_tiles;
   const int share = std::max(1, omp_get_num_procs() / ranks_on_this_machine(ranks));
   exec.threads = threads > 0 ? threads : share;
   if (device == "cpu") return exec;

@@ -9,7 +9,7 @@
 #include "pair_driver.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace concrete_link_test {
 
 using testing::Pair;
 
@@ -303,5 +303,5 @@ TEST(ConcreteLink, arms_that_change_leave_a_known_shear_after_a_closed_path) {
   EXPECT_NEAR(norm(state.shear), kt * angle * u / 2.0, 1e-3 * kt * angle * u);
 }
 
-}  // namespace
+}  // namespace concrete_link_test
 }  // namespace breccia::dem

@@ -12,7 +12,7 @@
 #include "pair_driver.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace confined_link_test {
 
 using testing::Pair;
 
@@ -302,5 +302,5 @@ TEST(ConfinedLink, of_a_material_without_these_keys_has_none_of_these_bounds) {
   EXPECT_EQ(law.broken_rolling_limit, 0.0);
 }
 
-}  // namespace
+}  // namespace confined_link_test
 }  // namespace breccia::dem

@@ -8,7 +8,7 @@
 #include "dem/laws/contact.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace contact_ledger_test {
 
 /// Share of the energy of a collision that the contact has not booked, the mean over where in a
 /// step the balls begin to touch.  [-]
@@ -49,5 +49,5 @@ TEST(ContactLedger, a_dashpots_work_is_booked_also_where_its_way_is_a_gap) {
   EXPECT_LT(unbooked(0.1), 0.004);  // falls with the square of the step
 }
 
-}  // namespace
+}  // namespace contact_ledger_test
 }  // namespace breccia::dem

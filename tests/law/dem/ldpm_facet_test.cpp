@@ -11,7 +11,7 @@
 #include <random>
 
 namespace breccia::dem {
-namespace {
+namespace ldpm_facet_test {
 
 /// Concrete of public benchmarks of the model (max. grain 12 mm).
 LdpmFacet benchmark() {
@@ -308,5 +308,5 @@ TEST(Elementary, functions_are_those_of_the_library_to_rounding) {
   EXPECT_EQ(arc_tangent(0.0), 0.0);
 }
 
-}  // namespace
+}  // namespace ldpm_facet_test
 }  // namespace breccia::dem

@@ -14,7 +14,7 @@
 #include "pair_driver.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace other_laws_test {
 
 using testing::Pair;
 
@@ -221,5 +221,5 @@ TEST(Materials, the_macro_micro_relation_gives_the_known_ratio) {
   EXPECT_NEAR(local_elasticity(m).ratio, 0.0, 1e-12);
 }
 
-}  // namespace
+}  // namespace other_laws_test
 }  // namespace breccia::dem

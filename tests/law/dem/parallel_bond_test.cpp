@@ -10,7 +10,7 @@
 #include "pair_driver.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace parallel_bond_test {
 
 using testing::Pair;
 
@@ -116,5 +116,5 @@ TEST(ParallelBond, it_lets_go_of_ends_that_have_parted) {
   EXPECT_EQ(d.state().bond, bond_released);
 }
 
-}  // namespace
+}  // namespace parallel_bond_test
 }  // namespace breccia::dem

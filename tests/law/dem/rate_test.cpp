@@ -9,7 +9,7 @@
 #include "pair_driver.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace rate_test {
 
 using testing::Pair;
 
@@ -214,5 +214,5 @@ TEST(RatedLink, switched_off_answers_bit_for_bit_as_before) {
   }
 }
 
-}  // namespace
+}  // namespace rate_test
 }  // namespace breccia::dem

@@ -7,7 +7,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace elastic_triangle_test {
 
 using testing::rotated;
 using testing::Scene;
@@ -231,5 +231,5 @@ TEST(ElasticTriangle, a_free_body_spins_on_without_drift) {
   EXPECT_LT(norm(p.linear), 1e-11 * p.size);
 }
 
-}  // namespace
+}  // namespace elastic_triangle_test
 }  // namespace breccia::fdem

@@ -7,7 +7,7 @@
 #include "fdem/fluid/spreading.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace fluid_spreading_test {
 
 double share_of(const std::vector<FilledCrack>& filled, Index edge) {
   for (const FilledCrack& f : filled)
@@ -57,5 +57,5 @@ TEST(FluidSpreading, takes_the_shortest_way_whatever_the_order_of_cracks) {
   }
 }
 
-}  // namespace
+}  // namespace fluid_spreading_test
 }  // namespace breccia::fdem

@@ -7,7 +7,7 @@
 #include "fdem/laws/rock_failure.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace joint_bond_test {
 
 constexpr double h = 1e-3;
 
@@ -197,5 +197,5 @@ TEST(JointBond, stored_energy_is_what_unloading_gives_back) {
   }
 }
 
-}  // namespace
+}  // namespace joint_bond_test
 }  // namespace breccia::fdem

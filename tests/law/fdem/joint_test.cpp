@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace joint_test {
 
 using testing::nodes;
 using testing::Scene;
@@ -170,5 +170,5 @@ TEST(Joint, between_two_materials_is_the_weaker_one) {
   EXPECT_NEAR(b.stiffness, 150e9, 1.0);
 }
 
-}  // namespace
+}  // namespace joint_test
 }  // namespace breccia::fdem

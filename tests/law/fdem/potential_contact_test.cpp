@@ -12,7 +12,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace potential_contact_test {
 
 using Corner = std::array<Vec2, 3>;
 
@@ -256,5 +256,5 @@ TEST(PotentialContact, finds_which_triangles_do_not_meet) {
   EXPECT_GT(together, 1'000);
 }
 
-}  // namespace
+}  // namespace potential_contact_test
 }  // namespace breccia::fdem

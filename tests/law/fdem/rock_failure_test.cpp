@@ -10,7 +10,7 @@
 #include "fdem/joints/joints.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace rock_failure_test {
 
 constexpr double h = 1e-3, tension = 3e6, cohesion = 15e6, energy = 10.0, phi = 0.7;
 constexpr double degree = 3.14159265358979323846 / 180.0;
@@ -281,5 +281,5 @@ TEST(RockFailure, sheared_edge_takes_g_ii_and_keeps_its_residual_friction) {
   }
 }
 
-}  // namespace
+}  // namespace rock_failure_test
 }  // namespace breccia::fdem

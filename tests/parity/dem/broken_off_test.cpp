@@ -16,7 +16,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace broken_off_test {
 
 namespace fs = std::filesystem;
 
@@ -77,5 +77,5 @@ TEST_F(BrokenOff, by_a_signal_or_killed_a_run_ends_on_other_threads_as_if_nothin
   expect_the_same_as_whole("killed");
 }
 
-}  // namespace
+}  // namespace broken_off_test
 }  // namespace breccia

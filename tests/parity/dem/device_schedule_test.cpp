@@ -8,7 +8,7 @@
 #include "physics/dem/scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace device_schedule_test {
 
 using breccia::dem::testing::Scene;
 
@@ -71,5 +71,5 @@ TEST(DeviceSchedule, gives_a_rank_without_links_of_the_first_material_the_law_of
   });
 }
 
-}  // namespace
+}  // namespace device_schedule_test
 }  // namespace breccia::dem

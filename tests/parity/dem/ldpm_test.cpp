@@ -12,7 +12,7 @@
 #include "run/method/dem_method.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace ldpm_test {
 
 /// A small prism that a fast head tears off its foot.
 Config torn_prism() {
@@ -188,5 +188,5 @@ TEST(LdpmFacets, end_alike_on_ranks) {
   });
 }
 
-}  // namespace
+}  // namespace ldpm_test
 }  // namespace breccia::dem

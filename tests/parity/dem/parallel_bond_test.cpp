@@ -8,7 +8,7 @@
 #include "prepare/build.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace parallel_bond_test {
 
 /// A short column of rock that a fast plate pulls apart.
 Config pulled_column() {
@@ -103,5 +103,5 @@ TEST(ParallelBonds, end_alike_on_ranks) {
   });
 }
 
-}  // namespace
+}  // namespace parallel_bond_test
 }  // namespace breccia::dem

@@ -13,7 +13,7 @@
 #include "run/method/dem_method.hpp"
 
 namespace breccia {
-namespace {
+namespace rate_test {
 
 constexpr int steps = 500;  // the slab breaks from the 200th on
 
@@ -108,5 +108,5 @@ TEST(RateBits, are_the_same_across_a_checkpoint) {
   std::filesystem::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace rate_test
 }  // namespace breccia

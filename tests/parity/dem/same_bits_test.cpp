@@ -13,7 +13,7 @@
 #include "run/method/dem_method.hpp"
 
 namespace breccia {
-namespace {
+namespace dem_same_bits_test {
 
 const std::string small_case = std::string(source_dir) + "/cases/rc_slab/small.toml";
 
@@ -211,5 +211,5 @@ TEST(SameBits, one_changed_bit_changes_the_hash) {
   EXPECT_NE(dem::state_hash(w), hash);
 }
 
-}  // namespace
+}  // namespace dem_same_bits_test
 }  // namespace breccia

@@ -14,7 +14,7 @@
 #include "prepare/build.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace tiles_test {
 
 const std::string small_case = std::string(source_dir) + "/cases/rc_slab/small.toml";
 
@@ -71,5 +71,5 @@ TEST(Tiles, leave_walls_to_launches) {
   EXPECT_FALSE(runs_by_tiles(walled));
 }
 
-}  // namespace
+}  // namespace tiles_test
 }  // namespace breccia::dem

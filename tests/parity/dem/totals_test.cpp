@@ -8,7 +8,7 @@
 #include "dem/stepping/kernel_lanes.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace totals_test {
 
 /// Elements with random sums, some of them held, some with bars and contacts.
 struct Scene {
@@ -97,5 +97,5 @@ TEST(SameBits, of_totals_for_any_width_of_vector) {
   }
 }
 
-}  // namespace
+}  // namespace totals_test
 }  // namespace breccia::dem

@@ -7,7 +7,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia {
-namespace {
+namespace fluid_test {
 
 using namespace breccia::testing;
 
@@ -70,5 +70,5 @@ TEST(Fluid, that_runs_faster_fills_more) {
   EXPECT_GT(last, 0.06);  // it has left the crack of 40 mm
 }
 
-}  // namespace
+}  // namespace fluid_test
 }  // namespace breccia

@@ -8,7 +8,7 @@
 #include "run/method/fdem_method.hpp"
 
 namespace breccia {
-namespace {
+namespace fdem_same_bits_test {
 
 using fdem::testing::Scene;
 
@@ -283,5 +283,5 @@ TEST(FdemSameBits, one_changed_bit_changes_the_hash) {
   EXPECT_NE(fdem::state_hash(w), hash);
 }
 
-}  // namespace
+}  // namespace fdem_same_bits_test
 }  // namespace breccia

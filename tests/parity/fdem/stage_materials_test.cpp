@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia {
-namespace {
+namespace stage_materials_test {
 
 using namespace breccia::testing;
 
@@ -90,5 +90,5 @@ TEST(StageMaterials, that_are_not_there_are_a_problem) {
   EXPECT_NE(said[0].find("stage.soften.material.name = \"m2\""), std::string::npos) << said[0];
 }
 
-}  // namespace
+}  // namespace stage_materials_test
 }  // namespace breccia

@@ -6,7 +6,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace beam_test {
 
 using testing::Scene;
 using testing::state;
@@ -142,5 +142,5 @@ TEST(Beam, the_first_frequency_converges_to_the_beam_s_with_the_square_of_the_sp
   EXPECT_NEAR((middle - 1.0) / (fine - 1.0), 4.0, 0.2);
 }
 
-}  // namespace
+}  // namespace beam_test
 }  // namespace breccia::dem

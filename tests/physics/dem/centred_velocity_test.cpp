@@ -5,7 +5,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace dem_centred_velocity_test {
 
 using testing::Scene;
 using testing::state;
@@ -50,5 +50,5 @@ TEST(CentredVelocity, gives_an_energy_whose_error_falls_with_the_square_of_the_s
   EXPECT_GT(finest.half_step_old, 10.0 * finest.shown);
 }
 
-}  // namespace
+}  // namespace dem_centred_velocity_test
 }  // namespace breccia::dem

@@ -5,7 +5,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace collision_test {
 
 using testing::Scene;
 using testing::state;
@@ -216,5 +216,5 @@ TEST(ChungOoi, test_8_a_heavy_sphere_acts_like_a_plane) {
   EXPECT_NEAR(after / 2.2, -0.8099, 0.02);
 }
 
-}  // namespace
+}  // namespace collision_test
 }  // namespace breccia::dem

@@ -10,7 +10,7 @@
 #include "prepare/build.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace confinement_test {
 
 struct Pressed {
   double peak = 0.0;    ///< largest stress  [Pa]
@@ -100,5 +100,5 @@ TEST(Confinement, a_cube_without_bounds_under_pressure_grows_stronger_for_ever) 
   EXPECT_LT(cube.error, 1e-3);
 }
 
-}  // namespace
+}  // namespace confinement_test
 }  // namespace breccia::dem

@@ -7,7 +7,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace drift_test {
 
 using testing::Scene;
 using testing::state;
@@ -69,5 +69,5 @@ TEST(Drift, a_fast_scene_is_sound) {
   EXPECT_EQ(find_unsound(w).id, Unsound::none);
 }
 
-}  // namespace
+}  // namespace drift_test
 }  // namespace breccia::dem

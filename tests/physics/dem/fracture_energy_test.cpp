@@ -11,7 +11,7 @@
 #include "specimen.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace fracture_energy_test {
 
 using testing::Specimen;
 
@@ -88,5 +88,5 @@ TEST(FractureEnergy, too_small_for_the_elements_is_refused_with_the_largest_size
   }
 }
 
-}  // namespace
+}  // namespace fracture_energy_test
 }  // namespace breccia::dem

@@ -10,7 +10,7 @@
 #include "paths.hpp"
 
 namespace breccia {
-namespace {
+namespace hundred_lines_test {
 
 /// All that the program prints.
 std::string printed() {
@@ -42,5 +42,5 @@ TEST(DemInHundredLines, breaks_links_and_keeps_energy_and_momentum) {
   EXPECT_LT(momentum, 1e-13);
 }
 
-}  // namespace
+}  // namespace hundred_lines_test
 }  // namespace breccia

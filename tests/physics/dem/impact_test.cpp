@@ -9,7 +9,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace impact_test {
 
 const std::string folder = std::string(source_dir) + "/cases/rc_slab";
 
@@ -63,5 +63,5 @@ TEST(Impact, the_rock_s_loss_of_momentum_is_the_impulse_on_slab_bars_and_support
   EXPECT_LT(unbalanced, 1e-11 * largest);
 }
 
-}  // namespace
+}  // namespace impact_test
 }  // namespace breccia::dem

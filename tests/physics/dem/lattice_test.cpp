@@ -6,7 +6,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace lattice_test {
 
 using testing::Scene;
 using testing::state;
@@ -139,5 +139,5 @@ TEST(Lattice, turned_as_a_rigid_body_bears_no_stress) {
             2.0 * now.kn * angle * angle);
 }
 
-}  // namespace
+}  // namespace lattice_test
 }  // namespace breccia::dem

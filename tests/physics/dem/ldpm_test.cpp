@@ -14,7 +14,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace ldpm_test {
 
 using testing::Scene;
 using testing::state;
@@ -376,5 +376,5 @@ TEST(Ldpm, a_torn_prism_hangs_on_its_bar) {
   EXPECT_LT(std::fabs(pull_of(config)), 0.05 * 500e6 * section);
 }
 
-}  // namespace
+}  // namespace ldpm_test
 }  // namespace breccia::dem

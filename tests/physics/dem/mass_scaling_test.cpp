@@ -5,7 +5,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace dem_mass_scaling_test {
 
 using testing::Scene;
 using testing::state;
@@ -49,5 +49,5 @@ TEST(MassScaling, takes_fewer_steps_to_the_same_forces_and_places) {
   }
 }
 
-}  // namespace
+}  // namespace dem_mass_scaling_test
 }  // namespace breccia::dem

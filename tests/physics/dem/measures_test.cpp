@@ -10,7 +10,7 @@
 #include "physics/dem/scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace dem_measures_test {
 
 using testing::Scene;
 
@@ -260,5 +260,5 @@ TEST(Measures, what_an_object_does_not_have_is_refused) {
   EXPECT_NE(told({"p", "", "strain_xx", "max"}, in_plane).find("one value"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace dem_measures_test
 }  // namespace breccia::dem

@@ -13,7 +13,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace dem_mixed_precision_test {
 
 using testing::Momentum;
 using testing::momentum;
@@ -253,5 +253,5 @@ TEST(MixedPrecision, forces_of_a_breaking_slab_differ_by_less_than_3e_6_after_a_
   RecordProperty("median", std::to_string(1e9 * median));
 }
 
-}  // namespace
+}  // namespace dem_mixed_precision_test
 }  // namespace breccia::dem

@@ -8,7 +8,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace motion_test {
 
 using testing::momentum;
 using testing::run_until;
@@ -350,5 +350,5 @@ TEST(Motion, the_same_scene_turned_or_shifted_moves_the_same) {
   }
 }
 
-}  // namespace
+}  // namespace motion_test
 }  // namespace breccia::dem

@@ -8,7 +8,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace pair_and_chain_test {
 
 using testing::Scene;
 using testing::state;
@@ -211,5 +211,5 @@ TEST(Chain, damage_of_elements_counts_links_that_soften_and_those_that_broke) {
   EXPECT_EQ(now[1], 0.5);
 }
 
-}  // namespace
+}  // namespace pair_and_chain_test
 }  // namespace breccia::dem

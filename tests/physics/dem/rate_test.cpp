@@ -6,7 +6,7 @@
 #include "specimen.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace rate_test {
 
 using testing::pulled;
 using testing::Specimen;
@@ -53,5 +53,5 @@ TEST(StrainRate, raises_the_strength_in_tension_by_the_curve_of_the_links_as_the
   EXPECT_NEAR(code, gained(1.282) * inertia, scatter * code);    // 1e6^0.018
 }
 
-}  // namespace
+}  // namespace rate_test
 }  // namespace breccia::dem

@@ -13,7 +13,7 @@
 #include "math/constants.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace specimen_test {
 
 using testing::Curve;
 using testing::pressed;
@@ -157,5 +157,5 @@ TEST(Specimen, waves_run_along_a_prism_at_the_speed_of_a_bar) {
   EXPECT_GT(with_moments, without);
 }
 
-}  // namespace
+}  // namespace specimen_test
 }  // namespace breccia::dem

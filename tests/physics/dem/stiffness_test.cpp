@@ -11,7 +11,7 @@
 #include "specimen.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace stiffness_test {
 
 using prepare::Displacements;
 using prepare::ElasticNetwork;
@@ -199,5 +199,5 @@ TEST(Stiffness, of_the_network_at_rest_gives_the_forces_of_the_links) {
   EXPECT_LT(worst_torque, 3e-3 * largest_torque);
 }
 
-}  // namespace
+}  // namespace stiffness_test
 }  // namespace breccia::dem

@@ -6,7 +6,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace support_test {
 
 using testing::Scene;
 using testing::state;
@@ -119,5 +119,5 @@ TEST(Support, that_contradicts_another_one_is_refused_by_name) {
   EXPECT_NE(refusal(s), "");
 }
 
-}  // namespace
+}  // namespace support_test
 }  // namespace breccia::dem

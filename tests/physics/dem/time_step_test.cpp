@@ -8,7 +8,7 @@
 #include "scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace time_step_test {
 
 using testing::Scene;
 
@@ -154,5 +154,5 @@ TEST(TimeStep, of_a_pair_is_that_of_its_link_along_any_direction) {
     }
 }
 
-}  // namespace
+}  // namespace time_step_test
 }  // namespace breccia::dem

@@ -8,7 +8,7 @@
 #include "physics/dem/scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace wall_force_test {
 
 using testing::Scene;
 
@@ -102,5 +102,5 @@ TEST(WallForce, is_the_same_number_by_a_devices_schedule_and_on_ranks) {
   });
 }
 
-}  // namespace
+}  // namespace wall_force_test
 }  // namespace breccia::dem

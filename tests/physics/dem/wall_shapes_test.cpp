@@ -10,7 +10,7 @@
 #include "physics/dem/scene.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace wall_shapes_test {
 
 using testing::Scene;
 
@@ -220,5 +220,5 @@ TEST(WallShapes, that_swing_are_alike_by_a_devices_schedule_and_on_ranks) {
   });
 }
 
-}  // namespace
+}  // namespace wall_shapes_test
 }  // namespace breccia::dem

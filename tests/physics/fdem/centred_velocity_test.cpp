@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace fdem_centred_velocity_test {
 
 using testing::nodes;
 using testing::Scene;
@@ -54,5 +54,5 @@ TEST(CentredVelocity, gives_an_energy_whose_error_falls_with_the_square_of_the_s
   EXPECT_GT(finest.half_step_old, 5.0 * finest.frame);
 }
 
-}  // namespace
+}  // namespace fdem_centred_velocity_test
 }  // namespace breccia::fdem

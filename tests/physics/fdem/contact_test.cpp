@@ -8,7 +8,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace contact_test {
 
 using testing::far;
 using testing::nodes;
@@ -221,5 +221,5 @@ TEST(FdemContact, block_stays_on_a_gentle_slope) {
   EXPECT_LT(std::abs(crept), elastic) << "creeps";
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace breccia::fdem

@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace crack_line_test {
 
 using testing::far;
 using testing::Scene;
@@ -190,5 +190,5 @@ TEST(CrackLine, sheared_joint_has_its_strength_spends_its_energy_and_rubs_on) {
   }
 }
 
-}  // namespace
+}  // namespace crack_line_test
 }  // namespace breccia::fdem

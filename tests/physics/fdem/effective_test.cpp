@@ -8,7 +8,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace effective_test {
 
 using namespace testing;
 
@@ -126,5 +126,5 @@ TEST(FdemEffective, modulus_is_that_of_a_pressed_plate) {
   }
 }
 
-}  // namespace
+}  // namespace effective_test
 }  // namespace breccia::fdem

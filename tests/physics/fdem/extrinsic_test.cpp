@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace extrinsic_test {
 
 using testing::far;
 using testing::Scene;
@@ -138,5 +138,5 @@ TEST(Extrinsic, bar_parts_at_the_strength_and_energy_of_intrinsic_joints) {
   both("irregular", "rock", irregular(3), 1.01, 0.5);
 }
 
-}  // namespace
+}  // namespace extrinsic_test
 }  // namespace breccia::fdem

@@ -8,7 +8,7 @@
 #include "prepare/build_fdem.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace flawed_plate_test {
 
 /// cases/wing_crack, small: it cracks at a tip of the flaw, by opening, at a stress within the
 /// window of linear elastic fracture mechanics, 5.1 to 14.6 MPa (Lisjak 2013). Its lower end is
@@ -44,5 +44,5 @@ TEST(FlawedPlate, cracks_first_at_the_flaw_in_the_window_of_fracture_mechanics) 
   EXPECT_LT(all[0].mode, 0.5);
 }
 
-}  // namespace
+}  // namespace flawed_plate_test
 }  // namespace breccia::fdem

@@ -5,7 +5,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace fracture_test {
 
 using testing::far;
 using testing::nodes;
@@ -158,5 +158,5 @@ TEST(Fracture, triangle_inside_out_is_named) {
   EXPECT_NE(text.find("plate"), std::string::npos) << text;
 }
 
-}  // namespace
+}  // namespace fracture_test
 }  // namespace breccia::fdem

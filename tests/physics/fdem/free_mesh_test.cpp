@@ -6,7 +6,7 @@
 #include "prepare/build_fdem.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace free_mesh_test {
 
 using testing::far;
 using testing::Scene;
@@ -171,5 +171,5 @@ TEST(FreeMesh, specimen_in_compression_has_the_strength_of_mohr_and_coulomb) {
   EXPECT_LT(by_rock.error, 0.01);
 }
 
-}  // namespace
+}  // namespace free_mesh_test
 }  // namespace breccia::fdem

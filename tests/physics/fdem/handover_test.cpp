@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace handover_test {
 
 using testing::nodes;
 using testing::rotated;
@@ -249,5 +249,5 @@ TEST(Handover, keeps_the_ledger_and_the_bits) {
   }
 }
 
-}  // namespace
+}  // namespace handover_test
 }  // namespace breccia::fdem

@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace load_test {
 
 using testing::far;
 using testing::nodes;
@@ -351,5 +351,5 @@ TEST(FdemLoads, absorbing_edges_take_the_impedance_of_their_material) {
   }
 }
 
-}  // namespace
+}  // namespace load_test
 }  // namespace breccia::fdem

@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace fdem_mass_scaling_test {
 
 using testing::far;
 using testing::Scene;
@@ -51,5 +51,5 @@ TEST(FdemMassScaling, takes_fewer_steps_to_the_same_forces_and_places) {
   EXPECT_NEAR(scaled.shortening, plain.shortening, 1e-3 * closed);
 }
 
-}  // namespace
+}  // namespace fdem_mass_scaling_test
 }  // namespace breccia::fdem

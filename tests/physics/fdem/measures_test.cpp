@@ -6,7 +6,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace fdem_measures_test {
 
 using testing::deform;
 using testing::far;
@@ -124,5 +124,5 @@ TEST(Measures, cracks_show_how_far_they_have_opened_and_slipped) {
   EXPECT_EQ(probe(w, {"", "", "broken", "sum", {0.0, -1.0}, {1.0, 1.0}}), 2.0);
 }
 
-}  // namespace
+}  // namespace fdem_measures_test
 }  // namespace breccia::fdem

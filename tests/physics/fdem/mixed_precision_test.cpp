@@ -9,7 +9,7 @@
 #include "scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace fdem_mixed_precision_test {
 
 using testing::Momentum;
 using testing::momentum;
@@ -89,5 +89,5 @@ TEST(FdemMixedPrecision, keeps_momentum_and_energy_of_a_breaking_disc) {
   EXPECT_LT(missing[1], 1.1 * missing[0] + 1e-6);
 }
 
-}  // namespace
+}  // namespace fdem_mixed_precision_test
 }  // namespace breccia::fdem

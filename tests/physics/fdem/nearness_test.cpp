@@ -6,7 +6,7 @@
 #include "prepare/meshing/structured.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace nearness_test {
 
 using namespace testing;
 
@@ -114,5 +114,5 @@ TEST(FdemNearness, faces_of_a_joint_that_breaks_count_at_once) {
   EXPECT_EQ(choose_time_step(w), before) << "they have parted";
 }
 
-}  // namespace
+}  // namespace nearness_test
 }  // namespace breccia::fdem

@@ -5,7 +5,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace pressed_faces_test {
 
 using namespace testing;
 
@@ -102,5 +102,5 @@ TEST(FdemPressedFaces, say_which_faces_cannot_bear_it) {
   EXPECT_GT(fastest_after(w, 100), 0.01);
 }
 
-}  // namespace
+}  // namespace pressed_faces_test
 }  // namespace breccia::fdem

@@ -5,7 +5,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace solid_test {
 
 using testing::far;
 using testing::nodes;
@@ -317,5 +317,5 @@ TEST(Solid, cantilever_bends_as_beam_theory_says) {
   EXPECT_NEAR(limit, expected, 0.015 * std::abs(expected));
 }
 
-}  // namespace
+}  // namespace solid_test
 }  // namespace breccia::fdem

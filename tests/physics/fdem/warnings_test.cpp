@@ -5,7 +5,7 @@
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace warnings_test {
 
 using namespace testing;
 
@@ -45,5 +45,5 @@ TEST(FdemWarnings, tell_where_edges_are_too_long_for_the_process_zone) {
   }
 }
 
-}  // namespace
+}  // namespace warnings_test
 }  // namespace breccia::fdem

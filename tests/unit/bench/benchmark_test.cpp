@@ -14,7 +14,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace benchmark_test {
 
 /// What decides places, counts and links: the case without laws, speeds and output.
 std::string geometry_of(const dem::Config& config) {
@@ -78,5 +78,5 @@ TEST(PacedSlab, AnswersEachLineAndRefusesOthers) {
   EXPECT_FALSE(std::getline(lines, line));
 }
 
-}  // namespace
+}  // namespace benchmark_test
 }  // namespace breccia

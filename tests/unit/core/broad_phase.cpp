@@ -11,7 +11,7 @@
 #include "unit/core/scenes.hpp"
 
 namespace breccia {
-namespace {
+namespace broad_phase_test {
 
 using scenes::all_against_all;
 using scenes::RandomStream;
@@ -302,5 +302,5 @@ TEST(BroadPhase, NamesTheElementWhoseBoxIsWrong) {
   EXPECT_NE(message_of<InputError>(twins).find("44"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace broad_phase_test
 }  // namespace breccia

@@ -7,7 +7,7 @@
 #include "core/energy.hpp"
 
 namespace breccia {
-namespace {
+namespace exact_sum_test {
 
 double sum_of(const std::vector<double>& terms) {
   ExactSum sum;
@@ -31,5 +31,5 @@ TEST(ExactSum, a_term_beyond_its_range_makes_it_infinite_in_any_order) {
   }
 }
 
-}  // namespace
+}  // namespace exact_sum_test
 }  // namespace breccia

@@ -5,7 +5,7 @@
 #include "unit/core/scenes.hpp"
 
 namespace breccia {
-namespace {
+namespace incidence_test {
 
 using scenes::buffer_of;
 using scenes::RandomStream;
@@ -92,5 +92,5 @@ TEST(Incidence, HasEmptyRowsWithoutPairs) {
   EXPECT_EQ(rows_built(ends, {}), (std::vector<std::vector<Entry>>(3)));
 }
 
-}  // namespace
+}  // namespace incidence_test
 }  // namespace breccia

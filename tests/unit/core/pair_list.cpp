@@ -8,7 +8,7 @@
 #include "unit/core/scenes.hpp"
 
 namespace breccia {
-namespace {
+namespace pair_list_test {
 
 using scenes::buffer_of;
 using scenes::RandomStream;
@@ -123,5 +123,5 @@ TEST(PairList, WorksOnArraysThatOnlyKernelsMayRead) {
   EXPECT_EQ(memory.slid.space(), Space::shadow);
 }
 
-}  // namespace
+}  // namespace pair_list_test
 }  // namespace breccia

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace breccia {
-namespace {
+namespace random_test {
 
 TEST(Random, PhiloxGivesTheNumbersItsAuthorsPublished) {
   using Four = std::array<std::uint32_t, 4>;
@@ -44,5 +44,5 @@ TEST(Random, SeedStreamIndexAndDrawEachChangeTheValue) {
   EXPECT_EQ(u, (Random{1, 2}.uniform(3, 4)));
 }
 
-}  // namespace
+}  // namespace random_test
 }  // namespace breccia

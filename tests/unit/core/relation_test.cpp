@@ -9,7 +9,7 @@
 #include "fdem/relations.hpp"
 
 namespace breccia {
-namespace {
+namespace relation_test {
 
 using Names = std::set<std::string>;
 
@@ -81,5 +81,5 @@ TEST(Relations, mark_only_what_the_model_joins) {
   EXPECT_EQ(element_ends(w, "wall_contacts").size(), 1U) << "b leads to walls";
 }
 
-}  // namespace
+}  // namespace relation_test
 }  // namespace breccia

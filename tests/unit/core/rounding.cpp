@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace breccia {
-namespace {
+namespace rounding_test {
 
 TEST(Rounding, leaves_what_single_precision_holds) {
   for (const double number : {0.0, -0.0, 1.0, -3.5, 0x1.8p-100, 16777215.0, 1.0 / 0.0})
@@ -44,5 +44,5 @@ TEST(Rounding, draws_for_the_components_of_a_vector_apart) {
   EXPECT_NEAR(alike, 0.5 * draws, draws / 64.0 + 5.0 * std::sqrt(0.25 * draws));
 }
 
-}  // namespace
+}  // namespace rounding_test
 }  // namespace breccia

@@ -11,7 +11,7 @@
 #include "unit/core/scenes.hpp"
 
 namespace breccia {
-namespace {
+namespace search_cost_test {
 
 /// Spheres of radii 0.8 to 1.2 at the density of a packing (60 % of the volume), with a skin of a
 /// tenth of a radius.
@@ -51,5 +51,5 @@ TEST(SearchCost, IsLinearInTheElements) {
   EXPECT_LT(million, 25 * 1'000'000);
 }
 
-}  // namespace
+}  // namespace search_cost_test
 }  // namespace breccia

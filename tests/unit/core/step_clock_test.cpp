@@ -6,7 +6,7 @@
 #include "core/timed.hpp"
 
 namespace breccia {
-namespace {
+namespace step_clock_test {
 
 struct TwiceTheLeast {
   BR_HD double operator()(double least, double) const { return 2.0 * least; }
@@ -161,5 +161,5 @@ TEST(Select, ListsWhatIsKeptInAscendingOrder) {
   }
 }
 
-}  // namespace
+}  // namespace step_clock_test
 }  // namespace breccia

@@ -9,7 +9,7 @@
 #include "unit/core/scenes.hpp"
 
 namespace breccia {
-namespace {
+namespace travel_test {
 
 using scenes::buffer_of;
 using scenes::RandomStream;
@@ -129,5 +129,5 @@ TEST(Travel, EndsWhenOneElementPassesItsOwnMarginOnly) {
   EXPECT_FALSE(search.valid(spheres));
 }
 
-}  // namespace
+}  // namespace travel_test
 }  // namespace breccia

@@ -11,7 +11,7 @@
 #include "unit/core/scenes.hpp"
 
 namespace breccia {
-namespace {
+namespace triangle_clouds_test {
 
 using scenes::RandomStream;
 using scenes::Scene;
@@ -104,5 +104,5 @@ TEST(TriangleClouds, the_search_finds_the_pairs_of_brute_force_and_of_no_binary_
   EXPECT_GT(found, 30'000U);
 }
 
-}  // namespace
+}  // namespace triangle_clouds_test
 }  // namespace breccia

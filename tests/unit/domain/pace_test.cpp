@@ -10,7 +10,7 @@
 #include "mpi/timed_rank.hpp"
 
 namespace breccia {
-namespace {
+namespace pace_test {
 
 using mpi_testing::TimedRank;
 
@@ -99,5 +99,5 @@ TEST(Pace, shares_out_again_only_for_more_than_that_costs) {
   EXPECT_FALSE((Spent{1e-3, 2e-3, 0.0}).is_uneven(0.1));
 }
 
-}  // namespace
+}  // namespace pace_test
 }  // namespace breccia

@@ -13,7 +13,7 @@
 #include "domain/simulated_ranks.hpp"
 
 namespace breccia {
-namespace {
+namespace partition_test {
 
 /// Numbers in [0, 1) by seed and index.
 double unit(std::uint64_t seed, std::uint64_t i) {
@@ -150,5 +150,5 @@ TEST(Partition, more_ranks_than_elements_leaves_some_without_any) {
   }
 }
 
-}  // namespace
+}  // namespace partition_test
 }  // namespace breccia

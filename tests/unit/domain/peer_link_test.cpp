@@ -11,7 +11,7 @@
 #include "domain/simulated_ranks.hpp"
 
 namespace breccia {
-namespace {
+namespace peer_link_test {
 
 /// A rank that is a thread and reads the memory of the others.
 class LinkedRank final : public Communicator {
@@ -138,5 +138,5 @@ TEST(PeerLink, without_it_copies_travel_as_messages) {
   ::unsetenv("BRECCIA_STAGED_COPIES");
 }
 
-}  // namespace
+}  // namespace peer_link_test
 }  // namespace breccia

@@ -11,7 +11,7 @@
 #include "exec/error.hpp"
 
 namespace breccia {
-namespace {
+namespace ranks_test {
 
 Message bytes_of(int number) {
   Message message(sizeof number);
@@ -238,5 +238,5 @@ TEST(Halo, copies_become_what_their_owners_have) {
   });
 }
 
-}  // namespace
+}  // namespace ranks_test
 }  // namespace breccia

@@ -8,7 +8,7 @@
 #include <chrono>
 
 namespace breccia {
-namespace {
+namespace watchdog_test {
 
 void pass(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
@@ -62,5 +62,5 @@ TEST(Watchdog, a_rank_that_lives_but_never_answers_is_lost_after_ten_times_the_p
   EXPECT_EQ(pair.lost, 1);
 }
 
-}  // namespace
+}  // namespace watchdog_test
 }  // namespace breccia

@@ -11,7 +11,7 @@
 #include "exec/error.hpp"
 
 namespace breccia {
-namespace {
+namespace sort_scan_test {
 
 std::uint64_t scramble(std::uint64_t i) {
   std::uint64_t z = (i + 1) * 0x9e3779b97f4a7c15ULL;
@@ -81,5 +81,5 @@ TEST(ExclusiveScan, OfMoreThanAnIndexCanCountIsRefusedAsAModelTooLarge) {
   }
 }
 
-}  // namespace
+}  // namespace sort_scan_test
 }  // namespace breccia

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace breccia {
-namespace {
+namespace tasks_test {
 
 TEST(tasks, each_is_done_once_on_any_number_of_threads) {
   for (const int threads : {1, 2, 7})
@@ -34,5 +34,5 @@ TEST(tasks, the_first_one_that_fails_is_told_of_after_all_have_ended) {
   }
 }
 
-}  // namespace
+}  // namespace tasks_test
 }  // namespace breccia

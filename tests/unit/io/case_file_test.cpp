@@ -15,7 +15,7 @@
 #include "run/method/shown.hpp"
 
 namespace breccia {
-namespace {
+namespace case_file_test {
 
 namespace fs = std::filesystem;
 
@@ -468,5 +468,5 @@ TEST(CaseFile, the_digest_is_sha_256) {
             "41edece42d63e8d9bf515a9ba6932e1c20cbc9f5a5d134645adb5db1b9737ea3");
 }
 
-}  // namespace
+}  // namespace case_file_test
 }  // namespace breccia

@@ -7,7 +7,7 @@
 #include "io/case/case_file.hpp"
 
 namespace breccia {
-namespace {
+namespace case_points_test {
 
 struct Plane {
   std::vector<fdem::BodyConfig> bodies;
@@ -95,5 +95,5 @@ TEST(CasePoints, AreListedWithTheirTypes) {
   EXPECT_NE(types.find("times numbers\n"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace case_points_test
 }  // namespace breccia

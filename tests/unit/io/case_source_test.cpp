@@ -7,7 +7,7 @@
 #include "io/case/case_file.hpp"
 
 namespace breccia {
-namespace {
+namespace case_source_test {
 
 std::string repeated(const std::string& part, int count) {
   std::string text;
@@ -54,5 +54,5 @@ TEST(CaseSource, a_line_of_a_mebibyte_and_a_file_of_16_are_the_limit) {
   EXPECT_TRUE(mentions(message_of(repeated(half, 32)), "larger than 16 MiB"));
 }
 
-}  // namespace
+}  // namespace case_source_test
 }  // namespace breccia

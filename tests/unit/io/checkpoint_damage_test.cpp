@@ -13,7 +13,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace checkpoint_damage_test {
 
 using namespace checkpoint_test;
 using Content = std::vector<char>;
@@ -216,5 +216,5 @@ TEST(CheckpointDamage, a_terabyte_of_nothing_is_refused_before_memory_is_asked_f
   EXPECT_THROW(CheckpointReader{path}, CheckpointError);
 }
 
-}  // namespace
+}  // namespace checkpoint_damage_test
 }  // namespace breccia

@@ -17,7 +17,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace checkpoint_test {
 
 namespace fs = std::filesystem;
 using namespace checkpoint_test;
@@ -192,5 +192,5 @@ TEST(Checkpoint, a_kill_at_any_instant_leaves_the_last_acknowledged_state) {
   }
 }
 
-}  // namespace
+}  // namespace checkpoint_test
 }  // namespace breccia

@@ -12,7 +12,7 @@
 #include "io/picture/vector_picture.hpp"
 
 namespace breccia {
-namespace {
+namespace drawing_test {
 
 /// A plate of two squares, each of two triangles, and a joint between the squares that broke.
 Frame plate(float mode, double gap = 0.0) {
@@ -155,5 +155,5 @@ TEST(drawing, letters_have_forms_and_bytes_that_are_no_letters_show_as_one) {
   EXPECT_GT(ink("\xFF"), 0.0);
 }
 
-}  // namespace
+}  // namespace drawing_test
 }  // namespace breccia

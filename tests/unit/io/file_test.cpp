@@ -12,7 +12,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace file_test {
 
 namespace fs = std::filesystem;
 
@@ -100,5 +100,5 @@ TEST(File, what_is_no_regular_file_is_never_replaced) {
   EXPECT_TRUE(fs::is_character_file(device));
 }
 
-}  // namespace
+}  // namespace file_test
 }  // namespace breccia

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace breccia {
-namespace {
+namespace harmless_test {
 
 TEST(Harmless, ordinary_text_of_any_language_stays) {
   const std::string text = "b\u00e9ton 30 MPa \u2014 \u6df7\u51dd\u571f \U0001f9f1\n\tend";
@@ -26,5 +26,5 @@ TEST(Harmless, bytes_that_are_no_text_are_spelled_out) {
   EXPECT_EQ(harmless("\xff\xfe"), "\\xff\\xfe");
 }
 
-}  // namespace
+}  // namespace harmless_test
 }  // namespace breccia

@@ -15,7 +15,7 @@
 #include "paths.hpp"
 
 namespace breccia {
-namespace {
+namespace key_pages_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -184,5 +184,5 @@ TEST(KeySchema, every_shipped_case_is_valid_and_slips_are_not) {
   EXPECT_NE(fault(json_of("method = \"fdem2d\"\n[links]\nrange = 1.4\n"), schema, ""), "");
 }
 
-}  // namespace
+}  // namespace key_pages_test
 }  // namespace breccia

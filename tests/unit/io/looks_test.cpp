@@ -17,7 +17,7 @@
 #include "io/vtu/vtu_reader.hpp"
 
 namespace breccia {
-namespace {
+namespace looks_test {
 
 using Pixel = std::array<int, 3>;
 Pixel pixel(const Image& image, int x, int y) {
@@ -423,5 +423,5 @@ TEST(looks, frames_in_files_keep_walls_and_tensors) {
   EXPECT_EQ(read.point_fields[0].values, frame.point_fields[0].values);
 }
 
-}  // namespace
+}  // namespace looks_test
 }  // namespace breccia

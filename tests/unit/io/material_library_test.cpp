@@ -12,7 +12,7 @@
 #include "io/case/case_file.hpp"
 
 namespace breccia {
-namespace {
+namespace material_library_test {
 
 std::string case_with(const std::string& method, const std::string& keys) {
   return "breccia = 1\nmethod = \"" + method + "\"\n[time]\nend = 1.0\n[material.m]\n" + keys;
@@ -108,5 +108,5 @@ TEST(NamedMaterials, NamesTheLineOfAMaterialThatThereIsNot) {
   EXPECT_NE(problem("dem3d", "use = 3").find("use wants a text"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace material_library_test
 }  // namespace breccia

@@ -8,7 +8,7 @@
 #include "io/case/case_file.hpp"
 
 namespace breccia {
-namespace {
+namespace over_time_test {
 
 const std::string dem_case = R"([time]
 end = "1 ms"
@@ -78,5 +78,5 @@ TEST(OverTime, wrong_tables_are_refused_by_line_and_key) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace over_time_test
 }  // namespace breccia

@@ -17,7 +17,7 @@
 #include "unit/io/slab_scene.hpp"
 
 namespace breccia {
-namespace {
+namespace paraview_test {
 
 namespace fs = std::filesystem;
 
@@ -296,5 +296,5 @@ TEST_F(ParaviewSeriesTest, a_folder_that_cannot_be_made_is_an_error_with_its_pat
   }
 }
 
-}  // namespace
+}  // namespace paraview_test
 }  // namespace breccia

@@ -15,7 +15,7 @@
 #include "unit/io/slab_scene.hpp"
 
 namespace breccia {
-namespace {
+namespace picture_test {
 
 using Pixel = std::array<int, 3>;
 
@@ -512,5 +512,5 @@ TEST(picture, the_full_slab_is_drawn_within_a_blink) {
   EXPECT_LT(writing, 2000.0);
 }
 
-}  // namespace
+}  // namespace picture_test
 }  // namespace breccia

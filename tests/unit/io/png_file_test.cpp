@@ -9,7 +9,7 @@
 #include "unit/io/slab_scene.hpp"
 
 namespace breccia {
-namespace {
+namespace png_file_test {
 
 /// Decodes with libpng's simplified interface.
 Image read_png(const std::string& path) {
@@ -52,5 +52,5 @@ TEST(png_file, a_path_that_cannot_be_written_is_named_with_the_reason) {
   EXPECT_THROW(write_png("/dev/full/x.png", {1, 1, {0, 0, 0}}), IoError);
 }
 
-}  // namespace
+}  // namespace png_file_test
 }  // namespace breccia

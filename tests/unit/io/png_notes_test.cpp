@@ -6,7 +6,7 @@
 #include "io/picture/picture.hpp"
 
 namespace breccia {
-namespace {
+namespace png_notes_test {
 
 const std::string plain = png_content({2, 1, {0, 1, 2, 3, 4, 5}});
 
@@ -52,5 +52,5 @@ TEST(png_notes, a_text_that_would_fill_the_memory_is_refused) {
   EXPECT_THROW(notes_of(png, "p.png"), InputError);
 }
 
-}  // namespace
+}  // namespace png_notes_test
 }  // namespace breccia

@@ -7,7 +7,7 @@
 #include "math/constants.hpp"
 
 namespace breccia {
-namespace {
+namespace units_test {
 
 double in_si(const std::string& text, const std::string& wanted) {
   std::string problem;
@@ -105,5 +105,5 @@ TEST(Units, slips_of_the_pen_are_told_with_what_was_meant) {
   }
 }
 
-}  // namespace
+}  // namespace units_test
 }  // namespace breccia

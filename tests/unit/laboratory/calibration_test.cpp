@@ -9,7 +9,7 @@
 #include "exec/error.hpp"
 
 namespace breccia::laboratory {
-namespace {
+namespace calibration_test {
 
 /// A concrete whose strengths depend on all keys, as those of packings do.
 std::vector<TestResults> shown_by(const dem::MaterialConfig& m,
@@ -129,5 +129,5 @@ TEST(Calibration, RefusesToGoOnWithoutTargetsOrResults) {
   EXPECT_THROW(calibration.take({}), InputError);
 }
 
-}  // namespace
+}  // namespace calibration_test
 }  // namespace breccia::laboratory

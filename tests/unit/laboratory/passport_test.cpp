@@ -19,7 +19,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia::laboratory {
-namespace {
+namespace passport_test {
 
 Sample concrete() {
   Sample sample;
@@ -232,5 +232,5 @@ pack = { count = 100, compactness = 0.56 }
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace passport_test
 }  // namespace breccia::laboratory

@@ -12,7 +12,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace sweep_command_test {
 
 namespace fs = std::filesystem;
 
@@ -167,5 +167,5 @@ TEST_F(SweepCommand, ExplainsItselfWithinEightyColumns) {
     }
 }
 
-}  // namespace
+}  // namespace sweep_command_test
 }  // namespace breccia

@@ -9,7 +9,7 @@
 #include "exec/error.hpp"
 
 namespace breccia::laboratory {
-namespace {
+namespace sweep_test {
 
 using Texts = std::vector<std::string>;
 
@@ -82,5 +82,5 @@ TEST(LinePlot, SaysWhenThereIsNothingToDraw) {
   EXPECT_NE(svg_of({LinePlot{"a < b", "x", "y", {}, {}, {}}}).find("a &lt; b"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace sweep_test
 }  // namespace breccia::laboratory

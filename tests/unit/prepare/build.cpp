@@ -17,7 +17,7 @@
 #include "unit/prepare/models.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace build_test {
 
 int count_of(const Model& m, int group) {
   return static_cast<int>(std::count(m.group.begin(), m.group.end(), group));
@@ -339,5 +339,5 @@ TEST(Refused, BarsThatDoNotFitTheirBody) {
   EXPECT_TRUE(mentions(with([](BodyConfig& b) { b.velocity = {1.0, 0.0, 0.0}; }), "bars move"));
 }
 
-}  // namespace
+}  // namespace build_test
 }  // namespace breccia::dem

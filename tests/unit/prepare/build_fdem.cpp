@@ -10,7 +10,7 @@
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace build_fdem_test {
 
 TEST(BuildFdem, RegularPlatesFillTheirRectangle) {
   for (const char* pattern : {"equilateral", "crossed"}) {
@@ -169,5 +169,5 @@ TEST(BuildFdem, NamesEveryProblemAtOnce) {
   EXPECT_TRUE(mentions(text, "6 problems"));
 }
 
-}  // namespace
+}  // namespace build_fdem_test
 }  // namespace breccia::fdem

@@ -15,7 +15,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace check_case_test {
 
 /// The message of an InputError; empty if there is none.
 std::string refused(const std::function<void()>& work) {
@@ -218,5 +218,5 @@ TEST(CheckFiles, names_every_file_that_building_could_not_read) {
   EXPECT_THROW(prepare::check_files(plane, folder.path()), InputError);
 }
 
-}  // namespace
+}  // namespace check_case_test
 }  // namespace breccia

@@ -9,7 +9,7 @@
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::prepare {
-namespace {
+namespace clean_lines_test {
 
 using Line = std::array<Vec2, 2>;
 
@@ -135,5 +135,5 @@ TEST(CleanLines, keep_slivers_out_of_meshes) {
   EXPECT_NEAR(merged_length, length, 0.1 * length);
 }
 
-}  // namespace
+}  // namespace clean_lines_test
 }  // namespace breccia::prepare

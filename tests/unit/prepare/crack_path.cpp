@@ -8,7 +8,7 @@
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace crack_path_test {
 
 double length_of(const Model& m, std::int16_t material) {
   double sum = 0.0;
@@ -117,5 +117,5 @@ TEST(MeshOverlap, BodiesInEachOtherAreRefusedAndTouchingOnesAreNot) {
   EXPECT_TRUE(mentions(refusal({disc, platen}), "body.disc and body.plate overlap at the start"));
 }
 
-}  // namespace
+}  // namespace crack_path_test
 }  // namespace breccia::fdem

@@ -8,7 +8,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia::prepare {
-namespace {
+namespace csv_numbers_test {
 
 class CsvNumbers : public testing::Test {
  protected:
@@ -69,5 +69,5 @@ TEST_F(CsvNumbers, a_pipe_is_refused_at_once) {
   EXPECT_THROW(read_csv(path(), 2, "x,y in metres", take), IoError);
 }
 
-}  // namespace
+}  // namespace csv_numbers_test
 }  // namespace breccia::prepare

@@ -12,7 +12,7 @@
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::fdem {
-namespace {
+namespace heterogeneity_test {
 
 double share_of(const Model& m, int material) {
   double sum = 0.0, total = 0.0;
@@ -189,5 +189,5 @@ TEST(Heterogeneity, CorrelatedStrengthDoesNotDependOnTheMesh) {
   EXPECT_LT(worst, 0.1);
 }
 
-}  // namespace
+}  // namespace heterogeneity_test
 }  // namespace breccia::fdem

@@ -16,7 +16,7 @@
 #include "prepare/build_fdem.hpp"
 
 namespace breccia::prepare {
-namespace {
+namespace joint_sets_test {
 
 fdem::JointSetConfig random_set() {
   fdem::JointSetConfig set;
@@ -190,5 +190,5 @@ TEST(Regions, of_circles_cylinders_and_polygons) {
   EXPECT_FALSE(in_polygon(hook, {1.0, 2.0}));
 }
 
-}  // namespace
+}  // namespace joint_sets_test
 }  // namespace breccia::prepare

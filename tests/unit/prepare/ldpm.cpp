@@ -11,7 +11,9 @@
 #include "prepare/ldpm/tessellation.hpp"
 
 namespace breccia::prepare {
-namespace {
+namespace ldpm_test {
+
+using breccia::at;  // of an index, beside that of a mesh
 
 const MixDesign mix{};  // 6 to 12 mm
 const Container cube{.shape = Container::Shape::box, .size = {0.05, 0.05, 0.05}};
@@ -172,5 +174,5 @@ TEST(LdpmGeometry, a_regular_tetrahedron_has_twelve_equal_facets) {
   }
 }
 
-}  // namespace
+}  // namespace ldpm_test
 }  // namespace breccia::prepare

@@ -11,7 +11,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia::prepare {
-namespace {
+namespace ldpm_mesh_file_test {
 
 constexpr const char* four =
     "// n x y z d\n0 0.0 0.0 0.0 0.0\n1 10 0 0 0\n2 0 10 0 0\r\n# a grain\n\n3 0 0 1e1 8.5\n";
@@ -107,5 +107,5 @@ TEST(LdpmMeshFile, of_a_body_gives_the_model_of_the_body) {
   }
 }
 
-}  // namespace
+}  // namespace ldpm_mesh_file_test
 }  // namespace breccia::prepare

@@ -13,7 +13,7 @@
 #include "unit/prepare/models.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace linking_test {
 
 using prepare::BodyLinks;
 using Pairs = std::set<std::pair<Index, Index>>;
@@ -204,5 +204,5 @@ TEST(Linking, ANumberOfLinksThatNoRangeGivesIsRefused) {
   EXPECT_THROW(build_model(config, "."), InputError);
 }
 
-}  // namespace
+}  // namespace linking_test
 }  // namespace breccia::dem

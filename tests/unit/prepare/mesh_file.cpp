@@ -15,7 +15,7 @@
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::prepare {
-namespace {
+namespace mesh_file_test {
 
 using fdem::mentions;
 
@@ -471,5 +471,5 @@ $EndElements
   EXPECT_THROW(prepare::parse_gmsh(binary, "old.msh"), InputError);
 }
 
-}  // namespace
+}  // namespace mesh_file_test
 }  // namespace breccia::prepare

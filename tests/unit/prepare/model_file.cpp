@@ -8,7 +8,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace model_file_test {
 
 std::string bytes_of(const dem::Model& model, const std::string& path) {
   CheckpointWriter writer;
@@ -65,5 +65,5 @@ TEST(ModelFile, RefusesLinksToElementsThatAreNotThere) {
   EXPECT_THROW(load_model(reader), CheckpointError);
 }
 
-}  // namespace
+}  // namespace model_file_test
 }  // namespace breccia

@@ -16,7 +16,7 @@
 #include "prepare/packing/cell_grid.hpp"
 
 namespace breccia::prepare {
-namespace {
+namespace packing_test {
 
 PackingTask task_of(const Container& container, int count, double compactness) {
   return {.container = container,
@@ -244,5 +244,5 @@ TEST(PackingSpeed, AHundredThousandSpheresTakeLessThanAMinute) {
 #endif
 }
 
-}  // namespace
+}  // namespace packing_test
 }  // namespace breccia::prepare

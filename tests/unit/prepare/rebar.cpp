@@ -16,7 +16,7 @@
 #include "unit/prepare/models.hpp"
 
 namespace breccia::dem {
-namespace {
+namespace rebar_test {
 
 BarConfig stirrup(double x, double y, double z) {
   BarConfig bar;
@@ -181,5 +181,5 @@ closed = true
   EXPECT_EQ(again.bodies.at(0).rebar.drawn.at(0).points[2].x, 1.0);
 }
 
-}  // namespace
+}  // namespace rebar_test
 }  // namespace breccia::dem

@@ -7,7 +7,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia::prepare {
-namespace {
+namespace spheres_file_test {
 
 Spheres spheres_of(const std::string& text) {
   const ScratchFolder folder;
@@ -40,5 +40,5 @@ TEST(SpheresText, commas_are_read_as_before) {
   EXPECT_EQ(spheres_of("x,y,z,radius\n0,0,0,0.5\n").radius.size(), 1U);
 }
 
-}  // namespace
+}  // namespace spheres_file_test
 }  // namespace breccia::prepare

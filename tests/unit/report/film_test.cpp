@@ -16,7 +16,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia::report {
-namespace {
+namespace film_test {
 
 using Json = nlohmann::json;
 
@@ -175,5 +175,5 @@ TEST(Film, FramesOfOtherElementsAreRefused) {
   EXPECT_THROW(survey_of(folder.path(), 2), IoError);
 }
 
-}  // namespace
+}  // namespace film_test
 }  // namespace breccia::report

@@ -11,7 +11,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia::report {
-namespace {
+namespace findings_test {
 
 std::string joined(const std::vector<std::string>& sentences) {
   std::string text;
@@ -97,5 +97,5 @@ TEST(Findings, PiecesAreWhatWholeLinksHoldTogether) {
   EXPECT_NEAR(roses[0].bars[8] + roses[0].bars[9], sum, 1e-15);
 }
 
-}  // namespace
+}  // namespace findings_test
 }  // namespace breccia::report

@@ -7,7 +7,7 @@
 #include "unit/report/unpacked.hpp"
 
 namespace breccia::report {
-namespace {
+namespace packed_bytes_test {
 
 TEST(PackedBytes, Base64IsThatOfRfc4648) {
   EXPECT_EQ(base64(""), "");
@@ -62,5 +62,5 @@ TEST(PackedBytes, WhatIsNoNumberCountsAsZero) {
   EXPECT_EQ((Scale{-1.0F, 1.0F, 200, false}.step_of(NAN)), 100U);
 }
 
-}  // namespace
+}  // namespace packed_bytes_test
 }  // namespace breccia::report

@@ -15,7 +15,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia::report {
-namespace {
+namespace page_test {
 
 using Json = nlohmann::json;
 
@@ -196,5 +196,5 @@ TEST(ReportProgram, ADamagedFrameIsNamed) {
   EXPECT_EQ(report(folder.path()).exit_code, 2);
 }
 
-}  // namespace
+}  // namespace page_test
 }  // namespace breccia::report

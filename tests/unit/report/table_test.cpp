@@ -9,7 +9,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia::report {
-namespace {
+namespace table_test {
 
 std::string message_of(const std::string& path) {
   try {
@@ -74,5 +74,5 @@ TEST(ReportTable, WrongMeasurementsAreNamedByFileAndLine) {
   EXPECT_THROW(read_measured(folder / "none.csv"), IoError);
 }
 
-}  // namespace
+}  // namespace table_test
 }  // namespace breccia::report

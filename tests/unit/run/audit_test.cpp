@@ -8,7 +8,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace audit_test {
 
 /// Runs the fake method with audit, to the end of its case.
 int run_audited(std::int64_t every, const std::string& path, const Trouble& trouble = {}) {
@@ -84,5 +84,5 @@ TEST(Audit, OfBothMethodsChangesNoBit) {
   }
 }
 
-}  // namespace
+}  // namespace audit_test
 }  // namespace breccia

@@ -16,7 +16,7 @@
 #include "run/method/fdem_method.hpp"
 
 namespace breccia {
-namespace {
+namespace background_test {
 
 using fdem::testing::Scene;
 
@@ -97,5 +97,5 @@ TEST(Snapshot, IsNotMadeOnTheHost) {
   EXPECT_EQ(flying(Space::host)->snapshot(), nullptr);
 }
 
-}  // namespace
+}  // namespace background_test
 }  // namespace breccia

@@ -15,7 +15,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace check_command_test {
 
 struct Told {
   int exit_code;
@@ -152,5 +152,5 @@ TEST(CaseName, is_the_stem_and_of_a_case_folder_its_name) {
   EXPECT_EQ(case_name(folder.path() + "/small.toml"), name + "_small");
 }
 
-}  // namespace
+}  // namespace check_command_test
 }  // namespace breccia

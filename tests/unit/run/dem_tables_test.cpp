@@ -7,7 +7,7 @@
 #include "physics/dem/scene.hpp"
 
 namespace breccia {
-namespace {
+namespace dem_tables_test {
 
 const Table& named(const std::vector<Table>& tables, const std::string& name) {
   for (const Table& table : tables)
@@ -38,5 +38,5 @@ TEST(DemTables, list_broken_links_and_pieces) {
   EXPECT_NEAR(momentum, 200.0 * pieces.rows[1][1], 1e-6 * momentum);
 }
 
-}  // namespace
+}  // namespace dem_tables_test
 }  // namespace breccia

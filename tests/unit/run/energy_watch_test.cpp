@@ -5,7 +5,7 @@
 #include "exec/error.hpp"
 
 namespace breccia {
-namespace {
+namespace energy_watch_test {
 
 EnergyBalance with_error(double error) {
   EnergyBalance energy;
@@ -57,5 +57,5 @@ TEST(EnergyWatch, what_cannot_be_summed_ends_the_run_at_once) {
   EXPECT_THROW(watch.look(energy, 1, 0.0), NumericsError);
 }
 
-}  // namespace
+}  // namespace energy_watch_test
 }  // namespace breccia

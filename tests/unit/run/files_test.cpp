@@ -9,7 +9,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace files_test {
 
 namespace fs = std::filesystem;
 
@@ -122,5 +122,5 @@ TEST_F(ProgramAndFiles, what_a_killed_run_left_goes_when_it_is_resumed) {
   for (const char* name : {"out/notes.tmp", "out/a.0123.tmp"}) EXPECT_TRUE(fs::exists(path(name)));
 }
 
-}  // namespace
+}  // namespace files_test
 }  // namespace breccia

@@ -10,7 +10,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace first_hour_test {
 
 struct FirstHour : testing::Test {
   ScratchFolder folder;
@@ -77,5 +77,5 @@ TEST_F(FirstHour, keys_are_found_by_words_and_near_words_are_told) {
   EXPECT_TRUE(says("json-schema.org")) << told;
 }
 
-}  // namespace
+}  // namespace first_hour_test
 }  // namespace breccia

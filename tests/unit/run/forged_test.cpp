@@ -18,7 +18,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace forged_test {
 
 /// A reinforced slab, a ball that lies in a wall and on the slab, a support that moves.
 dem::Config dem_case() {
@@ -229,5 +229,5 @@ TEST(Forged, fdem_models_are_refused) {
     expect_refusals(folder / "good.br", folder / "bad.br", name, width, load);
 }
 
-}  // namespace
+}  // namespace forged_test
 }  // namespace breccia

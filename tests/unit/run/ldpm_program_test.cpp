@@ -14,7 +14,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace ldpm_program_test {
 
 class LdpmProgram : public testing::Test {
  protected:
@@ -55,5 +55,5 @@ TEST_F(LdpmProgram, resumes_to_the_same_bits_after_a_cut_and_after_a_kill) {
   EXPECT_EQ(hash_of("killed"), hash_of("whole"));
 }
 
-}  // namespace
+}  // namespace ldpm_program_test
 }  // namespace breccia

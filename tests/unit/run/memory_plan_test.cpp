@@ -14,7 +14,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace memory_plan_test {
 
 namespace fs = std::filesystem;
 
@@ -124,5 +124,5 @@ TEST(MemoryPlan, a_signal_ends_setting_up_at_once) {
   }
 }
 
-}  // namespace
+}  // namespace memory_plan_test
 }  // namespace breccia

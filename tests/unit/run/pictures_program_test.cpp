@@ -9,7 +9,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace pictures_program_test {
 
 /// Four balls side by side, which fall 1.2 m, 6 times their height.
 std::string falling_case(const std::string& output) {
@@ -125,5 +125,5 @@ TEST(PicturesProgram, wrong_keys_of_pictures_are_found_before_the_run) {
     EXPECT_NE(ran.text.find(key), std::string::npos) << key << "\n" << ran.text;
 }
 
-}  // namespace
+}  // namespace pictures_program_test
 }  // namespace breccia

@@ -18,7 +18,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace program_test {
 
 namespace fs = std::filesystem;
 
@@ -525,5 +525,5 @@ TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
   EXPECT_EQ(run("run --help"), 0);
 }
 
-}  // namespace
+}  // namespace program_test
 }  // namespace breccia

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace breccia {
-namespace {
+namespace progress_test {
 
 const std::vector<std::string> pieces{" 42 %",        "left 4 min 05 s",    "1.68 ms",
                                       "broken 6,199", "energy error 2e-05", "1,234 steps/s"};
@@ -38,5 +38,5 @@ TEST(WallTime, is_read_as_people_write_it) {
     EXPECT_FALSE(wall_time(wrong)) << wrong;
 }
 
-}  // namespace
+}  // namespace progress_test
 }  // namespace breccia

@@ -7,7 +7,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace record_test {
 
 TEST(StepTimes, MedianAndPercentileAreExactToHalfAPercent) {
   StepTimes times;
@@ -120,5 +120,5 @@ TEST(Checks, FailForANumberTheRunDoesNotHaveOrThatIsNone) {
   EXPECT_FALSE(results[1].pass);
 }
 
-}  // namespace
+}  // namespace record_test
 }  // namespace breccia

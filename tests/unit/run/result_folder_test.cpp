@@ -9,7 +9,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace result_folder_test {
 
 namespace fs = std::filesystem;
 
@@ -66,5 +66,5 @@ TEST(ResultFolder, IsNotMadeByTheCheckBeforeARun) {
   EXPECT_FALSE(fs::exists(scratch / "a"));
 }
 
-}  // namespace
+}  // namespace result_folder_test
 }  // namespace breccia

@@ -19,7 +19,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace run_test {
 
 namespace fs = std::filesystem;
 
@@ -413,5 +413,5 @@ TEST(Run, ThatCannotWriteACheckpointKeepsTheOlderOnes) {
   EXPECT_EQ(resume_fake(plan, scratch / "out"), 0);
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace breccia

@@ -11,7 +11,7 @@
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
-namespace {
+namespace stages_program_test {
 
 /// Two balls that a wall brings together, one held, then free.
 const std::string staged = R"(
@@ -119,5 +119,5 @@ TEST_F(StagedProgram, RefusesStagesThatCannotBe) {
   EXPECT_NE(output().find("stage.lower never ends"), std::string::npos) << output();
 }
 
-}  // namespace
+}  // namespace stages_program_test
 }  // namespace breccia
