@@ -7,7 +7,7 @@
 
 "ball" is the case as it is: the ball of concrete at 30 m/s. "hard" replaces it by one rigid sphere of its mass and size
 and writes the formulas beside it. Each row is a `breccia sweep` over seeds in out/impact/, and is kept: called again,
-only what is missing is run. "print" makes the table of all finished rows.
+only what is missing is run. "print" makes the table of all finished rows. --jobs, --binary and --device are those of `breccia sweep`.
 """
 import argparse
 import collections
@@ -88,13 +88,13 @@ def name_of(kind, concrete, bars, speed=None):
     return f"{kind}-{concrete}-{'bars' if bars else 'plain'}" + (f"-{speed:g}" if speed else "")
 
 
-def sweep(name, text, seeds, jobs):
+def sweep(name, text, seeds, jobs, binary, device):
     OUT.mkdir(parents=True, exist_ok=True)
     case = OUT / f"{name}.toml"
     if not case.exists() or case.read_text() != text:
         case.write_text(text)
-    done = subprocess.run([ROOT / "build/release/breccia", "sweep", case, "--seeds", str(seeds), "-o", OUT / name,
-                           "--jobs", str(jobs), "--threads", "1"], stdout=subprocess.DEVNULL)
+    done = subprocess.run([binary, "sweep", case, "--seeds", str(seeds), "-o", OUT / name, "--jobs", str(jobs),
+                           "--threads", "1", "--device", device], stdout=subprocess.DEVNULL)
     print(name, "exit code", done.returncode, flush=True)
 
 
@@ -200,7 +200,7 @@ def table_of_hard():
     for concrete in CONCRETES:
         for bars in (True, False):
             for folder in sorted(OUT.glob(name_of("hard", concrete, bars) + "-*/"), key=lambda f: float(f.name.split("-")[-1])):
-                if not (folder / "sweep.csv").exists():
+                if not (folder / "sweep.csv").exists() or not runs_of(folder.name):
                     continue
                 speed, runs = float(folder.name.split("-")[-1]), runs_of(folder.name)
                 f_c = STRENGTH[concrete]
@@ -226,17 +226,20 @@ def main():
     p.add_argument("--concrete", default="case")
     p.add_argument("--bars", default="yes,no")
     p.add_argument("--jobs", type=int, default=2)
+    p.add_argument("--binary", default=ROOT / "build/release/breccia")
+    p.add_argument("--device", default="cpu")
     given = p.parse_args()
     if given.what == "print":
         return table_of_hard() if given.table == "hard" else table_of_ball()
+    how = given.jobs, given.binary, given.device
     for concrete in given.concrete.split(","):
         for bars in (b == "yes" for b in given.bars.split(",")):
             if given.what == "ball":
-                sweep(name_of("ball", concrete, bars), variant(concrete, bars), given.seeds or 10, given.jobs)
+                sweep(name_of("ball", concrete, bars), variant(concrete, bars), given.seeds or 10, *how)
             elif given.what == "hard":
                 for speed in map(float, given.speeds.split(",")):
                     sweep(name_of("hard", concrete, bars, speed), variant(concrete, bars, speed, given.end),
-                          given.seeds or 5, given.jobs)
+                          given.seeds or 5, *how)
 
 
 if __name__ == "__main__":

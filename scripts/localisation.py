@@ -2,7 +2,8 @@
 """Where prisms of `breccia test` break: share of the links broken after the peak that lie in one band, for
 docs/validation-concrete.md.
 
-    scripts/localisation.py [--elements 2000] [--seeds 3] [--binary build/release/breccia] [-o out/localisation]
+    scripts/localisation.py [--elements 2000] [--seeds 3] [--binary build/release/breccia] [--device cpu] [--jobs 1]
+    [-o out/localisation]
 
 Prisms of c30 (cases/rc_slab, friction bounded) between smooth ends and between rough platens run with 20 frames. At the
 frame where the stress has fallen to half of the peak: broken links, and those of them broken since the peak. The band is the
@@ -11,6 +12,7 @@ alike everywhere has as many of them there as it has links there, and somewhat m
 links drawn at random say how much.
 """
 import argparse
+import concurrent.futures
 import csv
 import math
 import pathlib
@@ -27,7 +29,7 @@ KEYS = ["friction_cap=3e6", "broken_friction=0.6", "broken_rolling_limit=1"]
 BAND = 0.02  # m
 
 
-def run(binary, out, test, elements, seed):
+def run(binary, out, test, elements, seed, device):
     folder = out / f"{test}-{elements}-{seed}"
     if (folder / "summary.json").exists():
         return folder
@@ -35,13 +37,13 @@ def run(binary, out, test, elements, seed):
     if not list(made.glob(f"cases/{test}-{seed}-*.toml")):
         keys = [a for k in KEYS for a in ("--set", f"material.c30.{k}")]
         subprocess.run([binary, "test", ROOT / "cases/rc_slab", "--material", "c30", *keys, "--only", test, "--first-seed",
-                        str(seed), "--seeds", "1", "--elements", str(elements), "--threads", "1", "-o", made], check=True,
+                        str(seed), "--seeds", "1", "--elements", str(elements), "--threads", "1", "--device", device, "-o", made], check=True,
                        stdout=subprocess.DEVNULL)
     text = next(made.glob(f"cases/{test}-{seed}-*.toml")).read_text()
     text = text.replace("frames = 0", "frames = 20", 1).replace("fields = false", "fields = true", 1)
     case = out / f"{test}-{elements}-{seed}.toml"
     case.write_text(text)
-    subprocess.run([binary, "run", case, "-o", folder, "--threads", "1", "--force", "--no-progress"], check=True,
+    subprocess.run([binary, "run", case, "-o", folder, "--threads", "1", "--device", device, "--force", "--no-progress"], check=True,
                    stdout=subprocess.DEVNULL)
     return folder
 
@@ -105,6 +107,11 @@ def looked_at(folder):
             "band": 100 * share, "links": 100 * usual, "ratio": share / usual, "chance": chance / there, "angle": angle}
 
 
+def of_packing(what):
+    given, test, seed = what
+    return looked_at(run(given.binary, given.out, test, given.elements, seed, given.device))
+
+
 def text(values, digits=0):
     return f"{statistics.mean(values):.{digits}f} +- {statistics.stdev(values) if len(values) > 1 else 0.0:.{digits}f}"
 
@@ -115,12 +122,15 @@ def main():
     p.add_argument("-o", "--out", type=pathlib.Path, default=ROOT / "out" / "localisation")
     p.add_argument("--elements", type=int, default=2000)
     p.add_argument("--seeds", type=int, default=3)
+    p.add_argument("--device", default="cpu")
+    p.add_argument("--jobs", type=int, default=1)
     given = p.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
     print("| prism | strength, MPa | links broken at the peak; at half of it, % | of those broken in between, in the band, % | "
           "of all links, there, % | ratio | ratio of as many links drawn at random | band's slope, degrees |\n|---|---|---|---|---|---|---|---|")
     for test, name in (("compression_prism", "smooth ends"), ("platens_prism", "rough platens")):
-        all_of = [looked_at(run(given.binary, given.out, test, given.elements, seed)) for seed in range(1, given.seeds + 1)]
+        with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
+            all_of = list(pool.map(of_packing, [(given, test, seed) for seed in range(1, given.seeds + 1)]))
         get = lambda key: [v[key] for v in all_of]  # noqa: E731, B023
         print(f"| {name} | {text(get('peak'), 1)} | {text(get('early'))}; {text(get('late'))} | {text(get('band'))} | "
               f"{text(get('links'))} | {text(get('ratio'), 2)} | {text(get('chance'), 2)} | {text(get('angle'))} |", flush=True)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Pull-out of a bar and beams of reinforced concrete against formulas, for docs/validation-concrete.md.
 
-    scripts/reinforced_tests.py [--seeds 3] [--binary build/release/breccia] [NAME...]     NAME: pull_out bending shear stirrups
+    scripts/reinforced_tests.py [--seeds 3] [--elements 3900] [--binary build/release/breccia] [--device cpu] [--jobs 1] [NAME...]
+    NAME: pull_out bending shear stirrups; elements: of the concrete of a beam
 
 Concrete: c30 of cases/rc_slab with friction bounded under pressure (f_c 33.5, f_t 3.3 MPa in prisms of `breccia test`); bars
 of 500 MPa; bond by the Model Code 1990, tau_max 13.7 MPa = 2.5 sqrt(30). Cases and results are in out/reinforced/; called
@@ -13,6 +14,7 @@ shear     the same with 2 bars of 16 mm: too strong in bending for its shear str
 stirrups  the same with 10 stirrups of 6 mm
 """
 import argparse
+import concurrent.futures
 import csv
 import math
 import pathlib
@@ -96,7 +98,7 @@ def probe(name, on, quantity, reduce):
     return f'\n[[probe]]\nname = "{name}"\non = "{on}"\nquantity = "{quantity}"\nreduce = "{reduce}"\n'
 
 
-def pull_out(seed):
+def pull_out(seed, _):
     return (head("Pull-out of a bar", seed, 8e-3, 0.1) + box((0.16, 0.16, 0.16), 1080)
             + bars("bar", 0.016, 0.016, [([[-0.04, 0.0, 0.0], [0.04, 0.0, 0.0]], 1, [0.0, 0.0, 0.0], False)])
             + support("grip", "bar", (-0.044, -1, -1), (-0.036, 1, 1), '["x"]', (-0.5, 0, 0), 5e-4)
@@ -106,9 +108,9 @@ def pull_out(seed):
             + probe("bar_speed", "bar", "velocity_x", "mean"))
 
 
-def beam(seed, diameter, stirrups=False):
+def beam(seed, elements, diameter, stirrups=False):
     line = [[-0.48, -0.03, HEIGHT / 2 - DEPTH], [0.48, -0.03, HEIGHT / 2 - DEPTH]]
-    text = (head("Reinforced beam", seed, 40e-3, 0.1) + box((1.0, WIDTH, HEIGHT), 3900)
+    text = (head("Reinforced beam", seed, 40e-3, 0.1) + box((1.0, WIDTH, HEIGHT), elements)
             + bars("bars", diameter, 0.02, [(line, 2, [0.0, 0.06, 0.0], False)]))
     if stirrups:  # around the bars, which they touch
         y, low, high = 0.041, HEIGHT / 2 - DEPTH - 0.011, 0.055
@@ -123,8 +125,8 @@ def beam(seed, diameter, stirrups=False):
     return text + "".join(probe(n, n, "force_z", "sum") for n in ("load", "left", "right")) + probe("way", "load", "displacement_z", "mean")
 
 
-TESTS = {"pull_out": pull_out, "bending": lambda s: beam(s, 0.006), "shear": lambda s: beam(s, 0.016),
-         "stirrups": lambda s: beam(s, 0.016, True)}
+TESTS = {"pull_out": pull_out, "bending": lambda s, n: beam(s, n, 0.006), "shear": lambda s, n: beam(s, n, 0.016),
+         "stirrups": lambda s, n: beam(s, n, 0.016, True)}
 
 
 def area(diameter):
@@ -201,27 +203,34 @@ def asked(name):
     return result + f"; shear: Eurocode 2 {shear_eurocode(d) * 1e-3:.1f} kN, Model Code 2010 {shear_model_code(d) * 1e-3:.1f} kN"
 
 
+def run(name, seed, given):
+    end = "" if name == "pull_out" or given.elements == 3900 else f"-{given.elements}"
+    case, folder = OUT / f"{name}-{seed}{end}.toml", OUT / f"{name}-{seed}{end}"
+    made = TESTS[name](seed, given.elements)
+    if not (folder / "summary.json").exists() or not case.exists() or case.read_text() != made:
+        case.write_text(made)
+        done = subprocess.run([given.binary, "run", case, "-o", folder, "--threads", "1", "--force", "--no-progress", "--device",
+                               given.device], stdout=subprocess.DEVNULL)
+        if done.returncode not in (0, 9):
+            raise SystemExit(f"{case} ended with {done.returncode}")
+    return folder
+
+
 def main():
     p = argparse.ArgumentParser()
     p.add_argument("names", nargs="*", default=list(TESTS))
     p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
     p.add_argument("--seeds", type=int, default=3)
+    p.add_argument("--elements", type=int, default=3900)
+    p.add_argument("--device", default="cpu")
+    p.add_argument("--jobs", type=int, default=1)
     given = p.parse_args()
     OUT.mkdir(parents=True, exist_ok=True)
     print(f"| test | here, n = {given.seeds} | formula |\n|---|---|---|")
-    for name in given.names:
-        folders = []
-        for seed in range(1, given.seeds + 1):
-            case, folder = OUT / f"{name}-{seed}.toml", OUT / f"{name}-{seed}"
-            made = TESTS[name](seed)
-            if not (folder / "summary.json").exists() or not case.exists() or case.read_text() != made:
-                case.write_text(made)
-                done = subprocess.run([given.binary, "run", case, "-o", folder, "--threads", "1", "--force", "--no-progress"],
-                                      stdout=subprocess.DEVNULL)
-                if done.returncode not in (0, 9):
-                    raise SystemExit(f"{case} ended with {done.returncode}")
-            folders.append(folder)
-        print(f"| {name} | {shown(name, folders)} | {asked(name)} |", flush=True)
+    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+        started = {n: [pool.submit(run, n, s, given) for s in range(1, given.seeds + 1)] for n in given.names}
+        for name, folders in started.items():
+            print(f"| {name} | {shown(name, [f.result() for f in folders])} | {asked(name)} |", flush=True)
 
 
 if __name__ == "__main__":
