@@ -28,21 +28,21 @@ printf 'time [ms];force [kN]\n0;0\n2;4,1\n4;10,5\n6;14,6\n6,3;13,0\n7;7,1\n' > "
 "$program" report "$out/rc_slab" "$out/slow" -o "$out/two.html"
 (cd web/report && node test/open.mjs "$(realpath "$out")" "$(realpath "$out")"/{space,plane,two}.html)
 
-# A run that goes on in five parts while the page is open.
+# A run that goes on while the page is open.
 live=$out/live
 rm -rf "$live"
+: > "$out/live.txt"
 "$program" run cases/rc_slab/small.toml -o "$live" --threads 1 -q --set output.frames=30 --set output.pictures=false --until 1e-4
 "$program" watch "$live" --serve > "$out/live.txt" &
 server=$!
 trap 'kill -INT $server 2> /dev/null || true' EXIT
-for _ in $(seq 100); do grep -q token= "$out/live.txt" && break; sleep 0.1; done
-(for end in 3e-4 6e-4 9e-4 1.2e-3 1.5e-3; do
-  sleep 8
-  "$program" resume "$live" --threads 1 -q --until $end
-done) > /dev/null 2>&1 &
-parts=$!
-(cd web/report && node test/live.mjs "$(grep -o 'http://.*token=[0-9a-f]*' "$out/live.txt")" "$(realpath "$out")/live.png")
-wait $parts
+until grep -q token= "$out/live.txt"; do sleep 0.1; done
+(cd web/report && exec node test/live.mjs "$(grep -o 'http://.*token=[0-9a-f]*' "$out/live.txt")" "$(realpath "$out")/live.png" > "$(realpath "$out")/live.log") &
+page=$!
+until grep -q open "$out/live.log" 2> /dev/null || ! kill -0 $page 2> /dev/null; do sleep 0.5; done
+"$program" resume "$live" --threads 1 -q --until 6e-4
+wait $page
+cat "$out/live.log"
 kill -INT $server
 if [ -d build/site/html ]; then (cd web/report && node test/site.mjs ../../build/site/html "$(realpath "$out")"); fi
 echo "reports open without an error, a request or an overflow"
