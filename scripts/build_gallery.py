@@ -26,7 +26,7 @@ def made(program, result, folder, name):
     """Lines about the files that are drawn of a result."""
     lines = []
     picture = folder / f"{name}.png"
-    subprocess.run([program, "render", result, "-o", picture, "--force"] if False else [program, "render", result, "-o", picture], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([program, "render", result, "-o", picture], check=True, stdout=subprocess.DEVNULL)
     lines.append(f"![{name}]({name}.png)")
     report = folder / f"{name}.html"
     subprocess.run([program, "report", result, "-o", report], check=True, stdout=subprocess.DEVNULL)
@@ -69,7 +69,8 @@ def main():
             lines, more = made(program, result, folder, name)
             gallery += [*lines, ""]
             links += more
-            gallery += [f"{summary['steps']:,} steps, state hash `{summary['state_hash']}`.", ""]
+            gallery += [f"{summary['steps']:,} steps, state hash `{summary['state_hash']}`.", "", "```sh",
+                        f"breccia run cases/{name}/small.toml && breccia report out/{name}_small", "```", ""]
             for check in summary.get("checks", []):
                 checked += 1
                 passed = check.get("passed", check.get("pass"))

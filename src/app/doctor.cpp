@@ -17,6 +17,7 @@
 #include "exec/device.hpp"
 #include "exec/error.hpp"
 #include "io/file.hpp"
+#include "io/vtu/vtkhdf.hpp"
 #include "run/machine/machine.hpp"
 #include "run/machine/memory_plan.hpp"
 
@@ -92,12 +93,12 @@ void examine() {
   line(memory > 1e9, "memory",
        fmt::format("{} free: about {:.0f} million elements or triangles", memory_text(memory),
                    std::ceil(1e-6 * memory / 2400.0)));
-  line(
-      build.mpi, "MPI",
-      build.mpi ? "mpirun -n N breccia run CASE" : "not in this build: apt install libopenmpi-dev");
+  line(build.mpi, "MPI",
+       build.mpi ? "mpirun -n N breccia run CASE"
+                 : "not in this program: package breccia-mpi, or a build with libopenmpi-dev");
   if (build.mpi && on_path("mpirun").empty()) line(false, "mpirun", "apt install openmpi-bin");
   int devices = 0;
-  std::string why = "not in this build: preset cuda";
+  std::string why = "not in this program: package breccia-cuda, or a build by preset cuda";
   if (build.cuda) {
     try {
       devices = device_count();
@@ -107,6 +108,9 @@ void examine() {
     }
   }
   line(devices > 0, "GPU", why);
+  line(has_hdf5(), "HDF5",
+       has_hdf5() ? "output.format = \"vtkhdf\""
+                  : "not in this program: a build with libhdf5-dev writes VTKHDF");
   tell_program("gmsh", "free meshes of 2D bodies", "gmsh");
   tell_program("ffmpeg", "films from pictures", "ffmpeg");
   tell_program("paraview", "looks at fields (result.pvd)", "paraview");

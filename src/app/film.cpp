@@ -67,6 +67,21 @@ void add_comment(const std::string& path, const std::string& note) {
 
 }  // namespace
 
+FILE* decoded(const std::string& path, int width, int height) {
+  const std::string program = ffmpeg();
+  if (program.empty())
+    throw IoError(path + ": films are read by the program ffmpeg, which is not here");
+  std::string quoted;
+  for (const char c : path) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  const std::string command = fmt::format(
+      "'{}' -nostdin -loglevel fatal -i 'file:{}' -vsync passthrough -vf "
+      "format=rgb24,crop={}:{}:0:0 -f rawvideo -",
+      program, quoted, width, height);
+  FILE* const pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) throw IoError(path + ": cannot be read: no pipe from ffmpeg");
+  return pipe;
+}
+
 bool is_film(const std::string& path) {
   return path.ends_with(".mp4") || path.ends_with(".webm") || path.ends_with(".gif");
 }
@@ -139,14 +154,43 @@ void Film::add(const Image& image) {
   }
 }
 
-void Film::close() {
+bool Film::ran(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  return child > 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status) &&
+         WEXITSTATUS(status) == 0;
+}
+
+void Film::put_comment() {
+  if (path_.ends_with(".gif")) return add_comment(temporary_, note_);
+  const std::string other = temporary_ + "2";
+  const bool good =
+      ran({ffmpeg(), "-y", "-nostdin", "-loglevel", "error", "-i", "file:" + temporary_, "-c",
+           "copy", "-metadata", "comment=" + note_, "-movflags", "+faststart", "-f",
+           path_.ends_with(".webm") ? "webm" : "mp4", "file:" + other});
+  std::error_code error;
+  if (good) fs::rename(other, temporary_, error);
+  if (good && !error) return;
+  fs::remove(other, error);
+  fail();
+}
+
+void Film::close(const std::string& more) {
   ::close(pipe_);
   pipe_ = -1;
   int status = 0;
   ::waitpid(child_, &status, 0);
   child_ = -1;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail();
-  if (path_.ends_with(".gif")) add_comment(temporary_, note_);
+  if (!more.empty()) note_ += "\n" + more;
+  if (!more.empty() || path_.ends_with(".gif")) put_comment();
   std::error_code error;
   fs::rename(temporary_, path_, error);
   if (error) throw IoError(path_ + ": cannot be written: " + error.message());

@@ -165,14 +165,14 @@ std::string spheres_text(const Geometry& g) {
   return text;
 }
 
-std::string vtu_content(const Geometry& g) {
+std::string vtk_content(const Geometry& g, FrameFormat format) {
   Frame frame;
   frame.groups = g.groups;
   if (!g.is_mesh()) {
     frame.position = g.center;
     frame.radius = g.radius;
     if (!g.group.empty()) frame.point_fields.push_back(whole_numbers("group", g.group));
-    return contents_of(frame).points;
+    return contents_of(frame, 1, format).points;
   }
   for (const Vec2& p : g.mesh.point) frame.position.push_back({p.x, p.y, 0.0});
   std::vector<std::int32_t> group(g.mesh.triangle.size(), -1);
@@ -185,7 +185,7 @@ std::string vtu_content(const Geometry& g) {
   for (const prepare::Triangle& t : g.mesh.triangle)
     frame.triangles.insert(frame.triangles.end(), t.begin(), t.end());
   if (!frame.groups.empty()) frame.triangle_fields.push_back(whole_numbers("group", group));
-  return contents_of(frame).points;
+  return contents_of(frame, 1, format).points;
 }
 
 }  // namespace
@@ -210,14 +210,15 @@ Geometry read_geometry(const std::string& path, int frame) {
 
 std::string written_geometry(const Geometry& geometry, const std::string& name) {
   const std::string kind = fs::path(name).extension().string();
-  if (kind == ".vtu") return vtu_content(geometry);
+  if (kind == ".vtu") return vtk_content(geometry, FrameFormat::vtu);
+  if (kind == ".hdf") return vtk_content(geometry, frame_format("vtkhdf"));
   if (geometry.is_mesh()) {
     if (kind == ".msh") return gmsh_text(geometry.mesh);
     if (kind == ".inp") return abaqus_text(geometry.mesh);
-    throw InputError(name + ": a mesh is written as .msh (Gmsh 2.2), .inp (Abaqus) or .vtu");
+    throw InputError(name + ": a mesh is written as .msh (Gmsh 2.2), .inp (Abaqus), .vtu or .hdf");
   }
   if (kind == ".csv") return spheres_text(geometry);
-  throw InputError(name + ": spheres are written as .csv (x,y,z,radius) or .vtu");
+  throw InputError(name + ": spheres are written as .csv (x,y,z,radius), .vtu or .hdf");
 }
 
 }  // namespace breccia::app

@@ -27,8 +27,8 @@ struct Geometry {
 /// @throws IoError or InputError, as the reader of that format does
 Geometry read_geometry(const std::string& path, int frame = -1);
 
-/// Bytes of a file, by the end of its name: .msh (Gmsh 2.2), .inp (Abaqus), .vtu; of spheres .csv
-/// (x,y,z,radius and the body's name as a comment) or .vtu.
+/// Bytes of a file, by the end of its name: .msh (Gmsh 2.2), .inp (Abaqus), .vtu, .hdf (VTKHDF); of
+/// spheres .csv (x,y,z,radius and the body's name as a comment), .vtu or .hdf.
 /// @throws InputError if the name ends otherwise, or the format holds no such geometry
 std::string written_geometry(const Geometry& geometry, const std::string& name);
 

@@ -47,7 +47,7 @@ void describe_folder(const std::string& path) {
   if (!fs::exists(summary))
     throw InputError(path + ": this folder holds no run (there is no summary.json)");
   print_harmless("{}", read_whole_file(summary));
-  if (fs::exists(path + "/elements.pvd")) {
+  if (holds_frames(path)) {
     const std::vector<double> times = frame_times(path);
     if (!times.empty())
       print_harmless("frames: {}, from {} to {}\n", times.size(), time_text(times.front()),

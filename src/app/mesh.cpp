@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 
@@ -14,6 +15,8 @@
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
+#include "io/vtu/paraview.hpp"
+#include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 
@@ -153,6 +156,18 @@ void describe(const std::string& path, int frame) {
     describe_spheres(g);
 }
 
+/// Every frame of a result folder, as files of another format in a folder of their own.
+std::size_t convert_frames(const std::string& from, const std::string& to, FrameFormat format) {
+  if (!std::filesystem::is_directory(from) || !holds_frames(from))
+    throw InputError(from + ": holds no frames; --frames converts those of a result folder");
+  if (holds_frames(to)) throw InputError(to + ": holds frames already; nothing was written");
+  const std::size_t count = frame_times(from).size();
+  ParaviewSeries series(to, format);
+  for (std::size_t i = 0; i < count; ++i) series.write(read_frame(from, static_cast<int>(i)));
+  series.finish();
+  return count;
+}
+
 }  // namespace
 
 void add_mesh(CLI::App& program) {
@@ -172,12 +187,12 @@ void add_mesh(CLI::App& program) {
 
 void add_convert(CLI::App& program) {
   struct Words {
-    std::string from, to;
+    std::string from, to, frames;
     int frame = -1;
   };
   const auto words = std::make_shared<Words>();
-  CLI::App* const convert =
-      program.add_subcommand("convert", "write a mesh or a packing in another format");
+  CLI::App* const convert = program.add_subcommand(
+      "convert", "write a mesh, a packing or the frames of a run in another format");
   convert
       ->add_option("IN", words->from,
                    "a mesh (.msh, .inp), spheres (.csv, .txt, a dump of LAMMPS), a prepared model\n"
@@ -185,11 +200,23 @@ void add_convert(CLI::App& program) {
       ->required();
   convert
       ->add_option("OUT", words->to,
-                   "of a mesh .msh (Gmsh 2.2), .inp (Abaqus) or .vtu; of spheres .csv or .vtu")
+                   "of a mesh .msh (Gmsh 2.2), .inp (Abaqus), .vtu or .hdf (VTKHDF); of spheres\n"
+                   ".csv, .vtu or .hdf; with --frames a folder")
       ->required();
-  convert->add_option("--frame", words->frame, "of a result folder; default: the last")
-      ->type_name("N");
+  CLI::Option* const frame =
+      convert->add_option("--frame", words->frame, "of a result folder; default: the last")
+          ->type_name("N");
+  convert
+      ->add_option("--frames", words->frames,
+                   "all frames of a result folder, as ParaView files: vtu or vtkhdf")
+      ->check(CLI::IsMember({"vtu", "vtkhdf"}))
+      ->excludes(frame);
   convert->callback([words] {
+    if (!words->frames.empty()) {
+      const std::size_t count = convert_frames(words->from, words->to, frame_format(words->frames));
+      fmt::print("{}  {} frames\n", harmless(words->to), count);
+      return;
+    }
     const Geometry g = read_geometry(words->from, words->frame);
     replace_file(words->to, written_geometry(g, words->to));
     const std::size_t count = g.is_mesh() ? g.mesh.triangle.size() : g.center.size();

@@ -15,6 +15,7 @@
 #include "app/camera_path.hpp"
 #include "app/commands.hpp"
 #include "app/film.hpp"
+#include "app/film_recipe.hpp"
 #include "app/run_notes.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
@@ -60,13 +61,15 @@ struct Shots {
   }
   /// @param path   null: the camera stands as the options say
   /// @param share  of the film that is over
-  Image picture(int number, const CameraPath* path, double share) const {
-    if (path == nullptr) return render(frame(number), options);
+  RenderOptions seen(int number, const CameraPath* path, double share) const {
     RenderOptions seen = options;
-    const Frame shown = frame(number);
-    if (!seen.extent) seen.extent = bulk_extent(shown);
+    if (path == nullptr) return seen;
+    if (!seen.extent) seen.extent = bulk_extent(frame(number));
     path->apply(seen, times.at(static_cast<std::size_t>(number)), share);
-    return render(shown, seen);
+    return seen;
+  }
+  Image picture(int number, const CameraPath* path, double share) const {
+    return render(frame(number), seen(number, path, share));
   }
   /// The frame nearest to a time.
   int at_time(double time) const {
@@ -282,7 +285,7 @@ struct RenderCommand {
     const double time = shots.front().times.at(static_cast<std::size_t>(number));
     for (const Shots& s : shots) {
       const int there = &s == &shots.front() ? number : s.at_time(time);
-      images.push_back(s.picture(there, path_of_camera ? &*path_of_camera : nullptr, share));
+      images.push_back(s.picture(there, camera_path(), share));
       warn_if_blank(images.back(), s, there);
     }
     if (images.size() == 1) return images.front();
@@ -324,13 +327,14 @@ struct RenderCommand {
   }
 
   /// With the extent that the picture shows.
-  static RenderOptions options_of_picture(const Shots& shots, int number) {
-    RenderOptions with = shots.options;
+  RenderOptions options_of_picture(const Shots& shots, int number, double share = 0.0) const {
+    RenderOptions with = shots.seen(number, camera_path(), share);
     if (with.extent) return with;
-    const Frame frame = shots.frame(number);
-    with.extent = bulk_extent(with.scale == 1.0 ? frame : displaced(frame, with.scale));
+    const Frame shown = shots.frame(number);
+    with.extent = bulk_extent(with.scale == 1.0 ? shown : displaced(shown, with.scale));
     return with;
   }
+  const CameraPath* camera_path() const { return path_of_camera ? &*path_of_camera : nullptr; }
 
   static void write_drawing(const std::string& path, const Shots& shots, int number) {
     const Frame shown = shots.frame(number);
@@ -343,9 +347,20 @@ struct RenderCommand {
   void write_film(const std::string& path, const std::vector<Shots>& shots,
                   const std::vector<int>& numbers) const {
     Film film(path, rate, run_line(folder));
-    for (std::size_t i = 0; i < numbers.size(); ++i)  // a turn's last picture is not its first
-      film.add(panels(shots, numbers[i], double(i) / double(numbers.size())));
-    film.close();
+    FilmRecipe recipe{run_notes(folder), {}, {}};
+    bool known = !recipe.run.empty() && shots.size() == 1;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const double share = double(i) / double(numbers.size());  // a turn's last is not its first
+      const Image image = panels(shots, numbers[i], share);
+      film.add(image);
+      const double time = shots.front().times.at(static_cast<std::size_t>(numbers[i]));
+      const auto moment = moment_of_frame(folder, numbers[i], time);
+      known = known && moment;
+      if (!known) continue;
+      const RenderOptions with = options_of_picture(shots.front(), numbers[i], share);
+      recipe.add(notes_of_picture(*moment, with), image);
+    }
+    film.close(known ? comment_of(recipe) : "");
     fmt::print("{}  {} frames, {:.1f} s\n", harmless(path), numbers.size(),
                static_cast<double>(numbers.size()) / rate);
   }

@@ -28,13 +28,18 @@ namespace {
 void refuse_fixed_keys(const std::vector<std::string>& overrides) {
   constexpr std::array changeable{"time.end=", "output.", "checkpoint.",
                                   "domain.",   "energy.", "title="};
-  for (const std::string& text : overrides)
+  for (const std::string& text : overrides) {
+    if (text.starts_with("output.format="))
+      throw InputError("--set " + text +
+                       ": the frames of a run have one format (breccia convert --frames writes "
+                       "others); nothing was run");
     if (std::none_of(changeable.begin(), changeable.end(),
                      [&](const char* start) { return text.starts_with(start); }))
       throw InputError(
           fmt::format("--set {}: a run that goes on takes time.end, output.*, checkpoint.*, "
                       "domain.*, energy.* and title only; nothing was run",
                       text));
+  }
 }
 
 /// A run of a prepared model goes on with that model: what built it may not be here.

@@ -43,7 +43,7 @@ bool equal(const std::string& given, const std::string& secret) {
 }
 
 std::size_t frames_of(const std::string& folder) {
-  return fs::exists(folder + "/elements.pvd") ? frame_times(folder).size() : 0;
+  return holds_frames(folder) ? frame_times(folder).size() : 0;
 }
 
 }  // namespace

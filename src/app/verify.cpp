@@ -4,12 +4,16 @@
 #include <stdlib.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/film.hpp"
+#include "app/film_recipe.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
@@ -27,6 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int exit_differs = 9;
+constexpr double most_rms = 12.0;  // that compression changes pixels by, of 255
 
 /// A folder of its own that goes with the object.
 class ScratchFolder {
@@ -55,18 +60,41 @@ std::int64_t unlike_pixels(const Image& a, const Image& b) {
   return count;
 }
 
+/// Root of the mean square, over all bytes of two pictures of one size.
+double rms_difference(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = double(a[i]) - double(b[i]);
+    sum += difference * difference;
+  }
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
 struct VerifyCommand {
   std::string picture, folder, device = "cpu";
   int threads = 0;
   bool allow_scripts = false;
 
   int execute() const {
+    if (is_film(picture)) return verify_film();
     const PictureRecipe recipe = recipe_of(notes_of(read_whole_file(picture), picture), picture);
-    if (recipe.version != this_build().version)
-      throw InputError(fmt::format(
-          "{}: the picture is by breccia {}, this is {}; another version may give other bits",
-          picture, recipe.version, this_build().version));
+    refuse_other_version(recipe);
     const Image shown = read_png_with_alpha(picture);
+    return made_again(recipe, [&](Method& method, const std::string& out) {
+      return compare(recipe, method, shown, out);
+    });
+  }
+
+  void refuse_other_version(const PictureRecipe& recipe) const {
+    if (recipe.version == this_build().version) return;
+    throw InputError(fmt::format(
+        "{}: the picture is by breccia {}, this is {}; another version may give other bits",
+        picture, recipe.version, this_build().version));
+  }
+
+  /// Runs the case to the moment of the recipe, then `judge(method, folder of results)`.
+  template <class Judge>
+  int made_again(const PictureRecipe& recipe, const Judge& judge) const {
     StopSignals signals;
     const ScratchFolder scratch;
     const Case read = case_of(recipe, scratch.file("input"));
@@ -81,7 +109,67 @@ struct VerifyCommand {
     std::fflush(stdout);
     if (const int stopped = run_to(recipe, read, exec, *method, scratch.file("out")); stopped != 0)
       return stopped;
-    return compare(recipe, *method, shown, scratch.file("out"));
+    return judge(*method, scratch.file("out"));
+  }
+
+  /// Every picture of a film drawn again, against its digest and against what the film shows.
+  int verify_film() const {
+    const FilmRecipe film = film_recipe_in(read_whole_file(picture), picture);
+    std::vector<PictureRecipe> recipes;
+    for (const std::vector<PngNote>& notes : film.pictures) {
+      std::vector<PngNote> all = film.run;
+      all.insert(all.end(), notes.begin(), notes.end());
+      recipes.push_back(recipe_of(all, picture));
+    }
+    const PictureRecipe& last = *std::max_element(
+        recipes.begin(), recipes.end(), [](const PictureRecipe& a, const PictureRecipe& b) {
+          return a.moment.step < b.moment.step;
+        });
+    refuse_other_version(last);
+    return made_again(last, [&](Method& method, const std::string& out) {
+      return compare_film(film, recipes, last, method, out);
+    });
+  }
+
+  int compare_film(const FilmRecipe& film, const std::vector<PictureRecipe>& recipes,
+                   const PictureRecipe& last, Method& method, const std::string& out) const {
+    std::string differs = unlike_state(last.moment, method);
+    std::optional<FilmReader> shown;
+    double worst = 0.0;
+    std::size_t done = 0;
+    for (; differs.empty() && done < recipes.size(); ++done) {
+      const Image again = drawn_again(recipes[done], method, out);
+      if (digest_of_pixels(again) != film.pixels[done]) {
+        differs = "its pixels are not those that the film was made of";
+        break;
+      }
+      if (!shown) shown.emplace(picture, again.width, again.height);
+      const std::vector<std::uint8_t> seen = shown->next();
+      if (seen.empty()) {
+        differs = "the film ends before it";
+        break;
+      }
+      const double rms = rms_difference(again.rgb, seen);
+      worst = std::max(worst, rms);
+      if (rms > most_rms) {
+        differs = fmt::format("the film shows another one (by {:.1f} of 255)", rms);
+        break;
+      }
+    }
+    if (differs.empty() && shown && !shown->next().empty())
+      differs = "the film has more pictures than that";
+    if (!differs.empty()) {
+      fmt::print("{}\n", harmless(fmt::format("another film: picture {} of {}: {}", done + 1,
+                                              recipes.size(), differs)));
+      return exit_differs;
+    }
+    fmt::print("{}\n", harmless(fmt::format(
+                           "the same film: {}, {} pictures to step {}, hash {:016x}{}; their "
+                           "pixels are those that it was made of, compression changed them by "
+                           "{:.1f} of 255 at most",
+                           last.case_name, recipes.size(), last.moment.step, method.state_hash(),
+                           last.moment.hash ? "" : " (the film names none)", worst)));
+    return 0;
   }
 
   /// The case of the picture, without output but the frames that it may have been drawn from.
@@ -117,19 +205,22 @@ struct VerifyCommand {
     }
   }
 
+  static std::string unlike_state(const PictureMoment& moment, Method& method) {
+    if (method.steps() != moment.step)
+      return fmt::format("the run ended at step {}, the picture is of {}", method.steps(),
+                         moment.step);
+    if (const std::uint64_t hash = method.state_hash(); moment.hash && *moment.hash != hash)
+      return fmt::format("the state at step {} has hash {:016x}, the picture names {:016x}",
+                         moment.step, hash, *moment.hash);
+    return {};
+  }
+
   int compare(const PictureRecipe& recipe, Method& method, const Image& shown,
               const std::string& out) const {
     const PictureMoment& moment = recipe.moment;
     const std::uint64_t hash = method.state_hash();
-    std::string differs;
-    if (method.steps() != moment.step)
-      differs = fmt::format("the run ended at step {}, the picture is of {}", method.steps(),
-                            moment.step);
-    else if (moment.hash && *moment.hash != hash)
-      differs = fmt::format("the state at step {} has hash {:016x}, the picture names {:016x}",
-                            moment.step, hash, *moment.hash);
-    else
-      differs = unlike(drawn_again(recipe, method, out), shown);
+    std::string differs = unlike_state(moment, method);
+    if (differs.empty()) differs = unlike(drawn_again(recipe, method, out), shown);
     if (!differs.empty()) {
       fmt::print("{}\n", harmless(fmt::format("another picture: {}", differs)));
       return exit_differs;
@@ -168,8 +259,11 @@ struct VerifyCommand {
 void add_verify(CLI::App& program, int& exit_code) {
   const auto verify = std::make_shared<VerifyCommand>();
   CLI::App* const command = program.add_subcommand(
-      "verify", "run again what a picture says it is of, draw it and compare");
-  command->add_option("PICTURE", verify->picture, "a PNG that `run` or `render` wrote")->required();
+      "verify", "run again what a picture or film says it is of, draw it and compare");
+  command
+      ->add_option("PICTURE", verify->picture,
+                   "a PNG that `run` or `render` wrote, or a film of `render`")
+      ->required();
   command->add_option("--folder", verify->folder, "where the files are that the case reads")
       ->type_name("DIR");
   command->add_option("--device", verify->device, "where to compute: cpu, cuda or cuda:N")

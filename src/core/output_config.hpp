@@ -19,6 +19,7 @@ struct OutputConfig {
   int frames = 20;                ///< frames over the whole run, besides the one at the start  [-]
   double history = 0.0;           ///< time between history rows; 0: 1000 rows over the run  [s]
   bool fields = true;             ///< write ParaView files
+  std::string format = "vtu";     ///< of ParaView files
   bool pictures = true;           ///< write a PNG a frame
   bool report = false;            ///< write report.html at the end
   bool step_times = false;        ///< write steps.csv
@@ -52,6 +53,10 @@ struct OutputConfig {
     key("history", history, "s", not_negative,
         "time between two rows of history.csv; 0 writes 1000 rows over the run");
     key("fields", fields, "write the frames as ParaView files");
+    key("format", format, OneOf{"vtu", "vtkhdf"},
+        "of ParaView files: vtu (VTK XML), or vtkhdf (VTKHDF 1.0 in HDF5 files, for what else "
+        "reads "
+        "HDF5)");
     key("pictures", pictures, "write one PNG picture a frame");
     key("report", report, "write report.html when the run is done, as `breccia report` does");
     key("step_times", step_times,

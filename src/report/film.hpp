@@ -17,7 +17,7 @@ struct Film {
   std::size_t bytes() const;
 };
 
-/// Packs the frames. Positions are whole steps of a box, of 2 or 3 bytes; fields have 255 or 1023
+/// Packs the frames. Positions are whole steps of a box, of 2 or 3 bytes; fields have 255 or 511
 /// steps. Where that would take more than `limit` bytes, details go first, then frames, then
 /// elements that cannot be seen, then any; `notes` says so.
 /// @param first_blob  number that the first blob will have in the page

@@ -89,7 +89,7 @@ Record read_record(const std::string& folder) {
   if (has("cracks.csv")) record.cracks = read_table(file("cracks.csv"));
   if (has("fragments.csv")) record.fragments = read_table(file("fragments.csv"));
   if (has("log.jsonl")) record.warnings = warnings_of(file("log.jsonl"));
-  if (has("elements.pvd")) record.times = frame_times(folder);
+  if (holds_frames(folder)) record.times = frame_times(folder);
   return record;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "io/vtu/vtu_reader.hpp"
 
@@ -54,6 +55,22 @@ void sort_by_id(Shot& shot) {
   for (std::int32_t& end : shot.ends) end = place[at(end)];
 }
 
+/// Which element of the first shot each of a later one is: bodies are taken out as a whole, and
+/// what is left keeps its order. Empty: it cannot be told.
+std::vector<std::size_t> places_in_first(const Shot& shot, const Shot& first) {
+  const FrameField* const now = field_named(shot.element_fields, "group");
+  const FrameField* const then = field_named(first.element_fields, "group");
+  if (now == nullptr || then == nullptr) return {};
+  const std::set<float> left(now->values.begin(), now->values.end());
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < first.elements(); ++i)
+    if (left.contains(then->values[i])) places.push_back(i);
+  if (places.size() != shot.elements()) return {};
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (then->values[places[k]] != now->values[k]) return {};
+  return places;
+}
+
 Shot of_spheres(Frame&& frame) {
   Shot shot;
   shot.corner = std::move(frame.position);
@@ -102,6 +119,44 @@ Shot read_shot(const std::string& folder, int number) {
   shot.line_fields = std::move(line_fields);
   sort_by_id(shot);
   return shot;
+}
+
+bool match(Shot& shot, const Shot& first) {
+  if (shot.elements() == first.elements() && shot.plane == first.plane) return true;
+  if (shot.plane != first.plane || shot.elements() == 0) return false;
+  const std::vector<std::size_t> places = places_in_first(shot, first);
+  if (places.empty()) return false;
+  const std::size_t host =
+      shot.plane
+          ? 0
+          : static_cast<std::size_t>(std::max_element(shot.radius.begin(), shot.radius.end()) -
+                                     shot.radius.begin());
+  std::vector<std::size_t> from(first.elements(), host);
+  std::vector<bool> gone(first.elements(), true);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    from[places[k]] = k;
+    gone[places[k]] = false;
+  }
+  const Shot old = shot;
+  const std::size_t each = shot.plane ? 3 : 1;
+  shot.corner.clear();
+  shot.radius.clear();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    for (std::size_t c = 0; c < each; ++c)
+      shot.corner.push_back(old.corner[each * from[i] + (gone[i] ? 0 : c)]);
+    if (!shot.plane) shot.radius.push_back(gone[i] ? 0.0 : old.radius[from[i]]);
+  }
+  for (std::size_t f = 0; f < shot.element_fields.size(); ++f) {
+    FrameField& field = shot.element_fields[f];
+    const auto width = static_cast<std::size_t>(field.components);
+    field.values.clear();
+    field.integers.reset();
+    for (const std::size_t i : from)
+      for (std::size_t c = 0; c < width; ++c)
+        field.values.push_back(old.element_fields[f].values[width * i + c]);
+  }
+  for (std::int32_t& end : shot.ends) end = static_cast<std::int32_t>(places[at(end)]);
+  return true;
 }
 
 std::vector<std::uint8_t> broken_lines(const Shot& shot) {

@@ -9,7 +9,8 @@
 
 namespace breccia::report {
 
-/// One moment. All shots of a run list the same elements in the same order.
+/// One moment. All shots of a run list the same elements in the same order; those that a stage took
+/// out show nothing.
 struct Shot {
   std::int64_t step = 0;
   double time = 0.0;           ///<  [s]
@@ -35,6 +36,11 @@ const FrameField* field_named(const std::vector<FrameField>& fields, const std::
 /// velocities become those of triangles.
 /// @throws InputError or IoError as read_frame
 Shot read_shot(const std::string& folder, int number);
+
+/// The shot with the elements of the first one in their order. Those that are gone lie inside the
+/// largest that is left or, triangles, have no area; they have its values.
+/// @returns false if it cannot be told which are gone; the shot is then as it was
+bool match(Shot& shot, const Shot& first);
 
 /// Whether a line of this shot is broken: by its field "state", or by "damage".
 std::vector<std::uint8_t> broken_lines(const Shot& shot);

@@ -92,7 +92,7 @@ Survey survey_of(const std::string& folder, std::size_t count) {
       if (!shot.corner.empty()) survey.low = survey.high = shot.corner.front();
       survey.first = shot;
     }
-    if (shot.elements() != survey.elements || shot.plane != survey.plane)
+    if (!match(shot, survey.first))
       throw IoError(
           fmt::format("{}: cannot be drawn: frame {} has {} elements, the first frame has {}",
                       folder, k, shot.elements(), survey.elements));

@@ -15,7 +15,7 @@ struct Selection {
   std::vector<std::uint32_t> elements;  ///< ascending
   bool line_forces = true;              ///< scales of lines, as their forces
   bool components = true;               ///< of vectors; else their lengths
-  bool fine = true;                     ///< 1023 steps a field and fine positions
+  bool fine = true;                     ///< 511 steps a field and fine positions
   bool all_fields = true;               ///< else groups and damage
   bool hidden = true;                   ///< elements inside that nobody sees
   std::size_t stride = 1;               ///< each so many elements

@@ -100,6 +100,21 @@ TEST(Frames, of_triangles_that_break_are_the_same_by_parts) {
     compare(impact(joints), 300, 60, fields, true);
 }
 
+TEST(Frames, as_vtkhdf_are_the_same_by_parts) {
+  if (!has_hdf5()) GTEST_SKIP() << "built without HDF5";
+  const auto made = [](int count) {
+    return on_all_ranks(count, 1 + count % 2, slab_piece(), [](Method& method, bool) {
+      FrameWish wish;
+      wish.format = FrameFormat::vtkhdf;
+      while (method.steps() < 120) method.advance({1e300, 120});
+      return std::vector<Made>{made_of(method.frame_output(wish))};
+    });
+  };
+  const std::vector<Made> alone = made(1);
+  EXPECT_GT(alone[0].points.size(), 1000U);
+  for (const int count : {2, 5}) expect_same(made(count), alone, std::to_string(count) + " ranks");
+}
+
 TEST(Frames, of_triangles_that_fly_are_the_same_by_parts) {
   compare(box(), 120, 40, {"group", "velocity_x"}, false);
 }

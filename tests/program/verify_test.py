@@ -3,6 +3,8 @@
 import json
 import os
 import pathlib
+import re
+import shutil
 import struct
 import subprocess
 import tempfile
@@ -117,6 +119,32 @@ class Verify(unittest.TestCase):
     def test_a_sheet_names_its_case_only(self):
         subprocess.run([PROGRAM, "render", "out", "-o", "sheet.png", "--sheet", "2x2"], check=True, cwd=self.path, stdout=subprocess.DEVNULL)
         self.assertIn("a sheet", self.verify("sheet.png", code=2))
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "needs Debian's ffmpeg")
+    def test_films_are_made_again(self):
+        (self.path / "turn.toml").write_text("[turntable]\nturns = 0.25\n")
+        for name, *words in (("film.mp4",), ("film.webm",), ("film.gif",), ("turn.mp4", "--camera", "turn.toml")):
+            words = [PROGRAM, "render", "out", "-o", name, "--color", "velocity", "--size", "301x225", *words]
+            subprocess.run(words, check=True, cwd=self.path, stdout=subprocess.DEVNULL)
+            said = self.verify(name, "--threads", "1", code=0)
+            self.assertIn("the same film: balls, 5 pictures", said)
+            self.assertNotIn("names none", said)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "needs Debian's ffmpeg")
+    def test_films_that_show_or_say_something_else_are_found(self):
+        subprocess.run([PROGRAM, "render", "out", "-o", "true.mp4", "--size", "201x150"], check=True, cwd=self.path, stdout=subprocess.DEVNULL)
+        ffmpeg = ["ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-i", "true.mp4"]
+        subprocess.run([*ffmpeg, "-vf", "negate", "shown.mp4"], check=True, cwd=self.path)
+        self.assertIn("the film shows another one", self.verify("shown.mp4", code=9))
+        subprocess.run([*ffmpeg, "-frames:v", "2", "short.mp4"], check=True, cwd=self.path)
+        self.assertIn("picture 3 of 5: the film ends before it", self.verify("short.mp4", code=9))
+        head, digits = re.search(rb"(breccia[^\0]*?breccia-film:)\d+:([0-9a-f]+)", (self.path / "true.mp4").read_bytes()).groups()
+        recipe = zlib.decompress(bytes.fromhex(digits.decode())).replace(b"[2.0, ", b"[2.5, ")
+        comment = f"comment={head.decode()}{len(recipe)}:{zlib.compress(recipe).hex()}"
+        subprocess.run([*ffmpeg, "-c", "copy", "-metadata", comment, "said.mp4"], check=True, cwd=self.path)
+        self.assertIn("another film", self.verify("said.mp4", code=9))
+        subprocess.run([*ffmpeg, "-c", "copy", "-map_metadata", "-1", "mute.mp4"], check=True, cwd=self.path)
+        self.assertIn("does not say how", self.verify("mute.mp4", code=2))
 
     def of_other_case(self, name, *words):
         """Pictures of a run of 200 steps: of its last state, and of its last stored frame with the hash."""

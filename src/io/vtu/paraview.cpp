@@ -15,29 +15,6 @@ namespace {
 
 constexpr const char* kinds[] = {"elements", "links"};
 
-std::string file_of(const char* kind, std::size_t frame) {
-  return fmt::format("fields/{}_{:04}.vtu", kind, frame);
-}
-
-/// ParaView's collection of files with times; several kinds become parts of one data set.
-std::string collection(const std::vector<double>& times, std::span<const char* const> parts) {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
-  for (std::size_t frame = 0; frame < times.size(); ++frame) {
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-      text += fmt::format(R"(<DataSet timestep="{}" group="" part="{}" name="{}" file="{}"/>)",
-                          times[frame], part, parts[part], file_of(parts[part], frame));
-      text += "\n";
-    }
-  }
-  return text + "</Collection>\n</VTKFile>\n";
-}
-
-}  // namespace
-
-namespace {
-
 /// Opens a folder with spheres as spheres, coloured, at the first look.
 constexpr const char* script = R"(# paraview open_in_paraview.py
 import os
@@ -45,7 +22,7 @@ from paraview.simple import *
 
 here = os.path.dirname(os.path.abspath(__file__))
 view = GetActiveViewOrCreate("RenderView")
-elements = PVDReader(FileName=os.path.join(here, "elements.pvd"))
+elements = OpenDataFile(os.path.join(here, "elements.LIST"))
 GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
 points = elements.PointData
 shown = Show(elements, view)
@@ -60,7 +37,7 @@ if points.GetArray("radius"):
 where = "POINTS" if points.GetArray("damage") else "CELLS"
 ColorBy(shown, (where, "damage"))
 shown.SetScalarBarVisibility(view, True)
-links = PVDReader(FileName=os.path.join(here, "links.pvd"))
+links = OpenDataFile(os.path.join(here, "links.LIST"))
 Hide(links, view)
 RenameSource("elements", elements)
 RenameSource("links", links)
@@ -71,15 +48,45 @@ Render(view)
 
 }  // namespace
 
-ParaviewSeries::ParaviewSeries(const std::string& folder) : folder_(folder) {
+std::string ParaviewSeries::file_of(const char* kind, std::size_t frame) const {
+  return fmt::format("fields/{}_{:04}.{}", kind, frame,
+                     format_ == FrameFormat::vtu ? "vtu" : "hdf");
+}
+
+/// ParaView's collection of files with times; several kinds become parts of one data set.
+std::string ParaviewSeries::collection(std::span<const char* const> parts) const {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
+  for (std::size_t frame = 0; frame < times_.size(); ++frame) {
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      text += fmt::format(R"(<DataSet timestep="{}" group="" part="{}" name="{}" file="{}"/>)",
+                          times_[frame], part, parts[part], file_of(parts[part], frame));
+      text += "\n";
+    }
+  }
+  return text + "</Collection>\n</VTKFile>\n";
+}
+
+/// ParaView's list of other files with times, as JSON.
+std::string ParaviewSeries::series(const char* kind) const {
+  std::string text = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [";
+  for (std::size_t frame = 0; frame < times_.size(); ++frame)
+    text += fmt::format("{}\n    {{\"name\": \"{}\", \"time\": {}}}", frame == 0 ? "" : ",",
+                        file_of(kind, frame), times_[frame]);
+  return text + "\n  ]\n}\n";
+}
+
+ParaviewSeries::ParaviewSeries(const std::string& folder, FrameFormat format)
+    : folder_(folder), format_(format) {
   std::error_code error;
   std::filesystem::create_directories(folder_ + "/fields", error);
   if (error) throw IoError(folder_ + "/fields: cannot make the folder: " + error.message());
 }
 
-ParaviewSeries ParaviewSeries::resumed(const std::string& folder, double time) {
-  ParaviewSeries series(folder);
-  if (!std::filesystem::exists(folder + "/elements.pvd")) return series;
+ParaviewSeries ParaviewSeries::resumed(const std::string& folder, double time, FrameFormat format) {
+  ParaviewSeries series(folder, format);
+  if (!holds_frames(folder)) return series;
   series.times_ = frame_times(folder);
   series.listed_ = series.times_.size();
   const auto later = std::upper_bound(series.times_.begin(), series.times_.end(), time);
@@ -110,10 +117,18 @@ bool ParaviewSeries::collections_are_due() const {
 void ParaviewSeries::write_collections() {
   const Clock::time_point begin = Clock::now();
   const std::span<const char* const> all(kinds);
-  replace_file(folder_ + "/open_in_paraview.py", script);
-  replace_file(folder_ + "/elements.pvd", collection(times_, all.first(1)));
-  replace_file(folder_ + "/links.pvd", collection(times_, all.last(1)));
-  replace_file(folder_ + "/result.pvd", collection(times_, all));
+  const bool xml = format_ == FrameFormat::vtu;
+  std::string opens = script;
+  for (std::size_t place = 0; (place = opens.find("LIST")) != std::string::npos;)
+    opens.replace(place, 4, xml ? "pvd" : "hdf.series");
+  replace_file(folder_ + "/open_in_paraview.py", opens);
+  if (xml) {
+    replace_file(folder_ + "/elements.pvd", collection(all.first(1)));
+    replace_file(folder_ + "/links.pvd", collection(all.last(1)));
+    replace_file(folder_ + "/result.pvd", collection(all));
+  } else {
+    for (const char* kind : kinds) replace_file(folder_ + "/" + kind + ".hdf.series", series(kind));
+  }
   listed_ = times_.size();
   listed_at_ = Clock::now();
   listing_ = listed_at_ - begin;

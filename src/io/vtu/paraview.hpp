@@ -2,6 +2,7 @@
 // A series of frames that a stock ParaView opens with its times.
 
 #include <chrono>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,23 +18,27 @@ namespace breccia {
 ///                             as parts of these names
 ///   open_in_paraview.py       shows them, spheres as spheres: paraview open_in_paraview.py
 ///
-/// VTK XML, appended raw, zlib blocks; numbers as Float32. The .pvd files are replaced as a whole,
+/// or, as VTKHDF, elements_0000.hdf and links_0000.hdf, listed in elements.hdf.series and
+/// links.hdf.series.
+///
+/// Zlib blocks; numbers as Float32. The lists are replaced as a whole,
 /// so a run that is killed leaves a series that opens. A few hundred frames are in them as soon as
-/// they are written. Later the .pvd files take a twentieth of the time between frames at most, so
+/// they are written. Later the lists take a twentieth of the time between frames at most, so
 /// that many frames cost as much each as few; what they lack is added by finish().
 class ParaviewSeries {
  public:
   /// Starts a new series in the folder, which is made if it does not exist. @throws IoError
-  explicit ParaviewSeries(const std::string& folder);
+  explicit ParaviewSeries(const std::string& folder, FrameFormat format = FrameFormat::vtu);
 
   /// Continues the series of a folder: frames later than `time` [s] are dropped. @throws IoError
-  static ParaviewSeries resumed(const std::string& folder, double time);
+  static ParaviewSeries resumed(const std::string& folder, double time,
+                                FrameFormat format = FrameFormat::vtu);
 
   /// Adds a frame. One that is not later than the last replaces all from its time on. @throws
   /// IoError
   void write(const FrameContents& frame);
-  void write(const Frame& frame) { write(contents_of(frame)); }
-  /// Brings the .pvd files up to the last frame. @throws IoError
+  void write(const Frame& frame) { write(contents_of(frame, 1, format_)); }
+  /// Brings the lists up to the last frame. @throws IoError
   void finish();
 
   /// Times of the frames written so far.  [s]
@@ -43,13 +48,17 @@ class ParaviewSeries {
   using Clock = std::chrono::steady_clock;
 
   void write_collections();
+  std::string file_of(const char* kind, std::size_t frame) const;
+  std::string collection(std::span<const char* const> parts) const;
+  std::string series(const char* kind) const;
   bool collections_are_due() const;
   void drop_from(std::size_t first);
 
   std::string folder_;
+  FrameFormat format_;
   std::vector<double> times_;
-  std::size_t listed_ = 0;         ///< frames in the .pvd files
-  Clock::time_point listed_at_{};  ///< when the .pvd files had been written last
+  std::size_t listed_ = 0;         ///< frames in the lists
+  Clock::time_point listed_at_{};  ///< when they had been written last
   Clock::duration listing_{};      ///< what that took
 };
 

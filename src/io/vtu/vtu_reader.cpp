@@ -7,10 +7,15 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "exec/error.hpp"
+#include "io/vtu/paraview.hpp"
+#include "io/vtu/vtkhdf.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia {
@@ -71,9 +76,9 @@ std::vector<Tag> tags_of(std::string_view xml) {
 }
 
 /// A .vtu file in memory.
-class VtuFile {
+class VtuFile final : public FrameFile {
  public:
-  explicit VtuFile(const std::string& path) : path_(path), content_(read_whole_file(path)) {
+  explicit VtuFile(const std::string& path) : FrameFile(path), content_(read_whole_file(path)) {
     const std::string_view content(content_);
     const std::size_t end = content.find("<AppendedData");
     const std::size_t start = content.find('_', end);
@@ -81,23 +86,20 @@ class VtuFile {
     tail_ = content.substr(start + 1);
     read_tags(tags_of(content.substr(0, end)));
   }
-  VtuFile(const VtuFile&) = delete;
-  VtuFile& operator=(const VtuFile&) = delete;
 
-  std::size_t points() const { return points_; }
-  std::size_t cells() const { return cells_; }
+  std::size_t points() const override { return points_; }
+  std::size_t cells() const override { return cells_; }
 
-  /// An array of a section as numbers of type T, converted from what the file holds.
-  template <class T>
-  std::vector<T> array(const std::string& section, const std::string& name,
-                       std::size_t items) const {
-    for (const Array& array : arrays_) {
-      if (array.section == section && array.name == name) return values<T>(array, items);
-    }
-    fail("has no " + section + " " + name);
+  std::vector<double> numbers(const std::string& section, const std::string& name,
+                              std::size_t items) const override {
+    return array<double>(section, name, items);
+  }
+  std::vector<std::int32_t> integers(const std::string& section, const std::string& name,
+                                     std::size_t items) const override {
+    return array<std::int32_t>(section, name, items);
   }
 
-  std::vector<FrameField> fields(const std::string& section, std::size_t items) const {
+  std::vector<FrameField> fields(const std::string& section, std::size_t items) const override {
     std::vector<FrameField> result;
     for (const Array& array : arrays_) {
       if (array.section != section) continue;
@@ -108,19 +110,14 @@ class VtuFile {
     return result;
   }
 
-  const std::vector<std::string>& groups() const { return groups_; }
+  std::vector<std::string> groups() const override { return groups_; }
 
-  /// Point and normal of each wall.
-  std::vector<double> numbers_of_walls() const {
+  std::vector<double> walls() const override {
     for (const Array& array : arrays_)
       if (array.section == "FieldData" && array.name == "walls" && array.components == 6 &&
           array.tuples < 1U << 20)
         return values<double>(array, array.tuples);
     return {};
-  }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw IoError(path_ + ": cannot read: " + what);
   }
 
  private:
@@ -129,6 +126,15 @@ class VtuFile {
     int components;
     std::size_t offset, tuples;
   };
+
+  template <class T>
+  std::vector<T> array(const std::string& section, const std::string& name,
+                       std::size_t items) const {
+    for (const Array& array : arrays_) {
+      if (array.section == section && array.name == name) return values<T>(array, items);
+    }
+    fail("has no " + section + " " + name);
+  }
 
   std::size_t number(const Tag& tag, const std::string& name, std::size_t otherwise) const {
     const auto found = tag.attributes.find(name);
@@ -246,16 +252,21 @@ class VtuFile {
     fail("array " + array.name + " has numbers of type " + array.type);
   }
 
-  std::string path_, content_;
+  std::string content_;
   std::string_view tail_;
   std::size_t points_ = 0, cells_ = 0;
   std::vector<Array> arrays_;
   std::vector<std::string> groups_;
 };
 
-std::vector<std::int32_t> connectivity(const VtuFile& file, std::size_t points_a_cell) {
-  const auto numbers =
-      file.array<std::int32_t>("Cells", "connectivity", points_a_cell * file.cells());
+std::unique_ptr<FrameFile> opened(const std::string& path) {
+  if (path.ends_with(".hdf")) return open_vtkhdf(path);
+  return std::make_unique<VtuFile>(path);
+}
+
+std::vector<std::int32_t> connectivity(const FrameFile& file, std::size_t points_a_cell) {
+  std::vector<std::int32_t> numbers =
+      file.integers("Cells", "connectivity", points_a_cell * file.cells());
   for (const std::int32_t number : numbers) {
     if (number < 0 || static_cast<std::size_t>(number) >= file.points()) {
       file.fail("a cell names a point that does not exist");
@@ -265,9 +276,9 @@ std::vector<std::int32_t> connectivity(const VtuFile& file, std::size_t points_a
 }
 
 /// Whether the cells are triangles; the first one speaks for all.
-bool has_triangles(const VtuFile& file) {
+bool has_triangles(const FrameFile& file) {
   if (file.cells() == 0) return false;
-  return file.array<std::int32_t>("Cells", "offsets", file.cells()).front() == 3;
+  return file.integers("Cells", "offsets", file.cells()).front() == 3;
 }
 
 /// Times and files of a collection.
@@ -275,8 +286,7 @@ struct Entry {
   double time;
   std::string file;
 };
-std::vector<Entry> entries_of(const std::string& folder, const std::string& collection) {
-  const std::string path = folder + "/" + collection;
+std::vector<Entry> entries_of_pvd(const std::string& path) {
   const std::string content = read_whole_file(path);
   std::vector<Entry> entries;
   for (const Tag& tag : tags_of(content)) {
@@ -296,31 +306,62 @@ std::vector<Entry> entries_of(const std::string& folder, const std::string& coll
   return entries;
 }
 
+std::vector<Entry> entries_of_series(const std::string& path) {
+  const nlohmann::json json = nlohmann::json::parse(read_whole_file(path), nullptr, false);
+  const auto fail = [&]() -> IoError { return IoError(path + ": cannot read: it is no series"); };
+  if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) throw fail();
+  std::vector<Entry> entries;
+  for (const nlohmann::json& file : json["files"]) {
+    const bool good = file.is_object() && file.contains("name") && file["name"].is_string() &&
+                      file.contains("time") && file["time"].is_number();
+    if (!good) throw fail();
+    entries.push_back({file["time"].get<double>(), file["name"].get<std::string>()});
+  }
+  return entries;
+}
+
+std::vector<Entry> entries_of(const std::string& folder, const std::string& kind) {
+  if (format_of_frames(folder) == FrameFormat::vtkhdf)
+    return entries_of_series(folder + "/" + kind + ".hdf.series");
+  return entries_of_pvd(folder + "/" + kind + ".pvd");
+}
+
 }  // namespace
+
+bool holds_frames(const std::string& folder) {
+  return std::filesystem::exists(folder + "/elements.pvd") ||
+         std::filesystem::exists(folder + "/elements.hdf.series");
+}
+
+FrameFormat format_of_frames(const std::string& folder) {
+  return std::filesystem::exists(folder + "/elements.hdf.series") ? FrameFormat::vtkhdf
+                                                                  : FrameFormat::vtu;
+}
 
 std::vector<double> frame_times(const std::string& folder) {
   std::vector<double> times;
-  for (const Entry& entry : entries_of(folder, "elements.pvd")) times.push_back(entry.time);
+  for (const Entry& entry : entries_of(folder, "elements")) times.push_back(entry.time);
   return times;
 }
 
 Frame read_frame(const std::string& folder, int index) {
-  const std::vector<Entry> entries = entries_of(folder, "elements.pvd");
+  const std::vector<Entry> entries = entries_of(folder, "elements");
   if (index < 0 || static_cast<std::size_t>(index) >= entries.size()) {
     throw InputError(fmt::format("frame {} does not exist: {} holds {} frames, counted from 0",
                                  index, folder, entries.size()));
   }
   const auto number = static_cast<std::size_t>(index);
-  const VtuFile elements(folder + "/" + entries[number].file);
+  const std::unique_ptr<FrameFile> file = opened(folder + "/" + entries[number].file);
+  const FrameFile& elements = *file;
   Frame frame;
-  frame.time = elements.array<double>("FieldData", "TIME", 1).front();
-  frame.step = elements.array<std::int64_t>("FieldData", "CYCLE", 1).front();
+  frame.time = elements.numbers("FieldData", "TIME", 1).front();
+  frame.step = static_cast<std::int64_t>(elements.numbers("FieldData", "CYCLE", 1).front());
   frame.groups = elements.groups();
-  const auto walls = elements.numbers_of_walls();
+  const auto walls = elements.walls();
   for (std::size_t i = 0; i + 5 < walls.size(); i += 6)
     frame.walls.push_back(
         {{walls[i], walls[i + 1], walls[i + 2]}, {walls[i + 3], walls[i + 4], walls[i + 5]}});
-  const auto coordinates = elements.array<double>("Points", "Points", elements.points());
+  const auto coordinates = elements.numbers("Points", "Points", elements.points());
   for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3) {
     frame.position.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
   }
@@ -334,9 +375,10 @@ Frame read_frame(const std::string& folder, int index) {
     frame.triangles = connectivity(elements, 3);
     frame.triangle_fields = elements.fields("CellData", elements.cells());
   }
-  const std::vector<Entry> link_entries = entries_of(folder, "links.pvd");
+  const std::vector<Entry> link_entries = entries_of(folder, "links");
   if (number < link_entries.size()) {
-    const VtuFile links(folder + "/" + link_entries[number].file);
+    const std::unique_ptr<FrameFile> other = opened(folder + "/" + link_entries[number].file);
+    const FrameFile& links = *other;
     if (links.points() != elements.points()) links.fail("it has other points than the elements");
     frame.lines = connectivity(links, 2);
     frame.line_fields = links.fields("CellData", links.cells());

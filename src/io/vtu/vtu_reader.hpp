@@ -4,11 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "io/frame.hpp"
+#include "io/vtu/vtu_writer.hpp"
 
 namespace breccia {
 
-/// Times of the frames in a result folder, from its elements.pvd.  [s]
+/// Whether a folder lists frames.
+bool holds_frames(const std::string& folder);
+FrameFormat format_of_frames(const std::string& folder);
+
+/// Times of the frames in a result folder, from its list of them.  [s]
 /// @throws IoError if that file cannot be read
 std::vector<double> frame_times(const std::string& folder);
 

@@ -17,15 +17,20 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
 
 constexpr std::size_t block_size = 1 << 18;  // bytes before compression
-constexpr int compression_level = 1;         // level 6 saves 10 % of the size for 5 times the time
+constexpr const char* field_data = "FieldData";
+constexpr int compression_level = 1;  // level 6 saves 10 % of the size for 5 times the time
 
 template <class T>
-constexpr const char* type_name() {
-  if constexpr (std::is_same_v<T, float>) return "Float32";
-  if constexpr (std::is_same_v<T, double>) return "Float64";
-  if constexpr (std::is_same_v<T, std::int32_t>) return "Int32";
-  if constexpr (std::is_same_v<T, std::int64_t>) return "Int64";
-  if constexpr (std::is_same_v<T, std::uint8_t>) return "UInt8";
+constexpr FrameNumber type_of() {
+  if constexpr (std::is_same_v<T, float>) return FrameNumber::float32;
+  if constexpr (std::is_same_v<T, double>) return FrameNumber::float64;
+  if constexpr (std::is_same_v<T, std::int32_t>) return FrameNumber::int32;
+  if constexpr (std::is_same_v<T, std::int64_t>) return FrameNumber::int64;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return FrameNumber::uint8;
+}
+const char* name_of(FrameNumber type) {
+  constexpr const char* names[] = {"Float32", "Float64", "Int32", "Int64", "UInt8"};
+  return names[static_cast<std::size_t>(type)];
 }
 
 std::string escaped(const std::string& text) {
@@ -55,8 +60,7 @@ void append_number(std::string& text, std::uint64_t number) {
   text.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-}  // namespace
-
+/// As zlib packs it.
 std::string packed_block(std::span<const std::byte> bytes) {
   std::string packed(compressBound(static_cast<uLong>(bytes.size())), '\0');
   uLongf size = static_cast<uLongf>(packed.size());
@@ -66,6 +70,16 @@ std::string packed_block(std::span<const std::byte> bytes) {
   if (status != Z_OK) throw DeviceError("no memory to compress a frame");
   packed.resize(size);
   return packed;
+}
+
+}  // namespace
+
+FrameFormat frame_format(const std::string& word) {
+  if (word != "vtkhdf") return FrameFormat::vtu;
+  if (!has_hdf5())
+    throw InputError(
+        "vtkhdf: this program is built without HDF5 (package libhdf5-dev); \"vtu\" goes without");
+  return FrameFormat::vtkhdf;
 }
 
 FramePlaces places_in(const Frame& whole) {
@@ -78,8 +92,11 @@ FramePlaces places_in(const Frame& whole) {
   return places;
 }
 
-FrameBlocks::FrameBlocks(const Frame& part, const FramePlaces& places)
-    : part_(part), places_(places), radius_(part.radius.begin(), part.radius.end()) {
+FrameBlocks::FrameBlocks(const Frame& part, const FramePlaces& places, FrameFormat format)
+    : part_(part),
+      places_(places),
+      format_(format),
+      radius_(part.radius.begin(), part.radius.end()) {
   coordinates_.reserve(3 * part.position.size());
   for (const Vec3& point : part.position)
     for (const double c : {point.x, point.y, point.z})
@@ -106,8 +123,11 @@ std::size_t FrameBlocks::own_items(Carrier carrier) const {
 
 std::size_t FrameBlocks::add(Array array) {
   array.first_block = blocks_.size();
-  for (std::size_t begin = 0; begin < array.bytes; begin += block_size)
-    blocks_.push_back({arrays_.size(), begin, std::min(block_size, array.bytes - begin)});
+  // A chunk of HDF5 has whole items.
+  array.block_bytes =
+      format_ == FrameFormat::vtu ? block_size : block_size / array.width * array.width;
+  for (std::size_t begin = 0; begin < array.bytes; begin += array.block_bytes)
+    blocks_.push_back({arrays_.size(), begin, std::min(array.block_bytes, array.bytes - begin)});
   arrays_.push_back(std::move(array));
   return arrays_.size() - 1;
 }
@@ -115,61 +135,71 @@ template <class Number>
 std::size_t FrameBlocks::add_carried(Carrier carrier, std::size_t width,
                                      std::span<const Number> own) {
   const std::size_t bytes = width * sizeof(Number);
-  return add({carrier, bytes, bytes * items(carrier), std::as_bytes(own), {}, 0});
+  return add({carrier, bytes, bytes * items(carrier), std::as_bytes(own), {}, 0, 0});
 }
 /// Number i of the array is value(i).
 template <class Number, class Value>
-std::size_t FrameBlocks::add_made(std::size_t count, const Value& value) {
+std::size_t FrameBlocks::add_made(std::size_t count, const Value& value, std::size_t components) {
   const auto make = [value](std::size_t begin, std::span<std::byte> to) {
     for (std::size_t done = 0; done < to.size(); done += sizeof(Number)) {
       const auto number = static_cast<Number>(value((begin + done) / sizeof(Number)));
       std::memcpy(to.data() + done, &number, sizeof number);
     }
   };
-  return add({Carrier::none, sizeof(Number), count * sizeof(Number), {}, make, 0});
+  return add({Carrier::none, components * sizeof(Number), count * sizeof(Number), {}, make, 0, 0});
 }
 
-void FrameBlocks::place(Document& document, std::size_t array, const char* type,
-                        const std::string& attributes, const std::string& unit) {
-  document.text.back() +=
-      fmt::format(R"(<DataArray type="{}" {} format="appended" offset=")", type, attributes);
-  document.array.push_back(array);
-  document.text.emplace_back("\"/>\n");
-  if (unit.empty()) return;
-  document.text.back() =
-      "\">\n"
-      R"(<InformationKey name="UNITS_LABEL" location="vtkDataArray">)" +
-      escaped(unit) + "</InformationKey>\n</DataArray>\n";
+void FrameBlocks::place(Document& document, Entry entry) {
+  std::string& head = document.text.back();
+  head +=
+      fmt::format(R"(<DataArray type="{}" Name="{}" )", name_of(entry.type), escaped(entry.name));
+  if (entry.components > 1) head += fmt::format(R"(NumberOfComponents="{}" )", entry.components);
+  if (entry.section == field_data) head += fmt::format(R"(NumberOfTuples="{}" )", entry.rows);
+  head += R"(format="appended" offset=")";
+  if (entry.unit.empty())
+    document.text.emplace_back("\"/>\n");
+  else
+    document.text.emplace_back(
+        "\">\n"
+        R"(<InformationKey name="UNITS_LABEL" location="vtkDataArray">)" +
+        escaped(entry.unit) + "</InformationKey>\n</DataArray>\n");
+  document.entries.push_back(std::move(entry));
+}
+
+/// Names of the bodies as numbers, each ended by 0: readers other than VTK's know no arrays of
+/// texts.
+void FrameBlocks::list_groups(Document& document) {
+  if (part_.groups.empty()) return;
+  std::string codes;
+  for (const std::string& name : part_.groups) codes += name + '\0';
+  if (format_ == FrameFormat::vtkhdf) {
+    const std::size_t count = codes.size();
+    const auto code = [codes](std::size_t i) { return static_cast<unsigned char>(codes[i]); };
+    place(document, {field_data, "groups", "", type_of<std::uint8_t>(), count, 1,
+                     add_made<std::uint8_t>(count, code)});
+    return;
+  }
+  std::string& head = document.text.back();
+  head += fmt::format(
+      R"(<DataArray type="UInt8" Name="groups" NumberOfTuples="{}" format="ascii">)", codes.size());
+  for (const char code : codes) head += fmt::format("{} ", static_cast<unsigned char>(code));
+  head += "</DataArray>\n";
 }
 
 void FrameBlocks::list_field_data(Document& document) {
   document.text.back() += "<FieldData>\n";
-  place(document, time_, type_name<double>(), R"(Name="TIME" NumberOfTuples="1")", "s");
-  place(document, step_, type_name<std::int64_t>(), R"(Name="CYCLE" NumberOfTuples="1")", "");
-  if (!part_.groups.empty()) {
-    std::string codes;
-    for (const std::string& name : part_.groups) {
-      for (const char c : name) codes += fmt::format("{} ", static_cast<unsigned char>(c));
-      codes += "0 ";
-    }
-    // As numbers: readers other than VTK's know no arrays of texts.
-    document.text.back() += fmt::format(
-        R"(<DataArray type="UInt8" Name="groups" NumberOfTuples="{}" format="ascii">{}</DataArray>)",
-        std::count(codes.begin(), codes.end(), ' '), codes);
-    document.text.back() += "\n";
+  place(document, {field_data, "TIME", "s", type_of<double>(), 1, 1, time_});
+  place(document, {field_data, "CYCLE", "", type_of<std::int64_t>(), 1, 1, step_});
+  list_groups(document);
+  if (!part_.walls.empty()) {
+    const auto number = [walls = part_.walls](std::size_t i) {
+      const FrameWall& wall = walls[i / 6];
+      const Vec3& v = i % 6 < 3 ? wall.point : wall.normal;
+      return i % 3 == 0 ? v.x : i % 3 == 1 ? v.y : v.z;
+    };
+    place(document, {field_data, "walls", "", type_of<double>(), part_.walls.size(), 6,
+                     add_made<double>(6 * part_.walls.size(), number, 6)});
   }
-  if (!part_.walls.empty())
-    place(document,
-          add_made<double>(6 * part_.walls.size(),
-                           [walls = part_.walls](std::size_t i) {
-                             const FrameWall& wall = walls[i / 6];
-                             const Vec3& v = i % 6 < 3 ? wall.point : wall.normal;
-                             return i % 3 == 0 ? v.x : i % 3 == 1 ? v.y : v.z;
-                           }),
-          type_name<double>(),
-          fmt::format(R"(Name="walls" NumberOfComponents="6" NumberOfTuples="{}")",
-                      part_.walls.size()),
-          "");
   document.text.back() += "</FieldData>\n";
 }
 
@@ -191,10 +221,9 @@ void FrameBlocks::list_field(Document& document, const std::string& name, const 
   if (values.size() != own_items(carrier) * width)
     throw InputError(fmt::format("field {} has {} values for {} items of {}", name, values.size(),
                                  own_items(carrier), width));
-  place(document, add_carried(carrier, width, std::span<const Number>(values)), type_name<Number>(),
-        fmt::format(R"(Name="{}")", escaped(name)) +
-            (width == 1 ? "" : fmt::format(R"( NumberOfComponents="{}")", width)),
-        unit);
+  place(document,
+        {carrier == Carrier::points ? "PointData" : "CellData", name, unit, type_of<Number>(),
+         items(carrier), width, add_carried(carrier, width, std::span<const Number>(values))});
 }
 
 void FrameBlocks::list_cells(Document& document, Cells cells) {
@@ -210,13 +239,19 @@ void FrameBlocks::list_cells(Document& document, Cells cells) {
                         std::span<const std::int32_t>(cells == Cells::lines ? part_.lines
                                                                             : part_.triangles));
   document.text.back() += "<Cells>\n";
-  place(document, connectivity, type_name<std::int32_t>(), R"(Name="connectivity")", "");
+  document.cells = items(carrier);
+  document.corners = width * document.cells;
+  const auto index = type_of<std::int32_t>();
+  place(document, {"Cells", "connectivity", "", index, document.corners, 1, connectivity});
+  // Behind each cell; VTKHDF has the first one's begin as well.
+  const std::size_t first = format_ == FrameFormat::vtu ? 1 : 0;
+  const std::size_t count = document.cells + 1 - first;
   const std::size_t ends =
-      add_made<std::int32_t>(items(carrier), [width](std::size_t i) { return (i + 1) * width; });
-  place(document, ends, type_name<std::int32_t>(), R"(Name="offsets")", "");
+      add_made<std::int32_t>(count, [first, width](std::size_t i) { return (i + first) * width; });
+  place(document, {"Cells", "offsets", "", index, count, 1, ends});
   const std::size_t types =
       add_made<std::uint8_t>(items(carrier), [cells](std::size_t) { return cells; });
-  place(document, types, type_name<std::uint8_t>(), R"(Name="types")", "");
+  place(document, {"Cells", "types", "", type_of<std::uint8_t>(), document.cells, 1, types});
   document.text.back() += "</Cells>\n";
 }
 
@@ -241,7 +276,7 @@ void FrameBlocks::list(Document& document, Cells cells) {
   if (cells == Cells::lines) list_fields(document, part_.line_fields, Carrier::lines);
   if (cells == Cells::triangles) list_fields(document, part_.triangle_fields, Carrier::triangles);
   document.text.back() += "</CellData>\n<Points>\n";
-  place(document, points_, type_name<float>(), R"(Name="Points" NumberOfComponents="3")", "m");
+  place(document, {"Points", "Points", "m", type_of<float>(), items(Carrier::points), 3, points_});
   document.text.back() += "</Points>\n";
   list_cells(document, cells);
   document.text.back() += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
@@ -250,33 +285,59 @@ void FrameBlocks::list(Document& document, Cells cells) {
 std::string FrameBlocks::packed(const Block& block) const {
   const Array& array = arrays_[block.array];
   if (array.carrier != Carrier::none)
-    return packed_block(array.own.subspan(block.begin, block.size));
+    return packed(block, array.own.subspan(block.begin, block.size));
   std::vector<std::byte> made(block.size);
   array.make(block.begin, made);
-  return packed_block(made);
+  return packed(block, made);
+}
+std::string FrameBlocks::packed(const Block& block, std::span<const std::byte> bytes) const {
+  const Array& array = arrays_[block.array];
+  const bool is_short = bytes.size() < array.block_bytes && block.begin > 0;
+  if (format_ == FrameFormat::vtu || !is_short) return packed_block(bytes);
+  std::vector<std::byte> filled(array.block_bytes);  // the last chunk of HDF5 is as long as any
+  std::copy(bytes.begin(), bytes.end(), filled.begin());
+  return packed_block(filled);
+}
+
+std::string FrameBlocks::hdf_content(const Document& document,
+                                     const std::vector<std::string>& packed) const {
+  HdfGrid grid{items(Carrier::points), document.cells, document.corners, {}};
+  for (const Entry& entry : document.entries) {
+    const Array& array = arrays_[entry.array];
+    HdfArray& to = grid.arrays.emplace_back(
+        HdfArray{entry.section, entry.name, entry.unit, entry.type, entry.rows, entry.components});
+    to.chunk_rows = std::min(
+        entry.rows, array.block_bytes /
+                        (array.bytes / std::max<std::size_t>(entry.rows, 1) + (array.bytes == 0)));
+    for (std::size_t begin = 0, b = array.first_block; begin < array.bytes;
+         begin += array.block_bytes)
+      to.chunks.emplace_back(packed[b++]);
+  }
+  return vtkhdf_content(grid);
 }
 
 /// Behind the head each array: number of blocks, their size, size of the last if it is shorter,
 /// compressed sizes, blocks.
 std::string FrameBlocks::content(const Document& document,
                                  const std::vector<std::string>& packed) const {
+  if (format_ == FrameFormat::vtkhdf) return hdf_content(document, packed);
   const auto each_block = [&](const Array& array, auto&& visit) {
     for (std::size_t begin = 0, b = array.first_block; begin < array.bytes; begin += block_size)
       visit(packed[b++]);
   };
   std::string content;
   std::uint64_t offset = 0;
-  for (std::size_t k = 0; k < document.array.size(); ++k) {
+  for (std::size_t k = 0; k < document.entries.size(); ++k) {
     content += document.text[k] + std::to_string(offset);
     offset += 3 * sizeof offset;
-    each_block(arrays_[document.array[k]],
+    each_block(arrays_[document.entries[k].array],
                [&](const std::string& block) { offset += sizeof offset + block.size(); });
   }
   const std::string end = "\n</AppendedData>\n</VTKFile>\n";
   content += document.text.back();
   content.reserve(content.size() + offset + end.size());
-  for (const std::size_t a : document.array) {
-    const Array& array = arrays_[a];
+  for (const Entry& entry : document.entries) {
+    const Array& array = arrays_[entry.array];
     append_number(content, (array.bytes + block_size - 1) / block_size);
     append_number(content, block_size);
     append_number(content, array.bytes % block_size);
@@ -290,9 +351,9 @@ FrameContents FrameBlocks::contents(const std::vector<std::string>& packed) cons
   return {part_.time, content(elements_, packed), content(links_, packed)};
 }
 
-FrameContents contents_of(const Frame& whole, int threads) {
+FrameContents contents_of(const Frame& whole, int threads, FrameFormat format) {
   const FramePlaces places = places_in(whole);
-  const FrameBlocks files(whole, places);
+  const FrameBlocks files(whole, places, format);
   const std::vector<FrameBlocks::Block>& blocks = files.blocks();
   std::vector<std::string> packed(blocks.size());
   for_each_task(threads, static_cast<int>(blocks.size()), [&](int i) {

@@ -1,5 +1,6 @@
 #pragma once
-// Frames as unstructured grids in VTK XML files: appended raw data, UInt64 headers, zlib blocks.
+// Frames as unstructured grids in VTK XML files (appended raw data, UInt64 headers, zlib blocks),
+// or in VTKHDF files, whose chunks are those blocks.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,8 +10,18 @@
 #include <vector>
 
 #include "io/frame.hpp"
+#include "io/vtu/vtkhdf.hpp"
 
 namespace breccia {
+
+enum class FrameFormat : std::uint8_t {
+  vtu,     ///< .vtu, listed in .pvd
+  vtkhdf,  ///< .hdf, VTKHDF 1.0, listed in .hdf.series
+};
+
+/// The format that a word of case files or commands names. @throws InputError if this program is
+/// built without it
+FrameFormat frame_format(const std::string& word);
 
 /// The files of one frame.
 struct FrameContents {
@@ -31,7 +42,7 @@ class FrameBlocks {
     std::span<const std::byte> own;  ///< values of the items of this part
     /// Without a carrier: what stands there from byte `begin` on.
     std::function<void(std::size_t begin, std::span<std::byte> to)> make;
-    std::size_t first_block;
+    std::size_t first_block, block_bytes;
   };
   /// A piece of an array, before compression.
   struct Block {
@@ -39,7 +50,7 @@ class FrameBlocks {
   };
 
   /// Keeps views of the part. @throws InputError if fields do not fit its items
-  FrameBlocks(const Frame& part, const FramePlaces& places);
+  FrameBlocks(const Frame& part, const FramePlaces& places, FrameFormat format);
   FrameBlocks(const FrameBlocks&) = delete;
   FrameBlocks& operator=(const FrameBlocks&) = delete;
 
@@ -49,38 +60,51 @@ class FrameBlocks {
   /// The block of a whole frame, or of an array without a carrier, compressed.
   /// @throws DeviceError for want of memory
   std::string packed(const Block& block) const;
+  /// Likewise, of bytes that were put together from parts.
+  std::string packed(const Block& block, std::span<const std::byte> bytes) const;
   /// The files, from all blocks compressed.
   FrameContents contents(const std::vector<std::string>& packed) const;
 
  private:
-  /// The XML head of a file: texts and, after each but the last, the place of an array.
+  /// An array as a file names it.
+  struct Entry {
+    const char* section;
+    std::string name, unit;
+    FrameNumber type;
+    std::size_t rows, components, array;
+  };
+  /// What a file holds and, of a .vtu, its XML head: texts and, after each but the last, the place
+  /// of an array.
   struct Document {
     std::vector<std::string> text{""};
-    std::vector<std::size_t> array;
+    std::vector<Entry> entries;
+    std::size_t cells = 0, corners = 0;  ///< corners of all cells
   };
   enum class Cells : std::uint8_t { vertices = 1, lines = 3, triangles = 5 };  // VTK's numbers
 
   void list(Document& document, Cells cells);
   void list_field_data(Document& document);
+  void list_groups(Document& document);
   void list_fields(Document& document, const std::vector<FrameField>& fields, Carrier carrier);
   template <class Number>
   void list_field(Document& document, const std::string& name, const std::string& unit,
                   std::size_t width, const std::vector<Number>& values, Carrier carrier);
   void list_cells(Document& document, Cells cells);
   /// Notes an array in a document.
-  void place(Document& document, std::size_t array, const char* type, const std::string& attributes,
-             const std::string& unit);
+  void place(Document& document, Entry entry);
   std::size_t add(Array array);
   template <class Number>
   std::size_t add_carried(Carrier carrier, std::size_t width, std::span<const Number> own);
   template <class Number, class Value>
-  std::size_t add_made(std::size_t count, const Value& value);
+  std::size_t add_made(std::size_t count, const Value& value, std::size_t components = 1);
   std::size_t items(Carrier carrier) const;
   std::size_t own_items(Carrier carrier) const;
   std::string content(const Document& document, const std::vector<std::string>& packed) const;
+  std::string hdf_content(const Document& document, const std::vector<std::string>& packed) const;
 
   const Frame& part_;
   const FramePlaces& places_;
+  FrameFormat format_;
   std::vector<float> coordinates_, radius_;
   std::vector<Array> arrays_;
   std::vector<Block> blocks_;
@@ -88,10 +112,8 @@ class FrameBlocks {
   Document elements_, links_;
 };
 
-/// One block as zlib packs it. @throws DeviceError for want of memory
-std::string packed_block(std::span<const std::byte> bytes);
-
 /// The files of a frame that is whole, by so many threads.
-FrameContents contents_of(const Frame& whole, int threads = 1);
+FrameContents contents_of(const Frame& whole, int threads = 1,
+                          FrameFormat format = FrameFormat::vtu);
 
 }  // namespace breccia

@@ -28,7 +28,7 @@ FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads)
   if (wish.picture) image = drawn(whole, wish, threads, output);
   const FramePlaces places = places_in(whole);
   std::optional<FrameBlocks> files;
-  if (wish.files) files.emplace(whole, places);
+  if (wish.files) files.emplace(whole, places, wish.format);
   std::vector<std::string> packed(files ? files->blocks().size() : 0);
   // The picture is one piece, and the longest: it comes first.
   for_each_task(threads, 1 + static_cast<int>(packed.size()), [&](int task) {

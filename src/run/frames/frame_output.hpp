@@ -15,6 +15,7 @@ struct FrameWish {
   std::optional<RenderOptions> picture;  ///< without an extent: that of this frame
   /// The extent of the first frame, if the picture's is to grow with what leaves it.
   std::optional<Extent> grows_from = {};
+  FrameFormat format = FrameFormat::vtu;
 };
 
 struct FrameOutput {

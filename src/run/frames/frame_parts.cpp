@@ -145,7 +145,7 @@ class Sight {
 FrameOfParts::FrameOfParts(FramePart part, const FrameWish& wish, Communicator& ranks, int threads)
     : part_(std::move(part)), wish_(wish), ranks_(ranks), threads_(threads) {
   if (!wish_.files) return;
-  files_.emplace(part_.frame, part_.places);
+  files_.emplace(part_.frame, part_.places, wish_.format);
   worker_ = workers(*files_, ranks_.size(), wish_);
 }
 
@@ -244,7 +244,7 @@ Message FrameOfParts::share() {
       packed[k] = files_->packed(block);
     } else {
       take_values(block, values[k], bytes);
-      packed[k] = packed_block(bytes);
+      packed[k] = files_->packed(block, bytes);
     }
   });
 

@@ -81,6 +81,11 @@ std::vector<std::string> problems_of_pictures(const OutputConfig& output, const 
     if (!more.contains(name))
       problems.push_back(fmt::format("output.more: {:?} is none of displacement, force, stress{}",
                                      name, suggestion(name, more)));
+  try {
+    frame_format(output.format);
+  } catch (const InputError& error) {
+    problems.push_back(fmt::format("output.format: {}", error.what()));
+  }
   if (!output.range.empty() && (output.range.size() != 2 || !(output.range[0] < output.range[1])))
     problems.push_back("output.range needs two values, the lower first, such as [0, 2.5e6]");
   const auto try_out = [&](const char* key, RenderOptions options) {

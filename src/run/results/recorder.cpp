@@ -111,6 +111,7 @@ Recorder::Recorder(const CaseConfig& config, const std::vector<StageEnd>& stages
       ranks_(ranks),
       rows_(row_schedule(config)),
       frames_(frame_schedule(config)),
+      format_(frame_format(config.output.format)),
       watch_(config.energy) {
   for (const double step : config_.output.picture_steps)
     picture_steps_.push_back(static_cast<std::int64_t>(std::min(std::ceil(step), 9e15)));
@@ -142,9 +143,9 @@ void Recorder::open(const ResultFolder& folder, Log& log) {
     steps_.emplace(steps);
   }
   if (config_.output.fields && state_.frames > 0)
-    series_ = ParaviewSeries::resumed(folder.path(), state_.frame_time);
+    series_ = ParaviewSeries::resumed(folder.path(), state_.frame_time, format_);
   else if (config_.output.fields)
-    series_.emplace(folder.path());
+    series_.emplace(folder.path(), format_);
   if (!config_.output.pictures && picture_steps_.empty()) return;
   make_folder(pictures_);
   if (resumed_from_ && config_.output.pictures) drop_pictures(pictures_, state_.frames);
@@ -277,7 +278,7 @@ RenderOptions Recorder::picture_options() const {
 }
 
 FrameWish Recorder::wish_of_picture() const {
-  FrameWish wish{config_.output.fields, picture_options(), {}};
+  FrameWish wish{config_.output.fields, picture_options(), {}, format_};
   if (config_.output.fit == "run") wish.grows_from = state_.first;
   return wish;
 }
@@ -306,7 +307,7 @@ void Recorder::write_picture(const std::string& name, Method& method, const Fram
 }
 
 void Recorder::write_frame_of(Method& method, std::int64_t number) {
-  FrameWish wish{config_.output.fields, std::nullopt, {}};
+  FrameWish wish{config_.output.fields, std::nullopt, {}, format_};
   if (config_.output.pictures) wish = wish_of_picture();
   const FrameOutput output = method.frame_output(wish);
   on_first(ranks_, [&] {

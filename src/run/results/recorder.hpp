@@ -120,6 +120,7 @@ class Recorder {
   std::optional<ParaviewSeries> series_;
   std::optional<StepTable> steps_;
   Schedule rows_, frames_;
+  FrameFormat format_;
   std::vector<std::int64_t> picture_steps_;  ///< ascending
   std::int64_t frame_count_ = 0;
   std::optional<std::int64_t> resumed_from_;  ///< a step

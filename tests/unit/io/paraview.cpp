@@ -200,6 +200,68 @@ TEST_F(ParaviewSeriesTest, what_was_written_is_read_back) {
   }
 }
 
+TEST_F(ParaviewSeriesTest, vtkhdf_is_read_back_and_resumed) {
+  if (!has_hdf5()) GTEST_SKIP() << "built without HDF5";
+  Frame with_walls = small_frame(0.1, 3);
+  with_walls.walls = {{{0.0, 0.0, -0.5}, {0.0, 0.0, 1.0}}, {{1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}}};
+  std::vector<Frame> frames{small_frame(0.0, 9), with_walls, triangle_frame(0.2),
+                            test::slab_scene()};
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].time = 0.1 * static_cast<double>(i);
+  {
+    ParaviewSeries series(folder, FrameFormat::vtkhdf);
+    for (const Frame& frame : frames) series.write(frame);
+    expect_vtk_reads(folder, frames);
+    frames.push_back(small_frame(0.4, 0));  // VTK lists no fields of a grid without points
+    series.write(frames.back());
+  }
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Frame found = read_frame(folder, static_cast<int>(i));
+    expect_same(found, frames[i]);
+    EXPECT_EQ(found.walls.size(), frames[i].walls.size());
+  }
+  EXPECT_EQ(read_frame(folder, 1).walls[1].normal.x, -1.0);
+  ParaviewSeries series = ParaviewSeries::resumed(folder, 0.15, FrameFormat::vtkhdf);
+  EXPECT_EQ(frame_times(folder).size(), 2U);
+  EXPECT_FALSE(fs::exists(folder + "/fields/links_0002.hdf"));
+  series.write(triangle_frame(0.25));
+  EXPECT_EQ(frame_times(folder), (std::vector<double>{0.0, 0.1, 0.25}));
+}
+
+TEST_F(ParaviewSeriesTest, vtkhdf_has_the_same_bytes_from_any_threads_and_each_time) {
+  if (!has_hdf5()) GTEST_SKIP() << "built without HDF5";
+  const Frame slab = test::slab_scene();
+  const FrameContents once = contents_of(slab, 1, FrameFormat::vtkhdf);
+  const std::string scratch(3 << 20, 'x');  // memory that was used differs
+  const FrameContents again = contents_of(slab, 3, FrameFormat::vtkhdf);
+  EXPECT_TRUE(once.points == again.points);
+  EXPECT_TRUE(once.lines == again.lines);
+}
+
+TEST_F(ParaviewSeriesTest, a_damaged_vtkhdf_is_refused_with_its_path) {
+  if (!has_hdf5()) GTEST_SKIP() << "built without HDF5";
+  ParaviewSeries series(folder, FrameFormat::vtkhdf);
+  series.write(small_frame(0.0, 200));
+  const std::string path = folder + "/fields/elements_0000.hdf";
+  const std::string whole = read_whole_file(path);
+  int refused = 0;
+  for (std::size_t place = 0; place < whole.size(); place += 101) {
+    std::string damaged = whole;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x10);
+    std::ofstream(path, std::ios::binary) << damaged;
+    try {
+      read_frame(folder, 0);
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 10);
+  for (const std::size_t size : {std::size_t{0}, whole.size() / 3, whole.size() / 2}) {
+    std::ofstream(path, std::ios::binary) << whole.substr(0, size);
+    EXPECT_THROW(read_frame(folder, 0), IoError) << size;
+  }
+}
+
 TEST_F(ParaviewSeriesTest, a_resumed_series_drops_what_came_after_and_goes_on) {
   {
     ParaviewSeries series(folder);

@@ -135,6 +135,17 @@ TEST(Film, AFilmStaysUnderItsLimit) {
   }
 }
 
+TEST(Film, WhatPacksBetterThanThoughtIsNotLeftOut) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path(), 4000, 9);
+  const Survey survey = survey_of(folder.path(), 3);
+  const double thought = Selection::whole(survey).estimate(survey);
+  const Film all = film_of(folder.path(), survey, 0, 100'000'000);
+  ASSERT_LT(4.0 * static_cast<double>(all.bytes()), thought);
+  const Film film = film_of(folder.path(), survey, 0, static_cast<std::size_t>(thought / 1.05));
+  EXPECT_EQ(film.bytes(), all.bytes());
+}
+
 TEST(Film, ElementsThatNobodySeesGoBeforeOthers) {
   const ScratchFolder folder;
   ParaviewSeries series(folder.path());
@@ -164,6 +175,45 @@ TEST(Film, ElementsThatNobodySeesGoBeforeOthers) {
   EXPECT_LT(visible.size(), cube.position.size() * 7 / 10);
   EXPECT_TRUE(std::find(visible.begin(), visible.end(), n * n * n / 2 + n * n / 2 + n / 2) !=
               visible.end());
+}
+
+TEST(Film, BodiesThatAStageTakesOutShowNothingMore) {
+  for (const bool plane : {false, true}) {
+    Shot first, later;
+    first.plane = later.plane = plane;
+    const std::size_t each = plane ? 3 : 1;
+    FrameField group{"group", "-", 1, {0, 1, 1, 2}}, size{"size", "m", 1, {1, 2, 3, 4}};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t c = 0; c < each; ++c)
+        first.corner.push_back({double(i), 0.25 * double(c), 0.0});
+      if (!plane) first.radius.push_back(0.1 * double(i + 1));
+    }
+    first.element_fields = {group, size};
+    later = first;  // without the second body
+    const auto begin = static_cast<std::ptrdiff_t>(each),
+               end = static_cast<std::ptrdiff_t>(3 * each);
+    later.corner.erase(later.corner.begin() + begin, later.corner.begin() + end);
+    if (!plane) later.radius = {0.1, 0.4};
+    if (!plane) later.ends = {0, 1};
+    later.element_fields[0].values = {0, 2};
+    later.element_fields[1].values = {1.5F, 4.5F};
+    ASSERT_TRUE(match(later, first));
+    ASSERT_EQ(later.elements(), 4U);
+    EXPECT_EQ(later.corner[0].x, 0.0);
+    EXPECT_EQ(later.corner[3 * each].x, 3.0);
+    EXPECT_EQ(later.element_fields[1].values[0], 1.5F);
+    EXPECT_EQ(later.element_fields[1].values[3], 4.5F);
+    if (plane) {
+      EXPECT_EQ(later.corner[3].y, later.corner[5].y);  // no area
+      continue;
+    }
+    EXPECT_EQ(later.corner[1].x, 3.0);  // inside the largest
+    EXPECT_EQ(later.radius[2], 0.0);
+    EXPECT_EQ(later.ends, (std::vector<std::int32_t>{0, 3}));
+    later.element_fields[0].values = {0, 1};  // half a body
+    later.corner.resize(2);
+    EXPECT_FALSE(match(later, first));
+  }
 }
 
 TEST(Film, FramesOfOtherElementsAreRefused) {

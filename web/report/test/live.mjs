@@ -22,6 +22,7 @@ const frames = () => page.evaluate(() => Number(document.querySelector("input[ar
 await page.goto(address);
 await ready();
 const before = await frames();
+console.log("open"); // from now on the run may go on
 await page.evaluate(() => {
   const pick = document.querySelector(".controls select");
   pick.value = "velocity";

@@ -1,0 +1,90 @@
+"""`output.format = "vtkhdf"`: what h5py finds in the frames of a run, resuming, and `breccia convert` there and back."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+from two_balls import case_with
+
+PROGRAM = os.environ["BRECCIA"]
+CASE = case_with('output = { frames = 4, pictures = false, format = "vtkhdf" }')
+
+
+def files_of(folder):
+    return {path.name: path.read_bytes() for path in sorted((folder / "fields").iterdir())}
+
+
+class Vtkhdf(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.path = pathlib.Path(cls.scratch.name)
+        (cls.path / "balls.toml").write_text(CASE)
+        cls.breccia("run", "balls.toml", "-o", "out", "-q", "--threads", "1")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    @classmethod
+    def breccia(cls, *words, code=0):
+        done = subprocess.run([PROGRAM, *words], cwd=cls.path, capture_output=True, text=True)
+        if done.returncode != code:
+            raise AssertionError(f"{words} ended with {done.returncode}: {done.stdout}{done.stderr}")
+        return done.stdout + done.stderr
+
+    def test_h5py_finds_the_grid_its_fields_and_units(self):
+        series = json.loads((self.path / "out/elements.hdf.series").read_text())
+        self.assertEqual(len(series["files"]), 5)
+        with h5py.File(self.path / "out" / series["files"][-1]["name"], "r") as file:
+            root = file["VTKHDF"]
+            self.assertEqual(list(root.attrs["Version"]), [1, 0])
+            self.assertEqual(root.attrs["Type"], b"UnstructuredGrid")
+            points = int(root["NumberOfPoints"][0])
+            self.assertEqual(root["Points"].shape, (points, 3))
+            self.assertEqual(list(root["Offsets"]), list(range(points + 1)))
+            self.assertEqual(list(root["Connectivity"]), list(range(points)))
+            self.assertEqual(set(root["Types"]), {1})
+            velocity = root["PointData/velocity"]
+            self.assertEqual(velocity.shape, (points, 3))
+            self.assertEqual(velocity.attrs["units"], b"m/s")
+            self.assertEqual(root["PointData/id"].dtype, numpy.int32)
+            self.assertEqual(root["FieldData/TIME"][0], series["files"][-1]["time"])
+            names = bytes(root["FieldData/groups"]).split(b"\0")
+        self.assertEqual(names[-1], b"")
+
+    def test_the_frames_are_those_of_vtu_and_converting_gives_their_bytes(self):
+        self.breccia("run", "balls.toml", "-o", "xml", "-q", "--threads", "1", "--set", "output.format=vtu")
+        self.assertFalse(list((self.path / "out").glob("*.pvd")))
+        self.breccia("convert", "xml", "to_hdf", "--frames", "vtkhdf")
+        self.assertEqual(files_of(self.path / "to_hdf"), files_of(self.path / "out"))
+        self.breccia("convert", "out", "to_xml", "--frames", "vtu")
+        self.assertEqual(files_of(self.path / "to_xml"), files_of(self.path / "xml"))
+        said = self.breccia("convert", "out", "to_xml", "--frames", "vtu", code=2)
+        self.assertIn("holds frames already", said)
+
+    def test_commands_read_the_frames(self):
+        self.breccia("render", "out", "-o", "last.png", "--color", "velocity")
+        self.breccia("report", "out")
+        self.assertIn("spheres", self.breccia("mesh", "info", "out"))
+        self.breccia("convert", "out", "spheres.hdf")
+        with h5py.File(self.path / "spheres.hdf", "r") as file:
+            self.assertIn("radius", file["VTKHDF/PointData"])
+
+    def test_a_run_that_goes_on_leaves_the_same_files(self):
+        words = ["-q", "--threads", "1"]
+        end = json.loads((self.path / "out/summary.json").read_text())["time"]
+        self.breccia("run", "balls.toml", "-o", "broken", *words, "--until", str(0.6 * end))
+        self.assertIn("one format", self.breccia("resume", "broken", "--set", "output.format=vtu", code=2))
+        self.breccia("resume", "broken", *words, "--until", str(end))
+        self.assertEqual(files_of(self.path / "broken"), files_of(self.path / "out"))
+
+
+if __name__ == "__main__":
+    unittest.main()
