@@ -72,15 +72,18 @@ Curve strain_rate() {
 
 Curve crushing() {
   constexpr double young = 30e9, onset = 60e6, slope = 0.4;  // by default there is none
-  constexpr double yields = onset / young, last = 5.0 * yields;
-  constexpr double highest = onset + slope * young * (last - yields);
-  return {"link under pressure, E = 30 GPa, Y_c = 60 MPa, H_c = 0.4, pressed and let go",
-          "shortening over length [%]",
-          "compressive stress [MPa]",
-          {{0.0, 0.0},
-           {100.0 * yields, to_mpa * onset},
-           {100.0 * last, to_mpa * highest},
-           {100.0 * (last - highest / young), 0.0}}};
+  constexpr double closing = 0.02, yields = onset / young;
+  constexpr double closed = onset + slope * young * closing / (1.0 - slope);
+  constexpr double last = closed + 300e6;
+  return {
+      "link under pressure, E = 30 GPa, Y_c = 60 MPa, H_c = 0.4, p_c = 0.02, pressed and let go",
+      "shortening over length [%]",
+      "compressive stress [MPa]",
+      {{0.0, 0.0},
+       {100.0 * yields, to_mpa * onset},
+       {100.0 * (closing + closed / young), to_mpa * closed},
+       {100.0 * (closing + last / young), to_mpa * last},
+       {100.0 * closing, 0.0}}};
 }
 
 Curve steel_tension() {
@@ -155,10 +158,11 @@ const std::vector<Law>& laws() {
        strain_rate},
       {"dem3d",
        "[material.NAME]",
-       {"compaction_strength", "compaction_slope", "crushing_strength", "crushing_slope"},
+       {"compaction_strength", "compaction_slope", "crushing_strength", "crushing_slope",
+        "closing_strain"},
        "beyond Y the stress grows with H E; what is let go unloads with E. Y_c, H_c for whole "
-       "links "
-       "and broken ones that touch, Y_b, H_b for broken ones that do not",
+       "links and broken ones that touch, Y_b, H_b for broken ones that do not. Shortened for good "
+       "by closing_strain (2 % here) a link is elastic again",
        "docs/theory.md, concrete under pressure",
        crushing},
       {"dem3d",

@@ -72,7 +72,8 @@ struct RateCurve {
 ///                be given instead of zeta
 ///                unloading along the secant to the largest opening kappa
 ///   compression  N = K_n u >= -S (Y + K p H/(1 - H)), p = (D_0 - D_eq) / D_0; beyond it D_eq
-///                yields; Y = Y_c, H = H_c, of broken links that do not touch Y_b, H_b
+///                yields; Y = Y_c, H = H_c, of broken links that do not touch Y_b, H_b;
+///                beyond p = p_c pores are closed, N = K_n u
 ///   shear        F_s += -K_t du_s, cut at S C (1 - damage) + min(-N tan phi, S s_F)
 ///   moment       M += -K_r dtheta, cut at eta r min(|N| in compression + S T (1 - damage), S s_M)
 ///   wear         plastic slip ds and turn dtheta_p: kappa += w_s |ds| + w_m r |dtheta_p|
@@ -104,6 +105,7 @@ struct ConcreteLink {
   double compaction_slope;      ///< H_c < 1, tangent beyond it over K_n  [-]
   double crushing_strength;     ///< Y_b, 0: none  [Pa]
   double crushing_slope;        ///< H_b < 1  [-]
+  double closing_strain;        ///< p_c at which D_eq shortens no further, 0: none  [-]
   RateCurve rate;               ///< of T
 
   /// One step of a link (R = double) or of a pack of links.
@@ -304,8 +306,8 @@ struct ConcreteLink {
   }
 
   /// Compaction: pressed beyond its yield force, a link shortens D_eq until its force lies on the
-  /// line of slope H K_n. Energy in the trapezoidal form of the ledger, -dD_eq (N_before +
-  /// N_after)/2, N_before from the change of distance.
+  /// line of slope H K_n, or until its pores are closed. Energy in the trapezoidal form of the
+  /// ledger, -dD_eq (N_before + N_after)/2, N_before from the change of distance.
   template <class R>
   BR_HD void compact(Stand<R>& s, const LinkConstants<R>& link, const PairMotion<R>& motion) const {
     const R zero = constant<R>(0.0), kn = link.stiffness;
@@ -318,7 +320,9 @@ struct ConcreteLink {
     const R excess = -s.normal - link.area * (onset + modulus * p * slope / (1.0 - slope));
     const auto yields = s.pressed && !s.parted && excess > 0.0 && onset > 0.0;
     if (!any(yields)) return;
-    s.shortened = select(yields, excess * (1.0 - slope) / kn, zero);
+    R by = excess * (1.0 - slope) / kn;
+    if (closing_strain > 0.0) by = min(by, max(zero, link.length - (1.0 - closing_strain) * first));
+    s.shortened = select(yields, by, zero);
     const R before = min(zero, s.normal - kn * motion.extension);
     s.normal = s.normal + kn * s.shortened;
     s.crushed = -0.5 * s.shortened * (before + s.normal);

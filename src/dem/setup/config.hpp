@@ -113,6 +113,7 @@ struct MaterialConfig {
   double compaction_slope = 0.4;               ///< H_c  [-]
   double crushing_strength = 0.0;              ///< Y_b; 0: none  [Pa]
   double crushing_slope = 0.4;                 ///< H_b  [-]
+  double closing_strain = 0.0;                 ///< p_c; 0: none  [-]
   std::string rate = "none";
   double rate_strength = 30e6;                    ///< f_c, static, of malvar_ross  [Pa]
   double rate_crossings = 5.0;                    ///< time constant over D / c  [-]
@@ -184,6 +185,9 @@ struct MaterialConfig {
         "Y_b, compressive stress at which broken links yield until their ends touch; 0: never");
     key("crushing_slope", crushing_slope, "-", Range{0.0, 1.0, Open::high},
         "H_b, stiffness of a link beyond crushing_strength over the elastic one");
+    key("closing_strain", closing_strain, "-", Range{0.0, 1.0, Open::high},
+        "p_c, share of its length by which compaction and crushing shorten a link until its pores "
+        "are closed and it is elastic again; 0: they are never closed");
     key("rate", rate, OneOf{"none", "malvar_ross", "mc2010"},
         "how the tensile strength of a link grows with its own strain rate: none; malvar_ross: by "
         "Malvar and Ross 1998; mc2010: by the fib Model Code 2010; a quasi-static test in a few ms "

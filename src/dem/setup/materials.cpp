@@ -94,6 +94,7 @@ ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact)
   law.compaction_slope = m.compaction_slope;
   law.crushing_strength = m.crushing_strength;
   law.crushing_slope = m.crushing_slope;
+  law.closing_strain = m.closing_strain;
   law.rate = rate_curve(m);
   return law;
 }

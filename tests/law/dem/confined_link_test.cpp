@@ -109,6 +109,38 @@ TEST(ConfinedLink, yields_under_pressure_along_a_line_and_keeps_its_shortening) 
   }
 }
 
+TEST(ConfinedLink, is_elastic_again_once_its_pores_are_closed) {
+  const double closing = 0.01, shortest = (1.0 - closing) * first_length;
+  const double closed =
+      area * compaction + slope / (1.0 - slope) * stiffness * closing * first_length;
+  for (const int steps : {300, 3'000}) {
+    Rig rig;
+    rig.law.closing_strain = closing;
+    rig.move(shortest - closed / stiffness, steps);
+    EXPECT_NEAR(rig.last.normal, -closed, 1e-9 * closed);
+    EXPECT_NEAR(rig.link.length, shortest, 1e-12 * first_length);
+    const double spent = rig.yielded;
+    rig.move(shortest - 2.0 * closed / stiffness, steps);
+    EXPECT_NEAR(rig.last.normal, -2.0 * closed, 1e-9 * closed);
+    EXPECT_NEAR(rig.link.length, shortest, 1e-12 * first_length);
+    EXPECT_NEAR(rig.yielded, spent, 1e-9 * spent);
+    EXPECT_NEAR(rig.held(), rig.work, 1e-9 * rig.work);
+    rig.move(shortest, steps);
+    EXPECT_NEAR(rig.last.normal, 0.0, 1e-9 * closed);
+    EXPECT_NEAR(rig.held(), rig.work, 1e-9 * rig.work);
+  }
+}
+
+TEST(ConfinedLink, pressed_across_its_closing_in_one_step_loses_no_energy) {
+  Rig rig;
+  rig.law.closing_strain = 0.002;
+  const double to = first_length - 3.0 * compaction * area / stiffness - 0.01 * first_length;
+  rig.move(to, 7);
+  EXPECT_NEAR(rig.link.length, 0.998 * first_length, 1e-12 * first_length);
+  EXPECT_NEAR(rig.last.normal, stiffness * (to - rig.link.length), 1e-9 * stiffness * first_length);
+  EXPECT_NEAR(rig.held(), rig.work, 1e-9 * rig.work);
+}
+
 TEST(ConfinedLink, friction_bears_no_more_than_its_bound) {
   const double bound = 3e6;
   for (const double pressure : {10e6, 40e6})
@@ -294,6 +326,7 @@ TEST(ConfinedLink, of_a_material_without_these_keys_has_none_of_these_bounds) {
   EXPECT_EQ(law.friction_cap, 0.0);
   EXPECT_EQ(law.compaction_strength, 0.0);
   EXPECT_EQ(law.crushing_strength, 0.0);
+  EXPECT_EQ(law.closing_strain, 0.0);
   EXPECT_FALSE(law.wears());
   m.broken_friction = 0.0;
   m.broken_rolling_limit = 0.0;
