@@ -25,7 +25,8 @@ inside 'printf "import breccia as br\nsim = br.Simulation(\"beam.toml\", threads
 tell "Python"
 inside 'for f in /usr/share/bash-completion/completions/breccia /usr/share/zsh/vendor-completions/_breccia /usr/share/fish/vendor_completions.d/breccia.fish; do test -s $f; done
   test -s /usr/include/breccia/breccia.hpp; test -s /usr/lib/cmake/breccia/breccia-config.cmake; test -s /usr/share/man/man1/breccia.1.gz -o -s /usr/share/man/man1/breccia.1'
-tell "completions, manual page, header, CMake package"
+inside 'for p in breccia python3-breccia libbreccia-dev breccia-doc; do grep -q "three.js authors" /usr/share/doc/$p/copyright; done'
+tell "completions, manual page, header, CMake package, licences"
 if [ "${BRECCIA_WITH_COMPILER:-}" ]; then
   inside 'apt-get install -y -qq --no-install-recommends g++ cmake make > /tmp/apt.log 2>&1; cmake -S /usr/share/doc/breccia/examples/library -B example > /dev/null; cmake --build example | tail -1'
   tell "the example of the library, built with find_package"

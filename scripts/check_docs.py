@@ -6,8 +6,8 @@ cases, scripts, bench and build/release/breccia are those of the repository; csv
   <!-- check: until=1e-4 -->        runs of the block end at that simulated time  [s]
   <!-- check: file=mine.toml -->    toml: is written to this file and checked; append=FILE adds to one
   <!-- check: camera -->            toml: a film of a small run is made with this camera
-  <!-- check: dry -->               sh: cases are checked in place of run, and each command, option, script and preset must exist
-  <!-- check: skip WHY -->          is not run
+  <!-- check: dry -->               sh: cases are checked in place of run, sweep, test and calibrate, and each command, option, script and preset must exist
+  <!-- check: skip WHY -->          is not run; of sh the grammar is checked
   <!-- check: code=9 -->            ends with this exit code
 Of other toml all keys must be keys of a case. Commands that stand indented in place of between fences are an error. Exit code 1 if a sample fails.
 """
@@ -60,7 +60,7 @@ def dry_problem(words, folder, environment):
     """What is wrong with a command, without doing its work; empty: nothing."""
     if words[0] == "mpirun":
         words = words[3:]
-    if words[0].endswith("breccia") and words[1] == "run":
+    if words[0].endswith("breccia") and words[1] in ("run", "sweep", "test", "calibrate"):
         sets = [word for k, word in enumerate(words) if word == "--set" or words[k - 1] == "--set"]
         done = subprocess.run(["breccia", "check", words[2], *sets], cwd=folder, env=environment, capture_output=True, text=True)
         if done.returncode:
@@ -159,6 +159,8 @@ def run_page(page, program, schema):
                 continue
             if mark.startswith("skip "):
                 skipped += 1
+                if kind == "sh" and (wrong := subprocess.run(["bash", "-n"], input=text, capture_output=True, text=True)).returncode:
+                    failed.append(f"{page}: block {number + 1}: {wrong.stderr}")
                 continue
             if kind in SHOWN_ONLY:
                 continue

@@ -170,12 +170,38 @@ bool Film::ran(std::vector<std::string> words) {
 
 void Film::put_comment() {
   if (path_.ends_with(".gif")) return add_comment(temporary_, note_);
-  const std::string other = temporary_ + "2";
-  const bool good =
-      ran({ffmpeg(), "-y", "-nostdin", "-loglevel", "error", "-i", "file:" + temporary_, "-c",
-           "copy", "-metadata", "comment=" + note_, "-movflags", "+faststart", "-f",
-           path_.ends_with(".webm") ? "webm" : "mp4", "file:" + other});
+  const std::string other = temporary_ + "2", texts = temporary_ + ".txt";
+  // In a file, since an argument of a program is at most 128 KiB long.
+  std::string lines = ";FFMETADATA1\ncomment=";
+  for (const char c : note_) {
+    if (c == '=' || c == ';' || c == '#' || c == '\\' || c == '\n') lines += '\\';
+    lines += c;
+  }
+  replace_file(texts, lines + "\n");
+  const bool good = ran({ffmpeg(),
+                         "-y",
+                         "-nostdin",
+                         "-loglevel",
+                         "error",
+                         "-i",
+                         "file:" + temporary_,
+                         "-f",
+                         "ffmetadata",
+                         "-i",
+                         "file:" + texts,
+                         "-map",
+                         "0",
+                         "-map_metadata",
+                         "1",
+                         "-c",
+                         "copy",
+                         "-movflags",
+                         "+faststart",
+                         "-f",
+                         path_.ends_with(".webm") ? "webm" : "mp4",
+                         "file:" + other});
   std::error_code error;
+  fs::remove(texts, error);
   if (good) fs::rename(other, temporary_, error);
   if (good && !error) return;
   fs::remove(other, error);

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "app/film.hpp"
 #include "exec/error.hpp"
@@ -18,7 +20,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::string_view mark = "breccia-film:";
-constexpr std::size_t longest = 100'000;      // of a comment: an argument of a program
+constexpr std::size_t most_parts = 1000;      // of a picture
 constexpr std::size_t most_bytes = 16 << 20;  // of a recipe, unpacked
 
 Json json_of(const std::vector<PngNote>& notes) {
@@ -62,36 +64,83 @@ std::string gif_comments(const std::string& gif) {
 
 }  // namespace
 
+Image grid(const std::vector<Image>& images, int columns) {
+  const auto count = static_cast<int>(images.size());
+  const int rows = (count + columns - 1) / columns;
+  const int width = images.front().width, height = images.front().height;
+  Image whole{columns * width, rows * height, {}};
+  const auto line = static_cast<std::ptrdiff_t>(3 * whole.width);
+  whole.rgb.assign(static_cast<std::size_t>(line * whole.height), 255);
+  for (int i = 0; i < count; ++i)
+    for (int y = 0; y < height; ++y) {
+      const std::uint8_t* const from =
+          &images[static_cast<std::size_t>(i)].rgb[static_cast<std::size_t>(3 * y * width)];
+      std::copy_n(
+          from, 3 * width,
+          whole.rgb.begin() + line * ((i / columns) * height + y) + 3 * (i % columns) * width);
+    }
+  return whole;
+}
+
 std::string digest_of_pixels(const Image& image) {
   return digest_text(digest(std::as_bytes(std::span(image.rgb))));
 }
 
-void FilmRecipe::add(std::vector<PngNote> notes, const Image& image) {
-  pictures.push_back(std::move(notes));
-  pixels.push_back(digest_of_pixels(image));
+std::string text_of(const FilmRecipe& recipe) {
+  Json json{{"runs", Json::array()}, {"columns", recipe.columns}, {"pixels", recipe.pixels}};
+  for (const std::vector<PngNote>& notes : recipe.runs) json["runs"].push_back(json_of(notes));
+  json["pictures"] = Json::array();
+  for (const std::vector<RecipePart>& picture : recipe.pictures) {
+    Json parts = Json::array();
+    for (const RecipePart& part : picture)
+      parts.push_back({{"run", part.run}, {"notes", json_of(part.notes)}});
+    json["pictures"].push_back(std::move(parts));
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+FilmRecipe recipe_of_text(const std::string& text, const std::string& path) {
+  const auto damaged = [&] { return InputError(path + ": the recipe in it is damaged"); };
+  try {
+    const Json json = Json::parse(text);
+    FilmRecipe recipe;
+    recipe.columns = json.at("columns").get<int>();
+    recipe.pixels = json.at("pixels").get<std::vector<std::string>>();
+    for (const Json& notes : json.at("runs")) recipe.runs.push_back(notes_in(notes));
+    const int runs = static_cast<int>(recipe.runs.size());
+    for (const Json& parts : json.at("pictures")) {
+      std::vector<RecipePart>& picture = recipe.pictures.emplace_back();
+      for (const Json& part : parts) {
+        picture.push_back({part.at("run").get<int>(), notes_in(part.at("notes"))});
+        if (picture.back().run < 0 || picture.back().run >= runs) throw damaged();
+      }
+      if (picture.empty() || picture.size() > most_parts) throw damaged();
+    }
+    if (recipe.pictures.empty() || recipe.columns < 1 || recipe.columns > int(most_parts))
+      throw damaged();
+    return recipe;
+  } catch (const Json::exception&) {
+    throw damaged();
+  }
 }
 
 std::string comment_of(const FilmRecipe& recipe) {
-  Json json{{"run", json_of(recipe.run)}, {"pixels", recipe.pixels}};
-  json["pictures"] = Json::array();
-  for (const std::vector<PngNote>& notes : recipe.pictures)
-    json["pictures"].push_back(json_of(notes));
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = text_of(recipe);
   std::string comment = fmt::format("{}{}:", mark, text.size());
   for (const char byte : report::deflated(text))
     comment += fmt::format("{:02x}", static_cast<unsigned char>(byte));
-  return comment.size() < longest ? comment : "";
+  return text.size() <= most_bytes ? comment : "";
 }
 
-FilmRecipe film_recipe_in(const std::string& content, const std::string& path) {
+FilmRecipe recipe_in(const std::string& content, const std::string& path) {
   const std::string comments = path.ends_with(".gif") ? gif_comments(content) : "";
   const std::string_view text = path.ends_with(".gif") ? comments : content;
   const std::size_t begin = text.find(mark);
   if (begin == std::string_view::npos)
     throw InputError(path +
-                     ": the film does not say how it can be made again; films of one run by "
-                     "`render` do, unless they are very long or another program has changed them");
-  const auto damaged = [&] { return InputError(path + ": the recipe in the film is damaged"); };
+                     ": it does not say how it can be made again; films and drawings by `render` "
+                     "do, unless another program has changed them");
+  const auto damaged = [&] { return InputError(path + ": the recipe in it is damaged"); };
   const char* const from = text.data() + begin + mark.size();
   std::size_t size = 0;
   const auto [colon, error] = std::from_chars(from, text.data() + text.size(), size);
@@ -109,17 +158,7 @@ FilmRecipe film_recipe_in(const std::string& content, const std::string& path) {
                  static_cast<uLong>(packed.size())) != Z_OK ||
       got != size)
     throw damaged();
-  try {
-    const Json json = Json::parse(unpacked);
-    FilmRecipe recipe;
-    recipe.run = notes_in(json.at("run"));
-    recipe.pixels = json.at("pixels").get<std::vector<std::string>>();
-    for (const Json& notes : json.at("pictures")) recipe.pictures.push_back(notes_in(notes));
-    if (recipe.pictures.empty() || recipe.pictures.size() != recipe.pixels.size()) throw damaged();
-    return recipe;
-  } catch (const Json::exception&) {
-    throw damaged();
-  }
+  return recipe_of_text(unpacked, path);
 }
 
 FilmReader::FilmReader(const std::string& path, int width, int height)

@@ -1,7 +1,8 @@
 #pragma once
-// How a film can be made again: the texts of all its pictures and digests of their pixels, kept in
-// the film's comment.
+// How films, sheets and panels can be made again: the texts of all their pictures, and digests of
+// their pixels.
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -10,21 +11,35 @@
 
 namespace breccia::app {
 
-struct FilmRecipe {
-  std::vector<PngNote> run;                    ///< of all pictures
-  std::vector<std::vector<PngNote>> pictures;  ///< of each, in the order of the film
-  std::vector<std::string> pixels;             ///< digest of each, as it went to ffmpeg
-
-  void add(std::vector<PngNote> notes, const Image& image);
+/// One frame as it stands in a picture.
+struct RecipePart {
+  int run = 0;                 ///< number of its run
+  std::vector<PngNote> notes;  ///< of the frame
 };
+
+struct FilmRecipe {
+  std::vector<std::vector<PngNote>> runs;         ///< texts of each run
+  int columns = 1;                                ///< of parts in a picture
+  std::vector<std::vector<RecipePart>> pictures;  ///< in the order of the film
+  std::vector<std::string> pixels;  ///< digest of each, as it went to ffmpeg; none: not a film
+};
+
+/// Images of one size in rows from the top; places that are left are white.
+Image grid(const std::vector<Image>& images, int columns);
 
 /// 32 hexadecimal digits.
 std::string digest_of_pixels(const Image& image);
 
-/// As text for a comment; empty if it would be too long for one.
+/// As JSON.
+std::string text_of(const FilmRecipe& recipe);
+/// @throws InputError naming `path` if it is damaged
+FilmRecipe recipe_of_text(const std::string& text, const std::string& path);
+
+/// Packed, for a comment.
 std::string comment_of(const FilmRecipe& recipe);
-/// @throws InputError naming `path` if the film's content holds no recipe, or a damaged one
-FilmRecipe film_recipe_in(const std::string& content, const std::string& path);
+/// @throws InputError naming `path` if the content of a film or drawing holds no recipe, or a
+/// damaged one
+FilmRecipe recipe_in(const std::string& content, const std::string& path);
 
 /// The pictures of a film, by the program ffmpeg. @throws IoError if it is not here or fails
 class FilmReader {

@@ -107,25 +107,6 @@ struct Shots {
   Frame first_;
 };
 
-/// Images of one size in rows from the top; places that are left are white.
-Image grid(const std::vector<Image>& images, int columns) {
-  const auto count = static_cast<int>(images.size());
-  const int rows = (count + columns - 1) / columns;
-  const int width = images.front().width, height = images.front().height;
-  Image whole{columns * width, rows * height, {}};
-  const auto line = static_cast<std::ptrdiff_t>(3 * whole.width);
-  whole.rgb.assign(static_cast<std::size_t>(line * whole.height), 255);
-  for (int i = 0; i < count; ++i)
-    for (int y = 0; y < height; ++y) {
-      const std::uint8_t* const from =
-          &images[static_cast<std::size_t>(i)].rgb[static_cast<std::size_t>(3 * y * width)];
-      std::copy_n(
-          from, 3 * width,
-          whole.rgb.begin() + line * ((i / columns) * height + y) + 3 * (i % columns) * width);
-    }
-  return whole;
-}
-
 bool is_drawing(const std::string& file) {
   return file.ends_with(".svg") || file.ends_with(".pdf");
 }
@@ -182,6 +163,8 @@ struct RenderCommand {
                        ".webm or .gif; end the name with one of these");
     if (drawing && (!sheet.empty() || !beside.empty()))
       throw InputError("--sheet and --panels make PNG pictures, no " + file);
+    if (drawing && !camera.empty())
+      throw InputError("--camera is for pictures and films; a drawing is seen from above: " + file);
     options.hidden = {hidden.begin(), hidden.end()};
     if (!range.empty()) options.range = range_of(range);
     if (!size.empty()) set_size();
@@ -200,7 +183,7 @@ struct RenderCommand {
     if (film)
       write_film(path, shots, numbers);
     else if (drawing)
-      write_drawing(path, shots.front(), numbers.front());
+      write_drawing(path, shots, numbers.front());
     else
       write_picture(path, shots, numbers);
   }
@@ -312,22 +295,59 @@ struct RenderCommand {
       fmt::print("{}  {} of {} frames\n", harmless(path), numbers.size(), times.size());
   }
 
-  /// Of the run and, for one frame of one run, of how to draw it again.
+  /// Of the run, of the moment, and of how to draw it again.
   std::vector<PngNote> notes_for(const std::vector<Shots>& shots,
                                  const std::vector<int>& numbers) const {
     std::vector<PngNote> notes = run_notes(folder);
-    if (notes.empty() || shots.size() > 1 || numbers.size() > 1 || !sheet.empty() || path_of_camera)
+    if (notes.empty()) return notes;
+    if (shots.size() > 1) {
+      notes.push_back({"Runs", ""});
+      for (const Shots& s : shots) notes.back().text += run_line(s.folder) + "\n";
+    }
+    std::vector<RecipePart> parts;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      for (RecipePart& part : parts_of(shots, numbers[i], share_at(i, numbers.size())))
+        parts.push_back(std::move(part));
+    if (parts.size() != numbers.size() * shots.size()) return notes;
+    if (parts.size() == 1) {
+      for (PngNote& one : parts.front().notes) notes.push_back(std::move(one));
       return notes;
-    const int number = numbers.front();
-    const double time = shots.front().times.at(static_cast<std::size_t>(number));
-    if (const auto moment = moment_of_frame(folder, number, time))
-      for (PngNote& one : notes_of_picture(*moment, options_of_picture(shots.front(), number)))
-        notes.push_back(std::move(one));
+    }
+    notes.push_back({"State hash", note(parts.back().notes, "State hash")});
+    FilmRecipe recipe = begun_recipe(shots);
+    recipe.columns *= numbers.size() == 1 ? 1 : sheet_of(sheet)->columns;
+    recipe.pictures.push_back(std::move(parts));
+    notes.push_back({"Pictures", text_of(recipe)});
     return notes;
   }
 
+  /// Texts of all runs; panels stand beside each other.
+  static FilmRecipe begun_recipe(const std::vector<Shots>& shots) {
+    FilmRecipe recipe;
+    recipe.columns = static_cast<int>(shots.size());
+    for (const Shots& s : shots) recipe.runs.push_back(run_notes(s.folder));
+    return recipe;
+  }
+
+  /// How to draw a frame of the first folder again, and those beside it; none if a step is not
+  /// known.
+  std::vector<RecipePart> parts_of(const std::vector<Shots>& shots, int number,
+                                   double share) const {
+    std::vector<RecipePart> parts;
+    const double time = shots.front().times.at(static_cast<std::size_t>(number));
+    for (const Shots& s : shots) {
+      const int there = &s == &shots.front() ? number : s.at_time(time);
+      const auto moment =
+          moment_of_frame(s.folder, there, s.times.at(static_cast<std::size_t>(there)));
+      if (!moment || run_notes(s.folder).empty()) return {};
+      parts.push_back({static_cast<int>(&s - shots.data()),
+                       notes_of_picture(*moment, options_of_picture(s, there, share))});
+    }
+    return parts;
+  }
+
   /// With the extent that the picture shows.
-  RenderOptions options_of_picture(const Shots& shots, int number, double share = 0.0) const {
+  RenderOptions options_of_picture(const Shots& shots, int number, double share) const {
     RenderOptions with = shots.seen(number, camera_path(), share);
     if (with.extent) return with;
     const Frame shown = shots.frame(number);
@@ -336,29 +356,37 @@ struct RenderCommand {
   }
   const CameraPath* camera_path() const { return path_of_camera ? &*path_of_camera : nullptr; }
 
-  static void write_drawing(const std::string& path, const Shots& shots, int number) {
+  void write_drawing(const std::string& path, const std::vector<Shots>& all, int number) const {
+    const Shots& shots = all.front();
     const Frame shown = shots.frame(number);
-    replace_file(path, path.ends_with(".svg") ? svg_content(shown, shots.options)
-                                              : pdf_content(shown, shots.options));
+    FilmRecipe recipe = begun_recipe(all);
+    recipe.pictures.push_back(parts_of(all, number, 0.0));
+    std::string about = run_line(folder);
+    RenderOptions looks = shots.options;
+    if (!recipe.pictures.front().empty()) {
+      about += "\n" + comment_of(recipe);
+      looks = options_of_picture(shots, number, 0.0);
+    }
+    replace_file(path, path.ends_with(".svg") ? svg_content(shown, looks, about)
+                                              : pdf_content(shown, looks, about));
     fmt::print("{}  frame {} of {}, {}\n", harmless(path), number, shots.times.size(),
                time_text(shots.times.at(static_cast<std::size_t>(number))));
   }
 
   void write_film(const std::string& path, const std::vector<Shots>& shots,
                   const std::vector<int>& numbers) const {
-    Film film(path, rate, run_line(folder));
-    FilmRecipe recipe{run_notes(folder), {}, {}};
-    bool known = !recipe.run.empty() && shots.size() == 1;
+    std::string lines = run_line(folder);
+    for (const std::string& other : beside) lines += "\n" + run_line(other);
+    Film film(path, rate, lines);
+    FilmRecipe recipe = begun_recipe(shots);
+    bool known = true;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const double share = double(i) / double(numbers.size());  // a turn's last is not its first
       const Image image = panels(shots, numbers[i], share);
       film.add(image);
-      const double time = shots.front().times.at(static_cast<std::size_t>(numbers[i]));
-      const auto moment = moment_of_frame(folder, numbers[i], time);
-      known = known && moment;
-      if (!known) continue;
-      const RenderOptions with = options_of_picture(shots.front(), numbers[i], share);
-      recipe.add(notes_of_picture(*moment, with), image);
+      recipe.pictures.push_back(parts_of(shots, numbers[i], share));
+      recipe.pixels.push_back(digest_of_pixels(image));
+      known = known && !recipe.pictures.back().empty();
     }
     film.close(known ? comment_of(recipe) : "");
     fmt::print("{}  {} frames, {:.1f} s\n", harmless(path), numbers.size(),

@@ -47,6 +47,14 @@ struct RunFacts {
   RunFacts() = default;
 };
 
+/// The hash in "frame 3 at 0.001 s, state 0123456789abcdef".
+std::optional<std::uint64_t> hash_in(const std::string& message) {
+  constexpr std::string_view before = ", state ";
+  const std::size_t at = message.rfind(before);
+  if (at == std::string::npos) return {};
+  return std::strtoull(message.c_str() + at + before.size(), nullptr, 16);
+}
+
 }  // namespace
 
 std::vector<PngNote> run_notes(const std::string& folder) {
@@ -67,13 +75,14 @@ std::optional<PictureMoment> moment_of_frame(const std::string& folder, int numb
     try {
       if (json.is_object() && json.at("stage") == "frame" &&
           json.at("message").get<std::string>().starts_with(begin))
-        moment = {json.at("step").get<std::int64_t>(), time, {}, number};
+        moment = {json.at("step").get<std::int64_t>(), time,
+                  hash_in(json.at("message").get<std::string>()), number};
     } catch (const Json::exception&) {
       continue;
     }
   }
   const RunFacts run(folder);
-  if (moment && moment->step == run.steps && !run.hash.empty())
+  if (moment && !moment->hash && moment->step == run.steps && !run.hash.empty())
     moment->hash = std::strtoull(run.hash.c_str(), nullptr, 16);
   return moment;
 }

@@ -11,6 +11,7 @@ root=$scratch/root
 for component in core dev; do
   cmake --install "$build" --prefix "$root" --component $component > "$scratch/log" || { cat "$scratch/log"; exit 1; }
 done
+grep -q "three.js authors" "$root"/share/doc/breccia*/copyright || { echo "no licences of what the program holds"; exit 1; }
 same() { [ "$1" = "$2" ] || { echo "$3: '$1' is not '$2'"; exit 1; }; }
 lib=$(dirname "$(find "$root" -name 'libbreccia.so' | head -1)")
 export LD_LIBRARY_PATH=$lib

@@ -25,8 +25,64 @@ class Page : public Paper {
   using Paper::Paper;
   /// Triangles of one colour, three corners each.
   virtual void triangles(const std::vector<ScreenPoint>& corners, const Color& color) = 0;
-  virtual std::string content() const = 0;
+  /// @param about  kept in the file's metadata; empty: none
+  virtual std::string content(const std::string& about) const = 0;
 };
+
+constexpr std::string_view svg_begin = "<metadata>", svg_end = "</metadata>\n";
+constexpr std::string_view pdf_begin = "<</Producer(breccia)/Subject(", pdf_end = ")>>";
+
+std::string as_xml(std::string_view text) {
+  std::string plain;
+  for (const char c : text)
+    plain += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return plain;
+}
+
+std::string of_xml(std::string_view text) {
+  std::string plain;
+  while (!text.empty()) {
+    std::size_t taken = 1;
+    char letter = text.front();
+    for (const auto& [name, stands_for] :
+         {std::pair{std::string_view("&lt;"), '<'}, {"&gt;", '>'}, {"&amp;", '&'}})
+      if (text.starts_with(name)) {
+        taken = name.size();
+        letter = stands_for;
+      }
+    plain += letter;
+    text.remove_prefix(taken);
+  }
+  return plain;
+}
+
+/// A string of PDF, without its brackets.
+std::string as_pdf(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '(' || c == ')' || c == '\\') escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+std::string of_pdf(std::string_view escaped) {
+  std::string text;
+  for (std::size_t i = 0; i < escaped.size(); ++i) {
+    if (escaped[i] == '\\' && i + 1 < escaped.size()) ++i;
+    text += escaped[i];
+  }
+  return text;
+}
+
+/// What stands between two marks of a file.
+std::string_view between(std::string_view content, std::string_view begin, std::string_view end) {
+  const std::size_t at = content.find(begin);
+  if (at == std::string_view::npos) return {};
+  content.remove_prefix(at + begin.size());
+  const std::size_t stop = content.find(end);
+  return stop == std::string_view::npos ? std::string_view() : content.substr(0, stop);
+}
 
 class SvgPage : public Page {
  public:
@@ -36,12 +92,9 @@ class SvgPage : public Page {
         right - left, bottom - top, name_of(color));
   }
   void write(int x, int y, std::string_view text, int scale, const Color& color) override {
-    std::string plain;
-    for (const char c : text)
-      plain += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
     add("<text x=\"{}\" y=\"{}\" font-size=\"{:.2f}\" fill=\"{}\" "
         "xml:space=\"preserve\">{}</text>\n",
-        x, y + 7 * scale, letter_size * scale, name_of(color), plain);
+        x, y + 7 * scale, letter_size * scale, name_of(color), as_xml(text));
   }
   void stroke(double from_x, double from_y, double to_x, double to_y, double thick,
               const Color& color) override {
@@ -62,12 +115,13 @@ class SvgPage : public Page {
           corners[i + 1].u, corners[i + 1].v, corners[i + 2].u, corners[i + 2].v);
     add("\"/>\n");
   }
-  std::string content() const override {
+  std::string content(const std::string& about) const override {
     return fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
         "width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" font-family=\"DejaVu Sans, Verdana, "
-        "sans-serif\">\n{2}{3}</svg>\n",
+        "sans-serif\">\n{2}{3}{4}</svg>\n",
         width, height,
+        about.empty() ? std::string() : fmt::format("{}{}{}", svg_begin, as_xml(about), svg_end),
         transparent_
             ? std::string()
             : fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", width, height),
@@ -125,7 +179,7 @@ class PdfPage : public Page {
           height - corners[i + 2].v);
     add("B\n");
   }
-  std::string content() const override {
+  std::string content(const std::string& about) const override {
     const std::string stream = "0.75 0 0 0.75 0 0 cm\n" + body_;
     uLongf size = compressBound(static_cast<uLong>(stream.size()));
     std::string packed(size, '\0');
@@ -134,7 +188,7 @@ class PdfPage : public Page {
                   6) != Z_OK)
       throw IoError("a page of " + std::to_string(stream.size()) + " bytes cannot be packed");
     packed.resize(size);
-    const std::array objects{
+    std::vector<std::string> objects{
         std::string("<</Type/Catalog/Pages 2 0 R>>"),
         std::string("<</Type/Pages/Kids[3 0 R]/Count 1>>"),
         fmt::format(
@@ -145,6 +199,7 @@ class PdfPage : public Page {
         std::string("<</Type/ExtGState/ca 0.8>>"),
         fmt::format("<</Length {}/Filter/FlateDecode>>\nstream\n", packed.size()) + packed +
             "\nendstream"};
+    if (!about.empty()) objects.push_back(fmt::format("{}{}{}", pdf_begin, as_pdf(about), pdf_end));
     std::string file = "%PDF-1.4\n%\xB5\xB5\n", table;
     for (std::size_t i = 0; i < objects.size(); ++i) {
       table += fmt::format("{:010} 00000 n \n", file.size());
@@ -152,9 +207,9 @@ class PdfPage : public Page {
     }
     const std::size_t start = file.size(), count = objects.size() + 1;
     return file + fmt::format(
-                      "xref\n0 {}\n0000000000 65535 f \n{}trailer\n<</Size {}/Root 1 0 R>>\n"
+                      "xref\n0 {}\n0000000000 65535 f \n{}trailer\n<</Size {}/Root 1 0 R{}>>\n"
                       "startxref\n{}\n%%EOF\n",
-                      count, table, count, start);
+                      count, table, count, about.empty() ? "" : "/Info 7 0 R", start);
   }
 
  private:
@@ -185,7 +240,7 @@ AsDrawn plane_drawing(const Frame& frame, const RenderOptions& options) {
   return {frame, from_above};
 }
 
-std::string drawn(const AsDrawn& drawing, Page& page) {
+std::string drawn(const AsDrawn& drawing, Page& page, const std::string& about) {
   const Frame& frame = drawing.frame;
   const RenderOptions& options = drawing.options;
   const Layout layout(frame, options);
@@ -211,26 +266,33 @@ std::string drawn(const AsDrawn& drawing, Page& page) {
       page.stroke(a.u, a.v, b.u, b.v, 1.3 * scale * width, coloring.lines[i]);
     }
   layout.overlay.draw(page, {camera, [](std::size_t) { return true; }}, scale);
-  if (options.bare) return page.content();
+  if (options.bare) return page.content(about);
   draw_title(page, options.title, frame, scale);
   draw_legend(page, coloring.legend, scale);
   draw_scale_bar(page, camera.resolution, scale);
   draw_axes(page, layout.axes, scale);
-  return page.content();
+  return page.content(about);
 }
 
 }  // namespace
 
-std::string svg_content(const Frame& frame, const RenderOptions& options) {
+std::string svg_content(const Frame& frame, const RenderOptions& options,
+                        const std::string& about) {
   const AsDrawn drawing = plane_drawing(frame, options);
   SvgPage page(drawing.options.width, drawing.options.height, options.transparent);
-  return drawn(drawing, page);
+  return drawn(drawing, page, about);
 }
 
-std::string pdf_content(const Frame& frame, const RenderOptions& options) {
+std::string pdf_content(const Frame& frame, const RenderOptions& options,
+                        const std::string& about) {
   const AsDrawn drawing = plane_drawing(frame, options);
   PdfPage page(drawing.options.width, drawing.options.height);
-  return drawn(drawing, page);
+  return drawn(drawing, page, about);
+}
+
+std::string about_drawing(const std::string& content) {
+  if (content.starts_with("%PDF")) return of_pdf(between(content, pdf_begin, pdf_end));
+  return of_xml(between(content, svg_begin, svg_end));
 }
 
 }  // namespace breccia

@@ -124,8 +124,8 @@ PictureRecipe recipe_of(const std::vector<PngNote>& notes, const std::string& pa
   recipe.version = software.substr(8);
   if (picture.empty())
     throw InputError(path +
-                     ": a sheet, panels, or a frame whose step is not known: the picture "
-                     "names its case but cannot be drawn again");
+                     ": a frame whose step is not known, since log.jsonl does not tell it: the "
+                     "picture names its case but cannot be drawn again");
   try {
     const Json json = Json::parse(picture);
     json.at("step").get_to(recipe.moment.step);

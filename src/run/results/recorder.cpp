@@ -200,7 +200,7 @@ void Recorder::write_picture_of_step(Method& method) {
   FrameWish wish = wish_of_picture();
   wish.files = false;
   const FrameOutput output = method.frame_output(wish);
-  write_picture(fmt::format("step_{}.png", method.steps()), method, output);
+  write_picture(fmt::format("step_{}.png", method.steps()), moment_of(method), output);
 }
 
 void Recorder::record_last(Method& method, Background& background) {
@@ -239,16 +239,18 @@ void Recorder::write_row(Method& method) {
 void Recorder::write_frame(Method& method, Background& background) {
   background.finish();
   const std::int64_t number = frame_count_;
+  const PictureMoment moment = moment_of(method);
   std::shared_ptr<Method> later;
   if (state_.extent || !config_.output.pictures)  // else it belongs to the record's state
     later = method.snapshot();
   if (later != nullptr)
-    background.add([this, later, number] { write_frame_of(*later, number); });
+    background.add([this, later, number, moment] { write_frame_of(*later, number, moment); });
   else
-    write_frame_of(method, number);
+    write_frame_of(method, number, moment);
   on_first(ranks_, [&] {
-    log_->write(Level::info, "frame", method.steps(),
-                fmt::format("frame {} at {:.9g} s", number, method.time()));
+    log_->write(Level::info, "frame", moment.step,
+                fmt::format("frame {} at {:.9g} s, state {:016x}", number, moment.time,
+                            moment.hash.value_or(0)));
   });
   ++frame_count_;
 }
@@ -283,10 +285,13 @@ FrameWish Recorder::wish_of_picture() const {
   return wish;
 }
 
-/// With the texts that `verify` makes it again from. No hash of the state: several ranks would have
-/// to gather it for each picture, and their pictures have the bytes of one process.
-void Recorder::write_picture(const std::string& name, Method& method, const FrameOutput& output) {
-  const PictureMoment moment{method.steps(), method.time()};
+PictureMoment Recorder::moment_of(Method& method) {
+  return {method.steps(), method.time(), method.state_hash()};
+}
+
+/// With the texts that `verify` makes it again from.
+void Recorder::write_picture(const std::string& name, const PictureMoment& moment,
+                             const FrameOutput& output) {
   on_first(ranks_, [&] {
     RenderOptions options = picture_options();
     options.extent = output.extent;
@@ -298,7 +303,7 @@ void Recorder::write_picture(const std::string& name, Method& method, const Fram
     for (PngNote& one : notes_of_picture(moment, options)) notes.push_back(std::move(one));
     write_png(pictures_ + "/" + name, with_notes(output.png, notes));
     if (!output.blank || std::exchange(told_blank_, true)) return;
-    log_->warn("picture", method.steps(),
+    log_->warn("picture", moment.step,
                fmt::format("nothing of the model is in the picture {}: output.fit = {:?}, "
                            "output.clip = {:?}, output.hide; \"run\" and \"frame\" follow what "
                            "flies",
@@ -306,14 +311,14 @@ void Recorder::write_picture(const std::string& name, Method& method, const Fram
   });
 }
 
-void Recorder::write_frame_of(Method& method, std::int64_t number) {
+void Recorder::write_frame_of(Method& method, std::int64_t number, const PictureMoment& moment) {
   FrameWish wish{config_.output.fields, std::nullopt, {}, format_};
   if (config_.output.pictures) wish = wish_of_picture();
   const FrameOutput output = method.frame_output(wish);
   on_first(ranks_, [&] {
     if (series_) series_->write(output.files);
   });
-  if (config_.output.pictures) write_picture(fmt::format("{:04}.png", number), method, output);
+  if (config_.output.pictures) write_picture(fmt::format("{:04}.png", number), moment, output);
 }
 
 }  // namespace breccia

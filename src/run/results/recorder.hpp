@@ -101,11 +101,14 @@ class Recorder {
  private:
   void write_row(Method& method);
   void write_frame(Method& method, Background& background);
-  void write_frame_of(Method& method, std::int64_t number);
+  void write_frame_of(Method& method, std::int64_t number, const PictureMoment& moment);
   void write_picture_of_step(Method& method);
   RenderOptions picture_options() const;
   FrameWish wish_of_picture() const;
-  void write_picture(const std::string& name, Method& method, const FrameOutput& output);
+  /// Step, time and hash of the state, of all ranks together.
+  static PictureMoment moment_of(Method& method);
+  void write_picture(const std::string& name, const PictureMoment& moment,
+                     const FrameOutput& output);
   bool is_picture_step(std::int64_t step) const;
   bool wants_frames() const { return config_.output.fields || config_.output.pictures; }
 

@@ -20,10 +20,11 @@ export function restore(view, store) {
   window.scrollTo(0, kept.scroll ?? 0);
 }
 
-/** Looks for news until the run has ended. */
+/** Looks for news: also when the run has ended, since it may be resumed, but then only as long as there is a server. */
 export function keepUp(live, view, store) {
   const begun = performance.now(), text = make("p", {class: "note bare", role: "status"});
   document.querySelector("header")?.append(text);
+  let ended = false;
   const look = async () => {
     try {
       const answer = await fetch(`/state${window.location.search}`);
@@ -37,8 +38,9 @@ export function keepUp(live, view, store) {
         window.location.reload();
         return;
       }
-      if (state.status !== "running" && !news) return;
+      ended = state.status !== "running";
     } catch (error) {
+      if (ended) return;
       text.textContent = `There is no news: ${error.message}`;
     }
     setTimeout(look, PAUSE);

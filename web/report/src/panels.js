@@ -272,7 +272,7 @@ export function provenancePanel(runs) {
       await navigator.clipboard?.writeText(command).catch(() => {});
       copy.textContent = "copied";
     }}, "copy");
-    const save = run.case != null && make("button", {type: "button", onclick: async () => save(new Blob([await blobText(run.case)], {type: "text/plain"}), "case.toml")}, "save case.toml");
+    const saveCase = run.case != null && make("button", {type: "button", onclick: async () => save(new Blob([await blobText(run.case)], {type: "text/plain"}), "case.toml")}, "save case.toml");
     const facts = [
       ["case", `${s.case?.name ?? ""}${s.case?.seed != null ? `, seed ${s.case.seed}` : ""}`],
       ["state hash", s.state_hash && make("code", {}, s.state_hash)],
@@ -284,7 +284,7 @@ export function provenancePanel(runs) {
       ["memory", s.peak_memory_bytes && bytes(s.peak_memory_bytes)],
     ].filter(([, value]) => value);
     return make("div", {class: "provenance"}, runs.length > 1 && make("h3", {}, run.label),
-      make("div", {class: "command"}, make("code", {}, command), copy, save),
+      make("div", {class: "command"}, make("code", {}, command), copy, saveCase),
       make("p", {class: "note"}, "The hash of the last state does not depend on threads, ranks or device: a run of this case with the same program ends with the same one. Files that the case names (meshes, tables) must lie beside case.toml."),
       make("dl", {}, facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])));
   }))};

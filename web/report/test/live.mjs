@@ -22,6 +22,7 @@ const frames = () => page.evaluate(() => Number(document.querySelector("input[ar
 await page.goto(address);
 await ready();
 const before = await frames();
+await page.waitForTimeout(3000); // it has asked once and seen a run that has ended
 console.log("open"); // from now on the run may go on
 await page.evaluate(() => {
   const pick = document.querySelector(".controls select");

@@ -6,6 +6,7 @@
 // nothing, or if its view does not follow a drag along a curve.
 
 import {chromium} from "playwright-core";
+import {readFileSync} from "node:fs";
 import {basename, resolve} from "node:path";
 
 const [folder, ...reports] = process.argv.slice(2);
@@ -86,6 +87,15 @@ async function open(report, [name, width, height, colorScheme]) {
     await cut.selectOption("y");
     await page.waitForTimeout(500);
     expect((await drawn(page, 0)) > 0.005 && before > 0.005, "a cut leaves something to see");
+  }
+  for (const [name, ending] of [["save case.toml", ".toml"], ["csv", ".csv"], ["png", ".png"], ["save picture", ".png"]]) {
+    const button = page.getByRole("button", {name, exact: true}).first();
+    if ((await button.count()) === 0) continue;
+    await button.scrollIntoViewIfNeeded();
+    await button.hover();
+    const [saved] = await Promise.all([page.waitForEvent("download", {timeout: 20_000}).catch(() => null), button.click()]);
+    expect(saved?.suggestedFilename().endsWith(ending), `"${name}" saves a file`);
+    if (saved && name === "save case.toml") expect(/method = "/.test(readFileSync(await saved.path(), "utf8")), "the case that is saved is one");
   }
   for (const value of await page.getByLabel("colour", {exact: false}).first().locator("option").evaluateAll((all) => all.map((o) => o.value)))
     await page.getByLabel("colour", {exact: false}).first().selectOption(value);
