@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A stranger's path: installs the packages of build/package in a bare Debian 12 and goes from there to a case of one's own.
 # As root, with the package debootstrap: packaging/check_clean_root.sh [FOLDER_OF_DEBS [ROOT]]. A ROOT that exists is taken as it is.
+# BRECCIA_INSTEAD=FOLDER puts breccia-mpi or breccia-cuda of that folder in the place of breccia at the end; BRECCIA_WITH_COMPILER=1 builds the example.
 set -euo pipefail
 debs=${1:-build/package}
 root=${2:-$(mktemp -d)/root}
@@ -31,5 +32,15 @@ if [ "${BRECCIA_WITH_COMPILER:-}" ]; then
   inside 'apt-get install -y -qq --no-install-recommends g++ cmake make > /tmp/apt.log 2>&1; cmake -S /usr/share/doc/breccia/examples/library -B example > /dev/null; cmake --build example | tail -1'
   tell "the example of the library, built with find_package"
 fi
-inside 'apt-get purge -y -qq breccia breccia-doc libbreccia-dev python3-breccia > /dev/null 2>&1; ! command -v breccia'
+if [ "${BRECCIA_INSTEAD:-}" ]; then
+  cp "$BRECCIA_INSTEAD"/*.deb "$root/tmp/"
+  inside 'rm -rf one two; breccia run beam.toml -o one --steps 100 -q --threads 1
+    apt-get install -y -qq --no-install-recommends /tmp/breccia-*.deb > /tmp/apt.log 2>&1 || { tail -20 /tmp/apt.log; exit 1; }
+    dpkg-query -W -f="\${Package} \${Installed-Size} kB\n" "breccia-*"; breccia --version; breccia doctor | grep -w "MPI\|GPU"
+    breccia run beam.toml -o two --steps 100 -q --threads 1; grep -h state_hash one/summary.json two/summary.json | uniq | wc -l | grep -qx 1
+    if breccia --version | grep -q CUDA; then code=0; breccia run beam.toml -o three --device cuda -q || code=$?; [ $code -eq 5 ] || [ $code -eq 0 ]; fi
+    python3 -c "import breccia; print(breccia.Simulation(\"beam.toml\", threads=1).hash)"'
+  tell "another program in its place: same hash; without a GPU it says so"
+fi
+inside 'apt-get purge -y -qq "breccia*" libbreccia-dev python3-breccia > /dev/null 2>&1; ! command -v breccia'
 tell "taken away again"

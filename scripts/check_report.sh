@@ -35,7 +35,7 @@ rm -rf "$live"
 "$program" run cases/rc_slab/small.toml -o "$live" --threads 1 -q --set output.frames=30 --set output.pictures=false --until 1e-4
 "$program" watch "$live" --serve > "$out/live.txt" &
 server=$!
-trap 'kill -INT $server 2> /dev/null || true' EXIT
+trap 'kill $server 2> /dev/null || true' EXIT # SIGINT is ignored in the background
 until grep -q token= "$out/live.txt"; do sleep 0.1; done
 (cd web/report && exec node test/live.mjs "$(grep -o 'http://.*token=[0-9a-f]*' "$out/live.txt")" "$(realpath "$out")/live.png" > "$(realpath "$out")/live.log") &
 page=$!
@@ -43,6 +43,6 @@ until grep -q open "$out/live.log" 2> /dev/null || ! kill -0 $page 2> /dev/null;
 "$program" resume "$live" --threads 1 -q --until 6e-4
 wait $page
 cat "$out/live.log"
-kill -INT $server
+kill $server
 if [ -d build/site/html ]; then (cd web/report && node test/site.mjs ../../build/site/html "$(realpath "$out")"); fi
 echo "reports open without an error, a request or an overflow"

@@ -129,7 +129,8 @@ namespace {
 [[noreturn]] void refuse() {
   throw DeviceError(
       "this build of breccia has no CUDA; nothing was run\n"
-      "  build it with 'cmake --preset cuda', or use --device cpu");
+      "  install the package breccia-cuda, build it with 'cmake --preset cuda', or use --device "
+      "cpu");
 }
 }  // namespace
 

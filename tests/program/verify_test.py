@@ -144,6 +144,8 @@ class Verify(unittest.TestCase):
         self.assertIn("1 of 129600 pixels differ", self.verify("changed.png", code=9))
         self.change_text("Pictures", "[1.0,", "[1.5,", "sheet.png")
         self.assertIn("has hash", self.verify("changed.png", code=9))
+        self.change_text("Pictures", '"columns":6', '"columns":999', "sheet.png")
+        self.assertIn("it is drawn with 119880 x 90 pixels", self.verify("changed.png", code=9))
         self.change_text("Pictures", '"run":1', '"run":7', "sheet.png")
         self.assertIn("damaged", self.verify("changed.png", code=2))
 
