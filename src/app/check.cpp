@@ -116,9 +116,13 @@ struct CheckCommand {
     fmt::print("\n  step    about {}, ruled by\n          {}\n", short_time(f.step),
                harmless(f.step_rule));
     fmt::print("  steps   {}, more as bodies meet and break\n", about(f.steps));
-    fmt::print("  time    {} here ({}), {}output apart\n", rough_duration(f.here_s),
+    fmt::print("  time    about {} here ({}), {} of it output",
+               rough_duration(f.here_s + f.output_s),
                counted(static_cast<std::size_t>(omp_get_num_procs()), "core", "cores"),
-               f.gpu_s > 0.0 ? rough_duration(f.gpu_s) + " on one H200 GPU, " : "");
+               rough_duration(f.output_s));
+    if (f.gpu_s > 0.0)
+      fmt::print("\n          steps alone: {} on one H200 GPU", rough_duration(f.gpu_s));
+    fmt::print("\n");
     fmt::print("  memory  about {}; disk about {}, most of it {}\n", memory_text(f.memory),
                memory_text(f.disk), f.longest_part);
   }
@@ -128,7 +132,7 @@ struct CheckCommand {
     const std::string into = fixed_path(path);
     std::string from = path, text;
     std::vector<std::string> told;
-    for (int round = 0; round < 5; ++round) {  // a corrected name shows the slips below it
+    for (int round = 0; round < 50; ++round) {  // a corrected name shows the slips below it
       try {
         text.empty() ? read_keys(from) : read_keys(CaseText{text, into});
         break;

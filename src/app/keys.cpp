@@ -31,7 +31,9 @@ struct KeysCommand {
       return;
     }
     const std::string wanted = fmt::format("{}", fmt::join(words, " "));
-    const KeyList found = key_list(keys_about(dem, wanted), keys_about(fdem, wanted));
+    KeyList found = key_list(keys_about(dem, wanted), keys_about(fdem, wanted));
+    if (found.empty() && words.size() > 1)
+      found = key_list(keys_about_each(dem, wanted), keys_about_each(fdem, wanted));
     if (found.empty()) refuse(wanted, dem, fdem);
     fmt::print("{}", json       ? keys_as_json(found)
                      : markdown ? keys_as_markdown(found)
@@ -60,8 +62,10 @@ void add_keys(CLI::App& program) {
   const auto keys = std::make_shared<KeysCommand>();
   CLI::App* const command =
       program.add_subcommand("keys", "every key of a case file: example, allowed values, meaning");
-  command->add_option("WORDS", keys->words,
-                      "only keys that begin with this, or have these words in name or meaning");
+  command->add_option(
+      "WORDS", keys->words,
+      "only keys that begin with this, or have these words in name or meaning: all of "
+      "them or, if none has, any");
   command->add_option("--method", keys->method, "only keys of this method")
       ->check(CLI::IsMember({"dem3d", "fdem2d"}));
   CLI::Option* const json = command->add_flag("--json", keys->json, "as JSON");

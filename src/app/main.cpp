@@ -71,7 +71,7 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   program.footer(
       "Exit codes: 0 done, 2 bad input, 3 input/output, 4 numerics, 5 memory or device,\n"
       "7 checkpoint refused, 8 a rank was lost, 9 a check of the case failed,\n"
-      "128+n ended by signal n.");
+      "10 end of --max-wall, 128+n ended by signal n.");
   program.set_version_flag("--version", version_text());
   program.require_subcommand(1);
   breccia::app::add_run(program, exit_code, ranks);

@@ -7,6 +7,7 @@
 
 #include "domain/mpi_ranks.hpp"
 #include "domain/together.hpp"
+#include "io/case/units.hpp"
 
 namespace breccia::app {
 namespace {
@@ -18,7 +19,15 @@ std::string problem_of(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool good = error == std::errc{} && end == text.data() + text.size() && number >= 0;
   return good ? ""
-              : text + (std::is_integral_v<Number> ? " is not a count" : " is not a time in s");
+              : text + (std::is_integral_v<Number> ? " is not a count"
+                                                   : " is no time such as 0.002 (s) or 2ms");
+}
+
+/// "2ms", "2 ms": 0.002; any other text as it is.
+std::string in_seconds(const std::string& text) {
+  std::string problem;
+  const double seconds = parse_quantity(text, "s", problem);
+  return problem.empty() ? fmt::format("{}", seconds) : text;
 }
 
 }  // namespace
@@ -38,8 +47,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--steps", options.steps, "end after N steps since the start of the case")
       ->type_name("N")
       ->check(problem_of<std::int64_t>);
-  command.add_option("--until", options.until, "end at this simulated time instead of time.end")
-      ->type_name("SECONDS")
+  command
+      .add_option("--until", options.until,
+                  "end at this simulated time, 0.002 or 2ms, instead of time.end")
+      ->type_name("TIME")
+      ->transform([](const std::string& text) { return in_seconds(text); })
       ->check(problem_of<double>);
   command
       .add_option("--stage", options.stage,

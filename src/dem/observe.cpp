@@ -92,7 +92,7 @@ struct ConcreteDamage {
     const double so_far = opening[i];
     LinkConstants<double> link{length[i], stiffness[i], area[i], 0.0, 0.0};
     if (law.rated()) link.factor = law.factor_of(link, so_far, rate[i]);
-    add(i, so_far < 0.0 ? 1.0 : law.tension(link).damage(so_far));
+    add(i, so_far < 0.0 ? 1.0 : law.damage(link, so_far));
   }
 };
 /// Links that are whole or broken.

@@ -33,9 +33,6 @@ struct ReadProbe {
   }
   BR_HD double value(Index e) const {
     const ElementState& s = kick.state[e];
-    const Kick::Result next = kick(e);
-    const Vec3 velocity = kick.between(s.velocity, next.velocity);
-    const Vec3 spin = kick.between(s.spin, next.spin);
     switch (quantity.kind) {
       case Quantity::Kind::position:
         return part(s.position);
@@ -43,20 +40,30 @@ struct ReadProbe {
         return part(s.position - starts[id[e]]);
       case Quantity::Kind::strain:
         return fit.term(starts[id[e]], s.position - starts[id[e]], quantity.axis, quantity.other);
-      case Quantity::Kind::velocity:
-        return part(velocity);
       case Quantity::Kind::force:
         return part(kick.force[e]);
       case Quantity::Kind::torque:
         return part(cross(s.position - about, kick.force[e]) + kick.torque[e]);
+      case Quantity::Kind::damage:
+        return damage[e];
+      default:
+        return of_motion(e);
+    }
+  }
+  BR_HD double of_motion(Index e) const {
+    const ElementState& s = kick.state[e];
+    const Kick::Result next = kick(e);
+    const Vec3 velocity = kick.between(s.velocity, next.velocity);
+    const Vec3 spin = kick.between(s.spin, next.spin);
+    switch (quantity.kind) {
+      case Quantity::Kind::velocity:
+        return part(velocity);
       case Quantity::Kind::momentum:
         return kick.mass[e] * part(velocity);
       case Quantity::Kind::angular_momentum:
         return part(kick.mass[e] * cross(s.position - about, velocity) + kick.inertia[e] * spin);
       case Quantity::Kind::speed:
         return norm(velocity);
-      case Quantity::Kind::damage:
-        return damage[e];
       default:
         break;
     }

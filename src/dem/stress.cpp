@@ -67,10 +67,9 @@ void add_contacts(const World& w, const Elements& elements, Moments& moments) {
   const OnHost wall(w.wall_contacts.pairs.b, w.exec.space);
   const OnHost on_wall(w.wall_contacts.history.on_wall, w.exec.space);
   for (Index i = 0; i < w.wall_contacts.size(); ++i) {
-    const Wall& plane = w.walls[at(wall->data()[i])];
     const Vec3& x = elements.state.data()[of->data()[i]].position;
-    moments.add(of->data()[i], x - dot(x - plane.point, plane.normal) * plane.normal,
-                -on_wall->data()[i]);
+    const WallTouch touched = touch(w.walls[at(wall->data()[i])], x);
+    moments.add(of->data()[i], x - touched.height * touched.normal, -on_wall->data()[i]);
   }
 }
 

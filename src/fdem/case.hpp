@@ -38,6 +38,7 @@ struct Case {
   TimeConfig time;
   Vec2 gravity{};              ///< stage  [m/s2]
   Sym2 in_situ{};              ///< stress at the start  [Pa]
+  bool plane_strain = false;   ///< nothing moves out of the plane; else there is no stress
   double local_damping = 0.0;  ///< stage  [-]
   double mean_edge = 0.0;      ///<  [m]
   double skin = 0.0;           ///< margin of the search between two triangles at rest  [m]

@@ -84,6 +84,24 @@ struct RulingOf {
   }
 };
 
+/// value(law, deformation) of each triangle.
+template <class Value, class Of>
+std::vector<Value> of_deformation(const World& w, const Of& value) {
+  const OnHost<Triangles> triangles(w.triangles, w.exec.space);
+  const Triangles& t = *triangles;
+  std::vector<ElasticTriangle> laws;
+  copy_to(laws, w.given->laws);
+  std::vector<Value> all;
+  all.reserve(at(t.size()));
+  for (Index i = 0; i < t.size(); ++i) {
+    Vec2 x[3], v[3];
+    split(t.nodes.data()[i], x, v);
+    all.push_back(
+        value(laws[at(t.material.data()[i])], deformation(t.shape_inverse.data()[i], x, v)));
+  }
+  return all;
+}
+
 }  // namespace
 
 std::uint64_t state_hash(const World& w) {
@@ -142,19 +160,13 @@ std::vector<double> damage(const World& w) {
 }
 
 std::vector<Sym2> stresses(const World& w) {
-  const OnHost<Triangles> triangles(w.triangles, w.exec.space);
-  const Triangles& t = *triangles;
-  std::vector<ElasticTriangle> laws;
-  copy_to(laws, w.given->laws);
-  std::vector<Sym2> all;
-  all.reserve(at(t.size()));
-  for (Index i = 0; i < t.size(); ++i) {
-    Vec2 x[3], v[3];
-    split(t.nodes.data()[i], x, v);
-    all.push_back(laws[static_cast<std::size_t>(t.material.data()[i])].stress(
-        deformation(t.shape_inverse.data()[i], x, v), 0.0));
-  }
-  return all;
+  return of_deformation<Sym2>(
+      w, [](const ElasticTriangle& law, const auto& d) { return law.stress(d, 0.0); });
+}
+std::vector<double> stresses_across(const World& w) {
+  return of_deformation<double>(w, [&](const ElasticTriangle& law, const auto& d) {
+    return w.given->plane_strain ? law.stress_across(d) : 0.0;
+  });
 }
 
 double mode_of(const Joints& joints, Index i) {

@@ -21,6 +21,9 @@ std::vector<double> damage(const World& w);
 
 /// Cauchy stress of each triangle, without viscosity.  [Pa]
 std::vector<Sym2> stresses(const World& w);
+/// Stress across the plane that the deformation makes: 0 in plane stress. What lay on the rock in
+/// that direction at the start is not known.  [Pa]
+std::vector<double> stresses_across(const World& w);
 
 /// Velocities of the corners at the time of the positions. On ranks all call it: ghosts follow
 /// their owners.  [m/s]

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 #include "exec/error.hpp"
@@ -70,6 +71,13 @@ std::string mismatch(const Digest& got, const Digest& expected) {
 }
 
 }  // namespace
+
+bool is_checkpoint(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  Magic begins{};
+  file.read(begins.data(), begins.size());
+  return file && begins == magic;
+}
 
 void CheckpointWriter::section(const std::string& name, const void* items, std::size_t count,
                                std::size_t item_bytes) {

@@ -62,6 +62,9 @@ class CheckpointWriter {
   friend class CheckpointReader;
 };
 
+/// Whether a file begins as checkpoints and models do, whatever its name.
+bool is_checkpoint(const std::string& path);
+
 /// A checkpoint that has been read and fully verified.
 class CheckpointReader {
  public:

@@ -25,10 +25,18 @@ struct FrameField {
   std::optional<std::vector<std::int32_t>> integers = {};
 };
 
-/// A rigid plane.
+/// A rigid wall.
 struct FrameWall {
-  Vec3 point;   ///< on its face  [m]
-  Vec3 normal;  ///< unit, out of the wall
+  Vec3 point;                      ///< on its face  [m]
+  Vec3 normal;                     ///< unit, out of the wall
+  std::vector<Vec3> corners = {};  ///< of triangles, three each; empty: a plane without end  [m]
+};
+
+/// Two items that press on each other without a link between them.
+struct FrameContact {
+  std::int32_t a = 0, b = 0;  ///< global ids; b = -1 - k: wall k
+  Vec3 at_a, at_b;            ///< centres, or the place on the wall  [m]
+  Vec3 force;                 ///< on b  [N; in 2D N/m]
 };
 
 /// A field of whole numbers, one an item.
@@ -69,6 +77,7 @@ FramePlaces places_in(const Frame& whole);
 struct FramePart {
   Frame frame;
   FramePlaces places;
+  std::vector<FrameContact> contacts;  ///< of this rank
 };
 
 }  // namespace breccia

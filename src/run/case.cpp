@@ -153,7 +153,7 @@ Case load_prepared(const std::string& path, const std::vector<std::string>& over
 }  // namespace
 
 Case load_case(const std::string& path, const std::vector<std::string>& overrides) {
-  if (path.ends_with(".br")) return load_prepared(path, overrides);
+  if (path.ends_with(".br") || is_checkpoint(path)) return load_prepared(path, overrides);
   refuse_unreadable(path);
   Case read;
   read.config = read_config(path, overrides);

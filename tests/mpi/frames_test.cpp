@@ -22,18 +22,22 @@ FrameWish wish_for(const std::string& field) {
 
 /// Bytes of a frame's files and picture.
 struct Made {
-  std::string points, lines, png;
+  std::string points, lines, contacts, walls, png;
   double time = 0.0;
   Extent extent{};
 };
 Made made_of(FrameOutput output) {
-  return {output.files.points, output.files.lines, output.png, output.files.time, output.extent};
+  const FrameContents& files = output.files;
+  return {files.points, files.lines, files.contacts, files.walls,
+          output.png,   files.time,  output.extent};
 }
 void expect_same(const std::vector<Made>& a, const std::vector<Made>& b, const std::string& where) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {  // no diff of binary files
     EXPECT_TRUE(a[i].points == b[i].points) << where << ", elements of frame " << i;
     EXPECT_TRUE(a[i].lines == b[i].lines) << where << ", lines of frame " << i;
+    EXPECT_TRUE(a[i].contacts == b[i].contacts) << where << ", contacts of frame " << i;
+    EXPECT_TRUE(a[i].walls == b[i].walls) << where << ", walls of frame " << i;
     EXPECT_TRUE(a[i].png == b[i].png) << where << ", picture of frame " << i;
     EXPECT_EQ(a[i].time, b[i].time) << where;
     EXPECT_EQ(a[i].extent.high.x, b[i].extent.high.x) << where;
@@ -215,7 +219,7 @@ TEST(Frames, of_many_blocks_are_the_same_by_parts) {
     const Frame whole = large_frame(triangles);
     for (const char* field : {"damage", "force"}) {
       const FrameWish wish = wish_for(field);
-      const Made expected = made_of(frame_output(whole, wish, 1));
+      const Made expected = made_of(frame_output(FramePart{whole, places_in(whole), {}}, wish, 1));
       for (const int count : {2, 3, 7}) {
         Made made;
         simulate_ranks(count, 5, [&](Communicator& ranks) {

@@ -137,13 +137,23 @@ struct ConcreteLink {
     const R borne = (1.0 + 1e-9) * link.stiffness * opening / (tensile_strength * link.area);
     return select(kept_rate < 0.0, -1.0 * kept_rate, max(one, borne));
   }
+  /// 1 - secant stiffness / K_n of an intact link after a largest opening >= 0.  [-]
+  BR_HD double damage(const LinkConstants<double>& link, double opening) const {
+    const TensionSoftening<double> t = tension(link);
+    return t.whole(opening) ? 0.0 : t.damage(opening);
+  }
+  /// Energy that an intact link has spent on its opening so far.  [J]
+  BR_HD double spent(const LinkConstants<double>& link, double opening) const {
+    const TensionSoftening<double> t = tension(link);
+    return t.whole(opening) ? 0.0 : t.spent(opening);
+  }
   /// N of a link at a stretch u, tension positive.  [N]
   BR_HD double normal_force(const LinkConstants<double>& link, double stretch,
                             double opening) const {
     const double elastic = link.stiffness * stretch;
     if (opening < 0.5 * (link_broken + link_released)) return 0.0;
     if (stretch < 0.0) return elastic;
-    return opening >= 0.0 ? (1.0 - tension(link).damage(opening)) * elastic : 0.0;
+    return opening >= 0.0 ? (1.0 - damage(link, opening)) * elastic : 0.0;
   }
   /// Energy a link stores at a stretch u.  [J]
   BR_HD double stored(const LinkConstants<double>& link, double stretch,
@@ -156,7 +166,7 @@ struct ConcreteLink {
     if (stretch < 0.0)
       energy = 0.5 * kn * stretch * stretch;
     else if (intact)
-      energy = 0.5 * kn * (1.0 - tension(link).damage(state.opening)) * stretch * stretch;
+      energy = 0.5 * kn * (1.0 - damage(link, state.opening)) * stretch * stretch;
     if (kt > 0.0) energy += dot(state.shear, state.shear) / (2.0 * kt);
     if (kr > 0.0) energy += dot(state.moment, state.moment) / (2.0 * kr);
     return energy;

@@ -28,6 +28,10 @@ struct TensionSoftening {
     return ends_given ? last * stiffness : strength * (1.0 + softening);
   }
 
+  /// Whether an opening is surely below u_1, without a division: nothing is damaged or spent.
+  BR_HD auto whole(const R& opening) const {
+    return stiffness * opening < (1.0 - 1e-12) * strength;
+  }
   /// 1 - secant stiffness / K after a largest opening.  [-]
   BR_HD R damage(const R& opening) const {
     const R u1 = onset();

@@ -205,7 +205,7 @@ struct ConcreteShares {
     const LinkState<double> state{opening[i], shear[i], moment[i]};
     s.elastic.add(law.stored(link, stretch, state));
     s.fracture.add(broke[i]);
-    if (state.opening >= 0.0) s.fracture.add(law.tension(link).spent(state.opening));
+    if (state.opening >= 0.0) s.fracture.add(law.spent(link, state.opening));
     s.plastic.add(yielded[i]);
     s.friction.add(slid[i]);
   }

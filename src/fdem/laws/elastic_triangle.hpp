@@ -58,6 +58,10 @@ struct ElasticLaw {
         scale * (dot(row_y, row_y) - 1.0) + volumetric + eta * l.yy + over_j * dot(row_y, preset_y),
         scale * dot(row_x, row_y) + 0.5 * eta * (l.xy + l.yx) + over_j * dot(row_y, preset_x)};
   }
+  /// sigma_zz of plane strain, where B_zz = 1: (lambda / 2) (J - 1 / J).  [Pa]
+  BR_HD R stress_across(const Deformation<R>& d) const {
+    return 0.5 * lambda * (d.jacobian - 1.0 / d.jacobian);
+  }
 };
 
 /// A material's law, and its energy.

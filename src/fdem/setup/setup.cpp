@@ -359,6 +359,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.time = config.time;
   given.gravity = config.gravity;
   given.in_situ = {config.in_situ.xx, config.in_situ.yy, config.in_situ.xy};
+  given.plane_strain = config.plane == "strain";
   given.local_damping = config.local_damping;
   given.shown = config.output.more_fields();
   given.conservative = config.contact.conservative;

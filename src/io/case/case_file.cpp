@@ -481,7 +481,11 @@ void CaseReader::leave() {
     if (const std::string word(key.str()); !level.known.contains(word)) {
       state_->add(&node, level.path + word + " is not a key" + suggestion(word, level.known));
       const std::string meant = nearest(word, level.known);
-      if (!meant.empty() && !level.table->contains(meant))
+      const toml::node* const there = meant.empty() ? nullptr : level.table->get(meant);
+      // One [[suport]] beside a [[support]] becomes one more of them.
+      const bool one_more =
+          there != nullptr && there->is_array_of_tables() && node.is_array_of_tables();
+      if (!meant.empty() && (there == nullptr || one_more))
         state_->correct(key.source(), word, meant);
     }
   state_->levels.pop_back();

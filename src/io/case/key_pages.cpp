@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "math/constants.hpp"
@@ -189,6 +190,16 @@ std::vector<KeyInfo> keys_about(const std::vector<KeyInfo>& keys, const std::str
     for (std::string word; stream >> word;) all = all && text.find(word) != std::string::npos;
     if (all) found.push_back(key);
   }
+  return found;
+}
+
+std::vector<KeyInfo> keys_about_each(const std::vector<KeyInfo>& keys, const std::string& words) {
+  std::vector<KeyInfo> found;
+  std::set<std::string> paths;
+  std::istringstream stream(words);
+  for (std::string word; stream >> word;)
+    for (const KeyInfo& key : keys_about(keys, word))
+      if (paths.insert(key.path).second) found.push_back(key);
   return found;
 }
 

@@ -1,5 +1,7 @@
 #include "io/case/units.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -180,6 +182,16 @@ std::string with_prefix_of(std::string_view given, const std::string& wanted) {
   return names_load(given.substr(prefix.size())) && names_load(wanted) ? prefix + wanted : "";
 }
 
+/// A unit that is one, but by a prefix that nobody means: thousandths of a pascal, a thousand
+/// kilometres, a million seconds. @returns what was meant, empty for all other units
+std::string slip_of_prefix(std::string_view given) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> slips{
+      {{"mPa", "MPa"}, {"Mm", "mm"}, {"Ms", "ms"}}};
+  for (const auto& [typed, unit] : slips)
+    if (given == typed) return std::string(unit);
+  return "";
+}
+
 /// "Pa, kPa, MPa or GPa"
 std::string units_like(const std::string& wanted, const Unit& target) {
   for (const auto& row : usual_units()) {
@@ -286,7 +298,19 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
       meant(number_and + hint + "\"");
     return 0.0;
   }
-  return times_power_of_ten(digits, unit->tens - target.tens) * (unit->factor / target.factor);
+  const double in_target =
+      times_power_of_ten(digits, unit->tens - target.tens) * (unit->factor / target.factor);
+  if (const std::string slip = slip_of_prefix(rest); !slip.empty()) {
+    problem = fmt::format("{} is {:.6g} {}: {} is {}; if it is meant, write the number in {}",
+                          quoted, in_target, wanted, rest,
+                          rest == "mPa"  ? "a thousandth of a pascal"
+                          : rest == "Mm" ? "a thousand kilometres"
+                                         : "a million seconds",
+                          wanted);
+    meant(number_and + slip + "\"");
+    return 0.0;
+  }
+  return in_target;
 }
 
 }  // namespace breccia

@@ -101,18 +101,59 @@ void draw_wall(Image& image, const FrameWall& wall, const Canvas& canvas, const 
     }
 }
 
+/// A triangle of a wall that ends, without a grid.
+void draw_triangle(Image& image, const Patch& half, const Canvas& canvas, const Scene& scene,
+                   int fine) {
+  const OnPatch on(half, scene.camera);
+  if (!(std::fabs(on.area) > 0.0)) return;  // seen from its edge
+  const auto pixels = [fine](double corner, double a, double b, int end) {
+    const double low = corner + std::min({0.0, a, b}), high = corner + std::max({0.0, a, b});
+    return std::pair{static_cast<int>(std::clamp(std::floor(low / fine), 0.0, 1.0 * end)),
+                     static_cast<int>(std::clamp(std::ceil(high / fine), 0.0, 1.0 * end))};
+  };
+  const auto [left, right] = pixels(on.corner.u, on.a_u, on.b_u, image.width);
+  const auto [top, bottom] = pixels(on.corner.v, on.a_v, on.b_v, image.height);
+  constexpr int samples = 2;
+  const double step = 1.0 * fine / samples;
+  for (int y = top; y < bottom; ++y)
+    for (int x = left; x < right; ++x) {
+      double share = 0.0;
+      for (int k = 0; k < samples * samples; ++k) {
+        const double u = fine * x + (k % samples + 0.5) * step;
+        const double v = fine * y + (k / samples + 0.5) * step;
+        const double a = on.share_a(u, v), b = on.share_b(u, v);
+        if (a < 0.0 || b < 0.0 || a + b > 1.0) continue;
+        const double depth = on.corner.depth + a * on.a_d + b * on.b_d;
+        if (scene.clip && scene.clip->beyond(u, v, depth) > 0.0) continue;
+        const std::size_t at =
+            canvas.row(static_cast<int>(v)) + static_cast<std::size_t>(static_cast<int>(u));
+        if (canvas.depth[at] >= depth) continue;
+        share += canvas.item[at] != Canvas::none ? 0.08 : 0.20;
+      }
+      if (share > 0.0)
+        mix_pixel(image, x, y, steel, static_cast<float>(share / (samples * samples)));
+    }
+}
+
 }  // namespace
 
 void draw_walls(Image& image, const std::vector<FrameWall>& walls, const Canvas& canvas,
                 const Scene& scene, const Extent& extent, int fine, int scale) {
-  for (const FrameWall& wall : walls)
-    if (!is_edge(wall, scene.camera)) draw_wall(image, wall, canvas, scene, extent, fine, scale);
+  for (const FrameWall& wall : walls) {
+    for (std::size_t k = 0; k + 2 < wall.corners.size(); k += 3)
+      draw_triangle(image,
+                    {wall.corners[k], wall.corners[k + 1] - wall.corners[k],
+                     wall.corners[k + 2] - wall.corners[k], 1.0, 1.0},
+                    canvas, scene, fine);
+    if (wall.corners.empty() && !is_edge(wall, scene.camera))
+      draw_wall(image, wall, canvas, scene, extent, fine, scale);
+  }
 }
 
 void draw_wall_edges(Paper& paper, const std::vector<FrameWall>& walls, const Camera& camera,
                      const Extent& extent, int scale) {
   for (const FrameWall& wall : walls) {
-    if (!is_edge(wall, camera)) continue;
+    if (!wall.corners.empty() || !is_edge(wall, camera)) continue;
     const Patch patch = patch_of(wall, extent);
     const ScreenPoint corner = camera.project(patch.corner);
     const ScreenPoint a = camera.project(patch.corner + patch.a),

@@ -27,8 +27,8 @@ class FrameFile {
                                              std::size_t items) const = 0;
   virtual std::vector<FrameField> fields(const std::string& section, std::size_t items) const = 0;
   virtual std::vector<std::string> groups() const = 0;
-  /// Point and normal of each wall.
-  virtual std::vector<double> walls() const = 0;
+  /// "walls": point and normal of each plane; "wall_triangles": corners, three a triangle.
+  virtual std::vector<double> walls(const std::string& name) const = 0;
 
   [[noreturn]] void fail(const std::string& what) const {
     throw IoError(path_ + ": cannot read: " + what);

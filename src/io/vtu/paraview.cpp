@@ -13,8 +13,6 @@
 namespace breccia {
 namespace {
 
-constexpr const char* kinds[] = {"elements", "links"};
-
 /// Opens a folder with spheres as spheres, coloured, at the first look.
 constexpr const char* script = R"(# paraview open_in_paraview.py
 import os
@@ -37,10 +35,17 @@ if points.GetArray("radius"):
 where = "POINTS" if points.GetArray("damage") else "CELLS"
 ColorBy(shown, (where, "damage"))
 shown.SetScalarBarVisibility(view, True)
-links = OpenDataFile(os.path.join(here, "links.LIST"))
-Hide(links, view)
 RenameSource("elements", elements)
-RenameSource("links", links)
+for kind in ("links", "contacts", "walls"):
+    path = os.path.join(here, kind + ".LIST")
+    if not os.path.exists(path):
+        continue
+    more = OpenDataFile(path)
+    RenameSource(kind, more)
+    if kind == "walls":
+        Show(more, view).Opacity = 0.3
+    else:
+        Hide(more, view)
 ResetCamera(view)
 GetAnimationScene().GoToLast()
 Render(view)
@@ -48,13 +53,13 @@ Render(view)
 
 }  // namespace
 
-std::string ParaviewSeries::file_of(const char* kind, std::size_t frame) const {
+std::string ParaviewSeries::file_of(const std::string& kind, std::size_t frame) const {
   return fmt::format("fields/{}_{:04}.{}", kind, frame,
                      format_ == FrameFormat::vtu ? "vtu" : "hdf");
 }
 
 /// ParaView's collection of files with times; several kinds become parts of one data set.
-std::string ParaviewSeries::collection(std::span<const char* const> parts) const {
+std::string ParaviewSeries::collection(std::span<const std::string> parts) const {
   std::string text =
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
@@ -69,7 +74,7 @@ std::string ParaviewSeries::collection(std::span<const char* const> parts) const
 }
 
 /// ParaView's list of other files with times, as JSON.
-std::string ParaviewSeries::series(const char* kind) const {
+std::string ParaviewSeries::series(const std::string& kind) const {
   std::string text = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [";
   for (std::size_t frame = 0; frame < times_.size(); ++frame)
     text += fmt::format("{}\n    {{\"name\": \"{}\", \"time\": {}}}", frame == 0 ? "" : ",",
@@ -88,6 +93,9 @@ ParaviewSeries ParaviewSeries::resumed(const std::string& folder, double time, F
   ParaviewSeries series(folder, format);
   if (!holds_frames(folder)) return series;
   series.times_ = frame_times(folder);
+  for (const char* kind : {"contacts", "walls"})
+    if (std::filesystem::exists(folder + "/" + series.file_of(kind, 0)))
+      series.kinds_.emplace_back(kind);
   series.listed_ = series.times_.size();
   const auto later = std::upper_bound(series.times_.begin(), series.times_.end(), time);
   series.drop_from(static_cast<std::size_t>(later - series.times_.begin()));
@@ -98,8 +106,15 @@ void ParaviewSeries::write(const FrameContents& frame) {
   const auto same = std::lower_bound(times_.begin(), times_.end(), frame.time);
   drop_from(static_cast<std::size_t>(same - times_.begin()));
   const std::string start = folder_ + "/";
-  replace_file(start + file_of(kinds[0], times_.size()), frame.points);
-  replace_file(start + file_of(kinds[1], times_.size()), frame.lines);
+  const auto add = [&](const char* kind, const std::string& content) {
+    if (content.empty()) return;
+    replace_file(start + file_of(kind, times_.size()), content);
+    if (std::find(kinds_.begin(), kinds_.end(), kind) == kinds_.end()) kinds_.emplace_back(kind);
+  };
+  add("elements", frame.points);
+  add("links", frame.lines);
+  add("contacts", frame.contacts);
+  add("walls", frame.walls);
   times_.push_back(frame.time);
   if (collections_are_due()) write_collections();
 }
@@ -116,18 +131,18 @@ bool ParaviewSeries::collections_are_due() const {
 
 void ParaviewSeries::write_collections() {
   const Clock::time_point begin = Clock::now();
-  const std::span<const char* const> all(kinds);
   const bool xml = format_ == FrameFormat::vtu;
   std::string opens = script;
   for (std::size_t place = 0; (place = opens.find("LIST")) != std::string::npos;)
     opens.replace(place, 4, xml ? "pvd" : "hdf.series");
   replace_file(folder_ + "/open_in_paraview.py", opens);
   if (xml) {
-    replace_file(folder_ + "/elements.pvd", collection(all.first(1)));
-    replace_file(folder_ + "/links.pvd", collection(all.last(1)));
-    replace_file(folder_ + "/result.pvd", collection(all));
+    for (const std::string& kind : kinds_)
+      replace_file(folder_ + "/" + kind + ".pvd", collection(std::span(&kind, 1)));
+    replace_file(folder_ + "/result.pvd", collection(kinds_));
   } else {
-    for (const char* kind : kinds) replace_file(folder_ + "/" + kind + ".hdf.series", series(kind));
+    for (const std::string& kind : kinds_)
+      replace_file(folder_ + "/" + kind + ".hdf.series", series(kind));
   }
   listed_ = times_.size();
   listed_at_ = Clock::now();
@@ -140,7 +155,7 @@ void ParaviewSeries::drop_from(std::size_t first) {
   times_.resize(first);
   write_collections();  // before the files go: at no moment does a collection name a missing file
   for (std::size_t frame = first; frame < count; ++frame) {
-    for (const char* kind : kinds) {
+    for (const std::string& kind : kinds_) {
       std::error_code ignored;  // a file that stays behind harms nobody
       std::filesystem::remove(folder_ + "/" + file_of(kind, frame), ignored);
     }

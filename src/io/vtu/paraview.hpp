@@ -14,12 +14,14 @@ namespace breccia {
 ///
 ///   fields/elements_0000.vtu  points with every point field and `radius`; vertices, or triangles
 ///   fields/links_0000.vtu     the lines with every line field
-///   elements.pvd, links.pvd   each series with its times; result.pvd: both in one,
-///                             as parts of these names
+///   fields/contacts_0000.vtu  what touches without a link: lines with their force
+///   fields/walls_0000.vtu     walls as triangles, with the force on each; where there are some
+///   elements.pvd, links.pvd, contacts.pvd, walls.pvd
+///                             each series with its times; result.pvd: all in one, as parts of
+///                             these names
 ///   open_in_paraview.py       shows them, spheres as spheres: paraview open_in_paraview.py
 ///
-/// or, as VTKHDF, elements_0000.hdf and links_0000.hdf, listed in elements.hdf.series and
-/// links.hdf.series.
+/// or, as VTKHDF, elements_0000.hdf and so on, listed in elements.hdf.series and so on.
 ///
 /// Zlib blocks; numbers as Float32. The lists are replaced as a whole,
 /// so a run that is killed leaves a series that opens. A few hundred frames are in them as soon as
@@ -48,14 +50,15 @@ class ParaviewSeries {
   using Clock = std::chrono::steady_clock;
 
   void write_collections();
-  std::string file_of(const char* kind, std::size_t frame) const;
-  std::string collection(std::span<const char* const> parts) const;
-  std::string series(const char* kind) const;
+  std::string file_of(const std::string& kind, std::size_t frame) const;
+  std::string collection(std::span<const std::string> parts) const;
+  std::string series(const std::string& kind) const;
   bool collections_are_due() const;
   void drop_from(std::size_t first);
 
   std::string folder_;
   FrameFormat format_;
+  std::vector<std::string> kinds_{"elements", "links"};  ///< of files, in their order
   std::vector<double> times_;
   std::size_t listed_ = 0;         ///< frames in the lists
   Clock::time_point listed_at_{};  ///< when they had been written last

@@ -215,9 +215,9 @@ class VtkhdfFile final : public FrameFile {
     const std::vector<char> codes = field_data<char>("groups");
     return names_in({codes.begin(), codes.end()});
   }
-  std::vector<double> walls() const override {
+  std::vector<double> walls(const std::string& name) const override {
     const std::lock_guard lock(door());
-    return field_data<double>("walls");
+    return field_data<double>(name.c_str());
   }
 
  private:

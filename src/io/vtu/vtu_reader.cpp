@@ -15,6 +15,7 @@
 
 #include "exec/error.hpp"
 #include "io/vtu/paraview.hpp"
+#include "io/vtu/plane_tensors.hpp"
 #include "io/vtu/vtkhdf.hpp"
 #include "io/whole_file.hpp"
 
@@ -112,9 +113,10 @@ class VtuFile final : public FrameFile {
 
   std::vector<std::string> groups() const override { return groups_; }
 
-  std::vector<double> walls() const override {
+  std::vector<double> walls(const std::string& name) const override {
+    const int width = name == "walls" ? 6 : 9;
     for (const Array& array : arrays_)
-      if (array.section == "FieldData" && array.name == "walls" && array.components == 6 &&
+      if (array.section == "FieldData" && array.name == name && array.components == width &&
           array.tuples < 1U << 20)
         return values<double>(array, array.tuples);
     return {};
@@ -321,6 +323,10 @@ std::vector<Entry> entries_of_series(const std::string& path) {
 }
 
 std::vector<Entry> entries_of(const std::string& folder, const std::string& kind) {
+  if (!holds_frames(folder))
+    throw IoError(folder + (std::filesystem::is_directory(folder)
+                                ? ": cannot be read: there are no frames of a run in this folder"
+                                : ": cannot be read: there is no such folder"));
   if (format_of_frames(folder) == FrameFormat::vtkhdf)
     return entries_of_series(folder + "/" + kind + ".hdf.series");
   return entries_of_pvd(folder + "/" + kind + ".pvd");
@@ -357,10 +363,14 @@ Frame read_frame(const std::string& folder, int index) {
   frame.time = elements.numbers("FieldData", "TIME", 1).front();
   frame.step = static_cast<std::int64_t>(elements.numbers("FieldData", "CYCLE", 1).front());
   frame.groups = elements.groups();
-  const auto walls = elements.walls();
+  const auto walls = elements.walls("walls"), ended = elements.walls("wall_triangles");
   for (std::size_t i = 0; i + 5 < walls.size(); i += 6)
     frame.walls.push_back(
         {{walls[i], walls[i + 1], walls[i + 2]}, {walls[i + 3], walls[i + 4], walls[i + 5]}});
+  if (!ended.empty()) frame.walls.emplace_back();
+  for (std::size_t i = 0; i + 8 < ended.size(); i += 9)
+    for (std::size_t k = i; k < i + 9; k += 3)
+      frame.walls.back().corners.push_back({ended[k], ended[k + 1], ended[k + 2]});
   const auto coordinates = elements.numbers("Points", "Points", elements.points());
   for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3) {
     frame.position.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
@@ -373,7 +383,7 @@ Frame read_frame(const std::string& folder, int index) {
   }
   if (has_triangles(elements)) {
     frame.triangles = connectivity(elements, 3);
-    frame.triangle_fields = elements.fields("CellData", elements.cells());
+    frame.triangle_fields = tensors_parted(elements.fields("CellData", elements.cells()));
   }
   const std::vector<Entry> link_entries = entries_of(folder, "links");
   if (number < link_entries.size()) {

@@ -10,6 +10,7 @@
 
 #include "exec/error.hpp"
 #include "exec/tasks.hpp"
+#include "io/vtu/plane_tensors.hpp"
 
 namespace breccia {
 namespace {
@@ -96,7 +97,8 @@ FrameBlocks::FrameBlocks(const Frame& part, const FramePlaces& places, FrameForm
     : part_(part),
       places_(places),
       format_(format),
-      radius_(part.radius.begin(), part.radius.end()) {
+      radius_(part.radius.begin(), part.radius.end()),
+      triangle_fields_(tensors_joined(part.triangle_fields)) {
   coordinates_.reserve(3 * part.position.size());
   for (const Vec3& point : part.position)
     for (const double c : {point.x, point.y, point.z})
@@ -186,20 +188,34 @@ void FrameBlocks::list_groups(Document& document) {
   head += "</DataArray>\n";
 }
 
+/// Planes without end by point and normal; the others by their triangles.
+void FrameBlocks::list_walls(Document& document) {
+  std::vector<double> planes, triangles;
+  const auto add = [](std::vector<double>& to, const Vec3& v) {
+    to.insert(to.end(), {v.x, v.y, v.z});
+  };
+  for (const FrameWall& wall : part_.walls) {
+    for (const Vec3& corner : wall.corners) add(triangles, corner);
+    if (!wall.corners.empty()) continue;
+    add(planes, wall.point);
+    add(planes, wall.normal);
+  }
+  const auto list = [&](const char* name, const std::vector<double>& numbers, std::size_t width) {
+    if (numbers.empty()) return;
+    const auto number = [numbers](std::size_t i) { return numbers[i]; };
+    place(document, {field_data, name, "", type_of<double>(), numbers.size() / width, width,
+                     add_made<double>(numbers.size(), number, width)});
+  };
+  list("walls", planes, 6);
+  list("wall_triangles", triangles, 9);
+}
+
 void FrameBlocks::list_field_data(Document& document) {
   document.text.back() += "<FieldData>\n";
   place(document, {field_data, "TIME", "s", type_of<double>(), 1, 1, time_});
   place(document, {field_data, "CYCLE", "", type_of<std::int64_t>(), 1, 1, step_});
   list_groups(document);
-  if (!part_.walls.empty()) {
-    const auto number = [walls = part_.walls](std::size_t i) {
-      const FrameWall& wall = walls[i / 6];
-      const Vec3& v = i % 6 < 3 ? wall.point : wall.normal;
-      return i % 3 == 0 ? v.x : i % 3 == 1 ? v.y : v.z;
-    };
-    place(document, {field_data, "walls", "", type_of<double>(), part_.walls.size(), 6,
-                     add_made<double>(6 * part_.walls.size(), number, 6)});
-  }
+  list_walls(document);
   document.text.back() += "</FieldData>\n";
 }
 
@@ -274,7 +290,7 @@ void FrameBlocks::list(Document& document, Cells cells) {
   }
   document.text.back() += "</PointData>\n<CellData>\n";
   if (cells == Cells::lines) list_fields(document, part_.line_fields, Carrier::lines);
-  if (cells == Cells::triangles) list_fields(document, part_.triangle_fields, Carrier::triangles);
+  if (cells == Cells::triangles) list_fields(document, triangle_fields_, Carrier::triangles);
   document.text.back() += "</CellData>\n<Points>\n";
   place(document, {"Points", "Points", "m", type_of<float>(), items(Carrier::points), 3, points_});
   document.text.back() += "</Points>\n";

@@ -25,9 +25,11 @@ FrameFormat frame_format(const std::string& word);
 
 /// The files of one frame.
 struct FrameContents {
-  double time = 0.0;   ///<  [s]
-  std::string points;  ///< vertices or triangles, with every field of points and `radius`
-  std::string lines;   ///< lines with their fields
+  double time = 0.0;          ///<  [s]
+  std::string points;         ///< vertices or triangles, with every field of points and `radius`
+  std::string lines;          ///< lines with their fields
+  std::string contacts = {};  ///< lines between what touches; empty: no such file
+  std::string walls = {};     ///< triangles; empty: no such file
 };
 
 /// The files of a frame as blocks, each of which is compressed by itself: by any thread, on any
@@ -84,6 +86,7 @@ class FrameBlocks {
 
   void list(Document& document, Cells cells);
   void list_field_data(Document& document);
+  void list_walls(Document& document);
   void list_groups(Document& document);
   void list_fields(Document& document, const std::vector<FrameField>& fields, Carrier carrier);
   template <class Number>
@@ -106,6 +109,7 @@ class FrameBlocks {
   const FramePlaces& places_;
   FrameFormat format_;
   std::vector<float> coordinates_, radius_;
+  std::vector<FrameField> triangle_fields_;  ///< of the part, parts of tensors as one field
   std::vector<Array> arrays_;
   std::vector<Block> blocks_;
   std::size_t points_ = 0, time_ = 0, step_ = 0;  ///< arrays that both files have

@@ -9,6 +9,7 @@
 #include "dem/observe.hpp"
 #include "dem/stress.hpp"
 #include "domain/drift.hpp"
+#include "run/frames/wall_triangles.hpp"
 #include "run/method/dem_method.hpp"
 
 namespace breccia {
@@ -52,7 +53,8 @@ class DemFrame {
     f.step = w_.step;
     f.time = w_.time;
     for (std::size_t g = 0; g < all.bodies; ++g) f.groups.push_back(w_.given->sets[g].name);
-    for (const Wall& wall : w_.walls) f.walls.push_back({wall.point, wall.normal});
+    for (const Wall& wall : w_.walls)
+      f.walls.push_back({wall.point, wall.normal, wall_triangles(wall)});
     add_elements();
     if (w_.given->sets.size() > all.bodies) {
       constexpr std::uint8_t places = fixed_x | fixed_y | fixed_z;
@@ -63,6 +65,7 @@ class DemFrame {
     }
     add_more();
     add_links(all);
+    add_contacts();
     FramePlaces& places = part_.places;
     places.whole = w_.domain.single_rank();
     places.has_spheres = true;
@@ -185,6 +188,32 @@ class DemFrame {
     part_.frame.line_fields.push_back(whole_numbers("kind", std::move(kinds_)));
     part_.frame.line_fields.push_back(whole_numbers("state", std::move(states_)));
     part_.frame.line_fields.push_back(std::move(force_));
+  }
+
+  /// What presses on what, by the forces of the last step.
+  void add_contacts() {
+    const auto& state = elements_->state;
+    const auto& id = elements_->id;
+    const OnHost actions(w_.contact_actions, w_.exec.space);
+    const OnHost a(w_.contacts.pairs.a, w_.exec.space), b(w_.contacts.pairs.b, w_.exec.space);
+    for (Index i = 0; i < w_.contacts.size(); ++i) {
+      const Index from = a->data()[i], to = b->data()[i];
+      const Vec3 force = actions->data()[i].force_on_b();
+      if (!w_.domain.owns(from) || dot(force, force) == 0.0) continue;
+      part_.contacts.push_back({id.data()[from], id.data()[to], state.data()[from].position,
+                                state.data()[to].position, force});
+    }
+    const OnHost of(w_.wall_contacts.pairs.a, w_.exec.space);
+    const OnHost wall(w_.wall_contacts.pairs.b, w_.exec.space);
+    const OnHost on_wall(w_.wall_contacts.history.on_wall, w_.exec.space);
+    for (Index i = 0; i < w_.wall_contacts.size(); ++i) {
+      const Index from = of->data()[i], k = wall->data()[i];
+      const Vec3& force = on_wall->data()[i];
+      if (!w_.domain.owns(from) || dot(force, force) == 0.0) continue;
+      const Vec3& x = state.data()[from].position;
+      const WallTouch at = touch(w_.walls[static_cast<std::size_t>(k)], x);
+      part_.contacts.push_back({id.data()[from], -1 - k, x, x - at.height * at.normal, force});
+    }
   }
 
   template <class Links>

@@ -179,9 +179,10 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
     f.triangle_fields.push_back(whole_numbers(name, std::move(numbers)));
   };
   const std::vector<Sym2> stress = stresses(w);
-  const std::vector<double> lost = damage(w);
+  const std::vector<double> across = stresses_across(w), lost = damage(w);
   field("stress_xx", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xx; });
   field("stress_yy", "Pa", [&](Index i, std::size_t) { return stress[at(i)].yy; });
+  field("stress_zz", "Pa", [&](Index i, std::size_t) { return across[at(i)]; });
   field("stress_xy", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xy; });
   field("pressure", "Pa",
         [&](Index i, std::size_t) { return -0.5 * (stress[at(i)].xx + stress[at(i)].yy); });
@@ -253,6 +254,25 @@ void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& 
   f.line_fields.push_back(std::move(time));
 }
 
+/// Couples that press on each other, by the forces of the last step: between centroids.
+std::vector<FrameContact> contacts_of(const World& w, const Triangles& t) {
+  std::vector<FrameContact> contacts;
+  const OnHost a(w.couples.pairs.a, w.exec.space), b(w.couples.pairs.b, w.exec.space);
+  const auto middle = [&](Index i) { return centroid(t.nodes.data()[i]); };
+  with_number(w.couples.history.precision, [&](auto number) {
+    const OnHost forces(w.couples.history.force.as<decltype(number)>(), w.exec.space);
+    for (Index i = 0; i < w.couples.size(); ++i) {
+      const Index from = a->data()[i], to = b->data()[i];
+      Vec3 force{};
+      for (const auto& corner : forces->data()[i].on_b.at)
+        force += Vec3{static_cast<double>(corner.x), static_cast<double>(corner.y), 0.0};
+      if (!w.domain.owns(from) || dot(force, force) == 0.0) continue;
+      contacts.push_back({t.id.data()[from], t.id.data()[to], middle(from), middle(to), force});
+    }
+  });
+  return contacts;
+}
+
 /// Where the items of a part stand in the whole.
 FramePlaces places_of(const Triangles& t, const Own& own, const Placed& placed) {
   FramePlaces places;
@@ -293,6 +313,7 @@ FramePart fdem_frame(World& w, const World* mesh) {
   add_triangles(w, *triangles, velocity, own, known, f);
   add_lines(*triangles, *joints, velocity, own, known, f);
   add_more(w, *triangles, *joints, own, f);
+  part.contacts = contacts_of(w, *triangles);
   if (!w.domain.single_rank()) part.places = places_of(*triangles, own, known);
   part.places.whole = w.domain.single_rank();
   part.places.triangles = own.shown;

@@ -1,6 +1,9 @@
 #include "run/frames/frame_output.hpp"
 
+#include <utility>
+
 #include "exec/tasks.hpp"
+#include "io/vtu/touching.hpp"
 
 namespace breccia {
 
@@ -39,6 +42,15 @@ FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads)
       output.png = png_content(image);
   });
   if (files) output.files = files->contents(packed);
+  return output;
+}
+
+FrameOutput frame_output(const FramePart& whole, const FrameWish& wish, int threads) {
+  FrameOutput output = frame_output(whole.frame, wish, threads);
+  if (!wish.files) return output;
+  Touching touching{whole.contacts, {}, !whole.frame.triangles.empty()};
+  touching.around.add(whole.frame.position);
+  add_touching(output.files, whole.frame, std::move(touching), wish.format, threads);
   return output;
 }
 

@@ -30,6 +30,9 @@ struct FrameOutput {
 /// bytes for any number of them.
 FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads);
 
+/// Likewise, with the files of what touches.
+FrameOutput frame_output(const FramePart& whole, const FrameWish& wish, int threads);
+
 /// The picture that is wished for; notes what it shows.
 Image drawn(const Frame& whole, const FrameWish& wish, int threads, FrameOutput& output);
 

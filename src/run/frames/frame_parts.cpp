@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exec/tasks.hpp"
+#include "io/vtu/touching.hpp"
 
 namespace breccia {
 namespace {
@@ -253,6 +254,12 @@ Message FrameOfParts::share() {
     put_value(share, block.size());
     put_bytes(share, block.data(), block.size());
   }
+  if (files_) {
+    Around around;
+    around.add(part_.frame.position);
+    put_value(share, around);
+    put_array(share, part_.contacts);
+  }
   return share;
 }
 
@@ -267,7 +274,16 @@ FrameOutput FrameOfParts::output() {
     const std::span<const std::byte> block = share.bytes(share.value<std::size_t>());
     packed.emplace_back(reinterpret_cast<const char*>(block.data()), block.size());
   }
-  if (files_) output_.files = files_->contents(packed);
+  if (!files_) return std::move(output_);
+  output_.files = files_->contents(packed);
+  Touching touching;
+  touching.plane = part_.places.triangles > 0;
+  for (Unpacking& share : from) {
+    touching.around.add(share.value<Around>());
+    const std::vector<FrameContact> own = share.array<FrameContact>();
+    touching.contacts.insert(touching.contacts.end(), own.begin(), own.end());
+  }
+  add_touching(output_.files, part_.frame, std::move(touching), wish_.format, threads_);
   return std::move(output_);
 }
 

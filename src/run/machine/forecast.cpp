@@ -60,16 +60,39 @@ double wall_of(double steps, double items, double pace) {
 
 constexpr double bytes_of_facet = 450.0;  // of cases/rc_slab_ldpm, elements included
 
+/// Pixels of a picture of a run, by what is known before its model is.
+double pixels_of(const OutputConfig& output) {
+  const double width = output.width;
+  return width * (output.height > 0 ? 1.0 * output.height : 0.75 * width);
+}
+double rows_of(const CaseConfig& config) {
+  return config.output.history > 0.0 ? config.time.end / config.output.history : 1000;
+}
+
+/// Processor time of output, as measured on small cases of both methods.
+struct OutputRates {
+  double row;    ///< of an item or bond in a row of history.csv  [s]
+  double frame;  ///< of an item or bond in a frame's files  [s]
+  double pixel;  ///< of a picture  [s]
+};
+void add_output(Forecast& f, const CaseConfig& config, const OutputRates& rates) {
+  constexpr double begun_row = 15e-6, begun_frame = 4e-3;  // whatever the model's size  [s]
+  const double parts = f.items + f.bonds;
+  const double rows = std::min(rows_of(config), f.steps), frames = config.output.frames + 1.0;
+  const bool framed = config.output.frames > 0;
+  const double fields = framed && config.output.fields ? begun_frame + rates.frame * parts : 0.0;
+  const double picture =
+      framed && config.output.pictures ? rates.pixel * pixels_of(config.output) : 0.0;
+  f.output_s = rows * (begun_row + rates.row * parts) + frames * (fields + picture);
+}
+
 /// Bytes of a result folder, as small cases of both methods leave them.
 struct DiskRates {
   double element, bond, checkpoint, picture;
 };
 void add_disk(Forecast& f, const CaseConfig& config, std::size_t columns, const DiskRates& rates) {
   const double frames = config.output.frames + 1.0;
-  const double rows = config.output.history > 0.0 ? config.time.end / config.output.history : 1000;
-  const double width = config.output.width;
-  const double pixels =
-      width * (config.output.height > 0 ? 1.0 * config.output.height : 0.75 * width);
+  const double rows = rows_of(config), pixels = pixels_of(config.output);
   const double fields =
       config.output.fields ? frames * (rates.element * f.items + rates.bond * f.bonds) : 0.0;
   const double pictures = config.output.pictures ? frames * rates.picture * pixels : 0.0;
@@ -323,6 +346,7 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
   f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
   if (facets == 0.0) f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);
   f.memory = memory_plan(config).run_bytes + bytes_of_facet * facets;
+  add_output(f, config, {45e-9, 0.3e-6, 45e-9});
   add_disk(f, config, 14 + config.probes.size(), {42.0, 9.1, 830.0, 0.65});
   return f;
 }
@@ -368,9 +392,13 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   take_step(f, (free_mesh ? least_of_free_mesh : 1.0) * method->time_step(),
             (rule.empty() ? "triangles" : rule) + " (finest mesh: " + of + ")");
   finish(f, config.time);
-  f.here_s = wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
+  // Bodies that press on each other cost contacts, which specimens lack.
+  const double contacts = config.bodies.size() > 1 ? 1.5 : 1.0;
+  f.here_s =
+      contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
   f.gpu_s = f.steps * std::max(16e-6, 4.7e-6 + 0.22e-9 * f.items);
   f.memory = memory_plan(config).run_bytes;
+  add_output(f, config, {100e-9, 0.6e-6, 100e-9});
   add_disk(f, config, 14 + config.probes.size(), {55.0, 10.0, 760.0, 0.066});
   return f;
 }

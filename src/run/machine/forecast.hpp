@@ -9,7 +9,7 @@
 namespace breccia {
 
 /// The cost of a run as its start lets expect it: contacts and fragments to come make it dearer.
-/// Everything but counts of packed elements is an estimate, mostly within a third.
+/// Everything but counts of packed elements is an estimate, mostly within a half.
 struct Forecast {
   double items = 0.0;  ///< elements or triangles; 0: only the mesh program tells
   double bonds = 0.0;  ///< links or joints at the start
@@ -18,6 +18,7 @@ struct Forecast {
   std::string step_rule;     ///< "joints of beam (mesh_size 5 mm)"
   double steps = 0.0;        ///< to time.end
   double here_s = 0.0;       ///< wall time of the steps on all processors of this machine  [s]
+  double output_s = 0.0;     ///< rows, frames and pictures, besides  [s]
   double gpu_s = 0.0;        ///< on an H200, by bench/notes/gpu.md; 0: not measured  [s]
   double memory = 0.0;       ///< [bytes]
   double disk = 0.0;         ///< of the result folder at the end  [bytes]

@@ -132,6 +132,7 @@ class SharedWorld {
   Advanced advance_part(const StopAt& stop) {
     World& w = *part_;
     const double waited_before = ranks_->waited();
+    rebalance(w);  // before steps: output sees the forces of contacts, which do not migrate
     w.domain.pace.resume(*ranks_);
     Advanced taken;
     do {
@@ -141,7 +142,6 @@ class SharedWorld {
       taken.steps += more.steps;
     } while (w.step < stop.step && w.time < stop.time);
     w.domain.pace.pause(*ranks_);
-    rebalance(w);
     waited_ += ranks_->waited() - waited_before;
     return taken;
   }

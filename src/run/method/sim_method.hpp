@@ -178,7 +178,7 @@ class SimMethod final : public Method {
   FrameOutput frame_output(const FrameWish& wish) override {
     World& w = world_.part();
     const int threads = w.exec.threads;
-    if (single_rank()) return breccia::frame_output(Sim::frame(w, nullptr).frame, wish, threads);
+    if (single_rank()) return breccia::frame_output(Sim::frame(w, nullptr), wish, threads);
     FrameOutput output;
     at_once(world_.ranks(), [&] {
       const World* const mesh = leads(world_.ranks()) ? &world_.mesh() : nullptr;

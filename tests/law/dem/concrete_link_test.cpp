@@ -85,6 +85,17 @@ TEST(ConcreteLink, with_a_given_rupture_opening_costs_its_energy_whatever_its_le
   }
 }
 
+TEST(ConcreteLink, is_known_to_be_whole_without_a_division) {
+  const ConcreteLink l = law();
+  const TensionSoftening<double> t = l.tension(link);
+  for (const double share : {0.0, 0.5, 0.999, 1.0 - 1e-13, 1.0, 1.0 + 1e-13, 1.001, 3.0, 10.9}) {
+    EXPECT_EQ(l.damage(link, share * onset), share == 0.0 ? 0.0 : t.damage(share * onset)) << share;
+    EXPECT_EQ(l.spent(link, share * onset), t.spent(share * onset)) << share;
+  }
+  EXPECT_TRUE(t.whole(0.999 * onset));
+  EXPECT_FALSE(t.whole(onset));
+}
+
 TEST(ConcreteLink, the_peak_is_the_strength_and_the_fall_is_linear) {
   LinkState<double> state{};
   Pair pair;

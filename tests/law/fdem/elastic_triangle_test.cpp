@@ -34,6 +34,13 @@ struct Example {
   Deformation<double> now() const { return deformation(shape_inverse, x, v); }
 };
 
+TEST(ElasticTriangle, presses_across_the_plane_as_hooke_says_where_strains_are_small) {
+  const Example e({1.0 + 1e-6, 2e-7, 2e-7, 1.0 - 4e-6});
+  const ElasticTriangle law = law_of(false);
+  const Sym2 s = law.stress(e.now(), 0.0);
+  EXPECT_NEAR(law.stress_across(e.now()) / (poisson * (s.xx + s.yy)), 1.0, 1e-5);
+}
+
 TEST(ElasticTriangle, has_the_reference_stress_and_forces_in_plane_strain) {
   const Example e;
   EXPECT_NEAR(e.now().jacobian, 1.00049675, 1e-12);

@@ -65,7 +65,11 @@ Frame triangle_frame(double time) {
   Frame frame = small_frame(time, 4);
   frame.radius.clear();
   frame.triangles = {0, 1, 2, 1, 2, 3};
-  frame.triangle_fields = {{"stress", "Pa", 3, {1, 2, 3, 4, 5, 6}}};
+  frame.triangle_fields = {{"stress_xx", "Pa", 1, {1, 2}},
+                           {"stress_yy", "Pa", 1, {3, 4}},
+                           {"stress_zz", "Pa", 1, {7, 8}},
+                           {"stress_xy", "Pa", 1, {5, 6}},
+                           whole_numbers("group", {0, 1})};
   return frame;
 }
 

@@ -19,3 +19,6 @@ assert ids.dtype == "int32" and ids.tolist() == [2**24 + 1 + i for i in range(4)
 assert elements.point_data["damage"].dtype == "float32" and elements.point_data["damage"][0] == -7.5
 assert elements.point_data["velocity"].shape == (4, 3)
 assert lines.cells[0].type == "line" and lines.cell_data["kind"][0].tolist() == [0, 1, 2]
+stress = elements.cell_data["stress"][0]
+assert stress.tolist() == [[1, 3, 7, 5, 0, 0], [2, 4, 8, 6, 0, 0]], stress  # xx, yy, zz, xy, yz, xz
+assert sorted(elements.cell_data) == ["group", "stress"], elements.cell_data

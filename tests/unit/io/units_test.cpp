@@ -96,13 +96,24 @@ TEST(Units, slips_of_the_pen_are_told_with_what_was_meant) {
       {"inf", "m", "inf"},
       {"-Inf", "m", "-inf"},
       {"5 kg/m**3", "kg/m3", "\"5 kg/m3\""},
-      {"4 MM", "m", "\"4 mm\""}};
+      {"4 MM", "m", "\"4 mm\""},
+      {"26 mPa", "Pa", "\"26 MPa\""},
+      {"8 Mm", "m", "\"8 mm\""},
+      {"5Ms", "s", "\"5 ms\""}};
   for (const auto& [text, wanted, meant] : slips) {
     std::string problem, better;
     parse_quantity(text, wanted, problem, &better);
     EXPECT_EQ(better, meant) << text;
     EXPECT_TRUE(problem.ends_with("; try " + std::string(meant))) << problem;
   }
+}
+
+TEST(Units, thousandths_of_a_pascal_are_told_for_what_they_are) {
+  EXPECT_EQ(problem_of("26 mPa", "Pa"),
+            "\"26 mPa\" is 0.026 Pa: mPa is a thousandth of a pascal; if it is meant, write the "
+            "number in Pa; try \"26 MPa\"");
+  EXPECT_EQ(problem_of("26 mN", "N"), "");
+  EXPECT_EQ(problem_of("26 mJ", "J"), "");
 }
 
 }  // namespace units_test

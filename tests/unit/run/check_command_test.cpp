@@ -61,6 +61,10 @@ TEST(Forecast, of_a_plate_is_near_what_the_model_has) {
   EXPECT_NEAR(f.steps, 1e-3 / f.step, 1.0);
   EXPECT_GT(f.here_s, 1e-9 * f.steps * f.items);
   EXPECT_LT(f.here_s, 1e-5 * f.steps * f.items);
+  fdem::Config silent = config;
+  silent.output.frames = 0;
+  silent.output.history = config.time.end;
+  EXPECT_GT(f.output_s, 10.0 * forecast(silent, ".").output_s);
   EXPECT_TRUE(has(f.step_rule, "joints") && has(f.step_rule, "5 mm")) << f.step_rule;
 }
 
@@ -141,6 +145,20 @@ TEST(CheckCommand, fix_writes_the_case_with_slips_corrected_and_checks_that) {
   EXPECT_EQ(read_whole_file(folder.path() + "/beam.fixed.toml"), beam);
   EXPECT_EQ(read_whole_file(folder.path() + "/beam.toml"), wrong);
   EXPECT_TRUE(has(told.text, "line 6: yung -> young")) << told.text;
+}
+
+TEST(CheckCommand, fix_corrects_each_table_of_a_list) {
+  const ScratchFolder folder;
+  const std::string two = beam +
+                          "[[support]]\nname = \"right\"\nmin = [\"140 mm\", \"-21 mm\"]\n"
+                          "max = [\"151 mm\", \"-19 mm\"]\n";
+  std::string wrong = two;
+  for (std::size_t at = 0; (at = wrong.find("[[support]]", at)) != std::string::npos;)
+    wrong.replace(at, 11, "[[suport]]");
+  replace_file(folder.path() + "/beam.toml", wrong);
+  const Told told = told_by(folder, "check --fix " + folder.path() + "/beam.toml");
+  EXPECT_EQ(told.exit_code, 0) << told.text;
+  EXPECT_EQ(read_whole_file(folder.path() + "/beam.fixed.toml"), two);
 }
 
 TEST(CaseName, is_the_stem_and_of_a_case_folder_its_name) {

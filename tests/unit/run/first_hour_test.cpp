@@ -71,10 +71,27 @@ TEST_F(FirstHour, explain_tells_formula_and_draws_the_law) {
 TEST_F(FirstHour, keys_are_found_by_words_and_near_words_are_told) {
   EXPECT_EQ(run("keys young"), 0);
   EXPECT_TRUE(says("young = \"30 GPa\"")) << told;
+  EXPECT_EQ(run("keys young poisson"), 0);  // no key is about both
+  EXPECT_TRUE(says("young = \"30 GPa\"") && says("poisson = 0.2")) << told;
+  EXPECT_EQ(run("keys friction angle"), 0);
+  EXPECT_FALSE(says("spin")) << told;
   EXPECT_EQ(run("keys supprt"), 2);
   EXPECT_TRUE(says("did you mean support?")) << told;
   EXPECT_EQ(run("keys --schema"), 0);
   EXPECT_TRUE(says("json-schema.org")) << told;
+}
+
+TEST_F(FirstHour, a_time_to_end_at_may_have_a_unit_and_a_model_any_name) {
+  ASSERT_EQ(run("new slab"), 0) << told;
+  ASSERT_EQ(run("prepare slab.toml -o model"), 0) << told;
+  const std::string go = "run model --force --set output.frames=0 -o out";
+  EXPECT_EQ(run(go + " --until 20us"), 0) << told;
+  EXPECT_TRUE(read_whole_file(folder / "out/summary.json").find("\"time\": 2.") !=
+              std::string::npos);
+  EXPECT_EQ(run(go + " --until 20kg"), 2);
+  EXPECT_TRUE(says("20kg is no time such as 0.002 (s) or 2ms")) << told;
+  EXPECT_EQ(run("render nowhere"), 3);
+  EXPECT_TRUE(says("nowhere: cannot be read: there is no such folder")) << told;
 }
 
 }  // namespace first_hour_test
