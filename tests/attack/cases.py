@@ -9,7 +9,7 @@ import re
 import sys
 import time
 
-from common import Attack, CASES, EXIT_CODES, arguments, breccia, checkpoints, resume, run, state_hash
+from common import Attack, CASES, EXIT_CODES, HERE, arguments, breccia, checkpoints, resume, run, state_hash
 
 
 def mistake(text, random_):
@@ -113,24 +113,42 @@ def full(options):
 
 
 def long(options):
-    """Three times the frames may take no more than four times as long."""
-    attack = Attack("long outputs", "frames")
-    taken = []
-    for frames in (300, 900):
-        begun = os.times().children_user
-        code, text = breccia("run", CASES["fdem"], "-o", attack.path("r"), "--force", "--threads", "1", "-q",
-                             "--steps", "900", "--until", "8.4e-6", "--set", f"output.frames={frames}",
-                             "--set", "output.pictures=false", timeout=600)
-        attack.expect(code == 0, f"{code}: {text[-300:]}")
-        taken.append(os.times().children_user - begun)
-        attack.runs += frames
-    attack.expect(taken[1] < 4 * taken[0] + 0.5, f"{taken} s")
-    attack.note = f"({taken[0]:.1f} and {taken[1]:.1f} s)"
-    return attack.end()
+    """Ten times the frames, or rows, may take no more than fourteen times as long."""
+    result = 0
+    small = 1000 if options.runs >= 1000 else 100
+    cases = {"frames": (small, 8.4e-9, [CASES["fdem"]], "output.frames={count}", "elements.pvd", "DataSet"),
+             "rows": (100 * small, 1e-6, [os.path.join(HERE, "rows.toml"), "--set", "time.max_step=1e-6"],
+                      "output.history=1e-6", "history.csv", "\n")}
+    for unit, (few, step, words, every, name, mark) in cases.items():
+        attack = Attack(f"long outputs: {unit}", unit)
+        taken = []
+        for count in (few, 10 * few):
+            begun = os.times().children_user
+            code, text = breccia("run", words[0], "-o", attack.path("r"), "--force", "--threads", "1", "-q", *words[1:],
+                                 "--set", f"time.end={count * step}", "--set", every.format(count=count),
+                                 "--set", "output.pictures=false", "--set", "checkpoint.steps=0", timeout=600)
+            attack.expect(code == 0, f"{code}: {text[-300:]}")
+            taken.append(os.times().children_user - begun)
+            with open(attack.path("r", name)) as file:
+                written = file.read().count(mark)
+            attack.expect(written > 0.85 * count, f"{written} of {count} {unit} in {name}")
+            attack.runs += written
+        attack.expect(taken[1] < 14 * taken[0] + 0.5, f"{taken} s")
+        attack.note = f"({taken[0]:.1f} and {taken[1]:.1f} s)"
+        result |= attack.end()
+    return result
+
+
+PARTS = {"typos": typos, "absurd": absurd, "full": full, "long": long}
 
 
 def main():
-    options = arguments(__doc__, 100).parse_args()
+    parser = arguments(__doc__, 100)
+    parser.add_argument("--part", choices=PARTS, help="only this one")
+    options = parser.parse_args()
+    if options.part is not None:
+        options.seconds *= {"typos": 4, "absurd": 4, "full": 4, "long": 1}[options.part]
+        return PARTS[options.part](options)
     return typos(options) | absurd(options) | full(options) | long(options)
 
 

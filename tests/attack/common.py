@@ -49,7 +49,11 @@ class Attack:
 
 
 def memory_folder():
-    return "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+    """A disk in memory, if there is one of some size (that of a container is small)."""
+    if not os.access("/dev/shm", os.W_OK):
+        return None
+    about = os.statvfs("/dev/shm")
+    return "/dev/shm" if about.f_bavail * about.f_frsize > 4e9 else None
 
 
 def arguments(about, runs):
