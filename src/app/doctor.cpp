@@ -18,6 +18,7 @@
 #include "exec/error.hpp"
 #include "io/file.hpp"
 #include "io/vtu/vtkhdf.hpp"
+#include "prepare/meshing/meshing.hpp"
 #include "run/machine/machine.hpp"
 #include "run/machine/memory_plan.hpp"
 
@@ -26,23 +27,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a program is that the shell would start; empty: nowhere.
-std::string on_path(const std::string& program) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string file = folder + "/" + program;
-    if (::access(file.c_str(), X_OK) == 0 && fs::is_regular_file(file)) return file;
-  }
-  return "";
-}
-
 void line(bool good, const std::string& what, const std::string& words) {
   fmt::print("  {} {:<10}{}\n", good ? "yes" : "no ", what, words);
 }
 
 void tell_program(const std::string& program, const char* use, const char* package) {
-  const std::string file = on_path(program);
+  const std::string file = prepare::on_path(program);
   line(!file.empty(), program,
        file.empty() ? fmt::format("{}: apt install {}", use, package)
                     : fmt::format("{} ({})", use, file));
@@ -96,7 +86,8 @@ void examine() {
   line(build.mpi, "MPI",
        build.mpi ? "mpirun -n N breccia run CASE"
                  : "not in this program: package breccia-mpi, or a build with libopenmpi-dev");
-  if (build.mpi && on_path("mpirun").empty()) line(false, "mpirun", "apt install openmpi-bin");
+  if (build.mpi && prepare::on_path("mpirun").empty())
+    line(false, "mpirun", "apt install openmpi-bin");
   int devices = 0;
   std::string why = "not in this program: package breccia-cuda, or a build by preset cuda";
   if (build.cuda) {

@@ -7,6 +7,7 @@
 #include "dem/setup/materials.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
+#include "prepare/packing/packing.hpp"
 #include "prepare/packing/rebar.hpp"
 
 namespace breccia::prepare {
@@ -55,6 +56,9 @@ double gap(const BodyConfig& a, const BodyConfig& b) {
   const double disc_a = a.shape == "cylinder" ? a.radius : 0.0;
   return std::max(across - disc_a - disc_b, along);
 }
+/// Bodies of more elements are tested when they are packed.
+constexpr int most_tested = 100'000;
+
 double extent(const BodyConfig& b) {
   return norm(b.size) + b.radius + b.length + norm(b.center);
 }
@@ -96,6 +100,7 @@ class DemBodyChecks {
     require(b.shape == "box" || b.shape == "file" || b.radius > 0.0, ".radius must be above 0");
     require(b.shape != "cylinder" || b.length > 0.0, ".length must be above 0");
     require(b.shape != "file" || !b.file.empty(), ".file is missing: a CSV of x,y,z,radius");
+    if (packed) check_room(b);
     const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
     const bool bulk = b.shape == "file" && material != nullptr && material->law != "ldpm" &&
                       dem::kind_within(material->law).has_value();
@@ -106,6 +111,27 @@ class DemBodyChecks {
     require(b.shape != "file" || !even || b.size.x * b.size.y * b.size.z > 0.0,
             ".size is missing: fabric = \"even\" of {} asks how deep elements lie in their box",
             b.material);
+  }
+
+  /// Whether the largest element fits. Bodies with bars, whose elements are smaller by the bars'
+  /// volume, are tested when they are packed.
+  void check_room(const BodyConfig& b) {
+    const Container container = container_of(b);
+    const bool barred =
+        std::any_of(config_.bodies.begin(), config_.bodies.end(), [&](const BodyConfig& other) {
+          return other.shape == "rebar" && other.rebar.in == b.name;
+        });
+    if (barred || b.pack.count < 1 || b.pack.count > most_tested || !(container.volume() > 0.0))
+      return;
+    const auto group = static_cast<std::uint32_t>(&b - config_.bodies.data());
+    const PackingTask task{.container = container,
+                           .obstacles = {},
+                           .count = b.pack.count,
+                           .size_ratio = b.pack.size_ratio,
+                           .solid_volume = b.pack.compactness * container.volume(),
+                           .random = {static_cast<std::uint64_t>(config_.seed), group}};
+    const std::string problem = misfit(task, packing_radii(task));
+    require(problem.empty(), ".pack.count: {}", problem);
   }
 
   void check_ldpm(const BodyConfig& b, const MaterialConfig& m) {

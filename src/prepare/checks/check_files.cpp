@@ -11,6 +11,7 @@
 #include "prepare/meshing/joint_sets.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/meshing/mesh_file.hpp"
+#include "prepare/meshing/meshing.hpp"
 #include "prepare/packing/spheres_file.hpp"
 
 namespace breccia::prepare {
@@ -33,6 +34,10 @@ class FileChecks {
       note(error);
       wrong_ = true;
     }
+  }
+  void add(const std::string& problem) {
+    problems_.push_back(problem);
+    wrong_ = true;
   }
   void refuse_all() const {
     try {
@@ -76,7 +81,9 @@ void check_files(const dem::Config& config, const std::string& case_folder) {
 
 void check_files(const fdem::Config& config, const std::string& case_folder) {
   FileChecks files(case_folder);
+  const bool meshes = !on_path("gmsh").empty();
   for (const fdem::BodyConfig& body : config.bodies) {
+    if (!meshes && needs_gmsh(body)) files.add("body." + body.name + ": " + no_mesher("its shape"));
     if (!body.file.empty())
       files.check("body." + body.name, body.file,
                   [&](const std::string& path) { read_body(body, path); });

@@ -134,6 +134,11 @@ double distance(const Vec2& point, const Line& line) {
   return norm(point - (line[0] + share * along));
 }
 
+bool needs_gmsh(const BodyConfig& body) {
+  if (body.shape == "hexagons" || body.shape == "mesh" || body.shape == "part") return false;
+  return body.shape == "geo" || !body.structured;
+}
+
 Mesh mesh_of(const BodyConfig& body, const MeshingContext& context) {
   const Random random{static_cast<std::uint64_t>(context.seed), jitter_stream + context.number};
   if (body.shape == "hexagons") return hexagon_field(body, random);

@@ -23,6 +23,9 @@ struct MeshingContext {
 /// @throws InputError that does not name the body
 Mesh mesh_of(const fdem::BodyConfig& body, const MeshingContext& context);
 
+/// Whether the body's mesh is made by gmsh.
+bool needs_gmsh(const fdem::BodyConfig& body);
+
 /// The triangles of a mesh that are a body: those of its parts, or all.
 /// @throws InputError if the mesh has no part of a name
 std::vector<Index> triangles_of(const fdem::BodyConfig& body, const Mesh& mesh);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -11,6 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
@@ -113,11 +115,7 @@ Mesh run_gmsh(const std::string& program, const std::string& geo, const std::str
   if (edge > 0.0) words.insert(words.end(), {"-clmax", fmt::format("{}", edge)});
   words.insert(words.end(), {"-o", mesh, geo});
   const int status = run_program(words, output, folder.path());
-  if (status == -1 && errno == ENOENT)
-    throw InputError(fmt::format(
-        "{} needs the program {} to make its mesh, and it is not installed; install it (Debian and "
-        "Ubuntu: apt install gmsh), or use structured = true or shape = \"mesh\"",
-        what, program));
+  if (status == -1 && errno == ENOENT) throw InputError(no_mesher(what, program));
   if (status == -1)
     throw InputError(fmt::format("{}: cannot start {}: {}", what, program, std::strerror(errno)));
   const std::string said = read_whole_file(output);
@@ -224,6 +222,23 @@ class GeoWriter {
 
 std::string geo_text(const Region& region) {
   return GeoWriter(region).run();
+}
+
+std::string on_path(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string file = folder + "/" + program;
+    if (::access(file.c_str(), X_OK) == 0 && std::filesystem::is_regular_file(file)) return file;
+  }
+  return "";
+}
+
+std::string no_mesher(const std::string& what, const std::string& program) {
+  return fmt::format(
+      "{} needs the program {} to make its mesh, and it is not installed; install it (Debian and "
+      "Ubuntu: apt install gmsh), or use structured = true or shape = \"mesh\"",
+      what, program);
 }
 
 Mesh mesh_region(const Region& region, std::int64_t seed) {

@@ -112,14 +112,17 @@ std::vector<double> packing_radii(const PackingTask& task) {
   return radius;
 }
 
+std::string misfit(const PackingTask& task, const std::vector<double>& radius) {
+  const Vec3 half = task.container.half();
+  const double largest = *std::max_element(radius.begin(), radius.end());
+  if (growth * largest <= std::min({half.x, half.y, half.z})) return "";
+  return fmt::format("{} elements are too few: one of radius {:.4g} m does not fit into the body",
+                     task.count, largest);
+}
+
 Packing pack(const PackingTask& task) {
   std::vector<double> radius = packing_radii(task);
-  const Vec3 half = task.container.half();
-  const double largest = growth * *std::max_element(radius.begin(), radius.end());
-  if (largest > std::min({half.x, half.y, half.z}))
-    throw InputError(
-        fmt::format("{} elements are too few: one of radius {:.4g} m does not fit into the body",
-                    task.count, largest / growth));
+  if (const std::string problem = misfit(task, radius); !problem.empty()) throw InputError(problem);
   std::vector<Vec3> position;
   for (std::size_t i = 0; i < radius.size(); ++i) {
     radius[i] *= growth;

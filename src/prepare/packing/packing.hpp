@@ -60,6 +60,10 @@ inline constexpr double overlap_tolerance = 5e-3;
 /// wanted solid volume  [m]
 std::vector<double> packing_radii(const PackingTask& task);
 
+/// Why the largest sphere does not fit into the container; empty: it does.
+/// @param radius  those of packing_radii  [m]
+std::string misfit(const PackingTask& task, const std::vector<double>& radius);
+
 /// Spheres of exactly the wanted number and volume inside the container and outside the obstacles,
 /// from random centres pushed apart until none overlap, or until pushing helps no more (compactness
 /// near that of random close packing, 0.61 to 0.64). No random direction is preferred.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
 
 #include "exec/error.hpp"
@@ -108,6 +109,10 @@ TEST(CheckDem, refuses_a_body_with_the_words_of_the_build) {
       [](Config& c) { c.bodies[1].rebar.in = "wall"; },
       [](Config& c) { c.bodies[1].rebar.bars = 26; },
       [](Config& c) { c.bodies[1].velocity.x = 1.0; },
+      [](Config& c) {
+        c.bodies.erase(c.bodies.begin() + 1);
+        c.bodies[0].pack.count = 2;  // of larger radius than the slab is thick
+      },
       [](Config& c) {
         c.materials[0].fracture_energy = 80.0;
         c.materials[0].tensile_strength = 0.0;
@@ -216,6 +221,21 @@ TEST(CheckFiles, names_every_file_that_building_could_not_read) {
   EXPECT_THROW(prepare::check_files(plane, folder.path()), IoError);
   replace_file(folder.path() + "/gone.msh", "no mesh\n");
   EXPECT_THROW(prepare::check_files(plane, folder.path()), InputError);
+}
+
+TEST(CheckFiles, tells_of_free_meshes_where_gmsh_is_not_installed) {
+  const std::string path = std::getenv("PATH");
+  fdem::Config regular = plate_case(), free = plate_case();
+  free.bodies[0].structured = false;
+  ASSERT_EQ(::setenv("PATH", "/nowhere", 1), 0);
+  const std::string of_free = refused([&] { prepare::check_files(free, "."); });
+  const std::string of_regular = refused([&] { prepare::check_files(regular, "."); });
+  ASSERT_EQ(::setenv("PATH", path.c_str(), 1), 0);
+  EXPECT_NE(of_free.find("needs the program gmsh to make its mesh, and it is not installed"),
+            std::string::npos)
+      << of_free;
+  EXPECT_EQ(of_regular, "");
+  EXPECT_EQ(refused([&] { prepare::check_files(free, "."); }), "");
 }
 
 }  // namespace check_case_test
