@@ -61,7 +61,8 @@ void add_links(const World& w, const Elements& elements, Moments& moments) {
 void add_contacts(const World& w, const Elements& elements, Moments& moments) {
   const OnHost actions(w.contact_actions, w.exec.space);
   const OnHost a(w.contacts.pairs.a, w.exec.space), b(w.contacts.pairs.b, w.exec.space);
-  for (Index i = 0; i < w.contacts.size(); ++i)
+  const Index known = actions->size() == w.contacts.size() ? w.contacts.size() : 0;
+  for (Index i = 0; i < known; ++i)
     moments.add_pair(a->data()[i], b->data()[i], actions->data()[i].force_on_b());
   const OnHost of(w.wall_contacts.pairs.a, w.exec.space);
   const OnHost wall(w.wall_contacts.pairs.b, w.exec.space);

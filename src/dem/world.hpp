@@ -130,7 +130,8 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
 
   // Results of a step, overwritten by the next one.
   Buffer<PairForce> bar_actions;      ///< [N, N m, N/m]  (links but swept ones; pairs, ranks)
-  Buffer<PairForce> contact_actions;  ///< zero where apart  [N, N m, N/m]  (contacts; pairs)
+  Buffer<PairForce> contact_actions;  ///< zero where apart; as many as contacts, but where parts
+                                      ///< were brought together  [N, N m, N/m]  (contacts; pairs)
   Buffer<LinkSums> link_sums;  ///< zero between steps  [N, N m, N/m]  (elements; pairs, sums)
   Buffer<double> critical;     ///< inertia over stiffness  [s2]  (elements; sums, walls)
   bool margin_used = false;    ///< some element has used its margin up (move)

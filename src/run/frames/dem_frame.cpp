@@ -196,7 +196,8 @@ class DemFrame {
     const auto& id = elements_->id;
     const OnHost actions(w_.contact_actions, w_.exec.space);
     const OnHost a(w_.contacts.pairs.a, w_.exec.space), b(w_.contacts.pairs.b, w_.exec.space);
-    for (Index i = 0; i < w_.contacts.size(); ++i) {
+    const Index known = actions->size() == w_.contacts.size() ? w_.contacts.size() : 0;
+    for (Index i = 0; i < known; ++i) {
       const Index from = a->data()[i], to = b->data()[i];
       const Vec3 force = actions->data()[i].force_on_b();
       if (!w_.domain.owns(from) || dot(force, force) == 0.0) continue;

@@ -46,7 +46,7 @@ young = "30 GPa"
 name = "slab"
 material = "c30"
 size = ["1 m", 1.0, "100 mm"]
-pack = { count = 100 }
+pack = { count = 1000 }
 )";
 
 dem::Config read_text(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -83,11 +83,11 @@ TEST(CaseFile, pictures_may_show_any_field_a_component_of_one_or_none) {
 
 TEST(CaseFile, overrides_count_last_and_find_items_by_name_or_number) {
   const dem::Config config =
-      read_text(good, {"time.end=2e-3", "material.c30.young=28 GPa", "body.slab.pack.count=7",
+      read_text(good, {"time.end=2e-3", "material.c30.young=28 GPa", "body.slab.pack.count=700",
                        "body.0.velocity=[0.0, 0.0, \"-30 m/s\"]", "title=two words"});
   EXPECT_EQ(config.time.end, 2e-3);
   EXPECT_EQ(config.materials.at(0).young, 28e9);
-  EXPECT_EQ(config.bodies.at(0).pack.count, 7);
+  EXPECT_EQ(config.bodies.at(0).pack.count, 700);
   EXPECT_EQ(config.bodies.at(0).velocity.z, -30.0);
   EXPECT_EQ(config.title, "two words");
 }
@@ -285,18 +285,18 @@ INSTANTIATE_TEST_SUITE_P(
               "body.slab.size needs three lengths above 0"},
         Wrong{"size = [\"1 m\", 1.0, \"100 mm\"]", "size = [1.0, 1.0]",
               "body.slab.size wants three numbers"},
-        Wrong{"pack = { count = 100 }", "", "body.slab.pack.count is missing"},
-        Wrong{"pack = { count = 100 }", "pack = {}", "body.slab.pack.count is missing"},
-        Wrong{"pack = { count = 100 }", "pack = { count = 0 }",
+        Wrong{"pack = { count = 1000 }", "", "body.slab.pack.count is missing"},
+        Wrong{"pack = { count = 1000 }", "pack = {}", "body.slab.pack.count is missing"},
+        Wrong{"pack = { count = 1000 }", "pack = { count = 0 }",
               "body.slab.pack.count = 0 is outside [1, "},
-        Wrong{"pack = { count = 100 }", "pack = { count = 100, compactness = 0.9 }",
+        Wrong{"pack = { count = 1000 }", "pack = { count = 1000, compactness = 0.9 }",
               "compactness = 0.9 is outside [0.05, 0.64]"},
         Wrong{"[[body]]", "[body]", "body wants a list of tables, each headed [[body]]"},
         Wrong{"", "[[body]]\nname = \"slab\"\nmaterial = \"c30\"\n",
               "body has two items named slab"},
         Wrong{"",
               "[[body]]\nname = \"rock\"\nmaterial = \"c30\"\nshape = \"sphere\"\nradius = "
-              "0.1\ncenter = [0.0, 0.0, 0.1]\npack = { count = 9 }\n",
+              "0.1\ncenter = [0.0, 0.0, 0.1]\npack = { count = 900 }\n",
               "body.slab and body.rock overlap at the start"},
         Wrong{"name = \"slab\"", "name = \"\"", "body: \"\" cannot be a name"},
         Wrong{"name = \"slab\"", "name = \"a\\u001b[31m\"",
@@ -306,7 +306,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"young = \"30 GPa\"", "young = \"30 GN\"", "; try \"30 GPa\""},
         Wrong{"",
               "[[body]]\nname = \"rod\"\nmaterial = \"c30\"\nshape = \"cylinder\"\nradius = 0.1\n"
-              "length = 1.0\ncenter = [0.59, 0.0, 0.5]\npack = { count = 9 }\n",
+              "length = 1.0\ncenter = [0.59, 0.0, 0.5]\npack = { count = 900 }\n",
               "body.slab and body.rod overlap at the start"},
         Wrong{"", "[[support]]\nname = \"slab\"\n", "support.slab and body.slab have one name"},
         Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"probe.rok.last\"\n",
@@ -364,7 +364,7 @@ TEST(CaseFile, an_override_changes_what_the_case_states_and_adds_nothing_unseen)
 
 /// A body beside the slab's corner at (0.5, 0.5), as high as the slab.
 std::string slab_and(const std::string& body) {
-  return good + "[[body]]\nname = \"other\"\nmaterial = \"c30\"\npack = { count = 9 }\n" + body;
+  return good + "[[body]]\nname = \"other\"\nmaterial = \"c30\"\npack = { count = 900 }\n" + body;
 }
 
 TEST(CaseFile, bodies_that_only_touch_do_not_overlap) {
