@@ -1,6 +1,7 @@
 // The only file that sees libpng.
 
 #include <png.h>
+#include <zlib.h>
 
 #include <cstring>
 #include <string>
@@ -38,6 +39,7 @@ bool encode(const Image& image, std::string& content, std::vector<std::uint8_t>&
     png_set_pHYs(png, info, per_metre, per_metre, PNG_RESOLUTION_METER);
   }
   png_set_compression_level(png, 1);
+  png_set_compression_strategy(png, Z_RLE);  // as small, in 2/3 of the time: few rows repeat
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_write_info(png, info);
   for (int y = 0; y < image.height; ++y) {
