@@ -14,6 +14,7 @@
 #include "prepare/packing/rebar.hpp"
 #include "prepare/packing/spheres_file.hpp"
 #include "prepare/packing/stiffness.hpp"
+#include "prepare/shapes/carve.hpp"
 
 namespace breccia {
 namespace {
@@ -206,12 +207,15 @@ double mean_radius(const Model& model) {
 dem::Model build_model(const dem::Config& config, const std::string& case_folder) {
   prepare::refuse(prepare::body_problems(config), "with the model");
 
-  Assembly assembly(config, case_folder);
+  Config whole = config;
+  for (BodyConfig& body : whole.bodies) body = prepare::whole_of(body, case_folder);
+  Assembly assembly(whole, case_folder);
   Model& model = assembly.model();
   prepare::reorder(model, prepare::spatial_order(model.position, 2.0 * mean_radius(model)));
   prepare::link_elements(model, assembly.links(), config.links);
   prepare::link_facets(model);
-  prepare::set_stiffness(model, config);
+  prepare::set_stiffness(model, whole);
+  prepare::carve(model, config, case_folder);
 
   prepare::refuse(prepare::free_overlaps(model, assembly.links()), "with the model");
   return std::move(model);

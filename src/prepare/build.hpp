@@ -16,6 +16,8 @@ namespace breccia {
 ///              its bulk. Volume taken by bars does not count as the body's. Bars move with the
 ///              body they reinforce. A file's spheres have the mass of the bulk `volume`, or of
 ///              the box `size`; grains have their own when neither is given.
+///              Bodies that are turned, cut or from an STL file are built upright and whole first
+///              (prepare/shapes/carve.hpp).
 ///   order      element i is global id i; ids follow space, so that linked elements are close in
 ///              memory.
 ///   links      pairs of one concrete body, neighbours along a bar, bars and the concrete around

@@ -302,6 +302,36 @@ struct RebarConfig {
   }
 };
 
+/// [[body.cut]]: what is taken out of a body
+struct CutConfig {
+  std::string shape = "box";
+  Vec3 center{};             ///<  [m]
+  Vec3 size{};               ///< edge lengths of a box  [m]
+  double radius = 0.0;       ///< of a sphere or cylinder  [m]
+  double length = 0.0;       ///< of a cylinder  [m]
+  Vec3 axis{0.0, 0.0, 1.0};  ///< where its own z points
+  Vec3 across{};             ///< about where its own x points; 0: turned the shortest way
+  std::string file;          ///< STL
+  double file_unit = 1.0;    ///<  [m]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("shape", shape, OneOf{"box", "sphere", "cylinder", "stl"},
+        "stl: a closed surface of triangles from a file");
+    key("center", center, "m", any_number,
+        "its centre, in the coordinates of the case; where the origin of a file lies");
+    key("size", size, "m", not_negative,
+        "edge lengths of a box; one may be 0: a crack, which parts links");
+    key("radius", radius, "m", not_negative, "radius of a sphere or cylinder");
+    key("length", length, "m", not_negative, "length of a cylinder, along its axis");
+    key("axis", axis, "-", any_number, "direction of its own z, along a cylinder");
+    key("across", across, "-", any_number,
+        "about the direction of its own x; left out: turned the shortest way");
+    key("file", file, "stl: the file, beside the case file");
+    key("file_unit", file_unit, "m", positive, "length of one unit of the file's coordinates");
+  }
+};
+
 /// [[body]]
 struct BodyConfig {
   std::string name;
@@ -313,9 +343,13 @@ struct BodyConfig {
   double length = 0.0;  ///< of a cylinder, along z  [m]
   PackConfig pack;
   RebarConfig rebar;
-  Vec3 velocity{};      ///< at the start  [m/s]
-  Vec3 spin{};          ///< at the start, of every element about the body's centre  [rad/s]
-  std::string file;     ///< CSV of x, y, z, radius in metres; of LDPM its tetrahedra
+  Vec3 velocity{};              ///< at the start  [m/s]
+  Vec3 spin{};                  ///< at the start, of every element about the body's centre  [rad/s]
+  Vec3 axis{0.0, 0.0, 1.0};     ///< where its own z points
+  Vec3 across{};                ///< about where its own x points; 0: turned the shortest way
+  std::vector<CutConfig> cuts;  ///< taken out of it
+  std::string file;             ///< CSV of x, y, z, radius in metres; of LDPM its tetrahedra; STL
+  double file_unit = 1.0;       ///< of an STL file  [m]
   double volume = 0.0;  ///< of the bulk that a file's spheres stand for; 0: of the box `size`  [m3]
 
   /// Of what a file's spheres stand for; 0: of nothing but themselves.  [m3]
@@ -325,25 +359,34 @@ struct BodyConfig {
   void each_key(Visit&& key) {
     key("name", name, "name of the body: its elements form a group of this name");
     key.required("name");
-    key("shape", shape, OneOf{"box", "sphere", "cylinder", "element", "rebar", "file"},
-        "box, sphere, cylinder: a packing; element: one sphere; rebar: bars; file: spheres "
-        "from a CSV, or particles and tetrahedra of law ldpm");
+    key("shape", shape, OneOf{"box", "sphere", "cylinder", "stl", "element", "rebar", "file"},
+        "box, sphere, cylinder: a packing; stl: a packing in the closed surface of an STL file; "
+        "element: one sphere; rebar: bars; file: spheres from a CSV, or particles and tetrahedra "
+        "of law ldpm");
     key("material", material, "name of a material");
     key.required("material");
-    key("center", center, "m", any_number, "centre of the body");
+    key("center", center, "m", any_number,
+        "centre of the body; where the origin of an STL file lies");
     key("size", size, "m", not_negative,
         "edge lengths of a box, also of one that the spheres of a file fill");
     key("radius", radius, "m", not_negative, "radius of a sphere, cylinder or single element");
-    key("length", length, "m", not_negative, "length of a cylinder, along z");
-    key.table("pack", pack, "the packing of a box, sphere or cylinder");
+    key("length", length, "m", not_negative, "length of a cylinder, along its axis");
+    key("axis", axis, "-", any_number,
+        "direction of the body's own z, along a cylinder: the body is turned about its centre, "
+        "with bars in it");
+    key("across", across, "-", any_number,
+        "about the direction of the body's own x; left out: turned the shortest way");
+    key.list("cut", cuts, "notches, holes and slots, sawn out of a packed body");
+    key.table("pack", pack, "the packing of a box, sphere, cylinder or STL file");
     key.table("rebar", rebar, "the bars of a rebar body");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6}, "velocity at the start");
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
         "angular velocity of the body about its centre at the start");
     key("file", file,
-        "CSV file of x,y,z,radius in metres, beside the case file; of law ldpm: "
+        "STL file, or CSV file of x,y,z,radius in metres, beside the case file; of law ldpm: "
         "<name>-data-tets.dat of a public preprocessor, with <name>-data-particles.dat beside it, "
         "in mm");
+    key("file_unit", file_unit, "m", positive, "stl: length of one unit of the file's coordinates");
     key("volume", volume, "m3", not_negative,
         "volume of concrete that the spheres of a file stand for, voids included: it gives their "
         "mass; 0: that of the box size. Grains of a file have their own volume unless either is "

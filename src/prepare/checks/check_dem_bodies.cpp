@@ -9,6 +9,7 @@
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/packing/packing.hpp"
 #include "prepare/packing/rebar.hpp"
+#include "prepare/shapes/carve.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -25,7 +26,7 @@ bool round(const BodyConfig& b) {
   return b.shape == "sphere" || b.shape == "element";
 }
 bool has_shape(const BodyConfig& b) {
-  return round(b) || b.shape == "box" || b.shape == "cylinder";
+  return !is_shaped(b) && (round(b) || b.shape == "box" || b.shape == "cylinder");
 }
 /// Half of the height of a box or cylinder.  [m]
 double half_height(const BodyConfig& b) {
@@ -91,14 +92,16 @@ class DemBodyChecks {
     if (b.shape == "rebar") return check_rebar(b);
     const MaterialConfig* of = prepare::item_named(config_.materials, b.material);
     if (of != nullptr && of->law == "ldpm") check_ldpm(b, *of);
-    const bool packed = (b.shape == "box" || b.shape == "sphere" || b.shape == "cylinder") &&
-                        (of == nullptr || of->law != "ldpm");
+    check_shape(b);
+    const bool packed = is_packed(b) && (of == nullptr || of->law != "ldpm");
     require(!packed || b.pack.count >= 1,
             ".pack.count is missing: how many elements fill the body?");
     require(b.shape != "box" || (b.size.x > 0.0 && b.size.y > 0.0 && b.size.z > 0.0),
             ".size needs three lengths above 0");
-    require(b.shape == "box" || b.shape == "file" || b.radius > 0.0, ".radius must be above 0");
+    const bool round_body = round(b) || b.shape == "cylinder";
+    require(!round_body || b.radius > 0.0, ".radius must be above 0");
     require(b.shape != "cylinder" || b.length > 0.0, ".length must be above 0");
+    require(b.shape != "stl" || !b.file.empty(), ".file is missing: an STL file");
     require(b.shape != "file" || !b.file.empty(), ".file is missing: a CSV of x,y,z,radius");
     if (packed) check_room(b);
     const MaterialConfig* material = prepare::item_named(config_.materials, b.material);
@@ -111,6 +114,35 @@ class DemBodyChecks {
     require(b.shape != "file" || !even || b.size.x * b.size.y * b.size.z > 0.0,
             ".size is missing: fabric = \"even\" of {} asks how deep elements lie in their box",
             b.material);
+  }
+
+  static bool is_packed(const BodyConfig& b) {
+    return b.shape == "box" || b.shape == "sphere" || b.shape == "cylinder" || b.shape == "stl";
+  }
+  /// @param path  of the keys, below the body's
+  void check_turn(const Vec3& axis, const Vec3& across, const std::string& path) {
+    require(norm(axis) > 0.0, "{}.axis is no direction", path);
+    require(norm(across) == 0.0 || norm(cross(axis, across)) > 1e-6 * norm(axis) * norm(across),
+            "{}.across lies along axis: it says nothing of how the body is turned", path);
+  }
+  void check_shape(const BodyConfig& b) {
+    check_turn(b.axis, b.across, "");
+    require(is_packed(b) || b.cuts.empty(),
+            ".cut: only packings are cut, not shape {}; spheres of a file come as they are wanted",
+            b.shape);
+    require(is_packed(b) || b.shape == "file" || !is_shaped(b) || !b.cuts.empty(),
+            ".axis turns packings and bodies from a file, not shape {}", b.shape);
+    for (std::size_t k = 0; k < b.cuts.size(); ++k) {
+      const dem::CutConfig& cut = b.cuts[k];
+      const std::string path = fmt::format(".cut[{}]", k + 1);
+      check_turn(cut.axis, cut.across, path);
+      const int flat = (cut.size.x == 0.0) + (cut.size.y == 0.0) + (cut.size.z == 0.0);
+      require(cut.shape != "box" || flat <= 1, "{}.size needs two lengths above 0, or three", path);
+      require((cut.shape != "sphere" && cut.shape != "cylinder") || cut.radius > 0.0,
+              "{}.radius must be above 0", path);
+      require(cut.shape != "cylinder" || cut.length > 0.0, "{}.length must be above 0", path);
+      require(cut.shape != "stl" || !cut.file.empty(), "{}.file is missing: an STL file", path);
+    }
   }
 
   /// Whether the largest element fits. Bodies with bars, whose elements are smaller by the bars'
@@ -135,8 +167,8 @@ class DemBodyChecks {
   }
 
   void check_ldpm(const BodyConfig& b, const MaterialConfig& m) {
-    require(b.shape == "box" || b.shape == "cylinder" || b.shape == "file",
-            ": bodies of law ldpm are boxes or cylinders, or read from a file, not of shape {}",
+    require(b.shape == "box" || b.shape == "cylinder" || b.shape == "stl" || b.shape == "file",
+            ": bodies of law ldpm are boxes, cylinders, or read from a file, not of shape {}",
             b.shape);
     require(b.pack.count == 0,
             ".pack has no use in a body of law ldpm: its grains follow from {}.mix", m.name);

@@ -13,6 +13,7 @@
 #include "prepare/meshing/mesh_file.hpp"
 #include "prepare/meshing/meshing.hpp"
 #include "prepare/packing/spheres_file.hpp"
+#include "prepare/shapes/surface.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -67,7 +68,14 @@ void read_body(const fdem::BodyConfig& body, const std::string& path) {
 
 void check_files(const dem::Config& config, const std::string& case_folder) {
   FileChecks files(case_folder);
-  for (const dem::BodyConfig& body : config.bodies)
+  for (const dem::BodyConfig& body : config.bodies) {
+    if (body.shape == "stl")
+      files.check("body." + body.name, body.file,
+                  [&](const std::string& path) { read_surface(path, body.file_unit); });
+    for (const dem::CutConfig& cut : body.cuts)
+      if (cut.shape == "stl")
+        files.check("body." + body.name + ".cut", cut.file,
+                    [&](const std::string& path) { read_surface(path, cut.file_unit); });
     if (body.shape == "file")
       files.check("body." + body.name, body.file, [&](const std::string& path) {
         const dem::MaterialConfig* of = item_named(config.materials, body.material);
@@ -76,6 +84,7 @@ void check_files(const dem::Config& config, const std::string& case_folder) {
         else
           read_spheres(path);
       });
+  }
   files.refuse_all();
 }
 

@@ -12,6 +12,7 @@
 #include "io/round_numbers.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/refusal.hpp"
+#include "prepare/shapes/carve.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -80,7 +81,7 @@ const dem::BodyConfig* host_of(const dem::BodyConfig& body, const dem::Config& c
 
 Outline outline_of(const dem::BodyConfig& body, const dem::Config& config) {
   const dem::BodyConfig* const b = host_of(body, config);
-  if (b == nullptr || b->shape == "file") return {body.name, {}};
+  if (b == nullptr || b->shape == "file" || is_shaped(*b)) return {body.name, {}};
   const std::array<double, 3> center{b->center.x, b->center.y, b->center.z};
   std::array<double, 3> half{b->radius, b->radius, b->radius};
   if (b->shape == "box") half = {0.5 * b->size.x, 0.5 * b->size.y, 0.5 * b->size.z};

@@ -42,17 +42,16 @@ double bulk_of(const Config& config, const BodyConfig& body) {
 /// The concrete links of a body and the fabric of its elements, L_a = sum of S D / (6 V_a).
 class Fabric {
  public:
-  Fabric(Model& m, const Config& config, int body)
-      : model_(m),
-        body_(config.bodies[static_cast<std::size_t>(body)]),
-        members_(members_of(m, body)) {
+  /// @param bulk  volume of the body  [m3]
+  Fabric(Model& m, int body, const Vec3& center, double bulk, DepthOf depth)
+      : model_(m), center_(center), depth_(std::move(depth)), members_(members_of(m, body)) {
     double cubes = 0.0;
     for (const Index e : members_) {
       const double r = m.radius[static_cast<std::size_t>(e)];
       cubes += r * r * r;
       mean_ += r / static_cast<double>(members_.size());
     }
-    per_cube_ = bulk_of(config, body_) / cubes;
+    per_cube_ = bulk / cubes;
     for (Model::Link& link : m.links)
       if (link.kind == dem::LinkKind::concrete && m.group[static_cast<std::size_t>(link.a)] == body)
         links_.push_back(&link);
@@ -64,7 +63,7 @@ class Fabric {
     std::vector<Model::Link*> near;
     for (Model::Link* link : links_) {
       const Vec3 middle = 0.5 * (place(link->a) + place(link->b));
-      if (container_.depth(middle) < skin * mean_) near.push_back(link);
+      if (depth_(middle, skin * mean_) < skin * mean_) near.push_back(link);
     }
     for (int pass = 0; pass < passes; ++pass) {
       for (Model::Link* link : near)
@@ -80,7 +79,7 @@ class Fabric {
   static constexpr int passes = 8;
   static constexpr std::size_t least_deep = 20;  ///< elements that a mean needs
 
-  Vec3 place(Index e) const { return model_.position[static_cast<std::size_t>(e)] - body_.center; }
+  Vec3 place(Index e) const { return model_.position[static_cast<std::size_t>(e)] - center_; }
   double& fabric(Index e) { return fabric_[static_cast<std::size_t>(e)]; }
 
   void add_up() {
@@ -100,7 +99,7 @@ class Fabric {
   /// Of the elements that faces do not disturb; of the deepest ones where there are too few.
   double deep_mean() {
     std::vector<std::pair<double, Index>> by_depth;
-    for (const Index e : members_) by_depth.emplace_back(container_.depth(place(e)), e);
+    for (const Index e : members_) by_depth.emplace_back(depth_(place(e), no_limit), e);
     std::sort(by_depth.rbegin(), by_depth.rend());
     double sum = 0.0;
     std::size_t count = 0;
@@ -113,8 +112,8 @@ class Fabric {
   }
 
   Model& model_;
-  const BodyConfig& body_;
-  const Container container_ = container_of(body_);
+  Vec3 center_;
+  DepthOf depth_;
   std::vector<Index> members_;
   std::vector<Model::Link*> links_;
   double mean_ = 0.0;           ///< radius  [m]
@@ -227,6 +226,15 @@ Elasticity estimated_elasticity(const Model& model, const Config& config, int nu
   return {moments * voigt, (1.0 - x) / (4.0 + x)};
 }
 
+void even_out(Model& model, int number, const Vec3& center, const DepthOf& depth) {
+  for (Model::Link& link : model.links)
+    if (link.kind == dem::LinkKind::concrete &&
+        model.group[static_cast<std::size_t>(link.a)] == number)
+      link.share = 1.0;
+  constexpr double any_bulk = 1.0;  // its scale leaves the ratios of fabrics alone
+  Fabric(model, number, center, any_bulk, depth).even_out();
+}
+
 void set_stiffness(Model& model, const Config& config) {
   model.bulk.resize(config.bodies.size());
   for (std::size_t k = 0; k < config.bodies.size(); ++k) {
@@ -244,7 +252,10 @@ void set_stiffness(Model& model, const Config& config) {
                                  : estimated_elasticity(model, config, number);
     };
     const Elasticity packed = elasticity();
-    if (even) Fabric(model, config, number).even_out();
+    if (even)
+      Fabric(model, number, body.center, bulk_of(config, body), [&](const Vec3& x, double) {
+        return container_of(body).depth(x);
+      }).even_out();
     const Elasticity now = even ? elasticity() : packed;
     Model::Bulk& bulk = model.bulk[k];
     if (corrected) bulk.factor = material.young / now.young;

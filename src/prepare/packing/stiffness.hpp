@@ -2,6 +2,8 @@
 // How stiff packed bodies are: sections of links that make up for missing neighbours, and Young's
 // modulus as it is measured.
 
+#include <functional>
+
 #include "dem/setup/config.hpp"
 #include "dem/setup/model.hpp"
 
@@ -25,5 +27,12 @@ Elasticity estimated_elasticity(const dem::Model& model, const dem::Config& conf
 /// stiffness of their links, too. Sets the sections of links (Model::Link::share) of bodies whose
 /// material has fabric = "even".
 void set_stiffness(dem::Model& model, const dem::Config& config);
+
+/// From a point, relative to a body's centre, to its nearest face, or any length above `reach`
+/// where that is farther: depth(point, reach)  [m]
+using DepthOf = std::function<double(const Vec3&, double)>;
+
+/// Sets the sections of a body's links anew, as fabric = "even" asks for a body of these faces.
+void even_out(dem::Model& model, int body, const Vec3& center, const DepthOf& depth);
 
 }  // namespace breccia::prepare

@@ -20,6 +20,7 @@
 #include "prepare/meshing/mesh_file.hpp"
 #include "prepare/packing/rebar.hpp"
 #include "prepare/packing/spheres_file.hpp"
+#include "prepare/shapes/carve.hpp"
 #include "run/machine/memory_plan.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem_method.hpp"
@@ -339,7 +340,7 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
     else if (body.shape == "element")
       f.items += 1.0;
     else
-      pace += add_body(f, config, packed(config, body, folder));
+      pace += add_body(f, config, packed(config, prepare::whole_of(body, folder), folder));
     if (is_ldpm(config, body)) facets += f.bonds - bonds;
   }
   finish(f, config.time);

@@ -93,7 +93,8 @@ MemoryPlan memory_plan(const dem::Config& config) {
   constexpr double build = 640.0, linked = 2400.0, loose = 1000.0;  // bytes of an element
   MemoryPlan plan{.items = 0.0, .kind = "elements"};
   for (const dem::BodyConfig& body : config.bodies) {
-    const bool packed = body.shape == "box" || body.shape == "sphere" || body.shape == "cylinder";
+    const bool packed = body.shape == "box" || body.shape == "sphere" || body.shape == "cylinder" ||
+                        body.shape == "stl";
     const bool grains = std::any_of(
         config.materials.begin(), config.materials.end(),
         [&](const dem::MaterialConfig& m) { return m.name == body.material && m.law == "grain"; });
