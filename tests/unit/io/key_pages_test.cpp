@@ -48,7 +48,7 @@ TEST(Keys, each_is_listed_with_type_unit_default_range_and_meaning) {
   ASSERT_NE(shape, nullptr);
   EXPECT_EQ(shape->type, "word");
   EXPECT_EQ(shape->default_text, "\"box\"");
-  EXPECT_EQ(shape->range, "box | sphere | cylinder | element | rebar | file");
+  EXPECT_EQ(shape->range, "box | sphere | cylinder | stl | element | rebar | file");
   EXPECT_EQ(table_heading(*shape), "[[body]]");
   EXPECT_EQ(example_line(*find(keys, "material.<name>.friction_angle")),
             "friction_angle = \"30 deg\"");

@@ -72,7 +72,7 @@ TEST(CheckDem, refuses_what_ldpm_cannot_do) {
   using dem::Config;
   check_case(dem::ldpm_cube());
   const std::pair<std::function<void(Config&)>, const char*> changes[] = {
-      {[](Config& c) { c.bodies[0].shape = "sphere"; }, "boxes or cylinders"},
+      {[](Config& c) { c.bodies[0].shape = "sphere"; }, "boxes, cylinders"},
       {[](Config& c) { c.bodies[0].pack.count = 100; }, "pack has no use"},
       {[](Config& c) { c.materials[0].poisson = 0.25; }, "needs 0 to 0.25"},
       {[](Config& c) { c.materials[0].cohesion = 0.0; }, "tensile_strength and cohesion"},
