@@ -5,8 +5,9 @@
     scripts/rock_tables.py --list
 
 Three stages, for a machine without gmsh: --prepare DIR builds the models, --run DIR runs those that have not
-run yet (pass DIR to another machine in between), --table DIR prints. Without a stage: all three. A seed moves
-the inner vertices (jitter) and changes the edges by 2 %, so that each mesh is another one.
+run yet (pass DIR to another machine in between), --table DIR prints; with --record CSV it also writes what scripts/result_tables.py
+makes the page from. Without a stage: all three. A seed moves the inner vertices (jitter) and changes the edges by 2 %, so that each mesh
+is another one.
 """
 
 import argparse
@@ -22,6 +23,7 @@ import time
 
 CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
 SEEDS = (1, 2, 3)
+RECORD = ["table", "setting", "run", "commit", "device", "hash", "seconds"]
 
 
 # ---------------------------------------------------------------- what a run left
@@ -342,29 +344,65 @@ def cell(values):
     return text if len(known) == len(values) else f"{text} (of {len(known)})"
 
 
-def table(folder):
-    jobs = json.loads((folder / "plan.json").read_text())
-    for name in dict.fromkeys(job["campaign"] for job in jobs):
-        rows, cost = {}, 0.0
-        for job in jobs:
-            done = folder / "runs" / job["id"]
-            if job["campaign"] != name or not finished(done):
-                continue
-            result = Result(done)
-            cost += sum(result.summary["stages_s"].values())
-            rows.setdefault(json.dumps(job["setting"]), []).append(CAMPAIGNS[name][2](result, job["setting"]))
-        if not rows:
+def collected(folder):
+    """What finished runs of a folder show: one record a run."""
+    for job in json.loads((folder / "plan.json").read_text()):
+        done = folder / "runs" / job["id"]
+        if not finished(done):
             continue
-        settings = [json.loads(key) for key in rows]
-        heads = list(dict.fromkeys(q for found in rows.values() for one in found for q in one))
-        columns = ["edges, mm" if key == "edge" else key for key in settings[0]]
-        print(f"\n**{name}** (cases/{CAMPAIGNS[name][0]}; {cost:.0f} s of steps in all)\n")
-        print("| " + " | ".join([*columns, "n", *heads]) + " |")
-        print("|" + "---|" * (len(columns) + 1 + len(heads)))
-        for setting, found in zip(settings, rows.values()):
-            given = [f"{1e3 * v:g}" if key == "edge" else str(v) for key, v in setting.items()]
-            values = [cell([one.get(q, math.nan) for one in found]) for q in heads]
-            print("| " + " | ".join([*given, str(len(found)), *values]) + " |")
+        result = Result(done)
+        summary = result.summary
+        yield {"table": job["campaign"], "setting": json.dumps(job["setting"]), "run": job["id"], "commit": summary["breccia"]["commit"],
+               "device": summary["machine"]["device"], "hash": summary["state_hash"], "seconds": sum(summary["stages_s"].values()),
+               "values": CAMPAIGNS[job["campaign"]][2](result, job["setting"])}
+
+
+def write_records(records, file):
+    """One line a run and quantity, as docs/results/rock.csv."""
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(RECORD + ["quantity", "value"])
+    for one in records:
+        for quantity, value in one["values"].items():
+            writer.writerow([f"{one[key]:.6g}" if key == "seconds" else one[key] for key in RECORD] + [quantity, f"{value:.9g}"])
+
+
+def read_records(file):
+    records = {}
+    for row in csv.DictReader(file):
+        one = records.setdefault(row["run"], {**{key: row[key] for key in RECORD}, "seconds": float(row["seconds"]), "values": {}})
+        one["values"][row["quantity"]] = float(row["value"])
+    return list(records.values())
+
+
+def markdown(records, name):
+    """The table of a campaign."""
+    rows, cost = {}, 0.0
+    for one in records:
+        if one["table"] == name:
+            rows.setdefault(one["setting"], []).append(one["values"])
+            cost += one["seconds"]
+    if not rows:
+        return ""
+    settings = [json.loads(key) for key in rows]
+    heads = list(dict.fromkeys(q for found in rows.values() for one in found for q in one))
+    columns = ["edges, mm" if key == "edge" else key for key in settings[0]]
+    lines = [f"**{name}** (cases/{CAMPAIGNS[name][0]}; {cost:.0f} s of steps in all)", "",
+             "| " + " | ".join([*columns, "n", *heads]) + " |", "|" + "---|" * (len(columns) + 1 + len(heads))]
+    for setting, found in zip(settings, rows.values()):
+        given = [f"{1e3 * v:g}" if key == "edge" else str(v) for key, v in setting.items()]
+        values = [cell([one.get(q, math.nan) for one in found]) for q in heads]
+        lines.append("| " + " | ".join([*given, str(len(found)), *values]) + " |")
+    return "\n".join(lines)
+
+
+def table(folder, record):
+    records = list(collected(folder))
+    for name in CAMPAIGNS:
+        if text := markdown(records, name):
+            print(f"\n{text}")
+    if record:
+        with open(record, "w", newline="") as file:
+            write_records(records, file)
 
 
 def main():
@@ -377,6 +415,7 @@ def main():
     parser.add_argument("--prepare", type=pathlib.Path, metavar="DIR")
     parser.add_argument("--run", type=pathlib.Path, metavar="DIR")
     parser.add_argument("--table", type=pathlib.Path, metavar="DIR")
+    parser.add_argument("--record", type=pathlib.Path, metavar="CSV", help="write what each run shows, besides the tables")
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", default=pathlib.Path("out/rock_tables"))
     options = parser.parse_args()
     unknown = [name for name in options.names if name not in CAMPAIGNS]
@@ -393,7 +432,7 @@ def main():
     if options.run or every:
         run(options.binary, options.run or options.out, options.jobs)
     if options.table or every:
-        table(options.table or options.out)
+        table(options.table or options.out, options.record)
 
 
 if __name__ == "__main__":

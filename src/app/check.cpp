@@ -15,6 +15,7 @@
 #include "io/case/case_file.hpp"
 #include "io/case/key_pages.hpp"
 #include "io/case/problems.hpp"
+#include "io/emphasis.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
@@ -64,7 +65,10 @@ struct CheckCommand {
         check(fix ? fixed(path) : path);
       } catch (const Error& error) {
         std::fflush(stdout);
-        std::fputs(fmt::format("error: {}\n", harmless(error.what())).c_str(), stderr);
+        std::fputs(fmt::format("{} {}\n", emphasized(Emphasis::error, "error:", stderr),
+                               harmless(error.what()))
+                       .c_str(),
+                   stderr);
         if (exit_code == 0) exit_code = error.exit_code();
       }
     }
@@ -92,6 +96,14 @@ struct CheckCommand {
           if constexpr (requires { config.walls; })
             for (const std::string& doubt : prepare::doubtful_walls(config))
               tell_note(read.file.empty() ? doubt : with_lines(doubt, read.file));
+          if constexpr (requires { config.links; }) {
+            for (const auto& material : config.materials)
+              if (!model && material.fracture_energy > 0.0)
+                tell_note(
+                    fmt::format("check --model tells whether elements of this size can show "
+                                "the fracture_energy of {}",
+                                material.name));
+          }
           if (expected) tell_forecast(*expected);
         },
         read.config);
@@ -181,7 +193,10 @@ struct CheckCommand {
       }
     std::fflush(stdout);
     for (const std::string& warning : method->warnings())
-      std::fputs(fmt::format("warning: {}\n", harmless(warning)).c_str(), stderr);
+      std::fputs(fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
+                             harmless(warning))
+                     .c_str(),
+                 stderr);
   }
 };
 

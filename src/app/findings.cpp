@@ -25,6 +25,8 @@ bool has_small_frames(const std::string& folder) {
   return !error;
 }
 
+}  // namespace
+
 void tell_findings(const std::string& folder) {
   try {
     report::Record record = report::read_record(folder);
@@ -38,8 +40,6 @@ void tell_findings(const std::string& folder) {
     return;
   }
 }
-
-}  // namespace
 
 void tell_and_report(const std::string& folder, const CaseConfig& config, bool quiet) {
   if (!quiet) tell_findings(folder);

@@ -3,12 +3,19 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "app/commands.hpp"
+#include "app/findings.hpp"
 #include "exec/error.hpp"
+#include "io/case/key_pages.hpp"
 #include "io/checkpoint.hpp"
 #include "io/harmless.hpp"
 #include "io/round_numbers.hpp"
@@ -42,20 +49,121 @@ void describe_state(const std::string& path) {
     print_harmless("  {:<32} {:>12} {:>12}\n", section.name, section.count, section.bytes.size());
 }
 
+/// What a summary says, for people.
+class Told {
+ public:
+  explicit Told(const std::string& path)
+      : json_(nlohmann::json::parse(read_whole_file(path), nullptr, false)) {
+    if (!json_.is_object())
+      throw InputError(path + ": this is no summary of a run: it is damaged, or not JSON");
+  }
+
+  std::string text(const char* path) const {
+    const nlohmann::json* const found = find(path);
+    return found != nullptr && found->is_string() ? found->get<std::string>() : "";
+  }
+  double number(const char* path) const {
+    const nlohmann::json* const found = find(path);
+    return found != nullptr && found->is_number() ? found->get<double>() : 0.0;
+  }
+  /// "1 of 2 checks passed"; empty without checks.
+  std::string checks() const {
+    const nlohmann::json* const all = find("/checks");
+    if (all == nullptr || !all->is_array() || all->empty()) return "";
+    const auto passed = std::count_if(all->begin(), all->end(), [](const nlohmann::json& check) {
+      return check.is_object() && check.contains("pass") && check["pass"] == true;
+    });
+    return fmt::format("{} of {} passed", passed, all->size());
+  }
+  /// "1,500 elements, 8,364 links"
+  std::string model() const {
+    std::vector<std::string> parts;
+    for (const char* kind : {"elements", "links", "triangles", "joints"})
+      if (const double count = number(fmt::format("/model/{}", kind).c_str()); count > 0.0)
+        parts.push_back(count_text(count) + ' ' + kind);
+    return fmt::format("{}", fmt::join(parts, ", "));
+  }
+
+ private:
+  const nlohmann::json* find(const char* path) const {
+    const nlohmann::json::json_pointer at(path);
+    return json_.contains(at) ? &json_.at(at) : nullptr;
+  }
+  nlohmann::json json_;
+};
+
+void tell(const char* head, const std::string& text) {
+  if (text.empty()) return;
+  for (const std::string& line : wrapped(harmless(text), 70)) {
+    fmt::print("{:<7} {}\n", head, line);
+    head = "";
+  }
+}
+
 void describe_folder(const std::string& path) {
   const std::string summary = path + "/summary.json";
   if (!fs::exists(summary))
     throw InputError(path + ": this folder holds no run (there is no summary.json)");
-  print_harmless("{}", read_whole_file(summary));
+  const Told told(summary);
+  print_harmless("{}: {}{}\n", path, told.text("/status"),
+                 told.text("/message").empty() ? "" : ", " + told.text("/message"));
+  tell("case", fmt::format("{}, {}, seed {:.0f}", told.text("/case/name"), told.text("/method"),
+                           told.number("/case/seed")));
+  tell("model", told.model());
+  tell("run", fmt::format("{} in {} steps, {} of wall-clock time on {} x{}",
+                          time_text(told.number("/time")), count_text(told.number("/steps")),
+                          time_text(told.number("/wall_s/total")), told.text("/machine/device"),
+                          count_text(told.number("/machine/threads"))));
+  tell("energy", fmt::format("{:.2g} % is missing from the ledger",
+                             100.0 * told.number("/energy/error_relative")));
+  tell_findings(path);
+  tell("checks", told.checks());
+  tell("hash", told.text("/state_hash"));
+  tell("program",
+       fmt::format("breccia {} {}", told.text("/breccia/version"), told.text("/breccia/commit")));
   if (holds_frames(path)) {
     const std::vector<double> times = frame_times(path);
     if (!times.empty())
-      print_harmless("frames: {}, from {} to {}\n", times.size(), time_text(times.front()),
-                     time_text(times.back()));
+      tell("frames", fmt::format("{}, from {} to {}", times.size(), time_text(times.front()),
+                                 time_text(times.back())));
   }
   for (const CheckpointFile& file : list_checkpoints(path + "/checkpoints"))
-    print_harmless("checkpoint: {}, step {}\n", file.path,
+    print_harmless("{:<7} {}, step {}\n", "state", file.path,
                    count_text(static_cast<double>(file.step)));
+  tell("all", summary);
+}
+
+/// A file of a frame: what the whole frame holds.
+void describe_frame(const std::string& path) {
+  const fs::path file(path);
+  const std::string folder = (file.parent_path() / "..").lexically_normal().string();
+  const std::string stem = file.stem().string();
+  const std::size_t digits = stem.find_last_not_of("0123456789");
+  if (!fs::exists(file)) throw IoError(path + ": cannot be read: there is no such file");
+  if (digits == std::string::npos || digits + 1 == stem.size() || !holds_frames(folder))
+    throw InputError(path + ": this is no file of a frame in the folder of a run");
+  const Frame frame =
+      read_frame(folder, static_cast<int>(std::strtol(stem.c_str() + digits + 1, nullptr, 10)));
+  print_harmless("{}: of the frame at {}, step {}\n", path, time_text(frame.time),
+                 count_text(static_cast<double>(frame.step)));
+  const auto tell_items = [](const char* kind, std::size_t count,
+                             const std::vector<FrameField>& fields) {
+    if (count == 0) return;
+    print_harmless("  {} {}\n", count_text(static_cast<double>(count)), kind);
+    for (const FrameField& field : fields) {
+      if (field.values.empty()) continue;
+      const auto [low, high] = std::minmax_element(field.values.begin(), field.values.end());
+      print_harmless(
+          "    {:<24} {:<8} {:.4g} to {:.4g}\n",
+          field.name + (field.components == 1 ? "" : fmt::format("[{}]", field.components)),
+          field.unit, *low, *high);
+    }
+  };
+  tell_items(frame.triangles.empty() ? "spheres" : "corners", frame.position.size(),
+             frame.point_fields);
+  tell_items(frame.triangles.empty() ? "links" : "joints", frame.lines.size() / 2,
+             frame.line_fields);
+  tell_items("triangles", frame.triangles.size() / 3, frame.triangle_fields);
 }
 
 void describe_table(const std::string& path) {
@@ -72,6 +180,7 @@ void describe(const std::string& path) {
   if (fs::is_directory(path)) return describe_folder(path);
   const std::string kind = fs::path(path).extension().string();
   if (kind == ".csv") return describe_table(path);
+  if (kind == ".vtu" || kind == ".hdf") return describe_frame(path);
   if (kind == ".json" || kind == ".toml") {
     print_harmless("{}", read_whole_file(path));
     return;
@@ -83,8 +192,8 @@ void describe(const std::string& path) {
 
 void add_info(CLI::App& program) {
   const auto path = std::make_shared<std::string>();
-  CLI::App* const command =
-      program.add_subcommand("info", "what a checkpoint, model or result folder holds");
+  CLI::App* const command = program.add_subcommand(
+      "info", "what a result folder, a frame, a checkpoint or a model holds");
   command->add_option("FILE", *path, "a file a run left, or its folder")->required();
   command->callback([path] { describe(*path); });
 }

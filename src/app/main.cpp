@@ -20,6 +20,7 @@
 #include "exec/error.hpp"
 #include "exec/threads.hpp"
 #include "io/case/suggestion.hpp"
+#include "io/emphasis.hpp"
 #include "io/harmless.hpp"
 #include "run/machine/machine.hpp"
 #include "run/machine/memory_plan.hpp"
@@ -32,7 +33,10 @@ constexpr int file_error = 3;
 constexpr int memory_error = 5;
 
 void write_error(const std::string& message) {
-  std::fputs(fmt::format("error: {}\n", breccia::harmless(message)).c_str(), stderr);
+  std::fputs(fmt::format("{} {}\n", breccia::emphasized(breccia::Emphasis::error, "error:", stderr),
+                         breccia::harmless(message))
+                 .c_str(),
+             stderr);
 }
 
 /// Tells of a wrong command line; a first word that is no command is named.

@@ -18,6 +18,7 @@
 #include "app/film_recipe.hpp"
 #include "app/run_notes.hpp"
 #include "exec/error.hpp"
+#include "io/emphasis.hpp"
 #include "io/harmless.hpp"
 #include "io/picture/field_colors.hpp"
 #include "io/picture/picture.hpp"
@@ -219,7 +220,7 @@ struct RenderCommand {
 
   static void warn_if_blank(const Image& image, const Shots& shots, int number) {
     if (image.model_pixels > 0) return;
-    fmt::print(stderr, "warning: {}\n",
+    fmt::print(stderr, "{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
                harmless(fmt::format("nothing of the model is in the picture of frame {} of {}: "
                                     "--fit frame shows where it is; --clip and --hide take away",
                                     number, shots.folder)));

@@ -16,6 +16,7 @@
 #include "app/run_options.hpp"
 #include "domain/together.hpp"
 #include "exec/error.hpp"
+#include "io/emphasis.hpp"
 #include "io/harmless.hpp"
 #include "run/machine/exec_choice.hpp"
 #include "run/machine/signals.hpp"
@@ -75,7 +76,10 @@ struct ResumeCommand {
       read = load_case(path + "/case.toml", options.overrides);
       const auto warn = [ranks](const std::string& warning) {
         if (leads(ranks))
-          std::fputs(fmt::format("warning: {}\n", harmless(warning)).c_str(), stderr);
+          std::fputs(fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),
+                                 harmless(warning))
+                         .c_str(),
+                     stderr);
       };
       checkpoint.emplace(newest_good_checkpoint(path + "/checkpoints", warn));
       read.name = checkpoint->text("run.case_name");

@@ -64,6 +64,7 @@ struct TestCommand {
     const auto lines = lab::passport_lines(results, wanted);
     replace_file(out + "/passport.md",
                  lab::passport_page(material, specimens_of(sample), results, lines));
+    replace_file(out + "/specimens.csv", lab::specimens_table(results));
     replace_file(out + "/passport.svg", svg_of(lab::passport_plots(results), 2));
     return tell(lines, out, exit_code);
   }
@@ -159,8 +160,8 @@ void add_test(CLI::App& program, int& exit_code) {
       "The exit code is 9 if a mean misses its target.\n"
       "\n"
       "DIR/passport.md is the page, passport.svg has the curves of all specimens,\n"
-      "curves/*.csv their points, cases/ and runs/ what was computed. Called again,\n"
-      "the command keeps finished specimens.");
+      "curves/*.csv their points, specimens.csv their numbers, cases/ and runs/\n"
+      "what was computed. Called again, the command keeps finished specimens.");
   command->callback([test, &exit_code] { exit_code = test->execute(); });
 }
 

@@ -295,6 +295,19 @@ std::vector<PassportLine> passport_lines(const std::vector<TestResults>& results
   return lines;
 }
 
+std::string specimens_table(const std::vector<TestResults>& results) {
+  std::string text = "test,specimen,quantity,unit,value\n";
+  for (const TestResults& result : results)
+    for (std::size_t k = 0; k < result.specimens.size(); ++k)
+      for (const Shown& s : shown)
+        if (const auto found = result.specimens[k].numbers.find(s.name);
+            found != result.specimens[k].numbers.end())
+          text +=
+              fmt::format("{},{},{},{},{:.9g}\n", result.test.name, k + 1, s.name, s.unit,
+                          std::isfinite(found->second) ? s.factor * found->second : std::nan(""));
+  return text;
+}
+
 /// Ratios of the means of two tests; nothing without a pair of them.
 std::string ratios_of(const std::vector<PassportLine>& lines) {
   const auto mean = [&](const std::string& title) {

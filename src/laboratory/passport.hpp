@@ -59,6 +59,9 @@ struct PassportLine {
 std::vector<PassportLine> passport_lines(const std::vector<TestResults>& results,
                                          const std::vector<MaterialTarget>& targets);
 
+/// specimens.csv: each number of each specimen, a line each, in the units of the page.
+std::string specimens_table(const std::vector<TestResults>& results);
+
 /// passport.md.
 /// @param specimens  a sentence about their size and elements
 std::string passport_page(const std::string& material, const std::string& specimens,

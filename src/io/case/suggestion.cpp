@@ -35,6 +35,8 @@ std::string nearest(const std::string& word, const std::set<std::string>& known)
 }
 
 std::string suggestion(const std::string& word, const std::set<std::string>& known) {
+  if (word == "thickness")  // plane cases of other programs have one
+    return ": a plane case counts each metre of thickness (N/m, J/m); multiply what comes out";
   if (const std::string best = nearest(word, known); !best.empty())
     return "; did you mean " + best + "?";
   std::string all;

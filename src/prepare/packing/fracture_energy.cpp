@@ -119,7 +119,10 @@ double rupture_opening(const MaterialConfig& material, const dem::ContactConfig&
     const std::string cure =
         opening > 0.0 ? fmt::format("elements of at most {:.3g} m mean diameter (now {:.3g} m)",
                                     2.0 * packed.radius * opening / onset, 2.0 * packed.radius)
-                      : "a smaller cohesion, since sliding alone spends more";
+                      : fmt::format(
+                            "a smaller cohesion, since sliding alone spends more, or other "
+                            "elements (now {:.3g} m mean diameter)",
+                            2.0 * packed.radius);
     throw InputError(fmt::format(
         "material.{}.fracture_energy = {:.4g} J/m2 is too small for body {}: its links would have "
         "to break at an opening of {:.3g} m, but store energy up to one of {:.3g} m (snap back)\n"
@@ -131,8 +134,11 @@ double rupture_opening(const MaterialConfig& material, const dem::ContactConfig&
   const double energy = notched_cube_energy(material, contact, packed, first);
   const double second = first * asked / energy;
   refuse_brittle(second);
-  const double slope =
-      (notched_cube_energy(material, contact, packed, second) - energy) / (second - first);
+  const double energy2 = notched_cube_energy(material, contact, packed, second);
+  const double slope = (energy2 - energy) / (second - first);
+  // Without a slope there is no secant: what is near enough is taken, the rest is sliding.
+  constexpr double near = 1.5;
+  if (!(slope > 0.0)) refuse_brittle(energy2 < near * asked ? second : 0.0);
   const double opening = slope > 0.0 ? first + (asked - energy) / slope : second;
   refuse_brittle(opening);
   return opening;

@@ -10,6 +10,11 @@
 namespace breccia {
 namespace {
 
+/// Energy or work that error_relative refers to; 0 if nothing is missing.  [J]
+double largest_of(const EnergyBalance& energy) {
+  return energy.error_relative > 0.0 ? std::fabs(energy.missing()) / energy.error_relative : 0.0;
+}
+
 std::string moment(std::int64_t step, double time) {
   return fmt::format("step {}, t = {:.6e} s: ", step, time);
 }
@@ -19,8 +24,8 @@ std::string moment(std::int64_t step, double time) {
   throw NumericsError(fmt::format(
       "{}{:.3g} J of {:.3g} J are missing ({:.2g} of the largest energy or work so far; "
       "energy.stop = {}): a smaller time.safety, or a load that grows more slowly, may help",
-      moment(step, time), std::fabs(energy.missing()),
-      std::fabs(energy.missing()) / energy.error_relative, energy.error_relative, limit));
+      moment(step, time), std::fabs(energy.missing()), largest_of(energy), energy.error_relative,
+      limit));
 }
 
 }  // namespace
@@ -42,6 +47,11 @@ bool EnergyWatch::look(const EnergyBalance& energy, std::int64_t step, double ti
     return rows;
   };
   if (count(limits_.stop, rows_.above_stop) >= patience) refuse(energy, limits_.stop, step, time);
+  const double largest = largest_of(energy);
+  if (largest >= 2.0 * rows_.largest && rows_.above_warn < patience) {
+    rows_.largest = largest;
+    rows_.above_warn = 0;
+  }
   return count(limits_.warn, rows_.above_warn) == patience;
 }
 
@@ -50,9 +60,10 @@ void KineticShare::look(const EnergyBalance& energy) {
   work = std::max(work, energy.work + energy.start);
 }
 
-void EnergyWatch::judge_end(const EnergyBalance& energy, std::int64_t step, double time) const {
+bool EnergyWatch::judge_end(const EnergyBalance& energy, std::int64_t step, double time) const {
   if (limits_.stop > 0.0 && energy.error_relative > limits_.stop)
     refuse(energy, limits_.stop, step, time);
+  return limits_.warn > 0.0 && energy.error_relative > limits_.warn && rows_.above_warn < patience;
 }
 
 }  // namespace breccia

@@ -13,7 +13,9 @@ namespace breccia {
 /// or work so far. A row alone says nothing: at the start of a load both are as small as what the
 /// scheme rounds (15 % of 4e-10 J in the first row of a bending test that ends at 1 J), and such an
 /// error fades. One that stays for `patience` rows, a fortieth of the usual 1000, or to the end of
-/// the case, does not.
+/// the case, does not. Rows that call for a warning are counted anew when the largest energy has
+/// doubled: what is missing of the energies at the start of a load is little of those that follow.
+/// The limit that ends a run counts all rows.
 class EnergyWatch {
  public:
   static constexpr std::int64_t patience = 25;  ///< rows
@@ -21,6 +23,7 @@ class EnergyWatch {
   /// Rows in succession above a limit; part of the record's state.
   struct Rows {
     std::int64_t above_warn = 0, above_stop = 0;
+    double largest = 0.0;  ///< energy or work, where the count of above_warn began  [J]
   };
 
   explicit EnergyWatch(const EnergyConfig& limits) : limits_(limits) {}
@@ -29,8 +32,9 @@ class EnergyWatch {
   /// Whether a row calls for a warning. @throws NumericsError if the run must end, or if an energy
   /// is too large to be summed
   bool look(const EnergyBalance& energy, std::int64_t step, double time);
-  /// Judges the end of a case, where one row is enough.
-  void judge_end(const EnergyBalance& energy, std::int64_t step, double time) const;
+  /// Whether the end of a case calls for a warning that its rows have not given; one row is
+  /// enough. @throws NumericsError if the case has failed
+  bool judge_end(const EnergyBalance& energy, std::int64_t step, double time) const;
 
   const Rows& rows() const { return rows_; }
 

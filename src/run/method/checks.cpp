@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/emphasis.hpp"
+
 namespace breccia {
 
 std::vector<CheckResult> evaluate_checks(const std::vector<CheckConfig>& checks,
@@ -31,10 +33,11 @@ std::string check_table(const std::vector<CheckResult>& results) {
   std::string table = fmt::format("  {:<{}}  {:>14}  {:>14}  {:>12}  {:<8}\n", "check", width,
                                   "value", "expected", "tolerance", "unit");
   for (const CheckResult& result : results)
-    table +=
-        fmt::format("  {:<{}}  {:>14}  {:>14.8g}  {:>12.4g}  {:<8}  {}\n", result.name, width,
-                    result.value ? fmt::format("{:.8g}", *result.value) : "missing",
-                    result.expected, result.tolerance, result.unit, result.pass ? "pass" : "FAIL");
+    table += fmt::format("  {:<{}}  {:>14}  {:>14.8g}  {:>12.4g}  {:<8}  {}\n", result.name, width,
+                         result.value ? fmt::format("{:.8g}", *result.value) : "missing",
+                         result.expected, result.tolerance, result.unit,
+                         result.pass ? emphasized(Emphasis::good, "pass", stdout)
+                                     : emphasized(Emphasis::error, "FAIL", stdout));
   return table;
 }
 

@@ -117,10 +117,11 @@ void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
   for (const CheckConfig& check : config.checks)
     problems.push_back(problem_of(check, config.probes, shown));
   if (!has_field(shown.frame, config.output.color))
-    problems.push_back(
-        fmt::format("output.color = {:?} is no field of the frames; allowed are {}, and \"\" for "
-                    "none",
-                    config.output.color, fmt::join(field_names(shown.frame), ", ")));
+    problems.push_back(fmt::format(
+        "output.color = {:?} is no field of the frames{}; allowed are {}, and \"\" for "
+        "none",
+        config.output.color, config.output.color == "speed" ? ", it is called velocity there" : "",
+        fmt::join(field_names(shown.frame), ", ")));
   for (std::string& problem : problems_of_pictures(config.output, shown.frame))
     problems.push_back(std::move(problem));
   std::erase(problems, "");

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "io/emphasis.hpp"
+
 namespace breccia {
 namespace {
 
@@ -32,19 +34,27 @@ std::string time_stamp() {
 }  // namespace
 
 void Log::write(Level level, const std::string& stage, std::int64_t step,
-                const std::string& message) {
-  const nlohmann::ordered_json line{{"time", time_stamp()},
-                                    {"level", word(level)},
-                                    {"stage", stage},
-                                    {"step", step},
-                                    {"message", message}};
+                const std::string& message,
+                const std::optional<std::pair<std::int64_t, double>>& frame) {
+  nlohmann::ordered_json line{{"time", time_stamp()},
+                              {"level", word(level)},
+                              {"stage", stage},
+                              {"step", step},
+                              {"message", message}};
+  if (frame) {
+    line["frame"] = frame->first;
+    line["time_s"] = frame->second;
+  }
   file_.append(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   if (echo_ != nullptr) std::fputs(fmt::format("  {}: {}\n", stage, message).c_str(), echo_);
 }
 
 void Log::warn(const std::string& stage, std::int64_t step, const std::string& message) {
   write(Level::warning, stage, step, message);
-  std::fputs(fmt::format("warning: step {}: {}\n", step, message).c_str(), stderr);
+  std::fputs(fmt::format("{} step {}: {}\n", emphasized(Emphasis::warning, "warning:", stderr),
+                         step, message)
+                 .c_str(),
+             stderr);
 }
 
 void Log::cut_to(const std::string& path, std::int64_t step) {

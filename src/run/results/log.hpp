@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "run/results/text_file.hpp"
 
@@ -21,7 +23,10 @@ class Log {
   static void cut_to(const std::string& path, std::int64_t step);
 
   /// @param stage  "setup", "step", "frame", "checkpoint", "end"
-  void write(Level level, const std::string& stage, std::int64_t step, const std::string& message);
+  /// @param frame  number of the frame that the line is about, and its simulated time; may be left
+  ///               out
+  void write(Level level, const std::string& stage, std::int64_t step, const std::string& message,
+             const std::optional<std::pair<std::int64_t, double>>& frame = {});
   /// And tells people of it, whether messages are repeated for them or not.
   void warn(const std::string& stage, std::int64_t step, const std::string& message);
   void sync() { file_.sync(); }

@@ -68,8 +68,10 @@ std::string elasticity_text(const std::vector<Fact>& facts) {
 
 std::string opening_text(const Summary& s, double end_time, std::int64_t end_steps,
                          const std::string& folder) {
-  std::string text = fmt::format("breccia {}  {} x{} {}\n", this_build().version, s.machine.device,
-                                 s.machine.threads, s.machine.threads == 1 ? "thread" : "threads");
+  std::string text =
+      fmt::format("breccia {}  {} x{} {}{}\n", this_build().version, s.machine.device,
+                  s.machine.threads, s.machine.threads == 1 ? "thread" : "threads",
+                  s.machine.ranks > 1 ? fmt::format(" on each of {} ranks", s.machine.ranks) : "");
   text += fmt::format("case    {}   {}", s.case_name, s.method);
   if (s.precision != "double") text += fmt::format("   {} precision", s.precision);
   for (const char* kind : {"elements", "links", "triangles", "joints"})
@@ -97,7 +99,8 @@ std::string opening_text(const Summary& s, double end_time, std::int64_t end_ste
 }
 
 std::string broken_text(const std::vector<Fact>& facts) {
-  if (const auto links = fact(facts, "fracture.broken_links"))
+  const auto links = fact(facts, "fracture.broken_links");
+  if (links && fact(facts, "model.links").value_or(0.0) > 0.0)
     return "broken links " + count_text(*links);
   const auto joints = fact(facts, "fracture.broken_joints");
   if (joints && fact(facts, "model.joints").value_or(0.0) > 0.0)

@@ -73,7 +73,7 @@ void RecordState::save(CheckpointWriter& writer) const {
   if (extent) writer.value("run.extent", *extent);
   if (first) writer.value("run.first_extent", *first);
   writer.value("run.height", height);
-  writer.value("run.unbalanced", unbalanced);
+  writer.value("run.energy_watch", unbalanced);
   writer.value("run.moving", moving);
   std::vector<double> ranges;
   for (const ProbeRange& probe : probes)
@@ -90,7 +90,8 @@ void RecordState::load(const CheckpointReader& reader) {
   first = extent;
   if (reader.has("run.first_extent")) first = reader.value<Extent>("run.first_extent");
   if (reader.has("run.height")) height = reader.value<std::int64_t>("run.height");
-  if (reader.has("run.unbalanced")) unbalanced = reader.value<EnergyWatch::Rows>("run.unbalanced");
+  if (reader.has("run.energy_watch"))
+    unbalanced = reader.value<EnergyWatch::Rows>("run.energy_watch");
   if (reader.has("run.moving")) moving = reader.value<KineticShare>("run.moving");
   const CheckpointReader::Section& ranges = reader.section("run.probes", sizeof(double));
   probes.resize(ranges.count / 3);
@@ -210,7 +211,13 @@ void Recorder::record_last(Method& method, Background& background) {
 }
 
 void Recorder::judge_end(const Method& method, const EnergyBalance& energy) const {
-  on_first(ranks_, [&] { watch_.judge_end(energy, method.steps(), method.time()); });
+  on_first(ranks_, [&] {
+    if (watch_.judge_end(energy, method.steps(), method.time()))
+      log_->warn(
+          "step", method.steps(),
+          fmt::format("energies do not add up: error_relative is {:.2g} at the end, above {}",
+                      energy.error_relative, config_.energy.warn));
+  });
 }
 
 void Recorder::sync() {
@@ -250,7 +257,8 @@ void Recorder::write_frame(Method& method, Background& background) {
   on_first(ranks_, [&] {
     log_->write(Level::info, "frame", moment.step,
                 fmt::format("frame {} at {:.9g} s, state {:016x}", number, moment.time,
-                            moment.hash.value_or(0)));
+                            moment.hash.value_or(0)),
+                std::pair{number, moment.time});
   });
   ++frame_count_;
 }

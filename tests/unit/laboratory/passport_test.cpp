@@ -200,6 +200,10 @@ TEST(Passport, HoldsMeansAgainstTargetsWithinTheirTolerances) {
       std::string::npos)
       << page;
   EXPECT_NE(page.find("+10.0 % | **fail** |"), std::string::npos) << page;
+  EXPECT_EQ(specimens_table({tension, disc}),
+            "test,specimen,quantity,unit,value\ntension,1,strength,MPa,2.9\n"
+            "tension,2,strength,MPa,3.1\nbrazilian,1,strength,MPa,3.19\n"
+            "brazilian,2,strength,MPa,3.41\n");
 }
 
 TEST(TestCommand, WritesThePassportOfAMaterial) {
@@ -227,6 +231,8 @@ pack = { count = 100, compactness = 0.56 }
   EXPECT_NE(page.find("| direct tension, prism | strength | MPa | "), std::string::npos) << page;
   EXPECT_TRUE(std::filesystem::exists(scratch / "out/curves/tension-1.csv"));
   EXPECT_TRUE(std::filesystem::exists(scratch / "out/passport.svg"));
+  EXPECT_NE(read_whole_file(scratch / "out/specimens.csv").find("\ntension,1,strength,MPa,"),
+            std::string::npos);
   EXPECT_EQ(wait_for(start_program(arguments + " --only dance", scratch / "output.txt")), 2);
   EXPECT_NE(read_whole_file(scratch / "output.txt").find("the tests are compression_prism"),
             std::string::npos);

@@ -38,6 +38,46 @@ TEST(EnergyWatch, an_error_that_stays_is_a_warning_and_then_an_end) {
   }
 }
 
+EnergyBalance growing(double work, double error) {
+  EnergyBalance energy = with_error(error);
+  energy.work *= work;
+  energy.kinetic *= work;
+  return energy;
+}
+
+TEST(EnergyWatch, an_error_of_energies_that_grow_is_counted_anew_with_each_doubling) {
+  EnergyWatch watch(EnergyConfig{});
+  int warnings = 0;
+  double work = 1e-3;
+  for (int row = 0; row < 200; ++row, work *= 1.04)
+    warnings += watch.look(growing(work, 2e-3), row, 0.0);
+  EXPECT_EQ(warnings, 0) << "doubles every 18 rows";
+  for (int row = 0; row < 40; ++row, work *= 1.02)
+    warnings += watch.look(growing(work, 2e-3), row, 0.0);
+  EXPECT_EQ(warnings, 1) << "doubles every 35 rows";
+  for (int row = 0; row < 200; ++row, work *= 1.04)
+    warnings += watch.look(growing(work, 2e-3), row, 0.0);
+  EXPECT_EQ(warnings, 1) << "told once, as long as it stays";
+}
+
+TEST(EnergyWatch, growth_does_not_put_off_the_end_of_a_run) {
+  EnergyWatch watch(EnergyConfig{});
+  double work = 1.0;
+  for (int row = 0; row < 24; ++row, work *= 2.0) watch.look(growing(work, 0.02), row, 0.0);
+  EXPECT_THROW(watch.look(growing(work, 0.02), 24, 0.0), NumericsError);
+}
+
+TEST(EnergyWatch, a_warning_put_off_is_given_at_the_end) {
+  EnergyWatch watch(EnergyConfig{});
+  double work = 1.0;
+  for (int row = 0; row < 200; ++row, work *= 1.04) watch.look(growing(work, 2e-3), row, 0.0);
+  EXPECT_TRUE(watch.judge_end(growing(work, 2e-3), 200, 1.0));
+  EXPECT_FALSE(watch.judge_end(growing(work, 9e-4), 200, 1.0));
+  EnergyWatch told(EnergyConfig{});
+  for (int row = 0; row < 30; ++row) told.look(with_error(2e-3), row, 0.0);
+  EXPECT_FALSE(told.judge_end(with_error(2e-3), 30, 1.0));
+}
+
 TEST(EnergyWatch, the_end_of_a_case_is_judged_by_its_last_row) {
   const EnergyWatch watch(EnergyConfig{});
   EXPECT_NO_THROW(watch.judge_end(with_error(0.009), 9, 1.0));

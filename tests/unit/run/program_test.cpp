@@ -507,6 +507,12 @@ TEST_F(Program, WritesNoCarriageReturnIntoAFile) {
 TEST_F(Program, DescribesDrawsAndListsWithoutAProblem) {
   ASSERT_EQ(run("run " + path("balls.toml") + " -o " + path("out")), 0) << output();
   EXPECT_EQ(run("info " + path("out")), 0) << output();
+  EXPECT_TRUE(output().starts_with(path("out") + ": done\ncase    balls, dem3d, seed 1\nmodel   "))
+      << output();
+  EXPECT_EQ(run("info " + path("out/fields/elements_0000.vtu")), 0) << output();
+  EXPECT_NE(output().find("elements_0000.vtu: of the frame at 0 s, step 0\n"), std::string::npos)
+      << output();
+  EXPECT_NE(output().find("    velocity[3] "), std::string::npos) << output();
   EXPECT_EQ(run("info " + list_checkpoints(path("out/checkpoints")).at(0).path), 0) << output();
   EXPECT_NE(output().find("elements.orientation"), std::string::npos) << output();
   EXPECT_EQ(run("render " + path("out") + " -o " + path("picture.png") + " --color velocity"), 0)

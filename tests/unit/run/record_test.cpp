@@ -81,10 +81,11 @@ TEST(Record, FramesComeAtTheFirstStepAtOrPastTheirTime) {
   run_fake(fake_plan(), scratch / "out");
   const std::string log = read_whole_file(scratch / "out/log.jsonl");
   int frames = 0;
-  for (std::size_t at = log.find("\"frame\""); at != std::string::npos;
-       at = log.find("\"frame\"", at + 1))
+  for (std::size_t at = log.find("\"stage\":\"frame\""); at != std::string::npos;
+       at = log.find("\"stage\":\"frame\"", at + 1))
     ++frames;
   EXPECT_EQ(frames, 5) << "four over the run and the one at the start";
+  EXPECT_NE(log.find("\"frame\":4,\"time_s\":"), std::string::npos) << log;
 }
 
 TEST(Summary, NumbersReadBackToTheSameBits) {
