@@ -1,23 +1,21 @@
 // breccia: how concrete and rock break. Exit codes: docs of the commands, exec/error.hpp.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <new>
 #include <set>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "app/commands.hpp"
 #include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
+#include "exec/no_memory.hpp"
 #include "exec/threads.hpp"
 #include "io/case/suggestion.hpp"
 #include "io/emphasis.hpp"
@@ -143,27 +141,10 @@ int guarded(int argc, char** argv, breccia::Communicator* ranks) {
   return exit_code;
 }
 
-std::terminate_handler other_terminate = nullptr;  ///< tells of the other errors
-
-/// Ends with the exit code of memory if there was none even for the message of an error, or in a
-/// destructor of a library, which may not throw. mpirun then ends the other ranks.
-[[noreturn]] void end_at_once() {
-  try {
-    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
-  } catch (const std::bad_alloc&) {
-    constexpr std::string_view message = "error: not enough memory\n";
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
-    std::_Exit(memory_error);
-  } catch (...) {
-    other_terminate();
-  }
-  std::abort();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  other_terminate = std::set_terminate(end_at_once);
+  breccia::end_without_memory();
   breccia::let_waiting_threads_sleep(argv);
   breccia::ignore_quota_signal();
   try {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "exec/error.hpp"
+#include "exec/no_memory.hpp"
 #include "io/case/toml.hpp"
 #include "io/whole_file.hpp"
 
@@ -32,6 +33,7 @@ struct RunFacts {
 
   explicit RunFacts(const std::string& folder) {
     try {
+      const NeedsMemory scope;
       const Json json = Json::parse(text_of(folder + "/summary.json"));
       name = json.at("case").at("name").get<std::string>();
       seed = json.at("case").at("seed").get<std::int64_t>();
@@ -71,6 +73,7 @@ std::optional<PictureMoment> moment_of_frame(const std::string& folder, int numb
   std::istringstream lines(text_of(folder + "/log.jsonl"));
   const std::string begin = fmt::format("frame {} at ", number);
   for (std::string line; std::getline(lines, line);) {
+    const NeedsMemory scope;
     const Json json = Json::parse(line, nullptr, false);
     try {
       if (json.is_object() && json.at("stage") == "frame" &&

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
+#include "exec/no_memory.hpp"
 #include "io/whole_file.hpp"
 
 namespace breccia::laboratory {
@@ -52,6 +53,7 @@ std::optional<double> RunResult::number(const std::string& path) const {
 }
 
 std::optional<RunResult> read_result(const std::string& folder) {
+  const NeedsMemory scope;
   Json json;
   try {
     json = Json::parse(read_whole_file(folder + "/summary.json"), nullptr, false);

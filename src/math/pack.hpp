@@ -46,7 +46,11 @@ struct SixSums {
     return sum[k];
   }
 #else
+#if defined(__clang__)  // reads the alignment only here
+  typedef double Two __attribute__((vector_size(16), aligned(8), may_alias));
+#else
   using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
+#endif
   Two sum[3] = {};
   void add(const double* numbers) {
     const auto* twos = reinterpret_cast<const Two*>(numbers);
@@ -74,7 +78,11 @@ struct EightFloatSums {
     return sum[k];
   }
 #else
+#if defined(__clang__)
+  typedef float Eight __attribute__((vector_size(32), aligned(4), may_alias));
+#else
   using Eight = float __attribute__((vector_size(32), aligned(4), may_alias));
+#endif
   Eight sum{};
   void add(const float* numbers) {
     sum += *reinterpret_cast<const Eight*>(numbers);

@@ -18,9 +18,9 @@ template <class R>
 BR_HD BitsOf<R> chance_of(const R& number, std::int64_t count) {
   BitsOf<R> word;
   __builtin_memcpy(&word, &number, sizeof word);
-  word += static_cast<std::uint64_t>(count) * 0x9e3779b97f4a7c15ULL;
-  word = (word ^ (word >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  word = (word ^ (word >> 27)) * 0x94d049bb133111ebULL;
+  word += static_cast<std::uint64_t>(count) * 0x9e3779b97f4a7c15UL;
+  word = (word ^ (word >> 30)) * 0xbf58476d1ce4e5b9UL;
+  word = (word ^ (word >> 27)) * 0x94d049bb133111ebUL;
   return word ^ (word >> 31);
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
+#include "exec/no_memory.hpp"
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 
@@ -28,6 +29,7 @@ void flatten(const Json& json, const std::string& path, Record& record) {
 }
 
 void read_summary(const std::string& path, Record& record) {
+  const NeedsMemory scope;
   const Json json = Json::parse(read_whole_file(path), nullptr, false);
   if (!json.is_object())
     throw InputError(path + ": this is no summary of a run: it is damaged, or not JSON");

@@ -6,6 +6,7 @@ import json
 import os
 import random
 import re
+import shutil
 import sys
 import time
 
@@ -81,6 +82,7 @@ def absurd(options):
             for number in numbers:
                 if attack.runs >= options.runs or time.time() - attack.begun > options.seconds / 4:
                     break
+                shutil.rmtree(attack.path("r"), ignore_errors=True)  # a refused run leaves the one before
                 code, text = run(case, attack.path("r"), 10, "--force", "--set", f"{key}={number}")
                 attack.runs += 1
                 attack.expect(code in EXIT_CODES, f"{key}={number}: {code}: {text[-300:]}")

@@ -123,9 +123,21 @@ void* allocate_aligned(size_t alignment, size_t size) {
   static const auto call = real<void* (*)(size_t, size_t)>("aligned_alloc");
   return (in_main && hits(++allocations, wanted().alloc)) ? nullptr : call(alignment, size);
 }
-void* or_throw(void* memory) {
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
+/// As the standard's operator new: a handler ends the program, throws, or has found memory.
+void* or_throw(size_t size) {
+  for (;;) {
+    if (void* const memory = allocate(size)) return memory;
+    const std::new_handler handler = std::get_new_handler();
+    if (handler == nullptr) throw std::bad_alloc();
+    handler();
+  }
+}
+void* or_null(size_t size) noexcept {
+  try {
+    return or_throw(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
 }
 
 }  // namespace
@@ -133,16 +145,16 @@ void* or_throw(void* memory) {
 #pragma GCC visibility push(default)
 
 void* operator new(size_t size) {
-  return or_throw(allocate(size));
+  return or_throw(size);
 }
 void* operator new[](size_t size) {
-  return or_throw(allocate(size));
+  return or_throw(size);
 }
 void* operator new(size_t size, const std::nothrow_t&) noexcept {
-  return allocate(size);
+  return or_null(size);
 }
 void* operator new[](size_t size, const std::nothrow_t&) noexcept {
-  return allocate(size);
+  return or_null(size);
 }
 void operator delete(void* memory) noexcept {
   ::free(memory);

@@ -37,11 +37,15 @@ bool is_finite(const EnergyBalance& e) {
   return true;
 }
 
-bool EnergyWatch::look(const EnergyBalance& energy, std::int64_t step, double time) {
+void require_numbers(const EnergyBalance& energy) {
   if (!is_finite(energy))
     throw NumericsError(
         "an energy of an element, link or contact is no number, or beyond "
         "9.2e18 J, the most that can be summed");
+}
+
+bool EnergyWatch::look(const EnergyBalance& energy, std::int64_t step, double time) {
+  require_numbers(energy);
   const auto count = [&](double limit, std::int64_t& rows) {
     rows = limit > 0.0 && energy.error_relative > limit ? rows + 1 : 0;
     return rows;

@@ -54,5 +54,7 @@ struct KineticShare {
 
 /// Whether all of them are numbers.
 bool is_finite(const EnergyBalance& energy);
+/// @throws NumericsError if one is none
+void require_numbers(const EnergyBalance& energy);
 
 }  // namespace breccia

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "exec/error.hpp"
+#include "exec/no_memory.hpp"
 #include "io/case/suggestion.hpp"
 #include "io/picture/color_map.hpp"
 #include "io/picture/picture.hpp"
@@ -37,6 +38,7 @@ Shown shown_by(Method& specimen) {
   summary.facts = specimen.facts();
   summary.energy = specimen.energy();
   Shown shown;
+  const NeedsMemory scope;
   add_numbers(nlohmann::json::parse(to_json(summary)), "", shown.numbers);
   shown.frame = specimen.frame();
   return shown;

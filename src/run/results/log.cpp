@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "exec/no_memory.hpp"
 #include "io/emphasis.hpp"
 
 namespace breccia {
@@ -36,6 +37,7 @@ std::string time_stamp() {
 void Log::write(Level level, const std::string& stage, std::int64_t step,
                 const std::string& message,
                 const std::optional<std::pair<std::int64_t, double>>& frame) {
+  const NeedsMemory scope;
   nlohmann::ordered_json line{{"time", time_stamp()},
                               {"level", word(level)},
                               {"stage", stage},
@@ -59,6 +61,7 @@ void Log::warn(const std::string& stage, std::int64_t step, const std::string& m
 
 void Log::cut_to(const std::string& path, std::int64_t step) {
   keep_lines(path, [step](std::string_view line) {
+    const NeedsMemory scope;
     const auto parsed = nlohmann::json::parse(line, nullptr, false);
     return parsed.is_object() && parsed.value("step", std::int64_t{0}) <= step;
   });

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
+#include "exec/no_memory.hpp"
 #include "run/machine/machine.hpp"
 
 namespace breccia {
@@ -103,6 +104,7 @@ std::vector<PngNote> notes_of_case(const std::string& name, const std::string& t
 }
 
 std::vector<PngNote> notes_of_picture(const PictureMoment& moment, const RenderOptions& options) {
+  const NeedsMemory scope;
   Json json{{"step", moment.step}, {"time", moment.time}};
   if (moment.frame) json["frame"] = *moment.frame;
   json["options"] = json_of(options);
@@ -127,6 +129,7 @@ PictureRecipe recipe_of(const std::vector<PngNote>& notes, const std::string& pa
                      ": a frame whose step is not known, since log.jsonl does not tell it: the "
                      "picture names its case but cannot be drawn again");
   try {
+    const NeedsMemory scope;
     const Json json = Json::parse(picture);
     json.at("step").get_to(recipe.moment.step);
     json.at("time").get_to(recipe.moment.time);

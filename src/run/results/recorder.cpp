@@ -230,6 +230,7 @@ void Recorder::write_row(Method& method) {
   const std::vector<double> probes = method.probes();
   last_energy_ = method.energy();
   on_first(ranks_, [&] {
+    require_numbers(*last_energy_);
     const std::string stage =
         stages_.empty() ? "" : stages_[static_cast<std::size_t>(method.stage().index)].name;
     history_->write(

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "exec/no_memory.hpp"
+
 namespace breccia {
 namespace {
 
@@ -107,6 +109,7 @@ Json json_of(const Summary& s) {
 }  // namespace
 
 std::string to_json(const Summary& summary) {
+  const NeedsMemory scope;
   return json_of(summary).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -123,6 +126,7 @@ std::optional<double> number_at(const Summary& summary, const std::string& path)
     }
     return std::nullopt;
   }
+  const NeedsMemory scope;
   const Json json = json_of(summary);
   const Json* place = &json;
   for (const std::string& part : parts(path)) {

@@ -61,6 +61,29 @@ TEST_F(ProgramAndFiles, a_quota_on_file_sizes_ends_every_command_with_3) {
   EXPECT_EQ(entries_of("made"), 0U);
 }
 
+TEST_F(ProgramAndFiles, energies_that_are_no_numbers_are_told_with_their_step_and_never_written) {
+  replace_file(path("plate.toml"), R"(
+method = "fdem2d"
+time.end = "1 us"
+[output]
+frames = 0
+[material.rock]
+joint = { tension = 5e-324 }
+[[body]]
+name = "plate"
+material = "rock"
+size = ["8 mm", "8 mm"]
+mesh_size = "2 mm"
+structured = true
+velocity = [1.0, 0.0]
+)");
+  EXPECT_EQ(run("run " + path("plate.toml") + " -o " + path("out")), 4) << output();
+  EXPECT_TRUE(told("error: step 0, t = 0.000000e+00 s: ")) << output();
+  const std::string rows = read_whole_file(path("out/history.csv"));
+  EXPECT_EQ(rows.find("inf"), std::string::npos) << rows;
+  EXPECT_EQ(rows.find("nan"), std::string::npos) << rows;
+}
+
 TEST_F(ProgramAndFiles, nothing_is_written_through_links_that_wait_in_the_folder) {
   const std::string precious = path("precious");
   replace_file(precious, "precious");
