@@ -32,6 +32,7 @@ struct LinkArrays {
   std::vector<std::uint8_t> kind;
   std::vector<std::int16_t> material;
   std::vector<double> share;
+  std::vector<std::uint8_t> parted;
 };
 
 template <class Arrays, class Visit>
@@ -41,6 +42,7 @@ void each_link_array(Arrays& links, Visit&& array) {
   array("link_kind", links.kind);
   array("link_material", links.material);
   array("link_share", links.share);
+  array("link_parted", links.parted);
 }
 
 /// Facets of LDPM by member, likewise.
@@ -204,6 +206,7 @@ void save_model(CheckpointWriter& writer, const dem::Model& model) {
     links.kind.push_back(static_cast<std::uint8_t>(link.kind));
     links.material.push_back(link.material);
     links.share.push_back(link.share);
+    links.parted.push_back(link.parted ? 1 : 0);
   }
   each_link_array(links,
                   [&](const char* name, const auto& items) { save_array(writer, name, items); });
@@ -252,13 +255,14 @@ dem::Model load_model(const CheckpointReader& reader) {
         load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
   });
   if (links.b.size() != links.a.size() || links.kind.size() != links.a.size() ||
-      links.material.size() != links.a.size() || links.share.size() != links.a.size())
+      links.material.size() != links.a.size() || links.share.size() != links.a.size() ||
+      links.parted.size() != links.a.size())
     throw CheckpointError("the model's links are not whole");
   Index facet = 0;
   for (std::size_t i = 0; i < links.a.size(); ++i) {
     const auto kind = static_cast<dem::LinkKind>(links.kind[i]);
     model.links.push_back({links.a[i], links.b[i], kind, links.material[i], links.share[i],
-                           kind == dem::LinkKind::ldpm ? facet++ : -1});
+                           kind == dem::LinkKind::ldpm ? facet++ : -1, links.parted[i] != 0});
   }
   if (reader.has("model.facet_area")) {
     const auto corners = load_array<std::array<Index, 4>>(reader, "facet_corners");

@@ -32,6 +32,7 @@ struct Model {
     std::int16_t material;  ///< law of the link: the concrete's, steel's or interface's material
     double share = 1.0;     ///< of a concrete link: its section over pi min(R_a, R_b)^2  [-]
     Index facet = -1;       ///< of a link of LDPM: index into facets
+    bool parted = false;    ///< of concrete and parallel bonds: broken from the start, by a cut
   };
   std::vector<Link> links;  ///< sorted by a, then b
 

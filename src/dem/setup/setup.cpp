@@ -125,6 +125,12 @@ void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m)
   copy_to(set.length, length);
   copy_to(set.stiffness, stiffness);
   copy_to(set.area, area);
+  with_number(set.precision, [&](auto number) {
+    std::vector<decltype(number)> opening;
+    for (const Model::Link& link : links)
+      opening.push_back(static_cast<decltype(number)>(link.parted ? link_broken : 0.0));
+    copy_to(set.kept.as<decltype(number)>().opening, opening);
+  });
 }
 
 void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m) {
@@ -143,8 +149,9 @@ void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m)
   }
   copy_to(set.length, length);
   copy_to(set.stiffness, stiffness);
-  std::vector<ParallelBondState> whole(links.size(), {1.0, 0.0, {}, {}});
-  copy_to(set.state, whole);
+  std::vector<ParallelBondState> state;
+  for (const Model::Link& link : links) state.push_back({link.parted ? 0.0 : 1.0, 0.0, {}, {}});
+  copy_to(set.state, state);
 }
 
 /// Some unit vector across another.

@@ -113,12 +113,22 @@ void keep_only(Model& model, const std::vector<bool>& kept) {
   });
 }
 
-/// Takes out links, and the facets that they have.
+/// Whether the elements of a bond overlap, which no contact may take over.
+bool overlap(const Model& model, const Model::Link& link) {
+  if (link.kind != dem::LinkKind::concrete && link.kind != dem::LinkKind::parallel) return false;
+  const auto a = static_cast<std::size_t>(link.a), b = static_cast<std::size_t>(link.b);
+  return norm(model.position[b] - model.position[a]) < model.radius[a] + model.radius[b];
+}
+
+/// Takes out links, and the facets that they have. A link between elements that overlap stays,
+/// parted: a contact in its place would push with an overlap that the packing put there.
 template <class Gone>
 void drop_links(Model& model, const Gone& gone) {
   std::vector<bool> lost(model.facets.size());
-  std::erase_if(model.links, [&](const Model::Link& link) {
-    const bool go = gone(link);
+  std::erase_if(model.links, [&](Model::Link& link) {
+    if (!gone(link)) return false;
+    link.parted = overlap(model, link);
+    const bool go = !link.parted;
     if (go && link.facet >= 0) lost[static_cast<std::size_t>(link.facet)] = true;
     return go;
   });
@@ -180,7 +190,7 @@ class Carving {
     });
     std::vector<bool> linked(static_cast<std::size_t>(model_.size()));
     for (const Model::Link& link : model_.links)
-      if (is_of(link.a, number) && is_of(link.b, number))
+      if (!link.parted && is_of(link.a, number) && is_of(link.b, number))
         linked[static_cast<std::size_t>(link.a)] = linked[static_cast<std::size_t>(link.b)] = true;
     const bool grains = item_named(config_.materials, body.material)->law == "grain";
     std::vector<bool> kept(static_cast<std::size_t>(model_.size()), true);

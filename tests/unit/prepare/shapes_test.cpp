@@ -8,7 +8,9 @@
 #include <functional>
 
 #include "core/random.hpp"
+#include "dem/observe.hpp"
 #include "dem/setup/materials.hpp"
+#include "dem/world.hpp"
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
@@ -171,7 +173,8 @@ TEST(Shapes, an_stl_body_has_its_mass_and_no_link_across_its_gap) {
   };
   for (Index e = 0; e < model.size(); ++e) EXPECT_TRUE(surface.holds(own(e)));
   ASSERT_GT(model.links.size(), 5000u);
-  for (const auto& link : model.links) EXPECT_FALSE(surface.parts(own(link.a), own(link.b)));
+  for (const auto& link : model.links)
+    EXPECT_TRUE(link.parted || !surface.parts(own(link.a), own(link.b)));
 }
 
 dem::CutConfig ball(double radius) {
@@ -243,12 +246,34 @@ TEST(Shapes, cuts_take_elements_and_links_and_leave_the_rest) {
   for (const auto& link : cut.links) {
     const Vec3 a = cut.position[static_cast<std::size_t>(link.a)];
     const Vec3 b = cut.position[static_cast<std::size_t>(link.b)];
-    if (a.x * b.x >= 0.0) continue;
+    if (link.parted || a.x * b.x >= 0.0) continue;
     const double height = a.z - a.x / (b.x - a.x) * (b.z - a.z);
     EXPECT_GT(height, -0.02);
     ++across;
   }
   EXPECT_GT(across, 40u);  // the ligament holds
+}
+
+TEST(Shapes, a_crack_pushes_nothing_apart) {
+  for (const char* law : {"concrete", "parallel"}) {
+    SCOPED_TRACE(law);
+    dem::BodyConfig body = dem::box_body("cube", {0.1, 0.1, 0.1}, 500, 0.6);
+    dem::CutConfig crack;
+    crack.size = {0.05, 0.2, 0.0};
+    body.cuts = {crack};
+    dem::Config config = one_body(body);
+    config.materials[0].law = law;
+    const dem::Model model = build_model(config, "");
+    const auto parted = std::count_if(model.links.begin(), model.links.end(),
+                                      [](const dem::Model::Link& link) { return link.parted; });
+    EXPECT_GT(parted, 10);  // between elements that overlap
+    dem::World w = dem::make_world(config, model, {});
+    EXPECT_EQ(dem::balance(w).elastic, 0.0);
+    EXPECT_EQ(dem::count(w).broken_links(), parted);
+    for (int step = 0; step < 50; ++step) dem::step(w);
+    EXPECT_EQ(dem::balance(w).kinetic, 0.0);
+    EXPECT_EQ(dem::count(w).broken_links(), parted);
+  }
 }
 
 TEST(Shapes, a_bar_turns_with_its_body) {
