@@ -130,6 +130,11 @@ class Findings {
     what_ = links ? "link" : "joint";
     all_ = record.number(links ? "model.links" : "model.joints").value_or(0.0);
     if (!record.times.empty()) first_ = read(0);
+    if (!links || !first_ || first_->time > 0.0) return;
+    parted_ = broken_lines(*first_);
+    cut_ = static_cast<double>(std::count(parted_.begin(), parted_.end(), 1));
+    all_ -= cut_;
+    if (broken_) *broken_ -= cut_;
   }
 
   std::vector<std::string> sentences() {
@@ -140,9 +145,9 @@ class Findings {
     else if (all_ <= 0.0)
       all.push_back("Nothing can break here: the model has no links or joints.");
     else if (!broken_ || *broken_ == 0.0)
-      all = {unbroken(), nearness()};
+      all = {unbroken(), cut(), nearness()};
     else
-      all = {when(), where()};
+      all = {when(), cut(), where()};
     all.push_back(load());
     std::erase(all, "");
     return all;
@@ -150,6 +155,31 @@ class Findings {
 
  private:
   Shot read(std::size_t frame) const { return read_shot(record_.folder, static_cast<int>(frame)); }
+
+  std::string cut() const {
+    if (cut_ == 0.0) return "";
+    return fmt::format("Besides, {} parted by cuts before the start.",
+                       count_of(cut_, what_) + (cut_ == 1.0 ? " was" : " were"));
+  }
+
+  /// Lines of a kind that cuts have parted. Links of steel, interfaces and facets are never cut so.
+  double cut_of(const std::string& kind) const {
+    const FrameField* const kinds = cut_ > 0.0 ? field_named(first_->line_fields, "kind") : nullptr;
+    const float number = kind == "concrete" ? 0.0F : kind == "parallel" ? 3.0F : -1.0F;
+    double count = 0.0;
+    for (std::size_t l = 0; kinds != nullptr && l < parted_.size(); ++l)
+      if (parted_[l] != 0 && kinds->values[l] == number) count += 1.0;
+    return count;
+  }
+
+  /// Lines that have broken since the start.
+  std::vector<std::uint8_t> broken_since_start(const Shot& shot) const {
+    std::vector<std::uint8_t> broken = broken_lines(shot);
+    if (cut_ > 0.0 && shot.ends == first_->ends)
+      for (std::size_t l = 0; l < broken.size(); ++l)
+        if (parted_[l] != 0) broken[l] = 0;
+    return broken;
+  }
 
   std::string unbroken() const {
     const double fracture = record_.number("energy.fracture").value_or(0.0);
@@ -192,9 +222,8 @@ class Findings {
     const std::string list = "fracture.broken_by_kind.";
     for (auto kind = record_.numbers.lower_bound(list);
          kind != record_.numbers.end() && kind->first.starts_with(list); ++kind)
-      if (kind->second > 0.0)
-        kinds.push_back(
-            fmt::format("{} of {}", count_text(kind->second), kind->first.substr(list.size())));
+      if (const std::string name = kind->first.substr(list.size()); kind->second > cut_of(name))
+        kinds.push_back(fmt::format("{} of {}", count_text(kind->second - cut_of(name)), name));
     if (kinds.size() > 1) text += ": " + listed(kinds);
     const std::optional<double> softening = first_softening();
     if (softening) text += fmt::format("; softening began at {}", time_text(*softening));
@@ -240,7 +269,7 @@ class Findings {
       text = "It began at " + place_text(start, true);
     } else if (find_first_break()) {
       const Shot shot = read(break_frame_);
-      const std::vector<std::uint8_t> broken = broken_lines(shot);
+      const std::vector<std::uint8_t> broken = broken_since_start(shot);
       Vec3 sum{};
       double count = 0.0;
       for (std::size_t l = 0; l < broken.size(); ++l) {
@@ -312,7 +341,7 @@ class Findings {
     if (looked_for_break_) return break_frame_ < record_.times.size();
     looked_for_break_ = true;
     const auto breaks = [&](std::size_t frame) {
-      const std::vector<std::uint8_t> broken = broken_lines(read(frame));
+      const std::vector<std::uint8_t> broken = broken_since_start(read(frame));
       return std::find(broken.begin(), broken.end(), 1) != broken.end();
     };
     std::size_t low = 0, high = record_.times.size();
@@ -338,6 +367,8 @@ class Findings {
   const Record& record_;
   std::optional<double> broken_;
   double all_ = 0.0;
+  std::vector<std::uint8_t> parted_;  ///< lines that are broken at the start; cut_: how many
+  double cut_ = 0.0;
   std::string what_;
   std::optional<Shot> first_;
   bool looked_for_break_ = false;

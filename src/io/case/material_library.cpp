@@ -89,11 +89,12 @@ MaterialBlock block_of(const char* method, const toml::table& table) {
 
 /// Adds to `own` what `given` has beyond it.
 void complete(toml::table& own, const toml::table& given) {
-  for (const auto& [key, node] : given) {
-    if (key.str() == "record") continue;
-    toml::node* const there = own.get(key.str());
+  for (const auto& [name, node] : given) {
+    const std::string_view key = name.str();  // clang 14 captures no structured binding
+    if (key == "record") continue;
+    toml::node* const there = own.get(key);
     if (there == nullptr)
-      node.visit([&](const auto& value) { own.insert(key.str(), value); });
+      node.visit([&](const auto& value) { own.insert(key, value); });
     else if (there->is_table() && node.is_table())
       complete(*there->as_table(), *node.as_table());
   }
