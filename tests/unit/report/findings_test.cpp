@@ -48,6 +48,16 @@ TEST(Findings, AnUnbrokenChainTellsHowNearItCame) {
   EXPECT_NE(text.find("2 times the load begins to break it"), std::string::npos) << text;
 }
 
+TEST(Findings, WhatCutsPartedBeforeTheStartDidNotBreak) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path(), 8, 0);
+  const std::string text = joined(findings_of(read_record(folder.path())));
+  EXPECT_NE(text.find("Nothing broke: all 6 links are whole"), std::string::npos) << text;
+  EXPECT_NE(text.find("Besides, 1 link was parted by cuts before the start."), std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("It began"), std::string::npos) << text;
+}
+
 TEST(Findings, ARunWithoutFramesStillHasItsNumbers) {
   const ScratchFolder folder;
   test::write_chain(folder.path());
