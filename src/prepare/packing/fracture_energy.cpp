@@ -11,6 +11,7 @@
 #include "exec/error.hpp"
 #include "math/constants.hpp"
 #include "prepare/build.hpp"
+#include "prepare/packing/linking.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -72,14 +73,12 @@ class NotchedCube {
  private:
   void cut() {
     const auto place = [&](Index e) { return model_.position[static_cast<std::size_t>(e)]; };
-    const auto crosses = [&](const dem::Model::Link& link) {
+    drop_links(model_, [&](const dem::Model::Link& link) {
       const Vec3 a = place(link.a), b = place(link.b);
       if (a.z * b.z >= 0.0) return false;
       const double x = a.x + a.z / (a.z - b.z) * (b.x - a.x);
       return std::abs(x) > 0.5 * ligament * width_;
-    };
-    model_.links.erase(std::remove_if(model_.links.begin(), model_.links.end(), crosses),
-                       model_.links.end());
+    });
   }
   void hold(double layer) {
     const double far = 10.0 * width_, inner = 0.5 * width_ - layer;

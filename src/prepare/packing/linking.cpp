@@ -173,6 +173,12 @@ std::size_t wanted_links(const dem::Model& m, const dem::LinksConfig& config) {
   return static_cast<std::size_t>(0.5 * config.per_element * m.size() + 0.5);
 }
 
+/// Whether a bond joins elements that overlap, which no contact may take over.
+bool overlap(const dem::Model& model, const dem::Model::Link& link) {
+  if (link.kind != dem::LinkKind::concrete && link.kind != dem::LinkKind::parallel) return false;
+  return ratio_of(model, link.a, link.b) < 1.0;
+}
+
 }  // namespace
 
 void link_elements(dem::Model& model, const std::vector<BodyLinks>& bodies,
@@ -250,6 +256,27 @@ std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<Bo
         pair.a, name(pair.a), pair.b, name(pair.b), pair.depth, at.x, at.y, at.z, pair.pairs));
   }
   return problems;
+}
+
+void drop_links(dem::Model& model, const std::function<bool(const dem::Model::Link&)>& gone) {
+  std::vector<bool> lost(model.facets.size());
+  std::erase_if(model.links, [&](dem::Model::Link& link) {
+    if (!gone(link)) return false;
+    link.parted = overlap(model, link);
+    const bool go = !link.parted;
+    if (go && link.facet >= 0) lost[static_cast<std::size_t>(link.facet)] = true;
+    return go;
+  });
+  std::vector<Index> number(lost.size(), -1);
+  std::size_t to = 0;
+  for (std::size_t f = 0; f < lost.size(); ++f) {
+    if (lost[f]) continue;
+    number[f] = static_cast<Index>(to);
+    model.facets[to++] = model.facets[f];
+  }
+  model.facets.resize(to);
+  for (dem::Model::Link& link : model.links)
+    if (link.facet >= 0) link.facet = number[static_cast<std::size_t>(link.facet)];
 }
 
 }  // namespace breccia::prepare

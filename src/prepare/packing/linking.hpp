@@ -1,6 +1,7 @@
 #pragma once
 // Links at the start: which elements are joined, and how far the interaction range reaches.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -41,5 +42,9 @@ void link_elements(dem::Model& model, const std::vector<BodyLinks>& bodies,
 /// sentence for every two bodies (or one, for grains), naming the deepest pair. Empty: none.
 std::vector<std::string> free_overlaps(const dem::Model& model,
                                        const std::vector<BodyLinks>& bodies);
+
+/// Takes out links, and the facets that they have. A bond between elements that overlap stays,
+/// parted: a contact in its place would push with an overlap that the packing put there.
+void drop_links(dem::Model& model, const std::function<bool(const dem::Model::Link&)>& gone);
 
 }  // namespace breccia::prepare

@@ -10,6 +10,7 @@
 #include "dem/setup/model_arrays.hpp"
 #include "exec/error.hpp"
 #include "prepare/checks/by_name.hpp"
+#include "prepare/packing/linking.hpp"
 #include "prepare/packing/stiffness.hpp"
 
 namespace breccia::prepare {
@@ -111,37 +112,6 @@ void keep_only(Model& model, const std::vector<bool>& kept) {
   dem::each_element_number(model, [&](Index& element, int) {
     if (element >= 0) element = number[static_cast<std::size_t>(element)];
   });
-}
-
-/// Whether the elements of a bond overlap, which no contact may take over.
-bool overlap(const Model& model, const Model::Link& link) {
-  if (link.kind != dem::LinkKind::concrete && link.kind != dem::LinkKind::parallel) return false;
-  const auto a = static_cast<std::size_t>(link.a), b = static_cast<std::size_t>(link.b);
-  return norm(model.position[b] - model.position[a]) < model.radius[a] + model.radius[b];
-}
-
-/// Takes out links, and the facets that they have. A link between elements that overlap stays,
-/// parted: a contact in its place would push with an overlap that the packing put there.
-template <class Gone>
-void drop_links(Model& model, const Gone& gone) {
-  std::vector<bool> lost(model.facets.size());
-  std::erase_if(model.links, [&](Model::Link& link) {
-    if (!gone(link)) return false;
-    link.parted = overlap(model, link);
-    const bool go = !link.parted;
-    if (go && link.facet >= 0) lost[static_cast<std::size_t>(link.facet)] = true;
-    return go;
-  });
-  std::vector<Index> number(lost.size(), -1);
-  std::size_t to = 0;
-  for (std::size_t f = 0; f < lost.size(); ++f) {
-    if (lost[f]) continue;
-    number[f] = static_cast<Index>(to);
-    model.facets[to++] = model.facets[f];
-  }
-  model.facets.resize(to);
-  for (Model::Link& link : model.links)
-    if (link.facet >= 0) link.facet = number[static_cast<std::size_t>(link.facet)];
 }
 
 class Carving {
