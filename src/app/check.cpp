@@ -118,6 +118,10 @@ struct CheckCommand {
     }
   }
 
+  static std::string about_duration(double seconds) {
+    return (seconds < 1.0 ? "" : "about ") + rough_duration(seconds);
+  }
+
   static void tell_forecast(const Forecast& f) {
     if (f.items == 0.0) {
       fmt::print("  size    known when bodies are meshed or filled: check --model\n");
@@ -127,13 +131,16 @@ struct CheckCommand {
     if (f.bonds > 0.0) fmt::print(", {} {}", about(f.bonds), f.bond_name);
     fmt::print("\n  step    about {}, ruled by\n          {}\n", short_time(f.step),
                harmless(f.step_rule));
-    fmt::print("  steps   {}, more as bodies meet and break\n", about(f.steps));
-    fmt::print("  time    about {} here ({}), {} of it output",
-               rough_duration(f.here_s + f.output_s),
-               counted(static_cast<std::size_t>(omp_get_num_procs()), "core", "cores"),
-               rough_duration(f.output_s));
+    if (f.may_end_early)
+      fmt::print("  steps   {} to time.end; its stages may end it earlier\n", about(f.steps));
+    else
+      fmt::print("  steps   {}, more as bodies meet and break\n", about(f.steps));
+    fmt::print("  time    {} here ({})", about_duration(f.setup_s + f.here_s + f.output_s),
+               counted(static_cast<std::size_t>(omp_get_num_procs()), "core", "cores"));
+    if (f.setup_s >= 1.0) fmt::print(", {} of it set-up", rough_duration(f.setup_s));
+    if (f.output_s >= 1.0) fmt::print(", {} of it output", rough_duration(f.output_s));
     if (f.gpu_s > 0.0)
-      fmt::print("\n          steps alone: {} on one H200 GPU", rough_duration(f.gpu_s));
+      fmt::print("\n          steps alone: {} on one H200 GPU", about_duration(f.gpu_s));
     fmt::print("\n");
     fmt::print("  memory  about {}; disk about {}, most of it {}\n", memory_text(f.memory),
                memory_text(f.disk), f.longest_part);

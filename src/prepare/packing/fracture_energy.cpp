@@ -27,6 +27,11 @@ constexpr double elastic_end = 3e-4;  ///< strain of the whole cube at the end a
 /// Energy of a crack over q T u_2 / 2, q = 2.7 the section of links that cross it: a first guess.
 constexpr double first_guess = 1.6 * 2.7;
 
+/// Elements of a cube of which one takes this space  [m3]
+double elements_of(double each) {
+  return std::clamp(std::pow(usual_width, 3) / each, fewest, most);
+}
+
 /// A cube whose links through the middle are cut on both sides of a ligament.
 class NotchedCube {
  public:
@@ -35,7 +40,7 @@ class NotchedCube {
     const double ball = 4.0 / 3.0 * pi * std::pow(packed.radius, 3);
     const double spread = (packed.size_ratio - 1.0) / (packed.size_ratio + 1.0);
     const double each = ball * (1.0 + spread * spread) / packed.compactness;
-    const double count = std::clamp(std::pow(usual_width, 3) / each, fewest, most);
+    const double count = elements_of(each);
     width_ = std::cbrt(count * each);
     config_.seed = seed;
     config_.materials = {material};
@@ -141,6 +146,11 @@ double rupture_opening(const MaterialConfig& material, const dem::ContactConfig&
   const double opening = slope > 0.0 ? first + (asked - energy) / slope : second;
   refuse_brittle(opening);
   return opening;
+}
+
+double fracture_energy_steps(double density) {
+  constexpr int tests = 2;  // of the first guess and the second
+  return tests * packings * steps * elements_of(1.0 / density);
 }
 
 }  // namespace breccia::prepare

@@ -29,4 +29,8 @@ double notched_cube_energy(const dem::MaterialConfig& material, const dem::Conta
 double rupture_opening(const dem::MaterialConfig& material, const dem::ContactConfig& contact,
                        const PackedLike& packed, double longest, const std::string& body);
 
+/// Steps of one element that finding an opening takes, over all its tests.
+/// @param density  elements in a cubic metre of the body  [1/m3]
+double fracture_energy_steps(double density);
+
 }  // namespace breccia::prepare

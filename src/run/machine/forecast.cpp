@@ -18,6 +18,7 @@
 #include "prepare/ldpm/body.hpp"
 #include "prepare/meshing/body_mesh.hpp"
 #include "prepare/meshing/mesh_file.hpp"
+#include "prepare/packing/fracture_energy.hpp"
 #include "prepare/packing/rebar.hpp"
 #include "prepare/packing/spheres_file.hpp"
 #include "prepare/shapes/carve.hpp"
@@ -60,6 +61,16 @@ double wall_of(double steps, double items, double pace) {
 }
 
 constexpr double bytes_of_facet = 450.0;  // of cases/rc_slab_ldpm, elements included
+
+/// Memory of a run of next to nothing, measured: libraries, threads, pictures.  [bytes]
+constexpr double own_dem = 40e6, own_fdem = 68e6, own_with_gmsh = 146e6;
+
+template <class Stage>
+bool may_end_early(const std::vector<Stage>& stages) {
+  return std::any_of(stages.begin(), stages.end(), [](const Stage& s) {
+    return s.rest > 0.0 || !s.when.empty() || s.drop > 0.0 || s.until > 0.0;
+  });
+}
 
 /// Pixels of a picture of a run, by what is known before its model is.
 double pixels_of(const OutputConfig& output) {
@@ -206,6 +217,8 @@ double least_radius(const dem::Model& model) {
   return *std::min_element(model.radius.begin(), model.radius.end());
 }
 
+constexpr double packing_of_one = 0.15e-3;  // element  [s]
+
 /// Adds what a specimen of one packed body tells.
 double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
   constexpr double least_elements = 20.0;
@@ -213,6 +226,8 @@ double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
   if (p.count < least_elements) return 0.0;  // too few for a specimen
   dem::Config specimen = config;
   specimen.bodies = {cut(p)};
+  for (dem::MaterialConfig& m : specimen.materials)
+    m.fracture_energy = 0.0;  // its step is the same
   specimen.walls.clear();
   specimen.supports.clear();
   specimen.probes.clear();
@@ -234,6 +249,10 @@ double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
   const std::string of = p.body.name + ": elements of radius " + length_text(least_radius(model));
   take_step(f, step, (bonds > 0.0 ? "links of " : "contacts of ") + of);
   f.bonds += bonds * p.count;
+  if (p.folder.empty() && !p.particles) f.setup_s += packing_of_one * p.count;
+  const dem::MaterialConfig* const of_body = prepare::item_named(config.materials, p.body.material);
+  if (of_body != nullptr && of_body->fracture_energy > 0.0)
+    f.setup_s += prepare::fracture_energy_steps(p.count / p.volume) * pace;
   return pace * p.count;
 }
 
@@ -346,7 +365,8 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
   finish(f, config.time);
   f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
   if (facets == 0.0) f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);
-  f.memory = memory_plan(config).run_bytes + bytes_of_facet * facets;
+  f.may_end_early = may_end_early(config.stages);
+  f.memory = own_dem + memory_plan(config).run_bytes + bytes_of_facet * facets;
   add_output(f, config, {45e-9, 0.3e-6, 45e-9});
   add_disk(f, config, 14 + config.probes.size(), {42.0, 9.1, 830.0, 0.65});
   return f;
@@ -364,7 +384,8 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   specimen.probes.clear();
   specimen.checks.clear();
   double top = 0.0, finest = 0.0;
-  bool free_mesh = false;
+  bool free_mesh = false, by_gmsh = false;
+  constexpr double begun_mesh = 0.3, meshing_of_one = 60e-6;  // measured  [s]
   std::string of;
   for (const fdem::BodyConfig& body : config.bodies) {
     if (body.shape == "part") continue;  // counted with the body that it is of
@@ -378,8 +399,9 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
     const fdem::MaterialConfig* const m = prepare::item_named(config.materials, body.material);
     if (m == nullptr || m->joints == "intrinsic")
       f.bonds += 1.5 * mesh.triangles - 0.5 * mesh.border / mesh.edge;
-    const bool by_gmsh = body.shape != "hexagons" && !body.structured;
-    free_mesh = free_mesh || by_gmsh;
+    const bool free = body.shape != "hexagons" && !body.structured;
+    free_mesh = free_mesh || free;
+    by_gmsh = by_gmsh || (free && body.shape != "mesh");
     if (finest == 0.0 || mesh.edge < finest) {
       finest = mesh.edge;
       of = body.name + ", edges of " + length_text(mesh.edge);
@@ -398,7 +420,10 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   f.here_s =
       contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
   f.gpu_s = f.steps * std::max(16e-6, 4.7e-6 + 0.22e-9 * f.items);
-  f.memory = memory_plan(config).run_bytes;
+  constexpr double of_triangle = 1700.0;  // as in memory_plan, which counts no outlines  [bytes]
+  f.may_end_early = may_end_early(config.stages);
+  f.memory = (by_gmsh ? own_with_gmsh : own_fdem) + of_triangle * f.items;
+  if (by_gmsh) f.setup_s = begun_mesh + meshing_of_one * f.items;
   add_output(f, config, {100e-9, 0.6e-6, 100e-9});
   add_disk(f, config, 14 + config.probes.size(), {55.0, 10.0, 760.0, 0.066});
   return f;

@@ -14,15 +14,17 @@ struct Forecast {
   double items = 0.0;  ///< elements or triangles; 0: only the mesh program tells
   double bonds = 0.0;  ///< links or joints at the start
   const char *item_name = "elements", *bond_name = "links";
-  double step = 0.0;         ///< 0: nothing rules it at the start  [s]
-  std::string step_rule;     ///< "joints of beam (mesh_size 5 mm)"
-  double steps = 0.0;        ///< to time.end
-  double here_s = 0.0;       ///< wall time of the steps on all processors of this machine  [s]
-  double output_s = 0.0;     ///< rows, frames and pictures, besides  [s]
-  double gpu_s = 0.0;        ///< on an H200, by bench/notes/gpu.md; 0: not measured  [s]
-  double memory = 0.0;       ///< [bytes]
-  double disk = 0.0;         ///< of the result folder at the end  [bytes]
-  std::string longest_part;  ///< of the disk: "pictures", "fields", "history.csv"
+  double step = 0.0;           ///< 0: nothing rules it at the start  [s]
+  std::string step_rule;       ///< "joints of beam (mesh_size 5 mm)"
+  double steps = 0.0;          ///< to time.end
+  double here_s = 0.0;         ///< wall time of the steps on all processors of this machine  [s]
+  double output_s = 0.0;       ///< rows, frames and pictures, besides  [s]
+  double setup_s = 0.0;        ///< packing, meshing, tests for fracture energies, besides  [s]
+  bool may_end_early = false;  ///< its stages end at rest or when a probe says so
+  double gpu_s = 0.0;          ///< on an H200, by bench/notes/gpu.md; 0: not measured  [s]
+  double memory = 0.0;         ///< the program's own included  [bytes]
+  double disk = 0.0;           ///< of the result folder at the end  [bytes]
+  std::string longest_part;    ///< of the disk: "pictures", "fields", "history.csv"
 };
 
 /// Packs or meshes at most some hundred elements of each body, sets them up as the case would, and

@@ -90,6 +90,25 @@ TEST(Forecast, of_concrete_by_its_grains_is_near_what_the_model_has) {
   EXPECT_EQ(f.gpu_s, 0.0);
 }
 
+TEST(Forecast, counts_the_tests_for_a_fracture_energy_and_the_programs_own_memory) {
+  const std::string path = std::string(source_dir) + "/cases/dog_bone/small.toml";
+  const std::string folder = std::string(source_dir) + "/cases/dog_bone";
+  dem::Config config = read_case<dem::Config>(path, {});
+  const Forecast f = forecast(config, folder);
+  for (dem::MaterialConfig& m : config.materials) m.fracture_energy = 0.0;
+  const Forecast without = forecast(config, folder);
+  EXPECT_GT(f.setup_s, 5.0 * without.setup_s);
+  EXPECT_EQ(f.step, without.step);
+  EXPECT_GT(f.memory, 30e6);
+  EXPECT_FALSE(f.may_end_early);
+}
+
+TEST(Forecast, says_that_stages_may_end_a_run_early) {
+  const std::string folder = std::string(source_dir) + "/cases/dfn_slope";
+  const auto config = read_case<fdem::Config>(folder + "/small.toml", {});
+  EXPECT_TRUE(forecast(config, folder).may_end_early);
+}
+
 TEST(CheckCommand, refuses_a_body_that_nobody_can_mesh) {
   const ScratchFolder folder;
   const std::string wide = "\"300 mm\"";
