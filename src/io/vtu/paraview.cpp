@@ -22,6 +22,7 @@ here = os.path.dirname(os.path.abspath(__file__))
 view = GetActiveViewOrCreate("RenderView")
 elements = OpenDataFile(os.path.join(here, "elements.LIST"))
 GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+GetAnimationScene().GoToLast()
 points = elements.PointData
 shown = Show(elements, view)
 if points.GetArray("radius"):
@@ -29,11 +30,11 @@ if points.GetArray("radius"):
     shown.ShaderPreset = "Sphere"
     shown.ScaleByArray = 1
     shown.SetScaleArray = ["POINTS", "radius"]
-    shown.ScaleTransferFunction = "Piecewise Function"
     shown.UseScaleFunction = 0
     shown.GaussianRadius = 1.0
 where = "POINTS" if points.GetArray("damage") else "CELLS"
 ColorBy(shown, (where, "damage"))
+GetColorTransferFunction("damage").RescaleTransferFunction(0.0, 1.0)
 shown.SetScalarBarVisibility(view, True)
 RenameSource("elements", elements)
 for kind in ("links", "contacts", "walls"):
@@ -46,8 +47,10 @@ for kind in ("links", "contacts", "walls"):
         Show(more, view).Opacity = 0.3
     else:
         Hide(more, view)
+if points.GetArray("radius"):
+    view.CameraPosition, view.CameraViewUp = [-1.0, -2.0, 1.2], [0.0, 0.0, 1.0]
+    view.CameraFocalPoint = [0.0, 0.0, 0.0]
 ResetCamera(view)
-GetAnimationScene().GoToLast()
 Render(view)
 )";
 
