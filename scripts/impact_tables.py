@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Impact on the slab of cases/rc_slab over packings, for its README and docs/validation-concrete.md.
 
-    scripts/impact_tables.py ball [--seeds 10] [--concrete NAME,...] [--bars yes,no]
+    scripts/impact_tables.py ball [--seeds 10] [--speeds 10,30] [--concrete NAME,...] [--bars yes,no]
     scripts/impact_tables.py hard [--seeds 5] [--speeds 20,30,45,60] [--concrete NAME,...] [--bars yes,no]
     scripts/impact_tables.py print ball|hard
+    scripts/impact_tables.py record         all finished rows into docs/results/impact.csv
 
-"ball" is the case as it is: the ball of concrete at 30 m/s. "hard" replaces it by one rigid sphere of its mass and size
+"ball" is the case as it is: the ball of concrete. "hard" replaces it by one rigid sphere of its mass and size
 and writes the formulas beside it. Each row is a `breccia sweep` over seeds in out/impact/, and is kept: called again,
-only what is missing is run. "print" makes the table of all finished rows. --jobs, --binary and --device are those of `breccia sweep`.
+only what is missing is run. "print" makes the table of all finished rows, scripts/result_tables.py those of the pages from
+docs/results/impact.csv. --jobs, --binary and --device are those of `breccia sweep`.
 """
 import argparse
 import collections
@@ -82,6 +84,11 @@ def variant(concrete, bars, speed=None, end=None):
     if end:
         text = re.sub(r'end = "8 ms"', f'end = "{end} ms"', text)
     return text
+
+
+def ball_at(text, speed):
+    start, stop = body(text, "impactor")
+    return text[:start] + re.sub(r"(?m)^velocity = .*$", f"velocity = [0.0, 0.0, {-speed}]", text[start:stop]) + text[stop:]
 
 
 def name_of(kind, concrete, bars, speed=None):
@@ -178,64 +185,100 @@ def pieces(folder):
     return json.loads((folder / "summary.json").read_text())["fracture"]["fragments"]
 
 
-def table_of_ball():
-    print("| concrete | bars | n | ball after 8 ms, m/s | largest force, kN | broken links | pieces | of 5 elements and more |\n"
-          "|---|---|---|---|---|---|---|---|")
-    for concrete in CONCRETES:
-        for bars in (True, False):
-            name = name_of("ball", concrete, bars)
-            if not (OUT / name / "sweep.csv").exists():
-                continue
-            runs = runs_of(name)
-            print(f"| {concrete} | {'yes' if bars else 'no'} | {len(runs)} | " + " | ".join(
-                mean([value(r) for r in runs], digits)
-                for value, digits in ((velocity, 2), (force, 0), (broken, 0), (pieces, 0), (blocks, 0))) + " |")
+MEASURES = {"velocity": velocity, "slowing": slowing, "depth": depth, "force": force, "broken": broken, "pieces": pieces, "blocks": blocks}
+RECORD = ["kind", "concrete", "bars", "speed", "end", "seed", "commit", "device", "hash", "quantity", "value"]
 
 
-def table_of_hard():
-    print("| concrete | bars | m/s | n | velocity at the end, m/s | slowing by, m/s each ms | tip below the face, mm | "
-          "largest force, kN | lost of the struck, of the far face, mm across | NDRC: depth, mm; leaves, m/s | CEA-EDF leaves, m/s |\n"
-          "|---|---|---|---|---|---|---|---|---|---|---|")
+def collected():
+    """A line for each quantity of each run of a finished row: {column of RECORD: value}."""
+    for case in sorted(OUT.glob("*.toml")):
+        if not (OUT / case.stem / "sweep.csv").exists():
+            continue
+        kind, concrete, bars, speed = case.stem.split("-")
+        end = float(re.search(r'(?m)^end = "([\d.]+) ms"', case.read_text())[1])
+        for folder in runs_of(case.stem):
+            summary = json.loads((folder / "summary.json").read_text())
+            of = {"kind": kind, "concrete": concrete, "bars": bars, "speed": speed, "end": end,
+                  "seed": summary["case"]["seed"], "commit": summary["breccia"]["commit"], "device": summary["machine"]["device"],
+                  "hash": summary["state_hash"]}
+            values = {name: measure(folder) for name, measure in MEASURES.items() if kind == "hard" or name not in ("slowing", "depth")}
+            if kind == "hard":
+                values["lost_struck"], values["lost_far"] = holes(folder)
+            for quantity, value in values.items():
+                yield {**of, "quantity": quantity, "value": f"{value:.9g}"}
+
+
+def rows_of(records, kind):
+    """{(concrete, bars, speed, end): {quantity: values}}, in the order of the tables."""
+    rows = {}
+    for one in records:
+        if one["kind"] == kind:
+            key = one["concrete"], one["bars"] == "bars", float(one["speed"]), float(one["end"])
+            rows.setdefault(key, {}).setdefault(one["quantity"], []).append(float(one["value"]))
+    order = list(CONCRETES)
+    return sorted(rows.items(), key=lambda row: (order.index(row[0][0]), not row[0][1], row[0][2]))
+
+
+def table_of_ball(records):
+    lines = ["| concrete | bars | speed, m/s | n | ball after 8 ms, m/s | largest force, kN | broken links | pieces | of 5 elements and more |",
+             "|---|---|---|---|---|---|---|---|---|"]
+    for (concrete, bars, speed, _), found in rows_of(records, "ball"):
+        lines.append(f"| {concrete} | {'yes' if bars else 'no'} | {speed:g} | {len(found['velocity'])} | " + " | ".join(
+            mean(found[quantity], digits)
+            for quantity, digits in (("velocity", 2), ("force", 0), ("broken", 0), ("pieces", 0), ("blocks", 0))) + " |")
+    return "\n".join(lines)
+
+
+def table_of_hard(records):
+    lines = ["| concrete, bars | m/s | n | velocity at the end, m/s | slowing, m/s each ms | tip below the face, mm (NDRC: depth) | "
+             "largest force, kN | lost of the struck, the far face, mm | left by CEA-EDF, NDRC, m/s |", "|---|---|---|---|---|---|---|---|---|"]
     percent = 100 * 7 * math.pi / 4 * 0.008**2 / THICKNESS
-    for concrete in CONCRETES:
-        for bars in (True, False):
-            for folder in sorted(OUT.glob(name_of("hard", concrete, bars) + "-*/"), key=lambda f: float(f.name.split("-")[-1])):
-                if not (folder / "sweep.csv").exists() or not runs_of(folder.name):
-                    continue
-                speed, runs = float(folder.name.split("-")[-1]), runs_of(folder.name)
-                f_c = STRENGTH[concrete]
-                x = impact_formulas.ndrc_depth(DIAMETER, MASS, f_c, speed, 1.0)[0] * DIAMETER
-                through = impact_formulas.speed_for(THICKNESS, DIAMETER, MASS, f_c, 1.0, impact_formulas.perforated)
-                cea = impact_formulas.cea_edf(DIAMETER, THICKNESS, MASS, f_c, 2400, percent if bars else 0.0)
-                left = lambda limit: math.sqrt(max(0.0, speed**2 - limit**2))  # noqa: E731
-                faces = list(zip(*(holes(r) for r in runs)))
-                print(f"| {concrete} | {'yes' if bars else 'no'} | {speed:g} | {len(runs)} | " + " | ".join(
-                    mean([value(r) for r in runs], digits)
-                    for value, digits in ((velocity, 1), (slowing, 2), (depth, 0), (force, 0)))
-                    + f" | {mean([1e3 * v for v in faces[0]], 0)}; {mean([1e3 * v for v in faces[1]], 0)} | "
-                    f"{1e3 * x:.0f}; {left(through):.0f} | {left(cea):.0f} |")
+    for (concrete, bars, speed, end), found in rows_of(records, "hard"):
+        f_c = STRENGTH[concrete]
+        x = impact_formulas.ndrc_depth(DIAMETER, MASS, f_c, speed, 1.0)[0] * DIAMETER
+        through = impact_formulas.speed_for(THICKNESS, DIAMETER, MASS, f_c, 1.0, impact_formulas.perforated)
+        cea = impact_formulas.cea_edf(DIAMETER, THICKNESS, MASS, f_c, 2400, percent if bars else 0.0)
+        left = lambda limit: f"{math.sqrt(max(0.0, speed**2 - limit**2)):.0f}"  # noqa: E731
+        lost = [mean([1e3 * v for v in found[q]], 0) for q in ("lost_struck", "lost_far")]
+        lines.append(f"| {concrete}, {'yes' if bars else 'no'} | {speed:g} | {len(found['velocity'])} | {mean(found['velocity'], 1)} | "
+                     f"{mean(found['slowing'], 2)} | {mean(found['depth'], 0)} ({1e3 * x:.0f}) | {mean(found['force'], 0)} | "
+                     f"{'; '.join(lost)} | {left(cea)}; {left(through)} |")
+    return "\n".join(lines)
+
+
+TABLES = {"ball": table_of_ball, "hard": table_of_hard}
 
 
 def main():
     p = argparse.ArgumentParser()
-    p.add_argument("what", choices=["ball", "hard", "print"])
+    p.add_argument("what", choices=["ball", "hard", "print", "record"])
     p.add_argument("table", nargs="?", choices=["ball", "hard"])
     p.add_argument("--seeds", type=int)
-    p.add_argument("--speeds", default="20,30,45,60")
+    p.add_argument("--speeds", help="m/s; default: 30 for the ball, 20,30,45,60 for the hard missile")
     p.add_argument("--end", type=float, default=8)
     p.add_argument("--concrete", default="case")
     p.add_argument("--bars", default="yes,no")
     p.add_argument("--jobs", type=int, default=2)
     p.add_argument("--binary", default=ROOT / "build/release/breccia")
     p.add_argument("--device", default="cpu")
+    p.add_argument("--record", default=ROOT / "docs/results/impact.csv", help="of record: the file")
     given = p.parse_args()
     if given.what == "print":
-        return table_of_hard() if given.table == "hard" else table_of_ball()
+        print(TABLES[given.table](collected()))
+        return
+    if given.what == "record":
+        with open(given.record, "w", newline="") as file:
+            writer = csv.DictWriter(file, RECORD, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(collected())
+        return
+    given.speeds = given.speeds or ("30" if given.what == "ball" else "20,30,45,60")
     how = given.jobs, given.binary, given.device
     for concrete in given.concrete.split(","):
         for bars in (b == "yes" for b in given.bars.split(",")):
             if given.what == "ball":
-                sweep(name_of("ball", concrete, bars), variant(concrete, bars), given.seeds or 10, *how)
+                for speed in map(float, given.speeds.split(",")):
+                    sweep(name_of("ball", concrete, bars, speed), ball_at(variant(concrete, bars), speed), given.seeds or 10, *how)
             elif given.what == "hard":
                 for speed in map(float, given.speeds.split(",")):
                     sweep(name_of("hard", concrete, bars, speed), variant(concrete, bars, speed, given.end),

@@ -116,6 +116,21 @@ def text(values, digits=0):
     return f"{statistics.mean(values):.{digits}f} +- {statistics.stdev(values) if len(values) > 1 else 0.0:.{digits}f}"
 
 
+NAMES = {"compression_prism": "smooth ends", "platens_prism": "rough platens"}
+
+
+def markdown(records):
+    found = {}
+    for one in records:
+        found.setdefault((one["test"], int(one["elements"])), {}).setdefault(one["quantity"], []).append(float(one["value"]))
+    lines = ["| prism | elements | n | strength, MPa | links broken at the peak; at half of it, % | of those broken in between, in the band, % | "
+             "of all links, there, % | ratio | ratio of as many links drawn at random | band's slope, degrees |", "|---|---|---|---|---|---|---|---|---|---|"]
+    for (test, elements), of in sorted(found.items(), key=lambda item: (item[0][1], item[0][0])):
+        lines.append(f"| {NAMES[test]} | {elements:,} | {len(of['peak'])} | {text(of['peak'], 1)} | {text(of['early'])}; {text(of['late'])} | "
+                     f"{text(of['band'])} | {text(of['links'])} | {text(of['ratio'], 2)} | {text(of['chance'], 2)} | {text(of['angle'])} |")
+    return "\n".join(lines)
+
+
 def main():
     p = argparse.ArgumentParser()
     p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
@@ -124,16 +139,21 @@ def main():
     p.add_argument("--seeds", type=int, default=3)
     p.add_argument("--device", default="cpu")
     p.add_argument("--jobs", type=int, default=1)
+    p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all specimens, as docs/results/localisation.csv")
     given = p.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    print("| prism | strength, MPa | links broken at the peak; at half of it, % | of those broken in between, in the band, % | "
-          "of all links, there, % | ratio | ratio of as many links drawn at random | band's slope, degrees |\n|---|---|---|---|---|---|---|---|")
-    for test, name in (("compression_prism", "smooth ends"), ("platens_prism", "rough platens")):
+    records = []
+    for test in NAMES:
         with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
             all_of = list(pool.map(of_packing, [(given, test, seed) for seed in range(1, given.seeds + 1)]))
-        get = lambda key: [v[key] for v in all_of]  # noqa: E731, B023
-        print(f"| {name} | {text(get('peak'), 1)} | {text(get('early'))}; {text(get('late'))} | {text(get('band'))} | "
-              f"{text(get('links'))} | {text(get('ratio'), 2)} | {text(get('chance'), 2)} | {text(get('angle'))} |", flush=True)
+        records += [{"test": test, "elements": given.elements, "seed": seed, "quantity": quantity, "value": f"{value:.9g}"}
+                    for seed, found in enumerate(all_of, 1) for quantity, value in found.items()]
+    print(markdown(records))
+    if given.record:
+        with open(given.record, "w", newline="") as file:
+            writer = csv.DictWriter(file, list(records[0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(records)
 
 
 if __name__ == "__main__":

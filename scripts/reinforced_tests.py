@@ -16,6 +16,7 @@ stirrups  the same with 10 stirrups of 6 mm
 import argparse
 import concurrent.futures
 import csv
+import json
 import math
 import pathlib
 import statistics
@@ -173,22 +174,53 @@ def text(values, digits=1):
     return f"{statistics.mean(values):.{digits}f} +- {statistics.stdev(values) if len(values) > 1 else 0.0:.{digits}f}"
 
 
-def shown(name, folders):
-    tables = [rows(f) for f in folders]
+def measured(name, folder):
+    """{quantity: value} of one run: the largest load (or bond stress), where it was, what is left at the end, and where that is."""
+    table = rows(folder)
     if name == "pull_out":
         surface = math.pi * 0.016 * 0.08
-        peak, slip, late = [], [], []
-        for t in tables:
-            stress = smooth([abs(r["pull"]) / surface * 1e-6 for r in t], 5)
-            k = max(range(len(t)), key=stress.__getitem__)
-            peak.append(stress[k]), slip.append(1e3 * abs(t[k]["end"])), late.append(stress[-6])
-        return f"tau_max {text(peak)} MPa at a slip of {text(slip, 2)} mm; {text(late)} MPa at {1e3 * abs(tables[0][-1]['end']):.1f} mm"
-    loads, ways, last = [], [], []
-    for t in tables:
-        load = smooth([0.5 * (abs(r["load"]) + abs(r["left"] + r["right"])) * 1e-3 for r in t])
-        k = max(range(len(t)), key=load.__getitem__)
-        loads.append(load[k]), ways.append(1e3 * abs(t[k]["way"])), last.append(load[-30])
-    return f"largest load {text(loads)} kN at {text(ways)} mm; {text(last)} kN at {1e3 * abs(tables[0][-1]['way']):.1f} mm"
+        stress = smooth([abs(r["pull"]) / surface * 1e-6 for r in table], 5)
+        k = max(range(len(table)), key=stress.__getitem__)
+        return {"largest": stress[k], "way": 1e3 * abs(table[k]["end"]), "left": stress[-6], "end": 1e3 * abs(table[-1]["end"])}
+    load = smooth([0.5 * (abs(r["load"]) + abs(r["left"] + r["right"])) * 1e-3 for r in table])
+    k = max(range(len(table)), key=load.__getitem__)
+    return {"largest": load[k], "way": 1e3 * abs(table[k]["way"]), "left": load[-30], "end": 1e3 * abs(table[-1]["way"])}
+
+
+def shown(name, found):
+    """@param found  {quantity: values}"""
+    if name == "pull_out":
+        return (f"tau_max {text(found['largest'])} MPa at a slip of {text(found['way'], 2)} mm; {text(found['left'])} MPa at "
+                f"{statistics.mean(found['end']):.1f} mm")
+    return (f"{text(found['largest'])} kN at {text(found['way'])} mm; {text(found['left'])} kN at "
+            f"{statistics.mean(found['end']):.1f} mm")
+
+
+RECORD = ["test", "elements", "seed", "commit", "device", "hash", "quantity", "value"]
+
+
+def collected():
+    """A line for each quantity of each finished run in out/reinforced."""
+    for case in sorted(OUT.glob("*.toml")):
+        name, seed, *elements = case.stem.split("-")
+        if not (OUT / case.stem / "summary.json").exists():
+            continue
+        summary = json.loads((OUT / case.stem / "summary.json").read_text())
+        of = {"test": name, "elements": "" if name == "pull_out" else (elements or ["3900"])[0], "seed": seed,
+              "commit": summary["breccia"]["commit"], "device": summary["machine"]["device"], "hash": summary["state_hash"]}
+        for quantity, value in measured(name, OUT / case.stem).items():
+            yield {**of, "quantity": quantity, "value": f"{value:.9g}"}
+
+
+def markdown(records):
+    found = {}
+    for one in records:
+        found.setdefault((one["test"], one["elements"]), {}).setdefault(one["quantity"], []).append(float(one["value"]))
+    lines = ["| test | elements | n | here | formula |", "|---|---|---|---|---|"]
+    for (name, elements), values in sorted(found.items(), key=lambda item: (list(TESTS).index(item[0][0]), int(item[0][1] or 0))):
+        size = f"{int(elements):,}" if elements else "1,080"
+        lines.append(f"| {name.replace('_', '-')} | {size} | {len(values['largest'])} | {shown(name, values)} | {asked(name)} |")
+    return "\n".join(lines)
 
 
 def asked(name):
@@ -224,13 +256,19 @@ def main():
     p.add_argument("--elements", type=int, default=3900)
     p.add_argument("--device", default="cpu")
     p.add_argument("--jobs", type=int, default=1)
+    p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all finished runs, as docs/results/reinforced.csv")
     given = p.parse_args()
     OUT.mkdir(parents=True, exist_ok=True)
-    print(f"| test | here, n = {given.seeds} | formula |\n|---|---|---|")
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        started = {n: [pool.submit(run, n, s, given) for s in range(1, given.seeds + 1)] for n in given.names}
-        for name, folders in started.items():
-            print(f"| {name} | {shown(name, [f.result() for f in folders])} | {asked(name)} |", flush=True)
+        for one in [pool.submit(run, n, s, given) for n in given.names for s in range(1, given.seeds + 1)]:
+            one.result()
+    records = list(collected())
+    print(markdown(records))
+    if given.record:
+        with open(given.record, "w", newline="") as file:
+            writer = csv.DictWriter(file, RECORD, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(records)
 
 
 if __name__ == "__main__":

@@ -12,11 +12,16 @@ import pathlib
 import re
 import statistics
 import sys
+import tomllib
 
+import impact_tables
+import localisation
+import reinforced_tests
 import rock_tables
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs/results"
+MATERIALS = ROOT / "src/io/case/materials.toml"
 PLACE = re.compile(r"(<!-- results: (\w+) (.+?) -->\n)(.*?)(<!-- end of results -->)", re.DOTALL)
 
 
@@ -85,7 +90,49 @@ def concrete(name):
     return "\n".join(lines)
 
 
-MAKERS = {"rock": rock, "concrete": concrete}
+def lines_of(name):
+    with open(RESULTS / f"{name}.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def impact(kind):
+    return impact_tables.TABLES[kind](lines_of("impact"))
+
+
+def library(which):
+    """What materials of the library show on packings that they were not calibrated on, with the misfit to their targets."""
+    targets = {name: block["target"] for name, block in tomllib.loads(MATERIALS.read_text()).items() if "dem3d" in block and name[0] == "C"}
+    number = lambda text: float(str(text).split()[0])  # noqa: E731
+    quantities = [("young", "compression_prism", "young", 1, 3), ("poisson", "compression_prism", "poisson", 3, 10),
+                  ("compression", "compression_prism", "strength", 1, 5), ("tension", "tension", "strength", 2, 5),
+                  ("fracture_energy", "bending", "fracture_energy", 0, 10)]
+    rows = {}
+    for one in lines_of("library"):
+        if (one["material"] == which) == (which in targets):
+            rows.setdefault((one["material"], int(one["elements"])), {}).setdefault((one["test"], one["quantity"]), []).append(float(one["value"]))
+    head = "elements in the prism" if which in targets else "1,200 elements"
+    lines = [f"| {head} | E (3 %), GPa | nu (10 %) | f_c (5 %), MPa | f_t (5 %), MPa | G_F (10 %), J/m2 | n |", "|---|---|---|---|---|---|---|"]
+    for (material, elements), found in sorted(rows.items(), key=lambda row: (int(row[0][0][1:]), row[0][1])):
+        if which not in targets and elements != 1200:
+            continue
+        cells, count = [], 0
+        for name, test, quantity, digits, allowed in quantities:
+            values = found.get((test, quantity), [])
+            if not values:
+                cells.append("")
+                continue
+            target, count = number(targets[material][name]), len(values)
+            misfit = 100 * (statistics.mean(values) / target - 1)
+            spread = f" +- {statistics.stdev(values):.{digits}f}" if len(values) > 1 else ""
+            mark = "**" if abs(misfit) > allowed else ""
+            cells.append(f"{statistics.mean(values):.{digits}f}{spread}, {mark}{misfit:+.1f} %{mark}")
+        lines.append(f"| {f'{elements:,}' if which in targets else material} | " + " | ".join(cells) + f" | {count} |")
+    return "\n".join(lines)
+
+
+MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": library,
+          "reinforced": lambda _: reinforced_tests.markdown(lines_of("reinforced")),
+          "localisation": lambda _: localisation.markdown(lines_of("localisation"))}
 
 
 def remade(text, page):

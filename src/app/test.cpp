@@ -150,8 +150,9 @@ void add_test(CLI::App& program, int& exit_code) {
   add_side_by_side_options(*command, test->options);
   command->footer(
       "Tests of concrete (DEM): compression_prism, compression_cube (smooth ends), platens_prism,\n"
-      "platens_cube (rough platens), tension, brazilian, bending (a notched beam),\n"
-      "bending_plain, triaxial_5, _20, _50, _100, _200 (pressure in MPa), oedometer.\n"
+      "platens_cube (rough platens), tension, tension_notched (a prism), brazilian, bending\n"
+      "(a notched beam), bending_plain, triaxial_5, _20, _50, _100, _200 (pressure in MPa),\n"
+      "oedometer.\n"
       "Tests of rock (FDEM): plate, plate_10 (10 MPa on its sides), disc.\n"
       "\n"
       "Targets: young, poisson, compression, tension, brazilian, fracture_energy,\n"

@@ -40,7 +40,7 @@ std::vector<Knob<Concrete>> knobs_for(const Concrete& m, bool by_energy) {
        set<&Concrete::tensile_strength>, 1.0, 0.05, by_energy ? 0.25 : 0.7, 0.0, all},
       {"cohesion", "compression", "compression_prism", "strength", get<&Concrete::cohesion>,
        set<&Concrete::cohesion>, 0.6, 0.05, 0.0, 0.0, all},
-      {"fracture_energy", "fracture_energy", "bending", "fracture_energy",
+      {"fracture_energy", "fracture_energy", "tension_notched", "fracture_energy",
        get<&Concrete::fracture_energy>, set<&Concrete::fracture_energy>, 1.0, 0.10, 1.0, 0.0, all}};
 }
 

@@ -147,6 +147,34 @@ void load_between_sides(dem::Config& c, const Vec3& size, double speed) {
   c.probes.push_back(probe("force_side", "right", "force_x", "sum"));
 }
 
+/// Opening at which links break, about: of the fracture energy, or of the softening.  [m]
+double opening_of(const dem::MaterialConfig& m, double radius) {
+  constexpr double crossing = 2.7, oblique = 1.5;  // theory.md, fracture energy
+  constexpr double least = 20e-6;
+  const double link = 2.4 * radius;
+  return std::max(least, m.fracture_energy > 0.0
+                             ? 2.0 * m.fracture_energy / (crossing * oblique * m.tensile_strength)
+                             : (1.0 + m.softening) * m.tensile_strength / m.young * link);
+}
+
+/// Two notches, which cut links alone; the ends are held and part until the crack is open.
+void pull_notched(dem::Config& c, const SpecimenTest& test, double radius) {
+  constexpr double speed = 0.04, elastic = 40e-6, wide = 1.0;
+  for (const double side : {1.0, -1.0}) {
+    dem::CutConfig cut;
+    cut.shape = "box";
+    cut.center = {0.5 * side * (test.size.x - test.notch + wide), 0.0, 0.0};
+    cut.size = {test.notch + wide, wide, 0.0};
+    c.bodies[0].cuts.push_back(cut);
+  }
+  c.time.end = (3.0 * opening_of(c.materials[0], radius) + elastic) / speed;
+  load_ends(c, test.size, radius, speed);
+  for (std::size_t end : {0, 1}) {
+    c.supports[end].fix = {"x", "y", "z"};
+    c.supports[end].ramp = 1e-4;
+  }
+}
+
 /// Strips a tenth of the diameter wide press a disc along x.
 void load_strips(dem::Config& c, const Sample& sample, double speed) {
   const double volume = pi / 4.0 * disc_diameter * disc_diameter * disc_thickness;
@@ -251,6 +279,12 @@ const std::vector<SpecimenTest>& specimen_tests() {
       {"platens_prism", "compression, prism, rough platens", Loading::platens, prism},
       {"platens_cube", "compression, cube, rough platens", Loading::platens, cube},
       {"tension", "direct tension, prism", Loading::tension, prism},
+      {"tension_notched",
+       "direct tension, notched prism",
+       Loading::notched_tension,
+       {prism_edge, prism_edge, 0.15},
+       0.0,
+       0.025},
       {"brazilian",
        "Brazilian, disc",
        Loading::brazilian,
@@ -306,6 +340,9 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
     case Loading::tension:
       c.time.end = 5e-4 / 0.2;
       load_ends(c, test.size, radius, 0.2 * height);
+      break;
+    case Loading::notched_tension:
+      pull_notched(c, test, radius);
       break;
     case Loading::brazilian:
       c.time.end = 4e-3;

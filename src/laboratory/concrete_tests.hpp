@@ -29,6 +29,7 @@ enum class Loading {
   compression,
   platens,
   tension,
+  notched_tension,
   brazilian,
   bending,
   triaxial,
@@ -43,11 +44,11 @@ struct SpecimenTest {
   Loading loading;
   Vec3 size;              ///< edges; of the disc: diameter, diameter, thickness  [m]
   double pressure = 0.0;  ///< on the sides of a triaxial test  [Pa]
-  double notch = 0.0;     ///< depth of a beam's  [m]
+  double notch = 0.0;     ///< depth of a beam's, or of each of a prism's two  [m]
 };
 
 /// compression between smooth ends of prism and cube, and between rough platens of both; direct
-/// tension; Brazilian; three-point bending of a notched and of a plain beam; triaxial compression
+/// tension of a plain and of a notched prism; Brazilian; three-point bending of a notched and of a plain beam; triaxial compression
 /// at five pressures; compression between sides that stand still (oedometer).
 const std::vector<SpecimenTest>& specimen_tests();
 

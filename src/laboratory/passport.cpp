@@ -187,6 +187,17 @@ SpecimenResult of_beam(const SpecimenTest& test, const report::NumberTable& tabl
   return result;
 }
 
+SpecimenResult of_notched_prism(const SpecimenTest& test, const report::NumberTable& table,
+                                const std::string& folder) {
+  const double ligament = test.size.y * (test.size.x - 2.0 * test.notch);
+  const Values opening = growth(column(table, "top", folder), column(table, "bottom", folder));
+  const Values stress = scaled(load_of(table, folder), 1.0 / ligament);
+  SpecimenResult result{{"elongation [m]", "stress of the ligament [Pa]", opening, stress}, {}};
+  result.numbers["strength"] = stress[peak_of(stress)];
+  result.numbers["fracture_energy"] = spent(table, folder) / ligament;
+  return result;
+}
+
 std::optional<double> target_of(const std::vector<MaterialTarget>& targets,
                                 const std::string& name) {
   for (const MaterialTarget& target : targets)
@@ -204,7 +215,7 @@ std::string target_name(const SpecimenTest& test, const std::string& number,
   if (test.name == "tension" && number == "strength") return "tension";
   if ((test.name == "brazilian" || test.name == "disc") && number == "strength")
     return target_of(targets, "brazilian") ? "brazilian" : "tension";
-  if (test.name == "bending" && number == "fracture_energy") return number;
+  if (test.name == "tension_notched" && number == "fracture_energy") return number;
   return "";
 }
 
@@ -240,6 +251,8 @@ SpecimenResult specimen_result(const SpecimenTest& test, const std::string& fold
   switch (test.loading) {
     case Loading::brazilian:
       return of_disc(test, table, folder);
+    case Loading::notched_tension:
+      return of_notched_prism(test, table, folder);
     case Loading::bending:
       return of_beam(test, table, folder);
     case Loading::plate:
