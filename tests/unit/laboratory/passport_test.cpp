@@ -119,6 +119,46 @@ TEST(SpecimenResult, OfABeamIsWhatItsLinksTookOverTheLigament) {
   EXPECT_NEAR(result.numbers.at("strength"), 1.5 * 1000.0 * 0.3 / (0.1 * 0.067 * 0.067), 1e-3);
 }
 
+/// 1 J that links took over a ligament of 50 x 100 mm, and a peak of 15 kN.
+TEST(SpecimenResult, OfANotchedPrismIsWhatItsLinksTookOverTheLigament) {
+  const ScratchFolder scratch;
+  std::string text =
+      "time,force_top,force_bottom,top,bottom,fracture,friction,plastic\ns,N,N,m,m,J,J,J\n";
+  for (int k = 0; k <= 40; ++k) {
+    const double force = 15e3 - 750.0 * std::abs(k - 20);
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", k, force, -force, 0.075 + 1e-6 * k,
+                        -0.075 - 1e-6 * k, 0.6 * k / 40.0, 0.3 * k / 40.0, 0.1 * k / 40.0);
+  }
+  replace_file(scratch / "history.csv", text);
+  const SpecimenResult result = specimen_result(test_named("tension_notched"), scratch.path());
+  EXPECT_NEAR(result.numbers.at("fracture_energy"), 200.0, 1e-6);
+  EXPECT_NEAR(result.numbers.at("strength"), 3e6, 1e-3);
+}
+
+TEST(ConcreteTests, TheNotchesOfAPrismCutLinksAloneAndLeaveTheLigament) {
+  const ScratchFolder scratch;
+  Sample sample;
+  sample.material.name = "concrete";
+  sample.elements = 600;
+  const dem::Config whole = [&] {
+    dem::Config c = case_of(test_named("tension_notched"), sample, 1, scratch.path());
+    c.bodies[0].cuts.clear();
+    return c;
+  }();
+  const dem::Model m = build_model(
+      case_of(test_named("tension_notched"), sample, 1, scratch.path()), scratch.path());
+  EXPECT_EQ(m.size(), build_model(whole, scratch.path()).size());
+  int across = 0;
+  for (const dem::Model::Link& link : m.links) {
+    const Vec3 a = m.position[static_cast<std::size_t>(link.a)];
+    const Vec3 b = m.position[static_cast<std::size_t>(link.b)];
+    if (a.z * b.z >= 0.0 || link.parted) continue;
+    ++across;
+    EXPECT_LT(std::abs(a.x + a.z / (a.z - b.z) * (b.x - a.x)), 0.025);
+  }
+  EXPECT_GT(across, 50);
+}
+
 TEST(SpecimenResult, NamesTheProbeThatIsMissing) {
   const ScratchFolder scratch;
   replace_file(scratch / "history.csv", "time\ns\n0\n1\n");
