@@ -216,10 +216,13 @@ def markdown(records):
     found = {}
     for one in records:
         found.setdefault((one["test"], one["elements"]), {}).setdefault(one["quantity"], []).append(float(one["value"]))
-    lines = ["| test | elements | n | here | formula |", "|---|---|---|---|---|"]
+    # Against the first number: bond stress, yield of the bars, Eurocode 2, yield of the bars.
+    against = {"pull_out": 13.7, "bending": flexure(0.006) * 1e-3, "shear": shear_eurocode(0.016) * 1e-3, "stirrups": flexure(0.016) * 1e-3}
+    lines = ["| test | elements | n | here | formula | misfit |", "|---|---|---|---|---|---|"]
     for (name, elements), values in sorted(found.items(), key=lambda item: (list(TESTS).index(item[0][0]), int(item[0][1] or 0))):
         size = f"{int(elements):,}" if elements else "1,080"
-        lines.append(f"| {name.replace('_', '-')} | {size} | {len(values['largest'])} | {shown(name, values)} | {asked(name)} |")
+        lines.append(f"| {name.replace('_', '-')} | {size} | {len(values['largest'])} | {shown(name, values)} | {asked(name)} | "
+                     f"{100 * (statistics.mean(values['largest']) / against[name] - 1):+.0f} % |")
     return "\n".join(lines)
 
 
@@ -227,12 +230,15 @@ def asked(name):
     if name == "pull_out":
         return f"Model Code 1990 (confined, good bond): 13.7 MPa from 1 to 3 mm; Model Code 2010: 2.5 sqrt(f_cm) = {2.5 * math.sqrt(F_C):.1f} MPa"
     d = 0.006 if name == "bending" else 0.016
-    result = f"A_s f_y z: {flexure(d) * 1e-3:.1f} kN"
+    result = f"{'' if name == 'bending' else 'in bending '}A_s f_y z: {flexure(d) * 1e-3:.1f} kN"
+    if name == "bending":
+        return result
     if name == "stirrups":
         z = 0.9 * DEPTH
         v = 2 * math.pi / 4 * 0.006**2 / 0.09 * z * F_Y * 1e6
         return result + f"; stirrups alone, struts at 45 and 21.8 degrees: {2 * v * 1e-3:.1f} and {5 * v * 1e-3:.1f} kN"
-    return result + f"; shear: Eurocode 2 {shear_eurocode(d) * 1e-3:.1f} kN, Model Code 2010 {shear_model_code(d) * 1e-3:.1f} kN"
+    return (f"Eurocode 2 (0.18, no safety): {shear_eurocode(d) * 1e-3:.1f} kN; Model Code 2010, level II: {shear_model_code(d) * 1e-3:.1f} kN; "
+            + result)
 
 
 def run(name, seed, given):

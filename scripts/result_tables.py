@@ -105,28 +105,30 @@ def library(which):
     number = lambda text: float(str(text).split()[0])  # noqa: E731
     quantities = [("young", "compression_prism", "young", 1, 3), ("poisson", "compression_prism", "poisson", 3, 10),
                   ("compression", "compression_prism", "strength", 1, 5), ("tension", "tension", "strength", 2, 5),
-                  ("fracture_energy", "bending", "fracture_energy", 0, 10)]
+                  ("fracture_energy", "tension_notched", "fracture_energy", 0, 10), (None, "bending", "fracture_energy", 0, None)]
     rows = {}
     for one in lines_of("library"):
         if (one["material"] == which) == (which in targets):
             rows.setdefault((one["material"], int(one["elements"])), {}).setdefault((one["test"], one["quantity"]), []).append(float(one["value"]))
     head = "elements in the prism" if which in targets else "1,200 elements"
-    lines = [f"| {head} | E (3 %), GPa | nu (10 %) | f_c (5 %), MPa | f_t (5 %), MPa | G_F (10 %), J/m2 | n |", "|---|---|---|---|---|---|---|"]
+    lines = [f"| {head} | E (3 %), GPa | nu (10 %) | f_c (5 %), MPa | f_t (5 %), MPa | G_F (10 %), J/m2 | notched beam, J/m2 | n |", "|---" * 8 + "|"]
     for (material, elements), found in sorted(rows.items(), key=lambda row: (int(row[0][0][1:]), row[0][1])):
         if which not in targets and elements != 1200:
             continue
-        cells, count = [], 0
+        cells, usual = [], len(found["compression_prism", "strength"])
         for name, test, quantity, digits, allowed in quantities:
             values = found.get((test, quantity), [])
             if not values:
                 cells.append("")
                 continue
-            target, count = number(targets[material][name]), len(values)
-            misfit = 100 * (statistics.mean(values) / target - 1)
-            spread = f" +- {statistics.stdev(values):.{digits}f}" if len(values) > 1 else ""
-            mark = "**" if abs(misfit) > allowed else ""
-            cells.append(f"{statistics.mean(values):.{digits}f}{spread}, {mark}{misfit:+.1f} %{mark}")
-        lines.append(f"| {f'{elements:,}' if which in targets else material} | " + " | ".join(cells) + f" | {count} |")
+            count = len(values)
+            text = f"{statistics.mean(values):.{digits}f}" + (f" +- {statistics.stdev(values):.{digits}f}" if count > 1 else "")
+            if name:
+                misfit = 100 * (statistics.mean(values) / number(targets[material][name]) - 1)
+                mark = "**" if abs(misfit) > allowed else ""
+                text += f", {mark}{misfit:+.1f} %{mark}"
+            cells.append(text + (f" (n = {count})" if count != usual else ""))
+        lines.append(f"| {f'{elements:,}' if which in targets else material} | " + " | ".join(cells) + f" | {usual} |")
     return "\n".join(lines)
 
 
