@@ -26,7 +26,9 @@ namespace {
 
 using Result = int;
 using Word = std::uintptr_t;
-using AnyCall = Result (*)(Word, Word, Word, Word, Word);
+/// As many arguments as any of them has: cuLaunchKernel's eleven. A function with fewer lets the
+/// rest be.
+using AnyCall = Result (*)(Word, Word, Word, Word, Word, Word, Word, Word, Word, Word, Word);
 using Symbol = void* (*)(void*, const char*);
 
 constexpr Result out_of_memory = 2, launch_failed = 719;
@@ -49,8 +51,9 @@ Symbol real_dlsym() {
   return found;
 }
 void* driver = nullptr;
-AnyCall of_driver(const char* name) {
-  return reinterpret_cast<AnyCall>(real_dlsym()(driver, name));
+using PlainCall = Result (*)(Word, Word, Word);
+PlainCall of_driver(const char* name) {
+  return reinterpret_cast<PlainCall>(real_dlsym()(driver, name));
 }
 
 void flip() {
@@ -66,12 +69,11 @@ void flip() {
       continue;
     }
     unsigned char byte = 0;
-    of_driver("cuCtxSynchronize")(0, 0, 0, 0, 0);
-    const Result read =
-        of_driver("cuMemcpyDtoH_v2")(reinterpret_cast<Word>(&byte), first + at, 1, 0, 0);
+    of_driver("cuCtxSynchronize")(0, 0, 0);
+    const Result read = of_driver("cuMemcpyDtoH_v2")(reinterpret_cast<Word>(&byte), first + at, 1);
     byte = static_cast<unsigned char>(byte ^ (1U << random() % 8));
     const Result written =
-        of_driver("cuMemcpyHtoD_v2")(first + at, reinterpret_cast<Word>(&byte), 1, 0, 0);
+        of_driver("cuMemcpyHtoD_v2")(first + at, reinterpret_cast<Word>(&byte), 1);
     flips += read == 0 && written == 0;
     return;
   }
@@ -100,14 +102,15 @@ Kind kinds[places];
 int used = 0;
 
 template <int place>
-Result wrapper(Word a, Word b, Word c, Word d, Word e) {
+Result wrapper(Word a, Word b, Word c, Word d, Word e, Word f, Word g, Word h, Word i, Word j,
+               Word k) {
   Result result = 0;
   if (fails(kinds[place], result)) return result;
   if (kinds[place] == freed) {
     const std::lock_guard lock(of_arrays);
     arrays.erase(a);
   }
-  result = real_calls[place](a, b, c, d, e);
+  result = real_calls[place](a, b, c, d, e, f, g, h, i, j, k);
   if (kinds[place] == device_memory && result == 0) {
     const std::lock_guard lock(of_arrays);
     arrays[*reinterpret_cast<Word*>(a)] = b;

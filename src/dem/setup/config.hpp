@@ -47,8 +47,9 @@ struct LdpmConfig {
         "k_c1, ratio of deviatoric to volumetric strain up to which H_c0 holds");
     key("deviatoric_slope", deviatoric_slope, "-", not_negative,
         "k_c2, how soon hardening falls with that ratio");
-    key("friction", friction, "-", not_negative, "mu_0, friction at low pressure");
-    key("final_friction", final_friction, "-", not_negative, "mu_inf, friction at high pressure");
+    key("friction", friction, "-", Range{0.0, 1e3}, "mu_0, friction at low pressure");
+    key("final_friction", final_friction, "-", Range{0.0, 1e3},
+        "mu_inf, friction at high pressure");
     key("friction_stress", friction_stress, "Pa", positive,
         "s_N0, pressure over which friction falls from one to the other");
     key("densification", densification, "-", positive,
@@ -152,36 +153,36 @@ struct MaterialConfig {
     key("tensile_strength", tensile_strength, "Pa", Range{0.0, 1e15},
         "local tensile strength T of a link");
     key("cohesion", cohesion, "Pa", Range{0.0, 1e15}, "local cohesion C of a link");
-    key("softening", softening, "-", not_negative,
+    key("softening", softening, "-", Range{0.0, 1e9},
         "zeta, initial stiffness over softening stiffness in tension; 0 is brittle");
-    key("fracture_energy", fracture_energy, "J/m2", not_negative,
+    key("fracture_energy", fracture_energy, "J/m2", Range{0.0, 1e9},
         "G_F, energy of a crack in tension over its area, which sets how far links open before "
         "they "
         "break, whatever the size of elements; 0: softening sets that");
     key("friction_angle", friction_angle, "rad", Range{0.0, 1.5707, Open::high},
         "internal friction angle of intact links");
-    key("rolling_stiffness", rolling_stiffness, "-", not_negative,
+    key("rolling_stiffness", rolling_stiffness, "-", Range{0.0, 1e6},
         "beta_r, rolling stiffness over shear stiffness times radius squared; 0 switches moments "
         "off");
-    key("rolling_limit", rolling_limit, "-", not_negative, "eta, plastic limit of the moments");
-    key("rolling_cap", rolling_cap, "Pa", not_negative,
+    key("rolling_limit", rolling_limit, "-", Range{0.0, 1e6}, "eta, plastic limit of the moments");
+    key("rolling_cap", rolling_cap, "Pa", Range{0.0, 1e15},
         "s_M, largest normal stress that the limit of the moments counts; 0: no bound");
-    key("broken_friction", broken_friction, "-", Range{-1.0, no_limit},
+    key("broken_friction", broken_friction, "-", Range{-1.0, 1e6},
         "mu_b, friction coefficient of broken links; below 0: contact.friction");
-    key("friction_cap", friction_cap, "Pa", not_negative,
+    key("friction_cap", friction_cap, "Pa", Range{0.0, 1e15},
         "s_F, largest shear stress that friction bears in a link, whole or broken; 0: no bound");
-    key("broken_rolling_limit", broken_rolling_limit, "-", Range{-1.0, no_limit},
+    key("broken_rolling_limit", broken_rolling_limit, "-", Range{-1.0, 1e6},
         "eta_b, plastic limit of the moments of broken links; below 0: rolling_limit");
-    key("slip_wear", slip_wear, "-", not_negative,
+    key("slip_wear", slip_wear, "-", Range{0.0, 1e6},
         "w_s, opening that a link gains by plastic slip, over that slip; 0: none");
-    key("turn_wear", turn_wear, "-", not_negative,
+    key("turn_wear", turn_wear, "-", Range{0.0, 1e6},
         "w_m, opening that a link gains by plastic turn, over that turn times the mean radius; 0: "
         "none");
-    key("compaction_strength", compaction_strength, "Pa", not_negative,
+    key("compaction_strength", compaction_strength, "Pa", Range{0.0, 1e15},
         "Y_c, compressive stress at which intact links and broken ones that touch yield; 0: never");
     key("compaction_slope", compaction_slope, "-", Range{0.0, 1.0, Open::high},
         "H_c, stiffness of a link beyond compaction_strength over the elastic one");
-    key("crushing_strength", crushing_strength, "Pa", not_negative,
+    key("crushing_strength", crushing_strength, "Pa", Range{0.0, 1e15},
         "Y_b, compressive stress at which broken links yield until their ends touch; 0: never");
     key("crushing_slope", crushing_slope, "-", Range{0.0, 1.0, Open::high},
         "H_b, stiffness of a link beyond crushing_strength over the elastic one");
@@ -197,9 +198,9 @@ struct MaterialConfig {
     key("rate_crossings", rate_crossings, "-", Range{1.0, 1000.0},
         "time over which a link's strain rate is smoothed, in crossings of the link by a wave of "
         "speed sqrt(E / density)");
-    key("alpha", alpha, "-", positive, "macro-micro constant of Poisson's ratio");
-    key("beta", beta, "-", positive, "macro-micro constant of the stiffness");
-    key("gamma", gamma, "-", positive, "macro-micro constant of the stiffness");
+    key("alpha", alpha, "-", Range{1e-6, 1e6}, "macro-micro constant of Poisson's ratio");
+    key("beta", beta, "-", Range{1e-6, 1e6}, "macro-micro constant of the stiffness");
+    key("gamma", gamma, "-", Range{1e-6, 1e6}, "macro-micro constant of the stiffness");
     key("shear", shear, OneOf{"plastic", "brittle"}, "what a link does at its shear strength");
     key("bond_radius", bond_radius, "-", Range{0.0, 1.0, Open::low},
         "lambda, radius of a parallel bond over that of the smaller element");
@@ -425,12 +426,13 @@ struct ContactConfig {
   void each_key(Visit&& key) {
     key("law", law, OneOf{"linear", "hertz"},
         "linear springs with the links' stiffness, or Hertz and Mindlin");
-    key("friction", friction, "-", not_negative,
+    key("friction", friction, "-", Range{0.0, 1e3},
         "coefficient of friction of contacts, and of broken links unless broken_friction is given");
     key("restitution", restitution, "-", Range{0.0, 1.0, Open::low},
         "coefficient of restitution of new contacts; 1 switches their dashpots off");
-    key("rolling_limit", rolling_limit, "-", not_negative, "eta, plastic limit of rolling moments");
-    key("rolling_stiffness", rolling_stiffness, "-", not_negative,
+    key("rolling_limit", rolling_limit, "-", Range{0.0, 1e6},
+        "eta, plastic limit of rolling moments");
+    key("rolling_stiffness", rolling_stiffness, "-", Range{0.0, 1e6},
         "beta_r, rolling stiffness over shear stiffness times radius squared; 0: contacts roll "
         "freely");
   }

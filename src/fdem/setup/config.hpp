@@ -10,6 +10,11 @@
 
 namespace breccia::fdem {
 
+/// Numbers beyond these are slips of a unit, and powers of them overflow.
+inline constexpr Range sane_strength{1e-3, 1e15};  ///<  [Pa]
+inline constexpr Range sane_energy{1e-9, 1e9};     ///<  [J/m2]
+inline constexpr Range sane_ratio{1e-6, 1e6};      ///<  [-]
+
 /// Strengths of the joints of one material, or between two.
 struct StrengthConfig {
   double tension = 5e6;                        ///< f_t  [Pa]
@@ -22,17 +27,17 @@ struct StrengthConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("tension", tension, "Pa", positive, "tensile strength f_t");
-    key("cohesion", cohesion, "Pa", positive, "cohesion c");
+    key("tension", tension, "Pa", sane_strength, "tensile strength f_t");
+    key("cohesion", cohesion, "Pa", sane_strength, "cohesion c");
     key("friction_angle", friction_angle, "rad", Range{0.0, 1.5707, Open::high},
         "internal friction angle of a whole joint; a broken one rubs by the contact's friction");
     key("residual_angle", residual_angle, "rad", Range{0.0, 1.5707, Open::high},
         "friction angle that a pressed joint keeps while it softens, at most friction_angle; 0: "
         "none, "
         "as in Lukas et al. 2014; the codes whose contact rubs between joined triangles keep it");
-    key("energy_open", energy_open, "J/m2", positive, "fracture energy of opening, G_I");
-    key("energy_slide", energy_slide, "J/m2", positive, "fracture energy of sliding, G_II");
-    key("stiffness", stiffness, "-", positive,
+    key("energy_open", energy_open, "J/m2", sane_energy, "fracture energy of opening, G_I");
+    key("energy_slide", energy_slide, "J/m2", sane_energy, "fracture energy of sliding, G_II");
+    key("stiffness", stiffness, "-", sane_ratio,
         "joint penalty p_f over Young's modulus; 20 keeps 92 % of the solid's stiffness");
   }
 };
@@ -62,18 +67,18 @@ struct MaterialConfig {
     key("young", young, "Pa", Range{1.0, 1e15}, "Young's modulus");
     key("poisson", poisson, "-", Range{-1.0, 1.0, Open::both},
         "Poisson's ratio; below 0.5 in plane strain");
-    key("damping", damping, "-", not_negative,
+    key("damping", damping, "-", Range{0.0, 1e3},
         "viscosity over 2 h sqrt(E rho): 0.5 for quasi-static runs, 0.02 for dynamic ones");
     key("joints", joints, OneOf{"intrinsic", "extrinsic", "none"},
         "intrinsic: joints from the start; extrinsic: joints appear where strength is reached; "
         "none: it does not break; two such materials that share an edge move as one there, while "
         "to others only a [joint.<name>] between both joins it");
     key.table("joint", joint, "strength of its joints");
-    key("contact_stiffness", contact_stiffness, "-", positive,
+    key("contact_stiffness", contact_stiffness, "-", sane_ratio,
         "contact penalty p_n over Young's modulus");
-    key("tangential_stiffness", tangential_stiffness, "-", positive,
+    key("tangential_stiffness", tangential_stiffness, "-", sane_ratio,
         "tangential contact penalty p_t over p_n");
-    key("friction", friction, "-", not_negative,
+    key("friction", friction, "-", Range{0.0, 1e3},
         "coefficient of friction of contact; between two materials the lower one counts");
   }
 };
@@ -102,7 +107,8 @@ struct FrictionConfig {
   void each_key(Visit&& key) {
     key("between", between, "the two materials, or twice the same");
     key.required("between");
-    key("coefficient", coefficient, "-", not_negative, "coefficient of friction of their contact");
+    key("coefficient", coefficient, "-", Range{0.0, 1e3},
+        "coefficient of friction of their contact");
   }
 };
 
@@ -259,13 +265,13 @@ struct MaterialChange {
   void each_key(Visit&& key) {
     key("name", name, "name of the material");
     key.required("name");
-    key("young", young, "Pa", not_negative,
+    key("young", young, "Pa", Range{0.0, 1e15},
         "Young's modulus of its triangles from now on; joints and contacts keep their stiffnesses; "
         "0: as before");
     key("in_situ", in_situ, "-", Range{-1.0, 1.0},
         "share of the stress at the start that it bears from now on: a core that is dug slowly "
         "bears less and less; below 0: as before");
-    key("friction", friction, "-", Range{-1.0, no_limit},
+    key("friction", friction, "-", Range{-1.0, 1e3},
         "coefficient of friction of its contacts from now on; between two materials the lower one "
         "counts; below 0: as before");
   }
@@ -295,9 +301,9 @@ struct InSituConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("xx", xx, "Pa", any_number, "stress at the start, tension positive");
-    key("yy", yy, "Pa", any_number, "stress at the start, tension positive");
-    key("xy", xy, "Pa", any_number, "stress at the start");
+    key("xx", xx, "Pa", Range{-1e15, 1e15}, "stress at the start, tension positive");
+    key("yy", yy, "Pa", Range{-1e15, 1e15}, "stress at the start, tension positive");
+    key("xy", xy, "Pa", Range{-1e15, 1e15}, "stress at the start");
   }
   bool any() const { return xx != 0.0 || yy != 0.0 || xy != 0.0; }
 };
@@ -322,7 +328,7 @@ struct JointsConfig {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("softening_factor", softening_factor, "-", positive,
+    key("softening_factor", softening_factor, "-", sane_ratio,
         "softening length times strength over fracture energy: 2.5886128 dissipates exactly the "
         "fracture energy, 3 is the classical codes' and 15.9 % too much");
     key("unloading", unloading, OneOf{"secant", "reversible"},

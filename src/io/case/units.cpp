@@ -294,8 +294,13 @@ double parse_quantity(std::string_view text, const std::string& wanted, std::str
                         describe_dimension(target) + " is wanted, in " + units_like(wanted, target);
     if (const std::string spelt = respelt(rest, target); !spelt.empty())
       meant(number_and + spelt + "\"");
-    else if (const std::string hint = with_prefix_of(rest, wanted); unit && !hint.empty())
-      meant(number_and + hint + "\"");
+    else if (const std::string hint = with_prefix_of(rest, wanted); unit && !hint.empty()) {
+      // Nobody has a force of 30 GN; 5 kN may be one, which belongs under another key.
+      if (hint.starts_with('G'))
+        meant(number_and + hint + "\"");
+      else
+        problem += "; try " + number_and + hint + "\" if that is meant";
+    }
     return 0.0;
   }
   const double in_target =
