@@ -67,8 +67,11 @@ method = "fdem2d"
 time.end = "1 us"
 [output]
 frames = 0
+[in_situ]
+xx = -1e15
+yy = -1e15
 [material.rock]
-joint = { tension = 5e-324 }
+young = 1.0
 [[body]]
 name = "plate"
 material = "rock"
