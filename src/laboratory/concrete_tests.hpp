@@ -48,8 +48,9 @@ struct SpecimenTest {
 };
 
 /// compression between smooth ends of prism and cube, and between rough platens of both; direct
-/// tension of a plain and of a notched prism; Brazilian; three-point bending of a notched and of a plain beam; triaxial compression
-/// at five pressures; compression between sides that stand still (oedometer).
+/// tension of a plain and of a notched prism; Brazilian; three-point bending of a notched and of a
+/// plain beam; triaxial compression at five pressures; compression between sides that stand still
+/// (oedometer).
 const std::vector<SpecimenTest>& specimen_tests();
 
 /// Distance of the beam's supports.  [m]
