@@ -12,6 +12,8 @@
 #include "paths.hpp"
 #include "physics/dem/scene.hpp"
 #include "prepare/build.hpp"
+#include "run/method/audited_method.hpp"
+#include "run/method/dem_method.hpp"
 
 namespace breccia::dem {
 namespace tiles_test {
@@ -53,6 +55,25 @@ TEST(Tiles, end_with_the_bits_of_the_host) {
     EXPECT_EQ(now.plastic, energy.plastic) << tiles;
     EXPECT_EQ(now.friction, energy.friction) << tiles;
     EXPECT_EQ(now.work, energy.work) << tiles;
+  }
+}
+
+/// A step that is done twice begins from a state that was saved and loaded.
+TEST(Tiles, an_audit_of_steps_on_a_device_finds_nothing_in_a_sound_run) {
+  const auto config = read_case<Config>(small_case, {});
+  static const Model model = build_model(config, std::string(source_dir) + "/cases/rc_slab");
+  World host = small_slab(0);
+  constexpr std::int64_t steps = 60;
+  while (host.step < steps) advance(host, {1e300, steps});
+  for (const Index tiles : {0, 6}) {
+    Exec exec;
+    exec.space = Space::shadow;
+    exec.tiles = tiles;
+    AuditConfig audit;
+    audit.every = 4;
+    const auto method = audited(make_method(config, model, exec), audit, 1, nullptr);
+    while (method->steps() < steps) method->advance({1e300, steps});
+    EXPECT_EQ(method->state_hash(), state_hash(host)) << tiles;
   }
 }
 
