@@ -5,6 +5,7 @@
 // checkpoint. Constants of single elements and links (mass, length, ...) lie beside their state,
 // with which they migrate: dem/elements.hpp, dem/links/.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,6 +22,25 @@ namespace breccia::dem {
 struct ElementSet {
   std::string name;
   Buffer<Index> members;  ///< global ids in the whole model, ascending  [-]
+};
+
+/// A wall with mass, which moves by the forces on it.
+struct FreeWall {
+  double mass = no_limit;  ///< infinite: it moves as it is told  [kg]
+  Vec3 normal{};           ///< unit; it moves along this only, unless it is zero  [-]
+  Vec3 axes{};             ///< 1 along axes in which it moves, if it has no normal  [-]
+  std::array<ScaledAmplitude, 3> load;  ///< stage; given force over time  [N]
+
+  bool is_free() const { return mass < no_limit; }
+  /// The part of a force or velocity in directions in which it moves.
+  Vec3 allowed(const Vec3& of) const {
+    if (dot(normal, normal) > 0.0) return dot(of, normal) * normal;
+    return {axes.x * of.x, axes.y * of.y, axes.z * of.z};
+  }
+  Vec3 load_at(double time) const {
+    const auto part = [&](const ScaledAmplitude& of) { return of.scale * of.amplitude.at(time); };
+    return {part(load[0]), part(load[1]), part(load[2])};
+  }
 };
 
 struct Case {
@@ -43,6 +63,7 @@ struct Case {
   std::vector<std::string> wall_names;
   std::vector<Vec3> wall_starts;      ///< points of walls at the start  [m]  (walls)
   std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]  (walls)
+  std::vector<FreeWall> free_walls;   ///< empty: none has mass  (walls)
   Buffer<ContactPair> contact_pairs;  ///< of materials p, q at p materials + q  (materials^2)
   Buffer<ContactPair> wall_pairs;     ///< of a material with a wall  (materials)
 

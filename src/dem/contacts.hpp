@@ -105,7 +105,8 @@ struct WallForces {
   View<const std::int16_t> material;
   View<const ContactPair> pairs;  ///< of a material with a rigid wall
   View<const Index> a;
-  Index first;  ///< contact 0 of this wall
+  Index first;       ///< contact 0 of this wall
+  double wall_mass;  ///< infinite: it moves as it is told  [kg]
   View<ContactState> state;
   View<double> slid, damped, driven;
   View<Vec3> wall_force;
@@ -134,7 +135,9 @@ struct WallForces {
     motion.half_turn = (0.25 * dt * dot(motion.normal, end.spin + wall.spin)) * motion.normal;
     motion.turn_scale = turn_scale(motion.half_turn);
 
-    const ContactLaw::Pair pair{wall.curved(radius), radius, 2.0 * radius, mass, radius};
+    const bool free = wall_mass < no_limit;
+    const double both = free ? mass * wall_mass / (mass + wall_mass) : mass;
+    const ContactLaw::Pair pair{wall.curved(radius), radius, 2.0 * radius, both, radius};
     ContactPair constants = pairs[material[e]];
     if (!law.hertz) constants.normal *= wall.stiffness;
     const ContactResponse r =
@@ -147,7 +150,8 @@ struct WallForces {
     wall_force[i] = on_wall;
     force[e] -= on_wall;
     torque[e] += -(height * cross(motion.normal, on_wall)) - r.moment;
-    driven[i] -= dt * dot(on_wall, surface);
+    // What a wall with mass gives, it has lost: no work comes from outside.
+    if (!free) driven[i] -= dt * dot(on_wall, surface);
     if (wall.turns()) driven[i] -= dt * dot(r.moment, wall.spin);
     // Stiffnesses add, so their critical times squared add like resistances in parallel; the wall's
     // largest stiffness stands for all its directions.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "dem/free_walls.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia::dem {
@@ -147,7 +148,7 @@ Energies held(const World& w) {
     all.potential =
         fold(w.exec, e.size(), ExactSum(),
              GravityPotential{owned, w.given->gravity, e.state.view(), e.mass.view()}, Sum{});
-  return all;
+  return w.free_walls.empty() ? all : all + held_by_free_walls(w);
 }
 
 EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {

@@ -7,6 +7,7 @@
 #include "core/case_config.hpp"
 #include "core/gauge.hpp"
 #include "core/probe.hpp"
+#include "dem/free_walls.hpp"
 #include "dem/observe.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
@@ -304,6 +305,27 @@ std::optional<std::size_t> wall_of(const World& w, const ProbeConfig& p) {
   return static_cast<std::size_t>(name - w.given->wall_names.begin());
 }
 
+double motion_of_wall(const World& w, const Quantity& quantity, std::size_t wall) {
+  const Wall& own = w.walls[wall];
+  const bool free = is_free(w, wall);
+  const Vec3 velocity = free ? velocity_of_free_wall(w, wall) : own.velocity;
+  const double mass = free ? w.given->free_walls[wall].mass : 0.0;
+  switch (quantity.kind) {
+    case Quantity::Kind::position:
+      return on_axis(own.point, quantity.axis);
+    case Quantity::Kind::displacement:
+      return on_axis(own.point - w.given->wall_starts[wall], quantity.axis);
+    case Quantity::Kind::velocity:
+      return on_axis(velocity, quantity.axis);
+    case Quantity::Kind::momentum:
+      return mass * on_axis(velocity, quantity.axis);
+    case Quantity::Kind::kinetic:
+      return 0.5 * mass * dot(velocity, velocity);
+    default:
+      return norm(velocity);
+  }
+}
+
 /// A wall's place and velocity, which rank 0 knows as well as all, and what this rank's elements
 /// push it with.
 Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
@@ -312,13 +334,7 @@ Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
   const Wall& own = w.walls[wall];
   const bool turns = quantity.kind == Quantity::Kind::torque;
   if (quantity.kind != Quantity::Kind::force && !turns) {
-    const auto part = [&](const Vec3& v) { return on_axis(v, quantity.axis); };
-    const double value = quantity.kind == Quantity::Kind::position   ? part(own.point)
-                         : quantity.kind == Quantity::Kind::velocity ? part(own.velocity)
-                         : quantity.kind == Quantity::Kind::displacement
-                             ? part(own.point - w.given->wall_starts[wall])
-                             : norm(own.velocity);
-    return first ? Readings(value, 0) : Readings();
+    return first ? Readings(motion_of_wall(w, quantity, wall), 0) : Readings();
   }
   Readings read;
   if (first) read = Readings(0.0, 0);

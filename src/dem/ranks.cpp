@@ -255,6 +255,7 @@ World share_out(const World& whole, Communicator& ranks, const DomainConfig& con
 World share_parts(World part, Communicator& ranks, const DomainConfig& config, Space space) {
   take_time_from_first(ranks, part);
   for (Wall& wall : part.walls) take_from_first(ranks, wall);
+  for (FreeWallState& wall : part.free_walls) take_from_first(ranks, wall);
   take_from_first(ranks, part.travel.drift);
   for (ServoState& servo : part.servos) take_from_first(ranks, servo);
   part.ledger = {};  // what this rank books from here on
@@ -310,6 +311,7 @@ void collect(World& part, World& whole) {
   whole.wall_contacts = std::move(copy.wall_contacts);
   whole.bar_actions = std::move(copy.bar_actions);
   whole.walls = part.walls;
+  whole.free_walls = part.free_walls;
   whole.servos = part.servos;
   whole.domain.partition = partition_at(part.domain, part.travel.drift.velocity, part.time);
   copy_time(part, whole);

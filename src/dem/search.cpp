@@ -6,6 +6,7 @@
 
 #include "core/rows.hpp"
 #include "core/select.hpp"
+#include "dem/free_walls.hpp"
 #include "dem/ranks.hpp"
 #include "domain/drift.hpp"
 
@@ -148,6 +149,7 @@ Pairs near_walls(const World& w) {
     // until it asks for a search.
     const Vec3& drift = w.travel.drift.velocity;
     const bool moves = dot(drift, drift) > 0.0 || wall.turns() ||
+                       is_free(w, static_cast<std::size_t>(wall_number)) ||
                        w.prescribed.moves(w.prescribed.motions.size() - w.walls.size() +
                                           static_cast<std::size_t>(wall_number));
     const double reach = (moves ? w.given->largest_margin : 0.0) + 1e-14 * w.travel.drift.farthest;

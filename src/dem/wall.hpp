@@ -1,34 +1,41 @@
 #pragma once
-// Rigid walls: half-spaces, cylinders, boxes and spheres, which move and turn as they are told.
+// Rigid walls: half-spaces, cylinders with and without a nose, boxes and spheres, which move and
+// turn as they are told, or move by the forces on them.
 
 #include <cstdint>
 
+#include "dem/wall_nose.hpp"
 #include "math/vec.hpp"
 
 namespace breccia::dem {
 
 /// Of a plane all that lies behind its face; a cylinder's axis and a box's depth lead back from the
-/// face; a sphere is around its point.
-enum class WallShape : std::int64_t { plane, cylinder, box, sphere };
+/// face; a sphere is around its point. A cylinder that ends in a cone or an ogive has its tip for a
+/// face; an ogive as long as the radius is a hemisphere.
+enum class WallShape : std::int64_t { plane, cylinder, box, sphere, cone, ogive };
 
 struct Wall {
-  Vec3 point;        ///< of the face; of cylinder and box its middle; centre of a sphere; now  [m]
+  Vec3 point;        ///< of the face; of cylinder and box its middle, of a nose its tip; centre of
+                     ///< a sphere; now  [m]
   Vec3 normal;       ///< unit, out of the face
-  Vec3 velocity;     ///< of the point  [m/s]
+  Vec3 velocity;     ///< of the point, half a step before now  [m/s]
   double stiffness;  ///< factor on linear contacts  [-]
   double travelled;  ///< of its farthest part since the last search  [m]
   WallShape shape = WallShape::plane;
   double radius = 0.0;  ///< of cylinder or sphere  [m]
-  double length = 0.0;  ///< of cylinder or box behind the face  [m]
-  Vec3 along{};         ///< box: unit, across the normal  [-]
-  double half[2] = {};  ///< box: half of its sides along `along` and across  [m]
-  Vec3 spin{};          ///< [rad/s]
+  double length = 0.0;  ///< of cylinder or box behind the face, the nose included  [m]
+  Vec3 along{};         ///< box, cone, ogive: unit, across the normal  [-]
+  double half[2] = {};  ///< box: half of its sides along `along` and across; cone, ogive: the
+                        ///< nose's length, and nothing  [m]
+  Vec3 spin{};  ///< [rad/s]
 
   BR_HD bool turns() const { return dot(spin, spin) > 0.0; }
   /// How far its parts are from its point; of a plane 0, as it turns about its normal only.  [m]
   BR_HD double extent() const {
     switch (shape) {
       case WallShape::cylinder:
+      case WallShape::cone:
+      case WallShape::ogive:
         return sqrt(radius * radius + length * length);
       case WallShape::box:
         return sqrt(half[0] * half[0] + half[1] * half[1] + length * length);
@@ -52,7 +59,7 @@ struct Wall {
     if (!turns()) return;
     travelled += dt * norm(spin) * extent();
     normal = turned(normal, dt);
-    if (shape == WallShape::box) along = turned(along - dot(along, normal) * normal, dt);
+    if (dot(along, along) > 0.0) along = turned(along - dot(along, normal) * normal, dt);
   }
 
  private:
@@ -87,6 +94,16 @@ BR_HD inline WallTouch of_cylinder(const Wall& wall, const Vec3& from) {
   if (beside <= 0.0 && (over >= 0.0 || over >= beside)) return {end, over};
   if (over <= 0.0) return {out, beside};
   return outside_of(beside * out + over * end);
+}
+
+BR_HD inline WallTouch of_nosed(const Wall& wall, const Vec3& from) {
+  const double above = dot(from, wall.normal);
+  const Vec3 sideways = from - above * wall.normal;
+  const double off = norm(sideways);
+  const Vec3 out = off > 0.0 ? (1.0 / off) * sideways : wall.along;
+  const NearestOutline at = nearest_outline(-above, off, wall.radius, wall.length, wall.half[0],
+                                            wall.shape == WallShape::cone);
+  return {at.outward * out - at.behind * wall.normal, at.height};
 }
 
 BR_HD inline WallTouch of_box(const Wall& wall, const Vec3& from) {
@@ -124,6 +141,9 @@ BR_HD inline WallTouch touch(const Wall& wall, const Vec3& x) {
       return wall_detail::of_cylinder(wall, from);
     case WallShape::box:
       return wall_detail::of_box(wall, from);
+    case WallShape::cone:
+    case WallShape::ogive:
+      return wall_detail::of_nosed(wall, from);
     case WallShape::sphere: {
       const double way = norm(from);
       return {way > 0.0 ? (1.0 / way) * from : wall.normal, way - wall.radius};

@@ -40,6 +40,13 @@ struct LinkPlan {
 /// tiles, so that the order of sums is the same for any number of threads and ranks.
 inline constexpr Index sweep_tile = 256;
 
+/// A wall with mass: a part of a run's state, beside its place and velocity.
+struct FreeWallState {
+  Vec3 force{};            ///< of contacts, at the time of the positions  [N]
+  double stiffness = 0.0;  ///< of these contacts  [N/m]
+  double work = 0.0;       ///< of its given force until half of the last step  [J]
+};
+
 /// Each line tells meaning and unit, then (length; who writes it). Lengths: elements, contacts, ...
 /// of this rank, ghosts included; no length: one number. Writers, in the order of a run:
 ///
@@ -68,17 +75,18 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
   Buffer<double> motion_factors;  ///< likewise  [-]  (entries; set-up, stage)
 
   // State: what a checkpoint holds, and the links in LinkSets.
-  Elements elements;               ///< (elements; see its lines)
-  Contacts contacts;               ///< between elements (contacts; search, pairs, ranks)
-  WallContacts wall_contacts;      ///< (contacts with walls; search, walls, ranks)
-  Travel travel;                   ///< since the last search (elements; search, ranks)
-  std::vector<Wall> walls;         ///< (walls; set-up, move; its way, search and stage, too)
-  Ledger ledger;                   ///< (search, stage, probes)
-  double time = 0.0;               ///< of positions and forces  [s]  (move)
-  double last_dt = 0.0;            ///< the step that led here  [s]  (move)
-  double next_dt = 0.0;            ///< the step to come  [s]  (dt)
-  std::int64_t step = 0;           ///< steps taken  [-]  (end of a step)
-  std::int64_t searches = 0;       ///< [-]  (search)
+  Elements elements;                      ///< (elements; see its lines)
+  Contacts contacts;                      ///< between elements (contacts; search, pairs, ranks)
+  WallContacts wall_contacts;             ///< (contacts with walls; search, walls, ranks)
+  Travel travel;                          ///< since the last search (elements; search, ranks)
+  std::vector<Wall> walls;                ///< (walls; set-up, move; its way, search and stage, too)
+  std::vector<FreeWallState> free_walls;  ///< empty: none has mass (walls; move, walls)
+  Ledger ledger;                          ///< (search, stage, probes)
+  double time = 0.0;                      ///< of positions and forces  [s]  (move)
+  double last_dt = 0.0;                   ///< the step that led here  [s]  (move)
+  double next_dt = 0.0;                   ///< the step to come  [s]  (dt)
+  std::int64_t step = 0;                  ///< steps taken  [-]  (end of a step)
+  std::int64_t searches = 0;              ///< [-]  (search)
   std::vector<ServoState> servos;  ///< of walls, then of supports; empty: none (servos; servo)
   StageProgress stage;             ///< where it is among the stages of its case (stage)
 

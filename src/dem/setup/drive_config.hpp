@@ -27,7 +27,14 @@ struct WallConfig {
   Vec2 size{};          ///< of a box's face  [m]
   Vec3 along{};         ///< of a box; zero: some direction across the normal  [-]
   Vec3 spin{};          ///<  [rad/s]
+  std::string nose = "flat";
+  double nose_length = 0.0;         ///<  [m]
+  double mass = no_limit;           ///< infinite: it moves as it is told  [kg]
+  OverTime<Vec3> force{};           ///< with mass: on it  [N]
+  std::vector<std::string> free{};  ///< with mass: directions in which it moves
 
+  bool has_mass() const { return mass < no_limit; }
+  bool has_nose() const { return nose != "flat"; }
   template <class Visit>
   void each_key(Visit&& key) {
     key("name", name, "name of the wall");
@@ -36,11 +43,18 @@ struct WallConfig {
         "plane: all that lies behind its face; cylinder, box: a round or rectangular face and what "
         "lies behind it, to length: platens, rollers, punches; sphere: around point");
     key("point", point, "m", any_number,
-        "a point of the wall's face; the middle of a round or rectangular one; centre of a sphere");
+        "a point of the wall's face; the middle of a round or rectangular one, the tip of a nose; "
+        "centre of a sphere");
     key("normal", normal, "-", any_number,
         "direction out of the wall's face, towards the elements");
     key("radius", radius, "m", not_negative, "radius of a cylinder or sphere");
-    key("length", length, "m", not_negative, "how far a cylinder or box reaches behind its face");
+    key("length", length, "m", not_negative,
+        "how far a cylinder, with its nose, or a box reaches behind its face");
+    key("nose", nose, OneOf{"flat", "cone", "ogive", "hemisphere"},
+        "how a cylinder ends: a flat face, or a nose whose tip is point; an ogive meets the flank "
+        "without a bend");
+    key("nose_length", nose_length, "m", not_negative,
+        "length of a cone or ogive; an ogive of caliber radius head c has radius * sqrt(4 c - 1)");
     key("size", size, "m", not_negative, "sides of a box's face: along, and across");
     key("along", along, "-", any_number,
         "direction of the first side of a box's face, or near it; [0, 0, 0]: some direction across "
@@ -48,7 +62,15 @@ struct WallConfig {
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
         "how fast it turns about an axis through point; a plane only about its normal");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
-        "velocity of the wall, or a table [[t, x, y, z], ...] of it over time");
+        "velocity of the wall, or a table [[t, x, y, z], ...] of it over time; with mass: the one "
+        "with which it begins");
+    key("mass", mass, "kg", positive,
+        "with it the wall moves by the forces on it, and by gravity; inf: as it is told");
+    key("force", force, "N", any_number,
+        "given force on a wall with mass, or a table [[t, x, y, z], ...] of it over time");
+    key("free", free,
+        "directions in which a wall with mass moves: normal, or some of x, y, z; []: along its "
+        "normal, a sphere everywhere");
     key("stiffness", stiffness, "-", positive,
         "stiffness of its linear contacts over that of two like elements");
     key("friction", friction, "-", Range{-1.0, no_limit},
@@ -127,12 +149,16 @@ struct WallChange {
   std::string name;
   OverTime<Vec3> velocity;  ///<  [m/s]
   ServoConfig servo;
-  Vec3 spin{};  ///<  [rad/s]
+  Vec3 spin{};             ///<  [rad/s]
+  OverTime<Vec3> force{};  ///<  [N]
 
   template <class Visit>
   void each_key(Visit&& key) {
     key("name", name, "name of the wall");
     key.required("name");
+    key("force", force, "N", any_number,
+        "given force on a wall with mass from now on, or a table of it over time since the stage "
+        "began; left out: none");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
         "its velocity from now on, or a table of it over time since the stage began; left out: it "
         "stands still");

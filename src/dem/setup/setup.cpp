@@ -291,6 +291,25 @@ void set_starts(World& w, const Config& config, const Model& m) {
   if (any) copy_to(given.starts, m.position);
 }
 
+/// Walls with mass, and a step that resolves the linear contact of such a wall with one element.
+void set_free_walls(World& w, const Config& config, const Model& m) {
+  const auto has_mass = [](const WallConfig& wall) { return wall.has_mass(); };
+  if (std::none_of(config.walls.begin(), config.walls.end(), has_mass)) return;
+  Case& given = set_up(w);
+  w.free_walls.resize(config.walls.size());
+  for (const WallConfig& wall : config.walls) {
+    given.free_walls.push_back(free_wall_of(wall, config.time.mass_scaling));
+    if (!wall.has_mass() || given.contact.hertz) continue;
+    double stiffest = 0.0;
+    for (std::size_t e = 0; e < m.radius.size(); ++e)
+      stiffest = std::max(stiffest, 0.5 * wall.stiffness * m.radius[e] *
+                                        given.wall_pairs.data()[m.material[e]].normal);
+    given.contact_step =
+        std::min(given.contact_step,
+                 config.time.safety * std::sqrt(2.0 * given.free_walls.back().mass / stiffest));
+  }
+}
+
 void set_contacts(World& w, const Config& config, const Model& m) {
   Case& given = set_up(w);
   given.contact = contact_law(config.contact);
@@ -311,8 +330,10 @@ void set_contacts(World& w, const Config& config, const Model& m) {
     given.wall_starts.push_back(wall.point);
     given.wall_friction.push_back(wall.friction);
     const std::size_t motion = add_motion(w, wall, k);
-    w.walls.push_back(wall_of(wall, w.prescribed.velocity(motion, 0.0)));
+    w.walls.push_back(
+        wall_of(wall, wall.has_mass() ? wall.velocity.value : w.prescribed.velocity(motion, 0.0)));
   }
+  set_free_walls(w, config, m);
   place_motions(w);
   // A step that resolves the contact of two like elements, for those that nothing else slows down.
   for (std::size_t e = 0; e < m.radius.size(); ++e) {

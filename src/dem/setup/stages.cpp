@@ -5,6 +5,7 @@
 
 #include "core/named.hpp"
 #include "core/set_up.hpp"
+#include "dem/setup/walls.hpp"
 #include "dem/world.hpp"
 
 namespace breccia::dem {
@@ -28,10 +29,12 @@ Config config_at(Config config, const StageProgress& progress) {
       }
     for (const WallChange& change : stage.walls)
       if (WallConfig* const wall = find_named(config.walls, change.name)) {
+        wall->force = change.force;
+        wall->begin = begin;
+        if (wall->has_mass()) continue;  // its velocity is the one that it began with
         wall->velocity = change.velocity;
         wall->servo = change.servo;
         wall->spin = change.spin;
-        wall->begin = begin;
       }
   }
   return config;
@@ -39,13 +42,31 @@ Config config_at(Config config, const StageProgress& progress) {
 
 std::size_t add_motion(World& w, const WallConfig& wall, std::size_t k) {
   std::array<ScaledAmplitude, 3> velocity;
-  for (int axis = 0; axis < 3 && !wall.servo.is_on(); ++axis)
+  for (int axis = 0; axis < 3 && !wall.servo.is_on() && !wall.has_mass(); ++axis)
     velocity[static_cast<std::size_t>(axis)] =
         scaled_amplitude(wall.velocity, axis, 0.0, wall.begin);
   const std::int16_t motion = w.prescribed.add(velocity);
   if (wall.servo.is_on()) w.prescribed.servos.push_back({k, motion, -1});
   return static_cast<std::size_t>(motion);
 }
+
+namespace {
+
+/// A wall with mass moves by forces, one without as it is told.
+void add_change_problems(const std::string& where, const WallConfig& wall, const WallChange& change,
+                         std::vector<std::string>& problems) {
+  const auto given = [](const OverTime<Vec3>& of) { return of.is_table() || norm(of.value) > 0.0; };
+  const auto add = [&](const char* text) {
+    problems.push_back(where + ".wall." + change.name + text);
+  };
+  if (!wall.has_mass() && given(change.force))
+    add(".force acts on a wall with mass; this one moves as it is told");
+  if (wall.has_mass() &&
+      (given(change.velocity) || change.servo.is_on() || norm(change.spin) > 0.0))
+    add(": a wall with mass moves by the forces on it; a stage may change its force only");
+}
+
+}  // namespace
 
 std::vector<std::string> stage_problems(const Config& config) {
   std::vector<std::string> problems =
@@ -60,8 +81,11 @@ std::vector<std::string> stage_problems(const Config& config) {
                          ".remove needs search.every = 0: contacts with the body end at a search");
     for (const SupportChange& change : stage.supports)
       add_unknown(where + ".support.name", change.name, "support", supports, problems);
-    for (const WallChange& change : stage.walls)
+    for (const WallChange& change : stage.walls) {
       add_unknown(where + ".wall.name", change.name, "wall", walls, problems);
+      for (const WallConfig& wall : config.walls)
+        if (wall.name == change.name) add_change_problems(where, wall, change, problems);
+    }
   }
   const auto servo = [&](const std::string& where, const ServoConfig& s, const auto& velocity) {
     if (!s.is_on()) return;
@@ -134,6 +158,8 @@ void configure(World& w, const Config& config) {
   place_motions(w);
   // A wall that stood still has no contacts listed around it: the next step searches.
   for (std::size_t k = 0; k < config.walls.size(); ++k) {
+    if (!w.free_walls.empty())
+      given.free_walls[k] = free_wall_of(config.walls[k], config.time.mass_scaling);
     w.walls[k].spin = config.walls[k].spin;
     w.walls[k].travelled = 2.0 * w.given->largest_margin;
   }

@@ -1,5 +1,6 @@
 #include "dem/setup/walls.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace breccia::dem {
@@ -15,6 +16,49 @@ Vec3 across(const Vec3& normal, Vec3 asked) {
     asked = std::abs(normal.x) < 0.5 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0};
   const Vec3 sideways = asked - dot(asked, normal) * normal;
   return (1.0 / norm(sideways)) * sideways;
+}
+
+void add_nose_problems(const WallConfig& w, std::vector<std::string>& problems) {
+  const auto add = [&](const std::string& text) { problems.push_back("wall." + w.name + text); };
+  const bool long_nose = w.nose == "cone" || w.nose == "ogive";
+  if (w.has_nose() && w.shape != "cylinder") return add(".nose: only a cylinder has one");
+  if (!long_nose && w.nose_length > 0.0)
+    add(w.has_nose() ? ".nose_length: a hemisphere is as long as its radius; leave it out"
+                     : ".nose_length: a flat end has none");
+  if (long_nose && !(w.nose_length > 0.0)) add(".nose_length: a nose of this kind needs it");
+  if (w.nose == "ogive" && w.nose_length > 0.0 && w.nose_length < w.radius)
+    add(".nose_length: an ogive that meets the flank without a bend is at least as long as its "
+        "radius");
+  if (w.has_nose() && w.length > 0.0 &&
+      w.length < (w.nose == "hemisphere" ? w.radius : w.nose_length))
+    add(".length counts the nose, too; it must not be below the nose's length");
+}
+
+void add_mass_problems(const WallConfig& w, std::vector<std::string>& problems) {
+  const auto add = [&](const std::string& text) { problems.push_back("wall." + w.name + text); };
+  if (!w.has_mass()) {
+    if (!w.free.empty()) add(".free is for a wall with mass; this one moves as it is told");
+    if (w.force.is_table() || norm(w.force.value) > 0.0)
+      add(".force acts on a wall with mass; this one moves as it is told");
+    return;
+  }
+  if (w.velocity.is_table())
+    add(".velocity: a wall with mass moves by the forces on it; one value, with which it begins, "
+        "may be given, no table");
+  if (w.servo.is_on())
+    add(".servo: a wall with mass moves by the forces on it; give force instead");
+  if (norm(w.spin) > 0.0) add(".spin: a wall with mass does not turn");
+  for (const std::string& word : w.free) {
+    if (word != "normal" && word != "x" && word != "y" && word != "z")
+      return add(".free: \"" + word + "\" is no direction; allowed are normal, x, y, z");
+    if (word == "normal" && (w.free.size() > 1 || w.shape == "sphere"))
+      return add(w.shape == "sphere" ? ".free: a sphere has no normal; allowed are x, y, z"
+                                     : ".free: normal stands alone, or x, y, z are given");
+  }
+  const Vec3 begins = w.velocity.value;
+  if (!w.velocity.is_table() && norm(w.normal) > 0.0 &&
+      norm(begins - free_wall_of(w, 1.0).allowed(begins)) > 1e-9 * norm(begins))
+    add(".velocity leads where free does not let the wall go");
 }
 
 }  // namespace
@@ -41,6 +85,8 @@ std::vector<std::string> wall_problems(const WallConfig& w) {
     problems.push_back(where +
                        ".spin: a plane without end turns about its normal only; a cylinder "
                        "or box may turn about any axis");
+  add_nose_problems(w, problems);
+  add_mass_problems(w, problems);
   return problems;
 }
 
@@ -51,6 +97,11 @@ Wall wall_of(const WallConfig& config, const Vec3& velocity) {
   wall.radius = config.radius;
   wall.length = config.length;
   if (config.shape == "cylinder") wall.shape = WallShape::cylinder;
+  if (config.has_nose()) {
+    wall.shape = config.nose == "cone" ? WallShape::cone : WallShape::ogive;
+    wall.half[0] = config.nose == "hemisphere" ? config.radius : config.nose_length;
+    wall.along = across(wall.normal, {});
+  }
   if (config.shape == "sphere") wall.shape = WallShape::sphere;
   if (config.shape == "box") {
     wall.shape = WallShape::box;
@@ -59,6 +110,22 @@ Wall wall_of(const WallConfig& config, const Vec3& velocity) {
     wall.half[1] = 0.5 * config.size.y;
   }
   return wall;
+}
+
+FreeWall free_wall_of(const WallConfig& config, double mass_scaling) {
+  FreeWall free;
+  if (!config.has_mass()) return free;
+  free.mass = mass_scaling * config.mass;
+  const auto has = [&](const char* axis) {
+    return std::find(config.free.begin(), config.free.end(), axis) != config.free.end() ? 1.0 : 0.0;
+  };
+  free.axes = {has("x"), has("y"), has("z")};
+  if (config.free.empty() && config.shape == "sphere") free.axes = {1.0, 1.0, 1.0};
+  if (!(norm(free.axes) > 0.0)) free.normal = (1.0 / norm(config.normal)) * config.normal;
+  for (int axis = 0; axis < 3; ++axis)
+    free.load[static_cast<std::size_t>(axis)] =
+        scaled_amplitude(config.force, axis, 0.0, config.begin);
+  return free;
 }
 
 }  // namespace breccia::dem

@@ -91,23 +91,25 @@ inline WallForces wall_kernel(World& w, Index wall) {
   ContactLaw law = w.given->contact;
   const double own = w.given->wall_friction[static_cast<std::size_t>(wall)];
   if (own >= 0.0) law.friction = own;
-  return {law,
-          w.last_dt,
-          walls_view(w),
-          wall,
-          elements_view(w),
-          w.elements.material.view(),
-          w.given->wall_pairs.view(),
-          c.pairs.a.view(),
-          w.wall_begin[static_cast<std::size_t>(wall)],
-          c.history.state.view(),
-          c.history.slid.view(),
-          c.history.damped.view(),
-          c.history.driven.view(),
-          c.history.on_wall.view(),
-          w.elements.force.view(),
-          w.elements.torque.view(),
-          w.critical.view()};
+  return {
+      law,
+      w.last_dt,
+      walls_view(w),
+      wall,
+      elements_view(w),
+      w.elements.material.view(),
+      w.given->wall_pairs.view(),
+      c.pairs.a.view(),
+      w.wall_begin[static_cast<std::size_t>(wall)],
+      w.free_walls.empty() ? no_limit : w.given->free_walls[static_cast<std::size_t>(wall)].mass,
+      c.history.state.view(),
+      c.history.slid.view(),
+      c.history.damped.view(),
+      c.history.driven.view(),
+      c.history.on_wall.view(),
+      w.elements.force.view(),
+      w.elements.torque.view(),
+      w.critical.view()};
 }
 
 inline MoveElements move_kernel(World& w) {

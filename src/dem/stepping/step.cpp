@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/stepping.hpp"
+#include "dem/free_walls.hpp"
 #include "dem/ranks.hpp"
 #include "dem/stepping/launches.hpp"
 #include "exec/for_each.hpp"
@@ -80,7 +81,10 @@ void move_walls(World& w) {
   const std::size_t first = w.prescribed.motions.size() - w.walls.size();
   for (std::size_t k = 0; k < w.walls.size(); ++k) {
     Wall& wall = w.walls[k];
-    wall.velocity = w.prescribed.velocity(first + k, w.time + 0.5 * w.next_dt);
+    if (is_free(w, k))
+      kick_free_wall(w, k);
+    else
+      wall.velocity = w.prescribed.velocity(first + k, w.time + 0.5 * w.next_dt);
     wall.move(w.next_dt, w.travel.drift.velocity);
   }
   advance_time(w);
@@ -102,18 +106,19 @@ void StepwiseRun::search_if_due(World& w) const {
 }
 
 void StepwiseRun::wall_forces(World& w) const {
-  if (w.wall_contacts.size() == 0) return;
+  if (w.wall_contacts.size() == 0 && w.free_walls.empty()) return;
   const StageTime timed(w.exec, "wall_forces");
   if (w.exec.space != Space::host) copy_to(w.device_walls, w.walls);
   for (std::size_t k = 0; k < w.walls.size(); ++k)
     for_each(w.exec, w.wall_begin[k + 1] - w.wall_begin[k], wall_kernel(w, static_cast<Index>(k)));
+  sum_on_free_walls(w);
 }
 
 void StepwiseRun::choose_step(World& w) const {
   if (w.step % w.given->time.evaluate_every != 0) return;
   const StageTime timed(w.exec, "time_step");
   const double least = w.exec.space != Space::host ? least_there(w) : least_here(w);
-  w.next_dt = step_rule(w)(w.domain.least(least), w.last_dt);
+  w.next_dt = step_rule(w)(std::min(w.domain.least(least), least_of_free_walls(w)), w.last_dt);
 }
 
 void step(World& w) {
@@ -133,7 +138,9 @@ double step_allowed_now(const World& w) {
 }
 
 Advanced advance(World& w, const StopAt& stop) {
-  return advance_by_steps(w, stop);
+  if (w.free_walls.empty()) return advance_by_steps(w, stop);
+  step(w);  // what acts on a wall with mass comes to the host in every step, on a device, too
+  return {1, w.last_dt, w.last_dt};
 }
 
 }  // namespace breccia::dem

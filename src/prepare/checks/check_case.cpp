@@ -23,12 +23,17 @@ namespace {
 template <class Config>
 void check_mass_scaling(const Config& config, std::vector<std::string>& problems) {
   if (config.time.mass_scaling == 1.0) return;
+  const auto add = [&](const std::string& what) {
+    problems.push_back(fmt::format(
+        "time.mass_scaling = {} is for quasi-static runs, and {} begins with a velocity: "
+        "it would have {} times its kinetic energy; leave one of the keys out",
+        config.time.mass_scaling, what, config.time.mass_scaling));
+  };
   for (const auto& body : config.bodies)
-    if (dot(body.velocity, body.velocity) > 0.0)
-      problems.push_back(fmt::format(
-          "time.mass_scaling = {} is for quasi-static runs, and body.{} begins with a velocity: "
-          "it would have {} times its kinetic energy; leave one of the keys out",
-          config.time.mass_scaling, body.name, config.time.mass_scaling));
+    if (dot(body.velocity, body.velocity) > 0.0) add("body." + body.name);
+  if constexpr (requires { config.walls; })
+    for (const auto& wall : config.walls)
+      if (wall.has_mass() && norm(wall.velocity.value) > 0.0) add("wall." + wall.name);
 }
 
 }  // namespace
@@ -133,7 +138,14 @@ class Check {
         prepare::item_named(config_.supports, p.on) != nullptr)
       add(fmt::format(
           "wall.{0} has the name of a body or support; a probe could not tell them apart", p.on));
-    for (const std::string& problem : probe_problems(p, of_wall)) add(problem);
+    const std::vector<std::string> problems = probe_problems(p, of_wall);
+    for (const std::string& problem : problems) add(problem);
+    if (!problems.empty()) return;
+    const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
+    const bool needs_mass = kind == Quantity::Kind::momentum || kind == Quantity::Kind::kinetic;
+    if (needs_mass && !prepare::item_named(config_.walls, p.on)->has_mass())
+      add(fmt::format("probe.{}.quantity = \"{}\" is of walls with mass; wall.{} has none", p.name,
+                      p.quantity, p.on));
   }
 
   const Config& config_;

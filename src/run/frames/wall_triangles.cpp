@@ -1,6 +1,7 @@
 #include "run/frames/wall_triangles.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "math/constants.hpp"
 
@@ -39,6 +40,34 @@ std::vector<Vec3> of_cylinder(const dem::Wall& wall) {
     all.insert(all.end(), {wall.point, wall.point + here, wall.point + next});
     all.insert(all.end(), {back, back + next, back + here});
   }
+  return all;
+}
+
+/// A body of revolution, from its tip to the middle of its back.
+std::vector<Vec3> of_nosed(const dem::Wall& wall) {
+  constexpr int rings = sides / 2;
+  const bool cone = wall.shape == dem::WallShape::cone;
+  const double nose = wall.half[0];
+  const double arc = (wall.radius * wall.radius + nose * nose) / (2.0 * wall.radius);
+  std::vector<std::pair<double, double>> outline{{0.0, 0.0}};  // behind the tip, off the axis  [m]
+  for (int ring = 1; ring < rings && !cone; ++ring) {
+    const double behind = nose * ring / rings, left = nose - behind;
+    outline.emplace_back(behind, std::sqrt(arc * arc - left * left) - (arc - wall.radius));
+  }
+  outline.emplace_back(nose, wall.radius);
+  outline.emplace_back(wall.length, wall.radius);
+  outline.emplace_back(wall.length, 0.0);
+  const Across across(wall.normal);
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i + 1 < outline.size(); ++i)
+    for (int k = 0; k < sides; ++k) {
+      const auto at = [&](std::size_t on, int side) {
+        return wall.point - outline[on].first * wall.normal + outline[on].second * across.at(side);
+      };
+      const Vec3 p = at(i + 1, k), q = at(i + 1, k + 1), r = at(i, k + 1), s = at(i, k);
+      if (outline[i + 1].second > 0.0) all.insert(all.end(), {p, q, r});
+      if (outline[i].second > 0.0) all.insert(all.end(), {p, r, s});
+    }
   return all;
 }
 
@@ -84,6 +113,9 @@ std::vector<Vec3> wall_triangles(const dem::Wall& wall) {
   switch (wall.shape) {
     case dem::WallShape::cylinder:
       return of_cylinder(wall);
+    case dem::WallShape::cone:
+    case dem::WallShape::ogive:
+      return of_nosed(wall);
     case dem::WallShape::box:
       return of_box(wall);
     case dem::WallShape::sphere:

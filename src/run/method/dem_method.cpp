@@ -144,6 +144,8 @@ struct DemSim {
     visit.where_kept("travel.drift", w.travel.drift);  // files of before drifts have none
     for (std::size_t k = 0; k < w.walls.size(); ++k)
       visit("walls." + std::to_string(k), w.walls[k]);
+    for (std::size_t k = 0; k < w.free_walls.size(); ++k)
+      visit("free_walls." + std::to_string(k), w.free_walls[k]);
   }
 };
 

@@ -33,6 +33,14 @@ WallConfig box() {
   w.length = 3.0;
   return w;
 }
+/// A cylinder of radius 2 whose tip points up.
+WallConfig nosed(const char* nose, double nose_length) {
+  WallConfig w = cylinder();
+  w.length = 8.0;
+  w.nose = nose;
+  w.nose_length = nose_length;
+  return w;
+}
 void expect_touch(const WallConfig& config, const Vec3& x, const Vec3& normal, double height) {
   const WallTouch at = touch(wall_of(config, {}), x);
   EXPECT_LT(norm(at.normal - normal), 1e-12) << x.x << " " << x.y << " " << x.z;
@@ -58,7 +66,83 @@ TEST(WallShapes, are_nearest_at_faces_edges_and_corners) {
   expect_touch(sphere, {1.0, 3.0, 4.0}, {0.0, 0.6, 0.8}, 3.0);
 }
 
+/// A cone of slope 3/4 (normal 0.8 outward, 0.6 ahead); a hemisphere; an ogive of radius 2 and
+/// length 4 is an arc of radius (4 + 16) / 4 = 5 about a point 3 beyond the axis.
+TEST(WallShapes, with_noses_are_nearest_where_geometry_says) {
+  const WallConfig cone = nosed("cone", 8.0 / 3.0), ogive = nosed("ogive", 4.0);
+  const WallConfig round = nosed("hemisphere", 0.0);
+  const double n = 8.0 / 3.0;
+  expect_touch(cone, {0.0, 0.0, 0.3}, {0.0, 0.0, 1.0}, 0.3);
+  expect_touch(cone, {0.3, 0.0, 0.4}, {0.6, 0.0, 0.8}, 0.5);
+  expect_touch(cone, {0.0, 1.0 + 0.8 * 0.7, -0.5 * n + 0.6 * 0.7}, {0.0, 0.8, 0.6}, 0.7);
+  expect_touch(cone, {-1.0 + 0.8 * 0.2, 0.0, -0.5 * n - 0.6 * 0.2}, {-0.8, 0.0, 0.6}, -0.2);
+  const Vec3 between = (1.0 / norm(Vec3{0.9, 0.0, 0.3})) * Vec3{0.9, 0.0, 0.3};
+  expect_touch(cone, Vec3{2.0, 0.0, -n} + 0.4 * between, between, 0.4);
+  expect_touch(cone, {2.5, 0.0, -5.0}, {1.0, 0.0, 0.0}, 0.5);
+  expect_touch(cone, {0.0, -1.9, -5.0}, {0.0, -1.0, 0.0}, -0.1);
+  expect_touch(round, {0.0, 0.0, 0.3}, {0.0, 0.0, 1.0}, 0.3);
+  expect_touch(round, {1.8, 0.0, -2.0 + 2.4}, {0.6, 0.0, 0.8}, 1.0);
+  expect_touch(round, {0.9, 0.0, -2.0 + 1.2}, {0.6, 0.0, 0.8}, -0.5);
+  expect_touch(round, {0.0, 3.0, -2.5}, {0.0, 1.0, 0.0}, 1.0);
+  expect_touch(ogive, {0.0, 0.0, 0.3}, {0.0, 0.0, 1.0}, 0.3);
+  expect_touch(ogive, {0.6, 0.0, 0.8}, {0.6, 0.0, 0.8}, 1.0);  // steeper than the tip's 0.8, 0.6
+  const double sine = 0.5, cosine = std::sqrt(0.75);
+  expect_touch(ogive, {-3.0 + 5.5 * cosine, 0.0, -4.0 + 5.5 * sine}, {cosine, 0.0, sine}, 0.5);
+  expect_touch(ogive, {-3.0 + 4.8 * cosine, 0.0, -4.0 + 4.8 * sine}, {cosine, 0.0, sine}, -0.2);
+  for (const WallConfig& all : {cone, ogive, round}) {
+    expect_touch(all, {0.5, 0.0, -8.2}, {0.0, 0.0, -1.0}, 0.2);
+    expect_touch(all, {0.5, 0.0, -7.8}, {0.0, 0.0, -1.0}, -0.2);
+    expect_touch(all, {2.3, 0.0, -8.4}, {0.6, 0.0, -0.8}, 0.5);
+  }
+}
+
+/// Beside many places: how near the nearest of many points of the outline is.
+TEST(WallShapes, with_noses_are_as_near_as_their_nearest_point) {
+  for (const WallConfig& config :
+       {nosed("cone", 3.0), nosed("ogive", 5.0), nosed("hemisphere", 0.0)}) {
+    const bool cone = config.nose == "cone", round = config.nose == "hemisphere";
+    const double nose = round ? 2.0 : config.nose_length, arc = (4.0 + nose * nose) / 4.0;
+    std::vector<Vec2> outline;
+    for (int i = 0; i <= 4000; ++i) {
+      const double z = nose * (i / 4000.0) * (i / 4000.0);  // close together near the tip
+      const double left = nose - z;
+      outline.push_back(
+          {z, cone ? 2.0 * z / nose : std::sqrt(arc * arc - left * left) - arc + 2.0});
+      outline.push_back({nose + (8.0 - nose) * i / 4000.0, 2.0});
+      outline.push_back({8.0, 2.0 * i / 4000.0});
+    }
+    const Wall wall = wall_of(config, {});
+    for (int i = 0; i < 400; ++i) {
+      const double z = -2.0 + 12.0 * (i % 20) / 19.0, r = 4.0 * (i / 20) / 19.0;
+      double nearest = 1e9;
+      for (const Vec2& p : outline) nearest = std::min(nearest, std::hypot(p.x - z, p.y - r));
+      const WallTouch at = touch(wall, {0.6 * r, 0.8 * r, -z});
+      EXPECT_GT(nearest, std::abs(at.height) - 1e-9) << z << " " << r;
+      EXPECT_LT(nearest, std::hypot(at.height, 2e-3)) << z << " " << r;  // half their distance
+      EXPECT_NEAR(norm(at.normal), 1.0, 1e-14);
+      const Vec3 foot = Vec3{0.6 * r, 0.8 * r, -z} - at.height * at.normal;
+      EXPECT_NEAR(touch(wall, foot).height, 0.0, 1e-12) << z << " " << r;
+    }
+  }
+}
+
 TEST(WallShapes, have_no_jumps_at_their_edges) {
+  for (const char* nose : {"cone", "ogive", "hemisphere"}) {  // all around them, 0.1 away
+    const Wall wall = wall_of(nosed(nose, nose[0] == 'h' ? 0.0 : 3.0), {});
+    WallTouch last = touch(wall, {0.0, 0.0, 0.1});
+    Vec3 x{1e-3, 0.0, 0.1};
+    double turned = 0.0;
+    for (int i = 0; i < 40'000 && x.x > 0.0; ++i) {
+      const WallTouch now = touch(wall, x);
+      EXPECT_LT(norm(now.normal - last.normal), 1.2e-2) << nose << x.x << " " << x.z;
+      EXPECT_LT(std::abs(now.height - 0.1), 1e-9) << nose << x.x << " " << x.z;
+      turned += norm(now.normal - last.normal);
+      last = now;
+      x += 1e-3 * Vec3{now.normal.z, 0.0, -now.normal.x};
+      x += (0.1 - touch(wall, x).height) * touch(wall, x).normal;
+    }
+    EXPECT_NEAR(turned, pi, 0.01) << nose << " from tip to back";
+  }
   for (const WallConfig& config : {cylinder(), box()}) {
     const Wall wall = wall_of(config, {});
     WallTouch last = touch(wall, {1.9, 0.0, 0.5});
@@ -80,6 +164,22 @@ TEST(WallShapes, ask_for_their_lengths) {
   ASSERT_EQ(wall_problems(w).size(), 2U);
   EXPECT_EQ(wall_problems(w)[0], "wall.wall.length: a cylinder needs it");
   EXPECT_EQ(wall_problems(w)[1], "wall.wall.size: a cylinder has none");
+  const auto problem = [](const WallConfig& of) {
+    const std::vector<std::string> all = wall_problems(of);
+    return all.size() == 1 ? all[0] : std::to_string(all.size());
+  };
+  EXPECT_EQ(problem(nosed("cone", 3.0)), "0");
+  EXPECT_EQ(problem(nosed("ogive", 2.0)), "0");
+  EXPECT_EQ(problem(nosed("hemisphere", 0.0)), "0");
+  EXPECT_EQ(problem(nosed("cone", 0.0)), "wall.wall.nose_length: a nose of this kind needs it");
+  EXPECT_EQ(problem(nosed("flat", 1.0)), "wall.wall.nose_length: a flat end has none");
+  EXPECT_NE(problem(nosed("ogive", 1.9)).find("at least as long as its radius"), std::string::npos);
+  EXPECT_NE(problem(nosed("hemisphere", 2.0)).find("leave it out"), std::string::npos);
+  EXPECT_NE(problem(nosed("cone", 9.0)).find("wall.wall.length counts the nose"),
+            std::string::npos);
+  w = box();
+  w.nose = "cone";
+  EXPECT_EQ(problem(w), "wall.wall.nose: only a cylinder has one");
   w = {};
   w.spin = {1.0, 0.0, 0.0};
   EXPECT_EQ(wall_problems(w).size(), 1U);

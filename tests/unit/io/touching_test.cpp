@@ -107,6 +107,12 @@ TEST(Touching, shapes_of_walls_have_their_areas) {
   const double ends = 2.0 * 16.0 * std::sin(2.0 * pi / 32.0) * 0.25;
   EXPECT_NEAR(area_of(wall_triangles(wall), &centre), 2.0 * pi * 0.5 * 2.0 * round + ends, 1e-12);
   EXPECT_NEAR(norm(centre - middle), 0.0, 1e-12);
+  wall.shape = dem::WallShape::cone;  // a slant of 0.5 and 1.2
+  wall.half[0] = 1.2;
+  EXPECT_NEAR(area_of(wall_triangles(wall), nullptr) / (pi * (0.5 * 1.3 + 0.8 + 0.25)), 1.0, 0.01);
+  wall.shape = dem::WallShape::ogive;  // a hemisphere
+  wall.half[0] = 0.5;
+  EXPECT_NEAR(area_of(wall_triangles(wall), nullptr) / (pi * (0.5 + 1.5 + 0.25)), 1.0, 0.02);
   wall.shape = dem::WallShape::sphere;
   EXPECT_NEAR(area_of(wall_triangles(wall), &centre) / (pi * 1.0), 1.0, 0.02);
   EXPECT_NEAR(norm(centre - wall.point), 0.0, 1e-12);
