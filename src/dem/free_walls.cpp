@@ -9,13 +9,15 @@ namespace {
 /// Of contacts with one wall.
 struct OnWall {
   ExactSum x, y, z;    ///< force on the wall  [N]
-  ExactSum stiffness;  ///<  [N/m]
+  ExactSum stiffness;  ///< linear law: of what only comes near, too  [N/m]
+  ExactSum dashpot;    ///< likewise  [N s/m]
 };
 BR_HD inline OnWall operator+(OnWall a, const OnWall& b) {
   a.x.add(b.x);
   a.y.add(b.y);
   a.z.add(b.z);
   a.stiffness.add(b.stiffness);
+  a.dashpot.add(b.dashpot);
   return a;
 }
 
@@ -23,30 +25,34 @@ struct SumOnWall {
   OwnedView owned;
   Index first;  ///< contact of the wall
   Wall wall;
+  double wall_mass;  ///<  [kg]
   ContactLaw law;
   View<const Index> a;
   View<const Vec3> on_wall;
   View<const ContactState> contact;
   View<const std::int16_t> material;
   View<const ElementState> state;
+  View<const double> mass;
   View<const ContactPair> pairs;
 
   BR_HD OnWall operator()(Index k) const {
     const Index i = first + k, e = a[i];
     OnWall r;
     const double overlap = contact[i].overlap, radius = state[e].radius;
-    if (!owned(e) || overlap <= 0.0) return r;
-    r.x.add(on_wall[i].x);
-    r.y.add(on_wall[i].y);
-    r.z.add(on_wall[i].z);
-    const double constant = pairs[material[e]].normal;
-    double stiffness = law.hertz ? 2.0 * constant * sqrt(wall.curved(radius) * overlap)
-                                 : 0.5 * constant * wall.stiffness * radius;
-    if (law.damping > 0.0) {  // as ContactLaw::response
-      const double shrink = sqrt(1.0 + law.damping * law.damping) - law.damping;
-      stiffness /= shrink * shrink;
+    if (!owned(e)) return r;
+    if (overlap > 0.0) {
+      r.x.add(on_wall[i].x);
+      r.y.add(on_wall[i].y);
+      r.z.add(on_wall[i].z);
+    } else if (law.hertz) {
+      return r;
     }
+    const double constant = pairs[material[e]].normal;
+    const double stiffness = law.hertz ? 2.0 * constant * sqrt(wall.curved(radius) * overlap)
+                                       : 0.5 * constant * wall.stiffness * radius;
+    const double both = mass[e] * wall_mass / (mass[e] + wall_mass);
     r.stiffness.add(stiffness);
+    if (law.damping > 0.0) r.dashpot.add(2.0 * law.damping * sqrt(both * stiffness));
     return r;
   }
 };
@@ -56,12 +62,13 @@ OnWall read(const World& w, std::size_t wall) {
   if (wall + 1 < w.wall_begin.size()) {
     const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
     const WallContacts& c = w.wall_contacts;
-    sum = fold(
-        w.exec, end - begin, OnWall{},
-        SumOnWall{w.domain.owned_view(), begin, w.walls[wall], w.given->contact, c.pairs.a.view(),
-                  c.history.on_wall.view(), c.history.state.view(), w.elements.material.view(),
-                  w.elements.state.view(), w.given->wall_pairs.view()},
-        Sum{});
+    sum =
+        fold(w.exec, end - begin, OnWall{},
+             SumOnWall{w.domain.owned_view(), begin, w.walls[wall], w.given->free_walls[wall].mass,
+                       w.given->contact, c.pairs.a.view(), c.history.on_wall.view(),
+                       c.history.state.view(), w.elements.material.view(), w.elements.state.view(),
+                       w.elements.mass.view(), w.given->wall_pairs.view()},
+             Sum{});
   }
   if (w.domain.single_rank()) return sum;
   OnWall all;
@@ -83,7 +90,14 @@ void sum_on_free_walls(World& w) {
     if (!is_free(w, k)) continue;
     const OnWall sum = read(w, k);
     w.free_walls[k].force = {sum.x.value(), sum.y.value(), sum.z.value()};
-    w.free_walls[k].stiffness = sum.stiffness.value();
+    // A dashpot c shortens the stable step: dt <= 2/omega (sqrt(1 + xi^2) - xi), xi = c/(2 M
+    // omega).
+    const double stiffness = sum.stiffness.value(), dashpot = sum.dashpot.value();
+    w.free_walls[k].stiffness = stiffness;
+    if (!(dashpot > 0.0)) continue;
+    const double xi = dashpot / (2.0 * sqrt(w.given->free_walls[k].mass * stiffness));
+    const double shrink = sqrt(1.0 + xi * xi) - xi;
+    w.free_walls[k].stiffness = stiffness / (shrink * shrink);
   }
 }
 

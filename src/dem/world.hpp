@@ -43,7 +43,7 @@ inline constexpr Index sweep_tile = 256;
 /// A wall with mass: a part of a run's state, beside its place and velocity.
 struct FreeWallState {
   Vec3 force{};            ///< of contacts, at the time of the positions  [N]
-  double stiffness = 0.0;  ///< of these contacts  [N/m]
+  double stiffness = 0.0;  ///< of its contacts as the step asks for it, their dashpots in it  [N/m]
   double work = 0.0;       ///< of its given force until half of the last step  [J]
 };
 

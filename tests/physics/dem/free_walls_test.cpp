@@ -157,7 +157,7 @@ TEST(FreeWalls, that_are_light_stay_stable) {
   while (w.time < 0.05) {
     step(w);
     const double error = balance(w).error_relative;
-    ASSERT_TRUE(w.time < 1e-3 || error < 2e-2) << w.step << " " << error;
+    ASSERT_TRUE(w.time < 2e-5 || error < 5e-2) << w.step << " " << error;  // a hit of four steps
   }
   EXPECT_NEAR(read(w, "force_z"), 50.0 + 10.0 * s.config.walls[1].mass, 1e-3);
   EXPECT_LT(std::abs(read(w, "velocity_z")), 1e-6);

@@ -131,6 +131,7 @@ TEST(WallShapes, have_no_jumps_at_their_edges) {
     const Wall wall = wall_of(nosed(nose, nose[0] == 'h' ? 0.0 : 3.0), {});
     WallTouch last = touch(wall, {0.0, 0.0, 0.1});
     Vec3 x{1e-3, 0.0, 0.1};
+    x += (0.1 - touch(wall, x).height) * touch(wall, x).normal;
     double turned = 0.0;
     for (int i = 0; i < 40'000 && x.x > 0.0; ++i) {
       const WallTouch now = touch(wall, x);
