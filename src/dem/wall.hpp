@@ -27,7 +27,7 @@ struct Wall {
   Vec3 along{};         ///< box, cone, ogive: unit, across the normal  [-]
   double half[2] = {};  ///< box: half of its sides along `along` and across; cone, ogive: the
                         ///< nose's length, and nothing  [m]
-  Vec3 spin{};  ///< [rad/s]
+  Vec3 spin{};          ///< [rad/s]
 
   BR_HD bool turns() const { return dot(spin, spin) > 0.0; }
   /// How far its parts are from its point; of a plane 0, as it turns about its normal only.  [m]
