@@ -18,13 +18,14 @@ ALLOWED = {
     "domain": {"exec", "math", "core"},
     "dem": {"exec", "math", "core", "domain"},
     "fdem": {"exec", "math", "core", "domain"},
+    "fdem3": {"exec", "math", "core", "domain", "fdem"},
     "io": {"exec", "math", "core"},
-    "prepare": {"exec", "math", "core", "io", "dem", "fdem"},
-    "run": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare"},
+    "prepare": {"exec", "math", "core", "io", "dem", "fdem", "fdem3"},
+    "run": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "prepare"},
     "report": {"exec", "math", "core", "io"},
     "api": {"exec", "math", "core", "io", "run"},
-    "laboratory": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run", "report"},
-    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "prepare", "run", "report", "laboratory"},
+    "laboratory": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "prepare", "run", "report"},
+    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "prepare", "run", "report", "laboratory"},
 }
 ALLOWED["bench"] = set(ALLOWED)
 LONGEST = 500

@@ -1,0 +1,220 @@
+#pragma once
+// The case file of the FDEM in three dimensions: every key with its unit, range and meaning.
+// Materials, joints and friction have the keys of the plane method.
+
+#include "core/case_config.hpp"
+#include "core/servo.hpp"
+#include "core/stages.hpp"
+#include "core/table_over_time.hpp"
+#include "fdem/setup/config.hpp"
+#include "fdem3/setup/body_config.hpp"
+
+namespace breccia::fdem3 {
+
+using fdem::FrictionConfig;
+using fdem::HistoryConfig;
+using fdem::JointConfig;
+using fdem::JointsConfig;
+using fdem::MaterialConfig;
+using fdem::SearchConfig;
+
+/// Which part of the model a support, load or probe takes.
+struct RegionConfig {
+  std::string on;
+  std::string faces;
+  Vec3 min{-no_limit, -no_limit, -no_limit}, max{no_limit, no_limit, no_limit};  ///<  [m]
+  Vec3 center{};                                                                 ///<  [m]
+  double radius = 0.0;  ///< of a sphere or cylinder; 0: none  [m]
+  std::string around;
+  bool outside = false;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("on", on, "body that it takes part of; empty: of all bodies");
+    key("faces", faces, "named surface of a mesh file that it takes; empty: all");
+    key("min", min, "m", any_number, "lower corner of the region it takes");
+    key("max", max, "m", any_number, "upper corner of that region");
+    key("center", center, "m", any_number, "centre of the sphere or cylinder that radius asks for");
+    key("radius", radius, "m", not_negative,
+        "the region takes only what lies in this sphere or cylinder, too; 0: none");
+    key("around", around, OneOf{"", "x", "y", "z"}, "axis of the cylinder; empty: it is a sphere");
+    key("outside", outside, "the region takes what box and sphere or cylinder leave out");
+  }
+};
+
+/// [[support]]: prescribed velocity of corners
+struct SupportConfig {
+  std::string name;
+  RegionConfig region;
+  std::vector<std::string> fix{"x", "y", "z"};
+  OverTime<Vec3> velocity;  ///<  [m/s]
+  HistoryConfig history;
+  SupportServoConfig servo;  ///< instead of the velocity along its axis
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the support: probes read its corners by it");
+    key.required("name");
+    region.each_key(key);
+    key("fix", fix, "directions that are prescribed: x, y, z");
+    key("velocity", velocity, "m/s", any_number,
+        "prescribed velocity of these directions, or a table [[t, x, y, z], ...] of it over time, "
+        "linear in between and constant beyond its ends");
+    history.each_key(key);
+    key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
+  }
+};
+
+/// [[load]]: forces on free faces
+struct LoadConfig {
+  std::string name;
+  RegionConfig region;
+  std::string kind = "pressure";
+  OverTime<double> pressure;  ///<  [Pa]
+  OverTime<Vec3> traction;    ///<  [Pa]
+  OverTime<Vec3> force;       ///<  [N]
+  HistoryConfig history;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the load");
+    key.required("name");
+    region.each_key(key);
+    key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing"},
+        "pressure: against the face, and traction: along fixed axes, both per present area; "
+        "force: a sum, spread over the faces by their area at the start, that stays as given "
+        "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer)");
+    key("pressure", pressure, "Pa", any_number,
+        "pressure, positive pushes; or a table [[t, p], ...] of it over time");
+    key("traction", traction, "Pa", any_number,
+        "force per area, or a table [[t, x, y, z], ...] of it over time");
+    key("force", force, "N", any_number,
+        "force of all faces together, or a table [[t, x, y, z], ...] of it");
+    history.each_key(key);
+  }
+};
+
+/// [[stage.support]]: what a support prescribes from a stage on
+struct SupportChange {
+  std::string name;
+  std::vector<std::string> fix{"same"};
+  OverTime<Vec3> velocity;  ///<  [m/s]
+  double ramp = 0.0;        ///<  [s]
+  SupportServoConfig servo;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the support");
+    key.required("name");
+    key("fix", fix,
+        "directions that it prescribes from now on; [] sets its corners free; left out: the same "
+        "as before");
+    key("velocity", velocity, "m/s", any_number,
+        "their velocity from now on, or a table of it over time since the stage began; left out: "
+        "they stand still");
+    key("ramp", ramp, "s", not_negative,
+        "time since the stage began in which it grows from zero, linearly");
+    key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
+  }
+};
+
+/// [[stage.load]]: how large a load is from a stage on
+struct LoadChange {
+  std::string name;
+  OverTime<double> pressure;  ///<  [Pa]
+  OverTime<Vec3> traction;    ///<  [Pa]
+  OverTime<Vec3> force;       ///<  [N]
+  double ramp = 0.0;          ///<  [s]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the load");
+    key.required("name");
+    key("pressure", pressure, "Pa", any_number,
+        "pressure from now on, or a table of it over time since the stage began; left out: 0");
+    key("traction", traction, "Pa", any_number, "traction from now on, likewise");
+    key("force", force, "N", any_number, "force from now on, likewise");
+    key("ramp", ramp, "s", not_negative,
+        "time since the stage began in which it grows from zero, linearly");
+  }
+};
+
+/// [[stage]]
+struct StageConfig : StageEnd {
+  Vec3 gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
+  std::vector<SupportChange> supports;
+  std::vector<LoadChange> loads;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    StageEnd::each_key(key);
+    key("gravity", gravity, "m/s2", any_number,
+        "acceleration of gravity from its beginning on; left out (inf): as before");
+    key.list("support", supports, "supports that prescribe something else from its beginning on");
+    key.list("load", loads, "loads that are another from its beginning on");
+  }
+};
+
+/// [in_situ]
+struct InSituConfig {
+  double xx = 0.0, yy = 0.0, zz = 0.0, yz = 0.0, xz = 0.0, xy = 0.0;  ///<  [Pa]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    const Range sane{-1e15, 1e15};
+    key("xx", xx, "Pa", sane, "stress at the start, tension positive");
+    key("yy", yy, "Pa", sane, "stress at the start, tension positive");
+    key("zz", zz, "Pa", sane, "stress at the start, tension positive");
+    key("yz", yz, "Pa", sane, "stress at the start");
+    key("xz", xz, "Pa", sane, "stress at the start");
+    key("xy", xy, "Pa", sane, "stress at the start");
+  }
+  bool any() const {
+    return xx != 0.0 || yy != 0.0 || zz != 0.0 || yz != 0.0 || xz != 0.0 || xy != 0.0;
+  }
+};
+
+/// A whole case.
+struct Config : CaseConfig {
+  /// The bound on the step walks all tetrahedra and their joints.
+  Config() {
+    method = "fdem3d";
+    time.evaluate_every = 20;
+  }
+
+  Vec3 gravity{};              ///<  [m/s2]
+  double local_damping = 0.0;  ///<  [-]
+  std::vector<MaterialConfig> materials;
+  std::vector<JointConfig> joint_laws;
+  std::vector<FrictionConfig> frictions;
+  std::vector<BodyConfig> bodies;
+  std::vector<DiscontinuityConfig> discontinuities;
+  JointsConfig joints;
+  InSituConfig in_situ;
+  std::vector<SupportConfig> supports;
+  std::vector<LoadConfig> loads;
+  std::vector<StageConfig> stages;
+  double stage_friction = -1.0;  ///< no key: of contacts in this stage; below 0: as given  [-]
+  SearchConfig search;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    CaseConfig::each_key(key);
+    key("gravity", gravity, "m/s2", any_number, "acceleration of gravity");
+    key("local_damping", local_damping, "-", Range{0.0, 1.0, Open::high},
+        "share of each force that opposes motion (Cundall), for quasi-static runs only");
+    key.named("material", materials, "the materials");
+    key.named("joint", joint_laws, "joints between two materials, or of discontinuities");
+    key.list("friction", frictions, "coefficients of friction by pairs of materials");
+    key.list("body", bodies, "what there is");
+    key.list("discontinuity", discontinuities, "cracks and weak planes at the start");
+    key.table("joints", joints, "what all joints share");
+    key.table("in_situ", in_situ, "stress at the start");
+    key.list("support", supports, "prescribed motion");
+    key.list("load", loads, "forces on faces");
+    key.list("stage", stages, "what changes when, one stage after the other");
+    key.table("search", search, "when new contacts are searched for");
+  }
+};
+
+}  // namespace breccia::fdem3
