@@ -3,28 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <tuple>
 
 #include "dem/setup/model_arrays.hpp"
 #include "exec/error.hpp"
 #include "prepare/meshing/mesh_check.hpp"
+#include "prepare/model_sections.hpp"
 
 namespace breccia {
 namespace {
 
-template <class T>
-void save_array(CheckpointWriter& writer, const std::string& name, const std::vector<T>& items) {
-  writer.section("model." + name, items.data(), items.size(), sizeof(T));
-}
-
-template <class T>
-std::vector<T> load_array(const CheckpointReader& reader, const std::string& name) {
-  const CheckpointReader::Section& section = reader.section("model." + name, sizeof(T));
-  std::vector<T> items(section.count);
-  if (!items.empty()) std::memcpy(items.data(), section.bytes.data(), section.bytes.size());
-  return items;
-}
+using namespace model_sections;
 
 /// Links by member, so that no padding reaches the file.
 struct LinkArrays {
@@ -77,35 +66,6 @@ void refuse_misfits(const dem::Model& model) {
   if (std::any_of(model.group.begin(), model.group.end(),
                   [&](std::int16_t g) { return g < 0 || g >= groups; }))
     fail();
-}
-
-/// A number of a model that the case must know.
-void refuse_unknown(const char* array, const std::vector<std::int16_t>& numbers, std::int16_t least,
-                    std::size_t known) {
-  for (const std::int16_t n : numbers)
-    if (n < least || n >= static_cast<std::int64_t>(known))
-      throw CheckpointError(
-          fmt::format("the model's {} holds {}, of which the case knows nothing", array, n));
-}
-
-std::string lines_of(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += name + '\n';
-  return text;
-}
-
-std::vector<std::string> lines_in(const std::string& text) {
-  std::vector<std::string> names;
-  std::string name;
-  for (const char c : text) {
-    if (c != '\n') {
-      name += c;
-      continue;
-    }
-    names.push_back(name);
-    name.clear();
-  }
-  return names;
 }
 
 /// Every array of a model of triangles that holds plain items.
@@ -237,7 +197,8 @@ void refuse_misfits(const fdem::Model& model, const fdem::Config& config) {
 }
 
 bool holds_model(const CheckpointReader& reader) {
-  return reader.has("model.position") || reader.has("model.triangle");
+  return reader.has("model.position") || reader.has("model.triangle") ||
+         reader.has("model.tetrahedron");
 }
 
 dem::Model load_model(const CheckpointReader& reader) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
 #include "prepare/build_fdem.hpp"
 
 namespace breccia::prepare {
@@ -19,12 +20,16 @@ std::vector<std::string> body_problems(const dem::Config& config);
 std::vector<std::string> body_problems(
     const std::vector<fdem::BodyConfig>& bodies,
     const std::vector<fdem::DiscontinuityConfig>& discontinuities, const FdemNames& names);
+std::vector<std::string> body_problems(const fdem3::Config& config);
 
 /// Bodies that share space by their keys alone. The built model is tested by its elements again.
 std::vector<std::string> overlap_problems(const std::vector<dem::BodyConfig>& bodies);
 /// Plates, beams and discs without holes and slots; discs if they overlap by more than an edge of
 /// their mesh, which lies within the circle.
 std::vector<std::string> overlap_problems(const std::vector<fdem::BodyConfig>& bodies);
+/// Boxes, cylinders and spheres; round ones if they overlap by more than an edge of their mesh.
+/// Cylinders with different axes are not looked at.
+std::vector<std::string> overlap_problems(const std::vector<fdem3::BodyConfig>& bodies);
 
 inline std::string overlap_problem(const std::string& a, const std::string& b) {
   return "body." + a + " and body." + b + " overlap at the start; move one of them";

@@ -7,19 +7,23 @@
 
 #include "core/random.hpp"
 #include "io/picture/picture.hpp"
+#include "math/vec.hpp"
 #include "math/vec2.hpp"
 
 namespace breccia::prepare {
 
-/// The Voronoi grain of each place: seeds lie one in each square of edge `size`, anywhere in it, so
-/// grains have the mean area size^2. A grain's number depends on seed and place only, not on the
-/// mesh.
+/// The Voronoi grain of each place: seeds lie one in each square or cube of edge `size`, anywhere
+/// in it, so grains have the mean area size^2 or volume size^3. A grain's number depends on seed
+/// and place only, not on the mesh.
 std::vector<std::uint64_t> voronoi_grains(const std::vector<Vec2>& places, double size,
                                           const Random& random);
+std::vector<std::uint64_t> voronoi_grains(const std::vector<Vec3>& places, double size,
+                                          const Random& random);
 
-/// A mineral for each of the pieces (grains or triangles), so that each mineral has its share of
-/// the area to within one piece. The order in which pieces are served is random, by key and seed.
-/// @param areas  of the pieces  [m2]
+/// A mineral for each of the pieces (grains or single elements), so that each mineral has its share
+/// of the area or volume to within one piece. The order in which pieces are served is random, by
+/// key and seed.
+/// @param areas  of the pieces, or volumes  [m2], [m3]
 /// @param keys   of the pieces: no two alike
 std::vector<int> minerals_by_share(const std::vector<double>& areas,
                                    const std::vector<std::uint64_t>& keys,
@@ -39,6 +43,8 @@ std::vector<int> minerals_by_picture(const std::vector<Vec2>& places, const Imag
 /// correlation exp(-r^2 / l^2), which depends on seed and place, not on the mesh; for l = 0 it
 /// depends on seed and number.
 std::vector<float> weibull_factors(const std::vector<Vec2>& places, double modulus, double length,
+                                   const Random& random);
+std::vector<float> weibull_factors(const std::vector<Vec3>& places, double modulus, double length,
                                    const Random& random);
 
 }  // namespace breccia::prepare

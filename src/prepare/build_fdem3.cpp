@@ -1,0 +1,210 @@
+#include "prepare/build_fdem3.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "core/random.hpp"
+#include "exec/error.hpp"
+#include "prepare/checks/check_bodies.hpp"
+#include "prepare/checks/refusal.hpp"
+#include "prepare/meshing/heterogeneity.hpp"
+#include "prepare/tetrahedra/tet_body.hpp"
+#include "prepare/tetrahedra/tet_check.hpp"
+#include "prepare/tetrahedra/tet_order.hpp"
+
+namespace breccia::fdem3 {
+namespace {
+
+/// Index of the material or joint law of a name; it is there.
+template <class Items>
+std::int16_t index_in(const Items& items, const std::string& name) {
+  return static_cast<std::int16_t>(
+      std::find_if(items.begin(), items.end(), [&](const auto& i) { return i.name == name; }) -
+      items.begin());
+}
+
+/// Collects the tetrahedra of all bodies.
+class TetAssembly {
+ public:
+  TetAssembly(const Config& config, const std::string& case_folder) : config_(config) {
+    prepare::TetContext context{.seed = config.seed, .number = 0, .folder = case_folder};
+    std::vector<std::string> problems;
+    for (std::size_t b = 0; b < config.bodies.size(); ++b) {
+      model_.groups.push_back(config.bodies[b].name);
+      context.number = static_cast<std::uint32_t>(b);
+      try {
+        add(static_cast<std::int16_t>(b), context);
+      } catch (const InputError& error) {
+        problems.push_back("body." + config.bodies[b].name + ": " + error.what());
+      }
+    }
+    prepare::refuse(problems, "with the model");
+  }
+  Model& model() { return model_; }
+
+ private:
+  /// A mesh whose vertices are in the model.
+  struct Placed {
+    prepare::TetMesh mesh;
+    std::vector<Index> vertex;  ///< of the model, of each point; -1: not used yet
+    std::vector<int> owner;     ///< body of each tetrahedron; -1: none yet
+  };
+
+  void add(std::int16_t group, const prepare::TetContext& context) {
+    const BodyConfig& body = config_.bodies[static_cast<std::size_t>(group)];
+    Placed own;
+    Placed* placed = &own;
+    if (body.shape == "mesh")
+      placed = &files_[{body.file, body.center.x, body.center.y, body.center.z}];
+    if (placed->mesh.tetrahedron.empty()) {
+      placed->mesh = prepare::mesh_of(body, context);
+      prepare::check_mesh(placed->mesh);
+      placed->vertex.assign(placed->mesh.point.size(), -1);
+      placed->owner.assign(placed->mesh.tetrahedron.size(), -1);
+    }
+    const std::int16_t material = index_in(config_.materials, body.material);
+    for (const Index t : prepare::tetrahedra_of(body, placed->mesh)) {
+      int& owner = placed->owner[static_cast<std::size_t>(t)];
+      if (owner == group) continue;  // in two parts of this body
+      if (owner >= 0)
+        throw InputError(fmt::format("parts of {} are also those of body.{}", body.file,
+                                     config_.bodies[static_cast<std::size_t>(owner)].name));
+      owner = group;
+      model_.tetrahedron.push_back(
+          corners_in_model(*placed, placed->mesh.tetrahedron[static_cast<std::size_t>(t)]));
+      model_.group.push_back(group);
+      model_.material.push_back(material);
+      model_.velocity.push_back(body.velocity);
+      model_.strength.push_back(1.0F);
+    }
+    add_face_sets(*placed);
+  }
+
+  prepare::Tetrahedron corners_in_model(Placed& placed, prepare::Tetrahedron corners) {
+    for (Index& corner : corners) {
+      Index& vertex = placed.vertex[static_cast<std::size_t>(corner)];
+      if (vertex < 0) {
+        vertex = static_cast<Index>(model_.point.size());
+        model_.point.push_back(prepare::at(placed.mesh.point, corner));
+      }
+      corner = vertex;
+    }
+    return corners;
+  }
+
+  /// Faces whose three vertices are in the model; each once in a set.
+  void add_face_sets(const Placed& placed) {
+    for (const prepare::FaceSet& given : placed.mesh.face_sets) {
+      auto set = std::find_if(model_.face_sets.begin(), model_.face_sets.end(),
+                              [&](const Model::FaceSet& s) { return s.name == given.name; });
+      if (set == model_.face_sets.end())
+        set = model_.face_sets.insert(set, Model::FaceSet{given.name, {}});
+      for (prepare::Face face : given.faces) {
+        for (Index& v : face) v = placed.vertex[static_cast<std::size_t>(v)];
+        if (*std::min_element(face.begin(), face.end()) >= 0)
+          set->faces.push_back(prepare::sorted(face));
+      }
+      std::sort(set->faces.begin(), set->faces.end());
+      set->faces.erase(std::unique(set->faces.begin(), set->faces.end()), set->faces.end());
+    }
+  }
+
+  const Config& config_;
+  std::map<std::tuple<std::string, double, double, double>, Placed> files_;
+  Model model_;
+};
+
+/// Streams of random numbers: meshes use those below the first, one for each body.
+constexpr std::uint32_t tet_grain_stream = 0x20000, tet_strength_stream = 0x30000;
+
+/// One body of a model that is whole and in order.
+class TetBodyInModel {
+ public:
+  TetBodyInModel(Model& model, const Config& config, std::size_t number)
+      : model_(model), config_(config), body_(config.bodies[number]), number_(number) {
+    for (std::size_t t = 0; t < model.tetrahedron.size(); ++t) {
+      if (static_cast<std::size_t>(model.group[t]) != number) continue;
+      tetrahedra_.push_back(t);
+      places_.push_back(prepare::centroid(model.point, model.tetrahedron[t]));
+    }
+  }
+
+  void give_minerals() {
+    const fdem::GrainsConfig& grains = body_.grains;
+    if (grains.kind.empty()) return;
+    const Random random = random_of(tet_grain_stream);
+    std::vector<std::uint64_t> keys(tetrahedra_.size());
+    for (std::size_t k = 0; k < keys.size(); ++k) keys[k] = k;
+    if (grains.kind == "voronoi") keys = prepare::voronoi_grains(places_, grains.size, random);
+    const std::vector<int> minerals = by_share(keys, random);
+    for (std::size_t k = 0; k < tetrahedra_.size(); ++k)
+      model_.material[tetrahedra_[k]] = index_in(
+          config_.materials, grains.minerals[static_cast<std::size_t>(minerals[k])].material);
+  }
+
+  void give_strength() {
+    if (body_.weibull.modulus <= 0.0) return;
+    const auto factors = prepare::weibull_factors(
+        places_, body_.weibull.modulus, body_.weibull.length, random_of(tet_strength_stream));
+    for (std::size_t k = 0; k < tetrahedra_.size(); ++k)
+      model_.strength[tetrahedra_[k]] = factors[k];
+  }
+
+ private:
+  Random random_of(std::uint32_t stream) const {
+    return {static_cast<std::uint64_t>(config_.seed), stream + static_cast<std::uint32_t>(number_)};
+  }
+
+  /// Tetrahedra of one key get one mineral.
+  std::vector<int> by_share(const std::vector<std::uint64_t>& keys, const Random& random) const {
+    std::map<std::uint64_t, double> volume_of;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      volume_of[keys[k]] +=
+          prepare::signed_volume(model_.point, model_.tetrahedron[tetrahedra_[k]]);
+    std::vector<double> volumes, shares;
+    std::vector<std::uint64_t> pieces;
+    for (const auto& [key, volume] : volume_of) {
+      pieces.push_back(key);
+      volumes.push_back(volume);
+    }
+    for (const fdem::MineralConfig& mineral : body_.grains.minerals)
+      shares.push_back(mineral.fraction);
+    const std::vector<int> given = prepare::minerals_by_share(volumes, pieces, shares, random);
+    std::vector<int> minerals;
+    minerals.reserve(keys.size());
+    for (const std::uint64_t key : keys)
+      minerals.push_back(given[static_cast<std::size_t>(
+          std::lower_bound(pieces.begin(), pieces.end(), key) - pieces.begin())]);
+    return minerals;
+  }
+
+  Model& model_;
+  const Config& config_;
+  const BodyConfig& body_;
+  std::size_t number_;
+  std::vector<std::size_t> tetrahedra_;
+  std::vector<Vec3> places_;  ///< of the tetrahedra's centroids  [m]
+};
+
+}  // namespace
+}  // namespace breccia::fdem3
+
+namespace breccia {
+
+fdem3::Model build_model(const fdem3::Config& config, const std::string& case_folder) {
+  prepare::refuse(prepare::body_problems(config), "with the model");
+  fdem3::TetAssembly assembly(config, case_folder);
+  fdem3::Model& model = assembly.model();
+  prepare::order_along_curve(model);
+  for (std::size_t b = 0; b < config.bodies.size(); ++b) {
+    fdem3::TetBodyInModel body(model, config, b);
+    body.give_minerals();
+    body.give_strength();
+  }
+  return std::move(model);
+}
+
+}  // namespace breccia

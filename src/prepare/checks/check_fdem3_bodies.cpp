@@ -1,0 +1,222 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "prepare/checks/by_name.hpp"
+#include "prepare/checks/check_bodies.hpp"
+
+namespace breccia::prepare {
+namespace {
+
+using TetBodyConfig = fdem3::BodyConfig;
+
+constexpr double most_tetrahedra = 2e8;
+/// Tetrahedra that fill a volume: it over this times the cube of the edge aimed at.
+constexpr double tetrahedron_share = 0.094;
+constexpr double least_tet_width = 1e-4;  ///< of a body, over mesh_size  [-]
+
+/// Half of the edges of the box around a body whose shape its keys tell.  [m]
+Vec3 half_of(const TetBodyConfig& b) {
+  if (b.shape == "box") return 0.5 * b.size;
+  Vec3 half{b.radius, b.radius, b.radius};
+  if (b.shape == "cylinder")
+    (b.axis == "x" ? half.x : b.axis == "y" ? half.y : half.z) = 0.5 * b.height;
+  return half;
+}
+bool has_bounds(const TetBodyConfig& b) {
+  return b.shape != "mesh" && b.shape != "stl";
+}
+
+/// A coordinate along an axis, and the two across it.
+double along(const std::string& axis, const Vec3& v) {
+  return axis == "x" ? v.x : axis == "y" ? v.y : v.z;
+}
+double across(const std::string& axis, Vec3 v) {
+  (axis == "x" ? v.x : axis == "y" ? v.y : v.z) = 0.0;
+  return norm(v);
+}
+
+/// The space between two bodies; below 0 they share space by so much. Of cylinders with different
+/// axes, that between the boxes around them, or 0.  [m]
+double space_between(const TetBodyConfig& a, const TetBodyConfig& b) {
+  const Vec3 apart = b.center - a.center, half = half_of(a) + half_of(b);
+  const double boxes = std::max(
+      {std::abs(apart.x) - half.x, std::abs(apart.y) - half.y, std::abs(apart.z) - half.z});
+  const auto is = [&](const char* one, const char* other) {
+    return a.shape == one && b.shape == other;
+  };
+  if (is("sphere", "sphere")) return norm(apart) - a.radius - b.radius;
+  if (is("cylinder", "cylinder") && a.axis == b.axis)
+    return std::max(boxes, across(a.axis, apart) - a.radius - b.radius);
+  if (a.shape == "sphere" || is("cylinder", "box")) return space_between(b, a);
+  if (a.shape == "box" && b.shape != "box") {
+    const Vec3 beyond{std::max(std::abs(apart.x) - 0.5 * a.size.x, 0.0),
+                      std::max(std::abs(apart.y) - 0.5 * a.size.y, 0.0),
+                      std::max(std::abs(apart.z) - 0.5 * a.size.z, 0.0)};
+    return b.shape == "sphere" ? norm(beyond) - b.radius
+                               : std::max(boxes, across(b.axis, beyond) - b.radius);
+  }
+  if (is("cylinder", "sphere")) {
+    const double aside = std::max(across(a.axis, apart) - a.radius, 0.0);
+    const double above = std::max(std::abs(along(a.axis, apart)) - 0.5 * a.height, 0.0);
+    return std::sqrt(aside * aside + above * above) - b.radius;
+  }
+  return is("box", "box") ? boxes : std::max(boxes, 0.0);
+}
+
+class TetBodyChecks {
+ public:
+  explicit TetBodyChecks(const fdem3::Config& config) : config_(config) {
+    if (config.bodies.empty())
+      problems_.push_back("body: the case has no elements; at least one [[body]] is needed");
+    if (config.bodies.size() > most_names || config.materials.size() > most_names ||
+        config.joint_laws.size() > most_names)
+      problems_.push_back(fmt::format(
+          "the case has {} bodies, {} materials and {} joint laws; at most {} of each are allowed",
+          config.bodies.size(), config.materials.size(), config.joint_laws.size(), most_names));
+    std::set<std::string> seen;
+    for (const TetBodyConfig& b : config.bodies) {
+      path_ = "body." + b.name;
+      require(seen.insert(b.name).second, "another body has this name");
+      check(b);
+    }
+    seen.clear();
+    for (const fdem3::DiscontinuityConfig& d : config.discontinuities) {
+      path_ = "discontinuity." + d.name;
+      require(seen.insert(d.name).second, "another discontinuity has this name");
+      check(d);
+    }
+  }
+  std::vector<std::string> problems_;
+
+ private:
+  template <class... Args>
+  void require(bool holds, fmt::format_string<Args...> text, Args&&... args) {
+    if (!holds) problems_.push_back(path_ + ": " + fmt::format(text, std::forward<Args>(args)...));
+  }
+  void require_material(const std::string& key, const std::string& name) {
+    require(item_named(config_.materials, name) != nullptr,
+            "{} = \"{}\" is not a material; there are: {}", key, name,
+            all_names(config_.materials));
+  }
+
+  void check(const TetBodyConfig& b) {
+    require_material("material", b.material);
+    const bool box = b.shape == "box", cylinder = b.shape == "cylinder",
+               sphere = b.shape == "sphere", file = b.shape == "mesh" || b.shape == "stl";
+    if (box)
+      require(b.size.x > 0.0 && b.size.y > 0.0 && b.size.z > 0.0,
+              "shape box needs size, three lengths above 0");
+    if (cylinder || sphere) require(b.radius > 0.0, "shape {} needs a radius above 0", b.shape);
+    if (cylinder) require(b.height > 0.0, "shape cylinder needs a height above 0");
+    require(box || norm(b.size) == 0.0, "size is of boxes; shape is {}", b.shape);
+    require(cylinder || sphere || b.radius == 0.0,
+            "radius is of cylinders and spheres; shape is {}", b.shape);
+    require(cylinder || b.height == 0.0, "height is of cylinders; shape is {}", b.shape);
+    require(!b.structured || box, "structured = true is for boxes, not for {}", b.shape);
+    if (b.shape == "mesh")
+      require(b.mesh_size == 0.0, "mesh_size has no use: the file is the mesh");
+    else
+      require(b.mesh_size > 0.0, "shape {} needs mesh_size, the edge length of its tetrahedra",
+              b.shape);
+    if (b.mesh_size > 0.0 && !file) check_size(b);
+    const char* ending = b.shape == "stl" ? ".stl" : ".msh or .inp";
+    const bool fits = b.shape == "stl" ? b.file.ends_with(".stl")
+                                       : b.file.ends_with(".msh") || b.file.ends_with(".inp");
+    require(!file || fits, "shape {} needs file, the name of a {} file; it is \"{}\"", b.shape,
+            ending, b.file);
+    require(file || b.file.empty(), "shape {} reads no file", b.shape);
+    require(b.parts.empty() || b.shape == "mesh", "parts are of a mesh file; shape is {}", b.shape);
+    if (!b.grains.kind.empty()) check_grains(b);
+  }
+
+  void check_size(const TetBodyConfig& b) {
+    const Vec3 size = 2.0 * half_of(b);
+    const double width = std::min({size.x, size.y, size.z});
+    const double count =
+        size.x * size.y * size.z / (tetrahedron_share * b.mesh_size * b.mesh_size * b.mesh_size);
+    require(count < most_tetrahedra, "mesh_size = {} m would give more than {:.0e} tetrahedra",
+            b.mesh_size, most_tetrahedra);
+    require(!(width > 0.0) || width >= least_tet_width * b.mesh_size,
+            "{} m is too thin for mesh_size = {} m: at least {} of it is needed", width,
+            b.mesh_size, least_tet_width);
+  }
+
+  void check_grains(const TetBodyConfig& b) {
+    const fdem::GrainsConfig& g = b.grains;
+    require(g.kind != "picture",
+            "grains.kind = \"picture\" is for plane cases; allowed are voronoi and random");
+    require(!g.minerals.empty(), "grains need at least one [[body.grains.mineral]]");
+    require(g.kind != "voronoi" || g.size > 0.0, "grains.size must be above 0 for Voronoi grains");
+    double sum = 0.0;
+    for (std::size_t k = 0; k < g.minerals.size(); ++k) {
+      require_material(fmt::format("grains.mineral[{}].material", k), g.minerals[k].material);
+      sum += g.minerals[k].fraction;
+    }
+    require(g.kind == "picture" || std::abs(sum - 1.0) <= 1e-6,
+            "the fractions of grains add up to {:.6g}; they must add up to 1", sum);
+  }
+
+  void check(const fdem3::DiscontinuityConfig& d) {
+    if (d.points.empty()) {
+      require(d.radius > 0.0, "a disc needs a radius above 0, and a polygon points");
+      require(norm(d.normal) > 0.0, "normal has no length");
+    } else {
+      require(d.radius == 0.0, "points make it a polygon, and radius a disc; leave one out");
+      require(d.points.size() >= 3, "points must be three or more corners; there are {}",
+              d.points.size());
+      if (d.points.size() >= 3) check_flat(d.points);
+    }
+    if (d.kind == "cohesive")
+      require(item_named(config_.joint_laws, d.material) != nullptr,
+              "material = \"{}\" is not a joint law; there are: {}", d.material,
+              all_names(config_.joint_laws));
+  }
+
+  void check_flat(const std::vector<Vec3>& points) {
+    Vec3 normal{};
+    double span = 0.0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      normal += 0.5 * cross(points[k] - points[0], points[(k + 1) % points.size()] - points[0]);
+      span = std::max(span, norm(points[k] - points[0]));
+    }
+    const double area = norm(normal);
+    require(area > 1e-9 * span * span, "the polygon has no area");
+    if (!(area > 1e-9 * span * span)) return;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double off = dot(points[k] - points[0], normal) / area;
+      require(std::abs(off) <= 1e-6 * span,
+              "points[{}] lies {:.3g} m off the plane of the others; a discontinuity is flat", k,
+              std::abs(off));
+    }
+  }
+
+  const fdem3::Config& config_;
+  std::string path_;
+};
+
+}  // namespace
+
+std::vector<std::string> body_problems(const fdem3::Config& config) {
+  return TetBodyChecks(config).problems_;
+}
+
+std::vector<std::string> overlap_problems(const std::vector<fdem3::BodyConfig>& bodies) {
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      const TetBodyConfig &a = bodies[i], &b = bodies[j];
+      if (!has_bounds(a) || !has_bounds(b)) continue;
+      double tolerance =
+          1e-9 * (norm(half_of(a)) + norm(half_of(b)) + norm(a.center) + norm(b.center));
+      // Meshes lie inside round surfaces, by less than an edge.
+      for (const TetBodyConfig* each : {&a, &b})
+        if (each->shape != "box") tolerance = std::max(tolerance, each->mesh_size);
+      if (space_between(a, b) < -tolerance) problems.push_back(overlap_problem(a.name, b.name));
+    }
+  return problems;
+}
+
+}  // namespace breccia::prepare
