@@ -472,6 +472,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
       std::fill(coloring.points.begin(), coloring.points.end(), pale);
       break;
     case Carrier::none:
+    case Carrier::tetrahedra:
       break;
     case Carrier::triangles:
       coloring.triangles = std::move(colors);

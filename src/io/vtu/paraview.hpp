@@ -12,8 +12,9 @@ namespace breccia {
 
 /// Writes frames into a result folder:
 ///
-///   fields/elements_0000.vtu  points with every point field and `radius`; vertices, or triangles
-///   fields/links_0000.vtu     the lines with every line field
+///   fields/elements_0000.vtu  points with every point field and `radius`; vertices, triangles or
+///                             tetrahedra
+///   fields/links_0000.vtu     lines, or the triangles of joints in space, with their fields
 ///   fields/contacts_0000.vtu  what touches without a link: lines with their force
 ///   fields/walls_0000.vtu     walls as triangles, with the force on each; where there are some
 ///   elements.pvd, links.pvd, contacts.pvd, walls.pvd

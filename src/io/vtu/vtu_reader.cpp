@@ -15,7 +15,7 @@
 
 #include "exec/error.hpp"
 #include "io/vtu/paraview.hpp"
-#include "io/vtu/plane_tensors.hpp"
+#include "io/vtu/tensors.hpp"
 #include "io/vtu/vtkhdf.hpp"
 #include "io/whole_file.hpp"
 
@@ -277,10 +277,10 @@ std::vector<std::int32_t> connectivity(const FrameFile& file, std::size_t points
   return numbers;
 }
 
-/// Whether the cells are triangles; the first one speaks for all.
-bool has_triangles(const FrameFile& file) {
-  if (file.cells() == 0) return false;
-  return file.integers("Cells", "offsets", file.cells()).front() == 3;
+/// Corners of each cell; the first one speaks for all.
+int corners_of_cells(const FrameFile& file) {
+  if (file.cells() == 0) return 0;
+  return file.integers("Cells", "offsets", file.cells()).front();
 }
 
 /// Times and files of a collection.
@@ -381,17 +381,22 @@ Frame read_frame(const std::string& folder, int index) {
     frame.radius.assign(radius.begin(), radius.end());
     frame.point_fields.erase(frame.point_fields.begin());
   }
-  if (has_triangles(elements)) {
+  const int corners = corners_of_cells(elements);
+  if (corners == 3) {
     frame.triangles = connectivity(elements, 3);
-    frame.triangle_fields = tensors_parted(elements.fields("CellData", elements.cells()));
+    frame.triangle_fields = tensors_parted(elements.fields("CellData", elements.cells()), true);
+  } else if (corners == 4) {
+    frame.tetrahedra = connectivity(elements, 4);
+    frame.tetrahedron_fields = tensors_parted(elements.fields("CellData", elements.cells()), false);
   }
   const std::vector<Entry> link_entries = entries_of(folder, "links");
   if (number < link_entries.size()) {
     const std::unique_ptr<FrameFile> other = opened(folder + "/" + link_entries[number].file);
     const FrameFile& links = *other;
     if (links.points() != elements.points()) links.fail("it has other points than the elements");
-    frame.lines = connectivity(links, 2);
-    frame.line_fields = links.fields("CellData", links.cells());
+    const bool solid = !frame.tetrahedra.empty();
+    (solid ? frame.triangles : frame.lines) = connectivity(links, solid ? 3 : 2);
+    (solid ? frame.triangle_fields : frame.line_fields) = links.fields("CellData", links.cells());
   }
   return frame;
 }

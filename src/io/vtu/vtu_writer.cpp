@@ -11,7 +11,7 @@
 
 #include "exec/error.hpp"
 #include "exec/tasks.hpp"
-#include "io/vtu/plane_tensors.hpp"
+#include "io/vtu/tensors.hpp"
 
 namespace breccia {
 namespace {
@@ -91,6 +91,7 @@ FramePlaces places_in(const Frame& whole) {
   places.points = static_cast<std::int64_t>(whole.position.size());
   places.lines = static_cast<std::int64_t>(whole.lines.size() / 2);
   places.triangles = static_cast<std::int64_t>(whole.triangles.size() / 3);
+  places.tetrahedra = static_cast<std::int64_t>(whole.tetrahedra.size() / 4);
   return places;
 }
 
@@ -99,7 +100,8 @@ FrameBlocks::FrameBlocks(const Frame& part, const FramePlaces& places, FrameForm
       places_(places),
       format_(format),
       radius_(part.radius.begin(), part.radius.end()),
-      triangle_fields_(tensors_joined(part.triangle_fields)) {
+      triangle_fields_(tensors_joined(part.triangle_fields)),
+      tetrahedron_fields_(tensors_joined(part.tetrahedron_fields)) {
   coordinates_.reserve(3 * part.position.size());
   for (const Vec3& point : part.position)
     for (const double c : {point.x, point.y, point.z})
@@ -107,21 +109,21 @@ FrameBlocks::FrameBlocks(const Frame& part, const FramePlaces& places, FrameForm
   time_ = add_made<double>(1, [time = part.time](std::size_t) { return time; });
   step_ = add_made<std::int64_t>(1, [step = part.step](std::size_t) { return step; });
   points_ = add_carried(Carrier::points, 3, std::span<const float>(coordinates_));
+  if (places.tetrahedra > 0) {
+    if (places.lines > 0) throw InputError("a frame of tetrahedra has triangles for its joints");
+    list(elements_, Cells::tetrahedra);
+    list(links_, Cells::triangles);
+    return;
+  }
   list(elements_, places.triangles == 0 ? Cells::vertices : Cells::triangles);
   list(links_, Cells::lines);
 }
 
 std::size_t FrameBlocks::items(Carrier carrier) const {
-  const std::int64_t count = carrier == Carrier::points  ? places_.points
-                             : carrier == Carrier::lines ? places_.lines
-                                                         : places_.triangles;
-  return static_cast<std::size_t>(count);
+  return static_cast<std::size_t>(places_.count(carrier));
 }
 std::size_t FrameBlocks::own_items(Carrier carrier) const {
-  if (places_.whole) return items(carrier);
-  return carrier == Carrier::points  ? places_.point.size()
-         : carrier == Carrier::lines ? places_.line.size()
-                                     : places_.triangle.size();
+  return places_.whole ? items(carrier) : places_.of(carrier).size();
 }
 
 std::size_t FrameBlocks::add(Array array) {
@@ -243,18 +245,26 @@ void FrameBlocks::list_field(Document& document, const std::string& name, const 
          items(carrier), width, add_carried(carrier, width, std::span<const Number>(values))});
 }
 
+FrameBlocks::CellKind FrameBlocks::kind_of(Cells cells) const {
+  switch (cells) {
+    case Cells::lines:
+      return {Carrier::lines, 2, &part_.lines, &part_.line_fields};
+    case Cells::triangles:
+      return {Carrier::triangles, 3, &part_.triangles, &triangle_fields_};
+    case Cells::tetrahedra:
+      return {Carrier::tetrahedra, 4, &part_.tetrahedra, &tetrahedron_fields_};
+    case Cells::vertices:
+      break;
+  }
+  return {Carrier::points, 1, nullptr, nullptr};
+}
+
 void FrameBlocks::list_cells(Document& document, Cells cells) {
   const auto number = [](std::size_t i) { return i; };
-  const std::size_t width = cells == Cells::lines ? 2 : cells == Cells::triangles ? 3 : 1;
-  const Carrier carrier = cells == Cells::lines       ? Carrier::lines
-                          : cells == Cells::triangles ? Carrier::triangles
-                                                      : Carrier::points;
+  const auto [carrier, width, corners, fields] = kind_of(cells);
   const std::size_t connectivity =
-      cells == Cells::vertices
-          ? add_made<std::int32_t>(items(Carrier::points), number)
-          : add_carried(carrier, width,
-                        std::span<const std::int32_t>(cells == Cells::lines ? part_.lines
-                                                                            : part_.triangles));
+      corners == nullptr ? add_made<std::int32_t>(items(Carrier::points), number)
+                         : add_carried(carrier, width, std::span<const std::int32_t>(*corners));
   document.text.back() += "<Cells>\n";
   document.cells = items(carrier);
   document.corners = width * document.cells;
@@ -263,8 +273,8 @@ void FrameBlocks::list_cells(Document& document, Cells cells) {
   // Behind each cell; VTKHDF has the first one's begin as well.
   const std::size_t first = format_ == FrameFormat::vtu ? 1 : 0;
   const std::size_t count = document.cells + 1 - first;
-  const std::size_t ends =
-      add_made<std::int32_t>(count, [first, width](std::size_t i) { return (i + first) * width; });
+  const std::size_t ends = add_made<std::int32_t>(
+      count, [first, corners_of = width](std::size_t i) { return (i + first) * corners_of; });
   place(document, {"Cells", "offsets", "", index, count, 1, ends});
   const std::size_t types =
       add_made<std::uint8_t>(items(carrier), [cells](std::size_t) { return cells; });
@@ -273,9 +283,9 @@ void FrameBlocks::list_cells(Document& document, Cells cells) {
 }
 
 void FrameBlocks::list(Document& document, Cells cells) {
-  const Carrier carrier = cells == Cells::lines       ? Carrier::lines
-                          : cells == Cells::triangles ? Carrier::triangles
-                                                      : Carrier::points;
+  const CellKind kind = kind_of(cells);
+  const Carrier carrier = kind.carrier;
+  const bool joints = &document == &links_;
   document.text.back() =
       "<?xml version=\"1.0\"?>\n"
       R"(<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" )"
@@ -285,13 +295,12 @@ void FrameBlocks::list(Document& document, Cells cells) {
   document.text.back() += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
                                       items(Carrier::points), items(carrier));
   document.text.back() += "<PointData>\n";
-  if (cells != Cells::lines) {
+  if (!joints) {
     if (places_.has_spheres) list_field(document, "radius", "m", 1, radius_, Carrier::points);
     list_fields(document, part_.point_fields, Carrier::points);
   }
   document.text.back() += "</PointData>\n<CellData>\n";
-  if (cells == Cells::lines) list_fields(document, part_.line_fields, Carrier::lines);
-  if (cells == Cells::triangles) list_fields(document, triangle_fields_, Carrier::triangles);
+  if (kind.fields != nullptr) list_fields(document, *kind.fields, carrier);
   document.text.back() += "</CellData>\n<Points>\n";
   place(document, {"Points", "Points", "m", type_of<float>(), items(Carrier::points), 3, points_});
   document.text.back() += "</Points>\n";

@@ -25,9 +25,10 @@ FrameFormat frame_format(const std::string& word);
 
 /// The files of one frame.
 struct FrameContents {
-  double time = 0.0;          ///<  [s]
-  std::string points;         ///< vertices or triangles, with every field of points and `radius`
-  std::string lines;          ///< lines with their fields
+  double time = 0.0;  ///<  [s]
+  /// Vertices, triangles or tetrahedra, with every field of points and `radius`.
+  std::string points;
+  std::string lines;          ///< lines, or triangles of joints in space, with their fields
   std::string contacts = {};  ///< lines between what touches; empty: no such file
   std::string walls = {};     ///< triangles; empty: no such file
 };
@@ -82,8 +83,16 @@ class FrameBlocks {
     std::vector<Entry> entries;
     std::size_t cells = 0, corners = 0;  ///< corners of all cells
   };
-  enum class Cells : std::uint8_t { vertices = 1, lines = 3, triangles = 5 };  // VTK's numbers
+  /// VTK's numbers.
+  enum class Cells : std::uint8_t { vertices = 1, lines = 3, triangles = 5, tetrahedra = 10 };
+  struct CellKind {
+    Carrier carrier;
+    std::size_t width;                         ///< corners of each
+    const std::vector<std::int32_t>* corners;  ///< null: each point is a cell
+    const std::vector<FrameField>* fields;
+  };
 
+  CellKind kind_of(Cells cells) const;
   void list(Document& document, Cells cells);
   void list_field_data(Document& document);
   void list_walls(Document& document);
@@ -109,7 +118,8 @@ class FrameBlocks {
   const FramePlaces& places_;
   FrameFormat format_;
   std::vector<float> coordinates_, radius_;
-  std::vector<FrameField> triangle_fields_;  ///< of the part, parts of tensors as one field
+  /// Of the part, parts of tensors as one field.
+  std::vector<FrameField> triangle_fields_, tetrahedron_fields_;
   std::vector<Array> arrays_;
   std::vector<Block> blocks_;
   std::size_t points_ = 0, time_ = 0, step_ = 0;  ///< arrays that both files have

@@ -11,12 +11,6 @@
 namespace breccia {
 namespace {
 
-const std::vector<std::int32_t>& places_of(const FramePlaces& places, Carrier carrier) {
-  return carrier == Carrier::points  ? places.point
-         : carrier == Carrier::lines ? places.line
-                                     : places.triangle;
-}
-
 /// work(width), with the usual widths of items as constants.  [bytes]
 template <class Work>
 void with_width(std::size_t width, const Work& work) {
@@ -27,6 +21,8 @@ void with_width(std::size_t width, const Work& work) {
       return work(std::integral_constant<std::size_t, 8>{});
     case 12:
       return work(std::integral_constant<std::size_t, 12>{});
+    case 16:
+      return work(std::integral_constant<std::size_t, 16>{});
     case 24:
       return work(std::integral_constant<std::size_t, 24>{});
     default:
@@ -63,9 +59,13 @@ class Sight {
     if (places_.has_spheres) column(Carrier::points, f.radius, whole ? &whole->radius : nullptr, 1);
     if (places_.triangles > 0)
       column(Carrier::triangles, f.triangles, whole ? &whole->triangles : nullptr, 3);
+    if (places_.tetrahedra > 0)
+      column(Carrier::tetrahedra, f.tetrahedra, whole ? &whole->tetrahedra : nullptr, 4);
     fields(Carrier::points, f.point_fields, whole ? &whole->point_fields : nullptr);
-    fields(Carrier::triangles, f.triangle_fields, whole ? &whole->triangle_fields : nullptr);
-    const bool cracks = places_.triangles > 0 && has_cracks(f);
+    fields(Carrier::triangles, f.triangle_fields, whole ? &whole->triangle_fields : nullptr,
+           places_.tetrahedra > 0);
+    fields(Carrier::tetrahedra, f.tetrahedron_fields, whole ? &whole->tetrahedron_fields : nullptr);
+    const bool cracks = places_.plane() && has_cracks(f);
     const bool lines = cracks || options.show_links || options.xray;
     if (!lines && !colors_lines(f, options.field)) return;
     column(Carrier::lines, f.lines, whole ? &whole->lines : nullptr, 2);
@@ -76,6 +76,7 @@ class Sight {
     Message message;
     put_array(message, places_.point);
     put_array(message, places_.triangle);
+    put_array(message, places_.tetrahedron);
     put_array(message, places_.line);
     for (const Column& c : columns_) put_bytes(message, c.own.data(), c.own.size());
     return message;
@@ -86,9 +87,10 @@ class Sight {
     FramePlaces places;
     places.point = from.array<std::int32_t>();
     places.triangle = from.array<std::int32_t>();
+    places.tetrahedron = from.array<std::int32_t>();
     places.line = from.array<std::int32_t>();
     for (const Column& c : columns_) {
-      const std::vector<std::int32_t>& to = places_of(places, c.carrier);
+      const std::vector<std::int32_t>& to = places.of(c.carrier);
       const std::span<const std::byte> values = from.bytes(to.size() * c.width);
       with_width(c.width, [&](auto width) {
         for (std::size_t i = 0; i < to.size(); ++i)
@@ -109,10 +111,8 @@ class Sight {
   template <class T>
   void column(Carrier carrier, const std::vector<T>& own, std::vector<T>* whole,
               std::size_t components) {
-    const std::int64_t items = carrier == Carrier::points  ? places_.points
-                               : carrier == Carrier::lines ? places_.lines
-                                                           : places_.triangles;
-    if (whole != nullptr) whole->resize(static_cast<std::size_t>(items) * components);
+    if (whole != nullptr)
+      whole->resize(static_cast<std::size_t>(places_.count(carrier)) * components);
     columns_.push_back({carrier, components * sizeof(T), std::as_bytes(std::span(own)),
                         whole ? reinterpret_cast<std::byte*>(whole->data()) : nullptr});
   }
@@ -128,7 +128,7 @@ class Sight {
       const bool of_cracks = cracks && (field.name == "mode" || field.name == "damage");
       const bool wanted = of_cracks || is_shown(field.name) || field.name == "group" ||
                           field.name == "bar" || field.name == "kind" || field.name == "state" ||
-                          field.name == "held";
+                          field.name == "held" || field.name == "exposed";
       if (!wanted) continue;
       if (whole != nullptr) whole->push_back({field.name, field.unit, field.components, {}});
       column(carrier, field.values, whole ? &whole->back().values : nullptr,
@@ -166,7 +166,7 @@ void FrameOfParts::see() {
 /// What this part has of a block: how many items, where each stands behind the first, values.
 void FrameOfParts::give_values(Message& message, const Block& block) const {
   const FrameBlocks::Array& array = files_->array_of(block);
-  const std::vector<std::int32_t>& places = places_of(part_.places, array.carrier);
+  const std::vector<std::int32_t>& places = part_.places.of(array.carrier);
   const auto first = static_cast<std::int32_t>(block.begin / array.width);
   const auto end =
       static_cast<std::int32_t>((block.begin + block.size + array.width - 1) / array.width);
@@ -277,7 +277,7 @@ FrameOutput FrameOfParts::output() {
   if (!files_) return std::move(output_);
   output_.files = files_->contents(packed);
   Touching touching;
-  touching.plane = part_.places.triangles > 0;
+  touching.plane = part_.places.plane();
   for (Unpacking& share : from) {
     touching.around.add(share.value<Around>());
     const std::vector<FrameContact> own = share.array<FrameContact>();
