@@ -142,14 +142,14 @@ Advanced run_ahead(Buffer<StepClock>& clock, StepGraph& graph, const EndOfStep<R
                               static_cast<double>(stop.step - host.step));
     for (std::int64_t launched = 0, seen = 0; static_cast<double>(launched) < needed;) {
       if (launched - seen < ahead) {
-        if (LaunchTimes::wanted() || shadow) {  // neither has a graph
+        if (LaunchTimes::wanted()) {  // a graph has none
           launch_two();
           if (!shadow) wait_for_device();
           launched += 2;
           continue;
         }
         if (graph.empty())
-          graph.record([&] {
+          graph.record(clock.space(), [&] {
             for (std::int64_t i = 0; i < few; i += 2) launch_two();
           });
         graph.replay();

@@ -407,6 +407,7 @@ void derive(World& w) {
   plan_sweep(w);
   w.tiles.forget();
   derive_contacts(w);
+  w.graph.clear();
 }
 
 }  // namespace breccia::dem

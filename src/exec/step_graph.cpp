@@ -6,6 +6,7 @@
 namespace breccia {
 
 struct StepGraph::Recorded {
+  std::vector<ShadowLaunches::Launch> in_shadow;
   cudaGraphExec_t executable = nullptr;
   Recorded() = default;
   Recorded(const Recorded&) = delete;
@@ -23,7 +24,7 @@ void StepGraph::begin() {
 void StepGraph::end() {
   cudaGraph_t graph = nullptr;
   check_device(cudaStreamEndCapture(device_stream(), &graph), "recording steps");
-  if (!recorded_) recorded_ = std::make_unique<Recorded>();
+  recorded().in_shadow.clear();
   cudaGraphExec_t& executable = recorded_->executable;
   // Launches with other arrays and counts update the graph: cheaper than a new instance.
   if (executable != nullptr) {
@@ -41,6 +42,7 @@ void StepGraph::end() {
 }
 
 void StepGraph::replay() const {
+  if (replayed_in_shadow()) return;
   check_device(cudaGraphLaunch(recorded_->executable, device_stream()), "launching steps");
 }
 
@@ -48,12 +50,31 @@ void StepGraph::replay() const {
 
 namespace breccia {
 
-struct StepGraph::Recorded {};
+struct StepGraph::Recorded {
+  std::vector<ShadowLaunches::Launch> in_shadow;
+};
 void StepGraph::begin() {}
 void StepGraph::end() {}
-void StepGraph::replay() const {}
+void StepGraph::replay() const {
+  replayed_in_shadow();
+}
 
 #endif
+
+StepGraph::Recorded& StepGraph::recorded() {
+  if (!recorded_) recorded_ = std::make_unique<Recorded>();
+  return *recorded_;
+}
+std::vector<ShadowLaunches::Launch>& StepGraph::emptied() {
+  stale_ = true;
+  recorded().in_shadow.clear();
+  return recorded().in_shadow;
+}
+bool StepGraph::replayed_in_shadow() const {
+  for (const ShadowLaunches::Launch& launch : recorded_->in_shadow)
+    ShadowLaunches::add(launch.read_ahead, launch.work);
+  return !recorded_->in_shadow.empty();
+}
 
 StepGraph::StepGraph() = default;
 StepGraph::StepGraph(StepGraph&&) noexcept = default;

@@ -2,10 +2,16 @@
 // Launches that a GPU repeats: recorded once as a CUDA graph, replayed with one call.
 
 #include <memory>
+#include <vector>
+
+#include "exec/shadow_launches.hpp"
+#include "exec/space.hpp"
 
 namespace breccia {
 
-/// A recorded sequence of launches on the run's stream. Empty on the host.
+/// A recorded sequence of launches on the run's stream. In Space::shadow the processor keeps the
+/// kernels with the arrays they were made with, and carries them out again: a graph that outlives
+/// its arrays shows there, too.
 class StepGraph {
  public:
   StepGraph();
@@ -16,10 +22,16 @@ class StepGraph {
   StepGraph& operator=(const StepGraph& other);
   ~StepGraph();
 
-  /// Records what `launch()` launches, instead of running it. It must not take memory, copy or
-  /// wait.
+  /// Records what `launch()` launches in a space, instead of running it. It must not take memory,
+  /// copy or wait.
   template <class Launch>
-  void record(const Launch& launch) {
+  void record(Space space, const Launch& launch) {
+    if (space == Space::shadow) {
+      const ShadowLaunches::Recording recording(emptied());
+      launch();
+      stale_ = false;
+      return;
+    }
     begin();
     launch();
     end();
@@ -34,6 +46,10 @@ class StepGraph {
   struct Recorded;
   void begin();
   void end();
+  Recorded& recorded();
+  bool replayed_in_shadow() const;
+  /// Where the launches of a new recording go in Space::shadow.
+  std::vector<ShadowLaunches::Launch>& emptied();
   std::unique_ptr<Recorded> recorded_;
   bool stale_ = true;
 };

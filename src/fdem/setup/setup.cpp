@@ -412,6 +412,7 @@ void configure(World& w, const Config& config) {
 void derive(World& w) {
   derive_couples(w);
   derive_bundles(w);
+  w.graph.clear();
 }
 
 }  // namespace breccia::fdem
