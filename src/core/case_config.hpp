@@ -126,7 +126,7 @@ struct ProbeConfig {
         "body or support whose elements are read, or a wall: its force (that of all elements on "
         "it), "
         "position, velocity; empty reads all elements");
-    key("quantity", quantity, quantity_words(in_space | in_plane | of_wall),
+    key("quantity", quantity, quantity_words(in_space | in_plane | of_wall | in_solid),
         "what is read from each element; stress, strain and displacement of a region, broken links "
         "or joints, opening and slip of cracks: docs/measures.md");
     key("reduce", reduce, OneOf{"mean", "sum", "min", "max"}, "how the elements' values combine");

@@ -29,6 +29,7 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of) {
       add(".quantity = \"" + p.quantity + "\" is none " +
           (of == of_wall    ? "of a wall"
            : of == in_space ? "of spheres"
+           : of == in_solid ? "of tetrahedra"
                             : "of a plane case") +
           "; allowed: " + allowed(of));
     return problems;
@@ -60,7 +61,7 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of) {
     add(".reduce = \"" + p.reduce + "\": " + p.quantity +
         " of a region is one value; leave it out");
   if (kind == Kind::stress && p.reduce == "sum")
-    add(".reduce = \"sum\": stresses of triangles do not add up; allowed: mean, min, max");
+    add(".reduce = \"sum\": stresses do not add up; allowed: mean, min, max");
   if (of == of_wall && p.reduce != "mean" && p.reduce != "sum")
     add(".reduce = \"" + p.reduce + "\": a wall has one value; leave the key out");
   return problems;

@@ -22,6 +22,10 @@ std::vector<std::string> body_problems(
     const std::vector<fdem::DiscontinuityConfig>& discontinuities, const FdemNames& names);
 std::vector<std::string> body_problems(const fdem3::Config& config);
 
+/// Names that lead nowhere, tables that do not fit, and bodies that cannot be built or lie in each
+/// other. Rules of the other methods are in their setup.
+std::vector<std::string> case_problems(const fdem3::Config& config);
+
 /// Bodies that share space by their keys alone. The built model is tested by its elements again.
 std::vector<std::string> overlap_problems(const std::vector<dem::BodyConfig>& bodies);
 /// Plates, beams and discs without holes and slots; discs if they overlap by more than an edge of

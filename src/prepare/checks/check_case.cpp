@@ -175,4 +175,14 @@ void check_case(const Config& config) {
 }
 
 }  // namespace fdem
+
+namespace fdem3 {
+
+void check_case(const Config& config) {
+  std::vector<std::string> problems = prepare::case_problems(config);
+  check_mass_scaling(config, problems);
+  prepare::refuse(problems, "in the case");
+}
+
+}  // namespace fdem3
 }  // namespace breccia

@@ -5,6 +5,7 @@
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
 
 namespace breccia {
 namespace dem {
@@ -22,6 +23,12 @@ namespace fdem {
 void check_case(const Config& config);
 
 }  // namespace fdem
+namespace fdem3 {
+
+/// Likewise for tetrahedra. @throws InputError with all problems at once
+void check_case(const Config& config);
+
+}  // namespace fdem3
 namespace prepare {
 
 /// Reads every file that bodies name, as building them would. Scripts for gmsh are not run.
@@ -29,6 +36,7 @@ namespace prepare {
 ///         is wrong
 void check_files(const dem::Config& config, const std::string& case_folder);
 void check_files(const fdem::Config& config, const std::string& case_folder);
+void check_files(const fdem3::Config& config, const std::string& case_folder);
 
 }  // namespace prepare
 }  // namespace breccia

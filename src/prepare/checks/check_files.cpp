@@ -14,6 +14,7 @@
 #include "prepare/meshing/meshing.hpp"
 #include "prepare/packing/spheres_file.hpp"
 #include "prepare/shapes/surface.hpp"
+#include "prepare/tetrahedra/tet_body.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -104,6 +105,18 @@ void check_files(const fdem::Config& config, const std::string& case_folder) {
     if (!set.file.empty())
       files.check("joint_set." + set.name, set.file,
                   [&](const std::string&) { lines_of_set(set, config.seed, 0, case_folder); });
+  files.refuse_all();
+}
+
+void check_files(const fdem3::Config& config, const std::string& case_folder) {
+  FileChecks files(case_folder);
+  const bool meshes = !on_path("gmsh").empty();
+  for (const fdem3::BodyConfig& body : config.bodies) {
+    if (!meshes && needs_gmsh(body)) files.add("body." + body.name + ": " + no_mesher("its shape"));
+    if (body.shape == "stl")
+      files.check("body." + body.name, body.file,
+                  [](const std::string& path) { read_surface(path, 1.0); });
+  }
   files.refuse_all();
 }
 

@@ -97,6 +97,14 @@ Outline outline_of(const fdem::BodyConfig& b) {
   return {b.name, around({b.center.x, b.center.y, 0.0}, {half.x, half.y, 0.0})};
 }
 
+Outline outline_of(const fdem3::BodyConfig& b) {
+  if (b.shape == "mesh" || b.shape == "stl") return {b.name, {}};
+  std::array<double, 3> half{b.radius, b.radius, b.radius};
+  if (b.shape == "box") half = {0.5 * b.size.x, 0.5 * b.size.y, 0.5 * b.size.z};
+  if (b.shape == "cylinder") half[b.axis == "x" ? 0U : b.axis == "y" ? 1U : 2U] = 0.5 * b.height;
+  return {b.name, around({b.center.x, b.center.y, b.center.z}, half)};
+}
+
 void cut_to(Bounds& b, const std::array<double, 3>& low, const std::array<double, 3>& high) {
   for (std::size_t k = 0; k < 3; ++k) {
     b.low[k] = std::max(b.low[k], low[k]);
@@ -121,7 +129,9 @@ Bounds bounds_of(const fdem::RegionConfig& r) {
   cut_to(b, {low.x, low.y, 0.0}, {high.x, high.y, 0.0});
   return b;
 }
-Bounds bounds_of(const dem::SupportConfig& s) {
+/// Of a box in space and a sphere or cylinder.
+template <class Region>
+Bounds bounds_in_space(const Region& s) {
   if (s.outside) return {nowhere_low, nowhere_high};
   Bounds b{{s.min.x, s.min.y, s.min.z}, {s.max.x, s.max.y, s.max.z}};
   if (!(s.radius > 0.0)) return b;
@@ -134,6 +144,13 @@ Bounds bounds_of(const dem::SupportConfig& s) {
     }
   cut_to(b, low, high);
   return b;
+}
+
+Bounds bounds_of(const dem::SupportConfig& s) {
+  return bounds_in_space(s);
+}
+Bounds bounds_of(const fdem3::RegionConfig& r) {
+  return bounds_in_space(r);
 }
 
 Vec3 nearest_in(const Bounds& b, const Vec3& x) {
@@ -160,6 +177,21 @@ double farthest_above(const dem::Wall& plane, const Bounds& b) {
                     plane.normal.y > 0.0 ? b.high[1] : b.low[1],
                     plane.normal.z > 0.0 ? b.high[2] : b.low[2]};
   return dot(corner - plane.point, plane.normal);
+}
+
+/// Supports and loads of meshes.
+template <class Config>
+void check_faces_and_corners(const Config& config) {
+  std::vector<Outline> outlines;
+  for (const auto& body : config.bodies) outlines.push_back(outline_of(body));
+  std::vector<std::string> problems;
+  for (const auto& s : config.supports)
+    problems.push_back(problem_of("support." + s.name, bounds_of(s.region), s.region.on, outlines));
+  for (const auto& load : config.loads)
+    problems.push_back(
+        problem_of("load." + load.name, bounds_of(load.region), load.region.on, outlines));
+  std::erase(problems, "");
+  refuse(problems, "in the case");
 }
 
 }  // namespace
@@ -210,16 +242,10 @@ void check_regions(const dem::Config& config) {
 }
 
 void check_regions(const fdem::Config& config) {
-  std::vector<Outline> outlines;
-  for (const fdem::BodyConfig& body : config.bodies) outlines.push_back(outline_of(body));
-  std::vector<std::string> problems;
-  for (const fdem::SupportConfig& s : config.supports)
-    problems.push_back(problem_of("support." + s.name, bounds_of(s.region), s.region.on, outlines));
-  for (const fdem::LoadConfig& load : config.loads)
-    problems.push_back(
-        problem_of("load." + load.name, bounds_of(load.region), load.region.on, outlines));
-  std::erase(problems, "");
-  refuse(problems, "in the case");
+  check_faces_and_corners(config);
+}
+void check_regions(const fdem3::Config& config) {
+  check_faces_and_corners(config);
 }
 
 }  // namespace breccia::prepare

@@ -6,6 +6,7 @@
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
 
 namespace breccia::prepare {
 
@@ -15,6 +16,7 @@ namespace breccia::prepare {
 /// @throws InputError naming each region that takes nothing, the nearest body and how far it is
 void check_regions(const dem::Config& config);
 void check_regions(const fdem::Config& config);
+void check_regions(const fdem3::Config& config);
 
 /// Walls that no body touches at the start: which body is nearest, and how far it is, or that all
 /// of it lies behind the wall. Bodies whose outline only their file tells are not looked at.

@@ -120,8 +120,8 @@ class TetChecker {
       else if (volume < 0.0)
         kind.add([&] {
           return fmt::format(
-              "{} at ({:.6g}, {:.6g}, {:.6g}) m is turned inside out: the first three corners must "
-              "run counter-clockwise seen from the last one's far side",
+              "{} at ({:.6g}, {:.6g}, {:.6g}) m is turned inside out: its first three corners must "
+              "run counter-clockwise seen from the fourth",
               name(t), place.x, place.y, place.z);
         });
     }
