@@ -386,6 +386,7 @@ struct BodyConfig {
     key("file", file,
         "STL file, or CSV file of x,y,z,radius in metres, beside the case file; of law ldpm: "
         "<name>-data-tets.dat of a public preprocessor, with <name>-data-particles.dat beside it, "
+        "or, for its facets as they are, <name>-data-facets.dat or <name>-data-facetsVertices.dat, "
         "in mm");
     key("file_unit", file_unit, "m", positive, "stl: length of one unit of the file's coordinates");
     key("volume", volume, "m3", not_negative,

@@ -74,7 +74,8 @@ LdpmBody ldpm_body(const LdpmMesh& mesh, const dem::MaterialConfig& material) {
     if (d == 0.0) d = surface_diameter * material.mix.smallest;
   LdpmBody body;
   body.position = mesh.position;
-  body.facets = facets_of(body.position, diameter, mesh.tetrahedra);
+  body.facets =
+      mesh.facets.empty() ? facets_of(body.position, diameter, mesh.tetrahedra) : mesh.facets;
   body.cells = cells_of(body.position, body.facets);
   body.radius = contact_radii(body);
   double longest = 0.0;

@@ -22,7 +22,8 @@ struct LdpmBody {
 /// @throws InputError if an edge is so long that the law cannot soften: 0.99 l_t or more
 LdpmBody ldpm_body(const Container& container, const dem::MaterialConfig& material,
                    const Random& random, const std::vector<Capsule>& bars = {});
-/// The body of a mesh that was read; its surface particles have 1.1 of the mix's `smallest`.
+/// The body of a mesh that was read, with its facets or, if it has none, those of its diameters:
+/// then surface particles have 1.1 of the mix's `smallest`.
 LdpmBody ldpm_body(const LdpmMesh& mesh, const dem::MaterialConfig& material);
 
 /// Adds a link for each of the model's facets, whose ends may have changed their order; links and

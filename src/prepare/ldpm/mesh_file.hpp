@@ -1,5 +1,5 @@
 #pragma once
-// Particles and tetrahedra of LDPM from the files of public preprocessors.
+// Particles, tetrahedra and facets of LDPM from the files of public preprocessors.
 
 #include <string>
 
@@ -9,18 +9,25 @@ namespace breccia::prepare {
 
 struct LdpmMesh {
   std::vector<Vec3> position;           ///<  [m]
-  std::vector<double> diameter;         ///< of a grain; 0 on the surface  [m]
+  std::vector<double> diameter;         ///< of a grain; 0 on the surface; none with facets  [m]
   std::vector<Tetrahedron> tetrahedra;  ///< sorted; flat ones are left out
+  std::vector<LdpmFacet> facets{};      ///< of a file, sorted by (a, b); none: by `facets_of`
 };
 
-/// Reads `<name>-data-tets.dat` (four particles a line, counted from 0) and, beside it,
-/// `<name>-data-particles.dat` (n, x, y, z, d in mm; d = 0 on the surface), as Chrono Workbench and
-/// the LDPM Workbench of FreeCAD write them. Empty lines and lines that begin with // or # are
-/// passed over.
-/// @param path  of the file of tetrahedra
+/// Reads a mesh as Chrono Workbench and the LDPM Workbench of FreeCAD write it, in mm. The end of
+/// the path says what is taken from files, all named alike and side by side:
+///
+///   <name>-data-tets.dat            particles with diameters, and tetrahedra; facets follow
+///   <name>-data-facets.dat          particles, tetrahedra, and facets with their area, centroid
+///                                   and edge; their corners are in <name>-data-facetsVertices.dat
+///   <name>-data-facetsVertices.dat  the same without that file: corners of 12 facets a tetrahedron
+///
+/// Facets need no diameters: particles and tetrahedra are also taken from <name>-data-nodes.dat, or
+/// both from <name>-para-mesh.000.vtk. Empty lines and lines that begin with // or # are passed
+/// over.
 /// @throws IoError    if a file cannot be read
-/// @throws InputError if the path does not end in -data-tets.dat; names file and line of what is no
-///                    particle or tetrahedron; names a particle that is the corner of none
+/// @throws InputError if the path has another end; names file and line of what is no particle,
+///                    tetrahedron or facet; names a particle that is the corner of none
 LdpmMesh read_ldpm_mesh(const std::string& path);
 
 }  // namespace breccia::prepare

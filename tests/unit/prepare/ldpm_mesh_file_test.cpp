@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
+#include "prepare/ldpm/body.hpp"
 #include "prepare/ldpm/mesh_file.hpp"
 #include "prepare/ldpm/particles.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -105,6 +110,157 @@ TEST(LdpmMeshFile, of_a_body_gives_the_model_of_the_body) {
     EXPECT_EQ(read.facets[f].a, placed.facets[f].a);
     EXPECT_NEAR(norm(read.facets[f].center - placed.facets[f].center), 0.0, 1e-14);
   }
+}
+
+std::string three(const Vec3& v, double unit = 1.0) {
+  return fmt::format("{:.10g} {:.10g} {:.10g}", unit * v.x, unit * v.y, unit * v.z);
+}
+
+/// A body with its facets as preprocessors write them: ten digits, in mm.
+struct FacetFiles {
+  std::vector<Vec3> position;
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<LdpmFacet> facets;  ///< of the tetrahedra in order, twelve each
+  std::string nodes, particles, tets, rows, corners, vtk;
+
+  FacetFiles() {
+    const Container box{.shape = Container::Shape::box, .size = {0.03, 0.03, 0.04}};
+    const LdpmParticles p = place_particles(box, MixDesign{}, {1, 0});
+    position = p.position;
+    std::vector<double> diameter = p.diameter;
+    for (double& d : diameter)
+      if (d == 0.0) d = surface_diameter * 6e-3;
+    tetrahedra = tetrahedra_of(position, 6e-3);
+    for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+      const Tetrahedron& of = tetrahedra[t];
+      tets += fmt::format("{} {} {} {}\n", of[1], of[0], of[3], of[2]);
+      for (const LdpmFacet& f : facets_of(position, diameter, {of})) add(t, f);
+    }
+    for (std::size_t k = 0; k < position.size(); ++k) {
+      nodes += three(position[k], 1e3) + "\n";
+      particles += fmt::format("{} {} {}\n", k, three(position[k], 1e3), 1e3 * p.diameter[k]);
+    }
+    vtk = fmt::format(
+        "# vtk DataFile Version 2.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+        "POINTS {} double\n{}\nCELLS {} {}\n",
+        position.size(), nodes, tetrahedra.size(), 5 * tetrahedra.size());
+    for (const Tetrahedron& of : tetrahedra)
+      vtk += fmt::format("4 {} {} {} {}\n", of[0], of[1], of[2], of[3]);
+  }
+  void add(std::size_t t, const LdpmFacet& f) {
+    const std::size_t first = 3 * facets.size();
+    const bool swap = facets.size() % 2 == 1;  // as windings ask for it
+    for (const std::size_t k : {0, swap ? 2 : 1, swap ? 1 : 2})
+      corners += three(f.corners[k], 1e3) + "\n";
+    const Vec3 along = position[at(f.b)] - position[at(f.a)];
+    double volume = 0.0;
+    for (const Index e : {f.a, f.b})
+      volume += std::abs(six_volumes(position[at(e)], f.corners[0], f.corners[1], f.corners[2]));
+    rows += fmt::format("{} {} {} {} {:.10g} {:.10g} {} {} 1 0 0 0 1 0 0\n", t, first, first + 1,
+                        first + 2, 1e9 * volume / 6.0, 1e6 * f.area, three(f.center, 1e3),
+                        three((1.0 / norm(along)) * along));
+    facets.push_back(f);
+  }
+  LdpmMesh read(const std::string& end) const {
+    const ScratchFolder folder;
+    const auto write = [&](const std::string& name, const std::string& content) {
+      if (!content.empty()) replace_file(folder / ("geo" + name), content);
+    };
+    write("-data-nodes.dat", nodes);
+    write("-data-particles.dat", particles);
+    write("-data-tets.dat", tets);
+    write("-data-facets.dat", rows);
+    write("-data-facetsVertices.dat", corners);
+    write("-para-mesh.000.vtk", vtk);
+    return read_ldpm_mesh(folder / ("geo" + end));
+  }
+};
+
+void expect_equal(const LdpmMesh& read, const FacetFiles& written) {
+  std::vector<LdpmFacet> facets = written.facets;
+  std::stable_sort(facets.begin(), facets.end(), [](const LdpmFacet& p, const LdpmFacet& q) {
+    return std::pair(p.a, p.b) < std::pair(q.a, q.b);
+  });
+  EXPECT_EQ(read.tetrahedra, written.tetrahedra);
+  ASSERT_EQ(read.facets.size(), facets.size());
+  for (std::size_t k = 0; k < facets.size(); ++k) {
+    const LdpmFacet &f = read.facets[k], &g = facets[k];
+    EXPECT_EQ((std::array{f.a, f.b, f.c, f.d}), (std::array{g.a, g.b, g.c, g.d}));
+    EXPECT_NEAR(norm(f.center - g.center), 0.0, 1e-11);
+    EXPECT_NEAR(f.area, g.area, 1e-13);
+  }
+  const auto cells = cells_of(written.position, facets),
+             found = cells_of(read.position, read.facets);
+  for (std::size_t e = 0; e < cells.size(); ++e)
+    EXPECT_NEAR(found[e].volume / cells[e].volume, 1.0, 1e-8) << e;
+}
+
+TEST(LdpmMeshFile, takes_facets_as_their_files_have_them) {
+  FacetFiles files;
+  expect_equal(files.read("-data-facets.dat"), files);
+  expect_equal(files.read("-data-facetsVertices.dat"), files);
+  files.particles.clear();
+  expect_equal(files.read("-data-facets.dat"), files);
+  files.tets.clear();
+  files.nodes.clear();
+  expect_equal(files.read("-data-facets.dat"), files);
+  expect_equal(files.read("-data-facetsVertices.dat"), files);
+}
+
+/// Their numbers, not those of their corners, are the model's.
+TEST(LdpmMeshFile, keeps_area_and_centroid_of_a_facet) {
+  FacetFiles files;
+  files.facets[5].area *= 1.0005;
+  files.facets[5].center.x += 1e-6;
+  files.rows.clear();
+  files.corners.clear();
+  const std::vector<LdpmFacet> facets = std::exchange(files.facets, {});
+  for (std::size_t k = 0; k < facets.size(); ++k) files.add(k / 12, facets[k]);
+  expect_equal(files.read("-data-facets.dat"), files);
+}
+
+TEST(LdpmMeshFile, names_the_facet_that_does_not_belong_to_its_tetrahedron) {
+  const auto refused = [](const FacetFiles& files, const std::string& end,
+                          const std::string& part) {
+    try {
+      files.read(end);
+      ADD_FAILURE() << part;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  const FacetFiles good;
+  const std::string facets = "-data-facets.dat", corners = "-data-facetsVertices.dat";
+  const auto with_row = [&](std::size_t column, const std::string& text) {
+    FacetFiles files = good;
+    std::size_t begin = 0;
+    for (std::size_t k = 0; k < column; ++k) begin = files.rows.find(' ', begin) + 1;
+    files.rows.replace(begin, files.rows.find_first_of(" \n", begin) - begin, text);
+    return files;
+  };
+  refused(with_row(0, "-1"), facets, "geo-data-facets.dat, line 1 is not a facet: one of");
+  refused(with_row(2, "1e9"), facets, "line 1 is not a facet");
+  refused(with_row(0, "1"), facets, "tetrahedron 0 has 11 facets instead of 12");
+  refused(with_row(9, "7"), facets, "along no edge of tetrahedron 0");
+  refused(with_row(4, "1e3"), facets, "its volume of 1000 mm3 is not the");
+  refused(with_row(5, "1e3"), facets, "its projected area of 1000 mm2 is not the");
+  refused(with_row(18, "2"), facets, "line 2: flag of material 0 after 2");
+  FacetFiles files = good;
+  files.rows.erase(0, files.rows.find('\n') + 1);
+  refused(files, facets, "tetrahedron 0 has 11 facets instead of 12");
+  files = good;
+  files.corners.erase(0, files.corners.find('\n') + 1);
+  refused(files, corners, "corners of facets instead of 36 for each of");
+  files.corners += "0 0 0\n";
+  refused(files, corners, "lie on no edge of tetrahedron");
+  files = good;
+  files.tets.clear();
+  files.vtk = files.vtk.substr(0, files.vtk.find("CELLS"));
+  refused(files, facets, "a mesh of tetrahedra in legacy VTK (text) has no CELLS");
+  files.vtk += "CELLS 1 5\n4 0 1 2 2\n";
+  refused(files, facets, "has no cell 0 as four different particles");
+  files.vtk.clear();
+  EXPECT_THROW(files.read(facets), IoError);
 }
 
 }  // namespace ldpm_mesh_file_test
