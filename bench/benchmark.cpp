@@ -33,7 +33,7 @@ void reach_impact(dem::World& w) {
   for (stop.time = impact_at; w.time < stop.time;) dem::advance(w, stop);
 }
 
-/// What windows of whole steps took.
+/// Times of windows of whole steps.
 struct Windows {
   explicit Windows(const char* name) : part(name) {}
 

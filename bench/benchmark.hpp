@@ -21,7 +21,7 @@ struct Measurement {
 /// The slab of Durand et al. 2012, section 5: whole steps before and during the impact, by stage;
 /// memory an element. 14,274 elements.
 std::vector<Measurement> measure_slab(const Exec& exec);
-/// The same slab 2.7 times as long and wide: 99,262 elements.
+/// The slab 2.7 times as long and wide: 99,262 elements.
 std::vector<Measurement> measure_large_slab(const Exec& exec);
 /// Many of the paper's slabs side by side, during the impact: 100,000 to 1 million elements, on a
 /// GPU to 10 million.
@@ -47,7 +47,7 @@ std::vector<Measurement> measure_triangles(const Exec& exec);
 std::vector<Measurement> measure_largest_plate(const Exec& exec);
 /// Whole FDEM steps of 8,000 hexagons that fly together, from far apart to pressed together.
 std::vector<Measurement> measure_contact(const Exec& exec);
-/// The same near each other, as many as in cases/moving_box, and on a GPU a hundred times as many.
+/// Bodies near each other, as many as in cases/moving_box, and on a GPU a hundred times as many.
 std::vector<Measurement> measure_heap(const Exec& exec);
 
 /// Time of each kernel on a GPU and the share of the copy's speed at which it moves its bytes.

@@ -1,5 +1,5 @@
 #pragma once
-// What benchmarks are made of: windows of equal work, and their median.
+// Measurements of benchmarks: windows of equal work, and their median.
 
 #include <functional>
 #include <string>

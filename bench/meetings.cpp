@@ -1,4 +1,4 @@
-// What a machine allows ranks that wait for each other in every step: threads, each on a processor
+// Cost of ranks that wait for each other in every step, on a machine: threads, each on a processor
 // of its own, do the same arithmetic in registers again and again, and go on when all have done it.
 // No messages, no memory: what one thread takes over what each of them takes bounds the efficiency
 // of any program whose ranks meet once a step of that length.

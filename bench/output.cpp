@@ -1,4 +1,4 @@
-// What benchmarks say: a table for people, JSON for programs, and answers line by line.
+// Output of benchmarks: a table for people, JSON for programs, and answers line by line.
 
 #include <fmt/format.h>
 

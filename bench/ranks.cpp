@@ -23,7 +23,7 @@ namespace {
 constexpr double impact_at = 0.2e-3;        // the rock has met the slab and links break  [s]
 constexpr std::int64_t slab_size = 14'274;  // elements of one slab
 
-/// What several ranks have in common; a rank alone has it all by itself.
+/// Data that several ranks share; a rank alone has it all by itself.
 struct All {
   Communicator* ranks;
 
@@ -35,7 +35,7 @@ struct All {
     return number;
   }
   double waited() const { return ranks == nullptr ? 0.0 : ranks->waited(); }
-  /// What one rank fails at while all step, the others do not know of.
+  /// A failure of one rank while all step is not known to the others.
   void begin_steps() const {
     if (ranks != nullptr) ranks->set_in_step(false);
   }

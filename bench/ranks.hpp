@@ -7,7 +7,7 @@
 
 namespace breccia {
 
-/// What a weak or strong benchmark is asked for.
+/// Request for a weak or strong benchmark.
 struct RankScale {
   std::int64_t elements = 0;  ///< of each rank, or of all; 0: as many as fits the device  [-]
   int steps = 50;             ///< of a window  [-]
@@ -18,14 +18,14 @@ struct RankScale {
 /// @param ranks  null: alone
 std::vector<Measurement> measure_weak_slabs(const Exec& exec, Communicator* ranks,
                                             const RankScale& scale);
-/// The same, as many in all.
+/// Slabs side by side: as many in all, whatever the number of ranks.
 std::vector<Measurement> measure_strong_slabs(const Exec& exec, Communicator* ranks,
                                               const RankScale& scale);
 /// Whole FDEM steps of a plate of joined triangles that rings: as many for each rank, 50,000 on a
 /// host and 10 million on a GPU.
 std::vector<Measurement> measure_weak_plate(const Exec& exec, Communicator* ranks,
                                             const RankScale& scale);
-/// The same, as many in all.
+/// A plate: as many triangles in all, whatever the number of ranks.
 std::vector<Measurement> measure_strong_plate(const Exec& exec, Communicator* ranks,
                                               const RankScale& scale);
 

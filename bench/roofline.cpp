@@ -1,4 +1,4 @@
-// What each kernel of a step takes on a GPU, beside the time that its bytes need.
+// Time of each kernel of a step on a GPU, beside the time that its bytes need.
 
 #include <map>
 

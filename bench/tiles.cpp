@@ -74,7 +74,7 @@ class PlateTile {
   /// Vertices on a side, from one of its ends to the other.
   const std::vector<Index>& side(Side s) const { return side_[s]; }
   bool lies_on(Side s, Index vertex) const { return place_[s][at(vertex)] >= 0; }
-  /// The same vertex in the next tile to the left, or below.
+  /// Number of this vertex in the next tile to the left, or below.
   Index beyond(Side s, Index vertex) const { return side_[s + 1][at(place_[s][at(vertex)])]; }
   /// Triangles with a corner on a side.
   std::vector<Index> triangles_at(Side s) const {

@@ -9,7 +9,7 @@
 
 namespace breccia::app {
 
-/// What is known of a run while it goes on.
+/// State of a run while it goes on, as its files tell.
 struct Watched {
   std::string folder, case_name, method;
   std::string status;              ///< as in summary.json, or "lost": nobody runs in its folder

@@ -49,7 +49,7 @@ void describe_state(const std::string& path) {
     print_harmless("  {:<32} {:>12} {:>12}\n", section.name, section.count, section.bytes.size());
 }
 
-/// What a summary says, for people.
+/// A summary as text for people.
 class Told {
  public:
   explicit Told(const std::string& path)

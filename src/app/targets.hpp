@@ -8,7 +8,7 @@
 
 namespace breccia::app {
 
-/// Those of the command line ("tension=2.9 MPa"), then those of the named material `use`: of two by
+/// Targets of the command line ("tension=2.9 MPa"), then of the named material `use`: of two by
 /// the same name the first one counts.
 /// @throws InputError naming the text that is no target
 std::vector<MaterialTarget> all_targets(const std::vector<std::string>& texts,

@@ -22,7 +22,7 @@ struct DriftOf {
 using Drift = DriftOf<Vec3>;
 using PlaneDrift = DriftOf<Vec2>;
 
-/// What elements do together. Sums are exact: the same on any number of ranks and threads.
+/// Common motion of elements. Sums are exact: the same on any number of ranks and threads.
 struct CommonMotion {
   ExactSum x, y, z, squares;  ///< of velocities  [m/s], [m2/s2]
   std::int64_t count = 0;

@@ -65,7 +65,7 @@ struct SupportServoConfig : ServoConfig {
   int axis_number() const { return axis == "x" ? 0 : axis == "y" ? 1 : 2; }
 };
 
-/// What a servo finds: of a part, or added up over all parts.
+/// Readings of a servo: of a part, or added up over all parts.
 struct ServoReading {
   ExactSum force;      ///< that it pushes with  [N]
   ExactSum stiffness;  ///< of what it touches  [N/m]

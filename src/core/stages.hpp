@@ -66,7 +66,7 @@ struct ProbeRule {
   static std::optional<ProbeRule> parsed(const std::string& text);
 };
 
-/// What ended a stage.
+/// Cause of a stage's end.
 enum class StageCause : std::int8_t { none, time, rest, probe, drop };
 const char* word_of(StageCause cause);
 

@@ -69,7 +69,7 @@ struct AmplitudeTable {
   }
 };
 
-/// The same on the host.
+/// An amplitude on the host.
 struct Amplitude {
   double ramp = 0.0;                   ///<  [s]
   double begin = 0.0;                  ///< where its time begins  [s]

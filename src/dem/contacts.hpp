@@ -150,7 +150,7 @@ struct WallForces {
     wall_force[i] = on_wall;
     force[e] -= on_wall;
     torque[e] += -(height * cross(motion.normal, on_wall)) - r.moment;
-    // What a wall with mass gives, it has lost: no work comes from outside.
+    // A wall with mass loses the energy that it gives: no work comes from outside.
     if (!free) driven[i] -= dt * dot(on_wall, surface);
     if (wall.turns()) driven[i] -= dt * dot(r.moment, wall.spin);
     // Stiffnesses add, so their critical times squared add like resistances in parallel; the wall's

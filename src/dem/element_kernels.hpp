@@ -1,5 +1,5 @@
 #pragma once
-// What is done to each element by itself: its sum of forces, its critical step, its motion.
+// Kernels of single elements: sum of forces, critical step, motion.
 
 #include "core/drift.hpp"
 #include "core/incidence.hpp"
@@ -89,7 +89,7 @@ struct GatherForces {
     for (Index k = 0; k < width_of<R>; ++k) add(sums[e + k], incidence, actions, e + k);
   }
 
-  /// What follows for an element, or a pack, from all its sums.
+  /// Stores the totals of an element, or a pack, from all its sums.
   template <class R>
   BR_HD void finish(Index e, const TotalsOf<R>& of) const {
     store_vectors(force, e, of.force);
@@ -152,7 +152,7 @@ struct Kick {
             damping * opposed<R>(f.z, v.z + half * f.z)};
   }
 
-  /// What acts on an element or on each of a pack, and what it is.
+  /// Forces on an element or on each of a pack, and its constants.
   template <class R>
   struct GivenOf {
     Vec3Of<R> force, torque;

@@ -1,5 +1,5 @@
 #pragma once
-// What a discrete element carries.
+// Arrays of discrete elements.
 
 #include "exec/buffer.hpp"
 #include "math/vec.hpp"
@@ -30,7 +30,7 @@ BR_HD constexpr bool is_gone(std::uint8_t fixed) {
   return (fixed & fixed_gone) != 0;
 }
 
-/// What pairs read of an element, side by side in memory: they meet elements at random. The
+/// Numbers that pairs read of an element, side by side in memory: they meet elements at random. The
 /// position is at the time of the step, velocity and spin are half a step earlier (leapfrog).
 template <class R>
 struct ElementStateOf {

@@ -55,7 +55,7 @@ Energies link_energies(const World& w, const LinkSet<Law>& set) {
   return all;
 }
 
-/// What contacts hold; `stored_normal` comes from the overlap of the last step.
+/// Energy stored by contacts; `stored_normal` comes from the overlap of the last step.
 struct ContactShares {
   OwnedView owned;
   ContactLaw law;

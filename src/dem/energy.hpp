@@ -6,7 +6,7 @@
 
 namespace breccia::dem {
 
-/// Those of a rank's own elements, and of the links and contacts whose first element it owns.
+/// Energies of a rank's own elements, and of the links and contacts whose first element it owns.
 Energies held(const World& w);
 
 /// Where every joule of the whole is; keeps the largest energy seen in its ledger.

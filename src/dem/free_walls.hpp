@@ -11,7 +11,7 @@ inline bool is_free(const World& w, std::size_t wall) {
   return !w.free_walls.empty() && w.given->free_walls[wall].is_free();
 }
 
-/// What the contacts of all elements do to walls with mass, at the time of the positions. Sums are
+/// Forces of elements' contacts on walls with mass, at the time of the positions. Sums are
 /// exact: every rank, which all call it, finds the same bits.
 void sum_on_free_walls(World& w);
 

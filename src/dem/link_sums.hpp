@@ -1,5 +1,5 @@
 #pragma once
-// What links add up to at an element, and its totals: one element or a pack of neighbours at a
+// Sums of links at an element, and its totals: one element or a pack of neighbours at a
 // time.
 
 #include "math/lanes.hpp"
@@ -17,7 +17,7 @@ struct StiffnessSums {
   }
 };
 
-/// What the concrete links of an element have added up to so far. Zero between two steps.
+/// Running sums of an element's concrete links. Zero between two steps.
 struct LinkSums {
   SixSums as_b;  ///< force, then torque, of links that end at the element  [N, N m]
   StiffnessSums stiffness_b;
@@ -40,7 +40,7 @@ struct LinkSums {
 };
 static_assert(sizeof(LinkSums) == 224);
 
-/// What an element gets from all its sums.
+/// Totals of an element from all its sums.
 template <class R>
 struct TotalsOf {
   Vec3Of<R> force, torque;  ///<  [N], [N m]

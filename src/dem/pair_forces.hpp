@@ -7,7 +7,7 @@
 
 namespace breccia::dem {
 
-/// What an interaction does to its two ends in this step, and how stiff it is: written once by its
+/// Forces of an interaction on its two ends in this step, and its stiffness: written once by its
 /// law, read by both ends. What an end adds up lies side by side: six numbers from 0 for a, from 3
 /// for b, and the same eight stiffnesses for both.
 ///

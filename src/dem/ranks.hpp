@@ -15,7 +15,7 @@ namespace breccia::dem {
 /// @param space  of the part
 World share_out(const World& whole, Communicator& ranks, const DomainConfig& config,
                 Space space = Space::host);
-/// The same where each rank has made a part of its own, on the host, and no two parts touch: ids
+/// Shares out where each rank has made its own part, on the host, and no two parts touch: ids
 /// and the numbers of links are those of the whole, and so are the parameters and the numbers at
 /// which groups of links begin and end.
 World share_parts(World part, Communicator& ranks, const DomainConfig& config, Space space);

@@ -78,7 +78,7 @@ struct MayTouch {
   }
 };
 
-/// What contacts that leave the list have spent.
+/// Energy spent by contacts that leave the list.
 struct SpentBy {
   OwnedView owned;  ///< the owner of a books
   View<const Index> contact, a;

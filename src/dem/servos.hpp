@@ -8,7 +8,7 @@
 
 namespace breccia::dem {
 
-/// What each wall and then each support of a part pushes with; of those without servo nothing.
+/// Force of each wall and then each support of a part, for its servo; zero for those without one.
 std::vector<ServoReading> read_servos(World& part, const Config& now);
 
 /// Corrects the velocities of all servos. @param sums  over all parts, as of read_servos()

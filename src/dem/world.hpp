@@ -106,7 +106,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
     each(motions, motion_times, motion_factors, linked_starts, linked_partners, linked_links,
          bar_actions, domain.owned_there, domain.migration_reference);
   }
-  /// Those that derive() and a search fill.
+  /// Visits the arrays that derive() and a search fill.
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
@@ -172,7 +172,7 @@ void set_linked_pairs(World& w);
 
 /// Fills what follows from the state: incidence lists, scratch arrays. After set-up and loading.
 void derive(World& w);
-/// The same for contacts alone, after a search.
+/// Fills what follows from contacts alone, after a search.
 void derive_contacts(World& w);
 
 /// Moves a world's arrays to another space; derive() must follow.
@@ -195,7 +195,7 @@ void find_contacts(World& w);
 /// Forces and time step at the time of the positions: once, before the first step.
 void evaluate_forces(World& w);
 
-/// What pair kernels read of the elements.
+/// Element arrays that pair kernels read.
 ElementsView elements_view(const World& w);
 /// Kick of the elements at the time of the forces.
 Kick kick(const World& w);

@@ -7,7 +7,7 @@
 
 namespace breccia {
 
-/// What the elements of all ranks do together. @param own  those of this rank
+/// Common motion of the elements of all ranks. @param own  that of this rank
 inline CommonMotion of_all_ranks(const Domain& domain, const CommonMotion& own) {
   if (domain.single_rank()) return own;
   CommonMotion all;

@@ -161,7 +161,7 @@ class Migration {
   Buffer<Neighbourhood> lies_;
 };
 
-/// What follows from the triangles and joints that are here.
+/// Derives arrays from the triangles and joints of this rank.
 /// @param space  where the triangles go when they have settled in
 void settle_in(World& w, Space space) {
   const Index count = w.triangles.size(), joints = w.joints.size();
@@ -317,13 +317,13 @@ class Mesh final : public Shareable {
   Buffer<Mat2> seen_shapes_;    ///< likewise
 };
 
-/// What follows from couples that came with their triangles. A search finds it for its own.
+/// Derives arrays from couples that came with their triangles. A search finds them for its own.
 void go_on_with_couples(World& w) {
   derive_couples(w);
   select_active_ghosts(w);
 }
 
-/// What all ranks know alike, as rank 0 has it.
+/// Data that all ranks share, as rank 0 has them.
 void take_common(World& w, Communicator& ranks) {
   take_time_from_first(ranks, w);
   take_from_first(ranks, w.reach.drift);
@@ -441,7 +441,7 @@ void rebalance(World& w) {
 void collect(World& part, World& whole) {
   World copy = part;
   move_to(copy, Space::host);
-  // What lies around a triangle stays: rank 0 knows the whole mesh.
+  // Neighbours of a triangle stay: rank 0 knows the whole mesh.
   Migration(copy, std::vector<int>(at(part.triangles.size()), 0)).go();
 
   Communicator& ranks = *part.domain.ranks;

@@ -16,7 +16,7 @@ namespace breccia::fdem {
 /// @param space  of the part
 World share_out(World& whole, Communicator& ranks, const DomainConfig& config,
                 Space space = Space::host);
-/// The same where each rank has made a part of its own, on the host: the triangles that `own` marks
+/// Shares out where each rank has made its own part, on the host: the triangles that `own` marks
 /// and ghosts of those across their edges. Ids, vertices and joint_number are those of the whole
 /// mesh, and so are the parameters, holds, marks of vertices and bundles. Couples are yet to be
 /// found.

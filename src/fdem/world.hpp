@@ -51,7 +51,7 @@ struct FluidState {
   std::vector<LoadedEdge> wet;  ///< sides of cracks, two by two, by global id
 };
 
-/// What a rank knows of the whole mesh besides its part of it.
+/// Data of the whole mesh that a rank has besides its part.
 struct WholeMesh {
   Buffer<Index> joint_number;      ///< of the local joints in the whole mesh, ascending
   std::vector<std::uint8_t> tied;  ///< 1: some corners at this vertex move as one, or did
@@ -111,7 +111,7 @@ struct World {
          bundles.nodes, bundles.leader, joint_ends, edges, motions, last_motions, load_laws, stress,
          overshoot, reached, domain.owned_there, domain.migration_reference);
   }
-  /// Those that derive() and a search fill.
+  /// Visits the arrays that derive() and a search fill.
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
@@ -255,7 +255,7 @@ struct EnergySplit {
   double fracture_open = 0.0, fracture_slide = 0.0;  ///< of fracture, by mode  [J/m]
 };
 EnergySplit energy_split(const World& w);
-/// The same, and keeps the largest energy seen, for the relative error.
+/// The balance of all energies; keeps the largest energy seen, for the relative error.
 EnergySplit energies(World& w);
 
 }  // namespace breccia::fdem

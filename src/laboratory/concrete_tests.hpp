@@ -10,7 +10,7 @@
 
 namespace breccia::laboratory {
 
-/// What all specimens are made of.
+/// Material and packing of all specimens.
 struct Sample {
   dem::MaterialConfig material;
   dem::ContactConfig contact;

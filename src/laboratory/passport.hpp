@@ -1,5 +1,5 @@
 #pragma once
-// What tests of a material show, beside what a laboratory measured: curves, numbers, one page.
+// Passport of a material: its tests beside a laboratory's, as curves, numbers, one page.
 
 #include <map>
 #include <optional>

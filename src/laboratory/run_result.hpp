@@ -1,5 +1,5 @@
 #pragma once
-// What a run left in its folder, as numbers by name.
+// Results in the folder of a run, as numbers by name.
 
 #include <map>
 #include <optional>

@@ -16,7 +16,7 @@ struct PlannedRun {
   std::string digest;                  ///< of the completed case: what finished runs are known by
 };
 
-/// What became of it.
+/// Outcome of the run.
 struct FinishedRun {
   int exit_code = 0;    ///< of the program; 9: done, but a check of the case failed
   bool kept = false;    ///< was finished before; nothing was computed
@@ -27,7 +27,7 @@ struct FinishedRun {
   bool complete() const { return exit_code == 0 || exit_code == 9; }
 };
 
-/// What the runs share.
+/// Resources that the runs share.
 struct Workers {
   int jobs = 1;                      ///< runs at a time
   int threads = 1;                   ///< of each run

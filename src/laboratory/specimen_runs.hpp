@@ -19,7 +19,7 @@ struct Bench {
   int seeds = 3;
   /// For so many runs, the largest of which takes so many bytes.
   std::function<Workers(std::size_t, double)> workers;
-  /// What is called as each of these runs ends.
+  /// Callback at the end of each of these runs.
   std::function<std::function<void(std::size_t, const FinishedRun&)>(
       const std::vector<PlannedRun>&)>
       tell;

@@ -50,7 +50,7 @@ struct SweepRow {
   std::optional<RunResult> result;  ///< of a complete run
 };
 
-/// What the runs of a sweep show.
+/// Results of the runs of a sweep.
 class SweepTable {
  public:
   /// @param measures  paths as RunResult::number takes them; none: every check, what broke, the

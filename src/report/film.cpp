@@ -287,7 +287,7 @@ std::size_t Film::bytes() const {
 
 namespace {
 
-/// What is left when a film is thought to take no more than `limit` bytes.
+/// The film thinned out until it is thought to take no more than `limit` bytes.
 Selection expected_within(const Survey& survey, double limit) {
   Selection selection = Selection::whole(survey);
   while (selection.estimate(survey) > limit && selection.tighten(survey)) {

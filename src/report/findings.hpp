@@ -1,5 +1,5 @@
 #pragma once
-// What a run shows, in three sentences: what broke and when, where and how, what it bore or how
+// Findings of a run, in three sentences: what broke and when, where and how, what it bore or how
 // near it was to breaking. `run` says them at its end, a report at its beginning.
 
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// What the case file of a result folder tells about what stands around the elements.
+// Surroundings of the elements (walls, supports), from the case file of a result folder.
 
 #include <map>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// What the frames of a run have in common, and between which ends their numbers lie.
+// Survey of a run's frames: what they have in common, and the ranges of their numbers.
 
 #include <string>
 #include <vector>

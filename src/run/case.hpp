@@ -91,7 +91,7 @@ std::unique_ptr<Method> make_method(const Case& read, const Exec& exec, Communic
 /// @throws InputError if the model cannot be built, or does not fit
 std::unique_ptr<Method> method_to_look_at(const Case& read);
 
-/// What a run of the case is told of it; the rest of the plan as it is by default.
+/// The plan of a run with what the case says; the rest of it as it is by default.
 RunPlan plan_of(const Case& read);
 
 /// Builds the model and adds it to a file. Returns a few words about its size.

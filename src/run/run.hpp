@@ -32,7 +32,7 @@ struct Limits {
   std::string stage{};                ///< ends with this stage; empty: with the case
 };
 
-/// What a run is told besides its method.
+/// Plan of a run, besides its method.
 struct RunPlan {
   CaseConfig config;
   std::string case_name;    ///< for people

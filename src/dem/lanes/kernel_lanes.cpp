@@ -14,7 +14,7 @@ void fetch(const View<T>& array, Index first) {
   constexpr auto bytes = static_cast<Index>(width * sizeof(T));
   for (Index byte = 0; byte < bytes; byte += 64) __builtin_prefetch(items + byte);
 }
-/// Likewise for all that a motion reads: more arrays than the processor foresees.
+/// Fetches all that a motion reads ahead: more arrays than the processor foresees.
 void fetch(const MoveElements& kernel, Index first) {
   const Kick& kick = kernel.kick;
   fetch(kick.state, first);

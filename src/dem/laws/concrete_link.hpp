@@ -7,7 +7,7 @@
 
 namespace breccia::dem {
 
-/// What a link keeps from step to step.
+/// State of a link, kept from step to step.
 template <class R>
 struct LinkState {
   R opening;         ///< largest opening so far, >= 0; link_broken or link_released afterwards  [m]
@@ -19,7 +19,7 @@ inline constexpr double link_broken =
     -1.0;  ///< LinkState::opening of a link that answers as a contact
 inline constexpr double link_released = -2.0;  ///< ... of a link whose ends have parted for good
 
-/// What a law answers in one step.
+/// Response of the law in one step.
 template <class R>
 struct LinkResponse {
   R normal;          ///< N, tension positive  [N]

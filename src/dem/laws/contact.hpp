@@ -1,11 +1,11 @@
 #pragma once
-// What happens where two elements, or an element and a wall, touch that no link joins.
+// Contact law of two elements, or an element and a wall, that no link joins.
 
 #include "dem/laws/pair_motion.hpp"
 
 namespace breccia::dem {
 
-/// What a contact keeps while it lasts.
+/// State of a contact, kept while it lasts.
 struct ContactState {
   Vec3 shear;      ///< F_s on b, world frame  [N]
   Vec3 moment;     ///< M on b, world frame  [N m]
@@ -14,7 +14,7 @@ struct ContactState {
   double overlap;  ///< delta, of the last step  [m]
 };
 
-/// What a contact answers in one step.
+/// Response of a contact in one step.
 struct ContactResponse {
   double pressure;  ///< normal force, compression positive  [N]
   Vec3 shear;       ///< on b  [N]

@@ -41,7 +41,7 @@ struct BondSlip {
   }
 };
 
-/// What an interface link keeps from step to step; all along directions that move with the bar.
+/// State of an interface link, kept from step to step; along directions that move with the bar.
 template <class R>
 struct InterfaceStateOf {
   R gap;        ///< radial displacement since the start, opening positive  [m]
@@ -53,7 +53,7 @@ struct InterfaceStateOf {
 };
 using InterfaceState = InterfaceStateOf<double>;
 
-/// What an interface link answers in one step.
+/// Response of an interface link in one step.
 template <class R>
 struct InterfaceResponseOf {
   Vec3Of<R> force;  ///< on b, the concrete  [N]

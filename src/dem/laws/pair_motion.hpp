@@ -36,7 +36,7 @@ struct PairMotion {
     const Vec3Of<R> w = cross(half_turn, v);
     return v + turn_scale * (w + cross(half_turn, w));
   }
-  /// What is left of a vector across the normal.
+  /// Part of a vector across the normal.
   BR_HD Vec3Of<R> tangential(const Vec3Of<R>& v) const { return v - dot(v, normal) * normal; }
 };
 

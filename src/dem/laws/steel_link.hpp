@@ -5,7 +5,7 @@
 
 namespace breccia::dem {
 
-/// What a steel link keeps from step to step.
+/// State of a steel link, kept from step to step.
 template <class R>
 struct SteelStateOf {
   R plastic_strain;  ///< eps_p, axial  [-]
@@ -16,7 +16,7 @@ struct SteelStateOf {
 using SteelState = SteelStateOf<double>;
 inline constexpr double steel_ruptured = -1.0;
 
-/// What a steel link answers in one step.
+/// Response of a steel link in one step.
 template <class R>
 struct SteelResponseOf {
   R normal;          ///< N, tension positive  [N]
@@ -103,7 +103,7 @@ struct SteelLink {
     return r;
   }
 
-  /// The same for a pack of links of which none is ruptured, yields or breaks.
+  /// Response of a pack of links of which none is ruptured, yields or breaks.
   /// @returns false, having done nothing, if one is or does
   template <class R>
   BR_HD bool elastic_response(const StiffnessOf<R>& k, const R& length, const R& radius,
@@ -139,7 +139,7 @@ struct SteelLink {
   }
 
  private:
-  /// What a step of elastic motion brings about.
+  /// Response to a step of elastic motion.
   template <class R>
   struct Trial {
     R area;                                 ///< of the section  [m2]
@@ -164,7 +164,7 @@ struct SteelLink {
     t.twist = dot(t.moment_before, motion.normal) * motion.normal - k.twist * twist_turn;
     return t;
   }
-  /// What the plastic hinge bears at most.
+  /// Largest moment of the plastic hinge.
   template <class R>
   struct Limits {
     R bending, twist, shear;  ///< [N m], [N m], [N]
@@ -185,7 +185,7 @@ struct SteelLink {
     r.shear = state.shear;
     r.moment = state.moment;
   }
-  /// What is left of a ruptured link.
+  /// Response of a ruptured link.
   BR_HD static void press(const Stiffness& k, double stretch, SteelResponse& r) {
     const bool pressed = stretch < 0.0;
     r.normal = pressed ? k.axial * stretch : 0.0;

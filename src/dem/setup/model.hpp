@@ -9,11 +9,11 @@
 
 namespace breccia::dem {
 
-/// What joins two elements from the start.
+/// Kind of a bond that two elements have from the start.
 enum class LinkKind : std::uint8_t { concrete, steel, interface, parallel, ldpm };
 inline constexpr std::size_t link_kinds = 5;
 
-/// What prepare makes of a case and dem/setup turns into a world. Element i has global id i.
+/// A case's model, made by prepare and made a world by dem/setup. Element i has global id i.
 struct Model {
   std::vector<std::string> groups;     ///< names of the bodies
   std::vector<std::int16_t> group;     ///< of each element, index into groups

@@ -16,7 +16,7 @@ Config config_at(Config config, const StageProgress& progress);
 /// Adds the motion of wall k to World::prescribed. Returns its number.
 std::size_t add_motion(World& w, const WallConfig& wall, std::size_t k);
 
-/// What is wrong with the stages of a case, as sentences.
+/// Problems of the stages of a case, as sentences.
 std::vector<std::string> stage_problems(const Config& config);
 
 }  // namespace breccia::dem

@@ -11,11 +11,11 @@ namespace breccia::dem {
 /// kernel for the links [begin, end) on the calling thread.
 template <class Kernel>
 void run_packs(Lanes lanes, const Kernel& kernel, Index begin, Index end);
-/// Likewise for elements.
+/// Packs of elements.
 void run_packs(Lanes lanes, const GatherForces& kernel, Index begin, Index end);
 /// @returns the least of the numbers [begin, end), none of which is negative
 double least(Lanes lanes, const View<const double>& numbers, Index begin, Index end);
-/// Likewise for elements that move. @returns whether one of them has used its margin up
+/// Packs of elements that move. @returns whether one of them has used its margin up
 bool run_packs(Lanes lanes, const MoveElements& kernel, Index begin, Index end);
 
 /// add for the links [from, to).

@@ -18,7 +18,7 @@ struct ContactPair {
   double friction;    ///< mu  [-]
 };
 
-/// What a couple of triangles remembers.
+/// State of a couple of triangles.
 struct CoupleState {
   double drag[6];  ///< tangential force of a's edges through b, then of b's through a  [N/m]
   double scale;    ///< of its normal penalty; 0: it is new  [-]
@@ -164,7 +164,7 @@ struct EdgesInTurn {
   }
 };
 
-/// What broken joints leave to the contact of their faces.
+/// Shear force and work that a broken joint hands to the contact of its faces.
 struct JointLegacy {
   View<const Index> edge_a, edge_b;
   View<const double> pressing, shear_at_break;  ///<  [N/m]

@@ -137,7 +137,7 @@ std::uint64_t changed_bits(const World& w) {
   return bits;
 }
 
-/// Those bits on a device, as its move has noted them, and whether a margin is used up.
+/// Change bits on a device, as its move has noted them, and whether a margin is used up.
 std::uint64_t noted_bits(World& w) {
   std::int32_t flags[2];
   peek_marked_bytes(flags, w.device_flags.data(), w.exec.space, sizeof flags);

@@ -1,5 +1,5 @@
 #pragma once
-// What a search of couples asks of the mesh: which triangles can touch, and which pairs of them.
+// Kernels of the couple search: which triangles can touch, and which pairs of them.
 
 #include "core/energy.hpp"
 #include "domain/drift.hpp"
@@ -85,7 +85,7 @@ struct MayTouch {
   }
 };
 
-/// What the corners of a triangle add to the common motion.
+/// Contribution of a triangle's corners to the common motion.
 struct MotionOf {
   View<const TriangleNodes> nodes;
   OwnedView owned;
@@ -97,7 +97,7 @@ struct MotionOf {
   }
 };
 
-/// What couples that leave the list have spent.
+/// Energy spent by couples that leave the list.
 struct SpentBy {
   View<const Index> couple, a;
   View<const CoupleState> state;

@@ -57,7 +57,7 @@ Buffer<Index> waking_joints(World& w) {
                               std::as_const(w.joint_ends).view(), some_vertices(w, parted)});
 }
 
-/// What waking has touched.
+/// Triangles and vertices whose joints have woken.
 struct Woken {
   Buffer<Index> triangles;      ///< where kernels can read them, some more than once
   std::vector<Index> vertices;  ///< ascending

@@ -7,7 +7,7 @@
 
 namespace breccia::fdem {
 
-/// What joints tell the host: flag 0, one has softened; flag 1, one has broken.
+/// Flags for the host: 0, a joint has softened; 1, a joint has broken.
 enum Change : Index { change_softened = 0, change_broken = 1 };
 
 /// Whether the vertices that touch must be marked anew in this step.

@@ -1,5 +1,5 @@
 #pragma once
-// What ties triangles along their common edges: their arrays and geometry.
+// Joints: bonds of triangles along common edges, their arrays and geometry.
 
 #include "core/precision.hpp"
 #include "exec/buffer.hpp"

@@ -33,7 +33,7 @@ class Rings {
       begin = end;
     }
   }
-  /// Those around one vertex, behind what is listed.
+  /// Appends the triangles around one vertex.
   void add_triangles(Index vertex, std::vector<Index>& triangles) const {
     const auto key = static_cast<std::uint64_t>(vertex);
     const auto all = corners_.host();

@@ -60,7 +60,7 @@ BR_HD inline auto meet(const Vec2Of<R> (&p)[3], const Vec2Of<R> (&q)[3]) {
   return near && !outside(p, TargetOf<R>::of(q)) && !outside(q, TargetOf<R>::of(p));
 }
 
-/// What an edge meets inside another triangle, with the potential phi = 3 min(l0, l1, l2): 0 on the
+/// Path of an edge inside another triangle, with the potential phi = 3 min(l0, l1, l2): 0 on the
 /// border, 1 in the middle.
 template <class R>
 struct EdgeOverlapOf {
@@ -215,7 +215,7 @@ BR_HD inline double potential_integral(const Target& of, const Polygon& over) {
   return sum;
 }
 
-/// What the plain forces lack to be the gradient of the pair's energy p (Int phi_a + Int phi_b):
+/// Terms that make the plain forces the gradient of the pair's energy p (Int phi_a + Int phi_b):
 /// the potential's own change of shape. Adds no force or moment to a triangle as a whole.
 BR_HD inline void add_shape_forces(const Target& of, const Polygon& over, double penalty,
                                    Vec2 (&force)[3]) {

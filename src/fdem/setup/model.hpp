@@ -10,7 +10,7 @@
 
 namespace breccia::fdem {
 
-/// What prepare makes of a case and fdem/setup turns into a world. Triangle t has global id t.
+/// A case's model, made by prepare and made a world by fdem/setup. Triangle t has global id t.
 /// Triangles that share two vertices are neighbours; set-up joins them where a joint law is given
 /// for their materials, and splits the mesh, so that each triangle owns its three nodes.
 struct Model {

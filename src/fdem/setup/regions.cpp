@@ -10,7 +10,7 @@
 namespace breccia::fdem {
 namespace {
 
-/// What a region takes, with its names looked up once.
+/// Membership of a region, with its names looked up once.
 class Region {
  public:
   Region(const Model& model, const RegionConfig& config, const std::string& where)

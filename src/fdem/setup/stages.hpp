@@ -11,7 +11,7 @@ namespace breccia::fdem {
 /// The case with what its stages up to the present one have changed.
 Config config_at(Config config, const StageProgress& progress);
 
-/// What is wrong with the stages of a case, as sentences.
+/// Problems of the stages of a case, as sentences.
 std::vector<std::string> stage_problems(const Config& config);
 
 }  // namespace breccia::fdem

@@ -21,7 +21,7 @@ struct LoadAmplitude {
   Vec2 at(double time) const { return {x.at(time), y.at(time)}; }
 };
 
-/// What acts on an edge. Pressure and traction act per present length; a force is dead: it stays as
+/// Load on an edge. Pressure and traction act per present length; a force is dead: it stays as
 /// given however its edges deform. A fluid is a pressure that spreads into cracks.
 enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing, fluid };
 

@@ -306,7 +306,7 @@ struct StableStep {
     }
     return sum;
   }
-  /// What an absorbing edge takes from each of its ends, half its length times the impedance: both
+  /// Dashpot of an absorbing edge at each of its ends, half its length times the impedance: both
   /// of its impedances are at most the larger one.
   BR_HD double dashpot(Index t, int k, const Vec2 (&x)[3]) const {
     return 0.5 * norm(x[(k + 1) % 3] - x[k]) * dashpots[t].at[k];

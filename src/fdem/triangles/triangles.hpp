@@ -1,5 +1,5 @@
 #pragma once
-// What a deformable triangle carries.
+// Arrays of deformable triangles.
 
 #include "exec/buffer.hpp"
 #include "fdem/laws/elastic_triangle.hpp"

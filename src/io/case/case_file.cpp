@@ -91,7 +91,7 @@ struct CaseReader::State {
     problems.push_back({line, (node != nullptr && !from_file ? "--set " : "") + printable(text) +
                                   (*meaning != '\0' ? "\n    " + std::string(meaning) : "")});
   }
-  /// What the problem noted last was meant to be, where it stands in the file.
+  /// Suggestion for the problem noted last, where it stands in the file.
   void correct(const toml::source_region& source, const std::string& old, const std::string& now) {
     if (source.path != nullptr && !now.empty())
       problems.back().correction = {source.begin.line, source.begin.column, old, now};

@@ -19,7 +19,7 @@ KeyList key_list(std::vector<KeyInfo> dem, const std::vector<KeyInfo>& fdem);
 /// The keys whose path begins with `words`, or else those in whose path, meaning or allowed words
 /// each word stands, whatever its capitals.
 std::vector<KeyInfo> keys_about(const std::vector<KeyInfo>& keys, const std::string& words);
-/// Those that are about at least one of several words.
+/// Keys that are about at least one of several words.
 std::vector<KeyInfo> keys_about_each(const std::vector<KeyInfo>& keys, const std::string& words);
 
 /// "[material.NAME]", "[[body]]", "[body.pack]" of a key in that table; empty at the top.

@@ -13,7 +13,7 @@ struct MaterialTarget {
   std::string unit;
 };
 
-/// What a method takes for a material: keys of [material.<name>].
+/// A material's keys of [material.<name>] for a method.
 struct MaterialBlock {
   std::string method;  ///< dem3d, fdem2d
   std::string record;  ///< how the local numbers among them were found

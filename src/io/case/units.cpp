@@ -138,7 +138,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// What is typed for a unit in a hurry, as this program writes it: "N/mm²", "kg/m**3", "degrees".
+/// A unit typed in a hurry ("N/mm²", "kg/m**3", "degrees"), as this program writes it.
 std::string plain_unit(std::string_view given) {
   static const std::vector<std::pair<std::string_view, std::string_view>> spellings{
       {"\u00b2", "2"}, {"\u00b3", "3"},   {"**", ""},         {"\u00b7", " "},   {"\u03bc", "u"},

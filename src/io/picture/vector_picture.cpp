@@ -75,7 +75,7 @@ std::string of_pdf(std::string_view escaped) {
   return text;
 }
 
-/// What stands between two marks of a file.
+/// Text between two marks of a file.
 std::string_view between(std::string_view content, std::string_view begin, std::string_view end) {
   const std::size_t at = content.find(begin);
   if (at == std::string_view::npos) return {};

@@ -16,7 +16,7 @@ std::string svg_content(const Frame& frame, const RenderOptions& options,
 std::string pdf_content(const Frame& frame, const RenderOptions& options,
                         const std::string& about = "");
 
-/// What such a file says in its metadata; empty if it says nothing.
+/// Metadata of such a file; empty if it has none.
 std::string about_drawing(const std::string& content);
 
 }  // namespace breccia

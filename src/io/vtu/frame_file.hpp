@@ -1,5 +1,5 @@
 #pragma once
-// What is read of a file of a frame, whatever its format.
+// Content of a frame's file, whatever its format.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// What touches in a frame, and the walls, as files of their own.
+// Contacts of a frame, and the walls, as files of their own.
 
 #include <vector>
 
@@ -14,7 +14,7 @@ struct Around {
   void add(const Around& other);
 };
 
-/// What touches in all of a model.
+/// Contacts of a whole model.
 struct Touching {
   std::vector<FrameContact> contacts;  ///< by ascending ids, once sorted
   Around around;                       ///< the model

@@ -114,7 +114,7 @@ void put_count(hid_t root, const char* name, std::size_t count) {
   made(H5Dwrite(to.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &number));
 }
 
-/// What VTKHDF calls an array that is no field; others keep their names.
+/// VTKHDF's name of an array that is no field; others keep their names.
 std::string vtkhdf_name(const std::string& name) {
   if (name == "connectivity") return "Connectivity";
   if (name == "offsets") return "Offsets";

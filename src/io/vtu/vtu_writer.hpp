@@ -63,7 +63,7 @@ class FrameBlocks {
   /// The block of a whole frame, or of an array without a carrier, compressed.
   /// @throws DeviceError for want of memory
   std::string packed(const Block& block) const;
-  /// Likewise, of bytes that were put together from parts.
+  /// Writes a file of bytes that were put together from parts.
   std::string packed(const Block& block, std::span<const std::byte> bytes) const;
   /// The files, from all blocks compressed.
   FrameContents contents(const std::vector<std::string>& packed) const;
@@ -76,7 +76,7 @@ class FrameBlocks {
     FrameNumber type;
     std::size_t rows, components, array;
   };
-  /// What a file holds and, of a .vtu, its XML head: texts and, after each but the last, the place
+  /// Content of a file and, of a .vtu, its XML head: texts and, after each but the last, the place
   /// of an array.
   struct Document {
     std::vector<std::string> text{""};

@@ -43,7 +43,7 @@ std::vector<LdpmFacet> facets_of(const std::vector<Vec3>& points,
                                  const std::vector<double>& diameter,
                                  const std::vector<Tetrahedron>& tetrahedra);
 
-/// What belongs to a particle: the pyramids between it and its facets.
+/// Volume of a particle: the pyramids between it and its facets.
 struct LdpmCell {
   double volume = 0.0;   ///<  [m3]
   double inertia = 0.0;  ///< about the particle, mean over three axes, over the density  [m5]

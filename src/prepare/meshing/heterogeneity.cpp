@@ -24,7 +24,7 @@ void cells_near(const Vec2& place, double edge, int below, int above, const Visi
                 static_cast<std::uint32_t>(j),
             Vec2{static_cast<double>(i), static_cast<double>(j)});
 }
-/// Likewise cubes of a lattice through all space; their numbers repeat after 2^21 cubes.
+/// Numbers of the cubes of a lattice through all space, which repeat after 2^21 cubes.
 template <class Visit>
 void cells_near(const Vec3& place, double edge, int below, int above, const Visit& visit) {
   const std::int64_t i0 = cell_of(place.x, edge), j0 = cell_of(place.y, edge),

@@ -24,7 +24,7 @@ std::string path_in(const std::string& folder, const std::string& file) {
   return (std::filesystem::path(folder) / file).string();
 }
 
-/// What is cut out of a body.
+/// Cut of a body.
 class Cut {
  public:
   Cut(const CutConfig& cut, const std::string& case_folder)

@@ -190,7 +190,7 @@ class DemFrame {
     part_.frame.line_fields.push_back(std::move(force_));
   }
 
-  /// What presses on what, by the forces of the last step.
+  /// Contacts that press, by the forces of the last step.
   void add_contacts() {
     const auto& state = elements_->state;
     const auto& id = elements_->id;

@@ -18,7 +18,7 @@ namespace {
 
 using namespace fdem;
 
-/// What a rank cannot know by itself.
+/// Places of fragments and lines, which a rank cannot know by itself.
 struct Placed {
   std::vector<Index> fragment;  ///< of each own triangle
   std::vector<Index> line;      ///< place of each own line

@@ -9,7 +9,7 @@
 
 namespace breccia {
 
-/// What is to be made of a frame.
+/// Files and pictures asked for of a frame.
 struct FrameWish {
   bool files = true;
   std::optional<RenderOptions> picture;  ///< without an extent: that of this frame
@@ -30,7 +30,7 @@ struct FrameOutput {
 /// bytes for any number of them.
 FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads);
 
-/// Likewise, with the files of what touches.
+/// Output of a frame, with the files of contacts.
 FrameOutput frame_output(const FramePart& whole, const FrameWish& wish, int threads);
 
 /// The picture that is wished for; notes what it shows.

@@ -48,7 +48,7 @@ std::vector<int> workers(const FrameBlocks& files, int ranks, const FrameWish& w
   return worker;
 }
 
-/// What of a frame shows in a picture by a field, as columns of a part and of the whole.
+/// Items of a frame that show in a picture by a field, as columns of a part and of the whole.
 class Sight {
  public:
   /// @param whole  gets as many items as there are in all; null on ranks other than 0
@@ -163,7 +163,7 @@ void FrameOfParts::see() {
   for (const Message& message : messages) sight.take(message);
 }
 
-/// What this part has of a block: how many items, where each stands behind the first, values.
+/// This part's share of a block: how many items, where each stands behind the first, values.
 void FrameOfParts::give_values(Message& message, const Block& block) const {
   const FrameBlocks::Array& array = files_->array_of(block);
   const std::vector<std::int32_t>& places = part_.places.of(array.carrier);

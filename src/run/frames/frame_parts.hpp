@@ -22,7 +22,7 @@ class FrameOfParts {
 
  private:
   using Block = FrameBlocks::Block;
-  /// What one rank has of a block.
+  /// One rank's share of a block.
   struct Values {
     std::vector<std::uint16_t> behind;  ///< items from the first one of the block on
     std::span<const std::byte> bytes;

@@ -8,7 +8,7 @@
 
 namespace breccia {
 
-/// What the arrays of a run will take at most while nothing touches yet, search included.  [B]
+/// Most memory of a run's arrays while nothing touches yet, search included.  [B]
 std::size_t device_bytes(const dem::Model& model);
 std::size_t device_bytes(const fdem::Model& model);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a run will take, told before its model is built: from small specimens of its bodies.
+// Forecast of time and memory before a model is built: from small specimens of its bodies.
 
 #include <string>
 

@@ -18,7 +18,7 @@
 namespace breccia {
 namespace {
 
-/// What checks and pictures may name.
+/// Names that checks and pictures may use.
 struct Shown {
   std::set<std::string> numbers;  ///< paths into summary.json, without those of probes
   Frame frame;

@@ -51,7 +51,7 @@ struct CheckpointFile {
   std::int64_t step;
 };
 
-/// Those of a folder `checkpoints`, newest first.
+/// Checkpoints of a folder `checkpoints`, newest first.
 std::vector<CheckpointFile> list_checkpoints(const std::string& folder);
 
 /// Reads the newest checkpoint that is whole; tells `warn` about each damaged one it passes by.

@@ -9,7 +9,7 @@
 
 namespace breccia {
 
-/// What was read and what is to come.
+/// Text at the start: what was read and what is to come.
 /// @param end_time   simulated time at which the run ends  [s]
 /// @param end_steps  steps after which it ends at the latest
 std::string opening_text(const Summary& summary, double end_time, std::int64_t end_steps,
@@ -22,7 +22,7 @@ std::string broken_text(const std::vector<Fact>& facts);
 /// @param kinetic_share  see Summary
 std::string inertia_text(double mass_scaling, double kinetic_share);
 
-/// What came out, and where it lies.
+/// Text at the end: what came out, and where it lies.
 std::string closing_text(const Summary& summary, std::int64_t frames, const std::string& folder);
 
 }  // namespace breccia

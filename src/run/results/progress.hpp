@@ -1,5 +1,5 @@
 #pragma once
-// What a person sees while a run goes on: a bar on a terminal, plain lines elsewhere.
+// Progress of a run for a person: a bar on a terminal, plain lines elsewhere.
 
 #include <chrono>
 #include <cstdint>

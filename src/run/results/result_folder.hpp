@@ -5,7 +5,7 @@
 
 namespace breccia {
 
-/// What to do with a run that a folder already holds.
+/// Choice about a run that a folder already holds.
 enum class Existing { refuse, replace };
 
 /// A result folder that this process has locked; the lock ends with the object or the process.
