@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Counts the lines of src: by folder, by purpose, and what a reader of one method meets. Tables for docs/architecture.md.
+
+Every file has one purpose, the first whose pattern fits; a file without one is an error."""
+
+import fnmatch
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).parent.parent
+FOLDERS = ["exec math", "core", "domain", "dem", "fdem", "fdem3", "prepare", "io", "run", "app", "report laboratory api"]
+PURPOSES = [  # words, lines at 20a0ddb, patterns
+    ("laws", 1313, "dem/laws/* fdem/laws/*"),
+    ("device only: launches led by its clock, wide kernels, graphs, memory", 2434,
+     "*/stepping/device_run.cpp */stepping/wide_kernels.hpp core/device_run.hpp core/timed.hpp core/step_clock.hpp "
+     "exec/*device* exec/cuda.hpp exec/early.hpp exec/launch* exec/lockstep* exec/multiprocessors.hpp exec/peer_memory* "
+     "exec/shadow_launches* exec/step_graph* exec/staging* domain/peer_link*"),
+    ("tiles in a multiprocessor's memory", 0, "dem/tiles/*"),
+    ("packs only (AVX2, AVX-512)", 1132,
+     "*/lanes/* */stepping/kernel_lanes* fdem/contact/couple_lanes.hpp exec/lanes* exec/whole_packs.hpp math/pack.hpp math/lanes.hpp math/records.hpp"),
+    ("ranks", 4805, "domain/* dem/ranks* fdem/ranks* */relations.hpp core/relation.hpp run/method/shared_world.hpp run/frames/frame_parts*"),
+    ("search, pair lists, travel", 2055,
+     "core/broad_phase* core/cell_grid* core/pair_list* core/incidence* core/travel* core/select* core/rows* core/drift* "
+     "dem/search* fdem/contact/search* fdem/contact/nearness*"),
+    ("ledger, probes, hash, fragments, stress", 1575,
+     "*/energy* */observe* */probes* core/probe* core/quantity* core/state_hash* core/pieces* core/unsound* core/gauge* dem/stress*"),
+    ("stages, servos, tables over time, fluid, walls with mass", 0,
+     "*/servos* */fluid/* */setup/stages* */setup/removal* core/stages* core/servo* core/table_over_time* dem/free_walls* run/stage_control*"),
+    ("state, kernels, step, set-up of the methods", 5498, "dem/* fdem/* fdem3/* core/kernel* core/stepping* core/fields* core/world_space* "
+     "core/planes* core/precision* core/region* core/read_only* core/set_up* core/on_host*"),
+    ("plain execution: arrays, loops, sort, errors; vectors", 1287, "exec/* math/*"),
+    ("case files, keys, units, checks of cases", 3128, "io/case/* core/* prepare/checks/* run/method/checks* run/method/shown* run/case*"),
+    ("packings, bars, linking, LDPM particles and facets", 1498, "prepare/packing/* prepare/ldpm/*"),
+    ("meshes and shapes", 2871, "prepare/meshing/* prepare/shapes/* prepare/*"),
+    ("pictures", 2363, "io/picture/*"),
+    ("frames: writers and readers", 1394, "io/vtu/* io/frame* run/frames/*"),
+    ("checkpoints, durable files, digests", 1235, "io/* run/results/checkpoints* run/results/result_folder*"),
+    ("outer loop, records, summary, machine", 2366, "run/*"),
+    ("command line", 1059, "app/*"),
+    ("report, laboratory, library", 0, "report/* laboratory/* api/*"),
+]
+SHARED_METHOD = "{m}/world.hpp {m}/case.hpp {m}/stepping/step.* {m}/stepping/host_run.cpp {m}/stepping/launches.hpp "
+READER = {
+    "dem": [
+        ("**the method**: world, kernels, the laws of concrete links and contacts or of triangles, joints and couples, search, the step on the host",
+         SHARED_METHOD.format(m="dem") + "dem/elements.hpp dem/element_kernels.hpp dem/pair_forces.hpp dem/link_sums.hpp dem/contacts.hpp dem/wall.hpp "
+         "dem/laws/concrete_link.hpp dem/laws/contact.hpp dem/laws/pair_motion.hpp dem/laws/tension_softening.hpp dem/links/concrete.hpp "
+         "dem/links/link_set.hpp dem/links/all.hpp dem/stepping/add_links.hpp dem/search.cpp"),
+        ("other laws: steel, interface, parallel bond, LDPM; joints that wake; fluid; walls with mass or a nose",
+         "dem/laws/* dem/links/* dem/free_walls* dem/wall_nose.hpp"),
+        ("set-up, keys, stages, servos", "dem/setup/* dem/servos*"),
+        ("energies, probes, hash, counts, stress", "dem/energy* dem/probes* dem/observe* dem/stress*"),
+        ("launches on a device, wide kernels, packs", "dem/stepping/* dem/lanes/*"),
+        ("tiles in a multiprocessor's memory", "dem/tiles/*"),
+        ("ranks", "dem/ranks* dem/relations.hpp"),
+    ],
+    "fdem": [
+        ("", SHARED_METHOD.format(m="fdem") + "fdem/triangles/* fdem/joints/joint* fdem/joints/rings.hpp fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
+         "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search*"),
+        ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/contact/nearness.hpp"),
+        ("", "fdem/setup/* fdem/servos*"),
+        ("", "fdem/energy* fdem/probes* fdem/observe*"),
+        ("", "fdem/stepping/* fdem/lanes/* fdem/contact/couple_lanes.hpp"),
+        ("", "nothing"),
+        ("", "fdem/ranks* fdem/relations.hpp"),
+    ],
+}
+
+
+def is_code(line):
+    text = line.strip()
+    return bool(text) and not text.startswith("//")
+
+
+def counted(files):
+    lines = [line for path in files for line in path.read_text().splitlines()]
+    return len(lines), sum(map(is_code, lines))
+
+
+def sorted_into(patterns, files, source):
+    """The files of each pattern list, the first that fits; and those of none."""
+    groups, left = [[] for _ in patterns], []
+    for path in files:
+        name = path.relative_to(source).as_posix()
+        fits = [k for k, words in enumerate(patterns) if any(fnmatch.fnmatch(name, word) for word in words.split())]
+        (groups[fits[0]] if fits else left).append(path)
+    return groups, left
+
+
+def main():
+    source = ROOT / "src"
+    files = sorted(path for path in source.rglob("*") if path.suffix in (".hpp", ".cpp"))
+    print("| folder | lines | code |\n|---|---|---|")
+    for names in FOLDERS:
+        own = [path for path in files if path.relative_to(source).parts[0] in names.split()]
+        print(f"| `{'`, `'.join(names.split())}` | {counted(own)[0]:,} | {counted(own)[1]:,} |")
+    print(f"| all | {counted(files)[0]:,} | {counted(files)[1]:,} |\n")
+
+    groups, left = sorted_into([patterns for _, _, patterns in PURPOSES], files, source)
+    print("| purpose | then | now | files |\n|---|---|---|---|")
+    for (words, then, _), group in zip(PURPOSES, groups):
+        print(f"| {words} | {then:,} | {counted(group)[0]:,} | {len(group)} |".replace("| 0 | ", "| - | "))
+    print()
+    print("| | DEM | FDEM |\n|---|---|---|")
+    both = {m: sorted_into([patterns for _, patterns in READER[m]], [p for p in files if p.relative_to(source).parts[0] == m], source) for m in READER}
+    for k, (words, _) in enumerate(READER["dem"]):
+        cells = []
+        for m in READER:
+            lines, code = counted(both[m][0][k])
+            cells.append("-" if lines == 0 else f"**{lines:,}** ({code:,})" if k == 0 else f"{lines:,}")
+        print(f"| {words} | {' | '.join(cells)} |")
+    left += both["dem"][1] + both["fdem"][1]
+    for path in left:
+        print(f"{path.relative_to(ROOT)} has no purpose: name one in scripts/line_table.py", file=sys.stderr)
+    return 1 if left else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
