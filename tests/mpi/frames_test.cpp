@@ -133,7 +133,30 @@ TEST(Frames, are_the_same_where_kernels_have_memory_of_their_own) {
 }
 
 /// A frame with arrays of several blocks, items across their borders, and a last, shorter block.
-Frame large_frame(bool triangles) {
+/// Tetrahedra of the points, and triangles as their joints.
+void add_solids(Frame& frame) {
+  FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, group{"group", "-", 1, {}};
+  FrameField exposed{"exposed", "-", 1, {}}, pressure{"pressure", "Pa", 1, {}};
+  for (std::int32_t i = 0; i + 3 < 40000; i += 4) {
+    frame.tetrahedra.insert(frame.tetrahedra.end(), {i, i + 1, i + 2, i + 3});
+    group.values.push_back(static_cast<float>(i / 4 % 2));
+    exposed.values.push_back(static_cast<float>(i / 4 % 16));
+    pressure.values.push_back(static_cast<float>(i));
+  }
+  for (std::int32_t i = 40000; i + 2 < 70000; i += 3) {
+    frame.triangles.insert(frame.triangles.end(), {i, i + 1, i + 2});
+    mode.values.push_back(static_cast<float>(i % 3) / 2.0F);
+    damage.values.push_back(static_cast<float>(i % 7 / 5));
+  }
+  frame.tetrahedron_fields = {group, pressure, exposed};
+  frame.triangle_fields = {mode, damage};
+  frame.line_fields.clear();
+}
+
+enum class Bodies { spheres, triangles, tetrahedra };
+
+Frame large_frame(Bodies bodies) {
+  const bool triangles = bodies == Bodies::triangles, solid = bodies == Bodies::tetrahedra;
   constexpr std::int32_t points = 70001;
   Frame frame;
   frame.step = 12;
@@ -146,12 +169,12 @@ Frame large_frame(bool triangles) {
   for (std::int32_t i = 0; i < points; ++i) {
     const auto k = static_cast<std::uint64_t>(4 * i);
     frame.position.push_back({number(k), number(k + 1), number(k + 2)});
-    if (!triangles) frame.radius.push_back(0.01 + 1e-3 * number(k + 3));
+    if (bodies == Bodies::spheres) frame.radius.push_back(0.01 + 1e-3 * number(k + 3));
     damage.values.push_back(static_cast<float>(number(k + 3)));
     for (int c = 0; c < 3; ++c) velocity.values.push_back(static_cast<float>(c * i % 1000));
   }
   FrameField force{"force", "N", 1, {}}, group{"group", "-", 1, {}};
-  for (std::int32_t i = 0; i + 20 < points; i += 2) {
+  for (std::int32_t i = 0; !solid && i + 20 < points; i += 2) {
     frame.lines.insert(frame.lines.end(), {i, i + 20});
     force.values.push_back(static_cast<float>(i));
   }
@@ -162,6 +185,7 @@ Frame large_frame(bool triangles) {
   frame.point_fields = {velocity, damage};
   frame.line_fields = {force};
   if (triangles) frame.triangle_fields = {group};
+  if (solid) add_solids(frame);
   return frame;
 }
 
@@ -190,6 +214,7 @@ FramePart part_of(const Frame& whole, int rank, int ranks) {
   redistribute(places.points, places.point);
   redistribute(places.lines, places.line);
   redistribute(places.triangles, places.triangle);
+  redistribute(places.tetrahedra, places.tetrahedron);
   Frame& f = part.frame;
   f.step = whole.step;
   f.time = whole.time;
@@ -203,6 +228,9 @@ FramePart part_of(const Frame& whole, int rank, int ranks) {
   for (const std::int32_t i : places.triangle)
     for (int k = 0; k < 3; ++k)
       f.triangles.push_back(whole.triangles[static_cast<std::size_t>(3 * i + k)]);
+  for (const std::int32_t i : places.tetrahedron)
+    for (int k = 0; k < 4; ++k)
+      f.tetrahedra.push_back(whole.tetrahedra[static_cast<std::size_t>(4 * i + k)]);
   const auto deal_fields = [](const std::vector<FrameField>& all, std::vector<FrameField>& own,
                               const std::vector<std::int32_t>& items) {
     for (const FrameField& field : all)
@@ -211,13 +239,15 @@ FramePart part_of(const Frame& whole, int rank, int ranks) {
   deal_fields(whole.point_fields, f.point_fields, places.point);
   deal_fields(whole.line_fields, f.line_fields, places.line);
   deal_fields(whole.triangle_fields, f.triangle_fields, places.triangle);
+  deal_fields(whole.tetrahedron_fields, f.tetrahedron_fields, places.tetrahedron);
   return part;
 }
 
 TEST(Frames, of_many_blocks_are_the_same_by_parts) {
-  for (const bool triangles : {false, true}) {
-    const Frame whole = large_frame(triangles);
-    for (const char* field : {"damage", "force"}) {
+  for (const Bodies bodies : {Bodies::spheres, Bodies::triangles, Bodies::tetrahedra}) {
+    const Frame whole = large_frame(bodies);
+    const bool solid = bodies == Bodies::tetrahedra;
+    for (const char* field : {"damage", solid ? "mode" : "force"}) {
       const FrameWish wish = wish_for(field);
       const Made expected = made_of(frame_output(FramePart{whole, places_in(whole), {}}, wish, 1));
       for (const int count : {2, 3, 7}) {

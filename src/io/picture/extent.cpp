@@ -69,18 +69,22 @@ std::vector<std::size_t> groups_in(const std::vector<FrameField>& fields, std::s
   return groups;
 }
 
-/// The points of each body; those of all triangles' corners, or all, where the frame tells of none.
+/// The points of each body; those of all triangles' or tetrahedra's corners, or all, where the
+/// frame tells of none.
 std::vector<std::vector<std::size_t>> bodies_of(const Frame& frame) {
   std::vector<std::vector<std::size_t>> bodies;
   const auto add = [&bodies](std::size_t body, std::size_t point) {
     if (body >= bodies.size()) bodies.resize(body + 1);
     bodies[body].push_back(point);
   };
-  const std::vector<std::size_t> of_triangle =
-      groups_in(frame.triangle_fields, frame.triangles.size() / 3);
-  for (std::size_t t = 0; t < of_triangle.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      add(of_triangle[t], static_cast<std::size_t>(frame.triangles[3 * t + k]));
+  const auto add_corners = [&](const std::vector<std::int32_t>& corners, std::size_t each,
+                               const std::vector<FrameField>& fields) {
+    const std::vector<std::size_t> groups = groups_in(fields, corners.size() / each);
+    for (std::size_t k = 0; k < each * groups.size(); ++k)
+      add(groups[k / each], static_cast<std::size_t>(corners[k]));
+  };
+  add_corners(frame.tetrahedra, 4, frame.tetrahedron_fields);
+  if (frame.tetrahedra.empty()) add_corners(frame.triangles, 3, frame.triangle_fields);
   if (!bodies.empty()) return bodies;
   const std::vector<std::size_t> of_point = groups_in(frame.point_fields, frame.position.size());
   for (std::size_t i = 0; i < frame.position.size(); ++i)

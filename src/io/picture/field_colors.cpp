@@ -25,13 +25,22 @@ struct Selected {
 };
 
 const std::vector<FrameField>& fields_of(const Frame& frame, Carrier carrier) {
-  if (carrier == Carrier::lines) return frame.line_fields;
-  return carrier == Carrier::triangles ? frame.triangle_fields : frame.point_fields;
+  switch (carrier) {
+    case Carrier::lines:
+      return frame.line_fields;
+    case Carrier::triangles:
+      return frame.triangle_fields;
+    case Carrier::tetrahedra:
+      return frame.tetrahedron_fields;
+    case Carrier::points:
+    case Carrier::none:
+      break;
+  }
+  return frame.point_fields;
 }
 
 std::size_t items_of(const Frame& frame, Carrier carrier) {
-  if (carrier == Carrier::lines) return frame.lines.size() / 2;
-  return carrier == Carrier::triangles ? frame.triangles.size() / 3 : frame.position.size();
+  return static_cast<std::size_t>(places_in(frame).count(carrier));
 }
 
 const FrameField* field_named(const std::vector<FrameField>& fields, const std::string& name) {
@@ -41,10 +50,14 @@ const FrameField* field_named(const std::vector<FrameField>& fields, const std::
   return nullptr;
 }
 
+/// All carriers of fields, joints behind bodies.
+constexpr std::array all_carriers{Carrier::points, Carrier::tetrahedra, Carrier::triangles,
+                                  Carrier::lines};
+
 /// @param lines_first  of two fields of a name that of lines counts
 std::optional<Selected> find(const Frame& frame, const std::string& name,
                              bool lines_first = false) {
-  std::array carriers{Carrier::points, Carrier::triangles, Carrier::lines};
+  std::array carriers = all_carriers;
   if (lines_first) std::rotate(carriers.begin(), carriers.end() - 1, carriers.end());
   for (const Carrier carrier : carriers) {
     if (const FrameField* field = field_named(fields_of(frame, carrier), name)) {
@@ -75,7 +88,7 @@ std::optional<Selected> find(const Frame& frame, const std::string& name,
 std::string names_of_fields(const Frame& frame) {
   std::string names;
   std::set<std::string> told;
-  for (const Carrier carrier : {Carrier::points, Carrier::triangles, Carrier::lines}) {
+  for (const Carrier carrier : all_carriers) {
     for (const FrameField& field : fields_of(frame, carrier)) {
       if (told.insert(field.name).second) names += (names.empty() ? "" : ", ") + field.name;
     }
@@ -112,10 +125,10 @@ bool is_category(const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Group of every point, 0 where the frame does not say.
-std::vector<std::size_t> point_groups(const Frame& frame) {
-  std::vector<std::size_t> groups(frame.position.size(), 0);
-  const FrameField* field = field_named(frame.point_fields, "group");
+/// Group of every item, 0 where the frame does not say.
+std::vector<std::size_t> groups_of(const Frame& frame, Carrier carrier) {
+  std::vector<std::size_t> groups(items_of(frame, carrier), 0);
+  const FrameField* field = field_named(fields_of(frame, carrier), "group");
   if (field == nullptr || field->components != 1 || field->values.size() != groups.size()) {
     return groups;
   }
@@ -326,7 +339,7 @@ void show_bars(const Frame& frame, const std::vector<std::size_t>& groups, const
 
 /// Damage tints every body from its own colour: only the main one starts as light concrete.
 void tint_bodies(const Frame& frame, const std::vector<float>& damage, Coloring& coloring) {
-  const std::vector<std::size_t> groups = point_groups(frame);
+  const std::vector<std::size_t> groups = groups_of(frame, Carrier::points);
   const GroupTints tints = group_tints(frame, groups);
   for (std::size_t i = 0; i < damage.size(); ++i) {
     if (groups[i] == tints.main) continue;
@@ -337,10 +350,26 @@ void tint_bodies(const Frame& frame, const std::vector<float>& damage, Coloring&
   show_bars(frame, groups, tints, damage, coloring);
 }
 
+/// Bodies of tetrahedra by group; a single one is pale.
+void fill_solids(const Frame& frame, Coloring& coloring) {
+  coloring.tetrahedra.assign(items_of(frame, Carrier::tetrahedra), pale);
+  if (frame.tetrahedra.empty()) return;
+  const std::vector<std::size_t> groups = groups_of(frame, Carrier::tetrahedra);
+  const GroupTints tints = group_tints(frame, groups);
+  if (tints.others.empty()) return;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (groups[i] != tints.main) coloring.tetrahedra[i] = tints.tint[groups[i]];
+  coloring.legend.swatches.push_back({pale, group_name(frame, tints.main)});
+  coloring.legend.swatches.insert(coloring.legend.swatches.end(), tints.others.begin(),
+                                  tints.others.end());
+}
+
 /// Colours for what the field does not colour: bodies by group, lines by kind, triangles pale.
 void fill_default_colors(const Frame& frame, Coloring& coloring) {
-  coloring.triangles.assign(items_of(frame, Carrier::triangles), pale);
-  coloring.lines.assign(items_of(frame, Carrier::lines), dark);
+  if (frame.tetrahedra.empty())
+    coloring.triangles.assign(items_of(frame, Carrier::triangles), pale);
+  coloring.lines.assign(items_of(frame, joints_of(frame)), dark);
+  fill_solids(frame, coloring);
   const FrameField* kind = field_named(frame.line_fields, "kind");
   if (kind != nullptr && kind->values.size() == coloring.lines.size()) {
     for (std::size_t i = 0; i < coloring.lines.size(); ++i) {
@@ -354,7 +383,7 @@ void fill_default_colors(const Frame& frame, Coloring& coloring) {
   if (state != nullptr && state->values.size() == coloring.lines.size()) {
     for (const float value : state->values) coloring.hidden_lines.push_back(value == 2.0F);
   }
-  const std::vector<std::size_t> groups = point_groups(frame);
+  const std::vector<std::size_t> groups = groups_of(frame, Carrier::points);
   const GroupTints tints = group_tints(frame, groups);
   coloring.points.resize(groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) coloring.points[i] = tints.tint[groups[i]];
@@ -364,48 +393,40 @@ void fill_default_colors(const Frame& frame, Coloring& coloring) {
   coloring.legend.swatches.insert(coloring.legend.swatches.begin(), main);
 }
 
-/// Broken joints as lines over the triangles, by mode: opened, slid, or of both.
-void show_cracks(const Frame& frame, Coloring& coloring) {
-  const FrameField* mode = field_named(frame.line_fields, "mode");
-  const FrameField* damage = field_named(frame.line_fields, "damage");
-  const std::size_t count = coloring.lines.size();
-  if (frame.triangles.empty() || !has_cracks(frame) || mode->values.size() != count ||
-      damage->values.size() != count)
-    return;
-  const std::array swatches{Legend::Swatch{{0.10F, 0.10F, 0.12F}, "crack, opened"},
-                            Legend::Swatch{{0.45F, 0.16F, 0.55F}, "crack, both"},
-                            Legend::Swatch{{0.10F, 0.32F, 0.72F}, "crack, slid"}};
-  std::array<bool, swatches.size()> seen{};
-  coloring.cracks = true;
-  coloring.hidden_lines.assign(count, true);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!(damage->values[i] >= 1.0F)) continue;
-    const std::size_t kind = mode->values[i] < 1.0F / 3 ? 0 : mode->values[i] < 2.0F / 3 ? 1 : 2;
-    coloring.lines[i] = swatches[kind].color;
-    coloring.hidden_lines[i] = false;
-    seen[kind] = true;
-  }
-  for (std::size_t kind = 0; kind < swatches.size(); ++kind)
-    if (seen[kind]) coloring.legend.swatches.push_back(swatches[kind]);
-}
-
-/// Triangles take the mean of their nodes.
-std::vector<Color> triangle_means(const Frame& frame, const std::vector<float>& values,
-                                  const Legend::Bar& bar) {
-  std::vector<float> means(items_of(frame, Carrier::triangles));
+/// Bodies take the mean of their corners. @param per_item  corners
+std::vector<Color> colors_by_means(const std::vector<std::int32_t>& corners, std::size_t per_item,
+                                   const std::vector<float>& values, const Legend::Bar& bar) {
+  std::vector<float> means(corners.size() / per_item);
   for (std::size_t i = 0; i < means.size(); ++i) {
     float sum = 0.0F;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t node = frame.triangles[3 * i + k];
+    for (std::size_t k = 0; k < per_item; ++k) {
+      const std::int32_t node = corners[per_item * i + k];
       const bool known = node >= 0 && static_cast<std::size_t>(node) < values.size();
       sum += known ? values[static_cast<std::size_t>(node)] : 0.0F;
     }
-    means[i] = sum / 3.0F;
+    means[i] = sum / static_cast<float>(per_item);
   }
   return mapped_colors(bar, means);
 }
 
+/// Of the points' own field.
+void color_by_points(const Frame& frame, const std::vector<float>& values,
+                     std::vector<Color> colors, Coloring& coloring) {
+  coloring.points = std::move(colors);
+  if (!coloring.legend.bar) return;
+  const Legend::Bar& bar = *coloring.legend.bar;
+  if (frame.tetrahedra.empty())
+    coloring.triangles = colors_by_means(frame.triangles, 3, values, bar);
+  else
+    coloring.tetrahedra = colors_by_means(frame.tetrahedra, 4, values, bar);
+  if (bar.map == ColorMap::damage) tint_bodies(frame, values, coloring);
+}
+
 }  // namespace
+
+Carrier joints_of(const Frame& frame) {
+  return frame.tetrahedra.empty() ? Carrier::lines : Carrier::triangles;
+}
 
 const FrameField* field_of(const Frame& frame, Carrier carrier, const std::string& name) {
   return field_named(fields_of(frame, carrier), name);
@@ -416,13 +437,13 @@ bool has_field(const Frame& frame, const std::string& field) {
 }
 
 bool has_cracks(const Frame& frame) {
-  return field_named(frame.line_fields, "mode") != nullptr &&
-         field_named(frame.line_fields, "damage") != nullptr;
+  const std::vector<FrameField>& fields = fields_of(frame, joints_of(frame));
+  return field_named(fields, "mode") != nullptr && field_named(fields, "damage") != nullptr;
 }
 
 bool colors_lines(const Frame& frame, const std::string& field) {
   const std::optional<Selected> selected = find(frame, field);
-  return selected && selected->carrier == Carrier::lines;
+  return selected && selected->carrier == joints_of(frame);
 }
 
 Coloring color_frame(const Frame& frame, const std::string& field,
@@ -440,7 +461,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
                                  names_of_fields(frame)));
   }
   coloring.legend = {};
-  coloring.of_lines = selected->carrier == Carrier::lines;
+  coloring.of_lines = selected->carrier == joints_of(frame);
   std::vector<float> values = scalar_values(frame, *selected);
   std::vector<Color> colors;
   if (is_category(field)) {
@@ -448,7 +469,8 @@ Coloring color_frame(const Frame& frame, const std::string& field,
   } else {
     const Spread spread = spread_of(values);
     coloring.legend.bar = bar_of(field, spread, range);
-    if (coloring.legend.bar->map == ColorMap::damage && selected->carrier == Carrier::triangles)
+    const bool bodies = !coloring.of_lines && selected->carrier != Carrier::points;
+    if (coloring.legend.bar->map == ColorMap::damage && bodies)
       coloring.legend.bar->map = ColorMap::ground;
     if (!map.empty()) coloring.legend.bar->map = map_named(map);
     if (log) {
@@ -458,27 +480,20 @@ Coloring color_frame(const Frame& frame, const std::string& field,
       colors = mapped_colors(*coloring.legend.bar, values);
     }
   }
-  switch (selected->carrier) {
-    case Carrier::points:
-      coloring.points = std::move(colors);
-      if (!coloring.legend.bar) break;
-      coloring.triangles = triangle_means(frame, values, *coloring.legend.bar);
-      if (coloring.legend.bar->map == ColorMap::damage) tint_bodies(frame, values, coloring);
-      break;
-    case Carrier::lines:
-      coloring.lines = std::move(colors);
-      if (coloring.legend.bar && !log && !frame.radius.empty()) size_lines(values, coloring);
-      if (field == "state") coloring.hidden_lines.clear();
-      std::fill(coloring.points.begin(), coloring.points.end(), pale);
-      break;
-    case Carrier::none:
-    case Carrier::tetrahedra:
-      break;
-    case Carrier::triangles:
-      coloring.triangles = std::move(colors);
-      break;
+  if (coloring.of_lines) {
+    coloring.lines = std::move(colors);
+    if (coloring.legend.bar && !log && !frame.radius.empty()) size_lines(values, coloring);
+    if (field == "state") coloring.hidden_lines.clear();
+    std::fill(coloring.points.begin(), coloring.points.end(), pale);
+    std::fill(coloring.tetrahedra.begin(), coloring.tetrahedra.end(), pale);
+    return coloring;
   }
-  if (!coloring.of_lines) show_cracks(frame, coloring);
+  if (selected->carrier == Carrier::points)
+    color_by_points(frame, values, std::move(colors), coloring);
+  else
+    (selected->carrier == Carrier::tetrahedra ? coloring.tetrahedra : coloring.triangles) =
+        std::move(colors);
+  show_cracks(frame, coloring);
   return coloring;
 }
 

@@ -29,11 +29,12 @@ struct Legend {
   std::vector<std::string> notes;  ///< below them
 };
 
-/// A colour an item.
+/// A colour an item. Of a frame with tetrahedra, "lines" are the triangles of its joints.
 struct Coloring {
-  std::vector<Color> points, lines, triangles;
-  bool of_lines = false;           ///< the field is one of the lines
-  bool cracks = false;             ///< lines are cracks over triangles, drawn with any field
+  std::vector<Color> points, lines;
+  std::vector<Color> triangles, tetrahedra;  ///< that are bodies
+  bool of_lines = false;                     ///< the field is one of the lines
+  bool cracks = false;             ///< lines are cracks in the bodies, drawn with any field
   std::vector<bool> hidden_lines;  ///< not to be drawn; empty: all are
   std::vector<float> line_widths;  ///< factors; empty: all 1
   std::vector<bool> inside;        ///< points that an x-ray shows; empty: it shows cracks alone
@@ -42,7 +43,10 @@ struct Coloring {
   Legend legend;
 };
 
-/// A field of points, lines or triangles by its name; null if there is none.
+/// The items that are joints or links: triangles if bodies are of tetrahedra, else lines.
+Carrier joints_of(const Frame& frame);
+
+/// A field of such items by its name; null if there is none.
 const FrameField* field_of(const Frame& frame, Carrier carrier, const std::string& name);
 
 /// @param map  name of the map of colours; empty: by the field

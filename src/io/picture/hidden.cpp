@@ -78,6 +78,12 @@ Frame without_groups(const Frame& frame, const std::set<std::string>& hidden) {
   keep_ends(part.triangles, 3,
             shown_items(frame.triangle_fields, frame.triangles.size() / 3, hidden_group),
             part.triangle_fields, place);
+  keep_ends(part.tetrahedra, 4,
+            shown_items(frame.tetrahedron_fields, frame.tetrahedra.size() / 4, hidden_group),
+            part.tetrahedron_fields, place);
+  if (part.tetrahedra.size() != frame.tetrahedra.size())  // its neighbours are seen from within
+    std::erase_if(part.tetrahedron_fields,
+                  [](const FrameField& field) { return field.name == "exposed"; });
   return part;
 }
 

@@ -14,8 +14,10 @@ namespace {
 constexpr Color ground_color{1.0F, 1.0F, 1.0F};
 
 const FrameField* line_field(const Frame& frame, const char* name) {
-  const FrameField* field = field_of(frame, Carrier::lines, name);
-  return field != nullptr && field->values.size() == frame.lines.size() / 2 ? field : nullptr;
+  const Carrier joints = joints_of(frame);
+  const FrameField* field = field_of(frame, joints, name);
+  const auto count = static_cast<std::size_t>(places_in(frame).count(joints));
+  return field != nullptr && field->values.size() == count ? field : nullptr;
 }
 
 /// Joints that have softened: thin, from yellow to red by their damage.
@@ -112,6 +114,29 @@ void size_lines(const std::vector<float>& values, Coloring& coloring) {
     coloring.hidden_lines[i] = true;
   }
   if (any) coloring.legend.notes.emplace_back("none below 5 %");
+}
+
+void show_cracks(const Frame& frame, Coloring& coloring) {
+  const FrameField* mode = line_field(frame, "mode");
+  const FrameField* damage = line_field(frame, "damage");
+  const std::size_t count = coloring.lines.size();
+  const bool spheres = frame.triangles.empty() && frame.tetrahedra.empty();
+  if (spheres || mode == nullptr || damage == nullptr) return;
+  const std::array swatches{Legend::Swatch{{0.10F, 0.10F, 0.12F}, "crack, opened"},
+                            Legend::Swatch{{0.45F, 0.16F, 0.55F}, "crack, both"},
+                            Legend::Swatch{{0.10F, 0.32F, 0.72F}, "crack, slid"}};
+  std::array<bool, swatches.size()> seen{};
+  coloring.cracks = true;
+  coloring.hidden_lines.assign(count, true);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(damage->values[i] >= 1.0F)) continue;
+    const std::size_t kind = mode->values[i] < 1.0F / 3 ? 0 : mode->values[i] < 2.0F / 3 ? 1 : 2;
+    coloring.lines[i] = swatches[kind].color;
+    coloring.hidden_lines[i] = false;
+    seen[kind] = true;
+  }
+  for (std::size_t kind = 0; kind < swatches.size(); ++kind)
+    if (seen[kind]) coloring.legend.swatches.push_back(swatches[kind]);
 }
 
 Coloring color_frame(const Frame& frame, const RenderOptions& options) {

@@ -69,6 +69,14 @@ const FrameField* vectors(const Frame& frame, const std::string& name) {
   return good ? field : nullptr;
 }
 
+/// Of the fields that hold one number of a tensor each.
+std::vector<const char*> names_of_stress(Carrier carrier) {
+  std::vector<const char*> names{"stress_xx", "stress_yy", "stress_xy"};
+  if (carrier == Carrier::tetrahedra)
+    names.insert(names.end(), {"stress_zz", "stress_yz", "stress_xz"});
+  return names;
+}
+
 }  // namespace
 
 Overlay::Overlay(const Frame& frame, const RenderOptions& options, Legend& legend)
@@ -91,14 +99,16 @@ Overlay::Overlay(const Frame& frame, const RenderOptions& options, Legend& legen
     legend.notes.push_back("longest " + with_unit(longest_, arrows_->unit));
   }
   if (options.crosses) {
-    const Carrier carrier = frame.triangles.empty() ? Carrier::points : Carrier::triangles;
+    const Carrier carrier = !frame.tetrahedra.empty() ? Carrier::tetrahedra
+                            : frame.triangles.empty() ? Carrier::points
+                                                      : Carrier::triangles;
     if (const FrameField* tensor = field_of(frame, carrier, "stress");
         tensor != nullptr && tensor->components == 6)
       stress_ = {tensor};
     else
-      for (const char* name : {"stress_xx", "stress_yy", "stress_xy"})
+      for (const char* name : names_of_stress(carrier))
         if (const FrameField* part = field_of(frame, carrier, name)) stress_.push_back(part);
-    if (stress_.size() != 1 && stress_.size() != 3)
+    if (stress_.size() != 1 && stress_.size() != names_of_stress(carrier).size())
       throw InputError(
           "this frame has no stresses; output.more = [\"stress\"], or output.crosses = true, in "
           "the case adds them");
@@ -125,17 +135,19 @@ Overlay::Tensor Overlay::stress_of(std::size_t item) const {
   };
   if (stress_.size() == 1) return {one(0), one(1), one(2), one(3), one(4), one(5)};
   const auto of = [&](std::size_t k) { return static_cast<double>(stress_[k]->values[item]); };
+  if (stress_.size() == 6) return {of(0), of(1), of(3), of(2), of(4), of(5)};
   return {of(0), of(1), 0.0, of(2), 0.0, 0.0};
 }
 
 std::vector<Vec3> Overlay::places_of_stress() const {
-  if (frame_.triangles.empty()) return frame_.position;
-  std::vector<Vec3> places(frame_.triangles.size() / 3);
-  for (std::size_t t = 0; t < places.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      places[t] =
-          places[t] +
-          (1.0 / 3.0) * frame_.position[static_cast<std::size_t>(frame_.triangles[3 * t + k])];
+  const bool solid = !frame_.tetrahedra.empty();
+  const std::vector<std::int32_t>& corners = solid ? frame_.tetrahedra : frame_.triangles;
+  if (corners.empty()) return frame_.position;
+  const std::size_t each = solid ? 4 : 3;
+  std::vector<Vec3> places(corners.size() / each);
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    places[k / each] +=
+        (1.0 / static_cast<double>(each)) * frame_.position[static_cast<std::size_t>(corners[k])];
   return places;
 }
 
@@ -177,6 +189,12 @@ void Overlay::draw_arrows(Paper& paper, const OnPaper& on, int scale) const {
         });
 }
 
+bool Overlay::shows_item(const OnPaper& on, std::size_t item) const {
+  if (!frame_.tetrahedra.empty()) return on.shows_solid(item);
+  return on.shows(frame_.triangles.empty() ? item
+                                           : static_cast<std::size_t>(frame_.triangles[3 * item]));
+}
+
 void Overlay::draw_crosses(Paper& paper, const OnPaper& on, int scale) const {
   struct Mean {
     double rr = 0.0, uu = 0.0, ru = 0.0;
@@ -192,10 +210,8 @@ void Overlay::draw_crosses(Paper& paper, const OnPaper& on, int scale) const {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const ScreenPoint p = on.camera.project(places[i]);
     if (!is_on(paper, p)) continue;
-    const std::size_t point =
-        frame_.triangles.empty() ? i : static_cast<std::size_t>(frame_.triangles[3 * i]);
     const Tensor s = stress_of(i);
-    if (!on.shows(point) || !std::isfinite(s.xx + s.yy + s.zz + s.xy + s.yz + s.xz)) continue;
+    if (!shows_item(on, i) || !std::isfinite(s.xx + s.yy + s.zz + s.xy + s.yz + s.xz)) continue;
     auto& sum = sums.at(p);
     sum.u += p.u, sum.v += p.v, sum.count += 1.0;
     sum.value.rr += on_axes(s, axes.right, axes.right);
@@ -257,6 +273,7 @@ void Overlay::draw_held(Paper& paper, const OnPaper& on, int scale) const {
 
 void Overlay::draw_edges(Paper& paper, const OnPaper& on, int scale) const {
   constexpr Color gray{0.45F, 0.46F, 0.48F};
+  if (!frame_.tetrahedra.empty()) return;  // theirs are drawn on the surface
   for (std::size_t t = 0; t + 2 < frame_.triangles.size(); t += 3)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto corner = [&](std::size_t c) {

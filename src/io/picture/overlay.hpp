@@ -11,8 +11,9 @@ namespace breccia {
 
 /// Where the points of a frame lie on the paper, and which of them one sees.
 struct OnPaper {
-  Camera camera;                           ///< in pixels of the paper
-  std::function<bool(std::size_t)> shows;  ///< a point
+  Camera camera;                                      ///< in pixels of the paper
+  std::function<bool(std::size_t)> shows;             ///< a point
+  std::function<bool(std::size_t)> shows_solid = {};  ///< a tetrahedron
 };
 
 /// Adds to the legend what the marks mean, and gives what draws them.
@@ -30,6 +31,7 @@ class Overlay {
   };
   Tensor stress_of(std::size_t item) const;
   std::vector<Vec3> places_of_stress() const;
+  bool shows_item(const OnPaper& on, std::size_t item) const;
   void draw_arrows(Paper& paper, const OnPaper& on, int scale) const;
   void draw_crosses(Paper& paper, const OnPaper& on, int scale) const;
   void draw_held(Paper& paper, const OnPaper& on, int scale) const;
@@ -39,7 +41,7 @@ class Overlay {
   const FrameField* arrows_ = nullptr;
   const FrameField* held_ = nullptr;
   bool edges_ = false;
-  std::vector<const FrameField*> stress_;  ///< one of six components, or three
+  std::vector<const FrameField*> stress_;  ///< one of six components, or three, of solids six
   double longest_ = 0.0;                   ///< arrow, in the unit of its field
   double largest_ = 0.0;                   ///< principal stress  [Pa]
 };

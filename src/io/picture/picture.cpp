@@ -8,6 +8,7 @@
 #include "io/picture/annotation.hpp"
 #include "io/picture/layout.hpp"
 #include "io/picture/scene.hpp"
+#include "io/picture/solid.hpp"
 #include "io/picture/walls.hpp"
 
 namespace breccia {
@@ -55,18 +56,11 @@ void draw_bars(Image& image, const Canvas& canvas, const Coloring& coloring, con
     }
 }
 
-/// Spheres that are faded, and what lies among them: bars, other bodies, lines.
-Image see_through(const Canvas& canvas, const Frame& frame, const Coloring& coloring, Scene& scene,
-                  float relief, int threads, std::uint8_t ground) {
+/// Lays what is faded over what lies within it.
+/// @param image  of what lies within, on its canvas
+void lay_veil(Image& image, const Canvas& within, const Image& veil, const Canvas& canvas) {
   constexpr float left = 0.22F;    // of what is faded
   constexpr float before = 0.16F;  // of what is faded, over what it hides
-  Canvas within(canvas.width, canvas.height);
-  draw_spheres(within, chosen_of(scene, coloring.inside), scene.clip, threads);
-  draw_lines(within, frame, coloring, scene, threads);
-  Image veil = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
-  smooth_outlines(veil, canvas, scene.looks, threads);
-  Image image = shade(within, scene.looks, scene.clip, relief, threads, ground);
-  smooth_outlines(image, within, scene.looks, threads);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const std::size_t at = canvas.row(y) + static_cast<std::size_t>(x);
@@ -77,11 +71,32 @@ Image see_through(const Canvas& canvas, const Frame& frame, const Coloring& colo
               static_cast<std::size_t>(x),
           shows ? before : left);
     }
+}
+
+/// Spheres that are faded, and what lies among them: bars, other bodies, lines.
+Image see_through(const Canvas& canvas, const Frame& frame, const Coloring& coloring, Scene& scene,
+                  float relief, int threads, std::uint8_t ground) {
+  Canvas within(canvas.width, canvas.height);
+  draw_spheres(within, chosen_of(scene, coloring.inside), scene.clip, threads);
+  draw_lines(within, frame, coloring, scene, threads);
+  Image veil = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
+  smooth_outlines(veil, canvas, scene.looks, threads);
+  Image image = shade(within, scene.looks, scene.clip, relief, threads, ground);
+  smooth_outlines(image, within, scene.looks, threads);
+  lay_veil(image, within, veil, canvas);
   return image;
 }
 
-/// Depth that looks deep: about a radius of the usual sphere.  [pixels]
+/// Depth that looks deep: about a radius of the usual sphere, or an edge of tetrahedra.  [pixels]
 float relief_of(const Frame& frame, double resolution) {
+  if (!frame.tetrahedra.empty()) {
+    const std::size_t some = std::min<std::size_t>(frame.tetrahedra.size() / 4, 1000);
+    double sum = 0.0;
+    for (std::size_t t = 0; t < some; ++t)
+      sum += norm(frame.position[static_cast<std::size_t>(frame.tetrahedra[4 * t])] -
+                  frame.position[static_cast<std::size_t>(frame.tetrahedra[4 * t + 1])]);
+    return static_cast<float>(std::clamp(resolution * sum / static_cast<double>(some), 10.0, 1e4));
+  }
   if (frame.radius.empty()) return 10.0F;
   std::vector<double> radius = frame.radius;
   const auto middle = radius.begin() + static_cast<std::ptrdiff_t>(radius.size() / 2);
@@ -89,11 +104,11 @@ float relief_of(const Frame& frame, double resolution) {
   return static_cast<float>(std::clamp(1.5 * resolution * *middle, 2.0, 1e4));
 }
 
-/// Pixels that are drawn side by side for one of the picture: edges of triangles and cracks come
-/// out smooth, and gaps between triangles narrower than a pixel leave no holes. Spheres have
+/// Pixels that are drawn side by side for one of the picture: edges of faces and cracks come
+/// out smooth, and gaps between faces narrower than a pixel leave no holes. Spheres have
 /// outlines of their own.
 int fineness(const Frame& frame, const RenderOptions& options) {
-  if (frame.triangles.empty()) return 1;
+  if (frame.triangles.empty() && frame.tetrahedra.empty()) return 1;
   const double pixels = 1.0 * options.width * options.height;
   return pixels <= 4e6 ? 3 : pixels <= 16e6 ? 2 : 1;
 }
@@ -137,9 +152,29 @@ Image without_ground(const Image& on_white, const Image& on_black) {
   return image;
 }
 
+/// Bodies of tetrahedra, and cracks on their surface or, by x-ray, within.
+Image draw_bodies(Canvas& canvas, const Frame& frame, const RenderOptions& options,
+                  const Coloring& coloring, Scene& scene, int threads, std::uint8_t ground) {
+  const bool joints = options.show_links || coloring.of_lines || coloring.cracks;
+  const float relief = relief_of(frame, scene.camera.resolution);
+  draw_solids(canvas, frame, coloring, {joints && !options.xray, options.edges}, scene, threads);
+  Image image = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
+  if (!options.xray) return image;
+  Canvas within(canvas.width, canvas.height);
+  draw_joint_faces(within, frame, coloring, scene, threads);
+  Image inside = shade(within, scene.looks, scene.clip, relief, threads, ground);
+  lay_veil(inside, within, image, canvas);
+  return inside;
+}
+
 /// Draws the items. @param fine  pixels of the canvas for one of the picture
 Image draw_items(Canvas& canvas, const Frame& frame, const RenderOptions& options,
                  const Coloring& coloring, Scene& scene, int threads, std::uint8_t ground) {
+  const int fine = canvas.width / options.width;
+  if (!frame.tetrahedra.empty()) {
+    Image image = draw_bodies(canvas, frame, options, coloring, scene, threads, ground);
+    return fine > 1 ? reduced(image, fine, threads) : image;
+  }
   const bool links = options.show_links || coloring.of_lines || coloring.cracks;
   const bool spheres = options.show_spheres && !frame.radius.empty();
   const bool through = options.xray && spheres;
@@ -148,7 +183,6 @@ Image draw_items(Canvas& canvas, const Frame& frame, const RenderOptions& option
         coloring.of_lines ? sphere_share_beside_colours : sphere_share_beside_links;
     place_spheres(canvas, frame, links && !through ? beside_links : 1.0, scene, threads);
   }
-  const int fine = canvas.width / options.width;
   const float relief = relief_of(frame, scene.camera.resolution);
   if (through) return see_through(canvas, frame, coloring, scene, relief, threads, ground);
   if (links) draw_lines(canvas, frame, coloring, scene, threads);
@@ -168,13 +202,14 @@ std::int64_t covered(const Canvas& canvas) {
 }
 
 /// Whether the point of a frame is on the surface that shows: a sphere may stand half a radius
-/// behind what its neighbours show.
+/// behind what its neighbours show, a corner of a solid a few pixels.
 bool is_seen(const Canvas& canvas, const Frame& frame, const Scene& scene, std::size_t point) {
   const ScreenPoint& p = scene.points[point];
   if (scene.clip && scene.clip->beyond(p.u, p.v, p.depth) > 0.0) return false;
-  if (frame.radius.empty()) return true;
+  if (frame.radius.empty() && frame.tetrahedra.empty()) return true;
   if (!(p.u >= 0.0 && p.v >= 0.0 && p.u < canvas.width && p.v < canvas.height)) return false;
   const std::size_t at = canvas.row(static_cast<int>(p.v)) + static_cast<std::size_t>(p.u);
+  if (frame.radius.empty()) return p.depth + 3.0 >= canvas.depth[at];
   const double radius = scene.camera.resolution * frame.radius[point];
   return frame.radius[point] > 0.0 && p.depth + 1.6 * radius >= canvas.depth[at];
 }
@@ -186,7 +221,7 @@ Image render_on(const Frame& frame, const RenderOptions& options, int threads,
   const Coloring& coloring = layout.coloring;
   const int fine = fineness(frame, options);
   const Camera camera = layout.camera(options);
-  Scene scene{camera, std::nullopt, {}, {}};
+  Scene scene{camera, std::nullopt, {}, {}, {}};
   scene.camera.u *= fine;
   scene.camera.v *= fine;
   scene.camera.resolution *= fine;
@@ -207,8 +242,10 @@ Image render_on(const Frame& frame, const RenderOptions& options, int threads,
     draw_walls(image, frame.walls, canvas, scene, layout.extent, fine, scale);
     draw_wall_edges(paper, frame.walls, camera, layout.extent, scale);
   }
-  layout.overlay.draw(
-      paper, {camera, [&](std::size_t i) { return is_seen(canvas, frame, scene, i); }}, scale);
+  layout.overlay.draw(paper,
+                      {camera, [&](std::size_t i) { return is_seen(canvas, frame, scene, i); },
+                       [&](std::size_t i) { return scene.solids_seen[i]; }},
+                      scale);
   if (options.bare) return image;
   draw_title(paper, options.title, frame, scale);
   draw_legend(paper, coloring.legend, scale);
@@ -230,8 +267,11 @@ void check_frame(const Frame& frame, const RenderOptions& options) {
   const bool good = frame.lines.size() % 2 == 0 && frame.triangles.size() % 3 == 0 &&
                     (frame.radius.empty() || frame.radius.size() == frame.position.size()) &&
                     std::all_of(frame.lines.begin(), frame.lines.end(), known) &&
-                    std::all_of(frame.triangles.begin(), frame.triangles.end(), known);
-  if (!good) throw InputError("a frame whose lines, triangles or radii do not fit its points");
+                    std::all_of(frame.triangles.begin(), frame.triangles.end(), known) &&
+                    frame.tetrahedra.size() % 4 == 0 &&
+                    std::all_of(frame.tetrahedra.begin(), frame.tetrahedra.end(), known);
+  if (!good)
+    throw InputError("a frame whose lines, triangles, tetrahedra or radii do not fit its points");
 }
 
 Image render(const Frame& frame, const RenderOptions& options, int threads) {

@@ -99,8 +99,8 @@ Image read_as(const std::string& path, bool with_alpha) {
   png.format = with_alpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
   image.rgb.resize(PNG_IMAGE_SIZE(png));
-  const png_color white{255, 255, 255};
-  if (png_image_finish_read(&png, &white, image.rgb.data(), 0, nullptr) == 0)
+  const png_color on_white{255, 255, 255};
+  if (png_image_finish_read(&png, &on_white, image.rgb.data(), 0, nullptr) == 0)
     fail(std::string("cannot be read as PNG: ") + png.message);
   if (!with_alpha) return image;
   const std::size_t pixels = image.rgb.size() / 4;

@@ -126,6 +126,30 @@ void draw_in_tile(Canvas& canvas, const Tile& tile, const ScreenSphere& sphere, 
   }
 }
 
+/// Walks along a line: visit(point, along, first, steep). Pixels across it begin with `first`, in
+/// the row `along` of a steep line, in the column `along` of another.
+template <class Visit>
+void walk_line(const Canvas& canvas, const ScreenPoint& a, const ScreenPoint& b, int thickness,
+               const Visit& visit) {
+  const double du = b.u - a.u, dv = b.v - a.v;
+  const double length = std::max(std::fabs(du), std::fabs(dv));
+  const double reach = thickness + 1.0;
+  const bool in_sight = std::max(a.u, b.u) > -reach && std::min(a.u, b.u) < canvas.width + reach &&
+                        std::max(a.v, b.v) > -reach && std::min(a.v, b.v) < canvas.height + reach;
+  if (!in_sight || !(length < 1e5) || !std::isfinite(a.depth + b.depth)) return;
+  const bool steep = std::fabs(dv) > std::fabs(du);
+  const int steps = std::max(1, static_cast<int>(std::ceil(length)));
+  for (int step = 0; step <= steps; ++step) {
+    const double share = static_cast<double>(step) / steps;
+    const double u = a.u + share * du, v = a.v + share * dv;
+    const double depth = a.depth + share * (b.depth - a.depth);
+    const double across = (steep ? u : v) - 0.5 * thickness;
+    const int first = static_cast<int>(std::floor(across + 0.5));
+    const int along = static_cast<int>(std::floor(steep ? v : u));
+    visit(ScreenPoint{u, v, depth}, along, first, steep);
+  }
+}
+
 }  // namespace
 
 Canvas::Canvas(int wide, int high)
@@ -181,27 +205,40 @@ void draw_spheres(Canvas& canvas, std::span<const ScreenSphere> spheres,
 
 void draw_line(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b, int thickness,
                std::int32_t item, const std::optional<ScreenClip>& clip) {
-  const double du = b.u - a.u, dv = b.v - a.v;
-  const double length = std::max(std::fabs(du), std::fabs(dv));
-  const double reach = thickness + 1.0;
-  const bool in_sight = std::max(a.u, b.u) > -reach && std::min(a.u, b.u) < canvas.width + reach &&
-                        std::max(a.v, b.v) > -reach && std::min(a.v, b.v) < canvas.height + reach;
-  if (!in_sight || !(length < 1e5) || !std::isfinite(a.depth + b.depth)) return;
-  const bool steep = std::fabs(dv) > std::fabs(du);
-  const int steps = std::max(1, static_cast<int>(std::ceil(length)));
-  for (int step = 0; step <= steps; ++step) {
-    const double share = static_cast<double>(step) / steps;
-    const double u = a.u + share * du, v = a.v + share * dv;
-    const double depth = a.depth + share * (b.depth - a.depth);
-    if (clip && clip->beyond(u, v, depth) > 0.0) continue;
-    const double across = (steep ? u : v) - 0.5 * thickness;
-    const int first = static_cast<int>(std::floor(across + 0.5));
-    const int along = static_cast<int>(std::floor(steep ? v : u));
+  walk_line(canvas, a, b, thickness, [&](const ScreenPoint& at, int along, int first, bool steep) {
+    if (clip && clip->beyond(at.u, at.v, at.depth) > 0.0) return;
     for (int k = first; k < first + thickness; ++k) {
       const int y = steep ? along : k;
-      if (y >= rows.top && y <= rows.bottom) put(canvas, steep ? k : along, y, depth, item);
+      if (y >= rows.top && y <= rows.bottom) put(canvas, steep ? k : along, y, at.depth, item);
     }
-  }
+  });
+}
+
+void draw_mark(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b, int thickness,
+               std::int32_t item, const std::optional<ScreenClip>& clip) {
+  constexpr double lift = 3.0;            // pixels: a surface so much before it does not hide it
+  constexpr double beyond_surface = 0.3;  // of its length: so deep may the gap of a crack be
+  const double du = b.u - a.u, dv = b.v - a.v, dd = b.depth - a.depth;
+  const double behind = lift + beyond_surface * std::sqrt(du * du + dv * dv + dd * dd);
+  const auto depth_at = [&canvas](int x, int y) {
+    const bool inside = x >= 0 && y >= 0 && x < canvas.width && y < canvas.height;
+    return inside ? static_cast<double>(canvas.depth[canvas.row(y) + static_cast<std::size_t>(x)])
+                  : 1.0 * Canvas::empty;
+  };
+  walk_line(canvas, a, b, thickness, [&](const ScreenPoint& at, int along, int first, bool steep) {
+    if (clip && clip->beyond(at.u, at.v, at.depth) > 1.0) return;
+    const double surface =
+        depth_at(static_cast<int>(std::floor(at.u)), static_cast<int>(std::floor(at.v)));
+    if (surface > at.depth + lift || surface < at.depth - behind) return;
+    for (int k = first; k < first + thickness; ++k) {
+      const int x = steep ? k : along, y = steep ? along : k;
+      const double there = depth_at(x, y), slack = lift + thickness;
+      if (y < rows.top || y > rows.bottom || there > at.depth + slack ||
+          there < at.depth - behind - slack)
+        continue;
+      canvas.item[canvas.row(y) + static_cast<std::size_t>(x)] = item;
+    }
+  });
 }
 
 void draw_triangle(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b,

@@ -47,6 +47,11 @@ void draw_spheres(Canvas& canvas, std::span<const ScreenSphere> spheres,
 void draw_line(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b, int thickness,
                std::int32_t item, const std::optional<ScreenClip>& clip);
 
+/// As much of a line as lies in the rows and on the surface that is drawn: not behind it, and not
+/// in the air before it. It paints that surface, whose depth stays.
+void draw_mark(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b, int thickness,
+               std::int32_t item, const std::optional<ScreenClip>& clip);
+
 /// As much of a triangle as lies in the rows.
 void draw_triangle(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b,
                    const ScreenPoint& c, std::int32_t item, const std::optional<ScreenClip>& clip);

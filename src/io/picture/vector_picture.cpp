@@ -231,8 +231,9 @@ Shade shade_of(const Color& color) {
 }
 
 AsDrawn plane_drawing(const Frame& frame, const RenderOptions& options) {
-  if (frame.triangles.empty())
-    throw InputError("SVG and PDF are for plane cases; pictures of spheres are PNG files");
+  if (!places_in(frame).plane())
+    throw InputError(
+        "SVG and PDF are for plane cases; pictures of spheres and of solid bodies are PNG files");
   if (!options.clip.empty()) throw InputError("SVG and PDF know no clip planes; use PNG");
   check_frame(frame, options);
   RenderOptions from_above = options;

@@ -73,6 +73,25 @@ Frame triangle_frame(double time) {
   return frame;
 }
 
+/// Two tetrahedra on either side of a joint.
+Frame solid_frame(double time) {
+  Frame frame = small_frame(time, 11);
+  frame.radius.clear();
+  frame.lines.clear();
+  frame.line_fields.clear();
+  frame.tetrahedra = {0, 1, 2, 3, 4, 5, 6, 7};
+  frame.triangles = {8, 9, 10};
+  const char* const names[] = {"stress_xx", "stress_yy", "stress_zz",
+                               "stress_xy", "stress_yz", "stress_xz"};
+  for (int k = 0; k < 6; ++k)
+    frame.tetrahedron_fields.push_back(
+        {names[k], "Pa", 1, {static_cast<float>(k), static_cast<float>(10 + k)}});
+  frame.tetrahedron_fields.push_back({"pressure", "Pa", 1, {-1, 2.5}});
+  frame.tetrahedron_fields.push_back(whole_numbers("exposed", {15, 7}));
+  frame.triangle_fields = {{"mode", "-", 1, {0.25}}, {"time", "s", 1, {1e-3F}}};
+  return frame;
+}
+
 nlohmann::json fields_json(const std::vector<FrameField>& fields) {
   nlohmann::json result = nlohmann::json::object();
   for (const FrameField& field : fields) {
@@ -102,16 +121,24 @@ std::string expectation(const std::vector<Frame>& frames) {
     if (!frame.radius.empty()) {
       point_fields.push_back({"radius", "m", 1, {frame.radius.begin(), frame.radius.end()}});
     }
-    const bool triangles = !frame.triangles.empty();
-    list.push_back({{"time", frame.time},
-                    {"step", frame.step},
-                    {"groups", frame.groups},
-                    {"points", frame.position.size()},
-                    {"cells", triangles ? frame.triangles.size() / 3 : frame.position.size()},
-                    {"cell_type", triangles ? 5 : 1},
-                    {"links", frame.lines.size() / 2},
-                    {"point_fields", fields_json(point_fields)},
-                    {"line_fields", fields_json(frame.line_fields)}});
+    const bool solid = !frame.tetrahedra.empty();
+    const bool triangles = !solid && !frame.triangles.empty();
+    const std::size_t cells = solid       ? frame.tetrahedra.size() / 4
+                              : triangles ? frame.triangles.size() / 3
+                                          : frame.position.size();
+    list.push_back(
+        {{"time", frame.time},
+         {"step", frame.step},
+         {"groups", frame.groups},
+         {"points", frame.position.size()},
+         {"cells", cells},
+         {"cell_type", solid       ? 10
+                       : triangles ? 5
+                                   : 1},
+         {"links", solid ? frame.triangles.size() / 3 : frame.lines.size() / 2},
+         {"link_type", solid ? 5 : 3},
+         {"point_fields", fields_json(point_fields)},
+         {"line_fields", fields_json(solid ? frame.triangle_fields : frame.line_fields)}});
   }
   return list.dump();
 }
@@ -146,6 +173,7 @@ void expect_same(const Frame& a, const Frame& b) {
   EXPECT_EQ(a.groups, b.groups);
   EXPECT_EQ(a.lines, b.lines);
   EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_EQ(a.tetrahedra, b.tetrahedra);
   ASSERT_EQ(a.position.size(), b.position.size());
   ASSERT_EQ(a.radius.size(), b.radius.size());
   for (std::size_t i = 0; i < a.position.size(); ++i) {
@@ -159,6 +187,7 @@ void expect_same(const Frame& a, const Frame& b) {
   expect_same_fields(a.point_fields, b.point_fields);
   expect_same_fields(a.line_fields, b.line_fields);
   expect_same_fields(a.triangle_fields, b.triangle_fields);
+  expect_same_fields(a.tetrahedron_fields, b.tetrahedron_fields);
 }
 
 TEST_F(ParaviewSeriesTest, vtk_reads_every_field_count_and_time_with_and_without_links) {
@@ -175,8 +204,8 @@ TEST_F(ParaviewSeriesTest, vtk_reads_every_field_count_and_time_with_and_without
   expect_vtk_reads(folder, frames);
 }
 
-TEST_F(ParaviewSeriesTest, vtk_reads_the_full_slab_and_frames_of_triangles) {
-  const std::vector<Frame> frames{triangle_frame(0.0), test::slab_scene()};
+TEST_F(ParaviewSeriesTest, vtk_reads_the_full_slab_and_frames_of_triangles_and_tetrahedra) {
+  const std::vector<Frame> frames{triangle_frame(0.0), solid_frame(1e-5), test::slab_scene()};
   ParaviewSeries series(folder);
   for (const Frame& frame : frames) series.write(frame);
   expect_vtk_reads(folder, frames);
@@ -192,9 +221,17 @@ TEST_F(ParaviewSeriesTest, meshio_reads_every_field_with_its_type) {
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
+TEST_F(ParaviewSeriesTest, meshio_reads_tetrahedra_and_their_joints) {
+  ParaviewSeries(folder).write(solid_frame(0.25));
+  const std::string command =
+      fmt::format("/usr/bin/python3 '{0}/tests/unit/io/read_with_meshio.py' '{1}' solid 2>&1",
+                  source_dir, folder);
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
 TEST_F(ParaviewSeriesTest, what_was_written_is_read_back) {
   const std::vector<Frame> frames{small_frame(0.0, 9), small_frame(0.1, 0), triangle_frame(0.2),
-                                  test::slab_scene()};
+                                  solid_frame(0.3), test::slab_scene()};
   for (const Frame& frame : frames) {
     fs::remove_all(folder);
     ParaviewSeries series(folder);
@@ -208,14 +245,14 @@ TEST_F(ParaviewSeriesTest, vtkhdf_is_read_back_and_resumed) {
   if (!has_hdf5()) GTEST_SKIP() << "built without HDF5";
   Frame with_walls = small_frame(0.1, 3);
   with_walls.walls = {{{0.0, 0.0, -0.5}, {0.0, 0.0, 1.0}}, {{1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}}};
-  std::vector<Frame> frames{small_frame(0.0, 9), with_walls, triangle_frame(0.2),
+  std::vector<Frame> frames{small_frame(0.0, 9), with_walls, triangle_frame(0.2), solid_frame(0.3),
                             test::slab_scene()};
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i].time = 0.1 * static_cast<double>(i);
   {
     ParaviewSeries series(folder, FrameFormat::vtkhdf);
     for (const Frame& frame : frames) series.write(frame);
     expect_vtk_reads(folder, frames);
-    frames.push_back(small_frame(0.4, 0));  // VTK lists no fields of a grid without points
+    frames.push_back(small_frame(0.5, 0));  // VTK lists no fields of a grid without points
     series.write(frames.back());
   }
   for (std::size_t i = 0; i < frames.size(); ++i) {

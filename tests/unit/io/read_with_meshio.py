@@ -13,6 +13,13 @@ except ImportError:
 folder = sys.argv[1]
 elements = meshio.read(f"{folder}/fields/elements_0000.vtu")
 lines = meshio.read(f"{folder}/fields/links_0000.vtu")
+if sys.argv[2:] == ["solid"]:
+    assert elements.cells[0].type == "tetra" and elements.cells[0].data.tolist() == [[0, 1, 2, 3], [4, 5, 6, 7]], elements
+    assert lines.cells[0].type == "triangle" and lines.cells[0].data.tolist() == [[8, 9, 10]], lines
+    assert elements.cell_data["stress"][0].tolist() == [list(range(6)), list(range(10, 16))]  # xx, yy, zz, xy, yz, xz
+    assert elements.cell_data["exposed"][0].tolist() == [15, 7] and lines.cell_data["mode"][0].tolist() == [0.25]
+    assert sorted(elements.cell_data) == ["exposed", "pressure", "stress"], elements.cell_data
+    sys.exit(0)
 ids = elements.point_data["id"]
 assert elements.cells[0].type == "triangle" and elements.cells[0].data.tolist() == [[0, 1, 2], [1, 2, 3]], elements
 assert ids.dtype == "int32" and ids.tolist() == [2**24 + 1 + i for i in range(4)], ids

@@ -2,8 +2,8 @@
 """Reads a result folder with VTK's own readers and compares it with what was written.
 
 usage: read_with_vtk.py FOLDER EXPECTED.json
-EXPECTED: a list of {"time", "step", "points", "cells", "cell_type", "links", "point_fields", "line_fields",
-"groups"}; a field is name: [components, unit, minimum, maximum, type] of its first component. Needs Debian's python3-vtk9.
+EXPECTED: a list of {"time", "step", "points", "cells", "cell_type", "links", "link_type", "point_fields",
+"line_fields", "groups"}; a field is name: [components, unit, minimum, maximum, type] of its first component. Needs Debian's python3-vtk9.
 """
 import json
 import os
@@ -100,7 +100,7 @@ def main(folder, expected_file):
         lines = read(os.path.join(folder, link_file))
         expect(f"cells of {link_file}", lines.GetNumberOfCells(), frame["links"])
         for cell in range(lines.GetNumberOfCells()):
-            expect(f"type of cell {cell} in {link_file}", lines.GetCellType(cell), 3)
+            expect(f"type of cell {cell} in {link_file}", lines.GetCellType(cell), frame["link_type"])
         check_fields(link_file, lines.GetCellData(), frame["line_fields"])
         check_time(link_file, lines, frame)
 
