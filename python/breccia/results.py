@@ -61,7 +61,7 @@ class Table(Mapping):
 class Frames(Sequence):
     """Frames of a run: frames.times [s], frames[i] a dict of arrays named as in ParaView.
 
-    "position", "radius", "lines", "triangles", and fields as "points.velocity", in float32.
+    "position", "radius", "lines", "triangles", "tetrahedra", and fields as "points.velocity", in float32.
     frames.units has the units of all.
     """
 

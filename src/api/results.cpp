@@ -86,9 +86,11 @@ std::vector<Field> read_frame(const std::string& folder, int number) {
       fields.push_back(keeping("radius", "m", NumberType::float64, std::move(frame.radius), 1));
     indices("lines", frame.lines, 2);
     indices("triangles", frame.triangles, 3);
+    indices("tetrahedra", frame.tetrahedra, 4);
     real("points.", frame.point_fields);
     real("lines.", frame.line_fields);
     real("triangles.", frame.triangle_fields);
+    real("tetrahedra.", frame.tetrahedron_fields);
     return fields;
   });
 }

@@ -78,7 +78,7 @@ class Told {
   /// "1,500 elements, 8,364 links"
   std::string model() const {
     std::vector<std::string> parts;
-    for (const char* kind : {"elements", "links", "triangles", "joints"})
+    for (const char* kind : {"elements", "links", "triangles", "tetrahedra", "joints"})
       if (const double count = number(fmt::format("/model/{}", kind).c_str()); count > 0.0)
         parts.push_back(count_text(count) + ' ' + kind);
     return fmt::format("{}", fmt::join(parts, ", "));
@@ -159,11 +159,11 @@ void describe_frame(const std::string& path) {
           field.unit, *low, *high);
     }
   };
-  tell_items(frame.triangles.empty() ? "spheres" : "corners", frame.position.size(),
-             frame.point_fields);
-  tell_items(frame.triangles.empty() ? "links" : "joints", frame.lines.size() / 2,
-             frame.line_fields);
-  tell_items("triangles", frame.triangles.size() / 3, frame.triangle_fields);
+  const bool solid = !frame.tetrahedra.empty(), plane = !solid && !frame.triangles.empty();
+  tell_items(solid || plane ? "corners" : "spheres", frame.position.size(), frame.point_fields);
+  tell_items(plane ? "joints" : "links", frame.lines.size() / 2, frame.line_fields);
+  tell_items(solid ? "joints" : "triangles", frame.triangles.size() / 3, frame.triangle_fields);
+  tell_items("tetrahedra", frame.tetrahedra.size() / 4, frame.tetrahedron_fields);
 }
 
 void describe_table(const std::string& path) {

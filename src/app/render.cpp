@@ -32,7 +32,7 @@ namespace {
 
 /// Damage, or of grains that nothing links how fast they are.
 std::string usual_field(const Frame& frame) {
-  const bool linked = !frame.triangles.empty() || !frame.lines.empty();
+  const bool linked = !frame.triangles.empty() || !frame.tetrahedra.empty() || !frame.lines.empty();
   const char* const field = linked ? "damage" : "velocity";
   return has_field(frame, field) ? field : "";
 }
@@ -426,7 +426,8 @@ void add_looks(CLI::App& command, RenderCommand& render) {
       "--no-walls", [&options] { options.walls = false; },
       "leave out walls and marks on what is held");
   command.add_flag("--log", options.log, "colours by the logarithm of the field");
-  command.add_flag("--edges", options.edges, "draw the edges of triangles");
+  command.add_flag("--edges", options.edges,
+                   "draw the edges of triangles, or of faces of tetrahedra");
   command.add_flag("--no-legend", options.bare, "without title, legend, scale bar and axes");
   command.add_option("--dpi", render.dpi, "dots an inch, noted in the PNG for printers")
       ->type_name("N")

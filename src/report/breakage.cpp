@@ -42,6 +42,22 @@ std::vector<Rose> roses_in_plane(const NumberTable& cracks) {
   return {rose};
 }
 
+/// Area and normal of what broke: of a face of tetrahedra, or of spheres a disc across the link.
+struct CrackPlane {
+  Vec3 normal;  ///< of any length; 0: none
+  double area;  ///<  [m2]
+};
+CrackPlane plane_of(const Shot& first, const Shot& last, std::size_t line) {
+  if (last.solid) {
+    const Vec3* const p = &last.end[3 * line];
+    const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
+    return {normal, 0.5 * norm(normal)};
+  }
+  const std::size_t a = at(last.ends[2 * line]), b = at(last.ends[2 * line + 1]);
+  const double r = std::min(first.radius[a], first.radius[b]);
+  return {first.corner[b] - first.corner[a], pi * r * r};
+}
+
 std::vector<Rose> roses_in_space(const Shot& first, const Shot& last) {
   const std::vector<std::uint8_t> broken = broken_lines(last);
   Rose strike{"strike of steep crack planes, from x", 0.0, 180.0, "m2",
@@ -50,15 +66,13 @@ std::vector<Rose> roses_in_space(const Shot& first, const Shot& last) {
   bool any = false;
   for (std::size_t l = 0; l < broken.size(); ++l) {
     if (broken[l] == 0) continue;
-    const std::size_t a = at(last.ends[2 * l]), b = at(last.ends[2 * l + 1]);
-    const Vec3 axis = first.corner[b] - first.corner[a];
+    const auto [axis, area] = plane_of(first, last, l);
     const double length = norm(axis);
     if (!(length > 0.0)) continue;
     any = true;
-    const double r = std::min(first.radius[a], first.radius[b]);
     const double tilt = degrees * std::acos(std::min(1.0, std::abs(axis.z) / length));
-    count(dip, tilt, pi * r * r);
-    if (tilt > 30.0) count(strike, line_angle(-axis.y, axis.x), pi * r * r);
+    count(dip, tilt, area);
+    if (tilt > 30.0) count(strike, line_angle(-axis.y, axis.x), area);
   }
   if (!any) return {};
   return {strike, dip};
@@ -74,7 +88,7 @@ std::vector<double> fragment_shares(const Record& record, const Shot& last) {
   std::vector<double> shares;
   if (const Column* const mass = record.fragments.column("mass")) {
     shares = mass->values;
-  } else if (!last.plane && !last.ends.empty()) {
+  } else if (last.spheres() && !last.ends.empty()) {
     std::vector<std::size_t> root(last.elements());
     std::iota(root.begin(), root.end(), std::size_t{0});
     const auto find = [&](std::size_t i) {

@@ -26,8 +26,8 @@ struct Grid {
   Grid(const Survey& survey, bool fine) : low(survey.low), axes(survey.plane ? 2 : 3) {
     const Vec3 box = survey.high - survey.low;
     const double extent = std::max({box.x, box.y, box.z, 1e-12});
-    // A hundredth of an element cannot be seen; displacements of a plane may be shown enlarged.
-    const bool wide = (survey.plane && fine) || extent / 65535.0 > 0.02 * survey.size;
+    // A hundredth of an element cannot be seen; displacements of bodies may be shown enlarged.
+    const bool wide = (!survey.spheres() && fine) || extent / 65535.0 > 0.02 * survey.size;
     width = wide ? 3 : 2;
     step = extent / static_cast<double>((1U << (8 * width)) - 1);
   }
@@ -76,11 +76,11 @@ StoredField stored(const FieldSurvey& field, const Selection& selection) {
   return made;
 }
 
-/// Positions of each frame as differences from the first: of triangles less those of the first
-/// corner that began at the same place, since corners of whole rock move together.
+/// Positions of each frame as differences from the first: of triangles and tetrahedra less those of
+/// the first corner that began at the same place, since corners of whole rock move together.
 class Positions {
  public:
-  Positions(const Grid& grid, bool plane) : grid_(grid), plane_(plane) {}
+  Positions(const Grid& grid, bool together) : grid_(grid), together_(together) {}
 
   void add(Planes& planes, const std::vector<Vec3>& points) {
     const bool first = reference_.empty();
@@ -101,22 +101,25 @@ class Positions {
     }
     if (!first) return;
     reference_ = std::move(now);
-    if (plane_) find_leaders();
+    if (together_) find_leaders();
   }
 
  private:
-  std::size_t leader(std::size_t i) const { return plane_ ? leader_[i] : i; }
+  std::size_t leader(std::size_t i) const { return together_ ? leader_[i] : i; }
   void find_leaders() {
-    std::unordered_map<std::uint64_t, std::size_t> seen;
+    // By one coordinate after the other, as 24 bits and the number of a place in 64.
+    std::unordered_map<std::uint64_t, std::size_t> seen_in_plane, seen;
     for (std::size_t i = 0; i < reference_[0].size(); ++i) {
-      const std::uint64_t place =
-          static_cast<std::uint64_t>(reference_[0][i]) << 32 | reference_[1][i];
-      leader_.push_back(seen.emplace(place, i).first->second);
+      const auto key = [&](std::uint64_t high, int axis) {
+        return high << 32 | reference_[static_cast<std::size_t>(axis)][i];
+      };
+      const std::size_t first = seen_in_plane.emplace(key(reference_[0][i], 1), i).first->second;
+      leader_.push_back(grid_.axes < 3 ? first : seen.emplace(key(first, 2), i).first->second);
     }
   }
 
   const Grid& grid_;
-  bool plane_;
+  bool together_;
   std::vector<Numbers> reference_;
   std::vector<std::size_t> leader_;
 };
@@ -129,7 +132,7 @@ class Cutter {
         survey_(survey),
         selection_(selection),
         grid_(survey, selection.fine),
-        positions_(grid_, survey.plane) {
+        positions_(grid_, !survey.spheres()) {
     for (const FieldSurvey& field : survey.fields)
       if (selection.takes(field)) fields_.push_back(stored(field, selection));
     place_.assign(survey.elements, -1);
@@ -161,11 +164,11 @@ class Cutter {
  private:
   void add_elements(Planes& planes, const Shot& shot) {
     std::vector<Vec3> corner;
-    const std::size_t each = survey_.plane ? 3 : 1;
+    const std::size_t each = survey_.first.corners_of_element();
     for (const std::uint32_t i : selection_.elements)
       for (std::size_t c = 0; c < each; ++c) corner.push_back(shot.corner[each * i + c]);
     positions_.add(planes, corner);
-    if (first_ && !survey_.plane) {
+    if (first_ && survey_.spheres()) {
       Numbers radius;
       const Scale scale = radius_scale();
       for (const std::uint32_t i : selection_.elements)
@@ -180,16 +183,17 @@ class Cutter {
   void add_lines(Planes& planes, const Shot& shot, Json& frame) {
     std::vector<std::uint32_t> kept;
     for (std::size_t l = 0; l < shot.lines(); ++l)
-      if (survey_.plane || (place(shot.ends[2 * l]) >= 0 && place(shot.ends[2 * l + 1]) >= 0))
+      if (!survey_.spheres() || (place(shot.ends[2 * l]) >= 0 && place(shot.ends[2 * l + 1]) >= 0))
         kept.push_back(static_cast<std::uint32_t>(l));
-    const bool told = survey_.plane || first_ || !survey_.lines_constant;
+    const bool told = !survey_.spheres() || first_ || !survey_.lines_constant;
     frame["lines"] = kept.size();
     frame["ends"] = told;
-    if (told && survey_.plane) {
+    if (told && !survey_.spheres()) {
       std::vector<Vec3> points;
+      const std::size_t each = shot.ends_of_line();
       for (const std::uint32_t l : kept)
-        for (std::size_t k = 0; k < 2; ++k) points.push_back(shot.end[2 * l + k]);
-      for (int axis = 0; axis < 2; ++axis) planes.add(grid_.of(points, axis), grid_.width);
+        for (std::size_t k = 0; k < each; ++k) points.push_back(shot.end[each * l + k]);
+      for (int axis = 0; axis < grid_.axes; ++axis) planes.add(grid_.of(points, axis), grid_.width);
     } else if (told) {
       Numbers a, b;
       std::uint32_t before = 0;
@@ -238,13 +242,14 @@ class Cutter {
   Json described(Json&& frames) const {
     Json film;
     film["plane"] = survey_.plane;
+    film["solid"] = survey_.solid;
     film["elements"] = selection_.elements.size();
     film["low"] = {survey_.low.x, survey_.low.y, survey_.low.z};
     film["high"] = {survey_.high.x, survey_.high.y, survey_.high.z};
     film["step"] = grid_.step;
     film["width"] = grid_.width;
     film["size"] = survey_.size;
-    if (!survey_.plane) film["largest_radius"] = radius_scale().high;
+    if (survey_.spheres()) film["largest_radius"] = radius_scale().high;
     film["groups"] = survey_.groups;
     film["fields"] = Json::array();
     for (const StoredField& f : fields_)

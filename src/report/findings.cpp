@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -53,7 +54,7 @@ std::string listed(const std::vector<std::string>& items) {
 /// Bodies that the ends of broken lines belong to.
 std::string bodies_of(const Shot& shot, const std::vector<std::uint8_t>& broken) {
   const FrameField* const group = field_named(shot.element_fields, "group");
-  if (shot.plane || group == nullptr) return "";
+  if (!shot.spheres() || group == nullptr) return "";
   std::set<std::size_t> found;
   for (std::size_t l = 0; l < broken.size(); ++l)
     if (broken[l] != 0)
@@ -72,23 +73,62 @@ struct Use {
   std::string material;
 };
 
+/// The largest eigenvalue of a symmetric matrix xx, yy, zz, xy, yz, xz: that of its deviator is
+/// 2 p cos(phi), with the invariants of which p is the size and phi the angle.
+double largest_principal(const std::array<double, 6>& s) {
+  const double mean = (s[0] + s[1] + s[2]) / 3.0;
+  const double x = s[0] - mean, y = s[1] - mean, z = s[2] - mean;
+  const double square = x * x + y * y + z * z + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+  const double p = std::sqrt(square / 6.0);
+  if (!(p > 0.0)) return mean;
+  const double det =
+      x * (y * z - s[4] * s[4]) - s[3] * (s[3] * z - s[4] * s[5]) + s[5] * (s[3] * s[4] - y * s[5]);
+  const double phi = std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0;
+  return mean + 2.0 * p * std::cos(phi);
+}
+
+/// Stresses of triangles or tetrahedra.
+class Stresses {
+ public:
+  explicit Stresses(const Shot& shot) : solid_(shot.solid) {
+    for (const char* part :
+         {"stress_xx", "stress_yy", "stress_xy", "stress_zz", "stress_yz", "stress_xz"})
+      parts_.push_back(field_named(shot.element_fields, part));
+  }
+  bool known() const {
+    const auto end = parts_.begin() + (solid_ ? 6 : 3);
+    return std::find(parts_.begin(), end, nullptr) == end;
+  }
+  /// The largest principal one, in the plane of triangles.
+  double largest(std::size_t element) const {
+    const auto part = [&](std::size_t k) {
+      return static_cast<double>(parts_[k]->values[element]);
+    };
+    if (solid_) return largest_principal({part(0), part(1), part(3), part(2), part(4), part(5)});
+    return 0.5 * (part(0) + part(1)) + std::hypot(0.5 * (part(0) - part(1)), part(2));
+  }
+
+ private:
+  bool solid_;
+  std::vector<const FrameField*> parts_;
+};
+
 /// Largest principal stress over the joints' tensile strength.
-void judge_triangles(const Record& record, const Shot& shot, Use& use) {
-  const auto field = [&](const char* name) { return field_named(shot.element_fields, name); };
-  const FrameField *xx = field("stress_xx"), *yy = field("stress_yy"), *xy = field("stress_xy");
-  const FrameField* const material = field("material");
-  if (xx == nullptr || yy == nullptr || xy == nullptr || material == nullptr) return;
+void judge_bodies(const Record& record, const Shot& shot, Use& use) {
+  const Stresses stresses(shot);
+  const FrameField* const material = field_named(shot.element_fields, "material");
+  if (!stresses.known() || material == nullptr) return;
+  const std::size_t each = shot.corners_of_element();
   for (std::size_t t = 0; t < shot.elements(); ++t) {
     const auto m = static_cast<std::size_t>(std::max(0.0F, material->values[t]));
     if (m >= record.scene.strengths.size()) continue;
     const Strength& strength = record.scene.strengths[m];
     if (!strength.breaks || !(strength.tension > 0.0)) continue;
-    const double mean = 0.5 * (xx->values[t] + yy->values[t]);
-    const double half = 0.5 * (xx->values[t] - yy->values[t]);
-    const double stress = mean + std::hypot(half, static_cast<double>(xy->values[t]));
+    const double stress = stresses.largest(t);
     if (stress / strength.tension <= use.share) continue;
-    const Vec3 middle =
-        (1.0 / 3.0) * (shot.corner[3 * t] + shot.corner[3 * t + 1] + shot.corner[3 * t + 2]);
+    Vec3 middle{};
+    for (std::size_t k = 0; k < each; ++k)
+      middle += (1.0 / static_cast<double>(each)) * shot.corner[each * t + k];
     use = {stress / strength.tension, shot.time, middle, strength.material};
   }
 }
@@ -140,7 +180,8 @@ class Findings {
   std::vector<std::string> sentences() {
     std::vector<std::string> all;
     if (all_ <= 0.0 && record_.number("model.elements").value_or(0.0) <= 0.0 &&
-        record_.number("model.triangles").value_or(0.0) <= 0.0)
+        record_.number("model.triangles").value_or(0.0) <= 0.0 &&
+        record_.number("model.tetrahedra").value_or(0.0) <= 0.0)
       all.emplace_back();  // the summary tells too little
     else if (all_ <= 0.0)
       all.push_back("Nothing can break here: the model has no links or joints.");
@@ -197,8 +238,8 @@ class Findings {
     const std::size_t frames = record_.times.size(), looks = std::min<std::size_t>(frames, 9);
     for (std::size_t k = 1; k <= looks; ++k) {
       const Shot shot = read(k * (frames - 1) / looks);
-      if (shot.plane)
-        judge_triangles(record_, shot, use);
+      if (!shot.spheres())
+        judge_bodies(record_, shot, use);
       else
         judge_links(record_, *first_, shot, use);
     }

@@ -13,16 +13,18 @@ std::size_t at(std::int32_t index) {
   return static_cast<std::size_t>(index);
 }
 
-/// Values of a field of points as those of triangles: means of their corners.
-FrameField of_triangles(const FrameField& field, const std::vector<std::int32_t>& triangles) {
+/// Values of a field of points as those of elements: means of their corners.
+FrameField of_elements(const FrameField& field, const std::vector<std::int32_t>& corners,
+                       std::size_t each) {
   FrameField made{field.name, field.unit, field.components, {}};
   const auto width = static_cast<std::size_t>(field.components);
-  made.values.resize(triangles.size() / 3 * width);
-  for (std::size_t t = 0; t < triangles.size() / 3; ++t)
+  made.values.resize(corners.size() / each * width);
+  for (std::size_t e = 0; e < corners.size() / each; ++e)
     for (std::size_t c = 0; c < width; ++c) {
       float sum = 0.0F;
-      for (std::size_t k = 0; k < 3; ++k) sum += field.values[width * at(triangles[3 * t + k]) + c];
-      made.values[width * t + c] = sum / 3.0F;
+      for (std::size_t k = 0; k < each; ++k)
+        sum += field.values[width * at(corners[each * e + k]) + c];
+      made.values[width * e + c] = sum / static_cast<float>(each);
     }
   return made;
 }
@@ -30,7 +32,7 @@ FrameField of_triangles(const FrameField& field, const std::vector<std::int32_t>
 /// Puts elements, and what names them, into the order of their ids.
 void sort_by_id(Shot& shot) {
   const FrameField* const id = field_named(shot.element_fields, "id");
-  if (id == nullptr || shot.plane) return;
+  if (id == nullptr || !shot.spheres()) return;
   std::vector<std::size_t> order(shot.elements());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto earlier = [&](std::size_t a, std::size_t b) {
@@ -81,21 +83,26 @@ Shot of_spheres(Frame&& frame) {
   return shot;
 }
 
-Shot of_plane(Frame&& frame) {
+/// Of triangles, or of tetrahedra.
+Shot of_bodies(Frame&& frame) {
   Shot shot;
-  shot.plane = true;
-  for (const std::int32_t node : frame.triangles) shot.corner.push_back(frame.position[at(node)]);
-  for (const std::int32_t node : frame.lines) shot.end.push_back(frame.position[at(node)]);
-  shot.element_fields = std::move(frame.triangle_fields);
+  shot.solid = !frame.tetrahedra.empty();
+  shot.plane = !shot.solid;
+  const std::vector<std::int32_t>& corners = shot.solid ? frame.tetrahedra : frame.triangles;
+  for (const std::int32_t node : corners) shot.corner.push_back(frame.position[at(node)]);
+  for (const std::int32_t node : shot.solid ? frame.triangles : frame.lines)
+    shot.end.push_back(frame.position[at(node)]);
+  shot.element_fields = std::move(shot.solid ? frame.tetrahedron_fields : frame.triangle_fields);
   for (const FrameField& field : frame.point_fields)
     if (field_named(shot.element_fields, field.name) == nullptr)
-      shot.element_fields.push_back(of_triangles(field, frame.triangles));
+      shot.element_fields.push_back(of_elements(field, corners, shot.corners_of_element()));
   return shot;
 }
 
 }  // namespace
 
 Vec3 Shot::middle(std::size_t line) const {
+  if (solid) return (1.0 / 3.0) * (end[3 * line] + end[3 * line + 1] + end[3 * line + 2]);
   if (plane) return 0.5 * (end[2 * line] + end[2 * line + 1]);
   return 0.5 * (corner[at(ends[2 * line])] + corner[at(ends[2 * line + 1])]);
 }
@@ -111,8 +118,11 @@ Shot read_shot(const std::string& folder, int number) {
   const std::int64_t step = frame.step;
   const double time = frame.time;
   std::vector<std::string> groups = std::move(frame.groups);
-  std::vector<FrameField> line_fields = std::move(frame.line_fields);
-  Shot shot = frame.triangles.empty() ? of_spheres(std::move(frame)) : of_plane(std::move(frame));
+  const bool solid = !frame.tetrahedra.empty();
+  std::vector<FrameField> line_fields =
+      std::move(solid ? frame.triangle_fields : frame.line_fields);
+  Shot shot = solid || !frame.triangles.empty() ? of_bodies(std::move(frame))
+                                                : of_spheres(std::move(frame));
   shot.step = step;
   shot.time = time;
   shot.groups = std::move(groups);
@@ -122,12 +132,13 @@ Shot read_shot(const std::string& folder, int number) {
 }
 
 bool match(Shot& shot, const Shot& first) {
-  if (shot.elements() == first.elements() && shot.plane == first.plane) return true;
-  if (shot.plane != first.plane || shot.elements() == 0) return false;
+  const bool alike = shot.plane == first.plane && shot.solid == first.solid;
+  if (shot.elements() == first.elements() && alike) return true;
+  if (!alike || shot.elements() == 0) return false;
   const std::vector<std::size_t> places = places_in_first(shot, first);
   if (places.empty()) return false;
   const std::size_t host =
-      shot.plane
+      !shot.spheres()
           ? 0
           : static_cast<std::size_t>(std::max_element(shot.radius.begin(), shot.radius.end()) -
                                      shot.radius.begin());
@@ -138,13 +149,13 @@ bool match(Shot& shot, const Shot& first) {
     gone[places[k]] = false;
   }
   const Shot old = shot;
-  const std::size_t each = shot.plane ? 3 : 1;
+  const std::size_t each = shot.corners_of_element();
   shot.corner.clear();
   shot.radius.clear();
   for (std::size_t i = 0; i < from.size(); ++i) {
     for (std::size_t c = 0; c < each; ++c)
       shot.corner.push_back(old.corner[each * from[i] + (gone[i] ? 0 : c)]);
-    if (!shot.plane) shot.radius.push_back(gone[i] ? 0.0 : old.radius[from[i]]);
+    if (shot.spheres()) shot.radius.push_back(gone[i] ? 0.0 : old.radius[from[i]]);
   }
   for (std::size_t f = 0; f < shot.element_fields.size(); ++f) {
     FrameField& field = shot.element_fields[f];

@@ -1,5 +1,6 @@
 #pragma once
-// A frame as a report sees it: elements, spheres or triangles, and lines between or beside them.
+// A frame as a report sees it: elements, which are spheres, triangles or tetrahedra, and lines
+// between or beside them.
 
 #include <cstdint>
 #include <string>
@@ -14,17 +15,23 @@ namespace breccia::report {
 struct Shot {
   std::int64_t step = 0;
   double time = 0.0;           ///<  [s]
-  bool plane = false;          ///< triangles; else spheres
-  std::vector<Vec3> corner;    ///< centres of spheres, or three corners a triangle  [m]
+  bool plane = false;          ///< of triangles
+  bool solid = false;          ///< of tetrahedra; neither: of spheres
+  std::vector<Vec3> corner;    ///< centres of spheres, or three or four corners an element  [m]
   std::vector<double> radius;  ///< of spheres  [m]
   std::vector<FrameField> element_fields;
   std::vector<std::int32_t> ends;  ///< of spheres: two of them a line
-  std::vector<Vec3> end;           ///< of triangles: two ends a line, which may lie anywhere  [m]
+  /// Of triangles two ends a line, of tetrahedra three corners a joint, which is a "line" here,
+  /// too. They may lie anywhere.  [m]
+  std::vector<Vec3> end;
   std::vector<FrameField> line_fields;
   std::vector<std::string> groups;  ///< names for the field "group"
 
-  std::size_t elements() const { return plane ? corner.size() / 3 : corner.size(); }
-  std::size_t lines() const { return (plane ? end.size() : ends.size()) / 2; }
+  bool spheres() const { return !plane && !solid; }
+  std::size_t corners_of_element() const { return solid ? 4 : plane ? 3 : 1; }
+  std::size_t ends_of_line() const { return solid ? 3 : 2; }
+  std::size_t elements() const { return corner.size() / corners_of_element(); }
+  std::size_t lines() const { return (spheres() ? ends.size() : end.size()) / ends_of_line(); }
   /// Middle of a line.  [m]
   Vec3 middle(std::size_t line) const;
 };
@@ -33,12 +40,12 @@ struct Shot {
 const FrameField* field_named(const std::vector<FrameField>& fields, const std::string& name);
 
 /// Frame `number` of a result folder. Elements come by their field "id", if they have one; nodes'
-/// velocities become those of triangles.
+/// velocities become those of triangles and tetrahedra.
 /// @throws InputError or IoError as read_frame
 Shot read_shot(const std::string& folder, int number);
 
 /// The shot with the elements of the first one in their order. Those that are gone lie inside the
-/// largest that is left or, triangles, have no area; they have its values.
+/// largest that is left or, triangles and tetrahedra, have no size; they have its values.
 /// @returns false if it cannot be told which are gone; the shot is then as it was
 bool match(Shot& shot, const Shot& first);
 

@@ -12,25 +12,26 @@ namespace breccia::report {
 namespace {
 
 bool is_category(const std::string& name) {
-  constexpr std::array names{"group",    "material", "kind",  "state",
-                             "fragment", "rank",     "fixed", "motion"};
+  constexpr std::array names{"group", "material", "kind",   "state",  "fragment",
+                             "rank",  "fixed",    "motion", "exposed"};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 double mean_size_of(const Shot& shot) {
   double sum = 0.0;
-  if (!shot.plane) {
+  if (shot.spheres()) {
     for (const double r : shot.radius) sum += r;
   } else {
+    const std::size_t each = shot.corners_of_element();
     for (std::size_t t = 0; t < shot.elements(); ++t)
-      sum += norm(shot.corner[3 * t + 1] - shot.corner[3 * t]);
+      sum += norm(shot.corner[each * t + 1] - shot.corner[each * t]);
   }
   return shot.elements() == 0 ? 0.0 : sum / static_cast<double>(shot.elements());
 }
 
 void widen(Survey& survey, const Shot& shot) {
   for (std::size_t i = 0; i < shot.corner.size(); ++i) {
-    const double r = shot.plane ? 0.0 : shot.radius[i];
+    const double r = shot.spheres() ? shot.radius[i] : 0.0;
     const Vec3& p = shot.corner[i];
     survey.low = {std::min(survey.low.x, p.x - r), std::min(survey.low.y, p.y - r),
                   std::min(survey.low.z, p.z - r)};
@@ -86,6 +87,7 @@ Survey survey_of(const std::string& folder, std::size_t count) {
     Shot shot = read_shot(folder, static_cast<int>(k));
     if (k == 0) {
       survey.plane = shot.plane;
+      survey.solid = shot.solid;
       survey.elements = shot.elements();
       survey.groups = shot.groups;
       survey.size = mean_size_of(shot);
@@ -99,7 +101,7 @@ Survey survey_of(const std::string& folder, std::size_t count) {
     widen(survey, shot);
     note_fields(survey, shot.element_fields, false, survey.first.element_fields);
     note_fields(survey, shot.line_fields, true, survey.first.line_fields);
-    if (shot.plane || shot.ends != survey.first.ends) survey.lines_constant = false;
+    if (!shot.spheres() || shot.ends != survey.first.ends) survey.lines_constant = false;
     survey.frames.push_back(
         {static_cast<int>(k), shot.step, shot.time, shot.lines(), broken_by_kind(shot)});
     if (k + 1 == count) survey.last = std::move(shot);

@@ -28,15 +28,17 @@ struct FrameFacts {
 };
 
 struct Survey {
-  bool plane = false;
+  bool plane = false, solid = false;  ///< of triangles, of tetrahedra; else of spheres
   std::size_t elements = 0;
   bool lines_constant = true;  ///< all frames list the same lines in the same order
   Vec3 low, high;              ///< box around the elements of all frames  [m]
-  double size = 0.0;           ///< mean radius, or mean edge of a triangle  [m]
+  double size = 0.0;           ///< mean radius, or mean edge of a triangle or tetrahedron  [m]
   std::vector<FieldSurvey> fields;
   std::vector<std::string> groups;
   std::vector<FrameFacts> frames;
   Shot first, last;
+
+  bool spheres() const { return !plane && !solid; }
 };
 
 /// Looks at all frames of a result folder, one after the other.

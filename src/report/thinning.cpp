@@ -62,20 +62,38 @@ std::vector<bool> in_largest_group(const Shot& shot) {
   return inside;
 }
 
+/// Tetrahedra with an exposed face, now or at the end; those that lie on another side of a crack
+/// have one.
+std::vector<bool> with_faces(const Survey& survey) {
+  std::vector<bool> seen(survey.elements, true);
+  const FrameField* const first = field_named(survey.first.element_fields, "exposed");
+  const FrameField* const last = field_named(survey.last.element_fields, "exposed");
+  for (std::size_t i = 0; first != nullptr && last != nullptr && i < seen.size(); ++i)
+    seen[i] = first->values[i] > 0.0F || last->values[i] > 0.0F;
+  return seen;
+}
+
+/// Spheres that have none about them on some side, at first or at last.
+std::vector<bool> not_surrounded(const Survey& survey) {
+  const double size = 2.5 * survey.size;
+  const Cells at_first(survey.first, size), at_last(survey.last, size);
+  std::vector<bool> seen(survey.elements);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    seen[i] = !at_first.is_surrounded(survey.first.corner[i]) ||
+              !at_last.is_surrounded(survey.last.corner[i]);
+  return seen;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> visible_elements(const Survey& survey) {
-  const double size = 2.5 * survey.size;
-  const Cells at_first(survey.first, size), at_last(survey.last, size);
   const std::vector<bool> bulk = in_largest_group(survey.first);
+  const std::vector<bool> seen = survey.solid ? with_faces(survey) : not_surrounded(survey);
   const FrameField* const damage = field_named(survey.last.element_fields, "damage");
   std::vector<std::uint32_t> visible;
   for (std::uint32_t i = 0; i < survey.elements; ++i) {
     const bool damaged = damage != nullptr && damage->values[i] > 0.05F;
-    if (bulk[i] && !damaged && at_first.is_surrounded(survey.first.corner[i]) &&
-        at_last.is_surrounded(survey.last.corner[i]))
-      continue;
-    visible.push_back(i);
+    if (!bulk[i] || damaged || seen[i]) visible.push_back(i);
   }
   return visible;
 }
@@ -120,7 +138,7 @@ bool Selection::tighten(const Survey& survey) {
 
 bool Selection::takes(const FieldSurvey& field) const {
   if (field.of_lines) return line_forces || field.category || field.name == "damage";
-  return all_fields || field.name == "group" || field.name == "damage";
+  return all_fields || field.name == "group" || field.name == "damage" || field.name == "exposed";
 }
 
 std::vector<std::string> Selection::notes(const Survey& survey) const {
@@ -144,7 +162,12 @@ double Selection::estimate(const Survey& survey) const {
   // Shares of the raw bytes that packing left over in the shipped cases.
   constexpr double of_positions = 0.6, of_fields = 0.8, of_lines = 0.3, in_text = 4.0 / 3.0;
   const double wide = fine ? 2.0 : 1.0;
-  double element = of_positions * (survey.plane ? 3.0 : 6.0), line = survey.plane ? 8.0 : 0.0;
+  double element = of_positions * (survey.plane   ? 3.0
+                                   : survey.solid ? 9.0
+                                                  : 6.0),
+         line = survey.plane   ? 8.0
+                : survey.solid ? 18.0
+                               : 0.0;
   for (const FieldSurvey& field : survey.fields) {
     if (!takes(field) || field.constant) continue;
     if (field.of_lines)
@@ -158,7 +181,7 @@ double Selection::estimate(const Survey& survey) const {
   for (const std::size_t k : frames)
     bytes += element * static_cast<double>(elements.size()) +
              line * share * static_cast<double>(survey.frames[k].lines);
-  if (!survey.plane) bytes += 2.5 * share * static_cast<double>(survey.frames.front().lines);
+  if (survey.spheres()) bytes += 2.5 * share * static_cast<double>(survey.frames.front().lines);
   return in_text * bytes;
 }
 

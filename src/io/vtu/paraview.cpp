@@ -47,7 +47,8 @@ for kind in ("links", "contacts", "walls"):
         Show(more, view).Opacity = 0.3
     else:
         Hide(more, view)
-if points.GetArray("radius"):
+bounds = elements.GetDataInformation().GetBounds()
+if bounds[5] > bounds[4]:
     view.CameraPosition, view.CameraViewUp = [-1.0, -2.0, 1.2], [0.0, 0.0, 1.0]
     view.CameraFocalPoint = [0.0, 0.0, 0.0]
 ResetCamera(view)

@@ -74,7 +74,7 @@ std::string opening_text(const Summary& s, double end_time, std::int64_t end_ste
                   s.machine.ranks > 1 ? fmt::format(" on each of {} ranks", s.machine.ranks) : "");
   text += fmt::format("case    {}   {}", s.case_name, s.method);
   if (s.precision != "double") text += fmt::format("   {} precision", s.precision);
-  for (const char* kind : {"elements", "links", "triangles", "joints"})
+  for (const char* kind : {"elements", "links", "triangles", "tetrahedra", "joints"})
     if (const auto count = fact(s, std::string("model.") + kind); count && *count > 0.0)
       text += fmt::format("   {} {}", count_text(*count), kind);
   text += fmt::format("   memory {:.0f} MB\n", static_cast<double>(s.peak_memory) / 1e6);

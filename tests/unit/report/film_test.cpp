@@ -11,6 +11,7 @@
 #include "exec/error.hpp"
 #include "report/thinning.hpp"
 #include "unit/io/slab_scene.hpp"
+#include "unit/io/solid_scene.hpp"
 #include "unit/report/result_scene.hpp"
 #include "unit/report/unpacked.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -105,6 +106,96 @@ TEST(Film, CornersThatPartComeBackFromTheirLeader) {
     EXPECT_NEAR(moved, corner == 1 ? 0.0 : gap, 2.0 * step) << corner << " after " << leader;
   }
   EXPECT_NEAR(low + step * start[4], 0.1, 0.6 * step);
+}
+
+/// A block of tetrahedra that a crack parts.
+Frame solid_frame(int k) {
+  solid_scene::Block block(4, 2, 2);
+  block.add_field("damage", "-", [](Vec3) { return 0.0; });
+  block.add_numbers("group", [](Vec3) { return 0; });
+  if (k > 0) block.crack(2.0, [](Vec3) { return 0.25; }, {0.02, 0.01, 0.03});
+  FrameField velocity{"velocity", "m/s", 3, std::vector<float>(3 * block.frame.position.size())};
+  for (std::size_t i = 0; i < velocity.values.size(); i += 3) velocity.values[i] = 2.0F;
+  block.frame.point_fields = {velocity};
+  if (k == 0) block.frame.triangle_fields = {{"mode", "-", 1, {}}, {"damage", "-", 1, {}}};
+  block.frame.groups = {"rock"};
+  block.frame.time = 1e-3 * k;
+  return block.frame;
+}
+
+TEST(Film, TetrahedraComeBackWithTheirJoints) {
+  const ScratchFolder folder;
+  ParaviewSeries series(folder.path());
+  for (int k = 0; k < 2; ++k) series.write(solid_frame(k));
+  series.finish();
+  const Survey survey = survey_of(folder.path(), 2);
+  EXPECT_TRUE(survey.solid);
+  EXPECT_EQ(survey.elements, 96U);
+  const Film film = film_of(folder.path(), survey, 0, 10'000'000);
+  const Json json = Json::parse(film.json);
+  EXPECT_EQ(json["solid"], true);
+  EXPECT_EQ(json["plane"], false);
+  ASSERT_EQ(json["width"], 3);
+  const double step = json["step"];
+  const Frame last = solid_frame(1);
+  const std::size_t points = last.tetrahedra.size();
+  test::PlaneReader a = opened(film, 0), b = opened(film, 1);
+  std::vector<std::vector<std::uint32_t>> start, told, now(3);
+  for (int axis = 0; axis < 3; ++axis) start.push_back(a.numbers(points, 3));
+  for (int axis = 0; axis < 3; ++axis) told.push_back(b.numbers(points, 3));
+  std::size_t followers = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    std::size_t leader = 0;
+    while (start[0][leader] != start[0][i] || start[1][leader] != start[1][i] ||
+           start[2][leader] != start[2][i])
+      ++leader;
+    followers += leader != i ? 1 : 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto moved = static_cast<std::uint32_t>(test::unzigzag(told[axis][i]));
+      const std::uint32_t with = leader == i ? 0 : now[axis][leader] - start[axis][leader];
+      now[axis].push_back((start[axis][i] + moved + with) & 0xffffffU);
+      const Vec3& p = last.position[i];
+      const double place = axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+      EXPECT_NEAR(json["low"][axis].get<double>() + step * now[axis][i], place, 0.6 * step + 1e-6);
+    }
+  }
+  EXPECT_EQ(followers, points - 5 * 3 * 3);  // one leads at each corner of the grid
+  // exposed changes; damage, group and velocity do not. Then joints: corners, mode, damage.
+  std::vector<std::string> changing;
+  for (const Json& field : json["fields"])
+    if (!field["constant"]) changing.push_back(field["name"]);
+  EXPECT_EQ(changing, (std::vector<std::string>{"exposed", "mode", "damage", "time"}));
+  const auto exposed = b.numbers(96, 1);
+  const FrameField& wanted = last.tetrahedron_fields[0];
+  for (std::size_t t = 0; t < 96; ++t) EXPECT_EQ(static_cast<float>(exposed[t]), wanted.values[t]);
+  ASSERT_EQ(json["frames"][1]["lines"], 8);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto corners = b.numbers(24, 3);
+    for (std::size_t i = 0; i < 24; ++i) {
+      const Vec3& p = last.position[static_cast<std::size_t>(last.triangles[i])];
+      EXPECT_NEAR(json["low"][axis].get<double>() + step * corners[i],
+                  axis == 0   ? p.x
+                  : axis == 1 ? p.y
+                              : p.z,
+                  0.6 * step + 1e-6);
+    }
+  }
+  b.numbers(8, 1);
+  b.numbers(8, 1);
+  b.numbers(8, 1);
+  EXPECT_TRUE(b.at_end());
+}
+
+TEST(Film, TetrahedraWithinGoBeforeThoseWithExposedFaces) {
+  const ScratchFolder folder;
+  solid_scene::Block block(8, 8, 8);
+  block.add_field("damage", "-", [](Vec3) { return 0.0; });
+  block.add_numbers("group", [](Vec3) { return 0; });
+  ParaviewSeries series(folder.path());
+  series.write(block.frame);
+  series.finish();
+  const std::vector<std::uint32_t> visible = visible_elements(survey_of(folder.path(), 1));
+  EXPECT_EQ(visible.size(), 6U * 64U * 2U - 6U * 8U);  // two a square; some have two faces
 }
 
 TEST(Film, AFilmStaysUnderItsLimit) {

@@ -7,6 +7,7 @@
 
 #include "report/breakage.hpp"
 #include "report/survey.hpp"
+#include "unit/io/solid_scene.hpp"
 #include "unit/report/result_scene.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -56,6 +57,60 @@ TEST(Findings, WhatCutsPartedBeforeTheStartDidNotBreak) {
   EXPECT_NE(text.find("Besides, 1 link was parted by cuts before the start."), std::string::npos)
       << text;
   EXPECT_EQ(text.find("It began"), std::string::npos) << text;
+}
+
+/// Frames of a block of tetrahedra with a crack of the normal x, and one stress in all of it.
+void write_block(const std::string& folder, bool cracked, const std::array<double, 6>& stress) {
+  ParaviewSeries series(folder);
+  for (int k = 0; k < 2; ++k) {
+    solid_scene::Block block(4, 2, 3);
+    block.add_numbers("group", [](Vec3) { return 0; });
+    block.add_numbers("material", [](Vec3) { return 0; });
+    const char* const names[] = {"stress_xx", "stress_yy", "stress_zz",
+                                 "stress_xy", "stress_yz", "stress_xz"};
+    for (std::size_t c = 0; c < 6; ++c)
+      block.add_field(names[c], "Pa", [&](Vec3) { return k * stress[c]; });
+    if (cracked && k == 1) block.crack(2.0, [](Vec3) { return 0.0; }, {});
+    block.frame.groups = {"rock"};
+    block.frame.time = 1e-3 * k;
+    series.write(block.frame);
+  }
+  series.finish();
+  test::write_text(folder + "/summary.json",
+                   fmt::format(R"({{"case": {{"name": "block"}}, "time": 0.001,
+                     "model": {{"tetrahedra": 144, "joints": 228}},
+                     "fracture": {{"broken_joints": {}, "fragments": 2}}}})",
+                               cracked ? 12 : 0));
+  test::write_text(folder + "/case.toml",
+                   "[material.rock]\njoint = { tension = 4e6 }\n"
+                   "[[body]]\nname = \"rock\"\nmaterial = \"rock\"\n");
+}
+
+TEST(Findings, TetrahedraAreJudgedByTheirLargestPrincipalStress) {
+  // 3 MPa along (2, 1, 2)/3, less 1 MPa along (1, 2, -2)/3 and 2 MPa along (2, -2, -1)/3.
+  std::array<double, 6> stress{};
+  const double principal[3][4] = {{2, 1, 2, 3e6}, {1, 2, -2, -1e6}, {2, -2, -1, -2e6}};
+  for (const auto& [x, y, z, size] : principal) {
+    const double parts[] = {x * x, y * y, z * z, x * y, y * z, x * z};
+    for (std::size_t c = 0; c < 6; ++c) stress[c] += size * parts[c] / 9.0;
+  }
+  const ScratchFolder folder;
+  write_block(folder.path(), false, stress);
+  const std::string text = joined(findings_of(read_record(folder.path())));
+  EXPECT_NE(text.find("is 0.75 of the strength of rock"), std::string::npos) << text;
+}
+
+TEST(Findings, CracksOfTetrahedraHaveAPlaceAndDirections) {
+  const ScratchFolder folder;
+  write_block(folder.path(), true, {});
+  const Record record = read_record(folder.path());
+  const std::string text = joined(findings_of(record));
+  EXPECT_NE(text.find("It began around (2, 1, 1.5) m"), std::string::npos) << text;
+  const Survey survey = survey_of(folder.path(), 2);
+  const std::vector<Rose> roses = roses_of(record, survey.first, survey.last);
+  ASSERT_EQ(roses.size(), 2U);
+  EXPECT_NEAR(roses[0].bars[9], 6.0, 1e-6);  // strike along y: 2 m by 3 m
+  EXPECT_NEAR(roses[1].bars[8], 6.0, 1e-6);  // upright
 }
 
 TEST(Findings, ARunWithoutFramesStillHasItsNumbers) {

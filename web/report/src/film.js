@@ -32,9 +32,22 @@ export class Film {
     this.first = null;
   }
 
-  /** Points of a frame: centres of spheres, or three corners a triangle. */
+  /** Corners of an element: of a sphere its centre. */
+  get each() {
+    return this.meta.solid ? 4 : this.meta.plane ? 3 : 1;
+  }
+
+  /** Points of a frame: centres of spheres, or the corners of triangles or tetrahedra. */
   get points() {
-    return this.meta.plane ? 3 * this.meta.elements : this.meta.elements;
+    return this.each * this.meta.elements;
+  }
+
+  get spheres() {
+    return this.each === 1;
+  }
+
+  get axes() {
+    return this.meta.plane ? 2 : 3;
   }
 
   /** Number of the frame nearest to a time. */
@@ -67,10 +80,10 @@ export class Film {
     const {meta} = this, first = this.first;
     const planes = new Planes(bytes);
     const position = this.positions(planes);
-    if (!first && !meta.plane) {
+    if (!first && this.spheres) {
       const steps = planes.numbers(meta.elements, 2);
       for (let i = 0; i < meta.elements; ++i) position[4 * i + 3] = (steps[i] * meta.largest_radius) / 65535;
-    } else if (!meta.plane) {
+    } else if (this.spheres) {
       for (let i = 0; i < meta.elements; ++i) position[4 * i + 3] = first.position[4 * i + 3];
     }
     const fields = {}, lines = {count: info.lines, fields: {}};
@@ -88,7 +101,7 @@ export class Film {
   }
 
   positions(planes) {
-    const {meta} = this, count = this.points, axes = meta.plane ? 2 : 3;
+    const {meta, axes} = this, count = this.points;
     const position = new Float32Array(4 * count);
     const mask = meta.width === 2 ? 0xffff : 0xffffff;
     const start = !this.reference;
@@ -108,18 +121,21 @@ export class Film {
       }
       for (let i = 0; i < count; ++i) position[4 * i + axis] = meta.low[axis] + steps[i] * meta.step;
     }
-    if (start && meta.plane) this.leader = this.leaders();
+    if (start && !this.spheres) this.leader = this.leaders();
     return position;
   }
 
   /** Of each corner the first one at the same place: see Positions in film.cpp. */
   leaders() {
-    const [x, y] = this.reference, seen = new Map(), leader = new Uint32Array(x.length);
+    const [x, y, z] = this.reference, leader = new Uint32Array(x.length), inPlane = new Map(), inSpace = new Map();
+    const first = (seen, key, i) => {
+      const known = seen.get(key);
+      if (known === undefined) seen.set(key, i);
+      return known ?? i;
+    };
     for (let i = 0; i < x.length; ++i) {
-      const place = x[i] * 16777216 + y[i];
-      const known = seen.get(place);
-      if (known === undefined) seen.set(place, i);
-      leader[i] = known ?? i;
+      leader[i] = first(inPlane, x[i] * 16777216 + y[i], i);
+      if (z) leader[i] = first(inSpace, leader[i] * 16777216 + z[i], i);
     }
     return leader;
   }
@@ -133,12 +149,14 @@ export class Film {
   }
 
   ends(planes, count) {
-    const {meta} = this;
-    if (meta.plane) {
-      const ends = new Float32Array(4 * count); // x0, y0, x1, y1
-      for (let axis = 0; axis < 2; ++axis) {
-        const steps = planes.numbers(2 * count, meta.width);
-        for (let e = 0; e < 2 * count; ++e) ends[2 * e + axis] = meta.low[axis] + steps[e] * meta.step;
+    const {meta, axes} = this;
+    if (!this.spheres) {
+      // x0, y0, x1, y1 of a line; of a joint of tetrahedra three times x, y, z and a gap.
+      const points = meta.solid ? 3 : 2, stride = meta.solid ? 4 : 2;
+      const ends = new Float32Array(points * stride * count);
+      for (let axis = 0; axis < axes; ++axis) {
+        const steps = planes.numbers(points * count, meta.width);
+        for (let e = 0; e < points * count; ++e) ends[stride * e + axis] = meta.low[axis] + steps[e] * meta.step;
       }
       return ends;
     }
@@ -158,7 +176,7 @@ export class Film {
 export function colorings(film) {
   const list = [{name: "body", label: "body", unit: "", category: true, read: (f) => f.fields.group}];
   for (const field of film.meta.fields) {
-    if (field.lines || field.name === "group") continue;
+    if (field.lines || field.name === "group" || field.name === "exposed") continue;
     const {name, unit, category} = field;
     if (field.components === 1) {
       list.push({name, label: name.replace(/_/g, " ") + (field.length ? " (length)" : ""), unit, category, read: (f) => f.fields[name]});
@@ -182,8 +200,8 @@ function lengths(components) {
 }
 
 function displacement(film, frame, pick) {
-  const {elements, plane} = film.meta, from = film.first.position, to = frame.position;
-  const values = new Float32Array(elements), each = plane ? 3 : 1, d = [0, 0, 0];
+  const {elements} = film.meta, {each} = film, from = film.first.position, to = frame.position;
+  const values = new Float32Array(elements), d = [0, 0, 0];
   for (let i = 0; i < elements; ++i) {
     for (let c = 0; c < 3; ++c) {
       d[c] = 0;

@@ -258,3 +258,142 @@ void main() {
   else color = vec4(0.89, 0.47, 0.10, 0.25 + 0.65 * vLine.x);
 }`,
 };
+
+// Tetrahedra: of each pair in uValue the second number is body + 65536 * faces that can be seen.
+const SOLID = READ + BODY + `
+int corners(int face, int k) {
+  int all = face == 0 ? 0x321 : face == 1 ? 0x230 : face == 2 ? 0x310 : 0x120; // counter-clockwise from outside
+  return all >> (4 * k) & 15;
+}
+bool wantedPair(float pair) { return wanted(mod(pair, 65536.0)); }
+vec3 seen(int item, int corner) { return (modelViewMatrix * vec4(place(4 * item + corner).xyz, 1.0)).xyz; }
+`;
+
+export const faces = {
+  vertex: SOLID + `
+flat out float vValue;
+flat out vec3 vNormal;
+out vec3 vShare, vPoint;
+void main() {
+  int item = gl_VertexID / 12, face = gl_VertexID % 12 / 3, k = gl_VertexID % 3;
+  vec2 value = texelFetch(uValue, cell(item), 0).rg;
+  // Faces inside gape where displacements are enlarged.
+  bool shown = wantedPair(value.g) && (abs(uScale - 1.0) > 1e-3 || (int(value.g / 65536.0) >> face & 1) == 1);
+  vec3 p[3] = vec3[3](seen(item, corners(face, 0)), seen(item, corners(face, 1)), seen(item, corners(face, 2)));
+  vNormal = normalize(cross(p[1] - p[0], p[2] - p[0]) + vec3(0.0, 0.0, 1e-30));
+  vPoint = p[k];
+  vValue = value.r;
+  vShare = vec3(k == 0, k == 1, k == 2);
+  gl_Position = shown ? projectionMatrix * vec4(p[k], 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+}`,
+  fragment: `precision highp float;
+` + COLOR + LIGHT + `
+uniform vec4 uClip;
+uniform float uMesh, uThrough;
+flat in float vValue;
+flat in vec3 vNormal;
+in vec3 vShare, vPoint;
+out vec4 color;
+void main() {
+  if (dot(uClip.xyz, vPoint) > uClip.w) discard;
+  vec3 base = colorOf(vValue);
+  vec3 wide = fwidth(vShare);
+  float pixel = max(wide.x, max(wide.y, wide.z)); // one over the height of the triangle in pixels
+  vec3 inside = smoothstep(vec3(0.0), 1.2 * wide, vShare);
+  float edge = 1.0 - min(inside.x, min(inside.y, inside.z));
+  float strength = uMesh * (1.0 - smoothstep(0.05, 0.2, pixel));
+  vec3 drawn = mix(base, base * 0.78, edge * strength);
+  if (uThrough > 0.5) color = vec4(drawn * 0.85, 0.06 + 0.10 * (1.0 - abs(vNormal.z)));
+  else color = vec4(lit(drawn, vNormal), 1.0);
+}`,
+};
+
+// The section of each tetrahedron with the plane of the cut: a triangle or a quadrangle.
+export const sections = {
+  vertex: SOLID + `
+uniform vec4 uClip;
+flat out float vValue;
+vec3 between(vec3 a, vec3 b, float da, float db) { return a + (da / (da - db)) * (b - a); }
+void main() {
+  int item = gl_VertexID / 6, k = gl_VertexID % 6;
+  vec2 value = texelFetch(uValue, cell(item), 0).rg;
+  vValue = value.r;
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  if (!wantedPair(value.g)) return;
+  vec3 p[4];
+  float d[4];
+  int kept[4], lost[4], ofKept = 0, ofLost = 0;
+  for (int c = 0; c < 4; ++c) {
+    p[c] = seen(item, c);
+    d[c] = dot(uClip.xyz, p[c]) - uClip.w;
+    if (d[c] <= 0.0) kept[ofKept++] = c;
+    else lost[ofLost++] = c;
+  }
+  if (ofKept == 0 || ofLost == 0) return;
+  // The edge that corner number 0 to 3 of the section lies on.
+  int n = k < 3 ? k : k == 3 ? 0 : k - 2, a, b;
+  if (ofKept == 2) {
+    a = kept[n / 2];
+    b = lost[n == 1 || n == 2 ? 1 : 0];
+  } else {
+    if (k >= 3) return;
+    a = ofKept == 1 ? kept[0] : kept[n];
+    b = ofKept == 1 ? lost[n] : lost[0];
+  }
+  gl_Position = projectionMatrix * vec4(between(p[a], p[b], d[a], d[b]), 1.0);
+}`,
+  fragment: `precision highp float;
+` + COLOR + `
+flat in float vValue;
+out vec4 color;
+void main() { color = vec4(colorOf(vValue) * 0.95, 1.0); }`,
+};
+
+// Joints of tetrahedra that have softened or broken: a face, and its edges as ribbons that show on the surface.
+// uEnds holds three corners, uLines damage and mode.
+export const faceJoints = {
+  vertex: `
+precision highp float;
+precision highp int;
+uniform highp sampler2D uEnds, uLines;
+uniform int uLinesAcross;
+uniform float uPixel;
+flat out vec2 vLine;
+flat out vec3 vNormal;
+out vec3 vPoint;
+ivec2 texel(int i) { return ivec2(i % uLinesAcross, i / uLinesAcross); }
+vec3 seen(int i) { return (modelViewMatrix * vec4(texelFetch(uEnds, texel(i), 0).xyz, 1.0)).xyz; }
+void main() {
+  int item = gl_VertexID / 21, k = gl_VertexID % 21;
+  vLine = texelFetch(uLines, texel(item), 0).xy;
+  vec3 p[3] = vec3[3](seen(3 * item), seen(3 * item + 1), seen(3 * item + 2));
+  vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
+  vNormal = length(normal) > 0.0 ? normalize(normal) : vec3(0.0, 0.0, 1.0);
+  vec3 at = p[k % 3];
+  if (k >= 3) {
+    int edge = (k - 3) / 6, c = (k - 3) % 6;
+    vec2 corner = vec2(c == 1 || c == 2 || c == 4 ? 1.0 : -1.0, c >= 2 && c != 3 ? 1.0 : 0.0);
+    vec3 a = p[edge], b = p[(edge + 1) % 3], along = b - a;
+    vec2 unit = length(along.xy) > 1e-12 ? normalize(along.xy) : vec2(1.0, 0.0);
+    float width = uPixel * (vLine.x > 0.985 ? 1.3 : 0.8);
+    at = mix(a, b, corner.y) + vec3(vec2(-unit.y, unit.x) * corner.x * width, 2.0 * uPixel);
+    vNormal = vec3(0.0, 0.0, 1.0);
+  }
+  vPoint = at;
+  gl_Position = projectionMatrix * vec4(at, 1.0);
+}`,
+  fragment: `precision highp float;
+uniform vec4 uClip;
+uniform float uPixel;
+flat in vec2 vLine;
+flat in vec3 vNormal;
+in vec3 vPoint;
+out vec4 color;
+void main() {
+  if (dot(uClip.xyz, vPoint) > uClip.w + 2.0 * uPixel) discard;
+  vec3 base = mix(vec3(0.78, 0.05, 0.13), vec3(0.05, 0.30, 0.72), smoothstep(0.25, 0.75, vLine.y));
+  float light = 0.6 + 0.4 * abs(vNormal.z);
+  if (vLine.x > 0.985) color = vec4(base * light, 1.0);
+  else color = vec4(vec3(0.89, 0.47, 0.10) * light, 0.25 + 0.65 * vLine.x);
+}`,
+};

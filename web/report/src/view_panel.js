@@ -25,6 +25,7 @@ export class ViewPanel {
     });
     this.film = this.views[0].film;
     this.plane = this.film.meta.plane;
+    this.bodies = this.film.meta.solid;
     this.colorings = colorings(this.film).filter((c) => c.name !== "body" || this.film.meta.fields.some((f) => f.name === "group"));
     const named = (name) => this.colorings.find((c) => c.name === name);
     this.coloring = named(this.runs[0].color) ?? named("damage") ?? this.colorings[0];
@@ -114,6 +115,10 @@ export class ViewPanel {
     if (this.plane) {
       toggles.push(toggle("mesh", true, (on) => this.each((v) => (v.uniforms.uMesh.value = on ? 1 : 0))));
       toggles.push(this.cracksButton = toggle("cracks", true, (on) => this.each((v) => (v.cracks.visible = on))));
+    } else if (this.bodies) {
+      toggles.push(toggle("mesh", true, (on) => this.each((v) => (v.uniforms.uMesh.value = on ? 1 : 0))));
+      toggles.push(this.xrayButton = toggle("x-ray", false, (on) => this.xray(on)));
+      toggles.push(this.cracksButton = toggle("cracks", true, (on) => this.each((v) => (v.cracks.visible = on))));
     } else {
       const links = this.film.meta.frames[0].lines > 0, forces = this.film.meta.fields.some((f) => f.lines && f.name === "force");
       if (links) {
@@ -126,6 +131,8 @@ export class ViewPanel {
           this.each((v) => (v.forces.visible = on));
         }));
       }
+    }
+    if (!this.plane) {
       if (this.runs.some((r) => r.walls?.length)) toggles.push(toggle("walls", true, (on) => this.each((v) => (v.surroundings.visible = on))));
     }
     if (this.runs.some((r) => r.regions?.length)) toggles.push(toggle("supports", false, (on) => this.each((v) => (v.regions.visible = on))));
@@ -168,7 +175,7 @@ export class ViewPanel {
 
   /** The largest body seen through, with what is inside: bars and cracks. */
   xray(on) {
-    const first = this.film.first?.fields.group;
+    const first = this.film.first?.fields.group ?? (this.bodies ? [0] : null);
     if (!first) return;
     const sizes = new Array(16).fill(0);
     for (const g of first) sizes[Math.min(g, 15)]++;
@@ -177,7 +184,7 @@ export class ViewPanel {
     const steel = this.groups.findIndex((name) => /steel|bar|rebar/i.test(name));
     if (steel >= 0 && steel !== largest) this.setBody(steel, on ? 2 : 1);
     this.each((v) => {
-      v.bars.visible = on;
+      if (v.bars) v.bars.visible = on;
       v.fillLines();
     });
     if (on && this.cracksButton.getAttribute("aria-pressed") !== "true") this.cracksButton.click();
@@ -186,12 +193,12 @@ export class ViewPanel {
   scaleControl() {
     const text = make("output", {}, "1×");
     const factors = [0, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
-    const input = make("input", {type: "range", min: 0, max: factors.length - 1, step: 1, value: 1, "aria-label": "displacement", title: this.plane ? "cracks are drawn at 1× only" : "how large displacements are drawn", oninput: () => {
+    const input = make("input", {type: "range", min: 0, max: factors.length - 1, step: 1, value: 1, "aria-label": "displacement", title: this.plane || this.bodies ? "cracks are drawn at 1× only" : "how large displacements are drawn", oninput: () => {
       const factor = factors[Number(input.value)];
       text.textContent = `${factor}×`;
       this.each((v) => {
         v.uniforms.uScale.value = factor;
-        if (this.plane) v.cracks.visible = factor === 1 && this.cracksButton.getAttribute("aria-pressed") === "true";
+        if (this.plane || this.bodies) v.cracks.visible = factor === 1 && this.cracksButton.getAttribute("aria-pressed") === "true";
         v.redraw();
       });
     }});

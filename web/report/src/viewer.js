@@ -1,4 +1,4 @@
-// The view of one run: spheres, links, cracks and walls in space, triangles and joints in a plane.
+// The view of one run: spheres, links, cracks and walls in space, tetrahedra and joints in space, triangles and joints in a plane.
 
 import * as THREE from "three";
 import {OrbitControls} from "three/examples/jsm/controls/OrbitControls.js";
@@ -31,7 +31,7 @@ function vertices(count) {
   return geometry;
 }
 
-const OF_SQUARE = 6, OF_DISC = 18;
+const OF_SQUARE = 6, OF_DISC = 18, OF_SOLID = 12, OF_JOINT = 21;
 
 /** The box of what is worth seeing: the first frame, and of the last all but what flew far. */
 function bulk(film, first, last) {
@@ -42,7 +42,7 @@ function bulk(film, first, last) {
       for (let i = 0; i < values.length; ++i) values[i] = frame.position[4 * i + axis];
       return values.sort();
     };
-    const a = column(first), b = column(last), n = a.length, r = film.meta.plane ? 0 : film.meta.size;
+    const a = column(first), b = column(last), n = a.length, r = film.spheres ? film.meta.size : 0;
     const cut = Math.floor(0.005 * n);
     low[axis] = Math.min(a[0], Math.max(b[cut], a[0] - 0.3 * (a[n - 1] - a[0]))) - r;
     high[axis] = Math.max(a[n - 1], Math.min(b[n - 1 - cut], a[n - 1] + 0.3 * (a[n - 1] - a[0]))) + r;
@@ -57,6 +57,7 @@ export class Viewer {
     this.run = run;
     this.film = film;
     this.plane = film.meta.plane;
+    this.bodies = film.meta.solid;
     this.renderer = new THREE.WebGLRenderer({antialias: true, alpha: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
@@ -97,6 +98,7 @@ export class Viewer {
     this.box = bulk(film, first, last);
     this.uniforms.uFirst.value = floatTexture(first.position, 4, film.points);
     if (this.plane) this.buildPlane();
+    else if (this.bodies) this.buildBodies();
     else this.buildSpace();
     this.buildSurroundings();
     this.look(this.plane ? "z" : /^(iso|x|y|z)$/.test(this.run.view) ? this.run.view : "iso");
@@ -142,6 +144,16 @@ export class Viewer {
     this.through = this.add(corners(),
       this.material(shaders.triangles, {uWanted: 2, uThrough: 1}, {...options, transparent: true}), 1);
     this.cracks = this.add(vertices(0), this.material(shaders.joints, {uLines: null, uEnds: null}, {...options, transparent: true}), 2);
+  }
+
+  /** Tetrahedra: faces, flat sections of a cut, and joints that have softened or broken. */
+  buildBodies() {
+    const {elements} = this.film.meta, two = {side: THREE.DoubleSide}, veil = {transparent: true, depthWrite: false};
+    const faces = () => vertices(OF_SOLID * elements), sections = () => vertices(OF_SQUARE * elements);
+    this.solid = this.add(faces(), this.material(shaders.faces, {uWanted: 1, uThrough: 0}));
+    this.through = this.add(faces(), this.material(shaders.faces, {uWanted: 2, uThrough: 1}, veil), 5);
+    this.sections = this.add(sections(), this.material(shaders.sections, {uWanted: 1, uThrough: 0}, two));
+    this.cracks = this.add(vertices(0), this.material(shaders.faceJoints, {uLines: null, uEnds: null}, {...two, transparent: true}), 2);
   }
 
   /** Walls, and regions that are held or loaded. */
@@ -238,10 +250,11 @@ export class Viewer {
     const {film, uniforms} = this;
     const old = [uniforms.uNow, uniforms.uValue].map((u) => u.value);
     uniforms.uNow.value = floatTexture(frame.position, 4, film.points);
-    const pairs = new Float32Array(2 * film.meta.elements), group = frame.fields.group;
+    const pairs = new Float32Array(2 * film.meta.elements), {group, exposed} = frame.fields;
     for (let i = 0; i < film.meta.elements; ++i) {
       pairs[2 * i] = values ? values[i] : 0;
-      pairs[2 * i + 1] = group ? group[i] : 0;
+      // Of tetrahedra the faces that can be seen as well.
+      pairs[2 * i + 1] = (group ? group[i] : 0) + (this.bodies ? 65536 * (exposed ? exposed[i] : 15) : 0);
     }
     uniforms.uValue.value = floatTexture(pairs, 2, film.meta.elements);
     this.lines = frame.lines;
@@ -254,7 +267,7 @@ export class Viewer {
   /** Gives each list of lines that is shown the lines that belong to it. */
   fillLines() {
     if (!this.lines) return;
-    if (this.plane) return this.fillJoints();
+    if (this.plane || this.bodies) return this.fillJoints();
     const {kind = [], state = [], force = []} = this.lines.fields;
     const largest = this.film.meta.fields.find((f) => f.lines && f.name === "force")?.high || 1;
     const share = (l) => Math.min(1, (4 * (force[l] ?? 0)) / largest);
@@ -285,8 +298,8 @@ export class Viewer {
     uLines.value?.dispose();
     uEnds.value?.dispose();
     uLines.value = floatTexture(data, 4, count);
-    uEnds.value = floatTexture(ends, 4, count);
-    this.cracks.geometry.setDrawRange(0, OF_SQUARE * count);
+    uEnds.value = floatTexture(ends, 4, (this.bodies ? 3 : 1) * count);
+    this.cracks.geometry.setDrawRange(0, (this.bodies ? OF_JOINT : OF_SQUARE) * count);
   }
 
   color({category, map, low, high}) {
@@ -353,6 +366,7 @@ export class Viewer {
     }
     this.uniforms.uPixel.value = (2 * this.camera.top) / this.camera.zoom / Math.max(this.host.clientHeight, 1);
     this.through.visible = this.uniforms.uBody.value.includes(2);
+    if (this.sections) this.sections.visible = Boolean(this.clip);
     this.renderer.render(this.scene, this.camera);
     this.drawn?.(this);
   }
