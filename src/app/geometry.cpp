@@ -44,6 +44,10 @@ std::vector<std::int32_t> integers_of(const std::vector<FrameField>& fields, con
 /// Corners of triangles that are at one place become one vertex: frames list each triangle's own.
 Geometry of_frame(Frame frame) {
   Geometry g;
+  if (!frame.tetrahedra.empty())
+    throw InputError(
+        "a frame of tetrahedra is no plane mesh and no packing; `breccia convert --frames` carries "
+        "frames to another format, and ParaView and meshio read their files as they are");
   g.groups = frame.groups;
   if (frame.triangles.empty()) {
     g.center = std::move(frame.position);

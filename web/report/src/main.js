@@ -30,6 +30,7 @@ function heading(runs) {
     const model = s.model ?? {}, fracture = s.fracture ?? {};
     const facts = [
       model.elements && `${count(model.elements)} elements`, model.triangles && `${count(model.triangles)} triangles`,
+      model.tetrahedra && `${count(model.tetrahedra)} tetrahedra`,
       model.links && `${count(model.links)} links`, model.joints && `${count(model.joints)} joints`,
       s.time != null && timeText(s.time), s.steps != null && `${count(s.steps)} steps`,
       s.wall_s?.total && duration(s.wall_s.total), fracture.fragments > 1 && `${count(fracture.fragments)} pieces`,

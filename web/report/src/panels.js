@@ -141,11 +141,12 @@ const KINDS = ["concrete", "steel", "interface", "parallel", "ldpm"]; // as Link
 export function eventPanel(runs, store) {
   const lines = [], entries = [];
   let what = "links";
+  const jointed = (run) => run.film?.plane || run.film?.solid;
   runs.forEach((run, r) => {
     const cracks = run.cracks.column?.("time");
     if (cracks && run.cracks.rows > 0) {
       const end = run.summary.time, mode = run.cracks.column("mode");
-      what = run.film?.plane ? "joints" : "links";
+      what = jointed(run) ? "joints" : "links";
       const groups = mode ? [["by opening", (i) => mode.values[i] < 0.5, "#c8102e"], ["by sliding", (i) => mode.values[i] >= 0.5, "#1f5fbf"]] : [["broken", () => true, "#c8102e"]];
       for (const [label, is, color] of groups) {
         const x = [0], y = [0];
@@ -160,12 +161,13 @@ export function eventPanel(runs, store) {
         if (r === 0) entries.push({label, color, value: (t) => count(y[Math.max(0, x.findLastIndex((v) => v <= t * 1.000001))])});
       }
     } else if (run.events?.some((e) => e.broken.some((b) => b > 0))) {
+      if (jointed(run)) what = "joints";
       const x = run.events.map((e) => e.time), kinds = Math.max(...run.events.map((e) => e.broken.length));
       for (let k = 0; k < kinds; ++k) {
         const y = run.events.map((e) => e.broken[k] ?? 0);
         if (!y.some((v) => v > 0)) continue;
         const color = ["#c8102e", "#6b7280", "#1f77b4"][k] ?? LINES[k];
-        lines.push({label: KINDS[k], color, x, y, dash: r > 0});
+        lines.push({label: jointed(run) ? "broken" : KINDS[k], color, x, y, dash: r > 0});
         if (r === 0) entries.push({label: kinds > 1 ? KINDS[k] : "broken", color, value: (t) => count(y[nearest(x, t)])});
       }
     }
