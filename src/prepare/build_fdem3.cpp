@@ -11,6 +11,7 @@
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/meshing/heterogeneity.hpp"
+#include "prepare/tetrahedra/crack_faces.hpp"
 #include "prepare/tetrahedra/tet_body.hpp"
 #include "prepare/tetrahedra/tet_check.hpp"
 #include "prepare/tetrahedra/tet_order.hpp"
@@ -30,7 +31,10 @@ std::int16_t index_in(const Items& items, const std::string& name) {
 class TetAssembly {
  public:
   TetAssembly(const Config& config, const std::string& case_folder) : config_(config) {
-    prepare::TetContext context{.seed = config.seed, .number = 0, .folder = case_folder};
+    prepare::TetContext context{
+        .seed = config.seed, .number = 0, .folder = case_folder, .cracks = {}};
+    for (const DiscontinuityConfig& d : config.discontinuities)
+      if (d.embedded) context.cracks.push_back(d);
     std::vector<std::string> problems;
     for (std::size_t b = 0; b < config.bodies.size(); ++b) {
       model_.groups.push_back(config.bodies[b].name);
@@ -58,7 +62,7 @@ class TetAssembly {
     Placed own;
     Placed* placed = &own;
     if (body.shape == "mesh")
-      placed = &files_[{body.file, body.center.x, body.center.y, body.center.z}];
+      placed = &files_[{body.file, body.center.x, body.center.y, body.center.z, body.jitter}];
     if (placed->mesh.tetrahedron.empty()) {
       placed->mesh = prepare::mesh_of(body, context);
       prepare::check_mesh(placed->mesh);
@@ -113,7 +117,7 @@ class TetAssembly {
   }
 
   const Config& config_;
-  std::map<std::tuple<std::string, double, double, double>, Placed> files_;
+  std::map<std::tuple<std::string, double, double, double, double>, Placed> files_;
   Model model_;
 };
 
@@ -189,6 +193,26 @@ class TetBodyInModel {
   std::vector<Vec3> places_;  ///< of the tetrahedra's centroids  [m]
 };
 
+/// Cracks at the start; on a face of several, the last counts.
+void crack(Model& model, const Config& config, std::vector<std::string>& problems) {
+  if (config.discontinuities.empty()) return;
+  const std::vector<prepare::MeshFace> faces = prepare::faces_of(model.tetrahedron);
+  std::map<prepare::Face, std::int16_t> material;
+  for (const DiscontinuityConfig& d : config.discontinuities) {
+    const auto follows = [&](Index t) {
+      const auto body = static_cast<std::size_t>(model.group[static_cast<std::size_t>(t)]);
+      return d.embedded && prepare::follows_cracks(config.bodies[body]);
+    };
+    const auto found = prepare::faces_along(d, model.point, model.tetrahedron, faces, follows);
+    if (found.empty())
+      problems.push_back("discontinuity." + d.name + ": meets no face between two tetrahedra");
+    for (const prepare::Face& face : found)
+      material[face] =
+          d.kind == "open" ? std::int16_t{-1} : index_in(config.joint_laws, d.material);
+  }
+  for (const auto& [face, given] : material) model.discontinuities.push_back({face, given});
+}
+
 }  // namespace
 }  // namespace breccia::fdem3
 
@@ -204,6 +228,9 @@ fdem3::Model build_model(const fdem3::Config& config, const std::string& case_fo
     body.give_minerals();
     body.give_strength();
   }
+  std::vector<std::string> problems;
+  fdem3::crack(model, config, problems);
+  prepare::refuse(problems, "with the model");
   return std::move(model);
 }
 

@@ -13,8 +13,8 @@ namespace {
 using TetBodyConfig = fdem3::BodyConfig;
 
 constexpr double most_tetrahedra = 2e8;
-/// Tetrahedra that fill a volume: it over this times the cube of the edge aimed at.
-constexpr double tetrahedron_share = 0.094;
+/// Tetrahedra in a cube of the edge that is aimed at; of gmsh 4.8.4 it is 5 to 6.
+constexpr double tetrahedra_in_cube = 6.0;
 constexpr double least_tet_width = 1e-4;  ///< of a body, over mesh_size  [-]
 
 /// Half of the edges of the box around a body whose shape its keys tell.  [m]
@@ -135,10 +135,10 @@ class TetBodyChecks {
   void check_size(const TetBodyConfig& b) {
     const Vec3 size = 2.0 * half_of(b);
     const double width = std::min({size.x, size.y, size.z});
-    const double count =
-        size.x * size.y * size.z / (tetrahedron_share * b.mesh_size * b.mesh_size * b.mesh_size);
-    require(count < most_tetrahedra, "mesh_size = {} m would give more than {:.0e} tetrahedra",
-            b.mesh_size, most_tetrahedra);
+    const double cubes = size.x * size.y * size.z / (b.mesh_size * b.mesh_size * b.mesh_size);
+    require(tetrahedra_in_cube * cubes < most_tetrahedra,
+            "mesh_size = {} m would give more than {:.0e} tetrahedra", b.mesh_size,
+            most_tetrahedra);
     require(!(width > 0.0) || width >= least_tet_width * b.mesh_size,
             "{} m is too thin for mesh_size = {} m: at least {} of it is needed", width,
             b.mesh_size, least_tet_width);

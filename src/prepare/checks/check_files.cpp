@@ -15,6 +15,7 @@
 #include "prepare/packing/spheres_file.hpp"
 #include "prepare/shapes/surface.hpp"
 #include "prepare/tetrahedra/tet_body.hpp"
+#include "prepare/tetrahedra/tet_file.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -116,6 +117,9 @@ void check_files(const fdem3::Config& config, const std::string& case_folder) {
     if (body.shape == "stl")
       files.check("body." + body.name, body.file,
                   [](const std::string& path) { read_surface(path, 1.0); });
+    if (body.shape == "mesh")
+      files.check("body." + body.name, body.file,
+                  [&](const std::string& path) { tetrahedra_of(body, read_tet_mesh(path)); });
   }
   files.refuse_all();
 }

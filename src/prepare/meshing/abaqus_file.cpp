@@ -44,14 +44,19 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 const std::set<std::string> triangle_types{"CPS3", "CPE3", "S3", "S3R", "M3D3", "STRI3"};
 const std::set<std::string> line_types{"T2D2", "T3D2", "B21", "B31"};
+const std::set<std::string> tetrahedron_types{"C3D4"};
 /// Keywords that bring nodes or elements, or move them: a mesh read without them would be another.
 const std::set<std::string> refused{"INCLUDE", "NGEN",   "NFILL",  "NCOPY",    "NMAP",
                                     "ELGEN",   "ELCOPY", "SYSTEM", "TRANSFORM"};
 
 class AbaqusReader {
  public:
-  AbaqusReader(std::string_view content, const std::string& name)
-      : content_(content), name_(name) {}
+  AbaqusReader(std::string_view content, const std::string& name, int dimension)
+      : content_(content),
+        name_(name),
+        element_types_(dimension == 2 ? triangle_types : tetrahedron_types),
+        side_types_(dimension == 2 ? line_types : triangle_types),
+        corners_(dimension == 2 ? 3 : 4) {}
 
   RawMesh run() {
     for (std::size_t at = 0; at < content_.size();) {
@@ -160,21 +165,27 @@ class AbaqusReader {
   }
 
   void read_element(const std::vector<std::string_view>& words) {
-    const bool triangle = triangle_types.contains(type_), line = line_types.contains(type_);
-    if (!triangle && !line)
-      fail(
-          fmt::format("element {} is of type {}; allowed are triangles ({}) and, as names of "
-                      "edges, lines ({})",
-                      words.empty() ? "" : words[0], type_, fmt::join(triangle_types, ", "),
-                      fmt::join(line_types, ", ")));
-    const std::size_t nodes = triangle ? 3 : 2;
+    const bool is_element = element_types_.contains(type_), is_side = side_types_.contains(type_);
+    const bool ignored = !is_side && line_types.contains(type_);  // a line of a mesh in space
+    if (!is_element && !is_side && !ignored)
+      fail(fmt::format("element {} is of type {}; allowed are {} ({}) and, as names of {} ({})",
+                       words.empty() ? "" : words[0], type_,
+                       corners_ == 3 ? "triangles" : "tetrahedra", fmt::join(element_types_, ", "),
+                       corners_ == 3 ? "edges, lines" : "faces, triangles",
+                       fmt::join(side_types_, ", ")));
+    const std::size_t nodes = is_element ? corners_ : is_side ? corners_ - 1 : 2;
     if (words.size() != 1 + nodes)
       fail(fmt::format("an element of type {} is its number and {} nodes; here are {} words", type_,
                        nodes, words.size()));
     RawMesh::Element element{whole(words[0]), {}, line_};
     for (std::size_t k = 0; k < nodes; ++k) element.nodes[k] = whole(words[1 + k]);
-    auto& elements = triangle ? raw_.triangles : raw_.lines;
-    const Place place{triangle, elements.size()};
+    if (ignored) {
+      for (std::size_t k = 0; k < nodes; ++k) raw_.other_nodes.push_back(element.nodes[k]);
+      ignored_.insert(element.number);
+      return;
+    }
+    auto& elements = is_element ? raw_.elements : raw_.sides;
+    const Place place{is_element, elements.size()};
     if (!places_.emplace(element.number, place).second)
       fail(fmt::format("element {} is there twice", element.number));
     elements.push_back(element);
@@ -229,12 +240,13 @@ class AbaqusReader {
     for (const auto& [name, set] : element_sets_)
       for (const std::int64_t number : all_of(element_sets_, name)) {
         const auto found = places_.find(number);
+        if (found == places_.end() && ignored_.contains(number)) continue;
         if (found == places_.end()) {
           line_ = set.line;
           fail(fmt::format("the element set \"{}\" names element {}, which is not there", name,
                            number));
         }
-        auto& sets = found->second.triangle ? raw_.parts : raw_.line_sets;
+        auto& sets = found->second.is_element ? raw_.parts : raw_.side_sets;
         sets[name].push_back(found->second.position);
       }
   }
@@ -244,25 +256,32 @@ class AbaqusReader {
   }
 
   struct Place {
-    bool triangle;  ///< else a line
+    bool is_element;  ///< else a side
     std::size_t position;
   };
   static constexpr std::int64_t most_generated = 100'000'000;
 
   std::string_view content_;
   const std::string& name_;
+  const std::set<std::string>&element_types_, &side_types_;
+  std::size_t corners_;  ///< of an element
   int line_ = 0;
   bool has_keywords_ = false, generate_ = false;
   std::string keyword_, type_, set_;  ///< of the block
   std::unordered_map<std::int64_t, Place> places_;
+  std::set<std::int64_t> ignored_;  ///< elements that are no part of the mesh
   std::map<std::string, Set> element_sets_, node_sets_;
   RawMesh raw_;
 };
 
 }  // namespace
 
+RawMesh raw_abaqus(std::string_view content, const std::string& name, int dimension) {
+  return AbaqusReader(content, name, dimension).run();
+}
+
 Mesh parse_abaqus(std::string_view content, const std::string& name, bool seams) {
-  return finished_mesh(AbaqusReader(content, name).run(), name, seams);
+  return finished_mesh(raw_abaqus(content, name, 2), name, seams);
 }
 
 }  // namespace breccia::prepare

@@ -161,7 +161,8 @@ Kind kind_of(int type) {
 
 class GmshReader {
  public:
-  GmshReader(std::string_view content, const std::string& name) : in_(content, name), name_(name) {}
+  GmshReader(std::string_view content, const std::string& name, int dimension)
+      : in_(content, name), dimension_(dimension) {}
 
   RawMesh run() {
     in_.section = "its first section";
@@ -290,7 +291,7 @@ class GmshReader {
       const Kind kind = kind_of(type);
       for (std::size_t e = 0; e < count; ++e, ++read) {
         RawMesh::Element element{in_.tag(), {}, in_.line()};
-        refuse_other_than_flat(element, type);
+        refuse_others(element, type);
         for (std::size_t k = 0; k < kind.nodes; ++k) element.nodes[k] = in_.tag();
         add(element, type, dimension, groups_[{dimension, entity}]);
       }
@@ -320,28 +321,35 @@ class GmshReader {
         const int given = in_.integer();
         if (tag == 0 && given != 0) group.push_back(group_number(given));
       }
-      refuse_other_than_flat(element, type);
+      refuse_others(element, type);
       for (std::size_t k = 0; k < kind_of(type).nodes; ++k) element.nodes[k] = in_.tag();
-      add(element, type, type == 1 ? 1 : 2, group);
+      add(element, type, type == 4 ? 3 : type, group);  // dimensions of lines, triangles
     }
   }
 
-  void refuse_other_than_flat(const RawMesh::Element& element, int type) {
-    if (type != 1 && type != 2 && type != 15)
-      in_.fail(fmt::format(
-          "element {} is {}; a mesh may hold triangles, and lines that name "
-          "edges{}",
-          element.number, kind_of(type).name, type == 3 ? " (leave out Recombine)" : ""));
+  /// Types of elements that a mesh is made of, and that name their sides.
+  int element_type() const { return dimension_ == 2 ? 2 : 4; }
+  int side_type() const { return dimension_ == 2 ? 1 : 2; }
+
+  void refuse_others(const RawMesh::Element& element, int type) {
+    if (type == element_type() || type == side_type() || type == 1 || type == 15) return;
+    const bool recombined = type == 3 || type == 5 || type == 6 || type == 7;
+    in_.fail(fmt::format("element {} is {}; a mesh may hold {}{}", element.number,
+                         kind_of(type).name,
+                         dimension_ == 2 ? "triangles, and lines that name edges"
+                                         : "tetrahedra, and triangles that name faces",
+                         recombined ? " (leave out Recombine)" : ""));
   }
 
   void add(const RawMesh::Element& element, int type, int dimension,
            const std::vector<int>& groups) {
-    if (type == 15) {
-      raw_.other_nodes.push_back(element.nodes[0]);
+    if (type != element_type() && type != side_type()) {
+      for (std::size_t k = 0; k < kind_of(type).nodes; ++k)
+        raw_.other_nodes.push_back(element.nodes[k]);
       return;
     }
-    auto& elements = type == 1 ? raw_.lines : raw_.triangles;
-    auto& sets = type == 1 ? raw_.line_sets : raw_.parts;
+    auto& elements = type == side_type() ? raw_.sides : raw_.elements;
+    auto& sets = type == side_type() ? raw_.side_sets : raw_.parts;
     for (const int group : groups) {
       const auto name = names_.find({dimension, group});
       sets[name != names_.end() ? name->second : std::to_string(group)].push_back(elements.size());
@@ -351,7 +359,7 @@ class GmshReader {
 
   using DimensionAndTag = std::pair<int, int>;
   Input in_;
-  const std::string& name_;
+  int dimension_;
   bool format_known_ = false, legacy_ = false;
   std::map<DimensionAndTag, std::string> names_;        ///< of physical groups
   std::map<DimensionAndTag, std::vector<int>> groups_;  ///< physical groups of an entity
@@ -360,8 +368,12 @@ class GmshReader {
 
 }  // namespace
 
+RawMesh raw_gmsh(std::string_view content, const std::string& name, int dimension) {
+  return GmshReader(content, name, dimension).run();
+}
+
 Mesh parse_gmsh(std::string_view content, const std::string& name, bool seams) {
-  return finished_mesh(GmshReader(content, name).run(), name, seams);
+  return finished_mesh(raw_gmsh(content, name, 2), name, seams);
 }
 
 }  // namespace breccia::prepare

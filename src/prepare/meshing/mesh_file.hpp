@@ -27,7 +27,9 @@ Mesh read_mesh(const std::string& path, bool seams = false);
 Mesh parse_gmsh(std::string_view content, const std::string& name, bool seams = false);
 Mesh parse_abaqus(std::string_view content, const std::string& name, bool seams = false);
 
-/// Contents of a file, with its own numbers, before references are resolved.
+/// Contents of a file, with its own numbers, before references are resolved. Elements are triangles
+/// of a plane mesh, tetrahedra of one in space; sides are lines or triangles that name edges or
+/// faces of elements.
 struct RawMesh {
   struct Node {
     std::int64_t number;
@@ -36,17 +38,23 @@ struct RawMesh {
   };
   struct Element {
     std::int64_t number;
-    std::array<std::int64_t, 3> nodes;  ///< two for a line
+    std::array<std::int64_t, 4> nodes;  ///< fewer for a triangle or line
     int line;
   };
   std::vector<Node> nodes;
-  std::vector<Element> triangles, lines;
+  std::vector<Element> elements, sides;
   std::vector<std::int64_t> other_nodes;                       ///< of elements that are neither
-  std::map<std::string, std::vector<std::size_t>> parts;       ///< positions in triangles
-  std::map<std::string, std::vector<std::size_t>> line_sets;   ///< positions in lines
+  std::map<std::string, std::vector<std::size_t>> parts;       ///< positions in elements
+  std::map<std::string, std::vector<std::size_t>> side_sets;   ///< positions in sides
   std::map<std::string, std::vector<std::int64_t>> node_sets;  ///< numbers
 };
-/// Looks everything up and checks it. @throws InputError with all problems, each with its line
+/// @param dimension  2: a mesh of triangles, 3: of tetrahedra
+/// @throws InputError for the first thing that cannot be read
+RawMesh raw_gmsh(std::string_view content, const std::string& name, int dimension);
+RawMesh raw_abaqus(std::string_view content, const std::string& name, int dimension);
+
+/// Looks everything up in a plane mesh and checks it. @throws InputError with all problems, each
+/// with its line
 Mesh finished_mesh(const RawMesh& raw, const std::string& name, bool seams);
 
 }  // namespace breccia::prepare

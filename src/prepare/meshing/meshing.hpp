@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "prepare/meshing/mesh.hpp"
+#include "prepare/meshing/run_gmsh.hpp"
 
 namespace breccia::prepare {
 
@@ -39,12 +40,6 @@ Mesh mesh_region(const Region& region, std::int64_t seed);
 /// A .geo file of the user.
 /// @param edge  no edge is longer; 0: what the file says  [m]
 Mesh mesh_geo_file(const std::string& path, double edge, std::int64_t seed);
-
-/// Where a program is that the shell would start; empty: nowhere.
-std::string on_path(const std::string& program);
-
-/// That a program is not installed which makes a mesh. @param what  whose mesh
-std::string no_mesher(const std::string& what, const std::string& program = "gmsh");
 
 /// As mesh_geo_file with a program of another name in place of gmsh, to test what its lack says.
 Mesh mesh_geo_file_with(const std::string& program, const std::string& path, double edge,

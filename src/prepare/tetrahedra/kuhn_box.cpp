@@ -55,9 +55,10 @@ TetMesh kuhn_box(const Vec3& center, const Vec3& size, double edge) {
   return mesh;
 }
 
-void jitter(TetMesh& mesh, double share, const Random& random) {
+void jitter(TetMesh& mesh, double share, const Random& random, const std::vector<bool>& fixed) {
   if (share <= 0.0) return;
-  std::vector<bool> stays(mesh.point.size());
+  std::vector<bool> stays = fixed;
+  stays.resize(mesh.point.size());
   for (const MeshFace& face : faces_of(mesh.tetrahedron))
     if (face.tetrahedra[1] < 0)
       for (const Index v : face.corners) stays[static_cast<std::size_t>(v)] = true;

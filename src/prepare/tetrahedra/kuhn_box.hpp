@@ -13,7 +13,8 @@ namespace breccia::prepare {
 TetMesh kuhn_box(const Vec3& center, const Vec3& size, double edge);
 
 /// Moves vertices that are not on the surface by up to `share` of the shortest edge there. No
-/// tetrahedron loses more than half of its volume at one vertex's move.
-void jitter(TetMesh& mesh, double share, const Random& random);
+/// tetrahedron loses more than half of its volume at one vertex's move; `fixed` vertices stay (may
+/// be empty).
+void jitter(TetMesh& mesh, double share, const Random& random, const std::vector<bool>& fixed);
 
 }  // namespace breccia::prepare

@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 
 #include "exec/error.hpp"
+#include "prepare/tetrahedra/crack_faces.hpp"
 #include "prepare/tetrahedra/kuhn_box.hpp"
+#include "prepare/tetrahedra/tet_file.hpp"
 
 namespace breccia::prepare {
 namespace {
 
-/// The stream of random numbers of body 0; those of the plane method are of other methods' cases.
+/// The stream of random numbers of the first body.
 constexpr std::uint32_t tet_jitter_stream = 0x10000;
 
 }  // namespace
@@ -19,12 +23,30 @@ bool needs_gmsh(const fdem3::BodyConfig& body) {
   return body.shape != "mesh" && !body.structured;
 }
 
+bool follows_cracks(const fdem3::BodyConfig& body) {
+  return needs_gmsh(body) && body.shape != "stl";
+}
+
 TetMesh mesh_of(const fdem3::BodyConfig& body, const TetContext& context) {
-  if (body.shape != "box" || !body.structured)
-    throw InputError("only structured boxes can be meshed yet");
-  TetMesh mesh = kuhn_box(body.center, body.size, body.mesh_size);
+  const std::string path = (std::filesystem::path(context.folder) / body.file).string();
+  const auto moved = [&](TetMesh mesh) {
+    for (Vec3& p : mesh.point) p += body.center;
+    return mesh;
+  };
+  TetMesh mesh = body.shape == "mesh"  ? moved(read_tet_mesh(path))
+                 : body.shape == "stl" ? moved(mesh_stl(path, body.mesh_size, context.seed))
+                 : body.structured     ? kuhn_box(body.center, body.size, body.mesh_size)
+                                       : mesh_solid(body, context.cracks, context.seed);
+  if (!(body.jitter > 0.0)) return mesh;
+  std::vector<bool> fixed(mesh.point.size());
+  if (follows_cracks(body))
+    for (const fdem3::DiscontinuityConfig& given : context.cracks) {
+      const FlatCrack crack(given);
+      for (std::size_t i = 0; i < fixed.size(); ++i)
+        if (std::abs(crack.height(mesh.point[i])) < 1e-6 * body.mesh_size) fixed[i] = true;
+    }
   jitter(mesh, body.jitter,
-         {static_cast<std::uint64_t>(context.seed), tet_jitter_stream + context.number});
+         {static_cast<std::uint64_t>(context.seed), tet_jitter_stream + context.number}, fixed);
   return mesh;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fdem3/setup/body_config.hpp"
+#include "prepare/tetrahedra/tet_gmsh.hpp"
 #include "prepare/tetrahedra/tet_mesh.hpp"
 
 namespace breccia::prepare {
@@ -15,6 +16,7 @@ struct TetContext {
   std::int64_t seed = 1;
   std::uint32_t number = 0;  ///< of the body: streams of random numbers
   std::string folder;        ///< of the files
+  FlatCracks cracks;         ///< that meshes made by gmsh follow
 };
 
 /// Meshes, moves to its centre and jitters a body.
@@ -23,6 +25,9 @@ TetMesh mesh_of(const fdem3::BodyConfig& body, const TetContext& context);
 
 /// Whether the body's mesh is made by gmsh.
 bool needs_gmsh(const fdem3::BodyConfig& body);
+
+/// Whether the body's mesh is made to follow cracks.
+bool follows_cracks(const fdem3::BodyConfig& body);
 
 /// The tetrahedra of a mesh that are a body: those of its parts, or all.
 /// @throws InputError if the mesh has no part of a name
