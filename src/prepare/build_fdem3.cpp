@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
+#include <set>
 #include <tuple>
 
 #include "core/random.hpp"
@@ -15,6 +17,7 @@
 #include "prepare/tetrahedra/tet_body.hpp"
 #include "prepare/tetrahedra/tet_check.hpp"
 #include "prepare/tetrahedra/tet_order.hpp"
+#include "prepare/tetrahedra/tet_overlap.hpp"
 
 namespace breccia::fdem3 {
 namespace {
@@ -194,9 +197,8 @@ class TetBodyInModel {
 };
 
 /// Cracks at the start; on a face of several, the last counts.
-void crack(Model& model, const Config& config, std::vector<std::string>& problems) {
-  if (config.discontinuities.empty()) return;
-  const std::vector<prepare::MeshFace> faces = prepare::faces_of(model.tetrahedron);
+void crack(Model& model, const Config& config, const std::vector<prepare::MeshFace>& faces,
+           std::vector<std::string>& problems) {
   std::map<prepare::Face, std::int16_t> material;
   for (const DiscontinuityConfig& d : config.discontinuities) {
     const auto follows = [&](Index t) {
@@ -211,6 +213,51 @@ void crack(Model& model, const Config& config, std::vector<std::string>& problem
           d.kind == "open" ? std::int16_t{-1} : index_in(config.joint_laws, d.material);
   }
   for (const auto& [face, given] : material) model.discontinuities.push_back({face, given});
+}
+
+/// One sentence for each pair of bodies that lie in each other.
+void look_for_overlaps(const Model& model, const std::vector<prepare::MeshFace>& faces,
+                       std::vector<std::string>& problems) {
+  std::set<std::pair<int, int>> seen;
+  for (const prepare::TetOverlap& pair :
+       prepare::overlaps_of(model.point, model.tetrahedron, faces)) {
+    const auto [a, b] = std::minmax({model.group[static_cast<std::size_t>(pair.a)],
+                                     model.group[static_cast<std::size_t>(pair.b)]});
+    if (!seen.insert({a, b}).second) continue;
+    const Vec3 x =
+        prepare::centroid(model.point, model.tetrahedron[static_cast<std::size_t>(pair.a)]);
+    const std::string place = fmt::format("near ({:.6g}, {:.6g}, {:.6g}) m", x.x, x.y, x.z);
+    const std::string& name = model.groups[static_cast<std::size_t>(a)];
+    problems.push_back(
+        a == b ? fmt::format("body.{}: two of its tetrahedra overlap {}", name, place)
+               : fmt::format("body.{} and body.{} overlap at the start {}; move one of them", name,
+                             model.groups[static_cast<std::size_t>(b)], place));
+  }
+}
+
+/// Vertices of one body that lie at one place: tetrahedra beside them look joined and are not.
+void look_for_seams(const Model& model, std::vector<std::string>& problems) {
+  std::vector<std::int16_t> group(model.point.size());
+  for (std::size_t t = 0; t < model.tetrahedron.size(); ++t)
+    for (const Index v : model.tetrahedron[t]) group[static_cast<std::size_t>(v)] = model.group[t];
+  std::vector<Index> order(model.point.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](Index v) {
+    const Vec3& p = prepare::at(model.point, v);
+    return std::tuple(group[static_cast<std::size_t>(v)], p.x, p.y, p.z);
+  };
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
+  std::set<std::int16_t> told;
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const std::int16_t body = group[static_cast<std::size_t>(order[k])];
+    if (key(order[k]) != key(order[k - 1]) || !told.insert(body).second) continue;
+    const Vec3& p = prepare::at(model.point, order[k]);
+    problems.push_back(
+        fmt::format("body.{}: two vertices lie at one place, ({:.6g}, {:.6g}, {:.6g}) m: "
+                    "tetrahedra beside them are not joined; give them one vertex, and cracks a "
+                    "[[discontinuity]]",
+                    model.groups[static_cast<std::size_t>(body)], p.x, p.y, p.z));
+  }
 }
 
 }  // namespace
@@ -229,7 +276,10 @@ fdem3::Model build_model(const fdem3::Config& config, const std::string& case_fo
     body.give_strength();
   }
   std::vector<std::string> problems;
-  fdem3::crack(model, config, problems);
+  const std::vector<prepare::MeshFace> faces = prepare::faces_of(model.tetrahedron);
+  fdem3::crack(model, config, faces, problems);
+  fdem3::look_for_overlaps(model, faces, problems);
+  fdem3::look_for_seams(model, problems);
   prepare::refuse(problems, "with the model");
   return std::move(model);
 }
