@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <tuple>
+#include <type_traits>
 
 #include "exec/error.hpp"
 #include "io/checkpoint.hpp"
@@ -15,6 +16,7 @@
 #include "prepare/meshing/mesh_file.hpp"
 #include "prepare/model_file.hpp"
 #include "prepare/packing/spheres_file.hpp"
+#include "prepare/tetrahedra/tet_file.hpp"
 
 namespace breccia::app {
 namespace {
@@ -86,6 +88,17 @@ Geometry of_model(const std::string& path) {
     g.mesh.parts = parts_by_group(g.groups, {model.group.begin(), model.group.end()});
     return g;
   }
+  if (reader.has("model.tetrahedron")) {
+    const fdem3::Model model = load_fdem3_model(reader);
+    g.solid.point = model.point;
+    g.solid.tetrahedron = model.tetrahedron;
+    for (const auto& set : model.face_sets) g.solid.face_sets.push_back({set.name, set.faces});
+    for (const std::string& name : model.groups) g.solid.volumes.push_back({name, {}});
+    for (std::size_t t = 0; t < model.group.size(); ++t)
+      g.solid.volumes[static_cast<std::size_t>(model.group[t])].tetrahedra.push_back(
+          static_cast<Index>(t));
+    return g;
+  }
   const dem::Model model = load_model(reader);
   g.center = model.position;
   g.radius = model.radius;
@@ -94,21 +107,66 @@ Geometry of_model(const std::string& path) {
   return g;
 }
 
-/// Gmsh 2.2 as text: parts are physical surfaces, edge sets physical lines.
-std::string gmsh_text(const prepare::Mesh& mesh) {
+/// A mesh as its files see it, in the plane and in space.
+const auto& elements_of(const prepare::Mesh& m) {
+  return m.triangle;
+}
+const auto& elements_of(const prepare::TetMesh& m) {
+  return m.tetrahedron;
+}
+const auto& parts_of(const prepare::Mesh& m) {
+  return m.parts;
+}
+const auto& parts_of(const prepare::TetMesh& m) {
+  return m.volumes;
+}
+const auto& members_of(const prepare::Part& part) {
+  return part.triangles;
+}
+const auto& members_of(const prepare::Volume& volume) {
+  return volume.tetrahedra;
+}
+const auto& side_sets_of(const prepare::Mesh& m) {
+  return m.edge_sets;
+}
+const auto& side_sets_of(const prepare::TetMesh& m) {
+  return m.face_sets;
+}
+const auto& sides_of(const prepare::EdgeSet& set) {
+  return set.edges;
+}
+const auto& sides_of(const prepare::FaceSet& set) {
+  return set.faces;
+}
+Vec3 in_three(const Vec2& p) {
+  return {p.x, p.y, 0.0};
+}
+Vec3 in_three(const Vec3& p) {
+  return p;
+}
+template <class SomeMesh>
+constexpr bool in_space = std::is_same_v<SomeMesh, prepare::TetMesh>;
+
+/// Gmsh 2.2 as text: parts are physical surfaces or volumes, sets of sides physical lines or
+/// surfaces.
+template <class SomeMesh>
+std::string gmsh_text(const SomeMesh& mesh) {
+  constexpr int dimension = in_space<SomeMesh> ? 3 : 2;
+  const auto &sets = side_sets_of(mesh), &parts = parts_of(mesh);
   std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-  const std::size_t named = mesh.edge_sets.size() + mesh.parts.size();
-  if (named > 0) {
-    text += fmt::format("$PhysicalNames\n{}\n", named);
-    for (std::size_t s = 0; s < mesh.edge_sets.size(); ++s)
-      text += fmt::format("1 {} \"{}\"\n", s + 1, mesh.edge_sets[s].name);
-    for (std::size_t p = 0; p < mesh.parts.size(); ++p)
-      text += fmt::format("2 {} \"{}\"\n", mesh.edge_sets.size() + p + 1, mesh.parts[p].name);
+  if (sets.size() + parts.size() > 0) {
+    text += fmt::format("$PhysicalNames\n{}\n", sets.size() + parts.size());
+    for (std::size_t s = 0; s < sets.size(); ++s)
+      text += fmt::format("{} {} \"{}\"\n", dimension - 1, s + 1, sets[s].name);
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      text += fmt::format("{} {} \"{}\"\n", dimension, sets.size() + p + 1, parts[p].name);
     text += "$EndPhysicalNames\n";
   }
   text += fmt::format("$Nodes\n{}\n", mesh.point.size());
-  for (std::size_t i = 0; i < mesh.point.size(); ++i)
-    text += fmt::format("{} {} {} 0\n", i + 1, mesh.point[i].x, mesh.point[i].y);
+  for (std::size_t i = 0; i < mesh.point.size(); ++i) {
+    const Vec3 p = in_three(mesh.point[i]);
+    text += fmt::format("{} {} {} {}\n", i + 1, p.x, p.y, p.z);
+  }
   std::size_t count = 0;
   std::string elements;
   const auto add = [&](int type, std::size_t physical, const auto& nodes) {
@@ -116,37 +174,52 @@ std::string gmsh_text(const prepare::Mesh& mesh) {
     for (const Index node : nodes) elements += fmt::format(" {}", node + 1);
     elements += '\n';
   };
-  for (std::size_t s = 0; s < mesh.edge_sets.size(); ++s)
-    for (const prepare::Edge& edge : mesh.edge_sets[s].edges) add(1, s + 1, edge);
-  std::vector<std::size_t> part(mesh.triangle.size(), 0);
-  for (std::size_t p = 0; p < mesh.parts.size(); ++p)
-    for (const Index t : mesh.parts[p].triangles)
-      part[static_cast<std::size_t>(t)] = mesh.edge_sets.size() + p + 1;
-  for (std::size_t t = 0; t < mesh.triangle.size(); ++t) add(2, part[t], mesh.triangle[t]);
+  constexpr int line = 1, triangle = 2, tetrahedron = 4;
+  for (std::size_t s = 0; s < sets.size(); ++s)
+    for (const auto& side : sides_of(sets[s])) add(dimension == 3 ? triangle : line, s + 1, side);
+  std::vector<std::size_t> part(elements_of(mesh).size(), 0);
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    for (const Index t : members_of(parts[p]))
+      part[static_cast<std::size_t>(t)] = sets.size() + p + 1;
+  for (std::size_t t = 0; t < part.size(); ++t)
+    add(dimension == 3 ? tetrahedron : triangle, part[t], elements_of(mesh)[t]);
   return text + fmt::format("$EndNodes\n$Elements\n{}\n{}$EndElements\n", count, elements);
 }
 
-/// Abaqus: parts are element sets, edge sets node sets.
-std::string abaqus_text(const prepare::Mesh& mesh) {
+/// Abaqus: parts are element sets, sets of edges node sets. Those of faces are sets of triangles,
+/// since all corners of a face may be in a node set that does not mean it.
+template <class SomeMesh>
+std::string abaqus_text(const SomeMesh& mesh) {
   std::string text = "*HEADING\nby breccia convert; metres\n*NODE\n";
-  for (std::size_t i = 0; i < mesh.point.size(); ++i)
-    text += fmt::format("{}, {}, {}, 0\n", i + 1, mesh.point[i].x, mesh.point[i].y);
-  text += "*ELEMENT, TYPE=S3\n";
-  for (std::size_t t = 0; t < mesh.triangle.size(); ++t)
-    text += fmt::format("{}, {}, {}, {}\n", t + 1, mesh.triangle[t][0] + 1, mesh.triangle[t][1] + 1,
-                        mesh.triangle[t][2] + 1);
+  for (std::size_t i = 0; i < mesh.point.size(); ++i) {
+    const Vec3 p = in_three(mesh.point[i]);
+    text += fmt::format("{}, {}, {}, {}\n", i + 1, p.x, p.y, p.z);
+  }
+  std::size_t count = 0;
+  const auto add = [&](const auto& nodes) {
+    text += fmt::format("{}", ++count);
+    for (const Index node : nodes) text += fmt::format(", {}", node + 1);
+    text += '\n';
+  };
+  text += in_space<SomeMesh> ? "*ELEMENT, TYPE=C3D4\n" : "*ELEMENT, TYPE=S3\n";
+  for (const auto& corners : elements_of(mesh)) add(corners);
   const auto list = [&](const std::vector<Index>& numbers) {
     for (std::size_t i = 0; i < numbers.size(); ++i)
       text += fmt::format("{}{}", numbers[i] + 1,
                           i % 12 == 11 || i + 1 == numbers.size() ? "\n" : ", ");
   };
-  for (const prepare::Part& part : mesh.parts) {
+  for (const auto& part : parts_of(mesh)) {
     text += fmt::format("*ELSET, ELSET={}\n", part.name);
-    list(part.triangles);
+    list(members_of(part));
   }
-  for (const prepare::EdgeSet& set : mesh.edge_sets) {
+  for (const auto& set : side_sets_of(mesh)) {
+    if (in_space<SomeMesh>) {
+      text += fmt::format("*ELEMENT, TYPE=S3, ELSET={}\n", set.name);
+      for (const auto& side : sides_of(set)) add(side);
+      continue;
+    }
     std::vector<Index> nodes;
-    for (const prepare::Edge& edge : set.edges) nodes.insert(nodes.end(), edge.begin(), edge.end());
+    for (const auto& side : sides_of(set)) nodes.insert(nodes.end(), side.begin(), side.end());
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     text += fmt::format("*NSET, NSET={}\n", set.name);
@@ -172,23 +245,30 @@ std::string spheres_text(const Geometry& g) {
 std::string vtk_content(const Geometry& g, FrameFormat format) {
   Frame frame;
   frame.groups = g.groups;
-  if (!g.is_mesh()) {
+  if (!g.is_mesh() && !g.is_solid()) {
     frame.position = g.center;
     frame.radius = g.radius;
     if (!g.group.empty()) frame.point_fields.push_back(whole_numbers("group", g.group));
     return contents_of(frame, 1, format).points;
   }
-  for (const Vec2& p : g.mesh.point) frame.position.push_back({p.x, p.y, 0.0});
-  std::vector<std::int32_t> group(g.mesh.triangle.size(), -1);
   frame.groups.clear();
-  for (const prepare::Part& part : g.mesh.parts) {
-    for (const Index t : part.triangles)
-      group[static_cast<std::size_t>(t)] = static_cast<std::int32_t>(frame.groups.size());
-    frame.groups.push_back(part.name);
-  }
-  for (const prepare::Triangle& t : g.mesh.triangle)
-    frame.triangles.insert(frame.triangles.end(), t.begin(), t.end());
-  if (!frame.groups.empty()) frame.triangle_fields.push_back(whole_numbers("group", group));
+  const auto add = [&](const auto& mesh, std::vector<std::int32_t>& corners,
+                       std::vector<FrameField>& fields) {
+    for (const auto& p : mesh.point) frame.position.push_back(in_three(p));
+    std::vector<std::int32_t> group(elements_of(mesh).size(), -1);
+    for (const auto& part : parts_of(mesh)) {
+      for (const Index t : members_of(part))
+        group[static_cast<std::size_t>(t)] = static_cast<std::int32_t>(frame.groups.size());
+      frame.groups.push_back(part.name);
+    }
+    for (const auto& each : elements_of(mesh))
+      corners.insert(corners.end(), each.begin(), each.end());
+    if (!frame.groups.empty()) fields.push_back(whole_numbers("group", group));
+  };
+  if (g.is_solid())
+    add(g.solid, frame.tetrahedra, frame.tetrahedron_fields);
+  else
+    add(g.mesh, frame.triangles, frame.triangle_fields);
   return contents_of(frame, 1, format).points;
 }
 
@@ -203,7 +283,10 @@ Geometry read_geometry(const std::string& path, int frame) {
   if (kind == ".br") return of_model(path);
   Geometry g;
   if (kind == ".msh" || kind == ".inp") {
-    g.mesh = prepare::read_mesh(path, true);
+    if (prepare::holds_tetrahedra(path))
+      g.solid = prepare::read_tet_mesh(path);
+    else
+      g.mesh = prepare::read_mesh(path, true);
     return g;
   }
   prepare::Spheres spheres = prepare::read_spheres(path);
@@ -216,11 +299,12 @@ std::string written_geometry(const Geometry& geometry, const std::string& name) 
   const std::string kind = fs::path(name).extension().string();
   if (kind == ".vtu") return vtk_content(geometry, FrameFormat::vtu);
   if (kind == ".hdf") return vtk_content(geometry, frame_format("vtkhdf"));
-  if (geometry.is_mesh()) {
-    if (kind == ".msh") return gmsh_text(geometry.mesh);
-    if (kind == ".inp") return abaqus_text(geometry.mesh);
+  if (geometry.is_solid() && kind == ".msh") return gmsh_text(geometry.solid);
+  if (geometry.is_solid() && kind == ".inp") return abaqus_text(geometry.solid);
+  if (geometry.is_mesh() && kind == ".msh") return gmsh_text(geometry.mesh);
+  if (geometry.is_mesh() && kind == ".inp") return abaqus_text(geometry.mesh);
+  if (geometry.is_mesh() || geometry.is_solid())
     throw InputError(name + ": a mesh is written as .msh (Gmsh 2.2), .inp (Abaqus), .vtu or .hdf");
-  }
   if (kind == ".csv") return spheres_text(geometry);
   throw InputError(name + ": spheres are written as .csv (x,y,z,radius), .vtu or .hdf");
 }

@@ -7,18 +7,21 @@
 
 #include "math/vec.hpp"
 #include "prepare/meshing/mesh.hpp"
+#include "prepare/tetrahedra/tet_mesh.hpp"
 
 namespace breccia::app {
 
-/// A mesh of triangles, or a packing of spheres.
+/// A mesh of triangles or tetrahedra, or a packing of spheres.
 struct Geometry {
-  prepare::Mesh mesh;  ///< no triangles: spheres
+  prepare::Mesh mesh;      ///< no triangles: none
+  prepare::TetMesh solid;  ///< no tetrahedra: none
   std::vector<Vec3> center;
   std::vector<double> radius;       ///<  [m]
   std::vector<std::string> groups;  ///< names of bodies
   std::vector<std::int32_t> group;  ///< of each sphere, index into groups; empty: not told
 
   bool is_mesh() const { return !mesh.triangle.empty(); }
+  bool is_solid() const { return !solid.tetrahedron.empty(); }
 };
 
 /// Reads a mesh (.msh, .inp), spheres (.csv, .txt, a dump of LAMMPS or LIGGGHTS), a prepared model

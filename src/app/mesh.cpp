@@ -19,6 +19,7 @@
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/meshing/mesh_check.hpp"
+#include "prepare/tetrahedra/tet_check.hpp"
 
 namespace breccia::app {
 namespace {
@@ -32,10 +33,10 @@ std::string place_text(const Vec2& p) {
   return fmt::format("({:.4g}, {:.4g}) m", p.x, p.y);
 }
 
-/// The smallest of a mesh, and the triangle that has it.
+/// The smallest of a mesh, and the triangle or tetrahedron that has it.
 struct Least {
   double value = 1e300;
-  Index triangle = -1;
+  Index item = -1;
   void take(double other, Index t) {
     if (other < value) *this = {other, t};
   }
@@ -95,13 +96,13 @@ void describe_mesh(const prepare::Mesh& mesh) {
   print_line("edge length", "{} to {}, mean {}", length_text(shortest), length_text(longest),
              length_text(mean));
   print_line("least angle", "{:.1f} deg, at {}", angle.value * 180.0 / std::numbers::pi,
-             centre(angle.triangle));
+             centre(angle.item));
   print_line("quality", "mean {:.3f}, least {:.3f} at {}", mean_quality, quality.value,
-             centre(quality.triangle));
+             centre(quality.item));
   print_line("", "{} below 0.5; equilateral triangles have 1", count(flat));
   constexpr double wave = 5000.0;  // of granite  [m/s]
   print_line("step", "ruled by the height {} at {}:", length_text(height.value),
-             centre(height.triangle));
+             centre(height.item));
   print_line("", "a wave of {:.0f} m/s crosses it in {}", wave, time_text(height.value / wave));
   for (const prepare::Part& part : mesh.parts) {
     double of_part = 0.0;
@@ -115,6 +116,118 @@ void describe_mesh(const prepare::Mesh& mesh) {
     for (const prepare::Edge& edge : set.edges)
       length += norm(prepare::at(mesh.point, edge[1]) - prepare::at(mesh.point, edge[0]));
     print_line("line", "{}: {} edges, {}", set.name, count(set.edges.size()), length_text(length));
+  }
+}
+
+/// Lengths of a mesh's edges, each once.  [m]
+std::vector<double> edge_lengths(const prepare::TetMesh& mesh) {
+  std::vector<std::array<Index, 2>> ends;
+  ends.reserve(6 * mesh.tetrahedron.size());
+  for (const prepare::Tetrahedron& t : mesh.tetrahedron)
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        ends.push_back({std::min(t[a], t[b]), std::max(t[a], t[b])});
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::vector<double> lengths;
+  lengths.reserve(ends.size());
+  for (const auto& [a, b] : ends)
+    lengths.push_back(norm(prepare::at(mesh.point, a) - prepare::at(mesh.point, b)));
+  return lengths;
+}
+
+double area_of(const prepare::TetMesh& mesh, const prepare::Face& f) {
+  const Vec3 a = prepare::at(mesh.point, f[0]);
+  return 0.5 * norm(cross(prepare::at(mesh.point, f[1]) - a, prepare::at(mesh.point, f[2]) - a));
+}
+
+/// What one tetrahedron is like.
+struct Shape {
+  double volume;   ///<  [m3]
+  double height;   ///< the least one  [m]
+  double quality;  ///< three times the inscribed sphere's radius over the circumscribed one's  [-]
+};
+Shape shape_of(const prepare::TetMesh& mesh, const prepare::Tetrahedron& t) {
+  double surface = 0.0, largest = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double area = area_of(mesh, prepare::face_of(t, k));
+    surface += area;
+    largest = std::max(largest, area);
+  }
+  const auto edge = [&](std::size_t a, std::size_t b) {
+    return norm(prepare::at(mesh.point, t[a]) - prepare::at(mesh.point, t[b]));
+  };
+  // Products of opposite edges are the sides of a triangle of area 6 V R (Crelle 1821).
+  const double a = edge(0, 1) * edge(2, 3), b = edge(0, 2) * edge(1, 3),
+               c = edge(0, 3) * edge(1, 2), half = 0.5 * (a + b + c);
+  const double of_products = std::sqrt(std::max(0.0, half * (half - a) * (half - b) * (half - c)));
+  const double volume = prepare::signed_volume(mesh.point, t);
+  const double circumscribed = of_products / (6.0 * volume), inscribed = 3.0 * volume / surface;
+  return {volume, 3.0 * volume / largest, 3.0 * inscribed / circumscribed};
+}
+
+void describe_solid(const prepare::TetMesh& mesh) {
+  Vec3 low = mesh.point.front(), high = low;
+  for (const Vec3& p : mesh.point) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  Least height, quality;
+  double volume = 0.0, mean_quality = 0.0, surface = 0.0;
+  std::size_t poor = 0, outer = 0;
+  const double size = static_cast<double>(mesh.tetrahedron.size());
+  for (std::size_t t = 0; t < mesh.tetrahedron.size(); ++t) {
+    const Shape shape = shape_of(mesh, mesh.tetrahedron[t]);
+    volume += shape.volume;
+    height.take(shape.height, static_cast<Index>(t));
+    quality.take(shape.quality, static_cast<Index>(t));
+    mean_quality += shape.quality / size;
+    poor += shape.quality < 0.3;
+  }
+  const std::vector<prepare::MeshFace> faces = prepare::faces_of(mesh.tetrahedron);
+  for (const prepare::MeshFace& face : faces)
+    if (face.tetrahedra[1] < 0) {
+      ++outer;
+      surface += area_of(mesh, face.corners);
+    }
+  const std::vector<double> edges = edge_lengths(mesh);
+  double mean = 0.0;
+  for (const double length : edges) mean += length / static_cast<double>(edges.size());
+  const auto at = [](const Vec3& p) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x, p.y, p.z);
+  };
+  const auto centre = [&](Index t) {
+    return at(prepare::centroid(mesh.point, mesh.tetrahedron[static_cast<std::size_t>(t)]));
+  };
+  const auto count = [](std::size_t n) { return count_text(static_cast<double>(n)); };
+  print_line("tetrahedra", "{}, vertices {}", count(mesh.tetrahedron.size()),
+             count(mesh.point.size()));
+  print_line("faces", "{}, {} of them on the surface", count(faces.size()), count(outer));
+  print_line("extent", "{} x {} x {}", length_text(high.x - low.x), length_text(high.y - low.y),
+             length_text(high.z - low.z));
+  print_line("", "from {}", at(low));
+  print_line("volume", "{:.6g} m3, surface {:.6g} m2", volume, surface);
+  print_line("edge length", "{} to {}, mean {}",
+             length_text(*std::min_element(edges.begin(), edges.end())),
+             length_text(*std::max_element(edges.begin(), edges.end())), length_text(mean));
+  print_line("quality", "mean {:.3f}, least {:.3f} at {}", mean_quality, quality.value,
+             centre(quality.item));
+  print_line("", "{} below 0.3; regular tetrahedra have 1", count(poor));
+  constexpr double wave = 5000.0;  // of granite  [m/s]
+  print_line("step", "ruled by the height {}", length_text(height.value));
+  print_line("", "at {}:", centre(height.item));
+  print_line("", "a wave of {:.0f} m/s crosses it in {}", wave, time_text(height.value / wave));
+  for (const prepare::Volume& part : mesh.volumes) {
+    double of_part = 0.0;
+    for (const Index t : part.tetrahedra)
+      of_part += prepare::signed_volume(mesh.point, mesh.tetrahedron[static_cast<std::size_t>(t)]);
+    print_line("part", "{}: {} tetrahedra, {:.4g} m3", part.name, count(part.tetrahedra.size()),
+               of_part);
+  }
+  for (const prepare::FaceSet& set : mesh.face_sets) {
+    double area = 0.0;
+    for (const prepare::Face& face : set.faces) area += area_of(mesh, face);
+    print_line("surface", "{}: {} faces, {:.4g} m2", set.name, count(set.faces.size()), area);
   }
 }
 
@@ -148,9 +261,12 @@ void describe_spheres(const Geometry& g) {
 
 void describe(const std::string& path, int frame) {
   const Geometry g = read_geometry(path, frame);
-  if (!g.is_mesh() && g.center.empty()) throw InputError(path + ": holds no mesh and no spheres");
+  if (!g.is_mesh() && !g.is_solid() && g.center.empty())
+    throw InputError(path + ": holds no mesh and no spheres");
   fmt::print("{}\n", harmless(path));
-  if (g.is_mesh())
+  if (g.is_solid())
+    describe_solid(g.solid);
+  else if (g.is_mesh())
     describe_mesh(g.mesh);
   else
     describe_spheres(g);
@@ -219,9 +335,13 @@ void add_convert(CLI::App& program) {
     }
     const Geometry g = read_geometry(words->from, words->frame);
     replace_file(words->to, written_geometry(g, words->to));
-    const std::size_t count = g.is_mesh() ? g.mesh.triangle.size() : g.center.size();
+    const std::size_t count = g.is_solid()  ? g.solid.tetrahedron.size()
+                              : g.is_mesh() ? g.mesh.triangle.size()
+                                            : g.center.size();
     fmt::print("{}  {} {}\n", harmless(words->to), count_text(static_cast<double>(count)),
-               g.is_mesh() ? "triangles" : "spheres");
+               g.is_solid()  ? "tetrahedra"
+               : g.is_mesh() ? "triangles"
+                             : "spheres");
   });
 }
 

@@ -35,6 +35,30 @@ $Elements
 3 2 2 3 3 2 4 3
 $EndElements
 """
+# Two regular tetrahedra of 10 mm, base on base: the upper one a part, the base a surface.
+SOLID = f"""$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+2 1 "middle"
+3 2 "upper"
+$EndPhysicalNames
+$Nodes
+5
+1 0 0 0
+2 0.01 0 0
+3 0.005 {0.01 * H!r} 0
+4 0.005 {0.01 * H / 3!r} {0.01 * math.sqrt(2 / 3)!r}
+5 0.005 {0.01 * H / 3!r} {-0.01 * math.sqrt(2 / 3)!r}
+$EndNodes
+$Elements
+3
+1 2 2 1 1 1 2 3
+2 4 2 2 2 1 2 3 4
+3 4 2 0 3 1 3 2 5
+$EndElements
+"""
 CASE = """
 method = "fdem2d"
 time.end = "20 us"
@@ -106,6 +130,25 @@ class Meshes(unittest.TestCase):
             self.breccia("convert", source, "balls.csv")
             self.assertEqual(self.told("balls.csv")["spheres"], "2")
             self.assertEqual(self.told(source)["radius"], self.told("balls.csv")["radius"])
+
+    def test_info_of_regular_tetrahedra(self):
+        (self.path / "solid.msh").write_text(SOLID)
+        for file in ("solid.msh", "solid.inp", "again.msh"):
+            if file != "solid.msh":
+                self.breccia("convert", {"solid.inp": "solid.msh", "again.msh": "solid.inp"}[file], file)
+            told = self.told(file)
+            self.assertEqual(told["tetrahedra"], "2, vertices 5")
+            self.assertEqual(told["faces"], "7, 6 of them on the surface")
+            volume = 2 * 0.01**3 / (6 * math.sqrt(2))
+            self.assertAlmostEqual(float(told["volume"].split()[0]), volume, delta=1e-5 * volume)
+            self.assertAlmostEqual(float(told["volume"].split()[3]), 6 * 0.5 * 0.01 * 0.01 * H, delta=1e-9)
+            self.assertTrue(told["edge length"].startswith("10 mm to 10 mm"), told)
+            self.assertTrue(told["quality"].startswith("mean 1.000, least 1.000"), told)
+            self.assertIn("8.165 mm", told["step"])  # sqrt(2/3) of the edge
+            self.assertEqual(told["part"], "upper: 1 tetrahedra, 1.179e-07 m3")
+            self.assertEqual(told["surface"], "middle: 1 faces, 4.33e-05 m2")
+        self.breccia("convert", "solid.msh", "solid.vtu")
+        self.assertIn('Name="types"', (self.path / "solid.vtu").read_bytes().decode("latin1"))
 
     def test_what_cannot_be_is_refused(self):
         self.assertIn("a mesh is written as", self.breccia("convert", "pair.msh", "x.csv", code=2))

@@ -98,6 +98,17 @@ TetMesh parse_tet_abaqus(std::string_view content, const std::string& name) {
   return TetFinisher(raw_abaqus(content, name, 3), name).run();
 }
 
+bool holds_tetrahedra(const std::string& path) {
+  try {
+    const std::string content = read_whole_file(path);
+    const RawMesh raw =
+        path.ends_with(".msh") ? raw_gmsh(content, path, 3) : raw_abaqus(content, path, 3);
+    return !raw.elements.empty();
+  } catch (const Error&) {
+    return false;  // the reader of plane meshes says why
+  }
+}
+
 TetMesh read_tet_mesh(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
   if (ending != ".msh" && ending != ".inp")

@@ -18,6 +18,9 @@ namespace breccia::prepare {
 ///                    once, or the first thing that cannot be read
 TetMesh read_tet_mesh(const std::string& path);
 
+/// Whether a mesh file holds tetrahedra; no, if it cannot be read.
+bool holds_tetrahedra(const std::string& path);
+
 /// Read a mesh from a text in memory; `name` stands for the file in messages.
 TetMesh parse_tet_gmsh(std::string_view content, const std::string& name);
 TetMesh parse_tet_abaqus(std::string_view content, const std::string& name);
