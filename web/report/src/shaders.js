@@ -271,14 +271,14 @@ vec3 seen(int item, int corner) { return (modelViewMatrix * vec4(place(4 * item 
 
 export const faces = {
   vertex: SOLID + `
+uniform float uWithin; // faces inside can be seen: displacements are enlarged, or a body is not drawn
 flat out float vValue;
 flat out vec3 vNormal;
 out vec3 vShare, vPoint;
 void main() {
   int item = gl_VertexID / 12, face = gl_VertexID % 12 / 3, k = gl_VertexID % 3;
   vec2 value = texelFetch(uValue, cell(item), 0).rg;
-  // Faces inside gape where displacements are enlarged.
-  bool shown = wantedPair(value.g) && (abs(uScale - 1.0) > 1e-3 || (int(value.g / 65536.0) >> face & 1) == 1);
+  bool shown = wantedPair(value.g) && ((uWithin > 0.5 && uWanted < 1.5) || (int(value.g / 65536.0) >> face & 1) == 1);
   vec3 p[3] = vec3[3](seen(item, corners(face, 0)), seen(item, corners(face, 1)), seen(item, corners(face, 2)));
   vNormal = normalize(cross(p[1] - p[0], p[2] - p[0]) + vec3(0.0, 0.0, 1e-30));
   vPoint = p[k];
@@ -304,7 +304,7 @@ void main() {
   float strength = uMesh * (1.0 - smoothstep(0.05, 0.2, pixel));
   vec3 drawn = mix(base, base * 0.78, edge * strength);
   if (uThrough > 0.5) color = vec4(drawn * 0.85, 0.06 + 0.10 * (1.0 - abs(vNormal.z)));
-  else color = vec4(lit(drawn, vNormal), 1.0);
+  else color = vec4(mix(lit(drawn, vNormal), drawn, 0.35), 1.0);
 }`,
 };
 

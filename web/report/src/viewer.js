@@ -82,7 +82,7 @@ export class Viewer {
       uNow: {value: null}, uFirst: {value: null}, uValue: {value: null}, uAcross: {value: ACROSS},
       uScale: {value: 1}, uMap: {value: null}, uRange: {value: new THREE.Vector2(0, 1)}, uCategories: {value: 0},
       uBody: {value: new Array(16).fill(1)}, uClip: {value: new THREE.Vector4(0, 0, 0, 1e30)},
-      uLinesAcross: {value: ACROSS}, uMesh: {value: 1}, uPixel: {value: 1},
+      uLinesAcross: {value: ACROSS}, uMesh: {value: 1}, uPixel: {value: 1}, uWithin: {value: 0},
     };
     this.maps = {};
     for (const name of Object.keys(MAPS)) this.maps[name] = colorTexture(ramp(name), true);
@@ -366,6 +366,7 @@ export class Viewer {
     }
     this.uniforms.uPixel.value = (2 * this.camera.top) / this.camera.zoom / Math.max(this.host.clientHeight, 1);
     this.through.visible = this.uniforms.uBody.value.includes(2);
+    this.uniforms.uWithin.value = this.uniforms.uScale.value !== 1 || this.uniforms.uBody.value.some((b) => b !== 1) ? 1 : 0;
     if (this.sections) this.sections.visible = Boolean(this.clip);
     this.renderer.render(this.scene, this.camera);
     this.drawn?.(this);
