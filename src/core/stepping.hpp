@@ -5,9 +5,21 @@
 
 #include "core/step_clock.hpp"
 #include "exec/space.hpp"
+#include "math/pack.hpp"
 
 namespace breccia {
 
+/// The time step from the least stable step of all triangles: it falls at once, when something
+/// comes near, and grows slowly.
+struct AllowedStep {
+  double safety, max_step;  ///< share of the stable step  [-], limit  [s]
+
+  BR_HD double operator()(double least, double last_dt) const {
+    double dt = min(safety * least, max_step);
+    if (last_dt > 0.0) dt = min(dt, 1.05 * last_dt);
+    return rounded_down(dt);
+  }
+};
 template <class HostRun, class World>
 void step_by(World& w) {
   if (w.exec.space != Space::host)

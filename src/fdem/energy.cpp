@@ -2,9 +2,6 @@
 
 #include "fdem/energy.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "exec/for_each.hpp"
 
 namespace breccia::fdem {
@@ -118,30 +115,6 @@ struct CoupleShares {
   }
 };
 
-/// The largest sum of energies and work seen, now included.  [J/m]
-double largest_with(const Ledger& ledger, const EnergyBalance& b) {
-  return std::max({ledger.largest, b.total(), b.start + std::abs(b.work),
-                   std::abs(b.start) + std::abs(b.work)});
-}
-
-EnergySplit split_of(const Ledger& ledger, const Energies& s) {
-  EnergySplit split;
-  split.fracture_open = s.fracture.value();
-  split.fracture_slide = s.sliding.value();
-  EnergyBalance& b = split.balance;
-  b.kinetic = s.kinetic.value();
-  b.elastic = s.elastic.value();
-  b.fracture = split.fracture_open + split.fracture_slide;
-  b.friction = s.friction.value() + ledger.friction.value();
-  b.damping = s.damping.value();
-  b.contact = s.contact.value() + ledger.contact.value();
-  b.work = s.work.value() + s.potential.value() - ledger.start_potential.value();
-  b.start = ledger.start + ledger.came_in.value();
-  const double largest = largest_with(ledger, b);
-  b.error_relative = largest > 0.0 ? std::abs(b.missing()) / largest : 0.0;
-  return split;
-}
-
 }  // namespace
 
 Energies held(const World& w) {
@@ -186,9 +159,7 @@ EnergySplit energy_split(const World& w) {
 }
 
 EnergySplit energies(Ledger& ledger, const Energies& all) {
-  const EnergySplit split = split_of(ledger, all);
-  ledger.largest = largest_with(ledger, split.balance);
-  return split;
+  return split_and_note(ledger, all);
 }
 EnergySplit energies(World& w) {
   return energies(w.ledger, held(w));

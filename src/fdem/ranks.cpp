@@ -101,7 +101,7 @@ class Migration {
       // Whether a joint around a vertex still holds decides who moves with whom there.
       for (const Index node : {a, JointEnds::next_corner(a)})
         if (w_.mesh.tied[at(w_.vertex[at(node)])] != 0)
-          rings.add_triangles(w_.vertex[at(node)], members);
+          rings.add_elements(w_.vertex[at(node)], members);
       shared_items_.keep_together(members, i, joints);
     }
     shared_items_.keep_all_together(element_ends(w_, "couples"), w_.couples.size(), couples);

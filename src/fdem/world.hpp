@@ -5,10 +5,11 @@
 
 #include "core/broad_phase.hpp"
 #include "core/drift.hpp"
-#include "core/energy.hpp"
+#include "core/energy_split.hpp"
 #include "core/read_only.hpp"
 #include "core/stages.hpp"
 #include "core/step_clock.hpp"
+#include "core/stepping.hpp"
 #include "core/travel.hpp"
 #include "domain/domain.hpp"
 #include "domain/set_here.hpp"
@@ -233,27 +234,12 @@ void evaluate_forces(World& w);
 Kick kick(const World& w);
 StableStep stable_step(const World& w);
 
-/// The time step from the least stable step of all triangles: it falls at once, when something
-/// comes near, and grows slowly.
-struct AllowedStep {
-  double safety, max_step;  ///< share of the stable step  [-], limit  [s]
-
-  BR_HD double operator()(double least, double last_dt) const {
-    double dt = min(safety * least, max_step);
-    if (last_dt > 0.0) dt = min(dt, 1.05 * last_dt);
-    return rounded_down(dt);
-  }
-};
 AllowedStep allowed_step(const World& w);
 
 /// Starts the ledger at the present state.
 void begin_ledger(World& w);
 
 /// Where every joule is, per unit thickness.
-struct EnergySplit {
-  EnergyBalance balance;
-  double fracture_open = 0.0, fracture_slide = 0.0;  ///< of fracture, by mode  [J/m]
-};
 EnergySplit energy_split(const World& w);
 /// The balance of all energies; keeps the largest energy seen, for the relative error.
 EnergySplit energies(World& w);

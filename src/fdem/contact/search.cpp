@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/select.hpp"
+#include "fdem/contact/shared_marks.hpp"
 #include "fdem/contact/search_kernels.hpp"
 #include "fdem/ranks.hpp"
 
@@ -47,40 +48,6 @@ struct BeginReach {
     ids[i] = id_of[triangle[i]];
   }
 };
-
-/// Vertices that this rank has marked just now.
-struct IsNews {
-  View<const std::uint8_t> marked, known;
-  BR_HD bool operator()(Index v) const { return marked[v] != 0 && known[v] == 0; }
-};
-/// Damage stays, also where its joint has gone to another rank.
-struct KeepMarks {
-  static constexpr const char* name = "fdem.keep_marks";
-  View<const std::uint8_t> known;
-  View<std::uint8_t> marked;
-  BR_HD void operator()(Index v) const {
-    if (known[v] != 0) marked[v] = 1;
-  }
-};
-struct TakeMarks {
-  static constexpr const char* name = "fdem.take_marks";
-  View<const Index> vertex;
-  View<std::uint8_t> marked;
-  BR_HD void operator()(Index i) const { marked[vertex[i]] = 1; }
-};
-
-/// Marks the vertices that some rank has marked. Only what is new crosses to the host: the mesh may
-/// have a hundred million vertices.
-void share_marks(const World& w, Buffer<std::uint8_t>& marked) {
-  if (w.domain.single_rank()) return;
-  const auto known = std::as_const(w.exposed.vertex).view();
-  std::vector<Index> news;
-  copy_to(news, items_where(w.exec, marked.size(), IsNews{std::as_const(marked).view(), known}));
-  Buffer<Index> vertex(w.exec.space);
-  copy_to(vertex, joined(*w.domain.ranks, news));
-  for_each(w.exec, marked.size(), KeepMarks{known, marked.view()});
-  for_each(w.exec, vertex.size(), TakeMarks{std::as_const(vertex).view(), marked.view()});
-}
 
 /// The mesh where kernels can read it.
 OpenVertices open_vertices(World& w) {

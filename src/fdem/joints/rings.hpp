@@ -1,5 +1,5 @@
 #pragma once
-// Which triangles lie around a vertex.
+// Which triangles, or tetrahedra, lie around a vertex.
 
 #include <algorithm>
 #include <vector>
@@ -9,10 +9,12 @@
 
 namespace breccia::fdem {
 
-/// All triangles around a vertex whose nodes are tied; a rank that owns one needs ghosts of all.
-class Rings {
+/// All elements around a vertex whose nodes are tied; a rank that owns one needs ghosts of all.
+/// @tparam corners  of an element: node n is one of element n / corners
+template <class World, Index corners>
+class RingsOf {
  public:
-  explicit Rings(const World& w) {
+  explicit RingsOf(const World& w) {
     Index count = 0;
     each_corner(w, [&](Index, Index) { ++count; });
     corners_.resize(count);
@@ -33,13 +35,13 @@ class Rings {
       begin = end;
     }
   }
-  /// Appends the triangles around one vertex.
-  void add_triangles(Index vertex, std::vector<Index>& triangles) const {
+  /// Those around one vertex, behind what is listed.
+  void add_elements(Index vertex, std::vector<Index>& elements) const {
     const auto key = static_cast<std::uint64_t>(vertex);
     const auto all = corners_.host();
     auto c = std::partition_point(all.begin(), all.end(),
                                   [key](const KeyedIndex& other) { return other.key < key; });
-    for (; c != all.end() && c->key == key; ++c) triangles.push_back(c->item / 3);
+    for (; c != all.end() && c->key == key; ++c) elements.push_back(c->item / corners);
   }
 
  private:
@@ -53,5 +55,6 @@ class Rings {
 
   Buffer<KeyedIndex> corners_;  ///< by vertex
 };
+using Rings = RingsOf<World, 3>;
 
 }  // namespace breccia::fdem

@@ -18,8 +18,8 @@ struct Model {
   std::vector<std::array<Index, 4>> tetrahedron;  ///< corners into point: the last one sees the
                                                   ///< first three run counter-clockwise from
                                                   ///< inside, det(x1 - x0, x2 - x0, x3 - x0) > 0
-  std::vector<std::string> groups;     ///< names of the bodies
-  std::vector<std::int16_t> group;     ///< of each tetrahedron, index into groups
+  std::vector<std::string> groups;                ///< names of the bodies
+  std::vector<std::int16_t> group;                ///< of each tetrahedron, index into groups
   std::vector<std::int16_t> material;  ///< of each tetrahedron, index into Config::materials
   std::vector<Vec3> velocity;          ///< of each tetrahedron at the start  [m/s]
   std::vector<float> strength;         ///< of each tetrahedron, over its material's  [-]

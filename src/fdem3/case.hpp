@@ -1,0 +1,69 @@
+#pragma once
+// Constants that a case gives to a run of tetrahedra: written by set-up, read by all else. As
+// fdem/case.hpp.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/gauge.hpp"
+#include "core/output_config.hpp"
+#include "fdem3/contact/couples.hpp"
+#include "fdem3/elements/loads.hpp"
+#include "fdem3/elements/motion_kernels.hpp"
+#include "fdem3/setup/config.hpp"
+
+namespace breccia::fdem3 {
+
+/// A named set of corners that probes and servos read: a body or a support.
+struct NodeSet {
+  std::string name;
+  std::vector<Index> nodes;  ///< 4 tetrahedron + corner, ascending, in the whole mesh  [-]
+};
+
+/// A material with its joints, as waves and loads meet it.
+struct EffectiveRock {
+  std::string material;
+  double young, poisson;  ///<  [Pa], [-]
+  double fast, slow;      ///< waves of pressure and of shear  [m/s]
+};
+
+struct Case {
+  TimeConfig time;
+  Vec3 gravity{};              ///< stage  [m/s2]
+  Sym3 in_situ{};              ///< stress at the start  [Pa]
+  double local_damping = 0.0;  ///< stage  [-]
+  double mean_edge = 0.0;      ///<  [m]
+  double skin = 0.0;           ///< margin of the search between two at rest  [m]
+  MoreFields shown;            ///< in frames
+  Index materials = 0;         ///< how many there are  [-]
+
+  std::vector<std::string> groups;            ///< names of bodies  (bodies)
+  std::vector<EffectiveRock> rocks;           ///< each material with its joints  (materials)
+  std::vector<double> contact_lengths;        ///< h_c of each material  [m]  (materials)
+  std::vector<std::string> warnings;          ///< what set-up found doubtful, for people
+  std::vector<NodeSet> sets;                  ///< bodies, then supports
+  std::vector<LoadLaw> loads;                 ///< stage: sizes; all factors 1  (loads)
+  std::vector<std::string> load_names;        ///<  (loads)
+  std::vector<AmplitudeOf3> load_amplitudes;  ///< stage: factors over time  (loads)
+  std::vector<LoadedFace> loaded;             ///< by global id, ascending
+  Buffer<ElasticTetrahedron> laws;            ///<  (materials)
+  Buffer<JointBond> bonds;                    ///< indexed by Joints::law  (laws of joints)
+  Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
+  Buffer<Hold> holds;                 ///< stage; indexed by Tetrahedra::hold
+  /// Each vertex of the mesh: bit 0: at the border or a face that nothing joins, bit 1 such a face
+  /// between two tetrahedra.  [-]  (vertices of the whole mesh)
+  std::vector<std::uint8_t> open_vertex;
+
+  Buffer<Vec3> starts;  ///< places of corners at the start, by global number; empty: nothing needs
+                        ///< them  [m]  (4 tetrahedra of the whole mesh)
+  std::vector<ProbeFit> strain_fits;  ///< of probes of strain
+
+  /// Visits the arrays that kernels read.
+  template <class Visit>
+  void each_array(Visit&& visit) {
+    visit(laws), visit(bonds), visit(contact_pairs), visit(holds), visit(starts);
+  }
+};
+
+}  // namespace breccia::fdem3

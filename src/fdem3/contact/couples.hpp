@@ -1,0 +1,245 @@
+#pragma once
+// Couples of tetrahedra that may touch: push and rub (docs/theory-fdem3.md, 3).
+
+#include "core/incidence.hpp"
+#include "core/pair_list.hpp"
+#include "fdem/contact/couples.hpp"
+#include "fdem3/joints/joints.hpp"
+#include "fdem3/laws/distance_contact.hpp"
+
+namespace breccia::fdem3 {
+
+/// Contact of two materials.
+struct ContactPair {
+  double penalty;     ///< k_n = p_n/h_c  [Pa/m]
+  double tangential;  ///< k_t = p_t/h_c  [Pa/m]
+  double friction;    ///< mu  [-]
+};
+
+/// What a couple remembers.
+struct CoupleState {
+  Vec3 drag;      ///< T: tangential force on a  [N]
+  double scale;   ///< of its normal penalty; 0: it is new  [-]
+  double work;    ///< taken up since it began to touch, friction included  [J]
+  double slid;    ///< the part of it that friction has spent  [J]
+  double sprung;  ///< the part of it that the spring of friction holds  [J]
+  double lost;    ///< what was left of both when it parted: errors of integration  [J]
+  double rubbed;  ///< what friction spent in touches that have ended  [J]
+};
+
+/// Forces of a couple on the corners of both.  [N]
+struct CoupleForce {
+  Corners on_a, on_b;
+};
+
+struct CoupleHistory {
+  Buffer<CoupleState> state;
+  Buffer<CoupleForce> force;
+
+  explicit CoupleHistory(Space space = Space::host) : state(space), force(space) {}
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("state", "-", state);
+    field("force", "N", force);
+  }
+};
+using Couples = PairList<CoupleHistory>;
+
+BR_HD inline bool boxes_apart(const Vec3 (&p)[4], const Vec3 (&q)[4], double by) {
+  const auto low = [](double a, double b, double c, double d) { return min(min(a, b), min(c, d)); };
+  const auto high = [](double a, double b, double c, double d) {
+    return max(max(a, b), max(c, d));
+  };
+  return low(p[0].x, p[1].x, p[2].x, p[3].x) - high(q[0].x, q[1].x, q[2].x, q[3].x) > by ||
+         low(q[0].x, q[1].x, q[2].x, q[3].x) - high(p[0].x, p[1].x, p[2].x, p[3].x) > by ||
+         low(p[0].y, p[1].y, p[2].y, p[3].y) - high(q[0].y, q[1].y, q[2].y, q[3].y) > by ||
+         low(q[0].y, q[1].y, q[2].y, q[3].y) - high(p[0].y, p[1].y, p[2].y, p[3].y) > by ||
+         low(p[0].z, p[1].z, p[2].z, p[3].z) - high(q[0].z, q[1].z, q[2].z, q[3].z) > by ||
+         low(q[0].z, q[1].z, q[2].z, q[3].z) - high(p[0].z, p[1].z, p[2].z, p[3].z) > by;
+}
+
+/// Bits of the faces of a tetrahedron that nothing joins: those alone press.
+BR_HD inline int exposed_faces(const FaceJoints& faces, const View<const JointStage>& stage) {
+  int exposed = 0;
+  for (int k = 0; k < 4; ++k) {
+    const Index entry = faces.at[k];
+    if (entry == face_free || (entry >= 0 && is_parted(stage[pair_of(entry)]))) exposed |= 1 << k;
+  }
+  return exposed;
+}
+
+/// What both passes of a couple add up: faces of a in b, then faces of b in a.
+struct Pressing {
+  CoupleForce force{};
+  Vec3 on_a{};    ///< N  [N]
+  Vec3 centre{};  ///< weighted by `weight`  [N m]
+  double weight = 0.0;
+  double area = 0.0;  ///< of both passes  [m2]
+
+  BR_HD bool touches() const { return weight > 0.0; }
+};
+
+/// Adds the exposed faces of one tetrahedron that are in the other.
+BR_HD inline void add_faces(const Vec3 (&x)[4], int exposed, const Target& target, double penalty,
+                            bool of_a, Pressing& sum) {
+  Corners& on_own = of_a ? sum.force.on_a : sum.force.on_b;
+  Corners& on_other = of_a ? sum.force.on_b : sum.force.on_a;
+  for (int f = 0; f < 4; ++f) {
+    if ((exposed >> f & 1) == 0) continue;
+    Vec3 face[3];
+    for (int k = 0; k < 3; ++k) face[k] = x[corner_of_face(f, k)];
+    FaceOverlap o;
+    if (!overlap_of_face(face, target, o)) continue;
+    Vec3 on_face[3], on_target[4];
+    push(o, face, penalty, on_face, on_target);
+    for (int k = 0; k < 3; ++k) on_own.at[corner_of_face(f, k)] += on_face[k];
+    for (int k = 0; k < 4; ++k) on_other.at[k] += on_target[k];
+    const Vec3 whole = on_face[0] + on_face[1] + on_face[2];
+    const double size = norm(whole), all = o.moment[0] + o.moment[1] + o.moment[2];
+    const Vec3 middle =
+        (1.0 / all) * (o.moment[0] * face[0] + o.moment[1] * face[1] + o.moment[2] * face[2]);
+    sum.on_a += of_a ? whole : -whole;
+    sum.centre += size * middle;
+    sum.weight += size;
+    sum.area += o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
+  }
+}
+
+/// What broken joints leave to the contact of their faces.
+struct JointLegacy {
+  View<const Index> law;
+  View<const FaceShape> shape;
+  View<const double> length, pressing;
+  View<const Vec3> shear_at_break;
+  View<const JointBond> bonds;
+  View<JointWork> inherited_work;
+};
+
+/// Normal force by potential, both ways; Coulomb friction with one spring a couple that remembers.
+struct CoupleForces {
+  static constexpr const char* name = "fdem3.couples";
+  double dt;  ///< the step that led here  [s]
+  View<const TetrahedronNodes> nodes;
+  View<const Index> material;
+  View<const ContactPair> laws;  ///< of materials a and b at a * materials + b
+  Index materials;
+  View<const FaceJoints> faces;
+  View<const JointStage> stage;
+  View<const Index> a, b;
+  View<const Index> parent_joint;  ///< the joint between them where it broke in the step before, or
+                                   ///< -1
+  JointLegacy joints;
+  View<CoupleState> state;
+  View<CoupleForce> force;
+
+  BR_HD void operator()(Index i) const {
+    CoupleState& kept = state[i];
+    const bool is_new = kept.scale == 0.0;
+    if (is_new) kept.scale = 1.0;
+    const TetrahedronNodes &na = nodes[a[i]], &nb = nodes[b[i]];
+    Vec3 xa[4], xb[4], va[4], vb[4];
+    split(na, xa, va);
+    split(nb, xb, vb);
+    Pressing sum;
+    const bool resting = kept.work == 0.0 && kept.slid == 0.0;
+    if (!boxes_apart(xa, xb, 0.0)) {
+      const int open_a = exposed_faces(faces[a[i]], stage),
+                open_b = exposed_faces(faces[b[i]], stage);
+      const Target of_a = Target::of(xa), of_b = Target::of(xb);
+      const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
+      if (of_a.six_volumes > 0.0 && of_b.six_volumes > 0.0) {
+        if (is_new && parent_joint[i] >= 0)
+          inherit(parent_joint[i], law, kept, xa, open_a, of_a, xb, open_b, of_b);
+        press(law.penalty * kept.scale, xa, open_a, of_a, xb, open_b, of_b, sum);
+        if (sum.touches()) rub(law, of_a, va, of_b, vb, kept, sum);
+      }
+    }
+    if (!sum.touches() && resting && !is_new) {
+      force[i] = {};
+      return;
+    }
+    const CoupleForce last = force[i];
+    force[i] = sum.force;
+    for (int k = 0; k < 4; ++k) {
+      kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.force.on_a.at[k], va[k]);
+      kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.force.on_b.at[k], vb[k]);
+    }
+    if (sum.touches()) return;
+    kept.slid += kept.sprung;  // what the spring held is spent
+    kept.lost += kept.work - kept.slid;
+    kept.rubbed += kept.slid;
+    kept.work = kept.slid = kept.sprung = 0.0;
+    kept.scale = 1.0;
+    kept.drag = {};
+  }
+
+ private:
+  BR_HD static void press(double penalty, const Vec3 (&xa)[4], int open_a, const Target& of_a,
+                          const Vec3 (&xb)[4], int open_b, const Target& of_b, Pressing& sum) {
+    add_faces(xa, open_a, of_b, penalty, true, sum);
+    add_faces(xb, open_b, of_a, penalty, false, sum);
+  }
+  /// Coulomb friction at the centre of pressure, shared among the corners by its coordinates.
+  BR_HD void rub(const ContactPair& law, const Target& of_a, const Vec3 (&va)[4],
+                 const Target& of_b, const Vec3 (&vb)[4], CoupleState& kept, Pressing& sum) const {
+    const double size = norm(sum.on_a);
+    if (!(law.friction > 0.0) || !(size > 0.0)) return;
+    const Vec3 n = (1.0 / size) * sum.on_a, centre = (1.0 / sum.weight) * sum.centre;
+    double share_a[4], share_b[4];
+    of_a.coordinates(centre, share_a);
+    of_b.coordinates(centre, share_b);
+    Vec3 rate{};  // of a against b
+    for (int k = 0; k < 4; ++k) rate += share_a[k] * va[k] - share_b[k] * vb[k];
+    rate -= dot(rate, n) * n;
+    // Turned with the plane of contact, its length kept.
+    Vec3 before = kept.drag - dot(kept.drag, n) * n;
+    const double left = norm(before), had = norm(kept.drag);
+    if (left > 0.0) before = (had / left) * before;
+    const double stiffness = law.tangential * 0.5 * sum.area, most = law.friction * size;
+    Vec3 pull = before - (stiffness * dt) * rate;
+    const double tried = norm(pull);
+    if (tried > most) pull = (most / tried) * pull;
+    const double taken = -0.5 * dt * dot(before + pull, rate);
+    fdem::Rubbing rubbing;
+    rubbing.add(taken, 0.5 * dot(pull, pull) / stiffness);
+    rubbing.book(kept.slid, kept.sprung);
+    kept.drag = pull;
+    for (int k = 0; k < 4; ++k) {
+      sum.force.on_a.at[k] += share_a[k] * pull;
+      sum.force.on_b.at[k] -= share_b[k] * pull;
+    }
+  }
+  /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
+  /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
+  /// part of the joint's work.
+  BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Vec3 (&xa)[4],
+                     int open_a, const Target& of_a, const Vec3 (&xb)[4], int open_b,
+                     const Target& of_b) const {
+    const double pressing = joints.pressing[joint];
+    if (!(pressing > 0.0)) return;
+    Pressing whole;
+    press(law.penalty, xa, open_a, of_a, xb, open_b, of_b, whole);
+    const double size = norm(whole.on_a);
+    if (!(size > 0.0)) return;
+    kept.scale = min(2.0, max(0.01, pressing / size));
+    const double now = kept.scale * size;
+    const Vec3 n = (1.0 / size) * whole.on_a;
+    Vec3 drag = joints.shear_at_break[joint];
+    drag -= dot(drag, n) * n;
+    const double drawn = norm(drag), most = law.friction * now;
+    if (drawn > most) drag = (most / drawn) * drag;
+    kept.drag = drag;
+    const double stiffness = law.tangential * 0.5 * whole.area;
+    // Of two faces on each other the force grows as their overlap, which is the joint's.
+    const double depth = pressing * joints.length[joint] /
+                         (joints.bonds[joints.law[joint]].stiffness * joints.shape[joint].area());
+    const JointWork given{0.5 * now * depth,
+                          stiffness > 0.0 ? 0.5 * dot(drag, drag) / stiffness : 0.0};
+    kept.work = given.open + given.slide;
+    kept.sprung = given.slide;
+    joints.inherited_work[joint] = given;
+  }
+};
+
+}  // namespace breccia::fdem3

@@ -1,0 +1,109 @@
+#pragma once
+// Kernels of each tetrahedron by itself: its sum of forces, corners that move as one.
+
+#include "core/incidence.hpp"
+#include "fdem3/contact/couples.hpp"
+#include "fdem3/elements/motion_kernels.hpp"
+#include "fdem3/joints/joints.hpp"
+
+namespace breccia::fdem3 {
+
+/// Internal force of the tetrahedron, plus its joints by face, plus its couples by the partners'
+/// global ids: no order of memory, threads or ranks changes a bit.
+struct ElementForces {
+  static constexpr const char* name = "fdem3.elements";
+  double span;  ///< time that the forces of this moment act  [s]
+  View<const TetrahedronNodes> nodes;
+  View<const Index> material;
+  View<const ElasticTetrahedron> laws;
+  View<const ShapeGradients> shape;
+  View<const double> viscosity;
+  View<const FaceJoints> faces;
+  View<const std::uint8_t> turn;  ///< of the joints
+  View<const JointForce> joint_force;
+  IncidenceView couples;
+  View<const CoupleForce> couple_force;
+  View<Corners> force;
+  View<double> viscous_work;
+
+  BR_HD void operator()(Index t) const {
+    Corners sum;
+    deform(t, sum.at);
+    for (int k = 0; k < 4; ++k) add_joint(faces[t].at[k], k, sum);
+    const Index last = couples.last(t);
+    for (Index c = couples.first(t); c < last; ++c) {
+      const Entry entry = couples.entries[c];
+      const CoupleForce& f = couple_force[pair_of(entry)];
+      const Corners& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
+      for (int k = 0; k < 4; ++k) sum.at[k] += mine.at[k];
+    }
+    force[t] = sum;
+  }
+
+ private:
+  /// Internal forces on the corners, and the work of viscosity.
+  BR_HD void deform(Index t, Vec3 (&sum)[4]) const {
+    Vec3 x[4], v[4];
+    split(nodes[t], x, v);
+    const ShapeGradients& g = shape[t];
+    const double volume = g.volume(), eta = viscosity[t];
+    const Deformation d = deformation(g, x);
+    Sym3 rate{};
+    if (eta > 0.0) {
+      rate = deformation_rate(g, d, v);
+      viscous_work[t] += span * (eta * contract(rate, rate) * d.jacobian * volume);
+    }
+    corner_forces(g, volume, laws[material[t]].piola(d, eta, rate), sum);
+  }
+  /// Adds the forces of the joint on face k.
+  BR_HD void add_joint(Index entry, int k, Corners& sum) const {
+    if (entry < 0) return;
+    const Index joint = pair_of(entry);
+    const JointForce& f = joint_force[joint];
+    const bool on_a = side_of(entry) == 0;
+    const int first = turn[joint];
+    for (int i = 0; i < 3; ++i) {
+      const int corner = corner_of_face(k, on_a ? (first + 3 - i) % 3 : i);
+      if (on_a)
+        sum.at[corner] += f.at[i];
+      else
+        sum.at[corner] -= f.at[i];
+    }
+  }
+};
+
+/// Corners that move as one: at each vertex where some do, all corners, and who goes with whom.
+struct Bundles {
+  Buffer<Index> starts;  ///< first corner of each vertex, and the end
+  Buffer<Index> nodes;   ///< corners, ascending by global number
+  Buffer<Index> leader;  ///< place in `nodes` of the first corner of the same bundle
+};
+
+/// Shares the sum of a bundle's forces by mass: all its corners get one acceleration.
+struct BundleForces {
+  static constexpr const char* name = "fdem3.bundles";
+  View<const Index> starts, nodes, leader;
+  View<const double> mass;
+  View<Corners> force;
+
+  BR_HD void operator()(Index vertex) const {
+    const Index end = starts[vertex + 1];
+    for (Index first = starts[vertex]; first < end; ++first) {
+      if (leader[first] != first) continue;
+      Vec3 sum{};
+      double total = 0.0;
+      for (Index k = first; k < end; ++k) {
+        if (leader[k] != first) continue;
+        const Index n = nodes[k];
+        sum += force[n / 4].at[n % 4];
+        total += mass[n / 4];
+      }
+      const Vec3 acceleration = (1.0 / total) * sum;
+      for (Index k = first; k < end; ++k)
+        if (leader[k] == first)
+          force[nodes[k] / 4].at[nodes[k] % 4] = mass[nodes[k] / 4] * acceleration;
+    }
+  }
+};
+
+}  // namespace breccia::fdem3

@@ -1,0 +1,98 @@
+#pragma once
+// Forces on faces, and velocities and forces that follow a table over time.
+
+#include "core/table_over_time.hpp"
+#include "fdem3/elements/tetrahedra.hpp"
+
+namespace breccia::fdem3 {
+
+/// A vector over time: its three parts, each by its own table.
+struct AmplitudeOf3 {
+  Amplitude x, y, z;
+
+  Vec3 at(double time) const { return {x.at(time), y.at(time), z.at(time)}; }
+};
+
+/// A support's velocity over time; the host puts its value of each step into World::motions.
+struct PrescribedMotion {
+  Vec3 velocity{};  ///<  [m/s]
+  AmplitudeOf3 over;
+
+  Vec3 at(double time) const {
+    const Vec3 a = over.at(time);
+    return {a.x * velocity.x, a.y * velocity.y, a.z * velocity.z};
+  }
+};
+
+/// What acts on a face. Pressure and traction act per present area; a force is dead: it stays as
+/// given however its faces deform.
+enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing };
+
+/// A load with its value at this moment.
+struct LoadLaw {
+  LoadKind kind;
+  Vec3 factor;      ///< of the amplitude, now; of what has no direction all are alike  [-]
+  double pressure;  ///<  [Pa]
+  Vec3 traction;    ///<  [Pa]
+  Vec3 force;       ///<  [N]
+};
+
+/// A loaded face.
+struct LoadedFace {
+  Index tetrahedron;
+  std::int16_t face;
+  std::int16_t load;                ///< index into the laws
+  double share;                     ///< of the load's faces, by area at the start  [-]
+  double impedance_p, impedance_s;  ///< rho c_p and rho c_s of its tetrahedron  [Pa s/m]
+};
+
+/// Adds the loads of one tetrahedron's faces, a third to each corner.
+struct LoadForces {
+  static constexpr const char* name = "fdem3.loads";
+  View<const Index> starts;  ///< first loaded face of each loaded tetrahedron, and the end
+  View<const LoadedFace> faces;
+  View<const LoadLaw> laws;
+  View<const TetrahedronNodes> nodes;
+  View<Corners> external, force;
+
+  BR_HD void operator()(Index i) const {
+    const Index t = faces[starts[i]].tetrahedron;
+    Corners sum{};
+    for (Index f = starts[i]; f < starts[i + 1]; ++f) add(faces[f], nodes[t], sum);
+    external[t] = sum;
+    for (int k = 0; k < 4; ++k) force[t].at[k] += sum.at[k];
+  }
+
+ private:
+  BR_HD void add(const LoadedFace& face, const TetrahedronNodes& n, Corners& sum) const {
+    int corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = corner_of_face(face.face, k);
+    const Vec3& p = n.at[corner[0]].position;
+    const Vec3 outward = 0.5 * cross(n.at[corner[1]].position - p, n.at[corner[2]].position - p);
+    const LoadLaw& law = laws[face.load];
+    if (law.kind == LoadKind::absorbing) {
+      const double area = norm(outward), third = area * law.factor.x / 3.0;
+      const Vec3 normal = (1.0 / area) * outward;
+      for (const int k : corner) {
+        // t = -rho (c_p n n + c_s (1 - n n)) v (Lysmer and Kuhlemeyer 1969)
+        const Vec3& v = n.at[k].velocity;
+        const Vec3 straight = dot(v, normal) * normal;
+        sum.at[k] -= third * (face.impedance_p * straight + face.impedance_s * (v - straight));
+      }
+      return;
+    }
+    const Vec3 whole = law.kind == LoadKind::pressure   ? -law.pressure * outward
+                       : law.kind == LoadKind::traction ? norm(outward) * law.traction
+                                                        : face.share * law.force;
+    const Vec3 third{law.factor.x / 3.0 * whole.x, law.factor.y / 3.0 * whole.y,
+                     law.factor.z / 3.0 * whole.z};
+    for (const int k : corner) sum.at[k] += third;
+  }
+};
+
+/// Impedance rho c_p of absorbing faces of a tetrahedron, times their largest factor; 0 elsewhere.
+struct FaceDashpots {
+  double at[4] = {0.0, 0.0, 0.0, 0.0};  ///<  [Pa s/m]
+};
+
+}  // namespace breccia::fdem3

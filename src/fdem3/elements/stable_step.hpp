@@ -1,0 +1,155 @@
+#pragma once
+// The stable step of a tetrahedron.
+
+#include "fdem3/elements/element_kernels.hpp"
+#include "fdem3/elements/loads.hpp"
+
+namespace breccia::fdem3 {
+
+/// Gershgorin's bound: every eigenfrequency is at most the largest sum of a row's |stiffness| over
+/// its mass (docs/theory-fdem3.md, 4). Contact counts at exposed faces of tetrahedra that another
+/// one is near to, and of those so fast that they might pass what is near between two evaluations.
+struct StableStep {
+  View<const TetrahedronNodes> nodes;
+  View<const Index> material;
+  View<const ElasticTetrahedron> laws;
+  View<const ShapeGradients> shape;
+  View<const double> viscosity, mass;
+  View<const ContactPair> contacts;
+  Index materials;
+  View<const FaceJoints> faces;
+  View<const JointBond> bonds;
+  View<const Index> bond_of;
+  View<const FaceShape> joint_shape;
+  View<const double> joint_length;
+  View<const JointStage> stage;
+  View<const Index> hold;
+  View<const Hold> holds;
+  View<const FaceDashpots> dashpots;  ///< empty: nothing absorbs
+  IncidenceView couples;
+  View<const Index> couple_a, couple_b;
+  View<const Index> joint_a, joint_b;  ///< faces of the joints
+  int evaluate_every;                  ///< steps from one evaluation to the next
+
+  /// Shares of the largest row sum.
+  struct Parts {
+    double element = 0.0, joint = 0.0, contact = 0.0;  ///<  [N/m]
+    double viscous = 0.0, absorbed = 0.0;              ///<  [N s/m]
+    double square = 0.0;                               ///< omega^2 bound  [1/s2]
+    double step = 0.0;                                 ///<  [s]
+  };
+
+  BR_HD double operator()(Index t) const { return parts(t).step; }
+
+  /// As if something were near everywhere.
+  BR_HD Parts parts_pressed(Index t) const {
+    Vec3 x[4];
+    places(nodes[t], x);
+    return parts(t, x, exposed_faces(faces[t], stage));
+  }
+  BR_HD Parts parts(Index t) const {
+    Vec3 x[4], v[4];
+    split(nodes[t], x, v);
+    const int exposed = exposed_faces(faces[t], stage);
+    if (exposed == 0 || is_near(t, x)) return parts(t, x, exposed);
+    const Parts free = parts(t, x, 0);
+    double fastest = 0.0;
+    for (const Vec3& velocity : v) fastest = max(fastest, dot(velocity, velocity));
+    const double way = evaluate_every * free.step * sqrt(fastest);
+    return way > near_reach(shape[t]) ? parts(t, x, exposed) : free;
+  }
+
+ private:
+  /// Whether another tetrahedron is near: by positions alone, since searches list all pairs within
+  /// the sum of both reaches, whatever their margin.
+  BR_HD bool is_near(Index t, const Vec3 (&x)[4]) const {
+    const double reach = near_reach(shape[t]);
+    const auto near = [&](Index other) {
+      Vec3 y[4];
+      places(nodes[other], y);
+      return !boxes_apart(x, y, reach + near_reach(shape[other]));
+    };
+    for (int k = 0; k < 4; ++k) {  // also before a search lists it
+      const Index entry = faces[t].at[k];
+      if (entry < 0 || !is_parted(stage[pair_of(entry)])) continue;
+      if (near((side_of(entry) == 0 ? joint_b : joint_a)[pair_of(entry)] / 4)) return true;
+    }
+    const Index last = couples.last(t);
+    for (Index c = couples.first(t); c < last; ++c) {
+      const Index couple = pair_of(couples.entries[c]);
+      if (near(side_of(couples.entries[c]) == 0 ? couple_b[couple] : couple_a[couple])) return true;
+    }
+    return false;
+  }
+
+  /// @param pressed  bits of the faces whose contact counts
+  BR_HD Parts parts(Index t, const Vec3 (&x)[4], int pressed) const {
+    const ElasticTetrahedron& law = laws[material[t]];
+    const Target form = Target::of(x);
+    const double volume = form.six_volumes / 6.0;
+    Parts at_corner[4];
+    for (int k = 0; k < 4; ++k) add_face(t, k, x, (pressed >> k & 1) != 0, at_corner);
+    Parts largest;
+    largest.step = 1e300;
+    const int fixed = hold[t] >= 0 ? holds[hold[t]].fixed : 0;
+    for (int i = 0; i < 4; ++i) {
+      if ((fixed >> (3 * i) & 7) == 7) continue;  // goes where it is told, whatever its mass
+      Parts p = at_corner[i];
+      for (int c = 0; c < 3; ++c) {
+        p.element = max(p.element, row(form.slope, i, c, volume, law.lambda, law.shear));
+        p.viscous = max(p.viscous, row(form.slope, i, c, volume, 0.0, 0.5 * viscosity[t]));
+      }
+      p.square = (p.element + p.joint + p.contact) / mass[t];
+      const double omega = sqrt(p.square), lost = p.viscous + p.absorbed;
+      const double xi = 0.5 * lost / (mass[t] * omega);
+      p.step = 2.0 / omega * (sqrt(1.0 + xi * xi) - xi);
+      if (p.step < largest.step) largest = p;
+    }
+    return largest;
+  }
+  /// Sum of the absolute stiffnesses in the row of component c of corner i.
+  BR_HD static double row(const Vec3 (&slope)[4], int i, int c, double volume, double lambda,
+                          double shear) {
+    const double gi[3] = {slope[i].x, slope[i].y, slope[i].z};
+    double sum = 0.0;
+    for (int j = 0; j < 4; ++j) {
+      const double dots = dot(slope[i], slope[j]);
+      const double gj[3] = {slope[j].x, slope[j].y, slope[j].z};
+      for (int d = 0; d < 3; ++d) {
+        const double k =
+            lambda * (gi[c] * gj[d]) + shear * (gi[d] * gj[c]) + (c == d ? shear * dots : 0.0);
+        sum += abs(k);
+      }
+    }
+    return volume * sum;
+  }
+  /// A live joint adds 2 p_f A/(3 h) to each row of its nodes; an exposed face 4 k_n A/3 times at
+  /// most 1.366; an absorbing one a third of its area times its impedance.
+  BR_HD void add_face(Index t, int k, const Vec3 (&x)[4], bool pressed, Parts (&corner)[4]) const {
+    double joint = 0.0, contact = 0.0, absorbed = 0.0;
+    const Index entry = faces[t].at[k];
+    if (entry >= 0 && !is_parted(stage[pair_of(entry)])) {
+      const Index i = pair_of(entry);
+      joint = 2.0 * bonds[bond_of[i]].stiffness * joint_shape[i].area() / (3.0 * joint_length[i]);
+    }
+    const bool absorbs = dashpots.size > 0 && dashpots[t].at[k] > 0.0;
+    if (pressed || absorbs) {
+      const Vec3 p = x[corner_of_face(k, 0)];
+      const double area =
+          0.5 * norm(cross(x[corner_of_face(k, 1)] - p, x[corner_of_face(k, 2)] - p));
+      if (pressed) {
+        const ContactPair& pair = contacts[material[t] * materials + material[t]];
+        contact = 4.0 / 3.0 * (1.366 * pair.penalty + pair.tangential) * area;
+      }
+      if (absorbs) absorbed = area / 3.0 * dashpots[t].at[k];
+    }
+    for (int i = 0; i < 3; ++i) {
+      Parts& p = corner[corner_of_face(k, i)];
+      p.joint += joint;
+      p.contact += contact;
+      p.absorbed += absorbed;
+    }
+  }
+};
+
+}  // namespace breccia::fdem3

@@ -1,0 +1,210 @@
+#pragma once
+// The kernel of all joints: reads, one law call a point, one write.
+
+#include "core/step_clock.hpp"
+#include "fdem/joints/joint_kernels.hpp"
+#include "fdem3/joints/joints.hpp"
+#include "fdem3/laws/rock_failure.hpp"
+
+namespace breccia::fdem3 {
+
+/// Tractions at three points, damage and break of every joint (docs/theory-fdem3.md, 2).
+struct JointForces {
+  static constexpr const char* name = "fdem3.joints";
+  double time, dt;  ///< of the positions, and the step that led there  [s]
+  View<const TetrahedronNodes> nodes;
+  View<const JointBond> bonds;
+  View<const Index> face_a, face_b;
+  View<const std::uint8_t> turn;
+  View<const Index> law;
+  View<const FaceShape> shape;
+  View<const double> length, strength;
+  View<const Vec3> preset;
+  Sym3 in_situ;  ///< stress at the start  [Pa]
+  View<JointStage> stage;
+  View<JointPoints> points;
+  View<JointForce> force;
+  View<JointWork> work;
+  View<double> broke_at, pressing;
+  View<Vec3> shear_at_break;
+  View<std::uint8_t> changed;  ///< flags of fdem::Change: contacts must be searched
+
+  BR_HD void operator()(Index i) const {
+    const JointStage before = stage[i];
+    const JointForce last = force[i];
+    if (is_parted(before) && is_zero(last)) return;
+    const JointEnds e = JointEnds::of(face_a[i], face_b[i], turn[i]);
+    Vec3 a[3], b[3];
+    for (int k = 0; k < 3; ++k) {
+      a[k] = node(e.a[k]).position;
+      b[k] = node(e.b[k]).position;
+    }
+    const JointOpening o = opening_of(a, b);
+    const Vec3 offset = preset.size > 0 ? preset[i] : Vec3{};
+    if (before == JointStage::whole && stays_whole(i, o, offset)) return;
+    slow(i, before, e, o, offset, last);
+  }
+
+ private:
+  BR_HD const NodeState& node(Index n) const { return nodes[n / 4].at[n % 4]; }
+  BR_HD static bool is_zero(const JointForce& f) {
+    return dot(f.at[0], f.at[0]) + dot(f.at[1], f.at[1]) + dot(f.at[2], f.at[2]) == 0.0;
+  }
+  BR_HD void store(Index i, const Vec3 (&traction)[3], double area) const {
+    // Point q lies between corners q and q + 1, which bear half of its third each.
+    const double weight = -area / 6.0;
+    JointForce f;
+    f.at[0] = weight * (traction[0] + traction[2]);
+    f.at[1] = weight * (traction[1] + traction[0]);
+    f.at[2] = weight * (traction[2] + traction[1]);
+    force[i] = f;
+  }
+
+  /// A joint that is whole, nearly every one. @returns false, with nothing written, if it does not
+  /// stay so
+  BR_HD bool stays_whole(Index i, const JointOpening& o, const Vec3& offset) const {
+    const JointBond& bond = bonds[law[i]];
+    const double share = strength[i], slope = bond.stiffness / length[i];
+    const double tension = bond.tension * share, cohesion = bond.cohesion * share;
+    const double quarter = 0.25 / tension;
+    const FaceShape& face = shape[i];
+    const double area = face.area();
+    if (!(o.twice > 2e-12 * area)) return false;
+    const Vec3 slip = slip_in_space(o, offset);
+    Vec3 traction[3], mean{};
+    for (int q = 0; q < 3; ++q) {
+      const Vec3 slide = o.slide[q] + slip;
+      const double straight = slope * (o.open[q] + offset.x), size = slope * norm(slide);
+      const double resists = cohesion - bond.friction * min(straight, 0.0);
+      if (straight > 2.0 * tension || size > 2.0 * resists) return false;
+      const double normal = straight < 0.0 ? straight : straight * (1.0 - straight * quarter);
+      traction[q] = normal * o.normal + (slope * (1.0 - size * (0.25 / resists))) * slide;
+      mean += traction[q];
+    }
+    if (bond.by_rock()) {
+      const RockStress s = rock_stress(bond, face, o, (1.0 / 3.0) * mean, in_situ);
+      if (may_fail(bond, share, s)) return false;
+    }
+    store(i, traction, area);
+    return true;
+  }
+
+  /// A joint that is softened or broken, or becomes so.
+  BR_HD void slow(Index i, JointStage before, const JointEnds& e, const JointOpening& o,
+                  const Vec3& offset, const JointForce& last) const {
+    const double area = shape[i].area(), h = length[i];
+    const bool collapsed = !(o.twice > 2e-12 * area);
+    Vec3 way[3];
+    for (int k = 0; k < 3; ++k) way[k] = dt * (node(e.a[k]).velocity - node(e.b[k]).velocity);
+    if (is_parted(before) || collapsed) {
+      if (!collapsed) book_work(i, o, way, last, JointForce{});
+      if (!is_parted(before)) finish(i);
+      force[i] = {};
+      return;
+    }
+    const JointBond& bond = bonds[law[i]];
+    JointPoints state{};
+    if (before != JointStage::whole) state = points[i];
+    const Vec3 slip = slip_in_space(o, offset);
+    fdem::BondTraction<double> answer[3];
+    double open[3], slid[3];
+    Vec3 slide[3];
+    for (int q = 0; q < 3; ++q) {
+      slide[q] = o.slide[q] + slip;
+      slid[q] = norm(slide[q]);
+      open[q] = o.open[q] + offset.x;
+    }
+    const bool asks_rock =
+        bond.by_rock() && fdem::failure_of(state.point[1]) == fdem::Failure::none;
+    if (!asks_rock || fails_with_rock(i, bond, o, open, slid, slide, state, answer))
+      for (int q = 0; q < 3; ++q)
+        answer[q] = fdem::response(bond, strength[i], h, open[q], slid[q], state.point[q]);
+    Vec3 traction[3], drag{};
+    double pressure = 0.0;
+    int failed = 0;
+    bool damaged = false;
+    for (int q = 0; q < 3; ++q) {
+      const Vec3 sideways = slid[q] > 0.0 ? (answer[q].shear / slid[q]) * slide[q] : Vec3{};
+      traction[q] = answer[q].normal * o.normal + sideways;
+      pressure -= area / 3.0 * answer[q].normal;
+      drag -= (area / 3.0) * sideways;
+      failed += state.point[q].damage >= 1.0 ? 1 : 0;
+      damaged = damaged || state.point[q].damage > 0.0;
+    }
+    if (damaged && before == JointStage::whole) begin_work(i, bond, offset, e);
+    store(i, traction, area);
+    if (damaged) {
+      book_work(i, o, way, last, force[i]);
+      points[i] = state;
+      if (before == JointStage::whole) {
+        stage[i] = JointStage::softened;
+        fdem::raise(changed, fdem::change_softened);
+      }
+    }
+    if (failed >= 2) {
+      pressing[i] = max(0.0, pressure);
+      shear_at_break[i] = drag;
+      finish(i);
+    }
+  }
+
+  /// Lets all points of a joint fail where the mean stress of the rock there fails near its face.
+  /// @param answer  of its points by the law of faces
+  /// @returns false where it does not fail: `state` and `answer` are those of this step then
+  BR_HD bool fails_with_rock(Index i, const JointBond& bond, const JointOpening& o,
+                             const double (&open)[3], const double (&slid)[3],
+                             const Vec3 (&slide)[3], JointPoints& state,
+                             fdem::BondTraction<double> (&answer)[3]) const {
+    const double h = length[i], share = strength[i];
+    Vec3 mean{};
+    bool half_soft = false;  // it goes its own way to the end
+    for (int q = 0; q < 3; ++q) {
+      fdem::BondState<double>& point = state.point[q];
+      answer[q] = fdem::response(bond, share, h, open[q], slid[q], point);
+      mean += answer[q].normal * o.normal;
+      if (slid[q] > 0.0) mean += (answer[q].shear / slid[q]) * slide[q];
+      half_soft = half_soft || (point.damage > 0.0 && fdem::softening(point.damage) < 0.5);
+    }
+    if (half_soft) return false;
+    const RockStress s = rock_stress(bond, shape[i], o, (1.0 / 3.0) * mean, in_situ);
+    const fdem::Failure how = fdem::failure_of(rock_failure(bond, share, s));
+    if (how == fdem::Failure::none) return false;
+    for (int q = 0; q < 3; ++q)
+      fdem::fail(bond, share, h, how, open[q], slid[q], answer[q], state.point[q]);
+    return true;
+  }
+
+  /// A joint that softens in this step had stored this much before it: all it had taken up.
+  BR_HD void begin_work(Index i, const JointBond& bond, const Vec3& offset,
+                        const JointEnds& e) const {
+    Vec3 a[3], b[3];
+    for (int k = 0; k < 3; ++k) {
+      a[k] = node(e.a[k]).position - dt * node(e.a[k]).velocity;
+      b[k] = node(e.b[k]).position - dt * node(e.b[k]).velocity;
+    }
+    const fdem::StoredEnergy held = stored_in(bond, strength[i], length[i], shape[i].area(), offset,
+                                              opening_of(a, b), JointPoints{});
+    work[i] = {held.open, held.slide};
+  }
+  /// Work of this step by the trapezoidal rule: with leapfrog velocities it sums to exactly what
+  /// the nodes lose.
+  BR_HD void book_work(Index i, const JointOpening& o, const Vec3 (&way)[3], const JointForce& last,
+                       const JointForce& now) const {
+    double open = 0.0, all = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 f = last.at[k] + now.at[k];
+      open += dot(f, o.normal) * dot(way[k], o.normal);
+      all += dot(f, way[k]);
+    }
+    JointWork& w = work[i];
+    w.open -= 0.5 * open;
+    w.slide -= 0.5 * (all - open);
+  }
+  BR_HD void finish(Index i) const {
+    stage[i] = JointStage::broken;
+    broke_at[i] = time;
+    fdem::raise(changed, fdem::change_broken);
+  }
+};
+
+}  // namespace breccia::fdem3

@@ -1,0 +1,139 @@
+#pragma once
+// What ties tetrahedra across their common faces: its arrays and geometry.
+
+#include "exec/buffer.hpp"
+#include "fdem/joints/joints.hpp"
+#include "fdem3/elements/tetrahedra.hpp"
+
+namespace breccia::fdem3 {
+
+using fdem::is_damaged;
+using fdem::is_parted;
+using fdem::JointBond;
+using fdem::JointPoints;
+using fdem::JointStage;
+using fdem::JointWork;
+
+/// Forces of a joint on the three nodes of its side a, in the order of side b's list; those of side
+/// b get the opposite.  [N]
+struct JointForce {
+  Vec3 at[3];
+};
+
+/// The nodes that a joint ties: on[0] of side a, on[1] of side b, opposite each other.
+struct JointEnds {
+  Index a[3], b[3];
+
+  /// @param turn  place in a's list of the corner that lies at b's first one
+  BR_HD static JointEnds of(Index face_a, Index face_b, int turn) {
+    JointEnds e;
+    for (int k = 0; k < 3; ++k) {
+      e.b[k] = 4 * (face_b / 4) + corner_of_face(face_b % 4, k);
+      e.a[k] = 4 * (face_a / 4) + corner_of_face(face_a % 4, (turn + 3 - k) % 3);
+    }
+    return e;
+  }
+};
+
+/// The middle surface of the joint's two faces at the start, in its own plane: edges from corner 0
+/// to corner 1, (size, 0), and to corner 2.  [m]
+struct FaceShape {
+  double size, along, across;
+
+  BR_HD static FaceShape of(const Vec3& p, const Vec3& q, const Vec3& r) {
+    const Vec3 first = q - p, second = r - p;
+    const double size = norm(first), along = dot(first, second) / size;
+    return {size, along, sqrt(max(0.0, dot(second, second) - along * along))};
+  }
+  BR_HD double area() const { return 0.5 * size * across; }
+};
+
+/// Cohesive joints. Side a is the tetrahedron with the lower global id. Integration points lie in
+/// the middles of the edges (0, 1), (1, 2), (2, 0) of the face, a third of its area each. One item
+/// for each joint; `force` has one more that stays zero. Who writes it: as of Tetrahedra.
+struct Joints {
+  Buffer<Index> face_a, face_b;  ///< the two faces that it joins  [-]  (set-up, ranks)
+  Buffer<std::uint8_t> turn;     ///< see JointEnds  [-]  (constant)
+  Buffer<Index> law;             ///< index into Case::bonds  [-]  (constant)
+  Buffer<FaceShape> shape;       ///< at the start  [m]  (constant)
+  Buffer<double> length;         ///< h = (V_a + V_b) / A  [m]  (constant)
+  Buffer<double> strength;       ///< over its law's  [-]  (constant)
+  Buffer<Vec3> preset;           ///< opening and slip along (0, 1) and across it at which it was
+                                 ///< joined; empty: none  [m]  (set-up)
+  Buffer<JointStage> stage;      ///<  [-]  (pairs)
+  Buffer<JointPoints> points;    ///< damage and largest opening and slip  (pairs)
+  Buffer<JointForce> force;      ///< of this time  [N]  (pairs)
+  Buffer<JointWork> work;        ///< taken up so far  [J]  (pairs)
+  Buffer<double> broke_at;       ///< below 0: it is not broken  [s]  (pairs)
+  Buffer<double> pressing;       ///< compressive force when it broke  [N]  (pairs)
+  Buffer<Vec3> shear_at_break;   ///< on side a  [N]  (pairs)
+  Buffer<JointWork> inherited_work;  ///< of its work, what contact of its faces began with  [J]
+                                     ///< (pairs)
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("face_a", "-", face_a);
+    field("face_b", "-", face_b);
+    field("turn", "-", turn);
+    field("law", "-", law);
+    field("shape", "m", shape);
+    field("length", "m", length);
+    field("strength", "-", strength);
+    field("stage", "-", stage);
+    field("points", "SI", points);
+    field("work", "J", work);
+    field("broke_at", "s", broke_at);
+    field("pressing", "N", pressing);
+    field("shear_at_break", "N", shear_at_break);
+    field("inherited_work", "J", inherited_work);
+  }
+  Index size() const { return face_a.size(); }
+};
+
+/// How far the two faces of a joint have moved apart.
+struct JointOpening {
+  Vec3 normal;     ///< unit, from b into a, of the middle surface
+  Vec3 along;      ///< unit, from corner 0 to corner 1
+  double twice;    ///< twice the area of the middle surface  [m2]
+  double open[3];  ///< at the integration points  [m]
+  Vec3 slide[3];   ///< of side a against b, in the surface  [m]
+  Vec3 middle[3];  ///< corners of the middle surface  [m]
+};
+BR_HD inline JointOpening opening_of(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
+  JointOpening o;
+  for (int k = 0; k < 3; ++k) o.middle[k] = 0.5 * (a[k] + b[k]);
+  const Vec3 edge = o.middle[1] - o.middle[0];
+  const Vec3 twice = cross(edge, o.middle[2] - o.middle[0]);
+  o.twice = norm(twice);
+  o.normal = (1.0 / o.twice) * twice;
+  o.along = (1.0 / norm(edge)) * edge;
+  for (int q = 0; q < 3; ++q) {
+    const int i = q, j = q == 2 ? 0 : q + 1;
+    const Vec3 apart = 0.5 * ((a[i] - b[i]) + (a[j] - b[j]));
+    o.open[q] = dot(apart, o.normal);
+    o.slide[q] = apart - o.open[q] * o.normal;
+  }
+  return o;
+}
+/// A joint's offset in space.  [m]
+/// @param preset  opening, slip along the first edge, slip across it
+BR_HD inline Vec3 slip_in_space(const JointOpening& o, const Vec3& preset) {
+  return preset.y * o.along + preset.z * cross(o.normal, o.along);
+}
+
+/// Energy that a joint would give back if it were unloaded now, by direction.  [J]
+BR_HD inline fdem::StoredEnergy stored_in(const JointBond& bond, double strength, double h,
+                                          double area, const Vec3& preset, const JointOpening& o,
+                                          const JointPoints& points) {
+  fdem::StoredEnergy sum{};
+  const Vec3 slip = slip_in_space(o, preset);
+  for (int q = 0; q < 3; ++q) {
+    const fdem::StoredEnergy e = fdem::stored(bond, strength, h, o.open[q] + preset.x,
+                                              norm(o.slide[q] + slip), points.point[q]);
+    sum.open += area / 3.0 * e.open;
+    sum.slide += area / 3.0 * e.slide;
+  }
+  return sum;
+}
+
+}  // namespace breccia::fdem3

@@ -1,0 +1,164 @@
+#pragma once
+// Contact of two tetrahedra by a potential: the distance to the nearest face of the one that is
+// entered (docs/theory-fdem3.md, 3).
+
+#include "math/mat3.hpp"
+
+namespace breccia::fdem3 {
+
+/// A tetrahedron as the points of another see it.
+struct Target {
+  Vec3 x[4];         ///< corners  [m]
+  Vec3 slope[4];     ///< gradients of the corners' coordinates  [1/m]
+  double height[4];  ///< of each corner over its face  [m]
+  double six_volumes;
+
+  /// @param corner  as of Model::tetrahedron
+  BR_HD static Target of(const Vec3 (&corner)[4]) {
+    Target t;
+    for (int k = 0; k < 4; ++k) t.x[k] = corner[k];
+    const Mat3 edges{corner[1] - corner[0], corner[2] - corner[0], corner[3] - corner[0]};
+    const Mat3 c = cofactors(edges);
+    t.six_volumes = dot(edges.a, c.a);
+    const double scale = 1.0 / t.six_volumes;
+    t.slope[1] = scale * c.a;
+    t.slope[2] = scale * c.b;
+    t.slope[3] = scale * c.c;
+    t.slope[0] = -(t.slope[1] + t.slope[2] + t.slope[3]);
+    for (int k = 0; k < 4; ++k) t.height[k] = 1.0 / norm(t.slope[k]);
+    return t;
+  }
+  /// Coordinates of a point: its share of each corner.
+  BR_HD void coordinates(const Vec3& p, double (&lambda)[4]) const {
+    const Vec3 way = p - x[0];
+    lambda[1] = dot(slope[1], way);
+    lambda[2] = dot(slope[2], way);
+    lambda[3] = dot(slope[3], way);
+    lambda[0] = 1.0 - (lambda[1] + lambda[2] + lambda[3]);
+  }
+};
+
+/// A face of one tetrahedron in another.
+struct FaceOverlap {
+  double moment[3];     ///< integrals of the potential times the share of each corner, over the
+                        ///< face's area twice  [m]
+  double area;          ///< of the face inside, over its area twice  [-]
+  double lambda[3][4];  ///< coordinates of its corners in the target  [-]
+};
+
+namespace detail {
+
+/// A linear function on a face, by its corners: at + u along_u + v along_v.
+struct Linear {
+  double at, along_u, along_v;
+  BR_HD double operator()(double u, double v) const { return at + u * along_u + v * along_v; }
+};
+BR_HD inline Linear operator-(const Linear& a, const Linear& b) {
+  return {a.at - b.at, a.along_u - b.along_u, a.along_v - b.along_v};
+}
+
+/// A convex polygon on a face; of a triangle cut by seven lines.
+struct Polygon {
+  static constexpr int most = 12;
+  double u[most], v[most];
+  int count = 0;
+
+  BR_HD void add(double at_u, double at_v) {
+    if (count == most) return;  // rounding cannot make more
+    u[count] = at_u;
+    v[count] = at_v;
+    ++count;
+  }
+};
+
+/// The part where f >= 0 or, if not `closed`, f > 0.
+BR_HD inline Polygon cut(const Polygon& p, const Linear& f, bool closed) {
+  Polygon kept;
+  for (int i = 0; i < p.count; ++i) {
+    const int j = i + 1 == p.count ? 0 : i + 1;
+    const double fi = f(p.u[i], p.v[i]), fj = f(p.u[j], p.v[j]);
+    const bool in_i = closed ? fi >= 0.0 : fi > 0.0, in_j = closed ? fj >= 0.0 : fj > 0.0;
+    if (in_i) kept.add(p.u[i], p.v[i]);
+    if (in_i == in_j) continue;
+    const double s = fi / (fi - fj);
+    kept.add(p.u[i] + s * (p.u[j] - p.u[i]), p.v[i] + s * (p.v[j] - p.v[i]));
+  }
+  return kept;
+}
+
+/// Adds the integrals of f, f u, f v and 1 over a polygon.
+BR_HD inline void integrate(const Polygon& p, const Linear& f, double (&sum)[3], double& area) {
+  for (int i = 1; i + 1 < p.count; ++i) {
+    const int corner[3] = {0, i, i + 1};
+    const double twice =
+        (p.u[i] - p.u[0]) * (p.v[i + 1] - p.v[0]) - (p.u[i + 1] - p.u[0]) * (p.v[i] - p.v[0]);
+    double value[3], values = 0.0, us = 0.0, vs = 0.0, fu = 0.0, fv = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double u = p.u[corner[k]], v = p.v[corner[k]];
+      value[k] = f(u, v);
+      values += value[k];
+      us += u;
+      vs += v;
+      fu += value[k] * u;
+      fv += value[k] * v;
+    }
+    area += 0.5 * twice;
+    sum[0] += twice * values / 6.0;
+    sum[1] += twice * (values * us + fu) / 24.0;
+    sum[2] += twice * (values * vs + fv) / 24.0;
+  }
+}
+
+}  // namespace detail
+
+/// The potential of a target over the part of a face that lies in it: exact.
+/// @param face  corners, counter-clockwise seen from outside  [m]
+/// @returns whether any of it does
+BR_HD inline bool overlap_of_face(const Vec3 (&face)[3], const Target& target, FaceOverlap& o) {
+  using detail::Linear;
+  for (int i = 0; i < 3; ++i) target.coordinates(face[i], o.lambda[i]);
+  Linear g[4];
+  bool cuts[4];
+  for (int k = 0; k < 4; ++k) {
+    const double a = o.lambda[0][k], b = o.lambda[1][k], c = o.lambda[2][k];
+    if (a <= 0.0 && b <= 0.0 && c <= 0.0) return false;
+    cuts[k] = a < 0.0 || b < 0.0 || c < 0.0;
+    const double h = target.height[k];
+    g[k] = {h * a, h * (b - a), h * (c - a)};
+  }
+  detail::Polygon inside;
+  inside.add(0.0, 0.0);
+  inside.add(1.0, 0.0);
+  inside.add(0.0, 1.0);
+  for (int k = 0; k < 4; ++k)
+    if (cuts[k]) inside = detail::cut(inside, g[k], true);
+  if (inside.count < 3) return false;
+
+  double sum[3] = {};
+  o.area = 0.0;
+  for (int k = 0; k < 4; ++k) {  // where face k of the target is the nearest
+    detail::Polygon region = inside;
+    for (int m = 0; m < 4 && region.count >= 3; ++m)
+      // Of a face in the plane between two regions one takes all.
+      if (m != k) region = detail::cut(region, g[m] - g[k], m > k);
+    if (region.count >= 3) detail::integrate(region, g[k], sum, o.area);
+  }
+  o.moment[1] = sum[1];
+  o.moment[2] = sum[2];
+  o.moment[0] = sum[0] - sum[1] - sum[2];
+  return sum[0] > 0.0;
+}
+
+/// Normal forces of an overlap on the corners of the face, F_i = -k J_i N, and on those of the
+/// target.
+/// @param penalty  k_n  [Pa/m]
+BR_HD inline void push(const FaceOverlap& o, const Vec3 (&face)[3], double penalty,
+                       Vec3 (&on_face)[3], Vec3 (&on_target)[4]) {
+  const Vec3 twice_area = cross(face[1] - face[0], face[2] - face[0]);
+  for (int i = 0; i < 3; ++i) on_face[i] = (-penalty * o.moment[i]) * twice_area;
+  for (int m = 0; m < 4; ++m)
+    on_target[m] =
+        -(o.lambda[0][m] * on_face[0] + o.lambda[1][m] * on_face[1] + o.lambda[2][m] * on_face[2]);
+}
+
+}  // namespace breccia::fdem3

@@ -1,0 +1,144 @@
+#pragma once
+// The stress of a deformable tetrahedron: compressible neo-Hookean, exact for finite rotations.
+
+#include <cmath>
+
+#include "math/elementary.hpp"
+#include "math/mat3.hpp"
+
+namespace breccia::fdem3 {
+
+/// Gradients of the shape functions of corners 1 to 3 in the reference; that of corner 0 is minus
+/// their sum. They are the rows of the inverse of the reference edges x1 - x0, x2 - x0, x3 - x0 as
+/// columns.  [1/m]
+struct ShapeGradients {
+  Vec3 of[3];
+
+  BR_HD Vec3 first() const { return -(of[0] + of[1] + of[2]); }
+  /// At the start.  [m3]
+  BR_HD double volume() const { return 1.0 / (6.0 * dot(of[0], cross(of[1], of[2]))); }
+};
+/// @param x  corners, with a volume above 0  [m]
+BR_HD inline ShapeGradients shape_gradients(const Vec3 (&x)[4]) {
+  const Mat3 edges{x[1] - x[0], x[2] - x[0], x[3] - x[0]};
+  const Mat3 c = cofactors(edges);
+  const double scale = 1.0 / determinant(edges);
+  return {{scale * c.a, scale * c.b, scale * c.c}};
+}
+
+/// Rates and way of a tetrahedron against its reference.
+struct Deformation {
+  Mat3 gradient;    ///< F: reference to current  [-]
+  Mat3 cofactor;    ///< cof F = J F^-T  [-]
+  double jacobian;  ///< J = det F: current over reference volume  [-]
+};
+
+/// sum_k u_k (x) G_k of a field u given at the corners.
+BR_HD inline Mat3 gradient_of(const ShapeGradients& shape, const Vec3 (&u)[4]) {
+  const Vec3 e1 = u[1] - u[0], e2 = u[2] - u[0], e3 = u[3] - u[0];
+  const Vec3 &g1 = shape.of[0], &g2 = shape.of[1], &g3 = shape.of[2];
+  return {g1.x * e1 + g2.x * e2 + g3.x * e3, g1.y * e1 + g2.y * e2 + g3.y * e3,
+          g1.z * e1 + g2.z * e2 + g3.z * e3};
+}
+BR_HD inline Deformation deformation(const ShapeGradients& shape, const Vec3 (&x)[4]) {
+  Deformation d;
+  d.gradient = gradient_of(shape, x);
+  d.cofactor = cofactors(d.gradient);
+  d.jacobian = dot(d.gradient.a, d.cofactor.a);
+  return d;
+}
+/// sym L, L = dF/dt F^-1: the rate of deformation.  [1/s]
+/// @param v  velocities of the corners  [m/s]
+BR_HD inline Sym3 deformation_rate(const ShapeGradients& shape, const Deformation& d,
+                                   const Vec3 (&v)[4]) {
+  const Mat3 rate = gradient_of(shape, v);
+  const double over_j = 1.0 / d.jacobian;
+  const auto row = [over_j](double a, double b, double c, const Mat3& m) {  // a row of L
+    return over_j * (a * m.a + b * m.b + c * m.c);
+  };
+  const Vec3 x = row(rate.a.x, rate.b.x, rate.c.x, d.cofactor);
+  const Vec3 y = row(rate.a.y, rate.b.y, rate.c.y, d.cofactor);
+  const Vec3 z = row(rate.a.z, rate.b.z, rate.c.z, d.cofactor);
+  return {x.x, y.y, z.z, 0.5 * (y.z + z.y), 0.5 * (x.z + z.x), 0.5 * (x.y + y.x)};
+}
+
+/// Compressible neo-Hookean solid with viscous damping (docs/theory-fdem3.md, 1):
+///
+///   P = mu F + (g + eta D) cof F + F S_0,   g = (lambda / 2) (J - 1 / J) - mu / J
+///   sigma = P F^T / J
+///
+/// with D = sym L and the in-situ stress S_0. To first order Hooke's law with Lame's constants.
+/// Tension positive. The law of the plane method (fdem/laws/elastic_triangle.hpp) in space, by the
+/// first Piola tensor: no inverse of F, one division.
+struct ElasticTetrahedron {
+  double lambda;  ///<  [Pa]
+  double shear;   ///< mu  [Pa]
+  Sym3 preset{};  ///< S_0  [Pa]
+
+  BR_HD bool has_preset() const {
+    return preset.xx != 0.0 || preset.yy != 0.0 || preset.zz != 0.0 || preset.yz != 0.0 ||
+           preset.xz != 0.0 || preset.xy != 0.0;
+  }
+  /// First Piola tensor.  [Pa]  @param rate  D; only read if eta > 0
+  BR_HD Mat3 piola(const Deformation& d, double eta, const Sym3& rate) const {
+    const double g = 0.5 * lambda * (d.jacobian - 1.0 / d.jacobian) - shear / d.jacobian;
+    const Mat3 &f = d.gradient, &c = d.cofactor;
+    Mat3 p{shear * f.a + g * c.a, shear * f.b + g * c.b, shear * f.c + g * c.c};
+    if (eta > 0.0) {
+      p.a += eta * (rate * c.a);
+      p.b += eta * (rate * c.b);
+      p.c += eta * (rate * c.c);
+    }
+    if (has_preset()) {
+      p.a += preset.xx * f.a + preset.xy * f.b + preset.xz * f.c;
+      p.b += preset.xy * f.a + preset.yy * f.b + preset.yz * f.c;
+      p.c += preset.xz * f.a + preset.yz * f.b + preset.zz * f.c;
+    }
+    return p;
+  }
+  /// Cauchy stress, without viscosity.  [Pa]
+  BR_HD Sym3 stress(const Deformation& d) const {
+    const Mat3 p = piola(d, 0.0, {});
+    const Mat3& f = d.gradient;
+    const double over_j = 1.0 / d.jacobian;
+    const auto entry = [&](double pa, double pb, double pc, double fa, double fb, double fc) {
+      return over_j * (pa * fa + pb * fb + pc * fc);
+    };
+    return {entry(p.a.x, p.b.x, p.c.x, f.a.x, f.b.x, f.c.x),
+            entry(p.a.y, p.b.y, p.c.y, f.a.y, f.b.y, f.c.y),
+            entry(p.a.z, p.b.z, p.c.z, f.a.z, f.b.z, f.c.z),
+            entry(p.a.y, p.b.y, p.c.y, f.a.z, f.b.z, f.c.z),
+            entry(p.a.x, p.b.x, p.c.x, f.a.z, f.b.z, f.c.z),
+            entry(p.a.x, p.b.x, p.c.x, f.a.y, f.b.y, f.c.y)};
+  }
+  /// Energy per reference volume, with that at the start: S_0 : C^-1 S_0 / 2 by Hooke's law. No
+  /// number where the tetrahedron is turned inside out.  [J/m3]
+  BR_HD double energy(const Deformation& d) const {
+    const Mat3& f = d.gradient;
+    const double aa = dot(f.a, f.a), bb = dot(f.b, f.b), cc = dot(f.c, f.c);
+    const double j = d.jacobian, log_j = j > 0.0 ? logarithm(j) : NAN;
+    const Sym3 strain{0.5 * (aa - 1.0),    0.5 * (bb - 1.0),    0.5 * (cc - 1.0),
+                      0.5 * dot(f.b, f.c), 0.5 * dot(f.a, f.c), 0.5 * dot(f.a, f.b)};
+    return 0.5 * shear * (aa + bb + cc - 3.0 - 2.0 * log_j) +
+           0.25 * lambda * (j * j - 1.0 - 2.0 * log_j) + contract(preset, strain) +
+           energy_at_start();
+  }
+  BR_HD double energy_at_start() const {
+    const double sum = trace(preset);
+    return 0.25 / shear *
+           (contract(preset, preset) - lambda / (3.0 * lambda + 2.0 * shear) * sum * sum);
+  }
+};
+
+/// Forces that the stress puts on the corners, f_k = -V_0 P G_k; they sum to zero.  [N]
+BR_HD inline void corner_forces(const ShapeGradients& shape, double volume, const Mat3& piola,
+                                Vec3 (&force)[4]) {
+  for (int k = 1; k < 4; ++k) force[k] = (-volume) * (piola * shape.of[k - 1]);
+  force[0] = -(force[1] + force[2] + force[3]);
+}
+
+BR_HD inline double lame_lambda(double young, double poisson) {
+  return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+}
+
+}  // namespace breccia::fdem3

@@ -1,0 +1,22 @@
+#pragma once
+// Which corners and faces of a model a case means.
+
+#include <string>
+#include <vector>
+
+#include "fdem3/setup/config.hpp"
+#include "fdem3/setup/model.hpp"
+
+namespace breccia::fdem3 {
+
+/// Corners 4 t + k in a region, by where they are at the start.
+/// @throws InputError naming `where` if there are none, or a name does not exist
+std::vector<Index> corners_in(const Model& model, const RegionConfig& region,
+                              const std::string& where);
+
+/// Faces 4 t + k on the border of the mesh with all corners in a region.
+/// @throws InputError likewise
+std::vector<Index> faces_in(const Model& model, const RegionConfig& region,
+                            const std::string& where);
+
+}  // namespace breccia::fdem3

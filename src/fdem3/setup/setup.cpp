@@ -1,0 +1,425 @@
+// From a model to a world: split corners, joints, bundles, supports, loads, first forces.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numeric>
+
+#include "core/set_up.hpp"
+#include "core/world_space.hpp"
+#include "exec/error.hpp"
+#include "fdem3/observe.hpp"
+#include "fdem3/setup/loads.hpp"
+#include "fdem3/setup/materials.hpp"
+#include "fdem3/setup/mesh_faces.hpp"
+#include "fdem3/setup/regions.hpp"
+#include "fdem3/setup/supports.hpp"
+
+namespace breccia::fdem3 {
+namespace {
+
+Case& set_up(World& w) {
+  return w.given.change(SetUp{});
+}
+
+void corners_of(const Model& model, std::size_t t, Vec3 (&x)[4]) {
+  for (std::size_t k = 0; k < 4; ++k) x[k] = model.point[at(model.tetrahedron[t][k])];
+}
+double volume_of(const Model& model, std::size_t t) {
+  Vec3 x[4];
+  corners_of(model, t, x);
+  return dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])) / 6.0;
+}
+
+void set_up_elements(World& w, const Config& config, const Model& model) {
+  std::vector<GlobalId> id(model.tetrahedron.size());
+  std::iota(id.begin(), id.end(), 0);
+  std::vector<TetrahedronNodes> nodes;
+  std::vector<ShapeGradients> shape;
+  std::vector<double> mass, viscosity;
+  double edges = 0.0;
+  for (std::size_t t = 0; t < model.tetrahedron.size(); ++t) {
+    Vec3 x[4];
+    corners_of(model, t, x);
+    TetrahedronNodes corners;
+    for (std::size_t k = 0; k < 4; ++k) {
+      corners.at[k] = {x[k], model.velocity[t]};
+      w.vertex.push_back(model.tetrahedron[t][k]);
+    }
+    const double volume = volume_of(model, t);
+    if (!(volume > 0.0))
+      throw InputError("tetrahedron " + std::to_string(t) +
+                       ": it is turned inside out, or has no volume");
+    const MaterialConfig& m = config.materials[static_cast<std::size_t>(model.material[t])];
+    nodes.push_back(corners);
+    shape.push_back(shape_gradients(x));
+    mass.push_back(0.25 * m.density * volume);
+    const double edge = std::cbrt(6.0 * std::sqrt(2.0) * volume);  // of the regular one as large
+    edges += edge;
+    viscosity.push_back(m.damping * 2.0 * edge * std::sqrt(m.young * m.density));
+  }
+  Case& given = set_up(w);
+  given.mean_edge = edges / static_cast<double>(model.tetrahedron.size());
+  given.skin = config.search.margin * given.mean_edge;
+  Tetrahedra& t = w.tetrahedra;
+  copy_to(t.id, id);
+  copy_to(t.group, model.group);
+  copy_to(t.material, std::vector<Index>(model.material.begin(), model.material.end()));
+  copy_to(t.nodes, nodes);
+  copy_to(t.shape, shape);
+  copy_to(t.mass, mass);
+  copy_to(t.viscosity, viscosity);
+  t.force.resize(model.size());
+  t.viscous_work.resize(model.size());
+  t.damping_work.resize(model.size());
+  t.load_work.resize(model.size());
+}
+
+/// Vertices with several corners, some of which move as one.
+void set_up_bundles(World& w, const std::vector<std::uint8_t>& tied) {
+  std::vector<std::vector<Index>> corners(tied.size());
+  for (Index n = 0; n < 4 * w.tetrahedra.size(); ++n)
+    if (tied[at(w.vertex[at(n)])] != 0) corners[at(w.vertex[at(n)])].push_back(n);
+  std::vector<Index> starts{0}, nodes;
+  for (const std::vector<Index>& ring : corners) {
+    if (ring.empty()) continue;
+    nodes.insert(nodes.end(), ring.begin(), ring.end());
+    starts.push_back(static_cast<Index>(nodes.size()));
+  }
+  if (nodes.empty()) return;
+  copy_to(w.bundles.starts, starts);
+  copy_to(w.bundles.nodes, nodes);
+  derive_bundles(w);
+}
+
+/// Joints that are being collected.
+struct JointList {
+  std::vector<Index> face_a, face_b, law;
+  std::vector<std::uint8_t> turn;
+  std::vector<FaceShape> shape;
+  std::vector<double> length, strength;
+  std::vector<Vec3> preset;
+};
+
+/// The place in a's list of corners of what lies at the first corner of b's.
+std::uint8_t turn_between(const Model& model, Index a, Index b) {
+  const auto vertex = [&](Index face, int place) {
+    return model.tetrahedron[at(face / 4)][at(corner_of_face(face % 4, place))];
+  };
+  for (int place = 0; place < 3; ++place)
+    if (vertex(a, place) == vertex(b, 0) && vertex(a, (place + 2) % 3) == vertex(b, 1))
+      return static_cast<std::uint8_t>(place);
+  throw InputError("tetrahedra " + std::to_string(a / 4) + " and " + std::to_string(b / 4) +
+                   " lie on the same side of their common face");
+}
+
+/// Opening and slip at which a joint carries the stress at the start.
+Vec3 preset_of(const Config& config, const JointBond& bond, double strength, double h,
+               const Vec3 (&corner)[3], Index a, Index b) {
+  const InSituConfig& s = config.in_situ;
+  const Sym3 stress{s.xx, s.yy, s.zz, s.yz, s.xz, s.xy};
+  const JointOpening o = opening_of(corner, corner);
+  const Vec3 traction = stress * o.normal, across = cross(o.normal, o.along);
+  const double along_part = dot(traction, o.along), across_part = dot(traction, across);
+  const double shear = std::sqrt(along_part * along_part + across_part * across_part);
+  Vec2 opening;
+  if (!fdem::preset_opening(bond, strength, h, dot(traction, o.normal), shear, opening))
+    throw InputError("in_situ: the joint between tetrahedra " + std::to_string(a) + " and " +
+                     std::to_string(b) + " is too weak for this stress");
+  const double share = shear > 0.0 ? opening.y / shear : 0.0;
+  return {opening.x, share * along_part, share * across_part};
+}
+
+/// Joins neighbours: a joint, a bond, or nothing.
+class Joining {
+ public:
+  Joining(World& w, const Config& config, const Model& model)
+      : w_(w),
+        config_(config),
+        model_(model),
+        table_(fdem::bond_table(shared_keys(config))),
+        faces_(model.tetrahedron.size(), {{face_free, face_free, face_free, face_free}}),
+        tied_(model.point.size(), 0) {
+    for (const Model::Discontinuity& d : model.discontinuities)
+      weak_[d.face] = d.material < 0 ? fdem::BondTable::nothing
+                                     : table_.of_joint[static_cast<std::size_t>(d.material)];
+    set_up(w).open_vertex.assign(model.point.size(), 0);
+    w.across.assign(4 * model.tetrahedron.size(), -1);
+    for (const MeshFace& f : mesh_faces(model)) add(f);
+  }
+
+  void store() {
+    Joints& j = w_.joints;
+    const auto count = static_cast<Index>(list_.face_a.size());
+    copy_to(set_up(w_).bonds, table_.bonds);
+    copy_to(w_.faces, faces_);
+    copy_to(j.face_a, list_.face_a);
+    copy_to(j.face_b, list_.face_b);
+    copy_to(j.turn, list_.turn);
+    copy_to(j.law, list_.law);
+    copy_to(j.shape, list_.shape);
+    copy_to(j.length, list_.length);
+    copy_to(j.strength, list_.strength);
+    if (config_.in_situ.any()) copy_to(j.preset, list_.preset);
+    copy_to(j.broke_at, std::vector<double>(list_.face_a.size(), -1.0));
+    j.stage.resize(count);
+    j.points.resize(count);
+    j.force.resize(count);
+    j.work.resize(count);
+    j.pressing.resize(count);
+    j.shear_at_break.resize(count);
+    j.inherited_work.resize(count);
+    set_up_bundles(w_, tied_);
+  }
+
+ private:
+  void add(const MeshFace& f) {
+    if (f.b < 0) return open(f, 1);
+    w_.across[at(f.a)] = f.b;
+    w_.across[at(f.b)] = f.a;
+    const auto a = at(f.a / 4), b = at(f.b / 4);
+    const auto weak = weak_.find(f.corners);
+    const std::int16_t found =
+        weak != weak_.end()
+            ? weak->second
+            : table_
+                  .of_pair[static_cast<std::size_t>(model_.material[a]) * config_.materials.size() +
+                           static_cast<std::size_t>(model_.material[b])];
+    if (found == fdem::BondTable::nothing) return open(f, 3);
+    if (found == fdem::BondTable::bonded) {
+      slot(f.a) = slot(f.b) = face_bonded;
+      for (const Index vertex : f.corners) tied_[at(vertex)] = 1;
+      return;
+    }
+    join(f, found);
+  }
+  void open(const MeshFace& f, std::uint8_t bits) {
+    for (const Index vertex : f.corners) set_up(w_).open_vertex[at(vertex)] |= bits;
+  }
+  void join(const MeshFace& f, std::int16_t law) {
+    const auto a = at(f.a / 4), b = at(f.b / 4);
+    const auto joint = static_cast<Index>(list_.face_a.size());
+    slot(f.a) = 2 * joint;
+    slot(f.b) = 2 * joint + 1;
+    Vec3 corner[3];
+    for (int k = 0; k < 3; ++k)
+      corner[k] = model_.point[at(model_.tetrahedron[b][at(corner_of_face(f.b % 4, k))])];
+    const FaceShape shape = FaceShape::of(corner[0], corner[1], corner[2]);
+    const double h = (volume_of(model_, a) + volume_of(model_, b)) / shape.area();
+    const double strength =
+        std::min(static_cast<double>(model_.strength[a]), static_cast<double>(model_.strength[b]));
+    list_.face_a.push_back(f.a);
+    list_.face_b.push_back(f.b);
+    list_.turn.push_back(turn_between(model_, f.a, f.b));
+    list_.law.push_back(law);
+    list_.shape.push_back(shape);
+    list_.length.push_back(h);
+    list_.strength.push_back(strength);
+    list_.preset.push_back(config_.in_situ.any()
+                               ? preset_of(config_, table_.bonds[static_cast<std::size_t>(law)],
+                                           strength, h, corner, f.a / 4, f.b / 4)
+                               : Vec3{});
+  }
+  Index& slot(Index face) { return faces_[at(face / 4)].at[face % 4]; }
+
+  World& w_;
+  const Config& config_;
+  const Model& model_;
+  fdem::BondTable table_;
+  std::map<std::array<Index, 3>, std::int16_t> weak_;  ///< law, or nothing where open
+  std::vector<FaceJoints> faces_;
+  std::vector<std::uint8_t> tied_;  ///< 1: corners here move as one
+  JointList list_;
+};
+
+/// h_c of each material: mean of 2 V/A over the faces of its border, or over all of its faces.  [m]
+std::vector<double> contact_lengths(const Config& config, const Model& model) {
+  const std::size_t n = config.materials.size();
+  std::vector<double> at_border(n, 0.0), borders(n, 0.0), any(n, 0.0), count(n, 0.0);
+  for (const MeshFace& f : mesh_faces(model))
+    for (const Index face : {f.a, f.b}) {
+      if (face < 0) continue;
+      const auto t = at(face / 4);
+      const auto m = static_cast<std::size_t>(model.material[t]);
+      Vec3 x[3];
+      for (int k = 0; k < 3; ++k)
+        x[k] = model.point[at(model.tetrahedron[t][at(corner_of_face(face % 4, k))])];
+      const double h = 2.0 * volume_of(model, t) / FaceShape::of(x[0], x[1], x[2]).area();
+      any[m] += h;
+      count[m] += 1.0;
+      if (f.b >= 0) continue;
+      at_border[m] += h;
+      borders[m] += 1.0;
+    }
+  std::vector<double> lengths;
+  for (std::size_t m = 0; m < n; ++m)
+    lengths.push_back(borders[m] > 0.0 ? at_border[m] / borders[m]
+                      : count[m] > 0.0 ? any[m] / count[m]
+                                       : 1.0);
+  return lengths;
+}
+
+void set_up_bodies(World& w, const Model& model) {
+  Case& given = set_up(w);
+  given.groups = model.groups;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    NodeSet set{model.groups[g], {}};
+    for (Index t = 0; t < model.size(); ++t)
+      if (static_cast<std::size_t>(model.group[at(t)]) == g)
+        for (Index k = 0; k < 4; ++k) set.nodes.push_back(4 * t + k);
+    given.sets.push_back(std::move(set));
+  }
+}
+
+/// Places at the start, for displacements and strains.
+void set_up_starts(Case& given, const Config& config, const Model& model) {
+  std::vector<Vec3> starts;
+  for (const auto& corners : model.tetrahedron)
+    for (const Index vertex : corners) starts.push_back(model.point[at(vertex)]);
+  bool any = given.shown.displacement;
+  for (const ProbeConfig& p : config.probes) {
+    const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
+    any |= kind == Quantity::Kind::displacement || kind == Quantity::Kind::strain;
+    if (kind != Quantity::Kind::strain) continue;
+    std::vector<Index> corners(starts.size());
+    std::iota(corners.begin(), corners.end(), 0);
+    for (const NodeSet& set : given.sets)
+      if (set.name == p.on) corners = set.nodes;
+    const ReadBox box(p.min, p.max);
+    std::vector<Vec3> points;
+    for (const Index n : corners)
+      if (box.holds(starts[at(n)])) points.push_back(starts[at(n)]);
+    bool fits = false;
+    given.strain_fits.push_back({p.name, strain_fit(points, 3, fits)});
+    if (!fits)
+      throw InputError("probe." + p.name +
+                       ": strain needs corners that do not lie in a plane; its region holds " +
+                       std::to_string(points.size()));
+  }
+  if (any) copy_to(given.starts, starts);
+}
+
+/// No machine takes more steps than this, and time, a sum of them, would stop.
+void refuse_endless(const World& w) {
+  constexpr double most = 1e15;
+  const RuledStep least = ruled_step(w, true);
+  const double dt = std::min(w.next_dt, w.given->time.safety * least.step);
+  if (dt * most > w.given->time.end) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the stable time step is %.3g s, ruled by %s: time.end = %.3g s is more than 1e15 "
+                "steps away; see the densities, moduli and stiffnesses of the materials",
+                dt, least.term, w.given->time.end);
+  throw InputError(text);
+}
+
+/// More inertia under the weight that bodies have: time.mass_scaling.
+Config with_inertia(Config config) {
+  const double scale = config.time.mass_scaling;
+  for (MaterialConfig& material : config.materials) material.density *= scale;
+  config.gravity = (1.0 / scale) * config.gravity;
+  return config;
+}
+
+}  // namespace
+
+World::World(const Exec& how) : exec(how) {
+  place_arrays(*this);
+}
+
+void move_to(World& w, Space space) {
+  move_world(w, space);
+}
+
+World make_world(const Config& asked, const Model& model, const Exec& exec) {
+  const Config config = with_inertia(asked);
+  if (model.size() == 0) throw InputError("the model holds no tetrahedra");
+  World w(exec);
+  Case& given = set_up(w);
+  given.time = config.time;
+  given.gravity = config.gravity;
+  const InSituConfig& s = config.in_situ;
+  given.in_situ = {s.xx, s.yy, s.zz, s.yz, s.xz, s.xy};
+  given.local_damping = config.local_damping;
+  given.shown = config.output.more_fields();
+  given.materials = static_cast<Index>(config.materials.size());
+  given.contact_lengths = contact_lengths(config, model);
+  given.rocks = effective_rocks(config);
+  copy_to(given.laws, elastic_table(config));
+  copy_to(given.contact_pairs, contact_table(config, given.contact_lengths));
+  set_up_bodies(w, model);
+  set_up_elements(w, config, model);
+  Joining(w, config, model).store();
+  set_up_supports(w, config, model);
+  set_up_starts(set_up(w), config, model);
+  set_up_loads(w, config, model);
+  w.exposed.changed.resize(2);
+  w.exposed.vertex.resize(static_cast<Index>(model.point.size()));
+  find_couples(w);
+  evaluate_forces(w);
+  refuse_endless(w);
+  begin_ledger(w);
+  return w;
+}
+
+void set_gravity(World& w, const Vec3& gravity) {
+  set_up(w).gravity = gravity;
+}
+
+void configure(World& w, const Config& config) {
+  Case& given = set_up(w);
+  given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+  given.local_damping = config.local_damping;
+  copy_to(given.contact_pairs, contact_table(config, given.contact_lengths));
+  const std::vector<Index> hold = prescribe_supports(w, config);
+  std::vector<Index> ids, own;
+  copy_to(ids, w.tetrahedra.id);
+  for (const Index id : ids) own.push_back(hold[at(id)]);
+  copy_to(w.tetrahedra.hold, own);
+  prescribe_loads(w, config);
+}
+
+void derive(World& w) {
+  derive_couples(w);
+  derive_bundles(w);
+}
+
+void derive_bundles(World& w) {
+  if (w.bundles.starts.size() < 2) return;
+  std::vector<Index> starts, nodes;
+  std::vector<FaceJoints> faces;
+  copy_to(starts, w.bundles.starts);
+  copy_to(nodes, w.bundles.nodes);
+  copy_to(faces, w.faces);
+  std::vector<Index> leader(nodes.size());
+  for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
+    const Index begin = starts[v], end = starts[v + 1];
+    for (Index k = begin; k < end; ++k) leader[at(k)] = k;
+    const auto first_of = [&](Index k) {
+      while (leader[at(k)] != k) k = leader[at(k)];
+      return k;
+    };
+    // Tetrahedra are united across faces, never across edges or vertices alone.
+    for (Index k = begin; k < end; ++k) {
+      const Index t = nodes[at(k)] / 4;
+      for (int f = 0; f < 4; ++f) {
+        const Index other = w.across[at(4 * t + f)];
+        if (faces[at(t)].at[f] != face_bonded || f == nodes[at(k)] % 4 || other < 0) continue;
+        const Index vertex = w.vertex[at(nodes[at(k)])];
+        for (Index c = 0; c < 4; ++c) {
+          const Index node = 4 * (other / 4) + c;
+          if (w.vertex[at(node)] != vertex) continue;
+          const auto found =
+              std::lower_bound(nodes.begin() + begin, nodes.begin() + end, node) - nodes.begin();
+          const Index p = first_of(k), q = first_of(static_cast<Index>(found));
+          leader[at(std::max(p, q))] = std::min(p, q);
+        }
+      }
+    }
+    for (Index k = begin; k < end; ++k) leader[at(k)] = first_of(k);
+  }
+  copy_to(w.bundles.leader, leader);
+}
+
+}  // namespace breccia::fdem3

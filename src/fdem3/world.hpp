@@ -1,0 +1,192 @@
+#pragma once
+// Everything a run of tetrahedra consists of between two steps.
+
+#include <vector>
+
+#include "core/broad_phase.hpp"
+#include "core/drift.hpp"
+#include "core/energy_split.hpp"
+#include "core/read_only.hpp"
+#include "core/stages.hpp"
+#include "core/step_clock.hpp"
+#include "core/travel.hpp"
+#include "domain/domain.hpp"
+#include "domain/set_here.hpp"
+#include "exec/step_graph.hpp"
+#include "exec/timers.hpp"
+#include "fdem3/case.hpp"
+#include "fdem3/elements/stable_step.hpp"
+#include "fdem3/setup/model.hpp"
+
+namespace breccia::fdem3 {
+
+/// Where the tetrahedra that can touch stood at the last search, and how far each may go from
+/// there, the drift taken off.
+struct TravelOfTetrahedra {
+  Buffer<Index> tetrahedron;  ///< those that can touch, ascending by global id  [-]  (search)
+  Buffer<Corners> reference;  ///< their corners at the search  [m]  (search)
+  Buffer<double> margin;      ///< how far each may go from there  [m]  (search)
+  Drift drift;
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field("tetrahedron", "-", tetrahedron);
+    field("reference", "m", reference);
+    field("margin", "m", margin);
+  }
+};
+
+/// Where joints have opened: as of fdem::ExposedVertices.
+struct ExposedVertices {
+  Buffer<std::uint8_t> changed;  ///< flags of fdem::Change since the last marking  [-]  (2)
+  Buffer<std::uint8_t> vertex;   ///< 1: a joint here is damaged  [-]  (vertices; search)
+};
+
+/// What a rank knows of the whole mesh besides its part of it.
+struct WholeMesh {
+  Buffer<Index> joint_number;      ///< of the local joints in the whole mesh, ascending
+  std::vector<std::uint8_t> tied;  ///< 1: some corners at this vertex move as one
+  bool loaded = false;             ///< some faces bear loads
+  bool bundled = false;            ///< there are such vertices
+  bool absorbs = false;            ///< some faces take waves up
+  bool preset = false;             ///< joints keep an opening at which they were joined
+};
+
+/// Each line tells meaning and unit, then (length; who writes it), in the words of fdem/world.hpp.
+struct World {
+  explicit World(const Exec& how);
+
+  Exec exec;             ///< (ranks: its space)
+  ReadOnly<Case> given;  ///< constants: fdem3/case.hpp (set-up, stage)
+
+  // Prescribed motions: constant but for those that servos lead.
+  std::vector<PrescribedMotion> prescribed;  ///< (motions; set-up, stage, servo)
+  std::vector<ServoMotion> servo_motions;    ///< which of them servos lead (set-up, stage)
+
+  /// Visits the arrays that kernels read: state, and what follows from the case.
+  template <class Visit>
+  void each_kept(Visit&& visit) {
+    const auto state = [&](auto& s) {
+      s.each_field([&](const char*, const char*, auto& array) { visit(array); });
+    };
+    state(tetrahedra);
+    state(joints);
+    state(couples);
+    state(reach);
+    given.each_array(visit);
+    const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
+    each(tetrahedra.external, joints.force, joints.preset, exposed.changed, exposed.vertex,
+         load_starts, loaded_faces, dashpots, bundles.starts, bundles.nodes, bundles.leader, faces,
+         motions, load_laws, domain.owned_there, domain.migration_reference);
+  }
+  /// Those that derive() and a search fill.
+  template <class Visit>
+  void each_derived(Visit&& visit) {
+    const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
+    each(couple_incidence, broad_phase, parent_joint, node_vertex, border_vertex, reach_place,
+         beyond);
+  }
+
+  // State: what a checkpoint holds.
+  Tetrahedra tetrahedra;           ///< (tetrahedra; see its lines)
+  Joints joints;                   ///< (joints; see its lines)
+  Couples couples;                 ///< (couples; search, pairs, ranks)
+  TravelOfTetrahedra reach;        ///< since the last search (those that can touch; search, ranks)
+  ExposedVertices exposed;         ///< (vertices of the whole mesh; pairs, search)
+  Ledger ledger;                   ///< (search, stage, probes)
+  double time = 0.0;               ///< of positions and forces  [s]  (move)
+  double last_dt = 0.0;            ///< the step that led here  [s]  (move)
+  double next_dt = 0.0;            ///< the step to come  [s]  (dt, search)
+  std::int64_t step = 0;           ///< steps taken  [-]  (end of a step)
+  std::int64_t searches = 0;       ///< [-]  (search)
+  std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
+  StageProgress stage;             ///< where it is among the stages of its case (stage)
+
+  // Which part of the whole it is, and how its tetrahedra lie in the mesh: constant between two
+  // migrations.
+  Domain domain;                   ///< (ranks; its ghosts that follow their owners: search)
+  WholeMesh mesh;                  ///< (ranks)
+  Halo tied_forces;                ///< ghosts whose corners move as one with own ones (ranks)
+  std::vector<SetHere> sets_here;  ///< places of Case::sets on this rank (sets; probes, servo)
+  std::vector<Index> across;  ///< face of the neighbour, -1: none here  [-]  (4 tetrahedra; ranks)
+  std::vector<Index> vertex;  ///< vertex of the whole mesh at each node  [-]  (4 tetrahedra; ranks)
+  Buffer<FaceJoints> faces;   ///< joints of each by face  [-]  (tetrahedra; set-up, ranks)
+  Buffer<Index> load_starts;  ///< first loaded face of each loaded one, and the end  [-]
+                              ///< (loaded tetrahedra + 1; set-up, ranks)
+  Buffer<LoadedFace> loaded_faces;     ///< (loaded faces; set-up, ranks)
+  Buffer<FaceDashpots> dashpots;       ///< [Pa s/m]  (tetrahedra, none if no face absorbs; ranks)
+  Bundles bundles;                     ///< corners that move as one (set-up, ranks)
+  Buffer<Index> node_vertex;           ///< `vertex`, for kernels (4 tetrahedra; search)
+  Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
+
+  // Results of a search.
+  Incidence couple_incidence;  ///< (tetrahedra; search, derive)
+  BroadPhase broad_phase;      ///< scratch of the search (search)
+  Buffer<Index> parent_joint;  ///< see CoupleForces  [-]  (couples; search, derive)
+  Buffer<Index> reach_place;   ///< in `reach`, -1: a ghost, or it cannot touch  [-]
+                               ///< (tetrahedra; search, derive)
+
+  // Results of a step, overwritten by the next one.
+  Buffer<Motion> motions;       ///< of supports, mid-step  [m/s]  (motions; move)
+  Buffer<LoadLaw> load_laws;    ///< Case::loads with their factors now (loads; loads)
+  Buffer<std::uint8_t> beyond;  ///< 1: an own one has used its margin up (1; move)
+  StepGraph graph;              ///< none is recorded
+};
+
+/// Moves a world's arrays to another space; derive() must follow.
+void move_to(World& w, Space space);
+
+/// A world at rest in its first state, forces evaluated. @throws InputError naming what does not
+/// fit
+World make_world(const Config& config, const Model& model, const Exec& exec);
+
+/// Lets the world go on by another stage of its case: gravity, damping, friction, supports, loads.
+/// The state stays as it is. @throws InputError if supports contradict each other
+void configure(World& w, const Config& config);
+/// Gravity alone: the ledger asks what a change of it is worth.
+void set_gravity(World& w, const Vec3& gravity);
+/// No stage takes bodies out of a case of tetrahedra (setup/check_case.cpp refuses it).
+inline void open_around_removed(World&) {}
+inline void cut_off_removed(World&) {}
+
+/// Fills what follows from the state, after loading.
+void derive(World& w);
+void derive_couples(World& w);
+/// Who moves with whom.
+void derive_bundles(World& w);
+
+/// One step: the points of Lukas 2014, section 2.
+void step(World& w);
+Advanced advance(World& w, const StopAt& stop);
+/// Velocities of supports at the middle of the step to come, into World::motions.
+void list_motions(World& w);
+/// Loaded faces of this rank's tetrahedra.
+void list_loaded_faces(World& w);
+
+/// Asks all ranks whether couples must be searched for, and hears what they say.
+void ask_for_search(World& w);
+bool couples_are_due(World& w);
+MarginRule margin_rule(const World& w);
+void find_couples(World& w);
+/// Safe share of the stable step of all, rounded down to six bits.  [s]
+double choose_time_step(const World& w);
+/// The step to come, or less where these allow less: after their joints have changed.
+double shortened_time_step(const World& w, const Buffer<Index>& tetrahedra);
+void evaluate_forces(World& w);
+/// Corners that move as one share their force anew, after some have got more of it.
+void share_bundle_forces(World& w);
+
+Kick kick(const World& w);
+StableStep stable_step(const World& w);
+
+/// Starts the ledger at the present state.
+void begin_ledger(World& w);
+
+/// Where every joule is.
+Energies held(const World& w);
+EnergySplit energy_split(const World& w);
+/// The same, and keeps the largest energy seen, for the relative error.
+EnergySplit energies(Ledger& ledger, const Energies& all);
+EnergySplit energies(World& w);
+
+}  // namespace breccia::fdem3
