@@ -12,6 +12,7 @@
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
+#include "prepare/build_fdem3.hpp"
 #include "prepare/checks/check_case.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "prepare/model_file.hpp"
@@ -19,6 +20,7 @@
 #include "run/machine/memory_plan.hpp"
 #include "run/method/audited_method.hpp"
 #include "run/method/dem_method.hpp"
+#include "run/method/fdem3_method.hpp"
 #include "run/method/fdem_method.hpp"
 #include "run/method/shown.hpp"
 #include "run/run.hpp"
@@ -85,11 +87,22 @@ std::string model_keys(const fdem::Config& config) {
   part.joint_sets = config.joint_sets;
   return completed_case(part);
 }
+std::string model_keys(const fdem3::Config& config) {
+  fdem3::Config part;
+  part.seed = config.seed;
+  part.materials = config.materials;
+  part.joint_laws = config.joint_laws;
+  part.bodies = config.bodies;
+  part.discontinuities = config.discontinuities;
+  return completed_case(part);
+}
 
 template <class Source>
-std::variant<dem::Config, fdem::Config> read_config(const Source& source,
+AnyConfig read_config(const Source& source,
                                                     const std::vector<std::string>& overrides) {
-  if (case_method(source, overrides) == "fdem2d") return read_case<fdem::Config>(source, overrides);
+  const std::string method = case_method(source, overrides);
+  if (method == "fdem2d") return read_case<fdem::Config>(source, overrides);
+  if (method == "fdem3d") return read_case<fdem3::Config>(source, overrides);
   return read_case<dem::Config>(source, overrides);
 }
 
@@ -113,9 +126,12 @@ std::string size_text(const dem::Model& model) {
 std::string size_text(const fdem::Model& model) {
   return fmt::format("{} triangles", count_text(static_cast<double>(model.size())));
 }
+std::string size_text(const fdem3::Model& model) {
+  return fmt::format("{} tetrahedra", count_text(static_cast<double>(model.size())));
+}
 
 /// The keys that the model of a case was built from.
-std::string keys_of_model(const std::variant<dem::Config, fdem::Config>& config) {
+std::string keys_of_model(const AnyConfig& config) {
   return std::visit([](const auto& c) { return model_keys(c); }, config);
 }
 
@@ -123,9 +139,13 @@ void load_model_into(Case& read, const CheckpointReader& reader, const std::stri
   if (const auto* const config = std::get_if<dem::Config>(&read.config)) {
     const dem::Model& model = std::get<dem::Model>(read.model.emplace(load_model(reader)));
     refuse_misfits(model, *config);
-  } else {
+  } else if (const auto* const plane = std::get_if<fdem::Config>(&read.config)) {
     const fdem::Model& model = std::get<fdem::Model>(read.model.emplace(load_fdem_model(reader)));
-    refuse_misfits(model, std::get<fdem::Config>(read.config));
+    refuse_misfits(model, *plane);
+  } else {
+    const fdem3::Model& model =
+        std::get<fdem3::Model>(read.model.emplace(load_fdem3_model(reader)));
+    refuse_misfits(model, std::get<fdem3::Config>(read.config));
   }
   read.prepared = std::filesystem::absolute(path).lexically_normal().string();
 }

@@ -14,6 +14,8 @@
 #include "exec/space.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/model.hpp"
+#include "fdem3/setup/config.hpp"
+#include "fdem3/setup/model.hpp"
 #include "io/case/case_file.hpp"
 #include "io/checkpoint.hpp"
 #include "run/method/method.hpp"
@@ -22,8 +24,11 @@ namespace breccia {
 
 struct RunPlan;
 
+using AnyConfig = std::variant<dem::Config, fdem::Config, fdem3::Config>;
+using AnyModel = std::variant<dem::Model, fdem::Model, fdem3::Model>;
+
 struct Case {
-  std::variant<dem::Config, fdem::Config> config;
+  AnyConfig config;
   std::string name;
   std::string text;    ///< completed: every key with the value used
   std::string digest;  ///< of text
@@ -31,7 +36,7 @@ struct Case {
   std::string file;    ///< that it was read from; empty: a prepared model
   /// Of what decides the states of a run: the case without its end, output, checkpoints and checks.
   std::string model_digest;
-  std::optional<std::variant<dem::Model, fdem::Model>> model;  ///< if it was prepared
+  std::optional<AnyModel> model;  ///< if it was prepared
   std::string prepared;                                        ///< the file of that model
 
   const CaseConfig& common() const;

@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
-#include "core/set_up.hpp"
 #include "fdem3/setup/regions.hpp"
+#include "fdem3/setup/writable.hpp"
 
 namespace breccia::fdem3 {
 namespace {
-
-Case& set_up(World& w) {
-  return w.given.change(SetUp{});
-}
 
 LoadKind kind_of(const LoadConfig& load) {
   if (load.kind == "pressure") return LoadKind::pressure;

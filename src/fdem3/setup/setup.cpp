@@ -6,7 +6,6 @@
 #include <map>
 #include <numeric>
 
-#include "core/set_up.hpp"
 #include "core/world_space.hpp"
 #include "exec/error.hpp"
 #include "fdem3/observe.hpp"
@@ -15,13 +14,10 @@
 #include "fdem3/setup/mesh_faces.hpp"
 #include "fdem3/setup/regions.hpp"
 #include "fdem3/setup/supports.hpp"
+#include "fdem3/setup/writable.hpp"
 
 namespace breccia::fdem3 {
 namespace {
-
-Case& set_up(World& w) {
-  return w.given.change(SetUp{});
-}
 
 void corners_of(const Model& model, std::size_t t, Vec3 (&x)[4]) {
   for (std::size_t k = 0; k < 4; ++k) x[k] = model.point[at(model.tetrahedron[t][k])];

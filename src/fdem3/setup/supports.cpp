@@ -1,16 +1,12 @@
 #include "fdem3/setup/supports.hpp"
 
-#include "core/set_up.hpp"
 #include "exec/error.hpp"
 #include "fdem3/setup/loads.hpp"
 #include "fdem3/setup/regions.hpp"
+#include "fdem3/setup/writable.hpp"
 
 namespace breccia::fdem3 {
 namespace {
-
-Case& set_up(World& w) {
-  return w.given.change(SetUp{});
-}
 
 /// Held nodes start with the motion of their support: no jump of velocity at the start does work.
 void start_held(World& w, const std::vector<Hold>& holds, const std::vector<Index>& hold) {

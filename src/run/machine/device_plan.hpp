@@ -5,12 +5,14 @@
 
 #include "dem/setup/model.hpp"
 #include "fdem/setup/model.hpp"
+#include "fdem3/setup/model.hpp"
 
 namespace breccia {
 
 /// Most memory of a run's arrays while nothing touches yet, search included.  [B]
 std::size_t device_bytes(const dem::Model& model);
 std::size_t device_bytes(const fdem::Model& model);
+std::size_t device_bytes(const fdem3::Model& model);
 
 /// Says how much a run will take of the GPU in use. @throws DeviceError if it has not that much
 /// free

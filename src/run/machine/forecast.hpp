@@ -5,13 +5,14 @@
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
 
 namespace breccia {
 
 /// The cost of a run as its start lets expect it: contacts and fragments to come make it dearer.
 /// Everything but counts of packed elements is an estimate, mostly within a half.
 struct Forecast {
-  double items = 0.0;  ///< elements or triangles; 0: only the mesh program tells
+  double items = 0.0;  ///< elements, triangles or tetrahedra; 0: only the mesh program tells
   double bonds = 0.0;  ///< links or joints at the start
   const char *item_name = "elements", *bond_name = "links";
   double step = 0.0;           ///< 0: nothing rules it at the start  [s]
@@ -33,6 +34,7 @@ struct Forecast {
 /// @throws InputError if not even a specimen can be built
 Forecast forecast(const dem::Config& config, const std::string& folder);
 Forecast forecast(const fdem::Config& config, const std::string& folder);
+Forecast forecast(const fdem3::Config& config, const std::string& folder);
 
 /// "12 s", "3.5 min", "2.1 h", "4 days".
 std::string rough_duration(double seconds);

@@ -8,6 +8,7 @@
 #include "dem/relations.hpp"
 #include "exec/error.hpp"
 #include "fdem/relations.hpp"
+#include "fdem3/relations.hpp"
 
 namespace breccia {
 namespace {
@@ -89,6 +90,19 @@ class KeyOfIds {
   std::vector<GlobalId> ids_;
 };
 
+/// Places that must ascend.
+void refuse_unordered(const char* section, const Buffer<Index>& array) {
+  const auto places = on_host(array);
+  for (std::size_t i = 1; i < places.size(); ++i)
+    if (places[i] <= places[i - 1])
+      refuse(section, fmt::format("leads to {} (item {})", places[i], i));
+}
+
+void refuse_wrong_stages(const Buffer<fdem::JointStage>& stages, fdem::JointStage last) {
+  for (const fdem::JointStage stage : on_host(stages))
+    if (stage > last) refuse("joints.stage", "holds what is no stage of a joint");
+}
+
 template <class World>
 void refuse_wrong_clock(const World& w) {
   constexpr std::int64_t most_steps = std::int64_t{1} << 60;
@@ -119,6 +133,15 @@ std::vector<Repeated> repeated_by(const fdem::World& w) {
   return std::move(c.all);
 }
 
+std::vector<Repeated> repeated_by(const fdem3::World& w) {
+  Collector c;
+  c.add("tetrahedra.id", w.tetrahedra.id);
+  c.add("tetrahedra.group", w.tetrahedra.group);
+  c.add("joints.turn", w.joints.turn);
+  collect_relations(w, c);
+  return std::move(c.all);
+}
+
 void refuse_changed(const std::vector<Repeated>& built, const std::vector<Repeated>& loaded) {
   for (std::size_t i = 0; i < built.size(); ++i)
     if (built[i].bytes != loaded[i].bytes)
@@ -143,12 +166,16 @@ void refuse_wrong_places(const fdem::World& w) {
   refuse_wrong_clock(w);
   refuse_wrong_relations(w);
   refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.triangles.id));
-  const auto near = on_host(w.reach.triangle);
-  for (std::size_t i = 1; i < near.size(); ++i)
-    if (near[i] <= near[i - 1])
-      refuse("reach.triangle", fmt::format("leads to {} (item {})", near[i], i));
-  for (const fdem::JointStage stage : on_host(w.joints.stage))
-    if (stage > fdem::JointStage::cut) refuse("joints.stage", "holds what is no stage of a joint");
+  refuse_unordered("reach.triangle", w.reach.triangle);
+  refuse_wrong_stages(w.joints.stage, fdem::JointStage::cut);
+}
+
+void refuse_wrong_places(const fdem3::World& w) {
+  refuse_wrong_clock(w);
+  refuse_wrong_relations(w);
+  refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.tetrahedra.id));
+  refuse_unordered("reach.tetrahedron", w.reach.tetrahedron);
+  refuse_wrong_stages(w.joints.stage, fdem::JointStage::broken);
 }
 
 }  // namespace breccia

@@ -8,6 +8,7 @@
 
 #include "dem/world.hpp"
 #include "fdem/world.hpp"
+#include "fdem3/world.hpp"
 
 namespace breccia {
 
@@ -18,10 +19,12 @@ struct Repeated {
 };
 std::vector<Repeated> repeated_by(const dem::World& w);
 std::vector<Repeated> repeated_by(const fdem::World& w);
+std::vector<Repeated> repeated_by(const fdem3::World& w);
 
 /// Whether all that leads somewhere leads to where something is. @throws CheckpointError
 void refuse_wrong_places(const dem::World& w);
 void refuse_wrong_places(const fdem::World& w);
+void refuse_wrong_places(const fdem3::World& w);
 
 /// @throws CheckpointError naming the section that is not that of the case
 void refuse_changed(const std::vector<Repeated>& built, const std::vector<Repeated>& loaded);

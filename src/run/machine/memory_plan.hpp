@@ -6,18 +6,23 @@
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
 
 namespace breccia {
 
 /// Memory that building or running a case takes at least. Bodies from files are not counted.
 struct MemoryPlan {
-  double items = 0.0;     ///< elements or triangles
-  const char* kind = "";  ///< "elements" or "triangles"
+  double items = 0.0;     ///< elements, triangles or tetrahedra
+  const char* kind = "";  ///< that word
   double build_bytes = 0.0;
   double run_bytes = 0.0;
 };
 MemoryPlan memory_plan(const dem::Config& config);
 MemoryPlan memory_plan(const fdem::Config& config);
+MemoryPlan memory_plan(const fdem3::Config& config);
+
+/// Tetrahedra of one body; 0 where its file alone tells.
+double tetrahedra_of(const fdem3::BodyConfig& body);
 
 /// Memory that this process may still take: of the machine (MemAvailable), of its limit (`ulimit
 /// -v`), and of its control group.  [bytes]

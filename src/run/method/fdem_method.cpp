@@ -12,33 +12,11 @@
 #include "fdem/setup/removal.hpp"
 #include "fdem/setup/stages.hpp"
 #include "fdem/stepping/step.hpp"
+#include "run/method/loose_array.hpp"
 #include "run/method/sim_method.hpp"
 
 namespace breccia {
 namespace {
-
-/// An array of another length than its neighbours'.
-template <class T>
-struct Loose {
-  const char* name;
-  Buffer<T>& array;
-  template <class Visit>
-  void each_field(Visit&& field) {
-    const Index built = array.size();
-    field(name, "SI", array);
-    if (array.size() != built)
-      throw CheckpointError(std::string("the checkpoint's section ") + name +
-                            " is not as long as the case's");
-  }
-};
-
-std::size_t servo_count(const fdem::Config& config) {
-  bool any = false;
-  for (const fdem::SupportConfig& support : config.supports) any |= support.servo.is_on();
-  for (const fdem::StageConfig& stage : config.stages)
-    for (const fdem::SupportChange& support : stage.supports) any |= support.servo.is_on();
-  return any ? config.supports.size() : 0;
-}
 
 struct FdemSim {
   using World = fdem::World;
@@ -66,14 +44,9 @@ struct FdemSim {
     return w;
   }
   /// How many states of servos a run of the case keeps.
-  static std::size_t servos_of(const Config& config) { return servo_count(config); }
-  /// Servos that a stage gives another task, by name.
+  static std::size_t servos_of(const Config& config) { return servos_of_supports(config); }
   static std::vector<std::size_t> changed_servos(const Config& config, std::size_t stage) {
-    std::vector<std::size_t> changed;
-    for (std::size_t s = 0; s < config.supports.size(); ++s)
-      for (const fdem::SupportChange& change : config.stages[stage].supports)
-        if (change.name == config.supports[s].name) changed.push_back(s);
-    return changed;
+    return changed_supports(config, stage);
   }
   /// Corners that a stage sets free may need shorter steps than those it held.
   static void begun(World& part) {

@@ -12,6 +12,7 @@
 #include "io/picture/color_map.hpp"
 #include "io/picture/picture.hpp"
 #include "run/method/dem_method.hpp"
+#include "run/method/fdem3_method.hpp"
 #include "run/method/fdem_method.hpp"
 #include "run/results/summary.hpp"
 
@@ -170,6 +171,29 @@ void check_shown(const fdem::Config& config) {
     for (const Vec2& corner : {Vec2{x, 0.0}, Vec2{x + 1.0, 0.0}, Vec2{x, 1.0}})
       model.point.push_back(corner);
     model.triangle.push_back({first, first + 1, first + 2});
+    model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
+    model.groups.push_back(body.name);
+  }
+  const std::size_t count = model.groups.size();
+  model.material.resize(count);
+  model.velocity.resize(count);
+  model.strength.assign(count, 1.0F);
+  refuse_what_is_not_shown(config, *make_method(one, model, {}));
+}
+
+void check_shown(const fdem3::Config& config) {
+  fdem3::Config one;
+  one.materials.emplace_back();
+  one.domain.show = config.domain.show;
+  one.output = config.output;
+  fdem3::Model model;  // one tetrahedron a body
+  for (const fdem3::BodyConfig& body : config.bodies) {
+    const auto first = static_cast<Index>(model.point.size());
+    const double x = 10.0 * static_cast<double>(model.groups.size());
+    for (const Vec3& corner :
+         {Vec3{x, 0.0, 0.0}, Vec3{x + 1.0, 0.0, 0.0}, Vec3{x, 1.0, 0.0}, Vec3{x, 0.0, 1.0}})
+      model.point.push_back(corner);
+    model.tetrahedron.push_back({first, first + 1, first + 2, first + 3});
     model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
     model.groups.push_back(body.name);
   }

@@ -11,5 +11,6 @@ namespace breccia {
 /// @throws InputError with all problems at once
 void check_shown(const dem::Config& config);
 void check_shown(const fdem::Config& config);
+void check_shown(const fdem3::Config& config);
 
 }  // namespace breccia

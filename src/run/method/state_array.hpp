@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/fields.hpp"
+#include "math/mat3.hpp"
 #include "math/vec.hpp"
 #include "math/vec2.hpp"
 
@@ -79,6 +80,11 @@ template <class R>
 struct ItemLayout<Sym2Of<R>> {
   using Number = R;
   static std::vector<std::int64_t> shape() { return {3}; }
+};
+template <class R>
+struct ItemLayout<Sym3Of<R>> {
+  using Number = R;
+  static std::vector<std::int64_t> shape() { return {6}; }
 };
 
 /// Gathers the arrays of a world: all names, or the one array that is wanted.

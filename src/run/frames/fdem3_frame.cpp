@@ -1,0 +1,300 @@
+// A world of tetrahedra as output sees it.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/on_host.hpp"
+#include "domain/drift.hpp"
+#include "domain/parcel.hpp"
+#include "exec/tasks.hpp"
+#include "fdem3/observe.hpp"
+#include "fdem3/ranks.hpp"
+#include "run/method/fdem3_method.hpp"
+
+namespace breccia {
+namespace {
+
+using namespace fdem3;
+
+/// What a rank cannot know by itself.
+struct PlacedParts {
+  std::vector<Index> fragment;  ///< of each own tetrahedron
+  std::vector<Index> crack;     ///< place of each own crack face
+  std::int64_t cracks = 0;
+};
+
+/// The tetrahedra, and the joints that have softened or broken, of this rank: by their places in
+/// memory.
+struct OwnParts {
+  std::vector<Index> elements, cracks;
+  std::int64_t shown = 0;  ///< tetrahedra in the frame of the whole
+};
+
+/// Rank 0: fragments and places of crack faces, from what all ranks have told.
+std::vector<Message> parts_placed_on_first(const std::vector<Message>& told, const World& mesh) {
+  std::vector<std::vector<Index>> elements, cracks;
+  std::vector<std::uint8_t> broken(at(mesh.joints.size()), 0);
+  std::vector<Index> place(at(mesh.joints.size()), 0);
+  for (const Message& message : told) {
+    Unpacking from(message);
+    elements.push_back(from.array<Index>());
+    cracks.push_back(from.array<Index>());
+    for (const Index joint : cracks.back()) place[at(joint)] = 1;
+    for (const Index joint : from.array<Index>()) broken[at(joint)] = 1;
+  }
+  Index count = 0;
+  for (Index& one : place) one = std::exchange(count, count + one);
+  const std::vector<Index> fragment = fragments(mesh, broken).of;
+  std::vector<Message> answers;
+  for (std::size_t r = 0; r < told.size(); ++r) {
+    for (Index& t : elements[r]) t = fragment[at(t)];
+    for (Index& joint : cracks[r]) joint = place[at(joint)];
+    Message& answer = answers.emplace_back();
+    put_array(answer, elements[r]);
+    put_array(answer, cracks[r]);
+    put_value(answer, count);
+  }
+  return answers;
+}
+
+/// @param mesh  rank 0: the whole, whose broken joints may be out of date
+PlacedParts placed_parts(const World& w, const Tetrahedra& t, const Joints& joints,
+                         const OwnParts& own, const World* mesh) {
+  PlacedParts placed;
+  if (w.domain.single_rank()) {
+    placed.fragment = fragments(w).of;
+    for (std::size_t l = 0; l < own.cracks.size(); ++l)
+      placed.crack.push_back(static_cast<Index>(l));
+    placed.cracks = static_cast<std::int64_t>(own.cracks.size());
+    return placed;
+  }
+  std::vector<Index> ids, cracks, broken;
+  for (const Index i : own.elements) ids.push_back(t.id.data()[i]);
+  for (const Index i : own.cracks) {
+    cracks.push_back(w.mesh.joint_number.data()[i]);
+    if (joints.stage.data()[i] == JointStage::broken) broken.push_back(cracks.back());
+  }
+  Communicator& ranks = *w.domain.ranks;
+  std::vector<Message> messages(at(ranks.size()));
+  for (const std::vector<Index>* list : {&ids, &cracks, &broken}) put_array(messages[0], *list);
+  messages = ranks.exchange(std::move(messages));
+  messages = ranks.exchange(mesh != nullptr ? parts_placed_on_first(messages, *mesh)
+                                            : std::vector<Message>(at(ranks.size())));
+  Unpacking from(messages[0]);
+  placed.fragment = from.array<Index>();
+  placed.crack = from.array<Index>();
+  placed.cracks = from.value<Index>();
+  return placed;
+}
+
+void put_vector(FrameField& field, std::size_t place, const Vec3& v) {
+  field.values[3 * place] = static_cast<float>(v.x);
+  field.values[3 * place + 1] = static_cast<float>(v.y);
+  field.values[3 * place + 2] = static_cast<float>(v.z);
+}
+
+/// Fills the fields of one moment.
+class FrameOfTetrahedra {
+ public:
+  FrameOfTetrahedra(World& w, const Tetrahedra& t, const Joints& j, const OwnParts& own,
+                    const PlacedParts& placed, Frame& f)
+      : w_(w), t_(t), j_(j), own_(own), placed_(placed), f_(f), velocity_(velocities_now(w)) {}
+
+  void fill() {
+    const std::size_t points = 4 * own_.elements.size() + 3 * own_.cracks.size();
+    f_.position.resize(points);
+    f_.point_fields.reserve(4);
+    f_.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});
+    add_elements();
+    add_cracks();
+    add_more(points);
+  }
+
+ private:
+  void add_elements() {
+    const std::size_t count = own_.elements.size();
+    f_.tetrahedra.resize(4 * count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Index i = own_.elements[k];
+      for (std::size_t c = 0; c < 4; ++c) {
+        f_.tetrahedra[4 * k + c] =
+            static_cast<std::int32_t>(4 * t_.id.data()[i] + static_cast<int>(c));
+        f_.position[4 * k + c] = t_.nodes.data()[i].at[c].position;
+        put_vector(f_.point_fields[0], 4 * k + c, velocity_[at(i)].at[c]);
+      }
+    }
+    const std::vector<Sym3> stress = stresses(w_);
+    const std::vector<double> lost = damage(w_);
+    const std::vector<std::int32_t> visible = visible_faces(w_);
+    field("stress_xx", "Pa", [&](Index i) { return stress[at(i)].xx; });
+    field("stress_yy", "Pa", [&](Index i) { return stress[at(i)].yy; });
+    field("stress_zz", "Pa", [&](Index i) { return stress[at(i)].zz; });
+    field("stress_xy", "Pa", [&](Index i) { return stress[at(i)].xy; });
+    field("stress_yz", "Pa", [&](Index i) { return stress[at(i)].yz; });
+    field("stress_xz", "Pa", [&](Index i) { return stress[at(i)].xz; });
+    field("pressure", "Pa", [&](Index i) { return -trace(stress[at(i)]) / 3.0; });
+    field("damage", "-", [&](Index i) { return lost[at(i)]; });
+    number("group", [&](Index i, std::size_t) { return t_.group.data()[i]; });
+    number("material", [&](Index i, std::size_t) { return t_.material.data()[i]; });
+    number("fragment", [&](Index, std::size_t k) { return placed_.fragment[k]; });
+    number("exposed", [&](Index i, std::size_t) { return visible[at(i)]; });
+    if (!w_.domain.config.show) return;
+    const Partition partition = partition_at(w_.domain, w_.reach.drift.velocity, w_.time);
+    number("rank",
+           [&](Index i, std::size_t) { return partition.owner(centroid(t_.nodes.data()[i])); });
+  }
+  template <class Value>
+  void field(const char* name, const char* unit, const Value& value) {
+    FrameField& made = f_.tetrahedron_fields.emplace_back(FrameField{name, unit, 1, {}});
+    made.values.reserve(own_.elements.size());
+    for (const Index i : own_.elements) made.values.push_back(static_cast<float>(value(i)));
+  }
+  template <class Value>
+  void number(const char* name, const Value& value) {
+    std::vector<std::int32_t> numbers;
+    numbers.reserve(own_.elements.size());
+    for (std::size_t k = 0; k < own_.elements.size(); ++k)
+      numbers.push_back(static_cast<std::int32_t>(value(own_.elements[k], k)));
+    f_.tetrahedron_fields.push_back(whole_numbers(name, std::move(numbers)));
+  }
+
+  /// Calls visit(node of side a, node of side b) for the corners of a joint.
+  template <class Visit>
+  void each_corner(Index i, const Visit& visit) const {
+    const JointEnds e = JointEnds::of(j_.face_a.data()[i], j_.face_b.data()[i], j_.turn.data()[i]);
+    for (int k = 0; k < 3; ++k) visit(e.a[k], e.b[k]);
+  }
+  void add_cracks() {
+    FrameField mode{"mode", "-", 1, {}}, lost{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
+    std::size_t point = 4 * own_.elements.size();
+    for (std::size_t l = 0; l < own_.cracks.size(); ++l) {
+      const Index i = own_.cracks[l];
+      auto place = static_cast<std::int32_t>(4 * own_.shown + 3 * placed_.crack[l]);
+      each_corner(i, [&](Index a, Index b) {
+        f_.triangles.push_back(place++);
+        const auto& on_a = t_.nodes.data()[a / 4].at[a % 4];
+        const auto& on_b = t_.nodes.data()[b / 4].at[b % 4];
+        f_.position[point] = 0.5 * (on_a.position + on_b.position);
+        put_vector(f_.point_fields[0], point++,
+                   0.5 * (velocity_[at(a / 4)].at[a % 4] + velocity_[at(b / 4)].at[b % 4]));
+      });
+      mode.values.push_back(static_cast<float>(mode_of(j_, i)));
+      double worst = j_.stage.data()[i] == JointStage::broken ? 1.0 : 0.0;
+      for (const auto& p : j_.points.data()[i].point) worst = std::max(worst, p.damage);
+      lost.values.push_back(static_cast<float>(worst));
+      time.values.push_back(static_cast<float>(j_.broke_at.data()[i]));
+    }
+    f_.triangle_fields.push_back(std::move(mode));
+    f_.triangle_fields.push_back(std::move(lost));
+    f_.triangle_fields.push_back(std::move(time));
+  }
+
+  /// Of corners; of crack faces the mean of both sides.
+  void add_more(std::size_t points) {
+    const auto add = [&](const char* name, const char* unit, int components) -> FrameField& {
+      f_.point_fields.push_back(
+          {name, unit, components,
+           std::vector<float>(static_cast<std::size_t>(components) * points, 0.0F)});
+      return f_.point_fields.back();
+    };
+    if (w_.given->shown.displacement) add_displacement(add("displacement", "m", 3));
+    if (w_.given->shown.force) {
+      FrameField& force = add("force", "N", 3);
+      for (std::size_t k = 0; k < own_.elements.size(); ++k)
+        for (std::size_t c = 0; c < 4; ++c)
+          put_vector(force, 4 * k + c, t_.force.data()[own_.elements[k]].at[c]);
+    }
+    if (w_.given->holds.size() == 0) return;
+    const OnHost holds(w_.given->holds, w_.exec.space);
+    FrameField& held = add("held", "-", 1);
+    for (std::size_t k = 0; k < own_.elements.size(); ++k) {
+      const Index hold = t_.hold.data()[own_.elements[k]];
+      for (std::size_t c = 0; c < 4 && hold >= 0; ++c)
+        held.values[4 * k + c] = static_cast<float>(holds->data()[hold].fixed >> (3 * c) & 7);
+    }
+  }
+  void add_displacement(FrameField& field) const {
+    const OnHost starts(w_.given->starts, w_.exec.space);
+    const auto way = [&](Index node) {
+      return t_.nodes.data()[node / 4].at[node % 4].position -
+             starts->data()[4 * t_.id.data()[node / 4] + node % 4];
+    };
+    for (std::size_t k = 0; k < own_.elements.size(); ++k)
+      for (Index c = 0; c < 4; ++c)
+        put_vector(field, 4 * k + static_cast<std::size_t>(c), way(4 * own_.elements[k] + c));
+    std::size_t point = 4 * own_.elements.size();
+    for (const Index i : own_.cracks)
+      each_corner(i,
+                  [&](Index a, Index b) { put_vector(field, point++, 0.5 * (way(a) + way(b))); });
+  }
+
+  World& w_;
+  const Tetrahedra& t_;
+  const Joints& j_;
+  const OwnParts& own_;
+  const PlacedParts& placed_;
+  Frame& f_;
+  std::vector<Corners> velocity_;
+};
+
+/// Couples that press on each other, by the forces of the last step: between centroids.
+std::vector<FrameContact> pressing_couples(const World& w, const Tetrahedra& t) {
+  std::vector<FrameContact> contacts;
+  const OnHost a(w.couples.pairs.a, w.exec.space), b(w.couples.pairs.b, w.exec.space);
+  const OnHost forces(w.couples.history.force, w.exec.space);
+  for (Index i = 0; i < w.couples.size(); ++i) {
+    const Index from = a->data()[i], to = b->data()[i];
+    Vec3 force{};
+    for (const Vec3& corner : forces->data()[i].on_b.at) force += corner;
+    if (!w.domain.owns(from) || dot(force, force) == 0.0) continue;
+    contacts.push_back({t.id.data()[from], t.id.data()[to], centroid(t.nodes.data()[from]),
+                        centroid(t.nodes.data()[to]), force});
+  }
+  return contacts;
+}
+
+/// Where the items of a part stand in the whole.
+FramePlaces places_of_parts(const Tetrahedra& t, const OwnParts& own, const PlacedParts& placed) {
+  FramePlaces places;
+  for (const Index i : own.elements) places.tetrahedron.push_back(t.id.data()[i]);
+  places.triangle.assign(placed.crack.begin(), placed.crack.end());
+  for (const std::int32_t id : places.tetrahedron)
+    for (std::int32_t c = 0; c < 4; ++c) places.point.push_back(4 * id + c);
+  const auto behind = static_cast<std::int32_t>(4 * own.shown);
+  for (const std::int32_t crack : places.triangle)
+    for (std::int32_t c = 0; c < 3; ++c) places.point.push_back(behind + 3 * crack + c);
+  return places;
+}
+
+}  // namespace
+
+FramePart fdem3_frame(World& w, const World* mesh) {
+  const OnHost<Tetrahedra> elements(w.tetrahedra, w.exec.space);
+  const OnHost<Joints> joints(w.joints, w.exec.space);
+  OwnParts own;
+  for (std::size_t g = 0; g < w.given->groups.size(); ++g)
+    own.shown += static_cast<std::int64_t>(w.given->sets[g].nodes.size() / 4);
+  for (Index t = 0; t < elements->size(); ++t)
+    if (w.domain.owns(t)) own.elements.push_back(t);
+  for (Index i = 0; i < joints->size(); ++i)
+    if (is_damaged(joints->stage.data()[i]) && w.domain.owns(joints->face_a.data()[i] / 4))
+      own.cracks.push_back(i);
+  const PlacedParts known = placed_parts(w, *elements, *joints, own, mesh);
+
+  FramePart part;
+  Frame& f = part.frame;
+  f.step = w.step;
+  f.time = w.time;
+  f.groups = w.given->groups;
+  FrameOfTetrahedra(w, *elements, *joints, own, known, f).fill();
+  part.contacts = pressing_couples(w, *elements);
+  if (!w.domain.single_rank()) part.places = places_of_parts(*elements, own, known);
+  part.places.whole = w.domain.single_rank();
+  part.places.tetrahedra = own.shown;
+  part.places.triangles = known.cracks;
+  part.places.points = 4 * own.shown + 3 * known.cracks;
+  return part;
+}
+
+}  // namespace breccia
