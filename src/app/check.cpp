@@ -181,8 +181,11 @@ struct CheckCommand {
 
   template <class Source>
   void read_keys(const Source& source) const {
-    if (case_method(source, overrides) == "fdem2d")
+    const std::string method = case_method(source, overrides);
+    if (method == "fdem2d")
       read_case<fdem::Config>(source, overrides);
+    else if (method == "fdem3d")
+      read_case<fdem3::Config>(source, overrides);
     else
       read_case<dem::Config>(source, overrides);
   }

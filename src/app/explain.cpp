@@ -16,6 +16,7 @@
 #include "exec/error.hpp"
 #include "fdem/laws/joint_bond.hpp"
 #include "fdem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
 #include "io/case/key_pages.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
@@ -214,12 +215,17 @@ struct ExplainCommand {
   void execute() const {
     const std::pair<const char*, std::vector<KeyInfo>> methods[] = {
         {"dem3d", named(list_keys<dem::Config>(""), key)},
-        {"fdem2d", named(list_keys<fdem::Config>(""), key)}};
+        {"fdem2d", named(list_keys<fdem::Config>(""), key)},
+        {"fdem3d", named(list_keys<fdem3::Config>(""), key)}};
     constexpr std::size_t most = 8;
-    const std::size_t total = methods[0].second.size() + methods[1].second.size();
+    std::size_t total = 0, largest = 0;
+    for (const auto& [method, keys] : methods) {
+      total += keys.size();
+      largest = std::max(largest, keys.size());
+    }
     if (total == 0)
       throw InputError(key + " is not a key; breccia keys " + key + " searches for words");
-    if (total > 2 * most)
+    if (largest > most)
       throw InputError(
           fmt::format("{} may be {} keys; name one, as in material.{}", key, total, key));
     const Law* drawn = nullptr;

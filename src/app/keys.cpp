@@ -11,6 +11,7 @@
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
 #include "io/case/key_pages.hpp"
 #include "io/case/suggestion.hpp"
 
@@ -23,28 +24,33 @@ struct KeysCommand {
   bool json = false, markdown = false, schema = false;
 
   void execute() const {
-    std::vector<KeyInfo> dem, fdem;
-    if (method != "fdem2d") dem = list_keys<dem::Config>("");
-    if (method != "dem3d") fdem = list_keys<fdem::Config>("");
+    std::vector<MethodKeys> methods{{"dem3d", list_keys<dem::Config>("")},
+                                    {"fdem2d", list_keys<fdem::Config>("")},
+                                    {"fdem3d", list_keys<fdem3::Config>("")}};
     if (schema) {
-      fmt::print("{}", key_schema(list_keys<dem::Config>(""), list_keys<fdem::Config>("")));
+      fmt::print("{}", key_schema(methods));
       return;
     }
+    std::erase_if(methods,
+                  [&](const MethodKeys& m) { return !method.empty() && m.method != method; });
     const std::string wanted = fmt::format("{}", fmt::join(words, " "));
-    KeyList found = key_list(keys_about(dem, wanted), keys_about(fdem, wanted));
-    if (found.empty() && words.size() > 1)
-      found = key_list(keys_about_each(dem, wanted), keys_about_each(fdem, wanted));
-    if (found.empty()) refuse(wanted, dem, fdem);
+    const auto chosen = [&](const auto& about) {
+      std::vector<MethodKeys> some;
+      for (const MethodKeys& m : methods) some.push_back({m.method, about(m.keys, wanted)});
+      return key_list(some);
+    };
+    KeyList found = chosen(keys_about);
+    if (found.empty() && words.size() > 1) found = chosen(keys_about_each);
+    if (found.empty()) refuse(wanted, methods);
     fmt::print("{}", json       ? keys_as_json(found)
                      : markdown ? keys_as_markdown(found)
                                 : keys_for_terminal(found));
   }
 
-  static void refuse(const std::string& wanted, const std::vector<KeyInfo>& dem,
-                     const std::vector<KeyInfo>& fdem) {
+  static void refuse(const std::string& wanted, const std::vector<MethodKeys>& methods) {
     std::set<std::string> names;
-    for (const auto* keys : {&dem, &fdem})
-      for (const KeyInfo& key : *keys)
+    for (const MethodKeys& m : methods)
+      for (const KeyInfo& key : m.keys)
         for (std::size_t at = 0; at < key.path.size();) {
           const std::size_t end = std::min(key.path.find_first_of(".[", at), key.path.size());
           if (end > at && key.path[at] != ']' && key.path[at] != '<')
@@ -67,7 +73,7 @@ void add_keys(CLI::App& program) {
       "only keys that begin with this, or have these words in name or meaning: all of "
       "them or, if none has, any");
   command->add_option("--method", keys->method, "only keys of this method")
-      ->check(CLI::IsMember({"dem3d", "fdem2d"}));
+      ->check(CLI::IsMember({"dem3d", "fdem2d", "fdem3d"}));
   CLI::Option* const json = command->add_flag("--json", keys->json, "as JSON");
   CLI::Option* const markdown =
       command->add_flag("--markdown", keys->markdown, "as a page of Markdown")->excludes(json);

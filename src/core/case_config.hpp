@@ -181,9 +181,9 @@ struct CaseConfig {
   template <class Visit>
   void each_key(Visit&& key) {
     key("breccia", breccia, "-", Range{1, 1}, "version of the case-file format");
-    key("method", method, OneOf{"dem3d", "fdem2d"},
+    key("method", method, OneOf{"dem3d", "fdem2d", "fdem3d"},
         "which method runs the case: spheres in space (Durand et al. 2012), triangles in the plane "
-        "(Lukas et al. 2014)");
+        "(Lukas et al. 2014), tetrahedra in space");
     key("precision", precision, OneOf{"double", "mixed"},
         "what numbers are stored in; mixed keeps positions and sums in double, and what links keep "
         "and do and forces of joints and couples in single precision: fewer bytes, for GPUs");

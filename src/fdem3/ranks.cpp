@@ -317,7 +317,8 @@ void note_mesh(World& whole) {
   mesh.preset = whole.joints.preset.size() > 0;
 }
 
-/// Gives up a world's state and keeps what follows from the case.
+}  // namespace
+
 void drop_state(World& w) {
   resize_fields(w.tetrahedra, 0);
   resize_fields(w.joints, 0);
@@ -331,8 +332,6 @@ void drop_state(World& w) {
   w.across.clear();
   w.vertex.clear();
 }
-
-}  // namespace
 
 void start_ghosts(World& w) {
   if (w.domain.single_rank()) return;

@@ -25,6 +25,9 @@ void refresh_ghosts(World& w);
 /// After a search: selects the ghosts that are active until the next one.
 void select_active_ghosts(World& w);
 
+/// Gives up a world's state and keeps what follows from the case.
+void drop_state(World& w);
+
 /// Brings the state of all ranks together in `whole` on rank 0.
 void collect(World& part, World& whole);
 

@@ -98,8 +98,7 @@ std::string model_keys(const fdem3::Config& config) {
 }
 
 template <class Source>
-AnyConfig read_config(const Source& source,
-                                                    const std::vector<std::string>& overrides) {
+AnyConfig read_config(const Source& source, const std::vector<std::string>& overrides) {
   const std::string method = case_method(source, overrides);
   if (method == "fdem2d") return read_case<fdem::Config>(source, overrides);
   if (method == "fdem3d") return read_case<fdem3::Config>(source, overrides);

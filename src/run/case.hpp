@@ -37,7 +37,7 @@ struct Case {
   /// Of what decides the states of a run: the case without its end, output, checkpoints and checks.
   std::string model_digest;
   std::optional<AnyModel> model;  ///< if it was prepared
-  std::string prepared;                                        ///< the file of that model
+  std::string prepared;           ///< the file of that model
 
   const CaseConfig& common() const;
 };

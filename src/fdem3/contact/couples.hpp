@@ -146,9 +146,12 @@ struct CoupleForces {
     if (!boxes_apart(xa, xb, 0.0)) {
       const int open_a = exposed_faces(faces[a[i]], stage),
                 open_b = exposed_faces(faces[b[i]], stage);
-      const Target of_a = Target::of(xa), of_b = Target::of(xb);
+      Target of_a = Target::of(xa), of_b = Target::of(xb);
       const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
-      if (of_a.six_volumes > 0.0 && of_b.six_volumes > 0.0) {
+      if (of_a.six_volumes > 0.0 && of_b.six_volumes > 0.0 && !of_a.parts_from(xb) &&
+          !of_b.parts_from(xa)) {
+        of_a.measure_heights();
+        of_b.measure_heights();
         if (is_new && parent_joint[i] >= 0)
           inherit(parent_joint[i], law, kept, xa, open_a, of_a, xb, open_b, of_b);
         press(law.penalty * kept.scale, xa, open_a, of_a, xb, open_b, of_b, sum);

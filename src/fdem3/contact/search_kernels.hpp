@@ -81,6 +81,8 @@ struct MayTouch {
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
     if (!owned(p) && !owned(q)) return false;
+    // Exposed faces alone press; a joint that breaks exposes its faces and calls for a search.
+    if ((exposed_faces(faces[p], stage) | exposed_faces(faces[q], stage)) == 0) return false;
     int shared = 0, open = 0, apart = 0;  // apart: the corner of p that q lacks
     for (int k = 0; k < 4; ++k) {
       const Index vertex = vertices.vertex_of[4 * p + k];

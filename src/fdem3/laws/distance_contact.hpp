@@ -25,8 +25,21 @@ struct Target {
     t.slope[2] = scale * c.b;
     t.slope[3] = scale * c.c;
     t.slope[0] = -(t.slope[1] + t.slope[2] + t.slope[3]);
-    for (int k = 0; k < 4; ++k) t.height[k] = 1.0 / norm(t.slope[k]);
     return t;
+  }
+  /// For overlaps; whether two can touch is known without them.
+  BR_HD void measure_heights() {
+    for (int k = 0; k < 4; ++k) height[k] = 1.0 / norm(slope[k]);
+  }
+  /// Whether a face of this one has all of another one on its outer side.
+  BR_HD bool parts_from(const Vec3 (&other)[4]) const {
+    bool beyond[4] = {true, true, true, true};
+    for (const Vec3& corner : other) {
+      double lambda[4];
+      coordinates(corner, lambda);
+      for (int k = 0; k < 4; ++k) beyond[k] = beyond[k] && lambda[k] <= 0.0;
+    }
+    return beyond[0] || beyond[1] || beyond[2] || beyond[3];
   }
   /// Coordinates of a point: its share of each corner.
   BR_HD void coordinates(const Vec3& p, double (&lambda)[4]) const {

@@ -148,6 +148,14 @@ nlohmann::ordered_json as_json(const KeyInfo& key, const std::vector<std::string
   return json;
 }
 
+/// "method = "fdem2d" or "fdem3d"".
+std::string title_of(const std::vector<std::string>& methods) {
+  std::string title;
+  for (const std::string& method : methods)
+    title += (title.empty() ? "method = \"" : " or \"") + method + '"';
+  return title;
+}
+
 }  // namespace
 
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
@@ -167,14 +175,39 @@ bool begins_with(const KeyInfo& key, const std::string& prefix) {
   return key.path.starts_with(prefix) || plain_path(key).starts_with(prefix);
 }
 
-KeyList key_list(std::vector<KeyInfo> dem, const std::vector<KeyInfo>& fdem) {
+std::size_t KeyList::size() const {
+  std::size_t count = 0;
+  for (const Section& section : sections) count += section.keys.size();
+  return count;
+}
+
+KeyList key_list(const std::vector<MethodKeys>& methods) {
   KeyList list;
-  const auto in = [](const std::vector<KeyInfo>& keys, const KeyInfo& key) {
-    return std::any_of(keys.begin(), keys.end(), [&](const KeyInfo& k) { return alike(k, key); });
+  const auto has = [](const MethodKeys& m, const KeyInfo& key) {
+    return std::any_of(m.keys.begin(), m.keys.end(),
+                       [&](const KeyInfo& k) { return alike(k, key); });
   };
-  for (KeyInfo& key : dem) (in(fdem, key) ? list.both : list.dem).push_back(key);
-  for (const KeyInfo& key : fdem)
-    if (!in(list.both, key)) list.fdem.push_back(key);
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    for (const KeyInfo& key : methods[m].keys) {
+      std::vector<std::string> of;
+      bool listed = false;
+      for (std::size_t other = 0; other < methods.size(); ++other) {
+        if (!has(methods[other], key)) continue;
+        listed = listed || other < m;
+        of.push_back(methods[other].method);
+      }
+      if (listed) continue;
+      const auto found =
+          std::find_if(list.sections.begin(), list.sections.end(),
+                       [&](const KeyList::Section& section) { return section.methods == of; });
+      if (found == list.sections.end())
+        list.sections.push_back({of, {key}});
+      else
+        found->keys.push_back(key);
+    }
+  std::stable_sort(list.sections.begin(), list.sections.end(), [](const auto& a, const auto& b) {
+    return a.methods.size() > b.methods.size();
+  });
   return list;
 }
 
@@ -221,10 +254,8 @@ std::string example_line(const KeyInfo& key) {
 
 std::string keys_for_terminal(const KeyList& keys) {
   std::string text;
-  for (const auto& [title, own] :
-       {std::pair{"both methods", &keys.both}, std::pair{"method = \"dem3d\"", &keys.dem},
-        std::pair{"method = \"fdem2d\"", &keys.fdem}})
-    if (const std::string part = section(title, *own); !part.empty())
+  for (const KeyList::Section& each : keys.sections)
+    if (const std::string part = section(title_of(each.methods), each.keys); !part.empty())
       text += (text.empty() ? "" : "\n") + part;
   return text;
 }
@@ -236,13 +267,10 @@ std::string keys_as_markdown(const KeyList& keys) {
       words.replace(at, 1, "\\|");
     return words;
   };
-  for (const auto& [title, own] :
-       {std::pair{"Both methods", &keys.both}, std::pair{"dem3d", &keys.dem},
-        std::pair{"fdem2d", &keys.fdem}}) {
-    if (own->empty()) continue;
-    text += fmt::format("\n## {}\n", title);
-    each_table(*own, [&](const std::string& heading, const std::string& meaning,
-                         const std::vector<KeyInfo>& rows) {
+  for (const KeyList::Section& each : keys.sections) {
+    text += fmt::format("\n## {}\n", fmt::join(each.methods, ", "));
+    each_table(each.keys, [&](const std::string& heading, const std::string& meaning,
+                              const std::vector<KeyInfo>& rows) {
       text += heading.empty() ? "\n### At the top of the file\n"
                               : fmt::format("\n### `{}`: {}\n", heading, meaning);
       text += "\n| key | type | allowed | meaning |\n|---|---|---|---|\n";
@@ -257,9 +285,8 @@ std::string keys_as_markdown(const KeyList& keys) {
 
 std::string keys_as_json(const KeyList& keys) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const KeyInfo& key : keys.both) all.push_back(as_json(key, {"dem3d", "fdem2d"}));
-  for (const KeyInfo& key : keys.dem) all.push_back(as_json(key, {"dem3d"}));
-  for (const KeyInfo& key : keys.fdem) all.push_back(as_json(key, {"fdem2d"}));
+  for (const KeyList::Section& section : keys.sections)
+    for (const KeyInfo& key : section.keys) all.push_back(as_json(key, section.methods));
   return all.dump(1) + "\n";
 }
 

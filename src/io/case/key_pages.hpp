@@ -9,12 +9,23 @@
 
 namespace breccia {
 
-/// Keys of both methods, those alike listed once.
-struct KeyList {
-  std::vector<KeyInfo> both, dem, fdem;
-  bool empty() const { return both.empty() && dem.empty() && fdem.empty(); }
+/// The keys of a method, by its word.
+struct MethodKeys {
+  std::string method;
+  std::vector<KeyInfo> keys;
 };
-KeyList key_list(std::vector<KeyInfo> dem, const std::vector<KeyInfo>& fdem);
+/// Keys of several methods, those alike listed once: first those of all methods, then those of
+/// fewer and fewer.
+struct KeyList {
+  struct Section {
+    std::vector<std::string> methods;
+    std::vector<KeyInfo> keys;
+  };
+  std::vector<Section> sections;  ///< none is empty
+  bool empty() const { return sections.empty(); }
+  std::size_t size() const;
+};
+KeyList key_list(const std::vector<MethodKeys>& methods);
 
 /// The keys whose path begins with `words`, or else those in whose path, meaning or allowed words
 /// each word stands, whatever its capitals.
@@ -33,8 +44,8 @@ std::string keys_for_terminal(const KeyList& keys);
 std::string keys_as_markdown(const KeyList& keys);
 /// One object a key: path, methods, table, type, unit, default, allowed, meaning, example.
 std::string keys_as_json(const KeyList& keys);
-/// JSON Schema (draft 7) of the case files of both methods.
-std::string key_schema(const std::vector<KeyInfo>& dem, const std::vector<KeyInfo>& fdem);
+/// JSON Schema (draft 7) of the case files of methods; the first is that of cases that name none.
+std::string key_schema(const std::vector<MethodKeys>& methods);
 
 /// The words of a text in lines of at most `width` letters, unless a word alone is longer.
 std::vector<std::string> wrapped(const std::string& text, std::size_t width);

@@ -112,11 +112,13 @@ Json schema_of(const std::vector<KeyInfo>& keys, const std::string& method, bool
 
 }  // namespace
 
-std::string key_schema(const std::vector<KeyInfo>& dem, const std::vector<KeyInfo>& fdem) {
-  const Json schema{
-      {"$schema", "http://json-schema.org/draft-07/schema#"},
-      {"title", "A case of Breccia"},
-      {"oneOf", Json::array({schema_of(dem, "dem3d", true), schema_of(fdem, "fdem2d", false)})}};
+std::string key_schema(const std::vector<MethodKeys>& methods) {
+  Json options = Json::array();
+  for (const MethodKeys& m : methods)
+    options.push_back(schema_of(m.keys, m.method, options.empty()));
+  const Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
+                    {"title", "A case of Breccia"},
+                    {"oneOf", options}};
   return schema.dump(1) + "\n";
 }
 

@@ -140,7 +140,9 @@ const NamedMaterial* named_material(const std::string& name) {
 void use_named_materials(toml::table& root, std::vector<Problem>& problems) {
   toml::table* const materials = root["material"].as_table();
   if (materials == nullptr) return;
-  const std::string method = root["method"].value_or(std::string("dem3d"));
+  const std::string of_case = root["method"].value_or(std::string("dem3d"));
+  // Rock has the same numbers for triangles and for tetrahedra.
+  const std::string method = of_case == "fdem3d" ? "fdem2d" : of_case;
   for (auto&& [key, node] : *materials) {
     toml::table* const own = node.as_table();
     if (own == nullptr) continue;
@@ -159,7 +161,7 @@ void use_named_materials(toml::table& root, std::vector<Problem>& problems) {
       text += " is no material of the program" + suggestion(*name, names) +
               "\n    'breccia materials' lists them";
     } else {
-      text += " has no numbers for method " + method;
+      text += " has no numbers for method " + of_case;
     }
     const bool from_file = use->source().path != nullptr;
     problems.push_back(

@@ -14,7 +14,7 @@
 
 #include "exec/error.hpp"
 #include "io/round_numbers.hpp"
-
+#include "math/constants.hpp"
 namespace breccia {
 namespace {
 
@@ -76,7 +76,6 @@ double left_of_limit(const std::string& root) {
 double triangles_of(const fdem::BodyConfig& body) {
   if (body.shape == "hexagons") return 6.0 * body.hexagons.count;
   const bool rectangle = body.shape == "plate" || body.shape == "beam";
-  constexpr double pi = 3.14159265358979323846;
   const double area =
       rectangle ? body.size.x * body.size.y
                 : pi * (body.radius * body.radius - body.inner_radius * body.inner_radius);
@@ -88,7 +87,6 @@ double triangles_of(const fdem::BodyConfig& body) {
 }  // namespace
 
 double tetrahedra_of(const fdem3::BodyConfig& body) {
-  constexpr double pi = 3.14159265358979323846;
   double volume = 0.0;
   if (body.shape == "box") volume = body.size.x * body.size.y * body.size.z;
   if (body.shape == "cylinder") volume = pi * body.radius * body.radius * body.height;

@@ -89,7 +89,7 @@ struct FdemSim {
     add("fracture.broken_by_mode.opening",
         static_cast<double>(cracks.size()) - static_cast<double>(sliding));
     add("fracture.broken_by_mode.sliding", static_cast<double>(sliding));
-    const fdem::EnergySplit split = fdem::energy_split(w);
+    const EnergySplit split = fdem::energy_split(w);
     add("fracture.energy_by_mode.opening", split.fracture_open);
     add("fracture.energy_by_mode.sliding", split.fracture_slide);
     const fdem::Fragments pieces = fdem::fragments(w);

@@ -3,6 +3,7 @@
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
 
 namespace breccia {
 

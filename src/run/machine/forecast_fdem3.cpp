@@ -1,0 +1,83 @@
+#include <memory>
+
+#include "io/round_numbers.hpp"
+#include "prepare/build_fdem3.hpp"
+#include "prepare/checks/by_name.hpp"
+#include "run/machine/forecast_parts.hpp"
+#include "run/machine/memory_plan.hpp"
+#include "run/method/fdem3_method.hpp"
+
+namespace breccia {
+namespace {
+
+/// A box of regular tetrahedra of the body's size, above those that are there.
+fdem3::BodyConfig box_of(const fdem3::BodyConfig& body, double& top) {
+  constexpr double cubes = 4.0;  // along each side
+  fdem3::BodyConfig box;
+  box.name = body.name;
+  box.material = body.material;
+  box.grains = body.grains;
+  box.weibull = body.weibull;
+  box.structured = true;
+  box.mesh_size = body.mesh_size;
+  const double side = cubes * body.mesh_size;
+  box.size = {side, side, side};
+  box.center = {0.0, 0.0, top + 0.5 * side};
+  top += side * (1.0 + 1e-3);
+  return box;
+}
+
+}  // namespace
+
+Forecast forecast(const fdem3::Config& config, const std::string& folder) {
+  Forecast f;
+  f.item_name = "tetrahedra";
+  f.bond_name = "joints";
+  fdem3::Config specimen = config;
+  specimen.bodies.clear();
+  specimen.discontinuities.clear();
+  specimen.supports.clear();
+  specimen.loads.clear();
+  specimen.probes.clear();
+  specimen.checks.clear();
+  specimen.stages.clear();
+  double top = 0.0, finest = 0.0;
+  bool by_gmsh = false;
+  constexpr double begun_mesh = 0.3, meshing_of_one = 25e-6;  // measured  [s]
+  std::string of;
+  for (const fdem3::BodyConfig& body : config.bodies) {
+    const double count = tetrahedra_of(body);
+    if (count < 1.0) {  // its file alone tells
+      f.items = 0.0;
+      return f;
+    }
+    specimen.bodies.push_back(box_of(body, top));
+    f.items += count;
+    const fdem::MaterialConfig* const m = prepare::item_named(config.materials, body.material);
+    if (m == nullptr || m->joints == "intrinsic") f.bonds += 1.9 * count;
+    by_gmsh = by_gmsh || !body.structured;
+    if (finest == 0.0 || body.mesh_size < finest) {
+      finest = body.mesh_size;
+      of = body.name + ", edges of " + length_text(body.mesh_size);
+    }
+  }
+  const fdem3::Model model = build_model(specimen, folder);
+  const std::unique_ptr<Method> method = make_method(specimen, model, Exec{});
+  // The flattest tetrahedron of a free mesh rules its step.
+  constexpr double least_of_free_mesh = 0.5;
+  const std::string rule = method->step_rule();
+  take_step(f, (by_gmsh ? least_of_free_mesh : 1.0) * method->time_step(),
+            (rule.empty() ? "tetrahedra" : rule) + " (finest mesh: " + of + ")");
+  finish(f, config.time);
+  const double contacts = config.bodies.size() > 1 ? 1.5 : 1.0;
+  f.here_s =
+      contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
+  f.may_end_early = may_end_early(config.stages);
+  f.memory = (by_gmsh ? own_with_gmsh : own_fdem) + memory_plan(config).run_bytes;
+  if (by_gmsh) f.setup_s = begun_mesh + meshing_of_one * f.items;
+  add_output(f, config, {200e-9, 1.0e-6, 100e-9});
+  add_disk(f, config, 14 + config.probes.size(), {90.0, 20.0, 1200.0, 0.1});
+  return f;
+}
+
+}  // namespace breccia

@@ -1,0 +1,149 @@
+// Contact of tetrahedra by the distance to the nearest face: reference values, balance, energy.
+
+#include "fdem3/laws/distance_contact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.hpp"
+#include "fdem3/elements/tetrahedra.hpp"
+
+namespace breccia::fdem3 {
+namespace distance_contact_test {
+
+struct Body {
+  Vec3 x[4];
+};
+struct Pair {
+  Vec3 on_a[4] = {}, on_b[4] = {};
+  int hits = 0;
+};
+
+/// Forces of all faces of both, with a penalty of 1.
+Pair forces_of(const Body& a, const Body& b) {
+  Pair sum;
+  const auto add = [&](const Body& own, const Body& other, Vec3(&on_own)[4], Vec3(&on_other)[4]) {
+    Target target = Target::of(other.x);
+    target.measure_heights();
+    for (int f = 0; f < 4; ++f) {
+      Vec3 face[3], on_face[3], on_target[4];
+      for (int k = 0; k < 3; ++k) face[k] = own.x[corner_of_face(f, k)];
+      FaceOverlap o;
+      if (!overlap_of_face(face, target, o)) continue;
+      ++sum.hits;
+      push(o, face, 1.0, on_face, on_target);
+      for (int k = 0; k < 3; ++k) on_own[corner_of_face(f, k)] += on_face[k];
+      for (int k = 0; k < 4; ++k) on_other[k] += on_target[k];
+    }
+  };
+  add(a, b, sum.on_a, sum.on_b);
+  add(b, a, sum.on_b, sum.on_a);
+  return sum;
+}
+
+const Body a{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {.2, .9, 0.0}, {.3, .25, .8}}};
+const Body b{{{.35, .3, .5}, {1.25, .4, .55}, {.5, 1.2, .6}, {.6, .5, 1.4}}};
+
+void expect_near(const Vec3& value, const Vec3& expected) {
+  const double tolerance = 1e-17;
+  EXPECT_NEAR(value.x, expected.x, tolerance);
+  EXPECT_NEAR(value.y, expected.y, tolerance);
+  EXPECT_NEAR(value.z, expected.z, tolerance);
+}
+
+TEST(DistanceContact, gives_the_reference_forces) {
+  const Pair p = forces_of(a, b);
+  EXPECT_EQ(p.hits, 4);
+  expect_near(p.on_a[0], {-2.037028496385e-6, -1.810691996787e-6, -1.216558685341e-6});
+  expect_near(p.on_a[1], {-8.973241324985e-6, -9.107897009089e-6, -6.278511154262e-6});
+  expect_near(p.on_a[2], {-1.238740345475e-5, -9.879342795118e-6, -7.751683399431e-6});
+  expect_near(p.on_a[3], {-4.467805393800e-5, -3.971382572266e-5, -2.540958384717e-5});
+  expect_near(p.on_b[0], {6.431050740170e-5, 5.717227333307e-5, 3.846945376114e-5});
+  expect_near(p.on_b[1], {3.925203375445e-7, 1.547400130099e-6, 1.218342127737e-6});
+  expect_near(p.on_b[2], {1.688095001156e-6, 2.188298058092e-7, 1.166382061685e-6});
+  expect_near(p.on_b[3], {1.684604473719e-6, 1.573254254685e-6, -1.978408643552e-7});
+}
+
+/// Of the corner element (0, e1, e2, e3) and a face given by its corners.
+FaceOverlap in_corner(const Vec3& p, const Vec3& q, const Vec3& r, bool& touches) {
+  const Vec3 x[4] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  const Vec3 face[3] = {p, q, r};
+  FaceOverlap o{};
+  Target target = Target::of(x);
+  target.measure_heights();
+  touches = overlap_of_face(face, target, o);
+  return o;
+}
+
+TEST(DistanceContact, integrates_faces_exactly) {
+  const struct {
+    Vec3 p, q, r;
+    double moment[3], area;
+  } cases[] = {
+      {{0, 0, .1}, {1, 0, .1}, {0, 1, .1}, {.010937681794, .007544728389, .007544728389}, .405},
+      // In the plane between two regions: counted once.
+      {{.25, .25, .25}, {1, 0, 0}, {0, 1, 0}, {.012028130608, .006014065304, .006014065304}, .5},
+      {{0, 0, 0}, {1, 1, 1}, {1, 1, 0}, {.004337063947, .000799304309, .000733766894}, 1.0 / 12.0},
+      {{-1, -1, .2}, {3, -1, .2}, {-1, 3, .2}, {.000533165156, .000447733819, .000447733819}, .02}};
+  for (const auto& c : cases) {
+    bool touches = false;
+    const FaceOverlap o = in_corner(c.p, c.q, c.r, touches);
+    ASSERT_TRUE(touches);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(o.moment[k], c.moment[k], 1e-12);
+    EXPECT_NEAR(o.area, c.area, 1e-12);
+  }
+  bool touches = true;
+  in_corner({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, touches);  // a face on a face
+  EXPECT_FALSE(touches);
+}
+
+TEST(DistanceContact, presses_two_faces_with_twice_the_penalty_times_depth) {
+  // Regular elements, apexes apart, in depth 1e-3 of the edge.
+  const double depth = 1e-3, height = std::sqrt(2.0 / 3.0), third = std::sqrt(3.0) / 6.0;
+  const Body low{{{0, 0, 0}, {0.5, std::sqrt(0.75), 0}, {1, 0, 0}, {0.5, third, -height}}};
+  const Body high{{{0, 0, -depth},
+                   {1, 0, -depth},
+                   {0.5, std::sqrt(0.75), -depth},
+                   {0.5, third, height - depth}}};
+  ASSERT_GT(Target::of(low.x).six_volumes, 0.0);
+  ASSERT_GT(Target::of(high.x).six_volumes, 0.0);
+  Vec3 force{};
+  for (const Vec3& f : forces_of(low, high).on_b) force += f;
+  const double area = std::sqrt(3.0) / 4.0;
+  EXPECT_NEAR(force.z / (area * depth), 1.987529, 2e-6);
+}
+
+TEST(DistanceContact, balances_forces_and_moments_of_random_pairs) {
+  const Random random{7, 3};
+  int touching = 0;
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    Body p, q;
+    std::uint32_t draw = 0;
+    const auto point = [&](double from) {
+      const auto next = [&] { return from + random.uniform(i, draw++); };
+      const double x = next(), y = next(), z = next();
+      return Vec3{x, y, z};
+    };
+    for (int k = 0; k < 4; ++k) p.x[k] = point(0.0);
+    for (int k = 0; k < 4; ++k) q.x[k] = point(0.25);
+    for (Body* body : {&p, &q})
+      if (Target::of(body->x).six_volumes < 0.0) std::swap(body->x[0], body->x[1]);
+    const Pair f = forces_of(p, q);
+    if (f.hits == 0) continue;
+    ++touching;
+    Vec3 sum{}, moment{};
+    double largest = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      sum += f.on_a[k] + f.on_b[k];
+      moment += cross(p.x[k], f.on_a[k]) + cross(q.x[k], f.on_b[k]);
+      largest = std::max({largest, norm(f.on_a[k]), norm(f.on_b[k])});
+    }
+    EXPECT_LE(norm(sum), 1e-13 * largest);
+    EXPECT_LE(norm(moment), 1e-12 * largest);
+  }
+  EXPECT_GT(touching, 100);
+}
+
+}  // namespace distance_contact_test
+}  // namespace breccia::fdem3
