@@ -35,7 +35,7 @@ class RingsOf {
       begin = end;
     }
   }
-  /// Those around one vertex, behind what is listed.
+  /// Appends the elements around one vertex.
   void add_elements(Index vertex, std::vector<Index>& elements) const {
     const auto key = static_cast<std::uint64_t>(vertex);
     const auto all = corners_.host();

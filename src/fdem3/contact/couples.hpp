@@ -59,7 +59,7 @@ BR_HD inline bool boxes_apart(const Vec3 (&p)[4], const Vec3 (&q)[4], double by)
          low(q[0].z, q[1].z, q[2].z, q[3].z) - high(p[0].z, p[1].z, p[2].z, p[3].z) > by;
 }
 
-/// Bits of the faces of a tetrahedron that nothing joins: those alone press.
+/// Bits of the faces of a tetrahedron that nothing joins.
 BR_HD inline int exposed_faces(const FaceJoints& faces, const View<const JointStage>& stage) {
   int exposed = 0;
   for (int k = 0; k < 4; ++k) {
@@ -124,8 +124,7 @@ struct CoupleForces {
   View<const Index> material;
   View<const ContactPair> laws;  ///< of materials a and b at a * materials + b
   Index materials;
-  View<const FaceJoints> faces;
-  View<const JointStage> stage;
+  View<const std::uint8_t> exposed;
   View<const Index> a, b;
   View<const Index> parent_joint;  ///< the joint between them where it broke in the step before, or
                                    ///< -1
@@ -144,8 +143,7 @@ struct CoupleForces {
     Pressing sum;
     const bool resting = kept.work == 0.0 && kept.slid == 0.0;
     if (!boxes_apart(xa, xb, 0.0)) {
-      const int open_a = exposed_faces(faces[a[i]], stage),
-                open_b = exposed_faces(faces[b[i]], stage);
+      const int open_a = exposed[a[i]], open_b = exposed[b[i]];
       Target of_a = Target::of(xa), of_b = Target::of(xb);
       const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
       if (of_a.six_volumes > 0.0 && of_b.six_volumes > 0.0 && !of_a.parts_from(xb) &&

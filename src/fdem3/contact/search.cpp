@@ -39,6 +39,15 @@ void mark_opened(World& w) {
   copy_to(w.exposed.changed, std::vector<std::uint8_t>{0, 0});
 }
 
+/// Ghosts hear from their owners which of their faces are exposed: not all their joints are here.
+void note_exposed(World& w) {
+  Tetrahedra& t = w.tetrahedra;
+  for_each(w.exec, t.size(),
+           NoteExposed{std::as_const(w.faces).view(), std::as_const(w.joints.stage).view(),
+                       w.domain.owned_view(), t.exposed.view()});
+  if (!w.domain.single_rank()) w.domain.halo.refresh(w.exec, *w.domain.ranks, t.exposed);
+}
+
 /// Whether vertices must be marked now.
 bool marking_is_due(const World& w) {
   const std::vector<std::uint8_t> changed = flags_of(w.exposed.changed);
@@ -105,11 +114,11 @@ void search(World& w) {
   for_each(w.exec, found.size(),
            fdem::NameTriangles{std::as_const(w.reach.tetrahedron).view(), found.a.view(),
                                found.b.view()});
-  const Buffer<Index> kept =
-      items_where(w.exec, found.size(),
-                  MayTouch{vertices, std::as_const(w.faces).view(),
-                           std::as_const(w.joints.stage).view(), w.domain.owned_view(),
-                           std::as_const(found.a).view(), std::as_const(found.b).view()});
+  const Buffer<Index> kept = items_where(
+      w.exec, found.size(),
+      MayTouch{vertices, std::as_const(w.faces).view(), std::as_const(w.joints.stage).view(),
+               std::as_const(w.tetrahedra.exposed).view(), w.domain.owned_view(),
+               std::as_const(found.a).view(), std::as_const(found.b).view()});
   gather_fields(w.exec, kept, found);
   book_dropped(w, found);
   w.couples.replace(w.exec, std::move(found));
@@ -150,7 +159,10 @@ void find_couples(World& w) {
   migrate(w);
   const StageTime timed(w.exec, "contact_detection");
   const bool joints_changed = marking_is_due(w);
-  if (joints_changed) mark_opened(w);
+  if (joints_changed) {
+    mark_opened(w);
+    note_exposed(w);
+  }
   collective_try(w.domain.ranks, [&w] { search(w); });
   select_active_ghosts(w);
   if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, w.reach.tetrahedron);

@@ -69,12 +69,25 @@ struct BeginReach {
   }
 };
 
+/// Notes the faces of own tetrahedra that nothing joins.
+struct NoteExposed {
+  static constexpr const char* name = "fdem3.note_exposed";
+  View<const FaceJoints> faces;
+  View<const JointStage> stage;
+  OwnedView owned;
+  View<std::uint8_t> exposed;
+  BR_HD void operator()(Index t) const {
+    if (owned(t)) exposed[t] = static_cast<std::uint8_t>(exposed_faces(faces[t], stage));
+  }
+};
+
 /// Whether a couple can touch, and is of this rank. Neighbours across a face do once nothing joins
 /// them; neighbours at an edge or a vertex do once a joint around it is damaged.
 struct MayTouch {
   OpenVertices vertices;
   View<const FaceJoints> faces;
   View<const JointStage> stage;
+  View<const std::uint8_t> exposed;
   OwnedView owned;
   View<const Index> a, b;
 
@@ -82,7 +95,7 @@ struct MayTouch {
     const Index p = a[i], q = b[i];
     if (!owned(p) && !owned(q)) return false;
     // Exposed faces alone press; a joint that breaks exposes its faces and calls for a search.
-    if ((exposed_faces(faces[p], stage) | exposed_faces(faces[q], stage)) == 0) return false;
+    if ((exposed[p] | exposed[q]) == 0) return false;
     int shared = 0, open = 0, apart = 0;  // apart: the corner of p that q lacks
     for (int k = 0; k < 4; ++k) {
       const Index vertex = vertices.vertex_of[4 * p + k];

@@ -18,6 +18,7 @@ struct StableStep {
   View<const ContactPair> contacts;
   Index materials;
   View<const FaceJoints> faces;
+  View<const std::uint8_t> exposed;
   View<const JointBond> bonds;
   View<const Index> bond_of;
   View<const FaceShape> joint_shape;
@@ -45,18 +46,18 @@ struct StableStep {
   BR_HD Parts parts_pressed(Index t) const {
     Vec3 x[4];
     places(nodes[t], x);
-    return parts(t, x, exposed_faces(faces[t], stage));
+    return parts(t, x, exposed[t]);
   }
   BR_HD Parts parts(Index t) const {
     Vec3 x[4], v[4];
     split(nodes[t], x, v);
-    const int exposed = exposed_faces(faces[t], stage);
-    if (exposed == 0 || is_near(t, x)) return parts(t, x, exposed);
+    const int open = exposed[t];
+    if (open == 0 || is_near(t, x)) return parts(t, x, open);
     const Parts free = parts(t, x, 0);
     double fastest = 0.0;
     for (const Vec3& velocity : v) fastest = max(fastest, dot(velocity, velocity));
     const double way = evaluate_every * free.step * sqrt(fastest);
-    return way > near_reach(shape[t]) ? parts(t, x, exposed) : free;
+    return way > near_reach(shape[t]) ? parts(t, x, open) : free;
   }
 
  private:

@@ -45,6 +45,8 @@ struct Tetrahedra {
   Buffer<double> viscosity;        ///< eta  [Pa s]  (constant)
   Buffer<Corners> force;           ///< sum of all that acts now  [N]  (sums, loads, bundles)
   Buffer<Corners> external;        ///< the part of it by loads; empty: no loads  [N]  (loads)
+  Buffer<std::uint8_t> exposed;    ///< bits of the faces that nothing joined at the last search:
+                                   ///< those alone press  [-]  (search)
   Buffer<Index> hold;              ///< index into Case::holds, -1: free  [-]  (stage)
   Buffer<double> viscous_work;     ///< taken out by viscosity so far  [J]  (sums)
   Buffer<double> damping_work;     ///< taken out by local damping so far  [J]  (move)
@@ -60,6 +62,7 @@ struct Tetrahedra {
     field("mass", "kg", mass);
     field("viscosity", "Pa s", viscosity);
     field("force", "N", force);
+    field("exposed", "-", exposed);
     field("hold", "-", hold);
     field("viscous_work", "J", viscous_work);
     field("damping_work", "J", damping_work);

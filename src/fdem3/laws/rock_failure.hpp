@@ -51,8 +51,8 @@ BR_HD inline RockStress rock_stress(const fdem::JointBond& bond, const FaceShape
 BR_HD inline bool exceeds(const Sym3& s, double number) {
   const double a = number - s.xx, b = number - s.yy, c = number - s.zz;
   const double minor = a * b - s.xy * s.xy;
-  const double whole = a * (b * c - s.yz * s.yz) - s.xy * (s.xy * c + s.yz * s.xz) -
-                       s.xz * (s.xy * s.yz + b * s.xz);
+  const double whole =
+      a * (b * c - s.yz * s.yz) - s.xy * (s.xy * c + s.yz * s.xz) - s.xz * (s.xy * s.yz + b * s.xz);
   return !(a > 0.0 && minor > 0.0 && whole > 0.0);
 }
 

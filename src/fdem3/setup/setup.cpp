@@ -150,6 +150,14 @@ class Joining {
     const auto count = static_cast<Index>(list_.face_a.size());
     copy_to(set_up(w_).bonds, table_.bonds);
     copy_to(w_.faces, faces_);
+    std::vector<std::uint8_t> exposed;
+    for (const FaceJoints& f : faces_) {
+      unsigned bits = 0;
+      for (unsigned k = 0; k < 4; ++k)
+        if (f.at[k] == face_free) bits |= 1U << k;
+      exposed.push_back(static_cast<std::uint8_t>(bits));
+    }
+    copy_to(w_.tetrahedra.exposed, exposed);
     copy_to(j.face_a, list_.face_a);
     copy_to(j.face_b, list_.face_b);
     copy_to(j.turn, list_.turn);
