@@ -94,7 +94,7 @@ struct CheckCommand {
                        harmless(fmt::format("{}", fmt::join(files, ", "))));
           fmt::print("\n");
           if constexpr (requires { config.walls; })
-            for (const std::string& doubt : prepare::doubtful_walls(config))
+            for (const std::string& doubt : prepare::doubtful_walls(config, read.folder))
               tell_note(read.file.empty() ? doubt : with_lines(doubt, read.file));
           if constexpr (requires { config.links; }) {
             for (const auto& material : config.materials)

@@ -14,6 +14,7 @@
 #include "core/output_config.hpp"
 #include "dem/laws/contact.hpp"
 #include "dem/setup/config.hpp"
+#include "dem/wall_mesh.hpp"
 #include "exec/buffer.hpp"
 
 namespace breccia::dem {
@@ -43,6 +44,22 @@ struct FreeWall {
   }
 };
 
+/// Surfaces of walls of triangles, side by side.
+struct WallMeshes {
+  /// Nodes of a wall's tree; none: it is no mesh.
+  struct Part {
+    Index first = 0, last = 0;
+    Index first_triangle = 0, last_triangle = 0;
+    bool closed = false;
+  };
+  std::vector<Part> parts;         ///< empty: no wall is a mesh  (walls)
+  Buffer<MeshNode> nodes;          ///< (nodes)
+  Buffer<MeshTriangle> triangles;  ///< (triangles)
+  Buffer<Index> starts;            ///< first end at each vertex, and the end  [-]  (vertices + 1)
+  Buffer<Vec3> ends;               ///< other ends of edges, vertex by vertex  [m]  (ends)
+  Buffer<Vec3> out;                ///< out of the surface  [-]  (vertices)
+};
+
 struct Case {
   TimeConfig time;
   SearchConfig search;
@@ -64,6 +81,7 @@ struct Case {
   std::vector<Vec3> wall_starts;      ///< points of walls at the start  [m]  (walls)
   std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]  (walls)
   std::vector<FreeWall> free_walls;   ///< empty: none has mass  (walls)
+  WallMeshes meshes;                  ///< of walls of triangles
   Buffer<ContactPair> contact_pairs;  ///< of materials p, q at p materials + q  (materials^2)
   Buffer<ContactPair> wall_pairs;     ///< of a material with a wall  (materials)
 
@@ -75,6 +93,8 @@ struct Case {
   template <class Visit>
   void each_array(Visit&& visit) {
     visit(contact_pairs), visit(wall_pairs), visit(starts);
+    visit(meshes.nodes), visit(meshes.triangles);
+    visit(meshes.starts), visit(meshes.ends), visit(meshes.out);
   }
 };
 

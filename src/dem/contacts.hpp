@@ -4,7 +4,7 @@
 #include "core/pair_list.hpp"
 #include "dem/laws/contact.hpp"
 #include "dem/links/link_set.hpp"
-#include "dem/wall.hpp"
+#include "dem/wall_mesh.hpp"
 
 namespace breccia::dem {
 
@@ -27,19 +27,22 @@ struct ContactHistory {
 struct WallHistory : ContactHistory {
   Buffer<double> driven;  ///< energy that a moving wall put in so far  [J]
   Buffer<Vec3> on_wall;   ///< force on the wall at the time of the positions  [N]
+  Buffer<Vec3> place;     ///< of a mesh: where it is touched, in its frame  [m]
 
   template <class Visit>
   void each_field(Visit&& field) {
     ContactHistory::each_field(field);
     field("driven", "J", driven);
     field("on_wall", "N", on_wall);
+    field("place", "m", place);
   }
   View<const double> work_of_walls() const { return driven.view(); }
 };
 
 /// Pairs that may touch until the next search.
 using Contacts = PairList<ContactHistory>;
-/// Elements and walls that may touch: b is the wall, and the key is of wall and element.
+/// Elements and walls that may touch: b is the wall, and the key is of wall, element and slot. With
+/// a mesh an element has mesh_slots contacts, side by side; with any other wall one.
 using WallContacts = PairList<WallHistory>;
 
 /// Contacts between elements.
@@ -115,11 +118,16 @@ struct WallForces {
 
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_HD void operator()(Index k) const {
+    const Index i = first + k;
+    act(i, touch(walls[number], elements.end(a[i]).position));
+  }
+  /// Contact i, where its element is nearest to the wall.
+  BR_HD void act(Index i, const WallTouch& at) const {
     const Wall& wall = walls[number];
-    const Index i = first + k, e = a[i];
+    const Index e = a[i];
     const PairEnd<double> end = elements.end(e);
     const double radius = elements.radius(e), mass = elements.mass[e];
-    const auto [out, height] = touch(wall, end.position);
+    const auto [out, height] = at;
     ContactState kept = state[i];
     const double overlap = radius - height;
     if (kept.overlap <= 0.0 && overlap <= 0.0) return;
@@ -162,6 +170,68 @@ struct WallForces {
       const double turning = rolling > 0.0 ? elements.inertia[e] / rolling : own;
       const double least = min(own, turning);
       critical[e] = critical[e] * least / (critical[e] + least);
+    }
+  }
+};
+
+/// Contacts of elements with a wall of triangles, one element at a time. A contact keeps its
+/// history while its place moves from triangle to triangle.
+struct MeshForces {
+  static constexpr const char* name = "dem.mesh_walls";
+  WallForces forces;
+  WallMesh mesh;
+  View<Vec3> place;
+
+  BR_HD void set(const StepTime& now) { forces.set(now); }
+  BR_HD void operator()(Index k) const {
+    const Index first = forces.first + mesh_slots * k;
+    const Wall& wall = forces.walls[forces.number];
+    const Vec3 centre = forces.elements.end(forces.a[first]).position;
+    const double radius = forces.elements.radius(forces.a[first]);
+    const MeshTouches touches(mesh, into_mesh(wall, centre - wall.point), radius);
+    int touch_of[mesh_slots];
+    assign(touches, first, 0.1 * radius, touch_of);
+    for (int slot = 0; slot < mesh_slots; ++slot) {
+      const Index i = first + slot;
+      if (touch_of[slot] >= 0) {
+        const MeshTouch& at = touches.item[touch_of[slot]];
+        place[i] = at.place;
+        forces.act(i, {out_of_mesh(wall, at.normal), at.height});
+      } else if (forces.state[i].overlap > 0.0) {  // it has come off
+        const Vec3 away = centre - (wall.point + out_of_mesh(wall, place[i]));
+        const double way = norm(away);
+        forces.act(i, {way > 0.0 ? (1.0 / way) * away : wall.normal, radius});
+      }
+    }
+  }
+
+ private:
+  /// Gives each touch the contact that was nearest to it a step ago, or a new one; -1: a contact
+  /// without a touch.
+  BR_HD void assign(const MeshTouches& touches, Index first, double near,
+                    int (&touch_of)[mesh_slots]) const {
+    for (int& touch : touch_of) touch = -1;
+    bool placed[mesh_slots] = {};
+    for (int c = 0; c < touches.count; ++c) {
+      int best = -1;
+      double least = near * near;
+      for (int slot = 0; slot < mesh_slots; ++slot) {
+        if (touch_of[slot] >= 0 || !(forces.state[first + slot].overlap > 0.0)) continue;
+        const Vec3 way = place[first + slot] - touches.item[c].place;
+        if (dot(way, way) > least) continue;
+        least = dot(way, way);
+        best = slot;
+      }
+      if (best < 0) continue;
+      touch_of[best] = c;
+      placed[c] = true;
+    }
+    int slot = 0;
+    for (int c = 0; c < touches.count; ++c) {
+      if (placed[c]) continue;
+      while (slot < mesh_slots && (touch_of[slot] >= 0 || forces.state[first + slot].overlap > 0.0))
+        ++slot;
+      if (slot < mesh_slots) touch_of[slot] = c;
     }
   }
 };

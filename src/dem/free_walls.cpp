@@ -24,6 +24,7 @@ BR_HD inline OnWall operator+(OnWall a, const OnWall& b) {
 struct SumOnWall {
   OwnedView owned;
   Index first;  ///< contact of the wall
+  int slots;    ///< contacts of each element, of which the first stands for those to come
   Wall wall;
   double wall_mass;  ///<  [kg]
   ContactLaw law;
@@ -44,7 +45,7 @@ struct SumOnWall {
       r.x.add(on_wall[i].x);
       r.y.add(on_wall[i].y);
       r.z.add(on_wall[i].z);
-    } else if (law.hertz) {
+    } else if (law.hertz || k % slots != 0) {
       return r;
     }
     const double constant = pairs[material[e]].normal;
@@ -62,12 +63,13 @@ OnWall read(const World& w, std::size_t wall) {
   if (wall + 1 < w.wall_begin.size()) {
     const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
     const WallContacts& c = w.wall_contacts;
+    const int slots = mesh_of(w, static_cast<Index>(wall)).empty() ? 1 : mesh_slots;
     sum =
         fold(w.exec, end - begin, OnWall{},
-             SumOnWall{w.domain.owned_view(), begin, w.walls[wall], w.given->free_walls[wall].mass,
-                       w.given->contact, c.pairs.a.view(), c.history.on_wall.view(),
-                       c.history.state.view(), w.elements.material.view(), w.elements.state.view(),
-                       w.elements.mass.view(), w.given->wall_pairs.view()},
+             SumOnWall{w.domain.owned_view(), begin, slots, w.walls[wall],
+                       w.given->free_walls[wall].mass, w.given->contact, c.pairs.a.view(),
+                       c.history.on_wall.view(), c.history.state.view(), w.elements.material.view(),
+                       w.elements.state.view(), w.elements.mass.view(), w.given->wall_pairs.view()},
              Sum{});
   }
   if (w.domain.single_rank()) return sum;

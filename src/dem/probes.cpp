@@ -136,24 +136,18 @@ struct ActionStress {
   }
 };
 
-/// Where a wall is touched: its point nearest to an element's centre.
-BR_HD inline Vec3 foot_on(const Wall& wall, const Vec3& x) {
-  const WallTouch at = touch(wall, x);
-  return x - at.height * at.normal;
-}
-
 struct WallStress {
   OwnedView owned;
   BranchStress branch;
   View<const ElementState> state;
   View<const Wall> walls;
   View<const Index> a, b;
-  View<const Vec3> on_wall;
+  View<const Vec3> on_wall, place;
 
   BR_HD ExactSum operator()(Index i) const {
     if (!owned(a[i])) return ExactSum();
     const Vec3& x = state[a[i]].position;
-    return ExactSum(branch(x, foot_on(walls[b[i]], x), on_wall[i]));
+    return ExactSum(branch(x, foot_on(walls[b[i]], x, place[i]), on_wall[i]));
   }
 };
 
@@ -204,10 +198,11 @@ Readings read_stress(const World& w, const ProbeConfig& p) {
                               w.contact_actions.view(), 0},
                  Sum{}));
   const auto& at_walls = w.wall_contacts.pairs;
-  r.sum.add(fold(w.exec, w.wall_contacts.size(), ExactSum(),
-                 WallStress{owned, branch, state, walls_view(w), at_walls.a.view(),
-                            at_walls.b.view(), w.wall_contacts.history.on_wall.view()},
-                 Sum{}));
+  r.sum.add(
+      fold(w.exec, w.wall_contacts.size(), ExactSum(),
+           WallStress{owned, branch, state, walls_view(w), at_walls.a.view(), at_walls.b.view(),
+                      w.wall_contacts.history.on_wall.view(), w.wall_contacts.history.place.view()},
+           Sum{}));
   if (is_first(w)) r.weight = ExactSum(branch.box.volume());
   return r;
 }
@@ -288,13 +283,14 @@ struct PushOnWall {
   Vec3 about;  ///<  [m]
   View<const ElementState> state;
   View<const Index> a;
-  View<const Vec3> on_wall;
+  View<const Vec3> on_wall, place;
   BR_HD ExactSum operator()(Index k) const {
     const Index i = first + k;
     if (!owned(a[i])) return ExactSum();
     const Vec3& f = on_wall[i];
     if (!turns) return ExactSum(on_axis(f, axis));
-    return ExactSum(on_axis(cross(foot_on(wall, state[a[i]].position) - about, f), axis));
+    const Vec3 foot = foot_on(wall, state[a[i]].position, place[i]);
+    return ExactSum(on_axis(cross(foot - about, f), axis));
   }
 };
 
@@ -344,7 +340,7 @@ Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
       fold(w.exec, end - begin, ExactSum(),
            PushOnWall{w.domain.owned_view(), begin, quantity.axis, turns, own, point_of(p.about),
                       w.elements.state.view(), w.wall_contacts.pairs.a.view(),
-                      w.wall_contacts.history.on_wall.view()},
+                      w.wall_contacts.history.on_wall.view(), w.wall_contacts.history.place.view()},
            Sum{}));
   return read;
 }

@@ -8,6 +8,7 @@
 #include "core/select.hpp"
 #include "dem/free_walls.hpp"
 #include "dem/ranks.hpp"
+#include "dem/wall_key.hpp"
 #include "domain/drift.hpp"
 
 namespace breccia::dem {
@@ -125,22 +126,40 @@ struct WallNear {
   }
 };
 
+/// Likewise of a mesh.
+struct MeshNear {
+  Wall wall;
+  WallMesh mesh;
+  double reach;  ///< of the wall's own travel  [m]
+  OwnedView owned;
+  View<const ElementState> state;
+  View<const double> margin;
+  View<const std::uint8_t> fixed;
+  BR_HD bool operator()(Index e) const {
+    if (is_gone(fixed[e]) || !owned(e)) return false;
+    return is_near(mesh, into_mesh(wall, state[e].position - wall.point),
+                   state[e].radius + margin[e] + reach);
+  }
+};
+
 struct ListWallPairs {
   static constexpr const char* name = "dem.list_wall_pairs";
   Index wall, first;  ///< the wall, and its first pair
+  int slots;          ///< pairs of each element
   View<const Index> element;
   View<const GlobalId> id;
   View<PairKey> key;
   View<Index> a, b;
   BR_HD void operator()(Index i) const {
-    const Index e = element[i];
-    key[first + i] = (static_cast<PairKey>(wall) << 32) | static_cast<std::uint32_t>(id[e]);
+    const Index e = element[i / slots];
+    key[first + i] = wall_key(wall, id[e], i % slots);
     a[first + i] = e;
     b[first + i] = wall;
   }
 };
 
-/// Elements whose grown sphere reaches a wall, by wall, then by global id: the order of memory.
+/// Elements whose grown sphere reaches a wall, by wall, then by global id: the order of memory,
+/// then by slot.
 Pairs near_walls(const World& w) {
   Pairs pairs(w.exec.space);
   Index wall_number = 0;
@@ -153,15 +172,22 @@ Pairs near_walls(const World& w) {
                        w.prescribed.moves(w.prescribed.motions.size() - w.walls.size() +
                                           static_cast<std::size_t>(wall_number));
     const double reach = (moves ? w.given->largest_margin : 0.0) + 1e-14 * w.travel.drift.farthest;
+    const WallMesh mesh = mesh_of(w, wall_number);
+    const OwnedView owned = w.domain.owned_view();
+    const View<const ElementState> state = w.elements.state.view();
+    const View<const double> margin = w.travel.margin.view();
+    const View<const std::uint8_t> fixed = w.elements.fixed.view();
     const Buffer<Index> near =
-        items_where(w.exec, w.elements.size(),
-                    WallNear{wall, reach, w.domain.owned_view(), w.elements.state.view(),
-                             w.travel.margin.view(), w.elements.fixed.view()});
-    const Index first = pairs.size();
-    resize_fields(pairs, first + near.size());
-    for_each(w.exec, near.size(),
-             ListWallPairs{wall_number, first, near.view(), w.elements.id.view(), pairs.key.view(),
-                           pairs.a.view(), pairs.b.view()});
+        mesh.empty() ? items_where(w.exec, w.elements.size(),
+                                   WallNear{wall, reach, owned, state, margin, fixed})
+                     : items_where(w.exec, w.elements.size(),
+                                   MeshNear{wall, mesh, reach, owned, state, margin, fixed});
+    const int slots = mesh.empty() ? 1 : mesh_slots;
+    const Index first = pairs.size(), count = near.size() * slots;
+    resize_fields(pairs, first + count);
+    for_each(w.exec, count,
+             ListWallPairs{wall_number, first, slots, near.view(), w.elements.id.view(),
+                           pairs.key.view(), pairs.a.view(), pairs.b.view()});
     ++wall_number;
   }
   return pairs;

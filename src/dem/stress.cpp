@@ -67,10 +67,11 @@ void add_contacts(const World& w, const Elements& elements, Moments& moments) {
   const OnHost of(w.wall_contacts.pairs.a, w.exec.space);
   const OnHost wall(w.wall_contacts.pairs.b, w.exec.space);
   const OnHost on_wall(w.wall_contacts.history.on_wall, w.exec.space);
+  const OnHost place(w.wall_contacts.history.place, w.exec.space);
   for (Index i = 0; i < w.wall_contacts.size(); ++i) {
     const Vec3& x = elements.state.data()[of->data()[i]].position;
-    const WallTouch touched = touch(w.walls[at(wall->data()[i])], x);
-    moments.add(of->data()[i], x - touched.height * touched.normal, -on_wall->data()[i]);
+    const Vec3 foot = foot_on(w.walls[at(wall->data()[i])], x, place->data()[i]);
+    moments.add(of->data()[i], foot, -on_wall->data()[i]);
   }
 }
 

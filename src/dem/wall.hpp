@@ -1,6 +1,6 @@
 #pragma once
-// Rigid walls: half-spaces, cylinders with and without a nose, boxes and spheres, which move and
-// turn as they are told, or move by the forces on them.
+// Rigid walls: half-spaces, cylinders with and without a nose, boxes, spheres and surfaces of
+// triangles, which move and turn as they are told, or move by the forces on them.
 
 #include <cstdint>
 
@@ -11,22 +11,24 @@ namespace breccia::dem {
 
 /// Of a plane all that lies behind its face; a cylinder's axis and a box's depth lead back from the
 /// face; a sphere is around its point. A cylinder that ends in a cone or an ogive has its tip for a
-/// face; an ogive as long as the radius is a hemisphere.
-enum class WallShape : std::int64_t { plane, cylinder, box, sphere, cone, ogive };
+/// face; an ogive as long as the radius is a hemisphere. The triangles of a mesh are constants of
+/// the case (dem/wall_mesh.hpp).
+enum class WallShape : std::int64_t { plane, cylinder, box, sphere, cone, ogive, mesh };
 
 struct Wall {
   Vec3 point;        ///< of the face; of cylinder and box its middle, of a nose its tip; centre of
-                     ///< a sphere; now  [m]
-  Vec3 normal;       ///< unit, out of the face
+                     ///< a sphere; origin of a mesh; now  [m]
+  Vec3 normal;       ///< unit, out of the face; z of a mesh
   Vec3 velocity;     ///< of the point, half a step before now  [m/s]
   double stiffness;  ///< factor on linear contacts  [-]
   double travelled;  ///< of its farthest part since the last search  [m]
   WallShape shape = WallShape::plane;
   double radius = 0.0;  ///< of cylinder or sphere  [m]
   double length = 0.0;  ///< of cylinder or box behind the face, the nose included  [m]
-  Vec3 along{};         ///< box, cone, ogive: unit, across the normal  [-]
+  Vec3 along{};         ///< box, cone, ogive, x of a mesh: unit, across the normal  [-]
   double half[2] = {};  ///< box: half of its sides along `along` and across; cone, ogive: the
-                        ///< nose's length, and nothing  [m]
+                        ///< nose's length, and nothing; mesh: its farthest corner from its
+                        ///< origin, and nothing  [m]
   Vec3 spin{};          ///< [rad/s]
 
   BR_HD bool turns() const { return dot(spin, spin) > 0.0; }
@@ -39,6 +41,8 @@ struct Wall {
         return sqrt(radius * radius + length * length);
       case WallShape::box:
         return sqrt(half[0] * half[0] + half[1] * half[1] + length * length);
+      case WallShape::mesh:
+        return half[0];
       default:
         return 0.0;
     }
@@ -132,8 +136,8 @@ BR_HD inline WallTouch of_box(const Wall& wall, const Vec3& from) {
 
 }  // namespace wall_detail
 
-/// The point of a wall nearest to x. All shapes are convex: there is one, and where it goes from
-/// face to edge neither normal nor height jumps.
+/// The point of a wall nearest to x. All shapes but meshes, which are not asked, are convex: there
+/// is one, and where it goes from face to edge neither normal nor height jumps.
 BR_HD inline WallTouch touch(const Wall& wall, const Vec3& x) {
   const Vec3 from = x - wall.point;
   switch (wall.shape) {

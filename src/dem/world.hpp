@@ -202,6 +202,8 @@ Kick kick(const World& w);
 
 /// Walls where kernels can read them.
 View<const Wall> walls_view(const World& w);
+/// The triangles of a wall; empty: it has another shape.
+WallMesh mesh_of(const World& w, Index wall);
 
 /// The time step from the least inertia over stiffness of all elements (Durand 2012, section 4.4).
 struct StepRule {

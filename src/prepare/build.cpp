@@ -15,6 +15,7 @@
 #include "prepare/packing/spheres_file.hpp"
 #include "prepare/packing/stiffness.hpp"
 #include "prepare/shapes/carve.hpp"
+#include "prepare/shapes/wall_files.hpp"
 
 namespace breccia {
 namespace {
@@ -216,6 +217,7 @@ dem::Model build_model(const dem::Config& config, const std::string& case_folder
   prepare::link_facets(model);
   prepare::set_stiffness(model, whole);
   prepare::carve(model, config, case_folder);
+  prepare::add_wall_meshes(model, config, case_folder);
 
   prepare::refuse(prepare::free_overlaps(model, assembly.links()), "with the model");
   return std::move(model);

@@ -41,6 +41,10 @@ struct FacetArrays {
   std::vector<double> area;
 };
 
+std::string wall_mesh_name(std::size_t k) {
+  return "wall_mesh." + std::to_string(k);
+}
+
 void refuse_misfits(const dem::Model& model) {
   const auto fail = [] {
     throw CheckpointError("the model's elements and links do not fit each other");
@@ -170,6 +174,8 @@ void save_model(CheckpointWriter& writer, const dem::Model& model) {
   }
   each_link_array(links,
                   [&](const char* name, const auto& items) { save_array(writer, name, items); });
+  for (std::size_t k = 0; k < model.wall_meshes.size(); ++k)
+    save_array(writer, wall_mesh_name(k), model.wall_meshes[k]);
   if (model.facets.empty()) return;
   FacetArrays facets;
   for (const dem::Model::Facet& f : model.facets) {
@@ -187,6 +193,10 @@ void refuse_misfits(const dem::Model& model, const dem::Config& config) {
   std::vector<std::int16_t> laws;
   for (const dem::Model::Link& link : model.links) laws.push_back(link.material);
   refuse_unknown("link_material", laws, 0, config.materials.size());
+  const auto has_file = [](const dem::WallConfig& wall) { return wall.shape == "stl"; };
+  if (static_cast<std::size_t>(std::count_if(config.walls.begin(), config.walls.end(), has_file)) !=
+      model.wall_meshes.size())
+    throw CheckpointError("the model has not the triangles of the case's walls");
 }
 
 void refuse_misfits(const fdem::Model& model, const fdem::Config& config) {
@@ -225,6 +235,8 @@ dem::Model load_model(const CheckpointReader& reader) {
     model.links.push_back({links.a[i], links.b[i], kind, links.material[i], links.share[i],
                            kind == dem::LinkKind::ldpm ? facet++ : -1, links.parted[i] != 0});
   }
+  while (reader.has("model." + wall_mesh_name(model.wall_meshes.size())))
+    model.wall_meshes.push_back(load_array<Vec3>(reader, wall_mesh_name(model.wall_meshes.size())));
   if (reader.has("model.facet_area")) {
     const auto corners = load_array<std::array<Index, 4>>(reader, "facet_corners");
     const auto center = load_array<Vec3>(reader, "facet_center");

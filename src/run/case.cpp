@@ -75,6 +75,12 @@ std::string model_keys(const dem::Config& config) {
   part.materials = config.materials;
   part.bodies = config.bodies;
   part.links = config.links;
+  for (const dem::WallConfig& wall : config.walls)
+    if (wall.shape == "stl") {  // the rest of a wall is not in the model
+      part.walls.emplace_back().name = wall.name;
+      part.walls.back().file = wall.file;
+      part.walls.back().file_unit = wall.file_unit;
+    }
   return completed_case(part);
 }
 std::string model_keys(const fdem::Config& config) {

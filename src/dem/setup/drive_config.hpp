@@ -22,11 +22,13 @@ struct WallConfig {
   ServoConfig servo{};         ///< instead of the velocity
   double begin = 0.0;          ///< no key: where its time begins  [s]
   std::string shape = "plane";
-  double radius = 0.0;  ///< of cylinder or sphere  [m]
-  double length = 0.0;  ///< of cylinder or box, behind the face  [m]
-  Vec2 size{};          ///< of a box's face  [m]
-  Vec3 along{};         ///< of a box; zero: some direction across the normal  [-]
-  Vec3 spin{};          ///<  [rad/s]
+  std::string file{};      ///< of an STL surface
+  double file_unit = 1.0;  ///<  [m]
+  double radius = 0.0;     ///< of cylinder or sphere  [m]
+  double length = 0.0;     ///< of cylinder or box, behind the face  [m]
+  Vec2 size{};             ///< of a box's face  [m]
+  Vec3 along{};            ///< of a box; zero: some direction across the normal  [-]
+  Vec3 spin{};             ///<  [rad/s]
   std::string nose = "flat";
   double nose_length = 0.0;         ///<  [m]
   double mass = no_limit;           ///< infinite: it moves as it is told  [kg]
@@ -39,14 +41,20 @@ struct WallConfig {
   void each_key(Visit&& key) {
     key("name", name, "name of the wall");
     key.required("name");
-    key("shape", shape, OneOf{"plane", "cylinder", "box", "sphere"},
+    key("shape", shape, OneOf{"plane", "cylinder", "box", "sphere", "stl"},
         "plane: all that lies behind its face; cylinder, box: a round or rectangular face and what "
-        "lies behind it, to length: platens, rollers, punches; sphere: around point");
+        "lies behind it, to length: platens, rollers, punches; sphere: around point; stl: a "
+        "surface of triangles");
+    key("file", file,
+        "stl: the file, relative to the case; a closed surface is solid, or a hole in solid where "
+        "its triangles are turned over; an open one is a thin sheet with two sides");
+    key("file_unit", file_unit, "m", positive, "stl: length of one unit of the file's coordinates");
     key("point", point, "m", any_number,
         "a point of the wall's face; the middle of a round or rectangular one, the tip of a nose; "
-        "centre of a sphere");
+        "centre of a sphere; where the origin of an STL file comes to lie");
     key("normal", normal, "-", any_number,
-        "direction out of the wall's face, towards the elements");
+        "direction out of the wall's face, towards the elements; stl: in which the file's z "
+        "points");
     key("radius", radius, "m", not_negative, "radius of a cylinder or sphere");
     key("length", length, "m", not_negative,
         "how far a cylinder, with its nose, or a box reaches behind its face");
@@ -58,7 +66,7 @@ struct WallConfig {
     key("size", size, "m", not_negative, "sides of a box's face: along, and across");
     key("along", along, "-", any_number,
         "direction of the first side of a box's face, or near it; [0, 0, 0]: some direction across "
-        "the normal");
+        "the normal; stl: of the file's x; [0, 0, 0]: the file is turned the shortest way");
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
         "how fast it turns about an axis through point; a plane only about its normal");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},

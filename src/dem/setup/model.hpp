@@ -47,6 +47,9 @@ struct Model {
   std::vector<Index> bar_previous;  ///< neighbour of a bar's element along its bar, -1 elsewhere
   std::vector<Index> bar_next;      ///< likewise, towards the other end
 
+  std::vector<std::vector<Vec3>> wall_meshes;  ///< of each wall from an STL file: corners of its
+                                               ///< triangles, three each, as in the file  [m]
+
   double interaction_range = 0.0;  ///< gamma_int that was used  [-]
 
   /// A body of concrete as its links have it, measured when it was built.

@@ -13,6 +13,7 @@
 #include "dem/setup/materials.hpp"
 #include "dem/setup/stages.hpp"
 #include "dem/setup/supports.hpp"
+#include "dem/setup/wall_meshes.hpp"
 #include "dem/setup/walls.hpp"
 #include "dem/world.hpp"
 #include "exec/error.hpp"
@@ -322,6 +323,8 @@ void set_contacts(World& w, const Config& config, const Model& m) {
   }
   given.contact_pairs = filled(w, pairs);
   given.wall_pairs = filled(w, walls);
+  given.meshes = wall_meshes(config, m, w.exec.space);
+  auto corners = m.wall_meshes.begin();
   for (std::size_t k = 0; k < config.walls.size(); ++k) {
     const WallConfig& wall = config.walls[k];
     const std::vector<std::string> problems = wall_problems(wall);
@@ -332,6 +335,7 @@ void set_contacts(World& w, const Config& config, const Model& m) {
     const std::size_t motion = add_motion(w, wall, k);
     w.walls.push_back(
         wall_of(wall, wall.has_mass() ? wall.velocity.value : w.prescribed.velocity(motion, 0.0)));
+    if (wall.shape == "stl") w.walls.back().half[0] = farthest_corner(*corners++);
   }
   set_free_walls(w, config, m);
   place_motions(w);

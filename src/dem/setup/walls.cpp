@@ -10,6 +10,12 @@ bool is_along(const Vec3& a, const Vec3& b) {
   return norm(cross(a, b)) <= 1e-9 * norm(a) * norm(b);
 }
 
+/// Where the x axis goes if z is turned the shortest way to a unit normal.
+Vec3 turned_x(const Vec3& n) {
+  if (!(n.z > -1.0)) return {1.0, 0.0, 0.0};
+  return {1.0 - n.x * n.x / (1.0 + n.z), -n.x * n.y / (1.0 + n.z), -n.x};
+}
+
 /// Unit, across a normal, as near as can be to what is asked.
 Vec3 across(const Vec3& normal, Vec3 asked) {
   if (!(norm(asked) > 0.0))
@@ -67,19 +73,20 @@ std::vector<std::string> wall_problems(const WallConfig& w) {
   std::vector<std::string> problems;
   const std::string where = "wall." + w.name;
   const auto needs = [&](const char* key, bool has, bool wanted) {
+    const std::string it = w.shape == "stl" ? "a wall of shape stl" : "a " + w.shape;
     if (has != wanted)
-      problems.push_back(
-          where + "." + key +
-          (wanted ? ": a " + w.shape + " needs it" : ": a " + w.shape + " has none"));
+      problems.push_back(where + "." + key + ": " + it + (wanted ? " needs it" : " has none"));
   };
   const bool sphere = w.shape == "sphere", cylinder = w.shape == "cylinder", box = w.shape == "box";
+  const bool mesh = w.shape == "stl";
   if (!(norm(w.normal) > 0.0))
     problems.push_back(where + ".normal has length 0; it must point somewhere");
   needs("radius", w.radius > 0.0, sphere || cylinder);
   needs("length", w.length > 0.0, cylinder || box);
   needs("size", w.size.x > 0.0 && w.size.y > 0.0, box);
-  if (!box) needs("along", norm(w.along) > 0.0, false);
-  if (box && norm(w.along) > 0.0 && is_along(w.along, w.normal))
+  needs("file", !w.file.empty(), mesh);
+  if (!box && !mesh) needs("along", norm(w.along) > 0.0, false);
+  if ((box || mesh) && norm(w.along) > 0.0 && is_along(w.along, w.normal))
     problems.push_back(where + ".along must not lead along the normal");
   if (w.shape == "plane" && norm(w.spin) > 0.0 && !is_along(w.spin, w.normal))
     problems.push_back(where +
@@ -103,6 +110,11 @@ Wall wall_of(const WallConfig& config, const Vec3& velocity) {
     wall.along = across(wall.normal, {});
   }
   if (config.shape == "sphere") wall.shape = WallShape::sphere;
+  if (config.shape == "stl") {
+    wall.shape = WallShape::mesh;
+    wall.along =
+        across(wall.normal, norm(config.along) > 0.0 ? config.along : turned_x(wall.normal));
+  }
   if (config.shape == "box") {
     wall.shape = WallShape::box;
     wall.along = across(wall.normal, config.along);

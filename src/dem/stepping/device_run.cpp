@@ -193,10 +193,8 @@ class ClockedRun : public LaunchedForces<ByClock<phase>>, public ClockLed {
   }
   void wall_forces(World& w) const {
     if (w.walls.empty()) return;
-    for (Index k = 0; k < w.device_walls.size(); ++k) {
-      const auto wall = static_cast<std::size_t>(k);
-      for_each(w.exec, w.wall_begin[wall + 1] - w.wall_begin[wall], this->by_(wall_kernel(w, k)));
-    }
+    each_wall_kernel(
+        w, [&](Index count, const auto& kernel) { for_each(w.exec, count, this->by_(kernel)); });
     for_each_noting(w.exec, w.elements.size(),
                     this->by_(NoteCritical{std::as_const(w.critical).view()}),
                     NoteLeast{clocks_.now});

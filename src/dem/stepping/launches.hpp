@@ -112,6 +112,20 @@ inline WallForces wall_kernel(World& w, Index wall) {
       w.critical.view()};
 }
 
+/// Calls visit(items, kernel) for the forces of each wall.
+template <class Visit>
+void each_wall_kernel(World& w, const Visit& visit) {
+  for (std::size_t k = 0; k < w.walls.size(); ++k) {
+    const auto wall = static_cast<Index>(k);
+    const Index count = w.wall_begin[k + 1] - w.wall_begin[k];
+    if (const WallMesh mesh = mesh_of(w, wall); mesh.empty())
+      visit(count, wall_kernel(w, wall));
+    else
+      visit(count / mesh_slots,
+            MeshForces{wall_kernel(w, wall), mesh, w.wall_contacts.history.place.view()});
+  }
+}
+
 inline MoveElements move_kernel(World& w) {
   Elements& e = w.elements;
   UsedMargin used{w.travel.reference.view(), w.travel.margin.view(), w.travel.drift, {}, false};

@@ -77,6 +77,14 @@ View<const Wall> walls_view(const World& w) {
   return view;
 }
 
+WallMesh mesh_of(const World& w, Index wall) {
+  const WallMeshes& all = w.given->meshes;
+  if (all.parts.empty()) return {};
+  const WallMeshes::Part& part = all.parts[static_cast<std::size_t>(wall)];
+  return {all.nodes.view(), all.triangles.view(), all.starts.view(), all.ends.view(),
+          all.out.view(),   part.first,           part.last,         part.closed};
+}
+
 void move_walls(World& w) {
   const std::size_t first = w.prescribed.motions.size() - w.walls.size();
   for (std::size_t k = 0; k < w.walls.size(); ++k) {
@@ -109,8 +117,7 @@ void StepwiseRun::wall_forces(World& w) const {
   if (w.wall_contacts.size() == 0 && w.free_walls.empty()) return;
   const StageTime timed(w.exec, "wall_forces");
   if (w.exec.space != Space::host) copy_to(w.device_walls, w.walls);
-  for (std::size_t k = 0; k < w.walls.size(); ++k)
-    for_each(w.exec, w.wall_begin[k + 1] - w.wall_begin[k], wall_kernel(w, static_cast<Index>(k)));
+  each_wall_kernel(w, [&w](Index count, const auto& kernel) { for_each(w.exec, count, kernel); });
   sum_on_free_walls(w);
 }
 

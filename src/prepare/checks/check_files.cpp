@@ -14,6 +14,7 @@
 #include "prepare/meshing/meshing.hpp"
 #include "prepare/packing/spheres_file.hpp"
 #include "prepare/shapes/surface.hpp"
+#include "prepare/shapes/wall_files.hpp"
 #include "prepare/tetrahedra/tet_body.hpp"
 #include "prepare/tetrahedra/tet_file.hpp"
 
@@ -87,6 +88,10 @@ void check_files(const dem::Config& config, const std::string& case_folder) {
           read_spheres(path);
       });
   }
+  for (const dem::WallConfig& wall : config.walls)
+    if (wall.shape == "stl")
+      files.check("wall." + wall.name + ".file", wall.file,
+                  [&](const std::string&) { corners_of_wall(wall, case_folder); });
   files.refuse_all();
 }
 

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "dem/setup/walls.hpp"
+#include "dem/wall_mesh.hpp"
 #include "io/round_numbers.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/shapes/carve.hpp"
+#include "prepare/shapes/wall_files.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -171,6 +173,20 @@ double height_above(const dem::Wall& wall, const Bounds& b) {
   return height;
 }
 
+/// The box around a wall of triangles.
+Bounds bounds_of(const dem::Wall& wall, const std::vector<Vec3>& corners) {
+  Bounds b{{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}};
+  for (const Vec3& corner : corners) {
+    const Vec3 x = wall.point + dem::out_of_mesh(wall, corner);
+    const std::array<double, 3> at{x.x, x.y, x.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      b.low[k] = std::min(b.low[k], at[k]);
+      b.high[k] = std::max(b.high[k], at[k]);
+    }
+  }
+  return b;
+}
+
 /// Height of a box's farthest corner above a plane.  [m]
 double farthest_above(const dem::Wall& plane, const Bounds& b) {
   const Vec3 corner{plane.normal.x > 0.0 ? b.high[0] : b.low[0],
@@ -196,7 +212,7 @@ void check_faces_and_corners(const Config& config) {
 
 }  // namespace
 
-std::vector<std::string> doubtful_walls(const dem::Config& config) {
+std::vector<std::string> doubtful_walls(const dem::Config& config, const std::string& case_folder) {
   std::vector<Outline> outlines;
   for (const dem::BodyConfig& body : config.bodies) {
     outlines.push_back(outline_of(body, config));
@@ -210,10 +226,13 @@ std::vector<std::string> doubtful_walls(const dem::Config& config) {
   std::vector<std::string> doubts;
   for (const dem::WallConfig& asked : config.walls) {
     const dem::Wall wall = dem::wall_of(asked, {});
+    std::optional<Bounds> mesh;
+    if (asked.shape == "stl") mesh = bounds_of(wall, corners_of_wall(asked, case_folder));
     const Outline* nearest = nullptr;
     double least = no_limit;
     for (const Outline& outline : outlines) {
-      const double height = height_above(wall, *outline.bounds);
+      const double height =
+          mesh ? gap(*mesh, *outline.bounds).first : height_above(wall, *outline.bounds);
       if (asked.shape == "plane" && farthest_above(wall, *outline.bounds) < 0.0)
         doubts.push_back(
             fmt::format("wall.{}.normal: all of {} lies behind the wall, which will "

@@ -241,7 +241,7 @@ bool Surface::parts(const Vec3& a, const Vec3& b) const {
   return hit;
 }
 
-Surface read_surface(const std::string& path, double unit) {
+std::vector<Triangle> read_triangles(const std::string& path, double unit) {
   const std::string content = read_whole_file(path);
   std::uint32_t count = 0;
   if (content.size() >= header + 4) std::memcpy(&count, content.data() + header, sizeof count);
@@ -249,9 +249,11 @@ Surface read_surface(const std::string& path, double unit) {
   if (!bytes && !content.starts_with("solid"))
     throw InputError(path + ": not an STL file: neither text that begins with \"solid\" nor the " +
                      "bytes of as many triangles as it says");
-  return Surface(
-      bytes ? triangles_of_bytes(content, path, unit) : triangles_of_text(content, path, unit),
-      path);
+  return bytes ? triangles_of_bytes(content, path, unit) : triangles_of_text(content, path, unit);
+}
+
+Surface read_surface(const std::string& path, double unit) {
+  return Surface(read_triangles(path, unit), path);
 }
 
 }  // namespace breccia::prepare

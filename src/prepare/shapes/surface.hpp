@@ -39,6 +39,11 @@ class Surface {
   CellGrid columns_;           ///< of the centres, without their height
 };
 
+/// The triangles of a binary STL file, or one of text, whether they enclose a space or not.  [m]
+/// @param unit  length of one unit of its coordinates  [m]
+/// @throws as read_surface
+std::vector<Surface::Triangle> read_triangles(const std::string& path, double unit);
+
 /// A binary STL file, or one of text.
 /// @param unit  length of one unit of its coordinates  [m]
 /// @throws IoError    if it cannot be read

@@ -53,8 +53,11 @@ class DemFrame {
     f.step = w_.step;
     f.time = w_.time;
     for (std::size_t g = 0; g < all.bodies; ++g) f.groups.push_back(w_.given->sets[g].name);
-    for (const Wall& wall : w_.walls)
-      f.walls.push_back({wall.point, wall.normal, wall_triangles(wall)});
+    for (std::size_t k = 0; k < w_.walls.size(); ++k) {
+      const Wall& wall = w_.walls[k];
+      const bool mesh = wall.shape == dem::WallShape::mesh;
+      f.walls.push_back({wall.point, wall.normal, mesh ? corners_of(k) : wall_triangles(wall)});
+    }
     add_elements();
     if (w_.given->sets.size() > all.bodies) {
       constexpr std::uint8_t places = fixed_x | fixed_y | fixed_z;
@@ -161,6 +164,17 @@ class DemFrame {
     f.point_fields.push_back(std::move(field));
   }
 
+  /// Of the triangles of a wall.  [m]
+  std::vector<Vec3> corners_of(std::size_t k) const {
+    const OnHost triangles(w_.given->meshes.triangles, w_.exec.space);
+    const dem::WallMeshes::Part& part = w_.given->meshes.parts[k];
+    std::vector<Vec3> all;
+    for (Index t = part.first_triangle; t < part.last_triangle; ++t)
+      for (const Vec3& c : triangles->data()[t].corner)
+        all.push_back(w_.walls[k].point + dem::out_of_mesh(w_.walls[k], c));
+    return all;
+  }
+
   // Links: kind 0 concrete, 1 steel, 2 interface; state 0 whole, 1 softened or yielded, 2 broken.
   void add_links(const Totals& all) {
     const OnHost actions(w_.bar_actions, w_.exec.space);
@@ -207,13 +221,14 @@ class DemFrame {
     const OnHost of(w_.wall_contacts.pairs.a, w_.exec.space);
     const OnHost wall(w_.wall_contacts.pairs.b, w_.exec.space);
     const OnHost on_wall(w_.wall_contacts.history.on_wall, w_.exec.space);
+    const OnHost place(w_.wall_contacts.history.place, w_.exec.space);
     for (Index i = 0; i < w_.wall_contacts.size(); ++i) {
       const Index from = of->data()[i], k = wall->data()[i];
       const Vec3& force = on_wall->data()[i];
       if (!w_.domain.owns(from) || dot(force, force) == 0.0) continue;
       const Vec3& x = state.data()[from].position;
-      const WallTouch at = touch(w_.walls[static_cast<std::size_t>(k)], x);
-      part_.contacts.push_back({id.data()[from], -1 - k, x, x - at.height * at.normal, force});
+      const Vec3 foot = dem::foot_on(w_.walls[static_cast<std::size_t>(k)], x, place->data()[i]);
+      part_.contacts.push_back({id.data()[from], -1 - k, x, foot, force});
     }
   }
 

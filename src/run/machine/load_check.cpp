@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "dem/relations.hpp"
+#include "dem/wall_key.hpp"
 #include "exec/error.hpp"
 #include "fdem/relations.hpp"
 #include "fdem3/relations.hpp"
@@ -103,6 +104,28 @@ void refuse_wrong_stages(const Buffer<fdem::JointStage>& stages, fdem::JointStag
     if (stage > last) refuse("joints.stage", "holds what is no stage of a joint");
 }
 
+/// Keys of contacts with walls, one after the other: a mesh has mesh_slots with each element.
+class KeyOfWalls {
+ public:
+  explicit KeyOfWalls(const dem::World& w) : w_(w), ids_(on_host(w.elements.id)) {}
+  PairKey next(Index element, Index wall) {
+    const bool goes_on = slot_ > 0;
+    if (goes_on && (element != element_ || wall != wall_)) return ~PairKey{0};
+    element_ = element;
+    wall_ = wall;
+    const PairKey key =
+        dem::wall_key(wall, ids_[static_cast<std::size_t>(element)], static_cast<int>(slot_));
+    if (!dem::mesh_of(w_, wall).empty()) slot_ = (slot_ + 1) % dem::mesh_slots;
+    return key;
+  }
+  bool whole() const { return slot_ == 0; }
+
+ private:
+  const dem::World& w_;
+  std::vector<GlobalId> ids_;
+  Index element_ = -1, wall_ = -1, slot_ = 0;
+};
+
 template <class World>
 void refuse_wrong_clock(const World& w) {
   constexpr std::int64_t most_steps = std::int64_t{1} << 60;
@@ -153,12 +176,10 @@ void refuse_wrong_places(const dem::World& w) {
   refuse_wrong_relations(w);
   const KeyOfIds key(w.elements.id);
   refuse_wrong_pairs("contacts", w.contacts.pairs, key);
-  const auto ids = on_host(w.elements.id);
-  const auto wall_key = [&](Index element, Index wall) {
-    return static_cast<PairKey>(wall) << 32 |
-           static_cast<std::uint32_t>(ids[static_cast<std::size_t>(element)]);
-  };
-  refuse_wrong_pairs("wall_contacts", w.wall_contacts.pairs, wall_key);
+  KeyOfWalls wall_keys(w);
+  refuse_wrong_pairs("wall_contacts", w.wall_contacts.pairs,
+                     [&](Index element, Index wall) { return wall_keys.next(element, wall); });
+  if (!wall_keys.whole()) refuse("wall_contacts.key", "ends within the contacts of an element");
   refuse_size("travel.reference", w.travel.reference, w.elements.size());
 }
 

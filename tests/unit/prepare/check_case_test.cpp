@@ -57,7 +57,7 @@ TEST(CheckDem, tells_of_walls_that_nothing_touches_at_the_start) {
   punch.normal = {0.0, 0.0, -1.0};
   punch.radius = punch.length = 0.02;
   config.walls = {floor, high, turned, ball, punch};
-  const std::vector<std::string> told = prepare::doubtful_walls(config);
+  const std::vector<std::string> told = prepare::doubtful_walls(config, "");
   ASSERT_EQ(told.size(), 3U);
   EXPECT_EQ(told[0],
             "wall.high.point: no body touches the wall at the start; slab is nearest, 3 mm away");
