@@ -37,7 +37,7 @@ struct FluidSource {
 struct Case {
   TimeConfig time;
   Vec2 gravity{};              ///< stage  [m/s2]
-  Sym2 in_situ{};              ///< stress at the start  [Pa]
+  InSituConfig in_situ;        ///< stress at the start
   bool plane_strain = false;   ///< nothing moves out of the plane; else there is no stress
   double local_damping = 0.0;  ///< stage  [-]
   double mean_edge = 0.0;      ///<  [m]
@@ -59,7 +59,10 @@ struct Case {
   std::vector<LoadedEdge> loaded;              ///< by global id, ascending; without cracks
   std::vector<FluidSource> fluids;             ///< empty: no load is a fluid
   std::vector<CrackSide> open_cracks;  ///< edges open from the start, where there are fluids
-  Buffer<ElasticTriangle> laws;        ///< stage  (materials)
+  Buffer<ElasticTriangle> laws;        ///< stage  (materials; where stress in situ has a slope:
+                                       ///< triangles of the whole mesh)
+  std::vector<Index> materials_of;     ///< likewise, else empty  (triangles of the whole mesh)
+  std::vector<Vec2> middles;           ///< likewise, at the start  [m]
   Buffer<JointBond> bonds;             ///< indexed by Joints::law  (laws of joints)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
   Buffer<Hold> holds;                 ///< stage; indexed by Triangles::hold  (held triangles)

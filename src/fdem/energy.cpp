@@ -123,7 +123,7 @@ Energies held(const World& w) {
   Energies all = fold(w.exec, t.size(), Energies{},
                       TriangleShares{owned,
                                      {kick(w), t.external.view(), {}, {}, {}, {}},
-                                     t.material.view(),
+                                     laws_of(w),
                                      w.given->laws.view(),
                                      t.shape_inverse.view(),
                                      t.viscous_work.view(),

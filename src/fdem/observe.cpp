@@ -91,13 +91,13 @@ std::vector<Value> of_deformation(const World& w, const Of& value) {
   const Triangles& t = *triangles;
   std::vector<ElasticTriangle> laws;
   copy_to(laws, w.given->laws);
+  const Buffer<Index>& law = w.given->in_situ.graded() ? t.id : t.material;
   std::vector<Value> all;
   all.reserve(at(t.size()));
   for (Index i = 0; i < t.size(); ++i) {
     Vec2 x[3], v[3];
     split(t.nodes.data()[i], x, v);
-    all.push_back(
-        value(laws[at(t.material.data()[i])], deformation(t.shape_inverse.data()[i], x, v)));
+    all.push_back(value(laws[at(law.data()[i])], deformation(t.shape_inverse.data()[i], x, v)));
   }
   return all;
 }

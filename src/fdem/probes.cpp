@@ -176,9 +176,9 @@ Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members
   const ReadBox box(p.min, p.max);
   if (kind == Kind::stress)
     return fold(w.exec, t.size(), Readings{},
-                ReadStress{owned, quantity, box, marked, t.id.view(), t.material.view(),
-                           t.nodes.view(), t.shape_inverse.view(), w.given->laws.view(),
-                           t.hold.view(), w.given->holds.view()},
+                ReadStress{owned, quantity, box, marked, t.id.view(), laws_of(w), t.nodes.view(),
+                           t.shape_inverse.view(), w.given->laws.view(), t.hold.view(),
+                           w.given->holds.view()},
                 Sum{});
   const Joints& j = w.joints;
   return fold(w.exec, j.size(), Readings{},

@@ -49,8 +49,8 @@ ServoReading read_support(World& part, std::size_t number, int axis) {
   return fold(part.exec, corners.size, ServoReading{},
               SupportPush{part.domain.owned_view(), axis, axis == 0 ? g.x : g.y, corners,
                           std::as_const(part.triangles.force).view(),
-                          std::as_const(part.triangles.mass).view(),
-                          std::as_const(part.triangles.material).view(), part.given->laws.view()},
+                          std::as_const(part.triangles.mass).view(), laws_of(part),
+                          part.given->laws.view()},
               Sum{});
 }
 

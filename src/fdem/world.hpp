@@ -195,6 +195,11 @@ void move_to(World& w, Space space);
 /// fit
 World make_world(const Config& config, const Model& model, const Exec& exec);
 
+/// The place of each triangle's law in Case::laws.
+inline View<const Index> laws_of(const World& w) {
+  return w.given->in_situ.graded() ? w.triangles.id.view() : w.triangles.material.view();
+}
+
 /// Lets the world go on by another stage of its case: gravity, damping, friction, supports, loads.
 /// The state stays as it is. @throws InputError if supports contradict each other
 void configure(World& w, const Config& config);

@@ -184,7 +184,7 @@ struct TieCorners {
 
 inline TriangleStress stress_kernel(World& w) {
   const Triangles& t = w.triangles;
-  return {t.nodes.view(), t.material.view(), w.given->laws.view(), t.shape_inverse.view(),
+  return {t.nodes.view(), laws_of(w), w.given->laws.view(), t.shape_inverse.view(),
           w.stress.view()};
 }
 inline Overshoot overshoot_kernel(World& w) {

@@ -42,7 +42,9 @@ struct JointForces {
   View<const Index> law;
   View<const double> length, strength;
   View<const Vec2> preset;
-  Sym2 in_situ;  ///< stress at the start  [Pa]
+  Sym2 in_situ;                        ///< stress at the start  [Pa]
+  View<const ElasticTriangle> graded;  ///< laws that hold it by global id; empty: it has no slope
+  View<const GlobalId> id;             ///< of triangles
   View<JointStage> stage;
   View<JointPoints> points;
   View<JointForceOf<Number>> force;
@@ -56,6 +58,7 @@ struct JointForces {
     R length, strength;
     JointStage stage;  ///< of a pack: whole if one is
     R corner[4][4];    ///< position and velocity
+    R start[3];        ///< stress at the start, if it has a slope  [Pa]
   };
   BR_HD void set(const StepTime& now) {
     time = now.time;
@@ -77,6 +80,7 @@ struct JointForces {
     }
     for (int k = 0; k < 4; ++k) loaded.end[k] = indices<R>(at[k]);
     loaded.law = load_indices_now<R>(law, i);
+    if (graded.size > 0) load_start(i, loaded.start);
     loaded.length = load_now<R>(length, i);
     loaded.strength = load_now<R>(strength, i);
   }
@@ -217,7 +221,12 @@ struct JointForces {
       shear = shear + weight_of(q) * t.shear;
     }
     const R stretch = o.size / h - 1.0;
-    const R along = stress_along(o.along, stretch, normal, bond[8], bond[9], in_situ);
+    const auto along_from = [&](const auto& start) {
+      return stress_along(o.along, stretch, normal, bond[8], bond[9], start);
+    };
+    const R along = graded.size > 0
+                        ? along_from(Sym2Of<R>{loaded.start[0], loaded.start[1], loaded.start[2]})
+                        : along_from(in_situ);
     const auto failing = may_fail(tension, cohesion, bond[3], normal, shear, along);
     beyond = beyond || (bond[8] > 0.0 && failing);
     const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
@@ -228,6 +237,22 @@ struct JointForces {
     numbers[2] = second.x;
     numbers[3] = second.y;
     return beyond;
+  }
+  /// Stress at the start of the rock at a joint: the mean of its two triangles'.  [Pa]
+  BR_HD Sym2 start_of(Index i) const {
+    const Sym2 &a = graded[id[ends[i].a0 / 3]].preset, &b = graded[id[ends[i].b0 / 3]].preset;
+    return {0.5 * (a.xx + b.xx), 0.5 * (a.yy + b.yy), 0.5 * (a.xy + b.xy)};
+  }
+  template <class R>
+  BR_HD void load_start(Index i, R (&start)[3]) const {
+    double own[3][width_of<R>];
+    for (Index k = 0; k < width_of<R>; ++k) {
+      const Sym2 at = start_of(i + k);
+      own[0][k] = at.xx;
+      own[1][k] = at.yy;
+      own[2][k] = at.xy;
+    }
+    for (int c = 0; c < 3; ++c) start[c] = pack_of<R>(own[c]);
   }
   /// Weight of an integration point in a mean.  [-]
   BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
@@ -249,8 +274,8 @@ struct JointForces {
       half_soft = half_soft || (point.damage > 0.0 && softening(point.damage) < 0.5);
     }
     if (half_soft) return false;
-    const double along =
-        stress_along(o.along, o.size / h - 1.0, normal, bond.young, bond.poisson, in_situ);
+    const double along = stress_along(o.along, o.size / h - 1.0, normal, bond.young, bond.poisson,
+                                      graded.size > 0 ? start_of(i) : in_situ);
     const Failure how = failure_of(rock_failure(bond, share, {normal, shear, along}));
     if (how == Failure::none) return false;
     for (int q = 0; q < 3; ++q)

@@ -40,9 +40,9 @@ struct RockStress {
 ///   sigma_l = E' (|e|/h - 1) + nu' (sigma_n - S0_nn) + S0_ll
 /// @param axis  e, unit vector  [-]  @param stretch  |e|/h - 1  [-]  @param normal  sigma_n  [Pa]
 /// @param in_situ  S_0, taken along the present axis  [Pa]
-template <class R>
+template <class R, class Start>
 BR_HD R stress_along(const Vec2Of<R>& axis, const R& stretch, const R& normal, const R& young,
-                     const R& poisson, const Sym2& in_situ) {
+                     const R& poisson, const Start& in_situ) {
   const R &x = axis.x, &y = axis.y;
   const R xx = x * x, yy = y * y, twice = 2.0 * in_situ.xy * x * y;
   const R start_along = in_situ.xx * xx + in_situ.yy * yy + twice;

@@ -297,15 +297,31 @@ struct StageConfig : StageEnd {
 
 /// [in_situ]
 struct InSituConfig {
-  double xx = 0.0, yy = 0.0, xy = 0.0;  ///< stress at the start, tension positive  [Pa]
+  double xx = 0.0, yy = 0.0, xy = 0.0;      ///< stress at the start, tension positive  [Pa]
+  Vec2 xx_slope{}, yy_slope{}, xy_slope{};  ///< its change with x and y  [Pa/m]
+  Vec2 origin{};                            ///< where xx, yy and xy hold  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
     key("xx", xx, "Pa", Range{-1e15, 1e15}, "stress at the start, tension positive");
     key("yy", yy, "Pa", Range{-1e15, 1e15}, "stress at the start, tension positive");
     key("xy", xy, "Pa", Range{-1e15, 1e15}, "stress at the start");
+    key("xx_slope", xx_slope, "Pa/m", Range{-1e12, 1e12},
+        "how much xx grows per metre along x and y: stress that grows with depth");
+    key("yy_slope", yy_slope, "Pa/m", Range{-1e12, 1e12},
+        "how much yy grows per metre along x and y; under gravity g along -y: [0, rho g]");
+    key("xy_slope", xy_slope, "Pa/m", Range{-1e12, 1e12},
+        "how much xy grows per metre along x and y");
+    key("origin", origin, "m", any_number,
+        "where xx, yy and xy hold, as a point of the ground's surface");
   }
-  bool any() const { return xx != 0.0 || yy != 0.0 || xy != 0.0; }
+  bool graded() const { return norm(xx_slope) + norm(yy_slope) + norm(xy_slope) > 0.0; }
+  bool any() const { return xx != 0.0 || yy != 0.0 || xy != 0.0 || graded(); }
+  /// Stress at a place at the start.  [Pa]
+  Sym2 at(const Vec2& place) const {
+    const Vec2 from = place - origin;
+    return {xx + dot(xx_slope, from), yy + dot(yy_slope, from), xy + dot(xy_slope, from)};
+  }
 };
 
 /// [contact]

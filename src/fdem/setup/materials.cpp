@@ -138,4 +138,19 @@ std::vector<ElasticTriangle> elastic_table(const Config& config) {
   return laws;
 }
 
+std::vector<ElasticTriangle> elastic_laws(const Config& config, const Case& given) {
+  const std::vector<ElasticTriangle> table = elastic_table(config);
+  if (!config.in_situ.graded()) return table;
+  std::vector<ElasticTriangle> laws;
+  laws.reserve(given.middles.size());
+  for (std::size_t t = 0; t < given.middles.size(); ++t) {
+    const auto material = static_cast<std::size_t>(given.materials_of[t]);
+    const double share = config.materials[material].in_situ_share;
+    const Sym2 start = config.in_situ.at(given.middles[t]);
+    laws.push_back(table[material]);
+    laws.back().preset = {share * start.xx, share * start.yy, share * start.xy};
+  }
+  return laws;
+}
+
 }  // namespace breccia::fdem

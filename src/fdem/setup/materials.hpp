@@ -1,6 +1,7 @@
 #pragma once
 // From what a case says of materials to what kernels read.
 
+#include "fdem/case.hpp"
 #include "fdem/contact/couples.hpp"
 #include "fdem/joints/joints.hpp"
 #include "fdem/setup/config.hpp"
@@ -26,6 +27,9 @@ std::vector<ContactPair> contact_table(const Config& config);
 
 /// @throws InputError where plane strain meets a Poisson's ratio of 0.5 or more
 std::vector<ElasticTriangle> elastic_table(const Config& config);
+/// The laws of a run: of materials, or, where stress in situ has a slope, of each triangle, which
+/// bears the stress at its middle.
+std::vector<ElasticTriangle> elastic_laws(const Config& config, const Case& given);
 
 /// Index of a material. @throws InputError saying where the name was used
 std::int16_t material_index(const Config& config, const std::string& name,

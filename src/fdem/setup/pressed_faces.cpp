@@ -147,8 +147,8 @@ void warn(World& w, const Given& given, const std::vector<Index>& unable) {
 }  // namespace
 
 std::vector<PressedFace> press_faces(World& w) {
-  const Sym2& stress = w.given->in_situ;
-  if (stress.xx == 0.0 && stress.yy == 0.0 && stress.xy == 0.0) return {};
+  const InSituConfig& in_situ = w.given->in_situ;
+  if (!in_situ.any()) return {};
   Given given(w);
   std::vector<PressedFace> faces;
   std::vector<Index> unable;
@@ -165,7 +165,8 @@ std::vector<PressedFace> press_faces(World& w) {
       const double length = common_length(a, b);
       if (!(length > 0.0)) continue;
       const Vec2 line = a.to - a.from, along = (1.0 / norm(line)) * line;
-      const Vec2 outward{along.y, -along.x}, traction = stress * outward;
+      const Vec2 outward{along.y, -along.x}, middle = 0.5 * (a.from + a.to);
+      const Vec2 traction = in_situ.at(middle) * outward;
       const double normal = dot(traction, outward), shear = dot(traction, along);
       const ContactPair& law = given.contact(a.edge / 3, b.edge / 3);
       if (normal == 0.0 && shear == 0.0) continue;

@@ -72,6 +72,17 @@ void set_up_triangles(World& w, const Config& config, const Model& model) {
   triangles.load_work.resize(model.size());
 }
 
+/// What the law of each triangle needs where the stress in situ has a slope.
+void set_up_middles(Case& given, const Model& model) {
+  if (!given.in_situ.graded()) return;
+  given.materials_of.assign(model.material.begin(), model.material.end());
+  for (const auto& corners : model.triangle) {
+    Vec2 sum{};
+    for (const Index corner : corners) sum += model.point[at(corner)];
+    given.middles.push_back((1.0 / 3.0) * sum);
+  }
+}
+
 /// Vertices with several corners, some of which move as one, at least at the start.
 void set_up_bundles(World& w, const std::vector<std::uint8_t>& tied) {
   std::vector<std::vector<Index>> corners(tied.size());
@@ -161,7 +172,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     preset.emplace_back();
     if (dormant || !config.in_situ.any()) continue;
     const Vec2 unit = (1.0 / length.back()) * along, across{-unit.y, unit.x};
-    const Vec2 traction = Sym2{config.in_situ.xx, config.in_situ.yy, config.in_situ.xy} * across;
+    const Vec2 middle = 0.5 * (model.point[at(e.low)] + model.point[at(e.high)]);
+    const Vec2 traction = config.in_situ.at(middle) * across;
     Vec2 opening;
     if (!preset_opening(table.bonds[static_cast<std::size_t>(found)], strength.back(),
                         length.back(), dot(traction, across), dot(traction, unit), opening))
@@ -358,13 +370,14 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   Case& given = set_up(w);
   given.time = config.time;
   given.gravity = config.gravity;
-  given.in_situ = {config.in_situ.xx, config.in_situ.yy, config.in_situ.xy};
+  given.in_situ = config.in_situ;
   given.plane_strain = config.plane == "strain";
   given.local_damping = config.local_damping;
   given.shown = config.output.more_fields();
   given.conservative = config.contact.conservative;
   given.materials = static_cast<Index>(config.materials.size());
-  copy_to(given.laws, elastic_table(config));
+  set_up_middles(given, model);
+  copy_to(given.laws, elastic_laws(config, given));
   copy_to(given.contact_pairs, contact_table(config));
   set_up_bodies(w, config, model);
   set_up_triangles(w, config, model);
@@ -392,7 +405,7 @@ void configure(World& w, const Config& config) {
   Case& given = set_up(w);
   given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
   given.local_damping = config.local_damping;
-  copy_to(given.laws, elastic_table(config));
+  copy_to(given.laws, elastic_laws(config, given));
   std::vector<ContactPair> pairs = contact_table(config);
   const double friction = config.stage_friction;
   if (friction >= 0.0)

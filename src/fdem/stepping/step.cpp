@@ -44,6 +44,7 @@ StableStep stable_step(const World& w) {
   const Pairs& pairs = w.couples.pairs;
   return {t.nodes.view(),
           t.material.view(),
+          laws_of(w),
           w.given->laws.view(),
           t.viscosity.view(),
           t.mass.view(),

@@ -39,7 +39,7 @@ struct TriangleForces {
   static constexpr const char* name = "fdem.triangles";
   double span;  ///< time that the forces of this moment act  [s]
   View<const TriangleNodes> nodes;
-  View<const Index> material;
+  View<const Index> law;  ///< place among the laws
   View<const ElasticTriangle> laws;
   View<const Mat2> shape_inverse;
   View<const double> viscosity;
@@ -56,7 +56,7 @@ struct TriangleForces {
     Columns<R, TriangleNodes> nodes;
     Columns<R, Mat2> inverse;
     R viscosity;
-    Indices<R> material;
+    Indices<R> law;
     Index couples, couples_end;  ///< of the first triangle, and of the last
     Index edge[3][width_of<R>];  ///< entries of `edges`
     R joint[3][4];               ///< forces
@@ -67,7 +67,7 @@ struct TriangleForces {
   BR_HD void load_early(Index t, Loaded<R>& loaded) const {
     for (int k = 0; k < 3; ++k)
       for (Index i = 0; i < width_of<R>; ++i) loaded.edge[k][i] = read_now(&edges[t + i].at[k]);
-    loaded.material = load_indices_now<R>(material, t);
+    loaded.law = load_indices_now<R>(law, t);
     loaded.viscosity = load_now<R>(viscosity, t);
     loaded.couples = read_now(&couples.starts[t]);
     loaded.couples_end = read_now(&couples.starts[t + width_of<R>]);
@@ -113,11 +113,11 @@ struct TriangleForces {
     const R(&inverse)[4] = loaded.inverse.numbers;
     const R& eta = loaded.viscosity;
     R numbers[8];
-    gather_records(laws, loaded.material, numbers);
-    const ElasticLaw<R> law{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
+    gather_records(laws, loaded.law, numbers);
+    const ElasticLaw<R> elastic{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
     const Deformation<R> d =
         deformation(Mat2Of<R>{inverse[0], inverse[1], inverse[2], inverse[3]}, c.x, c.v);
-    corner_forces(law.stress(d, eta), c.x, sum);
+    corner_forces(elastic.stress(d, eta), c.x, sum);
     if (any(eta > 0.0)) {
       const Mat2Of<R>& l = d.velocity_gradient;
       const Sym2Of<R> rate{l.xx, l.yy, 0.5 * (l.xy + l.yx)};
@@ -212,7 +212,7 @@ struct EdgeDashpots {
 /// what is near between two evaluations.
 struct StableStep {
   View<const TriangleNodes> nodes;
-  View<const Index> material;
+  View<const Index> material, law_of;  ///< the latter: place among the laws
   View<const ElasticTriangle> laws;
   View<const double> viscosity, mass;
   View<const ContactPair> contacts;
@@ -260,7 +260,7 @@ struct StableStep {
  private:
   /// @param pressed  bits of the edges whose contact counts
   BR_HD Parts parts(Index t, const Vec2 (&x)[3], int pressed) const {
-    const ElasticTriangle& law = laws[material[t]];
+    const ElasticTriangle& law = laws[law_of[t]];
     const Target shape = Target::of(x);
     const double area = 0.5 / shape.over_double;
     const Vec2 slope[3] = {shape.slope(0), shape.slope(1), shape.slope(2)};

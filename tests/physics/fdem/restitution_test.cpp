@@ -1,0 +1,67 @@
+// Contacts that give back e^2 of what they take up: a body comes back with e of its velocity,
+// whatever the law of its contact, its mass and its speed.
+
+#include <gtest/gtest.h>
+
+#include "physics/fdem/scene.hpp"
+
+namespace breccia::fdem {
+namespace restitution_test {
+
+using testing::far;
+using testing::Scene;
+
+/// A body on a held block; its contact is 1e4 times as soft as itself, so that it hardly vibrates.
+Scene thrown(double e, bool on_a_corner, double speed, double density = 2000.0) {
+  Scene s;
+  s.material(1e11, 0.2, density).contact_stiffness = 1e-4;
+  s.config.contact.restitution = e;
+  s.config.time.evaluate_every = 1;
+  s.config.time.safety = 0.1;
+  s.body("floor", prepare::crossed_rectangle({{0.0, -0.05}, {0.4, 0.1}}, 0.1));
+  if (on_a_corner)
+    s.triangle("ball", {0.013, 1e-5}, {0.113, 0.1}, {-0.087, 0.1}, 0, {0.0, -speed});
+  else
+    s.body("ball", prepare::crossed_rectangle({{0.013, 0.05 + 1e-5}, {0.1, 0.1}}, 0.05), 0,
+           {0.0, -speed});
+  s.support("hold", {-far, -far}, {far, far}, {"x", "y"}, {}, "floor");
+  return s;
+}
+
+TEST(FdemRestitution, is_that_of_the_case) {
+  for (const bool on_a_corner : {false, true})
+    for (const double e : {0.2, 0.6, 0.9, 1.0})
+      for (const double speed : {0.2, 2.0}) {
+        World w = thrown(e, on_a_corner, speed).world();
+        const double start = energies(w).balance.kinetic;
+        bool met = false;
+        for (long i = 0; i < 2'000'000; ++i) {
+          step(w);
+          const bool touches = energies(w).balance.kinetic < 0.999 * start;
+          met = met || touches;
+          if (met && testing::value(w, "ball", "position_y") >
+                         (on_a_corner ? 0.2 / 3.0 + 2e-5 : 0.05 + 2e-5))
+            break;
+          if (met && i % 100 == 0 && w.time > 1.0) break;
+        }
+        ASSERT_TRUE(met);
+        EXPECT_NEAR(testing::value(w, "ball", "velocity_y"), e * speed, 0.01 * speed)
+            << on_a_corner << " " << e << " " << speed;
+        const EnergyBalance b = energies(w).balance;
+        EXPECT_NEAR(b.contact, (1.0 - e * e) * start, 0.02 * start) << on_a_corner << " " << e;
+        EXPECT_LT(b.error_relative, 1e-6);
+      }
+}
+
+/// After a fall of 10 um it has come back twice at most, with e^2 of its velocity.
+TEST(FdemRestitution, lets_bodies_rest) {
+  Scene s = thrown(0.3, false, 0.0);
+  s.config.gravity = {0.0, -9.81};
+  World w = s.world();
+  testing::run_to(w, 0.02);
+  const double fall = std::sqrt(2.0 * 9.81 * 1e-5);
+  EXPECT_LT(std::abs(testing::value(w, "ball", "velocity_y")), 0.3 * 0.3 * fall);
+}
+
+}  // namespace restitution_test
+}  // namespace breccia::fdem
