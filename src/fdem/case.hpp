@@ -43,6 +43,7 @@ struct Case {
   double mean_edge = 0.0;      ///<  [m]
   double skin = 0.0;           ///< margin of the search between two triangles at rest  [m]
   bool conservative = false;   ///< whether forces of contact are
+  Rebound rebound;             ///< what contacts give back
   bool extrinsic = false;      ///< some joints are dormant, or were
   MoreFields shown;            ///< in frames
   Index materials = 0;         ///< how many there are  [-]

@@ -8,7 +8,7 @@
 namespace breccia::fdem {
 
 /// The six edges of a couple in the lanes of one pack, or of two; spare lanes repeat the last. For
-/// couples that are not new, without conservative forces.
+/// couples that are not new, without conservative forces and losses.
 template <class R>
 struct EdgesSideBySide {
   static constexpr bool any_couple = false;
@@ -77,7 +77,7 @@ struct EdgesSideBySide {
 /// pack with a new couple
 template <class R, class Number>
 inline Index run_couples(const CoupleForces<Number>& kernel, Index begin, Index end) {
-  if (kernel.conservative) return begin;
+  if (kernel.conservative || kernel.rebound.loses()) return begin;
   constexpr Index width = width_of<R>;
   const auto corners = [&kernel](const View<const Index>& of, Index first, Vec2Of<R>(&x)[3]) {
     R numbers[12];

@@ -18,6 +18,30 @@ struct ContactPair {
   double friction;    ///< mu  [-]
 };
 
+/// How the normal forces of a couple fall as it opens, so that it gives back e^2 of what it took
+/// up, whatever the law of its forces and whoever presses. With the energy U of its overlap, of
+/// which there was most U_0 since it began to touch, forces are those of the potential times
+///
+///   g = max(0, 1 - k (1 - U/U_0)),   int_0^U_0 g dU = e^2 U_0,
+///   k = 2 (1 - e^2) if e^2 >= 1/2, else 1/(2 e^2).
+///
+/// Between 0 and U_0 it closes and opens on one curve, without loss. Walton and Braun (1986) do
+/// this for a linear spring, whose forces then fall along one line.
+struct Rebound {
+  double fall = 0.0;  ///< k; 0: it gives all back  [-]
+
+  static Rebound of(double restitution) {
+    const double back = restitution * restitution;
+    return {back >= 0.5 ? 2.0 * (1.0 - back) : 0.5 / back};
+  }
+  BR_HD bool loses() const { return fall > 0.0; }
+  BR_HD double share(double energy, double most) const {
+    return energy < most ? max(0.0, 1.0 - fall * (1.0 - energy / most)) : 1.0;
+  }
+  /// Stiffness where it begins to open, of a linear spring, over that of the spring.  [-]
+  BR_HD double stiffness() const { return 1.0 + 2.0 * fall; }
+};
+
 /// State of a couple of triangles.
 struct CoupleState {
   double drag[6];  ///< tangential force of a's edges through b, then of b's through a  [N/m]
@@ -27,6 +51,7 @@ struct CoupleState {
   double sprung;   ///< the part of it that the springs of friction hold  [J/m]
   double lost;     ///< what was left of both when it parted: errors of integration  [J/m]
   double rubbed;   ///< what friction spent in touches that have ended  [J/m]
+  double most;     ///< energy of its overlap since it began to touch, if contacts lose some  [J/m]
 };
 
 /// Forces of a couple on the corners of both triangles.  [N/m]
@@ -140,7 +165,7 @@ BR_HD inline EdgePushOf<R> edge_push(const ContactPair& law, double scale, const
 
 /// The six edges of a couple one after the other; any couple.
 struct EdgesInTurn {
-  static constexpr bool any_couple = true;  ///< new ones, too, and with conservative forces
+  static constexpr bool any_couple = true;  ///< new ones, too, conservative or with losses
 
   /// False only where the two cannot touch.
   BR_HD bool near(const Vec2 (&xa)[3], const Vec2 (&xb)[3]) const { return meet(xa, xb); }
@@ -179,6 +204,7 @@ struct CoupleForces {
   static constexpr const char* name = "fdem.couples";
   double dt;          ///< the step that led here  [s]
   bool conservative;  ///< adds the shape forces that make it the gradient of an energy
+  Rebound rebound;
   View<const TriangleNodes> nodes;
   View<const Index> material;
   View<const ContactPair> laws;  ///< of materials a and b at a * materials + b
@@ -238,7 +264,14 @@ struct CoupleForces {
       const Target of_a = Target::of(xa), of_b = Target::of(xb);
       if constexpr (Edges::any_couple)
         if (is_new && parent_joint[i] >= 0) inherit(parent_joint[i], law, kept, xa, of_a, xb, of_b);
-      edges(law, kept.scale, kept.drag, dt, xa, va, of_a, xb, vb, of_b,
+      double scale = kept.scale;
+      if constexpr (Edges::any_couple)
+        if (rebound.loses()) {
+          const Opening now = opening(scale * law.penalty, kept.most, of_a, of_b);
+          scale *= now.share;
+          kept.most = now.most;
+        }
+      edges(law, scale, kept.drag, dt, xa, va, of_a, xb, vb, of_b,
             [&](int edge, const EdgePush& p) {
               kept.drag[edge] = p.drag;
               if (!p.touches) return;
@@ -255,8 +288,8 @@ struct CoupleForces {
       if constexpr (Edges::any_couple)
         if (touching && conservative) {
           const Polygon over = overlap_of(of_a, of_b);
-          add_shape_forces(of_a, over, kept.scale * law.penalty, sum.on_a.at);
-          add_shape_forces(of_b, over, kept.scale * law.penalty, sum.on_b.at);
+          add_shape_forces(of_a, over, scale * law.penalty, sum.on_a.at);
+          add_shape_forces(of_b, over, scale * law.penalty, sum.on_b.at);
         }
     }
     CoupleForceOf<Number>& stored = force[i];
@@ -276,10 +309,30 @@ struct CoupleForces {
     if (!touching) {
       kept.lost += kept.work - kept.slid;
       kept.rubbed += kept.slid;
-      kept.work = kept.slid = 0.0;
+      kept.work = kept.slid = kept.most = 0.0;
       kept.scale = 1.0;
       for (double& drag : kept.drag) drag = 0.0;
     }
+  }
+
+  /// How far a couple has opened.
+  struct Opening {
+    double share;  ///< of its normal forces that is left  [-]
+    double most;   ///< energy of its overlap so far  [J/m]
+  };
+  BR_HD Opening opening(double penalty, double most, const Target& of_a, const Target& of_b) const {
+    const Polygon over = overlap_of(of_a, of_b);
+    const double energy =
+        penalty * (potential_integral(of_a, over) + potential_integral(of_b, over));
+    return {rebound.share(energy, most), max(energy, most)};
+  }
+  /// Likewise of couple i, as it lies.
+  BR_HD Opening opening(Index i, double penalty, double most) const {
+    Vec2 xa[3], va[3], xb[3], vb[3];
+    split(nodes[a[i]], xa, va);
+    split(nodes[b[i]], xb, vb);
+    if (!meet(xa, xb)) return {1.0, most};
+    return opening(penalty, most, Target::of(xa), Target::of(xb));
   }
 
   BR_HD const ContactPair& law_of(Index i) const {

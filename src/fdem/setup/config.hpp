@@ -327,9 +327,13 @@ struct InSituConfig {
 /// [contact]
 struct ContactConfig {
   bool conservative = false;
+  double restitution = 1.0;  ///< e  [-]
 
   template <class Visit>
   void each_key(Visit&& key) {
+    key("restitution", restitution, "-", Range{0.05, 1.0},
+        "coefficient of restitution: a contact gives back e^2 of the energy that it has taken up; "
+        "1: all; less costs one polygon cut a contact and step, and shorter steps");
     key("conservative", conservative,
         "adds the forces that make contact of deformable triangles the gradient of an energy; "
         "costs one polygon cut a contact");

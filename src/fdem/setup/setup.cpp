@@ -375,6 +375,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.local_damping = config.local_damping;
   given.shown = config.output.more_fields();
   given.conservative = config.contact.conservative;
+  given.rebound = Rebound::of(config.contact.restitution);
   given.materials = static_cast<Index>(config.materials.size());
   set_up_middles(given, model);
   copy_to(given.laws, elastic_laws(config, given));

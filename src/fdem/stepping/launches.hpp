@@ -51,6 +51,7 @@ CoupleForces<Number> couple_kernel(World& w) {
   Joints& j = w.joints;
   return {w.last_dt,
           w.given->conservative,
+          w.given->rebound,
           std::as_const(w.triangles.nodes).view(),
           w.triangles.material.view(),
           w.given->contact_pairs.view(),

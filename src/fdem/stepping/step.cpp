@@ -59,7 +59,8 @@ StableStep stable_step(const World& w) {
           w.dashpots.view(),
           {t.nodes.view(), t.shape_inverse.view(), w.couple_incidence.view(), pairs.a.view(),
            pairs.b.view(), w.joints.edge_a.view(), w.joints.edge_b.view()},
-          w.given->time.evaluate_every};
+          w.given->time.evaluate_every,
+          w.given->rebound.stiffness()};
 }
 
 void list_motions(World& w) {

@@ -77,6 +77,14 @@ BR_RARELY Vec2 shape_force_rarely(const CoupleForces<Number>* couples, Index c, 
   return couples->shape_force(c, penalty, of_a, corner);
 }
 
+template <class Number>
+BR_RARELY typename CoupleForces<Number>::Opening opening_rarely(const CoupleForces<Number>* couples,
+                                                                Index c, double penalty,
+                                                                double most) {
+  stay_in_place(couples);
+  return couples->opening(c, penalty, most);
+}
+
 /// CoupleForces by eight threads a couple, of which six each take an edge, and then a corner: every
 /// corner adds up what edges do to it in their order.
 template <class Number>
@@ -167,7 +175,15 @@ struct CouplesWide {
         loaded.sprung = kept.sprung;
         group.wait();
       }
-      mine = edge_push(law, loaded.scale, loaded.drag, dt, loaded.corner[0], loaded.corner[1],
+      double scale = loaded.scale;
+      if (all.rebound.loses()) {
+        const double most = kept.most;
+        group.wait();
+        const auto now = opening_rarely(&all, c, scale * law.penalty, most);
+        scale *= now.share;
+        if (leads) kept.most = now.most;
+      }
+      mine = edge_push(law, scale, loaded.drag, dt, loaded.corner[0], loaded.corner[1],
                        Target::of(other), other_v);
       kept.drag[place.edge] = mine.drag;
       touching = group.ballot(mine.touches) & 0x3fU;
@@ -195,7 +211,7 @@ struct CouplesWide {
           add(vector_from(s, mine.friction[0]), vector_from(s, mine.friction[1]));
       }
       if (touching != 0 && all.conservative)
-        sum += shape_force_rarely(&all, c, loaded.scale * law.penalty, place.of_a, place.of);
+        sum += shape_force_rarely(&all, c, scale * law.penalty, place.of_a, place.of);
     }
     if (is_new && leads) kept.scale = loaded.scale;
 
@@ -221,6 +237,7 @@ struct CouplesWide {
         kept.lost += loaded.work - loaded.slid;
         kept.rubbed += loaded.slid;
         kept.scale = 1.0;
+        kept.most = 0.0;
       }
       loaded.work = loaded.slid = 0.0;
     }

@@ -226,6 +226,7 @@ struct StableStep {
   View<const EdgeDashpots> dashpots;  ///< empty: nothing absorbs
   Nearness nearness;
   int evaluate_every;  ///< steps from one evaluation to the next
+  double rebound;      ///< factor on the stiffness of contacts that lose energy  [-]
 
   /// Shares of the largest row sum.
   struct Parts {
@@ -323,7 +324,7 @@ struct StableStep {
   BR_HD double contact_stiffness(Index t, int k, const Vec2 (&x)[3], double area) const {
     const Vec2 edge = x[(k + 1) % 3] - x[k];
     const double over_height = dot(edge, edge) / (2.0 * area);  // L / H
-    return 6.0 * contacts[material[t] * materials + material[t]].penalty * over_height;
+    return 6.0 * rebound * contacts[material[t] * materials + material[t]].penalty * over_height;
   }
   BR_HD bool is_broken(Index entry) const { return entry >= 0 && is_parted(stage[pair_of(entry)]); }
   /// Bits of the edges that nothing joins.

@@ -38,6 +38,7 @@ struct Touching {
     Buffer<CoupleForce> force(Space::host, 1);
     const CoupleForces<double> kernel{0.0,
                                       conservative,
+                                      {},
                                       std::as_const(nodes).view(),
                                       std::as_const(material).view(),
                                       std::as_const(law).view(),
