@@ -12,7 +12,7 @@ namespace breccia::dem {
 /// Triangles of one wall at most.
 inline constexpr std::size_t most_mesh_triangles = 1'000'000;
 
-/// What makes triangles unfit for a wall; empty: nothing.
+/// The reason why triangles are unfit for a wall; empty: they are fit.
 /// @param corners  three of each triangle  [m]
 std::string wall_mesh_problem(const std::vector<Vec3>& corners);
 

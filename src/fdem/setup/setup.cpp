@@ -72,7 +72,7 @@ void set_up_triangles(World& w, const Config& config, const Model& model) {
   triangles.load_work.resize(model.size());
 }
 
-/// What the law of each triangle needs where the stress in situ has a slope.
+/// Materials and middles of triangles, for their laws where the stress in situ has a slope.
 void set_up_middles(Case& given, const Model& model) {
   if (!given.in_situ.graded()) return;
   given.materials_of.assign(model.material.begin(), model.material.end());

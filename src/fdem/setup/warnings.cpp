@@ -112,8 +112,8 @@ void look_for_long_edges(const World& w, const Config& config, std::vector<std::
   found.emplace_back(text);
 }
 
-/// Stress in situ with a slope, or gravity without one: what moves at once. Forces per volume that
-/// are missing are held against the weight.
+/// Stress in situ with a slope, or gravity without one, by which rock moves at once. Forces per
+/// volume that are missing are held against the weight.
 void look_for_unbalanced_weight(const Config& config, std::vector<std::string>& found) {
   const InSituConfig& s = config.in_situ;
   if (!s.any()) return;
