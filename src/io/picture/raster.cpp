@@ -216,8 +216,8 @@ void draw_line(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoin
 
 void draw_mark(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b, int thickness,
                std::int32_t item, const std::optional<ScreenClip>& clip) {
-  constexpr double lift = 3.0;            // pixels: a surface so much before it does not hide it
-  constexpr double beyond_surface = 0.3;  // of its length: so deep may the gap of a crack be
+  constexpr double lift = 3.0;             // pixels: a surface so much before it does not hide it
+  constexpr double beyond_surface = 0.12;  // of its length: so deep may the gap of a crack be
   const double du = b.u - a.u, dv = b.v - a.v, dd = b.depth - a.depth;
   const double behind = lift + beyond_surface * std::sqrt(du * du + dv * dv + dd * dd);
   const auto depth_at = [&canvas](int x, int y) {
