@@ -19,7 +19,9 @@ struct ContactPair {
 /// What a couple remembers.
 struct CoupleState {
   Vec3 drag;      ///< T: tangential force on a  [N]
+  double spring;  ///< k: stiffness of its spring; 0: it is new  [N/m]
   double scale;   ///< of its normal penalty; 0: it is new  [-]
+  double begun;   ///< energy of the overlap that it began with, which nobody paid for  [J]
   double work;    ///< taken up since it began to touch, friction included  [J]
   double slid;    ///< the part of it that friction has spent  [J]
   double sprung;  ///< the part of it that the spring of friction holds  [J]
@@ -75,22 +77,40 @@ struct Pressing {
   Vec3 on_a{};    ///< N  [N]
   Vec3 centre{};  ///< weighted by `weight`  [N m]
   double weight = 0.0;
-  double area = 0.0;  ///< of both passes  [m2]
+  double area = 0.0;    ///< of both passes  [m2]
+  double energy = 0.0;  ///< of the overlap  [J]
 
   BR_HD bool touches() const { return weight > 0.0; }
+  /// Takes off what an overlap began with: with E the energy of the overlap and E_0 that at the
+  /// beginning, the couple has (E - E_0)^2/E beyond E_0, and its forces are the slope of that.
+  BR_HD void take_off(double begun) {
+    if (!(begun > 0.0)) return;
+    const double ratio = begun / energy;
+    const double share = energy > begun ? 1.0 - ratio * ratio : 0.0;
+    for (int k = 0; k < 4; ++k) {
+      force.on_a.at[k] = share * force.on_a.at[k];
+      force.on_b.at[k] = share * force.on_b.at[k];
+    }
+    on_a = share * on_a;
+  }
 };
 
-/// Adds the exposed faces of one tetrahedron that are in the other.
+/// Adds the exposed faces of one tetrahedron that are in the other; and what all of its faces tell
+/// of the overlap.
+/// @param inside  of the target  @param own  of the tetrahedron itself
 BR_HD inline void add_faces(const Vec3 (&x)[4], int exposed, const Target& target, double penalty,
-                            bool of_a, Pressing& sum) {
+                            bool of_a, Pressing& sum, Inside& inside, Inside& own) {
   Corners& on_own = of_a ? sum.force.on_a : sum.force.on_b;
   Corners& on_other = of_a ? sum.force.on_b : sum.force.on_a;
   for (int f = 0; f < 4; ++f) {
-    if ((exposed >> f & 1) == 0) continue;
     Vec3 face[3];
     for (int k = 0; k < 3; ++k) face[k] = x[corner_of_face(f, k)];
     FaceOverlap o;
     if (!overlap_of_face(face, target, o)) continue;
+    const double area = o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
+    inside.add_other(o, face);
+    own.add_own(f, area);
+    if ((exposed >> f & 1) == 0) continue;
     Vec3 on_face[3], on_target[4];
     push(o, face, penalty, on_face, on_target);
     for (int k = 0; k < 3; ++k) on_own.at[corner_of_face(f, k)] += on_face[k];
@@ -102,17 +122,14 @@ BR_HD inline void add_faces(const Vec3 (&x)[4], int exposed, const Target& targe
     sum.on_a += of_a ? whole : -whole;
     sum.centre += size * middle;
     sum.weight += size;
-    sum.area += o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
+    sum.area += area;
   }
 }
 
 /// What broken joints leave to the contact of their faces.
 struct JointLegacy {
-  View<const Index> law;
-  View<const FaceShape> shape;
-  View<const double> length, pressing;
+  View<const double> pressing;
   View<const Vec3> shear_at_break;
-  View<const JointBond> bonds;
   View<JointWork> inherited_work;
 };
 
@@ -153,6 +170,9 @@ struct CoupleForces {
         if (is_new && parent_joint[i] >= 0)
           inherit(parent_joint[i], law, kept, xa, open_a, of_a, xb, open_b, of_b);
         press(law.penalty * kept.scale, xa, open_a, of_a, xb, open_b, of_b, sum);
+        // Neighbours at a vertex become a couple some steps after a joint there has softened.
+        if (is_new && kept.work == 0.0) kept.begun = sum.energy;
+        sum.take_off(kept.begun);
         if (sum.touches()) rub(law, of_a, va, of_b, vb, kept, sum);
       }
     }
@@ -172,14 +192,21 @@ struct CoupleForces {
     kept.rubbed += kept.slid;
     kept.work = kept.slid = kept.sprung = 0.0;
     kept.scale = 1.0;
+    kept.begun = 0.0;
     kept.drag = {};
+    kept.spring = 0.0;
   }
 
  private:
   BR_HD static void press(double penalty, const Vec3 (&xa)[4], int open_a, const Target& of_a,
                           const Vec3 (&xb)[4], int open_b, const Target& of_b, Pressing& sum) {
-    add_faces(xa, open_a, of_b, penalty, true, sum);
-    add_faces(xb, open_b, of_a, penalty, false, sum);
+    Inside in_a(of_a), in_b(of_b);
+    add_faces(xa, open_a, of_b, penalty, true, sum, in_b, in_a);
+    add_faces(xb, open_b, of_a, penalty, false, sum, in_a, in_b);
+    if (!sum.touches()) return;
+    in_a.add_shape_forces(of_a, penalty, sum.force.on_a.at);
+    in_b.add_shape_forces(of_b, penalty, sum.force.on_b.at);
+    sum.energy = in_a.energy(penalty) + in_b.energy(penalty);
   }
   /// Coulomb friction at the centre of pressure, shared among the corners by its coordinates.
   BR_HD void rub(const ContactPair& law, const Target& of_a, const Vec3 (&va)[4],
@@ -196,8 +223,11 @@ struct CoupleForces {
     // Turned with the plane of contact, its length kept.
     Vec3 before = kept.drag - dot(kept.drag, n) * n;
     const double left = norm(before), had = norm(kept.drag);
-    if (left > 0.0) before = (had / left) * before;
     const double stiffness = law.tangential * 0.5 * sum.area, most = law.friction * size;
+    // As the area changes the spring keeps its energy T^2/(2 k).
+    const double stiffer = kept.spring > 0.0 ? sqrt(stiffness / kept.spring) : 1.0;
+    if (left > 0.0) before = (stiffer * had / left) * before;
+    kept.spring = stiffness;
     Vec3 pull = before - (stiffness * dt) * rate;
     const double tried = norm(pull);
     if (tried > most) pull = (most / tried) * pull;
@@ -232,10 +262,8 @@ struct CoupleForces {
     if (drawn > most) drag = (most / drawn) * drag;
     kept.drag = drag;
     const double stiffness = law.tangential * 0.5 * whole.area;
-    // Of two faces on each other the force grows as their overlap, which is the joint's.
-    const double depth = pressing * joints.length[joint] /
-                         (joints.bonds[joints.law[joint]].stiffness * joints.shape[joint].area());
-    const JointWork given{0.5 * now * depth,
+    kept.spring = stiffness;
+    const JointWork given{kept.scale * whole.energy,
                           stiffness > 0.0 ? 0.5 * dot(drag, drag) / stiffness : 0.0};
     kept.work = given.open + given.slide;
     kept.sprung = given.slide;

@@ -53,10 +53,13 @@ struct Target {
 
 /// A face of one tetrahedron in another.
 struct FaceOverlap {
-  double moment[3];     ///< integrals of the potential times the share of each corner, over the
-                        ///< face's area twice  [m]
-  double area;          ///< of the face inside, over its area twice  [-]
-  double lambda[3][4];  ///< coordinates of its corners in the target  [-]
+  double region_area[4];  ///< of the part nearest to each face of the target, over the face's area
+                          ///< twice  [-]
+  double region_sum[4];   ///< integral of the potential there, likewise  [m]
+  double moment[3];       ///< integrals of the potential times the share of each corner, over the
+                          ///< face's area twice  [m]
+  double area;            ///< of the face inside, over its area twice  [-]
+  double lambda[3][4];    ///< coordinates of its corners in the target  [-]
 };
 
 namespace detail {
@@ -154,7 +157,10 @@ BR_HD inline bool overlap_of_face(const Vec3 (&face)[3], const Target& target, F
     for (int m = 0; m < 4 && region.count >= 3; ++m)
       // Of a face in the plane between two regions one takes all.
       if (m != k) region = detail::cut(region, g[m] - g[k], m > k);
+    const double area = o.area, whole = sum[0];
     if (region.count >= 3) detail::integrate(region, g[k], sum, o.area);
+    o.region_area[k] = o.area - area;
+    o.region_sum[k] = sum[0] - whole;
   }
   o.moment[1] = sum[1];
   o.moment[2] = sum[2];
@@ -173,5 +179,54 @@ BR_HD inline void push(const FaceOverlap& o, const Vec3 (&face)[3], double penal
     on_target[m] =
         -(o.lambda[0][m] * on_face[0] + o.lambda[1][m] * on_face[1] + o.lambda[2][m] * on_face[2]);
 }
+
+/// Integrals of the potential of a target over its part inside another tetrahedron, by the regions
+/// of its faces: what the deformation of the target changes the energy of contact by.
+///
+/// Region k is a cone with its apex in the incentre and face k as its base. With s = 0 at the apex
+/// and 1 at the base the potential is rho (1 - s), rho the inradius, and the divergence of
+/// rho (1/3 - s/4) (x - incentre), which crosses no side of the cone. So the integral follows from
+/// areas and integrals on faces alone: those of the other one, and the base's own part in it.
+struct Inside {
+  Vec3 incentre;
+  double radius;              ///<  [m]
+  double volume_sum[4] = {};  ///<  [m4]
+
+  BR_HD explicit Inside(const Target& t) {
+    double sum = 0.0;
+    Vec3 weighted{};
+    for (int k = 0; k < 4; ++k) {
+      sum += 1.0 / t.height[k];
+      weighted += (1.0 / t.height[k]) * t.x[k];
+    }
+    radius = 1.0 / sum;
+    incentre = radius * weighted;
+  }
+  /// A face of the other one that is partly in the target.
+  BR_HD void add_other(const FaceOverlap& o, const Vec3 (&face)[3]) {
+    const Vec3 twice = cross(face[1] - face[0], face[2] - face[0]);
+    const double height = dot(face[0] - incentre, twice);  // times twice the area
+    for (int k = 0; k < 4; ++k)
+      volume_sum[k] += height * (radius / 12.0 * o.region_area[k] + 0.25 * o.region_sum[k]);
+  }
+  /// Its own face k, of which this area is in the other one.  [m2]
+  BR_HD void add_own(int k, double area) { volume_sum[k] += radius * radius / 12.0 * area; }
+
+  /// Adds -k dE/dx of the corners of the target at a fixed overlap: with the forces of `push` they
+  /// are the slope of an energy.
+  BR_HD void add_shape_forces(const Target& t, double penalty, Vec3 (&on_target)[4]) const {
+    const double whole = volume_sum[0] + volume_sum[1] + volume_sum[2] + volume_sum[3];
+    for (int b = 0; b < 4; ++b) {
+      Vec3 sum = whole * t.slope[b];
+      for (int k = 0; k < 4; ++k)
+        sum +=
+            (volume_sum[k] * t.height[k] * t.height[k] * dot(t.slope[b], t.slope[k])) * t.slope[k];
+      on_target[b] -= penalty * sum;
+    }
+  }
+  BR_HD double energy(double penalty) const {
+    return penalty * (volume_sum[0] + volume_sum[1] + volume_sum[2] + volume_sum[3]);
+  }
+};
 
 }  // namespace breccia::fdem3

@@ -173,9 +173,7 @@ void couple_forces(World& w) {
                         std::as_const(c.pairs.a).view(),
                         std::as_const(c.pairs.b).view(),
                         std::as_const(w.parent_joint).view(),
-                        {std::as_const(j.law).view(), std::as_const(j.shape).view(),
-                         std::as_const(j.length).view(), std::as_const(j.pressing).view(),
-                         std::as_const(j.shear_at_break).view(), w.given->bonds.view(),
+                        {std::as_const(j.pressing).view(), std::as_const(j.shear_at_break).view(),
                          j.inherited_work.view()},
                         c.history.state.view(),
                         c.history.force.view()});

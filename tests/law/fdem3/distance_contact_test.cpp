@@ -18,27 +18,42 @@ struct Body {
 struct Pair {
   Vec3 on_a[4] = {}, on_b[4] = {};
   int hits = 0;
+  double energy = 0.0;
 };
 
+Target target_of(const Body& body) {
+  Target target = Target::of(body.x);
+  target.measure_heights();
+  return target;
+}
+
 /// Forces of all faces of both, with a penalty of 1.
-Pair forces_of(const Body& a, const Body& b) {
+Pair forces_of(const Body& a, const Body& b, bool with_shape = false) {
   Pair sum;
-  const auto add = [&](const Body& own, const Body& other, Vec3(&on_own)[4], Vec3(&on_other)[4]) {
-    Target target = Target::of(other.x);
-    target.measure_heights();
+  const Target of_a = target_of(a), of_b = target_of(b);
+  Inside in_a(of_a), in_b(of_b);
+  const auto add = [&](const Body& own, const Target& target, Vec3(&on_own)[4], Vec3(&on_other)[4],
+                       Inside& inside, Inside& mine) {
     for (int f = 0; f < 4; ++f) {
       Vec3 face[3], on_face[3], on_target[4];
       for (int k = 0; k < 3; ++k) face[k] = own.x[corner_of_face(f, k)];
       FaceOverlap o;
       if (!overlap_of_face(face, target, o)) continue;
       ++sum.hits;
+      inside.add_other(o, face);
+      mine.add_own(f, o.area * norm(cross(face[1] - face[0], face[2] - face[0])));
       push(o, face, 1.0, on_face, on_target);
       for (int k = 0; k < 3; ++k) on_own[corner_of_face(f, k)] += on_face[k];
       for (int k = 0; k < 4; ++k) on_other[k] += on_target[k];
     }
   };
-  add(a, b, sum.on_a, sum.on_b);
-  add(b, a, sum.on_b, sum.on_a);
+  add(a, of_b, sum.on_a, sum.on_b, in_b, in_a);
+  add(b, of_a, sum.on_b, sum.on_a, in_a, in_b);
+  sum.energy = in_a.energy(1.0) + in_b.energy(1.0);
+  if (with_shape) {
+    in_a.add_shape_forces(of_a, 1.0, sum.on_a);
+    in_b.add_shape_forces(of_b, 1.0, sum.on_b);
+  }
   return sum;
 }
 
@@ -65,14 +80,22 @@ TEST(DistanceContact, gives_the_reference_forces) {
   expect_near(p.on_b[3], {1.684604473719e-6, 1.573254254685e-6, -1.978408643552e-7});
 }
 
+TEST(DistanceContact, gives_the_reference_forces_and_energy_with_those_of_shape) {
+  const Pair p = forces_of(a, b, true);
+  EXPECT_NEAR(p.energy, 1.441881722243e-6, 1e-17);
+  EXPECT_LT(norm(p.on_a[0]), 1e-19);
+  expect_near(p.on_a[1], {-1.028589743621e-5, -9.143019943298e-6, -6.142966524403e-6});
+  expect_near(p.on_a[3], {-4.503223222360e-5, -4.002865086542e-5, -2.689424980021e-5});
+  expect_near(p.on_b[0], {6.480644502251e-5, 5.761264725658e-5, 3.876961290691e-5});
+}
+
 /// Of the corner element (0, e1, e2, e3) and a face given by its corners.
 FaceOverlap in_corner(const Vec3& p, const Vec3& q, const Vec3& r, bool& touches) {
   const Vec3 x[4] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
   const Vec3 face[3] = {p, q, r};
   FaceOverlap o{};
-  Target target = Target::of(x);
-  target.measure_heights();
-  touches = overlap_of_face(face, target, o);
+  const Body corner{{x[0], x[1], x[2], x[3]}};
+  touches = overlap_of_face(face, target_of(corner), o);
   return o;
 }
 
@@ -143,6 +166,24 @@ TEST(DistanceContact, balances_forces_and_moments_of_random_pairs) {
     EXPECT_LE(norm(moment), 1e-12 * largest);
   }
   EXPECT_GT(touching, 100);
+}
+
+TEST(DistanceContact, is_the_slope_of_its_energy_for_deformable_pairs) {
+  const Pair p = forces_of(a, b, true);
+  const double h = 1e-6;
+  for (int body = 0; body < 2; ++body)
+    for (int k = 0; k < 4; ++k)
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto energy_at = [&](double by) {
+          Body moved[2] = {a, b};
+          Vec3& x = moved[body].x[k];
+          (axis == 0 ? x.x : axis == 1 ? x.y : x.z) += by;
+          return forces_of(moved[0], moved[1]).energy;
+        };
+        const double slope = (energy_at(h) - energy_at(-h)) / (2.0 * h);
+        const Vec3& f = (body == 0 ? p.on_a : p.on_b)[k];
+        EXPECT_NEAR(-slope, axis == 0 ? f.x : axis == 1 ? f.y : f.z, 1e-10);
+      }
 }
 
 }  // namespace distance_contact_test
