@@ -25,18 +25,9 @@ struct Selected {
 };
 
 const std::vector<FrameField>& fields_of(const Frame& frame, Carrier carrier) {
-  switch (carrier) {
-    case Carrier::lines:
-      return frame.line_fields;
-    case Carrier::triangles:
-      return frame.triangle_fields;
-    case Carrier::tetrahedra:
-      return frame.tetrahedron_fields;
-    case Carrier::points:
-    case Carrier::none:
-      break;
-  }
-  return frame.point_fields;
+  if (carrier == Carrier::lines) return frame.line_fields;
+  if (carrier == Carrier::tetrahedra) return frame.tetrahedron_fields;
+  return carrier == Carrier::triangles ? frame.triangle_fields : frame.point_fields;
 }
 
 std::size_t items_of(const Frame& frame, Carrier carrier) {
