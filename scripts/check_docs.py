@@ -12,6 +12,7 @@ cases, scripts, bench and build/release/breccia are those of the repository; csv
 Of other toml all keys must be keys of a case. Commands that stand indented in place of between fences are an error. Exit code 1 if a sample fails.
 """
 import argparse
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -188,20 +189,26 @@ def run_page(page, program, schema):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build/release/breccia")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="pages at once")
     parser.add_argument("pages", nargs="*", type=pathlib.Path)
     arguments = parser.parse_args()
     listed = subprocess.run(["git", "ls-files", "*.md"], cwd=ROOT, check=True, capture_output=True, text=True).stdout.split()
     pages = arguments.pages or [ROOT / name for name in listed if name != "CHANGELOG.md"]
     schema = json.loads(subprocess.run([arguments.program, "keys", "--schema"], check=True, capture_output=True, text=True).stdout)
     total, left, problems = 0, 0, []
-    for page in pages:
+
+    def timed(page):
         begin = time.monotonic()
-        ran, skipped, failed = run_page(page, arguments.program.resolve(), schema)
+        return *run_page(page, arguments.program.resolve(), schema), time.monotonic() - begin
+
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        results = list(zip(pages, pool.map(timed, pages)))
+    for page, (ran, skipped, failed, taken) in results:
         total, left, problems = total + ran, left + skipped, problems + failed
         if not ran and not skipped and not failed:
             continue
         name = page.resolve().relative_to(ROOT).as_posix() if page.resolve().is_relative_to(ROOT) else page.name
-        print(f"{name:40} {ran:3} run {skipped:3} skipped {len(failed):3} failed  {time.monotonic() - begin:5.1f} s", flush=True)
+        print(f"{name:40} {ran:3} run {skipped:3} skipped {len(failed):3} failed  {taken:5.1f} s", flush=True)
     print(f"{total} samples run, {left} skipped, {len(problems)} failed")
     print("\n\n".join(problems))
     return 1 if problems or not total else 0
