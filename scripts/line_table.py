@@ -10,7 +10,7 @@ import sys
 ROOT = pathlib.Path(__file__).parent.parent
 FOLDERS = ["exec math", "core", "domain", "dem", "fdem", "fdem3", "prepare", "io", "run", "app", "report laboratory api"]
 PURPOSES = [  # words, lines at 20a0ddb, patterns
-    ("laws", 1313, "dem/laws/* fdem/laws/*"),
+    ("laws", 1313, "*/laws/*"),
     ("device only: launches led by its clock, wide kernels, graphs, memory", 2434,
      "*/stepping/device_run.cpp */stepping/wide_kernels.hpp core/device_run.hpp core/timed.hpp core/step_clock.hpp "
      "exec/*device* exec/cuda.hpp exec/early.hpp exec/launch* exec/lockstep* exec/multiprocessors.hpp exec/peer_memory* "
@@ -47,7 +47,7 @@ READER = {
          "dem/laws/concrete_link.hpp dem/laws/contact.hpp dem/laws/pair_motion.hpp dem/laws/tension_softening.hpp dem/links/concrete.hpp "
          "dem/links/link_set.hpp dem/links/all.hpp dem/stepping/add_links.hpp dem/search.cpp"),
         ("other laws: steel, interface, parallel bond, LDPM; joints that wake; fluid; walls with mass or a nose",
-         "dem/laws/* dem/links/* dem/free_walls* dem/wall_nose.hpp"),
+         "dem/laws/* dem/links/* dem/free_walls* dem/wall_*"),
         ("set-up, keys, stages, servos", "dem/setup/* dem/servos*"),
         ("energies, probes, hash, counts, stress", "dem/energy* dem/probes* dem/observe* dem/stress*"),
         ("launches on a device, wide kernels, packs", "dem/stepping/* dem/lanes/*"),
@@ -56,7 +56,7 @@ READER = {
     ],
     "fdem": [
         ("", SHARED_METHOD.format(m="fdem") + "fdem/triangles/* fdem/joints/joint* fdem/joints/rings.hpp fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
-         "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search*"),
+         "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* fdem/contact/shared_marks.hpp"),
         ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/contact/nearness.hpp"),
         ("", "fdem/setup/* fdem/servos*"),
         ("", "fdem/energy* fdem/probes* fdem/observe*"),
