@@ -155,7 +155,9 @@ class Carving {
   template <class Gone, class Parts>
   void remove(int number, const BodyConfig& body, const Gone& gone, const Parts& parts) {
     drop_links(model_, [&](const Model::Link& link) {
-      return is_of(link.a, number) && is_of(link.b, number) &&
+      const bool a = is_of(link.a, number), b = is_of(link.b, number);
+      const bool bonds_bar = link.kind == dem::LinkKind::interface && (a || b);
+      return ((a && b) || bonds_bar) &&
              (gone(place(link.a)) || gone(place(link.b)) || parts(place(link.a), place(link.b)));
     });
     std::vector<bool> linked(static_cast<std::size_t>(model_.size()));
