@@ -1,6 +1,8 @@
 #pragma once
 // The case file of the FDEM: every key with its unit, range and meaning.
 
+#include <cmath>
+
 #include "core/case_config.hpp"
 #include "core/servo.hpp"
 #include "core/stages.hpp"
@@ -42,6 +44,25 @@ struct StrengthConfig {
   }
 };
 
+/// [material.<name>.bedding]: planes along which rock is weaker
+struct BeddingConfig {
+  double angle = 0.0;     ///< of the planes from x, anticlockwise  [rad]
+  double strength = 1.0;  ///< along them over across  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("angle", angle, "rad", Range{-6.3, 6.3}, "angle of its planes from the x axis");
+    key("strength", strength, "-", Range{0.01, 1.0},
+        "tension and cohesion of joints along its planes, over those across them; an edge at an "
+        "angle t from a plane has strength cos^2 t + sin^2 t of them");
+  }
+  /// Of a joint along a unit vector.  [-]
+  double share(const Vec2& along) const {
+    const double across = cross(Vec2{std::cos(angle), std::sin(angle)}, along);
+    return strength + (1.0 - strength) * across * across;
+  }
+};
+
 /// [material.<name>]
 struct MaterialConfig {
   std::string name;
@@ -52,6 +73,7 @@ struct MaterialConfig {
   double damping = 0.0;     ///< eta over 2 h sqrt(E rho)  [-]
   std::string joints = "intrinsic";
   StrengthConfig joint;
+  BeddingConfig bedding{};
   double contact_stiffness = 10.0;    ///< p_n over E  [-]
   double tangential_stiffness = 0.1;  ///< p_t over p_n  [-]
   double friction = 0.6;              ///< of contact  [-]
@@ -74,6 +96,7 @@ struct MaterialConfig {
         "none: it does not break; two such materials that share an edge move as one there, while "
         "to others only a [joint.<name>] between both joins it");
     key.table("joint", joint, "strength of its joints");
+    key.table("bedding", bedding, "planes along which its joints are weaker");
     key("contact_stiffness", contact_stiffness, "-", sane_ratio,
         "contact penalty p_n over Young's modulus");
     key("tangential_stiffness", tangential_stiffness, "-", sane_ratio,

@@ -167,8 +167,13 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     const Vec2 along =
         model.point[at(w.vertex[at(next(e.a))])] - model.point[at(w.vertex[at(e.a)])];
     length.push_back(norm(along));
-    strength.push_back(
-        std::min(static_cast<double>(model.strength[a]), static_cast<double>(model.strength[b])));
+    const auto of = [&](std::size_t t) {
+      return config.materials[static_cast<std::size_t>(model.material[t])].bedding.share(
+          (1.0 / length.back()) * along);
+    };
+    const double bedded = weak == discontinuities.end() ? std::min(of(a), of(b)) : 1.0;
+    strength.push_back(bedded * std::min(static_cast<double>(model.strength[a]),
+                                         static_cast<double>(model.strength[b])));
     preset.emplace_back();
     if (dormant || !config.in_situ.any()) continue;
     const Vec2 unit = (1.0 / length.back()) * along, across{-unit.y, unit.x};
