@@ -81,7 +81,9 @@ struct Case {
   std::vector<Vec3> wall_starts;      ///< points of walls at the start  [m]  (walls)
   std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]  (walls)
   std::vector<FreeWall> free_walls;   ///< empty: none has mass  (walls)
-  WallMeshes meshes;                  ///< of walls of triangles
+  std::vector<Vec3> dashpots;  ///< of absorbing supports over the square of an element's radius, of
+                               ///< others 0  [kg/(s m2)]  (supports)
+  WallMeshes meshes;           ///< of walls of triangles
   Buffer<ContactPair> contact_pairs;  ///< of materials p, q at p materials + q  (materials^2)
   Buffer<ContactPair> wall_pairs;     ///< of a material with a wall  (materials)
 

@@ -188,7 +188,7 @@ struct Kick {
     }
     r.velocity = now.velocity + (span / of.mass) * f;
     r.spin = now.spin + (span / of.inertia) * t;
-    if (of.fixed != 0) hold(e, r);
+    if (of.fixed != 0) hold(e, now, of, r);
     return r;
   }
 
@@ -207,10 +207,11 @@ struct Kick {
     const Vec3Of<R> given = of.force + weight(of.mass) - r.damped_force;
     const Vec3Of<R> held = gained - given;
     const R none = constant<R>(0.0);
-    return {select(holds<R>(e, fixed_x), held.x, none), select(holds<R>(e, fixed_y), held.y, none),
-            select(holds<R>(e, fixed_z), held.z, none)};
+    return {select(holds<R>(e, fixed_x | fixed_absorbs), held.x, none),
+            select(holds<R>(e, fixed_y | fixed_absorbs), held.y, none),
+            select(holds<R>(e, fixed_z | fixed_absorbs), held.z, none)};
   }
-  /// Where bit `which` of Fixed is set, of element e and its neighbours in a pack.
+  /// Where one of the bits `which` of Fixed is set, of element e and its neighbours in a pack.
   template <class R>
   BR_HD auto holds(Index e, int which) const {
     double set[width_of<R>];
@@ -219,9 +220,11 @@ struct Kick {
   }
 
  private:
-  /// Prescribed degrees of freedom move as they must.
+  /// Prescribed degrees of freedom move as they must; dashpots C take up C (v_- + v_+) / 2, which
+  /// is stable for all of them.
   template <class R>
-  BR_HD void hold(Index e, ResultOf<R>& r) const {
+  BR_HD void hold(Index e, const ElementStateOf<R>& now, const GivenOf<R>& of,
+                  ResultOf<R>& r) const {
     double x[width_of<R>], y[width_of<R>], z[width_of<R>];
     for (Index k = 0; k < width_of<R>; ++k) {
       const Index way = motion[e + k];
@@ -232,6 +235,17 @@ struct Kick {
       z[k] = v.z;
     }
     const R still = constant<R>(0.0);
+    if ((of.fixed & fixed_absorbs) != 0) {
+      const auto absorbs = holds<R>(e, fixed_absorbs);
+      const R square = (0.25 * (last_dt + next_dt)) * (now.radius * now.radius) / of.mass;
+      const auto slow = [&](const R& dashpot, const R& before, R& after) {
+        const R half = square * dashpot;
+        after = select(absorbs, (after - half * before) / (1.0 + half), after);
+      };
+      slow(pack_of<R>(x), now.velocity.x, r.velocity.x);
+      slow(pack_of<R>(y), now.velocity.y, r.velocity.y);
+      slow(pack_of<R>(z), now.velocity.z, r.velocity.z);
+    }
     prescribe(holds<R>(e, fixed_x), pack_of<R>(x), r.velocity.x, r.damped_force.x);
     prescribe(holds<R>(e, fixed_y), pack_of<R>(y), r.velocity.y, r.damped_force.y);
     prescribe(holds<R>(e, fixed_z), pack_of<R>(z), r.velocity.z, r.damped_force.z);

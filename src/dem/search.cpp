@@ -411,8 +411,12 @@ void list_laws(LinkSet<Law>& set) {
 
 }  // namespace
 
-void derive(World& w) {
+void list_laws(World& w) {
   w.each_set([](auto& set) { list_laws(set); });
+}
+
+void derive(World& w) {
+  list_laws(w);
   std::vector<Index> a, b, more;
   const auto append = [&](std::vector<Index>& all, const Buffer<Index>& ends) {
     copy_to(more, ends);

@@ -164,6 +164,9 @@ void configure(World& w, const Config& config);
 /// Gravity alone: the ledger asks what a change of it is worth.
 void set_gravity(World& w, const Vec3& gravity);
 
+/// Hands the laws of links to kernels that take all groups at once.
+void list_laws(World& w);
+
 /// Hands World::prescribed to kernels.
 void place_motions(World& w);
 

@@ -101,7 +101,11 @@ struct SupportConfig {
   double radius = 0.0;         ///< of a cylinder or sphere; 0: none  [m]
   std::string around{};        ///< axis of the cylinder; empty: a sphere
   bool outside = false;        ///< of box, cylinder or sphere
+  std::string absorb{};        ///< axis along which waves come; empty: it holds its elements
+  std::string wave = "body";   ///< that is absorbed
+  double area = 0.0;           ///< of the face that absorbs  [m2]
 
+  bool absorbs() const { return !absorb.empty(); }
   template <class Visit>
   void each_key(Visit&& key) {
     key("name", name, "name of the support");
@@ -118,6 +122,14 @@ struct SupportConfig {
     key("fix", fix,
         "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
         "that share elements prescribe other directions, or the same motion");
+    key("absorb", absorb, OneOf{"", "x", "y", "z"},
+        "normal of a face that takes waves up: its elements are free, and dashpots act on them in "
+        "the directions of fix (Lysmer and Kuhlemeyer); empty: they are held");
+    key("wave", wave, OneOf{"body", "bar"},
+        "absorb: waves along the normal are those of a body, rho c_p, or of a slender bar, rho "
+        "sqrt(E / rho); waves across it have rho c_s");
+    key("area", area, "m2", not_negative,
+        "absorb: area of the face, which its elements share by their sections");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
         "prescribed velocity of the fixed directions, or a table [[t, x, y, z], ...] of it over "
         "time, linear in between and constant beyond its ends");
@@ -176,11 +188,32 @@ struct WallChange {
   }
 };
 
+/// [[stage.material]]: how strong links of a material are from a stage on
+struct MaterialChange {
+  std::string name;
+  double tensile_strength = -1.0;  ///< below 0: as before  [Pa]
+  double cohesion = -1.0;          ///< likewise  [Pa]
+  double broken_friction = -1.0;   ///< likewise  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the material, of law concrete or bonded");
+    key.required("name");
+    key("tensile_strength", tensile_strength, "Pa", Range{-1.0, 1e15},
+        "tensile strength of its links from now on; below 0: as before");
+    key("cohesion", cohesion, "Pa", Range{-1.0, 1e15},
+        "cohesion of its links from now on; below 0: as before");
+    key("broken_friction", broken_friction, "-", Range{-1.0, 1e6},
+        "friction of its broken links from now on; below 0: as before");
+  }
+};
+
 /// [[stage]]
 struct StageConfig : StageEnd {
   Vec3 gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
   std::vector<SupportChange> supports;
   std::vector<WallChange> walls;
+  std::vector<MaterialChange> materials;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -189,6 +222,7 @@ struct StageConfig : StageEnd {
         "acceleration of gravity from its beginning on; left out (inf): as before");
     key.list("support", supports, "supports that prescribe something else from its beginning on");
     key.list("wall", walls, "walls that move otherwise from its beginning on");
+    key.list("material", materials, "materials that are weaker or stronger from its beginning on");
   }
 };
 

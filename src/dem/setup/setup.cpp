@@ -412,7 +412,10 @@ World made(const Config& config, const Model& model, const Exec& exec) {
     given.densities.push_back(config.time.mass_scaling * m.density);
   }
   given.shown = config.output.more_fields();
-  const Prescribed held = prescribed(config, support_members(config, model), model.position.size());
+  std::vector<std::vector<Index>> members = support_members(config, model);
+  given.dashpots = dashpots_of(config, model, members);
+  const Prescribed held =
+      prescribed(config, std::move(members), model.position.size(), given.dashpots);
   set_elements(w, model, held);
   w.each_set([&](auto& set) { set_links(set, config, model); });
   set_linked_pairs(w);

@@ -27,6 +27,12 @@ Config config_at(Config config, const StageProgress& progress) {
         s->servo = change.servo;
         s->begin = begin;
       }
+    for (const MaterialChange& change : stage.materials)
+      if (MaterialConfig* const m = find_named(config.materials, change.name)) {
+        if (change.tensile_strength >= 0.0) m->tensile_strength = change.tensile_strength;
+        if (change.cohesion >= 0.0) m->cohesion = change.cohesion;
+        if (change.broken_friction >= 0.0) m->broken_friction = change.broken_friction;
+      }
     for (const WallChange& change : stage.walls)
       if (WallConfig* const wall = find_named(config.walls, change.name)) {
         wall->force = change.force;
@@ -81,6 +87,14 @@ std::vector<std::string> stage_problems(const Config& config) {
                          ".remove needs search.every = 0: contacts with the body end at a search");
     for (const SupportChange& change : stage.supports)
       add_unknown(where + ".support.name", change.name, "support", supports, problems);
+    for (const MaterialChange& change : stage.materials) {
+      add_unknown(where + ".material.name", change.name, "material", names_of(config.materials),
+                  problems);
+      for (const MaterialConfig& m : config.materials)
+        if (m.name == change.name && m.law != "concrete" && m.law != "parallel")
+          problems.push_back(where + ".material." + m.name + ": its law is " + m.law +
+                             "; a stage changes those of law concrete and parallel");
+    }
     for (const WallChange& change : stage.walls) {
       add_unknown(where + ".wall.name", change.name, "wall", walls, problems);
       for (const WallConfig& wall : config.walls)
@@ -103,6 +117,9 @@ std::vector<std::string> stage_problems(const Config& config) {
       servo(stage + "wall." + wall.name, wall.servo, wall.velocity);
     for (const SupportConfig& s : now.supports) {
       servo(stage + "support." + s.name, s.servo, s.velocity);
+      if (s.absorbs() && (s.servo.is_on() || s.velocity.is_table() || norm(s.velocity.value) > 0.0))
+        problems.push_back(stage + "support." + s.name +
+                           ".absorb: dashpots move nothing; leave velocity and servo out");
       if (s.servo.is_on() && std::find(s.fix.begin(), s.fix.end(), s.servo.axis) == s.fix.end() &&
           std::find(s.fix.begin(), s.fix.end(), "all") == s.fix.end())
         problems.push_back(stage + "support." + s.name + ".servo.axis = \"" + s.servo.axis +
@@ -114,6 +131,31 @@ std::vector<std::string> stage_problems(const Config& config) {
   return problems;
 }
 
+namespace {
+
+/// Strengths of links as they are in a stage.
+template <class Law>
+void set_strengths(LinkSet<Law>& set, const Config& config) {
+  for (LinkGroup<Law>& group : set.groups) {
+    const MaterialConfig& m = config.materials[static_cast<std::size_t>(group.material)];
+    group.law.tensile_strength = m.tensile_strength;
+    group.law.cohesion = m.cohesion;
+    group.law.broken_friction =
+        m.broken_friction < 0.0 ? config.contact.friction : m.broken_friction;
+  }
+}
+
+void set_strengths(World& w, const Config& config) {
+  const auto changes = [](const StageConfig& stage) { return !stage.materials.empty(); };
+  if (std::none_of(config.stages.begin(), config.stages.end(), changes)) return;
+  set_strengths(w.concrete, config);
+  set_strengths(w.parallel, config);
+  list_laws(w);
+  w.tiles.forget();
+}
+
+}  // namespace
+
 void set_gravity(World& w, const Vec3& gravity) {
   w.given.change(SetUp{}).gravity = gravity;
 }
@@ -124,6 +166,7 @@ void configure(World& w, const Config& config) {
   given.local_damping = config.local_damping;
   given.contact.friction =
       config.stage_friction < 0.0 ? config.contact.friction : config.stage_friction;
+  set_strengths(w, config);
   const std::size_t bodies = w.given->sets.size() - config.supports.size();
   std::size_t elements = 0;
   for (std::size_t b = 0; b < bodies; ++b)
@@ -131,7 +174,7 @@ void configure(World& w, const Config& config) {
   std::vector<std::vector<Index>> members(config.supports.size());
   for (std::size_t s = 0; s < members.size(); ++s)
     copy_to(members[s], w.given->sets[bodies + s].members);
-  Prescribed held = prescribed(config, std::move(members), elements);
+  Prescribed held = prescribed(config, std::move(members), elements, given.dashpots);
   given.removed.assign(bodies, 0);
   for (std::size_t b = 0; b < bodies; ++b)
     if (std::count(config.removed.begin(), config.removed.end(), given.sets[b].name) > 0) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "core/region.hpp"
@@ -47,8 +48,12 @@ std::vector<Index> members_of(const SupportConfig& s, const Model& m) {
 /// Gives each direction of each element to the supports that prescribe it.
 class Holding {
  public:
-  Holding(const Config& config, std::vector<std::vector<Index>> members, std::size_t elements)
-      : supports_(config.supports), walls_(config.walls.size()), owners_(elements, {-1, -1, -1}) {
+  Holding(const Config& config, std::vector<std::vector<Index>> members, std::size_t elements,
+          const std::vector<Vec3>& dashpots)
+      : supports_(config.supports),
+        dashpots_(dashpots),
+        walls_(config.walls.size()),
+        owners_(elements, {-1, -1, -1}) {
     all_.fixed.assign(elements, fixed_none);
     all_.members = std::move(members);
     for (std::size_t s = 0; s < supports_.size(); ++s) {
@@ -108,18 +113,25 @@ class Holding {
     const SupportServoConfig& servo = support(s).servo;
     return servo.is_on() && servo.axis_number() == static_cast<int>(axis);
   }
+  /// Of an absorbing support: its dashpot.
   ScaledAmplitude speed(int s, std::size_t axis) const {
     if (is_servo(s, axis)) return {};
+    if (support(s).absorbs()) {
+      const Vec3& c = dashpots_[static_cast<std::size_t>(s)];
+      return {axis == 0 ? c.x : axis == 1 ? c.y : c.z, {}};
+    }
     return scaled_amplitude(support(s).velocity, static_cast<int>(axis), support(s).ramp,
                             support(s).begin);
   }
   bool alike(int a, int b, std::size_t axis) const {
     const ScaledAmplitude of_a = speed(a, axis), of_b = speed(b, axis);
     if (is_servo(a, axis) || is_servo(b, axis)) return a == b;
+    if (support(a).absorbs() || support(b).absorbs()) return a == b;
     return of_a == of_b || (of_a.is_zero() && of_b.is_zero());
   }
   std::string motion_text(int s, std::size_t axis) const {
     if (is_servo(s, axis)) return "a servo";
+    if (support(s).absorbs()) return "a dashpot";
     const ScaledAmplitude of = speed(s, axis);
     return fmt::format("{} m/s with a ramp of {} s",
                        of.amplitude.times.empty() ? fmt::format("{}", of.scale) : "a table of",
@@ -127,7 +139,10 @@ class Holding {
   }
 
   void hold(std::size_t s, std::uint8_t bits, std::size_t e) {
-    all_.fixed[e] = static_cast<std::uint8_t>(all_.fixed[e] | bits);
+    const int all =
+        support(static_cast<int>(s)).absorbs() ? ((bits & 7) != 0 ? fixed_absorbs : 0) : bits;
+    all_.fixed[e] = static_cast<std::uint8_t>(all_.fixed[e] | all);
+    note_mixed(s, e);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if ((bits >> axis & 1) == 0) continue;
       int& owner = owners_[e][axis];
@@ -155,7 +170,18 @@ class Holding {
     return velocity;
   }
 
+  /// An element has dashpots, or is held.
+  void note_mixed(std::size_t s, std::size_t e) {
+    if ((all_.fixed[e] & fixed_absorbs) == 0 || (all_.fixed[e] & 63) == 0) return;
+    const std::string text =
+        fmt::format("support {}: an absorbing support shares element {} with one that holds it",
+                    supports_[s].name, e);
+    if (problems_.empty() || !problems_.back().starts_with("support " + supports_[s].name))
+      problems_.push_back(text);
+  }
+
   const std::vector<SupportConfig>& supports_;
+  const std::vector<Vec3>& dashpots_;
   std::size_t walls_;
   std::vector<Owners> owners_;  ///< of each element
   std::map<Clash, Found> clashes_;
@@ -209,8 +235,38 @@ std::vector<std::vector<Index>> support_members(const Config& config, const Mode
 }
 
 Prescribed prescribed(const Config& config, std::vector<std::vector<Index>> members,
-                      std::size_t elements) {
-  return Holding(config, std::move(members), elements).prescribed();
+                      std::size_t elements, const std::vector<Vec3>& dashpots) {
+  return Holding(config, std::move(members), elements, dashpots).prescribed();
+}
+
+std::vector<Vec3> dashpots_of(const Config& config, const Model& model,
+                              const std::vector<std::vector<Index>>& members) {
+  std::vector<Vec3> all(config.supports.size());
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    const SupportConfig& support = config.supports[s];
+    if (!support.absorbs() || members[s].empty()) continue;
+    const auto material_of = [&](Index e) {
+      return static_cast<std::size_t>(model.material[static_cast<std::size_t>(e)]);
+    };
+    const MaterialConfig& m = config.materials[material_of(members[s].front())];
+    double squares = 0.0;
+    for (const Index e : members[s]) {
+      const double radius = model.radius[static_cast<std::size_t>(e)];
+      squares += radius * radius;
+      if (config.materials[material_of(e)].name != m.name)
+        throw InputError(fmt::format(
+            "support {}: an absorbing face is of one material; it has elements of {} and {}",
+            support.name, m.name, config.materials[material_of(e)].name));
+    }
+    const double density = config.time.mass_scaling * m.density, nu = m.poisson;
+    const double along =
+        support.wave == "bar" ? m.young : m.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    const double across = m.young / (2.0 * (1.0 + nu)), share = support.area / squares;
+    const double p = std::sqrt(density * along) * share, q = std::sqrt(density * across) * share;
+    all[s] = {support.absorb == "x" ? p : q, support.absorb == "y" ? p : q,
+              support.absorb == "z" ? p : q};
+  }
+  return all;
 }
 
 }  // namespace breccia::dem

@@ -47,8 +47,14 @@ std::vector<std::vector<Index>> support_members(const Config& config, const Mode
 /// motion.
 /// @param members   of each support
 /// @param elements  how many there are in the whole model
+/// @param dashpots  Case::dashpots
 /// @throws InputError naming supports that hold no element, or that contradict each other
 Prescribed prescribed(const Config& config, std::vector<std::vector<Index>> members,
-                      std::size_t elements);
+                      std::size_t elements, const std::vector<Vec3>& dashpots);
+
+/// Dashpots of absorbing supports: impedance rho c of the material times the face's area, shared by
+/// the squares of radii. @throws InputError where a support has elements of several materials
+std::vector<Vec3> dashpots_of(const Config& config, const Model& model,
+                              const std::vector<std::vector<Index>>& members);
 
 }  // namespace breccia::dem

@@ -107,6 +107,10 @@ class Check {
       add(fmt::format("support.{}.on = {:?} is not a body; there are: {}", s.name, s.on,
                       prepare::all_names(config_.bodies)));
     check_fix("support." + s.name, s.fix);
+    if (s.absorbs() && !(s.area > 0.0))
+      add("support." + s.name + ".area: an absorbing face needs it");
+    if (!s.absorbs() && s.area > 0.0)
+      add("support." + s.name + ".area is of an absorbing face; absorb names its normal");
     if (!(s.min.x <= s.max.x && s.min.y <= s.max.y && s.min.z <= s.max.z))
       add("support." + s.name + ": min must not be above max");
   }
