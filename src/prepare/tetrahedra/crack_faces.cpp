@@ -39,11 +39,13 @@ class NearCrack {
     region_.assign(tetrahedra.size(), out);
     for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
       const Vec3 place = centroid(point, tetrahedra[t]);
-      const double far = std::abs(crack.height(place));
-      if (far <= reach_of_cut * edges_of_one(point, tetrahedra[t]).first && crack.covers(place) &&
-          !follows(static_cast<Index>(t)))
-        region_[t] = unknown;
+      if (!crack.covers(place) || follows(static_cast<Index>(t)) ||
+          std::abs(crack.height(place)) > reach_of_cut * edges_of_one(point, tetrahedra[t]).first)
+        continue;
+      region_[t] = unknown;
+      near_.push_back(static_cast<Index>(t));
     }
+    if (near_.empty()) return;
     for (const MeshFace& face : faces)
       if (face.tetrahedra[1] >= 0 && is_near(face.tetrahedra[0]) && is_near(face.tetrahedra[1]))
         inner_.push_back(&face);
@@ -62,27 +64,29 @@ class NearCrack {
 
  private:
   static constexpr Index out = -2, unknown = -1;
+  Index& place_of(Index t) { return place_[static_cast<std::size_t>(t)]; }
   bool is_near(Index t) const { return region_[static_cast<std::size_t>(t)] != out; }
 
   void number_regions() {
-    std::vector<std::vector<Index>> next(tetrahedra_.size());
-    for (const MeshFace* face : inner_) {
-      next[static_cast<std::size_t>(face->tetrahedra[0])].push_back(face->tetrahedra[1]);
-      next[static_cast<std::size_t>(face->tetrahedra[1])].push_back(face->tetrahedra[0]);
-    }
     place_.assign(tetrahedra_.size(), -1);
-    for (std::size_t t = 0; t < tetrahedra_.size(); ++t) {
-      if (region_[t] != unknown) continue;
+    for (std::size_t k = 0; k < near_.size(); ++k) place_of(near_[k]) = static_cast<Index>(k);
+    std::vector<std::vector<Index>> next(near_.size());
+    for (const MeshFace* face : inner_)
+      for (std::size_t side = 0; side < 2; ++side)
+        next[static_cast<std::size_t>(place_of(face->tetrahedra[side]))].push_back(
+            face->tetrahedra[1 - side]);
+    for (const Index first : near_) {
+      if (region_[static_cast<std::size_t>(first)] != unknown) continue;
       const auto number = static_cast<Index>(members_.size());
-      std::vector<Index> members{static_cast<Index>(t)};
-      region_[t] = number;
+      std::vector<Index> members{first};
+      region_[static_cast<std::size_t>(first)] = number;
       for (std::size_t k = 0; k < members.size(); ++k) {
-        place_[static_cast<std::size_t>(members[k])] = static_cast<Index>(k);
-        for (const Index n : next[static_cast<std::size_t>(members[k])])
+        for (const Index n : next[static_cast<std::size_t>(place_of(members[k]))])
           if (Index& region = region_[static_cast<std::size_t>(n)]; region == unknown) {
             region = number;
             members.push_back(n);
           }
+        place_of(members[k]) = static_cast<Index>(k);  // from now on within its region
       }
       members_.push_back(std::move(members));
     }
@@ -135,6 +139,7 @@ class NearCrack {
   const std::vector<Vec3>& point_;
   const std::vector<Tetrahedron>& tetrahedra_;
   std::vector<const MeshFace*> inner_;
+  std::vector<Index> near_;                  ///< tetrahedra
   std::vector<Index> region_, place_;        ///< of each tetrahedron; its place in the region
   std::vector<std::vector<Index>> members_;  ///< tetrahedra of each region
   std::vector<std::vector<const MeshFace*>> between_;  ///< faces within each region
