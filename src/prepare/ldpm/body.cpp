@@ -29,27 +29,29 @@ double ball_radius(double volume) {
 /// Radii of balls as large as the cells, reduced where balls without a common facet overlap.
 std::vector<double> contact_radii(const LdpmBody& body) {
   std::vector<double> radius;
-  double largest = 0.0;
-  for (const LdpmCell& cell : body.cells) {
-    radius.push_back(ball_radius(cell.volume));
-    largest = std::max(largest, radius.back());
-  }
+  for (const LdpmCell& cell : body.cells) radius.push_back(ball_radius(cell.volume));
   std::set<std::pair<Index, Index>> edges;
   for (const LdpmFacet& f : body.facets) edges.insert({f.a, f.b});
-  const std::vector<double> full = radius;
-  const CellGrid grid(body.position, 2.0 * largest);
-  for (Index a = 0; a < static_cast<Index>(radius.size()); ++a)
-    grid.visit(body.position[at(a)], 2.0 * largest, [&](Index b) {
-      if (b <= a || edges.contains({a, b})) return;
-      const double apart = norm(body.position[at(b)] - body.position[at(a)]);
-      const double share = apart / (full[at(a)] + full[at(b)]);
-      if (share >= 1.0) return;
-      for (const Index e : {a, b}) radius[at(e)] = std::min(radius[at(e)], share * full[at(e)]);
-    });
+  part_strangers(body.position, edges, radius);
   return radius;
 }
 
 }  // namespace
+
+void part_strangers(const std::vector<Vec3>& position,
+                    const std::set<std::pair<Index, Index>>& edges, std::vector<double>& radius) {
+  const std::vector<double> full = radius;
+  const double reach = 2.0 * *std::max_element(full.begin(), full.end());
+  const CellGrid grid(position, reach);
+  for (Index a = 0; a < static_cast<Index>(radius.size()); ++a)
+    grid.visit(position[at(a)], reach, [&](Index b) {
+      if (b <= a || edges.contains({a, b})) return;
+      const double apart = norm(position[at(b)] - position[at(a)]);
+      const double share = apart / (full[at(a)] + full[at(b)]);
+      if (share >= 1.0) return;
+      for (const Index e : {a, b}) radius[at(e)] = std::min(radius[at(e)], share * full[at(e)]);
+    });
+}
 
 MixDesign mix_of(const dem::MaterialConfig& m) {
   const dem::MixConfig& c = m.mix;

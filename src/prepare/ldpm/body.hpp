@@ -1,6 +1,9 @@
 #pragma once
 // A body of law ldpm, and the links of its facets.
 
+#include <set>
+#include <utility>
+
 #include "dem/setup/model.hpp"
 #include "prepare/ldpm/mesh_file.hpp"
 #include "prepare/ldpm/particles.hpp"
@@ -25,6 +28,11 @@ LdpmBody ldpm_body(const Container& container, const dem::MaterialConfig& materi
 /// The body of a mesh that was read, with its facets or, if it has none, those of its diameters:
 /// then surface particles have 1.1 of the mix's `smallest`.
 LdpmBody ldpm_body(const LdpmMesh& mesh, const dem::MaterialConfig& material);
+
+/// Reduces the radii of particles that overlap without a common facet until they touch.
+/// @param edges  pairs with one, the lower number first
+void part_strangers(const std::vector<Vec3>& position,
+                    const std::set<std::pair<Index, Index>>& edges, std::vector<double>& radius);
 
 /// Adds a link for each of the model's facets, whose ends may have changed their order; links and
 /// facets are sorted by ends.

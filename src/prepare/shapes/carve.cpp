@@ -6,10 +6,13 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "dem/setup/model_arrays.hpp"
 #include "exec/error.hpp"
 #include "prepare/checks/by_name.hpp"
+#include "prepare/ldpm/body.hpp"
 #include "prepare/packing/linking.hpp"
 #include "prepare/packing/stiffness.hpp"
 
@@ -179,6 +182,29 @@ class Carving {
                       "its shape, or all of it is cut out",
                       body.name));
     keep_only(model_, kept);
+    if (item_named(config_.materials, body.material)->law == "ldpm") part_grains(number);
+  }
+
+  /// Grains on both sides of a cut overlap without a facet now.
+  void part_grains(int number) {
+    std::vector<Index> own(static_cast<std::size_t>(model_.size()), -1);
+    std::vector<Vec3> position;
+    std::vector<double> radius;
+    for (Index e = 0; e < model_.size(); ++e) {
+      if (!is_of(e, number)) continue;
+      own[static_cast<std::size_t>(e)] = static_cast<Index>(position.size());
+      position.push_back(place(e));
+      radius.push_back(model_.radius[static_cast<std::size_t>(e)]);
+    }
+    std::set<std::pair<Index, Index>> edges;
+    for (const Model::Link& link : model_.links)
+      if (link.facet >= 0 && is_of(link.a, number))
+        edges.insert(std::minmax(own[static_cast<std::size_t>(link.a)],
+                                 own[static_cast<std::size_t>(link.b)]));
+    part_strangers(position, edges, radius);
+    for (Index e = 0; e < model_.size(); ++e)
+      if (const Index k = own[static_cast<std::size_t>(e)]; k >= 0)
+        model_.radius[static_cast<std::size_t>(e)] = radius[static_cast<std::size_t>(k)];
   }
 
   /// Turns a body, and bars in it, about its centre; how it moves is as the case says.

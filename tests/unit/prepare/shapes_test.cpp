@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <set>
+#include <utility>
 
 #include "core/random.hpp"
 #include "dem/observe.hpp"
@@ -314,6 +316,31 @@ TEST(Shapes, grains_of_a_body_of_ldpm_lose_their_facets_with_what_is_cut_out) {
     EXPECT_LT(norm(facet.center - middle), 0.02);
   }
   EXPECT_EQ(links, cut.facets.size());
+}
+
+/// Spheres on both sides of a crack would push it open at once.
+TEST(Shapes, grains_of_ldpm_on_both_sides_of_a_crack_do_not_overlap) {
+  dem::Config config = dem::case_with_materials();
+  config.materials[0].law = "ldpm";
+  config.materials[0].mix.smallest = 0.01;
+  config.materials[0].mix.largest = 0.02;
+  config.bodies = {dem::box_body("cube", {0.1, 0.1, 0.1}, 0, 0.6)};
+  dem::CutConfig crack;
+  crack.size = {0.06, 0.2, 0.0};
+  config.bodies[0].cuts = {crack};
+  const dem::Model model = build_model(config, "");
+  std::set<std::pair<Index, Index>> edges;
+  for (const auto& link : model.links) edges.insert(std::minmax(link.a, link.b));
+  int across = 0;
+  for (Index a = 0; a < model.size(); ++a)
+    for (Index b = a + 1; b < model.size(); ++b) {
+      if (edges.contains({a, b})) continue;
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      const double apart = norm(model.position[i] - model.position[j]);
+      EXPECT_GE(apart, (1.0 - 1e-12) * (model.radius[i] + model.radius[j]));
+      if (model.position[i].z * model.position[j].z < 0.0 && apart < 0.02) ++across;
+    }
+  EXPECT_GT(across, 10);
 }
 
 TEST(Shapes, wrong_ones_are_told_by_key) {
