@@ -32,6 +32,12 @@ struct CalibrateCommand {
     const Case read = load_case(path, overrides);
     if (const auto* const concrete = std::get_if<dem::Config>(&read.config)) {
       const lab::Sample sample = lab::sample_of(*concrete, material);
+      if (sample.material.law == "ldpm")
+        return find(
+            read, sample,
+            fmt::format("specimens with grains of {:.3g} to {:.3g} mm, the prism five of "
+                        "the largest wide",
+                        1e3 * sample.material.mix.smallest, 1e3 * sample.material.mix.largest));
       return find(read, sample,
                   fmt::format("packings of {} elements in the prism, compactness {}, size ratio "
                               "{}, interaction range {}",
@@ -106,7 +112,8 @@ void add_calibrate(CLI::App& program, int& exit_code) {
   add_side_by_side_options(*command, calibrate->options);
   command->footer(
       "Each target is mostly the work of one key. Concrete (DEM): young, poisson, tension\n"
-      "by tensile_strength, compression by cohesion, fracture_energy. Rock (FDEM): young,\n"
+      "by tensile_strength, compression by cohesion, fracture_energy; law ldpm likewise, the\n"
+      "energy by ldpm.tensile_length. Rock (FDEM): young,\n"
       "poisson, brazilian (or tension) by joint.tension, compression by joint.cohesion,\n"
       "friction_angle. Other keys stay. A material with the key use has the targets of\n"
       "its name; --target takes their place.\n"

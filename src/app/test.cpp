@@ -24,6 +24,11 @@ namespace {
 namespace lab = laboratory;
 
 std::string specimens_of(const lab::Sample& s) {
+  if (s.material.law == "ldpm")
+    return fmt::format(
+        "Specimens of LDPM with the mix's grains of {:.3g} to {:.3g} mm; the prism is five of the "
+        "largest wide and twice as high.",
+        1e3 * s.material.mix.smallest, 1e3 * s.material.mix.largest);
   return fmt::format(
       "Specimens of spheres, {} in the prism of 0.1 x 0.1 x 0.2 m and in the disc, and as large "
       "ones as the prism's in the others; compactness {}, interaction range {}.",
@@ -46,11 +51,14 @@ struct TestCommand {
   int execute() const {
     const Case read = load_case(path, overrides);
     if (const auto* const concrete = std::get_if<dem::Config>(&read.config))
-      return make(read, lab::sample_of(*concrete, material), lab::specimen_tests());
+      return of_concrete(read, lab::sample_of(*concrete, material));
     return make(read, lab::rock_sample_of(std::get<fdem::Config>(read.config), material),
                 lab::rock_tests());
   }
 
+  int of_concrete(const Case& read, const lab::Sample& sample) const {
+    return make(read, sample, lab::tests_of(sample.material));
+  }
   template <class Sample>
   int make(const Case& read, Sample sample, const std::vector<lab::SpecimenTest>& tests) const {
     sample.elements = elements;
@@ -152,7 +160,9 @@ void add_test(CLI::App& program, int& exit_code) {
       "Tests of concrete (DEM): compression_prism, compression_cube (smooth ends), platens_prism,\n"
       "platens_cube (rough platens), tension, tension_notched (a prism), brazilian, bending\n"
       "(a notched beam), bending_plain, triaxial_5, _20, _50, _100, _200 (pressure in MPa),\n"
-      "oedometer.\n"
+      "oedometer. Of law ldpm: compression_prism, compression_cube, held_prism, held_cube (held\n"
+      "ends), tension, tension_notched, triaxial_5 to _200, biaxial, oedometer, hydrostatic;\n"
+      "grains are the mix's, the prism is five of the largest wide, --elements has no use.\n"
       "Tests of rock (FDEM): plate, plate_10 (10 MPa on its sides), disc.\n"
       "\n"
       "Targets: young, poisson, compression, tension, brazilian, fracture_energy,\n"

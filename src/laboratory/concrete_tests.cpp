@@ -7,6 +7,7 @@
 
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
+#include "laboratory/ldpm_tests.hpp"
 #include "math/constants.hpp"
 #include "prepare/packing/packing.hpp"
 
@@ -253,9 +254,9 @@ Sample sample_of(const dem::Config& config, const std::string& material) {
                                   [&](const auto& m) { return m.name == material; });
   if (found == config.materials.end())
     throw InputError(fmt::format("the case has no material {}; nothing was run", material));
-  if (found->law != "concrete" && found->law != "parallel")
+  if (found->law != "concrete" && found->law != "parallel" && found->law != "ldpm")
     throw InputError(
-        fmt::format("material {} has the law {}: only concrete and parallel bonds are "
+        fmt::format("material {} has the law {}: only concrete, parallel bonds and ldpm are "
                     "tested; nothing was run",
                     material, found->law));
   sample.material = *found;
@@ -308,8 +309,13 @@ const std::vector<SpecimenTest>& specimen_tests() {
   return tests;
 }
 
+std::vector<SpecimenTest> tests_of(const dem::MaterialConfig& material) {
+  return material.law == "ldpm" ? ldpm_tests(material) : specimen_tests();
+}
+
 dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t seed,
                     const std::string& folder) {
+  if (sample.material.law == "ldpm") return ldpm_case_of(test, sample, seed);
   dem::Config c;
   c.title = test.title;
   c.seed = seed;
@@ -361,9 +367,11 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
       c.time.end = 0.14 / 4.0;
       load_between_sides(c, test.size, 4.0 * height);
       break;
+    case Loading::hydrostatic:
+    case Loading::biaxial:
     case Loading::plate:
     case Loading::plane_disc:
-      throw InputError(test.title + " is a test of plane cases");
+      throw InputError(test.title + " is no test of spheres");
   }
   return c;
 }

@@ -24,7 +24,8 @@ struct Sample {
 /// @throws InputError if there is no such material, or it is no concrete or rock
 Sample sample_of(const dem::Config& config, const std::string& material);
 
-/// The tests that there are; plate and plane_disc are the FDEM's.
+/// The tests that there are; hydrostatic and biaxial are LDPM's alone, plate and plane_disc are the
+/// FDEM's.
 enum class Loading {
   compression,
   platens,
@@ -34,6 +35,8 @@ enum class Loading {
   bending,
   triaxial,
   oedometer,
+  hydrostatic,
+  biaxial,
   plate,
   plane_disc
 };
@@ -52,6 +55,9 @@ struct SpecimenTest {
 /// plain beam; triaxial compression at five pressures; compression between sides that stand still
 /// (oedometer).
 const std::vector<SpecimenTest>& specimen_tests();
+
+/// Those, or of law ldpm its own.
+std::vector<SpecimenTest> tests_of(const dem::MaterialConfig& material);
 
 /// Distance of the beam's supports.  [m]
 inline constexpr double beam_span = 0.3;

@@ -95,8 +95,9 @@ SpecimenResult of_prism(const SpecimenTest& test, const report::NumberTable& tab
   result.numbers["peak_strain"] = strain[peak];
   if (test.loading == Loading::platens || test.loading == Loading::compression)
     result.numbers["residual"] = residual_of(strain, stress, peak);
-  if (test.loading == Loading::platens || test.loading == Loading::triaxial)
-    return result;  // the give of walls is in the strain
+  if (test.loading == Loading::platens || test.loading == Loading::triaxial ||
+      test.loading == Loading::biaxial)
+    return result;  // the give of walls is in the strain, or there are no gauges
   result.numbers["young"] = slope_between(strain, stress, stress, elastic_from, elastic_to);
   const Values right = column(table, "right", folder), left = column(table, "left", folder);
   const Values across = scaled(growth(right, left), -sense / (right[0] - left[0]));
@@ -128,6 +129,18 @@ SpecimenResult of_oedometer(const SpecimenTest& test, const report::NumberTable&
   n["tangent_300"] = tangent(300e6);
   n["tangent_800"] = tangent(800e6);
   n["side_ratio"] = std::abs(first_at(stress, side, 1e9)) / (1e9 * test.size.y * test.size.z);
+  return result;
+}
+
+/// All three edges shorten alike.
+SpecimenResult of_pressure(const SpecimenTest& test, const report::NumberTable& table,
+                           const std::string& folder) {
+  const Values top = column(table, "top", folder), bottom = column(table, "bottom", folder);
+  const Values strain = scaled(growth(top, bottom), -1.0 / (top[0] - bottom[0]));
+  const Values stress = scaled(load_of(table, folder), 1.0 / (test.size.x * test.size.y));
+  SpecimenResult result{{"strain [-]", "pressure [Pa]", strain, stress}, {}};
+  result.numbers["pressure_1"] = first_at(strain, stress, 0.01);
+  result.numbers["pressure_2"] = first_at(strain, stress, 0.02);
   return result;
 }
 
@@ -239,7 +252,9 @@ constexpr std::array shown{
     Shown{"strain_1000", "strain at 1 GPa", "%", 100.0},
     Shown{"tangent_300", "tangent at 0.3 GPa", "GPa", 1e-9},
     Shown{"tangent_800", "tangent at 0.8 GPa", "GPa", 1e-9},
-    Shown{"side_ratio", "lateral over axial stress at 1 GPa", "-", 1.0}};
+    Shown{"side_ratio", "lateral over axial stress at 1 GPa", "-", 1.0},
+    Shown{"pressure_1", "pressure at a linear strain of 1 %", "MPa", 1e-6},
+    Shown{"pressure_2", "pressure at a linear strain of 2 %", "MPa", 1e-6}};
 const Shown& shown_of(const std::string& name) {
   return *std::find_if(shown.begin(), shown.end(), [&](const Shown& s) { return name == s.name; });
 }
@@ -261,6 +276,8 @@ SpecimenResult specimen_result(const SpecimenTest& test, const std::string& fold
       return of_plane_disc(test, table, folder);
     case Loading::oedometer:
       return of_oedometer(test, table, folder);
+    case Loading::hydrostatic:
+      return of_pressure(test, table, folder);
     default:
       return of_prism(test, table, folder);
   }

@@ -22,7 +22,8 @@ struct LoadCurve {
 
 /// Of one specimen: its curve, and numbers by name: strength, young, poisson, peak_strain,
 /// fracture_energy; residual (stress at three times the strain of the peak, over it); of the
-/// oedometer strain_100, strain_1000 (at stresses in MPa), tangent_300, tangent_800, side_ratio.
+/// oedometer strain_100, strain_1000 (at stresses in MPa), tangent_300, tangent_800, side_ratio;
+/// under hydrostatic pressure pressure_1, pressure_2 (at linear strains in per cent).
 struct SpecimenResult {
   LoadCurve curve;
   std::map<std::string, double> numbers;  ///<  [SI]
