@@ -211,8 +211,8 @@ struct CoupleForces {
   /// Coulomb friction at the centre of pressure, shared among the corners by its coordinates.
   BR_HD void rub(const ContactPair& law, const Target& of_a, const Vec3 (&va)[4],
                  const Target& of_b, const Vec3 (&vb)[4], CoupleState& kept, Pressing& sum) const {
-    const double size = norm(sum.on_a);
-    if (!(law.friction > 0.0) || !(size > 0.0)) return;
+    const double size = norm(sum.on_a), stiffness = law.tangential * 0.5 * sum.area;
+    if (!(law.friction > 0.0) || !(size > 0.0) || !(stiffness > 0.0)) return;
     const Vec3 n = (1.0 / size) * sum.on_a, centre = (1.0 / sum.weight) * sum.centre;
     double share_a[4], share_b[4];
     of_a.coordinates(centre, share_a);
@@ -223,7 +223,7 @@ struct CoupleForces {
     // Turned with the plane of contact, its length kept.
     Vec3 before = kept.drag - dot(kept.drag, n) * n;
     const double left = norm(before), had = norm(kept.drag);
-    const double stiffness = law.tangential * 0.5 * sum.area, most = law.friction * size;
+    const double most = law.friction * size;
     // As the area changes the spring keeps its energy T^2/(2 k).
     const double stiffer = kept.spring > 0.0 ? sqrt(stiffness / kept.spring) : 1.0;
     if (left > 0.0) before = (stiffer * had / left) * before;
@@ -260,9 +260,10 @@ struct CoupleForces {
     drag -= dot(drag, n) * n;
     const double drawn = norm(drag), most = law.friction * now;
     if (drawn > most) drag = (most / drawn) * drag;
-    kept.drag = drag;
     const double stiffness = law.tangential * 0.5 * whole.area;
-    kept.spring = stiffness;
+    if (!(stiffness > 0.0)) drag = {};
+    kept.drag = drag;
+    kept.spring = max(0.0, stiffness);
     const JointWork given{kept.scale * whole.energy,
                           stiffness > 0.0 ? 0.5 * dot(drag, drag) / stiffness : 0.0};
     kept.work = given.open + given.slide;
