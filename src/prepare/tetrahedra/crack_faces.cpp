@@ -11,6 +11,7 @@ namespace {
 
 constexpr double on_crack = 1e-6;     ///< corners so near lie on it, over an edge of the face  [-]
 constexpr double reach_of_cut = 2.0;  ///< of the search on each side, over the mean edge  [-]
+constexpr double cheapest = 0.05;     ///< price of a face on the crack, see the header  [-]
 constexpr double firmness = 4.0;      ///< cost of a volume on the wrong side, see the header  [-]
 
 Vec3 unit(const Vec3& v) {
@@ -124,7 +125,10 @@ class NearCrack {
       const Vec3 a = at(point_, face->corners[0]);
       const double area =
           0.5 * norm(cross(at(point_, face->corners[1]) - a, at(point_, face->corners[2]) - a));
-      network.join(place(face->tetrahedra[0]), place(face->tetrahedra[1]), cost(area));
+      double off = 0.0;
+      for (const Index v : face->corners) off += std::abs(crack_.height(at(point_, v))) / 3.0;
+      network.join(place(face->tetrahedra[0]), place(face->tetrahedra[1]),
+                   cost(std::min(1.0, cheapest + 2.0 * off / edge) * area));
     }
     const std::vector<bool> above = network.with_source();
     std::vector<Face> found;

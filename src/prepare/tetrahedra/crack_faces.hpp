@@ -28,10 +28,10 @@ class FlatCrack {
 ///
 /// Where the mesh was made to follow the crack: faces whose three corners lie on it. Elsewhere, in
 /// each connected region of the mesh near it, the faces that part the region most cheaply: with the
-/// mean edge h, a face costs its area, and a tetrahedron that ends on the wrong side
-/// 4 V |d| / h^2 for the distance d of its centroid from the crack, or all there is if d > h. So
-/// the surface has no holes, keeps to within an edge of the crack, and is as smooth as the mesh
-/// allows. It ends where the crack ends.
+/// mean edge h, a face costs its area times 0.05 + 2 d / h, at most 1, for the mean distance d of
+/// its corners from the crack; a tetrahedron that ends on the wrong side costs 4 V d / h^2 for the
+/// distance d of its centroid, or all there is if d > h. So the surface has no holes, keeps to
+/// within an edge of the crack, and is as smooth as the mesh allows. It ends where the crack ends.
 ///
 /// @param faces    of the tetrahedra
 /// @param follows  whether a tetrahedron's mesh was made to follow the crack

@@ -151,6 +151,15 @@ TEST(CrackFaces, ThinBodiesArePartedToo) {
   EXPECT_EQ(m.discontinuities.size(), 200U);
 }
 
+TEST(CrackFaces, TwoTetrahedraArePartedAtTheirFace) {
+  const std::vector<Vec3> point{
+      {0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0.002, 0.002, 0.01}, {0.002, 0.002, -0.01}};
+  const std::vector<prepare::Tetrahedron> two{{0, 1, 2, 3}, {0, 2, 1, 4}};
+  const auto faces = prepare::faces_along(plane_at(0.0), point, two, prepare::faces_of(two),
+                                          [](Index) { return false; });
+  EXPECT_EQ(faces, (std::vector<prepare::Face>{{0, 1, 2}}));
+}
+
 TEST(CrackFaces, GmshFollowsDiscsAndPolygons) {
   BodyConfig box = regular_box({0.1, 0.1, 0.1}, 0.01);
   box.structured = false;
