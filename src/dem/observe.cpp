@@ -102,6 +102,16 @@ struct BrokenDamage {
   Broken is_broken;
   BR_HD void operator()(Index i) const { add(i, is_broken(i) ? 1.0 : 0.0); }
 };
+/// Notes when a link was first seen broken.
+template <class Broken>
+struct NoteBreak {
+  Broken is_broken;
+  double now;  ///<  [s]
+  View<double> seen_broken;
+  BR_HD void operator()(Index i) const {
+    if (seen_broken[i] < 0.0 && is_broken(i)) seen_broken[i] = now;
+  }
+};
 struct Damage {
   View<const Index> links, lost;
   View<double> damage;
@@ -189,6 +199,17 @@ Buffer<double> damage_of(const World& w) {
   for_each(w.exec, count,
            Damage{std::as_const(links).view(), std::as_const(lost).view(), damage.view()});
   return damage;
+}
+
+void note_breaks(World& w) {
+  w.each_set([&](auto& set) {
+    with_number(w.exec.precision, [&](auto number) {
+      const auto is_broken = set.template broken<decltype(number)>();
+      for_each(w.exec, set.size(),
+               NoteBreak<std::remove_const_t<decltype(is_broken)>>{is_broken, w.time,
+                                                                   set.seen_broken.view()});
+    });
+  });
 }
 
 std::vector<double> damage(const World& w) {

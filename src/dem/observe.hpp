@@ -34,6 +34,9 @@ double probe(const World& w, const ProbeConfig& probe);
 /// whole.
 Readings read_own(World& part, const ProbeConfig& probe);
 
+/// Notes the present time in links that have broken since the last call. On a device: there.
+void note_breaks(World& w);
+
 /// Counts of broken links and the like.
 struct Counts {
   std::array<Index, link_kinds> broken{};  ///< links, by kind

@@ -103,11 +103,14 @@ class CheckpointReader {
   std::string text(const std::string& name) const;
 
   /// Fills every array of a state from the sections that CheckpointWriter::fields wrote.
-  /// @throws CheckpointError if one is missing, or they are not equally long
+  /// One that State::older_files_lack() keeps what it holds where the file has none.
+  /// @throws CheckpointError if another is missing, or they are not equally long
   template <class State>
   void fields(const std::string& prefix, State& state) const {
     Index size = -1;
     state.each_field([&](const char* name, const char*, auto& array) {
+      if constexpr (requires { State::older_files_lack(name); })
+        if (State::older_files_lack(name) && !has(prefix + "." + name)) return;
       read_array(prefix + "." + name, array);
       if (size >= 0 && array.size() != size) refuse_size(prefix, name, array.size(), size);
       size = array.size();

@@ -70,6 +70,23 @@ std::optional<double> Record::number(const std::string& path) const {
   return found->second;
 }
 
+namespace {
+
+/// Tables of more than this are left alone: reading would take longer than a person waits.
+constexpr std::uintmax_t largest_table = 100'000'000;
+
+/// What cuts parted before the start has the time 0.
+std::vector<double> times_of_breaks(const NumberTable& broken) {
+  const Column* const time = broken.column("time");
+  if (time == nullptr) return {};
+  std::vector<double> times = time->values;
+  std::erase_if(times, [](double t) { return !(t > 0.0); });
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+}  // namespace
+
 Record read_record(const std::string& folder) {
   std::error_code error;
   if (!fs::exists(folder, error))
@@ -89,6 +106,10 @@ Record read_record(const std::string& folder) {
   record.scene = scene_of(record.case_text);
   if (has("history.csv")) record.history = read_table(file("history.csv"));
   if (has("cracks.csv")) record.cracks = read_table(file("cracks.csv"));
+  record.breaks = times_of_breaks(record.cracks);
+  if (const std::string links = file("broken_links.csv");
+      has("broken_links.csv") && fs::file_size(links, error) <= largest_table)
+    record.breaks = times_of_breaks(read_table(links));
   if (has("fragments.csv")) record.fragments = read_table(file("fragments.csv"));
   if (has("log.jsonl")) record.warnings = warnings_of(file("log.jsonl"));
   if (holds_frames(folder)) record.times = frame_times(folder);

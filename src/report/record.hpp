@@ -18,9 +18,10 @@ struct Record {
   std::map<std::string, std::string> texts;
   std::string case_text;  ///< case.toml; empty: there is none
   Scene scene;
-  NumberTable history;                ///< history.csv
-  NumberTable cracks;                 ///< cracks.csv; no columns: there is none
-  NumberTable fragments;              ///< fragments.csv, likewise
+  NumberTable history;         ///< history.csv
+  NumberTable cracks;          ///< cracks.csv; no columns: there is none
+  std::vector<double> breaks;  ///< when joints or links broke since the start, ascending  [s]
+  NumberTable fragments;       ///< fragments.csv, likewise
   std::vector<std::string> warnings;  ///< and errors, of log.jsonl
   std::vector<double> times;          ///< of the frames  [s]
 

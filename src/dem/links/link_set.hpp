@@ -2,6 +2,7 @@
 // Links of one law: their arrays, the groups of one material each, and how ranks number them.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/energy.hpp"
@@ -14,16 +15,20 @@
 
 namespace breccia::dem {
 
-/// Elements that links join, a's global id below b's. One item a link; written by set-up, and where
-/// elements change places.
+/// Elements that links join, a's global id below b's; written by set-up, and where elements change
+/// places. No step reads or writes when links broke: rows of the history note it. One item a link.
 struct LinkEnds {
-  Buffer<Index> a, b;  ///< places in memory  [-]
+  Buffer<Index> a, b;          ///< places in memory  [-]
+  Buffer<double> seen_broken;  ///< when a row of the history first found it broken; below 0: not
+                               ///< yet  [s]  (note_breaks)
 
   template <class Visit>
   void each_field(Visit&& field) {
     field("a", "-", a);
     field("b", "-", b);
+    field("seen_broken", "s", seen_broken);
   }
+  static bool older_files_lack(std::string_view array) { return array == "seen_broken"; }
   template <class Visit>
   void each_end(Visit&& visit) {
     visit("a", a);

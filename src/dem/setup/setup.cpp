@@ -85,6 +85,7 @@ std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<L
     groups.back().end = static_cast<Index>(i + 1);
   }
   resize_fields(set, static_cast<Index>(links.size()));
+  copy_to(set.seen_broken, std::vector<double>(links.size(), -1.0));
   return links;
 }
 

@@ -46,6 +46,7 @@ class AuditedMethod final : public Method {
   void set_stage(const StageProgress& stage) override { method_->set_stage(stage); }
   EnergyBalance energy() override { return method_->energy(); }
   std::vector<double> probes() override { return method_->probes(); }
+  void note_breaks() override { method_->note_breaks(); }
   std::uint64_t state_hash() override { return method_->state_hash(); }
   void verify() override { method_->verify(); }
   Frame frame() override { return method_->frame(); }

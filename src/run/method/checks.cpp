@@ -30,10 +30,10 @@ bool all_pass(const std::vector<CheckResult>& results) {
 std::string check_table(const std::vector<CheckResult>& results) {
   std::size_t width = 4;
   for (const CheckResult& result : results) width = std::max(width, result.name.size());
-  std::string table = fmt::format("  {:<{}}  {:>14}  {:>14}  {:>12}  {:<8}\n", "check", width,
+  std::string table = fmt::format("  {:<{}}  {:>13}  {:>13}  {:>9}  {:<4}\n", "check", width,
                                   "value", "expected", "tolerance", "unit");
   for (const CheckResult& result : results)
-    table += fmt::format("  {:<{}}  {:>14}  {:>14.8g}  {:>12.4g}  {:<8}  {}\n", result.name, width,
+    table += fmt::format("  {:<{}}  {:>13}  {:>13.8g}  {:>9.4g}  {:<4}  {}\n", result.name, width,
                          result.value ? fmt::format("{:.8g}", *result.value) : "missing",
                          result.expected, result.tolerance, result.unit,
                          result.pass ? emphasized(Emphasis::good, "pass", stdout)

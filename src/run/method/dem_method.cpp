@@ -105,6 +105,7 @@ struct DemSim {
     add("fracture.largest_fragment_fraction", n.largest_fragment);
   }
 
+  static void note_breaks(World& w) { dem::note_breaks(w); }
   static std::vector<Table> tables(const World& w) { return dem_tables(w); }
 
   static void add_arrays(World& w, StateArrays& arrays) {

@@ -31,8 +31,8 @@ struct PairPlace {
 
 Table broken_links(const dem::World& w, const dem::Elements& e) {
   Table table{"broken_links",
-              {"a", "b", "x", "y", "z", "nx", "ny", "nz", "kind"},
-              {"-", "-", "m", "m", "m", "-", "-", "-", "-"},
+              {"a", "b", "x", "y", "z", "nx", "ny", "nz", "kind", "time"},
+              {"-", "-", "m", "m", "m", "-", "-", "-", "-", "s"},
               {}};
   w.each_set([&](const auto& set) {
     const OnHost links(set.arrays(), w.exec.space);
@@ -43,6 +43,8 @@ Table broken_links(const dem::World& w, const dem::Elements& e) {
         if (!is_broken(i) || is_gone(e.fixed.data()[a]) || is_gone(e.fixed.data()[b])) continue;
         table.rows.push_back(PairPlace(e, a, b).row());
         table.rows.back().push_back(static_cast<double>(set.kind));
+        const double seen = links->seen_broken.data()[i];
+        table.rows.back().push_back(seen < 0.0 ? w.time : seen);
       }
     });
   });

@@ -9,7 +9,8 @@
 namespace breccia {
 
 /// fragments: pieces that links hold together, the heaviest first, with place and velocity;
-/// broken_links: where they are and which way they pointed; contacts: those that press, with their
+/// broken_links: where they are, which way they pointed, and when a row of the history first found
+/// them broken; contacts: those that press, with their
 /// forces.
 /// @param w  all of it
 std::vector<Table> dem_tables(const dem::World& w);

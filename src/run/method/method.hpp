@@ -64,6 +64,8 @@ class Method {
   virtual EnergyBalance energy() = 0;
   /// Values of the case's probes, in their order.  [SI]
   virtual std::vector<double> probes() = 0;
+  /// A row of the history is written: bonds that have broken since the last one get its time.
+  virtual void note_breaks() {}
   /// Order-free hash of all element states by global id: equal on any thread or rank count.
   virtual std::uint64_t state_hash() = 0;
   /// Looks for numbers that went wrong. @throws NumericsError naming step, time and element

@@ -63,6 +63,12 @@ class SharedWorld {
     if (part_) work(*part_);
     stale_ = part_.has_value();
   }
+  /// Calls work(world) for what steps: a change of its own that the whole learns of later.
+  template <class Work>
+  void in_part(const Work& work) {
+    work(part());
+    stale_ = part_.has_value();
+  }
   /// The global ledger, without contributions that ranks have not reported yet. Rank 0
   /// only.
   auto& ledger() { return whole_.ledger; }

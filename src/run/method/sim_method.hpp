@@ -19,10 +19,10 @@
 
 namespace breccia {
 
-/// The parts that differ between kinds of world. It may also have `step_rule(world)` and
-/// `tables(world)`, and has `each_stored(world, visit)`: the one list of what a checkpoint holds,
-/// as visit(name, value), visit.fields(prefix, state), and visit.where_kept(name, value) for what
-/// older files lack. Beside the world are advance, held,
+/// The parts that differ between kinds of world. It may also have `step_rule(world)`,
+/// `note_breaks(world)` and `tables(world)`, and has `each_stored(world, visit)`: the one list of
+/// what a checkpoint holds, as visit(name, value), visit.fields(prefix, state), and
+/// visit.where_kept(name, value) for what older files lack. Beside the world are advance, held,
 /// probe, read_own, find_unsound, state_hash, derive, share_out, collect and rebalance.
 template <class Sim>
 concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vector<Fact>& facts,
@@ -143,6 +143,10 @@ class SimMethod final : public Method {
     for (std::size_t i = 0; i < all.size(); ++i)
       values.push_back(all[i].reduced(probes_[i].reduce));
     return values;
+  }
+  void note_breaks() override {
+    if constexpr (requires(World & w) { Sim::note_breaks(w); })
+      at_once(world_.ranks(), [&] { world_.in_part([](World& w) { Sim::note_breaks(w); }); });
   }
   std::uint64_t state_hash() override {
     const std::uint64_t own = hash_of(world_.part());

@@ -227,6 +227,7 @@ void Recorder::sync() {
 }
 
 void Recorder::write_row(Method& method) {
+  method.note_breaks();
   const std::vector<double> probes = method.probes();
   last_energy_ = method.energy();
   on_first(ranks_, [&] {

@@ -52,6 +52,9 @@ class BrokenOff : public testing::Test {
       EXPECT_EQ(summary(name)[key], summary("whole")[key]) << key;
     EXPECT_GT(summary(name)["fracture"]["broken_links"], 100);
     EXPECT_EQ(history(name), history("whole"));
+    const std::string links = read_whole_file(folder(name) + "/broken_links.csv");
+    EXPECT_NE(links.find(",time\n"), std::string::npos);
+    EXPECT_EQ(links, read_whole_file(folder("whole") + "/broken_links.csv"));
   }
 
   ScratchFolder scratch;

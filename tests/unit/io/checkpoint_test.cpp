@@ -72,6 +72,35 @@ TEST(Checkpoint, missing_sections_and_other_sizes_are_refused_by_name) {
   EXPECT_THROW(CheckpointReader(folder / "none.br"), IoError);
 }
 
+/// A state that a later program has given another array.
+struct LaterState : State {
+  Buffer<double> seen;
+  template <class Visit>
+  void each_field(Visit&& field) {
+    State::each_field(field);
+    field("seen", "s", seen);
+  }
+  static bool older_files_lack(std::string_view array) { return array == "seen"; }
+};
+
+TEST(Checkpoint, what_older_files_lack_keeps_what_it_holds) {
+  const ScratchFolder folder;
+  write_example(folder / "a.br");
+  LaterState later;
+  copy_to(later.seen, std::vector<double>(100, -1.0));
+  CheckpointReader(folder / "a.br").fields("elements", later);
+  EXPECT_EQ(later.mass.size(), 100);
+  EXPECT_EQ(later.seen.data()[99], -1.0);
+
+  later.seen.data()[99] = 7.0;
+  CheckpointWriter writer;
+  writer.fields("elements", later);
+  writer.write(folder / "b.br");
+  later.seen.data()[99] = -1.0;
+  CheckpointReader(folder / "b.br").fields("elements", later);
+  EXPECT_EQ(later.seen.data()[99], 7.0);
+}
+
 TEST(Checkpoint, a_state_whose_arrays_differ_in_length_is_refused) {
   const ScratchFolder folder;
   const std::string path = folder / "a.br";

@@ -37,6 +37,16 @@ TEST(Findings, ABrokenChainIsToldByWhatWhenAndWhere) {
       << text;
 }
 
+TEST(Findings, ListsOfBrokenLinksTellWhenMoreCloselyThanFrames) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  test::write_text(folder.path() + "/broken_links.csv",
+                   "a,b,kind,time\n-,-,-,s\n0,1,0,0\n4,5,0,0.0019\n3,4,0,0.0013\n5,6,0,0.0015\n");
+  const std::string text = joined(findings_of(read_record(folder.path())));
+  EXPECT_NE(text.find("the first broke by 1.3 ms, half of them by 1.5 ms."), std::string::npos)
+      << text;
+}
+
 TEST(Findings, AnUnbrokenChainTellsHowNearItCame) {
   const ScratchFolder folder;
   test::write_chain(folder.path(), 8, 99);
