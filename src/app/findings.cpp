@@ -7,6 +7,7 @@
 
 #include "core/case_config.hpp"
 #include "exec/error.hpp"
+#include "io/fold.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
 #include "report/findings.hpp"
@@ -33,7 +34,8 @@ void tell_findings(const std::string& folder) {
     if (!has_small_frames(folder)) record.times.clear();
     const char* head = "shows";
     for (const std::string& sentence : report::findings_of(record)) {
-      std::fputs(fmt::format("{:<7} {}\n", head, harmless(sentence)).c_str(), stdout);
+      std::fputs(fitting(fmt::format("{:<7} {}\n", head, harmless(sentence)), 8, stdout).c_str(),
+                 stdout);
       head = "";
     }
   } catch (const Error&) {

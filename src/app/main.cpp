@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include "exec/threads.hpp"
 #include "io/case/suggestion.hpp"
 #include "io/emphasis.hpp"
+#include "io/fold.hpp"
 #include "io/harmless.hpp"
 #include "run/machine/machine.hpp"
 #include "run/machine/memory_plan.hpp"
@@ -36,6 +38,22 @@ void write_error(const std::string& message) {
                  .c_str(),
              stderr);
 }
+
+/// Help of the program and its commands, for terminals of 80 columns.
+struct FoldedHelp : CLI::Formatter {
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    const std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+    std::string all;
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+      const std::string line = text.substr(at, end - at);
+      all += breccia::folded(line, 80, line.starts_with(' ') ? get_column_width() : 0);
+      at = end;
+    }
+    return all;
+  }
+};
 
 /// Tells of a wrong command line; a first word that is no command is named.
 void tell_usage(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
@@ -70,6 +88,7 @@ int run_program(int argc, char** argv, breccia::Communicator* ranks) {
       "How concrete and rock break: spheres with links that soften and fail in 3D, triangles with "
       "joints that crack in 2D."};
   program.name("breccia");
+  program.formatter(std::make_shared<FoldedHelp>());
   program.footer(
       "Exit codes: 0 done, 2 bad input, 3 input/output, 4 numerics, 5 memory or device,\n"
       "7 checkpoint refused, 8 a rank was lost, 9 a check of the case failed,\n"

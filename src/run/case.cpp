@@ -15,6 +15,7 @@
 #include "prepare/build_fdem3.hpp"
 #include "prepare/checks/check_case.hpp"
 #include "prepare/checks/check_regions.hpp"
+#include "prepare/checks/refusal.hpp"
 #include "prepare/model_file.hpp"
 #include "run/machine/device_plan.hpp"
 #include "run/machine/memory_plan.hpp"
@@ -56,8 +57,8 @@ Case completed(Case read) {
   std::visit(
       [&](const auto& config) {
         located(read, [&] {
-          check_case(config);
-          prepare::check_regions(config);
+          prepare::refuse_all(
+              "in the case", [&] { check_case(config); }, [&] { prepare::check_regions(config); });
           check_shown(config);
         });
         read.text = completed_case(config);

@@ -10,6 +10,7 @@
 #include "domain/together.hpp"
 #include "exec/error.hpp"
 #include "io/file.hpp"
+#include "io/fold.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
 #include "run/machine/signals.hpp"
@@ -478,7 +479,7 @@ void Run::write_summary(const Summary& summary) const {
 
 void Run::say(const std::string& text) {
   if (plan_.speech == Speech::quiet) return;
-  std::fputs(harmless(text).c_str(), stdout);
+  std::fputs(fitting(harmless(text), 8, stdout).c_str(), stdout);  // behind the words at the left
   std::fflush(stdout);
 }
 

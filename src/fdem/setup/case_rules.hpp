@@ -106,13 +106,21 @@ class CaseRules {
       add(where + ".on = \"" + on + "\" is not a body; there are: " + listed_names(config_.bodies));
   }
 
+  template <class Region>
+  void check_region(const std::string& where, const Region& r) {
+    check_body(where, r.on);
+    bool upward = r.min.x <= r.max.x && r.min.y <= r.max.y;
+    if constexpr (requires { r.min.z; }) upward = upward && r.min.z <= r.max.z;
+    if (!upward) add(where + ": min must not be above max");
+  }
+
   void check_supports() {
     for (const auto& b : config_.bodies) places_.insert(b.name);
     for (const auto& s : config_.supports)
       if (!places_.insert(s.name).second)
         add("support." + s.name + ": the name is taken by a body or support");
     for (const auto& s : config_.supports) {
-      check_body("support." + s.name, s.region.on);
+      check_region("support." + s.name, s.region);
       check_history("support." + s.name, s.history);
       check_one_table("support." + s.name + ".velocity", s.velocity, s.history);
       for (const std::string& direction : s.fix)
@@ -124,7 +132,7 @@ class CaseRules {
 
   void check_loads() {
     for (const auto& l : config_.loads) {
-      check_body("load." + l.name, l.region.on);
+      check_region("load." + l.name, l.region);
       check_history("load." + l.name, l.history);
       check_one_table("load." + l.name + ".pressure", l.pressure, l.history);
       check_one_table("load." + l.name + ".traction", l.traction, l.history);

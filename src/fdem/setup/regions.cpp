@@ -1,6 +1,8 @@
 #include "fdem/setup/regions.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "core/region.hpp"
@@ -51,6 +53,31 @@ class Region {
     return config_.edges.empty() || lines_.count(std::minmax(a, b)) != 0;
   }
 
+  /// "; the nearest, at (x, y) m, is 0.001 m away", of boxes and circles alone.
+  std::string nearest_corner() const {
+    if (config_.outside || !config_.polygon.empty() || !config_.edges.empty()) return "";
+    double least = no_limit;
+    Vec2 at{};
+    for (std::size_t t = 0; t < model_.triangle.size(); ++t) {
+      if (group_ >= 0 && model_.group[t] != group_) continue;
+      for (const Index vertex : model_.triangle[t]) {
+        const Vec2& x = model_.point[static_cast<std::size_t>(vertex)];
+        const Vec2 beside{std::max({config_.min.x - x.x, x.x - config_.max.x, 0.0}),
+                          std::max({config_.min.y - x.y, x.y - config_.max.y, 0.0})};
+        const Vec2 out = x - config_.center;
+        double away = std::sqrt(dot(beside, beside));
+        if (config_.radius > 0.0) away = std::max(away, std::sqrt(dot(out, out)) - config_.radius);
+        if (away >= least) continue;
+        least = away;
+        at = x;
+      }
+    }
+    char text[120];
+    std::snprintf(text, sizeof text, "; the nearest, at (%.4g, %.4g) m, is %.3g m away", at.x, at.y,
+                  least);
+    return least < no_limit ? text : "";
+  }
+
  private:
   const Model& model_;
   const RegionConfig& config_;
@@ -68,7 +95,9 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& config,
   for (std::size_t t = 0; t < model.triangle.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       if (region.takes(t, model.triangle[t][k])) corners.push_back(static_cast<Index>(3 * t + k));
-  if (corners.empty()) throw InputError(where + ": its region holds no corner of any triangle");
+  if (corners.empty())
+    throw InputError(where + ": its region holds no corner of any triangle" +
+                     region.nearest_corner());
   return corners;
 }
 

@@ -34,6 +34,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 4> whole{
 std::string plain_toml_error(std::string_view description) {
   for (const auto& [said, plain] : whole)
     if (description.find(said) != std::string_view::npos) return std::string(plain);
+  if (const std::string_view saw = between(description, "digit, saw '", "'");
+      !saw.empty() && saw != "\\n" && saw != "\\r")
+    return "this is no number; a quantity with a unit is written in quotes, as in \"40 mm\"";
   if (description.find("cannot redefine existing") != std::string_view::npos)
     return std::string(between(description, "'", "'")) + " is given twice";
   constexpr std::string_view start = "Error while parsing ";

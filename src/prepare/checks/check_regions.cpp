@@ -54,6 +54,8 @@ std::string place(double x) {
 /// The problem of a region; empty: it may take something, or no outline is known.
 std::string problem_of(const std::string& key, const Bounds& region, const std::string& on,
                        const std::vector<Outline>& outlines) {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (region.low[k] > region.high[k]) return "";  // check_case tells
   const Outline* nearest = nullptr;
   std::pair<double, std::size_t> least{0.0, 0};
   for (const Outline& outline : outlines) {

@@ -4,18 +4,42 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exec/error.hpp"
 
 namespace breccia::prepare {
 
+/// Problems that were found together.
+struct Refusal : InputError {
+  Refusal(const std::string& text, std::vector<std::string> all)
+      : InputError(text), problems(std::move(all)) {}
+  std::vector<std::string> problems;
+};
+
 /// Nothing if there are no problems. @param of  where they are: "in the case", "with the model"
 /// @throws InputError with one line for each problem
 inline void refuse(const std::vector<std::string>& problems, const char* of) {
   if (problems.empty()) return;
-  throw InputError(fmt::format("{} problem{} {}; nothing was run.\n  {}", problems.size(),
-                               problems.size() == 1 ? "" : "s", of, fmt::join(problems, "\n  ")));
+  throw Refusal(fmt::format("{} problem{} {}; nothing was run.\n  {}", problems.size(),
+                            problems.size() == 1 ? "" : "s", of, fmt::join(problems, "\n  ")),
+                problems);
+}
+
+/// Makes all checks, and refuses what any of them finds at once.
+template <class... Checks>
+void refuse_all(const char* of, const Checks&... checks) {
+  std::vector<std::string> problems;
+  const auto collect = [&](const auto& check) {
+    try {
+      check();
+    } catch (const Refusal& found) {
+      problems.insert(problems.end(), found.problems.begin(), found.problems.end());
+    }
+  };
+  (collect(checks), ...);
+  refuse(problems, of);
 }
 
 }  // namespace breccia::prepare

@@ -7,6 +7,7 @@
 
 #include "exec/no_memory.hpp"
 #include "io/emphasis.hpp"
+#include "io/fold.hpp"
 
 namespace breccia {
 namespace {
@@ -53,10 +54,9 @@ void Log::write(Level level, const std::string& stage, std::int64_t step,
 
 void Log::warn(const std::string& stage, std::int64_t step, const std::string& message) {
   write(Level::warning, stage, step, message);
-  std::fputs(fmt::format("{} step {}: {}\n", emphasized(Emphasis::warning, "warning:", stderr),
-                         step, message)
-                 .c_str(),
-             stderr);
+  const std::string text = fmt::format(
+      "{} step {}: {}\n", emphasized(Emphasis::warning, "warning:", stderr), step, message);
+  std::fputs(fitting(text, 2, stderr).c_str(), stderr);
 }
 
 void Log::cut_to(const std::string& path, std::int64_t step) {

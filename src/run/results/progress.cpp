@@ -1,13 +1,13 @@
 #include "run/results/progress.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
+#include "io/fold.hpp"
 #include "io/round_numbers.hpp"
 
 namespace breccia {
@@ -94,17 +94,6 @@ std::string progress_line(double share, const std::vector<std::string>& pieces, 
   return "[" + std::string(filled, '#') + std::string(cells - filled, '.') + "] " + text;
 }
 
-namespace {
-
-/// Columns of the terminal behind a stream; many where that is not known.
-std::size_t columns_of(std::FILE* stream) {
-  winsize size{};
-  if (::ioctl(::fileno(stream), TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 200;
-  return size.ws_col - 1U;  // the last column makes some terminals go to the next line
-}
-
-}  // namespace
-
 std::string Progress::text(const Standing& standing, Clock::time_point now,
                            std::size_t width) const {
   const double wall = std::chrono::duration<double>(now - start_).count();
@@ -115,7 +104,8 @@ std::string Progress::text(const Standing& standing, Clock::time_point now,
     pieces.push_back("left " + duration_text(wall * (1.0 - standing.share) / gained));
   pieces.push_back(time_text(standing.time));
   if (!standing.broken.empty()) pieces.push_back(standing.broken);
-  if (standing.missing) pieces.push_back(fmt::format("energy error {:.0e}", *standing.missing));
+  if (standing.missing)
+    pieces.push_back(fmt::format("energy error {:.2g} %", 100.0 * *standing.missing));
   pieces.push_back(rate < 100.0 ? fmt::format("{:.1f} steps/s", rate)
                                 : count_text(rate) + " steps/s");
   if (form_ == Form::bar) return progress_line(standing.share, pieces, width);

@@ -409,6 +409,9 @@ TEST(CaseFile, what_is_no_toml_is_told_in_plain_words) {
     return message_of(text).find(words) != std::string::npos;
   };
   EXPECT_TRUE(told("a = 1.0\na = 2.0\n", "line 2, column 5: a is given twice"));
+  for (const char* value : {"7ms", "7.5ms", "-25mm", "1e3Pa", "30\u00b0"})
+    EXPECT_TRUE(told(std::string("a = ") + value + "\n", "written in quotes, as in \"40 mm\""))
+        << value;
   EXPECT_TRUE(told("[time]\n[time]\n", "line 2, column 1: time is given twice"));
   EXPECT_TRUE(told("a = [1, 2\n", "line 1, column 11: array: the file ends before it does"));
   EXPECT_TRUE(told("[time\nend = 1.0\n", "expected ']', but the line ends"));

@@ -153,6 +153,33 @@ TEST(CheckCommand, names_line_and_key_of_a_region_that_takes_nothing) {
       << told.text;
 }
 
+TEST(CheckCommand, tells_regions_and_names_in_one_go) {
+  const ScratchFolder folder;
+  std::string wrong = changed(beam, "\"-140 mm\", \"-19 mm\"", "\"-140 mm\", \"-23 mm\"");
+  wrong +=
+      "[[support]]\nname = \"far\"\nmin = [0.4, 0.0]\nmax = [0.5, 0.1]\n"
+      "[[probe]]\nname = \"force\"\non = \"fra\"\nquantity = \"force_y\"\n";
+  replace_file(folder.path() + "/beam.toml", wrong);
+  const Told told = told_by(folder, "check " + folder.path() + "/beam.toml");
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_TRUE(has(told.text, "3 problems in ")) << told.text;
+  EXPECT_TRUE(has(told.text, ": min must not be above max")) << told.text;
+  EXPECT_TRUE(has(told.text, "support.far.min = 400 mm: the region takes nothing")) << told.text;
+  EXPECT_TRUE(has(told.text, "probe.force.on = \"fra\"")) << told.text;
+}
+
+TEST(CheckCommand, of_the_model_names_the_corner_nearest_to_an_empty_region) {
+  const ScratchFolder folder;  // inside the beam, between two rows of corners
+  std::string wrong = changed(beam, "\"-151 mm\", \"-21 mm\"", "\"-150 mm\", \"-19 mm\"");
+  wrong = changed(wrong, "\"-140 mm\", \"-19 mm\"", "\"-140 mm\", \"-18 mm\"");
+  replace_file(folder.path() + "/beam.toml", wrong);
+  const Told told = told_by(folder, "check --model " + folder.path() + "/beam.toml");
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_TRUE(has(told.text, "holds no corner of any triangle; the nearest, at (-0.1"))
+      << told.text;
+  EXPECT_TRUE(has(told.text, " m, is 0.001 m away")) << told.text;
+}
+
 TEST(CheckCommand, fix_writes_the_case_with_slips_corrected_and_checks_that) {
   const ScratchFolder folder;
   std::string wrong = changed(beam, "young = \"30 GPa\"", "yung = \"30 gpa\"");
