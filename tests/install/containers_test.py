@@ -39,6 +39,19 @@ class Recipes(unittest.TestCase):
         for name in ("Dockerfile", "breccia.def"):
             self.assertIn(f"{folder}/*.deb", (ROOT / "packaging" / name).read_text(), name)
 
+    def test_apptainer_takes_the_sources_and_no_build(self):
+        text = (ROOT / "packaging/breccia.def").read_text()
+        files = re.search(r"^%files\n((?:^[ \t].*\n)*)", text, re.MULTILINE)[1].split()
+        self.assertEqual(set(files[1::2]), {"/breccia/"})
+        taken = set(files[::2])
+        for name in taken:
+            self.assertTrue((ROOT / name).exists(), name)
+        self.assertFalse(taken & {"build", "."})
+        used = {"CMakePresets.json", "scripts"}
+        for file in (ROOT / "CMakeLists.txt", ROOT / "packaging/CMakeLists.txt"):
+            used |= set(re.findall(r"PROJECT_SOURCE_DIR\}/([\w.]+)", file.read_text())) | set(re.findall(r"add_subdirectory\((\w+)", file.read_text()))
+        self.assertLessEqual(used - {"tests"}, taken)
+
     def test_apptainer_starts_the_program(self):
         text = (ROOT / "packaging/breccia.def").read_text()
         self.assertRegex(text, r'%runscript\n\s+exec breccia "\$@"')
