@@ -268,12 +268,14 @@ class Findings {
     if (kinds.size() > 1) text += ": " + listed(kinds);
     const std::optional<double> softening = first_softening();
     if (softening) text += fmt::format("; softening began at {}", time_text(*softening));
-    if (const std::vector<double>& times = record_.breaks; !times.empty()) {
+    if (const std::vector<Break>& breaks = record_.breaks; !breaks.empty()) {
       // Rows of the history tell when links broke, each joint tells its own time.
       const char* const when = record_.cracks.columns.empty() ? "by" : "at";
-      text += fmt::format("{} the first broke {} {}", glue(text), when, time_text(times.front()));
-      if (times.size() > 1)
-        text += fmt::format(", half of them by {}", time_text(times[(times.size() - 1) / 2]));
+      text +=
+          fmt::format("{} the first broke {} {}", glue(text), when, time_text(breaks.front().time));
+      if (breaks.size() > 1)
+        text +=
+            fmt::format(", half of them by {}", time_text(breaks[(breaks.size() - 1) / 2].time));
     } else if (find_first_break() && break_frame_ > 0) {
       // Frames may be far apart; what softens late breaks later.
       const double end = record_.times[break_frame_], before = record_.times[break_frame_ - 1];

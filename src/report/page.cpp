@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <filesystem>
@@ -124,13 +125,40 @@ class Writer {
                                {"unit", rose.unit},
                                {"bars", rose.bars}});
     json["fragments"] = fragment_shares(record, survey.last);
-    json["events"] = Json::array();
-    for (const FrameFacts& frame : survey.frames)
-      json["events"].push_back({{"time", frame.time}, {"broken", frame.broken}});
+    json["events"] = events(record, survey);
     const Film film = film_of(record.folder, survey, blobs_.size(), limit);
     blobs_.insert(blobs_.end(), film.blobs.begin(), film.blobs.end());
     notes.insert(notes.end(), film.notes.begin(), film.notes.end());
     return film.json;
+  }
+
+  /// Broken links by kind over time: at rows of the history where the run tells, else at frames.
+  static Json events(const Record& record, const Survey& survey) {
+    Json json = Json::array();
+    const auto add = [&](double time, const std::vector<std::size_t>& broken) {
+      json.push_back({{"time", time}, {"broken", broken}});
+    };
+    const std::vector<Break>& breaks = record.breaks;
+    if (breaks.empty() || !record.cracks.columns.empty()) {
+      for (const FrameFacts& frame : survey.frames) add(frame.time, frame.broken);
+      return json;
+    }
+    std::size_t kinds = 0;
+    for (const Break& b : breaks) kinds = std::max(kinds, b.kind + 1);
+    std::vector<std::size_t> broken(kinds, 0);
+    const double end = std::max(record.times.back(), breaks.back().time);
+    const double apart = end / 1000.0;  // of points of the curve, at least
+    double last = 0.0;
+    add(last, broken);
+    for (std::size_t i = 0; i < breaks.size(); ++i) {
+      const double time = breaks[i].time;
+      if (time > last + 2.0 * apart) add(last = time - apart, broken);  // level until then
+      ++broken[breaks[i].kind];
+      const bool row_ends = i + 1 == breaks.size() || breaks[i + 1].time > time;
+      if (row_ends && time >= last + apart) add(last = time, broken);
+    }
+    add(end, broken);
+    return json;
   }
 
   std::vector<std::string> blobs_, notes_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -76,13 +77,18 @@ namespace {
 constexpr std::uintmax_t largest_table = 100'000'000;
 
 /// What cuts parted before the start has the time 0.
-std::vector<double> times_of_breaks(const NumberTable& broken) {
-  const Column* const time = broken.column("time");
-  if (time == nullptr) return {};
-  std::vector<double> times = time->values;
-  std::erase_if(times, [](double t) { return !(t > 0.0); });
-  std::sort(times.begin(), times.end());
-  return times;
+std::vector<Break> breaks_in(const NumberTable& broken) {
+  const Column *const time = broken.column("time"), *const kind = broken.column("kind");
+  std::vector<Break> breaks;
+  for (std::size_t i = 0; time != nullptr && i < broken.rows(); ++i)
+    if (time->values[i] > 0.0 && std::isfinite(time->values[i])) {
+      const bool told = kind != nullptr && kind->values[i] > 0.0;
+      breaks.push_back(
+          {time->values[i], told ? static_cast<std::size_t>(std::min(kind->values[i], 99.0)) : 0});
+    }
+  std::stable_sort(breaks.begin(), breaks.end(),
+                   [](const Break& a, const Break& b) { return a.time < b.time; });
+  return breaks;
 }
 
 }  // namespace
@@ -106,10 +112,10 @@ Record read_record(const std::string& folder) {
   record.scene = scene_of(record.case_text);
   if (has("history.csv")) record.history = read_table(file("history.csv"));
   if (has("cracks.csv")) record.cracks = read_table(file("cracks.csv"));
-  record.breaks = times_of_breaks(record.cracks);
+  record.breaks = breaks_in(record.cracks);
   if (const std::string links = file("broken_links.csv");
       has("broken_links.csv") && fs::file_size(links, error) <= largest_table)
-    record.breaks = times_of_breaks(read_table(links));
+    record.breaks = breaks_in(read_table(links));
   if (has("fragments.csv")) record.fragments = read_table(file("fragments.csv"));
   if (has("log.jsonl")) record.warnings = warnings_of(file("log.jsonl"));
   if (holds_frames(folder)) record.times = frame_times(folder);

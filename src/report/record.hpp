@@ -11,6 +11,12 @@
 
 namespace breccia::report {
 
+/// A link or joint that broke.
+struct Break {
+  double time;       ///<  [s]
+  std::size_t kind;  ///< of links, as frames number them; of joints 0
+};
+
 struct Record {
   std::string folder;
   std::string summary;                    ///< summary.json as it is: JSON
@@ -18,10 +24,10 @@ struct Record {
   std::map<std::string, std::string> texts;
   std::string case_text;  ///< case.toml; empty: there is none
   Scene scene;
-  NumberTable history;         ///< history.csv
-  NumberTable cracks;          ///< cracks.csv; no columns: there is none
-  std::vector<double> breaks;  ///< when joints or links broke since the start, ascending  [s]
-  NumberTable fragments;       ///< fragments.csv, likewise
+  NumberTable history;                ///< history.csv
+  NumberTable cracks;                 ///< cracks.csv; no columns: there is none
+  std::vector<Break> breaks;          ///< of joints or links since the start, in their order
+  NumberTable fragments;              ///< fragments.csv, likewise
   std::vector<std::string> warnings;  ///< and errors, of log.jsonl
   std::vector<double> times;          ///< of the frames  [s]
 

@@ -50,6 +50,32 @@ TEST(ReportPage, ItHoldsTheRun) {
   EXPECT_EQ(test::inflated(test::from_base64(between(html, blob, "</script>"))), test::chain_case);
 }
 
+TEST(ReportPage, BrokenLinksAreCountedAtRowsWhereTheRunTells) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  test::write_text(folder.path() + "/broken_links.csv",
+                   "a,b,kind,time\n-,-,-,s\n0,1,0,0\n1,2,2,0.0015\n2,3,0,0.001\n3,4,0,0.0015\n");
+  const Json data = Json::parse(between(page_of_chain(folder.path()), "id=\"data\">", "</script>"));
+  const Json& events = data["runs"][0]["events"];
+  const auto broken_at = [&](double time) {  // as the chart looks it up, the nearest
+    Json broken;
+    double least = 1.0;
+    for (const Json& event : events)
+      if (const double away = std::abs(event["time"].get<double>() - time); away < least) {
+        least = away;
+        broken = event["broken"];
+      }
+    return broken;
+  };
+  EXPECT_EQ(broken_at(0.0), Json::array({0, 0, 0}));
+  EXPECT_EQ(broken_at(0.00099), Json::array({0, 0, 0}));
+  EXPECT_EQ(broken_at(0.001), Json::array({1, 0, 0}));
+  EXPECT_EQ(broken_at(0.00149), Json::array({1, 0, 0}));
+  EXPECT_EQ(broken_at(0.0015), Json::array({2, 0, 1}));
+  EXPECT_EQ(events.back()["time"], 0.002);
+  EXPECT_EQ(events.back()["broken"], Json::array({2, 0, 1}));
+}
+
 TEST(ReportPage, NothingOfARunBecomesMarkup) {
   const ScratchFolder folder;
   test::write_chain(folder.path());
