@@ -479,7 +479,7 @@ struct Config : CaseConfig {
     key.list("body", bodies, "what there is");
     key.table("links", links, "which elements are linked at the start");
     key.table("contact", contact, "what happens where elements touch");
-    key.list("wall", walls, "rigid planes");
+    key.list("wall", walls, "rigid planes, boxes, cylinders and spheres");
     key.list("support", supports, "prescribed motion");
     key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");

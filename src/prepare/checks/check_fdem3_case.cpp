@@ -35,8 +35,6 @@ class TetCaseChecks {
   void add(const std::string& text) { problems_.push_back(text); }
 
   void check_region(const std::string& where, const fdem3::RegionConfig& r) {
-    if (!(r.min.x <= r.max.x && r.min.y <= r.max.y && r.min.z <= r.max.z))
-      add(where + ": min must not be above max");
     if (!r.around.empty() && !(r.radius > 0.0))
       add(where + ".around: a cylinder needs a radius above 0");
   }

@@ -189,6 +189,28 @@ Bounds bounds_of(const dem::Wall& wall, const std::vector<Vec3>& corners) {
   return b;
 }
 
+/// How far a body reaches behind a wall's face; 0 where it does not, and of bodies whose outline is
+/// no box, ball or upright cylinder.  [m]
+double depth_behind(const dem::Wall& wall, const dem::BodyConfig& body, const Bounds& b) {
+  const bool ball = body.shape == "sphere", round = body.shape == "cylinder";
+  if (!ball && !round && body.shape != "box") return 0.0;
+  constexpr int steps = 16;  // along each side; its ends are looked at, too
+  double depth = 0.0;
+  for (int i = 0; i <= steps; ++i)
+    for (int j = 0; j <= steps; ++j)
+      for (int k = 0; k <= steps; ++k) {
+        const auto at = [&](std::size_t axis, int n) {
+          return b.low[axis] + (b.high[axis] - b.low[axis]) * n / steps;
+        };
+        const Vec3 x{at(0, i), at(1, j), at(2, k)};
+        Vec3 out = x - body.center;
+        if (round) out.z = 0.0;
+        if ((ball || round) && norm(out) > body.radius * (1.0 + 1e-9)) continue;
+        depth = std::max(depth, -dem::touch(wall, x).height);
+      }
+  return depth;
+}
+
 /// Height of a box's farthest corner above a plane.  [m]
 double farthest_above(const dem::Wall& plane, const Bounds& b) {
   const Vec3 corner{plane.normal.x > 0.0 ? b.high[0] : b.low[0],
@@ -212,6 +234,26 @@ void check_faces_and_corners(const Config& config) {
   refuse(problems, "in the case");
 }
 
+/// What of a body a wall will throw out; empty: none of it.
+std::string behind(const dem::Wall& wall, const dem::WallConfig& asked, const dem::BodyConfig& body,
+                   const Outline& outline) {
+  const Bounds& b = *outline.bounds;
+  if (asked.shape == "plane" && farthest_above(wall, b) < 0.0)
+    return fmt::format(
+        "wall.{}.normal: all of {} lies behind the wall, which will throw it out; does the normal "
+        "point away from it?",
+        asked.name, outline.name);
+  constexpr double slight = 0.02;  // of the smallest side: elements settle by themselves
+  double side = no_limit;
+  for (std::size_t k = 0; k < 3; ++k) side = std::min(side, b.high[k] - b.low[k]);
+  const double depth = depth_behind(wall, body, b);
+  if (!(depth > slight * side)) return "";
+  return fmt::format(
+      "wall.{}.point: {} reaches {} behind the wall's face at the start; what lies there will be "
+      "thrown out",
+      asked.name, outline.name, length_text(depth));
+}
+
 }  // namespace
 
 std::vector<std::string> doubtful_walls(const dem::Config& config, const std::string& case_folder) {
@@ -232,14 +274,12 @@ std::vector<std::string> doubtful_walls(const dem::Config& config, const std::st
     if (asked.shape == "stl") mesh = bounds_of(wall, corners_of_wall(asked, case_folder));
     const Outline* nearest = nullptr;
     double least = no_limit;
-    for (const Outline& outline : outlines) {
+    for (std::size_t b = 0; b < outlines.size(); ++b) {
+      const Outline& outline = outlines[b];
       const double height =
           mesh ? gap(*mesh, *outline.bounds).first : height_above(wall, *outline.bounds);
-      if (asked.shape == "plane" && farthest_above(wall, *outline.bounds) < 0.0)
-        doubts.push_back(
-            fmt::format("wall.{}.normal: all of {} lies behind the wall, which will "
-                        "throw it out; does the normal point away from it?",
-                        asked.name, outline.name));
+      const std::string doubt = mesh ? "" : behind(wall, asked, config.bodies[b], outline);
+      if (!doubt.empty()) doubts.push_back(doubt);
       if (height >= least) continue;
       least = height;
       nearest = &outline;

@@ -18,9 +18,9 @@ void check_regions(const dem::Config& config);
 void check_regions(const fdem::Config& config);
 void check_regions(const fdem3::Config& config);
 
-/// Walls that no body touches at the start: which body is nearest, and how far it is, or that all
-/// of it lies behind the wall. Bodies whose outline only their file tells are not looked at; of
-/// walls from a file the box around them is.
+/// Walls that no body touches at the start: which body is nearest, and how far it is; and bodies
+/// that reach behind a wall, which will throw out what lies there. Bodies whose outline only their
+/// file tells are not looked at; of walls from a file the box around them is, for what is nearest.
 std::vector<std::string> doubtful_walls(const dem::Config& config, const std::string& case_folder);
 
 }  // namespace breccia::prepare

@@ -68,6 +68,47 @@ TEST(CheckDem, tells_of_walls_that_nothing_touches_at_the_start) {
             "wall.ball.point: no body touches the wall at the start; slab is nearest, 10 mm away");
 }
 
+/// A ramp of 45 degrees through the lower right edge of a box, and a punch that has sunk into it.
+TEST(CheckDem, tells_of_bodies_that_reach_behind_a_wall) {
+  using dem::WallConfig;
+  dem::Config config = dem::case_with_materials();
+  config.bodies = {dem::box_body("heap", {0.2, 0.2, 0.1}, 100, 0.56)};
+  WallConfig ramp, punch, slight;
+  ramp.name = "ramp";
+  ramp.shape = "box";
+  ramp.point = {0.09, 0.0, -0.05};
+  ramp.normal = {-1.0, 0.0, 1.0};
+  ramp.along = {1.0, 0.0, 1.0};
+  ramp.size = {0.4, 0.4};
+  ramp.length = 0.1;
+  punch.name = "punch";
+  punch.shape = "cylinder";
+  punch.point = {0.0, 0.0, 0.03};
+  punch.normal = {0.0, 0.0, -1.0};
+  punch.radius = 0.02;
+  punch.length = 0.04;
+  slight.name = "slight";
+  slight.point = {0.0, 0.0, -0.0495};
+  config.walls = {ramp, punch, slight};
+  const std::vector<std::string> told = prepare::doubtful_walls(config, "");
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0],  // 10 mm of the edge, over the square root of 2
+            "wall.ramp.point: heap reaches 7.071 mm behind the wall's face at the start; what lies "
+            "there will be thrown out");
+  EXPECT_TRUE(told[1].starts_with("wall.punch.point: heap reaches 20 mm behind")) << told[1];
+  // A ball and a cylinder whose boxes alone would reach the ramp.
+  config.bodies[0].radius = 0.05;
+  config.bodies[0].length = 0.1;
+  config.walls = {ramp};
+  config.walls[0].point = {0.08, 0.0, 0.0};
+  config.walls[0].normal = {-1.0, 1.0, 0.0};
+  config.walls[0].along = {0.0, 0.0, 1.0};
+  for (const char* shape : {"sphere", "cylinder"}) {
+    config.bodies[0].shape = shape;
+    EXPECT_EQ(prepare::doubtful_walls(config, "").size(), 0U) << shape;
+  }
+}
+
 TEST(CheckDem, refuses_what_ldpm_cannot_do) {
   using dem::Config;
   check_case(dem::ldpm_cube());
