@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the tables of the validation pages from docs/results: result_tables.py [--check].
+"""Writes the tables of the pages on validation and speed from docs/results: result_tables.py [--check].
 
-Between <!-- results: NAME ARGUMENT --> and <!-- end of results --> a page holds what this script makes of docs/results/NAME.csv. With --check
+Between <!-- results: NAME ARGUMENT --> and <!-- end of results --> a page holds what this script makes of docs/results/NAME.csv (of `speed`: of
+bench/results as well). With --check
 nothing is written, and the exit code is 1 if a page is not what its results give. How the files were made: docs/results/README.md.
 """
 import argparse
@@ -18,6 +19,7 @@ import impact_tables
 import localisation
 import reinforced_tests
 import rock_tables
+import speed_tables
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs/results"
@@ -134,6 +136,7 @@ def library(which):
 
 MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": library,
           "reinforced": lambda _: reinforced_tests.markdown(lines_of("reinforced")),
+          "speed": lambda table: speed_tables.TABLES[table](),
           "localisation": lambda _: localisation.markdown(lines_of("localisation"))}
 
 
