@@ -101,14 +101,17 @@ void look_for_long_edges(const World& w, const Config& config, std::vector<std::
   const Vec2 place = 0.5 * (ends[a % 3].position + ends[(a + 1) % 3].position);
   std::string names = material(a).name;
   if (material(b).name != names) names += " and " + material(b).name;
+  std::string others;
+  if (zones.size() > 1)
+    others = "; " + std::to_string(zones.size()) + " laws of joints are like that";
   char text[600];
   std::snprintf(text, sizeof text,
                 "%d joints (%s): their process zone E G_I/f_t^2 = %.3g m spans %.2g edges of %.3g "
                 "m (the longest, %.3g m, at (%.6g, %.6g) m), not 3: strength and energy depend on "
-                "the mesh, and each row of triangles may break by itself; %zu laws of joints are "
-                "like that. A shorter mesh_size helps, or more energy_open",
+                "the mesh, and each row of triangles may break by itself%s. A shorter mesh_size "
+                "helps, or more energy_open",
                 worst.count, names.c_str(), worst.zone, worst.edges(), worst.sum / worst.count,
-                worst.longest, place.x, place.y, zones.size());
+                worst.longest, place.x, place.y, others.c_str());
   found.emplace_back(text);
 }
 
