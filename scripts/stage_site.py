@@ -2,7 +2,7 @@
 """Copies the pages of the repository, and what they link to, into FOLDER, each to its own path.
 
 stage_site.py FOLDER. A link to a folder becomes one to its README.md, as sites of repositories show it. Exit code 1 if a page links
-to what the repository does not hold; pages that are generated (docs/reference, docs/gallery) are looked for later, by check_links.py.
+to what the repository does not hold, or if the list of pages in mkdocs.yml lacks one of docs; pages that are generated (docs/reference, docs/gallery) are looked for later, by check_links.py.
 """
 import pathlib
 import re
@@ -61,7 +61,11 @@ def main(folder):
             shutil.copyfile(name, target)
     for line in missing:
         print("no such file in the repository:", line, file=sys.stderr)
-    return 1 if missing else 0
+    listed = pathlib.Path("mkdocs.yml").read_text()
+    lost = [name for name in sorted(tracked) if re.fullmatch(r"docs/(tutorials/)?[\w-]+\.md", name) and f": {name}\n" not in listed]
+    for name in lost:
+        print("not in the list of pages (nav of mkdocs.yml):", name, file=sys.stderr)
+    return 1 if missing or lost else 0
 
 
 if __name__ == "__main__":
