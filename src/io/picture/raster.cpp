@@ -216,10 +216,11 @@ void draw_line(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoin
 
 void draw_mark(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoint& b, int thickness,
                std::int32_t item, const std::optional<ScreenClip>& clip) {
-  constexpr double lift = 3.0;             // pixels: a surface so much before it does not hide it
-  constexpr double beyond_surface = 0.12;  // of its length: so deep may the gap of a crack be
+  // The sides of a crack have moved: one may stand a little before the mark, or gape beneath it.
+  constexpr double before_mark = 0.01, beneath_mark = 0.12;  // of its length
   const double du = b.u - a.u, dv = b.v - a.v, dd = b.depth - a.depth;
-  const double behind = lift + beyond_surface * std::sqrt(du * du + dv * dv + dd * dd);
+  const double length = std::sqrt(du * du + dv * dv + dd * dd);
+  const double lift = 3.0 + before_mark * length, behind = 3.0 + beneath_mark * length;  // pixels
   const auto depth_at = [&canvas](int x, int y) {
     const bool inside = x >= 0 && y >= 0 && x < canvas.width && y < canvas.height;
     return inside ? static_cast<double>(canvas.depth[canvas.row(y) + static_cast<std::size_t>(x)])
@@ -227,9 +228,12 @@ void draw_mark(Canvas& canvas, Rows rows, const ScreenPoint& a, const ScreenPoin
   };
   walk_line(canvas, a, b, thickness, [&](const ScreenPoint& at, int along, int first, bool steep) {
     if (clip && clip->beyond(at.u, at.v, at.depth) > 1.0) return;
-    const double surface =
-        depth_at(static_cast<int>(std::floor(at.u)), static_cast<int>(std::floor(at.v)));
-    if (surface > at.depth + lift || surface < at.depth - behind) return;
+    bool on_surface = false;  // of either side
+    for (int k = first; k < first + thickness; ++k) {
+      const double there = depth_at(steep ? k : along, steep ? along : k);
+      on_surface = on_surface || (there <= at.depth + lift && there >= at.depth - behind);
+    }
+    if (!on_surface) return;
     for (int k = first; k < first + thickness; ++k) {
       const int x = steep ? k : along, y = steep ? along : k;
       const double there = depth_at(x, y), slack = lift + thickness;
