@@ -137,11 +137,8 @@ def library(which):
 
 MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": library,
           "reinforced": lambda _: reinforced_tests.markdown(lines_of("reinforced")),
-<<<<<<< HEAD
           "speed": lambda table: speed_tables.TABLES[table](),
-=======
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),
->>>>>>> 522ff55 (docs: LDPM beside public benchmarks and experiments)
           "localisation": lambda _: localisation.markdown(lines_of("localisation"))}
 
 
