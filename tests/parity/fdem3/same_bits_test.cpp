@@ -1,0 +1,117 @@
+// Tetrahedra: the same bits for any thread count, search margin, space, rank count, and across a
+// checkpoint.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "domain/simulated_ranks.hpp"
+#include "fdem3/ranks.hpp"
+#include "physics/fdem3/scene.hpp"
+#include "run/method/fdem3_method.hpp"
+
+namespace breccia {
+namespace fdem3_same_bits_test {
+
+using fdem3::testing::meeting_cubes;
+using fdem3::testing::Scene;
+
+constexpr int many = 900;
+
+/// Everything that must not depend on who computes it.
+struct Outcome {
+  std::uint64_t hash = 0;
+  std::size_t cracks = 0;
+  std::vector<double> energies;
+  bool operator==(const Outcome&) const = default;
+};
+Outcome outcome_of(fdem3::World& w) {
+  const EnergyBalance b = fdem3::energies(w).balance;
+  return {fdem3::state_hash(w),
+          fdem3::cracks(w).size(),
+          {b.kinetic, b.elastic, b.fracture, b.friction, b.damping, b.contact, b.work}};
+}
+Outcome ended(fdem3::World w, int steps = many) {
+  while (w.step < steps) fdem3::step(w);
+  return outcome_of(w);
+}
+const Outcome& reference() {
+  static const Outcome outcome = ended(meeting_cubes().world());
+  return outcome;
+}
+
+TEST(Fdem3SameBits, for_any_number_of_threads) {
+  EXPECT_GT(reference().cracks, 20U);
+  for (const int threads : {2, 3, 7})
+    EXPECT_EQ(ended(meeting_cubes().world(threads)), reference()) << threads;
+}
+
+TEST(Fdem3SameBits, for_any_search_margin) {
+  for (const double margin : {0.03, 0.3}) {
+    Scene scene = meeting_cubes();
+    scene.config.search.margin = margin;
+    EXPECT_EQ(ended(scene.world()).hash, reference().hash) << margin;
+  }
+}
+
+TEST(Fdem3SameBits, where_arrays_lie_in_another_space) {
+  EXPECT_EQ(ended(meeting_cubes().world(1, Space::shadow)), reference());
+}
+
+Outcome on_ranks(const Scene& scene, int count, Space space = Space::host) {
+  Outcome outcome;
+  simulate_ranks(count, static_cast<std::uint64_t>(count), [&](Communicator& ranks) {
+    fdem3::World whole = scene.world();
+    DomainConfig config;
+    config.buffer = 0.1;  // they are shared out often
+    fdem3::World part = fdem3::share_out(whole, ranks, config, space);
+    for (int i = 0; i < many; ++i) fdem3::step(part);
+    fdem3::collect(part, whole);
+    if (ranks.rank() == 0) outcome = outcome_of(whole);
+  });
+  return outcome;
+}
+
+TEST(Fdem3SameBits, for_any_number_of_ranks) {
+  const Scene scene = meeting_cubes();
+  for (const int count : {1, 2, 3, 5, 8, 16})
+    EXPECT_EQ(on_ranks(scene, count), reference()) << count << " ranks";
+  EXPECT_EQ(on_ranks(scene, 3, Space::shadow), reference());
+}
+
+/// Bodies without joints, whose corners move as one across the borders of ranks, with loads and
+/// supports.
+TEST(Fdem3SameBits, of_bodies_that_move_as_one_on_ranks) {
+  using fdem3::testing::far;
+  Scene scene;
+  scene.material(30e9, 0.2, 2500.0).damping = 0.05;
+  scene.body("bar", fdem3::testing::box({0.0, 0.0, 0.0}, {0.08, 0.02, 0.02}, 0.01));
+  scene.support("left", {-far, -far, -far}, {-0.0399, far, far}, {"x", "y", "z"});
+  scene.load("push", "pressure", {-far, -far, 0.0099}, {far, far, far}).pressure = 2e5;
+  scene.load("soak", "absorbing", {0.0399, -far, -far}, {far, far, far});
+  const Outcome expected = ended(scene.world());
+  EXPECT_GT(expected.energies[6], 0.0);
+  for (const int count : {2, 3, 5}) EXPECT_EQ(on_ranks(scene, count), expected) << count;
+}
+
+TEST(Fdem3SameBits, of_a_run_that_is_saved_and_goes_on) {
+  const Scene scene = meeting_cubes();
+  const auto path = std::filesystem::temp_directory_path() / "breccia_fdem3_test.br";
+  const std::unique_ptr<Method> first = make_method(scene.config, scene.model, Exec{});
+  while (first->steps() < 500) first->advance({1e300, 500});
+  CheckpointWriter writer;
+  first->save(writer);
+  writer.write(path.string());
+  const std::unique_ptr<Method> second = make_method(scene.config, scene.model, Exec{});
+  const CheckpointReader reader(path.string());
+  second->load(&reader);
+  while (first->steps() < many) first->advance({1e300, many});
+  while (second->steps() < many) second->advance({1e300, many});
+  EXPECT_EQ(second->state_hash(), first->state_hash());
+  EXPECT_EQ(first->state_hash(), reference().hash);
+  EXPECT_EQ(second->energy().friction, first->energy().friction);
+  std::filesystem::remove(path);
+}
+
+}  // namespace fdem3_same_bits_test
+}  // namespace breccia

@@ -1,0 +1,210 @@
+// Bodies of tetrahedra against closed answers: patches, waves, stiffness of joints, impact,
+// friction, tension.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/fdem3/scene.hpp"
+
+namespace breccia::fdem3 {
+namespace solid_test {
+
+using testing::box;
+using testing::far;
+using testing::Scene;
+
+/// Largest force on a corner inside a body that is strained alike everywhere.
+TEST(Tetrahedra, bear_a_linear_displacement_with_one_stress_and_no_force_inside) {
+  Scene scene;
+  scene.material();
+  scene.body("b", box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, 0.25));
+  World w = scene.world();
+  for (Index t = 0; t < w.tetrahedra.size(); ++t)
+    for (NodeState& n : w.tetrahedra.nodes.data()[t].at) {
+      const Vec3 x = n.position;
+      n.position = {1.0002 * x.x + 0.0001 * x.y, 0.9999 * x.y - 0.00005 * x.z, 1.0001 * x.z};
+    }
+  evaluate_forces(w);
+  const std::vector<Sym3> stress = stresses(w);
+  for (const Sym3& s : stress) {
+    EXPECT_NEAR(s.xx, stress[0].xx, 1e-12 * 60e9);
+    EXPECT_NEAR(s.yz, stress[0].yz, 1e-12 * 60e9);
+  }
+  for (Index t = 0; t < w.tetrahedra.size(); ++t)
+    for (int k = 0; k < 4; ++k) {
+      const Vec3& x = w.tetrahedra.nodes.data()[t].at[k].position;
+      if (std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}) > 0.45) continue;
+      EXPECT_LT(norm(w.tetrahedra.force.data()[t].at[k]), 1e-11 * 60e9);
+    }
+}
+
+/// Time in which a step of pressure runs from one place to another in a bar on rollers.
+double measured_speed(const char* joints) {
+  Scene scene;
+  MaterialConfig& m = scene.material(60e9, 0.25, 2650.0);
+  m.joints = joints;
+  m.joint.tension = 1e12;
+  m.joint.cohesion = 1e12;
+  m.joint.energy_open = m.joint.energy_slide = 1e9;
+  const double length = 0.4, edge = 0.01;
+  scene.body("bar", prepare::kuhn_box({0.5 * length, 0.0, 0.0}, {length, edge, edge}, edge));
+  scene.support("rollers", {-far, -far, -far}, {far, far, far}, {"y", "z"});
+  scene.load("push", "pressure", {-far, -far, -far}, {1e-6, far, far}).pressure = 1e6;
+  World w = scene.world();
+  // Half the velocity behind the front passes two places.
+  double passed[2] = {0.0, 0.0};
+  const double place[2] = {0.1, 0.3};
+  std::vector<Index> near[2];
+  for (Index t = 0; t < w.tetrahedra.size(); ++t)
+    for (int p = 0; p < 2; ++p)
+      if (std::abs(centroid(w.tetrahedra.nodes.data()[t]).x - place[p]) < 0.01)
+        near[p].push_back(t);
+  const double c = std::sqrt(1.2 * 60e9 / 2650.0), half = 0.5 * 1e6 / (2650.0 * c);
+  double before[2] = {0.0, 0.0};
+  while (passed[1] == 0.0 && w.time < 2e-4) {
+    step(w);
+    for (int p = 0; p < 2; ++p) {
+      double mean = 0.0;
+      for (const Index t : near[p])
+        for (const NodeState& n : w.tetrahedra.nodes.data()[t].at) mean += 0.25 * n.velocity.x;
+      mean /= static_cast<double>(near[p].size());
+      if (passed[p] == 0.0 && mean >= half)
+        passed[p] = w.time - w.last_dt * (mean - half) / (mean - before[p]);
+      before[p] = mean;
+    }
+  }
+  return (place[1] - place[0]) / (passed[1] - passed[0]);
+}
+
+TEST(Tetrahedra, carry_waves_of_pressure_at_their_speed) {
+  // Dispersion of a front over 20 and 60 elements: 1 %.
+  EXPECT_NEAR(measured_speed("none"), 5212.5, 0.01 * 5212.5);
+}
+
+TEST(Tetrahedra, carry_waves_through_joints_as_the_softer_rock_does) {
+  // Of a slender bar most faces lie on its border: between the rock and the rock in bulk.
+  const double speed = measured_speed("intrinsic");
+  EXPECT_LT(speed, 5212.5);
+  EXPECT_GT(speed, 0.99 * 4978.0);
+}
+
+/// T13 of the theory: two elastic cubes that meet face to face, turned by 0.3 rad.
+struct Impact {
+  double energy;            ///< after over before
+  double momentum, moment;  ///< change over the sum of |m v|
+};
+Impact impact(double share_of_step) {
+  Scene scene;
+  MaterialConfig& m = scene.material(1.0, 0.2, 1.0);
+  m.contact_stiffness = 10.0;
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  scene.body("low", box({0.0, 0.0, -0.51}, {1.0, 1.0, 1.0}, 0.5), {0.0, 0.0, 0.01});
+  scene.body("high", box({0.0, 0.0, 0.51}, {1.0, 1.0, 1.0}, 0.5), {0.0, 0.0, -0.01},
+             [&](const Vec3& x) {
+               return Vec3{c * x.x - s * x.y, s * x.x + c * x.y, x.z};
+             });
+  scene.config.time.safety = share_of_step;
+  World w = scene.world();
+  const testing::Motions before = testing::motions(w);
+  const EnergyBalance start = energies(w).balance;
+  const double end = 12.0;
+  while (w.time < end) step(w);
+  const testing::Motions after = testing::motions(w);
+  const EnergyBalance b = energies(w).balance;
+  EXPECT_GT(after.size, 0.0);
+  return {(b.kinetic + b.elastic) / (start.kinetic + start.elastic),
+          norm(after.linear - before.linear) / before.size,
+          norm(after.angular - before.angular) / before.size};
+}
+
+TEST(Tetrahedra, that_collide_keep_momentum_and_energy) {
+  const Impact coarse = impact(0.5), fine = impact(0.125);
+  for (const Impact& i : {coarse, fine}) {
+    EXPECT_LT(i.momentum, 1e-13);
+    EXPECT_LT(i.moment, 1e-12);
+  }
+  EXPECT_NEAR(fine.energy, 1.0, 2e-3);
+  // The error falls with the square of the step.
+  EXPECT_LT(std::abs(fine.energy - 1.0), 0.25 * std::abs(coarse.energy - 1.0) + 2e-4);
+}
+
+TEST(Tetrahedra, slide_down_an_incline_as_coulomb_says) {
+  Scene scene;
+  MaterialConfig& m = scene.material(1e8, 0.2, 2000.0);
+  m.friction = 0.5;
+  m.damping = 0.05;
+  scene.body("plate", prepare::kuhn_box({0.0, 0.0, -0.05}, {1.2, 0.4, 0.1}, 0.1));
+  scene.body("block", box({-0.3, 0.0, 0.05}, {0.2, 0.2, 0.1}, 0.1), {0.5, 0.0, 0.0});
+  scene.support("ground", {-far, -far, -far}, {far, far, -0.0999}, {"x", "y", "z"});
+  const double slope = 0.7;
+  scene.config.gravity = {9.81 * std::sin(std::atan(slope)), 0.0,
+                          -9.81 * std::cos(std::atan(slope))};
+  World w = scene.world();
+  const auto velocity = [&] {
+    double sum = 0.0, count = 0.0;
+    for (Index t = 0; t < w.tetrahedra.size(); ++t)
+      if (w.tetrahedra.group.data()[t] == 1)
+        for (const NodeState& n : w.tetrahedra.nodes.data()[t].at) sum += n.velocity.x, ++count;
+    return sum / count;
+  };
+  while (w.time < 0.02) step(w);
+  const double first = velocity(), begin = w.time;
+  while (w.time < 0.08) step(w);
+  const double cosine = std::cos(std::atan(slope));
+  const double expected = 9.81 * cosine * (slope - 0.5);
+  EXPECT_NEAR((velocity() - first) / (w.time - begin), expected, 0.05 * expected);
+  const EnergyBalance b = energies(w).balance;
+  EXPECT_GT(b.friction, 0.0);
+  EXPECT_LT(b.error_relative, 1e-3);
+}
+
+TEST(Tetrahedra, tear_at_their_strength_where_planes_lie_across) {
+  Scene scene;
+  MaterialConfig& m = scene.material(30e9, 0.2, 2600.0);
+  m.joints = "intrinsic";
+  m.joint.tension = 3e6;
+  m.joint.cohesion = 15e6;
+  m.joint.friction_angle = std::atan(0.7);
+  m.joint.energy_open = 10.0;
+  m.joint.energy_slide = 50.0;
+  scene.config.joints.criterion = "edge";
+  scene.body("bar", prepare::kuhn_box({0.0, 0.0, 0.0}, {0.01, 0.01, 0.03}, 0.01 / 3.0));
+  HistoryConfig ramp;
+  ramp.ramp = 5e-6;
+  scene.support("low", {-far, -far, -far}, {far, far, -0.01499}, {"z"}, {0.0, 0.0, -0.05}).history =
+      ramp;
+  scene.support("high", {-far, -far, 0.01499}, {far, far, far}, {"z"}, {0.0, 0.0, 0.05}).history =
+      ramp;
+  World w = scene.world();
+  const ProbeConfig pull{"pull", "high", "force_z", "sum"};
+  double peak = 0.0, sum = 0.0, mean = 0.0;
+  int count = 0;
+  while (w.time < 6e-5) {
+    step(w);
+    sum += -probe(w, pull);
+    if (++count % 27 == 0) {  // mean over 1 us
+      mean = sum / 27.0;
+      sum = 0.0;
+      peak = std::max(peak, mean);
+    }
+  }
+  EXPECT_NEAR(peak / (3e6 * 1e-4), 1.0, 0.02);
+  EXPECT_LT(energies(w).balance.error_relative, 1e-6);
+}
+
+TEST(Tetrahedra, book_every_joule_of_cubes_that_break_each_other) {
+  for (const char* criterion : {"edge", "rock"}) {
+    World w = testing::meeting_cubes(criterion).world();
+    const double start = energies(w).balance.kinetic;
+    while (w.time < 3e-5) step(w);
+    const EnergyBalance b = energies(w).balance;
+    EXPECT_GT(cracks(w).size(), 20U);
+    EXPECT_GT(b.friction, 0.0);
+    EXPECT_LT(b.error_relative, 5e-3);
+    EXPECT_LT(std::abs(b.contact), 5e-3 * start) << criterion;
+  }
+}
+
+}  // namespace solid_test
+}  // namespace breccia::fdem3
