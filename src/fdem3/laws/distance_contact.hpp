@@ -188,6 +188,8 @@ BR_HD inline void push(const FaceOverlap& o, const Vec3 (&face)[3], double penal
 /// rho (1/3 - s/4) (x - incentre), which crosses no side of the cone. So the integral follows from
 /// areas and integrals on faces alone: those of the other one, and the base's own part in it.
 struct Inside {
+  double area = 0.0, face_sum = 0.0;  ///< of faces in the target: area, integral of the potential
+                                      ///< [m2], [m3]
   Vec3 incentre;
   double radius;              ///<  [m]
   double volume_sum[4] = {};  ///<  [m4]
@@ -208,13 +210,21 @@ struct Inside {
     const double height = dot(face[0] - incentre, twice);  // times twice the area
     for (int k = 0; k < 4; ++k)
       volume_sum[k] += height * (radius / 12.0 * o.region_area[k] + 0.25 * o.region_sum[k]);
+    const double size = norm(twice);
+    area += size * o.area;
+    face_sum += size * (o.moment[0] + o.moment[1] + o.moment[2]);
   }
+  /// Whether the integrals are more than rounding: they are small differences where the overlap is
+  /// shallow. Forces of shape are to those of `push` as its depth to the inradius.
+  BR_HD bool is_deep() const { return face_sum > 1e-6 * radius * area; }
+
   /// Its own face k, of which this area is in the other one.  [m2]
-  BR_HD void add_own(int k, double area) { volume_sum[k] += radius * radius / 12.0 * area; }
+  BR_HD void add_own(int k, double inside) { volume_sum[k] += radius * radius / 12.0 * inside; }
 
   /// Adds -k dE/dx of the corners of the target at a fixed overlap: with the forces of `push` they
   /// are the slope of an energy.
   BR_HD void add_shape_forces(const Target& t, double penalty, Vec3 (&on_target)[4]) const {
+    if (!is_deep()) return;
     const double whole = volume_sum[0] + volume_sum[1] + volume_sum[2] + volume_sum[3];
     for (int b = 0; b < 4; ++b) {
       Vec3 sum = whole * t.slope[b];
@@ -225,6 +235,7 @@ struct Inside {
     }
   }
   BR_HD double energy(double penalty) const {
+    if (!is_deep()) return 0.0;
     return penalty * (volume_sum[0] + volume_sum[1] + volume_sum[2] + volume_sum[3]);
   }
 };

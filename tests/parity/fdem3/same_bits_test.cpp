@@ -16,7 +16,7 @@ namespace fdem3_same_bits_test {
 using fdem3::testing::meeting_cubes;
 using fdem3::testing::Scene;
 
-constexpr int many = 900;
+constexpr int many = 650;
 
 /// Everything that must not depend on who computes it.
 struct Outcome {
@@ -42,7 +42,7 @@ const Outcome& reference() {
 
 TEST(Fdem3SameBits, for_any_number_of_threads) {
   EXPECT_GT(reference().cracks, 20U);
-  for (const int threads : {2, 3, 7})
+  for (const int threads : {2, 7})
     EXPECT_EQ(ended(meeting_cubes().world(threads)), reference()) << threads;
 }
 
@@ -74,7 +74,7 @@ Outcome on_ranks(const Scene& scene, int count, Space space = Space::host) {
 
 TEST(Fdem3SameBits, for_any_number_of_ranks) {
   const Scene scene = meeting_cubes();
-  for (const int count : {1, 2, 3, 5, 8, 16})
+  for (const int count : {1, 2, 3, 8})
     EXPECT_EQ(on_ranks(scene, count), reference()) << count << " ranks";
   EXPECT_EQ(on_ranks(scene, 3, Space::shadow), reference());
 }
@@ -91,14 +91,14 @@ TEST(Fdem3SameBits, of_bodies_that_move_as_one_on_ranks) {
   scene.load("soak", "absorbing", {0.0399, -far, -far}, {far, far, far});
   const Outcome expected = ended(scene.world());
   EXPECT_GT(expected.energies[6], 0.0);
-  for (const int count : {2, 3, 5}) EXPECT_EQ(on_ranks(scene, count), expected) << count;
+  for (const int count : {2, 5}) EXPECT_EQ(on_ranks(scene, count), expected) << count;
 }
 
 TEST(Fdem3SameBits, of_a_run_that_is_saved_and_goes_on) {
   const Scene scene = meeting_cubes();
   const auto path = std::filesystem::temp_directory_path() / "breccia_fdem3_test.br";
   const std::unique_ptr<Method> first = make_method(scene.config, scene.model, Exec{});
-  while (first->steps() < 500) first->advance({1e300, 500});
+  while (first->steps() < 400) first->advance({1e300, 400});
   CheckpointWriter writer;
   first->save(writer);
   writer.write(path.string());
