@@ -186,5 +186,42 @@ TEST(DistanceContact, is_the_slope_of_its_energy_for_deformable_pairs) {
       }
 }
 
+/// The six tetrahedra of a cube and of the one on top: faces, edges and planes coincide. Moved by
+/// rounding errors they must not feel more than depths of rounding errors.
+TEST(DistanceContact, feels_nothing_where_faces_coincide) {
+  constexpr int paths[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
+  std::vector<Body> bodies;
+  for (const double floor : {0.0, 1.0})
+    for (int p = 0; p < 6; ++p) {
+      Body body{};
+      double at[3] = {0.0, 0.0, floor};
+      for (int corner = 0; corner < 4; ++corner) {
+        const int place = p < 3 || corner == 0 || corner == 3 ? corner : 3 - corner;
+        body.x[place] = {at[0], at[1], at[2]};
+        if (corner < 3) at[paths[p][corner]] += 1.0;
+      }
+      bodies.push_back(body);
+    }
+  for (const double noise : {1e-16, 1e-14, 1e-12, 1e-10})
+    for (std::uint64_t round = 0; round < 20; ++round) {
+      const Random random{round, 7};
+      std::vector<Body> moved = bodies;
+      std::uint64_t draw = 0;
+      for (Body& body : moved)
+        for (Vec3& x : body.x)
+          x += noise *
+               Vec3{random.uniform(draw, 0), random.uniform(draw, 1), random.uniform(draw++, 2)};
+      for (std::size_t i = 0; i < moved.size(); ++i)
+        for (std::size_t j = i + 1; j < moved.size(); ++j) {
+          const Pair pair = forces_of(moved[i], moved[j], true);
+          for (int k = 0; k < 4; ++k) {
+            // A face of area 0.71 pressed by 2 sqrt 3 noise, and rounding.
+            EXPECT_LE(norm(pair.on_a[k]), 4.0 * noise + 1e-15) << i << " " << j;
+            EXPECT_LE(norm(pair.on_b[k]), 4.0 * noise + 1e-15) << i << " " << j;
+          }
+        }
+    }
+}
+
 }  // namespace distance_contact_test
 }  // namespace breccia::fdem3

@@ -135,5 +135,18 @@ TEST(ElasticTetrahedron, puts_forces_that_are_the_slope_of_its_energy) {
     }
 }
 
+TEST(ElasticTetrahedron, holds_next_to_nothing_where_rounding_alone_deforms_it) {
+  const Example e({1.0, 1.0, 1.0, 0.0, 0.0, 0.0});
+  Example still = e;
+  for (int k = 0; k < 4; ++k) still.x[k] = still.reference[k] + Vec3{1.0, -2.0, 3.0};
+  EXPECT_LT(std::abs(still.energy(law_of())), 1e-23 * young * still.shape.volume());
+  for (const double x : {1e-12, -1e-5, 0.049, 0.051, -0.049, -0.3, 2.0}) {
+    const long double exact = std::log1p(static_cast<long double>(x)) - static_cast<long double>(x);
+    EXPECT_NEAR(log_less_linear(x), static_cast<double>(exact),
+                4e-16 * (std::abs(x) < 0.05 ? x * x : 1.0 + std::abs(x)))
+        << x;
+  }
+}
+
 }  // namespace elastic_tetrahedron_test
 }  // namespace breccia::fdem3
