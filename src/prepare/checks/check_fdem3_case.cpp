@@ -15,9 +15,14 @@ namespace {
 class TetCaseChecks {
  public:
   explicit TetCaseChecks(const fdem3::Config& config) : config_(config) {
-    for (const fdem3::MaterialConfig& m : config.materials)
+    for (const fdem3::MaterialConfig& m : config.materials) {
       if (m.poisson >= 0.5)
         add("material." + m.name + ".poisson: must be below 0.5 in three dimensions");
+      if (m.joints == "extrinsic")
+        add("material." + m.name +
+            ".joints: \"extrinsic\" is not there in three dimensions yet; allowed are "
+            "\"intrinsic\" and \"none\"");
+    }
     for (const fdem3::SupportConfig& s : config.supports)
       check_region("support." + s.name, s.region);
     for (const fdem3::LoadConfig& l : config.loads) {
