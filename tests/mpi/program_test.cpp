@@ -81,8 +81,9 @@ class ProgramOnRanks : public testing::Test {
       ASSERT_EQ(run(ranks, "run " + shared + end + "-o " + there), 0) << ranks;
       EXPECT_EQ(hash_in(there), hash_in(out("one"))) << ranks << " ranks";
       for (const char* table : {"/history.csv", "/broken_links.csv", "/cracks.csv"})
-        if (fs::exists(out("one") + table))
+        if (fs::exists(out("one") + table)) {
           EXPECT_EQ(bytes_of(there + table), bytes_of(out("one") + table)) << table;
+        }
       for (const char* files : {"/fields", "/pictures", "/checkpoints"})  // no diff of binary files
         EXPECT_TRUE(files_in(there + files) == files_in(out("one") + files)) << files << ranks;
     }

@@ -299,13 +299,15 @@ void set_free_walls(World& w, const Config& config, const Model& m) {
   if (std::none_of(config.walls.begin(), config.walls.end(), has_mass)) return;
   Case& given = set_up(w);
   w.free_walls.resize(config.walls.size());
+  std::vector<ContactPair> pairs;  // on the host
+  copy_to(pairs, given.wall_pairs);
   for (const WallConfig& wall : config.walls) {
     given.free_walls.push_back(free_wall_of(wall, config.time.mass_scaling));
     if (!wall.has_mass() || given.contact.hertz) continue;
     double stiffest = 0.0;
     for (std::size_t e = 0; e < m.radius.size(); ++e)
       stiffest = std::max(stiffest, 0.5 * wall.stiffness * m.radius[e] *
-                                        given.wall_pairs.data()[m.material[e]].normal);
+                                        pairs[static_cast<std::size_t>(m.material[e])].normal);
     given.contact_step =
         std::min(given.contact_step,
                  config.time.safety * std::sqrt(2.0 * given.free_walls.back().mass / stiffest));
