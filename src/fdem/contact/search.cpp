@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "core/select.hpp"
-#include "fdem/contact/shared_marks.hpp"
 #include "fdem/contact/search_kernels.hpp"
+#include "fdem/contact/shared_marks.hpp"
 #include "fdem/ranks.hpp"
 
 namespace breccia::fdem {

@@ -47,8 +47,8 @@ Shown shown_by(Method& specimen) {
 
 std::set<std::string> field_names(const Frame& frame) {
   std::set<std::string> names;
-  for (const auto* fields : {&frame.point_fields, &frame.line_fields, &frame.triangle_fields,
-                             &frame.tetrahedron_fields})
+  for (const auto* fields :
+       {&frame.point_fields, &frame.line_fields, &frame.triangle_fields, &frame.tetrahedron_fields})
     for (const FrameField& field : *fields)
       names.insert(field.name + (field.components == 3 ? "[_x, _y, _z]" : ""));
   return names;
