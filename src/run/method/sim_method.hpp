@@ -20,8 +20,8 @@
 namespace breccia {
 
 /// The parts that differ between kinds of world. It may also have `step_rule(world)`,
-/// `note_breaks(world)`, `tables(world)` and `constants()`, and has `each_stored(world, visit)`: the
-/// one list of what a checkpoint holds, as visit(name, value), visit.fields(prefix, state), and
+/// `note_breaks(world)`, `tables(world)` and `constants()`, and has `each_stored(world, visit)`:
+/// the one list of what a checkpoint holds, as visit(name, value), visit.fields(prefix, state), and
 /// visit.where_kept(name, value) for what older files lack. Beside the world are advance, held,
 /// probe, read_own, find_unsound, fastest, state_hash, derive, share_out, collect and rebalance.
 template <class Sim>
