@@ -1,5 +1,5 @@
 #pragma once
-// Names of wrong numbers in a state.
+// Names of elements that something is wrong with, or may be.
 
 #include <string>
 
@@ -11,6 +11,24 @@ namespace breccia {
 struct Unsound {
   static constexpr GlobalId none = 0x7fffffff;
   GlobalId id = none;
+  std::string text;
+};
+
+/// A speed and whose it is.
+struct Speed {
+  double squared = -1.0;        ///<  [m2/s2]
+  GlobalId id = Unsound::none;  ///< none: no element has one
+};
+/// Combines speeds: the larger one, of equal ones that of the lower id.
+struct Faster {
+  BR_HD Speed operator()(const Speed& a, const Speed& b) const {
+    const bool second = b.squared > a.squared || (b.squared == a.squared && b.id < a.id);
+    return second ? b : a;
+  }
+};
+/// The element that moves fastest, and what to tell of it.
+struct Fastest {
+  Speed speed;
   std::string text;
 };
 

@@ -52,6 +52,16 @@ struct FindUnsound {
   }
 };
 
+struct SpeedOf {
+  OwnedView owned;
+  View<const GlobalId> id;
+  View<const ElementState> state;
+  BR_HD Speed operator()(Index e) const {
+    if (!owned(e)) return {};
+    return {dot(state[e].velocity, state[e].velocity), id[e]};
+  }
+};
+
 struct CentreMotion {
   static constexpr const char* name = "dem.centre_motion";
   Kick kick;
@@ -141,6 +151,23 @@ std::uint64_t state_hash(const World& w) {
   return fold(w.exec, e.size(), std::uint64_t{0},
               HashElement{w.domain.owned_view(), e.id.view(), e.state.view(), e.orientation.view()},
               Sum{});
+}
+
+Fastest fastest(const World& w) {
+  const Elements& e = w.elements;
+  const Speed speed = fold(w.exec, e.size(), Speed{},
+                           SpeedOf{w.domain.owned_view(), e.id.view(), e.state.view()}, Faster{});
+  std::vector<GlobalId> ids;
+  std::vector<std::int16_t> groups;
+  copy_to(ids, e.id);
+  copy_to(groups, e.group);
+  const auto at = std::find(ids.begin(), ids.end(), speed.id) - ids.begin();
+  if (at == static_cast<std::ptrdiff_t>(ids.size())) return {};
+  const auto group = static_cast<std::size_t>(groups[static_cast<std::size_t>(at)]);
+  char text[200];  // snprintf, because nvcc does not take fmt's headers
+  std::snprintf(text, sizeof text, "element %d (%.100s) moves fastest, at %.3g m/s", speed.id,
+                w.given->sets.at(group).name.c_str(), std::sqrt(speed.squared));
+  return {speed, text};
 }
 
 Unsound find_unsound(const World& w) {

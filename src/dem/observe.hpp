@@ -1,5 +1,5 @@
 #pragma once
-// What a DEM run shows: hash, probes, counts, and whether its numbers are sound.
+// Observations of a DEM run: hash, probes, counts, and whether its numbers are sound.
 
 #include <array>
 #include <numeric>
@@ -17,6 +17,8 @@ std::uint64_t state_hash(const World& w);
 /// The first element of its own whose state is not finite or that moves more than its radius in a
 /// step.
 Unsound find_unsound(const World& w);
+/// The element of its own that moves fastest: where energy is lost, it may be the one to look at.
+Fastest fastest(const World& w);
 
 /// Share of each element's initial cohesive and interface links that are damaged or broken.  [-]
 std::vector<double> damage(const World& w);
@@ -30,7 +32,7 @@ struct MotionNow {
 MotionNow motion_now(const World& w);
 
 double probe(const World& w, const ProbeConfig& probe);
-/// What a probe reads of a rank's own elements; the sum over all ranks is what it reads of the
+/// A probe's reading of a rank's own elements; the sum over all ranks is the reading of the
 /// whole.
 Readings read_own(World& part, const ProbeConfig& probe);
 

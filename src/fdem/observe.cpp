@@ -31,6 +31,20 @@ struct HashTriangle {
   }
 };
 
+/// Of the fastest corner.
+struct SpeedOf {
+  OwnedView owned;
+  View<const GlobalId> id;
+  View<const TriangleNodes> nodes;
+  BR_HD Speed operator()(Index t) const {
+    Speed speed;
+    if (!owned(t)) return speed;
+    for (const NodeState& n : nodes[t].at)
+      speed = Faster{}(speed, {dot(n.velocity, n.velocity), id[t]});
+    return speed;
+  }
+};
+
 /// The lowest global id whose numbers are unsound, or none.
 struct FindUnsound {
   OwnedView owned;
@@ -66,7 +80,7 @@ struct CentreVelocities {
   }
 };
 
-/// What rules a triangle's step, and the triangle.
+/// A triangle's stable step by its parts, and the triangle.
 struct Ruling {
   StableStep::Parts parts{};
   Index triangle = 0x7fffffff;
@@ -108,6 +122,23 @@ std::uint64_t state_hash(const World& w) {
   const Triangles& t = w.triangles;
   return fold(w.exec, t.size(), std::uint64_t{0},
               HashTriangle{w.domain.owned_view(), t.id.view(), t.nodes.view()}, Sum{});
+}
+
+Fastest fastest(const World& w) {
+  const Triangles& t = w.triangles;
+  const Speed speed = fold(w.exec, t.size(), Speed{},
+                           SpeedOf{w.domain.owned_view(), t.id.view(), t.nodes.view()}, Faster{});
+  std::vector<GlobalId> ids;
+  std::vector<std::int16_t> groups;
+  copy_to(ids, t.id);
+  copy_to(groups, t.group);
+  const auto place = std::find(ids.begin(), ids.end(), speed.id) - ids.begin();
+  if (place == static_cast<std::ptrdiff_t>(ids.size())) return {};
+  const auto group = static_cast<std::size_t>(groups[static_cast<std::size_t>(place)]);
+  char text[200];  // snprintf, because nvcc does not take fmt's headers
+  std::snprintf(text, sizeof text, "triangle %d (%.100s) moves fastest, at %.3g m/s", speed.id,
+                w.given->groups.at(group).c_str(), std::sqrt(speed.squared));
+  return {speed, text};
 }
 
 Unsound find_unsound(const World& w) {

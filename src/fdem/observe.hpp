@@ -1,5 +1,5 @@
 #pragma once
-// What an FDEM run shows: hash, probes, counts, cracks, fragments, and whether its numbers are
+// Observations of an FDEM run: hash, probes, counts, cracks, fragments, and whether its numbers are
 // sound.
 
 #include "core/probe.hpp"
@@ -15,6 +15,8 @@ std::uint64_t state_hash(const World& w);
 /// The first triangle of its own that is inside out, not finite, or moves more than its size in a
 /// step.
 Unsound find_unsound(const World& w);
+/// The triangle of its own that moves fastest: where energy is lost, it may be the one to look at.
+Fastest fastest(const World& w);
 
 /// Largest damage of the joints of each triangle.  [-]
 std::vector<double> damage(const World& w);
@@ -30,7 +32,7 @@ std::vector<double> stresses_across(const World& w);
 std::vector<Corners> velocities_now(World& w);
 
 double probe(const World& w, const ProbeConfig& probe);
-/// What a probe reads of a rank's own triangles; the sum over all ranks is what it reads of the
+/// A probe's reading of a rank's own triangles; the sum over all ranks is the reading of the
 /// whole.
 Readings read_own(World& part, const ProbeConfig& probe);
 
@@ -55,7 +57,7 @@ struct Fragments {
   std::vector<double> mass;  ///< of each piece, falling  [kg/m]
 };
 Fragments fragments(const World& w);
-/// The same, where other joints are broken than the world knows.
+/// Fragments where other joints are broken than the world knows.
 /// @param broken  1: of each joint
 Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken);
 

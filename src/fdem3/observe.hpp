@@ -15,6 +15,9 @@ std::uint64_t state_hash(const World& w);
 /// The first tetrahedron of its own that is inside out, not finite, or moves more than its size in
 /// a step.
 Unsound find_unsound(const World& w);
+/// The tetrahedron of its own that moves fastest: where energy is lost, it may be the one to look
+/// at.
+Fastest fastest(const World& w);
 
 /// Largest damage of the joints of each tetrahedron.  [-]
 std::vector<double> damage(const World& w);

@@ -86,6 +86,30 @@ void CheckpointWriter::section(const std::string& name, const void* items, std::
   sections_.push_back(std::move(section));
 }
 
+std::string CheckpointWriter::first_difference(const CheckpointWriter& other) const {
+  for (std::size_t k = 0; k < std::max(sections_.size(), other.sections_.size()); ++k) {
+    if (k >= sections_.size() || k >= other.sections_.size()) return "the number of arrays";
+    const Section &here = sections_[k], &there = other.sections_[k];
+    if (here.name != there.name || here.count != there.count)
+      return fmt::format("the length of {}", here.name);
+    const auto at = std::mismatch(here.bytes.begin(), here.bytes.end(), there.bytes.begin()).first;
+    if (at != here.bytes.end())
+      return fmt::format("{}, item {} of {}", here.name,
+                         static_cast<std::size_t>(at - here.bytes.begin()) / here.item_bytes,
+                         here.count);
+  }
+  return {};
+}
+
+std::map<std::string, Digest> CheckpointWriter::digests(
+    const std::vector<std::string>& names) const {
+  std::map<std::string, Digest> found;
+  for (const Section& s : sections_)
+    if (std::find(names.begin(), names.end(), s.name) != names.end())
+      found.emplace(s.name, digest(s.bytes));
+  return found;
+}
+
 void CheckpointWriter::write(const std::string& path) const {
   std::size_t table_bytes = 0;
   for (const Section& s : sections_) table_bytes += 4 + s.name.size() + 8 + 8 + 8 + 16;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,12 @@ class CheckpointWriter {
       write_array(prefix + "." + name, array);
     });
   }
+
+  /// Where two states that were collected alike differ first, as "elements.force, item 7 of 20";
+  /// empty: nowhere.
+  std::string first_difference(const CheckpointWriter& other) const;
+  /// Of the named sections those that were collected.
+  std::map<std::string, Digest> digests(const std::vector<std::string>& names) const;
 
   /// Writes by replace_durably of io/file.hpp: to a temporary name, synced, read back, renamed.
   /// @throws IoError naming path and reason; an older file at `path` is then untouched

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/random.hpp"
 #include "exec/error.hpp"
@@ -21,7 +24,7 @@ class AuditedMethod final : public Method {
         ranks_(ranks) {}
 
   Advanced advance(const StopAt& stop) override {
-    if (!next_) next_ = drawn_from(steps());
+    if (!next_) begin();
     if (steps() < *next_) {
       pushed_ = false;
       return method_->advance({stop.time, std::min(stop.step, *next_)});
@@ -49,6 +52,7 @@ class AuditedMethod final : public Method {
   void note_breaks() override { method_->note_breaks(); }
   std::uint64_t state_hash() override { return method_->state_hash(); }
   void verify() override { method_->verify(); }
+  std::string fastest() override { return method_->fastest(); }
   Frame frame() override { return method_->frame(); }
   FrameOutput frame_output(const FrameWish& wish) override { return method_->frame_output(wish); }
   std::unique_ptr<Method> snapshot() override { return method_->snapshot(); }
@@ -70,6 +74,7 @@ class AuditedMethod final : public Method {
   Index force_items() const override { return method_->force_items(); }
   std::vector<Table> tables() override { return method_->tables(); }
   void save(CheckpointWriter& writer) override { method_->save(writer); }
+  std::vector<std::string> constants() const override { return method_->constants(); }
   void load(const CheckpointReader* reader) override {
     method_->load(reader);
     next_.reset();
@@ -85,27 +90,49 @@ class AuditedMethod final : public Method {
     return step + static_cast<std::int64_t>(share * static_cast<double>(2 * every_ - 1));
   }
 
+  void begin() {
+    CheckpointWriter now;
+    method_->save(now);
+    constants_ = now.digests(method_->constants());
+    next_ = drawn_from(steps());
+  }
+
+  /// A constant that has changed would be wrong in both results alike. Rank 0 looks.
+  void require_constants(const CheckpointWriter& now) const {
+    for (const auto& [name, found] : now.digests(method_->constants()))
+      if (found != constants_.at(name))
+        throw DeviceError(fmt::format(
+            "before step {}: the array {} has changed, though no step changes it: memory or "
+            "processor of this machine fails, or the program does; resume from the newest "
+            "checkpoint on another machine",
+            steps() + 1, name));
+  }
+
   Advanced repeated(const StopAt& stop) {
-    CheckpointWriter before;
+    CheckpointWriter before, first, second;
     method_->save(before);
+    on_first(ranks_, [&] { require_constants(before); });
     const std::int64_t from = steps();
     const Advanced taken = method_->advance({stop.time, from + 1});
     const std::int64_t to = steps();
-    const std::uint64_t first = method_->state_hash();
+    const std::uint64_t first_hash = method_->state_hash();
+    method_->save(first);
 
     std::optional<CheckpointReader> kept;
     if (leads(ranks_)) kept.emplace(before);
     method_->load(kept ? &*kept : nullptr);
     while (steps() < to && method_->advance({stop.time, to}).steps > 0) {
     }
-    const std::uint64_t second = method_->state_hash();
+    const std::uint64_t second_hash = method_->state_hash();
+    method_->save(second);
     on_first(ranks_, [&] {
-      if (steps() == to && first == second) return;
+      const std::string difference = first.first_difference(second);
+      if (steps() == to && first_hash == second_hash && difference.empty()) return;
       throw DeviceError(fmt::format(
-          "step {} was done twice, with different results (state {:016x}, then {:016x}): memory or "
-          "processor of this machine fails, or the program does; resume from the newest checkpoint "
-          "on another machine",
-          to, first, second));
+          "step {} was done twice, with different results (state {:016x}, then {:016x}; {}): "
+          "memory or processor of this machine fails, or the program does; resume from the newest "
+          "checkpoint on another machine",
+          to, first_hash, second_hash, difference));
     });
     repeated_ += to - from;
     return taken;
@@ -115,7 +142,8 @@ class AuditedMethod final : public Method {
   std::int64_t every_;
   Random draws_;
   Communicator* ranks_;
-  std::optional<std::int64_t> next_;  ///< steps that are done when one is repeated
+  std::optional<std::int64_t> next_;         ///< steps that are done when one is repeated
+  std::map<std::string, Digest> constants_;  ///< sections that never change; on rank 0
   std::int64_t repeated_ = 0;
   bool pushed_ = false;  ///< forces of the caller act in the step to come
 };

@@ -133,6 +133,36 @@ struct DemSim {
     });
   }
 
+  static std::vector<std::string> constants() {
+    return {"elements.id",
+            "elements.group",
+            "elements.material",
+            "elements.mass",
+            "elements.inertia",
+            "concrete.a",
+            "concrete.b",
+            "concrete.length",
+            "concrete.stiffness",
+            "concrete.area",
+            "steel.a",
+            "steel.b",
+            "steel.length",
+            "interface.a",
+            "interface.b",
+            "interface.before",
+            "interface.after",
+            "interface.stiffness",
+            "interface.area",
+            "parallel.a",
+            "parallel.b",
+            "parallel.length",
+            "parallel.stiffness",
+            "ldpm.a",
+            "ldpm.b",
+            "ldpm.c",
+            "ldpm.d",
+            "ldpm.place"};
+  }
   template <class Visit>
   static void each_stored(World& w, const Visit& visit) {
     visit.fields("elements", w.elements);

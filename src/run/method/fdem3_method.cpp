@@ -156,6 +156,12 @@ struct Fdem3Sim {
     });
   }
 
+  static std::vector<std::string> constants() {
+    return {"tetrahedra.id",   "tetrahedra.group",     "tetrahedra.material", "tetrahedra.shape",
+            "tetrahedra.mass", "tetrahedra.viscosity", "joints.face_a",       "joints.face_b",
+            "joints.turn",     "joints.law",           "joints.shape",        "joints.length",
+            "joints.strength"};
+  }
   template <class Visit>
   static void each_stored(World& w, const Visit& visit) {
     visit.fields("tetrahedra", w.tetrahedra);

@@ -160,6 +160,12 @@ struct FdemSim {
     });
   }
 
+  static std::vector<std::string> constants() {
+    return {
+        "triangles.id",   "triangles.group",     "triangles.material", "triangles.shape_inverse",
+        "triangles.mass", "triangles.viscosity", "joints.edge_a",      "joints.edge_b",
+        "joints.law",     "joints.length",       "joints.strength"};
+  }
   template <class Visit>
   static void each_stored(World& w, const Visit& visit) {
     visit.fields("triangles", w.triangles);

@@ -49,9 +49,9 @@ class Method {
   virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]
   virtual std::int64_t searches() const { return 0; }  ///< for contacts so far
 
-  /// What set-up found doubtful though it can be run, as sentences; on rank 0.
+  /// Doubts of set-up about a case that can be run, as sentences; on rank 0.
   virtual std::vector<std::string> warnings() { return {}; }
-  /// What rules the time step now, in a word; empty if the method does not tell.
+  /// The rule that limits the time step now, in a word; empty if the method does not tell.
   virtual std::string step_rule() { return {}; }
 
   /// The stages of the case, in their order.
@@ -70,6 +70,8 @@ class Method {
   virtual std::uint64_t state_hash() = 0;
   /// Looks for numbers that went wrong. @throws NumericsError naming step, time and element
   virtual void verify() = 0;
+  /// The element that moves fastest, as a clause; on rank 0.
+  virtual std::string fastest() { return {}; }
   virtual Frame frame() = 0;
   /// The files and the picture of this moment.
   virtual FrameOutput frame_output(const FrameWish& wish) {
@@ -93,11 +95,13 @@ class Method {
   /// Numbers of a force on an item: 3 of an element, 6 of the corners of a triangle; and items.
   virtual Index force_numbers() const { return 0; }
   virtual Index force_items() const { return 0; }
-  /// What else the end of a run shows.
+  /// Tables that the end of a run writes.
   virtual std::vector<Table> tables() { return {}; }
 
   /// Everything the run needs to go on, to and from a checkpoint.
   virtual void save(CheckpointWriter& writer) = 0;
+  /// Sections of it that no step and no stage changes.
+  virtual std::vector<std::string> constants() const { return {}; }
   /// @param reader  on ranks other than 0 it may be null
   virtual void load(const CheckpointReader* reader) = 0;
 };

@@ -20,10 +20,10 @@
 namespace breccia {
 
 /// The parts that differ between kinds of world. It may also have `step_rule(world)`,
-/// `note_breaks(world)` and `tables(world)`, and has `each_stored(world, visit)`: the one list of
-/// what a checkpoint holds, as visit(name, value), visit.fields(prefix, state), and
+/// `note_breaks(world)`, `tables(world)` and `constants()`, and has `each_stored(world, visit)`:
+/// the one list of what a checkpoint holds, as visit(name, value), visit.fields(prefix, state), and
 /// visit.where_kept(name, value) for what older files lack. Beside the world are advance, held,
-/// probe, read_own, find_unsound, state_hash, derive, share_out, collect and rebalance.
+/// probe, read_own, find_unsound, fastest, state_hash, derive, share_out, collect and rebalance.
 template <class Sim>
 concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vector<Fact>& facts,
                               Ledger& ledger, const Energies& energies, StateArrays& arrays,
@@ -44,6 +44,11 @@ concept Simulation = requires(const Sim& sim, typename Sim::World& w, std::vecto
 template <class World>
 std::uint64_t hash_of(const World& w) {
   return state_hash(w);
+}
+
+template <class World>
+Fastest fastest_of(const World& w) {
+  return fastest(w);
 }
 
 template <Simulation Sim>
@@ -176,6 +181,21 @@ class SimMethod final : public Method {
     });
   }
 
+  std::string fastest() override {
+    Fastest all = fastest_of(world_.part());
+    if (single_rank()) return all.text;
+    Message message;
+    put_value(message, all.speed);
+    put_array(message, std::vector<char>(all.text.begin(), all.text.end()));
+    for (const Message& told : world_.told(std::move(message))) {
+      Unpacking from(told);
+      const auto speed = from.value<Speed>();
+      const std::vector<char> text = from.array<char>();
+      if (Faster{}(all.speed, speed).id != all.speed.id) all = {speed, {text.begin(), text.end()}};
+    }
+    return all.text;
+  }
+
   Frame frame() override {
     return world_.of_whole([](World& w) { return Sim::frame(w, nullptr).frame; });
   }
@@ -219,6 +239,10 @@ class SimMethod final : public Method {
   }
   void save(CheckpointWriter& writer) override {
     world_.with_whole([&](World& w) { each_stored(w, Saving{writer}); });
+  }
+  std::vector<std::string> constants() const override {
+    if constexpr (requires { Sim::constants(); }) return Sim::constants();
+    return {};
   }
   void load(const CheckpointReader* reader) override {
     if (!case_.stages.empty()) take_stage(reader);

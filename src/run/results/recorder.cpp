@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "domain/together.hpp"
+#include "exec/error.hpp"
 
 namespace breccia {
 namespace {
@@ -162,6 +163,20 @@ std::int64_t Recorder::next_step(std::int64_t step) const {
   return next == picture_steps_.end() ? std::numeric_limits<std::int64_t>::max() : *next;
 }
 
+/// Rank 0 judges energies: of those that end the run it is told which element moves fastest.
+template <class Work>
+void Recorder::naming_fastest(Method& method, const Work& work) const {
+  try {
+    on_first(ranks_, work);
+  } catch (const NumericsError& error) {
+    if (!thrown_by_all(ranks_)) throw;
+    std::string fastest;
+    at_once(ranks_, [&] { fastest = method.fastest(); });
+    throw NumericsError(fastest.empty() ? error.what()
+                                        : fmt::format("{}; {}", error.what(), fastest));
+  }
+}
+
 void Recorder::note_step(const StepRow& row) {
   if (steps_) steps_->write(row);
 }
@@ -170,7 +185,7 @@ void Recorder::record(Method& method, Background& background) {
   const double time = method.time();
   if (time >= rows_.next()) {
     write_row(method);
-    on_first(ranks_, [&] {
+    naming_fastest(method, [&] {
       if (watch_.look(*last_energy_, method.steps(), time))
         log_->warn(
             "step", method.steps(),
@@ -210,8 +225,8 @@ void Recorder::record_last(Method& method, Background& background) {
     write_frame(method, background);
 }
 
-void Recorder::judge_end(const Method& method, const EnergyBalance& energy) const {
-  on_first(ranks_, [&] {
+void Recorder::judge_end(Method& method, const EnergyBalance& energy) const {
+  naming_fastest(method, [&] {
     if (watch_.judge_end(energy, method.steps(), method.time()))
       log_->warn(
           "step", method.steps(),

@@ -1,5 +1,5 @@
 #pragma once
-// What a run shows of itself while it goes on: rows of history.csv, frames and pictures.
+// Records of a run while it goes on: rows of history.csv, frames and pictures.
 
 #include <algorithm>
 #include <cstdint>
@@ -85,7 +85,7 @@ class Recorder {
   /// Writes a row and a frame of the last state, if the schedule did not ask for them.
   void record_last(Method& method, Background& background);
   /// At the end of a case. @throws NumericsError if its energies do not add up
-  void judge_end(const Method& method, const EnergyBalance& energy) const;
+  void judge_end(Method& method, const EnergyBalance& energy) const;
   /// Brings all files up to what was recorded. The background must have finished.
   void sync();
 
@@ -99,6 +99,8 @@ class Recorder {
   std::int64_t frame_count() const { return frame_count_; }
 
  private:
+  template <class Work>
+  void naming_fastest(Method& method, const Work& work) const;
   void write_row(Method& method);
   void write_frame(Method& method, Background& background);
   void write_frame_of(Method& method, std::int64_t number, const PictureMoment& moment);

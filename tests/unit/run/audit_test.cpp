@@ -37,6 +37,34 @@ TEST(Audit, FindsASingleBitThatWasWrongOnce) {
   EXPECT_EQ(summary_of(scratch / "out")["exit_code"], 5);
 }
 
+/// The hash tells of places and velocities; a wrong force moves them in the next step only.
+TEST(Audit, FindsAWrongForceInTheStepThatMadeIt) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.flip_force_at = 57;
+  try {
+    run_audited(1, scratch / "out", trouble);
+    FAIL() << "the wrong force was not found";
+  } catch (const DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("fake.force, item 0 of 1"), std::string::npos)
+        << error.what();
+  }
+}
+
+/// Both results of a step would have it.
+TEST(Audit, FindsAConstantThatHasChanged) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.flip_constant_at = 57;
+  try {
+    run_audited(10, scratch / "out", trouble);
+    FAIL() << "the changed constant was not found";
+  } catch (const DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("array fake.mass has changed"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Audit, FindsAsManyWrongStepsAsItRepeats) {
   int found = 0;
   for (int step = 1; step <= 400; ++step) {

@@ -17,8 +17,10 @@ namespace breccia {
 
 /// What is to go wrong in a run of the fake method.
 struct Trouble {
-  std::int64_t spoil_at = -1;   ///< verify() fails from this step on
-  std::int64_t flip_at = -1;    ///< the first time that this step is done, a bit of it is wrong
+  std::int64_t spoil_at = -1;       ///< verify() fails from this step on
+  std::int64_t flip_at = -1;        ///< the first time that this step is done, a bit of it is wrong
+  std::int64_t flip_force_at = -1;  ///< likewise, of what acts from the next step on
+  std::int64_t flip_constant_at = -1;  ///< a number that no step changes is another from then on
   std::int64_t lose_at = -1;    ///< this step fails and knows no more than an element's place
   std::int64_t signal_at = -1;  ///< the process gets `signal` during this step
   int signal = SIGTERM;
@@ -44,6 +46,12 @@ class FakeMethod : public Method {
     }
     time_ += last_step_;
     ++steps_;
+    force_ = -position_[0];
+    if (steps_ == trouble_.flip_force_at) {
+      force_ += 1e-12;
+      trouble_.flip_force_at = -1;
+    }
+    if (steps_ == trouble_.flip_constant_at) mass_ = 1.0000001;
     if (steps_ == trouble_.flip_at) {
       position_[2] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(position_[2]) ^ 1);
       trouble_.flip_at = -1;
@@ -99,11 +107,15 @@ class FakeMethod : public Method {
   void save(CheckpointWriter& writer) override {
     writer.value("fake.position", position_);
     writer.value("fake.velocity", velocity_);
+    writer.value("fake.force", force_);
+    writer.value("fake.mass", mass_);
     writer.value("fake.time", time_);
     writer.value("fake.last_step", last_step_);
     writer.value("fake.steps", steps_);
   }
+  std::vector<std::string> constants() const override { return {"fake.mass"}; }
   void load(const CheckpointReader* reader) override {
+    mass_ = reader->value<double>("fake.mass");
     position_ = reader->value<State>("fake.position");
     velocity_ = reader->value<State>("fake.velocity");
     time_ = reader->value<double>("fake.time");
@@ -116,6 +128,7 @@ class FakeMethod : public Method {
   Trouble trouble_;
   State position_{1.0, -0.5, 0.25, 0.125};
   State velocity_{};
+  double force_ = 0.0, mass_ = 1.0;
   double time_ = 0.0, last_step_ = 0.0;
   std::int64_t steps_ = 0;
 };
