@@ -323,7 +323,10 @@ class Findings {
              bodies_of(shot, broken);
     }
     const std::string mode = mode_text();
-    if (!mode.empty()) text += (text.empty() ? "It was " : ", ") + mode;
+    if (!mode.empty() && text.empty())  // "and took ..." goes without the verb
+      text = mode.starts_with("and ") ? "It " + mode.substr(4) : "It was " + mode;
+    else if (!mode.empty())
+      text += ", " + mode;
     const auto pieces = record_.number("fracture.fragments");
     if (pieces && *pieces > 1.0)
       text += fmt::format(
