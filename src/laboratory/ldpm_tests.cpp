@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -114,13 +115,14 @@ std::array<std::size_t, 3> add_faces(dem::Config& c, const Vec3& size) {
 
 /// Strains of a sheared specimen grow with its pressure.
 double sheared_strain(double pressure) {
-  return 0.008 + 0.04 * std::sqrt(pressure / 100e6);
+  return 0.005 + 0.04 * std::sqrt(pressure / 100e6);
 }
 
 /// The pressure first, on all sides; then the ends approach while the sides hold it.
 void squeeze_and_shear(dem::Config& c, const SpecimenTest& test) {
   const double confined = 4e-3 / faster(test.size);
-  const double rate = 1.5 * faster(test.size);
+  // Servos follow sides that burst outwards under little pressure only slowly.
+  const double rate = 1.5 * faster(test.size) * std::min(1.0, test.pressure / 20e6);
   const double areas[3] = {test.size.y * test.size.z, test.size.x * test.size.z,
                            test.size.x * test.size.y};
   const auto moving = add_faces(c, test.size);
@@ -131,6 +133,7 @@ void squeeze_and_shear(dem::Config& c, const SpecimenTest& test) {
     servo.pressure.values = {0.0, -0.9 * test.pressure, -test.pressure};
     servo.area = areas[axis];
     servo.speed = 1.0;
+    servo.gain = 2.0;
   }
   dem::StageConfig confine, shear;
   confine.name = "confine";

@@ -346,14 +346,19 @@ std::string ratios_of(const std::vector<PassportLine>& lines) {
     return std::nan("");
   };
   std::string rows;
-  const auto ratio = [&](const char* words, std::size_t a, std::size_t b) {
-    const double value = mean(specimen_tests()[a].title) / mean(specimen_tests()[b].title);
+  const auto ratio = [&](const char* words, const std::string& a, const std::string& b) {
+    const double value = mean(a) / mean(b);
     if (std::isfinite(value)) rows += fmt::format("| {} | {} |\n", words, short_number(value));
   };
-  ratio("compression over tension", 0, 4);
-  ratio("rough cube over rough prism (real concrete: 1.20 to 1.25)", 3, 2);
-  ratio("rough prism over smooth prism", 2, 0);
-  ratio("splitting over tension", 5, 4);
+  const std::string smooth = "compression, prism, smooth ends", tension = "direct tension, prism";
+  ratio("compression over tension", smooth, tension);
+  ratio("rough cube over rough prism (real concrete: 1.20 to 1.25)",
+        "compression, cube, rough platens", "compression, prism, rough platens");
+  ratio("rough prism over smooth prism", "compression, prism, rough platens", smooth);
+  ratio("splitting over tension", "Brazilian, disc", tension);
+  ratio("held prism over smooth prism", "compression, prism, held ends", smooth);
+  ratio("held cube over held prism", "compression, cube, held ends",
+        "compression, prism, held ends");
   return rows.empty() ? "" : "\n| ratio of means | shown |\n|---|---|\n" + rows;
 }
 
