@@ -141,7 +141,7 @@ double area_of(const prepare::TetMesh& mesh, const prepare::Face& f) {
   return 0.5 * norm(cross(prepare::at(mesh.point, f[1]) - a, prepare::at(mesh.point, f[2]) - a));
 }
 
-/// What one tetrahedron is like.
+/// Volume and shape of one tetrahedron.
 struct Shape {
   double volume;   ///<  [m3]
   double height;   ///< the least one  [m]

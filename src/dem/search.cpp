@@ -126,7 +126,7 @@ struct WallNear {
   }
 };
 
-/// Likewise of a mesh.
+/// Whether the grown sphere of an element reaches a wall made of triangles.
 struct MeshNear {
   Wall wall;
   WallMesh mesh;

@@ -77,7 +77,7 @@ struct CentreVelocities {
   }
 };
 
-/// What rules the step of a tetrahedron.
+/// Cause of the step of a tetrahedron.
 struct Ruling {
   StableStep::Parts parts{};
   Index tetrahedron = 0x7fffffff;

@@ -1,5 +1,5 @@
 #pragma once
-// What a run of tetrahedra shows: hash, probes, counts, cracks, fragments, and whether its numbers
+// Output of a run of tetrahedra: hash, probes, counts, cracks, fragments, and whether its numbers
 // are sound.
 
 #include "core/probe.hpp"
@@ -30,8 +30,7 @@ std::vector<Sym3> stresses(const World& w);
 std::vector<Corners> velocities_now(World& w);
 
 double probe(const World& w, const ProbeConfig& probe);
-/// What a probe reads of a rank's own tetrahedra; the sum over all ranks is what it reads of the
-/// whole.
+/// Readings of a probe on a rank's own tetrahedra; their sum over all ranks is that of the mesh.
 Readings read_own(World& part, const ProbeConfig& probe);
 
 /// Share of sliding in what a joint has spent: 0 opening, 1 sliding  [-]

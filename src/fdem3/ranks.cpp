@@ -150,7 +150,7 @@ class Migration {
   Buffer<Neighbourhood> lies_;
 };
 
-/// What follows from the tetrahedra and joints that are here.
+/// Arrays that follow from the tetrahedra and joints of this rank.
 /// @param space  where they go when they have settled in
 void settle_in(World& w, Space space) {
   const Index count = w.tetrahedra.size();
@@ -287,13 +287,13 @@ class Mesh final : public Shareable {
   Buffer<ShapeGradients> seen_shapes_;
 };
 
-/// What follows from couples that came with their tetrahedra. A search finds it for its own.
+/// Arrays that follow from couples that came with their tetrahedra. A search finds it for its own.
 void go_on_with_couples(World& w) {
   derive_couples(w);
   select_active_ghosts(w);
 }
 
-/// What all ranks know alike, as rank 0 has it.
+/// Values that all ranks share, as rank 0 has them.
 void take_common(World& w, Communicator& ranks) {
   take_time_from_first(ranks, w);
   take_from_first(ranks, w.reach.drift);

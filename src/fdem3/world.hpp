@@ -42,7 +42,7 @@ struct ExposedVertices {
   Buffer<std::uint8_t> vertex;   ///< 1: a joint here is damaged  [-]  (vertices; search)
 };
 
-/// What a rank knows of the whole mesh besides its part of it.
+/// Knowledge of the whole mesh that a rank has besides its part of it.
 struct WholeMesh {
   Buffer<Index> joint_number;      ///< of the local joints in the whole mesh, ascending
   std::vector<std::uint8_t> tied;  ///< 1: some corners at this vertex move as one
@@ -185,7 +185,7 @@ void begin_ledger(World& w);
 /// Where every joule is.
 Energies held(const World& w);
 EnergySplit energy_split(const World& w);
-/// The same, and keeps the largest energy seen, for the relative error.
+/// Split of these energies; the ledger keeps the largest seen, for the relative error.
 EnergySplit energies(Ledger& ledger, const Energies& all);
 EnergySplit energies(World& w);
 

@@ -326,7 +326,7 @@ struct CoupleForces {
         penalty * (potential_integral(of_a, over) + potential_integral(of_b, over));
     return {rebound.share(energy, most), max(energy, most)};
   }
-  /// Likewise of couple i, as it lies.
+  /// Opening of couple i at its present position.
   BR_HD Opening opening(Index i, double penalty, double most) const {
     Vec2 xa[3], va[3], xb[3], vb[3];
     split(nodes[a[i]], xa, va);

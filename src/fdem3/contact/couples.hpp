@@ -16,7 +16,7 @@ struct ContactPair {
   double friction;    ///< mu  [-]
 };
 
-/// What a couple remembers.
+/// State of a couple from step to step.
 struct CoupleState {
   Vec3 drag;      ///< T: tangential force on a  [N]
   double spring;  ///< k: stiffness of its spring; 0: it is new  [N/m]
@@ -71,7 +71,7 @@ BR_HD inline int exposed_faces(const FaceJoints& faces, const View<const JointSt
   return exposed;
 }
 
-/// What both passes of a couple add up: faces of a in b, then faces of b in a.
+/// Sums over both passes of a couple: faces of a in b, then faces of b in a.
 struct Pressing {
   CoupleForce force{};
   Vec3 on_a{};    ///< N  [N]
@@ -126,7 +126,7 @@ BR_HD inline void add_faces(const Vec3 (&x)[4], int exposed, const Target& targe
   }
 }
 
-/// What broken joints leave to the contact of their faces.
+/// Forces and work of broken joints, which the contact of their faces takes over.
 struct JointLegacy {
   View<const double> pressing;
   View<const Vec3> shear_at_break;
@@ -224,7 +224,7 @@ struct CoupleForces {
     Vec3 before = kept.drag - dot(kept.drag, n) * n;
     const double left = norm(before), had = norm(kept.drag);
     const double most = law.friction * size;
-    // As the area changes the spring keeps its energy T^2/(2 k).
+    // The spring keeps, as the area changes, its energy T^2/(2 k).
     const double stiffer = kept.spring > 0.0 ? sqrt(stiffness / kept.spring) : 1.0;
     if (left > 0.0) before = (stiffer * had / left) * before;
     kept.spring = stiffness;

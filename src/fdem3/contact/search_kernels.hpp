@@ -1,5 +1,5 @@
 #pragma once
-// What a search of couples asks of the mesh: which tetrahedra can touch, and which pairs of them.
+// Kernels of the search of couples: tetrahedra that can touch, and pairs of them.
 
 #include "core/energy.hpp"
 #include "domain/drift.hpp"
@@ -116,7 +116,7 @@ struct MayTouch {
   }
 };
 
-/// What the corners of a tetrahedron add to the common motion.
+/// Share of the corners of a tetrahedron in the common motion.
 struct MotionOf {
   View<const TetrahedronNodes> nodes;
   OwnedView owned;
@@ -128,7 +128,7 @@ struct MotionOf {
   }
 };
 
-/// What couples that leave the list have spent.
+/// Energy spent by couples that leave the list.
 struct SpentBy {
   View<const Index> couple, a;
   View<const CoupleState> state;

@@ -24,7 +24,7 @@ struct PrescribedMotion {
   }
 };
 
-/// What acts on a face. Pressure and traction act per present area; a force is dead: it stays as
+/// Load on a face. Pressure and traction act per present area; a force is dead: it stays as
 /// given however its faces deform.
 enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing };
 

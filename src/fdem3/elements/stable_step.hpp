@@ -42,7 +42,7 @@ struct StableStep {
 
   BR_HD double operator()(Index t) const { return parts(t).step; }
 
-  /// As if something were near everywhere.
+  /// Step of tetrahedron t if another body were near each of its faces.
   BR_HD Parts parts_pressed(Index t) const {
     Vec3 x[4];
     places(nodes[t], x);

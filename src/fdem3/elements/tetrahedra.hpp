@@ -1,5 +1,5 @@
 #pragma once
-// What a deformable tetrahedron carries.
+// State of deformable tetrahedra.
 
 #include "exec/buffer.hpp"
 #include "fdem3/laws/elastic_tetrahedron.hpp"

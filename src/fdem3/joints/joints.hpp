@@ -1,5 +1,5 @@
 #pragma once
-// What ties tetrahedra across their common faces: its arrays and geometry.
+// Joints of tetrahedra across their common faces: arrays and geometry.
 
 #include "exec/buffer.hpp"
 #include "fdem/joints/joints.hpp"

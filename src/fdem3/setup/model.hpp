@@ -10,7 +10,7 @@
 
 namespace breccia::fdem3 {
 
-/// What prepare makes of a case and fdem3/setup turns into a world. Tetrahedron t has global id t.
+/// Model of a case: prepare makes it, fdem3/setup turns it into a world. Element t has global id t.
 /// Tetrahedra that share three vertices are neighbours; set-up joins them where a joint law is
 /// given for their materials, and splits the mesh, so that each tetrahedron owns its four nodes.
 struct Model {
