@@ -214,6 +214,7 @@ std::vector<Vec2> read_outline(const std::string& path) {
                                      path, j + 1, k + 1));
   if (!(std::abs(area) > 1e-9 * longest * longest))
     throw InputError(fmt::format("{}: the outline encloses no area", path));
+  if (area < 0.0) std::ranges::reverse(corners);  // listed clockwise
   return corners;
 }
 

@@ -30,7 +30,8 @@ bool needs_gmsh(const fdem::BodyConfig& body);
 /// @throws InputError if the mesh has no part of a name
 std::vector<Index> triangles_of(const fdem::BodyConfig& body, const Mesh& mesh);
 
-/// A polygon of x,y in metres, closed by itself. A last point that repeats the first is dropped.
+/// A polygon of x,y in metres, closed by itself and counter-clockwise however it is listed. A last
+/// point that repeats the first is dropped.
 /// @throws InputError if it has fewer than three corners, no area, or crosses itself
 std::vector<Vec2> read_outline(const std::string& path);
 

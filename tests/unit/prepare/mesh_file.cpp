@@ -413,6 +413,7 @@ TEST(Meshing, MissingAndFailingGmshAreExplained) {
 TEST(Meshing, OutlinesAreReadAndChecked) {
   const Folder folder;
   folder.write("good.csv", "x,y\n0,0\n2,0\n2,1\n1,0.5\n0,1\n0,0\n");
+  folder.write("clockwise.csv", "0,0\n0,1\n1,0.5\n2,1\n2,0\n");
   folder.write("crossed.csv", "0,0\n1,1\n1,0\n0,1\n");
   folder.write("line.csv", "0,0\n1,1\n2,2\n");
   folder.write("two.csv", "0,0\n1,1\n");
@@ -423,6 +424,8 @@ TEST(Meshing, OutlinesAreReadAndChecked) {
   body.material = "rock";
   body.mesh_size = 0.1;
   body.file = "good.csv";
+  EXPECT_NEAR(fdem::area_of(fdem::built({body}, {}, 1, folder.path()), 0), 1.5, 1e-9);
+  body.file = "clockwise.csv";
   EXPECT_NEAR(fdem::area_of(fdem::built({body}, {}, 1, folder.path()), 0), 1.5, 1e-9);
   const auto refusal_of = [&](const std::string& file) {
     body.file = file;
