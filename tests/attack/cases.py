@@ -48,7 +48,7 @@ def typos(options):
         with open(CASES[case]) as file:
             text = file.read()
         passed = 0
-        while attack.runs < options.runs and time.time() - attack.begun < options.seconds / 8:
+        while attack.runs < options.runs and time.time() - attack.begun < options.seconds / 12:
             path = attack.path("case.toml")
             with open(path, "w") as file:
                 file.write(mistake(text, random_))
@@ -75,7 +75,9 @@ def absurd(options):
     settings = {"dem": ["material.c30.density", "material.c30.young", "material.c30.softening",
                         "material.c30.cohesion", "time.safety", "time.end"],
                 "fdem": ["material.rock.density", "material.rock.young", "material.rock.joint.tension",
-                         "material.rock.joint.energy_open", "time.safety", "time.end"]}
+                         "material.rock.joint.energy_open", "time.safety", "time.end"],
+                "fdem3": ["material.rock.density", "material.rock.young", "material.rock.joint.tension",
+                          "material.rock.joint.energy_open", "material.rock.damping", "time.end"]}
     numbers = ["0", "-1", "5e-324", "1e-300", "1e30", "1e300", "1.7976931348623157e308", "nan", "inf", "-0.0"]
     for case, keys in settings.items():
         for key in keys:

@@ -15,7 +15,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 BUILD = os.environ.get("BRECCIA_BUILD", os.path.join(HERE, "..", "..", "build", "release"))
 PROGRAM = os.environ.get("BRECCIA", os.path.join(BUILD, "breccia"))
 TOOLS = os.path.join(BUILD, "tests", "attack")
-CASES = {name: os.path.join(HERE, name + ".toml") for name in ("dem", "fdem")}
+CASES = {name: os.path.join(HERE, name + ".toml") for name in ("dem", "fdem", "fdem3")}
+DEVICE = []  # words that choose the device of `run` and `resume`
 HANG = 60  # seconds after which a small run hangs
 COLUMNS = "{:<34} {:>9} {:>9} {:>7}  {}"
 EXIT_CODES = {0, 2, 3, 4, 5, 7, 8, 9, 10}  # those that the program states
@@ -46,6 +47,14 @@ class Attack:
         note = f"{time.time() - self.begun:.0f} s {self.note}"
         print(COLUMNS.format(self.name, self.runs, self.findings, self.unit, note), flush=True)
         return 1 if self.findings else 0
+
+
+def tool(name):
+    """What the target `attack` builds; without it no attack would reach the program."""
+    path = os.path.join(TOOLS, name)
+    if not os.path.exists(path):
+        sys.exit(f"{path} is missing: cmake --build {os.path.normpath(BUILD)} --target attack")
+    return path
 
 
 def memory_folder():
@@ -79,7 +88,7 @@ def breccia(*words, **more):
 def run_words(case, folder, steps):
     return ["run", CASES.get(case, case), "-o", folder, "--threads", "1", "--no-progress",
             "--steps", str(steps), "--set", "output.frames=1", "--set", "output.width=64",
-            "--set", "output.height=64"]
+            "--set", "output.height=64", *DEVICE]
 
 
 def run(case, folder, steps=100, *more, **how):
@@ -87,7 +96,7 @@ def run(case, folder, steps=100, *more, **how):
 
 
 def resume(folder, *more, **how):
-    return breccia("resume", folder, "--threads", "1", "--no-progress", *more, **how)
+    return breccia("resume", folder, "--threads", "1", "--no-progress", *DEVICE, *more, **how)
 
 
 def state_hash(folder):

@@ -5,9 +5,11 @@
 //   GPU_FAULT_STAYS=1   and every one after it, too
 //   GPU_FAULT_LOST=K    from the K-th launch, copy or wait on each fails, as a lost device answers
 //   GPU_FAULT_FLIP=K    before the K-th launch of a graph a bit flips in an array of the device,
+//   GPU_FAULT_FLIP_KERNEL=K  or before the K-th launch of a kernel (steps that record no graphs),
 //   GPU_FAULT_SEED=S    drawn by S
-//   GPU_FAULT_COUNT=F   writes the numbers of allocations, of launches, copies and waits, of graphs
-//                       and of flipped bits to the file F at the end
+//   GPU_FAULT_COUNT=F   writes the numbers of allocations, of launches, copies and waits, of
+//   graphs,
+//                       of kernels and of flipped bits to the file F at the end
 
 #include <dlfcn.h>
 #include <stdio.h>
@@ -33,7 +35,7 @@ using Symbol = void* (*)(void*, const char*);
 
 constexpr Result out_of_memory = 2, launch_failed = 719;
 
-std::atomic<long> allocations{0}, calls{0}, graphs{0}, flips{0};
+std::atomic<long> allocations{0}, calls{0}, graphs{0}, kernels{0}, flips{0};
 std::map<Word, Word> arrays;  ///< of the device: first byte and size
 std::mutex of_arrays;
 
@@ -79,11 +81,12 @@ void flip() {
   }
 }
 
-enum Kind { device_memory, pinned_memory, freed, graph, other };
+enum Kind { device_memory, pinned_memory, freed, graph, kernel, other };
 
 bool fails(Kind kind, Result& result) {
   static const long alloc = number("GPU_FAULT_ALLOC"), stays = number("GPU_FAULT_STAYS"),
-                    lost = number("GPU_FAULT_LOST"), flipped = number("GPU_FAULT_FLIP");
+                    lost = number("GPU_FAULT_LOST"), flipped = number("GPU_FAULT_FLIP"),
+                    at_kernel = number("GPU_FAULT_FLIP_KERNEL");
   if (kind == device_memory || kind == pinned_memory) {
     const long k = ++allocations;
     result = out_of_memory;
@@ -91,6 +94,7 @@ bool fails(Kind kind, Result& result) {
   }
   if (kind == freed) return false;
   if (kind == graph && ++graphs == flipped) flip();
+  if (kind == kernel && ++kernels == at_kernel) flip();
   result = launch_failed;
   return ++calls >= lost && lost > 0;
 }
@@ -130,8 +134,8 @@ void* wrapped(const char* name, void* real) {
                                                     {"cuMemFreeAsync", freed},
                                                     {"cuMemFree", freed},
                                                     {"cuGraphLaunch", graph},
-                                                    {"cuLaunchKernelEx", other},
-                                                    {"cuLaunchKernel", other},
+                                                    {"cuLaunchKernelEx", kernel},
+                                                    {"cuLaunchKernel", kernel},
                                                     {"cuMemcpyAsync", other},
                                                     {"cuMemsetD8Async", other},
                                                     {"cuStreamSynchronize", other},
@@ -167,8 +171,8 @@ struct AtEnd {
     const char* const path = ::getenv("GPU_FAULT_COUNT");
     if (path == nullptr) return;
     if (FILE* const file = ::fopen(path, "w")) {
-      ::fprintf(file, "%ld %ld %ld %ld\n", allocations.load(), calls.load(), graphs.load(),
-                flips.load());
+      ::fprintf(file, "%ld %ld %ld %ld %ld\n", allocations.load(), calls.load(), graphs.load(),
+                kernels.load(), flips.load());
       ::fclose(file);
     }
   }

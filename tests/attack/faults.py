@@ -7,12 +7,12 @@ import shutil
 import sys
 import time
 
-from common import (Attack, EXIT_CODES, TOOLS, arguments, breccia, checkpoints, resume, run,
-                    state_hash)
+from common import (Attack, CASES, EXIT_CODES, arguments, breccia, checkpoints, resume, run,
+                    state_hash, tool)
 
 STEPS = 12
 INTERVAL = ("--set", "checkpoint.steps=4")
-LIBRARY = os.path.join(TOOLS, "libattack_faults.so")
+LIBRARY = tool("libattack_faults.so")
 ERRNOS = {"EIO": 5, "ENOSPC": 28, "EACCES": 13, "EMFILE": 24, "EINTR": 4}
 
 
@@ -45,7 +45,7 @@ def main():
     begun = time.time()
     part = 0
     result = 0
-    for case in ("dem", "fdem"):
+    for case in CASES:
         for kind in ("CALL", "ALLOC"):
             part += 1
             attack = Attack(f"{'file call' if kind == 'CALL' else 'allocation'} k fails, {case}", "indices")
@@ -60,7 +60,7 @@ def main():
             names = list(ERRNOS)
             for k in range(1 + options.seed % options.every + share * options.every, total + 1,
                            options.every * shares):
-                if attack.runs >= options.runs or time.time() - begun > options.seconds * part / 4:
+                if attack.runs >= options.runs or time.time() - begun > options.seconds * part / 6:
                     break
                 name = names[k % len(names)] if options.every > 1 else names[k % 2]
                 extra = {f"FAULT_{kind}": str(k), "FAULT_ERRNO": str(ERRNOS[name])}

@@ -5,13 +5,13 @@ import os
 import subprocess
 import sys
 
-from common import Attack, TOOLS, arguments, breccia, checkpoints, run
+from common import Attack, CASES, arguments, breccia, checkpoints, run, tool
 
 
 def main():
     options = arguments(__doc__, 2000).parse_args()
     result = 0
-    for case in ("dem", "fdem"):
+    for case in CASES:
         for kind in ("damaged", "forged", "forged model"):
             attack = Attack(f"{kind}, {case}", "files")
             run(case, attack.path("r"))
@@ -23,7 +23,7 @@ def main():
                      "forged model": ["forged", model, model]}[kind]
             # A forged file costs a process and twenty steps, a damaged one the reading alone.
             runs = options.runs if kind == "damaged" else max(1, options.runs // 10)
-            done = subprocess.run([os.path.join(TOOLS, "attack_files"), *words, str(runs),
+            done = subprocess.run([tool("attack_files"), *words, str(runs),
                                    str(options.seed)], capture_output=True, text=True,
                                   env=dict(os.environ, TMPDIR=attack.folder))
             sys.stderr.write(done.stderr)

@@ -10,7 +10,8 @@ import subprocess
 import sys
 import time
 
-from common import Attack, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash, status
+import common
+from common import Attack, CASES, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash, status
 
 STEPS = 400
 INTERVAL = 20  # steps between checkpoints, as the cases say
@@ -135,15 +136,19 @@ def disturb(attack, case, random_, ranks, stop, longest):
 
 
 def main():
-    options = arguments(__doc__, 20).parse_args()
+    parser = arguments(__doc__, 20)
+    parser.add_argument("--device", help="as --device of the program; then without ranks")
+    options = parser.parse_args()
+    if options.device:
+        common.DEVICE += ["--device", options.device]
     result = 0
     random_ = random.Random(options.seed)
     kinds = [("kill -9", 1, False, options.runs), ("kill -9 of one of 3 ranks", 3, False, options.runs // 4),
              ("SIGSTOP of one of 3 ranks", 3, True, options.runs // 10)]
     for name, ranks, stop, runs in kinds:
-        if ranks > 1 and shutil.which("mpirun") is None:
+        if ranks > 1 and (options.device or shutil.which("mpirun") is None):
             continue
-        for case in ("dem", "fdem"):
+        for case in CASES:
             attack = Attack(f"{name}, {case}", "trials")
             attack.live = attack.early = attack.resumed = attack.launcher = 0
             begun = time.time()
@@ -155,7 +160,7 @@ def main():
                 attack.expect(started(case, attack.path("ranks"), ranks).wait() == 0, "undisturbed ranks fail")
                 attack.expect(state_hash(attack.path("ranks")) == attack.hash, "undisturbed ranks: another hash")
             longest = max(0.05, 1.2 * (time.time() - begun))
-            while attack.runs < max(1, runs // 2) and time.time() - attack.begun < options.seconds / 6:
+            while attack.runs < max(1, runs // len(CASES)) and time.time() - attack.begun < options.seconds / 9:
                 disturb(attack, case, random_, ranks, stop, longest)
             attack.note = f"({attack.live} hit a live run, {attack.early} before a checkpoint, {attack.resumed} compared" + \
                           (f"; {attack.launcher} times mpirun hung when all ranks had ended)" if attack.launcher else ")")

@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 
-from common import Attack, HERE, TOOLS, arguments, checkpoints, run
+from common import Attack, HERE, arguments, checkpoints, run, tool
 
 PARSERS = ("case", "gmsh", "abaqus", "csv", "vtu", "units", "checkpoint")
 
@@ -21,7 +21,7 @@ def main():
         if parser == "checkpoint":
             run("fdem", attack.path("r"))
             corpus = checkpoints(attack.path("r"))[-1:]
-        done = subprocess.run([os.path.join(TOOLS, "attack_fuzz"), parser, str(seconds),
+        done = subprocess.run([tool("attack_fuzz"), parser, str(seconds),
                                str(options.seed), *corpus], capture_output=True, text=True,
                               cwd=attack.folder, env=dict(os.environ, TMPDIR=attack.folder))
         if attack.expect(done.returncode == 0, f"ended with {done.returncode}\n{done.stderr}"):

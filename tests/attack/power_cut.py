@@ -9,10 +9,10 @@ import shutil
 import sys
 import time
 
-from common import Attack, TOOLS, arguments, breccia, checkpoints, resume, run, state_hash
+from common import Attack, CASES, arguments, breccia, checkpoints, resume, run, state_hash, tool
 
 STEPS = 100
-LIBRARY = os.path.join(TOOLS, "libattack_faults.so")
+LIBRARY = tool("libattack_faults.so")
 
 
 def events_of(path):
@@ -100,7 +100,7 @@ class Disk:
 def main():
     options = arguments(__doc__, 100).parse_args()
     result = 0
-    for case in ("dem", "fdem"):
+    for case in CASES:
         attack = Attack(f"power cut, {case}", "cuts")
         folder, log = attack.path("run"), attack.path("log")
         code, text = run(case, folder, STEPS,
@@ -111,7 +111,7 @@ def main():
         random_ = random.Random(options.seed)
         resumed = 0
         for _ in range(options.runs):
-            if time.time() - attack.begun > options.seconds / 2:
+            if time.time() - attack.begun > options.seconds / 3:
                 break
             disk = Disk()
             cut = random_.randint(1, len(events))
