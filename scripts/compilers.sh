@@ -1,31 +1,54 @@
 #!/bin/bash
 # Builds the program with each compiler and level of optimisation (a folder build/compilers/NAME
-# each) and compares the hashes of small cases. Arguments choose: scripts/compilers.sh clang++:-O1
-# JOBS=N compiles N files at once; MPI=mpich takes that MPI (apt install libmpich-dev), else none.
+# each) and compares the hashes of small cases of all methods with those of build/release.
+# Arguments choose: scripts/compilers.sh clang++:-O1
+# JOBS=N compiles N files at once. MPI=mpich takes that MPI (apt install libmpich-dev), else none.
+# PARTS=methods compiles the libraries that hold numbers and links them with the rest of build/release: half the time.
 cd "$(dirname "$0")/.." || exit 1
+. scripts/relink.sh
 mkdir -p build/compilers
-cases=(rc_slab brazilian_disc three_point_bending)
-want=(8c4e0e5fd2d4ea49 9bc90f8c703c3df1 6110514d3dff4112)
+cases=(cases/{rc_slab,brazilian_disc,three_point_bending,colliding_cubes_3d,spall_bar_3d}/small.toml tests/attack/{dem,fdem,fdem3}.toml)
+methods=(exec core domain dem fdem fdem3 prepare)
 kinds=("$@")
 [ ${#kinds[@]} -gt 0 ] || kinds=(g++:-O1 g++:-O2 g++:-O3 clang++:-O1 clang++:-O2 clang++:-O3)
+
+hash_of() {  # PROGRAM CASE FOLDER: of a run to its end, or of 400 steps of the cases of attacks
+  local steps=()
+  [[ $2 == tests/* ]] && steps=(--steps 400)
+  "${launch[@]}" "$1" run "$2" -o "$3" --force -q --threads 1 --set output.frames=0 --set output.pictures=false "${steps[@]}" > "$3.log" 2>&1
+  sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$3/summary.json"
+}
+
+build() {  # COMPILER LEVEL FOLDER: leaves the program as FOLDER/breccia
+  local mpi=(-DBR_MPI=OFF) targets=(breccia)
+  [ -n "$MPI" ] && mpi=(-DBR_MPI=ON -DMPI_C_COMPILER="mpicc.$MPI" -DMPIEXEC_EXECUTABLE="$(command -v "mpiexec.$MPI")")
+  if [ "$PARTS" = methods ]; then  # the others are of build/release: one MPI
+    mpi=()
+    targets=("${methods[@]/#/br_}")
+  fi
+  cmake -G Ninja -B "$3" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$1" -DCMAKE_CXX_FLAGS_RELEASE="$2 -DNDEBUG" \
+    -DBR_TESTS=OFF -DBR_BENCH=OFF -DBR_PYTHON=OFF "${mpi[@]}" && cmake --build "$3" --target "${targets[@]}" -j "${JOBS:-2}" || return 1
+  [ "$PARTS" = methods ] || return 0
+  local words=()
+  for name in "${methods[@]}"; do words+=("libbr_$name.a=$PWD/$3/libbr_$name.a"); done
+  [[ $1 == clang* ]] && words+=(" -o = $("$1" -print-file-name=libomp.so) -o ")
+  relink breccia "$3/breccia" "${words[@]}"
+}
+
+launch=()
+wanted=()
+for case in "${cases[@]}"; do wanted+=("$(hash_of build/release/breccia "$case" build/compilers/wanted)"); done
+[ -n "$MPI" ] && launch=("mpiexec.$MPI" -n 3)
 wrong=0
 for kind in "${kinds[@]}"; do
   compiler=${kind%%:*} level=${kind#*:}
   folder=build/compilers/$compiler$level${MPI:+-$MPI}
-  mpi=(-DBR_MPI=OFF)
-  [ -n "$MPI" ] && mpi=(-DBR_MPI=ON -DMPI_C_COMPILER="mpicc.$MPI" -DMPIEXEC_EXECUTABLE="$(command -v "mpiexec.$MPI")")
-  { cmake -G Ninja -B "$folder" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler" \
-      -DCMAKE_CXX_FLAGS_RELEASE="$level -DNDEBUG" -DBR_TESTS=OFF -DBR_PYTHON=OFF "${mpi[@]}" &&
-    cmake --build "$folder" --target breccia -j "${JOBS:-2}"; } > "$folder.log" 2>&1 ||
-    { echo "$kind: does not build, see $folder.log"; wrong=1; continue; }
+  build "$compiler" "$level" "$folder" > "$folder.log" 2>&1 || { echo "$kind: does not build, see $folder.log"; wrong=1; continue; }
   for k in "${!cases[@]}"; do
-    launch=()
-    [ -n "$MPI" ] && launch=("mpiexec.$MPI" -n 3)
-    "${launch[@]}" "$folder/breccia" run "cases/${cases[k]}/small.toml" -o "$folder/${cases[k]}" --force -q \
-      --threads 1 --set output.frames=0 > "$folder/${cases[k]}.log" 2>&1
-    hash=$(sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$folder/${cases[k]}/summary.json")
-    if [ "$hash" = "${want[k]}" ]; then echo "$kind ${MPI} ${cases[k]}: $hash"
-    else echo "$kind ${MPI} ${cases[k]}: $hash instead of ${want[k]}"; wrong=1; fi
+    hash=$(hash_of "$folder/breccia" "${cases[k]}" "$folder/run")
+    same=same
+    [ -n "$hash" ] && [ "$hash" = "${wanted[k]}" ] || { same="instead of ${wanted[k]}"; wrong=1; }
+    echo "$kind $MPI ${cases[k]}: $hash $same"
   done
 done
 exit $wrong

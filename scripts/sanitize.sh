@@ -3,30 +3,31 @@
 #   scripts/sanitize.sh address [PART/PARTS]   AddressSanitizer, leaks, and undefined behaviour
 #   scripts/sanitize.sh thread  [PART/PARTS]   ThreadSanitizer; the program and its tests on threads
 # PART/PARTS takes every PARTS-th test; without it all. JOBS=N builds and tests N at once (2 unless
-# told). Ends with 1 if something was found; what was found stands in build/sanitize/KIND/findings.
+# told), CXX=clang++ takes that compiler. Ends with 1 if something was found; what was found stands
+# in build/sanitize/KIND/findings.
 cd "$(dirname "$0")/.." || exit 1
 kind=${1:-address} part=${2:-1/1}
 folder=build/sanitize/$kind
 case $kind in
 address) sanitizers=address,undefined more=-fno-sanitize-recover=undefined ;;
-thread) sanitizers=thread more= ;;
+thread) sanitizers=thread more= ;; # g++: loops on threads of scripts/tsan_threads.cpp
 *) echo "address or thread" >&2; exit 2 ;;
 esac
 mkdir -p "$folder"
 # MPI and Python are foreign programs to the sanitizers: rank tests run without them.
-cmake -G Ninja -B "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -gline-tables-only" \
-  -DCMAKE_CXX_COMPILER="${CXX:-clang++}" -DCMAKE_CXX_FLAGS="$more" -DBR_CHECKED=ON -DBR_SANITIZE=$sanitizers \
+cmake -G Ninja -B "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1" \
+  -DCMAKE_CXX_COMPILER="${CXX:-g++}" -DCMAKE_CXX_FLAGS="$more" -DBR_CHECKED=ON -DBR_SANITIZE=$sanitizers \
   -DBR_MPI=OFF -DBR_PYTHON=OFF > "$folder.log" 2>&1 &&
   cmake --build "$folder" -j "${JOBS:-2}" >> "$folder.log" 2>&1 || { tail "$folder.log"; exit 1; }
 findings=$PWD/$folder/findings
 rm -rf "$findings"; mkdir -p "$findings"
-export ASAN_OPTIONS="log_path=$findings/asan:detect_stack_use_after_return=1:allocator_may_return_null=1"
+export ASAN_OPTIONS="log_path=$findings/asan:detect_stack_use_after_return=1:allocator_may_return_null=1:verify_asan_link_order=0"
 export UBSAN_OPTIONS="log_path=$findings/ubsan:print_stacktrace=1"
-export TSAN_OPTIONS="log_path=$findings/tsan:suppressions=$PWD/scripts/tsan.supp:ignore_noninstrumented_modules=1"
+export TSAN_OPTIONS="log_path=$findings/tsan:die_after_fork=0"
 export OMP_NUM_THREADS=2
-# The program first: run, resume, prepared model, picture, both methods.
+# The program first: run, resume, prepared model, picture, all methods.
 breccia=$folder/breccia
-for name in dem fdem; do
+for name in dem fdem fdem3; do
   out=$folder/out_$name
   for words in "run tests/attack/$name.toml -o $out --force -q --threads 2 --steps 60" \
     "resume $out -q --threads 2 --steps 120" "prepare tests/attack/$name.toml -o $out.br" \

@@ -5,8 +5,10 @@
 
 #include "physics/dem/scene.hpp"
 #include "physics/fdem/scene.hpp"
+#include "physics/fdem3/scene.hpp"
 #include "run/method/audited_method.hpp"
 #include "run/method/dem_method.hpp"
+#include "run/method/fdem3_method.hpp"
 #include "run/method/fdem_method.hpp"
 
 namespace breccia {
@@ -46,8 +48,9 @@ fdem::testing::Scene pulled_plate(const char* joints) {
 }
 
 /// @param steps  taken; some of them search, break and wake
+/// @param every  mean distance of repeated steps
 template <class Scene>
-void expect_sound(const Scene& s, std::int64_t steps) {
+void expect_sound(const Scene& s, std::int64_t steps, std::int64_t every = 3) {
   const auto run = [&](Method& method) {
     while (method.steps() < steps) method.advance({1e300, steps});
   };
@@ -56,7 +59,7 @@ void expect_sound(const Scene& s, std::int64_t steps) {
   Exec shadow;
   shadow.space = Space::shadow;
   AuditConfig audit;
-  audit.every = 3;
+  audit.every = every;
   const auto method = audited(make_method(s.config, s.model, shadow, nullptr), audit, 1, nullptr);
   run(*method);
   EXPECT_EQ(method->state_hash(), host->state_hash());
@@ -73,6 +76,14 @@ void expect_sound(const Scene& s, std::int64_t steps) {
 
 TEST(AuditOnDevice, passes_a_struck_bar) {
   expect_sound(struck_bar(), 400);
+}
+/// And no step may find another state than the one before it has left.
+TEST(AuditOnDevice, passes_where_each_step_is_repeated) {
+  expect_sound(struck_bar(), 400, 1);
+  expect_sound(pulled_plate("intrinsic"), 400, 1);
+}
+TEST(AuditOnDevice, passes_cubes_that_meet_and_break) {
+  expect_sound(fdem3::testing::meeting_cubes(), 650, 3);
 }
 TEST(AuditOnDevice, passes_a_plate_whose_joints_break) {
   expect_sound(pulled_plate("intrinsic"), 400);

@@ -46,10 +46,16 @@ class AuditedMethod final : public Method {
   std::string step_rule() override { return method_->step_rule(); }
   std::vector<StageEnd> stages() const override { return method_->stages(); }
   StageProgress stage() const override { return method_->stage(); }
-  void set_stage(const StageProgress& stage) override { method_->set_stage(stage); }
+  void set_stage(const StageProgress& stage) override {
+    left_.reset();
+    method_->set_stage(stage);
+  }
   EnergyBalance energy() override { return method_->energy(); }
   std::vector<double> probes() override { return method_->probes(); }
-  void note_breaks() override { method_->note_breaks(); }
+  void note_breaks() override {
+    left_.reset();
+    method_->note_breaks();
+  }
   std::uint64_t state_hash() override { return method_->state_hash(); }
   void verify() override { method_->verify(); }
   std::string fastest() override { return method_->fastest(); }
@@ -62,14 +68,19 @@ class AuditedMethod final : public Method {
     return facts;
   }
   std::vector<StateArray> arrays(const std::string& name, Wanted wanted) override {
+    left_.reset();  // whoever has them may write
     return method_->arrays(name, wanted);
   }
   /// A step with them is not repeated: they are of its caller, and no part of the state.
   void add_forces(const OwnForces& forces) override {
+    left_.reset();
     method_->add_forces(forces);
     pushed_ = true;
   }
-  double book_forces(const OwnForces& forces) override { return method_->book_forces(forces); }
+  double book_forces(const OwnForces& forces) override {
+    left_.reset();
+    return method_->book_forces(forces);
+  }
   Index force_numbers() const override { return method_->force_numbers(); }
   Index force_items() const override { return method_->force_items(); }
   std::vector<Table> tables() override { return method_->tables(); }
@@ -78,6 +89,7 @@ class AuditedMethod final : public Method {
   void load(const CheckpointReader* reader) override {
     method_->load(reader);
     next_.reset();
+    left_.reset();
   }
 
  private:
@@ -108,10 +120,24 @@ class AuditedMethod final : public Method {
             steps() + 1, name));
   }
 
+  /// What a repeated step has left is untouched until the next one begins. Rank 0 looks.
+  void require_untouched(const CheckpointWriter& now) const {
+    if (!left_ || left_at_ != steps()) return;
+    if (const std::string difference = left_->first_difference(now); !difference.empty())
+      throw DeviceError(fmt::format(
+          "after step {}: the state has changed between two steps ({}): memory of this machine "
+          "fails, or the program does; resume from the newest checkpoint on another machine",
+          steps(), difference));
+  }
+
   Advanced repeated(const StopAt& stop) {
     CheckpointWriter before, first, second;
     method_->save(before);
-    on_first(ranks_, [&] { require_constants(before); });
+    on_first(ranks_, [&] {
+      require_constants(before);
+      require_untouched(before);
+    });
+    left_.reset();
     const std::int64_t from = steps();
     const Advanced taken = method_->advance({stop.time, from + 1});
     const std::int64_t to = steps();
@@ -135,6 +161,8 @@ class AuditedMethod final : public Method {
           to, first_hash, second_hash, difference));
     });
     repeated_ += to - from;
+    left_ = std::move(second);
+    left_at_ = to;
     return taken;
   }
 
@@ -144,6 +172,8 @@ class AuditedMethod final : public Method {
   Communicator* ranks_;
   std::optional<std::int64_t> next_;         ///< steps that are done when one is repeated
   std::map<std::string, Digest> constants_;  ///< sections that never change; on rank 0
+  std::optional<CheckpointWriter> left_;     ///< the state after a repeated step; on rank 0
+  std::int64_t left_at_ = 0;                 ///< that step
   std::int64_t repeated_ = 0;
   bool pushed_ = false;  ///< forces of the caller act in the step to come
 };

@@ -122,6 +122,10 @@ class FakeMethod : public Method {
     last_step_ = reader->value<double>("fake.last_step");
     steps_ = reader->value<std::int64_t>("fake.steps");
   }
+  /// A bit of the memory flips while nobody works with it.
+  void flip_at_rest() {
+    velocity_[1] = std::bit_cast<double>(std::bit_cast<std::uint64_t>(velocity_[1]) ^ 1);
+  }
 
  private:
   using State = std::array<double, 4>;
