@@ -3,7 +3,7 @@
 
     scripts/rock_plots.py KIND RESULT_DIR [RESULT_DIR...] -o plot.png
 
-KIND: tension, disc (force over travel), kalthoff (crack path), branching (crack front), spall (velocity of the free end),
+KIND: tension, crack (fracture energy over growth), disc (force over travel), kalthoff (crack path), branching (crack front), spall (velocity of the free end),
 triaxial (strengths over pressure, from several runs), dominoes (speed along the row, several runs).
 """
 
@@ -27,6 +27,14 @@ def tension(axes, results):
         axes.plot([1e6 * row["time"] for row in rows], [row["force"] / 150e3 for row in rows], label=f"{r.value('model.triangles'):.0f} triangles")
     axes.axhline(1.0, color="0.5", lw=1, ls="--", label="f_t")
     axes.set(xlabel="time, us", ylabel="mean stress / f_t")
+
+
+def crack(axes, results):
+    for r in results:
+        front, _ = rock_tables.front_energy(r)
+        axes.plot([1e3 * x for x, _ in front], [1e3 * f / rock_tables.CRACK_ENERGY for _, f in front], label=f"{r.value('model.triangles'):.0f} triangles")
+    axes.plot([5, 35], [15, 45], color="0.5", lw=1, ls="--", label="slope 1: G_I")
+    axes.set(xlabel="growth of the crack, mm", ylabel="fracture energy / G_I, mm")
 
 
 def disc(axes, results):
@@ -98,7 +106,7 @@ def dominoes(axes, results):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    kinds = {f.__name__: f for f in (tension, disc, kalthoff, branching, spall, triaxial, dominoes)}
+    kinds = {f.__name__: f for f in (tension, crack, disc, kalthoff, branching, spall, triaxial, dominoes)}
     parser.add_argument("kind", choices=kinds)
     parser.add_argument("results", nargs="+", type=pathlib.Path)
     parser.add_argument("-o", "--out", required=True)

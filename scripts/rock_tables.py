@@ -102,6 +102,33 @@ def tension(r, setting):
     }
 
 
+CRACK_ENERGY, CRACK_START = 6.0, -0.015  # of cases/crack_growth: G_I, and where its notch ends
+
+
+def front_energy(r):
+    """Growth of the crack with the fracture energy at the moment, each time that its tip moves on; and its growth at last."""
+    history, front, reached = r.rows("history.csv"), [], CRACK_START
+    for c in r.cracks():
+        if (x := max(c["x0"], c["x1"])) > reached:
+            reached = x
+            front.append((x - CRACK_START, next(row["fracture"] for row in history if row["time"] >= c["time"])))
+    return front, reached - CRACK_START
+
+
+def crack(r, setting):
+    """The slope of fracture energy over growth, least squares from 5 to 35 mm ahead of the notch, is the energy of the crack with the
+    rock that softens beside it; the zone that softens ahead moves along and does not count."""
+    front, growth = front_energy(r)
+    grown = [(x, f) for x, f in front if 5e-3 < x < 35e-3]
+    return {
+        "fracture energy of growth / (G_I A)": statistics.linear_regression(*zip(*grown)).slope / CRACK_ENERGY,
+        "length of the path / growth": sum(math.dist(*ends(c)) for c in r.cracks()) / growth,
+        "grown, mm": 1e3 * growth,
+        "largest force, kN/m": 1e-3 * r.strongest("force"),
+        "ledger error": r.value("energy.error_relative"),
+    }
+
+
 def disc(r, setting):
     strength, diameter, half = 5e6, 0.04, math.radians(10.0)
     load = r.strongest("force_top")
@@ -241,6 +268,12 @@ def tension_runs():
                 "body.square.pattern": "crossed", "body.square.jitter": 0.0})
 
 
+def crack_runs():
+    for criterion, edges in (("rock", (3e-3, 2e-3, 1e-3)), ("edge", (3e-3, 2e-3))):
+        for setting, sets in over_meshes("plate", edges, criterion=criterion):
+            yield setting, {**sets, "joints.criterion": criterion}
+
+
 def disc_runs():
     for energy, edges in ((4.0, (2e-3, 1.4e-3, 1e-3)), (1.0, (1e-3,)), (16.0, (1.4e-3,))):
         for setting, sets in over_meshes("disc", edges):
@@ -266,6 +299,7 @@ def dominoes_runs():
 
 CAMPAIGNS = {  # name: case, runs, quantities
     "tension": ("tension_free_mesh", tension_runs, tension),
+    "crack": ("crack_growth", crack_runs, crack),
     "disc": ("homogeneous_disc", disc_runs, disc),
     "kalthoff": ("kalthoff", lambda: over_meshes("plate", (2e-3, 1.4e-3, 1e-3)), kalthoff),
     "branching": ("branching", lambda: over_meshes("plate", (1.25e-3, 1e-3, 0.7e-3)), branching),
