@@ -20,16 +20,16 @@ STEPS = 60
 LIBRARY = tool("libattack_device_faults.so")
 
 
-def disturbed(attack, case, name, fault, *more):
+def disturbed(attack, case, name, fault, *more, steps=STEPS):
     folder = attack.path(name)
-    code, text = run(case, folder, STEPS, "--set", "checkpoint.steps=20", *more, env={"LD_PRELOAD": LIBRARY, **fault})
+    code, text = run(case, folder, steps, "--set", "checkpoint.steps=20", *more, env={"LD_PRELOAD": LIBRARY, **fault})
     return folder, code, text
 
 
-def counts(attack, case, *more):
+def counts(attack, case, *more, steps=STEPS):
     """Allocations, calls and graphs of an undisturbed run, and its hash."""
     count = attack.path("count")
-    folder, code, text = disturbed(attack, case, "good", {"GPU_FAULT_COUNT": count}, "--force", *more)
+    folder, code, text = disturbed(attack, case, "good", {"GPU_FAULT_COUNT": count}, "--force", *more, steps=steps)
     if code != 0:
         sys.exit(f"an undisturbed run of {case} on the device ends with {code}: {text[-600:]}")
     if not os.path.exists(count):
@@ -100,7 +100,7 @@ def flips(options, case, drawn, audit):
     words = ("--set", f"audit.every={audit}")
     (_, _, graphs, kernels, _), good = counts(attack, case, *words)
     attack.expect(good == counts(attack, case)[1], "an audited run has another hash")
-    before = counts(attack, case, "--steps", "1", *words)[0][3]  # kernels of set-up and of output: no more than these
+    before = counts(attack, case, *words, steps=1)[0][3]  # kernels of set-up and of output: no more than these
     if graphs > 0:
         name, first, last = "GPU_FAULT_FLIP", 1, graphs
     else:
