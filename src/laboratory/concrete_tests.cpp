@@ -262,9 +262,12 @@ Sample sample_of(const dem::Config& config, const std::string& material) {
   sample.material = *found;
   sample.contact = config.contact;
   for (const dem::BodyConfig& body : config.bodies)
-    if (body.material == material && body.pack.count > 0) {
-      sample.size_ratio = body.pack.size_ratio;
-      sample.compactness = body.pack.compactness;
+    if (body.material == material && (body.pack.count > 0 || !body.pack.sieves.empty())) {
+      const dem::PackConfig& pack = body.pack;
+      sample.size_ratio = pack.sieves.empty()
+                              ? pack.size_ratio
+                              : std::min(pack.sieves.back() / pack.sieves.front(), 10.0);
+      sample.compactness = pack.porosity > 0.0 ? 1.0 - pack.porosity : pack.compactness;
       break;
     }
   if (!config.bodies.empty() && config.links.count == 0 && config.links.per_element == 0.0)

@@ -8,6 +8,7 @@
 #include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/ldpm/body.hpp"
+#include "prepare/packing/body_packing.hpp"
 #include "prepare/packing/linking.hpp"
 #include "prepare/packing/ordering.hpp"
 #include "prepare/packing/packing.hpp"
@@ -26,7 +27,6 @@ using dem::MaterialConfig;
 using dem::Model;
 using prepare::Bar;
 using prepare::BodyLinks;
-using prepare::Container;
 using prepare::container_of;
 
 double ball(double radius) {
@@ -118,18 +118,11 @@ class Assembly {
     return bars;
   }
   void add_packing() {
-    const Container container = container_of(*body_);
     const Bars bars = bars_within();
-    const double volume = container.volume() - bars.volume;
-    const double compactness = body_->pack.compactness;
-    const prepare::Packing packing = prepare::pack(
-        {.container = container,
-         .obstacles = bars.axes,
-         .count = body_->pack.count,
-         .size_ratio = body_->pack.size_ratio,
-         .solid_volume = compactness * volume,
-         .random = {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)}});
-    const double density = material().density / compactness;
+    const prepare::BodyPacking packing = prepare::pack_body(
+        *body_, bars.axes, bars.volume,
+        {static_cast<std::uint64_t>(config_.seed), static_cast<std::uint32_t>(group_)});
+    const double density = material().density / packing.compactness;
     for (std::size_t i = 0; i < packing.radius.size(); ++i)
       add(packing.position[i], packing.radius[i], density * ball(packing.radius[i]));
   }
@@ -215,6 +208,7 @@ dem::Model build_model(const dem::Config& config, const std::string& case_folder
   prepare::reorder(model, prepare::spatial_order(model.position, 2.0 * mean_radius(model)));
   prepare::link_elements(model, assembly.links(), config.links);
   prepare::link_facets(model);
+  for (MaterialConfig& material : whole.materials) material.bedding = {};  // E is that without
   prepare::set_stiffness(model, whole);
   prepare::carve(model, config, case_folder);
   prepare::add_wall_meshes(model, config, case_folder);

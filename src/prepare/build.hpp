@@ -11,12 +11,12 @@ namespace breccia {
 /// The model of a case. A function of the case alone: same seed, same bits.
 ///
 ///   elements   each body is a group, in the order of the case. Packed bodies have exactly
-///              `pack.count` elements that fill `pack.compactness` of the body's volume; their
-///              density is the material's density over that share, so that the body has the mass of
-///              its bulk. Volume taken by bars does not count as the body's. Bars move with the
-///              body they reinforce. A file's spheres have the mass of the bulk `volume`, or of
-///              the box `size`; grains have their own when neither is given.
-///              Bodies that are turned, cut or from an STL file are built upright and whole first
+///              `pack.count` elements (about, if cut) that fill `pack.compactness` of the body's
+///              volume; their density is the material's density over that share, so that the body
+///              has the mass of its bulk. Volume taken by bars does not count as the body's. Bars
+///              move with the body they reinforce. A file's spheres have the mass of the bulk
+///              `volume`, or of the box `size`; grains have their own when neither is given. Bodies
+///              that are turned, cut or from an STL file are built upright and whole first
 ///              (prepare/shapes/carve.hpp).
 ///   order      element i is global id i; ids follow space, so that linked elements are close in
 ///              memory.

@@ -50,6 +50,17 @@ double lesser_radius(const Model& m, const Model::Link& link) {
 
 }  // namespace
 
+BeddingShare bedding_share(const Model& m, const Model::Link& link,
+                           const MaterialConfig& material) {
+  const BeddingConfig& bedding = material.bedding;
+  if (bedding.is_none()) return {};
+  const Vec3 apart =
+      m.position[static_cast<std::size_t>(link.b)] - m.position[static_cast<std::size_t>(link.a)];
+  const double along = dot(apart, bedding.normal);
+  const double across = along * along / (dot(apart, apart) * dot(bedding.normal, bedding.normal));
+  return {1.0 - (1.0 - bedding.strength) * across, 1.0 - (1.0 - bedding.stiffness) * across};
+}
+
 double link_section(const Model& m, const Model::Link& link) {
   const double least = lesser_radius(m, link);
   return pi * least * least * link.share;
@@ -60,7 +71,8 @@ double link_stiffness(const Model& m, const Model::Link& link, const MaterialCon
       m.position[static_cast<std::size_t>(link.b)] - m.position[static_cast<std::size_t>(link.a)];
   const double modulus = local_elasticity(material).modulus * m.bulk_of(link.a).factor;
   const double least = lesser_radius(m, link);
-  return modulus * pi * least * least * link.share / norm(apart);
+  const double stiffness = modulus * pi * least * least * link.share / norm(apart);
+  return bedding_share(m, link, material).stiffness * stiffness;
 }
 
 RateCurve rate_curve(const MaterialConfig& m) {

@@ -29,7 +29,15 @@ std::optional<LinkKind> kind_within(const std::string& law);
 /// Words of such laws, for a message: "concrete, ...  or ".
 std::string laws_within();
 
-/// S and K_n of a concrete link of a model.  [m2], [N/m]
+/// Strength and stiffness of a concrete link over those of one along the bedding, by the direction
+/// in which it lies in a model: 1 - (1 - share) cos^2 of its angle with the normal.  [-]
+struct BeddingShare {
+  double strength = 1.0, stiffness = 1.0;
+};
+BeddingShare bedding_share(const Model& model, const Model::Link& link,
+                           const MaterialConfig& material);
+
+/// S, and K_n with the bedding of its material, of a concrete link of a model.  [m2], [N/m]
 double link_section(const Model& model, const Model::Link& link);
 double link_stiffness(const Model& model, const Model::Link& link, const MaterialConfig& material);
 

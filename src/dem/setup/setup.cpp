@@ -120,9 +120,9 @@ void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m)
   std::vector<double> length, stiffness, area;
   for (const Model::Link& link : links) {
     length.push_back(distance(m, link.a, link.b));
-    area.push_back(link_section(m, link));
-    stiffness.push_back(
-        link_stiffness(m, link, config.materials[static_cast<std::size_t>(link.material)]));
+    const MaterialConfig& material = config.materials[static_cast<std::size_t>(link.material)];
+    area.push_back(bedding_share(m, link, material).strength * link_section(m, link));
+    stiffness.push_back(link_stiffness(m, link, material));
   }
   copy_to(set.length, length);
   copy_to(set.stiffness, stiffness);

@@ -71,9 +71,28 @@ class Check {
                       "shear stiffness",
                       path, m.poisson, 1.0 / m.alpha));
     if (m.law == "ldpm") check_ldpm(m, path);
+    if (!m.bedding.is_none()) check_bedding(m, path + ".bedding");
     if (m.law == "interface" && m.bond == "mc90" && !(m.slip1 <= m.slip2 && m.slip2 < m.slip3))
       add(fmt::format("{}: slip1 <= slip2 < slip3 must hold (they are {}, {}, {} m)", path, m.slip1,
                       m.slip2, m.slip3));
+  }
+
+  void check_bedding(const MaterialConfig& m, const std::string& path) {
+    const BeddingConfig& bedding = m.bedding;
+    if (m.law != "concrete")
+      add(fmt::format("{}: links of law {} are alike in all directions; law concrete has a bedding",
+                      path, m.law));
+    if (!(norm(bedding.normal) > 0.0)) add(path + ".normal has length 0; it must point somewhere");
+    if (m.fracture_energy > 0.0 && bedding.strength > bedding.stiffness)
+      add(
+          fmt::format("{0}.strength = {1} is above stiffness = {2}: links across the planes would "
+                      "store energy beyond the opening at which fracture_energy breaks them",
+                      path, bedding.strength, bedding.stiffness));
+    const bool crushes = m.compaction_strength > 0.0 || m.crushing_strength > 0.0;
+    if (crushes && bedding.strength != bedding.stiffness)
+      add(path +
+          ": with compaction_strength or crushing_strength, strength and stiffness must be "
+          "the same");
   }
 
   void check_ldpm(const MaterialConfig& m, const std::string& path) {

@@ -7,7 +7,7 @@
 #include "dem/setup/materials.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
-#include "prepare/packing/packing.hpp"
+#include "prepare/packing/body_packing.hpp"
 #include "prepare/packing/rebar.hpp"
 #include "prepare/shapes/carve.hpp"
 
@@ -94,8 +94,7 @@ class DemBodyChecks {
     if (of != nullptr && of->law == "ldpm") check_ldpm(b, *of);
     check_shape(b);
     const bool packed = is_packed(b) && (of == nullptr || of->law != "ldpm");
-    require(!packed || b.pack.count >= 1,
-            ".pack.count is missing: how many elements fill the body?");
+    if (packed) check_pack(b);
     require(b.shape != "box" || (b.size.x > 0.0 && b.size.y > 0.0 && b.size.z > 0.0),
             ".size needs three lengths above 0");
     const bool round_body = round(b) || b.shape == "cylinder";
@@ -145,32 +144,40 @@ class DemBodyChecks {
     }
   }
 
+  bool has_bars(const BodyConfig& b) const {
+    return std::any_of(config_.bodies.begin(), config_.bodies.end(), [&](const BodyConfig& other) {
+      return other.shape == "rebar" && other.rebar.in == b.name;
+    });
+  }
+  void check_pack(const BodyConfig& b) {
+    for (const std::string& problem : pack_problems(b)) require(false, ".pack{}", problem);
+    const Vec3& cell = b.pack.cell;
+    require(!has_bars(b) || (cell.x == 0.0 && cell.y == 0.0 && cell.z == 0.0),
+            ".pack.cell: a body with bars is no repeated cell; leave cell out");
+  }
+
   /// Whether the largest element fits. Bodies with bars, whose elements are smaller by the bars'
   /// volume, are tested when they are packed.
   void check_room(const BodyConfig& b) {
-    const Container container = container_of(b);
-    const bool barred =
-        std::any_of(config_.bodies.begin(), config_.bodies.end(), [&](const BodyConfig& other) {
-          return other.shape == "rebar" && other.rebar.in == b.name;
-        });
-    if (barred || b.pack.count < 1 || b.pack.count > most_tested || !(container.volume() > 0.0))
-      return;
+    const double volume = container_of(b).volume();
+    if (has_bars(b) || !(volume > 0.0) || !pack_problems(b).empty()) return;
+    const double count = elements_in(b.pack, volume);
+    require(count >= 1.0, ".pack.sieves: an element is larger than the body");
+    require(count <= 2e9, ".pack.sieves: {:.3g} elements are too many (2e9 at most)", count);
+    if (count < 1.0 || count > most_tested) return;
     const auto group = static_cast<std::uint32_t>(&b - config_.bodies.data());
-    const PackingTask task{.container = container,
-                           .obstacles = {},
-                           .count = b.pack.count,
-                           .size_ratio = b.pack.size_ratio,
-                           .solid_volume = b.pack.compactness * container.volume(),
-                           .random = {static_cast<std::uint64_t>(config_.seed), group}};
+    const PackingTask task =
+        packing_task(b, {}, 0.0, {static_cast<std::uint64_t>(config_.seed), group});
+    if (task.count > most_tested) return;
     const std::string problem = misfit(task, packing_radii(task));
-    require(problem.empty(), ".pack.count: {}", problem);
+    require(problem.empty(), ".pack.{}: {}", b.pack.sieves.empty() ? "count" : "sieves", problem);
   }
 
   void check_ldpm(const BodyConfig& b, const MaterialConfig& m) {
     require(b.shape == "box" || b.shape == "cylinder" || b.shape == "stl" || b.shape == "file",
             ": bodies of law ldpm are boxes, cylinders, or read from a file, not of shape {}",
             b.shape);
-    require(b.pack.count == 0,
+    require(b.pack.count == 0 && b.pack.sieves.empty(),
             ".pack has no use in a body of law ldpm: its grains follow from {}.mix", m.name);
   }
 

@@ -31,15 +31,23 @@ double cube_root(double a) {
   }
 }
 
-Vec3 random_centre(const Container& c, const Random& random, std::uint64_t index, double r) {
+Vec3 random_centre(const PackingTask& task, std::uint64_t index, double r) {
+  const Container& c = task.container;
   const Vec3 half = c.half();
+  const auto reach = [&](double face, bool open) { return open ? face : face - r; };
+  const Vec3 free{reach(half.x, task.periodic[0]), reach(half.y, task.periodic[1]),
+                  reach(half.z, task.periodic[2])};
   for (std::uint32_t draw = 1;; draw += 3) {
-    const Vec3 p{(2.0 * random.uniform(index, draw) - 1.0) * (half.x - r),
-                 (2.0 * random.uniform(index, draw + 1) - 1.0) * (half.y - r),
-                 (2.0 * random.uniform(index, draw + 2) - 1.0) * (half.z - r)};
-    if (c.holds(p, r)) return p;
+    const Vec3 p{(2.0 * task.random.uniform(index, draw) - 1.0) * free.x,
+                 (2.0 * task.random.uniform(index, draw + 1) - 1.0) * free.y,
+                 (2.0 * task.random.uniform(index, draw + 2) - 1.0) * free.z};
+    if (c.shape == Container::Shape::box) return p;
+    if (c.holds({p.x, p.y, task.periodic[2] ? 0.0 : p.z}, r)) return p;
   }
 }
+
+/// Least edge of a periodic cell over the largest radius: no sphere has two images near another.
+constexpr double least_cell = 5.0;
 
 }  // namespace
 
@@ -104,7 +112,8 @@ std::vector<double> packing_radii(const PackingTask& task) {
   double volume = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const double part = (static_cast<double>(i) + task.random.uniform(i)) / task.count;
-    radius[i] = 1.0 + (task.size_ratio - 1.0) * part;
+    radius[i] = task.grading.empty() ? 1.0 + (task.size_ratio - 1.0) * part
+                                     : 0.5 * task.grading.diameter_at(part);
     volume += 4.0 / 3.0 * pi * radius[i] * radius[i] * radius[i];
   }
   const double scale = cube_root(task.solid_volume / volume);
@@ -115,6 +124,13 @@ std::vector<double> packing_radii(const PackingTask& task) {
 std::string misfit(const PackingTask& task, const std::vector<double>& radius) {
   const Vec3 half = task.container.half();
   const double largest = *std::max_element(radius.begin(), radius.end());
+  const double edges[3] = {2.0 * half.x, 2.0 * half.y, 2.0 * half.z};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (task.periodic[k] && edges[k] < least_cell * growth * largest)
+      return fmt::format(
+          "{} elements are too few for a periodic cell of {:.4g} m along {}: the largest has a "
+          "radius of {:.4g} m, and a cell needs five of them",
+          task.count, edges[k], "xyz"[k], largest);
   if (growth * largest <= std::min({half.x, half.y, half.z})) return "";
   return fmt::format("{} elements are too few: one of radius {:.4g} m does not fit into the body",
                      task.count, largest);
@@ -126,7 +142,7 @@ Packing pack(const PackingTask& task) {
   std::vector<Vec3> position;
   for (std::size_t i = 0; i < radius.size(); ++i) {
     radius[i] *= growth;
-    position.push_back(random_centre(task.container, task.random, i, radius[i]));
+    position.push_back(random_centre(task, i, radius[i]));
   }
 
   SoftSpheres spheres(task, std::move(position), std::move(radius));
@@ -142,6 +158,7 @@ Packing pack(const PackingTask& task) {
     }
     spheres.move();
   }
+  if (task.is_periodic()) spheres.wrap();
   packing.position = spheres.position();
   packing.radius = spheres.radius();
   for (double& r : packing.radius) r /= growth;

@@ -1,11 +1,13 @@
 #pragma once
 // Disordered packings of spheres in a box, a sphere or a cylinder.
 
+#include <array>
 #include <vector>
 
 #include "core/random.hpp"
 #include "dem/setup/config.hpp"
 #include "math/vec.hpp"
+#include "prepare/packing/grading.hpp"
 
 namespace breccia::prepare {
 
@@ -44,6 +46,12 @@ struct PackingTask {
   double size_ratio = 2.0;    ///< largest over smallest radius; radii spread uniformly  [-]
   double solid_volume = 0.0;  ///< of all spheres together  [m3]
   Random random;
+  /// Directions in which the container has no faces: what leaves it on one side comes back on the
+  /// other. All of a box; z of a cylinder; none of a sphere.
+  std::array<bool, 3> periodic{};
+  Grading grading{};  ///< of diameters; empty: by size_ratio
+
+  bool is_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
 };
 
 struct Packing {
@@ -56,17 +64,19 @@ struct Packing {
 /// Overlaps up to this share of the smaller radius are what a packing may keep  [-]
 inline constexpr double overlap_tolerance = 5e-3;
 
-/// Radii uniform in [1, q], one from each of `count` equal parts of that range, scaled to the
-/// wanted solid volume  [m]
+/// Radii uniform in [1, q], one from each of `count` equal parts of that range, or one from each of
+/// `count` equal parts of the numbers of a grading; scaled to the wanted solid volume  [m]
 std::vector<double> packing_radii(const PackingTask& task);
 
-/// Why the largest sphere does not fit into the container; empty: it does.
+/// Why the largest sphere does not fit into the container, or meets its own image across a periodic
+/// cell; empty: it does.
 /// @param radius  those of packing_radii  [m]
 std::string misfit(const PackingTask& task, const std::vector<double>& radius);
 
 /// Spheres of exactly the wanted number and volume inside the container and outside the obstacles,
 /// from random centres pushed apart until none overlap, or until pushing helps no more (compactness
-/// near that of random close packing, 0.61 to 0.64). No random direction is preferred.
+/// near that of random close packing, 0.61 to 0.64). No random direction is preferred. Periodic
+/// ones have their centres in [-half, half).
 ///
 /// Soft spheres in the container (docs/theory.md, packing), energy minimised by FIRE: Bitzek et al.
 /// 2006, "Structural relaxation made simple". Only + - * / sqrt: same bits on any machine.

@@ -21,6 +21,24 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
+/// visit(image) for each image of a point, but itself, that is within `reach` of the cell.
+template <class Visit>
+void each_image(const Vec3& x, const double (&period)[3], double reach, const Visit& visit) {
+  // Towards a face that is near, or away from it: at most one image along each axis.
+  const auto shift = [&](double at, double edge) {
+    if (!(edge > 0.0)) return 0.0;
+    return at > 0.5 * edge - reach ? -edge : at < reach - 0.5 * edge ? edge : 0.0;
+  };
+  const Vec3 by{shift(x.x, period[0]), shift(x.y, period[1]), shift(x.z, period[2])};
+  for (int k = 1; k < 8; ++k) {
+    const Vec3 moved{(k & 1) != 0 ? by.x : 0.0, (k & 2) != 0 ? by.y : 0.0,
+                     (k & 4) != 0 ? by.z : 0.0};
+    const bool skips = ((k & 1) != 0 && by.x == 0.0) || ((k & 2) != 0 && by.y == 0.0) ||
+                       ((k & 4) != 0 && by.z == 0.0);
+    if (!skips) visit(x + moved);
+  }
+}
+
 template <class T>
 void reorder(std::vector<T>& items, const std::vector<Index>& order) {
   std::vector<T> sorted;
@@ -40,7 +58,11 @@ SoftSpheres::SoftSpheres(const PackingTask& task, std::vector<Vec3> position,
       radius_(std::move(radius)),
       margin_(0.4 * mean(radius_)),
       dt_(first_step),
-      mixing_(first_mixing) {}
+      mixing_(first_mixing) {
+  const Vec3 half = task.container.half();
+  const double edges[3] = {2.0 * half.x, 2.0 * half.y, 2.0 * half.z};
+  for (std::size_t k = 0; k < 3; ++k) period_[k] = task.periodic[k] ? edges[k] : 0.0;
+}
 
 double SoftSpheres::push() {
   if (!neighbours_hold()) find_neighbours();
@@ -64,7 +86,29 @@ bool SoftSpheres::neighbours_hold() const {
   return 4.0 * furthest < margin_ * margin_;
 }
 
+void SoftSpheres::wrap() {
+  for (Vec3& x : position_)
+    for (const auto& [own, period] :
+         {std::pair{&x.x, period_[0]}, {&x.y, period_[1]}, {&x.z, period_[2]}}) {
+      if (!(period > 0.0)) continue;
+      while (*own >= 0.5 * period) *own -= period;
+      while (*own < -0.5 * period) *own += period;
+    }
+}
+
+/// From a sphere to the nearest image of another; both lie within a step of the cell.
+Vec3 SoftSpheres::nearest_image(const Vec3& apart) const {
+  const auto near = [](double d, double period) {
+    return d > 0.5 * period ? d - period : d < -0.5 * period ? d + period : d;
+  };
+  return {period_[0] > 0.0 ? near(apart.x, period_[0]) : apart.x,
+          period_[1] > 0.0 ? near(apart.y, period_[1]) : apart.y,
+          period_[2] > 0.0 ? near(apart.z, period_[2]) : apart.z};
+}
+
 void SoftSpheres::find_neighbours() {
+  const bool periodic = task_.is_periodic();
+  if (periodic) wrap();
   const CellGrid grid(position_, 2.0 * mean(radius_) + margin_);
   // Memory follows space; from here on sphere i is the i-th of the grid's order.
   const std::vector<Index> order = grid.order();
@@ -82,14 +126,18 @@ void SoftSpheres::find_neighbours() {
     const Vec3 here = position_[i];
     const double mine = radius_[i];
     // Each pair is found from its larger sphere.
-    grid.visit(here, 2.0 * mine + margin_, [&](Index item) {
-      const Index j = rank[static_cast<std::size_t>(item)];
-      const double other = radius_[static_cast<std::size_t>(j)];
-      if (other > mine || (other == mine && j >= static_cast<Index>(i))) return;
-      const Vec3 apart = position_[static_cast<std::size_t>(j)] - here;
-      const double reach = mine + other + margin_;
-      if (dot(apart, apart) < reach * reach) neighbour_.push_back(j);
-    });
+    const auto look = [&](const Vec3& from) {
+      grid.visit(from, 2.0 * mine + margin_, [&](Index item) {
+        const Index j = rank[static_cast<std::size_t>(item)];
+        const double other = radius_[static_cast<std::size_t>(j)];
+        if (other > mine || (other == mine && j >= static_cast<Index>(i))) return;
+        const Vec3 apart = position_[static_cast<std::size_t>(j)] - from;
+        const double reach = mine + other + margin_;
+        if (dot(apart, apart) < reach * reach) neighbour_.push_back(j);
+      });
+    };
+    look(here);
+    if (periodic) each_image(here, period_, 2.0 * mine + margin_, look);
     first_[i + 1] = static_cast<Index>(neighbour_.size());
   }
 
@@ -107,13 +155,14 @@ void SoftSpheres::find_neighbours() {
 void SoftSpheres::push_pairs() {
   const std::size_t count = position_.size();
   double energy = 0.0, worst = 0.0;
+  const bool periodic = task_.is_periodic();
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 here = position_[i];
     const double mine = radius_[i];
     Vec3 total = force_[i];
     for (Index k = first_[i]; k < first_[i + 1]; ++k) {
       const auto j = static_cast<std::size_t>(neighbour_[static_cast<std::size_t>(k)]);
-      const Vec3 apart = position_[j] - here;
+      const Vec3 apart = periodic ? nearest_image(position_[j] - here) : position_[j] - here;
       const double squared = dot(apart, apart);
       const double touching = mine + radius_[j];
       if (squared >= touching * touching) continue;
@@ -145,10 +194,14 @@ void SoftSpheres::push_walls() {
       force_[i] += (wall_stiffness * depth) * inwards;
     };
     if (c.shape == Container::Shape::box) {
-      wall(r - half.x - p.x, {1.0, 0.0, 0.0});
-      wall(r - half.x + p.x, {-1.0, 0.0, 0.0});
-      wall(r - half.y - p.y, {0.0, 1.0, 0.0});
-      wall(r - half.y + p.y, {0.0, -1.0, 0.0});
+      if (!task_.periodic[0]) {
+        wall(r - half.x - p.x, {1.0, 0.0, 0.0});
+        wall(r - half.x + p.x, {-1.0, 0.0, 0.0});
+      }
+      if (!task_.periodic[1]) {
+        wall(r - half.y - p.y, {0.0, 1.0, 0.0});
+        wall(r - half.y + p.y, {0.0, -1.0, 0.0});
+      }
     } else {
       const Vec3 out{p.x, p.y, c.shape == Container::Shape::sphere ? p.z : 0.0};
       const double free = c.radius - r;
@@ -158,7 +211,7 @@ void SoftSpheres::push_walls() {
         wall(distance - free, (-1.0 / distance) * out);
       }
     }
-    if (c.shape != Container::Shape::sphere) {
+    if (c.shape != Container::Shape::sphere && !task_.periodic[2]) {
       wall(r - half.z - p.z, {0.0, 0.0, 1.0});
       wall(r - half.z + p.z, {0.0, 0.0, -1.0});
     }

@@ -21,17 +21,22 @@ class SoftSpheres {
   /// One step of FIRE under the forces of the last push.
   void move();
 
+  /// Brings what left a periodic cell back on its other side.
+  void wrap();
+
   const std::vector<Vec3>& position() const { return position_; }
   const std::vector<double>& radius() const { return radius_; }
 
  private:
   bool neighbours_hold() const;
+  Vec3 nearest_image(const Vec3& apart) const;
   void find_neighbours();
   void push_pairs();
   void push_walls();
   void push_obstacles();
 
   const PackingTask& task_;
+  double period_[3] = {};  ///< edge of the cell in periodic directions, 0 in others  [m]
   std::vector<Vec3> position_, velocity_, force_;
   std::vector<double> radius_;
   double margin_;               ///< pairs closer than this are neighbours  [m]

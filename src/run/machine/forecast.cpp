@@ -16,6 +16,7 @@
 #include "prepare/ldpm/body.hpp"
 #include "prepare/meshing/body_mesh.hpp"
 #include "prepare/meshing/mesh_file.hpp"
+#include "prepare/packing/body_packing.hpp"
 #include "prepare/packing/fracture_energy.hpp"
 #include "prepare/packing/rebar.hpp"
 #include "prepare/packing/spheres_file.hpp"
@@ -75,7 +76,7 @@ Packed packed(const dem::Config& config, const dem::BodyConfig& body, const std:
     const double volume = body.shape == "box"      ? body.size.x * body.size.y * body.size.z
                           : body.shape == "sphere" ? ball(body.radius)
                                                    : pi * body.radius * body.radius * body.length;
-    return {body, static_cast<double>(body.pack.count), volume};
+    return {body, prepare::elements_in(body.pack, volume), volume};
   }
   const prepare::Spheres spheres = prepare::read_spheres(folder + "/" + body.file);
   const auto [least, most] = std::minmax_element(spheres.radius.begin(), spheres.radius.end());
@@ -110,6 +111,11 @@ dem::BodyConfig cut(const Packed& p) {
   body.shape = "box";
   body.size = size;
   if (p.particles) return body;
+  body.pack.compactness = prepare::compactness_of(body.pack);
+  body.pack.porosity = 0.0;  // a small specimen may not reach it
+  body.pack.periodic.clear();
+  body.pack.cell = {};
+  if (!body.pack.sieves.empty()) return body;  // their sizes say how many
   body.pack.count = static_cast<int>(std::round(p.count * size.x * size.y * size.z / p.volume));
   return body;
 }
@@ -135,7 +141,8 @@ double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
   specimen.checks.clear();
   if (config.links.count > 0) {
     double all = 0.0;
-    for (const dem::BodyConfig& body : config.bodies) all += body.pack.count;
+    for (const dem::BodyConfig& body : config.bodies)
+      all += prepare::elements_in(body.pack, prepare::container_of(body).volume());
     specimen.links.count = 0;
     specimen.links.per_element = 2.0 * config.links.count / std::max(all, 1.0);
   }

@@ -15,6 +15,7 @@
 #include "exec/error.hpp"
 #include "io/round_numbers.hpp"
 #include "math/constants.hpp"
+#include "prepare/packing/body_packing.hpp"
 namespace breccia {
 namespace {
 
@@ -108,7 +109,8 @@ MemoryPlan memory_plan(const dem::Config& config) {
     const bool grains = std::any_of(
         config.materials.begin(), config.materials.end(),
         [&](const dem::MaterialConfig& m) { return m.name == body.material && m.law == "grain"; });
-    const double count = packed ? body.pack.count : 0.0;
+    const double count =
+        packed ? prepare::elements_in(body.pack, prepare::container_of(body).volume()) : 0.0;
     plan.items += count;
     plan.build_bytes += build * count;
     plan.run_bytes += (grains ? loose : linked) * count;

@@ -1,0 +1,42 @@
+#pragma once
+// The packing of a body as its keys ask for it: by count or by sieves, between faces or cut from a
+// periodic cell.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "dem/setup/config.hpp"
+#include "prepare/packing/packing.hpp"
+
+namespace breccia::prepare {
+
+/// Share of a body's volume that its elements fill.  [-]
+double compactness_of(const dem::PackConfig& pack);
+
+/// Elements of a body of this volume: those that are asked for, or as many as its sieves need.  [-]
+double elements_in(const dem::PackConfig& pack, double volume);
+
+/// The task of a body's packing, or of the cell that it is cut from.
+PackingTask packing_task(const dem::BodyConfig& body, const std::vector<Capsule>& bars,
+                         double bars_volume, const Random& random);
+
+/// What is wrong with the keys of a body's packing, each beginning with a key of it.
+std::vector<std::string> pack_problems(const dem::BodyConfig& body);
+
+/// Elements of a body about its centre.
+struct BodyPacking {
+  std::vector<Vec3> position;  ///<  [m]
+  std::vector<double> radius;  ///<  [m]
+  double compactness = 0.0;    ///< their volume over that of the body  [-]
+};
+
+/// Packs a body. In periodic directions there are no faces: the cell (the body itself unless
+/// pack.cell is given) is repeated, and of it stays what has its centre in the body.
+///
+/// @throws InputError names the body if its largest element does not fit, or if elements overlap
+///         where a porosity is asked for
+BodyPacking pack_body(const dem::BodyConfig& body, const std::vector<Capsule>& bars,
+                      double bars_volume, const Random& random);
+
+}  // namespace breccia::prepare
