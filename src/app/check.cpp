@@ -104,10 +104,35 @@ struct CheckCommand {
                                 "the fracture_energy of {}",
                                 material.name));
           }
+          if (config.bodies.size() > 1)
+            for (const auto& support : config.supports)
+              if (takes_all(support))
+                tell_note(
+                    fmt::format("support {} names no body (key on) and has no bounds: it "
+                                "takes all {} bodies",
+                                support.name, config.bodies.size()));
           if (expected) tell_forecast(*expected);
         },
         read.config);
     if (model) tell_of_model(read);
+  }
+
+  template <class Support>
+  static bool takes_all(const Support& support) {
+    const auto same = [](const auto& a, const auto& b) {
+      if constexpr (requires { a.z; })
+        if (a.z != b.z) return false;
+      return a.x == b.x && a.y == b.y;
+    };
+    const auto of_region = [&](const auto& r) {
+      const std::remove_cvref_t<decltype(r)> anywhere{};
+      return r.on.empty() && same(r.min, anywhere.min) && same(r.max, anywhere.max) &&
+             r.radius == 0.0;
+    };
+    if constexpr (requires { support.region; })
+      return of_region(support.region);
+    else
+      return of_region(support);
   }
 
   static void tell_note(const std::string& text) {

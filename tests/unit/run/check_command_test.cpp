@@ -139,6 +139,21 @@ TEST(CheckCommand, says_size_step_time_memory_and_disk_within_80_columns) {
   }
 }
 
+TEST(CheckCommand, says_which_support_takes_all_bodies) {
+  const ScratchFolder folder;
+  for (const char* name : {"dem", "fdem", "fdem3"}) {
+    const std::string path = folder.path() + "/case.toml";
+    std::string text = read_whole_file(source_dir + std::string("/tests/attack/") + name + ".toml");
+    replace_file(path, text);
+    EXPECT_FALSE(has(told_by(folder, "check " + path).text, "names no body")) << name;
+    text.resize(text.find("[[support]]"));
+    replace_file(path, text + "[[support]]\nname = \"held\"\non = \"\"\n");
+    const Told told = told_by(folder, "check " + path);
+    EXPECT_EQ(told.exit_code, 0) << told.text;
+    EXPECT_TRUE(has(told.text, "support held names no body (key on)")) << told.text;
+  }
+}
+
 TEST(CheckCommand, names_line_and_key_of_a_region_that_takes_nothing) {
   const ScratchFolder folder;
   replace_file(folder.path() + "/beam.toml", changed(beam, "\"-151 mm\", \"-21 mm\"", "0.4, 0.0"));
