@@ -16,6 +16,7 @@
 #include "dem/setup/config.hpp"
 #include "dem/wall_mesh.hpp"
 #include "exec/buffer.hpp"
+#include "math/mat3.hpp"
 
 namespace breccia::dem {
 
@@ -25,12 +26,22 @@ struct ElementSet {
   Buffer<Index> members;  ///< global ids in the whole model, ascending  [-]
 };
 
+/// How the mass of a rigid wall is spread, in its own frame: along, normal x along, normal.
+struct MassSpread {
+  Vec3 offset{};                 ///< from the centre of mass to the wall's point  [m]
+  Sym3 inertia{};                ///< about the centre of mass  [kg m2]
+  Sym3 inverse{};                ///< of it  [1/(kg m2)]
+  double least_mass = no_limit;  ///< that a push on any of its parts feels  [kg]
+};
+
 /// A wall with mass, which moves by the forces on it.
 struct FreeWall {
   double mass = no_limit;  ///< infinite: it moves as it is told  [kg]
   Vec3 normal{};           ///< unit; it moves along this only, unless it is zero  [-]
   Vec3 axes{};             ///< 1 along axes in which it moves, if it has no normal  [-]
   std::array<ScaledAmplitude, 3> load;  ///< stage; given force over time  [N]
+  bool turns = false;                   ///< by the torques on it, too
+  MassSpread spread;                    ///< if it turns
 
   bool is_free() const { return mass < no_limit; }
   /// The part of a force or velocity in directions in which it moves.

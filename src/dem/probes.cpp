@@ -301,7 +301,8 @@ std::optional<std::size_t> wall_of(const World& w, const ProbeConfig& p) {
   return static_cast<std::size_t>(name - w.given->wall_names.begin());
 }
 
-double motion_of_wall(const World& w, const Quantity& quantity, std::size_t wall) {
+double motion_of_wall(const World& w, const Quantity& quantity, std::size_t wall,
+                      const Vec3& about) {
   const Wall& own = w.walls[wall];
   const bool free = is_free(w, wall);
   const Vec3 velocity = free ? velocity_of_free_wall(w, wall) : own.velocity;
@@ -315,8 +316,10 @@ double motion_of_wall(const World& w, const Quantity& quantity, std::size_t wall
       return on_axis(velocity, quantity.axis);
     case Quantity::Kind::momentum:
       return mass * on_axis(velocity, quantity.axis);
+    case Quantity::Kind::angular_momentum:
+      return free ? on_axis(angular_momentum_of_wall(w, wall, about), quantity.axis) : 0.0;
     case Quantity::Kind::kinetic:
-      return 0.5 * mass * dot(velocity, velocity);
+      return free ? kinetic_of_free_wall(w, wall) : 0.0;
     default:
       return norm(velocity);
   }
@@ -330,7 +333,7 @@ Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
   const Wall& own = w.walls[wall];
   const bool turns = quantity.kind == Quantity::Kind::torque;
   if (quantity.kind != Quantity::Kind::force && !turns) {
-    return first ? Readings(motion_of_wall(w, quantity, wall), 0) : Readings();
+    return first ? Readings(motion_of_wall(w, quantity, wall, point_of(p.about)), 0) : Readings();
   }
   Readings read;
   if (first) read = Readings(0.0, 0);

@@ -45,6 +45,10 @@ struct FreeWallState {
   Vec3 force{};            ///< of contacts, at the time of the positions  [N]
   double stiffness = 0.0;  ///< of its contacts as the step asks for it, their dashpots in it  [N/m]
   double work = 0.0;       ///< of its given force until half of the last step  [J]
+  // If it turns:
+  Vec3 torque{};    ///< of contacts about the centre of mass, at the time of the positions  [N m]
+  Vec3 velocity{};  ///< of the centre of mass, half a step before now  [m/s]
+  Vec3 angular{};   ///< angular momentum about it, likewise, in the case  [kg m2/s]
 };
 
 /// Each line tells meaning and unit, then (length; who writes it). Lengths: elements, contacts, ...

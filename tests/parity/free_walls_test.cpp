@@ -40,11 +40,14 @@ dem::testing::Scene struck(const char* law) {
   missile.nose = "ogive";
   missile.nose_length = 0.012;
   missile.mass = 0.05;
-  missile.free = {"x", "y", "z"};
+  missile.free = {"x", "y", "z", "turn"};
+  missile.spin = {0.0, 3.0, 200.0};
   missile.velocity = {20.0, 0.0, 0.0};
   for (const char* wall : {"lid", "missile"})
     for (const char* quantity : {"position_x", "position_z", "velocity_x", "force_x", "kinetic"})
       s.config.probes.push_back({std::string(wall) + quantity, wall, quantity, "mean"});
+  for (const char* quantity : {"angular_momentum_x", "angular_momentum_y", "angular_momentum_z"})
+    s.config.probes.push_back({std::string("missile") + quantity, "missile", quantity, "mean"});
   return s;
 }
 
@@ -75,6 +78,7 @@ TEST(FreeWalls, have_the_same_bits_everywhere) {
     writer.write(path);
     const End expected = end_of(*host, end);
     EXPECT_LT(expected.probes[7], 19.9) << "the missile has hit grains";
+    EXPECT_GT(std::abs(expected.probes[11]), 1e-6) << "and they turn it";
     EXPECT_LT(host->energy().error_relative, 1e-2);
     const CheckpointReader reader(path);
     const auto later = make_method(s.config, s.model, {}, nullptr);

@@ -1,6 +1,7 @@
 #pragma once
 // The case file of the DEM: what drives a model, walls, supports and stages.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct WallConfig {
 
   bool has_mass() const { return mass < no_limit; }
   bool has_nose() const { return nose != "flat"; }
+  /// Whether it turns by the torques on it.
+  bool is_turning() const { return std::find(free.begin(), free.end(), "turn") != free.end(); }
   template <class Visit>
   void each_key(Visit&& key) {
     key("name", name, "name of the wall");
@@ -68,17 +71,19 @@ struct WallConfig {
         "direction of the first side of a box's face, or near it; [0, 0, 0]: some direction across "
         "the normal; stl: of the file's x; [0, 0, 0]: the file is turned the shortest way");
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
-        "how fast it turns about an axis through point; a plane only about its normal");
+        "how fast it turns about an axis through point; a plane only about its normal; with mass: "
+        "about its centre of mass as it begins");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
         "velocity of the wall, or a table [[t, x, y, z], ...] of it over time; with mass: the one "
-        "with which it begins");
+        "with which it begins, of its centre of mass if it turns");
     key("mass", mass, "kg", positive,
         "with it the wall moves by the forces on it, and by gravity; inf: as it is told");
     key("force", force, "N", any_number,
         "given force on a wall with mass, or a table [[t, x, y, z], ...] of it over time");
     key("free", free,
-        "directions in which a wall with mass moves: normal, or some of x, y, z; []: along its "
-        "normal, a sphere everywhere");
+        "how a wall with mass moves: normal, or some of x, y, z, and turn: by the torques on it, "
+        "about its centre of mass, as a solid of even density; []: along its normal, a sphere "
+        "everywhere, without turning");
     key("stiffness", stiffness, "-", positive,
         "stiffness of its linear contacts over that of two like elements");
     key("friction", friction, "-", Range{-1.0, no_limit},

@@ -10,6 +10,8 @@
 
 #include "core/set_up.hpp"
 #include "core/world_space.hpp"
+#include "dem/free_walls.hpp"
+#include "dem/setup/mass_spread.hpp"
 #include "dem/setup/materials.hpp"
 #include "dem/setup/stages.hpp"
 #include "dem/setup/supports.hpp"
@@ -301,8 +303,16 @@ void set_free_walls(World& w, const Config& config, const Model& m) {
   w.free_walls.resize(config.walls.size());
   std::vector<ContactPair> pairs;  // on the host
   copy_to(pairs, given.wall_pairs);
-  for (const WallConfig& wall : config.walls) {
+  auto corners = m.wall_meshes.begin();
+  for (std::size_t k = 0; k < config.walls.size(); ++k) {
+    const WallConfig& wall = config.walls[k];
     given.free_walls.push_back(free_wall_of(wall, config.time.mass_scaling));
+    FreeWall& free = given.free_walls.back();
+    const std::vector<Vec3> mesh = wall.shape == "stl" ? *corners++ : std::vector<Vec3>{};
+    if (free.turns) {
+      free.spread = mass_spread(wall, free.mass, mesh);
+      start_turning(w, k, wall.velocity.value, wall.spin);
+    }
     if (!wall.has_mass() || given.contact.hertz) continue;
     double stiffest = 0.0;
     for (std::size_t e = 0; e < m.radius.size(); ++e)
@@ -310,7 +320,8 @@ void set_free_walls(World& w, const Config& config, const Model& m) {
                                         pairs[static_cast<std::size_t>(m.material[e])].normal);
     given.contact_step =
         std::min(given.contact_step,
-                 config.time.safety * std::sqrt(2.0 * given.free_walls.back().mass / stiffest));
+                 config.time.safety *
+                     std::sqrt(2.0 * std::min(free.mass, free.spread.least_mass) / stiffest));
   }
 }
 

@@ -202,8 +202,8 @@ void configure(World& w, const Config& config) {
   // A wall that stood still has no contacts listed around it: the next step searches.
   for (std::size_t k = 0; k < config.walls.size(); ++k) {
     if (!w.free_walls.empty())
-      given.free_walls[k] = free_wall_of(config.walls[k], config.time.mass_scaling);
-    w.walls[k].spin = config.walls[k].spin;
+      given.free_walls[k].load = free_wall_of(config.walls[k], config.time.mass_scaling).load;
+    if (!config.walls[k].has_mass()) w.walls[k].spin = config.walls[k].spin;
     w.walls[k].travelled = 2.0 * w.given->largest_margin;
   }
   w.graph.clear();

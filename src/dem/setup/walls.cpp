@@ -53,10 +53,13 @@ void add_mass_problems(const WallConfig& w, std::vector<std::string>& problems) 
         "may be given, no table");
   if (w.servo.is_on())
     add(".servo: a wall with mass moves by the forces on it; give force instead");
-  if (norm(w.spin) > 0.0) add(".spin: a wall with mass does not turn");
+  if (norm(w.spin) > 0.0 && !w.is_turning())
+    add(".spin: a wall with mass turns only where free names turn");
+  if (w.is_turning() && w.shape == "plane")
+    add(".free: a plane has no end and no inertia; a box, cylinder, sphere or stl may turn");
   for (const std::string& word : w.free) {
-    if (word != "normal" && word != "x" && word != "y" && word != "z")
-      return add(".free: \"" + word + "\" is no direction; allowed are normal, x, y, z");
+    if (word != "normal" && word != "x" && word != "y" && word != "z" && word != "turn")
+      return add(".free: \"" + word + "\" is no direction; allowed are normal, x, y, z, turn");
     if (word == "normal" && (w.free.size() > 1 || w.shape == "sphere"))
       return add(w.shape == "sphere" ? ".free: a sphere has no normal; allowed are x, y, z"
                                      : ".free: normal stands alone, or x, y, z are given");
@@ -104,6 +107,7 @@ Wall wall_of(const WallConfig& config, const Vec3& velocity) {
   wall.radius = config.radius;
   wall.length = config.length;
   if (config.shape == "cylinder") wall.shape = WallShape::cylinder;
+  if (config.is_turning()) wall.along = across(wall.normal, {});
   if (config.has_nose()) {
     wall.shape = config.nose == "cone" ? WallShape::cone : WallShape::ogive;
     wall.half[0] = config.nose == "hemisphere" ? config.radius : config.nose_length;
@@ -133,7 +137,9 @@ FreeWall free_wall_of(const WallConfig& config, double mass_scaling) {
   };
   free.axes = {has("x"), has("y"), has("z")};
   if (config.free.empty() && config.shape == "sphere") free.axes = {1.0, 1.0, 1.0};
-  if (!(norm(free.axes) > 0.0)) free.normal = (1.0 / norm(config.normal)) * config.normal;
+  free.turns = config.is_turning();
+  if (!(norm(free.axes) > 0.0) && !free.turns)
+    free.normal = (1.0 / norm(config.normal)) * config.normal;
   for (int axis = 0; axis < 3; ++axis)
     free.load[static_cast<std::size_t>(axis)] =
         scaled_amplitude(config.force, axis, 0.0, config.begin);

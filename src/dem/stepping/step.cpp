@@ -88,12 +88,12 @@ WallMesh mesh_of(const World& w, Index wall) {
 void move_walls(World& w) {
   const std::size_t first = w.prescribed.motions.size() - w.walls.size();
   for (std::size_t k = 0; k < w.walls.size(); ++k) {
-    Wall& wall = w.walls[k];
-    if (is_free(w, k))
-      kick_free_wall(w, k);
-    else
-      wall.velocity = w.prescribed.velocity(first + k, w.time + 0.5 * w.next_dt);
-    wall.move(w.next_dt, w.travel.drift.velocity);
+    if (is_free(w, k)) {
+      move_free_wall(w, k);
+      continue;
+    }
+    w.walls[k].velocity = w.prescribed.velocity(first + k, w.time + 0.5 * w.next_dt);
+    w.walls[k].move(w.next_dt, w.travel.drift.velocity);
   }
   advance_time(w);
 }

@@ -33,7 +33,8 @@ void check_mass_scaling(const Config& config, std::vector<std::string>& problems
     if (dot(body.velocity, body.velocity) > 0.0) add("body." + body.name);
   if constexpr (requires { config.walls; })
     for (const auto& wall : config.walls)
-      if (wall.has_mass() && norm(wall.velocity.value) > 0.0) add("wall." + wall.name);
+      if (wall.has_mass() && norm(wall.velocity.value) + norm(wall.spin) > 0.0)
+        add("wall." + wall.name);
 }
 
 }  // namespace
@@ -47,8 +48,13 @@ class Check {
     for (const MaterialConfig& m : config_.materials) check(m);
     for (const std::string& problem : prepare::body_problems(config)) add(problem);
     for (const std::string& problem : prepare::overlap_problems(config.bodies)) add(problem);
-    for (const WallConfig& w : config_.walls)
+    for (const WallConfig& w : config_.walls) {
       for (const std::string& problem : wall_problems(w)) add(problem);
+      if (w.is_turning() && config_.contact.rolling_stiffness > 0.0)
+        add("wall." + w.name +
+            ".free: contacts bear no moments on a wall that turns; contact.rolling_stiffness must "
+            "be 0");
+    }
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
     check_mass_scaling(config_, problems_);
@@ -165,6 +171,11 @@ class Check {
     for (const std::string& problem : problems) add(problem);
     if (!problems.empty()) return;
     const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
+    const bool of_turn = kind == Quantity::Kind::angular_momentum;
+    if (of_turn && !prepare::item_named(config_.walls, p.on)->is_turning())
+      add(fmt::format(
+          "probe.{}.quantity = \"{}\" is of walls with mass that turn; wall.{} does not", p.name,
+          p.quantity, p.on));
     const bool needs_mass = kind == Quantity::Kind::momentum || kind == Quantity::Kind::kinetic;
     if (needs_mass && !prepare::item_named(config_.walls, p.on)->has_mass())
       add(fmt::format("probe.{}.quantity = \"{}\" is of walls with mass; wall.{} has none", p.name,

@@ -201,7 +201,7 @@ TEST(FreeWalls, refuse_what_goes_against_a_mass) {
     w.velocity = {1.0, 0.0, 1.0};
   });
   expect("wall.wall.servo: a wall with mass", [](auto& w, auto&) { w.servo.speed = 1.0; });
-  expect("wall.wall.spin: a wall with mass does not turn", [](auto& w, auto&) {
+  expect("wall.wall.spin: a wall with mass turns only", [](auto& w, auto&) {
     w.spin = {0.0, 0.0, 1.0};
   });
   expect("wall.wall.free: \"up\" is no direction", [](auto& w, auto&) { w.free = {"up"}; });
