@@ -4,7 +4,7 @@
 //   attack_fuzz PARSER SECONDS SEED FILE...    prints "runs", also on SIGTERM; a finding ends it by
 //                                              its signal, with the input in
 //                                              attack_fuzz.PARSER.last
-// Parsers: case gmsh abaqus csv vtu units checkpoint.
+// Parsers: as in parsers.py. Of `ldpm` an input is two files, parted by a line "====".
 
 #include <fcntl.h>
 #include <signal.h>
@@ -24,7 +24,12 @@
 #include "io/vtu/vtu_reader.hpp"
 #include "mutants.hpp"
 #include "prepare/csv_numbers.hpp"
+#include "prepare/ldpm/mesh_file.hpp"
+#include "prepare/meshing/joint_sets.hpp"
 #include "prepare/meshing/mesh_file.hpp"
+#include "prepare/packing/spheres_file.hpp"
+#include "prepare/shapes/surface.hpp"
+#include "prepare/tetrahedra/tet_file.hpp"
 #include "run/case.hpp"
 
 namespace breccia::attack {
@@ -52,6 +57,25 @@ void parse(const std::string& parser, const std::string& text) {
       prepare::parse_gmsh(text, "fuzzed.msh");
     } else if (parser == "abaqus") {
       prepare::parse_abaqus(text, "fuzzed.inp");
+    } else if (parser == "tet_gmsh") {
+      prepare::parse_tet_gmsh(text, "fuzzed.msh");
+    } else if (parser == "tet_abaqus") {
+      prepare::parse_tet_abaqus(text, "fuzzed.inp");
+    } else if (parser == "stl") {
+      prepare::read_surface(as_file("fuzzed.stl", text), 1e-3);
+    } else if (parser == "spheres") {
+      prepare::read_spheres(as_file("fuzzed.csv", text));
+    } else if (parser == "ldpm") {
+      const std::string mark = "\n====\n";
+      const std::size_t at = text.find(mark);
+      as_file("fuzzed-data-particles.dat", text.substr(0, at));
+      prepare::read_ldpm_mesh(
+          as_file("fuzzed-data-tets.dat", at == text.npos ? "" : text.substr(at + mark.size())));
+    } else if (parser == "joints") {
+      fdem::JointSetConfig set;
+      set.file = text.starts_with("x") ? "fuzzed.csv" : "fuzzed.wkt";
+      as_file(set.file, text);
+      prepare::lines_of_set(set, 1, 0, scratch());
     } else if (parser == "csv") {
       prepare::read_csv(as_file("fuzzed.csv", text), 4, "x,y,z,r",
                         [](const auto&) { return true; });

@@ -8,7 +8,8 @@ import sys
 
 from common import Attack, HERE, arguments, checkpoints, run, tool
 
-PARSERS = ("case", "gmsh", "abaqus", "csv", "vtu", "units", "checkpoint")
+PARSERS = ("case", "gmsh", "abaqus", "tet_gmsh", "tet_abaqus", "stl", "csv", "spheres", "ldpm", "joints", "vtu", "units",
+           "checkpoint")
 
 
 def main():

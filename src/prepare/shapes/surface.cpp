@@ -132,6 +132,11 @@ double edge_of_cells(const std::vector<Triangle>& triangles) {
 }
 
 constexpr std::size_t header = 80, record = 50;
+constexpr double farthest = 1e9;  ///< of a corner from the origin; its square is a number  [m]
+
+bool is_place(const Vec3& v) {  // no coordinate that is no number is
+  return std::abs(v.x) <= farthest && std::abs(v.y) <= farthest && std::abs(v.z) <= farthest;
+}
 
 std::vector<Triangle> triangles_of_bytes(const std::string& content, const std::string& path,
                                          double unit) {
@@ -142,10 +147,11 @@ std::vector<Triangle> triangles_of_bytes(const std::string& content, const std::
     Triangle t;
     for (std::size_t k = 0; k < 3; ++k)
       t[k] = unit * Vec3{double{v[3 * k + 3]}, double{v[3 * k + 4]}, double{v[3 * k + 5]}};
-    for (const float x : v)
-      if (!std::isfinite(x) && &x >= &v[3])
-        throw InputError(
-            fmt::format("{}: triangle {} has a corner that is no number", path, triangles.size()));
+    if (!std::all_of(t.begin(), t.end(), is_place))
+      throw InputError(
+          fmt::format("{}: triangle {} has a corner that is no number, or farther "
+                      "than {:g} m from the origin",
+                      path, triangles.size(), farthest));
     triangles.push_back(t);
   }
   return triangles;
@@ -167,10 +173,14 @@ std::vector<Triangle> triangles_of_text(const std::string& content, const std::s
       for (double& x : v) {
         words >> word;
         good = good && std::from_chars(word.data(), word.data() + word.size(), x).ec == std::errc{};
-        good = good && std::isfinite(x) && words;
+        good = good && words;
       }
-      if (!good) throw InputError(fmt::format("{}, line {}: not \"vertex x y z\"", path, number));
       corners.push_back(unit * Vec3{v[0], v[1], v[2]});
+      if (!good || !is_place(corners.back()))
+        throw InputError(
+            fmt::format("{}, line {}: not \"vertex x y z\", three numbers within "
+                        "{:g} m of the origin",
+                        path, number, farthest));
     } else if (word == "endfacet") {
       if (corners.size() != 3)
         throw InputError(

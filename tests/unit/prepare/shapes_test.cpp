@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -143,6 +144,25 @@ TEST(Surface, is_read_from_text_and_from_bytes_and_must_be_closed) {
   replace_file(path, "x,y,z\n");
   EXPECT_NE(message_of([&] { prepare::read_surface(path, 1.0); }).find("not an STL file"),
             std::string::npos);
+}
+
+TEST(Surface, refuses_corners_that_are_nowhere) {
+  const ScratchFolder folder;
+  const std::string path = folder / "l.stl";
+  for (const double odd : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+    std::vector<Triangle> triangles = l_shape();
+    triangles[4][1].y = odd;
+    replace_file(path, bytes_of(triangles));
+    EXPECT_NE(message_of([&] {
+                prepare::read_triangles(path, 1e-3);
+              }).find("triangle 4 has a corner that is no number, or farther than 1e+09 m"),
+              std::string::npos)
+        << odd;
+    replace_file(path, text_of(triangles));
+    EXPECT_NE(message_of([&] { prepare::read_triangles(path, 1e-3); }).find("line 33: not"),
+              std::string::npos)
+        << odd << message_of([&] { prepare::read_triangles(path, 1e-3); });
+  }
 }
 
 dem::Config one_body(const dem::BodyConfig& body) {
