@@ -321,11 +321,13 @@ struct ConcreteLink {
   template <class R>
   BR_HD void compact(Stand<R>& s, const LinkConstants<R>& link, const PairMotion<R>& motion) const {
     const R zero = constant<R>(0.0), kn = link.stiffness;
-    const R first = modulus * link.area / kn;  // D_0
-    const R p = max(zero, first - link.length) / first;
     const auto filled = s.holds || link.touching >= link.length;
     const R onset =
         select(filled, constant<R>(compaction_strength), constant<R>(crushing_strength));
+    // Hardening only raises the yield force, rounding included: most links need no division.
+    if (!any(s.pressed && -s.normal - link.area * onset > 0.0)) return;
+    const R first = modulus * link.area / kn;  // D_0
+    const R p = max(zero, first - link.length) / first;
     const R slope = select(filled, constant<R>(compaction_slope), constant<R>(crushing_slope));
     const R excess = -s.normal - link.area * (onset + modulus * p * slope / (1.0 - slope));
     const auto yields = s.pressed && !s.parted && excess > 0.0 && onset > 0.0;
@@ -380,6 +382,12 @@ struct ConcreteLink {
     const R squared = dot(trial, trial);
     const auto beyond = squared > limit * limit || !acts;
     if (!any(beyond)) return c;
+    // What does not act and bore nothing keeps nothing: no root, no division.
+    const auto idle = !acts && before.x == 0.0 && before.y == 0.0 && before.z == 0.0;
+    if (!any(beyond && !idle)) {
+      c.kept = select(beyond, zero * trial, trial);
+      return c;
+    }
     const R size = sqrt(squared);
     const R scale = select(acts, limit / select(size > zero, size, one), zero);
     c.kept = select(beyond, scale * trial, trial);
