@@ -12,64 +12,79 @@
 namespace breccia::dem {
 namespace {
 
-/// Divides elements among tiles by planes across the longest side of what is left.
+/// Divides elements among tiles by planes across the longest side of what is left. They are sorted
+/// once along each axis; each part keeps its three orders.
 class Bisection {
  public:
-  Bisection(const std::vector<Vec3>& position, const std::vector<double>& weight,
-            std::vector<Index>& tile_of)
-      : position_(position), weight_(weight), tile_of_(tile_of), order_(position.size()) {
-    for (std::size_t e = 0; e < order_.size(); ++e) order_[e] = {0.0, static_cast<Index>(e)};
+  explicit Bisection(const std::vector<ElementState>& state) {
+    left_.resize(state.size());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::vector<double>& along = along_[axis];
+      along.reserve(state.size());
+      for (const ElementState& s : state)
+        along.push_back(axis == 0 ? s.position.x : axis == 1 ? s.position.y : s.position.z);
+      std::vector<Index>& order = sorted_[axis];
+      order.resize(state.size());
+      std::iota(order.begin(), order.end(), 0);
+      std::sort(order.begin(), order.end(), [&](Index p, Index q) {
+        return along[at(p)] != along[at(q)] ? along[at(p)] < along[at(q)] : p < q;
+      });
+    }
   }
-  void divide(Index tiles) { divide(0, order_.size(), 0, tiles); }
+  /// @param tile_of  of each element: gets its tile, so that all weigh about as much
+  void divide(Index tiles, const std::vector<double>& weight, std::vector<Index>& tile_of) {
+    for (std::size_t axis = 0; axis < 3; ++axis) order_[axis] = sorted_[axis];
+    divide({0, left_.size()}, 0, tiles, weight, tile_of);
+  }
 
  private:
-  struct Placed {
-    double along;  ///< the axis  [m]
-    Index element;
+  struct Run {
+    std::size_t begin, end;
   };
-  static double part(const Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-  int longest_side(std::size_t begin, std::size_t end) const {
-    double length[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      double low = 1e300, high = -1e300;
-      for (std::size_t k = begin; k < end; ++k) {
-        const double x = part(position_[at(order_[k].element)], axis);
-        low = std::min(low, x);
-        high = std::max(high, x);
-      }
-      length[axis] = high - low;
-    }
-    return static_cast<int>(std::max_element(length, length + 3) - length);
+  std::size_t longest_side(const Run& run) const {
+    double length[3] = {0.0, 0.0, 0.0};
+    if (run.end > run.begin)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        length[axis] =
+            along_[axis][at(order_[axis][run.end - 1])] - along_[axis][at(order_[axis][run.begin])];
+    return static_cast<std::size_t>(std::max_element(length, length + 3) - length);
   }
-  void divide(std::size_t begin, std::size_t end, Index first, Index tiles) {
+  void divide(const Run& run, Index first, Index tiles, const std::vector<double>& weight,
+              std::vector<Index>& tile_of) {
+    const std::size_t axis = longest_side(run);
+    const std::vector<Index>& order = order_[axis];
     if (tiles == 1) {
-      for (std::size_t k = begin; k < end; ++k) tile_of_[at(order_[k].element)] = first;
+      for (std::size_t k = run.begin; k < run.end; ++k) tile_of[at(order[k])] = first;
       return;
     }
-    const int axis = longest_side(begin, end);
     double whole = 0.0, before = 0.0;
-    for (std::size_t k = begin; k < end; ++k) {
-      order_[k].along = part(position_[at(order_[k].element)], axis);
-      whole += weight_[at(order_[k].element)];
-    }
-    std::sort(order_.begin() + static_cast<std::ptrdiff_t>(begin),
-              order_.begin() + static_cast<std::ptrdiff_t>(end),
-              [](const Placed& p, const Placed& q) {
-                return p.along != q.along ? p.along < q.along : p.element < q.element;
-              });
+    for (std::size_t k = run.begin; k < run.end; ++k) whole += weight[at(order[k])];
     const Index left = tiles / 2;
     const double wanted = whole * left / tiles;
-    std::size_t middle = begin;
-    while (middle < end && before + 0.5 * weight_[at(order_[middle].element)] < wanted)
-      before += weight_[at(order_[middle++].element)];
-    divide(begin, middle, first, left);
-    divide(middle, end, first + left, tiles - left);
+    std::size_t middle = run.begin;
+    while (middle < run.end && before + 0.5 * weight[at(order[middle])] < wanted)
+      before += weight[at(order[middle++])];
+    for (std::size_t k = run.begin; k < run.end; ++k) left_[at(order[k])] = k < middle ? 1 : 0;
+    for (std::size_t other = 0; other < 3; ++other)
+      if (other != axis) part(order_[other], run);
+    divide({run.begin, middle}, first, left, weight, tile_of);
+    divide({middle, run.end}, first + left, tiles - left, weight, tile_of);
+  }
+  /// Brings those on the left to the front, each side in its order.
+  void part(std::vector<Index>& order, const Run& run) {
+    right_.clear();
+    std::size_t to = run.begin;
+    for (std::size_t k = run.begin; k < run.end; ++k)
+      if (left_[at(order[k])] != 0)
+        order[to++] = order[k];
+      else
+        right_.push_back(order[k]);
+    std::copy(right_.begin(), right_.end(), order.begin() + static_cast<std::ptrdiff_t>(to));
   }
 
-  const std::vector<Vec3>& position_;
-  const std::vector<double>& weight_;
-  std::vector<Index>& tile_of_;
-  std::vector<Placed> order_;
+  std::vector<double> along_[3];
+  std::vector<Index> sorted_[3], order_[3], right_;
+  std::vector<std::uint8_t> left_;  ///< of each element
 };
 
 /// The links of a kind on the host, with the group of each.
@@ -112,6 +127,7 @@ class Sharing {
         kinds_{links_here(w.concrete), links_here(w.steel), links_here(w.interface)} {
     copy_to(state_, w.elements.state);
     place_.resize(state_.size());
+    noted_by_.assign(state_.size(), -1);
     copy_to(bar_starts_, w.bar_incidence.starts);
     copy_to(bar_entries_, w.bar_incidence.entries);
     plan_->groups = {static_cast<Index>(w.concrete.groups.size()),
@@ -138,8 +154,7 @@ class Sharing {
   /// Weights are corrected until tiles have about as many links, those across their borders
   /// included.
   void divide() {
-    std::vector<Vec3> position;
-    for (const ElementState& s : state_) position.push_back(s.position);
+    Bisection bisection(state_);
     std::vector<double> weight(state_.size(), 1.0);
     for (const LinksHere& links : kinds_)
       for (Index i = 0; i < links.size(); ++i) {
@@ -149,7 +164,7 @@ class Sharing {
     double best = 1e300;
     std::vector<Index> tile_of(state_.size());
     for (int turn = 0; turn < 6; ++turn) {
-      Bisection(position, weight, tile_of).divide(count_);
+      bisection.divide(count_, weight, tile_of);
       std::vector<double> links(static_cast<std::size_t>(count_), 1.0);
       for (const LinksHere& kind : kinds_)
         for (Index i = 0; i < kind.size(); ++i)
@@ -197,18 +212,21 @@ class Sharing {
     std::vector<Index> known = own_[at(t)];
     if (known.empty()) return false;
     std::vector<Index> linked;
+    const auto note = [&](Index e) {
+      if (p.tile_of[at(e)] == t || noted_by_[at(e)] == t) return;
+      noted_by_[at(e)] = t;
+      linked.push_back(e);
+    };
     for (std::size_t k = 0; k < 3; ++k)
       for (const Index i : links_of_[k][at(t)]) {
-        linked.push_back(kinds_[k].a[at(i)]);
-        linked.push_back(kinds_[k].b[at(i)]);
+        note(kinds_[k].a[at(i)]);
+        note(kinds_[k].b[at(i)]);
         if (k == 2) {
-          linked.push_back(kinds_[k].before[at(i)]);
-          linked.push_back(kinds_[k].after[at(i)]);
+          note(kinds_[k].before[at(i)]);
+          note(kinds_[k].after[at(i)]);
         }
       }
     std::sort(linked.begin(), linked.end());
-    linked.erase(std::unique(linked.begin(), linked.end()), linked.end());
-    std::erase_if(linked, [&](Index e) { return p.tile_of[at(e)] == t; });
     known.insert(known.end(), linked.begin(), linked.end());
     if (known.size() >= most) return false;
 
@@ -298,6 +316,7 @@ class Sharing {
   std::vector<ElementState> state_;
   std::vector<std::vector<TilePlace>> row_of_;  ///< of the own elements of the tile that is filled
   std::vector<TilePlace> place_;                ///< of elements in the tile that is filled
+  std::vector<Index> noted_by_;                 ///< the last tile that knows each element by a link
   std::vector<Index> bar_starts_;
   std::vector<Entry> bar_entries_;
   std::vector<std::vector<Index>> own_, links_of_[3];
@@ -340,58 +359,108 @@ std::unique_ptr<TilePlan> share_out_to_tiles(const World& w, Index count) {
   return Sharing(w, count).plan();
 }
 
-void tell_contacts(const World& w, TilePlan& plan) {
-  std::vector<Index> a, b;
-  copy_to(a, w.contacts.pairs.a);
-  copy_to(b, w.contacts.pairs.b);
-  const auto tiles = static_cast<Index>(plan.tiles.size());
-  std::vector<std::vector<std::pair<Index, TileContact>>> of_tile(plan.tiles.size());
-  std::vector<std::vector<Index>> touched(plan.tiles.size());
-  const auto place = [&](Index t, Index e) {
-    const Tile& tile = plan.tiles[at(t)];
-    const auto own = plan.own.begin() + tile.first_own,
-               linked = plan.linked.begin() + tile.first_linked;
-    const auto among_own = std::lower_bound(own, own + tile.own, e);
-    if (among_own != own + tile.own && *among_own == e)
-      return static_cast<TilePlace>(among_own - own);
-    const auto among_linked = std::lower_bound(linked, linked + tile.linked, e);
-    if (among_linked != linked + tile.linked && *among_linked == e)
-      return static_cast<TilePlace>(tile.own + (among_linked - linked));
-    std::vector<Index>& more = touched[at(t)];
-    const auto again = std::find(more.begin(), more.end(), e) - more.begin();
-    if (static_cast<std::size_t>(again) == more.size()) more.push_back(e);
-    return static_cast<TilePlace>(tile.own + tile.linked + again);
+namespace {
+
+/// Gives a tile room for up to `most` actions of contacts, as far as memory goes.
+/// @returns bytes that it needs
+std::size_t give_actions(Tile& tile, const TileGroups& groups, std::size_t most_bytes, Index most) {
+  const auto bytes = [&] {
+    TileMemory memory;
+    return memory.lay_out(tile, groups, reinterpret_cast<std::byte*>(64));
   };
-  for (Index p = 0; p < static_cast<Index>(a.size()); ++p)
-    for (Index side = 0; side < 2; ++side) {
-      const Index own = side == 0 ? a[at(p)] : b[at(p)], other = side == 0 ? b[at(p)] : a[at(p)];
-      const Index t = plan.tile_of[at(own)];
-      of_tile[at(t)].push_back({own, {p, place(t, own), place(t, other), side}});
+  tile.acting = 0;
+  const std::size_t least = bytes();
+  if (least >= most_bytes) return least;
+  const auto room = static_cast<Index>(
+      std::min((most_bytes - least) / sizeof(PairForce), static_cast<std::size_t>(most)));
+  tile.acting = std::min(tile.contacts, room);
+  return bytes();
+}
+
+/// Contacts as one of their ends sees them, an element of a tile: in the order of tiles, those of a
+/// tile in the order of all.
+class ContactsByTile {
+ public:
+  ContactsByTile(const World& w, const TilePlan& plan) : begin_(plan.tiles.size() + 1, 0) {
+    copy_to(a_, w.contacts.pairs.a);
+    copy_to(b_, w.contacts.pairs.b);
+    const auto each = [&](const auto& visit) {
+      for (Index p = 0; p < static_cast<Index>(a_.size()); ++p) {
+        visit(plan.tile_of[at(a_[at(p)])], 2 * p);
+        visit(plan.tile_of[at(b_[at(p)])], 2 * p + 1);
+      }
+    };
+    each([&](Index t, Entry) { ++begin_[at(t) + 1]; });
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    entries_.resize(begin_.back());
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    each([&](Index t, Entry entry) { entries_[next[at(t)]++] = entry; });
+  }
+  /// Appends the contacts of tile t by its own elements, where those of each begin, and the
+  /// elements that no link has told it of.
+  void list(Index t, const TilePlan& plan, std::vector<TileContact>& contacts,
+            std::vector<TilePlace>& starts, std::vector<Index>& touched) const {
+    const Tile& tile = plan.tiles[at(t)];
+    const std::size_t first_touched = touched.size();
+    std::vector<std::size_t> next(at(tile.own) + 1, 0);
+    std::vector<TileContact> found;
+    for (std::size_t k = begin_[at(t)]; k < begin_[at(t) + 1]; ++k) {
+      const Index p = pair_of(entries_[k]), side = side_of(entries_[k]);
+      const Index own = side == 0 ? a_[at(p)] : b_[at(p)],
+                  other = side == 0 ? b_[at(p)] : a_[at(p)];
+      const auto place = static_cast<TilePlace>(place_in(plan.own, tile.first_own, tile.own, own));
+      found.push_back({p, place, place_of(other, tile, plan, touched, first_touched), side});
+      ++next[place + 1U];
     }
-  // Contacts ascend by their ids, so that those of an element come in the order of their partners.
-  std::vector<TileContact> contacts;
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (const std::size_t start : next) starts.push_back(static_cast<TilePlace>(start));
+    const std::size_t first = contacts.size();
+    contacts.resize(first + found.size());
+    for (const TileContact& one : found) contacts[first + next[one.own]++] = one;
+  }
+
+ private:
+  /// Place of an element in a part of a sorted list, or -1.
+  static Index place_in(const std::vector<Index>& list, Index first, Index count, Index element) {
+    const auto begin = list.begin() + first, end = begin + count;
+    const auto found = std::lower_bound(begin, end, element);
+    return found != end && *found == element ? static_cast<Index>(found - begin) : -1;
+  }
+  static TilePlace place_of(Index element, const Tile& tile, const TilePlan& plan,
+                            std::vector<Index>& touched, std::size_t first_touched) {
+    Index place = place_in(plan.own, tile.first_own, tile.own, element);
+    if (place >= 0) return static_cast<TilePlace>(place);
+    place = place_in(plan.linked, tile.first_linked, tile.linked, element);
+    if (place >= 0) return static_cast<TilePlace>(tile.own + place);
+    const auto begin = touched.begin() + static_cast<std::ptrdiff_t>(first_touched);
+    const auto known = std::find(begin, touched.end(), element);
+    const auto again = static_cast<Index>(known - begin);
+    if (known == touched.end()) touched.push_back(element);
+    return static_cast<TilePlace>(tile.own + tile.linked + again);
+  }
+
+  std::vector<Index> a_, b_;
+  std::vector<std::size_t> begin_;  ///< first entry of each tile, and the end
+  std::vector<Entry> entries_;
+};
+
+}  // namespace
+
+void tell_contacts(const World& w, TilePlan& plan, std::size_t most_bytes) {
+  const Index most = w.exec.space == Space::shadow ? 1 : 32;  // 1: tests see what does not fit
+  const ContactsByTile by_tile(w, plan);
   std::vector<TilePlace> starts;
+  std::vector<TileContact> contacts;
   std::vector<Index> all_touched;
   plan.bytes = 0;
-  for (Index t = 0; t < tiles; ++t) {
+  for (Index t = 0; t < static_cast<Index>(plan.tiles.size()); ++t) {
     Tile& tile = plan.tiles[at(t)];
-    auto& here = of_tile[at(t)];
-    std::stable_sort(here.begin(), here.end(),
-                     [](const auto& p, const auto& q) { return p.second.own < q.second.own; });
     tile.first_contact = static_cast<Index>(contacts.size());
-    tile.contacts = static_cast<Index>(here.size());
     tile.first_touched = static_cast<Index>(all_touched.size());
-    tile.touched = static_cast<Index>(touched[at(t)].size());
-    std::size_t next = 0;
-    for (Index e = 0; e <= tile.own; ++e) {
-      while (next < here.size() && here[next].second.own < e) ++next;
-      starts.push_back(static_cast<TilePlace>(next));
-    }
-    for (const auto& one : here) contacts.push_back(one.second);
-    all_touched.insert(all_touched.end(), touched[at(t)].begin(), touched[at(t)].end());
-    TileMemory memory;
-    plan.bytes =
-        std::max(plan.bytes, memory.lay_out(tile, plan.groups, reinterpret_cast<std::byte*>(64)));
+    by_tile.list(t, plan, contacts, starts, all_touched);
+    tile.contacts = static_cast<Index>(contacts.size()) - tile.first_contact;
+    tile.touched = static_cast<Index>(all_touched.size()) - tile.first_touched;
+    plan.bytes = std::max(plan.bytes, give_actions(tile, plan.groups, most_bytes, most));
   }
   copy_to(plan.tiles_there, plan.tiles);
   copy_to(plan.touched_there, all_touched);

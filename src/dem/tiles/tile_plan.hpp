@@ -39,6 +39,7 @@ struct TileContact {
 struct Tile {
   Index own, linked, touched;  ///< elements  [-]
   Index concrete, steel, interface, contacts;
+  Index acting;  ///< contacts that may have their actions in the tile's memory at one time
   Index row_entries;
   Index first_own, first_linked, first_touched, first_link, first_axis, first_row, first_start,
       first_contact;
@@ -68,7 +69,10 @@ struct TileMemory {
   ElementLoad* load;  ///< of its own elements
   Quaternion* orientation;
   Vec3* reference;
-  double *margin, *damping_work, *load_work, *critical;
+  double *margin, *damping_work, *load_work;
+  double* slowest;  ///< largest stiffness over inertia in this step  [1/s2]
+  float *over_mass,
+      *room;  ///< [1/kg], square of the margin, less what rounding may take  [m2]
 
   TileLink *concrete, *steel, *interface;
   double *length, *stiffness, *area, *opening, *shear, *moment;  ///< of concrete links
@@ -86,8 +90,12 @@ struct TileMemory {
                     ///< and the end; then actions from `bar_actions` on
   TilePlace* starts;  ///< first contact of each own element, and the end
   TileContact* contacts;
-  std::uint8_t *touching,  ///< whether a contact's ends have touched when they were last looked at
-      *acts;               ///< whether it has an action in this step
+  std::uint8_t* touching;  ///< whether a contact's ends have touched when they were last looked at
+  TilePlace* acts;         ///< number from 1 of a contact's action in this step, the first ones in
+                           ///< `contact_actions`; 0: none
+  PairForce* contact_actions;
+  float* stiffness_sums;  ///< of own elements: 13 numbers, one array each
+  Index* counters;        ///< next portion of links, next action of a contact
 
   ConcreteLink* concrete_laws;
   SteelLink* steel_laws;
@@ -122,6 +130,7 @@ BR_HD inline std::size_t TileMemory::lay_out(const Tile& tile, const TileGroups&
   detail::Pieces pieces{base};
   const Index own = tile.own, all = tile.elements(), bars = tile.steel, bonds = tile.interface;
   pieces.take(clocks, 2);
+  pieces.take(counters, 2);
   pieces.take(concrete_laws, groups.concrete);
   pieces.take(steel_laws, groups.steel);
   pieces.take(interface_laws, groups.interface);
@@ -138,7 +147,9 @@ BR_HD inline std::size_t TileMemory::lay_out(const Tile& tile, const TileGroups&
   pieces.take(margin, own);
   pieces.take(damping_work, own);
   pieces.take(load_work, own);
-  pieces.take(critical, own);
+  pieces.take(slowest, own);
+  pieces.take(over_mass, own);
+  pieces.take(room, own);
   pieces.take(concrete, tile.concrete);
   pieces.take(length, tile.concrete);
   pieces.take(stiffness, tile.concrete);
@@ -159,6 +170,8 @@ BR_HD inline std::size_t TileMemory::lay_out(const Tile& tile, const TileGroups&
   pieces.take(contacts, tile.contacts);
   pieces.take(touching, tile.contacts);
   pieces.take(acts, tile.contacts);
+  pieces.take(contact_actions, tile.acting);
+  pieces.take(stiffness_sums, 13 * own);
   pieces.take(bar_actions, tile.bars());
   detail::Pieces also = pieces;
   also.take(received, all - own);
@@ -213,7 +226,8 @@ struct TilePlan {
 /// Shares a world out to at most `count` tiles. @returns null if links cannot be told by tiles
 std::unique_ptr<TilePlan> share_out_to_tiles(const World& w, Index count);
 /// Gives tiles their contacts, after a search.
-void tell_contacts(const World& w, TilePlan& plan);
+/// @param memory  of a tile at most  [B]
+void tell_contacts(const World& w, TilePlan& plan, std::size_t memory);
 
 /// The tiles of a world, once they were asked for. A copy of a world has none.
 class Tiles {

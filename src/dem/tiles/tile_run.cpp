@@ -20,7 +20,8 @@ namespace {
 /// Ends the step that a clock holds open, if there is one, by what all tiles have told.
 /// @returns whether tiles leave: at the end, or when a search is near
 BR_HD bool end_step(const EndOfStep<StepRule>& end, const TileNews& news, StepClock& clock) {
-  if (clock.open != 0) clock.least = ordered_bits(news.least);
+  if (clock.open != 0)
+    clock.least = ordered_bits(min(largest_least, TileStep::critical_of(news.slowest)));
   end(clock);
   clock.host_request = news.near ? 1 : 0;
   return clock.halted != 0 || news.near;
@@ -40,28 +41,30 @@ BR_HD float span_after(double dt) {
 
 #if defined(__CUDACC__)
 
-/// Findings of a block's threads together.
-template <int threads>
-__device__ TileNews news_of_block(TileNews own, TileNews* of_warp) {
+/// Findings of a warp's threads together, for its first one.
+__device__ TileNews news_of_warp(TileNews own) {
   for (int half = 16; half > 0; half /= 2)
-    own.least = fmin(own.least, __shfl_down_sync(~0U, own.least, half));
+    own.slowest = fmax(own.slowest, __shfl_down_sync(~0U, own.slowest, half));
   own.near = __any_sync(~0U, own.near ? 1 : 0) != 0;
-  if (threadIdx.x % 32 == 0) of_warp[threadIdx.x / 32] = own;
-  __syncthreads();
-  own = of_warp[0];
-  for (int warp = 1; warp < threads / 32; ++warp) {
-    own.least = fmin(own.least, of_warp[warp].least);
-    own.near = own.near || of_warp[warp].near;
-  }
   return own;
 }
+template <int warps>
+__device__ TileNews news_of(const TileNews* of_warp) {
+  TileNews news = of_warp[0];
+  for (int warp = 1; warp < warps; ++warp) {
+    news.slowest = fmax(news.slowest, of_warp[warp].slowest);
+    news.near = news.near || of_warp[warp].near;
+  }
+  return news;
+}
 
-/// Loads of others' elements: a few words are asked for before the first has come.
+/// Loads of others' elements, by `threads` threads: several words are asked for before the first
+/// has come.
 template <int threads>
-__device__ void receive(const TileStep& tile, std::uint32_t tag) {
-  constexpr int at_once = 4;
+__device__ void receive(const TileStep& tile, std::uint32_t tag, Index thread) {
+  constexpr int at_once = 6;
   const Index numbers = tile.received();
-  for (auto k = static_cast<Index>(threadIdx.x); k < numbers; k += at_once * threads) {
+  for (Index k = thread; k < numbers; k += at_once * threads) {
     std::uint64_t bits[at_once];
     bool came[at_once];
 #pragma unroll
@@ -79,53 +82,90 @@ __device__ void receive(const TileStep& tile, std::uint32_t tag) {
   }
 }
 
+/// Links and contacts: each warp begins with the portion of its number and then asks for more.
+template <int threads>
+__device__ void pair_forces(const TileStep& tile, double dt, Index thread) {
+  const Index lane = thread % TileStep::portion, portions = tile.portions();
+  Index number = thread / TileStep::portion;
+  while (number < portions) {
+    tile.pair_force(dt, number, lane);
+    __syncwarp();
+    if (lane == 0) number = TileStep::take_number(tile.memory.counters);
+    number = __shfl_sync(~0U, number, 0);
+  }
+}
+
+/// Tells all tiles by `threads` threads what this one has found, and hears of all.
+/// @param room  for the findings of each of their warps
+/// @returns what this thread has heard
+template <int threads>
+__device__ TileNews exchange(const TileStep& tile, TileNews news, std::uint32_t tag, Index thread,
+                             TileNews* room) {
+  const Index tiles = tile.all.tiles.tiles.size;
+  news = news_of_warp(news);
+  if (thread % 32 == 0) room[thread / 32] = news;
+  __barrier_sync_count(1, threads);
+  const std::uint64_t own = TileStep::packed(news_of<threads / 32>(room));
+  for (Index to = thread; to < tiles; to += threads)
+    put(tile.news_word(tag, tile.number, to), own, tag);
+  news = TileNews{};
+  for (Index from = thread; from < tiles; from += threads) {
+    std::uint64_t bits = 0;
+    while (!get(tile.news_word(tag, from, tile.number), bits, tag)) {
+    }
+    TileStep::hear(news, bits);
+  }
+  return news_of_warp(news);
+}
+
 template <int threads>
 __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant__ TileCase all) {
   extern __shared__ __align__(16) std::byte memory[];
-  __shared__ TileNews told[threads / 32], heard[threads / 32];
+  constexpr int judges = 160, warps = judges / 32;  // the others receive loads meanwhile
+  __shared__ TileNews told[warps], heard[warps];
   const auto thread = static_cast<Index>(threadIdx.x), number = static_cast<Index>(blockIdx.x);
   const TileStep tile(all, number, memory);
   tile.enter(thread, threads);
   __syncthreads();
-  TileNews news;
-  news.near = tile.near_at_entry(thread, threads);
   std::uint32_t tag = all.tag;
   int current = 0;
   bool first = true;
+  double dt = 0.0;
   for (;;) {
     // Tiles tell each other what they have found, and hear of all.
     ++tag;
-    const Index tiles = all.tiles.tiles.size;
-    const TileNews own = news_of_block<threads>(news, told);
-    for (Index to = thread; to < tiles; to += threads)
-      put(tile.news_word(tag, number, to), TileStep::packed(own), tag);
-    news = TileNews{};
-    for (Index from = thread; from < tiles; from += threads) {
-      std::uint64_t bits = 0;
-      while (!get(tile.news_word(tag, from, number), bits, tag)) {
-      }
-      TileStep::hear(news, bits);
+    if (thread < judges) {
+      TileNews news;
+      if (first)
+        news.near = tile.near_at_entry(thread, judges);
+      else
+        for (Index e = thread; e < tile.tile.own; e += judges)
+          tile.judge(e, span_after(dt), longest_after(dt), news);
+      news = exchange<judges>(tile, news, tag, thread, told);
+      if (thread % 32 == 0) heard[thread / 32] = news;
+    } else if (!first) {
+      receive<threads - judges>(tile, tag, thread - judges);
     }
-    if (!first) receive<threads>(tile, tag);
     first = false;
-    news = news_of_block<threads>(news, heard);
+    __syncthreads();
     StepClock clock = tile.memory.clocks[current];
-    if (end_step(all.end, news, clock)) {
+    if (end_step(all.end, news_of<warps>(heard), clock)) {
       if (number == 0 && thread == 0) *all.clock = clock;
       break;
     }
     tile.move(clock.now, thread, threads);
     clock.open = step_open;
     current = 1 - current;
-    if (thread == 0) tile.memory.clocks[current] = clock;
-    const double dt = clock.now.next_dt;
+    if (thread == 0) {
+      tile.memory.clocks[current] = clock;
+      tile.count_from(threads / TileStep::portion);
+    }
+    dt = clock.now.next_dt;
     __syncthreads();
-    tile.pair_forces(dt, thread, threads);
+    pair_forces<threads>(tile, dt, thread);
     __syncthreads();
-    news = TileNews{};
-    const float span = span_after(dt), longest = longest_after(dt);
-    for (Index i = thread; i < tile.sum_items(); i += threads)
-      tile.sum(i, tag + 1, span, longest, news);
+    for (Index i = thread; i < tile.sum_items(); i += threads) tile.sum(i, tag + 1);
+    __syncthreads();
   }
   tile.leave(thread, threads);
   if (tile.memory.clocks[current].open != 0) tile.leave_actions(thread, threads);
@@ -161,7 +201,7 @@ class TilesInTurn {
       clock.open = step_open;
       const StepTime now = moved(clock.now);
       for (std::size_t t = 0; t < tiles_.size(); ++t) {
-        tiles_[t].pair_forces(now.last_dt, 0, 1);
+        pair_forces(tiles_[t], now.last_dt);
         told[t] = sums(tiles_[t], tag + 1, now.last_dt);
       }
       evaluated_ = true;
@@ -176,26 +216,31 @@ class TilesInTurn {
   struct alignas(64) Line {
     std::byte bytes[64];
   };
+  static void pair_forces(const TileStep& tile, double dt) {
+    tile.count_from(0);
+    for (Index at = 0; at < tile.portions(); ++at)
+      for (Index lane = 0; lane < TileStep::portion; ++lane) tile.pair_force(dt, at, lane);
+  }
   /// The sums of one element, by lanes that meet.
   struct Sums {
     const TileStep* tile;
     std::uint32_t tag;
-    double dt;
     Index element;
-    TileNews news;
   };
   static TileNews sums(const TileStep& tile, std::uint32_t tag, double dt) {
-    Sums sums{&tile, tag, dt, 0, {}};
+    Sums sums{&tile, tag, 0};
     for (; sums.element < tile.tile.own; ++sums.element)
       lockstep::run(
           TileStep::width,
           [](void* context, int lane) {
-            auto* const of = static_cast<Sums*>(context);
-            of->tile->sum(of->element * TileStep::width + lane, of->tag, span_after(of->dt),
-                          longest_after(of->dt), of->news);
+            const auto* const of = static_cast<Sums*>(context);
+            of->tile->sum(of->element * TileStep::width + lane, of->tag);
           },
           &sums);
-    return sums.news;
+    TileNews news;
+    for (Index e = 0; e < tile.tile.own; ++e)
+      tile.judge(e, span_after(dt), longest_after(dt), news);
+    return news;
   }
   /// Every tile hears the same.
   TileNews exchange(const std::vector<TileNews>& told, std::uint32_t tag, bool first) const {
@@ -300,7 +345,7 @@ Multiprocessors multiprocessors_for(const World& w) {
 bool has_contacts(World& w) {
   TilePlan& plan = *w.tiles.plan;
   if (!w.tiles.contacts_known) {
-    tell_contacts(w, plan);
+    tell_contacts(w, plan, multiprocessors_for(w).memory);
     w.tiles.contacts_known = true;
   }
   const Vec3& drift = w.travel.drift.velocity;

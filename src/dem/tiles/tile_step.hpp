@@ -6,138 +6,29 @@
 // contacts of its own elements, and adds these up. Links across tiles are evaluated by both. Once a
 // step tiles tell each other the forces on their elements and their least critical number.
 
-#include "dem/tiles/tile_case.hpp"
+#include "dem/tiles/tile_content.hpp"
 #include "exec/lockstep.hpp"
 
 namespace breccia::dem {
 
-struct TileStep {
-  const TileCase& all;
-  Index number;
-  Tile tile;
-  TileMemory memory;
-
-  BR_HD TileStep(const TileCase& of, Index tile_number, std::byte* base)
-      : all(of), number(tile_number), tile(of.tiles.tiles.data[tile_number]) {
-    memory.lay_out(tile, of.tiles.groups, base);
-  }
-
-  /// Brings everything from the arrays of the world; nothing of what others may write after
-  /// enter().
-  BR_HD void enter(Index thread, Index threads) const {
-    const TilesView& t = all.tiles;
-    for (Index e = thread; e < tile.elements(); e += threads) {
-      const Index g = e < tile.own ? t.own[tile.first_own + e]
-                      : e < tile.own + tile.linked
-                          ? t.linked[tile.first_linked + e - tile.own]
-                          : t.touched[tile.first_touched + e - tile.own - tile.linked];
-      memory.place[e] = g;
-      memory.state[e] = read_record(all.move.kick.state, g);
-      memory.mass[e] = all.move.kick.mass[g];
-      memory.inertia[e] = all.move.kick.inertia[g];
-      memory.material[e] = all.contacts.material[g];
-      memory.motion[e] = all.move.kick.motion[g];
-      memory.fixed[e] = all.move.kick.fixed[g];
-      const ElementLoad load{all.move.kick.force[g], all.move.kick.torque[g]};
-      if (e >= tile.own) {
-        memory.received[e - tile.own] = load;
-        continue;
-      }
-      memory.load[e] = load;
-      memory.orientation[e] = all.move.orientation[g];
-      memory.reference[e] = all.move.used.reference[g];
-      memory.margin[e] = all.move.used.margin[g];
-      memory.damping_work[e] = all.move.damping_work[g];
-      memory.load_work[e] = all.move.load_work[g];
-      memory.critical[e] = all.critical[g];
-    }
-    for (Index l = thread; l < tile.concrete; l += threads) {
-      const TileLink link = t.links[tile.first_link + l];
-      const auto g = static_cast<Index>(link.number);
-      memory.concrete[l] = link;
-      memory.length[l] = all.concrete.length[g];
-      memory.stiffness[l] = all.concrete.stiffness[g];
-      memory.area[l] = all.concrete.area[g];
-      memory.opening[l] = all.concrete.opening[g];
-      shear().store(l, all.concrete.shear[g]);
-      moment().store(l, all.concrete.moment[g]);
-    }
-    for (Index l = thread; l < tile.steel; l += threads) {
-      const TileLink link = t.links[tile.first_link + tile.concrete + l];
-      memory.steel[l] = link;
-      memory.bar_length[l] = all.steel.length[static_cast<Index>(link.number)];
-      memory.bar_state[l] = all.steel.state[static_cast<Index>(link.number)];
-    }
-    for (Index l = thread; l < tile.interface; l += threads) {
-      const TileLink link = t.links[tile.first_link + tile.concrete + tile.steel + l];
-      const auto g = static_cast<Index>(link.number);
-      memory.interface[l] = link;
-      memory.axis[l] = t.axes[tile.first_axis + l];
-      memory.bond_stiffness[l] = all.interface.stiffness[g];
-      memory.bond_area[l] = all.interface.area[g];
-      memory.bond_state[l] = all.interface.state[g];
-    }
-    const Index numbers = TileMemory::row_numbers(tile);
-    for (Index k = thread; k < numbers; k += threads) memory.rows[k] = t.rows[tile.first_row + k];
-    for (Index k = thread; k <= tile.own; k += threads)
-      memory.starts[k] = t.starts[tile.first_start + k];
-    for (Index k = thread; k < tile.contacts; k += threads) {
-      const TileContact contact = t.contacts[tile.first_contact + k];
-      const ContactState state = all.contacts.state[contact.pair];
-      memory.contacts[k] = contact;
-      if (contact.side != 0) all.twins.state[contact.pair] = state;
-      memory.touching[k] = state.overlap > 0.0 ? 1 : 0;
-      memory.acts[k] = 0;
-    }
-    for (Index k = thread; k < t.groups.concrete; k += threads)
-      memory.concrete_laws[k] = all.concrete_laws[k];
-    for (Index k = thread; k < t.groups.steel; k += threads)
-      memory.steel_laws[k] = all.steel_laws[k];
-    for (Index k = thread; k < t.groups.interface; k += threads)
-      memory.interface_laws[k] = all.interface_laws[k];
-    if (thread == 0) memory.clocks[0] = all.start;
-  }
-
-  /// Leaves everything that has changed.
-  BR_HD void leave(Index thread, Index threads) const {
-    for (Index e = thread; e < tile.own; e += threads) {
-      const Index g = memory.place[e];
-      all.move.state[g] = memory.state[e];
-      all.move.orientation[g] = memory.orientation[e];
-      all.move.damping_work[g] = memory.damping_work[e];
-      all.move.load_work[g] = memory.load_work[e];
-      all.force[g] = memory.load[e].force;
-      all.torque[g] = memory.load[e].torque;
-      all.critical[g] = memory.critical[e];
-    }
-    for (Index l = thread; l < tile.concrete; l += threads) {
-      const TileLink link = memory.concrete[l];
-      if (!is_own(link)) continue;
-      const auto g = static_cast<Index>(link.number);
-      all.concrete.length[g] = memory.length[l];
-      all.concrete.opening[g] = memory.opening[l];
-      all.concrete.shear.store(g, shear()[l]);
-      all.concrete.moment.store(g, moment()[l]);
-    }
-    for (Index l = thread; l < tile.steel; l += threads)
-      if (is_own(memory.steel[l]))
-        all.steel.state[static_cast<Index>(memory.steel[l].number)] = memory.bar_state[l];
-    for (Index l = thread; l < tile.interface; l += threads)
-      if (is_own(memory.interface[l]))
-        all.interface.state[static_cast<Index>(memory.interface[l].number)] = memory.bond_state[l];
-  }
-  /// Actions of bars outlast a step: those of the last one.
-  BR_HD void leave_actions(Index thread, Index threads) const {
-    for (Index l = thread; l < tile.bars(); l += threads) {
-      const bool bond = l >= tile.steel;
-      const TileLink link = bond ? memory.interface[l - tile.steel] : memory.steel[l];
-      if (!is_own(link)) continue;
-      const Index first = bond ? all.interface.first_action : all.steel.first_action;
-      all.steel.actions[first + static_cast<Index>(link.number)] = memory.bar_actions[l];
-    }
-  }
+struct TileStep : TileContent {
+  using TileContent::TileContent;
 
   // Phases of a step. Threads meet between them.
+
+  /// Before a step's links: portions are counted from the first that no warp begins with.
+  BR_HD void count_from(Index first) const {
+    memory.counters[0] = first;
+    memory.counters[1] = 1;
+  }
+  /// @returns the next number, another one for each thread that asks
+  BR_HD static Index take_number(Index* next) {
+#if defined(__CUDA_ARCH__)
+    return atomicAdd(next, 1);
+#else
+    return (*next)++;
+#endif
+  }
 
   /// Moves all elements that the tile knows, its own with their turns and works.
   BR_HD void move(const StepTime& now, Index thread, Index threads) const {
@@ -171,47 +62,50 @@ struct TileStep {
     }
   }
 
-  /// Links and contacts.
-  BR_HD void pair_forces(double dt, Index thread, Index threads) const {
-    // Kinds begin with a warp, so that its threads do alike.
-    const Index first_steel = whole_warps(tile.concrete),
-                first_bond = first_steel + whole_warps(tile.steel);
-    for (Index l = thread; l < first_bond + tile.interface; l += threads) {
-      if (l < first_steel) {
-        if (l < tile.concrete) concrete_link(dt, l);
-      } else if (l < first_bond) {
-        if (l - first_steel < tile.steel) steel_link(dt, l - first_steel);
-      } else {
-        bond(dt, l - first_bond);
-      }
+  /// Links and contacts in portions of a warp, each of a kind, so that its threads do alike. Those
+  /// that take longest come first.
+  static constexpr Index portion = 32;
+  BR_HD Index portions() const {
+    return portions_of(tile.contacts) + portions_of(tile.interface) + portions_of(tile.steel) +
+           portions_of(tile.concrete);
+  }
+  BR_HD void pair_force(double dt, Index at, Index lane) const {
+    Index k = at * portion + lane;
+    if (k < portions_of(tile.contacts) * portion) {
+      if (k < tile.contacts) contact(dt, k);
+      return;
     }
-    for (Index k = threads - 1 - thread; k < tile.contacts; k += threads) contact(dt, k);
+    k -= portions_of(tile.contacts) * portion;
+    if (k < portions_of(tile.interface) * portion) {
+      if (k < tile.interface) bond(dt, k);
+      return;
+    }
+    k -= portions_of(tile.interface) * portion;
+    if (k < portions_of(tile.steel) * portion) {
+      if (k < tile.steel) steel_link(dt, k);
+      return;
+    }
+    k -= portions_of(tile.steel) * portion;
+    if (k < tile.concrete) concrete_link(dt, k);
   }
 
   static constexpr Index width = 8;  ///< threads that add up for an element
-  BR_HD Index sum_items() const { return tile.own * width; }
+  BR_HD Index sum_items() const {
+    return tile.own * width;
+  }
 
   /// Thread i % 8 of the sums of an own element, in the order of GatherForces: the first four add
   /// up what it gets as a, the others as b; each along an axis, and two of the eight stiffnesses.
   /// The load goes to all tiles at once.
-  /// @param span, longest  half of this step and the longest to come; that one  [s]
-  BR_HD void sum(Index i, std::uint32_t tag, float span, float longest, TileNews& news) const {
+  BR_HD void sum(Index i, std::uint32_t tag) const {
     const Index e = memory.rows[i / width];
     const auto lane = static_cast<int>(i % width);
     const int side = lane / 4, part = lane % 4;
     const int axis = part < 3 ? part : 2;  // two threads have the same
     const int column = axis + 3 * side;
     PartSum sum{};
-    const TilePlace *const starts = memory.rows + tile.own, *const rows = starts + 2 * tile.own + 1;
-    const Index end = starts[2 * e + side + 1];
-    for (Index k = starts[2 * e + side]; k < end; ++k)
-      sum.add(read(memory.bar_actions[rows[k]], column, part));
-    for (Index k = memory.starts[e]; k < memory.starts[e + 1]; ++k) {
-      if (memory.acts[k] == 0 || memory.contacts[k].side != side) continue;
-      const PairForce* const actions =
-          side == 0 ? all.contacts.actions.data : all.twins.actions.data;
-      sum.add(read(actions[memory.contacts[k].pair], column, part));
-    }
+    add_links(sum, e, side, column, part);
+    add_contacts(sum, e, side, column, part);
     const LaneGroup<width> group;
     const double other = group.from(lane ^ 4, sum.first);
     const double load = side == 0 ? other - sum.second : sum.second + other;  // force, torque
@@ -219,14 +113,37 @@ struct TileStep {
       reinterpret_cast<double*>(memory.load + e)[column] = load;
       put(force_words(tag) + 6 * memory.place[e] + column, ordered_bits(load), tag);
     }
-    const double critical = critical_of(group, e, lane, sum);
-    const float reach = lane < 3 ? reach_of(e, lane, load, span, longest) : 0.0F;
-    const float square = reach * reach;
-    const float farthest = square + group.from(1, square) + group.from(2, square);
-    if (lane != 0) return;
-    memory.critical[e] = critical;
-    news.least = min(news.least, critical);
-    news.near = news.near || is_far(e, farthest);
+    // Numbers 2 part and 2 part + 1 of eight: the first is turn of a, the last turn of b.
+    const float turn_b = group.from(7, sum.straight[1]);
+    BR_UNROLL
+    for (int k = 0; k < 2; ++k) {
+      const float straight = sum.straight[k] + group.from(lane ^ 4, sum.straight[k]);
+      const float turning = sum.turning[k] + group.from(lane ^ 4, sum.turning[k]);
+      const int which = 2 * part + k;
+      if (side != 0 || which == 7) continue;
+      stiffness_sum(which, e) = which == 0 ? sum.straight[0] + turn_b : straight;
+      if (which > 0) stiffness_sum(6 + which, e) = turning;
+    }
+  }
+  /// What follows from an own element's sums: its critical number, and whether its margin may be
+  /// used up by the move to come.
+  /// @param span, longest  half of this step and the longest to come; that one  [s]
+  BR_HD void judge(Index e, float span, float longest, TileNews& news) const {
+    Symmetric<float> straight, turning;
+    BR_UNROLL
+    for (int k = 0; k < 6; ++k) {
+      straight.c[k] = stiffness_sum(1 + k, e);
+      turning.c[k] = stiffness_sum(7 + k, e);
+    }
+    const Stiffest most = stiffest(straight, turning, stiffness_sum(0, e));
+    const int fixed = memory.fixed[e];
+    const float push = is_held(fixed, 0) ? 0.0F : most.straight,
+                twist = is_held(fixed, 3) ? 0.0F : most.turning;
+    const double slowest = max(static_cast<double>(push) / memory.mass[e],
+                               static_cast<double>(twist) / memory.inertia[e]);
+    memory.slowest[e] = slowest;
+    news.slowest = slowest > news.slowest ? slowest : news.slowest;  // NaN does not count
+    news.near = news.near || is_far(e, span, longest);
   }
   /// This question of the forces that the tile has entered with.
   BR_HD bool near_at_entry(Index thread, Index threads) const {
@@ -234,13 +151,7 @@ struct TileStep {
     const auto span = static_cast<float>(0.5 * (now.last_dt + now.next_dt)),
                longest = static_cast<float>(now.next_dt);
     bool near = false;
-    for (Index e = thread; e < tile.own; e += threads) {
-      const Vec3& force = memory.load[e].force;
-      const float x = reach_of(e, 0, force.x, span, longest),
-                  y = reach_of(e, 1, force.y, span, longest),
-                  z = reach_of(e, 2, force.z, span, longest);
-      near = near || is_far(e, x * x + y * y + z * z);
-    }
+    for (Index e = thread; e < tile.own; e += threads) near = near || is_far(e, span, longest);
     return near;
   }
 
@@ -255,14 +166,16 @@ struct TileStep {
     return all.least + (static_cast<Index>(tag % 2) * tiles + to) * tiles + from;
   }
   BR_HD static std::uint64_t packed(const TileNews& news) {
-    return ordered_bits(news.least) | static_cast<std::uint64_t>(news.near ? 1 : 0) << 63;
+    return ordered_bits(news.slowest) | static_cast<std::uint64_t>(news.near ? 1 : 0) << 63;
   }
   BR_HD static void hear(TileNews& news, std::uint64_t bits) {
     news.near = news.near || bits >> 63 != 0;
-    news.least = min(news.least, number_of(bits & ~(std::uint64_t{1} << 63)));
+    news.slowest = max(news.slowest, number_of(bits & ~(std::uint64_t{1} << 63)));
   }
   /// Numbers of the loads of others' elements, and where number k comes.
-  BR_HD Index received() const { return 6 * (tile.linked + tile.touched); }
+  BR_HD Index received() const {
+    return 6 * (tile.linked + tile.touched);
+  }
   BR_HD const TileWord* received_word(Index k, std::uint32_t tag) const {
     return force_words(tag) + 6 * memory.place[tile.own + k / 6] + k % 6;
   }
@@ -271,27 +184,11 @@ struct TileStep {
   }
 
  private:
-  BR_HD static Index whole_warps(Index items) { return (items + 31) / 32 * 32; }
-  template <class T, class Of>
-  BR_HD static View<T> seen(Of* data, Index size) {
-    View<T> view;
-    view.data = data;
-    view.size = size;
-    return view;
+  BR_HD static Index portions_of(Index items) {
+    return (items + portion - 1) / portion;
   }
-  template <class T>
-  BR_HD static View<T> seen(T* data, Index size) {
-    return seen<T, T>(data, size);
-  }
-  BR_HD bool is_own(const TileLink& link) const { return link.a < tile.own; }
   BR_HD TileActions actions(PairForce* records, const TileLink& link) const {
     return {records, static_cast<Index>(link.number), is_own(link)};
-  }
-  BR_HD PlanesView<double> shear() const {
-    return {seen(memory.shear, 3 * tile.concrete), tile.concrete};
-  }
-  BR_HD PlanesView<double> moment() const {
-    return {seen(memory.moment, 3 * tile.concrete), tile.concrete};
   }
   BR_HD ElementsView elements() const {
     const Index n = tile.elements();
@@ -385,7 +282,8 @@ struct TileStep {
     loaded.chord = memory.state[axis.after].position - memory.state[axis.before].position;
     kernel.update(memory.interface_laws[link.group], l, loaded);
   }
-  /// A contact whose ends are apart, as they were before, keeps its action: none.
+  /// A contact whose ends are apart, as they were before, has no action. Those that have one get a
+  /// place in the tile's memory, as long as there is room.
   BR_HD void contact(double dt, Index k) const {
     const TileContact contact = memory.contacts[k];
     const bool is_a = contact.side == 0;
@@ -397,10 +295,12 @@ struct TileStep {
         world.pairs,  world.materials,
         {},           {},
         world.state,  world.slid,
-        world.damped, {world.actions.data, 0, true}};
+        world.damped, {nullptr, 0, true}};
     const bool acts = memory.touching[k] != 0 || !kernel.apart(a, b);
-    memory.acts[k] = acts ? 1 : 0;
+    memory.acts[k] = acts ? static_cast<TilePlace>(take_number(memory.counters + 1)) : 0;
     if (!acts) return;
+    // The kernel writes action `pair`.
+    kernel.actions.records = action_of(k) - contact.pair;
     kernel.of_pair(contact.pair, a, b);
     memory.touching[k] = world.state[contact.pair].overlap > 0.0 ? 1 : 0;
   }
@@ -426,35 +326,41 @@ struct TileStep {
             {two[0], two[1]},
             {ratio * two[0], ratio * two[1]}};
   }
-  /// Inertia over a bound of the largest stiffness, for lane 0.  [s2]
-  BR_HD double critical_of(const LaneGroup<width>& group, Index e, int lane,
-                           const PartSum& sum) const {
-    float straight_part[2], turning_part[2];
-    for (int k = 0; k < 2; ++k) {
-      straight_part[k] = sum.straight[k] + group.from(lane ^ 4, sum.straight[k]);
-      turning_part[k] = sum.turning[k] + group.from(lane ^ 4, sum.turning[k]);
-    }
-    Symmetric<float> straight, turning;  // numbers 1 to 6 of eight
-    BR_UNROLL
-    for (int k = 0; k < 6; ++k) {
-      straight.c[k] = group.from((k + 1) / 2, straight_part[(k + 1) % 2]);
-      turning.c[k] = group.from((k + 1) / 2, turning_part[(k + 1) % 2]);
-    }
-    const float turn = group.from(0, sum.straight[0]) + group.from(7, sum.straight[1]);
-    const Stiffest most = stiffest(straight, turning, turn);
-    const bool of_straight = lane % 2 == 0;
-    const float largest = is_held(memory.fixed[e], of_straight ? 0 : 3) ? 0.0F
-                          : of_straight                                 ? most.straight
-                                                                        : most.turning;
-    const double slow =
-        static_cast<double>(largest) / (of_straight ? memory.mass[e] : memory.inertia[e]);
-    const double slowest = max(slow, group.from(1, slow));
-    return slowest > 0.0 ? 1.0 / slowest : largest_least;
+  BR_HD float& stiffness_sum(int which, Index e) const {
+    return memory.stiffness_sums[which * tile.own + e];
   }
-
-  /// How far from its reference an own element may be along an axis after the move to come: its
-  /// force gives it its velocity. In single precision, with room for rounding.  [m]
-  BR_HD float reach_of(Index e, int axis, double force, float span, float longest) const {
+  /// The links of a row, two of which are read before the first is added.
+  BR_HD void add_links(PartSum& sum, Index e, int side, int column, int part) const {
+    const TilePlace *const starts = memory.rows + tile.own, *const rows = starts + 2 * tile.own + 1;
+    const Index end = starts[2 * e + side + 1];
+    Index k = starts[2 * e + side];
+    for (; k + 1 < end; k += 2) {
+      const PartSum first = read(memory.bar_actions[rows[k]], column, part),
+                    second = read(memory.bar_actions[rows[k + 1]], column, part);
+      sum.add(first);
+      sum.add(second);
+    }
+    if (k < end) sum.add(read(memory.bar_actions[rows[k]], column, part));
+  }
+  BR_HD void add_contacts(PartSum& sum, Index e, int side, int column, int part) const {
+    for (Index k = memory.starts[e]; k < memory.starts[e + 1]; ++k)
+      if (memory.acts[k] != 0 && memory.contacts[k].side == side)
+        sum.add(read(*action_of(k), column, part));
+  }
+  /// Whether an own element may be further from its reference than its margin after the move to
+  /// come: its force gives it its velocity. In single precision, with room for rounding; NaN counts
+  /// as far.
+  BR_HD bool is_far(Index e, float span, float longest) const {
+    const float over_mass = memory.over_mass[e];
+    const Vec3& force = memory.load[e].force;
+    const float x = reach_of(e, 0, force.x, over_mass, span, longest),
+                y = reach_of(e, 1, force.y, over_mass, span, longest),
+                z = reach_of(e, 2, force.z, over_mass, span, longest);
+    return !(x * x + y * y + z * z < memory.room[e]);
+  }
+  /// How far along an axis.  [m]
+  BR_HD float reach_of(Index e, int axis, double force, float over_mass, float span,
+                       float longest) const {
     const ElementState& state = memory.state[e];
     const auto away =
         static_cast<float>(reinterpret_cast<const double*>(&state.position)[axis] -
@@ -466,15 +372,9 @@ struct TileStep {
     const auto weight = static_cast<float>(axis == 0   ? gravity.x
                                            : axis == 1 ? gravity.y
                                                        : gravity.z);
-    const float gained =
-        fabsf(static_cast<float>(force)) / static_cast<float>(memory.mass[e]) + fabsf(weight);
+    const float gained = fabsf(static_cast<float>(force)) * over_mass + fabsf(weight);
     const auto driven = static_cast<float>(1.0 + all.move.kick.damping) * gained;
     return fabsf(away) + longest * (speed + span * driven);
-  }
-  /// @param square  of the way from its reference; NaN counts as far
-  BR_HD bool is_far(Index e, float square) const {
-    const auto margin = static_cast<float>(memory.margin[e]);
-    return !(1.0001F * square < margin * margin);
   }
 };
 
