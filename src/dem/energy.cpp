@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dem/free_walls.hpp"
-#include "exec/for_each.hpp"
+#include "exec/fold_sum.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -22,11 +22,11 @@ struct KineticEnergy {
     const Vec3 now = before + (0.5 * kick.last_dt) * a;
     return dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a);
   }
-  BR_HD ExactSum operator()(Index e) const {
-    if (!owned(e)) return ExactSum();
+  BR_HD void add_to(Energies& sum, Index e) const {
+    if (!owned(e)) return;
     const Kick::Result next = kick(e);
     const ElementState& s = kick.state[e];
-    return ExactSum(0.5 * kick.mass[e] * square(s.velocity, next.velocity) +
+    sum.kinetic.add(0.5 * kick.mass[e] * square(s.velocity, next.velocity) +
                     0.5 * kick.inertia[e] * square(s.spin, next.spin));
   }
 };
@@ -36,23 +36,19 @@ struct GravityPotential {
   Vec3 gravity;
   View<const ElementState> state_of;
   View<const double> mass;
-  BR_HD ExactSum operator()(Index e) const {
-    if (!owned(e)) return ExactSum();
-    return ExactSum(mass[e] * dot(gravity, state_of[e].position));
+  BR_HD void add_to(Energies& sum, Index e) const {
+    if (owned(e)) sum.potential.add(mass[e] * dot(gravity, state_of[e].position));
   }
 };
 
 /// Of all links of a kind.
 template <class Number, class Law>
-Energies link_energies(const World& w, const LinkSet<Law>& set) {
+void add_links(FoldSum<Energies>& all, const World& w, const LinkSet<Law>& set) {
   const auto shares = shares_of<Number>(set, w.elements.state.view());
-  Energies all;
   for (const LinkGroup<Law>& g : set.groups)
-    all = all + fold(w.exec, g.end - g.begin, Energies{},
-                     GroupEnergies<Law, std::remove_const_t<decltype(shares)>>{
-                         w.domain.owned_view(), g.law, g.begin, shares, w.elements.fixed.view()},
-                     Sum{});
-  return all;
+    all.add(g.end - g.begin,
+            GroupEnergies<Law, std::remove_const_t<decltype(shares)>>{
+                w.domain.owned_view(), g.law, g.begin, shares, w.elements.fixed.view()});
 }
 
 /// Energy stored by contacts; `stored_normal` comes from the overlap of the last step.
@@ -116,15 +112,13 @@ struct ElementShares {
 };
 
 template <class List>
-Energies contact_shares(const World& w, const List& c, const Buffer<ContactPair>& pairs,
-                        Index materials, const Buffer<Wall>& walls) {
-  return fold(
-      w.exec, c.size(), Energies{},
-      ContactShares{w.domain.owned_view(), w.given->contact, w.elements.material.view(),
-                    w.elements.state.view(), pairs.view(), materials, walls.view(),
-                    c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
-                    c.history.slid.view(), c.history.damped.view(), c.history.work_of_walls()},
-      Sum{});
+void add_contacts(FoldSum<Energies>& all, const World& w, const List& c,
+                  const Buffer<ContactPair>& pairs, Index materials, const Buffer<Wall>& walls) {
+  all.add(c.size(),
+          ContactShares{w.domain.owned_view(), w.given->contact, w.elements.material.view(),
+                        w.elements.state.view(), pairs.view(), materials, walls.view(),
+                        c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
+                        c.history.slid.view(), c.history.damped.view(), c.history.work_of_walls()});
 }
 
 }  // namespace
@@ -133,22 +127,19 @@ Energies held(const World& w) {
   const StageTime timed(w.exec, "ledger");
   const OwnedView owned = w.domain.owned_view();
   const Elements& e = w.elements;
-  Energies all;
-  all.kinetic = fold(w.exec, e.size(), ExactSum(), KineticEnergy{owned, kick(w)}, Sum{});
+  FoldSum<Energies> all(w.exec);
+  all.add(e.size(), KineticEnergy{owned, kick(w)});
   with_number(w.exec.precision, [&](auto number) {
-    w.each_set([&](const auto& set) { all = all + link_energies<decltype(number)>(w, set); });
+    w.each_set([&](const auto& set) { add_links<decltype(number)>(all, w, set); });
   });
   Buffer<Wall> walls(w.exec.space);
   copy_to(walls, w.walls);
-  all = all + contact_shares(w, w.contacts, w.given->contact_pairs, w.given->materials, walls);
-  all = all + contact_shares(w, w.wall_contacts, w.given->wall_pairs, 0, walls);
-  all = all + fold(w.exec, e.size(), Energies{},
-                   ElementShares{owned, kick(w), e.damping_work.view(), e.load_work.view()}, Sum{});
+  add_contacts(all, w, w.contacts, w.given->contact_pairs, w.given->materials, walls);
+  add_contacts(all, w, w.wall_contacts, w.given->wall_pairs, 0, walls);
+  all.add(e.size(), ElementShares{owned, kick(w), e.damping_work.view(), e.load_work.view()});
   if (dot(w.given->gravity, w.given->gravity) > 0.0)
-    all.potential =
-        fold(w.exec, e.size(), ExactSum(),
-             GravityPotential{owned, w.given->gravity, e.state.view(), e.mass.view()}, Sum{});
-  return w.free_walls.empty() ? all : all + held_by_free_walls(w);
+    all.add(e.size(), GravityPotential{owned, w.given->gravity, e.state.view(), e.mass.view()});
+  return w.free_walls.empty() ? all.sum() : all.sum() + held_by_free_walls(w);
 }
 
 EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {

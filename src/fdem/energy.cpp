@@ -2,7 +2,7 @@
 
 #include "fdem/energy.hpp"
 
-#include "exec/for_each.hpp"
+#include "exec/fold_sum.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -50,11 +50,9 @@ struct GravityPotential {
   Vec2 gravity;
   View<const TriangleNodes> nodes;
   View<const double> mass;
-  BR_HD ExactSum operator()(Index t) const {
-    ExactSum sum;
-    if (!owned(t)) return sum;
-    for (const NodeState& n : nodes[t].at) sum.add(mass[t] * dot(gravity, n.position));
-    return sum;
+  BR_HD void add_to(Energies& sum, Index t) const {
+    if (!owned(t)) return;
+    for (const NodeState& n : nodes[t].at) sum.potential.add(mass[t] * dot(gravity, n.position));
   }
 };
 
@@ -120,31 +118,26 @@ struct CoupleShares {
 Energies held(const World& w) {
   const OwnedView owned = w.domain.owned_view();
   const Triangles& t = w.triangles;
-  Energies all = fold(w.exec, t.size(), Energies{},
-                      TriangleShares{owned,
-                                     {kick(w), t.external.view(), {}, {}, {}, {}},
-                                     laws_of(w),
-                                     w.given->laws.view(),
-                                     t.shape_inverse.view(),
-                                     t.viscous_work.view(),
-                                     t.damping_work.view(),
-                                     t.load_work.view()},
-                      Sum{});
+  FoldSum<Energies> all(w.exec);
+  all.add(t.size(), TriangleShares{owned,
+                                   {kick(w), t.external.view(), {}, {}, {}, {}},
+                                   laws_of(w),
+                                   w.given->laws.view(),
+                                   t.shape_inverse.view(),
+                                   t.viscous_work.view(),
+                                   t.damping_work.view(),
+                                   t.load_work.view()});
   const Joints& j = w.joints;
-  all = all + fold(w.exec, j.size(), Energies{},
-                   JointShares{owned, by_number(t.nodes.view()), w.given->bonds.view(),
-                               w.joint_ends.view(), j.law.view(), j.length.view(),
-                               j.strength.view(), j.preset.view(), j.stage.view(), j.points.view(),
-                               j.work.view(), j.inherited_work.view()},
-                   Sum{});
-  all = all + fold(w.exec, w.couples.size(), Energies{},
-                   CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()},
-                   Sum{});
+  all.add(j.size(),
+          JointShares{owned, by_number(t.nodes.view()), w.given->bonds.view(), w.joint_ends.view(),
+                      j.law.view(), j.length.view(), j.strength.view(), j.preset.view(),
+                      j.stage.view(), j.points.view(), j.work.view(), j.inherited_work.view()});
+  all.add(w.couples.size(),
+          CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()});
   const Vec2 gravity = w.given->gravity;
   if (dot(gravity, gravity) > 0.0)
-    all.potential = fold(w.exec, t.size(), ExactSum{},
-                         GravityPotential{owned, gravity, t.nodes.view(), t.mass.view()}, Sum{});
-  return all;
+    all.add(t.size(), GravityPotential{owned, gravity, t.nodes.view(), t.mass.view()});
+  return all.sum();
 }
 
 void begin_ledger(World& w) {

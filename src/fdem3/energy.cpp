@@ -1,6 +1,6 @@
 // The ledger of a run of tetrahedra: every joule, summed exactly.
 
-#include "exec/for_each.hpp"
+#include "exec/fold_sum.hpp"
 #include "fdem3/world.hpp"
 
 namespace breccia::fdem3 {
@@ -47,11 +47,9 @@ struct GravityPotential {
   Vec3 gravity;
   View<const TetrahedronNodes> nodes;
   View<const double> mass;
-  BR_HD ExactSum operator()(Index t) const {
-    ExactSum sum;
-    if (!owned(t)) return sum;
-    for (const NodeState& n : nodes[t].at) sum.add(mass[t] * dot(gravity, n.position));
-    return sum;
+  BR_HD void add_to(Energies& sum, Index t) const {
+    if (!owned(t)) return;
+    for (const NodeState& n : nodes[t].at) sum.potential.add(mass[t] * dot(gravity, n.position));
   }
 };
 
@@ -115,26 +113,21 @@ struct CoupleShares {
 Energies held(const World& w) {
   const OwnedView owned = w.domain.owned_view();
   const Tetrahedra& t = w.tetrahedra;
-  Energies all = fold(w.exec, t.size(), Energies{},
-                      ElementShares{owned, kick(w), t.external.view(), t.material.view(),
-                                    w.given->laws.view(), t.shape.view(), t.viscous_work.view(),
-                                    t.damping_work.view(), t.load_work.view()},
-                      Sum{});
+  FoldSum<Energies> all(w.exec);
+  all.add(t.size(), ElementShares{owned, kick(w), t.external.view(), t.material.view(),
+                                  w.given->laws.view(), t.shape.view(), t.viscous_work.view(),
+                                  t.damping_work.view(), t.load_work.view()});
   const Joints& j = w.joints;
-  all = all + fold(w.exec, j.size(), Energies{},
-                   JointShares{owned, t.nodes.view(), w.given->bonds.view(), j.face_a.view(),
-                               j.face_b.view(), j.turn.view(), j.law.view(), j.shape.view(),
-                               j.length.view(), j.strength.view(), j.preset.view(), j.stage.view(),
-                               j.points.view(), j.work.view(), j.inherited_work.view()},
-                   Sum{});
-  all = all + fold(w.exec, w.couples.size(), Energies{},
-                   CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()},
-                   Sum{});
+  all.add(j.size(), JointShares{owned, t.nodes.view(), w.given->bonds.view(), j.face_a.view(),
+                                j.face_b.view(), j.turn.view(), j.law.view(), j.shape.view(),
+                                j.length.view(), j.strength.view(), j.preset.view(), j.stage.view(),
+                                j.points.view(), j.work.view(), j.inherited_work.view()});
+  all.add(w.couples.size(),
+          CoupleShares{owned, w.couples.pairs.a.view(), w.couples.history.state.view()});
   const Vec3 gravity = w.given->gravity;
   if (dot(gravity, gravity) > 0.0)
-    all.potential = fold(w.exec, t.size(), ExactSum{},
-                         GravityPotential{owned, gravity, t.nodes.view(), t.mass.view()}, Sum{});
-  return all;
+    all.add(t.size(), GravityPotential{owned, gravity, t.nodes.view(), t.mass.view()});
+  return all.sum();
 }
 
 void begin_ledger(World& w) {
