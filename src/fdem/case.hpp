@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/emission_config.hpp"
 #include "core/gauge.hpp"
 #include "core/output_config.hpp"
 #include "exec/buffer.hpp"
@@ -32,6 +33,21 @@ struct FluidSource {
   std::int16_t load;            ///< index into Case::loads
   double speed;                 ///< of its front; 0: it fills cracks at once  [m/s]
   std::vector<Index> vertices;  ///< at which it is from the start on  [-]
+};
+
+/// A fluid that flows through cracks.
+struct FlowCase {
+  bool on = false;
+  double viscosity = 0.0, bulk = 0.0;  ///<  [Pa s], [Pa]
+  double aperture = 0.0;               ///< of closed cracks  [m]
+  double stiffness = 0.0;              ///< of joints times length: what may act on a crack  [Pa]
+  bool filled = false;                 ///< cracks that are open at the start hold it
+  bool by_rate = false;                ///< stage
+  ScaledAmplitude input;               ///< stage; pressure  [Pa], or rate  [m2/s]
+  std::int16_t load = 0;               ///< index into Case::loads
+  Index triangles = 0;                 ///< of the whole mesh  [-]
+  std::vector<Index> vertices;         ///< of its source, ascending  [-]
+  std::vector<LoadedEdge> borders;     ///< of the region: they bear the pressure of the source
 };
 
 struct Case {
@@ -59,6 +75,8 @@ struct Case {
   std::vector<LoadAmplitude> load_amplitudes;  ///< stage: factors over time  (loads)
   std::vector<LoadedEdge> loaded;              ///< by global id, ascending; without cracks
   std::vector<FluidSource> fluids;             ///< empty: no load is a fluid
+  FlowCase flow;
+  EmissionConfig emission;             ///< which breaks are one event
   std::vector<CrackSide> open_cracks;  ///< edges open from the start, where there are fluids
   Buffer<ElasticTriangle> laws;        ///< stage  (materials; where stress in situ has a slope:
                                        ///< triangles of the whole mesh)

@@ -98,7 +98,7 @@ struct RulingOf {
   }
 };
 
-/// value(law, deformation) of each triangle.
+/// value(law, deformation, material) of each triangle.
 template <class Value, class Of>
 std::vector<Value> of_deformation(const World& w, const Of& value) {
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
@@ -111,7 +111,8 @@ std::vector<Value> of_deformation(const World& w, const Of& value) {
   for (Index i = 0; i < t.size(); ++i) {
     Vec2 x[3], v[3];
     split(t.nodes.data()[i], x, v);
-    all.push_back(value(laws[at(law.data()[i])], deformation(t.shape_inverse.data()[i], x, v)));
+    all.push_back(value(laws[at(law.data()[i])], deformation(t.shape_inverse.data()[i], x, v),
+                        t.material.data()[i]));
   }
   return all;
 }
@@ -192,11 +193,21 @@ std::vector<double> damage(const World& w) {
 
 std::vector<Sym2> stresses(const World& w) {
   return of_deformation<Sym2>(
-      w, [](const ElasticTriangle& law, const auto& d) { return law.stress(d, 0.0); });
+      w, [](const ElasticTriangle& law, const auto& d, Index) { return law.stress(d, 0.0); });
 }
 std::vector<double> stresses_across(const World& w) {
-  return of_deformation<double>(w, [&](const ElasticTriangle& law, const auto& d) {
-    return w.given->plane_strain ? law.stress_across(d) : 0.0;
+  return of_deformation<double>(w, [&](const ElasticTriangle& law, const auto& d, Index material) {
+    if (!w.given->plane_strain) return 0.0;
+    if (!law.is_bedded()) return law.stress_across(d);
+    const OutOfPlane p = w.given->rocks[at(material)].out_of_plane;
+    ElasticTriangle strained = law;
+    strained.preset = {};
+    const Sym2 s = strained.stress(d, 0.0);
+    const double angle = w.given->rocks[at(material)].angle;
+    const Vec2 turned = d.gradient * Vec2{std::cos(angle), std::sin(angle)};
+    const Vec2 along = (1.0 / norm(turned)) * turned;
+    const double by_along = dot(s * along, along);
+    return p.along * by_along + p.across * (s.xx + s.yy - by_along);
   });
 }
 

@@ -329,6 +329,17 @@ void take_common(World& w, Communicator& ranks) {
   take_from_first(ranks, w.reach.drift);
   for (ServoState& servo : w.servos) take_from_first(ranks, servo);
   take_from_first(ranks, w.fluid.time);
+  if (w.given->flow.on) {
+    take_from_first(ranks, w.fluid.injected);
+    take_from_first(ranks, w.fluid.pressure);
+    const bool begun = w.fluid.volume.size() > 0;
+    BR_ASSERT(begun);
+    Message message;
+    put_bytes(message, reinterpret_cast<const std::uint8_t*>(w.fluid.volume.data()),
+              begun ? at(w.fluid.volume.size()) * sizeof(double) : 0);
+    message = ranks.from_first(std::move(message));
+    __builtin_memcpy(w.fluid.volume.data(), message.data(), message.size());
+  }
   for (Buffer<std::uint8_t>* flags : {&w.exposed.changed, &w.exposed.vertex}) {
     Message message;
     put_bytes(message, flags->data(), at(flags->size()));

@@ -19,7 +19,7 @@ struct SupportPush {
 
   /// A vertex has about three corners on the side of a body, and its modulus as stiffness.  [N/m2]
   BR_HD static double stiff(const ElasticTriangle& law) {
-    return (law.lambda + 2.0 * law.shear) / 3.0;
+    return (law.lambda + 2.0 * law.shear + law.bend) / 3.0;
   }
 
   BR_HD ServoReading operator()(Index k) const {

@@ -50,6 +50,11 @@ struct ExposedVertices {
 struct FluidState {
   double time = -1.0;           ///< when it spread last; below 0: not yet  [s]
   std::vector<LoadedEdge> wet;  ///< sides of cracks, two by two, by global id
+  /// Of a fluid that flows, at the first edge of each crack: its volume without pressure; none: it
+  /// has not begun.  [m2]  (3 triangles of the whole mesh)
+  Buffer<double> volume;
+  double injected = 0.0;  ///< that came in so far  [m2]
+  double pressure = 0.0;  ///< at its source  [Pa]
 };
 
 /// Data of the whole mesh that a rank has besides its part.

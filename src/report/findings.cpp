@@ -334,7 +334,21 @@ class Findings {
           count_text(*pieces),
           percent_text(record_.number("fracture.largest_fragment_fraction").value_or(1.0)));
     if (text.starts_with("  ")) text.erase(0, 2);
-    return text.empty() ? "" : text + ".";
+    const std::string heard = emission_text();
+    if (text.empty()) return heard;
+    return text + "." + (heard.empty() ? "" : " ") + heard;
+  }
+
+  std::string emission_text() const {
+    const auto events = record_.number("emission.events");
+    const auto largest = record_.number("emission.largest_magnitude");
+    if (!events || !largest) return "";
+    std::string text = fmt::format("Acoustic emission: {}, of magnitudes up to {:.2g}",
+                                   count_of(*events, "event"), *largest);
+    if (const auto b = record_.number("emission.b_value"))
+      text += fmt::format(", b = {:.2f} ± {:.2f}", *b,
+                          record_.number("emission.b_deviation").value_or(0.0));
+    return text + ".";
   }
 
   std::string mode_text() const {

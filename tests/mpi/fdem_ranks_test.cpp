@@ -26,6 +26,14 @@ TEST(FdemRanks, leave_the_same_state_where_joints_wake_at_their_strength) {
     EXPECT_EQ(on_ranks(count, scene, 300).outcome, expected) << count << " ranks";
 }
 
+TEST(FdemRanks, leave_the_same_state_of_bedded_rock) {
+  Scene scene = impact("intrinsic");
+  scene.config.materials[0].bedding = {0.5, 0.6, 15e9, 0.15, 6e9};
+  const Outcome expected = alone(scene, 300);
+  for (const int count : {2, 3, 8})
+    EXPECT_EQ(on_ranks(count, scene, 300).outcome, expected) << count << " ranks";
+}
+
 TEST(FdemRanks, leave_the_same_state_where_all_flies_through_the_borders) {
   const Scene scene = box();
   const Outcome expected = alone(scene, 700);

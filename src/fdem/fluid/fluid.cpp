@@ -7,20 +7,31 @@
 #include "domain/redistribute.hpp"
 #include "domain/together.hpp"
 #include "exec/for_each.hpp"
+#include "fdem/fluid/flow.hpp"
 
 namespace breccia::fdem {
 namespace {
 
-/// Broken joints up to a time; the owner of side a tells of them.
+/// Broken joints up to a time, with those that soften if asked for; the owner of side a tells of
+/// them.
 struct IsOpenCrack {
   double until;  ///<  [s]
+  bool softened;
   OwnedView owned;
   View<const JointStage> stage;
   View<const double> broke_at;
   View<const Index> edge_a;
   BR_HD bool operator()(Index i) const {
-    return stage[i] == JointStage::broken && broke_at[i] <= until && owned(edge_a[i] / 3);
+    const bool open = stage[i] == JointStage::broken && broke_at[i] <= until;
+    return (open || (softened && stage[i] == JointStage::softened)) && owned(edge_a[i] / 3);
   }
+};
+
+struct NoteOwned {
+  static constexpr const char* name = "fdem.note_owned";
+  OwnedView owned;
+  View<std::uint8_t> own;
+  BR_HD void operator()(Index t) const { own[t] = owned(t) ? 1 : 0; }
 };
 
 struct TellCrack {
@@ -40,12 +51,12 @@ struct TellCrack {
   }
 };
 
-std::vector<CrackSide> cracks_until(World& part, double until) {
+std::vector<CrackSide> cracks_until(World& part, double until, bool softened = false) {
   const Joints& j = part.joints;
   const Buffer<Index> broken =
       items_where(part.exec, j.size(),
-                  IsOpenCrack{until, part.domain.owned_view(), j.stage.view(), j.broke_at.view(),
-                              j.edge_a.view()});
+                  IsOpenCrack{until, softened, part.domain.owned_view(), j.stage.view(),
+                              j.broke_at.view(), j.edge_a.view()});
   Buffer<CrackSide> told(part.exec.space, broken.size());
   for_each(part.exec, broken.size(),
            TellCrack{broken.view(), j.edge_a.view(), j.edge_b.view(), node_vertices(part),
@@ -58,6 +69,137 @@ std::vector<CrackSide> cracks_until(World& part, double until) {
   std::sort(all.begin(), all.end(),
             [](const CrackSide& p, const CrackSide& q) { return p.a < q.a; });
   return all;
+}
+
+/// A crack with its place now.
+struct CrackNow {
+  CrackSide side;
+  double size, opening;  ///< of its middle line, and in its middle  [m]
+};
+
+/// An edge with the places of its ends.
+struct EdgeNow {
+  Index edge;  ///< 3 triangle + k of the whole mesh  [-]
+  Vec2 from, to;
+};
+struct TellEdge {
+  static constexpr const char* name = "fdem.tell_edges";
+  View<const Index> edge, number;  ///< here, and in the whole mesh
+  View<const NodeState> nodes;
+  View<EdgeNow> told;
+  BR_HD void operator()(Index i) const {
+    const Index here = edge[i];
+    told[i] = {number[i], nodes[here].position, nodes[JointEnds::next_corner(here)].position};
+  }
+};
+
+/// Edges of the whole mesh that this rank owns, where they are now; joined: of all ranks.
+std::vector<EdgeNow> edges_now(World& part, const std::vector<Index>& wanted) {
+  std::vector<GlobalId> ids;
+  copy_to(ids, part.triangles.id);
+  std::vector<std::uint8_t> is_own;
+  const OwnedView owned = part.domain.owned_view();
+  std::vector<Index> here, number;
+  Buffer<std::uint8_t> owns(part.exec.space, part.triangles.size());
+  for_each(part.exec, owns.size(), NoteOwned{owned, owns.view()});
+  copy_to(is_own, owns);
+  for (const Index edge : wanted) {
+    const auto found = std::lower_bound(ids.begin(), ids.end(), edge / 3);
+    if (found == ids.end() || *found != edge / 3) continue;
+    const auto t = static_cast<Index>(found - ids.begin());
+    if (is_own[at(t)] == 0) continue;
+    here.push_back(3 * t + edge % 3);
+    number.push_back(edge);
+  }
+  Buffer<Index> edges(part.exec.space), numbers(part.exec.space);
+  copy_to(edges, here);
+  copy_to(numbers, number);
+  Buffer<EdgeNow> told(part.exec.space, edges.size());
+  for_each(part.exec, edges.size(),
+           TellEdge{std::as_const(edges).view(), std::as_const(numbers).view(),
+                    by_number(std::as_const(part.triangles.nodes).view()), told.view()});
+  std::vector<EdgeNow> all;
+  copy_to(all, told);
+  if (!part.domain.single_rank()) all = joined(*part.domain.ranks, all);
+  std::sort(all.begin(), all.end(),
+            [](const EdgeNow& p, const EdgeNow& q) { return p.edge < q.edge; });
+  return all;
+}
+
+/// Cracks of the whole mesh, and joints that soften, where they are now, by their first edges.
+std::vector<CrackNow> cracks_now(World& part) {
+  const std::vector<CrackSide> sides = cracks_until(part, part.time, true);
+  std::vector<Index> wanted;
+  for (const CrackSide& side : sides) wanted.insert(wanted.end(), {side.a, side.b});
+  const std::vector<EdgeNow> edges = edges_now(part, wanted);
+  const auto now = [&](Index edge) -> const EdgeNow& {
+    return *std::lower_bound(edges.begin(), edges.end(), edge,
+                             [](const EdgeNow& e, Index number) { return e.edge < number; });
+  };
+  std::vector<CrackNow> cracks;
+  for (const CrackSide& side : sides) {
+    const EdgeNow &a = now(side.a), &b = now(side.b);
+    const JointOpening<double> o = opening_of(a.from, a.to, b.to, b.from);
+    cracks.push_back({side, o.size, o.open[1]});
+  }
+  return cracks;
+}
+
+std::vector<FlowCell> cells_of(const FlowCase& flow, const std::vector<CrackNow>& cracks,
+                               const View<const double>& volume) {
+  std::vector<FlowCell> cells;
+  for (const CrackNow& crack : cracks) {
+    const double aperture = flow.aperture + std::max(crack.opening, 0.0);
+    // A change of its volume must not act more stiffly than the joint did that was here.
+    const double bulk = std::min(flow.bulk, 0.5 * flow.stiffness * aperture / crack.size);
+    cells.push_back(
+        {crack.side.from, crack.side.to, crack.size, aperture, bulk, volume[crack.side.a]});
+  }
+  return cells;
+}
+
+/// Presses on both sides of each crack that is full, and on the border of the source.
+void list_pressures(World& part, const std::vector<CrackNow>& cracks,
+                    const std::vector<FlowCell>& cells) {
+  const FlowCase& flow = part.given->flow;
+  part.fluid.wet.clear();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double pressure = cells[i].pressure();
+    if (!(pressure > 0.0)) continue;
+    for (const Index edge : {cracks[i].side.a, cracks[i].side.b})
+      part.fluid.wet.push_back(
+          {edge / 3, static_cast<std::int16_t>(edge % 3), flow.load, pressure, 0.0, 0.0});
+  }
+  for (LoadedEdge edge : flow.borders) {
+    edge.share = part.fluid.pressure;
+    part.fluid.wet.push_back(edge);
+  }
+  list_loaded_edges(part);
+}
+
+void flow_until(World& part, double now) {
+  const FlowCase& given = part.given->flow;
+  FluidState& fluid = part.fluid;
+  const std::vector<CrackNow> cracks = cracks_now(part);
+  if (fluid.volume.size() == 0) {
+    fluid.volume = Buffer<double>(Space::host, 3 * given.triangles);
+    std::fill_n(fluid.volume.data(), fluid.volume.size(), 0.0);
+    if (given.filled)
+      for (const CrackNow& crack : cracks)
+        fluid.volume.data()[crack.side.a] =
+            crack.size * (given.aperture + std::max(crack.opening, 0.0));
+  }
+  std::vector<FlowCell> cells = cells_of(given, cracks, std::as_const(fluid.volume).view());
+  const double span = fluid.time < 0.0 ? 0.0 : now - fluid.time;
+  const FlowSource source{given.vertices, given.by_rate,
+                          given.input.scale * given.input.amplitude.at(now)};
+  const Flowed flowed = flow(cells, source, given.viscosity, span);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    fluid.volume.data()[cracks[i].side.a] = cells[i].fluid;
+  fluid.injected += flowed.injected;
+  fluid.pressure = flowed.pressure;
+  fluid.time = now;
+  list_pressures(part, cracks, cells);
 }
 
 void spread_until(World& part, double now) {
@@ -79,18 +221,47 @@ void spread_until(World& part, double now) {
   list_loaded_edges(part);
 }
 
+/// Volume is that which cracks hold without pressure; length is of cracks that are full.
+FilledPart flowed_part(const World& whole) {
+  FilledPart sum;
+  for (Index i = 0; i < whole.fluid.volume.size(); ++i) sum.volume += whole.fluid.volume.data()[i];
+  std::vector<TriangleNodes> nodes;
+  copy_to(nodes, whole.triangles.nodes);
+  const auto corner = [&](Index n) {
+    return nodes[static_cast<std::size_t>(n / 3)].at[n % 3].position;
+  };
+  const std::vector<LoadedEdge>& wet = whole.fluid.wet;
+  const std::size_t cracks = wet.size() - whole.given->flow.borders.size();
+  for (std::size_t i = 0; i + 1 < cracks; i += 2) {
+    const JointEnds e =
+        JointEnds::of(3 * wet[i].triangle + wet[i].edge, 3 * wet[i + 1].triangle + wet[i + 1].edge);
+    sum.length += opening_of(corner(e.a0), corner(e.a1), corner(e.b0), corner(e.b1)).size;
+  }
+  return sum;
+}
+
 }  // namespace
 
 std::vector<CrackSide> open_cracks(World& part) {
   return cracks_until(part, part.time);
 }
 
+void flow_on(World& part) {
+  const StageTime timed(part.exec, "fluid");
+  flow_until(part, part.time);
+}
+
 void spread_fluid(World& part) {
+  if (part.given->flow.on) return;  // it flows in each step
   const StageTime timed(part.exec, "fluid");
   spread_until(part, part.time);
 }
 void restore_fluid(World& part) {
-  if (part.fluid.time >= 0.0) spread_until(part, part.fluid.time);
+  if (part.fluid.time < 0.0) return;
+  if (part.given->flow.on)
+    flow_until(part, part.fluid.time);
+  else
+    spread_until(part, part.fluid.time);
 }
 
 void list_loaded_edges(World& w) {
@@ -122,6 +293,8 @@ void list_loaded_edges(World& w) {
 
 FilledPart filled_part(const World& whole, std::size_t load) {
   FilledPart sum;
+  if (whole.given->flow.on && static_cast<std::size_t>(whole.given->flow.load) == load)
+    return flowed_part(whole);
   std::vector<TriangleNodes> nodes;
   copy_to(nodes, whole.triangles.nodes);
   const auto corner = [&](Index n) {

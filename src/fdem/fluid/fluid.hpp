@@ -18,6 +18,10 @@ void spread_fluid(World& part);
 /// After loading a checkpoint: to where it was when it spread last.
 void restore_fluid(World& part);
 
+/// Lets a fluid that flows go on to the time of the world, by the openings of cracks now, and lists
+/// what it presses on. All ranks call it in each step.
+void flow_on(World& part);
+
 /// Lists the loaded edges that are here, those that fluid presses on, too.
 void list_loaded_edges(World& w);
 

@@ -203,7 +203,7 @@ struct JointForces {
     const auto& corner = loaded.corner;
     const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
     const JointOpening<R> o = opening_of(position(0), position(1), position(2), position(3));
-    R bond[10];
+    R bond[12];
     gather_records(bonds, loaded.law, bond);
     const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
     const R quarter = 0.25 / tension;
@@ -222,7 +222,7 @@ struct JointForces {
     }
     const R stretch = o.size / h - 1.0;
     const auto along_from = [&](const auto& start) {
-      return stress_along(o.along, stretch, normal, bond[8], bond[9], start);
+      return stress_along(o.along, stretch, normal, shear, bond[8], bond[9], bond[10], start);
     };
     const R along = graded.size > 0
                         ? along_from(Sym2Of<R>{loaded.start[0], loaded.start[1], loaded.start[2]})
@@ -274,8 +274,9 @@ struct JointForces {
       half_soft = half_soft || (point.damage > 0.0 && softening(point.damage) < 0.5);
     }
     if (half_soft) return false;
-    const double along = stress_along(o.along, o.size / h - 1.0, normal, bond.young, bond.poisson,
-                                      graded.size > 0 ? start_of(i) : in_situ);
+    const double along =
+        stress_along(o.along, o.size / h - 1.0, normal, shear, bond.young, bond.poisson, bond.skew,
+                     graded.size > 0 ? start_of(i) : in_situ);
     const Failure how = failure_of(rock_failure(bond, share, {normal, shear, along}));
     if (how == Failure::none) return false;
     for (int q = 0; q < 3; ++q)

@@ -37,13 +37,25 @@ BR_HD Deformation<R> deformation(const Mat2Of<R>& shape_inverse, const Vec2Of<R>
 /// with B = F F^T, D = sym L, and the in-situ stress S_0. To first order Hooke's law of plane
 /// strain with Lame's constants, and of plane stress with lambda* = E nu / (1 - nu^2). Tension
 /// positive. Source: Lukas 2014, section 2; the law of the Y family after 2010, whose energy is
-/// below (Munjiza 2004, chapter 4, has another one). Eight numbers side by side: packs gather them.
+/// below (Munjiza 2004, chapter 4, has another one).
+///
+/// Bedded rock is as stiff as its planes say. Its energy has two terms more, in Green's strain E =
+/// (F^T F - I) / 2 and the deviator D = ((c, s), (s, -c)) of the direction of the planes, c and s
+/// of twice their angle:
+///
+///   p tr E (D : E) + q (D : E)^2 / 2,   S = p (D : E) I + (p tr E + q D : E) D,   F S F^T / J
+///
+/// so that along and across the planes C11 = lambda + 2 mu + 2 p + q, C22 = lambda + 2 mu - 2 p +
+/// q, C12 = lambda - q, C66 = mu (fdem/setup/bedding.hpp). Eight numbers side by side: packs gather
+/// them.
 template <class R>
 struct ElasticLaw {
   R lambda;            ///< lambda of plane strain, lambda* of plane stress  [Pa]
   R shear;             ///< mu  [Pa]
   Sym2Of<R> preset{};  ///< S_0  [Pa]
-  R unused[3] = {};
+  R tilt{};            ///< p: a fourth of C11 - C22; 0: no bedding  [Pa]
+  R bend{};            ///< q  [Pa]
+  R planes{};          ///< tangent of the planes' angle  [-]
 
   /// Cauchy stress.  [Pa]
   BR_HD Sym2Of<R> stress(const Deformation<R>& d, const R& eta) const {
@@ -52,7 +64,15 @@ struct ElasticLaw {
     const R volumetric = 0.5 * lambda * (d.jacobian - over_j);
     const Mat2Of<R>& l = d.velocity_gradient;
     const Vec2Of<R> row_x{f.xx, f.xy}, row_y{f.yx, f.yy};
-    const Vec2Of<R> preset_x = preset * row_x, preset_y = preset * row_y;
+    Sym2Of<R> kept = preset;  // by the reference: S_0, and S of bedded rock
+    const auto bedded = abs(tilt) + abs(bend) > 0.0;
+    if (any(bedded)) {
+      const Sym2Of<R> more = answer_of_planes(f);
+      kept = {select(bedded, kept.xx + more.xx, kept.xx),
+              select(bedded, kept.yy + more.yy, kept.yy),
+              select(bedded, kept.xy + more.xy, kept.xy)};
+    }
+    const Vec2Of<R> preset_x = kept * row_x, preset_y = kept * row_y;
     return {
         scale * (dot(row_x, row_x) - 1.0) + volumetric + eta * l.xx + over_j * dot(row_x, preset_x),
         scale * (dot(row_y, row_y) - 1.0) + volumetric + eta * l.yy + over_j * dot(row_y, preset_y),
@@ -61,6 +81,26 @@ struct ElasticLaw {
   /// sigma_zz of plane strain, where B_zz = 1: (lambda / 2) (J - 1 / J).  [Pa]
   BR_HD R stress_across(const Deformation<R>& d) const {
     return 0.5 * lambda * (d.jacobian - 1.0 / d.jacobian);
+  }
+  /// Cosine and sine of twice the planes' angle.
+  BR_HD Vec2Of<R> twice_the_angle() const {
+    const R square = planes * planes, over = 1.0 / (1.0 + square);
+    return {(1.0 - square) * over, 2.0 * planes * over};
+  }
+
+ protected:
+  /// tr E and D : E.
+  BR_HD Vec2Of<R> strains_of_planes(const Mat2Of<R>& f, const Vec2Of<R>& twice) const {
+    const R xx = 0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
+            yy = 0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0);
+    const R xy = f.xx * f.xy + f.yx * f.yy;
+    return {xx + yy, twice.x * (xx - yy) + twice.y * xy};
+  }
+  /// S.  [Pa]
+  BR_HD Sym2Of<R> answer_of_planes(const Mat2Of<R>& f) const {
+    const Vec2Of<R> twice = twice_the_angle(), e = strains_of_planes(f, twice);
+    const R alike = tilt * e.y, turned = tilt * e.x + bend * e.y;
+    return {alike + turned * twice.x, alike - turned * twice.x, turned * twice.y};
   }
 };
 
@@ -77,12 +117,32 @@ struct ElasticTriangle : ElasticLaw<double> {
     const Sym2 strain{0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
                       0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0), 0.5 * (f.xx * f.xy + f.yx * f.yy)};
     return 0.5 * shear * (trace - 2.0 - 2.0 * log_j) + 0.25 * lambda * (j * j - 1.0 - 2.0 * log_j) +
-           contract(preset, strain) + energy_at_start();
+           contract(preset, strain) + energy_at_start() + energy_of_planes(f);
   }
+  BR_HD bool is_bedded() const { return abs(tilt) + abs(bend) > 0.0; }
   BR_HD double energy_at_start() const {
+    if (is_bedded()) return bedded_at_start();
     const double trace = preset.xx + preset.yy;
     return 0.25 / shear *
            (contract(preset, preset) - 0.5 * lambda / (lambda + shear) * trace * trace);
+  }
+
+ private:
+  BR_HD double energy_of_planes(const Mat2& f) const {
+    const Vec2 e = strains_of_planes(f, twice_the_angle());
+    return (tilt * e.x + 0.5 * bend * e.y) * e.y;
+  }
+  BR_HD double bedded_at_start() const {
+    const Vec2 twice = twice_the_angle();
+    const double mean = 0.5 * (preset.xx + preset.yy), half = 0.5 * (preset.xx - preset.yy);
+    const double more = twice.x * half + twice.y * preset.xy;
+    const double along = mean + more, across = mean - more;
+    const double slid = twice.x * preset.xy - twice.y * half;
+    const double c12 = lambda - bend, c11 = lambda + 2.0 * shear + 2.0 * tilt + bend,
+                 c22 = lambda + 2.0 * shear - 2.0 * tilt + bend;
+    return 0.5 * ((c22 * along * along - 2.0 * c12 * along * across + c11 * across * across) /
+                      (c11 * c22 - c12 * c12) +
+                  slid * slid / shear);
   }
 };
 

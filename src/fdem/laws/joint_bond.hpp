@@ -33,7 +33,7 @@ BR_HD R softening(const R& damage) {
   return (1.0 - ratio * decay(rate * damage)) * (a * left + b * square * square * square);
 }
 
-/// Strength of the joints of a pair of materials. Ten numbers side by side: packs gather them.
+/// Strength of the joints of a pair of materials. Twelve numbers side by side: packs gather them.
 struct JointBond {
   double stiffness;        ///< p_f, initial tangent times length  [Pa]
   double tension;          ///< f_t  [Pa]
@@ -47,6 +47,8 @@ struct JointBond {
   double young = 0.0;  ///< E' of the rock beside it, in its plane; 0: the joint fails by its own
                        ///< tractions alone, as edges do  [Pa]
   double poisson = 0.0;  ///< nu' of that rock, in its plane  [-]
+  double skew = 0.0;     ///< of bedded rock: stress along the edge by a shear of 1 Pa  [-]
+  double unused = 0.0;
 
   BR_HD bool by_rock() const { return young > 0.0; }
 };

@@ -37,17 +37,20 @@ struct RockStress {
 };
 
 /// Stress along an edge from its stretch, which both sides share:
-///   sigma_l = E' (|e|/h - 1) + nu' (sigma_n - S0_nn) + S0_ll
-/// @param axis  e, unit vector  [-]  @param stretch  |e|/h - 1  [-]  @param normal  sigma_n  [Pa]
+///   sigma_l = E' (|e|/h - 1) + nu' (sigma_n - S0_nn) + skew (tau - S0_ln) + S0_ll
+/// @param axis  e, unit vector  [-]  @param stretch  |e|/h - 1  [-]
+/// @param normal, shear  sigma_n, tau  [Pa]
 /// @param in_situ  S_0, taken along the present axis  [Pa]
 template <class R, class Start>
-BR_HD R stress_along(const Vec2Of<R>& axis, const R& stretch, const R& normal, const R& young,
-                     const R& poisson, const Start& in_situ) {
+BR_HD R stress_along(const Vec2Of<R>& axis, const R& stretch, const R& normal, const R& shear,
+                     const R& young, const R& poisson, const R& skew, const Start& in_situ) {
   const R &x = axis.x, &y = axis.y;
   const R xx = x * x, yy = y * y, twice = 2.0 * in_situ.xy * x * y;
   const R start_along = in_situ.xx * xx + in_situ.yy * yy + twice;
   const R start_across = in_situ.xx * yy + in_situ.yy * xx - twice;
-  return young * stretch + poisson * (normal - start_across) + start_along;
+  const R start_shear = (in_situ.yy - in_situ.xx) * (x * y) + in_situ.xy * (xx - yy);
+  return young * stretch + poisson * (normal - start_across) + skew * (shear - start_shear) +
+         start_along;
 }
 
 /// Whether the rock can have failed on any plane at all: sigma_1 above f_t, or the circle beyond

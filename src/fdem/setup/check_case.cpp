@@ -6,6 +6,37 @@
 #include "fdem/setup/stages.hpp"
 
 namespace breccia::fdem {
+namespace {
+
+std::string first_flow(const Config& config) {
+  for (const LoadConfig& l : config.loads)
+    if (l.flows()) return l.name;
+  return {};
+}
+
+/// Fluids that flow, and keys that only they have.
+void check_flows(const Config& config, std::vector<std::string>& problems) {
+  int flows = 0;
+  for (const LoadConfig& l : config.loads) {
+    const std::string where = "load." + l.name;
+    const bool has_rate = l.rate.is_table() || l.rate.value != 0.0;
+    const bool has_pressure = l.pressure.is_table() || l.pressure.value != 0.0;
+    if (l.viscosity > 0.0 && l.kind != "fluid")
+      problems.push_back(where + ".viscosity: only a fluid has one; kind is \"" + l.kind + "\"");
+    if (has_rate && !l.flows())
+      problems.push_back(where + ".rate: needs kind = \"fluid\" and a viscosity above 0");
+    if (!l.flows()) continue;
+    if (has_rate && has_pressure)
+      problems.push_back(where + ": give a rate or a pressure; a fluid takes one of them");
+    if (l.speed > 0.0)
+      problems.push_back(where + ".speed: a fluid with a viscosity runs as fast as it flows");
+    if (++flows == 2)
+      problems.push_back(where + ".viscosity: one fluid of a case may flow, and load." +
+                         first_flow(config) + " does; its region may hold several places");
+  }
+}
+
+}  // namespace
 
 std::vector<std::string> case_problems(const Config& config) {
   const std::vector<std::string> directions{"x", "y"};
@@ -19,6 +50,7 @@ std::vector<std::string> case_problems(const Config& config) {
   for (const LoadConfig& l : config.loads)
     if (l.speed > 0.0 && l.kind != "fluid")
       add("load." + l.name + ".speed: only a fluid has one; kind is \"" + l.kind + "\"");
+  check_flows(config, problems);
   for (const ProbeConfig& p : config.probes)
     for (const std::string& problem : probe_problems(p, in_plane)) add(problem);
   for (const std::string& problem : stage_problems(config)) add(problem);

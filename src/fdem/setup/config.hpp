@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/case_config.hpp"
+#include "core/emission_config.hpp"
 #include "core/servo.hpp"
 #include "core/stages.hpp"
 #include "core/table_over_time.hpp"
@@ -44,10 +45,13 @@ struct StrengthConfig {
   }
 };
 
-/// [material.<name>.bedding]: planes along which rock is weaker
+/// [material.<name>.bedding]: planes along which rock is weaker, and stiffer
 struct BeddingConfig {
   double angle = 0.0;     ///< of the planes from x, anticlockwise  [rad]
   double strength = 1.0;  ///< along them over across  [-]
+  double young = 0.0;     ///< E' across them; 0: as along them  [Pa]
+  double poisson = -1.0;  ///< nu', pressed across them; -1: nu E'/E  [-]
+  double shear = 0.0;     ///< G'; 0: by Saint-Venant's rule  [Pa]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -55,7 +59,19 @@ struct BeddingConfig {
     key("strength", strength, "-", Range{0.01, 1.0},
         "tension and cohesion of joints along its planes, over those across them; an edge at an "
         "angle t from a plane has strength cos^2 t + sin^2 t of them");
+    key("young", young, "Pa", Range{0.0, 1e15},
+        "Young's modulus across its planes; young and poisson of the material are those along "
+        "them; 0: the same");
+    key("poisson", poisson, "-", Range{-1.0, 1.0},
+        "Poisson's ratio across its planes: strain along them over strain across, pressed across; "
+        "-1: poisson of the material times the ratio of the two Young's moduli");
+    key("shear", shear, "Pa", Range{0.0, 1e15},
+        "shear modulus G' between its planes; 0: by Saint-Venant's rule, 1/G' = 1/E + 1/E' + 2 "
+        "nu'/E'");
   }
+  /// Whether it is stiffer in one direction than in others.
+  bool has_stiffness() const { return young > 0.0 || poisson > -1.0 || shear > 0.0; }
+  bool is_given() const { return strength != 1.0 || angle != 0.0 || has_stiffness(); }
   /// Of a joint along a unit vector.  [-]
   double share(const Vec2& along) const {
     const double across = cross(Vec2{std::cos(angle), std::sin(angle)}, along);
@@ -96,7 +112,7 @@ struct MaterialConfig {
         "none: it does not break; two such materials that share an edge move as one there, while "
         "to others only a [joint.<name>] between both joins it");
     key.table("joint", joint, "strength of its joints");
-    key.table("bedding", bedding, "planes along which its joints are weaker");
+    key.table("bedding", bedding, "planes along which its joints are weaker and it is stiffer");
     key("contact_stiffness", contact_stiffness, "-", sane_ratio,
         "contact penalty p_n over Young's modulus");
     key("tangential_stiffness", tangential_stiffness, "-", sane_ratio,
@@ -207,7 +223,14 @@ struct LoadConfig {
   OverTime<Vec2> traction;    ///<  [Pa]
   OverTime<Vec2> force;       ///<  [N/m]
   double speed = 0.0;         ///< of a fluid's front; 0: at once  [m/s]
+  double viscosity = 0.0;     ///< of a fluid that flows; 0: its pressure is alike  [Pa s]
+  double bulk = 2.2e9;        ///< its bulk modulus  [Pa]
+  double aperture = 1e-5;     ///< of cracks that are closed  [m]
+  OverTime<double> rate;      ///< at which it comes in, instead of a pressure  [m2/s]
+  bool filled = false;        ///< whether cracks that are open at the start hold it
   HistoryConfig history;
+
+  bool flows() const { return kind == "fluid" && viscosity > 0.0; }
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -228,6 +251,17 @@ struct LoadConfig {
         "force per unit thickness, of all edges together, or a table [[t, x, y], ...] of it");
     key("speed", speed, "m/s", not_negative,
         "fluid: how fast its front runs in cracks that are broken; 0: it fills them as they break");
+    key("viscosity", viscosity, "Pa s", Range{0.0, 1e9},
+        "fluid: it flows through cracks by the cubic law, with this viscosity; 0: no flow, its "
+        "pressure is alike everywhere");
+    key("bulk", bulk, "Pa", sane_strength, "fluid that flows: its bulk modulus");
+    key("aperture", aperture, "m", Range{1e-9, 1.0},
+        "fluid that flows: aperture of a broken crack whose sides touch; their opening adds to it");
+    key("rate", rate, "m2/s", Range{0.0, 1e9},
+        "fluid that flows: how much comes in at its region per metre of thickness, or a table "
+        "[[t, q], ...] of it; then pressure is left out");
+    key("filled", filled,
+        "fluid that flows: cracks that are open at the start hold it, without pressure");
     history.each_key(key);
   }
 };
@@ -262,6 +296,7 @@ struct LoadChange {
   OverTime<double> pressure;  ///<  [Pa]
   OverTime<Vec2> traction;    ///<  [Pa]
   OverTime<Vec2> force;       ///<  [N/m]
+  OverTime<double> rate;      ///<  [m2/s]
   double ramp = 0.0;          ///<  [s]
 
   template <class Visit>
@@ -272,6 +307,7 @@ struct LoadChange {
         "pressure from now on, or a table of it over time since the stage began; left out: 0");
     key("traction", traction, "Pa", any_number, "traction from now on, likewise");
     key("force", force, "N/m", any_number, "force from now on, likewise");
+    key("rate", rate, "m2/s", Range{0.0, 1e9}, "rate of inflow from now on, likewise");
     key("ramp", ramp, "s", not_negative,
         "time since the stage began in which it grows from zero, linearly");
   }
@@ -423,6 +459,7 @@ struct Config : CaseConfig {
   double stage_friction = -1.0;      ///< no key: of contacts in this stage; below 0: as given  [-]
   std::vector<std::string> removed;  ///< no key: bodies that are gone by now
   SearchConfig search;
+  EmissionConfig emission;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -444,6 +481,7 @@ struct Config : CaseConfig {
     key.list("load", loads, "forces on edges");
     key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");
+    key.table("emission", emission, "which breaks are one event of acoustic emission");
   }
 };
 

@@ -5,6 +5,31 @@
 #include "fdem/setup/materials.hpp"
 
 namespace breccia::fdem {
+namespace {
+
+/// Bedded rock: joints add the same compliance in all directions.
+void soften(EffectiveRock& rock, const MaterialConfig& material, bool stress) {
+  PlaneModuli s = compliance_of(material, stress);
+  s.c11 += rock.compliance;
+  s.c22 += rock.compliance;
+  s.c66 += 2.0 * rock.compliance;
+  rock.bedded = true;
+  rock.angle = material.bedding.angle;
+  rock.out_of_plane = out_of_plane_of(material);
+  rock.stiffness = s.inverted();
+  // Pressed along its planes with nothing held: of plane strain E, whose S11 is (1 - nu^2)/E.
+  rock.young = (stress ? 1.0 : 1.0 - material.poisson * material.poisson) / s.c11;
+  rock.fast = std::sqrt(rock.stiffness.c11 / material.density);
+  rock.slow = std::sqrt(rock.stiffness.c66 / material.density);
+}
+
+}  // namespace
+
+EffectiveRock::Impedances EffectiveRock::across(const Vec2& edge) const {
+  if (!bedded) return {density * fast, density * slow};
+  const WaveModuli met = on_normal(stiffness, std::atan2(-edge.x, edge.y) - angle);
+  return {std::sqrt(density * met.pressing), std::sqrt(density * met.shearing)};
+}
 
 std::vector<EffectiveRock> effective_rocks(const Config& config, const JointedMesh& mesh) {
   const std::size_t count = config.materials.size();
@@ -25,6 +50,12 @@ std::vector<EffectiveRock> effective_rocks(const Config& config, const JointedMe
     const MaterialConfig& material = config.materials[m];
     EffectiveRock rock{material.name, area[m] > 0.0 ? given[m] / area[m] : 0.0, material.young,
                        material.poisson};
+    rock.density = material.density;
+    if (material.bedding.has_stiffness()) {
+      soften(rock, material, stress);
+      rocks.push_back(std::move(rock));
+      continue;
+    }
     double pressing = laws[m].lambda + 2.0 * laws[m].shear, shear = laws[m].shear;
     if (rock.compliance > 0.0) {
       // In the plane: 1/E' and (1 + nu')/E' grow by it, nu'/E' stays.

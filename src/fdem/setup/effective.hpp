@@ -5,17 +5,30 @@
 #include <vector>
 
 #include "fdem/joints/joints.hpp"
+#include "fdem/setup/bedding.hpp"
 #include "fdem/setup/config.hpp"
 
 namespace breccia::fdem {
 
-/// A material with the joints that its triangles have at the start (docs/theory-fdem.md, 2).
+/// A material with the joints that its triangles have at the start (docs/theory-fdem.md, 2). Moduli
+/// and waves of bedded rock are those along its planes.
 struct EffectiveRock {
   std::string material;
   double compliance = 0.0;  ///< that joints add, to each stretch and to half of each shear  [1/Pa]
   double young = 0.0;       ///< E  [Pa]
   double poisson = 0.0;     ///< nu  [-]
   double fast = 0.0, slow = 0.0;  ///< speeds of waves that press and that shear, in the plane [m/s]
+  double density = 0.0;           ///<  [kg/m3]
+  bool bedded = false;
+  PlaneModuli stiffness{};  ///< of bedded rock  [Pa]
+  double angle = 0.0;       ///< of its planes  [rad]
+  OutOfPlane out_of_plane{};
+
+  /// Impedances of an edge that waves press and shear: rho c_p and rho c_s along its normal.
+  struct Impedances {
+    double pressing, shearing;  ///<  [Pa s/m]
+  };
+  Impedances across(const Vec2& edge) const;
 };
 
 /// The joints of a model where the host reads them.

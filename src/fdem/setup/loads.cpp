@@ -31,6 +31,32 @@ LoadKind kind_of(const LoadConfig& load) {
   return load.kind == "force" ? LoadKind::force : LoadKind::absorbing;
 }
 
+void prescribe_flow(FlowCase& flow, const LoadConfig& load) {
+  flow.by_rate = load.rate.is_table() || load.rate.value != 0.0;
+  const OverTime<double>& input = flow.by_rate ? load.rate : load.pressure;
+  flow.input = {input.is_table() ? 1.0 : input.value, amplitude(input, 0, load.history)};
+}
+
+/// What does not change of a fluid that flows.
+void set_up_flow(World& w, const Config& config, const LoadConfig& load, const Model& model) {
+  FlowCase& flow = set_up(w).flow;
+  flow.on = true;
+  flow.triangles = model.size();
+  flow.viscosity = load.viscosity;
+  flow.bulk = load.bulk;
+  flow.aperture = load.aperture;
+  flow.filled = load.filled;
+  flow.load = static_cast<std::int16_t>(&load - config.loads.data());
+  flow.vertices = vertices_in(model, load.region, "load." + load.name);
+  std::sort(flow.vertices.begin(), flow.vertices.end());
+  std::vector<JointBond> bonds;
+  copy_to(bonds, w.given->bonds);
+  flow.stiffness = 1e300;
+  for (const JointBond& bond : bonds) flow.stiffness = std::min(flow.stiffness, bond.stiffness);
+  for (const MaterialConfig& m : config.materials)
+    if (bonds.empty()) flow.stiffness = std::min(flow.stiffness, m.young);
+}
+
 }  // namespace
 
 void prescribe_loads(World& w, const Config& config) {
@@ -41,6 +67,12 @@ void prescribe_loads(World& w, const Config& config) {
   for (const LoadConfig& load : config.loads) {
     const LoadKind kind = kind_of(load);
     given.load_names.push_back(load.name);
+    if (load.flows()) {  // each edge has a pressure of its own
+      prescribe_flow(given.flow, load);
+      given.loads.push_back({kind, {1.0, 1.0}, 1.0, {}, {}});
+      given.load_amplitudes.push_back({});
+      continue;
+    }
     given.loads.push_back({kind,
                            {1.0, 1.0},
                            load.pressure.is_table() ? 1.0 : load.pressure.value,
@@ -60,6 +92,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     if (kind == LoadKind::absorbing) dashpots.resize(model.triangle.size());
     const std::size_t first = loaded.size();
     double length = 0.0;
+    if (load.flows()) set_up_flow(w, config, load, model);
     if (kind == LoadKind::fluid)
       set_up(w).fluids.push_back(
           {index, load.speed, vertices_in(model, load.region, "load." + load.name)});
@@ -67,18 +100,23 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
          edges_in(model, load.region, "load." + load.name, kind != LoadKind::fluid)) {
       const auto t = at(edge / 3), k = at(edge % 3);
       const auto material = static_cast<std::size_t>(model.material[t]);
-      const double density = config.materials[material].density;
-      const double own = norm(model.point[at(model.triangle[t][(k + 1) % 3])] -
-                              model.point[at(model.triangle[t][k])]);
-      const double impedance_p = density * w.given->rocks[material].fast;
-      loaded.push_back({edge / 3, static_cast<std::int16_t>(k), index, own, impedance_p,
-                        density * w.given->rocks[material].slow});
+      const Vec2 line =
+          model.point[at(model.triangle[t][(k + 1) % 3])] - model.point[at(model.triangle[t][k])];
+      const double own = norm(line);
+      const EffectiveRock::Impedances met = w.given->rocks[material].across(line);
+      loaded.push_back(
+          {edge / 3, static_cast<std::int16_t>(k), index, own, met.pressing, met.shearing});
       length += own;
       if (kind == LoadKind::absorbing)
-        dashpots[t].at[k] += impedance_p * w.given->load_amplitudes[at(index)].x.largest();
+        dashpots[t].at[k] +=
+            std::max(met.pressing, met.shearing) * w.given->load_amplitudes[at(index)].x.largest();
     }
     for (std::size_t i = first; i < loaded.size(); ++i)
       loaded[i].share = kind == LoadKind::fluid ? 1.0 : loaded[i].share / length;
+    if (!load.flows()) continue;
+    set_up(w).flow.borders.assign(loaded.begin() + static_cast<std::ptrdiff_t>(first),
+                                  loaded.end());
+    loaded.resize(first);
   }
   if (loaded.empty() && w.given->fluids.empty()) return;
   std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedEdge& a, const LoadedEdge& b) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exec/error.hpp"
+#include "fdem/setup/bedding.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -43,6 +44,7 @@ JointBond weaker(const JointBond& a, const JointBond& b) {
   // The rock on its two sides stretches along the edge alike: its stress is the mean of both.
   w.young = 0.5 * (a.young + b.young);
   w.poisson = 0.5 * (a.poisson + b.poisson);
+  w.skew = 0.5 * (a.skew + b.skew);
   return w;
 }
 
@@ -98,6 +100,26 @@ BondTable bond_table(const Config& config) {
   return table;
 }
 
+bool depends_on_line(const Config& config, const MaterialConfig& a, const MaterialConfig& b) {
+  return config.joints.criterion == "rock" &&
+         (a.bedding.has_stiffness() || b.bedding.has_stiffness());
+}
+
+JointBond bond_along(const Config& config, const MaterialConfig& a, const MaterialConfig& b,
+                     const JointBond& bond, const Vec2& line) {
+  JointBond own = bond;
+  own.young = own.poisson = own.skew = 0.0;
+  const double angle = std::atan2(line.y, line.x);
+  for (const MaterialConfig* const m : {&a, &b}) {
+    const LineCompliance s =
+        on_line(compliance_of(*m, config.plane == "stress"), angle - m->bedding.angle);
+    own.young += 0.5 / s.along;
+    own.poisson -= 0.5 * s.beside / s.along;
+    own.skew -= 0.5 * s.skew / s.along;
+  }
+  return own;
+}
+
 std::vector<ContactPair> contact_table(const Config& config) {
   const std::size_t n = config.materials.size();
   std::vector<ContactPair> pairs(n * n);
@@ -132,6 +154,11 @@ std::vector<ElasticTriangle> elastic_table(const Config& config) {
     const double young = m.young_now > 0.0 ? m.young_now : m.young, share = m.in_situ_share;
     law.lambda = plane_lambda(young, m.poisson, stress);
     law.shear = shear_modulus(young, m.poisson);
+    if (m.bedding.has_stiffness()) {
+      law = bedded_law(m, stress);
+      for (double* const modulus : {&law.lambda, &law.shear, &law.tilt, &law.bend})
+        *modulus *= young / m.young;
+    }
     law.preset = {share * config.in_situ.xx, share * config.in_situ.yy, share * config.in_situ.xy};
     laws.push_back(law);
   }

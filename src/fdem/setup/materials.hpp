@@ -22,10 +22,18 @@ struct BondTable {
 /// a [joint.<name>] says so. @throws InputError for names that do not exist
 BondTable bond_table(const Config& config);
 
+/// Whether joints between two materials that fail with the rock have bonds of their own by their
+/// directions: of bedded rock the stress along an edge depends on it.
+bool depends_on_line(const Config& config, const MaterialConfig& a, const MaterialConfig& b);
+/// The bond of such a joint along a line.
+JointBond bond_along(const Config& config, const MaterialConfig& a, const MaterialConfig& b,
+                     const JointBond& bond, const Vec2& line);
+
 /// @throws InputError for names that do not exist
 std::vector<ContactPair> contact_table(const Config& config);
 
-/// @throws InputError where plane strain meets a Poisson's ratio of 0.5 or more
+/// @throws InputError where plane strain meets a Poisson's ratio of 0.5 or more, and for bedded
+/// rock that cannot be
 std::vector<ElasticTriangle> elastic_table(const Config& config);
 /// The laws of a run: of materials, or, where stress in situ has a slope, of each triangle, which
 /// bears the stress at its middle.

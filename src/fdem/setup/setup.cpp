@@ -102,7 +102,7 @@ void set_up_bundles(World& w, const std::vector<std::uint8_t>& tied) {
 
 /// Joins neighbours: a joint, a bond, or nothing.
 void set_up_joints(World& w, const Config& config, const Model& model) {
-  const BondTable table = bond_table(config);
+  BondTable table = bond_table(config);
   std::map<std::pair<Index, Index>, std::int16_t> discontinuities;  // law, or -1 where open
   for (const Model::Discontinuity& d : model.discontinuities)
     discontinuities[std::minmax(d.edge[0], d.edge[1])] =
@@ -167,11 +167,18 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     const Vec2 along =
         model.point[at(w.vertex[at(next(e.a))])] - model.point[at(w.vertex[at(e.a)])];
     length.push_back(norm(along));
+    const auto material = [&](std::size_t t) -> const MaterialConfig& {
+      return config.materials[static_cast<std::size_t>(model.material[t])];
+    };
     const auto of = [&](std::size_t t) {
-      return config.materials[static_cast<std::size_t>(model.material[t])].bedding.share(
-          (1.0 / length.back()) * along);
+      return material(t).bedding.share((1.0 / length.back()) * along);
     };
     const double bedded = weak == discontinuities.end() ? std::min(of(a), of(b)) : 1.0;
+    const JointBond shared = table.bonds[static_cast<std::size_t>(found)];
+    if (shared.by_rock() && depends_on_line(config, material(a), material(b))) {
+      law.back() = static_cast<Index>(table.bonds.size());
+      table.bonds.push_back(bond_along(config, material(a), material(b), shared, along));
+    }
     strength.push_back(bedded * std::min(static_cast<double>(model.strength[a]),
                                          static_cast<double>(model.strength[b])));
     preset.emplace_back();
@@ -380,6 +387,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.local_damping = config.local_damping;
   given.shown = config.output.more_fields();
   given.conservative = config.contact.conservative;
+  given.emission = config.emission;
   given.rebound = Rebound::of(config.contact.restitution);
   given.materials = static_cast<Index>(config.materials.size());
   set_up_middles(given, model);

@@ -33,6 +33,7 @@ Config config_at(Config config, const StageProgress& progress) {
         load->pressure = change.pressure;
         load->traction = change.traction;
         load->force = change.force;
+        load->rate = change.rate;
         load->history = {change.ramp, {}, {}, begin};
       }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "core/on_host.hpp"
 #include "exec/for_each.hpp"
@@ -75,10 +76,13 @@ void look_for_long_edges(const World& w, const Config& config, std::vector<std::
     return config.materials[at(triangles->material.data()[edge / 3])];
   };
   std::vector<ProcessZone> zones(bonds.size());
+  std::map<std::pair<double, double>, std::size_t> first;  // laws of bedded rock are many
+  for (std::size_t k = 0; k < bonds.size(); ++k)
+    first.emplace(std::pair{bonds[k].tension, bonds[k].softening_open}, k);
   for (Index i = 0; i < joints->size(); ++i) {
     const JointBond& bond = bonds[at(joints->law.data()[i])];
     if (!(bond.tension > 0.0)) continue;
-    ProcessZone& z = zones[at(joints->law.data()[i])];
+    ProcessZone& z = zones[first.at({bond.tension, bond.softening_open})];
     const double young = std::min(material(joints->edge_a.data()[i]).young,
                                   material(joints->edge_b.data()[i]).young);
     const double energy = bond.softening_open / config.joints.softening_factor;

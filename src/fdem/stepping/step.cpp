@@ -4,6 +4,7 @@
 
 #include "core/stepping.hpp"
 #include "exec/for_each.hpp"
+#include "fdem/fluid/fluid.hpp"
 #include "fdem/ranks.hpp"
 #include "fdem/stepping/launches.hpp"
 
@@ -114,6 +115,7 @@ void StepwiseRun::insert_joints(World& w) const {
 }
 
 void StepwiseRun::load_forces(World& w) const {
+  if (w.given->flow.on) flow_on(w);
   if (w.load_starts.size() > 1) {
     const StageTime timed(w.exec, "load_forces");
     std::vector<LoadLaw> now = w.given->loads;
@@ -149,7 +151,9 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 Advanced advance(World& w, const StopAt& stop) {
-  return advance_by_steps(w, stop);
+  if (!w.given->flow.on) return advance_by_steps(w, stop);
+  step(w);  // openings of cracks come to the host in every step, on a device, too
+  return {1, w.last_dt, w.last_dt};
 }
 
 }  // namespace breccia::fdem

@@ -114,7 +114,8 @@ struct TriangleForces {
     const R& eta = loaded.viscosity;
     R numbers[8];
     gather_records(laws, loaded.law, numbers);
-    const ElasticLaw<R> elastic{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}};
+    const ElasticLaw<R> elastic{numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]},
+                                numbers[5], numbers[6], numbers[7]};
     const Deformation<R> d =
         deformation(Mat2Of<R>{inverse[0], inverse[1], inverse[2], inverse[3]}, c.x, c.v);
     corner_forces(elastic.stress(d, eta), c.x, sum);
@@ -280,6 +281,7 @@ struct StableStep {
         p.element = max(p.element, row(slope, i, c, area, law.lambda, law.shear));
         p.viscous = max(p.viscous, row(slope, i, c, area, 0.0, 0.5 * viscosity[t]));
       }
+      if (law.is_bedded()) p.element += row_of_planes(slope, i, area, law);
       const int before = i == 0 ? 2 : i - 1;
       if (dashpots.size > 0) p.absorbed = dashpot(t, i, x) + dashpot(t, before, x);
       p.joint = on_edge[i][0] + on_edge[before][0];
@@ -306,6 +308,14 @@ struct StableStep {
       }
     }
     return sum;
+  }
+  /// What the planes of bedded rock add to that, at most, however it has turned: of g_i and D g_i,
+  /// which are equally long, sum |a_c b_d| over d <= sqrt 2 |a| |b|.
+  BR_HD static double row_of_planes(const Vec2 (&slope)[3], int i, double area,
+                                    const ElasticTriangle& law) {
+    double sum = 0.0;
+    for (int j = 0; j < 3; ++j) sum += norm(slope[j]);
+    return 1.4142135623730951 * (2.0 * abs(law.tilt) + abs(law.bend)) * area * norm(slope[i]) * sum;
   }
   /// Dashpot of an absorbing edge at each of its ends, half its length times the impedance: both
   /// of its impedances are at most the larger one.

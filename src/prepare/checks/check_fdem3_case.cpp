@@ -18,6 +18,9 @@ class TetCaseChecks {
     for (const fdem3::MaterialConfig& m : config.materials) {
       if (m.poisson >= 0.5)
         add("material." + m.name + ".poisson: must be below 0.5 in three dimensions");
+      if (m.bedding.is_given())
+        add("material." + m.name +
+            ".bedding: is not there in three dimensions yet; leave the table out");
       if (m.joints == "extrinsic")
         add("material." + m.name +
             ".joints: \"extrinsic\" is not there in three dimensions yet; allowed are "

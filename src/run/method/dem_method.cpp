@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "dem/emission.hpp"
 #include "dem/energy.hpp"
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
@@ -11,6 +12,7 @@
 #include "dem/setup/stages.hpp"
 #include "dem/stepping/step.hpp"
 #include "run/method/dem_tables.hpp"
+#include "run/method/emission_table.hpp"
 #include "run/method/sim_method.hpp"
 
 namespace breccia {
@@ -103,6 +105,7 @@ struct DemSim {
     });
     add("fracture.fragments", n.fragments);
     add("fracture.largest_fragment_fraction", n.largest_fragment);
+    add_emission(facts, dem::emission(w));
   }
 
   static void note_breaks(World& w) { dem::note_breaks(w); }

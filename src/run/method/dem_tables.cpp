@@ -4,7 +4,9 @@
 
 #include "core/on_host.hpp"
 #include "core/pieces.hpp"
+#include "dem/emission.hpp"
 #include "dem/observe.hpp"
+#include "run/method/emission_table.hpp"
 
 namespace breccia {
 namespace {
@@ -98,7 +100,7 @@ Table fragments(const dem::World& w, const dem::Elements& e) {
 
 std::vector<Table> dem_tables(const dem::World& w) {
   const OnHost elements(w.elements, w.exec.space);
-  return {fragments(w, *elements), broken_links(w, *elements)};
+  return {fragments(w, *elements), broken_links(w, *elements), table_of(dem::emission(w))};
 }
 
 }  // namespace breccia

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "exec/error.hpp"
+#include "fdem/emission.hpp"
 #include "fdem/energy.hpp"
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/observe.hpp"
@@ -12,6 +13,7 @@
 #include "fdem/setup/removal.hpp"
 #include "fdem/setup/stages.hpp"
 #include "fdem/stepping/step.hpp"
+#include "run/method/emission_table.hpp"
 #include "run/method/loose_array.hpp"
 #include "run/method/sim_method.hpp"
 
@@ -79,7 +81,7 @@ struct FdemSim {
     add("searches", static_cast<double>(w.searches));
     add("contacts.candidates", w.couples.size());
   }
-  static void add_findings(const World& w, std::vector<Fact>& facts) {
+  void add_findings(const World& w, std::vector<Fact>& facts) const {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     const std::vector<fdem::Crack> cracks = fdem::cracks(w);
     const auto sliding = std::count_if(cracks.begin(), cracks.end(),
@@ -101,7 +103,11 @@ struct FdemSim {
       const std::string path = "fluid." + w.given->load_names[load] + ".";
       add(path + "length", filled.length);
       add(path + "volume", filled.volume);
+      if (!w.given->flow.on || w.given->flow.load != fluid.load) continue;
+      add(path + "injected", w.fluid.injected);
+      add(path + "pressure", w.fluid.pressure);
     }
+    add_emission(facts, events(w));
     add("fracture.fragments", static_cast<double>(pieces.mass.size()));
     add("fracture.largest_fragment_fraction", pieces.mass.front() / total);
   }
@@ -124,7 +130,12 @@ struct FdemSim {
     for (const double m : all.mass) total += m;
     for (std::size_t i = 0; i < all.mass.size(); ++i)
       pieces.rows.push_back({static_cast<double>(i), all.mass[i] / scaling, all.mass[i] / total});
-    return {cracks, pieces};
+    return {cracks, pieces, table_of(events(w))};
+  }
+  std::vector<EmissionEvent> events(const World& w) const {
+    std::vector<fdem::JointLine> at_start;
+    for (const Line& line : lines) at_start.push_back({line.begin, line.end});
+    return fdem::emission(w, at_start);
   }
 
   static void add_arrays(World& w, StateArrays& arrays) {
@@ -183,6 +194,10 @@ struct FdemSim {
     visit.fields("reach", w.reach);
     visit("reach.drift", w.reach.drift);
     if (has_fluid(w)) visit("fluid.time", w.fluid.time);
+    if (!w.given->flow.on) return;
+    visit("fluid.injected", w.fluid.injected);
+    visit("fluid.pressure", w.fluid.pressure);
+    visit.fields("fluid", Loose<double>{"volume", w.fluid.volume});
   }
 };
 

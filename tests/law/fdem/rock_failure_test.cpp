@@ -151,12 +151,14 @@ TEST(RockFailure, stress_along_an_edge_follows_from_its_stretch) {
   const double expected = factor * (along + poisson * across);
   const Sym2 none{}, in_situ{-3e6, -1e6, 0.5e6};
   const Vec2 axis{0.6, 0.8};
-  EXPECT_NEAR(stress_along(axis, along, normal, young, poisson, none), expected, 1e-6 * expected);
+  EXPECT_NEAR(stress_along(axis, along, normal, 0.0, young, poisson, 0.0, none), expected,
+              1e-6 * expected);
   // Stress in situ alone: the edge is not stretched, its joint carries S_0 n.
   const auto of = [&](const Vec2& n, const Vec2& m) { return dot(in_situ * n, m); };
   const Vec2 normal_axis{-axis.y, axis.x};
   const double at_start = of(normal_axis, normal_axis);
-  EXPECT_NEAR(stress_along(axis, 0.0, at_start, young, poisson, in_situ), of(axis, axis), 1e-3);
+  EXPECT_NEAR(stress_along(axis, 0.0, at_start, 0.0, young, poisson, 0.0, in_situ), of(axis, axis),
+              1e-3);
 }
 
 /// Of points drawn at random, fresh and half soft ones, drawn and pressed ones.

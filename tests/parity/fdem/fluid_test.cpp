@@ -53,6 +53,39 @@ TEST(Fluid, in_cracks_is_alike_on_threads_schedule_and_ranks) {
 TEST(Fluid, in_cracks_is_resumed) {
   expect_resumed(flooded("intrinsic", 800.0));
 }
+/// The water flows: into the crack at a given pressure, then at a given rate.
+fdem::testing::Scene flowing(const char* joints) {
+  fdem::testing::Scene s = flooded(joints, 0.0);
+  fdem::LoadConfig& water = s.config.loads.back();
+  water.viscosity = 1e-3;
+  water.filled = true;
+  s.config.stages[1].loads[0].pressure = 0.0;
+  s.config.stages[1].loads[0].rate = 0.5;
+  return s;
+}
+TEST(Fluid, that_flows_is_alike_on_threads_schedule_and_ranks) {
+  expect_alike(flowing("intrinsic"));
+  expect_alike(flowing("extrinsic"));
+}
+TEST(Fluid, that_flows_is_resumed) {
+  expect_resumed(flowing("intrinsic"));
+}
+/// What came in is in the cracks, besides what they held at the start: 4 closed edges of 1 cm.
+TEST(Fluid, that_flows_is_neither_lost_nor_made) {
+  const fdem::testing::Scene s = flowing("intrinsic");
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, s.config, nullptr);
+  double injected = 0.0, volume = 0.0, length = 0.0;
+  for (const Fact& fact : method->facts()) {
+    if (fact.path == "fluid.water.injected") injected = fact.value;
+    if (fact.path == "fluid.water.volume") volume = fact.value;
+    if (fact.path == "fluid.water.length") length = fact.value;
+  }
+  EXPECT_GT(injected, 1e-6);
+  EXPECT_GT(length, 0.015);
+  EXPECT_NEAR(volume - injected, 4.0 * 0.01 * 1e-5, 1e-12 * volume + 1e-15);
+  EXPECT_LT(method->energy().error_relative, 2e-3);
+}
 TEST(Fluid, that_runs_faster_fills_more) {
   double last = 0.0;
   for (const double speed : {100.0, 800.0, 0.0}) {

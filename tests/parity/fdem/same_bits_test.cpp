@@ -204,6 +204,30 @@ TEST(FdemSameBits, of_joints_that_wake_in_the_shadow_space) {
             hash_after(scene.world(2)));
 }
 
+/// Rock that is stiffer along its planes, beside rock that is not.
+TEST(FdemSameBits, of_bedded_rock_for_any_threads_width_of_vector_and_space) {
+  Scene scene = impact();
+  fdem::MaterialConfig disc = scene.config.materials[0];
+  disc.name = "shale";
+  disc.bedding = {0.5, 0.6, 15e9, 0.15, 6e9};
+  scene.config.materials.push_back(disc);
+  for (std::size_t t = 0; t < scene.model.material.size(); ++t)
+    if (scene.model.group[t] == 0 && t % 3 != 0) scene.model.material[t] = 1;
+  std::uint64_t expected = 0;
+  for (const Lanes lanes : {Lanes::one, Lanes::four, Lanes::eight})
+    for (const int threads : {1, 3}) {
+      fdem::World w = scene.world(threads);
+      w.lanes = std::min(lanes, widest_lanes());
+      const std::uint64_t hash = hash_after(std::move(w));
+      if (expected == 0) expected = hash;
+      EXPECT_EQ(hash, expected) << static_cast<int>(lanes) << ", " << threads;
+    }
+  EXPECT_NE(expected, reference());
+  Exec shadow;
+  shadow.space = Space::shadow;
+  EXPECT_EQ(hash_after(fdem::make_world(scene.config, scene.model, shadow)), expected);
+}
+
 TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
   const std::string folder = std::filesystem::temp_directory_path() / "breccia_fdem_same_bits";
   std::filesystem::create_directories(folder);
