@@ -6,6 +6,7 @@
 
 namespace breccia::dem {
 
+/// A tile's part of a world. Functions of several threads take the thread's number among them.
 struct TileContent {
   const TileCase& all;
   Index number;
