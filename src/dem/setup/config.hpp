@@ -105,7 +105,7 @@ struct RebarConfig {
   }
 };
 
-/// [[body.cut]]: what is taken out of a body
+/// [[body.join]] and [[body.cut]]: what belongs to a body besides its shape, and what is taken out
 struct CutConfig {
   std::string shape = "box";
   Vec3 center{};             ///<  [m]
@@ -146,13 +146,14 @@ struct BodyConfig {
   double length = 0.0;  ///< of a cylinder, along z  [m]
   PackConfig pack;
   RebarConfig rebar;
-  Vec3 velocity{};              ///< at the start  [m/s]
-  Vec3 spin{};                  ///< at the start, of every element about the body's centre  [rad/s]
-  Vec3 axis{0.0, 0.0, 1.0};     ///< where its own z points
-  Vec3 across{};                ///< about where its own x points; 0: turned the shortest way
-  std::vector<CutConfig> cuts;  ///< taken out of it
-  std::string file;             ///< CSV of x, y, z, radius in metres; of LDPM its tetrahedra; STL
-  double file_unit = 1.0;       ///< of an STL file  [m]
+  Vec3 velocity{};           ///< at the start  [m/s]
+  Vec3 spin{};               ///< at the start, of every element about the body's centre  [rad/s]
+  Vec3 axis{0.0, 0.0, 1.0};  ///< where its own z points
+  Vec3 across{};             ///< about where its own x points; 0: turned the shortest way
+  std::vector<CutConfig> joins;  ///< that belong to it, too
+  std::vector<CutConfig> cuts;   ///< taken out of all that
+  std::string file;              ///< CSV of x, y, z, radius in metres; of LDPM its tetrahedra; STL
+  double file_unit = 1.0;        ///< of an STL file  [m]
   double volume = 0.0;  ///< of the bulk that a file's spheres stand for; 0: of the box `size`  [m3]
 
   /// Of what a file's spheres stand for; 0: of nothing but themselves.  [m3]
@@ -179,6 +180,10 @@ struct BodyConfig {
         "with bars in it");
     key("across", across, "-", any_number,
         "about the direction of the body's own x; left out: turned the shortest way");
+    key.list(
+        "join", joins,
+        "boxes, spheres and cylinders that belong to the body, too: it is their union with its "
+        "own box, sphere or cylinder");
     key.list("cut", cuts, "notches, holes and slots, sawn out of a packed body");
     key.table("pack", pack, "the packing of a box, sphere, cylinder or STL file");
     key.table("rebar", rebar, "the bars of a rebar body");

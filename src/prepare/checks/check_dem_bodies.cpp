@@ -126,14 +126,35 @@ class DemBodyChecks {
   }
   void check_shape(const BodyConfig& b) {
     check_turn(b.axis, b.across, "");
-    require(is_packed(b) || b.cuts.empty(),
+    require(is_packed(b) || (b.cuts.empty() && b.joins.empty()),
             ".cut: only packings are cut, not shape {}; spheres of a file come as they are wanted",
             b.shape);
     require(is_packed(b) || b.shape == "file" || !is_shaped(b) || !b.cuts.empty(),
             ".axis turns packings and bodies from a file, not shape {}", b.shape);
-    for (std::size_t k = 0; k < b.cuts.size(); ++k) {
-      const dem::CutConfig& cut = b.cuts[k];
-      const std::string path = fmt::format(".cut[{}]", k + 1);
+    check_joins(b);
+    check_solids(b.joins, "join");
+    check_solids(b.cuts, "cut");
+  }
+  void check_joins(const BodyConfig& b) {
+    if (b.joins.empty()) return;
+    require(b.shape == "box" || b.shape == "sphere" || b.shape == "cylinder",
+            ".join: boxes, spheres and cylinders are joined to, not shape {}", b.shape);
+    require(!has_bars(b), ".join: a body with bars is its own shape; leave join out");
+    const std::vector<std::string>& periodic = b.pack.periodic;
+    require(
+        periodic.empty() || periodic.size() == 3,
+        ".pack.periodic: a body with joins is cut from a cell that is periodic along x, y and z");
+    for (std::size_t k = 0; k < b.joins.size(); ++k) {
+      const dem::CutConfig& join = b.joins[k];
+      require(join.shape != "stl", ".join[{}]: draw the union in the STL file of the body", k + 1);
+      require(join.shape != "box" || (join.size.x > 0.0 && join.size.y > 0.0 && join.size.z > 0.0),
+              ".join[{}].size needs three lengths above 0", k + 1);
+    }
+  }
+  void check_solids(const std::vector<dem::CutConfig>& solids, const char* key) {
+    for (std::size_t k = 0; k < solids.size(); ++k) {
+      const dem::CutConfig& cut = solids[k];
+      const std::string path = fmt::format(".{}[{}]", key, k + 1);
       check_turn(cut.axis, cut.across, path);
       const int flat = (cut.size.x == 0.0) + (cut.size.y == 0.0) + (cut.size.z == 0.0);
       require(cut.shape != "box" || flat <= 1, "{}.size needs two lengths above 0, or three", path);
@@ -160,7 +181,7 @@ class DemBodyChecks {
   /// volume, are tested when they are packed.
   void check_room(const BodyConfig& b) {
     const double volume = container_of(b).volume();
-    if (has_bars(b) || !(volume > 0.0) || !pack_problems(b).empty()) return;
+    if (has_bars(b) || !b.joins.empty() || !(volume > 0.0) || !pack_problems(b).empty()) return;
     const double count = elements_in(b.pack, volume);
     require(count >= 1.0, ".pack.sieves: an element is larger than the body");
     require(count <= 2e9, ".pack.sieves: {:.3g} elements are too many (2e9 at most)", count);

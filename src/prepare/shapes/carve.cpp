@@ -30,57 +30,24 @@ std::string path_in(const std::string& folder, const std::string& file) {
 /// Cut of a body.
 class Cut {
  public:
-  Cut(const CutConfig& cut, const std::string& case_folder)
-      : center_(cut.center), frame_(frame_of(cut.axis, cut.across)) {
+  Cut(const CutConfig& cut, const std::string& case_folder) : solid_(solid_of(cut)) {
     if (cut.shape == "stl")
       surface_.emplace(read_surface(path_in(case_folder, cut.file), cut.file_unit));
-    container_.shape = cut.shape == "sphere"     ? Container::Shape::sphere
-                       : cut.shape == "cylinder" ? Container::Shape::cylinder
-                                                 : Container::Shape::box;
-    container_.size = cut.size;
-    container_.radius = cut.radius;
-    container_.length = cut.length;
   }
   bool holds(const Vec3& point) const {
-    const Vec3 p = frame_.in(point - center_);
-    return surface_ ? surface_->holds(p) : container_.depth(p) > 0.0;
+    return surface_ ? surface_->holds(inside(point)) : solid_.depth(point) > 0.0;
   }
   /// Whether some of the segment from a to b lies within.
   bool parts(const Vec3& a, const Vec3& b) const {
-    const Vec3 from = frame_.in(a - center_), to = frame_.in(b - center_);
-    return surface_ ? surface_->parts(from, to) : passes(from, to);
+    if (surface_) return surface_->parts(inside(a), inside(b));
+    const Solid::Span span = solid_.span(a, b);
+    return span.low <= span.high;
   }
 
  private:
-  /// Narrows [low, high] to where value + slope t lies within +-half.
-  static bool narrow(double value, double slope, double half, double& low, double& high) {
-    if (slope == 0.0) return std::abs(value) <= half;
-    const double one = (-half - value) / slope, other = (half - value) / slope;
-    low = std::max(low, std::min(one, other));
-    high = std::min(high, std::max(one, other));
-    return low <= high;
-  }
-  bool passes(const Vec3& from, const Vec3& to) const {
-    const Vec3 along = to - from;
-    double low = 0.0, high = 1.0;
-    if (container_.shape == Container::Shape::box) {
-      const Vec3 half = 0.5 * container_.size;
-      return narrow(from.x, along.x, half.x, low, high) &&
-             narrow(from.y, along.y, half.y, low, high) &&
-             narrow(from.z, along.z, half.z, low, high);
-    }
-    const bool ball = container_.shape == Container::Shape::sphere;
-    if (!ball && !narrow(from.z, along.z, 0.5 * container_.length, low, high)) return false;
-    const Vec3 flat{along.x, along.y, ball ? along.z : 0.0};
-    const Vec3 start{from.x, from.y, ball ? from.z : 0.0};
-    const double squared = dot(flat, flat);
-    const double nearest = squared > 0.0 ? std::clamp(-dot(start, flat) / squared, low, high) : low;
-    return norm(start + nearest * flat) <= container_.radius;
-  }
+  Vec3 inside(const Vec3& point) const { return solid_.frame.in(point - solid_.center); }
 
-  Vec3 center_;
-  Frame3 frame_;
-  Container container_;
+  Solid solid_;
   std::optional<Surface> surface_;
 };
 
@@ -138,7 +105,10 @@ class Carving {
     if (surface && material.fabric == "even")
       even_out(model_, number, body.center,
                [&](const Vec3& x, double reach) { return surface->distance(x, reach); });
-    turn(number, body);
+    if (body.joins.empty())
+      turn(number, body);
+    else
+      unite(number, body, material.fabric == "even");
     for (const CutConfig& asked : body.cuts) {
       const Cut cut(asked, folder_);
       remove(
@@ -207,6 +177,19 @@ class Carving {
         model_.radius[static_cast<std::size_t>(e)] = radius[static_cast<std::size_t>(k)];
   }
 
+  /// Leaves what lies in the solids of a body with joins; the box around them stands upright.
+  void unite(int number, const BodyConfig& body, bool even) {
+    const Union whole(body);
+    remove(
+        number, body, [&](const Vec3& x) { return !(whole.depth(x) > 0.0); },
+        [&](const Vec3& a, const Vec3& b) { return whole.parts(a, b); });
+    if (even) even_out(model_, number, {}, [&](const Vec3& x, double) { return whole.depth(x); });
+    for (Index e = 0; e < model_.size(); ++e)
+      if (is_of(e, number))
+        model_.velocity[static_cast<std::size_t>(e)] =
+            body.velocity + cross(body.spin, place(e) - body.center);
+  }
+
   /// Turns a body, and bars in it, about its centre; how it moves is as the case says.
   void turn(int number, const BodyConfig& body) {
     const Frame3 frame = frame_of(body.axis, body.across);
@@ -229,27 +212,10 @@ class Carving {
 
 }  // namespace
 
-Frame3 frame_of(const Vec3& axis, const Vec3& across) {
-  const double length = norm(axis);
-  const Vec3 z = (1.0 / length) * axis;
-  if (norm(across) > 0.0) {
-    const Vec3 aside = across - dot(across, z) * z;
-    const Vec3 x = (1.0 / norm(aside)) * aside;
-    return {x, cross(z, x), z};
-  }
-  const double aside = z.x * z.x + z.y * z.y;
-  if (z.z < 0.0 && aside == 0.0) return {{1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, z};
-  // Rodrigues' formula about the cross product of the old z and the new; 1 - z^2 = x^2 + y^2.
-  const double share = z.z < 0.0 ? (1.0 - z.z) / aside : 1.0 / (1.0 + z.z);
-  return {{1.0 - share * z.x * z.x, -share * z.x * z.y, -z.x},
-          {-share * z.x * z.y, 1.0 - share * z.y * z.y, -z.y},
-          z};
-}
-
 bool is_shaped(const BodyConfig& body) {
   const bool upright =
       body.axis.x == 0.0 && body.axis.y == 0.0 && body.axis.z > 0.0 && norm(body.across) == 0.0;
-  return !upright || body.shape == "stl" || !body.cuts.empty();
+  return !upright || body.shape == "stl" || !body.cuts.empty() || !body.joins.empty();
 }
 
 BodyConfig whole_of(const BodyConfig& body, const std::string& case_folder) {
@@ -257,6 +223,17 @@ BodyConfig whole_of(const BodyConfig& body, const std::string& case_folder) {
   whole.axis = {0.0, 0.0, 1.0};
   whole.across = {};
   whole.cuts.clear();
+  whole.joins.clear();
+  if (!body.joins.empty()) {
+    const Union all(body);
+    whole.shape = "box";
+    whole.size = all.high() - all.low();
+    whole.center = 0.5 * (all.low() + all.high());
+    const double box = whole.size.x * whole.size.y * whole.size.z;
+    whole.pack.count =
+        static_cast<int>(std::min(std::round(body.pack.count * box / all.volume()), 2e9));
+    return whole;
+  }
   if (body.shape != "stl") return whole;
   const Surface surface = read_surface(path_in(case_folder, body.file), body.file_unit);
   whole.shape = "box";

@@ -8,27 +8,16 @@
 #include "dem/setup/config.hpp"
 #include "dem/setup/model.hpp"
 #include "prepare/packing/packing.hpp"
+#include "prepare/shapes/solid.hpp"
 #include "prepare/shapes/surface.hpp"
 
 namespace breccia::prepare {
 
-/// Directions of a turned frame in the case: unit vectors, at right angles.
-struct Frame3 {
-  Vec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
-
-  Vec3 out(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
-  Vec3 in(const Vec3& v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
-};
-
-/// The frame whose z is along `axis`, and whose x is along `across` less its part along z; where
-/// `across` is zero, the frame of the case turned the shortest way.
-Frame3 frame_of(const Vec3& axis, const Vec3& across);
-
 /// Whether elements of the body go, or move, once it is whole.
 bool is_shaped(const dem::BodyConfig& body);
 
-/// The upright body that is packed: of an STL file the box around it, with as many more elements as
-/// it is larger; without turn and cuts.
+/// The upright body that is packed: of an STL file, or with joins, the box around it, with as many
+/// more elements as it is larger; without turn and cuts.
 /// @throws as read_surface
 dem::BodyConfig whole_of(const dem::BodyConfig& body, const std::string& case_folder);
 
