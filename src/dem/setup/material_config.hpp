@@ -71,6 +71,8 @@ struct MixConfig {
   double smallest = 6e-3;          ///< d_0  [m]
   double largest = 12e-3;          ///< d_a  [m]
   double fuller = 0.5;             ///< n_F  [-]
+  std::vector<double> sieves{};    ///< of a grading curve; empty: Fuller's  [m]
+  std::vector<double> passing{};   ///< share of the mass that passes each  [-]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -86,6 +88,12 @@ struct MixConfig {
         "d_0, diameter of the smallest grains that are placed");
     key("largest", largest, "m", positive, "d_a, diameter of the largest grains");
     key("fuller", fuller, "-", Range{0.1, 2.5}, "n_F, exponent of the sieve curve (d / d_a)^n_F");
+    key("sieves", sieves, "m", positive,
+        "sizes of sieves, growing, from smallest or below to largest or beyond: a grading curve "
+        "instead of Fuller's");
+    key("passing", passing, "-", Range{0.0, 1.0},
+        "share of the mass of all aggregate that passes each of the sieves, from 0 to 1; linear in "
+        "the size in between");
   }
 };
 

@@ -101,6 +101,19 @@ class Check {
           "the same");
   }
 
+  /// A sieve curve of grains, if there is one.
+  void check_curve(const prepare::MixDesign& mix, const std::string& path) {
+    const prepare::Grading& curve = mix.curve;
+    if (curve.empty() && curve.passing.empty()) return;
+    if (const std::string problem = curve.problem(); !problem.empty()) return add(path + problem);
+    if (curve.sieves.front() > mix.smallest || curve.sieves.back() < mix.largest)
+      return add(fmt::format("{}.sieves reach from {} to {} m, and grains from {} to {} m", path,
+                             curve.sieves.front(), curve.sieves.back(), mix.smallest, mix.largest));
+    if (!(curve.passes(mix.largest) > curve.passes(mix.smallest)))
+      add(fmt::format("{}.passing leaves no grains from {} to {} m", path, mix.smallest,
+                      mix.largest));
+  }
+
   void check_ldpm(const MaterialConfig& m, const std::string& path) {
     const MixConfig& mix = m.mix;
     if (!(m.poisson >= 0.0 && m.poisson < 0.25))
@@ -113,6 +126,7 @@ class Check {
       add(fmt::format("{}.mix.smallest = {} m must be below largest = {} m", path, mix.smallest,
                       mix.largest));
     const prepare::MixDesign design = prepare::mix_of(m);
+    check_curve(design, path + ".mix");
     if (!(design.aggregate() > 0.0))
       add(
           fmt::format("{}.mix leaves no room for aggregate: cement, water and air take {:.3g} of "

@@ -57,7 +57,8 @@ MixDesign mix_of(const dem::MaterialConfig& m) {
   const dem::MixConfig& c = m.mix;
   const double cement =
       c.aggregate_ratio > 0.0 ? cement_of(m.density, c.water_ratio, c.aggregate_ratio) : c.cement;
-  return {cement, c.water_ratio, c.cement_density, c.air, c.smallest, c.largest, c.fuller};
+  return {cement,     c.water_ratio, c.cement_density, c.air,
+          c.smallest, c.largest,     c.fuller,         {c.sieves, c.passing}};
 }
 
 LdpmBody ldpm_body(const Container& container, const dem::MaterialConfig& material,

@@ -201,6 +201,7 @@ double MixDesign::aggregate() const {
   return 1.0 - cement / cement_density - water_ratio * cement / 1000.0 - air;
 }
 double MixDesign::placed() const {
+  if (!curve.empty()) return (curve.passes(largest) - curve.passes(smallest)) * aggregate();
   return (1.0 - power(smallest / largest, fuller)) * aggregate();
 }
 
@@ -211,10 +212,13 @@ double cement_of(double density, double water_ratio, double aggregate_ratio) {
 std::vector<double> grain_diameters(const MixDesign& mix, double volume, const Random& random) {
   const double wanted = mix.placed() * volume, q = 3.0 - mix.fuller;
   const double span = 1.0 - power(mix.smallest / mix.largest, q);
+  const Grading part = mix.curve.empty() ? Grading{} : mix.curve.part(mix.smallest, mix.largest);
   std::vector<double> diameters;
   double filled = 0.0;
   for (std::uint64_t k = 0;; ++k) {
-    const double d = mix.smallest * power(1.0 - random.uniform(k) * span, -1.0 / q);
+    const double p = random.uniform(k);
+    const double d =
+        part.empty() ? mix.smallest * power(1.0 - p * span, -1.0 / q) : part.diameter_at(p);
     filled += pi / 6.0 * d * d * d;
     if (filled > wanted) break;
     diameters.push_back(d);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/random.hpp"
+#include "prepare/packing/grading.hpp"
 #include "prepare/packing/packing.hpp"
 
 namespace breccia::prepare {
@@ -17,17 +18,19 @@ struct MixDesign {
   double smallest = 6e-3;          ///< d_0, smallest grain that is placed  [m]
   double largest = 12e-3;          ///< d_a, largest grain  [m]
   double fuller = 0.5;             ///< n_F of the sieve curve F(d) = (d/d_a)^n_F  [-]
+  Grading curve{};                 ///< instead of Fuller's, unless it is empty
 
   /// Share of the volume that all aggregate takes, v_a.  [-]
   double aggregate() const;
-  /// Share that grains from d_0 on take, v_a0 = (1 - (d_0/d_a)^n_F) v_a.  [-]
+  /// Share that grains of [d_0, d_a] take: v_a0 = (1 - (d_0/d_a)^n_F) v_a, or by the sieves.  [-]
   double placed() const;
 };
 
 /// Cement over volume of a mix of known density, water and aggregate over cement by mass.  [kg/m3]
 double cement_of(double density, double water_ratio, double aggregate_ratio);
 
-/// Diameters of grains for a volume of concrete, largest first: a sample of Fuller's curve,
+/// Diameters of grains for a volume of concrete, largest first: a sample of the sieves, or of
+/// Fuller's curve,
 ///
 ///   d = d_0 (1 - P (1 - (d_0/d_a)^q))^(-1/q),  q = 3 - n_F,  P uniform in [0, 1)
 ///

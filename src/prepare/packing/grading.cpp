@@ -40,6 +40,28 @@ std::string Grading::problem() const {
   return "";
 }
 
+double Grading::passes(double diameter) const {
+  if (diameter <= sieves.front()) return 0.0;
+  if (diameter >= sieves.back()) return 1.0;
+  std::size_t k = 0;
+  while (diameter > sieves[k + 1]) ++k;
+  return passing[k] +
+         (diameter - sieves[k]) / (sieves[k + 1] - sieves[k]) * (passing[k + 1] - passing[k]);
+}
+
+Grading Grading::part(double from, double to) const {
+  const double below = passes(from), share = passes(to) - below;
+  Grading part{{from}, {0.0}};
+  for (std::size_t k = 0; k < sieves.size(); ++k) {
+    if (!(sieves[k] > from && sieves[k] < to)) continue;
+    part.sieves.push_back(sieves[k]);
+    part.passing.push_back((passing[k] - below) / share);
+  }
+  part.sieves.push_back(to);
+  part.passing.push_back(1.0);
+  return part;
+}
+
 double Grading::number(std::size_t k) const {
   return (passing[k + 1] - passing[k]) / (sieves[k + 1] - sieves[k]) *
          (inverse_square(sieves[k]) - inverse_square(sieves[k + 1]));

@@ -19,6 +19,10 @@ struct Grading {
   bool empty() const { return sieves.empty(); }
   /// What is wrong with it, after the name of its table; empty: nothing.
   std::string problem() const;
+  /// Share of the mass in diameters below one. It has no problem, as for all below.  [-]
+  double passes(double diameter) const;
+  /// The curve of what lies between two diameters, a curve of its own.
+  Grading part(double from, double to) const;
   /// Mean volume of its spheres by number.  [m3]
   double mean_volume() const;
   /// Diameter below which this share of the number lies.  [m]

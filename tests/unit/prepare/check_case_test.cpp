@@ -120,6 +120,24 @@ TEST(CheckDem, refuses_what_ldpm_cannot_do) {
       {[](Config& c) { c.materials[0].fracture_energy = 50.0; }, "ldpm.tensile_length"},
       {[](Config& c) { c.materials[0].mix.smallest = 0.1; }, "must be below largest"},
       {[](Config& c) { c.materials[0].mix.cement = 1300.0; }, "no room for aggregate"},
+      {[](Config& c) {
+         c.materials[0].mix.sieves = {6e-3, 12e-3};
+       },
+       ".mix.sieves has 2 sizes"},
+      {[](Config& c) {
+         c.materials[0].mix.sieves = {8e-3, 12e-3};
+         c.materials[0].mix.passing = {0.0, 1.0};
+       },
+       "reach from 0.008"},
+      {[](Config& c) {
+         c.materials[0].mix.sieves = {1e-3, 6e-3, 12e-3};
+         c.materials[0].mix.passing = {0.0, 1.0, 1.0};
+       },
+       "no grains from"},
+      {[](Config& c) {
+         c.materials[0].mix.passing = {0.0, 1.0};
+       },
+       ".mix.sieves has 0 sizes"},
       {[](Config& c) { c.materials[0].ldpm.final_hardening = 0.5; }, "final_hardening"},
       {[](Config& c) { c.materials[0].ldpm.final_friction = 0.5; }, "final_friction"},
   };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "exec/error.hpp"
 #include "math/constants.hpp"
@@ -53,6 +55,58 @@ TEST(LdpmGeometry, grains_follow_fullers_curve_and_fill_their_share) {
   EXPECT_NEAR(filled / (mix.placed() * volume), 1.0, 1e-3);
   const double share = (std::sqrt(9.0 / 12.0) - std::sqrt(0.5)) / (1.0 - std::sqrt(0.5));
   EXPECT_NEAR(below / filled, share, 0.02);
+}
+
+/// A quarter of the aggregate passes 8 mm, half of the rest 12 mm.
+Grading sieved() {
+  return {{4e-3, 8e-3, 12e-3, 16e-3}, {0.0, 0.25, 0.625, 1.0}};
+}
+
+TEST(LdpmGeometry, grains_follow_a_sieve_curve_and_fill_their_share) {
+  MixDesign m = mix;
+  m.smallest = 6e-3, m.largest = 16e-3, m.curve = sieved();
+  EXPECT_NEAR(m.placed(), (1.0 - 0.125) * m.aggregate(), 1e-12);
+  const double volume = 0.03;
+  double filled = 0.0, below_8 = 0.0, below_12 = 0.0, below_14 = 0.0;
+  for (const double d : grain_diameters(m, volume, {3, 0})) {
+    EXPECT_GE(d, m.smallest * (1.0 - 1e-12));
+    EXPECT_LE(d, m.largest * (1.0 + 1e-12));
+    const double grain = pi / 6.0 * d * d * d;
+    filled += grain;
+    if (d < 8e-3) below_8 += grain;
+    if (d < 12e-3) below_12 += grain;
+    if (d < 14e-3) below_14 += grain;
+  }
+  EXPECT_NEAR(filled / (m.placed() * volume), 1.0, 1e-3);
+  EXPECT_NEAR(below_8 / filled, 0.125 / 0.875, 0.01);
+  EXPECT_NEAR(below_12 / filled, 0.5 / 0.875, 0.02);
+  EXPECT_NEAR(below_14 / filled, 0.6875 / 0.875, 0.02);
+}
+
+/// Sieves that lie close together on Fuller's curve give the grains that Fuller's formula gives.
+TEST(LdpmGeometry, many_sieves_on_fullers_curve_give_its_grains) {
+  Grading fuller{{0.0}, {0.0}};
+  for (int k = 0; k <= 800; ++k) {
+    const double d = 4e-3 + 1e-5 * k;
+    fuller.sieves.push_back(d);
+    fuller.passing.push_back(k == 800 ? 1.0 : std::sqrt(d / 12e-3));
+  }
+  fuller.sieves[0] = 1e-3;
+  ASSERT_EQ(fuller.problem(), "");
+  const Grading grains = fuller.part(6e-3, 12e-3);
+  ASSERT_EQ(grains.problem(), "");
+  const double span = 1.0 - std::pow(0.5, 2.5);
+  for (const double p : {0.0, 0.1, 0.37, 0.5, 0.9, 0.99, 0.9999})
+    EXPECT_NEAR(grains.diameter_at(p), 6e-3 * std::pow(1.0 - p * span, -0.4), 1e-8) << p;
+}
+
+TEST(LdpmGeometry, a_part_of_a_sieve_curve_is_a_curve) {
+  const Grading all = sieved(), part = all.part(6e-3, 14e-3);
+  EXPECT_EQ(part.sieves, (std::vector<double>{6e-3, 8e-3, 12e-3, 14e-3}));
+  for (const double d : {6e-3, 7e-3, 8e-3, 11e-3, 12e-3, 13e-3, 14e-3})
+    EXPECT_NEAR(part.passes(d), (all.passes(d) - 0.125) / (0.8125 - 0.125), 1e-12) << d;
+  EXPECT_EQ(all.passes(1e-3), 0.0);
+  EXPECT_EQ(all.passes(1.0), 1.0);
 }
 
 TEST(LdpmGeometry, cement_follows_from_the_ratios_of_water_and_aggregate) {
