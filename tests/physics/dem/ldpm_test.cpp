@@ -20,11 +20,12 @@ using testing::Scene;
 using testing::state;
 
 /// One regular tetrahedron, edge 1, E_0 = 30000, alpha = 0.2; units N, mm, t, s.
-Scene tetrahedron() {
+/// @param stiffer  E_0 is so many times that
+Scene tetrahedron(double stiffer = 1.0) {
   Scene s;
   const double poisson = 0.8 / 4.2;
   MaterialConfig& concrete =
-      s.material("concrete", "ldpm", 30000.0 * (1.0 - 2.0 * poisson), poisson, 2.4e-9);
+      s.material("concrete", "ldpm", stiffer * 30000.0 * (1.0 - 2.0 * poisson), poisson, 2.4e-9);
   concrete.tensile_strength = 3.0;
   concrete.cohesion = 7.5;
   concrete.ldpm.tensile_length = 250.0;
@@ -153,9 +154,9 @@ TEST(Ldpm, the_step_is_stable_and_over_half_as_long_as_may_be) {
   EXPECT_GT(taken, 0.5 * stable);
 }
 
-/// Corner 1 out by 0.02, in by 0.2, out again, 1e-4 a step: what an independent program gives.
-TEST(Ldpm, a_tetrahedron_opened_and_crushed_follows_the_published_stresses) {
-  Scene s = tetrahedron();
+/// That tetrahedron with the parameters of the public ones.
+World public_tetrahedron(double stiffer = 1.0) {
+  Scene s = tetrahedron(stiffer);
   LdpmConfig& c = s.config.materials[0].ldpm;
   c.softening_exponent = 0.2;
   c.collapse_strength = 120.0;
@@ -163,7 +164,12 @@ TEST(Ldpm, a_tetrahedron_opened_and_crushed_follows_the_published_stresses) {
   c.compaction_strain = 3.0;
   c.deviatoric_start = 0.5;
   c.friction_stress = 600.0;
-  World w = s.world();
+  return s.world();
+}
+
+/// Corner 1 out by 0.02, in by 0.2, out again, 1e-4 a step: what an independent program gives.
+TEST(Ldpm, a_tetrahedron_opened_and_crushed_follows_the_published_stresses) {
+  World w = public_tetrahedron();
   double at_corner = 0.0;
   const auto reach = [&](double a) {
     const int steps = static_cast<int>(std::lround(std::fabs(a - at_corner) / 1e-4));
@@ -187,6 +193,42 @@ TEST(Ldpm, a_tetrahedron_opened_and_crushed_follows_the_published_stresses) {
   EXPECT_NEAR(reach(-0.2), -602.149170, 1e-5);
   EXPECT_NEAR(reach(-0.09), 0.0, 1e-6);
   EXPECT_NEAR(reach(0.02), 0.606663, 1e-6);
+}
+
+/// The law knows strains only times its moduli: a million times as stiff and as little moved, the
+/// other edges turn by less than 1e-6, and have the stresses of a program that lets none turn.
+TEST(Ldpm, a_tetrahedron_that_hardly_turns_follows_the_published_stresses_on_all_edges) {
+  constexpr double scale = 1e-6;
+  World w = public_tetrahedron(1.0 / scale);
+  double at_corner = 0.0;
+  const auto reach = [&](double a) {
+    const int steps = static_cast<int>(std::lround(std::fabs(a - at_corner) / 1e-4));
+    for (int k = 1; k <= steps; ++k) {
+      const double to = 1.0 + scale * (at_corner + (a - at_corner) * k / steps);
+      bring(w, [&](const Vec3& x) { return x.x > 0.6 ? Vec3{to, 0.0, 0.0} : x; });
+    }
+    at_corner = a;
+  };
+  const auto expect = [&](double normal, double other_normal, double other_tangential) {
+    const auto near = [&](double found, double wanted) {
+      EXPECT_NEAR(found, wanted, 2e-5 * (1.0 + std::fabs(wanted))) << at_corner;
+    };
+    for (Index i : {0, 1}) near(w.ldpm.state.data()[i].stress.x, normal);
+    for (Index i : {6, 7, 8, 9}) {  // edges 1-2, 1-3
+      const Vec3& s = w.ldpm.state.data()[i].stress;
+      near(s.x, other_normal);
+      near(std::hypot(s.y, s.z), other_tangential);
+    }
+    for (Index i : {2, 3, 4, 5, 10, 11})  // edges without corner 1
+      EXPECT_LT(norm(w.ldpm.state.data()[i].stress), 1e-4);
+  };
+  reach(0.01), expect(1.354499, 2.054748, 0.711785);
+  reach(0.02), expect(0.606663, 1.423558, 0.493135);
+  reach(0.0);  // an increment of compression or none, as rounding decides
+  reach(-0.09), expect(-237.871033, -487.303756, 140.965807);
+  reach(-0.2), expect(-602.149170, -1994.480708, 238.859120);
+  reach(-0.09), expect(0.0, -344.480708, 112.333898);
+  reach(0.02), expect(0.606663, 0.031908, 0.011053);
 }
 
 Config cube() {
