@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "exec/error.hpp"
@@ -20,6 +21,12 @@ static_assert(std::endian::native == std::endian::little, "the files say LittleE
 
 constexpr std::size_t block_size = 1 << 18;  // bytes before compression
 constexpr const char* field_data = "FieldData";
+/// The head of the data. VTK 9.0 to 9.3 reads it in pieces of `read_size` bytes and takes it for
+/// finished when it has seen this tag closed; with expat from 2.6 on, and Debian's 2.5.0-1+deb12u2,
+/// it sees that in time only if a piece ends behind the name, and the tag is 42 to 49 bytes long.
+constexpr std::string_view data_name = "<AppendedData";
+constexpr std::string_view data_rest = "                  encoding=\"raw\">\n_";
+constexpr std::size_t read_size = 4096;
 constexpr int compression_level = 1;  // as small as zlib's level 1 in 2/5 of its time
 
 template <class T>
@@ -305,7 +312,7 @@ void FrameBlocks::list(Document& document, Cells cells) {
   place(document, {"Points", "Points", "m", type_of<float>(), items(Carrier::points), 3, points_});
   document.text.back() += "</Points>\n";
   list_cells(document, cells);
-  document.text.back() += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+  document.text.back() += "</Piece>\n</UnstructuredGrid>\n";
 }
 
 std::string FrameBlocks::packed(const Block& block) const {
@@ -361,6 +368,9 @@ std::string FrameBlocks::content(const Document& document,
   }
   const std::string end = "\n</AppendedData>\n</VTKFile>\n";
   content += document.text.back();
+  content.append(read_size - 1 - (content.size() + data_name.size() - 1) % read_size, ' ');
+  content += data_name;
+  content += data_rest;
   content.reserve(content.size() + offset + end.size());
   for (const Entry& entry : document.entries) {
     const Array& array = arrays_[entry.array];
