@@ -29,5 +29,6 @@ if [ "$out" != bundle ]; then
   for file in report.js report.css THIRD_PARTY_NOTICES.txt; do
     cmp "$out/$file" "bundle/$file" || { echo "web/report/bundle/$file is not what web/report/src gives; run scripts/build_report.sh" >&2; exit 1; }
   done
+  node test/marks.mjs
   echo "web/report/bundle is what web/report/src gives"
 fi

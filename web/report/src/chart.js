@@ -2,7 +2,7 @@
 // runs have rows at different times.
 
 import uPlot from "uplot";
-import {make, round, save, scaledUnit} from "./format.js";
+import {logMarks, make, round, save, scaledUnit} from "./format.js";
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -53,6 +53,7 @@ export class Chart {
     const axis = (label, scaled, log) => ({
       stroke: () => style("--text-2"), font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif",
       label: `${label}${scaled.unit ? ` [${scaled.unit}]` : ""}`, labelSize: 15, size: 24, gap: 4,
+      ...(log ? {splits: (_, _axis, low, high) => logMarks(low, high)} : {}),
       grid: {stroke: () => style("--grid"), width: 1}, ticks: {stroke: () => style("--grid"), size: 4},
       values: (_, ticks) => ticks.map((v) => (v == null ? "" : log ? logTick(v) : round(v * scaled.factor, 4))),
     });

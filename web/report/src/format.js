@@ -90,3 +90,17 @@ export function draw(tag, attributes = {}, ...children) {
   for (const child of children.flat(Infinity)) if (child != null) node.append(child);
   return node;
 }
+
+/**
+ * Marks of a logarithmic axis: 1 to 9 times each power of ten within it. Those of uPlot begin at the
+ * axis' low end, and never come to its high end unless that is such a mark.
+ */
+export function logMarks(low, high) {
+  const marks = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); ++power)
+    for (let k = 1; k < 10; ++k) {
+      const mark = Number(`${k}e${power}`);
+      if (mark >= low && mark <= high) marks.push(mark);
+    }
+  return marks;
+}
