@@ -97,8 +97,9 @@ struct Stage {
 };
 
 /// Forces of your own on items of a simulation, at the time of its positions.
-/// @param force  of item 0, then of item 1, ...: x, y, z of an element [N]; in 2D x, y of the three
-///               corners of a triangle [N/m]. Zero when the law is asked.
+/// @param force  of item 0, then of item 1, ...: x, y, z of an element, or of the four corners of a
+///               tetrahedron [N]; in 2D x, y of the three corners of a triangle [N/m]. Zero when the
+///               law is asked.
 using ForceLaw = std::function<void(std::vector<double>& force)>;
 
 /// Where a simulation computes.
@@ -147,12 +148,12 @@ class BR_API Simulation {
   /// forces are known, and may read this simulation, not step it. Local damping acts on them as on
   /// other forces; their work is part of energies().at("work"). The time step does not know how
   /// stiff they are.
-  /// @param items  rows of the arrays: elements or triangles
+  /// @param items  rows of the arrays: elements, triangles or tetrahedra
   /// @returns its number. @throws Error if there is no such item
   int add_force(std::vector<std::int64_t> items, ForceLaw law);
   /// Of a force since it was added.  [J; in 2D J/m]
   double work_of_force(int number) const;
-  /// Rows of the arrays that forces act on: elements or triangles.
+  /// Rows of the arrays that forces act on: elements, triangles or tetrahedra.
   std::int64_t items() const;
 
   /// The arrays of the state, without their numbers.

@@ -124,8 +124,9 @@ class Simulation(_breccia.Simulation):
         """Forces beside those of the case, from now on; returns a br.Force.
 
         law  law(sim), asked once a step, or constant numbers: x, y, z of each element [N] or, in 2D,
-             x, y of each triangle, shared alike by its corners, or (n, 3, 2) of corners [N/m].
-             One force for all may be given once.
+             x, y of each triangle, shared alike by its corners, or (n, 3, 2) of corners [N/m];
+             of tetrahedra x, y, z of each, or (n, 4, 3) of corners [N]. One force for all may be
+             given once.
         on   rows of the arrays, or True where it acts; default: everywhere
 
         The time step does not know how stiff such a force is: lower time.safety for stiff ones.
@@ -166,7 +167,7 @@ class Simulation(_breccia.Simulation):
 
     @property
     def positions(self):
-        """Centres of the elements, (n, 3); in 2D the corners of the triangles, (n, 3, 2) [m]."""
+        """Centres of elements, (n, 3); corners of triangles, (n, 3, 2), or tetrahedra, (n, 4, 3) [m]."""
         return self.fields["position"]
 
     @property
@@ -176,7 +177,7 @@ class Simulation(_breccia.Simulation):
 
     @property
     def damage(self):
-        """Of each element or triangle, 0 whole to 1 lost [-]; worked out anew."""
+        """Of each element, triangle or tetrahedron, 0 whole to 1 lost [-]; worked out anew."""
         return self.fields["damage"]
 
     def __repr__(self):

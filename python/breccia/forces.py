@@ -11,7 +11,7 @@ class Force:
     def __init__(self, simulation, law, on):
         self._law = law
         self._is_on = True
-        self._corners = len(simulation.positions.shape) == 3
+        self._shape = simulation.positions.shape[1:]  # of an element, or of the corners of one
         if on is None:
             on = numpy.arange(simulation.items)
         on = numpy.asarray(on)
@@ -21,13 +21,14 @@ class Force:
 
     def _numbers(self, simulation):
         count = len(self.on)
-        shape = (count, 3, 2) if self._corners else (count, 3)
+        shape = (count, *self._shape)
         if not self._is_on:
             return numpy.zeros(shape)
         law = self._law
         force = numpy.asarray(law(simulation) if callable(law) else law, dtype=float)
-        if self._corners and force.ndim < 3:  # of whole triangles
-            force = numpy.broadcast_to(force, (count, 2))[:, None, :] / 3.0
+        if len(self._shape) == 2 and force.ndim < 3:  # of whole triangles or tetrahedra
+            corners, parts = self._shape
+            force = numpy.broadcast_to(force, (count, parts))[:, None, :] / corners
         return numpy.broadcast_to(force, shape)
 
     @property

@@ -81,6 +81,10 @@ class SameBits(unittest.TestCase):
         self.compare("moving_box", 2e-3, folder)
 
     @in_folder
+    def test_bar_of_tetrahedra_has_the_hash_of_the_program(self, folder):
+        self.compare("spall_bar_3d", 3e-6, folder)
+
+    @in_folder
     def test_run_leaves_what_the_program_leaves(self, folder):
         run = br.run(balls(), folder / "here")
         (folder / "balls.toml").write_text(balls().text)
@@ -140,6 +144,15 @@ class Arrays(unittest.TestCase):
         self.assertTrue((doubled > 0).all())
         sim.step(10)
         self.assertLessEqual(abs(sim.velocities).max(), 100.0)
+
+
+    def test_of_tetrahedra_have_four_corners_in_space(self):
+        sim = br.Simulation(ROOT / "cases/spall_bar_3d/small.toml", threads=1)
+        count = int(sim.facts["model.tetrahedra"])
+        self.assertEqual(sim.positions.shape, (count, 4, 3))
+        self.assertEqual(sim.fields["stress"].shape, (count, 6))
+        sides = sim.positions[:, 1:] - sim.positions[:, :1]
+        self.assertAlmostEqual(numpy.linalg.det(sides).sum() / 6.0, 0.01 * 0.01 * 0.25, places=9)
 
 
 class Runs(unittest.TestCase):
@@ -296,6 +309,21 @@ class OwnForces(unittest.TestCase):
         missing = energies["start"] + energies["work"] - sum(energies[name] for name in names)
         first = 3.0 * mass[flies].sum() * (pull * sim.time_step) ** 2 / 8.0
         self.assertAlmostEqual(abs(missing) / first, 1.0, places=5)
+
+    def test_in_space_a_bar_gains_what_the_force_gives(self):
+        path = ROOT / "cases/spall_bar_3d/small.toml"
+        sim, free = (br.Simulation(path, threads=1) for _ in range(2))
+        mass = sim.fields["mass"]  # of a corner
+        pull = 2e4
+        force = sim.add_force(lambda sim: 4.0 * mass[:, None] * numpy.array([pull, 0.0, 0.0]))
+        sim.step(40)
+        free.step(40)
+        gained = sim.velocities - free.velocities
+        spent = sim.time - 0.5 * sim.time_step
+        numpy.testing.assert_allclose(gained[..., 0], pull * spent, rtol=1e-8)
+        numpy.testing.assert_allclose(gained[..., 1:], 0.0, atol=1e-9)
+        way = (sim.positions - br.Simulation(path, threads=1).positions)[..., 0]
+        self.assertAlmostEqual(force.work / (mass[:, None] * pull * way).sum(), 1.0, places=8)
 
     def test_wrong_forces_are_named(self):
         sim = br.Simulation(balls(), threads=1)
