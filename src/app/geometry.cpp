@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -23,16 +24,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Parts of a mesh by the body of each triangle.
+/// Lists of cells by the body of each, without those of bodies that have none.
+template <class List>
+std::vector<List> lists_by_group(const std::vector<std::string>& names,
+                                 const std::vector<std::int32_t>& group,
+                                 std::vector<Index> List::*members) {
+  std::vector<List> lists;
+  for (const std::string& name : names) lists.push_back({name, {}});
+  for (std::size_t t = 0; t < group.size(); ++t)
+    if (const auto g = static_cast<std::size_t>(group[t]); g < lists.size())
+      (lists[g].*members).push_back(static_cast<Index>(t));
+  std::erase_if(lists, [members](const List& list) { return (list.*members).empty(); });
+  return lists;
+}
 std::vector<prepare::Part> parts_by_group(const std::vector<std::string>& names,
                                           const std::vector<std::int32_t>& group) {
-  std::vector<prepare::Part> parts;
-  for (const std::string& name : names) parts.push_back({name, {}});
-  for (std::size_t t = 0; t < group.size(); ++t)
-    if (const auto g = static_cast<std::size_t>(group[t]); g < parts.size())
-      parts[g].triangles.push_back(static_cast<Index>(t));
-  std::erase_if(parts, [](const prepare::Part& part) { return part.triangles.empty(); });
-  return parts;
+  return lists_by_group(names, group, &prepare::Part::triangles);
+}
+std::vector<prepare::Volume> volumes_by_group(const std::vector<std::string>& names,
+                                              const std::vector<std::int32_t>& group) {
+  return lists_by_group(names, group, &prepare::Volume::tetrahedra);
 }
 
 std::vector<std::int32_t> integers_of(const std::vector<FrameField>& fields, const char* name) {
@@ -43,14 +54,49 @@ std::vector<std::int32_t> integers_of(const std::vector<FrameField>& fields, con
   return {};
 }
 
-/// Corners of triangles that are at one place become one vertex: frames list each triangle's own.
+/// Vertices of a mesh from a frame, which lists each cell's own corners: those at one place are
+/// one.
+template <class Point>
+class Vertices {
+ public:
+  Vertices(const Frame& frame, std::vector<Point>& point) : frame_(frame), point_(point) {}
+
+  /// The vertices of a cell from its corners, and on from `first` of them.
+  template <std::size_t count>
+  std::array<Index, count> of(const std::vector<std::int32_t>& corners, std::size_t first) {
+    std::array<Index, count> cell{};
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3& p = frame_.position[static_cast<std::size_t>(corners[first + k])];
+      const auto [place, added] =
+          number_.emplace(std::tuple{p.x, p.y, p.z}, static_cast<Index>(point_.size()));
+      if (added) point_.push_back(in_mesh(p));
+      cell[k] = place->second;
+    }
+    return cell;
+  }
+
+ private:
+  static Point in_mesh(const Vec3& p) {
+    if constexpr (std::is_same_v<Point, Vec3>)
+      return p;
+    else
+      return {p.x, p.y};
+  }
+  const Frame& frame_;
+  std::vector<Point>& point_;
+  std::map<std::tuple<double, double, double>, Index> number_;
+};
+
 Geometry of_frame(Frame frame) {
   Geometry g;
-  if (!frame.tetrahedra.empty())
-    throw InputError(
-        "a frame of tetrahedra is no plane mesh and no packing; `breccia convert --frames` carries "
-        "frames to another format, and ParaView and meshio read their files as they are");
   g.groups = frame.groups;
+  if (!frame.tetrahedra.empty()) {  // its triangles are joints
+    Vertices<Vec3> vertices(frame, g.solid.point);
+    for (std::size_t t = 0; t + 3 < frame.tetrahedra.size(); t += 4)
+      g.solid.tetrahedron.push_back(vertices.of<4>(frame.tetrahedra, t));
+    g.solid.volumes = volumes_by_group(g.groups, integers_of(frame.tetrahedron_fields, "group"));
+    return g;
+  }
   if (frame.triangles.empty()) {
     g.center = std::move(frame.position);
     g.radius = std::move(frame.radius);
@@ -58,18 +104,9 @@ Geometry of_frame(Frame frame) {
     g.group = integers_of(frame.point_fields, "group");
     return g;
   }
-  std::map<std::tuple<double, double>, Index> vertex;
-  for (std::size_t t = 0; t + 2 < frame.triangles.size(); t += 3) {
-    prepare::Triangle corners{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& p = frame.position[static_cast<std::size_t>(frame.triangles[t + k])];
-      const auto [place, added] =
-          vertex.emplace(std::tuple{p.x, p.y}, static_cast<Index>(g.mesh.point.size()));
-      if (added) g.mesh.point.push_back({p.x, p.y});
-      corners[k] = place->second;
-    }
-    g.mesh.triangle.push_back(corners);
-  }
+  Vertices<Vec2> vertices(frame, g.mesh.point);
+  for (std::size_t t = 0; t + 2 < frame.triangles.size(); t += 3)
+    g.mesh.triangle.push_back(vertices.of<3>(frame.triangles, t));
   g.mesh.parts = parts_by_group(g.groups, integers_of(frame.triangle_fields, "group"));
   return g;
 }
@@ -93,10 +130,7 @@ Geometry of_model(const std::string& path) {
     g.solid.point = model.point;
     g.solid.tetrahedron = model.tetrahedron;
     for (const auto& set : model.face_sets) g.solid.face_sets.push_back({set.name, set.faces});
-    for (const std::string& name : model.groups) g.solid.volumes.push_back({name, {}});
-    for (std::size_t t = 0; t < model.group.size(); ++t)
-      g.solid.volumes[static_cast<std::size_t>(model.group[t])].tetrahedra.push_back(
-          static_cast<Index>(t));
+    g.solid.volumes = volumes_by_group(model.groups, {model.group.begin(), model.group.end()});
     return g;
   }
   const dem::Model model = load_model(reader);

@@ -147,6 +147,14 @@ class Meshes(unittest.TestCase):
             self.assertIn("8.165 mm", told["step"])  # sqrt(2/3) of the edge
             self.assertEqual(told["part"], "upper: 1 tetrahedra, 1.179e-07 m3")
             self.assertEqual(told["surface"], "middle: 1 faces, 4.33e-05 m2")
+        (self.path / "solid.toml").write_text(
+            CASE.replace("fdem2d", "fdem3d").replace("-2e5]", "-2e5, 0.0]").replace("FILE", "solid.msh"))
+        self.breccia("run", "solid.toml", "-o", "solid", "-q", "--threads", "1")
+        self.breccia("convert", "solid", "moved.msh", "--frame", "0")
+        for source in ("solid", "moved.msh"):
+            told = {line.split()[0]: line for line in self.breccia("mesh", "info", source, "--frame", "0").splitlines()[1:]}
+            self.assertIn("2, vertices 5", told["tetrahedra"])
+            self.assertIn("pair: 2 tetrahedra, 2.357e-07 m3", told["part"])
         self.breccia("convert", "solid.msh", "solid.vtu")
         self.assertIn('Name="types"', (self.path / "solid.vtu").read_bytes().decode("latin1"))
 

@@ -96,6 +96,52 @@ Spheres read_dump(const std::string& text, const std::string& path) {
   return spheres;
 }
 
+constexpr const char* atoms_of_data = "Atoms";
+
+/// Whether it is a data file of LAMMPS: a first line of any text, then counts such as "12 atoms".
+bool is_data(const std::string& text) {
+  std::istringstream file(text);
+  std::string line;
+  bool counts = false;
+  for (std::size_t number = 0; std::getline(file, line); ++number) {
+    const std::vector<std::string> words = words_of(line);
+    if (number > 0 && words.size() >= 2 && words[1] == "atoms") counts = true;
+    if (counts && !words.empty() && words[0] == atoms_of_data) return true;
+  }
+  return false;
+}
+
+/// The section Atoms of a data file in the style sphere: number, type, diameter, density, x, y, z.
+Spheres read_data(const std::string& text, const std::string& path) {
+  Spheres spheres;
+  std::istringstream file(text);
+  std::size_t number = 0;
+  bool atoms = false;
+  for (std::string line; std::getline(file, line);) {
+    const std::string where = fmt::format("{}, line {}", path, ++number);
+    const std::vector<std::string> words = words_of(line.substr(0, line.find('#')));
+    if (words.empty()) continue;
+    if (std::isnan(number_of(words[0]))) {  // the heading of a section
+      atoms = words[0] == atoms_of_data;
+      const std::size_t style = line.find('#');
+      if (atoms && style != std::string::npos &&
+          words_of(line.substr(style + 1)) != std::vector<std::string>{"sphere"})
+        throw InputError(where +
+                         ": atoms of style sphere are read: id type diameter density x y z");
+      continue;
+    }
+    if (!atoms) continue;
+    std::vector<double> v;
+    for (const std::size_t k : {4, 5, 6, 2})
+      v.push_back(k < words.size() ? number_of(words[k]) : std::nan(""));
+    v[3] *= 0.5;
+    if (std::isnan(v[0] + v[1] + v[2] + v[3]) || !add(spheres, v))
+      throw InputError(where +
+                       " is not id type diameter density x y z, as atoms of style sphere are");
+  }
+  return spheres;
+}
+
 /// Lines of numbers between blanks.
 Spheres read_blanks(const std::string& text, const std::string& path) {
   Spheres spheres;
@@ -133,6 +179,8 @@ Spheres read_spheres(const std::string& path) {
   const std::string text = read_whole_file(path);
   if (text.starts_with("ITEM:"))
     spheres = read_dump(text, path);
+  else if (is_data(text))
+    spheres = read_data(text, path);
   else if (has_blanks(text))
     spheres = read_blanks(text, path);
   else

@@ -28,6 +28,20 @@ TEST(SpheresText, a_dump_of_lammps_or_liggghts_gives_its_last_snapshot) {
   EXPECT_THROW(spheres_of(head + "ITEM: ATOMS x y z radius\n1 1 1 -1\n"), InputError);
 }
 
+TEST(SpheresText, a_data_file_of_lammps_gives_its_atoms) {
+  const std::string head = "made by hand\n\n2 atoms\n1 atom types\n\n0 1 xlo xhi\n\n";
+  const std::string atoms = "1 1 0.2 2500 1 2 3 0 0 0\n\n2 1 0.4 2500 4 5 6 # last\n";
+  const Spheres s =
+      spheres_of(head + "Atoms # sphere\n\n" + atoms + "\nVelocities\n\n1 9 9 9 9 9 9\n");
+  ASSERT_EQ(s.radius.size(), 2U);
+  EXPECT_EQ(s.position[0].y, 2.0);
+  EXPECT_EQ(s.radius[1], 0.2);
+  EXPECT_EQ(spheres_of(head + "Atoms\n\n" + atoms).radius.size(), 2U);
+  EXPECT_THROW(spheres_of(head + "Atoms # atomic\n\n1 1 0 0 0\n"), InputError);
+  EXPECT_THROW(spheres_of(head + "Atoms\n\n1 1 0 0 0\n"), InputError);
+  EXPECT_THROW(spheres_of(head + "Atoms\n\n1 1 -0.2 2500 1 2 3\n"), InputError);
+}
+
 TEST(SpheresText, a_list_of_yade_has_blanks_between_its_numbers) {
   const Spheres s = spheres_of("#format x_y_z_r\n0.1\t0.2\t0.3\t0.01\n0.4 0.5 0.6 0.02\n");
   ASSERT_EQ(s.radius.size(), 2U);
