@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "domain/domain.hpp"
 #include "domain/mpi_ranks.hpp"
 #include "exec/error.hpp"
 #include "io/case/case_file.hpp"
+#include "io/case/case_source.hpp"
+#include "io/case/problems.hpp"
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
@@ -104,12 +107,67 @@ std::string model_keys(const fdem3::Config& config) {
   return completed_case(part);
 }
 
+CaseText text_of(const std::string& path) {
+  return {read_case_source(case_file_of(path)), case_file_of(path)};
+}
+const CaseText& text_of(const CaseText& text) {
+  return text;
+}
+std::uint32_t line_in(const std::string& path, const std::string& sentence) {
+  return line_of_sentence(sentence, path);
+}
+std::uint32_t line_in(const CaseText&, const std::string&) {
+  return 0;
+}
+
+/// Whether a problem takes a table or a name away that others may refer to.
+bool takes_a_name(const std::string& problem) {
+  const std::string key = problem.substr(0, problem.find(' '));
+  return key.find('.') == std::string::npos || key.ends_with(".name") ||
+         problem.find(" wants a ") < problem.find('\n');
+}
+
+/// Of a case with wrong values, what names something that is not there: no value changes that, so
+/// all is told at once.
+template <class Config, class Source>
+std::vector<Problem> lost_names(const Source& source, const std::vector<std::string>& overrides) {
+  Config config;
+  CaseReader reader(source, overrides);
+  config.each_key(ReadKeys{reader});
+  std::vector<Problem> lost;
+  try {
+    check_case(config);
+  } catch (const prepare::Refusal& refusal) {
+    for (const std::string& problem : refusal.problems)
+      if (problem.find("; there are: ") != std::string::npos ||
+          problem.find("\" is neither a ") != std::string::npos)
+        lost.push_back({line_in(source, problem), problem});
+  } catch (const Error&) {  // of a value that is told already
+  }
+  return lost;
+}
+
+template <class Config, class Source>
+Config read_all(const Source& source, const std::vector<std::string>& overrides) {
+  try {
+    return read_case<Config>(source, overrides);
+  } catch (const CaseError& error) {
+    if (std::any_of(error.problems.begin(), error.problems.end(),
+                    [](const Problem& problem) { return takes_a_name(problem.text); }))
+      throw;
+    std::vector<Problem> all = error.problems;
+    for (Problem& lost : lost_names<Config>(source, overrides)) all.push_back(std::move(lost));
+    const CaseText& text = text_of(source);
+    throw CaseError(std::move(all), text.origin, text.text);
+  }
+}
+
 template <class Source>
 AnyConfig read_config(const Source& source, const std::vector<std::string>& overrides) {
   const std::string method = case_method(source, overrides);
-  if (method == "fdem2d") return read_case<fdem::Config>(source, overrides);
-  if (method == "fdem3d") return read_case<fdem3::Config>(source, overrides);
-  return read_case<dem::Config>(source, overrides);
+  if (method == "fdem2d") return read_all<fdem::Config>(source, overrides);
+  if (method == "fdem3d") return read_all<fdem3::Config>(source, overrides);
+  return read_all<dem::Config>(source, overrides);
 }
 
 /// The model of a case: the prepared one, or built now.

@@ -47,8 +47,9 @@ toml::table parse(const std::string& text, const std::string& path) {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
-    throw InputError(fmt::format("1 problem in {}; nothing was run.\n  line {}, column {}: {}",
-                                 path, at.line, at.column, plain_toml_error(error.description())));
+    throw InputError(fmt::format("1 problem in {}; nothing was run.\n  line {}, column {}: {}{}",
+                                 path, at.line, at.column, plain_toml_error(error.description()),
+                                 excerpt(text, at.line, at.column)));
   }
 }
 
@@ -72,7 +73,7 @@ struct CaseReader::State {
     bool in_item;                 ///< at or below an item of a list
   };
 
-  std::string path;
+  std::string path, content;  ///< of the file, and what is in it
   toml::table root;
   std::vector<Level> levels;
   std::vector<Problem> problems;
@@ -131,19 +132,24 @@ struct CaseReader::State {
     return true;
   }
   bool in_range(const toml::node& node, const std::string& key, double value, double usual,
-                const Range& range, const char* meaning) {
+                const Range& range, const char* meaning, const std::string& unit = "") {
     if (std::isnan(value) || (std::isinf(value) && !std::isinf(usual))) {
       add(&node, key + " is not a finite number", meaning);
       return false;
     }
     if (range.holds(value)) return true;
-    add(&node, key + " = " + number_text(value) + " is outside " + range_text(range), meaning);
+    if (const auto typed = node.value_exact<std::string>())
+      add(&node, key + " = \"" + *typed + "\" is outside " + range_text(range) + unit, meaning);
+    else
+      add(&node, key + " = " + number_text(value) + " is outside " + range_text(range), meaning);
     return false;
   }
   bool number(const toml::node& node, const std::string& key, double& to, const char* unit,
               const Range& range, const char* meaning) {
     double given = 0.0;
-    if (!quantity(node, key, unit, given) || !in_range(node, key, given, to, range, meaning))
+    if (!quantity(node, key, unit, given) ||
+        !in_range(node, key, given, to, range, meaning,
+                  *unit == '-' ? "" : fmt::format(" {}", unit)))
       return false;
     to = given;
     return true;
@@ -233,16 +239,11 @@ struct CaseReader::State {
 };
 
 CaseReader::CaseReader(const std::string& path, const std::vector<std::string>& overrides)
-    : state_(std::make_unique<State>()) {
-  state_->path = case_file_of(path);
-  state_->root = parse(read_case_source(state_->path), state_->path);
-  for (const std::string& text : overrides) apply_override(state_->root, text);
-  use_named_materials(state_->root, state_->problems);
-  state_->levels.push_back({&state_->root, "", {}, false});
-}
+    : CaseReader(CaseText{read_case_source(case_file_of(path)), case_file_of(path)}, overrides) {}
 CaseReader::CaseReader(const CaseText& text, const std::vector<std::string>& overrides)
     : state_(std::make_unique<State>()) {
   state_->path = text.origin;
+  state_->content = text.text;
   state_->root = parse(text.text, text.origin);
   for (const std::string& override : overrides) apply_override(state_->root, override);
   use_named_materials(state_->root, state_->problems);
@@ -261,11 +262,9 @@ void CaseReader::read(const char* name, std::int64_t& value, const char*, const 
   const toml::node* node = state_->find(name);
   if (node == nullptr) return;
   const auto integer = node->value_exact<std::int64_t>();
-  if (!integer) {
-    state_->add(node,
-                fmt::format("{} wants an integer, not {}", state_->full(name), type_of(*node)));
-    return;
-  }
+  if (!integer)
+    return state_->add(
+        node, fmt::format("{} wants an integer, not {}", state_->full(name), type_of(*node)));
   if (state_->in_range(*node, state_->full(name), static_cast<double>(*integer), 0.0, range,
                        meaning))
     value = *integer;
@@ -333,10 +332,7 @@ void CaseReader::read(const char* name, std::vector<double>& value, const char* 
 void CaseReader::read(const char* name, bool& value, const char*) {
   const toml::node* node = state_->find(name);
   if (node == nullptr) return;
-  if (const auto given = node->value_exact<bool>()) {
-    value = *given;
-    return;
-  }
+  if (const auto given = node->value_exact<bool>()) return static_cast<void>(value = *given);
   state_->add(node,
               fmt::format("{} wants true or false, not {}", state_->full(name), type_of(*node)));
   if (const auto text = node->value_exact<std::string>(); text == "true" || text == "false")
@@ -493,7 +489,7 @@ void CaseReader::leave() {
 
 void CaseReader::finish() {
   leave();
-  if (!state_->problems.empty()) throw CaseError(state_->problems, state_->path);
+  if (!state_->problems.empty()) throw CaseError(state_->problems, state_->path, state_->content);
 }
 
 }  // namespace breccia

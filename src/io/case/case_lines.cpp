@@ -8,6 +8,7 @@
 
 #include "io/case/case_file.hpp"
 #include "io/case/case_source.hpp"
+#include "io/case/problems.hpp"
 #include "io/case/toml.hpp"
 
 namespace breccia {
@@ -45,7 +46,8 @@ std::uint32_t line_of(const toml::table& root, const std::string& path) {
   return line;
 }
 
-/// "body.slab.size" of "body.slab.size needs ...", "support.left" of "support left holds ...".
+/// "body.slab.size" of "body.slab.size needs ...", "support.left" of "support left holds ...",
+/// "body.slab.material" of "body.slab: material = ...".
 std::string key_at_start(const toml::table& root, const std::string& sentence) {
   const auto end_of_word = [&](std::size_t from) {
     return std::min(sentence.find_first_of(" :=,;\n", from), sentence.size());
@@ -55,16 +57,30 @@ std::string key_at_start(const toml::table& root, const std::string& sentence) {
   if (key.find('.') == std::string::npos && root.contains(key) && sentence.substr(end, 1) == " ")
     key += "." + sentence.substr(end + 1, end_of_word(end + 1) - end - 1);
   while (key.ends_with('.')) key.pop_back();
+  const std::size_t begin = end + 2, stop = end_of_word(std::min(begin, sentence.size()));
+  if (sentence.substr(end, 2) == ": " && sentence.substr(stop, 3) == " = ")
+    key += "." + sentence.substr(begin, stop - begin);
   return key;
 }
 
 }  // namespace
 
+std::uint32_t line_of_sentence(const std::string& sentence, const std::string& path) {
+  try {
+    const toml::table root = toml::parse_file(case_file_of(path));
+    return line_of(root, key_at_start(root, sentence));
+  } catch (const toml::parse_error&) {
+    return 0;  // its reader tells
+  }
+}
+
 std::string with_lines(const std::string& message, const std::string& path) {
   const std::string file = case_file_of(path);
+  std::string text;
   toml::table root;
   try {
-    root = toml::parse_file(file);
+    text = read_case_source(file);
+    root = toml::parse(text, file);
   } catch (const toml::parse_error&) {
     return message;  // its reader tells
   }
@@ -78,7 +94,14 @@ std::string with_lines(const std::string& message, const std::string& path) {
     const std::size_t end = std::min(message.find('\n', at), message.size() - 1) + 1;
     const std::string line = message.substr(at, end - at);
     const bool item = line.starts_with("  ") && line.find_first_not_of(' ') == 2;
-    told += item ? "  " + line_text(line.substr(2)) + line.substr(2) : line;
+    if (!item) {
+      told += line;
+    } else {
+      const std::string sentence = line.substr(2, line.find('\n') - 2);
+      told += "  " + line_text(sentence) + sentence;
+      told += excerpt(text, line_of(root, key_at_start(root, sentence)));
+      if (line.ends_with('\n')) told += '\n';
+    }
     at = end;
   }
   const std::string in_case = " in the case; ";

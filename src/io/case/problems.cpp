@@ -7,10 +7,13 @@
 #include <string_view>
 #include <utility>
 
+#include "io/harmless.hpp"
+
 namespace breccia {
 namespace {
 
-constexpr std::size_t most_of_a_kind = 20, most_told = 200;
+constexpr std::size_t most_of_a_kind = 20, most_told = 200, most_excerpts = 8;
+constexpr std::size_t widest_excerpt = 100;  // bytes
 
 /// The common part of problems that differ in their item or value alone: the last part of the key
 /// and what follows it, without digits.
@@ -23,26 +26,43 @@ std::string kind_of(const std::string& problem) {
 
 }  // namespace
 
-std::string problems_text(std::vector<Problem> problems, const std::string& where) {
+std::string excerpt(const std::string& text, std::uint32_t line, std::uint32_t column) {
+  std::size_t begin = 0;
+  for (std::uint32_t at = 1; at < line && begin != std::string::npos; ++at) {
+    begin = text.find('\n', begin);
+    if (begin != std::string::npos) ++begin;
+  }
+  if (line == 0 || begin >= text.size()) return "";
+  std::string shown = text.substr(begin, text.find('\n', begin) - begin);
+  while (shown.ends_with('\r') || shown.ends_with(' ')) shown.pop_back();
+  if (shown.size() > widest_excerpt) return "";
+  shown = fmt::format("\n    {:>4} | {}", line, harmless(shown, "\t"));
+  if (column > 0) shown += fmt::format("\n         | {:>{}}", '^', column);
+  return shown;
+}
+
+std::string problems_text(std::vector<Problem> problems, const std::string& where,
+                          const std::string& text) {
   std::stable_sort(problems.begin(), problems.end(),
                    [](const Problem& a, const Problem& b) { return a.line < b.line; });
-  std::string text = fmt::format("{} problem{} in {}; nothing was run.", problems.size(),
-                                 problems.size() == 1 ? "" : "s", where);
+  std::string told_text = fmt::format("{} problem{} in {}; nothing was run.", problems.size(),
+                                      problems.size() == 1 ? "" : "s", where);
   std::map<std::string, std::size_t> of_kind;
   std::size_t told = 0;
   for (const Problem& problem : problems) {
     if (told == most_told || ++of_kind[kind_of(problem.text)] > most_of_a_kind) continue;
     ++told;
-    text +=
+    told_text +=
         "\n  " + (problem.line > 0 ? fmt::format("line {}, ", problem.line) : "") + problem.text;
+    if (problems.size() <= most_excerpts) told_text += excerpt(text, problem.line);
   }
   if (told < problems.size())
-    text += fmt::format("\n  ... and {} more like these", problems.size() - told);
-  return text;
+    told_text += fmt::format("\n  ... and {} more like these", problems.size() - told);
+  return told_text;
 }
 
-CaseError::CaseError(std::vector<Problem> all, const std::string& where)
-    : InputError(problems_text(all, where)), problems(std::move(all)) {}
+CaseError::CaseError(std::vector<Problem> all, const std::string& where, const std::string& text)
+    : InputError(problems_text(all, where, text)), problems(std::move(all)) {}
 
 namespace {
 

@@ -25,13 +25,22 @@ struct Problem {
 
 /// The problems of a case file, for whom can mend them.
 struct CaseError : InputError {
-  CaseError(std::vector<Problem> all, const std::string& where);
+  /// @param text  of the file, for excerpts; empty: none
+  CaseError(std::vector<Problem> all, const std::string& where, const std::string& text);
   std::vector<Problem> problems;
 };
 
-/// "3 problems in <where>; nothing was run." and the problems, one a line, by their lines. A slip
-/// in each of a hundred thousand items is told twenty times, and how many more there are.
-std::string problems_text(std::vector<Problem> problems, const std::string& where);
+/// "3 problems in <where>; nothing was run." and the problems, one a line, by their lines; of few
+/// with those lines of the text. A slip in each of a hundred thousand items is told twenty times,
+/// and how many more there are.
+std::string problems_text(std::vector<Problem> problems, const std::string& where,
+                          const std::string& text);
+
+/// A line of a text, to stand below a message, with a mark below its column; line 0: empty.
+std::string excerpt(const std::string& text, std::uint32_t line, std::uint32_t column = 0);
+
+/// The line of a case file that a sentence is about, by the key that it begins with; 0: none.
+std::uint32_t line_of_sentence(const std::string& sentence, const std::string& path);
 
 /// A text with the corrections applied, the last one first, so that columns stay true.
 std::string corrected(const std::string& text, const std::vector<Problem>& problems);

@@ -37,8 +37,13 @@ std::string plain_toml_error(std::string_view description) {
   if (const std::string_view saw = between(description, "digit, saw '", "'");
       !saw.empty() && saw != "\\n" && saw != "\\r")
     return "this is no number; a quantity with a unit is written in quotes, as in \"40 mm\"";
-  if (description.find("cannot redefine existing") != std::string_view::npos)
-    return std::string(between(description, "'", "'")) + " is given twice";
+  if (description.find("cannot redefine existing") != std::string_view::npos) {
+    const std::string name(between(description, "'", "'"));
+    const bool tables = description.find("as array-of-tables") != std::string_view::npos;
+    return name + (tables ? " is given both as [" + name + "] and as [[" + name + "]]; write [[" +
+                                name + "]] for each of several"
+                          : " is given twice");
+  }
   constexpr std::string_view start = "Error while parsing ";
   if (description.starts_with(start)) description.remove_prefix(start.size());
   std::string text(description);

@@ -250,10 +250,12 @@ std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<Bo
       return m.groups[static_cast<std::size_t>(m.group[static_cast<std::size_t>(e)])];
     };
     const Vec3& at = m.position[static_cast<std::size_t>(pair.a)];
+    // Grains of one body push each other apart from the start, as dense as they are packed.
     problems.push_back(fmt::format(
         "element {} of body {} overlaps element {} of body {} by {:.3g} m at ({:.4g}, {:.4g}, "
-        "{:.4g}) m; {} such pairs",
-        pair.a, name(pair.a), pair.b, name(pair.b), pair.depth, at.x, at.y, at.z, pair.pairs));
+        "{:.4g}) m; {} such pairs{}",
+        pair.a, name(pair.a), pair.b, name(pair.b), pair.depth, at.x, at.y, at.z, pair.pairs,
+        groups.first == groups.second ? "; loose grains need a smaller pack.compactness" : ""));
   }
   return problems;
 }

@@ -44,6 +44,7 @@ struct Packed {
   double count, volume;    ///< elements, of the body  [m3]
   std::string folder{};    ///< of a body that is read, not cut
   bool particles = false;  ///< of LDPM: its mix says how many
+  bool read = false;       ///< of a file: nothing is packed
 };
 
 bool is_ldpm(const dem::Config& config, const dem::BodyConfig& body) {
@@ -59,7 +60,7 @@ Packed particles(const dem::Config& config, const dem::BodyConfig& body,
                  const std::string& folder) {
   if (body.shape == "file") {
     const auto mesh = prepare::read_ldpm_mesh(folder + "/" + body.file);
-    return {body, static_cast<double>(mesh.position.size()), 0.0, folder, true};
+    return {body, static_cast<double>(mesh.position.size()), 0.0, folder, true, true};
   }
   const prepare::MixDesign mix =
       prepare::mix_of(*prepare::item_named(config.materials, body.material));
@@ -84,8 +85,9 @@ Packed packed(const dem::Config& config, const dem::BodyConfig& body, const std:
   for (const double r : spheres.radius) solid += ball(r);
   const auto count = static_cast<double>(spheres.radius.size());
   constexpr double most_read = 20000.0;  // a file of no more is its own specimen
-  if (count <= most_read) return {body, count, solid / 0.6, folder};
+  if (count <= most_read) return {body, count, solid / 0.6, folder, false, true};
   Packed p{body, count, solid / 0.6};
+  p.read = true;
   p.body.shape = "box";
   p.body.file.clear();
   p.body.pack.count = static_cast<int>(spheres.radius.size());
@@ -125,6 +127,7 @@ double least_radius(const dem::Model& model) {
 }
 
 constexpr double packing_of_one = 0.15e-3;  // element  [s]
+constexpr double bytes_of_read = 2400.0;    // element of a file, which memory_plan does not open
 
 /// Adds what a specimen of one packed body tells.
 double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
@@ -157,7 +160,8 @@ double add_body(Forecast& f, const dem::Config& config, const Packed& p) {
   const std::string of = p.body.name + ": elements of radius " + length_text(least_radius(model));
   take_step(f, step, (bonds > 0.0 ? "links of " : "contacts of ") + of);
   f.bonds += bonds * p.count;
-  if (p.folder.empty() && !p.particles) f.setup_s += packing_of_one * p.count;
+  if (!p.read && !p.particles) f.setup_s += packing_of_one * p.count;
+  if (p.read && !p.particles) f.memory += bytes_of_read * p.count;
   const dem::MaterialConfig* const of_body = prepare::item_named(config.materials, p.body.material);
   if (of_body != nullptr && of_body->fracture_energy > 0.0)
     f.setup_s += prepare::fracture_energy_steps(p.count / p.volume) * pace;
@@ -274,7 +278,7 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
   f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
   if (facets == 0.0) f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);
   f.may_end_early = may_end_early(config.stages);
-  f.memory = own_dem + memory_plan(config).run_bytes + bytes_of_facet * facets;
+  f.memory += own_dem + memory_plan(config).run_bytes + bytes_of_facet * facets;
   add_output(f, config, {45e-9, 0.3e-6, 45e-9});
   add_disk(f, config, 14 + config.probes.size(), {42.0, 9.1, 830.0, 0.65});
   return f;

@@ -27,6 +27,20 @@ fdem3::BodyConfig box_of(const fdem3::BodyConfig& body, double& top) {
   return box;
 }
 
+/// Half the height and the damping of tetrahedra twice as high: the flattest of a free mesh, which
+/// rule its step.
+constexpr double least_of_free_mesh = 0.5;
+double step_of_flattest(fdem3::Config specimen, const std::string& folder) {
+  for (fdem3::BodyConfig& body : specimen.bodies) {
+    body.mesh_size *= least_of_free_mesh;
+    body.size = least_of_free_mesh * body.size;
+    body.center = least_of_free_mesh * body.center;
+  }
+  for (fdem::MaterialConfig& material : specimen.materials) material.damping /= least_of_free_mesh;
+  const fdem3::Model model = build_model(specimen, folder);
+  return make_method(specimen, model, Exec{})->time_step();
+}
+
 }  // namespace
 
 Forecast forecast(const fdem3::Config& config, const std::string& folder) {
@@ -63,15 +77,15 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
   }
   const fdem3::Model model = build_model(specimen, folder);
   const std::unique_ptr<Method> method = make_method(specimen, model, Exec{});
-  // The flattest tetrahedron of a free mesh rules its step.
-  constexpr double least_of_free_mesh = 0.5;
   const std::string rule = method->step_rule();
-  take_step(f, (by_gmsh ? least_of_free_mesh : 1.0) * method->time_step(),
+  take_step(f, by_gmsh ? step_of_flattest(specimen, folder) : method->time_step(),
             (rule.empty() ? "tetrahedra" : rule) + " (finest mesh: " + of + ")");
   finish(f, config.time);
   const double contacts = config.bodies.size() > 1 ? 1.5 : 1.0;
   f.here_s =
       contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
+  f.gpu_s = f.steps * (0.4e-3 + 1.62e-9 * f.items);  // docs/theory-fdem3.md, at two sizes
+  f.gpu = "H100";
   f.may_end_early = may_end_early(config.stages);
   f.memory = (by_gmsh ? own_with_gmsh : own_fdem) + memory_plan(config).run_bytes;
   if (by_gmsh) f.setup_s = begun_mesh + meshing_of_one * f.items;

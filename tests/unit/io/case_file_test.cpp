@@ -230,6 +230,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[time]\nend = \"1 ms\"\n", "", "time.end is missing"},
         Wrong{"end = \"1 ms\"", "end = 0.0", "line 2, time.end = 0 is outside > 0"},
         Wrong{"end = \"1 ms\"", "end = -1.0", "time.end = -1 is outside > 0"},
+        Wrong{"end = \"1 ms\"", "end = \"-1 ms\"", "time.end = \"-1 ms\" is outside > 0 s"},
         Wrong{"end = \"1 ms\"", "end = nan", "time.end is not a finite number"},
         Wrong{"end = \"1 ms\"", "end = inf", "time.end is not a finite number"},
         Wrong{"end = \"1 ms\"", "end = 1e999", "line 2, column"},
@@ -414,6 +415,8 @@ TEST(CaseFile, what_is_no_toml_is_told_in_plain_words) {
     EXPECT_TRUE(told(std::string("a = ") + value + "\n", "written in quotes, as in \"40 mm\""))
         << value;
   EXPECT_TRUE(told("[time]\n[time]\n", "line 2, column 1: time is given twice"));
+  EXPECT_TRUE(told("a = 1\n b = 7ms\n", "\"40 mm\"\n       2 |  b = 7ms\n         |       ^"));
+  EXPECT_TRUE(told("[wall]\n[[wall]]\n", "wall is given both as [wall] and as [[wall]]; write "));
   EXPECT_TRUE(told("a = [1, 2\n", "line 1, column 11: array: the file ends before it does"));
   EXPECT_TRUE(told("[time\nend = 1.0\n", "expected ']', but the line ends"));
   EXPECT_TRUE(told("a = 40 mm\n", "in quotes, as in \"40 mm\""));

@@ -66,6 +66,8 @@ TEST(CheckDem, tells_of_walls_that_nothing_touches_at_the_start) {
             "the normal point away from it?");
   EXPECT_EQ(told[2],
             "wall.ball.point: no body touches the wall at the start; slab is nearest, 10 mm away");
+  config.gravity = {0.0, 0.0, 9.81};  // towards the wall above
+  EXPECT_EQ(prepare::doubtful_walls(config, "").size(), 2U);
 }
 
 /// A ramp of 45 degrees through the lower right edge of a box, and a punch that has sunk into it.

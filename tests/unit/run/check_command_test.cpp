@@ -68,6 +68,52 @@ TEST(Forecast, of_a_plate_is_near_what_the_model_has) {
   EXPECT_TRUE(has(f.step_rule, "joints") && has(f.step_rule, "5 mm")) << f.step_rule;
 }
 
+TEST(Forecast, of_a_file_of_spheres_counts_their_memory_and_packs_nothing) {
+  const ScratchFolder folder;
+  std::string spheres;
+  for (int i = 0; i < 30; ++i)
+    for (int j = 0; j < 30; ++j)
+      for (int k = 0; k < 30; ++k)
+        spheres += std::to_string(0.1 * i) + "," + std::to_string(0.1 * j) + "," +
+                   std::to_string(0.1 * k) + ",0.05\n";
+  replace_file(folder / "block.csv", spheres);
+  const std::string text =
+      "method = \"dem3d\"\ntime.end = 1e-3\n[material.c]\nlaw = \"concrete\"\n"
+      "[[body]]\nname = \"block\"\nshape = \"file\"\n"
+      "file = \"block.csv\"\nvolume = 27.0\nmaterial = \"c\"\n";
+  const Forecast f =
+      forecast(read_case<dem::Config>(CaseText{text, "block.toml"}, {}), folder.path());
+  EXPECT_EQ(f.items, 27000.0);
+  EXPECT_GT(f.memory, 27000.0 * 2000.0);
+  EXPECT_LT(f.setup_s, 1.0);
+}
+
+TEST(Check, tells_wrong_units_and_names_that_lead_nowhere_together) {
+  const ScratchFolder folder;
+  const auto told = [&](const std::string& text) {
+    replace_file(folder / "case.toml", text);
+    return told_by(folder, "check " + (folder / "case.toml")).text;
+  };
+  const std::string two =
+      changed(changed(beam, "\"5 mm\"", "\"5 kg\""), "material = \"stone\"", "material = \"ston\"");
+  const std::string text = told(two);
+  EXPECT_TRUE(has(text, "2 problems")) << text;
+  EXPECT_TRUE(has(text, "line 13, body.beam.mesh_size: \"5 kg\" is a mass")) << text;
+  EXPECT_TRUE(has(text, "\n      13 | mesh_size = \"5 kg\"\n")) << text;
+  EXPECT_TRUE(has(text, "line 11, body.beam: material = \"ston\" is not a material")) << text;
+  // A misspelt head takes the name away: no second problem follows from it.
+  const std::string headless = told(changed(two, "[material.stone]", "[materal.stone]"));
+  EXPECT_FALSE(has(headless, "is not a material")) << headless;
+  const std::string solid =
+      "breccia = 1\nmethod = \"fdem3d\"\n[time]\nend = \"1 kg\"\n"
+      "[material.stone]\nyoung = \"30 GPa\"\n[[body]]\nname = \"a\"\n"
+      "shape = \"box\"\nsize = [1.0, 1.0, 1.0]\nmesh_size = 0.5\n"
+      "material = \"ston\"\n";
+  EXPECT_TRUE(has(told(solid), "2 problems")) << told(solid);
+  const std::string spheres = changed(solid, "fdem3d", "dem3d");
+  EXPECT_TRUE(has(told(spheres), "is not a material")) << told(spheres);
+}
+
 TEST(Forecast, half_the_mesh_size_is_four_times_the_triangles_and_half_the_step) {
   fdem::Config config = read_case<fdem::Config>(CaseText{beam, "beam.toml"}, {});
   const Forecast coarse = forecast(config, ".");

@@ -26,7 +26,7 @@ struct FirstHour : testing::Test {
 
 TEST_F(FirstHour, every_template_is_a_case_that_passes_check) {
   std::string files;
-  for (const char* name : {"beam", "cylinder", "plate", "slope", "disc", "slab"}) {
+  for (const char* name : {"beam", "cylinder", "plate", "slope", "disc", "slab", "bar"}) {
     EXPECT_EQ(run(std::string("new ") + name), 0) << told;
     files += std::string(" ") + name + ".toml";
   }
