@@ -19,6 +19,7 @@ constexpr std::size_t columns_before_probes = 12;  // step to error_relative
 
 /// A number with three digits and its unit with a prefix.
 std::string with_unit(double value, const std::string& unit) {
+  if (unit.empty() || unit == "-") return fmt::format("{:.3g}", value);
   const ScaledUnit scaled = scaled_unit(unit, std::abs(value));
   return fmt::format("{:.3g}{}{}", value * scaled.factor, scaled.unit.empty() ? "" : " ",
                      scaled.unit);

@@ -440,7 +440,10 @@ const std::vector<CaseTemplate>& case_templates() {
       {"disc", "2D: a rock disc split between platens",
        "stress_xx before, the vertical crack after; force peaks when the disc splits", disc},
       {"slab", "3D: a rock strikes reinforced concrete",
-       "the punched cone (render --clip y=0); rock_force in history.csv is the blow", slab}};
+       "the punched cone (render --clip y=0); rock_force in history.csv is the blow", slab},
+      {"bar", "3D, tetrahedra: a bar of rock that spalls",
+       "the crack across the bar (render --view y); end_velocity in history.csv jumps as it parts",
+       bar_of_tetrahedra}};
   return all;
 }
 

@@ -12,6 +12,7 @@ struct CaseTemplate {
   const char* look;   ///< what to look at when it has run
   const char* text;
 };
+extern const char* const bar_of_tetrahedra;  ///< text of the one that is of solids
 const std::vector<CaseTemplate>& case_templates();
 /// @throws InputError with the names that there are
 const CaseTemplate& template_named(const std::string& name);
