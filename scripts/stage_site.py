@@ -10,6 +10,8 @@ import shutil
 import subprocess
 import sys
 
+from typeset import typeset
+
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
 
 
@@ -41,7 +43,8 @@ def staged(page, tracked, folders, wanted, missing):
     for line in page.read_text().split("\n"):
         fenced ^= line.startswith("```")
         lines.append(line if fenced else LINK.sub(completed, line))
-    return "\n".join(lines)
+    text = "\n".join(lines)
+    return typeset(text) if page.name.startswith("theory") else text
 
 
 def main(folder):
