@@ -98,8 +98,8 @@ struct Stage {
 
 /// Forces of your own on items of a simulation, at the time of its positions.
 /// @param force  of item 0, then of item 1, ...: x, y, z of an element, or of the four corners of a
-///               tetrahedron [N]; in 2D x, y of the three corners of a triangle [N/m]. Zero when the
-///               law is asked.
+///               tetrahedron [N]; in 2D x, y of the three corners of a triangle [N/m]. Zero when
+///               the law is asked.
 using ForceLaw = std::function<void(std::vector<double>& force)>;
 
 /// Where a simulation computes.
