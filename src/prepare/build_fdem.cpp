@@ -183,12 +183,16 @@ class BodyInModel {
       std::vector<std::uint64_t> keys(triangles_.size());
       for (std::size_t k = 0; k < keys.size(); ++k) keys[k] = k;
       if (grains.kind == "voronoi") keys = prepare::voronoi_grains(places_, grains.size, random);
+      if (!grains.boundary.empty()) find_boundaries(keys);
       minerals = by_share(keys, random);
     }
     for (std::size_t k = 0; k < triangles_.size(); ++k)
       model_.material[triangles_[k]] = index_of(
           names.materials, grains.minerals[static_cast<std::size_t>(minerals[k])].material);
   }
+
+  /// Edges between two grains, if their joints have a law of their own.
+  const std::vector<prepare::Edge>& boundaries() const { return boundaries_; }
 
   void give_strength(std::int64_t seed) {
     if (body_.weibull.modulus <= 0.0) return;
@@ -257,19 +261,35 @@ class BodyInModel {
     return prepare::minerals_by_picture(places_, read_png(path), low, high, colors);
   }
 
+  /// @param grains  of the triangles
+  void find_boundaries(const std::vector<std::uint64_t>& grains) {
+    std::map<prepare::Edge, std::uint64_t> first;
+    for (std::size_t k = 0; k < triangles_.size(); ++k) {
+      const prepare::Triangle& t = model_.triangle[triangles_[k]];
+      for (std::size_t side = 0; side < 3; ++side) {
+        const Index a = t[side], b = t[(side + 1) % 3];
+        const prepare::Edge edge{std::min(a, b), std::max(a, b)};
+        const auto [found, is_new] = first.try_emplace(edge, grains[k]);
+        if (!is_new && found->second != grains[k]) boundaries_.push_back(edge);
+      }
+    }
+  }
+
   Model& model_;
   const BodyConfig& body_;
   std::size_t number_;
+  std::vector<prepare::Edge> boundaries_;
   std::vector<std::size_t> triangles_;
   std::vector<Vec2> places_;  ///< of the triangles' centroids  [m]
 };
 
-/// Cracks at the start: notches first, then discontinuities; on an edge of several, the last
-/// counts. Those behind the first `single` are of sets, whose lines may miss all bodies.
-void crack(Model& model, const std::vector<prepare::Edge>& notches,
+/// Joints of their own, and cracks at the start: boundaries of grains first, then notches, then
+/// discontinuities; on an edge of several, the last counts. Those behind the first `single` are of
+/// sets, whose lines may miss all bodies.
+void crack(Model& model, std::map<prepare::Edge, std::int16_t> material,
+           const std::vector<prepare::Edge>& notches,
            const std::vector<DiscontinuityConfig>& discontinuities, std::size_t single,
            const FdemNames& names, std::vector<std::string>& problems) {
-  std::map<prepare::Edge, std::int16_t> material;
   for (const prepare::Edge& edge : notches) material[edge] = -1;
   for (std::size_t k = 0; k < discontinuities.size(); ++k) {
     const DiscontinuityConfig& d = discontinuities[k];
@@ -336,6 +356,7 @@ fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
 
   std::vector<std::string> problems;
   std::vector<prepare::Edge> notches;
+  std::map<prepare::Edge, std::int16_t> boundaries;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     BodyInModel body(model, bodies, b);
     try {
@@ -343,11 +364,13 @@ fdem::Model build_fdem_model(const std::vector<BodyConfig>& bodies,
     } catch (const InputError& error) {
       problems.push_back("body." + bodies[b].name + ".grains: " + error.what());
     }
+    for (const prepare::Edge& edge : body.boundaries())
+      boundaries[edge] = index_of(names.joints, bodies[b].grains.boundary);
     body.give_strength(seed);
     const auto edges = body.open_edges(problems);
     notches.insert(notches.end(), edges.begin(), edges.end());
   }
-  crack(model, notches, cracks, discontinuities.size(), names, problems);
+  crack(model, std::move(boundaries), notches, cracks, discontinuities.size(), names, problems);
   check_overlaps(model, problems);
   prepare::refuse(problems, "with the model");
   return std::move(model);

@@ -59,6 +59,7 @@ struct GrainsConfig {
   double size = 0.0;  ///< of a grain  [m]
   std::vector<MineralConfig> minerals;
   std::string file;
+  std::string boundary{};  ///< joint law between grains; empty: by their minerals
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -69,6 +70,9 @@ struct GrainsConfig {
     key("size", size, "m", not_negative, "size of a Voronoi grain: root of its mean area");
     key.list("mineral", minerals, "the minerals of the body");
     key("file", file, "PNG file beside the case file, stretched over the body's bounding box");
+    key("boundary", boundary,
+        "[joint.<name>] of all edges between two Voronoi grains, of one mineral or of two; empty: "
+        "edges within a mineral and between minerals have the joints of these (plane cases)");
   }
 };
 

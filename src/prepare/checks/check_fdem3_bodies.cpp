@@ -148,6 +148,7 @@ class TetBodyChecks {
     const fdem::GrainsConfig& g = b.grains;
     require(g.kind != "picture",
             "grains.kind = \"picture\" is for plane cases; allowed are voronoi and random");
+    require(g.boundary.empty(), "grains.boundary is for plane cases");
     require(!g.minerals.empty(), "grains need at least one [[body.grains.mineral]]");
     require(g.kind != "voronoi" || g.size > 0.0, "grains.size must be above 0 for Voronoi grains");
     double sum = 0.0;

@@ -160,6 +160,12 @@ class BodyChecks {
     const fdem::GrainsConfig& g = b.grains;
     require(!g.minerals.empty(), "grains need at least one [[body.grains.mineral]]");
     require(g.kind != "voronoi" || g.size > 0.0, "grains.size must be above 0 for Voronoi grains");
+    const auto& joints = names_.joints;
+    require(g.boundary.empty() || g.kind == "voronoi",
+            "grains.boundary is between Voronoi grains; kind is {}", g.kind);
+    require(
+        g.boundary.empty() || std::find(joints.begin(), joints.end(), g.boundary) != joints.end(),
+        "grains.boundary = \"{}\" is not a joint law; there are: {}", g.boundary, list_of(joints));
     const bool picture = g.kind == "picture";
     require(!picture || g.file.ends_with(".png"), "grains.file must name a .png file; it is \"{}\"",
             g.file);

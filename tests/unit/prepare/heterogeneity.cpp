@@ -61,6 +61,61 @@ TEST(Heterogeneity, GrainsKeepTrianglesTogether) {
   EXPECT_GT(like_neighbours(built({granite("voronoi")})), 0.80);
 }
 
+/// Rock of one mineral: what holds together without the boundaries are the grains.
+TEST(Heterogeneity, BoundariesOfGrainsPartAllOfThem) {
+  BodyConfig rock = granite("voronoi");
+  rock.grains.minerals = {{.material = "quartz", .fraction = 1.0, .color = ""}};
+  rock.mesh_size = 0.0005;
+  EXPECT_TRUE(built({rock}).discontinuities.empty());
+  rock.grains.boundary = "vein";
+  const Model m = built({rock});
+  std::map<prepare::Edge, std::int16_t> given;
+  for (const auto& d : m.discontinuities) {
+    EXPECT_EQ(d.material, 1);
+    given[d.edge] = d.material;
+  }
+  std::vector<std::size_t> root(m.triangle.size());
+  std::iota(root.begin(), root.end(), std::size_t{0});
+  const auto find = [&](std::size_t t) {
+    while (root[t] != t) t = root[t] = root[root[t]];
+    return t;
+  };
+  const auto edges = prepare::edges_of(m.triangle);
+  const auto is_boundary = [&](const auto& edge) { return given.contains(edge.ends); };
+  for (const auto& edge : edges)
+    if (edge.triangles[1] >= 0 && !is_boundary(edge))
+      root[find(static_cast<std::size_t>(edge.triangles[0]))] =
+          find(static_cast<std::size_t>(edge.triangles[1]));
+  std::map<std::size_t, double> area;
+  for (std::size_t t = 0; t < m.triangle.size(); ++t)
+    area[find(t)] += prepare::signed_area(m.point, m.triangle[t]);
+  // 1,600 squares of edge `size` in the plate, and grains whose seeds lie beside it.
+  EXPECT_GT(area.size(), 1600U);
+  EXPECT_LT(area.size(), 1900U);
+  double largest = 0.0;
+  for (const auto& [grain, own] : area) largest = std::max(largest, own);
+  EXPECT_LT(largest, 4.0 * 0.002 * 0.002);
+  // No boundary lies within a grain.
+  for (const auto& edge : edges)
+    if (edge.triangles[1] >= 0 && is_boundary(edge)) {
+      EXPECT_NE(find(static_cast<std::size_t>(edge.triangles[0])),
+                find(static_cast<std::size_t>(edge.triangles[1])));
+    }
+}
+
+TEST(Heterogeneity, BoundariesNeedGrainsAndAJointLaw) {
+  BodyConfig rock = granite("random");
+  rock.grains.boundary = "vein";
+  EXPECT_NE(refusal({rock}).find("grains.boundary is between Voronoi grains; kind is random"),
+            std::string::npos)
+      << refusal({rock});
+  rock = granite("voronoi");
+  rock.grains.boundary = "seam";
+  EXPECT_NE(refusal({rock}).find("grains.boundary = \"seam\" is not a joint law"),
+            std::string::npos)
+      << refusal({rock});
+}
+
 TEST(Heterogeneity, GrainsDependOnSeedAndPlaceOnly) {
   const std::vector<Vec2> places{{0.013, 0.02}, {-0.7, 0.3}, {0.0131, 0.0201}};
   const std::vector<Vec2> turned{places[2], places[0], places[1]};
