@@ -109,7 +109,7 @@ struct Misfit {
   double length, opening;
 };
 Misfit misfit(int per_metre) {
-  World w = half_crack(per_metre).world(2);
+  World w = half_crack(per_metre).world();
   Misfit mean{};
   for (const double t : {0.6 * end, 0.8 * end, end}) {
     while (w.time < t) step(w);
