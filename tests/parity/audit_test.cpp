@@ -6,6 +6,7 @@
 #include "physics/dem/scene.hpp"
 #include "physics/fdem/scene.hpp"
 #include "physics/fdem3/scene.hpp"
+#include "run/machine/load_check.hpp"
 #include "run/method/audited_method.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem3_method.hpp"
@@ -90,6 +91,39 @@ TEST(AuditOnDevice, passes_a_plate_whose_joints_break) {
 }
 TEST(AuditOnDevice, passes_a_plate_whose_joints_wake) {
   expect_sound(pulled_plate("extrinsic"), 400);
+}
+
+/// As after a flipped bit: the host must not follow them.
+TEST(PlacesOnDevice, that_lead_nowhere_are_told) {
+  const auto message = [](const auto& w) -> std::string {
+    try {
+      require_places(w);
+      return "";
+    } catch (const DeviceError& error) {
+      return error.what();
+    }
+  };
+  const auto flip = [](auto& array) { array.data()[0] ^= 1 << 14; };
+  const auto on_device = [](const auto& scene) {
+    Exec shadow;
+    shadow.space = Space::shadow;
+    return make_world(scene.config, scene.model, shadow);
+  };
+  auto bar = on_device(struck_bar());
+  auto plate = on_device(pulled_plate("intrinsic"));
+  auto cubes = on_device(fdem3::testing::meeting_cubes());
+  EXPECT_EQ(message(bar) + message(plate) + message(cubes), "");
+  flip(bar.elements.group);
+  flip(plate.joints.edge_a);
+  flip(cubes.tetrahedra.material);
+  EXPECT_NE(message(bar).find("the device's array elements.group leads to 16384"),
+            std::string::npos)
+      << message(bar);
+  EXPECT_NE(message(plate).find("the device's array joints.edge_a leads to "), std::string::npos)
+      << message(plate);
+  EXPECT_NE(message(cubes).find("the device's array tetrahedra.material leads to 16384"),
+            std::string::npos)
+      << message(cubes);
 }
 
 }  // namespace audit_on_device_test

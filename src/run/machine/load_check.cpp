@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 
 #include "dem/relations.hpp"
 #include "dem/wall_key.hpp"
@@ -14,8 +15,10 @@
 namespace breccia {
 namespace {
 
+constexpr std::string_view subject = "the checkpoint's section ";
+
 [[noreturn]] void refuse(const std::string& section, const std::string& why) {
-  throw CheckpointError(fmt::format("the checkpoint's section {} {}", section, why));
+  throw CheckpointError(fmt::format("{}{} {}", subject, section, why));
 }
 
 class Collector {
@@ -126,6 +129,23 @@ class KeyOfWalls {
   Index element_ = -1, wall_ = -1, slot_ = 0;
 };
 
+/// Relations and groups of what lies on a device.
+template <class World>
+void require_on_device(const World& w, const char* groups, const Buffer<std::int16_t>& group) {
+  if (w.exec.space == Space::host) return;
+  try {
+    refuse_wrong_relations(w);
+    const auto count = static_cast<std::int16_t>(w.given->sets.size());
+    for (const std::int16_t number : on_host(group))
+      if (number < 0 || number >= count) refuse(groups, fmt::format("leads to {}", number));
+  } catch (const CheckpointError& error) {
+    throw DeviceError(
+        fmt::format("step {}: the device's array {}: its memory fails, or the program does; resume "
+                    "from the newest checkpoint on another machine",
+                    w.step, std::string_view(error.what()).substr(subject.size())));
+  }
+}
+
 template <class World>
 void refuse_wrong_clock(const World& w) {
   constexpr std::int64_t most_steps = std::int64_t{1} << 60;
@@ -197,6 +217,16 @@ void refuse_wrong_places(const fdem3::World& w) {
   refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.tetrahedra.id));
   refuse_unordered("reach.tetrahedron", w.reach.tetrahedron);
   refuse_wrong_stages(w.joints.stage, fdem::JointStage::broken);
+}
+
+void require_places(const dem::World& w) {
+  require_on_device(w, "elements.group", w.elements.group);
+}
+void require_places(const fdem::World& w) {
+  require_on_device(w, "triangles.group", w.triangles.group);
+}
+void require_places(const fdem3::World& w) {
+  require_on_device(w, "tetrahedra.group", w.tetrahedra.group);
 }
 
 }  // namespace breccia

@@ -26,6 +26,13 @@ void refuse_wrong_places(const dem::World& w);
 void refuse_wrong_places(const fdem::World& w);
 void refuse_wrong_places(const fdem3::World& w);
 
+/// Before the host uses numbers of a device's memory as places in its own: a bit that flipped there
+/// must not lead it astray. On the host itself nothing is looked at.
+/// @throws DeviceError naming the array
+void require_places(const dem::World& w);
+void require_places(const fdem::World& w);
+void require_places(const fdem3::World& w);
+
 /// @throws CheckpointError naming the section that is not that of the case
 void refuse_changed(const std::vector<Repeated>& built, const std::vector<Repeated>& loaded);
 

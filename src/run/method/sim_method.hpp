@@ -197,9 +197,11 @@ class SimMethod final : public Method {
   }
 
   Frame frame() override {
+    look_at_places();
     return world_.of_whole([](World& w) { return Sim::frame(w, nullptr).frame; });
   }
   FrameOutput frame_output(const FrameWish& wish) override {
+    look_at_places();
     World& w = world_.part();
     const int threads = w.exec.threads;
     if (single_rank()) return breccia::frame_output(Sim::frame(w, nullptr), wish, threads);
@@ -211,6 +213,7 @@ class SimMethod final : public Method {
     return output;
   }
   std::vector<Fact> facts() override {
+    look_at_places();
     return world_.of_whole([this](const World& w) {
       std::vector<Fact> facts;
       sim_.add_model(w, facts);
@@ -229,6 +232,7 @@ class SimMethod final : public Method {
   Index force_numbers() const override { return Sim::force_numbers; }
   Index force_items() const override { return Sim::force_items(world_.part()); }
   std::vector<Table> tables() override {
+    look_at_places();
     if constexpr (requires(const World& w, const Sim& sim) { sim.tables(w); })
       return world_.of_whole([this](const World& w) { return sim_.tables(w); });
     return {};
@@ -238,6 +242,7 @@ class SimMethod final : public Method {
     return world_.apart([this] { return std::unique_ptr<Method>(new SimMethod(*this)); });
   }
   void save(CheckpointWriter& writer) override {
+    look_at_places();
     world_.with_whole([&](World& w) { each_stored(w, Saving{writer}); });
   }
   std::vector<std::string> constants() const override {
@@ -425,6 +430,10 @@ class SimMethod final : public Method {
     Sim::each_stored(w, visit);
   }
 
+  /// Parts of ranks lead to copies, too: only the whole is looked at.
+  void look_at_places() const {
+    if (single_rank()) require_places(world_.part());
+  }
   bool single_rank() const { return world_.ranks() == nullptr; }
 
   SharedWorld<World> world_;
