@@ -213,7 +213,8 @@ void divide_by_wall(World& w) {
 }
 
 /// First link of each element among a group's links, which are sorted by a.
-void find_starts(const std::vector<Index>& a, Index elements, LinkGroup<ConcreteLink>& group) {
+template <class Law>
+void find_starts(const std::vector<Index>& a, Index elements, LinkGroup<Law>& group) {
   group.starts.assign(static_cast<std::size_t>(elements) + 1, group.end);
   Index element = 0;
   for (Index i = group.begin; i < group.end; ++i)
@@ -257,12 +258,30 @@ void list_rows(World& w, const std::vector<Index>& a, const std::vector<Index>& 
   });
 }
 
+/// Whether the host sums facets as they come. Not beside bars: an element's facets and bonds are
+/// added in the order of their partners, one among the other.
+bool facets_are_swept(const World& w) {
+  return w.exec.space == Space::host && w.ldpm.size() > 0 &&
+         w.steel.size() + w.interface.size() + w.parallel.size() == 0;
+}
+
 /// Runs of elements with about as many links each.
 void plan_sweep(World& w) {
   std::vector<Index> a, b;
   copy_to(a, w.concrete.a);
   copy_to(b, w.concrete.b);
   const Index count = w.elements.size();
+  for (auto& group : w.concrete.groups) find_starts(a, count, group);
+  const bool facets = facets_are_swept(w);
+  if (facets) {
+    std::vector<Index> of_a, of_b;
+    copy_to(of_a, w.ldpm.a);
+    copy_to(of_b, w.ldpm.b);
+    for (auto& group : w.ldpm.groups) find_starts(of_a, count, group);
+    a.insert(a.end(), of_a.begin(), of_a.end());
+    b.insert(b.end(), of_b.begin(), of_b.end());
+    w.ldpm.edges.find(w.ldpm.a, w.ldpm.b);
+  }
   std::vector<GlobalId> id;
   copy_to(id, w.elements.id);
   std::vector<Index> links_before(static_cast<std::size_t>(count) + 1, 0);
@@ -277,9 +296,9 @@ void plan_sweep(World& w) {
     links_before[e] += links_before[e - 1] + 1;  // an element weighs about as much as a link
     reached[e] = std::max(reached[e], reached[e - 1]);
   }
-  for (auto& group : w.concrete.groups) find_starts(a, count, group);
   const int threads = count < smallest_shared_loop ? 1 : w.exec.threads;
   w.link_plan = {};
+  w.link_plan.facets = facets;
   std::vector<Index>& tiles = w.link_plan.tiles;
   for (Index e = 0; e < count; ++e)
     if (e == 0 || id[static_cast<std::size_t>(e)] / sweep_tile !=
@@ -422,8 +441,11 @@ void derive(World& w) {
     copy_to(more, ends);
     all.insert(all.end(), more.begin(), more.end());
   };
+  Index summed = 0;
   w.each_set([&](const auto& set) {
     if (set.swept) return;
+    summed += set.size();
+    if (set.kind == LinkKind::ldpm && facets_are_swept(w)) return;
     append(a, set.a);
     append(b, set.b);
   });
@@ -431,7 +453,7 @@ void derive(World& w) {
   copy_to(all_a, a);
   copy_to(all_b, b);
   build_incidence(w.exec, all_a, all_b, w.elements.id, w.bar_incidence);
-  w.bar_actions.resize(all_a.size());
+  w.bar_actions.resize(summed);
   if (w.exec.space == Space::host) w.link_sums.resize(w.elements.size());
   w.critical.resize(w.elements.size());
   plan_sweep(w);

@@ -24,10 +24,10 @@
 
 namespace breccia::dem {
 
-/// How the threads of the host share concrete links and elements: each takes a run of elements with
-/// the links that start there. Links lead from lower to higher elements, so once a thread has done
-/// the links of a run, the sums of its elements are complete, but for those that an earlier run
-/// reaches.
+/// How the threads of the host share concrete links (and facets) and elements: each takes a run of
+/// elements with the links that start there. Links lead from lower to higher elements, so once a
+/// thread has done the links of a run, the sums of its elements are complete, but for those that an
+/// earlier run reaches.
 struct LinkPlan {
   std::vector<Index> begin;  ///< first element of each thread's run, and the end
   std::vector<Index>
@@ -35,6 +35,7 @@ struct LinkPlan {
   Index reach = 0;           ///< from the lower to the higher end of a link, at most
   std::vector<Index> tiles;  ///< first element of each tile, and the end
   std::vector<std::vector<DeferredForce>> deferred;  ///< of each run, in the order of its links
+  bool facets = false;  ///< facets of LDPM are shared likewise, not summed by bar_incidence
 };
 /// Elements whose links of all groups are done before the next ones, by global id: runs begin at
 /// tiles, so that the order of sums is the same for any number of threads and ranks.

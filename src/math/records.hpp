@@ -40,7 +40,7 @@ BR_HD inline void load_records(const View<Record>& records, Index first, R (&col
   }
 }
 
-/// Writes them: store_records by whole packs where records are as long as one or half of it.
+/// Writes them: store_records by whole packs where records are as long as some or half of one.
 template <int count, class R, class Record>
 BR_HD inline void write_records(const View<Record>& records, Index first,
                                 const R (&columns)[count]) {
@@ -49,11 +49,14 @@ BR_HD inline void write_records(const View<Record>& records, Index first,
     static_assert(sizeof(Record) == count * sizeof(double));
     BR_ASSERT(first >= 0 && first + 8 <= records.size);
     auto* to = reinterpret_cast<double*>(records.data + first);
-    if constexpr (count == 8) {
-      Pack8 rows[8];
-      for (int k = 0; k < 8; ++k) rows[k] = columns[k];
-      transpose(rows);
-      for (int k = 0; k < 8; ++k) __builtin_memcpy(to + 8 * k, &rows[k], sizeof rows[k]);
+    if constexpr (count % 8 == 0) {
+      for (int eight = 0; eight < count; eight += 8) {
+        Pack8 rows[8];
+        for (int k = 0; k < 8; ++k) rows[k] = columns[eight + k];
+        transpose(rows);
+        for (int k = 0; k < 8; ++k)
+          __builtin_memcpy(to + count * k + eight, &rows[k], sizeof rows[k]);
+      }
       return;
     } else if constexpr (count == 4) {
       const __m512i low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);

@@ -70,14 +70,15 @@ BR_WHOLE MovedTo BR_PACKS::run(const MoveElements& kernel, Index begin, Index en
   return moved;
 }
 
-template <class Number>
-BR_WHOLE void BR_PACKS::run(const AddLinks& add, const ConcreteLinkForces<Number>& links,
-                            Index from, Index to, const PairForceOf<Number>* actions) {
+template <class Links, class Number>
+BR_WHOLE void BR_PACKS::run(const AddLinks& add, const Links& links, Index from, Index to,
+                            const PairForceOf<Number>* actions) {
   add(links, from, to, actions);
 }
-template void BR_PACKS::run(const AddLinks&, const ConcreteLinkForces<double>&, Index, Index,
-                            const PairForceOf<double>*);
-template void BR_PACKS::run(const AddLinks&, const ConcreteLinkForces<float>&, Index, Index,
-                            const PairForceOf<float>*);
+#define BR_INSTANTIATE(Links, Number)                                      \
+  template void BR_PACKS::run(const AddLinks&, const Links&, Index, Index, \
+                              const PairForceOf<Number>*);
+BR_EACH_ADDED_KERNEL(BR_INSTANTIATE)
+#undef BR_INSTANTIATE
 
 }  // namespace breccia::dem

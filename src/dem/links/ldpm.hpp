@@ -1,6 +1,10 @@
 #pragma once
 // Facets of the lattice discrete particle model: arrays, forces, energies.
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "dem/laws/ldpm_facet.hpp"
 #include "dem/links/link_set.hpp"
 #include "math/records.hpp"
@@ -30,6 +34,25 @@ BR_HD inline R six_volumes(const Vec3Of<R>& a, const Vec3Of<R>& b, const Vec3Of<
   return dot(b - a, cross(c - a, d - a));
 }
 
+/// Edges of facets [0, count): neighbours with both ends in common. For loops of the host.
+struct LdpmEdges {
+  Buffer<Index> of;     ///< edge of each facet  [-]
+  Buffer<Index> leads;  ///< first facet of each edge, and the end  [-]
+
+  void find(const Buffer<Index>& a, const Buffer<Index>& b) {
+    const Index count = a.size();
+    of.resize(count);
+    std::vector<Index> first;
+    for (Index i = 0; i < count; ++i) {
+      if (i == 0 || a.data()[i] != a.data()[i - 1] || b.data()[i] != b.data()[i - 1])
+        first.push_back(i);
+      of.data()[i] = static_cast<Index>(first.size()) - 1;
+    }
+    first.push_back(count);
+    copy_to(leads, first);
+  }
+};
+
 /// Facets between particles a and b, in a tetrahedron with c and d.
 template <>
 struct LinkArrays<LdpmFacet> : LinkEnds {
@@ -44,6 +67,7 @@ struct LinkArrays<LdpmFacet> : LinkEnds {
   Buffer<double> opened;         ///< energy spent while open: on fracture  [J]  (pairs)
   Buffer<double> compacted;      ///< while closed, by normal strains  [J]  (pairs)
   Buffer<double> slid;           ///< while closed, by tangential strains  [J]  (pairs)
+  LdpmEdges edges;               ///< no state: of the facets here; empty on devices  (derive)
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -93,7 +117,8 @@ struct LdpmEdgeOf {
   Vec3Of<R> jump;  ///< of b against a in the middle of the edge, likewise  [m]
   R distance;      ///< of the ends  [m]
   R parted;        ///< 1 where the facets have let go, or are to, of their ends; else 0
-  R fill[2];       ///< as long as two packs
+  R over;          ///< one over the length of the edge  [1/m]
+  R fill;          ///< as long as two packs
 };
 
 /// Forces of facets, one facet or a pack of neighbours at a time.
@@ -109,7 +134,8 @@ struct LdpmFacetForces {
   View<LdpmFacetState> state;
   View<double> opened, compacted, slid;
   View<PairForce> actions;
-  Index first_action;  ///< action of facet 0
+  View<const Index> edges, leads;  ///< LdpmEdges: of each facet, first facets
+  Index first_action;              ///< action of facet 0
 
   template <class R>
   struct Facet {
@@ -180,47 +206,21 @@ struct LdpmFacetForces {
   Index sweep(Index begin, Index end) const {
     constexpr Index width = width_of<R>, room = 4 * width;
     static_assert(sizeof(LdpmEdgeOf<double>) == 16 * sizeof(double));
-    alignas(64) LdpmEdgeOf<double> edges[room];  // a ring: packs of them, made ahead
+    if (edges.size != a.size || end - begin < width) return begin;
+    alignas(64) LdpmEdgeOf<double> motions[room];  // a ring: packs of them, made ahead
     View<LdpmEdgeOf<double>> ring;
-    ring.data = edges;
+    ring.data = motions;
     ring.size = room;
-    Index starts[room];  // first facet of each
-    Index made = 0, unmade = begin, edge = -1, next = begin;
-    const auto make = [&] {
-      Index leads[width], from[width], to[width], count = 0;
-      for (; count < width && unmade < end; ++count) {
-        leads[count] = starts[(made + count) % room] = unmade;
-        from[count] = a[unmade], to[count] = b[unmade];
-        do ++unmade;
-        while (unmade < end && a[unmade] == from[count] && b[unmade] == to[count]);
-      }
-      for (Index k = count; k < width; ++k)
-        leads[k] = leads[count - 1], from[k] = from[count - 1], to[k] = to[count - 1];
-      R p[2], f[4];
-      gather_records(place, indices<R>(leads), p);
-      gather_records(View<const LdpmFrame>(frame), indices<R>(leads), f);
-      const LdpmEdgeOf<R> all = edge_of(load_end<R>(elements.state, indices<R>(from)),
-                                        load_end<R>(elements.state, indices<R>(to)), p[0],
-                                        LdpmFrameOf<R>{{f[0], f[1], f[2]}, f[3]});
-      const R numbers[16] = {all.n.x,      all.n.y,    all.n.z,     all.m.x,
-                             all.m.y,      all.m.z,    all.turn.x,  all.turn.y,
-                             all.turn.z,   all.jump.x, all.jump.y,  all.jump.z,
-                             all.distance, all.parted, all.fill[0], all.fill[1]};
-      store_records(ring, made % room, numbers);
-      made += count;
-    };
+    const Index first = edges[begin], last = edges[end - 1];
+    Index made = first;
     const LdpmFacet by = law;  // no store can change it
     Index i = begin;
     for (; i + width <= end; i += width) {
       fetch(i + 4 * width, width);
+      for (; edges[i + width - 1] >= made; made += width)
+        make_edges<R>(made, begin, last, ring, (made - first) % room);
       Index of[width];
-      for (Index k = 0; k < width; ++k) {
-        if (i + k == next) {
-          if (++edge == made) make();
-          next = edge + 1 < made ? starts[(edge + 1) % room] : unmade;
-        }
-        of[k] = edge % room;
-      }
+      for (Index k = 0; k < width; ++k) of[k] = (edges[i + k] - first) & (room - 1);
       Facet<R> facet;
       load_facet(i, facet);
       R e[16];
@@ -231,7 +231,8 @@ struct LdpmFacetForces {
                               {e[9], e[10], e[11]},
                               e[12],
                               e[13],
-                              {e[14], e[15]}};
+                              e[14],
+                              e[15]};
       if (any(own.parted > 0.0))
         for (Index k = 0; k < width; ++k) (*this)(i + k);
       else
@@ -242,6 +243,32 @@ struct LdpmFacetForces {
 #endif
 
  private:
+#if !defined(__CUDACC__)
+  /// A pack of edges from `edge_number` on into a ring. Each is read from the first of its facets
+  /// that is not yet behind, `begin` or later: those before may have moved on.
+  /// @param last  edge beyond which there is no use
+  template <class R>
+  void make_edges(Index edge_number, Index begin, Index last, const View<LdpmEdgeOf<double>>& ring,
+                  Index place_in_ring) const {
+    constexpr Index width = width_of<R>;
+    Index lead[width], from[width], to[width];
+    for (Index k = 0; k < width; ++k) {
+      lead[k] = std::max(leads[std::min(edge_number + k, last)], begin);
+      from[k] = a[lead[k]];
+      to[k] = b[lead[k]];
+    }
+    R p[2], f[4];
+    gather_records(place, indices<R>(lead), p);
+    gather_records(View<const LdpmFrame>(frame), indices<R>(lead), f);
+    const LdpmEdgeOf<R> all =
+        edge_of(load_end<R>(elements.state, indices<R>(from)),
+                load_end<R>(elements.state, indices<R>(to)), p[0], {{f[0], f[1], f[2]}, f[3]});
+    const R numbers[16] = {all.n.x,      all.n.y,    all.n.z,    all.m.x,    all.m.y,    all.m.z,
+                           all.turn.x,   all.turn.y, all.turn.z, all.jump.x, all.jump.y, all.jump.z,
+                           all.distance, all.parted, all.over,   all.fill};
+    write_records(ring, place_in_ring, numbers);
+  }
+#endif
   /// Asks the memory for what facets keep: more arrays than the processor foresees.
   void fetch(Index first, Index count) const {
     const auto ask = [=](const auto& array) {
@@ -278,7 +305,8 @@ struct LdpmFacetForces {
     LdpmEdgeOf<R> edge;
     edge.distance = motion.distance;
     edge.parted = select(old.bond < 0.0 || motion.distance > reach, constant<R>(1.0), none);
-    edge.fill[0] = edge.fill[1] = none;
+    edge.over = 1.0 / length;
+    edge.fill = none;
     // Newton's step from 1 makes m a unit vector: it was one.
     const Vec3Of<R>& n = edge.n = motion.normal;
     const Vec3Of<R> across = motion.tangential(motion.rotated_with_pair(old.m));
@@ -297,8 +325,7 @@ struct LdpmFacetForces {
     const Vec3Of<R>& center = facet.center;
     const Vec3Of<R> lever{center.x - 0.5 * edge.distance, center.y, center.z};
     const Vec3Of<R> jump = cross(edge.turn, lever) + edge.jump;
-    const R over = 1.0 / facet.length;
-    const LdpmSpentOf<R> spent = by.update(facet.length, kept.strain + over * jump,
+    const LdpmSpentOf<R> spent = by.update(facet.length, kept.strain + edge.over * jump,
                                            Volumetric<R>{*this, i, facet.volume}, kept, dt);
 
     const R weight = facet.area * facet.length;
@@ -313,7 +340,7 @@ struct LdpmFacetForces {
     write_records(frame, i, f);
 
     const Vec3Of<R> force = -facet.area * kept.stress;  // on b, in the frame
-    write(by, i, edge, center, force, facet.area * over);
+    write(by, i, edge, center, force, facet.area * edge.over);
   }
   /// Change of the distance in the last step: a rigid turn is none. With the old distance D sqrt(1
   /// - y) it is D (1 - sqrt(1 - y)), by its series: y^6 is below rounding.
@@ -392,6 +419,8 @@ LdpmFacetForces forces_of(LdpmFacets& f, const LdpmFacet& law, const LinkSpace& 
           f.compacted.view(),
           f.slid.view(),
           actions.view(),
+          std::as_const(f.edges.of).view(),
+          std::as_const(f.edges.leads).view(),
           0};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The sums of concrete links on the host, as their forces come.
+// The sums of concrete links and of facets on the host, as their forces come.
 
 #include <algorithm>
 #include <vector>
@@ -52,6 +52,35 @@ struct AddLinks {
       }
       sums[a].as_a = as_a;
       sums[a].stiffness_a = stiffness_a;
+    }
+  }
+  /// Facets [from, to), likewise: neighbours on one edge have both ends in common.
+  void operator()(const LdpmFacetForces& facets, Index from, Index to,
+                  const PairForce* actions) const {
+    for (Index i = from; i < to;) {
+      const Index a = facets.a[i];
+      SixSums as_a = sums[a].as_a;
+      EightFloatSums stiffness_a = sums[a].stiffness_a.straight;  // ratios are zero
+      while (i < to && facets.a[i] == a) {
+        const Index b = facets.b[i], next = std::min(facets.leads[facets.edges[i] + 1], to);
+        const bool own = b >= first_private && b < end;
+        SixSums as_b;
+        EightFloatSums stiffness_b;
+        if (own) as_b = sums[b].as_b, stiffness_b = sums[b].stiffness_b.straight;
+        for (; i < next; ++i) {
+          const PairForce& action = actions[i - from];
+          as_a.add(action.numbers);
+          stiffness_a.add(action.stiffness);
+          as_b.add(action.numbers + 3);
+          stiffness_b.add(action.stiffness);
+          if (!own) defer(*this, action, b);
+        }
+        if (!own) continue;
+        sums[b].as_b = as_b;
+        sums[b].stiffness_b.straight = stiffness_b;
+      }
+      sums[a].as_a = as_a;
+      sums[a].stiffness_a.straight = stiffness_a;
     }
   }
   /// Asks the memory for an element before the first link comes to it.

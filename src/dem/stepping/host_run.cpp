@@ -71,11 +71,26 @@ void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index
   }
 }
 
+/// Forces of facets [begin, end) and their sums, in portions whose actions stay in a near cache.
+void add_facets(Lanes lanes, const LdpmFacetForces& facets, Index begin, Index end,
+                const AddLinks& add) {
+  constexpr Index portion = 2048;
+  for (Index from = begin; from < end; from += portion) {
+    const Index to = std::min(from + portion, end);
+    run_packs(lanes, facets, from, to);
+    run_adding(lanes, add, facets, from, to, facets.actions.data + from);
+  }
+}
+
 template <class Number>
 void link_forces_and_sums(World& w) {
   std::vector<ConcreteLinkForces<Number>> kernels;
   for (const auto& group : w.concrete.groups)
     kernels.push_back(link_kernel<Number>(w, w.concrete, group.law, 0));
+  std::vector<LdpmFacetForces> of_facets;
+  if (w.link_plan.facets)
+    for (const auto& group : w.ldpm.groups)
+      of_facets.push_back(link_kernel<double>(w, w.ldpm, group.law, 0));
   const GatherForces gather = gather_kernel(w);
   LinkPlan& link_plan = w.link_plan;
   const auto threads = static_cast<int>(link_plan.first_private.size());
@@ -96,6 +111,11 @@ void link_forces_and_sums(World& w) {
           const std::vector<Index>& starts = w.concrete.groups[g].starts;
           add_links(w.lanes, kernels[g], starts[static_cast<std::size_t>(from)],
                     starts[static_cast<std::size_t>(to)], add);
+        }
+        for (std::size_t g = 0; g < of_facets.size(); ++g) {
+          const std::vector<Index>& starts = w.ldpm.groups[g].starts;
+          add_facets(w.lanes, of_facets[g], starts[static_cast<std::size_t>(from)],
+                     starts[static_cast<std::size_t>(to)], add);
         }
         run_packs(w.lanes, gather, std::max(from, link_plan.first_private[run]), to);
       }
@@ -144,6 +164,7 @@ void HostRun::pair_forces(World& w) const {
   {
     const StageTime timed(w.exec, "bar_forces");
     each_bar_set(w, [&](auto& set, Index first_action) {
+      if (set.kind == LinkKind::ldpm && w.link_plan.facets) return;
       for (const auto& group : set.groups)
         run_group(w, group, link_kernel<double>(w, set, group.law, first_action));
     });

@@ -44,19 +44,19 @@ bool run_packs([[maybe_unused]] Lanes lanes, const MoveElements& kernel, Index b
   return moved.beyond;
 }
 
-template <class Number>
-void run_adding([[maybe_unused]] Lanes lanes, const AddLinks& add,
-                const ConcreteLinkForces<Number>& links, Index from, Index to,
-                const PairForceOf<Number>* actions) {
+template <class Links, class Number>
+void run_adding([[maybe_unused]] Lanes lanes, const AddLinks& add, const Links& links, Index from,
+                Index to, const PairForceOf<Number>* actions) {
 #if defined(BR_WIDE_LANES)
   if (lanes == Lanes::eight) return PacksAvx512::run(add, links, from, to, actions);
   if (lanes == Lanes::four) return PacksAvx2::run(add, links, from, to, actions);
 #endif
   add(links, from, to, actions);
 }
-template void run_adding(Lanes, const AddLinks&, const ConcreteLinkForces<double>&, Index, Index,
-                         const PairForceOf<double>*);
-template void run_adding(Lanes, const AddLinks&, const ConcreteLinkForces<float>&, Index, Index,
-                         const PairForceOf<float>*);
+#define BR_INSTANTIATE(Links, Number)                                          \
+  template void run_adding(Lanes, const AddLinks&, const Links&, Index, Index, \
+                           const PairForceOf<Number>*);
+BR_EACH_ADDED_KERNEL(BR_INSTANTIATE)
+#undef BR_INSTANTIATE
 
 }  // namespace breccia::dem

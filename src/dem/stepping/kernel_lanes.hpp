@@ -19,9 +19,14 @@ double least(Lanes lanes, const View<const double>& numbers, Index begin, Index 
 bool run_packs(Lanes lanes, const MoveElements& kernel, Index begin, Index end);
 
 /// add for the links [from, to).
-template <class Number>
-void run_adding(Lanes lanes, const AddLinks& add, const ConcreteLinkForces<Number>& links,
-                Index from, Index to, const PairForceOf<Number>* actions);
+template <class Links, class Number>
+void run_adding(Lanes lanes, const AddLinks& add, const Links& links, Index from, Index to,
+                const PairForceOf<Number>* actions);
+/// Calls X(kernel of forces, what its actions are stored in) for the links that are summed so.
+#define BR_EACH_ADDED_KERNEL(X)         \
+  X(ConcreteLinkForces<double>, double) \
+  X(ConcreteLinkForces<float>, float)   \
+  X(LdpmFacetForces, double)
 
 /// How far a kernel came, and whether an element on the way has used its margin up.
 struct MovedTo {
@@ -44,9 +49,9 @@ struct PacksAvx2 {
   static Index run(const GatherForces& kernel, Index begin, Index end);
   static LeastOf run(const View<const double>& numbers, Index begin, Index end);
   static MovedTo run(const MoveElements& kernel, Index begin, Index end);
-  template <class Number>
-  static void run(const AddLinks& add, const ConcreteLinkForces<Number>& links, Index from,
-                  Index to, const PairForceOf<Number>* actions);
+  template <class Links, class Number>
+  static void run(const AddLinks& add, const Links& links, Index from, Index to,
+                  const PairForceOf<Number>* actions);
 };
 struct PacksAvx512 {
   template <class Kernel>
@@ -54,9 +59,9 @@ struct PacksAvx512 {
   static Index run(const GatherForces& kernel, Index begin, Index end);
   static LeastOf run(const View<const double>& numbers, Index begin, Index end);
   static MovedTo run(const MoveElements& kernel, Index begin, Index end);
-  template <class Number>
-  static void run(const AddLinks& add, const ConcreteLinkForces<Number>& links, Index from,
-                  Index to, const PairForceOf<Number>* actions);
+  template <class Links, class Number>
+  static void run(const AddLinks& add, const Links& links, Index from, Index to,
+                  const PairForceOf<Number>* actions);
 };
 
 }  // namespace breccia::dem
