@@ -21,13 +21,13 @@ Table table_of(const std::vector<EmissionEvent>& events) {
 }
 
 void add_emission(std::vector<Fact>& facts, const std::vector<EmissionEvent>& events) {
+  facts.push_back({"emission.events", static_cast<double>(events.size())});
   if (events.empty()) return;
   std::vector<double> magnitudes;
   for (const EmissionEvent& e : events) magnitudes.push_back(e.magnitude());
   const auto add = [&](const char* path, double value) {
     facts.push_back({std::string("emission.") + path, value});
   };
-  add("events", static_cast<double>(events.size()));
   add("largest_magnitude", *std::max_element(magnitudes.begin(), magnitudes.end()));
   const std::optional<Frequency> f = frequency_of(magnitudes);
   if (!f) return;

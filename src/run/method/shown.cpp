@@ -12,6 +12,7 @@
 #include "io/picture/color_map.hpp"
 #include "io/picture/picture.hpp"
 #include "run/method/dem_method.hpp"
+#include "run/method/emission_table.hpp"
 #include "run/method/fdem3_method.hpp"
 #include "run/method/fdem_method.hpp"
 #include "run/results/summary.hpp"
@@ -41,6 +42,9 @@ Shown shown_by(Method& specimen) {
   Shown shown;
   const NeedsMemory scope;
   add_numbers(nlohmann::json::parse(to_json(summary)), "", shown.numbers);
+  if (shown.numbers.contains("emission.events"))
+    for (const char* const number : emission_numbers)
+      shown.numbers.insert(std::string("emission.") + number);
   shown.frame = specimen.frame();
   return shown;
 }
@@ -164,6 +168,7 @@ void check_shown(const fdem::Config& config) {
     if (load.kind == "fluid") {
       one.loads.emplace_back().name = load.name;
       one.loads.back().kind = load.kind;
+      one.loads.back().viscosity = load.viscosity;
     }
   fdem::Model model;  // one triangle a body
   for (const fdem::BodyConfig& body : config.bodies) {
