@@ -19,13 +19,14 @@ ALLOWED = {
     "dem": {"exec", "math", "core", "domain"},
     "fdem": {"exec", "math", "core", "domain"},
     "fdem3": {"exec", "math", "core", "domain", "fdem"},
+    "coupled": {"exec", "math", "core", "domain", "dem", "fdem", "fdem3"},
     "io": {"exec", "math", "core"},
-    "prepare": {"exec", "math", "core", "io", "dem", "fdem", "fdem3"},
-    "run": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "prepare"},
+    "prepare": {"exec", "math", "core", "io", "dem", "fdem", "fdem3", "coupled"},
+    "run": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "coupled", "prepare"},
     "report": {"exec", "math", "core", "io"},
     "api": {"exec", "math", "core", "io", "run"},
-    "laboratory": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "prepare", "run", "report"},
-    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "prepare", "run", "report", "laboratory"},
+    "laboratory": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "coupled", "prepare", "run", "report"},
+    "app": {"exec", "math", "core", "domain", "io", "dem", "fdem", "fdem3", "coupled", "prepare", "run", "report", "laboratory"},
 }
 ALLOWED["bench"] = set(ALLOWED)
 LONGEST = 500

@@ -54,6 +54,21 @@ std::string fixed_path(const std::string& path) {
   return (file.parent_path() / (file.stem().string() + ".fixed.toml")).string();
 }
 
+template <class Config>
+std::size_t bodies_of(const Config& config) {
+  return config.bodies.size();
+}
+std::size_t bodies_of(const coupled::Config& config) {
+  return config.spheres.bodies.size() + config.tetrahedra.bodies.size();
+}
+template <class Config>
+std::size_t materials_of(const Config& config) {
+  return config.materials.size();
+}
+std::size_t materials_of(const coupled::Config& config) {
+  return config.spheres.materials.size() + config.tetrahedra.materials.size();
+}
+
 struct CheckCommand {
   std::vector<std::string> paths, overrides;
   bool model = false, fix = false, allow_scripts = false;
@@ -86,8 +101,8 @@ struct CheckCommand {
           std::optional<Forecast> expected;  // may refuse the case
           if (!read.model) expected = forecast(config, read.folder);
           fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
-                     counted(config.bodies.size(), "body", "bodies"),
-                     counted(config.materials.size(), "material", "materials"),
+                     counted(bodies_of(config), "body", "bodies"),
+                     counted(materials_of(config), "material", "materials"),
                      time_text(config.time.end));
           if (const auto files = scripts_of(read); !files.empty())
             fmt::print(", needs --allow-scripts for {}",
@@ -207,7 +222,9 @@ struct CheckCommand {
   template <class Source>
   void read_keys(const Source& source) const {
     const std::string method = case_method(source, overrides);
-    if (method == "fdem2d")
+    if (asks_for_two_methods(source, overrides))
+      read_case<coupled::Config>(source, overrides);
+    else if (method == "fdem2d")
       read_case<fdem::Config>(source, overrides);
     else if (method == "fdem3d")
       read_case<fdem3::Config>(source, overrides);

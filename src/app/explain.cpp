@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/coupled_keys.hpp"
 #include "app/curve.hpp"
 #include "dem/setup/config.hpp"
 #include "dem/setup/materials.hpp"
@@ -216,7 +217,8 @@ struct ExplainCommand {
     const std::pair<const char*, std::vector<KeyInfo>> methods[] = {
         {"dem3d", named(list_keys<dem::Config>(""), key)},
         {"fdem2d", named(list_keys<fdem::Config>(""), key)},
-        {"fdem3d", named(list_keys<fdem3::Config>(""), key)}};
+        {"fdem3d", named(list_keys<fdem3::Config>(""), key)},
+        {both_methods, named(keys_between(), key)}};
     constexpr std::size_t most = 8;
     std::size_t total = 0, largest = 0;
     for (const auto& [method, keys] : methods) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "app/commands.hpp"
+#include "app/coupled_keys.hpp"
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/config.hpp"
@@ -26,7 +27,9 @@ struct KeysCommand {
   void execute() const {
     std::vector<MethodKeys> methods{{"dem3d", list_keys<dem::Config>("")},
                                     {"fdem2d", list_keys<fdem::Config>("")},
-                                    {"fdem3d", list_keys<fdem3::Config>("")}};
+                                    {"fdem3d", list_keys<fdem3::Config>("")},
+                                    {both_methods, keys_between()}};
+    if (schema || method == both_methods) methods.back().keys = list_keys<coupled::Config>("");
     if (schema) {
       fmt::print("{}", key_schema(methods));
       return;
@@ -73,7 +76,7 @@ void add_keys(CLI::App& program) {
       "only keys that begin with this, or have these words in name or meaning: all of "
       "them or, if none has, any");
   command->add_option("--method", keys->method, "only keys of this method")
-      ->check(CLI::IsMember({"dem3d", "fdem2d", "fdem3d"}));
+      ->check(CLI::IsMember({"dem3d", "fdem2d", "fdem3d", both_methods}));
   CLI::Option* const json = command->add_flag("--json", keys->json, "as JSON");
   CLI::Option* const markdown =
       command->add_flag("--markdown", keys->markdown, "as a page of Markdown")->excludes(json);

@@ -86,6 +86,13 @@ void CheckpointWriter::section(const std::string& name, const void* items, std::
   sections_.push_back(std::move(section));
 }
 
+void CheckpointWriter::adopt(const std::string& prefix, const CheckpointWriter& other) {
+  for (const Section& s : other.sections_) {
+    sections_.push_back(s);
+    sections_.back().name = prefix + s.name;
+  }
+}
+
 std::string CheckpointWriter::first_difference(const CheckpointWriter& other) const {
   for (std::size_t k = 0; k < std::max(sections_.size(), other.sections_.size()); ++k) {
     if (k >= sections_.size() || k >= other.sections_.size()) return "the number of arrays";
@@ -220,6 +227,17 @@ CheckpointReader::CheckpointReader(const std::string& path) : path_(path) {
 CheckpointReader::CheckpointReader(const CheckpointWriter& held) : path_("a state in memory") {
   for (const CheckpointWriter::Section& s : held.sections_)
     sections_.push_back({s.name, s.count, s.item_bytes, s.bytes});
+}
+
+CheckpointReader CheckpointReader::below(const std::string& prefix) const {
+  CheckpointReader part;
+  part.path_ = path_;
+  for (const Section& s : sections_)
+    if (s.name.starts_with(prefix)) {
+      part.sections_.push_back(s);
+      part.sections_.back().name.erase(0, prefix.size());
+    }
+  return part;
 }
 
 void CheckpointReader::read_table(const std::vector<std::byte>& bytes, const Frame& frame) {

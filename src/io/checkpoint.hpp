@@ -37,6 +37,9 @@ class CheckpointWriter {
     });
   }
 
+  /// All sections of another writer, as PREFIX<section>.
+  void adopt(const std::string& prefix, const CheckpointWriter& other);
+
   /// Where two states that were collected alike differ first, as "elements.force, item 7 of 20";
   /// empty: nowhere.
   std::string first_difference(const CheckpointWriter& other) const;
@@ -92,6 +95,9 @@ class CheckpointReader {
     Bytes bytes;
     Digest digest{};
   };
+  /// The sections PREFIX<section> alone, as <section>; it reads what this one holds, which must
+  /// outlive it.
+  CheckpointReader below(const std::string& prefix) const;
   const std::vector<Section>& sections() const { return sections_; }
   bool has(const std::string& name) const;
   /// @throws CheckpointError if it is missing
@@ -125,6 +131,7 @@ class CheckpointReader {
   }
 
  private:
+  CheckpointReader() = default;
   struct Frame;
   void read_table(const std::vector<std::byte>& bytes, const Frame& frame);
   void copy_items(void* to, const Section& from, std::uint64_t count) const;

@@ -208,7 +208,7 @@ void refuse_misfits(const fdem::Model& model, const fdem::Config& config) {
 
 bool holds_model(const CheckpointReader& reader) {
   return reader.has("model.position") || reader.has("model.triangle") ||
-         reader.has("model.tetrahedron");
+         reader.has("model.tetrahedron") || reader.has("spheres.model.position");
 }
 
 dem::Model load_model(const CheckpointReader& reader) {

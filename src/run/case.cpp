@@ -14,6 +14,7 @@
 #include "io/round_numbers.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
+#include "prepare/build_coupled.hpp"
 #include "prepare/build_fdem.hpp"
 #include "prepare/build_fdem3.hpp"
 #include "prepare/checks/check_case.hpp"
@@ -23,6 +24,7 @@
 #include "run/machine/device_plan.hpp"
 #include "run/machine/memory_plan.hpp"
 #include "run/method/audited_method.hpp"
+#include "run/method/coupled_method.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem3_method.hpp"
 #include "run/method/fdem_method.hpp"
@@ -107,6 +109,11 @@ std::string model_keys(const fdem3::Config& config) {
   return completed_case(part);
 }
 
+std::string model_keys(const coupled::Config& config) {
+  const coupled::Parts parts = coupled::parts_of(config);
+  return model_keys(parts.spheres) + model_keys(parts.tetrahedra);
+}
+
 CaseText text_of(const std::string& path) {
   return {read_case_source(case_file_of(path)), case_file_of(path)};
 }
@@ -164,6 +171,7 @@ Config read_all(const Source& source, const std::vector<std::string>& overrides)
 
 template <class Source>
 AnyConfig read_config(const Source& source, const std::vector<std::string>& overrides) {
+  if (asks_for_two_methods(source, overrides)) return read_all<coupled::Config>(source, overrides);
   const std::string method = case_method(source, overrides);
   if (method == "fdem2d") return read_all<fdem::Config>(source, overrides);
   if (method == "fdem3d") return read_all<fdem3::Config>(source, overrides);
@@ -194,6 +202,10 @@ std::string size_text(const fdem3::Model& model) {
   return fmt::format("{} tetrahedra", count_text(static_cast<double>(model.size())));
 }
 
+std::string size_text(const coupled::Model& model) {
+  return size_text(model.spheres) + "  " + size_text(model.tetrahedra);
+}
+
 /// The keys that the model of a case was built from.
 std::string keys_of_model(const AnyConfig& config) {
   return std::visit([](const auto& c) { return model_keys(c); }, config);
@@ -206,10 +218,16 @@ void load_model_into(Case& read, const CheckpointReader& reader, const std::stri
   } else if (const auto* const plane = std::get_if<fdem::Config>(&read.config)) {
     const fdem::Model& model = std::get<fdem::Model>(read.model.emplace(load_fdem_model(reader)));
     refuse_misfits(model, *plane);
-  } else {
+  } else if (const auto* const solid = std::get_if<fdem3::Config>(&read.config)) {
     const fdem3::Model& model =
         std::get<fdem3::Model>(read.model.emplace(load_fdem3_model(reader)));
-    refuse_misfits(model, std::get<fdem3::Config>(read.config));
+    refuse_misfits(model, *solid);
+  } else {
+    const coupled::Model& model =
+        std::get<coupled::Model>(read.model.emplace(load_coupled_model(reader)));
+    const coupled::Parts parts = coupled::parts_of(std::get<coupled::Config>(read.config));
+    refuse_misfits(model.spheres, parts.spheres);
+    refuse_misfits(model.tetrahedra, parts.tetrahedra);
   }
   read.prepared = std::filesystem::absolute(path).lexically_normal().string();
 }

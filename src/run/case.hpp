@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "coupled/setup/config.hpp"
+#include "coupled/setup/model.hpp"
 #include "dem/setup/config.hpp"
 #include "dem/setup/model.hpp"
 #include "domain/communicator.hpp"
@@ -24,8 +26,8 @@ namespace breccia {
 
 struct RunPlan;
 
-using AnyConfig = std::variant<dem::Config, fdem::Config, fdem3::Config>;
-using AnyModel = std::variant<dem::Model, fdem::Model, fdem3::Model>;
+using AnyConfig = std::variant<dem::Config, fdem::Config, fdem3::Config, coupled::Config>;
+using AnyModel = std::variant<dem::Model, fdem::Model, fdem3::Model, coupled::Model>;
 
 struct Case {
   AnyConfig config;
@@ -41,6 +43,16 @@ struct Case {
 
   const CaseConfig& common() const;
 };
+
+/// Whether a case asks for two methods in one run.
+/// @throws InputError if the file cannot be read or is no TOML, or an override makes no sense
+template <class Source>
+bool asks_for_two_methods(const Source& source, const std::vector<std::string>& overrides) {
+  CaseReader reader(source, overrides);
+  std::vector<std::string> methods;
+  reader.read("method", methods, "");
+  return !methods.empty();
+}
 
 /// Reads a case file, the case.toml of a folder, or a prepared model (*.br).
 /// @param overrides  KEY=VALUE, applied after reading

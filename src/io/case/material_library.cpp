@@ -137,10 +137,13 @@ const NamedMaterial* named_material(const std::string& name) {
   return nullptr;
 }
 
-void use_named_materials(toml::table& root, std::vector<Problem>& problems) {
+namespace {
+
+/// @param where  before the key in messages
+void use_in(toml::table& root, const std::string& of_case, const std::string& where,
+            std::vector<Problem>& problems) {
   toml::table* const materials = root["material"].as_table();
   if (materials == nullptr) return;
-  const std::string of_case = root["method"].value_or(std::string("dem3d"));
   // Rock has the same numbers for triangles and for tetrahedra.
   const std::string method = of_case == "fdem3d" ? "fdem2d" : of_case;
   for (auto&& [key, node] : *materials) {
@@ -154,7 +157,8 @@ void use_named_materials(toml::table& root, std::vector<Problem>& problems) {
       complete(*own, *(*given)[method].as_table());
       continue;
     }
-    std::string text = fmt::format("material.{}.use = \"{}\"", std::string(key.str()), *name);
+    std::string text =
+        fmt::format("{}material.{}.use = \"{}\"", where, std::string(key.str()), *name);
     if (given == nullptr) {
       std::set<std::string> names;
       for (const NamedMaterial& material : named_materials()) names.insert(material.name);
@@ -167,6 +171,17 @@ void use_named_materials(toml::table& root, std::vector<Problem>& problems) {
     problems.push_back(
         {from_file ? use->source().begin.line : 0, (from_file ? "" : "--set ") + text});
   }
+}
+
+}  // namespace
+
+void use_named_materials(toml::table& root, std::vector<Problem>& problems) {
+  if (!root["method"].is_array())
+    return use_in(root, root["method"].value_or(std::string("dem3d")), "", problems);
+  if (toml::table* const part = root["spheres"].as_table())
+    use_in(*part, "dem3d", "spheres.", problems);
+  if (toml::table* const part = root["tetrahedra"].as_table())
+    use_in(*part, "fdem3d", "tetrahedra.", problems);
 }
 
 }  // namespace breccia

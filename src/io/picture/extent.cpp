@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "io/frame_pair.hpp"
 #include "io/picture/camera.hpp"
 
 namespace breccia {
@@ -85,10 +86,11 @@ std::vector<std::vector<std::size_t>> bodies_of(const Frame& frame) {
   };
   add_corners(frame.tetrahedra, 4, frame.tetrahedron_fields);
   if (frame.tetrahedra.empty()) add_corners(frame.triangles, 3, frame.triangle_fields);
-  if (!bodies.empty()) return bodies;
+  if (!bodies.empty() && !is_paired(frame)) return bodies;
   const std::vector<std::size_t> of_point = groups_in(frame.point_fields, frame.position.size());
   for (std::size_t i = 0; i < frame.position.size(); ++i)
-    add(of_point.empty() ? 0 : of_point[i], i);
+    if (bodies.empty() || !is_paired(frame) || frame.radius[i] > 0.0)
+      add(of_point.empty() ? 0 : of_point[i], i);
   return bodies;
 }
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "exec/error.hpp"
+#include "io/frame_pair.hpp"
 #include "io/picture/line_colors.hpp"
 
 namespace breccia {
@@ -355,6 +356,12 @@ void fill_solids(const Frame& frame, Coloring& coloring) {
                                   tints.others.end());
 }
 
+/// Tetrahedra beside spheres: each as its first corner.
+void color_as_corners(const Frame& frame, Coloring& coloring) {
+  for (std::size_t i = 0; i < coloring.tetrahedra.size(); ++i)
+    coloring.tetrahedra[i] = coloring.points[static_cast<std::size_t>(frame.tetrahedra[4 * i])];
+}
+
 /// Colours for what the field does not colour: bodies by group, lines by kind, triangles pale.
 void fill_default_colors(const Frame& frame, Coloring& coloring) {
   if (frame.tetrahedra.empty())
@@ -378,6 +385,7 @@ void fill_default_colors(const Frame& frame, Coloring& coloring) {
   const GroupTints tints = group_tints(frame, groups);
   coloring.points.resize(groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) coloring.points[i] = tints.tint[groups[i]];
+  if (is_paired(frame)) color_as_corners(frame, coloring);
   if (tints.others.empty()) return;
   coloring.legend.swatches = tints.others;
   const Legend::Swatch main{tints.tint[tints.main], group_name(frame, tints.main)};
@@ -411,6 +419,7 @@ void color_by_points(const Frame& frame, const std::vector<float>& values,
   else
     coloring.tetrahedra = colors_by_means(frame.tetrahedra, 4, values, bar);
   if (bar.map == ColorMap::damage) tint_bodies(frame, values, coloring);
+  if (is_paired(frame)) color_as_corners(frame, coloring);
 }
 
 }  // namespace

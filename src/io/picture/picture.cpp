@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exec/error.hpp"
+#include "io/frame_pair.hpp"
 #include "io/picture/annotation.hpp"
 #include "io/picture/layout.hpp"
 #include "io/picture/scene.hpp"
@@ -157,6 +158,7 @@ Image draw_bodies(Canvas& canvas, const Frame& frame, const RenderOptions& optio
                   const Coloring& coloring, Scene& scene, int threads, std::uint8_t ground) {
   const bool joints = options.show_links || coloring.of_lines || coloring.cracks;
   const float relief = relief_of(frame, scene.camera.resolution);
+  if (is_paired(frame) && options.show_spheres) place_spheres(canvas, frame, 1.0, scene, threads);
   draw_solids(canvas, frame, coloring, {joints && !options.xray, options.edges}, scene, threads);
   Image image = shade(canvas, scene.looks, scene.clip, relief, threads, ground);
   if (!options.xray) return image;

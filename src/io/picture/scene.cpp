@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "io/frame_pair.hpp"
+
 namespace breccia {
 
 void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scene, int threads) {
@@ -11,6 +13,10 @@ void place_spheres(Canvas& canvas, const Frame& frame, double share, Scene& scen
   std::vector<ScreenSphere> spheres(frame.position.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const ScreenPoint& point = scene.points[i];
+    if (is_paired(frame) && !(frame.radius[i] > 0.0)) {  // a corner of a body: far off the canvas
+      spheres[i] = {-1e9F, -1e9F, 0.0F, 0.0F};
+      continue;
+    }
     const double radius = std::max(smallest, share * scene.camera.resolution * frame.radius[i]);
     spheres[i] = {static_cast<float>(point.u), static_cast<float>(point.v),
                   static_cast<float>(point.depth), static_cast<float>(radius)};

@@ -219,7 +219,7 @@ void draw_solids(Canvas& canvas, const Frame& frame, const Coloring& coloring, S
   });
   scene.solids_seen.assign(frame.tetrahedra.size() / 4, false);
   for (const std::int32_t item : canvas.item)
-    if (item != Canvas::none)
+    if (item != Canvas::none && item >= static_cast<std::int32_t>(first))  // others are spheres
       scene.solids_seen[static_cast<std::size_t>(
           pieces[static_cast<std::size_t>(item) - first].tetrahedron)] = true;
   if (marks.edges) draw_marks(canvas, marks_of_edges(canvas, pieces, scene), scene, threads);

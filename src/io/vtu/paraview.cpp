@@ -7,6 +7,7 @@
 #include <span>
 
 #include "exec/error.hpp"
+#include "io/frame_pair.hpp"
 #include "io/vtu/vtu_reader.hpp"
 #include "io/whole_file.hpp"
 
@@ -37,7 +38,7 @@ ColorBy(shown, (where, "damage"))
 GetColorTransferFunction("damage").RescaleTransferFunction(0.0, 1.0)
 shown.SetScalarBarVisibility(view, True)
 RenameSource("elements", elements)
-for kind in ("links", "contacts", "walls"):
+for kind in ("links", "contacts", "walls", "tetrahedra", "joints", "joint_contacts"):
     path = os.path.join(here, kind + ".LIST")
     if not os.path.exists(path):
         continue
@@ -45,6 +46,8 @@ for kind in ("links", "contacts", "walls"):
     RenameSource(kind, more)
     if kind == "walls":
         Show(more, view).Opacity = 0.3
+    elif kind == "tetrahedra":
+        Show(more, view)
     else:
         Hide(more, view)
 bounds = elements.GetDataInformation().GetBounds()
@@ -97,7 +100,8 @@ ParaviewSeries ParaviewSeries::resumed(const std::string& folder, double time, F
   ParaviewSeries series(folder, format);
   if (!holds_frames(folder)) return series;
   series.times_ = frame_times(folder);
-  for (const char* kind : {"contacts", "walls"})
+  for (const char* kind :
+       {"contacts", "walls", frame_of_solids, joints_of_solids, contacts_of_solids})
     if (std::filesystem::exists(folder + "/" + series.file_of(kind, 0)))
       series.kinds_.emplace_back(kind);
   series.listed_ = series.times_.size();
@@ -110,7 +114,7 @@ void ParaviewSeries::write(const FrameContents& frame) {
   const auto same = std::lower_bound(times_.begin(), times_.end(), frame.time);
   drop_from(static_cast<std::size_t>(same - times_.begin()));
   const std::string start = folder_ + "/";
-  const auto add = [&](const char* kind, const std::string& content) {
+  const auto add = [&](const std::string& kind, const std::string& content) {
     if (content.empty()) return;
     replace_file(start + file_of(kind, times_.size()), content);
     if (std::find(kinds_.begin(), kinds_.end(), kind) == kinds_.end()) kinds_.emplace_back(kind);
@@ -119,6 +123,7 @@ void ParaviewSeries::write(const FrameContents& frame) {
   add("links", frame.lines);
   add("contacts", frame.contacts);
   add("walls", frame.walls);
+  for (const auto& [kind, content] : frame.more) add(kind, content);
   times_.push_back(frame.time);
   if (collections_are_due()) write_collections();
 }

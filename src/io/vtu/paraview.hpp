@@ -20,6 +20,9 @@ namespace breccia {
 ///   elements.pvd, links.pvd, contacts.pvd, walls.pvd
 ///                             each series with its times; result.pvd: all in one, as parts of
 ///                             these names
+///   tetrahedra.pvd, joints.pvd, joint_contacts.pvd
+///                             of runs with spheres and tetrahedra: what elements, links and
+///                             contacts are for spheres
 ///   open_in_paraview.py       shows them, spheres as spheres: paraview open_in_paraview.py
 ///
 /// or, as VTKHDF, elements_0000.hdf and so on, listed in elements.hdf.series and so on.

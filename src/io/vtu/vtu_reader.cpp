@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "exec/error.hpp"
+#include "io/frame_pair.hpp"
 #include "io/vtu/paraview.hpp"
 #include "io/vtu/tensors.hpp"
 #include "io/vtu/vtkhdf.hpp"
@@ -350,8 +351,11 @@ std::vector<double> frame_times(const std::string& folder) {
   return times;
 }
 
-Frame read_frame(const std::string& folder, int index) {
-  const std::vector<Entry> entries = entries_of(folder, "elements");
+namespace {
+
+/// A frame of two kinds of files: bodies, and what joins them.
+Frame read_kinds(const std::string& folder, int index, const char* bodies, const char* joints) {
+  const std::vector<Entry> entries = entries_of(folder, bodies);
   if (index < 0 || static_cast<std::size_t>(index) >= entries.size()) {
     throw InputError(fmt::format("frame {} does not exist: {} holds {} frames, counted from 0",
                                  index, folder, entries.size()));
@@ -389,7 +393,7 @@ Frame read_frame(const std::string& folder, int index) {
     frame.tetrahedra = connectivity(elements, 4);
     frame.tetrahedron_fields = tensors_parted(elements.fields("CellData", elements.cells()), false);
   }
-  const std::vector<Entry> link_entries = entries_of(folder, "links");
+  const std::vector<Entry> link_entries = entries_of(folder, joints);
   if (number < link_entries.size()) {
     const std::unique_ptr<FrameFile> other = opened(folder + "/" + link_entries[number].file);
     const FrameFile& links = *other;
@@ -399,6 +403,15 @@ Frame read_frame(const std::string& folder, int index) {
     (solid ? frame.triangle_fields : frame.line_fields) = links.fields("CellData", links.cells());
   }
   return frame;
+}
+
+}  // namespace
+
+Frame read_frame(const std::string& folder, int index) {
+  const Frame frame = read_kinds(folder, index, "elements", "links");
+  const char* const list = format_of_frames(folder) == FrameFormat::vtu ? ".pvd" : ".hdf.series";
+  if (!std::filesystem::exists(folder + "/" + frame_of_solids + list)) return frame;
+  return paired(frame, read_kinds(folder, index, frame_of_solids, joints_of_solids));
 }
 
 }  // namespace breccia

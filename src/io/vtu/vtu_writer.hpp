@@ -31,6 +31,8 @@ struct FrameContents {
   std::string lines;          ///< lines, or triangles of joints in space, with their fields
   std::string contacts = {};  ///< lines between what touches; empty: no such file
   std::string walls = {};     ///< triangles; empty: no such file
+  /// Of a second method in the same run, by kind: "tetrahedra", ... (io/frame_pair.hpp).
+  std::vector<std::pair<std::string, std::string>> more = {};
 };
 
 /// The files of a frame as blocks, each of which is compressed by itself: by any thread, on any

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "coupled/setup/model.hpp"
 #include "dem/setup/model.hpp"
 #include "fdem/setup/model.hpp"
 #include "fdem3/setup/model.hpp"
@@ -13,6 +14,9 @@ namespace breccia {
 std::size_t device_bytes(const dem::Model& model);
 std::size_t device_bytes(const fdem::Model& model);
 std::size_t device_bytes(const fdem3::Model& model);
+inline std::size_t device_bytes(const coupled::Model& model) {
+  return device_bytes(model.spheres) + device_bytes(model.tetrahedra);
+}
 
 /// Says how much a run will take of the GPU in use. @throws DeviceError if it has not that much
 /// free

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "coupled/setup/config.hpp"
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem3/setup/config.hpp"
@@ -36,6 +37,7 @@ struct Forecast {
 Forecast forecast(const dem::Config& config, const std::string& folder);
 Forecast forecast(const fdem::Config& config, const std::string& folder);
 Forecast forecast(const fdem3::Config& config, const std::string& folder);
+Forecast forecast(const coupled::Config& config, const std::string& folder);
 
 /// "12 s", "3.5 min", "2.1 h", "4 days".
 std::string rough_duration(double seconds);

@@ -138,6 +138,13 @@ MemoryPlan memory_plan(const fdem3::Config& config) {
   return plan;
 }
 
+MemoryPlan memory_plan(const coupled::Config& config) {
+  const MemoryPlan a = memory_plan(static_cast<const dem::Config&>(config.spheres)),
+                   b = memory_plan(static_cast<const fdem3::Config&>(config.tetrahedra));
+  return {a.items + b.items, "spheres and tetrahedra", a.build_bytes + b.build_bytes,
+          a.run_bytes + b.run_bytes};
+}
+
 double available_memory(const std::string& root) {
   constexpr double kibibyte = 1024.0;
   const auto machine = number_in(root + "/proc/meminfo", "MemAvailable:");

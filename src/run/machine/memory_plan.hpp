@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "coupled/setup/config.hpp"
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem3/setup/config.hpp"
@@ -20,6 +21,7 @@ struct MemoryPlan {
 MemoryPlan memory_plan(const dem::Config& config);
 MemoryPlan memory_plan(const fdem::Config& config);
 MemoryPlan memory_plan(const fdem3::Config& config);
+MemoryPlan memory_plan(const coupled::Config& config);
 
 /// Tetrahedra of one body; 0 where its file alone tells.
 double tetrahedra_of(const fdem3::BodyConfig& body);

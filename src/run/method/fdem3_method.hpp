@@ -14,6 +14,13 @@ namespace breccia {
 std::unique_ptr<Method> make_method(const fdem3::Config& config, const fdem3::Model& model,
                                     const Exec& exec, Communicator* ranks = nullptr);
 
+/// As DemPart.
+struct Fdem3Part {
+  std::unique_ptr<Method> method;
+  fdem3::World* world;
+};
+Fdem3Part fdem3_part(const fdem3::Config& config, const fdem3::Model& model, const Exec& exec);
+
 /// Tetrahedra with stress, damage, body, material and fragment; softened and broken joints as
 /// triangles with mode, damage and time of break.
 /// Of a rank's part of a world, that part of the frame: all ranks make it at once.

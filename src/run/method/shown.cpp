@@ -11,6 +11,7 @@
 #include "io/case/suggestion.hpp"
 #include "io/picture/color_map.hpp"
 #include "io/picture/picture.hpp"
+#include "run/method/coupled_method.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/emission_table.hpp"
 #include "run/method/fdem3_method.hpp"
@@ -138,14 +139,9 @@ void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
                                problems.size() == 1 ? "" : "s", fmt::join(problems, "\n  ")));
 }
 
-}  // namespace
-
-void check_shown(const dem::Config& config) {
-  dem::Config one;
-  one.materials.emplace_back();
-  one.domain.show = config.domain.show;
-  one.output = config.output;
-  dem::Model model;  // one element a body
+/// One element a body.
+dem::Model specimen_of(const dem::Config& config) {
+  dem::Model model;
   for (const dem::BodyConfig& body : config.bodies) {
     model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
     model.position.push_back({10.0 * static_cast<double>(model.groups.size()), 0.0, 0.0});
@@ -156,6 +152,50 @@ void check_shown(const dem::Config& config) {
   model.radius = model.mass = model.inertia = std::vector<double>(count, 1.0);
   model.velocity = model.spin = std::vector<Vec3>(count);
   model.bar_previous = model.bar_next = std::vector<Index>(count, -1);
+  return model;
+}
+/// One tetrahedron a body.
+fdem3::Model specimen_of(const fdem3::Config& config) {
+  fdem3::Model model;
+  for (const fdem3::BodyConfig& body : config.bodies) {
+    const auto first = static_cast<Index>(model.point.size());
+    const double x = 10.0 * static_cast<double>(model.groups.size());
+    for (const Vec3& corner :
+         {Vec3{x, 0.0, 0.0}, Vec3{x + 1.0, 0.0, 0.0}, Vec3{x, 1.0, 0.0}, Vec3{x, 0.0, 1.0}})
+      model.point.push_back(corner);
+    model.tetrahedron.push_back({first, first + 1, first + 2, first + 3});
+    model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
+    model.groups.push_back(body.name);
+  }
+  const std::size_t count = model.groups.size();
+  model.material.resize(count);
+  model.velocity.resize(count);
+  model.strength.assign(count, 1.0F);
+  return model;
+}
+/// The case of such a specimen.
+template <class Config>
+Config case_of_specimen(const CaseConfig& config) {
+  Config one;
+  one.domain.show = config.domain.show;
+  one.output = config.output;
+  return one;
+}
+
+}  // namespace
+
+void check_shown(const dem::Config& config) {
+  auto one = case_of_specimen<dem::Config>(config);
+  one.materials.emplace_back();
+  refuse_what_is_not_shown(config, *make_method(one, specimen_of(config), {}));
+}
+
+void check_shown(const coupled::Config& config) {
+  auto one = case_of_specimen<coupled::Config>(config);
+  one.spheres.materials.emplace_back();
+  one.tetrahedra.materials.emplace_back();
+  coupled::Model model{specimen_of(config.spheres), specimen_of(config.tetrahedra)};
+  for (Vec3& place : model.spheres.position) place.y = 100.0;  // clear of the tetrahedra
   refuse_what_is_not_shown(config, *make_method(one, model, {}));
 }
 
@@ -188,26 +228,9 @@ void check_shown(const fdem::Config& config) {
 }
 
 void check_shown(const fdem3::Config& config) {
-  fdem3::Config one;
+  auto one = case_of_specimen<fdem3::Config>(config);
   one.materials.emplace_back();
-  one.domain.show = config.domain.show;
-  one.output = config.output;
-  fdem3::Model model;  // one tetrahedron a body
-  for (const fdem3::BodyConfig& body : config.bodies) {
-    const auto first = static_cast<Index>(model.point.size());
-    const double x = 10.0 * static_cast<double>(model.groups.size());
-    for (const Vec3& corner :
-         {Vec3{x, 0.0, 0.0}, Vec3{x + 1.0, 0.0, 0.0}, Vec3{x, 1.0, 0.0}, Vec3{x, 0.0, 1.0}})
-      model.point.push_back(corner);
-    model.tetrahedron.push_back({first, first + 1, first + 2, first + 3});
-    model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
-    model.groups.push_back(body.name);
-  }
-  const std::size_t count = model.groups.size();
-  model.material.resize(count);
-  model.velocity.resize(count);
-  model.strength.assign(count, 1.0F);
-  refuse_what_is_not_shown(config, *make_method(one, model, {}));
+  refuse_what_is_not_shown(config, *make_method(one, specimen_of(config), {}));
 }
 
 }  // namespace breccia

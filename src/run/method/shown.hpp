@@ -1,6 +1,7 @@
 #pragma once
 // Whether a case asks only for what its run will show.
 
+#include "coupled/setup/config.hpp"
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem3/setup/config.hpp"
@@ -13,5 +14,6 @@ namespace breccia {
 void check_shown(const dem::Config& config);
 void check_shown(const fdem::Config& config);
 void check_shown(const fdem3::Config& config);
+void check_shown(const coupled::Config& config);
 
 }  // namespace breccia

@@ -66,6 +66,9 @@ class SimMethod final : public Method {
         case_(config),
         now_(config_at(config, {})) {}
 
+  /// What it steps, for one that couples it to another method.
+  World& world() { return world_.part(); }
+
   Advanced advance(const StopAt& stop) override {
     const bool servos = !world_.part().servos.empty(), fluid = has_fluid(world_.part());
     if (!servos && !fluid) return world_.advance_to(stop);

@@ -1,0 +1,106 @@
+// From a case to what is between spheres and tetrahedra: laws, bonds, first forces.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/set_up.hpp"
+#include "coupled/setup/tie.hpp"
+#include "coupled/world.hpp"
+#include "exec/error.hpp"
+#include "fdem3/stepping/step.hpp"
+
+namespace breccia::coupled {
+namespace {
+
+/// E of the contact of two solids.
+double contact_modulus(double young_a, double poisson_a, double young_b, double poisson_b) {
+  return 1.0 / ((1.0 - poisson_a * poisson_a) / young_a + (1.0 - poisson_b * poisson_b) / young_b);
+}
+
+std::vector<PressLaw> press_laws(const Config& config) {
+  std::vector<PressLaw> laws;
+  for (const dem::MaterialConfig& p : config.spheres.materials)
+    for (const fdem3::MaterialConfig& q : config.tetrahedra.materials)
+      laws.push_back(
+          {config.coupling.stiffness * contact_modulus(p.young, p.poisson, q.young, q.poisson),
+           config.coupling.tangential, config.coupling.friction});
+  return laws;
+}
+
+fdem::JointBond bond_law(const BondConfig& bond, double young) {
+  constexpr double unbroken = 1e18;  // strength of what does not break  [Pa]
+  fdem::JointBond law{};
+  law.stiffness = bond.stiffness * young;
+  law.tension = bond.breaks ? bond.tensile_strength : unbroken;
+  law.cohesion = bond.breaks ? bond.cohesion : unbroken;
+  law.friction = std::tan(bond.friction_angle);
+  law.softening_open = fdem::exact_softening_factor * bond.energy_open;
+  law.softening_slide = fdem::exact_softening_factor * bond.energy_slide;
+  return law;
+}
+
+/// Bonds whose elastic stretch is no small part of what they bear until they break.
+void warn_of_long(const BondConfig& bond, const fdem::JointBond& law,
+                  const std::vector<BallBond>& ties, std::vector<std::string>& warnings) {
+  double longest = 0.0;
+  for (const BallBond& b : ties) longest = std::max(longest, b.length);
+  const double enough = 0.25 * law.softening_open * law.stiffness / (law.tension * law.tension);
+  if (longest > enough)
+    warnings.push_back(fmt::format(
+        "bond.{}: bonds {:.3g} m long stretch as much before they soften as while they do; smaller "
+        "spheres, or a larger stiffness or energy_open, would keep G_I",
+        bond.name, longest));
+}
+
+void warn_of_overlaps(const World& w, std::vector<std::string>& warnings) {
+  const double touching = count(w).touching;
+  if (touching > 0.0)
+    warnings.push_back(fmt::format(
+        "{} spheres overlap a body of tetrahedra at the start, and are pushed out", touching));
+}
+
+}  // namespace
+
+World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrahedra) {
+  World w;
+  w.spheres = &spheres;
+  w.tetrahedra = &tetrahedra;
+  Case& given = w.given.change(SetUp{});
+  given.safety = config.time.safety;
+  given.skin = spheres.given->search.margin * spheres.given->mean_radius;
+  given.materials = static_cast<Index>(config.tetrahedra.materials.size());
+  copy_to(given.laws, press_laws(config));
+  std::vector<fdem::JointBond> laws;
+  std::vector<BallBond> ties;
+  for (const BondConfig& bond : config.bonds) {
+    const std::vector<BallBond> more =
+        ties_of(bond, static_cast<Index>(laws.size()), spheres, tetrahedra);
+    const Index material = tetrahedra.tetrahedra.material.data()[more.front().tetrahedron];
+    laws.push_back(
+        bond_law(bond, config.tetrahedra.materials[static_cast<std::size_t>(material)].young));
+    warn_of_long(bond, laws.back(), more, given.warnings);
+    given.bond_names.push_back(bond.name);
+    ties.insert(ties.end(), more.begin(), more.end());
+  }
+  std::stable_sort(ties.begin(), ties.end(),
+                   [](const BallBond& a, const BallBond& b) { return a.sphere < b.sphere; });
+  copy_to(given.bonds, laws);
+  copy_to(w.bonds.tie, ties);
+  w.bonds.state.resize(static_cast<Index>(ties.size()));
+
+  w.stable_step = tetrahedra.next_dt;
+  find_faces(w);
+  press(w);
+  fdem3::share_bundle_forces(tetrahedra);
+  const double least = dem::StepRule{dem::step_rule(spheres)}(
+      *std::min_element(spheres.critical.host().begin(), spheres.critical.host().end()), 0.0);
+  spheres.next_dt = std::min(spheres.next_dt, least);
+  choose_step(w);
+  warn_of_overlaps(w, given.warnings);
+  return w;
+}
+
+}  // namespace breccia::coupled

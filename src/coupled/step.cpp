@@ -1,0 +1,156 @@
+// One step of spheres and tetrahedra together: the only text of the order of its work.
+
+#include "dem/stepping/step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/stepping.hpp"
+#include "coupled/world.hpp"
+#include "exec/for_each.hpp"
+#include "fdem3/stepping/step.hpp"
+
+namespace breccia::coupled {
+
+void step(World& w) {
+  dem::World& s = *w.spheres;
+  fdem3::World& t = *w.tetrahedra;
+  const dem::HostRun run;
+
+  // 1. Newton's second law: both move, by the same step
+  run.move_boundary(s);
+  run.move_interior(s);
+  fdem3::move_elements(t);
+  advance_time(t);
+
+  // 2. Each searches for contacts of its own when its margins are used up or joints have opened;
+  //    then the faces near spheres are listed anew
+  run.receive_ghosts(s);
+  run.search_if_due(s);
+  if (fdem3::couples_are_due(t)) {
+    fdem3::find_couples(t);
+    if (t.next_dt < t.last_dt) w.stable_step = std::min(w.stable_step, t.next_dt);
+  }
+  if (faces_are_due(w)) find_faces(w);
+
+  // 3. One force per interaction, then one sum per sphere and corner: no atomics
+  run.pair_forces(s);
+  run.sum_forces(s);
+  fdem3::joint_forces(t);
+  fdem3::couple_forces(t);
+  fdem3::sum_forces(t);
+  press(w);
+  run.wall_forces(s);
+  fdem3::load_forces(t);
+  fdem3::bundle_forces(t);
+
+  // 4. The next step: the least of all
+  run.choose_step(s);
+  choose_step(w);
+  run.count_step(s);
+  t.step += 1;
+}
+
+void press(World& w) {
+  const dem::World& s = *w.spheres;
+  const StageTime timed(s.exec, "coupling");
+  const dem::Elements& e = s.elements;
+  const fdem3::Tetrahedra& t = w.tetrahedra->tetrahedra;
+  for_each(s.exec, w.bonds.size(),
+           BondForces{s.time, s.last_dt, e.state.view(), e.orientation.view(), t.nodes.view(),
+                      w.given->bonds.view(), w.bonds.tie.view(), w.bonds.state.view()});
+  for_each(s.exec, w.rows.size(),
+           MarkBonded{w.rows.view(), w.bonds.tie.view(), w.bonds.state.view(), w.bonded.view()});
+  for_each(
+      s.exec, w.touches.size(),
+      PressFaces{s.last_dt, e.state.view(), e.material.view(), t.nodes.view(), t.material.view(),
+                 t.group.view(), w.given->laws.view(), w.given->materials, w.rows.view(),
+                 w.row_of_touch.view(), w.bonded.view(), w.touches.pairs.b.view(),
+                 w.faces.pairs.b.view(), w.touches.history.state.view(),
+                 w.touches.history.force.view(), w.faces.history.force.view(), w.pressed.view()});
+  for_each(s.exec, w.rows.size(),
+           AddToSpheres{w.rows.view(), w.bonds.state.view(), w.touches.history.force.view(),
+                        e.mass.view(), e.inertia.view(), w.spheres->elements.force.view(),
+                        w.spheres->elements.torque.view(), w.spheres->critical.view()});
+  for_each(
+      s.exec, w.around.tetrahedron.size(),
+      AddToTetrahedra{w.around.tetrahedron.view(), w.around.face_starts.view(),
+                      w.around.faces.view(), w.around.bond_starts.view(), w.around.bonds.view(),
+                      w.faces.pairs.b.view(), w.faces.history.force.view(), w.pressed.view(),
+                      w.bonds.tie.view(), w.bonds.state.view(), fdem3::stable_step(*w.tetrahedra),
+                      w.tetrahedra->tetrahedra.force.view(), w.step.view()});
+}
+
+namespace {
+struct StepOfRow {
+  View<const double> step;
+  BR_HD double operator()(Index i) const { return step[i]; }
+};
+}  // namespace
+
+void choose_step(World& w) {
+  dem::World& s = *w.spheres;
+  fdem3::World& t = *w.tetrahedra;
+  if (t.step % t.given->time.evaluate_every == 0) w.stable_step = fdem3::choose_time_step(t);
+  const double least =
+      fold(s.exec, w.step.size(), largest_least, StepOfRow{std::as_const(w.step).view()}, Least{});
+  const AllowedStep allowed{w.given->safety, t.given->time.max_step};
+  const double common = std::min({s.next_dt, w.stable_step, allowed(least, s.last_dt)});
+  s.next_dt = t.next_dt = common;
+}
+
+namespace {
+
+struct TouchShares {
+  View<const TouchState> state;
+  BR_HD void add_to(Energies& s, Index i) const {
+    s.elastic.add(state[i].work - state[i].slid);
+    s.friction.add(state[i].slid);
+    s.friction.add(state[i].rubbed);
+    s.contact.add(state[i].lost);
+  }
+};
+struct BondShares {
+  View<const dem::ElementState> spheres;
+  View<const Quaternion> orientation;
+  View<const fdem3::TetrahedronNodes> nodes;
+  View<const fdem::JointBond> laws;
+  View<const BallBond> tie;
+  View<const BallBondState> state;
+  BR_HD void add_to(Energies& s, Index i) const {
+    s.fracture.add(state[i].work);
+    if (state[i].stage == BondStage::parted) return;
+    const BallBond& b = tie[i];
+    const BondGap g = gap_of(b, spheres[b.sphere], orientation[b.sphere], nodes[b.tetrahedron]);
+    const fdem::StoredEnergy stored =
+        fdem::edge_stored(laws[b.law], 1.0, b.length, g.open, g.slide, state[i].point);
+    const double held = b.area * (stored.open + stored.slide);
+    s.elastic.add(held);
+    s.fracture.add(-held);
+  }
+};
+
+}  // namespace
+
+Energies held(const World& w) {
+  const dem::World& s = *w.spheres;
+  const Energies touching = fold(s.exec, w.touches.size(), Energies{},
+                                 TouchShares{w.touches.history.state.view()}, Sum{});
+  return touching + fold(s.exec, w.bonds.size(), Energies{},
+                         BondShares{s.elements.state.view(), s.elements.orientation.view(),
+                                    w.tetrahedra->tetrahedra.nodes.view(), w.given->bonds.view(),
+                                    w.bonds.tie.view(), w.bonds.state.view()},
+                         Sum{});
+}
+
+Counts count(const World& w) {
+  Counts n;
+  for (const TouchState& touch : w.touches.history.state.host()) n.touching += touch.touches != 0 ? 1.0 : 0.0;
+  for (const BallBondState& bond : w.bonds.state.host()) {
+    n.bonds += 1.0;
+    if (bond.stage != BondStage::whole) n.broken += 1.0;
+  }
+  return n;
+}
+
+}  // namespace breccia::coupled

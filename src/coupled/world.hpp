@@ -1,0 +1,89 @@
+#pragma once
+// Spheres and tetrahedra in one run: what there is between the worlds of both methods.
+
+#include <string>
+#include <vector>
+
+#include "core/energy.hpp"
+#include "core/read_only.hpp"
+#include "core/step_clock.hpp"
+#include "coupled/setup/config.hpp"
+#include "coupled/sums.hpp"
+#include "dem/world.hpp"
+#include "fdem3/world.hpp"
+
+namespace breccia::coupled {
+
+/// Constants of a case.
+struct Case {
+  double safety = 0.7;            ///< share of the stable step  [-]
+  double skin = 0.0;              ///< margin of the search beyond those of both methods  [m]
+  Index materials = 0;            ///< of tetrahedra
+  Buffer<PressLaw> laws;          ///< of materials p of spheres, q of tetrahedra at p materials + q
+  Buffer<fdem::JointBond> bonds;  ///< indexed by BallBond::law
+  std::vector<std::string> bond_names;  ///< likewise
+  std::vector<std::string> warnings;    ///< what set-up found doubtful, for people
+};
+
+/// When the list of near faces was made, and how both drifts have parted since.
+struct LastSearch {
+  std::int64_t of_spheres = -1, of_tetrahedra = -1;  ///< searches of both methods until then
+  double time = 0.0;                                 ///< [s]
+  double reach = 0.0;                                ///< way of the drifts that is covered  [m]
+};
+
+/// Each line tells meaning and unit, then (length; who writes it), in the words of dem/world.hpp.
+/// Alone on the host.
+struct World {
+  dem::World* spheres = nullptr;
+  fdem3::World* tetrahedra = nullptr;
+  ReadOnly<Case> given;  ///< (set-up)
+
+  // State: what a checkpoint holds.
+  BallBonds bonds;            ///< by sphere (bonds; set-up, pairs)
+  Touches touches;            ///< by sphere, then body (touches; search, pairs)
+  NearFaces faces;            ///< by sphere, then face (near faces; search, pairs)
+  LastSearch last;            ///< (search)
+  Ledger ledger;              ///< (search)
+  double stable_step = 0.0;   ///< of the tetrahedra by themselves, when last evaluated  [s]  (dt)
+  std::int64_t searches = 0;  ///< for near faces  [-]  (search)
+
+  // What follows from a search.
+  Buffer<SphereRow> rows;      ///< (spheres that are near or bonded; derive)
+  Buffer<Index> row_of_touch;  ///< (touches; derive)
+  TetrahedronRows around;      ///< (derive)
+
+  // Results of a step, overwritten by the next one.
+  Buffer<std::int16_t> bonded;  ///< see PressFaces (rows; pairs)
+  Buffer<Pressed> pressed;      ///< (near faces; pairs)
+  Buffer<double> step;          ///< (rows of `around`; sums)  [s]
+};
+
+/// Both worlds have evaluated their own forces; those between them come on top.
+/// @throws InputError naming what does not fit
+World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrahedra);
+
+/// Fills what follows from the state, after set-up, loading and a search.
+void derive(World& w);
+
+/// One step of both.
+void step(World& w);
+
+/// Forces between spheres and tetrahedra, added to those that both have.
+void press(World& w);
+/// The step to come, of all.
+void choose_step(World& w);
+
+bool faces_are_due(const World& w);
+void find_faces(World& w);
+
+/// What is stored and has been spent between spheres and tetrahedra.
+Energies held(const World& w);
+
+struct Counts {
+  double touching = 0.0;  ///< spheres and bodies that press on each other
+  double bonds = 0.0, broken = 0.0;
+};
+Counts count(const World& w);
+
+}  // namespace breccia::coupled

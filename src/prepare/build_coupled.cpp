@@ -1,0 +1,74 @@
+#include "prepare/build_coupled.hpp"
+
+#include "prepare/build.hpp"
+#include "prepare/build_fdem3.hpp"
+#include "prepare/checks/check_case.hpp"
+#include "prepare/checks/check_regions.hpp"
+#include "prepare/checks/refusal.hpp"
+#include "prepare/model_file.hpp"
+
+namespace breccia {
+namespace {
+
+/// Calls check, whose problems then begin with the name of the part.
+template <class Check>
+void of_part(const char* part, const Check& check) {
+  try {
+    check();
+  } catch (const prepare::Refusal& found) {
+    std::vector<std::string> problems;
+    for (const std::string& problem : found.problems)
+      problems.push_back(std::string(part) + "." + problem);
+    prepare::refuse(problems, "in the case");
+  }
+}
+
+/// check(config) for both parts, all problems at once.
+template <class Check>
+void of_both(const coupled::Config& config, const Check& check) {
+  const coupled::Parts parts = coupled::parts_of(config);
+  prepare::refuse_all(
+      "in the case", [&] { of_part("spheres", [&] { check(parts.spheres); }); },
+      [&] { of_part("tetrahedra", [&] { check(parts.tetrahedra); }); });
+}
+
+}  // namespace
+
+coupled::Model build_model(const coupled::Config& config, const std::string& case_folder) {
+  const coupled::Parts parts = coupled::parts_of(config);
+  coupled::Model model;
+  of_part("spheres", [&] { model.spheres = build_model(parts.spheres, case_folder); });
+  of_part("tetrahedra", [&] { model.tetrahedra = build_model(parts.tetrahedra, case_folder); });
+  return model;
+}
+
+void save_model(CheckpointWriter& writer, const coupled::Model& model) {
+  CheckpointWriter spheres, tetrahedra;
+  save_model(spheres, model.spheres);
+  save_model(tetrahedra, model.tetrahedra);
+  writer.adopt("spheres.", spheres);
+  writer.adopt("tetrahedra.", tetrahedra);
+}
+coupled::Model load_coupled_model(const CheckpointReader& reader) {
+  return {load_model(reader.below("spheres.")), load_fdem3_model(reader.below("tetrahedra."))};
+}
+
+void coupled::check_case(const Config& config) {
+  prepare::refuse_all(
+      "in the case", [&] { prepare::refuse(case_problems(config), "in the case"); },
+      [&] {
+        of_both(config, [](const auto& part) {
+          using namespace breccia;
+          check_case(part);
+        });
+      });
+}
+
+void prepare::check_regions(const coupled::Config& config) {
+  of_both(config, [](const auto& part) { prepare::check_regions(part); });
+}
+void prepare::check_files(const coupled::Config& config, const std::string& case_folder) {
+  of_both(config, [&](const auto& part) { prepare::check_files(part, case_folder); });
+}
+
+}  // namespace breccia

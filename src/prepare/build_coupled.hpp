@@ -1,0 +1,34 @@
+#pragma once
+// Cases of spheres and tetrahedra: their models, rules and files, as those of both methods.
+
+#include <string>
+
+#include "coupled/setup/config.hpp"
+#include "coupled/setup/model.hpp"
+#include "io/checkpoint.hpp"
+
+namespace breccia {
+
+/// The models of both methods. @throws InputError, IoError as theirs, keys with the part before
+/// them
+coupled::Model build_model(const coupled::Config& config, const std::string& case_folder);
+
+/// Adds both models, as sections "spheres.model.*" and "tetrahedra.model.*".
+void save_model(CheckpointWriter& writer, const coupled::Model& model);
+/// @throws CheckpointError if a section is missing or the arrays do not fit each other
+coupled::Model load_coupled_model(const CheckpointReader& reader);
+
+namespace coupled {
+
+/// The rules of both parts, and those between them. @throws InputError with all problems at once
+void check_case(const Config& config);
+
+}  // namespace coupled
+
+namespace prepare {
+
+void check_regions(const coupled::Config& config);
+void check_files(const coupled::Config& config, const std::string& case_folder);
+
+}  // namespace prepare
+}  // namespace breccia

@@ -1,0 +1,232 @@
+#include "run/method/coupled_method.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "exec/error.hpp"
+#include "io/frame_pair.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem3_method.hpp"
+
+namespace breccia {
+namespace {
+
+/// Each method is looked at, saved and loaded by itself, as if it were alone; steps are taken
+/// together.
+class CoupledMethod final : public Method {
+ public:
+  CoupledMethod(const coupled::Config& config, const coupled::Parts& parts,
+                const coupled::Model& model, const Exec& exec)
+      : threads_(exec.threads),
+        probes_(parts.probes),
+        spheres_(dem_part(parts.spheres, model.spheres, exec)),
+        tetrahedra_(fdem3_part(parts.tetrahedra, model.tetrahedra, exec)),
+        w_(coupled::make_world(config, *spheres_.world, *tetrahedra_.world)) {}
+
+  Advanced advance(const StopAt&) override {
+    coupled::step(w_);
+    return {1, spheres_.world->last_dt, spheres_.world->last_dt};
+  }
+  std::int64_t steps() const override { return spheres_.world->step; }
+  double time() const override { return spheres_.world->time; }
+  double time_step() const override {
+    const dem::World& s = *spheres_.world;
+    return s.step > 0 ? s.last_dt : s.next_dt;
+  }
+  std::int64_t searches() const override { return w_.searches; }
+  std::vector<std::string> warnings() override {
+    std::vector<std::string> all = spheres_.method->warnings();
+    for (const auto& more : {tetrahedra_.method->warnings(), w_.given->warnings})
+      all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  EnergyBalance energy() override {
+    const EnergyBalance a = spheres_.method->energy(), b = tetrahedra_.method->energy();
+    const Energies between = coupled::held(w_);
+    EnergyBalance all;
+    all.kinetic = a.kinetic + b.kinetic;
+    all.elastic = a.elastic + b.elastic + between.elastic.value();
+    all.fracture = a.fracture + b.fracture + between.fracture.value();
+    all.plastic = a.plastic + b.plastic;
+    all.friction = a.friction + b.friction + (between.friction + w_.ledger.friction).value();
+    all.damping = a.damping + b.damping;
+    all.contact = a.contact + b.contact + (between.contact + w_.ledger.contact).value();
+    all.work = a.work + b.work;
+    all.start = a.start + b.start;
+    double& largest = w_.ledger.largest;
+    largest = std::max({largest, all.kinetic + all.elastic, std::fabs(all.work), all.total()});
+    all.error_relative =
+        steps() == 0 || !(largest > 0.0) ? 0.0 : std::fabs(all.missing()) / largest;
+    return all;
+  }
+  std::vector<double> probes() override {
+    const std::vector<double> of_spheres = spheres_.method->probes(),
+                              of_tetrahedra = tetrahedra_.method->probes();
+    std::vector<double> values;
+    for (const coupled::PlacedProbe& p : probes_)
+      values.push_back((p.of_spheres ? of_spheres : of_tetrahedra)[p.place]);
+    return values;
+  }
+  void note_breaks() override { spheres_.method->note_breaks(); }
+  std::uint64_t state_hash() override {
+    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15ULL;
+    return spheres_.method->state_hash() + odd * tetrahedra_.method->state_hash();
+  }
+  void verify() override {
+    spheres_.method->verify();
+    tetrahedra_.method->verify();
+  }
+  std::string fastest() override {
+    return spheres_.method->fastest() + "; " + tetrahedra_.method->fastest();
+  }
+
+  Frame frame() override { return paired(spheres_.method->frame(), tetrahedra_.method->frame()); }
+  FrameOutput frame_output(const FrameWish& wish) override {
+    FrameWish files = wish;
+    files.picture.reset();
+    FrameOutput output = spheres_.method->frame_output(files);
+    const FrameOutput solids = tetrahedra_.method->frame_output(files);
+    if (wish.files)
+      output.files.more = {{frame_of_solids, solids.files.points},
+                           {joints_of_solids, solids.files.lines},
+                           {contacts_of_solids, solids.files.contacts}};
+    if (!wish.picture) return output;
+    FrameWish picture = wish;
+    picture.files = false;
+    FrameOutput drawn = breccia::frame_output(frame(), picture, threads_);
+    drawn.files = std::move(output.files);
+    return drawn;
+  }
+
+  std::vector<Fact> facts() override {
+    std::vector<Fact> all;
+    const auto add = [&all](const std::string& part, const std::vector<Fact>& facts) {
+      for (const Fact& fact : facts) all.push_back({part + fact.path, fact.value});
+    };
+    add("spheres.", spheres_.method->facts());
+    add("tetrahedra.", tetrahedra_.method->facts());
+    const coupled::Counts n = coupled::count(w_);
+    add("coupling.", {{"searches", static_cast<double>(w_.searches)},
+                      {"near_faces", static_cast<double>(w_.faces.size())},
+                      {"touching", n.touching},
+                      {"bonds", n.bonds},
+                      {"broken_bonds", n.broken}});
+    return all;
+  }
+  std::vector<StateArray> arrays(const std::string& name, Wanted where) override {
+    std::vector<StateArray> all;
+    each_part([&](const std::string& part, Method& method) {
+      if (!name.empty() && !name.starts_with(part)) return;
+      for (StateArray& array :
+           method.arrays(name.empty() ? name : name.substr(part.size()), where)) {
+        array.name = part + array.name;
+        all.push_back(std::move(array));
+      }
+    });
+    return all;
+  }
+  std::vector<Table> tables() override {
+    std::vector<Table> all;
+    const auto add = [&all](const char* part, std::vector<Table> tables) {
+      for (Table& table : tables) {
+        table.name = part + table.name;
+        all.push_back(std::move(table));
+      }
+    };
+    add("spheres_", spheres_.method->tables());
+    add("tetrahedra_", tetrahedra_.method->tables());
+    return all;
+  }
+
+  void save(CheckpointWriter& writer) override {
+    each_part([&](const std::string& part, Method& method) {
+      CheckpointWriter own;
+      method.save(own);
+      writer.adopt(part, own);
+    });
+    each_stored([&](const std::string& name, auto& value) { writer.value(name, value); },
+                [&](const std::string& name, auto& state) { writer.fields(name, state); });
+  }
+  std::vector<std::string> constants() const override {
+    std::vector<std::string> all;
+    for (const std::string& name : spheres_.method->constants()) all.push_back("spheres." + name);
+    for (const std::string& name : tetrahedra_.method->constants())
+      all.push_back("tetrahedra." + name);
+    all.emplace_back("coupling.bonds.tie");
+    return all;
+  }
+  void load(const CheckpointReader* reader) override {
+    each_part([&](const std::string& part, Method& method) {
+      const CheckpointReader own = reader->below(part);
+      method.load(&own);
+    });
+    each_stored(
+        [&](const std::string& name, auto& value) {
+          value = reader->value<std::remove_reference_t<decltype(value)>>(name);
+        },
+        [&](const std::string& name, auto& state) { reader->fields(name, state); });
+    refuse_misfits();
+    coupled::derive(w_);
+  }
+
+ private:
+  template <class Visit>
+  void each_part(const Visit& visit) {
+    visit("spheres.", *spheres_.method);
+    visit("tetrahedra.", *tetrahedra_.method);
+  }
+  template <class OfValue, class OfState>
+  void each_stored(const OfValue& value, const OfState& state) {
+    value("coupling.last", w_.last);
+    value("coupling.ledger", w_.ledger);
+    value("coupling.stable_step", w_.stable_step);
+    value("coupling.searches", w_.searches);
+    state("coupling.bonds", w_.bonds);
+    state("coupling.touches", w_.touches);
+    state("coupling.faces", w_.faces);
+  }
+  /// Places that a file leads to must be there.
+  void refuse_misfits() const {
+    const Index spheres = spheres_.world->elements.size(),
+                solids = tetrahedra_.world->tetrahedra.size();
+    const auto hold = [](const Buffer<Index>& places, Index count, const char* section) {
+      for (const Index place : places.host())
+        if (place < 0 || place >= count)
+          throw CheckpointError(std::string("the checkpoint's section ") + section +
+                                " leads to no item of the model");
+    };
+    hold(w_.touches.pairs.a, spheres, "coupling.touches");
+    hold(w_.faces.pairs.a, spheres, "coupling.faces");
+    hold(w_.faces.pairs.b, 4 * solids, "coupling.faces");
+    for (const coupled::BallBond& b : w_.bonds.tie.host())
+      if (b.sphere < 0 || b.sphere >= spheres || b.tetrahedron < 0 || b.tetrahedron >= solids ||
+          b.law < 0 || b.law >= w_.given->bonds.size())
+        throw CheckpointError(
+            "the checkpoint's section coupling.bonds leads to no item of the model");
+  }
+
+  int threads_;
+  std::vector<coupled::PlacedProbe> probes_;
+  DemPart spheres_;
+  Fdem3Part tetrahedra_;
+  coupled::World w_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_method(const coupled::Config& config, const coupled::Model& model,
+                                    const Exec& exec, Communicator* ranks) {
+  if (ranks != nullptr)
+    throw InputError(
+        "method = [\"dem3d\", \"fdem3d\"] runs in one process, on all its threads; start it "
+        "without "
+        "mpirun");
+  if (exec.space == Space::cuda)
+    throw InputError(
+        "method = [\"dem3d\", \"fdem3d\"] runs on the processor alone; start it with --device cpu");
+  return std::make_unique<CoupledMethod>(config, coupled::parts_of(config), model, exec);
+}
+
+}  // namespace breccia

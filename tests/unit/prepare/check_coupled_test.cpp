@@ -1,0 +1,149 @@
+// Cases of spheres and tetrahedra: what is wrong with them is said by key, and both parts are read.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "exec/error.hpp"
+#include "io/case/case_file.hpp"
+#include "prepare/build_coupled.hpp"
+#include "run/case.hpp"
+#include "run/method/coupled_method.hpp"
+
+namespace breccia {
+namespace check_coupled_test {
+
+const std::string good = R"(breccia = 1
+method = ["dem3d", "fdem3d"]
+[time]
+end = "0.1 ms"
+[output]
+pictures = false
+[spheres.material.grain]
+law = "grain"
+young = "10 GPa"
+[[spheres.body]]
+name = "pile"
+shape = "box"
+material = "grain"
+center = [0.0, 0.0, 0.03]
+size = [0.04, 0.04, 0.04]
+pack = { count = 30 }
+velocity = [0.0, 0.0, -20.0]
+[tetrahedra.material.rock]
+young = "30 GPa"
+joints = "none"
+[[tetrahedra.body]]
+name = "block"
+shape = "box"
+material = "rock"
+center = [0.0, 0.0, -0.01]
+size = [0.08, 0.08, 0.02]
+structured = true
+mesh_size = "20 mm"
+[[probe]]
+name = "down"
+on = "pile"
+quantity = "velocity_z"
+[[probe]]
+name = "push"
+on = "tetrahedra"
+quantity = "momentum_z"
+reduce = "sum"
+)";
+
+std::string problems_of(std::string text, const std::string& from = "",
+                        const std::string& to = "") {
+  if (!from.empty()) text.replace(text.find(from), from.size(), to);
+  try {
+    case_of_text(text, "both.toml", ".", {});
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(CheckCoupled, finds_what_is_wrong_by_key) {
+  EXPECT_EQ(problems_of(good), "");
+  EXPECT_TRUE(has(problems_of(good, "\"fdem3d\"]", "\"fdem2d\"]"), "method: of two methods"));
+  EXPECT_TRUE(has(problems_of(good, "on = \"pile\"", "on = \"heap\""),
+                  "probe.down.on = \"heap\": name a body"));
+  EXPECT_TRUE(has(problems_of(good, "name = \"block\"", "name = \"pile\""),
+                  "tetrahedra.body.pile: the name is taken"));
+  EXPECT_TRUE(has(problems_of(good, "material = \"rock\"", "material = \"chalk\""),
+                  "tetrahedra.body.block.material"));
+  EXPECT_TRUE(has(problems_of(good, "material = \"grain\"", "material = \"sand\""),
+                  "spheres.body.pile.material"));
+  EXPECT_TRUE(has(problems_of(good, "[output]", "precision = \"mixed\"\n[output]"), "precision"));
+  const std::string bond =
+      "[[bond]]\nname = \"b\"\nspheres = \"pile\"\ntetrahedra = \"rock\"\n[output]";
+  EXPECT_TRUE(has(problems_of(good, "[output]", bond), "bond.b.tetrahedra = \"rock\" is none of"));
+  const std::string stage = "[[spheres.stage]]\nname = \"s\"\nend = 1.0\n[output]";
+  EXPECT_TRUE(has(problems_of(good, "[output]", stage), "spheres.stage"));
+}
+
+std::unique_ptr<Method> method_of(const Case& read, int threads = 1) {
+  Exec exec;
+  exec.threads = threads;
+  return make_method(read, exec, nullptr);
+}
+
+TEST(CoupledCase, reads_back_its_completed_text) {
+  const Case read = case_of_text(good, "both.toml", ".", {});
+  EXPECT_EQ(case_of_text(read.text, "again.toml", ".", {}).text, read.text);
+}
+
+TEST(CoupledCase, goes_on_from_a_saved_state_with_the_same_bits) {
+  const Case read = case_of_text(good, "both.toml", ".", {});
+  const auto whole = method_of(read), part = method_of(read);
+  const std::int64_t half = 150, all = 300;
+  while (whole->steps() < all) whole->advance({1.0, all});
+  while (part->steps() < half) part->advance({1.0, half});
+  CheckpointWriter saved;
+  part->save(saved);
+  const auto resumed = method_of(read, 2);
+  const CheckpointReader reader(saved);
+  resumed->load(&reader);
+  EXPECT_EQ(resumed->steps(), half);
+  while (resumed->steps() < all) resumed->advance({1.0, all});
+  EXPECT_EQ(resumed->state_hash(), whole->state_hash());
+  EXPECT_EQ(resumed->time(), whole->time());
+  const EnergyBalance a = resumed->energy(), b = whole->energy();
+  EXPECT_EQ(a.elastic, b.elastic);
+  EXPECT_EQ(a.friction, b.friction);
+  EXPECT_GT(b.friction, 0.0);
+  EXPECT_LT(b.error_relative, 1e-5);
+  EXPECT_EQ(resumed->probes(), whole->probes());
+  CheckpointWriter first, second;
+  resumed->save(first);
+  whole->save(second);
+  EXPECT_EQ(first.first_difference(second), "");
+}
+
+TEST(CoupledCase, refuses_devices) {
+  const Case read = case_of_text(good, "both.toml", ".", {});
+  Exec exec;
+  exec.space = Space::cuda;
+  const auto& config = std::get<coupled::Config>(read.config);
+  EXPECT_THROW(make_method(config, build_model(config, "."), exec), InputError);
+}
+
+TEST(CoupledCase, has_both_in_a_frame) {
+  const Case read = case_of_text(good, "both.toml", ".", {});
+  const auto method = method_of(read);
+  const Frame frame = method->frame();
+  EXPECT_EQ(frame.groups, (std::vector<std::string>{"pile", "block"}));
+  EXPECT_EQ(frame.radius.size(), frame.position.size());
+  EXPECT_EQ(frame.tetrahedra.size(), 4U * 6U * 16U);
+  EXPECT_EQ(frame.tetrahedra[0], 30);
+  const FrameOutput output = method->frame_output({});
+  ASSERT_EQ(output.files.more.size(), 3U);
+  EXPECT_FALSE(output.files.points.empty());
+  EXPECT_FALSE(output.files.more[0].second.empty());
+}
+
+}  // namespace check_coupled_test
+}  // namespace breccia
