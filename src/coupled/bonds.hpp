@@ -13,7 +13,7 @@ BR_HD inline Vec3 turned(const Quaternion& q, const Vec3& v) {
   return v + q.w * t + cross(axis, t);
 }
 
-/// What a bond ties, for ever.
+/// Both ends of a bond, for ever.
 struct BallBond {
   Index sphere, tetrahedron;
   Index law, body;

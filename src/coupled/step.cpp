@@ -145,7 +145,8 @@ Energies held(const World& w) {
 
 Counts count(const World& w) {
   Counts n;
-  for (const TouchState& touch : w.touches.history.state.host()) n.touching += touch.touches != 0 ? 1.0 : 0.0;
+  for (const TouchState& touch : w.touches.history.state.host())
+    n.touching += touch.touches != 0 ? 1.0 : 0.0;
   for (const BallBondState& bond : w.bonds.state.host()) {
     n.bonds += 1.0;
     if (bond.stage != BondStage::whole) n.broken += 1.0;

@@ -1,6 +1,6 @@
 #pragma once
-// What spheres and tetrahedra feel of each other, added to what they feel of their own kind: each
-// item adds up its own, bonds first, then touches and faces, in the order of the lists.
+// Forces of spheres and tetrahedra on each other, added to those of their own kind: each item adds
+// up its own, bonds first, then touches and faces, in the order of the lists.
 
 #include "coupled/bonds.hpp"
 #include "fdem3/elements/stable_step.hpp"

@@ -18,7 +18,7 @@ struct PressLaw {
   double friction;    ///< mu  [-]
 };
 
-/// What acts on a sphere.
+/// Action on a sphere, and how stiff it is.
 struct SphereForce {
   Vec3 force, torque;        ///< [N], [N m]
   double straight, turning;  ///< bounds of its stiffnesses  [N/m], [N m]
@@ -177,7 +177,7 @@ struct PressFaces {
     sum.tangential += law.tangential * penalty * flux.area;
     sum.friction += law.friction * p.push;
   }
-  /// What friction pulls the sphere with.
+  /// The pull of friction on the sphere.  [N]
   BR_HD Vec3 rub(const dem::ElementState& s, const Vec3& centre, TouchState& kept,
                  const PressSum& sum) const {
     const double size = norm(sum.force), stiffness = sum.tangential;

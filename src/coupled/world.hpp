@@ -48,7 +48,7 @@ struct World {
   double stable_step = 0.0;   ///< of the tetrahedra by themselves, when last evaluated  [s]  (dt)
   std::int64_t searches = 0;  ///< for near faces  [-]  (search)
 
-  // What follows from a search.
+  // Follows from a search.
   Buffer<SphereRow> rows;      ///< (spheres that are near or bonded; derive)
   Buffer<Index> row_of_touch;  ///< (touches; derive)
   TetrahedronRows around;      ///< (derive)
@@ -77,7 +77,7 @@ void choose_step(World& w);
 bool faces_are_due(const World& w);
 void find_faces(World& w);
 
-/// What is stored and has been spent between spheres and tetrahedra.
+/// Energies stored and spent between spheres and tetrahedra.
 Energies held(const World& w);
 
 struct Counts {

@@ -17,7 +17,7 @@ void append(FrameField& to, const FrameField& from) {
     to.integers->resize(to.values.size(), 0);
 }
 
-/// What corners have of a field of tetrahedra: each belongs to one.
+/// Values of corners by a field of tetrahedra: each belongs to one.
 bool append_of_tetrahedra(FrameField& to, const Frame& solids) {
   for (const FrameField& of : solids.tetrahedron_fields) {
     if (of.name != to.name || of.components != 1 || to.components != 1) continue;

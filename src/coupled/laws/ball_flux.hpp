@@ -9,8 +9,8 @@
 
 namespace breccia::coupled {
 
-/// What a sphere with the potential phi = (R^2 - r^2)/(2R), r from its centre c, does to the part
-/// of a triangle that is inside it, per penalty.
+/// Push of a sphere with the potential phi = (R^2 - r^2)/(2R), r from its centre c, on the part of
+/// a triangle that is inside it, per penalty.
 struct BallFlux {
   Vec3 normal;      ///< n, unit, out of the body  [-]
   double push;      ///< integral of phi over that part  [m3]

@@ -156,7 +156,7 @@ struct Parts {
 };
 Parts parts_of(const Config& config);
 
-/// What keeps a case of two methods from being run, one sentence each, beyond the problems of its
+/// Problems that keep a case of two methods from being run, one sentence each, beyond those of its
 /// parts.
 std::vector<std::string> case_problems(const Config& config);
 

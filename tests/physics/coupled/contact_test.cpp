@@ -154,7 +154,7 @@ TEST(SphereOnFaces, keeps_momentum_and_energy_when_bodies_meet) {
   EXPECT_LT(error[1], 0.2 * error[0]);
 }
 
-// What contact loses beyond friction is an error of the step, and falls with it.
+// Contact loses nothing but friction: the rest is an error of the step, and falls with it.
 TEST(SphereOnFaces, loses_less_the_finer_the_step) {
   double lost[2];
   for (int finer = 0; finer < 2; ++finer) {

@@ -75,7 +75,7 @@ TEST(WaveIntoTetrahedra, returns_below_three_per_cent) {
   EXPECT_LT(std::abs(w.returned), 0.03 * w.came);
 }
 
-// What returns from four times the mass: (1 - 2)/(1 + 2), with the sign of a wall.
+// Four times the mass send (1 - 2)/(1 + 2) back, with the sign of a wall.
 TEST(WaveIntoTetrahedra, returns_by_the_ratio_of_impedances) {
   const Waves w = waves(4.0);
   EXPECT_NEAR(w.returned, -w.came / 3.0, 0.04 * w.came);
