@@ -119,19 +119,27 @@ struct CheckCommand {
                                 "the fracture_energy of {}",
                                 material.name));
           }
-          if (config.bodies.size() > 1)
-            for (const auto& support : config.supports)
-              if (takes_all(support))
-                tell_note(
-                    fmt::format("support {} names no body (key on) and has no bounds: it "
-                                "takes all {} bodies",
-                                support.name, config.bodies.size()));
+          tell_of_wide_supports(config);
           if (expected) tell_forecast(*expected);
         },
         read.config);
     if (model) tell_of_model(read);
   }
 
+  template <class Config>
+  static void tell_of_wide_supports(const Config& config) {
+    if constexpr (requires { config.spheres; }) {
+      tell_of_wide_supports(config.spheres);
+      tell_of_wide_supports(config.tetrahedra);
+    } else if (config.bodies.size() > 1) {
+      for (const auto& support : config.supports)
+        if (takes_all(support))
+          tell_note(
+              fmt::format("support {} names no body (key on) and has no bounds: it "
+                          "takes all {} bodies",
+                          support.name, config.bodies.size()));
+    }
+  }
   template <class Support>
   static bool takes_all(const Support& support) {
     const auto same = [](const auto& a, const auto& b) {
