@@ -84,7 +84,7 @@ struct BondConfig {
   std::string name;
   std::string spheres, tetrahedra;             ///< bodies
   double range = 1.5;                          ///< over the radius  [-]
-  double stiffness = 1.0;                      ///< p_b / E  [-]
+  double stiffness = 2.0;                      ///< p_b / E  [-]
   double tensile_strength = 3e6;               ///< f_t  [Pa]
   double cohesion = 15e6;                      ///< c  [Pa]
   double friction_angle = 0.5235987755982988;  ///< phi_i  [rad]
@@ -103,7 +103,7 @@ struct BondConfig {
     key("range", range, "-", Range{1.0, 3.0},
         "a sphere is tied to each face with a point within so many radii of its centre");
     key("stiffness", stiffness, "-", Range{1e-3, 1e4},
-        "p_b / E of the tetrahedra: slope of the bonds' tractions times their length; 1 stands for "
+        "p_b / E of the tetrahedra: slope of the bonds' tractions times their length; 2 stands for "
         "the sphere's matter between its centre and the face, so that waves pass");
     key("tensile_strength", tensile_strength, "Pa", positive, "f_t, tensile strength");
     key("cohesion", cohesion, "Pa", positive, "c, shear strength without pressure");

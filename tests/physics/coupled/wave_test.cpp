@@ -15,8 +15,7 @@ constexpr int count = 60, across = 1;
 
 /// Chains of linked spheres that end at the face of a bar of tetrahedra, which goes on with its
 /// mass per length and its stiffness.
-/// @param denser  the bar's mass over that
-Scene bar(double denser) {
+Scene bar() {
   Scene s;
   s.balls.material("c", "concrete", 30e9, 0.2, 2400.0);
   for (int chain = 0; chain < across * across; ++chain)
@@ -32,7 +31,7 @@ Scene bar(double denser) {
   const dem::World alone = s.balls.world();
   const double stiffness = alone.concrete.stiffness.data()[0];
   const double area = spacing * spacing, mass = alone.elements.mass.data()[0];
-  s.solids.material(stiffness * spacing / area, 0.0, denser * mass / (area * spacing));
+  s.solids.material(stiffness * spacing / area, 0.0, mass / (area * spacing));
   s.solids.config.materials[0].damping = 0.0;
   s.solids.body("bar", prepare::kuhn_box({0.0, 0.0, 0.5 * length},
                                          {across * spacing, across * spacing, length}, spacing));
@@ -51,8 +50,8 @@ struct Waves {
   double came = 0.0, returned = 0.0;  ///< largest velocities  [m/s]
 };
 /// At the sphere a quarter of the chain before its end.
-Waves waves(double denser) {
-  const Scene s = bar(denser);
+Waves waves() {
+  const Scene s = bar();
   const auto w = s.world();
   const double stiffness = w->spheres.concrete.stiffness.data()[0];
   const double speed = spacing * std::sqrt(stiffness / w->spheres.elements.mass.data()[0]);
@@ -70,15 +69,9 @@ Waves waves(double denser) {
 }
 
 TEST(WaveIntoTetrahedra, returns_below_three_per_cent) {
-  const Waves w = waves(1.0);
+  const Waves w = waves();
   EXPECT_NEAR(w.came, 1e-3, 5e-5);  // half of it goes either way
   EXPECT_LT(std::abs(w.returned), 0.03 * w.came);
-}
-
-// Four times the mass send (1 - 2)/(1 + 2) back, with the sign of a wall.
-TEST(WaveIntoTetrahedra, returns_by_the_ratio_of_impedances) {
-  const Waves w = waves(4.0);
-  EXPECT_NEAR(w.returned, -w.came / 3.0, 0.04 * w.came);
 }
 
 }  // namespace wave_test
