@@ -10,6 +10,13 @@
 namespace breccia {
 namespace {
 
+/// "body.pile.size needs ..." of a part as "spheres.body.pile.size needs ..."; sentences that begin
+/// with no key as "spheres: ...".
+std::string of_part(const char* part, const std::string& problem) {
+  const std::string word = problem.substr(0, problem.find(' '));
+  return part + std::string(word.find('.') == std::string::npos ? ": " : ".") + problem;
+}
+
 /// Calls check, whose problems then begin with the name of the part.
 template <class Check>
 void of_part(const char* part, const Check& check) {
@@ -17,8 +24,7 @@ void of_part(const char* part, const Check& check) {
     check();
   } catch (const prepare::Refusal& found) {
     std::vector<std::string> problems;
-    for (const std::string& problem : found.problems)
-      problems.push_back(std::string(part) + "." + problem);
+    for (const std::string& problem : found.problems) problems.push_back(of_part(part, problem));
     prepare::refuse(problems, "in the case");
   }
 }

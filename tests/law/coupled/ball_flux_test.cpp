@@ -39,7 +39,7 @@ TEST(BallFlux, gives_the_reference_forces_over_a_face) {
   expect_near(f.on_sphere, {0.0, -.00104911048644036, .00944199437796325}, 1e-16);
   expect_near(f.torque, {-2.84345308486e-5, 3.19888472047e-5, 3.55431635608e-6}, 1e-15);
   expect_near(f.corner[0], {0.0, .000313385144665, -.00282046630199}, 1e-14);
-  expect_near(f.corner[1], {0.0, .000336181012313, -.00302562911098}, 1e-14);
+  expect_near(f.corner[1], {0.0, .000336181012331, -.00302562911098}, 1e-14);
   expect_near(f.corner[2], {0.0, .000399544329444, -.00359589896499}, 1e-14);
 }
 TEST(BallFlux, gives_the_reference_forces_beyond_an_edge_and_a_corner) {
