@@ -8,7 +8,7 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).parent.parent
-FOLDERS = ["exec math", "core", "domain", "dem", "fdem", "fdem3", "prepare", "io", "run", "app", "report laboratory api"]
+FOLDERS = ["exec math", "core", "domain", "dem", "fdem", "fdem3", "fdem_shared", "coupled", "prepare", "io", "run", "app", "report laboratory api"]
 PURPOSES = [  # words, lines at 20a0ddb, patterns
     ("laws", 1313, "*/laws/*"),
     ("device only: launches led by its clock, wide kernels, graphs, memory", 2434,
@@ -18,15 +18,15 @@ PURPOSES = [  # words, lines at 20a0ddb, patterns
     ("tiles in a multiprocessor's memory", 0, "dem/tiles/*"),
     ("packs only (AVX2, AVX-512)", 1132,
      "*/lanes/* */stepping/kernel_lanes* fdem/contact/couple_lanes.hpp exec/lanes* exec/whole_packs.hpp math/pack.hpp math/lanes.hpp math/records.hpp"),
-    ("ranks", 4805, "domain/* dem/ranks* fdem/ranks* */relations.hpp core/relation.hpp run/method/shared_world.hpp run/frames/frame_parts*"),
+    ("ranks", 4805, "domain/* dem/ranks* fdem*/ranks* fdem_shared/migration.hpp fdem_shared/rings.hpp */relations.hpp core/relation.hpp run/method/shared_world.hpp run/frames/frame_parts*"),
     ("search, pair lists, travel", 2055,
      "core/broad_phase* core/cell_grid* core/pair_list* core/incidence* core/travel* core/select* core/rows* core/drift* "
-     "dem/search* fdem/contact/search* fdem/contact/nearness*"),
+     "dem/search* fdem*/contact/search* fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem/contact/nearness*"),
     ("ledger, probes, hash, fragments, stress", 1575,
-     "*/energy* */observe* */probes* core/probe* core/quantity* core/state_hash* core/pieces* core/unsound* core/gauge* dem/stress*"),
+     "*/emission* */energy* */energies.hpp */observe* */observations.hpp */readings.hpp */probes* core/probe* core/quantity* core/state_hash* core/pieces* core/unsound* core/gauge* dem/stress*"),
     ("stages, servos, tables over time, fluid, walls with mass", 0,
-     "*/servos* */fluid/* */setup/stages* */setup/removal* core/stages* core/servo* core/table_over_time* dem/free_walls* run/stage_control*"),
-    ("state, kernels, step, set-up of the methods", 5498, "dem/* fdem/* fdem3/* core/kernel* core/stepping* core/fields* core/world_space* "
+     "*/servos* */servo_forces.hpp */over_time.hpp */loaded_sides.hpp */fluid/* */setup/stages* */setup/removal* core/stages* core/servo* core/table_over_time* dem/free_walls* run/stage_control*"),
+    ("state, kernels, step, set-up of the methods", 5498, "dem/* fdem/* fdem3/* fdem_shared/* coupled/* core/kernel* core/stepping* core/fields* core/world_space* "
      "core/planes* core/precision* core/region* core/read_only* core/set_up* core/on_host*"),
     ("plain execution: arrays, loops, sort, errors; vectors", 1287, "exec/* math/*"),
     ("case files, keys, units, checks of cases", 3128, "io/case/* core/* prepare/checks/* run/method/checks* run/method/shown* run/case*"),
@@ -49,22 +49,25 @@ READER = {
         ("other laws: steel, interface, parallel bond, LDPM; joints that wake; fluid; walls with mass or a nose",
          "dem/laws/* dem/links/* dem/free_walls* dem/wall_*"),
         ("set-up, keys, stages, servos", "dem/setup/* dem/servos*"),
-        ("energies, probes, hash, counts, stress", "dem/energy* dem/probes* dem/observe* dem/stress*"),
+        ("energies, probes, hash, counts, stress", "dem/emission* dem/energy* dem/probes* dem/observe* dem/stress*"),
         ("launches on a device, wide kernels, packs", "dem/stepping/* dem/lanes/*"),
         ("tiles in a multiprocessor's memory", "dem/tiles/*"),
         ("ranks", "dem/ranks* dem/relations.hpp"),
     ],
     "fdem": [
-        ("", SHARED_METHOD.format(m="fdem") + "fdem/triangles/* fdem/joints/joint* fdem/joints/rings.hpp fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
-         "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* fdem/contact/shared_marks.hpp"),
+        ("", SHARED_METHOD.format(m="fdem") + "fdem/shape.hpp fdem/triangles/* fdem/joints/joint* fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
+         "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* "
+         "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/step.hpp fdem_shared/stepping.hpp"),
         ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/contact/nearness.hpp"),
-        ("", "fdem/setup/* fdem/servos*"),
-        ("", "fdem/energy* fdem/probes* fdem/observe*"),
+        ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
+        ("", "fdem/emission* fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/readings.hpp"),
         ("", "fdem/stepping/* fdem/lanes/* fdem/contact/couple_lanes.hpp"),
         ("", "nothing"),
-        ("", "fdem/ranks* fdem/relations.hpp"),
+        ("", "fdem/ranks* fdem/relations.hpp fdem_shared/ranks.hpp fdem_shared/migration.hpp fdem_shared/rings.hpp fdem_shared/relations.hpp"),
     ],
 }
+
+FOLDERS_OF = {"dem": ["dem"], "fdem": ["fdem", "fdem_shared"]}
 
 
 def is_code(line):
@@ -102,7 +105,7 @@ def main():
         print(f"| {words} | {then:,} | {counted(group)[0]:,} | {len(group)} |".replace("| 0 | ", "| - | "))
     print()
     print("| | DEM | FDEM |\n|---|---|---|")
-    both = {m: sorted_into([patterns for _, patterns in READER[m]], [p for p in files if p.relative_to(source).parts[0] == m], source) for m in READER}
+    both = {m: sorted_into([patterns for _, patterns in READER[m]], [p for p in files if p.relative_to(source).parts[0] in FOLDERS_OF[m]], source) for m in READER}
     for k, (words, _) in enumerate(READER["dem"]):
         cells = []
         for m in READER:

@@ -73,9 +73,9 @@ inline constexpr bool gives_number =
                    double>;
 
 #if defined(__CUDACC__)
-#define BR_RARELY __host__ __device__ __noinline__
+#define BR_COLD __host__ __device__ __noinline__
 #else
-#define BR_RARELY __attribute__((noinline))
+#define BR_COLD __attribute__((noinline))
 #endif
 
 /// Keeps what a pointer leads to where the launch has it: otherwise all of it is passed by value.
@@ -90,7 +90,7 @@ BR_HD inline void stay_in_place([[maybe_unused]] const T*& parameters) {
 /// no registers.
 /// @param kernel  where the launch has its parameters
 template <HasSlow Kernel>
-BR_RARELY void run_slow(const Kernel* kernel, StepTime now, Index i) {
+BR_COLD void run_slow(const Kernel* kernel, StepTime now, Index i) {
   stay_in_place(kernel);
   Kernel timed = *kernel;
   timed.set(now);

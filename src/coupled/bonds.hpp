@@ -87,7 +87,7 @@ struct BondForces {
     const fdem3::TetrahedronNodes& n = nodes[b.tetrahedron];
     const BondGap g = gap_of(b, s, orientation[b.sphere], n);
     const fdem::BondTraction<double> t =
-        fdem::edge_answer(law, 1.0, b.length, g.open, g.slide, kept.point);
+        fdem::edge_response(law, 1.0, b.length, g.open, g.slide, kept.point);
     if (kept.stage == BondStage::whole && kept.point.damage >= 1.0) {
       kept.stage = BondStage::broken;
       kept.broke_at = time;

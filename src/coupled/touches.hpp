@@ -195,9 +195,9 @@ struct PressFaces {
     Vec3 pull = before - (stiffness * dt) * rate;
     const double tried = norm(pull), most = sum.friction / sum.weight * size;
     if (tried > most) pull = (most / tried) * pull;
-    fdem::Rubbing rubbing;
-    rubbing.add(-0.5 * dt * dot(before + pull, rate), 0.5 * dot(pull, pull) / stiffness);
-    rubbing.book(kept.slid, kept.sprung);
+    fdem::FrictionWork friction_work;
+    friction_work.add(-0.5 * dt * dot(before + pull, rate), 0.5 * dot(pull, pull) / stiffness);
+    friction_work.book(kept.slid, kept.sprung);
     kept.drag = pull;
     return pull;
   }

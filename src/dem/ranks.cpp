@@ -5,7 +5,7 @@
 #include "dem/energy.hpp"
 #include "dem/relations.hpp"
 #include "domain/drift.hpp"
-#include "domain/sharing.hpp"
+#include "domain/ghosts.hpp"
 #include "exec/for_each.hpp"
 
 namespace breccia::dem {
@@ -20,11 +20,7 @@ class Migration {
 
   /// Besides the owner, the ranks whose elements may touch one get a copy.
   void add_copies(const std::vector<Sphere>& around) {
-    for (Index e = 0; e < w_.elements.size(); ++e)
-      if (w_.domain.owns(e))
-        w_.domain.each_sharer(around[static_cast<std::size_t>(e)], [&](int r) {
-          if (r != shared_items_.owner_of(e)) elements_.add(r, e);
-        });
+    add_ghosts(w_.domain, around, shared_items_, elements_);
   }
 
   void go() {
@@ -171,9 +167,9 @@ class Spheres final : public Shareable {
   }
   double largest_margin() const override { return w_.given->largest_margin; }
   void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
-    Migration journey(w_, owner);
-    journey.add_copies(around);
-    journey.go();
+    Migration migration(w_, owner);
+    migration.add_copies(around);
+    migration.go();
   }
   void settle_in() override {
     w_.each_set([](auto& set) { divide(set); });
@@ -218,19 +214,13 @@ void drop_state(World& w) {
 }
 
 void start_ghosts(World& w) {
-  if (w.domain.single_rank()) return;
-  const StageTime timed(w.exec, "halo");
-  w.domain.start_refresh(w.exec, w.elements.state);
+  breccia::start_ghosts(w, w.elements.state);
 }
 void finish_ghosts(World& w) {
-  if (w.domain.single_rank()) return;
-  const StageTime timed(w.exec, "halo");
-  w.domain.finish_refresh(w.exec, w.elements.state);
+  breccia::finish_ghosts(w, w.elements.state);
 }
 void refresh_ghosts(World& w) {
-  if (w.domain.single_rank()) return;
-  const StageTime timed(w.exec, "halo");
-  w.domain.refresh_all(w.exec, w.elements.state);
+  breccia::refresh_ghosts(w, w.elements.state);
 }
 
 void select_active_ghosts(World& w) {
@@ -269,19 +259,14 @@ World share_parts(World part, Communicator& ranks, const DomainConfig& config, S
 
 void migrate(World& w) {
   if (w.domain.single_rank()) return;
-  const StageTime timed(w.exec, "migration");
   Spheres spheres(w, w.exec.space);
-  share_if_needed(w.domain, spheres);
+  breccia::migrate(w, spheres);
 }
 
 void rebalance(World& w) {
   if (!is_uneven(w.domain)) return;
-  const StageTime timed(w.exec, "migration");
-  // Otherwise the way since the last search would be taken off what comes next.
-  w.domain.drift(w.travel.drift.velocity, w.time);
   Spheres spheres(w, w.exec.space);
-  spheres.come_to_host();
-  share_anew(w.domain, spheres, false);
+  breccia::rebalance(w, w.travel.drift.velocity, spheres);
   select_active_ghosts(w);
 }
 

@@ -204,15 +204,15 @@ class MpiRanks final : public Communicator {
   }
   void start_any_of(std::uint64_t bits) override {
     if (board_) return board_->publish(bits);
-    asked_bits_ = bits;
-    must(MPI_Iallreduce(&asked_bits_, &told_bits_, 1, MPI_UINT64_T, MPI_BOR, all_, &vote_),
+    own_bits_ = bits;
+    must(MPI_Iallreduce(&own_bits_, &voted_bits_, 1, MPI_UINT64_T, MPI_BOR, all_, &vote_),
          "MPI_Iallreduce");
   }
   std::uint64_t finish_any_of() override {
     const Waiting waiting(*this);
     if (!board_) {
       must(MPI_Wait(&vote_, MPI_STATUS_IGNORE), "MPI_Wait");
-      return told_bits_;
+      return voted_bits_;
     }
     std::uint64_t bits = 0;
     collect([&bits](std::uint64_t told) { bits |= told; });
@@ -374,7 +374,7 @@ class MpiRanks final : public Communicator {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::duration waited_{};
   MPI_Request vote_ = MPI_REQUEST_NULL;
-  std::uint64_t asked_bits_ = 0, told_bits_ = 0;
+  std::uint64_t own_bits_ = 0, voted_bits_ = 0;
   std::optional<SharedSigns> signs_;
   std::optional<SharedReduction> board_;  ///< if all ranks are on this machine
   std::optional<PeerLink> link_;          ///< if all ranks are on this machine

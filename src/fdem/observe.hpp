@@ -1,25 +1,21 @@
 #pragma once
-// Observations of an FDEM run: hash, probes, counts, cracks, fragments, and whether its numbers are
-// sound.
+// Observations of an FDEM run: those of fdem_shared/observe.hpp, stresses, cracks, fragments.
 
-#include "core/probe.hpp"
-#include "core/unsound.hpp"
-#include "fdem/world.hpp"
+#include "fdem/shape.hpp"
+#include "fdem_shared/observe.hpp"
 
 namespace breccia::fdem {
 
-/// Hash of positions and velocities of all triangles' corners by global id.
-/// A rank's is that of its own; the sum over all ranks is that of the whole.
-std::uint64_t state_hash(const World& w);
-
-/// The first triangle of its own that is inside out, not finite, or moves more than its size in a
-/// step.
-Unsound find_unsound(const World& w);
-/// The triangle of its own that moves fastest: where energy is lost, it may be the one to look at.
-Fastest fastest(const World& w);
-
-/// Largest damage of the joints of each triangle.  [-]
-std::vector<double> damage(const World& w);
+using fdem_shared::damage;
+using fdem_shared::fastest;
+using fdem_shared::find_unsound;
+using fdem_shared::mode_of;
+using fdem_shared::probe;
+using fdem_shared::read_own;
+using fdem_shared::ruled_step;
+using fdem_shared::RuledStep;
+using fdem_shared::ruling_term;
+using fdem_shared::state_hash;
 
 /// Cauchy stress of each triangle, without viscosity.  [Pa]
 std::vector<Sym2> stresses(const World& w);
@@ -30,14 +26,6 @@ std::vector<double> stresses_across(const World& w);
 /// Velocities of the corners at the time of the positions. On ranks all call it: ghosts follow
 /// their owners.  [m/s]
 std::vector<Corners> velocities_now(World& w);
-
-double probe(const World& w, const ProbeConfig& probe);
-/// A probe's reading of a rank's own triangles; the sum over all ranks is the reading of the
-/// whole.
-Readings read_own(World& part, const ProbeConfig& probe);
-
-/// Share of sliding in what a joint has spent: 0 opening, 1 sliding  [-]
-double mode_of(const Joints& joints, Index i);
 
 /// A joint that broke.
 struct Crack {
@@ -60,15 +48,5 @@ Fragments fragments(const World& w);
 /// Fragments where other joints are broken than the world knows.
 /// @param broken  1: of each joint
 Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken);
-
-/// The least stable step of all triangles, without its safety, and what rules it, in a word.
-struct RuledStep {
-  double step;  ///<  [s]
-  const char* term;
-};
-/// @param pressed  as if something touched wherever it can
-RuledStep ruled_step(const World& w, bool pressed);
-/// Which term rules the time step now: elements, joints, contact or viscosity.
-const char* ruling_term(const World& w);
 
 }  // namespace breccia::fdem

@@ -1,20 +1,13 @@
 #pragma once
-// Servos of supports.
+// Servos of supports of triangles: see fdem_shared/servos.hpp.
 
-#include <vector>
-
-#include "core/servo.hpp"
 #include "fdem/world.hpp"
+#include "fdem_shared/servos.hpp"
 
 namespace breccia::fdem {
 
-/// Force of each support of a part, for its servo; zero for supports without one.
-std::vector<ServoReading> read_servos(World& part, const Config& now);
-
-/// Corrects the velocities of all servos. @param sums  over all parts, as of read_servos()
-void correct_servos(World& w, const Config& now, const std::vector<ServoReading>& sums);
-
-/// Gives supports the velocities of their servos.
-void place_servos(World& w);
+using fdem_shared::correct_servos;
+using fdem_shared::place_servos;
+using fdem_shared::read_servos;
 
 }  // namespace breccia::fdem

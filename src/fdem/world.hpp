@@ -19,8 +19,12 @@
 #include "fdem/case.hpp"
 #include "fdem/setup/model.hpp"
 #include "fdem/triangles/loads.hpp"
+#include "fdem_shared/exposed.hpp"
 
 namespace breccia::fdem {
+
+using fdem_shared::ExposedVertices;
+using fdem_shared::WholeMesh;
 
 /// Where the triangles that can touch stood at the last search, and how far each may go from there,
 /// the drift taken off.
@@ -38,14 +42,6 @@ struct TravelOfTriangles {
   }
 };
 
-/// Where joints have opened. A vertex becomes contact-active at a step fixed by the physics, not at
-/// the next search, so results do not depend on when searches happen.
-struct ExposedVertices {
-  Buffer<std::uint8_t>
-      changed;                  ///< flags of Change since the last marking  [-]  (2; pairs, search)
-  Buffer<std::uint8_t> vertex;  ///< 1: a joint here is damaged  [-]  (vertices; search)
-};
-
 /// Where fluid presses on cracks: the same on all ranks.
 struct FluidState {
   double time = -1.0;           ///< when it spread last; below 0: not yet  [s]
@@ -55,16 +51,6 @@ struct FluidState {
   Buffer<double> volume;
   double injected = 0.0;  ///< that came in so far  [m2]
   double pressure = 0.0;  ///< at its source  [Pa]
-};
-
-/// Data of the whole mesh that a rank has besides its part.
-struct WholeMesh {
-  Buffer<Index> joint_number;      ///< of the local joints in the whole mesh, ascending
-  std::vector<std::uint8_t> tied;  ///< 1: some corners at this vertex move as one, or did
-  bool loaded = false;             ///< some edges bear loads, or may
-  bool bundled = false;            ///< there are such vertices
-  bool absorbs = false;            ///< some edges take waves up
-  bool preset = false;             ///< joints keep an opening at which they were joined
 };
 
 /// Joints side by side, and whether they can do without ghosts of other ranks' triangles.
@@ -82,10 +68,10 @@ enum class JointPack : std::uint8_t {
 ///   stage    configure(), where a stage of the case begins and after loading a checkpoint
 ///   servo    correct_servos(), every servo_every steps
 ///   move, search, insertion, pairs, sums, loads, bundles, dt
-///            within a step, by fdem/stepping/step.hpp: moving triangles; find_couples(); joints
+///            within a step, by fdem_shared/step.hpp: moving triangles; find_couples(); joints
 ///            that wake; forces of joints and couples; forces of triangles; forces on edges;
 ///            corners that move as one; the next step
-///   ranks    when triangles change ranks (fdem/ranks.cpp) or the world changes its space
+///   ranks    when triangles change ranks or the world changes its space
 ///   derive   derive(), after loading and ranks; advance: advance(), on a device
 ///
 /// An array that ranks write moves with its triangle, joint or couple.
@@ -249,6 +235,8 @@ AllowedStep allowed_step(const World& w);
 /// Starts the ledger at the present state.
 void begin_ledger(World& w);
 
+/// Energies that a part holds and has spent: of what it owns.
+Energies held(const World& w);
 /// Where every joule is, per unit thickness.
 EnergySplit energy_split(const World& w);
 /// The balance of all energies; keeps the largest energy seen, for the relative error.

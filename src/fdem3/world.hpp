@@ -17,8 +17,12 @@
 #include "fdem3/case.hpp"
 #include "fdem3/elements/stable_step.hpp"
 #include "fdem3/setup/model.hpp"
+#include "fdem_shared/exposed.hpp"
 
 namespace breccia::fdem3 {
+
+using fdem_shared::ExposedVertices;
+using fdem_shared::WholeMesh;
 
 /// Where the tetrahedra that can touch stood at the last search, and how far each may go from
 /// there, the drift taken off.
@@ -34,22 +38,6 @@ struct TravelOfTetrahedra {
     field("reference", "m", reference);
     field("margin", "m", margin);
   }
-};
-
-/// Where joints have opened: as of fdem::ExposedVertices.
-struct ExposedVertices {
-  Buffer<std::uint8_t> changed;  ///< flags of fdem::Change since the last marking  [-]  (2)
-  Buffer<std::uint8_t> vertex;   ///< 1: a joint here is damaged  [-]  (vertices; search)
-};
-
-/// Knowledge of the whole mesh that a rank has besides its part of it.
-struct WholeMesh {
-  Buffer<Index> joint_number;      ///< of the local joints in the whole mesh, ascending
-  std::vector<std::uint8_t> tied;  ///< 1: some corners at this vertex move as one
-  bool loaded = false;             ///< some faces bear loads
-  bool bundled = false;            ///< there are such vertices
-  bool absorbs = false;            ///< some faces take waves up
-  bool preset = false;             ///< joints keep an opening at which they were joined
 };
 
 /// Each line tells meaning and unit, then (length; who writes it), in the words of fdem/world.hpp.
@@ -182,11 +170,11 @@ StableStep stable_step(const World& w);
 /// Starts the ledger at the present state.
 void begin_ledger(World& w);
 
-/// Where every joule is.
+/// Energies that a part holds and has spent: of what it owns.
 Energies held(const World& w);
+/// Where every joule is.
 EnergySplit energy_split(const World& w);
-/// Split of these energies; the ledger keeps the largest seen, for the relative error.
-EnergySplit energies(Ledger& ledger, const Energies& all);
+/// The balance of all energies; keeps the largest energy seen, for the relative error.
 EnergySplit energies(World& w);
 
 }  // namespace breccia::fdem3

@@ -21,7 +21,7 @@ std::vector<int> taken(const std::vector<const std::vector<ElementRun>*>& lists,
   return times;
 }
 
-TEST(Awaited, each_own_element_moves_once_and_those_with_copies_move_first) {
+TEST(BoundaryElements, each_own_element_moves_once_and_those_with_copies_move_first) {
   std::int64_t first = 0, later = 0;
   simulate_ranks(4, 9, [&](Communicator& ranks) {
     auto whole = box().world();
@@ -52,7 +52,8 @@ bool is_inner(const fdem::World& w, Index i) {
          w.domain.owns(w.joints.edge_b.data()[i] / 3);
 }
 
-TEST(Awaited, whole_joints_between_own_triangles_go_ahead_and_leave_nothing_but_their_forces) {
+TEST(BoundaryElements,
+     whole_joints_between_own_triangles_go_ahead_and_leave_nothing_but_their_forces) {
   std::int64_t ahead = 0, all = 0;
   simulate_ranks(4, 9, [&](Communicator& ranks) {
     auto whole = impact("intrinsic").world();

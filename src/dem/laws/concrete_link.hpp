@@ -112,10 +112,10 @@ struct ConcreteLink {
   template <class R>
   BR_HD LinkResponse<R> response(const LinkConstants<R>& link, const PairMotion<R>& motion,
                                  LinkState<R>& state) const {
-    if (!rated()) return answer<false>(link, motion, state);
+    if (!rated()) return response_at<false>(link, motion, state);
     LinkConstants<R> dynamic = link;
     quicken(dynamic, motion, state);
-    return answer<true>(dynamic, motion, state);
+    return response_at<true>(dynamic, motion, state);
   }
 
   /// Whether sliding and rolling use links up.
@@ -214,8 +214,8 @@ struct ConcreteLink {
   /// One step at the strength that `link` has now.
   /// @tparam dynamic  whether that is another than the static one
   template <bool dynamic, class R>
-  BR_HD LinkResponse<R> answer(const LinkConstants<R>& link, const PairMotion<R>& motion,
-                               LinkState<R>& state) const {
+  BR_HD LinkResponse<R> response_at(const LinkConstants<R>& link, const PairMotion<R>& motion,
+                                    LinkState<R>& state) const {
     const R zero = constant<R>(0.0);
     const R kt = shear_ratio * link.stiffness;
     const R kr = rolling_ratio * kt * link.radius * link.radius;
@@ -346,17 +346,18 @@ struct ConcreteLink {
     const R zero = constant<R>(0.0);
     const R cohesive = select(s.holds, s.health, zero);
     const R slope = select(s.holds, constant<R>(friction), constant<R>(broken_friction));
-    R limit = max(zero, cohesion * link.area * cohesive + rubbing(link, s.normal, slope));
+    R limit = max(zero, cohesion * link.area * cohesive + friction_limit(link, s.normal, slope));
     const auto beyond = trial_squared > zero && trial_squared > limit * limit;
     s.sheared = s.holds && beyond && constant<R>(brittle_shear) > 0.5;
     if (any(s.sheared))
-      limit = select(s.sheared, max(zero, rubbing(link, s.normal, constant<R>(broken_friction))),
-                     limit);
+      limit =
+          select(s.sheared, max(zero, friction_limit(link, s.normal, constant<R>(broken_friction))),
+                 limit);
     return limit;
   }
   /// Shear force that friction bears, below zero in tension.  [N]
   template <class R>
-  BR_HD R rubbing(const LinkConstants<R>& link, const R& normal, const R& slope) const {
+  BR_HD R friction_limit(const LinkConstants<R>& link, const R& normal, const R& slope) const {
     const R force = -1.0 * (normal * slope);
     return friction_cap > 0.0 ? min(force, friction_cap * link.area) : force;
   }

@@ -113,7 +113,7 @@ using EdgePush = EdgePushOf<double>;
 /// inside), but no more than they were given. The rest is spent. k goes with the edge: where it
 /// shrinks under a T that stays, T^2/(2 k) grows; slip counted by it, (T - mu N)/k, would spend
 /// what nobody put in. A spring that is forgotten has spent what it held.  [J/m]
-struct Rubbing {
+struct FrictionWork {
   double taken = 0.0, sprung = 0.0;
   BR_HD void add(double more_taken, double more_sprung) {
     taken += more_taken;
@@ -255,7 +255,7 @@ struct CoupleForces {
     split(nodes[a[i]], xa, va);
     split(nodes[b[i]], xb, vb);
     CoupleForce sum{};
-    Rubbing rubbing;
+    FrictionWork friction_work;
     bool touching = false;
     const bool is_new = Edges::any_couple && kept.scale == 0.0;
     if (is_new) kept.scale = 1.0;
@@ -267,7 +267,7 @@ struct CoupleForces {
       double scale = kept.scale;
       if constexpr (Edges::any_couple)
         if (rebound.loses()) {
-          const Opening now = opening(scale * law.penalty, kept.most, of_a, of_b);
+          const Unloading now = unloading(scale * law.penalty, kept.most, of_a, of_b);
           scale *= now.share;
           kept.most = now.most;
         }
@@ -276,7 +276,7 @@ struct CoupleForces {
               kept.drag[edge] = p.drag;
               if (!p.touches) return;
               touching = true;
-              rubbing.add(p.taken, p.sprung);
+              friction_work.add(p.taken, p.sprung);
               const bool of_own = edge < 3;
               auto& on_x = of_own ? sum.on_a.at : sum.on_b.at;
               auto& on_target = of_own ? sum.on_b.at : sum.on_a.at;
@@ -305,7 +305,7 @@ struct CoupleForces {
       kept.work -= 0.5 * dt * dot(last.on_a.at[k] + now.on_a.at[k], va[k]);
       kept.work -= 0.5 * dt * dot(last.on_b.at[k] + now.on_b.at[k], vb[k]);
     }
-    rubbing.book(kept.slid, kept.sprung);
+    friction_work.book(kept.slid, kept.sprung);
     if (!touching) {
       kept.lost += kept.work - kept.slid;
       kept.rubbed += kept.slid;
@@ -315,24 +315,25 @@ struct CoupleForces {
     }
   }
 
-  /// How far a couple has opened.
-  struct Opening {
+  /// What a couple gives back as it parts (contact.restitution).
+  struct Unloading {
     double share;  ///< of its normal forces that is left  [-]
     double most;   ///< energy of its overlap so far  [J/m]
   };
-  BR_HD Opening opening(double penalty, double most, const Target& of_a, const Target& of_b) const {
+  BR_HD Unloading unloading(double penalty, double most, const Target& of_a,
+                            const Target& of_b) const {
     const Polygon over = overlap_of(of_a, of_b);
     const double energy =
         penalty * (potential_integral(of_a, over) + potential_integral(of_b, over));
     return {rebound.share(energy, most), max(energy, most)};
   }
-  /// Opening of couple i at its present position.
-  BR_HD Opening opening(Index i, double penalty, double most) const {
+  /// Unloading of couple i at its present position.
+  BR_HD Unloading unloading(Index i, double penalty, double most) const {
     Vec2 xa[3], va[3], xb[3], vb[3];
     split(nodes[a[i]], xa, va);
     split(nodes[b[i]], xb, vb);
     if (!meet(xa, xb)) return {1.0, most};
-    return opening(penalty, most, Target::of(xa), Target::of(xb));
+    return unloading(penalty, most, Target::of(xa), Target::of(xb));
   }
 
   BR_HD const ContactPair& law_of(Index i) const {
@@ -358,10 +359,10 @@ struct CoupleForces {
   }
 
   /// Gives a couple in overlap the forces that its faces carry, as far as friction bears them.
-  /// @param pressing, rubbing  between the faces, and on a along its edge  [N/m]
+  /// @param pressing, shear  between the faces, and on a along its edge  [N/m]
   /// @param edges              that lie on each other, of a and of b
   /// @returns what it stores then
-  BR_HD static JointWork begin_pressed(double pressing, double rubbing, const int (&edges)[2],
+  BR_HD static JointWork begin_pressed(double pressing, double shear, const int (&edges)[2],
                                        const ContactPair& law, CoupleState& kept,
                                        const Vec2 (&xa)[3], const Target& of_a, const Vec2 (&xb)[3],
                                        const Target& of_b) {
@@ -383,7 +384,7 @@ struct CoupleForces {
     // Along either edge, in its own direction, it is the same: both turn.
     const double most = limit[0] + limit[1];
     if (most > 0.0) {
-      const double share = max(-1.0, min(1.0, rubbing / most));
+      const double share = max(-1.0, min(1.0, shear / most));
       for (int side = 0; side < 2; ++side) {
         if (!(stiffness[side] > 0.0)) continue;
         const double drag = share * limit[side];

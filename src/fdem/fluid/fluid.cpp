@@ -8,6 +8,7 @@
 #include "domain/together.hpp"
 #include "exec/for_each.hpp"
 #include "fdem/fluid/flow.hpp"
+#include "fdem_shared/loaded_sides.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -270,22 +271,10 @@ void list_loaded_edges(World& w) {
   std::stable_sort(all.begin(), all.end(), [](const LoadedEdge& a, const LoadedEdge& b) {
     return a.triangle < b.triangle;
   });
-  std::vector<LoadedEdge> loaded;
-  std::vector<Index> starts, ids;
-  copy_to(ids, w.triangles.id);
-  auto at = ids.begin();
-  for (LoadedEdge& edge : all) {
-    at = std::lower_bound(at, ids.end(), edge.triangle);
-    if (at == ids.end()) break;
-    if (*at != edge.triangle) continue;
-    edge.triangle = static_cast<Index>(at - ids.begin());
-    if (loaded.empty() || loaded.back().triangle != edge.triangle)
-      starts.push_back(static_cast<Index>(loaded.size()));
-    loaded.push_back(edge);
-  }
-  starts.push_back(static_cast<Index>(loaded.size()));
-  copy_to(w.loaded_edges, loaded);
-  copy_to(w.load_starts, starts);
+  const auto here = fdem_shared::loaded_here(
+      all, w.triangles.id, [](auto& edge) -> auto& { return edge.triangle; });
+  copy_to(w.loaded_edges, here.sides);
+  copy_to(w.load_starts, here.starts);
   w.amplitudes.clear();  // listed anew by the next launches
   w.clock.clear();
   w.graph.clear();

@@ -3,31 +3,17 @@
 
 #include "core/kernel.hpp"
 #include "fdem/joints/joints.hpp"
+#include "fdem_shared/exposed.hpp"
 #include "math/lanes.hpp"
 
 namespace breccia::fdem {
 
-/// Flags for the host: 0, a joint has softened; 1, a joint has broken.
-enum Change : Index { change_softened = 0, change_broken = 1 };
-
-/// Whether the vertices that touch must be marked anew in this step.
-BR_HD inline bool marking_due(std::uint8_t softened, std::uint8_t broken, std::int64_t step) {
-  constexpr std::int64_t every = 32;
-  return broken != 0 || (softened != 0 && step % every == 0);
-}
-
-/// Sets a flag that several items may set.
-BR_HD inline void set_flag(const View<std::uint8_t>& flags, Index flag) {
-#if defined(__CUDA_ARCH__)
-  flags[flag] = 1;
-#else
-  __atomic_store_n(&flags[flag], std::uint8_t{1}, __ATOMIC_RELAXED);
-#endif
-}
-/// Whichever item does it first.
-BR_HD inline void raise(const View<std::uint8_t>& flags, Change change) {
-  set_flag(flags, change);
-}
+using fdem_shared::Change;
+using fdem_shared::change_broken;
+using fdem_shared::change_softened;
+using fdem_shared::marking_due;
+using fdem_shared::raise;
+using fdem_shared::set_flag;
 
 /// Tractions at three points, damage and break of every joint (Lukas 2014, section 2). Joints that
 /// are whole and stay so, nearly all, are taken side by side.
@@ -141,18 +127,18 @@ struct JointForces {
     const Vec2 offset = preset.size > 0 ? preset[i] : Vec2{};
     JointPoints state{};
     if (before != JointStage::whole) state = points[i];
-    BondTraction<double> answer[3];
+    BondTraction<double> bond_traction[3];
     const bool asks_rock = bond.by_rock() && failure_of(state.point[1]) == Failure::none;
-    if (!asks_rock || fails_with_rock(i, bond, o, offset, state, answer))
+    if (!asks_rock || fails_with_rock(i, bond, o, offset, state, bond_traction))
       for (int q = 0; q < 3; ++q)
-        answer[q] = response(bond, strength[i], h, o.open[q] + offset.x, o.slide[q] + offset.y,
-                             state.point[q]);
+        bond_traction[q] = response(bond, strength[i], h, o.open[q] + offset.x,
+                                    o.slide[q] + offset.y, state.point[q]);
     Vec2 traction[3];
     double pressure = 0.0, drag = 0.0;
     int failed = 0;
     bool damaged = false;
     for (int q = 0; q < 3; ++q) {
-      const BondTraction<double>& t = answer[q];
+      const BondTraction<double>& t = bond_traction[q];
       traction[q] = t.shear * o.along + t.normal * o.across;
       const double weight = (q == 1 ? -4.0 : -1.0) * h / 6.0;
       pressure += weight * t.normal;
@@ -258,19 +244,20 @@ struct JointForces {
   BR_HD static constexpr double weight_of(int point) { return point == 1 ? 4.0 / 6.0 : 1.0 / 6.0; }
 
   /// Lets all points of a joint fail where the mean stress of the rock there fails near its edge.
-  /// @param answer  of its points by the law of edges
-  /// @returns false where it does not fail: `state` and `answer` are those of this step then
+  /// @param bond_traction  of its points by the law of edges
+  /// @returns false where it does not fail: `state` and `bond_traction` are those of this step then
   BR_HD bool fails_with_rock(Index i, const JointBond& bond, const JointOpening<double>& o,
                              const Vec2& offset, JointPoints& state,
-                             BondTraction<double> (&answer)[3]) const {
+                             BondTraction<double> (&bond_traction)[3]) const {
     const double h = length[i], share = strength[i];
     double normal = 0.0, shear = 0.0;
     bool half_soft = false;  // it goes its own way to the end
     for (int q = 0; q < 3; ++q) {
       BondState<double>& point = state.point[q];
-      answer[q] = response(bond, share, h, o.open[q] + offset.x, o.slide[q] + offset.y, point);
-      normal += weight_of(q) * answer[q].normal;
-      shear += weight_of(q) * answer[q].shear;
+      bond_traction[q] =
+          response(bond, share, h, o.open[q] + offset.x, o.slide[q] + offset.y, point);
+      normal += weight_of(q) * bond_traction[q].normal;
+      shear += weight_of(q) * bond_traction[q].shear;
       half_soft = half_soft || (point.damage > 0.0 && softening(point.damage) < 0.5);
     }
     if (half_soft) return false;
@@ -280,7 +267,7 @@ struct JointForces {
     const Failure how = failure_of(rock_failure(bond, share, {normal, shear, along}));
     if (how == Failure::none) return false;
     for (int q = 0; q < 3; ++q)
-      fail(bond, share, h, how, o.open[q] + offset.x, o.slide[q] + offset.y, answer[q],
+      fail(bond, share, h, how, o.open[q] + offset.x, o.slide[q] + offset.y, bond_traction[q],
            state.point[q]);
     return true;
   }

@@ -94,7 +94,7 @@ struct BondTraction {
 ///
 /// @param slope  p_f / h  [Pa/m]  @param tension, cohesion  of this joint  [Pa]
 /// @param quarter  1 / (4 tension)  [1/Pa]
-/// @param beyond  set where the point leaves its elastic branch, so that the answer does not hold
+/// @param beyond  set where the point leaves its elastic branch, so that the response does not hold
 template <class R, class Mask>
 BR_HD BondTraction<R> elastic_response(const R& slope, const R& tension, const R& quarter,
                                        const R& cohesion, const R& friction, const R& opening,
@@ -112,9 +112,9 @@ BR_HD BondTraction<R> elastic_response(const R& slope, const R& tension, const R
 
 /// The law in full while the rock has not failed. @param strength  of this joint over its law's:
 /// scales f_t, c and, so that lengths stay, both energies  [-]. @param h  initial length  [m]
-BR_HD inline BondTraction<double> edge_answer(const JointBond& law, double strength, double h,
-                                              double opening, double slip,
-                                              BondState<double>& state) {
+BR_HD inline BondTraction<double> edge_response(const JointBond& law, double strength, double h,
+                                                double opening, double slip,
+                                                BondState<double>& state) {
   using R = double;
   const R zero = constant<R>(0.0), one = constant<R>(1.0);
   const R tension = law.tension * strength;
@@ -154,8 +154,8 @@ BR_HD inline BondTraction<double> edge_answer(const JointBond& law, double stren
   R drag = select(slid <= s_p, 2.0 * q - q * q, one);
   const R reach = max(state.slip, s_p);
   drag = select(state.slip > 0.0, min(one, slid / select(reach > zero, reach, one)), drag);
-  const R rubbing = select(pressed, -law.residual * pressure, zero);
-  const R size = (health * shear_strength + (one - health) * rubbing) * drag;
+  const R friction = select(pressed, -law.residual * pressure, zero);
+  const R size = (health * shear_strength + (one - health) * friction) * drag;
   t.shear = select(slip < 0.0, -size, size);
   return t;
 }

@@ -129,7 +129,7 @@ BR_HD inline void fail(const JointBond& law, double strength, double h, Failure 
 /// sticks and slips: a friction that only followed |s| would give energy whenever pressure and slip
 /// take turns.
 struct TornTraction {
-  double normal, kept, rubbing;  ///< the last two along the slip  [Pa]
+  double normal, kept, friction;  ///< the last two along the slip  [Pa]
 };
 BR_HD inline TornTraction torn_traction(const JointBond& law, double h, double opening, double slip,
                                         BondState<double>& state) {
@@ -144,15 +144,15 @@ BR_HD inline TornTraction torn_traction(const JointBond& law, double h, double o
   TornTraction t{};
   t.normal = opening < 0.0 ? pressure : z * state.normal * min(1.0, opening / state.opening);
   t.kept = copysign(z * state.shear * min(1.0, slid / state.slip), slip);
-  t.rubbing = max(-most, min(most, slope * (slip - state.stuck)));
-  state.stuck = slip - t.rubbing / slope;
+  t.friction = max(-most, min(most, slope * (slip - state.stuck)));
+  state.stuck = slip - t.friction / slope;
   return t;
 }
 
 /// Sheared (above).
-BR_HD inline BondTraction<double> sheared_answer(const JointBond& law, double strength, double h,
-                                                 double opening, double slip,
-                                                 BondState<double>& state) {
+BR_HD inline BondTraction<double> sheared_response(const JointBond& law, double strength, double h,
+                                                   double opening, double slip,
+                                                   BondState<double>& state) {
   const double slid = abs(slip), tension = law.tension * strength;
   const double o_p = 2.0 * h * tension / law.stiffness;
   const double pressure = law.stiffness / h * min(0.0, opening);
@@ -179,14 +179,14 @@ BR_HD inline BondTraction<double> response(const JointBond& law, double strength
   switch (failure_of(state)) {
     case Failure::torn: {
       const TornTraction t = torn_traction(law, h, opening, slip, state);
-      return {t.normal, t.kept + t.rubbing};
+      return {t.normal, t.kept + t.friction};
     }
     case Failure::sheared:
-      return sheared_answer(law, strength, h, opening, slip, state);
+      return sheared_response(law, strength, h, opening, slip, state);
     case Failure::none:
       break;
   }
-  return edge_answer(law, strength, h, opening, slip, state);
+  return edge_response(law, strength, h, opening, slip, state);
 }
 
 /// Energy that a point would give back if it were unloaded now, by direction.  [J/m2]
@@ -198,7 +198,7 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
   if (failure_of(state) == Failure::torn) {
     const TornTraction t = torn_traction(law, h, opening, slip, same);
     return {0.5 * t.normal * opening,
-            0.5 * t.kept * slip + 0.5 * t.rubbing * t.rubbing * h / law.stiffness};
+            0.5 * t.kept * slip + 0.5 * t.friction * t.friction * h / law.stiffness};
   }
   const BondTraction<double> t = response(law, strength, h, opening, slip, same);
   return {0.5 * t.normal * opening, 0.5 * t.shear * slip};

@@ -5,11 +5,9 @@
 
 #include "core/case_config.hpp"
 #include "core/emission_config.hpp"
-#include "core/servo.hpp"
-#include "core/stages.hpp"
-#include "core/table_over_time.hpp"
 #include "fdem/laws/joint_bond.hpp"
 #include "fdem/setup/body_config.hpp"
+#include "fdem_shared/setup/config.hpp"
 
 namespace breccia::fdem {
 
@@ -137,19 +135,9 @@ struct JointConfig {
   }
 };
 
-/// [[friction]]
-struct FrictionConfig {
-  std::vector<std::string> between;
-  double coefficient = 0.6;
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("between", between, "the two materials, or twice the same");
-    key.required("between");
-    key("coefficient", coefficient, "-", Range{0.0, 1e3},
-        "coefficient of friction of their contact");
-  }
-};
+using fdem_shared::FrictionConfig;
+using fdem_shared::HistoryConfig;
+using fdem_shared::SearchConfig;
 
 /// Which part of the model a support, load or probe takes.
 struct RegionConfig {
@@ -176,43 +164,7 @@ struct RegionConfig {
   }
 };
 
-/// How something given grows and changes over time.
-struct HistoryConfig {
-  double ramp = 0.0;                   ///<  [s]
-  std::vector<double> times, factors;  ///<  [s], [-]
-  double begin = 0.0;                  ///< no key: where its time begins  [s]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("ramp", ramp, "s", not_negative, "time in which it grows from zero, linearly");
-    key("times", times, "s", any_number,
-        "times of a table of factors, linear in between, constant beyond; empty: always 1");
-    key("factors", factors, "-", any_number, "the factors at these times");
-  }
-};
-
-/// [[support]]: prescribed velocity of corners
-struct SupportConfig {
-  std::string name;
-  RegionConfig region;
-  std::vector<std::string> fix{"x", "y"};
-  OverTime<Vec2> velocity;  ///<  [m/s]
-  HistoryConfig history;
-  SupportServoConfig servo;  ///< instead of the velocity along its axis
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("name", name, "name of the support: probes read its corners by it");
-    key.required("name");
-    region.each_key(key);
-    key("fix", fix, "directions that are prescribed: x, y");
-    key("velocity", velocity, "m/s", any_number,
-        "prescribed velocity of these directions, or a table [[t, x, y], ...] of it over time, "
-        "linear in between and constant beyond its ends");
-    history.each_key(key);
-    key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
-  }
-};
+using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec2>;
 
 /// [[load]]: forces on free edges
 struct LoadConfig {
@@ -266,50 +218,16 @@ struct LoadConfig {
   }
 };
 
-/// [[stage.support]]: what a support prescribes from a stage on
-struct SupportChange {
-  std::string name;
-  std::vector<std::string> fix{"same"};
-  OverTime<Vec2> velocity;  ///<  [m/s]
-  double ramp = 0.0;        ///<  [s]
-  SupportServoConfig servo;
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("name", name, "name of the support");
-    key.required("name");
-    key("fix", fix,
-        "directions that it prescribes from now on; [] sets its corners free; left out: the same "
-        "as before");
-    key("velocity", velocity, "m/s", any_number,
-        "their velocity from now on, or a table of it over time since the stage began; left out: "
-        "they stand still");
-    key("ramp", ramp, "s", not_negative,
-        "time since the stage began in which it grows from zero, linearly");
-    key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
-  }
-};
+using SupportChange = fdem_shared::SupportChangeOf<Vec2>;
 
 /// [[stage.load]]: how large a load is from a stage on
-struct LoadChange {
-  std::string name;
-  OverTime<double> pressure;  ///<  [Pa]
-  OverTime<Vec2> traction;    ///<  [Pa]
-  OverTime<Vec2> force;       ///<  [N/m]
-  OverTime<double> rate;      ///<  [m2/s]
-  double ramp = 0.0;          ///<  [s]
+struct LoadChange : fdem_shared::LoadChangeOf<Vec2> {
+  OverTime<double> rate{};  ///<  [m2/s]
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("name", name, "name of the load");
-    key.required("name");
-    key("pressure", pressure, "Pa", any_number,
-        "pressure from now on, or a table of it over time since the stage began; left out: 0");
-    key("traction", traction, "Pa", any_number, "traction from now on, likewise");
-    key("force", force, "N/m", any_number, "force from now on, likewise");
+    LoadChangeOf::each_key(key);
     key("rate", rate, "m2/s", Range{0.0, 1e9}, "rate of inflow from now on, likewise");
-    key("ramp", ramp, "s", not_negative,
-        "time since the stage began in which it grows from zero, linearly");
   }
 };
 
@@ -337,19 +255,12 @@ struct MaterialChange {
 };
 
 /// [[stage]]
-struct StageConfig : StageEnd {
-  Vec2 gravity{no_limit, no_limit};  ///<  [m/s2]
-  std::vector<SupportChange> supports;
-  std::vector<LoadChange> loads;
+struct StageConfig : fdem_shared::MeshStageConfig<Vec2, LoadChange> {
   std::vector<MaterialChange> materials;
 
   template <class Visit>
   void each_key(Visit&& key) {
-    StageEnd::each_key(key);
-    key("gravity", gravity, "m/s2", any_number,
-        "acceleration of gravity from its beginning on; left out (inf): as before");
-    key.list("support", supports, "supports that prescribe something else from its beginning on");
-    key.list("load", loads, "loads that are another from its beginning on");
+    MeshStageConfig::each_key(key);
     key.list("material", materials, "materials that are softer or stiffer from its beginning on");
   }
 };
@@ -420,17 +331,6 @@ struct JointsConfig {
         "its own tractions, as in the classical codes: on a free mesh 10 % (tension) to 60 % "
         "(discs) too "
         "strong; [joint.<name>] is always edge");
-  }
-};
-
-/// [search]
-struct SearchConfig {
-  double margin = 0.1;  ///< over the mean edge  [-]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("margin", margin, "-", Range{0.0, 1.0, Open::low},
-        "how far two triangles may approach before a new search, over the mean edge");
   }
 };
 

@@ -2,39 +2,17 @@
 
 #include <algorithm>
 
-#include "core/set_up.hpp"
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/setup/regions.hpp"
 
 namespace breccia::fdem {
 namespace {
 
-Case& set_up(World& w) {
-  return w.given.change(SetUp{});
-}
-
-/// How a load changes over time, by the quantity that its kind asks for.
-LoadAmplitude load_amplitude(const LoadConfig& load, LoadKind kind) {
-  const auto both = [&](const auto& quantity) {
-    return LoadAmplitude{amplitude(quantity, 0, load.history),
-                         amplitude(quantity, 1, load.history)};
-  };
-  if (kind == LoadKind::traction) return both(load.traction);
-  if (kind == LoadKind::force) return both(load.force);
-  return both(kind == LoadKind::absorbing ? OverTime<double>(1.0) : load.pressure);
-}
-
-LoadKind kind_of(const LoadConfig& load) {
-  if (load.kind == "pressure") return LoadKind::pressure;
-  if (load.kind == "traction") return LoadKind::traction;
-  if (load.kind == "fluid") return LoadKind::fluid;
-  return load.kind == "force" ? LoadKind::force : LoadKind::absorbing;
-}
-
 void prescribe_flow(FlowCase& flow, const LoadConfig& load) {
   flow.by_rate = load.rate.is_table() || load.rate.value != 0.0;
   const OverTime<double>& input = flow.by_rate ? load.rate : load.pressure;
-  flow.input = {input.is_table() ? 1.0 : input.value, amplitude(input, 0, load.history)};
+  flow.input = {input.is_table() ? 1.0 : input.value,
+                fdem_shared::amplitudes<Vec2>(input, load.history).x};
 }
 
 /// What does not change of a fluid that flows.
@@ -60,25 +38,13 @@ void set_up_flow(World& w, const Config& config, const LoadConfig& load, const M
 }  // namespace
 
 void prescribe_loads(World& w, const Config& config) {
+  fdem_shared::prescribe_loads(w, config);
   Case& given = set_up(w);
-  given.loads.clear();
-  given.load_amplitudes.clear();
-  given.load_names.clear();
-  for (const LoadConfig& load : config.loads) {
-    const LoadKind kind = kind_of(load);
-    given.load_names.push_back(load.name);
-    if (load.flows()) {  // each edge has a pressure of its own
-      prescribe_flow(given.flow, load);
-      given.loads.push_back({kind, {1.0, 1.0}, 1.0, {}, {}});
-      given.load_amplitudes.push_back({});
-      continue;
-    }
-    given.loads.push_back({kind,
-                           {1.0, 1.0},
-                           load.pressure.is_table() ? 1.0 : load.pressure.value,
-                           scale_of(load.traction),
-                           scale_of(load.force)});
-    given.load_amplitudes.push_back(load_amplitude(load, kind));
+  for (std::size_t i = 0; i < config.loads.size(); ++i) {
+    if (!config.loads[i].flows()) continue;
+    prescribe_flow(given.flow, config.loads[i]);  // each edge has a pressure of its own
+    given.loads[i] = {LoadKind::fluid, {1.0, 1.0}, 1.0, {}, {}};
+    given.load_amplitudes[i] = {};
   }
 }
 

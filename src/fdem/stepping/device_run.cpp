@@ -1,4 +1,4 @@
-// The step of fdem/stepping/step.hpp by launches of a device. In Space::shadow the processor
+// The step of fdem_shared/step.hpp by launches of a device. In Space::shadow the processor
 // carries them out.
 
 #include "core/device_run.hpp"
@@ -270,7 +270,7 @@ void list_amplitudes(World& w) {
     for (const Amplitude* a : {&both.x, &both.y}) tables.push_back(all.append(*a));
   };
   for (const PrescribedMotion& p : w.prescribed) {
-    append(p);
+    append(p.over);
     velocity.push_back(p.velocity);
   }
   for (const LoadAmplitude& a : w.given->load_amplitudes) append(a);

@@ -1,45 +1,14 @@
 #pragma once
-// The step of the FDEM: the only text of the order of its work.
-//
-// A run carries it out: HostRun by loops over packs, DeviceRun by launches, at once or recorded and
-// led by the device's clock. A run groups kernels into loops or launches; it never reorders them.
+// How the step of the FDEM (fdem_shared/step.hpp) is carried out: by HostRun in loops over packs,
+// by DeviceRun in launches, at once or recorded and led by the device's clock.
 
 #include "fdem/world.hpp"
+#include "fdem_shared/step.hpp"
 
 namespace breccia::fdem {
 
-/// Forces at the time of the positions, and the step that follows.
-template <class Run>
-void take_forces(Run&& run, World& w) {
-  // 3. Joints appear and crack, couples push and rub, triangles deform; one sum per corner, no
-  //    atomics
-  run.insert_joints(w);
-  run.pair_forces(w);
-  run.sum_forces(w);
-  run.load_forces(w);
-  run.bundle_forces(w);
-
-  // 4. The next step: Gershgorin's bound
-  run.choose_step(w);
-}
-
-/// One step: the points of Lukas 2014, section 2.
-template <class Run>
-void take_step(Run&& run, World& w) {
-  // 1. Newton's second law: velocities and positions of all corners
-  run.move_boundary(w);
-  run.send_ghosts(w);  // while the interior moves,
-  run.move_interior(w);
-  run.ask_for_search(w);      // all ranks vote,
-  run.inner_joint_forces(w);  // and what needs no ghosts goes ahead
-  run.receive_ghosts(w);
-
-  // 2. Contact detection, when travel has used the margin up or a joint has opened
-  run.search_if_due(w);
-
-  take_forces(run, w);
-  run.count_step(w);
-}
+using fdem_shared::take_forces;
+using fdem_shared::take_step;
 
 /// Parts that all runs of one step at a time share: ghosts, the search, insertion, loads, the time
 /// step.

@@ -66,23 +66,23 @@ struct Bounded : Kernel {
 
 /// Work that few couples need.
 template <class Number>
-BR_RARELY void begin_rarely(const CoupleForces<Number>* couples, Index c) {
+BR_COLD void cold_begin(const CoupleForces<Number>* couples, Index c) {
   stay_in_place(couples);
   couples->begin(c);
 }
 template <class Number>
-BR_RARELY Vec2 shape_force_rarely(const CoupleForces<Number>* couples, Index c, double penalty,
-                                  bool of_a, int corner) {
+BR_COLD Vec2 cold_shape_force(const CoupleForces<Number>* couples, Index c, double penalty,
+                              bool of_a, int corner) {
   stay_in_place(couples);
   return couples->shape_force(c, penalty, of_a, corner);
 }
 
 template <class Number>
-BR_RARELY typename CoupleForces<Number>::Opening opening_rarely(const CoupleForces<Number>* couples,
+BR_COLD typename CoupleForces<Number>::Unloading cold_unloading(const CoupleForces<Number>* couples,
                                                                 Index c, double penalty,
                                                                 double most) {
   stay_in_place(couples);
-  return couples->opening(c, penalty, most);
+  return couples->unloading(c, penalty, most);
 }
 
 /// CoupleForces by eight threads a couple, of which six each take an edge, and then a corner: every
@@ -161,13 +161,13 @@ struct CouplesWide {
       other_v[k] = loaded.other[k].velocity;
     }
     EdgePush mine;
-    Rubbing rubbing;
+    FrictionWork friction_work;
     Vec2 sum{};
     unsigned touching = 0;  // edges that do
     if (boxes_meet(own, other)) {
       const ContactPair law = all.law_of(c);
       if (is_new && loaded.parent_joint >= 0) {
-        if (leads) begin_rarely(&all, c);
+        if (leads) cold_begin(&all, c);
         group.wait();
         loaded.scale = kept.scale;
         loaded.drag = kept.drag[place.edge];
@@ -179,7 +179,7 @@ struct CouplesWide {
       if (all.rebound.loses()) {
         const double most = kept.most;
         group.wait();
-        const auto now = opening_rarely(&all, c, scale * law.penalty, most);
+        const auto now = cold_unloading(&all, c, scale * law.penalty, most);
         scale *= now.share;
         if (leads) kept.most = now.most;
       }
@@ -189,7 +189,7 @@ struct CouplesWide {
       touching = group.ballot(mine.touches) & 0x3fU;
       for (int s = 0; s < 6; ++s) {
         if ((touching >> s & 1U) == 0) continue;
-        rubbing.add(from(s, mine.taken), from(s, mine.sprung));
+        friction_work.add(from(s, mine.taken), from(s, mine.sprung));
         const double at_a[3] = {from(s, mine.overlap.at_a[0]), from(s, mine.overlap.at_a[1]),
                                 from(s, mine.overlap.at_a[2])};
         const double at_b[3] = {from(s, mine.overlap.at_b[0]), from(s, mine.overlap.at_b[1]),
@@ -211,7 +211,7 @@ struct CouplesWide {
           add(vector_from(s, mine.friction[0]), vector_from(s, mine.friction[1]));
       }
       if (touching != 0 && all.conservative)
-        sum += shape_force_rarely(&all, c, scale * law.penalty, place.of_a, place.of);
+        sum += cold_shape_force(&all, c, scale * law.penalty, place.of_a, place.of);
     }
     if (is_new && leads) kept.scale = loaded.scale;
 
@@ -230,7 +230,7 @@ struct CouplesWide {
       loaded.work -= from(k, taken);
       loaded.work -= from(k + 3, taken);
     }
-    rubbing.book(loaded.slid, loaded.sprung);
+    friction_work.book(loaded.slid, loaded.sprung);
     if (touching == 0) {
       kept.drag[place.edge] = 0.0;
       if (leads) {

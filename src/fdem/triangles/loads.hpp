@@ -1,38 +1,15 @@
 #pragma once
 // Forces on edges, and velocities and forces that follow a table over time.
 
-#include "core/table_over_time.hpp"
 #include "fdem/triangles/triangle_kernels.hpp"
+#include "fdem_shared/over_time.hpp"
 
 namespace breccia::fdem {
 
-/// A support's velocity over time; the host puts its value of each step into World::motions.
-struct PrescribedMotion {
-  Vec2 velocity{};  ///<  [m/s]
-  Amplitude x, y;   ///< of its parts
-
-  Vec2 at(double time) const { return {x.at(time) * velocity.x, y.at(time) * velocity.y}; }
-};
-
-/// How a load changes over time: its parts along x and y; of a pressure x alone.
-struct LoadAmplitude {
-  Amplitude x, y;
-
-  Vec2 at(double time) const { return {x.at(time), y.at(time)}; }
-};
-
-/// Load on an edge. Pressure and traction act per present length; a force is dead: it stays as
-/// given however its edges deform. A fluid is a pressure that spreads into cracks.
-enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing, fluid };
-
-/// A load with its value at this moment.
-struct LoadLaw {
-  LoadKind kind;
-  Vec2 factor;      ///< of the amplitude, now; of what has no direction both are alike  [-]
-  double pressure;  ///<  [Pa]
-  Vec2 traction;    ///<  [Pa]
-  Vec2 force;       ///<  [N/m]
-};
+using fdem_shared::LoadKind;
+using LoadAmplitude = fdem_shared::AmplitudeOf<Vec2>;
+using LoadLaw = fdem_shared::LoadLawOf<Vec2>;
+using PrescribedMotion = fdem_shared::PrescribedMotionOf<Vec2>;
 
 /// A loaded edge: edge k of a triangle.
 struct LoadedEdge {

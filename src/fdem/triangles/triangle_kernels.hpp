@@ -7,6 +7,7 @@
 #include "fdem/joints/joint_kernels.hpp"
 #include "fdem/triangles/columns.hpp"
 #include "fdem/triangles/motion_kernels.hpp"
+#include "fdem_shared/bundles.hpp"
 
 namespace breccia::fdem {
 
@@ -167,40 +168,8 @@ struct TriangleForces {
   }
 };
 
-/// Corners that move as one: at each vertex where some do, all corners, and who goes with whom.
-struct Bundles {
-  Buffer<Index> starts;  ///< first corner of each vertex, and the end
-  Buffer<Index> nodes;   ///< corners, ascending by global number
-  Buffer<Index> leader;  ///< place in `nodes` of the first corner of the same bundle
-};
-
-/// Shares the sum of a bundle's forces by mass: all its corners get one acceleration.
-struct BundleForces {
-  static constexpr const char* name = "fdem.bundles";
-  View<const Index> starts, nodes, leader;
-  View<const double> mass;
-  View<Corners> force;
-
-  BR_HD void set(const StepTime&) {}
-  BR_HD void operator()(Index vertex) const {
-    const Index end = starts[vertex + 1];
-    for (Index first = starts[vertex]; first < end; ++first) {
-      if (leader[first] != first) continue;
-      Vec2 sum{};
-      double total = 0.0;
-      for (Index k = first; k < end; ++k) {
-        if (leader[k] != first) continue;
-        const Index n = nodes[k];
-        sum += force[n / 3].at[n % 3];
-        total += mass[n / 3];
-      }
-      const Vec2 acceleration = (1.0 / total) * sum;
-      for (Index k = first; k < end; ++k)
-        if (leader[k] == first)
-          force[nodes[k] / 3].at[nodes[k] % 3] = mass[nodes[k] / 3] * acceleration;
-    }
-  }
-};
+using fdem_shared::Bundles;
+using BundleForces = fdem_shared::BundleForces<Corners>;
 
 /// Impedance rho c_p of absorbing edges of a triangle, times their largest factor; 0 elsewhere.
 struct EdgeDashpots {

@@ -232,9 +232,9 @@ struct CoupleForces {
     const double tried = norm(pull);
     if (tried > most) pull = (most / tried) * pull;
     const double taken = -0.5 * dt * dot(before + pull, rate);
-    fdem::Rubbing rubbing;
-    rubbing.add(taken, 0.5 * dot(pull, pull) / stiffness);
-    rubbing.book(kept.slid, kept.sprung);
+    fdem::FrictionWork friction_work;
+    friction_work.add(taken, 0.5 * dot(pull, pull) / stiffness);
+    friction_work.book(kept.slid, kept.sprung);
     kept.drag = pull;
     for (int k = 0; k < 4; ++k) {
       sum.force.on_a.at[k] += share_a[k] * pull;

@@ -5,6 +5,7 @@
 #include "fdem3/contact/couples.hpp"
 #include "fdem3/elements/motion_kernels.hpp"
 #include "fdem3/joints/joints.hpp"
+#include "fdem_shared/bundles.hpp"
 
 namespace breccia::fdem3 {
 
@@ -72,38 +73,7 @@ struct ElementForces {
   }
 };
 
-/// Corners that move as one: at each vertex where some do, all corners, and who goes with whom.
-struct Bundles {
-  Buffer<Index> starts;  ///< first corner of each vertex, and the end
-  Buffer<Index> nodes;   ///< corners, ascending by global number
-  Buffer<Index> leader;  ///< place in `nodes` of the first corner of the same bundle
-};
-
-/// Shares the sum of a bundle's forces by mass: all its corners get one acceleration.
-struct BundleForces {
-  static constexpr const char* name = "fdem3.bundles";
-  View<const Index> starts, nodes, leader;
-  View<const double> mass;
-  View<Corners> force;
-
-  BR_HD void operator()(Index vertex) const {
-    const Index end = starts[vertex + 1];
-    for (Index first = starts[vertex]; first < end; ++first) {
-      if (leader[first] != first) continue;
-      Vec3 sum{};
-      double total = 0.0;
-      for (Index k = first; k < end; ++k) {
-        if (leader[k] != first) continue;
-        const Index n = nodes[k];
-        sum += force[n / 4].at[n % 4];
-        total += mass[n / 4];
-      }
-      const Vec3 acceleration = (1.0 / total) * sum;
-      for (Index k = first; k < end; ++k)
-        if (leader[k] == first)
-          force[nodes[k] / 4].at[nodes[k] % 4] = mass[nodes[k] / 4] * acceleration;
-    }
-  }
-};
+using fdem_shared::Bundles;
+using BundleForces = fdem_shared::BundleForces<Corners>;
 
 }  // namespace breccia::fdem3

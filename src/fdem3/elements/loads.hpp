@@ -1,41 +1,15 @@
 #pragma once
 // Forces on faces, and velocities and forces that follow a table over time.
 
-#include "core/table_over_time.hpp"
 #include "fdem3/elements/tetrahedra.hpp"
+#include "fdem_shared/over_time.hpp"
 
 namespace breccia::fdem3 {
 
-/// A vector over time: its three parts, each by its own table.
-struct AmplitudeOf3 {
-  Amplitude x, y, z;
-
-  Vec3 at(double time) const { return {x.at(time), y.at(time), z.at(time)}; }
-};
-
-/// A support's velocity over time; the host puts its value of each step into World::motions.
-struct PrescribedMotion {
-  Vec3 velocity{};  ///<  [m/s]
-  AmplitudeOf3 over;
-
-  Vec3 at(double time) const {
-    const Vec3 a = over.at(time);
-    return {a.x * velocity.x, a.y * velocity.y, a.z * velocity.z};
-  }
-};
-
-/// Load on a face. Pressure and traction act per present area; a force is dead: it stays as
-/// given however its faces deform.
-enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing };
-
-/// A load with its value at this moment.
-struct LoadLaw {
-  LoadKind kind;
-  Vec3 factor;      ///< of the amplitude, now; of what has no direction all are alike  [-]
-  double pressure;  ///<  [Pa]
-  Vec3 traction;    ///<  [Pa]
-  Vec3 force;       ///<  [N]
-};
+using fdem_shared::LoadKind;
+using AmplitudeOf3 = fdem_shared::AmplitudeOf<Vec3>;
+using LoadLaw = fdem_shared::LoadLawOf<Vec3>;
+using PrescribedMotion = fdem_shared::PrescribedMotionOf<Vec3>;
 
 /// A loaded face.
 struct LoadedFace {

@@ -106,7 +106,7 @@ struct JointForces {
     JointPoints state{};
     if (before != JointStage::whole) state = points[i];
     const Vec3 slip = slip_in_space(o, offset);
-    fdem::BondTraction<double> answer[3];
+    fdem::BondTraction<double> bond_traction[3];
     double open[3], slid[3];
     Vec3 slide[3];
     for (int q = 0; q < 3; ++q) {
@@ -116,17 +116,17 @@ struct JointForces {
     }
     const bool asks_rock =
         bond.by_rock() && fdem::failure_of(state.point[1]) == fdem::Failure::none;
-    if (!asks_rock || fails_with_rock(i, bond, o, open, slid, slide, state, answer))
+    if (!asks_rock || fails_with_rock(i, bond, o, open, slid, slide, state, bond_traction))
       for (int q = 0; q < 3; ++q)
-        answer[q] = fdem::response(bond, strength[i], h, open[q], slid[q], state.point[q]);
+        bond_traction[q] = fdem::response(bond, strength[i], h, open[q], slid[q], state.point[q]);
     Vec3 traction[3], drag{};
     double pressure = 0.0;
     int failed = 0;
     bool damaged = false;
     for (int q = 0; q < 3; ++q) {
-      const Vec3 sideways = slid[q] > 0.0 ? (answer[q].shear / slid[q]) * slide[q] : Vec3{};
-      traction[q] = answer[q].normal * o.normal + sideways;
-      pressure -= area / 3.0 * answer[q].normal;
+      const Vec3 sideways = slid[q] > 0.0 ? (bond_traction[q].shear / slid[q]) * slide[q] : Vec3{};
+      traction[q] = bond_traction[q].normal * o.normal + sideways;
+      pressure -= area / 3.0 * bond_traction[q].normal;
       drag -= (area / 3.0) * sideways;
       failed += state.point[q].damage >= 1.0 ? 1 : 0;
       damaged = damaged || state.point[q].damage > 0.0;
@@ -149,20 +149,20 @@ struct JointForces {
   }
 
   /// Lets all points of a joint fail where the mean stress of the rock there fails near its face.
-  /// @param answer  of its points by the law of faces
-  /// @returns false where it does not fail: `state` and `answer` are those of this step then
+  /// @param bond_traction  of its points by the law of faces
+  /// @returns false where it does not fail: `state` and `bond_traction` are those of this step then
   BR_HD bool fails_with_rock(Index i, const JointBond& bond, const JointOpening& o,
                              const double (&open)[3], const double (&slid)[3],
                              const Vec3 (&slide)[3], JointPoints& state,
-                             fdem::BondTraction<double> (&answer)[3]) const {
+                             fdem::BondTraction<double> (&bond_traction)[3]) const {
     const double h = length[i], share = strength[i];
     Vec3 mean{};
     bool half_soft = false;  // it goes its own way to the end
     for (int q = 0; q < 3; ++q) {
       fdem::BondState<double>& point = state.point[q];
-      answer[q] = fdem::response(bond, share, h, open[q], slid[q], point);
-      mean += answer[q].normal * o.normal;
-      if (slid[q] > 0.0) mean += (answer[q].shear / slid[q]) * slide[q];
+      bond_traction[q] = fdem::response(bond, share, h, open[q], slid[q], point);
+      mean += bond_traction[q].normal * o.normal;
+      if (slid[q] > 0.0) mean += (bond_traction[q].shear / slid[q]) * slide[q];
       half_soft = half_soft || (point.damage > 0.0 && fdem::softening(point.damage) < 0.5);
     }
     if (half_soft) return false;
@@ -170,7 +170,7 @@ struct JointForces {
     const fdem::Failure how = fdem::failure_of(rock_failure(bond, share, s));
     if (how == fdem::Failure::none) return false;
     for (int q = 0; q < 3; ++q)
-      fdem::fail(bond, share, h, how, open[q], slid[q], answer[q], state.point[q]);
+      fdem::fail(bond, share, h, how, open[q], slid[q], bond_traction[q], state.point[q]);
     return true;
   }
 

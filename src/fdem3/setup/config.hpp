@@ -3,9 +3,6 @@
 // Materials, joints and friction have the keys of the plane method.
 
 #include "core/case_config.hpp"
-#include "core/servo.hpp"
-#include "core/stages.hpp"
-#include "core/table_over_time.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem3/setup/body_config.hpp"
 
@@ -42,28 +39,7 @@ struct RegionConfig {
   }
 };
 
-/// [[support]]: prescribed velocity of corners
-struct SupportConfig {
-  std::string name;
-  RegionConfig region;
-  std::vector<std::string> fix{"x", "y", "z"};
-  OverTime<Vec3> velocity;  ///<  [m/s]
-  HistoryConfig history;
-  SupportServoConfig servo;  ///< instead of the velocity along its axis
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("name", name, "name of the support: probes read its corners by it");
-    key.required("name");
-    region.each_key(key);
-    key("fix", fix, "directions that are prescribed: x, y, z");
-    key("velocity", velocity, "m/s", any_number,
-        "prescribed velocity of these directions, or a table [[t, x, y, z], ...] of it over time, "
-        "linear in between and constant beyond its ends");
-    history.each_key(key);
-    key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
-  }
-};
+using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec3>;
 
 /// [[load]]: forces on free faces
 struct LoadConfig {
@@ -94,66 +70,9 @@ struct LoadConfig {
   }
 };
 
-/// [[stage.support]]: what a support prescribes from a stage on
-struct SupportChange {
-  std::string name;
-  std::vector<std::string> fix{"same"};
-  OverTime<Vec3> velocity;  ///<  [m/s]
-  double ramp = 0.0;        ///<  [s]
-  SupportServoConfig servo;
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("name", name, "name of the support");
-    key.required("name");
-    key("fix", fix,
-        "directions that it prescribes from now on; [] sets its corners free; left out: the same "
-        "as before");
-    key("velocity", velocity, "m/s", any_number,
-        "their velocity from now on, or a table of it over time since the stage began; left out: "
-        "they stand still");
-    key("ramp", ramp, "s", not_negative,
-        "time since the stage began in which it grows from zero, linearly");
-    key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
-  }
-};
-
-/// [[stage.load]]: how large a load is from a stage on
-struct LoadChange {
-  std::string name;
-  OverTime<double> pressure;  ///<  [Pa]
-  OverTime<Vec3> traction;    ///<  [Pa]
-  OverTime<Vec3> force;       ///<  [N]
-  double ramp = 0.0;          ///<  [s]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("name", name, "name of the load");
-    key.required("name");
-    key("pressure", pressure, "Pa", any_number,
-        "pressure from now on, or a table of it over time since the stage began; left out: 0");
-    key("traction", traction, "Pa", any_number, "traction from now on, likewise");
-    key("force", force, "N", any_number, "force from now on, likewise");
-    key("ramp", ramp, "s", not_negative,
-        "time since the stage began in which it grows from zero, linearly");
-  }
-};
-
-/// [[stage]]
-struct StageConfig : StageEnd {
-  Vec3 gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
-  std::vector<SupportChange> supports;
-  std::vector<LoadChange> loads;
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    StageEnd::each_key(key);
-    key("gravity", gravity, "m/s2", any_number,
-        "acceleration of gravity from its beginning on; left out (inf): as before");
-    key.list("support", supports, "supports that prescribe something else from its beginning on");
-    key.list("load", loads, "loads that are another from its beginning on");
-  }
-};
+using SupportChange = fdem_shared::SupportChangeOf<Vec3>;
+using LoadChange = fdem_shared::LoadChangeOf<Vec3>;
+using StageConfig = fdem_shared::MeshStageConfig<Vec3>;
 
 /// [in_situ]
 struct InSituConfig {

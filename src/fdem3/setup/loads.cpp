@@ -3,24 +3,10 @@
 #include <algorithm>
 
 #include "fdem3/setup/regions.hpp"
-#include "fdem3/setup/writable.hpp"
+#include "fdem_shared/loaded_sides.hpp"
 
 namespace breccia::fdem3 {
 namespace {
-
-LoadKind kind_of(const LoadConfig& load) {
-  if (load.kind == "pressure") return LoadKind::pressure;
-  if (load.kind == "traction") return LoadKind::traction;
-  return load.kind == "force" ? LoadKind::force : LoadKind::absorbing;
-}
-
-/// How a load changes over time, by the quantity that its kind asks for.
-AmplitudeOf3 load_amplitude(const LoadConfig& load, LoadKind kind) {
-  if (kind == LoadKind::traction) return amplitude(load.traction, load.history);
-  if (kind == LoadKind::force) return amplitude(load.force, load.history);
-  return amplitude(kind == LoadKind::absorbing ? OverTime<double>(1.0) : load.pressure,
-                   load.history);
-}
 
 double area_of(const Model& model, Index face) {
   const auto& corners = model.tetrahedron[at(face / 4)];
@@ -31,23 +17,6 @@ double area_of(const Model& model, Index face) {
 }
 
 }  // namespace
-
-void prescribe_loads(World& w, const Config& config) {
-  Case& given = set_up(w);
-  given.loads.clear();
-  given.load_amplitudes.clear();
-  given.load_names.clear();
-  for (const LoadConfig& load : config.loads) {
-    const LoadKind kind = kind_of(load);
-    given.load_names.push_back(load.name);
-    given.loads.push_back({kind,
-                           {1.0, 1.0, 1.0},
-                           load.pressure.is_table() ? 1.0 : load.pressure.value,
-                           scale_of(load.traction),
-                           scale_of(load.force)});
-    given.load_amplitudes.push_back(load_amplitude(load, kind));
-  }
-}
 
 void set_up_loads(World& w, const Config& config, const Model& model) {
   std::vector<LoadedFace> loaded;
@@ -83,22 +52,10 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
 
 void list_loaded_faces(World& w) {
   if (w.given->loaded.empty()) return;
-  std::vector<GlobalId> ids;
-  copy_to(ids, w.tetrahedra.id);
-  std::vector<Index> starts{0};
-  std::vector<LoadedFace> here;
-  for (const LoadedFace& face : w.given->loaded) {
-    const auto found = std::lower_bound(ids.begin(), ids.end(), face.tetrahedron);
-    if (found == ids.end() || *found != face.tetrahedron) continue;
-    const auto place = static_cast<Index>(found - ids.begin());
-    if (!here.empty() && here.back().tetrahedron != place)
-      starts.push_back(static_cast<Index>(here.size()));
-    here.push_back(face);
-    here.back().tetrahedron = place;
-  }
-  if (!here.empty()) starts.push_back(static_cast<Index>(here.size()));
-  copy_to(w.load_starts, starts);
-  copy_to(w.loaded_faces, here);
+  const auto here = fdem_shared::loaded_here(
+      w.given->loaded, w.tetrahedra.id, [](auto& face) -> auto& { return face.tetrahedron; });
+  copy_to(w.load_starts, here.starts);
+  copy_to(w.loaded_faces, here.sides);
 }
 
 }  // namespace breccia::fdem3

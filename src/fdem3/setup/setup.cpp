@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
-#include <numeric>
 
 #include "core/world_space.hpp"
 #include "exec/error.hpp"
@@ -13,10 +11,25 @@
 #include "fdem3/setup/materials.hpp"
 #include "fdem3/setup/mesh_faces.hpp"
 #include "fdem3/setup/regions.hpp"
-#include "fdem3/setup/supports.hpp"
-#include "fdem3/setup/writable.hpp"
+#include "fdem3/shape.hpp"
+#include "fdem_shared/setup/elements.hpp"
+#include "fdem_shared/setup/supports.hpp"
 
 namespace breccia::fdem3 {
+
+using fdem_shared::begin_joints;
+using fdem_shared::corners_of_bodies;
+using fdem_shared::hold_anew;
+using fdem_shared::prescribe_supports;
+using fdem_shared::refuse_endless;
+using fdem_shared::set_up;
+using fdem_shared::set_up_bodies;
+using fdem_shared::set_up_bundles;
+using fdem_shared::set_up_elements;
+using fdem_shared::set_up_starts;
+using fdem_shared::set_up_supports;
+using fdem_shared::with_inertia;
+
 namespace {
 
 void corners_of(const Model& model, std::size_t t, Vec3 (&x)[4]) {
@@ -26,67 +39,6 @@ double volume_of(const Model& model, std::size_t t) {
   Vec3 x[4];
   corners_of(model, t, x);
   return dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])) / 6.0;
-}
-
-void set_up_elements(World& w, const Config& config, const Model& model) {
-  std::vector<GlobalId> id(model.tetrahedron.size());
-  std::iota(id.begin(), id.end(), 0);
-  std::vector<TetrahedronNodes> nodes;
-  std::vector<ShapeGradients> shape;
-  std::vector<double> mass, viscosity;
-  double edges = 0.0;
-  for (std::size_t t = 0; t < model.tetrahedron.size(); ++t) {
-    Vec3 x[4];
-    corners_of(model, t, x);
-    TetrahedronNodes corners;
-    for (std::size_t k = 0; k < 4; ++k) {
-      corners.at[k] = {x[k], model.velocity[t]};
-      w.vertex.push_back(model.tetrahedron[t][k]);
-    }
-    const double volume = volume_of(model, t);
-    if (!(volume > 0.0))
-      throw InputError("tetrahedron " + std::to_string(t) +
-                       ": it is turned inside out, or has no volume");
-    const MaterialConfig& m = config.materials[static_cast<std::size_t>(model.material[t])];
-    nodes.push_back(corners);
-    shape.push_back(shape_gradients(x));
-    mass.push_back(0.25 * m.density * volume);
-    const double edge = std::cbrt(6.0 * std::sqrt(2.0) * volume);  // of the regular one as large
-    edges += edge;
-    viscosity.push_back(m.damping * 2.0 * edge * std::sqrt(m.young * m.density));
-  }
-  Case& given = set_up(w);
-  given.mean_edge = edges / static_cast<double>(model.tetrahedron.size());
-  given.skin = config.search.margin * given.mean_edge;
-  Tetrahedra& t = w.tetrahedra;
-  copy_to(t.id, id);
-  copy_to(t.group, model.group);
-  copy_to(t.material, std::vector<Index>(model.material.begin(), model.material.end()));
-  copy_to(t.nodes, nodes);
-  copy_to(t.shape, shape);
-  copy_to(t.mass, mass);
-  copy_to(t.viscosity, viscosity);
-  t.force.resize(model.size());
-  t.viscous_work.resize(model.size());
-  t.damping_work.resize(model.size());
-  t.load_work.resize(model.size());
-}
-
-/// Vertices with several corners, some of which move as one.
-void set_up_bundles(World& w, const std::vector<std::uint8_t>& tied) {
-  std::vector<std::vector<Index>> corners(tied.size());
-  for (Index n = 0; n < 4 * w.tetrahedra.size(); ++n)
-    if (tied[at(w.vertex[at(n)])] != 0) corners[at(w.vertex[at(n)])].push_back(n);
-  std::vector<Index> starts{0}, nodes;
-  for (const std::vector<Index>& ring : corners) {
-    if (ring.empty()) continue;
-    nodes.insert(nodes.end(), ring.begin(), ring.end());
-    starts.push_back(static_cast<Index>(nodes.size()));
-  }
-  if (nodes.empty()) return;
-  copy_to(w.bundles.starts, starts);
-  copy_to(w.bundles.nodes, nodes);
-  derive_bundles(w);
 }
 
 /// Joints that are being collected.
@@ -166,14 +118,9 @@ class Joining {
     copy_to(j.length, list_.length);
     copy_to(j.strength, list_.strength);
     if (config_.in_situ.any()) copy_to(j.preset, list_.preset);
-    copy_to(j.broke_at, std::vector<double>(list_.face_a.size(), -1.0));
     j.stage.resize(count);
-    j.points.resize(count);
     j.force.resize(count);
-    j.work.resize(count);
-    j.pressing.resize(count);
-    j.shear_at_break.resize(count);
-    j.inherited_work.resize(count);
+    begin_joints(j, count);
     set_up_bundles(w_, tied_);
   }
 
@@ -264,68 +211,6 @@ std::vector<double> contact_lengths(const Config& config, const Model& model) {
   return lengths;
 }
 
-void set_up_bodies(World& w, const Model& model) {
-  Case& given = set_up(w);
-  given.groups = model.groups;
-  for (std::size_t g = 0; g < model.groups.size(); ++g) {
-    NodeSet set{model.groups[g], {}};
-    for (Index t = 0; t < model.size(); ++t)
-      if (static_cast<std::size_t>(model.group[at(t)]) == g)
-        for (Index k = 0; k < 4; ++k) set.nodes.push_back(4 * t + k);
-    given.sets.push_back(std::move(set));
-  }
-}
-
-/// Places at the start, for displacements and strains.
-void set_up_starts(Case& given, const Config& config, const Model& model) {
-  std::vector<Vec3> starts;
-  for (const auto& corners : model.tetrahedron)
-    for (const Index vertex : corners) starts.push_back(model.point[at(vertex)]);
-  bool any = given.shown.displacement;
-  for (const ProbeConfig& p : config.probes) {
-    const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
-    any |= kind == Quantity::Kind::displacement || kind == Quantity::Kind::strain;
-    if (kind != Quantity::Kind::strain) continue;
-    std::vector<Index> corners(starts.size());
-    std::iota(corners.begin(), corners.end(), 0);
-    for (const NodeSet& set : given.sets)
-      if (set.name == p.on) corners = set.nodes;
-    const ReadBox box(p.min, p.max);
-    std::vector<Vec3> points;
-    for (const Index n : corners)
-      if (box.holds(starts[at(n)])) points.push_back(starts[at(n)]);
-    bool fits = false;
-    given.strain_fits.push_back({p.name, strain_fit(points, 3, fits)});
-    if (!fits)
-      throw InputError("probe." + p.name +
-                       ": strain needs corners that do not lie in a plane; its region holds " +
-                       std::to_string(points.size()));
-  }
-  if (any) copy_to(given.starts, starts);
-}
-
-/// No machine takes more steps than this, and time, a sum of them, would stop.
-void refuse_endless(const World& w) {
-  constexpr double most = 1e15;
-  const RuledStep least = ruled_step(w, true);
-  const double dt = std::min(w.next_dt, w.given->time.safety * least.step);
-  if (dt * most > w.given->time.end) return;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the stable time step is %.3g s, ruled by %s: time.end = %.3g s is more than 1e15 "
-                "steps away; see the densities, moduli and stiffnesses of the materials",
-                dt, least.term, w.given->time.end);
-  throw InputError(text);
-}
-
-/// More inertia under the weight that bodies have: time.mass_scaling.
-Config with_inertia(Config config) {
-  const double scale = config.time.mass_scaling;
-  for (MaterialConfig& material : config.materials) material.density *= scale;
-  config.gravity = (1.0 / scale) * config.gravity;
-  return config;
-}
-
 }  // namespace
 
 World::World(const Exec& how) : exec(how) {
@@ -334,6 +219,23 @@ World::World(const Exec& how) : exec(how) {
 
 void move_to(World& w, Space space) {
   move_world(w, space);
+}
+
+Shape::AtStart Shape::at_start(const TetrahedronNodes& nodes, double density, std::size_t number) {
+  Vec3 x[4];
+  places(nodes, x);
+  const double volume = dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])) / 6.0;
+  if (!(volume > 0.0))
+    throw InputError("tetrahedron " + std::to_string(number) +
+                     ": it is turned inside out, or has no volume");
+  return {shape_gradients(x), 0.25 * density * volume, std::cbrt(6.0 * std::sqrt(2.0) * volume)};
+}
+
+std::vector<Index> Shape::prescribe(World& w, const Config& config) {
+  std::vector<Hold> holds;
+  std::vector<Index> hold(corners_of_bodies(w, config) / 4, -1);
+  prescribe_supports(w, config, holds, hold);
+  return hold;
 }
 
 World make_world(const Config& asked, const Model& model, const Exec& exec) {
@@ -355,8 +257,10 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   set_up_bodies(w, model);
   set_up_elements(w, config, model);
   Joining(w, config, model).store();
-  set_up_supports(w, config, model);
-  set_up_starts(set_up(w), config, model);
+  set_up_supports(w, config, [&](const RegionConfig& region, const std::string& where) {
+    return corners_in(model, region, where);
+  });
+  set_up_starts(w, config, model);
   set_up_loads(w, config, model);
   w.exposed.changed.resize(2);
   w.exposed.vertex.resize(static_cast<Index>(model.point.size()));
@@ -376,11 +280,7 @@ void configure(World& w, const Config& config) {
   given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
   given.local_damping = config.local_damping;
   copy_to(given.contact_pairs, contact_table(config, given.contact_lengths));
-  const std::vector<Index> hold = prescribe_supports(w, config);
-  std::vector<Index> ids, own;
-  copy_to(ids, w.tetrahedra.id);
-  for (const Index id : ids) own.push_back(hold[at(id)]);
-  copy_to(w.tetrahedra.hold, own);
+  hold_anew(w, config);
   prescribe_loads(w, config);
 }
 

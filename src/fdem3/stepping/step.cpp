@@ -1,27 +1,11 @@
 #include "fdem3/stepping/step.hpp"
 
-#include <algorithm>
-
-#include "core/stepping.hpp"
-#include "exec/for_each.hpp"
 #include "fdem3/joints/joint_kernels.hpp"
 #include "fdem3/ranks.hpp"
+#include "fdem_shared/stepping.hpp"
 
 namespace breccia::fdem3 {
 namespace {
-
-struct OwnedStableStep {
-  StableStep stable;
-  OwnedView owned;
-  BR_HD double operator()(Index t) const { return owned(t) ? stable(t) : largest_least; }
-};
-
-/// The stable step of those that can touch: where a joint may just have broken.
-struct StableStepOf {
-  OwnedStableStep stable;
-  View<const Index> tetrahedron;
-  BR_HD double operator()(Index i) const { return stable(tetrahedron[i]); }
-};
 
 /// Runs a kernel for the tetrahedra of this rank: ghosts follow their owners.
 template <class Kernel>
@@ -52,24 +36,10 @@ MoveTetrahedra move_kernel(World& w) {
           w.beyond.view()};
 }
 
-AllowedStep allowed_step(const World& w) {
-  return {w.given->time.safety, w.given->time.max_step};
-}
-
 }  // namespace
 
 Kick kick(const World& w) {
-  const Tetrahedra& t = w.tetrahedra;
-  return {w.last_dt,
-          w.next_dt,
-          w.given->gravity,
-          w.given->local_damping,
-          w.given->holds.view(),
-          w.motions.view(),
-          t.mass.view(),
-          t.nodes.view(),
-          t.force.view(),
-          t.hold.view()};
+  return fdem_shared::world_kick(w);
 }
 
 StableStep stable_step(const World& w) {
@@ -102,27 +72,13 @@ StableStep stable_step(const World& w) {
 }
 
 void list_motions(World& w) {
-  if (w.prescribed.empty()) return;
-  std::vector<Motion> now;
-  const double middle = w.time + 0.5 * w.next_dt;
-  for (const PrescribedMotion& p : w.prescribed) now.push_back({p.at(middle)});
-  copy_to(w.motions, now);
+  fdem_shared::list_world_motions(w);
 }
-
 double choose_time_step(const World& w) {
-  const StageTime timed(w.exec, "time_step");
-  const OwnedStableStep stable{stable_step(w), w.domain.owned_view()};
-  const double least =
-      w.domain.least(fold(w.exec, w.tetrahedra.size(), largest_least, stable, Least{}));
-  return allowed_step(w)(least, w.last_dt);
+  return fdem_shared::world_time_step(w);
 }
-
 double shortened_time_step(const World& w, const Buffer<Index>& tetrahedra) {
-  const StageTime timed(w.exec, "time_step");
-  const double stable = w.domain.least(
-      fold(w.exec, tetrahedra.size(), largest_least,
-           StableStepOf{{stable_step(w), w.domain.owned_view()}, tetrahedra.view()}, Least{}));
-  return std::min(w.next_dt, allowed_step(w)(stable, w.last_dt));
+  return fdem_shared::world_shortened_step(w, tetrahedra);
 }
 
 void move_elements(World& w) {
@@ -194,10 +150,7 @@ void sum_forces(World& w) {
 void load_forces(World& w) {
   if (w.load_starts.size() < 2) return;
   const StageTime timed(w.exec, "load_forces");
-  std::vector<LoadLaw> now = w.given->loads;
-  for (std::size_t i = 0; i < now.size(); ++i)
-    now[i].factor = w.given->load_amplitudes[i].at(w.time);
-  copy_to(w.load_laws, now);
+  fdem_shared::list_load_factors(w);
   Tetrahedra& t = w.tetrahedra;
   for_each(w.exec, w.load_starts.size() - 1,
            LoadForces{std::as_const(w.load_starts).view(), std::as_const(w.loaded_faces).view(),
@@ -206,60 +159,60 @@ void load_forces(World& w) {
 }
 
 void bundle_forces(World& w) {
-  if (w.mesh.bundled && !w.domain.single_rank()) {  // also on ranks that have none
-    const StageTime timed(w.exec, "halo");
-    w.tied_forces.refresh(w.exec, *w.domain.ranks, w.tetrahedra.force);
-  }
-  if (w.bundles.starts.size() < 2) return;
-  const StageTime timed(w.exec, "bundles");
-  for_each(
-      w.exec, w.bundles.starts.size() - 1,
-      BundleForces{std::as_const(w.bundles.starts).view(), std::as_const(w.bundles.nodes).view(),
-                   std::as_const(w.bundles.leader).view(), std::as_const(w.tetrahedra.mass).view(),
-                   w.tetrahedra.force.view()});
+  const Bundles& all = w.bundles;
+  fdem_shared::share_forces_of_bundles(
+      w, BundleForces{all.starts.view(), all.nodes.view(), all.leader.view(),
+                      std::as_const(w.tetrahedra.mass).view(), w.tetrahedra.force.view()});
 }
 void share_bundle_forces(World& w) {
   bundle_forces(w);
 }
 
-void take_forces(World& w) {
-  // 3. Joints crack, couples push and rub, tetrahedra deform; one sum per corner, no atomics
+void Run::move_boundary(World& w) const {
+  move_elements(w);
+}
+void Run::send_ghosts(World& w) const {
+  start_ghosts(w);
+}
+void Run::move_interior(World& w) const {
+  advance_time(w);
+}
+void Run::ask_for_search(World& w) const {
+  fdem3::ask_for_search(w);
+}
+void Run::receive_ghosts(World& w) const {
+  finish_ghosts(w);
+}
+void Run::search_if_due(World& w) const {
+  if (!couples_are_due(w)) return;
+  refresh_ghosts(w);
+  find_couples(w);
+}
+void Run::pair_forces(World& w) const {
   joint_forces(w);
   couple_forces(w);
-  sum_forces(w);
-  load_forces(w);
-  bundle_forces(w);
-
-  // 4. The next step: Gershgorin's bound
+}
+void Run::sum_forces(World& w) const {
+  fdem3::sum_forces(w);
+}
+void Run::load_forces(World& w) const {
+  fdem3::load_forces(w);
+}
+void Run::bundle_forces(World& w) const {
+  fdem3::bundle_forces(w);
+}
+void Run::choose_step(World& w) const {
   if (w.step % w.given->time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }
 
-void take_step(World& w) {
-  // 1. Newton's second law: velocities and positions of all corners
-  move_elements(w);
-  start_ghosts(w);
-  ask_for_search(w);  // all ranks vote
-  finish_ghosts(w);
-  advance_time(w);
-
-  // 2. Contact detection, when travel has used the margin up or a joint has opened
-  if (couples_are_due(w)) {
-    refresh_ghosts(w);
-    find_couples(w);
-  }
-
-  take_forces(w);
-  w.step += 1;
-}
-
 void step(World& w) {
-  take_step(w);
+  fdem_shared::take_step(Run{}, w);
 }
 void evaluate_forces(World& w) {
-  take_forces(w);
+  fdem_shared::take_forces(Run{}, w);
 }
 Advanced advance(World& w, const StopAt&) {
-  take_step(w);
+  step(w);
   return {1, w.last_dt, w.last_dt};
 }
 

@@ -100,19 +100,19 @@ Displacements ElasticNetwork::forces(const Displacements& at) const {
 Displacements ElasticNetwork::relaxed(const Held& held, const Displacements& load,
                                       double tolerance) const {
   const std::size_t count = members_.size();
-  Displacements x = held.value, residual(count), step(count), answer(count);
+  Displacements x = held.value, residual(count), step(count), internal(count);
   for (Six& s : x)
     for (std::size_t c = 3; c < 6; ++c) s[c] *= mean_radius_;
   const Displacements stiffness = diagonal();
   const auto is_free = [&](std::size_t i, std::size_t c) {
     return !held.fixed[i][c] && stiffness[i][c] > 0.0;
   };
-  add_forces(x, answer);
+  add_forces(x, internal);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t c = 0; c < 6; ++c) {
       if (!is_free(i, c)) continue;
       const double pull = load.empty() ? 0.0 : load[i][c] / (c < 3 ? 1.0 : mean_radius_);
-      residual[i][c] = pull - answer[i][c];
+      residual[i][c] = pull - internal[i][c];
     }
   const auto weighted = [&] {
     return total(count, [&](std::size_t i, std::size_t c) {
@@ -127,14 +127,15 @@ Displacements ElasticNetwork::relaxed(const Held& held, const Displacements& loa
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t c = 0; c < 6; ++c)
         step[i][c] = is_free(i, c) ? residual[i][c] / stiffness[i][c] + keep * step[i][c] : 0.0;
-    answer.assign(count, {});
-    add_forces(step, answer);
-    const double along =
-        now / total(count, [&](std::size_t i, std::size_t c) { return step[i][c] * answer[i][c]; });
+    internal.assign(count, {});
+    add_forces(step, internal);
+    const double along = now / total(count, [&](std::size_t i, std::size_t c) {
+                           return step[i][c] * internal[i][c];
+                         });
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t c = 0; c < 6; ++c) {
         x[i][c] += along * step[i][c];
-        if (is_free(i, c)) residual[i][c] -= along * answer[i][c];
+        if (is_free(i, c)) residual[i][c] -= along * internal[i][c];
       }
     before = now;
     now = weighted();

@@ -6,87 +6,16 @@
 
 #include "core/on_host.hpp"
 #include "domain/drift.hpp"
-#include "domain/parcel.hpp"
 #include "exec/tasks.hpp"
 #include "fdem3/observe.hpp"
 #include "fdem3/ranks.hpp"
+#include "run/frames/mesh_parts.hpp"
 #include "run/method/fdem3_method.hpp"
 
 namespace breccia {
 namespace {
 
 using namespace fdem3;
-
-/// What a rank cannot know by itself.
-struct PlacedParts {
-  std::vector<Index> fragment;  ///< of each own tetrahedron
-  std::vector<Index> crack;     ///< place of each own crack face
-  std::int64_t cracks = 0;
-};
-
-/// The tetrahedra, and the joints that have softened or broken, of this rank: by their places in
-/// memory.
-struct OwnParts {
-  std::vector<Index> elements, cracks;
-  std::int64_t shown = 0;  ///< tetrahedra in the frame of the whole
-};
-
-/// Rank 0: fragments and places of crack faces, from what all ranks have told.
-std::vector<Message> parts_placed_on_first(const std::vector<Message>& told, const World& mesh) {
-  std::vector<std::vector<Index>> elements, cracks;
-  std::vector<std::uint8_t> broken(at(mesh.joints.size()), 0);
-  std::vector<Index> place(at(mesh.joints.size()), 0);
-  for (const Message& message : told) {
-    Unpacking from(message);
-    elements.push_back(from.array<Index>());
-    cracks.push_back(from.array<Index>());
-    for (const Index joint : cracks.back()) place[at(joint)] = 1;
-    for (const Index joint : from.array<Index>()) broken[at(joint)] = 1;
-  }
-  Index count = 0;
-  for (Index& one : place) one = std::exchange(count, count + one);
-  const std::vector<Index> fragment = fragments(mesh, broken).of;
-  std::vector<Message> answers;
-  for (std::size_t r = 0; r < told.size(); ++r) {
-    for (Index& t : elements[r]) t = fragment[at(t)];
-    for (Index& joint : cracks[r]) joint = place[at(joint)];
-    Message& answer = answers.emplace_back();
-    put_array(answer, elements[r]);
-    put_array(answer, cracks[r]);
-    put_value(answer, count);
-  }
-  return answers;
-}
-
-/// @param mesh  rank 0: the whole, whose broken joints may be out of date
-PlacedParts placed_parts(const World& w, const Tetrahedra& t, const Joints& joints,
-                         const OwnParts& own, const World* mesh) {
-  PlacedParts placed;
-  if (w.domain.single_rank()) {
-    placed.fragment = fragments(w).of;
-    for (std::size_t l = 0; l < own.cracks.size(); ++l)
-      placed.crack.push_back(static_cast<Index>(l));
-    placed.cracks = static_cast<std::int64_t>(own.cracks.size());
-    return placed;
-  }
-  std::vector<Index> ids, cracks, broken;
-  for (const Index i : own.elements) ids.push_back(t.id.data()[i]);
-  for (const Index i : own.cracks) {
-    cracks.push_back(w.mesh.joint_number.data()[i]);
-    if (joints.stage.data()[i] == JointStage::broken) broken.push_back(cracks.back());
-  }
-  Communicator& ranks = *w.domain.ranks;
-  std::vector<Message> messages(at(ranks.size()));
-  for (const std::vector<Index>* list : {&ids, &cracks, &broken}) put_array(messages[0], *list);
-  messages = ranks.exchange(std::move(messages));
-  messages = ranks.exchange(mesh != nullptr ? parts_placed_on_first(messages, *mesh)
-                                            : std::vector<Message>(at(ranks.size())));
-  Unpacking from(messages[0]);
-  placed.fragment = from.array<Index>();
-  placed.crack = from.array<Index>();
-  placed.cracks = from.value<Index>();
-  return placed;
-}
 
 void put_vector(FrameField& field, std::size_t place, const Vec3& v) {
   field.values[3 * place] = static_cast<float>(v.x);
@@ -166,7 +95,6 @@ class FrameOfTetrahedra {
     for (int k = 0; k < 3; ++k) visit(e.a[k], e.b[k]);
   }
   void add_cracks() {
-    FrameField mode{"mode", "-", 1, {}}, lost{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
     std::size_t point = 4 * own_.elements.size();
     for (std::size_t l = 0; l < own_.cracks.size(); ++l) {
       const Index i = own_.cracks[l];
@@ -179,15 +107,8 @@ class FrameOfTetrahedra {
         put_vector(f_.point_fields[0], point++,
                    0.5 * (velocity_[at(a / 4)].at[a % 4] + velocity_[at(b / 4)].at[b % 4]));
       });
-      mode.values.push_back(static_cast<float>(mode_of(j_, i)));
-      double worst = j_.stage.data()[i] == JointStage::broken ? 1.0 : 0.0;
-      for (const auto& p : j_.points.data()[i].point) worst = std::max(worst, p.damage);
-      lost.values.push_back(static_cast<float>(worst));
-      time.values.push_back(static_cast<float>(j_.broke_at.data()[i]));
     }
-    f_.triangle_fields.push_back(std::move(mode));
-    f_.triangle_fields.push_back(std::move(lost));
-    f_.triangle_fields.push_back(std::move(time));
+    add_crack_fields(j_, own_, f_.triangle_fields);
   }
 
   /// Of corners; of crack faces the mean of both sides.
@@ -238,35 +159,6 @@ class FrameOfTetrahedra {
   std::vector<Corners> velocity_;
 };
 
-/// Couples that press on each other, by the forces of the last step: between centroids.
-std::vector<FrameContact> pressing_couples(const World& w, const Tetrahedra& t) {
-  std::vector<FrameContact> contacts;
-  const OnHost a(w.couples.pairs.a, w.exec.space), b(w.couples.pairs.b, w.exec.space);
-  const OnHost forces(w.couples.history.force, w.exec.space);
-  for (Index i = 0; i < w.couples.size(); ++i) {
-    const Index from = a->data()[i], to = b->data()[i];
-    Vec3 force{};
-    for (const Vec3& corner : forces->data()[i].on_b.at) force += corner;
-    if (!w.domain.owns(from) || dot(force, force) == 0.0) continue;
-    contacts.push_back({t.id.data()[from], t.id.data()[to], centroid(t.nodes.data()[from]),
-                        centroid(t.nodes.data()[to]), force});
-  }
-  return contacts;
-}
-
-/// Where the items of a part stand in the whole.
-FramePlaces places_of_parts(const Tetrahedra& t, const OwnParts& own, const PlacedParts& placed) {
-  FramePlaces places;
-  for (const Index i : own.elements) places.tetrahedron.push_back(t.id.data()[i]);
-  places.triangle.assign(placed.crack.begin(), placed.crack.end());
-  for (const std::int32_t id : places.tetrahedron)
-    for (std::int32_t c = 0; c < 4; ++c) places.point.push_back(4 * id + c);
-  const auto behind = static_cast<std::int32_t>(4 * own.shown);
-  for (const std::int32_t crack : places.triangle)
-    for (std::int32_t c = 0; c < 3; ++c) places.point.push_back(behind + 3 * crack + c);
-  return places;
-}
-
 }  // namespace
 
 FramePart fdem3_frame(World& w, const World* mesh) {
@@ -275,11 +167,7 @@ FramePart fdem3_frame(World& w, const World* mesh) {
   OwnParts own;
   for (std::size_t g = 0; g < w.given->groups.size(); ++g)
     own.shown += static_cast<std::int64_t>(w.given->sets[g].nodes.size() / 4);
-  for (Index t = 0; t < elements->size(); ++t)
-    if (w.domain.owns(t)) own.elements.push_back(t);
-  for (Index i = 0; i < joints->size(); ++i)
-    if (is_damaged(joints->stage.data()[i]) && w.domain.owns(joints->face_a.data()[i] / 4))
-      own.cracks.push_back(i);
+  list_own(w, *joints, {}, own);
   const PlacedParts known = placed_parts(w, *elements, *joints, own, mesh);
 
   FramePart part;
@@ -288,8 +176,11 @@ FramePart fdem3_frame(World& w, const World* mesh) {
   f.time = w.time;
   f.groups = w.given->groups;
   FrameOfTetrahedra(w, *elements, *joints, own, known, f).fill();
-  part.contacts = pressing_couples(w, *elements);
-  if (!w.domain.single_rank()) part.places = places_of_parts(*elements, own, known);
+  const OnHost forces(w.couples.history.force, w.exec.space);
+  add_pressing_couples(w, *elements, *forces, part.contacts);
+  if (!w.domain.single_rank())
+    add_places(w, *elements, own, known, part.places, part.places.tetrahedron,
+               part.places.triangle);
   part.places.whole = w.domain.single_rank();
   part.places.tetrahedra = own.shown;
   part.places.triangles = known.cracks;

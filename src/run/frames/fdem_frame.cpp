@@ -6,11 +6,11 @@
 
 #include "core/on_host.hpp"
 #include "domain/drift.hpp"
-#include "domain/parcel.hpp"
 #include "exec/tasks.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
 #include "fdem/setup/removal.hpp"
+#include "run/frames/mesh_parts.hpp"
 #include "run/method/fdem_method.hpp"
 
 namespace breccia {
@@ -18,27 +18,8 @@ namespace {
 
 using namespace fdem;
 
-/// Places of fragments and lines, which a rank cannot know by itself.
-struct Placed {
-  std::vector<Index> fragment;  ///< of each own triangle
-  std::vector<Index> line;      ///< place of each own line
-  std::int64_t lines;
-};
-
-/// The triangles, and the joints that have softened or broken, of this rank: by their places in
-/// memory.
-struct Own {
-  std::vector<Index> triangles, lines;
-  std::vector<std::int32_t> place;  ///< of triangles in the frame, by global id; empty: their ids
-  std::int64_t shown = 0;           ///< triangles in the frame of the whole
-
-  std::int32_t place_of(GlobalId id) const {
-    return place.empty() ? static_cast<std::int32_t>(id) : place[at(id)];
-  }
-};
-
 /// Frames leave out bodies that have been taken out.
-void leave_out_removed(const Case& given, Own& own) {
+void leave_out_removed(const Case& given, OwnParts& own) {
   own.shown = 0;
   for (std::size_t b = 0; b < given.groups.size(); ++b)
     if (given.removed[b] == 0)
@@ -52,63 +33,6 @@ void leave_out_removed(const Case& given, Own& own) {
       for (const Index n : given.sets[b].nodes) own.place[at(n / 3)] = 0;
   std::int32_t count = 0;
   for (std::int32_t& one : own.place) one = std::exchange(count, count + one);
-}
-
-/// Rank 0: fragments and places of lines, from what all ranks have told.
-std::vector<Message> placed_on_first(const std::vector<Message>& told, const World& mesh) {
-  std::vector<std::vector<Index>> triangles, lines;
-  std::vector<std::uint8_t> broken(at(mesh.joints.size()), 0);
-  std::vector<Index> place(at(mesh.joints.size()), 0);
-  for (const Message& message : told) {
-    Unpacking from(message);
-    triangles.push_back(from.array<Index>());
-    lines.push_back(from.array<Index>());
-    for (const Index joint : lines.back()) place[at(joint)] = 1;
-    for (const Index joint : from.array<Index>()) broken[at(joint)] = 1;
-  }
-  Index count = 0;
-  for (Index& one : place) one = std::exchange(count, count + one);
-  const std::vector<Index> fragment = fragments(mesh, broken).of;
-  std::vector<Message> answers;
-  for (std::size_t r = 0; r < told.size(); ++r) {
-    for (Index& t : triangles[r]) t = fragment[at(t)];
-    for (Index& joint : lines[r]) joint = place[at(joint)];
-    Message& answer = answers.emplace_back();
-    put_array(answer, triangles[r]);
-    put_array(answer, lines[r]);
-    put_value(answer, count);
-  }
-  return answers;
-}
-
-/// @param mesh  rank 0: the whole, whose broken joints may be out of date
-Placed placed(const World& w, const Triangles& triangles, const Joints& joints, const Own& own,
-              const World* mesh) {
-  Placed placed;
-  if (w.domain.single_rank()) {
-    const std::vector<Index> of = fragments(w).of;
-    for (const Index t : own.triangles) placed.fragment.push_back(of[at(t)]);
-    for (std::size_t l = 0; l < own.lines.size(); ++l) placed.line.push_back(static_cast<Index>(l));
-    placed.lines = static_cast<std::int64_t>(own.lines.size());
-    return placed;
-  }
-  std::vector<Index> ids, lines, broken;
-  for (const Index t : own.triangles) ids.push_back(triangles.id.data()[t]);
-  for (const Index i : own.lines) {
-    lines.push_back(w.mesh.joint_number.data()[i]);
-    if (joints.stage.data()[i] == JointStage::broken) broken.push_back(lines.back());
-  }
-  Communicator& ranks = *w.domain.ranks;
-  std::vector<Message> messages(at(ranks.size()));
-  for (const std::vector<Index>* list : {&ids, &lines, &broken}) put_array(messages[0], *list);
-  messages = ranks.exchange(std::move(messages));
-  messages = ranks.exchange(mesh != nullptr ? placed_on_first(messages, *mesh)
-                                            : std::vector<Message>(at(ranks.size())));
-  Unpacking from(messages[0]);
-  placed.fragment = from.array<Index>();
-  placed.line = from.array<Index>();
-  placed.lines = from.value<Index>();
-  return placed;
 }
 
 /// Fields of points besides velocity, in the order in which frames hold them.
@@ -153,11 +77,11 @@ void each_of(std::size_t count, int threads, const Work& work) {
 }
 
 void add_triangles(const World& w, const Triangles& t, const std::vector<Corners>& velocity,
-                   const Own& own, const Placed& placed, Frame& f) {
-  const std::size_t count = own.triangles.size();
+                   const OwnParts& own, const PlacedParts& placed, Frame& f) {
+  const std::size_t count = own.elements.size();
   f.triangles.resize(3 * count);
   each_of(count, w.exec.threads, [&](std::size_t k) {
-    const Index i = own.triangles[k];
+    const Index i = own.elements[k];
     for (std::size_t c = 0; c < 3; ++c) {
       f.triangles[3 * k + c] =
           static_cast<std::int32_t>(3 * own.place_of(t.id.data()[i]) + static_cast<int>(c));
@@ -167,14 +91,13 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
   const auto field = [&](const char* name, const char* unit, const auto& value) {
     FrameField& made =
         f.triangle_fields.emplace_back(FrameField{name, unit, 1, std::vector<float>(count)});
-    each_of(count, w.exec.threads, [&](std::size_t k) {
-      made.values[k] = static_cast<float>(value(own.triangles[k], k));
-    });
+    each_of(count, w.exec.threads,
+            [&](std::size_t k) { made.values[k] = static_cast<float>(value(own.elements[k], k)); });
   };
   const auto number = [&](const char* name, const auto& value) {
     std::vector<std::int32_t> numbers(count);
     each_of(count, w.exec.threads, [&](std::size_t k) {
-      numbers[k] = static_cast<std::int32_t>(value(own.triangles[k], k));
+      numbers[k] = static_cast<std::int32_t>(value(own.elements[k], k));
     });
     f.triangle_fields.push_back(whole_numbers(name, std::move(numbers)));
   };
@@ -198,8 +121,8 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
 }
 
 /// Of corners; of the ends of cracks the mean of both sides.
-void add_more(const World& w, const Triangles& t, const Joints& j, const Own& own, Frame& f) {
-  const std::size_t points = 3 * own.triangles.size() + 2 * own.lines.size();
+void add_more(const World& w, const Triangles& t, const Joints& j, const OwnParts& own, Frame& f) {
+  const std::size_t points = 3 * own.elements.size() + 2 * own.cracks.size();
   const PointFields fields(*w.given, points, f);
   const OnHost starts(w.given->starts, w.exec.space);
   const OnHost holds(w.given->holds, w.exec.space);
@@ -207,8 +130,8 @@ void add_more(const World& w, const Triangles& t, const Joints& j, const Own& ow
     return t.nodes.data()[node / 3].at[node % 3].position -
            starts->data()[3 * t.id.data()[node / 3] + node % 3];
   };
-  each_of(own.triangles.size(), w.exec.threads, [&](std::size_t k) {
-    const Index i = own.triangles[k], hold = t.hold.data()[i];
+  each_of(own.elements.size(), w.exec.threads, [&](std::size_t k) {
+    const Index i = own.elements[k], hold = t.hold.data()[i];
     for (int c = 0; c < 3; ++c) {
       const std::size_t place = 3 * k + static_cast<std::size_t>(c);
       if (fields.displacement != nullptr)
@@ -219,8 +142,8 @@ void add_more(const World& w, const Triangles& t, const Joints& j, const Own& ow
     }
   });
   if (fields.displacement == nullptr) return;
-  std::size_t point = 3 * own.triangles.size();
-  for (const Index i : own.lines) {
+  std::size_t point = 3 * own.elements.size();
+  for (const Index i : own.cracks) {
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
     for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}})
       PointFields::put(fields.displacement, point++, 0.5 * (way(on_a) + way(on_b)));
@@ -228,14 +151,13 @@ void add_more(const World& w, const Triangles& t, const Joints& j, const Own& ow
 }
 
 void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& velocity,
-               const Own& own, const Placed& placed, Frame& f) {
-  FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
+               const OwnParts& own, const PlacedParts& placed, Frame& f) {
   const View<const NodeState> nodes = by_number(t.nodes.view());
-  std::size_t point = 3 * own.triangles.size();
-  for (std::size_t l = 0; l < own.lines.size(); ++l) {
-    const Index i = own.lines[l];
+  std::size_t point = 3 * own.elements.size();
+  for (std::size_t l = 0; l < own.cracks.size(); ++l) {
+    const Index i = own.cracks[l];
     const JointEnds e = JointEnds::of(j.edge_a.data()[i], j.edge_b.data()[i]);
-    auto place = static_cast<std::int32_t>(3 * own.shown + 2 * placed.line[l]);
+    auto place = static_cast<std::int32_t>(3 * own.shown + 2 * placed.crack[l]);
     for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}}) {
       const NodeState &a = nodes[on_a], &b = nodes[on_b];
       f.lines.push_back(place++);
@@ -243,47 +165,8 @@ void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& 
                  &of_b = velocity[at(on_b / 3)].at[on_b % 3];
       put_point(f, point++, 0.5 * (a.position + b.position), 0.5 * (of_a + of_b));
     }
-    mode.values.push_back(static_cast<float>(mode_of(j, i)));
-    double worst = j.stage.data()[i] == JointStage::broken ? 1.0 : 0.0;
-    for (const auto& p : j.points.data()[i].point) worst = std::max(worst, p.damage);
-    damage.values.push_back(static_cast<float>(worst));
-    time.values.push_back(static_cast<float>(j.broke_at.data()[i]));
   }
-  f.line_fields.push_back(std::move(mode));
-  f.line_fields.push_back(std::move(damage));
-  f.line_fields.push_back(std::move(time));
-}
-
-/// Couples that press on each other, by the forces of the last step: between centroids.
-std::vector<FrameContact> contacts_of(const World& w, const Triangles& t) {
-  std::vector<FrameContact> contacts;
-  const OnHost a(w.couples.pairs.a, w.exec.space), b(w.couples.pairs.b, w.exec.space);
-  const auto middle = [&](Index i) { return centroid(t.nodes.data()[i]); };
-  with_number(w.couples.history.precision, [&](auto number) {
-    const OnHost forces(w.couples.history.force.as<decltype(number)>(), w.exec.space);
-    for (Index i = 0; i < w.couples.size(); ++i) {
-      const Index from = a->data()[i], to = b->data()[i];
-      Vec3 force{};
-      for (const auto& corner : forces->data()[i].on_b.at)
-        force += Vec3{static_cast<double>(corner.x), static_cast<double>(corner.y), 0.0};
-      if (!w.domain.owns(from) || dot(force, force) == 0.0) continue;
-      contacts.push_back({t.id.data()[from], t.id.data()[to], middle(from), middle(to), force});
-    }
-  });
-  return contacts;
-}
-
-/// Where the items of a part stand in the whole.
-FramePlaces places_of(const Triangles& t, const Own& own, const Placed& placed) {
-  FramePlaces places;
-  for (const Index i : own.triangles) places.triangle.push_back(own.place_of(t.id.data()[i]));
-  places.line.assign(placed.line.begin(), placed.line.end());
-  for (const std::int32_t id : places.triangle)
-    for (std::int32_t c = 0; c < 3; ++c) places.point.push_back(3 * id + c);
-  const auto behind = static_cast<std::int32_t>(3 * own.shown);
-  for (const std::int32_t line : places.line)
-    for (std::int32_t end = 0; end < 2; ++end) places.point.push_back(behind + 2 * line + end);
-  return places;
+  add_crack_fields(j, own, f.line_fields);
 }
 
 }  // namespace
@@ -291,34 +174,33 @@ FramePlaces places_of(const Triangles& t, const Own& own, const Placed& placed) 
 FramePart fdem_frame(World& w, const World* mesh) {
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
   const OnHost<Joints> joints(w.joints, w.exec.space);
-  Own own;
+  OwnParts own;
   leave_out_removed(*w.given, own);
-  const std::vector<std::uint8_t> gone = gone_triangles(w);
-  for (Index t = 0; t < triangles->size(); ++t)
-    if (w.domain.owns(t) && gone[at(t)] == 0) own.triangles.push_back(t);
-  for (Index i = 0; i < joints->size(); ++i)
-    if (is_damaged(joints->stage.data()[i]) && w.domain.owns(joints->edge_a.data()[i] / 3))
-      own.lines.push_back(i);
-  const Placed known = placed(w, *triangles, *joints, own, mesh);
+  list_own(w, *joints, gone_triangles(w), own);
+  const PlacedParts known = placed_parts(w, *triangles, *joints, own, mesh);
 
   FramePart part;
   Frame& f = part.frame;
   f.step = w.step;
   f.time = w.time;
   f.groups = w.given->groups;
-  const std::size_t points = 3 * own.triangles.size() + 2 * own.lines.size();
+  const std::size_t points = 3 * own.elements.size() + 2 * own.cracks.size();
   f.position.resize(points);
   f.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});
   const std::vector<Corners> velocity = velocities_now(w);
   add_triangles(w, *triangles, velocity, own, known, f);
   add_lines(*triangles, *joints, velocity, own, known, f);
   add_more(w, *triangles, *joints, own, f);
-  part.contacts = contacts_of(w, *triangles);
-  if (!w.domain.single_rank()) part.places = places_of(*triangles, own, known);
+  with_number(w.couples.history.precision, [&](auto number) {
+    const OnHost forces(w.couples.history.force.as<decltype(number)>(), w.exec.space);
+    add_pressing_couples(w, *triangles, *forces, part.contacts);
+  });
+  if (!w.domain.single_rank())
+    add_places(w, *triangles, own, known, part.places, part.places.triangle, part.places.line);
   part.places.whole = w.domain.single_rank();
   part.places.triangles = own.shown;
-  part.places.lines = known.lines;
-  part.places.points = 3 * own.shown + 2 * known.lines;
+  part.places.lines = known.cracks;
+  part.places.points = 3 * own.shown + 2 * known.cracks;
   return part;
 }
 

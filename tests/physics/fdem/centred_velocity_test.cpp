@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "fdem/energy.hpp"
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {

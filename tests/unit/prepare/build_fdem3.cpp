@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "fdem3/setup/regions.hpp"
 #include "prepare/tetrahedra/tet_order.hpp"
 #include "unit/prepare/fdem3_scenes.hpp"
 
@@ -43,6 +44,19 @@ TEST(BuildFdem3, RegularBoxesHaveSixTetrahedraToACube) {
   EXPECT_EQ(m.velocity.back().z, 5.0);
   EXPECT_EQ(m.strength.back(), 1.0F);
   EXPECT_EQ(m.groups, std::vector<std::string>{"block"});
+}
+
+TEST(BuildFdem3, EmptyRegionsNameTheCornerNearestToThem) {
+  const Model m = built({regular_box({0.3, 0.2, 0.1}, 0.0999)});
+  RegionConfig region;
+  region.min = {-1.0, -1.0, 0.051};
+  region.max = {1.0, 1.0, 0.06};
+  const auto refused = [&] { return refusal_of([&] { corners_in(m, region, "support.top"); }); };
+  EXPECT_TRUE(mentions(refused(), "support.top: its region holds no corner of any tetrahedron"));
+  EXPECT_TRUE(mentions(refused(), ", 0.05) m, is 0.001 m away")) << refused();
+  region.around = "z";
+  region.radius = 1.0;
+  EXPECT_FALSE(mentions(refused(), "nearest")) << "a cylinder is not measured";
 }
 
 TEST(BuildFdem3, NeighboursOfRegularBoxesShareFaces) {

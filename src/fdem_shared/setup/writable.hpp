@@ -2,12 +2,12 @@
 // The constants of a run, for set-up to write.
 
 #include "core/set_up.hpp"
-#include "fdem3/world.hpp"
 
-namespace breccia::fdem3 {
+namespace breccia::fdem_shared {
 
-inline Case& set_up(World& w) {
+template <class World>
+auto& set_up(World& w) {
   return w.given.change(SetUp{});
 }
 
-}  // namespace breccia::fdem3
+}  // namespace breccia::fdem_shared

@@ -1,20 +1,21 @@
 #pragma once
-// Which triangles, or tetrahedra, lie around a vertex.
+// Which elements lie around a vertex.
 
 #include <algorithm>
 #include <vector>
 
 #include "exec/sort_scan.hpp"
-#include "fdem/world.hpp"
+#include "fdem_shared/shape.hpp"
 
-namespace breccia::fdem {
+namespace breccia::fdem_shared {
 
 /// All elements around a vertex whose nodes are tied; a rank that owns one needs ghosts of all.
-/// @tparam corners  of an element: node n is one of element n / corners
-template <class World, Index corners>
-class RingsOf {
+template <class World>
+class Rings {
+  static constexpr Index corners = ShapeOf<World>::corners;
+
  public:
-  explicit RingsOf(const World& w) {
+  explicit Rings(const World& w) {
     Index count = 0;
     each_corner(w, [&](Index, Index) { ++count; });
     corners_.resize(count);
@@ -55,6 +56,5 @@ class RingsOf {
 
   Buffer<KeyedIndex> corners_;  ///< by vertex
 };
-using Rings = RingsOf<World, 3>;
 
-}  // namespace breccia::fdem
+}  // namespace breccia::fdem_shared

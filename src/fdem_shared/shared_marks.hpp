@@ -1,14 +1,15 @@
 #pragma once
-// Vertices that some rank has marked become known to all, of triangles as of tetrahedra.
+// Vertices that some rank has marked become known to all.
 
 #include "core/select.hpp"
 #include "domain/parcel.hpp"
 #include "domain/together.hpp"
+#include "fdem_shared/exposed.hpp"
 
-namespace breccia::fdem {
+namespace breccia::fdem_shared {
 
 /// Vertices that this rank has marked just now.
-struct IsNews {
+struct MarkedAnew {
   View<const std::uint8_t> marked, known;
   BR_HD bool operator()(Index v) const { return marked[v] != 0 && known[v] == 0; }
 };
@@ -34,12 +35,13 @@ template <class World>
 void share_marks(const World& w, Buffer<std::uint8_t>& marked) {
   if (w.domain.single_rank()) return;
   const auto known = std::as_const(w.exposed.vertex).view();
-  std::vector<Index> news;
-  copy_to(news, items_where(w.exec, marked.size(), IsNews{std::as_const(marked).view(), known}));
+  std::vector<Index> marked_anew;
+  copy_to(marked_anew,
+          items_where(w.exec, marked.size(), MarkedAnew{std::as_const(marked).view(), known}));
   Buffer<Index> vertex(w.exec.space);
-  copy_to(vertex, joined(*w.domain.ranks, news));
+  copy_to(vertex, joined(*w.domain.ranks, marked_anew));
   for_each(w.exec, marked.size(), KeepMarks{known, marked.view()});
   for_each(w.exec, vertex.size(), TakeMarks{std::as_const(vertex).view(), marked.view()});
 }
 
-}  // namespace breccia::fdem
+}  // namespace breccia::fdem_shared

@@ -1,0 +1,163 @@
+#pragma once
+// Triangles, joined along edges, by the words of fdem_shared/shape.hpp.
+
+#include "core/region.hpp"
+#include "fdem/fluid/fluid.hpp"
+#include "fdem/world.hpp"
+#include "fdem_shared/shape.hpp"
+
+namespace breccia::fdem {
+
+/// Where a triangle counts as being.  [m]
+inline Vec3 centroid(const TriangleNodes& nodes) {
+  const Vec2 sum = nodes.at[0].position + nodes.at[1].position + nodes.at[2].position;
+  return {sum.x / 3.0, sum.y / 3.0, 0.0};
+}
+
+struct Shape {
+  using Elements = Triangles;
+  using Nodes = TriangleNodes;
+  using CornersOfElement = Corners;
+  using Vector = Vec2;
+  using Law = ElasticTriangle;
+  using Kick = fdem::Kick;
+  using Motion = fdem::Motion;
+  using Hold = fdem::Hold;
+  using Reference = Mat2;  ///< of an element at the start
+  using Sides = EdgeJoints;
+  using Dashpots = EdgeDashpots;
+  static constexpr int dimension = 2;
+  static constexpr Index corners = 3;
+  static constexpr Index side_free = edge_free, side_bonded = edge_bonded;
+  static constexpr const char *element = "triangle", *size_word = "area";
+  static constexpr const char *elements_word = "triangles", *force_unit = "N/m";
+  static constexpr const char *side_a_word = "edge_a", *side_b_word = "edge_b";
+  static constexpr const char* absorbing_sides = "absorbing edges";
+
+  // Members by the names that both methods share; of a constant world they are constant.
+  template <class World>
+  static auto& elements(World& w) {
+    return w.triangles;
+  }
+  template <class World>
+  static auto& sides(World& w) {
+    return w.edges;
+  }
+  template <class World>
+  static auto& touchable(World& w) {
+    return w.reach.triangle;
+  }
+  template <class Joints>
+  static auto& side_a(Joints& j) {
+    return j.edge_a;
+  }
+  template <class Joints>
+  static auto& side_b(Joints& j) {
+    return j.edge_b;
+  }
+  template <class Elements>
+  static auto& reference(Elements& e) {
+    return e.shape_inverse;
+  }
+  template <class Model>
+  static auto& corners_of(Model& model) {
+    return model.triangle;
+  }
+  static View<const Index> laws(const World& w) { return laws_of(w); }
+  BR_HD static double near(const Mat2& reference) { return near_reach(reference); }
+
+  /// Corner k of a side, 0 to dimension - 1, and the side that a corner does not lie on.
+  BR_HD static Index corner_of_side(Index side, Index k) { return (side + k) % 3; }
+  BR_HD static Index side_opposite(Index corner) { return (corner + 1) % 3; }
+
+  // Contact: all sides press.
+  static View<const std::uint8_t> exposed_sides(const World&) { return {}; }
+  static void note_exposed(World&) {}
+
+  /// A vertex has about three corners on the side of a body, and its modulus as stiffness.  [N/m2]
+  BR_HD static double corner_stiffness(const ElasticTriangle& law, const Mat2&) {
+    return (law.lambda + 2.0 * law.shear + law.bend) / 3.0;
+  }
+  /// Velocities that servos have changed, where launches read them.
+  static void place_on_device(World& w);
+
+  // Set-up (fdem/setup).
+  struct AtStart {
+    Mat2 reference;
+    double mass;  ///< of a corner  [kg/m]
+    double edge;  ///< of the equilateral triangle as large  [m]
+  };
+  static AtStart at_start(const TriangleNodes& nodes, double density, std::size_t number);
+  /// Supports of this stage: the place in Case::holds of each triangle of the whole mesh, -1: free.
+  static std::vector<Index> prescribe(World& w, const Config& config);
+  static constexpr const char *side_words = "edges", *named_word = "line";
+  static const std::string& named_sides(const RegionConfig& region) { return region.edges; }
+  static auto& side_sets(const Model& model) { return model.edge_sets; }
+  static auto& sides_of_set(const Model::EdgeSet& set) { return set.edges; }
+  /// Whether a point lies in the forms of a region besides its box.
+  static bool is_within(const RegionConfig& region, const Vec2& x) {
+    return (!(region.radius > 0.0) || in_circle(region.center, region.radius, x)) &&
+           (region.polygon.empty() || in_polygon(region.polygon, x));
+  }
+  static bool is_plain(const RegionConfig& region) { return region.polygon.empty(); }
+
+  // Ranks: what triangles have besides (fdem/ranks.cpp).
+
+  /// Costs on one core, in units of some 3 ns (bench/notes/cpu.md).
+  static constexpr fdem_shared::Costs costs{
+      .element = 8, .end_of_joint = 3, .end_of_couple = 16, .tied_corner = 3};
+  /// Waking joints look at triangles that nothing ties yet.
+  static bool needs_all_ghosts(const World& w) { return w.given->extrinsic; }
+  /// Calls visit(forces) with the forces of all joints, as many as there are joints.
+  template <class Visit>
+  static void with_joint_forces(World& w, const Visit& visit) {
+    with_number(w.exec.precision, [&](auto of) {
+      auto& forces = w.joints.force.template as<decltype(of)>();
+      forces.resize(w.joints.size());
+      visit(forces);
+      forces.resize(w.joints.size() + 1);  // the last one is zero
+    });
+  }
+  static void drop_joint_forces(Joints& j) {
+    j.force.in_double.resize(0);
+    j.force.in_single.resize(0);
+  }
+  /// Whether a joint around a vertex still holds decides who moves with whom there.
+  template <class Rings>
+  static void add_around_joint(const World& w, const Rings& rings, Index joint,
+                               std::vector<Index>& elements) {
+    const Index edge = w.joints.edge_a.data()[joint];
+    for (const Index node : {edge, JointEnds::next_corner(edge)})
+      if (w.mesh.tied[at(w.vertex[at(node)])] != 0)
+        rings.add_elements(w.vertex[at(node)], elements);
+  }
+  static void forget_mesh_for_kernels(World& w) {
+    w.node_vertex.clear();
+    w.edge_across.clear();
+  }
+  static void derive_part(World& w, Space space);
+  static void take_common(World& w, Communicator& ranks);
+  static void collect_common(const World& part, World& whole) { whole.fluid = part.fluid; }
+
+  /// Present size over that at the start, and the square of a length that no corner may cover in a
+  /// step.
+  struct Size {
+    double left;     ///<  [-]
+    double squared;  ///<  [m2]
+  };
+  BR_HD static Size size_of(const TriangleNodes& n, const Mat2& shape_inverse) {
+    const Vec2& x = n.at[0].position;
+    const double twice = cross(n.at[1].position - x, n.at[2].position - x);
+    return {twice * determinant(shape_inverse), twice};
+  }
+
+  /// Whether a held element has been taken out of the model.
+  BR_HD static bool is_gone(const Hold& hold) { return hold.gone != 0; }
+};
+
+}  // namespace breccia::fdem
+
+template <>
+struct breccia::fdem_shared::ShapeOfWorld<breccia::fdem::World> {
+  using Shape = fdem::Shape;
+};

@@ -1,0 +1,148 @@
+#pragma once
+// The ledger of a mesh: every joule, summed exactly. Each rank sums up what it owns, and exact sums
+// add up to those of the whole. Made for each method in its energy.cpp, which says what elements
+// and joints store.
+
+#include "core/energy_split.hpp"
+#include "domain/domain.hpp"
+#include "exec/fold_sum.hpp"
+#include "fdem_shared/shape.hpp"
+
+namespace breccia::fdem_shared {
+
+/// @tparam Stored  a method's: kick, elastic(t), reaction(t, k, next): force that holds a corner
+template <class Shape, class Stored>
+struct ElementShares {
+  using Vector = typename Shape::Vector;
+  OwnedView owned;
+  Stored stored;
+  View<const typename Shape::CornersOfElement> external;
+  View<const double> viscous_work, damping_work, load_work;
+
+  BR_HD void add_to(Energies& s, Index t) const {
+    if (!owned(t)) return;
+    const auto& kick = stored.kick;
+    s.damping.add(viscous_work[t]);
+    s.damping.add(damping_work[t]);
+    s.work.add(load_work[t]);
+    if (is_gone<Shape>(kick.holds, kick.hold[t])) return;
+    const auto next = kick(t);
+    const double span = kick.span();
+    for (int k = 0; k < Shape::corners; ++k) {
+      // m/2 (v.v - dt_- dt_+ a.a / 4): the leapfrog's own balance closes with it
+      const Vector before = kick.nodes[t].at[k].velocity;
+      const Vector a = span > 0.0 ? (1.0 / span) * (next.velocity[k] - before) : Vector{};
+      const Vector now = before + (0.5 * kick.last_dt) * a;
+      s.kinetic.add(0.5 * kick.mass[t] *
+                    (dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a)));
+      // Moving books the work of these forces in the last and the next step; half is done.
+      const Vector came = (0.5 * kick.last_dt) * before;
+      s.damping.add(dot(next.damped[k], came));
+      if (external.size > 0) s.work.add(dot(external[t].at[k], came));
+      if (kick.hold[t] >= 0) s.work.add(dot(stored.reaction(t, k, next), came));
+    }
+    s.elastic.add(stored.elastic(t));
+  }
+};
+
+template <class Shape>
+struct GravityPotential {
+  OwnedView owned;
+  typename Shape::Vector gravity;  ///<  [m/s2]
+  View<const typename Shape::Nodes> nodes;
+  View<const double> mass;
+  BR_HD void add_to(Energies& sum, Index t) const {
+    if (!owned(t)) return;
+    for (const auto& n : nodes[t].at) sum.potential.add(mass[t] * dot(gravity, n.position));
+  }
+};
+
+/// @tparam Stored  a method's: stored(i), what joint i would give back if it were unloaded now
+template <Index corners, class Stage, class Work, class Stored>
+struct JointShares {
+  OwnedView owned;  ///< the owner of side a books it
+  View<const Index> side_a;
+  View<const Stage> stage;
+  View<const Work> work, inherited_work;
+  Stored stored;
+
+  BR_HD void add_to(Energies& s, Index i) const {
+    if (stage[i] == Stage::dormant || !owned(side_a[i] / corners)) return;
+    const Work &spent = work[i], &inherited = inherited_work[i];
+    if (stage[i] == Stage::cut) {  // after that it took work out of the model
+      s.fracture.add(inherited.open);
+      s.sliding.add(inherited.slide);
+      s.work.add(inherited.open - spent.open);
+      s.work.add(inherited.slide - spent.slide);
+      return;
+    }
+    if (stage[i] != Stage::whole) {
+      s.fracture.add(spent.open);
+      s.sliding.add(spent.slide);
+    }
+    if (stage[i] == Stage::broken) {
+      s.fracture.add(-inherited.open);
+      s.sliding.add(-inherited.slide);
+      return;
+    }
+    const auto held = stored(i);
+    s.elastic.add(held.open);
+    s.elastic.add(held.slide);
+    if (stage[i] == Stage::whole) return;
+    s.fracture.add(-held.open);
+    s.sliding.add(-held.slide);
+  }
+};
+
+template <class State>
+struct CoupleShares {
+  OwnedView owned;  ///< the owner of a books it
+  View<const Index> a;
+  View<const State> state;
+  BR_HD void add_to(Energies& s, Index i) const {
+    if (!owned(a[i])) return;
+    s.elastic.add(state[i].work - state[i].slid);
+    s.friction.add(state[i].slid);
+    s.friction.add(state[i].rubbed);
+    s.contact.add(state[i].lost);
+  }
+};
+
+/// Energies that a rank's own elements hold and have spent, and the joints and couples whose first
+/// element it owns.
+template <class World>
+Energies held_by_part(const World& w) {
+  using Shape = ShapeOf<World>;
+  const OwnedView owned = w.domain.owned_view();
+  const auto& t = Shape::elements(w);
+  const auto of_elements = stored_by_elements(w);
+  FoldSum<Energies> all(w.exec);
+  all.add(t.size(), ElementShares<Shape, std::remove_cv_t<decltype(of_elements)>>{
+                        owned, of_elements, t.external.view(), t.viscous_work.view(),
+                        t.damping_work.view(), t.load_work.view()});
+  const auto& j = w.joints;
+  const auto of_joints = stored_by_joints(w);
+  using Stage = std::remove_cvref_t<decltype(j.stage.view()[0])>;
+  using Work = std::remove_cvref_t<decltype(j.work.view()[0])>;
+  all.add(j.size(), JointShares<Shape::corners, Stage, Work, std::remove_cv_t<decltype(of_joints)>>{
+                        owned, Shape::side_a(j).view(), j.stage.view(), j.work.view(),
+                        j.inherited_work.view(), of_joints});
+  const auto state = w.couples.history.state.view();
+  all.add(w.couples.size(), CoupleShares<std::remove_cvref_t<decltype(state[0])>>{
+                                owned, w.couples.pairs.a.view(), state});
+  const typename Shape::Vector gravity = w.given->gravity;
+  if (dot(gravity, gravity) > 0.0)
+    all.add(t.size(), GravityPotential<Shape>{owned, gravity, t.nodes.view(), t.mass.view()});
+  return all.sum();
+}
+
+/// Starts the ledger at the present state.
+template <class World>
+void start_ledger(World& w) {
+  w.ledger = {};
+  const Energies all = held(w);
+  w.ledger.start_potential = all.potential;
+  w.ledger.start = all.kinetic.value() + all.elastic.value();
+}
+
+}  // namespace breccia::fdem_shared

@@ -1,0 +1,399 @@
+#pragma once
+// New couples: the shared search over the elements that can touch, less the neighbours that are
+// still joined, with the history of those that stay. Made for each method in its
+// contact/search.cpp.
+
+#include <algorithm>
+
+#include "core/broad_phase.hpp"
+#include "core/energy.hpp"
+#include "core/incidence.hpp"
+#include "core/pair_list.hpp"
+#include "core/select.hpp"
+#include "core/travel.hpp"
+#include "domain/drift.hpp"
+#include "exec/timers.hpp"
+#include "fdem_shared/ranks.hpp"
+#include "fdem_shared/shape.hpp"
+#include "fdem_shared/shared_marks.hpp"
+
+namespace breccia::fdem_shared {
+
+/// How the vertices of the mesh are open.
+struct OpenVertices {
+  View<const Index> vertex_of;               ///< of each node
+  View<const std::uint8_t> border, damaged;  ///< Case::open_vertex, ExposedVertices::vertex
+
+  /// Case::open_vertex, and bit 2: a joint here is damaged.
+  BR_HD int open(Index vertex) const { return border[vertex] | (damaged[vertex] != 0 ? 4 : 0); }
+};
+
+/// Marks the vertices of damaged joints, and of those at which a body has been taken out.
+template <class Shape, class Stage>
+struct MarkDamaged {
+  static constexpr const char* name = "fdem.mark_damaged";
+  View<const Stage> stage;
+  View<const Index> side_a, vertex_of;
+  View<std::uint8_t> marked;
+  BR_HD void operator()(Index i) const {
+    if (!is_damaged(stage[i]) && stage[i] != Stage::cut) return;
+    const Index first = Shape::corners * (side_a[i] / Shape::corners);
+    for (int k = 0; k < Shape::dimension; ++k)
+      set_flag(marked, vertex_of[first + Shape::corner_of_side(side_a[i] % Shape::corners, k)]);
+  }
+};
+
+/// Elements with a corner at the border, at a side that nothing joins, or at a damaged joint, but
+/// those that have been taken out.
+template <class Shape, class Hold>
+struct Touchable {
+  OpenVertices vertices;
+  View<const Index> hold;
+  View<const Hold> holds;
+  BR_HD bool operator()(Index t) const {
+    if (is_gone<Shape>(holds, hold[t])) return false;
+    int open = 0;
+    for (Index k = 0; k < Shape::corners; ++k)
+      open |= vertices.open(vertices.vertex_of[Shape::corners * t + k]);
+    return open != 0;
+  }
+};
+
+/// Starts the travel of an element anew and boxes it with its margin and what counts as near.
+template <class Shape>
+struct BeginReach {
+  using Vector = typename Shape::Vector;
+  double skin, horizon, largest;  ///<  [m], [s], [m]
+  DriftOf<Vector> drift;
+  View<const Index> touchable;
+  View<const typename Shape::Nodes> nodes;
+  View<const typename Shape::Reference> shape;
+  View<const GlobalId> id_of;
+  View<typename Shape::CornersOfElement> reference;
+  View<double> margin;
+  View<Box> boxes;
+  View<GlobalId> ids;
+  BR_HD void operator()(Index i) const {
+    const Index t = touchable[i];
+    const typename Shape::Nodes& now = nodes[t];
+    double fastest = 0.0, extent = 0.0;
+    constexpr double far = 1e300;
+    Vector low = from_space<Vector>({far, far, far}), high = -low;
+    for (int k = 0; k < Shape::corners; ++k) {
+      const Vector& x = now.at[k].position;
+      fastest = max(fastest, norm(now.at[k].velocity - drift.velocity));
+      for (int axis = 0; axis < Shape::dimension; ++axis) {
+        const double along = part_of(x, axis);
+        extent = max(extent, abs(along));
+        part_of(low, axis) = min(part_of(low, axis), along);
+        part_of(high, axis) = max(part_of(high, axis), along);
+      }
+      reference[i].at[k] = x;
+    }
+    const double own = min(0.5 * skin + fastest * horizon, largest);
+    // covers rounding
+    const double grown =
+        (own + Shape::near(shape[t])) * (1.0 + 1e-12) + 1e-15 * (extent + drift.farthest);
+    const Vector by = from_space<Vector>({grown, grown, grown});
+    margin[i] = own;
+    boxes[i] = {to_space(low - by), to_space(high + by)};
+    ids[i] = id_of[t];
+  }
+};
+
+/// From places in the list of elements that can touch to elements.
+struct NameElements {
+  static constexpr const char* name = "fdem.name_elements";
+  View<const Index> touchable;
+  View<Index> a, b;
+  BR_HD void operator()(Index i) const {
+    a[i] = touchable[a[i]];
+    b[i] = touchable[b[i]];
+  }
+};
+
+/// Whether a couple can touch, and is of this rank. Neighbours across a side do once nothing joins
+/// them; neighbours at an edge or a vertex do once a joint around it is damaged.
+template <class Shape, class Stage>
+struct MayTouch {
+  OpenVertices vertices;
+  View<const typename Shape::Sides> sides;
+  View<const Stage> stage;
+  View<const std::uint8_t> exposed;  ///< bits of sides that press; empty: all do
+  OwnedView owned;
+  View<const Index> a, b;
+
+  BR_HD bool operator()(Index i) const {
+    const Index p = a[i], q = b[i];
+    if (!owned(p) && !owned(q)) return false;
+    // A joint that breaks exposes its sides and calls for a search.
+    if (exposed.size > 0 && (exposed[p] | exposed[q]) == 0) return false;
+    int shared = 0, open = 0, apart = 0;  // apart: the corner of p that q lacks
+    for (int k = 0; k < Shape::corners; ++k) {
+      const Index vertex = vertices.vertex_of[Shape::corners * p + k];
+      bool common = false;
+      for (int m = 0; m < Shape::corners; ++m)
+        common = common || vertex == vertices.vertex_of[Shape::corners * q + m];
+      if (!common) {
+        apart = k;
+        continue;
+      }
+      ++shared;
+      open |= vertices.open(vertex);
+    }
+    if (shared == 0) return true;
+    if (shared < Shape::dimension) return (open & 6) != 0;
+    const Index entry = sides[p].at[Shape::side_opposite(apart)];
+    if (entry < 0) return entry == Shape::side_free;
+    return is_parted(stage[pair_of(entry)]);
+  }
+};
+
+/// Contribution of an element's corners to the common motion.
+template <class Shape>
+struct MotionOf {
+  View<const typename Shape::Nodes> nodes;
+  OwnedView owned;
+  BR_HD CommonMotion operator()(Index t) const {
+    CommonMotion motion;
+    if (!owned(t)) return motion;
+    for (const auto& n : nodes[t].at) motion.add(to_space(n.velocity));
+    return motion;
+  }
+};
+
+/// Energy spent by couples that leave the list.
+template <class State>
+struct SpentBy {
+  View<const Index> couple, a;
+  View<const State> state;
+  OwnedView owned;  ///< the owner of a books it
+  BR_HD Energies operator()(Index k) const {
+    Energies spent;
+    if (!owned(a[couple[k]])) return spent;
+    const State& s = state[couple[k]];
+    spent.friction.add(s.rubbed + (s.slid + s.sprung));
+    spent.contact.add(s.lost + s.work - (s.slid + s.sprung));
+    return spent;
+  }
+};
+
+/// The joint between the elements of a couple, if it broke lately, or -1: sides that meet again
+/// later begin anew.
+template <class Shape>
+struct ParentJoint {
+  static constexpr const char* name = "fdem.parent_joint";
+  double lately;  ///< the time from which on a break counts  [s]
+  View<const Index> a, b;
+  View<const typename Shape::Sides> sides;
+  View<const Index> side_a, side_b;
+  View<const double> broke_at;
+  View<Index> parent_joint;
+  BR_HD void operator()(Index i) const {
+    parent_joint[i] = -1;
+    for (int k = 0; k < Shape::corners; ++k) {
+      const Index entry = sides[a[i]].at[k];
+      if (entry < 0) continue;
+      const Index joint = pair_of(entry);
+      const Index other = (side_of(entry) == 0 ? side_b[joint] : side_a[joint]) / Shape::corners;
+      if (other == b[i] && broke_at[joint] >= lately) parent_joint[i] = joint;
+    }
+  }
+};
+
+struct NoPlace {
+  View<Index> place;
+  BR_HD void operator()(Index t) const { place[t] = -1; }
+};
+struct PlaceReach {
+  View<const Index> touchable;
+  OwnedView owned;
+  View<Index> place;
+  BR_HD void operator()(Index i) const {
+    if (owned(touchable[i])) place[touchable[i]] = i;
+  }
+};
+
+/// The mesh where kernels can read it.
+template <class World>
+OpenVertices open_vertices(World& w) {
+  if (static_cast<std::size_t>(w.border_vertex.size()) != w.given->open_vertex.size())
+    copy_to(w.border_vertex, w.given->open_vertex);
+  if (static_cast<std::size_t>(w.node_vertex.size()) != w.vertex.size())
+    copy_to(w.node_vertex, w.vertex);
+  return {std::as_const(w.node_vertex).view(), std::as_const(w.border_vertex).view(),
+          std::as_const(w.exposed.vertex).view()};
+}
+
+/// Marks the vertices of damaged joints.
+template <class World>
+void mark_opened(World& w) {
+  using Shape = ShapeOf<World>;
+  const OpenVertices vertices = open_vertices(w);
+  Buffer<std::uint8_t> marked(w.exec.space, static_cast<Index>(w.given->open_vertex.size()));
+  const auto stage = std::as_const(w.joints.stage).view();
+  for_each(
+      w.exec, w.joints.size(),
+      MarkDamaged<Shape, std::remove_cvref_t<decltype(stage[0])>>{
+          stage, std::as_const(Shape::side_a(w.joints)).view(), vertices.vertex_of, marked.view()});
+  share_marks(w, marked);
+  w.exposed.vertex.swap(marked);
+  copy_to(w.exposed.changed, std::vector<std::uint8_t>{0, 0});
+}
+
+/// Whether vertices must be marked now.
+template <class World>
+bool marking_is_due(const World& w) {
+  std::vector<std::uint8_t> changed;
+  copy_to(changed, w.exposed.changed);
+  return marking_due(changed[change_softened], changed[change_broken], w.step);
+}
+
+template <class World>
+void book_dropped(World& w, const Pairs& found) {
+  Buffer<Index> dropped(w.exec.space);
+  find_dropped(w.exec, w.couples.pairs.key, found.key, dropped);
+  if (dropped.empty()) return;
+  const auto state = std::as_const(w.couples.history.state).view();
+  w.ledger.book(fold(w.exec, dropped.size(), Energies{},
+                     SpentBy<std::remove_cvref_t<decltype(state[0])>>{
+                         std::as_const(dropped).view(), std::as_const(w.couples.pairs.a).view(),
+                         state, w.domain.owned_view()},
+                     Sum{}));
+}
+
+/// The drift from now on.
+template <class World>
+auto choose_drift(const World& w) {
+  using Shape = ShapeOf<World>;
+  const auto& e = Shape::elements(w);
+  const CommonMotion own = fold(w.exec, e.size(), CommonMotion{},
+                                MotionOf<Shape>{e.nodes.view(), w.domain.owned_view()}, Sum{});
+  const Drift all = of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.given->mean_edge);
+  using Vector = typename Shape::Vector;
+  return DriftOf<Vector>{from_space<Vector>(all.velocity), all.since, all.farthest};
+}
+
+/// The place in `reach` of each element. Ghosts have none: their owners tell of them.
+template <class World>
+void place_reach(World& w) {
+  const auto& touchable = ShapeOf<World>::touchable(w);
+  w.reach_place.resize(ShapeOf<World>::elements(w).size());
+  for_each(w.exec, w.reach_place.size(), NoPlace{w.reach_place.view()});
+  for_each(
+      w.exec, touchable.size(),
+      PlaceReach{std::as_const(touchable).view(), w.domain.owned_view(), w.reach_place.view()});
+}
+
+/// Boxes of the elements that can touch, and pairs of them whose boxes overlap.
+template <class World>
+Pairs boxes_that_overlap(World& w, const OpenVertices& vertices) {
+  using Shape = ShapeOf<World>;
+  auto& e = Shape::elements(w);
+  Buffer<Index>& touchable = Shape::touchable(w);
+  const auto holds = w.given->holds.view();
+  touchable = items_where(w.exec, e.size(),
+                          Touchable<Shape, std::remove_cvref_t<decltype(holds[0])>>{
+                              vertices, std::as_const(e.hold).view(), holds});
+  const Index count = touchable.size();
+  w.reach.reference.resize(count);
+  w.reach.margin.resize(count);
+  Buffer<Box> boxes(w.exec.space, count);
+  Buffer<GlobalId> ids(w.exec.space, count);
+  const MarginRule rule = margin_rule(w);
+  for_each(
+      w.exec, count,
+      BeginReach<Shape>{rule.base, rule.horizon, rule.largest, w.reach.drift,
+                        std::as_const(touchable).view(), std::as_const(e.nodes).view(),
+                        std::as_const(Shape::reference(e)).view(), std::as_const(e.id).view(),
+                        w.reach.reference.view(), w.reach.margin.view(), boxes.view(), ids.view()});
+  Pairs found(w.exec.space);
+  if (count > 0) w.broad_phase.search(w.exec, boxes, ids, found);
+  for_each(w.exec, found.size(),
+           NameElements{std::as_const(touchable).view(), found.a.view(), found.b.view()});
+  return found;
+}
+
+/// The couples that may touch, or be near each other, until the next search.
+template <class World>
+void search(World& w) {
+  using Shape = ShapeOf<World>;
+  const OpenVertices vertices = open_vertices(w);
+  Pairs found = boxes_that_overlap(w, vertices);
+  const auto stage = std::as_const(w.joints.stage).view();
+  const Buffer<Index> kept = items_where(
+      w.exec, found.size(),
+      MayTouch<Shape, std::remove_cvref_t<decltype(stage[0])>>{
+          vertices, std::as_const(Shape::sides(w)).view(), stage, Shape::exposed_sides(w),
+          w.domain.owned_view(), std::as_const(found.a).view(), std::as_const(found.b).view()});
+  gather_fields(w.exec, kept, found);
+  book_dropped(w, found);
+  w.couples.replace(w.exec, std::move(found));
+  derive_couples(w);
+  w.graph.clear();
+  ++w.searches;
+}
+
+/// Flags of Change that are set, as bits.
+template <class World>
+std::uint64_t changed_bits(const World& w) {
+  std::vector<std::uint8_t> changed;
+  copy_to(changed, w.exposed.changed);
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < changed.size(); ++i)
+    if (changed[i] != 0) bits |= std::uint64_t{1} << i;
+  return bits;
+}
+/// Of what ranks ask each other after a move: some margin is used up.
+inline constexpr std::uint64_t margin_bit = 4;
+
+/// Whether a search is due on some rank; what joints tell becomes known to all.
+template <class World>
+bool any_rank_is_due(World& w) {
+  const std::uint64_t bits = w.domain.ranks->finish_any_of();
+  std::vector<std::uint8_t> changed(static_cast<std::size_t>(w.exposed.changed.size()));
+  for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = (bits >> i & 1) != 0 ? 1 : 0;
+  copy_to(w.exposed.changed, changed);
+  return marking_is_due(w) || (bits & margin_bit) != 0;
+}
+
+template <class World>
+MarginRule mesh_margin_rule(const World& w) {
+  constexpr double horizon = 30.0;  // steps for which a fast element's margin shall last
+  return {w.given->skin, horizon * w.next_dt, 0.5 * w.given->mean_edge};
+}
+
+/// Shares elements out anew where some have left their buffer, and searches.
+template <class World>
+void find_mesh_couples(World& w) {
+  using Shape = ShapeOf<World>;
+  w.domain.drift(to_space(w.reach.drift.velocity), w.time);  // up to now
+  w.reach.drift = choose_drift(w);
+  migrate(w);
+  const StageTime timed(w.exec, "contact_detection");
+  const bool joints_changed = marking_is_due(w);
+  if (joints_changed) {
+    mark_opened(w);
+    Shape::note_exposed(w);
+  }
+  collective_try(w.domain.ranks, [&w] { search(w); });
+  select_active_ghosts(w);
+  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, Shape::touchable(w));
+}
+
+/// Fills what follows from the couples.
+template <class World>
+void derive_mesh_couples(World& w) {
+  using Shape = ShapeOf<World>;
+  const Pairs& pairs = w.couples.pairs;
+  build_incidence(w.exec, pairs.a, pairs.b, Shape::elements(w).id, w.couple_incidence);
+  w.parent_joint.resize(pairs.size());
+  const auto& j = std::as_const(w.joints);
+  for_each(w.exec, pairs.size(),
+           ParentJoint<Shape>{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(),
+                              std::as_const(Shape::sides(w)).view(), Shape::side_a(j).view(),
+                              Shape::side_b(j).view(), j.broke_at.view(), w.parent_joint.view()});
+  place_reach(w);
+}
+
+}  // namespace breccia::fdem_shared

@@ -1,0 +1,89 @@
+#pragma once
+// The text of fdem_shared/servos.hpp.
+
+#include "domain/set_here.hpp"
+#include "exec/for_each.hpp"
+#include "fdem_shared/servos.hpp"
+#include "fdem_shared/shape.hpp"
+
+namespace breccia::fdem_shared {
+
+/// A held corner takes what all else does to it. How stiff that is, it knows by its own modulus.
+template <class Shape>
+struct SupportPush {
+  OwnedView owned;
+  int axis;
+  double gravity;  ///< along the axis  [m/s2]
+  View<const Index> corners;
+  View<const typename Shape::CornersOfElement> force;
+  View<const double> mass;
+  View<const Index> material;
+  View<const typename Shape::Law> laws;
+  View<const typename Shape::Reference> reference;
+
+  BR_HD ServoReading operator()(Index k) const {
+    const Index n = corners[k], t = n / Shape::corners;
+    ServoReading r;
+    if (!owned(t)) return r;
+    r.force.add(-(part_of(force[t].at[n % Shape::corners], axis) + mass[t] * gravity));
+    r.stiffness.add(Shape::corner_stiffness(laws[material[t]], reference[t]));
+    return r;
+  }
+};
+
+template <class World>
+ServoReading read_support(World& part, std::size_t number, int axis) {
+  using Shape = ShapeOf<World>;
+  const auto& set = part.given->sets[number];
+  auto& e = Shape::elements(part);
+  Buffer<Index> all(part.exec.space);
+  View<const Index> corners;
+  if (part.domain.single_rank()) {
+    copy_to(all, set.nodes);
+    corners = std::as_const(all).view();
+  } else {
+    SetHere& here = part.sets_here[number];
+    keep_here(here, part.domain, e.id, set.nodes, Shape::corners, part.exec.space);
+    corners = std::as_const(here.places).view();
+  }
+  return fold(part.exec, corners.size, ServoReading{},
+              SupportPush<Shape>{
+                  part.domain.owned_view(), axis, part_of(part.given->gravity, axis), corners,
+                  std::as_const(e.force).view(), std::as_const(e.mass).view(), Shape::laws(part),
+                  part.given->laws.view(), std::as_const(Shape::reference(e)).view()},
+              Sum{});
+}
+
+template <class World, class Config>
+std::vector<ServoReading> read_servos(World& part, const Config& now) {
+  std::vector<ServoReading> readings;
+  const std::size_t bodies = part.given->sets.size() - now.supports.size();
+  for (std::size_t s = 0; s < now.supports.size(); ++s) {
+    const SupportServoConfig& servo = now.supports[s].servo;
+    readings.push_back(servo.is_on() ? read_support(part, bodies + s, servo.axis_number())
+                                     : ServoReading{});
+  }
+  return readings;
+}
+
+template <class World>
+void place_servos(World& w) {
+  for (const ServoMotion& m : w.servo_motions)
+    part_of(w.prescribed[at(m.motion)].velocity, m.axis) = w.servos[m.servo].velocity;
+  ShapeOf<World>::place_on_device(w);
+}
+
+template <class World, class Config>
+void correct_servos(World& w, const Config& now, const std::vector<ServoReading>& sums) {
+  const double span = static_cast<double>(servo_every) * w.next_dt;
+  for (std::size_t s = 0; s < now.supports.size(); ++s) {
+    const auto& support = now.supports[s];
+    if (!support.servo.is_on()) continue;
+    w.servos[s].correct(support.servo,
+                        support.servo.target(w.time, support.history.begin) - sums[s].force.value(),
+                        sums[s].stiffness.value(), span);
+  }
+  place_servos(w);
+}
+
+}  // namespace breccia::fdem_shared

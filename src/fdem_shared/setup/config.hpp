@@ -1,0 +1,158 @@
+#pragma once
+// Keys that both finite-discrete methods share: friction, supports, changes of stages, the search.
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/case_config.hpp"
+#include "core/servo.hpp"
+#include "core/stages.hpp"
+#include "core/table_over_time.hpp"
+#include "fdem_shared/shape.hpp"
+
+namespace breccia::fdem_shared {
+
+/// [[friction]]
+struct FrictionConfig {
+  std::vector<std::string> between;
+  double coefficient = 0.6;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("between", between, "the two materials, or twice the same");
+    key.required("between");
+    key("coefficient", coefficient, "-", Range{0.0, 1e3},
+        "coefficient of friction of their contact");
+  }
+};
+
+/// How something given grows and changes over time.
+struct HistoryConfig {
+  double ramp = 0.0;                   ///<  [s]
+  std::vector<double> times, factors;  ///<  [s], [-]
+  double begin = 0.0;                  ///< no key: where its time begins  [s]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("ramp", ramp, "s", not_negative, "time in which it grows from zero, linearly");
+    key("times", times, "s", any_number,
+        "times of a table of factors, linear in between, constant beyond; empty: always 1");
+    key("factors", factors, "-", any_number, "the factors at these times");
+  }
+};
+
+/// x, y, and in space z.
+template <class Vector>
+std::vector<std::string> directions_of() {
+  std::vector<std::string> all{"x", "y"};
+  if (std::is_same_v<Vector, Vec3>) all.emplace_back("z");
+  return all;
+}
+
+/// [[support]]: prescribed velocity of corners
+template <class RegionConfig, class Vector>
+struct SupportConfigOf {
+  std::string name;
+  RegionConfig region;
+  std::vector<std::string> fix = directions_of<Vector>();
+  OverTime<Vector> velocity;  ///<  [m/s]
+  HistoryConfig history;
+  SupportServoConfig servo;  ///< instead of the velocity along its axis
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    constexpr bool plane = std::is_same_v<Vector, Vec2>;
+    key("name", name, "name of the support: probes read its corners by it");
+    key.required("name");
+    region.each_key(key);
+    key("fix", fix,
+        plane ? "directions that are prescribed: x, y" : "directions that are prescribed: x, y, z");
+    key("velocity", velocity, "m/s", any_number,
+        plane
+            ? "prescribed velocity of these directions, or a table [[t, x, y], ...] of it over "
+              "time, linear in between and constant beyond its ends"
+            : "prescribed velocity of these directions, or a table [[t, x, y, z], ...] of it over "
+              "time, linear in between and constant beyond its ends");
+    history.each_key(key);
+    key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
+  }
+};
+
+/// [[stage.support]]: what a support prescribes from a stage on
+template <class Vector>
+struct SupportChangeOf {
+  std::string name;
+  std::vector<std::string> fix{"same"};
+  OverTime<Vector> velocity;  ///<  [m/s]
+  double ramp = 0.0;          ///<  [s]
+  SupportServoConfig servo;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the support");
+    key.required("name");
+    key("fix", fix,
+        "directions that it prescribes from now on; [] sets its corners free; left out: the same "
+        "as before");
+    key("velocity", velocity, "m/s", any_number,
+        "their velocity from now on, or a table of it over time since the stage began; left out: "
+        "they stand still");
+    key("ramp", ramp, "s", not_negative,
+        "time since the stage began in which it grows from zero, linearly");
+    key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
+  }
+};
+
+/// [[stage.load]]: how large a load is from a stage on
+template <class Vector>
+struct LoadChangeOf {
+  std::string name;
+  OverTime<double> pressure;  ///<  [Pa]
+  OverTime<Vector> traction;  ///<  [Pa]
+  OverTime<Vector> force;     ///<  [N; in 2D N/m]
+  double ramp = 0.0;          ///<  [s]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the load");
+    key.required("name");
+    key("pressure", pressure, "Pa", any_number,
+        "pressure from now on, or a table of it over time since the stage began; left out: 0");
+    key("traction", traction, "Pa", any_number, "traction from now on, likewise");
+    key("force", force, std::is_same_v<Vector, Vec2> ? "N/m" : "N", any_number,
+        "force from now on, likewise");
+    key("ramp", ramp, "s", not_negative,
+        "time since the stage began in which it grows from zero, linearly");
+  }
+};
+
+/// [[stage]]: keys of both methods
+template <class Vector, class LoadChange = LoadChangeOf<Vector>>
+struct MeshStageConfig : StageEnd {
+  Vector gravity = from_space<Vector>({no_limit, no_limit, no_limit});  ///<  [m/s2]
+  std::vector<SupportChangeOf<Vector>> supports;
+  std::vector<LoadChange> loads;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    StageEnd::each_key(key);
+    key("gravity", gravity, "m/s2", any_number,
+        "acceleration of gravity from its beginning on; left out (inf): as before");
+    key.list("support", supports, "supports that prescribe something else from its beginning on");
+    key.list("load", loads, "loads that are another from its beginning on");
+  }
+};
+
+/// [search]
+struct SearchConfig {
+  double margin = 0.1;  ///< over the mean edge  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("margin", margin, "-", Range{0.0, 1.0, Open::low},
+        "how far two elements may approach before a new search, over the mean edge");
+  }
+};
+
+}  // namespace breccia::fdem_shared

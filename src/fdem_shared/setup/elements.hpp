@@ -1,0 +1,158 @@
+#pragma once
+// From a model to a world: elements with corners of their own, bodies, corners that move as one,
+// places at the start.
+
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <string>
+
+#include "core/case_config.hpp"
+#include "core/gauge.hpp"
+#include "exec/error.hpp"
+#include "fdem_shared/observe.hpp"
+#include "fdem_shared/setup/writable.hpp"
+#include "fdem_shared/shape.hpp"
+
+namespace breccia::fdem_shared {
+
+/// More inertia under the weight that bodies have: time.mass_scaling.
+template <class Config>
+Config with_inertia(Config config) {
+  const double scale = config.time.mass_scaling;
+  for (auto& material : config.materials) material.density *= scale;
+  config.gravity = (1.0 / scale) * config.gravity;
+  return config;
+}
+
+/// Splits the mesh: each element gets its own corners. @throws InputError where one is inside out
+template <class World, class Config, class Model>
+void set_up_elements(World& w, const Config& config, const Model& model) {
+  using Shape = ShapeOf<World>;
+  const auto& corners = Shape::corners_of(model);
+  std::vector<GlobalId> id(corners.size());
+  std::iota(id.begin(), id.end(), 0);
+  std::vector<typename Shape::Nodes> nodes;
+  std::vector<typename Shape::Reference> reference;
+  std::vector<double> mass, viscosity;
+  double edges = 0.0;
+  for (std::size_t t = 0; t < corners.size(); ++t) {
+    typename Shape::Nodes own;
+    for (std::size_t k = 0; k < corners[t].size(); ++k) {
+      own.at[k] = {model.point[at(corners[t][k])], model.velocity[t]};
+      w.vertex.push_back(corners[t][k]);
+    }
+    const auto& m = config.materials[static_cast<std::size_t>(model.material[t])];
+    const auto start = Shape::at_start(own, m.density, t);
+    nodes.push_back(own);
+    reference.push_back(start.reference);
+    mass.push_back(start.mass);
+    edges += start.edge;
+    viscosity.push_back(m.damping * 2.0 * start.edge * std::sqrt(m.young * m.density));
+  }
+  auto& given = set_up(w);
+  given.mean_edge = edges / static_cast<double>(corners.size());
+  given.skin = config.search.margin * given.mean_edge;
+  auto& e = Shape::elements(w);
+  copy_to(e.id, id);
+  copy_to(e.group, model.group);
+  copy_to(e.material, std::vector<Index>(model.material.begin(), model.material.end()));
+  copy_to(e.nodes, nodes);
+  copy_to(Shape::reference(e), reference);
+  copy_to(e.mass, mass);
+  copy_to(e.viscosity, viscosity);
+  for (Buffer<double>* work : {&e.viscous_work, &e.damping_work, &e.load_work})
+    work->resize(model.size());
+  e.force.resize(model.size());
+}
+
+/// Names of bodies, and their corners.
+template <class World, class Model>
+void set_up_bodies(World& w, const Model& model) {
+  constexpr Index corners = ShapeOf<World>::corners;
+  auto& given = set_up(w);
+  given.groups = model.groups;
+  for (const std::string& group : model.groups) given.sets.push_back({group, {}});
+  for (Index t = 0; t < model.size(); ++t)
+    for (Index k = 0; k < corners; ++k)
+      given.sets[static_cast<std::size_t>(model.group[at(t)])].nodes.push_back(corners * t + k);
+}
+
+/// Vertices with several corners, some of which move as one, at least at the start.
+/// @param tied  1: of each vertex
+template <class World>
+void set_up_bundles(World& w, const std::vector<std::uint8_t>& tied) {
+  using Shape = ShapeOf<World>;
+  std::vector<std::vector<Index>> corners(tied.size());
+  for (Index n = 0; n < Shape::corners * Shape::elements(w).size(); ++n)
+    if (tied[at(w.vertex[at(n)])] != 0) corners[at(w.vertex[at(n)])].push_back(n);
+  std::vector<Index> starts{0}, nodes;
+  for (const std::vector<Index>& ring : corners) {
+    if (ring.empty()) continue;
+    nodes.insert(nodes.end(), ring.begin(), ring.end());
+    starts.push_back(static_cast<Index>(nodes.size()));
+  }
+  if (nodes.empty()) return;
+  copy_to(w.bundles.starts, starts);
+  copy_to(w.bundles.nodes, nodes);
+  derive_bundles(w);
+}
+
+/// Joints that nothing has happened to yet.
+template <class Joints>
+void begin_joints(Joints& j, Index count) {
+  copy_to(j.broke_at, std::vector<double>(at(count), -1.0));
+  j.points.resize(count);
+  j.work.resize(count);
+  j.pressing.resize(count);
+  j.shear_at_break.resize(count);
+  j.inherited_work.resize(count);
+}
+
+/// Places of corners at the start, for displacements and strains.
+template <class World, class Config, class Model>
+void set_up_starts(World& w, const Config& config, const Model& model) {
+  using Shape = ShapeOf<World>;
+  auto& given = set_up(w);
+  std::vector<typename Shape::Vector> starts;
+  for (const auto& corners : Shape::corners_of(model))
+    for (const Index vertex : corners) starts.push_back(model.point[at(vertex)]);
+  bool any = given.shown.displacement;
+  for (const ProbeConfig& p : config.probes) {
+    const Quantity::Kind kind = quantity_named(p.quantity).quantity.kind;
+    any |= kind == Quantity::Kind::displacement || kind == Quantity::Kind::strain;
+    if (kind != Quantity::Kind::strain) continue;
+    std::vector<Index> corners(starts.size());
+    std::iota(corners.begin(), corners.end(), 0);
+    for (const auto& set : given.sets)
+      if (set.name == p.on) corners = set.nodes;
+    const ReadBox box(p.min, p.max);
+    std::vector<Vec3> points;
+    for (const Index n : corners)
+      if (const Vec3 x = to_space(starts[at(n)]); box.holds(x)) points.push_back(x);
+    bool fits = false;
+    given.strain_fits.push_back({p.name, strain_fit(points, Shape::dimension, fits)});
+    if (!fits)
+      throw InputError("probe." + p.name + ": strain needs corners that do not lie " +
+                       (Shape::dimension == 2 ? "on a line" : "in a plane") +
+                       "; its region holds " + std::to_string(points.size()));
+  }
+  if (any) copy_to(given.starts, starts);
+}
+
+/// No machine takes more steps than this, and time, a sum of them, would stop.
+template <class World>
+void refuse_endless(const World& w) {
+  constexpr double most = 1e15;
+  const RuledStep least = ruled_step(w, true);
+  const double dt = std::min(w.next_dt, w.given->time.safety * least.step);
+  if (dt * most > w.given->time.end) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the stable time step is %.3g s, ruled by %s: time.end = %.3g s is more than 1e15 "
+                "steps away; see the densities, moduli and stiffnesses of the materials",
+                dt, least.term, w.given->time.end);
+  throw InputError(text);
+}
+
+}  // namespace breccia::fdem_shared

@@ -1,0 +1,106 @@
+#pragma once
+// A case as it is in one of its stages: what stages change of both finite-discrete methods.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/named.hpp"
+#include "core/stages.hpp"
+
+namespace breccia::fdem_shared {
+
+/// Lets a stage change a case.
+/// @param begin  time at which it began  [s]
+template <class Config, class Stage>
+void begin_stage(Config& config, const Stage& stage, double begin) {
+  if (stage.local_damping >= 0.0) config.local_damping = stage.local_damping;
+  if (stage.friction >= 0.0) config.stage_friction = stage.friction;
+  if (stage.gravity.x < no_limit) config.gravity = stage.gravity;
+  for (const auto& change : stage.supports)
+    if (auto* const s = find_named(config.supports, change.name)) {
+      if (change.fix != std::vector<std::string>{"same"}) s->fix = change.fix;
+      s->velocity = change.velocity;
+      s->history = {change.ramp, {}, {}, begin};
+      s->servo = change.servo;
+    }
+  for (const auto& change : stage.loads)
+    if (auto* const load = find_named(config.loads, change.name)) {
+      load->pressure = change.pressure;
+      load->traction = change.traction;
+      load->force = change.force;
+      load->history = {change.ramp, {}, {}, begin};
+    }
+}
+
+/// Problems of the servos of a case as it is in a stage.
+/// @param stage  begins each sentence
+/// @param area   what a servo's pressure acts on: a length or an area
+template <class Config>
+void add_servo_problems(const Config& now, const std::string& stage, const char* area,
+                        std::vector<std::string>& problems) {
+  for (const auto& s : now.supports) {
+    if (!s.servo.is_on()) continue;
+    const std::string where = stage + "support." + s.name;
+    if (s.velocity.is_table() || norm(s.velocity.value) > 0.0)
+      problems.push_back(where + ": it has a velocity and a servo, which decides that");
+    if ((s.servo.pressure.is_table() || s.servo.pressure.value != 0.0) && !(s.servo.area > 0.0))
+      problems.push_back(where + ".servo.area: the pressure needs " + area + " to act on");
+    if (std::find(s.fix.begin(), s.fix.end(), s.servo.axis) == s.fix.end())
+      problems.push_back(where + ".servo.axis = \"" + s.servo.axis +
+                         "\": it does not fix that direction");
+  }
+}
+
+/// Problems of one stage by itself.
+/// @param directions  of the method: x, y, z
+template <class Config, class Stage>
+void add_stage_problems(const Config& config, const Stage& stage,
+                        const std::vector<std::string>& directions,
+                        std::vector<std::string>& problems) {
+  const std::string where = "stage." + stage.name;
+  for (const auto& change : stage.supports) {
+    add_unknown(where + ".support.name", change.name, "support", names_of(config.supports),
+                problems);
+    for (const std::string& word : change.fix)
+      if (word != "same" &&
+          std::find(directions.begin(), directions.end(), word) == directions.end())
+        problems.push_back(where + ".support." + change.name + ".fix: \"" + word +
+                           "\" is no direction; allowed: x, y" +
+                           (directions.size() > 2 ? ", z" : ""));
+  }
+  for (const auto& change : stage.loads) {
+    add_unknown(where + ".load.name", change.name, "load", names_of(config.loads), problems);
+    for (const auto& load : config.loads)
+      if (load.name == change.name && load.kind == "absorbing")
+        problems.push_back(where + ".load." + change.name + " is absorbing, and has no size");
+  }
+}
+
+/// Problems of the stages of a case, as sentences, each once.
+/// @param config_at  config_at(config, progress): the case in a stage
+template <class Config, class At>
+std::vector<std::string> problems_of_stages(const Config& config,
+                                            const std::vector<std::string>& directions,
+                                            const char* area, const At& config_at) {
+  std::vector<std::string> problems =
+      breccia::stage_problems({config.stages.begin(), config.stages.end()}, names_of(config.probes),
+                              names_of(config.bodies));
+  for (const auto& stage : config.stages) add_stage_problems(config, stage, directions, problems);
+  StageProgress progress;
+  for (std::size_t k = 0; k < std::max<std::size_t>(config.stages.size(), 1); ++k) {
+    progress.index = static_cast<std::int32_t>(k);
+    const std::string stage = config.stages.empty() ? "" : "stage." + config.stages[k].name + ": ";
+    add_servo_problems(config_at(config, progress), stage, area, problems);
+  }
+  return problems;
+}
+
+/// In the order of the alphabet, each once.
+inline std::vector<std::string> each_once(std::vector<std::string> problems) {
+  std::sort(problems.begin(), problems.end());
+  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
+  return problems;
+}
+
+}  // namespace breccia::fdem_shared

@@ -1,0 +1,103 @@
+#pragma once
+// Parts of a step that both finite-discrete methods share: prescribed motions, loads over time,
+// corners that move as one, the next step. Made for each method in its stepping/step.cpp.
+
+#include <algorithm>
+
+#include "core/step_clock.hpp"
+#include "core/stepping.hpp"
+#include "exec/for_each.hpp"
+#include "exec/timers.hpp"
+#include "fdem_shared/shape.hpp"
+
+namespace breccia::fdem_shared {
+
+template <class StableStep>
+struct OwnedStableStep {
+  StableStep stable;
+  OwnedView owned;
+  BR_HD double operator()(Index t) const { return owned(t) ? stable(t) : largest_least; }
+};
+
+/// The stable step of those of a list: where a joint may just have broken.
+template <class StableStep>
+struct ListedStableStep {
+  OwnedStableStep<StableStep> stable;
+  View<const Index> listed;
+  BR_HD double operator()(Index i) const { return stable(listed[i]); }
+};
+
+/// The second law of motion with the arrays of a world.
+template <class World>
+auto world_kick(const World& w) {
+  const auto& t = ShapeOf<World>::elements(w);
+  return typename ShapeOf<World>::Kick{w.last_dt,
+                                       w.next_dt,
+                                       w.given->gravity,
+                                       w.given->local_damping,
+                                       w.given->holds.view(),
+                                       w.motions.view(),
+                                       t.mass.view(),
+                                       t.nodes.view(),
+                                       t.force.view(),
+                                       t.hold.view()};
+}
+
+/// Velocities of supports at the middle of the step to come, into World::motions.
+template <class World>
+void list_world_motions(World& w) {
+  if (w.prescribed.empty()) return;
+  std::vector<typename ShapeOf<World>::Motion> now;
+  const double middle = w.time + 0.5 * w.next_dt;
+  for (const auto& p : w.prescribed) now.push_back({p.at(middle)});
+  copy_to(w.motions, now);
+}
+
+template <class World>
+AllowedStep world_allowed_step(const World& w) {
+  return {w.given->time.safety, w.given->time.max_step};
+}
+
+/// Safe share of the stable step of all elements, rounded down to six bits.  [s]
+template <class World>
+double world_time_step(const World& w) {
+  const StageTime timed(w.exec, "time_step");
+  const OwnedStableStep<decltype(stable_step(w))> stable{stable_step(w), w.domain.owned_view()};
+  const Index count = ShapeOf<World>::elements(w).size();
+  const double least = w.domain.least(fold(w.exec, count, largest_least, stable, Least{}));
+  return world_allowed_step(w)(least, w.last_dt);
+}
+
+/// The step to come, or less where these elements allow less: after their joints have changed.
+template <class World>
+double world_shortened_step(const World& w, const Buffer<Index>& listed) {
+  const StageTime timed(w.exec, "time_step");
+  using Stable = ListedStableStep<decltype(stable_step(w))>;
+  const Stable stable{{stable_step(w), w.domain.owned_view()}, listed.view()};
+  const double least = w.domain.least(fold(w.exec, listed.size(), largest_least, stable, Least{}));
+  return std::min(w.next_dt, world_allowed_step(w)(least, w.last_dt));
+}
+
+/// The factors that loads have at the time of the positions.
+template <class World>
+void list_load_factors(World& w) {
+  auto now = w.given->loads;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    now[i].factor = w.given->load_amplitudes[i].at(w.time);
+  copy_to(w.load_laws, now);
+}
+
+/// Corners that move as one share their force.
+/// @param share  the kernel
+template <class World, class Share>
+void share_forces_of_bundles(World& w, const Share& share) {
+  if (w.mesh.bundled && !w.domain.single_rank()) {  // also on ranks that have none
+    const StageTime timed(w.exec, "halo");
+    w.tied_forces.refresh(w.exec, *w.domain.ranks, ShapeOf<World>::elements(w).force);
+  }
+  if (w.bundles.starts.size() < 2) return;
+  const StageTime timed(w.exec, "bundles");
+  for_each(w.exec, w.bundles.starts.size() - 1, share);
+}
+
+}  // namespace breccia::fdem_shared
