@@ -11,7 +11,7 @@ namespace breccia::app {
 /// The word for method = ["dem3d", "fdem3d"].
 inline constexpr const char* both_methods = "dem3d+fdem3d";
 
-/// Those that neither method has: all others are theirs, below [spheres] and [tetrahedra].
+/// Keys that neither method has; theirs stand below [spheres] and [tetrahedra].
 inline std::vector<KeyInfo> keys_between() {
   std::vector<KeyInfo> keys;
   for (const char* table : {"coupling.", "bond[]."})

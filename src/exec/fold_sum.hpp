@@ -10,7 +10,7 @@ inline namespace host_loops {
 inline namespace loops {
 #endif
 
-/// What the blocks of launches have found.
+/// Sums that the blocks of launches found.
 template <class Value>
 struct FoundByBlocks {
   static constexpr const char* name = "exec.fold_sum";

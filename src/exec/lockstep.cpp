@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t stack_bytes = 64 * 1024;
 
-/// What AddressSanitizer must be told of a stack before a jump leads there.
+/// Tells AddressSanitizer of a stack before a jump leads there.
 struct Stack {
   const void* bottom = nullptr;
   std::size_t size = 0;

@@ -383,7 +383,7 @@ struct ConcreteLink {
     const R squared = dot(trial, trial);
     const auto beyond = squared > limit * limit || !acts;
     if (!any(beyond)) return c;
-    // What does not act and bore nothing keeps nothing: no root, no division.
+    // A link without load before and after keeps nothing: no root, no division.
     const auto idle = !acts && before.x == 0.0 && before.y == 0.0 && before.z == 0.0;
     if (!any(beyond && !idle)) {
       c.kept = select(beyond, zero * trial, trial);

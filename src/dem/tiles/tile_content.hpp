@@ -1,5 +1,5 @@
 #pragma once
-// What one tile holds in the memory of a multiprocessor: it comes from the arrays of the world and
+// Content of one tile in the memory of a multiprocessor: it comes from the arrays of the world and
 // goes back there.
 
 #include "dem/tiles/tile_case.hpp"

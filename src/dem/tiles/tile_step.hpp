@@ -125,7 +125,7 @@ struct TileStep : TileContent {
       if (which > 0) stiffness_sum(6 + which, e) = turning;
     }
   }
-  /// What follows from an own element's sums: its critical number, and whether its margin may be
+  /// Results of an own element's sums: its critical number, and whether its margin may be
   /// used up by the move to come.
   /// @param span, longest  half of this step and the longest to come; that one  [s]
   BR_HD void judge(Index e, float span, float longest, TileNews& news) const {

@@ -315,7 +315,7 @@ struct CoupleForces {
     }
   }
 
-  /// What a couple gives back as it parts (contact.restitution).
+  /// The force of a couple as it parts (contact.restitution).
   struct Unloading {
     double share;  ///< of its normal forces that is left  [-]
     double most;   ///< energy of its overlap so far  [J/m]

@@ -25,7 +25,7 @@ PlaneModuli compliance_of(const MaterialConfig& material, bool plane_stress);
 /// Its law. @throws InputError naming the key where no such rock can be
 ElasticTriangle bedded_law(const MaterialConfig& material, bool plane_stress);
 
-/// What the stress across the plane, sigma_zz of plane strain, is of those along and across.
+/// Shares of the stresses along and across in that across the plane, sigma_zz of plane strain.
 struct OutOfPlane {
   double along = 0.0, across = 0.0;  ///< nu, nu' E/E'  [-]
 };
