@@ -43,7 +43,7 @@ struct CalibrateCommand {
                               "{}, interaction range {}",
                               elements, sample.compactness, sample.size_ratio, sample.range));
     }
-    return find(read, lab::rock_sample_of(std::get<fdem::Config>(read.config), material),
+    return find(read, lab::rock_sample_of(rock_case(read), material),
                 fmt::format("meshes of {} triangles in the plate of 50 x 100 mm", elements));
   }
 

@@ -40,4 +40,12 @@ std::vector<MaterialTarget> all_targets(const std::vector<std::string>& texts,
   return all;
 }
 
+const fdem::Config& rock_case(const Case& read) {
+  if (const auto* const plane = std::get_if<fdem::Config>(&read.config)) return *plane;
+  throw InputError(fmt::format(
+      "{}: specimens are made for method = \"dem3d\" and method = \"fdem2d\"; nothing was run\n"
+      "  name a plane case that has the same material: its laws and numbers mean the same",
+      read.file.empty() ? read.name : read.file));
+}
+
 }  // namespace breccia::app

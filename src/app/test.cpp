@@ -52,8 +52,7 @@ struct TestCommand {
     const Case read = load_case(path, overrides);
     if (const auto* const concrete = std::get_if<dem::Config>(&read.config))
       return of_concrete(read, lab::sample_of(*concrete, material));
-    return make(read, lab::rock_sample_of(std::get<fdem::Config>(read.config), material),
-                lab::rock_tests());
+    return make(read, lab::rock_sample_of(rock_case(read), material), lab::rock_tests());
   }
 
   int of_concrete(const Case& read, const lab::Sample& sample) const {

@@ -50,7 +50,7 @@ struct FaceShape {
 
 /// Cohesive joints. Side a is the tetrahedron with the lower global id. Integration points lie in
 /// the middles of the edges (0, 1), (1, 2), (2, 0) of the face, a third of its area each. One item
-/// for each joint; `force` has one more that stays zero. Who writes it: as of Tetrahedra.
+/// for each joint. Who writes it: as of Tetrahedra.
 struct Joints {
   Buffer<Index> face_a, face_b;  ///< the two faces that it joins  [-]  (set-up, ranks)
   Buffer<std::uint8_t> turn;     ///< see JointEnds  [-]  (constant)

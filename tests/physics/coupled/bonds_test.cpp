@@ -12,7 +12,7 @@ using namespace testing;
 TEST(Bonds, feel_no_rotation_of_both) {
   Quaternion q;
   for (int k = 0; k < 200; ++k) q = rotated(q, {0.01, -0.02, 0.005});
-  fdem3::TetrahedronNodes start{}, now{};
+  fdem3::TetrahedronNodes now{};
   const Vec3 corner[4] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.2, 0.9, 0.1}, {0.3, 0.2, -0.8}};
   BallBond bond{};
   const double share[4] = {0.2, 0.3, 0.5, 0.0};

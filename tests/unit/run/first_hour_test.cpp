@@ -35,6 +35,14 @@ TEST_F(FirstHour, every_template_is_a_case_that_passes_check) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
 }
 
+TEST_F(FirstHour, the_laboratory_refuses_cases_whose_specimens_it_cannot_make) {
+  ASSERT_EQ(run("new bar"), 0) << told;
+  for (const char* command : {"test", "calibrate"}) {
+    EXPECT_EQ(run(std::string(command) + " bar.toml --material rock"), 2) << told;
+    EXPECT_TRUE(says("bar.toml: specimens are made for method = \"dem3d\"")) << told;
+  }
+}
+
 TEST_F(FirstHour, new_overwrites_nothing_and_lists_what_there_is) {
   EXPECT_EQ(run("new beam sub/mine.toml"), 0) << told;
   EXPECT_TRUE(std::filesystem::exists(folder / "sub/mine.toml"));
