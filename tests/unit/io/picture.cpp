@@ -386,6 +386,7 @@ TEST(picture, every_body_is_shown_however_small_and_far_from_the_largest) {
     EXPECT_EQ(extent.high.x, 310) << items;
     EXPECT_EQ(extent.high.y, 310) << items;
     FrameField of_points{"group", "-", 1, {}};
+    if (frame.triangle_fields.empty()) break;
     for (const float body : frame.triangle_fields.front().values)
       of_points.values.insert(of_points.values.end(), 3, body);
     frame.triangle_fields.clear();
