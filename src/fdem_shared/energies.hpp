@@ -76,10 +76,9 @@ struct JointShares {
       s.work.add(inherited.slide - spent.slide);
       return;
     }
-    if (stage[i] != Stage::whole) {
-      s.fracture.add(spent.open);
-      s.sliding.add(spent.slide);
-    }
+    // Of a whole joint it is what pressure has spent on its slip (tetrahedra), or nothing.
+    s.fracture.add(spent.open);
+    s.sliding.add(spent.slide);
     if (stage[i] == Stage::broken) {
       s.fracture.add(-inherited.open);
       s.sliding.add(-inherited.slide);

@@ -41,7 +41,7 @@ struct JointForces {
     }
     const JointOpening o = opening_of(a, b);
     const Vec3 offset = preset.size > 0 ? preset[i] : Vec3{};
-    if (before == JointStage::whole && stays_whole(i, o, offset)) return;
+    if (before == JointStage::whole && stays_whole(i, e, o, offset)) return;
     slow(i, before, e, o, offset, last);
   }
 
@@ -62,7 +62,8 @@ struct JointForces {
 
   /// A joint that is whole, nearly every one. @returns false, with nothing written, if it does not
   /// stay so
-  BR_HD bool stays_whole(Index i, const JointOpening& o, const Vec3& offset) const {
+  BR_HD bool stays_whole(Index i, const JointEnds& e, const JointOpening& o,
+                         const Vec3& offset) const {
     const JointBond& bond = bonds[law[i]];
     const double share = strength[i], slope = bond.stiffness / length[i];
     const double tension = bond.tension * share, cohesion = bond.cohesion * share;
@@ -72,11 +73,13 @@ struct JointForces {
     if (!(o.twice > 2e-12 * area)) return false;
     const Vec3 slip = slip_in_space(o, offset);
     Vec3 traction[3], mean{};
+    bool drags = false;
     for (int q = 0; q < 3; ++q) {
       const Vec3 slide = o.slide[q] + slip;
       const double straight = slope * (o.open[q] + offset.x), size = slope * norm(slide);
       const double resists = cohesion - bond.friction * min(straight, 0.0);
       if (straight > 2.0 * tension || size > 2.0 * resists) return false;
+      drags = drags || size > least_drag * resists;
       const double normal = straight < 0.0 ? straight : straight * (1.0 - straight * quarter);
       traction[q] = normal * o.normal + (slope * (1.0 - size * (0.25 / resists))) * slide;
       mean += traction[q];
@@ -86,6 +89,7 @@ struct JointForces {
       if (may_fail(bond, share, s)) return false;
     }
     store(i, traction, area);
+    if (drags) book_drag(i, bond, offset, e, o);
     return true;
   }
 
@@ -97,7 +101,10 @@ struct JointForces {
     Vec3 way[3];
     for (int k = 0; k < 3; ++k) way[k] = dt * (node(e.a[k]).velocity - node(e.b[k]).velocity);
     if (is_parted(before) || collapsed) {
-      if (!collapsed) book_work(i, o, way, last, JointForce{});
+      if (before == JointStage::whole) begin_work(i, bonds[law[i]], offset, e);
+      JointOpening flat = o;
+      if (collapsed) flat.normal = {};  // it has none: all is sliding
+      book_work(i, flat, way, last, JointForce{});
       if (!is_parted(before)) finish(i);
       force[i] = {};
       return;
@@ -131,7 +138,12 @@ struct JointForces {
       failed += state.point[q].damage >= 1.0 ? 1 : 0;
       damaged = damaged || state.point[q].damage > 0.0;
     }
-    if (damaged && before == JointStage::whole) begin_work(i, bond, offset, e);
+    if (before == JointStage::whole) {
+      if (damaged)
+        begin_work(i, bond, offset, e);
+      else
+        book_drag(i, bond, offset, e, o);
+    }
     store(i, traction, area);
     if (damaged) {
       book_work(i, o, way, last, force[i]);
@@ -174,17 +186,39 @@ struct JointForces {
     return true;
   }
 
-  /// A joint that softens in this step had stored this much before it: all it had taken up.
-  BR_HD void begin_work(Index i, const JointBond& bond, const Vec3& offset,
-                        const JointEnds& e) const {
+  /// Its opening a step before.
+  BR_HD JointOpening last_opening(const JointEnds& e) const {
     Vec3 a[3], b[3];
     for (int k = 0; k < 3; ++k) {
       a[k] = node(e.a[k]).position - dt * node(e.a[k]).velocity;
       b[k] = node(e.b[k]).position - dt * node(e.b[k]).velocity;
     }
+    return opening_of(a, b);
+  }
+  /// A joint that softens in this step had stored this much before it: with what it had spent, all
+  /// that it had taken up.
+  BR_HD void begin_work(Index i, const JointBond& bond, const Vec3& offset,
+                        const JointEnds& e) const {
     const fdem::StoredEnergy held = stored_in(bond, strength[i], length[i], shape[i].area(), offset,
-                                              opening_of(a, b), JointPoints{});
-    work[i] = {held.open, held.slide};
+                                              last_opening(e), JointPoints{});
+    work[i].open += held.open;
+    work[i].slide += held.slide;
+  }
+  /// A joint that stays whole books what pressure that changes takes on its slip
+  /// (docs/theory-fdem3.md, 2), from this T/f_s on: below it, that is at most T/(6 f_s) of what its
+  /// slip stores.
+  static constexpr double least_drag = 0.2;
+  BR_HD void book_drag(Index i, const JointBond& bond, const Vec3& offset, const JointEnds& e,
+                       const JointOpening& o) const {
+    const JointOpening before = last_opening(e);
+    const Vec3 slip_before = slip_in_space(before, offset), slip = slip_in_space(o, offset);
+    const double slope = bond.stiffness / length[i], cohesion = bond.cohesion * strength[i];
+    double sum = 0.0;
+    for (int q = 0; q < 3; ++q)
+      sum += spent_by_pressure(slope, cohesion, bond.friction,
+                               {before.open[q] + offset.x, o.open[q] + offset.x},
+                               {norm(before.slide[q] + slip_before), norm(o.slide[q] + slip)});
+    work[i].slide += shape[i].area() / 3.0 * sum;
   }
   /// Work of this step by the trapezoidal rule: with leapfrog velocities it sums to exactly what
   /// the nodes lose.

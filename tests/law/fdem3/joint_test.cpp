@@ -181,6 +181,52 @@ TEST(FaceJoint, takes_its_fracture_energies_when_it_is_pulled_and_sheared_apart)
   EXPECT_NEAR(slid.open / area, 0.0, 1e-9);
 }
 
+// Pressed to sigma, slipped by s, let go, slipped back: the way round takes T^3/(12 p_f/h) times
+// (1/c - 1/(c + sigma tan phi)) an area, T = p_f s/h, which a joint that stays whole does not
+// store.
+TEST(FaceJoint, books_what_pressure_takes_on_its_slip) {
+  const double area = 0.45 * mm * mm, slope = bond().stiffness / (0.5 * mm);
+  const double pressed = 40e6 / slope, slipped = 20e6 / slope;
+  OneJoint joint(0, 0, 0);
+  const int steps = 1000;
+  const auto go = [&](const Vec3& from, const Vec3& to) {
+    for (int i = 1; i <= steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      const Vec3 at = (1.0 - share) * from + share * to;
+      joint.moved(at, at, at, 1e-6);
+    }
+  };
+  go({}, {0.0, 0.0, -pressed});
+  EXPECT_EQ(joint.work().slide, 0.0);
+  go({0.0, 0.0, -pressed}, {slipped, 0.0, -pressed});
+  EXPECT_NEAR(joint.work().slide, 0.0, 1e-15);
+  go({slipped, 0.0, -pressed}, {slipped, 0.0, 0.0});
+  const double taken = area * 20e6 * 20e6 * 20e6 / (12.0 * slope) * (1.0 / 15e6 - 1.0 / 43e6);
+  EXPECT_NEAR(joint.work().slide, taken, 1e-5 * taken);
+  go({slipped, 0.0, 0.0}, {});
+  EXPECT_NEAR(joint.work().slide, taken, 1e-5 * taken);
+  EXPECT_EQ(joint.work().open, 0.0);
+  EXPECT_EQ(joint.stage(), JointStage::whole);
+  // Its forces took just that from who moved it.
+  double given = 0.0;
+  Vec3 last{};
+  JointForce before = joint.moved({}, {}, {}, 1e-6);
+  const Vec3 corner[4] = {
+      {0.0, 0.0, -pressed}, {slipped, 0.0, -pressed}, {slipped, 0.0, 0.0}, Vec3{}};
+  for (const Vec3& to : corner) {
+    const Vec3 from = last;
+    for (int i = 1; i <= steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      const Vec3 at = (1.0 - share) * from + share * to;
+      const JointForce now = joint.moved(at, at, at, 1e-6);
+      for (int k = 0; k < 3; ++k) given -= 0.5 * dot(before.at[k] + now.at[k], at - last);
+      before = now;
+      last = at;
+    }
+  }
+  EXPECT_NEAR(given, taken, 1e-3 * taken);
+}
+
 TEST(FaceJoint, turns_its_forces_with_the_body) {
   const auto turned = [](const Vec3& v) {
     const double c = std::cos(0.7), s = std::sin(0.7);
