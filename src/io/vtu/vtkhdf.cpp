@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <type_traits>
@@ -13,6 +15,7 @@
 #ifdef BR_HDF5
 
 #include <hdf5.h>
+#include <zlib.h>
 
 namespace breccia {
 namespace {
@@ -206,7 +209,7 @@ class VtkhdfFile final : public FrameFile {
       FrameField& field =
           result.emplace_back(FrameField{name, unit(array.data), array.components, {}});
       field.values = values_of<float>(array, items);
-      if (array.whole) field.integers = values_of<std::int32_t>(array, items);
+      if (array.type == FrameNumber::int32) field.integers = values_of<std::int32_t>(array, items);
     }
     return result;
   }
@@ -225,24 +228,15 @@ class VtkhdfFile final : public FrameFile {
     Handle data;
     std::size_t rows;
     int components;
-    bool whole;
+    FrameNumber type;
   };
 
-  template <class T>
-  static hid_t memory_type() {
-    if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
-    if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
-    if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
-    if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
-    if constexpr (std::is_same_v<T, char>) return H5T_NATIVE_CHAR;
-  }
-  /// True for types as this program writes them: the library converts others by sizes that a
-  /// damaged file states, and reads beyond its own buffers then.
-  static bool is_written(hid_t type) {
-    for (const hid_t each :
-         {H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_STD_I8LE, H5T_STD_U8LE, H5T_STD_I32LE, H5T_STD_I64LE})
-      if (H5Tequal(type, each) > 0) return true;
-    return false;
+  /// Of the types that this program writes; others are refused.
+  static std::optional<FrameNumber> number_type(hid_t type) {
+    for (const FrameNumber each : {FrameNumber::float32, FrameNumber::float64, FrameNumber::int32,
+                                   FrameNumber::int64, FrameNumber::uint8})
+      if (H5Tequal(type, hdf_type(each)) > 0) return each;
+    return std::nullopt;
   }
   static std::string path_of(const std::string& section, const std::string& name) {
     return "/VTKHDF/" + (is_field(section) ? section + "/" + name : vtkhdf_name(name));
@@ -270,7 +264,8 @@ class VtkhdfFile final : public FrameFile {
                      std::size_t none = std::size_t(-1)) const {
     const std::string name = path.substr(sizeof "/VTKHDF/" - 1);
     if (!has(path)) fail("has no " + name);
-    Array array{{H5Dopen2(file_->id(), path.c_str(), H5P_DEFAULT), H5Dclose}, 0, 1, false};
+    Array array{
+        {H5Dopen2(file_->id(), path.c_str(), H5P_DEFAULT), H5Dclose}, 0, 1, FrameNumber::uint8};
     if (!array.data.good()) fail("array " + name + " is damaged");
     const Handle space(H5Dget_space(array.data.id()), H5Sclose);
     const Handle type(H5Dget_type(array.data.id()), H5Tclose);
@@ -279,23 +274,116 @@ class VtkhdfFile final : public FrameFile {
     const bool flat = (rank == 1 || rank == 2) &&
                       H5Sget_simple_extent_dims(space.id(), size.data(), nullptr) == rank;
     // zlib packs by 1032 at most
-    const bool fits = flat && type.good() && is_written(type.id()) && size[1] >= 1 &&
-                      size[1] <= 64 && size[0] / 1100 <= content_.size() &&
-                      (rows == none || size[0] == rows);
+    const auto number = type.good() ? number_type(type.id()) : std::nullopt;
+    const bool fits = flat && number && size[1] >= 1 && size[1] <= 64 &&
+                      size[0] / 1100 <= content_.size() && (rows == none || size[0] == rows);
     if (!fits) fail("array " + name + " is damaged");
     array.rows = size[0];
     array.components = static_cast<int>(size[1]);
-    array.whole = H5Tget_class(type.id()) == H5T_INTEGER && H5Tget_size(type.id()) == 4;
+    array.type = *number;
     return array;
+  }
+
+  /// Bytes of an array as the file holds them. Chunks are unpacked here: HDF5 trusts the sizes and
+  /// filters that a damaged file states, and reads beyond its own buffers then.
+  std::string bytes_of(const Array& array, std::size_t item) const {
+    const std::size_t row = item * static_cast<std::size_t>(array.components);
+    std::string bytes(array.rows * row, '\0');
+    if (bytes.empty()) return bytes;
+    const Handle how(H5Dget_create_plist(array.data.id()), H5Pclose);
+    if (!how.good()) fail("an array is damaged");
+    if (H5Pget_layout(how.id()) != H5D_CHUNKED) {
+      const Handle type(H5Dget_type(array.data.id()), H5Tclose);
+      if (H5Pget_nfilters(how.id()) != 0 ||
+          H5Dread(array.data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
+        fail("an array is damaged");
+      return bytes;
+    }
+    const bool packed = only_deflate(how.id());
+    std::array<hsize_t, 2> chunk{0, 1}, place{0, 0};
+    const int rank = H5Pget_chunk(how.id(), 2, chunk.data());
+    if (rank < 1 || rank > 2 || chunk[0] == 0 || chunk[0] > (hsize_t{1} << 31) ||
+        chunk[1] != static_cast<hsize_t>(array.components))
+      fail("an array is damaged");
+    std::string raw, whole(std::min<std::size_t>(chunk[0], array.rows) * row, '\0');
+    for (; place[0] < array.rows; place[0] += chunk[0]) {
+      const std::size_t rows = std::min<std::size_t>(chunk[0], array.rows - place[0]);
+      raw_chunk(array, place, raw);
+      // The last chunk is full in files of other programs; this one's ends with the array.
+      if (packed) whole.resize(chunk[0] * row);
+      const std::string_view content = packed ? unpacked(raw, whole) : std::string_view(raw);
+      if (content.size() < rows * row) fail("an array is damaged");
+      content.copy(bytes.data() + place[0] * row, rows * row);
+    }
+    return bytes;
+  }
+  bool only_deflate(hid_t how) const {
+    const int filters = H5Pget_nfilters(how);
+    if (filters == 0) return false;
+    unsigned flags = 0, options = 0;
+    std::size_t values = 0;
+    if (filters != 1 || H5Pget_filter2(how, 0, &flags, &values, nullptr, 0, nullptr, &options) !=
+                            H5Z_FILTER_DEFLATE)
+      fail("an array is packed by other filters than deflate");
+    return true;
+  }
+  void raw_chunk(const Array& array, const std::array<hsize_t, 2>& place, std::string& raw) const {
+    hsize_t size = 0;
+    std::uint32_t skipped = 0;
+    if (H5Dget_chunk_storage_size(array.data.id(), place.data(), &size) < 0 ||
+        size > content_.size())
+      fail("an array is damaged");
+    raw.resize(size);
+    if (size == 0 ||
+        H5Dread_chunk(array.data.id(), H5P_DEFAULT, place.data(), &skipped, raw.data()) < 0 ||
+        skipped != 0)
+      fail("an array is damaged");
+  }
+  std::string_view unpacked(const std::string& raw, std::string& to) const {
+    uLongf size = to.size();
+    if (::uncompress(reinterpret_cast<Bytef*>(to.data()), &size,
+                     reinterpret_cast<const Bytef*>(raw.data()), raw.size()) != Z_OK)
+      fail("an array is damaged");
+    return {to.data(), size};
+  }
+
+  template <class From, class To>
+  static std::vector<To> converted(const std::string& bytes) {
+    std::vector<From> from(bytes.size() / sizeof(From));
+    std::memcpy(from.data(), bytes.data(), bytes.size());
+    if constexpr (std::is_same_v<From, To>) return from;
+    std::vector<To> result(from.size());
+    std::transform(from.begin(), from.end(), result.begin(),
+                   [](From value) { return as<To>(value); });
+    return result;
+  }
+  /// Whole numbers end at the bounds of To, as HDF5 converts them; bytes of a text stay bytes.
+  template <class To, class From>
+  static To as(From value) {
+    if constexpr (std::is_integral_v<To> && sizeof(To) > 1 && sizeof(From) > 1) {
+      using Limits = std::numeric_limits<To>;
+      if (!(value > static_cast<From>(Limits::min()))) return Limits::min();
+      if (value >= static_cast<From>(Limits::max())) return Limits::max();
+    }
+    return static_cast<To>(value);
   }
 
   template <class T>
   std::vector<T> values_of(const Array& array, std::size_t rows) const {
-    std::vector<T> result(rows * static_cast<std::size_t>(array.components));
-    if (!result.empty() && H5Dread(array.data.id(), memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                                   result.data()) < 0)
-      fail("an array is damaged");
-    return result;
+    if (array.rows != rows) fail("an array is damaged");
+    switch (array.type) {
+      case FrameNumber::float32:
+        return converted<float, T>(bytes_of(array, 4));
+      case FrameNumber::float64:
+        return converted<double, T>(bytes_of(array, 8));
+      case FrameNumber::int32:
+        return converted<std::int32_t, T>(bytes_of(array, 4));
+      case FrameNumber::int64:
+        return converted<std::int64_t, T>(bytes_of(array, 8));
+      case FrameNumber::uint8:
+        break;
+    }
+    return converted<std::uint8_t, T>(bytes_of(array, 1));
   }
   template <class T>
   std::vector<T> values(const std::string& path, std::size_t rows) const {
