@@ -3,7 +3,7 @@
 
     scripts/rock_plots.py KIND RESULT_DIR [RESULT_DIR...] -o plot.png
 
-KIND: tension, crack (fracture energy over growth), disc (force over travel), kalthoff (crack path), branching (crack front), spall (velocity of the free end),
+KIND: tension, crack (fracture energy over growth), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), branching (crack front), spall (velocity of the free end),
 triaxial (strengths over pressure, from several runs), dominoes (speed along the row, several runs).
 """
 
@@ -59,6 +59,37 @@ def kalthoff(axes, results):
     axes.set(xlabel="x, mm", ylabel="y, mm", xlim=(0, 100), ylim=(0, 100), aspect="equal")
 
 
+def kalthoff_3d(axes, results):
+    for r in results:
+        axes.plot([1e3 * c["x0"] for c in r.rows("cracks.csv")], [1e3 * c["y0"] for c in r.rows("cracks.csv")], ".", ms=4,
+                  label=f"{r.value('model.tetrahedra'):.0f} tetrahedra")
+    for angle in (60, 70):
+        a = math.radians(angle)
+        axes.plot([50, 50 + 75 / math.tan(a)], [25, 100], color="0.5", lw=1, ls="--" if angle == 60 else ":", label=f"{angle} degrees")
+    axes.plot([0, 50], [25, 25], color="0.5", lw=3, label="notch")
+    axes.set(xlabel="x, mm", ylabel="y, mm", xlim=(0, 100), ylim=(0, 100), aspect="equal")
+
+
+def ball(axes, results):
+    for r in results:
+        coupled = "coupling" in r.summary
+        rows = r.rows("history.csv")
+        axes.plot([1e6 * row["time"] for row in rows], [row["ball"] for row in rows], color="C0" if coupled else "C1", lw=1,
+                  label="spheres tied in tetrahedra" if coupled else "spheres alone")
+    axes.axhline(0.0, color="0.5", lw=1, ls="--")
+    axes.set(xlabel="time, us", ylabel="velocity of the ball, m/s")
+
+
+def cylinder(axes, results):
+    area = math.pi * 0.025**2
+    for r in results:
+        rows = r.rows("history.csv")
+        axes.plot([1e6 * row["time"] for row in rows], [1e-6 * row["force"] / area for row in rows],
+                  label=f"{r.value('model.tetrahedra'):.0f} tetrahedra")
+    axes.axhline(34.64, color="0.5", lw=1, ls="--", label="2 c cos(phi)/(1 - sin(phi))")
+    axes.set(xlabel="time, us", ylabel="force / section, MPa")
+
+
 def branching(axes, results):
     for r in results:
         cracks = r.cracks()
@@ -106,7 +137,7 @@ def dominoes(axes, results):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    kinds = {f.__name__: f for f in (tension, crack, disc, kalthoff, branching, spall, triaxial, dominoes)}
+    kinds = {f.__name__: f for f in (tension, crack, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, spall, triaxial, dominoes)}
     parser.add_argument("kind", choices=kinds)
     parser.add_argument("results", nargs="+", type=pathlib.Path)
     parser.add_argument("-o", "--out", required=True)
