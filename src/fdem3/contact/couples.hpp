@@ -95,22 +95,36 @@ struct Pressing {
   }
 };
 
+/// A tetrahedron of a couple.
+struct Partner {
+  Vec3 x[4];  ///< corners  [m]
+  int exposed;
+  Target target;
+  CornersInside in_other;
+
+  BR_HD bool has_volume() const { return target.six_volumes > 0.0; }
+};
+
 /// Adds the exposed faces of one tetrahedron that are in the other; and what all of its faces tell
 /// of the overlap.
 /// @param inside  of the target  @param own  of the tetrahedron itself
-BR_HD inline void add_faces(const Vec3 (&x)[4], int exposed, const Target& target, double penalty,
-                            bool of_a, Pressing& sum, Inside& inside, Inside& own) {
+BR_HD inline void add_faces(const Partner& one, const Target& target, double penalty, bool of_a,
+                            Pressing& sum, Inside& inside, Inside& own) {
   Corners& on_own = of_a ? sum.force.on_a : sum.force.on_b;
   Corners& on_other = of_a ? sum.force.on_b : sum.force.on_a;
   for (int f = 0; f < 4; ++f) {
     Vec3 face[3];
-    for (int k = 0; k < 3; ++k) face[k] = x[corner_of_face(f, k)];
     FaceOverlap o;
-    if (!overlap_of_face(face, target, o)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int corner = corner_of_face(f, k);
+      face[k] = one.x[corner];
+      for (int m = 0; m < 4; ++m) o.lambda[k][m] = one.in_other.lambda[corner][m];
+    }
+    if (!overlap_of_face(target, o)) continue;
     const double area = o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
     inside.add_other(o, face);
     own.add_own(f, area);
-    if ((exposed >> f & 1) == 0) continue;
+    if ((one.exposed >> f & 1) == 0) continue;
     Vec3 on_face[3], on_target[4];
     push(o, face, penalty, on_face, on_target);
     for (int k = 0; k < 3; ++k) on_own.at[corner_of_face(f, k)] += on_face[k];
@@ -154,39 +168,38 @@ struct CoupleForces {
     const bool is_new = kept.scale == 0.0;
     if (is_new) kept.scale = 1.0;
     const TetrahedronNodes &na = nodes[a[i]], &nb = nodes[b[i]];
-    Vec3 xa[4], xb[4], va[4], vb[4];
-    split(na, xa, va);
-    split(nb, xb, vb);
+    Partner of_a, of_b;
+    Vec3 va[4], vb[4];
+    split(na, of_a.x, va);
+    split(nb, of_b.x, vb);
+    const bool meeting = !boxes_apart(of_a.x, of_b.x, 0.0) && meet(of_a, of_b);
+    // It has begun and holds nothing: its forces are zero already.
+    const bool resting = !is_new && kept.work == 0.0 && kept.slid == 0.0;
+    if (!meeting && resting) return;
     Pressing sum;
-    const bool resting = kept.work == 0.0 && kept.slid == 0.0;
-    if (!boxes_apart(xa, xb, 0.0)) {
-      const int open_a = exposed[a[i]], open_b = exposed[b[i]];
-      Target of_a = Target::of(xa), of_b = Target::of(xb);
+    if (meeting) {
+      of_a.exposed = exposed[a[i]];
+      of_b.exposed = exposed[b[i]];
       const ContactPair& law = laws[material[a[i]] * materials + material[b[i]]];
-      if (of_a.six_volumes > 0.0 && of_b.six_volumes > 0.0 && !of_a.parts_from(xb) &&
-          !of_b.parts_from(xa)) {
-        of_a.measure_heights();
-        of_b.measure_heights();
-        if (is_new && parent_joint[i] >= 0)
-          inherit(parent_joint[i], law, kept, xa, open_a, of_a, xb, open_b, of_b);
-        press(law.penalty * kept.scale, xa, open_a, of_a, xb, open_b, of_b, sum);
-        // Neighbours at a vertex become a couple some steps after a joint there has softened.
-        if (is_new && kept.work == 0.0) kept.begun = sum.energy;
-        sum.take_off(kept.begun);
-        if (sum.touches()) rub(law, of_a, va, of_b, vb, kept, sum);
-      }
+      if (is_new && parent_joint[i] >= 0) inherit(parent_joint[i], law, kept, of_a, of_b);
+      press(law.penalty * kept.scale, of_a, of_b, sum);
+      // Neighbours at a vertex become a couple some steps after a joint there has softened.
+      if (is_new && kept.work == 0.0) kept.begun = sum.energy;
+      sum.take_off(kept.begun);
+      if (sum.touches()) rub(law, of_a.target, va, of_b.target, vb, kept, sum);
     }
-    if (!sum.touches() && resting && !is_new) {
-      force[i] = {};
-      return;
-    }
+    if (!sum.touches() && resting) return;
     const CoupleForce last = force[i];
     force[i] = sum.force;
     for (int k = 0; k < 4; ++k) {
       kept.work -= 0.5 * dt * dot(last.on_a.at[k] + sum.force.on_a.at[k], va[k]);
       kept.work -= 0.5 * dt * dot(last.on_b.at[k] + sum.force.on_b.at[k], vb[k]);
     }
-    if (sum.touches()) return;
+    if (sum.touches()) {
+      // Not even one that has taken up nothing rests: its forces must end.
+      if (kept.work == 0.0 && kept.slid == 0.0) kept.work = 1e-300;
+      return;
+    }
     kept.slid += kept.sprung;  // what the spring held is spent
     kept.lost += kept.work - kept.slid;
     kept.rubbed += kept.slid;
@@ -198,14 +211,26 @@ struct CoupleForces {
   }
 
  private:
-  BR_HD static void press(double penalty, const Vec3 (&xa)[4], int open_a, const Target& of_a,
-                          const Vec3 (&xb)[4], int open_b, const Target& of_b, Pressing& sum) {
-    Inside in_a(of_a), in_b(of_b);
-    add_faces(xa, open_a, of_b, penalty, true, sum, in_b, in_a);
-    add_faces(xb, open_b, of_a, penalty, false, sum, in_a, in_b);
+  /// Whether no face of either has the other one on its outer side. Makes targets of both.
+  BR_HD static bool meet(Partner& a, Partner& b) {
+    a.target = Target::of(a.x);
+    b.target = Target::of(b.x);
+    if (!a.has_volume() || !b.has_volume()) return false;
+    b.in_other = CornersInside::of(b.x, a.target);
+    if (b.in_other.beyond_a_face()) return false;
+    a.in_other = CornersInside::of(a.x, b.target);
+    if (a.in_other.beyond_a_face()) return false;
+    a.target.measure_heights();
+    b.target.measure_heights();
+    return true;
+  }
+  BR_HD static void press(double penalty, const Partner& a, const Partner& b, Pressing& sum) {
+    Inside in_a(a.target), in_b(b.target);
+    add_faces(a, b.target, penalty, true, sum, in_b, in_a);
+    add_faces(b, a.target, penalty, false, sum, in_a, in_b);
     if (!sum.touches()) return;
-    in_a.add_shape_forces(of_a, penalty, sum.force.on_a.at);
-    in_b.add_shape_forces(of_b, penalty, sum.force.on_b.at);
+    in_a.add_shape_forces(a.target, penalty, sum.force.on_a.at);
+    in_b.add_shape_forces(b.target, penalty, sum.force.on_b.at);
     sum.energy = in_a.energy(penalty) + in_b.energy(penalty);
   }
   /// Coulomb friction at the centre of pressure, shared among the corners by its coordinates.
@@ -244,13 +269,12 @@ struct CoupleForces {
   /// A couple born in overlap, where a joint broke under compression, goes on with the joint's
   /// forces as far as friction bears them, so that neither force jumps; what it then stores is its
   /// part of the joint's work.
-  BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Vec3 (&xa)[4],
-                     int open_a, const Target& of_a, const Vec3 (&xb)[4], int open_b,
-                     const Target& of_b) const {
+  BR_HD void inherit(Index joint, const ContactPair& law, CoupleState& kept, const Partner& of_a,
+                     const Partner& of_b) const {
     const double pressing = joints.pressing[joint];
     if (!(pressing > 0.0)) return;
     Pressing whole;
-    press(law.penalty, xa, open_a, of_a, xb, open_b, of_b, whole);
+    press(law.penalty, of_a, of_b, whole);
     const double size = norm(whole.on_a);
     if (!(size > 0.0)) return;
     kept.scale = min(2.0, max(0.01, pressing / size));

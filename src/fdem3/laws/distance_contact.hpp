@@ -31,16 +31,6 @@ struct Target {
   BR_HD void measure_heights() {
     for (int k = 0; k < 4; ++k) height[k] = 1.0 / norm(slope[k]);
   }
-  /// Whether a face of this one has all of another one on its outer side.
-  BR_HD bool parts_from(const Vec3 (&other)[4]) const {
-    bool beyond[4] = {true, true, true, true};
-    for (const Vec3& corner : other) {
-      double lambda[4];
-      coordinates(corner, lambda);
-      for (int k = 0; k < 4; ++k) beyond[k] = beyond[k] && lambda[k] <= 0.0;
-    }
-    return beyond[0] || beyond[1] || beyond[2] || beyond[3];
-  }
   /// Coordinates of a point: its share of each corner.
   BR_HD void coordinates(const Vec3& p, double (&lambda)[4]) const {
     const Vec3 way = p - x[0];
@@ -48,6 +38,24 @@ struct Target {
     lambda[2] = dot(slope[2], way);
     lambda[3] = dot(slope[3], way);
     lambda[0] = 1.0 - (lambda[1] + lambda[2] + lambda[3]);
+  }
+};
+
+/// Coordinates of the corners of one tetrahedron in another.
+struct CornersInside {
+  double lambda[4][4];
+
+  BR_HD static CornersInside of(const Vec3 (&corner)[4], const Target& target) {
+    CornersInside c;
+    for (int k = 0; k < 4; ++k) target.coordinates(corner[k], c.lambda[k]);
+    return c;
+  }
+  /// Whether a face of the target has all of them on its outer side.
+  BR_HD bool beyond_a_face() const {
+    for (int k = 0; k < 4; ++k)
+      if (lambda[0][k] <= 0.0 && lambda[1][k] <= 0.0 && lambda[2][k] <= 0.0 && lambda[3][k] <= 0.0)
+        return true;
+    return false;
   }
 };
 
@@ -128,11 +136,10 @@ BR_HD inline void integrate(const Polygon& p, const Linear& f, double (&sum)[3],
 }  // namespace detail
 
 /// The potential of a target over the part of a face that lies in it: exact.
-/// @param face  corners, counter-clockwise seen from outside  [m]
+/// @param o  lambda is given
 /// @returns whether any of it does
-BR_HD inline bool overlap_of_face(const Vec3 (&face)[3], const Target& target, FaceOverlap& o) {
+BR_HD inline bool overlap_of_face(const Target& target, FaceOverlap& o) {
   using detail::Linear;
-  for (int i = 0; i < 3; ++i) target.coordinates(face[i], o.lambda[i]);
   Linear g[4];
   bool cuts[4];
   for (int k = 0; k < 4; ++k) {
@@ -166,6 +173,12 @@ BR_HD inline bool overlap_of_face(const Vec3 (&face)[3], const Target& target, F
   o.moment[2] = sum[2];
   o.moment[0] = sum[0] - sum[1] - sum[2];
   return sum[0] > 0.0;
+}
+
+/// @param face  corners, counter-clockwise seen from outside  [m]
+BR_HD inline bool overlap_of_face(const Vec3 (&face)[3], const Target& target, FaceOverlap& o) {
+  for (int i = 0; i < 3; ++i) target.coordinates(face[i], o.lambda[i]);
+  return overlap_of_face(target, o);
 }
 
 /// Normal forces of an overlap on the corners of the face, F_i = -k J_i N, and on those of the

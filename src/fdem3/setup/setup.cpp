@@ -7,6 +7,7 @@
 #include "core/world_space.hpp"
 #include "exec/error.hpp"
 #include "fdem3/observe.hpp"
+#include "fdem3/setup/flatness.hpp"
 #include "fdem3/setup/loads.hpp"
 #include "fdem3/setup/materials.hpp"
 #include "fdem3/setup/mesh_faces.hpp"
@@ -267,6 +268,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   find_couples(w);
   evaluate_forces(w);
   refuse_endless(w);
+  if (auto flat = flat_tetrahedron(model)) given.warnings.push_back(std::move(*flat));
   begin_ledger(w);
   return w;
 }

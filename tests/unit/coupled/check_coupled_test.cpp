@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "exec/error.hpp"
 #include "io/case/case_file.hpp"
+#include "math/constants.hpp"
 #include "prepare/build_coupled.hpp"
 #include "run/case.hpp"
 #include "run/method/coupled_method.hpp"
@@ -116,7 +118,14 @@ TEST(CoupledCase, goes_on_from_a_saved_state_with_the_same_bits) {
   EXPECT_EQ(a.elastic, b.elastic);
   EXPECT_EQ(a.friction, b.friction);
   EXPECT_GT(b.friction, 0.0);
-  EXPECT_LT(b.error_relative, 1e-4);  // a tenth of what is a warning
+  // The force of linear springs has a kink where a contact of two balls begins or ends: a step
+  // across it errs by up to K (v dt)^2/8, K = pi E r/2. Ends give back what beginnings take, so
+  // that a few of them stay (1.4e-5 here, one is 1.3e-5); what is between spheres and faces is
+  // exact.
+  const double radius = std::cbrt(0.35 * 0.04 * 0.04 * 0.04 / (30.0 * 4.0 / 3.0 * pi));
+  const double way = std::hypot(5.0, 20.0) * whole->time_step();
+  const double one = 0.5 * pi * 10e9 * radius * way * way / 8.0 / b.start;
+  EXPECT_LT(b.error_relative, 4.0 * one);
   EXPECT_EQ(resumed->probes(), whole->probes());
   CheckpointWriter first, second;
   resumed->save(first);

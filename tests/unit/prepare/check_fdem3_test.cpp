@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "fdem3/setup/flatness.hpp"
 #include "prepare/checks/check_case.hpp"
 #include "prepare/checks/check_regions.hpp"
+#include "prepare/tetrahedra/kuhn_box.hpp"
 #include "unit/prepare/fdem3_scenes.hpp"
 
 namespace breccia::fdem3 {
@@ -171,6 +173,36 @@ TEST(CheckFdem3, KnowsWhichBodiesShareSpace) {
   EXPECT_TRUE(overlap("cylinder x", "sphere", {1.5, 1.2, 1.2}));
   EXPECT_FALSE(overlap("sphere", "cylinder x", {1.5, 1.4, 1.4}));
   EXPECT_FALSE(overlap("cylinder", "cylinder x", {1.9, 1.9, 0.0})) << "not looked at";
+}
+
+Model regular_model() {
+  const prepare::TetMesh mesh = prepare::kuhn_box({}, {1.0, 1.0, 1.0}, 0.25);
+  Model model;
+  model.groups.push_back("rock");
+  model.point = mesh.point;
+  for (const prepare::Tetrahedron& t : mesh.tetrahedron) {
+    model.tetrahedron.push_back({t[0], t[1], t[2], t[3]});
+    model.group.push_back(0);
+  }
+  return model;
+}
+
+TEST(Flatness, of_a_regular_mesh_is_not_told) {
+  EXPECT_FALSE(flat_tetrahedron(regular_model()));
+}
+
+// Its apex is brought to a hundredth of a median height, 0.177 of 1 m, over its face.
+TEST(Flatness, of_one_tetrahedron_is_told_with_its_body) {
+  Model model = regular_model();
+  const auto corners = model.tetrahedron[7];
+  const auto at = [&](std::size_t k) { return static_cast<std::size_t>(corners[k]); };
+  const Vec3 a = model.point[at(0)], b = model.point[at(1)], c = model.point[at(2)];
+  const Vec3 normal = cross(b - a, c - a);
+  model.point.push_back((1.0 / 3.0) * (a + b + c) + (0.0018 / norm(normal)) * normal);
+  model.tetrahedron[7][3] = static_cast<Index>(model.point.size()) - 1;
+  const auto told = flat_tetrahedron(model);
+  ASSERT_TRUE(told);
+  EXPECT_NE(told->find("tetrahedron 7 (rock) is 0.0018 m high"), std::string::npos) << *told;
 }
 
 }  // namespace check_fdem3_test
