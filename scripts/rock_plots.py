@@ -4,7 +4,8 @@
     scripts/rock_plots.py KIND RESULT_DIR [RESULT_DIR...] -o plot.png
 
 KIND: tension, crack (fracture energy over growth), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), branching (crack front), spall (velocity of the free end),
-triaxial (strengths over pressure, from several runs), dominoes (speed along the row, several runs).
+triaxial (strengths over pressure, from several runs), dominoes (speed along the row, several runs),
+checks (any case: probes over time, and what its checks expect of them).
 """
 
 import argparse
@@ -135,9 +136,27 @@ def dominoes(axes, results):
     axes.set(xlabel="stone", ylabel="speed, m/s", ylim=(0, None))
 
 
+def checks(axes, results):
+    """Probes over time, and dashed what the checks of the case expect of them."""
+    for r in results:
+        case = tomllib.loads((r.folder / "case.toml").read_text())
+        rows = r.rows("history.csv")
+        asked = [(c["value"].split(".")[1], float(c["expected"]), c.get("unit", "-"), c["name"]) for c in case["check"]
+                 if c["value"].startswith("probe.")]
+        unit = asked[0][2]
+        asked = [a for a in asked if a[2] == unit]
+        largest = max(abs(expected) for _, expected, _, _ in asked)
+        prefix, size = next(p for p in (("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("u", 1e-6)) if largest >= p[1] or p[0] == "u")
+        for probe in dict.fromkeys(a[0] for a in asked):
+            axes.plot([1e3 * row["time"] for row in rows], [row[probe] / size for row in rows], label=probe)
+        for k, (_, expected, _, name) in enumerate(asked):
+            axes.axhline(expected / size, color=f"C{len(asked) + k}", lw=1, ls="--", label=name if len(name) < 70 else name[:67] + "...")
+        axes.set(xlabel="time, ms", ylabel=f"{prefix}{unit}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    kinds = {f.__name__: f for f in (tension, crack, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, spall, triaxial, dominoes)}
+    kinds = {f.__name__: f for f in (tension, crack, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, spall, triaxial, dominoes, checks)}
     parser.add_argument("kind", choices=kinds)
     parser.add_argument("results", nargs="+", type=pathlib.Path)
     parser.add_argument("-o", "--out", required=True)

@@ -45,7 +45,7 @@ class Result:
         """Rows of history.csv or cracks.csv as numbers; the second line holds units."""
         with open(self.folder / name, newline="") as file:
             rows = list(csv.DictReader(file))[1:]
-        return [{key: float(value) for key, value in row.items()} for row in rows]
+        return [{key: float(value) for key, value in row.items() if key != "stage"} for row in rows]
 
     def cracks(self):
         """Broken joints with their ends at the start, by time."""
