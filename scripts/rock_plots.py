@@ -3,7 +3,7 @@
 
     scripts/rock_plots.py KIND RESULT_DIR [RESULT_DIR...] -o plot.png
 
-KIND: tension, crack (fracture energy over growth), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), branching (crack front), spall (velocity of the free end),
+KIND: tension, crack (fracture energy over growth), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), branching (crack front), branching_3d (crack path), spall (velocity of the free end),
 triaxial (strengths over pressure, from several runs), dominoes (speed along the row, several runs),
 checks (any case: probes over time, and what its checks expect of them).
 """
@@ -100,6 +100,13 @@ def branching(axes, results):
     axes.set(xlabel="time, us", ylabel="x, mm", xlim=(10, 80), ylim=(0, 50))
 
 
+def branching_3d(axes, results):
+    for r in results:
+        cracks = r.rows("cracks.csv")
+        axes.plot([1e3 * c["x0"] for c in cracks], [1e3 * c["y0"] for c in cracks], ".", ms=4, label=f"{r.value('model.tetrahedra'):.0f} tetrahedra")
+    axes.set(xlabel="x, mm", ylabel="y, mm", xlim=(0, 50), ylim=(-20, 20), aspect="equal")
+
+
 def spall(axes, results):
     c = 3319.6
     for r in results:
@@ -156,7 +163,7 @@ def checks(axes, results):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    kinds = {f.__name__: f for f in (tension, crack, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, spall, triaxial, dominoes, checks)}
+    kinds = {f.__name__: f for f in (tension, crack, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, branching_3d, spall, triaxial, dominoes, checks)}
     parser.add_argument("kind", choices=kinds)
     parser.add_argument("results", nargs="+", type=pathlib.Path)
     parser.add_argument("-o", "--out", required=True)
