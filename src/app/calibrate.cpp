@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/option_kinds.hpp"
 #include "app/side_by_side_options.hpp"
 #include "app/targets.hpp"
 #include "exec/error.hpp"
@@ -88,25 +89,13 @@ void add_calibrate(CLI::App& program, int& exit_code) {
   command->add_option("--material", calibrate->material, "a material of it: where to begin")
       ->type_name("NAME")
       ->required();
-  const auto each = [&](const char* name, std::vector<std::string>& values, const char* help,
-                        const char* type) {
-    command->add_option(name, values, help)
-        ->type_name(type)
-        ->take_all()
-        ->expected(1)
-        ->allow_extra_args(false);
-  };
-  each("--target", calibrate->targets, "a number it must show; may be repeated", "NAME=VALUE");
-  const auto count = [&](const char* name, int& value, const char* help) {
-    command->add_option(name, value, help)->type_name("N")->check([](const std::string& text) {
-      return count_problem(text);
-    });
-  };
-  count("--seeds", calibrate->seeds, "packings of each specimen; default: 2");
-  count("--elements", calibrate->elements,
-        "elements of the prism, triangles of the plate; default: 1200");
-  count("--steps", calibrate->steps, "steps at most; default: 8");
-  each("--set", calibrate->overrides, "override a key of the case", "KEY=VALUE");
+  add_repeated(command, "--target", calibrate->targets, "a number it must show; may be repeated",
+               "NAME=VALUE");
+  add_count(command, "--seeds", calibrate->seeds, "packings of each specimen; default: 2");
+  add_count(command, "--elements", calibrate->elements,
+            "elements of the prism, triangles of the plate; default: 1200");
+  add_count(command, "--steps", calibrate->steps, "steps at most; default: 8");
+  add_repeated(command, "--set", calibrate->overrides, "override a key of the case", "KEY=VALUE");
   command->add_option("-o,--out", calibrate->folder, "default: out/<case>_<material>_calibration")
       ->type_name("DIR");
   add_side_by_side_options(*command, calibrate->options);

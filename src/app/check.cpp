@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/option_kinds.hpp"
 #include "exec/error.hpp"
 #include "io/case/case_file.hpp"
 #include "io/case/key_pages.hpp"
@@ -268,11 +269,7 @@ void add_check(CLI::App& program, int& exit_code) {
       program.add_subcommand("check", "say every problem of cases without running them");
   command->add_option("CASE", check->paths, "case files, or folders that hold case.toml")
       ->required();
-  command->add_option("--set", check->overrides, "override a key of the cases")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_repeated(command, "--set", check->overrides, "override a key of the cases", "KEY=VALUE");
   command->add_flag("--model", check->model,
                     "also build and set up the models, and say what is doubtful about them");
   command->add_flag(

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/option_kinds.hpp"
 #include "io/checkpoint.hpp"
 #include "run/case.hpp"
 
@@ -42,11 +43,7 @@ void add_prepare(CLI::App& program) {
       ->required();
   command->add_option("-o,--out", prepare->file, "the model; default: <case name>.br")
       ->type_name("MODEL.br");
-  command->add_option("--set", prepare->overrides, "override a key of the case")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_repeated(command, "--set", prepare->overrides, "override a key of the case", "KEY=VALUE");
   command->add_flag("--allow-scripts", prepare->allow_scripts, allow_scripts_help);
   command->callback([prepare] { prepare->execute(); });
 }

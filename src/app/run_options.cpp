@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
+#include "app/option_kinds.hpp"
 #include "domain/mpi_ranks.hpp"
 #include "domain/together.hpp"
 #include "io/case/units.hpp"
@@ -64,12 +65,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->check([](const std::string& text) {
         return wall_time(text) ? "" : text + " is no time such as 3h50m, 90m, 45 or 00:45:00";
       });
-  command
-      .add_option("--set", options.overrides, "override a key of the case; may be given repeatedly")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_repeated(&command, "--set", options.overrides,
+               "override a key of the case; may be given repeatedly", "KEY=VALUE");
   command.add_flag("--allow-scripts", options.allow_scripts, allow_scripts_help);
   CLI::Option* const quiet =
       command.add_flag("-q,--quiet", options.quiet, "say nothing but errors");

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/option_kinds.hpp"
 #include "exec/device.hpp"
 #include "exec/error.hpp"
 #include "io/harmless.hpp"
@@ -43,12 +44,8 @@ laboratory::Workers SideBySideOptions::workers(std::size_t runs, double bytes) c
 }
 
 void add_side_by_side_options(CLI::App& command, SideBySideOptions& options) {
-  command.add_option("--jobs", options.jobs, "runs at a time; default: as many as fit")
-      ->type_name("N")
-      ->check([](const std::string& text) { return count_problem(text); });
-  command.add_option("--threads", options.threads, "of each run; default: its share")
-      ->type_name("N")
-      ->check([](const std::string& text) { return count_problem(text); });
+  add_count(&command, "--jobs", options.jobs, "runs at a time; default: as many as fit");
+  add_count(&command, "--threads", options.threads, "of each run; default: its share");
   command.add_option("--device", options.device, "cpu, cuda (all GPUs in turn) or cuda:N")
       ->type_name("NAME");
   command.add_flag("--force", options.force, "compute finished runs anew");

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/option_kinds.hpp"
 #include "app/side_by_side_options.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
@@ -87,20 +88,11 @@ void add_sweep(CLI::App& program, int& exit_code) {
   CLI::App* const command =
       program.add_subcommand("sweep", "run a case over values of keys and seeds, side by side");
   command->add_option("CASE", sweep->path, "a case file, or a folder with case.toml")->required();
-  const auto each = [&](const char* name, std::vector<std::string>& values, const char* help,
-                        const char* type) {
-    command->add_option(name, values, help)
-        ->type_name(type)
-        ->take_all()
-        ->expected(1)
-        ->allow_extra_args(false);
-  };
-  each("--over", sweep->over, "values of a key; may be repeated", "KEY=VALUES");
-  command->add_option("--seeds", sweep->seeds, "seeds for each value; default: 1")
-      ->type_name("N")
-      ->check([](const std::string& text) { return count_problem(text); });
-  each("--measure", sweep->measures, "a number to compare; may be repeated", "PATH");
-  each("--set", sweep->overrides, "override a key in all runs", "KEY=VALUE");
+  add_repeated(command, "--over", sweep->over, "values of a key; may be repeated", "KEY=VALUES");
+  add_count(command, "--seeds", sweep->seeds, "seeds for each value; default: 1");
+  add_repeated(command, "--measure", sweep->measures, "a number to compare; may be repeated",
+               "PATH");
+  add_repeated(command, "--set", sweep->overrides, "override a key in all runs", "KEY=VALUE");
   command->add_option("-o,--out", sweep->folder, "default: out/<case name>_sweep")
       ->type_name("DIR");
   add_side_by_side_options(*command, sweep->options);

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/option_kinds.hpp"
 #include "app/side_by_side_options.hpp"
 #include "app/targets.hpp"
 #include "exec/error.hpp"
@@ -131,19 +132,10 @@ void add_test(CLI::App& program, int& exit_code) {
   command->add_option("--material", test->material, "a material of it that breaks")
       ->type_name("NAME")
       ->required();
-  const auto each = [&](const char* name, std::vector<std::string>& values, const char* help,
-                        const char* type) {
-    command->add_option(name, values, help)
-        ->type_name(type)
-        ->take_all()
-        ->expected(1)
-        ->allow_extra_args(false);
-  };
-  each("--target", test->targets, "a number it must show; may be repeated", "NAME=VALUE");
-  each("--only", test->only, "this test; may be repeated", "TEST");
-  command->add_option("--seeds", test->seeds, "packings of each specimen; default: 3")
-      ->type_name("N")
-      ->check([](const std::string& text) { return count_problem(text); });
+  add_repeated(command, "--target", test->targets, "a number it must show; may be repeated",
+               "NAME=VALUE");
+  add_repeated(command, "--only", test->only, "this test; may be repeated", "TEST");
+  add_count(command, "--seeds", test->seeds, "packings of each specimen; default: 3");
   command->add_option("--first-seed", test->first_seed, "seed of the first one; default: 1")
       ->type_name("N");
   command
@@ -151,7 +143,7 @@ void add_test(CLI::App& program, int& exit_code) {
                    "elements of the prism, triangles of the plate; default: 1200")
       ->type_name("N")
       ->check(CLI::Range(200, 1000000));
-  each("--set", test->overrides, "override a key of the case", "KEY=VALUE");
+  add_repeated(command, "--set", test->overrides, "override a key of the case", "KEY=VALUE");
   command->add_option("-o,--out", test->folder, "default: out/<case>_<material>_test")
       ->type_name("DIR");
   add_side_by_side_options(*command, test->options);

@@ -9,21 +9,10 @@
 #include <numeric>
 
 #include "exec/error.hpp"
+#include "math/bounds.hpp"
 
 namespace breccia::dem {
 namespace {
-
-using Place = std::array<double, 3>;
-
-Place place_of(const Vec3& v) {
-  return {v.x, v.y, v.z};
-}
-Vec3 least_of(const Vec3& a, const Vec3& b) {
-  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
-}
-Vec3 most_of(const Vec3& a, const Vec3& b) {
-  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
-}
 
 /// A surface with numbered corners.
 struct Surface {

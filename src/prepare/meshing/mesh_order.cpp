@@ -3,19 +3,9 @@
 #include <algorithm>
 
 #include "prepare/meshing/mesh.hpp"
+#include "prepare/order.hpp"
 
 namespace breccia::prepare {
-namespace {
-
-template <class T>
-void permute(std::vector<T>& items, const std::vector<Index>& order) {
-  std::vector<T> sorted;
-  sorted.reserve(items.size());
-  for (const Index i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);
-  items.swap(sorted);
-}
-
-}  // namespace
 
 std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
   std::uint32_t index = 0;
@@ -53,24 +43,7 @@ void order_along_curve(fdem::Model& model) {
   std::vector<Index> order;
   order.reserve(keys.size());
   for (const auto& [key, t] : keys) order.push_back(t);
-  permute(model.triangle, order);
-  permute(model.group, order);
-  permute(model.material, order);
-  permute(model.velocity, order);
-  permute(model.strength, order);
-
-  std::vector<Index> number(model.point.size(), -1), from;
-  from.reserve(model.point.size());
-  for (auto& t : model.triangle)
-    for (Index& v : t) {
-      Index& now = number[static_cast<std::size_t>(v)];
-      if (now < 0) {
-        now = static_cast<Index>(from.size());
-        from.push_back(v);
-      }
-      v = now;
-    }
-  permute(model.point, from);
+  const std::vector<Index> number = reorder_mesh(model, model.triangle, order);
   const auto renumber = [&](std::array<Index, 2>& edge) {
     for (Index& v : edge) v = number[static_cast<std::size_t>(v)];
     if (edge[0] > edge[1]) std::swap(edge[0], edge[1]);

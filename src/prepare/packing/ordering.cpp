@@ -7,17 +7,10 @@
 
 #include "dem/setup/model_arrays.hpp"
 #include "exec/types.hpp"
+#include "prepare/order.hpp"
 
 namespace breccia::prepare {
 namespace {
-
-template <class T>
-void permute(std::vector<T>& items, const std::vector<Index>& order) {
-  std::vector<T> sorted;
-  sorted.reserve(items.size());
-  for (const Index i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);
-  items.swap(sorted);
-}
 
 std::array<double, 3> components(const Vec3& v) {
   return {v.x, v.y, v.z};

@@ -2,20 +2,13 @@
 
 #include <algorithm>
 
+#include "prepare/order.hpp"
 #include "prepare/tetrahedra/tet_mesh.hpp"
 
 namespace breccia::prepare {
 namespace {
 
 constexpr int curve_bits = 21;
-
-template <class T>
-void permute_items(std::vector<T>& items, const std::vector<Index>& order) {
-  std::vector<T> permuted;
-  permuted.reserve(items.size());
-  for (const Index i : order) permuted.push_back(items[static_cast<std::size_t>(i)]);
-  items.swap(permuted);
-}
 
 std::vector<Index> curve_order(const fdem3::Model& model) {
   Vec3 low = model.point[0], high = low;
@@ -71,24 +64,7 @@ std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
 void order_along_curve(fdem3::Model& model) {
   if (model.point.empty()) return;
   const std::vector<Index> order = curve_order(model);
-  permute_items(model.tetrahedron, order);
-  permute_items(model.group, order);
-  permute_items(model.material, order);
-  permute_items(model.velocity, order);
-  permute_items(model.strength, order);
-
-  std::vector<Index> number(model.point.size(), -1), from;
-  from.reserve(model.point.size());
-  for (auto& t : model.tetrahedron)
-    for (Index& v : t) {
-      Index& now = number[static_cast<std::size_t>(v)];
-      if (now < 0) {
-        now = static_cast<Index>(from.size());
-        from.push_back(v);
-      }
-      v = now;
-    }
-  permute_items(model.point, from);
+  const std::vector<Index> number = reorder_mesh(model, model.tetrahedron, order);
   const auto renumber = [&](Face& face) {
     for (Index& v : face) v = number[static_cast<std::size_t>(v)];
     face = sorted(face);

@@ -288,13 +288,7 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   Forecast f;
   f.item_name = "triangles";
   f.bond_name = "joints";
-  fdem::Config specimen = config;
-  specimen.bodies.clear();
-  specimen.discontinuities.clear();
-  specimen.supports.clear();
-  specimen.loads.clear();
-  specimen.probes.clear();
-  specimen.checks.clear();
+  fdem::Config specimen = without_bodies(config);
   double top = 0.0, finest = 0.0;
   bool free_mesh = false, by_gmsh = false;
   constexpr double begun_mesh = 0.3, meshing_of_one = 60e-6;  // measured  [s]

@@ -47,13 +47,7 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
   Forecast f;
   f.item_name = "tetrahedra";
   f.bond_name = "joints";
-  fdem3::Config specimen = config;
-  specimen.bodies.clear();
-  specimen.discontinuities.clear();
-  specimen.supports.clear();
-  specimen.loads.clear();
-  specimen.probes.clear();
-  specimen.checks.clear();
+  fdem3::Config specimen = without_bodies(config);
   specimen.stages.clear();
   double top = 0.0, finest = 0.0;
   bool by_gmsh = false;

@@ -49,6 +49,18 @@ inline constexpr double bytes_of_facet = 450.0;  // of cases/rc_slab_ldpm, eleme
 /// Memory of a run of next to nothing, measured: libraries, threads, pictures.  [bytes]
 inline constexpr double own_dem = 40e6, own_fdem = 68e6, own_with_gmsh = 146e6;
 
+/// Materials and rules of a mesh's case, without what it consists of and what is done to it.
+template <class Config>
+Config without_bodies(Config config) {
+  config.bodies.clear();
+  config.discontinuities.clear();
+  config.supports.clear();
+  config.loads.clear();
+  config.probes.clear();
+  config.checks.clear();
+  return config;
+}
+
 template <class Stage>
 bool may_end_early(const std::vector<Stage>& stages) {
   return std::any_of(stages.begin(), stages.end(), [](const Stage& s) {
