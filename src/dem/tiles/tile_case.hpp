@@ -57,7 +57,7 @@ struct TileCase {
 };
 
 /// Numbers that a tile hears of all, and tells them.
-struct TileNews {
+struct TileReport {
   double slowest = 0.0;  ///< largest stiffness over inertia  [1/s2]
   bool near = false;     ///< some element may use its margin up in the move to come
 };

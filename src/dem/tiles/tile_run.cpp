@@ -19,12 +19,12 @@ namespace {
 
 /// Ends the step that a clock holds open, if there is one, by what all tiles have told.
 /// @returns whether tiles leave: at the end, or when a search is near
-BR_HD bool end_step(const EndOfStep<StepRule>& end, const TileNews& news, StepClock& clock) {
+BR_HD bool end_step(const EndOfStep<StepRule>& end, const TileReport& report, StepClock& clock) {
   if (clock.open != 0)
-    clock.least = ordered_bits(min(largest_least, TileStep::critical_of(news.slowest)));
+    clock.least = ordered_bits(min(largest_least, TileStep::critical_of(report.slowest)));
   end(clock);
-  clock.host_request = news.near ? 1 : 0;
-  return clock.halted != 0 || news.near;
+  clock.host_request = report.near ? 1 : 0;
+  return clock.halted != 0 || report.near;
 }
 
 /// Time as the forces of a step see it, after its move.
@@ -42,20 +42,20 @@ BR_HD float span_after(double dt) {
 #if defined(__CUDACC__)
 
 /// Findings of a warp's threads together, for its first one.
-__device__ TileNews news_of_warp(TileNews own) {
+__device__ TileReport report_of_warp(TileReport own) {
   for (int half = 16; half > 0; half /= 2)
     own.slowest = fmax(own.slowest, __shfl_down_sync(~0U, own.slowest, half));
   own.near = __any_sync(~0U, own.near ? 1 : 0) != 0;
   return own;
 }
 template <int warps>
-__device__ TileNews news_of(const TileNews* of_warp) {
-  TileNews news = of_warp[0];
+__device__ TileReport news_of(const TileReport* of_warp) {
+  TileReport report = of_warp[0];
   for (int warp = 1; warp < warps; ++warp) {
-    news.slowest = fmax(news.slowest, of_warp[warp].slowest);
-    news.near = news.near || of_warp[warp].near;
+    report.slowest = fmax(report.slowest, of_warp[warp].slowest);
+    report.near = report.near || of_warp[warp].near;
   }
-  return news;
+  return report;
 }
 
 /// Loads of others' elements, by `threads` threads: several words are asked for before the first
@@ -99,30 +99,30 @@ __device__ void pair_forces(const TileStep& tile, double dt, Index thread) {
 /// @param room  for the findings of each of their warps
 /// @returns what this thread has heard
 template <int threads>
-__device__ TileNews exchange(const TileStep& tile, TileNews news, std::uint32_t tag, Index thread,
-                             TileNews* room) {
+__device__ TileReport exchange(const TileStep& tile, TileReport report, std::uint32_t tag,
+                               Index thread, TileReport* room) {
   const Index tiles = tile.all.tiles.tiles.size;
-  news = news_of_warp(news);
-  if (thread % 32 == 0) room[thread / 32] = news;
+  report = report_of_warp(report);
+  if (thread % 32 == 0) room[thread / 32] = report;
   __barrier_sync_count(1, threads);
   const std::uint64_t own = TileStep::packed(news_of<threads / 32>(room));
   for (Index to = thread; to < tiles; to += threads)
     put(tile.news_word(tag, tile.number, to), own, tag);
-  news = TileNews{};
+  report = TileReport{};
   for (Index from = thread; from < tiles; from += threads) {
     std::uint64_t bits = 0;
     while (!get(tile.news_word(tag, from, tile.number), bits, tag)) {
     }
-    TileStep::hear(news, bits);
+    TileStep::hear(report, bits);
   }
-  return news_of_warp(news);
+  return report_of_warp(report);
 }
 
 template <int threads>
 __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant__ TileCase all) {
   extern __shared__ __align__(16) std::byte memory[];
   constexpr int judges = 160, warps = judges / 32;  // the others receive loads meanwhile
-  __shared__ TileNews told[warps], heard[warps];
+  __shared__ TileReport told[warps], heard[warps];
   const auto thread = static_cast<Index>(threadIdx.x), number = static_cast<Index>(blockIdx.x);
   const TileStep tile(all, number, memory);
   tile.enter(thread, threads);
@@ -135,14 +135,14 @@ __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant
     // Tiles tell each other what they have found, and hear of all.
     ++tag;
     if (thread < judges) {
-      TileNews news;
+      TileReport report;
       if (first)
-        news.near = tile.near_at_entry(thread, judges);
+        report.near = tile.near_at_entry(thread, judges);
       else
         for (Index e = thread; e < tile.tile.own; e += judges)
-          tile.judge(e, span_after(dt), longest_after(dt), news);
-      news = exchange<judges>(tile, news, tag, thread, told);
-      if (thread % 32 == 0) heard[thread / 32] = news;
+          tile.judge(e, span_after(dt), longest_after(dt), report);
+      report = exchange<judges>(tile, report, tag, thread, told);
+      if (thread % 32 == 0) heard[thread / 32] = report;
     } else if (!first) {
       receive<threads - judges>(tile, tag, thread - judges);
     }
@@ -186,14 +186,14 @@ class TilesInTurn {
 
   void run() {
     const KernelScope scope;
-    std::vector<TileNews> told(tiles_.size());
+    std::vector<TileReport> told(tiles_.size());
     for (const TileStep& tile : tiles_) tile.enter(0, 1);
     for (std::size_t t = 0; t < tiles_.size(); ++t) told[t].near = tiles_[t].near_at_entry(0, 1);
     std::uint32_t tag = all_.tag;
     StepClock clock = all_.start;
     for (bool first = true;; first = false) {
-      const TileNews news = exchange(told, ++tag, first);
-      if (end_step(all_.end, news, clock)) {
+      const TileReport report = exchange(told, ++tag, first);
+      if (end_step(all_.end, report, clock)) {
         *all_.clock = clock;
         break;
       }
@@ -227,7 +227,7 @@ class TilesInTurn {
     std::uint32_t tag;
     Index element;
   };
-  static TileNews sums(const TileStep& tile, std::uint32_t tag, double dt) {
+  static TileReport sums(const TileStep& tile, std::uint32_t tag, double dt) {
     Sums sums{&tile, tag, 0};
     for (; sums.element < tile.tile.own; ++sums.element)
       lockstep::run(
@@ -237,25 +237,25 @@ class TilesInTurn {
             of->tile->sum(of->element * TileStep::width + lane, of->tag);
           },
           &sums);
-    TileNews news;
+    TileReport report;
     for (Index e = 0; e < tile.tile.own; ++e)
-      tile.judge(e, span_after(dt), longest_after(dt), news);
-    return news;
+      tile.judge(e, span_after(dt), longest_after(dt), report);
+    return report;
   }
   /// Every tile hears the same.
-  TileNews exchange(const std::vector<TileNews>& told, std::uint32_t tag, bool first) const {
+  TileReport exchange(const std::vector<TileReport>& told, std::uint32_t tag, bool first) const {
     const auto count = static_cast<Index>(tiles_.size());
     for (const TileStep& tile : tiles_)
       for (Index to = 0; to < count; ++to)
         put(tile.news_word(tag, tile.number, to), TileStep::packed(told[at(tile.number)]), tag);
-    TileNews all;
+    TileReport all;
     for (const TileStep& tile : tiles_) {
-      TileNews news;
+      TileReport report;
       for (Index from = 0; from < count; ++from) {
         std::uint64_t bits = 0;
         const bool came = get(tile.news_word(tag, from, tile.number), bits, tag);
         BR_ASSERT(came);
-        if (came) TileStep::hear(news, bits);
+        if (came) TileStep::hear(report, bits);
       }
       for (Index k = 0; !first && k < tile.received(); ++k) {
         std::uint64_t bits = 0;
@@ -263,7 +263,7 @@ class TilesInTurn {
         BR_ASSERT(came);
         tile.receive(k, bits);
       }
-      all = news;
+      all = report;
     }
     return all;
   }

@@ -128,7 +128,7 @@ struct TileStep : TileContent {
   /// Results of an own element's sums: its critical number, and whether its margin may be
   /// used up by the move to come.
   /// @param span, longest  half of this step and the longest to come; that one  [s]
-  BR_HD void judge(Index e, float span, float longest, TileNews& news) const {
+  BR_HD void judge(Index e, float span, float longest, TileReport& report) const {
     Symmetric<float> straight, turning;
     BR_UNROLL
     for (int k = 0; k < 6; ++k) {
@@ -142,8 +142,8 @@ struct TileStep : TileContent {
     const double slowest = max(static_cast<double>(push) / memory.mass[e],
                                static_cast<double>(twist) / memory.inertia[e]);
     memory.slowest[e] = slowest;
-    news.slowest = slowest > news.slowest ? slowest : news.slowest;  // NaN does not count
-    news.near = news.near || is_far(e, span, longest);
+    report.slowest = slowest > report.slowest ? slowest : report.slowest;  // NaN does not count
+    report.near = report.near || is_far(e, span, longest);
   }
   /// This question of the forces that the tile has entered with.
   BR_HD bool near_at_entry(Index thread, Index threads) const {
@@ -160,17 +160,17 @@ struct TileStep : TileContent {
     return all.forces +
            static_cast<std::size_t>(tag % 2) * 6 * static_cast<std::size_t>(all.force.size);
   }
-  /// Where tile `from` tells `to` its news.
+  /// Where tile `from` tells `to` its report.
   BR_HD TileWord* news_word(std::uint32_t tag, Index from, Index to) const {
     const Index tiles = all.tiles.tiles.size;
     return all.least + (static_cast<Index>(tag % 2) * tiles + to) * tiles + from;
   }
-  BR_HD static std::uint64_t packed(const TileNews& news) {
-    return ordered_bits(news.slowest) | static_cast<std::uint64_t>(news.near ? 1 : 0) << 63;
+  BR_HD static std::uint64_t packed(const TileReport& report) {
+    return ordered_bits(report.slowest) | static_cast<std::uint64_t>(report.near ? 1 : 0) << 63;
   }
-  BR_HD static void hear(TileNews& news, std::uint64_t bits) {
-    news.near = news.near || bits >> 63 != 0;
-    news.slowest = max(news.slowest, number_of(bits & ~(std::uint64_t{1} << 63)));
+  BR_HD static void hear(TileReport& report, std::uint64_t bits) {
+    report.near = report.near || bits >> 63 != 0;
+    report.slowest = max(report.slowest, number_of(bits & ~(std::uint64_t{1} << 63)));
   }
   /// Numbers of the loads of others' elements, and where number k comes.
   BR_HD Index received() const {
