@@ -12,7 +12,7 @@ FOLDERS = ["exec math", "core", "domain", "dem", "fdem", "fdem3", "fdem_shared",
 PURPOSES = [  # words, lines at 20a0ddb, patterns
     ("laws", 1313, "*/laws/*"),
     ("device only: launches led by its clock, wide kernels, graphs, memory", 2434,
-     "*/stepping/device_run.cpp */stepping/wide_kernels.hpp core/device_run.hpp core/timed.hpp core/step_clock.hpp "
+     "*/stepping/device_run.cpp fdem_shared/device_run.hpp */stepping/wide_kernels.hpp core/device_run.hpp core/timed.hpp core/step_clock.hpp "
      "exec/*device* exec/cuda.hpp exec/early.hpp exec/launch* exec/lockstep* exec/multiprocessors.hpp exec/peer_memory* "
      "exec/shadow_launches* exec/step_graph* exec/staging* domain/peer_link*"),
     ("tiles in a multiprocessor's memory", 0, "dem/tiles/*"),
@@ -57,11 +57,12 @@ READER = {
     "fdem": [
         ("", SHARED_METHOD.format(m="fdem") + "fdem/shape.hpp fdem/triangles/* fdem/joints/joint* fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
          "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* "
-         "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/step.hpp fdem_shared/stepping.hpp"),
+         "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/step* fdem_shared/host_run.hpp "
+         "fdem_shared/motion.hpp fdem_shared/columns.hpp fdem_shared/stable_parts.hpp"),
         ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/contact/nearness.hpp"),
         ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
         ("", "fdem/emission* fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/readings.hpp"),
-        ("", "fdem/stepping/* fdem/lanes/* fdem/contact/couple_lanes.hpp"),
+        ("", "fdem/stepping/* fdem_shared/device_run.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
         ("", "nothing"),
         ("", "fdem/ranks* fdem/relations.hpp fdem_shared/ranks.hpp fdem_shared/migration.hpp fdem_shared/rings.hpp fdem_shared/relations.hpp"),
     ],
