@@ -50,7 +50,7 @@ std::vector<CountedKernel> counted(const fdem::World& w) {
   const double joint_force = mixed ? size<fdem::JointForceOf<float>> : size<fdem::JointForce>;
   const double couple_force = mixed ? size<fdem::CoupleForceOf<float>> : size<fdem::CoupleForce>;
   const double triangles = w.triangles.size(), joints = w.joints.size();
-  const double couples = w.couples.size(), near = w.reach.triangle.size();
+  const double couples = w.couples.size(), near = w.reach.element.size();
   const double nodes = size<fdem::TriangleNodes>, corners = size<fdem::Corners>;
   const double of_joints = joints * (size<fdem::JointStage> + size<fdem::JointEnds> + size<Index> +
                                      2 * size<double> + joint_force);

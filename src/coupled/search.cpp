@@ -64,8 +64,8 @@ Candidates boxes_of_tetrahedra(const World& w, double more) {
   const fdem3::World& t = *w.tetrahedra;
   const Vec3 way = t.reach.drift.way(t.time);
   Candidates of;
-  for (Index i = 0; i < t.reach.tetrahedron.size(); ++i) {
-    const Index tetrahedron = t.reach.tetrahedron.data()[i];
+  for (Index i = 0; i < t.reach.element.size(); ++i) {
+    const Index tetrahedron = t.reach.element.data()[i];
     if (t.tetrahedra.exposed.data()[tetrahedron] == 0) continue;
     Box box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
     double extent = 0.0;

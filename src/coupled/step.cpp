@@ -1,4 +1,5 @@
-// One step of spheres and tetrahedra together: the only text of the order of its work.
+// One step of spheres and tetrahedra together: the steps of both methods (dem/stepping/step.hpp,
+// fdem_shared/step.hpp), one within the other, and the forces between them.
 
 #include "dem/stepping/step.hpp"
 
@@ -12,43 +13,53 @@
 
 namespace breccia::coupled {
 
-void step(World& w) {
-  dem::World& s = *w.spheres;
-  fdem3::World& t = *w.tetrahedra;
-  const dem::HostRun run;
+namespace {
 
-  // 1. Newton's second law: both move, by the same step
-  run.move_boundary(s);
-  run.move_interior(s);
-  fdem3::move_elements(t);
-  advance_time(t);
+/// Tetrahedra that spheres press on.
+struct TetrahedraRun : fdem3::HostRun {
+  World& both;
+  explicit TetrahedraRun(World& w) : both(w) {}
 
-  // 2. Each searches for contacts of its own when its margins are used up or joints have opened;
-  //    then the faces near spheres are listed anew
-  run.receive_ghosts(s);
-  run.search_if_due(s);
-  if (fdem3::couples_are_due(t)) {
-    fdem3::find_couples(t);
-    if (t.next_dt < t.last_dt) w.stable_step = std::min(w.stable_step, t.next_dt);
+  void search_if_due(fdem3::World& t) const {
+    const std::int64_t before = t.searches;
+    fdem3::HostRun::search_if_due(t);
+    if (t.searches != before && t.next_dt < t.last_dt)
+      both.stable_step = std::min(both.stable_step, t.next_dt);
   }
+  /// Spheres have summed up their own by now.
+  void coupling_forces(fdem3::World&) const { press(both); }
+  void choose_step(fdem3::World&) const { note_stable_step(both); }
+};
+
+/// Spheres that press on tetrahedra.
+struct SpheresRun : dem::HostRun {
+  World& both;
+  explicit SpheresRun(World& w) : both(w) {}
+
+  void coupling_forces(dem::World&) const {
+    fdem_shared::take_forces(TetrahedraRun(both), *both.tetrahedra);
+  }
+  void choose_step(dem::World& s) const {
+    dem::HostRun::choose_step(s);
+    choose_common_step(both);
+  }
+};
+
+}  // namespace
+
+void step(World& w) {
+  // 1., 2. Both move, by the same step, and search; then the faces near spheres are listed anew
+  const TetrahedraRun tetrahedra(w);
+  const SpheresRun spheres(w);
+  dem::take_motion(spheres, *w.spheres);
+  fdem_shared::take_motion(tetrahedra, *w.tetrahedra);
   if (faces_are_due(w)) find_faces(w);
 
-  // 3. One force per interaction, then one sum per sphere and corner: no atomics
-  run.pair_forces(s);
-  run.sum_forces(s);
-  fdem3::joint_forces(t);
-  fdem3::couple_forces(t);
-  fdem3::sum_forces(t);
-  press(w);
-  run.wall_forces(s);
-  fdem3::load_forces(t);
-  fdem3::bundle_forces(t);
-
-  // 4. The next step: the least of all
-  run.choose_step(s);
-  choose_step(w);
-  run.count_step(s);
-  t.step += 1;
+  // 3., 4. Within the forces of the spheres those of the tetrahedra; within these, between the sums
+  //    of both and their loads and walls, those between them; the least step of all
+  dem::take_forces(spheres, *w.spheres);
+  spheres.count_step(*w.spheres);
+  tetrahedra.count_step(*w.tetrahedra);
 }
 
 void press(World& w) {
@@ -88,10 +99,14 @@ struct StepOfRow {
 };
 }  // namespace
 
-void choose_step(World& w) {
+void note_stable_step(World& w) {
+  const fdem3::World& t = *w.tetrahedra;
+  if (t.step % t.given->time.evaluate_every == 0) w.stable_step = fdem3::choose_time_step(t);
+}
+
+void choose_common_step(World& w) {
   dem::World& s = *w.spheres;
   fdem3::World& t = *w.tetrahedra;
-  if (t.step % t.given->time.evaluate_every == 0) w.stable_step = fdem3::choose_time_step(t);
   const double least =
       fold(s.exec, w.step.size(), largest_least, StepOfRow{std::as_const(w.step).view()}, Least{});
   const AllowedStep allowed{w.given->safety, t.given->time.max_step};

@@ -85,9 +85,8 @@ struct AddToTetrahedra {
     const double most = max(max(stiffness[0], stiffness[1]), max(stiffness[2], stiffness[3]));
     if (!(most > 0.0)) return largest_least;
     const fdem3::StableStep::Parts p = stable.parts(t);
-    const double omega = sqrt(p.square + most / stable.mass[t]);
-    const double xi = 0.5 * (p.viscous + p.absorbed) / (stable.mass[t] * omega);
-    return 2.0 / omega * (sqrt(1.0 + xi * xi) - xi);
+    return fdem_shared::stable_step_of(p.square + most / stable.mass[t], p.viscous + p.absorbed,
+                                       stable.mass[t]);
   }
 };
 

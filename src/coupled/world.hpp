@@ -71,8 +71,10 @@ void step(World& w);
 
 /// Forces between spheres and tetrahedra, added to those that both have.
 void press(World& w);
-/// The step to come, of all.
-void choose_step(World& w);
+/// The stable step of the tetrahedra by themselves, where it is evaluated,
+void note_stable_step(World& w);
+/// and the step to come, of all.
+void choose_common_step(World& w);
 
 bool faces_are_due(const World& w);
 void find_faces(World& w);

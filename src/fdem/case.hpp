@@ -18,7 +18,7 @@
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/effective.hpp"
 #include "fdem/triangles/loads.hpp"
-#include "fdem/triangles/motion_kernels.hpp"
+#include "fdem/triangles/motion.hpp"
 
 namespace breccia::fdem {
 

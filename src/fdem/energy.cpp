@@ -13,9 +13,6 @@ struct StoredByTriangles {
   View<const ElasticTriangle> laws;
   View<const Mat2> shape_inverse;
 
-  BR_HD Vec2 reaction(Index t, int k, const Kick::Result& next) const {
-    return MoveTriangles{kick, {}, {}, {}, {}, {}}.reaction(kick.given(t), k, next);
-  }
   BR_HD double elastic(Index t) const {
     Vec2 x[3], v[3];
     split(kick.nodes[t], x, v);

@@ -22,6 +22,7 @@ struct Shape {
   using Law = ElasticTriangle;
   using Kick = fdem::Kick;
   using Motion = fdem::Motion;
+  using Move = fdem::MoveTriangles;
   using Hold = fdem::Hold;
   using Reference = Mat2;  ///< of an element at the start
   using Sides = EdgeJoints;
@@ -42,10 +43,6 @@ struct Shape {
   template <class World>
   static auto& sides(World& w) {
     return w.edges;
-  }
-  template <class World>
-  static auto& touchable(World& w) {
-    return w.reach.triangle;
   }
   template <class Joints>
   static auto& side_a(Joints& j) {
@@ -79,7 +76,6 @@ struct Shape {
     return (law.lambda + 2.0 * law.shear + law.bend) / 3.0;
   }
   /// Velocities that servos have changed, where launches read them.
-  static void place_on_device(World& w);
 
   // Set-up (fdem/setup).
   struct AtStart {

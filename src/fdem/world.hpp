@@ -26,22 +26,6 @@ namespace breccia::fdem {
 using fdem_shared::ExposedVertices;
 using fdem_shared::WholeMesh;
 
-/// Where the triangles that can touch stood at the last search, and how far each may go from there,
-/// the drift taken off.
-struct TravelOfTriangles {
-  Buffer<Index> triangle;     ///< those that can touch, ascending by global id  [-]  (search)
-  Buffer<Corners> reference;  ///< their corners at the search  [m]  (search)
-  Buffer<double> margin;      ///< how far each may go from there  [m]  (search)
-  PlaneDrift drift;
-
-  template <class Visit>
-  void each_field(Visit&& field) {
-    field("triangle", "-", triangle);
-    field("reference", "m", reference);
-    field("margin", "m", margin);
-  }
-};
-
 /// Where fluid presses on cracks: the same on all ranks.
 struct FluidState {
   double time = -1.0;           ///< when it spread last; below 0: not yet  [s]
@@ -216,7 +200,7 @@ void list_motions(World& w);
 
 /// The parts of a step that all runs share (fdem/stepping/step.hpp).
 /// Asks all ranks whether couples must be searched for, and hears what they say.
-void ask_for_search(World& w);
+void ask_ranks_for_search(World& w);
 bool couples_are_due(World& w);
 MarginRule margin_rule(const World& w);
 void find_couples(World& w);

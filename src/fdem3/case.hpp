@@ -10,7 +10,7 @@
 #include "core/output_config.hpp"
 #include "fdem3/contact/couples.hpp"
 #include "fdem3/elements/loads.hpp"
-#include "fdem3/elements/motion_kernels.hpp"
+#include "fdem3/elements/motion.hpp"
 #include "fdem3/setup/config.hpp"
 
 namespace breccia::fdem3 {

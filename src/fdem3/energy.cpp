@@ -13,9 +13,6 @@ struct StoredByTetrahedra {
   View<const ElasticTetrahedron> laws;
   View<const ShapeGradients> shape;
 
-  BR_HD Vec3 reaction(Index t, int k, const Kick::Result& next) const {
-    return kick.reaction(t, k, next);
-  }
   BR_HD double elastic(Index t) const {
     Vec3 x[4];
     places(kick.nodes[t], x);

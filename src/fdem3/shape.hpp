@@ -15,6 +15,7 @@ struct Shape {
   using Law = ElasticTetrahedron;
   using Kick = fdem3::Kick;
   using Motion = fdem3::Motion;
+  using Move = fdem3::MoveTetrahedra;
   using Hold = fdem3::Hold;
   using Reference = ShapeGradients;  ///< of an element at the start
   using Sides = FaceJoints;
@@ -35,10 +36,6 @@ struct Shape {
   template <class World>
   static auto& sides(World& w) {
     return w.faces;
-  }
-  template <class World>
-  static auto& touchable(World& w) {
-    return w.reach.tetrahedron;
   }
   template <class Joints>
   static auto& side_a(Joints& j) {
@@ -74,7 +71,6 @@ struct Shape {
   BR_HD static double corner_stiffness(const ElasticTetrahedron& law, const ShapeGradients& shape) {
     return (law.lambda + 2.0 * law.shear) * 100.0 * near_reach(shape) / 6.0;
   }
-  static void place_on_device(World&) {}
 
   // Set-up (fdem3/setup).
   struct AtStart {

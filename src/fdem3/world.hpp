@@ -9,6 +9,7 @@
 #include "core/read_only.hpp"
 #include "core/stages.hpp"
 #include "core/step_clock.hpp"
+#include "core/stepping.hpp"
 #include "core/travel.hpp"
 #include "domain/domain.hpp"
 #include "domain/set_here.hpp"
@@ -23,22 +24,6 @@ namespace breccia::fdem3 {
 
 using fdem_shared::ExposedVertices;
 using fdem_shared::WholeMesh;
-
-/// Where the tetrahedra that can touch stood at the last search, and how far each may go from
-/// there, the drift taken off.
-struct TravelOfTetrahedra {
-  Buffer<Index> tetrahedron;  ///< those that can touch, ascending by global id  [-]  (search)
-  Buffer<Corners> reference;  ///< their corners at the search  [m]  (search)
-  Buffer<double> margin;      ///< how far each may go from there  [m]  (search)
-  Drift drift;
-
-  template <class Visit>
-  void each_field(Visit&& field) {
-    field("tetrahedron", "-", tetrahedron);
-    field("reference", "m", reference);
-    field("margin", "m", margin);
-  }
-};
 
 /// Each line tells meaning and unit, then (length; who writes it), in the words of fdem/world.hpp.
 struct World {
@@ -65,14 +50,14 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(tetrahedra.external, joints.force, joints.preset, exposed.changed, exposed.vertex,
          load_starts, loaded_faces, dashpots, bundles.starts, bundles.nodes, bundles.leader, faces,
-         motions, load_laws, domain.owned_there, domain.migration_reference);
+         motions, last_motions, load_laws, domain.owned_there, domain.migration_reference);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(couple_incidence, broad_phase, parent_joint, node_vertex, border_vertex, reach_place,
-         beyond);
+    each(couple_incidence, broad_phase, parent_joint, node_vertex, border_vertex, amplitudes,
+         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock, device_flags);
   }
 
   // State: what a checkpoint holds.
@@ -115,10 +100,19 @@ struct World {
                                ///< (tetrahedra; search, derive)
 
   // Results of a step, overwritten by the next one.
-  Buffer<Motion> motions;       ///< of supports, mid-step  [m/s]  (motions; move)
-  Buffer<LoadLaw> load_laws;    ///< Case::loads with their factors now (loads; loads)
-  Buffer<std::uint8_t> beyond;  ///< 1: an own one has used its margin up (1; move)
-  StepGraph graph;              ///< none is recorded
+  Buffer<Motion> motions;     ///< of supports, mid-step  [m/s]  (motions; move)
+  Buffer<LoadLaw> load_laws;  ///< Case::loads with their factors now (loads; loads)
+  bool margin_used = false;   ///< some own tetrahedron has used its margin up (move)
+
+  // On a device: see fdem/world.hpp.
+  Buffer<Motion> last_motions;                        ///< (motions; bundles)
+  Buffer<AmplitudeTable> amplitudes;                  ///< three of each motion, of each load
+                                                      ///< (advance)
+  Buffer<double> amplitude_times, amplitude_factors;  ///< their entries  [s], [-]  (advance)
+  Buffer<Vec3> prescribed_velocity;                   ///< [m/s]  (motions; advance, servo)
+  Buffer<StepClock> clock;                            ///< time there (2; move)
+  Buffer<std::int32_t> device_flags;                  ///< of a move launched at once (2; move)
+  StepGraph graph;                                    ///< of a few steps (advance)
 };
 
 /// Moves a world's arrays to another space; derive() must follow.
@@ -145,6 +139,8 @@ void derive_bundles(World& w);
 
 /// One step: the points of Lukas 2014, section 2.
 void step(World& w);
+/// One step on the host; on a device as many as a few hundredths of a second hold, ending at
+/// `stop`.
 Advanced advance(World& w, const StopAt& stop);
 /// Velocities of supports at the middle of the step to come, into World::motions.
 void list_motions(World& w);
@@ -152,7 +148,7 @@ void list_motions(World& w);
 void list_loaded_faces(World& w);
 
 /// Asks all ranks whether couples must be searched for, and hears what they say.
-void ask_for_search(World& w);
+void ask_ranks_for_search(World& w);
 bool couples_are_due(World& w);
 MarginRule margin_rule(const World& w);
 void find_couples(World& w);
@@ -166,6 +162,8 @@ void share_bundle_forces(World& w);
 
 Kick kick(const World& w);
 StableStep stable_step(const World& w);
+
+AllowedStep allowed_step(const World& w);
 
 /// Starts the ledger at the present state.
 void begin_ledger(World& w);

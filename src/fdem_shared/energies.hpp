@@ -10,7 +10,7 @@
 
 namespace breccia::fdem_shared {
 
-/// @tparam Stored  a method's: kick, elastic(t), reaction(t, k, next): force that holds a corner
+/// @tparam Stored  a method's: kick, elastic(t)
 template <class Shape, class Stored>
 struct ElementShares {
   using Vector = typename Shape::Vector;
@@ -39,7 +39,7 @@ struct ElementShares {
       const Vector came = (0.5 * kick.last_dt) * before;
       s.damping.add(dot(next.damped[k], came));
       if (external.size > 0) s.work.add(dot(external[t].at[k], came));
-      if (kick.hold[t] >= 0) s.work.add(dot(stored.reaction(t, k, next), came));
+      if (kick.hold[t] >= 0) s.work.add(dot(kick.reaction(kick.given(t), k, next), came));
     }
     s.elastic.add(stored.elastic(t));
   }

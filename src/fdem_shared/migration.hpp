@@ -47,7 +47,7 @@ class Migration {
     for (Index t = 0; t < e.size(); ++t)
       if (w_.domain.owns(t)) elements_.add(shared_items_.owner_of(t), t);
     tie_all(joints, couples);
-    Buffer<Index>& can_touch = Shape::touchable(w_);
+    Buffer<Index>& can_touch = w_.reach.element;
     for (Index i = 0; i < can_touch.size(); ++i) {
       const Index t = can_touch.data()[i];
       if (w_.domain.owns(t)) reach.add(shared_items_.owner_of(t), i);

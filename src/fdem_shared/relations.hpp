@@ -27,7 +27,7 @@ void each_relation(AnyWorld& w, Visit&& visit) {
   visit(relation("joints", "law", w.joints.law, model, bonds));
   visit(relation("couples", "a", w.couples.pairs.a, search, elements));
   visit(relation("couples", "b", w.couples.pairs.b, search, elements));
-  visit(relation("reach", Shape::element, Shape::touchable(w), search, elements));
+  visit(relation("reach", Shape::element, w.reach.element, search, elements));
 }
 
 }  // namespace breccia::fdem_shared

@@ -277,7 +277,7 @@ auto choose_drift(const World& w) {
 /// The place in `reach` of each element. Ghosts have none: their owners tell of them.
 template <class World>
 void place_reach(World& w) {
-  const auto& touchable = ShapeOf<World>::touchable(w);
+  const auto& touchable = w.reach.element;
   w.reach_place.resize(ShapeOf<World>::elements(w).size());
   for_each(w.exec, w.reach_place.size(), NoPlace{w.reach_place.view()});
   for_each(
@@ -290,7 +290,7 @@ template <class World>
 Pairs boxes_that_overlap(World& w, const OpenVertices& vertices) {
   using Shape = ShapeOf<World>;
   auto& e = Shape::elements(w);
-  Buffer<Index>& touchable = Shape::touchable(w);
+  Buffer<Index>& touchable = w.reach.element;
   const auto holds = w.given->holds.view();
   touchable = items_where(w.exec, e.size(),
                           Touchable<Shape, std::remove_cvref_t<decltype(holds[0])>>{
@@ -357,6 +357,34 @@ bool any_rank_is_due(World& w) {
   return marking_is_due(w) || (bits & margin_bit) != 0;
 }
 
+/// Change bits on a device, as its move has noted them, and whether a margin is used up.
+template <class World>
+std::uint64_t noted_bits(World& w) {
+  std::int32_t flags[2];
+  peek_marked_bytes(flags, w.device_flags.data(), w.exec.space, sizeof flags);
+  w.margin_used = flags[0] != 0;
+  if (w.margin_used) clear_bytes(w.device_flags.data(), w.exec.space, sizeof flags[0]);
+  return static_cast<std::uint64_t>(flags[1]);
+}
+
+/// Asks all ranks whether couples must be searched for,
+template <class World>
+void ask_mesh_for_search(World& w) {
+  const bool on_device = w.exec.space != Space::host;
+  if (w.domain.single_rank() && !on_device) return;
+  const StageTime timed(w.exec, "travel");
+  const std::uint64_t changed = on_device ? noted_bits(w) : changed_bits(w);
+  if (!w.domain.single_rank())
+    w.domain.ranks->start_any_of(changed | (w.margin_used ? margin_bit : 0));
+}
+/// and hears what they say.
+template <class World>
+bool mesh_couples_are_due(World& w) {
+  const StageTime timed(w.exec, "travel");
+  if (!w.domain.single_rank()) return any_rank_is_due(w);
+  return w.margin_used || marking_is_due(w);
+}
+
 template <class World>
 MarginRule mesh_margin_rule(const World& w) {
   constexpr double horizon = 30.0;  // steps for which a fast element's margin shall last
@@ -378,7 +406,7 @@ void find_mesh_couples(World& w) {
   }
   collective_try(w.domain.ranks, [&w] { search(w); });
   select_active_ghosts(w);
-  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, Shape::touchable(w));
+  if (joints_changed && w.next_dt > 0.0) w.next_dt = shortened_time_step(w, w.reach.element);
 }
 
 /// Fills what follows from the couples.

@@ -70,7 +70,10 @@ template <class World>
 void place_servos(World& w) {
   for (const ServoMotion& m : w.servo_motions)
     part_of(w.prescribed[at(m.motion)].velocity, m.axis) = w.servos[m.servo].velocity;
-  ShapeOf<World>::place_on_device(w);
+  if (w.servo_motions.empty() || w.prescribed_velocity.empty()) return;
+  std::vector<typename ShapeOf<World>::Vector> velocity;  // where launches ahead read it
+  for (const auto& p : w.prescribed) velocity.push_back(p.velocity);
+  copy_to(w.prescribed_velocity, velocity);
 }
 
 template <class World, class Config>

@@ -8,7 +8,9 @@
 #include "core/stepping.hpp"
 #include "exec/for_each.hpp"
 #include "exec/timers.hpp"
+#include "fdem_shared/ranks.hpp"
 #include "fdem_shared/shape.hpp"
+#include "fdem_shared/stepwise_run.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -41,6 +43,25 @@ auto world_kick(const World& w) {
                                        t.nodes.view(),
                                        t.force.view(),
                                        t.hold.view()};
+}
+
+/// The move of all elements; it asks whether margins hold where they will be.
+template <class World>
+auto world_move(World& w) {
+  using Move = typename ShapeOf<World>::Move;
+  auto& e = ShapeOf<World>::elements(w);
+  decltype(Move::used) used{std::as_const(w.reach_place).view(),
+                            std::as_const(w.reach.reference).view(),
+                            std::as_const(w.reach.margin).view(),
+                            w.reach.drift,
+                            {}};
+  used.set_time(w.time + w.next_dt);
+  return Move{kick(w),
+              std::as_const(e.external).view(),
+              e.nodes.view(),
+              e.damping_work.view(),
+              e.load_work.view(),
+              used};
 }
 
 /// Velocities of supports at the middle of the step to come, into World::motions.
@@ -98,6 +119,40 @@ void share_forces_of_bundles(World& w, const Share& share) {
   if (w.bundles.starts.size() < 2) return;
   const StageTime timed(w.exec, "bundles");
   for_each(w.exec, w.bundles.starts.size() - 1, share);
+}
+
+template <class World>
+void StepwiseRun<World>::send_ghosts(World& w) const {
+  start_ghosts(w);
+}
+template <class World>
+void StepwiseRun<World>::ask_for_search(World& w) const {
+  ask_ranks_for_search(w);
+}
+template <class World>
+void StepwiseRun<World>::receive_ghosts(World& w) const {
+  finish_ghosts(w);
+}
+template <class World>
+void StepwiseRun<World>::search_if_due(World& w) const {
+  if (!couples_are_due(w)) return;
+  refresh_ghosts(w);
+  find_couples(w);
+}
+template <class World>
+void StepwiseRun<World>::load_forces(World& w) const {
+  if (w.load_starts.size() < 2) return;
+  const StageTime timed(w.exec, "load_forces");
+  list_load_factors(w);
+  for_each(w.exec, w.load_starts.size() - 1, load_kernel(w));
+}
+template <class World>
+void StepwiseRun<World>::bundle_forces(World& w) const {
+  share_forces_of_bundles(w, bundle_kernel(w));
+}
+template <class World>
+void StepwiseRun<World>::choose_step(World& w) const {
+  if (w.step % w.given->time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }
 
 }  // namespace breccia::fdem_shared

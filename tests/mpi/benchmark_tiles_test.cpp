@@ -68,7 +68,7 @@ TEST(TiledPlate, is_whole_across_the_sides_of_tiles) {
       ++joined;
   }
   EXPECT_EQ(rim, w.given->open_vertex);
-  for (const Index t : w.reach.triangle.host()) {
+  for (const Index t : w.reach.element.host()) {
     const std::size_t first = 3 * static_cast<std::size_t>(t);
     EXPECT_TRUE(std::any_of(w.vertex.begin() + first, w.vertex.begin() + first + 3,
                             [&](Index v) { return rim[static_cast<std::size_t>(v)] != 0; }))

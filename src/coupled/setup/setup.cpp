@@ -98,7 +98,8 @@ World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrah
   const double least = dem::StepRule{dem::step_rule(spheres)}(
       *std::min_element(spheres.critical.host().begin(), spheres.critical.host().end()), 0.0);
   spheres.next_dt = std::min(spheres.next_dt, least);
-  choose_step(w);
+  note_stable_step(w);
+  choose_common_step(w);
   warn_of_overlaps(w, given.warnings);
   return w;
 }

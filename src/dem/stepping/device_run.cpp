@@ -191,6 +191,7 @@ class ClockedRun : public LaunchedForces<ByClock<phase>>, public ClockLed {
                   part(w.device_walls.size(), clocks_.opening(walls, end, false),
                        part(w.elements.size(), clocks_.opening(move, end, true), Parts<>{})));
   }
+  void coupling_forces(World&) const {}
   void wall_forces(World& w) const {
     if (w.walls.empty()) return;
     each_wall_kernel(

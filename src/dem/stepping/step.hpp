@@ -8,6 +8,19 @@
 
 namespace breccia::dem {
 
+/// All elements where they are at the end of the step, and the contacts that they may have there.
+template <class Run>
+void take_motion(Run&& run, World& w) {
+  // 1. Newton's laws: accelerations, velocities, positions                          (section 4.4)
+  run.move_boundary(w);  // on one rank: all of them
+  run.send_ghosts(w);    // while the interior moves
+  run.move_interior(w);
+  run.receive_ghosts(w);
+
+  // 2. New contacts, when travel has used the margin up: grid, sort, search         (section 4.3)
+  run.search_if_due(w);
+}
+
 /// Forces at the time of the positions, and the step that follows.
 template <class Run>
 void take_forces(Run&& run, World& w) {
@@ -16,6 +29,7 @@ void take_forces(Run&& run, World& w) {
   //    sum_forces, tile by tile.
   run.pair_forces(w);
   run.sum_forces(w);
+  run.coupling_forces(w);  // of what another method adds: coupled/step.cpp
   run.wall_forces(w);
 
   // 4. The next step: min over elements of sqrt(inertia / stiffness)                (section 4.4)
@@ -25,15 +39,7 @@ void take_forces(Run&& run, World& w) {
 /// One step of the scheme of Durand et al. 2012, Figure 1 and section 3.3.
 template <class Run>
 void take_step(Run&& run, World& w) {
-  // 1. Newton's laws: accelerations, velocities, positions                          (section 4.4)
-  run.move_boundary(w);  // on one rank: all of them
-  run.send_ghosts(w);    // while the interior moves
-  run.move_interior(w);
-  run.receive_ghosts(w);
-
-  // 2. New contacts, when travel has used the margin up: grid, sort, search         (section 4.3)
-  run.search_if_due(w);
-
+  take_motion(run, w);
   take_forces(run, w);
   run.count_step(w);
 }
@@ -47,6 +53,7 @@ struct StepwiseRun {
   void send_ghosts(World& w) const;
   void receive_ghosts(World& w) const;
   void search_if_due(World& w) const;
+  void coupling_forces(World&) const {}
   void wall_forces(World& w) const;
   void choose_step(World& w) const;
   void count_step(World& w) const { w.step += 1; }

@@ -139,7 +139,7 @@ struct JointForces {
     bool damaged = false;
     for (int q = 0; q < 3; ++q) {
       const BondTraction<double>& t = bond_traction[q];
-      traction[q] = t.shear * o.along + t.normal * o.across;
+      traction[q] = t.shear * o.along + t.normal * o.normal;
       const double weight = (q == 1 ? -4.0 : -1.0) * h / 6.0;
       pressure += weight * t.normal;
       drag += weight * t.shear;
@@ -202,7 +202,7 @@ struct JointForces {
       const BondTraction<R> t =
           elastic_response(slope, tension, quarter, cohesion, bond[3], o.open[q] + offset[0],
                            o.slide[q] + offset[1], beyond);
-      traction[q] = t.shear * o.along + t.normal * o.across;
+      traction[q] = t.shear * o.along + t.normal * o.normal;
       normal = normal + weight_of(q) * t.normal;
       shear = shear + weight_of(q) * t.shear;
     }
@@ -288,7 +288,7 @@ struct JointForces {
     const Vec2 f = last.first + now.first, s = last.second + now.second;
     JointWork& w = work[i];
     w.open -=
-        0.5 * (dot(f, o.across) * dot(first, o.across) + dot(s, o.across) * dot(second, o.across));
+        0.5 * (dot(f, o.normal) * dot(first, o.normal) + dot(s, o.normal) * dot(second, o.normal));
     w.slide -=
         0.5 * (dot(f, o.along) * dot(first, o.along) + dot(s, o.along) * dot(second, o.along));
   }

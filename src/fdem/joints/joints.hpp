@@ -100,7 +100,7 @@ struct JointEnds {
 /// How a joint is open: axes and relative displacements at its integration points.
 template <class R>
 struct JointOpening {
-  Vec2Of<R> along, across;  ///< e of the middle line, and n from side b into side a  [-]
+  Vec2Of<R> along, normal;  ///< e of the middle line, and n from side b into side a  [-]
   R size;                   ///< length of the middle line  [m]
   R open[3];                ///<  [m]
   R slide[3];               ///< of side a against b along e  [m]
@@ -114,10 +114,10 @@ BR_HD JointOpening<R> opening_of(const Vec2Of<R>& a0, const Vec2Of<R>& a1, const
   const Vec2Of<R> line = half * ((a1 - a0) + (b1 - b0));
   o.size = norm(line);
   o.along = (1.0 / o.size) * line;
-  o.across = {-o.along.y, o.along.x};
+  o.normal = {-o.along.y, o.along.x};
   const Vec2Of<R> first = a0 - b0, second = a1 - b1;
-  o.open[0] = dot(first, o.across);
-  o.open[2] = dot(second, o.across);
+  o.open[0] = dot(first, o.normal);
+  o.open[2] = dot(second, o.normal);
   o.slide[0] = dot(first, o.along);
   o.slide[2] = dot(second, o.along);
   o.open[1] = half * (o.open[0] + o.open[2]);

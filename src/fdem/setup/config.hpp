@@ -167,40 +167,26 @@ struct RegionConfig {
 using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec2>;
 
 /// [[load]]: forces on free edges
-struct LoadConfig {
-  std::string name;
-  RegionConfig region;
-  std::string kind = "pressure";
-  OverTime<double> pressure;  ///<  [Pa]
-  OverTime<Vec2> traction;    ///<  [Pa]
-  OverTime<Vec2> force;       ///<  [N/m]
-  double speed = 0.0;         ///< of a fluid's front; 0: at once  [m/s]
-  double viscosity = 0.0;     ///< of a fluid that flows; 0: its pressure is alike  [Pa s]
-  double bulk = 2.2e9;        ///< its bulk modulus  [Pa]
-  double aperture = 1e-5;     ///< of cracks that are closed  [m]
-  OverTime<double> rate;      ///< at which it comes in, instead of a pressure  [m2/s]
-  bool filled = false;        ///< whether cracks that are open at the start hold it
-  HistoryConfig history;
+struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
+  double speed = 0.0;      ///< of a fluid's front; 0: at once  [m/s]
+  double viscosity = 0.0;  ///< of a fluid that flows; 0: its pressure is alike  [Pa s]
+  double bulk = 2.2e9;     ///< its bulk modulus  [Pa]
+  double aperture = 1e-5;  ///< of cracks that are closed  [m]
+  OverTime<double> rate;   ///< at which it comes in, instead of a pressure  [m2/s]
+  bool filled = false;     ///< whether cracks that are open at the start hold it
 
   bool flows() const { return kind == "fluid" && viscosity > 0.0; }
 
   template <class Visit>
   void each_key(Visit&& key) {
-    key("name", name, "name of the load");
-    key.required("name");
-    region.each_key(key);
+    keys_of_place(key);
     key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing", "fluid"},
         "pressure: against the edge, and traction: along fixed axes, both per present length; "
         "force: a sum, spread over the edges by their length at the start, that stays as given "
         "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer); fluid: a pressure "
         "on the border in the region, which spreads through broken joints and open cracks that are "
         "connected to the region");
-    key("pressure", pressure, "Pa", any_number,
-        "pressure, positive pushes; or a table [[t, p], ...] of it over time");
-    key("traction", traction, "Pa", any_number,
-        "force per area, or a table [[t, x, y], ...] of it over time");
-    key("force", force, "N/m", any_number,
-        "force per unit thickness, of all edges together, or a table [[t, x, y], ...] of it");
+    keys_of_size(key);
     key("speed", speed, "m/s", not_negative,
         "fluid: how fast its front runs in cracks that are broken; 0: it fills them as they break");
     key("viscosity", viscosity, "Pa s", Range{0.0, 1e9},

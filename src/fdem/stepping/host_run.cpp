@@ -1,37 +1,18 @@
 // A step by loops on the host: over packs of triangles and joints, shared by threads.
 
+#include "fdem_shared/host_run.hpp"
+
 #include <algorithm>
-#include <atomic>
 
 #include "core/stepping.hpp"
 #include "exec/for_each.hpp"
+#include "fdem/shape.hpp"
 #include "fdem/stepping/kernel_lanes.hpp"
 #include "fdem/stepping/launches.hpp"
 #include "fdem/stepping/step.hpp"
 
 namespace breccia::fdem {
 namespace {
-
-/// Calls visit(begin, end) for runs of triangles, in parts that the threads share: all of them if
-/// there are no ranks.
-template <class Visit>
-void each_run(const World& w, const std::vector<ElementRun>& runs, const Visit& visit) {
-  constexpr Index grain = 512;
-  for_each_run(w.exec, w.triangles.size(), grain, [&](Index begin, Index end) {
-    if (w.domain.single_rank()) return visit(begin, end);
-    Domain::each_run_of(runs, begin, end, visit);
-  });
-}
-
-/// Moves triangles. @returns whether an own one has used its margin up
-bool move_here(World& w, const std::vector<ElementRun>& runs) {
-  const MoveTriangles move = move_kernel(w);
-  std::atomic<bool> beyond = false;
-  each_run(w, runs, [&](Index begin, Index end) {
-    if (run_packs(w.lanes, move, begin, end)) beyond.store(true, std::memory_order_relaxed);
-  });
-  return beyond;
-}
 
 /// Calls visit(begin, end) for runs of joints whose packs take(pack) chooses.
 template <class Take, class Visit>
@@ -53,16 +34,8 @@ void each_run_of_packs(const World& w, const Take& take, const Visit& visit) {
 
 }  // namespace
 
-void HostRun::move_boundary(World& w) const {
-  const StageTime timed(w.exec, "integration");
-  list_motions(w);
-  w.margin_used = move_here(w, w.domain.boundary_runs);
-}
-
-void HostRun::move_interior(World& w) const {
-  const StageTime timed(w.exec, "integration");
-  if (!w.domain.single_rank() && move_here(w, w.domain.interior_runs)) w.margin_used = true;
-  advance_time(w);
+bool move_range(const World& w, const MoveTriangles& kernel, Index begin, Index end) {
+  return run_packs(w.lanes, kernel, begin, end);
 }
 
 void HostRun::inner_joint_forces(World& w) const {
@@ -115,9 +88,11 @@ void HostRun::sum_forces(World& w) const {
   const StageTime timed(w.exec, "triangle_forces");
   with_number(w.exec.precision, [&](auto number) {
     const auto kernel = triangle_kernel<decltype(number)>(w);
-    each_run(w, w.domain.runs,
-             [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
+    fdem_shared::each_run(w, w.domain.runs,
+                          [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
   });
 }
 
 }  // namespace breccia::fdem
+
+template struct breccia::fdem_shared::MovingRun<breccia::fdem::StepwiseRun, breccia::fdem::World>;

@@ -6,20 +6,6 @@
 
 namespace breccia::fdem {
 
-/// Asks whether margins hold where the triangles will be.
-inline MoveTriangles move_kernel(World& w) {
-  Triangles& t = w.triangles;
-  UsedMargin used{std::as_const(w.reach_place).view(), std::as_const(w.reach.reference).view(),
-                  std::as_const(w.reach.margin).view(), w.reach.drift, Vec2{}};
-  used.set_time(w.time + w.next_dt);
-  return {kick(w),
-          std::as_const(t.external).view(),
-          t.nodes.view(),
-          t.damping_work.view(),
-          t.load_work.view(),
-          used};
-}
-
 template <class Number>
 JointForces<Number> joint_kernel(World& w) {
   Joints& j = w.joints;

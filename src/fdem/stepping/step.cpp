@@ -2,6 +2,7 @@
 
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/ranks.hpp"
+#include "fdem/shape.hpp"
 #include "fdem/stepping/launches.hpp"
 #include "fdem_shared/stepping.hpp"
 
@@ -48,46 +49,17 @@ double shortened_time_step(const World& w, const Buffer<Index>& triangles) {
   return fdem_shared::world_shortened_step(w, triangles);
 }
 
-void StepwiseRun::send_ghosts(World& w) const {
-  start_ghosts(w);
-}
-
-void StepwiseRun::ask_for_search(World& w) const {
-  fdem::ask_for_search(w);
-}
-
-void StepwiseRun::receive_ghosts(World& w) const {
-  finish_ghosts(w);
-}
-
-void StepwiseRun::search_if_due(World& w) const {
-  if (!couples_are_due(w)) return;
-  refresh_ghosts(w);
-  find_couples(w);
-}
-
 void StepwiseRun::insert_joints(World& w) const {
   fdem::insert_joints(w);
 }
 
 void StepwiseRun::load_forces(World& w) const {
   if (w.given->flow.on) flow_on(w);
-  if (w.load_starts.size() < 2) return;
-  const StageTime timed(w.exec, "load_forces");
-  fdem_shared::list_load_factors(w);
-  for_each(w.exec, w.load_starts.size() - 1, load_kernel(w));
-}
-
-void StepwiseRun::bundle_forces(World& w) const {
-  fdem_shared::share_forces_of_bundles(w, bundle_kernel(w));
+  fdem_shared::StepwiseRun<World>::load_forces(w);
 }
 
 void share_bundle_forces(World& w) {
   StepwiseRun{}.bundle_forces(w);
-}
-
-void StepwiseRun::choose_step(World& w) const {
-  if (w.step % w.given->time.evaluate_every == 0) w.next_dt = choose_time_step(w);
 }
 
 void step(World& w) {
@@ -103,3 +75,5 @@ Advanced advance(World& w, const StopAt& stop) {
 }
 
 }  // namespace breccia::fdem
+
+template struct breccia::fdem_shared::StepwiseRun<breccia::fdem::World>;

@@ -1,38 +1,27 @@
 #pragma once
 // How the step of the FDEM (fdem_shared/step.hpp) is carried out: by HostRun in loops over packs,
-// by DeviceRun in launches, at once or recorded and led by the device's clock.
+// by launches of a device (device_run.cpp), at once or recorded and led by the device's clock.
 
 #include "fdem/world.hpp"
 #include "fdem_shared/step.hpp"
+#include "fdem_shared/stepwise_run.hpp"
 
 namespace breccia::fdem {
 
 using fdem_shared::take_forces;
 using fdem_shared::take_step;
 
-/// Parts that all runs of one step at a time share: ghosts, the search, insertion, loads, the time
-/// step.
-struct StepwiseRun {
-  void send_ghosts(World& w) const;
-  void ask_for_search(World& w) const;
-  void inner_joint_forces(World&) const {}
-  void receive_ghosts(World& w) const;
-  void search_if_due(World& w) const;
+/// Joints that appear and fluid that flows, besides what both shapes share.
+struct StepwiseRun : fdem_shared::StepwiseRun<World> {
   void insert_joints(World& w) const;
   void load_forces(World& w) const;
-  /// Corners that move as one share their force.
-  void bundle_forces(World& w) const;
-  void choose_step(World& w) const;
-  void count_step(World& w) const { w.step += 1; }
 };
 
 /// Corners that move as one share their force anew, after some have got more of it.
 void share_bundle_forces(World& w);
 
 /// Loops on the host, over packs, shared by threads.
-struct HostRun : StepwiseRun {
-  void move_boundary(World& w) const;
-  void move_interior(World& w) const;
+struct HostRun : fdem_shared::MovingRun<StepwiseRun, World> {
   /// While ghosts travel: forces of joints that act on none of them. Only of those that are whole
   /// and stay so, since a search reads how joints are damaged and may be due.
   void inner_joint_forces(World& w) const;

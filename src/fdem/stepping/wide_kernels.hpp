@@ -58,12 +58,6 @@ struct BundlesWide {
   }
 };
 
-/// A kernel of which so many blocks fit a multiprocessor at once: a bound on its registers.
-template <class Kernel, int blocks>
-struct Bounded : Kernel {
-  static constexpr int least_blocks = blocks;
-};
-
 /// Work that few couples need.
 template <class Number>
 BR_COLD void cold_begin(const CoupleForces<Number>* couples, Index c) {

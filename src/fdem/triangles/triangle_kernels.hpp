@@ -5,9 +5,9 @@
 #include "fdem/contact/couples.hpp"
 #include "fdem/contact/nearness.hpp"
 #include "fdem/joints/joint_kernels.hpp"
-#include "fdem/triangles/columns.hpp"
-#include "fdem/triangles/motion_kernels.hpp"
+#include "fdem/triangles/motion.hpp"
 #include "fdem_shared/bundles.hpp"
+#include "fdem_shared/stable_parts.hpp"
 
 namespace breccia::fdem {
 
@@ -198,13 +198,7 @@ struct StableStep {
   int evaluate_every;  ///< steps from one evaluation to the next
   double rebound;      ///< factor on the stiffness of contacts that lose energy  [-]
 
-  /// Shares of the largest row sum.
-  struct Parts {
-    double element = 0.0, joint = 0.0, contact = 0.0;  ///<  [Pa], per unit thickness
-    double viscous = 0.0, absorbed = 0.0;              ///<  [Pa s]
-    double square = 0.0;                               ///< omega^2 bound  [1/s2]
-    double step = 0.0;                                 ///<  [s]
-  };
+  using Parts = fdem_shared::StepParts;  ///< of the largest row sum
 
   BR_HD double operator()(Index t) const { return parts(t).step; }
 
@@ -241,10 +235,9 @@ struct StableStep {
       on_edge[k][1] = (pressed >> k & 1) != 0 ? contact_stiffness(t, k, x, area) : 0.0;
     }
     Parts largest;
-    largest.step = 1e300;
-    const int fixed = hold[t] >= 0 ? holds[hold[t]].fixed : 0;
     for (int i = 0; i < 3; ++i) {
-      if ((fixed >> (2 * i) & 3) == 3) continue;  // goes where it is told, whatever its mass
+      if (hold[t] >= 0 && holds[hold[t]].fixed_at(i) == 3)
+        continue;  // goes where it is told, whatever its mass
       Parts p;
       for (int c = 0; c < 2; ++c) {
         p.element = max(p.element, row(slope, i, c, area, law.lambda, law.shear));
@@ -255,10 +248,7 @@ struct StableStep {
       if (dashpots.size > 0) p.absorbed = dashpot(t, i, x) + dashpot(t, before, x);
       p.joint = on_edge[i][0] + on_edge[before][0];
       p.contact = on_edge[i][1] + on_edge[before][1];
-      p.square = (p.element + p.joint + p.contact) / mass[t];
-      const double omega = sqrt(p.square), lost = p.viscous + p.absorbed;
-      const double xi = 0.5 * lost / (mass[t] * omega);
-      p.step = 2.0 / omega * (sqrt(1.0 + xi * xi) - xi);
+      p.finish(mass[t]);
       if (p.step < largest.step) largest = p;
     }
     return largest;

@@ -2,6 +2,7 @@
 // Couples of tetrahedra that may touch: push and rub (docs/theory-fdem3.md, 3).
 
 #include "core/incidence.hpp"
+#include "core/kernel.hpp"
 #include "core/pair_list.hpp"
 #include "fdem/contact/couples.hpp"
 #include "fdem3/joints/joints.hpp"
@@ -163,7 +164,34 @@ struct CoupleForces {
   View<CoupleState> state;
   View<CoupleForce> force;
 
+  template <class R>
+  struct Loaded {
+    Index a, b;
+    bool apart;  ///< it has not touched and does not
+  };
+  BR_HD void set(const StepTime& now) { dt = now.last_dt; }
+  BR_HD void load_early(Index i, Loaded<double>& loaded) const {
+    loaded.a = read_now(&a[i]);
+    loaded.b = read_now(&b[i]);
+    const CoupleState& kept = state[i];
+    loaded.apart = kept.scale != 0.0 && kept.work == 0.0 && kept.slid == 0.0;
+  }
+  BR_HD void load_late(Index, Loaded<double>& loaded) const {
+    if (!loaded.apart) return;
+    Vec3 xa[4], xb[4];
+    places(nodes[loaded.a], xa);
+    places(nodes[loaded.b], xb);
+    loaded.apart = boxes_apart(xa, xb, 0.0);
+  }
+  /// Most couples are apart. @returns false, with nothing written, for the others
+  BR_HD bool update(Index i, const Loaded<double>& loaded) const {
+    if (loaded.apart) force[i] = {};
+    return loaded.apart;
+  }
   BR_HD void operator()(Index i) const {
+    if (!run_at<double>(*this, i)) slow(i);
+  }
+  BR_HD void slow(Index i) const {
     CoupleState& kept = state[i];
     const bool is_new = kept.scale == 0.0;
     if (is_new) kept.scale = 1.0;

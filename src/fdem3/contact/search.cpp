@@ -19,13 +19,6 @@ struct NoteExposed {
   }
 };
 
-/// Whether an own tetrahedron has used its margin up.
-bool margin_is_used(const World& w) {
-  std::vector<std::uint8_t> beyond;
-  copy_to(beyond, w.beyond);
-  return beyond[0] != 0;
-}
-
 }  // namespace
 
 /// Ghosts hear from their owners which of their faces are exposed: not all their joints are here.
@@ -41,17 +34,12 @@ MarginRule margin_rule(const World& w) {
   return fdem_shared::mesh_margin_rule(w);
 }
 
-void ask_for_search(World& w) {
-  if (w.domain.single_rank()) return;
-  const StageTime timed(w.exec, "travel");
-  w.domain.ranks->start_any_of(fdem_shared::changed_bits(w) |
-                               (margin_is_used(w) ? fdem_shared::margin_bit : 0));
+void ask_ranks_for_search(World& w) {
+  fdem_shared::ask_mesh_for_search(w);
 }
 
 bool couples_are_due(World& w) {
-  const StageTime timed(w.exec, "travel");
-  if (!w.domain.single_rank()) return fdem_shared::any_rank_is_due(w);
-  return margin_is_used(w) || fdem_shared::marking_is_due(w);
+  return fdem_shared::mesh_couples_are_due(w);
 }
 
 void find_couples(World& w) {
@@ -60,7 +48,6 @@ void find_couples(World& w) {
 
 void derive_couples(World& w) {
   fdem_shared::derive_mesh_couples(w);
-  w.beyond.resize(1);
 }
 
 }  // namespace breccia::fdem3

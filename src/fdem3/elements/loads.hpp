@@ -29,6 +29,7 @@ struct LoadForces {
   View<const TetrahedronNodes> nodes;
   View<Corners> external, force;
 
+  BR_HD void set(const StepTime&) {}
   BR_HD void operator()(Index i) const {
     const Index t = faces[starts[i]].tetrahedron;
     Corners sum{};

@@ -3,6 +3,7 @@
 
 #include "fdem3/elements/element_kernels.hpp"
 #include "fdem3/elements/loads.hpp"
+#include "fdem_shared/stable_parts.hpp"
 
 namespace breccia::fdem3 {
 
@@ -32,13 +33,7 @@ struct StableStep {
   View<const Index> joint_a, joint_b;  ///< faces of the joints
   int evaluate_every;                  ///< steps from one evaluation to the next
 
-  /// Shares of the largest row sum.
-  struct Parts {
-    double element = 0.0, joint = 0.0, contact = 0.0;  ///<  [N/m]
-    double viscous = 0.0, absorbed = 0.0;              ///<  [N s/m]
-    double square = 0.0;                               ///< omega^2 bound  [1/s2]
-    double step = 0.0;                                 ///<  [s]
-  };
+  using Parts = fdem_shared::StepParts;  ///< of the largest row sum
 
   BR_HD double operator()(Index t) const { return parts(t).step; }
 
@@ -91,19 +86,15 @@ struct StableStep {
     Parts at_corner[4];
     for (int k = 0; k < 4; ++k) add_face(t, k, x, (pressed >> k & 1) != 0, at_corner);
     Parts largest;
-    largest.step = 1e300;
-    const int fixed = hold[t] >= 0 ? holds[hold[t]].fixed : 0;
     for (int i = 0; i < 4; ++i) {
-      if ((fixed >> (3 * i) & 7) == 7) continue;  // goes where it is told, whatever its mass
+      if (hold[t] >= 0 && holds[hold[t]].fixed_at(i) == 7)
+        continue;  // goes where it is told, whatever its mass
       Parts p = at_corner[i];
       for (int c = 0; c < 3; ++c) {
         p.element = max(p.element, row(form.slope, i, c, volume, law.lambda, law.shear));
         p.viscous = max(p.viscous, row(form.slope, i, c, volume, 0.0, 0.5 * viscosity[t]));
       }
-      p.square = (p.element + p.joint + p.contact) / mass[t];
-      const double omega = sqrt(p.square), lost = p.viscous + p.absorbed;
-      const double xi = 0.5 * lost / (mass[t] * omega);
-      p.step = 2.0 / omega * (sqrt(1.0 + xi * xi) - xi);
+      p.finish(mass[t]);
       if (p.step < largest.step) largest = p;
     }
     return largest;

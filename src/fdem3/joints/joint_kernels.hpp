@@ -1,7 +1,7 @@
 #pragma once
 // The kernel of all joints: reads, one law call a point, one write.
 
-#include "core/step_clock.hpp"
+#include "core/kernel.hpp"
 #include "fdem/joints/joint_kernels.hpp"
 #include "fdem3/joints/joints.hpp"
 #include "fdem3/laws/rock_failure.hpp"
@@ -29,20 +29,56 @@ struct JointForces {
   View<Vec3> shear_at_break;
   View<std::uint8_t> changed;  ///< flags of fdem::Change: contacts must be searched
 
-  BR_HD void operator()(Index i) const {
-    const JointStage before = stage[i];
-    const JointForce last = force[i];
-    if (is_parted(before) && is_zero(last)) return;
-    const JointEnds e = JointEnds::of(face_a[i], face_b[i], turn[i]);
+  template <class R>
+  struct Loaded {
+    JointStage before;
+    bool quiet;       ///< parted for good: nothing to do
+    JointForce last;  ///< of the step before
+    JointEnds ends;
+    Index law;
+    FaceShape shape;
+    double length, strength;
+    Vec3 offset;
+    JointOpening opening;
+  };
+  BR_HD void set(const StepTime& now) {
+    time = now.time;
+    dt = now.last_dt;
+  }
+  /// All but the corners.
+  BR_HD void load_early(Index i, Loaded<double>& loaded) const {
+    loaded.before = stage[i];
+    loaded.last = force[i];
+    loaded.quiet = is_parted(loaded.before) && is_zero(loaded.last);
+    if (loaded.quiet) return;
+    loaded.ends = JointEnds::of(read_now(&face_a[i]), read_now(&face_b[i]), turn[i]);
+    loaded.law = read_now(&law[i]);
+    loaded.shape = shape[i];
+    loaded.length = read_now(&length[i]);
+    loaded.strength = read_now(&strength[i]);
+    loaded.offset = preset.size > 0 ? preset[i] : Vec3{};
+  }
+  BR_HD void load_late(Index, Loaded<double>& loaded) const {
+    if (loaded.quiet) return;
     Vec3 a[3], b[3];
     for (int k = 0; k < 3; ++k) {
-      a[k] = node(e.a[k]).position;
-      b[k] = node(e.b[k]).position;
+      a[k] = node(loaded.ends.a[k]).position;
+      b[k] = node(loaded.ends.b[k]).position;
     }
-    const JointOpening o = opening_of(a, b);
-    const Vec3 offset = preset.size > 0 ? preset[i] : Vec3{};
-    if (before == JointStage::whole && stays_whole(i, e, o, offset)) return;
-    slow(i, before, e, o, offset, last);
+    loaded.opening = opening_of(a, b);
+  }
+  /// @returns false, with nothing written, unless the joint is whole, stays so and slips little, or
+  /// parted long ago
+  BR_HD bool update(Index i, const Loaded<double>& loaded) const {
+    return loaded.quiet || stays_whole(i, loaded, false);
+  }
+  /// A joint that is softened or broken, or becomes so, or slips.
+  BR_HD void slow(Index i) const { (*this)(i); }
+  BR_HD void operator()(Index i) const {
+    Loaded<double> loaded;
+    load_early(i, loaded);
+    load_late(i, loaded);
+    if (!loaded.quiet && !stays_whole(i, loaded, true)) fail_or_soften(i, loaded);
   }
 
  private:
@@ -61,14 +97,17 @@ struct JointForces {
   }
 
   /// A joint that is whole, nearly every one. @returns false, with nothing written, if it does not
-  /// stay so
-  BR_HD bool stays_whole(Index i, const JointEnds& e, const JointOpening& o,
-                         const Vec3& offset) const {
-    const JointBond& bond = bonds[law[i]];
-    const double share = strength[i], slope = bond.stiffness / length[i];
+  /// stay so, or slips and this is not booked
+  /// @param books  for which the length of the step must be known
+  BR_HD bool stays_whole(Index i, const Loaded<double>& loaded, bool books) const {
+    if (loaded.before != JointStage::whole) return false;
+    const JointOpening& o = loaded.opening;
+    const Vec3& offset = loaded.offset;
+    const JointBond& bond = bonds[loaded.law];
+    const double share = loaded.strength, slope = bond.stiffness / loaded.length;
     const double tension = bond.tension * share, cohesion = bond.cohesion * share;
     const double quarter = 0.25 / tension;
-    const FaceShape& face = shape[i];
+    const FaceShape& face = loaded.shape;
     const double area = face.area();
     if (!(o.twice > 2e-12 * area)) return false;
     const Vec3 slip = slip_in_space(o, offset);
@@ -88,14 +127,18 @@ struct JointForces {
       const RockStress s = rock_stress(bond, face, o, (1.0 / 3.0) * mean, in_situ);
       if (may_fail(bond, share, s)) return false;
     }
+    if (drags && !books) return false;
     store(i, traction, area);
-    if (drags) book_drag(i, bond, offset, e, o);
+    if (drags) book_drag(i, bond, offset, loaded.ends, o);
     return true;
   }
 
-  /// A joint that is softened or broken, or becomes so.
-  BR_HD void slow(Index i, JointStage before, const JointEnds& e, const JointOpening& o,
-                  const Vec3& offset, const JointForce& last) const {
+  BR_HD void fail_or_soften(Index i, const Loaded<double>& loaded) const {
+    const JointStage before = loaded.before;
+    const JointEnds& e = loaded.ends;
+    const JointOpening& o = loaded.opening;
+    const Vec3& offset = loaded.offset;
+    const JointForce& last = loaded.last;
     const double area = shape[i].area(), h = length[i];
     const bool collapsed = !(o.twice > 2e-12 * area);
     Vec3 way[3];

@@ -42,30 +42,15 @@ struct RegionConfig {
 using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec3>;
 
 /// [[load]]: forces on free faces
-struct LoadConfig {
-  std::string name;
-  RegionConfig region;
-  std::string kind = "pressure";
-  OverTime<double> pressure;  ///<  [Pa]
-  OverTime<Vec3> traction;    ///<  [Pa]
-  OverTime<Vec3> force;       ///<  [N]
-  HistoryConfig history;
-
+struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec3> {
   template <class Visit>
   void each_key(Visit&& key) {
-    key("name", name, "name of the load");
-    key.required("name");
-    region.each_key(key);
+    keys_of_place(key);
     key("kind", kind, OneOf{"pressure", "traction", "force", "absorbing"},
         "pressure: against the face, and traction: along fixed axes, both per present area; "
         "force: a sum, spread over the faces by their area at the start, that stays as given "
         "however they deform; absorbing: takes waves up (Lysmer and Kuhlemeyer)");
-    key("pressure", pressure, "Pa", any_number,
-        "pressure, positive pushes; or a table [[t, p], ...] of it over time");
-    key("traction", traction, "Pa", any_number,
-        "force per area, or a table [[t, x, y, z], ...] of it over time");
-    key("force", force, "N", any_number,
-        "force of all faces together, or a table [[t, x, y, z], ...] of it");
+    keys_of_size(key);
     history.each_key(key);
   }
 };

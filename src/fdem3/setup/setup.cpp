@@ -284,11 +284,15 @@ void configure(World& w, const Config& config) {
   copy_to(given.contact_pairs, contact_table(config, given.contact_lengths));
   hold_anew(w, config);
   prescribe_loads(w, config);
+  w.amplitudes.clear();  // listed anew by the next launches
+  w.clock.clear();
+  w.graph.clear();
 }
 
 void derive(World& w) {
   derive_couples(w);
   derive_bundles(w);
+  w.graph.clear();
 }
 
 void derive_bundles(World& w) {

@@ -1,36 +1,30 @@
 #pragma once
-// How the step of the FDEM (fdem_shared/step.hpp) is carried out with tetrahedra.
+// How the step of the FDEM (fdem_shared/step.hpp) is carried out with tetrahedra: by HostRun in
+// loops, by launches of a device (device_run.cpp), at once or recorded and led by the device's
+// clock.
 
 #include "fdem3/world.hpp"
 #include "fdem_shared/step.hpp"
+#include "fdem_shared/stepwise_run.hpp"
 
 namespace breccia::fdem3 {
 
-/// Loops on the host and launches of a device alike (exec/for_each.hpp): all tetrahedra move before
-/// ghosts leave, and no joint wakes or goes ahead.
-struct Run {
-  void move_boundary(World& w) const;
-  void send_ghosts(World& w) const;
-  void move_interior(World& w) const;
-  void ask_for_search(World& w) const;
-  void inner_joint_forces(World&) const {}
-  void receive_ghosts(World& w) const;
-  void search_if_due(World& w) const;
-  void insert_joints(World&) const {}
+using fdem_shared::take_forces;
+using fdem_shared::take_step;
+using StepwiseRun = fdem_shared::StepwiseRun<World>;
+
+/// Loops on the host, shared by threads.
+struct HostRun : fdem_shared::MovingRun<StepwiseRun, World> {
   void pair_forces(World& w) const;
   void sum_forces(World& w) const;
-  void load_forces(World& w) const;
-  void bundle_forces(World& w) const;
-  void choose_step(World& w) const;
-  void count_step(World& w) const { w.step += 1; }
 };
 
-// Parts of it, for runs of other methods too.
-void move_elements(World& w);
-void joint_forces(World& w);
-void couple_forces(World& w);
-void sum_forces(World& w);
-void load_forces(World& w);
-void bundle_forces(World& w);
+/// One step by launches at once: on the GPUs of ranks. The host's text, the device's kernels.
+void take_step_on_device(World& w);
+/// Forces and the step that follows, likewise.
+void take_forces_on_device(World& w);
+/// As many steps as a few hundredths of a second hold, launched ahead and led by the device's
+/// clock.
+Advanced advance_on_device(World& w, const StopAt& stop);
 
 }  // namespace breccia::fdem3

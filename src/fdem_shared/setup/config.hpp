@@ -104,6 +104,38 @@ struct SupportChangeOf {
   }
 };
 
+/// [[load]]: forces on free sides. A method adds its kinds.
+template <class RegionConfig, class Vector>
+struct LoadConfigOf {
+  std::string name;
+  RegionConfig region;
+  std::string kind = "pressure";
+  OverTime<double> pressure;  ///<  [Pa]
+  OverTime<Vector> traction;  ///<  [Pa]
+  OverTime<Vector> force;     ///<  [N; in 2D N/m]
+  HistoryConfig history;
+
+ protected:
+  template <class Visit>
+  void keys_of_place(Visit&& key) {
+    key("name", name, "name of the load");
+    key.required("name");
+    region.each_key(key);
+  }
+  template <class Visit>
+  void keys_of_size(Visit&& key) {
+    constexpr bool plane = std::is_same_v<Vector, Vec2>;
+    key("pressure", pressure, "Pa", any_number,
+        "pressure, positive pushes; or a table [[t, p], ...] of it over time");
+    key("traction", traction, "Pa", any_number,
+        plane ? "force per area, or a table [[t, x, y], ...] of it over time"
+              : "force per area, or a table [[t, x, y, z], ...] of it over time");
+    key("force", force, plane ? "N/m" : "N", any_number,
+        plane ? "force per unit thickness, of all edges together, or a table [[t, x, y], ...] of it"
+              : "force of all faces together, or a table [[t, x, y, z], ...] of it");
+  }
+};
+
 /// [[stage.load]]: how large a load is from a stage on
 template <class Vector>
 struct LoadChangeOf {

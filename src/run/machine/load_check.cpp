@@ -207,7 +207,7 @@ void refuse_wrong_places(const fdem::World& w) {
   refuse_wrong_clock(w);
   refuse_wrong_relations(w);
   refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.triangles.id));
-  refuse_unordered("reach.triangle", w.reach.triangle);
+  refuse_unordered("reach.triangle", w.reach.element);
   refuse_wrong_stages(w.joints.stage, fdem::JointStage::cut);
 }
 
@@ -215,7 +215,7 @@ void refuse_wrong_places(const fdem3::World& w) {
   refuse_wrong_clock(w);
   refuse_wrong_relations(w);
   refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.tetrahedra.id));
-  refuse_unordered("reach.tetrahedron", w.reach.tetrahedron);
+  refuse_unordered("reach.tetrahedron", w.reach.element);
   refuse_wrong_stages(w.joints.stage, fdem::JointStage::broken);
 }
 

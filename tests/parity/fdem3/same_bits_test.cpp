@@ -58,6 +58,53 @@ TEST(Fdem3SameBits, where_arrays_lie_in_another_space) {
   EXPECT_EQ(ended(meeting_cubes().world(1, Space::shadow)), reference());
 }
 
+/// By launches that the device's clock leads, some steps at a time.
+Outcome led_by_the_clock(const Scene& scene, int steps = many, int at_once = 37) {
+  fdem3::World w = scene.world(1, Space::shadow);
+  double least = 1e300, most = 0.0;
+  for (std::int64_t next = at_once; w.step < steps; next += at_once)
+    while (w.step < std::min<std::int64_t>(next, steps)) {
+      const Advanced taken = fdem3::advance(w, {1e300, std::min<std::int64_t>(next, steps)});
+      least = std::min(least, taken.dt_min);
+      most = std::max(most, taken.dt_max);
+    }
+  EXPECT_EQ(w.step, steps);
+  EXPECT_GT(least, 0.0);
+  EXPECT_LE(least, most);
+  EXPECT_GT(w.searches, 1);
+  return outcome_of(w);
+}
+
+TEST(Fdem3SameBits, led_by_the_clock_of_a_device) {
+  EXPECT_EQ(led_by_the_clock(meeting_cubes()), reference());
+}
+
+/// Supports and loads that follow tables, corners that move as one, borders that absorb, damping.
+TEST(Fdem3SameBits, led_by_the_clock_with_tables_over_time) {
+  using fdem3::testing::far;
+  for (const char* joints : {"none", "intrinsic"}) {
+    Scene scene = meeting_cubes();
+    scene.config.materials[0].joints = joints;
+    scene.config.local_damping = 0.1;
+    const int steps = 260;
+    scene.config.gravity = {0.0, 0.0, -9.81};
+    fdem3::SupportConfig& moved =
+        scene.support("foot", {-far, -far, -far}, {far, far, -0.0200}, {"x", "z"});
+    moved.velocity = OverTime<Vec3>(Vec3{2.0, 0.0, 5.0});
+    moved.history.times = {0.0, 2e-5, 5e-5};
+    moved.history.factors = {0.0, 1.0, -1.0};
+    fdem3::LoadConfig& push = scene.load("push", "pressure", {-far, -far, 0.0199}, {far, far, far});
+    push.pressure = 2e6;
+    push.history.ramp = 4e-5;
+    scene.load("soak", "absorbing", {-far, -far, -far}, {-0.0099, far, far});
+    const Outcome expected = ended(scene.world(), steps);
+    EXPECT_NE(expected.hash, reference().hash);
+    EXPECT_GT(expected.energies[6], 0.0) << joints;
+    EXPECT_EQ(led_by_the_clock(scene, steps), expected) << joints;
+    EXPECT_EQ(ended(scene.world(1, Space::shadow), steps), expected) << joints;
+  }
+}
+
 Outcome on_ranks(const Scene& scene, int count, Space space = Space::host) {
   Outcome outcome;
   simulate_ranks(count, static_cast<std::uint64_t>(count), [&](Communicator& ranks) {

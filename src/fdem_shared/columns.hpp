@@ -1,11 +1,11 @@
 #pragma once
-// Records of neighbours, by columns: how a kernel for one triangle or a pack reads and writes them.
+// Records of neighbours, by columns: how a kernel for one element or a pack reads and writes them.
 
 #include <type_traits>
 
 #include "math/lanes.hpp"
 
-namespace breccia::fdem {
+namespace breccia::fdem_shared {
 
 /// Records first, first + 1, ... of doubles by columns: numbers[k] is number k of every record. On
 /// a device a warp reads and writes those of its threads together.
@@ -44,4 +44,4 @@ struct Columns {
   [[no_unique_address]] std::conditional_t<width_of<R> == 1, WarpRecords<Record>, Nothing> records_;
 };
 
-}  // namespace breccia::fdem
+}  // namespace breccia::fdem_shared

@@ -1,0 +1,47 @@
+// The step of fdem_shared/step.hpp by launches of a device: fdem_shared/device_run.hpp with the
+// kernels of tetrahedra.
+
+#include "fdem_shared/device_run.hpp"
+
+#include "exec/for_each.hpp"
+#include "fdem3/shape.hpp"
+#include "fdem3/stepping/launches.hpp"
+#include "fdem3/stepping/step.hpp"
+
+namespace breccia::fdem3 {
+namespace {
+
+struct Launches {
+  static constexpr Index lanes = 1;
+
+  /// Joints do not wake.
+  template <class By>
+  static void insert(World&, const By&, std::int32_t*) {}
+  template <class By>
+  static void pairs(World& w, const By& by) {
+    if (w.joints.size() + w.couples.size() == 0)  // elements read corners ahead, which move
+      return for_each(w.exec, 1, by(Fence{}));
+    for_each_part(w.exec, part(w.joints.size(), by(joint_kernel(w)), Parts<>{}));
+    for_each_part(w.exec, part(w.couples.size(), by(couple_kernel(w)), Parts<>{}));
+  }
+  template <class Visit>
+  static void with_sums(World& w, const Visit& visit) {
+    visit(element_kernel(w));
+  }
+  static BundleForces bundles(World& w) { return bundle_kernel(w); }
+};
+using DeviceRun = fdem_shared::DeviceRunOf<Launches, StepwiseRun, World>;
+
+}  // namespace
+
+void take_step_on_device(World& w) {
+  take_step(DeviceRun{}, w);
+}
+void take_forces_on_device(World& w) {
+  take_forces(DeviceRun{}, w);
+}
+Advanced advance_on_device(World& w, const StopAt& stop) {
+  return fdem_shared::advance_mesh<Launches>(w, stop);
+}
+
+}  // namespace breccia::fdem3

@@ -1,0 +1,303 @@
+#pragma once
+// The step of fdem_shared/step.hpp by launches of a device. In Space::shadow the processor carries
+// them out.
+//
+// A method's `Launches` says what they are made of:
+//
+//   insert(w, by, request)   joints appear; they write request_insertion where the host must help
+//   pairs(w, by)             joints and couples; at least one launch
+//   with_sums(w, visit)      visit(kernel) with the kernel of the sums of forces
+//   bundles(w)               the kernel of corners that move as one, and `lanes`, its threads for
+//                            each vertex
+//
+// by(kernel) wraps a kernel for a launch.
+
+#include "core/device_run.hpp"
+#include "fdem_shared/exposed.hpp"
+#include "fdem_shared/motion.hpp"
+#include "fdem_shared/over_time.hpp"
+#include "fdem_shared/step.hpp"
+#include "fdem_shared/stepping.hpp"
+
+namespace breccia::fdem_shared {
+
+/// Values of `host_request`: what the host does in the middle of a step.
+enum Wanted : std::int32_t { request_search = 1, request_insertion = 2 };
+
+/// Velocities of supports at the middle of the step to come.
+template <class Shape>
+struct ScaleMotions {
+  static constexpr const char* name = "fdem.scale_motions";
+  StepTime now;
+  View<const AmplitudeTable> tables;
+  View<const double> times, factors;
+  View<const typename Shape::Vector> velocity;
+  View<typename Shape::Motion> motions;
+  BR_HD void set(const StepTime& moment) { now = moment; }
+  BR_HD void operator()(Index i) const {
+    const double middle = now.time + 0.5 * now.next_dt;
+    typename Shape::Vector scaled{};
+    for (int axis = 0; axis < Shape::dimension; ++axis)
+      part_of(scaled, axis) = tables[Shape::dimension * i + axis].at(middle, times, factors) *
+                              part_of(velocity[i], axis);
+    motions[i].velocity = scaled;
+  }
+};
+
+/// ScaleMotions for the step to come, by a launch of the step before that comes when its least
+/// number has been noted: it ends the step as the next one will.
+template <class Shape>
+struct ScaleNextMotions {
+  static constexpr const char* name = "fdem.scale_motions";
+  ScaleMotions<Shape> scale;
+  View<typename Shape::Motion> last;  ///< gets what was for this step
+  EndOfStep<AllowedStep> end;
+  const StepClock* clock;
+  BR_HD void operator()(Index i) const {
+    StepClock c = *clock;
+    if (c.halted != 0 || c.host_request != 0) return;
+    end(c);
+    ScaleMotions<Shape> next = scale;
+    next.set(c.now);
+    last[i] = next.motions[i];
+    next(i);
+  }
+};
+
+template <class Shape>
+struct ScaleLoads {
+  static constexpr const char* name = "fdem.scale_loads";
+  StepTime now;
+  Index first;  ///< first amplitude of the first load
+  View<const AmplitudeTable> tables;
+  View<const double> times, factors;
+  View<LoadLawOf<typename Shape::Vector>> laws;
+  BR_HD void set(const StepTime& moment) { now = moment; }
+  BR_HD void operator()(Index i) const {
+    for (int axis = 0; axis < Shape::dimension; ++axis)
+      part_of(laws[i].factor, axis) =
+          tables[first + Shape::dimension * i + axis].at(now.time, times, factors);
+  }
+};
+
+/// The move, and the question whether a search is due. Ghosts are moved, too, and then follow their
+/// owners.
+template <class Move>
+struct MoveAndWatch {
+  static constexpr const char* name = "fdem.move_and_watch";
+  Move move;
+  View<const std::uint8_t> changed;  ///< flags of Change
+  std::int32_t* host_request;        ///< gets request_search where a margin is used up
+  std::int32_t* told;  ///< ranks: gets the flags, which all vote on; none: one device holds all
+  std::int64_t step = 0;
+
+  using Loaded = typename Move::template Loaded<double>;
+  BR_HD void set(const StepTime& now) {
+    move.set(now);
+    step = now.step;
+  }
+  BR_HD void load_early(Index t, Loaded& loaded) const { move.load_early(t, loaded); }
+  BR_HD void load_late(Index t, Loaded& loaded) const { move.load_late(t, loaded); }
+  BR_HD void update(Index t, Loaded& loaded) const {
+    if (move.update(t, loaded) == Moved::beyond) *host_request = request_search;
+    if (t != 0) return;
+    const std::uint8_t softened = changed[change_softened], broken = changed[change_broken];
+    if (told != nullptr)
+      *told = (softened != 0 ? 1 << change_softened : 0) | (broken != 0 ? 1 << change_broken : 0);
+    else if (marking_due(softened, broken, step))
+      *host_request = request_search;
+  }
+};
+
+/// The stable step of every n-th element, n threads in all; nothing between two evaluations.
+template <class StableStep>
+struct NoteStable {
+  static constexpr const char* name = "fdem.note_stable";
+  StableStep stable;
+  Index elements, threads;
+  int evaluate_every;
+  NoteLeast note;
+  std::int64_t step = 0;
+  BR_HD void set(const StepTime& now) { step = now.step; }
+  BR_HD void operator()(Index i) const {
+    if (step % evaluate_every != 0) return;
+    double least = largest_least;
+    for (Index t = i; t < elements; t += threads) least = min(least, stable(t));
+    note(least);
+  }
+};
+
+/// A kernel of which so many blocks fit a multiprocessor at once: a bound on its registers.
+template <class Kernel, int blocks>
+struct Bounded : Kernel {
+  static constexpr int least_blocks = blocks;
+};
+
+/// Whether supports get their velocities at the end of the step before: a launch less in each step.
+template <class World>
+bool scales_next(const World& w) {
+  return !w.prescribed.empty() && w.bundles.starts.size() > 1;
+}
+
+template <class World>
+EndOfStep<AllowedStep> end_of_step(const World& w) {
+  return {allowed_step(w), w.given->time.evaluate_every};
+}
+
+template <class World>
+ScaleMotions<ShapeOf<World>> scale_motions(World& w) {
+  return {{},
+          w.amplitudes.view(),
+          w.amplitude_times.view(),
+          w.amplitude_factors.view(),
+          w.prescribed_velocity.view(),
+          w.motions.view()};
+}
+
+/// Launches at once.
+template <class Launches, class Base, class World>
+class DeviceRunOf : public Base {
+ public:
+  void move_boundary(World& w) const {
+    const StageTime timed(w.exec, "integration");
+    list_motions(w);
+    const ShadowLaunches launches;
+    w.device_flags.resize(2);
+    const MoveAndWatch<typename ShapeOf<World>::Move> move{
+        world_move(w), w.exposed.changed.view(), w.device_flags.data(), w.device_flags.data() + 1};
+    for_each_part(w.exec, part(ShapeOf<World>::elements(w).size(), PlainLaunch(move), Parts<>{}));
+    mark_launches(w.exec.space);
+  }
+  void move_interior(World& w) const { advance_time(w); }
+  void pair_forces(World& w) {
+    const StageTime timed(w.exec, "forces");
+    launches_.emplace();
+    for_each(w.exec, 1, Fence{});
+    Launches::pairs(w, AtOnce{});
+  }
+  void sum_forces(World& w) {
+    const StageTime timed(w.exec, "forces");
+    Launches::with_sums(w, [&w](const auto& kernel) {
+      for_each_part(w.exec, part(ShapeOf<World>::elements(w).size(), AtOnce{}(kernel), Parts<>{}));
+    });
+    launches_.reset();
+  }
+
+ private:
+  std::optional<ShadowLaunches> launches_;
+};
+
+/// Launches that a device's clock leads; after a search take_forces() goes on by a run that stands
+/// `after_search`.
+template <class Launches, Phase phase, class World>
+class ClockedRun : public ClockLed {
+ public:
+  using Shape = ShapeOf<World>;
+  explicit ClockedRun(const StepClocks& clocks) : clocks_(clocks), timed_{clocks} {}
+
+  void move_boundary(World& w) const {
+    const auto motions = static_cast<Index>(w.prescribed.size());
+    const EndOfStep<AllowedStep> end = end_of_step(w);
+    const MoveAndWatch<typename Shape::Move> move{world_move(w), w.exposed.changed.view(),
+                                                  &clocks_.now->host_request, nullptr};
+    const Index elements = Shape::elements(w).size();
+    if (motions == 0 || scales_next(w))
+      return for_each_part(w.exec, part(elements, clocks_.opening(move, end, true), Parts<>{}));
+    for_each(w.exec, motions, clocks_.opening(scale_motions(w), end, true));
+    for_each_part(w.exec, part(elements, clocks_.timed<Phase::in_move>(move), Parts<>{}));
+  }
+  void insert_joints(World& w) const { Launches::insert(w, timed_, &clocks_.now->host_request); }
+  void pair_forces(World& w) const { Launches::pairs(w, timed_); }
+  /// Notes the stable step, too.
+  void sum_forces(World& w) const {
+    constexpr Index most_threads = 132 * 128;
+    const Index elements = Shape::elements(w).size();
+    const Index threads = elements < most_threads ? elements : most_threads;
+    const NoteStable<decltype(stable_step(w))> stable{
+        stable_step(w), elements, threads, w.given->time.evaluate_every, {clocks_.now}};
+    Launches::with_sums(w, [&](const auto& kernel) {
+      for_each_part(w.exec,
+                    part(threads, timed_(stable), part(elements, timed_(kernel), Parts<>{})));
+    });
+  }
+  void coupling_forces(World&) const {}
+  void load_forces(World& w) const {
+    if (w.load_starts.size() < 2) return;
+    const ScaleLoads<Shape> scale{{},
+                                  Shape::dimension * static_cast<Index>(w.prescribed.size()),
+                                  w.amplitudes.view(),
+                                  w.amplitude_times.view(),
+                                  w.amplitude_factors.view(),
+                                  w.load_laws.view()};
+    for_each(w.exec, w.load_laws.size(), timed_(scale));
+    for_each(w.exec, w.load_starts.size() - 1, timed_(load_kernel(w)));
+  }
+  void bundle_forces(World& w) const {
+    if (w.bundles.starts.size() < 2) return;
+    const ScaleNextMotions<Shape> next{scale_motions(w), w.last_motions.view(), end_of_step(w),
+                                       clocks_.now};
+    const Index threads = (w.bundles.starts.size() - 1) * Launches::lanes;
+    for_each_part(w.exec, part(scales_next(w) ? w.motions.size() : 0, next,
+                               part(threads, timed_(Launches::bundles(w)), Parts<>{})));
+  }
+
+ private:
+  StepClocks clocks_;
+  ByClock<phase> timed_;
+};
+
+/// Tables that the launches read besides the state.
+template <class World>
+void list_amplitudes(World& w) {
+  std::vector<AmplitudeTable> tables;
+  std::vector<typename ShapeOf<World>::Vector> velocity;
+  AmplitudeTables all;
+  const auto append = [&](const auto& parts) {
+    tables.push_back(all.append(parts.x));
+    tables.push_back(all.append(parts.y));
+    if constexpr (requires { parts.z; }) tables.push_back(all.append(parts.z));
+  };
+  for (const auto& p : w.prescribed) {
+    append(p.over);
+    velocity.push_back(p.velocity);
+  }
+  for (const auto& a : w.given->load_amplitudes) append(a);
+  copy_to(w.amplitudes, tables);
+  copy_to(w.amplitude_times, all.times);
+  copy_to(w.amplitude_factors, all.factors);
+  copy_to(w.prescribed_velocity, velocity);
+  w.motions.resize(static_cast<Index>(w.prescribed.size()));
+  if (w.load_starts.size() > 1) copy_to(w.load_laws, w.given->loads);
+}
+
+/// Velocities of supports for the step to come.
+template <class World>
+void scale_motions_now(World& w) {
+  if (!scales_next(w)) return;
+  copy_to(w.last_motions, w.motions);
+  list_motions(w);
+}
+
+/// Takes steps by launches ahead, led by the device's clock.
+template <class Launches, class World>
+Advanced advance_mesh(World& w, const StopAt& stop) {
+  if (w.amplitudes.empty() && w.clock.empty()) list_amplitudes(w);
+  scale_motions_now(w);
+  const HostTimes host{w.time, w.last_dt, w.next_dt, w.step};
+  using AfterMove = ClockedRun<Launches, Phase::after_move, World>;
+  using AfterSearch = ClockedRun<Launches, Phase::after_search, World>;
+  const Advanced taken = run_ahead(
+      w.clock, w.graph, end_of_step(w), host, stop,
+      [&](const StepClocks& clocks) { take_step(AfterMove(clocks), w); },
+      [&](const StepClocks& clocks) { take_forces(AfterSearch(clocks), w); },
+      [&](std::int32_t host_request) {
+        const bool insertion = host_request == request_insertion;
+        insertion ? evaluate_forces(w) : find_couples(w);
+        if (insertion) scale_motions_now(w);
+        return insertion;
+      });
+  if (scales_next(w)) copy_to(w.motions, w.last_motions);
+  return taken;
+}
+
+}  // namespace breccia::fdem_shared

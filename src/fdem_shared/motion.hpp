@@ -1,0 +1,290 @@
+#pragma once
+// The motion of elements: what acts on their corners, and how far they may go. One text for
+// triangles and tetrahedra, over an element `Of` that names its types (fdem/triangles/motion.hpp,
+// fdem3/elements/motion.hpp): Vector, Nodes, Corners, Hold, Motion; and `word`, `move`.
+
+#include <type_traits>
+
+#include "core/drift.hpp"
+#include "core/kernel.hpp"
+#include "fdem_shared/columns.hpp"
+#include "fdem_shared/shape.hpp"
+
+namespace breccia::fdem_shared {
+
+/// A velocity that follows a table of factors over time, here and now.
+template <class Vector>
+struct MotionNow {
+  Vector velocity;  ///< over the step to come  [m/s]
+};
+
+/// Against the velocity, as large as the force.
+BR_HD inline double opposed(double force, double velocity) {
+  return velocity > 0.0 ? abs(force) : velocity < 0.0 ? -abs(force) : 0.0;
+}
+BR_HD inline Vec2 opposed(const Vec2& f, const Vec2& v) {
+  return {opposed(f.x, v.x), opposed(f.y, v.y)};
+}
+BR_HD inline Vec3 opposed(const Vec3& f, const Vec3& v) {
+  return {opposed(f.x, v.x), opposed(f.y, v.y), opposed(f.z, v.z)};
+}
+
+/// Newton's second law for every corner, by leapfrog with a variable step (Munjiza 2004, 5.12).
+template <class Of>
+struct KickOf {
+  using Vector = typename Of::Vector;
+  using Hold = typename Of::Hold;
+  static constexpr int corners = static_cast<int>(std::extent_v<decltype(Of::Corners::at)>);
+  static constexpr int dimension = corners - 1;
+
+  double last_dt, next_dt;  ///< steps before and after the forces  [s]
+  Vector gravity;           ///<  [m/s2]
+  double damping;           ///< of Cundall's local damping  [-]
+  View<const Hold> holds;
+  View<const typename Of::Motion> motions;
+  View<const double> mass;
+  View<const typename Of::Nodes> nodes;
+  View<const typename Of::Corners> force;
+  View<const Index> hold;
+
+  struct Result {
+    Vector velocity[corners];  ///< half a step later
+    Vector damped[corners];    ///< force that damping took off
+  };
+  /// An element, and what acts on it.
+  struct Given {
+    typename Of::Nodes nodes;
+    typename Of::Corners force;
+    double mass;
+    Index hold;
+  };
+
+  BR_HD void set(const StepTime& now) {
+    last_dt = now.last_dt;
+    next_dt = now.next_dt;
+  }
+  BR_HD double span() const { return 0.5 * (last_dt + next_dt); }
+  /// A velocity at the time of the forces, from those half a step before and after.
+  BR_HD Vector between(const Vector& before, const Vector& after) const {
+    return span() > 0.0 ? before + (0.5 * last_dt / span()) * (after - before) : before;
+  }
+  BR_HD Given given(Index t) const { return {nodes[t], force[t], mass[t], hold[t]}; }
+
+  BR_HD Result operator()(Index t) const { return (*this)(given(t)); }
+  BR_HD Result operator()(const Given& of) const {
+    Result r{};
+    const double m = of.mass, scale = span() / m;
+    for (int k = 0; k < corners; ++k) {
+      const Vector before = of.nodes.at[k].velocity;
+      Vector f = of.force.at[k] + m * gravity;
+      if (damping > 0.0) {
+        r.damped[k] = damping * opposed(f, before + (0.5 * scale) * f);
+        f -= r.damped[k];
+      }
+      r.velocity[k] = before + scale * f;
+    }
+    if (of.hold < 0) return r;
+    const Hold& h = holds[of.hold];
+    for (int k = 0; k < corners; ++k) {
+      const int bits = h.fixed_at(k);
+      if (bits == 0) continue;
+      const Vector given = h.motion[k] >= 0 ? motions[h.motion[k]].velocity : Vector{};
+      r.velocity[k] = held_parts(bits, given, r.velocity[k]);
+      r.damped[k] = held_parts(bits, Vector{}, r.damped[k]);  // what is held is not damped
+    }
+    return r;
+  }
+  /// Force that holds a corner to its prescribed motion; zero in free directions.
+  /// [N; in 2D N/m]
+  BR_HD Vector reaction(const Given& of, int k, const Result& r) const {
+    if (of.hold < 0 || !(span() > 0.0)) return {};
+    const Vector gained = (of.mass / span()) * (r.velocity[k] - of.nodes.at[k].velocity);
+    const Vector given = of.force.at[k] + of.mass * gravity - r.damped[k];
+    return held_parts(holds[of.hold].fixed_at(k), gained - given, Vector{});
+  }
+};
+
+/// Where the elements that can touch stood at the last search, and how far each may go from there,
+/// the drift taken off.
+template <class Of>
+struct TravelOf {
+  Buffer<Index> element;  ///< those that can touch, ascending by global id  [-]  (search)
+  Buffer<typename Of::Corners> reference;  ///< their corners at the search  [m]  (search)
+  Buffer<double> margin;                   ///< how far each may go from there  [m]  (search)
+  DriftOf<typename Of::Vector> drift;
+
+  template <class Visit>
+  void each_field(Visit&& field) {
+    field(Of::word, "-", element);
+    field("reference", "m", reference);
+    field("margin", "m", margin);
+  }
+};
+
+/// Whether elements have used their margins up: the list of couples is no longer valid.
+template <class Of>
+struct UsedMargin {
+  using Vector = typename Of::Vector;
+  View<const Index> place;  ///< of each element in the other two; -1: a ghost, or it cannot touch
+  View<const typename Of::Corners> reference;
+  View<const double> margin;
+  DriftOf<Vector> drift;
+  Vector drifted;  ///< since the search  [m]
+
+  /// @param time  of the positions  [s]
+  BR_HD void set_time(double time) { drifted = drift.way(time); }
+  BR_HD bool beyond(const typename Of::Nodes& now, const typename Of::Corners& from,
+                    double allowed) const {
+    bool inside = dot(drifted, drifted) <= drift.farthest * drift.farthest;
+    for (int k = 0; k < KickOf<Of>::corners; ++k) {
+      const Vector moved = (now.at[k].position - from.at[k]) - drifted;
+      inside = inside && dot(moved, moved) <= allowed * allowed;
+    }
+    return !inside;  // NaN counts as beyond
+  }
+};
+
+/// How a move has ended.
+enum class Moved : std::uint8_t {
+  within,  ///< all are within their margins
+  beyond,  ///< one has used its margin up
+  left     ///< a pack in which one is held, loaded or damped: nothing is written
+};
+
+/// Moves the corners and books the work of loads, supports and local damping; and the question
+/// whether margins still hold.
+template <class Of>
+struct MoveOf {
+  static constexpr const char* name = Of::move;
+  using Vector = typename Of::Vector;
+  using Nodes = typename Of::Nodes;
+  using Corners = typename Of::Corners;
+  using Kick = KickOf<Of>;
+  static constexpr int corners = Kick::corners, dimension = Kick::dimension;
+  Kick kick;
+  View<const Corners> external;
+  View<Nodes> nodes;
+  View<double> damping_work, load_work;
+  UsedMargin<Of> used;
+
+  template <class R>
+  struct Loaded {
+    Columns<R, Nodes> nodes;
+    Columns<R, Corners> force;
+    R mass;
+    Index hold;  ///< of a pack: below zero if no element is held
+    Index place[width_of<R>];
+    Corners from;   ///< of one element; packs rarely need it
+    double margin;  ///< likewise
+  };
+  BR_HD void set(const StepTime& now) {
+    kick.set(now);
+    used.set_time(now.time + now.next_dt);
+  }
+  /// All but the sums of forces.
+  template <class R>
+  BR_HD void load_early(Index t, Loaded<R>& loaded) const {
+    for (Index k = 0; k < width_of<R>; ++k) loaded.place[k] = read_now(&used.place[t + k]);
+    loaded.hold = read_now(&kick.hold[t]);
+    for (Index k = 1; k < width_of<R>; ++k)
+      if (kick.hold[t + k] >= 0) loaded.hold = kick.hold[t + k];
+    if (is_left(loaded)) return;
+    loaded.mass = load_now<R>(kick.mass, t);
+    loaded.nodes.read(kick.nodes, t);
+    loaded.margin = 0.0;
+    if (width_of<R> == 1 && loaded.place[0] >= 0) {
+      loaded.from = read_record_now(&used.reference[loaded.place[0]]);
+      loaded.margin = read_now(&used.margin[loaded.place[0]]);
+    }
+    loaded.nodes.wait();
+  }
+  template <class R>
+  BR_HD void load_late(Index t, Loaded<R>& loaded) const {
+    if (!is_left(loaded)) loaded.force.read(kick.force, t);
+  }
+  template <class R>
+  BR_HD Moved update(Index t, Loaded<R>& loaded) const {
+    if (is_left(loaded)) return Moved::left;
+    loaded.force.wait();
+    if constexpr (width_of<R> == 1) {
+      if (is_driven(loaded))
+        move_driven(t, loaded);
+      else
+        move_free(loaded.nodes.numbers, loaded.force.numbers, loaded.mass);
+    } else {
+      move_free(loaded.nodes.numbers, loaded.force.numbers, loaded.mass);
+    }
+    Columns<R, Nodes>::write(nodes, t, loaded.nodes.numbers);
+    return is_beyond(t, loaded) ? Moved::beyond : Moved::within;
+  }
+  /// @returns whether the element has used its margin up
+  BR_HD bool operator()(Index t) const { return run_at<double>(*this, t) == Moved::beyond; }
+
+ private:
+  template <class R>
+  BR_HD bool is_driven(const Loaded<R>& loaded) const {
+    return kick.damping > 0.0 || external.size > 0 || loaded.hold >= 0;
+  }
+  /// Whether a pack is not to be taken as one.
+  template <class R>
+  BR_HD bool is_left(const Loaded<R>& loaded) const {
+    return width_of<R> != 1 && is_driven(loaded);
+  }
+  template <class R>
+  BR_HD bool is_beyond(Index t, const Loaded<R>& loaded) const {
+    if constexpr (width_of<R> == 1) {
+      Nodes now;
+      __builtin_memcpy(&now, loaded.nodes.numbers, sizeof now);
+      return loaded.place[0] >= 0 && used.beyond(now, loaded.from, loaded.margin);
+    } else {
+      bool beyond = false;
+      for (Index k = 0; k < width_of<R>; ++k) {
+        const Index place = loaded.place[k];
+        if (place >= 0 && used.beyond(nodes[t + k], used.reference[place], used.margin[place]))
+          beyond = true;
+      }
+      return beyond;
+    }
+  }
+  /// Moves corners c that forces f alone act on.
+  template <class R>
+  BR_HD void move_free(R (&c)[2 * dimension * corners], const R (&f)[dimension * corners],
+                       const R& m) const {
+    const R scale = kick.span() / m;
+    const R next = constant<R>(kick.next_dt);
+    R gravity[dimension];
+    for (int axis = 0; axis < dimension; ++axis) gravity[axis] = part_of(kick.gravity, axis) * m;
+    for (int k = 0; k < corners; ++k)
+      for (int axis = 0; axis < dimension; ++axis) {
+        R& velocity = c[2 * dimension * k + dimension + axis];
+        velocity = velocity + scale * (f[dimension * k + axis] + gravity[axis]);
+        c[2 * dimension * k + axis] = c[2 * dimension * k + axis] + next * velocity;
+      }
+  }
+
+  /// Moves an element that is held, loaded or damped; books the work.
+  BR_HD void move_driven(Index t, Loaded<double>& loaded) const {
+    typename Kick::Given of{{}, {}, loaded.mass, loaded.hold};
+    __builtin_memcpy(&of.nodes, loaded.nodes.numbers, sizeof of.nodes);
+    __builtin_memcpy(&of.force, loaded.force.numbers, sizeof of.force);
+    const typename Kick::Result r = kick(of);
+    Nodes moved = of.nodes;
+    const bool held = of.hold >= 0;
+    double damped = 0.0, booked = 0.0;
+    for (int k = 0; k < corners; ++k) {
+      auto& n = moved.at[k];
+      const Vector after = kick.next_dt * r.velocity[k];
+      const Vector both = kick.last_dt * n.velocity + after;
+      if (kick.damping > 0.0) damped += 0.5 * dot(r.damped[k], both);
+      if (external.size > 0) booked += 0.5 * dot(external[t].at[k], both);
+      if (held) booked += 0.5 * dot(kick.reaction(of, k, r), both);
+      n.velocity = r.velocity[k];
+      n.position += after;
+    }
+    if (kick.damping > 0.0) damping_work[t] += damped;
+    if (held || external.size > 0) load_work[t] += booked;
+    __builtin_memcpy(loaded.nodes.numbers, &moved, sizeof moved);
+  }
+};
+
+}  // namespace breccia::fdem_shared

@@ -1,0 +1,37 @@
+#pragma once
+// Parts of a step of the FDEM that runs share. StepwiseRun is written in stepping.hpp and made for
+// each method in its stepping/step.cpp; MovingRun is written in host_run.hpp and made in its
+// stepping/host_run.cpp.
+
+#include <vector>
+
+#include "domain/domain.hpp"
+
+namespace breccia::fdem_shared {
+
+/// Of all runs of one step at a time: ghosts, the search, loads, corners that move as one, the time
+/// step.
+template <class World>
+struct StepwiseRun {
+  void send_ghosts(World& w) const;
+  void ask_for_search(World& w) const;
+  void inner_joint_forces(World&) const {}
+  void receive_ghosts(World& w) const;
+  void search_if_due(World& w) const;
+  void insert_joints(World&) const {}
+  void coupling_forces(World&) const {}
+  void load_forces(World& w) const;
+  /// Corners that move as one share their force.
+  void bundle_forces(World& w) const;
+  void choose_step(World& w) const;
+  void count_step(World& w) const { w.step += 1; }
+};
+
+/// Loops on the host that move elements: first those that other ranks wait for, then the others.
+template <class Base, class World>
+struct MovingRun : Base {
+  void move_boundary(World& w) const;
+  void move_interior(World& w) const;
+};
+
+}  // namespace breccia::fdem_shared
