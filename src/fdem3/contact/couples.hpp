@@ -183,11 +183,8 @@ struct CoupleForces {
     places(nodes[loaded.b], xb);
     loaded.apart = boxes_apart(xa, xb, 0.0);
   }
-  /// Most couples are apart. @returns false, with nothing written, for the others
-  BR_HD bool update(Index i, const Loaded<double>& loaded) const {
-    if (loaded.apart) force[i] = {};
-    return loaded.apart;
-  }
+  /// Most couples rest apart: their forces are zero already. @returns whether this one does
+  BR_HD bool update(Index, const Loaded<double>& loaded) const { return loaded.apart; }
   BR_HD void operator()(Index i) const {
     if (!run_at<double>(*this, i)) slow(i);
   }
