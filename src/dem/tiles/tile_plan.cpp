@@ -328,27 +328,18 @@ class Sharing {
 }  // namespace
 
 TilePlan::TilePlan(Space space)
-    : tiles_there(space),
-      own_there(space),
+    : own_there(space),
       linked_there(space),
-      touched_there(space),
       links(space),
       axes(space),
       rows(space),
-      starts(space),
-      contacts(space),
+      told(space),
       forces(space),
       least(space),
       twin_state(space),
       twin_slid(space),
       twin_damped(space),
       twin_actions(space) {}
-
-TilesView TilePlan::view() const {
-  return {tiles_there.view(),   groups,         own_there.view(), linked_there.view(),
-          touched_there.view(), links.view(),   axes.view(),      rows.view(),
-          starts.view(),        contacts.view()};
-}
 
 std::unique_ptr<TilePlan> share_out_to_tiles(const World& w, Index count) {
   constexpr std::size_t most_groups = 16;
@@ -357,122 +348,6 @@ std::unique_ptr<TilePlan> share_out_to_tiles(const World& w, Index count) {
       w.interface.groups.size() > most_groups || w.links() >= most_links)
     return nullptr;
   return Sharing(w, count).plan();
-}
-
-namespace {
-
-/// Gives a tile room for up to `most` actions of contacts, as far as memory goes.
-/// @returns bytes that it needs
-std::size_t give_actions(Tile& tile, const TileGroups& groups, std::size_t most_bytes, Index most) {
-  const auto bytes = [&] {
-    TileMemory memory;
-    return memory.lay_out(tile, groups, reinterpret_cast<std::byte*>(64));
-  };
-  tile.acting = 0;
-  const std::size_t least = bytes();
-  if (least >= most_bytes) return least;
-  const auto room = static_cast<Index>(
-      std::min((most_bytes - least) / sizeof(PairForce), static_cast<std::size_t>(most)));
-  tile.acting = std::min(tile.contacts, room);
-  return bytes();
-}
-
-/// Contacts as one of their ends sees them, an element of a tile: in the order of tiles, those of a
-/// tile in the order of all.
-class ContactsByTile {
- public:
-  ContactsByTile(const World& w, const TilePlan& plan) : begin_(plan.tiles.size() + 1, 0) {
-    copy_to(a_, w.contacts.pairs.a);
-    copy_to(b_, w.contacts.pairs.b);
-    const auto each = [&](const auto& visit) {
-      for (Index p = 0; p < static_cast<Index>(a_.size()); ++p) {
-        visit(plan.tile_of[at(a_[at(p)])], 2 * p);
-        visit(plan.tile_of[at(b_[at(p)])], 2 * p + 1);
-      }
-    };
-    each([&](Index t, Entry) { ++begin_[at(t) + 1]; });
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    entries_.resize(begin_.back());
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    each([&](Index t, Entry entry) { entries_[next[at(t)]++] = entry; });
-  }
-  /// Appends the contacts of tile t by its own elements, where those of each begin, and the
-  /// elements that no link has told it of.
-  void list(Index t, const TilePlan& plan, std::vector<TileContact>& contacts,
-            std::vector<TilePlace>& starts, std::vector<Index>& touched) const {
-    const Tile& tile = plan.tiles[at(t)];
-    const std::size_t first_touched = touched.size();
-    std::vector<std::size_t> next(at(tile.own) + 1, 0);
-    std::vector<TileContact> found;
-    for (std::size_t k = begin_[at(t)]; k < begin_[at(t) + 1]; ++k) {
-      const Index p = pair_of(entries_[k]), side = side_of(entries_[k]);
-      const Index own = side == 0 ? a_[at(p)] : b_[at(p)],
-                  other = side == 0 ? b_[at(p)] : a_[at(p)];
-      const auto place = static_cast<TilePlace>(place_in(plan.own, tile.first_own, tile.own, own));
-      found.push_back({p, place, place_of(other, tile, plan, touched, first_touched), side});
-      ++next[place + 1U];
-    }
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    for (const std::size_t start : next) starts.push_back(static_cast<TilePlace>(start));
-    const std::size_t first = contacts.size();
-    contacts.resize(first + found.size());
-    for (const TileContact& one : found) contacts[first + next[one.own]++] = one;
-  }
-
- private:
-  /// Place of an element in a part of a sorted list, or -1.
-  static Index place_in(const std::vector<Index>& list, Index first, Index count, Index element) {
-    const auto begin = list.begin() + first, end = begin + count;
-    const auto found = std::lower_bound(begin, end, element);
-    return found != end && *found == element ? static_cast<Index>(found - begin) : -1;
-  }
-  static TilePlace place_of(Index element, const Tile& tile, const TilePlan& plan,
-                            std::vector<Index>& touched, std::size_t first_touched) {
-    Index place = place_in(plan.own, tile.first_own, tile.own, element);
-    if (place >= 0) return static_cast<TilePlace>(place);
-    place = place_in(plan.linked, tile.first_linked, tile.linked, element);
-    if (place >= 0) return static_cast<TilePlace>(tile.own + place);
-    const auto begin = touched.begin() + static_cast<std::ptrdiff_t>(first_touched);
-    const auto known = std::find(begin, touched.end(), element);
-    const auto again = static_cast<Index>(known - begin);
-    if (known == touched.end()) touched.push_back(element);
-    return static_cast<TilePlace>(tile.own + tile.linked + again);
-  }
-
-  std::vector<Index> a_, b_;
-  std::vector<std::size_t> begin_;  ///< first entry of each tile, and the end
-  std::vector<Entry> entries_;
-};
-
-}  // namespace
-
-void tell_contacts(const World& w, TilePlan& plan, std::size_t most_bytes) {
-  const Index most = w.exec.space == Space::shadow ? 1 : 32;  // 1: tests see what does not fit
-  const ContactsByTile by_tile(w, plan);
-  std::vector<TilePlace> starts;
-  std::vector<TileContact> contacts;
-  std::vector<Index> all_touched;
-  plan.bytes = 0;
-  for (Index t = 0; t < static_cast<Index>(plan.tiles.size()); ++t) {
-    Tile& tile = plan.tiles[at(t)];
-    tile.first_contact = static_cast<Index>(contacts.size());
-    tile.first_touched = static_cast<Index>(all_touched.size());
-    by_tile.list(t, plan, contacts, starts, all_touched);
-    tile.contacts = static_cast<Index>(contacts.size()) - tile.first_contact;
-    tile.touched = static_cast<Index>(all_touched.size()) - tile.first_touched;
-    plan.bytes = std::max(plan.bytes, give_actions(tile, plan.groups, most_bytes, most));
-  }
-  copy_to(plan.tiles_there, plan.tiles);
-  copy_to(plan.touched_there, all_touched);
-  copy_to(plan.starts, starts);
-  copy_to(plan.contacts, contacts);
-  const Index count = w.contacts.size();
-  if (count <= plan.twin_state.size()) return;
-  const Index room = 2 * count;
-  plan.twin_state.resize(room);
-  plan.twin_slid.resize(room);
-  plan.twin_damped.resize(room);
-  plan.twin_actions.resize(room);
 }
 
 }  // namespace breccia::dem

@@ -2,6 +2,7 @@
 // How a model is shared out to the multiprocessors of a device, each with the memory of its own:
 // tiles of elements, what each has to know of its neighbours, and where everything lies in it.
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -196,6 +197,37 @@ struct alignas(16) TileWord {
   std::uint32_t low, tag, high, same_tag;
 };
 
+/// Where the tiles of a plan have elements: each its own ones, others as it notes them.
+class TilePlaces {
+ public:
+  /// Nothing is noted by any tile.
+  void begin(const std::vector<Index>& tile_of, const std::vector<Tile>& tiles,
+             const std::vector<Index>& own);
+  void note(Index element, Index tile, Index place) {
+    const auto e = static_cast<std::size_t>(element);
+    noted_by_[e] = tile;
+    noted_[e] = static_cast<TilePlace>(place);
+  }
+  /// Of an element in its own tile.
+  TilePlace own(Index element) const { return own_[static_cast<std::size_t>(element)]; }
+  bool is_noted(Index tile, Index element) const {
+    return noted_by_[static_cast<std::size_t>(element)] == tile;
+  }
+  TilePlace noted(Index element) const { return noted_[static_cast<std::size_t>(element)]; }
+
+ private:
+  std::vector<TilePlace> own_;    ///< of each element
+  std::vector<Index> noted_by_;   ///< the last tile that has noted each element
+  std::vector<TilePlace> noted_;  ///< its place there
+};
+
+/// An array among others in one piece of memory.
+template <class T>
+struct PieceOf {
+  std::size_t begin = 0;  ///<  [B]
+  Index count = 0;
+};
+
 /// A model's tiles. Elements and links are shared out once, contacts after each search.
 struct TilePlan {
   std::vector<Tile> tiles;
@@ -203,14 +235,18 @@ struct TilePlan {
   std::size_t bytes = 0;           ///< that the largest tile needs
   std::vector<Index> tile_of;      ///< of each element
   std::vector<Index> own, linked;  ///< elements, ascending in each tile
+  TilePlaces places;               ///< for telling contacts
 
   // In the space of the world.
-  Buffer<Tile> tiles_there;
-  Buffer<Index> own_there, linked_there, touched_there;
+  Buffer<Index> own_there, linked_there;
   Buffer<TileLink> links;
   Buffer<TileAxis> axes;
-  Buffer<TilePlace> rows, starts;
-  Buffer<TileContact> contacts;
+  Buffer<TilePlace> rows;
+  Buffer<std::byte> told;  ///< what a search changes, in one piece, so that one copy brings it
+  PieceOf<Tile> tiles_told;
+  PieceOf<Index> touched_told;
+  PieceOf<TilePlace> starts_told;
+  PieceOf<TileContact> contacts_told;
   Buffer<TileWord> forces;  ///< of each element, six words, for even and odd steps
   Buffer<TileWord> least;   ///< from each tile to each, likewise
   // Contacts whose b is in another tile than a are followed by both; that of b keeps its own state.
@@ -220,6 +256,9 @@ struct TilePlan {
   std::uint32_t tag = 0;  ///< of the last step that was exchanged
 
   explicit TilePlan(Space space);
+  /// Brings these and `tiles` to the space of the world.
+  void tell(const std::vector<Index>& touched, const std::vector<TilePlace>& starts,
+            const std::vector<TileContact>& contacts);
   TilesView view() const;
 };
 
