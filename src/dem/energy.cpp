@@ -41,14 +41,23 @@ struct GravityPotential {
   }
 };
 
-/// Of all links of a kind.
 template <class Number, class Law>
-void add_links(FoldSum<Energies>& all, const World& w, const LinkSet<Law>& set) {
+auto energies_of(const World& w, const LinkSet<Law>& set, const LinkGroup<Law>& g) {
   const auto shares = shares_of<Number>(set, w.elements.state.view());
-  for (const LinkGroup<Law>& g : set.groups)
-    all.add(g.end - g.begin,
-            GroupEnergies<Law, std::remove_const_t<decltype(shares)>>{
-                w.domain.owned_view(), g.law, g.begin, shares, w.elements.fixed.view()});
+  return GroupEnergies<Law, std::remove_const_t<decltype(shares)>>{
+      w.domain.owned_view(), g.law, g.begin, shares, w.elements.fixed.view()};
+}
+/// Links of the first group of a kind, which most models have alone.
+template <class Number, class Law, class... Rest>
+auto first_group(const World& w, const LinkSet<Law>& set, const Parts<Rest...>& rest) {
+  const LinkGroup<Law> none{};
+  const LinkGroup<Law>& g = set.groups.empty() ? none : set.groups.front();
+  return part(g.end - g.begin, energies_of<Number>(w, set, g), rest);
+}
+template <class Number, class Law>
+void add_further_groups(FoldSum<Energies>& all, const World& w, const LinkSet<Law>& set) {
+  for (std::size_t k = 1; k < set.groups.size(); ++k)
+    all.add(set.groups[k].end - set.groups[k].begin, energies_of<Number>(w, set, set.groups[k]));
 }
 
 /// Energy stored by contacts; `stored_normal` comes from the overlap of the last step.
@@ -111,14 +120,16 @@ struct ElementShares {
   }
 };
 
-template <class List>
-void add_contacts(FoldSum<Energies>& all, const World& w, const List& c,
-                  const Buffer<ContactPair>& pairs, Index materials, const Buffer<Wall>& walls) {
-  all.add(c.size(),
-          ContactShares{w.domain.owned_view(), w.given->contact, w.elements.material.view(),
-                        w.elements.state.view(), pairs.view(), materials, walls.view(),
-                        c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
-                        c.history.slid.view(), c.history.damped.view(), c.history.work_of_walls()});
+template <class List, class... Rest>
+auto contacts_part(const World& w, const List& c, const Buffer<ContactPair>& pairs, Index materials,
+                   const Buffer<Wall>& walls, const Parts<Rest...>& rest) {
+  return part(
+      c.size(),
+      ContactShares{w.domain.owned_view(), w.given->contact, w.elements.material.view(),
+                    w.elements.state.view(), pairs.view(), materials, walls.view(),
+                    c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
+                    c.history.slid.view(), c.history.damped.view(), c.history.work_of_walls()},
+      rest);
 }
 
 }  // namespace
@@ -128,17 +139,29 @@ Energies held(const World& w) {
   const OwnedView owned = w.domain.owned_view();
   const Elements& e = w.elements;
   FoldSum<Energies> all(w.exec);
-  all.add(e.size(), KineticEnergy{owned, kick(w)});
-  with_number(w.exec.precision, [&](auto number) {
-    w.each_set([&](const auto& set) { add_links<decltype(number)>(all, w, set); });
-  });
   Buffer<Wall> walls(w.exec.space);
   copy_to(walls, w.walls);
-  add_contacts(all, w, w.contacts, w.given->contact_pairs, w.given->materials, walls);
-  add_contacts(all, w, w.wall_contacts, w.given->wall_pairs, 0, walls);
-  all.add(e.size(), ElementShares{owned, kick(w), e.damping_work.view(), e.load_work.view()});
-  if (dot(w.given->gravity, w.given->gravity) > 0.0)
-    all.add(e.size(), GravityPotential{owned, w.given->gravity, e.state.view(), e.mass.view()});
+  const bool falls = dot(w.given->gravity, w.given->gravity) > 0.0;
+  const auto others = part(
+      e.size(), KineticEnergy{owned, kick(w)},
+      part(e.size(), ElementShares{owned, kick(w), e.damping_work.view(), e.load_work.view()},
+           part(falls ? e.size() : 0,
+                GravityPotential{owned, w.given->gravity, e.state.view(), e.mass.view()},
+                contacts_part(
+                    w, w.contacts, w.given->contact_pairs, w.given->materials, walls,
+                    contacts_part(w, w.wall_contacts, w.given->wall_pairs, 0, walls, Parts<>{})))));
+  with_number(w.exec.precision, [&](auto number) {
+    using Number = decltype(number);
+    all.add_parts(first_group<Number>(
+        w, w.concrete,
+        first_group<Number>(w, w.steel, first_group<Number>(w, w.interface, others))));
+    add_further_groups<Number>(all, w, w.concrete);
+    add_further_groups<Number>(all, w, w.steel);
+    add_further_groups<Number>(all, w, w.interface);
+    for (const auto& g : w.parallel.groups)
+      all.add(g.end - g.begin, energies_of<Number>(w, w.parallel, g));
+    for (const auto& g : w.ldpm.groups) all.add(g.end - g.begin, energies_of<Number>(w, w.ldpm, g));
+  });
   return w.free_walls.empty() ? all.sum() : all.sum() + held_by_free_walls(w);
 }
 

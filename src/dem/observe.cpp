@@ -228,14 +228,29 @@ Buffer<double> damage_of(const World& w) {
   return damage;
 }
 
+namespace {
+
+template <class Number, class Law, class... Rest>
+auto breaks_part(LinkSet<Law>& set, double now, const Parts<Rest...>& rest) {
+  const auto is_broken = set.template broken<Number>();
+  return part(
+      set.size(),
+      NoteBreak<std::remove_const_t<decltype(is_broken)>>{is_broken, now, set.seen_broken.view()},
+      rest);
+}
+
+}  // namespace
+
 void note_breaks(World& w) {
-  w.each_set([&](auto& set) {
-    with_number(w.exec.precision, [&](auto number) {
-      const auto is_broken = set.template broken<decltype(number)>();
-      for_each(w.exec, set.size(),
-               NoteBreak<std::remove_const_t<decltype(is_broken)>>{is_broken, w.time,
-                                                                   set.seen_broken.view()});
-    });
+  with_number(w.exec.precision, [&](auto number) {
+    using Number = decltype(number);
+    const auto further =
+        breaks_part<Number>(w.parallel, w.time, breaks_part<Number>(w.ldpm, w.time, Parts<>{}));
+    const auto all = breaks_part<Number>(
+        w.concrete, w.time,
+        breaks_part<Number>(w.steel, w.time, breaks_part<Number>(w.interface, w.time, further)));
+    if (w.exec.space == Space::cuda) return for_each_part(w.exec, all);
+    all.each([&](Index count, const auto& kernel) { for_each(w.exec, count, kernel); });
   });
 }
 

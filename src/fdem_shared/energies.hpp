@@ -115,23 +115,29 @@ Energies held_by_part(const World& w) {
   const OwnedView owned = w.domain.owned_view();
   const auto& t = Shape::elements(w);
   const auto of_elements = stored_by_elements(w);
-  FoldSum<Energies> all(w.exec);
-  all.add(t.size(), ElementShares<Shape, std::remove_cv_t<decltype(of_elements)>>{
-                        owned, of_elements, t.external.view(), t.viscous_work.view(),
-                        t.damping_work.view(), t.load_work.view()});
   const auto& j = w.joints;
   const auto of_joints = stored_by_joints(w);
   using Stage = std::remove_cvref_t<decltype(j.stage.view()[0])>;
   using Work = std::remove_cvref_t<decltype(j.work.view()[0])>;
-  all.add(j.size(), JointShares<Shape::corners, Stage, Work, std::remove_cv_t<decltype(of_joints)>>{
-                        owned, Shape::side_a(j).view(), j.stage.view(), j.work.view(),
-                        j.inherited_work.view(), of_joints});
   const auto state = w.couples.history.state.view();
-  all.add(w.couples.size(), CoupleShares<std::remove_cvref_t<decltype(state[0])>>{
-                                owned, w.couples.pairs.a.view(), state});
   const typename Shape::Vector gravity = w.given->gravity;
-  if (dot(gravity, gravity) > 0.0)
-    all.add(t.size(), GravityPotential<Shape>{owned, gravity, t.nodes.view(), t.mass.view()});
+  const Index falling = dot(gravity, gravity) > 0.0 ? t.size() : 0;
+  FoldSum<Energies> all(w.exec);
+  all.add_parts(part(
+      t.size(),
+      ElementShares<Shape, std::remove_cv_t<decltype(of_elements)>>{
+          owned, of_elements, t.external.view(), t.viscous_work.view(), t.damping_work.view(),
+          t.load_work.view()},
+      part(
+          j.size(),
+          JointShares<Shape::corners, Stage, Work, std::remove_cv_t<decltype(of_joints)>>{
+              owned, Shape::side_a(j).view(), j.stage.view(), j.work.view(),
+              j.inherited_work.view(), of_joints},
+          part(w.couples.size(),
+               CoupleShares<std::remove_cvref_t<decltype(state[0])>>{
+                   owned, w.couples.pairs.a.view(), state},
+               part(falling, GravityPotential<Shape>{owned, gravity, t.nodes.view(), t.mass.view()},
+                    Parts<>{})))));
   return all.sum();
 }
 
