@@ -37,7 +37,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "--device", options.device,
-          "where to compute: cpu, cuda or cuda:N; +tiles behind it tries steps by tiles (DEM)")
+          "where to compute: cpu, cuda or cuda:N; +tiles or +launches behind it: how steps of the "
+          "DEM are taken, which the model's size decides otherwise")
       ->type_name("NAME")
       ->capture_default_str();
   command

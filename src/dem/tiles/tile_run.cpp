@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "core/device_run.hpp"
@@ -325,20 +327,50 @@ void launch([[maybe_unused]] const World& w, const TileCase& all, std::size_t by
   TilesInTurn(all, bytes).run();
 }
 
-/// Whether all that a world has is what tiles know.
-bool is_covered(const World& w) {
-  return w.domain.single_rank() && w.exec.space != Space::host &&
-         w.exec.precision == Precision::full && w.walls.empty() && w.prescribed.motions.empty() &&
-         w.given->search.every == 0 && w.parallel.size() == 0 && w.ldpm.size() == 0 &&
-         !w.concrete.rated && w.elements.size() > 0 && w.links() > 0;
+/// Something that a world has and tiles do not know; null: nothing.
+const char* unknown_to_tiles(const World& w) {
+  if (w.exec.precision != Precision::full) return "mixed precision";
+  if (!w.walls.empty()) return "walls";
+  if (!w.prescribed.motions.empty()) return "prescribed motions";
+  if (w.given->search.every != 0) return "search.every";
+  if (w.parallel.size() != 0) return "parallel bonds";
+  if (w.ldpm.size() != 0) return "facets of LDPM";
+  if (w.concrete.rated) return "strengths that depend on the rate";
+  return w.links() > 0 ? nullptr : "no links";
 }
 
 /// Multiprocessors that may have a tile, and the memory of each.
 Multiprocessors multiprocessors_for(const World& w) {
-  if (w.exec.tiles <= 0) return {};
-  if (w.exec.space != Space::cuda) return {w.exec.tiles, std::size_t{1} << 30};
+  if (w.exec.tiles == 0) return {};
+  if (w.exec.space != Space::cuda) {
+    constexpr Index most = 132;  // as if it were a GPU
+    return {w.exec.tiles < 0 ? most : w.exec.tiles, std::size_t{1} << 30};
+  }
   const Multiprocessors all = multiprocessors();
-  return {std::min(all.count, w.exec.tiles), all.memory};
+  return {w.exec.tiles < 0 ? all.count : std::min(all.count, w.exec.tiles), all.memory};
+}
+
+/// Tiles for a world; null where launches are to take its steps.
+std::unique_ptr<TilePlan> tiles_for(const World& w) {
+  const auto [most, memory] = multiprocessors_for(w);
+  constexpr Index least_elements = 8;      // of a tile
+  constexpr std::size_t link_bytes = 190;  // about; here for a quick answer
+  // With 75 links a tile (the small slab) launches take 4 % less, with 600 (the slab) 15 % more.
+  constexpr Index links_that_pay = 300;
+  if (most <= 0 || !w.domain.single_rank() || w.exec.space == Space::host) return nullptr;
+  const char* reason = unknown_to_tiles(w);
+  if (reason == nullptr && at(w.links()) * link_bytes >= at(most) * memory)
+    reason = "more links than the memory of its multiprocessors holds";
+  if (w.exec.tiles < 0 && w.links() < links_that_pay * most) return nullptr;
+  std::unique_ptr<TilePlan> plan;
+  if (reason == nullptr) {
+    plan = share_out_to_tiles(w, std::clamp(w.elements.size() / least_elements, Index{1}, most));
+    if (plan == nullptr) reason = "more in a tile, or more laws, than tiles can number";
+  }
+  if (plan == nullptr && w.exec.tiles == tiles_in_any_case)
+    throw InputError(std::string("device +tiles: the model has ") + reason +
+                     "; leave +tiles out, and launches take the steps");
+  return plan;
 }
 
 /// Whether the last search has left tiles a list that fits them.
@@ -357,13 +389,8 @@ bool has_contacts(World& w) {
 bool runs_by_tiles(World& w) {
   if (!w.tiles.known) {
     w.tiles.forget();
+    w.tiles.plan = tiles_for(w);
     w.tiles.known = true;
-    const Index elements = w.elements.size();
-    const auto [most, memory] = multiprocessors_for(w);
-    constexpr Index least_elements = 8;      // of a tile
-    constexpr std::size_t link_bytes = 190;  // about; here for a quick answer
-    if (most > 0 && is_covered(w) && at(w.links()) * link_bytes < at(most) * memory)
-      w.tiles.plan = share_out_to_tiles(w, std::clamp(elements / least_elements, Index{1}, most));
   }
   return w.tiles.plan != nullptr && !LaunchTimes::wanted() && has_contacts(w);
 }

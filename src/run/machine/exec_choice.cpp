@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "dem/tiles/tile_run.hpp"
 #include "domain/mpi_ranks.hpp"
 #include "exec/device.hpp"
 #include "exec/error.hpp"
@@ -26,13 +27,21 @@ bool take_off(std::string& word, const std::string& ending) {
 Exec exec_on(const std::string& wanted, int threads, Communicator* ranks) {
   Exec exec;
   std::string device = wanted;
-  constexpr Index most_tiles = 1 << 16;
-  if (device.starts_with("cuda") && take_off(device, "+tiles")) exec.tiles = most_tiles;
+  if (device.starts_with("cuda")) {
+    exec.tiles = dem::tiles_where_they_pay;
+    if (take_off(device, "+tiles"))
+      exec.tiles = dem::tiles_in_any_case;
+    else if (take_off(device, "+launches"))
+      exec.tiles = 0;
+  }
   const int share = std::max(1, omp_get_num_procs() / ranks_on_this_machine(ranks));
   exec.threads = threads > 0 ? threads : share;
   if (device == "cpu") return exec;
   if (device != "cuda" && !device.starts_with("cuda:"))
-    throw InputError(fmt::format("device {}: there are cpu, cuda and cuda:N", wanted));
+    throw InputError(
+        fmt::format("device {}: there are cpu, cuda and cuda:N, and +tiles or +launches behind "
+                    "those with a GPU",
+                    wanted));
   int number = 0;
   if (const std::size_t colon = device.find(':'); colon != std::string::npos) {
     const char* const end = device.data() + device.size();

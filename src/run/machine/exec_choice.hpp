@@ -8,7 +8,8 @@
 
 namespace breccia {
 
-/// @param device   cpu, cuda or cuda:N
+/// @param device   cpu, cuda or cuda:N; behind the latter two +tiles or +launches
+///                 (dem/tiles/tile_run.hpp)
 /// @param threads  of the host; 0: this rank's share of the machine
 /// @param ranks    those that share the work; null: none
 /// @throws InputError for a device that is none, DeviceError if this build or machine has it not

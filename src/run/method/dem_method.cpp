@@ -94,6 +94,9 @@ struct DemSim {
     }
     add("searches", static_cast<double>(w.searches));
     add("contacts.candidates", w.contacts.size());
+    if (w.exec.space != Space::host)
+      add("device.tiles",
+          w.tiles.plan == nullptr ? 0.0 : static_cast<double>(w.tiles.plan->tiles.size()));
   }
   static void add_findings(const World& w, std::vector<Fact>& facts) {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };

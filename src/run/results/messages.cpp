@@ -132,6 +132,9 @@ std::string closing_text(const Summary& s, std::int64_t frames, const std::strin
       text += fmt::format("   {:.1f} M link-steps/s", *links / s.step_median);
     text += '\n';
   }
+  if (const auto tiles = fact(s, "device.tiles"))
+    text += *tiles > 0.0 ? fmt::format("device  {} tiles on chip took the steps\n", *tiles)
+                         : "device  launches took the steps\n";
   return text + fmt::format("result  {}\n", folder);
 }
 

@@ -8,6 +8,7 @@
 #include "dem/energy.hpp"
 #include "dem/observe.hpp"
 #include "dem/tiles/tile_run.hpp"
+#include "exec/error.hpp"
 #include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "physics/dem/scene.hpp"
@@ -25,7 +26,7 @@ World small_slab(Index tiles) {
   const auto config = read_case<Config>(small_case, {});
   static const Model model = build_model(config, std::string(source_dir) + "/cases/rc_slab");
   Exec exec;
-  if (tiles > 0) exec.space = Space::shadow;
+  if (tiles != 0) exec.space = Space::shadow;
   exec.tiles = tiles;
   return make_world(config, model, exec);
 }
@@ -90,6 +91,16 @@ TEST(Tiles, leave_walls_to_launches) {
   scene.wall({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
   World walled = make_world(scene.config, scene.model, exec);
   EXPECT_FALSE(runs_by_tiles(walled));
+  exec.tiles = tiles_in_any_case;
+  World forced = make_world(scene.config, scene.model, exec);
+  EXPECT_THROW(runs_by_tiles(forced), InputError);
+}
+
+TEST(Tiles, are_chosen_where_a_model_has_enough_links_for_them) {
+  World small = small_slab(tiles_where_they_pay);
+  EXPECT_FALSE(runs_by_tiles(small)) << small.links();
+  World forced = small_slab(tiles_in_any_case);
+  EXPECT_TRUE(runs_by_tiles(forced));
 }
 
 }  // namespace tiles_test
