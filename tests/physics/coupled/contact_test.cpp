@@ -170,6 +170,35 @@ TEST(SphereOnFaces, loses_less_the_finer_the_step) {
   EXPECT_LT(lost[0], 1e-3);
 }
 
+/// What is missing, over the energy of a cube with joints that falls on loose spheres.
+double missing_of_a_fall(double speed, double safety) {
+  Scene s;
+  s.solids = fdem3::testing::meeting_cubes();
+  fdem3::MaterialConfig& m = s.solids.config.materials[0];
+  m.joint.friction_angle = 0.61;
+  s.solids.model = {};
+  s.solids.body("cube", fdem3::testing::box({0.0, 0.0, 0.0101}, {0.02, 0.02, 0.02}, 0.007),
+                {1.0, 0.0, -speed});
+  s.balls.material("ball", "grain", 30e9, 0.2, 2400.0);
+  for (int i = -1; i < 2; ++i)
+    for (int j = -1; j < 2; ++j) s.balls.sphere({0.0105 * i, 0.0105 * j, -0.005}, 0.005, {});
+  s.coupling.friction = 0.5;
+  s.safety = safety;
+  const auto w = s.world();
+  while (w->spheres.time < 4e-5) step(w->between);
+  EXPECT_GT(fdem3::cracks(w->tetrahedra).size(), 50U);
+  const EnergyBalance e = energies(*w);
+  return std::abs(e.missing()) / e.start;
+}
+
+TEST(SphereOnFaces, books_every_joule_of_a_cube_that_shatters) {
+  for (const double speed : {10.0, 30.0, 60.0}) {
+    const double coarse = missing_of_a_fall(speed, 0.7), fine = missing_of_a_fall(speed, 0.35);
+    EXPECT_LT(coarse, 1e-3) << speed;
+    EXPECT_LT(fine, 0.5 * coarse + 1e-6) << speed;
+  }
+}
+
 TEST(SphereOnFaces, has_one_clock_and_a_stable_step) {
   Scene s = collision();
   const auto w = s.world();
