@@ -69,10 +69,12 @@ struct SupportServoConfig : ServoConfig {
 struct ServoReading {
   ExactSum force;      ///< that it pushes with  [N]
   ExactSum stiffness;  ///< of what it touches  [N/m]
+  ExactSum mass;       ///< of that  [kg]
 };
 BR_HD inline ServoReading operator+(ServoReading a, const ServoReading& b) {
   a.force.add(b.force);
   a.stiffness.add(b.stiffness);
+  a.mass.add(b.mass);
   return a;
 }
 
@@ -84,21 +86,9 @@ struct ServoState {
 
   /// Corrects the velocity by what is missing and by its sum over time (proportional and integral
   /// control, so that what gives way steadily meets the force without an error).
-  /// @param stiffness  of what it touches; 0: nothing  [N/m]
-  /// @param span       until the next correction  [s]
-  void correct(const ServoConfig& servo, double missing, double stiffness, double span) {
-    constexpr double first_share = 0.5, ratio = 1.0 / 50.0;
-    const double most = share * servo.speed;
-    if (!(stiffness > 0.0)) {
-      steady = 0.0;
-      velocity = missing > 0.0 ? most : missing < 0.0 ? -most : 0.0;
-      return;
-    }
-    const double gain = servo.gain * first_share / (stiffness * span);
-    if (gain * missing < most && gain * missing > -most)
-      steady = std::clamp(steady + ratio * gain * missing, -most, most);
-    velocity = std::clamp(gain * missing + steady, -most, most);
-  }
+  /// @param touched  stiffness and mass of what it touches
+  /// @param span     until the next correction  [s]
+  void correct(const ServoConfig& servo, double missing, const ServoReading& touched, double span);
 };
 
 /// A motion, or one axis of it, that follows a servo.

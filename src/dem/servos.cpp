@@ -12,6 +12,7 @@ struct WallPush {
   Vec3 normal;
   double factor;  ///< of the wall's stiffness  [-]
   bool hertz;
+  View<const double> mass;
   View<const Index> a;
   View<const Vec3> on_wall;
   View<const ContactState> contact;
@@ -28,6 +29,7 @@ struct WallPush {
     const double normal_constant = pairs[material[e]].normal;
     r.stiffness.add(hertz ? 2.0 * normal_constant * sqrt(radius * overlap)
                           : 0.5 * normal_constant * factor * radius);
+    r.mass.add(mass[e]);
     return r;
   }
 };
@@ -51,6 +53,7 @@ struct SupportPush {
     const Vec3& f = force[e];
     r.force.add(-((axis == 0 ? f.x : axis == 1 ? f.y : f.z) + mass[e] * gravity));
     r.stiffness.add(pairs[material[e]].normal * state[e].radius);
+    r.mass.add(mass[e]);
     return r;
   }
 };
@@ -61,9 +64,9 @@ ServoReading read_wall(const World& w, std::size_t wall) {
   const WallContacts& c = w.wall_contacts;
   return fold(w.exec, end - begin, ServoReading{},
               WallPush{w.domain.owned_view(), begin, w.walls[wall].normal, w.walls[wall].stiffness,
-                       w.given->contact.hertz, c.pairs.a.view(), c.history.on_wall.view(),
-                       c.history.state.view(), w.elements.material.view(), w.elements.state.view(),
-                       w.given->wall_pairs.view()},
+                       w.given->contact.hertz, w.elements.mass.view(), c.pairs.a.view(),
+                       c.history.on_wall.view(), c.history.state.view(), w.elements.material.view(),
+                       w.elements.state.view(), w.given->wall_pairs.view()},
               Sum{});
 }
 
@@ -108,8 +111,7 @@ void correct_servos(World& w, const Config& now, const std::vector<ServoReading>
   const auto correct = [&](const ServoConfig& servo, double begin, std::size_t k) {
     if (!servo.is_on()) return;
     const ServoReading& r = sums[k];
-    w.servos[k].correct(servo, servo.target(w.time, begin) - r.force.value(), r.stiffness.value(),
-                        span);
+    w.servos[k].correct(servo, servo.target(w.time, begin) - r.force.value(), r, span);
   };
   const std::size_t walls = now.walls.size();
   for (std::size_t k = 0; k < walls; ++k) correct(now.walls[k].servo, now.walls[k].begin, k);

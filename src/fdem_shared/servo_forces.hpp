@@ -27,6 +27,7 @@ struct SupportPush {
     if (!owned(t)) return r;
     r.force.add(-(part_of(force[t].at[n % Shape::corners], axis) + mass[t] * gravity));
     r.stiffness.add(Shape::corner_stiffness(laws[material[t]], reference[t]));
+    r.mass.add(mass[t]);
     return r;
   }
 };
@@ -84,7 +85,7 @@ void correct_servos(World& w, const Config& now, const std::vector<ServoReading>
     if (!support.servo.is_on()) continue;
     w.servos[s].correct(support.servo,
                         support.servo.target(w.time, support.history.begin) - sums[s].force.value(),
-                        sums[s].stiffness.value(), span);
+                        sums[s], span);
   }
   place_servos(w);
 }

@@ -103,6 +103,41 @@ TEST(Servo, support_presses_a_plate_as_far_as_hooke_says) {
   EXPECT_LT(method->energy().error_relative, 1e-2);
 }
 
+/// Joints and small triangles make steps so short that a plate answers a servo by the waves that it
+/// takes up.
+TEST(Servo, follows_a_table_where_joints_rule_the_step) {
+  using fdem::testing::far;
+  for (const double edge : {0.01, 0.005}) {
+    fdem::testing::Scene s;
+    fdem::MaterialConfig& rock = s.material(30e9, 0.2, 2600.0);
+    rock.damping = 0.5;
+    rock.joints = "intrinsic";
+    s.body("plate", prepare::crossed_rectangle({{0.0, 0.0}, {0.05, 0.05}}, edge));
+    for (const double side : {-1.0, 1.0}) {
+      const bool left = side < 0.0;
+      fdem::SupportConfig& support =
+          s.support(left ? "left" : "right", {left ? -far : 0.0249, -far},
+                    {left ? -0.0249 : far, far}, {"x"});
+      support.servo.pressure.times = {0.0, 2e-4, 3e-4};
+      support.servo.pressure.values = {0.0, -4.5e6 * side, -5e6 * side};
+      support.servo.area = 0.05;
+      support.servo.speed = 1.0;
+    }
+    s.config.time.end = 1.0;
+    s.config.probes = {{"force", "right", "force_x", "sum"}};
+    const auto method = make_method(s.config, s.model, {}, nullptr);
+    for (double t = 1e-4; t < 6e-4; t += 0.5e-4) {
+      run_to(*method, t);
+      const double now = method->time();
+      const double asked = now < 2e-4   ? 4.5e6 * now / 2e-4
+                           : now < 3e-4 ? 4.5e6 + 0.5e6 * (now - 2e-4) / 1e-4
+                                        : 5e6;
+      EXPECT_NEAR(method->probes()[0], 0.05 * asked, 0.01 * 0.05 * 5e6) << edge << " m, " << t;
+    }
+    EXPECT_LT(method->energy().error_relative, 1e-3);
+  }
+}
+
 template <class Scene>
 void expect_alike(const Scene& s, double end) {
   const auto host = make_method(s.config, s.model, {}, nullptr);
