@@ -13,6 +13,7 @@
 #include "core/gauge.hpp"
 #include "core/output_config.hpp"
 #include "exec/buffer.hpp"
+#include "fdem/bolts/bolts.hpp"
 #include "fdem/contact/couples.hpp"
 #include "fdem/fluid/spreading.hpp"
 #include "fdem/setup/config.hpp"
@@ -47,6 +48,8 @@ struct FlowCase {
   std::int16_t load = 0;               ///< index into Case::loads
   Index triangles = 0;                 ///< of the whole mesh  [-]
   std::vector<Index> vertices;         ///< of its source, ascending  [-]
+  std::vector<Index> outlet;           ///< likewise, where it leaves; empty: nowhere  [-]
+  double outlet_pressure = 0.0;        ///<  [Pa]
   std::vector<LoadedEdge> borders;     ///< of the region: they bear the pressure of the source
 };
 
@@ -76,6 +79,7 @@ struct Case {
   std::vector<LoadedEdge> loaded;              ///< by global id, ascending; without cracks
   std::vector<FluidSource> fluids;             ///< empty: no load is a fluid
   FlowCase flow;
+  std::vector<Bolt> bolts;
   EmissionConfig emission;             ///< which breaks are one event
   std::vector<CrackSide> open_cracks;  ///< edges open from the start, where there are fluids
   Buffer<ElasticTriangle> laws;        ///< stage  (materials; where stress in situ has a slope:

@@ -5,18 +5,32 @@
 
 namespace breccia::fdem {
 
+namespace {
+
+/// The items of an array that all ranks have with one length, as rank 0 has them.
+template <class Item>
+void take_items(Communicator& ranks, Buffer<Item>& items) {
+  Message message;
+  put_bytes(message, reinterpret_cast<const std::uint8_t*>(items.data()),
+            at(items.size()) * sizeof(Item));
+  message = ranks.from_first(std::move(message));
+  __builtin_memcpy(items.data(), message.data(), message.size());
+}
+
+}  // namespace
+
 void Shape::take_common(World& w, Communicator& ranks) {
   take_from_first(ranks, w.fluid.time);
+  if (!w.given->bolts.empty()) {
+    take_from_first(ranks, w.bolts.time);
+    take_items(ranks, w.bolts.nodes);
+  }
   if (!w.given->flow.on) return;
   take_from_first(ranks, w.fluid.injected);
+  take_from_first(ranks, w.fluid.released);
   take_from_first(ranks, w.fluid.pressure);
-  const bool begun = w.fluid.volume.size() > 0;
-  BR_ASSERT(begun);
-  Message message;
-  put_bytes(message, reinterpret_cast<const std::uint8_t*>(w.fluid.volume.data()),
-            begun ? at(w.fluid.volume.size()) * sizeof(double) : 0);
-  message = ranks.from_first(std::move(message));
-  __builtin_memcpy(w.fluid.volume.data(), message.data(), message.size());
+  BR_ASSERT(w.fluid.volume.size() > 0);
+  take_items(ranks, w.fluid.volume);
 }
 
 void Shape::derive_part(World& w, Space space) {

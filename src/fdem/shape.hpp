@@ -133,7 +133,10 @@ struct Shape {
   }
   static void derive_part(World& w, Space space);
   static void take_common(World& w, Communicator& ranks);
-  static void collect_common(const World& part, World& whole) { whole.fluid = part.fluid; }
+  static void collect_common(const World& part, World& whole) {
+    whole.fluid = part.fluid;
+    whole.bolts = part.bolts;
+  }
 
   /// Present size over that at the start, and the square of a length that no corner may cover in a
   /// step.

@@ -34,7 +34,9 @@ struct FluidState {
   /// has not begun.  [m2]  (3 triangles of the whole mesh)
   Buffer<double> volume;
   double injected = 0.0;  ///< that came in so far  [m2]
+  double released = 0.0;  ///< that left so far  [m2]
   double pressure = 0.0;  ///< at its source  [Pa]
+  double length = 0.0;    ///< of cracks that a fluid that flows fills  [m]
 };
 
 /// Joints side by side, and whether they can do without ghosts of other ranks' triangles.
@@ -111,6 +113,7 @@ struct World {
   std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
   StageProgress stage;             ///< where it is among the stages of its case (stage)
   FluidState fluid;                ///< (fluid: spread_fluid(), every servo_every steps)
+  BoltState bolts;                 ///< (loads: pull_bolts(), in every step)
 
   // Which part of the whole it is, and how its triangles lie in the mesh: constant between two
   // migrations.

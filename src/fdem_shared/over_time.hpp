@@ -40,8 +40,9 @@ struct PrescribedMotionOf {
 };
 
 /// Load on a side. Pressure and traction act per present length or area; a force is dead: it stays
-/// as given however its sides deform. A fluid is a pressure that spreads into cracks.
-enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing, fluid };
+/// as given however its sides deform. A fluid is a pressure that spreads into cracks. Each side
+/// that a bolt pulls at has a force of its own.
+enum class LoadKind : std::uint8_t { pressure, traction, force, absorbing, fluid, bolt };
 
 inline LoadKind load_kind(const std::string& word) {
   if (word == "pressure") return LoadKind::pressure;

@@ -13,7 +13,7 @@ namespace {
 class Network {
  public:
   Network(std::vector<FlowCell>& cells, const FlowSource& source, double viscosity)
-      : cells_(cells), source_(source) {
+      : cells_(cells), source_(source), has_outlet_(!source.outlet.empty()) {
     list_places();
     for (const FlowCell& c : cells) {
       passes_.push_back(c.aperture * c.aperture * c.aperture / (6.0 * viscosity * c.length));
@@ -37,6 +37,7 @@ class Network {
         const double in = span * (passes_[i] * (there[place] - own_[i]));
         cells_[i].fluid += in;
         if (place == 0) done.injected += in;
+        if (has_outlet_ && place == 1) done.released -= in;
       }
     done.pressure = there[0];
     return done;
@@ -45,21 +46,25 @@ class Network {
  private:
   void list_places() {
     std::vector<Index> others;
-    const auto is_source = [&](Index v) {
-      return std::binary_search(source_.vertices.begin(), source_.vertices.end(), v);
+    const auto is_in = [](const std::vector<Index>& all, Index v) {
+      return std::binary_search(all.begin(), all.end(), v);
     };
+    const auto is_source = [&](Index v) {
+      return is_in(source_.vertices, v) || is_in(source_.outlet, v);
+    };
+    const std::size_t first = has_outlet_ ? 2 : 1;
     for (const FlowCell& c : cells_)
       for (const Index v : {c.from, c.to})
         if (!is_source(v)) others.push_back(v);
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
     const auto place = [&](Index v) -> std::size_t {
-      if (is_source(v)) return 0;
-      return 1 + static_cast<std::size_t>(std::lower_bound(others.begin(), others.end(), v) -
-                                          others.begin());
+      if (is_source(v)) return is_in(source_.vertices, v) ? 0 : 1;
+      return first + static_cast<std::size_t>(std::lower_bound(others.begin(), others.end(), v) -
+                                              others.begin());
     };
     for (const FlowCell& c : cells_) at_.push_back({place(c.from), place(c.to)});
-    sum_.resize(others.size() + 1);
+    sum_.resize(others.size() + first);
   }
   /// Pressures of places by those of cracks, without what the source gives.
   std::vector<double> at_places(const std::vector<double>& own) const {
@@ -69,6 +74,7 @@ class Network {
     for (std::size_t k = 0; k < there.size(); ++k)
       there[k] = sum_[k] > 0.0 ? there[k] / sum_[k] : 0.0;
     if (!source_.by_rate) there[0] = 0.0;
+    if (has_outlet_) there[1] = 0.0;
     return there;
   }
   std::vector<double> with_source(std::vector<double> there) const {
@@ -76,6 +82,7 @@ class Network {
       there[0] = source_.given;
     else if (source_sum_ > 0.0)
       there[0] += source_.given / source_sum_;
+    if (has_outlet_) there[1] = source_.outlet_pressure;
     return there;
   }
 
@@ -106,7 +113,7 @@ class Network {
       double diagonal = storage[i];
       right[i] = storage[i] * before_[i];
       for (const std::size_t place : at_[i]) {
-        const bool held = place == 0 && !source_.by_rate;
+        const bool held = (place == 0 && !source_.by_rate) || (place == 1 && has_outlet_);
         diagonal += passes_[i] * (held ? 1.0 : 1.0 - passes_[i] / sum_[place]);
         right[i] += passes_[i] * given[place];
       }
@@ -149,6 +156,7 @@ class Network {
 
   std::vector<FlowCell>& cells_;
   const FlowSource& source_;
+  bool has_outlet_;
   std::vector<std::array<std::size_t, 2>> at_;
   std::vector<double> passes_;      ///< T: q over p, to either end  [m2/(Pa s)]
   std::vector<std::uint8_t> full_;  ///< 1: it has a pressure

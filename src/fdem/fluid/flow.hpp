@@ -24,11 +24,14 @@ struct FlowCell {
 struct FlowSource {
   std::vector<Index> vertices;  ///< ascending
   bool by_rate = false;
-  double given = 0.0;  ///< pressure  [Pa], or rate of inflow  [m2/s]
+  double given = 0.0;            ///< pressure  [Pa], or rate of inflow  [m2/s]
+  std::vector<Index> outlet{};   ///< another place, ascending; empty: there is none
+  double outlet_pressure = 0.0;  ///<  [Pa]
 };
 
 struct Flowed {
-  double injected = 0.0;  ///< volume that came in  [m2]
+  double injected = 0.0;  ///< volume that came in at the source  [m2]
+  double released = 0.0;  ///< volume that left at the outlet  [m2]
   double pressure = 0.0;  ///< at the source, at the end  [Pa]
 };
 
@@ -39,7 +42,7 @@ struct Flowed {
 ///
 /// A crack that is not full has no pressure and takes fluid up until it is: the front. Pressures
 /// are those at the end of the step (implicit Euler), so that no step is too long. Volume is kept
-/// to rounding: what cracks hold more is what came in.
+/// to rounding: what cracks hold more is what came in and did not leave.
 Flowed flow(std::vector<FlowCell>& cells, const FlowSource& source, double viscosity, double span);
 
 }  // namespace breccia::fdem

@@ -7,6 +7,7 @@
 #include "domain/redistribute.hpp"
 #include "domain/together.hpp"
 #include "exec/for_each.hpp"
+#include "fdem/edges_now.hpp"
 #include "fdem/fluid/flow.hpp"
 #include "fdem_shared/loaded_sides.hpp"
 
@@ -26,13 +27,6 @@ struct IsOpenCrack {
     const bool open = stage[i] == JointStage::broken && broke_at[i] <= until;
     return (open || (softened && stage[i] == JointStage::softened)) && owned(edge_a[i] / 3);
   }
-};
-
-struct NoteOwned {
-  static constexpr const char* name = "fdem.note_owned";
-  OwnedView owned;
-  View<std::uint8_t> own;
-  BR_HD void operator()(Index t) const { own[t] = owned(t) ? 1 : 0; }
 };
 
 struct TellCrack {
@@ -78,68 +72,15 @@ struct CrackNow {
   double size, opening;  ///< of its middle line, and in its middle  [m]
 };
 
-/// An edge with the places of its ends.
-struct EdgeNow {
-  Index edge;  ///< 3 triangle + k of the whole mesh  [-]
-  Vec2 from, to;
-};
-struct TellEdge {
-  static constexpr const char* name = "fdem.tell_edges";
-  View<const Index> edge, number;  ///< here, and in the whole mesh
-  View<const NodeState> nodes;
-  View<EdgeNow> told;
-  BR_HD void operator()(Index i) const {
-    const Index here = edge[i];
-    told[i] = {number[i], nodes[here].position, nodes[JointEnds::next_corner(here)].position};
-  }
-};
-
-/// Edges of the whole mesh that this rank owns, where they are now; joined: of all ranks.
-std::vector<EdgeNow> edges_now(World& part, const std::vector<Index>& wanted) {
-  std::vector<GlobalId> ids;
-  copy_to(ids, part.triangles.id);
-  std::vector<std::uint8_t> is_own;
-  const OwnedView owned = part.domain.owned_view();
-  std::vector<Index> here, number;
-  Buffer<std::uint8_t> owns(part.exec.space, part.triangles.size());
-  for_each(part.exec, owns.size(), NoteOwned{owned, owns.view()});
-  copy_to(is_own, owns);
-  for (const Index edge : wanted) {
-    const auto found = std::lower_bound(ids.begin(), ids.end(), edge / 3);
-    if (found == ids.end() || *found != edge / 3) continue;
-    const auto t = static_cast<Index>(found - ids.begin());
-    if (is_own[at(t)] == 0) continue;
-    here.push_back(3 * t + edge % 3);
-    number.push_back(edge);
-  }
-  Buffer<Index> edges(part.exec.space), numbers(part.exec.space);
-  copy_to(edges, here);
-  copy_to(numbers, number);
-  Buffer<EdgeNow> told(part.exec.space, edges.size());
-  for_each(part.exec, edges.size(),
-           TellEdge{std::as_const(edges).view(), std::as_const(numbers).view(),
-                    by_number(std::as_const(part.triangles.nodes).view()), told.view()});
-  std::vector<EdgeNow> all;
-  copy_to(all, told);
-  if (!part.domain.single_rank()) all = joined(*part.domain.ranks, all);
-  std::sort(all.begin(), all.end(),
-            [](const EdgeNow& p, const EdgeNow& q) { return p.edge < q.edge; });
-  return all;
-}
-
 /// Cracks of the whole mesh, and joints that soften, where they are now, by their first edges.
 std::vector<CrackNow> cracks_now(World& part) {
   const std::vector<CrackSide> sides = cracks_until(part, part.time, true);
   std::vector<Index> wanted;
   for (const CrackSide& side : sides) wanted.insert(wanted.end(), {side.a, side.b});
   const std::vector<EdgeNow> edges = edges_now(part, wanted);
-  const auto now = [&](Index edge) -> const EdgeNow& {
-    return *std::lower_bound(edges.begin(), edges.end(), edge,
-                             [](const EdgeNow& e, Index number) { return e.edge < number; });
-  };
   std::vector<CrackNow> cracks;
   for (const CrackSide& side : sides) {
-    const EdgeNow &a = now(side.a), &b = now(side.b);
+    const EdgeNow &a = edge_in(edges, side.a), &b = edge_in(edges, side.b);
     const JointOpening<double> o = opening_of(a.from, a.to, b.to, b.from);
     cracks.push_back({side, o.size, o.open[1]});
   }
@@ -193,11 +134,16 @@ void flow_until(World& part, double now) {
   std::vector<FlowCell> cells = cells_of(given, cracks, std::as_const(fluid.volume).view());
   const double span = fluid.time < 0.0 ? 0.0 : now - fluid.time;
   const FlowSource source{given.vertices, given.by_rate,
-                          given.input.scale * given.input.amplitude.at(now)};
+                          given.input.scale * given.input.amplitude.at(now), given.outlet,
+                          given.outlet_pressure};
   const Flowed flowed = flow(cells, source, given.viscosity, span);
-  for (std::size_t i = 0; i < cells.size(); ++i)
+  fluid.length = 0.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
     fluid.volume.data()[cracks[i].side.a] = cells[i].fluid;
+    fluid.length += cells[i].length * std::min(1.0, cells[i].fluid / cells[i].room());
+  }
   fluid.injected += flowed.injected;
+  fluid.released += flowed.released;
   fluid.pressure = flowed.pressure;
   fluid.time = now;
   list_pressures(part, cracks, cells);
@@ -222,22 +168,11 @@ void spread_until(World& part, double now) {
   list_loaded_edges(part);
 }
 
-/// Volume is that which cracks hold without pressure; length is of cracks that are full.
+/// Volume is that which cracks hold without pressure; of a crack that is not full the length counts
+/// by its fluid: the front is in it.
 FilledPart flowed_part(const World& whole) {
-  FilledPart sum;
+  FilledPart sum{whole.fluid.length, 0.0};
   for (Index i = 0; i < whole.fluid.volume.size(); ++i) sum.volume += whole.fluid.volume.data()[i];
-  std::vector<TriangleNodes> nodes;
-  copy_to(nodes, whole.triangles.nodes);
-  const auto corner = [&](Index n) {
-    return nodes[static_cast<std::size_t>(n / 3)].at[n % 3].position;
-  };
-  const std::vector<LoadedEdge>& wet = whole.fluid.wet;
-  const std::size_t cracks = wet.size() - whole.given->flow.borders.size();
-  for (std::size_t i = 0; i + 1 < cracks; i += 2) {
-    const JointEnds e =
-        JointEnds::of(3 * wet[i].triangle + wet[i].edge, 3 * wet[i + 1].triangle + wet[i + 1].edge);
-    sum.length += opening_of(corner(e.a0), corner(e.a1), corner(e.b0), corner(e.b1)).size;
-  }
   return sum;
 }
 
@@ -268,6 +203,7 @@ void restore_fluid(World& part) {
 void list_loaded_edges(World& w) {
   std::vector<LoadedEdge> all = w.given->loaded;
   all.insert(all.end(), w.fluid.wet.begin(), w.fluid.wet.end());
+  all.insert(all.end(), w.bolts.pull.begin(), w.bolts.pull.end());
   std::stable_sort(all.begin(), all.end(), [](const LoadedEdge& a, const LoadedEdge& b) {
     return a.triangle < b.triangle;
   });

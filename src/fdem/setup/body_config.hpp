@@ -11,14 +11,16 @@ namespace breccia::fdem {
 
 /// [[body.hole]]
 struct HoleConfig {
-  Vec2 center{};        ///<  [m]
-  double radius = 0.0;  ///<  [m]
+  Vec2 center{};                ///<  [m]
+  double radius = 0.0;          ///< 0: a polygon  [m]
+  std::vector<Vec2> corners{};  ///<  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
     key("center", center, "m", any_number, "centre of the hole, in the coordinates of the case");
-    key("radius", radius, "m", positive, "radius of the hole");
-    key.required("radius");
+    key("radius", radius, "m", not_negative, "radius of a round hole");
+    key("corners", corners, "m", any_number,
+        "corners of a hole with straight sides, from its centre; then radius is left out");
   }
 };
 
@@ -173,7 +175,7 @@ struct BodyConfig {
         "of a mesh from a file: whether two nodes may lie at one place, so that the triangles "
         "beside "
         "them are not joined, and triangles share no edge with any other");
-    key.list("hole", holes, "round holes");
+    key.list("hole", holes, "round holes, and holes with straight sides");
     key.list("notch", notches, "slots and open cracks");
     key.table("hexagons", hexagons, "how many hexagons and how large");
     key.table("grains", grains, "minerals in place of the body's one material");
@@ -218,6 +220,8 @@ struct JointSetConfig {
   double length_deviation = 0.0;   ///<  [m]
   double length_exponent = 2.5;    ///<  [-]
   double least = 0.0, most = 0.0;  ///< lengths; 0: no limit  [m]
+  double spacing = 0.0;            ///< of regular lines; 0: at random  [m]
+  double gap = 0.0;                ///< of regular lines: between two on one line  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -234,7 +238,8 @@ struct JointSetConfig {
     key("min", min, "m", any_number, "lower corner of the rectangle that random lines fill");
     key("max", max, "m", any_number, "upper corner of that rectangle");
     key("intensity", intensity, "1/m", not_negative,
-        "P21 of random lines: their length in the rectangle over its area, met exactly");
+        "P21 of random lines: their length in the rectangle over its area, met exactly; of lines "
+        "with one angle it is also P10, their number per length across them");
     key("angle", angle, "rad", any_number, "mean angle of the lines from the x axis");
     key("spread", spread, "rad", Range{0.0, 1.5708},
         "standard deviation of their angles, by the normal distribution");
@@ -247,6 +252,10 @@ struct JointSetConfig {
     key("length_exponent", length_exponent, "-", positive, "exponent of the power law");
     key("least", least, "m", not_negative, "shorter ones are drawn again; 0: no limit");
     key("most", most, "m", not_negative, "longer ones are drawn again; 0: no limit");
+    key("spacing", spacing, "m", not_negative,
+        "regular lines at angle, so far apart, in place of random ones: they run through, or are "
+        "length long with gap between them, on every other line moved by half of both; 0: random");
+    key("gap", gap, "m", not_negative, "regular lines: bridge of rock between two on one line");
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/probe.hpp"
 #include "exec/error.hpp"
+#include "fdem/setup/bolts.hpp"
 #include "fdem/setup/case_rules.hpp"
 #include "fdem/setup/stages.hpp"
 
@@ -25,6 +26,9 @@ void check_flows(const Config& config, std::vector<std::string>& problems) {
       problems.push_back(where + ".viscosity: only a fluid has one; kind is \"" + l.kind + "\"");
     if (has_rate && !l.flows())
       problems.push_back(where + ".rate: needs kind = \"fluid\" and a viscosity above 0");
+    if (!l.outlets.empty() && !l.flows())
+      problems.push_back(where + ".outlet: needs kind = \"fluid\" and a viscosity above 0");
+    if (l.outlets.size() > 1) problems.push_back(where + ".outlet: one at most");
     if (!l.flows()) continue;
     if (has_rate && has_pressure)
       problems.push_back(where + ": give a rate or a pressure; a fluid takes one of them");
@@ -51,6 +55,7 @@ std::vector<std::string> case_problems(const Config& config) {
     if (l.speed > 0.0 && l.kind != "fluid")
       add("load." + l.name + ".speed: only a fluid has one; kind is \"" + l.kind + "\"");
   check_flows(config, problems);
+  for (const std::string& problem : bolt_problems(config)) add(problem);
   for (const ProbeConfig& p : config.probes)
     for (const std::string& problem : probe_problems(p, in_plane)) add(problem);
   for (const std::string& problem : stage_problems(config)) add(problem);

@@ -166,6 +166,19 @@ struct RegionConfig {
 
 using SupportConfig = fdem_shared::SupportConfigOf<RegionConfig, Vec2>;
 
+/// [[load.outlet]]: where a fluid that flows leaves
+struct OutletConfig {
+  RegionConfig region;
+  double pressure = 0.0;  ///<  [Pa]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    region.each_key(key);
+    key("pressure", pressure, "Pa", any_number,
+        "pressure at the vertices in the region: another water level, or 0 where it runs out");
+  }
+};
+
 /// [[load]]: forces on free edges
 struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
   double speed = 0.0;      ///< of a fluid's front; 0: at once  [m/s]
@@ -174,6 +187,7 @@ struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
   double aperture = 1e-5;  ///< of cracks that are closed  [m]
   OverTime<double> rate;   ///< at which it comes in, instead of a pressure  [m2/s]
   bool filled = false;     ///< whether cracks that are open at the start hold it
+  std::vector<OutletConfig> outlets{};  ///< at most one
 
   bool flows() const { return kind == "fluid" && viscosity > 0.0; }
 
@@ -200,7 +214,46 @@ struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
         "[[t, q], ...] of it; then pressure is left out");
     key("filled", filled,
         "fluid that flows: cracks that are open at the start hold it, without pressure");
+    key.list("outlet", outlets, "fluid that flows: where it leaves, one region at most");
     history.each_key(key);
+  }
+};
+
+/// [[bolt]]: a bar along a polyline, tied to triangles by a bond
+struct BoltConfig {
+  std::string name;
+  std::vector<Vec2> points;      ///<  [m]
+  double segment = 0.1;          ///<  [m]
+  double diameter = 0.025;       ///<  [m]
+  double spacing = 1.0;          ///< between bolts across the plane  [m]
+  double young = 200e9;          ///<  [Pa]
+  double yield = 500e6;          ///<  [Pa]
+  double bond_stiffness = 1e9;   ///< of one bolt  [N/m2]
+  double bond_strength = 500e3;  ///< of one bolt  [N/m]
+  std::string anchored = "none";
+  std::string stage;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the bolt: summary.json and bolts.csv tell of it by it");
+    key.required("name");
+    key("points", points, "m", any_number, "points [[x, y], ...] that it runs along, two or more");
+    key.required("points");
+    key("segment", segment, "m", Range{1e-6, 1e6},
+        "it is tied to a triangle at its points, and between them at most so far apart");
+    key("diameter", diameter, "m", Range{1e-6, 10.0}, "of its round bar");
+    key("spacing", spacing, "m", Range{1e-6, 1e6},
+        "distance between bolts across the plane: forces are divided by it");
+    key("young", young, "Pa", Range{1.0, 1e15}, "Young's modulus of its bar");
+    key("yield", yield, "Pa", sane_strength, "stress at which it yields, without hardening");
+    key("bond_stiffness", bond_stiffness, "N/m2", Range{1.0, 1e15},
+        "force along the bar, per length of one bolt and per slip of the bar against the rock");
+    key("bond_strength", bond_strength, "N/m", Range{1e-6, 1e15},
+        "force per length of one bolt at which its bond slips on without growing");
+    key("anchored", anchored, OneOf{"none", "start", "end", "both"},
+        "ends at which it does not slip: a plate with a nut, an anchor");
+    key("stage", stage,
+        "stage from whose beginning on it is there, without force at first; empty: from the start");
   }
 };
 
@@ -341,6 +394,7 @@ struct Config : CaseConfig {
   InSituConfig in_situ;
   std::vector<SupportConfig> supports;
   std::vector<LoadConfig> loads;
+  std::vector<BoltConfig> bolts;
   std::vector<StageConfig> stages;
   double stage_friction = -1.0;      ///< no key: of contacts in this stage; below 0: as given  [-]
   std::vector<std::string> removed;  ///< no key: bodies that are gone by now
@@ -365,6 +419,7 @@ struct Config : CaseConfig {
     key.table("in_situ", in_situ, "stress at the start");
     key.list("support", supports, "prescribed motion");
     key.list("load", loads, "forces on edges");
+    key.list("bolt", bolts, "rock bolts: bars that a bond ties to triangles");
     key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");
     key.table("emission", emission, "which breaks are one event of acoustic emission");

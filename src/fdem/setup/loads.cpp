@@ -1,8 +1,11 @@
 #include "fdem/setup/loads.hpp"
 
 #include <algorithm>
+#include <iterator>
 
+#include "exec/error.hpp"
 #include "fdem/fluid/fluid.hpp"
+#include "fdem/setup/bolts.hpp"
 #include "fdem/setup/regions.hpp"
 
 namespace breccia::fdem {
@@ -27,6 +30,17 @@ void set_up_flow(World& w, const Config& config, const LoadConfig& load, const M
   flow.load = static_cast<std::int16_t>(&load - config.loads.data());
   flow.vertices = vertices_in(model, load.region, "load." + load.name);
   std::sort(flow.vertices.begin(), flow.vertices.end());
+  for (const OutletConfig& outlet : load.outlets) {
+    flow.outlet = vertices_in(model, outlet.region, "load." + load.name + ".outlet");
+    std::sort(flow.outlet.begin(), flow.outlet.end());
+    flow.outlet_pressure = outlet.pressure;
+    std::vector<Index> both;
+    std::set_intersection(flow.vertices.begin(), flow.vertices.end(), flow.outlet.begin(),
+                          flow.outlet.end(), std::back_inserter(both));
+    if (!both.empty())
+      throw InputError("load." + load.name +
+                       ".outlet: it shares vertices with the region where the fluid comes in");
+  }
   std::vector<JointBond> bonds;
   copy_to(bonds, w.given->bonds);
   flow.stiffness = 1e300;
@@ -46,12 +60,16 @@ void prescribe_loads(World& w, const Config& config) {
     given.loads[i] = {LoadKind::fluid, {1.0, 1.0}, 1.0, {}, {}};
     given.load_amplitudes[i] = {};
   }
+  if (config.bolts.empty()) return;
+  given.loads.push_back({LoadKind::bolt, {1.0, 1.0}, 1.0, {}, {}});  // the last one
+  given.load_amplitudes.emplace_back();
 }
 
 void set_up_loads(World& w, const Config& config, const Model& model) {
   std::vector<LoadedEdge> loaded;
   std::vector<EdgeDashpots> dashpots;
   prescribe_loads(w, config);
+  set_up_bolts(w, config, model);
   for (const LoadConfig& load : config.loads) {
     const auto index = static_cast<std::int16_t>(&load - config.loads.data());
     const LoadKind kind = w.given->loads[at(index)].kind;
@@ -84,7 +102,7 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
                                   loaded.end());
     loaded.resize(first);
   }
-  if (loaded.empty() && w.given->fluids.empty()) return;
+  if (loaded.empty() && w.given->fluids.empty() && w.given->bolts.empty()) return;
   std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedEdge& a, const LoadedEdge& b) {
     return a.triangle < b.triangle;
   });

@@ -55,6 +55,7 @@ void StepwiseRun::insert_joints(World& w) const {
 
 void StepwiseRun::load_forces(World& w) const {
   if (w.given->flow.on) flow_on(w);
+  if (!w.given->bolts.empty()) pull_bolts(w);
   fdem_shared::StepwiseRun<World>::load_forces(w);
 }
 
@@ -69,8 +70,8 @@ void evaluate_forces(World& w) {
   evaluate_forces_by<HostRun>(w);
 }
 Advanced advance(World& w, const StopAt& stop) {
-  if (!w.given->flow.on) return advance_by_steps(w, stop);
-  step(w);  // openings of cracks come to the host in every step, on a device, too
+  if (!w.given->flow.on && w.given->bolts.empty()) return advance_by_steps(w, stop);
+  step(w);  // places of cracks and bolts come to the host in every step, on a device, too
   return {1, w.last_dt, w.last_dt};
 }
 

@@ -17,7 +17,10 @@ struct LoadedEdge {
   std::int16_t edge;
   std::int16_t load;  ///< index into the laws
   double share;       ///< of the load's edges, by length at the start; of a fluid: filled part  [-]
-  double impedance_p, impedance_s;  ///< rho c_p and rho c_s of its triangle  [Pa s/m]
+  /// rho c_p and rho c_s of its triangle  [Pa s/m]; of a bolt: x and y of what it pulls with  [N/m]
+  double impedance_p, impedance_s;
+
+  BR_HD Vec2 pull() const { return {impedance_p, impedance_s}; }
 };
 
 /// Adds the loads of one triangle's edges, half to each end.
@@ -48,6 +51,7 @@ struct LoadForces {
       const Vec2 whole = law.kind == LoadKind::pressure ? -law.pressure * outward
                          : law.kind == LoadKind::fluid  ? (-law.pressure * edges[e].share) * outward
                          : law.kind == LoadKind::traction ? norm(along) * law.traction
+                         : law.kind == LoadKind::bolt     ? edges[e].share * edges[e].pull()
                                                           : edges[e].share * law.force;
       const Vec2 half{(0.5 * law.factor.x) * whole.x, (0.5 * law.factor.y) * whole.y};
       sum.at[k] += half;

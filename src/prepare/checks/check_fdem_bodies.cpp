@@ -121,6 +121,12 @@ class BodyChecks {
         require(n.width == 0.0, "a structured mesh can have open cracks (width 0), but no slots");
     }
     require(cut || b.holes.empty(), "a body of shape {} can have no holes", b.shape);
+    for (const fdem::HoleConfig& hole : b.holes) {
+      require((hole.radius > 0.0) != !hole.corners.empty(),
+              "a hole needs a radius or corners, one of them");
+      require(hole.corners.empty() || hole.corners.size() >= 3,
+              "a hole with straight sides has three corners or more");
+    }
     check_notches(b, cut);
     if (!b.grains.kind.empty()) check_grains(b);
   }

@@ -35,7 +35,7 @@ bool cross_each_other(const Line& s, const Line& t) {
 }
 
 /// The corners of a slot, and how far it reaches.
-std::array<Vec2, 4> slot_corners(const fdem::NotchConfig& notch) {
+std::vector<Vec2> slot_corners(const fdem::NotchConfig& notch) {
   const Vec2 along = notch.to - notch.from;
   const Vec2 across = (0.5 * notch.width / norm(along)) * Vec2{-along.y, along.x};
   return {notch.from - across, notch.to - across, notch.to + across, notch.from + across};
@@ -75,8 +75,14 @@ Mesh meshed_by_gmsh(const BodyConfig& body, const MeshingContext& context) {
     region.polygon = read_outline((std::filesystem::path(context.folder) / body.file).string());
     for (Vec2& corner : region.polygon) corner += body.center;
   }
-  for (const fdem::HoleConfig& hole : body.holes)
-    region.holes.push_back({hole.center, hole.radius});
+  for (const fdem::HoleConfig& hole : body.holes) {
+    if (hole.corners.empty()) {
+      region.holes.push_back({hole.center, hole.radius});
+      continue;
+    }
+    region.slots.push_back(hole.corners);
+    for (Vec2& corner : region.slots.back()) corner += hole.center;
+  }
   for (const fdem::NotchConfig& notch : body.notches)
     if (notch.width > 0.0) region.slots.push_back(slot_corners(notch));
   region.lines = lines_of(body, context);

@@ -115,7 +115,31 @@ class Drawn {
  public:
   Drawn(const JointSetConfig& set, const Random& random) : set_(set), random_(random) {}
 
-  std::vector<std::vector<Vec2>> lines() {
+  std::vector<std::vector<Vec2>> lines() { return set_.spacing > 0.0 ? regular() : random(); }
+
+ private:
+  /// Lines through the rectangle, counted from its middle, which one of them crosses.
+  std::vector<std::vector<Vec2>> regular() const {
+    const Vec2 along{std::cos(set_.angle), std::sin(set_.angle)}, across{-along.y, along.x};
+    const Vec2 middle = 0.5 * (set_.min + set_.max);
+    const double reach = 0.5 * norm(set_.max - set_.min);
+    const auto rows = static_cast<int>(reach / set_.spacing);
+    const double whole = 2.0 * reach, piece = set_.length > 0.0 ? set_.length : whole;
+    const double period = piece + (set_.length > 0.0 ? set_.gap : 0.0);
+    const auto pieces = static_cast<int>(std::ceil(reach / period)) + 1;
+    std::vector<std::vector<Vec2>> all;
+    for (int row = -rows; row <= rows; ++row)
+      for (int k = -pieces; k <= pieces; ++k) {
+        if (set_.length == 0.0 && k != 0) continue;
+        const double shift = (k + (row % 2 != 0 ? 0.5 : 0.0)) * period;
+        const Vec2 at =
+            middle + (row * set_.spacing) * across + (set_.length > 0.0 ? shift : 0.0) * along;
+        Vec2 from = at - (0.5 * piece) * along, to = at + (0.5 * piece) * along;
+        if (cut(from, to) && norm(to - from) > 1e-9 * piece) all.push_back({from, to});
+      }
+    return all;
+  }
+  std::vector<std::vector<Vec2>> random() {
     const Vec2 size = set_.max - set_.min;
     // Of middles beyond the rectangle; the same for all lengths, or long lines were too few.
     const double longest = set_.length_law == "constant" ? set_.length : 10.0 * set_.length;
@@ -140,7 +164,6 @@ class Drawn {
     return all;
   }
 
- private:
   /// By Box and Muller.
   double normal(std::uint32_t draw) const {
     const double u = random_.uniform(line_, draw), v = random_.uniform(line_, draw + 1);
@@ -235,7 +258,14 @@ std::vector<std::string> joint_set_problems(const JointSetConfig& set,
   }
   require(set.max.x > set.min.x && set.max.y > set.min.y,
           ": random lines need the rectangle that they fill, min and max");
-  require(set.intensity > 0.0, ".intensity must be above 0, or file must name one");
+  if (set.spacing > 0.0) {
+    require(set.intensity == 0.0, ".intensity is of random lines, and spacing makes regular ones");
+    require(set.gap == 0.0 || set.length > 0.0, ".gap is between lines that have a length");
+    require(norm(set.max - set.min) < 1e5 * set.spacing, ".spacing: too many lines");
+    return problems;
+  }
+  require(set.gap == 0.0, ".gap is of regular lines, with a spacing");
+  require(set.intensity > 0.0, ".intensity or spacing must be above 0, or file must name one");
   if (set.length_law == "power") {
     require(set.least > 0.0 && set.most > set.least,
             ": lengths by a power law need 0 < least < most");

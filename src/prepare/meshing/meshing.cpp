@@ -32,7 +32,7 @@ class GeoWriter {
     write_outer();
     std::vector<int> cuts;
     for (const Region::Circle& hole : region_.holes) cuts.push_back(disc(hole));
-    for (const auto& slot : region_.slots) cuts.push_back(polygon({slot.begin(), slot.end()}));
+    for (const auto& slot : region_.slots) cuts.push_back(polygon(slot));
     if (cuts.empty())
       text_ += "s() = {1};\n";
     else

@@ -24,7 +24,7 @@ struct Region {
   Vec2 center{}, size{};        ///< of a rectangle  [m]
   std::vector<Vec2> polygon{};  ///< corners, either way round  [m]
   std::vector<Circle> holes{};
-  std::vector<std::array<Vec2, 4>> slots{};  ///< rectangles, corners in order  [m]
+  std::vector<std::vector<Vec2>> slots{};    ///< polygons that are cut out, corners in order  [m]
   std::vector<std::array<Vec2, 2>> lines{};  ///< parts of them outside do not count  [m]
   double edge = 0.0;                         ///< edge length that is aimed at  [m]
 };

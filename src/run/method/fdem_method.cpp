@@ -48,8 +48,10 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
       add(path + "volume", filled.volume);
       if (!w.given->flow.on || w.given->flow.load != fluid.load) continue;
       add(path + "injected", w.fluid.injected);
+      if (!w.given->flow.outlet.empty()) add(path + "released", w.fluid.released);
       add(path + "pressure", w.fluid.pressure);
     }
+    add_bolts(w, facts);
     add_emission(facts, events(w));
     add_fragments(fdem::fragments(w).mass, facts);
   }
@@ -72,7 +74,35 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
     for (const double m : all.mass) total += m;
     for (std::size_t i = 0; i < all.mass.size(); ++i)
       pieces.rows.push_back({static_cast<double>(i), all.mass[i] / scaling, all.mass[i] / total});
-    return {cracks, pieces, table_of(events(w))};
+    std::vector<Table> tables{cracks, pieces, table_of(events(w))};
+    if (!w.given->bolts.empty()) tables.push_back(bolt_table(w));
+    return tables;
+  }
+  static Table bolt_table(const World& w) {
+    Table bolts{"bolts", {"bolt", "x", "y", "force", "slip"}, {"-", "m", "m", "N/m", "m"}, {}};
+    for (const fdem::BoltRow& row : fdem::bolt_rows(w))
+      bolts.rows.push_back(
+          {static_cast<double>(row.bolt), row.place.x, row.place.y, row.force, row.slip});
+    return bolts;
+  }
+  static void add_bolts(const World& w, std::vector<Fact>& facts) {
+    if (w.given->bolts.empty()) return;
+    const std::vector<fdem::BoltEnergy> energies = fdem::bolt_energies(w);
+    const std::vector<fdem::BoltRow> rows = fdem::bolt_rows(w);
+    for (std::size_t b = 0; b < energies.size(); ++b) {
+      double force = 0.0, slip = 0.0;
+      for (const fdem::BoltRow& row : rows)
+        if (row.bolt == b) {
+          if (std::abs(row.force) > std::abs(force)) force = row.force;
+          slip = std::max(slip, std::abs(row.slip));
+        }
+      const std::string path = "bolt." + w.given->bolts[b].name + ".";
+      facts.push_back({path + "force", force});
+      facts.push_back({path + "slip", slip});
+      facts.push_back({path + "elastic", energies[b].elastic});
+      facts.push_back({path + "yielded", energies[b].yielded});
+      facts.push_back({path + "rubbed", energies[b].rubbed});
+    }
   }
   std::vector<EmissionEvent> events(const World& w) const {
     std::vector<fdem::JointLine> at_start;
@@ -95,9 +125,14 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
                   Loose<fdem::JointForceOf<Number>>{"force", w.joints.force.as<Number>()});
       });
     });
+    if (!w.given->bolts.empty()) {
+      visit("bolts.time", w.bolts.time);
+      visit.fields("bolts", Loose<fdem::BoltNode>{"node", w.bolts.nodes});
+    }
     if (has_fluid(w)) visit("fluid.time", w.fluid.time);
     if (!w.given->flow.on) return;
     visit("fluid.injected", w.fluid.injected);
+    if (!w.given->flow.outlet.empty()) visit("fluid.released", w.fluid.released);
     visit("fluid.pressure", w.fluid.pressure);
     visit.fields("fluid", Loose<double>{"volume", w.fluid.volume});
   }

@@ -209,6 +209,9 @@ void check_shown(const fdem::Config& config) {
       one.loads.emplace_back().name = load.name;
       one.loads.back().kind = load.kind;
       one.loads.back().viscosity = load.viscosity;
+      if (load.outlets.empty()) continue;
+      one.loads.back().region.max = {0.5, 0.5};  // the first corner, and another one
+      one.loads.back().outlets.emplace_back().region.min = {0.5, -0.5};
     }
   fdem::Model model;  // one triangle a body
   for (const fdem::BodyConfig& body : config.bodies) {
@@ -220,6 +223,11 @@ void check_shown(const fdem::Config& config) {
     model.group.push_back(static_cast<std::int16_t>(model.groups.size()));
     model.groups.push_back(body.name);
   }
+  for (const fdem::BoltConfig& bolt : config.bolts)
+    if (!config.bodies.empty()) {
+      one.bolts.emplace_back().name = bolt.name;
+      one.bolts.back().points = {{0.1, 0.1}, {0.3, 0.3}};
+    }
   const std::size_t count = model.groups.size();
   model.material.resize(count);
   model.velocity.resize(count);

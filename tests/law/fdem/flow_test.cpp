@@ -50,6 +50,21 @@ TEST(Flow, diffuses_as_the_cubic_law_says) {
   EXPECT_LT(std::max(error[0], error[1]), 0.002);
 }
 
+/// From one level to another a^3 dp/(12 mu L) passes, and as much leaves as comes in.
+TEST(Flow, leaves_at_another_level) {
+  constexpr double a = 30e-6, mu = 1e-3;
+  std::vector<FlowCell> cells = row(10, 0.01, a, 2.2e9, true);
+  const FlowSource source{{0}, false, 3e5, {10}, 1e5};
+  const double before = held(cells);
+  const Flowed first = flow(cells, source, mu, 10.0);
+  EXPECT_NEAR(held(cells) - before, first.injected - first.released, 1e-9 * first.injected);
+  const Flowed then = flow(cells, source, mu, 1.0);
+  const double rate = a * a * a * 2e5 / (12.0 * mu * 0.1);
+  EXPECT_NEAR(then.injected, rate, 1e-6 * rate);
+  EXPECT_NEAR(then.released, rate, 1e-6 * rate);
+  EXPECT_NEAR(cells[4].pressure(), 3e5 - 2e5 * 0.45, 1.0);
+}
+
 /// Between two levels a^3 dp/(12 mu L) passes: here into a wide crack at the end, which stays empty
 /// enough to have no pressure.
 TEST(Flow, passes_by_the_cube_of_the_aperture) {

@@ -69,6 +69,35 @@ TEST(JointSets, have_the_intensity_the_angles_and_the_lengths_that_were_asked_fo
   }
 }
 
+/// Number of lines that a line across them meets over its length: P10 = 1/spacing; and P21 is that
+/// times the share that is no bridge.
+TEST(JointSets, are_regular_where_a_spacing_is_given) {
+  fdem::JointSetConfig set = random_set();
+  set.intensity = 0.0;
+  set.length = 0.0;
+  set.spacing = 0.1;
+  double sum = 0.0;
+  int met = 0;
+  const Vec2 along{std::cos(0.4), std::sin(0.4)}, across{-along.y, along.x};
+  for (const auto& line : lines_of_set(set, 7, 0, "")) {
+    const Vec2 &a = line.points[0], way = line.points[1] - a;
+    EXPECT_NEAR(std::atan2(way.y, way.x), 0.4, 1e-9);
+    EXPECT_NEAR(std::remainder(dot(a, across), 0.1), 0.0, 1e-9);
+    if (std::abs(dot(a, across)) < 2.95) ++met;
+    sum += norm(way);
+  }
+  EXPECT_EQ(met, 59);
+  EXPECT_NEAR(sum, 200.0 / 0.1, 20.0);
+  set.length = 0.3;
+  set.gap = 0.1;
+  double bridged = 0.0;
+  for (const auto& line : lines_of_set(set, 7, 0, "")) {
+    const double length = norm(line.points[1] - line.points[0]);
+    EXPECT_LE(length, 0.3 + 1e-9);
+    bridged += length;
+  }
+  EXPECT_NEAR(bridged, 0.75 * sum, 0.01 * sum);
+}
 TEST(JointSets, are_a_function_of_seed_and_place) {
   const fdem::JointSetConfig set = random_set();
   const auto one = lines_of_set(set, 7, 0, ""), again = lines_of_set(set, 7, 0, "");

@@ -1,0 +1,119 @@
+#include "fdem/setup/bolts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/named.hpp"
+#include "exec/error.hpp"
+#include "fdem/shape.hpp"
+#include "fdem_shared/setup/writable.hpp"
+#include "math/constants.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+/// Points of a polyline, each leg in even pieces no longer than a segment.
+std::vector<Vec2> divided(const BoltConfig& bolt) {
+  std::vector<Vec2> nodes{bolt.points.front()};
+  for (std::size_t i = 0; i + 1 < bolt.points.size(); ++i) {
+    const Vec2 &from = bolt.points[i], way = bolt.points[i + 1] - from;
+    const double pieces = std::max(1.0, std::ceil(norm(way) / bolt.segment - 1e-9));
+    for (double k = 1.0; k <= pieces; k += 1.0) nodes.push_back(from + (k / pieces) * way);
+  }
+  return nodes;
+}
+
+/// The first triangle that holds a point, and the shares of its corners. Below 0: none does.
+BoltPlace place_of(const Model& model, const Vec2& point) {
+  constexpr double at_the_rim = -1e-9;
+  for (std::size_t t = 0; t < model.triangle.size(); ++t) {
+    const auto corner = [&](std::size_t k) { return model.point[at(model.triangle[t][k % 3])]; };
+    std::array<double, 3> share{};
+    const double twice = cross(corner(1) - corner(0), corner(2) - corner(0));
+    for (std::size_t k = 0; k < 3; ++k)
+      share[k] = cross(corner(k + 1) - point, corner(k + 2) - point) / twice;
+    if (*std::min_element(share.begin(), share.end()) >= at_the_rim)
+      return {static_cast<Index>(t), share};
+  }
+  return {-1, {}};
+}
+
+std::string short_text(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", number);
+  return text;
+}
+
+BoltLaw law_of(const BoltConfig& bolt) {
+  const double area = 0.25 * pi * bolt.diameter * bolt.diameter / bolt.spacing;
+  return {bolt.young * area, bolt.yield * area, bolt.bond_stiffness / bolt.spacing,
+          bolt.bond_strength / bolt.spacing};
+}
+
+/// @throws InputError
+void look_at(const Bolt& bolt, double segment, const BoltPlace& place, const Vec2& point,
+             const World& w, const Model& model, const Config& config) {
+  const std::string where = "bolt." + bolt.name;
+  const std::string at_point = "(" + short_text(point.x) + ", " + short_text(point.y) + ") m";
+  if (place.triangle < 0) throw InputError(where + ".points: " + at_point + " lies in no triangle");
+  const auto t = at(place.triangle);
+  const std::string& body = model.groups[at(model.group[t])];
+  for (const StageConfig& stage : config.stages)
+    if (std::count(stage.remove.begin(), stage.remove.end(), body) > 0)
+      throw InputError(where + ".points: " + at_point + " lies in body " + body + ", which stage " +
+                       stage.name + " takes out");
+  std::vector<ElasticTriangle> laws;
+  copy_to(laws, w.given->laws);
+  const std::size_t law = w.given->in_situ.graded() ? t : at(model.material[t]);
+  const double rock = Shape::corner_stiffness(laws[law], {});
+  if (2.0 * bolt.law.stiffness / segment > rock)
+    throw InputError(where + ".segment: " + short_text(segment) +
+                     " m are stiffer than the corners of triangles that they pull at; at least " +
+                     short_text(2.0 * bolt.law.stiffness / rock) + " m");
+}
+
+}  // namespace
+
+void set_up_bolts(World& w, const Config& config, const Model& model) {
+  std::vector<Bolt> bolts;
+  std::size_t nodes = 0;
+  for (const BoltConfig& given : config.bolts) {
+    Bolt bolt;
+    bolt.name = given.name;
+    bolt.law = law_of(given);
+    bolt.anchored[0] = given.anchored == "start" || given.anchored == "both";
+    bolt.anchored[1] = given.anchored == "end" || given.anchored == "both";
+    for (std::size_t k = 0; k < config.stages.size(); ++k)
+      if (config.stages[k].name == given.stage) bolt.stage = static_cast<std::int32_t>(k);
+    const std::vector<Vec2> points = divided(given);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      bolt.places.push_back(place_of(model, points[i]));
+      const Vec2& other = points[i > 0 ? i - 1 : 1];
+      look_at(bolt, norm(points[i] - other), bolt.places.back(), points[i], w, model, config);
+    }
+    nodes += points.size();
+    bolts.push_back(std::move(bolt));
+  }
+  fdem_shared::set_up(w).bolts = std::move(bolts);
+  copy_to(w.bolts.nodes, std::vector<BoltNode>(nodes));
+}
+
+std::vector<std::string> bolt_problems(const Config& config) {
+  std::vector<std::string> problems;
+  for (const BoltConfig& bolt : config.bolts) {
+    const std::string where = "bolt." + bolt.name;
+    if (bolt.points.size() < 2) problems.push_back(where + ".points: at least two");
+    for (std::size_t i = 0; i + 1 < bolt.points.size(); ++i)
+      if (!(norm(bolt.points[i + 1] - bolt.points[i]) > 0.0))
+        problems.push_back(where + ".points: two in succession are the same");
+    if (!bolt.stage.empty())
+      add_unknown(where + ".stage", bolt.stage, "stage", names_of(config.stages), problems);
+    if (std::count_if(config.bolts.begin(), config.bolts.end(),
+                      [&](const BoltConfig& other) { return other.name == bolt.name; }) > 1)
+      problems.push_back(where + ".name: two bolts have this name");
+  }
+  return problems;
+}
+
+}  // namespace breccia::fdem

@@ -1,0 +1,18 @@
+#pragma once
+// Rock bolts of a case: their nodes in the triangles of a model.
+
+#include <string>
+#include <vector>
+
+#include "fdem/world.hpp"
+
+namespace breccia::fdem {
+
+/// @throws InputError naming a bolt with a point outside all triangles, in a body that a stage
+/// takes out, or with segments stiffer than the rock that they are tied to
+void set_up_bolts(World& w, const Config& config, const Model& model);
+
+/// Problems of bolts that a case file alone tells of.
+std::vector<std::string> bolt_problems(const Config& config);
+
+}  // namespace breccia::fdem

@@ -1,0 +1,126 @@
+// Bolts between triangles: they hold a block by its weight, come with their stage, pull with no
+// sum and no moment, and are alike on threads, a device's schedule, ranks and resumed.
+
+#include "fdem/setup/bolts.hpp"
+
+#include "fdem/setup/check_case.hpp"
+#include "parity/staged_runs.hpp"
+#include "physics/fdem/scene.hpp"
+
+namespace breccia {
+namespace bolts_test {
+
+using namespace breccia::testing;
+using fdem::testing::far;
+
+/// A plate of 0.2 x 0.2 m with an open crack through its middle; its roof is held, a bolt crosses
+/// the crack.
+fdem::testing::Scene hanging() {
+  fdem::testing::Scene s;
+  s.material(30e9, 0.2, 2500.0);
+  s.body("rock", prepare::crossed_rectangle({{0.0, 0.0}, {0.2, 0.2}}, 0.05));
+  for (std::size_t t = 0; t < s.model.triangle.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Index from = s.model.triangle[t][at(k)], to = s.model.triangle[t][at((k + 1) % 3)];
+      if (std::abs(s.model.point[at(from)].y) + std::abs(s.model.point[at(to)].y) < 1e-9)
+        if (from < to) s.model.discontinuities.push_back({{from, to}, -1});
+    }
+  s.support("roof", {-far, 0.0999}, {far, far}, {"x", "y"});
+  fdem::BoltConfig bolt;
+  bolt.name = "b";
+  bolt.points = {{0.01, 0.08}, {0.01, -0.08}};
+  bolt.segment = 0.02;
+  bolt.diameter = 0.01;
+  s.config.bolts = {bolt};
+  s.config.gravity = {0.0, -9.81};
+  s.config.local_damping = 0.3;
+  s.config.time.end = 1.0;
+  return s;
+}
+
+double fact_of(Method& method, const std::string& path) {
+  for (const Fact& fact : method.facts())
+    if (fact.path == path) return fact.value;
+  return -1.0;
+}
+
+TEST(Bolts, hold_the_weight_of_a_block) {
+  fdem::testing::Scene s = hanging();
+  s.config.local_damping = 0.8;
+  s.config.bolts[0].points = {{0.0, 0.08}, {0.0, -0.08}};  // else it tilts, and pries
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  while (method->time() < 0.02) method->advance({0.02, 1'000'000});
+  const double weight = 2500.0 * 9.81 * 0.2 * 0.1;
+  EXPECT_NEAR(fact_of(*method, "bolt.b.force"), weight, 0.01 * weight);
+  EXPECT_LT(method->energy().error_relative, 1e-2);
+}
+
+/// Struck and let go: the bolt gives momentum and spin to one half and takes them from the other.
+TEST(Bolts, pull_with_no_sum_and_no_moment) {
+  fdem::testing::Scene s = hanging();
+  s.config.supports.clear();
+  s.config.gravity = {};
+  s.config.local_damping = 0.0;
+  fdem::World w = s.world();
+  fdem::testing::stir(w, [](const Vec2& x) {
+    return x.y > 0.0 ? Vec2{0.3 * x.y, 0.1 - 0.5 * x.x} : Vec2{-0.2, -0.1 + x.x};
+  });
+  const fdem::testing::Momentum before = fdem::testing::momentum(w);
+  fdem::testing::run_to(w, 1e-3);
+  const fdem::testing::Momentum after = fdem::testing::momentum(w);
+  EXPECT_GT(std::abs(fdem::bolt_rows(w)[4].force), 1e3);
+  EXPECT_NEAR(norm(after.linear - before.linear), 0.0, 1e-10 * before.size);
+  EXPECT_NEAR(after.angular, before.angular, 1e-8 * before.size);
+}
+
+/// Two stages; the bolt comes with the second.
+fdem::testing::Scene staged() {
+  fdem::testing::Scene s = hanging();
+  s.config.gravity = {0.0, -5000.0};
+  s.config.bolts[0].stage = "bolted";
+  s.config.bolts[0].bond_strength = 1e5;
+  fdem::StageConfig bare, bolted;
+  bare.name = "bare";
+  bare.until = 5e-5;
+  bolted.name = "bolted";
+  bolted.until = 2e-4;
+  s.config.stages = {bare, bolted};
+  return s;
+}
+TEST(Bolts, are_alike_on_threads_schedule_and_ranks) {
+  expect_alike(staged());
+}
+TEST(Bolts, are_resumed) {
+  expect_resumed(staged());
+}
+
+std::string refused(const fdem::testing::Scene& s) {
+  std::string said;
+  for (const std::string& problem : fdem::bolt_problems(s.config)) said += problem + "\n";
+  try {
+    s.world();
+  } catch (const InputError& error) {
+    said += error.what();
+  }
+  return said;
+}
+TEST(Bolts, that_cannot_be_are_refused) {
+  fdem::testing::Scene s = hanging();
+  s.config.bolts[0].points[1].y = -0.2;
+  EXPECT_NE(refused(s).find("bolt.b.points: (0.01, -0.12) m lies in no triangle"),
+            std::string::npos)
+      << refused(s);
+  s = hanging();
+  s.config.bolts[0].segment = 1e-4;
+  EXPECT_NE(refused(s).find("bolt.b.segment: 0.0001 m are stiffer"), std::string::npos);
+  s = hanging();
+  s.config.bolts[0].stage = "later";
+  EXPECT_NE(refused(s).find("bolt.b.stage"), std::string::npos);
+  s = staged();
+  s.config.stages[1].remove = {"rock"};
+  EXPECT_NE(refused(s).find("lies in body rock, which stage bolted takes out"), std::string::npos)
+      << refused(s);
+}
+
+}  // namespace bolts_test
+}  // namespace breccia
