@@ -168,7 +168,8 @@ TEST(BuildFdem, NamesEveryProblemAtOnce) {
   EXPECT_TRUE(mentions(text,
                        "discontinuity.dyke: material = \"\" is not a joint law; there are: "
                        "rock_joint, vein"));
-  EXPECT_TRUE(mentions(text, "6 problems"));
+  EXPECT_TRUE(mentions(text, "body.plate: a hole needs a radius or corners, one of them"));
+  EXPECT_TRUE(mentions(text, "8 problems"));
 }
 
 }  // namespace build_fdem_test
