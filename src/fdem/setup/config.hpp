@@ -181,12 +181,12 @@ struct OutletConfig {
 
 /// [[load]]: forces on free edges
 struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
-  double speed = 0.0;      ///< of a fluid's front; 0: at once  [m/s]
-  double viscosity = 0.0;  ///< of a fluid that flows; 0: its pressure is alike  [Pa s]
-  double bulk = 2.2e9;     ///< its bulk modulus  [Pa]
-  double aperture = 1e-5;  ///< of cracks that are closed  [m]
-  OverTime<double> rate;   ///< at which it comes in, instead of a pressure  [m2/s]
-  bool filled = false;     ///< whether cracks that are open at the start hold it
+  double speed = 0.0;                   ///< of a fluid's front; 0: at once  [m/s]
+  double viscosity = 0.0;               ///< of a fluid that flows; 0: its pressure is alike  [Pa s]
+  double bulk = 2.2e9;                  ///< its bulk modulus  [Pa]
+  double aperture = 1e-5;               ///< of cracks that are closed  [m]
+  OverTime<double> rate;                ///< at which it comes in, instead of a pressure  [m2/s]
+  bool filled = false;                  ///< whether cracks that are open at the start hold it
   std::vector<OutletConfig> outlets{};  ///< at most one
 
   bool flows() const { return kind == "fluid" && viscosity > 0.0; }
