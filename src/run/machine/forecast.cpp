@@ -230,6 +230,29 @@ Meshed meshed(const fdem::BodyConfig& body, const std::string& folder) {
   return {area / (equilateral * body.mesh_size * body.mesh_size), body.mesh_size, border};
 }
 
+/// Height over width of all bodies together; 0: their meshes alone tell.
+double aspect_of(const std::vector<fdem::BodyConfig>& bodies, const std::string& folder) {
+  Vec2 least{1e300, 1e300}, most{-1e300, -1e300};
+  const auto take = [&](const Vec2& x) {
+    least = {std::min(least.x, x.x), std::min(least.y, x.y)};
+    most = {std::max(most.x, x.x), std::max(most.y, x.y)};
+  };
+  for (const fdem::BodyConfig& body : bodies) {
+    if (body.shape == "part") continue;
+    if (body.shape == "mesh" || body.shape == "geo") return 0.0;
+    const bool round = body.shape == "disc" || body.shape == "ring";
+    const Vec2 half = round ? Vec2{body.radius, body.radius} : 0.5 * body.size;
+    if (body.shape == "outline") {
+      for (const Vec2& corner : prepare::read_outline(folder + "/" + body.file))
+        take(body.center + corner);
+    } else {
+      take(body.center - half);
+      take(body.center + half);
+    }
+  }
+  return most.x > least.x ? (most.y - least.y) / (most.x - least.x) : 0.0;
+}
+
 /// A plate, or a few hexagons, with triangles of the body's size, above those that are there.
 fdem::BodyConfig plate_of(const fdem::BodyConfig& body, const Meshed& mesh, double& top) {
   fdem::BodyConfig plate;
@@ -274,13 +297,15 @@ Forecast forecast(const dem::Config& config, const std::string& folder) {
       pace += add_body(f, config, packed(config, prepare::whole_of(body, folder), folder));
     if (is_ldpm(config, body)) facets += f.bonds - bonds;
   }
-  finish(f, config.time);
+  finish(f, config.time, end_of(config.stages, config.time.end));
   f.here_s = wall_of(f.steps, f.items, pace / std::max(f.items, 1.0));
   if (facets == 0.0) f.gpu_s = f.steps * (14e-6 + 0.93e-9 * f.items);
   f.may_end_early = may_end_early(config.stages);
-  f.memory += own_dem + memory_plan(config).run_bytes + bytes_of_facet * facets;
-  add_output(f, config, {45e-9, 0.3e-6, 45e-9});
-  add_disk(f, config, 14 + config.probes.size(), {42.0, 9.1, 830.0, 0.65});
+  const double pixels = pixels_of(config.output);
+  f.memory += own_memory + memory_plan(config).run_bytes + bytes_of_facet * facets;
+  if (draws(config.output)) f.memory += pixel_of_spheres * pixels;
+  add_output(f, config, pixels, {45e-9, 0.3e-6, 45e-9});
+  add_disk(f, config, pixels, 14 + config.probes.size(), {42.0, 9.1, 830.0, 178.0, 0.65}, facets);
   return f;
 }
 
@@ -321,7 +346,7 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   const std::string rule = method->step_rule();
   take_step(f, (free_mesh ? least_of_free_mesh : 1.0) * method->time_step(),
             (rule.empty() ? "triangles" : rule) + " (finest mesh: " + of + ")");
-  finish(f, config.time);
+  finish(f, config.time, end_of(config.stages, config.time.end));
   // Bodies that press on each other cost contacts, which specimens lack.
   const double contacts = config.bodies.size() > 1 ? 1.5 : 1.0;
   f.here_s =
@@ -329,10 +354,12 @@ Forecast forecast(const fdem::Config& config, const std::string& folder) {
   f.gpu_s = f.steps * std::max(16e-6, 4.7e-6 + 0.22e-9 * f.items);
   constexpr double of_triangle = 1700.0;  // as in memory_plan, which counts no outlines  [bytes]
   f.may_end_early = may_end_early(config.stages);
-  f.memory = (by_gmsh ? own_with_gmsh : own_fdem) + of_triangle * f.items;
+  const double pixels = pixels_of(config.output, aspect_of(config.bodies, folder));
+  f.memory = own_memory + of_triangle * f.items;
+  if (draws(config.output)) f.memory += pixel_of_faces * pixels;
   if (by_gmsh) f.setup_s = begun_mesh + meshing_of_one * f.items;
-  add_output(f, config, {100e-9, 0.6e-6, 100e-9});
-  add_disk(f, config, 14 + config.probes.size(), {55.0, 10.0, 760.0, 0.066});
+  add_output(f, config, pixels, {100e-9, 0.6e-6, 100e-9});
+  add_disk(f, config, pixels, 14 + config.probes.size(), {45.0, 35.0, 300.0, 740.0, 0.12}, f.bonds);
   return f;
 }
 

@@ -13,7 +13,7 @@ Forecast forecast(const coupled::Config& config, const std::string& folder) {
   f.bonds = a.bonds + b.bonds;
   take_step(f, a.step, a.step_rule);
   take_step(f, b.step, b.step_rule);
-  finish(f, config.time);
+  finish(f, config.time, config.time.end);
   // Both take the steps of the one that needs more.
   for (const Forecast* part : {&a, &b}) {
     if (part->steps > 0.0) f.here_s += part->here_s * (f.steps / part->steps);
@@ -22,7 +22,8 @@ Forecast forecast(const coupled::Config& config, const std::string& folder) {
     f.memory += part->memory;
     f.disk += part->disk;
   }
-  f.memory -= own_dem;  // the program's own, once
+  f.memory -= own_memory;  // the program's own, once, and one picture
+  if (draws(config.output)) f.memory -= pixel_of_spheres * pixels_of(config.output);
   f.longest_part = (a.disk > b.disk ? a : b).longest_part;
   return f;
 }

@@ -74,17 +74,19 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
   const std::string rule = method->step_rule();
   take_step(f, by_gmsh ? step_of_flattest(specimen, folder) : method->time_step(),
             (rule.empty() ? "tetrahedra" : rule) + " (finest mesh: " + of + ")");
-  finish(f, config.time);
+  finish(f, config.time, end_of(config.stages, config.time.end));
   const double contacts = config.bodies.size() > 1 ? 1.5 : 1.0;
   f.here_s =
       contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
   f.gpu_s = f.steps * (0.4e-3 + 1.62e-9 * f.items);  // docs/theory-fdem3.md, at two sizes
   f.gpu = "H100";
   f.may_end_early = may_end_early(config.stages);
-  f.memory = (by_gmsh ? own_with_gmsh : own_fdem) + memory_plan(config).run_bytes;
+  const double pixels = pixels_of(config.output);
+  f.memory = own_memory + memory_plan(config).run_bytes;
+  if (draws(config.output)) f.memory += pixel_of_faces * pixels;
   if (by_gmsh) f.setup_s = begun_mesh + meshing_of_one * f.items;
-  add_output(f, config, {200e-9, 1.0e-6, 100e-9});
-  add_disk(f, config, 14 + config.probes.size(), {90.0, 20.0, 1200.0, 0.1});
+  add_output(f, config, pixels, {200e-9, 1.0e-6, 100e-9});
+  add_disk(f, config, pixels, 14 + config.probes.size(), {90.0, 20.0, 4500.0, 0.0, 0.1});
   return f;
 }
 

@@ -46,8 +46,11 @@ inline double wall_of(double steps, double items, double pace) {
 
 inline constexpr double bytes_of_facet = 450.0;  // of cases/rc_slab_ldpm, elements included
 
-/// Memory of a run of next to nothing, measured: libraries, threads, pictures.  [bytes]
-inline constexpr double own_dem = 40e6, own_fdem = 68e6, own_with_gmsh = 146e6;
+/// Memory of a run of next to nothing and without pictures, measured: libraries, threads.  [bytes]
+inline constexpr double own_memory = 25e6;
+
+/// Memory of a pixel while a picture is drawn, measured.  [bytes]
+inline constexpr double pixel_of_spheres = 13.0, pixel_of_faces = 98.0;  // drawn 3 x 3 finer
 
 /// Materials and rules of a mesh's case, without what it consists of and what is done to it.
 template <class Config>
@@ -64,14 +67,32 @@ Config without_bodies(Config config) {
 template <class Stage>
 bool may_end_early(const std::vector<Stage>& stages) {
   return std::any_of(stages.begin(), stages.end(), [](const Stage& s) {
-    return s.rest > 0.0 || !s.when.empty() || s.drop > 0.0 || s.until > 0.0;
+    return s.rest > 0.0 || !s.when.empty() || s.drop > 0.0;
   });
 }
 
+/// When the last stage ends, if none waits longer than its `until`; else time.end.  [s]
+template <class Stage>
+double end_of(const std::vector<Stage>& stages, double end) {
+  double sum = 0.0;
+  for (const Stage& s : stages) {
+    if (!(s.until > 0.0)) return end;
+    sum += s.until;
+  }
+  return stages.empty() ? end : std::min(sum, end);
+}
+
 /// Pixels of a picture of a run, by what is known before its model is.
-inline double pixels_of(const OutputConfig& output) {
+/// @param aspect  height of the model over its width; 0: not known
+inline double pixels_of(const OutputConfig& output, double aspect = 0.0) {
+  constexpr double lowest = 0.28, highest = 0.75, beside = 0.11;  // as pictures take; of the width
   const double width = output.width;
-  return width * (output.height > 0 ? 1.0 * output.height : 0.75 * width);
+  if (output.height > 0) return width * output.height;
+  return width * width *
+         (aspect > 0.0 ? std::clamp(beside + 0.78 * aspect, lowest, highest) : highest);
+}
+inline bool draws(const OutputConfig& output) {
+  return output.frames > 0 && output.pictures;
 }
 inline double rows_of(const CaseConfig& config) {
   return config.output.history > 0.0 ? config.time.end / config.output.history : 1000;
@@ -83,31 +104,36 @@ struct OutputRates {
   double frame;  ///< of an item or bond in a frame's files  [s]
   double pixel;  ///< of a picture  [s]
 };
-inline void add_output(Forecast& f, const CaseConfig& config, const OutputRates& rates) {
+/// @param pixels  of a picture
+inline void add_output(Forecast& f, const CaseConfig& config, double pixels,
+                       const OutputRates& rates) {
   constexpr double begun_row = 15e-6, begun_frame = 4e-3;  // whatever the model's size  [s]
   const double parts = f.items + f.bonds;
   const double rows = std::min(rows_of(config), f.steps), frames = config.output.frames + 1.0;
   const bool framed = config.output.frames > 0;
   const double fields = framed && config.output.fields ? begun_frame + rates.frame * parts : 0.0;
-  const double picture =
-      framed && config.output.pictures ? rates.pixel * pixels_of(config.output) : 0.0;
+  const double picture = draws(config.output) ? rates.pixel * pixels : 0.0;
   f.output_s = rows * (begun_row + rates.row * parts) + frames * (fields + picture);
 }
 
 /// Bytes of a result folder, as small cases of both methods leave them.
 struct DiskRates {
-  double element, bond, checkpoint, picture;
+  double element, bond;      ///< of fields, each frame
+  double saved, saved_bond;  ///< of a checkpoint
+  double picture;            ///< of a pixel
 };
-inline void add_disk(Forecast& f, const CaseConfig& config, std::size_t columns,
-                     const DiskRates& rates) {
+/// @param rich  those of the bonds that keep more than their breaking
+inline void add_disk(Forecast& f, const CaseConfig& config, double pixels, std::size_t columns,
+                     const DiskRates& rates, double rich = 0.0) {
   const double frames = config.output.frames + 1.0;
-  const double rows = rows_of(config), pixels = pixels_of(config.output);
+  const double rows = rows_of(config);
   const double fields =
       config.output.fields ? frames * (rates.element * f.items + rates.bond * f.bonds) : 0.0;
-  const double pictures = config.output.pictures ? frames * rates.picture * pixels : 0.0;
+  const double pictures = draws(config.output) ? frames * rates.picture * pixels : 0.0;
   const double history = std::min(rows, f.steps) * 19.0 * static_cast<double>(columns);
   const double kept = std::min<double>(config.checkpoint.keep, f.here_s / config.checkpoint.wall);
-  const double saved = std::max(1.0, std::floor(kept)) * rates.checkpoint * f.items;
+  const double each = rates.saved * f.items + rates.saved_bond * rich;
+  const double saved = std::max(1.0, std::floor(kept)) * each;
   f.disk = fields + pictures + history + saved;
   const std::pair<double, const char*> parts[] = {
       {fields, "fields"}, {pictures, "pictures"}, {history, "history.csv"}, {saved, "checkpoints"}};
@@ -122,9 +148,10 @@ inline void take_step(Forecast& f, double step, const std::string& rule) {
   }
 }
 
-inline void finish(Forecast& f, const TimeConfig& time) {
+/// @param end  of the last stage  [s]
+inline void finish(Forecast& f, const TimeConfig& time, double end) {
   if (f.step == 0.0 || f.step > time.max_step) take_step(f, time.max_step, "time.max_step");
-  if (f.step > 0.0) f.steps = std::ceil(time.end / f.step);
+  if (f.step > 0.0) f.steps = std::ceil(end / f.step);
 }
 
 }  // namespace breccia

@@ -149,10 +149,27 @@ TEST(Forecast, counts_the_tests_for_a_fracture_energy_and_the_programs_own_memor
   EXPECT_FALSE(f.may_end_early);
 }
 
-TEST(Forecast, says_that_stages_may_end_a_run_early) {
+TEST(Forecast, ends_with_the_last_of_stages_that_end_by_time_and_says_when_others_may_end_early) {
   const std::string folder = std::string(source_dir) + "/cases/dfn_slope";
-  const auto config = read_case<fdem::Config>(folder + "/small.toml", {});
+  auto config = read_case<fdem::Config>(folder + "/small.toml", {});
+  ASSERT_EQ(config.time.end, 5.0);
+  const Forecast by_time = forecast(config, folder);
+  EXPECT_NEAR(by_time.steps, 0.8 / by_time.step, 1.0);  // stages of 0.3, 0.2 and 0.3 s
+  EXPECT_FALSE(by_time.may_end_early);
+  config.stages.back().until = 0.0;
+  EXPECT_NEAR(forecast(config, folder).steps, 5.0 / by_time.step, 1.0);
+  config.stages.front().rest = 1e-5;
   EXPECT_TRUE(forecast(config, folder).may_end_early);
+}
+
+TEST(Forecast, memory_follows_the_pixels_of_the_pictures) {
+  fdem::Config config = read_case<fdem::Config>(CaseText{beam, "beam.toml"}, {});
+  config.output.frames = 4;
+  const double as_low_as_the_beam = forecast(config, ".").memory;
+  config.output.height = 960;
+  EXPECT_NEAR(forecast(config, ".").memory - as_low_as_the_beam, 98.0 * 1280.0 * (960 - 358), 1e6);
+  config.output.pictures = false;
+  EXPECT_LT(forecast(config, ".").memory, as_low_as_the_beam - 40e6);
 }
 
 TEST(CheckCommand, refuses_a_body_that_nobody_can_mesh) {
