@@ -24,6 +24,12 @@ void list_templates(const char* command) {
   fmt::print("Take one: breccia {} {}\n", command, case_templates().front().name);
 }
 
+std::vector<std::string> template_names() {
+  std::vector<std::string> names;
+  for (const CaseTemplate& t : case_templates()) names.push_back(t.name);
+  return names;
+}
+
 void write_new(const std::string& file, const CaseTemplate& from) {
   if (std::filesystem::exists(file))
     throw InputError(file + ": exists already; name another file, as in breccia new " + from.name +
@@ -78,7 +84,7 @@ void add_new(CLI::App& program) {
   const auto wish = std::make_shared<Wish>();
   CLI::App* const command = program.add_subcommand("new", "a small case to begin from");
   command->add_option("NAME", wish->name,
-                      "beam, cylinder, plate, slope, disc or slab; none: lists");
+                      fmt::format("{}; none: lists", fmt::join(template_names(), ", ")));
   command->add_option("FILE", wish->file, "where to write it; default: NAME.toml");
   command->footer("Example: breccia new beam && breccia run beam.toml");
   command->callback([wish] {

@@ -51,6 +51,8 @@ TEST_F(FirstHour, new_overwrites_nothing_and_lists_what_there_is) {
   EXPECT_TRUE(says("did you mean beam?")) << told;
   EXPECT_EQ(run("new"), 0);
   EXPECT_TRUE(says("slope")) << told;
+  EXPECT_EQ(run("new --help"), 0);
+  EXPECT_TRUE(says("slab, bar")) << told;
 }
 
 TEST_F(FirstHour, doctor_tells_cores_memory_programs_and_disk_and_leaves_nothing) {
