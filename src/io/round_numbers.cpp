@@ -82,6 +82,17 @@ ValueRange rounded_outwards(const ValueRange& range) {
   return {step * std::floor(low / step + 1e-6), step * std::ceil(high / step - 1e-6)};
 }
 
+ValueRange beyond_rounding(const ValueRange& range, const std::string& unit) {
+  const double least = unit == "Pa"    ? 1.0
+                       : unit == "N"   ? 1e-6
+                       : unit == "m"   ? 1e-12
+                       : unit == "m/s" ? 1e-9
+                                       : 0.0;
+  const double largest = std::max(std::fabs(range.low), std::fabs(range.high));
+  if (largest == 0.0 || largest >= least) return range;
+  return {range.low < 0.0 ? -least : 0.0, least};
+}
+
 std::string time_text(double seconds) {
   const double size = std::fabs(seconds);
   if (size == 0.0) return "0 s";

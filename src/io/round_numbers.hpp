@@ -27,6 +27,9 @@ struct Tick {
 std::vector<Tick> ticks_of(const ValueRange& range, double factor);
 /// The range widened to round numbers; a range of no width becomes one of some width.
 ValueRange rounded_outwards(const ValueRange& range);
+/// The range, or where its values are the rounding of nothing (stresses below 1 Pa, forces below
+/// 1 uN, lengths below 1e-12 m, velocities below 1e-9 m/s) one up to that size.
+ValueRange beyond_rounding(const ValueRange& range, const std::string& unit);
 
 /// A time with its unit, "1.206 ms"; a length likewise, "200 mm".
 std::string time_text(double seconds);

@@ -186,7 +186,7 @@ Spread spread_of(const std::vector<float>& values) {
           whole};
 }
 
-Legend::Bar bar_of(const std::string& name, const Spread& spread,
+Legend::Bar bar_of(const std::string& name, const std::string& unit, const Spread& spread,
                    const std::optional<ValueRange>& wanted) {
   const bool ends_on_damage = name.size() >= 6 && name.substr(name.size() - 6) == "damage";
   if (ends_on_damage && spread.whole.low >= 0.0 && spread.whole.high <= 1.0) {
@@ -206,7 +206,7 @@ Legend::Bar bar_of(const std::string& name, const Spread& spread,
   } else if (bar.range.low > 0.0 && bar.range.low < 0.5 * bar.range.high) {
     bar.range.low = 0.0;
   }
-  bar.range = rounded_outwards(bar.range);
+  bar.range = rounded_outwards(beyond_rounding(bar.range, unit));
   return bar;
 }
 
@@ -468,7 +468,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
     colors = category_colors(frame, *selected, values, coloring.legend);
   } else {
     const Spread spread = spread_of(values);
-    coloring.legend.bar = bar_of(field, spread, range);
+    coloring.legend.bar = bar_of(field, selected->field->unit, spread, range);
     const bool bodies = !coloring.of_lines && selected->carrier != Carrier::points;
     if (coloring.legend.bar->map == ColorMap::damage && bodies)
       coloring.legend.bar->map = ColorMap::ground;

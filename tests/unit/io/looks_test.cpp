@@ -380,6 +380,19 @@ TEST(looks, colours_by_logarithm_have_even_steps_for_powers_of_ten) {
   EXPECT_EQ(coloring.legend.title, "pull [kN]");
 }
 
+TEST(looks, rounding_of_nothing_is_not_shown_at_full_colour) {
+  Frame frame = spheres({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, 0.4);
+  RenderOptions options = plain();
+  options.field = "stress";
+  const auto shown = [&](float largest) {
+    frame.point_fields = {{"stress", "Pa", 1, {-largest, 0.0F, largest}}};
+    return color_frame(frame, options).legend.bar->range;
+  };
+  EXPECT_EQ(shown(8e-6F).high, 1.0);  // a body at rest, stiff enough for 1e-16 of its modulus
+  EXPECT_EQ(shown(8e-6F).low, -1.0);
+  EXPECT_EQ(shown(8.0F).high, 8.0);
+}
+
 TEST(looks, edges_of_triangles_are_drawn_and_words_are_left_out_if_asked_for) {
   RenderOptions options = plain("z");
   const std::string usual = svg_content(plate(1.0), options);
