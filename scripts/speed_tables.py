@@ -101,9 +101,10 @@ def measured(case, program):
         if done.returncode != 0:
             raise SystemExit(f"{case}: exit code {done.returncode}")
         of = json.loads((out / "summary.json").read_text())
-    model = of["model"]
-    return {"case": case.parent.name, "method": of["method"], "items": int(model.get("elements") or model["triangles"]),
-            "bonds": int(model["links"] if "links" in model else model["joints"]), "steps": of["steps"],
+    models = [of["model"]] if "model" in of else [part["model"] for part in of.values() if isinstance(part, dict) and "model" in part]
+    count = lambda kinds: sum(int(model.get(kind, 0)) for model in models for kind in kinds)
+    return {"case": case.parent.name, "method": of["method"] if isinstance(of["method"], str) else "+".join(of["method"]),
+            "items": count(("elements", "triangles", "tetrahedra")), "bonds": count(("links", "joints")), "steps": of["steps"],
             "processor_s": round(sum(after[2:4]) - sum(before[2:4]), 2), "hash": of["state_hash"], "commit": of["breccia"]["commit"], "cpu": of["machine"]["cpu"]}
 
 
