@@ -1,4 +1,4 @@
-// What a search changes in tiles: their contacts, and the elements that these lead to.
+// Changes of tiles by a search: their contacts, and the elements that these lead to.
 
 #include <algorithm>
 #include <cstring>

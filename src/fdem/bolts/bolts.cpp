@@ -55,7 +55,7 @@ void each_chain(const std::vector<Bolt>& bolts, std::int32_t stage, BoltNode* no
   }
 }
 
-/// Likewise of a whole world, which stays as it is.
+/// Visits each chain of a whole world, which stays as it is.
 template <class Visit>
 void each_chain_of(const World& whole, const Visit& visit) {
   std::vector<TriangleNodes> nodes;

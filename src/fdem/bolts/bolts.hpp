@@ -49,7 +49,7 @@ struct BoltRow {
 };
 std::vector<BoltRow> bolt_rows(const World& whole);
 
-/// What a bolt holds and has taken up.  [J/m]
+/// Energies of a bolt: stored, spent by yield, rubbed off in its bond.  [J/m]
 struct BoltEnergy {
   double elastic = 0.0, yielded = 0.0, rubbed = 0.0;
 };

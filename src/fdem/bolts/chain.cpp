@@ -24,7 +24,7 @@ double BoltChain::bond(std::size_t i) const {
   return std::clamp(elastic_bond(i), -most, most);
 }
 
-/// What the balance of a node misses.  [N/m]
+/// The force that is left over in the balance of a node.  [N/m]
 double BoltChain::missing_at(std::size_t i) const {
   if (is_anchored(i)) return 0.0;
   return (i + 1 < nodes() ? force(i) : 0.0) - (i > 0 ? force(i - 1) : 0.0) - bond(i);

@@ -6,7 +6,7 @@
 
 namespace breccia::fdem {
 
-/// What a bolt is made of, per unit thickness.
+/// Constants of a bolt and its bond, per unit thickness.
 struct BoltLaw {
   double stiffness = 0.0;       ///< E A  [N/m]
   double yield = 0.0;           ///< f_y A  [N/m]
@@ -32,8 +32,9 @@ struct BoltNode {
 ///   anchored
 ///
 /// with half of both segments as l_i. The bar has no mass of its own: it is in balance at any time.
-/// What is beyond the bounds goes into p and r. Rock feels N_i t_i - N_i-1 t_i-1 at node i, with
-/// the directions t of the segments: what the bar does to it has neither a sum nor a moment.
+/// Strain beyond the yield goes into p, slip beyond the bond into r. Rock feels N_i t_i - N_i-1
+/// t_i-1 at node i, with the directions t of the segments: what the bar does to it has neither a
+/// sum nor a moment.
 class BoltChain {
  public:
   /// @param length  L_j of each segment, one less than the nodes
@@ -45,7 +46,7 @@ class BoltChain {
   void settle();
   /// N of a segment, pulled above 0.  [N/m]
   double force(std::size_t segment) const;
-  /// What the bar holds.  [J/m]
+  /// Elastic energy of bar and bond.  [J/m]
   double elastic() const;
 
  private:
