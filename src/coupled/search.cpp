@@ -60,13 +60,38 @@ Candidates boxes_of_spheres(const World& w, double more) {
   }
   return of;
 }
+/// Whether face k of a tetrahedron presses on spheres. Live joints are no border of matter: what
+/// tells of them on both sides cancels but for what their opening takes (docs/theory-coupled.md,
+/// 1).
+bool presses(const fdem3::World& t, Index tetrahedron, Index k) {
+  return (t.tetrahedra.exposed.data()[tetrahedron] >> k & 1) != 0 ||
+         t.faces.data()[tetrahedron].at[k] >= 0;
+}
+bool presses(const fdem3::World& t, Index tetrahedron) {
+  bool some = false;
+  for (Index k = 0; k < 4; ++k) some = some || presses(t, tetrahedron, k);
+  return some;
+}
+/// The faces of a tetrahedron that press, and those on the other side of its joints.
+template <class List>
+void list_faces(const fdem3::World& t, Index tetrahedron, const List& list) {
+  for (Index k = 0; k < 4; ++k) {
+    if (!presses(t, tetrahedron, k)) continue;
+    list(4 * tetrahedron + k);
+    const Index entry = t.faces.data()[tetrahedron].at[k];
+    if (entry < 0) continue;
+    const Index joint = pair_of(entry);
+    list(side_of(entry) == 0 ? t.joints.face_b.data()[joint] : t.joints.face_a.data()[joint]);
+  }
+}
+
 Candidates boxes_of_tetrahedra(const World& w, double more) {
   const fdem3::World& t = *w.tetrahedra;
   const Vec3 way = t.reach.drift.way(t.time);
   Candidates of;
   for (Index i = 0; i < t.reach.element.size(); ++i) {
     const Index tetrahedron = t.reach.element.data()[i];
-    if (t.tetrahedra.exposed.data()[tetrahedron] == 0) continue;
+    if (!presses(t, tetrahedron)) continue;
     Box box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
     double extent = 0.0;
     for (const Vec3& corner : t.reach.reference.data()[i].at) {
@@ -158,10 +183,10 @@ void find_faces(World& w) {
     const Index a = found.a.data()[i], b = found.b.data()[i];
     if (a >= first || b < first) continue;  // of one kind
     const Index sphere = spheres.item[at(a)], tetrahedron = solids.item[at(b - first)];
-    touches.push_back(key_of(sphere, t.tetrahedra.group.data()[tetrahedron]));
-    for (Index k = 0; k < 4; ++k)
-      if ((t.tetrahedra.exposed.data()[tetrahedron] >> k & 1) != 0)
-        faces.push_back(key_of(sphere, 4 * tetrahedron + k));
+    list_faces(t, tetrahedron, [&](Index face) {
+      faces.push_back(key_of(sphere, face));
+      touches.push_back(key_of(sphere, t.tetrahedra.group.data()[face / 4]));
+    });
   }
   sort_once(faces);
   sort_once(touches);

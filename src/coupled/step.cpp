@@ -75,8 +75,8 @@ void press(World& w) {
   for_each(
       s.exec, w.touches.size(),
       PressFaces{s.last_dt, e.state.view(), e.material.view(), t.nodes.view(), t.material.view(),
-                 t.group.view(), w.given->laws.view(), w.given->materials, w.rows.view(),
-                 w.row_of_touch.view(), w.bonded.view(), w.touches.pairs.b.view(),
+                 t.group.view(), t.exposed.view(), w.given->laws.view(), w.given->materials,
+                 w.rows.view(), w.row_of_touch.view(), w.bonded.view(), w.touches.pairs.b.view(),
                  w.faces.pairs.b.view(), w.touches.history.state.view(),
                  w.touches.history.force.view(), w.faces.history.force.view(), w.pressed.view()});
   for_each(s.exec, w.rows.size(),

@@ -80,17 +80,20 @@ struct SphereRow {
   Index touch, touch_end, face, face_end, bond, bond_end;
 };
 
-/// Sums over the faces of a touch.
+/// Sums over the faces of a touch: all push, but those of live joints do not rub.
 struct PressSum {
-  Vec3 force{};                           ///< N on the sphere  [N]
-  Vec3 torque{};                          ///< about its centre  [N m]
-  Vec3 centre{};                          ///< of pressure, weighed  [N m]
-  Vec3 velocity{};                        ///< of the faces there, weighed  [N m/s]
-  double weight = 0.0;                    ///< [N]
-  double normal = 0.0, tangential = 0.0;  ///< stiffnesses  [N/m]
-  double friction = 0.0;                  ///< weighed  [N]
+  Vec3 force{};             ///< N on the sphere  [N]
+  Vec3 torque{};            ///< about its centre  [N m]
+  double push = 0.0;        ///< of all  [N]
+  double normal = 0.0;      ///< stiffness of all  [N/m]
+  Vec3 centre{};            ///< of pressure of those that rub, weighed  [N m]
+  Vec3 velocity{};          ///< of those there, weighed  [N m/s]
+  double weight = 0.0;      ///< [N]
+  double tangential = 0.0;  ///< stiffness  [N/m]
+  double friction = 0.0;    ///< weighed  [N]
 
-  BR_HD bool touches() const { return weight > 0.0; }
+  BR_HD bool touches() const { return push > 0.0; }
+  BR_HD bool rubs() const { return weight > 0.0; }
 };
 
 /// Pushes by flux, and Coulomb friction with one spring a touch, at the centre of pressure.
@@ -102,6 +105,7 @@ struct PressFaces {
   View<const fdem3::TetrahedronNodes> nodes;
   View<const Index> material;
   View<const std::int16_t> body;
+  View<const std::uint8_t> exposed;
   View<const PressLaw> laws;  ///< of materials p, q at p materials + q
   Index materials;            ///< of tetrahedra
   View<const SphereRow> rows;
@@ -127,11 +131,13 @@ struct PressFaces {
     if (!sum.touches() && kept.touches == 0) return;  // forces are zero already
     SphereForce now{sum.force, sum.torque, 0.0, 0.0};
     Vec3 pull{};
-    if (sum.touches()) {
+    if (sum.rubs()) {
       const Vec3 centre = (1.0 / sum.weight) * sum.centre;
       pull = rub(s, centre, kept, sum);
       now.force += pull;
       now.torque += cross(centre - s.position, pull);
+    }
+    if (sum.touches()) {
       now.straight = sum.normal + sum.tangential;
       now.turning = 1.5 * sum.tangential * s.radius * s.radius;  // rows of three
     }
@@ -146,6 +152,8 @@ struct PressFaces {
   }
 
  private:
+  /// Faces of live joints do not.
+  BR_HD bool rubs(Index j) const { return (exposed[face[j] / 4] >> (face[j] % 4) & 1) != 0; }
   BR_HD void corners(Index j, Vec3 (&x)[3], Vec3 (&v)[3]) const {
     const fdem3::TetrahedronNodes& n = nodes[face[j] / 4];
     for (int k = 0; k < 3; ++k) {
@@ -168,12 +176,14 @@ struct PressFaces {
     p.stiffness = penalty * flux.area * (1.0 + law.tangential);
     sum.force += p.push * p.normal;
     sum.torque += penalty * cross(flux.lever, flux.normal);
+    sum.push += p.push;
+    sum.normal += penalty * flux.area;
+    if (!rubs(j)) return;
     sum.centre += p.push * s.position + penalty * flux.lever;
     // The lever leads along the face from the foot of the centre.
     sum.centre -= (p.push * dot(s.position - x[0], p.normal)) * p.normal;
     for (int k = 0; k < 3; ++k) sum.velocity += p.share[k] * v[k];
     sum.weight += p.push;
-    sum.normal += penalty * flux.area;
     sum.tangential += law.tangential * penalty * flux.area;
     sum.friction += law.friction * p.push;
   }
@@ -208,9 +218,11 @@ struct PressFaces {
     const Pressed& p = pressed[j];
     const FaceForce last = on_face[j];
     FaceForce now{};
-    if (p.touches())
-      for (int k = 0; k < 3; ++k)
-        now.at[k] = -(p.share[k] * p.normal) - (p.share[k] / sum.weight) * pull;
+    if (p.touches()) {
+      for (int k = 0; k < 3; ++k) now.at[k] = -(p.share[k] * p.normal);
+      if (rubs(j))
+        for (int k = 0; k < 3; ++k) now.at[k] -= (p.share[k] / sum.weight) * pull;
+    }
     on_face[j] = now;
     double power = 0.0;
     for (int k = 0; k < 3; ++k) power += dot(last.at[k] + now.at[k], v[k]);
