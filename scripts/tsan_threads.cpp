@@ -1,9 +1,11 @@
 // What g++ calls for `#pragma omp`, on threads that ThreadSanitizer sees: GCC's libgomp waits by
 // futexes of its own, which would make each loop a race. Linked before libgomp where BR_SANITIZE
-// has "thread". Of OpenMP it knows what the program uses: parallel, for (static, dynamic), barrier.
+// has "thread". Of OpenMP it knows what the program uses: parallel, for (static; dynamic once in a
+// region), barrier.
 
 #include <atomic>
 #include <condition_variable>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -27,7 +29,19 @@ struct Team {
     all_there.wait(lock, [&] { return turns != turn; });
   }
 
-  unsigned size;
+  /// Of the region's dynamic loop; the first thread that comes here sets it up.
+  void begin_loop(long begin, long after, long by, long at_once) {
+    const std::lock_guard lock(mutex);
+    if (came++ == 0) {
+      next = begin;
+      end = after;
+      step = by;
+      chunk = at_once;
+    }
+    if (came > size) std::abort();  // a second loop, which none of this is made for
+  }
+
+  unsigned size, came = 0;
   std::atomic<long> next{0};  ///< iteration of a dynamic loop
   long end = 0, step = 1, chunk = 1;
 
@@ -141,6 +155,11 @@ bool GOMP_loop_nonmonotonic_dynamic_next(long* begin, long* end) {
   *end = *begin + ahead;
   if (up ? *end > team->end : *end < team->end) *end = team->end;
   return true;
+}
+bool GOMP_loop_nonmonotonic_dynamic_start(long begin, long after, long step, long chunk, long* from,
+                                          long* end) {
+  team->begin_loop(begin, after, step, chunk);
+  return GOMP_loop_nonmonotonic_dynamic_next(from, end);
 }
 void GOMP_loop_end_nowait() {}
 

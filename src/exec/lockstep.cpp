@@ -17,6 +17,9 @@
 #if defined(BR_TELLS_STACKS)
 #include <sanitizer/common_interface_defs.h>
 #endif
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#endif
 
 // A jump to another stack is what _FORTIFY_SOURCE takes for a fault: CMakeLists.txt switches that
 // off here.
@@ -25,11 +28,14 @@ namespace {
 
 constexpr std::size_t stack_bytes = 64 * 1024;
 
-/// Tells AddressSanitizer of a stack before a jump leads there.
+/// Tells sanitizers of a stack before a jump leads there.
 struct Stack {
   const void* bottom = nullptr;
   std::size_t size = 0;
-  void* frames = nullptr;  ///< of its own making
+  void* frames = nullptr;  ///< of AddressSanitizer's own making
+#if defined(__SANITIZE_THREAD__)
+  void* fiber = nullptr;  ///< ThreadSanitizer's record of it
+#endif
 };
 
 /// One lane: where it stands, on its own stack, which it keeps from one run to the next.
@@ -60,12 +66,17 @@ thread_local std::unique_ptr<Lanes> lanes_here;
 
 void live();
 
-/// Just before a jump.
-void leave_for([[maybe_unused]] Lanes& lanes, [[maybe_unused]] Stack& next) {
+/// Just before a jump. ThreadSanitizer counts calls and returns on each stack: none may lie
+/// between.
+[[gnu::always_inline]] inline void leave_for([[maybe_unused]] Lanes& lanes,
+                                             [[maybe_unused]] Stack& next) {
 #if defined(BR_TELLS_STACKS)
   Stack& now = *lanes.on;
   lanes.on = &next;
   __sanitizer_start_switch_fiber(&now.frames, next.bottom, next.size);
+#endif
+#if defined(__SANITIZE_THREAD__)
+  __tsan_switch_to_fiber(next.fiber, 0);
 #endif
 }
 /// Just after it.
@@ -90,7 +101,11 @@ void arrive([[maybe_unused]] Lanes& lanes) {
   }
   lane.started = true;
   lane.stack = std::make_unique<char[]>(stack_bytes);
-  lane.told = {lane.stack.get(), stack_bytes, nullptr};
+  lane.told.bottom = lane.stack.get();
+  lane.told.size = stack_bytes;
+#if defined(__SANITIZE_THREAD__)
+  lane.told.fiber = __tsan_create_fiber(0);
+#endif
   getcontext(&lanes.begun);
   lanes.begun.uc_stack.ss_sp = lane.stack.get();
   lanes.begun.uc_stack.ss_size = stack_bytes;
@@ -136,6 +151,9 @@ void run(int lanes, void (*work)(void*, int), void* context) {
   }
   here.on = &here.caller_told;
   here.caller_told = {};
+#if defined(__SANITIZE_THREAD__)
+  here.caller_told.fiber = __tsan_get_current_fiber();
+#endif
   if (_setjmp(here.caller) == 0) go_on(here, 0);
   arrive(*lanes_here);
   lanes_here->current = 0;

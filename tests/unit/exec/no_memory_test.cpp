@@ -29,15 +29,15 @@ void take_what_there_is() {
     }
 }
 
-/// AddressSanitizer ends the program where `new` finds no memory, whatever handles it.
-#if defined(__SANITIZE_ADDRESS__)
-#define SKIP_UNDER_ADDRESS_SANITIZER() GTEST_SKIP() << "new does not throw here"
+/// Sanitizers end the program where `new` finds no memory, whatever handles it.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SKIP_UNDER_SANITIZERS() GTEST_SKIP() << "new does not throw here"
 #else
-#define SKIP_UNDER_ADDRESS_SANITIZER()
+#define SKIP_UNDER_SANITIZERS()
 #endif
 
 TEST(no_memory, is_told_by_exception_where_nothing_else_is_asked_for) {
-  SKIP_UNDER_ADDRESS_SANITIZER();
+  SKIP_UNDER_SANITIZERS();
   EXPECT_EXIT(
       {
         end_without_memory();
@@ -51,7 +51,7 @@ TEST(no_memory, is_told_by_exception_where_nothing_else_is_asked_for) {
 }
 
 TEST(no_memory, ends_the_program_in_a_scope_that_needs_it) {
-  SKIP_UNDER_ADDRESS_SANITIZER();
+  SKIP_UNDER_SANITIZERS();
   EXPECT_EXIT(
       {
         end_without_memory();
@@ -62,7 +62,7 @@ TEST(no_memory, ends_the_program_in_a_scope_that_needs_it) {
 }
 
 TEST(no_memory, ends_the_program_in_functions_that_throw_nothing) {
-  SKIP_UNDER_ADDRESS_SANITIZER();
+  SKIP_UNDER_SANITIZERS();
   EXPECT_EXIT(
       {
         end_without_memory();
@@ -72,7 +72,7 @@ TEST(no_memory, ends_the_program_in_functions_that_throw_nothing) {
 }
 
 TEST(no_memory, of_a_summary_ends_the_program) {
-  SKIP_UNDER_ADDRESS_SANITIZER();
+  SKIP_UNDER_SANITIZERS();
   const Summary summary;
   EXPECT_EXIT(
       {

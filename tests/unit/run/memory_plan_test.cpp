@@ -80,8 +80,8 @@ pack = { count = 2000000 }
 )";
 
 TEST(MemoryPlan, what_cannot_fit_is_refused_before_it_is_packed) {
-#if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "AddressSanitizer's shadow does not fit under a limit";
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer's shadow does not fit under a limit";
 #endif
   const ScratchFolder folder;
   replace_file(folder / "box.toml", box);
