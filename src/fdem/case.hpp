@@ -81,7 +81,7 @@ struct Case {
   FlowCase flow;
   std::vector<Bolt> bolts;
   EmissionConfig emission;             ///< which breaks are one event
-  std::vector<CrackSide> open_cracks;  ///< edges open from the start, where there are fluids
+  std::vector<CrackSide> open_cracks;  ///< edges of discontinuities open from the start
   Buffer<ElasticTriangle> laws;        ///< stage  (materials; where stress in situ has a slope:
                                        ///< triangles of the whole mesh)
   std::vector<Index> materials_of;     ///< likewise, else empty  (triangles of the whole mesh)

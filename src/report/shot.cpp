@@ -174,9 +174,12 @@ std::vector<std::uint8_t> broken_lines(const Shot& shot) {
   std::vector<std::uint8_t> broken(shot.lines(), 0);
   const FrameField* const state = field_named(shot.line_fields, "state");
   const FrameField* const damage = field_named(shot.line_fields, "damage");
-  for (std::size_t l = 0; l < broken.size(); ++l)
+  const FrameField* const mode = field_named(shot.line_fields, "mode");
+  for (std::size_t l = 0; l < broken.size(); ++l) {
+    if (mode != nullptr && mode->values[l] < 0.0F) continue;  // open from the start
     broken[l] = (state != nullptr && state->values[l] >= 2.0F) ||
                 (state == nullptr && damage != nullptr && damage->values[l] >= 1.0F);
+  }
   return broken;
 }
 

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "core/state_hash.hpp"
+#include "fdem/setup/mesh_edges.hpp"
 #include "mpi/on_ranks.hpp"
 #include "run/frames/frame_parts.hpp"
 
@@ -102,6 +105,44 @@ TEST(Frames, of_triangles_that_break_are_the_same_by_parts) {
                                         "mode",   "pressure", "time"};
   for (const char* joints : {"intrinsic", "extrinsic"})
     compare(impact(joints), 300, 60, fields, true);
+}
+
+/// A disc that strikes a plate with a crack across, which was open before.
+Scene notched_impact() {
+  Scene scene = impact("intrinsic");
+  const fdem::Model& model = scene.model;
+  const auto corner = [&](Index vertex) { return model.point[static_cast<std::size_t>(vertex)]; };
+  std::vector<fdem::Model::Discontinuity> open;
+  for (const fdem::MeshEdge& e : mesh_edges(model)) {
+    const Vec2 middle = 0.5 * (corner(e.low) + corner(e.high));
+    if (e.b >= 0 && middle.y < -0.002 && middle.x > 0.004 && middle.x < 0.01)
+      open.push_back({{e.low, e.high}, -1});
+  }
+  scene.model.discontinuities = open;
+  return scene;
+}
+
+TEST(Frames, of_cracks_that_were_open_before_are_the_same_by_parts) {
+  const Scene scene = notched_impact();
+  compare(scene, 180, 60, {"damage", "mode", ""}, false);
+  const Frame frame =
+      on_all_ranks(1, 1, scene, [](Method& method, bool) { return method.frame(); });
+  const std::size_t sides = 2 * scene.model.discontinuities.size();
+  ASSERT_GT(sides, 10U);
+  ASSERT_EQ(frame.line_fields[0].name, "mode");
+  EXPECT_EQ(frame.line_fields[0].values, std::vector<float>(sides, -1.0F));
+  // Their ends are corners of the mesh, each side on a triangle of its own.
+  std::map<std::pair<double, double>, int> ends;
+  for (const std::int32_t point : frame.lines) {
+    const Vec3& x = frame.position[static_cast<std::size_t>(point)];
+    ++ends[{x.x, x.y}];
+  }
+  for (const fdem::Model::Discontinuity& d : scene.model.discontinuities)
+    for (const Index vertex : d.edge) {
+      const Vec2& x = scene.model.point[static_cast<std::size_t>(vertex)];
+      ends[{x.x, x.y}] -= 2;
+    }
+  for (const auto& [place, left] : ends) EXPECT_EQ(left, 0) << place.first << ' ' << place.second;
 }
 
 TEST(Frames, as_vtkhdf_are_the_same_by_parts) {

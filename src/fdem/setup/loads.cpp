@@ -107,7 +107,6 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     return a.triangle < b.triangle;
   });
   set_up(w).loaded = std::move(loaded);
-  if (w.given->fluids.empty()) set_up(w).open_cracks.clear();
   spread_fluid(w);
   list_loaded_edges(w);
   copy_to(w.dashpots, dashpots);

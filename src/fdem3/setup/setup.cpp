@@ -138,7 +138,10 @@ class Joining {
             : table_
                   .of_pair[static_cast<std::size_t>(model_.material[a]) * config_.materials.size() +
                            static_cast<std::size_t>(model_.material[b])];
-    if (found == fdem::BondTable::nothing) return open(f, 3);
+    if (found == fdem::BondTable::nothing) {
+      if (weak != weak_.end()) set_up(w_).open_cracks.push_back({f.a, f.b});
+      return open(f, 3);
+    }
     if (found == fdem::BondTable::bonded) {
       slot(f.a) = slot(f.b) = face_bonded;
       for (const Index vertex : f.corners) tied_[at(vertex)] = 1;

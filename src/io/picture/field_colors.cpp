@@ -217,8 +217,10 @@ void finish_legend(Legend& legend, const std::string& name, const std::string& u
   const ScaledUnit scaled = scaled_unit(unit, largest);
   legend.title = scaled.unit.empty() ? name : fmt::format("{} [{}]", name, scaled.unit);
   bar.ticks = ticks_of(bar.range, scaled.factor);
-  if (whole.high > bar.range.high) bar.note = fmt::format("max {:.3g}", scaled.factor * whole.high);
-  if (whole.low < bar.range.low) {
+  const double rounding = 1e-6 * (bar.range.high - bar.range.low);
+  if (whole.high > bar.range.high + rounding)
+    bar.note = fmt::format("max {:.3g}", scaled.factor * whole.high);
+  if (whole.low < bar.range.low - rounding) {
     bar.note +=
         fmt::format("{}min {:.3g}", bar.note.empty() ? "" : ", ", scaled.factor * whole.low);
   }

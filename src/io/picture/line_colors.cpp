@@ -124,13 +124,17 @@ void show_cracks(const Frame& frame, Coloring& coloring) {
   if (spheres || mode == nullptr || damage == nullptr) return;
   const std::array swatches{Legend::Swatch{{0.10F, 0.10F, 0.12F}, "crack, opened"},
                             Legend::Swatch{{0.45F, 0.16F, 0.55F}, "crack, both"},
-                            Legend::Swatch{{0.10F, 0.32F, 0.72F}, "crack, slid"}};
+                            Legend::Swatch{{0.10F, 0.32F, 0.72F}, "crack, slid"},
+                            Legend::Swatch{{0.45F, 0.30F, 0.14F}, "open from the start"}};
   std::array<bool, swatches.size()> seen{};
   coloring.cracks = true;
   coloring.hidden_lines.assign(count, true);
   for (std::size_t i = 0; i < count; ++i) {
     if (!(damage->values[i] >= 1.0F)) continue;
-    const std::size_t kind = mode->values[i] < 1.0F / 3 ? 0 : mode->values[i] < 2.0F / 3 ? 1 : 2;
+    const std::size_t kind = mode->values[i] < 0.0F       ? 3
+                             : mode->values[i] < 1.0F / 3 ? 0
+                             : mode->values[i] < 2.0F / 3 ? 1
+                                                          : 2;
     coloring.lines[i] = swatches[kind].color;
     coloring.hidden_lines[i] = false;
     seen[kind] = true;

@@ -31,7 +31,8 @@ class FrameOfTetrahedra {
       : w_(w), t_(t), j_(j), own_(own), placed_(placed), f_(f), velocity_(velocities_now(w)) {}
 
   void fill() {
-    const std::size_t points = 4 * own_.elements.size() + 3 * own_.cracks.size();
+    const std::size_t points =
+        4 * own_.elements.size() + 3 * (own_.cracks.size() + own_.open.size());
     f_.position.resize(points);
     f_.point_fields.reserve(4);
     f_.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});
@@ -108,6 +109,14 @@ class FrameOfTetrahedra {
                    0.5 * (velocity_[at(a / 4)].at[a % 4] + velocity_[at(b / 4)].at[b % 4]));
       });
     }
+    const std::int64_t behind = 4 * own_.shown + 3 * placed_.cracks;
+    for (const OpenSide& open : own_.open)
+      for (const std::int64_t corner : {0, 1, 2})
+        f_.triangles.push_back(static_cast<std::int32_t>(behind + 3 * open.place + corner));
+    each_open_corner(w_, own_, [&](Index node) {
+      f_.position[point] = t_.nodes.data()[node / 4].at[node % 4].position;
+      put_vector(f_.point_fields[0], point++, velocity_[at(node / 4)].at[node % 4]);
+    });
     add_crack_fields(j_, own_, f_.triangle_fields);
   }
 
@@ -148,6 +157,7 @@ class FrameOfTetrahedra {
     for (const Index i : own_.cracks)
       each_corner(i,
                   [&](Index a, Index b) { put_vector(field, point++, 0.5 * (way(a) + way(b))); });
+    each_open_corner(w_, own_, [&](Index node) { put_vector(field, point++, way(node)); });
   }
 
   World& w_;
@@ -168,6 +178,7 @@ FramePart fdem3_frame(World& w, const World* mesh) {
   for (std::size_t g = 0; g < w.given->groups.size(); ++g)
     own.shown += static_cast<std::int64_t>(w.given->sets[g].nodes.size() / 4);
   list_own(w, *joints, {}, own);
+  list_open_sides(w, *elements, w.given->open_cracks, {}, own);
   const PlacedParts known = placed_parts(w, *elements, *joints, own, mesh);
 
   FramePart part;
@@ -183,8 +194,8 @@ FramePart fdem3_frame(World& w, const World* mesh) {
                part.places.triangle);
   part.places.whole = w.domain.single_rank();
   part.places.tetrahedra = own.shown;
-  part.places.triangles = known.cracks;
-  part.places.points = 4 * own.shown + 3 * known.cracks;
+  part.places.triangles = known.cracks + own.all_open;
+  part.places.points = 4 * own.shown + 3 * part.places.triangles;
   return part;
 }
 

@@ -19,20 +19,25 @@ namespace {
 using namespace fdem;
 
 /// Frames leave out bodies that have been taken out.
-void leave_out_removed(const Case& given, OwnParts& own) {
+/// @returns 1: of each triangle of the whole mesh that has been; empty: none has
+std::vector<std::uint8_t> leave_out_removed(const Case& given, OwnParts& own) {
   own.shown = 0;
   for (std::size_t b = 0; b < given.groups.size(); ++b)
     if (given.removed[b] == 0)
       own.shown += static_cast<std::int64_t>(given.sets[b].nodes.size() / 3);
   std::size_t all = 0;
   for (std::size_t b = 0; b < given.groups.size(); ++b) all += given.sets[b].nodes.size() / 3;
-  if (static_cast<std::size_t>(own.shown) == all) return;
-  own.place.assign(all, 1);
+  if (static_cast<std::size_t>(own.shown) == all) return {};
+  std::vector<std::uint8_t> gone(all, 0);
   for (std::size_t b = 0; b < given.groups.size(); ++b)
     if (given.removed[b] != 0)
-      for (const Index n : given.sets[b].nodes) own.place[at(n / 3)] = 0;
+      for (const Index n : given.sets[b].nodes) gone[at(n / 3)] = 1;
   std::int32_t count = 0;
-  for (std::int32_t& one : own.place) one = std::exchange(count, count + one);
+  for (const std::uint8_t out : gone) {
+    own.place.push_back(count);
+    count += out == 0 ? 1 : 0;
+  }
+  return gone;
 }
 
 /// Fields of points besides velocity, in the order in which frames hold them.
@@ -120,9 +125,13 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
          [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
 }
 
+std::size_t points_of(const OwnParts& own) {
+  return 3 * own.elements.size() + 2 * (own.cracks.size() + own.open.size());
+}
+
 /// Of corners; of the ends of cracks the mean of both sides.
 void add_more(const World& w, const Triangles& t, const Joints& j, const OwnParts& own, Frame& f) {
-  const std::size_t points = 3 * own.elements.size() + 2 * own.cracks.size();
+  const std::size_t points = points_of(own);
   const PointFields fields(*w.given, points, f);
   const OnHost starts(w.given->starts, w.exec.space);
   const OnHost holds(w.given->holds, w.exec.space);
@@ -148,10 +157,13 @@ void add_more(const World& w, const Triangles& t, const Joints& j, const OwnPart
     for (const auto& [on_a, on_b] : {std::pair{e.a0, e.b0}, std::pair{e.a1, e.b1}})
       PointFields::put(fields.displacement, point++, 0.5 * (way(on_a) + way(on_b)));
   }
+  each_open_corner(w, own,
+                   [&](Index node) { PointFields::put(fields.displacement, point++, way(node)); });
 }
 
-void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& velocity,
-               const OwnParts& own, const PlacedParts& placed, Frame& f) {
+void add_lines(const World& w, const Triangles& t, const Joints& j,
+               const std::vector<Corners>& velocity, const OwnParts& own, const PlacedParts& placed,
+               Frame& f) {
   const View<const NodeState> nodes = by_number(t.nodes.view());
   std::size_t point = 3 * own.elements.size();
   for (std::size_t l = 0; l < own.cracks.size(); ++l) {
@@ -166,6 +178,13 @@ void add_lines(const Triangles& t, const Joints& j, const std::vector<Corners>& 
       put_point(f, point++, 0.5 * (a.position + b.position), 0.5 * (of_a + of_b));
     }
   }
+  const std::int64_t behind = 3 * own.shown + 2 * placed.cracks;
+  for (const OpenSide& open : own.open)
+    for (const std::int64_t end : {0, 1})
+      f.lines.push_back(static_cast<std::int32_t>(behind + 2 * open.place + end));
+  each_open_corner(w, own, [&](Index node) {
+    put_point(f, point++, nodes[node].position, velocity[at(node / 3)].at[node % 3]);
+  });
   add_crack_fields(j, own, f.line_fields);
 }
 
@@ -175,8 +194,9 @@ FramePart fdem_frame(World& w, const World* mesh) {
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
   const OnHost<Joints> joints(w.joints, w.exec.space);
   OwnParts own;
-  leave_out_removed(*w.given, own);
+  const std::vector<std::uint8_t> gone = leave_out_removed(*w.given, own);
   list_own(w, *joints, gone_triangles(w), own);
+  list_open_sides(w, *triangles, w.given->open_cracks, gone, own);
   const PlacedParts known = placed_parts(w, *triangles, *joints, own, mesh);
 
   FramePart part;
@@ -184,12 +204,12 @@ FramePart fdem_frame(World& w, const World* mesh) {
   f.step = w.step;
   f.time = w.time;
   f.groups = w.given->groups;
-  const std::size_t points = 3 * own.elements.size() + 2 * own.cracks.size();
+  const std::size_t points = points_of(own);
   f.position.resize(points);
   f.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});
   const std::vector<Corners> velocity = velocities_now(w);
   add_triangles(w, *triangles, velocity, own, known, f);
-  add_lines(*triangles, *joints, velocity, own, known, f);
+  add_lines(w, *triangles, *joints, velocity, own, known, f);
   add_more(w, *triangles, *joints, own, f);
   with_number(w.couples.history.precision, [&](auto number) {
     const OnHost forces(w.couples.history.force.as<decltype(number)>(), w.exec.space);
@@ -199,8 +219,8 @@ FramePart fdem_frame(World& w, const World* mesh) {
     add_places(w, *triangles, own, known, part.places, part.places.triangle, part.places.line);
   part.places.whole = w.domain.single_rank();
   part.places.triangles = own.shown;
-  part.places.lines = known.cracks;
-  part.places.points = 3 * own.shown + 2 * known.cracks;
+  part.places.lines = known.cracks + own.all_open;
+  part.places.points = 3 * own.shown + 2 * part.places.lines;
   return part;
 }
 

@@ -3,6 +3,7 @@
 // places in the whole, fields of cracks, couples that press.
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 #include "core/on_host.hpp"
@@ -20,10 +21,19 @@ struct PlacedParts {
   std::int64_t cracks = 0;      ///< of the whole
 };
 
+/// A side of a crack that was open from the start.
+struct OpenSide {
+  Index element;       ///< place in memory
+  Index side;          ///< of the element
+  std::int32_t place;  ///< among the open sides of the frame of the whole
+};
+
 /// The elements, and the joints that have softened or broken, of this rank: by their places in
-/// memory.
+/// memory; sides of cracks that were open from the start.
 struct OwnParts {
   std::vector<Index> elements, cracks;
+  std::vector<OpenSide> open;
+  std::int32_t all_open = 0;        ///< such sides in the frame of the whole
   std::vector<std::int32_t> place;  ///< of elements in the frame, by global id; empty: their ids
   std::int64_t shown = 0;           ///< elements in the frame of the whole
 
@@ -43,6 +53,33 @@ void list_own(const World& w, const Joints& joints, const std::vector<std::uint8
     if (is_damaged(joints.stage.data()[i]) &&
         w.domain.owns(Shape::side_a(joints).data()[i] / Shape::corners))
       own.cracks.push_back(i);
+}
+
+/// @param cracks  of the whole mesh: `a` and `b` are their sides by global number
+/// @param gone    1: of each element of the whole mesh that is not shown; empty: none
+template <class World, class Elements, class Cracks>
+void list_open_sides(const World&, const Elements& elements, const Cracks& cracks,
+                     const std::vector<std::uint8_t>& gone, OwnParts& own) {
+  constexpr Index corners = fdem_shared::ShapeOf<World>::corners;
+  if (cracks.empty()) return;
+  std::unordered_map<Index, Index> place;
+  for (const Index t : own.elements) place[static_cast<Index>(elements.id.data()[t])] = t;
+  for (const auto& crack : cracks)
+    for (const Index side : {crack.a, crack.b}) {
+      if (!gone.empty() && gone[at(side / corners)] != 0) continue;
+      const std::int32_t next = own.all_open++;
+      const auto found = place.find(side / corners);
+      if (found != place.end()) own.open.push_back({found->second, side % corners, next});
+    }
+}
+
+/// Calls visit(node) for the corners of open sides, by their numbers on this rank.
+template <class World, class Visit>
+void each_open_corner(const World&, const OwnParts& own, const Visit& visit) {
+  using Shape = fdem_shared::ShapeOf<World>;
+  for (const OpenSide& open : own.open)
+    for (Index k = 0; k < Shape::dimension; ++k)
+      visit(Shape::corners * open.element + Shape::corner_of_side(open.side, k));
 }
 
 /// Rank 0: fragments and places of cracks, from lists that all ranks have sent.
@@ -106,7 +143,7 @@ PlacedParts placed_parts(const World& w, const Elements& t, const Joints& joints
   return placed;
 }
 
-/// Mode, damage and time of break of each own crack.
+/// Mode, damage and time of break of each own crack; of those open from the start -1, 1 and 0.
 template <class Joints>
 void add_crack_fields(const Joints& j, const OwnParts& own, std::vector<FrameField>& fields) {
   using Stage = std::remove_cvref_t<decltype(j.stage.data()[0])>;
@@ -118,6 +155,9 @@ void add_crack_fields(const Joints& j, const OwnParts& own, std::vector<FrameFie
     damage.values.push_back(static_cast<float>(worst));
     time.values.push_back(static_cast<float>(j.broke_at.data()[i]));
   }
+  mode.values.resize(mode.values.size() + own.open.size(), -1.0F);
+  damage.values.resize(mode.values.size(), 1.0F);
+  time.values.resize(mode.values.size(), 0.0F);
   for (FrameField* field : {&mode, &damage, &time}) fields.push_back(std::move(*field));
 }
 
@@ -147,6 +187,8 @@ void add_places(const World&, const Elements& t, const OwnParts& own, const Plac
   constexpr auto corners = static_cast<std::int32_t>(Shape::corners), ends = corners - 1;
   for (const Index i : own.elements) elements.push_back(own.place_of(t.id.data()[i]));
   cracks.assign(placed.crack.begin(), placed.crack.end());
+  for (const OpenSide& open : own.open)
+    cracks.push_back(static_cast<std::int32_t>(placed.cracks) + open.place);
   for (const std::int32_t id : elements)
     for (std::int32_t c = 0; c < corners; ++c) places.point.push_back(corners * id + c);
   const auto behind = static_cast<std::int32_t>(corners * own.shown);

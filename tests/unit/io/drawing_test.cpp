@@ -66,6 +66,15 @@ TEST(drawing, cracks_that_opened_are_black_and_those_that_slid_blue) {
   EXPECT_GT(darkest(render(whole, of_page())).red, 180);
 }
 
+TEST(drawing, cracks_open_from_the_start_are_brown_and_the_legend_says_so) {
+  const Rgb notch = darkest(render(plate(-1.0F), of_page()));
+  EXPECT_GT(notch.red, notch.blue + 40);
+  EXPECT_LT(notch.red, 150);
+  const std::string svg = svg_content(plate(-1.0F), of_page());
+  EXPECT_NE(svg.find("open from the start"), std::string::npos);
+  EXPECT_EQ(svg.find("crack, opened"), std::string::npos);
+}
+
 TEST(drawing, gaps_narrower_than_a_pixel_leave_no_holes) {
   Frame frame = plate(0.0F, 1e-3);  // 0.06 pixels
   frame.line_fields[1].values[0] = 0.0F;
