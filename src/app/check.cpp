@@ -180,11 +180,12 @@ struct CheckCommand {
     if (f.bonds > 0.0) fmt::print(", {} {}", about(f.bonds), f.bond_name);
     fmt::print("\n  step    about {}, ruled by\n          {}\n", short_time(f.step),
                harmless(f.step_rule));
-    if (f.may_end_early)
-      fmt::print("  steps   {} to time.end; its stages may end it earlier\n", about(f.steps));
-    else
-      fmt::print("  steps   {}, more as bodies meet and break\n", about(f.steps));
-    fmt::print("  time    {} here ({})", about_duration(f.setup_s + f.here_s + f.output_s),
+    const char* const at_most = f.may_end_early ? "at most " : "";
+    fmt::print(
+        "  steps   {}{}, {}\n", at_most, about(f.steps),
+        f.may_end_early ? "since its stages may end it early" : "more as bodies meet and break");
+    fmt::print("  time    {}{} here ({})", at_most,
+               about_duration(f.setup_s + f.here_s + f.output_s),
                counted(static_cast<std::size_t>(omp_get_num_procs()), "core", "cores"));
     if (f.setup_s >= 1.0) fmt::print(", {} of it set-up", rough_duration(f.setup_s));
     if (f.output_s >= 1.0) fmt::print(", {} of it output", rough_duration(f.output_s));

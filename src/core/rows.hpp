@@ -14,6 +14,14 @@ BR_HD inline Index count_up(Index& counter, Index by = 1) {
   return __atomic_fetch_add(&counter, by, __ATOMIC_RELAXED);
 #endif
 }
+BR_HD inline void count_up(std::uint64_t& counter, std::uint64_t by) {
+#if defined(__CUDA_ARCH__)
+  static_assert(sizeof(unsigned long long) == sizeof(std::uint64_t));
+  atomicAdd(reinterpret_cast<unsigned long long*>(&counter), static_cast<unsigned long long>(by));
+#else
+  __atomic_fetch_add(&counter, by, __ATOMIC_RELAXED);
+#endif
+}
 
 /// Moves the item at `top` of a heap of `count` items down to where it belongs.
 template <class T, class Before>

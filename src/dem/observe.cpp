@@ -73,20 +73,19 @@ struct CentreMotion {
   }
 };
 
-/// Damage of links is added up in whole parts of a link, in any order.
-constexpr Index parts_of_a_link = 1024;
+/// Damage of links is added up in whole parts of a link, in any order: below `one_link` what an
+/// element's links have lost, above it how many they are.
+constexpr std::uint64_t parts_of_a_link = 1024, one_link = std::uint64_t{1} << 32;
 
 /// Adds a link's damage to both of its ends.
 struct AddDamage {
   View<const Index> a, b;
-  View<Index> links, lost;
+  View<std::uint64_t> lost;
 
   BR_HD void operator()(Index i, double damage) const {
-    const auto parts = static_cast<Index>(parts_of_a_link * damage + 0.5);
-    for (const Index e : {a[i], b[i]}) {
-      count_up(links[e]);
-      if (parts > 0) count_up(lost[e], parts);
-    }
+    const auto parts =
+        static_cast<std::uint64_t>(static_cast<double>(parts_of_a_link) * damage + 0.5);
+    for (const Index e : {a[i], b[i]}) count_up(lost[e], one_link + parts);
   }
 };
 template <class Number>
@@ -123,11 +122,12 @@ struct NoteBreak {
   }
 };
 struct Damage {
-  View<const Index> links, lost;
+  View<const std::uint64_t> lost;
   View<double> damage;
   BR_HD void operator()(Index e) const {
-    const double whole = static_cast<double>(parts_of_a_link) * links[e];
-    damage[e] = links[e] > 0 ? lost[e] / whole : 0.0;
+    const std::uint64_t links = lost[e] / one_link;
+    const auto whole = static_cast<double>(parts_of_a_link * links);
+    damage[e] = links > 0 ? static_cast<double>(lost[e] % one_link) / whole : 0.0;
   }
 };
 
@@ -204,10 +204,10 @@ MotionNow motion_now(const World& w) {
 
 Buffer<double> damage_of(const World& w) {
   const Index count = w.elements.size();
-  Buffer<Index> links(w.exec.space, count), lost(w.exec.space, count);
+  Buffer<std::uint64_t> lost(w.exec.space, count);
   Buffer<double> damage(w.exec.space, count);
   w.each_set([&](const auto& set) {
-    const AddDamage add{set.a.view(), set.b.view(), links.view(), lost.view()};
+    const AddDamage add{set.a.view(), set.b.view(), lost.view()};
     with_number(w.exec.precision, [&](auto number) {
       using Number = decltype(number);
       if constexpr (std::remove_reference_t<decltype(set)>::kind == LinkKind::concrete) {
@@ -223,8 +223,7 @@ Buffer<double> damage_of(const World& w) {
       }
     });
   });
-  for_each(w.exec, count,
-           Damage{std::as_const(links).view(), std::as_const(lost).view(), damage.view()});
+  for_each(w.exec, count, Damage{std::as_const(lost).view(), damage.view()});
   return damage;
 }
 

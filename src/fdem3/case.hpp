@@ -52,7 +52,7 @@ struct Case {
   std::vector<std::string> load_names;        ///<  (loads)
   std::vector<AmplitudeOf3> load_amplitudes;  ///< stage: factors over time  (loads)
   std::vector<LoadedFace> loaded;             ///< by global id, ascending
-  std::vector<OpenFaces> open_cracks;  ///< faces of discontinuities open from the start
+  std::vector<OpenFaces> open_cracks;         ///< faces of discontinuities open from the start
   Buffer<ElasticTetrahedron> laws;            ///<  (materials)
   Buffer<JointBond> bonds;                    ///< indexed by Joints::law  (laws of joints)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)

@@ -1,14 +1,41 @@
+#include <cmath>
 #include <memory>
 
 #include "io/round_numbers.hpp"
 #include "prepare/build_fdem3.hpp"
 #include "prepare/checks/by_name.hpp"
+#include "prepare/shapes/surface.hpp"
+#include "prepare/tetrahedra/tet_body.hpp"
+#include "prepare/tetrahedra/tet_file.hpp"
 #include "run/machine/forecast_parts.hpp"
 #include "run/machine/memory_plan.hpp"
 #include "run/method/fdem3_method.hpp"
 
 namespace breccia {
 namespace {
+
+/// A body with the edges of its tetrahedra, and how many they are: of a file by what it holds.
+struct Meshed {
+  fdem3::BodyConfig body;
+  double count = 0.0;
+};
+Meshed meshed(fdem3::BodyConfig body, const std::string& folder) {
+  if (body.shape == "stl") {
+    const double volume = prepare::read_surface(folder + "/" + body.file, 1.0).volume();
+    body.shape = "box";  // as large
+    body.size = std::cbrt(volume) * Vec3{1.0, 1.0, 1.0};
+  }
+  if (body.shape != "mesh") return {body, tetrahedra_of(body)};
+  const prepare::TetMesh mesh = prepare::read_tet_mesh(folder + "/" + body.file);
+  const std::vector<Index> own = prepare::tetrahedra_of(body, mesh);
+  double volume = 0.0;
+  for (const Index t : own)
+    volume += prepare::signed_volume(mesh.point, mesh.tetrahedron[static_cast<std::size_t>(t)]);
+  const auto count = static_cast<double>(own.size());
+  if (own.empty()) return {body, 0.0};
+  body.mesh_size = std::cbrt(6.0 * volume / count);  // six regular ones fill a cube
+  return {body, count};
+}
 
 /// A box of regular tetrahedra of the body's size, above those that are there.
 fdem3::BodyConfig box_of(const fdem3::BodyConfig& body, double& top) {
@@ -50,12 +77,12 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
   fdem3::Config specimen = without_bodies(config);
   specimen.stages.clear();
   double top = 0.0, finest = 0.0;
-  bool by_gmsh = false;
+  bool free_mesh = false, by_gmsh = false;
   constexpr double begun_mesh = 0.3, meshing_of_one = 25e-6;  // measured  [s]
   std::string of;
-  for (const fdem3::BodyConfig& body : config.bodies) {
-    const double count = tetrahedra_of(body);
-    if (count < 1.0) {  // its file alone tells
+  for (const fdem3::BodyConfig& given : config.bodies) {
+    const auto [body, count] = meshed(given, folder);
+    if (count < 1.0) {  // gmsh alone knows
       f.items = 0.0;
       return f;
     }
@@ -63,7 +90,8 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
     f.items += count;
     const fdem::MaterialConfig* const m = prepare::item_named(config.materials, body.material);
     if (m == nullptr || m->joints == "intrinsic") f.bonds += 1.9 * count;
-    by_gmsh = by_gmsh || !body.structured;
+    free_mesh = free_mesh || !body.structured;
+    by_gmsh = by_gmsh || (!body.structured && body.shape != "mesh");
     if (finest == 0.0 || body.mesh_size < finest) {
       finest = body.mesh_size;
       of = body.name + ", edges of " + length_text(body.mesh_size);
@@ -72,10 +100,11 @@ Forecast forecast(const fdem3::Config& config, const std::string& folder) {
   const fdem3::Model model = build_model(specimen, folder);
   const std::unique_ptr<Method> method = make_method(specimen, model, Exec{});
   const std::string rule = method->step_rule();
-  take_step(f, by_gmsh ? step_of_flattest(specimen, folder) : method->time_step(),
+  take_step(f, free_mesh ? step_of_flattest(specimen, folder) : method->time_step(),
             (rule.empty() ? "tetrahedra" : rule) + " (finest mesh: " + of + ")");
   finish(f, config.time, end_of(config.stages, config.time.end));
-  const double contacts = config.bodies.size() > 1 ? 1.5 : 1.0;
+  // Bodies that press on each other and joints that broke cost contacts, which specimens lack.
+  const double contacts = config.bodies.size() > 1 || f.bonds > 0.0 ? 1.5 : 1.0;
   f.here_s =
       contacts * wall_of(f.steps, f.items, pace_of(*method, static_cast<double>(model.size())));
   f.gpu_s = f.steps * (0.4e-3 + 1.62e-9 * f.items);  // docs/theory-fdem3.md, at two sizes

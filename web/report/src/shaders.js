@@ -229,6 +229,13 @@ void main() {
 }`,
 };
 
+// Of a crack by its mode, 0 opened to 1 slid; below 0: open from the start.
+const CRACK = `
+vec3 crackColor(float mode) {
+  if (mode < -0.3) return vec3(0.45, 0.30, 0.14);
+  return mix(vec3(0.78, 0.05, 0.13), vec3(0.05, 0.30, 0.72), smoothstep(0.25, 0.75, mode));
+}`;
+
 // Joints of a plane that have softened or broken; uEnds holds both ends, uLines damage and mode.
 export const joints = {
   vertex: `
@@ -251,10 +258,11 @@ void main() {
   gl_Position = projectionMatrix * modelViewMatrix * vec4(p, 0.001 * uPixel, 1.0);
 }`,
   fragment: `precision highp float;
+` + CRACK + `
 flat in vec2 vLine;
 out vec4 color;
 void main() {
-  if (vLine.x > 0.985) color = vec4(mix(vec3(0.78, 0.05, 0.13), vec3(0.05, 0.30, 0.72), smoothstep(0.25, 0.75, vLine.y)), 1.0);
+  if (vLine.x > 0.985) color = vec4(crackColor(vLine.y), 1.0);
   else color = vec4(0.89, 0.47, 0.10, 0.25 + 0.65 * vLine.x);
 }`,
 };
@@ -383,6 +391,7 @@ void main() {
   gl_Position = projectionMatrix * vec4(at, 1.0);
 }`,
   fragment: `precision highp float;
+` + CRACK + `
 uniform vec4 uClip;
 uniform float uPixel;
 flat in vec2 vLine;
@@ -391,7 +400,7 @@ in vec3 vPoint;
 out vec4 color;
 void main() {
   if (dot(uClip.xyz, vPoint) > uClip.w + 2.0 * uPixel) discard;
-  vec3 base = mix(vec3(0.78, 0.05, 0.13), vec3(0.05, 0.30, 0.72), smoothstep(0.25, 0.75, vLine.y));
+  vec3 base = crackColor(vLine.y);
   float light = 0.6 + 0.4 * abs(vNormal.z);
   if (vLine.x > 0.985) color = vec4(base * light, 1.0);
   else color = vec4(vec3(0.89, 0.47, 0.10) * light, 0.25 + 0.65 * vLine.x);
