@@ -170,9 +170,8 @@ struct Spread {
 };
 Spread spread_of(const std::vector<float>& values) {
   std::vector<float> sorted;
-  for (const float value : values) {
+  for (const float value : values)
     if (std::isfinite(value)) sorted.push_back(value);
-  }
   if (sorted.empty()) return {{0.0, 0.0}, {0.0, 0.0}};
   std::sort(sorted.begin(), sorted.end());
   const ValueRange whole{sorted.front(), sorted.back()};
@@ -220,10 +219,9 @@ void finish_legend(Legend& legend, const std::string& name, const std::string& u
   const double rounding = 1e-6 * (bar.range.high - bar.range.low);
   if (whole.high > bar.range.high + rounding)
     bar.note = fmt::format("max {:.3g}", scaled.factor * whole.high);
-  if (whole.low < bar.range.low - rounding) {
+  if (whole.low < bar.range.low - rounding)
     bar.note +=
         fmt::format("{}min {:.3g}", bar.note.empty() ? "" : ", ", scaled.factor * whole.low);
-  }
 }
 
 std::vector<Color> mapped_colors(const Legend::Bar& bar, const std::vector<float>& values) {
