@@ -3,9 +3,12 @@
 import json
 import os
 import pathlib
+import resource
+import shutil
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 import h5py
 import numpy
@@ -80,6 +83,21 @@ class Vtkhdf(unittest.TestCase):
         self.breccia("convert", "out", "spheres.hdf")
         with h5py.File(self.path / "spheres.hdf", "r") as file:
             self.assertIn("radius", file["VTKHDF/PointData"])
+
+    def test_a_small_file_that_asks_for_much_memory_is_refused(self):
+        shutil.copytree(self.path / "out", self.path / "forged")
+        for path in (self.path / "forged/fields").glob("elements*.hdf"):
+            with h5py.File(path, "r+") as file:
+                rows = file["VTKHDF/PointData/velocity"].shape[0]
+                del file["VTKHDF/PointData/velocity"]
+                whole = file.create_dataset("VTKHDF/PointData/velocity", (rows, 3), "f8", maxshape=(None, 3),
+                                            chunks=(1 << 27, 3), compression="gzip")  # a chunk of 3.2 GB
+                whole.id.write_direct_chunk((0, 0), zlib.compress(bytes(24 * rows)))
+        limit = (1 << 30, 1 << 30)
+        done = subprocess.run([PROGRAM, "render", "forged", "-o", "forged.png"], cwd=self.path, capture_output=True, text=True,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit))
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("damaged", done.stderr)
 
     def test_a_run_that_goes_on_leaves_the_same_files(self):
         words = ["-q", "--threads", "1"]

@@ -288,6 +288,9 @@ class VtkhdfFile final : public FrameFile {
   /// filters that a damaged file states, and reads beyond its own buffers then.
   std::string bytes_of(const Array& array, std::size_t item) const {
     const std::size_t row = item * static_cast<std::size_t>(array.components);
+    // zlib packs by 1032 at most
+    const auto forged = [&](hsize_t rows) { return rows * row / 1100 > content_.size(); };
+    if (forged(array.rows)) fail("an array is damaged");
     std::string bytes(array.rows * row, '\0');
     if (bytes.empty()) return bytes;
     const Handle how(H5Dget_create_plist(array.data.id()), H5Pclose);
@@ -303,7 +306,7 @@ class VtkhdfFile final : public FrameFile {
     std::array<hsize_t, 2> chunk{0, 1}, place{0, 0};
     const int rank = H5Pget_chunk(how.id(), 2, chunk.data());
     if (rank < 1 || rank > 2 || chunk[0] == 0 || chunk[0] > (hsize_t{1} << 31) ||
-        chunk[1] != static_cast<hsize_t>(array.components))
+        forged(chunk[0]) || chunk[1] != static_cast<hsize_t>(array.components))
       fail("an array is damaged");
     std::string raw, whole(std::min<std::size_t>(chunk[0], array.rows) * row, '\0');
     for (; place[0] < array.rows; place[0] += chunk[0]) {
