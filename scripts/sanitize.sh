@@ -29,7 +29,7 @@ export TSAN_OPTIONS="log_path=$findings/tsan:die_after_fork=0"
 export OMP_NUM_THREADS=2
 # The program first: run, resume, prepared model, picture, all methods.
 breccia=$folder/breccia
-for name in dem fdem fdem3; do
+for name in dem fdem fdem3 bolted coupled; do
   out=$folder/out_$name
   for words in "run tests/attack/$name.toml -o $out --force -q --threads 2 --steps 60" \
     "resume $out -q --threads 2 --steps 120" "prepare tests/attack/$name.toml -o $out.br" \

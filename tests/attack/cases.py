@@ -48,7 +48,7 @@ def typos(options):
         with open(CASES[case]) as file:
             text = file.read()
         passed = 0
-        while attack.runs < options.runs and time.time() - attack.begun < options.seconds / 12:
+        while attack.runs < options.runs and time.time() - attack.begun < options.seconds / (4 * len(CASES)):
             path = attack.path("case.toml")
             with open(path, "w") as file:
                 file.write(mistake(text, random_))
@@ -77,7 +77,13 @@ def absurd(options):
                 "fdem": ["material.rock.density", "material.rock.young", "material.rock.joint.tension",
                          "material.rock.joint.energy_open", "time.safety", "time.end"],
                 "fdem3": ["material.rock.density", "material.rock.young", "material.rock.joint.tension",
-                          "material.rock.joint.energy_open", "material.rock.damping", "time.end"]}
+                          "material.rock.joint.energy_open", "material.rock.damping", "time.end"],
+                "bolted": ["bolt.bolt.segment", "bolt.bolt.diameter", "bolt.bolt.spacing", "bolt.bolt.young",
+                           "bolt.bolt.yield", "bolt.bolt.bond_stiffness", "bolt.bolt.bond_strength",
+                           "support.high.servo.area", "support.high.servo.speed", "load.gas.speed"],
+                "coupled": ["coupling.friction", "bond.border.range", "bond.border.tensile_strength",
+                            "bond.border.energy_open", "tetrahedra.material.rock.young",
+                            "spheres.material.c30.density"]}
     numbers = ["0", "-1", "5e-324", "1e-300", "1e30", "1e300", "1.7976931348623157e308", "nan", "inf", "-0.0"]
     for case, keys in settings.items():
         for key in keys:

@@ -11,7 +11,7 @@ import sys
 import time
 
 import common
-from common import Attack, CASES, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash, status
+from common import ALONE, Attack, CASES, HANG, PROGRAM, arguments, breccia, checkpoints, resume, run, run_words, state_hash, status
 
 STEPS = 400
 INTERVAL = 20  # steps between checkpoints, as the cases say
@@ -149,6 +149,8 @@ def main():
         if ranks > 1 and (options.device or shutil.which("mpirun") is None):
             continue
         for case in CASES:
+            if case in ALONE and (ranks > 1 or options.device):
+                continue
             attack = Attack(f"{name}, {case}", "trials")
             attack.live = attack.early = attack.resumed = attack.launcher = 0
             begun = time.time()
@@ -160,7 +162,7 @@ def main():
                 attack.expect(started(case, attack.path("ranks"), ranks).wait() == 0, "undisturbed ranks fail")
                 attack.expect(state_hash(attack.path("ranks")) == attack.hash, "undisturbed ranks: another hash")
             longest = max(0.05, 1.2 * (time.time() - begun))
-            while attack.runs < max(1, runs // len(CASES)) and time.time() - attack.begun < options.seconds / 9:
+            while attack.runs < max(1, runs // len(CASES)) and time.time() - attack.begun < options.seconds / (3 * len(CASES)):
                 disturb(attack, case, random_, ranks, stop, longest)
             attack.note = f"({attack.live} hit a live run, {attack.early} before a checkpoint, {attack.resumed} compared" + \
                           (f"; {attack.launcher} times mpirun hung when all ranks had ended)" if attack.launcher else ")")

@@ -111,7 +111,7 @@ def main():
         random_ = random.Random(options.seed)
         resumed = 0
         for _ in range(options.runs):
-            if time.time() - attack.begun > options.seconds / 3:
+            if time.time() - attack.begun > options.seconds / len(CASES):
                 break
             disk = Disk()
             cut = random_.randint(1, len(events))

@@ -6,6 +6,7 @@
 
 #include "core/named.hpp"
 #include "exec/error.hpp"
+#include "fdem/setup/materials.hpp"
 #include "fdem/shape.hpp"
 #include "fdem_shared/setup/writable.hpp"
 #include "math/constants.hpp"
@@ -13,12 +14,16 @@
 namespace breccia::fdem {
 namespace {
 
+double pieces_of(double leg, const BoltConfig& bolt) {
+  return std::max(1.0, std::ceil(leg / bolt.segment - 1e-9));
+}
+
 /// Points of a polyline, each leg in even pieces no longer than a segment.
 std::vector<Vec2> divided(const BoltConfig& bolt) {
   std::vector<Vec2> nodes{bolt.points.front()};
   for (std::size_t i = 0; i + 1 < bolt.points.size(); ++i) {
     const Vec2 &from = bolt.points[i], way = bolt.points[i + 1] - from;
-    const double pieces = std::max(1.0, std::ceil(norm(way) / bolt.segment - 1e-9));
+    const double pieces = pieces_of(norm(way), bolt);
     for (double k = 1.0; k <= pieces; k += 1.0) nodes.push_back(from + (k / pieces) * way);
   }
   return nodes;
@@ -51,6 +56,15 @@ BoltLaw law_of(const BoltConfig& bolt) {
           bolt.bond_strength / bolt.spacing};
 }
 
+/// The problem of segments that pull at corners of this stiffness; empty: none.
+std::string problem_of_segment(const std::string& where, const BoltLaw& law, double segment,
+                               double corners) {
+  if (2.0 * law.stiffness / segment <= corners) return "";
+  return where + ".segment: " + short_text(segment) +
+         " m are stiffer than the corners of triangles that they pull at; at least " +
+         short_text(2.0 * law.stiffness / corners) + " m";
+}
+
 /// @throws InputError
 void look_at(const Bolt& bolt, double segment, const BoltPlace& place, const Vec2& point,
              const World& w, const Model& model, const Config& config) {
@@ -66,11 +80,39 @@ void look_at(const Bolt& bolt, double segment, const BoltPlace& place, const Vec
   std::vector<ElasticTriangle> laws;
   copy_to(laws, w.given->laws);
   const std::size_t law = w.given->in_situ.graded() ? t : at(model.material[t]);
-  const double rock = Shape::corner_stiffness(laws[law], {});
-  if (2.0 * bolt.law.stiffness / segment > rock)
-    throw InputError(where + ".segment: " + short_text(segment) +
-                     " m are stiffer than the corners of triangles that they pull at; at least " +
-                     short_text(2.0 * bolt.law.stiffness / rock) + " m");
+  const std::string problem =
+      problem_of_segment(where, bolt.law, segment, Shape::corner_stiffness(laws[law], {}));
+  if (!problem.empty()) throw InputError(problem);
+}
+
+/// The stiffest corners that the case may have; no limit where its materials are in error.
+double stiffest_corners(const Config& config) {
+  try {
+    double most = 0.0;
+    for (const ElasticTriangle& law : elastic_table(config))
+      most = std::max(most, Shape::corner_stiffness(law, {}));
+    return most > 0.0 ? most : no_limit;
+  } catch (const InputError&) {  // told by itself
+    return no_limit;
+  }
+}
+
+/// Problems of how finely a bolt is divided, told before it is.
+void look_at_segments(const BoltConfig& bolt, double corners, std::vector<std::string>& problems) {
+  constexpr double most_nodes = 1e5;
+  double nodes = 1.0, shortest = no_limit;
+  for (std::size_t i = 0; i + 1 < bolt.points.size(); ++i) {
+    const double leg = norm(bolt.points[i + 1] - bolt.points[i]), pieces = pieces_of(leg, bolt);
+    nodes += pieces;
+    shortest = std::min(shortest, leg / pieces);
+  }
+  const std::string where = "bolt." + bolt.name;
+  const std::string problem = problem_of_segment(where, law_of(bolt), shortest, corners);
+  if (!problem.empty())
+    problems.push_back(problem);
+  else if (nodes > most_nodes)
+    problems.push_back(where + ".segment: " + short_text(nodes) + " nodes; at most " +
+                       short_text(most_nodes));
 }
 
 }  // namespace
@@ -107,6 +149,7 @@ std::vector<std::string> bolt_problems(const Config& config) {
     for (std::size_t i = 0; i + 1 < bolt.points.size(); ++i)
       if (!(norm(bolt.points[i + 1] - bolt.points[i]) > 0.0))
         problems.push_back(where + ".points: two in succession are the same");
+    if (problems.empty()) look_at_segments(bolt, stiffest_corners(config), problems);
     if (!bolt.stage.empty())
       add_unknown(where + ".stage", bolt.stage, "stage", names_of(config.stages), problems);
     if (std::count_if(config.bolts.begin(), config.bolts.end(),

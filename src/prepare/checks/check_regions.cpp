@@ -219,7 +219,26 @@ double farthest_above(const dem::Wall& plane, const Bounds& b) {
   return dot(corner - plane.point, plane.normal);
 }
 
-/// Supports and loads of meshes.
+/// The problem of a point that no body can hold; empty: one may.
+std::string problem_of_point(const std::string& key, const Vec2& point,
+                             const std::vector<Outline>& outlines) {
+  const Bounds here{{point.x, point.y, 0.0}, {point.x, point.y, 0.0}};
+  const Outline* nearest = nullptr;
+  double least = no_limit;
+  for (const Outline& outline : outlines) {
+    if (!outline.bounds) return "";
+    const double apart = gap(here, *outline.bounds).first;
+    if (apart <= 1e-9) return "";
+    if (apart >= least) continue;
+    least = apart;
+    nearest = &outline;
+  }
+  if (nearest == nullptr) return "";
+  return fmt::format("{}: ({}, {}) lies in no body; {} is nearest, {} away", key, place(point.x),
+                     place(point.y), nearest->name, length_text(least));
+}
+
+/// Supports and loads of meshes, bolts of plane ones.
 template <class Config>
 void check_faces_and_corners(const Config& config) {
   std::vector<Outline> outlines;
@@ -230,6 +249,10 @@ void check_faces_and_corners(const Config& config) {
   for (const auto& load : config.loads)
     problems.push_back(
         problem_of("load." + load.name, bounds_of(load.region), load.region.on, outlines));
+  if constexpr (requires { config.bolts; })
+    for (const auto& bolt : config.bolts)
+      for (const Vec2& point : bolt.points)
+        problems.push_back(problem_of_point("bolt." + bolt.name + ".points", point, outlines));
   std::erase(problems, "");
   refuse(problems, "in the case");
 }

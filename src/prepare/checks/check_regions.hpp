@@ -1,5 +1,5 @@
 #pragma once
-// Supports and loads whose region lies beside every body: told before a model is built.
+// Supports, loads and bolts beside every body: told before a model is built.
 
 #include <string>
 #include <vector>
@@ -13,7 +13,8 @@ namespace breccia::prepare {
 /// Holds each region against the outlines of the bodies that it may take from. Bodies whose outline
 /// only their file tells are not looked at, nor are regions that miss elements by less than their
 /// size: the built model is tested again.
-/// @throws InputError naming each region that takes nothing, the nearest body and how far it is
+/// @throws InputError naming each region that takes nothing and each point of a bolt that lies in
+/// no body, the nearest body and how far it is
 void check_regions(const dem::Config& config);
 void check_regions(const fdem::Config& config);
 void check_regions(const fdem3::Config& config);

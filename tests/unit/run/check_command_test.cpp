@@ -231,6 +231,28 @@ TEST(CheckCommand, names_line_and_key_of_a_region_that_takes_nothing) {
       << told.text;
 }
 
+TEST(CheckCommand, tells_of_bolts_before_anything_is_meshed) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/bolted.toml";
+  const std::string good = read_whole_file(source_dir + std::string("/tests/attack/bolted.toml"));
+  const auto told = [&](const std::string& old, const std::string& now) {
+    replace_file(path, changed(good, old, now));
+    const Told of_run = told_by(folder, "run " + path + " -o " + folder.path() + "/r --steps 1");
+    EXPECT_EQ(of_run.exit_code, 2) << of_run.text;
+    const Told of_check = told_by(folder, "check " + path);
+    EXPECT_EQ(of_check.exit_code, 2) << of_check.text;
+    return of_check.text;
+  };
+  std::string text = told("segment = \"2 mm\"", "segment = \"1 mm\"");
+  EXPECT_TRUE(has(text, "line 37, bolt.bolt.segment: 0.0009357 m are stiffer than")) << text;
+  text = told("segment = \"2 mm\"", "segment = \"1 um\"");
+  EXPECT_TRUE(has(text, "bolt.bolt.segment: 1e-06 m are stiffer than")) << text;
+  text = told("[\"1 mm\", \"7 mm\"]", "[\"1 mm\", \"9 mm\"]");
+  EXPECT_TRUE(
+      has(text, "bolt.bolt.points: (1 mm, 9 mm) lies in no body; plate is nearest, 1 mm away"))
+      << text;
+}
+
 TEST(CheckCommand, tells_regions_and_names_in_one_go) {
   const ScratchFolder folder;
   std::string wrong = changed(beam, "\"-140 mm\", \"-19 mm\"", "\"-140 mm\", \"-23 mm\"");
