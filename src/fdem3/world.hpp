@@ -13,6 +13,7 @@
 #include "core/travel.hpp"
 #include "domain/domain.hpp"
 #include "domain/set_here.hpp"
+#include "exec/lanes.hpp"
 #include "exec/step_graph.hpp"
 #include "exec/timers.hpp"
 #include "fdem3/case.hpp"
@@ -30,6 +31,7 @@ struct World {
   explicit World(const Exec& how);
 
   Exec exec;             ///< (ranks: its space)
+  Lanes lanes;           ///< (set-up)
   ReadOnly<Case> given;  ///< constants: fdem3/case.hpp (set-up, stage)
 
   // Prescribed motions: constant but for those that servos lead.

@@ -40,6 +40,54 @@ BR_HD inline void load_records(const View<Record>& records, Index first, R (&col
   }
 }
 
+/// gather_records for an odd number of doubles, the whole record.
+template <int count, class Record, class R>
+BR_HD inline void gather_odd(const View<const Record>& records, const Indices<R>& i,
+                             R (&columns)[count]) {
+  static_assert(sizeof(Record) == count * sizeof(double) && count % 2 == 1);
+  gather_records(records, i, reinterpret_cast<R(&)[count - 1]>(columns));
+  Index at[width_of<R>];
+  __builtin_memcpy(at, &i, sizeof at);
+  double last[width_of<R>];
+  for (Index k = 0; k < width_of<R>; ++k)
+    last[k] = reinterpret_cast<const double*>(&records[at[k]])[count - 1];
+  columns[count - 1] = pack_of<R>(last);
+}
+
+/// gather_records of the parts of records that lie side by side: part i of all of them.
+template <class Record, class Part, int count, class R>
+BR_HD inline void gather_parts(const View<const Record>& records, const Indices<R>& i,
+                               R (&columns)[count]) {
+  static_assert(sizeof(Record) % sizeof(Part) == 0);
+  View<const Part> parts;
+  parts.data = reinterpret_cast<const Part*>(records.data);
+  parts.size = records.size * static_cast<Index>(sizeof(Record) / sizeof(Part));
+  gather_records(parts, i, columns);
+}
+
+/// Writes records of an odd number of doubles, but those of which `others` has the bit.
+template <int count, class R, class Record>
+inline void store_odd_but(unsigned others, const View<Record>& records, Index first,
+                          const R (&columns)[count]) {
+  static_assert(sizeof(Record) == count * sizeof(double) && count % 2 == 1);
+  struct Row {
+    double number[count - 1];
+  };
+  Row rows[width_of<R>];
+  View<Row> whole;
+  whole.data = rows;
+  whole.size = width_of<R>;
+  store_records(whole, 0, reinterpret_cast<const R(&)[count - 1]>(columns));
+  double last[width_of<R>];
+  __builtin_memcpy(last, &columns[count - 1], sizeof last);
+  for (Index k = 0; k < width_of<R>; ++k) {
+    if ((others >> k & 1U) != 0) continue;
+    auto* to = reinterpret_cast<double*>(&records[first + k]);
+    __builtin_memcpy(to, &rows[k], sizeof rows[k]);
+    to[count - 1] = last[k];
+  }
+}
+
 /// Writes them: store_records by whole packs where records are as long as some or half of one.
 template <int count, class R, class Record>
 BR_HD inline void write_records(const View<Record>& records, Index first,

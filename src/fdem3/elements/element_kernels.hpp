@@ -6,6 +6,7 @@
 #include "fdem3/elements/motion.hpp"
 #include "fdem3/joints/joints.hpp"
 #include "fdem_shared/bundles.hpp"
+#include "math/records.hpp"
 
 namespace breccia::fdem3 {
 
@@ -30,56 +31,100 @@ struct ElementForces {
   template <class R>
   struct Loaded {
     fdem_shared::Columns<R, TetrahedronNodes> nodes;
-    ShapeGradients shape;
-    double viscosity;
-    Index material, couples, couples_end;
-    FaceJoints faces;
+    R shape[9];
+    R viscosity;
+    Indices<R> material;
+    Index couples, couples_end;  ///< of the first tetrahedron, and of the last
+    FaceJoints faces[width_of<R>];
   };
   BR_HD void set(const StepTime& now) { span = now.last_dt; }
   /// All but forces of joints and couples.
-  BR_HD void load_early(Index t, Loaded<double>& loaded) const {
-    for (int k = 0; k < 4; ++k) loaded.faces.at[k] = read_now(&faces[t].at[k]);
-    loaded.material = read_now(&material[t]);
-    loaded.viscosity = read_now(&viscosity[t]);
+  template <class R>
+  BR_HD void load_early(Index t, Loaded<R>& loaded) const {
+    for (Index i = 0; i < width_of<R>; ++i)
+      for (int k = 0; k < 4; ++k) loaded.faces[i].at[k] = read_now(&faces[t + i].at[k]);
+    loaded.material = load_indices_now<R>(material, t);
+    loaded.viscosity = load_now<R>(viscosity, t);
     loaded.couples = read_now(&couples.starts[t]);
-    loaded.couples_end = read_now(&couples.starts[t + 1]);
+    loaded.couples_end = read_now(&couples.starts[t + width_of<R>]);
     loaded.nodes.read(nodes, t);
-    loaded.shape = shape[t];
+    if constexpr (width_of<R> == 1) {
+      const ShapeGradients own = shape[t];
+      __builtin_memcpy(loaded.shape, &own, sizeof own);
+    } else {
+      gather_odd(shape, consecutive<R>(t), loaded.shape);
+    }
     loaded.nodes.wait();
   }
-  BR_HD void load_late(Index, Loaded<double>&) const {}
-  BR_HD void update(Index t, const Loaded<double>& loaded) const {
-    Corners sum;
-    deform(t, loaded, sum.at);
-    for (int k = 0; k < 4; ++k) add_joint(loaded.faces.at[k], k, sum);
-    for (Index c = loaded.couples; c < loaded.couples_end; ++c) {
-      const Entry entry = couples.entries[c];
-      const CoupleForce& f = couple_force[pair_of(entry)];
-      const Corners& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
-      for (int k = 0; k < 4; ++k) sum.at[k] += mine.at[k];
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>&) const {}
+  /// Tetrahedron t, or t and its neighbours in a pack.
+  template <class R>
+  BR_HD void update(Index t, const Loaded<R>& loaded) const {
+    R numbers[12];
+    deform(t, loaded, numbers);
+    if constexpr (width_of<R> == 1) {
+      Corners sum;
+      __builtin_memcpy(&sum, numbers, sizeof sum);
+      add_pairs(loaded.faces[0], loaded.couples, loaded.couples_end, sum);
+      __builtin_memcpy(numbers, &sum, sizeof sum);
+      fdem_shared::Columns<double, Corners>::write(force, t, numbers);
+    } else {
+      store_records(force, t, numbers);
+      for (Index i = 0; i < width_of<R>; ++i) {
+        Corners sum = force[t + i];
+        const bool touches = loaded.couples < loaded.couples_end;
+        add_pairs(loaded.faces[i], touches ? couples.starts[t + i] : 0,
+                  touches ? couples.starts[t + i + 1] : 0, sum);
+        force[t + i] = sum;
+      }
     }
-    double numbers[sizeof sum / sizeof(double)];
-    __builtin_memcpy(numbers, &sum, sizeof sum);
-    fdem_shared::Columns<double, Corners>::write(force, t, numbers);
   }
   BR_HD void operator()(Index t) const { run_at<double>(*this, t); }
 
  private:
   /// Internal forces on the corners, and the work of viscosity.
-  BR_HD void deform(Index t, const Loaded<double>& loaded, Vec3 (&sum)[4]) const {
-    TetrahedronNodes own;
-    __builtin_memcpy(&own, loaded.nodes.numbers, sizeof own);
-    Vec3 x[4], v[4];
-    split(own, x, v);
-    const ShapeGradients& g = loaded.shape;
-    const double volume = g.volume(), eta = loaded.viscosity;
-    const Deformation d = deformation(g, x);
-    Sym3 rate{};
-    if (eta > 0.0) {
-      rate = deformation_rate(g, d, v);
-      viscous_work[t] += span * (eta * contract(rate, rate) * d.jacobian * volume);
+  template <class R>
+  BR_HD void deform(Index t, const Loaded<R>& loaded, R (&force_on)[12]) const {
+    Vec3Of<R> x[4], v[4], sum[4];
+    for (int k = 0; k < 4; ++k) {
+      const R* c = loaded.nodes.numbers + 6 * k;
+      x[k] = {c[0], c[1], c[2]};
+      v[k] = {c[3], c[4], c[5]};
     }
-    corner_forces(g, volume, laws[loaded.material].piola(d, eta, rate), sum);
+    ShapeGradientsOf<R> g;
+    for (int k = 0; k < 3; ++k)
+      g.of[k] = {loaded.shape[3 * k], loaded.shape[3 * k + 1], loaded.shape[3 * k + 2]};
+    const R volume = g.volume(), eta = loaded.viscosity;
+    const DeformationOf<R> d = deformation(g, x);
+    Sym3Of<R> rate{};
+    const auto flows = eta > 0.0;
+    if (any(flows)) {
+      rate = deformation_rate(g, d, v);
+      const R before = load<R>(viscous_work, t);
+      const R spent = span * (eta * contract(rate, rate) * d.jacobian * volume);
+      breccia::store(viscous_work, t, select(flows, before + spent, before));
+    }
+    R law[8];
+    gather_records(laws, loaded.material, law);
+    const ElasticTetrahedronOf<R> elastic{
+        law[0], law[1], {law[2], law[3], law[4], law[5], law[6], law[7]}};
+    corner_forces(g, volume, elastic.piola(d, eta, rate), sum);
+    for (int k = 0; k < 4; ++k) {
+      force_on[3 * k] = sum[k].x;
+      force_on[3 * k + 1] = sum[k].y;
+      force_on[3 * k + 2] = sum[k].z;
+    }
+  }
+  /// Adds the forces of joints, by face, and of couples [from, to) of the list.
+  BR_HD void add_pairs(const FaceJoints& own, Index from, Index to, Corners& sum) const {
+    for (int k = 0; k < 4; ++k) add_joint(own.at[k], k, sum);
+    for (Index c = from; c < to; ++c) {
+      const Entry entry = couples.entries[c];
+      const CoupleForce& f = couple_force[pair_of(entry)];
+      const Corners& mine = side_of(entry) == 0 ? f.on_a : f.on_b;
+      for (int k = 0; k < 4; ++k) sum.at[k] += mine.at[k];
+    }
   }
   /// Adds the forces of the joint on face k.
   BR_HD void add_joint(Index entry, int k, Corners& sum) const {

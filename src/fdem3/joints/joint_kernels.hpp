@@ -5,10 +5,12 @@
 #include "fdem/joints/joint_kernels.hpp"
 #include "fdem3/joints/joints.hpp"
 #include "fdem3/laws/rock_failure.hpp"
+#include "math/records.hpp"
 
 namespace breccia::fdem3 {
 
-/// Tractions at three points, damage and break of every joint (docs/theory-fdem3.md, 2).
+/// Tractions at three points, damage and break of every joint (docs/theory-fdem3.md, 2). Joints
+/// that are whole and stay so, nearly all, are taken side by side.
 struct JointForces {
   static constexpr const char* name = "fdem3.joints";
   double time, dt;  ///< of the positions, and the step that led there  [s]
@@ -31,46 +33,78 @@ struct JointForces {
 
   template <class R>
   struct Loaded {
-    JointStage before;
-    bool quiet;       ///< parted for good: nothing to do
-    JointForce last;  ///< of the step before
-    JointEnds ends;
-    Index law;
-    FaceShape shape;
-    double length, strength;
-    Vec3 offset;
-    JointOpening opening;
+    JointStage before;          ///< of a pack: whole if one is
+    bool quiet;                 ///< parted for good; of a pack: none is whole. Nothing to do
+    JointForce last;            ///< of the step before; of one joint
+    JointEnds ends;             ///< likewise
+    Indices<R> corner[6], law;  ///< corners of a, then of b; of a pack
+    FaceShapeOf<R> shape;
+    R length, strength;
+    Vec3Of<R> offset;
+    JointOpeningOf<R> opening;
+  };
+  /// Of joints in a pack, a bit for each.
+  struct Left {
+    unsigned others;  ///< those of which nothing is written: for operator()
+    unsigned drags;   ///< those that must book_slip()
   };
   BR_HD void set(const StepTime& now) {
     time = now.time;
     dt = now.last_dt;
   }
   /// All but the corners.
-  BR_HD void load_early(Index i, Loaded<double>& loaded) const {
+  template <class R>
+  BR_HD void load_early(Index i, Loaded<R>& loaded) const {
     loaded.before = stage[i];
-    loaded.last = force[i];
-    loaded.quiet = is_parted(loaded.before) && is_zero(loaded.last);
+    if constexpr (width_of<R> == 1) {
+      loaded.last = force[i];
+      loaded.quiet = is_parted(loaded.before) && is_zero(loaded.last);
+    } else {
+      for (Index k = 1; k < width_of<R>; ++k)
+        if (stage[i + k] == JointStage::whole) loaded.before = JointStage::whole;
+      loaded.quiet = loaded.before != JointStage::whole;
+    }
     if (loaded.quiet) return;
-    loaded.ends = JointEnds::of(read_now(&face_a[i]), read_now(&face_b[i]), turn[i]);
-    loaded.law = read_now(&law[i]);
-    loaded.shape = shape[i];
-    loaded.length = read_now(&length[i]);
-    loaded.strength = read_now(&strength[i]);
-    loaded.offset = preset.size > 0 ? preset[i] : Vec3{};
+    if constexpr (width_of<R> == 1) {
+      loaded.ends = ends_of(i);
+      loaded.shape = shape[i];
+    } else {
+      Index at[6][width_of<R>];
+      for (Index k = 0; k < width_of<R>; ++k) {
+        const JointEnds e = ends_of(i + k);
+        for (int c = 0; c < 3; ++c) {
+          at[c][k] = e.a[c];
+          at[c + 3][k] = e.b[c];
+        }
+      }
+      for (int c = 0; c < 6; ++c) loaded.corner[c] = indices<R>(at[c]);
+      R numbers[3];
+      gather_odd(shape, consecutive<R>(i), numbers);
+      loaded.shape = {numbers[0], numbers[1], numbers[2]};
+    }
+    loaded.law = load_indices_now<R>(law, i);
+    loaded.length = load_now<R>(length, i);
+    loaded.strength = load_now<R>(strength, i);
+    loaded.offset = preset.size > 0 ? load_vectors<R>(preset, i) : Vec3Of<R>{};
   }
-  BR_HD void load_late(Index, Loaded<double>& loaded) const {
+  template <class R>
+  BR_HD void load_late(Index, Loaded<R>& loaded) const {
     if (loaded.quiet) return;
-    Vec3 a[3], b[3];
+    Vec3Of<R> a[3], b[3];
     for (int k = 0; k < 3; ++k) {
-      a[k] = node(loaded.ends.a[k]).position;
-      b[k] = node(loaded.ends.b[k]).position;
+      a[k] = place_of(loaded, k);
+      b[k] = place_of(loaded, k + 3);
     }
     loaded.opening = opening_of(a, b);
   }
-  /// @returns false, with nothing written, unless the joint is whole, stays so and slips little, or
-  /// parted long ago
-  BR_HD bool update(Index i, const Loaded<double>& loaded) const {
-    return loaded.quiet || stays_whole(i, loaded, false);
+  /// One joint: false, with nothing written, unless it is whole, stays so and slips little, or
+  /// parted long ago. Of i and its neighbours in a pack: what is left to do.
+  template <class R>
+  BR_HD auto update(Index i, const Loaded<R>& loaded) const {
+    if constexpr (width_of<R> == 1)
+      return loaded.quiet || stays_whole(i, loaded, false);
+    else
+      return stay_whole(i, loaded);
   }
   /// A joint that is softened or broken, or becomes so, or slips.
   BR_HD void slow(Index i) const { (*this)(i); }
@@ -80,20 +114,93 @@ struct JointForces {
     load_late(i, loaded);
     if (!loaded.quiet && !stays_whole(i, loaded, true)) fail_or_soften(i, loaded);
   }
+  /// What is left to do of a joint of a pack that slips.
+  void book_slip(Index i) const {
+    const JointEnds ends = ends_of(i);
+    Vec3 a[3], b[3];
+    for (int k = 0; k < 3; ++k) {
+      a[k] = node(ends.a[k]).position;
+      b[k] = node(ends.b[k]).position;
+    }
+    book_drag(i, bonds[law[i]], preset.size > 0 ? preset[i] : Vec3{}, ends, opening_of(a, b));
+  }
 
  private:
   BR_HD const NodeState& node(Index n) const { return nodes[n / 4].at[n % 4]; }
+  BR_HD JointEnds ends_of(Index i) const {
+    return JointEnds::of(read_now(&face_a[i]), read_now(&face_b[i]), turn[i]);
+  }
+  /// Corner k of side a, or k - 3 of side b.  [m]
+  template <class R>
+  BR_HD Vec3Of<R> place_of(const Loaded<R>& loaded, int k) const {
+    if constexpr (width_of<R> == 1) {
+      return node(k < 3 ? loaded.ends.a[k] : loaded.ends.b[k - 3]).position;
+    } else {
+      R numbers[4];  // and x of the velocity
+      gather_parts<TetrahedronNodes, NodeState>(nodes, loaded.corner[k], numbers);
+      return {numbers[0], numbers[1], numbers[2]};
+    }
+  }
   BR_HD static bool is_zero(const JointForce& f) {
     return dot(f.at[0], f.at[0]) + dot(f.at[1], f.at[1]) + dot(f.at[2], f.at[2]) == 0.0;
   }
-  BR_HD void store(Index i, const Vec3 (&traction)[3], double area) const {
+  /// On the corners of side a.
+  template <class R>
+  BR_HD static void share(const Vec3Of<R> (&traction)[3], const R& area, Vec3Of<R> (&f)[3]) {
     // Point q lies between corners q and q + 1, which bear half of its third each.
-    const double weight = -area / 6.0;
+    const R weight = -area / 6.0;
+    f[0] = weight * (traction[0] + traction[2]);
+    f[1] = weight * (traction[1] + traction[0]);
+    f[2] = weight * (traction[2] + traction[1]);
+  }
+  BR_HD void store(Index i, const Vec3 (&traction)[3], double area) const {
     JointForce f;
-    f.at[0] = weight * (traction[0] + traction[2]);
-    f.at[1] = weight * (traction[1] + traction[0]);
-    f.at[2] = weight * (traction[2] + traction[1]);
+    share(traction, area, f.at);
     force[i] = f;
+  }
+
+  /// Joints as long as they are whole.
+  template <class R>
+  struct Whole {
+    using Mask = decltype(R{} < R{});
+    Vec3Of<R> force[3];  ///< on the corners of side a  [N]
+    Mask beyond;         ///< it does not stay so: its forces mean nothing
+    Mask drags;          ///< it slips enough for book_drag()
+  };
+  template <class R>
+  BR_HD Whole<R> whole(const Loaded<R>& loaded) const {
+    const JointOpeningOf<R>& o = loaded.opening;
+    R bond[12];
+    gather_records(bonds, loaded.law, bond);
+    const R slope = bond[0] / loaded.length, friction = bond[3];
+    const R tension = bond[1] * loaded.strength, cohesion = bond[2] * loaded.strength;
+    const R quarter = 0.25 / tension, area = loaded.shape.area(), zero = constant<R>(0.0);
+    const Vec3Of<R> slip = slip_in_space(o, loaded.offset);
+    Whole<R> w;
+    w.beyond = !(o.twice > 2e-12 * area);
+    w.drags = w.beyond;
+    Vec3Of<R> traction[3], mean{};
+    for (int q = 0; q < 3; ++q) {
+      const Vec3Of<R> slide = o.slide[q] + slip;
+      const R straight = slope * (o.open[q] + loaded.offset.x), size = slope * norm(slide);
+      const R resists = cohesion - friction * min(straight, zero);
+      w.beyond = w.beyond || straight > 2.0 * tension || size > 2.0 * resists;
+      w.drags = w.drags || size > least_drag * resists;
+      const R normal = select(straight < 0.0, straight, straight * (1.0 - straight * quarter));
+      traction[q] = normal * o.normal + (slope * (1.0 - size * (0.25 / resists))) * slide;
+      mean += traction[q];
+    }
+    const R young = bond[8];
+    const auto by_rock = young > 0.0;
+    if (any(by_rock)) {
+      const R third = constant<R>(1.0 / 3.0);
+      const Sym3Of<R> start{zero + in_situ.xx, zero + in_situ.yy, zero + in_situ.zz,
+                            zero + in_situ.yz, zero + in_situ.xz, zero + in_situ.xy};
+      const RockStressOf<R> s = rock_stress(young, bond[9], loaded.shape, o, third * mean, start);
+      w.beyond = w.beyond || (by_rock && may_fail(tension, cohesion, friction, s));
+    }
+    share(traction, area, w.force);
+    return w;
   }
 
   /// A joint that is whole, nearly every one. @returns false, with nothing written, if it does not
@@ -101,36 +208,31 @@ struct JointForces {
   /// @param books  for which the length of the step must be known
   BR_HD bool stays_whole(Index i, const Loaded<double>& loaded, bool books) const {
     if (loaded.before != JointStage::whole) return false;
-    const JointOpening& o = loaded.opening;
-    const Vec3& offset = loaded.offset;
-    const JointBond& bond = bonds[loaded.law];
-    const double share = loaded.strength, slope = bond.stiffness / loaded.length;
-    const double tension = bond.tension * share, cohesion = bond.cohesion * share;
-    const double quarter = 0.25 / tension;
-    const FaceShape& face = loaded.shape;
-    const double area = face.area();
-    if (!(o.twice > 2e-12 * area)) return false;
-    const Vec3 slip = slip_in_space(o, offset);
-    Vec3 traction[3], mean{};
-    bool drags = false;
-    for (int q = 0; q < 3; ++q) {
-      const Vec3 slide = o.slide[q] + slip;
-      const double straight = slope * (o.open[q] + offset.x), size = slope * norm(slide);
-      const double resists = cohesion - bond.friction * min(straight, 0.0);
-      if (straight > 2.0 * tension || size > 2.0 * resists) return false;
-      drags = drags || size > least_drag * resists;
-      const double normal = straight < 0.0 ? straight : straight * (1.0 - straight * quarter);
-      traction[q] = normal * o.normal + (slope * (1.0 - size * (0.25 / resists))) * slide;
-      mean += traction[q];
-    }
-    if (bond.by_rock()) {
-      const RockStress s = rock_stress(bond, face, o, (1.0 / 3.0) * mean, in_situ);
-      if (may_fail(bond, share, s)) return false;
-    }
-    if (drags && !books) return false;
-    store(i, traction, area);
-    if (drags) book_drag(i, bond, offset, loaded.ends, o);
+    const Whole<double> now = whole(loaded);
+    if (now.beyond || (now.drags && !books)) return false;
+    force[i] = {{now.force[0], now.force[1], now.force[2]}};
+    if (now.drags) book_drag(i, bonds[loaded.law.at], loaded.offset, loaded.ends, loaded.opening);
     return true;
+  }
+  template <class R>
+  Left stay_whole(Index i, const Loaded<R>& loaded) const {
+    constexpr unsigned all = (1U << width_of<R>)-1U;
+    Left left{all, 0};
+    if (loaded.quiet) return left;
+    const Whole<R> now = whole(loaded);
+    left.others = 0;
+    for (Index k = 0; k < width_of<R>; ++k) {
+      if (stage[i + k] != JointStage::whole || now.beyond[k] != 0)
+        left.others |= 1U << k;
+      else if (now.drags[k] != 0)
+        left.drags |= 1U << k;
+    }
+    if (left.others == all) return left;
+    const R numbers[9] = {now.force[0].x, now.force[0].y, now.force[0].z,
+                          now.force[1].x, now.force[1].y, now.force[1].z,
+                          now.force[2].x, now.force[2].y, now.force[2].z};
+    store_odd_but(left.others, force, i, numbers);
+    return left;
   }
 
   BR_HD void fail_or_soften(Index i, const Loaded<double>& loaded) const {
@@ -221,7 +323,8 @@ struct JointForces {
       half_soft = half_soft || (point.damage > 0.0 && fdem::softening(point.damage) < 0.5);
     }
     if (half_soft) return false;
-    const RockStress s = rock_stress(bond, shape[i], o, (1.0 / 3.0) * mean, in_situ);
+    const RockStress s =
+        rock_stress(bond.young, bond.poisson, shape[i], o, (1.0 / 3.0) * mean, in_situ);
     const fdem::Failure how = fdem::failure_of(rock_failure(bond, share, s));
     if (how == fdem::Failure::none) return false;
     for (int q = 0; q < 3; ++q)

@@ -37,16 +37,18 @@ struct JointEnds {
 
 /// The middle surface of the joint's two faces at the start, in its own plane: edges from corner 0
 /// to corner 1, (size, 0), and to corner 2.  [m]
-struct FaceShape {
-  double size, along, across;
+template <class R>
+struct FaceShapeOf {
+  R size, along, across;
 
-  BR_HD static FaceShape of(const Vec3& p, const Vec3& q, const Vec3& r) {
-    const Vec3 first = q - p, second = r - p;
-    const double size = norm(first), along = dot(first, second) / size;
-    return {size, along, sqrt(max(0.0, dot(second, second) - along * along))};
+  BR_HD static FaceShapeOf of(const Vec3Of<R>& p, const Vec3Of<R>& q, const Vec3Of<R>& r) {
+    const Vec3Of<R> first = q - p, second = r - p;
+    const R size = norm(first), along = dot(first, second) / size;
+    return {size, along, sqrt(max(constant<R>(0.0), dot(second, second) - along * along))};
   }
-  BR_HD double area() const { return 0.5 * size * across; }
+  BR_HD R area() const { return 0.5 * size * across; }
 };
+using FaceShape = FaceShapeOf<double>;
 
 /// Cohesive joints. Side a is the tetrahedron with the lower global id. Integration points lie in
 /// the middles of the edges (0, 1), (1, 2), (2, 0) of the face, a third of its area each. One item
@@ -91,25 +93,29 @@ struct Joints {
 };
 
 /// How far the two faces of a joint have moved apart.
-struct JointOpening {
-  Vec3 normal;     ///< unit, from b into a, of the middle surface
-  Vec3 along;      ///< unit, from corner 0 to corner 1
-  double twice;    ///< twice the area of the middle surface  [m2]
-  double open[3];  ///< at the integration points  [m]
-  Vec3 slide[3];   ///< of side a against b, in the surface  [m]
-  Vec3 middle[3];  ///< corners of the middle surface  [m]
+template <class R>
+struct JointOpeningOf {
+  Vec3Of<R> normal;     ///< unit, from b into a, of the middle surface
+  Vec3Of<R> along;      ///< unit, from corner 0 to corner 1
+  R twice;              ///< twice the area of the middle surface  [m2]
+  R open[3];            ///< at the integration points  [m]
+  Vec3Of<R> slide[3];   ///< of side a against b, in the surface  [m]
+  Vec3Of<R> middle[3];  ///< corners of the middle surface  [m]
 };
-BR_HD inline JointOpening opening_of(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
-  JointOpening o;
-  for (int k = 0; k < 3; ++k) o.middle[k] = 0.5 * (a[k] + b[k]);
-  const Vec3 edge = o.middle[1] - o.middle[0];
-  const Vec3 twice = cross(edge, o.middle[2] - o.middle[0]);
+using JointOpening = JointOpeningOf<double>;
+template <class R>
+BR_HD JointOpeningOf<R> opening_of(const Vec3Of<R> (&a)[3], const Vec3Of<R> (&b)[3]) {
+  const R half = constant<R>(0.5);
+  JointOpeningOf<R> o;
+  for (int k = 0; k < 3; ++k) o.middle[k] = half * (a[k] + b[k]);
+  const Vec3Of<R> edge = o.middle[1] - o.middle[0];
+  const Vec3Of<R> twice = cross(edge, o.middle[2] - o.middle[0]);
   o.twice = norm(twice);
   o.normal = (1.0 / o.twice) * twice;
   o.along = (1.0 / norm(edge)) * edge;
   for (int q = 0; q < 3; ++q) {
     const int i = q, j = q == 2 ? 0 : q + 1;
-    const Vec3 apart = 0.5 * ((a[i] - b[i]) + (a[j] - b[j]));
+    const Vec3Of<R> apart = half * ((a[i] - b[i]) + (a[j] - b[j]));
     o.open[q] = dot(apart, o.normal);
     o.slide[q] = apart - o.open[q] * o.normal;
   }
@@ -117,7 +123,8 @@ BR_HD inline JointOpening opening_of(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
 }
 /// A joint's offset in space.  [m]
 /// @param preset  opening, slip along the first edge, slip across it
-BR_HD inline Vec3 slip_in_space(const JointOpening& o, const Vec3& preset) {
+template <class R>
+BR_HD Vec3Of<R> slip_in_space(const JointOpeningOf<R>& o, const Vec3Of<R>& preset) {
   return preset.y * o.along + preset.z * cross(o.normal, o.along);
 }
 

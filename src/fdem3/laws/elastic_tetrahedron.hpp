@@ -11,13 +11,15 @@ namespace breccia::fdem3 {
 /// Gradients of the shape functions of corners 1 to 3 in the reference; that of corner 0 is minus
 /// their sum. They are the rows of the inverse of the reference edges x1 - x0, x2 - x0, x3 - x0 as
 /// columns.  [1/m]
-struct ShapeGradients {
-  Vec3 of[3];
+template <class R>
+struct ShapeGradientsOf {
+  Vec3Of<R> of[3];
 
-  BR_HD Vec3 first() const { return -(of[0] + of[1] + of[2]); }
+  BR_HD Vec3Of<R> first() const { return -(of[0] + of[1] + of[2]); }
   /// At the start.  [m3]
-  BR_HD double volume() const { return 1.0 / (6.0 * dot(of[0], cross(of[1], of[2]))); }
+  BR_HD R volume() const { return 1.0 / (6.0 * dot(of[0], cross(of[1], of[2]))); }
 };
+using ShapeGradients = ShapeGradientsOf<double>;
 /// @param x  corners, with a volume above 0  [m]
 BR_HD inline ShapeGradients shape_gradients(const Vec3 (&x)[4]) {
   const Mat3 edges{x[1] - x[0], x[2] - x[0], x[3] - x[0]};
@@ -27,21 +29,25 @@ BR_HD inline ShapeGradients shape_gradients(const Vec3 (&x)[4]) {
 }
 
 /// Rates and way of a tetrahedron against its reference.
-struct Deformation {
-  Mat3 gradient;    ///< F: reference to current  [-]
-  Mat3 cofactor;    ///< cof F = J F^-T  [-]
-  double jacobian;  ///< J = det F: current over reference volume  [-]
+template <class R>
+struct DeformationOf {
+  Mat3Of<R> gradient;  ///< F: reference to current  [-]
+  Mat3Of<R> cofactor;  ///< cof F = J F^-T  [-]
+  R jacobian;          ///< J = det F: current over reference volume  [-]
 };
+using Deformation = DeformationOf<double>;
 
 /// sum_k u_k (x) G_k of a field u given at the corners.
-BR_HD inline Mat3 gradient_of(const ShapeGradients& shape, const Vec3 (&u)[4]) {
-  const Vec3 e1 = u[1] - u[0], e2 = u[2] - u[0], e3 = u[3] - u[0];
-  const Vec3 &g1 = shape.of[0], &g2 = shape.of[1], &g3 = shape.of[2];
+template <class R>
+BR_HD Mat3Of<R> gradient_of(const ShapeGradientsOf<R>& shape, const Vec3Of<R> (&u)[4]) {
+  const Vec3Of<R> e1 = u[1] - u[0], e2 = u[2] - u[0], e3 = u[3] - u[0];
+  const Vec3Of<R>&g1 = shape.of[0], &g2 = shape.of[1], &g3 = shape.of[2];
   return {g1.x * e1 + g2.x * e2 + g3.x * e3, g1.y * e1 + g2.y * e2 + g3.y * e3,
           g1.z * e1 + g2.z * e2 + g3.z * e3};
 }
-BR_HD inline Deformation deformation(const ShapeGradients& shape, const Vec3 (&x)[4]) {
-  Deformation d;
+template <class R>
+BR_HD DeformationOf<R> deformation(const ShapeGradientsOf<R>& shape, const Vec3Of<R> (&x)[4]) {
+  DeformationOf<R> d;
   d.gradient = gradient_of(shape, x);
   d.cofactor = cofactors(d.gradient);
   d.jacobian = dot(d.gradient.a, d.cofactor.a);
@@ -49,16 +55,17 @@ BR_HD inline Deformation deformation(const ShapeGradients& shape, const Vec3 (&x
 }
 /// sym L, L = dF/dt F^-1: the rate of deformation.  [1/s]
 /// @param v  velocities of the corners  [m/s]
-BR_HD inline Sym3 deformation_rate(const ShapeGradients& shape, const Deformation& d,
-                                   const Vec3 (&v)[4]) {
-  const Mat3 rate = gradient_of(shape, v);
-  const double over_j = 1.0 / d.jacobian;
-  const auto row = [over_j](double a, double b, double c, const Mat3& m) {  // a row of L
+template <class R>
+BR_HD Sym3Of<R> deformation_rate(const ShapeGradientsOf<R>& shape, const DeformationOf<R>& d,
+                                 const Vec3Of<R> (&v)[4]) {
+  const Mat3Of<R> rate = gradient_of(shape, v);
+  const R over_j = 1.0 / d.jacobian;
+  const auto row = [&over_j](const R& a, const R& b, const R& c, const Mat3Of<R>& m) {  // of L
     return over_j * (a * m.a + b * m.b + c * m.c);
   };
-  const Vec3 x = row(rate.a.x, rate.b.x, rate.c.x, d.cofactor);
-  const Vec3 y = row(rate.a.y, rate.b.y, rate.c.y, d.cofactor);
-  const Vec3 z = row(rate.a.z, rate.b.z, rate.c.z, d.cofactor);
+  const Vec3Of<R> x = row(rate.a.x, rate.b.x, rate.c.x, d.cofactor);
+  const Vec3Of<R> y = row(rate.a.y, rate.b.y, rate.c.y, d.cofactor);
+  const Vec3Of<R> z = row(rate.a.z, rate.b.z, rate.c.z, d.cofactor);
   return {x.x, y.y, z.z, 0.5 * (y.z + z.y), 0.5 * (x.z + z.x), 0.5 * (x.y + y.x)};
 }
 
@@ -79,29 +86,32 @@ BR_HD inline double log_less_linear(double x) {
 /// with D = sym L and the in-situ stress S_0. To first order Hooke's law with Lame's constants.
 /// Tension positive. The law of the plane method (fdem/laws/elastic_triangle.hpp) in space, by the
 /// first Piola tensor: no inverse of F, one division.
-struct ElasticTetrahedron {
-  double lambda;  ///<  [Pa]
-  double shear;   ///< mu  [Pa]
-  Sym3 preset{};  ///< S_0  [Pa]
+template <class R>
+struct ElasticTetrahedronOf {
+  R lambda;            ///<  [Pa]
+  R shear;             ///< mu  [Pa]
+  Sym3Of<R> preset{};  ///< S_0  [Pa]
 
-  BR_HD bool has_preset() const {
+  BR_HD auto has_preset() const {
     return preset.xx != 0.0 || preset.yy != 0.0 || preset.zz != 0.0 || preset.yz != 0.0 ||
            preset.xz != 0.0 || preset.xy != 0.0;
   }
   /// First Piola tensor.  [Pa]  @param rate  D; only read if eta > 0
-  BR_HD Mat3 piola(const Deformation& d, double eta, const Sym3& rate) const {
-    const double g = 0.5 * lambda * (d.jacobian - 1.0 / d.jacobian) - shear / d.jacobian;
-    const Mat3 &f = d.gradient, &c = d.cofactor;
-    Mat3 p{shear * f.a + g * c.a, shear * f.b + g * c.b, shear * f.c + g * c.c};
-    if (eta > 0.0) {
-      p.a += eta * (rate * c.a);
-      p.b += eta * (rate * c.b);
-      p.c += eta * (rate * c.c);
+  BR_HD Mat3Of<R> piola(const DeformationOf<R>& d, const R& eta, const Sym3Of<R>& rate) const {
+    const R g = 0.5 * lambda * (d.jacobian - 1.0 / d.jacobian) - shear / d.jacobian;
+    const Mat3Of<R>&f = d.gradient, &c = d.cofactor;
+    Mat3Of<R> p{shear * f.a + g * c.a, shear * f.b + g * c.b, shear * f.c + g * c.c};
+    const auto flows = eta > 0.0;
+    if (any(flows)) {
+      p.a = select(flows, p.a + eta * (rate * c.a), p.a);
+      p.b = select(flows, p.b + eta * (rate * c.b), p.b);
+      p.c = select(flows, p.c + eta * (rate * c.c), p.c);
     }
-    if (has_preset()) {
-      p.a += preset.xx * f.a + preset.xy * f.b + preset.xz * f.c;
-      p.b += preset.xy * f.a + preset.yy * f.b + preset.yz * f.c;
-      p.c += preset.xz * f.a + preset.yz * f.b + preset.zz * f.c;
+    const auto held = has_preset();
+    if (any(held)) {
+      p.a = select(held, p.a + (preset.xx * f.a + preset.xy * f.b + preset.xz * f.c), p.a);
+      p.b = select(held, p.b + (preset.xy * f.a + preset.yy * f.b + preset.yz * f.c), p.b);
+      p.c = select(held, p.c + (preset.xz * f.a + preset.yz * f.b + preset.zz * f.c), p.c);
     }
     return p;
   }
@@ -145,10 +155,12 @@ struct ElasticTetrahedron {
            (contract(preset, preset) - lambda / (3.0 * lambda + 2.0 * shear) * sum * sum);
   }
 };
+using ElasticTetrahedron = ElasticTetrahedronOf<double>;
 
 /// Forces that the stress puts on the corners, f_k = -V_0 P G_k; they sum to zero.  [N]
-BR_HD inline void corner_forces(const ShapeGradients& shape, double volume, const Mat3& piola,
-                                Vec3 (&force)[4]) {
+template <class R>
+BR_HD void corner_forces(const ShapeGradientsOf<R>& shape, const R& volume, const Mat3Of<R>& piola,
+                         Vec3Of<R> (&force)[4]) {
   for (int k = 1; k < 4; ++k) force[k] = (-volume) * (piola * shape.of[k - 1]);
   force[0] = -(force[1] + force[2] + force[3]);
 }

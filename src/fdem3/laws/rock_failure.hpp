@@ -12,31 +12,33 @@
 namespace breccia::fdem3 {
 
 /// Stress of the rock at a joint in the frame (along edge 0-1, across it, normal).  [Pa]
-struct RockStress {
-  Sym3 s;
+template <class R>
+struct RockStressOf {
+  Sym3Of<R> s;
 };
+using RockStress = RockStressOf<double>;
 
 /// Of plane stress in the face under a normal stress, from Green's strain of the middle surface.
-/// @param traction  mean, on side b's outer face  [Pa]
-/// @param in_situ   S_0, taken along the present axes  [Pa]
-BR_HD inline RockStress rock_stress(const fdem::JointBond& bond, const FaceShape& face,
-                                    const JointOpening& o, const Vec3& traction,
-                                    const Sym3& in_situ) {
-  const Vec3 edge = o.middle[1] - o.middle[0], other = o.middle[2] - o.middle[0];
-  const Vec3 across = cross(o.normal, o.along);
+/// @param young, poisson  of the rock  @param traction  mean, on side b's outer face  [Pa]
+/// @param in_situ  S_0, taken along the present axes  [Pa]
+template <class R>
+BR_HD RockStressOf<R> rock_stress(const R& young, const R& poisson, const FaceShapeOf<R>& face,
+                                  const JointOpeningOf<R>& o, const Vec3Of<R>& traction,
+                                  const Sym3Of<R>& in_situ) {
+  const Vec3Of<R> edge = o.middle[1] - o.middle[0], other = o.middle[2] - o.middle[0];
+  const Vec3Of<R> across = cross(o.normal, o.along);
   // F in the plane from the reference edges (size, 0), (along, across) to the present ones.
-  const double present = dot(edge, o.along);  // edge has no part across
-  const double f11 = present / face.size;
-  const double f12 = (dot(other, o.along) - f11 * face.along) / face.across;
-  const double f22 = dot(other, across) / face.across;
-  const double e11 = 0.5 * (f11 * f11 - 1.0), e22 = 0.5 * (f12 * f12 + f22 * f22 - 1.0);
-  const double e12 = 0.5 * f11 * f12;
-  const double young = bond.young, poisson = bond.poisson;
-  const double flat = young / (1.0 - poisson * poisson);
-  const double z_start = dot(o.normal, in_situ * o.normal);
-  const double normal = dot(traction, o.normal);
-  const double lifted = poisson / (1.0 - poisson) * (normal - z_start);
-  RockStress r;
+  const R present = dot(edge, o.along);  // edge has no part across
+  const R f11 = present / face.size;
+  const R f12 = (dot(other, o.along) - f11 * face.along) / face.across;
+  const R f22 = dot(other, across) / face.across;
+  const R e11 = 0.5 * (f11 * f11 - 1.0), e22 = 0.5 * (f12 * f12 + f22 * f22 - 1.0);
+  const R e12 = 0.5 * f11 * f12;
+  const R flat = young / (1.0 - poisson * poisson);
+  const R z_start = dot(o.normal, in_situ * o.normal);
+  const R normal = dot(traction, o.normal);
+  const R lifted = poisson / (1.0 - poisson) * (normal - z_start);
+  RockStressOf<R> r;
   r.s.xx = flat * (e11 + poisson * e22) + lifted + dot(o.along, in_situ * o.along);
   r.s.yy = flat * (e22 + poisson * e11) + lifted + dot(across, in_situ * across);
   r.s.xy = young / (1.0 + poisson) * e12 + dot(o.along, in_situ * across);
@@ -48,26 +50,29 @@ BR_HD inline RockStress rock_stress(const fdem::JointBond& bond, const FaceShape
 
 /// Whether the largest eigenvalue is above a number: exact, by the signs of the leading minors of
 /// number - s.
-BR_HD inline bool exceeds(const Sym3& s, double number) {
-  const double a = number - s.xx, b = number - s.yy, c = number - s.zz;
-  const double minor = a * b - s.xy * s.xy;
-  const double whole =
+template <class R>
+BR_HD auto exceeds(const Sym3Of<R>& s, const R& number) {
+  const R a = number - s.xx, b = number - s.yy, c = number - s.zz;
+  const R minor = a * b - s.xy * s.xy;
+  const R whole =
       a * (b * c - s.yz * s.yz) - s.xy * (s.xy * c + s.yz * s.xz) - s.xz * (s.xy * s.yz + b * s.xz);
   return !(a > 0.0 && minor > 0.0 && whole > 0.0);
 }
 
 /// Whether the rock can have failed on any plane at all. Cheap, and never false where rock_failure
 /// finds a failure: by the largest eigenvalue, and by a bound on the difference of the outer two.
-BR_HD inline bool may_fail(const fdem::JointBond& law, double strength, const RockStress& rock) {
-  const Sym3& s = rock.s;
-  if (exceeds(s, law.tension * strength)) return true;
+/// @param tension, cohesion  of this joint  [Pa]  @param friction  tan phi_i
+template <class R>
+BR_HD auto may_fail(const R& tension, const R& cohesion, const R& friction,
+                    const RockStressOf<R>& rock) {
+  const Sym3Of<R>& s = rock.s;
   // With s' the deviator: sigma_1 - sigma_3 <= sqrt(2 s':s'), |sigma_2 - mean| <= sqrt(s':s'/6).
-  const double mean = trace(s) / 3.0;
-  const Sym3 away{s.xx - mean, s.yy - mean, s.zz - mean, s.yz, s.xz, s.xy};
-  const double size = sqrt(contract(away, away));
-  const double radius = 0.7071067811865476 * size, centre = mean + 0.2041241452319315 * size;
-  return law.friction * centre + radius * sqrt(1.0 + law.friction * law.friction) >
-         law.cohesion * strength;
+  const R mean = trace(s) / 3.0;
+  const Sym3Of<R> away{s.xx - mean, s.yy - mean, s.zz - mean, s.yz, s.xz, s.xy};
+  const R size = sqrt(contract(away, away));
+  const R radius = 0.7071067811865476 * size, centre = mean + 0.2041241452319315 * size;
+  return exceeds(s, tension) ||
+         friction * centre + radius * sqrt(1.0 + friction * friction) > cohesion;
 }
 
 /// Principal stresses, falling, and their directions.

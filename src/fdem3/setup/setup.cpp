@@ -217,7 +217,7 @@ std::vector<double> contact_lengths(const Config& config, const Model& model) {
 
 }  // namespace
 
-World::World(const Exec& how) : exec(how) {
+World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
   place_arrays(*this);
 }
 

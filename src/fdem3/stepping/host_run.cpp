@@ -1,24 +1,27 @@
-// A step by loops on the host, shared by threads.
+// A step by loops on the host: over packs of tetrahedra and joints, shared by threads.
 
 #include "fdem_shared/host_run.hpp"
 
 #include "core/stepping.hpp"
+#include "exec/for_each.hpp"
 #include "fdem3/shape.hpp"
+#include "fdem3/stepping/kernel_lanes.hpp"
 #include "fdem3/stepping/launches.hpp"
 #include "fdem3/stepping/step.hpp"
 
 namespace breccia::fdem3 {
 
-bool move_range(const World&, const MoveTetrahedra& kernel, Index begin, Index end) {
-  bool beyond = false;
-  for (Index t = begin; t < end; ++t) beyond = kernel(t) || beyond;
-  return beyond;
+bool move_range(const World& w, const MoveTetrahedra& kernel, Index begin, Index end) {
+  return run_packs(w.lanes, kernel, begin, end);
 }
 
 void HostRun::pair_forces(World& w) const {
   {
     const StageTime timed(w.exec, "joint_forces");
-    for_each(w.exec, w.joints.size(), joint_kernel(w));
+    const JointForces kernel = joint_kernel(w);
+    constexpr Index grain = 512;
+    for_each_run(w.exec, w.joints.size(), grain,
+                 [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
   }
   const StageTime timed(w.exec, "contact_forces");
   for_each(w.exec, w.couples.size(), couple_kernel(w));
@@ -27,9 +30,8 @@ void HostRun::pair_forces(World& w) const {
 void HostRun::sum_forces(World& w) const {
   const StageTime timed(w.exec, "element_forces");
   const ElementForces kernel = element_kernel(w);
-  fdem_shared::each_run(w, w.domain.runs, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t) kernel(t);
-  });
+  fdem_shared::each_run(w, w.domain.runs,
+                        [&](Index begin, Index end) { run_packs(w.lanes, kernel, begin, end); });
 }
 
 }  // namespace breccia::fdem3

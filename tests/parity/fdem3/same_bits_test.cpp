@@ -46,6 +46,24 @@ TEST(Fdem3SameBits, for_any_number_of_threads) {
     EXPECT_EQ(ended(meeting_cubes().world(threads)), reference()) << threads;
 }
 
+/// Pressed joints slip, others soften; and one that is not viscous beside one that is.
+TEST(Fdem3SameBits, for_any_width_of_vector) {
+  for (const char* joints : {"intrinsic", "none"}) {
+    Scene scene = meeting_cubes();
+    scene.config.materials[0].joints = joints;
+    scene.config.local_damping = joints[0] == 'n' ? 0.1 : 0.0;
+    const auto with = [&](Lanes lanes) {
+      fdem3::World w = scene.world();
+      w.lanes = std::min(lanes, widest_lanes());
+      for (Index t = 0; t < w.tetrahedra.size(); t += 3) w.tetrahedra.viscosity.data()[t] = 0.0;
+      return ended(std::move(w));
+    };
+    const Outcome one = with(Lanes::one);
+    EXPECT_EQ(with(Lanes::four), one) << joints;
+    EXPECT_EQ(with(Lanes::eight), one) << joints;
+  }
+}
+
 TEST(Fdem3SameBits, for_any_search_margin) {
   for (const double margin : {0.03, 0.3}) {
     Scene scene = meeting_cubes();
