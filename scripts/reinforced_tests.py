@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Pull-out of a bar and beams of reinforced concrete against formulas, for docs/validation-concrete.md.
 
-    scripts/reinforced_tests.py [--seeds 3] [--elements 3900] [--binary build/release/breccia] [--device cpu] [--jobs 1] [NAME...]
-    NAME: pull_out bending shear stirrups; elements: of the concrete of a beam
+    scripts/reinforced_tests.py [--seeds 3] [--elements 0] [--binary build/release/breccia] [--device cpu] [--jobs 1] [NAME...]
+    NAME: pull_out bending shear stirrups; elements: of the concrete; 0: 3,900 of a beam, 1,080 of a pull-out
 
 Concrete: c30 of cases/rc_slab with friction bounded under pressure (f_c 33.5, f_t 3.3 MPa in prisms of `breccia test`); bars
 of 500 MPa; bond by the Model Code 1990, tau_max 13.7 MPa = 2.5 sqrt(30). Cases and results are in out/reinforced/; called
@@ -99,8 +99,8 @@ def probe(name, on, quantity, reduce):
     return f'\n[[probe]]\nname = "{name}"\non = "{on}"\nquantity = "{quantity}"\nreduce = "{reduce}"\n'
 
 
-def pull_out(seed, _):
-    return (head("Pull-out of a bar", seed, 8e-3, 0.1) + box((0.16, 0.16, 0.16), 1080)
+def pull_out(seed, elements):
+    return (head("Pull-out of a bar", seed, 8e-3, 0.1) + box((0.16, 0.16, 0.16), elements)
             + bars("bar", 0.016, 0.016, [([[-0.04, 0.0, 0.0], [0.04, 0.0, 0.0]], 1, [0.0, 0.0, 0.0], False)])
             + support("grip", "bar", (-0.044, -1, -1), (-0.036, 1, 1), '["x"]', (-0.5, 0, 0), 5e-4)
             + support("plate", "concrete", (-1, -1, -1), (-0.064, 1, 1), '["x"]',
@@ -126,6 +126,7 @@ def beam(seed, elements, diameter, stirrups=False):
     return text + "".join(probe(n, n, "force_z", "sum") for n in ("load", "left", "right")) + probe("way", "load", "displacement_z", "mean")
 
 
+USUAL = {"pull_out": 1080, "bending": 3900, "shear": 3900, "stirrups": 3900}  # elements
 TESTS = {"pull_out": pull_out, "bending": lambda s, n: beam(s, n, 0.006), "shear": lambda s, n: beam(s, n, 0.016),
          "stirrups": lambda s, n: beam(s, n, 0.016, True)}
 
@@ -206,7 +207,7 @@ def collected():
         if not (OUT / case.stem / "summary.json").exists():
             continue
         summary = json.loads((OUT / case.stem / "summary.json").read_text())
-        of = {"test": name, "elements": "" if name == "pull_out" else (elements or ["3900"])[0], "seed": seed,
+        of = {"test": name, "elements": (elements or [str(USUAL[name])])[0], "seed": seed,
               "commit": summary["breccia"]["commit"], "device": summary["machine"]["device"], "hash": summary["state_hash"]}
         for quantity, value in measured(name, OUT / case.stem).items():
             yield {**of, "quantity": quantity, "value": f"{value:.9g}"}
@@ -219,9 +220,8 @@ def markdown(records):
     # Against the first number: bond stress, yield of the bars, Eurocode 2, yield of the bars.
     against = {"pull_out": 13.7, "bending": flexure(0.006) * 1e-3, "shear": shear_eurocode(0.016) * 1e-3, "stirrups": flexure(0.016) * 1e-3}
     lines = ["| test | elements | n | here | formula | misfit |", "|---|---|---|---|---|---|"]
-    for (name, elements), values in sorted(found.items(), key=lambda item: (list(TESTS).index(item[0][0]), int(item[0][1] or 0))):
-        size = f"{int(elements):,}" if elements else "1,080"
-        lines.append(f"| {name.replace('_', '-')} | {size} | {len(values['largest'])} | {shown(name, values)} | {asked(name)} | "
+    for (name, elements), values in sorted(found.items(), key=lambda item: (list(TESTS).index(item[0][0]), int(item[0][1]))):
+        lines.append(f"| {name.replace('_', '-')} | {int(elements):,} | {len(values['largest'])} | {shown(name, values)} | {asked(name)} | "
                      f"{100 * (statistics.mean(values['largest']) / against[name] - 1):+.0f} % |")
     return "\n".join(lines)
 
@@ -242,9 +242,10 @@ def asked(name):
 
 
 def run(name, seed, given):
-    end = "" if name == "pull_out" or given.elements == 3900 else f"-{given.elements}"
+    elements = given.elements or USUAL[name]
+    end = "" if elements == USUAL[name] else f"-{elements}"
     case, folder = OUT / f"{name}-{seed}{end}.toml", OUT / f"{name}-{seed}{end}"
-    made = TESTS[name](seed, given.elements)
+    made = TESTS[name](seed, elements)
     if not (folder / "summary.json").exists() or not case.exists() or case.read_text() != made:
         case.write_text(made)
         done = subprocess.run([given.binary, "run", case, "-o", folder, "--threads", "1", "--force", "--no-progress", "--device",
@@ -259,7 +260,7 @@ def main():
     p.add_argument("names", nargs="*", default=list(TESTS))
     p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
     p.add_argument("--seeds", type=int, default=3)
-    p.add_argument("--elements", type=int, default=3900)
+    p.add_argument("--elements", type=int, default=0)
     p.add_argument("--device", default="cpu")
     p.add_argument("--jobs", type=int, default=1)
     p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all finished runs, as docs/results/reinforced.csv")

@@ -22,6 +22,7 @@ struct LinkArrays {
   std::vector<std::int16_t> material;
   std::vector<double> share;
   std::vector<std::uint8_t> parted;
+  std::vector<double> strength;  ///< empty: 1
 };
 
 template <class Arrays, class Visit>
@@ -171,9 +172,13 @@ void save_model(CheckpointWriter& writer, const dem::Model& model) {
     links.material.push_back(link.material);
     links.share.push_back(link.share);
     links.parted.push_back(link.parted ? 1 : 0);
+    links.strength.push_back(link.strength);
   }
   each_link_array(links,
                   [&](const char* name, const auto& items) { save_array(writer, name, items); });
+  const auto weaker = [](double strength) { return strength != 1.0; };
+  if (std::any_of(links.strength.begin(), links.strength.end(), weaker))
+    save_array(writer, "link_strength", links.strength);
   for (std::size_t k = 0; k < model.wall_meshes.size(); ++k)
     save_array(writer, wall_mesh_name(k), model.wall_meshes[k]);
   if (model.facets.empty()) return;
@@ -225,15 +230,20 @@ dem::Model load_model(const CheckpointReader& reader) {
     items =
         load_array<typename std::remove_reference_t<decltype(items)>::value_type>(reader, array);
   });
+  if (reader.has("model.link_strength"))
+    links.strength = load_array<double>(reader, "link_strength");
+  else
+    links.strength.assign(links.a.size(), 1.0);
   if (links.b.size() != links.a.size() || links.kind.size() != links.a.size() ||
       links.material.size() != links.a.size() || links.share.size() != links.a.size() ||
-      links.parted.size() != links.a.size())
+      links.parted.size() != links.a.size() || links.strength.size() != links.a.size())
     throw CheckpointError("the model's links are not whole");
   Index facet = 0;
   for (std::size_t i = 0; i < links.a.size(); ++i) {
     const auto kind = static_cast<dem::LinkKind>(links.kind[i]);
     model.links.push_back({links.a[i], links.b[i], kind, links.material[i], links.share[i],
-                           kind == dem::LinkKind::ldpm ? facet++ : -1, links.parted[i] != 0});
+                           kind == dem::LinkKind::ldpm ? facet++ : -1, links.parted[i] != 0,
+                           links.strength[i]});
   }
   while (reader.has("model." + wall_mesh_name(model.wall_meshes.size())))
     model.wall_meshes.push_back(load_array<Vec3>(reader, wall_mesh_name(model.wall_meshes.size())));

@@ -233,9 +233,11 @@ struct MaterialConfig {
         "lambda, radius of a parallel bond over that of the smaller element");
     key("moment_share", moment_share, "-", Range{0.0, 1.0},
         "how far moments count in the stresses that break a parallel bond");
-    key("fabric", fabric, OneOf{"packed", "even"},
+    key("fabric", fabric, OneOf{"packed", "even", "faces"},
         "sections of links: packed: by the radii alone, so that faces of a body are weak and soft; "
-        "even: larger where an element has fewer links than those deep in the body");
+        "even: larger where an element has fewer links than those deep in the body; faces: "
+        "stiffness "
+        "as even, but no more strength than faces need, across which nothing pulls");
     key("stiffness", stiffness, OneOf{"estimated", "measured"},
         "stiffness of links: estimated: by alpha, beta, gamma; measured: times a factor that makes "
         "the modulus of each body, measured when it is built, that of the key young");

@@ -33,6 +33,7 @@ struct Model {
     double share = 1.0;     ///< of a concrete link: its section over pi min(R_a, R_b)^2  [-]
     Index facet = -1;       ///< of a link of LDPM: index into facets
     bool parted = false;    ///< of concrete and parallel bonds: broken from the start, by a cut
+    double strength = 1.0;  ///< of a concrete link: factor on its strengths (fabric "faces")  [-]
   };
   std::vector<Link> links;  ///< sorted by a, then b
 

@@ -60,8 +60,8 @@ void set_elements(World& w, const Model& m, const Prescribed& held) {
   set_up(w).mean_radius = m.size() > 0 ? sum / static_cast<double>(m.size()) : 0.0;
 }
 
-/// The links of one kind, sorted into groups of one material and, of concrete, bodies of one bulk,
-/// each in the model's order.
+/// The links of one kind, sorted into groups of one material and, of concrete, bodies of one bulk
+/// and links of one strength, each in the model's order.
 template <class Law, class MakeLaw>
 std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<Law>& set,
                                  const MakeLaw& make_law) {
@@ -71,7 +71,7 @@ std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<L
     if (link.kind == set.kind) links.push_back(link);
   const auto law_of = [&](const Model::Link& link) {
     const Model::Bulk bulk = link.kind == LinkKind::concrete ? m.bulk_of(link.a) : Model::Bulk{};
-    return std::tuple{link.material, bulk.factor, bulk.rupture_opening};
+    return std::tuple{link.material, bulk.factor, bulk.rupture_opening, link.strength};
   };
   std::stable_sort(links.begin(), links.end(), [&](const Model::Link& p, const Model::Link& q) {
     return law_of(p) < law_of(q);
@@ -108,6 +108,13 @@ void set_ends(Buffer<Index>& a, Buffer<Index>& b, const std::vector<Model::Link>
   copy_to(b, second);
 }
 
+/// A law whose stresses all are so many times larger.
+void weaken(ConcreteLink& law, double by) {
+  for (double* stress : {&law.tensile_strength, &law.cohesion, &law.friction_cap, &law.rolling_cap,
+                         &law.compaction_strength, &law.crushing_strength})
+    *stress *= by;
+}
+
 void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m) {
   for (const MaterialConfig& c : config.materials)
     set.rated = set.rated || (c.law == "concrete" && c.rate != "none");
@@ -116,6 +123,7 @@ void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m)
     ConcreteLink law = concrete_law(c, config.contact);
     law.modulus *= m.bulk_of(link.a).factor;
     law.rupture_opening = m.bulk_of(link.a).rupture_opening;
+    if (link.strength != 1.0) weaken(law, link.strength);
     return law;
   });
   set_ends(set.a, set.b, links);

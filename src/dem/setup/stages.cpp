@@ -90,10 +90,16 @@ std::vector<std::string> stage_problems(const Config& config) {
     for (const MaterialChange& change : stage.materials) {
       add_unknown(where + ".material.name", change.name, "material", names_of(config.materials),
                   problems);
-      for (const MaterialConfig& m : config.materials)
-        if (m.name == change.name && m.law != "concrete" && m.law != "parallel")
+      for (const MaterialConfig& m : config.materials) {
+        if (m.name != change.name) continue;
+        if (m.law != "concrete" && m.law != "parallel")
           problems.push_back(where + ".material." + m.name + ": its law is " + m.law +
                              "; a stage changes those of law concrete and parallel");
+        else if (m.fabric == "faces")
+          problems.push_back(where + ".material." + m.name +
+                             ": fabric = \"faces\" gives its links different strengths, which a "
+                             "stage cannot change; use fabric = \"even\"");
+      }
     }
     for (const WallChange& change : stage.walls) {
       add_unknown(where + ".wall.name", change.name, "wall", walls, problems);

@@ -109,10 +109,10 @@ class DemBodyChecks {
     require(!bulk || b.bulk_volume() > 0.0,
             ".volume is missing: spheres of concrete do not fill space, so their mass is density "
             "times the volume that they stand for; give volume in m3, or the size of a box");
-    const bool even = material != nullptr && material->fabric == "even";
+    const bool even = material != nullptr && material->fabric != "packed";
     require(b.shape != "file" || !even || b.size.x * b.size.y * b.size.z > 0.0,
-            ".size is missing: fabric = \"even\" of {} asks how deep elements lie in their box",
-            b.material);
+            ".size is missing: fabric = \"{}\" of {} asks how deep elements lie in their box",
+            material == nullptr ? "" : material->fabric, b.material);
   }
 
   static bool is_packed(const BodyConfig& b) {

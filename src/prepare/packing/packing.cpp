@@ -75,12 +75,16 @@ Vec3 Container::half() const {
   return 0.5 * size;
 }
 
-double Container::depth(const Vec3& p) const {
-  if (shape == Shape::sphere) return radius - norm(p);
+std::array<double, 3> Container::depths(const Vec3& p) const {
+  if (shape == Shape::sphere) return {radius - norm(p), no_limit, no_limit};
   if (shape == Shape::cylinder)
-    return std::min(radius - sqrt(p.x * p.x + p.y * p.y), 0.5 * length - std::abs(p.z));
-  return std::min(
-      {0.5 * size.x - std::abs(p.x), 0.5 * size.y - std::abs(p.y), 0.5 * size.z - std::abs(p.z)});
+    return {radius - sqrt(p.x * p.x + p.y * p.y), 0.5 * length - std::abs(p.z), no_limit};
+  return {0.5 * size.x - std::abs(p.x), 0.5 * size.y - std::abs(p.y), 0.5 * size.z - std::abs(p.z)};
+}
+
+double Container::depth(const Vec3& p) const {
+  const auto [x, y, z] = depths(p);
+  return std::min({x, y, z});
 }
 
 Container container_of(const dem::BodyConfig& body) {

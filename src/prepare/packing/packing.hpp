@@ -25,6 +25,9 @@ struct Container {
   bool holds(const Vec3& center, double sphere_radius) const;
   /// From a point inside to the nearest face; below 0 outside.  [m]
   double depth(const Vec3& point) const;
+  /// From a point inside to the nearest face in each direction that has one: three of a box, that
+  /// around and an end of a cylinder.  [m]
+  std::array<double, 3> depths(const Vec3& point) const;
 };
 
 /// The container of a body; of a file, the box that its spheres fill.

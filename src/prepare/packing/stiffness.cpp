@@ -43,8 +43,8 @@ double bulk_of(const Config& config, const BodyConfig& body) {
 class Fabric {
  public:
   /// @param bulk  volume of the body  [m3]
-  Fabric(Model& m, int body, const Vec3& center, double bulk, DepthOf depth)
-      : model_(m), center_(center), depth_(std::move(depth)), members_(members_of(m, body)) {
+  Fabric(Model& m, int body, const Vec3& center, double bulk, DepthsOf depths)
+      : model_(m), center_(center), depths_(std::move(depths)), members_(members_of(m, body)) {
     double cubes = 0.0;
     for (const Index e : members_) {
       const double r = m.radius[static_cast<std::size_t>(e)];
@@ -58,27 +58,65 @@ class Fabric {
     add_up();
   }
 
-  void even_out() {
-    const double aim = deep_mean();
-    std::vector<Model::Link*> near;
-    for (Model::Link* link : links_) {
-      const Vec3 middle = 0.5 * (place(link->a) + place(link->b));
-      if (depth_(middle, skin * mean_) < skin * mean_) near.push_back(link);
-    }
-    for (int pass = 0; pass < passes; ++pass) {
-      for (Model::Link* link : near)
-        link->share = std::clamp(link->share * aim / std::sqrt(fabric(link->a) * fabric(link->b)),
-                                 1.0 / most, most);
-      add_up();
+  /// Sections for which elements at faces have as much fabric as those deep in the body.
+  void even_out() { even_out(std::vector<double>(model_.position.size(), 1.0)); }
+
+  /// Strengths, over those of the sections that links have, for which elements at faces have as
+  /// much as these need. In classes, since each is a group of links with a law of its own.
+  void weaken_faces() {
+    std::vector<double> section, needed(model_.position.size(), 1.0);
+    for (const Model::Link* link : links_) section.push_back(link->share);
+    for (const Index e : members_) needed[static_cast<std::size_t>(e)] = needed_at(e);
+    for (Model::Link* link : links_) link->share = 1.0;
+    add_up();
+    even_out(needed);
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      const double strength = links_[k]->share / section[k];
+      links_[k]->strength = std::max(1.0, std::round(classes * strength)) / classes;
+      links_[k]->share = section[k];
     }
   }
 
  private:
+  static constexpr double classes = 16.0;
   static constexpr double skin = 3.5;  ///< depth of what faces disturb, over the mean radius  [-]
   static constexpr double most = 3.0;  ///< largest share, and the least one's inverse  [-]
   static constexpr int passes = 8;
   static constexpr std::size_t least_deep = 20;  ///< elements that a mean needs
 
+  /// @param aims  fabric of each element over that of those deep in the body  [-]
+  void even_out(const std::vector<double>& aims) {
+    const double deep = deep_mean();
+    std::vector<Model::Link*> near;
+    for (Model::Link* link : links_) {
+      const Vec3 middle = 0.5 * (place(link->a) + place(link->b));
+      if (depth(middle, skin * mean_) < skin * mean_) near.push_back(link);
+    }
+    for (int pass = 0; pass < passes; ++pass) {
+      for (Model::Link* link : near) {
+        const double aim = deep * std::sqrt(aims[static_cast<std::size_t>(link->a)] *
+                                            aims[static_cast<std::size_t>(link->b)]);
+        link->share = std::clamp(link->share * aim / std::sqrt(fabric(link->a) * fabric(link->b)),
+                                 1.0 / most, most);
+      }
+      add_up();
+    }
+  }
+
+  /// Fabric that an element needs over that of one deep in the body: less for the part of its space
+  /// between the centres of the outermost elements and a face, across which nothing pulls.  [-]
+  double needed_at(Index e) const {
+    const double r = model_.radius[static_cast<std::size_t>(e)];
+    double sum = 0.0;
+    for (const double below : depths_(place(e), skin * mean_))
+      sum += 1.0 - std::clamp((mean_ - below + r) / (2.0 * r), 0.0, 1.0);
+    return sum / 3.0;
+  }
+
+  double depth(const Vec3& point, double reach) const {
+    const auto [x, y, z] = depths_(point, reach);
+    return std::min({x, y, z});
+  }
   Vec3 place(Index e) const { return model_.position[static_cast<std::size_t>(e)] - center_; }
   double& fabric(Index e) { return fabric_[static_cast<std::size_t>(e)]; }
 
@@ -99,7 +137,7 @@ class Fabric {
   /// Of the elements that faces do not disturb; of the deepest ones where there are too few.
   double deep_mean() {
     std::vector<std::pair<double, Index>> by_depth;
-    for (const Index e : members_) by_depth.emplace_back(depth_(place(e), no_limit), e);
+    for (const Index e : members_) by_depth.emplace_back(depth(place(e), no_limit), e);
     std::sort(by_depth.rbegin(), by_depth.rend());
     double sum = 0.0;
     std::size_t count = 0;
@@ -113,7 +151,7 @@ class Fabric {
 
   Model& model_;
   Vec3 center_;
-  DepthOf depth_;
+  DepthsOf depths_;
   std::vector<Index> members_;
   std::vector<Model::Link*> links_;
   double mean_ = 0.0;           ///< radius  [m]
@@ -226,13 +264,16 @@ Elasticity estimated_elasticity(const Model& model, const Config& config, int nu
   return {moments * voigt, (1.0 - x) / (4.0 + x)};
 }
 
-void even_out(Model& model, int number, const Vec3& center, const DepthOf& depth) {
+void even_out(Model& model, int number, const Vec3& center, const std::string& fabric,
+              const DepthsOf& depths) {
   for (Model::Link& link : model.links)
     if (link.kind == dem::LinkKind::concrete &&
         model.group[static_cast<std::size_t>(link.a)] == number)
-      link.share = 1.0;
+      link.share = link.strength = 1.0;
   constexpr double any_bulk = 1.0;  // its scale leaves the ratios of fabrics alone
-  Fabric(model, number, center, any_bulk, depth).even_out();
+  Fabric links(model, number, center, any_bulk, depths);
+  links.even_out();
+  if (fabric == "faces") links.weaken_faces();
 }
 
 void set_stiffness(Model& model, const Config& config) {
@@ -243,7 +284,7 @@ void set_stiffness(Model& model, const Config& config) {
     if (body.shape == "rebar" || body.shape == "element" || material.law != "concrete") continue;
     const auto number = static_cast<int>(k);
     const bool corrected = material.stiffness == "measured";
-    const bool even = material.fabric == "even";
+    const bool even = material.fabric != "packed";
     const bool wanted =
         corrected || (has_section(body) && members_of(model, number).size() <= always_measured);
     const auto elasticity = [&] {
@@ -252,10 +293,12 @@ void set_stiffness(Model& model, const Config& config) {
                                  : estimated_elasticity(model, config, number);
     };
     const Elasticity packed = elasticity();
-    if (even)
-      Fabric(model, number, body.center, bulk_of(config, body), [&](const Vec3& x, double) {
-        return container_of(body).depth(x);
-      }).even_out();
+    if (even) {
+      Fabric links(model, number, body.center, bulk_of(config, body),
+                   [&](const Vec3& x, double) { return container_of(body).depths(x); });
+      links.even_out();
+      if (material.fabric == "faces") links.weaken_faces();
+    }
     const Elasticity now = even ? elasticity() : packed;
     Model::Bulk& bulk = model.bulk[k];
     if (corrected) bulk.factor = material.young / now.young;

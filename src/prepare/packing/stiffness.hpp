@@ -2,7 +2,9 @@
 // How stiff packed bodies are: sections of links that make up for missing neighbours, and Young's
 // modulus as it is measured.
 
+#include <array>
 #include <functional>
+#include <string>
 
 #include "dem/setup/config.hpp"
 #include "dem/setup/model.hpp"
@@ -24,15 +26,17 @@ Elasticity estimated_elasticity(const dem::Model& model, const dem::Config& conf
 
 /// Measures the bodies of concrete (Model::stiffness): boxes and cylinders of up to 20,000 elements
 /// always, others where their material has stiffness = "measured"; it then sets the factors on the
-/// stiffness of their links, too. Sets the sections of links (Model::Link::share) of bodies whose
-/// material has fabric = "even".
+/// stiffness of their links, too. Sets the sections and strengths of links (Model::Link::share,
+/// ::strength) of bodies whose material has fabric = "even" or "faces".
 void set_stiffness(dem::Model& model, const dem::Config& config);
 
-/// From a point, relative to a body's centre, to its nearest face, or any length above `reach`
-/// where that is farther: depth(point, reach)  [m]
-using DepthOf = std::function<double(const Vec3&, double)>;
+/// From a point, relative to a body's centre, to its nearest faces, in directions across each
+/// other; any length above `reach` where there is none nearer: depths(point, reach)  [m]
+using DepthsOf = std::function<std::array<double, 3>(const Vec3&, double)>;
 
-/// Sets the sections of a body's links anew, as fabric = "even" asks for a body of these faces.
-void even_out(dem::Model& model, int body, const Vec3& center, const DepthOf& depth);
+/// Sets the sections and strengths of a body's links anew, as a fabric of that name asks for a body
+/// of these faces.
+void even_out(dem::Model& model, int body, const Vec3& center, const std::string& fabric,
+              const DepthsOf& depths);
 
 }  // namespace breccia::prepare

@@ -102,13 +102,14 @@ class Carving {
             return surface->parts(a - body.center, b - body.center);
           });
     const MaterialConfig& material = *item_named(config_.materials, body.material);
-    if (surface && material.fabric == "even")
-      even_out(model_, number, body.center,
-               [&](const Vec3& x, double reach) { return surface->distance(x, reach); });
+    if (surface && material.fabric != "packed")
+      even_out(model_, number, body.center, material.fabric, [&](const Vec3& x, double reach) {
+        return std::array{surface->distance(x, reach), no_limit, no_limit};
+      });
     if (body.joins.empty())
       turn(number, body);
     else
-      unite(number, body, material.fabric == "even");
+      unite(number, body, material.fabric);
     for (const CutConfig& asked : body.cuts) {
       const Cut cut(asked, folder_);
       remove(
@@ -178,12 +179,15 @@ class Carving {
   }
 
   /// Leaves what lies in the solids of a body with joins; the box around them stands upright.
-  void unite(int number, const BodyConfig& body, bool even) {
+  void unite(int number, const BodyConfig& body, const std::string& fabric) {
     const Union whole(body);
     remove(
         number, body, [&](const Vec3& x) { return !(whole.depth(x) > 0.0); },
         [&](const Vec3& a, const Vec3& b) { return whole.parts(a, b); });
-    if (even) even_out(model_, number, {}, [&](const Vec3& x, double) { return whole.depth(x); });
+    if (fabric != "packed")
+      even_out(model_, number, {}, fabric, [&](const Vec3& x, double) {
+        return std::array{whole.depth(x), no_limit, no_limit};
+      });
     for (Index e = 0; e < model_.size(); ++e)
       if (is_of(e, number))
         model_.velocity[static_cast<std::size_t>(e)] =

@@ -23,7 +23,7 @@ dem::BodyConfig whole_of(const dem::BodyConfig& body, const std::string& case_fo
 
 /// Gives the bodies of a linked model their shapes: elements whose centres lie outside go, links
 /// that pass through what is cut out go, and elements that lose all their links; turned bodies take
-/// their bars along. `fabric = "even"` is made anew for bodies from a file.
+/// their bars along. `fabric` is made anew for bodies from a file.
 /// @throws InputError names a body of which nothing is left
 void carve(dem::Model& model, const dem::Config& config, const std::string& case_folder);
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "dem/observe.hpp"
+#include "dem/setup/materials.hpp"
 #include "prepare/packing/elastic_network.hpp"
 #include "specimen.hpp"
 
@@ -161,6 +162,64 @@ TEST(Stiffness, and_section_of_every_link_give_its_length_at_the_start) {
     least = std::min(least, link.share), most = std::max(most, link.share);
   EXPECT_LT(least, 0.9);
   EXPECT_GT(most, 1.5);
+}
+
+/// Fabric of each element, over that of those deeper than 3.5 R: of sections, or of strengths.
+std::vector<double> fabric_over_deep(const Model& m, double depth_of_skin, bool strengths) {
+  std::vector<double> fabric(m.position.size());
+  for (const Model::Link& link : m.links) {
+    const auto a = static_cast<std::size_t>(link.a), b = static_cast<std::size_t>(link.b);
+    const double part = link_section(m, link) * (strengths ? link.strength : 1.0) *
+                        norm(m.position[b] - m.position[a]);
+    fabric[a] += part / std::pow(m.radius[a], 3), fabric[b] += part / std::pow(m.radius[b], 3);
+  }
+  double deep = 0.0, count = 0.0;
+  for (std::size_t e = 0; e < fabric.size(); ++e) {
+    const Vec3& x = m.position[e];
+    const double below =
+        std::min({0.05 - std::abs(x.x), 0.05 - std::abs(x.y), 0.1 - std::abs(x.z)});
+    if (below > depth_of_skin) deep += fabric[e], count += 1.0;
+  }
+  for (double& f : fabric) f *= count / deep;
+  return fabric;
+}
+
+/// Outermost elements need no strength across the half of their space that lies beyond their
+/// centres: 5/6 of that of the bulk by fabric. Stiffness is that of "even".
+TEST(Stiffness, of_fabric_faces_is_that_of_even_and_faces_have_five_sixths_of_the_strength) {
+  Specimen specimen = block(2000, {0.1, 0.1, 0.2}, 0.56, 1, true);
+  const Model even = specimen.model();
+  specimen.material().fabric = "faces";
+  const Model faces = specimen.model();
+  double radius = 0.0;
+  for (const double r : faces.radius) radius += r / static_cast<double>(faces.radius.size());
+  ASSERT_EQ(even.links.size(), faces.links.size());
+  double least = 1.0;
+  for (std::size_t k = 0; k < faces.links.size(); ++k) {
+    const Model::Link& link = faces.links[k];
+    EXPECT_EQ(link.share, even.links[k].share);
+    EXPECT_EQ(even.links[k].strength, 1.0);
+    EXPECT_EQ(16.0 * link.strength, std::round(16.0 * link.strength));
+    least = std::min(least, link.strength);
+  }
+  EXPECT_LT(least, 0.8);
+  const std::vector<double> section = fabric_over_deep(faces, 3.5 * radius, false);
+  const std::vector<double> strength = fabric_over_deep(faces, 3.5 * radius, true);
+  double outer = 0.0, outer_section = 0.0, count = 0.0;
+  for (std::size_t e = 0; e < strength.size(); ++e) {
+    const Vec3& x = faces.position[e];
+    if (0.05 - std::abs(x.x) > 1.05 * faces.radius[e]) continue;  // touches the face across x
+    if (std::min(0.05 - std::abs(x.y), 0.1 - std::abs(x.z)) < 3.0 * radius) continue;
+    outer += strength[e], outer_section += section[e], count += 1.0;
+  }
+  ASSERT_GT(count, 50.0);
+  EXPECT_NEAR(outer / count, 5.0 / 6.0, 0.04);
+  EXPECT_NEAR(outer_section / count, 1.0, 0.04);
+  const World w = make_world(specimen.config, faces, {});
+  for (const auto& group : w.concrete.groups)
+    EXPECT_NEAR(group.law.cohesion / group.law.tensile_strength,
+                specimen.material().cohesion / specimen.material().tensile_strength, 1e-12);
+  EXPECT_GT(w.concrete.groups.size(), 3U);
 }
 
 /// One short step from rest moves and turns the elements by what they are given.
