@@ -100,7 +100,7 @@ struct CheckCommand {
           const MemoryPlan plan = memory_plan(config);
           refuse_without_memory(plan, plan.run_bytes, 1, path + ": the model");
           std::optional<Forecast> expected;  // may refuse the case
-          if (!read.model) expected = forecast(config, read.folder);
+          if (!read.model) expected = forecast_of(config, read);
           fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
                      counted(bodies_of(config), "body", "bodies"),
                      counted(materials_of(config), "material", "materials"),
@@ -125,6 +125,17 @@ struct CheckCommand {
         },
         read.config);
     if (model) tell_of_model(read);
+  }
+
+  /// What specimens of its bodies show to be wrong is told with file and lines.
+  template <class Config>
+  static Forecast forecast_of(const Config& config, const Case& read) {
+    try {
+      return forecast(config, read.folder);
+    } catch (const InputError& error) {
+      if (read.file.empty()) throw;
+      throw InputError(with_lines(error.what(), read.file));
+    }
   }
 
   template <class Config>

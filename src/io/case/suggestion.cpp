@@ -1,6 +1,8 @@
 #include "io/case/suggestion.hpp"
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace breccia {
@@ -21,6 +23,13 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
+/// Words of other programs, and of papers, for keys of cases.
+constexpr std::pair<std::string_view, std::string_view> other_words[] = {
+    {"center", "point"}, {"position", "center"},     {"position", "point"},
+    {"axis", "normal"},  {"height", "length"},       {"E", "young"},
+    {"nu", "poisson"},   {"rho", "density"},         {"mu", "friction"},
+    {"ft", "tension"},   {"ft", "tensile_strength"}, {"element_size", "mesh_size"}};
+
 }  // namespace
 
 std::string nearest(const std::string& word, const std::set<std::string>& known) {
@@ -37,6 +46,9 @@ std::string nearest(const std::string& word, const std::set<std::string>& known)
 std::string suggestion(const std::string& word, const std::set<std::string>& known) {
   if (word == "thickness")  // plane cases of other programs have one
     return ": a plane case counts each metre of thickness (N/m, J/m); multiply what comes out";
+  for (const auto& [other, key] : other_words)
+    if (word == other && known.contains(std::string(key)))
+      return "; did you mean " + std::string(key) + "?";
   if (const std::string best = nearest(word, known); !best.empty())
     return "; did you mean " + best + "?";
   std::string all;

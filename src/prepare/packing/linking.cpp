@@ -255,7 +255,9 @@ std::vector<std::string> free_overlaps(const dem::Model& m, const std::vector<Bo
         "element {} of body {} overlaps element {} of body {} by {:.3g} m at ({:.4g}, {:.4g}, "
         "{:.4g}) m; {} such pairs{}",
         pair.a, name(pair.a), pair.b, name(pair.b), pair.depth, at.x, at.y, at.z, pair.pairs,
-        groups.first == groups.second ? "; loose grains need a smaller pack.compactness" : ""));
+        groups.first == groups.second
+            ? "; loose grains need a smaller pack.compactness, such as 0.5"
+            : ""));
   }
   return problems;
 }

@@ -190,7 +190,7 @@ void Recorder::record(Method& method, Background& background) {
         log_->warn(
             "step", method.steps(),
             fmt::format("energies do not add up: error_relative has been above {} for {} rows, "
-                        "and is {:.2g}",
+                        "and is {:.2g}; a smaller time.safety may help",
                         config_.energy.warn, EnergyWatch::patience, last_energy_->error_relative));
       state_.unbalanced = watch_.rows();
       state_.moving.look(*last_energy_);
@@ -230,7 +230,8 @@ void Recorder::judge_end(Method& method, const EnergyBalance& energy) const {
     if (watch_.judge_end(energy, method.steps(), method.time()))
       log_->warn(
           "step", method.steps(),
-          fmt::format("energies do not add up: error_relative is {:.2g} at the end, above {}",
+          fmt::format("energies do not add up: error_relative is {:.2g} at the end, above {}; a "
+                      "smaller time.safety may help",
                       energy.error_relative, config_.energy.warn));
   });
 }

@@ -267,6 +267,7 @@ INSTANTIATE_TEST_SUITE_P(
               "material.c30.poisson = 0.5 is outside (-1, 0.5)"},
         Wrong{"young = \"30 GPa\"", "poisson = 0.3", "above 1 / alpha"},
         Wrong{"young = \"30 GPa\"", "tensile_strenght = 1e6", "did you mean tensile_strength?"},
+        Wrong{"young = \"30 GPa\"", "rho = 2400.0", "rho is not a key; did you mean density?"},
         Wrong{"young = \"30 GPa\"", "friction_angle = \"30 mm\"",
               "is a length, an angle is wanted"},
         Wrong{"young = \"30 GPa\"", "shear = \"ductile\"", "is not one of plastic | brittle"},

@@ -10,6 +10,7 @@
 #include "io/whole_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
+#include "run/case.hpp"
 #include "run/machine/forecast.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -112,6 +113,29 @@ TEST(Check, tells_wrong_units_and_names_that_lead_nowhere_together) {
   EXPECT_TRUE(has(told(solid), "2 problems")) << told(solid);
   const std::string spheres = changed(solid, "fdem3d", "dem3d");
   EXPECT_TRUE(has(told(spheres), "is not a material")) << told(spheres);
+}
+
+TEST(Check, names_the_file_of_grains_that_are_packed_too_densely_and_says_how_dense_they_may_be) {
+  const ScratchFolder folder;
+  replace_file(folder / "heap.toml",
+               "breccia = 1\nmethod = \"dem3d\"\ntime.end = 1e-3\n[material.gravel]\n"
+               "law = \"grain\"\n[[body]]\nname = \"heap\"\nshape = \"box\"\n"
+               "size = [1.0, 1.0, 1.0]\npack = { count = 500, size_ratio = 1.5 }\n"
+               "material = \"gravel\"\n");
+  const Told told = told_by(folder, "check " + (folder / "heap.toml"));
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_TRUE(has(told.text, "with the model of ")) << told.text;
+  EXPECT_TRUE(has(told.text, "heap.toml; nothing was run")) << told.text;
+  EXPECT_TRUE(has(told.text, "smaller pack.compactness, such as 0.5")) << told.text;
+}
+
+TEST(Forecast, of_tetrahedra_of_a_file_counts_what_the_file_holds) {
+  const std::string folder = std::string(source_dir) + "/cases/moving_box_3d";
+  const Case read = load_case(folder + "/small.toml", {});
+  const auto& config = std::get<fdem3::Config>(read.config);
+  const Forecast f = forecast(config, folder);
+  EXPECT_NEAR(f.items, 6.0 * 125.0 + 3.0 * 486.0, 1.0);  // 125 cubes, three plates
+  EXPECT_GT(f.steps, 1000.0);
 }
 
 TEST(Forecast, half_the_mesh_size_is_four_times_the_triangles_and_half_the_step) {
