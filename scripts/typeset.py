@@ -58,6 +58,8 @@ def formula(tokens):
             out.append(r"\quad " if len(token) > 1 else " ")
             k += 1
             continue
+        if token == "^" and out and "'" in out[-1]:  # a prime is a power, too, and a second one needs braces
+            out[-1] = "{" + out[-1].strip() + "}"
         if token in ("sqrt", "^") and after == "(" and group(tokens, k + 1):
             end = group(tokens, k + 1)
             inner = formula(tokens[k + 2:end - 1])

@@ -20,6 +20,7 @@ class Formulas(unittest.TestCase):
         self.assertEqual(tex("sigma <= f_t (2r - r^2)"), r"\sigma \le f_{t}(2r - r ^{2})")
         self.assertEqual(tex("(e/e_s)^(1/3) + sqrt(1 + xi^2)"), r"(e /e_{s})^{1/3}+ \sqrt{1 + \xi ^{2}}")
         self.assertEqual(tex("a^delta"), r"a ^{\delta}")
+        self.assertEqual(tex("nu'^2 E/E'^2"), r"{\nu'}^{2}E /{E'}^{2}")
 
     def test_angles_are_brackets_and_x_a_product_between_factors(self):
         self.assertEqual(tex("<o - o_p>/o_t <= 1"), r"\langle o - o_{p}\rangle /o_{t}\le 1")
