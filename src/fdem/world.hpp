@@ -19,6 +19,7 @@
 #include "fdem/case.hpp"
 #include "fdem/setup/model.hpp"
 #include "fdem/triangles/loads.hpp"
+#include "fdem_shared/busy_couples.hpp"
 #include "fdem_shared/exposed.hpp"
 
 namespace breccia::fdem {
@@ -95,7 +96,7 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, node_vertex, edge_across, border_vertex,
          amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-         device_flags);
+         device_flags, busy.couple, busy.count);
   }
 
   // State: what a checkpoint holds.
@@ -163,7 +164,8 @@ struct World {
   /// Of a move launched at once: 1 if margin_used; and bit k if flag k of ExposedVertices::changed
   /// is set. (2; move)
   Buffer<std::int32_t> device_flags;
-  StepGraph graph;  ///< of a few steps (advance)
+  fdem_shared::BusyCouples busy;  ///< of this step (search, derive; pairs, sums)
+  StepGraph graph;                ///< of a few steps (advance)
 };
 
 /// Moves a world's arrays to another space; derive() must follow.

@@ -19,6 +19,7 @@
 #include "fdem3/case.hpp"
 #include "fdem3/elements/stable_step.hpp"
 #include "fdem3/setup/model.hpp"
+#include "fdem_shared/busy_couples.hpp"
 #include "fdem_shared/exposed.hpp"
 
 namespace breccia::fdem3 {
@@ -59,7 +60,8 @@ struct World {
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(couple_incidence, broad_phase, parent_joint, node_vertex, border_vertex, amplitudes,
-         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock, device_flags);
+         amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock, device_flags,
+         busy.couple, busy.count);
   }
 
   // State: what a checkpoint holds.
@@ -114,7 +116,8 @@ struct World {
   Buffer<Vec3> prescribed_velocity;                   ///< [m/s]  (motions; advance, servo)
   Buffer<StepClock> clock;                            ///< time there (2; move)
   Buffer<std::int32_t> device_flags;                  ///< of a move launched at once (2; move)
-  StepGraph graph;                                    ///< of a few steps (advance)
+  fdem_shared::BusyCouples busy;  ///< of this step (search, derive; pairs, sums)
+  StepGraph graph;                ///< of a few steps (advance)
 };
 
 /// Moves a world's arrays to another space; derive() must follow.

@@ -416,6 +416,7 @@ void derive_mesh_couples(World& w) {
   const Pairs& pairs = w.couples.pairs;
   build_incidence(w.exec, pairs.a, pairs.b, Shape::elements(w).id, w.couple_incidence);
   w.parent_joint.resize(pairs.size());
+  if (w.exec.space != Space::host) w.busy.resize(pairs.size());
   const auto& j = std::as_const(w.joints);
   for_each(w.exec, pairs.size(),
            ParentJoint<Shape>{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(),

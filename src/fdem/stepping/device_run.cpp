@@ -3,6 +3,8 @@
 
 #include "fdem_shared/device_run.hpp"
 
+#include <algorithm>
+
 #include "exec/for_each.hpp"
 #include "fdem/joints/insertion_kernels.hpp"
 #include "fdem/shape.hpp"
@@ -14,10 +16,13 @@ namespace breccia::fdem {
 namespace {
 
 using fdem_shared::Bounded;
+using fdem_shared::BusyWide;
+using fdem_shared::emptying;
+using fdem_shared::ListBusy;
 
-/// From so many joints or couples on, each have a launch of their own: they take longer then than a
-/// launch more, and can have the registers that suit them.
-constexpr Index fewest_joints_apart = 250'000, fewest_couples_apart = 60'000;
+/// From so many joints on they have a launch of their own: they take longer then than a launch
+/// more, and can have the registers that suit them.
+constexpr Index fewest_joints_apart = 250'000;
 
 struct WatchReached {
   static constexpr const char* name = "fdem.watch_reached";
@@ -29,26 +34,42 @@ struct WatchReached {
   }
 };
 
+/// From so many couples on those with work to do are listed first: a launch more. Tests in
+/// Space::shadow see both ways.
+Index fewest_couples_listed(Space space) {
+  return space == Space::shadow ? 500 : 8'000;
+}
+/// Groups of threads that share the list out: as many as run at a time, and more.
+constexpr Index most_groups = 132 * 128;
+
 /// Joints and couples.
 template <class Number, class By>
 void launch_pairs(World& w, const By& by) {
   const Index joints = w.joints.size(), couples = w.couples.size();
-  const CouplesWide<Number> wide{couple_kernel<Number>(w)};
+  const CoupleForces<Number> all = couple_kernel<Number>(w);
+  const CouplesWide<Number> wide{all};
   if (joints + couples == 0)  // triangles read corners ahead, which the move writes
     return for_each(w.exec, 1, by(Fence{}));
-  if (joints < fewest_joints_apart && couples < fewest_couples_apart)
-    return for_each_part(
-        w.exec, part(couples * CouplesWide<Number>::width, by(wide),
-                     part(joints, by(Bounded<JointForces<Number>, 4>{joint_kernel<Number>(w)}),
-                          Parts<>{})));
-  for_each_part(w.exec, part(joints, by(Bounded<JointForces<Number>, 8>{joint_kernel<Number>(w)}),
-                             Parts<>{}));
-  if (couples < fewest_couples_apart)
-    for_each_part(w.exec, part(couples * CouplesWide<Number>::width, by(wide), Parts<>{}));
-  else
-    for_each_part(
-        w.exec,
-        part(couples, by(Bounded<CoupleForces<Number>, 5>{couple_kernel<Number>(w)}), Parts<>{}));
+  const auto with_joints = [&](Index count, const auto& kernel) {
+    if (joints < fewest_joints_apart)
+      return for_each_part(
+          w.exec, part(count, kernel,
+                       part(joints, by(Bounded<JointForces<Number>, 4>{joint_kernel<Number>(w)}),
+                            Parts<>{})));
+    for_each_part(w.exec, part(joints, by(Bounded<JointForces<Number>, 8>{joint_kernel<Number>(w)}),
+                               Parts<>{}));
+    for_each_part(w.exec, part(count, kernel, Parts<>{}));
+  };
+  if (couples < fewest_couples_listed(w.exec.space))
+    return with_joints(couples * CouplesWide<Number>::width, by(wide));
+  with_joints(couples,
+              by(ListBusy<CoupleForces<Number>>{all, w.busy.couple.view(), w.busy.count.view()}));
+  const Index groups = std::min(couples, most_groups);
+  for_each_part(w.exec,
+                part(groups * CouplesWide<Number>::width,
+                     by(BusyWide<CouplesWide<Number>>{wide, std::as_const(w.busy.couple).view(),
+                                                      std::as_const(w.busy.count).view(), groups}),
+                     Parts<>{}));
 }
 
 struct Launches {
@@ -68,7 +89,7 @@ struct Launches {
   template <class Visit>
   static void with_sums(World& w, const Visit& visit) {
     with_number(w.exec.precision,
-                [&](auto number) { visit(triangle_kernel<decltype(number)>(w)); });
+                [&](auto number) { visit(emptying(w, triangle_kernel<decltype(number)>(w))); });
   }
   static BundlesWide bundles(World& w) { return {bundle_kernel(w)}; }
 };

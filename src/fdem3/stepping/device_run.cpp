@@ -3,6 +3,8 @@
 
 #include "fdem_shared/device_run.hpp"
 
+#include <algorithm>
+
 #include "exec/for_each.hpp"
 #include "fdem3/shape.hpp"
 #include "fdem3/stepping/launches.hpp"
@@ -10,6 +12,13 @@
 
 namespace breccia::fdem3 {
 namespace {
+
+using fdem_shared::BusyInTurn;
+using fdem_shared::emptying;
+using fdem_shared::ListBusy;
+
+/// Threads that share the list of busy couples out.
+constexpr Index most_threads = 132 * 512;
 
 struct Launches {
   static constexpr Index lanes = 1;
@@ -22,11 +31,18 @@ struct Launches {
     if (w.joints.size() + w.couples.size() == 0)  // elements read corners ahead, which move
       return for_each(w.exec, 1, by(Fence{}));
     for_each_part(w.exec, part(w.joints.size(), by(joint_kernel(w)), Parts<>{}));
-    for_each_part(w.exec, part(w.couples.size(), by(couple_kernel(w)), Parts<>{}));
+    const Index couples = w.couples.size();
+    if (couples == 0) return;
+    const CoupleForces all = couple_kernel(w);
+    const View<Index> busy = w.busy.couple.view(), count = w.busy.count.view();
+    for_each_part(w.exec, part(couples, by(ListBusy<CoupleForces>{all, busy, count}), Parts<>{}));
+    const Index threads = std::min(couples, most_threads);
+    for_each_part(
+        w.exec, part(threads, by(BusyInTurn<CoupleForces>{all, busy, count, threads}), Parts<>{}));
   }
   template <class Visit>
   static void with_sums(World& w, const Visit& visit) {
-    visit(element_kernel(w));
+    visit(emptying(w, element_kernel(w)));
   }
   static BundleForces bundles(World& w) { return bundle_kernel(w); }
 };

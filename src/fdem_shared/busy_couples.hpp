@@ -1,0 +1,126 @@
+#pragma once
+// Couples with work to do, listed on a device. Of all couples that a search lists few touch in a
+// step; a warp that takes 32 of all waits for those of them that do.
+//
+// A launch of ListBusy looks at all couples and lists the others than those at rest apart; a launch
+// of BusyWide or BusyInTurn evaluates the list; the sums of forces empty it (EmptiesList). The
+// order of the list changes from run to run, but each couple writes only its own forces.
+
+#include "core/kernel.hpp"
+#include "exec/buffer.hpp"
+#include "exec/lockstep.hpp"
+
+namespace breccia::fdem_shared {
+
+/// Numbers of busy couples: room for all, and how many there are.
+struct BusyCouples {
+  Buffer<Index> couple;  ///< [-]  (couples)
+  Buffer<Index> count;   ///< [-]  (1)
+  void resize(Index couples) {
+    couple.resize(couples);
+    count.resize(1);
+  }
+};
+
+/// Where an item goes at the end of a list of `count`: one addition for all threads of a warp.
+BR_HD inline Index place_at_end(Index& count) {
+#if defined(__CUDA_ARCH__)
+  const unsigned asking = __activemask();
+  const int first = __ffs(static_cast<int>(asking)) - 1;
+  const int lane = static_cast<int>(threadIdx.x % 32);
+  Index begin = 0;
+  if (lane == first) begin = atomicAdd(&count, __popc(asking));
+  return __shfl_sync(asking, begin, first) + __popc(asking & ((1U << lane) - 1));
+#else
+  return count++;
+#endif
+}
+
+/// Lists the couples that update() of their kernel leaves to slow(). One launch before has ended
+/// that emptied the list.
+template <class Couples>
+struct ListBusy {
+  static constexpr const char* name = "fdem.list_busy";
+  Couples all;
+  View<Index> busy, count;
+
+  using Loaded = typename LoadedBy<Couples>::Loaded;
+  BR_HD void set(const StepTime&) {}
+  BR_HD void load_early(Index i, Loaded& loaded) const { all.load_early(i, loaded); }
+  BR_HD void load_late(Index i, Loaded& loaded) const { all.load_late(i, loaded); }
+  BR_HD void update(Index i, const Loaded& loaded) const {
+    if (!all.update(i, loaded)) busy[place_at_end(count[0])] = i;
+  }
+};
+
+/// Busy couples by the threads of `groups` groups, each of which takes every groups-th couple.
+/// @tparam Wide  kernel of all couples by `width` threads each
+template <class Wide>
+struct BusyWide {
+  static constexpr const char* name = Wide::name;
+  static constexpr Index width = Wide::width;
+  Wide wide;
+  View<const Index> busy, count;
+  Index groups;
+
+  BR_HD void set(const StepTime& now) { wide.set(now); }
+  BR_HD void operator()(Index i) const {
+    each(i, [this](Index thread, auto& loaded) { wide.update(thread, loaded); });
+  }
+  BR_HD void update_at(const StepTime& now, Index i) const {
+    each(i, [this, &now](Index thread, auto& loaded) { wide.update_at(now, thread, loaded); });
+  }
+
+ private:
+  template <class Update>
+  BR_HD void each(Index i, const Update& update) const {
+    const LaneGroup<width> group;
+    const Index end = count[0];
+    for (Index k = i / width; k < end; k += groups) {
+      const Index thread = busy[k] * width + i % width;
+      typename Wide::Loaded loaded;
+      wide.load_early(thread, loaded);
+      wide.load_late(thread, loaded);
+      group.wait();  // one thread writes what all of them load
+      update(thread, loaded);
+    }
+  }
+};
+
+/// Busy couples by `threads` threads, each of which takes every threads-th couple.
+template <class Couples>
+struct BusyInTurn {
+  static constexpr const char* name = Couples::name;
+  Couples all;
+  View<const Index> busy, count;
+  Index threads;
+
+  BR_HD void set(const StepTime& now) { all.set(now); }
+  BR_HD void operator()(Index i) const {
+    const Index end = count[0];
+    for (Index k = i; k < end; k += threads) all.slow(busy[k]);
+  }
+  BR_HD void update_at(const StepTime& now, Index i) const {
+    const Index end = count[0];
+    for (Index k = i; k < end; k += threads) run_slow(&all, now, busy[k]);
+  }
+};
+
+/// The sums of forces that follow: they empty the list.
+template <class Sums>
+struct EmptiesList : Sums {
+  Index* count;  ///< null: no list
+
+  template <class Read>
+  BR_HD void update(Index i, const Read& loaded) const {
+    if (i == 0 && count != nullptr) *count = 0;
+    Sums::update(i, loaded);
+  }
+};
+
+template <class World, class Sums>
+EmptiesList<Sums> emptying(World& w, const Sums& sums) {
+  return {sums, w.busy.count.data()};
+}
+
+}  // namespace breccia::fdem_shared
