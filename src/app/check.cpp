@@ -101,6 +101,8 @@ struct CheckCommand {
           refuse_without_memory(plan, plan.run_bytes, 1, path + ": the model");
           std::optional<Forecast> expected;  // may refuse the case
           if (!read.model) expected = forecast_of(config, read);
+          if (expected && !model && is_soon_built(*expected) && scripts_of(read).empty())
+            method_to_look_at(read);  // what run refuses of a mesh or a packing is refused here
           fmt::print("{}: good: {}, {}, {}, ends at {}", harmless(path), config.method,
                      counted(bodies_of(config), "body", "bodies"),
                      counted(materials_of(config), "material", "materials"),
@@ -136,6 +138,11 @@ struct CheckCommand {
       if (read.file.empty()) throw;
       throw InputError(with_lines(error.what(), read.file));
     }
+  }
+
+  static bool is_soon_built(const Forecast& f) {
+    constexpr double seconds = 0.3, items = 5000.0;
+    return f.items > 0.0 && f.items < items && f.setup_s < seconds;
   }
 
   template <class Config>

@@ -277,6 +277,16 @@ TEST(CheckCommand, tells_of_bolts_before_anything_is_meshed) {
       << text;
 }
 
+TEST(CheckCommand, refuses_what_only_a_mesh_tells_where_that_is_soon_made) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/bolted.toml";
+  const std::string good = read_whole_file(source_dir + std::string("/tests/attack/bolted.toml"));
+  replace_file(path, changed(good, "min = [-1.0, \"7.9 mm\"]", "min = [-1.0, \"-8.1 mm\"]"));
+  const Told told = told_by(folder, "check " + path);
+  EXPECT_EQ(told.exit_code, 2) << told.text;
+  EXPECT_TRUE(has(told.text, "that another support prescribes, too")) << told.text;
+}
+
 TEST(CheckCommand, tells_regions_and_names_in_one_go) {
   const ScratchFolder folder;
   std::string wrong = changed(beam, "\"-140 mm\", \"-19 mm\"", "\"-140 mm\", \"-23 mm\"");
