@@ -54,14 +54,16 @@ struct ParallelBond {
     R stiffness;  ///< K_n  [N/m]
     R radius;     ///< of the disc  [m]
     R touching;   ///< R_a + R_b  [m]
+    R strength;   ///< sigma_c and c over those of the law: bedding  [-]
     BR_HD R area() const { return pi * radius * radius; }
     BR_HD R bending() const { return 0.25 * stiffness * radius * radius; }  ///< K_n I/A  [N m]
   };
   using Constants = ConstantsOf<double>;
   template <class R>
-  BR_HD ConstantsOf<R> constants(const R& length, const R& stiffness, const R& radius_a,
-                                 const R& radius_b) const {
-    return {length, stiffness, radius_factor * min(radius_a, radius_b), radius_a + radius_b};
+  BR_HD ConstantsOf<R> constants(const R& length, const R& stiffness, const R& strength,
+                                 const R& radius_a, const R& radius_b) const {
+    return {length, stiffness, radius_factor * min(radius_a, radius_b), radius_a + radius_b,
+            strength};
   }
   /// K_s J/A.  [N m]
   template <class R>
@@ -159,8 +161,8 @@ struct ParallelBond {
     const R pull = t.normal / area;
     const R tension = pull + 4.0 * share * norm(t.bend);
     const R sliding = norm(t.shear) / area + 2.0 * share * norm(t.twist);
-    const R bears = max(cohesion - friction * pull, constant<R>(1e-300));
-    t.strained = max(tension / tensile_strength, sliding / bears);
+    const R bears = max(cohesion * k.strength - friction * pull, constant<R>(1e-300));
+    t.strained = max(tension / (tensile_strength * k.strength), sliding / bears);
     return t;
   }
 };

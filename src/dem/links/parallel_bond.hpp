@@ -16,6 +16,7 @@ struct LinkArrays<ParallelBond> : LinkEnds {
 
   Buffer<double> length;            ///< D_eq  [m]  (constant)
   Buffer<double> stiffness;         ///< K_n  [N/m]  (constant)
+  Buffer<double> strength;          ///< over its law's, by its direction  [-]  (constant)
   Buffer<ParallelBondState> state;  ///< (pairs)
   Buffer<double> slid;              ///< energy spent on sliding after rupture so far  [J]  (pairs)
   Buffer<double> broke;             ///< energy that its rupture spent  [J]  (pairs)
@@ -25,9 +26,14 @@ struct LinkArrays<ParallelBond> : LinkEnds {
     LinkEnds::each_field(field);
     field("length", "m", length);
     field("stiffness", "N/m", stiffness);
+    field("strength", "-", strength);
     field("state", "-", state);
     field("slid", "J", slid);
     field("broke", "J", broke);
+  }
+
+  static bool older_files_lack(std::string_view array) {
+    return array == "strength" || LinkEnds::older_files_lack(array);
   }
 
   struct Below {
@@ -54,7 +60,7 @@ struct ParallelBondForces {
   double dt;
   ElementsView elements;
   View<const Index> a, b;
-  View<const double> length, stiffness;
+  View<const double> length, stiffness, strength;
   View<ParallelBondState> state;
   View<double> slid, broke;
   View<PairForce> actions;
@@ -63,7 +69,7 @@ struct ParallelBondForces {
   template <class R>
   struct Loaded {
     Indices<R> a, b;
-    R length, stiffness;
+    R length, stiffness, strength;
     ParallelBondStateOf<R> state;
     LinkEnd<R> end_a, end_b;
   };
@@ -74,6 +80,7 @@ struct ParallelBondForces {
     loaded.b = load_indices_now<R>(b, i);
     loaded.length = load_now<R>(length, i);
     loaded.stiffness = load_now<R>(stiffness, i);
+    loaded.strength = load_now<R>(strength, i);
     R s[8];
     gather_records(View<const ParallelBondState>(state), consecutive<R>(i), s);
     loaded.state = {s[0], s[1], {s[2], s[3], s[4]}, {s[5], s[6], s[7]}};
@@ -94,7 +101,8 @@ struct ParallelBondForces {
     const R &radius_a = loaded.end_a.radius, &radius_b = loaded.end_b.radius;
     const PairMotion<R> motion =
         pair_motion<R>(loaded.end_a.motion, loaded.end_b.motion, radius_a - radius_b, dt);
-    const auto k = by.constants(loaded.length, loaded.stiffness, radius_a, radius_b);
+    const auto k =
+        by.constants(loaded.length, loaded.stiffness, loaded.strength, radius_a, radius_b);
     ParallelBondStateOf<R> kept = loaded.state;
     ParallelBondResponseOf<R> r;
     if constexpr (width_of<R> == 1)
@@ -118,9 +126,19 @@ struct ParallelBondForces {
 template <class>
 ParallelBondForces forces_of(ParallelBonds& p, const ParallelBond& law, const LinkSpace& in,
                              Buffer<PairForce>& actions) {
-  return {law,           in.dt,           in.elements,        p.a.view(),
-          p.b.view(),    p.length.view(), p.stiffness.view(), p.state.view(),
-          p.slid.view(), p.broke.view(),  actions.view(),     0};
+  return {law,
+          in.dt,
+          in.elements,
+          p.a.view(),
+          p.b.view(),
+          p.length.view(),
+          p.stiffness.view(),
+          p.strength.view(),
+          p.state.view(),
+          p.slid.view(),
+          p.broke.view(),
+          actions.view(),
+          0};
 }
 
 /// Energies of parallel bonds.
@@ -135,7 +153,7 @@ struct ParallelShares {
     const ElementState &one = state_of[a[i]], &other = state_of[b[i]];
     const Vec3 d = other.position - one.position;
     const double distance = norm(d);
-    const auto k = law.constants(length[i], stiffness[i], one.radius, other.radius);
+    const auto k = law.constants(length[i], stiffness[i], 1.0, one.radius, other.radius);
     s.elastic.add(law.stored(k, (1.0 / distance) * d, distance - length[i], state[i]));
     s.fracture.add(broke[i]);
     s.friction.add(slid[i]);

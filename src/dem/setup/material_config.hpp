@@ -242,7 +242,7 @@ struct MaterialConfig {
         "stiffness of links: estimated: by alpha, beta, gamma; measured: times a factor that makes "
         "the modulus of each body, measured when it is built, that of the key young");
     key.table("bedding", bedding,
-              "planes across which links of law concrete are weaker and softer");
+              "planes across which links of law concrete and parallel are weaker and softer");
     key.table("ldpm", ldpm, "the facet law of a material of law ldpm");
     key.table("mix", mix, "the mix design of a material of law ldpm");
     key("yield", yield, "Pa", Range{0.0, 1e15, Open::low}, "yield stress of steel");

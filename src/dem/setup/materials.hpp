@@ -29,8 +29,9 @@ std::optional<LinkKind> kind_within(const std::string& law);
 /// Words of such laws, for a message: "concrete, ...  or ".
 std::string laws_within();
 
-/// Strength and stiffness of a concrete link over those of one along the bedding, by the direction
-/// in which it lies in a model: 1 - (1 - share) cos^2 of its angle with the normal.  [-]
+/// Strength and stiffness of a concrete link or parallel bond over those of one along the bedding,
+/// by the direction in which it lies in a model: 1 - (1 - share) cos^2 of its angle with the
+/// normal.  [-]
 struct BeddingShare {
   double strength = 1.0, stiffness = 1.0;
 };

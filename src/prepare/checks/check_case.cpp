@@ -85,8 +85,10 @@ class Check {
 
   void check_bedding(const MaterialConfig& m, const std::string& path) {
     const BeddingConfig& bedding = m.bedding;
-    if (m.law != "concrete")
-      add(fmt::format("{}: links of law {} are alike in all directions; law concrete has a bedding",
+    if (m.law != "concrete" && m.law != "parallel")
+      add(
+          fmt::format("{}: links of law {} are alike in all directions; laws concrete and parallel "
+                      "have a bedding",
                       path, m.law));
     if (!(norm(bedding.normal) > 0.0)) add(path + ".normal has length 0; it must point somewhere");
     if (m.fracture_energy > 0.0 && bedding.strength > bedding.stiffness)

@@ -163,6 +163,7 @@ struct DemSim {
             "parallel.b",
             "parallel.length",
             "parallel.stiffness",
+            "parallel.strength",
             "ldpm.a",
             "ldpm.b",
             "ldpm.c",

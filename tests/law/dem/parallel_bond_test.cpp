@@ -17,7 +17,7 @@ using testing::Pair;
 constexpr double length = 0.02, radius = 0.008, modulus = 40e9;
 const double area = pi * radius * radius;
 const ParallelBond bond{10e6, 25e6, 0.5, 0.4, 0.4, 1.0, 1.0};
-const ParallelBond::Constants k{length, modulus* area / length, radius, 0.02};
+const ParallelBond::Constants k{length, modulus* area / length, radius, 0.02, 1.0};
 
 /// Work that the ends do on the bond in one step, by the trapezoidal rule.
 class Driver {

@@ -19,6 +19,7 @@ Config pulled_column() {
   rock.tensile_strength = 10e6;
   rock.cohesion = 25e6;
   rock.friction_angle = 0.5;
+  rock.bedding = {{0.0, 0.6, 0.8}, 0.7, 0.8};
   config.materials = {rock};
   BodyConfig column;
   column.name = "column";

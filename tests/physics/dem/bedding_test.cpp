@@ -104,6 +104,59 @@ TEST(Bedding, WeakensTheSpecimenMostAcrossItsPlanes) {
   EXPECT_LT(aslant, along - 0.05);
 }
 
+Specimen of_bonds(double degrees, double share, int seed) {
+  Specimen s = bedded(degrees, share, share, seed);
+  s.material().law = "parallel";
+  return s;
+}
+
+/// Each bond has the share of its direction of the section's modulus, its strength likewise.
+TEST(Bedding, OfParallelBondsIsThatOfTheirDirections) {
+  const Specimen s = of_bonds(30.0, 0.4, 1);
+  const Specimen plain = of_bonds(30.0, 1.0, 1);
+  const Model m = s.model();
+  const World a = make_world(s.config, m, {}), b = make_world(plain.config, plain.model(), {});
+  ASSERT_EQ(a.parallel.size(), b.parallel.size());
+  ASSERT_GT(a.parallel.size(), 1000);
+  const Vec3 n = normal_at(30.0);
+  for (Index i = 0; i < a.parallel.size(); ++i) {
+    const Vec3 way = a.elements.state.data()[a.parallel.b.data()[i]].position -
+                     a.elements.state.data()[a.parallel.a.data()[i]].position;
+    const double cosine = dot(way, n) / norm(way), share = 1.0 - 0.6 * cosine * cosine;
+    EXPECT_NEAR(a.parallel.strength.data()[i], share, 1e-12);
+    EXPECT_NEAR(a.parallel.stiffness.data()[i], share * b.parallel.stiffness.data()[i],
+                1e-12 * b.parallel.stiffness.data()[i]);
+    EXPECT_EQ(b.parallel.strength.data()[i], 1.0);
+  }
+}
+
+/// A specimen of bonds, pulled until it breaks: softer and weaker across the planes than along
+/// them.
+TEST(Bedding, MakesBondedRockSofterAndWeakerAcrossItsPlanes) {
+  const double share = 0.5;
+  double young[3] = {}, strength[3] = {};
+  for (int seed = 1; seed <= 3; ++seed) {
+    const Specimen whole = of_bonds(0.0, 1.0, seed);
+    const auto plain = pulled(whole, whole.model());
+    for (int k = 0; k < 3; ++k) {
+      const Specimen own = of_bonds(45.0 * k, share, seed);
+      const auto found = pulled(own, own.model());
+      young[k] += found.modulus / plain.modulus / 3.0;
+      strength[k] += found.strength / plain.strength / 3.0;
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    const double x = local_elasticity(of_bonds(0.0, share, 1).material()).ratio;
+    const double expected = modulus_of_fabric(45.0 * k, share, x);
+    std::printf("parallel bonds at %2d degrees: E %.3f (fabric %.3f), f_t %.3f\n", 45 * k, young[k],
+                expected, strength[k]);
+    EXPECT_NEAR(young[k], expected, 0.05) << k;
+  }
+  EXPECT_LT(strength[0], strength[1]);
+  EXPECT_LT(strength[1], strength[2]);
+  EXPECT_LT(strength[0], 0.75);
+}
+
 TEST(Bedding, OfOneLeavesEveryLinkAsItIs) {
   Specimen plain(300), tilted = plain;
   tilted.material().bedding.normal = {1.0, 2.0, 3.0};
@@ -135,7 +188,7 @@ TEST(Bedding, IsRefusedWhereItsLinksWouldNotBeSound) {
       EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
     }
   };
-  expect("material.c.bedding: links of law parallel", [](auto& m) { m.law = "parallel"; });
+  expect("material.c.bedding: links of law grain", [](auto& m) { m.law = "grain"; });
   expect("material.c.bedding.normal has length 0", [](auto& m) { m.bedding.normal = {}; });
   expect("material.c.bedding.strength = 0.8 is above stiffness = 0.7", [](auto& m) {
     m.fracture_energy = 80.0;
