@@ -84,6 +84,7 @@ struct Case {
   std::vector<std::uint8_t> bars;  ///< 1: its elements are bars  [-]  (materials)
   std::vector<double> densities;   ///< of bodies  [kg/m3]  (materials)
   MoreFields shown;                ///< in frames
+  EmissionConfig emission;         ///< which breaks are one event
 
   std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<ElementSet> sets;       ///< bodies, then supports

@@ -42,9 +42,10 @@ std::vector<EmissionEvent> emission(const World& w) {
       });
     }
   });
-  const double distance = 4.0 * w.given->mean_radius;
-  return distance > 0.0 ? events_of(breaks, distance, distance / slowest)
-                        : std::vector<EmissionEvent>{};
+  const EmissionConfig& asked = w.given->emission;
+  const double distance = asked.distance > 0.0 ? asked.distance : 4.0 * w.given->mean_radius;
+  if (!(distance > 0.0)) return {};
+  return events_of(breaks, distance, asked.window > 0.0 ? asked.window : distance / slowest);
 }
 
 }  // namespace breccia::dem

@@ -1,9 +1,9 @@
 #include "fdem/emission.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/on_host.hpp"
+#include "fdem_shared/emission.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -16,19 +16,6 @@ double mean_of(const JointPoints& points, const Value& value) {
 }
 
 }  // namespace
-
-Sym3 moment_of(const ElasticTriangle& law, bool plane_strain, const Vec2& along, double area,
-               double opening, double slip) {
-  const Vec2 n{-along.y, along.x};
-  const double all = area * law.lambda * opening, open = 2.0 * area * law.shear * opening,
-               slid = area * law.shear * slip;
-  Sym3 m;
-  m.xx = all + open * n.x * n.x + 2.0 * slid * n.x * along.x;
-  m.yy = all + open * n.y * n.y + 2.0 * slid * n.y * along.y;
-  m.xy = open * n.x * n.y + slid * (n.x * along.y + n.y * along.x);
-  m.zz = plane_strain ? all : 0.0;
-  return m;
-}
 
 std::vector<EmissionEvent> emission(const World& w, const std::vector<JointLine>& lines) {
   const OnHost<Joints> joints(w.joints, w.exec.space);
@@ -43,7 +30,7 @@ std::vector<EmissionEvent> emission(const World& w, const std::vector<JointLine>
   const auto law_at = [&](Index edge) {
     return laws[at(graded ? edge / 3 : material[at(edge / 3)])];
   };
-  const EmissionConfig& asked = w.given->emission;
+  const double thickness = w.given->emission.thickness;
   std::vector<Break> breaks;
   for (Index i = 0; i < joints->size(); ++i) {
     if (joints->stage.data()[i] != JointStage::broken) continue;
@@ -55,25 +42,19 @@ std::vector<EmissionEvent> emission(const World& w, const std::vector<JointLine>
     const double opening = mean_of(points, [](const auto& p) { return p.opening; });
     const double slip =
         std::copysign(mean_of(points, [](const auto& p) { return p.slip; }), now.slide[1]);
-    ElasticTriangle law = law_at(a);
-    const ElasticTriangle other = law_at(b);
-    law.lambda = 0.5 * (law.lambda + other.lambda);
-    law.shear = 0.5 * (law.shear + other.shear);
     const JointLine& line = lines[at(i)];
-    const double length = norm(line.end - line.begin);
-    const Vec2 middle = 0.5 * (line.begin + line.end);
-    const JointWork &work = joints->work.data()[i], &before = joints->inherited_work.data()[i];
-    breaks.push_back(
-        {joints->broke_at.data()[i],
-         {middle.x, middle.y, 0.0},
-         moment_of(law, w.given->plane_strain, (1.0 / length) * (line.end - line.begin),
-                   length * asked.thickness, opening, slip),
-         asked.thickness * (work.open + work.slide - before.open - before.slide)});
+    const Vec2 way = line.end - line.begin, middle = 0.5 * (line.begin + line.end);
+    const double length = norm(way);
+    const Vec3 along{way.x / length, way.y / length, 0.0}, normal{-along.y, along.x, 0.0};
+    Sym3 moment = fdem_shared::moment_of(fdem_shared::mean_of_sides(law_at(a), law_at(b)), normal,
+                                         along, length * thickness, opening, slip);
+    if (!w.given->plane_strain) moment.zz = 0.0;  // nothing acts across the plane
+    breaks.push_back({joints->broke_at.data()[i],
+                      {middle.x, middle.y, 0.0},
+                      moment,
+                      thickness * fdem_shared::spent_by(*joints, i)});
   }
-  const double distance = asked.distance > 0.0 ? asked.distance : 2.0 * w.given->mean_edge;
-  double slowest = 1e300;
-  for (const EffectiveRock& rock : w.given->rocks) slowest = std::min(slowest, rock.slow);
-  return events_of(breaks, distance, asked.window > 0.0 ? asked.window : distance / slowest);
+  return fdem_shared::near_events(w, breaks);
 }
 
 }  // namespace breccia::fdem

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/emission_config.hpp"
 #include "core/gauge.hpp"
 #include "core/output_config.hpp"
 #include "fdem3/contact/couples.hpp"
@@ -41,6 +42,7 @@ struct Case {
   double mean_edge = 0.0;      ///<  [m]
   double skin = 0.0;           ///< margin of the search between two at rest  [m]
   MoreFields shown;            ///< in frames
+  EmissionConfig emission;     ///< which breaks are one event
   Index materials = 0;         ///< how many there are  [-]
 
   std::vector<std::string> groups;            ///< names of bodies  (bodies)

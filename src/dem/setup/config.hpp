@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/case_config.hpp"
+#include "core/emission_config.hpp"
 #include "dem/setup/drive_config.hpp"
 #include "dem/setup/material_config.hpp"
 
@@ -275,6 +276,7 @@ struct Config : CaseConfig {
   double stage_friction = -1.0;      ///< no key: of contacts in this stage; below 0: as given  [-]
   std::vector<std::string> removed;  ///< no key: bodies that are gone by now
   SearchConfig search;
+  EmissionConfig emission;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -290,6 +292,7 @@ struct Config : CaseConfig {
     key.list("support", supports, "prescribed motion");
     key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");
+    key.table("emission", emission, "which breaks are one event of acoustic emission");
   }
 };
 

@@ -150,17 +150,21 @@ void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m)
     return parallel_bond(c, config.contact);
   });
   set_ends(set.a, set.b, links);
-  std::vector<double> length, stiffness;
+  std::vector<double> length, stiffness, strength;
   for (const Model::Link& link : links) {
     const double d = distance(m, link.a, link.b);
     const MaterialConfig& material = config.materials[static_cast<std::size_t>(link.material)];
     const double radius =
         material.bond_radius * std::min(radius_of(m, link.a), radius_of(m, link.b));
     length.push_back(d);
-    stiffness.push_back(local_elasticity(material).modulus * pi * radius * radius / d);
+    const BeddingShare share = bedding_share(m, link, material);
+    stiffness.push_back(share.stiffness *
+                        (local_elasticity(material).modulus * pi * radius * radius / d));
+    strength.push_back(share.strength);
   }
   copy_to(set.length, length);
   copy_to(set.stiffness, stiffness);
+  copy_to(set.strength, strength);
   std::vector<ParallelBondState> state;
   for (const Model::Link& link : links) state.push_back({link.parted ? 0.0 : 1.0, 0.0, {}, {}});
   copy_to(set.state, state);
@@ -434,6 +438,7 @@ World made(const Config& config, const Model& model, const Exec& exec) {
     given.densities.push_back(config.time.mass_scaling * m.density);
   }
   given.shown = config.output.more_fields();
+  given.emission = config.emission;
   std::vector<std::vector<Index>> members = support_members(config, model);
   given.dashpots = dashpots_of(config, model, members);
   const Prescribed held =

@@ -3,6 +3,7 @@
 // Materials, joints and friction have the keys of the plane method.
 
 #include "core/case_config.hpp"
+#include "core/emission_config.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem3/setup/body_config.hpp"
 
@@ -100,6 +101,7 @@ struct Config : CaseConfig {
   std::vector<StageConfig> stages;
   double stage_friction = -1.0;  ///< no key: of contacts in this stage; below 0: as given  [-]
   SearchConfig search;
+  EmissionConfig emission;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -118,6 +120,7 @@ struct Config : CaseConfig {
     key.list("load", loads, "forces on faces");
     key.list("stage", stages, "what changes when, one stage after the other");
     key.table("search", search, "when new contacts are searched for");
+    key.table("emission", emission, "which breaks are one event of acoustic emission");
   }
 };
 

@@ -253,6 +253,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.in_situ = {s.xx, s.yy, s.zz, s.yz, s.xz, s.xy};
   given.local_damping = config.local_damping;
   given.shown = config.output.more_fields();
+  given.emission = config.emission;
   given.materials = static_cast<Index>(config.materials.size());
   given.contact_lengths = contact_lengths(config, model);
   given.rocks = effective_rocks(config);

@@ -1,17 +1,19 @@
 #include "run/method/fdem3_method.hpp"
 
 #include "exec/error.hpp"
+#include "fdem3/emission.hpp"
 #include "fdem3/observe.hpp"
 #include "fdem3/ranks.hpp"
 #include "fdem3/servos.hpp"
 #include "fdem3/setup/stages.hpp"
+#include "run/method/emission_table.hpp"
 #include "run/method/mesh_sim.hpp"
 
 namespace breccia {
 namespace {
 
 struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
-  std::vector<Vec3> middles, normals;  ///< of all joints at the start; on rank 0  [m], [-]
+  std::vector<fdem3::JointPlace> places;  ///< of all joints at the start; on rank 0
 
   Fdem3Sim(const fdem3::Model& model, const World& mesh) {
     std::vector<Index> faces;
@@ -21,16 +23,18 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
       const auto point = [&](int k) {
         return model.point[at(tetrahedron[at(fdem3::corner_of_face(face % 4, k))])];
       };
-      middles.push_back((1.0 / 3.0) * (point(0) + point(1) + point(2)));
       const Vec3 twice = cross(point(1) - point(0), point(2) - point(0));
-      normals.push_back((1.0 / norm(twice)) * twice);
+      const Vec3 edge = point(1) - point(0);
+      places.push_back({(1.0 / 3.0) * (point(0) + point(1) + point(2)), (1.0 / norm(twice)) * twice,
+                        (1.0 / norm(edge)) * edge});
     }
   }
 
   static FramePart frame(World& w, const World* mesh) { return fdem3_frame(w, mesh); }
 
-  static void add_findings(const World& w, std::vector<Fact>& facts) {
+  void add_findings(const World& w, std::vector<Fact>& facts) const {
     add_cracks(w, facts);
+    add_emission(facts, fdem3::emission(w, places));
     std::vector<double> mass;
     for (const fdem3::Piece& piece : fdem3::fragments(w).pieces) mass.push_back(piece.mass);
     add_fragments(mass, facts);
@@ -43,7 +47,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
         {"s", "m", "m", "m", "m2", "-", "J", "m", "m", "m", "-", "-", "-"},
         {}};
     for (const fdem3::Crack& c : fdem3::cracks(w)) {
-      const Vec3 &m = middles[at(c.joint)], &n = normals[at(c.joint)];
+      const Vec3 &m = places[at(c.joint)].middle, &n = places[at(c.joint)].normal;
       cracks.rows.push_back({c.time, c.middle.x, c.middle.y, c.middle.z, c.area, c.mode, c.energy,
                              m.x, m.y, m.z, n.x, n.y, n.z});
     }
@@ -60,7 +64,7 @@ struct Fdem3Sim : MeshSim<fdem3::World, fdem3::Config> {
                              p.centre.y, p.centre.z, p.velocity.x, p.velocity.y, p.velocity.z});
       number += 1.0;
     }
-    return {cracks, pieces};
+    return {cracks, pieces, table_of(fdem3::emission(w, places))};
   }
 
   static std::vector<std::string> constants() {

@@ -43,9 +43,10 @@ Shown shown_by(Method& specimen) {
   Shown shown;
   const NeedsMemory scope;
   add_numbers(nlohmann::json::parse(to_json(summary)), "", shown.numbers);
-  if (shown.numbers.contains("emission.events"))
-    for (const char* const number : emission_numbers)
-      shown.numbers.insert(std::string("emission.") + number);
+  for (const char* const part : {"", "spheres.", "tetrahedra."})
+    if (const std::string heard = part + std::string("emission.");
+        shown.numbers.contains(heard + "events"))
+      for (const char* const number : emission_numbers) shown.numbers.insert(heard + number);
   shown.frame = specimen.frame();
   return shown;
 }
