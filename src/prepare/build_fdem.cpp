@@ -90,6 +90,7 @@ class Assembly {
       add_triangle(*placed, placed->mesh.triangle[static_cast<std::size_t>(t)], group);
     }
     add_edge_sets(*placed);
+    add_inner_edges(*placed);
   }
 
   double edge_of(const std::string& name) const {
@@ -147,6 +148,16 @@ class Assembly {
       }
       std::sort(set->edges.begin(), set->edges.end());
       set->edges.erase(std::unique(set->edges.begin(), set->edges.end()), set->edges.end());
+    }
+  }
+
+  /// Of quadrangles in the model, once more for each body of their file.
+  void add_inner_edges(const Placed& placed) {
+    for (const prepare::Edge& edge : placed.mesh.inner) {
+      const Index a = placed.vertex[static_cast<std::size_t>(edge[0])],
+                  b = placed.vertex[static_cast<std::size_t>(edge[1])];
+      if (a >= 0 && b >= 0)
+        model_.discontinuities.push_back({{std::min(a, b), std::max(a, b)}, Model::as_one});
     }
   }
 

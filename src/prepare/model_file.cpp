@@ -208,7 +208,7 @@ void refuse_misfits(const fdem::Model& model, const fdem::Config& config) {
   refuse_unknown("material", model.material, 0, config.materials.size());
   std::vector<std::int16_t> laws;
   for (const fdem::Model::Discontinuity& d : model.discontinuities) laws.push_back(d.material);
-  refuse_unknown("discontinuity_material", laws, -1, config.joint_laws.size());
+  refuse_unknown("discontinuity_material", laws, fdem::Model::as_one, config.joint_laws.size());
 }
 
 bool holds_model(const CheckpointReader& reader) {

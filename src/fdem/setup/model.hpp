@@ -29,11 +29,13 @@ struct Model {
   };
   std::vector<EdgeSet> edge_sets;
 
-  /// An edge of a discontinuity: its joint is broken at the start, or has a material of its own.
+  /// An edge of a discontinuity: its joint is broken at the start, or has a material of its own; or
+  /// one within a quadrangle, whose triangles move as one. Of one edge the last counts.
   struct Discontinuity {
     std::array<Index, 2> edge;  ///< vertices
-    std::int16_t material;      ///< of its joint, index into Config::joints; -1: open
+    std::int16_t material;      ///< of its joint, index into Config::joints; -1: open; or as_one
   };
+  static constexpr std::int16_t as_one = -2;
   std::vector<Discontinuity> discontinuities;
 
   Index size() const { return static_cast<Index>(triangle.size()); }

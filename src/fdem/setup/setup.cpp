@@ -49,10 +49,12 @@ void set_up_middles(Case& given, const Model& model) {
 /// Joins neighbours: a joint, a bond, or nothing.
 void set_up_joints(World& w, const Config& config, const Model& model) {
   BondTable table = bond_table(config);
-  std::map<std::pair<Index, Index>, std::int16_t> discontinuities;  // law, or -1 where open
+  std::map<std::pair<Index, Index>, std::int16_t> discontinuities;  // law, open or bonded
   for (const Model::Discontinuity& d : model.discontinuities)
     discontinuities[std::minmax(d.edge[0], d.edge[1])] =
-        d.material < 0 ? BondTable::nothing : table.of_joint[static_cast<std::size_t>(d.material)];
+        d.material == Model::as_one ? BondTable::bonded
+        : d.material < 0            ? BondTable::nothing
+                                    : table.of_joint[static_cast<std::size_t>(d.material)];
 
   std::vector<EdgeJoints> edges(model.triangle.size(), {{edge_free, edge_free, edge_free}});
   std::vector<Index> edge_a, edge_b;

@@ -43,6 +43,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 const std::set<std::string> triangle_types{"CPS3", "CPE3", "S3", "S3R", "M3D3", "STRI3"};
+const std::set<std::string> quadrangle_types{"CPS4", "CPE4", "CPS4R", "CPE4R", "S4", "S4R", "M3D4"};
 const std::set<std::string> line_types{"T2D2", "T3D2", "B21", "B31"};
 const std::set<std::string> tetrahedron_types{"C3D4"};
 /// Keywords that bring nodes or elements, or move them: a mesh read without them would be another.
@@ -167,13 +168,18 @@ class AbaqusReader {
   void read_element(const std::vector<std::string_view>& words) {
     const bool is_element = element_types_.contains(type_), is_side = side_types_.contains(type_);
     const bool ignored = !is_side && line_types.contains(type_);  // a line of a mesh in space
-    if (!is_element && !is_side && !ignored)
-      fail(fmt::format("element {} is of type {}; allowed are {} ({}) and, as names of {} ({})",
-                       words.empty() ? "" : words[0], type_,
-                       corners_ == 3 ? "triangles" : "tetrahedra", fmt::join(element_types_, ", "),
-                       corners_ == 3 ? "edges, lines" : "faces, triangles",
-                       fmt::join(side_types_, ", ")));
-    const std::size_t nodes = is_element ? corners_ : is_side ? corners_ - 1 : 2;
+    const bool is_quadrangle = corners_ == 3 && quadrangle_types.contains(type_);
+    if (!is_element && !is_side && !ignored && !is_quadrangle)
+      fail(fmt::format(
+          "element {} is of type {}; allowed are {} ({}{}) and, as names of {} ({})",
+          words.empty() ? "" : words[0], type_, corners_ == 3 ? "triangles" : "tetrahedra",
+          fmt::join(element_types_, ", "),
+          corners_ == 3 ? fmt::format("), quadrangles ({}", fmt::join(quadrangle_types, ", ")) : "",
+          corners_ == 3 ? "edges, lines" : "faces, triangles", fmt::join(side_types_, ", ")));
+    const std::size_t nodes = is_quadrangle ? 4
+                              : is_element  ? corners_
+                              : is_side     ? corners_ - 1
+                                            : 2;
     if (words.size() != 1 + nodes)
       fail(fmt::format("an element of type {} is its number and {} nodes; here are {} words", type_,
                        nodes, words.size()));
@@ -184,11 +190,14 @@ class AbaqusReader {
       ignored_.insert(element.number);
       return;
     }
-    auto& elements = is_element ? raw_.elements : raw_.sides;
-    const Place place{is_element, elements.size()};
+    auto& elements = is_element || is_quadrangle ? raw_.elements : raw_.sides;
+    const Place place{is_element || is_quadrangle, elements.size(), is_quadrangle ? 4U : 1U};
     if (!places_.emplace(element.number, place).second)
       fail(fmt::format("element {} is there twice", element.number));
-    elements.push_back(element);
+    if (is_quadrangle)
+      add_quadrangle(raw_, element);
+    else
+      elements.push_back(element);
     if (!set_.empty()) element_sets_[set_].numbers.push_back(element.number);
   }
 
@@ -247,7 +256,8 @@ class AbaqusReader {
                            number));
         }
         auto& sets = found->second.is_element ? raw_.parts : raw_.side_sets;
-        sets[name].push_back(found->second.position);
+        for (std::size_t k = 0; k < found->second.count; ++k)
+          sets[name].push_back(found->second.position + k);
       }
   }
   void resolve_node_sets() {
@@ -258,6 +268,7 @@ class AbaqusReader {
   struct Place {
     bool is_element;  ///< else a side
     std::size_t position;
+    std::size_t count;  ///< of a quadrangle: its triangles
   };
   static constexpr std::int64_t most_generated = 100'000'000;
 

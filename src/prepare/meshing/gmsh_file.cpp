@@ -323,7 +323,7 @@ class GmshReader {
       }
       refuse_others(element, type);
       for (std::size_t k = 0; k < kind_of(type).nodes; ++k) element.nodes[k] = in_.tag();
-      add(element, type, type == 4 ? 3 : type, group);  // dimensions of lines, triangles
+      add(element, type, type == 4 ? 3 : std::min(type, 2), group);  // dimensions
     }
   }
 
@@ -331,30 +331,39 @@ class GmshReader {
   int element_type() const { return dimension_ == 2 ? 2 : 4; }
   int side_type() const { return dimension_ == 2 ? 1 : 2; }
 
+  /// One that a plane mesh takes as four triangles.
+  bool is_quadrangle(int type) const { return dimension_ == 2 && type == 3; }
+
   void refuse_others(const RawMesh::Element& element, int type) {
     if (type == element_type() || type == side_type() || type == 1 || type == 15) return;
+    if (is_quadrangle(type)) return;
     const bool recombined = type == 3 || type == 5 || type == 6 || type == 7;
     in_.fail(fmt::format("element {} is {}; a mesh may hold {}{}", element.number,
                          kind_of(type).name,
-                         dimension_ == 2 ? "triangles, and lines that name edges"
+                         dimension_ == 2 ? "triangles, quadrangles, and lines that name edges"
                                          : "tetrahedra, and triangles that name faces",
                          recombined ? " (leave out Recombine)" : ""));
   }
 
   void add(const RawMesh::Element& element, int type, int dimension,
            const std::vector<int>& groups) {
-    if (type != element_type() && type != side_type()) {
+    if (type != element_type() && type != side_type() && !is_quadrangle(type)) {
       for (std::size_t k = 0; k < kind_of(type).nodes; ++k)
         raw_.other_nodes.push_back(element.nodes[k]);
       return;
     }
     auto& elements = type == side_type() ? raw_.sides : raw_.elements;
     auto& sets = type == side_type() ? raw_.side_sets : raw_.parts;
+    const std::size_t pieces = is_quadrangle(type) ? 4 : 1;
     for (const int group : groups) {
       const auto name = names_.find({dimension, group});
-      sets[name != names_.end() ? name->second : std::to_string(group)].push_back(elements.size());
+      auto& set = sets[name != names_.end() ? name->second : std::to_string(group)];
+      for (std::size_t k = 0; k < pieces; ++k) set.push_back(elements.size() + k);
     }
-    elements.push_back(element);
+    if (is_quadrangle(type))
+      add_quadrangle(raw_, element);
+    else
+      elements.push_back(element);
   }
 
   using DimensionAndTag = std::pair<int, int>;

@@ -29,6 +29,7 @@ struct Mesh {
   std::vector<Triangle> triangle;  ///< corners, counter-clockwise
   std::vector<Part> parts;         ///< of a file; may be none
   std::vector<EdgeSet> edge_sets;  ///< of a file; may be none
+  std::vector<Edge> inner{};       ///< of quadrangles: their triangles move as one across these
 };
 
 inline const Vec2& at(const std::vector<Vec2>& point, Index i) {

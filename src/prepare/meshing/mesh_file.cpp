@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <numeric>
+#include <unordered_map>
 
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
@@ -13,6 +14,23 @@
 
 namespace breccia::prepare {
 namespace {
+
+/// The number of the node in the middle of a quadrangle: no file has such numbers.
+std::int64_t middle_of(std::size_t quadrangle) {
+  return -1 - static_cast<std::int64_t>(quadrangle);
+}
+
+/// Mean place of the corners of each quadrangle. A corner that is not there is told of later.
+void place_middles(RawMesh& raw) {
+  if (raw.quadrangles.empty()) return;
+  std::unordered_map<std::int64_t, Vec3> place;
+  for (const RawMesh::Node& node : raw.nodes) place.emplace(node.number, node.position);
+  for (std::size_t q = 0; q < raw.quadrangles.size(); ++q) {
+    Vec3 sum{};
+    for (const std::int64_t number : raw.quadrangles[q].nodes) sum += place[number];
+    raw.nodes.push_back({middle_of(q), 0.25 * sum, raw.quadrangles[q].line});
+  }
+}
 
 class Finisher : FinisherBase {
  public:
@@ -34,6 +52,7 @@ class Finisher : FinisherBase {
       refuse_if_any();
     }
     take_sets();
+    take_inner_edges();
     return std::move(mesh_);
   }
 
@@ -152,13 +171,31 @@ class Finisher : FinisherBase {
     refuse_if_any();
   }
 
+  void take_inner_edges() {
+    for (std::size_t q = 0; q < raw_.quadrangles.size(); ++q)
+      for (const std::int64_t number : raw_.quadrangles[q].nodes) {
+        const Index corner = vertex(number), middle = vertex(middle_of(q));
+        mesh_.inner.push_back({std::min(corner, middle), std::max(corner, middle)});
+      }
+  }
+
   bool seams_;
   Mesh mesh_;
 };
 
 }  // namespace
 
-Mesh finished_mesh(const RawMesh& raw, const std::string& name, bool seams) {
+void add_quadrangle(RawMesh& raw, const RawMesh::Element& quadrangle) {
+  const std::int64_t middle = middle_of(raw.quadrangles.size());
+  for (std::size_t k = 0; k < 4; ++k)
+    raw.elements.push_back({quadrangle.number,
+                            {quadrangle.nodes[k], quadrangle.nodes[(k + 1) % 4], middle, 0},
+                            quadrangle.line});
+  raw.quadrangles.push_back(quadrangle);
+}
+
+Mesh finished_mesh(RawMesh raw, const std::string& name, bool seams) {
+  place_middles(raw);
   return Finisher(raw, name, seams).run();
 }
 

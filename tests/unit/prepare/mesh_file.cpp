@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "exec/error.hpp"
+#include "fdem/world.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/meshing/meshing.hpp"
@@ -176,9 +177,9 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"0 1 0\n$EndNodes", "0 nan 0\n$EndNodes",
               "node 4 has a coordinate that is no number"},
         Wrong{"1\n2\n3\n4\n", "1\n2\n3\n3\n", "line 26, node 3 is there twice"},
-        Wrong{"2 2 2 1\n3 1 3 4\n", "2 2 3 1\n3 1 2 3 4\n",
-              "element 3 is a quadrangle; a mesh may hold triangles, and lines that name edges "
-              "(leave out Recombine)"},
+        Wrong{"2 2 2 1\n3 1 3 4\n", "2 2 3 1\n3 1 3 2 4\n",
+              "line 35, element 3 at (0.5, 0.833333) m has clockwise corners"},
+        Wrong{"2 2 2 1\n3 1 3 4\n", "2 2 3 1\n3 1 2 3 9\n", "element 3: there is no node 9"},
         Wrong{"2 2 2 1\n3 1 3 4\n", "3 2 4 1\n3 1 2 3 4\n", "element 3 is a tetrahedron"},
         Wrong{"2 2 2 1\n3 1 3 4\n", "2 2 9 1\n3 1 2 3 4 1 2\n", "a triangle of second order"},
         Wrong{"2 2 2 1\n3 1 3 4\n", "1 1 1 1\n3 1 3\n", "node 4 belongs to no triangle"},
@@ -241,8 +242,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{"3, 1, 3, 4\n", "3, 1, 4, 3\n",
               "line 12, element 3 at (0.333333, 0.666667) m has clockwise corners"},
+        Wrong{"TYPE=CPS3", "TYPE=CPS8",
+              "line 10: element 2 is of type CPS8; allowed are triangles (CPE3, CPS3,"},
         Wrong{"TYPE=CPS3", "TYPE=CPS4",
-              "line 10: element 2 is of type CPS4; allowed are triangles (CPE3, CPS3,"},
+              "line 10: an element of type CPS4 is its number and 4 nodes; here are 4 words"},
         Wrong{"3, 1, 3, 4\n", "3, 1, 3\n",
               "line 12: an element of type CPE3 is its number and 3 nodes; here are 3 words"},
         Wrong{"3, 1, 3, 4\n", "3, 1, 3, 44\n", "line 12, element 3: there is no node 44"},
@@ -272,6 +275,37 @@ TEST(MeshFile, AbaqusInstanceThatStaysInPlaceIsRead) {
 TEST(MeshFile, AbaqusWithoutKeywordsIsRefused) {
   EXPECT_TRUE(mentions(abaqus_refusal("1, 2, 3\n"), "line 1: \"1, 2, 3\" stands before the first"));
   EXPECT_TRUE(mentions(abaqus_refusal(""), "m.inp: there is no line that begins with *"));
+}
+
+/// Four triangles around the middle, one after the other, in all sets that the quadrangle is in.
+void expect_a_quadrangle(const Mesh& mesh, const std::string& part) {
+  ASSERT_EQ(mesh.triangle.size(), 4U);
+  ASSERT_EQ(mesh.point.size(), 5U);
+  EXPECT_EQ(mesh.point[4].x, 0.5);
+  EXPECT_EQ(mesh.point[4].y, 0.5);
+  for (const Triangle& t : mesh.triangle) EXPECT_EQ(signed_area(mesh.point, t), 0.25);
+  const std::vector<Edge> inner{{0, 4}, {1, 4}, {2, 4}, {3, 4}};
+  EXPECT_EQ(mesh.inner, inner);
+  const auto found = std::find_if(mesh.parts.begin(), mesh.parts.end(),
+                                  [&](const Part& p) { return p.name == part; });
+  ASSERT_NE(found, mesh.parts.end());
+  EXPECT_EQ(found->triangles, (std::vector<Index>{0, 1, 2, 3}));
+}
+
+TEST(MeshFile, AQuadrangleBecomesFourTrianglesAroundItsMiddle) {
+  const Mesh mesh =
+      parse_gmsh(with(square, "3 3 1 3\n1 1 1 1\n1 1 2\n2 1 2 1\n2 1 2 3\n2 2 2 1\n3 1 3 4\n",
+                      "2 2 1 2\n1 1 1 1\n1 1 2\n2 1 3 1\n2 1 2 3 4\n"),
+                 "m.msh");
+  expect_a_quadrangle(mesh, "rock");
+  ASSERT_EQ(mesh.edge_sets.size(), 1U);
+  EXPECT_EQ(mesh.edge_sets[0].edges, (std::vector<Edge>{{0, 1}}));
+  for (const char* type : {"CPS4", "CPE4R"})
+    expect_a_quadrangle(
+        parse_abaqus(std::string("*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, TYPE=") +
+                         type + ", ELSET=rock\n7, 1, 2, 3, 4\n",
+                     "m.inp"),
+        "rock");
 }
 
 TEST(MeshFile, OtherEndingsAreRefused) {
@@ -316,6 +350,30 @@ Physical Surface("matrix") = {3};
 left() = Curve In BoundingBox{-0.1, -0.1, -0.1, 0.1, 1.1, 0.1};
 Physical Curve("left") = left();
 )";
+
+/// Two quadrangles side by side: the joint between them is the only one, whatever the material
+/// says.
+TEST(MeshFile, TrianglesOfAQuadrangleMoveAsOne) {
+  const Folder folder;
+  folder.write("two.inp",
+               "*NODE\n1, 0, 0\n2, 1, 0\n3, 2, 0\n4, 0, 1\n5, 1, 1\n6, 2, 1\n"
+               "*ELEMENT, TYPE=CPS4\n1, 1, 2, 5, 4\n2, 2, 3, 6, 5\n");
+  for (const char* joints : {"intrinsic", "extrinsic"}) {
+    fdem::Config config;
+    config.materials.emplace_back().name = "rock";
+    config.materials[0].joints = joints;
+    fdem::BodyConfig& body = config.bodies.emplace_back();
+    body.name = "two";
+    body.shape = "mesh";
+    body.material = "rock";
+    body.file = "two.inp";
+    const fdem::Model model = build_model(config, folder.path());
+    EXPECT_EQ(model.triangle.size(), 8U);
+    const fdem::World w = fdem::make_world(config, model, {});
+    ASSERT_EQ(w.joints.size(), 1) << joints;
+    EXPECT_NEAR(w.joints.length.data()[0], 1.0, 1e-15);
+  }
+}
 
 TEST(MeshFile, BodiesFromOneGeoFileShareTheirVertices) {
   const Folder folder;
