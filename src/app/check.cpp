@@ -123,6 +123,7 @@ struct CheckCommand {
                                 material.name));
           }
           tell_of_wide_supports(config);
+          tell_of_probes(config, read);
           if (expected) tell_forecast(*expected);
         },
         read.config);
@@ -143,6 +144,36 @@ struct CheckCommand {
   static bool is_soon_built(const Forecast& f) {
     constexpr double seconds = 0.3, items = 5000.0;
     return f.items > 0.0 && f.items < items && f.setup_s < seconds;
+  }
+
+  /// Probes that read nothing, and means of forces, which are rarely meant.
+  template <class Config>
+  static void tell_of_probes(const Config& config, const Case& read) {
+    const auto tell = [&](const std::string& doubt) {
+      tell_note(read.file.empty() ? doubt : with_lines(doubt, read.file));
+    };
+    const auto is_wall = [&](const std::string& name) {
+      const auto among = [&](const auto& walls) {
+        for (const auto& wall : walls)
+          if (wall.name == name) return true;
+        return false;
+      };
+      if constexpr (requires { config.spheres; })
+        return among(config.spheres.walls);
+      else if constexpr (requires { config.walls; })
+        return among(config.walls);
+      else
+        return false;
+    };
+    for (const ProbeConfig& p : config.probes)
+      if (p.reduce == "mean" &&
+          (p.quantity.starts_with("force_") || p.quantity.starts_with("torque_")) && !is_wall(p.on))
+        tell(
+            fmt::format("probe.{}.reduce: the mean over what it reads; the whole {} is reduce = "
+                        "\"sum\"",
+                        p.name, p.quantity.substr(0, p.quantity.find('_'))));
+    if constexpr (!requires { config.spheres; })
+      for (const std::string& doubt : prepare::doubtful_probes(config, read.folder)) tell(doubt);
   }
 
   template <class Config>

@@ -70,8 +70,8 @@ void coupled::check_case(const Config& config) {
       });
 }
 
-void prepare::check_regions(const coupled::Config& config) {
-  of_both(config, [](const auto& part) { prepare::check_regions(part); });
+void prepare::check_regions(const coupled::Config& config, const std::string* folder) {
+  of_both(config, [&](const auto& part) { prepare::check_regions(part, folder); });
 }
 void prepare::check_files(const coupled::Config& config, const std::string& case_folder) {
   of_both(config, [&](const auto& part) { prepare::check_files(part, case_folder); });

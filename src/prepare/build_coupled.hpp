@@ -27,7 +27,7 @@ void check_case(const Config& config);
 
 namespace prepare {
 
-void check_regions(const coupled::Config& config);
+void check_regions(const coupled::Config& config, const std::string* folder = nullptr);
 void check_files(const coupled::Config& config, const std::string& case_folder);
 
 }  // namespace prepare

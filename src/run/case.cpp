@@ -313,7 +313,10 @@ void check_files(const Case& read) {
   if (read.model) return;  // all files have been read
   std::visit(
       [&](const auto& config) {
-        located(read, [&] { prepare::check_files(config, read.folder); });
+        located(read, [&] {
+          prepare::check_files(config, read.folder);
+          prepare::check_regions(config, &read.folder);
+        });
       },
       read.config);
 }

@@ -21,6 +21,17 @@ const toml::node* item_of(const toml::array& list, const std::string& name) {
   return nullptr;
 }
 
+/// The item of a list that has a text under a key, and a sentence names it between quotation marks;
+/// null: none.
+const toml::node* item_told_of(const toml::array& list, const std::string& key,
+                               const std::string& sentence) {
+  for (const toml::node& item : list)
+    if (const auto text = (*item.as_table())[key].value<std::string>();
+        text && sentence.find('"' + *text + '"') != std::string::npos)
+      return &item;
+  return nullptr;
+}
+
 /// The part of a key's path up to its first dot, and the rest.
 std::pair<std::string, std::string> parted(const std::string& path) {
   const std::size_t dot = std::min(path.find('.'), path.size());
@@ -28,7 +39,8 @@ std::pair<std::string, std::string> parted(const std::string& path) {
 }
 
 /// The line of the deepest part of a key's path that is in the file; 0: none of it is.
-std::uint32_t line_of(const toml::table& root, const std::string& path) {
+std::uint32_t line_of(const toml::table& root, const std::string& path,
+                      const std::string& sentence) {
   const toml::table* table = &root;
   std::uint32_t line = 0;
   for (auto [part, rest] = parted(path); table != nullptr && !part.empty();
@@ -38,6 +50,8 @@ std::uint32_t line_of(const toml::table& root, const std::string& path) {
     if (const toml::array* list = below->as_array(); list && list->is_homogeneous<toml::table>()) {
       std::tie(part, rest) = parted(rest);
       below = item_of(*list, part);
+      if (below == nullptr && (below = item_told_of(*list, part, sentence)) != nullptr)
+        rest = rest.empty() ? part : part + "." + rest;
       if (below == nullptr) break;
     }
     line = below->source().begin.line;
@@ -68,7 +82,7 @@ std::string key_at_start(const toml::table& root, const std::string& sentence) {
 std::uint32_t line_of_sentence(const std::string& sentence, const std::string& path) {
   try {
     const toml::table root = toml::parse_file(case_file_of(path));
-    return line_of(root, key_at_start(root, sentence));
+    return line_of(root, key_at_start(root, sentence), sentence);
   } catch (const toml::parse_error&) {
     return 0;  // its reader tells
   }
@@ -85,7 +99,7 @@ std::string with_lines(const std::string& message, const std::string& path) {
     return message;  // its reader tells
   }
   const auto line_text = [&](const std::string& sentence) {
-    const std::uint32_t line = line_of(root, key_at_start(root, sentence));
+    const std::uint32_t line = line_of(root, key_at_start(root, sentence), sentence);
     return line > 0 ? fmt::format("line {}, ", line) : std::string();
   };
   const std::string alone = line_text(message);  // a sentence without a heading
@@ -99,7 +113,7 @@ std::string with_lines(const std::string& message, const std::string& path) {
     } else {
       const std::string sentence = line.substr(2, line.find('\n') - 2);
       told += "  " + line_text(sentence) + sentence;
-      told += excerpt(text, line_of(root, key_at_start(root, sentence)));
+      told += excerpt(text, line_of(root, key_at_start(root, sentence), sentence));
       if (line.ends_with('\n')) told += '\n';
     }
     at = end;

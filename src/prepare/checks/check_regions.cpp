@@ -5,16 +5,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "dem/setup/walls.hpp"
 #include "dem/wall_mesh.hpp"
+#include "exec/error.hpp"
 #include "io/round_numbers.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/refusal.hpp"
+#include "prepare/meshing/body_mesh.hpp"
+#include "prepare/meshing/mesh_file.hpp"
+#include "prepare/packing/spheres_file.hpp"
 #include "prepare/shapes/carve.hpp"
 #include "prepare/shapes/wall_files.hpp"
+#include "prepare/tetrahedra/tet_body.hpp"
+#include "prepare/tetrahedra/tet_file.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -28,6 +35,7 @@ struct Bounds {
 struct Outline {
   std::string name;
   std::optional<Bounds> bounds;  ///< none: only its file tells
+  bool in_another = false;       ///< a part: its triangles are some of another body
 };
 
 Bounds around(const std::array<double, 3>& center, const std::array<double, 3>& half) {
@@ -60,6 +68,7 @@ std::string problem_of(const std::string& key, const Bounds& region, const std::
   std::pair<double, std::size_t> least{0.0, 0};
   for (const Outline& outline : outlines) {
     if (!on.empty() && outline.name != on) continue;
+    if (outline.in_another && on.empty()) continue;
     if (!outline.bounds) return "";
     const auto apart = gap(region, *outline.bounds);
     if (apart.first <= 1e-9) return "";
@@ -83,9 +92,49 @@ const dem::BodyConfig* host_of(const dem::BodyConfig& body, const dem::Config& c
   return body.shape == "rebar" ? item_named(config.bodies, body.rebar.in) : &body;
 }
 
-Outline outline_of(const dem::BodyConfig& body, const dem::Config& config) {
+void add_to(std::optional<Bounds>& b, const std::array<double, 3>& x, double reach = 0.0) {
+  if (!b) b = Bounds{{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    b->low[k] = std::min(b->low[k], x[k] - reach);
+    b->high[k] = std::max(b->high[k], x[k] + reach);
+  }
+}
+std::array<double, 3> moved(const Vec3& x, const Vec3& by) {
+  return {x.x + by.x, x.y + by.y, x.z + by.z};
+}
+std::array<double, 3> moved(const Vec2& x, const Vec2& by) {
+  return {x.x + by.x, x.y + by.y, 0.0};
+}
+std::string in_folder(const std::string& folder, const std::string& file) {
+  return (std::filesystem::path(folder) / file).string();
+}
+/// What its file tells; a file that cannot be read is told of by its reader.
+template <class Read>
+std::optional<Bounds> told_by_file(const Read& read) {
+  std::optional<Bounds> b;
+  try {
+    read(b);
+  } catch (const Error&) {
+    return {};
+  }
+  return b;
+}
+
+/// @param folder  of the case; null: files are not looked at
+/// @param radii   whether spheres of a file reach beyond their centres
+Outline outline_of(const dem::BodyConfig& body, const dem::Config& config,
+                   const std::string* folder, bool radii = false) {
   const dem::BodyConfig* const b = host_of(body, config);
-  if (b == nullptr || b->shape == "file" || is_shaped(*b)) return {body.name, {}};
+  if (b == nullptr || is_shaped(*b)) return {body.name, {}};
+  if (b->shape == "file") {
+    const dem::MaterialConfig* const of = item_named(config.materials, b->material);
+    if (folder == nullptr || (of != nullptr && of->law == "ldpm")) return {body.name, {}};
+    return {body.name, told_by_file([&](std::optional<Bounds>& all) {
+              const Spheres spheres = read_spheres(in_folder(*folder, b->file));
+              for (std::size_t i = 0; i < spheres.radius.size(); ++i)
+                add_to(all, moved(spheres.position[i], b->center), radii ? spheres.radius[i] : 0.0);
+            })};
+  }
   const std::array<double, 3> center{b->center.x, b->center.y, b->center.z};
   std::array<double, 3> half{b->radius, b->radius, b->radius};
   if (b->shape == "box") half = {0.5 * b->size.x, 0.5 * b->size.y, 0.5 * b->size.z};
@@ -94,15 +143,44 @@ Outline outline_of(const dem::BodyConfig& body, const dem::Config& config) {
   return {body.name, around(center, half)};
 }
 
-Outline outline_of(const fdem::BodyConfig& b) {
+Outline outline_of(const fdem::BodyConfig& b, const std::string* folder) {
+  if (b.shape == "part") return {b.name, {}, true};
+  const bool of_file = b.shape == "outline" || b.shape == "mesh";
+  if (of_file && folder != nullptr)
+    return {b.name, told_by_file([&](std::optional<Bounds>& all) {
+              const std::string path = in_folder(*folder, b.file);
+              if (b.shape == "outline") {
+                for (const Vec2& x : read_outline(path)) add_to(all, moved(x, b.center));
+                return;
+              }
+              const Mesh mesh = read_mesh(path, b.seams == "open");
+              for (const Index t : triangles_of(b, mesh))
+                for (const Index v : mesh.triangle[static_cast<std::size_t>(t)])
+                  add_to(all, moved(at(mesh.point, v), b.center));
+            })};
   const bool round = b.shape == "disc" || b.shape == "ring";
   if (!round && b.shape != "plate" && b.shape != "beam") return {b.name, {}};
   const Vec2 half = round ? Vec2{b.radius, b.radius} : 0.5 * b.size;
   return {b.name, around({b.center.x, b.center.y, 0.0}, {half.x, half.y, 0.0})};
 }
 
-Outline outline_of(const fdem3::BodyConfig& b) {
-  if (b.shape == "mesh" || b.shape == "stl") return {b.name, {}};
+Outline outline_of(const fdem3::BodyConfig& b, const std::string* folder) {
+  if (b.shape == "mesh" || b.shape == "stl") {
+    if (folder == nullptr) return {b.name, {}};
+    return {b.name, told_by_file([&](std::optional<Bounds>& all) {
+              const std::string path = in_folder(*folder, b.file);
+              if (b.shape == "stl") {
+                const Surface surface = read_surface(path, 1.0);
+                add_to(all, moved(surface.low(), b.center));
+                add_to(all, moved(surface.high(), b.center));
+                return;
+              }
+              const TetMesh mesh = read_tet_mesh(path);
+              for (const Index t : tetrahedra_of(b, mesh))
+                for (const Index v : mesh.tetrahedron[static_cast<std::size_t>(t)])
+                  add_to(all, moved(mesh.point[static_cast<std::size_t>(v)], b.center));
+            })};
+  }
   std::array<double, 3> half{b.radius, b.radius, b.radius};
   if (b.shape == "box") half = {0.5 * b.size.x, 0.5 * b.size.y, 0.5 * b.size.z};
   if (b.shape == "cylinder") half[b.axis == "x" ? 0U : b.axis == "y" ? 1U : 2U] = 0.5 * b.height;
@@ -226,6 +304,7 @@ std::string problem_of_point(const std::string& key, const Vec2& point,
   const Outline* nearest = nullptr;
   double least = no_limit;
   for (const Outline& outline : outlines) {
+    if (outline.in_another) continue;
     if (!outline.bounds) return "";
     const double apart = gap(here, *outline.bounds).first;
     if (apart <= 1e-9) return "";
@@ -238,11 +317,23 @@ std::string problem_of_point(const std::string& key, const Vec2& point,
                      place(point.y), nearest->name, length_text(least));
 }
 
+std::vector<Outline> outlines_of(const dem::Config& config, const std::string* folder,
+                                 bool radii = false) {
+  std::vector<Outline> all;
+  for (const auto& body : config.bodies) all.push_back(outline_of(body, config, folder, radii));
+  return all;
+}
+template <class Config>
+std::vector<Outline> outlines_of(const Config& config, const std::string* folder) {
+  std::vector<Outline> all;
+  for (const auto& body : config.bodies) all.push_back(outline_of(body, folder));
+  return all;
+}
+
 /// Supports and loads of meshes, bolts of plane ones.
 template <class Config>
-void check_faces_and_corners(const Config& config) {
-  std::vector<Outline> outlines;
-  for (const auto& body : config.bodies) outlines.push_back(outline_of(body));
+void check_faces_and_corners(const Config& config, const std::string* folder) {
+  const std::vector<Outline> outlines = outlines_of(config, folder);
   std::vector<std::string> problems;
   for (const auto& s : config.supports)
     problems.push_back(problem_of("support." + s.name, bounds_of(s.region), s.region.on, outlines));
@@ -280,14 +371,13 @@ std::string behind(const dem::Wall& wall, const dem::WallConfig& asked, const de
 }  // namespace
 
 std::vector<std::string> doubtful_walls(const dem::Config& config, const std::string& case_folder) {
-  std::vector<Outline> outlines;
-  for (const dem::BodyConfig& body : config.bodies) {
-    outlines.push_back(outline_of(body, config));
-    if (!outlines.back().bounds) return {};
-    if (body.shape != "element") continue;
+  std::vector<Outline> outlines = outlines_of(config, &case_folder, true);
+  for (std::size_t b = 0; b < outlines.size(); ++b) {
+    if (!outlines[b].bounds) return {};
+    if (config.bodies[b].shape != "element") continue;
     for (std::size_t k = 0; k < 3; ++k) {
-      outlines.back().bounds->low[k] -= body.radius;
-      outlines.back().bounds->high[k] += body.radius;
+      outlines[b].bounds->low[k] -= config.bodies[b].radius;
+      outlines[b].bounds->high[k] += config.bodies[b].radius;
     }
   }
   std::vector<std::string> doubts;
@@ -316,9 +406,8 @@ std::vector<std::string> doubtful_walls(const dem::Config& config, const std::st
   return doubts;
 }
 
-void check_regions(const dem::Config& config) {
-  std::vector<Outline> outlines;
-  for (const dem::BodyConfig& body : config.bodies) outlines.push_back(outline_of(body, config));
+void check_regions(const dem::Config& config, const std::string* folder) {
+  const std::vector<Outline> outlines = outlines_of(config, folder);
   std::vector<std::string> problems;
   for (const dem::SupportConfig& s : config.supports)
     problems.push_back(problem_of("support." + s.name, bounds_of(s), s.on, outlines));
@@ -326,11 +415,42 @@ void check_regions(const dem::Config& config) {
   refuse(problems, "in the case");
 }
 
-void check_regions(const fdem::Config& config) {
-  check_faces_and_corners(config);
+void check_regions(const fdem::Config& config, const std::string* folder) {
+  check_faces_and_corners(config, folder);
 }
-void check_regions(const fdem3::Config& config) {
-  check_faces_and_corners(config);
+void check_regions(const fdem3::Config& config, const std::string* folder) {
+  check_faces_and_corners(config, folder);
+}
+
+namespace {
+
+template <class Config>
+std::vector<std::string> empty_boxes(const Config& config, const std::vector<Outline>& outlines) {
+  std::vector<std::string> doubts;
+  for (const ProbeConfig& p : config.probes) {
+    if (p.min.size() < 2 || p.max.size() != p.min.size()) continue;
+    Bounds box{};
+    for (std::size_t k = 0; k < p.min.size(); ++k) {
+      box.low[k] = p.min[k];
+      box.high[k] = p.max[k];
+    }
+    const bool of_body = item_named(config.bodies, p.on) != nullptr;
+    const std::string doubt = problem_of("probe." + p.name, box, of_body ? p.on : "", outlines);
+    if (!doubt.empty()) doubts.push_back(doubt + ", at the start");
+  }
+  return doubts;
+}
+
+}  // namespace
+
+std::vector<std::string> doubtful_probes(const dem::Config& config, const std::string& folder) {
+  return empty_boxes(config, outlines_of(config, &folder, true));
+}
+std::vector<std::string> doubtful_probes(const fdem::Config& config, const std::string& folder) {
+  return empty_boxes(config, outlines_of(config, &folder));
+}
+std::vector<std::string> doubtful_probes(const fdem3::Config& config, const std::string& folder) {
+  return empty_boxes(config, outlines_of(config, &folder));
 }
 
 }  // namespace breccia::prepare
