@@ -16,6 +16,7 @@
 #include "fdem/bolts/bolts.hpp"
 #include "fdem/contact/couples.hpp"
 #include "fdem/fluid/spreading.hpp"
+#include "fdem/laws/explosive.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem/setup/effective.hpp"
 #include "fdem/triangles/loads.hpp"
@@ -34,6 +35,11 @@ struct FluidSource {
   std::int16_t load;            ///< index into Case::loads
   double speed;                 ///< of its front; 0: it fills cracks at once  [m/s]
   std::vector<Index> vertices;  ///< at which it is from the start on  [-]
+  /// Of an explosive: border edges around each hole, and what bears its pressure there; else empty.
+  std::vector<std::vector<Index>> holes{};
+  std::vector<LoadedEdge> borders{};
+  ExplosiveGas law{};
+  double charge = 0.0;  ///< volume of the explosive per thickness  [m2]
 };
 
 /// A fluid that flows through cracks.
@@ -80,7 +86,7 @@ struct Case {
   std::vector<FluidSource> fluids;             ///< empty: no load is a fluid
   FlowCase flow;
   std::vector<Bolt> bolts;
-  EmissionConfig emission;             ///< which breaks are one event
+  PlaneEmissionConfig emission;        ///< which breaks are one event
   std::vector<CrackSide> open_cracks;  ///< edges of discontinuities open from the start
   Buffer<ElasticTriangle> laws;        ///< stage  (materials; where stress in situ has a slope:
                                        ///< triangles of the whole mesh)

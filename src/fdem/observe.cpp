@@ -74,14 +74,32 @@ Fragments fragments(const World& w) {
 Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
   const std::vector<std::uint8_t> gone = gone_triangles(w);
   Pieces pieces = fdem_shared::joined_elements(w, broken, gone);
-  std::vector<double> mass, of_root(gone.size(), 0.0);
-  copy_to(mass, w.triangles.mass);
-  for (std::size_t t = 0; t < mass.size(); ++t)
-    if (gone[t] == 0) of_root[at(pieces.root(static_cast<Index>(t)))] += 3.0 * mass[t];
+  const OnHost<Triangles> triangles(w.triangles, w.exec.space);
+  const Triangles& t = *triangles;
+  std::vector<double> of_root(gone.size(), 0.0);
+  std::vector<Piece> found(gone.size());
+  for (Index i = 0; i < t.size(); ++i) {
+    if (gone[at(i)] != 0) continue;
+    const std::size_t root = at(pieces.root(i));
+    const double corner = t.mass.data()[i];
+    Vec2 x[3], v[3];
+    split(t.nodes.data()[i], x, v);
+    of_root[root] += 3.0 * corner;
+    found[root].area += 0.5 * cross(x[1] - x[0], x[2] - x[0]);
+    for (int k = 0; k < 3; ++k) {
+      found[root].centre += corner * x[k];
+      found[root].velocity += corner * v[k];
+    }
+  }
   fdem_shared::OrderedPieces ordered = fdem_shared::by_mass(pieces, of_root);
   Fragments f;
   f.of = std::move(ordered.of);
-  for (const Index root : ordered.root) f.mass.push_back(of_root[at(root)]);
+  for (const Index root : ordered.root) {
+    const double mass = of_root[at(root)];
+    const Piece& p = found[at(root)];
+    f.mass.push_back(mass);
+    f.pieces.push_back({p.area, (1.0 / mass) * p.centre, (1.0 / mass) * p.velocity});
+  }
   return f;
 }
 

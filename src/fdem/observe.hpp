@@ -38,11 +38,17 @@ struct Crack {
 /// By time of break, then by number.
 std::vector<Crack> cracks(const World& w);
 
-/// Pieces held together by joints and bonds: of each triangle the number of its piece, pieces by
-/// falling mass.
+/// A piece held together by joints and bonds.
+struct Piece {
+  double area = 0.0;  ///< present  [m2]
+  Vec2 centre{};      ///< of mass  [m]
+  Vec2 velocity{};    ///<  [m/s]
+};
+/// Of each triangle the number of its piece; pieces by falling mass.
 struct Fragments {
-  std::vector<Index> of;     ///< of each triangle
-  std::vector<double> mass;  ///< of each piece, falling  [kg/m]
+  std::vector<Index> of;      ///< of each triangle
+  std::vector<double> mass;   ///< of each piece, falling  [kg/m]
+  std::vector<Piece> pieces;  ///< likewise
 };
 Fragments fragments(const World& w);
 /// Fragments where other joints are broken than the world knows.

@@ -1,5 +1,6 @@
 #include "fdem/ranks.hpp"
 
+#include "fdem/fluid/cavity.hpp"
 #include "fdem/relations.hpp"
 #include "fdem_shared/migration.hpp"
 
@@ -25,6 +26,7 @@ void Shape::take_common(World& w, Communicator& ranks) {
     take_from_first(ranks, w.bolts.time);
     take_items(ranks, w.bolts.nodes);
   }
+  if (has_gas(w)) take_items(ranks, w.fluid.gas);
   if (!w.given->flow.on) return;
   take_from_first(ranks, w.fluid.injected);
   take_from_first(ranks, w.fluid.released);

@@ -8,6 +8,7 @@
 #include "domain/together.hpp"
 #include "exec/for_each.hpp"
 #include "fdem/edges_now.hpp"
+#include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/flow.hpp"
 #include "fdem_shared/loaded_sides.hpp"
 
@@ -149,7 +150,8 @@ void flow_until(World& part, double now) {
   list_pressures(part, cracks, cells);
 }
 
-void spread_until(World& part, double now) {
+/// @param expands  whether gas takes the pressure of its volume now, or keeps that which it has
+void spread_until(World& part, double now, bool expands) {
   std::vector<LoadedEdge> wet;
   const std::vector<CrackSide> cracks = cracks_until(part, now);
   for (const FluidSource& source : part.given->fluids)
@@ -163,8 +165,10 @@ void spread_until(World& part, double now) {
                                  return p.triangle == q.triangle && p.edge == q.edge &&
                                         p.load == q.load && p.share == q.share;
                                });
-  if (same) return;
+  const bool gas = has_gas(part);
+  if (same && !gas) return;
   part.fluid.wet = std::move(wet);
+  if (gas && expands) expand_gas(part);
   list_loaded_edges(part);
 }
 
@@ -174,6 +178,21 @@ FilledPart flowed_part(const World& whole) {
   FilledPart sum{whole.fluid.length, 0.0};
   for (Index i = 0; i < whole.fluid.volume.size(); ++i) sum.volume += whole.fluid.volume.data()[i];
   return sum;
+}
+
+/// Of gas: lets cracks bear its pressure, and adds the walls of its holes.
+void list_gas(const World& w, std::vector<LoadedEdge>& all) {
+  const std::vector<FluidSource>& sources = w.given->fluids;
+  for (std::size_t k = 0; k < sources.size() && w.fluid.gas.size() > 0; ++k) {
+    if (sources[k].holes.empty()) continue;
+    const double pressure = w.fluid.gas.data()[k];
+    for (LoadedEdge& edge : all)
+      if (edge.load == sources[k].load) edge.share *= pressure;
+    for (LoadedEdge edge : sources[k].borders) {
+      edge.share = pressure;
+      all.push_back(edge);
+    }
+  }
 }
 
 }  // namespace
@@ -190,19 +209,20 @@ void flow_on(World& part) {
 void spread_fluid(World& part) {
   if (part.given->flow.on) return;  // it flows in each step
   const StageTime timed(part.exec, "fluid");
-  spread_until(part, part.time);
+  spread_until(part, part.time, true);
 }
 void restore_fluid(World& part) {
   if (part.fluid.time < 0.0) return;
   if (part.given->flow.on)
     flow_until(part, part.fluid.time);
   else
-    spread_until(part, part.fluid.time);
+    spread_until(part, part.fluid.time, false);
 }
 
 void list_loaded_edges(World& w) {
   std::vector<LoadedEdge> all = w.given->loaded;
   all.insert(all.end(), w.fluid.wet.begin(), w.fluid.wet.end());
+  list_gas(w, all);
   all.insert(all.end(), w.bolts.pull.begin(), w.bolts.pull.end());
   std::stable_sort(all.begin(), all.end(), [](const LoadedEdge& a, const LoadedEdge& b) {
     return a.triangle < b.triangle;

@@ -2,6 +2,7 @@
 
 #include "core/probe.hpp"
 #include "exec/error.hpp"
+#include "fdem/laws/explosive.hpp"
 #include "fdem/setup/bolts.hpp"
 #include "fdem/setup/case_rules.hpp"
 #include "fdem/setup/stages.hpp"
@@ -13,6 +14,30 @@ std::string first_flow(const Config& config) {
   for (const LoadConfig& l : config.loads)
     if (l.flows()) return l.name;
   return {};
+}
+
+/// Explosives: gas in holes.
+void check_gas(const Config& config, std::vector<std::string>& problems) {
+  for (const LoadConfig& l : config.loads) {
+    if (!l.is_gas()) continue;
+    const std::string where = "load." + l.name + ".explosive";
+    const ExplosiveConfig& x = l.explosive;
+    if (l.kind != "fluid")
+      problems.push_back(where + ": needs kind = \"fluid\"; kind is \"" + l.kind + "\"");
+    if (l.viscosity > 0.0)
+      problems.push_back(where + ": a gas has one pressure; leave viscosity out");
+    if (l.pressure.is_table() || l.pressure.value != 0.0)
+      problems.push_back("load." + l.name +
+                         ".pressure: that of an explosive follows from its volume; leave it out");
+    if (ExplosiveGas::of(x.a, x.b, x.r1, x.r2, x.omega, x.energy).c < 0.0)
+      problems.push_back(where + ".energy: A/R1 exp(-R1) + B/R2 exp(-R2) alone is more than it");
+    for (const StageConfig& stage : config.stages)
+      for (const LoadChange& change : stage.loads)
+        if (change.name == l.name)
+          problems.push_back(
+              "stage." + stage.name + ".load." + l.name +
+              ": the pressure of an explosive follows from its volume in all stages");
+  }
 }
 
 /// Fluids that flow, and keys that only they have.
@@ -55,6 +80,7 @@ std::vector<std::string> case_problems(const Config& config) {
     if (l.speed > 0.0 && l.kind != "fluid")
       add("load." + l.name + ".speed: only a fluid has one; kind is \"" + l.kind + "\"");
   check_flows(config, problems);
+  check_gas(config, problems);
   for (const std::string& problem : bolt_problems(config)) add(problem);
   for (const ProbeConfig& p : config.probes)
     for (const std::string& problem : probe_problems(p, in_plane)) add(problem);

@@ -179,6 +179,35 @@ struct OutletConfig {
   }
 };
 
+/// [load.explosive]: the gas of an explosive, by the equation of Jones, Wilkins and Lee
+struct ExplosiveConfig {
+  double a = 0.0, b = 0.0;                 ///<  [Pa]
+  double r1 = 4.0, r2 = 1.0, omega = 0.3;  ///<  [-]
+  double energy = 0.0;                     ///< E_0; 0: there is none  [J/m3]
+  double charge = 0.0;                     ///< 0: it fills its holes  [m2]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("a", a, "Pa", Range{0.0, 1e15},
+        "A of p = A exp(-R1 V) + B exp(-R2 V) + C/V^(1 + omega), V the volume of the gas over that "
+        "of the explosive");
+    key.required("a");
+    key("b", b, "Pa", Range{0.0, 1e15}, "B of it");
+    key.required("b");
+    key("r1", r1, "-", Range{0.1, 100.0}, "R1 of it");
+    key.required("r1");
+    key("r2", r2, "-", Range{0.01, 100.0}, "R2 of it");
+    key.required("r2");
+    key("omega", omega, "-", Range{0.01, 10.0}, "omega of it");
+    key.required("omega");
+    key("energy", energy, "J/m3", Range{0.0, 1e15, Open::low},
+        "E_0, energy per volume of explosive, from which C follows");
+    key.required("energy");
+    key("charge", charge, "m2", not_negative,
+        "section of the explosive; 0: it fills the holes of its region");
+  }
+};
+
 /// [[load]]: forces on free edges
 struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
   double speed = 0.0;                   ///< of a fluid's front; 0: at once  [m/s]
@@ -188,7 +217,9 @@ struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
   OverTime<double> rate;                ///< at which it comes in, instead of a pressure  [m2/s]
   bool filled = false;                  ///< whether cracks that are open at the start hold it
   std::vector<OutletConfig> outlets{};  ///< at most one
+  ExplosiveConfig explosive;
 
+  bool is_gas() const { return explosive.energy > 0.0; }
   bool flows() const { return kind == "fluid" && viscosity > 0.0; }
 
   template <class Visit>
@@ -215,6 +246,8 @@ struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
     key("filled", filled,
         "fluid that flows: cracks that are open at the start hold it, without pressure");
     key.list("outlet", outlets, "fluid that flows: where it leaves, one region at most");
+    key.table("explosive", explosive,
+              "fluid: gas whose pressure follows from its volume; then pressure is left out");
     history.each_key(key);
   }
 };
@@ -399,7 +432,7 @@ struct Config : CaseConfig {
   double stage_friction = -1.0;      ///< no key: of contacts in this stage; below 0: as given  [-]
   std::vector<std::string> removed;  ///< no key: bodies that are gone by now
   SearchConfig search;
-  EmissionConfig emission;
+  PlaneEmissionConfig emission;
 
   template <class Visit>
   void each_key(Visit&& key) {

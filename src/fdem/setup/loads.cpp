@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "exec/error.hpp"
+#include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/setup/bolts.hpp"
 #include "fdem/setup/regions.hpp"
@@ -49,9 +50,23 @@ void set_up_flow(World& w, const Config& config, const LoadConfig& load, const M
     if (bonds.empty()) flow.stiffness = std::min(flow.stiffness, m.young);
 }
 
+/// Lets the source that was added last be the gas of an explosive.
+void set_up_gas(World& w, const LoadConfig& load, const Model& model,
+                const std::vector<Index>& edges, const std::vector<LoadedEdge>& borders) {
+  FluidSource& source = set_up(w).fluids.back();
+  const ExplosiveConfig& x = load.explosive;
+  source.holes = holes_along(model, edges, "load." + load.name);
+  source.borders = borders;
+  source.law = ExplosiveGas::of(x.a, x.b, x.r1, x.r2, x.omega, x.energy);
+  source.charge = x.charge > 0.0 ? x.charge : gas_volume(w, source);
+}
+
 }  // namespace
 
-void prescribe_loads(World& w, const Config& config) {
+void prescribe_loads(World& w, const Config& asked) {
+  Config config = asked;
+  for (LoadConfig& load : config.loads)
+    if (load.is_gas()) load.pressure = 1.0;  // times that of its volume
   fdem_shared::prescribe_loads(w, config);
   Case& given = set_up(w);
   for (std::size_t i = 0; i < config.loads.size(); ++i) {
@@ -80,8 +95,9 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     if (kind == LoadKind::fluid)
       set_up(w).fluids.push_back(
           {index, load.speed, vertices_in(model, load.region, "load." + load.name)});
-    for (const Index edge :
-         edges_in(model, load.region, "load." + load.name, kind != LoadKind::fluid)) {
+    const std::vector<Index> edges =
+        edges_in(model, load.region, "load." + load.name, kind != LoadKind::fluid || load.is_gas());
+    for (const Index edge : edges) {
       const auto t = at(edge / 3), k = at(edge % 3);
       const auto material = static_cast<std::size_t>(model.material[t]);
       const Vec2 line =
@@ -97,10 +113,14 @@ void set_up_loads(World& w, const Config& config, const Model& model) {
     }
     for (std::size_t i = first; i < loaded.size(); ++i)
       loaded[i].share = kind == LoadKind::fluid ? 1.0 : loaded[i].share / length;
-    if (!load.flows()) continue;
-    set_up(w).flow.borders.assign(loaded.begin() + static_cast<std::ptrdiff_t>(first),
-                                  loaded.end());
+    if (!load.flows() && !load.is_gas()) continue;
+    const std::vector<LoadedEdge> borders(loaded.begin() + static_cast<std::ptrdiff_t>(first),
+                                          loaded.end());
     loaded.resize(first);
+    if (load.flows())
+      set_up(w).flow.borders = borders;
+    else
+      set_up_gas(w, load, model, edges, borders);
   }
   if (loaded.empty() && w.given->fluids.empty() && w.given->bolts.empty()) return;
   std::stable_sort(loaded.begin(), loaded.end(), [](const LoadedEdge& a, const LoadedEdge& b) {

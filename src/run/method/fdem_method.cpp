@@ -2,6 +2,7 @@
 
 #include "exec/error.hpp"
 #include "fdem/emission.hpp"
+#include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/fluid.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
@@ -40,12 +41,14 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
   void add_findings(const World& w, std::vector<Fact>& facts) const {
     const auto add = [&](const std::string& path, double value) { facts.push_back({path, value}); };
     add_cracks(w, facts);
-    for (const fdem::FluidSource& fluid : w.given->fluids) {
+    for (std::size_t k = 0; k < w.given->fluids.size(); ++k) {
+      const fdem::FluidSource& fluid = w.given->fluids[k];
       const auto load = static_cast<std::size_t>(fluid.load);
       const fdem::FilledPart filled = fdem::filled_part(w, load);
       const std::string path = "fluid." + w.given->load_names[load] + ".";
       add(path + "length", filled.length);
       add(path + "volume", filled.volume);
+      if (!fluid.holes.empty()) add(path + "pressure", w.fluid.gas.data()[k]);
       if (!w.given->flow.on || w.given->flow.load != fluid.load) continue;
       add(path + "injected", w.fluid.injected);
       if (!w.given->flow.outlet.empty()) add(path + "released", w.fluid.released);
@@ -67,13 +70,19 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
       cracks.rows.push_back({c.time, middle.x, middle.y, norm(c.end - c.begin), c.mode, c.energy,
                              line.begin.x, line.begin.y, line.end.x, line.end.y});
     }
-    Table pieces{"fragments", {"fragment", "mass", "share"}, {"-", "kg/m", "-"}, {}};
+    Table pieces{"fragments",
+                 {"fragment", "mass", "share", "area", "x", "y", "vx", "vy"},
+                 {"-", "kg/m", "-", "m2", "m", "m", "m/s", "m/s"},
+                 {}};
     const fdem::Fragments all = fdem::fragments(w);
     const double scaling = w.given->time.mass_scaling;
     double total = 0.0;
     for (const double m : all.mass) total += m;
-    for (std::size_t i = 0; i < all.mass.size(); ++i)
-      pieces.rows.push_back({static_cast<double>(i), all.mass[i] / scaling, all.mass[i] / total});
+    for (std::size_t i = 0; i < all.mass.size(); ++i) {
+      const fdem::Piece& p = all.pieces[i];
+      pieces.rows.push_back({static_cast<double>(i), all.mass[i] / scaling, all.mass[i] / total,
+                             p.area, p.centre.x, p.centre.y, p.velocity.x, p.velocity.y});
+    }
     std::vector<Table> tables{cracks, pieces, table_of(events(w))};
     if (!w.given->bolts.empty()) tables.push_back(bolt_table(w));
     return tables;
@@ -130,6 +139,7 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
       visit.fields("bolts", Loose<fdem::BoltNode>{"node", w.bolts.nodes});
     }
     if (has_fluid(w)) visit("fluid.time", w.fluid.time);
+    if (fdem::has_gas(w)) visit.fields("gas", Loose<double>{"pressure", w.fluid.gas});
     if (!w.given->flow.on) return;
     visit("fluid.injected", w.fluid.injected);
     if (!w.given->flow.outlet.empty()) visit("fluid.released", w.fluid.released);

@@ -2,6 +2,7 @@
 // ledger books its work.
 
 #include <algorithm>
+#include <map>
 
 #include "parity/staged_runs.hpp"
 #include "physics/fdem/scene.hpp"
@@ -53,6 +54,49 @@ TEST(Fluid, in_cracks_is_alike_on_threads_schedule_and_ranks) {
 TEST(Fluid, in_cracks_is_resumed) {
   expect_resumed(flooded("intrinsic", 800.0));
 }
+/// A block with a square hole in its middle, which an explosive breaks.
+fdem::testing::Scene blasted() {
+  fdem::testing::Scene s;
+  fdem::MaterialConfig& rock = s.material(30e9, 0.2, 2500.0);
+  rock.joints = "intrinsic";
+  rock.joint.tension = 4e6;
+  rock.joint.cohesion = 20e6;
+  rock.joint.energy_open = 20.0;
+  rock.friction = 0.5;
+  const prepare::Mesh whole = prepare::crossed_rectangle({{0.0, 0.0}, {0.1, 0.06}}, 0.01);
+  prepare::Mesh pierced;
+  std::map<Index, Index> number;
+  for (const prepare::Triangle& t : whole.triangle) {
+    const Vec2 middle = prepare::centroid(whole.point, t);
+    if (std::abs(middle.x) < 0.01 && std::abs(middle.y) < 0.01) continue;
+    prepare::Triangle corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [found, is_new] = number.emplace(t[k], static_cast<Index>(pierced.point.size()));
+      if (is_new) pierced.point.push_back(prepare::at(whole.point, t[k]));
+      corners[k] = found->second;
+    }
+    pierced.triangle.push_back(corners);
+  }
+  s.body("rock", pierced);
+  fdem::LoadConfig& anfo = s.load("anfo", "fluid", {-0.011, -0.011}, {0.011, 0.011});
+  anfo.explosive = {49.46e9, 1.891e9, 3.907, 1.118, 0.333, 2.484e9, 8e-6};
+  s.config.time.end = 1.0;
+  s.config.time.max_step = 5e-8;
+  fdem::StageConfig first, second;
+  first.name = "first";
+  first.until = 2e-5;
+  second.name = "second";
+  second.until = 1e-5;
+  s.config.stages = {first, second};
+  return s;
+}
+TEST(Fluid, of_an_explosive_is_alike_on_threads_schedule_and_ranks) {
+  expect_alike(blasted());
+}
+TEST(Fluid, of_an_explosive_is_resumed) {
+  expect_resumed(blasted());
+}
+
 /// The water flows: into the crack at a given pressure, then at a given rate.
 fdem::testing::Scene flowing(const char* joints) {
   fdem::testing::Scene s = flooded(joints, 0.0);

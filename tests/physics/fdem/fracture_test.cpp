@@ -78,6 +78,14 @@ TEST(Fracture, direct_tension_has_its_strength_and_spends_its_energy) {
     EXPECT_NEAR(c.fracture, 8e-3 * (5.0 + elastic), 0.02 * 8e-3 * 5.0);
     EXPECT_EQ(fragments(w).mass.size(), 2U);
     EXPECT_NEAR(fragments(w).mass[0], 8e-3 * edge * 2500.0, 1e-9);
+    double area = 0.0;
+    for (const Piece& piece : fragments(w).pieces) {
+      area += piece.area;
+      EXPECT_NEAR(std::abs(piece.centre.y), 0.5 * edge, 0.01 * edge);
+      EXPECT_GT(piece.velocity.y * piece.centre.y, 0.0);
+      EXPECT_NEAR(std::abs(piece.velocity.y), 0.003, 0.0015);
+    }
+    EXPECT_NEAR(area, 8e-3 * 2.0 * edge, 1e-3 * 8e-3 * edge);
     for (const Crack& crack : cracks(w)) EXPECT_LT(crack.mode, 0.05);
     EXPECT_LT(c.error, 0.01);
   }

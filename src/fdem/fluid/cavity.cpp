@@ -1,0 +1,95 @@
+#include "fdem/fluid/cavity.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "exec/error.hpp"
+#include "fdem/edges_now.hpp"
+
+namespace breccia::fdem {
+namespace {
+
+/// Area of a polygon that runs clockwise, as the border of a hole does; where edges have parted, it
+/// runs straight from one to the next.  [m2]
+double area_within(const std::vector<EdgeNow>& edges, const std::vector<Index>& hole) {
+  const Vec2 origin = edge_in(edges, hole.front()).from;
+  double twice = 0.0;
+  for (std::size_t i = 0; i < hole.size(); ++i) {
+    const EdgeNow& e = edge_in(edges, hole[i]);
+    const Vec2 next = edge_in(edges, hole[(i + 1) % hole.size()]).from;
+    twice -= cross(e.from - origin, e.to - origin) + cross(e.to - origin, next - origin);
+  }
+  return 0.5 * twice;
+}
+
+}  // namespace
+
+std::vector<std::vector<Index>> holes_along(const Model& model, const std::vector<Index>& edges,
+                                            const std::string& where) {
+  const auto vertex = [&](Index edge, Index end) {
+    return model.triangle[at(edge / 3)][at((edge + end) % 3)];
+  };
+  std::map<Index, Index> starting;  // at a vertex
+  for (const Index edge : edges)
+    if (!starting.emplace(vertex(3 * (edge / 3) + edge % 3, 0), edge).second)
+      throw InputError(where + ": two borders of its region meet at one point");
+  std::vector<std::vector<Index>> holes;
+  while (!starting.empty()) {
+    std::vector<Index> hole;
+    double twice = 0.0;
+    for (auto next = starting.begin(); next != starting.end();) {
+      const Index edge = next->second;
+      starting.erase(next);
+      hole.push_back(edge);
+      const Index t = edge / 3, k = edge % 3;
+      const Index from = model.triangle[at(t)][at(k)], to = model.triangle[at(t)][at((k + 1) % 3)];
+      twice += cross(model.point[at(from)], model.point[at(to)]);
+      next = starting.find(to);
+      const Index first = hole.front();
+      if (next == starting.end() && to != model.triangle[at(first / 3)][at(first % 3)])
+        throw InputError(where +
+                         ": its region takes a part of a border only; an explosive needs "
+                         "the whole wall of a hole");
+    }
+    if (twice > 0.0)
+      throw InputError(where +
+                       ": its region takes the outer border of a body; an explosive lies "
+                       "in a hole");
+    holes.push_back(std::move(hole));
+  }
+  return holes;
+}
+
+double gas_volume(World& part, const FluidSource& source) {
+  std::vector<Index> wanted;
+  for (const auto& hole : source.holes) wanted.insert(wanted.end(), hole.begin(), hole.end());
+  const std::vector<LoadedEdge>& wet = part.fluid.wet;
+  for (const LoadedEdge& side : wet)
+    if (side.load == source.load) wanted.push_back(3 * side.triangle + side.edge);
+  const std::vector<EdgeNow> edges = edges_now(part, wanted);
+  double volume = 0.0;
+  for (const auto& hole : source.holes) volume += area_within(edges, hole);
+  for (std::size_t i = 0; i + 1 < wet.size(); i += 2) {
+    if (wet[i].load != source.load) continue;
+    const EdgeNow& a = edge_in(edges, 3 * wet[i].triangle + wet[i].edge);
+    const EdgeNow& b = edge_in(edges, 3 * wet[i + 1].triangle + wet[i + 1].edge);
+    const JointOpening<double> o = opening_of(a.from, a.to, b.to, b.from);
+    volume += wet[i].share * o.size * std::max(o.open[1], 0.0);
+  }
+  return volume;
+}
+
+void expand_gas(World& part) {
+  const std::vector<FluidSource>& sources = part.given->fluids;
+  if (part.fluid.gas.size() == 0)
+    part.fluid.gas = Buffer<double>(Space::host, static_cast<Index>(sources.size()));
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const FluidSource& source = sources[k];
+    part.fluid.gas.data()[k] =
+        source.holes.empty()
+            ? 1.0
+            : source.law.pressure(std::max(gas_volume(part, source) / source.charge, 1e-3));
+  }
+}
+
+}  // namespace breccia::fdem
