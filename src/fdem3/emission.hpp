@@ -14,8 +14,8 @@ struct JointPlace {
   Vec3 normal, along;  ///< unit, from side b into side a, and along its first edge
 };
 
-/// Events of the whole mesh. Openings and slips are the largest ones up to the break; a slip has the
-/// direction in which its sides lie apart now, turned back with them.
+/// Events of the whole mesh. Openings and slips are the largest ones up to the break; a slip has
+/// the direction in which its sides lie apart now, turned back with them.
 /// @param places  of all joints at the start
 std::vector<EmissionEvent> emission(const World& whole, const std::vector<JointPlace>& places);
 

@@ -177,8 +177,6 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"0 1 0\n$EndNodes", "0 nan 0\n$EndNodes",
               "node 4 has a coordinate that is no number"},
         Wrong{"1\n2\n3\n4\n", "1\n2\n3\n3\n", "line 26, node 3 is there twice"},
-        Wrong{"2 2 2 1\n3 1 3 4\n", "2 2 3 1\n3 1 3 2 4\n",
-              "line 35, element 3 at (0.5, 0.833333) m has clockwise corners"},
         Wrong{"2 2 2 1\n3 1 3 4\n", "2 2 3 1\n3 1 2 3 9\n", "element 3: there is no node 9"},
         Wrong{"2 2 2 1\n3 1 3 4\n", "3 2 4 1\n3 1 2 3 4\n", "element 3 is a tetrahedron"},
         Wrong{"2 2 2 1\n3 1 3 4\n", "2 2 9 1\n3 1 2 3 4 1 2\n", "a triangle of second order"},

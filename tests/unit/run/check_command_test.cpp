@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
@@ -348,6 +349,64 @@ TEST(CaseName, is_the_stem_and_of_a_case_folder_its_name) {
   replace_file(folder.path() + "/case.toml", beam);
   EXPECT_EQ(case_name(folder.path()), name);
   EXPECT_EQ(case_name(folder.path() + "/small.toml"), name + "_small");
+}
+
+/// Spheres of a file, a wall and a support beside them, a probe of nothing, a mean of forces, and a
+/// stage that names what is not there.
+TEST(CheckCommand, looks_at_bodies_from_files_and_into_stages) {
+  const ScratchFolder folder;
+  std::ofstream(folder.path() + "/balls.csv") << "0,0,0,0.01\n0.02,0,0,0.01\n";
+  const std::string whole = R"(breccia = 1
+method = "dem3d"
+[time]
+end = "1 ms"
+[material.grain]
+law = "grain"
+[[body]]
+name = "balls"
+shape = "file"
+file = "balls.csv"
+material = "grain"
+[[wall]]
+name = "far"
+point = [0.0, 0.0, -0.5]
+normal = [0.0, 0.0, 1.0]
+[[support]]
+name = "held"
+min = [0.0, -1.0, -1.0]
+[[probe]]
+name = "push"
+on = "held"
+quantity = "force_x"
+[[probe]]
+name = "stress"
+quantity = "stress_zz"
+min = [1.0, 1.0, 1.0]
+max = [2.0, 2.0, 2.0]
+[[stage]]
+name = "only"
+[[stage.wall]]
+name = "far"
+)";
+  const auto told = [&](const std::string& text) {
+    std::ofstream(folder.path() + "/case.toml") << text;
+    return told_by(folder, "check " + folder.path() + "/case.toml");
+  };
+  const Told good = told(whole);
+  EXPECT_EQ(good.exit_code, 0) << good.text;
+  EXPECT_TRUE(has(good.text, "line 14, wall.far.point")) << good.text;
+  EXPECT_TRUE(has(good.text, "490 mm")) << good.text;
+  EXPECT_TRUE(has(good.text, "probe.push.reduce")) << good.text;
+  EXPECT_TRUE(has(good.text, "line 26, probe.stress.min")) << good.text;
+  const Told beside = told(changed(whole, "min = [0.0, -1.0, -1.0]", "min = [0.5, -1.0, -1.0]"));
+  EXPECT_EQ(beside.exit_code, 2);
+  EXPECT_TRUE(
+      has(beside.text, "line 18, support.held.min = 500 mm: the region takes nothing; balls"))
+      << beside.text;
+  const Told lost =
+      told(changed(whole, "[[stage.wall]]\nname = \"far\"", "[[stage.wall]]\nname = \"near\""));
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_TRUE(has(lost.text, "line 31, stage.only.wall.name = \"near\" is no wall")) << lost.text;
 }
 
 }  // namespace check_command_test
