@@ -59,10 +59,10 @@ READER = {
          "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* "
          "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/step* fdem_shared/host_run.hpp "
          "fdem_shared/motion.hpp fdem_shared/columns.hpp fdem_shared/stable_parts.hpp"),
-        ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/contact/nearness.hpp"),
+        ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/bolts/* fdem/edges_now.* fdem/contact/nearness.hpp"),
         ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
         ("", "fdem/emission* fdem3/emission* fdem_shared/emission.hpp fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/readings.hpp"),
-        ("", "fdem/stepping/* fdem_shared/device_run.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
+        ("", "fdem/stepping/* fdem_shared/device_run.hpp fdem_shared/busy_couples.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
         ("", "nothing"),
         ("", "fdem/ranks* fdem/relations.hpp fdem_shared/ranks.hpp fdem_shared/migration.hpp fdem_shared/rings.hpp fdem_shared/relations.hpp"),
     ],
