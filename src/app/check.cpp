@@ -130,7 +130,7 @@ struct CheckCommand {
     if (model) tell_of_model(read);
   }
 
-  /// What specimens of its bodies show to be wrong is told with file and lines.
+  /// Faults that specimens of its bodies show are told with file and lines.
   template <class Config>
   static Forecast forecast_of(const Config& config, const Case& read) {
     try {

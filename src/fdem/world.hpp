@@ -38,8 +38,8 @@ struct FluidState {
   double released = 0.0;  ///< that left so far  [m2]
   double pressure = 0.0;  ///< at its source  [Pa]
   double length = 0.0;    ///< of cracks that a fluid that flows fills  [m]
-  /// What a load's pressure is multiplied with: of explosives the pressure of the gas  [Pa], else
-  /// 1; empty: there are none.  (sources)
+  /// Factors of the loads' pressures: of explosives the pressure of the gas  [Pa], else 1; empty:
+  /// there are none.  (sources)
   Buffer<double> gas;
 };
 

@@ -114,7 +114,7 @@ struct JointForces {
     load_late(i, loaded);
     if (!loaded.quiet && !stays_whole(i, loaded, true)) fail_or_soften(i, loaded);
   }
-  /// What is left to do of a joint of a pack that slips.
+  /// The rest of the work for a joint of a pack that slips.
   void book_slip(Index i) const {
     const JointEnds ends = ends_of(i);
     Vec3 a[3], b[3];

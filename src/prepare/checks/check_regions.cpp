@@ -108,7 +108,7 @@ std::array<double, 3> moved(const Vec2& x, const Vec2& by) {
 std::string in_folder(const std::string& folder, const std::string& file) {
   return (std::filesystem::path(folder) / file).string();
 }
-/// What its file tells; a file that cannot be read is told of by its reader.
+/// Bounds of a body by its file; none if it cannot be read, which its reader tells.
 template <class Read>
 std::optional<Bounds> told_by_file(const Read& read) {
   std::optional<Bounds> b;

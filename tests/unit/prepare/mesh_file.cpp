@@ -494,41 +494,5 @@ TEST(Meshing, OutlinesAreReadAndChecked) {
   EXPECT_TRUE(mentions(refusal_of("good.txt"), "needs file, the name of a .csv file"));
 }
 
-TEST(GmshFile, of_version_2_2_gives_the_mesh_of_version_4_1) {
-  const std::string legacy = R"($MeshFormat
-2.2 0 8
-$EndMeshFormat
-$PhysicalNames
-2
-1 7 "base"
-2 9 "vein"
-$EndPhysicalNames
-$Nodes
-4
-1 0 0 0
-2 1 0 0
-3 1 1 0
-4 0 1 0
-$EndNodes
-$Elements
-3
-1 1 2 7 1 1 2
-2 2 2 9 1 1 2 3
-3 2 2 0 1 1 3 4
-$EndElements
-)";
-  const prepare::Mesh mesh = prepare::parse_gmsh(legacy, "old.msh");
-  ASSERT_EQ(mesh.triangle.size(), 2U);
-  EXPECT_EQ(mesh.point.size(), 4U);
-  ASSERT_EQ(mesh.parts.size(), 1U);
-  EXPECT_EQ(mesh.parts[0].name, "vein");
-  EXPECT_EQ(mesh.parts[0].triangles.size(), 1U);
-  ASSERT_EQ(mesh.edge_sets.size(), 1U);
-  EXPECT_EQ(mesh.edge_sets[0].name, "base");
-  std::string binary = legacy;
-  binary.replace(binary.find("2.2 0 8"), 7, "2.2 1 8");
-  EXPECT_THROW(prepare::parse_gmsh(binary, "old.msh"), InputError);
-}
-
 }  // namespace mesh_file_test
 }  // namespace breccia::prepare

@@ -1,11 +1,13 @@
-// Meshes of tetrahedra by gmsh: volumes, counts, bits.
+// Meshes of tetrahedra by gmsh: volumes, counts, bits; its older file format.
 
 #include "prepare/tetrahedra/tet_gmsh.hpp"
 
 #include <gtest/gtest.h>
 
+#include "exec/error.hpp"
 #include "io/whole_file.hpp"
 #include "math/constants.hpp"
+#include "prepare/meshing/mesh_file.hpp"
 #include "prepare/meshing/run_gmsh.hpp"
 #include "unit/prepare/fdem3_scenes.hpp"
 #include "unit/run/scratch_folder.hpp"
@@ -136,6 +138,42 @@ TEST(TetGmsh, SaysThatItIsNotThere) {
     prepare::run_gmsh({.geo = "none.geo", .what = "this shape", .program = "no_such_gmsh"}, folder);
   });
   EXPECT_TRUE(mentions(text, "this shape needs the program no_such_gmsh")) << text;
+}
+
+TEST(GmshFile, of_version_2_2_gives_the_mesh_of_version_4_1) {
+  const std::string legacy = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 7 "base"
+2 9 "vein"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+$EndNodes
+$Elements
+3
+1 1 2 7 1 1 2
+2 2 2 9 1 1 2 3
+3 2 2 0 1 1 3 4
+$EndElements
+)";
+  const prepare::Mesh mesh = prepare::parse_gmsh(legacy, "old.msh");
+  ASSERT_EQ(mesh.triangle.size(), 2U);
+  EXPECT_EQ(mesh.point.size(), 4U);
+  ASSERT_EQ(mesh.parts.size(), 1U);
+  EXPECT_EQ(mesh.parts[0].name, "vein");
+  EXPECT_EQ(mesh.parts[0].triangles.size(), 1U);
+  ASSERT_EQ(mesh.edge_sets.size(), 1U);
+  EXPECT_EQ(mesh.edge_sets[0].name, "base");
+  std::string binary = legacy;
+  binary.replace(binary.find("2.2 0 8"), 7, "2.2 1 8");
+  EXPECT_THROW(prepare::parse_gmsh(binary, "old.msh"), InputError);
 }
 
 }  // namespace tet_gmsh_test
