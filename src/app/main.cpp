@@ -86,8 +86,8 @@ std::string version_text() {
 int run_program(int argc, char** argv, breccia::Communicator* ranks) {
   int exit_code = 0;
   CLI::App program{
-      "How concrete and rock break: spheres with links that soften and fail in 3D, triangles with "
-      "joints that crack in 2D."};
+      "How concrete and rock break: spheres with links that soften and fail, triangles and "
+      "tetrahedra with joints that crack."};
   program.name("breccia");
   program.formatter(std::make_shared<FoldedHelp>());
   program.footer(

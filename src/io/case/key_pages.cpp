@@ -223,7 +223,9 @@ std::vector<KeyInfo> keys_about(const std::vector<KeyInfo>& keys, const std::str
     for (std::string word; stream >> word;) all = all && text.find(word) != std::string::npos;
     if (all) found.push_back(key);
   }
-  return found;
+  const std::size_t first = words.find('.'), second = words.find('.', first + 1);
+  if (!found.empty() || first == std::string::npos || second == std::string::npos) return found;
+  return keys_about(keys, words.substr(0, first) + words.substr(second));  // an item's own name
 }
 
 std::vector<KeyInfo> keys_about_each(const std::vector<KeyInfo>& keys, const std::string& words) {

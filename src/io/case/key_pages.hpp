@@ -28,7 +28,8 @@ struct KeyList {
 KeyList key_list(const std::vector<MethodKeys>& methods);
 
 /// The keys whose path begins with `words`, or else those in whose path, meaning or allowed words
-/// each word stands, whatever its capitals.
+/// each word stands, whatever its capitals. The name of an item may stand in a path:
+/// material.concrete.young.
 std::vector<KeyInfo> keys_about(const std::vector<KeyInfo>& keys, const std::string& words);
 /// Keys that are about at least one of several words.
 std::vector<KeyInfo> keys_about_each(const std::vector<KeyInfo>& keys, const std::string& words);

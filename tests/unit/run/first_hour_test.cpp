@@ -71,6 +71,7 @@ TEST_F(FirstHour, explain_tells_formula_and_draws_the_law) {
   const std::string svg = read_whole_file(folder / "law.svg");
   EXPECT_NE(svg.find("2.2"), std::string::npos);  // the strength, on the axis
   EXPECT_EQ(run("explain joint.tension"), 0) << told;
+  EXPECT_EQ(run("explain material.my_rock.joint.tension"), 0) << told;
   EXPECT_TRUE(says("G_I")) << told;
   EXPECT_EQ(run("explain rate --svg rate.svg"), 0) << told;
   EXPECT_TRUE(says("Malvar and Ross") && says("log10 of the strain rate in 1/s")) << told;
