@@ -86,6 +86,8 @@ TEST(CheckCoupled, finds_what_is_wrong_by_key) {
   EXPECT_TRUE(has(problems_of(good, "[output]", bond), "bond.b.tetrahedra = \"rock\" is none of"));
   const std::string stage = "[[spheres.stage]]\nname = \"s\"\nend = 1.0\n[output]";
   EXPECT_TRUE(has(problems_of(good, "[output]", stage), "spheres.stage"));
+  EXPECT_TRUE(has(problems_of(good, "[output]", "[[stage]]\nname = \"s\"\nend = 1.0\n[output]"),
+                  "runs of spheres and tetrahedra together have no stages"));
 }
 
 std::unique_ptr<Method> method_of(const Case& read, int threads = 1) {
