@@ -62,7 +62,7 @@ READER = {
         ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/bolts/* fdem/edges_now.* fdem/contact/nearness.hpp"),
         ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
         ("", "fdem/emission* fdem3/emission* fdem_shared/emission.hpp fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/readings.hpp"),
-        ("", "fdem/stepping/* fdem_shared/device_run.hpp fdem_shared/busy_couples.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
+        ("", "fdem/stepping/* fdem_shared/device_run.hpp fdem_shared/busy_couples.hpp fdem_shared/noting_move.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
         ("", "nothing"),
         ("", "fdem/ranks* fdem/relations.hpp fdem_shared/ranks.hpp fdem_shared/migration.hpp fdem_shared/rings.hpp fdem_shared/relations.hpp"),
     ],

@@ -1,6 +1,7 @@
 #include "fdem/stepping/kernel_lanes.hpp"
 
 #include "exec/whole_packs.hpp"
+#include "fdem_shared/noting_move.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -35,21 +36,6 @@ void run_joints([[maybe_unused]] Lanes lanes, const JointForces<Number>& joints,
   for (; begin < end; ++begin) joints(begin);
 }
 
-/// MoveTriangles that notes whether a triangle has used its margin up.
-struct NotingMove {
-  const MoveTriangles& move;
-  bool& beyond;
-  void operator()(Index t) const { beyond = move(t) || beyond; }
-};
-template <class Packs>
-struct NotingPacks {
-  static Index run(const NotingMove& noting, Index begin, Index end) {
-    const MovedTo moved = Packs::run(noting.move, begin, end);
-    noting.beyond = noting.beyond || moved.beyond;
-    return moved.end;
-  }
-};
-
 }  // namespace
 
 void run_packs(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end) {
@@ -72,8 +58,8 @@ void run_packs(Lanes lanes, const CoupleForces<float>& kernel, Index begin, Inde
 }
 bool run_packs(Lanes lanes, const MoveTriangles& kernel, Index begin, Index end) {
   bool beyond = false;
-  run_whole_packs<NotingPacks<PacksAvx512>, NotingPacks<PacksAvx2>>(
-      lanes, NotingMove{kernel, beyond}, begin, end);
+  run_whole_packs<fdem_shared::NotingPacks<PacksAvx512>, fdem_shared::NotingPacks<PacksAvx2>>(
+      lanes, fdem_shared::NotingMove{kernel, beyond}, begin, end);
   return beyond;
 }
 

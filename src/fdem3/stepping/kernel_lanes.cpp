@@ -1,27 +1,9 @@
 #include "fdem3/stepping/kernel_lanes.hpp"
 
 #include "exec/whole_packs.hpp"
+#include "fdem_shared/noting_move.hpp"
 
 namespace breccia::fdem3 {
-namespace {
-
-/// MoveTetrahedra that notes whether a tetrahedron has used its margin up.
-struct NotingMove {
-  const MoveTetrahedra& move;
-  bool& beyond;
-  void operator()(Index t) const { beyond = move(t) || beyond; }
-};
-template <class Packs>
-struct NotingPacks {
-  static Index run(const NotingMove& noting, Index begin, Index end) {
-    const MovedTo moved = Packs::run(noting.move, begin, end);
-    noting.beyond = noting.beyond || moved.beyond;
-    return moved.end;
-  }
-};
-
-}  // namespace
-
 void run_packs([[maybe_unused]] Lanes lanes, const JointForces& kernel, Index begin, Index end) {
 #if defined(BR_WIDE_LANES)
   for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
@@ -43,8 +25,8 @@ void run_packs(Lanes lanes, const ElementForces& kernel, Index begin, Index end)
 }
 bool run_packs(Lanes lanes, const MoveTetrahedra& kernel, Index begin, Index end) {
   bool beyond = false;
-  run_whole_packs<NotingPacks<PacksAvx512>, NotingPacks<PacksAvx2>>(
-      lanes, NotingMove{kernel, beyond}, begin, end);
+  run_whole_packs<fdem_shared::NotingPacks<PacksAvx512>, fdem_shared::NotingPacks<PacksAvx2>>(
+      lanes, fdem_shared::NotingMove{kernel, beyond}, begin, end);
   return beyond;
 }
 

@@ -1,0 +1,25 @@
+#pragma once
+// The move of elements by packs, which tells whether one has used its margin up.
+
+#include "exec/types.hpp"
+
+namespace breccia::fdem_shared {
+
+/// A move that notes whether an element has used its margin up.
+template <class Move>
+struct NotingMove {
+  const Move& move;
+  bool& beyond;
+  void operator()(Index t) const { beyond = move(t) || beyond; }
+};
+template <class Packs>
+struct NotingPacks {
+  template <class Move>
+  static Index run(const NotingMove<Move>& noting, Index begin, Index end) {
+    const auto moved = Packs::run(noting.move, begin, end);
+    noting.beyond = noting.beyond || moved.beyond;
+    return moved.end;
+  }
+};
+
+}  // namespace breccia::fdem_shared
