@@ -37,15 +37,20 @@ grep -q "none.toml" "$scratch/said"
 # Shells take the completions, and offer commands and options.
 offered=$(bash -c "source '$root/share/bash-completion/completions/breccia'
   COMP_WORDS=(breccia ru); COMP_CWORD=1; _breccia; echo \${COMPREPLY[*]}
-  COMP_WORDS=(breccia run --thr); COMP_CWORD=2; _breccia; echo \${COMPREPLY[*]}")
-same "$offered" $'run\n--threads' "what bash offers"
+  COMP_WORDS=(breccia run --thr); COMP_CWORD=2; _breccia; echo \${COMPREPLY[*]}
+  COMP_WORDS=(breccia mesh in); COMP_CWORD=2; _breccia; echo \${COMPREPLY[*]}
+  COMP_WORDS=(breccia mesh info --fr); COMP_CWORD=3; _breccia; echo \${COMPREPLY[*]}")
+same "$offered" $'run\n--threads\ninfo\n--frame' "what bash offers"
 if command -v zsh > /dev/null; then zsh -n "$root/share/zsh/vendor-completions/_breccia"; fi
 if command -v fish > /dev/null; then
   offered=$(HOME=$scratch fish -c "source '$root/share/fish/vendor_completions.d/breccia.fish'; complete -C 'breccia run --thr'" | cut -f1)
   same "$offered" --threads "what fish offers"
+  offered=$(HOME=$scratch fish -c "source '$root/share/fish/vendor_completions.d/breccia.fish'; complete -C 'breccia mesh in'; complete -C 'breccia mesh info --fr'" | cut -f1)
+  same "$offered" $'info\n--frame' "what fish offers after mesh"
 fi
 if command -v man > /dev/null; then
   said=$(MANROFFSEQ='' man --warnings -E UTF-8 -l "$root/share/man/man1/breccia.1" 2>&1 > /dev/null)
   same "$said" "" "what man says of the page"
 fi
+grep -q '^.SS "breccia mesh info"' "$root/share/man/man1/breccia.1"
 echo "installed, found, run"

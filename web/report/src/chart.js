@@ -2,6 +2,7 @@
 // runs have rows at different times.
 
 import uPlot from "uplot";
+import {svgOf} from "./chart_svg.js";
 import {logMarks, make, round, save, scaledUnit} from "./format.js";
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -61,6 +62,8 @@ export class Chart {
     left.label = this.yScale.unit ? `[${this.yScale.unit}]` : "";
     left.labelSize = this.yScale.unit ? 16 : 0;
     left.size = 46;
+    const below = axis(x.label, this.xScale, logX);
+    this.labels = [below.label, left.label];
     this.plot = new uPlot({
       width: Math.max(host.clientWidth, 120), height,
       legend: {show: false}, padding: [8, 12, 0, 0],
@@ -70,14 +73,15 @@ export class Chart {
         y: {distr: logY ? 3 : 1, range: () => logY ? [0.8 * yLow, 1.3 * yHigh] : [Math.min(yLow - (yLow < 0 ? room : 0), 0 < yLow && yLow < 0.4 * yHigh ? 0 : yLow), yHigh + room]},
       },
       series: [{}, {show: true, stroke: "transparent", paths: () => null, points: {show: false}}],
-      axes: [axis(x.label, this.xScale, logX), left],
+      axes: [below, left],
       hooks: {draw: [(u) => this.draw(u)]},
     }, [[xLow, xHigh], [yLow, yHigh]], host);
     this.plot.over.classList.add("drag");
     this.listen();
     this.exports = make("div", {class: "export"},
       make("button", {type: "button", title: "save these numbers", onclick: () => save(new Blob([this.csv(x, yUnit)], {type: "text/csv"}), "curve.csv")}, "csv"),
-      make("button", {type: "button", title: "save this picture", onclick: () => this.plot.ctx.canvas.toBlob((blob) => save(blob, "curve.png"))}, "png"));
+      make("button", {type: "button", title: "save this picture", onclick: () => this.plot.ctx.canvas.toBlob((blob) => save(blob, "curve.png"))}, "png"),
+      make("button", {type: "button", title: "save this picture as lines", onclick: () => save(new Blob([svgOf(this, style)], {type: "image/svg+xml"}), "curve.svg")}, "svg"));
     host.append(this.exports);
     this.observer = new ResizeObserver(() => {
       const width = host.clientWidth;
@@ -137,8 +141,9 @@ export class Chart {
     return best;
   }
 
-  draw(u) {
-    const {ctx} = u, ratio = window.devicePixelRatio || 1;
+  /** On the canvas, or on what takes its calls. */
+  draw(u, ctx = u.ctx) {
+    const ratio = window.devicePixelRatio || 1;
     const X = (v) => u.valToPos(v, "x", true), Y = (v) => u.valToPos(v, "y", true);
     ctx.save();
     ctx.beginPath();

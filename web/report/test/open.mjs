@@ -6,7 +6,7 @@
 // nothing, or if its view does not follow a drag along a curve.
 
 import {chromium} from "playwright-core";
-import {readFileSync} from "node:fs";
+import {readFileSync, writeFileSync} from "node:fs";
 import {basename, resolve} from "node:path";
 
 const [folder, ...reports] = process.argv.slice(2);
@@ -92,13 +92,18 @@ async function open(report, [name, width, height, colorScheme]) {
     await page.waitForTimeout(500);
     expect((await drawn(page, 0)) > 0.005 && before > 0.005, "a cut leaves something to see");
   }
-  for (const [name, ending] of [["save case.toml", ".toml"], ["csv", ".csv"], ["png", ".png"], ["save picture", ".png"]]) {
+  for (const [name, ending] of [["save case.toml", ".toml"], ["csv", ".csv"], ["png", ".png"], ["svg", ".svg"], ["save picture", ".png"]]) {
     const button = page.getByRole("button", {name, exact: true}).first();
     if ((await button.count()) === 0) continue;
     await button.scrollIntoViewIfNeeded();
     await button.hover();
     const [saved] = await Promise.all([page.waitForEvent("download", {timeout: 20_000}).catch(() => null), button.click()]);
     expect(saved?.suggestedFilename().endsWith(ending), `"${name}" saves a file`);
+    if (saved && name === "svg") {
+      const text = readFileSync(await saved.path(), "utf8");
+      expect(text.startsWith("<svg") && /<path d="M[^"]*L/.test(text) && /<text[^>]*>[^<]*\[/.test(text) && !/NaN|undefined/.test(text), "a curve's SVG holds its line and its axes");
+      writeFileSync(`${folder}/${basename(report, ".html")}-${width}.svg`, text);
+    }
     if (saved && name === "save case.toml") expect(/method = "/.test(readFileSync(await saved.path(), "utf8")), "the case that is saved is one");
   }
   for (const value of await page.getByLabel("colour", {exact: false}).first().locator("option").evaluateAll((all) => all.map((o) => o.value)))
