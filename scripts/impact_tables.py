@@ -5,6 +5,7 @@
     scripts/impact_tables.py hard [--seeds 5] [--speeds 20,30,45,60] [--concrete NAME,...] [--bars yes,no]
     scripts/impact_tables.py print ball|hard
     scripts/impact_tables.py record         all finished rows into docs/results/impact.csv
+    scripts/impact_tables.py plot           the plot of cases/rc_slab from that file; needs python3-matplotlib
 
 "ball" is the case as it is: the ball of concrete. "hard" replaces it by one rigid sphere of its mass and size
 and writes the formulas beside it. Each row is a `breccia sweep` over seeds in out/impact/, and is kept: called again,
@@ -246,12 +247,31 @@ def table_of_hard(records):
     return "\n".join(lines)
 
 
+def plot(record, picture):
+    """Mean and deviation of the ball's velocity, of its largest force and of broken links over speed, with bars and without."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    with open(record, newline="") as file:
+        rows = [row for row in rows_of(csv.DictReader(file), "ball") if row[0][0] == "case"]
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3.4))
+    for a, (quantity, words) in zip(axes, (("velocity", "ball after 8 ms, m/s"), ("force", "largest force, kN"), ("broken", "broken links"))):
+        for bars, color in ((True, "tab:blue"), (False, "tab:red")):
+            of = [(key[2], found[quantity]) for key, found in rows if key[1] == bars]
+            a.errorbar([v for v, _ in of], [statistics.mean(x) for _, x in of], [statistics.stdev(x) for _, x in of],
+                       marker="o", ms=4, capsize=3, color=color, label="with bars" if bars else "without")
+        a.set(xlabel="speed of the ball, m/s", ylabel=words)
+        a.legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(picture, dpi=100)
+
+
 TABLES = {"ball": table_of_ball, "hard": table_of_hard}
 
 
 def main():
     p = argparse.ArgumentParser()
-    p.add_argument("what", choices=["ball", "hard", "print", "record"])
+    p.add_argument("what", choices=["ball", "hard", "print", "record", "plot"])
     p.add_argument("table", nargs="?", choices=["ball", "hard"])
     p.add_argument("--seeds", type=int)
     p.add_argument("--speeds", help="m/s; default: 30 for the ball, 20,30,45,60 for the hard missile")
@@ -261,10 +281,13 @@ def main():
     p.add_argument("--jobs", type=int, default=2)
     p.add_argument("--binary", default=ROOT / "build/release/breccia")
     p.add_argument("--device", default="cpu")
-    p.add_argument("--record", default=ROOT / "docs/results/impact.csv", help="of record: the file")
+    p.add_argument("--record", default=ROOT / "docs/results/impact.csv", help="of record and plot: the file")
     given = p.parse_args()
     if given.what == "print":
         print(TABLES[given.table](collected()))
+        return
+    if given.what == "plot":
+        plot(given.record, ROOT / "cases/rc_slab/sweep.png")
         return
     if given.what == "record":
         with open(given.record, "w", newline="") as file:
