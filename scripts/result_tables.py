@@ -18,6 +18,7 @@ import tomllib
 import impact_tables
 import ldpm_tables
 import localisation
+import published_tests
 import reinforced_tests
 import rock_tables
 import speed_tables
@@ -139,6 +140,7 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": libra
           "reinforced": lambda _: reinforced_tests.markdown(lines_of("reinforced")),
           "speed": lambda table: speed_tables.TABLES[table](),
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),
+          "published": lambda test: published_tests.markdown(lines_of("published"), test),
           "localisation": lambda _: localisation.markdown(lines_of("localisation"))}
 
 

@@ -1,0 +1,341 @@
+#!/usr/bin/env python3
+"""Published impact tests on concrete, computed blind, for docs/validation-impact.md.
+
+    scripts/published_tests.py [--seeds 3] [--binary build/release/breccia] [--jobs 1] [--record docs/results/published.csv] [NAME...]
+    scripts/published_tests.py --plots docs         from finished runs; needs python3-matplotlib
+    NAME: spall punching perforation
+
+Concretes are those of `breccia materials`, calibrated on slow tests of prisms alone. Cases and results are in out/published/; called
+again, only what is missing is run.
+
+spall        a cylinder of 40 x 120 mm at the end of a Hopkinson bar (Klepaczko and Brara 2001): a triangular pulse of 24 us
+punching     a slab of 2.1 x 2.1 x 0.25 m under a hard missile of 47.4 kg, 168 mm, at 135 m/s (VTT, IRIS 2010, tests P1 to P3)
+perforation  a slab of 0.61 x 0.61 x 0.178 m under an ogive of 0.5 kg, 25.4 mm, at 301 to 1,058 m/s (Hanchak et al. 1992)
+"""
+import argparse
+import concurrent.futures
+import csv
+import json
+import math
+import pathlib
+import statistics
+import subprocess
+
+import impact_formulas
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+OUT = ROOT / "out" / "published"
+
+HEAD = """breccia = 1
+method = "dem3d"
+title = "{title}"
+seed = {seed}
+
+[time]
+end = "{end}"
+safety = {safety}
+
+[output]
+frames = 2
+history = "{history}"
+color = "damage"
+view = "y"
+
+[energy]
+stop = 0.1
+
+[search]
+margin = 0.5
+
+[links]
+range = 1.443
+
+[material.concrete]
+use = "{concrete}"
+{keys}
+"""
+BARS = """
+[material.bars]
+use = "B500B"
+
+[material.bond]
+law = "interface"
+bond = "mc90"
+bond_strength = "13.7 MPa"
+bond_residual = "5.5 MPa"
+slip1 = "1 mm"
+slip2 = "3 mm"
+slip3 = "8 mm"
+tensile_strength = "2.2 MPa"
+softening = 10.0
+
+[[body]]
+name = "steel"
+shape = "rebar"
+material = "bars"
+rebar = {{ in = "target", interface = "bond", {mats} }}
+"""
+
+
+def probe(name, on, quantity, reduce="mean", low=None, high=None):
+    box = f"min = {low}\nmax = {high}\n" if low else ""
+    return f'\n[[probe]]\nname = "{name}"\non = "{on}"\nquantity = "{quantity}"\nreduce = "{reduce}"\n{box}'
+
+
+# ---------------------------------------------------------------- spalling
+
+RADIUS, LENGTH, SLICE, RISE = 0.02, 0.12, 0.01, 12e-6  # m, m, m, s
+STATIC = 3.48e6  # Pa, direct tension of C40 on packings it was not calibrated on: docs/laboratory.md
+STRENGTH = 42e6  # Pa, f_c of the micro-concrete that was tested
+
+
+def spall(seed, setting):
+    keys = f'rate = "{setting["rate"]}"\nrate_strength = "{STRENGTH / 1e6:g} MPa"\n'
+    text = HEAD.format(title="Spalling at the end of a Hopkinson bar", seed=seed, end="75 us", safety=0.4, history="0.25 us", concrete="C40", keys=keys)
+    text += (f'\n[[body]]\nname = "bar"\nshape = "cylinder"\nmaterial = "concrete"\ncenter = [0.0, 0.0, {LENGTH / 2}]\nradius = {RADIUS}\n'
+             f'length = {LENGTH}\npack = {{ count = {setting["elements"]}, size_ratio = 2.0, compactness = 0.56 }}\n'
+             '\n[[wall]]\nname = "pulse"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\n'
+             f'velocity = [[0, 0, 0, 0], [{RISE}, 0, 0, {setting["v"]}], [{2 * RISE}, 0, 0, 0], [1, 0, 0, 0]]\n')
+    for k in range(round(LENGTH / SLICE)):
+        box = ([-1.0, -1.0, k * SLICE if k else -1.0], [1.0, 1.0, (k + 1) * SLICE if (k + 1) * SLICE < LENGTH - 1e-9 else 1.0])
+        text += probe(f"p{k}", "bar", "momentum_z", "sum", *box) + probe(f"v{k}", "bar", "velocity_z", "mean", *box)
+    return text + probe("end", "bar", "velocity_z", "mean", [-1.0, -1.0, LENGTH - 0.004], [1.0, 1.0, 1.0])
+
+
+def smooth(values, width):
+    return [statistics.mean(values[max(0, k - width):k + width + 1]) for k in range(len(values))]
+
+
+def spalled(rows):
+    """Largest tension on planes 10 mm apart, by the momentum of what lies beyond; the mean strain rate there while tension grew."""
+    n, area = round(LENGTH / SLICE), math.pi * RADIUS**2
+    time = [r["time"] for r in rows]
+    best = None
+    for k in range(2, n - 1):  # the plane between slices k - 1 and k
+        beyond = smooth([sum(r[f"p{i}"] for i in range(k, n)) for r in rows], 2)
+        tension = [0.0] + [-(beyond[j + 1] - beyond[j - 1]) / (time[j + 1] - time[j - 1]) / area for j in range(1, len(rows) - 1)]
+        peak = max(range(len(tension)), key=tension.__getitem__)
+        start = max((j for j in range(peak) if tension[j] <= 0.0), default=0)
+        opened = sum((rows[j][f"v{k}"] - rows[j][f"v{k - 1}"]) / SLICE * (time[j] - time[j - 1]) for j in range(start + 1, peak + 1))
+        if best is None or tension[peak] > best["strength"]:
+            best = {"strength": tension[peak], "rate": opened / max(1e-12, time[peak] - time[start]), "place": LENGTH - k * SLICE,
+                    "piece": statistics.mean(rows[-1][f"v{i}"] for i in range(k, n))}
+    end = smooth([r["end"] for r in rows], 2)
+    top = max(range(len(end)), key=end.__getitem__)
+    low = next((j for j in range(top + 8, len(end) - 8) if end[j] <= min(end[j - 8:j + 9])), len(end) - 1)
+    best["novikov"] = 0.5 * 2400.0 * math.sqrt(36.3e9 / 2400.0) * (end[top] - end[low])
+    return best
+
+
+def malvar_ross(rate, strength=STRENGTH):
+    delta = 1 / (1 + 8 * strength / 10e6)
+    return (rate / 1e-6) ** delta if rate <= 1 else 10 ** (6 * delta - 2) * (rate / 1e-6) ** (1 / 3)
+
+
+def spall_table(records):
+    lines = ["| rate law | pulse, m/s | n | strain rate, 1/s | strength, MPa | by the pull-back, MPa | over f_t | Malvar and Ross | misfit | place from the end, mm | piece, m/s |",
+             "|---" * 11 + "|"]
+    for setting, found in grouped(records):
+        rate, strength = statistics.mean(found["rate"]), statistics.mean(found["strength"]) / STATIC
+        lines.append(f"| {setting['rate']} | {setting['v']:g} | {len(found['rate'])} | {spread(found['rate'], 0)} | {spread(found['strength'], 1, 1e-6)} | "
+                     f"{spread(found['novikov'], 1, 1e-6)} | {strength:.1f} | {malvar_ross(rate):.1f} | {100 * (strength / malvar_ross(rate) - 1):+.0f} % | "
+                     f"{spread(found['place'], 0, 1e3)} | {spread(found['piece'], 1)} |")
+    return lines
+
+
+# ---------------------------------------------------------------- hard missiles
+
+def missile(mass, radius, top, nose, length, speed, friction=None):
+    nose += "" if friction is None else f"friction = {friction}\n"
+    return (f'\n[[wall]]\nname = "missile"\nshape = "cylinder"\npoint = [0.0, 0.0, {top}]\nnormal = [0.0, 0.0, -1.0]\nradius = {radius}\n'
+            f'length = {length}\n{nose}mass = {mass}\nvelocity = [0.0, 0.0, {-speed}]\n'
+            + probe("speed", "missile", "velocity_z") + probe("force", "missile", "force_z") + probe("tip", "missile", "position_z"))
+
+
+def slab(size, thickness, elements):
+    return (f'\n[[body]]\nname = "target"\nshape = "box"\nmaterial = "concrete"\nsize = [{size}, {size}, {thickness}]\n'
+            f'pack = {{ count = {elements}, size_ratio = 2.0, compactness = 0.56 }}\n')
+
+
+def rim(size, width, fix):
+    inner = size / 2 - width
+    sides = {"west": ((-9, -9), (-inner, 9)), "east": ((inner, -9), (9, 9)), "south": ((-inner, -9), (inner, -inner)), "north": ((-inner, inner), (inner, 9))}
+    return "".join(f'\n[[support]]\nname = "{name}"\non = "target"\nmin = [{low[0]}, {low[1]}, -1.0]\nmax = [{high[0]}, {high[1]}, 1.0]\nfix = {fix}\n'
+                   for name, (low, high) in sides.items())
+
+
+def punching(seed, setting):
+    text = HEAD.format(title="A hard missile through a slab (VTT P1 to P3)", seed=seed, end="14 ms", safety=0.7, history="50 us", concrete="C60", keys="")
+    return (text + BARS.format(mats='diameter = "10 mm", cover = "25 mm", layers = 2, bars = 23, elements = 56') + slab(2.1, 0.25, setting["elements"])
+            + rim(2.1, 0.05, '["z"]') + missile(47.4, 0.084, 0.1255, "", 0.64, 135.0))
+
+
+def perforation(seed, setting):
+    text = HEAD.format(title="An ogive through a slab (Hanchak et al. 1992)", seed=seed, end=f"{0.9 / setting['v'] * 1e3:.3f} ms", safety=0.7, history="5 us", concrete="C40", keys="")
+    nose = f'nose = "ogive"\nnose_length = {0.0127 * math.sqrt(11):.6g}\n'  # caliber radius head 3
+    return (text + slab(0.61, 0.178, setting["elements"]) + rim(0.61, 0.02, '["all"]')
+            + missile(0.5, 0.0127, 0.0895, nose, 0.1437, setting["v"], setting.get("friction")))
+
+
+def flown(rows):
+    speed, last = [-r["speed"] for r in rows], rows[-1]["time"]
+    before = next(-r["speed"] for r in rows if r["time"] >= 0.9 * last)
+    return {"residual": speed[-1], "slowing": (before - speed[-1]) / (0.1 * last * 1e3), "force": max(abs(r["force"]) for r in rows),
+            "way": -rows[-1]["tip"]}
+
+
+HANCHAK = {301: 0, 360: 67, 381: 136, 434: 214, 606: 449, 746: 605, 749: 615, 1058: 947}  # m/s: struck, left
+VTT = (33.8, 45.3, 35.8)  # m/s left, P1 to P3
+
+
+def punching_table(records):
+    limit = impact_formulas.cea_edf(0.168, 0.25, 47.4, 60e6, 2400, 0.349)
+    lines = ["| elements | n | left, m/s | slowing at the end, m/s each ms | largest force, MN | measured | misfit | misfit of the energy taken | CEA-EDF with bars leaves |", "|---" * 9 + "|"]
+    for setting, found in grouped(records):
+        here, there = statistics.mean(found["residual"]), statistics.mean(VTT)
+        lines.append(f"| {setting['elements']:,} | {len(found['residual'])} | {spread(found['residual'], 1)} | {spread(found['slowing'], 1)} | {spread(found['force'], 1, 1e-6)} | "
+                     f"{', '.join(map(str, VTT))} m/s (mean {there:.1f}) | {here - there:+.1f} m/s | {100 * ((135**2 - here**2) / (135**2 - there**2) - 1):+.0f} % | "
+                     f"{math.sqrt(135**2 - limit**2):.0f} m/s |")
+    return lines
+
+
+def perforation_table(records):
+    lines = ["| elements | friction of the missile | struck at, m/s | n | left, m/s | largest force, kN | measured, m/s | misfit | misfit of the energy taken |", "|---" * 9 + "|"]
+    for setting, found in grouped(records):
+        here, there, v = statistics.mean(found["residual"]), HANCHAK[setting["v"]], setting["v"]
+        lines.append(f"| {setting['elements']:,} | {setting.get('friction', 0.577)} | {v} | {len(found['residual'])} | {spread(found['residual'], 0)} | {spread(found['force'], 0, 1e-3)} | {there} | "
+                     f"{here - there:+.0f} m/s | {100 * ((v**2 - max(0, here)**2) / (v**2 - there**2) - 1):+.0f} % |")
+    return lines
+
+
+# ---------------------------------------------------------------- runs, records, tables
+
+TESTS = {  # name: settings, case, what a history shows, table
+    "spall": ([{"rate": rate, "v": v, "elements": 2500} for rate in ("none", "mc2010", "malvar_ross") for v in (1.5, 3.0, 5.0)], spall, spalled, spall_table),
+    "punching": ([{"elements": n} for n in (18000, 36000)], punching, flown, punching_table),
+    "perforation": ([{"elements": 60000, "v": v, **more} for more in ({"friction": 0.1}, {}) for v in HANCHAK if v not in (381, 746)], perforation, flown, perforation_table),
+}
+RECORD = ["test", "setting", "seed", "commit", "device", "hash", "seconds", "quantity", "value"]
+
+
+def name_of(test, setting, seed):
+    return "-".join([test, *(str(v) for v in setting.values()), str(seed)])
+
+
+def runs_of(test, setting):
+    """Folders of the finished runs of a setting."""
+    found = [OUT / name_of(test, setting, seed) for seed in range(1, 100)]
+    return [folder for folder in found if (folder / "summary.json").exists()]
+
+
+def rows_of(folder):
+    with open(folder / "history.csv", newline="") as file:
+        return [{k: float(v) for k, v in row.items() if k != "stage"} for row in list(csv.DictReader(file))[1:]]
+
+
+def spread(values, digits, unit=1.0):
+    values = [unit * v for v in values]
+    return f"{statistics.mean(values):,.{digits}f}" + (f" +- {statistics.stdev(values):,.{digits}f}" if len(values) > 1 else "")
+
+
+def grouped(records):
+    """[(setting, {quantity: values})] in the order of the file."""
+    found = {}
+    for one in records:
+        found.setdefault(one["setting"], {}).setdefault(one["quantity"], []).append(float(one["value"]))
+    return [(json.loads(setting), values) for setting, values in found.items()]
+
+
+def markdown(records, test):
+    of = [one for one in records if one["test"] == test]
+    if not of:
+        return ""
+    cost = {(one["setting"], one["seed"]): float(one["seconds"]) for one in of}
+    return "\n".join([*TESTS[test][3](of), "", f"{len(cost)} runs, {sum(cost.values()):.0f} s of one core in all, {max(cost.values()):.0f} s the longest."])
+
+
+def run(test, setting, seed, binary):
+    name, made = name_of(test, setting, seed), TESTS[test][1](seed, setting)
+    case, folder = OUT / f"{name}.toml", OUT / name
+    if (folder / "summary.json").exists() and case.exists() and case.read_text() == made:
+        return
+    case.write_text(made)
+    done = subprocess.run([binary, "run", case, "-o", folder, "--threads", "1", "--force", "--no-progress"], stdout=subprocess.DEVNULL)
+    print(name, "exit code", done.returncode, flush=True)
+
+
+def collected():
+    for test, (settings, _, measured, _) in TESTS.items():
+        for setting in settings:
+            for folder in runs_of(test, setting):
+                summary = json.loads((folder / "summary.json").read_text())
+                of = {"test": test, "setting": json.dumps(setting), "seed": folder.name.rsplit("-", 1)[1], "commit": summary["breccia"]["commit"],
+                      "device": summary["machine"]["device"], "hash": summary["state_hash"], "seconds": f"{sum(summary['stages_s'].values()):.4g}"}
+                for quantity, value in measured(rows_of(folder)).items():
+                    yield {**of, "quantity": quantity, "value": f"{value:.9g}"}
+
+
+def plots(folder):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    records = list(collected())
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6))
+    for rate, color in (("none", "0.4"), ("mc2010", "tab:blue"), ("malvar_ross", "tab:red")):
+        setting = {"rate": rate, "v": 3.0, "elements": 2500}
+        for k, folder_of in enumerate(runs_of("spall", setting)):
+            rows = rows_of(folder_of)
+            left.plot([1e6 * r["time"] for r in rows], [r["end"] for r in rows], color=color, lw=0.8, label=rate if not k else None)
+        found = [values for setting, values in grouped([one for one in records if one["test"] == "spall"]) if setting["rate"] == rate]
+        right.plot([x for f in found for x in f["rate"]], [s / STATIC for f in found for s in f["strength"]], "o", ms=4, color=color, label=rate)
+    rates = [1, 3, 10, 30, 100, 160]
+    right.plot(rates, [malvar_ross(x) for x in rates], "k--", lw=1, label="Malvar and Ross, f_c 42 MPa")
+    right.set(xscale="log", xlabel="strain rate, 1/s", ylabel="strength / f_t")
+    left.set(xlabel="time, us", ylabel="velocity of the free end, m/s")
+    figure.tight_layout(), [a.legend(fontsize=8) for a in (left, right)], figure.savefig(folder / "published_spall.png", dpi=110)
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6))
+    for elements, color in ((18000, "0.5"), (36000, "tab:blue")):
+        for k, folder_of in enumerate(runs_of("punching", {"elements": elements})):
+            rows = rows_of(folder_of)
+            left.plot([1e3 * r["time"] for r in rows], [-r["speed"] for r in rows], color=color, lw=1, label=f"{elements:,} elements" if not k else None)
+    for v in VTT:
+        left.axhline(v, color="k", lw=1, ls="--", label="measured" if v == VTT[0] else None)
+    left.set(xlabel="time, ms", ylabel="velocity of the missile, m/s", title="VTT P1 to P3")
+    right.plot(list(HANCHAK), list(HANCHAK.values()), "kx-", lw=1, label="measured (Hanchak)")
+    for setting, found in grouped([one for one in records if one["test"] == "perforation"]):
+        mu = setting.get("friction", 0.577)
+        right.plot([setting["v"]] * len(found["residual"]), found["residual"], "o" if mu < 0.5 else "s", ms=4, color="tab:blue" if mu < 0.5 else "0.6",
+                   label=f"here, friction {mu}" if setting["v"] == 301 else None)
+    right.set(xlabel="struck at, m/s", ylabel="left, m/s", title="Hanchak")
+    figure.tight_layout(), [a.legend(fontsize=8) for a in (left, right)], figure.savefig(folder / "published_missiles.png", dpi=110)
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("names", nargs="*", default=list(TESTS))
+    p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
+    p.add_argument("--seeds", type=int, default=3)
+    p.add_argument("--jobs", type=int, default=1)
+    p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all finished runs, as docs/results/published.csv")
+    p.add_argument("--plots", type=pathlib.Path, metavar="DIR", help="draw what finished runs show; nothing is run")
+    given = p.parse_args()
+    OUT.mkdir(parents=True, exist_ok=True)
+    if given.plots:
+        plots(given.plots)
+        return
+    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+        for one in [pool.submit(run, n, s, seed, given.binary) for seed in range(1, given.seeds + 1) for n in given.names for s in TESTS[n][0]]:
+            one.result()
+    records = list(collected())
+    for test in TESTS:
+        print(markdown(records, test) + "\n")
+    if given.record:
+        with open(given.record, "w", newline="") as file:
+            writer = csv.DictWriter(file, RECORD, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(records)
+
+
+if __name__ == "__main__":
+    main()
