@@ -131,9 +131,24 @@ def bending(lines):
     return "\n".join(out)
 
 
+def public(lines, name):
+    """Runs of public bodies (ldpm_benchmarks.py) whose names begin alike: largest stress, and stress at strains."""
+    found = {}
+    for row in lines:
+        if row["test"] == "public" and row["set"].startswith(name):
+            found.setdefault(row["set"], {})[row["quantity"]] = float(row["value"])
+    strains = sorted({float(key[7:]) for of in found.values() for key in of if key.startswith("stress_")})
+    out = ["| run | peak [MPa] | at [1e-3] | side then [MPa] | " + " | ".join(f"at {strain:g}e-3" for strain in strains) + " |", "|---" * (len(strains) + 4) + "|"]
+    for run, of in found.items():
+        cells = [f"{of[f'stress_{strain:g}']:.1f}" if f"stress_{strain:g}" in of else "" for strain in strains]
+        side = f"{of['side_stress']:.1f}" if "side_stress" in of else ""
+        out.append(f"| `{run}` | {of['peak']:.1f} | {of['peak_strain']:.2f} | {side} | " + " | ".join(cells) + " |")
+    return "\n".join(out)
+
+
 def markdown(lines, what):
     kind, _, name = what.partition(" ")
-    return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "size": lambda: size_effect(lines), "experiments": lambda: experiments(lines, name)}[kind]()
+    return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "size": lambda: size_effect(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
 
 
 def main():
