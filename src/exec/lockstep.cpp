@@ -11,14 +11,16 @@
 #if __has_feature(address_sanitizer)
 #define BR_TELLS_STACKS
 #endif
+#if __has_feature(thread_sanitizer)
+#define BR_TELLS_THREADS
+#endif
 #elif defined(__SANITIZE_ADDRESS__)
 #define BR_TELLS_STACKS
+#elif defined(__SANITIZE_THREAD__)
+#define BR_TELLS_THREADS
 #endif
 #if defined(BR_TELLS_STACKS)
 #include <sanitizer/common_interface_defs.h>
-#endif
-#if defined(__SANITIZE_THREAD__)
-#include <sanitizer/tsan_interface.h>
 #endif
 
 // A jump to another stack is what _FORTIFY_SOURCE takes for a fault: CMakeLists.txt switches that
@@ -28,23 +30,27 @@ namespace {
 
 constexpr std::size_t stack_bytes = 64 * 1024;
 
-/// Tells sanitizers of a stack before a jump leads there.
+/// A stack, and the place on it to go on from. Of longjmp ThreadSanitizer expects that it stays on
+/// its stack; swapcontext, which asks the kernel each time, it passes over: lanes are one thread.
 struct Stack {
+#if defined(BR_TELLS_THREADS)
+  ucontext_t place;
+#else
+  jmp_buf place;
+  ucontext_t first;  ///< where it begins
+#endif
+  bool begun = true;
   const void* bottom = nullptr;
   std::size_t size = 0;
   void* frames = nullptr;  ///< of AddressSanitizer's own making
-#if defined(__SANITIZE_THREAD__)
-  void* fiber = nullptr;  ///< ThreadSanitizer's record of it
-#endif
 };
 
-/// One lane: where it stands, on its own stack, which it keeps from one run to the next.
+/// One lane, on its own stack, which it keeps from one run to the next.
 struct Lane {
-  jmp_buf place;
-  bool started = false, ended = false;
+  bool ended = false;
   int exchanges = 0;
-  std::unique_ptr<char[]> stack;
-  Stack told;
+  std::unique_ptr<char[]> memory;
+  Stack stack;
 };
 
 /// The lanes of one thread of the processor.
@@ -52,10 +58,7 @@ struct Lanes {
   std::array<Lane, most_lanes> all;
   /// Two sets of numbers: a lane may be one exchange ahead of the others.
   std::array<std::array<double, most_lanes>, 2> numbers{};
-  jmp_buf caller;
-  Stack caller_told;
-  Stack* on = nullptr;  ///< the stack that is in use
-  ucontext_t begun;
+  Stack caller;
   int count = 0, current = 0;
   void (*work)(void*, int) = nullptr;
   void* context = nullptr;
@@ -64,77 +67,71 @@ struct Lanes {
 };
 thread_local std::unique_ptr<Lanes> lanes_here;
 
-void live();
-
-/// Just before a jump. ThreadSanitizer counts calls and returns on each stack: none may lie
-/// between.
-[[gnu::always_inline]] inline void leave_for([[maybe_unused]] Lanes& lanes,
-                                             [[maybe_unused]] Stack& next) {
+/// The first words on a stack after a jump.
+void arrive([[maybe_unused]] Stack& here) {
 #if defined(BR_TELLS_STACKS)
-  Stack& now = *lanes.on;
-  lanes.on = &next;
-  __sanitizer_start_switch_fiber(&now.frames, next.bottom, next.size);
-#endif
-#if defined(__SANITIZE_THREAD__)
-  __tsan_switch_to_fiber(next.fiber, 0);
-#endif
-}
-/// Just after it.
-void arrive([[maybe_unused]] Lanes& lanes) {
-#if defined(BR_TELLS_STACKS)
-  Stack from;
-  __sanitizer_finish_switch_fiber(lanes.on->frames, &from.bottom, &from.size);
-  if (lanes.caller_told.bottom == nullptr) {  // the first jump comes from there
-    lanes.caller_told.bottom = from.bottom;
-    lanes.caller_told.size = from.size;
+  const void* bottom = nullptr;
+  std::size_t size = 0;
+  __sanitizer_finish_switch_fiber(here.frames, &bottom, &size);
+  Stack& caller = lanes_here->caller;
+  if (caller.bottom == nullptr) {  // the first jump comes from there
+    caller.bottom = bottom;
+    caller.size = size;
   }
 #endif
 }
 
-/// Goes on with a lane where it stands, or begins it. Does not return.
-[[noreturn]] void go_on(Lanes& lanes, int number) {
-  Lane& lane = lanes[number];
-  lanes.current = number;
-  if (lane.started) {
-    leave_for(lanes, lane.told);
-    _longjmp(lane.place, 1);
-  }
-  lane.started = true;
-  lane.stack = std::make_unique<char[]>(stack_bytes);
-  lane.told.bottom = lane.stack.get();
-  lane.told.size = stack_bytes;
-#if defined(__SANITIZE_THREAD__)
-  lane.told.fiber = __tsan_create_fiber(0);
+/// Leaves a stack for another, and returns when a jump leads back.
+void jump(Stack& from, Stack& to) {
+#if defined(BR_TELLS_STACKS)
+  __sanitizer_start_switch_fiber(&from.frames, to.bottom, to.size);
 #endif
-  getcontext(&lanes.begun);
-  lanes.begun.uc_stack.ss_sp = lane.stack.get();
-  lanes.begun.uc_stack.ss_size = stack_bytes;
-  lanes.begun.uc_link = nullptr;
-  makecontext(&lanes.begun, live, 0);
-  leave_for(lanes, lane.told);
-  setcontext(&lanes.begun);
-  std::abort();  // setcontext has failed
+#if defined(BR_TELLS_THREADS)
+  swapcontext(&from.place, &to.place);
+#else
+  if (_setjmp(from.place) == 0) {
+    if (to.begun) _longjmp(to.place, 1);
+    to.begun = true;
+    setcontext(&to.first);
+    std::abort();  // setcontext has failed
+  }
+#endif
+  arrive(from);
 }
 
-/// A lane's work is done: another one goes on, or the caller if all have ended.
-[[noreturn]] void leave(Lanes& lanes) {
-  for (int next = 0; next < lanes.count; ++next)
-    if (!lanes[next].ended) go_on(lanes, next);
-  leave_for(lanes, lanes.caller_told);
-  _longjmp(lanes.caller, 1);
-}
-
-/// The life of a lane: one work after the other.
+/// The life of a lane: one work after the other. Then another lane goes on, or the caller if all
+/// have ended.
 void live() {
-  arrive(*lanes_here);
+  arrive((*lanes_here)[lanes_here->current].stack);
   for (;;) {
     Lanes& lanes = *lanes_here;
     lanes.work(lanes.context, lanes.current);
     Lane& lane = lanes[lanes.current];
     lane.ended = true;
-    if (_setjmp(lane.place) == 0) leave(lanes);
-    arrive(*lanes_here);
+    int next = 0;
+    while (next < lanes.count && lanes[next].ended) ++next;
+    lanes.current = next < lanes.count ? next : 0;
+    jump(lane.stack, next < lanes.count ? lanes[next].stack : lanes.caller);
   }
+}
+
+/// Makes the stack of a lane.
+void make(Lane& lane) {
+  lane.memory = std::make_unique<char[]>(stack_bytes);
+  Stack& stack = lane.stack;
+  stack.bottom = lane.memory.get();
+  stack.size = stack_bytes;
+  stack.begun = false;
+#if defined(BR_TELLS_THREADS)
+  ucontext_t& first = stack.place;
+#else
+  ucontext_t& first = stack.first;
+#endif
+  getcontext(&first);
+  first.uc_stack.ss_sp = lane.memory.get();
+  first.uc_stack.ss_size = stack_bytes;
+  first.uc_link = nullptr;
+  makecontext(&first, live, 0);
 }
 
 }  // namespace
@@ -145,18 +142,15 @@ void run(int lanes, void (*work)(void*, int), void* context) {
   here.count = lanes;
   here.work = work;
   here.context = context;
-  for (Lane& lane : here.all) {
+  here.current = 0;
+  for (int k = 0; k < lanes; ++k) {
+    Lane& lane = here[k];
+    if (!lane.memory) make(lane);
     lane.ended = false;
     lane.exchanges = 0;
   }
-  here.on = &here.caller_told;
-  here.caller_told = {};
-#if defined(__SANITIZE_THREAD__)
-  here.caller_told.fiber = __tsan_get_current_fiber();
-#endif
-  if (_setjmp(here.caller) == 0) go_on(here, 0);
-  arrive(*lanes_here);
-  lanes_here->current = 0;
+  here.caller.bottom = nullptr;
+  jump(here.caller, here[0].stack);
 }
 
 int lane() {
@@ -170,8 +164,8 @@ const double* exchange(double own) {
   numbers[static_cast<std::size_t>(lanes.current)] = own;
   const int next = (lanes.current + 1) % lanes.count;
   BR_ASSERT(!lanes[next].ended);  // all lanes meet equally often
-  if (_setjmp(lane.place) == 0) go_on(lanes, next);
-  arrive(lanes);
+  lanes.current = next;
+  jump(lane.stack, lanes[next].stack);
   return numbers.data();
 }
 
