@@ -3,14 +3,17 @@
 # each) and compares the hashes of small cases of all methods with those of build/release.
 # Arguments choose: scripts/compilers.sh clang++:-O1
 # JOBS=N compiles N files at once. MPI=mpich takes that MPI (apt install libmpich-dev), else none.
+# LIMIT=N begins no compiler after N seconds; the order is drawn then.
 # PARTS=methods compiles the libraries that hold numbers and links them with the rest of build/release: half the time.
 cd "$(dirname "$0")/.." || exit 1
 . scripts/relink.sh
 mkdir -p build/compilers
-cases=(cases/{rc_slab,brazilian_disc,three_point_bending,colliding_cubes_3d,spall_bar_3d}/small.toml tests/attack/{dem,fdem,fdem3,bolted,coupled}.toml)
+cases=(cases/{rc_slab,brazilian_disc,three_point_bending,colliding_cubes_3d,spall_bar_3d}/small.toml tests/attack/{dem,fdem,fdem3,bolted,fluids,coupled}.toml)
 methods=(exec core domain dem fdem fdem3 prepare)
 kinds=("$@")
 [ ${#kinds[@]} -gt 0 ] || kinds=(g++:-O1 g++:-O2 g++:-O3 clang++:-O1 clang++:-O2 clang++:-O3)
+
+[ -n "$LIMIT" ] && mapfile -t kinds < <(shuf -e "${kinds[@]}")
 
 hash_of() {  # PROGRAM CASE FOLDER: of a run to its end, or of 400 steps of the cases of attacks
   local steps=()
@@ -39,8 +42,9 @@ launch=()
 wanted=()
 for case in "${cases[@]}"; do wanted+=("$(hash_of build/release/breccia "$case" build/compilers/wanted)"); done
 [ -n "$MPI" ] && launch=("mpiexec.$MPI" -n 3)
-wrong=0
+wrong=0 compared=()
 for kind in "${kinds[@]}"; do
+  [ -n "$LIMIT" ] && [ "$SECONDS" -gt "$LIMIT" ] && break
   compiler=${kind%%:*} level=${kind#*:}
   folder=build/compilers/$compiler$level${MPI:+-$MPI}
   build "$compiler" "$level" "$folder" > "$folder.log" 2>&1 || { echo "$kind: does not build, see $folder.log"; wrong=1; continue; }
@@ -50,5 +54,7 @@ for kind in "${kinds[@]}"; do
     [ -n "$hash" ] && [ "$hash" = "${wanted[k]}" ] || { same="instead of ${wanted[k]}"; wrong=1; }
     echo "$kind $MPI ${cases[k]}: $hash $same"
   done
+  compared+=("$kind")
 done
+echo "${#cases[@]} hashes compared for ${compared[*]}"
 exit $wrong

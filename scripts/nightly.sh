@@ -1,23 +1,26 @@
 #!/bin/bash
 # What takes longer than a gate may, in one table: attacks, sanitizers, compilers, MPICH, tests under
-# load. HOURS=N (8) for the attacks, JOBS=N compiles and tests N at once; logs stand in build/nightly.
+# load. HOURS=N (8) in all, of which each part has a share; what it has reached by then stands in its
+# row, tests and compilers in an order drawn anew each night. Builds take their time beside that.
+# JOBS=N compiles and tests N at once; logs stand in build/nightly.
 cd "$(dirname "$0")/.." || exit 1
 export JOBS=${JOBS:-$(nproc)}
+hours=${HOURS:-8}
 mkdir -p build/nightly
 cmake --preset release > build/nightly/build.log 2>&1 && cmake --build build/release -j "$JOBS" >> build/nightly/build.log 2>&1 ||
   { echo "build/release does not build: build/nightly/build.log"; exit 1; }
 wrong=0
-part() {  # NAME COMMAND...
-  local name=$1 begin=$SECONDS told=holds
-  shift
-  "$@" > "build/nightly/$name.log" 2>&1 || { told="fails, see build/nightly/$name.log"; wrong=1; }
-  printf '%-24s %6s s  %s\n' "$name" $((SECONDS - begin)) "$told"
+part() {  # NAME SHARE COMMAND...
+  local name=$1 begin=$SECONDS told=holds share=$2
+  shift 2
+  LIMIT=$(awk "BEGIN { print int($share * $hours * 3600) }") "$@" > "build/nightly/$name.log" 2>&1 || { told="FAILS, see build/nightly/$name.log"; wrong=1; }
+  printf '%-12s %6s s  %s: %s\n' "$name" $((SECONDS - begin)) "$told" "$(tail -1 "build/nightly/$name.log")"
 }
-part address scripts/sanitize.sh address
-part thread scripts/sanitize.sh thread
-part compilers scripts/compilers.sh
-part mpich scripts/mpich.sh
-part under_load scripts/under_load.sh 20
-part attacks python3 tests/attack/run.py --hours "${HOURS:-8}"
+part address 0.15 scripts/sanitize.sh address
+part thread 0.25 scripts/sanitize.sh thread
+PARTS=methods part compilers 0.1 scripts/compilers.sh
+part mpich 0.05 scripts/mpich.sh
+part under_load 0.15 scripts/under_load.sh 20
+part attacks 0.3 python3 tests/attack/run.py --hours "$(awk "BEGIN { print 0.3 * $hours }")"
 cat build/nightly/attacks.log
 exit $wrong
