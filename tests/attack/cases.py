@@ -45,6 +45,7 @@ def typos(options):
     for case in CASES:
         attack = Attack(f"case with a mistake, {case}", "cases")
         random_ = random.Random(options.seed)
+        shutil.copy(os.path.join(HERE, "pierced.inp"), attack.folder)
         with open(CASES[case]) as file:
             text = file.read()
         passed = 0
@@ -80,7 +81,9 @@ def absurd(options):
                           "material.rock.joint.energy_open", "material.rock.damping", "time.end"],
                 "bolted": ["bolt.bolt.segment", "bolt.bolt.diameter", "bolt.bolt.spacing", "bolt.bolt.young",
                            "bolt.bolt.yield", "bolt.bolt.bond_stiffness", "bolt.bolt.bond_strength",
-                           "support.high.servo.area", "support.high.servo.speed", "load.gas.speed"],
+                           "support.high.servo.area", "support.high.servo.speed", "load.water.viscosity",
+                           "load.water.bulk", "load.water.aperture"],
+                "fluids": ["load.anfo.explosive." + key for key in ("a", "b", "r1", "r2", "omega", "energy", "charge")],
                 "coupled": ["coupling.friction", "bond.border.range", "bond.border.tensile_strength",
                             "bond.border.energy_open", "tetrahedra.material.rock.young",
                             "spheres.material.c30.density"]}

@@ -9,7 +9,7 @@ import sys
 from common import COLUMNS, HERE
 
 QUICK = {  # some 5 to 15 s each
-    "files.py": ["--runs", "300"],
+    "files.py": ["--runs", "250"],
     "parsers.py": ["--seconds", "7"],
     "kills.py": ["--runs", "4", "--seconds", "18"],
     "faults.py": ["--every", "199", "--seconds", "12"],
