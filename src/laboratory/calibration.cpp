@@ -82,8 +82,9 @@ double strength_over_cohesion(const Rock& m) {
   return 2.0 * std::cos(phi) / (1.0 - std::sin(phi));
 }
 
-/// The cohesion is sought as the uniaxial strength that it gives, which the angle then does not
-/// change; the angle is set before it.
+/// Joints spend the energies that they are given (tests/law/fdem/joint_bond_test.cpp): those keys
+/// are set. The cohesion is sought as the uniaxial strength that it gives, which the angle then
+/// does not change; the angle is set before it.
 std::vector<Knob<Rock>> knobs_for(const Rock&, bool) {
   constexpr double steepest = 1.3;  // rad
   const auto f_t = [](const Rock& r) { return r.joint.tension; };
@@ -105,7 +106,13 @@ std::vector<Knob<Rock>> knobs_for(const Rock&, bool) {
           {"joint.cohesion times 2 cos(phi) / (1 - sin(phi))", "compression", "plate", "strength",
            [](const Rock& r) { return r.joint.cohesion * strength_over_cohesion(r); },
            [](Rock& r, double x) { r.joint.cohesion = x / strength_over_cohesion(r); }, 1.0, 0.05,
-           1.0, 0.0, all}};
+           1.0, 0.0, all},
+          {"joint.energy_open", "fracture_energy", "", "",
+           [](const Rock& r) { return r.joint.energy_open; },
+           [](Rock& r, double x) { r.joint.energy_open = x; }, 1.0, 0.10, 1.0, 0.0, all},
+          {"joint.energy_slide", "slide_energy", "", "",
+           [](const Rock& r) { return r.joint.energy_slide; },
+           [](Rock& r, double x) { r.joint.energy_slide = x; }, 1.0, 0.10, 1.0, 0.0, all}};
 }
 
 /// Whether numbers of a material stand in tables below it.
@@ -172,8 +179,8 @@ Calibration<Material>::Calibration(Material start, std::vector<MaterialTarget> t
       throw InputError(fmt::format("target {} must be above 0; nothing was run", target->name));
     aims_.push_back({knob, target->value});
   }
-  if (aims_.empty())
-    throw InputError("there is no target to calibrate by: --target takes " + names +
+  if (std::none_of(aims_.begin(), aims_.end(), [](const Aim& a) { return a.knob.test[0] != '\0'; }))
+    throw InputError("there is no target that a specimen shows: --target takes " + names +
                      "; nothing was run");
   for (const Aim& aim : aims_)
     if (aim.knob.share > 0.0)
@@ -221,6 +228,10 @@ template <class Material>
 void Calibration<Material>::take(const std::vector<TestResults>& results) {
   CalibrationStep<Material> step{material_, {}};
   for (const Aim& aim : aims_) {
+    if (aim.knob.test[0] == '\0') {
+      step.shown[aim.knob.target] = {aim.knob.get(material_), 0.0, 0};
+      continue;
+    }
     std::vector<double> values;
     if (std::string_view(aim.knob.number) == "friction_angle") {
       values = friction_angles(results);
@@ -332,9 +343,12 @@ std::string Calibration<Material>::block(const std::string& circumstances) const
   const CalibrationStep<Material>& step = best();
   std::string text = "# " + circumstances + "\n";
   for (const Aim& aim : aims_)
-    text += fmt::format("# {}: shown {}, target {}, {:+.1f} %\n", aim.knob.target,
-                        spread_text(step.shown.at(aim.knob.target)), short_number(aim.target),
-                        100.0 * misfit(step, aim));
+    text += aim.knob.test[0] == '\0'
+                ? fmt::format("# {}: {}, set; no specimen shows it\n", aim.knob.target,
+                              short_number(aim.target))
+                : fmt::format("# {}: shown {}, target {}, {:+.1f} %\n", aim.knob.target,
+                              spread_text(step.shown.at(aim.knob.target)), short_number(aim.target),
+                              100.0 * misfit(step, aim));
   WriteKeys keys("material." + key_text(step.material.name) + ".");
   Material material = step.material;
   for (const Aim& aim : aims_)  // four digits are more than packings leave

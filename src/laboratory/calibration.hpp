@@ -18,7 +18,7 @@ template <class Material>
 struct Knob {
   const char* key;     ///< as in [material.<name>]
   const char* target;  ///< as in MaterialTarget
-  const char* test;    ///< the specimen test that shows it
+  const char* test;    ///< the specimen test that shows it; empty: the key is the target
   const char* number;  ///< of its results
   double (*get)(const Material&);
   void (*set)(Material&, double);

@@ -104,7 +104,7 @@ void complete(toml::table& own, const toml::table& given) {
 
 std::string target_unit(const std::string& target) {
   if (target == "poisson") return "-";
-  if (target == "fracture_energy") return "J/m2";
+  if (target == "fracture_energy" || target == "slide_energy") return "J/m2";
   if (target == "friction_angle") return "rad";
   for (const char* stress : {"young", "compression", "tension", "brazilian", "yield"})
     if (target == stress) return "Pa";

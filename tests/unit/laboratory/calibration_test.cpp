@@ -99,7 +99,8 @@ TEST(Calibration, FindsTheKeysOfARock) {
                                   {"compression", 200e6, "Pa"},
                                   {"brazilian", 9.3e6, "Pa"},
                                   {"tension", 99e6, "Pa"},
-                                  {"friction_angle", 1.03, "rad"}});
+                                  {"friction_angle", 1.03, "rad"},
+                                  {"slide_energy", 120.0, "J/m2"}});
   ASSERT_EQ(calibration.tests().size(), 3U);
   while (calibration.steps().size() < 5 && !calibration.converged()) {
     const fdem::MaterialConfig& m = calibration.material();
@@ -119,12 +120,15 @@ TEST(Calibration, FindsTheKeysOfARock) {
   EXPECT_TRUE(calibration.converged()) << calibration.page("granite", "as a test");
   EXPECT_NEAR(calibration.best().material.joint.tension, 9.3e6 / 1.1, 0.05 * 9.3e6);
   EXPECT_EQ(calibration.best().shown.count("tension"), 0U);  // the disc's target rules
+  EXPECT_NEAR(calibration.best().material.joint.energy_slide, 120.0, 1e-9);  // set
+  EXPECT_EQ(calibration.best().material.joint.energy_open, start.joint.energy_open);
   EXPECT_NE(calibration.block("as a test").find("[material.granite]"), std::string::npos);
 }
 
 TEST(Calibration, RefusesToGoOnWithoutTargetsOrResults) {
   EXPECT_THROW(Calibration(dem::MaterialConfig{}, {}), InputError);
   EXPECT_THROW(Calibration(dem::MaterialConfig{}, {{"tension", -1.0, "Pa"}}), InputError);
+  EXPECT_THROW(Calibration(fdem::MaterialConfig{}, {{"slide_energy", 9.0, "J/m2"}}), InputError);
   Calibration calibration(dem::MaterialConfig{}, c30);
   EXPECT_THROW(calibration.take({}), InputError);
 }
