@@ -66,6 +66,23 @@ BR_HD inline void write_actions(const View<PairForceOf<Number>>& actions, Index 
 #endif
 }
 
+/// Writes an action alone.
+BR_HD inline void write_action(PairForce& to, const double (&numbers)[9],
+                               const double (&stiffness)[9]) {
+  PairForce action;
+  for (int k = 0; k < 9; ++k) action.numbers[k] = numbers[k];
+  for (int k = 0; k < 9; ++k) action.stiffness[k] = static_cast<float>(stiffness[k]);
+  action.stiffness[9] = 0.0F;
+#if defined(__CUDA_ARCH__)
+  int4 parts[sizeof(PairForce) / sizeof(int4)];
+  __builtin_memcpy(parts, &action, sizeof action);
+  auto* const words = reinterpret_cast<int4*>(&to);
+  for (std::size_t k = 0; k < sizeof(PairForce) / sizeof(int4); ++k) words[k] = parts[k];
+#else
+  to = action;
+#endif
+}
+
 /// Actions that lie in a tile's own memory (stepping/tile_memory.hpp), each written by its thread;
 /// and the place of the present item among all of its kind.
 struct TileActions {
@@ -75,18 +92,7 @@ struct TileActions {
 };
 BR_HD inline void write_actions(const TileActions& actions, Index at, const double (&numbers)[9],
                                 const double (&stiffness)[9]) {
-  PairForce action;
-  for (int k = 0; k < 9; ++k) action.numbers[k] = numbers[k];
-  for (int k = 0; k < 9; ++k) action.stiffness[k] = static_cast<float>(stiffness[k]);
-  action.stiffness[9] = 0.0F;
-#if defined(__CUDA_ARCH__)
-  int4 parts[sizeof(PairForce) / sizeof(int4)];
-  __builtin_memcpy(parts, &action, sizeof action);
-  auto* const to = reinterpret_cast<int4*>(actions.records + at);
-  for (std::size_t k = 0; k < sizeof(PairForce) / sizeof(int4); ++k) to[k] = parts[k];
-#else
-  actions.records[at] = action;
-#endif
+  write_action(actions.records[at], numbers, stiffness);
 }
 
 /// Adds to the energy that item i, or each of a pack, has spent so far.

@@ -2,7 +2,9 @@
 // stay.
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/rows.hpp"
 #include "core/select.hpp"
@@ -280,7 +282,6 @@ void plan_sweep(World& w) {
     for (auto& group : w.ldpm.groups) find_starts(of_a, count, group);
     a.insert(a.end(), of_a.begin(), of_a.end());
     b.insert(b.end(), of_b.begin(), of_b.end());
-    w.ldpm.edges.find(w.ldpm.a, w.ldpm.b);
   }
   std::vector<GlobalId> id;
   copy_to(id, w.elements.id);
@@ -428,6 +429,52 @@ void list_laws(LinkSet<Law>& set) {
   copy_to(set.on_device.ends, ends);
 }
 
+struct NameActions {
+  static constexpr const char* name = "dem.name_actions";
+  View<const Index> actions;
+  View<Entry> entries;
+
+  BR_HD void operator()(Index k) const {
+    entries[k] = 2 * actions[pair_of(entries[k])] + side_of(entries[k]);
+  }
+};
+
+/// The actions that elements add up from `bar_actions`: of each pair of ends, of facets the first
+/// of each edge. Swept ones are not among them.
+void list_bars(World& w) {
+  std::vector<Index> a, b, actions;
+  Index first = 0;
+  w.each_set([&](const auto& set) {
+    if constexpr (!std::remove_reference_t<decltype(set)>::swept) {
+      constexpr bool facets = std::remove_reference_t<decltype(set)>::kind == LinkKind::ldpm;
+      std::vector<Index> of_a, of_b, leads;
+      copy_to(of_a, set.a);
+      copy_to(of_b, set.b);
+      if constexpr (facets) copy_to(leads, set.edges.leads);
+      const Index count = facets ? static_cast<Index>(leads.size()) - 1 : set.size();
+      for (Index k = 0; k < count && !(facets && facets_are_swept(w)); ++k) {
+        const auto at = static_cast<std::size_t>(facets ? leads[static_cast<std::size_t>(k)] : k);
+        a.push_back(of_a[at]);
+        b.push_back(of_b[at]);
+        actions.push_back(first + static_cast<Index>(at));
+      }
+      first += set.size();
+    }
+  });
+  Buffer<Index> all_a(w.exec.space), all_b(w.exec.space), named(w.exec.space);
+  copy_to(all_a, a);
+  copy_to(all_b, b);
+  copy_to(named, actions);
+  build_incidence(w.exec, all_a, all_b, w.elements.id, w.bar_incidence);
+  if (first > std::numeric_limits<Index>::max() / 2)
+    throw DeviceError(
+        "the model has more than the 1,073,741,823 facets and links of bars whose ends fit a "
+        "32-bit index; use coarser grains");
+  for_each(w.exec, w.bar_incidence.entries.size(),
+           NameActions{std::as_const(named).view(), w.bar_incidence.entries.view()});
+  w.bar_actions.resize(first);
+}
+
 }  // namespace
 
 void list_laws(World& w) {
@@ -436,24 +483,9 @@ void list_laws(World& w) {
 
 void derive(World& w) {
   list_laws(w);
-  std::vector<Index> a, b, more;
-  const auto append = [&](std::vector<Index>& all, const Buffer<Index>& ends) {
-    copy_to(more, ends);
-    all.insert(all.end(), more.begin(), more.end());
-  };
-  Index summed = 0;
-  w.each_set([&](const auto& set) {
-    if (set.swept) return;
-    summed += set.size();
-    if (set.kind == LinkKind::ldpm && facets_are_swept(w)) return;
-    append(a, set.a);
-    append(b, set.b);
-  });
-  Buffer<Index> all_a(w.exec.space), all_b(w.exec.space);
-  copy_to(all_a, a);
-  copy_to(all_b, b);
-  build_incidence(w.exec, all_a, all_b, w.elements.id, w.bar_incidence);
-  w.bar_actions.resize(summed);
+  find_edges(w.ldpm);
+  if (w.exec.space != Space::host) w.ldpm.edges.shares.resize(w.ldpm.size());
+  list_bars(w);
   if (w.exec.space == Space::host) w.link_sums.resize(w.elements.size());
   w.critical.resize(w.elements.size());
   plan_sweep(w);

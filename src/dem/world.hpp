@@ -119,6 +119,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
          critical, rows_a, rows_b, link_actions.in_double, link_actions.in_single, device_walls,
          clock, beyond);
     each_set([&](auto& set) { each(set.on_device.laws, set.on_device.ends); });
+    each(ldpm.edges.of, ldpm.edges.leads, ldpm.edges.stiffness, ldpm.edges.shares);
   }
 
   // Which part of the whole it is, and where its elements lie: constant between two migrations.
@@ -131,7 +132,8 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
   Buffer<Index> linked_partners;  ///< place of the higher end  [-]  (links; set-up, ranks)
   Buffer<Index> linked_links;     ///< place among links of all kinds  [-]  (links; set-up, ranks)
   LinkPlan link_plan;             ///< how threads share swept links; `deferred`: sums (derive)
-  Incidence bar_incidence;        ///< of all links but swept ones, kind by kind (elements; derive)
+  Incidence bar_incidence;        ///< of all links but swept ones, kind by kind, of facets
+                                  ///< the first of each edge (elements; derive)
 
   // Results of a search.
   Buffer<Index> held_partners;    ///< linked_partners, -1 where the link has let go  [-]
@@ -142,7 +144,8 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
                                   ///< (walls + 1; search, derive)
 
   // Results of a step, overwritten by the next one.
-  Buffer<PairForce> bar_actions;      ///< [N, N m, N/m]  (links but swept ones; pairs, ranks)
+  Buffer<PairForce> bar_actions;      ///< zero but for the first facet of an
+                                      ///< edge  [N, N m, N/m]  (links but swept ones; pairs, ranks)
   Buffer<PairForce> contact_actions;  ///< zero where apart; as many as contacts, but where parts
                                       ///< were brought together  [N, N m, N/m]  (contacts; pairs)
   Buffer<LinkSums> link_sums;  ///< zero between steps  [N, N m, N/m]  (elements; pairs, sums)

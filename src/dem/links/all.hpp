@@ -16,7 +16,8 @@ namespace breccia::dem {
   X(SteelLinkForces)            \
   X(InterfaceLinkForces)        \
   X(ParallelBondForces)         \
-  X(LdpmFacetForces)
+  X(LdpmFacetForces)            \
+  X(LdpmEdgeForces)
 
 /// All links of a world. A new law is a member here, in the order of LinkKind.
 struct LinkSets {

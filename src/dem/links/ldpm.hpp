@@ -5,27 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "dem/laws/ldpm_facet.hpp"
-#include "dem/links/link_set.hpp"
-#include "math/records.hpp"
+#include "dem/links/ldpm_edges.hpp"
 
 namespace breccia::dem {
-
-/// Where a facet lies, in the frame n, m, l = n x m of its edge.
-struct LdpmPlace {
-  double length;  ///< L of the edge  [m]
-  double area;    ///< A, projected across the edge  [m2]
-  Vec3 center;    ///< from particle a, along n, m, l  [m]
-  double volume;  ///< six times V_0 of its tetrahedron, signed (six_volumes)  [m3]
-};
-/// How the frame of a facet's edge has turned, and whether the facet holds.
-template <class R>
-struct LdpmFrameOf {
-  Vec3Of<R> m;  ///< unit vector across the edge  [-]
-  R bond;       ///< 1; 0 once cracked; ldpm_released when its ends have parted  [-]
-};
-using LdpmFrame = LdpmFrameOf<double>;
-inline constexpr double ldpm_released = -1.0;
 
 /// Six times the volume of a tetrahedron; the sign is that of its orientation.
 template <class R>
@@ -33,25 +15,6 @@ BR_HD inline R six_volumes(const Vec3Of<R>& a, const Vec3Of<R>& b, const Vec3Of<
                            const Vec3Of<R>& d) {
   return dot(b - a, cross(c - a, d - a));
 }
-
-/// Edges of facets [0, count): neighbours with both ends in common. For loops of the host.
-struct LdpmEdges {
-  Buffer<Index> of;     ///< edge of each facet  [-]
-  Buffer<Index> leads;  ///< first facet of each edge, and the end  [-]
-
-  void find(const Buffer<Index>& a, const Buffer<Index>& b) {
-    const Index count = a.size();
-    of.resize(count);
-    std::vector<Index> first;
-    for (Index i = 0; i < count; ++i) {
-      if (i == 0 || a.data()[i] != a.data()[i - 1] || b.data()[i] != b.data()[i - 1])
-        first.push_back(i);
-      of.data()[i] = static_cast<Index>(first.size()) - 1;
-    }
-    first.push_back(count);
-    copy_to(leads, first);
-  }
-};
 
 /// Facets between particles a and b, in a tetrahedron with c and d.
 template <>
@@ -67,7 +30,7 @@ struct LinkArrays<LdpmFacet> : LinkEnds {
   Buffer<double> opened;         ///< energy spent while open: on fracture  [J]  (pairs)
   Buffer<double> compacted;      ///< while closed, by normal strains  [J]  (pairs)
   Buffer<double> slid;           ///< while closed, by tangential strains  [J]  (pairs)
-  LdpmEdges edges;               ///< no state: of the facets here; empty on devices  (derive)
+  LdpmEdges edges;               ///< no state: of the facets here  (derive)
 
   template <class Visit>
   void each_field(Visit&& field) {
@@ -112,13 +75,12 @@ using LdpmFacets = LinkArrays<LdpmFacet>;
 /// Numbers that all facets of an edge share in a step.
 template <class R>
 struct LdpmEdgeOf {
-  Vec3Of<R> n, m;  ///< frame, with l = n x m  [-]
-  Vec3Of<R> turn;  ///< of b against a, in the frame  [rad]
-  Vec3Of<R> jump;  ///< of b against a in the middle of the edge, likewise  [m]
-  R distance;      ///< of the ends  [m]
-  R parted;        ///< 1 where the facets have let go, or are to, of their ends; else 0
+  Vec3Of<R> turn;  ///< of b against a, in the frame n, m, l = n x m  [rad]
+  Vec3Of<R> jump;  ///< of b against a in the middle of the edge, less turn x half the edge  [m]
   R over;          ///< one over the length of the edge  [1/m]
-  R fill;          ///< as long as two packs
+  R parted;        ///< 1 where the facets have let go, or are to, of their ends; else 0
+  Vec3Of<R> m;     ///< unit vector across the edge  [-]
+  R fill;          ///< an even number
 };
 
 /// Forces of facets, one facet or a pack of neighbours at a time.
@@ -133,9 +95,9 @@ struct LdpmFacetForces {
   View<LdpmFrame> frame;
   View<LdpmFacetState> state;
   View<double> opened, compacted, slid;
-  View<PairForce> actions;
+  View<LdpmShare> shares;
+  Index first_share;               ///< share of facet 0
   View<const Index> edges, leads;  ///< LdpmEdges: of each facet, first facets
-  Index first_action;              ///< action of facet 0
 
   template <class R>
   struct Facet {
@@ -205,7 +167,7 @@ struct LdpmFacetForces {
   template <class R>
   Index sweep(Index begin, Index end) const {
     constexpr Index width = width_of<R>, room = 4 * width;
-    static_assert(sizeof(LdpmEdgeOf<double>) == 16 * sizeof(double));
+    static_assert(sizeof(LdpmEdgeOf<double>) == 12 * sizeof(double));
     if (edges.size != a.size || end - begin < width) return begin;
     alignas(64) LdpmEdgeOf<double> motions[room];  // a ring: packs of them, made ahead
     View<LdpmEdgeOf<double>> ring;
@@ -223,16 +185,10 @@ struct LdpmFacetForces {
       for (Index k = 0; k < width; ++k) of[k] = (edges[i + k] - first) & (room - 1);
       Facet<R> facet;
       load_facet(i, facet);
-      R e[16];
+      R e[12];
       gather_records(View<const LdpmEdgeOf<double>>(ring), indices<R>(of), e);
-      const LdpmEdgeOf<R> own{{e[0], e[1], e[2]},
-                              {e[3], e[4], e[5]},
-                              {e[6], e[7], e[8]},
-                              {e[9], e[10], e[11]},
-                              e[12],
-                              e[13],
-                              e[14],
-                              e[15]};
+      const LdpmEdgeOf<R> own{
+          {e[0], e[1], e[2]}, {e[3], e[4], e[5]}, e[6], e[7], {e[8], e[9], e[10]}, e[11]};
       if (any(own.parted > 0.0))
         for (Index k = 0; k < width; ++k) (*this)(i + k);
       else
@@ -263,9 +219,8 @@ struct LdpmFacetForces {
     const LdpmEdgeOf<R> all =
         edge_of(load_end<R>(elements.state, indices<R>(from)),
                 load_end<R>(elements.state, indices<R>(to)), p[0], {{f[0], f[1], f[2]}, f[3]});
-    const R numbers[16] = {all.n.x,      all.n.y,    all.n.z,    all.m.x,    all.m.y,    all.m.z,
-                           all.turn.x,   all.turn.y, all.turn.z, all.jump.x, all.jump.y, all.jump.z,
-                           all.distance, all.parted, all.over,   all.fill};
+    const R numbers[12] = {all.turn.x, all.turn.y, all.turn.z, all.jump.x, all.jump.y, all.jump.z,
+                           all.over,   all.parted, all.m.x,    all.m.y,    all.m.z,    all.fill};
     write_records(ring, place_in_ring, numbers);
   }
 #endif
@@ -277,9 +232,6 @@ struct LdpmFacetForces {
       for (Index byte = 0; byte < bytes; byte += 64) __builtin_prefetch(items + byte);
     };
     ask(place), ask(frame), ask(state), ask(opened);
-    const auto* to = reinterpret_cast<const char*>(actions.data + first_action + first);
-    const auto bytes = static_cast<Index>(sizeof(PairForce)) * count;
-    for (Index byte = 0; byte < bytes; byte += 64) __builtin_prefetch(to + byte, 1);
   }
   template <class R>
   BR_HD void load_facet(Index i, Facet<R>& facet) const {
@@ -303,18 +255,19 @@ struct LdpmFacetForces {
     const PairMotion<R> motion = pair_motion<R>(one, other, none, dt);
     const R reach = 1.5 * max(length, end_a.radius + end_b.radius);
     LdpmEdgeOf<R> edge;
-    edge.distance = motion.distance;
     edge.parted = select(old.bond < 0.0 || motion.distance > reach, constant<R>(1.0), none);
     edge.over = 1.0 / length;
     edge.fill = none;
     // Newton's step from 1 makes m a unit vector: it was one.
-    const Vec3Of<R>& n = edge.n = motion.normal;
+    const Vec3Of<R>& n = motion.normal;
     const Vec3Of<R> across = motion.tangential(motion.rotated_with_pair(old.m));
     edge.m = (1.5 - 0.5 * dot(across, across)) * across;
     const Vec3Of<R> l = cross(n, edge.m);
     edge.turn = {dot(n, motion.turn), dot(edge.m, motion.turn), dot(l, motion.turn)};
-    edge.jump = {stretched(one, other, motion.distance), dot(edge.m, motion.slip),
-                 dot(l, motion.slip)};
+    const R half = 0.5 * motion.distance;
+    edge.jump = {stretched(one, other, motion.distance),
+                 dot(edge.m, motion.slip) - half * edge.turn.z,
+                 dot(l, motion.slip) + half * edge.turn.y};
     return edge;
   }
   /// A facet that holds: its strains, stresses and energies, force, torques and stiffness.
@@ -323,8 +276,7 @@ struct LdpmFacetForces {
                   const LdpmEdgeOf<R>& edge) const {
     LdpmFacetStateOf<R> kept = facet.state;
     const Vec3Of<R>& center = facet.center;
-    const Vec3Of<R> lever{center.x - 0.5 * edge.distance, center.y, center.z};
-    const Vec3Of<R> jump = cross(edge.turn, lever) + edge.jump;
+    const Vec3Of<R> jump = cross(edge.turn, center) + edge.jump;
     const LdpmSpentOf<R> spent = by.update(facet.length, kept.strain + edge.over * jump,
                                            Volumetric<R>{*this, i, facet.volume}, kept, dt);
 
@@ -339,8 +291,10 @@ struct LdpmFacetForces {
     const R f[4] = {edge.m.x, edge.m.y, edge.m.z, bond};
     write_records(frame, i, f);
 
-    const Vec3Of<R> force = -facet.area * kept.stress;  // on b, in the frame
-    write(by, i, edge, center, force, facet.area * edge.over);
+    const Vec3Of<R> force = -facet.area * kept.stress, turn = cross(center, force);
+    const R none = constant<R>(0.0);
+    const R share[8] = {force.x, force.y, force.z, turn.x, turn.y, turn.z, none, none};
+    write_records(shares, first_share + i, share);
   }
   /// Change of the distance in the last step: a rigid turn is none. With the old distance D sqrt(1
   /// - y) it is D (1 - sqrt(1 - y)), by its series: y^6 is below rounding.
@@ -357,39 +311,6 @@ struct LdpmFacetForces {
   BR_HD static void add(const View<double>& energy, Index i, const R& spent) {
     if (any(spent != 0.0)) store(energy, i, load<R>(energy, i) + spent);
   }
-  /// Writes force and torques of a facet, and its stiffness: with k = E A / L and r from a particle
-  /// to the facet, K = k (alpha I + (1 - alpha) n n^T), and K^theta is at most k (alpha r.r + (1 -
-  /// alpha) |r x n|^2) I.
-  /// @param center, force  from a, and on b, in the frame n, m, l of the edge
-  template <class R>
-  BR_HD void write(const LdpmFacet& by, Index i, const LdpmEdgeOf<R>& edge, const Vec3Of<R>& center,
-                   const Vec3Of<R>& force, const R& area_by_length) const {
-    const Vec3Of<R>&n = edge.n, &m = edge.m, l = cross(n, m);
-    const auto outward = [&](const Vec3Of<R>& v) { return v.x * n + v.y * m + v.z * l; };
-    const Vec3Of<R> on_b = outward(force), turn = cross(center, force);
-    const Vec3Of<R> turn_a = -outward(turn);
-    // from b: center - D n
-    const Vec3Of<R> turn_b =
-        outward({turn.x, turn.y + edge.distance * force.z, turn.z - edge.distance * force.y});
-    const R numbers[9] = {turn_a.x, turn_a.y, turn_a.z, on_b.x,  on_b.y,
-                          on_b.z,   turn_b.x, turn_b.y, turn_b.z};
-    const double alpha = by.shear_ratio;
-    const R k = max(by.young, by.densified) * area_by_length;
-    const R across = alpha * k, stretch = (1.0 - alpha) * k;
-    const R aside = center.y * center.y + center.z * center.z;  // |r x n|^2, of a and of b
-    const R beyond = center.x - edge.distance;
-    const Vec3Of<R> along = stretch * n;
-    const R stiffness[9] = {across * (center.x * center.x) + k * aside,
-                            across + along.x * n.x,
-                            across + along.y * n.y,
-                            across + along.z * n.z,
-                            along.x * n.y,
-                            along.x * n.z,
-                            along.y * n.z,
-                            across * (beyond * beyond) + k * aside,
-                            constant<R>(0.0)};
-    write_actions(actions, first_action + i, numbers, stiffness);
-  }
   /// A facet whose ends have parted for good.
   BR_HD void release(const LdpmFacet& by, Index i, const Facet<double>& facet) const {
     if (facet.frame.bond >= 0.0) {
@@ -398,13 +319,12 @@ struct LdpmFacetForces {
       state[i] = {s.strain, {}, s.largest_normal, s.largest_square};
       frame[i] = {facet.frame.m, ldpm_released};
     }
-    const double nothing[9] = {};
-    write_actions(actions, first_action + i, nothing, nothing);
+    shares[first_share + i] = {};
   }
 };
 template <class>
 LdpmFacetForces forces_of(LdpmFacets& f, const LdpmFacet& law, const LinkSpace& in,
-                          Buffer<PairForce>& actions) {
+                          Buffer<PairForce>&) {
   return {law,
           in.dt,
           in.elements,
@@ -418,10 +338,54 @@ LdpmFacetForces forces_of(LdpmFacets& f, const LdpmFacet& law, const LinkSpace& 
           f.opened.view(),
           f.compacted.view(),
           f.slid.view(),
-          actions.view(),
+          f.edges.shares.view(),
+          0,
           std::as_const(f.edges.of).view(),
+          std::as_const(f.edges.leads).view()};
+}
+inline LdpmEdgeForces edge_forces_of(LdpmFacets& f, const ElementsView& elements,
+                                     Buffer<PairForce>& actions, Index first_action) {
+  return {elements.state,
+          std::as_const(f.a).view(),
+          std::as_const(f.b).view(),
           std::as_const(f.edges.leads).view(),
-          0};
+          std::as_const(f.frame).view(),
+          std::as_const(f.edges.stiffness).view(),
+          std::as_const(f.edges.shares).view(),
+          0,
+          actions.view(),
+          first_action};
+}
+
+/// Finds the edges of all facets and their stiffness.
+inline void find_edges(LinkSet<LdpmFacet>& set) {
+  std::vector<Index> a, b, of(static_cast<std::size_t>(set.size())), leads;
+  std::vector<LdpmPlace> place;
+  std::vector<LdpmStiffness> stiffness;
+  copy_to(a, set.a);
+  copy_to(b, set.b);
+  copy_to(place, set.place);
+  for (const LinkGroup<LdpmFacet>& group : set.groups)
+    for (Index i = group.begin; i < group.end; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (i == group.begin || a[at] != a[at - 1] || b[at] != b[at - 1]) {
+        leads.push_back(i);
+        stiffness.push_back({0.0, 0.0, 0.0, 0.0, group.law.shear_ratio, 0.0});
+      }
+      of[at] = static_cast<Index>(leads.size()) - 1;
+      const Vec3& c = place[at].center;
+      const double k =
+          max(group.law.young, group.law.densified) * place[at].area / place[at].length;
+      LdpmStiffness& sum = stiffness.back();
+      sum.straight += k;
+      sum.first += k * c.x;
+      sum.second += k * c.x * c.x;
+      sum.aside += k * (c.y * c.y + c.z * c.z);
+    }
+  leads.push_back(set.size());
+  copy_to(set.edges.of, of);
+  copy_to(set.edges.leads, leads);
+  copy_to(set.edges.stiffness, stiffness);
 }
 
 /// Energies of facets.

@@ -1,5 +1,5 @@
 #pragma once
-// The sums of concrete links and of facets on the host, as their forces come.
+// The sums of concrete links and of edges of facets on the host, as their forces come.
 
 #include <algorithm>
 #include <vector>
@@ -54,30 +54,24 @@ struct AddLinks {
       sums[a].stiffness_a = stiffness_a;
     }
   }
-  /// Facets [from, to), likewise: neighbours on one edge have both ends in common.
-  void operator()(const LdpmFacetForces& facets, Index from, Index to,
+  /// Edges of facets [from, to), likewise; action 0 is of facet 0.
+  void operator()(const LdpmEdgeForces& edges, Index from, Index to,
                   const PairForce* actions) const {
-    for (Index i = from; i < to;) {
-      const Index a = facets.a[i];
+    for (Index k = from; k < to;) {
+      const Index a = edges.a[edges.leads[k]];
       SixSums as_a = sums[a].as_a;
       EightFloatSums stiffness_a = sums[a].stiffness_a.straight;  // ratios are zero
-      while (i < to && facets.a[i] == a) {
-        const Index b = facets.b[i], next = std::min(facets.leads[facets.edges[i] + 1], to);
-        const bool own = b >= first_private && b < end;
-        SixSums as_b;
-        EightFloatSums stiffness_b;
-        if (own) as_b = sums[b].as_b, stiffness_b = sums[b].stiffness_b.straight;
-        for (; i < next; ++i) {
-          const PairForce& action = actions[i - from];
-          as_a.add(action.numbers);
-          stiffness_a.add(action.stiffness);
-          as_b.add(action.numbers + 3);
-          stiffness_b.add(action.stiffness);
-          if (!own) defer(*this, action, b);
+      for (; k < to && edges.a[edges.leads[k]] == a; ++k) {
+        const PairForce& action = actions[edges.leads[k]];
+        const Index b = edges.b[edges.leads[k]];
+        as_a.add(action.numbers);
+        stiffness_a.add(action.stiffness);
+        if (b >= first_private && b < end) {
+          sums[b].as_b.add(action.numbers + 3);
+          sums[b].stiffness_b.straight.add(action.stiffness);
+        } else {
+          defer(*this, action, b);
         }
-        if (!own) continue;
-        sums[b].as_b = as_b;
-        sums[b].stiffness_b.straight = stiffness_b;
       }
       sums[a].as_a = as_a;
       sums[a].stiffness_a.straight = stiffness_a;

@@ -100,6 +100,8 @@ class LaunchedForces {
     with_number(w.exec.precision, [&](auto number) { pair_forces<decltype(number)>(w); });
   }
   void sum_forces(World& w) const {
+    if (w.ldpm.size() > 0)
+      for_each_part(w.exec, part(w.ldpm.edges.size(), by_(edge_kernel(w)), Parts<>{}));
     with_number(w.exec.precision, [&](auto number) {
       using Sums = GatherWide<decltype(number)>;
       const Index threads = w.elements.size() * Sums::width;

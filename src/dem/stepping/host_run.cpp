@@ -71,15 +71,40 @@ void add_links(Lanes lanes, ConcreteLinkForces<Number> links, Index begin, Index
   }
 }
 
-/// Forces of facets [begin, end) and their sums, in portions whose actions stay in a near cache.
-void add_facets(Lanes lanes, const LdpmFacetForces& facets, Index begin, Index end,
-                const AddLinks& add) {
+/// Forces of the edges of facets [begin, end), in portions whose shares stay in a near cache.
+/// @param then  called with the edges of each portion
+template <class Then>
+void facet_forces(Lanes lanes, LdpmFacetForces facets, LdpmEdgeForces edges, Index begin, Index end,
+                  const Then& then) {
   constexpr Index portion = 2048;
-  for (Index from = begin; from < end; from += portion) {
-    const Index to = std::min(from + portion, end);
+  alignas(64) LdpmShare shares[portion];
+  facets.shares.data = shares;
+  facets.shares.size = portion;
+  edges.shares = facets.shares;
+  for (Index from = begin; from < end;) {
+    const Index first = facets.edges[from];
+    const Index last =
+        end - from <= portion ? facets.edges[end - 1] + 1 : facets.edges[from + portion];
+    const Index to = facets.leads[last];
+    facets.first_share = edges.first_share = -from;
     run_packs(lanes, facets, from, to);
-    run_adding(lanes, add, facets, from, to, facets.actions.data + from);
+    run_packs(lanes, edges, first, last);
+    then(first, last);
+    from = to;
   }
+}
+
+/// Forces of all edges of a group.
+void run_edges(World& w, const LinkGroup<LdpmFacet>& group, const LdpmFacetForces& facets) {
+  if (group.begin == group.end) return;
+  constexpr Index grain = 256;
+  const LdpmEdgeForces edges = edge_kernel(w);
+  const Index first = facets.edges[group.begin];
+  const Index count = facets.edges[group.end - 1] + 1 - first;
+  for_each_run(w.exec, count, grain, [&](Index begin, Index end) {
+    facet_forces(w.lanes, facets, edges, facets.leads[first + begin], facets.leads[first + end],
+                 [](Index, Index) {});
+  });
 }
 
 template <class Number>
@@ -91,6 +116,7 @@ void link_forces_and_sums(World& w) {
   if (w.link_plan.facets)
     for (const auto& group : w.ldpm.groups)
       of_facets.push_back(link_kernel<double>(w, w.ldpm, group.law, 0));
+  const LdpmEdgeForces edges = edge_kernel(w);
   const GatherForces gather = gather_kernel(w);
   LinkPlan& link_plan = w.link_plan;
   const auto threads = static_cast<int>(link_plan.first_private.size());
@@ -114,8 +140,11 @@ void link_forces_and_sums(World& w) {
         }
         for (std::size_t g = 0; g < of_facets.size(); ++g) {
           const std::vector<Index>& starts = w.ldpm.groups[g].starts;
-          add_facets(w.lanes, of_facets[g], starts[static_cast<std::size_t>(from)],
-                     starts[static_cast<std::size_t>(to)], add);
+          facet_forces(w.lanes, of_facets[g], edges, starts[static_cast<std::size_t>(from)],
+                       starts[static_cast<std::size_t>(to)], [&](Index first, Index last) {
+                         run_adding(w.lanes, add, edges, first, last,
+                                    edges.actions.data + edges.first_action);
+                       });
         }
         run_packs(w.lanes, gather, std::max(from, link_plan.first_private[run]), to);
       }
@@ -164,9 +193,11 @@ void HostRun::pair_forces(World& w) const {
   {
     const StageTime timed(w.exec, "bar_forces");
     each_bar_set(w, [&](auto& set, Index first_action) {
-      if (set.kind == LinkKind::ldpm && w.link_plan.facets) return;
       for (const auto& group : set.groups)
-        run_group(w, group, link_kernel<double>(w, set, group.law, first_action));
+        if constexpr (std::remove_reference_t<decltype(set)>::kind != LinkKind::ldpm)
+          run_group(w, group, link_kernel<double>(w, set, group.law, first_action));
+        else if (!w.link_plan.facets)
+          run_edges(w, group, link_kernel<double>(w, set, group.law, first_action));
     });
   }
   const StageTime timed(w.exec, "contact_forces");

@@ -38,9 +38,15 @@ auto link_kernel(World& w, LinkSet<Law>& set, const Law& law, Index first_action
     return forces_of<Number>(set, law, space, w.link_actions.as<Number>());
   } else {
     auto kernel = forces_of<Number>(set, law, space, w.bar_actions);
-    kernel.first_action = first_action;
+    if constexpr (requires { kernel.first_action; }) kernel.first_action = first_action;
     return kernel;
   }
+}
+
+/// Forces of the edges of facets, with the arrays of all of them.
+inline LdpmEdgeForces edge_kernel(World& w) {
+  const Index first_action = w.steel.size() + w.interface.size() + w.parallel.size();
+  return edge_forces_of(w.ldpm, elements_view(w), w.bar_actions, first_action);
 }
 
 /// Calls visit(set, first_action) for each kind of links whose forces the host does not sum by
