@@ -63,6 +63,10 @@ void check_flows(const Config& config, std::vector<std::string>& problems) {
       problems.push_back(where + ".viscosity: one fluid of a case may flow, and load." +
                          first_flow(config) + " does; its region may hold several places");
   }
+  for (const LoadConfig& l : config.loads)
+    if (flows > 0 && l.kind == "fluid" && !l.flows())
+      problems.push_back("load." + l.name + ".kind: a fluid that flows, as load." +
+                         first_flow(config) + ", is the only fluid of a case");
 }
 
 }  // namespace

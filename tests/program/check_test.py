@@ -1,0 +1,34 @@
+"""What `breccia check` refuses where `run` once ended by a signal."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["BRECCIA"]
+ATTACK = pathlib.Path(__file__).resolve().parents[1] / "attack"
+
+
+class Check(unittest.TestCase):
+    def told(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copy(ATTACK / "pierced.inp", folder)
+            path = pathlib.Path(folder) / "case.toml"
+            path.write_text(text)
+            done = subprocess.run([PROGRAM, "check", path], capture_output=True, text=True)
+            return done.returncode, done.stdout + done.stderr
+
+    # Another fluid did nothing beside one that flows, and an explosive ended the program by a signal.
+    def test_a_fluid_that_flows_is_the_only_one(self):
+        text = (ATTACK / "fluids.toml").read_text()
+        self.assertEqual(self.told(text)[0], 0)
+        before, after = text.split('name = "water"\nkind = "fluid"\n', 1)
+        code, words = self.told(before + 'name = "water"\nkind = "fluid"\nviscosity = 1e-3\n' + after)
+        self.assertEqual(code, 2)
+        self.assertIn("load.anfo.kind: a fluid that flows, as load.water, is the only fluid", words)
+
+
+if __name__ == "__main__":
+    unittest.main()
