@@ -67,7 +67,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// What bash does for each command; `at` is the place of its name among the words.
+/// The lines of bash for each command; `at` is the place of its name among the words.
 std::string bash_cases(const std::vector<Command>& commands, int at) {
   std::string cases;
   const std::string indent(static_cast<std::size_t>(4 * at), ' ');

@@ -23,7 +23,7 @@ struct LdpmFrameOf {
 using LdpmFrame = LdpmFrameOf<double>;
 inline constexpr double ldpm_released = -1.0;
 
-/// What a facet does in a step, in the frame of its edge: force on b, its moment about a; a pack
+/// Action of a facet in a step, in the frame of its edge: force on b, its moment about a; a pack
 /// is eight numbers long.
 struct LdpmShare {
   double numbers[8];  ///<  [N], [N m], none
