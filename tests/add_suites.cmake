@@ -9,8 +9,13 @@ string(REGEX MATCHALL "(^|\n)[A-Za-z0-9_/]+\\.[ \t]*(#[^\n]*)?\n" suites "${list
 set(text "")
 foreach(suite IN LISTS suites)
   string(REGEX MATCH "[A-Za-z0-9_/]+" suite "${suite}")
+  # Ranks that are threads wake each other in every step, across processors at several times the cost.
+  set(affinity "")
+  if(LEVEL MATCHES "mpi|parity" AND NOT suite MATCHES "ProgramOnRanks|FateOfRank")
+    set(affinity " PROCESSOR_AFFINITY ON")
+  endif()
   string(APPEND text "add_test([==[${suite}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${suite}.*]==] --gtest_brief=1)\n"
-    "set_tests_properties([==[${suite}]==] PROPERTIES LABELS ${LEVEL} COST ${COST} TIMEOUT 900 ENVIRONMENT GOMP_SPINCOUNT=2000)\n")
+    "set_tests_properties([==[${suite}]==] PROPERTIES LABELS ${LEVEL} COST ${COST} TIMEOUT 900 ENVIRONMENT GOMP_SPINCOUNT=2000${affinity})\n")
 endforeach()
 if(text STREQUAL "")
   message(FATAL_ERROR "${PROGRAM} lists no tests")

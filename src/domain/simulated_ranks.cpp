@@ -5,6 +5,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <tuple>
@@ -18,20 +19,24 @@ struct RanksLost : std::runtime_error {
   RanksLost() : std::runtime_error("another simulated rank has failed") {}
 };
 
-/// Carries the messages: they lie in flight until someone who waits lets a random one arrive.
+/// Carries the messages: they lie in flight until a rank that waits lets random ones arrive. A rank
+/// sleeps only if nothing is in flight, and wakes when its message has arrived: wakes cost more
+/// than the steps of small scenes.
 class Carrier {
  public:
-  Carrier(std::uint64_t seed, int ranks) : waits_(static_cast<std::size_t>(ranks)), random_(seed) {}
+  Carrier(std::uint64_t seed, int ranks)
+      : sleepers_(static_cast<std::size_t>(ranks)), random_(seed) {}
 
   using Address = std::tuple<int, int, std::int64_t>;  // from, to, number of the operation
 
+  /// Nobody wakes: the sender delivers when it waits itself, or when it leaves.
   void post(const Address& address, Message message) {
     const std::lock_guard lock(mutex_);
     in_flight_.emplace_back(address, std::move(message));
-    wake(address);
   }
   Message wait_for(const Address& address) {
     std::unique_lock lock(mutex_);
+    Sleeper& self = sleepers_[static_cast<std::size_t>(std::get<1>(address))];
     while (true) {
       const auto found = arrived_.find(address);
       if (found != arrived_.end()) {
@@ -40,34 +45,45 @@ class Carrier {
         return message;
       }
       if (failed_) throw RanksLost();
-      if (in_flight_.empty())
-        waits_[static_cast<std::size_t>(std::get<1>(address))].wait(lock);
-      else
+      if (in_flight_.empty()) {
+        self.waits_for = address;
+        self.wake.wait(lock);
+        self.waits_for.reset();
+      } else {
         deliver_one();
+      }
     }
+  }
+  /// A rank has come to its end: what it sent arrives.
+  void leave() {
+    const std::lock_guard lock(mutex_);
+    while (!in_flight_.empty()) deliver_one();
   }
   void fail() {
     const std::lock_guard lock(mutex_);
     failed_ = true;
-    for (std::condition_variable& wait : waits_) wait.notify_one();
+    for (Sleeper& sleeper : sleepers_) sleeper.wake.notify_one();
   }
 
  private:
+  struct Sleeper {
+    std::condition_variable wake;
+    std::optional<Address> waits_for;
+  };
+
   void deliver_one() {
     random_ += 0x9e3779b97f4a7c15ULL;
     const std::size_t i = mixed(random_) % in_flight_.size();
-    wake(in_flight_[i].first);
+    const Address address = in_flight_[i].first;
     arrived_.insert(std::move(in_flight_[i]));
     in_flight_[i] = std::move(in_flight_.back());
     in_flight_.pop_back();
-  }
-  /// The receiver alone: whoever waits delivers until its own message is there.
-  void wake(const Address& address) {
-    waits_[static_cast<std::size_t>(std::get<1>(address))].notify_one();
+    Sleeper& to = sleepers_[static_cast<std::size_t>(std::get<1>(address))];
+    if (to.waits_for == address) to.wake.notify_one();
   }
 
   std::mutex mutex_;
-  std::vector<std::condition_variable> waits_;  ///< of each rank
+  std::vector<Sleeper> sleepers_;  ///< of each rank
   std::vector<std::pair<Address, Message>> in_flight_;
   std::map<Address, Message> arrived_;
   std::uint64_t random_;
@@ -142,6 +158,7 @@ void simulate_ranks(int count, std::uint64_t seed,
       SimulatedRank rank(carrier, r, count);
       try {
         rank_main(rank);
+        carrier.leave();
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (!first) first = std::current_exception();

@@ -76,7 +76,7 @@ class ProgramOnRanks : public testing::Test {
                                history + " ";
     const std::string end = "--steps " + std::to_string(steps) + " ";
     ASSERT_EQ(run(1, "run " + shared + end + "-o " + out("one")), 0);
-    for (const int ranks : {2, 3, 5}) {
+    for (const int ranks : {2, 5}) {  // and 3 below
       const std::string there = out("on_" + std::to_string(ranks));
       ASSERT_EQ(run(ranks, "run " + shared + end + "-o " + there), 0) << ranks;
       EXPECT_EQ(hash_in(there), hash_in(out("one"))) << ranks << " ranks";
@@ -97,13 +97,13 @@ class ProgramOnRanks : public testing::Test {
 };
 
 TEST_F(ProgramOnRanks, slab_leaves_the_same_files) {
-  compare("rc_slab", 300, "1e-5");
+  compare("rc_slab", 150, "1e-5");
 }
 TEST_F(ProgramOnRanks, disc_leaves_the_same_files) {
-  compare("brazilian_disc", 800, "2e-6");
+  compare("brazilian_disc", 300, "1e-6");
 }
 TEST_F(ProgramOnRanks, box_leaves_the_same_files) {
-  compare("moving_box", 250, "5e-3");
+  compare("moving_box", 120, "2e-3");
 }
 
 TEST_F(ProgramOnRanks, strong_benchmark_ends_in_the_state_of_one_process) {
@@ -222,13 +222,14 @@ class FateOfRank : public ProgramOnRanks {
 
   Ending suffer(int rank, const std::string& fate, const std::string& more = "",
                 const std::string& environment = "") {
-    std::ofstream(out("rank.sh")) << "#!/bin/sh\n"
-                                  << environment << "\npid=$$\necho $pid >> " << out("pids")
-                                  << "\nif [ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = " << rank
-                                  << " ]; then\n  (while ! ls " << out("run")
-                                  << "/checkpoints/step_*.br; do sleep 0.02; done\n   date +%s > "
-                                  << out("when") << "; " << fate
-                                  << ") > /dev/null 2>&1 &\nfi\nexec " << program << " \"$@\"\n";
+    std::ofstream(out("rank.sh"))
+        << "#!/bin/sh\n"
+        << environment << "\npid=$$\necho $pid >> " << out("pids")
+        << "\nif [ \"${OMPI_COMM_WORLD_RANK:-$PMI_RANK}\" = " << rank << " ]; then\n  (while ! ls "
+        << out("run")
+        << "/checkpoints/step_*.br; do kill -0 $pid || exit; sleep 0.02; done\n   date +%s > "
+        << out("when") << "; " << fate << ") > /dev/null 2>&1 &\nfi\nexec " << program
+        << " \"$@\"\n";
     fs::permissions(out("rank.sh"), fs::perms::owner_all);
     const std::string command = mpirun(3) + out("rank.sh") + " run " + slab + more + "-o " +
                                 out("run") + " > " + out("told") +
