@@ -136,7 +136,8 @@ void describe_folder(const std::string& path) {
 /// A file of a frame: what the whole frame holds.
 void describe_frame(const std::string& path) {
   const fs::path file(path);
-  const std::string folder = (file.parent_path() / "..").lexically_normal().string();
+  const fs::path above = (file.parent_path() / "..").lexically_normal();
+  const std::string folder = (above.has_filename() ? above : above.parent_path()).string();
   const std::string stem = file.stem().string();
   const std::size_t digits = stem.find_last_not_of("0123456789");
   if (!fs::exists(file)) throw IoError(path + ": cannot be read: there is no such file");

@@ -9,9 +9,8 @@ import zlib
 
 from common import CASES, Attack, HERE, arguments, checkpoints, run, tool
 
-# And "vtkhdf", by name alone: what ends there by a signal is the HDF5 library (docs/security.md).
 PARSERS = ("case", "gmsh", "abaqus", "tet_gmsh", "tet_abaqus", "stl", "csv", "spheres", "ldpm", "facets", "joints", "vtu",
-           "png", "film", "recipe", "table", "record", "units", "checkpoint")
+           "vtkhdf", "png", "film", "recipe", "table", "record", "units", "checkpoint")
 
 
 def content(path):

@@ -16,6 +16,7 @@ import numpy
 from two_balls import case_with
 
 PROGRAM = os.environ["BRECCIA"]
+FORGED = pathlib.Path(__file__).parents[1] / "attack/corpus/vtkhdf"
 CASE = case_with('output = { frames = 4, pictures = false, format = "vtkhdf" }')
 
 
@@ -98,6 +99,34 @@ class Vtkhdf(unittest.TestCase):
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit))
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
         self.assertIn("damaged", done.stderr)
+
+    def test_forged_files_end_no_command_by_a_signal(self):
+        shutil.copytree(self.path / "out", self.path / "hostile")
+        for forged in sorted(FORGED.iterdir()):
+            for path in (self.path / "hostile/fields").glob("elements*.hdf"):
+                shutil.copy(forged, path)
+            for words in (["render", "hostile", "-o", "hostile.png"], ["render", "hostile", "-o", "hostile.gif"],
+                          ["report", "hostile"], ["mesh", "info", "hostile"], ["convert", "hostile", "hostile.vtu"],
+                          ["convert", "hostile", "to_hostile", "--frames", "vtu"], ["info", "hostile/fields/elements_0000.hdf"]):
+                shutil.rmtree(self.path / "to_hostile", ignore_errors=True)
+                self.assertIn("hostile/fields/", self.breccia(*words, code=3), words)
+
+    def test_numbers_are_read_from_the_file_itself_alone(self):
+        numbers = numpy.arange(6.0).reshape(2, 3)
+        (self.path / "secret").write_bytes(numbers.tobytes())
+        shutil.copytree(self.path / "out", self.path / "other")
+        path = sorted((self.path / "other/fields").glob("elements*.hdf"))[-1]
+        for layout, code in (({}, 0), ({"chunks": (1, 3)}, 0), ({"external": [(str(self.path / "secret"), 0, 48)]}, 3)):
+            with h5py.File(path, "r+") as file:
+                del file["VTKHDF/Points"]
+                whole = file.create_dataset("VTKHDF/Points", (2, 3), "f8", **layout)
+                if code == 0:
+                    whole[:] = numbers
+            said = self.breccia("convert", "other", "other.csv", code=code)
+            if code == 0:
+                self.assertIn("3,4,5", (self.path / "other.csv").read_text())
+            else:
+                self.assertIn("Points is neither chunked nor in one piece of this file", said)
 
     def test_a_run_that_goes_on_leaves_the_same_files(self):
         words = ["-q", "--threads", "1"]

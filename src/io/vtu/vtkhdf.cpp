@@ -4,8 +4,6 @@
 #include <array>
 #include <cstring>
 #include <limits>
-#include <mutex>
-#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -17,48 +15,11 @@
 #include <hdf5.h>
 #include <zlib.h>
 
+#include "io/vtu/hdf_handle.hpp"
+#include "io/vtu/hdf_index.hpp"
+#include "io/vtu/hdf_memory.hpp"
+
 namespace breccia {
-namespace {
-
-/// HDF5 serves one thread at a time.
-std::mutex& door() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// HDF5 takes files in memory that have one name for one file.
-std::string name_in_memory() {
-  static std::int64_t count = 0;
-  return "frame" + std::to_string(++count);
-}
-
-/// An object of HDF5, closed at the end.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  hid_t id() const { return id_; }
-  bool good() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-void must(bool good) {
-  if (!good) throw DeviceError("HDF5 has no memory for a frame");
-}
-/// Throws where HDF5 answers with a negative number.
-template <class Number>
-Number made(Number number) {
-  must(number >= 0);
-  return number;
-}
 
 hid_t hdf_type(FrameNumber type) {
   switch (type) {
@@ -74,6 +35,24 @@ hid_t hdf_type(FrameNumber type) {
       return H5T_STD_U8LE;
   }
   return H5T_STD_U8LE;
+}
+
+namespace {
+
+/// HDF5 takes files in memory that have one name for one file.
+std::string name_in_memory() {
+  static std::int64_t count = 0;
+  return "frame" + std::to_string(++count);
+}
+
+void must(bool good) {
+  if (!good) throw DeviceError("HDF5 has no memory for a frame");
+}
+/// Throws where HDF5 answers with a negative number.
+template <class Number>
+Number made(Number number) {
+  must(number >= 0);
+  return number;
 }
 
 /// A text of fixed length, as VTK reads them.
@@ -171,16 +150,13 @@ void put_grid(hid_t file, const HdfGrid& grid) {
 class VtkhdfFile final : public FrameFile {
  public:
   explicit VtkhdfFile(const std::string& path) : FrameFile(path), content_(read_whole_file(path)) {
-    access_.emplace(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    file_.emplace(opened(), H5Fclose);
-    if (!file_->good()) fail("it is no HDF5 file");
+    try {
+      entries_ = hdf_index(content_);
+    } catch (const IoError& error) {
+      fail(error.what());
+    }
     points_ = count("NumberOfPoints");
     cells_ = count("NumberOfCells");
-  }
-  ~VtkhdfFile() override {
-    const std::lock_guard lock(door());
-    file_.reset();
-    access_.reset();
   }
 
   std::size_t points() const override { return points_; }
@@ -188,166 +164,99 @@ class VtkhdfFile final : public FrameFile {
 
   std::vector<double> numbers(const std::string& section, const std::string& name,
                               std::size_t items) const override {
-    const std::lock_guard lock(door());
-    return values<double>(path_of(section, name), items);
+    return values<double>(found(path_of(section, name)), items);
   }
   std::vector<std::int32_t> integers(const std::string& section, const std::string& name,
                                      std::size_t items) const override {
-    const std::lock_guard lock(door());
-    if (section != "Cells" || name != "offsets")
-      return values<std::int32_t>(path_of(section, name), items);
-    std::vector<std::int32_t> ends = values<std::int32_t>(path_of(section, name), items + 1);
+    const HdfEntry& entry = found(path_of(section, name));
+    if (section != "Cells" || name != "offsets") return values<std::int32_t>(entry, items);
+    std::vector<std::int32_t> ends = values<std::int32_t>(entry, items + 1);
     ends.erase(ends.begin());
     return ends;
   }
   std::vector<FrameField> fields(const std::string& section, std::size_t items) const override {
-    const std::lock_guard lock(door());
     std::vector<FrameField> result;
-    for (const std::string& name : names(section)) {
-      const std::string path = "/VTKHDF/" + section + "/" + name;
-      const Array array = opened_array(path, items);
-      FrameField& field =
-          result.emplace_back(FrameField{name, unit(array.data), array.components, {}});
-      field.values = values_of<float>(array, items);
-      if (array.type == FrameNumber::int32) field.integers = values_of<std::int32_t>(array, items);
+    for (const HdfEntry& entry : entries_) {
+      if (!entry.path.starts_with(section + "/")) continue;
+      FrameField& field = result.emplace_back(
+          FrameField{entry.path.substr(section.size() + 1), entry.unit, components_of(entry), {}});
+      field.values = values<float>(entry, items);
+      if (entry.type == FrameNumber::int32) field.integers = values<std::int32_t>(entry, items);
     }
     return result;
   }
   std::vector<std::string> groups() const override {
-    const std::lock_guard lock(door());
     const std::vector<char> codes = field_data<char>("groups");
     return names_in({codes.begin(), codes.end()});
   }
   std::vector<double> walls(const std::string& name) const override {
-    const std::lock_guard lock(door());
-    return field_data<double>(name.c_str());
+    return field_data<double>(name);
   }
 
  private:
-  struct Array {
-    Handle data;
-    std::size_t rows;
-    int components;
-    FrameNumber type;
-  };
-
-  /// Of the types that this program writes; others are refused.
-  static std::optional<FrameNumber> number_type(hid_t type) {
-    for (const FrameNumber each : {FrameNumber::float32, FrameNumber::float64, FrameNumber::int32,
-                                   FrameNumber::int64, FrameNumber::uint8})
-      if (H5Tequal(type, hdf_type(each)) > 0) return each;
-    return std::nullopt;
-  }
   static std::string path_of(const std::string& section, const std::string& name) {
-    return "/VTKHDF/" + (is_field(section) ? section + "/" + name : vtkhdf_name(name));
+    return is_field(section) ? section + "/" + name : vtkhdf_name(name);
   }
 
-  /// The file as it is in memory: every file comes through one door.
-  hid_t opened() {
-    if (!access_->good() || content_.empty()) return -1;
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // its messages would go to the terminal
-    if (H5Pset_fapl_core(access_->id(), 1 << 20, false) < 0) return -1;
-    if (H5Pset_file_image(access_->id(), content_.data(), content_.size()) < 0) return -1;
-    return H5Fopen(name_in_memory().c_str(), H5F_ACC_RDONLY, access_->id());
+  const HdfEntry* find(const std::string& path) const {
+    const auto at = std::find_if(entries_.begin(), entries_.end(),
+                                 [&](const HdfEntry& entry) { return entry.path == path; });
+    return at == entries_.end() ? nullptr : &*at;
+  }
+  const HdfEntry& found(const std::string& path) const {
+    const HdfEntry* const entry = find(path);
+    if (entry == nullptr) fail("has no " + path);
+    return *entry;
+  }
+  [[noreturn]] void damaged(const HdfEntry& entry) const {
+    fail("array " + entry.path + (entry.problem.empty() ? " is damaged" : " " + entry.problem));
+  }
+  int components_of(const HdfEntry& entry) const {
+    if (entry.components < 1 || entry.components > 64) damaged(entry);
+    return static_cast<int>(entry.components);
   }
 
-  bool has(const std::string& path) const {
-    for (std::size_t end = 0; end != std::string::npos;) {
-      end = path.find('/', end + 1);
-      if (H5Lexists(file_->id(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
-    }
-    return true;
+  std::string_view piece(const HdfEntry& entry, std::size_t number) const {
+    if (number >= entry.pieces.size()) damaged(entry);
+    const HdfPiece& at = entry.pieces[number];
+    if (at.begin > content_.size() || at.size > content_.size() - at.begin) damaged(entry);
+    return std::string_view(content_).substr(at.begin, at.size);
   }
 
-  /// @param rows  that it must have; none: any number
-  Array opened_array(const std::string& path, std::size_t rows,
-                     std::size_t none = std::size_t(-1)) const {
-    const std::string name = path.substr(sizeof "/VTKHDF/" - 1);
-    if (!has(path)) fail("has no " + name);
-    Array array{
-        {H5Dopen2(file_->id(), path.c_str(), H5P_DEFAULT), H5Dclose}, 0, 1, FrameNumber::uint8};
-    if (!array.data.good()) fail("array " + name + " is damaged");
-    const Handle space(H5Dget_space(array.data.id()), H5Sclose);
-    const Handle type(H5Dget_type(array.data.id()), H5Tclose);
-    std::array<hsize_t, 2> size{0, 1};
-    const int rank = space.good() ? H5Sget_simple_extent_ndims(space.id()) : -1;
-    const bool flat = (rank == 1 || rank == 2) &&
-                      H5Sget_simple_extent_dims(space.id(), size.data(), nullptr) == rank;
+  /// Bytes of an array as the file holds them, of `item` bytes a number.
+  std::string bytes_of(const HdfEntry& entry, std::size_t item) const {
+    const std::size_t row = item * static_cast<std::size_t>(components_of(entry));
     // zlib packs by 1032 at most
-    const auto number = type.good() ? number_type(type.id()) : std::nullopt;
-    const bool fits = flat && number && size[1] >= 1 && size[1] <= 64 &&
-                      size[0] / 1100 <= content_.size() && (rows == none || size[0] == rows);
-    if (!fits) fail("array " + name + " is damaged");
-    array.rows = size[0];
-    array.components = static_cast<int>(size[1]);
-    array.type = *number;
-    return array;
-  }
-
-  /// Bytes of an array as the file holds them. Chunks are unpacked here: HDF5 trusts the sizes and
-  /// filters that a damaged file states, and reads beyond its own buffers then.
-  std::string bytes_of(const Array& array, std::size_t item) const {
-    const std::size_t row = item * static_cast<std::size_t>(array.components);
-    // zlib packs by 1032 at most
-    const auto forged = [&](hsize_t rows) { return rows * row / 1100 > content_.size(); };
-    if (forged(array.rows)) fail("an array is damaged");
-    std::string bytes(array.rows * row, '\0');
-    if (bytes.empty()) return bytes;
-    const Handle how(H5Dget_create_plist(array.data.id()), H5Pclose);
-    if (!how.good()) fail("an array is damaged");
-    if (H5Pget_layout(how.id()) != H5D_CHUNKED) {
-      const Handle type(H5Dget_type(array.data.id()), H5Tclose);
-      if (H5Pget_nfilters(how.id()) != 0 ||
-          H5Dread(array.data.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
-        fail("an array is damaged");
-      return bytes;
+    const auto forged = [&](std::uint64_t rows) { return rows / 1100 > content_.size() / row; };
+    if (!entry.problem.empty() || forged(entry.rows) || forged(entry.chunk_rows)) damaged(entry);
+    const std::size_t size = entry.rows * row;
+    if (size == 0) return "";
+    if (entry.chunk_rows == 0) {
+      const std::string_view whole = piece(entry, 0);
+      if (whole.size() != size) damaged(entry);
+      return std::string(whole);
     }
-    const bool packed = only_deflate(how.id());
-    std::array<hsize_t, 2> chunk{0, 1}, place{0, 0};
-    const int rank = H5Pget_chunk(how.id(), 2, chunk.data());
-    if (rank < 1 || rank > 2 || chunk[0] == 0 || chunk[0] > (hsize_t{1} << 31) ||
-        forged(chunk[0]) || chunk[1] != static_cast<hsize_t>(array.components))
-      fail("an array is damaged");
-    std::string raw, whole(std::min<std::size_t>(chunk[0], array.rows) * row, '\0');
-    for (; place[0] < array.rows; place[0] += chunk[0]) {
-      const std::size_t rows = std::min<std::size_t>(chunk[0], array.rows - place[0]);
-      raw_chunk(array, place, raw);
+    std::string bytes(size, '\0'), unpacked;
+    for (std::size_t first = 0; first < entry.rows; first += entry.chunk_rows) {
+      const std::size_t rows = std::min<std::size_t>(entry.chunk_rows, entry.rows - first);
+      std::string_view chunk = piece(entry, first / entry.chunk_rows);
       // The last chunk is full in files of other programs; this one's ends with the array.
-      if (packed) whole.resize(chunk[0] * row);
-      const std::string_view content = packed ? unpacked(raw, whole) : std::string_view(raw);
-      if (content.size() < rows * row) fail("an array is damaged");
-      content.copy(bytes.data() + place[0] * row, rows * row);
+      if (entry.packed) {
+        unpacked.resize(entry.chunk_rows * row);
+        chunk = unpack(chunk, unpacked);
+      }
+      if (chunk.size() < rows * row) damaged(entry);
+      chunk.copy(bytes.data() + first * row, rows * row);
     }
     return bytes;
   }
-  bool only_deflate(hid_t how) const {
-    const int filters = H5Pget_nfilters(how);
-    if (filters == 0) return false;
-    unsigned flags = 0, options = 0;
-    std::size_t values = 0;
-    if (filters != 1 || H5Pget_filter2(how, 0, &flags, &values, nullptr, 0, nullptr, &options) !=
-                            H5Z_FILTER_DEFLATE)
-      fail("an array is packed by other filters than deflate");
-    return true;
-  }
-  void raw_chunk(const Array& array, const std::array<hsize_t, 2>& place, std::string& raw) const {
-    hsize_t size = 0;
-    std::uint32_t skipped = 0;
-    if (H5Dget_chunk_storage_size(array.data.id(), place.data(), &size) < 0 ||
-        size > content_.size())
-      fail("an array is damaged");
-    raw.resize(size);
-    if (size == 0 ||
-        H5Dread_chunk(array.data.id(), H5P_DEFAULT, place.data(), &skipped, raw.data()) < 0 ||
-        skipped != 0)
-      fail("an array is damaged");
-  }
-  std::string_view unpacked(const std::string& raw, std::string& to) const {
+  /// @returns nothing, which is too little, if that cannot be unpacked
+  static std::string_view unpack(std::string_view from, std::string& to) {
     uLongf size = to.size();
-    if (::uncompress(reinterpret_cast<Bytef*>(to.data()), &size,
-                     reinterpret_cast<const Bytef*>(raw.data()), raw.size()) != Z_OK)
-      fail("an array is damaged");
-    return {to.data(), size};
+    const bool good =
+        ::uncompress(reinterpret_cast<Bytef*>(to.data()), &size,
+                     reinterpret_cast<const Bytef*>(from.data()), from.size()) == Z_OK;
+    return {to.data(), good ? size : 0};
   }
 
   template <class From, class To>
@@ -372,78 +281,37 @@ class VtkhdfFile final : public FrameFile {
   }
 
   template <class T>
-  std::vector<T> values_of(const Array& array, std::size_t rows) const {
-    if (array.rows != rows) fail("an array is damaged");
-    switch (array.type) {
+  std::vector<T> values(const HdfEntry& entry, std::size_t rows) const {
+    if (entry.rows != rows) damaged(entry);
+    switch (entry.type) {
       case FrameNumber::float32:
-        return converted<float, T>(bytes_of(array, 4));
+        return converted<float, T>(bytes_of(entry, 4));
       case FrameNumber::float64:
-        return converted<double, T>(bytes_of(array, 8));
+        return converted<double, T>(bytes_of(entry, 8));
       case FrameNumber::int32:
-        return converted<std::int32_t, T>(bytes_of(array, 4));
+        return converted<std::int32_t, T>(bytes_of(entry, 4));
       case FrameNumber::int64:
-        return converted<std::int64_t, T>(bytes_of(array, 8));
+        return converted<std::int64_t, T>(bytes_of(entry, 8));
       case FrameNumber::uint8:
         break;
     }
-    return converted<std::uint8_t, T>(bytes_of(array, 1));
+    return converted<std::uint8_t, T>(bytes_of(entry, 1));
   }
   template <class T>
-  std::vector<T> values(const std::string& path, std::size_t rows) const {
-    return values_of<T>(opened_array(path, rows), rows);
-  }
-  template <class T>
-  std::vector<T> field_data(const char* name) const {
-    const std::string path = std::string("/VTKHDF/FieldData/") + name;
-    if (!has(path)) return {};
-    const Array array = opened_array(path, std::size_t(-1));
-    return values_of<T>(array, array.rows);
+  std::vector<T> field_data(const std::string& name) const {
+    const HdfEntry* const entry = find("FieldData/" + name);
+    return entry == nullptr ? std::vector<T>{} : values<T>(*entry, entry->rows);
   }
 
   std::size_t count(const char* name) const {
-    const std::int64_t number =
-        values<std::int64_t>(std::string("/VTKHDF/") + name, 1).front();  // of one part
+    const std::int64_t number = values<std::int64_t>(found(name), 1).front();  // of one part
     if (number < 0 || number > std::int64_t{1} << 40)
       fail(std::string("its ") + name + " is damaged");
     return static_cast<std::size_t>(number);
   }
 
-  std::vector<std::string> names(const std::string& section) const {
-    const std::string path = "/VTKHDF/" + section;
-    if (!has(path)) return {};
-    const Handle group(H5Gopen2(file_->id(), path.c_str(), H5P_DEFAULT), H5Gclose);
-    H5G_info_t info{};
-    if (!group.good() || H5Gget_info(group.id(), &info) < 0) fail("its " + section + " is damaged");
-    std::vector<std::string> result;
-    for (hsize_t i = 0; i < std::min<hsize_t>(info.nlinks, 10'000); ++i) {
-      const auto name_of = [&](H5_index_t order, char* to, std::size_t size) {
-        return H5Lget_name_by_idx(group.id(), ".", order, H5_ITER_INC, i, to, size, H5P_DEFAULT);
-      };
-      std::array<char, 256> name{};  // files of other programs have no order but the alphabet
-      if (name_of(H5_INDEX_CRT_ORDER, name.data(), name.size()) < 0 &&
-          name_of(H5_INDEX_NAME, name.data(), name.size()) < 0)
-        fail("its " + section + " is damaged");
-      result.emplace_back(name.data());
-    }
-    return result;
-  }
-
-  static std::string unit(const Handle& data) {
-    if (H5Aexists(data.id(), "units") <= 0) return "";
-    const Handle text(H5Aopen(data.id(), "units", H5P_DEFAULT), H5Aclose);
-    const Handle type(text.good() ? H5Aget_type(text.id()) : -1, H5Tclose);
-    if (!type.good() || H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0)
-      return "";
-    std::string unit(std::min<std::size_t>(H5Tget_size(type.id()), 1 << 10), '\0');
-    const Handle space(H5Aget_space(text.id()), H5Sclose);
-    if (unit.size() != H5Tget_size(type.id()) || H5Sget_simple_extent_npoints(space.id()) != 1 ||
-        H5Aread(text.id(), type.id(), unit.data()) < 0)
-      return "";
-    return unit.substr(0, unit.find('\0'));
-  }
-
   std::string content_;
-  std::optional<Handle> access_, file_;
+  std::vector<HdfEntry> entries_;
   std::size_t points_ = 0, cells_ = 0;
 };
 
@@ -454,7 +322,7 @@ bool has_hdf5() {
 }
 
 std::string vtkhdf_content(const HdfGrid& grid) {
-  const std::lock_guard lock(door());
+  const std::lock_guard lock(hdf_door());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle access(made(H5Pcreate(H5P_FILE_ACCESS)), H5Pclose);
   made(H5Pset_fapl_core(access.id(), 1 << 20, false));  // in memory, nothing on the disk
@@ -471,7 +339,6 @@ std::string vtkhdf_content(const HdfGrid& grid) {
 }
 
 std::unique_ptr<FrameFile> open_vtkhdf(const std::string& path) {
-  const std::lock_guard lock(door());
   return std::make_unique<VtkhdfFile>(path);
 }
 
