@@ -112,7 +112,7 @@ struct DomainConfig {
 /// [[probe]]: one column of history.csv
 struct ProbeConfig {
   std::string name;
-  std::string on;  ///< body, support or wall; empty: all elements
+  std::string on;  ///< body, support, wall or bolt; empty: all elements
   std::string quantity = "velocity_z";
   std::string reduce = "mean";
   std::vector<double> min{}, max{};  ///< corners of a box in space; empty: no box  [m]
@@ -125,8 +125,8 @@ struct ProbeConfig {
     key("on", on,
         "body or support whose elements are read, or a wall: its force (that of all elements on "
         "it), "
-        "position, velocity; empty reads all elements");
-    key("quantity", quantity, quantity_words(in_space | in_plane | of_wall | in_solid),
+        "position, velocity; or a bolt, each of its segments; empty reads all elements");
+    key("quantity", quantity, quantity_words(in_space | in_plane | of_wall | of_bolt | in_solid),
         "what is read from each element; stress, strain and displacement of a region, broken links "
         "or joints, opening and slip of cracks: docs/measures.md");
     key("reduce", reduce, OneOf{"mean", "sum", "min", "max"}, "how the elements' values combine");

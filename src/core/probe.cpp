@@ -28,13 +28,14 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of) {
     else
       add(".quantity = \"" + p.quantity + "\" is none " +
           (of == of_wall    ? "of a wall"
+           : of == of_bolt  ? "of a bolt"
            : of == in_space ? "of spheres"
            : of == in_solid ? "of tetrahedra"
                             : "of a plane case") +
           "; allowed: " + allowed(of));
     return problems;
   }
-  const std::size_t axes = of == in_plane ? 2 : 3;
+  const std::size_t axes = of == in_plane || of == of_bolt ? 2 : 3;
   const auto length = [&](const char* key, const std::vector<double>& value) {
     if (!value.empty() && value.size() != axes)
       add(std::string(".") + key + ": a point has " + std::to_string(axes) + " coordinates");

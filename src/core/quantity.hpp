@@ -26,7 +26,9 @@ struct Quantity {
     damage,
     broken,
     opening,
-    slip
+    slip,
+    axial_force,
+    shear_force
   };
   Kind kind;
   int axis = -1;   ///< 0, 1, 2: x, y, z; -1: it has no direction
@@ -39,6 +41,7 @@ enum Bearer : unsigned {
   in_plane = 2,  ///< corners, triangles and joints of the FDEM
   of_wall = 4,   ///< a wall of the DEM
   in_solid = 8,  ///< corners, tetrahedra and joints of the FDEM in three dimensions
+  of_bolt = 16,  ///< a bolt of the FDEM in the plane
   in_3d = in_space | in_solid,
   in_mesh = in_plane | in_solid
 };
@@ -93,6 +96,8 @@ inline constexpr NamedQuantity quantities[] = {
     {"broken", "-", {Quantity::Kind::broken}, in_3d | in_plane},
     {"opening", "m", {Quantity::Kind::opening}, in_mesh},
     {"slip", "m", {Quantity::Kind::slip}, in_mesh},
+    {"axial_force", "N", {Quantity::Kind::axial_force}, of_bolt},
+    {"shear_force", "N", {Quantity::Kind::shear_force}, of_bolt},
 };
 
 /// @throws InputError if it is none

@@ -2,9 +2,12 @@
 // Rock bolts in plane cases: bars tied to triangles, whose forces act on their corners as loads do.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/case_config.hpp"
+#include "core/probe.hpp"
 #include "exec/buffer.hpp"
 #include "fdem/bolts/chain.hpp"
 #include "fdem/triangles/loads.hpp"
@@ -18,6 +21,7 @@ struct World;
 struct BoltPlace {
   Index triangle;  ///< of the whole mesh  [-]
   std::array<double, 3> share;
+  Vec2 point{};  ///< at the start  [m]
 };
 
 /// Constants of a bolt.
@@ -43,15 +47,19 @@ void pull_bolts(World& part);
 /// How a node of a bolt is.
 struct BoltRow {
   std::size_t bolt;
-  Vec2 place;    ///<  [m]
-  double force;  ///< of the segment that begins here; 0 at the end  [N/m]
-  double slip;   ///<  [m]
+  Vec2 place;            ///<  [m]
+  double force, across;  ///< of the segment that begins here; 0 at the end  [N/m]
+  double slip;           ///<  [m]
 };
 std::vector<BoltRow> bolt_rows(const World& whole);
 
-/// Energies of a bolt: stored, spent by yield, rubbed off in its bond.  [J/m]
+/// What the segments of a bolt bear, those in the probe's box; none: the probe reads no bolt. On
+/// ranks the first one reads it.
+std::optional<Readings> read_bolt(const World& part, const ProbeConfig& probe);
+
+/// Energies of a bolt: stored, spent by yield, rubbed off in its bond, spent across.  [J/m]
 struct BoltEnergy {
-  double elastic = 0.0, yielded = 0.0, rubbed = 0.0;
+  double elastic = 0.0, yielded = 0.0, rubbed = 0.0, crushed = 0.0;
 };
 std::vector<BoltEnergy> bolt_energies(const World& whole);
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "fdem/bolts/dowel.hpp"
+
 namespace breccia::fdem {
 
 /// Constants of a bolt and its bond, per unit thickness.
@@ -12,6 +14,7 @@ struct BoltLaw {
   double yield = 0.0;           ///< f_y A  [N/m]
   double bond_stiffness = 0.0;  ///< of a length of it  [N/m3]
   double bond_strength = 0.0;   ///< of a length of it  [N/m2]
+  Dowel dowel{};                ///< what it bears across
 };
 
 /// A node of a bolt, and the segment from it to the next node of the same bolt.
@@ -22,6 +25,13 @@ struct BoltNode {
   double rest = 0.0;     ///< L0: length of the segment without force; 0: it is not there yet  [m]
   double yielded = 0.0;  ///< work that the segment's yielding took  [J/m]
   double rubbed = 0.0;   ///< work that the bond's slip took  [J/m]
+  double force = 0.0;    ///< N of the segment, pulled above 0  [N/m]
+  double across = 0.0;   ///< Q of the segment  [N/m]
+  double sheared = 0.0;  ///< the part of its offset that stays  [m]
+  double crushed = 0.0;  ///< work that that took  [J/m]
+  /// The segment as it came, along edges 0 to 1 and 0 to 2 of the triangle where it begins, and of
+  /// the one where it ends.  [-]
+  Vec2 begin{}, end{};
 };
 
 /// The nodes of one bolt. With the distances L_j of the rock's points
@@ -34,7 +44,7 @@ struct BoltNode {
 /// with half of both segments as l_i. The bar has no mass of its own: it is in balance at any time.
 /// Strain beyond the yield goes into p, slip beyond the bond into r. Rock feels N_i t_i - N_i-1
 /// t_i-1 at node i, with the directions t of the segments: what the bar does to it has neither a
-/// sum nor a moment.
+/// sum nor a moment. What it bears across: dowel.hpp.
 class BoltChain {
  public:
   /// @param length  L_j of each segment, one less than the nodes

@@ -39,9 +39,9 @@ BoltPlace place_of(const Model& model, const Vec2& point) {
     for (std::size_t k = 0; k < 3; ++k)
       share[k] = cross(corner(k + 1) - point, corner(k + 2) - point) / twice;
     if (*std::min_element(share.begin(), share.end()) >= at_the_rim)
-      return {static_cast<Index>(t), share};
+      return {static_cast<Index>(t), share, point};
   }
-  return {-1, {}};
+  return {-1, {}, point};
 }
 
 std::string short_text(double number) {
@@ -51,9 +51,26 @@ std::string short_text(double number) {
 }
 
 BoltLaw law_of(const BoltConfig& bolt) {
-  const double area = 0.25 * pi * bolt.diameter * bolt.diameter / bolt.spacing;
-  return {bolt.young * area, bolt.yield * area, bolt.bond_stiffness / bolt.spacing,
-          bolt.bond_strength / bolt.spacing};
+  const double square = bolt.diameter * bolt.diameter, area = 0.25 * pi * square / bolt.spacing;
+  const double bending = bolt.young * pi / 64.0 * square * square;  // E I
+  const double beta = std::sqrt(std::sqrt(0.25 * bolt.bedding / bending));
+  return {bolt.young * area,
+          bolt.yield * area,
+          bolt.bond_stiffness / bolt.spacing,
+          bolt.bond_strength / bolt.spacing,
+          {bending * beta * beta * beta / bolt.spacing,
+           1.27 * square * std::sqrt(bolt.grout * bolt.yield) / bolt.spacing}};
+}
+
+/// The problem of a segment that turns triangles too stiffly as it acts across; empty: none.
+/// @param height  of the flattest triangle at its ends
+std::string problem_across(const std::string& where, const BoltLaw& law, double segment,
+                           double height, double corners) {
+  const double turns = 1.0 + 0.5 * segment / height;
+  if (law.dowel.stiffness * turns * turns <= corners) return "";
+  return where + ".bedding: segments of " + short_text(segment) + " m that act across with " +
+         short_text(law.dowel.stiffness) + " N/m2 turn triangles " + short_text(height) +
+         " m high more stiffly than their corners are; shorter segments, or a softer bedding";
 }
 
 /// The problem of segments that pull at corners of this stiffness; empty: none.
@@ -83,6 +100,13 @@ void look_at(const Bolt& bolt, double segment, const BoltPlace& place, const Vec
   const std::string problem =
       problem_of_segment(where, bolt.law, segment, Shape::corner_stiffness(laws[law], {}));
   if (!problem.empty()) throw InputError(problem);
+  const auto corner = [&](std::size_t k) { return model.point[at(model.triangle[t][k % 3])]; };
+  double longest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, norm(corner(k + 1) - corner(k)));
+  const double height = cross(corner(1) - corner(0), corner(2) - corner(0)) / longest;
+  const std::string turned =
+      problem_across(where, bolt.law, segment, height, Shape::corner_stiffness(laws[law], {}));
+  if (!turned.empty()) throw InputError(turned);
 }
 
 /// The stiffest corners that the case may have; no limit where its materials are in error.

@@ -86,8 +86,11 @@ std::vector<std::string> case_problems(const Config& config) {
   check_flows(config, problems);
   check_gas(config, problems);
   for (const std::string& problem : bolt_problems(config)) add(problem);
-  for (const ProbeConfig& p : config.probes)
-    for (const std::string& problem : probe_problems(p, in_plane)) add(problem);
+  for (const ProbeConfig& p : config.probes) {
+    const auto reads = [&](const BoltConfig& bolt) { return bolt.name == p.on; };
+    const bool bolt = std::any_of(config.bolts.begin(), config.bolts.end(), reads);
+    for (const std::string& problem : probe_problems(p, bolt ? of_bolt : in_plane)) add(problem);
+  }
   for (const std::string& problem : stage_problems(config)) add(problem);
   return problems;
 }

@@ -263,6 +263,8 @@ struct BoltConfig {
   double yield = 500e6;          ///<  [Pa]
   double bond_stiffness = 1e9;   ///< of one bolt  [N/m2]
   double bond_strength = 500e3;  ///< of one bolt  [N/m]
+  double bedding = 0.0;          ///< of one bolt across; 0: it does not act across  [N/m2]
+  double grout = 30e6;           ///< f_c  [Pa]
   std::string anchored = "none";
   std::string stage;
 
@@ -283,6 +285,13 @@ struct BoltConfig {
         "force along the bar, per length of one bolt and per slip of the bar against the rock");
     key("bond_strength", bond_strength, "N/m", Range{1e-6, 1e15},
         "force per length of one bolt at which its bond slips on without growing");
+    key("bedding", bedding, "N/m2", Range{0.0, 1e15},
+        "force across the bar, per length of one bolt and per way of the bar into the grout: where "
+        "a joint slides, it resists as a beam on an elastic foundation (dowel action); 0: it does "
+        "not");
+    key("grout", grout, "Pa", sane_strength,
+        "compressive strength f_c of grout and rock: across, one bolt bears at most 1.27 d^2 "
+        "sqrt(f_c yield)");
     key("anchored", anchored, OneOf{"none", "start", "end", "both"},
         "ends at which it does not slip: a plate with a nut, an anchor");
     key("stage", stage,

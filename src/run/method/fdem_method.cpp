@@ -88,10 +88,13 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
     return tables;
   }
   static Table bolt_table(const World& w) {
-    Table bolts{"bolts", {"bolt", "x", "y", "force", "slip"}, {"-", "m", "m", "N/m", "m"}, {}};
+    Table bolts{"bolts",
+                {"bolt", "x", "y", "force", "across", "slip"},
+                {"-", "m", "m", "N/m", "N/m", "m"},
+                {}};
     for (const fdem::BoltRow& row : fdem::bolt_rows(w))
-      bolts.rows.push_back(
-          {static_cast<double>(row.bolt), row.place.x, row.place.y, row.force, row.slip});
+      bolts.rows.push_back({static_cast<double>(row.bolt), row.place.x, row.place.y, row.force,
+                            row.across, row.slip});
     return bolts;
   }
   static void add_bolts(const World& w, std::vector<Fact>& facts) {
@@ -99,18 +102,21 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
     const std::vector<fdem::BoltEnergy> energies = fdem::bolt_energies(w);
     const std::vector<fdem::BoltRow> rows = fdem::bolt_rows(w);
     for (std::size_t b = 0; b < energies.size(); ++b) {
-      double force = 0.0, slip = 0.0;
+      double force = 0.0, across = 0.0, slip = 0.0;
       for (const fdem::BoltRow& row : rows)
         if (row.bolt == b) {
           if (std::abs(row.force) > std::abs(force)) force = row.force;
+          if (std::abs(row.across) > std::abs(across)) across = row.across;
           slip = std::max(slip, std::abs(row.slip));
         }
       const std::string path = "bolt." + w.given->bolts[b].name + ".";
       facts.push_back({path + "force", force});
+      facts.push_back({path + "across", across});
       facts.push_back({path + "slip", slip});
       facts.push_back({path + "elastic", energies[b].elastic});
       facts.push_back({path + "yielded", energies[b].yielded});
       facts.push_back({path + "rubbed", energies[b].rubbed});
+      facts.push_back({path + "crushed", energies[b].crushed});
     }
   }
   std::vector<EmissionEvent> events(const World& w) const {

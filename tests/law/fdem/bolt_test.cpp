@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "fdem/bolts/chain.hpp"
@@ -96,6 +97,54 @@ TEST(Bolt, gives_back_what_it_holds_and_no_more) {
     EXPECT_GT(bolt.taken(), bolt.elastic());
     EXPECT_NEAR(bolt.elastic() + bolt.taken(), work, 1e-3 * work) << bond;
   }
+}
+
+/// Deflection of the end of a long beam in grout, pushed across there with 1 N/m, by finite
+/// differences: bending and grout hold the least energy. Elimination of a band of five.
+double pushed_end(double bending, double bedding, double length, std::size_t pieces) {
+  const double h = length / static_cast<double>(pieces), bent = bending / (h * h * h);
+  std::vector<std::array<double, 3>> band(pieces, {0.0, 0.0, 0.0});  // diagonal and two above
+  for (std::size_t i = 0; i < pieces; ++i) band[i][0] = bedding * h * (i == 0 ? 0.5 : 1.0);
+  for (std::size_t i = 1; i < pieces; ++i) {
+    const double part[3] = {1.0, -2.0, 1.0};
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = a; b < 3; ++b)
+        if (i - 1 + b < pieces) band[i - 1 + a][b - a] += bent * part[a] * part[b];
+  }
+  // From the far end, which is held, to the one that is pushed: only there is a right-hand side.
+  for (std::size_t i = pieces; i-- > 1;)
+    for (std::size_t a = 1; a <= 2 && a <= i; ++a) {
+      const double share = band[i - a][a] / band[i][0];
+      band[i - a][0] -= share * band[i - a][a];
+      if (a == 1 && i >= 2) band[i - 2][1] -= share * band[i - 2][2];
+    }
+  return 1.0 / band[0][0];
+}
+
+/// Both sides of a joint bend alike: half of the offset each.
+TEST(Bolt, is_as_stiff_across_as_a_beam_in_grout) {
+  constexpr double bending = 98.0, bedding = 5e9;
+  const double beta = std::sqrt(std::sqrt(0.25 * bedding / bending));
+  const double exact = bending * beta * beta * beta;
+  EXPECT_NEAR(0.5 / pushed_end(bending, bedding, 8.0 / beta, 800), exact, 5e-3 * exact);
+}
+
+/// What turns and strains evenly, carries a bar along; what slips, does not.
+TEST(Bolt, lies_out_of_line_by_slip_alone) {
+  const Vec2 way{0.3, 0.4};
+  const auto mapped = [](const Vec2& v) { return Vec2{0.6 * v.x - 0.9 * v.y, 0.7 * v.x + v.y}; };
+  EXPECT_NEAR(Offset::of(mapped(way), mapped(way), mapped(way)).way, 0.0, 1e-16);
+  const Vec2 slip = 1e-3 * Vec2{-0.8, 0.6};
+  EXPECT_NEAR(Offset::of(way + slip, way, way).way, 1e-3, 1e-15);
+  // Its slope by the way between its ends, and by what carries its ends, is what its forces say.
+  const Vec2 one{0.29, 0.42}, other{0.33, 0.37};
+  const auto slope = [&](const auto& at) { return (at(1e-6) - at(-1e-6)) / 2e-6; };
+  const Offset at = Offset::of(way, one, other);
+  const Vec2 aside{0.2, 0.5};
+  EXPECT_NEAR(slope([&](double e) { return Offset::of(way + e * aside, one, other).way; }),
+              dot(at.across, aside), 1e-9);
+  EXPECT_NEAR(slope([&](double e) { return Offset::of(way, one + e * aside, other).way; }),
+              -at.lever * dot(at.across, aside), 1e-9);
 }
 
 }  // namespace bolt_test

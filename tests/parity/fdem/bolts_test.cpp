@@ -4,6 +4,7 @@
 #include "fdem/setup/bolts.hpp"
 
 #include "fdem/setup/check_case.hpp"
+#include "math/constants.hpp"
 #include "parity/staged_runs.hpp"
 #include "physics/fdem/scene.hpp"
 
@@ -61,7 +62,9 @@ TEST(Bolts, pull_with_no_sum_and_no_moment) {
   s.config.supports.clear();
   s.config.gravity = {};
   s.config.local_damping = 0.0;
+  s.config.bolts[0].bedding = 5e9;
   fdem::World w = s.world();
+  EXPECT_GT(w.given->bolts[0].law.dowel.stiffness, 0.0);
   fdem::testing::stir(w, [](const Vec2& x) {
     return x.y > 0.0 ? Vec2{0.3 * x.y, 0.1 - 0.5 * x.x} : Vec2{-0.2, -0.1 + x.x};
   });
@@ -73,12 +76,42 @@ TEST(Bolts, pull_with_no_sum_and_no_moment) {
   EXPECT_NEAR(after.angular, before.angular, 1e-8 * before.size);
 }
 
+/// One half slides past the other: E I beta^3 times the way, until the bar yields in bending and
+/// the grout is crushed.
+TEST(Bolts, resist_a_joint_that_slides) {
+  fdem::testing::Scene s = hanging();
+  s.config.gravity = {};
+  s.config.local_damping = 0.8;
+  s.config.materials[0].friction = 0.0;
+  fdem::BoltConfig& bolt = s.config.bolts[0];
+  bolt.points = {{0.0, 0.08}, {0.0, -0.08}};
+  bolt.bedding = 5e9;
+  s.config.materials[0].damping = 0.5;
+  fdem::SupportConfig& block = s.support("block", {-far, -far}, {far, -0.0499}, {"x", "y"});
+  block.velocity = Vec2{0.2, 0.0};
+  block.history.ramp = 5e-4;
+  s.config.probes = {{"across", "b", "shear_force", "max"}, {"block", "block", "force_x", "sum"}};
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  const double bending = 200e9 * pi / 64.0 * 1e-8;
+  const double stiffness = std::pow(bending, 0.25) * std::pow(0.25 * 5e9, 0.75);
+  const double strength = 1.27 * 1e-4 * std::sqrt(30e6 * 500e6);
+  while (method->time() < 2e-3) method->advance({2e-3, 1'000'000});
+  const double bears = stiffness * 0.2 * (method->time() - 2.5e-4);
+  EXPECT_NEAR(std::abs(method->probes()[0]), bears, 0.01 * bears);
+  EXPECT_NEAR(std::abs(method->probes()[1]), bears, 0.02 * bears);
+  while (method->time() < 5e-3) method->advance({5e-3, 1'000'000});
+  EXPECT_NEAR(std::abs(method->probes()[0]), strength, 1e-9 * strength);
+  EXPECT_GT(fact_of(*method, "bolt.b.crushed"), 0.0);
+  EXPECT_LT(method->energy().error_relative, 1e-2);
+}
+
 /// Two stages; the bolt comes with the second.
 fdem::testing::Scene staged() {
   fdem::testing::Scene s = hanging();
   s.config.gravity = {0.0, -5000.0};
   s.config.bolts[0].stage = "bolted";
   s.config.bolts[0].bond_strength = 1e5;
+  s.config.bolts[0].bedding = 5e9;
   fdem::StageConfig bare, bolted;
   bare.name = "bare";
   bare.until = 5e-5;
