@@ -12,7 +12,8 @@
 //   criterion  from sigma_n, tau (means over the joint) and sigma_l (along the edge, from its
 //   stretch) torn       sigma = z(D) sigma_0 o/o_m, |tau| = z(D) tau_0 |s|/s_m  [Pa],
 //              D = |(<o - o_0>, <|s| - s_0>)|/o_t  [-]
-//   sheared    as by its own tractions with c_0 = |tau_0| + min(sigma_0, 0) tan phi for c  [Pa]
+//   sheared    as by its own tractions with c_0 = |tau_0| + min(sigma_0, 0) tan phi for c  [Pa],
+//              but friction sticks and slips
 // In uniaxial tension (sigma_0, tau_0) = f_t cos theta (cos theta, sin theta): a vector of f_t per
 // length across the tension, along the tension; opened along it, it takes G_I per that length,
 // whatever theta.
@@ -116,23 +117,38 @@ BR_HD inline void fail(const JointBond& law, double strength, double h, Failure 
     state.slip = state.slid = max(slid, 1e-4 * unit * least);
     return;
   }
-  const double rest = (1.0 - z) * law.residual * pressure, rubs = law.friction * pressure;
+  // Friction bears what it can, c_0 the rest, on the secant to where it is now.
+  const double least = 0.02 * law.cohesion * strength;
+  const double most = pressure * (z * law.friction + (1.0 - z) * law.residual);
+  const double rubs = min(most, max(0.0, shear - z * least));
   state.normal = 0.0;
-  state.shear = max((shear - rest) / z - rubs, 0.02 * law.cohesion * strength);
-  // On the secant to where it yields: its slip and traction are on it.
-  const double resists = state.shear + rubs, share = (z * resists + rest) / resists;
-  state.slid = shear > 0.0 ? share * slid / shear : unit;
-  state.slip = 0.0;
+  state.shear = max((shear - rubs) / z, least);
+  state.stuck = slip - copysign(rubs * unit, slip);
+  state.slip = slid;
+  if (shear < z * least) state.slip = shear > 0.0 ? slid * z * least / shear : unit * least;
+  const double rest = (1.0 - z) * law.residual * pressure;
+  const double resists = state.shear + law.friction * pressure;
+  state.slid = shear > 0.0 ? (z + rest / resists) * slid / shear : unit;
 }
 
-/// Torn (above). Pressed again it rubs by phi, fading to phi_r, on a spring of its stiffness that
-/// sticks and slips: a friction that only followed |s| would give energy whenever pressure and slip
-/// take turns.
-struct TornTraction {
+/// Of a pressed point that has failed: a spring of its stiffness that sticks and slips. A friction
+/// that only followed |s| would give energy whenever pressure and slip take turns: joints of steep
+/// friction would feed themselves and all around them.
+/// @param z  what the point keeps of phi; phi_r is the rest  [-]
+BR_HD inline double friction_traction(const JointBond& law, double slope, double pressure, double z,
+                                      double slip, double& stuck) {
+  const double most = -pressure * (z * law.friction + (1.0 - z) * law.residual);
+  const double friction = max(-most, min(most, slope * (slip - stuck)));
+  stuck = slip - friction / slope;
+  return friction;
+}
+
+struct FailedTraction {
   double normal, kept, friction;  ///< the last two along the slip  [Pa]
 };
-BR_HD inline TornTraction torn_traction(const JointBond& law, double h, double opening, double slip,
-                                        BondState<double>& state) {
+/// Torn (above). Pressed again it rubs by phi, fading to phi_r.
+BR_HD inline FailedTraction torn_traction(const JointBond& law, double h, double opening,
+                                          double slip, BondState<double>& state) {
   const double slid = abs(slip), slope = law.stiffness / h;
   const double open = max(0.0, opening - state.opened), slide = max(0.0, slid - state.slid);
   const double per_length = law.tension / law.softening_open;  // 1/o_t
@@ -140,35 +156,42 @@ BR_HD inline TornTraction torn_traction(const JointBond& law, double h, double o
   state.opening = max(state.opening, opening);
   state.slip = max(state.slip, slid);
   const double z = softening(state.damage), pressure = slope * min(0.0, opening);
-  const double most = -pressure * (z * law.friction + (1.0 - z) * law.residual);
-  TornTraction t{};
+  FailedTraction t{};
   t.normal = opening < 0.0 ? pressure : z * state.normal * min(1.0, opening / state.opening);
   t.kept = copysign(z * state.shear * min(1.0, slid / state.slip), slip);
-  t.friction = max(-most, min(most, slope * (slip - state.stuck)));
-  state.stuck = slip - t.friction / slope;
+  t.friction = friction_traction(law, slope, pressure, z, slip, state.stuck);
   return t;
 }
 
 /// Sheared (above).
-BR_HD inline BondTraction<double> sheared_response(const JointBond& law, double strength, double h,
-                                                   double opening, double slip,
-                                                   BondState<double>& state) {
-  const double slid = abs(slip), tension = law.tension * strength;
-  const double o_p = 2.0 * h * tension / law.stiffness;
-  const double pressure = law.stiffness / h * min(0.0, opening);
+BR_HD inline FailedTraction sheared_traction(const JointBond& law, double strength, double h,
+                                             double opening, double slip,
+                                             BondState<double>& state) {
+  const double slid = abs(slip), slope = law.stiffness / h, tension = law.tension * strength;
+  const double o_p = 2.0 * tension / slope, pressure = slope * min(0.0, opening);
   const double resists = state.shear - law.friction * pressure, yield = resists * state.slid;
   const double over_o = max(0.0, opening - o_p), over_s = max(0.0, slid - yield);
   if (over_o > 0.0) state.opening = max(state.opening, opening);
-  if (over_s > 0.0) state.slip = max(state.slip, slid);
+  state.slip = max(state.slip, slid);
   const double x = over_o * law.tension / law.softening_open;
   const double y = over_s * resists / (law.softening_slide * strength);
   state.damage = max(state.damage, min(1.0, sqrt(x * x + y * y)));
   const double z = softening(state.damage), r = opening / o_p;
   double pull = r < 1.0 ? 2.0 * r - r * r : 1.0;
   if (state.opening > 0.0) pull = opening / state.opening;
-  const double kept = z * state.shear - pressure * (z * law.friction + (1.0 - z) * law.residual);
-  return {opening < 0.0 ? pressure : z * tension * pull,
-          copysign(kept * min(1.0, slid / max(state.slip, yield)), slip)};
+  FailedTraction t{};
+  t.normal = opening < 0.0 ? pressure : z * tension * pull;
+  t.kept = copysign(z * state.shear * min(1.0, slid / state.slip), slip);
+  t.friction = friction_traction(law, slope, pressure, z, slip, state.stuck);
+  return t;
+}
+
+/// Of a point that has failed, torn or sheared.
+BR_HD inline FailedTraction failed_traction(const JointBond& law, double strength, double h,
+                                            double opening, double slip, BondState<double>& state) {
+  return failure_of(state) == Failure::torn
+             ? torn_traction(law, h, opening, slip, state)
+             : sheared_traction(law, strength, h, opening, slip, state);
 }
 
 /// The law in full, of an integration point of either criterion. @param strength  of this joint
@@ -176,17 +199,10 @@ BR_HD inline BondTraction<double> sheared_response(const JointBond& law, double 
 /// length [m]
 BR_HD inline BondTraction<double> response(const JointBond& law, double strength, double h,
                                            double opening, double slip, BondState<double>& state) {
-  switch (failure_of(state)) {
-    case Failure::torn: {
-      const TornTraction t = torn_traction(law, h, opening, slip, state);
-      return {t.normal, t.kept + t.friction};
-    }
-    case Failure::sheared:
-      return sheared_response(law, strength, h, opening, slip, state);
-    case Failure::none:
-      break;
-  }
-  return edge_response(law, strength, h, opening, slip, state);
+  if (failure_of(state) == Failure::none)
+    return edge_response(law, strength, h, opening, slip, state);
+  const FailedTraction t = failed_traction(law, strength, h, opening, slip, state);
+  return {t.normal, t.kept + t.friction};
 }
 
 /// Energy that a point would give back if it were unloaded now, by direction.  [J/m2]
@@ -195,13 +211,9 @@ BR_HD inline StoredEnergy stored(const JointBond& law, double strength, double h
   if (failure_of(state) == Failure::none)
     return edge_stored(law, strength, h, opening, slip, state);
   BondState<double> same = state;
-  if (failure_of(state) == Failure::torn) {
-    const TornTraction t = torn_traction(law, h, opening, slip, same);
-    return {0.5 * t.normal * opening,
-            0.5 * t.kept * slip + 0.5 * t.friction * t.friction * h / law.stiffness};
-  }
-  const BondTraction<double> t = response(law, strength, h, opening, slip, same);
-  return {0.5 * t.normal * opening, 0.5 * t.shear * slip};
+  const FailedTraction t = failed_traction(law, strength, h, opening, slip, same);
+  return {0.5 * t.normal * opening,
+          0.5 * t.kept * slip + 0.5 * t.friction * t.friction * h / law.stiffness};
 }
 
 }  // namespace breccia::fdem
