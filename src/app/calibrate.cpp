@@ -71,8 +71,9 @@ struct CalibrateCommand {
       replace_file(out + "/calibration.svg", svg_of({calibration.plot()}));
       replace_file(out + "/material.toml", calibration.block(circumstances));
     }
+    const std::string missed = calibration.obstacles();
     fmt::print("{}  material {}/material.toml  steps {}/calibration.md\n",
-               calibration.converged() ? "every target is met" : "not every target is met",
+               missed.empty() ? "every target is met" : "not every target is met, " + missed,
                harmless(out), harmless(out));
     constexpr int check_failed = 9;
     return exit_code != 0 ? exit_code : calibration.converged() ? 0 : check_failed;

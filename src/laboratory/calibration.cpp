@@ -82,11 +82,21 @@ double strength_over_cohesion(const Rock& m) {
   return 2.0 * std::cos(phi) / (1.0 - std::sin(phi));
 }
 
+/// Strength that a pressure adds, over it: what a friction angle is shown by. Near 60 degrees it
+/// grows by a tenth with each degree, so that the angles themselves are no straight line.
+double gain_of(double angle) {
+  return (1.0 + std::sin(angle)) / (1.0 - std::sin(angle));
+}
+double angle_of(double gain) {
+  return std::asin((gain - 1.0) / (gain + 1.0));
+}
+
 /// Joints spend the energies that they are given (tests/law/fdem/joint_bond_test.cpp): those keys
 /// are set. The cohesion is sought as the uniaxial strength that it gives, which the angle then
 /// does not change; the angle is set before it.
 std::vector<Knob<Rock>> knobs_for(const Rock&, bool) {
-  constexpr double steepest = 1.3;  // rad
+  constexpr double steepest = 1.3;    // rad
+  constexpr double softened = 1.085;  // by joints of p_f = 20 E, E and nu alike (theory-fdem.md, 2)
   const auto f_t = [](const Rock& r) { return r.joint.tension; };
   const auto set_f_t = [](Rock& r, double x) { r.joint.tension = x; };
   const auto disc = [&](const char* target) {
@@ -94,15 +104,15 @@ std::vector<Knob<Rock>> knobs_for(const Rock&, bool) {
         "joint.tension", target, "disc", "strength", f_t, set_f_t, 1.0, 0.05, 0.9, 0.0, all};
   };
   return {{"young", "young", "plate", "young", [](const Rock& r) { return r.young; },
-           [](Rock& r, double x) { r.young = x; }, 1.0, 0.03, 1.05, 0.0, all},
+           [](Rock& r, double x) { r.young = x; }, 1.0, 0.03, softened, 0.0, all},
           {"poisson", "poisson", "plate", "poisson", [](const Rock& r) { return r.poisson; },
-           [](Rock& r, double x) { r.poisson = x; }, 1.0, 0.10, 1.0, 0.01, 0.49},
+           [](Rock& r, double x) { r.poisson = x; }, 1.0, 0.10, softened, 0.01, 0.49},
           disc("brazilian"),
           disc("tension"),
-          {"joint.friction_angle", "friction_angle", "plate_10", "friction_angle",
-           [](const Rock& r) { return r.joint.friction_angle; },
-           [](Rock& r, double x) { r.joint.friction_angle = x; }, 1.0, 0.05, 1.0, 0.0, steepest,
-           "plate"},
+          {"joint.friction_angle as (1 + sin(phi)) / (1 - sin(phi))", "friction_angle", "plate_10",
+           "friction_angle", [](const Rock& r) { return gain_of(r.joint.friction_angle); },
+           [](Rock& r, double x) { r.joint.friction_angle = angle_of(x); }, 1.0, 0.05, 1.0, 1.0,
+           gain_of(steepest), "plate", gain_of},
           {"joint.cohesion times 2 cos(phi) / (1 - sin(phi))", "compression", "plate", "strength",
            [](const Rock& r) { return r.joint.cohesion * strength_over_cohesion(r); },
            [](Rock& r, double x) { r.joint.cohesion = x / strength_over_cohesion(r); }, 1.0, 0.05,
@@ -184,7 +194,8 @@ Calibration<Material>::Calibration(Material start, std::vector<MaterialTarget> t
                      "; nothing was run");
   for (const Aim& aim : aims_)
     if (aim.knob.share > 0.0)
-      aim.knob.set(material_, std::clamp(aim.knob.share * aim.target, aim.knob.low, aim.knob.high));
+      aim.knob.set(material_, std::clamp(aim.knob.share * measured(aim, aim.target), aim.knob.low,
+                                         aim.knob.high));
   slopes_.assign(aims_.size(), Row(aims_.size(), 0.0));
   for (std::size_t i = 0; i < aims_.size(); ++i) slopes_[i][i] = aims_[i].knob.sensitivity;
 }
@@ -203,6 +214,11 @@ std::vector<SpecimenTest> Calibration<Material>::tests() const {
 template <class Material>
 double Calibration<Material>::misfit(const CalibrationStep<Material>& step, const Aim& aim) const {
   return step.shown.at(aim.knob.target).mean / aim.target - 1.0;
+}
+
+template <class Material>
+double Calibration<Material>::measured(const Aim& aim, double number) const {
+  return aim.knob.measure == nullptr ? number : aim.knob.measure(number);
 }
 
 template <class Material>
@@ -264,7 +280,9 @@ template <class Material>
 typename Calibration<Material>::Row Calibration<Material>::logs_of_shown(
     const CalibrationStep<Material>& step) const {
   Row row;
-  for (const Aim& aim : aims_) row.push_back(std::log(1.0 + misfit(step, aim)));
+  for (const Aim& aim : aims_)
+    row.push_back(
+        std::log(measured(aim, step.shown.at(aim.knob.target).mean) / measured(aim, aim.target)));
   return row;
 }
 
@@ -312,6 +330,38 @@ std::string Calibration<Material>::progress() const {
     text += fmt::format("{}{} {:+.1f} %", text.empty() ? "" : ", ", aim.knob.target,
                         100.0 * misfit(steps_.back(), aim));
   return text;
+}
+
+template <class Material>
+std::string Calibration<Material>::obstacles() const {
+  const CalibrationStep<Material>& nearest = best();
+  const auto number = [&](const CalibrationStep<Material>& step) {
+    return static_cast<std::size_t>(&step - steps_.data()) + 1;
+  };
+  std::string missed, instead;
+  for (const Aim& aim : aims_) {
+    if (std::abs(misfit(nearest, aim)) <= aim.knob.tolerance) continue;
+    missed +=
+        fmt::format("{}{} {:+.1f} % (allowed: {:.0f})", missed.empty() ? "" : ", ", aim.knob.target,
+                    100.0 * misfit(nearest, aim), 100.0 * aim.knob.tolerance);
+    const double key = aim.knob.get(nearest.material);
+    if (key <= aim.knob.low * (1.0 + 1e-9) || key >= aim.knob.high * (1.0 - 1e-9))
+      missed += fmt::format(", with {} at its limit", aim.knob.key);
+    // Where this target was met best, and what that cost.
+    const auto& met = *std::min_element(steps_.begin(), steps_.end(), [&](auto& a, auto& b) {
+      return std::abs(misfit(a, aim)) < std::abs(misfit(b, aim));
+    });
+    const Aim& other = *std::max_element(aims_.begin(), aims_.end(), [&](auto& a, auto& b) {
+      return std::abs(misfit(met, a)) / a.knob.tolerance <
+             std::abs(misfit(met, b)) / b.knob.tolerance;
+    });
+    if (&met != &nearest)
+      instead += fmt::format(
+          "; {} was met best in step {} ({:+.1f} %), where {} missed by {:+.1f} %", aim.knob.target,
+          number(met), 100.0 * misfit(met, aim), other.knob.target, 100.0 * misfit(met, other));
+  }
+  return missed.empty() ? missed
+                        : fmt::format("nearest is step {}: {}{}", number(nearest), missed, instead);
 }
 
 template <class Material>

@@ -27,6 +27,8 @@ struct Knob {
   double share;           ///< first value over the target; 0: the material's own
   double low, high;       ///< what the key may be
   const char* also = "";  ///< another test that the number needs
+  /// Of shown numbers and the target, what the key works on; none: themselves.
+  double (*measure)(double) = nullptr;
 };
 
 /// One set of keys, and what it has shown.
@@ -62,6 +64,8 @@ class Calibration {
 
   /// One line about the last step: shown over target, in percent.
   std::string progress() const;
+  /// Of the best step, what is beyond its tolerance, and what stands in the way; empty: nothing.
+  std::string obstacles() const;
   /// calibration.md: every step.
   std::string page(const std::string& material, const std::string& circumstances) const;
   /// [material.<name>] with the best keys, and its record as comments.
@@ -76,6 +80,7 @@ class Calibration {
   };
   using Row = std::vector<double>;
   double misfit(const CalibrationStep<Material>& step, const Aim& aim) const;
+  double measured(const Aim& aim, double number) const;
   double worst(const CalibrationStep<Material>& step) const;
   Row logs_of_keys(const CalibrationStep<Material>& step) const;
   Row logs_of_shown(const CalibrationStep<Material>& step) const;  ///< over the targets

@@ -49,6 +49,7 @@ TEST(Calibration, FindsFiveKeysWithinSixSteps) {
   EXPECT_NEAR(best.shown.at("tension").mean, 2.9e6, 0.05 * 2.9e6);
   EXPECT_NEAR(best.shown.at("compression").mean, 38e6, 0.05 * 38e6);
   EXPECT_NEAR(best.material.young, 33.6e9 / 0.93, 0.03 * 36e9);
+  EXPECT_EQ(calibration.obstacles(), "");
   EXPECT_NE(calibration.block("as a test").find("# tension: shown 2."), std::string::npos)
       << calibration.block("as a test");
   EXPECT_NE(calibration.page("c", "as a test").find(", best |"), std::string::npos);
@@ -123,6 +124,32 @@ TEST(Calibration, FindsTheKeysOfARock) {
   EXPECT_NEAR(calibration.best().material.joint.energy_slide, 120.0, 1e-9);  // set
   EXPECT_EQ(calibration.best().material.joint.energy_open, start.joint.energy_open);
   EXPECT_NE(calibration.block("as a test").find("[material.granite]"), std::string::npos);
+}
+
+/// A disc that bears less the steeper its joints rub: both targets cannot be met. The tool says
+/// which step is nearest, what it misses, and what either target costs the other.
+TEST(Calibration, SaysWhatStandsInTheWayOfTargetsThatExcludeEachOther) {
+  fdem::MaterialConfig start;
+  Calibration calibration(start, {{"brazilian", 9.3e6, "Pa"}, {"friction_angle", 1.03, "rad"}});
+  EXPECT_EQ(calibration.steps().size(), 0U);
+  while (calibration.steps().size() < 6 && !calibration.converged()) {
+    const double phi = calibration.material().joint.friction_angle;
+    const double gain = (1.0 + std::sin(phi)) / (1.0 - std::sin(phi));
+    std::vector<TestResults> results;
+    for (const SpecimenTest& test : calibration.tests()) {
+      SpecimenResult s;
+      s.numbers["strength"] = test.name == "disc"
+                                  ? std::min(calibration.material().joint.tension, 60e6 / gain)
+                                  : 200e6 + 0.7 * gain * test.pressure;
+      results.push_back({test, {s}, {}});
+    }
+    calibration.take(results);
+  }
+  EXPECT_FALSE(calibration.converged());
+  const std::string said = calibration.obstacles();
+  EXPECT_EQ(said.find("nearest is step "), 0U) << said;
+  EXPECT_NE(said.find("brazilian -"), std::string::npos) << said;
+  EXPECT_NE(said.find("was met best in step "), std::string::npos) << said;
 }
 
 TEST(Calibration, RefusesToGoOnWithoutTargetsOrResults) {

@@ -215,6 +215,7 @@ TEST(RockSpecimens, AreCasesWithoutAProblem) {
     const fdem::Config config = case_of(test, sample, 2, "");
     EXPECT_NO_THROW(fdem::check_case(config)) << test.name;
     EXPECT_EQ(config.loads.size(), test.pressure > 0.0 ? 2U : 0U);
+    EXPECT_EQ(config.bodies[0].holes.size(), test.name == "disc" ? 2U : 0U);  // its flats
   }
   fdem::Config c;
   c.materials.resize(1);
