@@ -34,7 +34,7 @@ build() {  # COMPILER LEVEL FOLDER: leaves the program as FOLDER/breccia
   [ "$PARTS" = methods ] || return 0
   local words=()
   for name in "${methods[@]}"; do words+=("libbr_$name.a=$PWD/$3/libbr_$name.a"); done
-  [[ $1 == clang* ]] && words+=(" -o = $("$1" -print-file-name=libomp.so) -o ")
+  [[ $1 == clang* ]] && words+=(" -o = $("$1" -print-file-name=libomp.so.5) -o ")
   relink breccia "$3/breccia" "${words[@]}"
 }
 

@@ -12,6 +12,9 @@ struct NotingMove {
   bool& beyond;
   void operator()(Index t) const { beyond = move(t) || beyond; }
 };
+template <class Move>
+NotingMove(const Move&, bool&) -> NotingMove<Move>;  // clang 14 asks for it
+
 template <class Packs>
 struct NotingPacks {
   template <class Move>
