@@ -130,7 +130,7 @@ bool has_tables(const Concrete& m) {
   return m.law == "ldpm";
 }
 bool has_tables(const Rock&) {
-  return false;
+  return true;
 }
 
 std::vector<SpecimenTest> tests_for(const Concrete& m) {

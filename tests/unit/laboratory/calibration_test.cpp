@@ -124,6 +124,9 @@ TEST(Calibration, FindsTheKeysOfARock) {
   EXPECT_NEAR(calibration.best().material.joint.energy_slide, 120.0, 1e-9);  // set
   EXPECT_EQ(calibration.best().material.joint.energy_open, start.joint.energy_open);
   EXPECT_NE(calibration.block("as a test").find("[material.granite]"), std::string::npos);
+  EXPECT_NE(calibration.block("as a test").find("[material.granite.joint]\ntension = "),
+            std::string::npos)
+      << calibration.block("as a test");
 }
 
 /// A disc that bears less the steeper its joints rub: both targets cannot be met. The tool says
