@@ -95,6 +95,7 @@ struct Case {
   std::vector<FreeWall> free_walls;   ///< empty: none has mass  (walls)
   std::vector<Vec3> dashpots;  ///< of absorbing supports over the square of an element's radius, of
                                ///< others 0  [kg/(s m2)]  (supports)
+  std::vector<double> masses;  ///< of supports' elements together  [kg]  (supports)
   WallMeshes meshes;           ///< of walls of triangles
   Buffer<ContactPair> contact_pairs;  ///< of materials p, q at p materials + q  (materials^2)
   Buffer<ContactPair> wall_pairs;     ///< of a material with a wall  (materials)

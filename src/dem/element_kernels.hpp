@@ -15,6 +15,7 @@ namespace breccia::dem {
 struct Motion {
   Vec3 velocity;           ///<  [m/s]
   AmplitudeTable x, y, z;  ///< factors of its parts
+  std::int32_t load = 0;   ///< 1: what is given is no velocity, but a load over mass  [m/s2]
 
   /// @param times, factors  of all tables
   BR_HD Vec3 at(double time, const View<const double>& times,
@@ -180,6 +181,7 @@ struct Kick {
     ResultOf<R> r{};
     const double span = 0.5 * (last_dt + next_dt);
     Vec3Of<R> f = of.force + weight(of.mass), t = of.torque;
+    if ((of.fixed & fixed_driven) != 0) f += load_on<R>(e, of.mass);
     if (damping > 0.0) {
       r.damped_force = local_damping<R>(f, now.velocity, 1.0 / of.mass);
       r.damped_torque = local_damping<R>(t, now.spin, 1.0 / of.inertia);
@@ -207,9 +209,9 @@ struct Kick {
     const Vec3Of<R> given = of.force + weight(of.mass) - r.damped_force;
     const Vec3Of<R> held = gained - given;
     const R none = constant<R>(0.0);
-    return {select(holds<R>(e, fixed_x | fixed_absorbs), held.x, none),
-            select(holds<R>(e, fixed_y | fixed_absorbs), held.y, none),
-            select(holds<R>(e, fixed_z | fixed_absorbs), held.z, none)};
+    return {select(holds<R>(e, fixed_x | fixed_driven), held.x, none),
+            select(holds<R>(e, fixed_y | fixed_driven), held.y, none),
+            select(holds<R>(e, fixed_z | fixed_driven), held.z, none)};
   }
   /// Where one of the bits `which` of Fixed is set, of element e and its neighbours in a pack.
   template <class R>
@@ -228,15 +230,16 @@ struct Kick {
     double x[width_of<R>], y[width_of<R>], z[width_of<R>];
     for (Index k = 0; k < width_of<R>; ++k) {
       const Index way = motion[e + k];
-      const Vec3 v =
-          way >= 0 ? motions[way].at(time + 0.5 * next_dt, motion_times, motion_factors) : Vec3{};
+      const Vec3 v = way >= 0 && motions[way].load == 0
+                         ? motions[way].at(time + 0.5 * next_dt, motion_times, motion_factors)
+                         : Vec3{};
       x[k] = v.x;
       y[k] = v.y;
       z[k] = v.z;
     }
     const R still = constant<R>(0.0);
-    if ((of.fixed & fixed_absorbs) != 0) {
-      const auto absorbs = holds<R>(e, fixed_absorbs);
+    if ((of.fixed & fixed_driven) != 0) {
+      const auto absorbs = holds<R>(e, fixed_driven);
       const R square = (0.25 * (last_dt + next_dt)) * (now.radius * now.radius) / of.mass;
       const auto slow = [&](const R& dashpot, const R& before, R& after) {
         const R half = square * dashpot;
@@ -252,6 +255,21 @@ struct Kick {
     prescribe(holds<R>(e, fixed_spin_x), still, r.spin.x, r.damped_torque.x);
     prescribe(holds<R>(e, fixed_spin_y), still, r.spin.y, r.damped_torque.y);
     prescribe(holds<R>(e, fixed_spin_z), still, r.spin.z, r.damped_torque.z);
+  }
+  /// Dead load on an element, or on each of a pack.  [N]
+  template <class R>
+  BR_HD Vec3Of<R> load_on(Index e, const R& of_mass) const {
+    double x[width_of<R>], y[width_of<R>], z[width_of<R>];
+    for (Index k = 0; k < width_of<R>; ++k) {
+      const Index way = (fixed[e + k] & fixed_driven) != 0 ? motion[e + k] : -1;
+      const Vec3 a = way >= 0 && motions[way].load != 0
+                         ? motions[way].at(time, motion_times, motion_factors)
+                         : Vec3{};
+      x[k] = a.x;
+      y[k] = a.y;
+      z[k] = a.z;
+    }
+    return of_mass * Vec3Of<R>{pack_of<R>(x), pack_of<R>(y), pack_of<R>(z)};
   }
   /// Local damping leaves held directions out.
   template <class R, class Truth>

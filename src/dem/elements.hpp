@@ -23,8 +23,8 @@ enum Fixed : std::uint8_t {
   fixed_spin_x = 8,
   fixed_spin_y = 16,
   fixed_spin_z = 32,
-  fixed_gone = 64,      ///< the element has been taken out of the model; bits before are set, too
-  fixed_absorbs = 128,  ///< free, but for dashpots: `motion` gives them, not a velocity
+  fixed_gone = 64,     ///< the element has been taken out of the model; bits before are set, too
+  fixed_driven = 128,  ///< free, but for dashpots or a load: `motion` gives them, not a velocity
 };
 
 BR_HD constexpr bool is_gone(std::uint8_t fixed) {

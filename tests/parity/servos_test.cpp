@@ -193,6 +193,58 @@ TEST(Servo, of_supports_of_triangles_has_the_same_bits_everywhere) {
   expect_alike(plate(), 2e-5);
 }
 
+/// The column under a dead load on its highest grain.
+dem::testing::Scene loaded_column() {
+  dem::testing::Scene s = column();
+  s.config.walls.pop_back();
+  dem::SupportConfig head;
+  head.name = "head";
+  head.min.z = 0.02 * (spheres - 1);
+  head.fix = {};
+  head.force = Vec3{0.0, 0.0, -push};
+  s.config.supports = {head};
+  s.config.probes = {{"force", "floor", "force_z", "mean"},
+                     {"speed", "head", "velocity_z", "mean"}};
+  return s;
+}
+TEST(DeadLoad, comes_to_the_floor_and_is_booked) {
+  dem::testing::Scene s = loaded_column();
+  s.config.supports[0].ramp = 5e-3;
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, 0.02);
+  EXPECT_NEAR(std::abs(method->probes()[0]), push, 1e-4 * push);
+  EXPECT_LT(method->energy().error_relative, 1e-4);
+  s.config.walls.clear();  // nothing holds: F t/m
+  s.config.local_damping = 0.0;
+  s.config.probes.erase(s.config.probes.begin());
+  s.config.supports[0].min = {};
+  s.config.supports[0].ramp = 0.0;
+  const auto free = make_method(s.config, s.model, {}, nullptr);
+  run_to(*free, 1e-3);
+  double mass = 0.0;
+  for (const double one : s.model.mass) mass += one;
+  EXPECT_NEAR(free->probes()[0], -push / mass * free->time(), 1e-9 * push / mass);
+  // Of a force that is there at once the ledger misses m (a dt/2)^2/2, 1/(2 n)^2 of all after n
+  // steps.
+  EXPECT_LT(free->energy().error_relative, 1e-4);
+}
+TEST(DeadLoad, has_the_same_bits_everywhere) {
+  dem::testing::Scene s = loaded_column();
+  s.config.supports[0].force.times = {0.0, 1e-3};
+  s.config.supports[0].force.values = {{}, {100.0, 0.0, -push}};
+  s.config.probes.clear();
+  expect_alike(s, 2e-3);
+}
+TEST(DeadLoad, on_what_is_held_is_a_problem) {
+  dem::testing::Scene s = loaded_column();
+  s.config.supports[0].fix = {"z"};
+  std::string said;
+  for (const std::string& problem : dem::stage_problems(s.config)) said += problem + "\n";
+  EXPECT_NE(said.find("support.head.force acts on elements that are free: fix must be []"),
+            std::string::npos)
+      << said;
+}
+
 TEST(Servo, that_cannot_act_is_a_problem) {
   dem::testing::Scene s = column();
   s.config.walls.back().velocity = {0.0, 0.0, -1.0};

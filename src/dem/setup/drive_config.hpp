@@ -109,8 +109,10 @@ struct SupportConfig {
   std::string absorb{};        ///< axis along which waves come; empty: it holds its elements
   std::string wave = "body";   ///< that is absorbed
   double area = 0.0;           ///< of the face that absorbs  [m2]
+  OverTime<Vec3> force{};      ///< on its elements, which are free: a dead load  [N]
 
   bool absorbs() const { return !absorb.empty(); }
+  bool pushes() const { return force.is_table() || norm(force.value) > 0.0; }
   template <class Visit>
   void each_key(Visit&& key) {
     key("name", name, "name of the support");
@@ -135,12 +137,15 @@ struct SupportConfig {
         "sqrt(E / rho); waves across it have rho c_s");
     key("area", area, "m2", not_negative,
         "absorb: area of the face, which its elements share by their sections");
+    key("force", force, "N", any_number,
+        "dead load: a given force on its elements, which share it by their masses and are free, so "
+        "fix must be []; or a table [[t, x, y, z], ...] of it over time");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
         "prescribed velocity of the fixed directions, or a table [[t, x, y, z], ...] of it over "
         "time, linear in between and constant beyond its ends");
     key("ramp", ramp, "s", not_negative,
-        "time in which that velocity grows from zero, linearly; 0: the elements have it from the "
-        "start");
+        "time in which that velocity, or force, grows from zero, linearly; 0: the elements have it "
+        "from the start");
     key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
   }
 };
@@ -152,6 +157,7 @@ struct SupportChange {
   OverTime<Vec3> velocity;  ///<  [m/s]
   double ramp = 0.0;        ///<  [s]
   SupportServoConfig servo;
+  OverTime<Vec3> force{};  ///<  [N]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -164,7 +170,10 @@ struct SupportChange {
         "their velocity from now on, or a table of it over time since the stage began; left out: "
         "they stand still");
     key("ramp", ramp, "s", not_negative,
-        "time since the stage began in which it grows from zero, linearly");
+        "time since the stage began in which velocity and force grow from zero, linearly");
+    key("force", force, "N", any_number,
+        "dead load on its elements from now on, or a table of it over time since the stage began; "
+        "left out: none");
     key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
   }
 };

@@ -441,8 +441,12 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   given.emission = config.emission;
   std::vector<std::vector<Index>> members = support_members(config, model);
   given.dashpots = dashpots_of(config, model, members);
+  for (const std::vector<Index>& own : members) {
+    given.masses.push_back(0.0);
+    for (const Index e : own) given.masses.back() += model.mass[at(e)];
+  }
   const Prescribed held =
-      prescribed(config, std::move(members), model.position.size(), given.dashpots);
+      prescribed(config, std::move(members), model.position.size(), given.dashpots, given.masses);
   set_elements(w, model, held);
   w.each_set([&](auto& set) { set_links(set, config, model); });
   set_linked_pairs(w);

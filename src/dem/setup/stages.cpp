@@ -24,6 +24,7 @@ Config config_at(Config config, const StageProgress& progress) {
         if (change.fix != std::vector<std::string>{"same"}) s->fix = change.fix;
         s->velocity = change.velocity;
         s->ramp = change.ramp;
+        s->force = change.force;
         s->servo = change.servo;
         s->begin = begin;
       }
@@ -126,6 +127,11 @@ std::vector<std::string> stage_problems(const Config& config) {
       if (s.absorbs() && (s.servo.is_on() || s.velocity.is_table() || norm(s.velocity.value) > 0.0))
         problems.push_back(stage + "support." + s.name +
                            ".absorb: dashpots move nothing; leave velocity and servo out");
+      if (s.pushes() && (!s.fix.empty() || s.absorbs() || s.servo.is_on() ||
+                         s.velocity.is_table() || norm(s.velocity.value) > 0.0))
+        problems.push_back(stage + "support." + s.name +
+                           ".force acts on elements that are free: fix must be [], and velocity, "
+                           "servo and absorb left out");
       if (s.servo.is_on() && std::find(s.fix.begin(), s.fix.end(), s.servo.axis) == s.fix.end() &&
           std::find(s.fix.begin(), s.fix.end(), "all") == s.fix.end())
         problems.push_back(stage + "support." + s.name + ".servo.axis = \"" + s.servo.axis +
@@ -180,7 +186,7 @@ void configure(World& w, const Config& config) {
   std::vector<std::vector<Index>> members(config.supports.size());
   for (std::size_t s = 0; s < members.size(); ++s)
     copy_to(members[s], w.given->sets[bodies + s].members);
-  Prescribed held = prescribed(config, std::move(members), elements, given.dashpots);
+  Prescribed held = prescribed(config, std::move(members), elements, given.dashpots, given.masses);
   given.removed.assign(bodies, 0);
   for (std::size_t b = 0; b < bodies; ++b)
     if (std::count(config.removed.begin(), config.removed.end(), given.sets[b].name) > 0) {

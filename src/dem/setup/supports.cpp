@@ -49,9 +49,10 @@ std::vector<Index> members_of(const SupportConfig& s, const Model& m) {
 class Holding {
  public:
   Holding(const Config& config, std::vector<std::vector<Index>> members, std::size_t elements,
-          const std::vector<Vec3>& dashpots)
+          const std::vector<Vec3>& dashpots, const std::vector<double>& masses)
       : supports_(config.supports),
         dashpots_(dashpots),
+        masses_(masses),
         walls_(config.walls.size()),
         owners_(elements, {-1, -1, -1}) {
     all_.fixed.assign(elements, fixed_none);
@@ -85,7 +86,7 @@ class Holding {
       const auto next = static_cast<std::int16_t>(all_.motions.motions.size());
       const auto [entry, is_new] = known.try_emplace(moving, next);
       if (is_new) {
-        all_.motions.add(motion_of(moving));
+        all_.motions.add(motion_of(moving), is_load(moving) ? 1 : 0);
         for (std::size_t axis = 0; axis < 3; ++axis)
           if (moving[axis] >= 0 && is_servo(moving[axis], axis))
             all_.motions.servos.push_back(
@@ -120,18 +121,30 @@ class Holding {
       const Vec3& c = dashpots_[static_cast<std::size_t>(s)];
       return {axis == 0 ? c.x : axis == 1 ? c.y : c.z, {}};
     }
-    return scaled_amplitude(support(s).velocity, static_cast<int>(axis), support(s).ramp,
-                            support(s).begin);
+    const auto given = [&](const OverTime<Vec3>& of) {
+      return scaled_amplitude(of, static_cast<int>(axis), support(s).ramp, support(s).begin);
+    };
+    if (!support(s).pushes()) return given(support(s).velocity);
+    ScaledAmplitude force = given(support(s).force);
+    force.scale /= masses_[static_cast<std::size_t>(s)];
+    return force;
   }
+  bool is_load(const Owners& owners) const {
+    return std::any_of(owners.begin(), owners.end(),
+                       [&](int s) { return s >= 0 && support(s).pushes(); });
+  }
+  /// Its elements are free, but for dashpots or a load.
+  bool is_driven(int s) const { return support(s).absorbs() || support(s).pushes(); }
   bool alike(int a, int b, std::size_t axis) const {
     const ScaledAmplitude of_a = speed(a, axis), of_b = speed(b, axis);
     if (is_servo(a, axis) || is_servo(b, axis)) return a == b;
-    if (support(a).absorbs() || support(b).absorbs()) return a == b;
+    if (is_driven(a) || is_driven(b)) return a == b;
     return of_a == of_b || (of_a.is_zero() && of_b.is_zero());
   }
   std::string motion_text(int s, std::size_t axis) const {
     if (is_servo(s, axis)) return "a servo";
     if (support(s).absorbs()) return "a dashpot";
+    if (support(s).pushes()) return "a force";
     const ScaledAmplitude of = speed(s, axis);
     return fmt::format("{} m/s with a ramp of {} s",
                        of.amplitude.times.empty() ? fmt::format("{}", of.scale) : "a table of",
@@ -139,8 +152,9 @@ class Holding {
   }
 
   void hold(std::size_t s, std::uint8_t bits, std::size_t e) {
-    const int all =
-        support(static_cast<int>(s)).absorbs() ? ((bits & 7) != 0 ? fixed_absorbs : 0) : bits;
+    const bool pushes = support(static_cast<int>(s)).pushes();
+    if (pushes) bits = fixed_x | fixed_y | fixed_z;
+    const int all = is_driven(static_cast<int>(s)) ? ((bits & 7) != 0 ? fixed_driven : 0) : bits;
     all_.fixed[e] = static_cast<std::uint8_t>(all_.fixed[e] | all);
     note_mixed(s, e);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -172,16 +186,20 @@ class Holding {
 
   /// An element has dashpots, or is held.
   void note_mixed(std::size_t s, std::size_t e) {
-    if ((all_.fixed[e] & fixed_absorbs) == 0 || (all_.fixed[e] & 63) == 0) return;
+    if ((all_.fixed[e] & fixed_driven) == 0 || (all_.fixed[e] & 63) == 0) return;
+    const auto pushes = [&](int owner) { return owner >= 0 && support(owner).pushes(); };
+    const bool load =
+        std::any_of(owners_[e].begin(), owners_[e].end(), pushes) || supports_[s].pushes();
     const std::string text =
-        fmt::format("support {}: an absorbing support shares element {} with one that holds it",
-                    supports_[s].name, e);
+        fmt::format("support {}: {} shares element {} with one that holds it", supports_[s].name,
+                    load ? "one with a force" : "an absorbing support", e);
     if (problems_.empty() || !problems_.back().starts_with("support " + supports_[s].name))
       problems_.push_back(text);
   }
 
   const std::vector<SupportConfig>& supports_;
   const std::vector<Vec3>& dashpots_;
+  const std::vector<double>& masses_;
   std::size_t walls_;
   std::vector<Owners> owners_;  ///< of each element
   std::map<Clash, Found> clashes_;
@@ -210,11 +228,12 @@ bool GivenMotions::moves(std::size_t motion) const {
   return any(m.velocity.x, m.x) || any(m.velocity.y, m.y) || any(m.velocity.z, m.z);
 }
 
-std::int16_t GivenMotions::add(const std::array<ScaledAmplitude, 3>& velocity) {
+std::int16_t GivenMotions::add(const std::array<ScaledAmplitude, 3>& velocity, std::int32_t load) {
   motions.push_back({{velocity[0].scale, velocity[1].scale, velocity[2].scale},
                      tables.append(velocity[0].amplitude),
                      tables.append(velocity[1].amplitude),
-                     tables.append(velocity[2].amplitude)});
+                     tables.append(velocity[2].amplitude),
+                     load});
   return static_cast<std::int16_t>(motions.size() - 1);
 }
 
@@ -235,8 +254,9 @@ std::vector<std::vector<Index>> support_members(const Config& config, const Mode
 }
 
 Prescribed prescribed(const Config& config, std::vector<std::vector<Index>> members,
-                      std::size_t elements, const std::vector<Vec3>& dashpots) {
-  return Holding(config, std::move(members), elements, dashpots).prescribed();
+                      std::size_t elements, const std::vector<Vec3>& dashpots,
+                      const std::vector<double>& masses) {
+  return Holding(config, std::move(members), elements, dashpots, masses).prescribed();
 }
 
 std::vector<Vec3> dashpots_of(const Config& config, const Model& model,

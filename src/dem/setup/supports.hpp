@@ -24,7 +24,8 @@ struct GivenMotions {
   /// Whether it is, or may come to be, other than rest.
   bool moves(std::size_t motion) const;
   /// Adds a motion of such velocities along x, y, z. Returns its number.
-  std::int16_t add(const std::array<ScaledAmplitude, 3>& velocity);
+  /// @param load  0, or 1: they are loads over mass
+  std::int16_t add(const std::array<ScaledAmplitude, 3>& velocity, std::int32_t load = 0);
 };
 
 /// Directions and motions that the supports of a case prescribe, by element.
@@ -47,10 +48,11 @@ std::vector<std::vector<Index>> support_members(const Config& config, const Mode
 /// motion.
 /// @param members   of each support
 /// @param elements  how many there are in the whole model
-/// @param dashpots  Case::dashpots
+/// @param dashpots, masses  Case::dashpots, Case::masses
 /// @throws InputError naming supports that hold no element, or that contradict each other
 Prescribed prescribed(const Config& config, std::vector<std::vector<Index>> members,
-                      std::size_t elements, const std::vector<Vec3>& dashpots);
+                      std::size_t elements, const std::vector<Vec3>& dashpots,
+                      const std::vector<double>& masses);
 
 /// Dashpots of absorbing supports: impedance rho c of the material times the face's area, shared by
 /// the squares of radii. @throws InputError where a support has elements of several materials
