@@ -80,6 +80,10 @@ std::vector<std::string> case_problems(const Config& config) {
   } catch (const InputError& error) {
     add(error.what());
   }
+  for (const MaterialConfig& m : config.materials)
+    if (norm(m.bedding.normal) > 0.0)
+      add("material." + m.name +
+          ".bedding.normal is of tetrahedra; angle tells planes of triangles");
   for (const LoadConfig& l : config.loads)
     if (l.speed > 0.0 && l.kind != "fluid")
       add("load." + l.name + ".speed: only a fluid has one; kind is \"" + l.kind + "\"");

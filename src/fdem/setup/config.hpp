@@ -46,6 +46,7 @@ struct StrengthConfig {
 /// [material.<name>.bedding]: planes along which rock is weaker, and stiffer
 struct BeddingConfig {
   double angle = 0.0;     ///< of the planes from x, anticlockwise  [rad]
+  Vec3 normal{};          ///< of the planes, in space; 0: none is given  [-]
   double strength = 1.0;  ///< along them over across  [-]
   double young = 0.0;     ///< E' across them; 0: as along them  [Pa]
   double poisson = -1.0;  ///< nu', pressed across them; -1: nu E'/E  [-]
@@ -54,9 +55,11 @@ struct BeddingConfig {
   template <class Visit>
   void each_key(Visit&& key) {
     key("angle", angle, "rad", Range{-6.3, 6.3}, "angle of its planes from the x axis");
+    key("normal", normal, "-", any_number,
+        "tetrahedra: direction across its planes, instead of an angle");
     key("strength", strength, "-", Range{0.01, 1.0},
-        "tension and cohesion of joints along its planes, over those across them; an edge at an "
-        "angle t from a plane has strength cos^2 t + sin^2 t of them");
+        "tension and cohesion of joints along its planes, over those across them; an edge or face "
+        "at an angle t from a plane has strength cos^2 t + sin^2 t of them");
     key("young", young, "Pa", Range{0.0, 1e15},
         "Young's modulus across its planes; young and poisson of the material are those along "
         "them; 0: the same");
@@ -70,6 +73,12 @@ struct BeddingConfig {
   /// Whether it is stiffer in one direction than in others.
   bool has_stiffness() const { return young > 0.0 || poisson > -1.0 || shear > 0.0; }
   bool is_given() const { return strength != 1.0 || angle != 0.0 || has_stiffness(); }
+  /// Of a joint with this unit normal, in space.  [-]
+  double share(const Vec3& across) const {
+    if (strength == 1.0) return 1.0;
+    const double along = dot(across, normal) / norm(normal);
+    return strength + (1.0 - strength) * (1.0 - along * along);
+  }
   /// Of a joint along a unit vector.  [-]
   double share(const Vec2& along) const {
     const double across = cross(Vec2{std::cos(angle), std::sin(angle)}, along);

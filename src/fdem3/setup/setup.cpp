@@ -162,8 +162,14 @@ class Joining {
       corner[k] = model_.point[at(model_.tetrahedron[b][at(corner_of_face(f.b % 4, k))])];
     const FaceShape shape = FaceShape::of(corner[0], corner[1], corner[2]);
     const double h = (volume_of(model_, a) + volume_of(model_, b)) / shape.area();
-    const double strength =
-        std::min(static_cast<double>(model_.strength[a]), static_cast<double>(model_.strength[b]));
+    const Vec3 across = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const auto bedded = [&](std::size_t t) {
+      return config_.materials[static_cast<std::size_t>(model_.material[t])].bedding.share(
+          (1.0 / norm(across)) * across);
+    };
+    const double planes = weak_.contains(f.corners) ? 1.0 : std::min(bedded(a), bedded(b));
+    const double strength = planes * std::min(static_cast<double>(model_.strength[a]),
+                                              static_cast<double>(model_.strength[b]));
     list_.face_a.push_back(f.a);
     list_.face_b.push_back(f.b);
     list_.turn.push_back(turn_between(model_, f.a, f.b));

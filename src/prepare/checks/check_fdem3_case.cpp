@@ -18,9 +18,12 @@ class TetCaseChecks {
     for (const fdem3::MaterialConfig& m : config.materials) {
       if (m.poisson >= 0.5)
         add("material." + m.name + ".poisson: must be below 0.5 in three dimensions");
-      if (m.bedding.is_given())
+      if (m.bedding.has_stiffness() || m.bedding.angle != 0.0)
         add("material." + m.name +
-            ".bedding: is not there in three dimensions yet; leave the table out");
+            ".bedding: in three dimensions it is strength and normal alone; leave angle, young, "
+            "poisson and shear out");
+      if (m.bedding.strength != 1.0 && !(norm(m.bedding.normal) > 0.0))
+        add("material." + m.name + ".bedding.normal: its planes need a direction across them");
       if (m.joints == "extrinsic")
         add("material." + m.name +
             ".joints: \"extrinsic\" is not there in three dimensions yet; allowed are "
