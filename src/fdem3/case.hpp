@@ -37,7 +37,7 @@ struct OpenFaces {
 struct Case {
   TimeConfig time;
   Vec3 gravity{};              ///< stage  [m/s2]
-  Sym3 in_situ{};              ///< stress at the start  [Pa]
+  InSituConfig in_situ;        ///< stress at the start
   double local_damping = 0.0;  ///< stage  [-]
   double mean_edge = 0.0;      ///<  [m]
   double skin = 0.0;           ///< margin of the search between two at rest  [m]
@@ -46,6 +46,8 @@ struct Case {
   Index materials = 0;         ///< how many there are  [-]
 
   std::vector<std::string> groups;            ///< names of bodies  (bodies)
+  std::vector<std::uint8_t> removed;          ///< stage; 1: taken out by now  (bodies)
+  std::vector<NodeSet> removable;             ///< vertices of bodies that stages take out
   std::vector<EffectiveRock> rocks;           ///< each material with its joints  (materials)
   std::vector<double> contact_lengths;        ///< h_c of each material  [m]  (materials)
   std::vector<std::string> warnings;          ///< what set-up found doubtful, for people
@@ -55,7 +57,11 @@ struct Case {
   std::vector<AmplitudeOf3> load_amplitudes;  ///< stage: factors over time  (loads)
   std::vector<LoadedFace> loaded;             ///< by global id, ascending
   std::vector<OpenFaces> open_cracks;         ///< faces of discontinuities open from the start
-  Buffer<ElasticTetrahedron> laws;            ///<  (materials)
+  Buffer<ElasticTetrahedron> laws;            ///< stage  (materials; where stress in situ has a
+                                              ///< slope: tetrahedra of the whole mesh)
+  std::vector<Index> materials_of;            ///< likewise, else empty  (tetrahedra of the whole
+                                              ///< mesh)
+  std::vector<Vec3> middles;                  ///< likewise, at the start  [m]
   Buffer<JointBond> bonds;                    ///< indexed by Joints::law  (laws of joints)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
   Buffer<Hold> holds;                 ///< stage; indexed by Tetrahedra::hold

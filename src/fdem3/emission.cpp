@@ -28,7 +28,10 @@ std::vector<EmissionEvent> emission(const World& w, const std::vector<JointPlace
   copy_to(material, w.tetrahedra.material);
   std::vector<ElasticTetrahedron> laws;
   copy_to(laws, w.given->laws);
-  const auto law_at = [&](Index face) { return laws[at(material[at(face / 4)])]; };
+  const bool graded = w.given->in_situ.graded();
+  const auto law_at = [&](Index face) {
+    return laws[at(graded ? face / 4 : material[at(face / 4)])];
+  };
   std::vector<Break> breaks;
   for (Index i = 0; i < joints->size(); ++i) {
     if (joints->stage.data()[i] != JointStage::broken) continue;

@@ -48,7 +48,7 @@ struct StoredByJoints {
 }  // namespace
 
 StoredByTetrahedra stored_by_elements(const World& w) {
-  return {kick(w), w.tetrahedra.material.view(), w.given->laws.view(), w.tetrahedra.shape.view()};
+  return {kick(w), laws_of(w), w.given->laws.view(), w.tetrahedra.shape.view()};
 }
 StoredByJoints stored_by_joints(const World& w) {
   const Joints& j = w.joints;

@@ -1,5 +1,6 @@
 #include "fdem3/observe.hpp"
 
+#include "fdem3/setup/removal.hpp"
 #include "fdem_shared/observations.hpp"
 
 namespace breccia::fdem3 {
@@ -10,11 +11,12 @@ std::vector<Sym3> stresses(const World& w) {
   std::vector<ElasticTetrahedron> laws;
   copy_to(laws, w.given->laws);
   std::vector<Sym3> all;
+  const Buffer<Index>& law = w.given->in_situ.graded() ? t.id : t.material;
   all.reserve(at(t.size()));
   for (Index i = 0; i < t.size(); ++i) {
     Vec3 x[4];
     places(t.nodes.data()[i], x);
-    all.push_back(laws[at(t.material.data()[i])].stress(deformation(t.shape.data()[i], x)));
+    all.push_back(laws[at(law.data()[i])].stress(deformation(t.shape.data()[i], x)));
   }
   return all;
 }
@@ -28,13 +30,17 @@ std::vector<std::int32_t> visible_faces(const World& w) {
   copy_to(faces, w.faces);
   std::vector<JointStage> stage;
   copy_to(stage, w.joints.stage);
+  const auto is_seen = [&](Index entry) {
+    if (entry < 0) return entry == face_free;
+    const JointStage of = stage[at(pair_of(entry))];
+    return is_damaged(of) || is_parted(of);
+  };
   std::vector<std::int32_t> all;
   all.reserve(faces.size());
   for (const FaceJoints& f : faces) {
     std::int32_t bits = 0;
     for (int k = 0; k < 4; ++k)
-      if (f.at[k] == face_free || (f.at[k] >= 0 && is_damaged(stage[at(pair_of(f.at[k]))])))
-        bits |= 1 << k;
+      if (is_seen(f.at[k])) bits |= 1 << k;
     all.push_back(bits);
   }
   return all;
@@ -64,12 +70,14 @@ Fragments fragments(const World& w) {
 }
 
 Fragments fragments(const World& w, const std::vector<std::uint8_t>& broken) {
-  Pieces joined = fdem_shared::joined_elements(w, broken, {});
+  const std::vector<std::uint8_t> gone = gone_tetrahedra(w);
+  Pieces joined = fdem_shared::joined_elements(w, broken, gone);
   const OnHost<Tetrahedra> elements(w.tetrahedra, w.exec.space);
   const Tetrahedra& t = *elements;
   std::vector<Piece> of_root(at(t.size()));
   std::vector<double> mass(at(t.size()), 0.0);
   for (Index i = 0; i < t.size(); ++i) {
+    if (gone[at(i)] != 0) continue;
     const Index root = joined.root(i);
     Piece& p = of_root[at(root)];
     const double corner = t.mass.data()[i];

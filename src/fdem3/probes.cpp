@@ -12,8 +12,10 @@ struct StressToRead {
   View<const TetrahedronNodes> nodes;
   View<const ShapeGradients> shape;
   View<const ElasticTetrahedron> laws;
+  View<const Index> hold;
+  View<const Hold> holds;
 
-  BR_HD bool is_gone(Index) const { return false; }
+  BR_HD bool is_gone(Index t) const { return fdem_shared::is_gone<Shape>(holds, hold[t]); }
   BR_HD Vec3 middle(Index t) const { return centroid(nodes[t]); }
   BR_HD Readings weighted(Index t, int i, int j, GlobalId id) const {
     Vec3 x[4];
@@ -25,7 +27,8 @@ struct StressToRead {
 };
 StressToRead stress_to_read(const World& w) {
   const Tetrahedra& t = w.tetrahedra;
-  return {t.material.view(), t.nodes.view(), t.shape.view(), w.given->laws.view()};
+  return {laws_of(w),           t.nodes.view(), t.shape.view(),
+          w.given->laws.view(), t.hold.view(),  w.given->holds.view()};
 }
 
 /// Joints: their mean opening and slip.

@@ -53,7 +53,7 @@ struct Shape {
   static auto& corners_of(Model& model) {
     return model.tetrahedron;
   }
-  static View<const Index> laws(const World& w) { return w.tetrahedra.material.view(); }
+  static View<const Index> laws(const World& w) { return laws_of(w); }
   BR_HD static double near(const ShapeGradients& reference) { return near_reach(reference); }
 
   /// Corner k of a side, 0 to dimension - 1, and the side that a corner does not lie on.
@@ -127,8 +127,8 @@ struct Shape {
     return {deformation(shape, x).jacobian, height * height};
   }
 
-  /// No stage takes tetrahedra out of a model.
-  BR_HD static bool is_gone(const Hold&) { return false; }
+  /// Whether a held element has been taken out of the model.
+  BR_HD static bool is_gone(const Hold& hold) { return hold.gone != 0; }
 };
 
 }  // namespace breccia::fdem3

@@ -127,14 +127,21 @@ void move_to(World& w, Space space);
 /// fit
 World make_world(const Config& config, const Model& model, const Exec& exec);
 
+/// The place of each tetrahedron's law in Case::laws.
+inline View<const Index> laws_of(const World& w) {
+  return w.given->in_situ.graded() ? w.tetrahedra.id.view() : w.tetrahedra.material.view();
+}
+
 /// Lets the world go on by another stage of its case: gravity, damping, friction, supports, loads.
 /// The state stays as it is. @throws InputError if supports contradict each other
 void configure(World& w, const Config& config);
 /// Gravity alone: the ledger asks what a change of it is worth.
 void set_gravity(World& w, const Vec3& gravity);
-/// No stage takes bodies out of a case of tetrahedra (setup/check_case.cpp refuses it).
-inline void open_around_removed(World&) {}
-inline void cut_off_removed(World&) {}
+/// Parts the bodies that are gone by now from all others: as their stage begins, and before a
+/// checkpoint of a later time is loaded.
+void open_around_removed(World& w);
+/// Brings the bodies that are gone to a stop and cuts their joints, as their stage begins.
+void cut_off_removed(World& w);
 
 /// Fills what follows from the state, after loading.
 void derive(World& w);

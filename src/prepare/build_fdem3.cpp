@@ -41,6 +41,7 @@ class TetAssembly {
     std::vector<std::string> problems;
     for (std::size_t b = 0; b < config.bodies.size(); ++b) {
       model_.groups.push_back(config.bodies[b].name);
+      if (config.bodies[b].shape == "part") continue;
       context.number = static_cast<std::uint32_t>(b);
       try {
         add(static_cast<std::int16_t>(b), context);
@@ -48,6 +49,10 @@ class TetAssembly {
         problems.push_back("body." + config.bodies[b].name + ": " + error.what());
       }
     }
+    for (std::size_t b = 0; b < config.bodies.size(); ++b)
+      if (config.bodies[b].shape == "part" && !take_part(b))
+        problems.push_back(fmt::format("body.{}: no tetrahedron of body.{} lies in it",
+                                       config.bodies[b].name, config.bodies[b].of));
     prepare::refuse(problems, "with the model");
   }
   Model& model() { return model_; }
@@ -88,6 +93,23 @@ class TetAssembly {
       model_.strength.push_back(1.0F);
     }
     add_face_sets(*placed);
+  }
+
+  /// Tetrahedra of another body whose middle lies in a part of it become those of the part.
+  /// @returns whether there are any
+  bool take_part(std::size_t number) {
+    const BodyConfig& part = config_.bodies[number];
+    const auto host = index_in(config_.bodies, part.of);
+    const std::int16_t material = index_in(config_.materials, part.material);
+    bool any = false;
+    for (std::size_t t = 0; t < model_.tetrahedron.size(); ++t) {
+      if (model_.group[t] != host) continue;
+      if (!prepare::in_part(part, prepare::centroid(model_.point, model_.tetrahedron[t]))) continue;
+      model_.group[t] = static_cast<std::int16_t>(number);
+      model_.material[t] = material;
+      any = true;
+    }
+    return any;
   }
 
   prepare::Tetrahedron corners_in_model(Placed& placed, prepare::Tetrahedron corners) {
@@ -202,7 +224,9 @@ void crack(Model& model, const Config& config, const std::vector<prepare::MeshFa
   std::map<prepare::Face, std::int16_t> material;
   for (const DiscontinuityConfig& d : config.discontinuities) {
     const auto follows = [&](Index t) {
-      const auto body = static_cast<std::size_t>(model.group[static_cast<std::size_t>(t)]);
+      auto body = static_cast<std::size_t>(model.group[static_cast<std::size_t>(t)]);
+      if (config.bodies[body].shape == "part")
+        body = static_cast<std::size_t>(index_in(config.bodies, config.bodies[body].of));
       return d.embedded && prepare::follows_cracks(config.bodies[body]);
     };
     const auto found = prepare::faces_along(d, model.point, model.tetrahedron, faces, follows);

@@ -9,6 +9,7 @@
 
 #include "domain/simulated_ranks.hpp"
 #include "run/method/dem_method.hpp"
+#include "run/method/fdem3_method.hpp"
 #include "run/method/fdem_method.hpp"
 #include "run/stage_control.hpp"
 

@@ -321,39 +321,8 @@ struct LoadChange : fdem_shared::LoadChangeOf<Vec2> {
   }
 };
 
-/// [[stage.material]]: what a material is from a stage on
-struct MaterialChange {
-  std::string name;
-  double young = 0.0;      ///< 0: as before  [Pa]
-  double in_situ = -1.0;   ///< below 0: as before  [-]
-  double friction = -1.0;  ///< below 0: as before  [-]
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    key("name", name, "name of the material");
-    key.required("name");
-    key("young", young, "Pa", Range{0.0, 1e15},
-        "Young's modulus of its triangles from now on; joints and contacts keep their stiffnesses; "
-        "0: as before");
-    key("in_situ", in_situ, "-", Range{-1.0, 1.0},
-        "share of the stress at the start that it bears from now on: a core that is dug slowly "
-        "bears less and less; below 0: as before");
-    key("friction", friction, "-", Range{-1.0, 1e3},
-        "coefficient of friction of its contacts from now on; between two materials the lower one "
-        "counts; below 0: as before");
-  }
-};
-
-/// [[stage]]
-struct StageConfig : fdem_shared::MeshStageConfig<Vec2, LoadChange> {
-  std::vector<MaterialChange> materials;
-
-  template <class Visit>
-  void each_key(Visit&& key) {
-    MeshStageConfig::each_key(key);
-    key.list("material", materials, "materials that are softer or stiffer from its beginning on");
-  }
-};
+using StageConfig = fdem_shared::MeshStageConfig<Vec2, LoadChange>;
+using fdem_shared::MaterialChange;
 
 /// [in_situ]
 struct InSituConfig {
@@ -377,7 +346,10 @@ struct InSituConfig {
   }
   bool graded() const { return norm(xx_slope) + norm(yy_slope) + norm(xy_slope) > 0.0; }
   bool any() const { return xx != 0.0 || yy != 0.0 || xy != 0.0 || graded(); }
-  /// Stress at a place at the start.  [Pa]
+  /// Force per volume of the slopes.  [N/m3]
+  Vec2 push() const { return {xx_slope.x + xy_slope.y, xy_slope.x + yy_slope.y}; }
+  /// Stress at the origin, and at a place at the start.  [Pa]
+  Sym2 stress() const { return {xx, yy, xy}; }
   Sym2 at(const Vec2& place) const {
     const Vec2 from = place - origin;
     return {xx + dot(xx_slope, from), yy + dot(yy_slope, from), xy + dot(xy_slope, from)};

@@ -5,6 +5,7 @@
 
 #include "exec/error.hpp"
 #include "fdem/setup/bedding.hpp"
+#include "fdem_shared/setup/elements.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -151,7 +152,7 @@ std::vector<ElasticTriangle> elastic_table(const Config& config) {
           "material." + m.name +
           ".poisson: must be below 0.5 in plane strain; plane = \"stress\" takes more");
     ElasticTriangle law{};
-    const double young = m.young_now > 0.0 ? m.young_now : m.young, share = m.in_situ_share;
+    const double young = m.young_now > 0.0 ? m.young_now : m.young;
     law.lambda = plane_lambda(young, m.poisson, stress);
     law.shear = shear_modulus(young, m.poisson);
     if (m.bedding.has_stiffness()) {
@@ -159,25 +160,13 @@ std::vector<ElasticTriangle> elastic_table(const Config& config) {
       for (double* const modulus : {&law.lambda, &law.shear, &law.tilt, &law.bend})
         *modulus *= young / m.young;
     }
-    law.preset = {share * config.in_situ.xx, share * config.in_situ.yy, share * config.in_situ.xy};
     laws.push_back(law);
   }
   return laws;
 }
 
 std::vector<ElasticTriangle> elastic_laws(const Config& config, const Case& given) {
-  const std::vector<ElasticTriangle> table = elastic_table(config);
-  if (!config.in_situ.graded()) return table;
-  std::vector<ElasticTriangle> laws;
-  laws.reserve(given.middles.size());
-  for (std::size_t t = 0; t < given.middles.size(); ++t) {
-    const auto material = static_cast<std::size_t>(given.materials_of[t]);
-    const double share = config.materials[material].in_situ_share;
-    const Sym2 start = config.in_situ.at(given.middles[t]);
-    laws.push_back(table[material]);
-    laws.back().preset = {share * start.xx, share * start.yy, share * start.xy};
-  }
-  return laws;
+  return fdem_shared::laws_with_stress(elastic_table(config), config, given);
 }
 
 }  // namespace breccia::fdem

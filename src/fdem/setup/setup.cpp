@@ -12,10 +12,10 @@
 #include "fdem/setup/mesh_edges.hpp"
 #include "fdem/setup/pressed_faces.hpp"
 #include "fdem/setup/regions.hpp"
-#include "fdem/setup/removal.hpp"
 #include "fdem/setup/warnings.hpp"
 #include "fdem/shape.hpp"
 #include "fdem_shared/setup/elements.hpp"
+#include "fdem_shared/setup/removal.hpp"
 #include "fdem_shared/setup/supports.hpp"
 
 namespace breccia::fdem {
@@ -23,28 +23,20 @@ namespace breccia::fdem {
 using fdem_shared::begin_joints;
 using fdem_shared::corners_of_bodies;
 using fdem_shared::hold_anew;
+using fdem_shared::hold_removed;
 using fdem_shared::prescribe_supports;
 using fdem_shared::refuse_endless;
+using fdem_shared::removable_bodies;
 using fdem_shared::set_up;
 using fdem_shared::set_up_bodies;
 using fdem_shared::set_up_bundles;
 using fdem_shared::set_up_elements;
+using fdem_shared::set_up_middles;
 using fdem_shared::set_up_starts;
 using fdem_shared::set_up_supports;
 using fdem_shared::with_inertia;
 
 namespace {
-
-/// Materials and middles of triangles, for their laws where the stress in situ has a slope.
-void set_up_middles(Case& given, const Model& model) {
-  if (!given.in_situ.graded()) return;
-  given.materials_of.assign(model.material.begin(), model.material.end());
-  for (const auto& corners : model.triangle) {
-    Vec2 sum{};
-    for (const Index corner : corners) sum += model.point[at(corner)];
-    given.middles.push_back((1.0 / 3.0) * sum);
-  }
-}
 
 /// Joins neighbours: a joint, a bond, or nothing.
 void set_up_joints(World& w, const Config& config, const Model& model) {
@@ -176,18 +168,6 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   set_up_bundles(w, tied);
 }
 
-/// Holds of triangles that have been taken out.
-void hold_removed(World& w, const Config& config, std::vector<Hold>& holds,
-                  std::vector<Index>& hold) {
-  Case& given = set_up(w);
-  given.removed = removed_bodies(config, given.groups);
-  for (std::size_t b = 0; b < given.removed.size(); ++b) {
-    if (given.removed[b] == 0) continue;
-    if (holds.empty()) holds.push_back({.fixed = 0x3f, .gone = 1});
-    for (const Index n : given.sets[b].nodes) hold[at(n / 3)] = 0;
-  }
-}
-
 }  // namespace
 
 World::World(const Exec& how) : exec(how), lanes(widest_lanes()) {
@@ -212,7 +192,7 @@ Shape::AtStart Shape::at_start(const TriangleNodes& nodes, double density, std::
 std::vector<Index> Shape::prescribe(World& w, const Config& config) {
   std::vector<Hold> holds;
   std::vector<Index> hold(corners_of_bodies(w, config) / 3, -1);
-  hold_removed(w, config, holds, hold);
+  hold_removed(w, config, Hold{.fixed = 0x3f, .gone = 1}, holds, hold);
   prescribe_supports(w, config, holds, hold);
   return hold;
 }
@@ -232,10 +212,10 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   given.emission = config.emission;
   given.rebound = Rebound::of(config.contact.restitution);
   given.materials = static_cast<Index>(config.materials.size());
-  set_up_middles(given, model);
+  set_up_middles(w, model);
   copy_to(given.laws, elastic_laws(config, given));
   copy_to(given.contact_pairs, contact_table(config));
-  given.removable = removable_bodies(config, model);
+  given.removable = removable_bodies<World>(config, model);
   set_up_bodies(w, model);
   set_up_elements(w, config, model);
   set_up_joints(w, config, model);

@@ -8,6 +8,7 @@
 #include "core/on_host.hpp"
 #include "exec/for_each.hpp"
 #include "fdem/observe.hpp"
+#include "fdem_shared/setup/weight.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -119,32 +120,12 @@ void look_for_long_edges(const World& w, const Config& config, std::vector<std::
   found.emplace_back(text);
 }
 
-/// Stress in situ with a slope, or gravity without one, by which rock moves at once. Forces per
-/// volume that are missing are held against the weight.
-void look_for_unbalanced_weight(const Config& config, std::vector<std::string>& found) {
-  const InSituConfig& s = config.in_situ;
-  if (!s.any()) return;
-  const Vec2 push{s.xx_slope.x + s.xy_slope.y, s.xy_slope.x + s.yy_slope.y};
-  for (const MaterialConfig& m : config.materials) {
-    const Vec2 weight = m.density * config.gravity, rest = push + weight;
-    if (norm(rest) <= 0.01 * std::max(norm(push), norm(weight))) continue;
-    char text[500];
-    std::snprintf(
-        text, sizeof text,
-        "in_situ is not in equilibrium with gravity: its slopes push %s with (%.6g, %.6g) "
-        "N/m3, its weight is (%.6g, %.6g) N/m3; with xx_slope[0] + xy_slope[1] = %.6g and "
-        "xy_slope[0] + yy_slope[1] = %.6g Pa/m nothing moves at the start",
-        m.name.c_str(), push.x, push.y, weight.x, weight.y, -weight.x, -weight.y);
-    found.emplace_back(text);
-    return;
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> doubts(const World& w, const Config& config) {
   std::vector<std::string> found;
-  look_for_unbalanced_weight(config, found);
+  fdem_shared::look_for_unbalanced_weight(
+      config, "xx_slope[0] + xy_slope[1] and xy_slope[0] + yy_slope[1]", found);
   look_for_slivers(w, found);
   look_for_long_edges(w, config, found);
   return found;

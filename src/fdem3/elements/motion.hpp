@@ -10,6 +10,7 @@ namespace breccia::fdem3 {
 /// k, whose motion is motion[k].
 struct Hold {
   std::uint16_t fixed = 0;
+  std::uint16_t gone = 0;  ///< 1: the tetrahedron has been taken out of the model
   std::int16_t motion[4] = {-1, -1, -1, -1};
 
   /// Bits 0, 1 and 2: x, y and z of corner k.

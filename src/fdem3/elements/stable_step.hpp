@@ -12,7 +12,7 @@ namespace breccia::fdem3 {
 /// one is near to, and of those so fast that they might pass what is near between two evaluations.
 struct StableStep {
   View<const TetrahedronNodes> nodes;
-  View<const Index> material;
+  View<const Index> material, law_of;
   View<const ElasticTetrahedron> laws;
   View<const ShapeGradients> shape;
   View<const double> viscosity, mass;
@@ -80,7 +80,7 @@ struct StableStep {
 
   /// @param pressed  bits of the faces whose contact counts
   BR_HD Parts parts(Index t, const Vec3 (&x)[4], int pressed) const {
-    const ElasticTetrahedron& law = laws[material[t]];
+    const ElasticTetrahedron& law = laws[law_of[t]];
     const Target form = Target::of(x);
     const double volume = form.six_volumes / 6.0;
     Parts at_corner[4];

@@ -22,7 +22,9 @@ struct JointForces {
   View<const FaceShape> shape;
   View<const double> length, strength;
   View<const Vec3> preset;
-  Sym3 in_situ;  ///< stress at the start  [Pa]
+  Sym3 in_situ;                           ///< stress at the start  [Pa]
+  View<const ElasticTetrahedron> graded;  ///< laws that hold it by global id; empty: no slope
+  View<const GlobalId> id;                ///< of tetrahedra
   View<JointStage> stage;
   View<JointPoints> points;
   View<JointForce> force;
@@ -42,6 +44,7 @@ struct JointForces {
     R length, strength;
     Vec3Of<R> offset;
     JointOpeningOf<R> opening;
+    Index number;  ///< of the first joint
   };
   /// Of joints in a pack, a bit for each.
   struct Left {
@@ -56,6 +59,7 @@ struct JointForces {
   template <class R>
   BR_HD void load_early(Index i, Loaded<R>& loaded) const {
     loaded.before = stage[i];
+    loaded.number = i;
     if constexpr (width_of<R> == 1) {
       loaded.last = force[i];
       loaded.quiet = is_parted(loaded.before) && is_zero(loaded.last);
@@ -126,6 +130,23 @@ struct JointForces {
   }
 
  private:
+  /// Stress at the start of the rock at a joint: the mean of its two tetrahedra's.  [Pa]
+  BR_HD Sym3 start_of(Index i) const {
+    const Sym3 &a = graded[id[face_a[i] / 4]].preset, &b = graded[id[face_b[i] / 4]].preset;
+    return {0.5 * (a.xx + b.xx), 0.5 * (a.yy + b.yy), 0.5 * (a.zz + b.zz),
+            0.5 * (a.yz + b.yz), 0.5 * (a.xz + b.xz), 0.5 * (a.xy + b.xy)};
+  }
+  template <class R>
+  BR_HD Sym3Of<R> graded_start(Index i) const {
+    double own[6][width_of<R>];
+    for (Index k = 0; k < width_of<R>; ++k) {
+      const Sym3 at = start_of(i + k);
+      const double parts[6] = {at.xx, at.yy, at.zz, at.yz, at.xz, at.xy};
+      for (int c = 0; c < 6; ++c) own[c][k] = parts[c];
+    }
+    return {pack_of<R>(own[0]), pack_of<R>(own[1]), pack_of<R>(own[2]),
+            pack_of<R>(own[3]), pack_of<R>(own[4]), pack_of<R>(own[5])};
+  }
   BR_HD const NodeState& node(Index n) const { return nodes[n / 4].at[n % 4]; }
   BR_HD JointEnds ends_of(Index i) const {
     return JointEnds::of(read_now(&face_a[i]), read_now(&face_b[i]), turn[i]);
@@ -194,8 +215,9 @@ struct JointForces {
     const auto by_rock = young > 0.0;
     if (any(by_rock)) {
       const R third = constant<R>(1.0 / 3.0);
-      const Sym3Of<R> start{zero + in_situ.xx, zero + in_situ.yy, zero + in_situ.zz,
-                            zero + in_situ.yz, zero + in_situ.xz, zero + in_situ.xy};
+      Sym3Of<R> start{zero + in_situ.xx, zero + in_situ.yy, zero + in_situ.zz,
+                      zero + in_situ.yz, zero + in_situ.xz, zero + in_situ.xy};
+      if (graded.size > 0) start = graded_start<R>(loaded.number);
       const RockStressOf<R> s = rock_stress(young, bond[9], loaded.shape, o, third * mean, start);
       w.beyond = w.beyond || (by_rock && may_fail(tension, cohesion, friction, s));
     }
@@ -323,8 +345,8 @@ struct JointForces {
       half_soft = half_soft || (point.damage > 0.0 && fdem::softening(point.damage) < 0.5);
     }
     if (half_soft) return false;
-    const RockStress s =
-        rock_stress(bond.young, bond.poisson, shape[i], o, (1.0 / 3.0) * mean, in_situ);
+    const RockStress s = rock_stress(bond.young, bond.poisson, shape[i], o, (1.0 / 3.0) * mean,
+                                     graded.size > 0 ? start_of(i) : in_situ);
     const fdem::Failure how = fdem::failure_of(rock_failure(bond, share, s));
     if (how == fdem::Failure::none) return false;
     for (int q = 0; q < 3; ++q)

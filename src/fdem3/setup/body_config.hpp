@@ -25,6 +25,7 @@ struct BodyConfig {
   double jitter = 0.0;     ///< over the edge length  [-]
   bool structured = false;
   Vec3 velocity{};  ///< at the start  [m/s]
+  std::string of;   ///< the body that a part is of
   std::string file;
   std::vector<std::string> parts;  ///< physical groups of the file
   fdem::GrainsConfig grains;
@@ -34,8 +35,10 @@ struct BodyConfig {
   void each_key(Visit&& key) {
     key("name", name, "name of the body: its tetrahedra form a group of this name");
     key.required("name");
-    key("shape", shape, OneOf{"box", "cylinder", "sphere", "mesh", "stl"},
-        "mesh: tetrahedra from a file; stl: the inside of a closed surface from a file");
+    key("shape", shape, OneOf{"box", "cylinder", "sphere", "mesh", "stl", "part"},
+        "mesh: tetrahedra from a file; stl: the inside of a closed surface from a file; part: the "
+        "tetrahedra of another body whose middles lie in a box (size), a cylinder (radius and "
+        "height) or a sphere (radius), joined to it as before");
     key("material", material, "name of a material; with grains: of what is no mineral");
     key.required("material");
     key("center", center, "m", any_number,
@@ -51,6 +54,7 @@ struct BodyConfig {
         "a regular mesh, made without gmsh: of a box, six tetrahedra to a cube. Cracks follow its "
         "planes: for tests");
     key("velocity", velocity, "m/s", any_number, "velocity at the start");
+    key("of", of, "part: the body that it is a part of");
     key("file", file, "file beside the case file: .msh (Gmsh 2.2 or 4.1) or .inp; .stl");
     key("parts", parts,
         "physical volumes (.msh) or element sets (.inp) that are this body; empty: all. Bodies "

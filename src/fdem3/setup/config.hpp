@@ -6,6 +6,7 @@
 #include "core/emission_config.hpp"
 #include "fdem/setup/config.hpp"
 #include "fdem3/setup/body_config.hpp"
+#include "math/mat3.hpp"
 
 namespace breccia::fdem3 {
 
@@ -63,19 +64,49 @@ using StageConfig = fdem_shared::MeshStageConfig<Vec3>;
 /// [in_situ]
 struct InSituConfig {
   double xx = 0.0, yy = 0.0, zz = 0.0, yz = 0.0, xz = 0.0, xy = 0.0;  ///<  [Pa]
+  /// Their change with x, y and z  [Pa/m]
+  Vec3 xx_slope{}, yy_slope{}, zz_slope{}, yz_slope{}, xz_slope{}, xy_slope{};
+  Vec3 origin{};  ///< where xx to xy hold  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
-    const Range sane{-1e15, 1e15};
+    const Range sane{-1e15, 1e15}, steep{-1e12, 1e12};
     key("xx", xx, "Pa", sane, "stress at the start, tension positive");
     key("yy", yy, "Pa", sane, "stress at the start, tension positive");
     key("zz", zz, "Pa", sane, "stress at the start, tension positive");
     key("yz", yz, "Pa", sane, "stress at the start");
     key("xz", xz, "Pa", sane, "stress at the start");
     key("xy", xy, "Pa", sane, "stress at the start");
+    key("xx_slope", xx_slope, "Pa/m", steep,
+        "how much xx grows per metre along x, y and z: stress that grows with depth");
+    key("yy_slope", yy_slope, "Pa/m", steep, "how much yy grows per metre along x, y and z");
+    key("zz_slope", zz_slope, "Pa/m", steep,
+        "how much zz grows per metre along x, y and z; under gravity g along -z: [0, 0, rho g]");
+    key("yz_slope", yz_slope, "Pa/m", steep, "how much yz grows per metre along x, y and z");
+    key("xz_slope", xz_slope, "Pa/m", steep, "how much xz grows per metre along x, y and z");
+    key("xy_slope", xy_slope, "Pa/m", steep, "how much xy grows per metre along x, y and z");
+    key("origin", origin, "m", any_number,
+        "where xx to xy hold, as a point of the ground's surface");
+  }
+  bool graded() const {
+    return norm(xx_slope) + norm(yy_slope) + norm(zz_slope) + norm(yz_slope) + norm(xz_slope) +
+               norm(xy_slope) >
+           0.0;
   }
   bool any() const {
-    return xx != 0.0 || yy != 0.0 || zz != 0.0 || yz != 0.0 || xz != 0.0 || xy != 0.0;
+    return xx != 0.0 || yy != 0.0 || zz != 0.0 || yz != 0.0 || xz != 0.0 || xy != 0.0 || graded();
+  }
+  /// Force per volume of the slopes.  [N/m3]
+  Vec3 push() const {
+    return {xx_slope.x + xy_slope.y + xz_slope.z, xy_slope.x + yy_slope.y + yz_slope.z,
+            xz_slope.x + yz_slope.y + zz_slope.z};
+  }
+  /// Stress at the origin, and at a place at the start.  [Pa]
+  Sym3 stress() const { return {xx, yy, zz, yz, xz, xy}; }
+  Sym3 at(const Vec3& place) const {
+    const Vec3 from = place - origin;
+    return {xx + dot(xx_slope, from), yy + dot(yy_slope, from), zz + dot(zz_slope, from),
+            yz + dot(yz_slope, from), xz + dot(xz_slope, from), xy + dot(xy_slope, from)};
   }
 };
 
@@ -99,7 +130,8 @@ struct Config : CaseConfig {
   std::vector<SupportConfig> supports;
   std::vector<LoadConfig> loads;
   std::vector<StageConfig> stages;
-  double stage_friction = -1.0;  ///< no key: of contacts in this stage; below 0: as given  [-]
+  double stage_friction = -1.0;      ///< no key: of contacts in this stage; below 0: as given  [-]
+  std::vector<std::string> removed;  ///< no key: bodies that are gone by now
   SearchConfig search;
   EmissionConfig emission;
 

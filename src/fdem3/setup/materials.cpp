@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "exec/error.hpp"
+#include "fdem_shared/setup/elements.hpp"
 
 namespace breccia::fdem3 {
 
@@ -18,15 +19,17 @@ fdem::Config shared_keys(const Config& config) {
 
 std::vector<ElasticTetrahedron> elastic_table(const Config& config) {
   std::vector<ElasticTetrahedron> laws;
-  const InSituConfig& s = config.in_situ;
   for (const MaterialConfig& m : config.materials) {
     if (m.poisson >= 0.5)
       throw InputError("material." + m.name + ".poisson: must be below 0.5 in three dimensions");
-    laws.push_back({lame_lambda(m.young, m.poisson),
-                    fdem::shear_modulus(m.young, m.poisson),
-                    {s.xx, s.yy, s.zz, s.yz, s.xz, s.xy}});
+    const double young = m.young_now > 0.0 ? m.young_now : m.young;
+    laws.push_back({lame_lambda(young, m.poisson), fdem::shear_modulus(young, m.poisson), {}});
   }
   return laws;
+}
+
+std::vector<ElasticTetrahedron> elastic_laws(const Config& config, const Case& given) {
+  return fdem_shared::laws_with_stress(elastic_table(config), config, given);
 }
 
 std::vector<ContactPair> contact_table(const Config& config, const std::vector<double>& lengths) {

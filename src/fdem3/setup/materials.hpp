@@ -13,6 +13,9 @@ fdem::Config shared_keys(const Config& config);
 /// @throws InputError for a Poisson's ratio of 0.5 or more
 std::vector<ElasticTetrahedron> elastic_table(const Config& config);
 
+/// Laws of materials, or, where the stress in situ has a slope, of tetrahedra.
+std::vector<ElasticTetrahedron> elastic_laws(const Config& config, const Case& given);
+
 /// @param lengths  h_c of each material  [m]  @throws InputError for names that do not exist
 std::vector<ContactPair> contact_table(const Config& config, const std::vector<double>& lengths);
 

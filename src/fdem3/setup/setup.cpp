@@ -14,19 +14,24 @@
 #include "fdem3/setup/regions.hpp"
 #include "fdem3/shape.hpp"
 #include "fdem_shared/setup/elements.hpp"
+#include "fdem_shared/setup/removal.hpp"
 #include "fdem_shared/setup/supports.hpp"
+#include "fdem_shared/setup/weight.hpp"
 
 namespace breccia::fdem3 {
 
 using fdem_shared::begin_joints;
 using fdem_shared::corners_of_bodies;
 using fdem_shared::hold_anew;
+using fdem_shared::hold_removed;
 using fdem_shared::prescribe_supports;
 using fdem_shared::refuse_endless;
+using fdem_shared::removable_bodies;
 using fdem_shared::set_up;
 using fdem_shared::set_up_bodies;
 using fdem_shared::set_up_bundles;
 using fdem_shared::set_up_elements;
+using fdem_shared::set_up_middles;
 using fdem_shared::set_up_starts;
 using fdem_shared::set_up_supports;
 using fdem_shared::with_inertia;
@@ -66,8 +71,7 @@ std::uint8_t turn_between(const Model& model, Index a, Index b) {
 /// Opening and slip at which a joint carries the stress at the start.
 Vec3 preset_of(const Config& config, const JointBond& bond, double strength, double h,
                const Vec3 (&corner)[3], Index a, Index b) {
-  const InSituConfig& s = config.in_situ;
-  const Sym3 stress{s.xx, s.yy, s.zz, s.yz, s.xz, s.xy};
+  const Sym3 stress = config.in_situ.at((1.0 / 3.0) * (corner[0] + corner[1] + corner[2]));
   const JointOpening o = opening_of(corner, corner);
   const Vec3 traction = stress * o.normal, across = cross(o.normal, o.along);
   const double along_part = dot(traction, o.along), across_part = dot(traction, across);
@@ -244,6 +248,7 @@ Shape::AtStart Shape::at_start(const TetrahedronNodes& nodes, double density, st
 std::vector<Index> Shape::prescribe(World& w, const Config& config) {
   std::vector<Hold> holds;
   std::vector<Index> hold(corners_of_bodies(w, config) / 4, -1);
+  hold_removed(w, config, Hold{.fixed = 0xfff, .gone = 1}, holds, hold);
   prescribe_supports(w, config, holds, hold);
   return hold;
 }
@@ -255,16 +260,17 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   Case& given = set_up(w);
   given.time = config.time;
   given.gravity = config.gravity;
-  const InSituConfig& s = config.in_situ;
-  given.in_situ = {s.xx, s.yy, s.zz, s.yz, s.xz, s.xy};
+  given.in_situ = config.in_situ;
   given.local_damping = config.local_damping;
   given.shown = config.output.more_fields();
   given.emission = config.emission;
   given.materials = static_cast<Index>(config.materials.size());
   given.contact_lengths = contact_lengths(config, model);
   given.rocks = effective_rocks(config);
-  copy_to(given.laws, elastic_table(config));
+  set_up_middles(w, model);
+  copy_to(given.laws, elastic_laws(config, given));
   copy_to(given.contact_pairs, contact_table(config, given.contact_lengths));
+  given.removable = removable_bodies<World>(config, model);
   set_up_bodies(w, model);
   set_up_elements(w, config, model);
   Joining(w, config, model).store();
@@ -278,6 +284,11 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   find_couples(w);
   evaluate_forces(w);
   refuse_endless(w);
+  fdem_shared::look_for_unbalanced_weight(
+      config,
+      "xx_slope[0] + xy_slope[1] + xz_slope[2], xy_slope[0] + yy_slope[1] + yz_slope[2] and "
+      "xz_slope[0] + yz_slope[1] + zz_slope[2]",
+      given.warnings);
   if (auto flat = flat_tetrahedron(model)) given.warnings.push_back(std::move(*flat));
   begin_ledger(w);
   return w;
@@ -291,6 +302,7 @@ void configure(World& w, const Config& config) {
   Case& given = set_up(w);
   given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
   given.local_damping = config.local_damping;
+  copy_to(given.laws, elastic_laws(config, given));
   copy_to(given.contact_pairs, contact_table(config, given.contact_lengths));
   hold_anew(w, config);
   prescribe_loads(w, config);

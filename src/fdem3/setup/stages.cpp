@@ -12,12 +12,8 @@ Config config_at(Config config, const StageProgress& progress) {
 }
 
 std::vector<std::string> stage_problems(const Config& config) {
-  std::vector<std::string> problems =
-      fdem_shared::problems_of_stages(config, {"x", "y", "z"}, "an area", config_at);
-  for (const StageConfig& stage : config.stages)
-    if (!stage.remove.empty())
-      problems.push_back("stage." + stage.name + ".remove: fdem3d takes no bodies out of a model");
-  return fdem_shared::each_once(std::move(problems));
+  return fdem_shared::each_once(
+      fdem_shared::problems_of_stages(config, {"x", "y", "z"}, "an area", config_at));
 }
 
 }  // namespace breccia::fdem3

@@ -16,6 +16,7 @@ StableStep stable_step(const World& w) {
   const Joints& j = w.joints;
   return {t.nodes.view(),
           t.material.view(),
+          laws_of(w),
           w.given->laws.view(),
           t.shape.view(),
           t.viscosity.view(),

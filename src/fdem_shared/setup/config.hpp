@@ -159,12 +159,36 @@ struct LoadChangeOf {
   }
 };
 
+/// [[stage.material]]: what a material is from a stage on
+struct MaterialChange {
+  std::string name;
+  double young = 0.0;      ///< 0: as before  [Pa]
+  double in_situ = -1.0;   ///< below 0: as before  [-]
+  double friction = -1.0;  ///< below 0: as before  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the material");
+    key.required("name");
+    key("young", young, "Pa", Range{0.0, 1e15},
+        "Young's modulus of its elements from now on; joints and contacts keep their stiffnesses; "
+        "0: as before");
+    key("in_situ", in_situ, "-", Range{-1.0, 1.0},
+        "share of the stress at the start that it bears from now on: a core that is dug slowly "
+        "bears less and less; below 0: as before");
+    key("friction", friction, "-", Range{-1.0, 1e3},
+        "coefficient of friction of its contacts from now on; between two materials the lower one "
+        "counts; below 0: as before");
+  }
+};
+
 /// [[stage]]: keys of both methods
 template <class Vector, class LoadChange = LoadChangeOf<Vector>>
 struct MeshStageConfig : StageEnd {
   Vector gravity = from_space<Vector>({no_limit, no_limit, no_limit});  ///<  [m/s2]
   std::vector<SupportChangeOf<Vector>> supports;
   std::vector<LoadChange> loads;
+  std::vector<MaterialChange> materials;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -173,6 +197,7 @@ struct MeshStageConfig : StageEnd {
         "acceleration of gravity from its beginning on; left out (inf): as before");
     key.list("support", supports, "supports that prescribe something else from its beginning on");
     key.list("load", loads, "loads that are another from its beginning on");
+    key.list("material", materials, "materials that are softer or stiffer from its beginning on");
   }
 };
 

@@ -13,6 +13,7 @@
 #include "fdem_shared/observe.hpp"
 #include "fdem_shared/setup/writable.hpp"
 #include "fdem_shared/shape.hpp"
+#include "math/mat3.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -64,6 +65,47 @@ void set_up_elements(World& w, const Config& config, const Model& model) {
   for (Buffer<double>* work : {&e.viscous_work, &e.damping_work, &e.load_work})
     work->resize(model.size());
   e.force.resize(model.size());
+}
+
+/// Materials and middles of elements, for their laws where the stress in situ has a slope.
+template <class World, class Model>
+void set_up_middles(World& w, const Model& model) {
+  using Shape = ShapeOf<World>;
+  auto& given = set_up(w);
+  if (!given.in_situ.graded()) return;
+  given.materials_of.assign(model.material.begin(), model.material.end());
+  for (const auto& corners : Shape::corners_of(model)) {
+    typename Shape::Vector sum{};
+    for (const Index corner : corners) sum += model.point[at(corner)];
+    given.middles.push_back((1.0 / static_cast<double>(Shape::corners)) * sum);
+  }
+}
+
+inline Sym2 part_of_stress(double share, const Sym2& s) {
+  return {share * s.xx, share * s.yy, share * s.xy};
+}
+inline Sym3 part_of_stress(double share, const Sym3& s) {
+  return {share * s.xx, share * s.yy, share * s.zz, share * s.yz, share * s.xz, share * s.xy};
+}
+
+/// Laws of materials, or, where the stress in situ has a slope, of elements.
+template <class Law, class Config, class Case>
+std::vector<Law> laws_with_stress(std::vector<Law> of_materials, const Config& config,
+                                  const Case& given) {
+  const auto under = [&](std::size_t material, const auto& stress) {
+    Law law = of_materials[material];
+    law.preset = part_of_stress(config.materials[material].in_situ_share, stress);
+    return law;
+  };
+  std::vector<Law> laws;
+  if (config.in_situ.graded())
+    for (std::size_t t = 0; t < given.middles.size(); ++t)
+      laws.push_back(under(static_cast<std::size_t>(given.materials_of[t]),
+                           config.in_situ.at(given.middles[t])));
+  else
+    for (std::size_t m = 0; m < of_materials.size(); ++m)
+      laws.push_back(under(m, config.in_situ.stress()));
+  return laws;
 }
 
 /// Names of bodies, and their corners.

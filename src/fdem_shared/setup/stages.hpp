@@ -7,6 +7,7 @@
 
 #include "core/named.hpp"
 #include "core/stages.hpp"
+#include "fdem_shared/setup/config.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -14,6 +15,7 @@ namespace breccia::fdem_shared {
 /// @param begin  time at which it began  [s]
 template <class Config, class Stage>
 void begin_stage(Config& config, const Stage& stage, double begin) {
+  config.removed.insert(config.removed.end(), stage.remove.begin(), stage.remove.end());
   if (stage.local_damping >= 0.0) config.local_damping = stage.local_damping;
   if (stage.friction >= 0.0) config.stage_friction = stage.friction;
   if (stage.gravity.x < no_limit) config.gravity = stage.gravity;
@@ -30,6 +32,12 @@ void begin_stage(Config& config, const Stage& stage, double begin) {
       load->traction = change.traction;
       load->force = change.force;
       load->history = {change.ramp, {}, {}, begin};
+    }
+  for (const MaterialChange& change : stage.materials)
+    if (auto* const m = find_named(config.materials, change.name)) {
+      if (change.young > 0.0) m->young_now = change.young;
+      if (change.in_situ >= 0.0) m->in_situ_share = change.in_situ;
+      if (change.friction >= 0.0) m->friction = change.friction;
     }
 }
 
@@ -69,6 +77,9 @@ void add_stage_problems(const Config& config, const Stage& stage,
                            "\" is no direction; allowed: x, y" +
                            (directions.size() > 2 ? ", z" : ""));
   }
+  for (const MaterialChange& change : stage.materials)
+    add_unknown(where + ".material.name", change.name, "material", names_of(config.materials),
+                problems);
   for (const auto& change : stage.loads) {
     add_unknown(where + ".load.name", change.name, "load", names_of(config.loads), problems);
     for (const auto& load : config.loads)

@@ -26,7 +26,7 @@ Vec3 half_of(const TetBodyConfig& b) {
   return half;
 }
 bool has_bounds(const TetBodyConfig& b) {
-  return b.shape != "mesh" && b.shape != "stl";
+  return b.shape != "mesh" && b.shape != "stl" && b.shape != "part";
 }
 
 /// A coordinate along an axis, and the two across it.
@@ -102,8 +102,24 @@ class TetBodyChecks {
             all_names(config_.materials));
   }
 
+  void check_part(const TetBodyConfig& b) {
+    const auto host = std::find_if(config_.bodies.begin(), config_.bodies.end(),
+                                   [&](const TetBodyConfig& each) { return each.name == b.of; });
+    require(host != config_.bodies.end() && host->shape != "part",
+            "of = \"{}\" must name a body that is no part", b.of);
+    const bool box = b.size.x > 0.0 && b.size.y > 0.0 && b.size.z > 0.0;
+    require(box != (b.radius > 0.0),
+            "a part needs size, or a radius (with a height it is a cylinder), one of them");
+    require(norm(b.velocity) == 0.0, "a part moves as the body that it is of");
+    require(b.mesh_size == 0.0 && b.file.empty() && b.parts.empty() && !b.structured,
+            "a part has the mesh of the body that it is of");
+    if (!b.grains.kind.empty()) check_grains(b);
+  }
+
   void check(const TetBodyConfig& b) {
     require_material("material", b.material);
+    if (b.shape == "part") return check_part(b);
+    require(b.of.empty(), "of names the body of a part; shape is {}", b.shape);
     const bool box = b.shape == "box", cylinder = b.shape == "cylinder",
                sphere = b.shape == "sphere", file = b.shape == "mesh" || b.shape == "stl";
     if (box)

@@ -165,6 +165,7 @@ Outline outline_of(const fdem::BodyConfig& b, const std::string* folder) {
 }
 
 Outline outline_of(const fdem3::BodyConfig& b, const std::string* folder) {
+  if (b.shape == "part") return {b.name, {}, true};
   if (b.shape == "mesh" || b.shape == "stl") {
     if (folder == nullptr) return {b.name, {}};
     return {b.name, told_by_file([&](std::optional<Bounds>& all) {

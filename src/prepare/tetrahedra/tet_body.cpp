@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/region.hpp"
 #include "exec/error.hpp"
 #include "prepare/tetrahedra/crack_faces.hpp"
 #include "prepare/tetrahedra/kuhn_box.hpp"
@@ -20,7 +21,7 @@ constexpr std::uint32_t tet_jitter_stream = 0x10000;
 }  // namespace
 
 bool needs_gmsh(const fdem3::BodyConfig& body) {
-  return body.shape != "mesh" && !body.structured;
+  return body.shape != "mesh" && body.shape != "part" && !body.structured;
 }
 
 bool follows_cracks(const fdem3::BodyConfig& body) {
@@ -48,6 +49,17 @@ TetMesh mesh_of(const fdem3::BodyConfig& body, const TetContext& context) {
   jitter(mesh, body.jitter,
          {static_cast<std::uint64_t>(context.seed), tet_jitter_stream + context.number}, fixed);
   return mesh;
+}
+
+bool in_part(const fdem3::BodyConfig& part, const Vec3& point) {
+  const Vec3 from = point - part.center;
+  if (!(part.radius > 0.0))
+    return std::abs(from.x) <= 0.5 * part.size.x && std::abs(from.y) <= 0.5 * part.size.y &&
+           std::abs(from.z) <= 0.5 * part.size.z;
+  if (!(part.height > 0.0)) return in_round(part.center, part.radius, "", point);
+  const double along = part.axis == "x" ? from.x : part.axis == "y" ? from.y : from.z;
+  return std::abs(along) <= 0.5 * part.height &&
+         in_round(part.center, part.radius, part.axis, point);
 }
 
 std::vector<Index> tetrahedra_of(const fdem3::BodyConfig& body, const TetMesh& mesh) {

@@ -29,6 +29,9 @@ bool needs_gmsh(const fdem3::BodyConfig& body);
 /// Whether the body's mesh is made to follow cracks.
 bool follows_cracks(const fdem3::BodyConfig& body);
 
+/// Whether a point lies in a body of shape "part".
+bool in_part(const fdem3::BodyConfig& part, const Vec3& point);
+
 /// The tetrahedra of a mesh that are a body: those of its parts, or all.
 /// @throws InputError if the mesh has no part of a name
 std::vector<Index> tetrahedra_of(const fdem3::BodyConfig& body, const TetMesh& mesh);

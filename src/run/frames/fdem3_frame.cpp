@@ -9,6 +9,7 @@
 #include "exec/tasks.hpp"
 #include "fdem3/observe.hpp"
 #include "fdem3/ranks.hpp"
+#include "fdem3/setup/removal.hpp"
 #include "run/frames/mesh_parts.hpp"
 #include "run/method/fdem3_method.hpp"
 
@@ -49,7 +50,7 @@ class FrameOfTetrahedra {
       const Index i = own_.elements[k];
       for (std::size_t c = 0; c < 4; ++c) {
         f_.tetrahedra[4 * k + c] =
-            static_cast<std::int32_t>(4 * t_.id.data()[i] + static_cast<int>(c));
+            static_cast<std::int32_t>(4 * own_.place_of(t_.id.data()[i]) + static_cast<int>(c));
         f_.position[4 * k + c] = t_.nodes.data()[i].at[c].position;
         put_vector(f_.point_fields[0], 4 * k + c, velocity_[at(i)].at[c]);
       }
@@ -175,10 +176,9 @@ FramePart fdem3_frame(World& w, const World* mesh) {
   const OnHost<Tetrahedra> elements(w.tetrahedra, w.exec.space);
   const OnHost<Joints> joints(w.joints, w.exec.space);
   OwnParts own;
-  for (std::size_t g = 0; g < w.given->groups.size(); ++g)
-    own.shown += static_cast<std::int64_t>(w.given->sets[g].nodes.size() / 4);
-  list_own(w, *joints, {}, own);
-  list_open_sides(w, *elements, w.given->open_cracks, {}, own);
+  const std::vector<std::uint8_t> gone = leave_out_removed(w, own);
+  list_own(w, *joints, gone_tetrahedra(w), own);
+  list_open_sides(w, *elements, w.given->open_cracks, gone, own);
   const PlacedParts known = placed_parts(w, *elements, *joints, own, mesh);
 
   FramePart part;

@@ -18,28 +18,6 @@ namespace {
 
 using namespace fdem;
 
-/// Frames leave out bodies that have been taken out.
-/// @returns 1: of each triangle of the whole mesh that has been; empty: none has
-std::vector<std::uint8_t> leave_out_removed(const Case& given, OwnParts& own) {
-  own.shown = 0;
-  for (std::size_t b = 0; b < given.groups.size(); ++b)
-    if (given.removed[b] == 0)
-      own.shown += static_cast<std::int64_t>(given.sets[b].nodes.size() / 3);
-  std::size_t all = 0;
-  for (std::size_t b = 0; b < given.groups.size(); ++b) all += given.sets[b].nodes.size() / 3;
-  if (static_cast<std::size_t>(own.shown) == all) return {};
-  std::vector<std::uint8_t> gone(all, 0);
-  for (std::size_t b = 0; b < given.groups.size(); ++b)
-    if (given.removed[b] != 0)
-      for (const Index n : given.sets[b].nodes) gone[at(n / 3)] = 1;
-  std::int32_t count = 0;
-  for (const std::uint8_t out : gone) {
-    own.place.push_back(count);
-    count += out == 0 ? 1 : 0;
-  }
-  return gone;
-}
-
 /// Fields of points besides velocity, in the order in which frames hold them.
 struct PointFields {
   FrameField *displacement = nullptr, *force = nullptr, *held = nullptr;
@@ -194,7 +172,7 @@ FramePart fdem_frame(World& w, const World* mesh) {
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
   const OnHost<Joints> joints(w.joints, w.exec.space);
   OwnParts own;
-  const std::vector<std::uint8_t> gone = leave_out_removed(*w.given, own);
+  const std::vector<std::uint8_t> gone = leave_out_removed(w, own);
   list_own(w, *joints, gone_triangles(w), own);
   list_open_sides(w, *triangles, w.given->open_cracks, gone, own);
   const PlacedParts known = placed_parts(w, *triangles, *joints, own, mesh);

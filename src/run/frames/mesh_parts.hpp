@@ -42,6 +42,32 @@ struct OwnParts {
   }
 };
 
+/// Frames leave out bodies that have been taken out.
+/// @returns 1: of each element of the whole mesh that has been; empty: none has
+template <class World>
+std::vector<std::uint8_t> leave_out_removed(const World& w, OwnParts& own) {
+  constexpr Index corners = fdem_shared::ShapeOf<World>::corners;
+  const auto& given = *w.given;
+  const auto elements = [&](std::size_t b) { return given.sets[b].nodes.size() / at(corners); };
+  own.shown = 0;
+  std::size_t all = 0;
+  for (std::size_t b = 0; b < given.groups.size(); ++b) {
+    all += elements(b);
+    if (given.removed[b] == 0) own.shown += static_cast<std::int64_t>(elements(b));
+  }
+  if (static_cast<std::size_t>(own.shown) == all) return {};
+  std::vector<std::uint8_t> gone(all, 0);
+  for (std::size_t b = 0; b < given.groups.size(); ++b)
+    if (given.removed[b] != 0)
+      for (const Index n : given.sets[b].nodes) gone[at(n / corners)] = 1;
+  std::int32_t count = 0;
+  for (const std::uint8_t out : gone) {
+    own.place.push_back(count);
+    count += out == 0 ? 1 : 0;
+  }
+  return gone;
+}
+
 /// @param gone  1: of each element that has been taken out; empty: none has
 template <class World, class Joints>
 void list_own(const World& w, const Joints& joints, const std::vector<std::uint8_t>& gone,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 #include "dem/relations.hpp"
@@ -102,9 +103,12 @@ void refuse_unordered(const char* section, const Buffer<Index>& array) {
       refuse(section, fmt::format("leads to {} (item {})", places[i], i));
 }
 
-void refuse_wrong_stages(const Buffer<fdem::JointStage>& stages, fdem::JointStage last) {
+/// @param never  a stage that no joint of the method has
+void refuse_wrong_stages(const Buffer<fdem::JointStage>& stages,
+                         std::optional<fdem::JointStage> never) {
   for (const fdem::JointStage stage : on_host(stages))
-    if (stage > last) refuse("joints.stage", "holds what is no stage of a joint");
+    if (stage > fdem::JointStage::cut || stage == never)
+      refuse("joints.stage", "holds what is no stage of a joint");
 }
 
 /// Keys of contacts with walls, one after the other: a mesh has mesh_slots with each element.
@@ -208,7 +212,7 @@ void refuse_wrong_places(const fdem::World& w) {
   refuse_wrong_relations(w);
   refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.triangles.id));
   refuse_unordered("reach.triangle", w.reach.element);
-  refuse_wrong_stages(w.joints.stage, fdem::JointStage::cut);
+  refuse_wrong_stages(w.joints.stage, {});
 }
 
 void refuse_wrong_places(const fdem3::World& w) {
@@ -216,7 +220,7 @@ void refuse_wrong_places(const fdem3::World& w) {
   refuse_wrong_relations(w);
   refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.tetrahedra.id));
   refuse_unordered("reach.tetrahedron", w.reach.element);
-  refuse_wrong_stages(w.joints.stage, fdem::JointStage::broken);
+  refuse_wrong_stages(w.joints.stage, fdem::JointStage::dormant);
 }
 
 void require_places(const dem::World& w) {

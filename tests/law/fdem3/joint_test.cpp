@@ -76,6 +76,8 @@ class OneJoint {
                              std::as_const(strength_).view(),
                              {},
                              {},
+                             {},
+                             {},
                              stage_.view(),
                              points_.view(),
                              force_.view(),

@@ -1,0 +1,44 @@
+#pragma once
+// Stress in situ and weight that do not bear each other.
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "fdem_shared/shape.hpp"
+
+namespace breccia::fdem_shared {
+
+/// Of two or three coordinates, without brackets.
+inline std::string numbers_of(const Vec2& v) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.6g, %.6g", v.x, v.y);
+  return text;
+}
+inline std::string numbers_of(const Vec3& v) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.6g, %.6g, %.6g", v.x, v.y, v.z);
+  return text;
+}
+
+/// Stress in situ with a slope, or gravity without one, by which rock moves at once. Forces per
+/// volume that are missing are held against the weight.
+/// @param sums  what the slopes add up to along x, y (and z)
+template <class Config>
+void look_for_unbalanced_weight(const Config& config, const char* sums,
+                                std::vector<std::string>& found) {
+  if (!config.in_situ.any()) return;
+  const auto push = config.in_situ.push();
+  for (const auto& m : config.materials) {
+    const auto weight = m.density * config.gravity, rest = push + weight;
+    if (norm(rest) <= 0.01 * std::max(norm(push), norm(weight))) continue;
+    found.push_back("in_situ is not in equilibrium with gravity: its slopes push " + m.name +
+                    " with (" + numbers_of(push) + ") N/m3, its weight is (" + numbers_of(weight) +
+                    ") N/m3; where " + sums + " are " + numbers_of(-weight) +
+                    " Pa/m nothing moves at the start");
+    return;
+  }
+}
+
+}  // namespace breccia::fdem_shared
