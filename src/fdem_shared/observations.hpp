@@ -145,15 +145,20 @@ Unsound find_unsound(const World& w) {
   const auto i = static_cast<Index>(std::find(ids.begin(), ids.end(), bad) - ids.begin());
   const typename Shape::Nodes& nodes = host.nodes.data()[i];
   const double left = Shape::size_of(nodes, Shape::reference(host).data()[i]).left;
-  char message[400];  // snprintf, because nvcc does not take fmt's headers
-  std::snprintf(
-      message, sizeof message,
-      "step %lld, t = %.6e s: %s %d (%s) is %s: %.3g of its %s is left, it moves at %.3e m/s in "
-      "steps of %.3e s; a smaller time.safety (now %g) may help",
-      static_cast<long long>(w.step), w.time, Shape::element, bad,
-      w.given->groups[static_cast<std::size_t>(host.group.data()[i])].c_str(),
-      left > 0.0 ? "too fast or not finite" : "inside out", left, Shape::size_word,
-      norm(nodes.at[0].velocity), w.last_dt, w.given->time.safety);
+  const double speed = norm(nodes.at[0].velocity);
+  char how[160];  // snprintf, because nvcc does not take fmt's headers
+  if (std::isfinite(left) && std::isfinite(speed))
+    std::snprintf(how, sizeof how, "%s: %.3g of its %s is left, it moves at %.3e m/s",
+                  left > 0.0 ? "too fast" : "inside out", left, Shape::size_word, speed);
+  else
+    std::snprintf(how, sizeof how, "not finite: its corners have no place or no velocity");
+  char message[400];
+  std::snprintf(message, sizeof message,
+                "step %lld, t = %.6e s: %s %d (%s) is %s in steps of %.3e s; a smaller time.safety "
+                "(now %g) may help",
+                static_cast<long long>(w.step), w.time, Shape::element, bad,
+                w.given->groups[static_cast<std::size_t>(host.group.data()[i])].c_str(), how,
+                w.last_dt, w.given->time.safety);
   return {bad, message};
 }
 

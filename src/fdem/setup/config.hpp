@@ -46,11 +46,11 @@ struct StrengthConfig {
 /// [material.<name>.bedding]: planes along which rock is weaker, and stiffer
 struct BeddingConfig {
   double angle = 0.0;     ///< of the planes from x, anticlockwise  [rad]
-  Vec3 normal{};          ///< of the planes, in space; 0: none is given  [-]
   double strength = 1.0;  ///< along them over across  [-]
   double young = 0.0;     ///< E' across them; 0: as along them  [Pa]
   double poisson = -1.0;  ///< nu', pressed across them; -1: nu E'/E  [-]
   double shear = 0.0;     ///< G'; 0: by Saint-Venant's rule  [Pa]
+  Vec3 normal{};          ///< of the planes, in space; 0: none is given  [-]
 
   template <class Visit>
   void each_key(Visit&& key) {

@@ -13,12 +13,12 @@ namespace breccia::fdem_shared {
 /// Of two or three coordinates, without brackets.
 inline std::string numbers_of(const Vec2& v) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.6g, %.6g", v.x, v.y);
+  std::snprintf(text, sizeof text, "%.6g, %.6g", v.x + 0.0, v.y + 0.0);  // no -0
   return text;
 }
 inline std::string numbers_of(const Vec3& v) {
   char text[96];
-  std::snprintf(text, sizeof text, "%.6g, %.6g, %.6g", v.x, v.y, v.z);
+  std::snprintf(text, sizeof text, "%.6g, %.6g, %.6g", v.x + 0.0, v.y + 0.0, v.z + 0.0);
   return text;
 }
 

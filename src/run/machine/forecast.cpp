@@ -227,7 +227,9 @@ Meshed meshed(const fdem::BodyConfig& body, const std::string& folder) {
   }
   for (const fdem::HoleConfig& hole : body.holes) area -= pi * hole.radius * hole.radius;
   if (!(body.mesh_size > 0.0) || !(area > 0.0)) return {};
-  return {area / (equilateral * body.mesh_size * body.mesh_size), body.mesh_size, border};
+  // Two at least: also where triangles are asked for that are larger than their body.
+  return {std::max(2.0, area / (equilateral * body.mesh_size * body.mesh_size)), body.mesh_size,
+          border};
 }
 
 /// Height over width of all bodies together; 0: their meshes alone tell.

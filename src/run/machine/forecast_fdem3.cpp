@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -25,7 +26,10 @@ Meshed meshed(fdem3::BodyConfig body, const std::string& folder) {
     body.shape = "box";  // as large
     body.size = std::cbrt(volume) * Vec3{1.0, 1.0, 1.0};
   }
-  if (body.shape != "mesh") return {body, tetrahedra_of(body)};
+  if (body.shape != "mesh") {
+    const double count = tetrahedra_of(body);  // below one where they would be larger than it
+    return {body, count > 0.0 ? std::max(6.0, count) : 0.0};
+  }
   const prepare::TetMesh mesh = prepare::read_tet_mesh(folder + "/" + body.file);
   const std::vector<Index> own = prepare::tetrahedra_of(body, mesh);
   double volume = 0.0;

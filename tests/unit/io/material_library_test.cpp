@@ -56,8 +56,16 @@ TEST(NamedMaterials, TellTheirSourceAndHowLocalNumbersWereFoundAndReadWithoutAPr
         EXPECT_NEAR(read<dem::Config>(use).materials[0].young, young, 0.03 * young);
         EXPECT_NO_THROW(read<dem::Config>(block.keys)) << block.keys;
       } else {
-        EXPECT_NEAR(read<fdem::Config>(use).materials[0].young, target(material.name, "young"),
-                    1.0);
+        // The closed-form start is the target itself; joints make the rock softer, so that what
+        // calibration finds is above it.
+        const double young = target(material.name, "young"),
+                     given = read<fdem::Config>(use).materials[0].young;
+        if (block.record.starts_with("calibrated")) {
+          EXPECT_GT(given, 1.05 * young) << material.name;
+          EXPECT_LT(given, 1.15 * young) << material.name;
+        } else {
+          EXPECT_NEAR(given, young, 1.0) << material.name;
+        }
         EXPECT_NO_THROW(read<fdem::Config>(block.keys)) << block.keys;
       }
     }
