@@ -116,7 +116,8 @@ void add_pull(std::vector<LoadedEdge>& pull, std::int16_t load, Index triangle,
     pull.push_back({triangle, k, load, all - 2.0 * share[at((k + 2) % 3)], force.x, force.y});
 }
 
-/// What a segment bears across: keeps it, and what of its offset stays; lists what it does.
+/// The force across of a segment: keeps it and the lasting part of its offset, and lists its
+/// action.
 /// @param settled  it has kept what stays at this time already
 void push_across(const Dowel& law, bool settled, BoltNode& node, const BoltPlace (&place)[2],
                  const NodeNow& from, const NodeNow& to, std::int16_t load,

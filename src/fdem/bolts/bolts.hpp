@@ -53,7 +53,7 @@ struct BoltRow {
 };
 std::vector<BoltRow> bolt_rows(const World& whole);
 
-/// What the segments of a bolt bear, those in the probe's box; none: the probe reads no bolt. On
+/// Forces of a bolt's segments in the probe's box; none: the probe reads no bolt. On
 /// ranks the first one reads it.
 std::optional<Readings> read_bolt(const World& part, const ProbeConfig& probe);
 

@@ -13,7 +13,7 @@ void open_around_removed(World& w) {
   fdem_shared::open_around(w);
 }
 
-/// What a joint that is not broken has spent: the work it took up, less what it still holds.
+/// Energy spent by a joint that is not broken: the work it took up, less what it still holds.
 void cut_off_removed(World& w) {
   std::vector<JointBond> bonds;
   copy_to(bonds, w.given->bonds);

@@ -1,5 +1,5 @@
 #pragma once
-// What reading and writing by HDF5 share.
+// Parts shared by reading and writing by HDF5.
 
 #include <hdf5.h>
 

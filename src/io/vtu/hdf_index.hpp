@@ -1,5 +1,5 @@
 #pragma once
-// What an HDF5 file of a frame holds, and where.
+// Contents of an HDF5 file of a frame, and their places.
 
 #include <cstdint>
 #include <string>

@@ -37,11 +37,11 @@ herr_t close_content(H5FD_t* base) {
   return 0;
 }
 
-// What is read to here is not copied. HDF5 serves one thread at a time.
+// Bytes read to here are not copied. HDF5 serves one thread at a time.
 char nowhere;
 HdfPiece shown{0, 0};
 
-/// What lies beyond the end is zero, as HDF5's own drivers have it.
+/// Bytes beyond the end are zero, as HDF5's own drivers have it.
 herr_t read_content(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t begin, std::size_t size, void* to) {
   const std::string_view content = file_of(base).content;
   const std::string_view there = content.substr(std::min<haddr_t>(begin, content.size()), size);
