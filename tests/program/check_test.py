@@ -29,6 +29,15 @@ class Check(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("load.anfo.kind: a fluid that flows, as load.water, is the only fluid", words)
 
+    # Such a mesh counted as one whose size is not known, which `check` does not build.
+    def test_triangles_larger_than_their_body_are_built(self):
+        text = (ATTACK / "bolted.toml").read_text()
+        self.assertIn('mesh_size = "2 mm"', text)
+        self.assertEqual(self.told(text)[0], 0)
+        code, words = self.told(text.replace('mesh_size = "2 mm"', 'mesh_size = "2 m"'))
+        self.assertEqual(code, 2)
+        self.assertIn("discontinuity.crack: meets no edge between two triangles", words)
+
 
 if __name__ == "__main__":
     unittest.main()
