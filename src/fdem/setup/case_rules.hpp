@@ -141,11 +141,16 @@ class CaseRules {
   }
 
   void check_probes() {
+    std::string bolts;
+    if constexpr (requires { config_.bolts; }) {
+      for (const auto& b : config_.bolts) places_.insert(b.name);
+      if (!config_.bolts.empty()) bolts = " nor a bolt (" + listed_names(config_.bolts) + ")";
+    }
     for (const auto& p : config_.probes)
       if (!p.on.empty() && places_.count(p.on) == 0)
         add("probe." + p.name + ".on = \"" + p.on + "\" is neither a body (" +
             listed_names(config_.bodies) + ") nor a support (" + listed_names(config_.supports) +
-            ")");
+            ")" + bolts);
   }
 
   static std::string words_of(const std::vector<std::string>& words) {
@@ -156,7 +161,7 @@ class CaseRules {
 
   const Config& config_;
   const std::vector<std::string>& directions_;
-  std::set<std::string> places_;  ///< bodies and supports
+  std::set<std::string> places_;  ///< bodies, supports and bolts
 };
 
 }  // namespace breccia::fdem

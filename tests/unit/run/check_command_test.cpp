@@ -276,6 +276,8 @@ TEST(CheckCommand, tells_of_bolts_before_anything_is_meshed) {
   EXPECT_TRUE(
       has(text, "bolt.bolt.points: (1 mm, 9 mm) lies in no body; plate is nearest, 1 mm away"))
       << text;
+  text = told("on = \"bolt\"", "on = \"bold\"");
+  EXPECT_TRUE(has(text, "nor a support (low, high) nor a bolt (bolt)")) << text;
 }
 
 TEST(CheckCommand, refuses_what_only_a_mesh_tells_where_that_is_soon_made) {
