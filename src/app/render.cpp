@@ -395,10 +395,6 @@ struct RenderCommand {
   }
 };
 
-}  // namespace
-
-namespace {
-
 /// Options of what is drawn beside colours, and of the picture as a whole.
 void add_looks(CLI::App& command, RenderCommand& render) {
   RenderOptions& options = render.options;
@@ -451,7 +447,7 @@ void add_render(CLI::App& program) {
   const auto render = std::make_shared<RenderCommand>();
   CLI::App* const command =
       program.add_subcommand("render", "draw a picture, a sheet of pictures or a film of a run");
-  command->add_option("DIR", render->folder, "the result folder of the run")->required();
+  command->add_option("DIR", render->folder, "the result folder of the run");
   command
       ->add_option(
           "-o,--out", render->file,
@@ -491,7 +487,14 @@ void add_render(CLI::App& program) {
       ->check(CLI::Range(1, 120))
       ->capture_default_str();
   add_looks(*command, *render);
-  command->callback([render] { render->execute(); });
+  command->callback([render] {
+    if (render->folder.empty()) {
+      if (render->beside.empty()) throw CLI::RequiredError("DIR");
+      render->folder = render->beside.front();
+      render->beside.erase(render->beside.begin());
+    }
+    render->execute();
+  });
 }
 
 }  // namespace breccia::app

@@ -50,6 +50,13 @@ class Render(unittest.TestCase):
         self.assertEqual(size_of(self.path / "panels.png"), (402, 150))
         said = self.render("panels.png", "--panels", str(self.path / "slow"), "--frame", "9", code=2)
         self.assertIn("9", said)
+        words = [PROGRAM, "render", "--width", "201", "--height", "150", "--color", "velocity"]
+        runs = ["--panels", self.path / "out", self.path / "slow"]
+        subprocess.run([*words, *runs, "-o", self.path / "both.png"], check=True)
+        both, panels = (self.path / name for name in ("both.png", "panels.png"))
+        self.assertEqual(both.read_bytes(), panels.read_bytes())
+        said = subprocess.run(words, capture_output=True, text=True)
+        self.assertEqual((said.returncode, "DIR is required" in said.stderr), (2, True))
 
     def test_without_ffmpeg_says_what_to_install(self):
         said = self.render("none.mp4", code=3, PATH="/nowhere")
