@@ -124,6 +124,29 @@ TEST(PlacesOnDevice, that_lead_nowhere_are_told) {
   EXPECT_NE(message(cubes).find("the device's array tetrahedra.material leads to 16384"),
             std::string::npos)
       << message(cubes);
+  // Corners of frames are numbered by ids.
+  flip(bar.elements.group);
+  flip(bar.elements.id);
+  flip(plate.joints.edge_a);
+  flip(plate.triangles.id);
+  EXPECT_NE(message(bar).find("elements.id leads to 16384"), std::string::npos) << message(bar);
+  EXPECT_NE(message(plate).find("triangles.id leads to 16384"), std::string::npos)
+      << message(plate);
+  flip(bar.elements.id);
+  flip(bar.elements.material);
+  EXPECT_NE(message(bar).find("elements.material leads to 16384"), std::string::npos)
+      << message(bar);
+}
+/// What is worked out on the host for those who look at a run.
+TEST(PlacesOnDevice, that_lead_nowhere_are_told_before_pieces_are_found) {
+  const fdem::testing::Scene s = pulled_plate("intrinsic");
+  Exec shadow;
+  shadow.space = Space::shadow;
+  const auto method = make_method(s.config, s.model, shadow, nullptr);
+  const auto edge = method->arrays("joints.edge_b", Wanted::where_they_lie).front();
+  *static_cast<Index*>(const_cast<void*>(edge.data)) ^= 1 << 30;
+  for (const char* const name : {"damage", "stress", "fragment"})
+    EXPECT_THROW(method->arrays(name), DeviceError) << name;
 }
 
 }  // namespace audit_on_device_test

@@ -133,15 +133,20 @@ class KeyOfWalls {
   Index element_ = -1, wall_ = -1, slot_ = 0;
 };
 
-/// Relations and groups of what lies on a device.
-template <class World>
-void require_on_device(const World& w, const char* groups, const Buffer<std::int16_t>& group) {
+/// Relations, groups, materials and ids of what lies on a device, which holds all elements.
+template <class World, class Elements>
+void require_on_device(const World& w, const char* state, const Elements& e) {
   if (w.exec.space == Space::host) return;
+  const auto require_below = [state](const char* name, const auto& array, std::size_t count) {
+    for (const auto number : on_host(array))
+      if (number < 0 || static_cast<std::size_t>(number) >= count)
+        refuse(fmt::format("{}.{}", state, name), fmt::format("leads to {}", number));
+  };
   try {
     refuse_wrong_relations(w);
-    const auto count = static_cast<std::int16_t>(w.given->sets.size());
-    for (const std::int16_t number : on_host(group))
-      if (number < 0 || number >= count) refuse(groups, fmt::format("leads to {}", number));
+    require_below("group", e.group, w.given->sets.size());
+    require_below("material", e.material, static_cast<std::size_t>(w.given->materials));
+    require_below("id", e.id, static_cast<std::size_t>(e.size()));
   } catch (const CheckpointError& error) {
     throw DeviceError(
         fmt::format("step {}: the device's array {}: its memory fails, or the program does; resume "
@@ -224,13 +229,13 @@ void refuse_wrong_places(const fdem3::World& w) {
 }
 
 void require_places(const dem::World& w) {
-  require_on_device(w, "elements.group", w.elements.group);
+  require_on_device(w, "elements", w.elements);
 }
 void require_places(const fdem::World& w) {
-  require_on_device(w, "triangles.group", w.triangles.group);
+  require_on_device(w, "triangles", w.triangles);
 }
 void require_places(const fdem3::World& w) {
-  require_on_device(w, "tetrahedra.group", w.tetrahedra.group);
+  require_on_device(w, "tetrahedra", w.tetrahedra);
 }
 
 }  // namespace breccia

@@ -120,7 +120,10 @@ struct DemSim {
     arrays.add_part<Vec3>("velocity", "m/s", state, offsetof(dem::ElementState, velocity));
     arrays.add_part<Vec3>("spin", "rad/s", state, offsetof(dem::ElementState, spin));
     arrays.add_part<double>("radius", "m", state, offsetof(dem::ElementState, radius));
-    arrays.add_found("damage", "-", w.elements.size(), [&] { return dem::damage(w); });
+    arrays.add_found("damage", "-", w.elements.size(), [&] {
+      require_places(w);
+      return dem::damage(w);
+    });
     arrays.add_fields("", w.elements);
     w.each_set([&](auto& set) {
       if (set.size() > 0) arrays.add_fields(std::string("links.") + set.name + '.', set);

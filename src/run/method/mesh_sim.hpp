@@ -96,9 +96,15 @@ struct MeshSim {
     of_corners("position", "m", e.nodes, offsetof(Node, position));
     of_corners("velocity", "m/s", e.nodes, offsetof(Node, velocity));
     of_corners("force", Shape::force_unit, e.force, 0);
-    arrays.add_found("damage", "-", e.size(), [&] { return damage(w); });
-    arrays.add_found("stress", "Pa", e.size(), [&] { return stresses(w); });
-    arrays.add_found("fragment", "-", e.size(), [&] { return fragments(w).of; });
+    const auto found = [&](const char* name, const char* unit, const auto& work) {
+      arrays.add_found(name, unit, e.size(), [&] {
+        require_places(w);
+        return work();
+      });
+    };
+    found("damage", "-", [&] { return damage(w); });
+    found("stress", "Pa", [&] { return stresses(w); });
+    found("fragment", "-", [&] { return fragments(w).of; });
     arrays.add_fields("", e);
     arrays.add_fields("joints.", w.joints);
   }
