@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "exec/space.hpp"
+#include "exec/types.hpp"
 
 namespace breccia {
 
@@ -39,6 +40,16 @@ struct Stored {
       return in_double;
   }
 };
+
+/// What is stored, as it is in memory. Where numbers are rounded to single precision and widened
+/// again g++ 12 drops the rounding of some of a record, others with other flags or neighbours.
+template <class Record>
+BR_HD const Record& as_in_memory(Record& stored) {
+#if defined(__GNUC__) && !defined(__CUDA_ARCH__)
+  asm("" : "+m"(stored));
+#endif
+  return stored;
+}
 
 /// visit(0.0) or visit(0.0F): the type tells what numbers are stored in.
 template <class Visit>

@@ -300,7 +300,7 @@ struct CoupleForces {
     // Work is booked of the forces that act: as they are stored.
     const CoupleForce last = converted<double>(stored);
     stored = converted<Number>(sum);
-    const CoupleForce now = converted<double>(stored);  // in `sum` g++ 12 leaves half unrounded
+    const CoupleForce now = converted<double>(as_in_memory(stored));
     for (int k = 0; k < 3; ++k) {
       kept.work -= 0.5 * dt * dot(last.on_a.at[k] + now.on_a.at[k], va[k]);
       kept.work -= 0.5 * dt * dot(last.on_b.at[k] + now.on_b.at[k], vb[k]);

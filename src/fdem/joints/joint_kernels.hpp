@@ -148,11 +148,11 @@ struct JointForces {
     }
     const double weight = (-1.0 / 6.0) * h;
     // Work is booked of the forces that act: as they are stored.
-    const JointForceOf<Number> now = converted<Number>(JointForce{
+    JointForceOf<Number> now = converted<Number>(JointForce{
         weight * (traction[0] + 2.0 * traction[1]), weight * (traction[2] + 2.0 * traction[1])});
     if (damaged) {
       if (before == JointStage::whole) begin_work(i, bond, offset, a0, a1, b0, b1);
-      book_work(i, o, first, second, converted<double>(now));
+      book_work(i, o, first, second, converted<double>(as_in_memory(now)));
       points[i] = state;
       if (before == JointStage::whole) {
         stage[i] = JointStage::softened;
