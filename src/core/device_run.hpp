@@ -89,12 +89,10 @@ void start_clock(Buffer<StepClock>& clock, const EndOfStep<Rule>& end, const Hos
   copy_bytes(clock.data(), clock.space(), start, Space::host, sizeof start);
 }
 
-/// Reads the first clock back; adds the steps it has counted.
+/// Takes the time of a clock over; adds the steps it has counted.
 template <class Rule>
-StepClock read_clock(const Buffer<StepClock>& clock, const EndOfStep<Rule>& end,
-                     const HostTimes& host, Advanced& taken) {
-  StepClock c;
-  copy_bytes(&c, Space::host, clock.data(), clock.space(), sizeof c);
+StepClock count_steps(StepClock c, const EndOfStep<Rule>& end, const HostTimes& host,
+                      Advanced& taken) {
   end(c);
   host.time = c.now.time;
   host.last_dt = c.now.last_dt;
@@ -106,6 +104,14 @@ StepClock read_clock(const Buffer<StepClock>& clock, const EndOfStep<Rule>& end,
   }
   host.step = c.now.step;
   return c;
+}
+/// Reads the first clock back.
+template <class Rule>
+StepClock read_clock(const Buffer<StepClock>& clock, const EndOfStep<Rule>& end,
+                     const HostTimes& host, Advanced& taken) {
+  StepClock c;
+  copy_bytes(&c, Space::host, clock.data(), clock.space(), sizeof c);
+  return count_steps(c, end, host, taken);
 }
 
 /// Takes steps on a device until `stop`, or until about `slice` has passed.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "core/grown_box.hpp"
 #include "exec/error.hpp"
 
 namespace breccia {
@@ -33,14 +34,7 @@ struct BoxSphere {
   double farthest;
 
   BR_HD void operator()(Index i) const {
-    // 32 times the rounding of one operation: the sums here, the test of the travel and the test
-    // of the contact round about 12 times together.
-    constexpr double rounding = 1.0 / 281474976710656.0;  // 2^-48
-    const Vec3 c = centre[i];
-    const double reach = radius[i] + margin[i] + rounding * farthest;
-    const Vec3 half{reach + rounding * (reach + abs(c.x)), reach + rounding * (reach + abs(c.y)),
-                    reach + rounding * (reach + abs(c.z))};
-    boxes[i] = {c - half, c + half};
+    boxes[i] = grown_box(centre[i], radius[i], margin[i], farthest);
   }
 };
 

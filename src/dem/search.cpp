@@ -9,6 +9,7 @@
 #include "core/rows.hpp"
 #include "core/select.hpp"
 #include "dem/free_walls.hpp"
+#include "dem/near.hpp"
 #include "dem/ranks.hpp"
 #include "dem/wall_key.hpp"
 #include "domain/drift.hpp"
@@ -70,14 +71,12 @@ struct MayTouch {
   View<const std::uint8_t> fixed;
   double rounding;  ///< of the drift's way  [m]
 
+  BR_HD NearSphere sphere(Index e) const { return {state[e].position, state[e].radius, margin[e]}; }
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
     if (!owned(p) && !owned(q)) return false;
     if (is_gone(fixed[p]) || is_gone(fixed[q])) return false;
-    const Vec3 d = state[q].position - state[p].position;
-    const double reach =
-        (state[p].radius + state[q].radius + margin[p] + margin[q]) * (1.0 + 1e-12) + rounding;
-    return !(dot(d, d) > reach * reach);
+    return may_touch(sphere(p), sphere(q), rounding);
   }
 };
 
@@ -371,8 +370,7 @@ void search(World& w) {
 }  // namespace
 
 MarginRule margin_rule(const World& w) {
-  constexpr double horizon = 50.0;  // steps for which a fast element's margin shall last
-  return {w.given->search.margin * w.given->mean_radius, horizon * w.next_dt,
+  return {w.given->search.margin * w.given->mean_radius, margin_horizon * w.next_dt,
           w.given->largest_margin};
 }
 

@@ -2,6 +2,7 @@
 // A world as its tiles see it, and the words that they tell each other.
 
 #include "core/timed.hpp"
+#include "core/travel.hpp"
 #include "dem/element_kernels.hpp"
 #include "dem/links/all.hpp"
 #include "dem/tiles/tile_plan.hpp"
@@ -36,6 +37,38 @@ BR_HD inline bool get(const TileWord* from, std::uint64_t& bits, std::uint32_t t
   return word.tag == tag && word.same_tag == tag;
 }
 
+/// A world as searches by its tiles see it, and where they leave what they find.
+struct TileSearchCase {
+  MarginRule margins;  ///< horizon: in steps
+  View<Vec3> reference;
+  View<double> margin;
+  View<const GlobalId> id;
+  View<const Index> linked_starts, linked_partners, linked_links;
+  LinkArrays<ConcreteLink>::Below<double> concrete_released;
+  LinkArrays<InterfaceLink>::Below interface_released;
+  Index concrete, steel;  ///< links of these kinds
+  // Contacts.
+  Index room, contacts;  ///< that there may be; that there are at the start of the launch
+  View<PairKey> key;
+  View<Index> a, b;
+  View<Index> incidence_starts;
+  View<Entry> incidence;
+  // Of TileSearches.
+  View<NearSphere> spheres;
+  View<double> motion;
+  View<ContactCounts> counts;
+  View<Index> first_pair;
+  View<PairKey> old_key;
+  View<ContactState> old_state;
+  View<DroppedContact> old_spent, dropped;
+  View<Tile> tiles;
+  View<Index> touched;
+  View<TilePlace> starts;
+  View<TileContact> found;
+  std::size_t bytes;  ///< of a tile's memory
+  Index most_acting;  ///< give_actions()
+};
+
 /// A world as its tiles see it.
 struct TileCase {
   ConcreteLinkForces<double> concrete;
@@ -53,8 +86,20 @@ struct TileCase {
   TileWord *forces, *least;
   std::uint32_t tag;  ///< before the first step
   StepClock start;
-  StepClock* clock;  ///< where time is left
+  TileSearchCase search;
+  TileNews* news;  ///< where time is left
+
+  /// The lists of tiles after some searches in this launch.
+  BR_HD TileLists lists(Index searches) const {
+    if (searches == 0) return tiles.lists;
+    return {search.tiles, search.touched, search.starts, search.found};
+  }
 };
+
+TileCase case_of(World& w, TilePlan& plan, const StopAt& stop);
+/// What a launch has left on the device: contacts that its searches have found, energies of those
+/// that they have dropped. Time is left to the caller.
+TileNews take_over(World& w, TilePlan& plan);
 
 /// Numbers that a tile hears of all, and tells them.
 struct TileReport {

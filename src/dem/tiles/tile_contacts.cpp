@@ -10,22 +10,6 @@
 namespace breccia::dem {
 namespace {
 
-/// Gives a tile room for up to `most` actions of contacts, as far as memory goes.
-/// @returns bytes that it needs
-std::size_t give_actions(Tile& tile, const TileGroups& groups, std::size_t most_bytes, Index most) {
-  const auto bytes = [&] {
-    TileMemory memory;
-    return memory.lay_out(tile, groups, reinterpret_cast<std::byte*>(64));
-  };
-  tile.acting = 0;
-  const std::size_t least = bytes();
-  if (least >= most_bytes) return least;
-  const auto room = static_cast<Index>(
-      std::min((most_bytes - least) / sizeof(PairForce), static_cast<std::size_t>(most)));
-  tile.acting = std::min(tile.contacts, room);
-  return tile.acting > 0 ? bytes() : least;
-}
-
 /// Contacts as one of their ends sees them, an element of a tile: in the order of tiles, those of a
 /// tile in the order of all.
 class ContactsByTile {
@@ -128,6 +112,21 @@ void TilePlaces::begin(const std::vector<Index>& tile_of, const std::vector<Tile
       own_[at(own[at(tile.first_own + k)])] = static_cast<TilePlace>(k);
 }
 
+TileSearches::TileSearches(Space space)
+    : spheres(space),
+      motion(space),
+      counts(space),
+      first_pair(space),
+      old_key(space),
+      old_state(space),
+      old_spent(space),
+      dropped(space),
+      tiles(space),
+      touched(space),
+      starts(space),
+      contacts(space),
+      news(space) {}
+
 void TilePlan::tell(const std::vector<Index>& touched, const std::vector<TilePlace>& starts,
                     const std::vector<TileContact>& contacts) {
   std::vector<std::byte> all;
@@ -140,20 +139,27 @@ void TilePlan::tell(const std::vector<Index>& touched, const std::vector<TilePla
 }
 
 TilesView TilePlan::view() const {
-  return {piece(told, tiles_told),
+  TileLists lists{piece(told, tiles_told), piece(told, touched_told), piece(told, starts_told),
+                  piece(told, contacts_told)};
+  if (found_there) {
+    lists.tiles.data = searches.tiles.data();
+    lists.touched.data = searches.touched.data();
+    lists.starts.data = searches.starts.data();
+    lists.contacts.data = searches.contacts.data();
+    lists.touched.size = lists.contacts.size =
+        static_cast<Index>(tiles.size()) * most_contacts_of_tile;
+  }
+  return {static_cast<Index>(tiles.size()),
           groups,
           own_there.view(),
           linked_there.view(),
-          piece(told, touched_told),
           links.view(),
           axes.view(),
           rows.view(),
-          piece(told, starts_told),
-          piece(told, contacts_told)};
+          lists};
 }
 
 void tell_contacts(const World& w, TilePlan& plan, std::size_t most_bytes) {
-  const Index most = w.exec.space == Space::shadow ? 1 : 32;  // 1: tests see what does not fit
   ContactsByTile by_tile(w, plan);
   plan.places.begin(plan.tile_of, plan.tiles, plan.own);
   std::vector<TilePlace> starts;
@@ -167,16 +173,11 @@ void tell_contacts(const World& w, TilePlan& plan, std::size_t most_bytes) {
     by_tile.list(t, plan, contacts, starts, all_touched);
     tile.contacts = static_cast<Index>(contacts.size()) - tile.first_contact;
     tile.touched = static_cast<Index>(all_touched.size()) - tile.first_touched;
-    plan.bytes = std::max(plan.bytes, give_actions(tile, plan.groups, most_bytes, most));
+    plan.bytes = std::max(plan.bytes,
+                          give_actions(tile, plan.groups, most_bytes, most_acting(w.exec.space)));
   }
   plan.tell(all_touched, starts, contacts);
-  const Index count = w.contacts.size();
-  if (count <= plan.twin_state.size()) return;
-  const Index room = 2 * count;
-  plan.twin_state.resize(room);
-  plan.twin_slid.resize(room);
-  plan.twin_damped.resize(room);
-  plan.twin_actions.resize(room);
+  plan.found_there = false;
 }
 
 }  // namespace breccia::dem

@@ -13,18 +13,18 @@ struct TileContent {
   Tile tile;
   TileMemory memory;
 
-  BR_HD TileContent(const TileCase& of, Index tile_number, std::byte* base)
-      : all(of), number(tile_number), tile(of.tiles.tiles.data[tile_number]) {
+  /// @param lists  as the last search has left them
+  BR_HD TileContent(const TileCase& of, const TileLists& lists, Index tile_number, std::byte* base)
+      : all(of), number(tile_number), tile(lists.tiles.data[tile_number]) {
     memory.lay_out(tile, of.tiles.groups, base);
   }
 
   /// Brings everything from the arrays of the world; nothing of what others may write after
   /// enter().
-  BR_HD void enter(Index thread, Index threads) const {
-    bring_elements(thread, threads);
+  BR_HD void enter(const TileLists& lists, Index thread, Index threads) const {
+    bring_elements(lists, thread, threads);
     bring_links(thread, threads);
-    bring_lists(thread, threads);
-    if (thread == 0) memory.clocks[0] = all.start;
+    bring_lists(lists, thread, threads);
   }
 
   /// Leaves everything that has changed.
@@ -107,13 +107,13 @@ struct TileContent {
   }
 
  private:
-  BR_HD void bring_elements(Index thread, Index threads) const {
+  BR_HD void bring_elements(const TileLists& lists, Index thread, Index threads) const {
     const TilesView& t = all.tiles;
     for (Index e = thread; e < tile.elements(); e += threads) {
       const Index g = e < tile.own ? t.own[tile.first_own + e]
                       : e < tile.own + tile.linked
                           ? t.linked[tile.first_linked + e - tile.own]
-                          : t.touched[tile.first_touched + e - tile.own - tile.linked];
+                          : lists.touched[tile.first_touched + e - tile.own - tile.linked];
       memory.place[e] = g;
       memory.state[e] = read_record(all.move.kick.state, g);
       memory.mass[e] = all.move.kick.mass[g];
@@ -166,14 +166,14 @@ struct TileContent {
       memory.bond_state[l] = all.interface.state[g];
     }
   }
-  BR_HD void bring_lists(Index thread, Index threads) const {
+  BR_HD void bring_lists(const TileLists& lists, Index thread, Index threads) const {
     const TilesView& t = all.tiles;
     const Index numbers = TileMemory::row_numbers(tile);
     for (Index k = thread; k < numbers; k += threads) memory.rows[k] = t.rows[tile.first_row + k];
     for (Index k = thread; k <= tile.own; k += threads)
-      memory.starts[k] = t.starts[tile.first_start + k];
+      memory.starts[k] = lists.starts[tile.first_start + k];
     for (Index k = thread; k < tile.contacts; k += threads) {
-      const TileContact contact = t.contacts[tile.first_contact + k];
+      const TileContact contact = lists.contacts[tile.first_contact + k];
       const ContactState state = all.contacts.state[contact.pair];
       memory.contacts[k] = contact;
       if (contact.side != 0) all.twins.state[contact.pair] = state;

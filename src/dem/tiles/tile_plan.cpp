@@ -176,8 +176,8 @@ class Sharing {
       }
       const double mean = std::accumulate(links.begin(), links.end(), 0.0) / count_;
       if (most < 1.02 * mean) break;
-      for (std::size_t e = 0; e < weight.size(); ++e)
-        weight[e] *= std::sqrt(links[at(tile_of[e])] / mean);
+      for (double& excess : links) excess = std::pow(excess / mean, 0.85);
+      for (std::size_t e = 0; e < weight.size(); ++e) weight[e] *= links[at(tile_of[e])];
     }
     own_.resize(static_cast<std::size_t>(count_));
     for (Index e = 0; e < static_cast<Index>(state_.size()); ++e)
@@ -339,7 +339,8 @@ TilePlan::TilePlan(Space space)
       twin_state(space),
       twin_slid(space),
       twin_damped(space),
-      twin_actions(space) {}
+      twin_actions(space),
+      searches(space) {}
 
 std::unique_ptr<TilePlan> share_out_to_tiles(const World& w, Index count) {
   constexpr std::size_t most_groups = 16;

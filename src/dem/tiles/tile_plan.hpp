@@ -6,10 +6,12 @@
 #include <memory>
 #include <vector>
 
+#include "core/step_clock.hpp"
 #include "dem/contacts.hpp"
 #include "dem/laws/concrete_link.hpp"
 #include "dem/laws/interface_link.hpp"
 #include "dem/laws/steel_link.hpp"
+#include "dem/near.hpp"
 
 namespace breccia::dem {
 
@@ -180,16 +182,40 @@ BR_HD inline std::size_t TileMemory::lay_out(const Tile& tile, const TileGroups&
   return pieces.used > also.used ? pieces.used : also.used;
 }
 
-/// Contents of tiles, for a launch.
-struct TilesView {
+/// What a search changes of tiles.
+struct TileLists {
   View<const Tile> tiles;
-  TileGroups groups;
-  View<const Index> own, linked, touched;  ///< places of elements
-  View<const TileLink> links;
-  View<const TileAxis> axes;
-  View<const TilePlace> rows, starts;
+  View<const Index> touched;  ///< places of elements
+  View<const TilePlace> starts;
   View<const TileContact> contacts;
 };
+/// Contents of tiles, for a launch.
+struct TilesView {
+  Index count;
+  TileGroups groups;
+  View<const Index> own, linked;  ///< places of elements
+  View<const TileLink> links;
+  View<const TileAxis> axes;
+  View<const TilePlace> rows;
+  TileLists lists;  ///< as the launch finds them
+};
+
+/// Gives a tile room for up to `most` actions of contacts, as far as memory goes.
+/// @returns bytes that it needs
+BR_HD inline std::size_t give_actions(Tile& tile, const TileGroups& groups, std::size_t most_bytes,
+                                      Index most) {
+  const auto bytes = [&] {
+    TileMemory memory;
+    return memory.lay_out(tile, groups, reinterpret_cast<std::byte*>(64));
+  };
+  tile.acting = 0;
+  const std::size_t least = bytes();
+  if (least >= most_bytes) return least;
+  const std::size_t room = (most_bytes - least) / sizeof(PairForce);
+  tile.acting = tile.contacts < most ? tile.contacts : most;
+  if (room < static_cast<std::size_t>(tile.acting)) tile.acting = static_cast<Index>(room);
+  return tile.acting > 0 ? bytes() : least;
+}
 
 /// A number that a tile tells another, with the step's number beside each half, so that it is
 /// known to be whole and new without any order between writes.
@@ -228,6 +254,47 @@ struct PieceOf {
   Index count = 0;
 };
 
+/// Actions of contacts that lie in a tile's memory, at most.
+inline Index most_acting(Space space) {
+  return space == Space::shadow ? 1 : 32;  // 1: tests see what does not fit
+}
+/// Contacts that a search by tiles may find for one of them.
+inline constexpr Index most_contacts_of_tile = 2048;
+
+/// Contacts of an element in a list that is sorted by the lower of two elements.
+struct ContactCounts {
+  Index as_a, all;
+};
+/// Energy that a contact has spent which leaves the list.
+struct DroppedContact {
+  double slid, damped;  ///<  [J]
+};
+/// How a launch of tiles leaves a world.
+struct TileNews {
+  StepClock clock;
+  std::uint32_t tag;         ///< of the last words that were exchanged
+  Index searches, contacts;  ///< contacts: after the last search
+  Index dropped;             ///< contacts that searches have dropped and that have spent energy
+};
+
+/// Searches by the tiles themselves: what they find, and what they tell each other meanwhile.
+struct TileSearches {
+  Buffer<NearSphere> spheres;    ///< of each element
+  Buffer<double> motion;         ///< of each tile: sums of velocities and of their squares
+  Buffer<ContactCounts> counts;  ///< of each element
+  Buffer<Index> first_pair;      ///< of each element as the lower one
+  Buffer<PairKey> old_key;       ///< contacts before the search
+  Buffer<ContactState> old_state;
+  Buffer<DroppedContact> old_spent, dropped;
+  Buffer<Tile> tiles;
+  Buffer<Index> touched;
+  Buffer<TilePlace> starts;
+  Buffer<TileContact> contacts;
+  Buffer<TileNews> news;
+
+  explicit TileSearches(Space space);
+};
+
 /// A model's tiles. Elements and links are shared out once, contacts after each search.
 struct TilePlan {
   std::vector<Tile> tiles;
@@ -253,7 +320,9 @@ struct TilePlan {
   Buffer<ContactState> twin_state;
   Buffer<double> twin_slid, twin_damped;
   Buffer<PairForce> twin_actions;
-  std::uint32_t tag = 0;  ///< of the last step that was exchanged
+  std::uint32_t tag = 0;  ///< of the last words that were exchanged
+  TileSearches searches;
+  bool found_there = false;  ///< tiles have found their contacts themselves
 
   explicit TilePlan(Space space);
   /// Brings these and `tiles` to the space of the world.

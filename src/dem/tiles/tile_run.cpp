@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "core/device_run.hpp"
-#include "dem/stepping/launches.hpp"
 #include "dem/stepping/step.hpp"
-#include "dem/tiles/tile_step.hpp"
+#include "dem/tiles/tile_search.hpp"
 #include "exec/error.hpp"
 #include "exec/multiprocessors.hpp"
 
@@ -20,13 +19,12 @@ namespace breccia::dem {
 namespace {
 
 /// Ends the step that a clock holds open, if there is one, by what all tiles have told.
-/// @returns whether tiles leave: at the end, or when a search is near
+/// @returns whether tiles leave
 BR_HD bool end_step(const EndOfStep<StepRule>& end, const TileReport& report, StepClock& clock) {
   if (clock.open != 0)
     clock.least = ordered_bits(min(largest_least, TileStep::critical_of(report.slowest)));
   end(clock);
-  clock.host_request = report.near ? 1 : 0;
-  return clock.halted != 0 || report.near;
+  return clock.halted != 0;
 }
 
 /// Time as the forces of a step see it, after its move.
@@ -103,7 +101,7 @@ __device__ void pair_forces(const TileStep& tile, double dt, Index thread) {
 template <int threads>
 __device__ TileReport exchange(const TileStep& tile, TileReport report, std::uint32_t tag,
                                Index thread, TileReport* room) {
-  const Index tiles = tile.all.tiles.tiles.size;
+  const Index tiles = tile.all.tiles.count;
   report = report_of_warp(report);
   if (thread % 32 == 0) room[thread / 32] = report;
   __barrier_sync_count(1, threads);
@@ -120,57 +118,138 @@ __device__ TileReport exchange(const TileStep& tile, TileReport report, std::uin
   return report_of_warp(report);
 }
 
+/// Waits until all tiles are here, and sees what they have written. @returns whether `flag` is true
+/// for any thread of any
+__device__ bool meet(const TileCase& all, Index number, std::uint32_t tag, bool flag) {
+  __threadfence();
+  const bool here = __syncthreads_or(flag ? 1 : 0) != 0;
+  const auto thread = static_cast<Index>(threadIdx.x), threads = static_cast<Index>(blockDim.x);
+  for (Index to = thread; to < all.tiles.count; to += threads)
+    put(TileStep::news_word(all, tag, number, to), here ? 1 : 0, tag);
+  bool any = false;
+  for (Index from = thread; from < all.tiles.count; from += threads) {
+    std::uint64_t bits = 0;
+    while (!get(TileStep::news_word(all, tag, from, number), bits, tag)) {
+    }
+    any = any || bits != 0;
+  }
+  __threadfence();
+  return __syncthreads_or(any ? 1 : 0) != 0;
+}
+
+/// How a search in the middle of a step has ended.
+struct SearchEnd {
+  std::uint32_t tag;
+  bool found;  ///< otherwise the host searches in its place
+};
+/// A function of its own: what few steps need costs the others no registers.
+__device__ __noinline__ SearchEnd search(const TileCase* all, Index number, std::byte* memory,
+                                         std::uint32_t tag, double next_dt, Index searches) {
+  stay_in_place(all);
+  const auto thread = static_cast<Index>(threadIdx.x), threads = static_cast<Index>(blockDim.x);
+  const TileLists lists = all->lists(searches);
+  const Index contacts = searches == 0 ? all->search.contacts : all->news->contacts;
+  if (searches == 0 && number == 0 && thread == 0) all->news->dropped = 0;
+  {
+    const TileStep step(*all, lists, number, memory);
+    const bool lost = TileSearch::publish(step, next_dt, contacts, thread, threads);
+    if (meet(*all, number, ++tag, lost)) return {tag, false};
+  }
+  const TileSearch tile(*all, lists, number, memory);
+  if (meet(*all, number, ++tag, tile.find(thread, threads))) return {tag, false};
+  if (tile.number_all(contacts, all->news->dropped, thread, threads)) return {tag, false};
+  meet(*all, number, ++tag, false);
+  tile.name(contacts, thread, threads);
+  __syncthreads();
+  return {tag, true};
+}
+
 template <int threads>
 __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant__ TileCase all) {
   extern __shared__ __align__(16) std::byte memory[];
   constexpr int judges = 160, warps = judges / 32;  // the others receive loads meanwhile
   __shared__ TileReport told[warps], heard[warps];
   const auto thread = static_cast<Index>(threadIdx.x), number = static_cast<Index>(blockIdx.x);
-  const TileStep tile(all, number, memory);
-  tile.enter(thread, threads);
-  __syncthreads();
   std::uint32_t tag = all.tag;
   int current = 0;
-  bool first = true;
-  double dt = 0.0;
-  for (;;) {
-    // Tiles tell each other what they have found, and hear of all.
-    ++tag;
-    if (thread < judges) {
-      TileReport report;
-      if (first)
-        report.near = tile.near_at_entry(thread, judges);
-      else
-        for (Index e = thread; e < tile.tile.own; e += judges)
-          tile.judge(e, span_after(dt), longest_after(dt), report);
-      report = exchange<judges>(tile, report, tag, thread, told);
-      if (thread % 32 == 0) heard[thread / 32] = report;
-    } else if (!first) {
-      receive<threads - judges>(tile, tag, thread - judges);
+  Index searches = 0;
+  bool first = true, goes_on = true;
+  while (goes_on) {
+    const TileLists lists = all.lists(searches);
+    const TileStep tile(all, lists, number, memory);
+    tile.enter(lists, thread, threads);
+    if (first && thread == 0) tile.memory.clocks[0] = all.start;
+    bool moved = !first;  // by a step that is in its middle
+    if (moved)
+      meet(all, number, ++tag, false);
+    else
+      __syncthreads();
+    for (;;) {
+      if (!moved) {
+        // Tiles tell each other what they have found, and hear of all.
+        ++tag;
+        if (thread < judges) {
+          TileReport report;
+          if (first) {
+            report.near = tile.near_at_entry(thread, judges);
+          } else {
+            const double dt = tile.memory.clocks[current].now.next_dt;
+            for (Index e = thread; e < tile.tile.own; e += judges)
+              tile.judge(e, span_after(dt), longest_after(dt), report);
+          }
+          report = exchange<judges>(tile, report, tag, thread, told);
+          if (thread % 32 == 0) heard[thread / 32] = report;
+        } else if (!first) {
+          receive<threads - judges>(tile, tag, thread - judges);
+        }
+        first = false;
+        __syncthreads();
+        const TileReport news = news_of<warps>(heard);
+        StepClock clock = tile.memory.clocks[current];
+        if (end_step(all.end, news, clock)) {
+          tile.leave(thread, threads);
+          if (tile.memory.clocks[current].open != 0) tile.leave_actions(thread, threads);
+          if (number == 0 && thread == 0) all.news->clock = clock;
+          goes_on = false;
+          break;
+        }
+        tile.move(clock.now, thread, threads);
+        clock.open = step_open;
+        current = 1 - current;
+        if (thread == 0) {
+          tile.memory.clocks[current] = clock;
+          tile.count_from(threads / TileStep::portion);
+        }
+        __syncthreads();
+        if (news.near && meet(all, number, ++tag, tile.used_margin(clock.now, thread, threads))) {
+          const SearchEnd end = search(&all, number, memory, tag, clock.now.next_dt, searches);
+          tag = end.tag;
+          if (end.found) {
+            ++searches;
+          } else {
+            if (number == 0 && thread == 0) {
+              clock.host_request = 1;
+              all.news->clock = clock;
+            }
+            goes_on = false;
+          }
+          break;
+        }
+      } else if (thread == 0) {
+        tile.count_from(threads / TileStep::portion);
+      }
+      if (moved) __syncthreads();
+      moved = false;
+      pair_forces<threads>(tile, tile.memory.clocks[current].now.next_dt, thread);
+      __syncthreads();
+      for (Index i = thread; i < tile.sum_items(); i += threads) tile.sum(i, tag + 1);
+      __syncthreads();
     }
-    first = false;
-    __syncthreads();
-    StepClock clock = tile.memory.clocks[current];
-    if (end_step(all.end, news_of<warps>(heard), clock)) {
-      if (number == 0 && thread == 0) *all.clock = clock;
-      break;
-    }
-    tile.move(clock.now, thread, threads);
-    clock.open = step_open;
-    current = 1 - current;
-    if (thread == 0) {
-      tile.memory.clocks[current] = clock;
-      tile.count_from(threads / TileStep::portion);
-    }
-    dt = clock.now.next_dt;
-    __syncthreads();
-    pair_forces<threads>(tile, dt, thread);
-    __syncthreads();
-    for (Index i = thread; i < tile.sum_items(); i += threads) tile.sum(i, tag + 1);
-    __syncthreads();
   }
-  tile.leave(thread, threads);
-  if (tile.memory.clocks[current].open != 0) tile.leave_actions(thread, threads);
+  if (number == 0 && thread == 0) {
+    all.news->tag = tag;
+    all.news->searches = searches;
+  }
 }
 
 #endif
@@ -178,36 +257,39 @@ __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant
 /// All tiles on this processor.
 class TilesInTurn {
  public:
-  TilesInTurn(const TileCase& all, std::size_t bytes) : all_(all) {
-    const std::size_t count = static_cast<std::size_t>(all.tiles.tiles.size);
-    const std::size_t lines = bytes / sizeof(Line) + 1;
-    memory_.assign(count * lines, Line{});
-    for (std::size_t t = 0; t < count; ++t)
-      tiles_.emplace_back(all_, static_cast<Index>(t), memory_[t * lines].bytes);
+  explicit TilesInTurn(const TileCase& all) : all_(all), tag_(all.tag) {
+    const std::size_t count = at(all.tiles.count);
+    lines_ = all.search.bytes / sizeof(Line) + 1;
+    memory_.assign(count * lines_, Line{});
+    bring_tiles();
   }
 
   void run() {
     const KernelScope scope;
     std::vector<TileReport> told(tiles_.size());
-    for (const TileStep& tile : tiles_) tile.enter(0, 1);
     for (std::size_t t = 0; t < tiles_.size(); ++t) told[t].near = tiles_[t].near_at_entry(0, 1);
-    std::uint32_t tag = all_.tag;
     StepClock clock = all_.start;
     for (bool first = true;; first = false) {
-      const TileReport report = exchange(told, ++tag, first);
-      if (end_step(all_.end, report, clock)) {
-        *all_.clock = clock;
-        break;
-      }
+      const TileReport report = exchange(told, ++tag_, first);
+      if (end_step(all_.end, report, clock)) break;
       for (const TileStep& tile : tiles_) tile.move(clock.now, 0, 1);
       clock.open = step_open;
+      if (report.near && !search_if_due(clock.now)) {
+        clock.host_request = 1;
+        break;
+      }
       const StepTime now = moved(clock.now);
       for (std::size_t t = 0; t < tiles_.size(); ++t) {
         pair_forces(tiles_[t], now.last_dt);
-        told[t] = sums(tiles_[t], tag + 1, now.last_dt);
+        told[t] = sums(tiles_[t], tag_ + 1, now.last_dt);
       }
       evaluated_ = true;
     }
+    TileNews& news = *all_.news;
+    news.clock = clock;
+    news.tag = tag_;
+    news.searches = searches_;
+    if (clock.host_request != 0) return;
     for (const TileStep& tile : tiles_) {
       tile.leave(0, 1);
       if (evaluated_) tile.leave_actions(0, 1);
@@ -218,6 +300,39 @@ class TilesInTurn {
   struct alignas(64) Line {
     std::byte bytes[64];
   };
+  std::byte* memory_of(Index tile) { return memory_[at(tile) * lines_].bytes; }
+  void bring_tiles() {
+    tiles_.clear();
+    for (Index t = 0; t < all_.tiles.count; ++t)
+      tiles_.emplace_back(all_, all_.lists(searches_), t, memory_of(t));
+    const KernelScope scope;
+    for (const TileStep& tile : tiles_) tile.enter(all_.lists(searches_), 0, 1);
+  }
+  /// @returns whether steps go on
+  bool search_if_due(const StepTime& now) {
+    bool due = false;
+    for (const TileStep& tile : tiles_) due = tile.used_margin(now, 0, 1) || due;
+    ++tag_;
+    if (!due) return true;
+    const TileLists lists = all_.lists(searches_);
+    const Index contacts = searches_ == 0 ? all_.search.contacts : all_.news->contacts;
+    if (searches_ == 0) all_.news->dropped = 0;
+    bool lost = false;
+    for (const TileStep& tile : tiles_)
+      lost = TileSearch::publish(tile, now.next_dt, contacts, 0, 1) || lost;
+    if (lost) return false;
+    std::vector<TileSearch> all;
+    for (Index t = 0; t < all_.tiles.count; ++t) all.emplace_back(all_, lists, t, memory_of(t));
+    for (const TileSearch& one : all) lost = one.find(0, 1) || lost;
+    if (lost) return false;
+    for (const TileSearch& one : all)
+      lost = one.number_all(contacts, all_.news->dropped, 0, 1) || lost;
+    if (lost) return false;
+    for (const TileSearch& one : all) one.name(contacts, 0, 1);
+    ++searches_;
+    bring_tiles();
+    return true;
+  }
   static void pair_forces(const TileStep& tile, double dt) {
     tile.count_from(0);
     for (Index at = 0; at < tile.portions(); ++at)
@@ -271,129 +386,26 @@ class TilesInTurn {
   }
 
   const TileCase& all_;
+  std::uint32_t tag_;
+  std::size_t lines_;  ///< of each tile
   std::vector<Line> memory_;
   std::vector<TileStep> tiles_;  ///< over `memory_`
+  Index searches_ = 0;
   bool evaluated_ = false;
 };
 
-/// Contacts of tiles whose elements are their ends b.
-ContactForces twins_of(const ContactForces& contacts, TilePlan& plan) {
-  ContactForces twins = contacts;
-  twins.state = plan.twin_state.view();
-  twins.slid = plan.twin_slid.view();
-  twins.damped = plan.twin_damped.view();
-  twins.actions = plan.twin_actions.view();
-  return twins;
-}
-
-TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
-  const ContactForces contacts = contact_kernel(w);
-  auto interface = link_kernel<double>(w, w.interface, {}, w.steel.size());
-  StepClock start;
-  const EndOfStep<StepRule> end{step_rule(w), w.given->time.evaluate_every};
-  start.to_evaluation = end.to_evaluation(w.step);
-  start.now = {w.time, w.last_dt, w.next_dt, w.step};
-  start.stop = stop;
-  start.least = ordered_bits(largest_least);
-  return {link_kernel<double>(w, w.concrete, {}, 0),
-          link_kernel<double>(w, w.steel, {}, 0),
-          interface,
-          contacts,
-          twins_of(contacts, plan),
-          move_kernel(w),
-          w.elements.force.view(),
-          w.elements.torque.view(),
-          w.critical.view(),
-          std::as_const(w.concrete.on_device.laws).view(),
-          std::as_const(w.steel.on_device.laws).view(),
-          std::as_const(w.interface.on_device.laws).view(),
-          end,
-          plan.view(),
-          plan.forces.data(),
-          plan.least.data(),
-          plan.tag,
-          start,
-          w.clock.data()};
-}
-
-void launch([[maybe_unused]] const World& w, const TileCase& all, std::size_t bytes) {
+void launch([[maybe_unused]] const World& w, const TileCase& all) {
 #if defined(__CUDACC__)
   if (w.exec.space == Space::cuda) {
     constexpr int threads = 384;
-    return launch_resident(launch_tiles<threads>, all.tiles.tiles.size, threads, bytes, all);
+    return launch_resident(launch_tiles<threads>, all.tiles.count, threads, all.search.bytes, all);
   }
 #endif
   BR_ASSERT(w.exec.space == Space::shadow);
-  TilesInTurn(all, bytes).run();
-}
-
-/// Something that a world has and tiles do not know; null: nothing.
-const char* unknown_to_tiles(const World& w) {
-  if (w.exec.precision != Precision::full) return "mixed precision";
-  if (!w.walls.empty()) return "walls";
-  if (!w.prescribed.motions.empty()) return "prescribed motions";
-  if (w.given->search.every != 0) return "search.every";
-  if (w.parallel.size() != 0) return "parallel bonds";
-  if (w.ldpm.size() != 0) return "facets of LDPM";
-  if (w.concrete.rated) return "strengths that depend on the rate";
-  return w.links() > 0 ? nullptr : "no links";
-}
-
-/// Multiprocessors that may have a tile, and the memory of each.
-Multiprocessors multiprocessors_for(const World& w) {
-  if (w.exec.tiles == 0) return {};
-  if (w.exec.space != Space::cuda) {
-    constexpr Index most = 132;  // as if it were a GPU
-    return {w.exec.tiles < 0 ? most : w.exec.tiles, std::size_t{1} << 30};
-  }
-  const Multiprocessors all = multiprocessors();
-  return {w.exec.tiles < 0 ? all.count : std::min(all.count, w.exec.tiles), all.memory};
-}
-
-/// Tiles for a world; null where launches are to take its steps.
-std::unique_ptr<TilePlan> tiles_for(const World& w) {
-  const auto [most, memory] = multiprocessors_for(w);
-  constexpr Index least_elements = 8;      // of a tile
-  constexpr std::size_t link_bytes = 190;  // about; here for a quick answer
-  // With 75 links a tile (the small slab) launches take 4 % less, with 600 (the slab) 15 % more.
-  constexpr Index links_that_pay = 300;
-  if (most <= 0 || !w.domain.single_rank() || w.exec.space == Space::host) return nullptr;
-  const char* reason = unknown_to_tiles(w);
-  if (reason == nullptr && at(w.links()) * link_bytes >= at(most) * memory)
-    reason = "more links than the memory of its multiprocessors holds";
-  if (w.exec.tiles < 0 && w.links() < links_that_pay * most) return nullptr;
-  std::unique_ptr<TilePlan> plan;
-  if (reason == nullptr) {
-    plan = share_out_to_tiles(w, std::clamp(w.elements.size() / least_elements, Index{1}, most));
-    if (plan == nullptr) reason = "more in a tile, or more laws, than tiles can number";
-  }
-  if (plan == nullptr && w.exec.tiles == tiles_in_any_case)
-    throw InputError(std::string("device +tiles: the model has ") + reason +
-                     "; leave +tiles out, and launches take the steps");
-  return plan;
-}
-
-/// Whether the last search has left tiles a list that fits them.
-bool has_contacts(World& w) {
-  TilePlan& plan = *w.tiles.plan;
-  if (!w.tiles.contacts_known) {
-    tell_contacts(w, plan, multiprocessors_for(w).memory);
-    w.tiles.contacts_known = true;
-  }
-  const Vec3& drift = w.travel.drift.velocity;
-  return plan.bytes <= multiprocessors_for(w).memory && !(dot(drift, drift) > 0.0);
+  TilesInTurn(all).run();
 }
 
 }  // namespace
-
-bool runs_by_tiles(World& w) {
-  if (!w.tiles.known) {
-    w.tiles.forget();
-    w.tiles.plan = tiles_for(w);
-    w.tiles.known = true;
-  }
-  return w.tiles.plan != nullptr && !LaunchTimes::wanted() && has_contacts(w);
-}
 
 Advanced advance_by_tiles(World& w, const StopAt& stop) {
   constexpr std::chrono::milliseconds slice{50};
@@ -406,23 +418,20 @@ Advanced advance_by_tiles(World& w, const StopAt& stop) {
            std::chrono::steady_clock::now() - begin > slice;
   };
   Advanced taken;
-  w.clock.resize(2);
   do {
     TilePlan& plan = *w.tiles.plan;
-    launch(w, case_of(w, plan, {stop.time, std::min(stop.step, w.step + most_steps)}), plan.bytes);
-    const std::int64_t before = w.step;
-    const StepClock clock = read_clock(w.clock, end, host, taken);
-    plan.tag += static_cast<std::uint32_t>(w.step - before) + 1;
-    if (clock.host_request == 0) continue;
-    // A search is near: single steps until it has come.
-    const std::int64_t searches = w.searches;
-    for (int k = 0; k < 4 && w.searches == searches && !is_over(); ++k) {
-      take_step_on_device(w);
-      taken.dt_min = taken.steps > 0 ? min(taken.dt_min, w.last_dt) : w.last_dt;
-      taken.dt_max = max(taken.dt_max, w.last_dt);
-      ++taken.steps;
-    }
-    w.clock.resize(2);
+    const StopAt until{stop.time, std::min(stop.step, w.step + most_steps)};
+    launch(w, case_of(w, plan, until));
+    const TileNews news = take_over(w, plan);
+    count_steps(news.clock, end, host, taken);
+    if (news.clock.host_request == 0) continue;
+    // The host searches in the middle of a step.
+    find_contacts(w);
+    take_forces_on_device(w);
+    w.step += 1;
+    taken.dt_min = taken.steps > 0 ? min(taken.dt_min, w.last_dt) : w.last_dt;
+    taken.dt_max = max(taken.dt_max, w.last_dt);
+    ++taken.steps;
   } while (!is_over() && runs_by_tiles(w));
   return taken;
 }

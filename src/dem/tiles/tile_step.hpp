@@ -62,6 +62,17 @@ struct TileStep : TileContent {
     }
   }
 
+  /// Whether an own element has used its margin up by that move.
+  BR_HD bool used_margin(const StepTime& now, Index thread, Index threads) const {
+    UsedMargin used = all.move.used;
+    used.set_time(now.time + now.next_dt);
+    bool any = used.too_far;
+    for (Index e = thread; e < tile.own; e += threads)
+      any = any ||
+            used.beyond<double>(memory.state[e].position, memory.reference[e], memory.margin[e]);
+    return any;
+  }
+
   /// Links and contacts in portions of a warp, each of a kind, so that its threads do alike. Those
   /// that take longest come first.
   static constexpr Index portion = 32;
@@ -162,7 +173,10 @@ struct TileStep : TileContent {
   }
   /// Where tile `from` tells `to` its report.
   BR_HD TileWord* news_word(std::uint32_t tag, Index from, Index to) const {
-    const Index tiles = all.tiles.tiles.size;
+    return news_word(all, tag, from, to);
+  }
+  BR_HD static TileWord* news_word(const TileCase& all, std::uint32_t tag, Index from, Index to) {
+    const Index tiles = all.tiles.count;
     return all.least + (static_cast<Index>(tag % 2) * tiles + to) * tiles + from;
   }
   BR_HD static std::uint64_t packed(const TileReport& report) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <vector>
 
 #include "dem/energy.hpp"
 #include "dem/observe.hpp"
@@ -36,6 +38,25 @@ void run(World& w, std::int64_t at_once) {
   while (w.step < steps) advance(w, {1e300, std::min(steps, w.step + at_once)});
 }
 
+/// Lists that other runs of steps and output read.
+void same_contacts(const World& w, const World& host) {
+  const auto same = [](const auto& one, const auto& other, const char* what) {
+    std::vector<std::decay_t<decltype(*one.data())>> a, b;
+    copy_to(a, one);
+    copy_to(b, other);
+    ASSERT_EQ(a.size(), b.size()) << what;
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0) << what;
+  };
+  same(w.contacts.pairs.key, host.contacts.pairs.key, "key");
+  same(w.contacts.pairs.a, host.contacts.pairs.a, "a");
+  same(w.contacts.pairs.b, host.contacts.pairs.b, "b");
+  same(w.contacts.history.slid, host.contacts.history.slid, "slid");
+  same(w.contacts.history.damped, host.contacts.history.damped, "damped");
+  same(w.contact_incidence.starts, host.contact_incidence.starts, "first entries");
+  same(w.contact_incidence.entries, host.contact_incidence.entries, "entries");
+  same(w.travel.margin, host.travel.margin, "margins");
+}
+
 TEST(Tiles, end_with_the_bits_of_the_host) {
   World host = small_slab(0);
   run(host, 200);
@@ -56,7 +77,36 @@ TEST(Tiles, end_with_the_bits_of_the_host) {
     EXPECT_EQ(now.plastic, energy.plastic) << tiles;
     EXPECT_EQ(now.friction, energy.friction) << tiles;
     EXPECT_EQ(now.work, energy.work) << tiles;
+    EXPECT_TRUE(w.tiles.plan->found_there) << "tiles have searched themselves";
+    same_contacts(w, host);
   }
+}
+
+/// Once bodies at rest fall, the host must take their common motion off what they travel: tiles
+/// leave in the middle of the step whose search finds that, and launches go on.
+TEST(Tiles, leave_a_search_that_finds_a_drift_to_the_host) {
+  testing::Scene scene;
+  scene.config.gravity = {0.0, 0.0, -9.81};
+  scene.material("m", "concrete", 30e9, 0.2, 2400.0);
+  for (int k = 0; k < 8; ++k) {
+    const Index a = scene.sphere({0.05 * k, 0.0, 0.0}, 0.01),
+                b = scene.sphere({0.05 * k + 0.021, 0.0, 0.0}, 0.01);
+    scene.link(a, b);
+  }
+  World host = make_world(scene.config, scene.model, Exec{});
+  Exec exec;
+  exec.space = Space::shadow;
+  exec.tiles = tiles_in_any_case;
+  World w = make_world(scene.config, scene.model, exec);
+  ASSERT_TRUE(runs_by_tiles(w));
+  const std::int64_t first = host.searches;
+  while (host.searches < first + 2) step(host);
+  while (w.step < host.step) advance(w, {1e300, host.step});
+  EXPECT_GT(host.travel.drift.velocity.z, -1e3);
+  EXPECT_NE(host.travel.drift.velocity.z, 0.0);
+  EXPECT_FALSE(runs_by_tiles(w));
+  EXPECT_EQ(state_hash(w), state_hash(host));
+  EXPECT_EQ(w.searches, host.searches);
 }
 
 /// A step that is done twice begins from a state that was saved and loaded.
