@@ -91,6 +91,11 @@ struct ServoState {
   void correct(const ServoConfig& servo, double missing, const ServoReading& touched, double span);
 };
 
+/// The servos that lead a motion along x, y, z, as kernels read it.
+struct LedBy {
+  std::int16_t servo[3] = {-1, -1, -1};  ///< walls first, then supports; -1: none
+};
+
 /// A motion, or one axis of it, that follows a servo.
 struct ServoMotion {
   std::size_t servo;  ///< walls first, then supports

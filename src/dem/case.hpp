@@ -88,6 +88,8 @@ struct Case {
 
   std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<ElementSet> sets;       ///< bodies, then supports
+  std::vector<ElementSet> tied;       ///< members of supports that links join to others; none
+                                      ///< where no servo moves it  (supports)
   std::vector<std::uint8_t> removed;  ///< stage; 1: taken out by now  (bodies)
   std::vector<std::string> wall_names;
   std::vector<Vec3> wall_starts;      ///< points of walls at the start  [m]  (walls)

@@ -1,10 +1,14 @@
 #include "dem/servos.hpp"
 
 #include "domain/set_here.hpp"
-#include "exec/for_each.hpp"
+#include "exec/fold_sum.hpp"
 
 namespace breccia::dem {
 namespace {
+
+BR_HD double part_along(int axis, const Vec3& v) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
 
 struct WallPush {
   OwnedView owned;
@@ -34,13 +38,28 @@ struct WallPush {
   }
 };
 
-/// A held element takes what all else does to it. How stiff that is, it knows by its own modulus.
+/// A held element takes what all else does to it.
 struct SupportPush {
   OwnedView owned;
   int axis;
   double gravity;  ///< along the axis  [m/s2]
   View<const Index> members;
   View<const Vec3> force;
+  View<const double> mass;
+
+  BR_HD ServoReading operator()(Index k) const {
+    const Index e = members[k];
+    ServoReading r;
+    if (!owned(e)) return r;
+    r.force.add(-(part_along(axis, force[e]) + mass[e] * gravity));
+    return r;
+  }
+};
+
+/// What links hold on the other side of a held element is as stiff as its own modulus says.
+struct TiedPush {
+  OwnedView owned;
+  View<const Index> members;
   View<const double> mass;
   View<const std::int16_t> material;
   View<const ElementState> state;
@@ -50,10 +69,44 @@ struct SupportPush {
     const Index e = members[k];
     ServoReading r;
     if (!owned(e)) return r;
-    const Vec3& f = force[e];
-    r.force.add(-((axis == 0 ? f.x : axis == 1 ? f.y : f.z) + mass[e] * gravity));
     r.stiffness.add(pairs[material[e]].normal * state[e].radius);
     r.mass.add(mass[e]);
+    return r;
+  }
+};
+
+/// A contact of an element that the servo leads with one that it does not: of platens, that are led
+/// as a whole, their faces alone.
+struct ContactPush {
+  OwnedView owned;
+  std::int16_t servo;
+  int axis;
+  bool hertz;
+  View<const double> mass;
+  View<const std::int16_t> material, motion;
+  View<const LedBy> led;
+  View<const ElementState> state;
+  View<const ContactPair> pairs;  ///< of materials p, q at p * materials + q
+  Index materials;
+  View<const Index> a, b;
+  View<const ContactState> contact;
+
+  BR_HD bool is_led(Index e) const { return motion[e] >= 0 && led[motion[e]].servo[axis] == servo; }
+  BR_HD ServoReading operator()(Index i) const {
+    const Index p = a[i], q = b[i];
+    ServoReading r;
+    const double overlap = contact[i].overlap;
+    if (!owned(p) || !(overlap > 0.0)) return r;
+    const bool by_p = is_led(p);
+    if (by_p == is_led(q)) return r;
+    const double radius_p = state[p].radius, radius_q = state[q].radius, sum = radius_p + radius_q;
+    const Vec3 way = state[q].position - state[p].position;
+    const double along = part_along(axis, way), smaller = min(radius_p, radius_q);
+    const double constant = pairs[material[p] * materials + material[q]].normal;
+    const double stiffness = hertz ? 2.0 * constant * sqrt(radius_p * radius_q / sum * overlap)
+                                   : constant * smaller * smaller / sum;
+    r.stiffness.add(stiffness * along * along / dot(way, way));
+    r.mass.add(mass[by_p ? q : p]);
     return r;
   }
 };
@@ -70,25 +123,33 @@ ServoReading read_wall(const World& w, std::size_t wall) {
               Sum{});
 }
 
-ServoReading read_support(World& part, std::size_t number, int axis) {
-  const ElementSet& set = part.given->sets[number];
-  const Vec3& g = part.given->gravity;
-  View<const Index> members = set.members.view();
-  if (!part.domain.single_rank()) {
-    SetHere& here = part.sets_here[number];
-    keep_here(here, part.domain, part.elements.id, set.members.host(), 1, part.exec.space);
-    members = std::as_const(here.places).view();
-  }
-  return fold(part.exec, members.size, ServoReading{},
-              SupportPush{part.domain.owned_view(), axis,
-                          axis == 0   ? g.x
-                          : axis == 1 ? g.y
-                                      : g.z,
-                          members, std::as_const(part.elements.force).view(),
-                          std::as_const(part.elements.mass).view(),
-                          std::as_const(part.elements.material).view(),
-                          std::as_const(part.elements.state).view(), part.given->wall_pairs.view()},
-              Sum{});
+/// Where elements of a set lie on this rank.
+View<const Index> places_of(const World& part, const ElementSet& set, SetHere& here) {
+  if (part.domain.single_rank()) return set.members.view();
+  keep_here(here, part.domain, part.elements.id, set.members.host(), 1, part.exec.space);
+  return std::as_const(here.places).view();
+}
+
+/// @param support  its number  @param servo  likewise, walls first
+ServoReading read_support(World& part, std::size_t support, std::size_t servo, int axis) {
+  const Case& given = *part.given;
+  const std::size_t set = given.sets.size() - given.tied.size() + support;
+  const Elements& e = part.elements;
+  const Contacts& c = part.contacts;
+  const OwnedView owned = part.domain.owned_view();
+  const View<const Index> members = places_of(part, given.sets[set], part.sets_here[set]);
+  const View<const Index> tied = places_of(part, given.tied[support], part.tied_here[support]);
+  FoldSum<ServoReading> all(part.exec);
+  all.add(members.size, SupportPush{owned, axis, part_along(axis, given.gravity), members,
+                                    e.force.view(), e.mass.view()});
+  all.add(tied.size, TiedPush{owned, tied, e.mass.view(), e.material.view(), e.state.view(),
+                              given.wall_pairs.view()});
+  all.add(c.size(),
+          ContactPush{owned, static_cast<std::int16_t>(servo), axis, given.contact.hertz,
+                      e.mass.view(), e.material.view(), e.motion.view(),
+                      std::as_const(part.led).view(), e.state.view(), given.contact_pairs.view(),
+                      given.materials, c.pairs.a.view(), c.pairs.b.view(), c.history.state.view()});
+  return all.sum();
 }
 
 }  // namespace
@@ -97,11 +158,11 @@ std::vector<ServoReading> read_servos(World& part, const Config& now) {
   std::vector<ServoReading> readings;
   for (std::size_t k = 0; k < now.walls.size(); ++k)
     readings.push_back(now.walls[k].servo.is_on() ? read_wall(part, k) : ServoReading{});
-  const std::size_t bodies = part.given->sets.size() - now.supports.size();
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
     const SupportServoConfig& servo = now.supports[s].servo;
-    readings.push_back(servo.is_on() ? read_support(part, bodies + s, servo.axis_number())
-                                     : ServoReading{});
+    readings.push_back(servo.is_on()
+                           ? read_support(part, s, now.walls.size() + s, servo.axis_number())
+                           : ServoReading{});
   }
   return readings;
 }

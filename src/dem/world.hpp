@@ -76,6 +76,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
   // Prescribed motions: constant but for those that servos lead.
   GivenMotions prescribed;        ///< of supports, then of walls (set-up, stage, servo)
   Buffer<Motion> motions;         ///< their motions, for kernels (motions; set-up, stage, servo)
+  Buffer<LedBy> led;              ///< which servos lead them (motions; set-up, stage)
   Buffer<double> motion_times;    ///< their tables, for kernels  [s]  (entries; set-up, stage)
   Buffer<double> motion_factors;  ///< likewise  [-]  (entries; set-up, stage)
 
@@ -108,7 +109,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
     state(travel);
     given.each_array(visit);
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(motions, motion_times, motion_factors, linked_starts, linked_partners, linked_links,
+    each(motions, led, motion_times, motion_factors, linked_starts, linked_partners, linked_links,
          bar_actions, domain.owned_there, domain.migration_reference);
   }
   /// Visits the arrays that derive() and a search fill.
@@ -125,6 +126,7 @@ struct World : LinkSets {  // links: (links of a law; set-up, pairs, ranks), see
   // Which part of the whole it is, and where its elements lie: constant between two migrations.
   Domain domain;                   ///< (ranks; its ghosts that follow their owners: search)
   std::vector<SetHere> sets_here;  ///< places of Case::sets on this rank (sets; probes, servo)
+  std::vector<SetHere> tied_here;  ///< likewise of Case::tied (supports; servo)
   // All links by their ends, rows of compressed form: an element's place and global id ascend
   // alike.
   Buffer<Index> linked_starts;    ///< first link of each lower end, and the end  [-]

@@ -1,6 +1,8 @@
 // Servos: they reach and hold their force, what gives way is what closed answers say, and threads,
 // a device's schedule, ranks and a resumed run move them alike.
 
+#include "dem/servos.hpp"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -243,6 +245,31 @@ TEST(DeadLoad, on_what_is_held_is_a_problem) {
   EXPECT_NE(said.find("support.head.force acts on elements that are free: fix must be []"),
             std::string::npos)
       << said;
+}
+
+/// A plate of grains that a servo moves as a whole pushes as one layer of it does: what it touches
+/// counts, not what it is made of.
+TEST(Servo, of_a_platen_counts_what_it_touches) {
+  dem::testing::Scene s = column();
+  s.config.walls.pop_back();
+  dem::SupportConfig head;
+  head.name = "head";
+  head.min.z = 0.02 * (spheres - 3);
+  head.fix = {"all"};
+  static_cast<ServoConfig&>(head.servo) = pushing(-push, 0.5);
+  head.servo.axis = "z";
+  s.config.supports = {head};
+  s.config.probes = {{"force", "head", "force_z", "sum"}};
+  dem::World w = s.world();
+  w.servos.resize(s.config.walls.size() + 1);
+  while (w.step < 400) {
+    dem::step(w);
+    if (w.step % servo_every == 0) correct_servos(w, s.config, read_servos(w, s.config));
+  }
+  const ServoReading read = read_servos(w, s.config).back();
+  const double between = w.given->contact_pairs.data()[0].normal * 0.01 / 2.0;
+  EXPECT_NEAR(read.stiffness.value(), between, 1e-9 * between);
+  EXPECT_NEAR(read.mass.value(), s.model.mass[0], 1e-12);
 }
 
 TEST(Servo, that_cannot_act_is_a_problem) {

@@ -267,7 +267,16 @@ void set_links(LinkSet<InterfaceLink>& set, const Config& config, const Model& m
   copy_to(set.area, area);
 }
 
-/// Bodies and supports, for probes.
+/// Whether a servo moves a support in some stage of a case.
+bool moved_by_servo(const Config& config, const SupportConfig& support) {
+  bool moved = support.servo.is_on();
+  for (const StageConfig& stage : config.stages)
+    for (const SupportChange& change : stage.supports)
+      moved |= change.name == support.name && change.servo.is_on();
+  return moved;
+}
+
+/// Bodies and supports, for probes and servos.
 void set_sets(World& w, const Config& config, const Model& m, const Prescribed& held) {
   std::vector<ElementSet>& sets = set_up(w).sets;
   for (std::size_t g = 0; g < m.groups.size(); ++g) {
@@ -276,9 +285,15 @@ void set_sets(World& w, const Config& config, const Model& m, const Prescribed& 
       if (m.group[e] == static_cast<std::int16_t>(g)) members.push_back(static_cast<Index>(e));
     sets.push_back({m.groups[g], filled(w, members)});
   }
-  for (std::size_t s = 0; s < config.supports.size(); ++s)
+  for (std::size_t s = 0; s < config.supports.size(); ++s) {
     sets.push_back({config.supports[s].name, filled(w, held.members[s])});
+    const bool moved = moved_by_servo(config, config.supports[s]);
+    set_up(w).tied.push_back(
+        {config.supports[s].name,
+         filled(w, moved ? tied_members(m, held.members[s]) : std::vector<Index>{})});
+  }
   w.sets_here.resize(sets.size());
+  w.tied_here.resize(config.supports.size());
 }
 
 /// Where elements stand, for probes and frames that show how far they have gone.
@@ -396,6 +411,11 @@ void move_to(World& w, Space space) {
 
 void place_motions(World& w) {
   copy_to(w.motions, w.prescribed.motions);
+  std::vector<LedBy> led(w.prescribed.motions.size());
+  for (const ServoMotion& m : w.prescribed.servos)
+    if (m.axis >= 0)
+      led[static_cast<std::size_t>(m.motion)].servo[m.axis] = static_cast<std::int16_t>(m.servo);
+  copy_to(w.led, led);
   copy_to(w.motion_times, w.prescribed.tables.times);
   copy_to(w.motion_factors, w.prescribed.tables.factors);
 }

@@ -253,6 +253,19 @@ std::vector<std::vector<Index>> support_members(const Config& config, const Mode
   return members;
 }
 
+std::vector<Index> tied_members(const Model& model, const std::vector<Index>& members) {
+  std::vector<std::uint8_t> held(model.position.size(), 0), tied(model.position.size(), 0);
+  for (const Index e : members) held[at(e)] = 1;
+  for (const Model::Link& link : model.links) {
+    if (link.parted || held[at(link.a)] == held[at(link.b)]) continue;
+    tied[at(held[at(link.a)] != 0 ? link.a : link.b)] = 1;
+  }
+  std::vector<Index> found;
+  for (const Index e : members)
+    if (tied[at(e)] != 0) found.push_back(e);
+  return found;
+}
+
 Prescribed prescribed(const Config& config, std::vector<std::vector<Index>> members,
                       std::size_t elements, const std::vector<Vec3>& dashpots,
                       const std::vector<double>& masses) {

@@ -44,6 +44,9 @@ struct Prescribed {
 /// The elements in the region of each support at the start, ascending.
 std::vector<std::vector<Index>> support_members(const Config& config, const Model& model);
 
+/// The members of a support that links join to elements that it does not hold.
+std::vector<Index> tied_members(const Model& model, const std::vector<Index>& members);
+
 /// Several supports may hold one element, if they prescribe different directions or the same
 /// motion.
 /// @param members   of each support
