@@ -40,8 +40,8 @@ struct FrameContact {
 };
 
 /// A field of whole numbers, one an item.
-inline FrameField whole_numbers(const char* name, std::vector<std::int32_t> numbers) {
-  FrameField field{name, "-", 1, {numbers.begin(), numbers.end()}};
+inline FrameField whole_numbers(std::string name, std::vector<std::int32_t> numbers) {
+  FrameField field{std::move(name), "-", 1, {numbers.begin(), numbers.end()}};
   field.integers = std::move(numbers);
   return field;
 }

@@ -3,19 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "core/quantity.hpp"
 #include "exec/error.hpp"
 
 namespace breccia::report {
 namespace {
-
-bool is_category(const std::string& name) {
-  constexpr std::array names{"group", "material", "kind",   "state",  "fragment",
-                             "rank",  "fixed",    "motion", "exposed"};
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 double mean_size_of(const Shot& shot) {
   double sum = 0.0;
@@ -49,7 +43,7 @@ void note_fields(Survey& survey, const std::vector<FrameField>& fields, bool of_
         [&](const FieldSurvey& f) { return f.name == field.name && f.of_lines == of_lines; });
     if (known == survey.fields.end()) {
       survey.fields.push_back(
-          {field.name, field.unit, of_lines, field.components, is_category(field.name)});
+          {field.name, field.unit, of_lines, field.components, is_name_of_things(field.name)});
       known = survey.fields.end() - 1;
     }
     double sum = 0.0;

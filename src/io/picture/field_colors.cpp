@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "core/quantity.hpp"
 #include "exec/error.hpp"
 #include "io/frame_pair.hpp"
 #include "io/picture/line_colors.hpp"
@@ -109,12 +110,6 @@ std::vector<float> scalar_values(const Frame& frame, const Selected& selected) {
     values[i] = std::sqrt(square);
   }
   return values;
-}
-
-bool is_category(const std::string& name) {
-  constexpr std::array names{"group",    "material", "kind",  "state",
-                             "fragment", "rank",     "fixed", "motion"};
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 /// Group of every item, 0 where the frame does not say.
@@ -464,7 +459,7 @@ Coloring color_frame(const Frame& frame, const std::string& field,
   coloring.of_lines = selected->carrier == joints_of(frame);
   std::vector<float> values = scalar_values(frame, *selected);
   std::vector<Color> colors;
-  if (is_category(field)) {
+  if (is_name_of_things(field)) {
     colors = category_colors(frame, *selected, values, coloring.legend);
   } else {
     const Spread spread = spread_of(values);

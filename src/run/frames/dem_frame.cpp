@@ -9,6 +9,7 @@
 #include "dem/observe.hpp"
 #include "dem/stress.hpp"
 #include "domain/drift.hpp"
+#include "run/frames/fields.hpp"
 #include "run/frames/wall_triangles.hpp"
 #include "run/method/dem_method.hpp"
 
@@ -16,6 +17,7 @@ namespace breccia {
 namespace {
 
 using namespace dem;
+using Kind = Quantity::Kind;
 
 /// How many elements and links there are in all, and bodies.
 struct Totals {
@@ -61,7 +63,7 @@ class DemFrame {
     add_elements();
     if (w_.given->sets.size() > all.bodies) {
       constexpr std::uint8_t places = fixed_x | fixed_y | fixed_z;
-      f.point_fields.push_back(scalar("held", [&](Index i) {
+      f.point_fields.push_back(scalar(Kind::held, [&](Index i) {
         const std::uint8_t fixed = elements_->fixed.data()[i];
         return is_gone(fixed) ? 0 : fixed & places;
       }));
@@ -87,21 +89,21 @@ class DemFrame {
   }
 
   template <class Value>
-  FrameField scalar(const char* name, const Value& value) const {
-    FrameField field{name, "-", 1, {}};
+  FrameField scalar(Kind kind, const Value& value) const {
+    FrameField field = field_of({kind});
     field.values.reserve(own_.size());
     for (const Index i : own_) field.values.push_back(static_cast<float>(value(i)));
     return field;
   }
   template <class Value>
-  FrameField number(const char* name, const Value& value) const {
+  FrameField number(Kind kind, const Value& value) const {
     std::vector<std::int32_t> numbers;
     numbers.reserve(own_.size());
     for (const Index i : own_) numbers.push_back(static_cast<std::int32_t>(value(i)));
-    return whole_numbers(name, std::move(numbers));
+    return numbers_of(kind, std::move(numbers));
   }
-  FrameField vector(const char* name, const char* unit, const std::vector<Vec3>& of) const {
-    FrameField field{name, unit, 3, {}};
+  FrameField vector(Kind kind, const std::vector<Vec3>& of) const {
+    FrameField field = field_of({kind});
     field.values.reserve(3 * own_.size());
     for (const Index i : own_) {
       const Vec3& v = of[static_cast<std::size_t>(i)];
@@ -121,21 +123,22 @@ class DemFrame {
       if (!w_.domain.single_rank()) part_.places.point.push_back(e.id.data()[i]);
     }
     const MotionNow now = motion_now(w_);
-    f.point_fields.push_back(vector("velocity", "m/s", now.velocity));
-    f.point_fields.push_back(vector("spin", "rad/s", now.spin));
-    f.point_fields.push_back(number("group", [&](Index i) { return e.group.data()[i]; }));
+    f.point_fields.push_back(vector(Kind::velocity, now.velocity));
+    f.point_fields.push_back(vector(Kind::spin, now.spin));
+    f.point_fields.push_back(number(Kind::group, [&](Index i) { return e.group.data()[i]; }));
     const std::vector<double> lost = damage(w_);
     f.point_fields.push_back(
-        scalar("damage", [&](Index i) { return lost[static_cast<std::size_t>(i)]; }));
+        scalar(Kind::damage, [&](Index i) { return lost[static_cast<std::size_t>(i)]; }));
     const std::vector<std::uint8_t>& bars = w_.given->bars;
     if (std::find(bars.begin(), bars.end(), 1) != bars.end())
-      f.point_fields.push_back(number(
-          "bar", [&](Index i) { return bars[static_cast<std::size_t>(e.material.data()[i])]; }));
-    f.point_fields.push_back(number("id", [&](Index i) { return e.id.data()[i]; }));
+      f.point_fields.push_back(number(Kind::bar, [&](Index i) {
+        return bars[static_cast<std::size_t>(e.material.data()[i])];
+      }));
+    f.point_fields.push_back(number(Kind::id, [&](Index i) { return e.id.data()[i]; }));
     if (!w_.domain.config.show) return;
     const Partition partition = partition_at(w_.domain, w_.travel.drift.velocity, w_.time);
     f.point_fields.push_back(
-        number("rank", [&](Index i) { return partition.owner(e.state.data()[i].position); }));
+        number(Kind::rank, [&](Index i) { return partition.owner(e.state.data()[i].position); }));
   }
 
   /// Fields that the case asks for.
@@ -149,15 +152,15 @@ class DemFrame {
       for (const Index i : own_)
         of[static_cast<std::size_t>(i)] =
             e.state.data()[i].position - starts->data()[e.id.data()[i]];
-      f.point_fields.push_back(vector("displacement", "m", of));
+      f.point_fields.push_back(vector(Kind::displacement, of));
     }
     if (more.force) {
       for (const Index i : own_) of[static_cast<std::size_t>(i)] = e.force.data()[i];
-      f.point_fields.push_back(vector("force", "N", of));
+      f.point_fields.push_back(vector(Kind::force, of));
     }
     if (!more.stress) return;
     const std::vector<Stress> all = stresses(w_);
-    FrameField field{"stress", "Pa", 6, {}};
+    FrameField field = field_of({Kind::stress});
     for (const Index i : own_)
       for (const double part : all[static_cast<std::size_t>(i)])
         field.values.push_back(static_cast<float>(part));
@@ -199,9 +202,12 @@ class DemFrame {
       before += all.items[static_cast<std::size_t>(set.kind)];
       if (!set.swept) first_action += set.size();
     });
-    part_.frame.line_fields.push_back(whole_numbers("kind", std::move(kinds_)));
-    part_.frame.line_fields.push_back(whole_numbers("state", std::move(states_)));
-    part_.frame.line_fields.push_back(std::move(force_));
+    part_.frame.line_fields.push_back(numbers_of(Kind::link, std::move(kinds_)));
+    part_.frame.line_fields.push_back(numbers_of(Kind::state, std::move(states_)));
+    FrameField force = field_of({Kind::force});
+    force.components = 1;
+    force.values = std::move(pull_);
+    part_.frame.line_fields.push_back(std::move(force));
   }
 
   /// Contacts that press, by the forces of the last step.
@@ -236,7 +242,7 @@ class DemFrame {
   void add_line(const Links& links, Index i, std::int32_t state, double pull) {
     for (const Buffer<Index>* ends : {&links.a, &links.b})
       part_.frame.lines.push_back(elements_->id.data()[ends->data()[i]]);
-    force_.values.push_back(static_cast<float>(pull));  // |force on b|
+    pull_.push_back(static_cast<float>(pull));
     kinds_.push_back(kind_);
     states_.push_back(state);
   }
@@ -245,7 +251,7 @@ class DemFrame {
   std::vector<Index> own_;
   std::int32_t kind_ = 0;  ///< of the lines that are added now
   std::vector<std::int32_t> kinds_, states_;
-  FrameField force_{"force", "N", 1, {}};
+  std::vector<float> pull_;  ///< |force on b|  [N]
   FramePart part_;
 };
 

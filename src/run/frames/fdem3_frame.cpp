@@ -17,6 +17,7 @@ namespace breccia {
 namespace {
 
 using namespace fdem3;
+using Kind = Quantity::Kind;
 
 void put_vector(FrameField& field, std::size_t place, const Vec3& v) {
   field.values[3 * place] = static_cast<float>(v.x);
@@ -36,7 +37,7 @@ class FrameOfTetrahedra {
         4 * own_.elements.size() + 3 * (own_.cracks.size() + own_.open.size());
     f_.position.resize(points);
     f_.point_fields.reserve(4);
-    f_.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});
+    f_.point_fields.push_back(field_of({Kind::velocity}, points));
     add_elements();
     add_cracks();
     add_more(points);
@@ -58,36 +59,36 @@ class FrameOfTetrahedra {
     const std::vector<Sym3> stress = stresses(w_);
     const std::vector<double> lost = damage(w_);
     const std::vector<std::int32_t> visible = visible_faces(w_);
-    field("stress_xx", "Pa", [&](Index i) { return stress[at(i)].xx; });
-    field("stress_yy", "Pa", [&](Index i) { return stress[at(i)].yy; });
-    field("stress_zz", "Pa", [&](Index i) { return stress[at(i)].zz; });
-    field("stress_xy", "Pa", [&](Index i) { return stress[at(i)].xy; });
-    field("stress_yz", "Pa", [&](Index i) { return stress[at(i)].yz; });
-    field("stress_xz", "Pa", [&](Index i) { return stress[at(i)].xz; });
-    field("pressure", "Pa", [&](Index i) { return -trace(stress[at(i)]) / 3.0; });
-    field("damage", "-", [&](Index i) { return lost[at(i)]; });
-    number("group", [&](Index i, std::size_t) { return t_.group.data()[i]; });
-    number("material", [&](Index i, std::size_t) { return t_.material.data()[i]; });
-    number("fragment", [&](Index, std::size_t k) { return placed_.fragment[k]; });
-    number("exposed", [&](Index i, std::size_t) { return visible[at(i)]; });
+    field({Kind::stress, 0, 0}, [&](Index i) { return stress[at(i)].xx; });
+    field({Kind::stress, 1, 1}, [&](Index i) { return stress[at(i)].yy; });
+    field({Kind::stress, 2, 2}, [&](Index i) { return stress[at(i)].zz; });
+    field({Kind::stress, 0, 1}, [&](Index i) { return stress[at(i)].xy; });
+    field({Kind::stress, 1, 2}, [&](Index i) { return stress[at(i)].yz; });
+    field({Kind::stress, 0, 2}, [&](Index i) { return stress[at(i)].xz; });
+    field({Kind::pressure}, [&](Index i) { return -trace(stress[at(i)]) / 3.0; });
+    field({Kind::damage}, [&](Index i) { return lost[at(i)]; });
+    number(Kind::group, [&](Index i, std::size_t) { return t_.group.data()[i]; });
+    number(Kind::material, [&](Index i, std::size_t) { return t_.material.data()[i]; });
+    number(Kind::fragment, [&](Index, std::size_t k) { return placed_.fragment[k]; });
+    number(Kind::exposed, [&](Index i, std::size_t) { return visible[at(i)]; });
     if (!w_.domain.config.show) return;
     const Partition partition = partition_at(w_.domain, w_.reach.drift.velocity, w_.time);
-    number("rank",
+    number(Kind::rank,
            [&](Index i, std::size_t) { return partition.owner(centroid(t_.nodes.data()[i])); });
   }
   template <class Value>
-  void field(const char* name, const char* unit, const Value& value) {
-    FrameField& made = f_.tetrahedron_fields.emplace_back(FrameField{name, unit, 1, {}});
+  void field(const Quantity& of, const Value& value) {
+    FrameField& made = f_.tetrahedron_fields.emplace_back(field_of(of));
     made.values.reserve(own_.elements.size());
     for (const Index i : own_.elements) made.values.push_back(static_cast<float>(value(i)));
   }
   template <class Value>
-  void number(const char* name, const Value& value) {
+  void number(Kind kind, const Value& value) {
     std::vector<std::int32_t> numbers;
     numbers.reserve(own_.elements.size());
     for (std::size_t k = 0; k < own_.elements.size(); ++k)
       numbers.push_back(static_cast<std::int32_t>(value(own_.elements[k], k)));
-    f_.tetrahedron_fields.push_back(whole_numbers(name, std::move(numbers)));
+    f_.tetrahedron_fields.push_back(numbers_of(kind, std::move(numbers)));
   }
 
   /// Calls visit(node of side a, node of side b) for the corners of a joint.
@@ -123,22 +124,20 @@ class FrameOfTetrahedra {
 
   /// Of corners; of crack faces the mean of both sides.
   void add_more(std::size_t points) {
-    const auto add = [&](const char* name, const char* unit, int components) -> FrameField& {
-      f_.point_fields.push_back(
-          {name, unit, components,
-           std::vector<float>(static_cast<std::size_t>(components) * points, 0.0F)});
+    const auto add = [&](Kind kind) -> FrameField& {
+      f_.point_fields.push_back(field_of({kind}, points));
       return f_.point_fields.back();
     };
-    if (w_.given->shown.displacement) add_displacement(add("displacement", "m", 3));
+    if (w_.given->shown.displacement) add_displacement(add(Kind::displacement));
     if (w_.given->shown.force) {
-      FrameField& force = add("force", "N", 3);
+      FrameField& force = add(Kind::force);
       for (std::size_t k = 0; k < own_.elements.size(); ++k)
         for (std::size_t c = 0; c < 4; ++c)
           put_vector(force, 4 * k + c, t_.force.data()[own_.elements[k]].at[c]);
     }
     if (w_.given->holds.size() == 0) return;
     const OnHost holds(w_.given->holds, w_.exec.space);
-    FrameField& held = add("held", "-", 1);
+    FrameField& held = add(Kind::held);
     for (std::size_t k = 0; k < own_.elements.size(); ++k) {
       const Index hold = t_.hold.data()[own_.elements[k]];
       for (std::size_t c = 0; c < 4 && hold >= 0; ++c)

@@ -17,6 +17,7 @@ namespace breccia {
 namespace {
 
 using namespace fdem;
+using Kind = Quantity::Kind;
 
 /// Fields of points besides velocity, in the order in which frames hold them.
 struct PointFields {
@@ -25,15 +26,13 @@ struct PointFields {
   /// Adds them, of so many points.
   PointFields(const Case& given, std::size_t points, Frame& f) {
     f.point_fields.reserve(4);
-    const auto add = [&](const char* name, const char* unit, int components) {
-      f.point_fields.push_back(
-          {name, unit, components,
-           std::vector<float>(static_cast<std::size_t>(components) * points, 0.0F)});
+    const auto add = [&](Kind kind) {
+      f.point_fields.push_back(field_of({kind}, points, true));
       return &f.point_fields.back();
     };
-    if (given.shown.displacement) displacement = add("displacement", "m", 3);
-    if (given.shown.force) force = add("force", "N/m", 3);
-    if (given.holds.size() > 0) held = add("held", "-", 1);
+    if (given.shown.displacement) displacement = add(Kind::displacement);
+    if (given.shown.force) force = add(Kind::force);
+    if (given.holds.size() > 0) held = add(Kind::held);
   }
   static void put(FrameField* field, std::size_t place, const Vec2& value) {
     if (field == nullptr) return;
@@ -71,35 +70,34 @@ void add_triangles(const World& w, const Triangles& t, const std::vector<Corners
       put_point(f, 3 * k + c, t.nodes.data()[i].at[c].position, velocity[at(i)].at[c]);
     }
   });
-  const auto field = [&](const char* name, const char* unit, const auto& value) {
-    FrameField& made =
-        f.triangle_fields.emplace_back(FrameField{name, unit, 1, std::vector<float>(count)});
+  const auto field = [&](const Quantity& of, const auto& value) {
+    FrameField& made = f.triangle_fields.emplace_back(field_of(of, count));
     each_of(count, w.exec.threads,
             [&](std::size_t k) { made.values[k] = static_cast<float>(value(own.elements[k], k)); });
   };
-  const auto number = [&](const char* name, const auto& value) {
+  const auto number = [&](Kind kind, const auto& value) {
     std::vector<std::int32_t> numbers(count);
     each_of(count, w.exec.threads, [&](std::size_t k) {
       numbers[k] = static_cast<std::int32_t>(value(own.elements[k], k));
     });
-    f.triangle_fields.push_back(whole_numbers(name, std::move(numbers)));
+    f.triangle_fields.push_back(numbers_of(kind, std::move(numbers)));
   };
   const std::vector<Sym2> stress = stresses(w);
   const std::vector<double> across = stresses_across(w), lost = damage(w);
-  field("stress_xx", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xx; });
-  field("stress_yy", "Pa", [&](Index i, std::size_t) { return stress[at(i)].yy; });
-  field("stress_zz", "Pa", [&](Index i, std::size_t) { return across[at(i)]; });
-  field("stress_xy", "Pa", [&](Index i, std::size_t) { return stress[at(i)].xy; });
-  field("pressure", "Pa",
+  field({Kind::stress, 0, 0}, [&](Index i, std::size_t) { return stress[at(i)].xx; });
+  field({Kind::stress, 1, 1}, [&](Index i, std::size_t) { return stress[at(i)].yy; });
+  field({Kind::stress, 2, 2}, [&](Index i, std::size_t) { return across[at(i)]; });
+  field({Kind::stress, 0, 1}, [&](Index i, std::size_t) { return stress[at(i)].xy; });
+  field({Kind::pressure},
         [&](Index i, std::size_t) { return -0.5 * (stress[at(i)].xx + stress[at(i)].yy); });
-  field("damage", "-", [&](Index i, std::size_t) { return lost[at(i)]; });
-  number("group", [&](Index i, std::size_t) { return t.group.data()[i]; });
-  number("material", [&](Index i, std::size_t) { return t.material.data()[i]; });
-  number("fragment", [&](Index, std::size_t k) { return placed.fragment[k]; });
+  field({Kind::damage}, [&](Index i, std::size_t) { return lost[at(i)]; });
+  number(Kind::group, [&](Index i, std::size_t) { return t.group.data()[i]; });
+  number(Kind::material, [&](Index i, std::size_t) { return t.material.data()[i]; });
+  number(Kind::fragment, [&](Index, std::size_t k) { return placed.fragment[k]; });
   if (!w.domain.config.show) return;
   const Vec2 drift = w.reach.drift.velocity;
   const Partition partition = partition_at(w.domain, {drift.x, drift.y, 0.0}, w.time);
-  number("rank",
+  number(Kind::rank,
          [&](Index i, std::size_t) { return partition.owner(centroid(t.nodes.data()[i])); });
 }
 
@@ -184,7 +182,7 @@ FramePart fdem_frame(World& w, const World* mesh) {
   f.groups = w.given->groups;
   const std::size_t points = points_of(own);
   f.position.resize(points);
-  f.point_fields.push_back({"velocity", "m/s", 3, std::vector<float>(3 * points)});
+  f.point_fields.push_back(field_of({Kind::velocity}, points));
   const std::vector<Corners> velocity = velocities_now(w);
   add_triangles(w, *triangles, velocity, own, known, f);
   add_lines(w, *triangles, *joints, velocity, own, known, f);

@@ -10,7 +10,7 @@
 #include "core/precision.hpp"
 #include "domain/parcel.hpp"
 #include "fdem_shared/shape.hpp"
-#include "io/frame.hpp"
+#include "run/frames/fields.hpp"
 
 namespace breccia {
 
@@ -173,7 +173,9 @@ PlacedParts placed_parts(const World& w, const Elements& t, const Joints& joints
 template <class Joints>
 void add_crack_fields(const Joints& j, const OwnParts& own, std::vector<FrameField>& fields) {
   using Stage = std::remove_cvref_t<decltype(j.stage.data()[0])>;
-  FrameField mode{"mode", "-", 1, {}}, damage{"damage", "-", 1, {}}, time{"time", "s", 1, {}};
+  using Kind = Quantity::Kind;
+  FrameField mode = field_of({Kind::mode}), damage = field_of({Kind::damage}),
+             time = field_of({Kind::time});
   for (const Index i : own.cracks) {
     mode.values.push_back(static_cast<float>(mode_of(j, i)));
     double worst = j.stage.data()[i] == Stage::broken ? 1.0 : 0.0;

@@ -28,14 +28,6 @@ bool is_empty(const std::string& path) {
   return std::filesystem::file_size(path, error) == 0;
 }
 
-/// A unit for each metre of thickness, where thickness counts.
-std::string per_metre(const std::string& unit) {
-  if (unit == "N" || unit == "J") return unit + "/m";
-  if (unit == "N m") return "N";
-  if (unit == "kg m2/s") return "kg m/s";
-  return unit == "kg m/s" ? "kg/s" : unit;
-}
-
 }  // namespace
 
 History::History(const std::string& path, const std::vector<ProbeConfig>& probes, bool in_plane,

@@ -1,6 +1,15 @@
 #include <gtest/gtest.h>
 
+#include "core/quantity.hpp"
+#include "io/whole_file.hpp"
+#include "paths.hpp"
+#include "physics/dem/scene.hpp"
+#include "physics/fdem/scene.hpp"
+#include "physics/fdem3/scene.hpp"
 #include "run/method/checks.hpp"
+#include "run/method/dem_method.hpp"
+#include "run/method/fdem3_method.hpp"
+#include "run/method/fdem_method.hpp"
 #include "run/results/recorder.hpp"
 #include "run/results/step_times.hpp"
 #include "unit/run/fake_run.hpp"
@@ -74,6 +83,56 @@ TEST(History, SaysForcesAndEnergiesOfEachMetreInThePlane) {
   const std::string text = read_whole_file(scratch / "history.csv");
   EXPECT_EQ(text.substr(text.find('\n') + 1),
             "-,s,s,J/m,J/m,J/m,J/m,J/m,J/m,J/m,J/m,-,N/m,kg/s,m/s\n");
+}
+
+/// Fields of a frame that the table does not list with this unit and size.
+std::string not_in_the_table(const Frame& frame, bool in_plane) {
+  std::string unknown;
+  for (const auto* fields :
+       {&frame.point_fields, &frame.line_fields, &frame.triangle_fields, &frame.tetrahedron_fields})
+    for (const FrameField& field : *fields) {
+      bool known = false;
+      for (const NamedQuantity& named : quantities)
+        for (const int axis : {named.quantity.axis, -1}) {
+          if ((named.of & (in_frames | is_name)) == 0) continue;
+          const Quantity whole{named.quantity.kind, axis, axis < 0 ? -1 : named.quantity.other};
+          const FieldWord word = field_word(whole, in_plane);
+          const bool line_force = field.name == "force" && fields == &frame.line_fields;
+          known |= word.name == field.name && word.unit == field.unit &&
+                   (line_force || word.components == field.components);
+        }
+      if (!known) unknown += field.name + " [" + field.unit + "] ";
+    }
+  return unknown;
+}
+
+TEST(Quantities, AreOneTableForProbesFramesAndTheManual) {
+  dem::testing::Scene grains;
+  grains.material("m", "concrete", 30e9, 0.2, 2500.0);
+  grains.sphere({}, 0.01);
+  grains.sphere({0.02, 0.0, 0.0}, 0.01);
+  grains.config.output.more = {"displacement", "force", "stress"};
+  EXPECT_EQ(not_in_the_table(make_method(grains.config, grains.model, {}, nullptr)->frame(), false),
+            "");
+  fdem::testing::Scene plate;
+  plate.material().joints = "intrinsic";
+  plate.body("p", prepare::crossed_rectangle({{0.0, 0.0}, {0.02, 0.02}}, 0.02));
+  plate.config.output.more = {"displacement", "force"};
+  EXPECT_EQ(not_in_the_table(make_method(plate.config, plate.model, {}, nullptr)->frame(), true),
+            "");
+  fdem3::testing::Scene block;
+  block.material().joints = "intrinsic";
+  block.body("b", prepare::kuhn_box({}, {0.02, 0.02, 0.02}, 0.02));
+  block.config.output.more = {"displacement", "force"};
+  EXPECT_EQ(not_in_the_table(make_method(block.config, block.model, {}, nullptr)->frame(), false),
+            "");
+
+  const std::string manual = read_whole_file(std::string(source_dir) + "/docs/measures.md");
+  for (const NamedQuantity& named : quantities) {
+    std::string stem = named.word;
+    if (named.quantity.axis >= 0) stem.resize(stem.rfind('_'));
+    EXPECT_NE(manual.find('`' + stem + '`'), std::string::npos) << named.word;
+  }
 }
 
 TEST(Record, FramesComeAtTheFirstStepAtOrPastTheirTime) {
