@@ -303,7 +303,7 @@ TEST(Run, AnswersASignalFromOutsideWithACheckpoint) {
   for (const int signal : {SIGTERM, SIGINT, SIGUSR1}) {
     const std::string path = scratch / std::to_string(signal);
     Trouble trouble;
-    trouble.pause = 0.01;
+    trouble.pause = 0.05;
     RunPlan plan = fake_plan();
     const pid_t child = start_process([&] { return run_fake(plan, path, trouble); });
     while (!fs::exists(path + "/summary.json") || !fs::exists(path + "/case.toml"))
@@ -385,7 +385,7 @@ TEST(Run, TellsOfItsFailureOnADiskThatIsFull) {
 TEST(Run, EndsWithAnErrorIfItsHistoryIsRemoved) {
   const ScratchFolder scratch;
   Trouble trouble;
-  trouble.pause = 2e-3;
+  trouble.pause = 0.02;
   const pid_t child =
       start_process([&] { return run_fake(fake_plan(), scratch / "out", trouble); });
   while (!fs::exists(scratch / "out/history.csv"))
