@@ -95,13 +95,11 @@ class Halo {
     Index begin = 0;  ///< of what comes among all that it packs; only where it is read from there
   };
   template <class T>
-  static View<T> as_items(std::byte* bytes, Index count, [[maybe_unused]] Space space) {
+  static View<T> as_items(std::byte* bytes, Index count, Space space) {
     View<T> view;
     view.data = reinterpret_cast<T*>(bytes);
     view.size = count;
-#if defined(BR_CHECKED)
     view.space = space;
-#endif
     return view;
   }
   template <class T>

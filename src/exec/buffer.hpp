@@ -12,14 +12,12 @@
 
 namespace breccia {
 
-/// An array as a kernel sees it: pointer and length. Reading is checked in checked builds.
+/// An array as a kernel sees it: pointer, length and space. Reading is checked in checked builds.
 template <class T>
 struct View {
   T* data = nullptr;
   Index size = 0;
-#if defined(BR_CHECKED)
   Space space = Space::host;
-#endif
 
   BR_HD T& operator[](Index i) const {
     BR_ASSERT(i >= 0 && i < size);
@@ -33,9 +31,7 @@ struct View {
     View<const T> view;
     view.data = data;
     view.size = size;
-#if defined(BR_CHECKED)
     view.space = space;
-#endif
     return view;
   }
 };
@@ -122,9 +118,7 @@ class Buffer {
     View<U> view;
     view.data = data;
     view.size = size_;
-#if defined(BR_CHECKED)
     view.space = space_;
-#endif
     return view;
   }
 

@@ -93,9 +93,7 @@ View<const T> piece(const Buffer<std::byte>& all, const PieceOf<T>& of) {
   View<const T> view;
   view.data = reinterpret_cast<const T*>(all.data() + of.begin);
   view.size = of.count;
-#if defined(BR_CHECKED)
   view.space = all.space();
-#endif
   return view;
 }
 

@@ -66,9 +66,7 @@ BR_HD inline View<const NodeState> by_number(const View<const TriangleNodes>& no
   View<const NodeState> view;
   view.data = nodes.data == nullptr ? nullptr : nodes.data[0].at;
   view.size = 3 * nodes.size;
-#if defined(BR_CHECKED)
   view.space = nodes.space;
-#endif
   return view;
 }
 
