@@ -114,6 +114,13 @@ void choose_common_step(World& w) {
   s.next_dt = t.next_dt = common;
 }
 
+void shorten_common_step(World& w) {
+  dem::World& s = *w.spheres;
+  fdem3::World& t = *w.tetrahedra;
+  w.stable_step = std::min(w.stable_step, fdem3::choose_time_step(t));
+  s.next_dt = t.next_dt = std::min({s.next_dt, t.next_dt, w.stable_step});
+}
+
 namespace {
 
 struct TouchShares {

@@ -75,6 +75,8 @@ void press(World& w);
 void note_stable_step(World& w);
 /// and the step to come, of all.
 void choose_common_step(World& w);
+/// The step to come where a stage has set something free in either.
+void shorten_common_step(World& w);
 
 bool faces_are_due(const World& w);
 void find_faces(World& w);

@@ -10,21 +10,27 @@
 namespace breccia {
 namespace {
 
-/// "body.pile.size needs ..." of a part as "spheres.body.pile.size needs ..."; sentences that begin
-/// with no key as "spheres: ...".
-std::string of_part(const char* part, const std::string& problem) {
+/// "body.pile.size needs ..." of a part as "spheres.body.pile.size needs ...",
+/// "stage.shear.wall.top ..." as "stage.shear.spheres.wall.top ..."; sentences that begin with no
+/// key as "spheres: ...".
+std::string of_part(const char* part, const std::string& problem,
+                    const std::vector<coupled::StageConfig>& stages) {
+  for (const coupled::StageConfig& stage : stages)
+    if (const std::string where = "stage." + stage.name + "."; problem.starts_with(where))
+      return where + part + "." + problem.substr(where.size());
   const std::string word = problem.substr(0, problem.find(' '));
   return part + std::string(word.find('.') == std::string::npos ? ": " : ".") + problem;
 }
 
 /// Calls check, whose problems then begin with the name of the part.
 template <class Check>
-void of_part(const char* part, const Check& check) {
+void of_part(const coupled::Config& config, const char* part, const Check& check) {
   try {
     check();
   } catch (const prepare::Refusal& found) {
     std::vector<std::string> problems;
-    for (const std::string& problem : found.problems) problems.push_back(of_part(part, problem));
+    for (const std::string& problem : found.problems)
+      problems.push_back(of_part(part, problem, config.stages));
     prepare::refuse(problems, "in the case");
   }
 }
@@ -34,8 +40,8 @@ template <class Check>
 void of_both(const coupled::Config& config, const Check& check) {
   const coupled::Parts parts = coupled::parts_of(config);
   prepare::refuse_all(
-      "in the case", [&] { of_part("spheres", [&] { check(parts.spheres); }); },
-      [&] { of_part("tetrahedra", [&] { check(parts.tetrahedra); }); });
+      "in the case", [&] { of_part(config, "spheres", [&] { check(parts.spheres); }); },
+      [&] { of_part(config, "tetrahedra", [&] { check(parts.tetrahedra); }); });
 }
 
 }  // namespace
@@ -43,8 +49,9 @@ void of_both(const coupled::Config& config, const Check& check) {
 coupled::Model build_model(const coupled::Config& config, const std::string& case_folder) {
   const coupled::Parts parts = coupled::parts_of(config);
   coupled::Model model;
-  of_part("spheres", [&] { model.spheres = build_model(parts.spheres, case_folder); });
-  of_part("tetrahedra", [&] { model.tetrahedra = build_model(parts.tetrahedra, case_folder); });
+  of_part(config, "spheres", [&] { model.spheres = build_model(parts.spheres, case_folder); });
+  of_part(config, "tetrahedra",
+          [&] { model.tetrahedra = build_model(parts.tetrahedra, case_folder); });
   return model;
 }
 

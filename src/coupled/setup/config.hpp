@@ -45,18 +45,45 @@ struct Without {
   }
 };
 
-/// Keys that a case has once, for both methods; and stages, which it cannot have.
+/// Keys that a case has once, for both methods.
 inline constexpr std::string_view shared_keys[] = {
     "breccia", "method", "precision", "title", "seed",  "time",  "output", "checkpoint",
     "domain",  "energy", "audit",     "probe", "check", "stage", "gravity"};
 
-/// The keys of one of the methods.
-template <class Whole>
-struct Part : Whole {
+/// Likewise a stage, where taking bodies out is in neither.
+inline constexpr std::string_view shared_stage_keys[] = {"name", "until",   "rest",    "when",
+                                                         "drop", "drop_of", "gravity", "remove"};
+
+/// The keys of one of the methods, without those that both share.
+template <class Whole, const auto& shared>
+struct PartOf : Whole {
   template <class Visit>
   void each_key(Visit&& key) {
-    Without<std::remove_reference_t<Visit>, decltype(shared_keys)> own{key, shared_keys};
+    Without<std::remove_reference_t<Visit>, std::remove_reference_t<decltype(shared)>> own{key,
+                                                                                           shared};
     Whole::each_key(own);
+  }
+};
+template <class Whole>
+using Part = PartOf<Whole, shared_keys>;
+template <class Stage>
+using StagePart = PartOf<Stage, shared_stage_keys>;
+
+/// [[stage]]
+struct StageConfig : StageEnd {
+  Vec3 gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
+  StagePart<dem::StageConfig> spheres;
+  StagePart<fdem3::StageConfig> tetrahedra;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    constexpr std::string_view of_parts[] = {"local_damping", "friction", "remove"};
+    Without<std::remove_reference_t<Visit>, decltype(of_parts)> shared{key, of_parts};
+    StageEnd::each_key(shared);
+    key("gravity", gravity, "m/s2", any_number,
+        "acceleration of gravity from its beginning on; left out (inf): as before");
+    key.table("spheres", spheres, "what changes of spheres and walls as it begins");
+    key.table("tetrahedra", tetrahedra, "what changes of tetrahedra as it begins");
   }
 };
 
@@ -128,6 +155,7 @@ struct Config : CaseConfig {
   Part<fdem3::Config> tetrahedra;
   CouplingConfig coupling;
   std::vector<BondConfig> bonds;
+  std::vector<StageConfig> stages;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -140,6 +168,7 @@ struct Config : CaseConfig {
     key.table("tetrahedra", tetrahedra, "keys of fdem3d: what consists of tetrahedra");
     key.table("coupling", coupling, "how spheres press on faces of tetrahedra");
     key.list("bond", bonds, "spheres that are tied to faces of tetrahedra");
+    key.list("stage", stages, "what changes when, one stage after the other");
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <set>
 
 #include "core/named.hpp"
@@ -41,6 +42,9 @@ class PairChecks {
       add("tetrahedra.body: there is none; name the bodies of tetrahedra");
     check_names();
     check_servos();
+    for (const std::string& problem :
+         stage_problems({config.stages.begin(), config.stages.end()}, names_of(config.probes), {}))
+      add(problem);
     for (const ProbeConfig& p : config.probes) check(p);
     for (const BondConfig& b : config.bonds) check(b);
   }
@@ -78,6 +82,12 @@ class PairChecks {
     look("spheres", "wall", config_.spheres.walls);
     look("spheres", "support", config_.spheres.supports);
     look("tetrahedra", "support", config_.tetrahedra.supports);
+    for (const StageConfig& stage : config_.stages) {
+      const std::string where = fmt::format("stage.{}.", stage.name);
+      look((where + "spheres").c_str(), "wall", stage.spheres.walls);
+      look((where + "spheres").c_str(), "support", stage.spheres.supports);
+      look((where + "tetrahedra").c_str(), "support", stage.tetrahedra.supports);
+    }
   }
   void check(const ProbeConfig& p) {
     if (is_of_spheres(config_, p.on) || is_of_tetrahedra(config_, p.on)) return;
@@ -128,6 +138,16 @@ Parts parts_of(const Config& config) {
   };
   share(parts.spheres, "dem3d");
   share(parts.tetrahedra, "fdem3d");
+  const auto begin = [](auto& stages, auto part, const StageConfig& whole) {
+    part.name = whole.name;
+    part.gravity = whole.gravity;
+    part.until = std::numeric_limits<double>::max();  // the run tells its end
+    stages.push_back(std::move(part));
+  };
+  for (const StageConfig& stage : config.stages) {
+    begin(parts.spheres.stages, dem::StageConfig(stage.spheres), stage);
+    begin(parts.tetrahedra.stages, fdem3::StageConfig(stage.tetrahedra), stage);
+  }
   parts.spheres.time.evaluate_every = 1;
   for (const ProbeConfig& p : config.probes) {
     const bool of_spheres = is_of_spheres(config, p.on);

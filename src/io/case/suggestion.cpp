@@ -46,8 +46,9 @@ std::string nearest(const std::string& word, const std::set<std::string>& known)
 std::string suggestion(const std::string& word, const std::set<std::string>& known) {
   if (word == "thickness")  // plane cases of other programs have one
     return ": a plane case counts each metre of thickness (N/m, J/m); multiply what comes out";
-  if (word == "stage" && known.contains("spheres"))
-    return ": runs of spheres and tetrahedra together have no stages";
+  if (word == "stage" && known.contains("body"))  // below spheres or tetrahedra
+    return ": stages stand above both methods: [[stage]], with [stage.spheres] and "
+           "[stage.tetrahedra]";
   for (const auto& [other, key] : other_words)
     if (word == other && known.contains(std::string(key)))
       return "; did you mean " + std::string(key) + "?";

@@ -19,6 +19,7 @@ class CoupledMethod final : public Method {
   CoupledMethod(const coupled::Config& config, const coupled::Parts& parts,
                 const coupled::Model& model, const Exec& exec)
       : threads_(exec.threads),
+        stages_(config.stages.begin(), config.stages.end()),
         probes_(parts.probes),
         spheres_(dem_part(parts.spheres, model.spheres, exec)),
         tetrahedra_(fdem3_part(parts.tetrahedra, model.tetrahedra, exec)),
@@ -40,6 +41,14 @@ class CoupledMethod final : public Method {
     for (const auto& more : {tetrahedra_.method->warnings(), w_.given->warnings})
       all.insert(all.end(), more.begin(), more.end());
     return all;
+  }
+
+  std::vector<StageEnd> stages() const override { return stages_; }
+  StageProgress stage() const override { return spheres_.method->stage(); }
+  void set_stage(const StageProgress& now) override {
+    const bool begins = now.index != stage().index;
+    each_part([&](const std::string&, Method& method) { method.set_stage(now); });
+    if (begins) coupled::shorten_common_step(w_);
   }
 
   EnergyBalance energy() override {
@@ -208,6 +217,7 @@ class CoupledMethod final : public Method {
   }
 
   int threads_;
+  std::vector<StageEnd> stages_;
   std::vector<coupled::PlacedProbe> probes_;
   DemPart spheres_;
   Fdem3Part tetrahedra_;

@@ -54,6 +54,28 @@ quantity = "momentum_z"
 reduce = "sum"
 )";
 
+/// The block stands on a held foot as the pile hits it; then both fall, free.
+const std::string staged = good + R"([[probe]]
+name = "pile"
+on = "spheres"
+quantity = "momentum_z"
+reduce = "sum"
+[[tetrahedra.support]]
+name = "foot"
+max = [1.0, 1.0, "-19 mm"]
+[[stage]]
+name = "hold"
+until = "30 us"
+[[stage]]
+name = "drop"
+gravity = [0.0, 0.0, -9.81e3]
+[stage.spheres]
+friction = 0.2
+[[stage.tetrahedra.support]]
+name = "foot"
+fix = []
+)";
+
 std::string problems_of(std::string text, const std::string& from = "",
                         const std::string& to = "") {
   if (!from.empty()) text.replace(text.find(from), from.size(), to);
@@ -85,9 +107,13 @@ TEST(CheckCoupled, finds_what_is_wrong_by_key) {
       "[[bond]]\nname = \"b\"\nspheres = \"pile\"\ntetrahedra = \"rock\"\n[output]";
   EXPECT_TRUE(has(problems_of(good, "[output]", bond), "bond.b.tetrahedra = \"rock\" is none of"));
   const std::string stage = "[[spheres.stage]]\nname = \"s\"\nend = 1.0\n[output]";
-  EXPECT_TRUE(has(problems_of(good, "[output]", stage), "spheres.stage"));
-  EXPECT_TRUE(has(problems_of(good, "[output]", "[[stage]]\nname = \"s\"\nend = 1.0\n[output]"),
-                  "runs of spheres and tetrahedra together have no stages"));
+  EXPECT_TRUE(has(problems_of(good, "[output]", stage), "stages stand above both methods"));
+  EXPECT_EQ(problems_of(staged), "");
+  EXPECT_TRUE(has(problems_of(staged, "name = \"foot\"\nfix = []", "name = \"feet\"\nfix = []"),
+                  "stage.drop.tetrahedra.support.name"));
+  EXPECT_TRUE(has(problems_of(staged, "until = \"30 us\"", "when = \"pull > 1\""), "pull"));
+  EXPECT_TRUE(has(problems_of(staged, "until = \"30 us\"\n", ""), "stage.hold"));
+  EXPECT_TRUE(has(problems_of(staged, "friction = 0.2", "remove = [\"pile\"]"), "remove"));
 }
 
 std::unique_ptr<Method> method_of(const Case& read, int threads = 1) {
@@ -133,6 +159,50 @@ TEST(CoupledCase, goes_on_from_a_saved_state_with_the_same_bits) {
   resumed->save(first);
   whole->save(second);
   EXPECT_EQ(first.first_difference(second), "");
+}
+
+/// The run's outer loop, by time alone.
+void run_stages(Method& method, std::int64_t steps) {
+  while (method.steps() < steps) {
+    method.advance({1.0, steps});
+    StageProgress now = method.stage();
+    if (now.index > 0 || method.time() < method.stages()[0].until) continue;
+    now.cause[0] = StageCause::time;
+    now.index = 1;
+    now.begin[1] = now.end[0] = method.time();
+    method.set_stage(now);
+  }
+}
+
+/// A stage begins in both methods at once: with nothing held, momentum changes by the weight of all
+/// alone; no energy is missed; a run goes on in any stage with the same bits.
+TEST(CoupledCase, goes_through_stages_and_is_resumed_in_each) {
+  const Case read = case_of_text(staged, "both.toml", ".", {});
+  const auto whole = method_of(read);
+  const double pile = whole->probes()[2] / -20.0;
+  std::vector<CheckpointWriter> saved;
+  std::vector<double> time, momentum;
+  for (const std::int64_t step : {60, 300, 700}) {
+    run_stages(*whole, step);
+    EXPECT_EQ(whole->stage().index, step == 60 ? 0 : 1);
+    if (step < 700) whole->save(saved.emplace_back());
+    time.push_back(whole->time());
+    momentum.push_back(whole->probes()[1] + whole->probes()[2]);
+  }
+  const double falls = time[2] - time[1];
+  const auto& rock = std::get<coupled::Config>(read.config).tetrahedra.materials[0];
+  const double weight = 9.81e3 * (pile + rock.density * 0.08 * 0.08 * 0.02);
+  EXPECT_NEAR(momentum[2] - momentum[1], -weight * falls, 1e-3 * weight * falls);
+  EXPECT_LT(whole->energy().error_relative, 2e-4);
+  for (const CheckpointWriter& half : saved) {
+    const auto resumed = method_of(read, 2);
+    const CheckpointReader reader(half);
+    resumed->load(&reader);
+    run_stages(*resumed, 700);
+    EXPECT_EQ(resumed->state_hash(), whole->state_hash());
+    EXPECT_EQ(resumed->probes(), whole->probes());
+    EXPECT_EQ(resumed->energy().work, whole->energy().work);
+  }
 }
 
 TEST(CoupledCase, refuses_devices) {
