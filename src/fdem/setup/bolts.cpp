@@ -14,15 +14,18 @@
 namespace breccia::fdem {
 namespace {
 
+constexpr double most_nodes = 1e5;
+
 double pieces_of(double leg, const BoltConfig& bolt) {
   return std::max(1.0, std::ceil(leg / bolt.segment - 1e-9));
 }
 
 /// Points of a polyline, each leg in even pieces no longer than a segment.
 std::vector<Vec2> divided(const BoltConfig& bolt) {
-  std::vector<Vec2> nodes{bolt.points.front()};
-  for (std::size_t i = 0; i + 1 < bolt.points.size(); ++i) {
-    const Vec2 &from = bolt.points[i], way = bolt.points[i + 1] - from;
+  const std::vector<Vec2> corners = corners_of(bolt);
+  std::vector<Vec2> nodes{corners.front()};
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    const Vec2 &from = corners[i], way = corners[i + 1] - from;
     const double pieces = pieces_of(norm(way), bolt);
     for (double k = 1.0; k <= pieces; k += 1.0) nodes.push_back(from + (k / pieces) * way);
   }
@@ -51,7 +54,8 @@ std::string short_text(double number) {
 }
 
 BoltLaw law_of(const BoltConfig& bolt) {
-  const double square = bolt.diameter * bolt.diameter, area = 0.25 * pi * square / bolt.spacing;
+  const double square = bolt.diameter * bolt.diameter;
+  const double area = (bolt.area > 0.0 ? bolt.area : 0.25 * pi * square) / bolt.spacing;
   const double bending = bolt.young * pi / 64.0 * square * square;  // E I
   const double beta = std::sqrt(std::sqrt(0.25 * bolt.bedding / bending));
   return {bolt.young * area,
@@ -123,10 +127,10 @@ double stiffest_corners(const Config& config) {
 
 /// Problems of how finely a bolt is divided, told before it is.
 void look_at_segments(const BoltConfig& bolt, double corners, std::vector<std::string>& problems) {
-  constexpr double most_nodes = 1e5;
+  const std::vector<Vec2> points = corners_of(bolt);
   double nodes = 1.0, shortest = no_limit;
-  for (std::size_t i = 0; i + 1 < bolt.points.size(); ++i) {
-    const double leg = norm(bolt.points[i + 1] - bolt.points[i]), pieces = pieces_of(leg, bolt);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const double leg = norm(points[i + 1] - points[i]), pieces = pieces_of(leg, bolt);
     nodes += pieces;
     shortest = std::min(shortest, leg / pieces);
   }
@@ -148,8 +152,9 @@ void set_up_bolts(World& w, const Config& config, const Model& model) {
     Bolt bolt;
     bolt.name = given.name;
     bolt.law = law_of(given);
-    bolt.anchored[0] = given.anchored == "start" || given.anchored == "both";
-    bolt.anchored[1] = given.anchored == "end" || given.anchored == "both";
+    const bool closed = given.radius > 0.0, both = closed || given.anchored == "both";
+    bolt.anchored[0] = both || given.anchored == "start";
+    bolt.anchored[1] = both || given.anchored == "end";
     for (std::size_t k = 0; k < config.stages.size(); ++k)
       if (config.stages[k].name == given.stage) bolt.stage = static_cast<std::int32_t>(k);
     const std::vector<Vec2> points = divided(given);
@@ -165,11 +170,30 @@ void set_up_bolts(World& w, const Config& config, const Model& model) {
   copy_to(w.bolts.nodes, std::vector<BoltNode>(nodes));
 }
 
+std::vector<Vec2> corners_of(const BoltConfig& bolt) {
+  if (!(bolt.radius > 0.0)) return bolt.points;
+  constexpr double fewest = 12.0;
+  const double sides =
+      std::clamp(std::ceil(2.0 * pi * bolt.radius / bolt.segment), fewest, most_nodes + 1.0);
+  std::vector<Vec2> corners;
+  for (double k = 0.0; k < sides; k += 1.0) {
+    const double angle = 2.0 * pi * k / sides;
+    corners.push_back(bolt.center + bolt.radius * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  corners.push_back(corners.front());
+  return corners;
+}
+
 std::vector<std::string> bolt_problems(const Config& config) {
   std::vector<std::string> problems;
   for (const BoltConfig& bolt : config.bolts) {
     const std::string where = "bolt." + bolt.name;
-    if (bolt.points.size() < 2) problems.push_back(where + ".points: at least two");
+    if (bolt.radius > 0.0 ? !bolt.points.empty() : bolt.points.size() < 2)
+      problems.push_back(where + ".points: at least two, or the radius of a ring and none");
+    if (bolt.radius > 0.0 && bolt.anchored != "none")
+      problems.push_back(where + ".anchored: a ring has no ends");
+    if (bolt.area > 0.0 && bolt.bedding > 0.0)
+      problems.push_back(where + ".bedding: across acts a round bar alone; leave area out");
     for (std::size_t i = 0; i + 1 < bolt.points.size(); ++i)
       if (!(norm(bolt.points[i + 1] - bolt.points[i]) > 0.0))
         problems.push_back(where + ".points: two in succession are the same");

@@ -12,6 +12,9 @@ namespace breccia::fdem {
 /// takes out, or with segments stiffer than the rock that they are tied to
 void set_up_bolts(World& w, const Config& config, const Model& model);
 
+/// The points that a bolt runs along, of a ring the first one last, too.
+std::vector<Vec2> corners_of(const BoltConfig& bolt);
+
 /// Problems of bolts that a case file alone tells of.
 std::vector<std::string> bolt_problems(const Config& config);
 

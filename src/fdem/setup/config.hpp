@@ -265,8 +265,11 @@ struct LoadConfig : fdem_shared::LoadConfigOf<RegionConfig, Vec2> {
 struct BoltConfig {
   std::string name;
   std::vector<Vec2> points;      ///<  [m]
+  Vec2 center{};                 ///< of a ring  [m]
+  double radius = 0.0;           ///< of a ring, 0: none  [m]
   double segment = 0.1;          ///<  [m]
   double diameter = 0.025;       ///<  [m]
+  double area = 0.0;             ///< of its section, 0: a round bar's  [m2]
   double spacing = 1.0;          ///< between bolts across the plane  [m]
   double young = 200e9;          ///<  [Pa]
   double yield = 500e6;          ///<  [Pa]
@@ -282,10 +285,15 @@ struct BoltConfig {
     key("name", name, "name of the bolt: summary.json and bolts.csv tell of it by it");
     key.required("name");
     key("points", points, "m", any_number, "points [[x, y], ...] that it runs along, two or more");
-    key.required("points");
+    key("center", center, "m", any_number, "centre of a ring: [x, y]");
+    key("radius", radius, "m", Range{0.0, 1e6},
+        "of a closed ring around center, in place of points: a lining that bears thrust; 0: none");
     key("segment", segment, "m", Range{1e-6, 1e6},
         "it is tied to a triangle at its points, and between them at most so far apart");
     key("diameter", diameter, "m", Range{1e-6, 10.0}, "of its round bar");
+    key("area", area, "m2", Range{0.0, 1e6},
+        "of its section if that is not round, as of an arch rib, or of sprayed concrete over the "
+        "spacing; 0: of a round bar");
     key("spacing", spacing, "m", Range{1e-6, 1e6},
         "distance between bolts across the plane: forces are divided by it");
     key("young", young, "Pa", Range{1.0, 1e15}, "Young's modulus of its bar");

@@ -12,6 +12,7 @@
 #include "dem/setup/walls.hpp"
 #include "dem/wall_mesh.hpp"
 #include "exec/error.hpp"
+#include "fdem/setup/bolts.hpp"
 #include "io/round_numbers.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/refusal.hpp"
@@ -343,7 +344,7 @@ void check_faces_and_corners(const Config& config, const std::string* folder) {
         problem_of("load." + load.name, bounds_of(load.region), load.region.on, outlines));
   if constexpr (requires { config.bolts; })
     for (const auto& bolt : config.bolts)
-      for (const Vec2& point : bolt.points)
+      for (const Vec2& point : fdem::corners_of(bolt))
         problems.push_back(problem_of_point("bolt." + bolt.name + ".points", point, outlines));
   std::erase(problems, "");
   refuse(problems, "in the case");

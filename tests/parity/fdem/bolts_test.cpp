@@ -105,6 +105,37 @@ TEST(Bolts, resist_a_joint_that_slides) {
   EXPECT_LT(method->energy().error_relative, 1e-2);
 }
 
+/// Rock that is pulled evenly on all sides stretches a closed ring in it by its own strain, and
+/// nowhere does the ring slip.
+TEST(Bolts, of_a_closed_ring_bear_its_strain) {
+  fdem::testing::Scene s = hanging();
+  s.model.discontinuities.clear();
+  s.config.gravity = {};
+  s.config.supports.clear();
+  s.config.materials[0].damping = 0.5;
+  fdem::LoadConfig pull;
+  pull.name = "pull";
+  pull.pressure = -40e6;
+  pull.history.ramp = 5e-4;
+  s.config.loads = {pull};
+  fdem::BoltConfig& ring = s.config.bolts[0];
+  ring.points.clear();
+  ring.center = {0.01, 0.0};
+  ring.radius = 0.06;
+  ring.area = 2e-5;
+  s.config.probes = {{"least", "b", "axial_force", "min"},
+                     {"most", "b", "axial_force", "max"},
+                     {"strain", "rock", "strain_xx", "mean"}};
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  while (method->time() < 1.5e-3) method->advance({1.5e-3, 1'000'000});
+  const std::vector<double> read = method->probes();
+  const double bears = 200e9 * 2e-5 * read[2];
+  EXPECT_GT(bears, 2e3);
+  EXPECT_NEAR(read[0], bears, 0.01 * bears);
+  EXPECT_NEAR(read[1], bears, 0.01 * bears);
+  EXPECT_LT(fact_of(*method, "bolt.b.slip"), 1e-6);
+}
+
 /// Two stages; the bolt comes with the second.
 fdem::testing::Scene staged() {
   fdem::testing::Scene s = hanging();
@@ -146,6 +177,10 @@ TEST(Bolts, that_cannot_be_are_refused) {
   s = hanging();
   s.config.bolts[0].segment = 1e-4;
   EXPECT_NE(refused(s).find("bolt.b.segment: 0.0001 m are stiffer"), std::string::npos);
+  s = hanging();
+  s.config.bolts[0].radius = 0.05;
+  EXPECT_NE(refused(s).find("bolt.b.points: at least two, or the radius of a ring and none"),
+            std::string::npos);
   s = hanging();
   s.config.bolts[0].stage = "later";
   EXPECT_NE(refused(s).find("bolt.b.stage"), std::string::npos);
