@@ -1,4 +1,7 @@
 // Built once for each width of vector; BR_PACKS names the build (see CMakeLists.txt).
+#if !defined(__OPTIMIZE__)
+#error "needs -O1 or more: functions left as calls would be shared by builds of different widths"
+#endif
 
 #include "fdem3/stepping/kernel_lanes.hpp"
 
