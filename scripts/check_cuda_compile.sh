@@ -12,6 +12,7 @@ if [ -z "$nvcc" ]; then
 fi
 cmake -S . -B build/cuda_check -G Ninja -DCMAKE_BUILD_TYPE=Release -DBR_CUDA=ON -DBR_TESTS=OFF \
   -DCMAKE_CUDA_COMPILER="$nvcc" -DCMAKE_CUDA_ARCHITECTURES=90-virtual -DCMAKE_CUDA_FLAGS_RELEASE="-O0 -DNDEBUG" > /dev/null
-# Of dem and fdem the kernels alone: their host files are compiled alike without CUDA.
-ninja -C build/cuda_check -t targets all | sed -n 's/: CUDA_COMPILER__.*//p' | xargs ninja -C build/cuda_check br_exec br_core
+python3 scripts/check_cuda_compile.py build/cuda_check
+# Host files of dem and fdem are compiled alike without CUDA; those of exec and core are not.
+ninja -C build/cuda_check -t targets all | sed -n 's/^\(CMakeFiles.br_\(exec\|core\).*\): CXX_COMPILER__.*/\1/p' | xargs ninja -C build/cuda_check
 echo "kernels compile with nvcc"
