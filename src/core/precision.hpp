@@ -41,7 +41,7 @@ struct Stored {
   }
 };
 
-/// What is stored, as it is in memory. Where numbers are rounded to single precision and widened
+/// A record read back from memory. Where numbers are rounded to single precision and widened
 /// again g++ 12 drops the rounding of some of a record, others with other flags or neighbours.
 template <class Record>
 BR_HD const Record& as_in_memory(Record& stored) {

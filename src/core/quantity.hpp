@@ -154,7 +154,7 @@ inline std::string per_metre(const std::string& unit) {
   return unit == "kg m/s" ? "kg/s" : unit;
 }
 
-/// What a field of a frame is called: a vector or a tensor as a whole by its word without axes.
+/// Name of a field of a frame: a vector or a tensor as a whole by its word without axes.
 struct FieldWord {
   std::string name;
   std::string unit;

@@ -56,7 +56,7 @@ struct SupportPush {
   }
 };
 
-/// What links hold on the other side of a held element is as stiff as its own modulus says.
+/// The element on the other side of a link of a held element is as stiff as its own modulus says.
 struct TiedPush {
   OwnedView owned;
   View<const Index> members;

@@ -178,16 +178,21 @@ TEST(Servo, of_walls_has_the_same_bits_everywhere) {
   s.config.walls.back().servo.slow = 1e-3;
   expect_alike(s, 2e-3);
 }
-TEST(Servo, of_supports_of_spheres_has_the_same_bits_everywhere) {
+/// The column pressed by its highest spheres, held as a whole by a servo.
+dem::testing::Scene column_under_head(int highest) {
   dem::testing::Scene s = column();
   s.config.walls.pop_back();
   dem::SupportConfig head;
   head.name = "head";
-  head.min.z = 0.02 * (spheres - 1);
+  head.min.z = 0.02 * (spheres - highest);
   head.fix = {"all"};
   static_cast<ServoConfig&>(head.servo) = pushing(-push, 0.5);
   head.servo.axis = "z";
   s.config.supports = {head};
+  return s;
+}
+TEST(Servo, of_supports_of_spheres_has_the_same_bits_everywhere) {
+  dem::testing::Scene s = column_under_head(1);
   s.config.probes.clear();
   expect_alike(s, 2e-3);
 }
@@ -250,15 +255,7 @@ TEST(DeadLoad, on_what_is_held_is_a_problem) {
 /// A plate of grains that a servo moves as a whole pushes as one layer of it does: what it touches
 /// counts, not what it is made of.
 TEST(Servo, of_a_platen_counts_what_it_touches) {
-  dem::testing::Scene s = column();
-  s.config.walls.pop_back();
-  dem::SupportConfig head;
-  head.name = "head";
-  head.min.z = 0.02 * (spheres - 3);
-  head.fix = {"all"};
-  static_cast<ServoConfig&>(head.servo) = pushing(-push, 0.5);
-  head.servo.axis = "z";
-  s.config.supports = {head};
+  dem::testing::Scene s = column_under_head(3);
   s.config.probes = {{"force", "head", "force_z", "sum"}};
   dem::World w = s.world();
   w.servos.resize(s.config.walls.size() + 1);

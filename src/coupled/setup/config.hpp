@@ -50,7 +50,7 @@ inline constexpr std::string_view shared_keys[] = {
     "breccia", "method", "precision", "title", "seed",  "time",  "output", "checkpoint",
     "domain",  "energy", "audit",     "probe", "check", "stage", "gravity"};
 
-/// Likewise a stage, where taking bodies out is in neither.
+/// Keys of a stage of the whole case; taking bodies out is refused in either method.
 inline constexpr std::string_view shared_stage_keys[] = {"name", "until",   "rest",    "when",
                                                          "drop", "drop_of", "gravity", "remove"};
 

@@ -48,7 +48,7 @@ ContactForces contacts_of(World& w, Index room, Buffer<ContactState>& state, Buf
   return contacts;
 }
 
-/// What searches of a launch read and write.
+/// Arrays that searches of a launch read and write.
 TileSearchCase search_case(World& w, TilePlan& plan, Index room, std::size_t bytes) {
   constexpr Index dropped = 1 << 14;
   TileSearches& s = plan.searches;
@@ -160,7 +160,7 @@ bool runs_by_tiles(World& w) {
 }
 
 TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
-  // What a search brings must fit as well.
+  // The contacts that a search brings must fit as well.
   std::size_t bytes = multiprocessors_for(w).memory;
   if (w.exec.space != Space::cuda) bytes = std::min(bytes, plan.bytes + (1U << 17));
   const Index room = 8192 + 4 * w.contacts.size();

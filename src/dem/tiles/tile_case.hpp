@@ -97,8 +97,8 @@ struct TileCase {
 };
 
 TileCase case_of(World& w, TilePlan& plan, const StopAt& stop);
-/// What a launch has left on the device: contacts that its searches have found, energies of those
-/// that they have dropped. Time is left to the caller.
+/// Takes over from the device after a launch: contacts that its searches have found, energies of
+/// those that they have dropped. Time is left to the caller.
 TileNews take_over(World& w, TilePlan& plan);
 
 /// Numbers that a tile hears of all, and tells them.
