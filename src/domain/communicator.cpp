@@ -54,7 +54,9 @@ std::uint64_t Communicator::any_of(std::uint64_t bits) {
 }
 
 void Communicator::add_up(std::span<std::int64_t> numbers) {
-  combine_all(*this, numbers, [](std::int64_t a, std::int64_t b) { return a + b; });
+  combine_all(*this, numbers, [](std::int64_t a, std::int64_t b) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+  });
 }
 
 Message Communicator::from_first(Message message) {

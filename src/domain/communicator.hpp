@@ -74,7 +74,7 @@ class Communicator {
   /// A rank that has asked may do other work until the other ranks have asked.
   virtual void start_any_of(std::uint64_t bits) { asked_ = bits; }
   virtual std::uint64_t finish_any_of() { return any_of(asked_); }
-  /// Each number becomes the sum of all ranks' numbers.
+  /// Each number becomes the sum of all ranks' numbers, modulo 2^64.
   virtual void add_up(std::span<std::int64_t> numbers);
   /// Every rank gets the message of rank 0.
   virtual Message from_first(Message message);

@@ -96,19 +96,15 @@ __device__ void pair_forces(const TileStep& tile, double dt, Index thread) {
 }
 
 /// Tells all tiles by `threads` threads what this one has found, and hears of all.
-/// @param room  for the findings of each of their warps
-/// @returns what this thread has heard
+/// @returns what this thread's warp has heard
 template <int threads>
-__device__ TileReport exchange(const TileStep& tile, TileReport report, std::uint32_t tag,
-                               Index thread, TileReport* room) {
+__device__ TileReport exchange(const TileStep& tile, const TileReport& found, std::uint32_t tag,
+                               Index thread) {
   const Index tiles = tile.all.tiles.count;
-  report = report_of_warp(report);
-  if (thread % 32 == 0) room[thread / 32] = report;
-  __barrier_sync_count(1, threads);
-  const std::uint64_t own = TileStep::packed(news_of<threads / 32>(room));
+  const std::uint64_t own = TileStep::packed(found);
   for (Index to = thread; to < tiles; to += threads)
     put(tile.news_word(tag, tile.number, to), own, tag);
-  report = TileReport{};
+  TileReport report;
   for (Index from = thread; from < tiles; from += threads) {
     std::uint64_t bits = 0;
     while (!get(tile.news_word(tag, from, tile.number), bits, tag)) {
@@ -197,7 +193,12 @@ __global__ void __launch_bounds__(threads, 1) launch_tiles(const __grid_constant
             for (Index e = thread; e < tile.tile.own; e += judges)
               tile.judge(e, span_after(dt), longest_after(dt), report);
           }
-          report = exchange<judges>(tile, report, tag, thread, told);
+          report = report_of_warp(report);
+          if (thread % 32 == 0) told[thread / 32] = report;
+        }
+        __syncthreads();  // of all: racecheck does not follow barriers of some of the threads
+        if (thread < judges) {
+          const TileReport report = exchange<judges>(tile, news_of<warps>(told), tag, thread);
           if (thread % 32 == 0) heard[thread / 32] = report;
         } else if (!first) {
           receive<threads - judges>(tile, tag, thread - judges);

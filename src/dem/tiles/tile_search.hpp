@@ -34,25 +34,37 @@ struct StagedSphere {
   NearSphere sphere;
   Index element;
 };
+/// An own element and another that it may touch, if no link holds them.
+struct NearPair {
+  Index partner;  ///< place in the world
+  Index own;      ///< place in the tile
+};
 
 /// The memory of a tile during a search, where its steps keep everything else.
 struct SearchMemory {
-  Index* counters;  ///< found, touched, staged, all pairs, all entries
-  Box* box;         ///< of all own elements
-  Index* place;     ///< own elements in the world
+  Index* counters;   ///< found, touched, staged, all pairs, all entries, near
+  Box *box, *boxes;  ///< of all own elements, of each
+  double* motion;    ///< of all tiles, then their sums
+  Index* place;      ///< own elements in the world
   NearSphere* own;
   Index *as_b, *all, *first_slot, *first_entry;  ///< contacts of own elements
   Index* first_pair;
   FoundContact* found;
   ContactCounts* segments;
+  NearPair* near;
   StagedSphere* staged;
-  Index staged_room;
+  Index near_room, staged_room;
 
-  BR_HD SearchMemory(const Tile& tile, Index elements, std::size_t bytes, std::byte* base) {
+  BR_HD SearchMemory(const Tile& tile, Index tiles, Index elements, std::size_t bytes,
+                     std::byte* base) {
+    constexpr Index near_each = 40;
+    near_room = near_each * tile.own;
     constexpr std::size_t clocks = 512;  // and what else comes first in TileMemory
     detail::Pieces pieces{base, clocks};
     pieces.take(counters, 8);
     pieces.take(box, 1);
+    pieces.take(boxes, tile.own);
+    pieces.take(motion, 4 * tiles + 4);
     pieces.take(place, tile.own);
     pieces.take(own, tile.own);
     pieces.take(as_b, tile.own);
@@ -62,6 +74,7 @@ struct SearchMemory {
     pieces.take(first_pair, tile.own);
     pieces.take(found, most_contacts_of_tile);
     pieces.take(segments, segments_of(elements));
+    pieces.take(near, near_room);
     pieces.take(staged, 0);
     constexpr Index most = 2048;
     const std::size_t room = bytes > pieces.used ? (bytes - pieces.used) / sizeof(StagedSphere) : 0;
@@ -85,7 +98,7 @@ struct TileSearch {
       : all(of),
         number(tile_number),
         tile(lists.tiles.data[tile_number]),
-        memory(tile, of.force.size, of.search.bytes, base) {}
+        memory(tile, of.tiles.count, of.force.size, of.search.bytes, base) {}
 
   /// Leaves the tile as its steps have it, begins the travel of its elements, and shows them to
   /// all. Contacts are copied to where the old ones lie.
@@ -132,24 +145,30 @@ struct TileSearch {
     for (Index e = thread; e < tile.own; e += threads) {
       const Index g = all.tiles.own[tile.first_own + e];
       memory.place[e] = g;
-      memory.own[e] = s.spheres[g];
+      const NearSphere own = s.spheres[g];
+      memory.own[e] = own;
+      memory.boxes[e] = grown_box(own.position, own.radius, own.margin, 0.0);
       memory.as_b[e] = memory.all[e] = 0;
     }
-    if (thread == 0) memory.counters[0] = memory.counters[1] = 0;
+    for (Index k = thread; number == 0 && k < 4 * all.tiles.count; k += threads)
+      memory.motion[k] = s.motion[k];
+    if (thread == 0) memory.counters[0] = memory.counters[1] = memory.counters[5] = 0;
     meet_in_tile();
     bound(thread, threads);
-    bool lost = memory.staged_room < 64 || (number == 0 && thread == 0 && may_drift());
     meet_in_tile();
-    if (memory.staged_room >= 64)
-      for (Index first = 0; first < all.force.size; first += memory.staged_room) {
-        if (thread == 0) memory.counters[2] = 0;
-        meet_in_tile();
-        stage(first, thread, threads);
-        meet_in_tile();
-        for (Index k = thread; k < memory.counters[2]; k += threads) meet_own(memory.staged[k]);
-        meet_in_tile();
-      }
-    lost = lost || memory.counters[0] > most_contacts_of_tile;
+    bool lost = number == 0 && thread == 0 && may_drift();
+    if (memory.staged_room < 64) return true;
+    for (Index first = 0; first < all.force.size; first += memory.staged_room) {
+      if (thread == 0) memory.counters[2] = 0;
+      meet_in_tile();
+      stage(first, thread, threads);
+      meet_in_tile();
+      for (Index k = thread; k < memory.counters[2]; k += threads) meet_own(memory.staged[k]);
+      meet_in_tile();
+    }
+    if (memory.counters[5] > memory.near_room) return true;  // of all threads
+    for (Index k = thread; k < memory.counters[5]; k += threads) find_contact(memory.near[k]);
+    meet_in_tile();
     if (memory.counters[0] > most_contacts_of_tile) return true;  // of all threads
     order(thread, threads);
     meet_in_tile();
@@ -252,25 +271,26 @@ struct TileSearch {
   /// Whether all elements may share a motion that the host must take off (CommonMotion::drift(),
   /// with room for rounding).
   BR_HD bool may_drift() const {
-    double sums[4] = {0.0, 0.0, 0.0, 0.0};
-    for (Index t = 0; t < all.tiles.count; ++t)
-      for (Index k = 0; k < 4; ++k) sums[k] += all.search.motion[4 * t + k];
+    const double* const sums = memory.motion + 4 * all.tiles.count;
     const double share = 1.0 / static_cast<double>(all.force.size);
     const Vec3 mean = share * Vec3{sums[0], sums[1], sums[2]};
     return !(dot(mean, mean) < 0.7 * share * sums[3]);
   }
-  /// The box of all own elements.
+  /// The box of all own elements; in tile 0 also the sums of all motion.
   BR_HD void bound(Index thread, Index threads) const {
-    for (Index k = thread; k < 6; k += threads) {
+    constexpr Index sums = 32;  // by another warp
+    for (Index k = thread; k < sums + 4; k += threads) {
+      if (k >= sums && number == 0) {
+        double sum = 0.0;
+        for (Index t = 0; t < all.tiles.count; ++t) sum += memory.motion[4 * t + k - sums];
+        memory.motion[4 * all.tiles.count + k - sums] = sum;
+      }
+      if (k >= 6) continue;
+      const Index axis = k % 3;
       double most = -1e300;
       for (Index e = 0; e < tile.own; ++e) {
-        const NearSphere& own = memory.own[e];
-        if (own.radius == gone) continue;
-        const Box box = grown_box(own.position, own.radius, own.margin, 0.0);
-        const Vec3& corner = k < 3 ? box.low : box.high;
-        const Index axis = k % 3;
-        const double along = axis == 0 ? corner.x : axis == 1 ? corner.y : corner.z;
-        most = max(most, k < 3 ? -along : along);
+        const double* const box = reinterpret_cast<const double*>(memory.boxes + e);
+        if (memory.own[e].radius != gone) most = max(most, k < 3 ? -box[axis] : box[3 + axis]);
       }
       reinterpret_cast<double*>(memory.box)[k] = k < 3 ? -most : most;
     }
@@ -279,34 +299,52 @@ struct TileSearch {
   BR_HD void stage(Index first, Index thread, Index threads) const {
     const Index room = first + memory.staged_room;
     const Index end = room < all.force.size ? room : all.force.size;
-    for (Index g = first + thread; g < end; g += threads) {
-      const NearSphere sphere = all.search.spheres[g];
-      if (sphere.radius == gone ||
-          !overlap(*memory.box, grown_box(sphere.position, sphere.radius, sphere.margin, 0.0)))
-        continue;
-      memory.staged[count_up(memory.counters[2])] = {sphere, g};
+    constexpr Index ahead = 4;  // are on their way at one time
+    for (Index g = first + thread; g < end; g += ahead * threads) {
+      NearSphere spheres[ahead];
+      BR_UNROLL
+      for (Index k = 0; k < ahead; ++k)
+        spheres[k] = all.search.spheres[g + k * threads < end ? g + k * threads : g];
+      BR_UNROLL
+      for (Index k = 0; k < ahead; ++k) {
+        const NearSphere& sphere = spheres[k];
+        if (g + k * threads < end && sphere.radius != gone &&
+            overlap(*memory.box, grown_box(sphere.position, sphere.radius, sphere.margin, 0.0)))
+          memory.staged[count_up(memory.counters[2])] = {sphere, g + k * threads};
+      }
     }
   }
-  /// Finds the own elements that another may touch.
+  /// Finds the own elements that another may touch, if no link holds them.
   BR_HD void meet_own(const StagedSphere& other) const {
+    const NearSphere sphere = other.sphere;
+    const Box box = grown_box(sphere.position, sphere.radius, sphere.margin, 0.0);
     for (Index e = 0; e < tile.own; ++e) {
       const Index g = memory.place[e];
       const NearSphere& own = memory.own[e];
-      const bool is_a = g < other.element;  // places and global ids ascend alike
-      if (g == other.element || own.radius == gone ||
-          !(is_a ? may_touch(own, other.sphere, 0.0) : may_touch(other.sphere, own, 0.0)) ||
-          !overlap(
-              grown_box(own.position, own.radius, own.margin, 0.0),
-              grown_box(other.sphere.position, other.sphere.radius, other.sphere.margin, 0.0)) ||
-          (is_a ? is_held(g, other.element) : is_held(other.element, g)))
+      const bool near = g < other.element  // places and global ids ascend alike
+                            ? may_touch(own, sphere, 0.0)
+                            : may_touch(sphere, own, 0.0);
+      if (!near || g == other.element || own.radius == gone || !overlap(memory.boxes[e], box))
         continue;
-      const Index at = count_up(memory.counters[0]);
-      if (at >= most_contacts_of_tile) return;
-      memory.found[at] = {
-          other.element, static_cast<TilePlace>(e), 0, 0, static_cast<TilePlace>(is_a ? 0 : 1), 0};
-      count_up(memory.all[e]);
-      if (!is_a) count_up(memory.as_b[e]);
+      const Index at = count_up(memory.counters[5]);
+      if (at < memory.near_room) memory.near[at] = {other.element, e};
     }
+  }
+  /// Lists a pair that no link holds.
+  BR_HD void find_contact(const NearPair& pair) const {
+    const Index g = memory.place[pair.own];
+    const bool is_a = g < pair.partner;
+    if (is_a ? is_held(g, pair.partner) : is_held(pair.partner, g)) return;
+    const Index at = count_up(memory.counters[0]);
+    if (at >= most_contacts_of_tile) return;
+    memory.found[at] = {pair.partner,
+                        static_cast<TilePlace>(pair.own),
+                        0,
+                        0,
+                        static_cast<TilePlace>(is_a ? 0 : 1),
+                        0};
+    count_up(memory.all[pair.own]);
+    if (!is_a) count_up(memory.as_b[pair.own]);
   }
   /// Whether a link still holds two elements.
   BR_HD bool is_held(Index low, Index high) const {
@@ -371,6 +409,9 @@ struct TileSearch {
   BR_HD ContactCounts counted(Index begin, Index end) const {
     ContactCounts sum{0, 0};
     const Index last = end < all.force.size ? end : all.force.size;
+#if defined(__CUDA_ARCH__)
+#pragma unroll 8
+#endif
     for (Index g = begin; g < last; ++g) {
       sum.as_a += all.search.counts[g].as_a;
       sum.all += all.search.counts[g].all;

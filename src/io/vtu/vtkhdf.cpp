@@ -262,7 +262,7 @@ class VtkhdfFile final : public FrameFile {
   template <class From, class To>
   static std::vector<To> converted(const std::string& bytes) {
     std::vector<From> from(bytes.size() / sizeof(From));
-    std::memcpy(from.data(), bytes.data(), bytes.size());
+    if (!from.empty()) std::memcpy(from.data(), bytes.data(), from.size() * sizeof(From));
     if constexpr (std::is_same_v<From, To>) return from;
     std::vector<To> result(from.size());
     std::transform(from.begin(), from.end(), result.begin(),

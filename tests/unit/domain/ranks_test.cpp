@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <limits>
 #include <numeric>
 
 #include "core/state_hash.hpp"
@@ -46,6 +47,9 @@ TEST(SimulatedRanks, combine_numbers_of_all) {
     std::vector<std::int64_t> numbers{ranks.rank(), 1};
     ranks.add_up(numbers);
     EXPECT_EQ(numbers, (std::vector<std::int64_t>{6, 4}));
+    std::vector<std::int64_t> wraps{std::numeric_limits<std::int64_t>::max() / 2 + 1};
+    ranks.add_up(wraps);
+    EXPECT_EQ(wraps[0], 0);
     EXPECT_EQ(number_of(ranks.from_first(bytes_of(5 + ranks.rank()))), 5);
   });
 }
