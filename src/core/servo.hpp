@@ -11,7 +11,7 @@
 
 namespace breccia {
 
-/// Steps from one correction of a servo's velocity to the next.
+/// Steps from one correction of a servo's velocity to the next, where no plate has a mass.
 inline constexpr std::int64_t servo_every = 10;
 
 /// [wall.servo]
@@ -22,6 +22,7 @@ struct ServoConfig {
   double speed = 0.0;         ///< 0: there is no servo  [m/s]
   double slow = 0.0;          ///< kinetic over elastic energy; 0: never  [-]
   double gain = 1.0;          ///<  [-]
+  double mass = no_limit;     ///< of its plate; no limit: it has none  [kg]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -40,8 +41,16 @@ struct ServoConfig {
     key("gain", gain, "-", Range{0.0, 2.0, Open::low},
         "how fast it answers: 1 takes half of what is missing in the time between two corrections, "
         "if nothing gives way but what it touches");
+    key("mass", mass, "kg", not_negative,
+        "of a plate with the force on its back, beside what a support holds (in a plane case per "
+        "metre of thickness): Newton's law moves it in every step; 0: as light as the step can "
+        "bear; left out (inf): no plate, its velocity is corrected every 10 steps");
   }
   bool is_on() const { return speed > 0.0; }
+  bool is_plate() const { return is_on() && mass < no_limit; }
+  bool is_due(std::int64_t step) const {
+    return is_plate() || (is_on() && step % servo_every == 0);
+  }
   /// Force that it is to push with.  [N]
   double target(double time, double begin) const {
     const auto now = [&](const OverTime<double>& of) {
@@ -70,11 +79,13 @@ struct ServoReading {
   ExactSum force;      ///< that it pushes with  [N]
   ExactSum stiffness;  ///< of what it touches  [N/m]
   ExactSum mass;       ///< of that  [kg]
+  ExactSum held;       ///< mass of what a support moves  [kg]
 };
 BR_HD inline ServoReading operator+(ServoReading a, const ServoReading& b) {
   a.force.add(b.force);
   a.stiffness.add(b.stiffness);
   a.mass.add(b.mass);
+  a.held.add(b.held);
   return a;
 }
 
@@ -84,11 +95,17 @@ struct ServoState {
   double steady = 0.0;    ///< the part of it that lasts once the force is right  [m/s]
   double share = 1.0;     ///< of its greatest speed, by the kinetic energy  [-]
 
-  /// Corrects the velocity by what is missing and by its sum over time (proportional and integral
-  /// control, so that what gives way steadily meets the force without an error).
+  /// The velocity until the next correction.
+  /// @param missing  what it is to push with, less what it pushes with  [N]
   /// @param touched  stiffness and mass of what it touches
-  /// @param span     until the next correction  [s]
-  void correct(const ServoConfig& servo, double missing, const ServoReading& touched, double span);
+  /// @param last_dt, next_dt  steps before and after this moment  [s]
+  void correct(const ServoConfig& servo, double missing, const ServoReading& touched,
+               double last_dt, double next_dt);
+
+ private:
+  void follow_force(const ServoConfig& servo, double missing, const ServoReading& touched,
+                    double span);
+  void push_plate(const ServoConfig& servo, double missing, const ServoReading& touched, double dt);
 };
 
 /// The servos that lead a motion along x, y, z, as kernels read it.

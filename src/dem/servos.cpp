@@ -52,6 +52,7 @@ struct SupportPush {
     ServoReading r;
     if (!owned(e)) return r;
     r.force.add(-(part_along(axis, force[e]) + mass[e] * gravity));
+    r.held.add(mass[e]);
     return r;
   }
 };
@@ -157,10 +158,10 @@ ServoReading read_support(World& part, std::size_t support, std::size_t servo, i
 std::vector<ServoReading> read_servos(World& part, const Config& now) {
   std::vector<ServoReading> readings;
   for (std::size_t k = 0; k < now.walls.size(); ++k)
-    readings.push_back(now.walls[k].servo.is_on() ? read_wall(part, k) : ServoReading{});
+    readings.push_back(now.walls[k].servo.is_due(part.step) ? read_wall(part, k) : ServoReading{});
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
     const SupportServoConfig& servo = now.supports[s].servo;
-    readings.push_back(servo.is_on()
+    readings.push_back(servo.is_due(part.step)
                            ? read_support(part, s, now.walls.size() + s, servo.axis_number())
                            : ServoReading{});
   }
@@ -168,11 +169,11 @@ std::vector<ServoReading> read_servos(World& part, const Config& now) {
 }
 
 void correct_servos(World& w, const Config& now, const std::vector<ServoReading>& sums) {
-  const double span = static_cast<double>(servo_every) * w.next_dt;
   const auto correct = [&](const ServoConfig& servo, double begin, std::size_t k) {
-    if (!servo.is_on()) return;
+    if (!servo.is_due(w.step)) return;
     const ServoReading& r = sums[k];
-    w.servos[k].correct(servo, servo.target(w.time, begin) - r.force.value(), r, span);
+    w.servos[k].correct(servo, servo.target(w.time, begin) - r.force.value(), r, w.last_dt,
+                        w.next_dt);
   };
   const std::size_t walls = now.walls.size();
   for (std::size_t k = 0; k < walls; ++k) correct(now.walls[k].servo, now.walls[k].begin, k);

@@ -8,10 +8,11 @@
 
 namespace breccia::dem {
 
-/// Force of each wall and then each support of a part, for its servo; zero for those without one.
+/// Force of each wall and then each support of a part, for its servo; zero for those without one
+/// that is due.
 std::vector<ServoReading> read_servos(World& part, const Config& now);
 
-/// Corrects the velocities of all servos. @param sums  over all parts, as of read_servos()
+/// Corrects the velocities of servos that are due. @param sums  over all parts, as of read_servos()
 void correct_servos(World& w, const Config& now, const std::vector<ServoReading>& sums);
 
 /// Gives walls and supports the velocities of their servos.

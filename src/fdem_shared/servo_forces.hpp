@@ -28,6 +28,7 @@ struct SupportPush {
     r.force.add(-(part_of(force[t].at[n % Shape::corners], axis) + mass[t] * gravity));
     r.stiffness.add(Shape::corner_stiffness(laws[material[t]], reference[t]));
     r.mass.add(mass[t]);
+    r.held.add(mass[t]);
     return r;
   }
 };
@@ -61,8 +62,8 @@ std::vector<ServoReading> read_servos(World& part, const Config& now) {
   const std::size_t bodies = part.given->sets.size() - now.supports.size();
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
     const SupportServoConfig& servo = now.supports[s].servo;
-    readings.push_back(servo.is_on() ? read_support(part, bodies + s, servo.axis_number())
-                                     : ServoReading{});
+    readings.push_back(servo.is_due(part.step) ? read_support(part, bodies + s, servo.axis_number())
+                                               : ServoReading{});
   }
   return readings;
 }
@@ -79,13 +80,12 @@ void place_servos(World& w) {
 
 template <class World, class Config>
 void correct_servos(World& w, const Config& now, const std::vector<ServoReading>& sums) {
-  const double span = static_cast<double>(servo_every) * w.next_dt;
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
     const auto& support = now.supports[s];
-    if (!support.servo.is_on()) continue;
+    if (!support.servo.is_due(w.step)) continue;
     w.servos[s].correct(support.servo,
                         support.servo.target(w.time, support.history.begin) - sums[s].force.value(),
-                        sums[s], span);
+                        sums[s], w.last_dt, w.next_dt);
   }
   place_servos(w);
 }

@@ -8,12 +8,12 @@
 
 namespace breccia::fdem_shared {
 
-/// Force of each support of a part, for its servo; zero for supports without one.
+/// Force of each support of a part, for its servo; zero for supports without one that is due.
 /// @param now  the case as it is in this stage
 template <class World, class Config>
 std::vector<ServoReading> read_servos(World& part, const Config& now);
 
-/// Corrects the velocities of all servos. @param sums  over all parts, as of read_servos()
+/// Corrects the velocities of servos that are due. @param sums  over all parts, as of read_servos()
 template <class World, class Config>
 void correct_servos(World& w, const Config& now, const std::vector<ServoReading>& sums);
 

@@ -140,6 +140,75 @@ TEST(Servo, follows_a_table_where_joints_rule_the_step) {
   }
 }
 
+/// A plate of mass M with a force on its back stands at the end of a bar of impedance Z = rho c h.
+/// A wave that brings the force f comes to it: M dv/dt = 2 f - Z v, so what the bar pushes with is
+/// off by 2 f exp(-t Z/M).
+TEST(Servo, with_a_plate_is_off_by_the_plates_inertia_alone) {
+  using fdem::testing::far;
+  constexpr double edge = 0.005, length = 0.2, height = 0.01, young = 30e9, density = 2400.0;
+  constexpr double brings = 0.1;  // speed of the wave's matter  [m/s]
+  const double speed = std::sqrt(young / density), impedance = density * speed * height;
+  const double comes = length / speed, lasts = 12.0 * edge / speed;
+  fdem::testing::Scene s;
+  s.material(young, 0.0, density).damping = 0.1;
+  s.body("bar", prepare::crossed_rectangle({{0.0, 0.0}, {length, height}}, edge));
+  s.support("left", {-far, -far}, {-0.5 * length + 1e-4, far}, {"x"}, {brings, 0.0});
+  fdem::SupportConfig& right = s.support("right", {0.5 * length - 1e-4, -far}, {far, far}, {"x"});
+  right.servo = {};
+  right.servo.speed = 10.0;
+  right.servo.mass = lasts * impedance;
+  s.config.time.end = 1.0;
+  s.config.probes = {{"force", "right", "force_x", "sum"},
+                     {"speed", "right", "velocity_x", "mean"}};
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  double given = 0.0, before = 0.0;
+  for (const double t : {1.0, 2.0, 4.0}) {
+    const double end = comes + t * lasts;
+    while (method->time() < end) {
+      method->advance({end, method->steps() + 1});
+      const double now = method->probes()[0];
+      given += 0.5 * (before + now) * method->time_step();
+      before = now;
+    }
+    const double left = std::exp(-(method->time() - comes) / lasts);
+    const std::vector<double> probes = method->probes();
+    EXPECT_NEAR(probes[0], 2.0 * impedance * brings * left, 0.03 * 2.0 * impedance * brings) << t;
+    EXPECT_NEAR(probes[1], 2.0 * brings * (1.0 - left), 0.03 * 2.0 * brings) << t;
+    EXPECT_NEAR(right.servo.mass * probes[1], given, 0.04 * given) << t;
+  }
+  EXPECT_LT(method->energy().error_relative, 1e-3);
+}
+
+/// What touches nothing goes by its own inertia: that of the plate and of what a support holds.
+TEST(Servo, with_a_plate_that_touches_nothing_falls_freely) {
+  dem::testing::Scene s = column();
+  s.config.walls.back().point.z += 0.1;
+  s.config.walls.back().servo.speed = 20.0;
+  s.config.walls.back().servo.mass = 0.4;
+  const auto walls = make_method(s.config, s.model, {}, nullptr);
+  run_to(*walls, 2e-3);
+  const double t = walls->time(), way = 0.5 * push / 0.4 * t * t;
+  const double start = s.config.walls.back().point.z;
+  EXPECT_NEAR(start - walls->probes()[1], way, 0.02 * way);
+  EXPECT_GT(way, 0.005);
+
+  dem::testing::Scene head = column();
+  head.config.walls.clear();
+  dem::SupportConfig all;
+  all.name = "all";
+  all.fix = {"z"};
+  static_cast<ServoConfig&>(all.servo) = pushing(push, 10.0);
+  all.servo.axis = "z";
+  all.servo.mass = 0.1;
+  head.config.supports = {all};
+  head.config.probes = {{"speed", "all", "velocity_z", "mean"}};
+  const auto held = make_method(head.config, head.model, {}, nullptr);
+  run_to(*held, 1e-4);
+  double mass = 0.1;
+  for (const double one : head.model.mass) mass += one;
+  EXPECT_NEAR(held->probes()[0], push / mass * held->time(), 0.1 * push / mass * 1e-4);
+}
+
 template <class Scene>
 void expect_alike(const Scene& s, double end) {
   const auto host = make_method(s.config, s.model, {}, nullptr);
@@ -177,6 +246,8 @@ TEST(Servo, of_walls_has_the_same_bits_everywhere) {
   dem::testing::Scene s = column();
   s.config.walls.back().servo.slow = 1e-3;
   expect_alike(s, 2e-3);
+  s.config.walls.back().servo.mass = 0.0;
+  expect_alike(s, 2e-3);
 }
 /// The column pressed by its highest spheres, held as a whole by a servo.
 dem::testing::Scene column_under_head(int highest) {
@@ -195,9 +266,14 @@ TEST(Servo, of_supports_of_spheres_has_the_same_bits_everywhere) {
   dem::testing::Scene s = column_under_head(1);
   s.config.probes.clear();
   expect_alike(s, 2e-3);
+  s.config.supports.back().servo.mass = 0.05;
+  expect_alike(s, 2e-3);
 }
 TEST(Servo, of_supports_of_triangles_has_the_same_bits_everywhere) {
-  expect_alike(plate(), 2e-5);
+  fdem::testing::Scene s = plate();
+  expect_alike(s, 2e-5);
+  s.config.supports.back().servo.mass = 2.0;
+  expect_alike(s, 2e-5);
 }
 
 /// The column under a dead load on its highest grain.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/energy.hpp"
+#include "core/servo.hpp"
 #include "core/stages.hpp"
 #include "core/step_clock.hpp"
 #include "io/checkpoint.hpp"
@@ -44,6 +45,10 @@ class Method {
   /// all of them: to the first one at or past `stop`. @throws NumericsError naming step, time and
   /// element
   virtual Advanced advance(const StopAt& stop) = 0;
+  /// Corrects servos and spreads fluids, where they are due after a step. advance() does so; it is
+  /// for steps that another method takes together with this one's.
+  /// @param more  of each servo, what it touches of the other method; empty: nothing
+  virtual void steer(const std::vector<ServoReading>& /*more*/) {}
   virtual std::int64_t steps() const = 0;  ///< done so far
   virtual double time() const = 0;         ///< simulated  [s]
   virtual double time_step() const = 0;    ///< last taken; at the start the one to come  [s]

@@ -70,15 +70,19 @@ class SimMethod final : public Method {
   World& world() { return world_.part(); }
 
   Advanced advance(const StopAt& stop) override {
-    const bool servos = !world_.part().servos.empty(), fluid = has_fluid(world_.part());
-    if (!servos && !fluid) return world_.advance_to(stop);
-    const std::int64_t next = (steps() / servo_every + 1) * servo_every;
+    if (world_.part().servos.empty() && !has_fluid(world_.part())) return world_.advance_to(stop);
+    const std::int64_t every = has_plates() ? 1 : servo_every;
+    const std::int64_t next = (steps() / every + 1) * every;
     const Advanced taken = world_.advance_to({stop.time, std::min(stop.step, next)});
-    if (taken.steps == 0 || steps() % servo_every != 0) return taken;
-    if (servos) correct_all_servos();
-    if constexpr (requires(World & w) { Sim::spread(w); })
-      if (fluid) at_once(world_.ranks(), [&] { Sim::spread(world_.part()); });
+    if (taken.steps > 0) steer({});
     return taken;
+  }
+  void steer(const std::vector<ServoReading>& more) override {
+    const bool servos = !world_.part().servos.empty(), all = steps() % servo_every == 0;
+    if (servos && (all || has_plates())) correct_all_servos(more);
+    if constexpr (requires(World & w) { Sim::spread(w); })
+      if (all && has_fluid(world_.part()))
+        at_once(world_.ranks(), [&] { Sim::spread(world_.part()); });
   }
   std::int64_t steps() const override { return world_.part().step; }
   double time() const override { return world_.part().time; }
@@ -342,10 +346,16 @@ class SimMethod final : public Method {
     }
     return all;
   }
+  bool has_plates() const {
+    bool any = false;
+    each_servo(now_, [&](const ServoConfig& servo, std::size_t) { any |= servo.is_plate(); });
+    return any;
+  }
   /// Every rank finds the same velocities from what all of them push with.
-  void correct_all_servos() {
+  void correct_all_servos(const std::vector<ServoReading>& more) {
     if (slows(now_)) share_by_rest();
     std::vector<ServoReading> sums = read_servos(world_.part(), now_);
+    for (std::size_t k = 0; k < more.size(); ++k) sums[k] = sums[k] + more[k];
     if (!single_rank())
       at_once(world_.ranks(), [&] {
         for (ServoReading& sum : sums) {
