@@ -81,7 +81,9 @@ void list_faces(const fdem3::World& t, Index tetrahedron, const List& list) {
     const Index entry = t.faces.data()[tetrahedron].at[k];
     if (entry < 0) continue;
     const Index joint = pair_of(entry);
-    list(side_of(entry) == 0 ? t.joints.face_b.data()[joint] : t.joints.face_a.data()[joint]);
+    const Index across =
+        side_of(entry) == 0 ? t.joints.face_b.data()[joint] : t.joints.face_a.data()[joint];
+    if (t.given->removed[at(t.tetrahedra.group.data()[across / 4])] == 0) list(across);
   }
 }
 

@@ -142,15 +142,27 @@ struct BondShares {
   BR_HD void add_to(Energies& s, Index i) const {
     s.fracture.add(state[i].work);
     if (state[i].stage == BondStage::parted) return;
-    const BallBond& b = tie[i];
-    const BondGap g = gap_of(b, spheres[b.sphere], orientation[b.sphere], nodes[b.tetrahedron]);
-    const fdem::StoredEnergy stored =
-        fdem::edge_stored(laws[b.law], 1.0, b.length, g.open, g.slide, state[i].point);
-    const double held = b.area * (stored.open + stored.slide);
+    const double held = stored(tie[i], state[i]);
     s.elastic.add(held);
     s.fracture.add(-held);
   }
+  BR_HD double stored(const BallBond& b, const BallBondState& bond) const {
+    const BondGap g = gap_of(b, spheres[b.sphere], orientation[b.sphere], nodes[b.tetrahedron]);
+    const fdem::StoredEnergy energy =
+        fdem::edge_stored(laws[b.law], 1.0, b.length, g.open, g.slide, bond.point);
+    return b.area * (energy.open + energy.slide);
+  }
 };
+
+BondShares bond_shares(const World& w) {
+  const dem::World& s = *w.spheres;
+  return {s.elements.state.view(),
+          s.elements.orientation.view(),
+          w.tetrahedra->tetrahedra.nodes.view(),
+          w.given->bonds.view(),
+          w.bonds.tie.view(),
+          w.bonds.state.view()};
+}
 
 }  // namespace
 
@@ -158,11 +170,31 @@ Energies held(const World& w) {
   const dem::World& s = *w.spheres;
   const Energies touching = fold(s.exec, w.touches.size(), Energies{},
                                  TouchShares{w.touches.history.state.view()}, Sum{});
-  return touching + fold(s.exec, w.bonds.size(), Energies{},
-                         BondShares{s.elements.state.view(), s.elements.orientation.view(),
-                                    w.tetrahedra->tetrahedra.nodes.view(), w.given->bonds.view(),
-                                    w.bonds.tie.view(), w.bonds.state.view()},
-                         Sum{});
+  return touching + fold(s.exec, w.bonds.size(), Energies{}, bond_shares(w), Sum{});
+}
+
+double stored_in(const World& w, const BallBond& tie, const BallBondState& bond) {
+  return bond_shares(w).stored(tie, bond);
+}
+
+std::vector<ServoReading> touched_by_servos(const World& w) {
+  const dem::World& s = *w.spheres;
+  std::vector<ServoReading> touched(s.servos.size());
+  for (const ServoMotion& led : s.prescribed.servos) {
+    if (led.axis < 0) continue;
+    for (const SphereRow& row : w.rows.host()) {
+      if (s.elements.motion.data()[row.sphere] != led.motion) continue;
+      double stiffness = 0.0;
+      for (Index b = row.bond; b < row.bond_end; ++b)
+        stiffness += w.bonds.state.data()[b].force.straight;
+      for (Index t = row.touch; t < row.touch_end; ++t)
+        stiffness += w.touches.history.force.data()[t].straight;
+      if (!(stiffness > 0.0)) continue;
+      touched[led.servo].stiffness.add(stiffness);
+      touched[led.servo].mass.add(s.elements.mass.data()[row.sphere]);
+    }
+  }
+  return touched;
 }
 
 Counts count(const World& w) {

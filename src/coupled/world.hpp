@@ -6,6 +6,7 @@
 
 #include "core/energy.hpp"
 #include "core/read_only.hpp"
+#include "core/servo.hpp"
 #include "core/step_clock.hpp"
 #include "coupled/setup/config.hpp"
 #include "coupled/sums.hpp"
@@ -78,9 +79,21 @@ void choose_common_step(World& w);
 /// The step to come where a stage has set something free in either.
 void shorten_common_step(World& w);
 
+/// Forces and energies between what a stage has taken out and all else end; what was stored in them
+/// leaves as (negative) work.
+void cut_off_removed(World& w);
+/// Whether a body of tetrahedra has been taken out.
+bool is_gone_body(const World& w, Index body);
+
+/// What spheres that servos of supports lead touch of tetrahedra, for each servo of the spheres'
+/// world.
+std::vector<ServoReading> touched_by_servos(const World& w);
+
 bool faces_are_due(const World& w);
 void find_faces(World& w);
 
+/// Energy stored in a bond.  [J]
+double stored_in(const World& w, const BallBond& tie, const BallBondState& bond);
 /// Energies stored and spent between spheres and tetrahedra.
 Energies held(const World& w);
 

@@ -50,7 +50,7 @@ inline constexpr std::string_view shared_keys[] = {
     "breccia", "method", "precision", "title", "seed",  "time",  "output", "checkpoint",
     "domain",  "energy", "audit",     "probe", "check", "stage", "gravity"};
 
-/// Keys of a stage of the whole case; taking bodies out is refused in either method.
+/// Keys of a stage of the whole case.
 inline constexpr std::string_view shared_stage_keys[] = {"name", "until",   "rest",    "when",
                                                          "drop", "drop_of", "gravity", "remove"};
 
@@ -77,7 +77,7 @@ struct StageConfig : StageEnd {
 
   template <class Visit>
   void each_key(Visit&& key) {
-    constexpr std::string_view of_parts[] = {"local_damping", "friction", "remove"};
+    constexpr std::string_view of_parts[] = {"local_damping", "friction"};
     Without<std::remove_reference_t<Visit>, decltype(of_parts)> shared{key, of_parts};
     StageEnd::each_key(shared);
     key("gravity", gravity, "m/s2", any_number,

@@ -41,9 +41,10 @@ class PairChecks {
     if (config.tetrahedra.bodies.empty())
       add("tetrahedra.body: there is none; name the bodies of tetrahedra");
     check_names();
-    check_servos();
-    for (const std::string& problem :
-         stage_problems({config.stages.begin(), config.stages.end()}, names_of(config.probes), {}))
+    std::vector<std::string> bodies = names_of(config.spheres.bodies);
+    for (const auto& body : config.tetrahedra.bodies) bodies.push_back(body.name);
+    for (const std::string& problem : stage_problems({config.stages.begin(), config.stages.end()},
+                                                     names_of(config.probes), bodies))
       add(problem);
     for (const ProbeConfig& p : config.probes) check(p);
     for (const BondConfig& b : config.bonds) check(b);
@@ -71,23 +72,6 @@ class PairChecks {
     std::set<std::string> bonds;
     for (const BondConfig& b : config_.bonds)
       if (!bonds.insert(b.name).second) add(fmt::format("bond.{}: the name is taken", b.name));
-  }
-  void check_servos() {
-    const auto look = [&](const char* part, const char* list, const auto& items) {
-      for (const auto& item : items)
-        if (item.servo.is_on())
-          add(fmt::format("{}.{}.{}.servo: two methods in one run have no servos", part, list,
-                          item.name));
-    };
-    look("spheres", "wall", config_.spheres.walls);
-    look("spheres", "support", config_.spheres.supports);
-    look("tetrahedra", "support", config_.tetrahedra.supports);
-    for (const StageConfig& stage : config_.stages) {
-      const std::string where = fmt::format("stage.{}.", stage.name);
-      look((where + "spheres").c_str(), "wall", stage.spheres.walls);
-      look((where + "spheres").c_str(), "support", stage.spheres.supports);
-      look((where + "tetrahedra").c_str(), "support", stage.tetrahedra.supports);
-    }
   }
   void check(const ProbeConfig& p) {
     if (is_of_spheres(config_, p.on) || is_of_tetrahedra(config_, p.on)) return;
@@ -138,15 +122,18 @@ Parts parts_of(const Config& config) {
   };
   share(parts.spheres, "dem3d");
   share(parts.tetrahedra, "fdem3d");
-  const auto begin = [](auto& stages, auto part, const StageConfig& whole) {
+  const auto begin = [](const auto& bodies, auto& stages, auto part, const StageConfig& whole) {
     part.name = whole.name;
     part.gravity = whole.gravity;
+    for (const std::string& body : whole.remove)
+      if (names(bodies, body)) part.remove.push_back(body);
     part.until = std::numeric_limits<double>::max();  // the run tells its end
     stages.push_back(std::move(part));
   };
   for (const StageConfig& stage : config.stages) {
-    begin(parts.spheres.stages, dem::StageConfig(stage.spheres), stage);
-    begin(parts.tetrahedra.stages, fdem3::StageConfig(stage.tetrahedra), stage);
+    begin(parts.spheres.bodies, parts.spheres.stages, dem::StageConfig(stage.spheres), stage);
+    begin(parts.tetrahedra.bodies, parts.tetrahedra.stages, fdem3::StageConfig(stage.tetrahedra),
+          stage);
   }
   parts.spheres.time.evaluate_every = 1;
   for (const ProbeConfig& p : config.probes) {

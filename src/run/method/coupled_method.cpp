@@ -27,6 +27,8 @@ class CoupledMethod final : public Method {
 
   Advanced advance(const StopAt&) override {
     coupled::step(w_);
+    spheres_.method->steer(coupled::touched_by_servos(w_));
+    tetrahedra_.method->steer({});
     return {1, spheres_.world->last_dt, spheres_.world->last_dt};
   }
   std::int64_t steps() const override { return spheres_.world->step; }
@@ -48,7 +50,9 @@ class CoupledMethod final : public Method {
   void set_stage(const StageProgress& now) override {
     const bool begins = now.index != stage().index;
     each_part([&](const std::string&, Method& method) { method.set_stage(now); });
-    if (begins) coupled::shorten_common_step(w_);
+    if (!begins) return;
+    if (!stages_[static_cast<std::size_t>(now.index)].remove.empty()) coupled::cut_off_removed(w_);
+    coupled::shorten_common_step(w_);
   }
 
   EnergyBalance energy() override {
@@ -62,7 +66,7 @@ class CoupledMethod final : public Method {
     all.friction = a.friction + b.friction + (between.friction + w_.ledger.friction).value();
     all.damping = a.damping + b.damping;
     all.contact = a.contact + b.contact + (between.contact + w_.ledger.contact).value();
-    all.work = a.work + b.work;
+    all.work = a.work + b.work + w_.ledger.came_in.value();
     all.start = a.start + b.start;
     double& largest = w_.ledger.largest;
     largest = std::max({largest, all.kinetic + all.elastic, std::fabs(all.work), all.total()});

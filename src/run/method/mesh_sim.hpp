@@ -83,7 +83,8 @@ struct MeshSim {
     double total = 0.0;
     for (const double m : mass) total += m;
     facts.push_back({"fracture.fragments", static_cast<double>(mass.size())});
-    facts.push_back({"fracture.largest_fragment_fraction", mass.front() / total});
+    facts.push_back({"fracture.largest_fragment_fraction",
+                     mass.empty() ? 0.0 : mass.front() / total});  // a stage may have taken all out
   }
 
   static void add_arrays(World& w, StateArrays& arrays) {

@@ -205,6 +205,82 @@ TEST(CoupledCase, goes_through_stages_and_is_resumed_in_each) {
   }
 }
 
+/// What is left when the pile, or the block, is taken out, with and without bonds between them,
+/// goes on by itself; what was between them leaves with its energy.
+TEST(CoupledCase, takes_bodies_out_of_either_method) {
+  for (const std::string body : {"pile", "block"}) {
+    const bool bonded = body == "pile";
+    SCOPED_TRACE(body + (bonded ? ", bonded" : ""));
+    std::string text = staged.substr(0, staged.find("[stage.spheres]"));
+    text += "remove = [\"" + body + "\"]\n";
+    if (bonded)
+      text += "[[bond]]\nname = \"b\"\nspheres = \"pile\"\ntetrahedra = \"block\"\nrange = 2.0\n";
+    const Case read = case_of_text(text, "both.toml", ".", {});
+    const auto whole = method_of(read);
+    const double pile = whole->probes()[2] / -20.0;
+    run_stages(*whole, 60);
+    EXPECT_EQ(whole->stage().index, 0);
+    const auto fact = [](Method& method, const std::string& path) {
+      for (const Fact& f : method.facts())
+        if (f.path == path) return f.value;
+      return -1.0;
+    };
+    const double bonds = fact(*whole, "coupling.bonds");
+    EXPECT_EQ(bonds > 0.0, bonded);
+    EXPECT_LT(fact(*whole, "coupling.broken_bonds"), std::max(bonds, 1.0));
+    run_stages(*whole, 200);
+    EXPECT_EQ(whole->stage().index, 1);
+    EXPECT_EQ(fact(*whole, "coupling.touching"), 0.0);
+    EXPECT_EQ(fact(*whole, "coupling.broken_bonds"), bonds);
+    CheckpointWriter saved;
+    whole->save(saved);
+    const double time = whole->time(), falling = whole->probes()[2];
+    run_stages(*whole, 400);
+    const double weight = 9.81e3 * pile * (whole->time() - time);
+    if (body == "block") {
+      EXPECT_NEAR(whole->probes()[2] - falling, -weight, 1e-3 * weight);
+    }
+    EXPECT_LT(whole->energy().error_relative, 2e-4);
+    const auto resumed = method_of(read, 2);
+    const CheckpointReader reader(saved);
+    resumed->load(&reader);
+    run_stages(*resumed, 400);
+    EXPECT_EQ(resumed->state_hash(), whole->state_hash());
+    EXPECT_EQ(resumed->energy().work, whole->energy().work);
+  }
+}
+
+/// A plate of 2 kg below the block pushes with 1 kN for each 10 us, while the pile hits it: the
+/// momentum of all is what the force has given.
+TEST(CoupledCase, servos_push_with_their_force) {
+  std::string text = good;
+  text +=
+      "[[tetrahedra.support]]\nname = \"foot\"\nmax = [1.0, 1.0, \"-19 mm\"]\nfix = [\"z\"]\n"
+      "servo = { axis = \"z\", force = [[0, 0], [\"1 ms\", 100e3]], speed = 100, mass = 2 }\n"
+      "[[probe]]\nname = \"pile\"\non = \"spheres\"\nquantity = \"momentum_z\"\nreduce = \"sum\"\n"
+      "[[probe]]\nname = \"plate\"\non = \"foot\"\nquantity = \"velocity_z\"\n";
+  const Case read = case_of_text(text, "both.toml", ".", {});
+  const auto whole = method_of(read);
+  const auto momentum = [](Method& method) {
+    const std::vector<double> p = method.probes();
+    return p[1] + p[2] + 2.0 * p[3];
+  };
+  const double start = momentum(*whole);
+  CheckpointWriter saved;
+  while (whole->steps() < 400) {
+    whole->advance({1.0, 400});
+    if (whole->steps() == 201) whole->save(saved);
+  }
+  const double given = 0.5 * 1e8 * whole->time() * whole->time();
+  EXPECT_NEAR(momentum(*whole) - start, given, 0.02 * given);
+  EXPECT_LT(whole->energy().error_relative, 1e-3);
+  const auto resumed = method_of(read, 2);
+  const CheckpointReader reader(saved);
+  resumed->load(&reader);
+  while (resumed->steps() < 400) resumed->advance({1.0, 400});
+  EXPECT_EQ(resumed->state_hash(), whole->state_hash());
+}
+
 TEST(CoupledCase, refuses_devices) {
   const Case read = case_of_text(good, "both.toml", ".", {});
   Exec exec;
