@@ -175,8 +175,9 @@ const std::vector<Law>& laws() {
        steel_tension},
       {"dem3d",
        "[material.NAME]",
-       {"bond", "bond_strength", "bond_residual", "slip1", "slip2", "slip3"},
-       "tau = tau_max (s / s_1)^0.4 up to s_1, constant to s_2, falls to tau_f at s_3",
+       {"bond", "bond_strength", "bond_residual", "slip1", "slip2", "slip3", "rib_height"},
+       "tau = tau_max (s / s_1)^0.4 up to s_1, constant to s_2, falls to tau_f at s_3; times "
+       "1 - gap / rib_height where concrete has parted from the bar",
        "CEB-FIP Model Code 1990; docs/theory.md, interface links",
        bond_slip},
       {"fdem2d",

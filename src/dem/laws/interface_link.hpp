@@ -67,13 +67,16 @@ using InterfaceResponse = InterfaceResponseOf<double>;
 ///
 /// The relative motion splits along the bar (bond slip, tau(s) times the share S of the bar's
 /// surface), across it radially (elastic, tension cut-off with softening) and around it (elastic).
-/// After rupture: radial compression with Coulomb friction.
+/// After rupture: radial compression with Coulomb friction; ribs keep tau(s) (1 - u/h_r), the share
+/// of their height that is still in concrete at a gap u.
 struct InterfaceLink {
   BondSlip bond;
   double slip_ratio;        ///< slip stiffness over transverse stiffness, G_b / E_c  [-]
   double tensile_strength;  ///< T_B  [Pa]
   double softening;         ///< zeta  [-]
+  double rupture_opening;   ///< u_2, which rules instead of zeta; 0: zeta rules  [m]
   double friction;          ///< tan phi_sc after rupture  [-]
+  double rib_height;        ///< h_r, gap at which ribs come free after rupture, 0: none  [m]
 
   /// One link, or a pack of them (R) of which none breaks or parts in this step or has parted.
   /// @param transverse  K_tr = E_c S / D_B  [N/m]
@@ -100,7 +103,7 @@ struct InterfaceLink {
     const Vec3Of<R> moved = motion.slip + approach * motion.normal;
 
     // Radial.
-    const TensionSoftening<R> tension{transverse, tensile_strength * area, softening};
+    const TensionSoftening<R> tension = tension_of(transverse, area);
     state.gap += dot(moved, out);
     const R u = state.gap;
     auto intact = state.opening >= 0.0;
@@ -137,15 +140,20 @@ struct InterfaceLink {
     state.slip += step;
     state.slip_peak = max(state.slip_peak, abs(state.slip));
     const R grip = max(zero, -friction * radial_force);
-    R bond_limit = grip;
-    if (any(intact)) bond_limit = select(intact, area * bond.stress(state.slip_peak), grip);
+    R bond_limit = grip, keyed = zero;
+    if (rib_height > 0.0)
+      keyed = max(zero, min(constant<R>(1.0), constant<R>(1.0) - u / rib_height));
+    if (any(intact || keyed > 0.0)) {
+      const R whole = area * bond.stress(state.slip_peak);
+      bond_limit = select(intact, whole, max(grip, keyed * whole));
+    }
     r.slid = advance(state.along, slip_stiffness, step, bond_limit);
     const R around_limit = select(intact, constant<R>(1e300), grip);
     r.slid +=
         advance(state.around, transverse, select(has_side, dot(moved, round), zero), around_limit);
 
     r.force = state.along * axis + state.around * round - radial_force * out;
-    r.active = select(intact || u < 0.0, constant<R>(1.0), zero);
+    r.active = select(intact || u < 0.0 || keyed > 0.0, constant<R>(1.0), zero);
     return true;
   }
   BR_HD InterfaceResponse response(double transverse, double area, double touching,
@@ -159,7 +167,7 @@ struct InterfaceLink {
   /// Energy a link stores.  [J]
   BR_HD double stored(double transverse, double area, const InterfaceState& state) const {
     const double u = state.gap;
-    const TensionSoftening<double> tension{transverse, tensile_strength * area, softening};
+    const TensionSoftening<double> tension = tension_of(transverse, area);
     double energy = 0.0;
     if (u < 0.0)
       energy = 0.5 * transverse * u * u;
@@ -170,11 +178,20 @@ struct InterfaceLink {
   }
   /// Energy that radial softening has spent so far.  [J]
   BR_HD double spent(double transverse, double area, const InterfaceState& state) const {
-    const TensionSoftening<double> tension{transverse, tensile_strength * area, softening};
+    const TensionSoftening<double> tension = tension_of(transverse, area);
     return state.opening >= 0.0 ? tension.spent(state.opening) : 0.0;
   }
 
  private:
+  template <class R>
+  BR_HD TensionSoftening<R> tension_of(const R& transverse, const R& area) const {
+    TensionSoftening<R> t{transverse, tensile_strength * area, softening};
+    if (rupture_opening > 0.0) {
+      t.ends_given = true;
+      t.last = max(constant<R>(rupture_opening), 1.02 * t.onset());
+    }
+    return t;
+  }
   /// Elastic step of a force on b, cut at its limit; returns the energy spent.
   template <class R>
   BR_HD static R advance(R& force, const R& stiffness, const R& step, const R& limit) {

@@ -163,6 +163,7 @@ struct MaterialConfig {
   double bond_strength = 13.7e6;                    ///< tau_max  [Pa]
   double bond_residual = 5.5e6;                     ///< tau_f  [Pa]
   double slip1 = 1e-3, slip2 = 3e-3, slip3 = 8e-3;  ///< s_1, s_2, s_3  [m]
+  double rib_height = 0.0;                          ///< h_r, 0: none  [m]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -256,6 +257,9 @@ struct MaterialConfig {
     key("slip1", slip1, "m", positive, "slip at which tau_max is reached, mc90 only");
     key("slip2", slip2, "m", positive, "slip at which the bond starts to fall, mc90 only");
     key("slip3", slip3, "m", positive, "slip at which the bond is residual, mc90 only");
+    key("rib_height", rib_height, "m", Range{0.0, 0.1},
+        "gap between bar and concrete at which ribs come free: where concrete has parted from the "
+        "bar, the share of their height that is still in it keeps its bond; 0: none");
   }
 };
 

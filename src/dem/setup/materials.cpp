@@ -130,6 +130,9 @@ InterfaceLink interface_law(const MaterialConfig& m, const ContactConfig& contac
   law.tensile_strength = m.tensile_strength;
   law.softening = m.softening;
   law.friction = contact.friction;
+  law.rib_height = m.rib_height;
+  // S is true surface: S T_B u_2 / 2 = S G_F
+  if (m.tensile_strength > 0.0) law.rupture_opening = 2.0 * m.fracture_energy / m.tensile_strength;
   return law;
 }
 

@@ -154,6 +154,54 @@ TEST(InterfaceLink, pulling_the_bar_out_meets_the_bond_stress_on_its_surface) {
   EXPECT_NEAR(work, spent + stored, 1e-3 * work);
 }
 
+/// A bond whose bar is first drawn away from the concrete to a gap, then along its axis.
+struct Parted {
+  double broke = 0.0, along = 0.0, work = 0.0, spent = 0.0, stored = 0.0, slip = 0.0;
+  Parted(const InterfaceLink& law, double share, double gap) {
+    const double stiffness = 30e9 * share / 0.014;
+    const Vec3 axis{1.0, 0.0, 0.0};
+    InterfaceState state{};
+    Vec3 before{};
+    const auto move = [&](const Vec3& by) {  // of b against a; places stay, so that no axis turns
+      PairMotion<double> m{};
+      m.normal = {0.0, 1.0, 0.0};
+      m.distance = 0.014;
+      m.slip = {by.x, 0.0, by.z};
+      const InterfaceResponse r = law.response(stiffness, share, 0.014, axis, m, by.y, state);
+      broke += r.broke;
+      spent += r.slid;
+      work -= 0.5 * dot(before + r.force, by);
+      before = r.force;
+    };
+    constexpr int steps = 40'000;
+    for (int i = 0; i < steps; ++i) move({0.0, gap / steps, 0.0});
+    for (int i = 0; i < steps; ++i) move({2e-3 / steps, 0.0, 0.0});
+    along = -before.x;
+    slip = 2e-3;
+    stored = law.stored(stiffness, share, state);
+  }
+};
+
+TEST(InterfaceLink, ribs_keep_the_share_of_the_bond_that_is_still_in_the_concrete) {
+  MaterialConfig m = bond_material("mc90");
+  m.tensile_strength = 2.2e6;
+  m.fracture_energy = 100.0;
+  const double share = pi * 2.0 * radius * 0.0357 / 5.0;
+  const double last = 2.0 * 100.0 / 2.2e6;  // u_2 = 91 um
+  EXPECT_NEAR(interface_law(m, {}).rupture_opening, last, 1e-12);
+  for (const double height : {0.0, 1e-3}) {
+    m.rib_height = height;
+    const InterfaceLink law = interface_law(m, {});
+    for (const double gap : {0.1e-3, 0.25e-3, 0.75e-3, 1.1e-3}) {
+      const Parted bond(law, share, gap);
+      const double kept = height > 0.0 ? std::max(0.0, 1.0 - gap / height) : 0.0;
+      EXPECT_NEAR(bond.along, kept * share * 13.7e6, 1e-3 * share * 13.7e6) << height << " " << gap;
+      EXPECT_NEAR(bond.broke, share * 100.0, 1e-9) << "energy of a crack along the bar";
+      EXPECT_NEAR(bond.work, bond.spent + bond.stored + bond.broke, 1e-3 * bond.work);
+    }
+  }
+}
+
 TEST(Restitution, the_dashpots_that_cannot_pull_have_the_known_ratios) {
   const std::pair<double, double> known[] = {{0.2, 0.667474}, {0.4, 0.323607}, {0.5, 0.233028},
                                              {0.6, 0.165098}, {0.8, 0.067877}, {0.9, 0.031280},
