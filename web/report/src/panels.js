@@ -72,6 +72,11 @@ export function curvePanel(runs, measured, store) {
     const found = partner(column, probes) ?? probes.find((c) => c.unit && c.unit === column.unit);
     if (found) chosen.ys.add(found.name);
   }
+  const strain = probes.find((c) => c.unit === "-" && /strain/i.test(c.name)), stress = probes.filter((c) => c.unit === "Pa");
+  if (!measured && strain && stress.length > 0) {
+    chosen.x = strain.name;
+    stress.slice(0, 4).forEach((c) => chosen.ys.add(c.name));
+  }
   if (chosen.ys.size === 0 && force) probes.filter((c) => c.unit === force.unit).slice(0, 4).forEach((c) => chosen.ys.add(c.name));
   const host = make("div", {class: "chart"}), below = make("div");
   const pick = make("select", {"aria-label": "over", onchange: () => {
