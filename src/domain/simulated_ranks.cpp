@@ -5,10 +5,11 @@
 #include <exception>
 #include <map>
 #include <mutex>
-#include <optional>
+#include <numeric>
+#include <set>
 #include <stdexcept>
 #include <thread>
-#include <tuple>
+#include <utility>
 
 #include "core/state_hash.hpp"
 
@@ -20,72 +21,120 @@ struct RanksLost : std::runtime_error {
 };
 
 /// Carries the messages: they lie in flight until a rank that waits lets random ones arrive. A rank
-/// sleeps only if nothing is in flight, and wakes when its message has arrived: wakes cost more
-/// than the steps of small scenes.
+/// sleeps only if nothing is in flight, and wakes when all that it waits for has arrived: wakes
+/// cost more than the steps of small scenes.
 class Carrier {
  public:
   Carrier(std::uint64_t seed, int ranks)
-      : sleepers_(static_cast<std::size_t>(ranks)), random_(seed) {}
+      : inboxes_(static_cast<std::size_t>(ranks)), random_(seed) {}
 
-  using Address = std::tuple<int, int, std::int64_t>;  // from, to, number of the operation
+  struct Address {
+    int from, to;
+    std::int64_t operation;  ///< number of the operation
+  };
 
   /// Nobody wakes: the sender delivers when it waits itself, or when it leaves.
   void post(const Address& address, Message message) {
     const std::lock_guard lock(mutex_);
     in_flight_.emplace_back(address, std::move(message));
   }
-  Message wait_for(const Address& address) {
+  /// The messages of an operation from several ranks, in their order.
+  std::vector<Message> wait_for(int rank, const std::vector<int>& from, std::int64_t operation) {
     std::unique_lock lock(mutex_);
-    Sleeper& self = sleepers_[static_cast<std::size_t>(std::get<1>(address))];
-    while (true) {
-      const auto found = arrived_.find(address);
-      if (found != arrived_.end()) {
-        Message message = std::move(found->second);
-        arrived_.erase(found);
-        return message;
-      }
-      if (failed_) throw RanksLost();
-      if (in_flight_.empty()) {
-        self.waits_for = address;
-        self.wake.wait(lock);
-        self.waits_for.reset();
-      } else {
+    Inbox& own = inboxes_[static_cast<std::size_t>(rank)];
+    own.operation = operation;
+    for (const int sender : from)
+      if (!own.arrived.contains({operation, sender})) own.missing.insert(sender);
+    while (!own.missing.empty() && !failed_) {
+      if (!in_flight_.empty()) {
         deliver_one();
+        continue;
       }
+      own.sleeps = true;
+      wake(lock);
+      own.wake.wait();
+      lock.lock();
     }
+    std::vector<Message> messages;
+    const bool lost = !own.missing.empty();
+    own.missing.clear();
+    for (const int sender : from)
+      if (!lost) messages.push_back(std::move(own.arrived.extract({operation, sender}).mapped()));
+    wake(lock);
+    if (lost) throw RanksLost();
+    return messages;
   }
   /// A rank has come to its end: what it sent arrives.
   void leave() {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     while (!in_flight_.empty()) deliver_one();
+    wake(lock);
   }
   void fail() {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     failed_ = true;
-    for (Sleeper& sleeper : sleepers_) sleeper.wake.notify_one();
+    for (Inbox& inbox : inboxes_) note_wake(inbox);
+    wake(lock);
   }
 
  private:
-  struct Sleeper {
-    std::condition_variable wake;
-    std::optional<Address> waits_for;
+  /// One thread waits until another has given; without spinning, which takes time from the others.
+  class Wake {
+   public:
+    void give() {
+      {
+        const std::lock_guard lock(mutex_);
+        given_ = true;
+      }
+      told_.notify_one();
+    }
+    void wait() {
+      std::unique_lock lock(mutex_);
+      told_.wait(lock, [&] { return given_; });
+      given_ = false;
+    }
+
+   private:
+    std::mutex mutex_;
+    std::condition_variable told_;
+    bool given_ = false;
+  };
+  struct Inbox {
+    std::map<std::pair<std::int64_t, int>, Message> arrived;  ///< by operation and sender
+    std::int64_t operation = 0;                               ///< that is waited for
+    std::set<int> missing;                                    ///< senders of that operation
+    bool sleeps = false;
+    Wake wake;
   };
 
   void deliver_one() {
     random_ += 0x9e3779b97f4a7c15ULL;
     const std::size_t i = mixed(random_) % in_flight_.size();
     const Address address = in_flight_[i].first;
-    arrived_.insert(std::move(in_flight_[i]));
-    in_flight_[i] = std::move(in_flight_.back());
+    Inbox& to = inboxes_[static_cast<std::size_t>(address.to)];
+    to.arrived.emplace(std::pair(address.operation, address.from), std::move(in_flight_[i].second));
+    if (i + 1 < in_flight_.size()) in_flight_[i] = std::move(in_flight_.back());
     in_flight_.pop_back();
-    Sleeper& to = sleepers_[static_cast<std::size_t>(std::get<1>(address))];
-    if (to.waits_for == address) to.wake.notify_one();
+    if (address.operation == to.operation && to.missing.erase(address.from) > 0 &&
+        to.missing.empty())
+      note_wake(to);
+  }
+  void note_wake(Inbox& inbox) {
+    if (!inbox.sleeps) return;
+    inbox.sleeps = false;
+    to_wake_.push_back(&inbox);
+  }
+  /// Gives the lock back and wakes who was noted: none of them has to wait for the lock then.
+  void wake(std::unique_lock<std::mutex>& lock) {
+    const std::vector<Inbox*> noted = std::exchange(to_wake_, {});
+    lock.unlock();
+    for (Inbox* const inbox : noted) inbox->wake.give();
   }
 
   std::mutex mutex_;
-  std::vector<Sleeper> sleepers_;  ///< of each rank
+  std::vector<Inbox> inboxes_;  ///< of each rank
   std::vector<std::pair<Address, Message>> in_flight_;
-  std::map<Address, Message> arrived_;
+  std::vector<Inbox*> to_wake_;
   std::uint64_t random_;
   bool failed_ = false;
 };
@@ -106,9 +155,9 @@ class SimulatedRank final : public Communicator {
     ++operation_;
     for (int r = 0; r < size_; ++r)
       carrier_.post({rank_, r, operation_}, std::move(messages[static_cast<std::size_t>(r)]));
-    std::vector<Message> came;
-    for (int r = 0; r < size_; ++r) came.push_back(carrier_.wait_for({r, rank_, operation_}));
-    return came;
+    std::vector<int> all(static_cast<std::size_t>(size_));
+    std::iota(all.begin(), all.end(), 0);
+    return carrier_.wait_for(rank_, all, operation_);
   }
   void abort(int) override { throw std::runtime_error("a simulated rank ends all"); }
 
@@ -126,8 +175,12 @@ class SimulatedRank final : public Communicator {
       }
     }
     void finish() override {
-      for (const Post& post : from_) {
-        const Message message = self_.carrier_.wait_for({post.rank, self_.rank_, operation_});
+      std::vector<int> senders;
+      for (const Post& post : from_) senders.push_back(post.rank);
+      const auto messages = self_.carrier_.wait_for(self_.rank_, senders, operation_);
+      for (std::size_t k = 0; k < from_.size(); ++k) {
+        const Post& post = from_[k];
+        const Message& message = messages[k];
         if (message.size() != post.bytes)
           throw std::logic_error("a message has another size than its receiver expects");
         if (post.bytes > 0) std::memcpy(post.data, message.data(), post.bytes);
