@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # All that a GPU must show, in one command on a machine that has one: every shipped small case ends with the hash that the CPU
-# gives, twice; compute-sanitizer finds nothing; the benchmarks.
+# gives, twice; compute-sanitizer finds nothing; fields through DLPack; the benchmarks.
 # Usage: scripts/check_gpu.sh [BRECCIA] [MODELS]
 #   BRECCIA  the program, default build/cuda/breccia
 #   MODELS   a folder of prepared models (*.br, by 'breccia prepare') instead of cases/*/small.toml: needs no gmsh
@@ -56,6 +56,10 @@ if command -v compute-sanitizer > /dev/null; then
       fi
     done
   done
+fi
+
+if [ -e "$(dirname "$breccia")/python/breccia/__init__.py" ]; then # built with -DBR_PYTHON=ON
+  PYTHONPATH=$(dirname "$breccia")/python LD_LIBRARY_PATH=$(dirname "$breccia") python3 scripts/check_dlpack.py "${cases[@]}" || failed=1
 fi
 
 "$breccia" bench slab slabs triangles --device cuda

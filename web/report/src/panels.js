@@ -291,7 +291,7 @@ export function provenancePanel(runs) {
       ["memory", s.peak_memory_bytes && bytes(s.peak_memory_bytes)],
     ].filter(([, value]) => value);
     return make("div", {class: "provenance"}, runs.length > 1 && make("h3", {}, run.label),
-      make("div", {class: "command"}, make("code", {}, command), copy, saveCase),
+      make("div", {class: "command"}, make("code", {}, command.split(" ").map((word, k) => [k > 0 && " ", make("span", {}, word)])), copy, saveCase),
       make("p", {class: "note"}, "The hash of the last state does not depend on threads, ranks or device: a run of this case with the same program ends with the same one. Files that the case names (meshes, tables) must lie beside case.toml."),
       make("dl", {}, facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])));
   }))};
