@@ -145,7 +145,9 @@ struct InterfaceLink {
       keyed = max(zero, min(constant<R>(1.0), constant<R>(1.0) - u / rib_height));
     if (any(intact || keyed > 0.0)) {
       const R whole = area * bond.stress(state.slip_peak);
-      bond_limit = select(intact, whole, max(grip, keyed * whole));
+      // Without ribs a bit must not depend on the links beside it in a pack: max(-0, 0).
+      const R ruptured = select(keyed > 0.0, max(grip, keyed * whole), grip);
+      bond_limit = select(intact, whole, ruptured);
     }
     r.slid = advance(state.along, slip_stiffness, step, bond_limit);
     const R around_limit = select(intact, constant<R>(1e300), grip);
