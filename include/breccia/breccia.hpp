@@ -47,8 +47,10 @@ class BR_API Case {
   /// @param overrides  "KEY=VALUE" in the words of a case file, as of `--set`
   /// @throws Error with every problem at once
   explicit Case(const std::string& path, const std::vector<std::string>& overrides = {});
-  /// @param text    of a case file
-  /// @param folder  where files that the case names are looked for
+  /// @param text       of a case file
+  /// @param name       of the case, as reports and messages give it
+  /// @param folder     where files that the case names are looked for
+  /// @param overrides  "KEY=VALUE" in the words of a case file, as of `--set`
   static Case from_text(const std::string& text, const std::string& name = "case",
                         const std::string& folder = ".",
                         const std::vector<std::string>& overrides = {});
@@ -122,8 +124,10 @@ class BR_API Simulation {
   /// None when the last stage of the case is over.
   /// @throws Error naming step, time and element if numbers go wrong
   void step(std::int64_t count = 1);
-  /// Steps to the first step at or past `until` [s], or to the end of the last stage.
-  /// @param stop   asked every so many steps; true ends the run there. It may throw.
+  /// Steps to the first step at or past a time, or to the end of the last stage.
+  /// @param until  that time  [s]
+  /// @param stop   asked every `every` steps; true ends the run there. It may throw.
+  /// @param every  steps from one question to the next
   /// @returns whether it got there
   bool run(double until, const std::function<bool()>& stop = {}, std::int64_t every = 100);
 
@@ -149,6 +153,7 @@ class BR_API Simulation {
   /// other forces; their work is part of energies().at("work"). The time step does not know how
   /// stiff they are.
   /// @param items  rows of the arrays: elements, triangles or tetrahedra
+  /// @param law    gives the forces on `items`
   /// @returns its number. @throws Error if there is no such item
   int add_force(std::vector<std::int64_t> items, ForceLaw law);
   /// Of a force since it was added.  [J; in 2D J/m]
