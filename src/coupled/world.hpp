@@ -85,8 +85,8 @@ void cut_off_removed(World& w);
 /// Whether a body of tetrahedra has been taken out.
 bool is_gone_body(const World& w, Index body);
 
-/// Forces and stiffnesses with which tetrahedra meet the spheres that servos of supports lead, for
-/// each servo of the spheres' world.
+/// Stiffnesses with which tetrahedra meet the spheres that servos of supports lead, and masses of
+/// these spheres, for each servo of the spheres' world.
 std::vector<ServoReading> touched_by_servos(const World& w);
 
 bool faces_are_due(const World& w);
