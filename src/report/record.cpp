@@ -38,12 +38,14 @@ void read_summary(const std::string& path, Record& record) {
   flatten(json, "", record);
 }
 
-/// Messages of lines that warn or tell of an error; a damaged line is passed over.
+/// Messages of lines that warn or tell of an error, the first of many and how many more there are;
+/// a damaged line is passed over.
 std::vector<std::string> warnings_of(const std::string& path) {
   constexpr std::size_t most = 50;
   std::vector<std::string> warnings;
+  std::size_t more = 0;
   const std::string log = read_whole_file(path);
-  for (std::size_t begin = 0; begin < log.size() && warnings.size() < most;) {
+  for (std::size_t begin = 0; begin < log.size();) {
     const std::size_t end = std::min(log.find('\n', begin), log.size());
     const Json line = Json::parse(log.substr(begin, end - begin), nullptr, false);
     begin = end + 1;
@@ -52,9 +54,13 @@ std::vector<std::string> warnings_of(const std::string& path) {
       return line.contains(key) && line[key].is_string() ? line[key].get<std::string>() : "";
     };
     const std::string level = word("level");
-    if (level != "info" && level != "debug" && !word("message").empty())
+    if (level == "info" || level == "debug" || word("message").empty()) continue;
+    if (warnings.size() < most)
       warnings.push_back(level + ": " + word("message"));
+    else
+      ++more;
   }
+  if (more > 0) warnings.push_back(std::to_string(more) + " more: see log.jsonl");
   return warnings;
 }
 

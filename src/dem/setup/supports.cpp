@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/most_names.hpp"
 #include "core/region.hpp"
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
@@ -229,6 +230,9 @@ bool GivenMotions::moves(std::size_t motion) const {
 }
 
 std::int16_t GivenMotions::add(const std::array<ScaledAmplitude, 3>& velocity, std::int32_t load) {
+  if (motions.size() >=
+      most_names)  // supports that share elements move in more ways than there are
+    throw InputError(fmt::format("walls and supports move in more than {} ways", most_names));
   motions.push_back({{velocity[0].scale, velocity[1].scale, velocity[2].scale},
                      tables.append(velocity[0].amplitude),
                      tables.append(velocity[1].amplitude),

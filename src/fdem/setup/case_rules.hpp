@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/most_names.hpp"
 #include "core/named.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/materials.hpp"
@@ -31,8 +32,14 @@ class CaseRules {
             const std::vector<std::string>& directions)
       : config_(config), directions_(directions) {
     if (config.materials.empty()) add("material: at least one [material.<name>] is needed");
-    attempt([&] { bond_table(laws); });
-    attempt([&] { contact_table(laws); });
+    add_too_many(config.supports.size(), "supports", problems);
+    add_too_many(config.loads.size(), "loads", problems);
+    add_too_many(laws.joint_laws.size(), "joint laws", problems);
+    add_too_many(config.materials.size(), "materials", problems, most_materials);
+    if (config.materials.size() <= most_materials) {
+      attempt([&] { bond_table(laws); });
+      attempt([&] { contact_table(laws); });
+    }
     check_strengths();
     for (const auto& body : config.bodies) look_for_loose_grains(body);
     check_supports();

@@ -67,14 +67,14 @@ BondTable bond_table(const Config& config) {
   table.of_pair.assign(n * n, BondTable::nothing);
   const auto add = [&](const JointBond& bond) {
     table.bonds.push_back(bond);
-    return static_cast<std::int16_t>(table.bonds.size() - 1);
+    return static_cast<Index>(table.bonds.size() - 1);
   };
   for (const MaterialConfig& m : config.materials) table.dormant.push_back(m.joints == "extrinsic");
   const auto own = [&](const MaterialConfig& m) { return bond_within(m, config); };
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i; j < n; ++j) {
       const MaterialConfig &a = config.materials[i], &b = config.materials[j];
-      std::int16_t law = BondTable::nothing;
+      Index law = BondTable::nothing;
       if (a.joints == "none" && b.joints == "none")
         law = BondTable::bonded;
       else if (a.joints != "none" && b.joints != "none")
@@ -94,7 +94,7 @@ BondTable bond_table(const Config& config) {
     const auto a = static_cast<std::size_t>(material_index(config, joint.between[0], where));
     const auto b = static_cast<std::size_t>(material_index(config, joint.between[1], where));
     const double young = std::max(config.materials[a].young, config.materials[b].young);
-    const std::int16_t law = add(bond_of(joint.strength, young, config.joints));
+    const Index law = add(bond_of(joint.strength, young, config.joints));
     table.of_pair[a * n + b] = table.of_pair[b * n + a] = law;
     table.of_joint.push_back(law);
   }

@@ -8,13 +8,16 @@
 
 namespace breccia::fdem {
 
+/// Each two have laws of their own: so many have 1.2 GB of them.
+inline constexpr std::size_t most_materials = 4000;
+
 /// Laws of joints, and which one joins two materials.
 struct BondTable {
   std::vector<JointBond> bonds;
-  std::vector<std::int16_t> of_pair;  ///< at a * materials + b: index into bonds, or a reason below
-  std::vector<std::int16_t> of_joint;  ///< of each [joint.<name>]
-  std::vector<bool> dormant;  ///< of each material: its joints appear where they are needed
-  static constexpr std::int16_t nothing = -1, bonded = -2;
+  std::vector<Index> of_pair;   ///< at a * materials + b: index into bonds, or a reason below
+  std::vector<Index> of_joint;  ///< of each [joint.<name>]
+  std::vector<bool> dormant;    ///< of each material: its joints appear where they are needed
+  static constexpr Index nothing = -1, bonded = -2;
 };
 
 /// One material: its own strength. Two: that of the [joint.<name>] between them, or else the weaker

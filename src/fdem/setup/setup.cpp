@@ -41,7 +41,7 @@ namespace {
 /// Joins neighbours: a joint, a bond, or nothing.
 void set_up_joints(World& w, const Config& config, const Model& model) {
   BondTable table = bond_table(config);
-  std::map<std::pair<Index, Index>, std::int16_t> discontinuities;  // law, open or bonded
+  std::map<std::pair<Index, Index>, Index> discontinuities;  // law, open or bonded
   for (const Model::Discontinuity& d : model.discontinuities)
     discontinuities[std::minmax(d.edge[0], d.edge[1])] =
         d.material == Model::as_one ? BondTable::bonded
@@ -73,7 +73,7 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     w.across[at(e.b)] = e.a;
     const auto a = at(e.a / 3), b = at(e.b / 3);
     const auto weak = discontinuities.find({e.low, e.high});
-    const std::int16_t found =
+    const Index found =
         weak != discontinuities.end()
             ? weak->second
             : table.of_pair[static_cast<std::size_t>(model.material[a]) * config.materials.size() +

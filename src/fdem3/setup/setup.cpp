@@ -136,7 +136,7 @@ class Joining {
     w_.across[at(f.b)] = f.a;
     const auto a = at(f.a / 4), b = at(f.b / 4);
     const auto weak = weak_.find(f.corners);
-    const std::int16_t found =
+    const Index found =
         weak != weak_.end()
             ? weak->second
             : table_
@@ -156,7 +156,7 @@ class Joining {
   void open(const MeshFace& f, std::uint8_t bits) {
     for (const Index vertex : f.corners) set_up(w_).open_vertex[at(vertex)] |= bits;
   }
-  void join(const MeshFace& f, std::int16_t law) {
+  void join(const MeshFace& f, Index law) {
     const auto a = at(f.a / 4), b = at(f.b / 4);
     const auto joint = static_cast<Index>(list_.face_a.size());
     slot(f.a) = 2 * joint;
@@ -192,7 +192,7 @@ class Joining {
   const Config& config_;
   const Model& model_;
   fdem::BondTable table_;
-  std::map<std::array<Index, 3>, std::int16_t> weak_;  ///< law, or nothing where open
+  std::map<std::array<Index, 3>, Index> weak_;  ///< law, or nothing where open
   std::vector<FaceJoints> faces_;
   std::vector<std::uint8_t> tied_;  ///< 1: corners here move as one
   JointList list_;

@@ -10,9 +10,6 @@
 
 namespace breccia::prepare {
 
-inline constexpr std::size_t most_names =
-    32767;  ///< a model numbers bodies and materials in 16 bits
-
 /// Everything that keeps the bodies of a case from being built, one sentence each: names that lead
 /// nowhere, keys that a shape needs or cannot use, laws and shares that do not fit. No file is read
 /// and nothing is built.

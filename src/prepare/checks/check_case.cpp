@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/most_names.hpp"
 #include "core/probe.hpp"
 #include "dem/setup/materials.hpp"
 #include "dem/setup/stages.hpp"
@@ -55,6 +56,7 @@ class Check {
             ".free: contacts bear no moments on a wall that turns; contact.rolling_stiffness must "
             "be 0");
     }
+    add_too_many(config_.walls.size() + config_.supports.size(), "walls and supports", problems_);
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
     check_mass_scaling(config_, problems_);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/most_names.hpp"
 #include "dem/setup/materials.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
@@ -69,10 +70,8 @@ class DemBodyChecks {
   explicit DemBodyChecks(const Config& config) : config_(config) {
     if (config.bodies.empty())
       problems_.push_back("body: the case has no elements; at least one [[body]] is needed");
-    if (config.bodies.size() > most_names || config.materials.size() > most_names)
-      problems_.push_back(
-          fmt::format("the case has {} bodies and {} materials; at most {} of each are allowed",
-                      config.bodies.size(), config.materials.size(), most_names));
+    add_too_many(config.bodies.size(), "bodies", problems_);
+    add_too_many(config.materials.size(), "materials", problems_);
     std::set<std::string> seen;
     for (const BodyConfig& b : config.bodies) {
       path_ = "body." + b.name;

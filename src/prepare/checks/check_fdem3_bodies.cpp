@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/most_names.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
 
@@ -71,11 +72,7 @@ class TetBodyChecks {
   explicit TetBodyChecks(const fdem3::Config& config) : config_(config) {
     if (config.bodies.empty())
       problems_.push_back("body: the case has no elements; at least one [[body]] is needed");
-    if (config.bodies.size() > most_names || config.materials.size() > most_names ||
-        config.joint_laws.size() > most_names)
-      problems_.push_back(fmt::format(
-          "the case has {} bodies, {} materials and {} joint laws; at most {} of each are allowed",
-          config.bodies.size(), config.materials.size(), config.joint_laws.size(), most_names));
+    add_too_many(config.bodies.size(), "bodies", problems_);
     std::set<std::string> seen;
     for (const TetBodyConfig& b : config.bodies) {
       path_ = "body." + b.name;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/most_names.hpp"
 #include "prepare/checks/check_bodies.hpp"
 
 namespace breccia::prepare {
@@ -46,11 +47,7 @@ class BodyChecks {
       : names_(names) {
     if (bodies.empty())
       problems_.push_back("body: the case has no elements; at least one [[body]] is needed");
-    if (bodies.size() > most_names || names.materials.size() > most_names ||
-        names.joints.size() > most_names)
-      problems_.push_back(fmt::format(
-          "the case has {} bodies, {} materials and {} joint laws; at most {} of each are allowed",
-          bodies.size(), names.materials.size(), names.joints.size(), most_names));
+    add_too_many(bodies.size(), "bodies", problems_);
     std::set<std::string> seen;
     for (const BodyConfig& b : bodies) {
       path_ = "body." + b.name;

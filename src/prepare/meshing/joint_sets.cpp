@@ -110,6 +110,21 @@ std::vector<std::vector<Vec2>> lines_of_file(const std::string& path) {
   return lines;
 }
 
+constexpr double most_lines = 1e6;  ///< of a set
+
+/// Rows of regular lines on either side of the middle one, and lines of a row likewise.
+struct Rows {
+  double rows, pieces, period, piece;
+  explicit Rows(const JointSetConfig& set) {
+    const double reach = 0.5 * norm(set.max - set.min);
+    piece = set.length > 0.0 ? set.length : 2.0 * reach;
+    period = piece + (set.length > 0.0 ? set.gap : 0.0);
+    rows = std::floor(reach / set.spacing);
+    pieces = set.length > 0.0 ? std::ceil(reach / period) + 1.0 : 0.0;
+  }
+  double lines() const { return (2.0 * rows + 1.0) * (2.0 * pieces + 1.0); }
+};
+
 /// Draws lines one after the other; a number of uniform values for each.
 class Drawn {
  public:
@@ -122,20 +137,16 @@ class Drawn {
   std::vector<std::vector<Vec2>> regular() const {
     const Vec2 along{std::cos(set_.angle), std::sin(set_.angle)}, across{-along.y, along.x};
     const Vec2 middle = 0.5 * (set_.min + set_.max);
-    const double reach = 0.5 * norm(set_.max - set_.min);
-    const auto rows = static_cast<int>(reach / set_.spacing);
-    const double whole = 2.0 * reach, piece = set_.length > 0.0 ? set_.length : whole;
-    const double period = piece + (set_.length > 0.0 ? set_.gap : 0.0);
-    const auto pieces = static_cast<int>(std::ceil(reach / period)) + 1;
+    const Rows of(set_);
+    const auto rows = static_cast<int>(of.rows), pieces = static_cast<int>(of.pieces);
     std::vector<std::vector<Vec2>> all;
     for (int row = -rows; row <= rows; ++row)
       for (int k = -pieces; k <= pieces; ++k) {
-        if (set_.length == 0.0 && k != 0) continue;
-        const double shift = (k + (row % 2 != 0 ? 0.5 : 0.0)) * period;
+        const double shift = (k + (row % 2 != 0 ? 0.5 : 0.0)) * of.period;
         const Vec2 at =
             middle + (row * set_.spacing) * across + (set_.length > 0.0 ? shift : 0.0) * along;
-        Vec2 from = at - (0.5 * piece) * along, to = at + (0.5 * piece) * along;
-        if (cut(from, to) && norm(to - from) > 1e-9 * piece) all.push_back({from, to});
+        Vec2 from = at - (0.5 * of.piece) * along, to = at + (0.5 * of.piece) * along;
+        if (cut(from, to) && norm(to - from) > 1e-9 * of.piece) all.push_back({from, to});
       }
     return all;
   }
@@ -146,8 +157,13 @@ class Drawn {
     const double reach = 0.5 * (set_.most > 0.0 ? set_.most : longest);
     double missing = set_.intensity * size.x * size.y;
     std::vector<std::vector<Vec2>> all;
-    constexpr std::uint64_t most_lines = 1'000'000;
-    for (; missing > 0.0 && line_ < most_lines; ++line_) {
+    for (; missing > 0.0; ++line_) {
+      if (line_ >= static_cast<std::uint64_t>(most_lines))
+        throw InputError(fmt::format(
+            "after {:.0f} random lines the rectangle has {:.3g} m of the {:.3g} m that its "
+            "intensity asks for",
+            most_lines, set_.intensity * size.x * size.y - missing,
+            set_.intensity * size.x * size.y));
       const double length = drawn_length();
       const double angle = set_.angle + set_.spread * normal(0);
       const Vec2 half = (0.5 * length) * Vec2{std::cos(angle), std::sin(angle)};
@@ -246,6 +262,10 @@ std::vector<std::string> joint_set_problems(const JointSetConfig& set,
   const auto require = [&](bool holds, const std::string& text) {
     if (!holds) problems.push_back("joint_set." + set.name + text);
   };
+  const auto refuse_many = [&](const char* key, double lines) {
+    require(lines <= most_lines, fmt::format("{}: about {:.3g} lines; at most {:.0f} are possible",
+                                             key, lines, most_lines));
+  };
   require(set.kind != "cohesive" ||
               std::find(joints.begin(), joints.end(), set.material) != joints.end(),
           fmt::format(".material = \"{}\" is not a joint law; there are: {}", set.material,
@@ -261,7 +281,7 @@ std::vector<std::string> joint_set_problems(const JointSetConfig& set,
   if (set.spacing > 0.0) {
     require(set.intensity == 0.0, ".intensity is of random lines, and spacing makes regular ones");
     require(set.gap == 0.0 || set.length > 0.0, ".gap is between lines that have a length");
-    require(norm(set.max - set.min) < 1e5 * set.spacing, ".spacing: too many lines");
+    refuse_many(".spacing", Rows(set).lines());
     return problems;
   }
   require(set.gap == 0.0, ".gap is of regular lines, with a spacing");
@@ -272,6 +292,8 @@ std::vector<std::string> joint_set_problems(const JointSetConfig& set,
     return problems;
   }
   require(set.length > 0.0, ".length must be above 0");
+  const Vec2 size = set.max - set.min;
+  if (set.length > 0.0) refuse_many(".intensity", set.intensity * size.x * size.y / set.length);
   require(set.length_law != "lognormal" || set.length_deviation > 0.0,
           ".length_deviation must be above 0 for lognormal lengths");
   require(set.most == 0.0 || set.most > set.least, ".most must be above least");

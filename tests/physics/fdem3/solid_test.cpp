@@ -118,6 +118,20 @@ Impact impact(double share_of_step) {
           norm(after.angular - before.angular) / before.size};
 }
 
+// A jump of the support's velocity would be booked as m v^2 of work for m v^2 / 2.
+TEST(Tetrahedra, gain_the_work_of_a_support_that_moves_at_once) {
+  testing::Scene scene;
+  scene.material();
+  scene.body("bar", testing::box({0.05, 0.01, 0.01}, {0.1, 0.02, 0.02}, 0.02));
+  const Vec3 from{-testing::far, -testing::far, -testing::far};
+  scene.support("end", from, {1e-3, testing::far, testing::far}, {"x"}, {1.0, 0.0, 0.0});
+  World w = scene.world();
+  while (w.time < 1e-5) step(w);
+  const EnergyBalance balance = energies(w).balance;
+  EXPECT_GT(balance.work, 0.01);
+  EXPECT_LT(balance.error_relative, 1e-6);
+}
+
 TEST(Tetrahedra, that_collide_keep_momentum_and_energy) {
   const Impact coarse = impact(0.5), fine = impact(0.125);
   for (const Impact& i : {coarse, fine}) {

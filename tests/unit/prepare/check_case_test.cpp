@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <functional>
 
+#include "core/most_names.hpp"
 #include "exec/error.hpp"
+#include "fdem/setup/materials.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
 #include "prepare/checks/check_regions.hpp"
@@ -230,6 +232,42 @@ TEST(CheckFdem, refuses_a_body_with_the_words_of_the_build) {
     EXPECT_NE(by_check.find(problems_of(by_build)), std::string::npos) << by_check << by_build;
   }
   EXPECT_EQ(refused([] { fdem::check_case(plate_case()); }), "");
+}
+
+TEST(CheckFdem, refuses_more_than_a_model_can_number) {
+  const auto told = [](std::size_t count, const char* items, const std::string& most) {
+    return "the case has " + std::to_string(count) + " " + items + "; at most " + most +
+           " are allowed";
+  };
+  fdem::Config config = plate_case();
+  for (std::size_t k = 0; k <= most_names; ++k) {
+    config.loads.emplace_back().name = std::to_string(k);
+    config.supports.emplace_back().name = std::to_string(k);
+  }
+  const std::string text = refused([&] { fdem::check_case(config); });
+  EXPECT_NE(text.find(told(32768, "loads", "32767")), std::string::npos) << text;
+  EXPECT_NE(text.find(told(32768, "supports", "32767")), std::string::npos) << text;
+
+  config = plate_case();
+  config.materials.resize(fdem::most_materials + 1, config.materials[0]);
+  const std::string more = refused([&] { fdem::check_case(config); });
+  EXPECT_NE(more.find(told(4001, "materials", "4000")), std::string::npos) << more;
+
+  dem::Config spheres = dem::small_slab();
+  spheres.walls.resize(20000);
+  spheres.supports.resize(12768);
+  const std::string both = refused([&] { dem::check_case(spheres); });
+  EXPECT_NE(both.find(told(32768, "walls and supports", "32767")), std::string::npos) << both;
+}
+
+// Their pairs are more than 16 bits can number.
+TEST(CheckFdem, each_two_of_many_materials_have_a_law) {
+  fdem::Config config = plate_case();
+  const std::size_t n = 257, pairs = n * (n + 1) / 2;
+  config.materials.resize(n, config.materials[0]);
+  const fdem::BondTable table = fdem::bond_table(config);
+  EXPECT_EQ(table.bonds.size(), pairs);
+  EXPECT_EQ(table.of_pair.back(), static_cast<Index>(pairs) - 1);
 }
 
 TEST(CheckFdem, finds_plain_bodies_in_each_other_as_the_build_does) {

@@ -164,6 +164,29 @@ TEST(JointSets, say_what_is_missing) {
   EXPECT_TRUE(joint_set_problems(random_set(), {}).empty());
 }
 
+TEST(JointSets, of_more_lines_than_can_be_are_refused) {
+  fdem::JointSetConfig set = random_set();
+  set.intensity = 1e7;
+  auto said = joint_set_problems(set, {});
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0], "joint_set.set.intensity: about 4e+09 lines; at most 1000000 are possible");
+  set.intensity = 0.0;
+  set.spacing = 1.0;
+  set.length = 1e-12;
+  said = joint_set_problems(set, {});
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find(".spacing: about "), std::string::npos) << said[0];
+
+  set = random_set();  // lengths up to so many that few lines meet the rectangle
+  set.most = 1e9;
+  try {
+    lines_of_set(set, 7, 0, "");
+    ADD_FAILURE() << "fewer lines than asked for";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("of the 4e+03 m"), std::string::npos) << error.what();
+  }
+}
+
 double area_of(const fdem::Model& model, std::size_t t) {
   const auto corner = [&](std::size_t k) {
     return model.point[static_cast<std::size_t>(model.triangle[t][k])];

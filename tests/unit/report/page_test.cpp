@@ -30,6 +30,17 @@ std::string page_of_chain(const std::string& folder) {
   return page_of({read_record(folder)}, std::nullopt).html;
 }
 
+TEST(ReportPage, OfManyWarningsItTellsHowManyMoreThereAre) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  std::ofstream log(folder.path() + "/log.jsonl", std::ios::app);
+  for (int k = 0; k < 60; ++k) log << "{\"level\": \"warning\", \"message\": \"again\"}\n";
+  log.close();
+  const std::vector<std::string> warnings = read_record(folder.path()).warnings;
+  ASSERT_EQ(warnings.size(), 51U);
+  EXPECT_EQ(warnings.back(), "11 more: see log.jsonl");
+}
+
 TEST(ReportPage, ItHoldsTheRun) {
   const ScratchFolder folder;
   test::write_chain(folder.path());
