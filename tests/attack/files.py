@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Damaged checkpoints (none may be loaded) and forged ones, digests right (none may crash)."""
 
+import itertools
 import os
 import subprocess
 import sys
+import time
 
 from common import Attack, CASES, arguments, breccia, checkpoints, run, tool
 
@@ -22,13 +24,25 @@ def main():
             words = {"damaged": ["damaged", good], "forged": ["forged", model, good],
                      "forged model": ["forged", model, model]}[kind]
             # A forged file costs a process and twenty steps, a damaged one the reading alone.
-            runs = options.runs if kind == "damaged" else max(1, options.runs // 10)
-            done = subprocess.run([tool("attack_files"), *words, str(runs),
-                                   str(options.seed)], capture_output=True, text=True,
-                                  env=dict(os.environ, TMPDIR=attack.folder))
-            sys.stderr.write(done.stderr)
-            counts = [int(word) for word in done.stdout.split()]
-            if attack.expect(len(counts) > 3, f"attack_files ended with {done.returncode}"):
+            runs, at_once = options.runs, 500
+            if kind != "damaged":
+                runs, at_once = max(1, runs // 10), 50
+            counts = []
+            for part in range(-(-runs // at_once)):
+                if part and time.time() - attack.begun > options.seconds / (3 * len(CASES)):
+                    break
+                seed = options.seed + 1000 * part
+                done = subprocess.run([tool("attack_files"), *words,
+                                       str(min(at_once, runs - part * at_once)), str(seed)],
+                                      capture_output=True, text=True,
+                                      env=dict(os.environ, TMPDIR=attack.folder))
+                if done.stderr:
+                    sys.stderr.write(f"{kind}, {case}, seed {seed}: {done.stderr}")
+                told = [int(word) for word in done.stdout.split()]
+                if not attack.expect(len(told) > 3, f"attack_files ended with {done.returncode}"):
+                    break
+                counts = [a + b for a, b in itertools.zip_longest(counts, told, fillvalue=0)]
+            if counts:
                 attack.runs = counts[0]
                 attack.findings += sum(counts[1:] if kind == "damaged" else counts[3:])
                 if kind != "damaged":
