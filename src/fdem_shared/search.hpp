@@ -14,6 +14,7 @@
 #include "domain/drift.hpp"
 #include "exec/timers.hpp"
 #include "fdem_shared/ranks.hpp"
+#include "fdem_shared/separated.hpp"
 #include "fdem_shared/shape.hpp"
 #include "fdem_shared/shared_marks.hpp"
 
@@ -274,15 +275,31 @@ auto choose_drift(const World& w) {
   return DriftOf<Vector>{from_space<Vector>(all.velocity), all.since, all.farthest};
 }
 
-/// The place in `reach` of each element. Ghosts have none: their owners tell of them.
+/// The place in `reach` of each element; -1: it has none.
 template <class World>
-void place_reach(World& w) {
+void place_in_reach(World& w, const OwnedView& owned, Buffer<Index>& place) {
   const auto& touchable = w.reach.element;
-  w.reach_place.resize(ShapeOf<World>::elements(w).size());
-  for_each(w.exec, w.reach_place.size(), NoPlace{w.reach_place.view()});
-  for_each(
-      w.exec, touchable.size(),
-      PlaceReach{std::as_const(touchable).view(), w.domain.owned_view(), w.reach_place.view()});
+  place.resize(ShapeOf<World>::elements(w).size());
+  for_each(w.exec, place.size(), NoPlace{place.view()});
+  for_each(w.exec, touchable.size(),
+           PlaceReach{std::as_const(touchable).view(), owned, place.view()});
+}
+
+/// Marks the couples that cannot touch before the next search. Of ghosts that came by migration
+/// the place at the search is not known: the next one tells.
+template <class World>
+void mark_separated(World& w) {
+  using Shape = ShapeOf<World>;
+  Buffer<Index> place(w.exec.space);
+  place_in_reach(w, OwnedView{}, place);
+  const Pairs& pairs = w.couples.pairs;
+  const auto state = w.couples.history.state.view();
+  w.separated.resize(pairs.size());
+  for_each(w.exec, pairs.size(),
+           MarkSeparated<Shape, std::remove_cvref_t<decltype(state[0])>>{
+               pairs.a.view(), pairs.b.view(), std::as_const(place).view(),
+               std::as_const(w.reach.reference).view(), std::as_const(w.reach.margin).view(), state,
+               w.separated.view()});
 }
 
 /// Boxes of the elements that can touch, and pairs of them whose boxes overlap.
@@ -422,7 +439,9 @@ void derive_mesh_couples(World& w) {
            ParentJoint<Shape>{w.time - 1.5 * w.last_dt, pairs.a.view(), pairs.b.view(),
                               std::as_const(Shape::sides(w)).view(), Shape::side_a(j).view(),
                               Shape::side_b(j).view(), j.broke_at.view(), w.parent_joint.view()});
-  place_reach(w);
+  // Ghosts have none in it: their owners tell of them.
+  place_in_reach(w, w.domain.owned_view(), w.reach_place);
+  if constexpr (Shape::marks_separated) mark_separated(w);
 }
 
 }  // namespace breccia::fdem_shared

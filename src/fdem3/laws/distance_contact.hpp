@@ -95,19 +95,29 @@ struct Polygon {
   }
 };
 
-/// The part where f >= 0 or, if not `closed`, f > 0.
-BR_HD inline Polygon cut(const Polygon& p, const Linear& f, bool closed) {
-  Polygon kept;
+/// Leaves the part where f >= 0 or, if not `closed`, f > 0. Most lines do not cross.
+BR_HD inline void cut(Polygon& p, const Linear& f, bool closed) {
+  double value[Polygon::most];
+  unsigned in = 0;
   for (int i = 0; i < p.count; ++i) {
+    value[i] = f(p.u[i], p.v[i]);
+    if (closed ? value[i] >= 0.0 : value[i] > 0.0) in |= 1U << i;
+  }
+  if (in == (1U << p.count) - 1U) return;
+  Polygon kept;
+  for (int i = 0; in != 0 && i < p.count; ++i) {
     const int j = i + 1 == p.count ? 0 : i + 1;
-    const double fi = f(p.u[i], p.v[i]), fj = f(p.u[j], p.v[j]);
-    const bool in_i = closed ? fi >= 0.0 : fi > 0.0, in_j = closed ? fj >= 0.0 : fj > 0.0;
+    const bool in_i = (in >> i & 1) != 0, in_j = (in >> j & 1) != 0;
     if (in_i) kept.add(p.u[i], p.v[i]);
     if (in_i == in_j) continue;
-    const double s = fi / (fi - fj);
+    const double s = value[i] / (value[i] - value[j]);
     kept.add(p.u[i] + s * (p.u[j] - p.u[i]), p.v[i] + s * (p.v[j] - p.v[i]));
   }
-  return kept;
+  p.count = kept.count;
+  for (int i = 0; i < kept.count; ++i) {
+    p.u[i] = kept.u[i];
+    p.v[i] = kept.v[i];
+  }
 }
 
 /// Adds the integrals of f, f u, f v and 1 over a polygon.
@@ -154,7 +164,7 @@ BR_HD inline bool overlap_of_face(const Target& target, FaceOverlap& o) {
   inside.add(1.0, 0.0);
   inside.add(0.0, 1.0);
   for (int k = 0; k < 4; ++k)
-    if (cuts[k]) inside = detail::cut(inside, g[k], true);
+    if (cuts[k]) detail::cut(inside, g[k], true);
   if (inside.count < 3) return false;
 
   double sum[3] = {};
@@ -163,7 +173,7 @@ BR_HD inline bool overlap_of_face(const Target& target, FaceOverlap& o) {
     detail::Polygon region = inside;
     for (int m = 0; m < 4 && region.count >= 3; ++m)
       // Of a face in the plane between two regions one takes all.
-      if (m != k) region = detail::cut(region, g[m] - g[k], m > k);
+      if (m != k) detail::cut(region, g[m] - g[k], m > k);
     const double area = o.area, whole = sum[0];
     if (region.count >= 3) detail::integrate(region, g[k], sum, o.area);
     o.region_area[k] = o.area - area;

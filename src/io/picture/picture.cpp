@@ -119,17 +119,20 @@ Image reduced(const Image& large, int fine, int threads) {
   Image image{large.width / fine, large.height / fine, {}};
   const auto width = static_cast<std::size_t>(image.width), step = static_cast<std::size_t>(fine);
   image.rgb.resize(3 * width * static_cast<std::size_t>(image.height));
+  const std::size_t row = 3 * step * width;  // bytes of a row of the large image
   const unsigned block = static_cast<unsigned>(fine * fine);
   for_each_task(threads, image.height, [&](int y) {
-    const std::size_t row = 3 * step * width;  // bytes of a row of the large image
-    const std::uint8_t* const from = &large.rgb[static_cast<std::size_t>(y) * step * row];
+    std::vector<std::uint16_t> column(row);  // sums over the rows of a block
+    const std::uint8_t* from = &large.rgb[static_cast<std::size_t>(y) * step * row];
+    for (std::size_t k = 0; k < step; ++k, from += row)
+      for (std::size_t i = 0; i < row; ++i)
+        column[i] = static_cast<std::uint16_t>(column[i] + from[i]);
+    std::uint8_t* to = &image.rgb[3 * width * static_cast<std::size_t>(y)];
     for (std::size_t x = 0; x < width; ++x)
       for (std::size_t c = 0; c < 3; ++c) {
         unsigned sum = block / 2;
-        for (std::size_t k = 0; k < step * step; ++k)
-          sum += from[k / step * row + 3 * (step * x + k % step) + c];
-        image.rgb[3 * (static_cast<std::size_t>(y) * width + x) + c] =
-            static_cast<std::uint8_t>(sum / block);
+        for (std::size_t k = 0; k < step; ++k) sum += column[3 * (step * x + k) + c];
+        *to++ = static_cast<std::uint8_t>(sum / block);
       }
   });
   return image;

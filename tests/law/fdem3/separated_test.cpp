@@ -1,0 +1,122 @@
+// Couples that no step looks at before the next search: they stay apart however their elements
+// move within their margins.
+
+#include "fdem_shared/separated.hpp"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "core/random.hpp"
+#include "fdem3/contact/couples.hpp"
+#include "fdem3/shape.hpp"
+
+namespace breccia::fdem3 {
+namespace separated_test {
+
+using fdem_shared::are_separated;
+using fdem_shared::MarkSeparated;
+
+bool meet(const Vec3 (&a)[4], const Vec3 (&b)[4]) {
+  Target of_a = Target::of(a), of_b = Target::of(b);
+  if (!(of_a.six_volumes > 0.0 && of_b.six_volumes > 0.0)) return false;  // as CoupleForces
+  of_a.measure_heights();
+  of_b.measure_heights();
+  FaceOverlap o;
+  for (int f = 0; f < 4; ++f) {
+    Vec3 face_a[3], face_b[3];
+    for (int k = 0; k < 3; ++k) {
+      face_a[k] = a[corner_of_face(f, k)];
+      face_b[k] = b[corner_of_face(f, k)];
+    }
+    if (overlap_of_face(face_a, of_b, o) || overlap_of_face(face_b, of_a, o)) return true;
+  }
+  return false;
+}
+
+TEST(Separated, distance_of_a_face_and_a_corner_counts) {
+  const Vec3 low[4] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, -1.0}};
+  const Vec3 high[4] = {{0.2, 0.2, 0.1}, {0.9, 0.0, 0.8}, {0.0, 0.9, 0.8}, {0.0, 0.0, 0.9}};
+  EXPECT_TRUE(are_separated(low, high, 0.0999));
+  EXPECT_FALSE(are_separated(low, high, 0.1001));
+  EXPECT_TRUE(are_separated(high, low, 0.0999));
+  EXPECT_FALSE(are_separated(high, low, 0.1001));
+}
+
+/// No plane of a face keeps these apart.
+TEST(Separated, distance_of_two_edges_that_cross_counts) {
+  const Vec3 low[4] = {{-1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, -0.3, -1.0}, {0.0, 0.3, -1.0}};
+  const Vec3 high[4] = {{0.0, -1.0, 0.1}, {0.0, 1.0, 0.1}, {-0.3, 0.0, 1.1}, {0.3, 0.0, 1.1}};
+  EXPECT_TRUE(are_separated(low, high, 0.0999));
+  EXPECT_FALSE(are_separated(low, high, 0.1001));
+}
+
+TEST(Separated, stay_apart_within_their_margins_wherever_these_lead) {
+  const Random random{11, 3};
+  int marked = 0, far = 0, met = 0;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    std::uint32_t draw = 0;
+    const auto next = [&] { return random.uniform(i, draw++); };
+    const auto point = [&] {
+      const double x = next(), y = next(), z = next();
+      return Vec3{x - 0.5, y - 0.5, z - 0.5};
+    };
+    Corners x[2];
+    const Vec3 way = 1.6 * point();
+    for (int k = 0; k < 4; ++k) {
+      x[0].at[k] = point();
+      x[1].at[k] = point() + way;
+    }
+    for (Corners& one : x)
+      if (Target::of(one.at).six_volumes < 0.0) std::swap(one.at[0], one.at[1]);
+    const double margin[2] = {0.08 * next(), 0.04};
+    const Index a = 0, b = 1, place[2] = {0, 1};
+    CoupleState state{};
+    std::uint8_t separated = 2;
+    const MarkSeparated<Shape, CoupleState> mark{{&a, 1},     {&b, 1},     {place, 2},     {x, 2},
+                                                 {margin, 2}, {&state, 1}, {&separated, 1}};
+    mark(0);
+    ASSERT_EQ(state.scale, separated != 0 ? 1.0 : 0.0);  // they have begun
+    if (separated == 0) {
+      met += meet(x[0].at, x[1].at) ? 1 : 0;
+      continue;
+    }
+    ++marked;
+    far += are_separated(x[0].at, x[1].at, 2.0 * (margin[0] + margin[1])) ? 1 : 0;
+    for (int trial = 0; trial < 8; ++trial) {  // towards each other, corner by corner
+      Vec3 moved[2][4];
+      for (int side = 0; side < 2; ++side)
+        for (int k = 0; k < 4; ++k) {
+          const Vec3 turn = 0.5 * point(), go = (side == 0 ? 1.0 : -1.0) * way + turn;
+          moved[side][k] = x[side].at[k] + (margin[side] / norm(go)) * go;
+        }
+      ASSERT_FALSE(meet(moved[0], moved[1])) << i;
+    }
+  }
+  EXPECT_GT(marked, 300);
+  EXPECT_GT(marked - far, 30);  // near their margins, too
+  EXPECT_GT(met, 200);
+}
+
+TEST(Separated, couples_that_hold_something_or_whose_place_is_unknown_are_asked) {
+  Corners x[2] = {{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}}, {}};
+  for (int k = 0; k < 4; ++k) x[1].at[k] = x[0].at[k] + Vec3{5.0, 0.0, 0.0};
+  const double margin[2] = {0.1, 0.1};
+  const auto marks = [&](Index place_of_b, double work, double slid) {
+    const Index a = 0, b = 1, place[2] = {0, place_of_b};
+    CoupleState state{};
+    state.work = work;
+    state.slid = slid;
+    std::uint8_t separated = 2;
+    MarkSeparated<Shape, CoupleState>{{&a, 1},     {&b, 1},     {place, 2},     {x, 2},
+                                      {margin, 2}, {&state, 1}, {&separated, 1}}(0);
+    return separated;
+  };
+  EXPECT_EQ(marks(1, 0.0, 0.0), 1);
+  EXPECT_EQ(marks(-1, 0.0, 0.0), 0);
+  EXPECT_EQ(marks(1, 1e-300, 0.0), 0);
+  EXPECT_EQ(marks(1, 0.0, 1e-9), 0);
+}
+
+}  // namespace separated_test
+}  // namespace breccia::fdem3
