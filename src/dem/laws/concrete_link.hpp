@@ -107,6 +107,7 @@ struct ConcreteLink {
   double crushing_slope;        ///< H_b < 1  [-]
   double closing_strain;        ///< p_c at which D_eq shortens no further, 0: none  [-]
   RateCurve rate;               ///< of T
+  SofteningKnee knee;           ///< of the falling branch in tension
 
   /// One step of a link (R = double) or of a pack of links.
   template <class R>
@@ -200,8 +201,8 @@ struct ConcreteLink {
   template <bool dynamic, class R>
   BR_HD TensionSoftening<R> tension_of(const LinkConstants<R>& link) const {
     const R slow = tensile_strength * link.area;  // S T
-    TensionSoftening<R> t{link.stiffness, slow, softening, rupture_opening > 0.0,
-                          constant<R>(rupture_opening)};
+    TensionSoftening<R> t{
+        link.stiffness, slow, softening, rupture_opening > 0.0, constant<R>(rupture_opening), knee};
     if constexpr (dynamic) {
       if (!t.ends_given) t.last = slow * (1.0 + softening) / link.stiffness;
       t.ends_given = true;

@@ -5,14 +5,27 @@
 
 namespace breccia::dem {
 
+/// Where a falling branch of two lines bends.
+struct SofteningKnee {
+  double steep = 0.0;  ///< (1 - s) / x, slope before it over that of one line; 0: one line  [-]
+  double flat = 0.0;   ///< s / (1 - x), slope beyond it, likewise  [-]
+  double area = 1.0;   ///< s + x, area below the falling branch over that of one line  [-]
+
+  BR_HD bool bends() const { return steep > 0.0; }
+};
+
 /// Linear up to the strength, then linear softening; unloading along the secant (u > 0: opened).
 ///
 ///   F = K u                        u <= u_1 = F_t / K
 ///   F = F_t - (K / zeta)(u - u_1)  u_1 < u < u_2 = u_1 (1 + zeta), then rupture
 ///
-/// or with u_2 given instead of zeta.
+/// or with u_2 given instead of zeta. With a knee the falling branch is the larger of two lines, a
+/// steep one and a flat one, which meet at s F_t and u_1 + x (u_2 - u_1), s + x < 1:
 ///
-/// Source: docs/theory.md, cohesive links; envelope of Durand 2012's reference law (Rousseau 2008).
+///   F = F_t - (K / zeta)(u - u_1) (1 - s) / x,     F = (K / zeta)(u_2 - u) s / (1 - x)
+///
+/// Source: docs/theory.md, cohesive links; envelope of Durand 2012's reference law (Rousseau 2008);
+/// two lines: Petersson 1981.
 template <class R>
 struct TensionSoftening {
   R stiffness;              ///< K  [N/m]
@@ -20,6 +33,7 @@ struct TensionSoftening {
   double softening;         ///< zeta >= 0, elastic over softening stiffness; 0 is brittle  [-]
   bool ends_given = false;  ///< whether u_2 is given, which rules instead of zeta
   R last = {};              ///< u_2 > u_1, if given  [m]
+  SofteningKnee knee = {};
 
   BR_HD R onset() const { return strength / stiffness; }
   BR_HD R rupture() const { return ends_given ? last : onset() * (1.0 + softening); }
@@ -35,7 +49,9 @@ struct TensionSoftening {
   /// 1 - secant stiffness / K after a largest opening.  [-]
   BR_HD R damage(const R& opening) const {
     const R u1 = onset();
-    const R envelope = u1 - (opening - u1) * inverse();  // over K
+    R envelope =
+        u1 - (opening - u1) * (knee.bends() ? knee.steep * inverse() : inverse());  // over K
+    if (knee.bends()) envelope = max(envelope, (rupture() - opening) * (knee.flat * inverse()));
     const R lost = min(constant<R>(1.0), 1.0 - envelope / opening);
     return select(opening > u1, lost, constant<R>(0.0));
   }
@@ -43,10 +59,17 @@ struct TensionSoftening {
   /// With b = u - u_1 it is K b u_1 (1 + 1/zeta) / 2, at most that of a whole rupture.  [J]
   BR_HD R spent(const R& opening) const {
     const R beyond = max(opening - onset(), constant<R>(0.0));
-    return min(0.5 * strength * beyond * (1.0 + inverse()), toughness());
+    if (!knee.bends()) return min(0.5 * strength * beyond * (1.0 + inverse()), toughness());
+    // Beyond the knee: all but the triangle below u_2 that the secant and the flat line leave.
+    const R steep = 0.5 * strength * beyond * (1.0 + knee.steep * inverse());
+    const R left = max(rupture() - opening, constant<R>(0.0)) * (knee.flat * inverse());
+    return min(steep, toughness() - 0.5 * stiffness * rupture() * left);
   }
-  /// Energy of a whole rupture, F_t u_2 / 2.  [J]
-  BR_HD R toughness() const { return 0.5 * strength * rupture(); }
+  /// Energy of a whole rupture, F_t u_2 / 2; with a knee F_t (u_1 + (s + x)(u_2 - u_1)) / 2.  [J]
+  BR_HD R toughness() const {
+    if (!knee.bends()) return 0.5 * strength * rupture();
+    return 0.5 * strength * (onset() + knee.area * (rupture() - onset()));
+  }
 
  private:
   /// 1 / zeta

@@ -128,6 +128,8 @@ struct MaterialConfig {
   double cohesion = 5.5e6;                     ///< C, local  [Pa]
   double softening = 5.0;                      ///< zeta: initial over softening stiffness  [-]
   double fracture_energy = 0.0;                ///< G_F, macroscopic; 0: by zeta  [J/m2]
+  double knee_strength = 0.0;                  ///< s; 0: softening is one line  [-]
+  double knee_opening = 0.02;                  ///< x  [-]
   double friction_angle = 0.5235987755982988;  ///< phi_i of intact links  [rad]
   double rolling_stiffness = 1.0;              ///< beta_r  [-]
   double rolling_limit = 0.17;                 ///< eta  [-]
@@ -187,6 +189,12 @@ struct MaterialConfig {
         "G_F, energy of a crack in tension over its area, which sets how far links open before "
         "they "
         "break, whatever the size of elements; 0: softening sets that");
+    key("knee_strength", knee_strength, "-", Range{0.0, 1.0, Open::high},
+        "s, stress at which softening in tension bends from steep to flat, over tensile_strength; "
+        "0: it is one line");
+    key("knee_opening", knee_opening, "-", Range{0.0, 1.0, Open::both},
+        "x, opening at that bend over that at which the link breaks, both beyond that of the "
+        "peak; s + x below 1");
     key("friction_angle", friction_angle, "rad", Range{0.0, 1.5707, Open::high},
         "internal friction angle of intact links");
     key("rolling_stiffness", rolling_stiffness, "-", Range{0.0, 1e6},

@@ -83,6 +83,12 @@ RateCurve rate_curve(const MaterialConfig& m) {
   return {exponent, bend, std::sqrt(m.young / m.density) / m.rate_crossings};
 }
 
+SofteningKnee softening_knee(const MaterialConfig& m) {
+  if (m.knee_strength == 0.0) return {};
+  const double s = m.knee_strength, x = m.knee_opening;
+  return {(1.0 - s) / x, s / (1.0 - x), s + x};
+}
+
 ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact) {
   const LocalElasticity local = local_elasticity(m);
   ConcreteLink law{};
@@ -108,6 +114,7 @@ ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact)
   law.crushing_slope = m.crushing_slope;
   law.closing_strain = m.closing_strain;
   law.rate = rate_curve(m);
+  law.knee = softening_knee(m);
   return law;
 }
 

@@ -78,6 +78,11 @@ class Check {
           fmt::format("{}.poisson = {} is above 1 / alpha = {:.4g}: links would have a negative "
                       "shear stiffness",
                       path, m.poisson, 1.0 / m.alpha));
+    if (m.knee_strength > 0.0 && !(m.knee_strength + m.knee_opening < 1.0))
+      add(
+          fmt::format("{}: knee_strength + knee_opening must be below 1 (they are {} and {}): "
+                      "softening is steep before its knee",
+                      path, m.knee_strength, m.knee_opening));
     if (m.law == "ldpm") check_ldpm(m, path);
     if (!m.bedding.is_none()) check_bedding(m, path + ".bedding");
     if (m.law == "interface" && m.bond == "mc90" && !(m.slip1 <= m.slip2 && m.slip2 < m.slip3))

@@ -133,7 +133,8 @@ double rupture_opening(const MaterialConfig& material, const dem::ContactConfig&
         "  use {}, or a smaller tensile_strength",
         material.name, asked, body, std::max(opening, 0.0), onset, cure));
   };
-  const double first = 2.0 * asked / (first_guess * material.tensile_strength);
+  const double below = dem::softening_knee(material).area;
+  const double first = 2.0 * asked / (first_guess * material.tensile_strength * below);
   refuse_brittle(first);
   const double energy = notched_cube_energy(material, contact, packed, first);
   const double second = first * asked / energy;

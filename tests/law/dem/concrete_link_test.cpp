@@ -113,6 +113,48 @@ TEST(ConcreteLink, the_peak_is_the_strength_and_the_fall_is_linear) {
   EXPECT_NEAR(peak, strength, 2e-3 * strength);
 }
 
+/// The area under two lines of tension, closed: what is spent and stored is the work done, on the
+/// way as at the end; beyond the knee unloading is still the secant.
+TEST(ConcreteLink, with_a_knee_falls_along_two_lines_and_books_their_area) {
+  ConcreteLink l = law();
+  const double s = 1.0 / 3.0, x = 2.0 / 9.0;  // Petersson's
+  l.knee = {(1.0 - s) / x, s / (1.0 - x), s + x};
+  const double bend = onset + x * (rupture - onset);
+  const auto line = [&](double u) {
+    if (u <= onset) return stiffness * u;
+    if (u <= bend) return strength * (1.0 - (1.0 - s) * (u - onset) / (bend - onset));
+    return u < rupture ? strength * s * (rupture - u) / (rupture - bend) : 0.0;
+  };
+  const double energy =
+      0.5 * strength * (onset + (1.0 + s) * (bend - onset) + s * (rupture - bend));
+  for (const bool given : {false, true}) {
+    l.rupture_opening = given ? rupture : 0.0;
+    EXPECT_NEAR(l.tension(link).toughness(), energy, 1e-14 * energy);
+    LinkState<double> state{};
+    Pair pair;
+    double work = 0.0, before = 0.0, broke = 0.0;
+    constexpr int steps = 20'000;
+    for (int i = 1; i <= steps; ++i) {
+      const double u = 1.01 * rupture * i / steps;
+      pair.b.position.x = length + u;
+      const LinkResponse<double> r = l.response(link, pair.move_b({}), state);
+      ASSERT_NEAR(r.normal, line(u), 1e-9 * strength) << "u / u_2 = " << u / rupture;
+      work += 0.5 * (before + r.normal) * 1.01 * rupture / steps;
+      before = r.normal;
+      broke += r.broke;
+      if (state.opening < 0.0) continue;
+      const double kept = l.spent(link, state.opening) + l.stored(link, u, state);
+      ASSERT_NEAR(kept, work, 1e-5 * energy) << "u / u_2 = " << u / rupture;
+      if (i % 997 != 0) continue;
+      LinkState<double> back = state;  // half way back: half the force
+      pair.b.position.x = length + 0.5 * u;
+      ASSERT_NEAR(l.response(link, pair.move_b({}), back).normal, 0.5 * line(u), 1e-9 * strength);
+    }
+    EXPECT_NEAR(broke, energy, 1e-12 * energy);
+    EXPECT_NEAR(work, energy, 1e-3 * energy);
+  }
+}
+
 TEST(ConcreteLink, unloading_goes_to_the_origin_and_gains_nothing) {
   LinkState<double> state{};
   Pair pair;

@@ -295,6 +295,7 @@ TEST(ConfinedLink, a_random_path_puts_in_what_is_stored_or_spent) {
     rig.law.turn_wear = 0.1;
     rig.law.compaction_strength = 2e6;
     rig.law.crushing_strength = 1e6;
+    if (seed > 1) rig.law.knee = {0.8 / 0.1, 0.2 / 0.9, 0.2 + 0.1};  // softening along two lines
     double most = 0.0;
     Vec3 velocity{}, spin{};
     for (int i = 0; i < 60'000; ++i) {

@@ -1,5 +1,5 @@
-// The same bits for links whose strength depends on their strain rate: threads, packs, the shadow
-// space, ranks, precision, across a checkpoint.
+// The same bits for links whose strength depends on their strain rate and whose softening has a
+// knee: threads, packs, the shadow space, ranks, precision, across a checkpoint.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -18,7 +18,8 @@ namespace rate_test {
 constexpr int steps = 500;  // the slab breaks from the 200th on
 
 dem::Config config(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> overrides{"material.c30.rate=malvar_ross"};
+  std::vector<std::string> overrides{"material.c30.rate=malvar_ross",
+                                     "material.c30.knee_strength=0.3333"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return read_case<dem::Config>(std::string(source_dir) + "/cases/rc_slab/small.toml", overrides);
 }
@@ -48,11 +49,14 @@ void expect_same(const End& end) {
   EXPECT_EQ(end.energy.elastic, reference().energy.elastic);
 }
 
-TEST(RateBits, differ_from_those_of_links_without_a_rate) {
+TEST(RateBits, differ_from_those_of_links_without_a_rate_or_without_a_knee) {
   dem::Config none = config();
   none.materials[0].rate = "none";
   for (const dem::MaterialConfig& m : none.materials) EXPECT_EQ(m.rate, "none");
   EXPECT_NE(end_of(dem::make_world(none, model(), {})).hash, reference().hash);
+  dem::Config straight = config();
+  straight.materials[0].knee_strength = 0.0;
+  EXPECT_NE(end_of(dem::make_world(straight, model(), {})).hash, reference().hash);
 }
 
 TEST(RateBits, are_the_same_on_threads_packs_and_in_the_shadow_space) {

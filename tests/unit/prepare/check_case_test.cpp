@@ -113,6 +113,16 @@ TEST(CheckDem, tells_of_bodies_that_reach_behind_a_wall) {
   }
 }
 
+TEST(CheckDem, refuses_softening_that_is_not_steep_before_its_knee) {
+  dem::Config config = dem::case_with_materials();
+  config.materials[0].knee_strength = 0.6;
+  config.materials[0].knee_opening = 0.3;
+  EXPECT_EQ(refused([&] { dem::check_case(config); }).find("knee_strength"), std::string::npos);
+  config.materials[0].knee_opening = 0.4;
+  EXPECT_NE(refused([&] { dem::check_case(config); }).find("knee_strength + knee_opening"),
+            std::string::npos);
+}
+
 TEST(CheckDem, refuses_what_ldpm_cannot_do) {
   using dem::Config;
   check_case(dem::ldpm_cube());
