@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/setup/materials.hpp"
 #include "exec/error.hpp"
 #include "io/whole_file.hpp"
 #include "laboratory/ldpm_tests.hpp"
@@ -153,9 +154,11 @@ double opening_of(const dem::MaterialConfig& m, double radius) {
   constexpr double crossing = 2.7, oblique = 1.5;  // theory.md, fracture energy
   constexpr double least = 20e-6;
   const double link = 2.4 * radius;
-  return std::max(least, m.fracture_energy > 0.0
-                             ? 2.0 * m.fracture_energy / (crossing * oblique * m.tensile_strength)
-                             : (1.0 + m.softening) * m.tensile_strength / m.young * link);
+  const double below = dem::softening_knee(m).area;
+  return std::max(least,
+                  m.fracture_energy > 0.0
+                      ? 2.0 * m.fracture_energy / (crossing * oblique * m.tensile_strength * below)
+                      : (1.0 + m.softening) * m.tensile_strength / m.young * link);
 }
 
 /// Two notches, which cut links alone; the ends are held and part until the crack is open.
@@ -229,7 +232,7 @@ void cut_notch(dem::Config& c, const Sample& sample, const Vec3& size, double ra
   body.volume = size.x * size.y * size.z - 4.0 * radius * beam_notch * size.y;
 }
 
-void load_beam(dem::Config& c, const Vec3& size, double radius, double speed) {
+void load_beam(dem::Config& c, const Vec3& size, double radius, double speed, double apart) {
   // Lines across the beam, as thin as holds three elements: all elements of a support keep one
   // height, so that wide ones clamp the ends of the beam (three radii: a fifth of the moment at the
   // peak, a third after it). An element takes some 4.4 R^2 of a face.
@@ -238,12 +241,18 @@ void load_beam(dem::Config& c, const Vec3& size, double radius, double speed) {
   const auto roller = [&](const char* name, double x) {
     return support(name, {x - width, -far, -far}, {x + width, far, below}, {"z"}, {}, 0.0);
   };
+  const auto press = [&](const char* name, double x) {
+    return support(name, {x - width, -far, -below}, {x + width, far, far}, {"z"},
+                   {0.0, 0.0, -speed}, 0.1 * c.time.end);
+  };
   c.supports = {roller("left", -0.5 * beam_span), roller("right", 0.5 * beam_span),
-                support("top", {-width, -far, -below}, {width, far, far}, {"z"}, {0.0, 0.0, -speed},
-                        0.1 * c.time.end)};
+                press("top", -0.5 * apart)};
   c.probes = {
       probe("force_top", "top", "force_z", "sum"), probe("force_left", "left", "force_z", "sum"),
       probe("force_right", "right", "force_z", "sum"), probe("top", "top", "position_z", "mean")};
+  if (apart == 0.0) return;
+  c.supports.push_back(press("top_right", 0.5 * apart));
+  c.probes.push_back(probe("force_top_right", "top_right", "force_z", "sum"));
 }
 
 }  // namespace
@@ -303,6 +312,13 @@ const std::vector<SpecimenTest>& specimen_tests() {
        "three-point bending, plain beam",
        Loading::bending,
        {beam_length, beam_edge, beam_edge}},
+      {"bending_thirds",
+       "four-point bending, plain beam",
+       Loading::bending,
+       {beam_length, beam_edge, beam_edge},
+       0.0,
+       0.0,
+       beam_span / 3.0},
       {"triaxial_5", "triaxial compression at 5 MPa", Loading::triaxial, prism, 5e6},
       {"triaxial_20", "triaxial compression at 20 MPa", Loading::triaxial, prism, 20e6},
       {"triaxial_50", "triaxial compression at 50 MPa", Loading::triaxial, prism, 50e6},
@@ -361,7 +377,7 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
       c.local_damping = 0.05;  // more would be work of the falling halves
       c.time.end = 7e-3;
       if (test.notch > 0.0) cut_notch(c, sample, test.size, radius, folder);
-      load_beam(c, test.size, radius, 0.08);
+      load_beam(c, test.size, radius, 0.08, test.apart);
       break;
     case Loading::triaxial:
       load_triaxially(c, test.size, test.pressure);

@@ -188,6 +188,10 @@ SpecimenResult of_beam(const SpecimenTest& test, const report::NumberTable& tabl
   const Values top = column(table, "top", folder);
   Values deflection(top.size()), force = column(table, "force_top", folder);
   for (std::size_t k = 0; k < top.size(); ++k) deflection[k] = top[0] - top[k];
+  if (test.apart > 0.0) {
+    const Values right = column(table, "force_top_right", folder);
+    for (std::size_t k = 0; k < force.size(); ++k) force[k] += right[k];
+  }
   const auto [low, high] = std::minmax_element(force.begin(), force.end());
   force = scaled(force, std::abs(*low) > std::abs(*high) ? -1.0 : 1.0);
   SpecimenResult result{{"deflection [m]", "force [N]", deflection, force}, {}};
@@ -196,7 +200,8 @@ SpecimenResult of_beam(const SpecimenTest& test, const report::NumberTable& tabl
   if (test.notch > 0.0)  // a plain beam's holds work spread over its length
     result.numbers["fracture_energy"] = spent(table, folder) / (test.size.y * depth);
   // Of the section above the notch, by the theory of beams.
-  result.numbers["strength"] = 1.5 * peak * beam_span / (test.size.y * depth * depth);
+  result.numbers["strength"] =
+      1.5 * peak * (beam_span - test.apart) / (test.size.y * depth * depth);
   return result;
 }
 

@@ -50,7 +50,9 @@ TEST(Specimens, BeamsLieOnLinesThatHoldAFewElements) {
   for (const int elements : {600, 2400}) {
     Sample sample = concrete();
     sample.elements = elements;
-    const dem::Config config = case_of(test_named("bending_plain"), sample, 1, ".");
+    const dem::Config config = case_of(test_named("bending_thirds"), sample, 1, ".");
+    EXPECT_EQ(config.supports.size(), 4U);
+    EXPECT_DOUBLE_EQ(config.supports[3].min.x - config.supports[2].min.x, 0.1) << "a third";
     const double radius = std::cbrt(0.75 * 0.002 * sample.compactness / (pi * elements));
     const dem::Model model = build_model(config, ".");
     for (const dem::SupportConfig& s : config.supports) {
