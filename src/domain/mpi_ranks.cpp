@@ -65,13 +65,18 @@ class SharedSigns {
     int size = 0, rank = 0, unit = 0;
     must(MPI_Comm_size(here, &size), "MPI_Comm_size");
     must(MPI_Comm_rank(here, &rank), "MPI_Comm_rank");
-    const MPI_Aint own =
-        rank == 0 ? size * static_cast<MPI_Aint>(sizeof(LifeSign) + sizeof(VoteSlot)) : 0;
+    // MPI aligns it for numbers, not for lines of the cache; mapped by pages, it begins alike in
+    // all.
+    static_assert(alignof(LifeSign) >= alignof(VoteSlot));
+    const std::size_t all = static_cast<std::size_t>(size) * (sizeof(LifeSign) + sizeof(VoteSlot));
+    const auto own = static_cast<MPI_Aint>(rank == 0 ? all + alignof(LifeSign) : 0);
     void* memory = nullptr;
     must(MPI_Win_allocate_shared(own, 1, MPI_INFO_NULL, here, &memory, &window_),
          "MPI_Win_allocate_shared");
     MPI_Aint bytes = 0;
     must(MPI_Win_shared_query(window_, 0, &bytes, &unit, &memory), "MPI_Win_shared_query");
+    auto room = static_cast<std::size_t>(bytes);
+    std::align(alignof(LifeSign), all, memory, room);
     auto* const first = static_cast<LifeSign*>(memory);
     signs_ = {first, static_cast<std::size_t>(size)};
     votes_ = {reinterpret_cast<VoteSlot*>(first + size), static_cast<std::size_t>(size)};

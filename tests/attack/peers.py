@@ -104,7 +104,8 @@ def run(program, *words):
 def must(code):
     """Ends the part of a program that does not run here with what it says."""
     if code != 0:
-        raise RuntimeError(b" ".join(content("told.txt").split()[-80:]).decode(errors="replace"))
+        said = b" ".join(content("told.txt").split()).decode(errors="replace")
+        raise RuntimeError(said[said.rfind("Fatal error:") if "Fatal error:" in said else -300:][:300])
 
 
 def lammps(script):
@@ -156,7 +157,7 @@ def main():
             good, result, go_on = prepare()
             must(go_on(good))
         except RuntimeError as error:
-            print(f"{name} does not run on this machine: {error}")
+            print(f"{name} does not run here: {error}")
             continue
         wanted = content(result)
         if outcome(go_on, good, result, wanted) != "loaded, same result":
