@@ -202,10 +202,10 @@ struct RenderCommand {
     if (!good) throw InputError("--size " + size + ": pixels, such as 1600x1200 or 1600");
   }
 
-  /// With the title that is asked for or, without one, that of the run's case.
+  /// With the title that is asked for or, without one, the case's; panels say of which folder.
   RenderOptions titled(const std::string& of) const {
     RenderOptions with = options;
-    with.title = title ? *title : run_title(of);
+    with.title = title ? *title : beside.empty() ? run_title(of) : of + ": " + run_title(of);
     return with;
   }
 

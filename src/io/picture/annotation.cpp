@@ -26,6 +26,17 @@ std::string typeset(std::string text) {
   return text;
 }
 
+/// As much of a text as fits, with dots where it ends early.
+std::string shortened(std::string text, int width, int scale) {
+  if (text_width(text, scale) <= width) return text;
+  const auto amid_letter = [](char byte) { return (byte & 0xC0) == 0x80; };  // of UTF-8
+  while (!text.empty() && (text.back() == ' ' || text_width(text + "...", scale) > width)) {
+    while (text.size() > 1 && amid_letter(text.back())) text.pop_back();
+    text.pop_back();
+  }
+  return text.empty() ? text : text + "...";
+}
+
 /// Width of the legend with its margins; 0 if there is nothing to explain.  [pixels]
 int legend_width(const Legend& legend, int scale) {
   int width = text_width(typeset(legend.title), scale);
@@ -137,15 +148,18 @@ Window scene_window(const RenderOptions& options, const Legend& legend) {
 }
 
 void draw_title(Paper& paper, const std::string& title, const Frame& frame, int scale) {
-  const int left = rim * scale, top = rim * scale, gap = 12 * scale;
+  const int left = rim * scale, top = rim * scale, gap = 12 * scale, right = paper.width - left;
   const std::string time = typeset("t = " + time_text(frame.time)),
                     step = fmt::format("step {}", frame.step);
-  const int time_at = title.empty() ? left : left + text_width(title, scale) + gap;
-  const int step_at = time_at + text_width(time, scale) + gap;
-  paper.veil(left, top, step_at + text_width(step, scale), top + font_height * scale, scale);
-  paper.write(left, top, title, scale, ink);
+  const int of_time = text_width(time, scale);
+  const std::string shown = shortened(title, right - of_time - gap - left, scale);
+  const int time_at = shown.empty() ? left : left + text_width(shown, scale) + gap;
+  const int step_at = time_at + of_time + gap;
+  const int end = step_at + text_width(step, scale);
+  paper.veil(left, top, end <= right ? end : step_at - gap, top + font_height * scale, scale);
+  paper.write(left, top, shown, scale, ink);
   paper.write(time_at, top, time, scale, ink);
-  paper.write(step_at, top, step, scale, faint);
+  if (end <= right) paper.write(step_at, top, step, scale, faint);
 }
 
 void draw_legend(Paper& paper, const Legend& legend, int scale) {

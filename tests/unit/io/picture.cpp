@@ -425,6 +425,23 @@ TEST(picture, texts_over_elements_stand_on_light_ground) {
   }
 }
 
+TEST(picture, a_long_title_is_cut_so_that_the_time_stands_in_the_picture) {
+  Frame frame = spheres({{0, 0, 0}}, 0.1);
+  RenderOptions options = cube_options();
+  options.width = 300;
+  options.title = "Rock impact on a reinforced concrete slab, \u00bc of it, and some words more";
+  const auto first_line = [&](double time) {
+    frame.time = time;
+    Image image = render(frame, options);
+    image.height = 24;
+    return patch_of(image, [](const Pixel& p) { return p[0] < 120; });
+  };
+  const Patch at_start = first_line(0.0), later = first_line(1.5e-3);
+  EXPECT_NE(at_start.pixels, later.pixels);
+  EXPECT_LT(std::max(at_start.right, later.right), 300 - 11);
+  EXPECT_GT(std::min(at_start.right, later.right), 300 - 40);
+}
+
 TEST(picture, the_extent_of_the_first_frame_keeps_the_camera_of_a_series) {
   RenderOptions options = cube_options();
   options.extent = bulk_extent(spheres({{-0.5, 0, 0}, {0.5, 0, 0}}, 0.1));
