@@ -91,6 +91,8 @@ class WatchCommand {
     // The lock first: a run that ends meanwhile has written its summary before.
     const bool locked = ResultFolder::is_locked(folder);
     const std::string path = folder + "/summary.json";
+    if (!std::filesystem::exists(path))
+      throw IoError(path + ": no such file: there is no run, or it still builds its model");
     const auto summary = nlohmann::json::parse(read_whole_file(path), nullptr, false);
     if (!summary.is_object() || !summary.contains("status"))
       throw InputError(path + ": is no summary of a run");

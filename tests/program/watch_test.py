@@ -98,7 +98,7 @@ class Watch(unittest.TestCase):
     def test_names_a_folder_without_a_run(self):
         watch = subprocess.run([PROGRAM, "watch", "/nowhere"], capture_output=True, text=True)
         self.assertEqual(watch.returncode, 3)
-        self.assertIn("/nowhere/summary.json", watch.stderr)
+        self.assertIn("/nowhere/summary.json: no such file: there is no run, or it still", watch.stderr)
 
 
 if __name__ == "__main__":
