@@ -186,7 +186,8 @@ constexpr bool in_space = std::is_same_v<SomeMesh, prepare::TetMesh>;
 template <class SomeMesh>
 std::string gmsh_text(const SomeMesh& mesh) {
   constexpr int dimension = in_space<SomeMesh> ? 3 : 2;
-  const auto &sets = side_sets_of(mesh), &parts = parts_of(mesh);
+  const auto& sets = side_sets_of(mesh);
+  const auto& parts = parts_of(mesh);
   std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
   if (sets.size() + parts.size() > 0) {
     text += fmt::format("$PhysicalNames\n{}\n", sets.size() + parts.size());
