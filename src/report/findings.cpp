@@ -343,8 +343,9 @@ class Findings {
     const auto events = record_.number("emission.events");
     const auto largest = record_.number("emission.largest_magnitude");
     if (!events || !largest) return "";
-    std::string text = fmt::format("Acoustic emission: {}, of magnitudes up to {:.2g}",
-                                   count_of(*events, "event"), *largest);
+    std::string text =
+        fmt::format("Acoustic emission: {}, of {} {:.2g}", count_of(*events, "event"),
+                    *events == 1.0 ? "magnitude" : "magnitudes up to", *largest);
     if (const auto b = record_.number("emission.b_value"))
       text += fmt::format(", b = {:.2f} ± {:.2f}", *b,
                           record_.number("emission.b_deviation").value_or(0.0));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/whole_file.hpp"
 #include "report/breakage.hpp"
 #include "report/survey.hpp"
 #include "unit/io/solid_scene.hpp"
@@ -45,6 +46,20 @@ TEST(Findings, ListsOfBrokenLinksTellWhenMoreCloselyThanFrames) {
   const std::string text = joined(findings_of(read_record(folder.path())));
   EXPECT_NE(text.find("the first broke by 1.3 ms, half of them by 1.5 ms."), std::string::npos)
       << text;
+}
+
+TEST(Findings, OneEventHasOneMagnitude) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path());
+  const std::string path = folder.path() + "/summary.json", plain = read_whole_file(path);
+  for (const auto& [count, told] :
+       {std::pair{1, "1 event, of magnitude -3.5."}, {2, "2 events, of magnitudes up to -3.5."}}) {
+    test::write_text(
+        path, fmt::format(R"({{"emission": {{"events": {}, "largest_magnitude": -3.5}},{})", count,
+                          plain.substr(1)));
+    const std::string text = joined(findings_of(read_record(folder.path())));
+    EXPECT_NE(text.find(told), std::string::npos) << text;
+  }
 }
 
 TEST(Findings, AnUnbrokenChainTellsHowNearItCame) {
