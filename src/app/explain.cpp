@@ -140,9 +140,10 @@ const std::vector<Law>& laws() {
   static const std::vector<Law> all{
       {"dem3d",
        "[material.NAME]",
-       {"tensile_strength", "softening", "fracture_energy"},
+       {"tensile_strength", "softening", "fracture_energy", "knee_strength", "knee_opening"},
        "sigma = E u / L up to T, then falls with slope E / (zeta L): a link breaks at u = (1 + "
-       "zeta) T L / E; fracture_energy sets zeta so that the area is G_F",
+       "zeta) T L / E; fracture_energy sets zeta so that the area is G_F; knee_strength s above 0 "
+       "bends the fall at s T and a part knee_opening of the way",
        "docs/theory.md, cohesive links",
        concrete_tension},
       {"dem3d",
