@@ -22,7 +22,7 @@ const Outcome& slab_alone() {
 
 TEST(DemRanks, leave_the_same_state_ledger_and_contacts_for_any_number_of_them) {
   EXPECT_GT(slab_alone().cracks, 50U);
-  for (const int count : {1, 2, 3, 5, 8, 16, 32}) {
+  for (const int count : {1, 2, 3, 5, 10, 32}) {
     const Shared shared = on_ranks(count, slab(), steps);
     EXPECT_EQ(shared.outcome, slab_alone()) << count << " ranks";
     if (count > 3) {
@@ -34,7 +34,7 @@ TEST(DemRanks, leave_the_same_state_ledger_and_contacts_for_any_number_of_them) 
 TEST(DemRanks, leave_the_same_state_of_a_piece_that_flies_apart) {
   const Slab piece = slab_piece();
   const Outcome expected = alone(piece, 300);
-  for (const int count : {1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 16, 25, 32})
+  for (const int count : {2, 3, 4, 6, 7, 9, 13, 25})
     EXPECT_EQ(on_ranks(count, piece, 300).outcome, expected) << count << " ranks";
 }
 

@@ -14,7 +14,7 @@ TEST(FdemRanks, leave_the_same_state_ledger_and_couples_amid_fracture) {
   const Scene scene = impact("intrinsic");
   const Outcome expected = alone(scene, 300);
   EXPECT_GT(expected.cracks, 20U);
-  for (const int count : {1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 16, 25, 32})
+  for (const int count : {1, 2, 3, 4, 5, 7, 8, 10, 13, 32})
     EXPECT_EQ(on_ranks(count, scene, 300).outcome, expected) << count << " ranks";
 }
 
@@ -22,7 +22,7 @@ TEST(FdemRanks, leave_the_same_state_where_joints_wake_at_their_strength) {
   const Scene scene = impact("extrinsic");
   const Outcome expected = alone(scene, 300);
   EXPECT_GT(expected.cracks, 10U);
-  for (const int count : {1, 2, 3, 5, 8, 16, 32})
+  for (const int count : {2, 5, 13})
     EXPECT_EQ(on_ranks(count, scene, 300).outcome, expected) << count << " ranks";
 }
 
