@@ -16,7 +16,7 @@ namespace fdem3_same_bits_test {
 using fdem3::testing::meeting_cubes;
 using fdem3::testing::Scene;
 
-constexpr int many = 650;
+constexpr int many = 420;
 
 /// Everything that must not depend on who computes it.
 struct Outcome {
@@ -163,7 +163,7 @@ TEST(Fdem3SameBits, of_a_run_that_is_saved_and_goes_on) {
   const Scene scene = meeting_cubes();
   const auto path = std::filesystem::temp_directory_path() / "breccia_fdem3_test.br";
   const std::unique_ptr<Method> first = make_method(scene.config, scene.model, Exec{});
-  while (first->steps() < 400) first->advance({1e300, 400});
+  while (first->steps() < 260) first->advance({1e300, 260});
   CheckpointWriter writer;
   first->save(writer);
   writer.write(path.string());
