@@ -37,17 +37,8 @@ BR_HD double gap_along(const Vector& axis, const Vector (&a)[corners], const Vec
   return max(low_b - high_a, low_a - high_b) / size;
 }
 
-/// Whether triangles are further apart than a distance; as far as the axes of sides tell.
-BR_HD inline bool are_separated(const Vec2 (&a)[3], const Vec2 (&b)[3], double distance) {
-  for (int k = 0; k < 3; ++k) {
-    const Vec2 of_a = a[(k + 1) % 3] - a[k], of_b = b[(k + 1) % 3] - b[k];
-    if (gap_along(Vec2{of_a.y, -of_a.x}, a, b) > distance ||
-        gap_along(Vec2{of_b.y, -of_b.x}, a, b) > distance)
-      return true;
-  }
-  return false;
-}
-/// Whether tetrahedra are; as far as the axes of sides and of pairs of edges tell.
+/// Whether tetrahedra are further apart than a distance; as far as the axes of sides and of pairs
+/// of edges tell.
 BR_HD inline bool are_separated(const Vec3 (&a)[4], const Vec3 (&b)[4], double distance) {
   Vec3 edge_a[6], edge_b[6];
   int count = 0;
