@@ -25,6 +25,13 @@ cudaStream_t made_stream() {
   check_device(cudaStreamCreateWithFlags(&made, cudaStreamNonBlocking), "making a stream");
   return made;
 }
+
+/// CUDA itself says that the driver is too old where there is none.
+std::string why_no_gpu(cudaError_t result) {
+  int driver = 0;
+  const bool none = cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0;
+  return none ? "this machine has no NVIDIA driver" : cudaGetErrorString(result);
+}
 }  // namespace
 
 cudaStream_t device_stream() {
@@ -63,7 +70,7 @@ bool launches_overlap() {
 void use_device(int number) {
   int count = 0;
   if (const cudaError_t result = cudaGetDeviceCount(&count); result != cudaSuccess)
-    throw DeviceError(std::string("no GPU can be used: ") + cudaGetErrorString(result) +
+    throw DeviceError("no GPU can be used: " + why_no_gpu(result) +
                       "; nothing was run\n  use --device cpu, or look at nvidia-smi");
   if (number < 0 || number >= count)
     throw DeviceError("there is no GPU " + std::to_string(number) + "; this machine has " +
