@@ -18,8 +18,8 @@ def main(folder):
         if not isinstance(of, dict) or "benchmarks" not in of:
             continue
         machine, made = of["machine"], of["breccia"]
-        print(f"## {file.stem}\n\n{machine.get('gpu') or machine.get('cpu')}, {machine.get('device')}, {machine.get('threads')} threads; Breccia {made['version']}"
-              f" {made.get('commit', '')}, {made['build']['compiler']}.\n\n| benchmark | of | quantity | value | least to largest | unit |\n|---|---|---|---|---|---|")
+        print(f"## {file.stem}\n\n{machine.get('gpu') or machine.get('cpu')}, {machine.get('device')}, {machine.get('threads')} threads; Breccia"
+              f" {' '.join(filter(None, [made['version'], made.get('commit')]))}, {made['build']['compiler']}.\n\n| benchmark | of | quantity | value | least to largest | unit |\n|---|---|---|---|---|---|")
         for benchmark, scenes in of["benchmarks"].items():
             for scene, quantities in scenes.items():
                 for quantity, told in quantities.items():

@@ -1,4 +1,4 @@
-"""Displayed formulas of a page, which are indented text in the repository, as KaTeX for the site.
+"""Displayed formulas of a page, which are indented text in the repository, as KaTeX for the site; symbols within sentences as letters with indices and powers.
 
 Columns of a line stand three or more spaces apart. A column with at most two words is a formula; others stay text. `<x - y>` with no
 space inside its ends are Macaulay's brackets, ` . ` and ` x ` between two factors are products.
@@ -6,7 +6,8 @@ space inside its ends are Macaulay's brackets, ` . ` and ` x ` between two facto
 import html
 import re
 
-GREEK = set("alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi psi omega Delta Phi Psi Omega".split())
+LETTERS = dict(zip("alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi psi omega Delta Phi Psi Omega".split(),
+                   "αβγδεζηθκλμνξπρστφψωΔΦΨΩ"))
 FUNCTIONS = {"sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "exp": r"\exp", "ln": r"\ln", "min": r"\min", "max": r"\max", "det": r"\det"}
 NAMED = {name: rf"\operatorname{{{name}}}" for name in ("tr", "sym", "cof", "sgn")} | FUNCTIONS | {"sum": r"\sum", "int": r"\int"}
 TOKEN = re.compile(r"`[^`]*`|[A-Za-z]+\d?(?:_[A-Za-z0-9]+)?'*|\d+(?:\.\d+)?(?:e-?\d+)?|<=|>=|<-|->|-=|\+=|\.\.\.|\s+|.")
@@ -25,15 +26,15 @@ def symbol(word):
     primes = "'" * (len(word) - len(word.rstrip("'")))
     if name in NAMED:
         base = NAMED[name]
-    elif name in GREEK:
+    elif name in LETTERS:
         base = rf"\{name}"
     elif len(name) == 1 or re.fullmatch(r"[A-Z]\d", name):
         base = name
-    elif name[0] == "d" and (len(name) == 2 or name[1:] in GREEK):
+    elif name[0] == "d" and (len(name) == 2 or name[1:] in LETTERS):
         base = r"\mathrm{d}" + symbol(name[1:])
     else:
         return None
-    below = rf"\{below}" if below in GREEK else below
+    below = rf"\{below}" if below in LETTERS else below
     return base + primes + (f"_{{{below}}}" if below else "") + " "
 
 
@@ -79,7 +80,7 @@ def formula(tokens):
             operand = False
             k += 1
             continue
-        elif token == "." and before.isspace() and after.isspace():
+        elif token == "." and (before.isspace() and after.isspace() or operand and re.match(r"[A-Za-z(]", after)):
             out.append(r"\cdot ")
             operand = False
             k += 1
@@ -134,14 +135,29 @@ def block(lines):
     return ['<div class="equation">', *html.escape(text, quote=False).split("\n"), "</div>"]
 
 
+ASIDE = re.compile(r"(`[^`]*`|\]\([^)]*\)|<[^<>\s][^<>]*>|\w+://\S+)")  # code, targets of links, tags, addresses
+SYMBOL = re.compile(rf"(?<![\w.])(?<![a-z]{{2}}/)({'|'.join(LETTERS)}|[A-Za-z](?=_))(?:_([A-Za-z0-9]+))?(?![\w-]*_|[A-Za-z0-9]|\.[a-z]{{2}})")
+POWER = re.compile(r"(?<=[\w)>])\^(?:\(([^()]+)\)|(-?\w+|<i>\w+</i>))")
+
+
+def sentence(line):
+    """A line of text with its symbols: `f_t`, `rho_s^2` and `**x**_b` as letters with indices and powers; code and links stay."""
+    parts = ASIDE.split(line)
+    for k in range(0, len(parts), 2):
+        text = SYMBOL.sub(lambda m: f"<i>{LETTERS.get(m[1], m[1])}</i>" + (f"<sub>{LETTERS.get(m[2], m[2])}</sub>" if m[2] else ""), parts[k])
+        text = re.sub(r"\*\*_([A-Za-z0-9]+)", r"**<sub>\1</sub>", text)
+        parts[k] = POWER.sub(lambda m: f"<sup>{m[1] or m[2]}</sup>", text)
+    return "".join(parts)
+
+
 def typeset(page):
-    """The page with every block of indented lines, between empty ones, as KaTeX; fenced blocks and lists stay."""
+    """The page with every block of indented lines, between empty ones, as KaTeX, and symbols of sentences; fenced blocks and headings stay."""
     lines, out, k, fenced = page.split("\n"), [], 0, False
     while k < len(lines):
         fenced ^= lines[k].startswith("```")
         begins = lines[k].startswith("    ") and not fenced and (k == 0 or not lines[k - 1].strip()) and not re.match(r"\s*[|>*-] ", lines[k])
         if not begins:
-            out.append(lines[k])
+            out.append(lines[k] if fenced or lines[k].startswith(("#", "    ")) else sentence(lines[k]))
             k += 1
             continue
         end = k

@@ -8,7 +8,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
-from typeset import column, typeset  # noqa: E402
+from typeset import column, sentence, typeset  # noqa: E402
 
 
 def tex(text):
@@ -27,10 +27,18 @@ class Formulas(unittest.TestCase):
         self.assertEqual(tex("(m_1 - m_0) x (m_2 - m_0)"), r"(m_{1}- m_{0}) \times (m_{2}- m_{0})")
         self.assertEqual(tex("(1 - x)/5 + x (1/3)"), r"(1 - x )/5 + x (1/3)")
         self.assertEqual(tex("a . b"), r"a \cdot b")
+        self.assertEqual(tex("D - v.n"), r"D - v \cdot n")
 
     def test_sentences_stay_text(self):
         self.assertTrue(tex("from b into a, of the middle surface").startswith(r"\text{from b into a}"))
         self.assertIn(r"\texttt{opening\_of}", column("`opening_of`")[0])
+
+    def test_symbols_of_sentences_have_indices_and_powers(self):
+        self.assertEqual(sentence("with R_a, rho_s L^2/12 and **x**_b"), "with <i>R</i><sub>a</sub>, <i>ρ</i><sub>s</sub> L<sup>2</sup>/12 and **x**<sub>b</sub>")
+        self.assertEqual(sentence("(nu - 1)^(1/3)"), "(<i>ν</i> - 1)<sup>1/3</sup>")
+        self.assertEqual(sentence("E/rho^theta"), "E/<i>ρ</i><sup><i>θ</i></sup>")
+        for same in ("`f_t` in [x](a_b.md#c_d)", "rock_force and dem/d_e.hpp", "a numerical alphabet"):
+            self.assertEqual(sentence(same), same)
 
     def test_pages_keep_what_is_no_formula(self):
         self.assertEqual(typeset("```\n\n    a = b\n```\n"), "```\n\n    a = b\n```\n")
