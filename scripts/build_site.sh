@@ -30,7 +30,7 @@ cp $katex/katex.min.css $katex/katex.min.js $katex/contrib/auto-render.js $stage
 mkdir $stage/katex/fonts && cp -L $katex/fonts/*.woff2 $stage/katex/fonts/
 echo 'document.addEventListener("DOMContentLoaded", () => renderMathInElement(document.body, {delimiters: [
   {left: "\\(", right: "\\)", display: false}, {left: "\\[", right: "\\]", display: true}], throwOnError: true}));' > $stage/katex/start.js
-echo '.equation { overflow-x: auto; overflow-y: hidden; } .md-typeset { overflow-wrap: break-word; } .md-nav__link { overflow-wrap: anywhere; } .md-typeset table:not([class]) th { min-width: 0; } .md-typeset table:not([class]) td, .md-typeset table:not([class]) th { padding: .4em .8em; } .md-typeset td:first-child code { white-space: nowrap; } @media (max-width: 600px) { .md-typeset td:first-child code { white-space: normal; } }' > $stage/site.css
+echo '.equation { overflow-x: auto; overflow-y: hidden; } .md-typeset { overflow-wrap: break-word; } .md-nav__link { overflow-wrap: anywhere; } .md-typeset table:not([class]) th { min-width: 0; } .md-typeset table:not([class]) td, .md-typeset table:not([class]) th { padding: .4em .8em; } .md-typeset td:not(:first-child) code { word-break: normal; overflow-wrap: normal; } .md-typeset td:first-child code { white-space: nowrap; } @media (max-width: 600px) { .md-typeset td:first-child code { white-space: normal; } }' > $stage/site.css
 
 /usr/bin/mkdocs build --strict --quiet
 python3 scripts/check_links.py build/site/html
