@@ -16,6 +16,7 @@ struct Motion {
   Vec3 velocity;           ///<  [m/s]
   AmplitudeTable x, y, z;  ///< factors of its parts
   std::int32_t load = 0;   ///< 1: what is given is no velocity, but a load over mass  [m/s2]
+  double friction = 0.0;   ///< of a platen that presses along its only held direction  [-]
 
   /// @param times, factors  of all tables
   BR_HD Vec3 at(double time, const View<const double>& times,
@@ -223,23 +224,27 @@ struct Kick {
 
  private:
   /// Prescribed degrees of freedom move as they must; dashpots C take up C (v_- + v_+) / 2, which
-  /// is stable for all of them.
+  /// is stable for all of them; platens rub.
   template <class R>
   BR_HD void hold(Index e, const ElementStateOf<R>& now, const GivenOf<R>& of,
                   ResultOf<R>& r) const {
-    double x[width_of<R>], y[width_of<R>], z[width_of<R>];
+    double x[width_of<R>], y[width_of<R>], z[width_of<R>], rough[width_of<R>];
     for (Index k = 0; k < width_of<R>; ++k) {
       const Index way = motion[e + k];
       const Vec3 v = way >= 0 && motions[way].load == 0
                          ? motions[way].at(time + 0.5 * next_dt, motion_times, motion_factors)
                          : Vec3{};
+      rough[k] = way >= 0 && is_rubbed(fixed[e + k]) ? motions[way].friction : 0.0;
       x[k] = v.x;
       y[k] = v.y;
       z[k] = v.z;
     }
     const R still = constant<R>(0.0);
     if ((of.fixed & fixed_driven) != 0) {
-      const auto absorbs = holds<R>(e, fixed_driven);
+      double dashed[width_of<R>];
+      for (Index k = 0; k < width_of<R>; ++k)
+        dashed[k] = (fixed[e + k] & fixed_driven) != 0 && !is_rubbed(fixed[e + k]) ? 1.0 : 0.0;
+      const auto absorbs = pack_of<R>(dashed) > 0.5;
       const R square = (0.25 * (last_dt + next_dt)) * (now.radius * now.radius) / of.mass;
       const auto slow = [&](const R& dashpot, const R& before, R& after) {
         const R half = square * dashpot;
@@ -249,12 +254,34 @@ struct Kick {
       slow(pack_of<R>(y), now.velocity.y, r.velocity.y);
       slow(pack_of<R>(z), now.velocity.z, r.velocity.z);
     }
+    const Vec3Of<R> alone = r.velocity + ((0.5 * (last_dt + next_dt)) / of.mass) * r.damped_force;
     prescribe(holds<R>(e, fixed_x), pack_of<R>(x), r.velocity.x, r.damped_force.x);
     prescribe(holds<R>(e, fixed_y), pack_of<R>(y), r.velocity.y, r.damped_force.y);
     prescribe(holds<R>(e, fixed_z), pack_of<R>(z), r.velocity.z, r.damped_force.z);
+    if ((of.fixed & fixed_driven) != 0) rub(e, pack_of<R>(rough), alone, r);
     prescribe(holds<R>(e, fixed_spin_x), still, r.spin.x, r.damped_torque.x);
     prescribe(holds<R>(e, fixed_spin_y), still, r.spin.y, r.damped_torque.y);
     prescribe(holds<R>(e, fixed_spin_z), still, r.spin.z, r.damped_torque.z);
+  }
+  /// Friction of platens, which stand still across the direction that they hold: it takes the
+  /// velocity there, but no more of it than friction times what the platen adds along.
+  /// @param alone  velocities without any platen or damping  [m/s]
+  template <class R>
+  BR_HD void rub(Index e, const R& friction, const Vec3Of<R>& alone, ResultOf<R>& r) const {
+    const R none = constant<R>(0.0);
+    const auto along_x = holds<R>(e, fixed_x), along_y = holds<R>(e, fixed_y),
+               along_z = holds<R>(e, fixed_z);
+    const R pushed = select(along_x, abs(r.velocity.x - alone.x),
+                            select(along_y, abs(r.velocity.y - alone.y),
+                                   select(along_z, abs(r.velocity.z - alone.z), none)));
+    const Vec3Of<R> across{select(along_x, none, r.velocity.x), select(along_y, none, r.velocity.y),
+                           select(along_z, none, r.velocity.z)};
+    const R size = norm(across), most = friction * pushed;
+    const R left = select(size > most, (size - most) / max(size, constant<R>(1e-300)), none);
+    const R kept = select(friction > 0.0, left, constant<R>(1.0));
+    r.velocity = {select(along_x, r.velocity.x, kept * across.x),
+                  select(along_y, r.velocity.y, kept * across.y),
+                  select(along_z, r.velocity.z, kept * across.z)};
   }
   /// Dead load on an element, or on each of a pack.  [N]
   template <class R>

@@ -24,8 +24,14 @@ enum Fixed : std::uint8_t {
   fixed_spin_y = 16,
   fixed_spin_z = 32,
   fixed_gone = 64,     ///< the element has been taken out of the model; bits before are set, too
-  fixed_driven = 128,  ///< free, but for dashpots or a load: `motion` gives them, not a velocity
+  fixed_driven = 128,  ///< free, but for dashpots or a load: `motion` gives them, not a velocity;
+                       ///< with one of x, y, z: a platen that rubs holds it
 };
+
+/// Whether a platen with friction holds an element.
+BR_HD constexpr bool is_rubbed(int fixed) {
+  return (fixed & fixed_driven) != 0 && (fixed & (fixed_x | fixed_y | fixed_z)) != 0;
+}
 
 BR_HD constexpr bool is_gone(std::uint8_t fixed) {
   return (fixed & fixed_gone) != 0;

@@ -71,6 +71,9 @@ void add_gauges(dem::Config& c, const Vec3& size) {
 void hold_ends(dem::Config& c) {
   for (std::size_t end : {0, 1}) c.supports[end].fix = {"all"};
 }
+void roughen_ends(dem::Config& c) {
+  for (std::size_t end : {0, 1}) c.supports[end].friction = c.contact.friction;
+}
 
 /// Opening at which a facet bears nothing any more: six times G_t / s_t.  [m]
 double widest_opening(const dem::MaterialConfig& m) {
@@ -170,6 +173,8 @@ std::vector<SpecimenTest> ldpm_tests(const dem::MaterialConfig& material) {
   std::vector<SpecimenTest> tests{
       {"compression_prism", "compression, prism, smooth ends", Loading::compression, prism},
       {"compression_cube", "compression, cube, smooth ends", Loading::compression, cube},
+      {"platens_prism", "compression, prism, rough platens", Loading::platens, prism},
+      {"platens_cube", "compression, cube, rough platens", Loading::platens, cube},
       {"held_prism", "compression, prism, held ends", Loading::platens, prism},
       {"held_cube", "compression, cube, held ends", Loading::platens, cube},
       {"tension", "direct tension, prism", Loading::tension, prism},
@@ -217,7 +222,10 @@ dem::Config ldpm_case_of(const SpecimenTest& test, const Sample& sample, std::in
     case Loading::platens:
       c.time.end = 1.2e-2 / (0.8 * more);
       add_ends(c, test.size, -0.8 * more * height);
-      hold_ends(c);
+      if (test.name.starts_with("held"))
+        hold_ends(c);
+      else
+        roughen_ends(c);
       break;
     case Loading::tension:
       c.time.end = 5e-4 / (0.2 * more);

@@ -110,6 +110,7 @@ struct SupportConfig {
   std::string wave = "body";   ///< that is absorbed
   double area = 0.0;           ///< of the face that absorbs  [m2]
   OverTime<Vec3> force{};      ///< on its elements, which are free: a dead load  [N]
+  double friction = 0.0;       ///< across the direction that it holds  [-]
 
   bool absorbs() const { return !absorb.empty(); }
   bool pushes() const { return force.is_table() || norm(force.value) > 0.0; }
@@ -146,6 +147,9 @@ struct SupportConfig {
     key("ramp", ramp, "s", not_negative,
         "time in which that velocity, or force, grows from zero, linearly; 0: the elements have it "
         "from the start");
+    key("friction", friction, "-", Range{0.0, 1e3},
+        "of a platen: it holds one of x, y, z, and rubs at the centres of its elements across it, "
+        "with at most so many times the force along it; 0: smooth");
     key.table("servo", servo, "moves it along an axis so that it pushes with a given force");
   }
 };

@@ -75,6 +75,16 @@ void add_change_problems(const std::string& where, const WallConfig& wall, const
 
 }  // namespace
 
+namespace {
+/// How many of x, y, z it fixes.
+std::ptrdiff_t directions_of(const SupportConfig& s) {
+  return std::count_if(
+             s.fix.begin(), s.fix.end(),
+             [](const std::string& word) { return word == "x" || word == "y" || word == "z"; }) +
+         3 * std::count(s.fix.begin(), s.fix.end(), "all");
+}
+}  // namespace
+
 std::vector<std::string> stage_problems(const Config& config) {
   std::vector<std::string> problems =
       breccia::stage_problems({config.stages.begin(), config.stages.end()}, names_of(config.probes),
@@ -132,6 +142,9 @@ std::vector<std::string> stage_problems(const Config& config) {
         problems.push_back(stage + "support." + s.name +
                            ".force acts on elements that are free: fix must be [], and velocity, "
                            "servo and absorb left out");
+      if (s.friction > 0.0 && !s.fix.empty() && (directions_of(s) != 1 || s.absorbs()))
+        problems.push_back(stage + "support." + s.name +
+                           ".friction: a platen with friction fixes one of x, y, z");
       if (s.servo.is_on() && std::find(s.fix.begin(), s.fix.end(), s.servo.axis) == s.fix.end() &&
           std::find(s.fix.begin(), s.fix.end(), "all") == s.fix.end())
         problems.push_back(stage + "support." + s.name + ".servo.axis = \"" + s.servo.axis +

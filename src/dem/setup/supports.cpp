@@ -78,7 +78,7 @@ class Holding {
       Owners moving = owners;
       for (std::size_t axis = 0; axis < 3; ++axis)
         if (moving[axis] >= 0 && speed(moving[axis], axis).is_zero() &&
-            !is_servo(moving[axis], axis))
+            !is_servo(moving[axis], axis) && !rubs(moving[axis]))
           moving[axis] = -1;
       if (moving == Owners{-1, -1, -1}) {
         all_.motion.push_back(-1);
@@ -87,7 +87,7 @@ class Holding {
       const auto next = static_cast<std::int16_t>(all_.motions.motions.size());
       const auto [entry, is_new] = known.try_emplace(moving, next);
       if (is_new) {
-        all_.motions.add(motion_of(moving), is_load(moving) ? 1 : 0);
+        all_.motions.add(motion_of(moving), is_load(moving) ? 1 : 0, friction_of(moving));
         for (std::size_t axis = 0; axis < 3; ++axis)
           if (moving[axis] >= 0 && is_servo(moving[axis], axis))
             all_.motions.servos.push_back(
@@ -134,6 +134,13 @@ class Holding {
     return std::any_of(owners.begin(), owners.end(),
                        [&](int s) { return s >= 0 && support(s).pushes(); });
   }
+  bool rubs(int s) const { return support(s).friction > 0.0; }
+  double friction_of(const Owners& owners) const {
+    double most = 0.0;
+    for (const int s : owners)
+      if (s >= 0) most = std::max(most, support(s).friction);
+    return most;
+  }
   /// Its elements are free, but for dashpots or a load.
   bool is_driven(int s) const { return support(s).absorbs() || support(s).pushes(); }
   bool alike(int a, int b, std::size_t axis) const {
@@ -156,7 +163,9 @@ class Holding {
     const bool pushes = support(static_cast<int>(s)).pushes();
     if (pushes) bits = fixed_x | fixed_y | fixed_z;
     const int all = is_driven(static_cast<int>(s)) ? ((bits & 7) != 0 ? fixed_driven : 0) : bits;
-    all_.fixed[e] = static_cast<std::uint8_t>(all_.fixed[e] | all);
+    const int rubbed = rubs(static_cast<int>(s)) && (bits & 7) != 0 ? fixed_driven : 0;
+    note_rubbed(s, bits, e);
+    all_.fixed[e] = static_cast<std::uint8_t>(all_.fixed[e] | all | rubbed);
     note_mixed(s, e);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if ((bits >> axis & 1) == 0) continue;
@@ -185,17 +194,38 @@ class Holding {
     return velocity;
   }
 
+  /// One platen alone holds an element that it rubs: the other two directions are its friction's.
+  void note_rubbed(std::size_t s, int bits, std::size_t e) {
+    const auto rubbing = [&](int owner) { return owner >= 0 && rubs(owner); };
+    const Owners& owners = owners_[e];
+    const int own = static_cast<int>(s);
+    const auto* const rough = std::find_if(owners.begin(), owners.end(), rubbing);
+    if ((bits & 7) == 0 || (rough == owners.end() && !rubs(own))) return;
+    const auto* const other =
+        std::find_if(owners.begin(), owners.end(), [](int owner) { return owner >= 0; });
+    if (other == owners.end()) return;
+    tell_once(own, fmt::format("support {}: a platen with friction shares element {} with support "
+                               "{}, which holds it, too",
+                               support(own).name, e, support(*other).name));
+  }
+  void tell_once(int s, const std::string& text) {
+    if (problems_.empty() || !problems_.back().starts_with("support " + support(s).name))
+      problems_.push_back(text);
+  }
+
   /// An element has dashpots, or is held.
   void note_mixed(std::size_t s, std::size_t e) {
     if ((all_.fixed[e] & fixed_driven) == 0 || (all_.fixed[e] & 63) == 0) return;
+    const auto drives = [&](int owner) { return owner >= 0 && is_driven(owner); };
+    if (!drives(static_cast<int>(s)) && std::none_of(owners_[e].begin(), owners_[e].end(), drives))
+      return;
     const auto pushes = [&](int owner) { return owner >= 0 && support(owner).pushes(); };
     const bool load =
         std::any_of(owners_[e].begin(), owners_[e].end(), pushes) || supports_[s].pushes();
     const std::string text =
         fmt::format("support {}: {} shares element {} with one that holds it", supports_[s].name,
                     load ? "one with a force" : "an absorbing support", e);
-    if (problems_.empty() || !problems_.back().starts_with("support " + supports_[s].name))
-      problems_.push_back(text);
+    tell_once(static_cast<int>(s), text);
   }
 
   const std::vector<SupportConfig>& supports_;
@@ -229,7 +259,8 @@ bool GivenMotions::moves(std::size_t motion) const {
   return any(m.velocity.x, m.x) || any(m.velocity.y, m.y) || any(m.velocity.z, m.z);
 }
 
-std::int16_t GivenMotions::add(const std::array<ScaledAmplitude, 3>& velocity, std::int32_t load) {
+std::int16_t GivenMotions::add(const std::array<ScaledAmplitude, 3>& velocity, std::int32_t load,
+                               double friction) {
   if (motions.size() >=
       most_names)  // supports that share elements move in more ways than there are
     throw InputError(fmt::format("walls and supports move in more than {} ways", most_names));
@@ -237,7 +268,8 @@ std::int16_t GivenMotions::add(const std::array<ScaledAmplitude, 3>& velocity, s
                      tables.append(velocity[0].amplitude),
                      tables.append(velocity[1].amplitude),
                      tables.append(velocity[2].amplitude),
-                     load});
+                     load,
+                     friction});
   return static_cast<std::int16_t>(motions.size() - 1);
 }
 

@@ -24,8 +24,10 @@ struct GivenMotions {
   /// Whether it is, or may come to be, other than rest.
   bool moves(std::size_t motion) const;
   /// Adds a motion of such velocities along x, y, z. Returns its number.
-  /// @param load  0, or 1: they are loads over mass
-  std::int16_t add(const std::array<ScaledAmplitude, 3>& velocity, std::int32_t load = 0);
+  /// @param load      0, or 1: they are loads over mass
+  /// @param friction  Motion::friction
+  std::int16_t add(const std::array<ScaledAmplitude, 3>& velocity, std::int32_t load = 0,
+                   double friction = 0.0);
 };
 
 /// Directions and motions that the supports of a case prescribe, by element.

@@ -14,7 +14,7 @@
 namespace breccia::dem {
 namespace ldpm_test {
 
-/// A small prism that a fast head tears off its foot.
+/// A small prism that a fast head tears off its foot, on which it slides.
 Config torn_prism() {
   Config config;
   MaterialConfig concrete;
@@ -38,8 +38,11 @@ Config torn_prism() {
   foot.name = "foot";
   foot.min = {-1.0, -1.0, -1.0};
   foot.max = {1.0, 1.0, -0.0224};
-  foot.fix = {"all"};
-  head = foot;
+  foot.fix = {"z", "spin_x", "spin_y"};
+  foot.friction = 0.3;
+  head.min = foot.min;
+  head.max = foot.max;
+  head.fix = {"all"};
   head.name = "head";
   head.min.z = 0.0224;
   head.max.z = 1.0;

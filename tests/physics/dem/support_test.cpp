@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dem/setup/stages.hpp"
 #include "exec/error.hpp"
 #include "scene.hpp"
 
@@ -117,6 +118,68 @@ TEST(Support, that_contradicts_another_one_is_refused_by_name) {
   EXPECT_EQ(refusal(s), "");
   s.config.supports[1].ramp = 1e-4;  // the same end, but another way there
   EXPECT_NE(refusal(s), "");
+}
+
+/// A piece on a platen whose coefficient of friction is mu, drawn by gravity.
+Scene on_platen(double mu, const Vec3& gravity, const Vec3& velocity) {
+  Scene s;
+  s.material("m", "concrete", 30e9, 0.2, 2400.0);
+  for (int k = 0; k < 9; ++k) s.sphere({0.1 * k, 0.0, 0.0}, 0.01, velocity);
+  s.config.gravity = gravity;
+  s.config.time.max_step = 5e-4;
+  SupportConfig platen;
+  platen.name = "platen";
+  platen.fix = {"z", "spin_x", "spin_y"};
+  platen.friction = mu;
+  s.config.supports.push_back(platen);
+  return s;
+}
+
+/// Pressed by g it slides with what is left of a pull beyond mu g, along it, and rests below.
+TEST(Platens, rub_with_friction_times_what_they_press) {
+  World slides = on_platen(0.25, {3.0, 4.0, -10.0}, {}).world();
+  World rests = on_platen(0.501, {3.0, 4.0, -10.0}, {}).world();
+  while (slides.time < 0.1) step(slides), step(rests);
+  for (const Index e : {0, 8}) {  // one in a pack, and one behind it
+    const double t = slides.time - 0.5 * slides.last_dt, pull = 5.0 - 0.25 * 10.0;
+    EXPECT_NEAR(state(slides, e).velocity.x, 0.6 * pull * t, 1e-9);
+    EXPECT_NEAR(state(slides, e).velocity.y, 0.8 * pull * t, 1e-9);
+    EXPECT_EQ(state(slides, e).velocity.z, 0.0);
+    EXPECT_EQ(norm(state(rests, e).velocity), 0.0);
+  }
+  EXPECT_LT(balance(slides).error_relative, 1e-9);
+}
+
+/// It comes to rest after v^2 / (2 mu g), and all its energy has gone into the platen.
+TEST(Platens, stop_what_slides) {
+  World w = on_platen(0.5, {0.0, 0.0, -10.0}, {1.0, 0.0, 0.0}).world();
+  const double kinetic = balance(w).kinetic;
+  while (w.time < 0.25) step(w);
+  EXPECT_NEAR(state(w, 3).position.x, 0.3 + 0.1, 5e-4);
+  EXPECT_EQ(norm(state(w, 3).velocity), 0.0);
+  EXPECT_NEAR(balance(w).work, -kinetic, 1e-9 * kinetic);
+}
+
+/// One platen alone holds what it rubs, along one direction.
+TEST(Platens, say_what_they_cannot_share) {
+  Scene s = on_platen(0.5, {}, {});
+  SupportConfig hold;
+  hold.name = "hold";
+  hold.fix = {"x"};
+  s.config.supports.push_back(hold);
+  try {
+    s.world();
+    FAIL();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("a platen with friction shares element 0 with"),
+              std::string::npos)
+        << error.what();
+  }
+  s.config.supports.pop_back();
+  s.config.supports[0].fix = {"x", "z"};
+  ASSERT_EQ(stage_problems(s.config).size(), 1U);
+  EXPECT_NE(stage_problems(s.config)[0].find("a platen with friction fixes one of x, y, z"),
+            std::string::npos);
 }
 
 }  // namespace support_test

@@ -28,7 +28,7 @@ TEST(LdpmLaboratory, every_test_is_a_good_case_five_largest_grains_wide) {
   sample.material = concrete();
   sample.material.mix.largest = 10e-3;
   sample.material.ldpm.rate_factor = 0.05;
-  ASSERT_EQ(tests_of(sample.material).size(), 14U);
+  ASSERT_EQ(tests_of(sample.material).size(), 16U);
   for (const SpecimenTest& test : tests_of(sample.material)) {
     EXPECT_EQ(test.size.x, 0.05) << test.name;
     const dem::Config c = case_of(test, sample, 2, "");
