@@ -33,15 +33,17 @@ OUT = ROOT / "out" / "impact"
 MASS, DIAMETER, THICKNESS = 14.5, 0.226, 0.1
 
 # Concretes of the slab: as the case has it; with friction bounded under pressure; C30 of `breccia materials`; links as
-# packed, without the bulk's fabric at faces.
+# packed, without the bulk's fabric at faces; the slab of cases/rc_slab_ldpm, and that with grains of 10 to 20 mm.
 CONCRETES = {
     "case": {},
     "friction_cap": {"friction_cap": '"3 MPa"', "broken_friction": "0.6", "broken_rolling_limit": "1.0"},
     "C30": {"use": '"C30"'},
     "packed": {"fabric": '"packed"', "stiffness": '"estimated"'},
+    "ldpm": {},
+    "ldpm_fine": {"mix": '{ cement = 315.0, water_ratio = 0.5, air = 0.03, smallest = "10 mm", largest = "20 mm", fuller = 0.5 }'},
 }
-# Prisms of 2,000 and 1,200 elements of these concretes: docs/validation-concrete.md.
-STRENGTH = {"case": 32.3e6, "friction_cap": 32.3e6, "C30": 38e6, "packed": 26.3e6}
+# Prisms of 2,000 and 1,200 elements of these concretes: docs/validation-concrete.md. LDPM: cases/rc_slab_ldpm.
+STRENGTH = {"case": 32.3e6, "friction_cap": 32.3e6, "C30": 38e6, "packed": 26.3e6, "ldpm": 28.9e6, "ldpm_fine": 31.5e6}
 
 
 def body(text, name):
@@ -54,9 +56,10 @@ def body(text, name):
 
 
 def variant(concrete, bars, speed=None, end=None):
-    """The text of cases/rc_slab/case.toml with another concrete, without bars, with a hard missile."""
-    text = (ROOT / "cases" / "rc_slab" / "case.toml").read_text()
-    text = text[: text.index("[[check]]")]
+    """The text of cases/rc_slab/case.toml, or cases/rc_slab_ldpm/case.toml, with another concrete, without bars, with a hard missile."""
+    lattice = concrete.startswith("ldpm")
+    text = (ROOT / "cases" / ("rc_slab_ldpm" if lattice else "rc_slab") / "case.toml").read_text()
+    text = text[: text.index("[[check]]")].replace("ball_", "rock_")
     text = text.replace("frames = 20", "frames = 2")
     changes = CONCRETES[concrete]
     if "use" in changes:
@@ -76,7 +79,7 @@ def variant(concrete, bars, speed=None, end=None):
         volume = 4 / 3 * math.pi * (DIAMETER / 2) ** 3
         text = text[:start] + (
             '[[body]]\nname = "impactor"\nshape = "element"\nmaterial = "missile"\n'
-            f"center = [0.0, 0.0, 0.164]\nradius = {DIAMETER / 2}\nvelocity = [0.0, 0.0, {-speed}]\n\n") + text[stop:]
+            f"center = [0.0, 0.0, {0.182 if lattice else 0.164}]\nradius = {DIAMETER / 2}\nvelocity = [0.0, 0.0, {-speed}]\n\n") + text[stop:]
         text = text.replace("[material.b500]", '[material.missile]\nlaw = "grain"\n'
                             f'density = {MASS / volume}\nyoung = "200 GPa"\npoisson = 0.3\n\n[material.b500]')
         text = text.replace("[[probe]]", '[[probe]]\nname = "rock_place"\non = "impactor"\nquantity = "position_z"\n'
