@@ -21,7 +21,6 @@ namespace breccia {
 namespace {
 
 constexpr int steps_before_impact = 100;  // the rock meets the slab after 0.1 ms
-constexpr double impact_at = 0.2e-3;      // the rock has met the slab and links break  [s]
 
 void take_steps(dem::World& w, int steps) {
   StopAt stop;
@@ -30,7 +29,7 @@ void take_steps(dem::World& w, int steps) {
 
 void reach_impact(dem::World& w) {
   StopAt stop;
-  for (stop.time = impact_at; w.time < stop.time;) dem::advance(w, stop);
+  for (stop.time = slab_impact_at; w.time < stop.time;) dem::advance(w, stop);
 }
 
 /// Times of windows of whole steps.

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "bench/measurements.hpp"
+#include "bench/scenes.hpp"
 #include "bench/tiles.hpp"
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
@@ -20,7 +21,6 @@
 namespace breccia {
 namespace {
 
-constexpr double impact_at = 0.2e-3;        // the rock has met the slab and links break  [s]
 constexpr std::int64_t slab_size = 14'274;  // elements of one slab
 
 /// Data that several ranks share; a rank alone has it all by itself.
@@ -170,7 +170,7 @@ std::vector<Measurement> measure_slabs(const Exec& exec, Communicator* ranks,
       [&] { w = tiled_slabs(slab_scene(1.0), static_cast<int>(slabs) * parts, ranks, exec); });
   all.begin_steps();
   StopAt stop;
-  for (stop.time = impact_at; w.time < stop.time;) advance(w, stop);
+  for (stop.time = slab_impact_at; w.time < stop.time;) advance(w, stop);
   return measure_windows(w, all, scale.steps, setup);
 }
 

@@ -14,6 +14,8 @@ namespace breccia {
 /// whatever the case becomes, so that numbers compare over time.
 /// @param scale  1: 14,274 elements; 2.7: 99,262  [-]
 dem::Config slab_scene(double scale);
+/// When the rock has met that slab and links break.  [s]
+inline constexpr double slab_impact_at = 0.2e-3;
 
 /// Tiles [first, last) of `count` equal ones.
 struct TileRun {

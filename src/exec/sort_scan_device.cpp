@@ -108,19 +108,19 @@ std::int64_t exclusive_scan_on_device(Buffer<Index>& counts) {
 
 namespace breccia {
 namespace {
-[[noreturn]] void refuse() {
+[[noreturn]] void refuse_to_sort() {
   throw DeviceError("this build of breccia has no CUDA");
 }
 }  // namespace
 
 void sort_by_key_on_device(Buffer<KeyedIndex>&) {
-  refuse();
+  refuse_to_sort();
 }
 void sort_keys_on_device(Buffer<std::uint64_t>&, Buffer<std::uint64_t>&, int) {
-  refuse();
+  refuse_to_sort();
 }
 std::int64_t exclusive_scan_on_device(Buffer<Index>&) {
-  refuse();
+  refuse_to_sort();
 }
 
 }  // namespace breccia

@@ -12,10 +12,6 @@ namespace {
 
 constexpr double degrees = 180.0 / pi;
 
-std::size_t at(std::int32_t index) {
-  return static_cast<std::size_t>(index);
-}
-
 void count(Rose& rose, double angle, double weight) {
   const double share = (angle - rose.from) / (rose.to - rose.from);
   const auto bars = static_cast<double>(rose.bars.size());

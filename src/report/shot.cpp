@@ -9,10 +9,6 @@
 namespace breccia::report {
 namespace {
 
-std::size_t at(std::int32_t index) {
-  return static_cast<std::size_t>(index);
-}
-
 /// Values of a field of points as those of elements: means of their corners.
 FrameField of_elements(const FrameField& field, const std::vector<std::int32_t>& corners,
                        std::size_t each) {

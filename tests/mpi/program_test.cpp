@@ -45,7 +45,7 @@ int run(int ranks, const std::string& arguments, const std::string& to = "/dev/n
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-class ProgramOnRanks : public testing::Test {
+class ProgramOnRanks : public ::testing::Test {
  protected:
   ProgramOnRanks()
       : folder_(fs::temp_directory_path() / ("breccia_mpi_" + std::to_string(::getpid()))) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Color ink{0.13F, 0.14F, 0.16F}, faint{0.42F, 0.43F, 0.46F};
 constexpr int bar_width = 12;  ///< of a legend's bar  [dots]
-constexpr int rim = 12;        ///< around everything  [dots]
+constexpr int border = 12;     ///< around everything  [dots]
 
 /// Text of this program, which is plain ASCII for terminals, with the sign of micro.
 std::string typeset(std::string text) {
@@ -51,7 +51,7 @@ int legend_width(const Legend& legend, int scale) {
   }
   for (const std::string& note : legend.notes)
     width = std::max(width, text_width(typeset(note), scale));
-  return width == 0 ? 0 : width + 2 * rim * scale;
+  return width == 0 ? 0 : width + 2 * border * scale;
 }
 
 constexpr int axes_room = 62;  ///< below the legend  [dots]
@@ -134,7 +134,7 @@ int fitted_height(const RenderOptions& options, const Legend& legend, double asp
 
 Window scene_window(const RenderOptions& options, const Legend& legend) {
   const int scale = text_scale(options);
-  const double edge = rim * scale;
+  const double edge = border * scale;
   if (options.bare)
     return {0.25 * edge, 0.25 * edge, options.width - 0.25 * edge, options.height - 0.25 * edge};
   const double right = options.width - legend_width(legend, scale);
@@ -148,7 +148,8 @@ Window scene_window(const RenderOptions& options, const Legend& legend) {
 }
 
 void draw_title(Paper& paper, const std::string& title, const Frame& frame, int scale) {
-  const int left = rim * scale, top = rim * scale, gap = 12 * scale, right = paper.width - left;
+  const int left = border * scale, top = border * scale, gap = 12 * scale,
+            right = paper.width - left;
   const std::string time = typeset("t = " + time_text(frame.time)),
                     step = fmt::format("step {}", frame.step);
   const int of_time = text_width(time, scale);
@@ -163,11 +164,11 @@ void draw_title(Paper& paper, const std::string& title, const Frame& frame, int 
 }
 
 void draw_legend(Paper& paper, const Legend& legend, int scale) {
-  const int left = paper.width - legend_width(legend, scale) + rim * scale;
+  const int left = paper.width - legend_width(legend, scale) + border * scale;
   const int line = (font_height + 4) * scale;
   int y = static_cast<int>(above_legend * paper.height);
   const int height = legend_height(paper, legend, scale);
-  if (height > 0) paper.veil(left, y, paper.width - rim * scale, y + height, scale);
+  if (height > 0) paper.veil(left, y, paper.width - border * scale, y + height, scale);
   if (!legend.title.empty()) {
     paper.write(left, y, typeset(legend.title), scale, ink);
     y += line;
@@ -197,7 +198,7 @@ void draw_legend(Paper& paper, const Legend& legend, int scale) {
 
 void draw_scale_bar(Paper& paper, double resolution, int scale) {
   const double length = round_step_below(0.22 * paper.width / resolution);
-  const int left = rim * scale, bottom = paper.height - rim * scale;
+  const int left = border * scale, bottom = paper.height - border * scale;
   const int right = left + static_cast<int>(length * resolution + 0.5);
   paper.veil(left, bottom - (font_height + 5) * scale, right, bottom, scale);
   paper.fill(left, bottom - scale, right, bottom, ink);
@@ -221,8 +222,8 @@ void draw_axes(Paper& paper, const Axes& axes, int scale) {
     return dot(a.direction, axes.toward) < dot(b.direction, axes.toward);
   });
   const double length = 22.0 * scale;
-  const double u = paper.width - rim * scale - 1.6 * length;
-  const double v = paper.height - rim * scale - 0.9 * length;
+  const double u = paper.width - border * scale - 1.6 * length;
+  const double v = paper.height - border * scale - 0.9 * length;
   const auto each_arrow = [&](const auto& draw) {
     for (const Arrow& arrow : arrows) {
       const double du = length * dot(arrow.direction, axes.right);

@@ -27,8 +27,8 @@ constexpr std::array diverging{from_bytes(0x3b4cc0), from_bytes(0x6282ea), from_
 constexpr std::array damage_colors{from_bytes(0xded6c6), from_bytes(0xe9ca9a), from_bytes(0xf0a85a),
                                    from_bytes(0xe67a2e), from_bytes(0xcf4620), from_bytes(0xa81c18),
                                    from_bytes(0x6e0a14)};
-constexpr std::array ground{from_bytes(0xe4dfd4), from_bytes(0xecdcbd), from_bytes(0xf3cf9f),
-                            from_bytes(0xf2b98b), from_bytes(0xeaa184)};
+constexpr std::array earth{from_bytes(0xe4dfd4), from_bytes(0xecdcbd), from_bytes(0xf3cf9f),
+                           from_bytes(0xf2b98b), from_bytes(0xeaa184)};
 // Magma by the authors of viridis.
 constexpr std::array magma{from_bytes(0x000004), from_bytes(0x180f3d), from_bytes(0x440f76),
                            from_bytes(0x721f81), from_bytes(0x9e2f7f), from_bytes(0xcd4071),
@@ -47,7 +47,7 @@ std::span<const Color> nodes_of(ColorMap map) {
     case ColorMap::damage:
       return damage_colors;
     case ColorMap::ground:
-      return ground;
+      return earth;
     case ColorMap::magma:
       return magma;
     case ColorMap::gray:

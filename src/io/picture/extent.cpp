@@ -42,10 +42,10 @@ bool is_finite(const Vec3& point) {
 }
 
 /// Where one coordinate of the bulk lies: the middle 98 in 100 items and what is near them.
-struct Span {
+struct BulkSpan {
   double low, high;
 };
-Span bulk_span(std::vector<double> values) {
+BulkSpan bulk_span(std::vector<double> values) {
   constexpr double outside = 0.01;  // share on either side that may have flown off
   constexpr double near = 0.25;     // of the bulk's width: still counts as part of it
   const auto count = static_cast<double>(values.size() - 1);
@@ -105,8 +105,8 @@ void add_bulk(Extent& extent, const Frame& frame, const std::vector<std::size_t>
     z.push_back(point.z);
   }
   if (x.empty()) return;
-  const Span in_x = bulk_span(std::move(x)), in_y = bulk_span(std::move(y)),
-             in_z = bulk_span(std::move(z));
+  const BulkSpan in_x = bulk_span(std::move(x)), in_y = bulk_span(std::move(y)),
+                 in_z = bulk_span(std::move(z));
   const auto widen = [&extent](const Vec3& low, const Vec3& high) {
     extent.low = {std::min(extent.low.x, low.x), std::min(extent.low.y, low.y),
                   std::min(extent.low.z, low.z)};

@@ -13,7 +13,7 @@
 namespace breccia {
 namespace {
 
-constexpr Color ink{0.10F, 0.11F, 0.13F}, white{1.0F, 1.0F, 1.0F};
+constexpr Color line_ink{0.10F, 0.11F, 0.13F}, white{1.0F, 1.0F, 1.0F};
 constexpr Color pulls{0.80F, 0.14F, 0.12F}, presses{0.07F, 0.55F, 0.87F};
 constexpr Color support{0.05F, 0.45F, 0.42F};
 constexpr double cell = 17.0;  ///< of the grid by which marks are thinned  [units of text]
@@ -177,7 +177,7 @@ void Overlay::draw_arrows(Paper& paper, const OnPaper& on, int scale) const {
       if (length > 1.5 * scale) draw(u, v, du, dv, length);
     }
   };
-  for (const auto& [thick, color] : {std::pair{2.4, white}, std::pair{1.1, ink}})
+  for (const auto& [thick, color] : {std::pair{2.4, white}, std::pair{1.1, line_ink}})
     each(
         [&, thick = thick, color = color](double u, double v, double du, double dv, double length) {
           const double head = std::min(4.0 * scale, 0.5 * length) / length;

@@ -182,7 +182,7 @@ void each_link(const Model& model, int body, Visit&& visit) {
 /// u_2 of a body's links from its G_F.
 double opening_for_energy(const Model& model, const Config& config, int number) {
   const BodyConfig& body = config.bodies[static_cast<std::size_t>(number)];
-  double longest = 0.0, mean = 0.0, solid = 0.0, least = no_limit, most = 0.0;
+  double longest = 0.0, mean = 0.0, solid = 0.0, least = no_limit, largest = 0.0;
   each_link(model, number,
             [&](const Model::Link&, double length) { longest = std::max(longest, length); });
   const std::vector<Index> members = members_of(model, number);
@@ -190,12 +190,12 @@ double opening_for_energy(const Model& model, const Config& config, int number) 
     const double r = model.radius[static_cast<std::size_t>(e)];
     mean += r / static_cast<double>(members.size());
     solid += 4.0 / 3.0 * pi * r * r * r;
-    least = std::min(least, r), most = std::max(most, r);
+    least = std::min(least, r), largest = std::max(largest, r);
   }
   const double compactness = std::min(solid / bulk_of(config, body), densest);
   return rupture_opening(
       material_of(config, body), config.contact,
-      {mean, std::min(most / least, widest), compactness, model.interaction_range}, longest,
+      {mean, std::min(largest / least, widest), compactness, model.interaction_range}, longest,
       body.name);
 }
 

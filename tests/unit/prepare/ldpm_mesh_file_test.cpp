@@ -152,10 +152,11 @@ struct FacetFiles {
     const bool swap = facets.size() % 2 == 1;  // as windings ask for it
     for (const std::size_t k : {0, swap ? 2 : 1, swap ? 1 : 2})
       corners += three(f.corners[k], 1e3) + "\n";
-    const Vec3 along = position[at(f.b)] - position[at(f.a)];
+    const Vec3 along = position[breccia::at(f.b)] - position[breccia::at(f.a)];
     double volume = 0.0;
     for (const Index e : {f.a, f.b})
-      volume += std::abs(six_volumes(position[at(e)], f.corners[0], f.corners[1], f.corners[2]));
+      volume +=
+          std::abs(six_volumes(position[breccia::at(e)], f.corners[0], f.corners[1], f.corners[2]));
     rows += fmt::format("{} {} {} {} {:.10g} {:.10g} {} {} 1 0 0 0 1 0 0\n", t, first, first + 1,
                         first + 2, 1e9 * volume / 6.0, 1e6 * f.area, three(f.center, 1e3),
                         three((1.0 / norm(along)) * along));
