@@ -57,7 +57,7 @@ READER = {
     "fdem": [
         ("", SHARED_METHOD.format(m="fdem") + "fdem/shape.hpp fdem/triangles/* fdem/joints/joint* fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
          "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* "
-         "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/step* fdem_shared/host_run.hpp "
+         "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/insertion* fdem_shared/step* fdem_shared/host_run.hpp "
          "fdem_shared/motion.hpp fdem_shared/columns.hpp fdem_shared/stable_parts.hpp"),
         ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/bolts/* fdem/edges_now.* fdem/contact/nearness.hpp"),
         ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),

@@ -26,6 +26,12 @@ struct TetrahedraRun : fdem3::HostRun {
     if (t.searches != before && t.next_dt < t.last_dt)
       both.stable_step = std::min(both.stable_step, t.next_dt);
   }
+  /// Joints that wake shorten the step.
+  void insert_joints(fdem3::World& t) const {
+    const double before = t.next_dt;
+    fdem3::HostRun::insert_joints(t);
+    if (t.next_dt < before) both.stable_step = std::min(both.stable_step, t.next_dt);
+  }
   /// Spheres have summed up their own by now.
   void coupling_forces(fdem3::World&) const { press(both); }
   void choose_step(fdem3::World&) const { note_stable_step(both); }

@@ -119,18 +119,9 @@ struct Shape {
     j.force.in_double.resize(0);
     j.force.in_single.resize(0);
   }
-  /// Whether a joint around a vertex still holds decides who moves with whom there.
-  template <class Rings>
-  static void add_around_joint(const World& w, const Rings& rings, Index joint,
-                               std::vector<Index>& elements) {
-    const Index edge = w.joints.edge_a.data()[joint];
-    for (const Index node : {edge, JointEnds::next_corner(edge)})
-      if (w.mesh.tied[at(w.vertex[at(node)])] != 0)
-        rings.add_elements(w.vertex[at(node)], elements);
-  }
   static void forget_mesh_for_kernels(World& w) {
     w.node_vertex.clear();
-    w.edge_across.clear();
+    w.side_across.clear();
   }
   static void derive_part(World& w, Space space);
   static void take_common(World& w, Communicator& ranks);

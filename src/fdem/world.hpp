@@ -97,7 +97,7 @@ struct World {
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(couple_incidence, broad_phase, parent_joint, node_vertex, edge_across, border_vertex,
+    each(couple_incidence, broad_phase, parent_joint, node_vertex, side_across, border_vertex,
          amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
          device_flags, busy.couple, busy.count);
   }
@@ -135,7 +135,7 @@ struct World {
   Buffer<EdgeDashpots> dashpots;    ///< [Pa s/m]  (triangles, none if no edge absorbs; ranks)
   Bundles bundles;  ///< corners that may move as one (set-up, ranks); leaders: (derive, insertion)
   Buffer<Index> node_vertex;           ///< `vertex`, for kernels (3 triangles; search)
-  Buffer<Index> edge_across;           ///< `across`, for kernels (3 triangles; search)
+  Buffer<Index> side_across;           ///< `across`, for kernels (3 triangles; search)
   Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
   // Results of a search.
@@ -194,7 +194,6 @@ void derive(World& w);
 void derive_couples(World& w);
 /// The vertex of each node where kernels can read it; it changes only where triangles move between
 /// ranks.
-View<const Index> node_vertices(World& w);
 /// Who moves with whom, from the stages of the joints.
 void derive_bundles(World& w);
 
@@ -212,7 +211,7 @@ void ask_ranks_for_search(World& w);
 bool couples_are_due(World& w);
 MarginRule margin_rule(const World& w);
 void find_couples(World& w);
-void insert_joints(World& w);
+void wake_joints(World& w);
 /// Safe share of the stable step of all triangles, rounded down to six bits.  [s]
 double choose_time_step(const World& w);
 /// The step to come, or less where these triangles allow less: after their joints have changed.

@@ -41,6 +41,7 @@ struct Case {
   double local_damping = 0.0;  ///< stage  [-]
   double mean_edge = 0.0;      ///<  [m]
   double skin = 0.0;           ///< margin of the search between two at rest  [m]
+  bool extrinsic = false;      ///< some joints are dormant, or were
   MoreFields shown;            ///< in frames
   EmissionConfig emission;     ///< which breaks are one event
   Index materials = 0;         ///< how many there are  [-]

@@ -3,6 +3,18 @@
 #include "fdem3/relations.hpp"
 #include "fdem_shared/migration.hpp"
 
+namespace breccia::fdem3 {
+
+void Shape::derive_part(World& w, Space) {
+  if (w.given->extrinsic) {
+    w.stress.resize(w.tetrahedra.size());
+    w.overshoot.resize(w.joints.size());
+  }
+  list_loaded_faces(w);
+}
+
+}  // namespace breccia::fdem3
+
 namespace breccia::fdem_shared {
 
 template fdem3::World share_out(fdem3::World&, Communicator&, const DomainConfig&, Space);

@@ -53,15 +53,16 @@ struct World {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
     each(tetrahedra.external, joints.force, joints.preset, exposed.changed, exposed.vertex,
          load_starts, loaded_faces, dashpots, bundles.starts, bundles.nodes, bundles.leader, faces,
-         motions, last_motions, load_laws, domain.owned_there, domain.migration_reference);
+         motions, last_motions, load_laws, stress, overshoot, reached, domain.owned_there,
+         domain.migration_reference);
   }
   /// Those that derive() and a search fill.
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(couple_incidence, broad_phase, parent_joint, separated, node_vertex, border_vertex,
-         amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
-         device_flags, busy.couple, busy.count);
+    each(couple_incidence, broad_phase, parent_joint, separated, node_vertex, side_across,
+         border_vertex, amplitudes, amplitude_times, amplitude_factors, prescribed_velocity,
+         reach_place, clock, device_flags, busy.couple, busy.count);
   }
 
   // State: what a checkpoint holds.
@@ -73,7 +74,7 @@ struct World {
   Ledger ledger;                   ///< (search, stage, probes)
   double time = 0.0;               ///< of positions and forces  [s]  (move)
   double last_dt = 0.0;            ///< the step that led here  [s]  (move)
-  double next_dt = 0.0;            ///< the step to come  [s]  (dt, search)
+  double next_dt = 0.0;            ///< the step to come  [s]  (dt, search, insertion)
   std::int64_t step = 0;           ///< steps taken  [-]  (end of a step)
   std::int64_t searches = 0;       ///< [-]  (search)
   std::vector<ServoState> servos;  ///< of supports; empty: the case has none (servos; servo)
@@ -90,10 +91,11 @@ struct World {
   Buffer<FaceJoints> faces;   ///< joints of each by face  [-]  (tetrahedra; set-up, ranks)
   Buffer<Index> load_starts;  ///< first loaded face of each loaded one, and the end  [-]
                               ///< (loaded tetrahedra + 1; set-up, ranks)
-  Buffer<LoadedFace> loaded_faces;     ///< (loaded faces; set-up, ranks)
-  Buffer<FaceDashpots> dashpots;       ///< [Pa s/m]  (tetrahedra, none if no face absorbs; ranks)
-  Bundles bundles;                     ///< corners that move as one (set-up, ranks)
+  Buffer<LoadedFace> loaded_faces;  ///< (loaded faces; set-up, ranks)
+  Buffer<FaceDashpots> dashpots;    ///< [Pa s/m]  (tetrahedra, none if no face absorbs; ranks)
+  Bundles bundles;  ///< corners that may move as one (set-up, ranks); leaders: (derive, insertion)
   Buffer<Index> node_vertex;           ///< `vertex`, for kernels (4 tetrahedra; search)
+  Buffer<Index> side_across;           ///< `across`, for kernels (4 tetrahedra; derive)
   Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
   // Results of a search.
@@ -106,9 +108,13 @@ struct World {
                                    ///< (tetrahedra; search, derive)
 
   // Results of a step, overwritten by the next one.
-  Buffer<Motion> motions;     ///< of supports, mid-step  [m/s]  (motions; move)
-  Buffer<LoadLaw> load_laws;  ///< Case::loads with their factors now (loads; loads)
-  bool margin_used = false;   ///< some own tetrahedron has used its margin up (move)
+  Buffer<Motion> motions;        ///< of supports, mid-step  [m/s]  (motions; move)
+  Buffer<LoadLaw> load_laws;     ///< Case::loads with their factors now (loads; loads)
+  Buffer<Sym3> stress;           ///< where joints are extrinsic  [Pa]  (tetrahedra; insertion)
+  Buffer<double> overshoot;      ///< of dormant joints: stress over strength  [-]
+                                 ///< (joints; insertion)
+  Buffer<std::uint8_t> reached;  ///< 1: a dormant joint's strength is reached  [-]  (1; insertion)
+  bool margin_used = false;      ///< some own tetrahedron has used its margin up (move)
 
   // On a device: see fdem/world.hpp.
   Buffer<Motion> last_motions;                        ///< (motions; bundles)
@@ -170,6 +176,8 @@ void find_couples(World& w);
 double choose_time_step(const World& w);
 /// The step to come, or less where these allow less: after their joints have changed.
 double shortened_time_step(const World& w, const Buffer<Index>& tetrahedra);
+/// Wakes joints whose strength is reached.
+void wake_joints(World& w);
 void evaluate_forces(World& w);
 /// Corners that move as one share their force anew, after some have got more of it.
 void share_bundle_forces(World& w);

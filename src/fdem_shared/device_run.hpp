@@ -4,7 +4,6 @@
 //
 // A method's `Launches` says what they are made of:
 //
-//   insert(w, by, request)   joints appear; they write request_insertion where the host must help
 //   pairs(w, by)             joints and couples; at least one launch
 //   with_sums(w, visit)      visit(kernel) with the kernel of the sums of forces
 //   bundles(w)               the kernel of corners that move as one, and `lanes`, its threads for
@@ -14,6 +13,7 @@
 
 #include "core/device_run.hpp"
 #include "fdem_shared/exposed.hpp"
+#include "fdem_shared/insertion_kernels.hpp"
 #include "fdem_shared/motion.hpp"
 #include "fdem_shared/over_time.hpp"
 #include "fdem_shared/step.hpp"
@@ -206,7 +206,9 @@ class ClockedRun : public ClockLed {
     for_each(w.exec, motions, clocks_.opening(scale_motions(w), end, true));
     for_each_part(w.exec, part(elements, clocks_.timed<Phase::in_move>(move), Parts<>{}));
   }
-  void insert_joints(World& w) const { Launches::insert(w, timed_, &clocks_.now->host_request); }
+  void insert_joints(World& w) const {
+    watch_for_waking(w, timed_, &clocks_.now->host_request, request_insertion);
+  }
   void pair_forces(World& w) const { Launches::pairs(w, timed_); }
   /// Notes the stable step, too.
   void sum_forces(World& w) const {

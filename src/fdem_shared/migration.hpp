@@ -90,12 +90,22 @@ class Migration {
     for (Index i = 0; i < w_.joints.size(); ++i) {
       members = {Shape::side_a(w_.joints).data()[i] / corners,
                  Shape::side_b(w_.joints).data()[i] / corners};
-      Shape::add_around_joint(w_, rings, i, members);
+      add_around_joint(rings, i, members);
       shared_items_.keep_together(members, i, joints);
     }
     shared_items_.keep_all_together(element_ends(w_, "couples"), w_.couples.size(), couples);
   }
 
+  /// Whether a joint around a vertex sleeps decides who moves with whom there.
+  void add_around_joint(const Rings<World>& rings, Index joint, std::vector<Index>& members) const {
+    if (!w_.given->extrinsic) return;
+    const Index side = Shape::side_a(w_.joints).data()[joint];
+    for (int k = 0; k < Shape::dimension; ++k) {
+      const Index node = corners * (side / corners) + Shape::corner_of_side(side % corners, k);
+      const Index vertex = w_.vertex[at(node)];
+      if (w_.mesh.tied[at(vertex)] != 0) rings.add_elements(vertex, members);
+    }
+  }
   Index id_of(Index t) const { return Shape::elements(w_).id.data()[t]; }
   Index global(Index side) const {
     return side < 0 ? side : corners * id_of(side / corners) + side % corners;

@@ -220,9 +220,7 @@ template <class World>
 OpenVertices open_vertices(World& w) {
   if (static_cast<std::size_t>(w.border_vertex.size()) != w.given->open_vertex.size())
     copy_to(w.border_vertex, w.given->open_vertex);
-  if (static_cast<std::size_t>(w.node_vertex.size()) != w.vertex.size())
-    copy_to(w.node_vertex, w.vertex);
-  return {std::as_const(w.node_vertex).view(), std::as_const(w.border_vertex).view(),
+  return {node_vertices(w), std::as_const(w.border_vertex).view(),
           std::as_const(w.exposed.vertex).view()};
 }
 

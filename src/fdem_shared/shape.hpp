@@ -5,6 +5,8 @@
 // `sides` there, and element t has as many of them as corners: corner k is node corners t + k, side
 // k is corners t + k.
 
+#include <vector>
+
 #include "exec/buffer.hpp"
 #include "math/vec.hpp"
 #include "math/vec2.hpp"
@@ -80,6 +82,14 @@ BR_HD inline Vec3 held_parts(int bits, const Vec3& given, const Vec3& other) {
 template <class Shape, class Hold>
 BR_HD bool is_gone(const View<const Hold>& holds, Index hold) {
   return hold >= 0 && Shape::is_gone(holds[hold]);
+}
+
+/// The vertex of each node, where kernels can read it.
+template <class World>
+View<const Index> node_vertices(World& w) {
+  if (static_cast<std::size_t>(w.node_vertex.size()) != w.vertex.size())
+    copy_to(w.node_vertex, w.vertex);
+  return std::as_const(w.node_vertex).view();
 }
 
 }  // namespace breccia::fdem_shared

@@ -140,6 +140,10 @@ void StepwiseRun<World>::search_if_due(World& w) const {
   find_couples(w);
 }
 template <class World>
+void StepwiseRun<World>::insert_joints(World& w) const {
+  wake_joints(w);
+}
+template <class World>
 void StepwiseRun<World>::load_forces(World& w) const {
   if (w.load_starts.size() < 2) return;
   const StageTime timed(w.exec, "load_forces");

@@ -18,7 +18,7 @@ struct StepwiseRun {
   void inner_joint_forces(World&) const {}
   void receive_ghosts(World& w) const;
   void search_if_due(World& w) const;
-  void insert_joints(World&) const {}
+  void insert_joints(World& w) const;
   void coupling_forces(World&) const {}
   void load_forces(World& w) const;
   /// Corners that move as one share their force.

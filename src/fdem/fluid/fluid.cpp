@@ -11,6 +11,7 @@
 #include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/flow.hpp"
 #include "fdem_shared/loaded_sides.hpp"
+#include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem {
 namespace {
@@ -55,9 +56,9 @@ std::vector<CrackSide> cracks_until(World& part, double until, bool softened = f
                               j.broke_at.view(), j.edge_a.view()});
   Buffer<CrackSide> told(part.exec.space, broken.size());
   for_each(part.exec, broken.size(),
-           TellCrack{broken.view(), j.edge_a.view(), j.edge_b.view(), node_vertices(part),
-                     std::as_const(part.triangles.id).view(), j.length.view(), j.broke_at.view(),
-                     told.view()});
+           TellCrack{broken.view(), j.edge_a.view(), j.edge_b.view(),
+                     fdem_shared::node_vertices(part), std::as_const(part.triangles.id).view(),
+                     j.length.view(), j.broke_at.view(), told.view()});
   std::vector<CrackSide> all;
   copy_to(all, told);
   if (!part.domain.single_rank()) all = joined(*part.domain.ranks, all);

@@ -9,7 +9,7 @@
 namespace breccia::fdem {
 
 /// How far a joint has gone.
-/// dormant: its triangles move as one until the stress between them reaches its strength;
+/// dormant: its elements move as one until the stress between them reaches its strength;
 /// cut: a body at it has been taken out of the model.
 enum class JointStage : std::uint8_t { whole, softened, broken, dormant, cut };
 
@@ -18,9 +18,14 @@ BR_HD constexpr bool is_damaged(JointStage stage) {
   return stage == JointStage::softened || stage == JointStage::broken;
 }
 
-/// Whether nothing joins its triangles any more.
+/// Whether nothing joins its elements any more.
 BR_HD constexpr bool is_parted(JointStage stage) {
   return stage == JointStage::broken || stage == JointStage::cut;
+}
+
+/// Whether its law acts.
+BR_HD constexpr bool is_live(JointStage stage) {
+  return stage == JointStage::whole || stage == JointStage::softened;
 }
 
 /// Integration points: at the first end, in the middle, at the second end; weights 1/6, 4/6, 1/6.

@@ -24,16 +24,6 @@ using fdem_shared::ListBusy;
 /// more, and can have the registers that suit them.
 constexpr Index fewest_joints_apart = 250'000;
 
-struct WatchReached {
-  static constexpr const char* name = "fdem.watch_reached";
-  View<const std::uint8_t> reached;
-  std::int32_t* host_request;
-  BR_HD void set(const StepTime&) {}
-  BR_HD void operator()(Index) const {
-    if (reached[0] != 0) *host_request = fdem_shared::request_insertion;
-  }
-};
-
 /// From so many couples on those with work to do are listed first: a launch more. Tests in
 /// Space::shadow see both ways.
 Index fewest_couples_listed(Space space) {
@@ -75,13 +65,6 @@ void launch_pairs(World& w, const By& by) {
 struct Launches {
   static constexpr Index lanes = BundlesWide::width;
 
-  template <class By>
-  static void insert(World& w, const By& by, std::int32_t* host_request) {
-    if (!w.given->extrinsic) return;
-    for_each(w.exec, w.triangles.size(), by(stress_kernel(w)));
-    for_each(w.exec, w.joints.size(), by(overshoot_kernel(w)));
-    for_each(w.exec, 1, by(WatchReached{w.reached.view(), host_request}));
-  }
   template <class By>
   static void pairs(World& w, const By& by) {
     with_number(w.exec.precision, [&](auto number) { launch_pairs<decltype(number)>(w, by); });

@@ -49,10 +49,6 @@ double shortened_time_step(const World& w, const Buffer<Index>& triangles) {
   return fdem_shared::world_shortened_step(w, triangles);
 }
 
-void StepwiseRun::insert_joints(World& w) const {
-  fdem::insert_joints(w);
-}
-
 void StepwiseRun::load_forces(World& w) const {
   if (w.given->flow.on) flow_on(w);
   if (!w.given->bolts.empty()) pull_bolts(w);

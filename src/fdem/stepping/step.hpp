@@ -11,9 +11,8 @@ namespace breccia::fdem {
 using fdem_shared::take_forces;
 using fdem_shared::take_step;
 
-/// Joints that appear and fluid that flows, besides what both shapes share.
+/// Fluid that flows and bolts that pull, besides what both shapes share.
 struct StepwiseRun : fdem_shared::StepwiseRun<World> {
-  void insert_joints(World& w) const;
   void load_forces(World& w) const;
 };
 

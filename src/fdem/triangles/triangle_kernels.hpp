@@ -284,9 +284,7 @@ struct StableStep {
   /// A live joint adds p_f to the row of each of its nodes.
   BR_HD double joint_stiffness(Index t, int k) const {
     const Index entry = edges[t].at[k];
-    if (entry < 0) return 0.0;
-    const JointStage now = stage[pair_of(entry)];
-    if (is_parted(now) || now == JointStage::dormant) return 0.0;
+    if (entry < 0 || !is_live(stage[pair_of(entry)])) return 0.0;
     return bonds[bond_of[pair_of(entry)]].stiffness;
   }
   /// An edge that may touch adds the stiffness of two faces pressed together, 3 p L (1/H + 1/H).

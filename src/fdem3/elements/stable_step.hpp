@@ -120,7 +120,7 @@ struct StableStep {
   BR_HD void add_face(Index t, int k, const Vec3 (&x)[4], bool pressed, Parts (&corner)[4]) const {
     double joint = 0.0, contact = 0.0, absorbed = 0.0;
     const Index entry = faces[t].at[k];
-    if (entry >= 0 && !is_parted(stage[pair_of(entry)])) {
+    if (entry >= 0 && is_live(stage[pair_of(entry)])) {
       const Index i = pair_of(entry);
       joint = 2.0 * bonds[bond_of[i]].stiffness * joint_shape[i].area() / (3.0 * joint_length[i]);
     }

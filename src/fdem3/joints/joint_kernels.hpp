@@ -35,10 +35,10 @@ struct JointForces {
 
   template <class R>
   struct Loaded {
-    JointStage before;          ///< of a pack: whole if one is
-    bool quiet;                 ///< parted for good; of a pack: none is whole. Nothing to do
-    JointForce last;            ///< of the step before; of one joint
-    JointEnds ends;             ///< likewise
+    JointStage before;  ///< of a pack: whole if one is
+    bool quiet;         ///< dormant, or parted for good; of a pack: none is whole. Nothing to do
+    JointForce last;    ///< of the step before; of one joint
+    JointEnds ends;     ///< likewise
     Indices<R> corner[6], law;  ///< corners of a, then of b; of a pack
     FaceShapeOf<R> shape;
     R length, strength;
@@ -62,7 +62,8 @@ struct JointForces {
     loaded.number = i;
     if constexpr (width_of<R> == 1) {
       loaded.last = force[i];
-      loaded.quiet = is_parted(loaded.before) && is_zero(loaded.last);
+      loaded.quiet = loaded.before == JointStage::dormant ||
+                     (is_parted(loaded.before) && is_zero(loaded.last));
     } else {
       for (Index k = 1; k < width_of<R>; ++k)
         if (stage[i + k] == JointStage::whole) loaded.before = JointStage::whole;
@@ -101,8 +102,8 @@ struct JointForces {
     }
     loaded.opening = opening_of(a, b);
   }
-  /// One joint: false, with nothing written, unless it is whole, stays so and slips little, or
-  /// parted long ago. Of i and its neighbours in a pack: what is left to do.
+  /// One joint: false, with nothing written, unless it is whole, stays so and slips little, is
+  /// dormant, or parted long ago. Of i and its neighbours in a pack: what is left to do.
   template <class R>
   BR_HD auto update(Index i, const Loaded<R>& loaded) const {
     if constexpr (width_of<R> == 1)

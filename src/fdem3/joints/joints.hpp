@@ -8,6 +8,7 @@
 namespace breccia::fdem3 {
 
 using fdem::is_damaged;
+using fdem::is_live;
 using fdem::is_parted;
 using fdem::JointBond;
 using fdem::JointPoints;
@@ -61,8 +62,8 @@ struct Joints {
   Buffer<double> length;         ///< h = (V_a + V_b) / A  [m]  (constant)
   Buffer<double> strength;       ///< over its law's  [-]  (constant)
   Buffer<Vec3> preset;           ///< opening and slip along (0, 1) and across it at which it was
-                                 ///< joined; empty: none  [m]  (set-up)
-  Buffer<JointStage> stage;      ///<  [-]  (pairs)
+                                 ///< joined; empty: none  [m]  (set-up, insertion)
+  Buffer<JointStage> stage;      ///<  [-]  (insertion, pairs)
   Buffer<JointPoints> points;    ///< damage and largest opening and slip  (pairs)
   Buffer<JointForce> force;      ///< of this time  [N]  (pairs)
   Buffer<JointWork> work;        ///< taken up so far  [J]  (pairs)
@@ -143,6 +144,19 @@ BR_HD inline double spent_by_pressure(double slope, double cohesion, double fric
     cube += 0.5 * size * size * size;
   }
   return cube / (12.0 * slope) * (less[1] - less[0]);
+}
+
+/// Opening and slip at which a joint carries a traction, its strength permitting. False if not.
+/// @param traction  normal, tension positive; along the first edge and across it  [Pa]
+/// @param opening  likewise  [m]
+BR_HD inline bool preset_opening(const JointBond& bond, double strength, double h,
+                                 const Vec3& traction, Vec3& opening) {
+  const double shear = sqrt(traction.y * traction.y + traction.z * traction.z);
+  Vec2 open_and_slip;
+  if (!fdem::preset_opening(bond, strength, h, traction.x, shear, open_and_slip)) return false;
+  const double share = shear > 0.0 ? open_and_slip.y / shear : 0.0;
+  opening = {open_and_slip.x, share * traction.y, share * traction.z};
+  return true;
 }
 
 /// Energy that a joint would give back if it were unloaded now, by direction.  [J]

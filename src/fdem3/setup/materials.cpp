@@ -50,7 +50,7 @@ std::vector<EffectiveRock> effective_rocks(const Config& config) {
   std::vector<EffectiveRock> rocks;
   for (const MaterialConfig& m : config.materials) {
     EffectiveRock rock{m.name, m.young, m.poisson, 0.0, 0.0};
-    if (m.joints != "none") {
+    if (m.joints == "intrinsic") {
       const double share = 1.0 / (1.0 + 4.0 / (3.0 * m.joint.stiffness));
       rock.young *= share;
       rock.poisson *= share;

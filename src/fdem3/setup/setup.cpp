@@ -54,6 +54,7 @@ struct JointList {
   std::vector<FaceShape> shape;
   std::vector<double> length, strength;
   std::vector<Vec3> preset;
+  std::vector<JointStage> stage;
 };
 
 /// The place in a's list of corners of what lies at the first corner of b's.
@@ -74,14 +75,13 @@ Vec3 preset_of(const Config& config, const JointBond& bond, double strength, dou
   const Sym3 stress = config.in_situ.at((1.0 / 3.0) * (corner[0] + corner[1] + corner[2]));
   const JointOpening o = opening_of(corner, corner);
   const Vec3 traction = stress * o.normal, across = cross(o.normal, o.along);
-  const double along_part = dot(traction, o.along), across_part = dot(traction, across);
-  const double shear = std::sqrt(along_part * along_part + across_part * across_part);
-  Vec2 opening;
-  if (!fdem::preset_opening(bond, strength, h, dot(traction, o.normal), shear, opening))
+  Vec3 opening;
+  if (!preset_opening(bond, strength, h,
+                      {dot(traction, o.normal), dot(traction, o.along), dot(traction, across)},
+                      opening))
     throw InputError("in_situ: the joint between tetrahedra " + std::to_string(a) + " and " +
                      std::to_string(b) + " is too weak for this stress");
-  const double share = shear > 0.0 ? opening.y / shear : 0.0;
-  return {opening.x, share * along_part, share * across_part};
+  return opening;
 }
 
 /// Joins neighbours: a joint, a bond, or nothing.
@@ -122,10 +122,15 @@ class Joining {
     copy_to(j.shape, list_.shape);
     copy_to(j.length, list_.length);
     copy_to(j.strength, list_.strength);
-    if (config_.in_situ.any()) copy_to(j.preset, list_.preset);
-    j.stage.resize(count);
+    if (w_.given->extrinsic || config_.in_situ.any()) copy_to(j.preset, list_.preset);
+    copy_to(j.stage, list_.stage);
     j.force.resize(count);
     begin_joints(j, count);
+    if (w_.given->extrinsic) {
+      w_.stress.resize(w_.tetrahedra.size());
+      w_.overshoot.resize(count);
+      w_.reached.resize(1);
+    }
     set_up_bundles(w_, tied_);
   }
 
@@ -171,7 +176,14 @@ class Joining {
       return config_.materials[static_cast<std::size_t>(model_.material[t])].bedding.share(
           (1.0 / norm(across)) * across);
     };
-    const double planes = weak_.contains(f.corners) ? 1.0 : std::min(bedded(a), bedded(b));
+    const bool within = !weak_.contains(f.corners);  // a discontinuity is there from the start
+    const double planes = within ? std::min(bedded(a), bedded(b)) : 1.0;
+    const bool dormant = within && table_.dormant[static_cast<std::size_t>(model_.material[a])] &&
+                         table_.dormant[static_cast<std::size_t>(model_.material[b])];
+    if (dormant) {
+      for (const Index vertex : f.corners) tied_[at(vertex)] = 1;
+      set_up(w_).extrinsic = true;
+    }
     const double strength = planes * std::min(static_cast<double>(model_.strength[a]),
                                               static_cast<double>(model_.strength[b]));
     list_.face_a.push_back(f.a);
@@ -181,7 +193,8 @@ class Joining {
     list_.shape.push_back(shape);
     list_.length.push_back(h);
     list_.strength.push_back(strength);
-    list_.preset.push_back(config_.in_situ.any()
+    list_.stage.push_back(dormant ? JointStage::dormant : JointStage::whole);
+    list_.preset.push_back(!dormant && config_.in_situ.any()
                                ? preset_of(config_, table_.bonds[static_cast<std::size_t>(law)],
                                            strength, h, corner, f.a / 4, f.b / 4)
                                : Vec3{});
@@ -315,43 +328,6 @@ void derive(World& w) {
   derive_couples(w);
   derive_bundles(w);
   w.graph.clear();
-}
-
-void derive_bundles(World& w) {
-  if (w.bundles.starts.size() < 2) return;
-  std::vector<Index> starts, nodes;
-  std::vector<FaceJoints> faces;
-  copy_to(starts, w.bundles.starts);
-  copy_to(nodes, w.bundles.nodes);
-  copy_to(faces, w.faces);
-  std::vector<Index> leader(nodes.size());
-  for (std::size_t v = 0; v + 1 < starts.size(); ++v) {
-    const Index begin = starts[v], end = starts[v + 1];
-    for (Index k = begin; k < end; ++k) leader[at(k)] = k;
-    const auto first_of = [&](Index k) {
-      while (leader[at(k)] != k) k = leader[at(k)];
-      return k;
-    };
-    // Tetrahedra are united across faces, never across edges or vertices alone.
-    for (Index k = begin; k < end; ++k) {
-      const Index t = nodes[at(k)] / 4;
-      for (int f = 0; f < 4; ++f) {
-        const Index other = w.across[at(4 * t + f)];
-        if (faces[at(t)].at[f] != face_bonded || f == nodes[at(k)] % 4 || other < 0) continue;
-        const Index vertex = w.vertex[at(nodes[at(k)])];
-        for (Index c = 0; c < 4; ++c) {
-          const Index node = 4 * (other / 4) + c;
-          if (w.vertex[at(node)] != vertex) continue;
-          const auto found =
-              std::lower_bound(nodes.begin() + begin, nodes.begin() + end, node) - nodes.begin();
-          const Index p = first_of(k), q = first_of(static_cast<Index>(found));
-          leader[at(std::max(p, q))] = std::min(p, q);
-        }
-      }
-    }
-    for (Index k = begin; k < end; ++k) leader[at(k)] = first_of(k);
-  }
-  copy_to(w.bundles.leader, leader);
 }
 
 }  // namespace breccia::fdem3

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "exec/for_each.hpp"
+#include "fdem3/joints/insertion_kernels.hpp"
 #include "fdem3/shape.hpp"
 #include "fdem3/stepping/launches.hpp"
 #include "fdem3/stepping/step.hpp"
@@ -23,9 +24,6 @@ constexpr Index most_threads = 132 * 512;
 struct Launches {
   static constexpr Index lanes = 1;
 
-  /// Joints do not wake.
-  template <class By>
-  static void insert(World&, const By&, std::int32_t*) {}
   template <class By>
   static void pairs(World& w, const By& by) {
     if (w.joints.size() + w.couples.size() == 0)  // elements read corners ahead, which move

@@ -24,10 +24,6 @@ class TetCaseChecks {
             "poisson and shear out");
       if (m.bedding.strength != 1.0 && !(norm(m.bedding.normal) > 0.0))
         add("material." + m.name + ".bedding.normal: its planes need a direction across them");
-      if (m.joints == "extrinsic")
-        add("material." + m.name +
-            ".joints: \"extrinsic\" is not there in three dimensions yet; allowed are "
-            "\"intrinsic\" and \"none\"");
     }
     for (const fdem3::SupportConfig& s : config.supports)
       check_region("support." + s.name, s.region);

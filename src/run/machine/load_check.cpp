@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 #include <string_view>
 
 #include "dem/relations.hpp"
@@ -103,12 +102,9 @@ void refuse_unordered(const char* section, const Buffer<Index>& array) {
       refuse(section, fmt::format("leads to {} (item {})", places[i], i));
 }
 
-/// @param never  a stage that no joint of the method has
-void refuse_wrong_stages(const Buffer<fdem::JointStage>& stages,
-                         std::optional<fdem::JointStage> never) {
+void refuse_wrong_stages(const Buffer<fdem::JointStage>& stages) {
   for (const fdem::JointStage stage : on_host(stages))
-    if (stage > fdem::JointStage::cut || stage == never)
-      refuse("joints.stage", "holds what is no stage of a joint");
+    if (stage > fdem::JointStage::cut) refuse("joints.stage", "holds what is no stage of a joint");
 }
 
 /// Keys of contacts with walls, one after the other: a mesh has mesh_slots with each element.
@@ -217,7 +213,7 @@ void refuse_wrong_places(const fdem::World& w) {
   refuse_wrong_relations(w);
   refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.triangles.id));
   refuse_unordered("reach.triangle", w.reach.element);
-  refuse_wrong_stages(w.joints.stage, {});
+  refuse_wrong_stages(w.joints.stage);
 }
 
 void refuse_wrong_places(const fdem3::World& w) {
@@ -225,7 +221,7 @@ void refuse_wrong_places(const fdem3::World& w) {
   refuse_wrong_relations(w);
   refuse_wrong_pairs("couples", w.couples.pairs, KeyOfIds(w.tetrahedra.id));
   refuse_unordered("reach.tetrahedron", w.reach.element);
-  refuse_wrong_stages(w.joints.stage, fdem::JointStage::dormant);
+  refuse_wrong_stages(w.joints.stage);
 }
 
 void require_places(const dem::World& w) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "domain/simulated_ranks.hpp"
@@ -123,14 +124,14 @@ TEST(Fdem3SameBits, led_by_the_clock_with_tables_over_time) {
   }
 }
 
-Outcome on_ranks(const Scene& scene, int count, Space space = Space::host) {
+Outcome on_ranks(const Scene& scene, int count, Space space = Space::host, int steps = many) {
   Outcome outcome;
   simulate_ranks(count, static_cast<std::uint64_t>(count), [&](Communicator& ranks) {
     fdem3::World whole = scene.world();
     DomainConfig config;
     config.buffer = 0.1;  // they are shared out often
     fdem3::World part = fdem3::share_out(whole, ranks, config, space);
-    for (int i = 0; i < many; ++i) fdem3::step(part);
+    for (int i = 0; i < steps; ++i) fdem3::step(part);
     fdem3::collect(part, whole);
     if (ranks.rank() == 0) outcome = outcome_of(whole);
   });
@@ -159,23 +160,59 @@ TEST(Fdem3SameBits, of_bodies_that_move_as_one_on_ranks) {
   for (const int count : {2, 5}) EXPECT_EQ(on_ranks(scene, count), expected) << count;
 }
 
-TEST(Fdem3SameBits, of_a_run_that_is_saved_and_goes_on) {
-  const Scene scene = meeting_cubes();
+Scene waking_cubes() {
+  Scene scene = meeting_cubes();
+  scene.config.materials[0].joints = "extrinsic";
+  return scene;
+}
+constexpr int few = 240;  // its steps are longer
+
+/// On three threads.
+const Outcome& reference_that_wakes() {
+  static const Outcome outcome = [] {
+    fdem3::World w = waking_cubes().world(3);
+    int in_part = 0;  // steps with joints awake beside others that sleep
+    while (w.step < few) {
+      fdem3::step(w);
+      const auto stage = w.joints.stage.host();
+      const auto asleep = std::count(stage.begin(), stage.end(), fdem3::JointStage::dormant);
+      in_part += asleep > 0 && asleep < w.joints.size() ? 1 : 0;
+    }
+    EXPECT_GT(in_part, 20);
+    return outcome_of(w);
+  }();
+  return outcome;
+}
+
+TEST(Fdem3SameBits, of_joints_that_wake_at_their_strength) {
+  const Scene scene = waking_cubes();
+  EXPECT_GT(reference_that_wakes().cracks, 5U);
+  EXPECT_EQ(led_by_the_clock(scene, few), reference_that_wakes());
+  EXPECT_EQ(on_ranks(scene, 2, Space::host, few), reference_that_wakes());
+}
+
+/// @returns the hash at its end
+std::uint64_t saved_and_resumed(const Scene& scene, int steps) {
   const auto path = std::filesystem::temp_directory_path() / "breccia_fdem3_test.br";
   const std::unique_ptr<Method> first = make_method(scene.config, scene.model, Exec{});
-  while (first->steps() < 260) first->advance({1e300, 260});
+  while (first->steps() < steps / 2) first->advance({1e300, steps / 2});
   CheckpointWriter writer;
   first->save(writer);
   writer.write(path.string());
   const std::unique_ptr<Method> second = make_method(scene.config, scene.model, Exec{});
   const CheckpointReader reader(path.string());
   second->load(&reader);
-  while (first->steps() < many) first->advance({1e300, many});
-  while (second->steps() < many) second->advance({1e300, many});
+  while (first->steps() < steps) first->advance({1e300, steps});
+  while (second->steps() < steps) second->advance({1e300, steps});
   EXPECT_EQ(second->state_hash(), first->state_hash());
-  EXPECT_EQ(first->state_hash(), reference().hash);
   EXPECT_EQ(second->energy().friction, first->energy().friction);
   std::filesystem::remove(path);
+  return first->state_hash();
+}
+
+TEST(Fdem3SameBits, of_a_run_that_is_saved_and_goes_on) {
+  EXPECT_EQ(saved_and_resumed(meeting_cubes(), many), reference().hash);
+  EXPECT_EQ(saved_and_resumed(waking_cubes(), few), reference_that_wakes().hash);
 }
 
 }  // namespace fdem3_same_bits_test
