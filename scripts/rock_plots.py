@@ -3,7 +3,7 @@
 
     scripts/rock_plots.py KIND RESULT_DIR [RESULT_DIR...] -o plot.png
 
-KIND: tension, crack (fracture energy over growth), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), branching (crack front), branching_3d (crack path), spall (velocity of the free end),
+KIND: tension, crack (fracture energy over growth), bending (force over the way of the press, of three_point_bending_3d), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), branching (crack front), branching_3d (crack path), spall (velocity of the free end),
 triaxial (strengths over pressure, from several runs), dominoes (speed along the row, several runs),
 checks (any case: probes over time, and what its checks expect of them).
 """
@@ -18,6 +18,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+import beam_reference
 import domino_wave
 import rock_tables
 
@@ -36,6 +37,24 @@ def crack(axes, results):
         axes.plot([1e3 * x for x, _ in front], [1e3 * f / rock_tables.CRACK_ENERGY for _, f in front], label=f"{r.value('model.triangles'):.0f} triangles")
     axes.plot([5, 35], [15, 45], color="0.5", lw=1, ls="--", label="slope 1: G_I")
     axes.set(xlabel="growth of the crack, mm", ylabel="fracture energy / G_I, mm")
+
+
+def bending(axes, results):
+    notches = set()
+    for r in results:
+        case = tomllib.loads((r.folder / "case.toml").read_text())
+        press = next(s for s in case["support"] if s["name"] == "press")
+        speed, ramp = abs(press["velocity"][2]), press["ramp"]
+        notch = 1e3 * sum(max(p[2] for p in d["points"]) + 0.02 for d in case.get("discontinuity", []))
+        notches.add(round(notch, 3))
+        rows = r.rows("history.csv")
+        way = [1e6 * speed * (t * t / 2 / ramp if t < ramp else t - ramp / 2) for t in (row["time"] for row in rows)]
+        axes.plot(way, [row["force"] for row in rows], lw=0.8,
+                  label=f"{r.value('model.tetrahedra'):.0f} tetrahedra" + (f", notch of {notch:.0f} mm" if notch else ""))
+    for notch in sorted(notches):
+        rows = beam_reference.bend(lambda o: beam_reference.breccia(o, 2.588612779530447), notch=1e-3 * notch)
+        axes.plot(1e6 * rows[:, 0], rows[:, 1], "k--" if notch else "k:", lw=1, label="one cohesive plane, at rest" + (f", notch of {notch:.0f} mm" if notch else ""))
+    axes.set(xlabel="way of the press, um", ylabel="force, N", xlim=(0, 110), ylim=(0, None))
 
 
 def disc(axes, results):
@@ -163,7 +182,7 @@ def checks(axes, results):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    kinds = {f.__name__: f for f in (tension, crack, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, branching_3d, spall, triaxial, dominoes, checks)}
+    kinds = {f.__name__: f for f in (tension, crack, bending, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, branching_3d, spall, triaxial, dominoes, checks)}
     parser.add_argument("kind", choices=kinds)
     parser.add_argument("results", nargs="+", type=pathlib.Path)
     parser.add_argument("-o", "--out", required=True)
