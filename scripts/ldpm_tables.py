@@ -103,11 +103,25 @@ def calibration(lines):
 
 
 def size_effect(lines):
-    """Nominal strength of notched prisms of several widths, and the law of Bazant through the means: 1 / s^2 is linear in the width."""
+    """Nominal strength of notched prisms of several widths."""
     found = {}
     for row in lines:
         if row["test"] == "size":
             found.setdefault(row["set"], {}).setdefault(int(row["quantity"]), []).append(float(row["value"]))
+    return bazant(found)
+
+
+def beams(lines):
+    """Nominal strength of notched beams of several depths."""
+    found = {}
+    for row in lines:
+        if row["test"].startswith("beams ") and row["quantity"] == "strength":
+            found.setdefault(row["set"], {}).setdefault(int(row["test"][6:]), []).append(float(row["value"]))
+    return bazant(found)
+
+
+def bazant(found):
+    """The law of Bazant through the means: 1 / s^2 is linear in the width."""
     widths = sorted({width for of in found.values() for width in of})
     out = ["| set | " + " | ".join(f"{width} mm" for width in widths) + " | B f_t [MPa] | D_0 [mm] | largest misfit of the law |", "|---" * (len(widths) + 4) + "|"]
     for name, of in sorted(found.items()):
@@ -146,9 +160,98 @@ def public(lines, name):
     return "\n".join(out)
 
 
+def platens(lines):
+    """Prisms and cubes of 100 mm between ends of several frictions."""
+    strengths = {}
+    for row in lines:
+        if row["test"].startswith("platens ") and row["quantity"] == "strength":
+            _, shape, friction = row["test"].split(" ")
+            strengths.setdefault((row["set"], friction), {}).setdefault(shape, []).append(float(row["value"]))
+    out = ["| set | friction | prism [MPa] | cube [MPa] | n | cube over prism (1.15 to 1.30 where platens are rough) | prism over smooth (1.0 to 1.05) | cube over smooth |", "|---" * 8 + "|"]
+    for (of, friction), found in sorted(strengths.items()):
+        smooth = strengths.get((of, "0"), {})
+        prism, cube = found.get("prism", []), found.get("cube", [])
+        over = [c / statistics.mean(prism) for c in cube] if prism else []
+        prisms = [v / statistics.mean(smooth["prism"]) for v in prism] if smooth.get("prism") else []
+        cubes = [v / statistics.mean(smooth["cube"]) for v in cube] if smooth.get("cube") else []
+        out.append(f"| {of} | {friction} | {spread(prism, 1)} | {spread(cube, 1)} | {max(len(prism), len(cube))} | {spread(over, 2)} | {spread(prisms, 2)} | {spread(cubes, 2)} |")
+    return "\n".join(out)
+
+
+def ends(lines):
+    """Prisms and cubes of `breccia test` between ends that are smooth, rub or hold; other frictions than 0.577 stand in sets of their own."""
+    out = ["| set | ends | prism [MPa] | cube [MPa] | n | cube over prism (rough: 1.15 to 1.30) | misfit | prism over smooth (1.0 to 1.05) | misfit | cube over smooth cube |", "|---" * 10 + "|"]
+    for of in ("B", "II-3", "II-4"):
+        found = numbers(lines, of)
+        smooth, smooth_cube = found["compression_prism", "strength"], found["compression_cube", "strength"]
+        for words, where, test in (("smooth", found, "compression"), ("friction 0.13", numbers(lines, f"{of}, friction 0.13"), "platens"), ("friction 0.577", found, "platens"), ("held", found, "held")):
+            prism, cube = where.get((f"{test}_prism", "strength")), where.get((f"{test}_cube", "strength"))
+            if not prism or not cube:
+                continue
+            over = [value / statistics.mean(prism) for value in cube]
+            gain = [value / statistics.mean(smooth) for value in prism]
+            cells = [spread(over, 2), "" if words == "smooth" else misfit(over, 1.15, 1.30), spread(gain, 2), "" if words == "smooth" else misfit(gain, 1.0, 1.05), spread([value / statistics.mean(smooth_cube) for value in cube], 2)]
+            out.append(f"| {of} | {words} | {spread(prism, 1)} | {spread(cube, 1)} | {len(prism)} | " + " | ".join(cells) + " |")
+    return "\n".join(out)
+
+
+def bands(lines):
+    """Where prisms of 100 mm break after the peak."""
+    found = {}
+    for row in lines:
+        if row["test"].startswith("platens ") and row["quantity"] in ("late", "cracked", "band", "ratio", "chance", "slope", "left"):
+            found.setdefault((row["set"], row["test"][8:]), {}).setdefault(row["quantity"], []).append(float(row["value"]))
+    out = ["| set | specimen, friction | left at the end, of the peak | facets cracked | after the peak | of these in the best layer, % | as many of all cracked ones at random, % | best layer's slope, degrees |", "|---" * 8 + "|"]
+    for (of, name), of_one in sorted(found.items()):
+        if "band" in of_one:
+            percent = {key: [100 * v for v in of_one[key]] for key in ("band", "chance")}
+            out.append(f"| {of} | {name} | {spread(of_one['left'], 2)} | {spread(of_one['cracked'], 0)} | {spread(of_one['late'], 0)} | {spread(percent['band'], 0)} | {spread(percent['chance'], 0)} | {spread(of_one['slope'], 0)} |")
+    return "\n".join(out)
+
+
+def cycles(lines):
+    """Strain that is left by unloading beside the formula of Karsan and Jirsa."""
+    found = {}
+    for row in lines:
+        if row["test"] == "cycles":
+            found.setdefault(row["set"], {}).setdefault(row["quantity"], []).append(float(row["value"]))
+    out = ["| set | unloaded at [1e-3] | stress there [MPa] | left, here [1e-3] | left, formula [1e-3] | misfit | secant of unloading [GPa] |", "|---" * 7 + "|"]
+    for of, q in sorted(found.items()):
+        peak = statistics.mean(q["peak_strain"])
+        for k in range(5):
+            if f"turn_{k}" in q:
+                u = statistics.mean(q[f"turn_{k}"]) / peak
+                formula = peak * (0.145 * u * u + 0.13 * u)
+                left = q[f"left_{k}"]
+                out.append(f"| {of} | {spread(q[f'turn_{k}'], 2)} | {spread(q[f'stress_{k}'], 1)} | {spread(left, 2)} | {formula:.2f} | "
+                           f"{100 * (statistics.mean(left) / formula - 1):+.0f} % | {spread(q[f'secant_{k}'], 1)} |")
+    return "\n".join(out)
+
+
+def confined(lines):
+    """Prisms under side pressure beside Attard and Setunge 1996 and Richart 1928, by what the prisms of 60 mm show without it."""
+    found = {}
+    for row in lines:
+        if row["test"].startswith("confined ") and row["quantity"] in ("strength", "peak_strain", "side"):
+            found.setdefault((row["set"], int(row["test"][9:])), {}).setdefault(row["quantity"], []).append(float(row["value"]))
+    out = ["| set | pressure [MPa] | strength [MPa] | Attard and Setunge | misfit | f_c + 4.1 p | misfit | strain at the peak [1e-3] | Attard and Setunge | misfit |", "|---" * 10 + "|"]
+    for (of, pressure), q in sorted(found.items()):
+        base = numbers(lines, of)
+        f_c, f_t = (statistics.mean(base[test, "strength"]) for test in ("compression_prism", "tension"))
+        e_c = statistics.mean(base["compression_prism", "peak_strain"])
+        attard = f_c * (1 + pressure / f_t) ** (1.25 * (1 + 0.062 * pressure / f_c) * f_c ** -0.21)
+        richart = f_c + 4.1 * pressure
+        strain = e_c * (1 + (17 - 0.06 * f_c) * pressure / f_c)
+        s, e = statistics.mean(q["strength"]), statistics.mean(q["peak_strain"])
+        out.append(f"| {of} | {pressure} | {spread(q['strength'], 1)} | {attard:.0f} | {100 * (s / attard - 1):+.0f} % | {richart:.0f} | {100 * (s / richart - 1):+.0f} % | "
+                   f"{spread(q['peak_strain'], 1)} | {strain:.1f} | {100 * (e / strain - 1):+.0f} % |")
+    return "\n".join(out)
+
+
 def markdown(lines, what):
     kind, _, name = what.partition(" ")
-    return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "size": lambda: size_effect(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
+    return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "size": lambda: size_effect(lines), "beams": lambda: beams(lines), "platens": lambda: platens(lines),
+            "ends": lambda: ends(lines), "bands": lambda: bands(lines), "cycles": lambda: cycles(lines), "confined": lambda: confined(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
 
 
 def main():

@@ -1,0 +1,324 @@
+#!/usr/bin/env python3
+"""Experiments on concrete of LDPM rebuilt for docs/validation-ldpm.md: platens, cycles, notched beams, confined compression.
+
+    scripts/ldpm_experiments.py run [NAME...] [--sets B,II-3,II-4] [--seeds 3] [--jobs 2] [--binary build/release/breccia] [-o out/ldpm_experiments]
+    scripts/ldpm_experiments.py record     numbers of all finished runs to docs/results/ldpm.csv
+    scripts/ldpm_experiments.py plot FILE.png    curves over each other; needs python3-matplotlib
+
+NAME: platens (prisms and cubes of 100 mm between ends of several frictions), cycles (a prism unloaded and loaded again), beams (notched, four
+sizes), confined (prisms under side pressure, beside the curves of Attard and Setunge). Grains are of 6 to 12 mm (platens: II-4 8 to 15 mm), else
+10 to 12 mm. Runs that are done are kept.
+"""
+import argparse
+import concurrent.futures
+import csv
+import json
+import math
+import pathlib
+import random
+import statistics
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import ldpm_benchmarks as bodies  # noqa: E402
+from localisation import directions  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SETS = {"B": bodies.B, "II-3": bodies.II_3, "II-4": bodies.II_4}
+TURNS = ["z", "spin_x", "spin_y"]
+
+
+def case(name, of, size, grains, seed, end, text, rows, frames=0):
+    """A box from 0 to size [mm] of a set of parameters."""
+    return f"""breccia = 1
+method = "dem3d"
+title = "{name}"
+seed = {seed}
+local_damping = 0.05
+[time]
+end = {end:.9g}
+safety = 0.9
+evaluate_every = 10
+[search]
+margin = 0.5
+[output]
+frames = {frames}
+fields = {"true" if frames else "false"}
+pictures = false
+history = {rows:.9g}
+{bodies.material(SETS[of], *grains)}
+[[body]]
+name = "body"
+shape = "box"
+material = "concrete"
+center = [{", ".join(f"{5e-4 * x:.9g}" for x in size)}]
+size = [{", ".join(f"{1e-3 * x:.9g}" for x in size)}]
+{text}"""
+
+
+def platens(of, seed):
+    """Prisms and cubes between ends that do not turn and rub; to half of the peak after it."""
+    grains = (8, 15) if of == "II-4" else (6, 12)
+    for height in (200, 100):
+        for friction in (0.0, 0.13, 0.577):
+            speed = 0.5e-3 * height  # 0.5/s
+            rub = f"friction = {friction}\n" if friction else ""
+            text = (bodies.face("foot", 2, 0, TURNS, rub) + bodies.face("head", 2, height, TURNS, f"velocity = [0.0, 0.0, {-speed}]\nramp = 5e-4\n{rub}")
+                    + bodies.probe("force", "head", "force_z", "sum") + bodies.probe("path", "head", "displacement_z")
+                    + '[[stage]]\nname = "press"\ndrop = 0.5\ndrop_of = "force"\n')
+            name = f"platens-{'prism' if height == 200 else 'cube'}-{friction:g}-{of}-{seed}"
+            yield name, case(name, of, (100, 100, height), grains, seed, 0.012 * height * 1e-3 / speed, text, 2e-5, 1)
+
+
+def cycles(of, seed):
+    """A prism between smooth ends, unloaded to 2 MPa and loaded again four times."""
+    if of == "II-4":
+        return
+    speed = 0.6 * 0.12
+    stages, left = "", 0.0
+    for strain in (0.8e-3, 1.4e-3, 2.0e-3, 2.8e-3):
+        for name, rule, sense in ((f"to_{1e3 * strain:g}", f'when = "path < {-0.12 * strain:.6g}"', -1), (f"back_from_{1e3 * strain:g}", 'when = "force < 7.2e3"', 1)):
+            stages += f'[[stage]]\nname = "{name}"\n{rule}\n'
+            stages += f'[[stage.support]]\nname = "head"\nvelocity = [0.0, 0.0, {(-1 if sense < 0 else 0.4) * speed:.6g}]\nramp = 2e-4\n' if left else ""
+            left += 1
+    stages += f'[[stage]]\nname = "end"\nwhen = "path < -4.2e-4"\n[[stage.support]]\nname = "head"\nvelocity = [0.0, 0.0, {-speed}]\nramp = 2e-4\n'
+    text = (bodies.face("foot", 2, 0, TURNS) + bodies.face("head", 2, 120, TURNS, f"velocity = [0.0, 0.0, {-speed}]\nramp = 5e-4")
+            + bodies.probe("force", "head", "force_z", "sum") + bodies.probe("path", "head", "displacement_z") + stages)
+    name = f"cycles-{of}-{seed}"
+    yield name, case(name, of, (60, 60, 120), (10, 12), seed, 0.04, text, 1e-5)
+
+
+def beams(of, seed):
+    """Notched beams of one thickness, span 2.5 D, notch D/4, bent to 1.5 times the opening of the peak and more."""
+    if of == "II-4":
+        return
+    for depth in (30, 60, 120, 240):
+        if depth == 240 and seed > 3:
+            continue
+        length, span = 2.7 * depth, 2.5 * depth
+        middle, near = 0.5 * length, max(0.1 * depth, 7.0)
+
+        def strip(name, at, low, more=""):
+            low_z, high_z = (-1, 1e-6) if low else (1e-3 * depth - 1e-6, 1)
+            return bodies.support(name, ["z"], (1e-3 * (at - near), -1, low_z), (1e-3 * (at + near), 1, high_z), more)
+        speed = 0.04 if depth > 60 else 0.02
+        text = (f'[[body.cut]]\nshape = "box"\ncenter = [{1e-3 * middle}, 0.03, 0.0]\nsize = [0.0, 1.0, {0.5e-3 * depth}]\n'
+                + strip("left", middle - 0.5 * span, True) + strip("right", middle + 0.5 * span, True)
+                + strip("load", middle, False, f"velocity = [0.0, 0.0, {-speed}]\nramp = 1e-3")
+                + bodies.probe("force", "load", "force_z", "sum") + bodies.probe("path", "load", "displacement_z")
+                + bodies.probe("left", "left", "force_z", "sum") + bodies.probe("right", "right", "force_z", "sum")
+                + '[[stage]]\nname = "bend"\ndrop = 0.4\ndrop_of = "left"\n')
+        name = f"beams-{depth}-{of}-{seed}"
+        yield name, case(name, of, (length, 60, depth), (10, 12), seed, 1.2e-3 * (depth / 60) ** 0.5 / speed * 0.25, text, 2e-5)
+
+
+def confined(of, seed):
+    """Prisms under a constant pressure on their sides, those of `breccia test` with more points."""
+    for pressure in (5, 10, 20, 40):
+        speed = 0.12 * min(1.0, pressure / 20) * 1.5
+        text, areas = "", (7.2e-3, 7.2e-3, 3.6e-3)
+        for axis, length in enumerate((60, 60, 120)):
+            servo = (f'servo = {{ axis = "{"xyz"[axis]}", pressure = [[0, 0], ["2 ms", {-0.9e6 * pressure}], ["3 ms", {-1e6 * pressure}]], '
+                     f"area = {areas[axis]}, speed = 1.0, gain = 2.0 }}")
+            text += bodies.face(f"low_{'xyz'[axis]}", axis, 0, ["xyz"[axis]]) + bodies.face("head" if axis == 2 else f"high_{'xyz'[axis]}", axis, length, ["xyz"[axis]], servo)
+        text += (bodies.probe("force", "head", "force_z", "sum") + bodies.probe("path", "head", "displacement_z") + bodies.probe("side_force", "high_x", "force_x", "sum")
+                 + bodies.probe("side_path", "high_x", "displacement_x")
+                 + f'[[stage]]\nname = "confine"\nuntil = "4 ms"\n[[stage]]\nname = "shear"\ndrop = 0.3\ndrop_of = "force"\n[[stage.support]]\nname = "head"\nvelocity = [0.0, 0.0, {-speed}]\nramp = 1e-4\n')
+        name = f"confined-{pressure}-{of}-{seed}"
+        yield name, case(name, of, (60, 60, 120), (10, 12), seed, 4e-3 + 0.12 * (0.006 + 4e-4 * pressure) / speed, text, 2e-5)
+
+
+EXPERIMENTS = {"platens": platens, "cycles": cycles, "beams": beams, "confined": confined}
+
+
+def history(folder):
+    with open(folder / "history.csv", newline="") as file:
+        rows = list(csv.DictReader(file))[1:]
+    return {key: [float(row[key]) for row in rows] for key in rows[0] if key not in ("", "stage")}
+
+
+def smoothed(values, count):
+    """Mean over `count` neighbours."""
+    half = count // 2
+    return [statistics.fmean(values[max(0, k - half):k + half + 1]) for k in range(len(values))]
+
+
+def band(folder, height, since):
+    """Facets broken after the peak: how many more of them lie in the best layer of a tenth of the height than of all cracked ones, and so of as
+    many drawn at random; slope of the layer [degrees]."""
+    with open(folder / "broken_links.csv", newline="") as file:
+        rows = [row for row in list(csv.DictReader(file))[1:]]
+    places = [tuple(float(row[key]) for key in "xyz") for row in rows]
+    late = [place for place, row in zip(places, rows) if float(row["time"]) > since]
+    if len(late) < 50:
+        return None
+    random.seed(1)
+    late = random.sample(late, min(len(late), 1500))
+    everything = random.sample(places, min(len(places), 3000))
+
+    def best(chosen):
+        found = (0.0, 0.0)
+        for n in directions(100):
+            along = sorted(n[0] * p[0] + n[1] * p[1] + n[2] * p[2] for p in chosen)
+            first = 0
+            for last, value in enumerate(along):
+                while value - along[first] > 0.1 * height:
+                    first += 1
+                if (share := (last - first + 1) / len(along)) > 0.05:
+                    if share > found[0] * 0.7:
+                        inside = sum(1 for p in everything if 0 <= n[0] * p[0] + n[1] * p[1] + n[2] * p[2] - along[first] <= 0.1 * height) / len(everything)
+                        if share > found[0]:
+                            found = (share, share / max(inside, 1e-3), math.degrees(math.acos(n[2])))
+        return found
+    share, ratio, slope = best(late)
+    return {"late": len([1 for row in rows if float(row["time"]) > since]), "cracked": len(rows), "band": share, "ratio": ratio,
+            "chance": best(random.sample(places, len(late)))[0], "slope": slope}
+
+
+def numbers_of(name, folder):
+    """{quantity: value, unit} of a finished run, and its curve [strain in 1e-3 or mm, MPa]."""
+    h, parts = history(folder), name.split("-")
+    found, n = {}, len(h["time"])
+    stress = None
+    if parts[0] in ("platens", "cycles", "confined"):
+        height, area = (0.1 if "cube" in name else 0.2, 1e-2) if parts[0] == "platens" else (0.12, 3.6e-3)
+        stress = smoothed([abs(f) / area * 1e-6 for f in h["force"]], 5)
+        begin = next((k for k in range(n) if h["time"][k] >= 4e-3), 0) if parts[0] == "confined" else 0
+        strain = [1e3 * (h["path"][begin] - x) / height for x in h["path"]]
+        k = max(range(begin, n), key=stress.__getitem__)
+        found = {("strength", "MPa"): stress[k], ("peak_strain", "1e-3"): strain[k], ("left", "-"): stress[-1] / stress[k], ("end_strain", "1e-3"): strain[-1]}
+        if parts[0] == "confined":
+            found["side", "MPa"] = smoothed([abs(f) / 7.2e-3 * 1e-6 for f in h["side_force"]], 5)[k]
+            strain, stress = strain[begin:], stress[begin:]
+        if parts[0] == "platens" and (found_band := band(folder, height, h["time"][k])):
+            found.update({(key, "-"): value for key, value in found_band.items()})
+        if parts[0] == "cycles":  # where it turns, and what is left
+            turns, sense, at = [], 1, 0
+            for k in range(n):
+                if sense > 0 and strain[k] > strain[at] or sense < 0 and strain[k] < strain[at]:
+                    at = k
+                elif abs(strain[k] - strain[at]) > 0.02:
+                    turns.append(at)
+                    sense, at = -sense, k
+            for number, (top, low) in enumerate(zip(turns[::2], turns[1::2])):
+                unit = (stress[top] - stress[low]) / (strain[top] - strain[low])
+                found.update({(f"turn_{number}", "1e-3"): strain[top], (f"stress_{number}", "MPa"): stress[top],
+                              (f"left_{number}", "1e-3"): strain[low] - stress[low] / unit, (f"secant_{number}", "GPa"): unit})
+        x = strain
+    else:
+        depth = float(parts[1])
+        load = smoothed([abs(a) + abs(b) for a, b in zip(h["left"], h["right"])], 9)
+        k = max(range(n), key=load.__getitem__)
+        ligament = 0.75 * depth
+        found = {("strength", "MPa"): 1.5 * load[k] * 2.5 * depth / (60 * depth ** 2), ("path", "mm"): 1e3 * abs(h["path"][k]), ("left", "-"): load[-1] / load[k],
+                 ("ligament", "MPa"): 1.5 * load[k] * 2.5 * depth / (60 * ligament ** 2)}
+        x, stress = [1e3 * abs(p) for p in h["path"]], [1.5 * p * 2.5 * depth / (60 * depth ** 2) for p in load]
+    by = max(1, len(x) // 120)
+    return found, [[round(a, 4), round(s, 3)] for a, s in zip(x[::by], stress[::by])]
+
+
+def all_of(names, sets, seeds):
+    for seed in seeds:
+        for experiment in names:
+            for of in sets:
+                for name, text in EXPERIMENTS[experiment](of, seed):
+                    yield name, text
+
+
+def run(binary, out, name, text, threads):
+    folder, numbers = out / name, out / f"{name}.json"
+    if numbers.exists():
+        return name, "kept"
+    (out / f"{name}.toml").write_text(text)
+    with open(out / f"{name}.log", "w") as log:
+        code = subprocess.run([binary, "run", out / f"{name}.toml", "-o", folder, "--threads", str(threads), "--force", "--no-progress", "-q"], stdout=log,
+                              stderr=subprocess.STDOUT).returncode
+    if code != 0:
+        return name, f"exit code {code}"
+    found, curve = numbers_of(name, folder)
+    summary = json.loads((folder / "summary.json").read_text())
+    numbers.write_text(json.dumps({"name": name, "numbers": [[q, u, v] for (q, u), v in found.items()], "curve": curve, "hash": summary["state_hash"],
+                                   "steps": summary["steps"], "links": summary["model"]["links"], "seconds": summary["wall_s"]["total"],
+                                   "energy": summary["energy"].get("error_relative")}))
+    return name, f"{summary['wall_s']['total']:.0f} s"
+
+
+def finished(out):
+    """{(experiment and variant, set): runs of its seeds}"""
+    found = {}
+    for file in sorted(out.glob("*.json")):
+        one = json.loads(file.read_text())
+        *what, seed = one["name"].split("-")
+        of = "-".join(what[-2:]) if what[-2] == "II" else what[-1]
+        found.setdefault((" ".join(what[:-2] if what[-2] == "II" else what[:-1]), of), {})[int(seed)] = one
+    return found
+
+
+def record(out, target):
+    """Puts the numbers of finished runs in place of earlier ones of the same experiments."""
+    found = finished(out)
+    with open(target, newline="") as file:
+        lines = [row for row in csv.reader(file) if (row[1], row[0]) not in found]
+    for (what, of), runs in found.items():
+        lines += [[of, what, seed, quantity, unit, f"{value:.6g}"] for seed, one in sorted(runs.items()) for quantity, unit, value in one["numbers"]]
+    with open(target, "w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(lines)
+
+
+def plot(out, picture):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    found = finished(out)
+    figure, axes = plt.subplots(2, 2, figsize=(11, 8))
+    colors = {"B": "tab:blue", "II-3": "tab:red", "II-4": "tab:green"}
+    panels = {"platens prism 0.577": (0, "prisms of 100 mm: smooth ends (thin) and platens, friction 0.577"), "platens prism 0": (0, ""), "cycles": (1, "unloaded and loaded again"),
+              "confined": (2, "side pressure of 5, 10, 20, 40 MPa"), "beams": (3, "notched beams of 30 to 240 mm, nominal stress")}
+    for (what, of), runs in sorted(found.items()):
+        name = what if what.startswith("platens") else what.split(" ")[0]
+        if name not in panels:
+            continue
+        panel, title = panels[name]
+        a = axes.flat[panel]
+        for seed, one in runs.items():
+            x, y = zip(*one["curve"])
+            first = seed == 1 and what in ("platens prism 0.577", "cycles", "confined 20", "beams 120")
+            a.plot(x, y, color=colors[of], lw=0.5 if what.endswith(" 0") else 1.0, alpha=0.8, label=of if first else None)
+        if title:
+            a.set(xlabel="deflection, mm" if panel == 3 else "strain, 1e-3", ylabel="MPa")
+            a.set_title(title, fontsize=9)
+    for a in axes.flat:
+        a.legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(picture, dpi=80)
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("what", choices=["run", "record", "plot", "list"])
+    p.add_argument("names", nargs="*")
+    p.add_argument("--sets", default="B,II-3,II-4")
+    p.add_argument("--seeds", type=int, default=3)
+    p.add_argument("--jobs", type=int, default=2)
+    p.add_argument("--threads", type=int, default=1)
+    p.add_argument("--binary", type=pathlib.Path, default=ROOT / "build/release/breccia")
+    p.add_argument("-o", "--out", type=pathlib.Path, default=ROOT / "out" / "ldpm_experiments")
+    given = p.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
+    if given.what == "record":
+        record(given.out, ROOT / "docs/results/ldpm.csv")
+    if given.what == "plot":
+        plot(given.out, given.names[0])
+    if given.what in ("run", "list"):
+        todo = list(all_of(given.names or list(EXPERIMENTS), given.sets.split(","), range(1, given.seeds + 1)))
+        if given.what == "list":
+            print("\n".join(name for name, _ in todo))
+            return
+        with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+            for name, said in pool.map(lambda one: run(given.binary, given.out, *one, given.threads), todo):
+                print(name, said, flush=True)
+
+
+if __name__ == "__main__":
+    main()
