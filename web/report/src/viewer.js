@@ -332,12 +332,14 @@ export class Viewer {
     return {position: this.camera.position.toArray(), target: this.controls.target.toArray(), zoom: this.camera.zoom};
   }
 
-  /** Eye, target and angle of a parallel view: the picture is as high as the angle takes in at the target. */
+  /** Eye, target and angle of a parallel view, the picture as high as the angle takes in at the target, and what a cut leaves. */
   cameraText() {
     const eye = this.camera.position, target = this.controls.target, up = this.camera.up;
     const angle = 2 * Math.atan(this.camera.top / this.camera.zoom / eye.distanceTo(target));
     const list = (v) => `[${v.toArray().map((x) => Number(x.toPrecision(6))).join(", ")}]`;
-    return `[[key]]\neye = ${list(eye)}\ntarget = ${list(target)}\nup = ${list(up)}\nangle = "${Number(((angle * 180) / Math.PI).toPrecision(6))} deg"\n`;
+    const {axis, sign, at} = this.clip ?? {};
+    const cut = this.clip ? `clip = "${"xyz"[axis]}${sign < 0 ? ">" : "<"}${Number(at.toFixed(9))}"\n` : "";
+    return `[[key]]\neye = ${list(eye)}\ntarget = ${list(target)}\nup = ${list(up)}\nangle = "${Number(((angle * 180) / Math.PI).toPrecision(6))} deg"\n${cut}`;
   }
 
   redraw() {

@@ -91,6 +91,9 @@ async function open(report, [name, width, height, colorScheme]) {
     await cut.selectOption("y");
     await page.waitForTimeout(500);
     expect((await drawn(page, 0)) > 0.005 && before > 0.005, "a cut leaves something to see");
+    await page.evaluate(() => { navigator.clipboard.writeText = async (text) => { window.copied = text; }; });
+    await press(page, "copy camera");
+    expect(/^\[\[key\]\]\neye = [^]*\nclip = "y>-?[\d.]+"\n$/.test(await page.evaluate(() => window.copied)), "the camera that is copied has the cut");
   }
   for (const [name, ending] of [["save case.toml", ".toml"], ["csv", ".csv"], ["png", ".png"], ["svg", ".svg"], ["save picture", ".png"]]) {
     const button = page.getByRole("button", {name, exact: true}).first();
