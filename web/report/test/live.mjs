@@ -22,6 +22,7 @@ const frames = () => page.evaluate(() => Number(document.querySelector("input[ar
 await page.goto(address);
 await ready();
 const before = await frames();
+const loaded = await page.evaluate(() => performance.now()); // the page looks for news after ten times as long
 await page.waitForTimeout(3000); // it has asked once and seen a run that has ended
 console.log("open"); // from now on the run may go on
 await page.evaluate(() => {
@@ -29,7 +30,7 @@ await page.evaluate(() => {
   pick.value = "velocity";
   pick.dispatchEvent(new Event("change"));
 });
-await page.waitForFunction((n) => Number(document.querySelector("input[aria-label=frame]")?.max) + 1 > n, before);
+await page.waitForFunction((n) => Number(document.querySelector("input[aria-label=frame]")?.max) + 1 > n, before, {timeout: 120_000 + 10 * loaded});
 await ready();
 const after = await frames();
 const coloring = await page.evaluate(() => document.querySelector(".controls select").value);
