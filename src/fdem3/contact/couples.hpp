@@ -106,6 +106,23 @@ struct Partner {
   BR_HD bool has_volume() const { return target.six_volumes > 0.0; }
 };
 
+/// Coordinates of the corners of a face of one tetrahedron in the other.
+BR_HD inline void face_in_other(const Partner& one, int face, double (&lambda)[3][4]) {
+  for (int k = 0; k < 3; ++k)
+    for (int m = 0; m < 4; ++m) lambda[k][m] = one.in_other.lambda[corner_of_face(face, k)][m];
+}
+
+/// Whether an exposed face of one tetrahedron reaches into the other: no other face pushes.
+BR_HD inline bool exposed_reaches_into(const Partner& one, const Target& target) {
+  for (int f = 0; f < 4; ++f) {
+    if ((one.exposed >> f & 1) == 0) continue;
+    double lambda[3][4];
+    face_in_other(one, f, lambda);
+    if (face_reaches_into(target, lambda)) return true;
+  }
+  return false;
+}
+
 /// Adds the exposed faces of one tetrahedron that are in the other; and what all of its faces tell
 /// of the overlap.
 /// @param inside  of the target  @param own  of the tetrahedron itself
@@ -116,11 +133,8 @@ BR_HD inline void add_faces(const Partner& one, const Target& target, double pen
   for (int f = 0; f < 4; ++f) {
     Vec3 face[3];
     FaceOverlap o;
-    for (int k = 0; k < 3; ++k) {
-      const int corner = corner_of_face(f, k);
-      face[k] = one.x[corner];
-      for (int m = 0; m < 4; ++m) o.lambda[k][m] = one.in_other.lambda[corner][m];
-    }
+    for (int k = 0; k < 3; ++k) face[k] = one.x[corner_of_face(f, k)];
+    face_in_other(one, f, o.lambda);
     if (!overlap_of_face(target, o)) continue;
     const double area = o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
     inside.add_other(o, face);
@@ -254,6 +268,8 @@ struct CoupleForces {
     return true;
   }
   BR_HD static void press(double penalty, const Partner& a, const Partner& b, Pressing& sum) {
+    // Beside a surface most neighbours at an edge or a corner overlap by faces that are joined.
+    if (!exposed_reaches_into(a, b.target) && !exposed_reaches_into(b, a.target)) return;
     Inside in_a(a.target), in_b(b.target);
     add_faces(a, b.target, penalty, true, sum, in_b, in_a);
     add_faces(b, a.target, penalty, false, sum, in_a, in_b);

@@ -143,7 +143,36 @@ BR_HD inline void integrate(const Polygon& p, const Linear& f, double (&sum)[3],
   }
 }
 
+/// The part of a face that lies in a target, and its distances there from the target's faces.
+/// @param lambda  coordinates of its corners in the target  [-]
+/// @returns whether any of it does, which rounding may say of one that only touches
+BR_HD inline bool part_inside(const Target& target, const double (&lambda)[3][4], Linear (&g)[4],
+                              Polygon& inside) {
+  bool cuts[4];
+  for (int k = 0; k < 4; ++k) {
+    const double a = lambda[0][k], b = lambda[1][k], c = lambda[2][k];
+    if (a <= 0.0 && b <= 0.0 && c <= 0.0) return false;
+    cuts[k] = a < 0.0 || b < 0.0 || c < 0.0;
+    const double h = target.height[k];
+    g[k] = {h * a, h * (b - a), h * (c - a)};
+  }
+  inside.add(0.0, 0.0);
+  inside.add(1.0, 0.0);
+  inside.add(0.0, 1.0);
+  for (int k = 0; k < 4; ++k)
+    if (cuts[k]) cut(inside, g[k], true);
+  return inside.count >= 3;
+}
+
 }  // namespace detail
+
+/// Whether a face reaches into a target: true wherever overlap_of_face is, at a quarter of its
+/// cost.
+BR_HD inline bool face_reaches_into(const Target& target, const double (&lambda)[3][4]) {
+  detail::Linear g[4];
+  detail::Polygon inside;
+  return detail::part_inside(target, lambda, g, inside);
+}
 
 /// The potential of a target over the part of a face that lies in it: exact.
 /// @param o  lambda is given
@@ -151,21 +180,8 @@ BR_HD inline void integrate(const Polygon& p, const Linear& f, double (&sum)[3],
 BR_HD inline bool overlap_of_face(const Target& target, FaceOverlap& o) {
   using detail::Linear;
   Linear g[4];
-  bool cuts[4];
-  for (int k = 0; k < 4; ++k) {
-    const double a = o.lambda[0][k], b = o.lambda[1][k], c = o.lambda[2][k];
-    if (a <= 0.0 && b <= 0.0 && c <= 0.0) return false;
-    cuts[k] = a < 0.0 || b < 0.0 || c < 0.0;
-    const double h = target.height[k];
-    g[k] = {h * a, h * (b - a), h * (c - a)};
-  }
   detail::Polygon inside;
-  inside.add(0.0, 0.0);
-  inside.add(1.0, 0.0);
-  inside.add(0.0, 1.0);
-  for (int k = 0; k < 4; ++k)
-    if (cuts[k]) detail::cut(inside, g[k], true);
-  if (inside.count < 3) return false;
+  if (!detail::part_inside(target, o.lambda, g, inside)) return false;
 
   double sum[3] = {};
   o.area = 0.0;
