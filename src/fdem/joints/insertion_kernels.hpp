@@ -39,7 +39,7 @@ struct EdgeStress {
   }
 };
 
-/// What dormant joints carry, and how they wake.
+/// Dormant joints: the stress over the strength of each, and its waking.
 struct Sleeper {
   EdgeStress stress;
   View<const JointBond> bonds;

@@ -22,7 +22,7 @@ struct TetrahedronStress {
   }
 };
 
-/// What dormant joints carry, and how they wake.
+/// Dormant joints: the stress over the strength of each, and its waking.
 struct Sleeper {
   View<const TetrahedronNodes> nodes;
   View<const Index> face_a, face_b;
