@@ -7,7 +7,8 @@
 #include <cmath>
 
 #include "core/random.hpp"
-#include "fdem3/elements/tetrahedra.hpp"
+#include "exec/for_each.hpp"
+#include "fdem3/contact/couples.hpp"
 
 namespace breccia::fdem3 {
 namespace distance_contact_test {
@@ -27,13 +28,15 @@ Target target_of(const Body& body) {
   return target;
 }
 
-/// Forces of all faces of both, with a penalty of 1.
-Pair forces_of(const Body& a, const Body& b, bool with_shape = false) {
+/// Forces of the faces of both, with a penalty of 1.
+/// @param of_a_push, of_b_push  bits of the faces that push: all
+Pair forces_of(const Body& a, const Body& b, bool with_shape = false, int of_a_push = 15,
+               int of_b_push = 15) {
   Pair sum;
   const Target of_a = target_of(a), of_b = target_of(b);
   Inside in_a(of_a), in_b(of_b);
   const auto add = [&](const Body& own, const Target& target, Vec3(&on_own)[4], Vec3(&on_other)[4],
-                       Inside& inside, Inside& mine) {
+                       Inside& inside, Inside& mine, int pushing) {
     for (int f = 0; f < 4; ++f) {
       Vec3 face[3], on_face[3], on_target[4];
       for (int k = 0; k < 3; ++k) face[k] = own.x[corner_of_face(f, k)];
@@ -42,13 +45,14 @@ Pair forces_of(const Body& a, const Body& b, bool with_shape = false) {
       ++sum.hits;
       inside.add_other(o, face);
       mine.add_own(f, o.area * norm(cross(face[1] - face[0], face[2] - face[0])));
+      if ((pushing >> f & 1) == 0) continue;
       push(o, face, 1.0, on_face, on_target);
       for (int k = 0; k < 3; ++k) on_own[corner_of_face(f, k)] += on_face[k];
       for (int k = 0; k < 4; ++k) on_other[k] += on_target[k];
     }
   };
-  add(a, of_b, sum.on_a, sum.on_b, in_b, in_a);
-  add(b, of_a, sum.on_b, sum.on_a, in_a, in_b);
+  add(a, of_b, sum.on_a, sum.on_b, in_b, in_a, of_a_push);
+  add(b, of_a, sum.on_b, sum.on_a, in_a, in_b, of_b_push);
   sum.energy = in_a.energy(1.0) + in_b.energy(1.0);
   if (with_shape) {
     in_a.add_shape_forces(of_a, 1.0, sum.on_a);
@@ -87,6 +91,62 @@ TEST(DistanceContact, gives_the_reference_forces_and_energy_with_those_of_shape)
   expect_near(p.on_a[1], {-1.028589743621e-5, -9.143019943298e-6, -6.142966524403e-6});
   expect_near(p.on_a[3], {-4.503223222360e-5, -4.002865086542e-5, -2.689424980021e-5});
   expect_near(p.on_b[0], {6.480644502251e-5, 5.761264725658e-5, 3.876961290691e-5});
+}
+
+/// Forces on a and b by the kernel of couples, which exposes faces by bits.
+CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b) {
+  const auto buffer = []<class T>(const std::vector<T>& items) {
+    Buffer<T> made;
+    copy_to(made, items);
+    return made;
+  };
+  std::vector<TetrahedronNodes> corners(2);
+  for (int k = 0; k < 4; ++k) {
+    corners[0].at[k].position = a.x[k];
+    corners[1].at[k].position = b.x[k];
+  }
+  const Buffer<TetrahedronNodes> nodes = buffer(corners);
+  const Buffer<Index> material = buffer(std::vector<Index>{0, 0});
+  const Buffer<ContactPair> laws = buffer(std::vector<ContactPair>{{1.0, 0.0, 0.0}});
+  const Buffer<std::uint8_t> exposed = buffer(std::vector{exposed_of_a, exposed_of_b});
+  const Buffer<Index> first = buffer(std::vector<Index>{0}), other = buffer(std::vector<Index>{1});
+  const Buffer<std::uint8_t> separated = buffer(std::vector<std::uint8_t>{0});
+  const Buffer<Index> no_joint = buffer(std::vector<Index>{-1});
+  Buffer<CoupleState> state(Space::host, 1);
+  Buffer<CoupleForce> force(Space::host, 1);
+  state.data()[0].scale = 1.0;  // it is not new: nothing is taken off
+  state.data()[0].slid = 1.0;   // and does not rest
+  for_each(Exec{}, 1,
+           CoupleForces{0.0,
+                        nodes.view(),
+                        material.view(),
+                        laws.view(),
+                        1,
+                        exposed.view(),
+                        first.view(),
+                        other.view(),
+                        separated.view(),
+                        no_joint.view(),
+                        {},
+                        state.view(),
+                        force.view()});
+  return force.data()[0];
+}
+
+/// A fragment's free corner in the joined flank of another: faces of one alone are exposed.
+TEST(DistanceContact, pushes_where_faces_of_one_alone_are_exposed) {
+  const struct { std::uint8_t of_a, of_b; } cases[] = {{15, 0}, {0, 15}, {15, 15}, {15, 1}, {0, 0}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(testing::Message() << int{c.of_a} << " " << int{c.of_b});
+    const CoupleForce force = couple_forces(c.of_a, c.of_b);
+    const bool any = c.of_a + c.of_b != 0;
+    const Pair expected = any ? forces_of(a, b, true, c.of_a, c.of_b) : Pair{};
+    for (int k = 0; k < 4; ++k) {
+      expect_near(force.on_a.at[k], expected.on_a[k]);
+      expect_near(force.on_b.at[k], expected.on_b[k]);
+    }
+    EXPECT_EQ(norm(force.on_a.at[3]) > 1e-6, any);
+  }
 }
 
 /// Of the corner element (0, e1, e2, e3) and a face given by its corners.
