@@ -2,47 +2,59 @@
 // rest.
 
 #include "coupled/world.hpp"
+#include "exec/for_each.hpp"
 
 namespace breccia::coupled {
 namespace {
 
-bool is_gone(const World& w, Index sphere) {
-  return dem::is_gone(w.spheres->elements.fixed.data()[sphere]);
-}
+/// Bonds let go for good. What they have spent by softening stays booked.
+struct LetGo {
+  static constexpr const char* name = "coupled.let_go";
+  BondsView bonds;
+  View<const std::uint8_t> fixed, gone;  ///< of spheres, of bodies of tetrahedra
+  View<BallBondState> state;
 
-/// A bond lets go for good. What it has spent by softening stays booked.
-void let_go(const World& w, const BallBond& tie, BallBondState& bond) {
-  if (bond.stage == BondStage::parted) return;
-  bond.work -= stored_in(w, tie, bond);
-  bond.force = {};
-  bond.on_point = {};
-  bond.stage = BondStage::parted;
-}
-/// A touch ends; what friction has spent stays booked.
-void end(TouchState& touch) {
-  TouchState after{};
-  after.rubbed = touch.rubbed + touch.slid;
-  after.lost = touch.lost;
-  touch = after;
-}
+  BR_HD void operator()(Index i) const {
+    const BallBond& tie = bonds.tie[i];
+    BallBondState& bond = state[i];
+    if (!dem::is_gone(fixed[tie.sphere]) && gone[tie.body] == 0) return;
+    if (bond.stage == BondStage::parted) return;
+    bond.work -= bonds.stored(i, bond);
+    bond.force = {};
+    bond.on_point = {};
+    bond.stage = BondStage::parted;
+  }
+};
+
+/// Touches end; what friction has spent stays booked.
+struct EndTouches {
+  static constexpr const char* name = "coupled.end_touches";
+  View<const std::uint8_t> fixed, gone;  ///< as of LetGo
+  View<const Index> sphere, body;
+  View<TouchState> state;
+
+  BR_HD void operator()(Index i) const {
+    if (!dem::is_gone(fixed[sphere[i]]) && gone[body[i]] == 0) return;
+    TouchState after{};
+    after.rubbed = state[i].rubbed + state[i].slid;
+    after.lost = state[i].lost;
+    state[i] = after;
+  }
+};
 
 }  // namespace
 
-bool is_gone_body(const World& w, Index body) {
-  const std::vector<std::uint8_t>& removed = w.tetrahedra->given->removed;
-  return removed[static_cast<std::size_t>(body)] != 0;
-}
-
 void cut_off_removed(World& w) {
+  const Exec& exec = w.spheres->exec;
+  const View<const std::uint8_t> fixed = std::as_const(w.spheres->elements.fixed).view();
+  Buffer<std::uint8_t> bodies(exec.space);
+  copy_to(bodies, w.tetrahedra->given->removed);
+  const View<const std::uint8_t> gone = std::as_const(bodies).view();
   const double before = held(w).elastic.value();
-  for (Index i = 0; i < w.bonds.size(); ++i) {
-    const BallBond& tie = w.bonds.tie.data()[i];
-    if (is_gone(w, tie.sphere) || is_gone_body(w, tie.body))
-      let_go(w, tie, w.bonds.state.data()[i]);
-  }
-  for (Index i = 0; i < w.touches.size(); ++i)
-    if (is_gone(w, w.touches.pairs.a.data()[i]) || is_gone_body(w, w.touches.pairs.b.data()[i]))
-      end(w.touches.history.state.data()[i]);
+  for_each(exec, w.bonds.size(), LetGo{bonds_view(w), fixed, gone, w.bonds.state.view()});
+  for_each(exec, w.touches.size(),
+           EndTouches{fixed, gone, std::as_const(w.touches.pairs.a).view(),
+                      std::as_const(w.touches.pairs.b).view(), w.touches.history.state.view()});
   w.ledger.came_in.add(held(w).elastic.value() - before);
   w.last.of_spheres = -1;  // the next step lists faces anew, without theirs
 }

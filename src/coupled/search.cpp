@@ -1,113 +1,236 @@
 // Faces near spheres: the shared search over what can touch of both methods.
 
-#include <algorithm>
+#include <bit>
 
+#include "core/rows.hpp"
+#include "core/select.hpp"
 #include "coupled/world.hpp"
 #include "exec/for_each.hpp"
+#include "exec/timers.hpp"
 
 namespace breccia::coupled {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr double far = 1e300;
 
-struct Candidates {
-  std::vector<Box> boxes;
-  std::vector<Index> item;  ///< sphere or tetrahedron
-};
-
-bool overlap(const Box& a, const Box& b) {
+BR_HD bool overlap(const Box& a, const Box& b) {
   return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
          a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
-Box around(const std::vector<Box>& boxes) {
-  Box all{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
-  for (const Box& b : boxes) {
-    all.low = {std::min(all.low.x, b.low.x), std::min(all.low.y, b.low.y),
-               std::min(all.low.z, b.low.z)};
-    all.high = {std::max(all.high.x, b.high.x), std::max(all.high.y, b.high.y),
-                std::max(all.high.z, b.high.z)};
-  }
-  return all;
+/// Overlaps none.
+BR_HD Box no_box() {
+  return {{far, far, far}, {-far, -far, -far}};
 }
-void keep_within(Candidates& of, const Box& box) {
-  Candidates kept;
-  for (std::size_t i = 0; i < of.boxes.size(); ++i)
-    if (overlap(of.boxes[i], box)) {
-      kept.boxes.push_back(of.boxes[i]);
-      kept.item.push_back(of.item[i]);
-    }
-  of = std::move(kept);
+/// The box around both; of no numbers nothing is taken.
+struct Around {
+  BR_HD Box operator()(const Box& a, const Box& b) const {
+    return {{min(b.low.x, a.low.x), min(b.low.y, a.low.y), min(b.low.z, a.low.z)},
+            {max(b.high.x, a.high.x), max(b.high.y, a.high.y), max(b.high.z, a.high.z)}};
+  }
+};
+/// @param margin  [m]  @param extent  coordinates, whose rounding is covered  [m]
+BR_HD Box grown(const Box& box, double margin, double extent) {
+  const double by = margin * (1.0 + 1e-12) + 1e-15 * extent;
+  return {box.low - Vec3{by, by, by}, box.high + Vec3{by, by, by}};
 }
 
 /// Where a sphere may come until its method searches again, as the drifts stand now, and half the
 /// way by which these may part.
-Candidates boxes_of_spheres(const World& w, double more) {
-  const dem::World& s = *w.spheres;
-  const Vec3 way = s.travel.drift.way(s.time);
-  Candidates of;
-  for (Index e = 0; e < s.elements.size(); ++e) {
-    if (dem::is_gone(s.elements.fixed.data()[e])) continue;
-    const Vec3 centre = s.travel.reference.data()[e] + way;
-    const double extent = norm(centre) + norm(way);
-    const double grown =
-        (s.elements.state.data()[e].radius + s.travel.margin.data()[e] + more) * (1.0 + 1e-12) +
-        1e-15 * extent;
-    const Vec3 by{grown, grown, grown};
-    of.boxes.push_back({centre - by, centre + by});
-    of.item.push_back(e);
+struct BoxOfSphere {
+  Vec3 way;     ///< of the drift  [m]
+  double more;  ///< [m]
+  View<const std::uint8_t> fixed;
+  View<const Vec3> reference;
+  View<const double> margin;
+  View<const dem::ElementState> state;
+
+  BR_HD Box operator()(Index e) const {
+    if (dem::is_gone(fixed[e])) return no_box();
+    const Vec3 centre = reference[e] + way;
+    return grown({centre, centre}, state[e].radius + margin[e] + more, norm(centre) + norm(way));
   }
-  return of;
-}
-/// Whether face k of a tetrahedron presses on spheres. Live joints are no border of matter: what
-/// tells of them on both sides cancels but for what their opening takes (docs/theory-coupled.md,
-/// 1).
-bool presses(const fdem3::World& t, Index tetrahedron, Index k) {
-  return (t.tetrahedra.exposed.data()[tetrahedron] >> k & 1) != 0 ||
-         t.faces.data()[tetrahedron].at[k] >= 0;
-}
-bool presses(const fdem3::World& t, Index tetrahedron) {
-  bool some = false;
-  for (Index k = 0; k < 4; ++k) some = some || presses(t, tetrahedron, k);
-  return some;
-}
-/// The faces of a tetrahedron that press, and those on the other side of its joints.
-template <class List>
-void list_faces(const fdem3::World& t, Index tetrahedron, const List& list) {
-  for (Index k = 0; k < 4; ++k) {
-    if (!presses(t, tetrahedron, k)) continue;
-    list(4 * tetrahedron + k);
-    const Index entry = t.faces.data()[tetrahedron].at[k];
-    if (entry < 0) continue;
-    const Index joint = pair_of(entry);
-    const Index across =
-        side_of(entry) == 0 ? t.joints.face_b.data()[joint] : t.joints.face_a.data()[joint];
-    if (t.given->removed[at(t.tetrahedra.group.data()[across / 4])] == 0) list(across);
+};
+
+/// The faces that press on spheres. Live joints are no border of matter: what tells of them on both
+/// sides cancels but for what their opening takes (docs/theory-coupled.md, 1).
+struct PressingFaces {
+  static constexpr int most = 8;  ///< of a tetrahedron and on the other side of its joints
+  View<const std::uint8_t> exposed;
+  View<const fdem3::FaceJoints> joints;
+  View<const Index> face_a, face_b;
+  View<const std::int16_t> body;
+  View<const std::uint8_t> gone;  ///< 1: the body has been taken out
+
+  BR_HD bool presses(Index tetrahedron, Index k) const {
+    return (exposed[tetrahedron] >> k & 1) != 0 || joints[tetrahedron].at[k] >= 0;
   }
+  BR_HD bool some(Index tetrahedron) const {
+    return presses(tetrahedron, 0) || presses(tetrahedron, 1) || presses(tetrahedron, 2) ||
+           presses(tetrahedron, 3);
+  }
+  /// @returns how many there are
+  BR_HD int list(Index tetrahedron, Index (&faces)[most]) const {
+    int count = 0;
+    for (Index k = 0; k < 4; ++k) {
+      if (!presses(tetrahedron, k)) continue;
+      faces[count++] = 4 * tetrahedron + k;
+      const Index entry = joints[tetrahedron].at[k];
+      if (entry < 0) continue;
+      const Index joint = pair_of(entry),
+                  across = side_of(entry) == 0 ? face_b[joint] : face_a[joint];
+      if (gone[body[across / 4]] == 0) faces[count++] = across;
+    }
+    return count;
+  }
+};
+
+/// As BoxOfSphere, of a tetrahedron that can touch.
+struct BoxOfTetrahedron {
+  Vec3 way;     ///< of the drift  [m]
+  double more;  ///< [m]
+  PressingFaces pressing;
+  View<const Index> tetrahedron;
+  View<const fdem3::Corners> reference;
+  View<const double> margin;
+
+  BR_HD Box operator()(Index i) const {
+    if (!pressing.some(tetrahedron[i])) return no_box();
+    Box box = no_box();
+    double extent = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 x = reference[i].at[k] + way;
+      extent = max(extent, norm(x) + norm(way));
+      box = Around{}(box, {x, x});
+    }
+    return grown(box, margin[i] + more, extent);
+  }
+};
+
+template <class Boxes>
+struct Reaches {
+  Boxes boxes;
+  Box into;
+  BR_HD bool operator()(Index i) const { return overlap(boxes(i), into); }
+};
+template <class Boxes>
+struct BoxOfListed {
+  Boxes boxes;
+  View<const Index> listed;
+  BR_HD Box operator()(Index i) const { return boxes(listed[i]); }
+};
+template <class Boxes>
+struct PlaceBoxes {
+  static constexpr const char* name = "coupled.place_boxes";
+  BoxOfListed<Boxes> of;
+  Index first;
+  View<Box> boxes;
+  View<GlobalId> ids;
+  BR_HD void operator()(Index i) const {
+    boxes[first + i] = of(i);
+    ids[first + i] = first + i;
+  }
+};
+
+/// Spheres and tetrahedra whose boxes overlap, as pairs of boxes: first the spheres'.
+struct Candidates {
+  Buffer<Index> spheres;  ///< of each box
+  Buffer<Index> solids;   ///< places in the reach of tetrahedra, likewise
+  Pairs pairs;
+};
+
+Candidates candidates(World& w, const BoxOfSphere& spheres, const BoxOfTetrahedron& solids) {
+  const Exec& exec = w.spheres->exec;
+  const Index balls = w.spheres->elements.size(), reaching = w.tetrahedra->reach.element.size();
+  const Box around_solids = fold(exec, reaching, no_box(), solids, Around{});
+  Candidates c{items_where(exec, balls, Reaches<BoxOfSphere>{spheres, around_solids}),
+               Buffer<Index>(exec.space), Pairs(exec.space)};
+  const BoxOfListed<BoxOfSphere> near{spheres, std::as_const(c.spheres).view()};
+  const Box around_spheres = fold(exec, c.spheres.size(), no_box(), near, Around{});
+  c.solids = items_where(exec, reaching, Reaches<BoxOfTetrahedron>{solids, around_spheres});
+  const Index first = c.spheres.size(), all = first + c.solids.size();
+  Buffer<Box> boxes(exec.space, all);
+  Buffer<GlobalId> ids(exec.space, all);
+  for_each(exec, first, PlaceBoxes<BoxOfSphere>{near, 0, boxes.view(), ids.view()});
+  for_each(exec, c.solids.size(),
+           PlaceBoxes<BoxOfTetrahedron>{
+               {solids, std::as_const(c.solids).view()}, first, boxes.view(), ids.view()});
+  if (all > 0) w.broad_phase.search(exec, boxes, ids, c.pairs);
+  return c;
 }
 
-Candidates boxes_of_tetrahedra(const World& w, double more) {
-  const fdem3::World& t = *w.tetrahedra;
-  const Vec3 way = t.reach.drift.way(t.time);
-  Candidates of;
-  for (Index i = 0; i < t.reach.element.size(); ++i) {
-    const Index tetrahedron = t.reach.element.data()[i];
-    if (!presses(t, tetrahedron)) continue;
-    Box box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
-    double extent = 0.0;
-    for (const Vec3& corner : t.reach.reference.data()[i].at) {
-      const Vec3 x = corner + way;
-      extent = std::max(extent, norm(x) + norm(way));
-      box.low = {std::min(box.low.x, x.x), std::min(box.low.y, x.y), std::min(box.low.z, x.z)};
-      box.high = {std::max(box.high.x, x.x), std::max(box.high.y, x.y), std::max(box.high.z, x.z)};
-    }
-    const double grown = (t.reach.margin.data()[i] + more) * (1.0 + 1e-12) + 1e-15 * extent;
-    const Vec3 by{grown, grown, grown};
-    of.boxes.push_back({box.low - by, box.high + by});
-    of.item.push_back(tetrahedron);
+BR_HD PairKey key_of(Index sphere, Index other) {
+  return (static_cast<PairKey>(static_cast<std::uint32_t>(sphere)) << 32) |
+         static_cast<std::uint32_t>(other);
+}
+
+/// The faces that press of each pair of a sphere and a tetrahedron; pairs of one kind have none.
+struct FacesOfPairs {
+  PressingFaces pressing;
+  Index first;  ///< box of a tetrahedron
+  View<const Index> a, b, spheres, solids, tetrahedron;
+
+  BR_HD int list(Index i, Index (&faces)[PressingFaces::most]) const {
+    if (a[i] >= first || b[i] < first) return 0;
+    return pressing.list(tetrahedron[solids[b[i] - first]], faces);
   }
-  return of;
+};
+struct CountFaces {
+  static constexpr const char* name = "coupled.count_faces";
+  FacesOfPairs of;
+  View<Index> count;
+  BR_HD void operator()(Index i) const {
+    Index faces[PressingFaces::most];
+    count[i] = of.list(i, faces);
+  }
+};
+struct ListFaces {
+  static constexpr const char* name = "coupled.list_faces";
+  FacesOfPairs of;
+  View<const Index> starts;
+  View<PairKey> faces, touches;
+  BR_HD void operator()(Index i) const {
+    Index listed[PressingFaces::most];
+    const int count = of.list(i, listed);
+    for (int k = 0; k < count; ++k) {
+      const Index sphere = of.spheres[of.a[i]];
+      faces[starts[i] + k] = key_of(sphere, listed[k]);
+      touches[starts[i] + k] = key_of(sphere, of.pressing.body[listed[k] / 4]);
+    }
+  }
+};
+
+/// Of sorted keys those that are not like the one before.
+struct IsFirst {
+  View<const PairKey> key;
+  BR_HD bool operator()(Index i) const { return i == 0 || key[i] != key[i - 1]; }
+};
+/// Sorts keys; each that is there stays once.
+/// @param below  bound of the higher half
+void sort_once(const Exec& exec, Buffer<PairKey>& keys, Index below) {
+  Buffer<PairKey> scratch(exec.space);
+  sort_keys(exec, keys, scratch, 32 + std::bit_width(static_cast<std::uint32_t>(below)));
+  const Buffer<Index> kept = items_where(exec, keys.size(), IsFirst{std::as_const(keys).view()});
+  gather(exec, kept, keys);
+}
+
+struct EndsOfKeys {
+  static constexpr const char* name = "coupled.ends_of_keys";
+  View<const PairKey> key;
+  View<Index> a, b;
+  BR_HD void operator()(Index i) const {
+    a[i] = low_id(key[i]);
+    b[i] = high_id(key[i]);
+  }
+};
+Pairs pairs_of(const Exec& exec, Buffer<PairKey>&& keys, Index below) {
+  sort_once(exec, keys, below);
+  Pairs pairs(exec.space);
+  pairs.key = std::move(keys);
+  pairs.a.resize(pairs.size());
+  pairs.b.resize(pairs.size());
+  for_each(exec, pairs.size(),
+           EndsOfKeys{std::as_const(pairs.key).view(), pairs.a.view(), pairs.b.view()});
+  return pairs;
 }
 
 /// How fast both drifts part.
@@ -115,36 +238,27 @@ double parting(const World& w) {
   return norm(w.spheres->travel.drift.velocity - w.tetrahedra->reach.drift.velocity);
 }
 
+struct SpentByTouches {
+  View<const Index> touch;
+  View<const TouchState> state;
+  BR_HD Energies operator()(Index i) const {
+    const TouchState& kept = state[touch[i]];
+    Energies spent;
+    spent.friction.add(kept.slid + kept.rubbed);
+    spent.contact.add(kept.lost + (kept.work - kept.slid));
+    return spent;
+  }
+};
 /// Energies of touches that are no longer listed.
 void book_dropped(World& w, const Buffer<PairKey>& kept) {
-  Buffer<Index> dropped;
-  find_dropped(w.spheres->exec, w.touches.pairs.key, kept, dropped);
-  for (const Index i : dropped.host()) {
-    const TouchState& state = w.touches.history.state.data()[i];
-    w.ledger.friction.add(state.slid + state.rubbed);
-    w.ledger.contact.add(state.lost + (state.work - state.slid));
-  }
-}
-
-PairKey key_of(Index sphere, Index other) {
-  return (static_cast<PairKey>(static_cast<std::uint32_t>(sphere)) << 32) |
-         static_cast<std::uint32_t>(other);
-}
-Pairs pairs_of(const std::vector<PairKey>& keys) {
-  std::vector<Index> a, b;
-  for (const PairKey key : keys) {
-    a.push_back(low_id(key));
-    b.push_back(high_id(key));
-  }
-  Pairs pairs;
-  copy_to(pairs.key, keys);
-  copy_to(pairs.a, a);
-  copy_to(pairs.b, b);
-  return pairs;
-}
-void sort_once(std::vector<PairKey>& keys) {
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  const Exec& exec = w.spheres->exec;
+  Buffer<Index> dropped(exec.space);
+  find_dropped(exec, w.touches.pairs.key, kept, dropped);
+  if (dropped.empty()) return;
+  w.ledger.book(fold(
+      exec, dropped.size(), Energies{},
+      SpentByTouches{std::as_const(dropped).view(), std::as_const(w.touches.history.state).view()},
+      Sum{}));
 }
 
 }  // namespace
@@ -158,110 +272,190 @@ bool faces_are_due(const World& w) {
 void find_faces(World& w) {
   const dem::World& s = *w.spheres;
   const fdem3::World& t = *w.tetrahedra;
-  const StageTime timed(s.exec, "coupling_search");
+  const Exec& exec = s.exec;
+  const StageTime timed(exec, "coupling_search");
   constexpr double horizon = 50.0;  // steps that drifts may part for
   const double reach = std::max(w.given->skin, horizon * s.next_dt * parting(w));
   w.last = {s.searches, t.searches, s.time, reach};
-  Candidates spheres = boxes_of_spheres(w, 0.5 * reach);
-  Candidates solids = boxes_of_tetrahedra(w, 0.5 * reach);
-  keep_within(spheres, around(solids.boxes));
-  keep_within(solids, around(spheres.boxes));
 
-  std::vector<Box> boxes = spheres.boxes;
-  boxes.insert(boxes.end(), solids.boxes.begin(), solids.boxes.end());
-  const auto first = static_cast<Index>(spheres.boxes.size());
-  std::vector<GlobalId> ids;
-  for (std::size_t i = 0; i < boxes.size(); ++i) ids.push_back(static_cast<GlobalId>(i));
-  Buffer<Box> all_boxes;
-  Buffer<GlobalId> all_ids;
-  copy_to(all_boxes, boxes);
-  copy_to(all_ids, ids);
-  Pairs found;
-  BroadPhase broad_phase;
-  if (!boxes.empty()) broad_phase.search(s.exec, all_boxes, all_ids, found);
+  Buffer<std::uint8_t> gone(exec.space);
+  copy_to(gone, t.given->removed);
+  const PressingFaces pressing{t.tetrahedra.exposed.view(), t.faces.view(),
+                               t.joints.face_a.view(),      t.joints.face_b.view(),
+                               t.tetrahedra.group.view(),   std::as_const(gone).view()};
+  const Candidates near =
+      candidates(w,
+                 {s.travel.drift.way(s.time), 0.5 * reach, s.elements.fixed.view(),
+                  s.travel.reference.view(), s.travel.margin.view(), s.elements.state.view()},
+                 {t.reach.drift.way(t.time), 0.5 * reach, pressing, t.reach.element.view(),
+                  t.reach.reference.view(), t.reach.margin.view()});
 
-  std::vector<PairKey> faces, touches;
-  for (Index i = 0; i < found.size(); ++i) {
-    const Index a = found.a.data()[i], b = found.b.data()[i];
-    if (a >= first || b < first) continue;  // of one kind
-    const Index sphere = spheres.item[at(a)], tetrahedron = solids.item[at(b - first)];
-    list_faces(t, tetrahedron, [&](Index face) {
-      faces.push_back(key_of(sphere, face));
-      touches.push_back(key_of(sphere, t.tetrahedra.group.data()[face / 4]));
-    });
-  }
-  sort_once(faces);
-  sort_once(touches);
-  Pairs near = pairs_of(faces), touching = pairs_of(touches);
+  const FacesOfPairs of{pressing,
+                        near.spheres.size(),
+                        near.pairs.a.view(),
+                        near.pairs.b.view(),
+                        near.spheres.view(),
+                        near.solids.view(),
+                        t.reach.element.view()};
+  Buffer<Index> starts(exec.space, near.pairs.size() + 1);
+  for_each(exec, near.pairs.size(), CountFaces{of, starts.view()});
+  const Index count = exclusive_scan(exec, starts);
+  Buffer<PairKey> faces(exec.space, count), touches(exec.space, count);
+  for_each(exec, near.pairs.size(),
+           ListFaces{of, std::as_const(starts).view(), faces.view(), touches.view()});
+  Pairs near_faces = pairs_of(exec, std::move(faces), s.elements.size());
+  Pairs touching = pairs_of(exec, std::move(touches), s.elements.size());
   book_dropped(w, touching.key);
-  w.faces.replace(s.exec, std::move(near));
-  w.touches.replace(s.exec, std::move(touching));
+  w.faces.replace(exec, std::move(near_faces));
+  w.touches.replace(exec, std::move(touching));
   derive(w);
   ++w.searches;
 }
 
 namespace {
 
-/// Lists rows of places: those with number r of `of`, for each r of `rows`, ascending.
-void list_rows(const std::vector<Index>& rows, const std::vector<Index>& of, Buffer<Index>& starts,
-               Buffer<Index>& places) {
-  std::vector<Index> order(of.size()), first;
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return of[at(a)] < of[at(b)]; });
-  auto next = order.begin();
-  for (const Index row : rows) {
-    first.push_back(static_cast<Index>(next - order.begin()));
-    while (next != order.end() && of[at(*next)] == row) ++next;
+/// The first of `count` places, in the order of their numbers, whose number is not below `value`.
+template <class Number>
+BR_HD Index first_from(Index count, Index value, const Number& number) {
+  Index first = 0, last = count;
+  while (first < last) {
+    const Index middle = first + (last - first) / 2;
+    if (number(middle) < value)
+      first = middle + 1;
+    else
+      last = middle;
   }
-  first.push_back(static_cast<Index>(next - order.begin()));
-  copy_to(starts, first);
-  copy_to(places, order);
+  return first;
 }
 
-std::vector<Index> merged(std::vector<Index> a, const std::vector<Index>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  std::sort(a.begin(), a.end());
-  a.erase(std::unique(a.begin(), a.end()), a.end());
-  return a;
+struct TetrahedronOfFace {
+  View<const Index> face;
+  BR_HD Index operator()(Index j) const { return face[j] / 4; }
+};
+struct TetrahedronOfBond {
+  View<const BallBond> tie;
+  BR_HD Index operator()(Index i) const { return tie[i].tetrahedron; }
+};
+struct SphereOfTouch {
+  View<const Index> sphere;
+  BR_HD Index operator()(Index i) const { return sphere[i]; }
+};
+struct SphereOfBond {
+  View<const BallBond> tie;
+  BR_HD Index operator()(Index i) const { return tie[i].sphere; }
+};
+
+template <class Number>
+struct NumberPlaces {
+  static constexpr const char* name = "coupled.number_places";
+  Number number;
+  View<KeyedIndex> keyed;
+  BR_HD void operator()(Index i) const { keyed[i] = {static_cast<std::uint64_t>(number(i)), i}; }
+};
+struct FirstOfRow {
+  static constexpr const char* name = "coupled.first_of_row";
+  View<const Index> rows;
+  View<const KeyedIndex> keyed;
+  View<Index> starts;
+  BR_HD void operator()(Index r) const {
+    const auto number = [this](Index i) { return static_cast<Index>(keyed[i].key); };
+    starts[r] = r == rows.size ? keyed.size : first_from(keyed.size, rows[r], number);
+  }
+};
+struct PlaceOfKey {
+  static constexpr const char* name = "coupled.place_of_key";
+  View<const KeyedIndex> keyed;
+  View<Index> places;
+  BR_HD void operator()(Index i) const { places[i] = keyed[i].item; }
+};
+/// Lists rows of places: those of `count` whose number is that of a row, ascending.
+template <class Number>
+void list_rows(const Exec& exec, const Buffer<Index>& rows, Index count, const Number& number,
+               Buffer<Index>& starts, Buffer<Index>& places) {
+  Buffer<KeyedIndex> keyed(exec.space, count);
+  for_each(exec, count, NumberPlaces<Number>{number, keyed.view()});
+  sort_by_key(exec, keyed);
+  starts.resize(rows.size() + 1);
+  places.resize(count);
+  for_each(exec, starts.size(),
+           FirstOfRow{rows.view(), std::as_const(keyed).view(), starts.view()});
+  for_each(exec, count, PlaceOfKey{std::as_const(keyed).view(), places.view()});
 }
+
+template <class Number>
+struct PlaceNumbers {
+  static constexpr const char* name = "coupled.place_numbers";
+  Number number;
+  Index first;
+  View<PairKey> keys;
+  BR_HD void operator()(Index i) const { keys[first + i] = key_of(number(i), 0); }
+};
+/// All numbers of two lists, each once, ascending.
+template <class First, class Second>
+void list_once(const Exec& exec, Index count, const First& first, Index more, const Second& second,
+               Index below, Buffer<Index>& numbers) {
+  Buffer<PairKey> keys(exec.space, count + more);
+  for_each(exec, count, PlaceNumbers<First>{first, 0, keys.view()});
+  for_each(exec, more, PlaceNumbers<Second>{second, count, keys.view()});
+  sort_once(exec, keys, below);
+  numbers.resize(keys.size());
+  Buffer<Index> unused(exec.space, keys.size());
+  for_each(exec, keys.size(),
+           EndsOfKeys{std::as_const(keys).view(), numbers.view(), unused.view()});
+}
+
+/// Where the touches, faces and bonds of a sphere are listed, all of them by sphere.
+struct ListSphereRows {
+  static constexpr const char* name = "coupled.list_sphere_rows";
+  View<const Index> spheres, touching, near;
+  View<const BallBond> tie;
+  View<SphereRow> rows;
+  View<Index> row_of_touch;
+  BR_HD void operator()(Index r) const {
+    const Index sphere = spheres[r];
+    const auto begin = [](const auto& of, Index count, Index value) {
+      return first_from(count, value, of);
+    };
+    const SphereOfTouch of_touch{touching}, of_face{near};
+    const SphereOfBond of_bond{tie};
+    const SphereRow row{sphere,
+                        begin(of_touch, touching.size, sphere),
+                        begin(of_touch, touching.size, sphere + 1),
+                        begin(of_face, near.size, sphere),
+                        begin(of_face, near.size, sphere + 1),
+                        begin(of_bond, tie.size, sphere),
+                        begin(of_bond, tie.size, sphere + 1)};
+    rows[r] = row;
+    for (Index i = row.touch; i < row.touch_end; ++i) row_of_touch[i] = r;
+  }
+};
 
 }  // namespace
 
 void derive(World& w) {
-  std::vector<Index> of_faces, tied_spheres, tied;
-  for (const Index face : w.faces.pairs.b.host()) of_faces.push_back(face / 4);
-  for (const BallBond& bond : w.bonds.tie.host()) {
-    tied_spheres.push_back(bond.sphere);
-    tied.push_back(bond.tetrahedron);
-  }
-  const std::vector<Index> around_spheres = merged(of_faces, tied);
-  copy_to(w.around.tetrahedron, around_spheres);
-  list_rows(around_spheres, of_faces, w.around.face_starts, w.around.faces);
-  list_rows(around_spheres, tied, w.around.bond_starts, w.around.bonds);
+  const Exec& exec = w.spheres->exec;
+  const Index near = w.faces.size(), touching = w.touches.size(), tied = w.bonds.size();
+  const View<const BallBond> tie = std::as_const(w.bonds.tie).view();
+  const TetrahedronOfFace of_face{std::as_const(w.faces.pairs.b).view()};
+  const TetrahedronOfBond of_bond{tie};
+  list_once(exec, near, of_face, tied, of_bond, w.tetrahedra->tetrahedra.size(),
+            w.around.tetrahedron);
+  list_rows(exec, w.around.tetrahedron, near, of_face, w.around.face_starts, w.around.faces);
+  list_rows(exec, w.around.tetrahedron, tied, of_bond, w.around.bond_starts, w.around.bonds);
 
-  const auto touching = w.touches.pairs.a.host(), near = w.faces.pairs.a.host();
-  const std::vector<Index> spheres = merged({touching.begin(), touching.end()}, tied_spheres);
-  std::vector<SphereRow> rows;
-  std::vector<Index> row_of(touching.size());
-  std::size_t touch = 0, face = 0, bond = 0;
-  for (const Index sphere : spheres) {
-    SphereRow row{sphere, static_cast<Index>(touch), 0, static_cast<Index>(face),
-                  0,      static_cast<Index>(bond),  0};
-    for (; touch < touching.size() && touching[touch] == sphere; ++touch)
-      row_of[touch] = static_cast<Index>(rows.size());
-    while (face < near.size() && near[face] == sphere) ++face;
-    while (bond < tied_spheres.size() && tied_spheres[bond] == sphere) ++bond;
-    row.touch_end = static_cast<Index>(touch);
-    row.face_end = static_cast<Index>(face);
-    row.bond_end = static_cast<Index>(bond);
-    rows.push_back(row);
-  }
-  copy_to(w.rows, rows);
-  copy_to(w.row_of_touch, row_of);
+  const SphereOfTouch of_touch{std::as_const(w.touches.pairs.a).view()};
+  Buffer<Index> spheres(exec.space);
+  list_once(exec, touching, of_touch, tied, SphereOfBond{tie}, w.spheres->elements.size(), spheres);
+  w.rows.resize(spheres.size());
+  w.row_of_touch.clear();
+  w.row_of_touch.resize(touching);
+  for_each(exec, spheres.size(),
+           ListSphereRows{std::as_const(spheres).view(), of_touch.sphere,
+                          std::as_const(w.faces.pairs.a).view(), tie, w.rows.view(),
+                          w.row_of_touch.view()});
   w.bonded.resize(w.rows.size());
   w.pressed.clear();
-  w.pressed.resize(w.faces.size());
+  w.pressed.resize(near);
   w.step.resize(w.around.tetrahedron.size());
 }
 

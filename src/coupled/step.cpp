@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/on_host.hpp"
 #include "core/stepping.hpp"
 #include "coupled/world.hpp"
+#include "exec/fold_sum.hpp"
 #include "exec/for_each.hpp"
 #include "fdem3/stepping/step.hpp"
 
@@ -16,20 +18,22 @@ namespace breccia::coupled {
 namespace {
 
 /// Tetrahedra that spheres press on.
-struct TetrahedraRun : fdem3::HostRun {
+/// @tparam Run  carries their own step out
+template <class Run>
+struct TetrahedraRun : Run {
   World& both;
   explicit TetrahedraRun(World& w) : both(w) {}
 
   void search_if_due(fdem3::World& t) const {
     const std::int64_t before = t.searches;
-    fdem3::HostRun::search_if_due(t);
+    Run::search_if_due(t);
     if (t.searches != before && t.next_dt < t.last_dt)
       both.stable_step = std::min(both.stable_step, t.next_dt);
   }
   /// Joints that wake shorten the step.
   void insert_joints(fdem3::World& t) const {
     const double before = t.next_dt;
-    fdem3::HostRun::insert_joints(t);
+    Run::insert_joints(t);
     if (t.next_dt < before) both.stable_step = std::min(both.stable_step, t.next_dt);
   }
   /// Spheres have summed up their own by now.
@@ -38,25 +42,25 @@ struct TetrahedraRun : fdem3::HostRun {
 };
 
 /// Spheres that press on tetrahedra.
-struct SpheresRun : dem::HostRun {
+template <class Run, class OfTetrahedra>
+struct SpheresRun : Run {
   World& both;
   explicit SpheresRun(World& w) : both(w) {}
 
   void coupling_forces(dem::World&) const {
-    fdem_shared::take_forces(TetrahedraRun(both), *both.tetrahedra);
+    fdem_shared::take_forces(TetrahedraRun<OfTetrahedra>(both), *both.tetrahedra);
   }
   void choose_step(dem::World& s) const {
-    dem::HostRun::choose_step(s);
+    Run::choose_step(s);
     choose_common_step(both);
   }
 };
 
-}  // namespace
-
-void step(World& w) {
+template <class OfSpheres, class OfTetrahedra>
+void take_step(World& w) {
   // 1., 2. Both move, by the same step, and search; then the faces near spheres are listed anew
-  const TetrahedraRun tetrahedra(w);
-  const SpheresRun spheres(w);
+  TetrahedraRun<OfTetrahedra> tetrahedra(w);
+  SpheresRun<OfSpheres, OfTetrahedra> spheres(w);
   dem::take_motion(spheres, *w.spheres);
   fdem_shared::take_motion(tetrahedra, *w.tetrahedra);
   if (faces_are_due(w)) find_faces(w);
@@ -66,6 +70,15 @@ void step(World& w) {
   dem::take_forces(spheres, *w.spheres);
   spheres.count_step(*w.spheres);
   tetrahedra.count_step(*w.tetrahedra);
+}
+
+}  // namespace
+
+void step(World& w) {
+  if (w.spheres->exec.space == Space::host)
+    take_step<dem::HostRun, fdem3::HostRun>(w);
+  else
+    take_step<dem::DeviceRun, fdem3::DeviceRun>(w);
 }
 
 void press(World& w) {
@@ -139,75 +152,79 @@ struct TouchShares {
   }
 };
 struct BondShares {
-  View<const dem::ElementState> spheres;
-  View<const Quaternion> orientation;
-  View<const fdem3::TetrahedronNodes> nodes;
-  View<const fdem::JointBond> laws;
-  View<const BallBond> tie;
+  BondsView bonds;
   View<const BallBondState> state;
   BR_HD void add_to(Energies& s, Index i) const {
     s.fracture.add(state[i].work);
     if (state[i].stage == BondStage::parted) return;
-    const double held = stored(tie[i], state[i]);
+    const double held = bonds.stored(i, state[i]);
     s.elastic.add(held);
     s.fracture.add(-held);
   }
-  BR_HD double stored(const BallBond& b, const BallBondState& bond) const {
-    const BondGap g = gap_of(b, spheres[b.sphere], orientation[b.sphere], nodes[b.tetrahedron]);
-    const fdem::StoredEnergy energy =
-        fdem::edge_stored(laws[b.law], 1.0, b.length, g.open, g.slide, bond.point);
-    return b.area * (energy.open + energy.slide);
-  }
 };
-
-BondShares bond_shares(const World& w) {
-  const dem::World& s = *w.spheres;
-  return {s.elements.state.view(),
-          s.elements.orientation.view(),
-          w.tetrahedra->tetrahedra.nodes.view(),
-          w.given->bonds.view(),
-          w.bonds.tie.view(),
-          w.bonds.state.view()};
-}
 
 }  // namespace
 
-Energies held(const World& w) {
-  const dem::World& s = *w.spheres;
-  const Energies touching = fold(s.exec, w.touches.size(), Energies{},
-                                 TouchShares{w.touches.history.state.view()}, Sum{});
-  return touching + fold(s.exec, w.bonds.size(), Energies{}, bond_shares(w), Sum{});
+BondsView bonds_view(const World& w) {
+  const dem::Elements& e = w.spheres->elements;
+  return {e.state.view(), e.orientation.view(), w.tetrahedra->tetrahedra.nodes.view(),
+          w.given->bonds.view(), w.bonds.tie.view()};
 }
 
-double stored_in(const World& w, const BallBond& tie, const BallBondState& bond) {
-  return bond_shares(w).stored(tie, bond);
+Energies held(const World& w) {
+  FoldSum<Energies> all(w.spheres->exec);
+  all.add(w.touches.size(), TouchShares{w.touches.history.state.view()});
+  all.add(w.bonds.size(), BondShares{bonds_view(w), w.bonds.state.view()});
+  return all.sum();
 }
+
+namespace {
+
+/// A sphere that a servo leads, by the tetrahedra that it meets.
+struct TouchedBy {
+  std::int16_t motion;
+  View<const std::int16_t> led_by;
+  View<const double> mass;
+  View<const SphereRow> rows;
+  View<const BallBondState> bonds;
+  View<const SphereForce> touches;
+
+  BR_HD ServoReading operator()(Index r) const {
+    const SphereRow& row = rows[r];
+    ServoReading met;
+    if (led_by[row.sphere] != motion) return met;
+    double stiffness = 0.0;
+    for (Index b = row.bond; b < row.bond_end; ++b) stiffness += bonds[b].force.straight;
+    for (Index t = row.touch; t < row.touch_end; ++t) stiffness += touches[t].straight;
+    if (!(stiffness > 0.0)) return met;
+    met.stiffness.add(stiffness);
+    met.mass.add(mass[row.sphere]);
+    return met;
+  }
+};
+
+}  // namespace
 
 std::vector<ServoReading> touched_by_servos(const World& w) {
   const dem::World& s = *w.spheres;
   std::vector<ServoReading> touched(s.servos.size());
   for (const ServoMotion& led : s.prescribed.servos) {
     if (led.axis < 0) continue;
-    for (const SphereRow& row : w.rows.host()) {
-      if (s.elements.motion.data()[row.sphere] != led.motion) continue;
-      double stiffness = 0.0;
-      for (Index b = row.bond; b < row.bond_end; ++b)
-        stiffness += w.bonds.state.data()[b].force.straight;
-      for (Index t = row.touch; t < row.touch_end; ++t)
-        stiffness += w.touches.history.force.data()[t].straight;
-      if (!(stiffness > 0.0)) continue;
-      touched[led.servo].stiffness.add(stiffness);
-      touched[led.servo].mass.add(s.elements.mass.data()[row.sphere]);
-    }
+    const TouchedBy by{led.motion,    s.elements.motion.view(), s.elements.mass.view(),
+                       w.rows.view(), w.bonds.state.view(),     w.touches.history.force.view()};
+    touched[led.servo] =
+        touched[led.servo] + fold(s.exec, w.rows.size(), ServoReading{}, by, Sum{});
   }
   return touched;
 }
 
 Counts count(const World& w) {
+  const Space space = w.spheres->exec.space;
+  const OnHost touches(w.touches.history.state, space);
+  const OnHost bonds(w.bonds.state, space);
   Counts n;
-  for (const TouchState& touch : w.touches.history.state.host())
-    n.touching += touch.touches != 0 ? 1.0 : 0.0;
-  for (const BallBondState& bond : w.bonds.state.host()) {
+  for (const TouchState& touch : touches->host()) n.touching += touch.touches != 0 ? 1.0 : 0.0;
+  for (const BallBondState& bond : bonds->host()) {
     n.bonds += 1.0;
     if (bond.stage != BondStage::whole) n.broken += 1.0;
   }

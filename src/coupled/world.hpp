@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/broad_phase.hpp"
 #include "core/energy.hpp"
 #include "core/read_only.hpp"
 #include "core/servo.hpp"
@@ -24,6 +25,12 @@ struct Case {
   Buffer<fdem::JointBond> bonds;  ///< indexed by BallBond::law
   std::vector<std::string> bond_names;  ///< likewise
   std::vector<std::string> warnings;    ///< what set-up found doubtful, for people
+
+  /// Visits the arrays that kernels read.
+  template <class Visit>
+  void each_array(Visit&& visit) {
+    visit(laws), visit(bonds);
+  }
 };
 
 /// When the list of near faces was made, and how both drifts have parted since.
@@ -34,11 +41,28 @@ struct LastSearch {
 };
 
 /// Each line tells meaning and unit, then (length; who writes it), in the words of dem/world.hpp.
-/// Alone on the host.
 struct World {
-  dem::World* spheres = nullptr;
-  fdem3::World* tetrahedra = nullptr;
+  /// Empty, every array in the space of both.
+  World(dem::World& of_spheres, fdem3::World& of_tetrahedra);
+
+  dem::World* spheres;
+  fdem3::World* tetrahedra;
   ReadOnly<Case> given;  ///< (set-up)
+
+  /// Visits the arrays that kernels read.
+  template <class Visit>
+  void each_array(Visit&& visit) {
+    const auto state = [&](auto& s) {
+      s.each_field([&](const char*, const char*, auto& array) { visit(array); });
+    };
+    state(bonds);
+    state(touches);
+    state(faces);
+    given.each_array(visit);
+    const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
+    each(rows, row_of_touch, around.tetrahedron, around.face_starts, around.faces,
+         around.bond_starts, around.bonds, broad_phase, bonded, pressed, step);
+  }
 
   // State: what a checkpoint holds.
   BallBonds bonds;            ///< by sphere (bonds; set-up, pairs)
@@ -53,6 +77,7 @@ struct World {
   Buffer<SphereRow> rows;      ///< (spheres that are near or bonded; derive)
   Buffer<Index> row_of_touch;  ///< (touches; derive)
   TetrahedronRows around;      ///< (derive)
+  BroadPhase broad_phase;      ///< scratch of the search (search)
 
   // Results of a step, overwritten by the next one.
   Buffer<std::int16_t> bonded;  ///< see PressFaces (rows; pairs)
@@ -82,8 +107,6 @@ void shorten_common_step(World& w);
 /// Forces and energies between what a stage has taken out and all else end; what was stored in them
 /// leaves as (negative) work.
 void cut_off_removed(World& w);
-/// Whether a body of tetrahedra has been taken out.
-bool is_gone_body(const World& w, Index body);
 
 /// Stiffnesses with which tetrahedra meet the spheres that servos of supports lead, and masses of
 /// these spheres, for each servo of the spheres' world.
@@ -92,8 +115,24 @@ std::vector<ServoReading> touched_by_servos(const World& w);
 bool faces_are_due(const World& w);
 void find_faces(World& w);
 
-/// Energy stored in a bond.  [J]
-double stored_in(const World& w, const BallBond& tie, const BallBondState& bond);
+/// Bonds as kernels read them.
+struct BondsView {
+  View<const dem::ElementState> spheres;
+  View<const Quaternion> orientation;
+  View<const fdem3::TetrahedronNodes> nodes;
+  View<const fdem::JointBond> laws;
+  View<const BallBond> tie;
+
+  /// [J]
+  BR_HD double stored(Index i, const BallBondState& bond) const {
+    const BallBond& b = tie[i];
+    const BondGap g = gap_of(b, spheres[b.sphere], orientation[b.sphere], nodes[b.tetrahedron]);
+    const fdem::StoredEnergy energy =
+        fdem::edge_stored(laws[b.law], 1.0, b.length, g.open, g.slide, bond.point);
+    return b.area * (energy.open + energy.slide);
+  }
+};
+BondsView bonds_view(const World& w);
 /// Energies stored and spent between spheres and tetrahedra.
 Energies held(const World& w);
 

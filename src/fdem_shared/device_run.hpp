@@ -154,38 +154,36 @@ ScaleMotions<ShapeOf<World>> scale_motions(World& w) {
           w.motions.view()};
 }
 
-/// Launches at once.
 template <class Launches, class Base, class World>
-class DeviceRunOf : public Base {
- public:
-  void move_boundary(World& w) const {
-    const StageTime timed(w.exec, "integration");
-    list_motions(w);
-    const ShadowLaunches launches;
-    w.device_flags.resize(2);
-    const MoveAndWatch<typename ShapeOf<World>::Move> move{
-        world_move(w), w.exposed.changed.view(), w.device_flags.data(), w.device_flags.data() + 1};
-    for_each_part(w.exec, part(ShapeOf<World>::elements(w).size(), PlainLaunch(move), Parts<>{}));
-    mark_launches(w.exec.space);
-  }
-  void move_interior(World& w) const { advance_time(w); }
-  void pair_forces(World& w) {
-    const StageTime timed(w.exec, "forces");
-    launches_.emplace();
-    for_each(w.exec, 1, Fence{});
-    Launches::pairs(w, AtOnce{});
-  }
-  void sum_forces(World& w) {
-    const StageTime timed(w.exec, "forces");
-    Launches::with_sums(w, [&w](const auto& kernel) {
-      for_each_part(w.exec, part(ShapeOf<World>::elements(w).size(), AtOnce{}(kernel), Parts<>{}));
-    });
-    launches_.reset();
-  }
-
- private:
-  std::optional<ShadowLaunches> launches_;
-};
+void DeviceRunOf<Launches, Base, World>::move_boundary(World& w) const {
+  const StageTime timed(w.exec, "integration");
+  list_motions(w);
+  const ShadowLaunches launches;
+  w.device_flags.resize(2);
+  const MoveAndWatch<typename ShapeOf<World>::Move> move{
+      world_move(w), w.exposed.changed.view(), w.device_flags.data(), w.device_flags.data() + 1};
+  for_each_part(w.exec, part(ShapeOf<World>::elements(w).size(), PlainLaunch(move), Parts<>{}));
+  mark_launches(w.exec.space);
+}
+template <class Launches, class Base, class World>
+void DeviceRunOf<Launches, Base, World>::move_interior(World& w) const {
+  advance_time(w);
+}
+template <class Launches, class Base, class World>
+void DeviceRunOf<Launches, Base, World>::pair_forces(World& w) {
+  const StageTime timed(w.exec, "forces");
+  launches_.emplace();
+  for_each(w.exec, 1, Fence{});
+  Launches::pairs(w, AtOnce{});
+}
+template <class Launches, class Base, class World>
+void DeviceRunOf<Launches, Base, World>::sum_forces(World& w) {
+  const StageTime timed(w.exec, "forces");
+  Launches::with_sums(w, [&w](const auto& kernel) {
+    for_each_part(w.exec, part(ShapeOf<World>::elements(w).size(), AtOnce{}(kernel), Parts<>{}));
+  });
+  launches_.reset();
+}
 
 /// Launches that a device's clock leads; after a search take_forces() goes on by a run that stands
 /// `after_search`.

@@ -1,11 +1,13 @@
 #pragma once
 // Parts of a step of the FDEM that runs share. StepwiseRun is written in stepping.hpp and made for
 // each method in its stepping/step.cpp; MovingRun is written in host_run.hpp and made in its
-// stepping/host_run.cpp.
+// stepping/host_run.cpp; DeviceRunOf in device_run.hpp and stepping/device_run.cpp.
 
+#include <optional>
 #include <vector>
 
 #include "domain/domain.hpp"
+#include "exec/shadow_launches.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -32,6 +34,19 @@ template <class Base, class World>
 struct MovingRun : Base {
   void move_boundary(World& w) const;
   void move_interior(World& w) const;
+};
+
+/// Launches at once, of a device. @tparam Launches  see device_run.hpp
+template <class Launches, class Base, class World>
+class DeviceRunOf : public Base {
+ public:
+  void move_boundary(World& w) const;
+  void move_interior(World& w) const;
+  void pair_forces(World& w);
+  void sum_forces(World& w);
+
+ private:
+  std::optional<ShadowLaunches> launches_;
 };
 
 }  // namespace breccia::fdem_shared

@@ -149,7 +149,7 @@ def main():
         if ranks > 1 and (options.device or shutil.which("mpirun") is None):
             continue
         for case in CASES:
-            if case in ALONE and (ranks > 1 or options.device):
+            if case in ALONE and ranks > 1:
                 continue
             attack = Attack(f"{name}, {case}", "trials")
             attack.live = attack.early = attack.resumed = attack.launcher = 0

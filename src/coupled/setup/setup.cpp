@@ -6,9 +6,11 @@
 #include <cmath>
 #include <map>
 
+#include "core/on_host.hpp"
 #include "core/set_up.hpp"
 #include "coupled/setup/tie.hpp"
 #include "coupled/world.hpp"
+#include "dem/stepping/step.hpp"
 #include "exec/error.hpp"
 #include "fdem3/stepping/step.hpp"
 
@@ -64,10 +66,16 @@ void warn_of_overlaps(const World& w, std::vector<std::string>& warnings) {
 
 }  // namespace
 
+World::World(dem::World& of_spheres, fdem3::World& of_tetrahedra)
+    : spheres(&of_spheres), tetrahedra(&of_tetrahedra) {
+  each_array([&](auto& array) {
+    array = std::remove_reference_t<decltype(array)>(of_spheres.exec.space);
+  });
+}
+
 World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrahedra) {
-  World w;
-  w.spheres = &spheres;
-  w.tetrahedra = &tetrahedra;
+  World w(spheres, tetrahedra);
+  const Space space = spheres.exec.space;
   Case& given = w.given.change(SetUp{});
   given.safety = config.time.safety;
   given.skin = spheres.given->search.margin * spheres.given->mean_radius;
@@ -75,10 +83,12 @@ World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrah
   copy_to(given.laws, press_laws(config));
   std::vector<fdem::JointBond> laws;
   std::vector<BallBond> ties;
+  const OnHost elements(spheres.elements, space);
+  const OnHost solids(tetrahedra.tetrahedra, space);
   for (const BondConfig& bond : config.bonds) {
     const std::vector<BallBond> more =
-        ties_of(bond, static_cast<Index>(laws.size()), spheres, tetrahedra);
-    const Index material = tetrahedra.tetrahedra.material.data()[more.front().tetrahedron];
+        ties_of(bond, static_cast<Index>(laws.size()), w, *elements, *solids);
+    const Index material = solids->material.data()[more.front().tetrahedron];
     laws.push_back(
         bond_law(bond, config.tetrahedra.materials[static_cast<std::size_t>(material)].young));
     warn_of_long(bond, laws.back(), more, given.warnings);
@@ -95,9 +105,7 @@ World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrah
   find_faces(w);
   press(w);
   fdem3::share_bundle_forces(tetrahedra);
-  const double least = dem::StepRule{dem::step_rule(spheres)}(
-      *std::min_element(spheres.critical.host().begin(), spheres.critical.host().end()), 0.0);
-  spheres.next_dt = std::min(spheres.next_dt, least);
+  dem::StepwiseRun{}.choose_step(spheres);
   note_stable_step(w);
   choose_common_step(w);
   warn_of_overlaps(w, given.warnings);

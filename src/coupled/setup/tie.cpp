@@ -22,15 +22,15 @@ struct BorderFace {
   Vec3 corner[3];
   double area;
 };
-std::vector<BorderFace> border_of(const fdem3::World& w, Index body) {
+std::vector<BorderFace> border_of(const fdem3::Tetrahedra& solids, Index body) {
   std::vector<BorderFace> border;
-  for (Index t = 0; t < w.tetrahedra.size(); ++t) {
-    if (w.tetrahedra.group.data()[t] != body) continue;
+  for (Index t = 0; t < solids.size(); ++t) {
+    if (solids.group.data()[t] != body) continue;
     for (Index k = 0; k < 4; ++k) {
-      if ((w.tetrahedra.exposed.data()[t] >> k & 1) == 0) continue;
+      if ((solids.exposed.data()[t] >> k & 1) == 0) continue;
       BorderFace f{4 * t + k, {}, 0.0};
       for (int c = 0; c < 3; ++c)
-        f.corner[c] = w.tetrahedra.nodes.data()[t].at[fdem3::corner_of_face(k, c)].position;
+        f.corner[c] = solids.nodes.data()[t].at[fdem3::corner_of_face(k, c)].position;
       f.area = 0.5 * norm(cross(f.corner[1] - f.corner[0], f.corner[2] - f.corner[0]));
       border.push_back(f);
     }
@@ -48,14 +48,14 @@ Box box_of(const BorderFace& f) {
 }
 
 /// Pairs (sphere of the list, face of the list) that are within reach.
-std::vector<std::pair<Index, Index>> near_pairs(const dem::World& w,
+std::vector<std::pair<Index, Index>> near_pairs(const dem::Elements& elements, int threads,
                                                 const std::vector<Index>& spheres,
                                                 const std::vector<BorderFace>& border,
                                                 double range) {
   std::vector<Box> boxes;
   std::vector<GlobalId> ids;
   for (const Index e : spheres) {
-    const dem::ElementState& s = w.elements.state.data()[e];
+    const dem::ElementState& s = elements.state.data()[e];
     const double r = range * s.radius;
     const Vec3 by{r, r, r};
     boxes.push_back({s.position - by, s.position + by});
@@ -67,7 +67,9 @@ std::vector<std::pair<Index, Index>> near_pairs(const dem::World& w,
   copy_to(all_boxes, boxes);
   copy_to(all_ids, ids);
   Pairs found;
-  BroadPhase().search(w.exec, all_boxes, all_ids, found);
+  Exec exec;
+  exec.threads = threads;
+  BroadPhase().search(exec, all_boxes, all_ids, found);
   const auto first = static_cast<Index>(spheres.size());
   std::vector<std::pair<Index, Index>> pairs;
   for (Index i = 0; i < found.size(); ++i)
@@ -84,7 +86,7 @@ Index place_of(const Names& names, const std::string& name, const NameOf& name_o
   return -1;
 }
 
-BallBond bond_at(const fdem3::World& w, const dem::ElementState& s, const BorderFace& f,
+BallBond bond_at(const fdem3::Tetrahedra& solids, const dem::ElementState& s, const BorderFace& f,
                  const Vec3& point) {
   BallBond b{};
   b.tetrahedron = f.face / 4;
@@ -100,22 +102,22 @@ BallBond bond_at(const fdem3::World& w, const dem::ElementState& s, const Border
     sum += std::clamp(share, 0.0, 1.0);
   }
   b.share[fdem3::corner_of_face(f.face % 4, 0)] = std::max(0.0, 1.0 - sum);
-  b.body = w.tetrahedra.group.data()[b.tetrahedron];
+  b.body = solids.group.data()[b.tetrahedron];
   return b;
 }
 
 }  // namespace
 
-std::vector<BallBond> ties_of(const BondConfig& bond, Index law, const dem::World& spheres,
-                              const fdem3::World& tetrahedra) {
-  const Index ball_body = place_of(spheres.given->sets, bond.spheres,
+std::vector<BallBond> ties_of(const BondConfig& bond, Index law, const World& w,
+                              const dem::Elements& elements, const fdem3::Tetrahedra& solids) {
+  const Index ball_body = place_of(w.spheres->given->sets, bond.spheres,
                                    [](const dem::ElementSet& set) { return set.name; });
-  const Index body = place_of(tetrahedra.given->groups, bond.tetrahedra,
+  const Index body = place_of(w.tetrahedra->given->groups, bond.tetrahedra,
                               [](const std::string& name) { return name; });
   std::vector<Index> members;
-  for (Index e = 0; e < spheres.elements.size(); ++e)
-    if (spheres.elements.group.data()[e] == ball_body) members.push_back(e);
-  const std::vector<BorderFace> border = border_of(tetrahedra, body);
+  for (Index e = 0; e < elements.size(); ++e)
+    if (elements.group.data()[e] == ball_body) members.push_back(e);
+  const std::vector<BorderFace> border = border_of(solids, body);
   std::vector<BallBond> ties;
   std::set<Index> tied_faces;
   double area = 0.0, sections = 0.0;
@@ -123,17 +125,18 @@ std::vector<BallBond> ties_of(const BondConfig& bond, Index law, const dem::Worl
   std::size_t first = 0;     // its bonds
   const auto share_section = [&] {
     if (ties.size() == first) return;
-    const double radius = spheres.elements.state.data()[ties[first].sphere].radius;
+    const double radius = elements.state.data()[ties[first].sphere].radius;
     sections += radius * radius;
     for (std::size_t i = first; i < ties.size(); ++i)
       ties[i].area = radius * radius / static_cast<double>(ties.size() - first);
     first = ties.size();
     points.clear();
   };
-  for (const auto& [place, face] : near_pairs(spheres, members, border, bond.range)) {
+  for (const auto& [place, face] :
+       near_pairs(elements, w.spheres->exec.threads, members, border, bond.range)) {
     const Index e = members[at(place)];
     if (ties.size() > first && ties.back().sphere != e) share_section();
-    const dem::ElementState& s = spheres.elements.state.data()[e];
+    const dem::ElementState& s = elements.state.data()[e];
     const BorderFace& f = border[at(face)];
     dem::MeshTriangle triangle{};
     std::copy(std::begin(f.corner), std::end(f.corner), std::begin(triangle.corner));
@@ -146,7 +149,7 @@ std::vector<BallBond> ties_of(const BondConfig& bond, Index law, const dem::Worl
     });
     if (known) continue;
     points.push_back(point);
-    ties.push_back(bond_at(tetrahedra, s, f, point));
+    ties.push_back(bond_at(solids, s, f, point));
     ties.back().sphere = e;
     ties.back().law = law;
   }

@@ -133,39 +133,10 @@ class LaunchedForces {
   StepClock* clock_;
 };
 
-/// Launches at once.
-class DeviceRun : public StepwiseRun {
- public:
-  void move_boundary(World& w) const {
-    const StageTime timed(w.exec, "integration");
-    const ShadowLaunches launches;
-    w.beyond.resize(1);
-    w.clock.resize(1);
-    const MoveAndWatch move{move_kernel(w), 0, w.beyond.data(), w.domain.owned_view(),
-                            w.clock.data()};
-    for_each_part(w.exec, part(w.elements.size(), PlainLaunch(move), Parts<>{}));
-    mark_launches(w.exec.space);
-  }
-  void move_interior(World& w) const { move_walls(w); }
-  void pair_forces(World& w) {
-    const StageTime timed(w.exec, "forces");
-    launches_.emplace();
-    for_each(w.exec, 1, Fence{});
-    forces(w).pair_forces(w);
-  }
-  void sum_forces(World& w) {
-    const StageTime timed(w.exec, "forces");
-    forces(w).sum_forces(w);
-    mark_launches(w.exec.space);
-    launches_.reset();
-  }
-
- private:
-  static LaunchedForces<AtOnce> forces(World& w) {
-    return {{}, sums_note_least(w) ? w.clock.data() : nullptr};
-  }
-  std::optional<ShadowLaunches> launches_;
-};
+/// Forces by launches at once.
+LaunchedForces<AtOnce> forces_at_once(World& w) {
+  return {{}, sums_note_least(w) ? w.clock.data() : nullptr};
+}
 
 /// Launches that a device's clock leads; after a search take_forces() goes on by a run that stands
 /// `after_search`.
@@ -208,6 +179,32 @@ class ClockedRun : public LaunchedForces<ByClock<phase>>, public ClockLed {
 };
 
 }  // namespace
+
+void DeviceRun::move_boundary(World& w) const {
+  const StageTime timed(w.exec, "integration");
+  const ShadowLaunches launches;
+  w.beyond.resize(1);
+  w.clock.resize(1);
+  const MoveAndWatch move{move_kernel(w), 0, w.beyond.data(), w.domain.owned_view(),
+                          w.clock.data()};
+  for_each_part(w.exec, part(w.elements.size(), PlainLaunch(move), Parts<>{}));
+  mark_launches(w.exec.space);
+}
+void DeviceRun::move_interior(World& w) const {
+  move_walls(w);
+}
+void DeviceRun::pair_forces(World& w) {
+  const StageTime timed(w.exec, "forces");
+  launches_.emplace();
+  for_each(w.exec, 1, Fence{});
+  forces_at_once(w).pair_forces(w);
+}
+void DeviceRun::sum_forces(World& w) {
+  const StageTime timed(w.exec, "forces");
+  forces_at_once(w).sum_forces(w);
+  mark_launches(w.exec.space);
+  launches_.reset();
+}
 
 void take_step_on_device(World& w) {
   take_step(DeviceRun{}, w);

@@ -4,7 +4,10 @@
 // A run carries it out: HostRun by loops over packs, DeviceRun by launches, at once or recorded and
 // led by the device's clock. A run groups kernels into loops or launches; it never reorders them.
 
+#include <optional>
+
 #include "dem/world.hpp"
+#include "exec/shadow_launches.hpp"
 
 namespace breccia::dem {
 
@@ -65,6 +68,18 @@ struct HostRun : StepwiseRun {
   void move_interior(World& w) const;
   void pair_forces(World& w) const;
   void sum_forces(World& w) const;
+};
+
+/// Launches at once, of a device.
+class DeviceRun : public StepwiseRun {
+ public:
+  void move_boundary(World& w) const;
+  void move_interior(World& w) const;
+  void pair_forces(World& w);
+  void sum_forces(World& w);
+
+ private:
+  std::optional<ShadowLaunches> launches_;
 };
 
 /// One step by launches at once: on the GPUs of ranks. The host's text, the device's kernels.

@@ -21,6 +21,8 @@ using fdem_shared::ListBusy;
 /// Threads that share the list of busy couples out.
 constexpr Index most_threads = 132 * 512;
 
+}  // namespace
+
 struct Launches {
   static constexpr Index lanes = 1;
 
@@ -44,9 +46,6 @@ struct Launches {
   }
   static BundleForces bundles(World& w) { return bundle_kernel(w); }
 };
-using DeviceRun = fdem_shared::DeviceRunOf<Launches, StepwiseRun, World>;
-
-}  // namespace
 
 void take_step_on_device(World& w) {
   take_step(DeviceRun{}, w);
@@ -59,3 +58,6 @@ Advanced advance_on_device(World& w, const StopAt& stop) {
 }
 
 }  // namespace breccia::fdem3
+
+template class breccia::fdem_shared::DeviceRunOf<
+    breccia::fdem3::Launches, breccia::fdem3::StepwiseRun, breccia::fdem3::World>;

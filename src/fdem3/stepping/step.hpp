@@ -19,6 +19,10 @@ struct HostRun : fdem_shared::MovingRun<StepwiseRun, World> {
   void sum_forces(World& w) const;
 };
 
+struct Launches;
+/// Launches at once, of a device.
+using DeviceRun = fdem_shared::DeviceRunOf<Launches, StepwiseRun, World>;
+
 /// One step by launches at once: on the GPUs of ranks. The host's text, the device's kernels.
 void take_step_on_device(World& w);
 /// Forces and the step that follows, likewise.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/on_host.hpp"
 #include "exec/error.hpp"
 #include "io/frame_pair.hpp"
 #include "run/method/dem_method.hpp"
@@ -203,19 +204,24 @@ class CoupledMethod final : public Method {
   /// Places that a file leads to must be there.
   void refuse_misfits() const {
     const Index spheres = spheres_.world->elements.size(),
-                solids = tetrahedra_.world->tetrahedra.size();
-    const auto hold = [](const Buffer<Index>& places, Index count, const char* section) {
-      for (const Index place : places.host())
+                solids = tetrahedra_.world->tetrahedra.size(),
+                bodies = static_cast<Index>(tetrahedra_.world->given->groups.size());
+    const Space space = spheres_.world->exec.space;
+    const auto hold = [space](const Buffer<Index>& places, Index count, const char* section) {
+      const OnHost there(places, space);
+      for (const Index place : there->host())
         if (place < 0 || place >= count)
           throw CheckpointError(std::string("the checkpoint's section ") + section +
                                 " leads to no item of the model");
     };
     hold(w_.touches.pairs.a, spheres, "coupling.touches");
+    hold(w_.touches.pairs.b, bodies, "coupling.touches");
     hold(w_.faces.pairs.a, spheres, "coupling.faces");
     hold(w_.faces.pairs.b, 4 * solids, "coupling.faces");
-    for (const coupled::BallBond& b : w_.bonds.tie.host())
+    const OnHost ties(w_.bonds.tie, space);
+    for (const coupled::BallBond& b : ties->host())
       if (b.sphere < 0 || b.sphere >= spheres || b.tetrahedron < 0 || b.tetrahedron >= solids ||
-          b.law < 0 || b.law >= w_.given->bonds.size())
+          b.body < 0 || b.body >= bodies || b.law < 0 || b.law >= w_.given->bonds.size())
         throw CheckpointError(
             "the checkpoint's section coupling.bonds leads to no item of the model");
   }
@@ -237,9 +243,6 @@ std::unique_ptr<Method> make_method(const coupled::Config& config, const coupled
         "method = [\"dem3d\", \"fdem3d\"] runs in one process, on all its threads; start it "
         "without "
         "mpirun");
-  if (exec.space == Space::cuda)
-    throw InputError(
-        "method = [\"dem3d\", \"fdem3d\"] runs on the processor alone; start it with --device cpu");
   return std::make_unique<CoupledMethod>(config, coupled::parts_of(config), model, exec);
 }
 

@@ -10,7 +10,7 @@
 
 namespace breccia {
 
-/// @throws InputError if model and case do not fit, or it shall run on ranks or a device
+/// @throws InputError if model and case do not fit, or it shall run on ranks
 std::unique_ptr<Method> make_method(const coupled::Config& config, const coupled::Model& model,
                                     const Exec& exec, Communicator* ranks = nullptr);
 

@@ -1,4 +1,5 @@
-// Spheres and tetrahedra in one run: the same bits on any number of threads.
+// Spheres and tetrahedra in one run: the same bits on any number of threads, and by launches of a
+// device.
 
 #include <gtest/gtest.h>
 
@@ -52,8 +53,8 @@ std::uint64_t hash(const Both& w) {
 
 TEST(CoupledThreads, give_the_same_bits) {
   const Scene s = breaking_cube();
-  const auto run = [&](int threads) {
-    auto w = s.world(threads);
+  const auto run = [&](int threads, Space space = Space::host) {
+    auto w = s.world(threads, space);
     while (w->spheres.step < 450) step(w->between);
     return w;
   };
@@ -63,9 +64,10 @@ TEST(CoupledThreads, give_the_same_bits) {
   EXPECT_GT(e.friction, 0.0);
   EXPECT_GT(count(one->between).broken, 0.0);
   EXPECT_GT(one->between.searches, 3);
-  for (const int threads : {2, 3, 7}) {
-    const auto w = run(threads);
-    EXPECT_EQ(hash(*w), hash(*one)) << threads;
+  for (const int threads : {2, 3, 7, 0}) {  // 0: a device
+    SCOPED_TRACE(threads);
+    const auto w = threads > 0 ? run(threads) : run(1, Space::shadow);
+    EXPECT_EQ(hash(*w), hash(*one));
     EXPECT_EQ(w->spheres.time, one->spheres.time);
     EXPECT_EQ(energies(*w).friction, e.friction);
     EXPECT_EQ(energies(*w).fracture, e.fracture);

@@ -34,7 +34,7 @@ struct Scene {
   Vec3 gravity{};
   double max_step = 1.0, safety = 0.7;
 
-  std::unique_ptr<Both> world(int threads = 1) const {
+  std::unique_ptr<Both> world(int threads = 1, Space space = Space::host) const {
     Config config;
     static_cast<dem::Config&>(config.spheres) = balls.config;
     static_cast<fdem3::Config&>(config.tetrahedra) = solids.config;
@@ -45,6 +45,7 @@ struct Scene {
     config.time.safety = safety;
     Exec exec;
     exec.threads = threads;
+    exec.space = space;
     return std::make_unique<Both>(config, parts_of(config), balls.model, solids.model, exec);
   }
 };

@@ -116,9 +116,10 @@ TEST(CheckCoupled, finds_what_is_wrong_by_key) {
   EXPECT_TRUE(has(problems_of(staged, "friction = 0.2", "remove = [\"pile\"]"), "remove"));
 }
 
-std::unique_ptr<Method> method_of(const Case& read, int threads = 1) {
+std::unique_ptr<Method> method_of(const Case& read, int threads = 1, Space space = Space::host) {
   Exec exec;
   exec.threads = threads;
+  exec.space = space;
   return make_method(read, exec, nullptr);
 }
 
@@ -195,7 +196,7 @@ TEST(CoupledCase, goes_through_stages_and_is_resumed_in_each) {
   EXPECT_NEAR(momentum[2] - momentum[1], -weight * falls, 1e-3 * weight * falls);
   EXPECT_LT(whole->energy().error_relative, 2e-4);
   for (const CheckpointWriter& half : saved) {
-    const auto resumed = method_of(read, 2);
+    const auto resumed = method_of(read, 2, Space::shadow);
     const CheckpointReader reader(half);
     resumed->load(&reader);
     run_stages(*resumed, 700);
@@ -241,7 +242,7 @@ TEST(CoupledCase, takes_bodies_out_of_either_method) {
       EXPECT_NEAR(whole->probes()[2] - falling, -weight, 1e-3 * weight);
     }
     EXPECT_LT(whole->energy().error_relative, 2e-4);
-    const auto resumed = method_of(read, 2);
+    const auto resumed = method_of(read, 2, Space::shadow);
     const CheckpointReader reader(saved);
     resumed->load(&reader);
     run_stages(*resumed, 400);
@@ -274,19 +275,39 @@ TEST(CoupledCase, servos_push_with_their_force) {
   const double given = 0.5 * 1e8 * whole->time() * whole->time();
   EXPECT_NEAR(momentum(*whole) - start, given, 0.02 * given);
   EXPECT_LT(whole->energy().error_relative, 1e-3);
-  const auto resumed = method_of(read, 2);
+  const auto resumed = method_of(read, 2, Space::shadow);
   const CheckpointReader reader(saved);
   resumed->load(&reader);
   while (resumed->steps() < 400) resumed->advance({1.0, 400});
   EXPECT_EQ(resumed->state_hash(), whole->state_hash());
 }
 
-TEST(CoupledCase, refuses_devices) {
-  const Case read = case_of_text(good, "both.toml", ".", {});
-  Exec exec;
-  exec.space = Space::cuda;
-  const auto& config = std::get<coupled::Config>(read.config);
-  EXPECT_THROW(make_method(config, build_model(config, "."), exec), InputError);
+TEST(CoupledCase, is_seen_on_a_device_as_on_the_host) {
+  std::string text = good;
+  text += "[[bond]]\nname = \"b\"\nspheres = \"pile\"\ntetrahedra = \"block\"\nrange = 1.5\n";
+  const Case read = case_of_text(text, "both.toml", ".", {});
+  const auto there = method_of(read, 1, Space::shadow), here = method_of(read);
+  for (Method* method : {there.get(), here.get()})
+    while (method->steps() < 100) method->advance({1.0, 100});
+  CheckpointWriter first, second;
+  there->save(first);
+  here->save(second);
+  EXPECT_EQ(first.first_difference(second), "");
+  const auto numbers = [](Method& method) {
+    std::vector<double> all = method.probes();
+    for (const Fact& fact : method.facts())
+      if (fact.path.starts_with("coupling.")) all.push_back(fact.value);
+    const EnergyBalance e = method.energy();
+    all.insert(all.end(), {e.kinetic, e.elastic, e.fracture, e.friction, e.contact, e.work});
+    return all;
+  };
+  EXPECT_EQ(numbers(*there), numbers(*here));
+  EXPECT_EQ(there->warnings(), here->warnings());
+  EXPECT_EQ(there->frame_output({}).files.points, here->frame_output({}).files.points);
+  const CheckpointReader from_device(first);
+  const auto resumed = method_of(read);
+  resumed->load(&from_device);
+  EXPECT_EQ(resumed->state_hash(), there->state_hash());
 }
 
 TEST(CoupledCase, has_both_in_a_frame) {
