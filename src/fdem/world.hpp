@@ -164,8 +164,8 @@ struct World {
   Buffer<double> amplitude_times, amplitude_factors;  ///< their entries  [s], [-]  (advance)
   Buffer<Vec2> prescribed_velocity;                   ///< [m/s]  (motions; advance, servo)
   Buffer<StepClock> clock;                            ///< time there (2; move)
-  /// Of a move launched at once: 1 if margin_used; and bit k if flag k of ExposedVertices::changed
-  /// is set. (2; move)
+  /// Of a move launched at once: 1 if margin_used, in one process if a search is due; on ranks bit
+  /// k if flag k of ExposedVertices::changed is set. (2; move)
   Buffer<std::int32_t> device_flags;
   fdem_shared::BusyCouples busy;  ///< of this step (search, derive; pairs, sums)
   StepGraph graph;                ///< of a few steps (advance)

@@ -160,8 +160,9 @@ void DeviceRunOf<Launches, Base, World>::move_boundary(World& w) const {
   list_motions(w);
   const ShadowLaunches launches;
   w.device_flags.resize(2);
-  const MoveAndWatch<typename ShapeOf<World>::Move> move{
-      world_move(w), w.exposed.changed.view(), w.device_flags.data(), w.device_flags.data() + 1};
+  std::int32_t* const told = w.domain.single_rank() ? nullptr : w.device_flags.data() + 1;
+  const MoveAndWatch<typename ShapeOf<World>::Move> move{world_move(w), w.exposed.changed.view(),
+                                                         w.device_flags.data(), told, w.step};
   for_each_part(w.exec, part(ShapeOf<World>::elements(w).size(), PlainLaunch(move), Parts<>{}));
   mark_launches(w.exec.space);
 }

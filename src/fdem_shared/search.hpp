@@ -397,7 +397,8 @@ template <class World>
 bool mesh_couples_are_due(World& w) {
   const StageTime timed(w.exec, "travel");
   if (!w.domain.single_rank()) return any_rank_is_due(w);
-  return w.margin_used || marking_is_due(w);
+  // On a device the move has looked at the marks, too.
+  return w.margin_used || (w.exec.space == Space::host && marking_is_due(w));
 }
 
 template <class World>
