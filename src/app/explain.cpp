@@ -148,8 +148,9 @@ const std::vector<Law>& laws() {
        concrete_tension},
       {"dem3d",
        "[material.NAME]",
-       {"cohesion", "friction_angle", "friction_cap"},
-       "shear strength = C + min(p tan phi_i, s_F) of an intact link under pressure p",
+       {"cohesion", "friction_angle", "friction_cap", "friction_bound"},
+       "shear strength = C + min(f, s_F) of an intact link under pressure p, f = p tan phi_i; "
+       "friction_bound = \"smooth\": C + f s_F / (f + s_F)",
        "docs/theory.md, cohesive links",
        concrete_shear},
       {"dem3d",

@@ -74,7 +74,8 @@ struct RateCurve {
 ///   compression  N = K_n u >= -S (Y + K p H/(1 - H)), p = (D_0 - D_eq) / D_0; beyond it D_eq
 ///                yields; Y = Y_c, H = H_c, of broken links that do not touch Y_b, H_b;
 ///                beyond p = p_c pores are closed, N = K_n u
-///   shear        F_s += -K_t du_s, cut at S C (1 - damage) + min(-N tan phi, S s_F)
+///   shear        F_s += -K_t du_s, cut at S C (1 - damage) + min(-N tan phi, S s_F), or with
+///                friction that fades, f = -N tan phi > 0: S C (1 - damage) + f S s_F / (f + S s_F)
 ///   moment       M += -K_r dtheta, cut at eta r min(|N| in compression + S T (1 - damage), S s_M)
 ///   wear         plastic slip ds and turn dtheta_p: kappa += w_s |ds| + w_m r |dtheta_p|
 ///   rate         T grows to T DIF of the link's own strain rate, smoothed over some crossings of
@@ -92,6 +93,7 @@ struct ConcreteLink {
   double friction;              ///< tan phi_i of the intact link  [-]
   double broken_friction;       ///< mu_b  [-]
   double friction_cap;          ///< s_F, 0: none  [Pa]
+  double friction_fades;        ///< 1: friction nears s_F slowly; 0: it grows until it is s_F
   double shear_ratio;           ///< K_t / K_n  [-]
   double rolling_ratio;         ///< beta_r = K_r / (K_t r^2)  [-]
   double rolling_limit;         ///< eta of the intact link  [-]
@@ -360,7 +362,12 @@ struct ConcreteLink {
   template <class R>
   BR_HD R friction_limit(const LinkConstants<R>& link, const R& normal, const R& slope) const {
     const R force = -1.0 * (normal * slope);
-    return friction_cap > 0.0 ? min(force, friction_cap * link.area) : force;
+    if (friction_cap == 0.0) return force;
+    const R cap = friction_cap * link.area;
+    if (friction_fades < 0.5) return min(force, cap);
+    // f S s_F / (f + S s_F), in a form that divides no zero
+    const R pressed = max(force, constant<R>(0.0));
+    return min(force, cap * (1.0 - cap / (pressed + cap)));
   }
 
   template <class R>

@@ -136,13 +136,14 @@ struct MaterialConfig {
   double rolling_cap = 0.0;                    ///< s_M; 0: none  [Pa]
   double broken_friction = -1.0;               ///< mu_b; below 0: that of contacts  [-]
   double friction_cap = 0.0;                   ///< s_F; 0: none  [Pa]
-  double broken_rolling_limit = -1.0;          ///< eta_b; below 0: eta  [-]
-  double slip_wear = 0.0, turn_wear = 0.0;     ///< w_s, w_m  [-]
-  double compaction_strength = 0.0;            ///< Y_c; 0: none  [Pa]
-  double compaction_slope = 0.4;               ///< H_c  [-]
-  double crushing_strength = 0.0;              ///< Y_b; 0: none  [Pa]
-  double crushing_slope = 0.4;                 ///< H_b  [-]
-  double closing_strain = 0.0;                 ///< p_c; 0: none  [-]
+  std::string friction_bound = "sharp";
+  double broken_rolling_limit = -1.0;       ///< eta_b; below 0: eta  [-]
+  double slip_wear = 0.0, turn_wear = 0.0;  ///< w_s, w_m  [-]
+  double compaction_strength = 0.0;         ///< Y_c; 0: none  [Pa]
+  double compaction_slope = 0.4;            ///< H_c  [-]
+  double crushing_strength = 0.0;           ///< Y_b; 0: none  [Pa]
+  double crushing_slope = 0.4;              ///< H_b  [-]
+  double closing_strain = 0.0;              ///< p_c; 0: none  [-]
   std::string rate = "none";
   double rate_strength = 30e6;                    ///< f_c, static, of malvar_ross  [Pa]
   double rate_crossings = 5.0;                    ///< time constant over D / c  [-]
@@ -207,6 +208,10 @@ struct MaterialConfig {
         "mu_b, friction coefficient of broken links; below 0: contact.friction");
     key("friction_cap", friction_cap, "Pa", Range{0.0, 1e15},
         "s_F, largest shear stress that friction bears in a link, whole or broken; 0: no bound");
+    key("friction_bound", friction_bound, OneOf{"sharp", "smooth"},
+        "how friction f nears friction_cap: sharp: it grows with pressure until it is s_F; smooth: "
+        "it "
+        "is f s_F / (f + s_F), as rough cracks shear off");
     key("broken_rolling_limit", broken_rolling_limit, "-", Range{-1.0, 1e6},
         "eta_b, plastic limit of the moments of broken links; below 0: rolling_limit");
     key("slip_wear", slip_wear, "-", Range{0.0, 1e6},

@@ -83,6 +83,8 @@ class Check {
           fmt::format("{}: knee_strength + knee_opening must be below 1 (they are {} and {}): "
                       "softening is steep before its knee",
                       path, m.knee_strength, m.knee_opening));
+    if (m.friction_bound == "smooth" && m.friction_cap == 0.0)
+      add(fmt::format("{}: friction_bound = \"smooth\" needs friction_cap above 0", path));
     if (m.law == "ldpm") check_ldpm(m, path);
     if (!m.bedding.is_none()) check_bedding(m, path + ".bedding");
     if (m.law == "interface" && m.bond == "mc90" && !(m.slip1 <= m.slip2 && m.slip2 < m.slip3))

@@ -144,17 +144,21 @@ TEST(ConfinedLink, pressed_across_its_closing_in_one_step_loses_no_energy) {
 TEST(ConfinedLink, friction_bears_no_more_than_its_bound) {
   const double bound = 3e6;
   for (const double pressure : {10e6, 40e6})
-    for (const bool brittle : {false, true}) {
+    for (const auto& [brittle, fades] :
+         {std::pair{false, 0.0}, {true, 0.0}, {false, 1.0}, {true, 1.0}}) {
       Rig rig;
       rig.law.friction_cap = bound;
+      rig.law.friction_fades = fades;
       rig.law.brittle_shear = brittle ? 1.0 : 0.0;
       rig.law.crushing_strength = 0.0;
       rig.move(first_length - pressure * area / stiffness, 100);
       const double slip = (cohesion + 0.25 * pressure) * area / (0.18 * stiffness);
       for (int i = 0; i < 2000; ++i) rig.slide(slip / 1000);
       EXPECT_EQ(rig.intact(), !brittle);
-      const double whole = cohesion + std::min(0.176 * pressure, bound);
-      const double left = std::min(0.25 * pressure, bound);
+      const auto friction = [&](double f) {
+        return fades > 0.0 ? f * bound / (f + bound) : std::min(f, bound);
+      };
+      const double whole = cohesion + friction(0.176 * pressure), left = friction(0.25 * pressure);
       EXPECT_NEAR(norm(rig.last.shear), (brittle ? left : whole) * area, 1e-6 * whole * area);
       EXPECT_NEAR(rig.held(), rig.work, 1e-9 * rig.work);
     }

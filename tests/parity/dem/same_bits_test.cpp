@@ -169,6 +169,7 @@ TEST(SameBits, of_links_that_wear_and_crush) {
   testing::confine(config.materials[0]);
   config.materials[0].friction_cap = 1e6;  // bounds friction from 5.7 MPa on
   for (const Precision precision : {Precision::full, Precision::mixed}) {
+    config.materials[0].friction_bound = precision == Precision::full ? "sharp" : "smooth";
     std::uint64_t hash = 0;
     EnergyBalance energy{};
     const auto expect_same = [&](int threads, Lanes lanes, Space space) {

@@ -123,6 +123,15 @@ TEST(CheckDem, refuses_softening_that_is_not_steep_before_its_knee) {
             std::string::npos);
 }
 
+TEST(CheckDem, refuses_friction_that_nears_no_bound) {
+  dem::Config config = dem::case_with_materials();
+  config.materials[0].friction_bound = "smooth";
+  EXPECT_NE(refused([&] { dem::check_case(config); }).find("needs friction_cap"),
+            std::string::npos);
+  config.materials[0].friction_cap = 3e6;
+  EXPECT_EQ(refused([&] { dem::check_case(config); }).find("friction_cap"), std::string::npos);
+}
+
 TEST(CheckDem, refuses_what_ldpm_cannot_do) {
   using dem::Config;
   check_case(dem::ldpm_cube());
