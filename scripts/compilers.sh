@@ -2,7 +2,7 @@
 # Builds the program with each compiler and level of optimisation (a folder build/compilers/NAME
 # each) and compares the hashes of small cases of all methods with those of build/release.
 # Arguments choose: scripts/compilers.sh clang++:-O1
-# JOBS=N compiles N files at once. MPI=mpich takes that MPI (apt install libmpich-dev), else none.
+# JOBS=N compiles N files and runs N cases at once. MPI=mpich takes that MPI (apt install libmpich-dev), else none.
 # LIMIT=N begins no compiler after N seconds; the order is drawn then.
 # PARTS=methods compiles the libraries that hold numbers and links them with the rest of build/release: half the time.
 cd "$(dirname "$0")/.." || exit 1
@@ -19,7 +19,19 @@ hash_of() {  # PROGRAM CASE FOLDER: of a run to its end, or of 400 steps of the 
   local steps=()
   [[ $2 == tests/* ]] && steps=(--steps 400)
   "${launch[@]}" "$1" run "$2" -o "$3" --force -q --threads 1 --set output.frames=0 --set output.pictures=false "${steps[@]}" > "$3.log" 2>&1
-  sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$3/summary.json"
+  sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$3/summary.json" > "$3.hash"
+}
+
+hashes_of() {  # PROGRAM FOLDER: of all cases, JOBS at once, into the array `hashes`
+  rm -rf "$2"
+  mkdir -p "$2"
+  for k in "${!cases[@]}"; do
+    while [ "$(jobs -rp | wc -l)" -ge "${JOBS:-2}" ]; do wait -n; done
+    hash_of "$1" "${cases[k]}" "$2/$k" &
+  done
+  wait
+  hashes=()
+  for k in "${!cases[@]}"; do hashes+=("$(cat "$2/$k.hash")"); done
 }
 
 build() {  # COMPILER LEVEL FOLDER: leaves the program as FOLDER/breccia
@@ -39,8 +51,8 @@ build() {  # COMPILER LEVEL FOLDER: leaves the program as FOLDER/breccia
 }
 
 launch=()
-wanted=()
-for case in "${cases[@]}"; do wanted+=("$(hash_of build/release/breccia "$case" build/compilers/wanted)"); done
+hashes_of build/release/breccia build/compilers/wanted
+wanted=("${hashes[@]}")
 [ -n "$MPI" ] && launch=("mpiexec.$MPI" -n 3)
 wrong=0 compared=()
 for kind in "${kinds[@]}"; do
@@ -48,11 +60,11 @@ for kind in "${kinds[@]}"; do
   compiler=${kind%%:*} level=${kind#*:}
   folder=build/compilers/$compiler$level${MPI:+-$MPI}
   build "$compiler" "$level" "$folder" > "$folder.log" 2>&1 || { echo "$kind: does not build, see $folder.log"; wrong=1; continue; }
+  hashes_of "$folder/breccia" "$folder/runs"
   for k in "${!cases[@]}"; do
-    hash=$(hash_of "$folder/breccia" "${cases[k]}" "$folder/run")
     same=same
-    [ -n "$hash" ] && [ "$hash" = "${wanted[k]}" ] || { same="instead of ${wanted[k]}"; wrong=1; }
-    echo "$kind $MPI ${cases[k]}: $hash $same"
+    [ -n "${hashes[k]}" ] && [ "${hashes[k]}" = "${wanted[k]}" ] || { same="instead of ${wanted[k]}"; wrong=1; }
+    echo "$kind $MPI ${cases[k]}: ${hashes[k]} $same"
   done
   compared+=("$kind")
 done
