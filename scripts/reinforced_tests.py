@@ -2,7 +2,7 @@
 """Pull-out of a bar and beams of reinforced concrete against formulas, for docs/validation-concrete.md.
 
     scripts/reinforced_tests.py [--seeds 3] [--elements 0] [--binary build/release/breccia] [--device cpu] [--jobs 1] [NAME...]
-    NAME: pull_out bending flow shear stirrups; elements: of the concrete; 0: 3,900 of a beam, 1,080 of a pull-out
+    NAME: pull_out bending flow shear stirrups plate; elements: of the concrete; 0: 3,900 of a beam, 1,080 of a pull-out
 
 Concrete: c30 of cases/rc_slab with friction bounded under pressure (f_c 33.5, f_t 3.3 MPa in prisms of `breccia test`); bars
 of 500 MPa; bond by the Model Code 1990, tau_max 13.7 MPa = 2.5 sqrt(30). In shear and stirrups a crack along a bar takes 100 J/m2, and
@@ -15,6 +15,7 @@ bending   beam of 1.0 x 0.1 x 0.15 m, span 0.9 m, 2 bars of 6 mm at d = 125 mm, 
 flow      the same with bars that do not harden, as the formula has it
 shear     the same with 2 bars of 16 mm with ends bent upwards, on pins below them: too strong in bending for its shear strength
 stirrups  the same with 11 stirrups of 6 mm, whose elements touch the bars that they hold
+plate     the same, pressed by three bars side by side, 76 mm in all
 """
 import argparse
 import concurrent.futures
@@ -74,6 +75,7 @@ slip3 = "8 mm"
 tensile_strength = "2.2 MPa"
 {1}
 """
+ARM = 0.03  # distance of the outer bars of a wide load from its middle  [m]
 PLAIN, TIE = BOND.format("", "softening = 10.0"), -0.05  # HEIGHT / 2 - DEPTH, height of the bars in tension
 
 
@@ -126,7 +128,7 @@ def beam(seed, elements):
             + bars("bars", 0.006, 0.02, [(line, 2, [0.0, 0.06, 0.0], False)]) + loads(-0.02, 0.016, 0.055))
 
 
-def strong_beam(seed, elements, stirrups):
+def strong_beam(seed, elements, stirrups, wide=False):
     """Bars of 16 mm, bent upwards behind the supports, which bear the beam below them."""
     y = 0.03
     line = [[-0.48, -y, 0.04], [-0.48, -y, TIE], [0.48, -y, TIE], [0.48, -y, 0.04]]
@@ -139,24 +141,27 @@ def strong_beam(seed, elements, stirrups):
                 [-0.4, -side, high], [-0.4, -side, TIE]]
         text += ribbed(0.006, "_6")
         cage += bars("stirrups", 0.006, 0.02, [(ring, 11, [0.08, 0.0, 0.0], True)]).replace('"bond"', '"bond_6"')
-    return text + box((1.0, WIDTH, HEIGHT), elements) + cage + loads(-0.0665, 0.014, 0.066)
+    return text + box((1.0, WIDTH, HEIGHT), elements) + cage + loads(-0.0665, 0.014, 0.066, wide)
 
 
-def loads(pins, diameter, roller):
+def loads(pins, diameter, roller, wide=False):
     """Pins across the beam, which let its ends turn, a bar across it, which presses it, and probes.
-    @param pins, roller  their heights  [m]"""
+    @param pins, roller  their heights  [m]
+    @param wide  three bars side by side instead of one"""
     lines = [([[x, -0.042, pins], [x, 0.042, pins]], 1, [0.0, 0.0, 0.0], False) for x in (-SPAN / 2, SPAN / 2)]
     text = bars("pins", diameter, 0.02, lines)
-    text += bars("roller", 0.016, 0.02, [([[0.0, -0.042, roller], [0.0, 0.042, roller]], 1, [0.0, 0.0, 0.0], False)])
+    first, copies, half = (-ARM, 3, 0.05) if wide else (0.0, 1, 0.01)
+    text += bars("roller", 0.016, 0.02, [([[first, -0.042, roller], [first, 0.042, roller]], copies, [abs(first), 0.0, 0.0], False)])
     for name, x in (("left", -SPAN / 2), ("right", SPAN / 2)):
         text += support(name, "pins", (x - 0.01, -1, -1), (x + 0.01, 1, 1), '["z"]')
-    text += support("load", "roller", (-0.01, -1, -1), (0.01, 1, 1), '["z"]', (0, 0, -0.15), 2e-3)
+    text += support("load", "roller", (-half, -1, -1), (half, 1, 1), '["z"]', (0, 0, -0.15), 2e-3)
     return text + "".join(probe(n, n, "force_z", "sum") for n in ("load", "left", "right")) + probe("way", "load", "displacement_z", "mean")
 
 
-USUAL = {"pull_out": 1080, "bending": 3900, "flow": 3900, "shear": 3900, "stirrups": 3900}  # elements
+USUAL = {"pull_out": 1080, "bending": 3900, "flow": 3900, "shear": 3900, "stirrups": 3900, "plate": 3900}  # elements
 TESTS = {"pull_out": pull_out, "bending": beam, "flow": lambda s, n: beam(s, n).replace('hardening = "1 GPa"', 'hardening = "1 MPa"'),
-         "shear": lambda s, n: strong_beam(s, n, False), "stirrups": lambda s, n: strong_beam(s, n, True)}
+         "shear": lambda s, n: strong_beam(s, n, False), "stirrups": lambda s, n: strong_beam(s, n, True),
+         "plate": lambda s, n: strong_beam(s, n, True, True)}
 
 
 # f_c of `breccia test` with elements of these sizes (600, 2,400 and 4,800 in the prism; the last by interpolation)  [MPa]
@@ -201,9 +206,10 @@ def shear_crack_theory(strength, young=30e3, aggregate=16.0):
     return 2 * v
 
 
-def crushing(strength, last=3.5e-3):
+def crushing(strength, last=3.5e-3, arm=SPAN / 2):
     """The load at which the concrete of the strong beam crushes (3.5e-3, block of 0.8 x with f_c) and its bars bear what they then
-    do, up to f_y; N."""
+    do, up to f_y; N.
+    @param arm  from a support to the bar of the load beside which it crushes  [m]"""
     low, high = 1e-3, DEPTH
     for _ in range(60):
         x = 0.5 * (low + high)
@@ -212,7 +218,7 @@ def crushing(strength, last=3.5e-3):
             high = x
         else:
             low = x
-    return 4 * bars * (DEPTH - 0.4 * x) / SPAN
+    return 2 * bars * (DEPTH - 0.4 * x) / arm
 
 
 def shear_model_code(diameter):
@@ -296,6 +302,8 @@ def against(name, elements):
         return 13.7
     if name in ("bending", "flow"):
         return flexure(0.006) * 1e-3
+    if name == "plate":
+        return crushing(STRENGTH[elements], arm=SPAN / 2 - ARM) * 1e-3
     return (shear_niwa if name == "shear" else crushing)(STRENGTH[elements]) * 1e-3
 
 
@@ -305,6 +313,8 @@ def asked(name, elements):
     if name in ("bending", "flow"):
         return f"A_s f_y z: {flexure(0.006) * 1e-3:.1f} kN"
     strength = STRENGTH[elements]
+    if name == "plate":
+        return f"in bending beside the outer bars, f_c {strength} MPa: {against(name, elements):.1f} kN"
     if name == "stirrups":
         v = 2 * math.pi / 4 * 0.006**2 / 0.08 * 0.9 * DEPTH * F_Y * 1e6
         return (f"in bending, f_c {strength} MPa: {crushing(strength) * 1e-3:.1f} kN; stirrups alone, struts at 45 and 21.8 degrees: "
