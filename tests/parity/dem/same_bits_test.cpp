@@ -31,7 +31,7 @@ dem::World small_world(int threads, const std::vector<std::string>& overrides = 
   return dem::make_world(small_config(overrides), small_model(), exec);
 }
 /// Hash after the impact has begun to break the slab.
-std::uint64_t hash_after(dem::World w, int steps = 900) {
+std::uint64_t hash_after(dem::World w, int steps = 600) {
   while (w.step < steps) dem::advance(w, {1e300, steps});
   EXPECT_GT(dem::count(w).broken_of(dem::LinkKind::concrete), 100);
   return dem::state_hash(w);

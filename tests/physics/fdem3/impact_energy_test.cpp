@@ -31,8 +31,8 @@ Shattered shatter(const char* criterion, double speed, double damping, double sa
 // a slip that does not. Unbooked, that work was 0.07 % here, whatever the step.
 TEST(ImpactEnergy, error_falls_with_the_square_of_the_step) {
   for (const char* criterion : {"edge", "rock"}) {
-    const Shattered coarse = shatter(criterion, 60.0, 0.0, 0.7),
-                    fine = shatter(criterion, 60.0, 0.0, 0.35);
+    const Shattered coarse = shatter(criterion, 60.0, 0.0, 0.6),
+                    fine = shatter(criterion, 60.0, 0.0, 0.3);
     EXPECT_GT(coarse.broken, 0.9);
     EXPECT_LT(coarse.missing, 1e-3) << criterion;
     EXPECT_LT(fine.missing, 0.4 * coarse.missing + 1e-6) << criterion;

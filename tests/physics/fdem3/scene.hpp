@@ -110,8 +110,8 @@ inline Scene meeting_cubes(const char* criterion = "rock") {
   m.joint.energy_open = 3.0;
   m.joint.energy_slide = 9.0;
   scene.config.joints.criterion = criterion;
-  scene.body("low", box({0.0, 0.0, -0.0101}, {0.02, 0.02, 0.02}, 0.007), {});
-  scene.body("high", box({0.003, 0.002, 0.0101}, {0.02, 0.02, 0.02}, 0.007), {3.0, 0.0, -30.0});
+  scene.body("low", box({0.0, 0.0, -0.0101}, {0.02, 0.02, 0.02}, 0.01), {});
+  scene.body("high", box({0.003, 0.002, 0.0101}, {0.02, 0.02, 0.02}, 0.01), {3.0, 0.0, -30.0});
   return scene;
 }
 

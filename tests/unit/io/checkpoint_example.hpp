@@ -1,6 +1,7 @@
 #pragma once
 // A state with every kind of array, for the tests of checkpoints.
 
+#include <cstdio>
 #include <fstream>
 #include <random>
 #include <string>
@@ -58,6 +59,7 @@ inline std::vector<char> content_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 inline void write_content(const std::string& path, const std::vector<char>& bytes) {
+  std::remove(path.c_str());  // a file that is cut to nothing and closed again waits for the disk
   std::ofstream(path, std::ios::binary)
       .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }

@@ -456,14 +456,17 @@ TEST(picture, the_same_frame_gives_the_same_bits_on_any_number_of_threads) {
   RenderOptions options;
   options.clip = "x=0.1";
   options.show_links = true;
-  for (const int threads : {1, 2, 5})
-    EXPECT_EQ(render(frame, options).rgb, render(frame, options, threads).rgb) << threads;
+  const auto expect_the_same = [&] {
+    const auto expected = render(frame, options).rgb;
+    for (const int threads : {2, 5})
+      EXPECT_EQ(render(frame, options, threads).rgb, expected) << threads;
+  };
+  expect_the_same();
   // Large triangles that lie across each other, among lines.
   frame.radius.clear();
-  for (std::int32_t i = 0; i + 2000 < 12000; i += 7)
+  for (std::int32_t i = 0; i + 2000 < 12000; i += 23)
     frame.triangles.insert(frame.triangles.end(), {i, i + 900, i + 2000});
-  for (const int threads : {2, 5})
-    EXPECT_EQ(render(frame, options).rgb, render(frame, options, threads).rgb) << threads;
+  expect_the_same();
 }
 
 TEST(picture, frames_with_nothing_or_nonsense_in_them_are_drawn) {
