@@ -174,6 +174,8 @@ struct CheckCommand {
                         p.name, p.quantity.substr(0, p.quantity.find('_'))));
     if constexpr (!requires { config.spheres; })
       for (const std::string& doubt : prepare::doubtful_probes(config, read.folder)) tell(doubt);
+    if constexpr (requires { prepare::doubtful_loads(config, read.folder); })
+      for (const std::string& doubt : prepare::doubtful_loads(config, read.folder)) tell(doubt);
   }
 
   template <class Config>

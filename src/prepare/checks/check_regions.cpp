@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -15,38 +14,12 @@
 #include "fdem/setup/bolts.hpp"
 #include "io/round_numbers.hpp"
 #include "prepare/checks/by_name.hpp"
+#include "prepare/checks/outlines.hpp"
 #include "prepare/checks/refusal.hpp"
-#include "prepare/meshing/body_mesh.hpp"
-#include "prepare/meshing/mesh_file.hpp"
-#include "prepare/packing/spheres_file.hpp"
-#include "prepare/shapes/carve.hpp"
 #include "prepare/shapes/wall_files.hpp"
-#include "prepare/tetrahedra/tet_body.hpp"
-#include "prepare/tetrahedra/tet_file.hpp"
 
 namespace breccia::prepare {
 namespace {
-
-/// A box with sides along the axes; in the plane the third is of no extent.
-struct Bounds {
-  std::array<double, 3> low{}, high{};  ///<  [m]
-};
-
-/// A body as regions see it.
-struct Outline {
-  std::string name;
-  std::optional<Bounds> bounds;  ///< none: only its file tells
-  bool in_another = false;       ///< a part: its triangles are some of another body
-};
-
-Bounds around(const std::array<double, 3>& center, const std::array<double, 3>& half) {
-  Bounds b;
-  for (std::size_t k = 0; k < 3; ++k) {
-    b.low[k] = center[k] - half[k];
-    b.high[k] = center[k] + half[k];
-  }
-  return b;
-}
 
 /// Along the axis along which they are furthest apart; 0 if they meet.  [m]
 std::pair<double, std::size_t> gap(const Bounds& a, const Bounds& b) {
@@ -87,106 +60,6 @@ std::string problem_of(const std::string& key, const Bounds& region, const std::
       below ? "max" : "min", place(below ? region.high[axis] : region.low[axis]), nearest->name,
       length_text(least.first), axes[axis], place(nearest->bounds->low[axis]),
       place(nearest->bounds->high[axis]));
-}
-
-const dem::BodyConfig* host_of(const dem::BodyConfig& body, const dem::Config& config) {
-  return body.shape == "rebar" ? item_named(config.bodies, body.rebar.in) : &body;
-}
-
-void add_to(std::optional<Bounds>& b, const std::array<double, 3>& x, double reach = 0.0) {
-  if (!b) b = Bounds{{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    b->low[k] = std::min(b->low[k], x[k] - reach);
-    b->high[k] = std::max(b->high[k], x[k] + reach);
-  }
-}
-std::array<double, 3> moved(const Vec3& x, const Vec3& by) {
-  return {x.x + by.x, x.y + by.y, x.z + by.z};
-}
-std::array<double, 3> moved(const Vec2& x, const Vec2& by) {
-  return {x.x + by.x, x.y + by.y, 0.0};
-}
-std::string in_folder(const std::string& folder, const std::string& file) {
-  return (std::filesystem::path(folder) / file).string();
-}
-/// Bounds of a body by its file; none if it cannot be read, which its reader tells.
-template <class Read>
-std::optional<Bounds> told_by_file(const Read& read) {
-  std::optional<Bounds> b;
-  try {
-    read(b);
-  } catch (const Error&) {
-    return {};
-  }
-  return b;
-}
-
-/// @param folder  of the case; null: files are not looked at
-/// @param radii   whether spheres of a file reach beyond their centres
-Outline outline_of(const dem::BodyConfig& body, const dem::Config& config,
-                   const std::string* folder, bool radii = false) {
-  const dem::BodyConfig* const b = host_of(body, config);
-  if (b == nullptr || is_shaped(*b)) return {body.name, {}};
-  if (b->shape == "file") {
-    const dem::MaterialConfig* const of = item_named(config.materials, b->material);
-    if (folder == nullptr || (of != nullptr && of->law == "ldpm")) return {body.name, {}};
-    return {body.name, told_by_file([&](std::optional<Bounds>& all) {
-              const Spheres spheres = read_spheres(in_folder(*folder, b->file));
-              for (std::size_t i = 0; i < spheres.radius.size(); ++i)
-                add_to(all, moved(spheres.position[i], b->center), radii ? spheres.radius[i] : 0.0);
-            })};
-  }
-  const std::array<double, 3> center{b->center.x, b->center.y, b->center.z};
-  std::array<double, 3> half{b->radius, b->radius, b->radius};
-  if (b->shape == "box") half = {0.5 * b->size.x, 0.5 * b->size.y, 0.5 * b->size.z};
-  if (b->shape == "cylinder") half[2] = 0.5 * b->length;
-  if (b->shape == "element") half = {};
-  return {body.name, around(center, half)};
-}
-
-Outline outline_of(const fdem::BodyConfig& b, const std::string* folder) {
-  if (b.shape == "part") return {b.name, {}, true};
-  const bool of_file = b.shape == "outline" || b.shape == "mesh";
-  if (of_file && folder != nullptr)
-    return {b.name, told_by_file([&](std::optional<Bounds>& all) {
-              const std::string path = in_folder(*folder, b.file);
-              if (b.shape == "outline") {
-                for (const Vec2& x : read_outline(path)) add_to(all, moved(x, b.center));
-                return;
-              }
-              const Mesh mesh = read_mesh(path, b.seams == "open");
-              for (const Index t : triangles_of(b, mesh))
-                for (const Index v : mesh.triangle[static_cast<std::size_t>(t)])
-                  add_to(all, moved(at(mesh.point, v), b.center));
-            })};
-  const bool round = b.shape == "disc" || b.shape == "ring";
-  if (!round && b.shape != "plate" && b.shape != "beam") return {b.name, {}};
-  const Vec2 half = round ? Vec2{b.radius, b.radius} : 0.5 * b.size;
-  return {b.name, around({b.center.x, b.center.y, 0.0}, {half.x, half.y, 0.0})};
-}
-
-Outline outline_of(const fdem3::BodyConfig& b, const std::string* folder) {
-  if (b.shape == "part") return {b.name, {}, true};
-  if (b.shape == "mesh" || b.shape == "stl") {
-    if (folder == nullptr) return {b.name, {}};
-    return {b.name, told_by_file([&](std::optional<Bounds>& all) {
-              const std::string path = in_folder(*folder, b.file);
-              if (b.shape == "stl") {
-                const Surface surface = read_surface(path, 1.0);
-                add_to(all, moved(surface.low(), b.center));
-                add_to(all, moved(surface.high(), b.center));
-                return;
-              }
-              const TetMesh mesh = read_tet_mesh(path);
-              for (const Index t : tetrahedra_of(b, mesh))
-                for (const Index v : mesh.tetrahedron[static_cast<std::size_t>(t)])
-                  add_to(all, moved(mesh.point[static_cast<std::size_t>(v)], b.center));
-            })};
-  }
-  std::array<double, 3> half{b.radius, b.radius, b.radius};
-  if (b.shape == "box") half = {0.5 * b.size.x, 0.5 * b.size.y, 0.5 * b.size.z};
-  if (b.shape == "cylinder") half[b.axis == "x" ? 0U : b.axis == "y" ? 1U : 2U] = 0.5 * b.height;
-  return {b.name, around({b.center.x, b.center.y, b.center.z}, half)};
 }
 
 void cut_to(Bounds& b, const std::array<double, 3>& low, const std::array<double, 3>& high) {
@@ -319,19 +192,6 @@ std::string problem_of_point(const std::string& key, const Vec2& point,
                      place(point.y), nearest->name, length_text(least));
 }
 
-std::vector<Outline> outlines_of(const dem::Config& config, const std::string* folder,
-                                 bool radii = false) {
-  std::vector<Outline> all;
-  for (const auto& body : config.bodies) all.push_back(outline_of(body, config, folder, radii));
-  return all;
-}
-template <class Config>
-std::vector<Outline> outlines_of(const Config& config, const std::string* folder) {
-  std::vector<Outline> all;
-  for (const auto& body : config.bodies) all.push_back(outline_of(body, folder));
-  return all;
-}
-
 /// Supports and loads of meshes, bolts of plane ones.
 template <class Config>
 void check_faces_and_corners(const Config& config, const std::string* folder) {
@@ -443,6 +303,51 @@ std::vector<std::string> empty_boxes(const Config& config, const std::vector<Out
   return doubts;
 }
 
+/// Whether a region holds a piece as long as an edge of the mesh, each way, on a side of a body;
+/// true of one that reaches none of its outermost sides.
+bool holds_an_edge(const Bounds& region, const Bounds& body, double edge, std::size_t dimension) {
+  bool on_a_side = false;
+  for (std::size_t k = 0; k < dimension; ++k) {
+    if (region.low[k] > body.low[k] && region.high[k] < body.high[k]) continue;
+    on_a_side = true;
+    bool wide = true;
+    for (std::size_t j = 0; j < dimension; ++j)
+      wide = wide && (j == k || std::min(region.high[j], body.high[j]) -
+                                        std::max(region.low[j], body.low[j]) >=
+                                    0.99 * std::min(edge, body.high[j] - body.low[j]));
+    if (wide) return true;
+  }
+  return !on_a_side;
+}
+
+/// A load takes the sides of elements that lie in its region whole: edges of triangles, faces of
+/// tetrahedra. Of a region narrower than these are long it may take none.
+template <class Config>
+std::vector<std::string> narrow_regions(const Config& config, const std::string& folder,
+                                        std::size_t dimension, const char* sides) {
+  const std::vector<Outline> outlines = outlines_of(config, &folder);
+  std::vector<std::string> doubts;
+  for (const auto& load : config.loads) {
+    const Bounds region = bounds_of(load.region);
+    std::string narrow;
+    bool wide = false;
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+      const Outline& outline = outlines[i];
+      if (!load.region.on.empty() && outline.name != load.region.on) continue;
+      const double edge = config.bodies[i].mesh_size;
+      wide = wide || !outline.bounds || !(edge > 0.0);
+      if (wide || gap(region, *outline.bounds).first > 1e-9) continue;
+      wide = holds_an_edge(region, *outline.bounds, edge, dimension);
+      narrow = fmt::format(
+          "load.{}: the region is narrower on {} than {} are long there, {}; it takes those that "
+          "lie in it whole, perhaps none",
+          load.name, outline.name, sides, length_text(edge));
+    }
+    if (!wide && !narrow.empty()) doubts.push_back(narrow);
+  }
+  return doubts;
+}
+
 }  // namespace
 
 std::vector<std::string> doubtful_probes(const dem::Config& config, const std::string& folder) {
@@ -453,6 +358,13 @@ std::vector<std::string> doubtful_probes(const fdem::Config& config, const std::
 }
 std::vector<std::string> doubtful_probes(const fdem3::Config& config, const std::string& folder) {
   return empty_boxes(config, outlines_of(config, &folder));
+}
+
+std::vector<std::string> doubtful_loads(const fdem::Config& config, const std::string& folder) {
+  return narrow_regions(config, folder, 2, "edges");
+}
+std::vector<std::string> doubtful_loads(const fdem3::Config& config, const std::string& folder) {
+  return narrow_regions(config, folder, 3, "faces");
 }
 
 }  // namespace breccia::prepare

@@ -24,6 +24,10 @@ std::vector<std::string> doubtful_probes(const dem::Config& config, const std::s
 std::vector<std::string> doubtful_probes(const fdem::Config& config, const std::string& folder);
 std::vector<std::string> doubtful_probes(const fdem3::Config& config, const std::string& folder);
 
+/// Loads whose region is narrower than the sides of elements are long: it may take none of them.
+std::vector<std::string> doubtful_loads(const fdem::Config& config, const std::string& folder);
+std::vector<std::string> doubtful_loads(const fdem3::Config& config, const std::string& folder);
+
 /// Walls that no body touches at the start: which body is nearest, and how far it is; and bodies
 /// that reach behind a wall, which will throw out what lies there. Of walls from a file the box
 /// around them is looked at, for what is nearest.

@@ -256,6 +256,26 @@ TEST(CheckCommand, names_line_and_key_of_a_region_that_takes_nothing) {
       << told.text;
 }
 
+/// Of a model that takes long to build; others are built to be checked.
+TEST(CheckCommand, doubts_a_load_on_less_than_an_edge_of_the_mesh) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/beam.toml";
+  const std::string fine = changed(beam, "\"5 mm\"", "\"1 mm\"");
+  const auto load = [&](const std::string& half) {
+    replace_file(path, fine + "\n[[load]]\nname = \"pad\"\nkind = \"pressure\"\npressure = 1e6\n" +
+                           "min = [\"-" + half + "\", \"19 mm\"]\nmax = [\"" + half +
+                           "\", \"21 mm\"]\n");
+    const Told told = told_by(folder, "check " + path);
+    EXPECT_EQ(told.exit_code, 0) << told.text;
+    const Told of_run = told_by(folder, "run " + path + " -o " + folder.path() + "/r --steps 1");
+    EXPECT_EQ(has(told.text, "load.pad: the region is"), of_run.exit_code == 2)
+        << told.text << of_run.text;
+    return of_run.exit_code;
+  };
+  EXPECT_EQ(load("0.4 mm"), 2);
+  EXPECT_EQ(load("30 mm"), 0);
+}
+
 TEST(CheckCommand, tells_of_bolts_before_anything_is_meshed) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/bolted.toml";
