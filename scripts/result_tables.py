@@ -80,7 +80,7 @@ def concrete(name):
             ("cube over prism, both rough (1.15 to 1.30)", 2, (1.15, 1.30), strength("platens_cube"), strength("platens_prism")),
             ("direct tension", 2, None, strength("tension")),
             ("f_c / f_t (10 to 12)", 1, (10.0, 12.0), strength("compression_prism"), strength("tension")),
-            ("Brazilian disc, over f_t (0.9 to 1.1)", 2, (0.9, 1.1), strength("brazilian"), strength("tension")),
+            ("Brazilian disc, over f_t (1.0 to 1.1)", 2, (1.0, 1.1), strength("brazilian"), strength("tension")),
             ("plain beam, over f_t (1.66)", 2, (1.58, 1.74), strength("bending_plain"), strength("tension")),
             ("notched beam: strength of the ligament [MPa]", 2, None, strength("bending")),
             *((f"triaxial at {p} MPa", 0 if p >= 50 else 1, None, strength(f"triaxial_{p}")) for p in (5, 20, 50, 100, 200)),

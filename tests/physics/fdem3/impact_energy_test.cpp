@@ -28,7 +28,7 @@ Shattered shatter(const char* criterion, double speed, double damping, double sa
 }
 
 // A joint that is pressed while it slips is stronger in shear: pressure that changes takes work on
-// a slip that does not. Unbooked, that work was 0.07 % here, whatever the step.
+// a slip that does not. Unbooked, 0.2 % are missing here, whatever the step.
 TEST(ImpactEnergy, error_falls_with_the_square_of_the_step) {
   for (const char* criterion : {"edge", "rock"}) {
     const Shattered coarse = shatter(criterion, 60.0, 0.0, 0.6),
