@@ -61,7 +61,7 @@ struct Shape {
     return model.triangle;
   }
   static View<const Index> laws(const World& w) { return laws_of(w); }
-  static constexpr bool marks_separated = false;  ///< World::separated
+  static constexpr bool drops_separated = false;  ///< fdem_shared/separated.hpp
   BR_HD static double near(const Mat2& reference) { return near_reach(reference); }
 
   /// Corner k of a side, 0 to dimension - 1, and the side that a corner does not lie on.

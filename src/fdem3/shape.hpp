@@ -54,7 +54,7 @@ struct Shape {
     return model.tetrahedron;
   }
   static View<const Index> laws(const World& w) { return laws_of(w); }
-  static constexpr bool marks_separated = true;  ///< World::separated
+  static constexpr bool drops_separated = true;  ///< fdem_shared/separated.hpp
   BR_HD static double near(const ShapeGradients& reference) { return near_reach(reference); }
 
   /// Corner k of a side, 0 to dimension - 1, and the side that a corner does not lie on.

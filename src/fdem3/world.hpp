@@ -60,9 +60,9 @@ struct World {
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };
-    each(couple_incidence, broad_phase, parent_joint, separated, node_vertex, side_across,
-         border_vertex, amplitudes, amplitude_times, amplitude_factors, prescribed_velocity,
-         reach_place, clock, device_flags, busy.couple, busy.count);
+    each(couple_incidence, broad_phase, parent_joint, node_vertex, side_across, border_vertex,
+         amplitudes, amplitude_times, amplitude_factors, prescribed_velocity, reach_place, clock,
+         device_flags, busy.couple, busy.count);
   }
 
   // State: what a checkpoint holds.
@@ -99,13 +99,11 @@ struct World {
   Buffer<std::uint8_t> border_vertex;  ///< Case::open_vertex, for kernels (vertices; search)
 
   // Results of a search.
-  Incidence couple_incidence;      ///< (tetrahedra; search, derive)
-  BroadPhase broad_phase;          ///< scratch of the search (search)
-  Buffer<Index> parent_joint;      ///< see CoupleForces  [-]  (couples; search, derive)
-  Buffer<std::uint8_t> separated;  ///< couples that cannot touch before the next search  [-]
-                                   ///< (couples; search, derive)
-  Buffer<Index> reach_place;       ///< in `reach`, -1: a ghost, or it cannot touch  [-]
-                                   ///< (tetrahedra; search, derive)
+  Incidence couple_incidence;  ///< (tetrahedra; search, derive)
+  BroadPhase broad_phase;      ///< scratch of the search (search)
+  Buffer<Index> parent_joint;  ///< see CoupleForces  [-]  (couples; search, derive)
+  Buffer<Index> reach_place;   ///< in `reach`, -1: a ghost, or it cannot touch  [-]
+                               ///< (tetrahedra; search, derive)
 
   // Results of a step, overwritten by the next one.
   Buffer<Motion> motions;        ///< of supports, mid-step  [m/s]  (motions; move)

@@ -283,23 +283,6 @@ void place_in_reach(World& w, const OwnedView& owned, Buffer<Index>& place) {
            PlaceReach{std::as_const(touchable).view(), owned, place.view()});
 }
 
-/// Marks the couples that cannot touch before the next search. Of ghosts that came by migration
-/// the place at the search is not known: the next one tells.
-template <class World>
-void mark_separated(World& w) {
-  using Shape = ShapeOf<World>;
-  Buffer<Index> place(w.exec.space);
-  place_in_reach(w, OwnedView{}, place);
-  const Pairs& pairs = w.couples.pairs;
-  const auto state = w.couples.history.state.view();
-  w.separated.resize(pairs.size());
-  for_each(w.exec, pairs.size(),
-           MarkSeparated<Shape, std::remove_cvref_t<decltype(state[0])>>{
-               pairs.a.view(), pairs.b.view(), std::as_const(place).view(),
-               std::as_const(w.reach.reference).view(), std::as_const(w.reach.margin).view(), state,
-               w.separated.view()});
-}
-
 /// Boxes of the elements that can touch, and pairs of them whose boxes overlap.
 template <class World>
 Pairs boxes_that_overlap(World& w, const OpenVertices& vertices) {
@@ -329,6 +312,25 @@ Pairs boxes_that_overlap(World& w, const OpenVertices& vertices) {
   return found;
 }
 
+/// Leaves out the pairs that cannot come near each other before the next search.
+template <class World>
+void drop_separated(World& w, Pairs& found) {
+  using Shape = ShapeOf<World>;
+  Buffer<Index> place(w.exec.space);
+  place_in_reach(w, OwnedView{}, place);
+  const auto& last = w.couples;
+  const auto state = last.history.state.view();
+  const Buffer<Index> near =
+      items_where(w.exec, found.size(),
+                  MayBeNear<Shape, std::remove_cvref_t<decltype(state[0])>>{
+                      std::as_const(found.a).view(), std::as_const(found.b).view(),
+                      std::as_const(found.key).view(), std::as_const(place).view(),
+                      std::as_const(w.reach.reference).view(), std::as_const(w.reach.margin).view(),
+                      std::as_const(Shape::reference(Shape::elements(w))).view(),
+                      last.pairs.key.view(), state});
+  gather_fields(w.exec, near, found);
+}
+
 /// The couples that may touch, or be near each other, until the next search.
 template <class World>
 void search(World& w) {
@@ -342,6 +344,7 @@ void search(World& w) {
           vertices, std::as_const(Shape::sides(w)).view(), stage, Shape::exposed_sides(w),
           w.domain.owned_view(), std::as_const(found.a).view(), std::as_const(found.b).view()});
   gather_fields(w.exec, kept, found);
+  if constexpr (Shape::drops_separated) drop_separated(w, found);
   book_dropped(w, found);
   w.couples.replace(w.exec, std::move(found));
   derive_couples(w);
@@ -440,7 +443,6 @@ void derive_mesh_couples(World& w) {
                               Shape::side_b(j).view(), j.broke_at.view(), w.parent_joint.view()});
   // Ghosts have none in it: their owners tell of them.
   place_in_reach(w, w.domain.owned_view(), w.reach_place);
-  if constexpr (Shape::marks_separated) mark_separated(w);
 }
 
 }  // namespace breccia::fdem_shared

@@ -1,8 +1,8 @@
 #pragma once
-// Couples that cannot touch before the next search, so that no step looks at them.
+// Couples that cannot come near each other before the next search: they are not listed.
 //
 // Boxes overlap where elements do not: in a block of cubes that are cut into six tetrahedra each, a
-// search lists 40 couples an element, of which none touches.
+// search finds 40 pairs an element, of which none touches.
 //
 // Claim: two elements with margins m_a and m_b (core/travel.hpp) do not touch as long as both are
 // within them, if at the search a plane has all corners of a on one side, and those of b further
@@ -14,6 +14,7 @@
 // along an edge of each (Gottschalk, Lin and Manocha 1996), so no other directions are tried. A
 // small distance is left over, far more than rounding in laws of contact.
 
+#include "core/rows.hpp"
 #include "exec/for_each.hpp"
 #include "fdem_shared/shape.hpp"
 
@@ -66,32 +67,34 @@ BR_HD double longest_edge_at_first(const Vector (&x)[corners]) {
   return sqrt(squared);
 }
 
-/// Marks them. A new couple among them has begun: its penalty is that of its law.
+/// Whether elements are further apart than a way that they may go, with a little left over.
+template <class Corners>
+BR_HD bool stay_apart(const Corners& a, const Corners& b, double way) {
+  constexpr double left_over = 1e-6;
+  const double size = longest_edge_at_first(a) + longest_edge_at_first(b);
+  return are_separated(a, b, way + left_over * (size + way));
+}
+
+/// Whether a couple is to be listed: its elements may be near each other before the next search, or
+/// it holds something that its forces must give back first.
 template <class Shape, class State>
-struct MarkSeparated {
-  static constexpr const char* name = "fdem.mark_separated";
+struct MayBeNear {
   View<const Index> a, b;
-  View<const Index> place;  ///< of elements in the other two; -1: not known here
+  View<const PairKey> key;
+  View<const Index> place;  ///< of elements in the next two
   View<const typename Shape::CornersOfElement> reference;
   View<const double> margin;
-  View<State> state;
-  View<std::uint8_t> separated;
+  View<const typename Shape::Reference> shape;
+  View<const PairKey> last_key;  ///< of the couples so far
+  View<const State> last_state;
 
-  BR_HD void operator()(Index i) const {
-    State& kept = state[i];
+  BR_HD bool operator()(Index i) const {
     const Index p = place[a[i]], q = place[b[i]];
-    const bool apart = p >= 0 && q >= 0 && kept.work == 0.0 && kept.slid == 0.0 &&
-                       stay_apart(reference[p].at, reference[q].at, margin[p] + margin[q]);
-    separated[i] = apart ? 1 : 0;
-    if (apart && kept.scale == 0.0) kept.scale = 1.0;
-  }
-
- private:
-  template <class Corners>
-  BR_HD static bool stay_apart(const Corners& a, const Corners& b, double way) {
-    constexpr double left_over = 1e-6;
-    const double size = longest_edge_at_first(a) + longest_edge_at_first(b);
-    return are_separated(a, b, way + left_over * (size + way));
+    const double near = Shape::near(shape[a[i]]) + Shape::near(shape[b[i]]);
+    if (!stay_apart(reference[p].at, reference[q].at, margin[p] + margin[q] + near)) return true;
+    const Index at = lower_bound(last_key.data, 0, last_key.size, key[i]);
+    if (at == last_key.size || last_key[at] != key[i]) return false;
+    return last_state[at].work != 0.0 || last_state[at].slid != 0.0;
   }
 };
 

@@ -172,7 +172,6 @@ struct CoupleForces {
   Index materials;
   View<const std::uint8_t> exposed;
   View<const Index> a, b;
-  View<const std::uint8_t> separated;  ///< until the next search: fdem_shared/separated.hpp
   View<const Index> parent_joint;  ///< the joint between them where it broke in the step before, or
                                    ///< -1
   JointLegacy joints;
@@ -182,20 +181,17 @@ struct CoupleForces {
   template <class R>
   struct Loaded {
     Index a, b;
-    bool separated;
     bool apart;  ///< it has not touched and does not
   };
   BR_HD void set(const StepTime& now) { dt = now.last_dt; }
   BR_HD void load_early(Index i, Loaded<double>& loaded) const {
-    loaded.separated = loaded.apart = separated[i] != 0;
-    if (loaded.separated) return;
     loaded.a = read_now(&a[i]);
     loaded.b = read_now(&b[i]);
     const CoupleState& kept = state[i];
     loaded.apart = kept.scale != 0.0 && kept.work == 0.0 && kept.slid == 0.0;
   }
   BR_HD void load_late(Index, Loaded<double>& loaded) const {
-    if (loaded.separated || !loaded.apart) return;
+    if (!loaded.apart) return;
     Vec3 xa[4], xb[4];
     places(nodes[loaded.a], xa);
     places(nodes[loaded.b], xb);

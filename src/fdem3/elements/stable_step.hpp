@@ -56,8 +56,8 @@ struct StableStep {
   }
 
  private:
-  /// Whether another tetrahedron is near: by positions alone, since searches list all pairs within
-  /// the sum of both reaches, whatever their margin.
+  /// Whether another tetrahedron is near. Searches list all pairs that may come as near as the sum
+  /// of both reaches before the next search.
   BR_HD bool is_near(Index t, const Vec3 (&x)[4]) const {
     const double reach = near_reach(shape[t]);
     const auto near = [&](Index other) {

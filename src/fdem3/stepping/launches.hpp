@@ -45,7 +45,6 @@ inline CoupleForces couple_kernel(World& w) {
           std::as_const(w.tetrahedra.exposed).view(),
           std::as_const(c.pairs.a).view(),
           std::as_const(c.pairs.b).view(),
-          std::as_const(w.separated).view(),
           std::as_const(w.parent_joint).view(),
           {std::as_const(j.pressing).view(), std::as_const(j.shear_at_break).view(),
            j.inherited_work.view()},

@@ -110,7 +110,6 @@ CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b) 
   const Buffer<ContactPair> laws = buffer(std::vector<ContactPair>{{1.0, 0.0, 0.0}});
   const Buffer<std::uint8_t> exposed = buffer(std::vector{exposed_of_a, exposed_of_b});
   const Buffer<Index> first = buffer(std::vector<Index>{0}), other = buffer(std::vector<Index>{1});
-  const Buffer<std::uint8_t> separated = buffer(std::vector<std::uint8_t>{0});
   const Buffer<Index> no_joint = buffer(std::vector<Index>{-1});
   Buffer<CoupleState> state(Space::host, 1);
   Buffer<CoupleForce> force(Space::host, 1);
@@ -125,7 +124,6 @@ CoupleForce couple_forces(std::uint8_t exposed_of_a, std::uint8_t exposed_of_b) 
                         exposed.view(),
                         first.view(),
                         other.view(),
-                        separated.view(),
                         no_joint.view(),
                         {},
                         state.view(),

@@ -15,7 +15,7 @@ namespace breccia::fdem3 {
 namespace separated_test {
 
 using fdem_shared::are_separated;
-using fdem_shared::MarkSeparated;
+using fdem_shared::MayBeNear;
 
 bool meet(const Vec3 (&a)[4], const Vec3 (&b)[4]) {
   Target of_a = Target::of(a), of_b = Target::of(b);
@@ -51,9 +51,29 @@ TEST(Separated, distance_of_two_edges_that_cross_counts) {
   EXPECT_FALSE(are_separated(low, high, 0.1001));
 }
 
-TEST(Separated, stay_apart_within_their_margins_wherever_these_lead) {
+/// Two tetrahedra as a search sees them, and a couple of theirs from before.
+struct Pair {
+  Corners x[2];
+  double margin[2];
+  ShapeGradients shape[2];
+  CoupleState last{};
+
+  Pair(const Corners& first, const Corners& second, double margin_a, double margin_b)
+      : x{first, second},
+        margin{margin_a, margin_b},
+        shape{shape_gradients(first.at), shape_gradients(second.at)} {}
+  bool is_listed(PairKey last_key = 7) const {
+    const Index a = 0, b = 1, place[2] = {0, 1};
+    const PairKey key = 7;
+    return MayBeNear<Shape, CoupleState>{{&a, 1},    {&b, 1},        {&key, 1},
+                                         {place, 2}, {x, 2},         {margin, 2},
+                                         {shape, 2}, {&last_key, 1}, {&last, 1}}(0);
+  }
+};
+
+TEST(Separated, pairs_left_out_stay_apart_within_their_margins_wherever_these_lead) {
   const Random random{11, 3};
-  int marked = 0, far = 0, met = 0;
+  int left_out = 0, far = 0, met = 0;
   for (std::uint32_t i = 0; i < 3000; ++i) {
     std::uint32_t draw = 0;
     const auto next = [&] { return random.uniform(i, draw++); };
@@ -69,19 +89,14 @@ TEST(Separated, stay_apart_within_their_margins_wherever_these_lead) {
     }
     for (Corners& one : x)
       if (Target::of(one.at).six_volumes < 0.0) std::swap(one.at[0], one.at[1]);
-    const double margin[2] = {0.08 * next(), 0.04};
-    const Index a = 0, b = 1, place[2] = {0, 1};
-    CoupleState state{};
-    std::uint8_t separated = 2;
-    const MarkSeparated<Shape, CoupleState> mark{{&a, 1},     {&b, 1},     {place, 2},     {x, 2},
-                                                 {margin, 2}, {&state, 1}, {&separated, 1}};
-    mark(0);
-    ASSERT_EQ(state.scale, separated != 0 ? 1.0 : 0.0);  // they have begun
-    if (separated == 0) {
+    const Pair pair(x[0], x[1], 0.08 * next(), 0.04);
+    const double(&margin)[2] = pair.margin;
+    if (pair.is_listed()) {
       met += meet(x[0].at, x[1].at) ? 1 : 0;
       continue;
     }
-    ++marked;
+    ++left_out;
+    const double near = near_reach(pair.shape[0]) + near_reach(pair.shape[1]);
     far += are_separated(x[0].at, x[1].at, 2.0 * (margin[0] + margin[1])) ? 1 : 0;
     for (int trial = 0; trial < 8; ++trial) {  // towards each other, corner by corner
       Vec3 moved[2][4];
@@ -91,31 +106,27 @@ TEST(Separated, stay_apart_within_their_margins_wherever_these_lead) {
           moved[side][k] = x[side].at[k] + (margin[side] / norm(go)) * go;
         }
       ASSERT_FALSE(meet(moved[0], moved[1])) << i;
+      // Nor are they near: all of one moved further by that.
+      for (Vec3& corner : moved[0]) corner += (near / norm(way)) * way;
+      ASSERT_FALSE(meet(moved[0], moved[1])) << i;
     }
   }
-  EXPECT_GT(marked, 300);
-  EXPECT_GT(marked - far, 30);  // near their margins, too
+  EXPECT_GT(left_out, 300);
+  EXPECT_GT(left_out - far, 30);  // near their margins, too
   EXPECT_GT(met, 200);
 }
 
-TEST(Separated, couples_that_hold_something_or_whose_place_is_unknown_are_asked) {
+TEST(Separated, couples_that_hold_something_stay_listed) {
   Corners x[2] = {{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}}, {}};
   for (int k = 0; k < 4; ++k) x[1].at[k] = x[0].at[k] + Vec3{5.0, 0.0, 0.0};
-  const double margin[2] = {0.1, 0.1};
-  const auto marks = [&](Index place_of_b, double work, double slid) {
-    const Index a = 0, b = 1, place[2] = {0, place_of_b};
-    CoupleState state{};
-    state.work = work;
-    state.slid = slid;
-    std::uint8_t separated = 2;
-    MarkSeparated<Shape, CoupleState>{{&a, 1},     {&b, 1},     {place, 2},     {x, 2},
-                                      {margin, 2}, {&state, 1}, {&separated, 1}}(0);
-    return separated;
-  };
-  EXPECT_EQ(marks(1, 0.0, 0.0), 1);
-  EXPECT_EQ(marks(-1, 0.0, 0.0), 0);
-  EXPECT_EQ(marks(1, 1e-300, 0.0), 0);
-  EXPECT_EQ(marks(1, 0.0, 1e-9), 0);
+  Pair pair(x[0], x[1], 0.1, 0.1);
+  EXPECT_FALSE(pair.is_listed());
+  pair.last.work = 1e-300;
+  EXPECT_TRUE(pair.is_listed());
+  for (const PairKey other : {6, 8}) EXPECT_FALSE(pair.is_listed(other));  // not theirs
+  pair.last.work = 0.0;
+  pair.last.slid = 1e-9;
+  EXPECT_TRUE(pair.is_listed());
 }
 
 }  // namespace separated_test
