@@ -2,7 +2,7 @@
 // Exponential, logarithm, arc tangent and power from + - * / and square roots: equal bits on every
 // host, in packs, and on every device, which the functions of a system's library do not have.
 
-#include "math/pack.hpp"
+#include "math/two.hpp"
 
 namespace breccia {
 
@@ -10,9 +10,13 @@ namespace detail {
 template <class To, class From>
 BR_HD inline To bits_as(const From& from) {
   static_assert(sizeof(To) == sizeof(From));
-  To to;
-  __builtin_memcpy(&to, &from, sizeof to);
-  return to;
+  if constexpr (is_two<To>) {
+    return {bits_as<decltype(To::one)>(from.one), bits_as<decltype(To::other)>(from.other)};
+  } else {
+    To to;
+    __builtin_memcpy(&to, &from, sizeof to);
+    return to;
+  }
 }
 /// Sum of c[k] x^k, even and odd k side by side: half the time of waiting for results.
 template <class R, int count>

@@ -71,6 +71,27 @@ struct LdpmFacet {
 
   static constexpr double deviatoric_strain = 0.1;  ///< k_c3 = e_v0 E_0 / s_c0  [-]
 
+  /// A step of a facet between begin and end. What decays in it takes longest to wait for, so that
+  /// packs may be taken side by side there (Two).
+  template <class R>
+  struct Step {
+    Vec3Of<R> strain, growth;  ///< new; new less old  [-]
+    Vec3Of<R> stress;          ///< old  [Pa]
+    R largest_normal;          ///< new  [-]
+    R largest_square;          ///< new  [-]
+    R over{}, elastic{};       ///< open: 1 / e  [-], s without a bound  [Pa]
+    R strength{};              ///< open: s_0  [Pa]
+    R normal{};                ///< closed: s_N  [Pa]
+    R exponent{};              ///< open: -H_t <e_max - s_0 / E_0> / s_0; closed: s_N / s_N0
+    R half_tangent{};          ///< open: tan(omega / 2)
+    R effective{}, largest{};  ///< open, if asked for by k_t: e, e_max  [-]
+    R faster{};                ///< F, if strengths depend on rate
+    bool softens = false;      ///< an open one is beyond s_0: the exponent lacks (2 omega / pi)^n_t
+    bool slides = false;       ///< a closed one may slide beyond its cohesion
+
+    BR_HD bool decays() const { return softens || slides; }
+  };
+
   /// Brings a facet of an edge of reference length `length` to a strain.
   /// @param volumetric  e_V, a third of the volumetric strain of its tetrahedron, or a function
   ///                    that gives it and is called only where pores collapse  [-]
@@ -79,26 +100,60 @@ struct LdpmFacet {
   BR_HD LdpmSpentOf<R> update(const R& length, const Vec3Of<R>& strain,
                               const Volumetric& volumetric, LdpmFacetStateOf<R>& state,
                               double dt = 0.0) const {
-    const LdpmFacetStateOf<R> old = state;
+    Step<R> step;
+    begin(length, strain, volumetric, state, dt, step);
+    return end(step, decay_of(step), state);
+  }
+  /// All of a step that does not need to know what decays.
+  template <class R, class Volumetric>
+  BR_HD void begin(const R& length, const Vec3Of<R>& strain, const Volumetric& volumetric,
+                   const LdpmFacetStateOf<R>& old, double dt, Step<R>& step) const {
     const R square = strain.y * strain.y + strain.z * strain.z;  // e_T^2
-    state.strain = strain;
-    state.largest_normal = max(old.largest_normal, strain.x);
-    state.largest_square = max(old.largest_square, square);
+    step.strain = strain;
+    step.growth = strain - old.strain;
+    step.stress = old.stress;
+    step.largest_normal = max(old.largest_normal, strain.x);
+    step.largest_square = max(old.largest_square, square);
+    if (rate_factor > 0.0)
+      step.faster = dt > 0.0 ? dynamic_factor(old.strain, strain, dt) : constant<R>(1.0);
     const auto open = strain.x > 0.0;
+    if (any(open)) step.softens = opens(length, square, old, step);
+    if (any(!open)) step.slides = closes(volumetric, step);
+  }
+  /// What decays, where anything does.
+  template <class R>
+  BR_HD R decay_of(const Step<R>& step) const {
+    if (!step.decays()) return constant<R>(1.0);
+    return decay_of(step.softens, step.strain.x > 0.0, step.half_tangent, step.exponent);
+  }
+  /// exp(-H_0 <e_max - s_0 / E_0> / s_0) of open facets, exp(s_N / s_N0) of closed ones.
+  /// @param softens  whether any of the former is beyond s_0
+  template <class R, class Truth>
+  BR_HD R decay_of(bool softens, const Truth& open, const R& half_tangent,
+                   const R& exponent) const {
+    if (!softens) return exponential(exponent);
+    const R share = 1.2732395447351628 * arc_tangent(half_tangent);  // 2 omega / pi
+    return exponential(select(open, exponent * power_of(share, softening_exponent), exponent));
+  }
+  /// The rest of a step.
+  /// @param state  new
+  template <class R>
+  BR_HD LdpmSpentOf<R> end(const Step<R>& step, const R& decay, LdpmFacetStateOf<R>& state) const {
+    const Vec3Of<R>& old = step.stress;
+    const Vec3Of<R>& de = step.growth;
+    state.strain = step.strain;
+    state.largest_normal = step.largest_normal;
+    state.largest_square = step.largest_square;
+    const auto open = step.strain.x > 0.0;
     const auto closed = !open;
-    R faster = constant<R>(1.0);  // F
-    if (rate_factor > 0.0 && dt > 0.0) faster = dynamic_factor(old.strain, strain, dt);
-    if (any(open)) state.stress = opened(length, square, old, state, faster);
-    if (any(closed))
-      state.stress = select(open, state.stress, pressed(volumetric, old, strain, faster));
+    if (any(open)) state.stress = opened(step, decay);
+    if (any(closed)) state.stress = select(open, state.stress, pressed(step, decay));
 
-    const Vec3Of<R> de = strain - old.strain;
-    const R normal_work = 0.5 * (old.stress.x + state.stress.x) * de.x;
+    const R normal_work = 0.5 * (old.x + state.stress.x) * de.x;
     const R tangential_work =
-        0.5 * ((old.stress.y + state.stress.y) * de.y + (old.stress.z + state.stress.z) * de.z);
-    const R normal = normal_work - (stored_normal(state.stress.x) - stored_normal(old.stress.x));
-    const R sliding =
-        tangential_work - (stored_tangential(state.stress) - stored_tangential(old.stress));
+        0.5 * ((old.y + state.stress.y) * de.y + (old.z + state.stress.z) * de.z);
+    const R normal = normal_work - (stored_normal(state.stress.x) - stored_normal(old.x));
+    const R sliding = tangential_work - (stored_tangential(state.stress) - stored_tangential(old));
     const R none = constant<R>(0.0);
     return {select(open, normal + sliding, none), select(open, none, normal),
             select(open, none, sliding)};
@@ -140,20 +195,21 @@ struct LdpmFacet {
     return (0.5 / (shear_ratio * young)) * (stress.y * stress.y + stress.z * stress.z);
   }
 
-  /// Stress of an open facet. Sine and cosine of omega are e_N / e and sqrt(alpha) e_T / e.
+  /// An open facet. Sine and cosine of omega are e_N / e and sqrt(alpha) e_T / e.
+  /// @returns whether any may exceed s_b and is beyond s_0
   template <class R>
-  BR_HD Vec3Of<R> opened(const R& length, const R& square, const LdpmFacetStateOf<R>& old,
-                         const LdpmFacetStateOf<R>& now, const R& faster) const {
+  BR_HD bool opens(const R& length, const R& square, const LdpmFacetStateOf<R>& old,
+                   Step<R>& step) const {
     const R one = constant<R>(1.0), none = constant<R>(0.0);
-    const auto open = now.strain.x > 0.0;
-    const R normal = max(now.strain.x, constant<R>(1e-300));
+    const auto open = step.strain.x > 0.0;
+    const R normal = max(step.strain.x, constant<R>(1e-300));
     const R along = normal * normal, across = shear_ratio * square;
     const R e = select(open, sqrt(along + across), one), over_e = 1.0 / e;
     const double softer = 4.0 * shear_ratio / (strength_ratio * strength_ratio);
     const R divisor = normal + sqrt(along + softer * across);
     R s0 = 2.0 * tensile_strength * e / divisor;
-    if (rate_factor > 0.0) s0 = faster * s0;
-    const R largest = sqrt(effective_square(now.largest_normal, now.largest_square));
+    if (rate_factor > 0.0) s0 = step.faster * s0;
+    const R largest = sqrt(effective_square(step.largest_normal, step.largest_square));
     const R beyond = largest - (1.0 / young) * s0;
     const R old_square = old.strain.y * old.strain.y + old.strain.z * old.strain.z;
     const R old_e = sqrt(effective_square(old.strain.x, old_square));
@@ -161,26 +217,32 @@ struct LdpmFacet {
         sqrt(old.stress.x * old.stress.x +
              (1.0 / shear_ratio) * (old.stress.y * old.stress.y + old.stress.z * old.stress.z));
     const R elastic = max(none, old_s + young * (e - old_e));
-    R bound = s0;
+    step.over = over_e;
+    step.elastic = elastic;
+    step.strength = s0;
+    if (unloading > 0.0) step.effective = e, step.largest = largest;
     auto softened = open && beyond > 0.0;
-    if (any(softened)) {
-      // H_t beyond / s_0. exp(-x) >= 1 - x: a facet that has unloaded below that needs no more.
-      R fall = (young / tensile_strength) * (beyond * divisor * over_e) *
-               (length / (tensile_length - length));
-      if (rate_factor > 0.0) fall = fall / faster;
-      if (!(unloading > 0.0)) softened = softened && elastic > s0 * (0.999999 - fall);
-      if (any(softened)) {
-        const R half_tangent = min(normal / (e + sqrt(across)), one);    // tan(omega / 2)
-        const R share = 1.2732395447351628 * arc_tangent(half_tangent);  // 2 omega / pi
-        const R softening = exponential<R>(-fall * power_of(share, softening_exponent));
-        bound = select(softened, s0 * softening, s0);
-      }
-    }
+    if (!any(softened)) return false;
+    R fall = (young / tensile_strength) * (beyond * divisor * over_e) *
+             (length / (tensile_length - length));
+    if (rate_factor > 0.0) fall = fall / step.faster;
+    // exp(-x) >= 1 - x: a facet that has unloaded below that needs no more.
+    if (!(unloading > 0.0)) softened = softened && elastic > s0 * (0.999999 - fall);
+    if (!any(softened)) return false;
+    step.half_tangent = min(normal / (e + sqrt(across)), one);
+    step.exponent = select(softened, -fall, none);
+    return true;
+  }
+  /// Stress of an open facet.
+  template <class R>
+  BR_HD Vec3Of<R> opened(const Step<R>& step, const R& decay) const {
+    R bound = step.strength;
+    if (step.softens) bound = bound * decay;
     if (unloading > 0.0)
-      bound = select(e < unloading * (largest - (1.0 / young) * bound), none, bound);
-    const R s = min(bound, elastic);
-    const R over = s * over_e, tangential = shear_ratio * over;
-    return {over * now.strain.x, tangential * now.strain.y, tangential * now.strain.z};
+      bound = select(step.effective < unloading * (step.largest - (1.0 / young) * bound),
+                     constant<R>(0.0), bound);
+    const R over = min(bound, step.elastic) * step.over, tangential = shear_ratio * over;
+    return {over * step.strain.x, tangential * step.strain.y, tangential * step.strain.z};
   }
   /// e_N^2 + alpha e_T^2
   template <class R>
@@ -199,36 +261,53 @@ struct LdpmFacet {
     return 1.0 + rate_factor * logarithm<R>(y + sqrt(y * y + 1.0));
   }
 
-  /// Stress of a closed facet.
+  /// A closed facet. @returns whether any may slide beyond its cohesion
   template <class R, class Volumetric>
-  BR_HD Vec3Of<R> pressed(const Volumetric& volumetric, const LdpmFacetStateOf<R>& old,
-                          const Vec3Of<R>& strain, const R& faster) const {
-    const R none = constant<R>(0.0);
-    const auto closed = !(strain.x > 0.0);
-    const R de_m = strain.y - old.strain.y, de_l = strain.z - old.strain.z;
-    R normal = min(none, trial(old.stress.x, strain.x - old.strain.x));
+  BR_HD bool closes(const Volumetric& volumetric, Step<R>& step) const {
+    const auto closed = !(step.strain.x > 0.0);
+    R normal = min(constant<R>(0.0), trial(step.stress.x, step.growth.x));
     // The bound is nowhere below s_c0.
     if (any(closed && normal < -yield)) {
       if constexpr (std::is_invocable_v<const Volumetric&>)
-        normal = max(-bound<R>(volumetric(), strain.x, closed), normal);
+        normal = max(-bound<R>(volumetric(), step.strain.x, closed), normal);
       else
-        normal = max(-bound<R>(volumetric, strain.x, closed), normal);
+        normal = max(-bound<R>(volumetric, step.strain.x, closed), normal);
     }
-
-    const double shear = shear_ratio * young;
-    const R m = old.stress.y + shear * de_m, l = old.stress.z + shear * de_l;
-    const R square = m * m + l * l;
+    step.normal = normal;
+    const R square = square_of_shear(step);
     const double cohesion = strength_ratio * tensile_strength;
     const auto beyond = closed && square > cohesion * cohesion;
-    if (!any(beyond)) return {normal, m, l};
-    R limit = cohesion - final_friction * normal +
-              (friction - final_friction) * friction_stress *
-                  (1.0 - exponential<R>(normal / friction_stress));
-    if (rate_factor > 0.0) limit = limit + (faster - 1.0) * cohesion;
+    if (!any(beyond)) return false;
+    const R exponent = normal / friction_stress;
+    step.exponent = step.softens ? select(closed, exponent, step.exponent) : exponent;
+    return true;
+  }
+  /// s_M and s_L of a closed facet without a bound.
+  template <class R>
+  BR_HD Vec3Of<R> shear_of(const Step<R>& step) const {
+    const double shear = shear_ratio * young;
+    return {step.normal, step.stress.y + shear * step.growth.y,
+            step.stress.z + shear * step.growth.z};
+  }
+  template <class R>
+  BR_HD R square_of_shear(const Step<R>& step) const {
+    const Vec3Of<R> s = shear_of(step);
+    return s.y * s.y + s.z * s.z;
+  }
+  /// Stress of a closed facet.
+  template <class R>
+  BR_HD Vec3Of<R> pressed(const Step<R>& step, const R& decay) const {
+    const Vec3Of<R> s = shear_of(step);
+    if (!step.slides) return s;
+    const R square = s.y * s.y + s.z * s.z;
+    const double cohesion = strength_ratio * tensile_strength;
+    R limit = cohesion - final_friction * step.normal +
+              (friction - final_friction) * friction_stress * (1.0 - decay);
+    if (rate_factor > 0.0) limit = limit + (step.faster - 1.0) * cohesion;
     const R size = sqrt(square);
-    const R scale =
-        select(beyond && size > limit, limit / max(size, constant<R>(1e-300)), constant<R>(1.0));
-    return {normal, scale * m, scale * l};
+    const R scale = select(square > cohesion * cohesion && size > limit,
+                           limit / max(size, constant<R>(1e-300)), constant<R>(1.0));
+    return {s.x, scale * s.y, scale * s.z};
   }
   /// s_N + E_Nc de: a step that crosses -s_c0 changes its modulus there.
   template <class R>

@@ -107,6 +107,13 @@ struct LdpmFacetForces {
     LdpmFrameOf<R> frame;
     LdpmFacetStateOf<R> state;
   };
+  /// A facet in the middle of its step.
+  template <class R>
+  struct Moving {
+    Vec3Of<R> center;
+    R area, weight;
+    LdpmFacet::Step<R> step;
+  };
   template <class R>
   struct Loaded {
     Indices<R> a, b;
@@ -176,6 +183,7 @@ struct LdpmFacetForces {
     const Index first = edges[begin], last = edges[end - 1];
     Index made = first;
     const LdpmFacet by = law;  // no store can change it
+    Waiting<R> waiting;
     Index i = begin;
     for (; i + width <= end; i += width) {
       fetch(i + 4 * width, width);
@@ -189,17 +197,64 @@ struct LdpmFacetForces {
       gather_records(View<const LdpmEdgeOf<double>>(ring), indices<R>(of), e);
       const LdpmEdgeOf<R> own{
           {e[0], e[1], e[2]}, {e[3], e[4], e[5]}, e[6], e[7], {e[8], e[9], e[10]}, e[11]};
-      if (any(own.parted > 0.0))
+      if (any(own.parted > 0.0)) {
         for (Index k = 0; k < width; ++k) (*this)(i + k);
+        continue;
+      }
+      Moving<R> now;
+      begin_move(by, i, facet, own, now);
+      if (now.step.decays())
+        wait(by, i, now, waiting);
       else
-        move(by, i, facet, own);
+        end_move(by, i, now, constant<R>(1.0));
     }
+    end_moves(by, waiting);
     return i;
   }
 #endif
 
  private:
 #if !defined(__CUDACC__)
+  /// Packs that wait until as many are together as are taken side by side.
+  template <class R>
+  struct Waiting {
+    static constexpr Index room = 4;
+    Moving<R> pack[room];
+    Index first[room];  ///< facet of each pack
+    Index count = 0;
+  };
+  template <class R>
+  void wait(const LdpmFacet& by, Index i, const Moving<R>& now, Waiting<R>& waiting) const {
+    waiting.pack[waiting.count] = now;
+    waiting.first[waiting.count] = i;
+    if (++waiting.count < waiting.room) return;
+    end_moves(by, waiting);
+    waiting.count = 0;
+  }
+  /// The rest of steps of packs that wait, what decays in them side by side.
+  template <class R>
+  void end_moves(const LdpmFacet& by, Waiting<R>& waiting) const {
+    if (waiting.count == 0) return;
+    using Step = LdpmFacet::Step<R>;
+    bool softens = false;
+    for (Index k = 0; k < waiting.room; ++k) {
+      if (k >= waiting.count) waiting.pack[k].step = waiting.pack[0].step;
+      softens = softens || waiting.pack[k].step.softens;
+    }
+    const auto four = [&](const auto& of) {
+      const auto& pack = waiting.pack;
+      using Item = decltype(of(pack[0].step));
+      return Two<Two<Item>>{{of(pack[0].step), of(pack[1].step)},
+                            {of(pack[2].step), of(pack[3].step)}};
+    };
+    const Two<Two<R>> decay =
+        by.decay_of(softens, four([](const Step& s) { return s.strain.x > 0.0; }),
+                    four([](const Step& s) { return s.half_tangent; }),
+                    four([](const Step& s) { return s.exponent; }));
+    const R of[] = {decay.one.one, decay.one.other, decay.other.one, decay.other.other};
+    for (Index k = 0; k < waiting.count; ++k)
+      end_move(by, waiting.first[k], waiting.pack[k], of[k]);
+  }
   /// A pack of edges from `edge_number` on into a ring. Each is read from the first of its facets
   /// that is not yet behind, `begin` or later: those before may have moved on.
   /// @param last  edge beyond which there is no use
@@ -270,31 +325,44 @@ struct LdpmFacetForces {
                  dot(l, motion.slip) + half * edge.turn.y};
     return edge;
   }
-  /// A facet that holds: its strains, stresses and energies, force, torques and stiffness.
+  /// A facet that holds: its strains, and its step up to what decays.
   template <class R>
-  BR_HD void move(const LdpmFacet& by, Index i, const Facet<R>& facet,
-                  const LdpmEdgeOf<R>& edge) const {
-    LdpmFacetStateOf<R> kept = facet.state;
-    const Vec3Of<R>& center = facet.center;
-    const Vec3Of<R> jump = cross(edge.turn, center) + edge.jump;
-    const LdpmSpentOf<R> spent = by.update(facet.length, kept.strain + edge.over * jump,
-                                           Volumetric<R>{*this, i, facet.volume}, kept, dt);
-
-    const R weight = facet.area * facet.length;
-    add(opened, i, weight * spent.fracture);
-    add(compacted, i, weight * spent.plastic);
-    add(slid, i, weight * spent.friction);
-    const R s[8] = {kept.strain.x, kept.strain.y, kept.strain.z,       kept.stress.x,
-                    kept.stress.y, kept.stress.z, kept.largest_normal, kept.largest_square};
-    write_records(state, i, s);
-    const R bond = select(by.has_cracked(facet.length, kept), constant<R>(0.0), facet.frame.bond);
+  BR_HD void begin_move(const LdpmFacet& by, Index i, const Facet<R>& facet,
+                        const LdpmEdgeOf<R>& edge, Moving<R>& moving) const {
+    const Vec3Of<R> jump = cross(edge.turn, facet.center) + edge.jump;
+    by.begin(facet.length, facet.state.strain + edge.over * jump,
+             Volumetric<R>{*this, i, facet.volume}, facet.state, dt, moving.step);
+    moving.center = facet.center;
+    moving.area = facet.area;
+    moving.weight = facet.area * facet.length;
+    const LdpmFacetStateOf<R> now{{}, {}, moving.step.largest_normal, moving.step.largest_square};
+    const R bond = select(by.has_cracked(facet.length, now), constant<R>(0.0), facet.frame.bond);
     const R f[4] = {edge.m.x, edge.m.y, edge.m.z, bond};
     write_records(frame, i, f);
-
-    const Vec3Of<R> force = -facet.area * kept.stress, turn = cross(center, force);
+  }
+  /// The rest of it: stresses and energies, force and torque.
+  template <class R>
+  BR_HD void end_move(const LdpmFacet& by, Index i, const Moving<R>& moving, const R& decay) const {
+    LdpmFacetStateOf<R> now;
+    const LdpmSpentOf<R> spent = by.end(moving.step, decay, now);
+    add(opened, i, moving.weight * spent.fracture);
+    add(compacted, i, moving.weight * spent.plastic);
+    add(slid, i, moving.weight * spent.friction);
+    const R s[8] = {now.strain.x, now.strain.y, now.strain.z,       now.stress.x,
+                    now.stress.y, now.stress.z, now.largest_normal, now.largest_square};
+    write_records(state, i, s);
+    const Vec3Of<R> force = -moving.area * now.stress, turn = cross(moving.center, force);
     const R none = constant<R>(0.0);
     const R share[8] = {force.x, force.y, force.z, turn.x, turn.y, turn.z, none, none};
     write_records(shares, first_share + i, share);
+  }
+  /// A facet that holds.
+  template <class R>
+  BR_HD void move(const LdpmFacet& by, Index i, const Facet<R>& facet,
+                  const LdpmEdgeOf<R>& edge) const {
+    Moving<R> moving;
+    begin_move(by, i, facet, edge, moving);
+    end_move(by, i, moving, by.decay_of(moving.step));
   }
   /// Change of the distance in the last step: a rigid turn is none. With the old distance D sqrt(1
   /// - y) it is D (1 - sqrt(1 - y)), by its series: y^6 is below rounding.

@@ -308,5 +308,45 @@ TEST(Elementary, functions_are_those_of_the_library_to_rounding) {
   EXPECT_EQ(arc_tangent(0.0), 0.0);
 }
 
+/// Facets that soften, slide and rest, in any mixture: what decays has the bits of each alone.
+TEST(LdpmFacet, what_decays_side_by_side_has_the_bits_of_each_alone) {
+  using Step = LdpmFacet::Step<double>;
+  const LdpmFacet law = benchmark();
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  LdpmFacetState states[4] = {};
+  int together = 0, soften = 0, slide = 0;
+  for (int k = 0; k < 5'000; ++k) {
+    Step steps[4];
+    for (int j = 0; j < 4; ++j) {
+      const Vec3 strain = states[j].strain + 2e-4 * Vec3{unit(random), unit(random), unit(random)};
+      law.begin(10.0, strain, strain.x, states[j], 0.0, steps[j]);
+      soften += steps[j].softens;
+      slide += steps[j].slides;
+    }
+    const bool softens =
+        steps[0].softens || steps[1].softens || steps[2].softens || steps[3].softens;
+    const auto four = [&](const auto& of) {
+      using Item = decltype(of(steps[0]));
+      return Two<Two<Item>>{{of(steps[0]), of(steps[1])}, {of(steps[2]), of(steps[3])}};
+    };
+    const Two<Two<double>> decay =
+        law.decay_of(softens, four([](const Step& s) { return s.strain.x > 0.0; }),
+                     four([](const Step& s) { return s.half_tangent; }),
+                     four([](const Step& s) { return s.exponent; }));
+    const double of[] = {decay.one.one, decay.one.other, decay.other.one, decay.other.other};
+    for (int j = 0; j < 4; ++j) {
+      if (steps[j].decays()) {
+        EXPECT_EQ(of[j], law.decay_of(steps[j])) << "step " << k << ", facet " << j;
+        together += softens && !steps[j].softens;
+      }
+      law.end(steps[j], law.decay_of(steps[j]), states[j]);
+    }
+  }
+  EXPECT_GT(soften, 1'000);
+  EXPECT_GT(slide, 1'000);
+  EXPECT_GT(together, 100);
+}
+
 }  // namespace ldpm_facet_test
 }  // namespace breccia::dem
