@@ -22,16 +22,13 @@ hash_of() {  # PROGRAM CASE FOLDER: of a run to its end, or of 400 steps of the 
   sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$3/summary.json" > "$3.hash"
 }
 
-hashes_of() {  # PROGRAM FOLDER: of all cases, JOBS at once, into the array `hashes`
+begin() {  # PROGRAM FOLDER: runs of all cases, JOBS at once, that go on while the next compiler builds
   rm -rf "$2"
   mkdir -p "$2"
   for k in "${!cases[@]}"; do
     while [ "$(jobs -rp | wc -l)" -ge "${JOBS:-2}" ]; do wait -n; done
     hash_of "$1" "${cases[k]}" "$2/$k" &
   done
-  wait
-  hashes=()
-  for k in "${!cases[@]}"; do hashes+=("$(cat "$2/$k.hash")"); done
 }
 
 build() {  # COMPILER LEVEL FOLDER: leaves the program as FOLDER/breccia
@@ -51,22 +48,24 @@ build() {  # COMPILER LEVEL FOLDER: leaves the program as FOLDER/breccia
 }
 
 launch=()
-hashes_of build/release/breccia build/compilers/wanted
-wanted=("${hashes[@]}")
+begin build/release/breccia build/compilers/wanted
 [ -n "$MPI" ] && launch=("mpiexec.$MPI" -n 3)
-wrong=0 compared=()
+wrong=0 built=()
 for kind in "${kinds[@]}"; do
   [ -n "$LIMIT" ] && [ "$SECONDS" -gt "$LIMIT" ] && break
-  compiler=${kind%%:*} level=${kind#*:}
-  folder=build/compilers/$compiler$level${MPI:+-$MPI}
-  build "$compiler" "$level" "$folder" > "$folder.log" 2>&1 || { echo "$kind: does not build, see $folder.log"; wrong=1; continue; }
-  hashes_of "$folder/breccia" "$folder/runs"
-  for k in "${!cases[@]}"; do
-    same=same
-    [ -n "${hashes[k]}" ] && [ "${hashes[k]}" = "${wanted[k]}" ] || { same="instead of ${wanted[k]}"; wrong=1; }
-    echo "$kind $MPI ${cases[k]}: ${hashes[k]} $same"
-  done
-  compared+=("$kind")
+  folder=build/compilers/${kind%%:*}${kind#*:}${MPI:+-$MPI}
+  build "${kind%%:*}" "${kind#*:}" "$folder" > "$folder.log" 2>&1 || { echo "$kind: does not build, see $folder.log"; wrong=1; continue; }
+  begin "$folder/breccia" "$folder/runs"
+  built+=("$kind")
 done
-echo "${#cases[@]} hashes compared for ${compared[*]}"
+wait
+for kind in "${built[@]}"; do
+  for k in "${!cases[@]}"; do
+    same=same wanted=$(cat "build/compilers/wanted/$k.hash")
+    hash=$(cat "build/compilers/${kind%%:*}${kind#*:}${MPI:+-$MPI}/runs/$k.hash")
+    [ -n "$hash" ] && [ "$hash" = "$wanted" ] || { same="instead of $wanted"; wrong=1; }
+    echo "$kind $MPI ${cases[k]}: $hash $same"
+  done
+done
+echo "${#cases[@]} hashes compared for ${built[*]}"
 exit $wrong

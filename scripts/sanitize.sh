@@ -4,7 +4,8 @@
 #   scripts/sanitize.sh thread  [PART/PARTS]   ThreadSanitizer; the program and its tests on threads
 # PART/PARTS takes every PARTS-th test; without it all. JOBS=N builds and tests N at once (2 unless
 # told), LIMIT=N begins no test after N seconds of tests and draws their order, CXX=clang++ takes that
-# compiler. Ends with 1 if something was found; what was found stands in build/sanitize/KIND/findings.
+# compiler, WITHOUT=REGEX leaves out tests of programs that the machine does not have. Ends with 1 if
+# something was found; what was found stands in build/sanitize/KIND/findings.
 cd "$(dirname "$0")/.." || exit 1
 kind=${1:-address} part=${2:-1/1}
 folder=build/sanitize/$kind
@@ -30,19 +31,24 @@ export TSAN_OPTIONS="log_path=$findings/tsan:die_after_fork=0"
 export OMP_NUM_THREADS=2
 # The program first: run, resume, prepared model, picture, all methods.
 breccia=$folder/breccia
-for name in dem fdem fdem3 bolted fluids coupled; do
-  out=$folder/out_$name
-  for words in "run tests/attack/$name.toml -o $out --force -q --threads 2 --steps 60" \
-    "resume $out -q --threads 2 --steps 120" "prepare tests/attack/$name.toml -o $out.br" \
+commands_of() {  # CASE
+  local out=$folder/out_$1
+  for words in "run tests/attack/$1.toml -o $out --force -q --threads 2 --steps 60" \
+    "resume $out -q --threads 2 --steps 120" "prepare tests/attack/$1.toml -o $out.br" \
     "run $out.br -o $out --force -q --threads 2 --steps 40 --set audit.every=5" \
-    "info $out.br" "check tests/attack/$name.toml" "render $out -o $out.png"; do
+    "info $out.br" "check tests/attack/$1.toml" "render $out -o $out.png"; do
     # shellcheck disable=SC2086
-    setarch -R "$breccia" $words > "$folder/out.log" 2>&1 || { echo "$words: ends with $?"; tail -3 "$folder/out.log"; touch "$findings/program"; }
+    setarch -R "$breccia" $words > "$out.log" 2>&1 || { echo "$words: ends with $?"; tail -3 "$out.log"; touch "$findings/program"; }
   done
+}
+for name in dem fdem fdem3 bolted fluids coupled; do
+  while [ "$(jobs -rp | wc -l)" -ge "${JOBS:-2}" ]; do wait -n; done
+  commands_of $name &
 done
+wait
 cd "$folder" || exit 1
-without=none
-[ "$kind" = thread ] && without='ProgramOnRanks|FateOfRank'
+without=${WITHOUT:-none}
+[ "$kind" = thread ] && without="$without|ProgramOnRanks|FateOfRank"
 limit=() cut='^$'
 if [ -n "$LIMIT" ]; then # what it cuts stands there as timed out before its time
   limit=(--schedule-random --stop-time "$(date -d "+$LIMIT seconds" +%T)")

@@ -2,11 +2,12 @@
 # All tests of a build N times beside a load, to find those that pass on a quiet machine alone:
 #   scripts/under_load.sh [N] [BUILD] [CTEST WORDS...]    20, build/release
 # Two endless loops a processor take their share of it; half as many tests as processors run at once.
-# LIMIT=N ends after N seconds. Prints each test that failed with how often it did, and how many runs
+# LIMIT=N ends after N seconds, WITHOUT=REGEX leaves tests out. Prints each test that failed with how often it did, and how many runs
 # there were; ends with 1 if one failed.
 cd "$(dirname "$0")/.." || exit 1
 rounds=${1:-20} build=${2:-build/release}
 shift $(($# < 2 ? $# : 2))
+[ -n "$WITHOUT" ] && set -- "$@" -E "$WITHOUT"
 cores=$(nproc)
 loops=()
 trap 'kill "${loops[@]}" 2> /dev/null' EXIT

@@ -2,6 +2,7 @@
 """All attacks, one table. `--quick`: a minute, for each change; else for a night (--hours)."""
 
 import argparse
+import concurrent.futures
 import os
 import subprocess
 import sys
@@ -31,17 +32,22 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--hours", type=float, default=8)
     parser.add_argument("--seed", default="1")
+    parser.add_argument("--jobs", type=int, default=1, help="attacks beside each other, each for as much longer")
     parser.add_argument("only", nargs="*", help="files of attacks; default: all")
     options = parser.parse_args()
-    print(COLUMNS.format("attack", "runs", "findings", "of", "time"))
-    result = 0
-    for name in options.only or QUICK:
+    print(COLUMNS.format("attack", "runs", "findings", "of", "time"), flush=True)
+    names = options.only or list(QUICK)
+    beside = max(1, min(options.jobs, len(names)))
+
+    def attack(name):
         words = QUICK[name]
         if not options.quick:
             words, share = WHOLE[name]
-            words = words + ["--seconds", str(share * options.hours * 3600)]
-        result |= subprocess.run([sys.executable, os.path.join(HERE, name), *words, "--seed",
-                                  options.seed]).returncode
+            words = words + ["--seconds", str(min(1, share * beside) * options.hours * 3600)]
+        return subprocess.run([sys.executable, os.path.join(HERE, name), *words, "--seed", options.seed]).returncode
+
+    with concurrent.futures.ThreadPoolExecutor(beside) as pool:
+        result = any(list(pool.map(attack, names)))
     return 1 if result else 0
 
 
