@@ -101,7 +101,7 @@ SMOOTH, HELD = ["z", "spin_x", "spin_y"], ["all"]
 
 
 def plate(side, strain, speed):
-    """A plate pressed along z, and along x by a pressure [Pa] or as fast as along z."""
+    """A plate pressed along z, and along x by a pressure [Pa], pressures over time [[s, Pa], ...], or as fast as along z ("alike")."""
     text = ends(200, speed, 2e-4, ["z"]) + face("left", 0, 0, ["x"] if side else [])
     for axis, turns in ((2, ["spin_x", "spin_y"]), (0, ["spin_y", "spin_z"])):  # shared edges: alike, still
         if axis == 2 or side:
@@ -109,7 +109,9 @@ def plate(side, strain, speed):
     if side == "alike":
         text += face("right", 0, 200, ["x"], f"velocity = [{-speed}, 0.0, 0.0]\nramp = 2e-4")
     elif side:
-        text += face("right", 0, 200, ["x"], f'servo = {{ axis = "x", pressure = [[0, 0], ["0.5 ms", {-side}]], area = 0.01, speed = 1.0, gain = 2.0 }}')
+        table = side if isinstance(side, list) else [[0, 0], [0.5e-3, side]]
+        pressure = ", ".join(f"[{t:.6g}, {-p:.6g}]" for t, p in table)
+        text += face("right", 0, 200, ["x"], f'servo = {{ axis = "x", pressure = [{pressure}], area = 0.01, speed = 1.0, gain = 2.0 }}')
     else:
         text += face("right", 0, 200, [])
     return 0.2 * strain / speed, text + probe("side_force", "right", "force_x", "sum") + probe("side_path", "right", "displacement_x")

@@ -6,7 +6,8 @@
     scripts/ldpm_experiments.py plot FILE.png    curves over each other; needs python3-matplotlib
 
 NAME: platens (prisms and cubes of 100 mm between ends of several frictions), cycles (a prism unloaded and loaded again), beams (notched, four
-sizes), confined (prisms under side pressure, beside the curves of Attard and Setunge). Grains are of 6 to 12 mm (platens: II-4 8 to 15 mm), else
+sizes), confined (prisms under side pressure, beside the curves of Attard and Setunge), biaxial (plates beside the curves of Kupfer and others;
+`plot` then draws these and cycles). Grains are of 6 to 12 mm (platens: II-4 8 to 15 mm), else
 10 to 12 mm. Runs that are done are kept.
 """
 import argparse
@@ -27,6 +28,18 @@ from localisation import directions  # noqa: E402
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SETS = {"B": bodies.B, "II-3": bodies.II_3, "II-4": bodies.II_4}
 TURNS = ["z", "spin_x", "spin_y"]
+# Curves of experiments, strain along z [1e-3] and stress along z [MPa], as chenhhu/NLDamPla_Constitutive_Relation (commit cf28831) has read them off.
+KUPFER = {  # stress along x over that along z: Kupfer, Hilsdorf and Ruesch 1969
+    0: ((0, 0.246, 0.492, 0.739, 0.985, 1.232, 1.491, 1.742, 1.998, 2.240, 2.492, 2.743, 2.994, 3.197, 3.388, 3.579, 3.817, 4.020, 4.187, 4.390, 4.640, 4.855, 5.093, 5.296, 5.475, 5.690, 5.905),
+        (0, 7.93, 15.01, 19.99, 24.02, 27.50, 29.59, 31.52, 32.02, 31.67, 31.60, 31.09, 30.08, 29.09, 28.10, 27.00, 25.57, 24.25, 23.37, 22.16, 20.73, 19.74, 18.41, 17.31, 16.54, 15.55, 14.78)),
+    0.52: ((0, 0.503, 0.745, 0.992, 1.339, 1.752, 1.990, 2.218, 2.490, 2.736, 3.000, 3.246, 3.517),
+           (0, 15.13, 21.82, 26.80, 31.90, 35.20, 36.78, 37.98, 38.93, 39.31, 39.61, 39.01, 37.81)),
+    1: ((0, 0.503, 0.746, 0.995, 1.244, 1.492, 1.736, 1.975, 2.249, 2.503, 2.741, 2.980, 3.234),
+        (0, 17.14, 23.08, 27.04, 30.52, 33.04, 34.75, 36.04, 36.73, 37.05, 36.25, 35.07, 33.52)),
+}
+KARSAN = (  # Karsan and Jirsa 1969, envelope of a prism loaded again and again
+    (0, 0.301, 0.368, 0.461, 0.549, 0.678, 0.871, 1.122, 1.365, 1.616, 1.863, 2.114, 2.374, 2.625, 2.864, 3.124, 3.362, 3.622, 3.873, 4.133, 4.367, 4.618, 4.870),
+    (0, 9.68, 11.54, 13.82, 15.61, 18.10, 21.05, 23.93, 25.89, 27.05, 27.55, 27.55, 27.25, 26.55, 25.86, 24.76, 23.83, 22.61, 21.38, 20.09, 18.83, 17.54, 16.44))
 
 
 def case(name, of, size, grains, seed, end, text, rows, frames=0):
@@ -73,8 +86,6 @@ def platens(of, seed):
 
 def cycles(of, seed):
     """A prism between smooth ends, unloaded to 2 MPa and loaded again four times."""
-    if of == "II-4":
-        return
     speed = 0.6 * 0.12
     stages, left = "", 0.0
     for strain in (0.8e-3, 1.4e-3, 2.0e-3, 2.8e-3):
@@ -129,7 +140,20 @@ def confined(of, seed):
         yield name, case(name, of, (60, 60, 120), (10, 12), seed, 4e-3 + 0.12 * (0.006 + 4e-4 * pressure) / speed, text, 2e-5)
 
 
-EXPERIMENTS = {"platens": platens, "cycles": cycles, "beams": beams, "confined": confined}
+def biaxial(of, seed):
+    """Plates of Kupfer, Hilsdorf and Ruesch 1969 (200 x 50 x 200 mm) at three ratios of the side's stress to that along z: the side's is that of the experiment at the same strain."""
+    if of != "II-4":
+        return
+    speed, ramp = 0.2, 2e-4
+    for ratio, (strains, stresses) in KUPFER.items():
+        reach = max(strains[-1] + 0.1, 4.5)  # beyond the peak
+        along = [[0.0, 0.0]] + [[0.2e-3 * e / speed + 0.5 * ramp, 1e6 * ratio * s] for e, s in zip(strains[1:], stresses[1:])]
+        _, text = bodies.plate("alike" if ratio == 1 else along if ratio else 0, 1e-3 * reach, speed)
+        name = f"biaxial-{ratio:g}-{of}-{seed}"
+        yield name, case(name, of, (200, 50, 200), (8, 15), seed, 0.2e-3 * reach / speed + 0.5 * ramp, text, 2e-5)
+
+
+EXPERIMENTS = {"platens": platens, "cycles": cycles, "beams": beams, "confined": confined, "biaxial": biaxial}
 
 
 def history(folder):
@@ -176,24 +200,37 @@ def band(folder, height, since):
             "chance": best(random.sample(places, len(late)))[0], "slope": slope}
 
 
+def misfits(strain, stress, curve):
+    """Mean difference from a published curve, over its points before and after its peak, in shares of the peak."""
+    strains, stresses = curve
+    peak = max(stresses)
+    off = [(abs(found - there) / peak, e <= strains[stresses.index(peak)]) for e, there in zip(strains[1:], stresses[1:]) if (found := bodies.at(strain, stress, e)) is not None]
+    return {(f"misfit_{part}", "-"): statistics.fmean(value for value, before in off if before == rising) for part, rising in (("rising", True), ("falling", False))}
+
+
 def numbers_of(name, folder):
     """{quantity: value, unit} of a finished run, and its curve [strain in 1e-3 or mm, MPa]."""
     h, parts = history(folder), name.split("-")
     found, n = {}, len(h["time"])
     stress = None
-    if parts[0] in ("platens", "cycles", "confined"):
-        height, area = (0.1 if "cube" in name else 0.2, 1e-2) if parts[0] == "platens" else (0.12, 3.6e-3)
+    if parts[0] in ("platens", "cycles", "confined", "biaxial"):
+        height, area = (0.1 if "cube" in name else 0.2, 1e-2) if parts[0] in ("platens", "biaxial") else (0.12, 3.6e-3)
         stress = smoothed([abs(f) / area * 1e-6 for f in h["force"]], 5)
         begin = next((k for k in range(n) if h["time"][k] >= 4e-3), 0) if parts[0] == "confined" else 0
         strain = [1e3 * (h["path"][begin] - x) / height for x in h["path"]]
         k = max(range(begin, n), key=stress.__getitem__)
         found = {("strength", "MPa"): stress[k], ("peak_strain", "1e-3"): strain[k], ("left", "-"): stress[-1] / stress[k], ("end_strain", "1e-3"): strain[-1]}
+        if parts[0] == "biaxial":
+            found["side", "MPa"] = smoothed([abs(f) / area * 1e-6 for f in h["side_force"]], 5)[k]
+            found.update(misfits(strain, stress, KUPFER[float(parts[1])]))
         if parts[0] == "confined":
             found["side", "MPa"] = smoothed([abs(f) / 7.2e-3 * 1e-6 for f in h["side_force"]], 5)[k]
             strain, stress = strain[begin:], stress[begin:]
         if parts[0] == "platens" and (found_band := band(folder, height, h["time"][k])):
             found.update({(key, "-"): value for key, value in found_band.items()})
         if parts[0] == "cycles":  # where it turns, and what is left
+            highest = [max((t, e) for e, t in zip(strain, stress) if e <= x)[0] if x <= strain[k] else max(t for e, t in zip(strain, stress) if e >= x) for x in KARSAN[0] if x < max(strain)]
+            found.update(misfits(KARSAN[0][:len(highest)], highest, KARSAN) if "II-4" in name else {})
             turns, sense, at = [], 1, 0
             for k in range(n):
                 if sense > 0 and strain[k] > strain[at] or sense < 0 and strain[k] < strain[at]:
@@ -271,6 +308,8 @@ def plot(out, picture):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     found = finished(out)
+    if any(what.startswith("biaxial") for what, _ in found):
+        return plot_plates(found, picture, plt)
     figure, axes = plt.subplots(2, 2, figsize=(11, 8))
     colors = {"B": "tab:blue", "II-3": "tab:red", "II-4": "tab:green"}
     panels = {"platens prism 0.577": (0, "prisms of 100 mm: smooth ends (thin) and platens, friction 0.577"), "platens prism 0": (0, ""), "cycles": (1, "unloaded and loaded again"),
@@ -290,6 +329,26 @@ def plot(out, picture):
             a.set_title(title, fontsize=9)
     for a in axes.flat:
         a.legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(picture, dpi=80)
+
+
+def plot_plates(found, picture, plt):
+    """Plates beside the curves of Kupfer and others; prisms, unloaded and loaded again, beside that of Karsan and Jirsa."""
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4))
+    colors = {"0": "tab:blue", "0.52": "tab:green", "1": "tab:red", "cycles": "tab:blue"}
+    for (what, of), runs in sorted(found.items()):
+        ratio = what.split(" ")[-1]
+        if of != "II-4" or what != "cycles" and not what.startswith("biaxial"):
+            continue
+        for curve in (one["curve"] for one in runs.values()):
+            axes[int(what == "cycles")].plot(*zip(*curve), color=colors[ratio], lw=0.8)
+    for ratio, curve in KUPFER.items():
+        axes[0].plot(*curve, "o", ms=4, color=colors[f"{ratio:g}"], label=f"side stress {ratio:g} of that along z")
+    axes[1].plot(*KARSAN, "ko", ms=4, label="Karsan and Jirsa 1969")
+    for a in axes:
+        a.set(xlabel="strain, 1e-3", ylabel="stress, MPa", xlim=(0, 6), ylim=(0, 45))
+        a.legend(fontsize=8, loc="lower right" if a is axes[0] else "upper right")
     figure.tight_layout()
     figure.savefig(picture, dpi=80)
 

@@ -228,6 +228,27 @@ def cycles(lines):
     return "\n".join(out)
 
 
+def curves(lines):
+    """Plates and a prism beside published curves (ldpm_experiments.py): peaks, and how far curves lie from each other."""
+    import ldpm_experiments
+    published = {f"biaxial {ratio:g}": (f"plate, side {ratio:g} of the stress along z", curve) for ratio, curve in ldpm_experiments.KUPFER.items()}
+    published["cycles"] = ("prism, loaded again and again: envelope", ldpm_experiments.KARSAN)
+    out = ["| test | peak [MPa] | experiment | misfit | at [1e-3] | experiment | misfit | curves apart up to the peak, % of it | beyond |", "|---" * 9 + "|"]
+    for test, (words, (strains, stresses)) in published.items():
+        found = {}
+        for row in lines:
+            if row["test"] == test and row["set"] == "II-4":
+                found.setdefault(row["quantity"], []).append(float(row["value"]))
+        if not found:
+            continue
+        peak = max(stresses)
+        where = statistics.mean(e for e, s in zip(strains, stresses) if s == peak)
+        apart = [spread([100 * v for v in found[f"misfit_{part}"]], 1) for part in ("rising", "falling")]
+        out.append(f"| {words} | {spread(found['strength'], 1)} | {peak:.1f} | {misfit(found['strength'], peak, peak)} | {spread(found['peak_strain'], 2)} | {where:.2f} | {misfit(found['peak_strain'], where, where)} | "
+                   f"{apart[0]} | {apart[1]} |")
+    return "\n".join(out)
+
+
 def confined(lines):
     """Prisms under side pressure beside Attard and Setunge 1996 and Richart 1928, by what the prisms of 60 mm show without it."""
     found = {}
@@ -251,7 +272,7 @@ def confined(lines):
 def markdown(lines, what):
     kind, _, name = what.partition(" ")
     return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "size": lambda: size_effect(lines), "beams": lambda: beams(lines), "platens": lambda: platens(lines),
-            "ends": lambda: ends(lines), "bands": lambda: bands(lines), "cycles": lambda: cycles(lines), "confined": lambda: confined(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
+            "ends": lambda: ends(lines), "bands": lambda: bands(lines), "cycles": lambda: cycles(lines), "curves": lambda: curves(lines), "confined": lambda: confined(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
 
 
 def main():
