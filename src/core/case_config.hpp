@@ -117,6 +117,7 @@ struct ProbeConfig {
   std::string reduce = "mean";
   std::vector<double> min{}, max{};  ///< corners of a box in space; empty: no box  [m]
   std::vector<double> about{};       ///< point of torque and angular momentum; empty: 0  [m]
+  double lag = 0.0;                  ///< 0: it tells what it reads at once  [s]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -137,6 +138,9 @@ struct ProbeConfig {
     key("max", max, "m", any_number, "upper corner of that box");
     key("about", about, "m", any_number,
         "the point that torque and angular momentum are about; left out: the origin");
+    key("lag", lag, "s", not_negative,
+        "time constant of an instrument that follows what it reads, dy/dt = (x - y)/lag, as a load "
+        "cell does; rows and rules of stages get y; 0: what it reads at once");
   }
 };
 

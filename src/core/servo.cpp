@@ -7,7 +7,7 @@ namespace breccia {
 void ServoState::correct(const ServoConfig& servo, double missing, const ServoReading& touched,
                          double last_dt, double next_dt) {
   if (servo.is_plate())
-    push_plate(servo, missing, touched, 0.5 * (last_dt + next_dt));
+    push_plate(servo, missing, touched, last_dt, next_dt);
   else
     follow_force(servo, missing, touched, static_cast<double>(servo_every) * next_dt);
 }
@@ -34,18 +34,25 @@ void ServoState::follow_force(const ServoConfig& servo, double missing, const Se
   velocity = std::clamp(gain * missing + steady, -most, most);
 }
 
-/// A plate's law of motion, M dv/dt = what is missing: the force on its back less what it pushes
-/// with.
-/// @param dt  from the middle of the last step to that of the next  [s]
+/// A plate's law of motion with the force that it will meet, M dv/dt = F - R'. In the step to come
+/// what it touches, which moves with the velocity u, adds K (v - u) dt to R, so that
+///
+///   (M/s + K dt) v = M/s v_old + F - R + K dt u          s: from the middle of a step to the next
+///
+/// which is stable for any mass; without one R' = F. Where K and u are not known, M is large enough
+/// for a step without them.
 void ServoState::push_plate(const ServoConfig& servo, double missing, const ServoReading& touched,
-                            double dt) {
-  // A lighter one would swing on what it touches faster than the step resolves, K dt^2 < 4 M.
-  const double least = 2.0 * touched.stiffness.value() * dt * dt;
-  const double inertia = std::max(servo.mass + touched.held.value(), least);
+                            double last_dt, double next_dt) {
+  const double mass = std::max(servo.mass, touched.inertia.value());
+  const double inertia = mass / (0.5 * (last_dt + next_dt));
+  const double resists = touched.stiffness.value() * next_dt;
   const double most = share * servo.speed;
-  velocity = inertia > 0.0   ? std::clamp(velocity + missing * dt / inertia, -most, most)
-             : missing > 0.0 ? most
-                             : 0.0;
+  if (!(inertia + resists > 0.0))
+    velocity = missing > 0.0 ? most : missing < 0.0 ? -most : 0.0;
+  else
+    velocity = std::clamp(
+        (inertia * velocity + missing + touched.flow.value() * next_dt) / (inertia + resists),
+        -most, most);
 }
 
 }  // namespace breccia

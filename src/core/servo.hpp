@@ -42,15 +42,17 @@ struct ServoConfig {
         "how fast it answers: 1 takes half of what is missing in the time between two corrections, "
         "if nothing gives way but what it touches");
     key("mass", mass, "kg", not_negative,
-        "of a plate with the force on its back, beside what a support holds (in a plane case per "
-        "metre of thickness): Newton's law moves it in every step; 0: as light as the step can "
-        "bear; left out (inf): no plate, its velocity is corrected every 10 steps");
+        "of a plate with the force on its back, with all that a support holds (in a plane case per "
+        "metre of thickness): Newton's law moves it in every step; 0: no inertia, or as little as "
+        "the step can bear; left out (inf): no plate, its velocity is corrected every 10 steps");
   }
   bool is_on() const { return speed > 0.0; }
   bool is_plate() const { return is_on() && mass < no_limit; }
   bool is_due(std::int64_t step) const {
     return is_plate() || (is_on() && step % servo_every == 0);
   }
+  /// When the force is asked for that is to come: a plate meets that of the next step.  [s]
+  double aims_at(double time, double next_dt) const { return is_plate() ? time + next_dt : time; }
   /// Force that it is to push with.  [N]
   double target(double time, double begin) const {
     const auto now = [&](const OverTime<double>& of) {
@@ -79,13 +81,16 @@ struct ServoReading {
   ExactSum force;      ///< that it pushes with  [N]
   ExactSum stiffness;  ///< of what it touches  [N/m]
   ExactSum mass;       ///< of that  [kg]
-  ExactSum held;       ///< mass of what a support moves  [kg]
+  // For plates:
+  ExactSum flow;     ///< stiffness times the velocity that it will have  [N/s]
+  ExactSum inertia;  ///< that a plate needs, where the force to come is not known  [kg]
 };
 BR_HD inline ServoReading operator+(ServoReading a, const ServoReading& b) {
   a.force.add(b.force);
   a.stiffness.add(b.stiffness);
   a.mass.add(b.mass);
-  a.held.add(b.held);
+  a.flow.add(b.flow);
+  a.inertia.add(b.inertia);
   return a;
 }
 
@@ -105,7 +110,8 @@ struct ServoState {
  private:
   void follow_force(const ServoConfig& servo, double missing, const ServoReading& touched,
                     double span);
-  void push_plate(const ServoConfig& servo, double missing, const ServoReading& touched, double dt);
+  void push_plate(const ServoConfig& servo, double missing, const ServoReading& touched,
+                  double last_dt, double next_dt);
 };
 
 /// The servos that lead a motion along x, y, z, as kernels read it.

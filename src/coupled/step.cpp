@@ -183,6 +183,7 @@ namespace {
 /// A sphere that a servo leads, by the tetrahedra that it meets.
 struct TouchedBy {
   std::int16_t motion;
+  double velocity;  ///< of the servo: what it meets is taken to go with it  [m/s]
   View<const std::int16_t> led_by;
   View<const double> mass;
   View<const SphereRow> rows;
@@ -198,6 +199,7 @@ struct TouchedBy {
     for (Index t = row.touch; t < row.touch_end; ++t) stiffness += touches[t].straight;
     if (!(stiffness > 0.0)) return met;
     met.stiffness.add(stiffness);
+    met.flow.add(stiffness * velocity);
     met.mass.add(mass[row.sphere]);
     return met;
   }
@@ -210,8 +212,13 @@ std::vector<ServoReading> touched_by_servos(const World& w) {
   std::vector<ServoReading> touched(s.servos.size());
   for (const ServoMotion& led : s.prescribed.servos) {
     if (led.axis < 0) continue;
-    const TouchedBy by{led.motion,    s.elements.motion.view(), s.elements.mass.view(),
-                       w.rows.view(), w.bonds.state.view(),     w.touches.history.force.view()};
+    const TouchedBy by{led.motion,
+                       s.servos[led.servo].velocity,
+                       s.elements.motion.view(),
+                       s.elements.mass.view(),
+                       w.rows.view(),
+                       w.bonds.state.view(),
+                       w.touches.history.force.view()};
     touched[led.servo] =
         touched[led.servo] + fold(s.exec, w.rows.size(), ServoReading{}, by, Sum{});
   }

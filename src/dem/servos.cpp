@@ -10,8 +10,19 @@ BR_HD double part_along(int axis, const Vec3& v) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
+/// What a plate reads, too: the velocity of an element in the step to come.
+struct Comes {
+  bool asked;
+  Kick kick;
+
+  BR_HD void add(ServoReading& r, double stiffness, Index e, const Vec3& along) const {
+    if (asked) r.flow.add(stiffness * dot(kick(e).velocity, along));
+  }
+};
+
 struct WallPush {
   OwnedView owned;
+  Comes comes;
   Index first;  ///< contact of the wall
   Vec3 normal;
   double factor;  ///< of the wall's stiffness  [-]
@@ -31,8 +42,10 @@ struct WallPush {
     if (!owned(e) || overlap <= 0.0) return r;
     r.force.add(-dot(on_wall[i], normal));
     const double normal_constant = pairs[material[e]].normal;
-    r.stiffness.add(hertz ? 2.0 * normal_constant * sqrt(radius * overlap)
-                          : 0.5 * normal_constant * factor * radius);
+    const double stiffness = hertz ? 2.0 * normal_constant * sqrt(radius * overlap)
+                                   : 0.5 * normal_constant * factor * radius;
+    r.stiffness.add(stiffness);
+    comes.add(r, stiffness, e, normal);
     r.mass.add(mass[e]);
     return r;
   }
@@ -52,7 +65,6 @@ struct SupportPush {
     ServoReading r;
     if (!owned(e)) return r;
     r.force.add(-(part_along(axis, force[e]) + mass[e] * gravity));
-    r.held.add(mass[e]);
     return r;
   }
 };
@@ -60,6 +72,8 @@ struct SupportPush {
 /// The element on the other side of a link of a held element is as stiff as its own modulus says.
 struct TiedPush {
   OwnedView owned;
+  Comes comes;
+  Vec3 along;
   View<const Index> members;
   View<const double> mass;
   View<const std::int16_t> material;
@@ -70,7 +84,9 @@ struct TiedPush {
     const Index e = members[k];
     ServoReading r;
     if (!owned(e)) return r;
-    r.stiffness.add(pairs[material[e]].normal * state[e].radius);
+    const double stiffness = pairs[material[e]].normal * state[e].radius;
+    r.stiffness.add(stiffness);
+    comes.add(r, stiffness, e, along);
     r.mass.add(mass[e]);
     return r;
   }
@@ -80,6 +96,8 @@ struct TiedPush {
 /// as a whole, their faces alone.
 struct ContactPush {
   OwnedView owned;
+  Comes comes;
+  Vec3 ahead;
   std::int16_t servo;
   int axis;
   bool hertz;
@@ -106,22 +124,29 @@ struct ContactPush {
     const double constant = pairs[material[p] * materials + material[q]].normal;
     const double stiffness = hertz ? 2.0 * constant * sqrt(radius_p * radius_q / sum * overlap)
                                    : constant * smaller * smaller / sum;
-    r.stiffness.add(stiffness * along * along / dot(way, way));
+    const double straight = stiffness * along * along / dot(way, way);
+    r.stiffness.add(straight);
+    comes.add(r, straight, by_p ? q : p, ahead);
     r.mass.add(mass[by_p ? q : p]);
     return r;
   }
 };
 
-ServoReading read_wall(const World& w, std::size_t wall) {
+Vec3 along_axis(int axis) {
+  return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+}
+
+ServoReading read_wall(const World& w, std::size_t wall, bool plate) {
   if (wall + 1 >= w.wall_begin.size()) return {};
   const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
   const WallContacts& c = w.wall_contacts;
-  return fold(w.exec, end - begin, ServoReading{},
-              WallPush{w.domain.owned_view(), begin, w.walls[wall].normal, w.walls[wall].stiffness,
-                       w.given->contact.hertz, w.elements.mass.view(), c.pairs.a.view(),
-                       c.history.on_wall.view(), c.history.state.view(), w.elements.material.view(),
-                       w.elements.state.view(), w.given->wall_pairs.view()},
-              Sum{});
+  return fold(
+      w.exec, end - begin, ServoReading{},
+      WallPush{w.domain.owned_view(), Comes{plate, kick(w)}, begin, w.walls[wall].normal,
+               w.walls[wall].stiffness, w.given->contact.hertz, w.elements.mass.view(),
+               c.pairs.a.view(), c.history.on_wall.view(), c.history.state.view(),
+               w.elements.material.view(), w.elements.state.view(), w.given->wall_pairs.view()},
+      Sum{});
 }
 
 /// Where elements of a set lie on this rank.
@@ -132,7 +157,8 @@ View<const Index> places_of(const World& part, const ElementSet& set, SetHere& h
 }
 
 /// @param support  its number  @param servo  likewise, walls first
-ServoReading read_support(World& part, std::size_t support, std::size_t servo, int axis) {
+ServoReading read_support(World& part, std::size_t support, std::size_t servo, int axis,
+                          bool plate) {
   const Case& given = *part.given;
   const std::size_t set = given.sets.size() - given.tied.size() + support;
   const Elements& e = part.elements;
@@ -143,11 +169,13 @@ ServoReading read_support(World& part, std::size_t support, std::size_t servo, i
   FoldSum<ServoReading> all(part.exec);
   all.add(members.size, SupportPush{owned, axis, part_along(axis, given.gravity), members,
                                     e.force.view(), e.mass.view()});
-  all.add(tied.size, TiedPush{owned, tied, e.mass.view(), e.material.view(), e.state.view(),
-                              given.wall_pairs.view()});
+  const Comes comes{plate, kick(part)};
+  const Vec3 along = along_axis(axis);
+  all.add(tied.size, TiedPush{owned, comes, along, tied, e.mass.view(), e.material.view(),
+                              e.state.view(), given.wall_pairs.view()});
   all.add(c.size(),
-          ContactPush{owned, static_cast<std::int16_t>(servo), axis, given.contact.hertz,
-                      e.mass.view(), e.material.view(), e.motion.view(),
+          ContactPush{owned, comes, along, static_cast<std::int16_t>(servo), axis,
+                      given.contact.hertz, e.mass.view(), e.material.view(), e.motion.view(),
                       std::as_const(part.led).view(), e.state.view(), given.contact_pairs.view(),
                       given.materials, c.pairs.a.view(), c.pairs.b.view(), c.history.state.view()});
   return all.sum();
@@ -158,12 +186,14 @@ ServoReading read_support(World& part, std::size_t support, std::size_t servo, i
 std::vector<ServoReading> read_servos(World& part, const Config& now) {
   std::vector<ServoReading> readings;
   for (std::size_t k = 0; k < now.walls.size(); ++k)
-    readings.push_back(now.walls[k].servo.is_due(part.step) ? read_wall(part, k) : ServoReading{});
+    readings.push_back(now.walls[k].servo.is_due(part.step)
+                           ? read_wall(part, k, now.walls[k].servo.is_plate())
+                           : ServoReading{});
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
     const SupportServoConfig& servo = now.supports[s].servo;
-    readings.push_back(servo.is_due(part.step)
-                           ? read_support(part, s, now.walls.size() + s, servo.axis_number())
-                           : ServoReading{});
+    readings.push_back(servo.is_due(part.step) ? read_support(part, s, now.walls.size() + s,
+                                                              servo.axis_number(), servo.is_plate())
+                                               : ServoReading{});
   }
   return readings;
 }
@@ -172,8 +202,9 @@ void correct_servos(World& w, const Config& now, const std::vector<ServoReading>
   const auto correct = [&](const ServoConfig& servo, double begin, std::size_t k) {
     if (!servo.is_due(w.step)) return;
     const ServoReading& r = sums[k];
-    w.servos[k].correct(servo, servo.target(w.time, begin) - r.force.value(), r, w.last_dt,
-                        w.next_dt);
+    w.servos[k].correct(servo,
+                        servo.target(servo.aims_at(w.time, w.next_dt), begin) - r.force.value(), r,
+                        w.last_dt, w.next_dt);
   };
   const std::size_t walls = now.walls.size();
   for (std::size_t k = 0; k < walls; ++k) correct(now.walls[k].servo, now.walls[k].begin, k);

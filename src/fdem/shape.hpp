@@ -24,6 +24,7 @@ struct Shape {
   using Motion = fdem::Motion;
   using Move = fdem::MoveTriangles;
   using Hold = fdem::Hold;
+  using ContactPair = fdem::ContactPair;
   using Reference = Mat2;  ///< of an element at the start
   using Sides = EdgeJoints;
   using Dashpots = EdgeDashpots;
@@ -76,7 +77,9 @@ struct Shape {
   BR_HD static double corner_stiffness(const ElasticTriangle& law, const Mat2&) {
     return (law.lambda + 2.0 * law.shear + law.bend) / 3.0;
   }
-  /// Velocities that servos have changed, where launches read them.
+  /// A third of 3 p L (1/H + 1/H), one edge of an equilateral triangle against another: of each
+  /// corner of a body.  [N/m2]
+  BR_HD static double pressed_corner(double penalty, const Mat2&) { return 2.3 * penalty; }
 
   // Set-up (fdem/setup).
   struct AtStart {

@@ -17,6 +17,7 @@ struct Shape {
   using Motion = fdem3::Motion;
   using Move = fdem3::MoveTetrahedra;
   using Hold = fdem3::Hold;
+  using ContactPair = fdem3::ContactPair;
   using Reference = ShapeGradients;  ///< of an element at the start
   using Sides = FaceJoints;
   using Dashpots = FaceDashpots;
@@ -71,6 +72,12 @@ struct Shape {
   /// element as stiffness.  [N/m]
   BR_HD static double corner_stiffness(const ElasticTetrahedron& law, const ShapeGradients& shape) {
     return (law.lambda + 2.0 * law.shear) * 100.0 * near_reach(shape) / 6.0;
+  }
+  /// Of a face against another, 4/3 1.366 p A (elements/stable_step.hpp), for each corner of a
+  /// body; A is at most the square of the size of an element.  [N/m]
+  BR_HD static double pressed_corner(double penalty, const ShapeGradients& shape) {
+    const double size = 100.0 * near_reach(shape);
+    return 1.83 * penalty * size * size;
   }
 
   // Set-up (fdem3/setup).

@@ -179,7 +179,7 @@ TEST(Servo, with_a_plate_is_off_by_the_plates_inertia_alone) {
   EXPECT_LT(method->energy().error_relative, 1e-3);
 }
 
-/// What touches nothing goes by its own inertia: that of the plate and of what a support holds.
+/// What touches nothing goes by the inertia of its plate, what a support holds with it.
 TEST(Servo, with_a_plate_that_touches_nothing_falls_freely) {
   dem::testing::Scene s = column();
   s.config.walls.back().point.z += 0.1;
@@ -204,9 +204,7 @@ TEST(Servo, with_a_plate_that_touches_nothing_falls_freely) {
   head.config.probes = {{"speed", "all", "velocity_z", "mean"}};
   const auto held = make_method(head.config, head.model, {}, nullptr);
   run_to(*held, 1e-4);
-  double mass = 0.1;
-  for (const double one : head.model.mass) mass += one;
-  EXPECT_NEAR(held->probes()[0], push / mass * held->time(), 0.1 * push / mass * 1e-4);
+  EXPECT_NEAR(held->probes()[0], push / 0.1 * held->time(), 0.1 * push / 0.1 * 1e-4);
 }
 
 template <class Scene>

@@ -14,6 +14,7 @@
 #include "exec/error.hpp"
 #include "run/frames/frame_parts.hpp"
 #include "run/machine/load_check.hpp"
+#include "run/method/lagging_probes.hpp"
 #include "run/method/method.hpp"
 #include "run/method/shared_world.hpp"
 
@@ -63,6 +64,7 @@ class SimMethod final : public Method {
                in_precision(exec, config.precision), ranks, config.domain),
         sim_(model, world_.mesh()),
         probes_(config.probes),
+        lagging_(config.probes),
         case_(config),
         now_(config_at(config, {})) {}
 
@@ -70,7 +72,8 @@ class SimMethod final : public Method {
   World& world() { return world_.part(); }
 
   Advanced advance(const StopAt& stop) override {
-    if (world_.part().servos.empty() && !has_fluid(world_.part())) return world_.advance_to(stop);
+    if (world_.part().servos.empty() && !has_fluid(world_.part()) && lagging_.empty())
+      return world_.advance_to(stop);
     const std::int64_t every = has_plates() ? 1 : servo_every;
     const std::int64_t next = (steps() / every + 1) * every;
     const Advanced taken = world_.advance_to({stop.time, std::min(stop.step, next)});
@@ -83,6 +86,7 @@ class SimMethod final : public Method {
     if constexpr (requires(World & w) { Sim::spread(w); })
       if (all && has_fluid(world_.part()))
         at_once(world_.ranks(), [&] { Sim::spread(world_.part()); });
+    if (all && !lagging_.empty()) lagging_.look(read_now(lagging_.configs()), time());
   }
   std::int64_t steps() const override { return world_.part().step; }
   double time() const override { return world_.part().time; }
@@ -139,21 +143,8 @@ class SimMethod final : public Method {
     return Sim::balance(world_.ledger(), all, steps());
   }
   std::vector<double> probes() override {
-    World& w = world_.part();
-    std::vector<double> values;
-    if (single_rank()) {
-      for (const ProbeConfig& p : probes_) values.push_back(probe(w, p));
-      return values;
-    }
-    Message message;
-    for (const ProbeConfig& p : probes_) put_value(message, read_own(w, p));
-    std::vector<Readings> all(probes_.size());
-    for (const Message& told : world_.told(std::move(message))) {
-      Unpacking from(told);
-      for (Readings& readings : all) readings = readings + from.value<Readings>();
-    }
-    for (std::size_t i = 0; i < all.size(); ++i)
-      values.push_back(all[i].reduced(probes_[i].reduce));
+    std::vector<double> values = read_now(probes_);
+    lagging_.tell(values);
     return values;
   }
   void note_breaks() override {
@@ -281,6 +272,7 @@ class SimMethod final : public Method {
         world_(other.world_),
         sim_(other.sim_),
         probes_(other.probes_),
+        lagging_(other.lagging_),
         case_(other.case_),
         now_(other.now_) {
     world_.forget_timers();
@@ -345,6 +337,24 @@ class SimMethod final : public Method {
       world_.ledger().add(from.value<Ledger>());
     }
     return all;
+  }
+  /// On rank 0.
+  std::vector<double> read_now(const std::vector<ProbeConfig>& probes) {
+    World& w = world_.part();
+    std::vector<double> values;
+    if (single_rank()) {
+      for (const ProbeConfig& p : probes) values.push_back(probe(w, p));
+      return values;
+    }
+    Message message;
+    for (const ProbeConfig& p : probes) put_value(message, read_own(w, p));
+    std::vector<Readings> all(probes.size());
+    for (const Message& told : world_.told(std::move(message))) {
+      Unpacking from(told);
+      for (Readings& readings : all) readings = readings + from.value<Readings>();
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) values.push_back(all[i].reduced(probes[i].reduce));
+    return values;
   }
   bool has_plates() const {
     bool any = false;
@@ -440,6 +450,7 @@ class SimMethod final : public Method {
     visit("next_dt", w.next_dt);
     visit("searches", w.searches);
     visit("ledger", w.ledger);
+    lagging_.each_stored(visit);
     Sim::each_stored(w, visit);
   }
 
@@ -452,6 +463,7 @@ class SimMethod final : public Method {
   SharedWorld<World> world_;
   Sim sim_;
   std::vector<ProbeConfig> probes_;
+  LaggingProbes lagging_;
   Config case_;
   Config now_;  ///< as it is in the present stage
 };
