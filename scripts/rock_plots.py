@@ -11,6 +11,7 @@ checks (any case: probes over time, and what its checks expect of them).
 import argparse
 import math
 import pathlib
+import textwrap
 import tomllib
 
 import matplotlib
@@ -176,7 +177,7 @@ def checks(axes, results):
         for probe in dict.fromkeys(a[0] for a in asked):
             axes.plot([1e3 * row["time"] for row in rows], [row[probe] / size for row in rows], label=probe)
         for k, (_, expected, _, name) in enumerate(asked):
-            axes.axhline(expected / size, color=f"C{len(asked) + k}", lw=1, ls="--", label=name if len(name) < 70 else name[:67] + "...")
+            axes.axhline(expected / size, color=f"C{len(asked) + k}", lw=1, ls="--", label=textwrap.fill(name, 70))
         axes.set(xlabel="time, ms", ylabel=f"{prefix}{unit}")
 
 
