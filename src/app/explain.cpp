@@ -148,9 +148,10 @@ const std::vector<Law>& laws() {
        concrete_tension},
       {"dem3d",
        "[material.NAME]",
-       {"cohesion", "friction_angle", "friction_cap", "friction_bound"},
+       {"cohesion", "friction_angle", "friction_cap", "friction_bound", "criterion"},
        "shear strength = C + min(f, s_F) of an intact link under pressure p, f = p tan phi_i; "
-       "friction_bound = \"smooth\": C + f s_F / (f + s_F)",
+       "friction_bound = \"smooth\": C + f s_F / (f + s_F); criterion = \"hyperbola\": of "
+       "this line L, sqrt(L^2 - (C - T tan phi_i)^2), so that nothing is left at a tension of T",
        "docs/theory.md, cohesive links",
        concrete_shear},
       {"dem3d",

@@ -28,16 +28,19 @@ constexpr double all = 1e300;
 
 /// Twice the cohesion gives 1.5 times the compressive strength. Shares are about those that
 /// calibrations of concretes end with: links of a packing show 1.3 to 1.7 T in tension where
-/// softening gives their energy, and 4 T where G_F does; they show their G_F, and 1.4
+/// softening gives their energy, and where G_F does 4 T, 2 T with the hyperbola, 1.5 T with a
+/// knee; they show their G_F, and 1.4
 /// times their nu, which grows with the 1.5th power of the key.
 std::vector<Knob<Concrete>> knobs_of_links(const Concrete& m, bool by_energy) {
+  const double ductile = m.criterion == "corner" ? 0.25 : 0.5;
+  const double by_tension = !by_energy ? 0.7 : m.knee_strength > 0.0 ? 0.65 : ductile;
   return {
       {"young", "young", "compression_prism", "young", get<&Concrete::young>, set<&Concrete::young>,
        1.0, 0.03, 1.0, 0.0, all},
       {"poisson", "poisson", "compression_prism", "poisson", get<&Concrete::poisson>,
        set<&Concrete::poisson>, 1.5, 0.10, 0.72, 0.01, 1.0 / m.alpha},
       {"tensile_strength", "tension", "tension", "strength", get<&Concrete::tensile_strength>,
-       set<&Concrete::tensile_strength>, 1.0, 0.05, by_energy ? 0.25 : 0.7, 0.0, all},
+       set<&Concrete::tensile_strength>, 1.0, 0.05, by_tension, 0.0, all},
       {"cohesion", "compression", "compression_prism", "strength", get<&Concrete::cohesion>,
        set<&Concrete::cohesion>, 0.6, 0.05, 0.0, 0.0, all},
       {"fracture_energy", "fracture_energy", "tension_notched", "fracture_energy",

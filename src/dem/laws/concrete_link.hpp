@@ -76,6 +76,8 @@ struct RateCurve {
 ///                beyond p = p_c pores are closed, N = K_n u
 ///   shear        F_s += -K_t du_s, cut at S C (1 - damage) + min(-N tan phi, S s_F), or with
 ///                friction that fades, f = -N tan phi > 0: S C (1 - damage) + f S s_F / (f + S s_F)
+///                or, intact, with that line L as the asymptote of a hyperbola through (T, 0):
+///                sqrt(L^2 - V^2), V = (1 - damage) S (C - T tan phi), nothing where L < V
 ///   moment       M += -K_r dtheta, cut at eta r min(|N| in compression + S T (1 - damage), S s_M)
 ///   wear         plastic slip ds and turn dtheta_p: kappa += w_s |ds| + w_m r |dtheta_p|
 ///   rate         T grows to T DIF of the link's own strain rate, smoothed over some crossings of
@@ -94,6 +96,7 @@ struct ConcreteLink {
   double broken_friction;       ///< mu_b  [-]
   double friction_cap;          ///< s_F, 0: none  [Pa]
   double friction_fades;        ///< 1: friction nears s_F slowly; 0: it grows until it is s_F
+  double hyperbolic;            ///< 1: shear strength ends at T by a hyperbola; 0: at a corner
   double shear_ratio;           ///< K_t / K_n  [-]
   double rolling_ratio;         ///< beta_r = K_r / (K_t r^2)  [-]
   double rolling_limit;         ///< eta of the intact link  [-]
@@ -234,7 +237,7 @@ struct ConcreteLink {
     const Vec3Of<R> moment_trial = moment_before - kr * motion.turn;
 
     // 3. Their limits.
-    const R shear_limit = limit_shear(s, link, dot(shear_trial, shear_trial));
+    const R shear_limit = limit_shear<dynamic>(s, link, dot(shear_trial, shear_trial));
     const auto survives = s.holds && !s.sheared;
     const auto acts = survives || (s.pressed && !s.parted);
     const R moment_limit = limit_moment(s, link, survives);
@@ -344,12 +347,13 @@ struct ConcreteLink {
   }
 
   /// Modified Mohr-Coulomb limit of the shear force; finds links that break at it.
-  template <class R>
+  template <bool dynamic, class R>
   BR_HD R limit_shear(Stand<R>& s, const LinkConstants<R>& link, const R& trial_squared) const {
     const R zero = constant<R>(0.0);
     const R cohesive = select(s.holds, s.health, zero);
     const R slope = select(s.holds, constant<R>(friction), constant<R>(broken_friction));
     R limit = max(zero, cohesion * link.area * cohesive + friction_limit(link, s.normal, slope));
+    if (hyperbolic > 0.0) limit = select(s.holds, hyperbola<dynamic>(s, link, limit), limit);
     const auto beyond = trial_squared > zero && trial_squared > limit * limit;
     s.sheared = s.holds && beyond && constant<R>(brittle_shear) > 0.5;
     if (any(s.sheared))
@@ -357,6 +361,15 @@ struct ConcreteLink {
           select(s.sheared, max(zero, friction_limit(link, s.normal, constant<R>(broken_friction))),
                  limit);
     return limit;
+  }
+  /// The limit of an intact link by the hyperbola; `line`: its asymptote, cohesion and friction.
+  template <bool dynamic, class R>
+  BR_HD R hyperbola(const Stand<R>& s, const LinkConstants<R>& link, const R& line) const {
+    const R zero = constant<R>(0.0);
+    R strength = tensile_strength * link.area;
+    if constexpr (dynamic) strength = link.factor * strength;
+    const R vertex = max(zero, s.health * (cohesion * link.area - friction * strength));
+    return sqrt(max(zero, line - vertex) * (line + vertex));
   }
   /// Shear force that friction bears, below zero in tension.  [N]
   template <class R>

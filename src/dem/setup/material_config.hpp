@@ -137,6 +137,7 @@ struct MaterialConfig {
   double broken_friction = -1.0;               ///< mu_b; below 0: that of contacts  [-]
   double friction_cap = 0.0;                   ///< s_F; 0: none  [Pa]
   std::string friction_bound = "sharp";
+  std::string criterion = "corner";
   double broken_rolling_limit = -1.0;       ///< eta_b; below 0: eta  [-]
   double slip_wear = 0.0, turn_wear = 0.0;  ///< w_s, w_m  [-]
   double compaction_strength = 0.0;         ///< Y_c; 0: none  [Pa]
@@ -212,6 +213,10 @@ struct MaterialConfig {
         "how friction f nears friction_cap: sharp: it grows with pressure until it is s_F; smooth: "
         "it "
         "is f s_F / (f + s_F), as rough cracks shear off");
+    key("criterion", criterion, OneOf{"corner", "hyperbola"},
+        "how the shear strength of an intact link ends in tension: corner: a line, cohesion and "
+        "friction, is cut off at tensile_strength; hyperbola: a curve that nears that line under "
+        "pressure falls to nothing at tensile_strength");
     key("broken_rolling_limit", broken_rolling_limit, "-", Range{-1.0, 1e6},
         "eta_b, plastic limit of the moments of broken links; below 0: rolling_limit");
     key("slip_wear", slip_wear, "-", Range{0.0, 1e6},

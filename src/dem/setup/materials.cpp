@@ -99,6 +99,7 @@ ConcreteLink concrete_law(const MaterialConfig& m, const ContactConfig& contact)
   law.broken_friction = m.broken_friction < 0.0 ? contact.friction : m.broken_friction;
   law.friction_cap = m.friction_cap;
   law.friction_fades = m.friction_bound == "smooth" ? 1.0 : 0.0;
+  law.hyperbolic = m.criterion == "hyperbola" ? 1.0 : 0.0;
   law.shear_ratio = local.ratio;
   law.rolling_ratio = m.rolling_stiffness;
   law.rolling_limit = m.rolling_limit;

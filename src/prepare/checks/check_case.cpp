@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/most_names.hpp"
@@ -85,6 +86,13 @@ class Check {
                       path, m.knee_strength, m.knee_opening));
     if (m.friction_bound == "smooth" && m.friction_cap == 0.0)
       add(fmt::format("{}: friction_bound = \"smooth\" needs friction_cap above 0", path));
+    const double across = m.tensile_strength * std::tan(m.friction_angle);
+    if (m.criterion == "hyperbola" && !(m.cohesion > across))
+      add(
+          fmt::format("{}: criterion = \"hyperbola\" needs a cohesion above tensile_strength times "
+                      "tan(friction_angle) = {:.4g} Pa (it is {:.4g} Pa): its asymptote must pass "
+                      "above the tensile strength",
+                      path, across, m.cohesion));
     if (m.law == "ldpm") check_ldpm(m, path);
     if (!m.bedding.is_none()) check_bedding(m, path + ".bedding");
     if (m.law == "interface" && m.bond == "mc90" && !(m.slip1 <= m.slip2 && m.slip2 < m.slip3))

@@ -208,6 +208,48 @@ TEST(ConcreteLink, shear_under_pressure_ends_on_the_mohr_coulomb_line) {
   EXPECT_NEAR(spent, plateau * (path - plateau / (0.18 * stiffness)), 2e-3 * spent);
 }
 
+/// The hyperbola through (T, 0) whose asymptote is the line of cohesion and friction.
+double on_hyperbola(double stress) {
+  const double slope = std::tan(0.5), c = 5.5e6, t = 2.2e6;
+  return std::sqrt(std::pow(c - stress * slope, 2) - std::pow(c - t * slope, 2));
+}
+
+TEST(ConcreteLink, shear_may_end_on_a_hyperbola_that_meets_the_tensile_strength) {
+  ConcreteLink l = law();
+  l.hyperbolic = 1.0;
+  double spent = 0.0;
+  for (const double stress : {-300e6, -6.6e6, 0.0, 1.1e6, 2.0e6}) {
+    LinkState<double> state{};
+    Pair pair;
+    const double plateau = on_hyperbola(stress) * area;
+    const double path = 5.0 * plateau / (0.18 * stiffness);
+    const LinkResponse<double> r =
+        slide(l, state, pair, stress * area / stiffness, path, spent = 0.0);
+    EXPECT_NEAR(norm(r.shear), plateau, 1e-9 * plateau) << stress;
+    EXPECT_NEAR(spent, plateau * (path - plateau / (0.18 * stiffness)), 2e-3 * spent) << stress;
+  }
+  const double line = 5.5e6 + 300e6 * std::tan(0.5);
+  EXPECT_NEAR(on_hyperbola(-300e6), line, 5e-4 * line) << "far away it is the line";
+}
+
+TEST(ConcreteLink, with_a_hyperbola_bears_no_shear_while_it_is_torn) {
+  ConcreteLink l = law();
+  l.hyperbolic = 1.0;
+  LinkState<double> state{};
+  Pair pair;
+  double spent = 0.0;
+  slide(l, state, pair, 0.0, 1e-6, spent);
+  EXPECT_GT(norm(state.shear), 0.0);
+  pull(l, state, pair, 4.0 * onset, 4'000);
+  EXPECT_EQ(norm(state.shear), 0.0);
+  // Closed to half of the opening at its peak, it bears what its secant leaves of the strength.
+  const double health = l.normal_force(link, onset, state.opening) / strength;
+  pull(l, state, pair, 0.5 * onset, 1'000);
+  const LinkResponse<double> r = slide(l, state, pair, 0.5 * onset, 1e-4, spent);
+  EXPECT_NEAR(norm(r.shear), health * on_hyperbola(1.1e6) * area, 1e-9 * strength);
+  EXPECT_NEAR(health, (1.0 - 3.0 / 10.0) / 4.0, 1e-3);
+}
+
 TEST(ConcreteLink, a_brittle_link_falls_to_friction) {
   const double p = 3.0 * strength, u = -p / stiffness;
   LinkState<double> state{};
@@ -297,33 +339,37 @@ TEST(ConcreteLink, swapping_the_ends_reverses_the_force) {
 }
 
 TEST(ConcreteLink, what_a_random_path_puts_in_is_stored_or_spent) {
-  std::mt19937 random(9);
-  std::normal_distribution<double> normal;
-  const ConcreteLink l = law();
-  LinkState<double> state{};
-  Pair pair;
-  double work = 0.0, spent = 0.0, most = 0.0;
-  LinkResponse<double> before{};
-  Vec3 velocity{}, spin{};
-  for (int i = 0; i < 60'000; ++i) {
-    if (i % 300 == 0) {
-      velocity = 0.01 * Vec3{normal(random), normal(random), normal(random)} +
-                 0.3 / (length * 60.0) * (Vec3{length, 0.0, 0.0} - pair.b.position);
-      spin = {normal(random), normal(random), normal(random)};
+  for (const double hyperbolic : {0.0, 1.0}) {
+    std::mt19937 random(9);
+    std::normal_distribution<double> normal;
+    ConcreteLink l = law();
+    l.hyperbolic = hyperbolic;
+    LinkState<double> state{};
+    Pair pair;
+    double work = 0.0, spent = 0.0, most = 0.0;
+    LinkResponse<double> before{};
+    Vec3 velocity{}, spin{};
+    for (int i = 0; i < 60'000; ++i) {
+      if (i % 300 == 0) {
+        velocity = 0.01 * Vec3{normal(random), normal(random), normal(random)} +
+                   0.3 / (length * 60.0) * (Vec3{length, 0.0, 0.0} - pair.b.position);
+        spin = {normal(random), normal(random), normal(random)};
+      }
+      const PairMotion<double> m = pair.move_b(velocity, spin);
+      const LinkResponse<double> r = l.response(link, m, state);
+      const double approach = dot(pair.dt * pair.b.velocity, m.normal);
+      work += 0.5 * (before.normal + r.normal) * approach -
+              0.5 * dot(before.shear + r.shear, m.slip) -
+              0.5 * dot(before.moment + r.moment, m.turn);
+      spent += r.slid + r.yielded + r.broke;
+      before = r;
+      double held = l.stored(link, m.distance - length, state) + spent;
+      if (state.opening >= 0.0) held += l.tension(link).spent(state.opening);
+      most = std::max(most, held);
+      ASSERT_NEAR(work, held, 0.01 * most + 1e-9) << "step " << i;
     }
-    const PairMotion<double> m = pair.move_b(velocity, spin);
-    const LinkResponse<double> r = l.response(link, m, state);
-    const double approach = dot(pair.dt * pair.b.velocity, m.normal);
-    work += 0.5 * (before.normal + r.normal) * approach -
-            0.5 * dot(before.shear + r.shear, m.slip) - 0.5 * dot(before.moment + r.moment, m.turn);
-    spent += r.slid + r.yielded + r.broke;
-    before = r;
-    double held = l.stored(link, m.distance - length, state) + spent;
-    if (state.opening >= 0.0) held += l.tension(link).spent(state.opening);
-    most = std::max(most, held);
-    ASSERT_NEAR(work, held, 0.01 * most + 1e-9) << "step " << i;
+    EXPECT_GT(spent, 0.0);
   }
-  EXPECT_GT(spent, 0.0);
 }
 
 TEST(ConcreteLink, parted_ends_are_released_for_good) {

@@ -170,6 +170,7 @@ TEST(SameBits, of_links_that_wear_and_crush) {
   config.materials[0].friction_cap = 1e6;  // bounds friction from 5.7 MPa on
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     config.materials[0].friction_bound = precision == Precision::full ? "sharp" : "smooth";
+    config.materials[0].criterion = precision == Precision::full ? "hyperbola" : "corner";
     std::uint64_t hash = 0;
     EnergyBalance energy{};
     const auto expect_same = [&](int threads, Lanes lanes, Space space) {

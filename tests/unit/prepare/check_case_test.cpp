@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 
@@ -130,6 +131,20 @@ TEST(CheckDem, refuses_friction_that_nears_no_bound) {
             std::string::npos);
   config.materials[0].friction_cap = 3e6;
   EXPECT_EQ(refused([&] { dem::check_case(config); }).find("friction_cap"), std::string::npos);
+}
+
+TEST(CheckDem, refuses_a_hyperbola_whose_asymptote_passes_below_the_tensile_strength) {
+  dem::Config config = dem::case_with_materials();
+  dem::MaterialConfig& m = config.materials[0];
+  m.tensile_strength = 2e6;
+  m.friction_angle = std::atan(0.5);
+  m.cohesion = 0.9e6;
+  EXPECT_EQ(refused([&] { dem::check_case(config); }).find("hyperbola"), std::string::npos);
+  m.criterion = "hyperbola";
+  EXPECT_NE(refused([&] { dem::check_case(config); }).find("needs a cohesion above"),
+            std::string::npos);
+  m.cohesion = 1.1e6;
+  EXPECT_EQ(refused([&] { dem::check_case(config); }).find("hyperbola"), std::string::npos);
 }
 
 TEST(CheckDem, refuses_what_ldpm_cannot_do) {
