@@ -10,7 +10,7 @@ BR_HD double part_along(int axis, const Vec3& v) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/// What a plate reads, too: the velocity of an element in the step to come.
+/// The velocity of an element in the step to come, as a plate reads it.  [m/s]
 struct Comes {
   bool asked;
   Kick kick;

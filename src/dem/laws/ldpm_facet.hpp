@@ -120,7 +120,7 @@ struct LdpmFacet {
     if (any(open)) step.softens = opens(length, square, old, step);
     if (any(!open)) step.slides = closes(volumetric, step);
   }
-  /// What decays, where anything does.
+  /// Factor of softening and friction in this step, 1 where neither acts.  [-]
   template <class R>
   BR_HD R decay_of(const Step<R>& step) const {
     if (!step.decays()) return constant<R>(1.0);

@@ -19,8 +19,8 @@ struct LaggingReading {
   }
 };
 
-/// Those of a case. They look every servo_every steps, so that threads, devices and resumed runs
-/// tell the same. Of several ranks the first one has the readings.
+/// The lagging probes of a case look every servo_every steps, so that threads, devices, resumed
+/// runs tell alike. Of several ranks the first one has the readings.
 class LaggingProbes {
  public:
   explicit LaggingProbes(const std::vector<ProbeConfig>& probes) {
