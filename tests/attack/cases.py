@@ -42,14 +42,14 @@ def mistake(text, random_):
 
 def typos(options):
     result = 0
-    for case in CASES:
+    for case in options.case:
         attack = Attack(f"case with a mistake, {case}", "cases")
         random_ = random.Random(options.seed)
         shutil.copy(os.path.join(HERE, "pierced.inp"), attack.folder)
         with open(CASES[case]) as file:
             text = file.read()
         passed = 0
-        while attack.runs < options.runs and time.time() - attack.begun < options.seconds / (4 * len(CASES)):
+        while attack.runs < options.runs and time.time() - attack.begun < options.seconds / (4 * len(options.case)):
             path = attack.path("case.toml")
             with open(path, "w") as file:
                 file.write(mistake(text, random_))
@@ -158,6 +158,7 @@ PARTS = {"typos": typos, "absurd": absurd, "full": full, "long": long}
 def main():
     parser = arguments(__doc__, 100)
     parser.add_argument("--part", choices=PARTS, help="only this one")
+    parser.add_argument("--case", nargs="+", choices=list(CASES), default=list(CASES), help="mistakes in these alone")
     options = parser.parse_args()
     if options.part is not None:
         options.seconds *= {"typos": 4, "absurd": 4, "full": 4, "long": 1}[options.part]

@@ -14,7 +14,7 @@ import sys
 import time
 
 import common
-from common import ALONE, Attack, CASES, EXIT_CODES, arguments, breccia, checkpoints, resume, run, state_hash, tool
+from common import Attack, CASES, EXIT_CODES, arguments, breccia, checkpoints, resume, run, state_hash, tool
 
 STEPS = 60
 LIBRARY = tool("libattack_device_faults.so")
@@ -116,12 +116,12 @@ def main():
     parser.add_argument("--jobs", type=int, default=8)
     parser.add_argument("--device", default="cuda", help="as --device of the program")
     parser.add_argument("--part", choices=("alloc", "lost", "flips"), help="only this one")
-    parser.add_argument("--case", choices=[case for case in CASES if case not in ALONE], help="only this one")
+    parser.add_argument("--case", choices=list(CASES), help="only this one")
     options = parser.parse_args()
     common.DEVICE += ["--device", options.device]
     drawn = random.Random(options.seed)
     parts = [options.part] if options.part else ["alloc", "lost", "flips"]
-    cases = [options.case] if options.case else [case for case in CASES if case not in ALONE]
+    cases = [options.case] if options.case else list(CASES)
     options.seconds /= len(cases) * sum(3 if part == "flips" else 1 for part in parts)
     result = 0
     for case in cases:
