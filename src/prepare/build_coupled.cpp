@@ -25,13 +25,16 @@ std::string of_part(const char* part, const std::string& problem,
 /// Calls check, whose problems then begin with the name of the part.
 template <class Check>
 void of_part(const coupled::Config& config, const char* part, const Check& check) {
+  const auto named = [&](std::vector<std::string> problems) {
+    for (std::string& problem : problems) problem = of_part(part, problem, config.stages);
+    return problems;
+  };
   try {
     check();
   } catch (const prepare::Refusal& found) {
-    std::vector<std::string> problems;
-    for (const std::string& problem : found.problems)
-      problems.push_back(of_part(part, problem, config.stages));
-    prepare::refuse(problems, "in the case");
+    prepare::refuse(named(found.problems), "in the case");
+  } catch (const prepare::Unreadable& found) {
+    prepare::refuse<prepare::Unreadable>(named(found.problems), "in the case");
   }
 }
 

@@ -182,7 +182,13 @@ AnyConfig read_config(const Source& source, const std::vector<std::string>& over
 template <class Config>
 auto model_of(const Case& read, const Config& config) {
   using Model = decltype(build_model(config, read.folder));
-  return read.model ? std::get<Model>(*read.model) : build_model(config, read.folder);
+  if (read.model) return std::get<Model>(*read.model);
+  try {
+    return build_model(config, read.folder);
+  } catch (const IoError&) {
+    prepare::check_files(config, read.folder);  // names the keys of all that cannot be read
+    throw;
+  }
 }
 
 std::string size_text(const dem::Model& model) {
@@ -367,7 +373,7 @@ std::string save_model_of(const Case& read, CheckpointWriter& writer) {
       [&](const auto& config) {
         const MemoryPlan plan = memory_plan(config);
         refuse_without_memory(plan, plan.build_bytes, 1);
-        const auto model = model_of(read, config);
+        const auto model = located(read, [&] { return model_of(read, config); });
         save_model(writer, model);
         return size_text(model);
       },

@@ -80,6 +80,9 @@ auto located(const Case& read, const Work& work) {
   } catch (const InputError& error) {
     if (read.file.empty()) throw;
     throw InputError(with_lines(error.what(), read.file));
+  } catch (const IoError& error) {
+    if (read.file.empty()) throw;
+    throw IoError(with_lines(error.what(), read.file));
   }
 }
 

@@ -118,12 +118,13 @@ std::string with_lines(const std::string& message, const std::string& path) {
     }
     at = end;
   }
-  const std::string in_case = " in the case; ";
-  if (const std::size_t at = told.find(in_case); at < told.find('\n'))
-    told.replace(at, in_case.size(), " in " + file + "; ");
-  const std::string with_model = " with the model; ";
-  if (const std::size_t at = told.find(with_model); at < told.find('\n'))
-    told.replace(at, with_model.size(), " with the model of " + file + "; ");
+  const auto name = [&](const std::string& heading, const std::string& now) {
+    if (const std::size_t at = told.find(heading); at < told.find('\n'))
+      told.replace(at, heading.size(), now + file + "; ");
+  };
+  name(" in the case; ", " in ");
+  name(" with the model; ", " with the model of ");
+  name(" with the files of the case; ", " with the files of ");
   return told;
 }
 

@@ -26,7 +26,7 @@ class FileChecks {
   explicit FileChecks(const std::string& case_folder) : folder_(case_folder) {}
 
   /// Reads a file and notes what is wrong with it.
-  /// @param key  of what names it
+  /// @param key  that names it
   void check(const std::string& key, const std::string& file,
              const std::function<void(const std::string& path)>& read) {
     const auto note = [&](const Error& error) { problems_.push_back(key + ": " + error.what()); };
@@ -44,12 +44,8 @@ class FileChecks {
     wrong_ = true;
   }
   void refuse_all() const {
-    try {
-      refuse(problems_, "with the files of the case");
-    } catch (const InputError& error) {
-      if (wrong_) throw;
-      throw IoError(error.what());
-    }
+    const char* const of = "with the files of the case";
+    wrong_ ? refuse(problems_, of) : refuse<Unreadable>(problems_, of);
   }
 
  private:
@@ -73,14 +69,14 @@ void check_files(const dem::Config& config, const std::string& case_folder) {
   FileChecks files(case_folder);
   for (const dem::BodyConfig& body : config.bodies) {
     if (body.shape == "stl")
-      files.check("body." + body.name, body.file,
+      files.check("body." + body.name + ".file", body.file,
                   [&](const std::string& path) { read_surface(path, body.file_unit); });
     for (const dem::CutConfig& cut : body.cuts)
       if (cut.shape == "stl")
         files.check("body." + body.name + ".cut", cut.file,
                     [&](const std::string& path) { read_surface(path, cut.file_unit); });
     if (body.shape == "file")
-      files.check("body." + body.name, body.file, [&](const std::string& path) {
+      files.check("body." + body.name + ".file", body.file, [&](const std::string& path) {
         const dem::MaterialConfig* of = item_named(config.materials, body.material);
         if (of != nullptr && of->law == "ldpm")
           read_ldpm_mesh(path);
@@ -101,15 +97,15 @@ void check_files(const fdem::Config& config, const std::string& case_folder) {
   for (const fdem::BodyConfig& body : config.bodies) {
     if (!meshes && needs_gmsh(body)) files.add("body." + body.name + ": " + no_mesher("its shape"));
     if (!body.file.empty())
-      files.check("body." + body.name, body.file,
+      files.check("body." + body.name + ".file", body.file,
                   [&](const std::string& path) { read_body(body, path); });
     if (body.grains.kind == "picture")
-      files.check("body." + body.name, body.grains.file,
+      files.check("body." + body.name + ".grains.file", body.grains.file,
                   [](const std::string& path) { read_png(path); });
   }
   for (const fdem::JointSetConfig& set : config.joint_sets)
     if (!set.file.empty())
-      files.check("joint_set." + set.name, set.file,
+      files.check("joint_set." + set.name + ".file", set.file,
                   [&](const std::string&) { lines_of_set(set, config.seed, 0, case_folder); });
   files.refuse_all();
 }
@@ -120,10 +116,10 @@ void check_files(const fdem3::Config& config, const std::string& case_folder) {
   for (const fdem3::BodyConfig& body : config.bodies) {
     if (!meshes && needs_gmsh(body)) files.add("body." + body.name + ": " + no_mesher("its shape"));
     if (body.shape == "stl")
-      files.check("body." + body.name, body.file,
+      files.check("body." + body.name + ".file", body.file,
                   [](const std::string& path) { read_surface(path, 1.0); });
     if (body.shape == "mesh")
-      files.check("body." + body.name, body.file,
+      files.check("body." + body.name + ".file", body.file,
                   [&](const std::string& path) { tetrahedra_of(body, read_tet_mesh(path)); });
   }
   files.refuse_all();

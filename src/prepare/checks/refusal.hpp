@@ -18,28 +18,40 @@ struct Refusal : InputError {
   std::vector<std::string> problems;
 };
 
+/// Files that cannot be read, found together.
+struct Unreadable : IoError {
+  Unreadable(const std::string& text, std::vector<std::string> all)
+      : IoError(text), problems(std::move(all)) {}
+  std::vector<std::string> problems;
+};
+
 /// Nothing if there are no problems. @param of  where they are: "in the case", "with the model"
-/// @throws InputError with one line for each problem
-inline void refuse(const std::vector<std::string>& problems, const char* of) {
+/// @throws Refusal (or Unreadable) with one line for each problem
+template <class Found = Refusal>
+void refuse(const std::vector<std::string>& problems, const char* of) {
   if (problems.empty()) return;
-  throw Refusal(fmt::format("{} problem{} {}; nothing was run.\n  {}", problems.size(),
-                            problems.size() == 1 ? "" : "s", of, fmt::join(problems, "\n  ")),
-                problems);
+  throw Found(fmt::format("{} problem{} {}; nothing was run.\n  {}", problems.size(),
+                          problems.size() == 1 ? "" : "s", of, fmt::join(problems, "\n  ")),
+              problems);
 }
 
 /// Makes all checks, and refuses what any of them finds at once.
 template <class... Checks>
 void refuse_all(const char* of, const Checks&... checks) {
   std::vector<std::string> problems;
+  bool wrong = false;  // more than files that cannot be read
   const auto collect = [&](const auto& check) {
     try {
       check();
     } catch (const Refusal& found) {
       problems.insert(problems.end(), found.problems.begin(), found.problems.end());
+      wrong = true;
+    } catch (const Unreadable& found) {
+      problems.insert(problems.end(), found.problems.begin(), found.problems.end());
     }
   };
   (collect(checks), ...);
-  refuse(problems, of);
+  wrong ? refuse(problems, of) : refuse<Unreadable>(problems, of);
 }
 
 }  // namespace breccia::prepare

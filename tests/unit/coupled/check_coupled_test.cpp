@@ -118,6 +118,32 @@ TEST(CheckCoupled, finds_what_is_wrong_by_key) {
   EXPECT_TRUE(has(problems_of(staged, "friction = 0.2", "remove = [\"pile\"]"), "remove"));
 }
 
+/// Files of both methods that are not there are told together, by the keys that name them.
+TEST(CheckCoupled, names_files_that_cannot_be_read_by_key) {
+  std::string text = good;
+  const auto put = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("size = [0.04, 0.04, 0.04]\npack = { count = 30, compactness = 0.35 }\n", "");
+  put("shape = \"box\"", "shape = \"file\"\nfile = \"none.csv\"");
+  put("center = [0.0, 0.0, 0.0205]\n", "");
+  put("shape = \"box\"", "shape = \"mesh\"\nfile = \"none.inp\"");
+  put("size = [0.08, 0.08, 0.02]\nstructured = true\nmesh_size = \"20 mm\"\n", "");
+  put("center = [0.0, 0.0, -0.01]\n", "");
+  const Case read = case_of_text(text, "both.toml", "/", {});
+  for (const bool build : {false, true}) {
+    std::string told;
+    try {
+      build ? (void)method_to_look_at(read) : check_files(read);
+    } catch (const IoError& error) {
+      told = error.what();
+    }
+    EXPECT_TRUE(has(told, "2 problems")) << told;
+    EXPECT_TRUE(has(told, "spheres.body.pile.file: /none.csv: cannot read")) << told;
+    EXPECT_TRUE(has(told, "tetrahedra.body.block.file: /none.inp: cannot read")) << told;
+  }
+}
+
 std::unique_ptr<Method> method_of(const Case& read, int threads = 1, Space space = Space::host) {
   Exec exec;
   exec.threads = threads;

@@ -340,9 +340,9 @@ TEST(CheckFiles, names_every_file_that_building_could_not_read) {
   config.bodies.push_back(gone);
   const std::string text = refused([&] { prepare::check_files(config, folder.path()); });
   EXPECT_NE(text.find("2 problems"), std::string::npos) << text;
-  EXPECT_NE(text.find("body.bad: "), std::string::npos) << text;
+  EXPECT_NE(text.find("body.bad.file: "), std::string::npos) << text;
   EXPECT_NE(text.find("line 2"), std::string::npos) << text;
-  EXPECT_NE(text.find("body.gone: "), std::string::npos) << text;
+  EXPECT_NE(text.find("body.gone.file: "), std::string::npos) << text;
   config.bodies.erase(config.bodies.begin());
   EXPECT_THROW(prepare::check_files(config, folder.path()), IoError);
   replace_file(folder.path() + "/gone.csv", "0,0,0,0.01\n");

@@ -143,8 +143,16 @@ TEST_F(Program, ChecksTheFilesThatACaseNames) {
   from_file.replace(shape, 17, "shape = \"file\"\nfile = \"gone.csv\"");
   replace_file(path("file.toml"), from_file);
   EXPECT_EQ(run("check " + path("file.toml")), 3);
-  EXPECT_NE(output().find("body.left: " + path("gone.csv") + ": cannot read"), std::string::npos)
-      << output();
+  const std::string line = std::to_string(
+      1 + std::count(from_file.begin(), from_file.begin() + from_file.find("file = "), '\n'));
+  const std::string told =
+      "line " + line + ", body.left.file: " + path("gone.csv") + ": cannot read";
+  EXPECT_NE(output().find(told), std::string::npos) << output();
+  EXPECT_NE(output().find("with the files of " + path("file.toml")), std::string::npos) << output();
+  EXPECT_EQ(run("run " + path("file.toml") + " -o " + path("out")), 3);
+  EXPECT_NE(output().find(told), std::string::npos) << output();
+  EXPECT_EQ(run("prepare " + path("file.toml") + " -o " + path("file.br")), 3);
+  EXPECT_NE(output().find(told), std::string::npos) << output();
   replace_file(path("gone.csv"), "0,0,0,0.01\n");
   EXPECT_EQ(run("check " + path("file.toml")), 0) << output();
 }
