@@ -43,7 +43,11 @@ build() {  # COMPILER LEVEL FOLDER: leaves the program as FOLDER/breccia
   [ "$PARTS" = methods ] || return 0
   local words=()
   for name in "${methods[@]}"; do words+=("libbr_$name.a=$PWD/$3/libbr_$name.a"); done
-  [[ $1 == clang* ]] && words+=(" -o = $("$1" -print-file-name=libomp.so.5) -o ")
+  if [[ $1 == clang* ]]; then  # its OpenMP, where CMake found it
+    local omp
+    omp=$(sed -n 's/^OpenMP_omp_LIBRARY:FILEPATH=//p' "$3/CMakeCache.txt")
+    words+=(" -o = $omp -Wl,-rpath,${omp%/*} -o ")
+  fi
   relink breccia "$3/breccia" "${words[@]}"
 }
 

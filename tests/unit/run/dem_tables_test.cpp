@@ -12,7 +12,7 @@
 namespace breccia {
 namespace dem_tables_test {
 
-const Table& named(const std::vector<Table>& tables, const std::string& name) {
+const Table& named(const std::vector<Table>& tables, const char* name) {
   for (const Table& table : tables)
     if (table.name == name) return table;
   throw std::runtime_error(name);
