@@ -39,6 +39,8 @@ class Serving(unittest.TestCase):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
         connection.putrequest(method, path, skip_host=True)
         connection.putheader("Host", host or f"127.0.0.1:{self.port}")
+        if method in ("POST", "PUT"):
+            connection.putheader("Content-Length", "0")  # without it the server waits 5 s for a body
         connection.endheaders()
         answer = connection.getresponse()
         body = answer.read().decode()
