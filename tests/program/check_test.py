@@ -38,6 +38,33 @@ class Check(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("discontinuity.crack: meets no edge between two triangles", words)
 
+    # Names with spaces and dots took line and key away: the path of a key was parted at them.
+    def test_names_with_spaces_and_dots_keep_the_line(self):
+        text = """breccia = 1
+method = "fdem2d"
+time.end = "1 ms"
+[material."rock no. 2"]
+joints = "none"
+[[body]]
+name = "the block"
+material = "rock no. 2"
+size = [1.0, 1.0]
+mesh_size = 0.5
+[[load]]
+name = "side no. 3"
+pressure = 1.0
+[[stage]]
+name = "wait for v1.5"
+when = "forces > 3e5"
+[[stage.load]]
+name = "side no. 3"
+pressure = [[0, 0], [2, 1], [1, 0]]
+"""
+        code, words = self.told(text)
+        self.assertEqual(code, 2)
+        self.assertIn('line 16, stage.wait for v1.5.when: "forces" is not a probe', words)
+        self.assertIn("line 19, stage.wait for v1.5.load.side no. 3.pressure[2]: its time", words)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
-#include <utility>
+#include <vector>
 
 #include "io/case/case_file.hpp"
 #include "io/case/case_source.hpp"
@@ -32,26 +31,21 @@ const toml::node* item_told_of(const toml::array& list, const std::string& key,
   return nullptr;
 }
 
-/// The part of a key's path up to its first dot, and the rest.
-std::pair<std::string, std::string> parted(const std::string& path) {
-  const std::size_t dot = std::min(path.find('.'), path.size());
-  return {path.substr(0, dot), path.substr(std::min(dot + 1, path.size()))};
-}
-
 /// The line of the deepest part of a key's path that is in the file; 0: none of it is.
-std::uint32_t line_of(const toml::table& root, const std::string& path,
+std::uint32_t line_of(const toml::table& root, const std::vector<std::string>& path,
                       const std::string& sentence) {
   const toml::table* table = &root;
   std::uint32_t line = 0;
-  for (auto [part, rest] = parted(path); table != nullptr && !part.empty();
-       std::tie(part, rest) = parted(rest)) {
-    const toml::node* below = table->get(part.substr(0, part.find('[')));
+  for (std::size_t k = 0; table != nullptr && k < path.size(); ++k) {
+    const toml::node* below = table->get(path[k].substr(0, path[k].find('[')));
     if (below == nullptr) break;
     if (const toml::array* list = below->as_array(); list && list->is_homogeneous<toml::table>()) {
-      std::tie(part, rest) = parted(rest);
-      below = item_of(*list, part);
-      if (below == nullptr && (below = item_told_of(*list, part, sentence)) != nullptr)
-        rest = rest.empty() ? part : part + "." + rest;
+      const std::string name = k + 1 < path.size() ? path[k + 1] : "";
+      below = item_of(*list, name);
+      if (below != nullptr)
+        ++k;
+      else
+        below = item_told_of(*list, name, sentence);
       if (below == nullptr) break;
     }
     line = below->source().begin.line;
@@ -60,21 +54,52 @@ std::uint32_t line_of(const toml::table& root, const std::string& path,
   return line;
 }
 
-/// "body.slab.size" of "body.slab.size needs ...", "support.left" of "support left holds ...",
-/// "body.slab.material" of "body.slab: material = ...".
-std::string key_at_start(const toml::table& root, const std::string& sentence) {
-  const auto end_of_word = [&](std::size_t from) {
-    return std::min(sentence.find_first_of(" :=,;\n", from), sentence.size());
-  };
-  const std::size_t end = end_of_word(0);
-  std::string key = sentence.substr(0, end);
-  if (key.find('.') == std::string::npos && root.contains(key) && sentence.substr(end, 1) == " ")
-    key += "." + sentence.substr(end + 1, end_of_word(end + 1) - end - 1);
-  while (key.ends_with('.')) key.pop_back();
-  const std::size_t begin = end + 2, stop = end_of_word(std::min(begin, sentence.size()));
-  if (sentence.substr(end, 2) == ": " && sentence.substr(stop, 3) == " = ")
-    key += "." + sentence.substr(begin, stop - begin);
-  return key;
+/// Where a word that begins there ends.
+std::size_t end_of_word(const std::string& sentence, std::size_t from, const char* ends) {
+  return std::min(sentence.find_first_of(ends, std::min(from, sentence.size())), sentence.size());
+}
+
+/// The longest name of an item of a list that stands there; names have spaces and dots, too.
+std::string name_at(const toml::array& list, const std::string& sentence, std::size_t from) {
+  std::string longest;
+  for (const toml::node& item : list) {
+    const auto name = (*item.as_table())["name"].value_or(std::string());
+    const std::size_t end = from + name.size();
+    if (name.size() > longest.size() && sentence.compare(from, name.size(), name) == 0 &&
+        end_of_word(sentence, end, " .:=,;\n") == end)
+      longest = name;
+  }
+  return longest;
+}
+
+/// "body", "the slab", "size" of "body.the slab.size needs ...", "support", "left" of "support left
+/// holds ...", "body", "slab", "material" of "body.slab: material = ...".
+std::vector<std::string> key_at_start(const toml::table& root, const std::string& sentence) {
+  std::vector<std::string> path;
+  const toml::table* table = &root;
+  const toml::array* list = nullptr;
+  for (std::size_t at = 0;;) {
+    std::string part = list != nullptr ? name_at(*list, sentence, at) : "";
+    if (part.empty()) part = sentence.substr(at, end_of_word(sentence, at, " .:=,;\n") - at);
+    if (part.empty()) break;
+    path.push_back(part);
+    at += part.size();
+    const toml::node* below = list != nullptr    ? item_of(*list, part)
+                              : table != nullptr ? table->get(part.substr(0, part.find('[')))
+                                                 : nullptr;
+    table = below != nullptr ? below->as_table() : nullptr;
+    list = below != nullptr ? below->as_array() : nullptr;
+    if (list != nullptr && !list->is_homogeneous<toml::table>()) list = nullptr;
+    const bool goes_on = sentence.substr(at, 1) == ".";
+    if (!goes_on && !(path.size() == 1 && below != nullptr && sentence.substr(at, 1) == " ")) {
+      const std::size_t begin = at + 2, stop = end_of_word(sentence, begin, " :=,;\n");
+      if (sentence.substr(at, 2) == ": " && sentence.substr(stop, 3) == " = ")
+        path.push_back(sentence.substr(begin, stop - begin));
+      break;
+    }
+    ++at;
+  }
+  return path;
 }
 
 }  // namespace
