@@ -39,20 +39,29 @@ void ServoState::follow_force(const ServoConfig& servo, double missing, const Se
 ///
 ///   (M/s + K dt) v = M/s v_old + F - R + K dt u          s: from the middle of a step to the next
 ///
-/// which is stable for any mass; without one R' = F. Where K and u are not known, M is large enough
-/// for a step without them.
+/// which is stable for any mass; without one R' = F. What stiffens by k over the way to its
+/// greatest speed v_m, as faces that are not yet in touch, adds k (v - v_old)^2 dt/(v_m - v_old)
+/// where it is pressed. Where K and u are not known, M is large enough for a step without them.
 void ServoState::push_plate(const ServoConfig& servo, double missing, const ServoReading& touched,
                             double last_dt, double next_dt) {
   const double mass = std::max(servo.mass, touched.inertia.value());
   const double inertia = mass / (0.5 * (last_dt + next_dt));
-  const double resists = touched.stiffness.value() * next_dt;
+  const double resists = inertia + touched.stiffness.value() * next_dt;
   const double most = share * servo.speed;
-  if (!(inertia + resists > 0.0))
-    velocity = missing > 0.0 ? most : missing < 0.0 ? -most : 0.0;
+  const double aims = missing + touched.force.value();
+  const double along = aims < 0.0 ? -1.0 : 1.0;  // in which it presses
+  const double left = most - along * velocity;
+  const double lacks =
+      along * (missing + (touched.flow.value() - touched.stiffness.value() * velocity) * next_dt);
+  const double more = touched.stiffer.value() * next_dt;
+  if (lacks > 0.0 && left > 0.0 && more > 0.0)
+    velocity +=
+        along * 2.0 * lacks / (resists + std::sqrt(resists * resists + 4.0 * more / left * lacks));
+  else if (resists > 0.0)
+    velocity = (inertia * velocity + missing + touched.flow.value() * next_dt) / resists;
   else
-    velocity = std::clamp(
-        (inertia * velocity + missing + touched.flow.value() * next_dt) / (inertia + resists),
-        -most, most);
+    velocity = missing > 0.0 ? most : missing < 0.0 ? -most : 0.0;
+  velocity = std::clamp(velocity, -most, most);
 }
 
 }  // namespace breccia

@@ -83,6 +83,7 @@ struct ServoReading {
   ExactSum mass;       ///< of that  [kg]
   // For plates:
   ExactSum flow;     ///< stiffness times the velocity that it will have  [N/s]
+  ExactSum stiffer;  ///< more stiffness, in the mean over the way that its speed lets it go  [N/m]
   ExactSum inertia;  ///< that a plate needs, where the force to come is not known  [kg]
 };
 BR_HD inline ServoReading operator+(ServoReading a, const ServoReading& b) {
@@ -90,6 +91,7 @@ BR_HD inline ServoReading operator+(ServoReading a, const ServoReading& b) {
   a.stiffness.add(b.stiffness);
   a.mass.add(b.mass);
   a.flow.add(b.flow);
+  a.stiffer.add(b.stiffer);
   a.inertia.add(b.inertia);
   return a;
 }

@@ -1,7 +1,16 @@
 #include "fdem/servos.hpp"
 
 #include "fdem/shape.hpp"
+#include "fdem/stepping/launches.hpp"
 #include "fdem_shared/servo_forces.hpp"
+
+namespace breccia::fdem {
+
+inline CoupleForces<double> pressing_couples(World& w) {
+  return couple_kernel<double>(w);
+}
+
+}  // namespace breccia::fdem
 
 namespace breccia::fdem_shared {
 

@@ -24,6 +24,7 @@ struct Shape {
   using Motion = fdem::Motion;
   using Move = fdem::MoveTriangles;
   using Hold = fdem::Hold;
+  using Stage = JointStage;
   using ContactPair = fdem::ContactPair;
   using Reference = Mat2;  ///< of an element at the start
   using Sides = EdgeJoints;
@@ -80,6 +81,9 @@ struct Shape {
   /// A third of 3 p L (1/H + 1/H), one edge of an equilateral triangle against another: of each
   /// corner of a body.  [N/m2]
   BR_HD static double pressed_corner(double penalty, const Mat2&) { return 2.3 * penalty; }
+
+  /// Of what a support holds as a whole.
+  static bool contact_alone_presses(const World& w) { return w.triangles.external.size() == 0; }
 
   // Set-up (fdem/setup).
   struct AtStart {

@@ -17,6 +17,7 @@ struct Shape {
   using Motion = fdem3::Motion;
   using Move = fdem3::MoveTetrahedra;
   using Hold = fdem3::Hold;
+  using Stage = JointStage;
   using ContactPair = fdem3::ContactPair;
   using Reference = ShapeGradients;  ///< of an element at the start
   using Sides = FaceJoints;
@@ -78,6 +79,11 @@ struct Shape {
   BR_HD static double pressed_corner(double penalty, const ShapeGradients& shape) {
     const double size = 100.0 * near_reach(shape);
     return 1.83 * penalty * size * size;
+  }
+
+  /// Of what a support holds as a whole: no loads, no spheres.
+  static bool contact_alone_presses(const World& w) {
+    return w.tetrahedra.external.size() == 0 && !w.meets_spheres;
   }
 
   // Set-up (fdem3/setup).

@@ -31,9 +31,10 @@ using fdem_shared::WholeMesh;
 struct World {
   explicit World(const Exec& how);
 
-  Exec exec;             ///< (ranks: its space)
-  Lanes lanes;           ///< (set-up)
-  ReadOnly<Case> given;  ///< constants: fdem3/case.hpp (set-up, stage)
+  Exec exec;                   ///< (ranks: its space)
+  Lanes lanes;                 ///< (set-up)
+  bool meets_spheres = false;  ///< they may press on it, in a case of both methods (set-up)
+  ReadOnly<Case> given;        ///< constants: fdem3/case.hpp (set-up, stage)
 
   // Prescribed motions: constant but for those that servos lead.
   std::vector<PrescribedMotion> prescribed;  ///< (motions; set-up, stage, servo)

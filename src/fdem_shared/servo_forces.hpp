@@ -1,23 +1,43 @@
 #pragma once
 // The text of fdem_shared/servos.hpp.
 
+#include "core/incidence.hpp"
 #include "domain/set_here.hpp"
-#include "exec/for_each.hpp"
+#include "exec/fold_sum.hpp"
 #include "fdem_shared/servos.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem_shared {
 
+/// Elements that a servo moves as a whole: those of a platen.
+template <class Shape>
+struct LedWhole {
+  std::int16_t motion;
+  int axis;
+  View<const Index> hold;
+  View<const typename Shape::Hold> holds;
+
+  BR_HD bool operator()(Index t) const {
+    if (hold[t] < 0) return false;
+    const typename Shape::Hold& h = holds[hold[t]];
+    for (int k = 0; k < static_cast<int>(Shape::corners); ++k)
+      if (h.motion[k] != motion || (h.fixed_at(k) >> axis & 1) == 0) return false;
+    return true;
+  }
+};
+
 /// A held corner takes what all else does to it. How stiff that is, it knows by its own modulus. A
-/// plate knows that of contact alone where the whole element goes with it, as in a platen; else the
-/// corner's own mass stands for what is tied to it.
+/// plate knows what a platen's contacts will do (PlatenPush); of what else may act on it the mass
+/// of its corners tells, or the most that contact can do.
 template <class Shape>
 struct SupportPush {
   OwnedView owned;
   int axis;
   double gravity;  ///< along the axis  [m/s2]
   bool plate;
-  double dt;  ///< of the next step  [s]
+  bool known;  ///< contact alone acts on a platen
+  double dt;   ///< of the next step  [s]
+  LedWhole<Shape> led;
   View<const Index> corners;
   View<const typename Shape::CornersOfElement> force;
   View<const double> mass;
@@ -26,8 +46,9 @@ struct SupportPush {
   View<const typename Shape::Reference> reference;
   View<const typename Shape::ContactPair> contacts;
   Index materials;
-  View<const Index> hold;
-  View<const typename Shape::Hold> holds;
+  View<const typename Shape::Sides> sides;
+  View<const Index> side_a, side_b;
+  View<const typename Shape::Stage> stage;
 
   BR_HD ServoReading operator()(Index k) const {
     const Index n = corners[k], t = n / Shape::corners;
@@ -37,23 +58,109 @@ struct SupportPush {
     if (!plate) {
       r.stiffness.add(Shape::corner_stiffness(laws[law_of[t]], reference[t]));
       r.mass.add(mass[t]);
-    } else if (hold[t] >= 0 && goes_as_one(holds[hold[t]])) {
+    } else if (!led(t)) {
+      r.inertia.add(mass[t]);
+    } else if (!known || is_tied(t)) {
       const double penalty = contacts[material[t] * materials + material[t]].penalty;
       r.inertia.add(0.5 * dt * dt * Shape::pressed_corner(penalty, reference[t]));
-    } else {
-      r.inertia.add(mass[t]);
     }
     return r;
   }
-  BR_HD static bool goes_as_one(const typename Shape::Hold& h) {
-    for (int c = 1; c < Shape::corners; ++c)
-      if (h.motion[c] != h.motion[0]) return false;
-    return h.motion[0] >= 0;
+  /// Whether a joint ties it to an element that does not go with it.
+  BR_HD bool is_tied(Index t) const {
+    for (int k = 0; k < static_cast<int>(Shape::corners); ++k) {
+      const Index entry = sides[t].at[k];
+      if (entry < 0 || is_parted(stage[pair_of(entry)])) continue;
+      const Index joint = pair_of(entry);
+      const Index other = (side_of(entry) == 0 ? side_b[joint] : side_a[joint]) / Shape::corners;
+      if (!led(other)) return true;
+    }
+    return false;
   }
 };
 
-template <class World>
-ServoReading read_support(World& part, std::size_t number, int axis, bool plate) {
+/// What a platen's contacts will do. With the platen at the velocity v_0 that it has, and all else
+/// moved by the forces of the moment, it will push with P_1 in the step to come instead of P_0 now,
+/// and with K dt more for each m/s more: R' = R + (P_1 - P_0) + K (v - v_0) dt.
+template <class Shape, class Couples, class Kick>
+struct PlatenPush {
+  using Vector = typename Shape::Vector;
+  static constexpr int corners = static_cast<int>(Shape::corners);
+  OwnedView owned;
+  int axis;
+  double dt;        ///< of the next step  [s]
+  double velocity;  ///< v_0  [m/s]
+  double most;      ///< greatest v  [m/s]
+  double along;     ///< in which it presses: 1, -1
+  LedWhole<Shape> led;
+  Couples couples;
+  Kick kick;
+  View<const typename Shape::Reference> reference;
+
+  BR_HD ServoReading operator()(Index i) const {
+    ServoReading r;
+    add_to(r, i);
+    return r;
+  }
+  BR_HD void add_to(ServoReading& r, Index i) const {
+    constexpr double share = 1e-6;  // of an element: how far it goes to feel the stiffness
+    const Index a = couples.a[i], b = couples.b[i];
+    const bool by_a = led(a);
+    if (by_a == led(b) || !owned(by_a ? b : a)) return;
+    Vector x[2][corners];
+    place(a, 0.0, 0.0, x[0]);
+    place(b, 0.0, 0.0, x[1]);
+    const double now = push_of(i, by_a, x);
+    place(a, dt, 0.0, x[0]);
+    place(b, dt, 0.0, x[1]);
+    const double next = push_of(i, by_a, x);
+    const double way = share * 100.0 * Shape::near(reference[by_a ? a : b]);
+    const auto stiffness_over = [&](double farther) {
+      place(by_a ? a : b, dt, along * farther, x[by_a ? 0 : 1]);
+      return max(0.0, along * (push_of(i, by_a, x) - next) / farther);
+    };
+    const double stiffness = stiffness_over(way), farthest = (most - along * velocity) * dt;
+    r.stiffness.add(stiffness);
+    r.flow.add(stiffness * velocity - (next - now) / dt);
+    if (farthest > way) r.stiffer.add(stiffness_over(farthest) - stiffness);
+  }
+
+ private:
+  /// Corners after `span`, of a platen `way` farther along the axis.
+  BR_HD void place(Index t, double span, double way, Vector (&x)[corners]) const {
+    const auto of = kick.given(t);
+    for (int k = 0; k < corners; ++k) x[k] = of.nodes.at[k].position;
+    if (!(span > 0.0)) return;
+    if (led(t)) {
+      for (int k = 0; k < corners; ++k) {
+        x[k] += span * of.nodes.at[k].velocity;
+        part_of(x[k], axis) += way;
+      }
+    } else {
+      const auto next = kick(of);
+      for (int k = 0; k < corners; ++k) {
+        const int bits = of.hold >= 0 ? led.holds[of.hold].fixed_at(k) : 0;
+        x[k] += span * held_parts(bits, of.nodes.at[k].velocity, next.velocity[k]);
+      }
+    }
+  }
+  /// On the other one along the axis.  [N; in 2D N/m]
+  BR_HD double push_of(Index i, bool by_a, const Vector (&x)[2][corners]) const {
+    const double on_a = part_of(couples.pressing(i, x[0], x[1]), axis);
+    return by_a ? -on_a : on_a;
+  }
+};
+
+/// What a support's servo is to push with.  [N; in 2D N/m]
+template <class World, class Support>
+double target_of(const World& w, const Support& support) {
+  return support.servo.target(support.servo.aims_at(w.time, w.next_dt), support.history.begin);
+}
+
+/// @param number  of the set of its corners
+template <class World, class Support>
+ServoReading read_support(World& part, std::size_t support, std::size_t number,
+                          const Support& config) {
   using Shape = ShapeOf<World>;
   const auto& set = part.given->sets[number];
   auto& e = Shape::elements(part);
@@ -67,15 +174,45 @@ ServoReading read_support(World& part, std::size_t number, int axis, bool plate)
     keep_here(here, part.domain, e.id, set.nodes, Shape::corners, part.exec.space);
     corners = std::as_const(here.places).view();
   }
-  return fold(part.exec, corners.size, ServoReading{},
-              SupportPush<Shape>{part.domain.owned_view(), axis, part_of(part.given->gravity, axis),
-                                 plate, part.next_dt, corners, std::as_const(e.force).view(),
-                                 std::as_const(e.mass).view(), Shape::laws(part),
-                                 std::as_const(e.material).view(), part.given->laws.view(),
-                                 std::as_const(Shape::reference(e)).view(),
-                                 part.given->contact_pairs.view(), part.given->materials,
-                                 std::as_const(e.hold).view(), part.given->holds.view()},
-              Sum{});
+  const SupportServoConfig& servo = config.servo;
+  const int axis = servo.axis_number();
+  const ServoState& state = part.servos[support];
+  std::int16_t motion = -2;
+  for (const ServoMotion& m : part.servo_motions)
+    if (m.servo == support) motion = m.motion;
+  const OwnedView owned = part.domain.owned_view();
+  const View<const typename Shape::Reference> reference = std::as_const(Shape::reference(e)).view();
+  const LedWhole<Shape> led{motion, axis, std::as_const(e.hold).view(), part.given->holds.view()};
+  FoldSum<ServoReading> sum(part.exec);
+  sum.add(corners.size, SupportPush<Shape>{owned,
+                                           axis,
+                                           part_of(part.given->gravity, axis),
+                                           servo.is_plate(),
+                                           Shape::contact_alone_presses(part),
+                                           part.next_dt,
+                                           led,
+                                           corners,
+                                           std::as_const(e.force).view(),
+                                           std::as_const(e.mass).view(),
+                                           Shape::laws(part),
+                                           std::as_const(e.material).view(),
+                                           part.given->laws.view(),
+                                           reference,
+                                           part.given->contact_pairs.view(),
+                                           part.given->materials,
+                                           std::as_const(Shape::sides(part)).view(),
+                                           std::as_const(Shape::side_a(part.joints)).view(),
+                                           std::as_const(Shape::side_b(part.joints)).view(),
+                                           std::as_const(part.joints.stage).view()});
+  if (servo.is_plate()) {
+    const auto couples = pressing_couples(part);
+    const auto moves = kick(part);
+    sum.add(part.couples.size(),
+            PlatenPush<Shape, decltype(couples), decltype(moves)>{
+                owned, axis, part.next_dt, state.velocity, state.share * servo.speed,
+                target_of(part, config) < 0.0 ? -1.0 : 1.0, led, couples, moves, reference});
+  }
+  return sum.sum();
 }
 
 template <class World, class Config>
@@ -83,10 +220,9 @@ std::vector<ServoReading> read_servos(World& part, const Config& now) {
   std::vector<ServoReading> readings;
   const std::size_t bodies = part.given->sets.size() - now.supports.size();
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
-    const SupportServoConfig& servo = now.supports[s].servo;
-    readings.push_back(servo.is_due(part.step)
-                           ? read_support(part, bodies + s, servo.axis_number(), servo.is_plate())
-                           : ServoReading{});
+    const auto& support = now.supports[s];
+    readings.push_back(support.servo.is_due(part.step) ? read_support(part, s, bodies + s, support)
+                                                       : ServoReading{});
   }
   return readings;
 }
@@ -106,11 +242,8 @@ void correct_servos(World& w, const Config& now, const std::vector<ServoReading>
   for (std::size_t s = 0; s < now.supports.size(); ++s) {
     const auto& support = now.supports[s];
     if (!support.servo.is_due(w.step)) continue;
-    w.servos[s].correct(
-        support.servo,
-        support.servo.target(support.servo.aims_at(w.time, w.next_dt), support.history.begin) -
-            sums[s].force.value(),
-        sums[s], w.last_dt, w.next_dt);
+    w.servos[s].correct(support.servo, target_of(w, support) - sums[s].force.value(), sums[s],
+                        w.last_dt, w.next_dt);
   }
   place_servos(w);
 }

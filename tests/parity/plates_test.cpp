@@ -120,9 +120,9 @@ TEST(Plate, holds_its_force_within_a_hundredth_through_failure) {
   EXPECT_LT(method->energy().error_relative, 5e-3);
 }
 
-/// A platen of triangles that a support holds as a whole and presses on a block with, as light as
-/// its contact lets it be; the block's far end strikes.
-TEST(Plate, of_triangles_answers_a_blow_faster_than_its_own_mass_would) {
+/// A platen of triangles that a support holds as a whole presses on a block, whose far end strikes.
+/// Without inertia it keeps its force to what stiffens within a step.
+TEST(Plate, of_triangles_keeps_its_force_through_a_blow) {
   using fdem::testing::far;
   constexpr double force = 2e5, strikes = 1e-3, strike = 0.05;
   const auto deviation = [&](double mass) {
@@ -147,9 +147,8 @@ TEST(Plate, of_triangles_answers_a_blow_faster_than_its_own_mass_would) {
     EXPECT_LT(method->energy().error_relative, 1e-2);
     return largest;
   };
-  const double heavy = deviation(20.0);
-  EXPECT_GT(heavy, 0.05);
-  EXPECT_LT(deviation(0.0), 0.6 * heavy);
+  EXPECT_GT(deviation(20.0), 0.05);
+  EXPECT_LT(deviation(0.0), 1e-4);
 }
 
 /// A wall that goes at a constant speed presses grains by K v t: what is told lags by K v lag.

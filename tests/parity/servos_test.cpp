@@ -11,7 +11,9 @@
 #include "domain/simulated_ranks.hpp"
 #include "physics/dem/scene.hpp"
 #include "physics/fdem/scene.hpp"
+#include "physics/fdem3/scene.hpp"
 #include "run/method/dem_method.hpp"
+#include "run/method/fdem3_method.hpp"
 #include "run/method/fdem_method.hpp"
 #include "run/stage_control.hpp"
 
@@ -272,6 +274,38 @@ TEST(Servo, of_supports_of_triangles_has_the_same_bits_everywhere) {
   expect_alike(s, 2e-5);
   s.config.supports.back().servo.mass = 2.0;
   expect_alike(s, 2e-5);
+}
+
+/// Platens without inertia know what comes by their contacts, whose other sides another rank may
+/// have.
+TEST(Servo, of_platens_without_inertia_has_the_same_bits_everywhere) {
+  dem::testing::Scene grains = column_under_head(2);
+  grains.config.probes.clear();
+  grains.config.supports.back().servo.mass = 0.0;
+  expect_alike(grains, 1e-3);
+
+  const auto press = [](auto& platen) {
+    static_cast<ServoConfig&>(platen.servo) = pushing(-2e5, 2.0);
+    platen.servo.mass = 0.0;
+  };
+  fdem::testing::Scene flat;
+  flat.material(30e9, 0.2, 2500.0);
+  flat.body("block", prepare::crossed_rectangle({{0.0, 0.0}, {0.1, 0.04}}, 0.02));
+  flat.body("platen", prepare::crossed_rectangle({{0.060001, 0.0}, {0.02, 0.08}}, 0.02));
+  const double far = fdem::testing::far;
+  flat.support("left", {-far, -far}, {-0.0499, far}, {"x"});
+  press(flat.support("right", {0.0500005, -far}, {far, far}, {"x", "y"}));
+  flat.config.time.end = 1.0;
+  expect_alike(flat, 2e-5);
+
+  fdem3::testing::Scene solid;
+  solid.material(30e9, 0.2, 2500.0);
+  solid.body("block", fdem3::testing::box({0.0, 0.0, 0.0}, {0.04, 0.02, 0.02}, 0.02));
+  solid.body("platen", fdem3::testing::box({0.030001, 0.0, 0.0}, {0.02, 0.04, 0.04}, 0.02));
+  solid.support("left", {-far, -far, -far}, {-0.0199, far, far}, {"x"});
+  press(solid.support("right", {0.0200005, -far, -far}, {far, far, far}, {"x", "y", "z"}));
+  solid.config.time.end = 1.0;
+  expect_alike(solid, 2e-5);
 }
 
 /// The column under a dead load on its highest grain.

@@ -336,6 +336,16 @@ struct CoupleForces {
     return unloading(penalty, most, Target::of(xa), Target::of(xb));
   }
 
+  /// Normal force on a if their corners lay there.  [N/m]
+  BR_HD Vec2 pressing(Index i, const Vec2 (&xa)[3], const Vec2 (&xb)[3]) const {
+    if (!meet(xa, xb)) return {};
+    const Target of_a = Target::of(xa), of_b = Target::of(xb);
+    const CoupleState& kept = state[i];
+    double penalty = (kept.scale == 0.0 ? 1.0 : kept.scale) * law_of(i).penalty;
+    if (rebound.loses()) penalty *= unloading(penalty, kept.most, of_a, of_b).share;
+    return normal_on_a(penalty, xa, of_a, xb, of_b);
+  }
+
   BR_HD const ContactPair& law_of(Index i) const {
     return laws[material[a[i]] * materials + material[b[i]]];
   }
@@ -413,21 +423,25 @@ struct CoupleForces {
   /// Of the penalty, so that the couple presses as hard as this.  [N/m]
   BR_HD static double first_scale(double force, const ContactPair& law, const Vec2 (&xa)[3],
                                   const Target& of_a, const Vec2 (&xb)[3], const Target& of_b) {
+    const double size = norm(normal_on_a(law.penalty, xa, of_a, xb, of_b));
+    return size > 0.0 ? min(2.0, max(0.01, force / size)) : 1.0;
+  }
+  BR_HD static Vec2 normal_on_a(double penalty, const Vec2 (&xa)[3], const Target& of_a,
+                                const Vec2 (&xb)[3], const Target& of_b) {
     Vec2 on_a{};
     for (int k = 0; k < 3; ++k) {
       EdgeOverlap o;
       Vec2 first, second;
       if (overlap_of_edge(xa[k], xa[(k + 1) % 3], of_b, o)) {
-        normal_forces(o, xa[k], xa[(k + 1) % 3], law.penalty, first, second);
+        normal_forces(o, xa[k], xa[(k + 1) % 3], penalty, first, second);
         on_a += first + second;
       }
       if (overlap_of_edge(xb[k], xb[(k + 1) % 3], of_a, o)) {
-        normal_forces(o, xb[k], xb[(k + 1) % 3], law.penalty, first, second);
+        normal_forces(o, xb[k], xb[(k + 1) % 3], penalty, first, second);
         on_a -= first + second;
       }
     }
-    const double size = norm(on_a);
-    return size > 0.0 ? min(2.0, max(0.01, force / size)) : 1.0;
+    return on_a;
   }
 };
 

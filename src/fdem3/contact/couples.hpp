@@ -249,6 +249,26 @@ struct CoupleForces {
     kept.spring = 0.0;
   }
 
+  /// Normal force on a if their corners lay there.  [N]
+  BR_HD Vec3 pressing(Index i, const Vec3 (&xa)[4], const Vec3 (&xb)[4]) const {
+    if (boxes_apart(xa, xb, 0.0)) return {};
+    Partner of_a, of_b;
+    for (int k = 0; k < 4; ++k) {
+      of_a.x[k] = xa[k];
+      of_b.x[k] = xb[k];
+    }
+    if (!meet(of_a, of_b)) return {};
+    of_a.exposed = exposed[a[i]];
+    of_b.exposed = exposed[b[i]];
+    const CoupleState& kept = state[i];
+    Pressing sum;
+    press((kept.scale == 0.0 ? 1.0 : kept.scale) *
+              laws[material[a[i]] * materials + material[b[i]]].penalty,
+          of_a, of_b, sum);
+    sum.take_off(kept.begun);
+    return sum.on_a;
+  }
+
  private:
   /// Whether no face of either has the other one on its outer side. Makes targets of both.
   BR_HD static bool meet(Partner& a, Partner& b) {
