@@ -13,7 +13,6 @@
 #include "app/commands.hpp"
 #include "app/option_kinds.hpp"
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
 #include "io/case/key_pages.hpp"
 #include "io/case/problems.hpp"
 #include "io/emphasis.hpp"
@@ -22,6 +21,7 @@
 #include "io/whole_file.hpp"
 #include "prepare/checks/check_regions.hpp"
 #include "run/case.hpp"
+#include "run/case_keys.hpp"
 #include "run/machine/forecast.hpp"
 #include "run/machine/memory_plan.hpp"
 

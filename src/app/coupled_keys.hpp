@@ -5,6 +5,7 @@
 
 #include "coupled/setup/config.hpp"
 #include "io/case/key_pages.hpp"
+#include "run/case_keys.hpp"
 
 namespace breccia::app {
 

@@ -21,6 +21,7 @@
 #include "io/case/key_pages.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
+#include "run/case_keys.hpp"
 
 namespace breccia::app {
 namespace {

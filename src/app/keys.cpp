@@ -15,6 +15,7 @@
 #include "fdem3/setup/config.hpp"
 #include "io/case/key_pages.hpp"
 #include "io/case/suggestion.hpp"
+#include "run/case_keys.hpp"
 
 namespace breccia::app {
 namespace {

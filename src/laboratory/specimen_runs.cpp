@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "io/case/case_file.hpp"
 #include "io/whole_file.hpp"
 #include "laboratory/sweep.hpp"
 #include "prepare/checks/check_case.hpp"
+#include "run/case_keys.hpp"
 #include "run/machine/memory_plan.hpp"
 #include "run/results/result_folder.hpp"
 

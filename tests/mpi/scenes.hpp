@@ -8,11 +8,11 @@
 #include "core/precision.hpp"
 #include "dem/observe.hpp"
 #include "domain/domain.hpp"
-#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "physics/fdem/scene.hpp"
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
+#include "run/case_keys.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem_method.hpp"
 

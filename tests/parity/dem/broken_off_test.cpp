@@ -12,6 +12,7 @@
 
 #include "io/whole_file.hpp"
 #include "paths.hpp"
+#include "texts.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -26,7 +27,7 @@ class BrokenOff : public testing::Test {
  protected:
   std::string folder(const std::string& name) const { return scratch / name; }
   nlohmann::json summary(const std::string& name) const {
-    return nlohmann::json::parse(read_whole_file(folder(name) + "/summary.json"));
+    return parsed_json(read_whole_file(folder(name) + "/summary.json"));
   }
   std::string history(const std::string& name) const {
     return read_whole_file(folder(name) + "/history.csv");

@@ -7,9 +7,9 @@
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "domain/simulated_ranks.hpp"
-#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
+#include "run/case_keys.hpp"
 #include "run/method/dem_method.hpp"
 
 namespace breccia {

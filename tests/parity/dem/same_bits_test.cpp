@@ -7,9 +7,9 @@
 #include "confined_concrete.hpp"
 #include "dem/observe.hpp"
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
+#include "run/case_keys.hpp"
 #include "run/method/dem_method.hpp"
 
 namespace breccia {

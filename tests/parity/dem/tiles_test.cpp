@@ -11,10 +11,10 @@
 #include "dem/observe.hpp"
 #include "dem/tiles/tile_run.hpp"
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "physics/dem/scene.hpp"
 #include "prepare/build.hpp"
+#include "run/case_keys.hpp"
 #include "run/method/audited_method.hpp"
 #include "run/method/dem_method.hpp"
 

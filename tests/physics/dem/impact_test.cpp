@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
+#include "run/case_keys.hpp"
 #include "scene.hpp"
 
 namespace breccia::dem {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <random>
 
-#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
+#include "run/case_keys.hpp"
 #include "scene.hpp"
 
 namespace breccia::dem {

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "io/case/case_file.hpp"
 #include "paths.hpp"
 #include "physics/fdem/scene.hpp"
 #include "prepare/build_fdem.hpp"
+#include "run/case_keys.hpp"
 
 namespace breccia::fdem {
 namespace flawed_plate_test {

@@ -9,8 +9,9 @@
 
 #include "bench/scenes.hpp"
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
 #include "paths.hpp"
+#include "run/case_keys.hpp"
+#include "texts.hpp"
 #include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
@@ -48,7 +49,7 @@ TEST(BenchmarkScene, GrowsElementsAndLinksAlike) {
 TEST(BenchmarkOutput, HoldsMedianAndSpreadOfEachPart) {
   const std::vector<Measurement> measured{{"before impact", "step", "us", 3.0, 2.0, 5.0},
                                           {"memory", "bytes", "B", 7.0, 7.0, 7.0}};
-  const auto json = nlohmann::json::parse(benchmark_json({{"slab", measured}}, Exec{}, "cpu"));
+  const auto json = parsed_json(benchmark_json({{"slab", measured}}, Exec{}, "cpu"));
   const auto& step = json["benchmarks"]["slab"]["before impact"]["step"];
   EXPECT_EQ(step["value"], 3.0);
   EXPECT_EQ(step["min"], 2.0);
@@ -70,11 +71,11 @@ TEST(PacedSlab, AnswersEachLineAndRefusesOthers) {
   std::istringstream lines(answers.str());
   std::string line;
   std::getline(lines, line);
-  EXPECT_EQ(nlohmann::json::parse(line)["links"], 79'211);
+  EXPECT_EQ(parsed_json(line)["links"], 79'211);
   std::getline(lines, line);
-  EXPECT_EQ(nlohmann::json::parse(line)["steps"], 2);
+  EXPECT_EQ(parsed_json(line)["steps"], 2);
   std::getline(lines, line);
-  EXPECT_GE(nlohmann::json::parse(line)["time"], 4e-6);
+  EXPECT_GE(parsed_json(line)["time"], 4e-6);
   EXPECT_FALSE(std::getline(lines, line));
 }
 

@@ -6,8 +6,8 @@
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/config.hpp"
-#include "io/case/case_file.hpp"
 #include "io/case/problems.hpp"
+#include "run/case_keys.hpp"
 
 namespace breccia {
 namespace absurd_numbers_test {

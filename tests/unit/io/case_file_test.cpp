@@ -12,6 +12,7 @@
 #include "exec/error.hpp"
 #include "paths.hpp"
 #include "prepare/checks/check_case.hpp"
+#include "run/case_keys.hpp"
 #include "run/method/shown.hpp"
 
 namespace breccia {

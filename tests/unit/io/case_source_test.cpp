@@ -4,7 +4,7 @@
 
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
+#include "run/case_keys.hpp"
 
 namespace breccia {
 namespace case_source_test {

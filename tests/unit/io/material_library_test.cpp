@@ -9,7 +9,7 @@
 #include "dem/setup/config.hpp"
 #include "exec/error.hpp"
 #include "fdem/setup/config.hpp"
-#include "io/case/case_file.hpp"
+#include "run/case_keys.hpp"
 
 namespace breccia {
 namespace material_library_test {

@@ -9,12 +9,12 @@
 #include <filesystem>
 
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
 #include "io/whole_file.hpp"
 #include "laboratory/rock_tests.hpp"
 #include "math/constants.hpp"
 #include "prepare/build.hpp"
 #include "prepare/checks/check_case.hpp"
+#include "run/case_keys.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 

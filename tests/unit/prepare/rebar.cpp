@@ -9,10 +9,10 @@
 #include <functional>
 
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
 #include "math/constants.hpp"
 #include "prepare/build.hpp"
 #include "prepare/checks/check_case.hpp"
+#include "run/case_keys.hpp"
 #include "unit/prepare/models.hpp"
 
 namespace breccia::dem {

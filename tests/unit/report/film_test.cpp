@@ -10,6 +10,7 @@
 
 #include "exec/error.hpp"
 #include "report/thinning.hpp"
+#include "texts.hpp"
 #include "unit/io/slab_scene.hpp"
 #include "unit/io/solid_scene.hpp"
 #include "unit/report/result_scene.hpp"
@@ -30,7 +31,7 @@ TEST(Film, SpheresComeBackToHalfAStep) {
   test::write_chain(folder.path());
   const Survey survey = survey_of(folder.path(), 3);
   const Film film = film_of(folder.path(), survey, 5, 10'000'000);
-  const Json json = Json::parse(film.json);
+  const Json json = parsed_json(film.json);
   ASSERT_EQ(film.blobs.size(), 3U);
   EXPECT_EQ(json["frames"][2]["blob"], 7);
   EXPECT_EQ(json["frames"][2]["step"], 20);
@@ -63,7 +64,7 @@ TEST(Film, WhatStaysAlikeIsToldOnce) {
   test::write_chain(folder.path());
   const Survey survey = survey_of(folder.path(), 3);
   EXPECT_TRUE(survey.lines_constant);
-  const Json json = Json::parse(film_of(folder.path(), survey, 0, 10'000'000).json);
+  const Json json = parsed_json(film_of(folder.path(), survey, 0, 10'000'000).json);
   EXPECT_EQ(json["frames"][0]["ends"], true);
   EXPECT_EQ(json["frames"][1]["ends"], false);
   for (const Json& field : json["fields"])
@@ -93,7 +94,7 @@ TEST(Film, CornersThatPartComeBackFromTheirLeader) {
   const Survey survey = survey_of(folder.path(), 2);
   EXPECT_TRUE(survey.plane);
   const Film film = film_of(folder.path(), survey, 0, 10'000'000);
-  const Json json = Json::parse(film.json);
+  const Json json = parsed_json(film.json);
   ASSERT_EQ(json["width"], 3);
   const double step = json["step"], low = json["low"][0];
   const auto start = opened(film, 0).numbers(6, 3);
@@ -132,7 +133,7 @@ TEST(Film, TetrahedraComeBackWithTheirJoints) {
   EXPECT_TRUE(survey.solid);
   EXPECT_EQ(survey.elements, 96U);
   const Film film = film_of(folder.path(), survey, 0, 10'000'000);
-  const Json json = Json::parse(film.json);
+  const Json json = parsed_json(film.json);
   EXPECT_EQ(json["solid"], true);
   EXPECT_EQ(json["plane"], false);
   ASSERT_EQ(json["width"], 3);
@@ -219,7 +220,7 @@ TEST(Film, AFilmStaysUnderItsLimit) {
     EXPECT_LE(film.bytes(), limit);
     EXPECT_LE(film.bytes(), before);
     EXPECT_FALSE(film.notes.empty());
-    const Json json = Json::parse(film.json);
+    const Json json = parsed_json(film.json);
     EXPECT_EQ(json["frames"].front()["number"], 0);
     EXPECT_EQ(json["frames"].back()["number"], 3);
     before = film.bytes();

@@ -7,11 +7,11 @@
 
 #include "dem/setup/config.hpp"
 #include "fdem/setup/config.hpp"
-#include "io/case/case_file.hpp"
 #include "io/whole_file.hpp"
 #include "paths.hpp"
 #include "prepare/build.hpp"
 #include "run/case.hpp"
+#include "run/case_keys.hpp"
 #include "run/machine/forecast.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"

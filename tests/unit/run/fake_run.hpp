@@ -7,6 +7,7 @@
 #include "io/whole_file.hpp"
 #include "run/machine/signals.hpp"
 #include "run/run.hpp"
+#include "texts.hpp"
 #include "unit/run/fake_method.hpp"
 
 namespace breccia {
@@ -54,7 +55,7 @@ inline int resume_fake(const RunPlan& plan, const std::string& path,
 }
 
 inline nlohmann::json summary_of(const std::string& path) {
-  return nlohmann::json::parse(read_whole_file(path + "/summary.json"));
+  return parsed_json(read_whole_file(path + "/summary.json"));
 }
 
 }  // namespace breccia

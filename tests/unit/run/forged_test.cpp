@@ -7,11 +7,11 @@
 #include <functional>
 
 #include "exec/error.hpp"
-#include "io/case/case_file.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/build.hpp"
 #include "prepare/build_fdem.hpp"
 #include "prepare/model_file.hpp"
+#include "run/case_keys.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem_method.hpp"
 #include "unit/prepare/models.hpp"

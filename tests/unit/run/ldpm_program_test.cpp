@@ -10,6 +10,7 @@
 
 #include "io/whole_file.hpp"
 #include "run/results/checkpoints.hpp"
+#include "texts.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -23,7 +24,7 @@ class LdpmProgram : public testing::Test {
   }
   std::string output() const { return read_whole_file(folder / "output.txt"); }
   std::string hash_of(const std::string& name) const {
-    const auto summary = nlohmann::json::parse(read_whole_file(folder / name + "/summary.json"));
+    const auto summary = parsed_json(read_whole_file(folder / name + "/summary.json"));
     return summary["state_hash"].get<std::string>() + " at " + summary["steps"].dump();
   }
   /// From the start, fast enough for softening within the steps.

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "io/whole_file.hpp"
+#include "texts.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -71,7 +72,7 @@ class Program : public testing::Test {
   std::string output() const { return read_whole_file(scratch / "output.txt"); }
   std::string path(const std::string& name) const { return scratch / name; }
   nlohmann::json summary(const std::string& name) const {
-    return nlohmann::json::parse(read_whole_file(path(name) + "/summary.json"));
+    return parsed_json(read_whole_file(path(name) + "/summary.json"));
   }
   /// Waits until the run in the folder has begun to step.
   void wait_until_running(const std::string& name) const {

@@ -12,6 +12,7 @@
 #include "run/method/fdem_method.hpp"
 #include "run/results/recorder.hpp"
 #include "run/results/step_times.hpp"
+#include "texts.hpp"
 #include "unit/run/fake_run.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -151,7 +152,7 @@ TEST(Summary, NumbersReadBackToTheSameBits) {
   Summary summary;
   summary.time = 0.1 + 0.2;
   summary.dt_last = 1.0 / 3.0 * 1e-7;
-  const nlohmann::json read = nlohmann::json::parse(to_json(summary));
+  const nlohmann::json read = parsed_json(to_json(summary));
   EXPECT_EQ(read["time"].get<double>(), summary.time);
   EXPECT_EQ(read["dt"]["last"].get<double>(), summary.dt_last);
 }

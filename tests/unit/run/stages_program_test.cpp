@@ -7,6 +7,7 @@
 
 #include "io/whole_file.hpp"
 #include "report/table.hpp"
+#include "texts.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -69,7 +70,7 @@ class StagedProgram : public ::testing::Test {
   }
   std::string output() const { return read_whole_file(path("output.txt")); }
   nlohmann::json summary(const std::string& out) const {
-    return nlohmann::json::parse(read_whole_file(path(out + "/summary.json")));
+    return parsed_json(read_whole_file(path(out + "/summary.json")));
   }
   ScratchFolder folder_;
 };
