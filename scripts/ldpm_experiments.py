@@ -6,7 +6,7 @@
     scripts/ldpm_experiments.py plot FILE.png    curves over each other; needs python3-matplotlib
 
 NAME: platens (prisms and cubes of 100 mm between ends of several frictions), cycles (a prism unloaded and loaded again), beams (notched, four
-sizes), confined (prisms under side pressure, beside the curves of Attard and Setunge), biaxial (plates beside the curves of Kupfer and others;
+sizes), bands (prisms pulled and pressed: where they spend their energy), confined (prisms under side pressure, beside the curves of Attard and Setunge), biaxial (plates beside the curves of Kupfer and others;
 `plot` then draws these and cycles). Grains are of 6 to 12 mm (platens: II-4 8 to 15 mm), else
 10 to 12 mm. Runs that are done are kept.
 """
@@ -18,6 +18,7 @@ import math
 import pathlib
 import random
 import statistics
+import struct
 import subprocess
 import sys
 
@@ -153,7 +154,17 @@ def biaxial(of, seed):
         yield name, case(name, of, (200, 50, 200), (8, 15), seed, 0.2e-3 * reach / speed + 0.5 * ramp, text, 2e-5)
 
 
-EXPERIMENTS = {"platens": platens, "cycles": cycles, "beams": beams, "confined": confined, "biaxial": biaxial}
+def bands(of, seed):
+    """Prisms between smooth ends, pulled to a quarter of the peak after it, and pressed to half."""
+    for load, speed, drop in (("tension", 0.02, 0.75), ("compression", -0.06, 0.5)):
+        text = (bodies.face("foot", 2, 0, TURNS) + bodies.face("head", 2, 120, TURNS, f"velocity = [0.0, 0.0, {speed}]\nramp = 5e-4\n")
+                + bodies.probe("force", "head", "force_z", "sum") + bodies.probe("path", "head", "displacement_z")
+                + f'[[stage]]\nname = "load"\ndrop = {drop}\ndrop_of = "force"\n')
+        name = f"bands-{load}-{of}-{seed}"
+        yield name, case(name, of, (60, 60, 120), (8, 12) if of == "II-4" else (6, 12), seed, 0.012, text, 2e-5)
+
+
+EXPERIMENTS = {"platens": platens, "bands": bands, "cycles": cycles, "beams": beams, "confined": confined, "biaxial": biaxial}
 
 
 def history(folder):
@@ -200,6 +211,56 @@ def band(folder, height, since):
             "chance": best(random.sample(places, len(late)))[0], "slope": slope}
 
 
+def spent(folder):
+    """Middle of the edge [m], energy spent [J] and largest opening L e_max [m] of every facet at the end of a run, by its last checkpoint."""
+    data = max((folder / "checkpoints").glob("*.br")).read_bytes()
+    sections, at = {}, data.index(b"run.step") - 4
+    while at < sections.get("run.step", (0, 0, len(data)))[2]:
+        length = struct.unpack_from("<I", data, at)[0]
+        sections[data[at + 4:at + 4 + length].decode()] = struct.unpack_from("<3Q", data, at + 4 + length)
+        at += length + 44
+
+    def of(name, code):
+        items, size, offset = sections[name]
+        return list(struct.iter_unpack(f"<{size // struct.calcsize(code)}{code}", data[offset:offset + items * size]))
+    places, alpha = [p[:3] for p in of("elements.state", "d")], 0.25
+    return [(tuple(0.5 * (x + y) for x, y in zip(places[a[0]], places[b[0]])), o[0] + c[0] + s[0], place[0] * math.sqrt(state[6] ** 2 + alpha * state[7]))
+            for a, b, o, c, s, place, state in zip(*(of(f"ldpm.{name}", code) for name, code in (("a", "i"), ("b", "i"), ("opened", "d"), ("compacted", "d"), ("slid", "d"), ("place", "d"), ("state", "d"))))]
+
+
+def fullest(facets, normals, thickness):
+    """Largest share of weights in a layer: share, slope of the layer, whether a place lies in it."""
+    whole, found = sum(weight for _, weight in facets), (0.0, 0.0, None)
+    for n in normals:
+        along = sorted((sum(p * q for p, q in zip(n, place)), weight) for place, weight in facets)
+        first, inside = 0, 0.0
+        for value, weight in along:
+            inside += weight
+            while value - along[first][0] > thickness:
+                inside -= along[first][1]
+                first += 1
+            if inside > found[0] * whole:
+                found = (inside / whole, math.degrees(math.acos(min(1.0, abs(n[2])))), (n, along[first][0]))
+    return found
+
+
+def concentration(folder, thickness, wide):
+    """Share of the energy spent, and of the facets opened by more than `wide`, in the layer that has most of the energy: across the load and in any
+    direction; with the energies dealt to the facets at random, that is by chance."""
+    facets = spent(folder)
+    energy = [(place, e) for place, e, _ in facets]
+    opened = [place for place, _, w in facets if w > wide]
+    dealt = [e for _, e in energy]
+    random.Random(1).shuffle(dealt)
+    chance = [(place, e) for (place, _), e in zip(energy, dealt)]
+    result = {"energy": sum(dealt) * 1e3, "wide": len(opened), "facets": len(facets)}
+    for name, normals in (("across", [(0.0, 0.0, 1.0)]), ("any", list(directions(40)))):
+        share, slope, (n, low) = fullest(energy, normals, thickness)
+        inside = sum(1 for place in opened if 0 <= sum(p * q for p, q in zip(n, place)) - low <= thickness)
+        result.update({f"share_{name}": share, f"chance_{name}": fullest(chance, normals, thickness)[0], f"wide_{name}": inside / max(len(opened), 1), f"slope_{name}": slope})
+    return result
+
+
 def misfits(strain, stress, curve):
     """Mean difference from a published curve, over its points before and after its peak, in shares of the peak."""
     strains, stresses = curve
@@ -213,7 +274,7 @@ def numbers_of(name, folder):
     h, parts = history(folder), name.split("-")
     found, n = {}, len(h["time"])
     stress = None
-    if parts[0] in ("platens", "cycles", "confined", "biaxial"):
+    if parts[0] in ("platens", "bands", "cycles", "confined", "biaxial"):
         height, area = (0.1 if "cube" in name else 0.2, 1e-2) if parts[0] in ("platens", "biaxial") else (0.12, 3.6e-3)
         stress = smoothed([abs(f) / area * 1e-6 for f in h["force"]], 5)
         begin = next((k for k in range(n) if h["time"][k] >= 4e-3), 0) if parts[0] == "confined" else 0
@@ -226,6 +287,8 @@ def numbers_of(name, folder):
         if parts[0] == "confined":
             found["side", "MPa"] = smoothed([abs(f) / 7.2e-3 * 1e-6 for f in h["side_force"]], 5)[k]
             strain, stress = strain[begin:], stress[begin:]
+        if parts[0] == "bands":
+            found.update({(key, "-"): value for key, value in concentration(folder, 0.012, 5e-5).items()})
         if parts[0] == "platens" and (found_band := band(folder, height, h["time"][k])):
             found.update({(key, "-"): value for key, value in found_band.items()})
         if parts[0] == "cycles":  # where it turns, and what is left

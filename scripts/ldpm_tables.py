@@ -209,6 +209,22 @@ def bands(lines):
     return "\n".join(out)
 
 
+def layers(lines):
+    """Share of the energy spent that lies in one layer, a tenth of a prism's length thick."""
+    found = {}
+    for row in lines:
+        if row["test"].startswith("bands "):
+            found.setdefault((row["test"][6:], row["set"]), {}).setdefault(row["quantity"], []).append(float(row["value"]))
+    out = ["| prism | set | strength [MPa] | left of it at the end | energy spent [J] | in the best layer across the load, % | by chance, % | in the best of any slope, % | by chance, % | its slope, degrees | "
+           "facets opened by 0.05 mm | of these in the best layer across the load, % | n |", "|---" * 13 + "|"]
+    for (load, of), q in sorted(found.items(), reverse=True):
+        shares = [spread([100 * v for v in q[key]], 0) for key in ("share_across", "chance_across", "share_any", "chance_any")]
+        wide = spread([100 * v for v in q["wide_across"]], 0) if all(q["wide"]) else ""
+        out.append(f"| {'pulled' if load == 'tension' else 'pressed'} | {of} | {spread(q['strength'], 1)} | {spread(q['left'], 2)} | {spread([1e-3 * v for v in q['energy']], 2)} | "
+                   + " | ".join(shares) + f" | {spread(q['slope_any'], 0)} | {spread(q['wide'], 0)} of {spread(q['facets'][:1], 0)} | {wide} | {len(q['energy'])} |")
+    return "\n".join(out)
+
+
 def cycles(lines):
     """Strain that is left by unloading beside the formula of Karsan and Jirsa."""
     found = {}
@@ -272,7 +288,7 @@ def confined(lines):
 def markdown(lines, what):
     kind, _, name = what.partition(" ")
     return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "size": lambda: size_effect(lines), "beams": lambda: beams(lines), "platens": lambda: platens(lines),
-            "ends": lambda: ends(lines), "bands": lambda: bands(lines), "cycles": lambda: cycles(lines), "curves": lambda: curves(lines), "confined": lambda: confined(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
+            "ends": lambda: ends(lines), "bands": lambda: bands(lines), "layers": lambda: layers(lines), "cycles": lambda: cycles(lines), "curves": lambda: curves(lines), "confined": lambda: confined(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
 
 
 def main():

@@ -194,11 +194,16 @@ class DemBodyChecks {
   }
 
   void check_ldpm(const BodyConfig& b, const MaterialConfig& m) {
-    require(b.shape == "box" || b.shape == "cylinder" || b.shape == "stl" || b.shape == "file",
-            ": bodies of law ldpm are boxes, cylinders, or read from a file, not of shape {}",
-            b.shape);
+    require(
+        b.shape == "box" || b.shape == "cylinder" || b.shape == "stl" || b.shape == "file",
+        ": bodies of law ldpm are boxes, cylinders, the inside of an STL surface, or read from a "
+        "file, not of shape {}",
+        b.shape);
     require(b.pack.count == 0 && b.pack.sieves.empty(),
             ".pack has no use in a body of law ldpm: its grains follow from {}.mix", m.name);
+    require(
+        b.joins.empty(),
+        ".join: bodies of law ldpm are their own shape, less cuts; draw a union as an STL surface");
   }
 
   void check_material(const BodyConfig& b) {

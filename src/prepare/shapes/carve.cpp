@@ -95,13 +95,19 @@ class Carving {
     std::optional<Surface> surface;
     if (body.shape == "stl")
       surface.emplace(read_surface(path_in(folder_, body.file), body.file_unit));
-    if (surface)
-      remove(
-          number, body, [&](const Vec3& x) { return !surface->holds(x - body.center); },
-          [&](const Vec3& a, const Vec3& b) {
-            return surface->parts(a - body.center, b - body.center);
-          });
     const MaterialConfig& material = *item_named(config_.materials, body.material);
+    if (surface) {
+      // Particles of LDPM lie on faces of the box around a surface: within, as seen here.
+      const Vec3 middle = 0.5 * (surface->low() + surface->high());
+      const double inwards = material.law == "ldpm" ? 1e-9 : 0.0;
+      const auto within = [&](const Vec3& x) {
+        const Vec3 own = x - body.center;
+        return own - inwards * (own - middle);
+      };
+      remove(
+          number, body, [&](const Vec3& x) { return !surface->holds(within(x)); },
+          [&](const Vec3& a, const Vec3& b) { return surface->parts(within(a), within(b)); });
+    }
     if (surface && material.fabric != "packed")
       even_out(model_, number, body.center, material.fabric, [&](const Vec3& x, double reach) {
         return std::array{surface->distance(x, reach), no_limit, no_limit};
