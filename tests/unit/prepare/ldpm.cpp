@@ -171,6 +171,32 @@ TEST(LdpmGeometry, tetrahedra_and_cells_fill_the_body) {
   }
 }
 
+/// About the axis of a body: of its cells, mass by mass, and of particles that have the mass of
+/// their cell at their centre and the mean of its three moments of inertia. Cells of the surface
+/// have their mass further in.
+TEST(LdpmGeometry, cells_turn_as_the_body_does_and_particles_somewhat_heavier) {
+  const double side = 0.04;
+  const Geometry g({.shape = Container::Shape::box, .size = {side, side, 0.08}});
+  const auto& x = g.particles.position;
+  double exact = 0.0, lumped = 0.0;
+  for (const LdpmFacet& f : g.facets)
+    for (const Index tip : {f.a, f.b}) {
+      const Vec3 p[4] = {x[at(tip)], f.corners[0], f.corners[1], f.corners[2]};
+      Vec3 sum{};
+      double squares = 0.0;
+      for (const Vec3& q : p) sum = sum + q, squares += q.x * q.x + q.y * q.y;
+      exact += std::abs(six_volumes(p[0], p[1], p[2], p[3])) / 120.0 *
+               (squares + sum.x * sum.x + sum.y * sum.y);
+    }
+  const auto cells = cells_of(x, g.facets);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    lumped += cells[i].inertia + cells[i].volume * (x[i].x * x[i].x + x[i].y * x[i].y);
+  const double body = side * side * 0.08 * side * side / 6.0;
+  EXPECT_NEAR(exact / body, 1.0, 1e-12);
+  EXPECT_GT(lumped / body, 1.0);
+  EXPECT_LT(lumped / body, 1.15);
+}
+
 TEST(LdpmGeometry, a_cylinder_is_filled_up_to_the_chords_of_its_surface) {
   const Container body{.shape = Container::Shape::cylinder, .radius = 0.03, .length = 0.06};
   const Geometry g(body);

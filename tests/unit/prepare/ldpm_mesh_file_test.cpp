@@ -65,6 +65,42 @@ TEST(LdpmMeshFile, names_the_line_that_is_no_particle_or_tetrahedron) {
   EXPECT_THROW(read_ldpm_mesh("/nowhere/geo-data-tets.dat"), IoError);
 }
 
+/// Particles on the faces of a closed surface belong to the body.
+TEST(LdpmMeshFile, the_inside_of_a_box_drawn_as_a_surface_is_the_box) {
+  dem::Config config;
+  dem::MaterialConfig concrete;
+  concrete.name = "concrete";
+  concrete.law = "ldpm";
+  concrete.tensile_strength = 3e6;
+  concrete.cohesion = 8e6;
+  config.materials = {concrete};
+  dem::BodyConfig body;
+  body.name = "cube";
+  body.material = "concrete";
+  body.size = {0.03, 0.03, 0.04};
+  config.bodies = {body};
+  config.time.end = 1.0;
+  const dem::Model box = build_model(config, "");
+
+  std::string text = "solid box\n";
+  constexpr int faces[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  for (const auto& face : faces) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const int k : face)
+      text += fmt::format("vertex {} {} {}\n", k % 2 == 0 ? -0.015 : 0.015,
+                          k / 2 % 2 == 0 ? -0.015 : 0.015, k / 4 == 0 ? -0.02 : 0.02);
+    text += "endloop\nendfacet\n";
+  }
+  const ScratchFolder folder;
+  replace_file(folder / "box.stl", text + "endsolid box\n");
+  config.bodies[0].shape = "stl";
+  config.bodies[0].file = "box.stl";
+  const dem::Model drawn = build_model(config, folder.path());
+  ASSERT_EQ(drawn.size(), box.size());
+  EXPECT_EQ(drawn.links.size(), box.links.size());
+}
+
 /// A body that was placed here, written as a preprocessor does and read, is the same model.
 TEST(LdpmMeshFile, of_a_body_gives_the_model_of_the_body) {
   dem::Config config;
