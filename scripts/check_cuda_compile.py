@@ -28,7 +28,8 @@ for (flags, parent), sources in groups.items():
         mine = sources[part * len(sources) // parts:(part + 1) * len(sources) // parts]
         path = folder / f"{parent.name}_{len(jobs)}.cu"
         path.write_text("".join(f'#include "{source}"\n' for source in mine))
-        jobs.append([*flags, "-x", "cu", "-c", str(path), "-o", str(path.with_suffix(".o"))])
+        # g++ reads the host's half and writes no object: a third less time, and nothing here links them.
+        jobs.append([*flags, "-Xcompiler=-fsyntax-only", "-x", "cu", "-c", str(path), "-o", str(path.with_suffix(".o"))])
 
 
 def compiled(job):
