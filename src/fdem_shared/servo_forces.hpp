@@ -79,9 +79,9 @@ struct SupportPush {
   }
 };
 
-/// What a platen's contacts will do. With the platen at the velocity v_0 that it has, and all else
-/// moved by the forces of the moment, it will push with P_1 in the step to come instead of P_0 now,
-/// and with K dt more for each m/s more: R' = R + (P_1 - P_0) + K (v - v_0) dt.
+/// The push of a platen's contacts to come. With the platen at the velocity v_0 that it has, and
+/// all else moved by the forces of the moment, it will push with P_1 in the step to come instead of
+/// P_0 now, and with K dt more for each m/s more: R' = R + (P_1 - P_0) + K (v - v_0) dt.
 template <class Shape, class Couples, class Kick>
 struct PlatenPush {
   using Vector = typename Shape::Vector;
@@ -151,7 +151,7 @@ struct PlatenPush {
   }
 };
 
-/// What a support's servo is to push with.  [N; in 2D N/m]
+/// The force that a support's servo is to push with.  [N; in 2D N/m]
 template <class World, class Support>
 double target_of(const World& w, const Support& support) {
   return support.servo.target(support.servo.aims_at(w.time, w.next_dt), support.history.begin);

@@ -65,8 +65,7 @@ TEST(LdpmMeshFile, names_the_line_that_is_no_particle_or_tetrahedron) {
   EXPECT_THROW(read_ldpm_mesh("/nowhere/geo-data-tets.dat"), IoError);
 }
 
-/// Particles on the faces of a closed surface belong to the body.
-TEST(LdpmMeshFile, the_inside_of_a_box_drawn_as_a_surface_is_the_box) {
+dem::Config one_box() {
   dem::Config config;
   dem::MaterialConfig concrete;
   concrete.name = "concrete";
@@ -80,6 +79,12 @@ TEST(LdpmMeshFile, the_inside_of_a_box_drawn_as_a_surface_is_the_box) {
   body.size = {0.03, 0.03, 0.04};
   config.bodies = {body};
   config.time.end = 1.0;
+  return config;
+}
+
+/// Particles on the faces of a closed surface belong to the body.
+TEST(LdpmMeshFile, the_inside_of_a_box_drawn_as_a_surface_is_the_box) {
+  dem::Config config = one_box();
   const dem::Model box = build_model(config, "");
 
   std::string text = "solid box\n";
@@ -103,22 +108,10 @@ TEST(LdpmMeshFile, the_inside_of_a_box_drawn_as_a_surface_is_the_box) {
 
 /// A body that was placed here, written as a preprocessor does and read, is the same model.
 TEST(LdpmMeshFile, of_a_body_gives_the_model_of_the_body) {
-  dem::Config config;
-  dem::MaterialConfig concrete;
-  concrete.name = "concrete";
-  concrete.law = "ldpm";
-  concrete.tensile_strength = 3e6;
-  concrete.cohesion = 8e6;
-  config.materials = {concrete};
-  dem::BodyConfig body;
-  body.name = "cube";
-  body.material = "concrete";
-  body.size = {0.03, 0.03, 0.04};
-  config.bodies = {body};
-  config.time.end = 1.0;
+  dem::Config config = one_box();
   const dem::Model placed = build_model(config, "");
 
-  const Container box{.shape = Container::Shape::box, .size = body.size};
+  const Container box{.shape = Container::Shape::box, .size = config.bodies[0].size};
   const LdpmParticles p = place_particles(box, MixDesign{}, {1, 0});
   std::string particles, tetrahedra;
   for (std::size_t k = 0; k < p.position.size(); ++k)
