@@ -10,9 +10,13 @@ cd "$(dirname "$0")/.." || exit 1
 mkdir -p build/compilers
 cases=(cases/{rc_slab,brazilian_disc,three_point_bending,colliding_cubes_3d,spall_bar_3d}/small.toml tests/attack/{dem,fdem,fdem3,bolted,fluids,coupled}.toml)
 methods=(exec core domain dem fdem fdem3 prepare)
-kinds=("$@")
+kinds=("$@") there=()
 [ ${#kinds[@]} -gt 0 ] || kinds=(g++:-O1 g++:-O2 g++:-O3 clang++:-O1 clang++:-O2 clang++:-O3)
 
+for kind in "${kinds[@]}"; do
+  command -v "${kind%%:*}" > /dev/null && there+=("$kind") || echo "$kind: there is no ${kind%%:*} on this machine"
+done
+kinds=("${there[@]}")
 [ -n "$LIMIT" ] && mapfile -t kinds < <(shuf -e "${kinds[@]}")
 
 hash_of() {  # PROGRAM CASE FOLDER: of a run to its end, or of 400 steps of the cases of attacks

@@ -2,19 +2,25 @@
 """On a GPU: allocation k fails, once or from then on; the device is lost at call k; a bit of an array flips. The run
 ends with an exit code that the program states, a run that ends well has the hash of an undisturbed one, and what it left can be resumed
 on the device. Of flipped bits it is told how many changed the result without a word, with and without an audit of steps; where every step is
-audited, none may. A build with -DBR_CUDA=ON and its target `attack` are needed: BRECCIA_BUILD names its folder."""
+audited, none may. A build with -DBR_CUDA=ON and its target `attack` are needed: BRECCIA_BUILD names its folder. Allocations fail in
+processes that call the program's main again and again, since a start on the device costs many times a run: so what a failed run leaves to the
+next one shows, too, and no array may stay. A run that does not end as it should is tried again in a process of its own."""
 
 import collections
 import concurrent.futures
 import json
 import os
+import queue
 import random
+import select
 import shutil
+import subprocess
 import sys
+import threading
 import time
 
 import common
-from common import Attack, CASES, EXIT_CODES, arguments, breccia, checkpoints, resume, run, state_hash, tool
+from common import Attack, CASES, EXIT_CODES, arguments, breccia, checkpoints, resume, run, run_words, state_hash, tool
 
 STEPS = 60
 LIBRARY = tool("libattack_device_faults.so")
@@ -81,13 +87,134 @@ def together(options, attack, faults, work):
     return json.dumps({str(outcome): n for outcome, n in sorted(collections.Counter(outcomes).items(), key=str)})
 
 
-def failing(options, case, drawn, kind):
-    attack = Attack({"alloc": "allocation k on the device fails", "lost": "device lost at call k"}[kind] + f", {case}", "indices")
-    (allocations, calls, *_), good = counts(attack, case)
-    if kind == "alloc":
-        faults = [{"GPU_FAULT_ALLOC": str(k), **stays} for stays in ({}, {"GPU_FAULT_STAYS": "1"}) for k in range(1, allocations + 1)]
-    else:
-        faults = [{"GPU_FAULT_LOST": str(k)} for k in range(1, calls + 1)]
+class Server:
+    """A process that runs the program's main as often as it is asked to; one that ends is begun anew."""
+
+    def __init__(self, gpu):
+        self.environment = dict(os.environ, GOMP_SPINCOUNT="2000", LD_PRELOAD=LIBRARY, GPU_FAULT_SERVE="1")
+        if gpu is not None:
+            self.environment["CUDA_VISIBLE_DEVICES"] = gpu
+        self.process = None
+
+    def call(self, log, words, k=0, stays=0):
+        """Exit code, allocations and arrays that were not freed; these are None if the process has ended by it."""
+        if self.process is None:
+            self.process = subprocess.Popen([common.PROGRAM], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=self.environment)
+        self.process.stdin.write("\t".join([f"{k} {stays} {log}", *words]) + "\n")
+        self.process.stdin.flush()
+        if not select.select([self.process.stdout], [], [], common.HANG)[0]:
+            self.end(kill=True)
+            return "hang", None, None
+        answer = self.process.stdout.readline().split()
+        if answer:
+            return tuple(int(word) for word in answer)
+        return self.end(), None, None
+
+    def end(self, kill=False):
+        process, self.process = self.process, None
+        if process is None:
+            return None
+        if kill:
+            process.kill()
+        process.stdin.close()
+        process.stdout.close()
+        return process.wait()
+
+
+def served(server, attack, case, k, stays, good, alive, folder):
+    """The exit code of a run whose allocation k fails, and what is wrong about it."""
+    log = folder + ".log"
+    code, taken, left = server.call(log, [*run_words(case, folder, STEPS), "--set", "checkpoint.steps=20"], k, stays)
+    if code not in EXIT_CODES:
+        return code, f"ends with {code}"
+    if taken is not None and taken < k:
+        code = "not reached"
+        return code, "" if state_hash(folder) == good else "another hash without a failure"
+    if code == 0:
+        return code, "" if state_hash(folder) == good else "another hash, exit code 0"
+    if left is not None and left > alive:
+        return code, f"{left - alive} arrays are not freed"
+    kept = checkpoints(folder)
+    for path in kept:
+        told, *_ = server.call(log, ["info", path])
+        if told != 0:
+            return code, f"{path}: {told}"
+    if kept:
+        told, *_ = server.call(log, ["resume", folder, "--threads", "1", "--no-progress", *common.DEVICE, "--steps", str(STEPS)])
+        if told != 0 or state_hash(folder) != good:
+            return code, f"resume ends with {told}"
+    return code, ""
+
+
+def allocations(options, case, drawn, deadline):
+    """Every allocation of a run fails, once and from then on. A file of --keep holds those that were done."""
+    attack = Attack(f"allocation k on the device fails, {case}", "indices")
+    (first, *_), good = counts(attack, case)
+    probe = Server(options.gpus[0])
+    words = [*run_words(case, attack.path("probe"), STEPS), "--force", "--set", "checkpoint.steps=20"]
+    taken = [probe.call(attack.path("probe.log"), words) for _ in range(3)]
+    probe.end()
+    if not attack.expect(all(answer[0] == 0 for answer in taken), f"{case}: undisturbed runs of one process: {taken}"):
+        return attack.end()
+    number, alive = max(answer[1] for answer in taken), taken[-1][2]
+    attack.expect(alive <= taken[0][2], f"{case}: arrays that are not freed by undisturbed runs of one process: {taken}")
+    faults = [(k, stays) for stays in (0, 1) for k in range(1, number + 1)]
+    possible = len(faults)
+    drawn.shuffle(faults)
+    kept = os.path.join(options.keep, f"alloc_{case}.txt") if options.keep else os.devnull
+    codes = {}
+    if options.keep and os.path.exists(kept):
+        with open(kept) as file:
+            rows = [line.rstrip("\n").split("\t") for line in file if line.endswith("\n")]
+        codes = {(int(row[0]), int(row[1])): row[2] for row in rows}
+        for row in rows:
+            attack.expect(row[3] == "", f"{case}: k = {row[0]}, stays = {row[1]} (earlier): {row[3]}")
+    todo = queue.SimpleQueue()
+    for fault in [fault for fault in faults if fault not in codes][:options.runs]:
+        todo.put(fault)
+    lock = threading.Lock()
+
+    def work(number):
+        server = Server(options.gpus[number % len(options.gpus)])
+        while time.time() < deadline:
+            try:
+                k, stays = todo.get_nowait()
+            except queue.Empty:
+                break
+            folder = attack.path(f"run_{number}")
+            code, wrong = served(server, attack, case, k, stays, good, alive, folder)
+            shutil.rmtree(folder, ignore_errors=True)
+            with lock:
+                if wrong:
+                    wrong = f"in a process that goes on: {wrong}"
+                    fault = {"GPU_FAULT_ALLOC": str(k), **({"GPU_FAULT_STAYS": "1"} if stays else {})}
+                    before = attack.findings
+                    survive(attack, case, fault, good, f"again_{number}")
+                    if attack.findings == before:
+                        wrong += "; not in one of its own"
+                    attack.expect(False, f"{case}: k = {k}, stays = {stays}: {wrong}")
+                    server.end(kill=True)
+                codes[(k, stays)] = str(code)
+                file.write(f"{k}\t{stays}\t{code}\t{' '.join(wrong.split())}\n")
+                file.flush()
+        server.end()
+
+    with open(kept, "a") as file:
+        threads = [threading.Thread(target=work, args=(number,)) for number in range(options.jobs)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    attack.runs = len(codes)
+    more = f", {first - number} more in the first run of a process" if first > number else ""
+    attack.note = f"of {possible} ({number} allocations{more}); exit codes {json.dumps(dict(sorted(collections.Counter(codes.values()).items())))}"
+    return attack.end()
+
+
+def losses(options, case, drawn):
+    attack = Attack(f"device lost at call k, {case}", "indices")
+    (_, calls, *_), good = counts(attack, case)
+    faults = [{"GPU_FAULT_LOST": str(k)} for k in range(1, calls + 1)]
     possible = len(faults)
     faults = drawn.sample(faults, min(options.runs, possible))
     told = together(options, attack, faults, lambda number, fault: survive(attack, case, fault, good, number))
@@ -116,20 +243,28 @@ def main():
     parser.add_argument("--jobs", type=int, default=8)
     parser.add_argument("--device", default="cuda", help="as --device of the program")
     parser.add_argument("--part", choices=("alloc", "lost", "flips"), help="only this one")
-    parser.add_argument("--case", choices=list(CASES), help="only this one")
+    parser.add_argument("--case", choices=list(CASES), nargs="+", default=list(CASES), help="only these")
+    parser.add_argument("--gpus", nargs="+", default=[None], help="of allocations: numbers of GPUs, among which the jobs are shared")
+    parser.add_argument("--keep", help="of allocations: a folder for what was done, which is left out when called again")
     options = parser.parse_args()
+    if options.keep:
+        os.makedirs(options.keep, exist_ok=True)
     common.DEVICE += ["--device", options.device]
     drawn = random.Random(options.seed)
     parts = [options.part] if options.part else ["alloc", "lost", "flips"]
-    cases = [options.case] if options.case else list(CASES)
-    options.seconds /= len(cases) * sum(3 if part == "flips" else 1 for part in parts)
+    begun, seconds = time.time(), options.seconds
+    options.seconds /= len(options.case) * sum(3 if part == "flips" else 1 for part in parts)
     result = 0
-    for case in cases:
+    for number, case in enumerate(options.case):
         for part in parts:
-            if part != "flips":
-                result |= failing(options, case, drawn, part)
-            for audit in (0, 4, 1) if part == "flips" else ():
-                result |= flips(options, case, drawn, audit)
+            if part == "alloc":  # where it is alone, a case may have what those before it have left of the time
+                share = options.seconds if len(parts) > 1 else (begun + seconds - time.time()) / (len(options.case) - number)
+                result |= allocations(options, case, drawn, time.time() + share)
+            elif part == "lost":
+                result |= losses(options, case, drawn)
+            else:
+                for audit in (0, 4, 1):
+                    result |= flips(options, case, drawn, audit)
     return result
 
 

@@ -1,5 +1,9 @@
 // Loaded before a program of CUDA's static runtime (LD_PRELOAD), it stands between that runtime and
-// the driver: one call fails, the device is lost, or a bit of its memory flips.
+// the driver: one call fails, the device is lost, or a bit of its memory flips. With
+// GPU_FAULT_SERVE the program's main is called again and again, which spares its start on the
+// device: a line of standard input is "K STAYS LOG", then the command line, a tab before each of
+// its words; the answer is a line "CODE ALLOCATIONS ALIVE" with the arrays of device and pinned
+// memory that were not freed.
 //
 //   GPU_FAULT_ALLOC=K   the K-th allocation (from 1) of device or pinned memory fails
 //   GPU_FAULT_STAYS=1   and every one after it, too
@@ -12,17 +16,21 @@
 //                       of kernels and of flipped bits to the file F at the end
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <random>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -37,6 +45,7 @@ constexpr Result out_of_memory = 2, launch_failed = 719;
 
 std::atomic<long> allocations{0}, calls{0}, graphs{0}, kernels{0}, flips{0};
 std::map<Word, Word> arrays;  ///< of the device: first byte and size
+std::map<Word, Word> pinned;  ///< of the host, alike
 std::mutex of_arrays;
 
 long number(const char* name) {
@@ -81,16 +90,17 @@ void flip() {
   }
 }
 
+std::atomic<long> failing{number("GPU_FAULT_ALLOC")}, stays{number("GPU_FAULT_STAYS")};
+
 enum Kind { device_memory, pinned_memory, freed, graph, kernel, other };
 
 bool fails(Kind kind, Result& result) {
-  static const long alloc = number("GPU_FAULT_ALLOC"), stays = number("GPU_FAULT_STAYS"),
-                    lost = number("GPU_FAULT_LOST"), flipped = number("GPU_FAULT_FLIP"),
+  static const long lost = number("GPU_FAULT_LOST"), flipped = number("GPU_FAULT_FLIP"),
                     at_kernel = number("GPU_FAULT_FLIP_KERNEL");
   if (kind == device_memory || kind == pinned_memory) {
     const long k = ++allocations;
     result = out_of_memory;
-    return alloc > 0 && (k == alloc || (stays != 0 && k > alloc));
+    return failing > 0 && (k == failing || (stays != 0 && k > failing));
   }
   if (kind == freed) return false;
   if (kind == graph && ++graphs == flipped) flip();
@@ -112,12 +122,12 @@ Result wrapper(Word a, Word b, Word c, Word d, Word e, Word f, Word g, Word h, W
   if (fails(kinds[place], result)) return result;
   if (kinds[place] == freed) {
     const std::lock_guard lock(of_arrays);
-    arrays.erase(a);
+    if (arrays.erase(a) == 0) pinned.erase(a);
   }
   result = real_calls[place](a, b, c, d, e, f, g, h, i, j, k);
-  if (kinds[place] == device_memory && result == 0) {
+  if ((kinds[place] == device_memory || kinds[place] == pinned_memory) && result == 0) {
     const std::lock_guard lock(of_arrays);
-    arrays[*reinterpret_cast<Word*>(a)] = b;
+    (kinds[place] == device_memory ? arrays : pinned)[*reinterpret_cast<Word*>(a)] = b;
   }
   return result;
 }
@@ -133,6 +143,7 @@ void* wrapped(const char* name, void* real) {
                                                     {"cuMemHostAlloc", pinned_memory},
                                                     {"cuMemFreeAsync", freed},
                                                     {"cuMemFree", freed},
+                                                    {"cuMemFreeHost", freed},
                                                     {"cuGraphLaunch", graph},
                                                     {"cuLaunchKernelEx", kernel},
                                                     {"cuLaunchKernel", kernel},
@@ -178,7 +189,60 @@ struct AtEnd {
   }
 } at_end;
 
+using Main = int (*)(int, char**, char**);
+Main real_main = nullptr;
+
+/// Calls the program for each line that comes. What it prints goes to the file that the line names.
+int serve(int, char** argv, char** environment) {
+  const int in = ::dup(STDIN_FILENO), out = ::dup(STDOUT_FILENO);
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  ::dup2(nothing, STDIN_FILENO);
+  FILE* const lines = ::fdopen(in, "r");
+  char* line = nullptr;
+  std::size_t room = 0;
+  for (ssize_t length = 0; (length = ::getline(&line, &room, lines)) > 0;) {
+    std::istringstream text(std::string(line, static_cast<std::size_t>(length) - 1));
+    long alloc = 0, from_then_on = 0;
+    std::string log, word;
+    text >> alloc >> from_then_on >> log;
+    std::getline(text, word, '\t');
+    std::vector<std::string> words{argv[0]};
+    while (std::getline(text, word, '\t')) words.push_back(word);
+    std::vector<char*> pointers;
+    for (std::string& each : words) pointers.push_back(each.data());
+    pointers.push_back(nullptr);
+    const int file = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    ::dup2(file, STDOUT_FILENO);
+    ::dup2(file, STDERR_FILENO);
+    ::close(file);
+    allocations = 0;
+    stays = from_then_on;
+    failing = alloc;
+    const int code = real_main(static_cast<int>(words.size()), pointers.data(), environment);
+    failing = 0;
+    ::fflush(nullptr);
+    std::size_t alive = 0;
+    {
+      const std::lock_guard lock(of_arrays);
+      alive = arrays.size() + pinned.size();
+    }
+    ::dprintf(out, "%d %ld %zu\n", code, allocations.load(), alive);
+  }
+  return 0;
+}
+
 }  // namespace
+
+/// The C library's start of a program, which it tells its main.
+extern "C" __attribute__((visibility("default"))) int __libc_start_main(
+    Main main, int argc, char** argv, void (*init)(), void (*fini)(), void (*end)(), void* stack) {
+  using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
+  void* found = ::dlvsym(RTLD_NEXT, "__libc_start_main", "GLIBC_2.34");
+  if (found == nullptr) found = ::dlvsym(RTLD_NEXT, "__libc_start_main", "GLIBC_2.2.5");
+  real_main = main;
+  const bool serves = number("GPU_FAULT_SERVE") != 0;
+  return reinterpret_cast<Start>(found)(serves ? serve : main, argc, argv, init, fini, end, stack);
+}
 
 extern "C" __attribute__((visibility("default"))) void* dlsym(void* library,
                                                               const char* name) noexcept {
