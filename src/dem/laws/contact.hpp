@@ -66,6 +66,9 @@ struct ContactLaw {
       r.slid = state.stored - 0.5 * dot(shear_before, motion.slip) -
                0.5 * dot(moment_before, motion.turn);
       r.damped = -0.5 * state.dashpot * motion.extension;
+      if (damping > 0.0 && state.overlap > 0.0)
+        r.damped += stored_normal(material, pair, state.overlap) -
+                    0.5 * spring(material, pair, state.overlap) * motion.extension;
       state = {};
       return r;
     }
@@ -89,6 +92,10 @@ struct ContactLaw {
     r.pressure = elastic + dashpot;
     r.damped = 0.5 * (state.dashpot + dashpot) *
                (state.overlap > 0.0 ? overlap - state.overlap : -motion.extension);
+    // The spring takes more on the way from a gap than it stores, and so a collision loses more
+    // than its dashpot takes; as it ends, less.
+    if (damping > 0.0 && state.overlap <= 0.0)
+      r.damped -= 0.5 * elastic * motion.extension + stored_normal(material, pair, overlap);
 
     // Shear and rolling.
     r.shear = shear_before - shear_stiffness * motion.slip;
@@ -104,10 +111,7 @@ struct ContactLaw {
 
     r.shear_stiffness = shear_stiffness;
     r.rolling_stiffness = rolling_stiffness;
-    if (damping > 0.0) {  // a dashpot shortens the stable step: dt <= 2/omega (sqrt(1 + xi^2) - xi)
-      const double shrink = sqrt(1.0 + damping * damping) - damping;
-      r.normal_stiffness /= shrink * shrink;
-    }
+    if (damping > 0.0) r.normal_stiffness /= shrink() * shrink();
     state = {r.shear, r.moment, stored, dashpot, overlap};
     return r;
   }
@@ -120,7 +124,16 @@ struct ContactLaw {
     return 0.5 * material.normal * pair.smaller * pair.smaller / pair.sum * overlap * overlap;
   }
 
+  /// What the step must be multiplied by so that the dashpot leaves it stable:
+  /// dt <= 2/omega (sqrt(1 + xi^2) - xi).  [-]
+  BR_HD double shrink() const { return sqrt(1.0 + damping * damping) - damping; }
+
  private:
+  /// Force of the normal spring.  [N]
+  BR_HD double spring(const ContactPair& material, const Pair& pair, double overlap) const {
+    if (hertz) return 4.0 / 3.0 * material.normal * sqrt(pair.radius * overlap) * overlap;
+    return material.normal * pair.smaller * pair.smaller / pair.sum * overlap;
+  }
   BR_HD static void cut(Vec3& value, double limit) {
     const double size = norm(value);
     if (size > limit) value = (limit / size) * value;

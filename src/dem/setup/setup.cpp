@@ -347,7 +347,7 @@ void set_free_walls(World& w, const Config& config, const Model& m) {
                                         pairs[static_cast<std::size_t>(m.material[e])].normal);
     given.contact_step =
         std::min(given.contact_step,
-                 config.time.safety *
+                 config.time.safety * given.contact.shrink() *
                      std::sqrt(2.0 * std::min(free.mass, free.spread.least_mass) / stiffest));
   }
 }
@@ -393,6 +393,7 @@ void set_contacts(World& w, const Config& config, const Model& m) {
     } else {
       const ContactPair& pair = pairs[material * config.materials.size() + material];
       step = std::sqrt(2.0 * m.mass[e] / (pair.normal * 0.5 * r));
+      if (given.contact.damping > 0.0) step *= 0.5 * given.contact.shrink();  // theory.md, 8
     }
     given.contact_step = std::min(given.contact_step, config.time.safety * step);
   }

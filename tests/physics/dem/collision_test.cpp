@@ -71,6 +71,32 @@ TEST(Collision, the_restitution_is_what_the_case_asks) {
     }
 }
 
+TEST(Collision, restitution_and_ledger_hold_at_the_programs_own_step) {
+  for (const char* law : {"linear", "hertz"})
+    for (const bool wall : {false, true})
+      for (const double e : {0.2, 0.5}) {
+        double mean = 0.0, missing = 0.0;
+        for (int phase = 0; phase < 4; ++phase) {
+          Scene s;
+          s.material("g", "grain", 1e9, 0.2, 2500.0);
+          s.config.contact.law = law;
+          s.config.contact.restitution = e;
+          s.sphere({0.0, 0.0, 0.0}, 0.01, {0.5, 0.0, 0.0});
+          const double gap = 1e-5 + 6e-6 * phase;
+          if (wall)
+            s.wall({0.01 + gap, 0.0, 0.0}, {-1.0, 0.0, 0.0});
+          else
+            s.sphere({0.02 + 2.0 * gap, 0.0, 0.0}, 0.01, {-0.5, 0.0, 0.0});
+          World w = s.world();
+          mean -= collide(w).velocity.x / 0.5 / 4.0;
+          missing = std::max(missing, balance(w).error_relative);
+        }
+        EXPECT_NEAR(mean, e, 0.05) << law << (wall ? " wall" : "");
+        // work of the trapezoid is that of a linear spring, and of Hertz's to second order
+        EXPECT_LT(missing, law[0] == 'l' ? 1e-4 : 2e-3) << law << (wall ? " wall" : "");
+      }
+}
+
 struct Pair {
   double young, poisson, density, deepest, hardest, duration;
 };
