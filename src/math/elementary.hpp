@@ -2,6 +2,8 @@
 // Exponential, logarithm, arc tangent and power from + - * / and square roots: equal bits on every
 // host, in packs, and on every device, which the functions of a system's library do not have.
 
+#include <cmath>
+
 #include "math/two.hpp"
 
 namespace breccia {
@@ -76,6 +78,15 @@ BR_HD inline R logarithm(const R& x) {
                                1.0 / 17.0, 1.0 / 19.0, 1.0 / 21.0};
   const R sum = detail::polynomial(series, square);
   return exponent * 0.693147180559945309 + 2.0 * t * sum;
+}
+
+/// ln(1 + x) - x, to rounding also where x is small; no number for x <= -1.
+BR_HD inline double log_less_linear(double x) {
+  if (!(abs(x) < 0.05)) return x > -1.0 ? logarithm(1.0 + x) - x : NAN;
+  double series = 0.0;  // x^2 (-1/2 + x/3 - x^2/4 ...): 0.05^12/14 < 1e-16
+  for (int k = 14; k >= 2; --k)
+    series = series * x + (k % 2 == 0 ? -1.0 : 1.0) / static_cast<double>(k);
+  return x * x * series;
 }
 
 /// Angle in [0, pi/4] whose tangent is x in [0, 1]. Error below 1e-15.

@@ -108,16 +108,18 @@ struct ElasticLaw {
 struct ElasticTriangle : ElasticLaw<double> {
   /// Energy per reference area, with what it held at the start: S_0 : C^-1 S_0 / 2 by Hooke's law,
   /// which makes it that of a rock without stress that was strained since. No number where the
-  /// triangle is turned inside out.  [J/m2 per unit thickness]
+  /// triangle is turned inside out. By differences that vanish at rest, so that no rounding of
+  /// first order is left, whatever way the triangle has turned: tr C - 2 J = (F_xx - F_yy)^2 +
+  /// (F_xy + F_yx)^2, and J - 1 - ln J.  [J/m2 per unit thickness]
   BR_HD double energy(const Deformation<double>& d) const {
     const Mat2& f = d.gradient;
-    const double trace = f.xx * f.xx + f.xy * f.xy + f.yx * f.yx + f.yy * f.yy;
-    const double j = d.jacobian;
-    const double log_j = j > 0.0 ? logarithm(j) : NAN;
+    const double stretched = f.xx - f.yy, sheared = f.xy + f.yx;
+    const double grown = d.jacobian - 1.0, bent = log_less_linear(grown);
     const Sym2 strain{0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0),
                       0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0), 0.5 * (f.xx * f.xy + f.yx * f.yy)};
-    return 0.5 * shear * (trace - 2.0 - 2.0 * log_j) + 0.25 * lambda * (j * j - 1.0 - 2.0 * log_j) +
-           contract(preset, strain) + energy_at_start() + energy_of_planes(f);
+    return 0.5 * shear * (stretched * stretched + sheared * sheared - 2.0 * bent) +
+           0.25 * lambda * (grown * grown - 2.0 * bent) + contract(preset, strain) +
+           energy_at_start() + energy_of_planes(f);
   }
   BR_HD bool is_bedded() const { return abs(tilt) + abs(bend) > 0.0; }
   BR_HD double energy_at_start() const {

@@ -69,15 +69,6 @@ BR_HD Sym3Of<R> deformation_rate(const ShapeGradientsOf<R>& shape, const Deforma
   return {x.x, y.y, z.z, 0.5 * (y.z + z.y), 0.5 * (x.z + z.x), 0.5 * (x.y + y.x)};
 }
 
-/// ln(1 + x) - x, to rounding also where x is small; no number for x <= -1.
-BR_HD inline double log_less_linear(double x) {
-  if (!(abs(x) < 0.05)) return x > -1.0 ? logarithm(1.0 + x) - x : NAN;
-  double series = 0.0;  // x^2 (-1/2 + x/3 - x^2/4 ...): 0.05^12/14 < 1e-16
-  for (int k = 14; k >= 2; --k)
-    series = series * x + (k % 2 == 0 ? -1.0 : 1.0) / static_cast<double>(k);
-  return x * x * series;
-}
-
 /// Compressible neo-Hookean solid with viscous damping (docs/theory-fdem3.md, 1):
 ///
 ///   P = mu F + (g + eta D) cof F + F S_0,   g = (lambda / 2) (J - 1 / J) - mu / J
@@ -131,22 +122,24 @@ struct ElasticTetrahedronOf {
             entry(p.a.x, p.b.x, p.c.x, f.a.y, f.b.y, f.c.y)};
   }
   /// Energy per reference volume, with that at the start: S_0 : C^-1 S_0 / 2 by Hooke's law. No
-  /// number where the tetrahedron is turned inside out. By H = F - 1, so that terms of first order,
-  /// which cancel, leave no rounding: of a body at rest it is 1e-32 of the modulus.  [J/m3]
+  /// number where the tetrahedron is turned inside out. By the invariants of Green's strain E, of
+  /// which J^2 - 1 = 2 I + 4 II + 8 III, so that terms of first order, which cancel, leave no
+  /// rounding, whatever way it has turned: of a body at rest it is 1e-32 of the modulus.  [J/m3]
   BR_HD double energy(const Deformation& d) const {
+    if (!(d.jacobian > 0.0)) return NAN;
     const Mat3& f = d.gradient;
     const Vec3 a = f.a - Vec3{1.0, 0.0, 0.0}, b = f.b - Vec3{0.0, 1.0, 0.0},
                c = f.c - Vec3{0.0, 0.0, 1.0};
-    const double sum = a.x + b.y + c.z;
-    // Second and third invariants of H: J - 1 = sum + second + third.
-    const double second = a.x * b.y - b.x * a.y + (a.x * c.z - c.x * a.z) + (b.y * c.z - c.y * b.z);
-    const double third = dot(a, cross(b, c)), grown = sum + second + third;
-    const double squares = dot(a, a) + dot(b, b) + dot(c, c), bent = log_less_linear(grown);
-    const Sym3 strain{a.x + 0.5 * dot(a, a),         b.y + 0.5 * dot(b, b),
-                      c.z + 0.5 * dot(c, c),         0.5 * (b.z + c.y + dot(b, c)),
-                      0.5 * (a.z + c.x + dot(a, c)), 0.5 * (a.y + b.x + dot(a, b))};
-    return 0.5 * shear * (squares - 2.0 * (second + third) - 2.0 * bent) +
-           0.25 * lambda * (grown * grown - 2.0 * bent) + contract(preset, strain) +
+    const Sym3 e{a.x + 0.5 * dot(a, a),         b.y + 0.5 * dot(b, b),
+                 c.z + 0.5 * dot(c, c),         0.5 * (b.z + c.y + dot(b, c)),
+                 0.5 * (a.z + c.x + dot(a, c)), 0.5 * (a.y + b.x + dot(a, b))};
+    const double second =
+        e.xx * e.yy - e.xy * e.xy + (e.xx * e.zz - e.xz * e.xz) + (e.yy * e.zz - e.yz * e.yz);
+    const double third = e.xx * (e.yy * e.zz - e.yz * e.yz) - e.xy * (e.xy * e.zz - e.yz * e.xz) +
+                         e.xz * (e.xy * e.yz - e.yy * e.xz);
+    const double higher = 4.0 * second + 8.0 * third,
+                 bent = log_less_linear(2.0 * trace(e) + higher);
+    return -(0.5 * shear * (higher + bent) + 0.25 * lambda * bent) + contract(preset, e) +
            energy_at_start();
   }
   BR_HD double energy_at_start() const {

@@ -129,6 +129,23 @@ TEST(ElasticTriangle, energy_holds_for_any_change_of_area) {
   EXPECT_TRUE(std::isnan(law.energy({{-1.0, 0.0, 0.0, 1.0}, {}, -1.0})));
 }
 
+/// Near rest, too, and whatever way the triangle has turned: mu e : e + lambda/2 (tr e)^2 of a
+/// strain e of 1e-9, of which numbers near 1 keep seven digits.
+TEST(ElasticTriangle, energy_of_the_least_strains_keeps_its_digits) {
+  const ElasticTriangle law = law_of(false);
+  const double s = 1e-9;
+  const Sym2 strain{3.0 * s, -1.0 * s, 2.0 * s};
+  const double sum = strain.xx + strain.yy;
+  const double expected = law.shear * contract(strain, strain) + 0.5 * law.lambda * sum * sum;
+  for (int turn = 0; turn < 12; ++turn) {
+    const double angle = turn * pi / 6.0;
+    const Vec2 first = rotated({1.0 + strain.xx, strain.xy}, angle),
+               second = rotated({strain.xy, 1.0 + strain.yy}, angle);
+    const Mat2 f = columns(first, second);
+    EXPECT_NEAR(law.energy({f, {}, determinant(f)}), expected, 1e-6 * expected) << turn;
+  }
+}
+
 /// A rock under stress in situ holds the energy of Hooke's law, and none where that has gone.
 TEST(ElasticTriangle, energy_of_a_stress_in_situ_is_that_of_its_strain) {
   for (const bool plane_stress : {true, false}) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "fdem/laws/elastic_triangle.hpp"
+#include "math/constants.hpp"
 
 namespace breccia::fdem3 {
 namespace elastic_tetrahedron_test {
@@ -145,6 +146,28 @@ TEST(ElasticTetrahedron, holds_next_to_nothing_where_rounding_alone_deforms_it) 
     EXPECT_NEAR(log_less_linear(x), static_cast<double>(exact),
                 4e-16 * (std::abs(x) < 0.05 ? x * x : 1.0 + std::abs(x)) + 2e-19 * std::abs(x))
         << x;
+  }
+}
+
+/// mu e : e + lambda/2 (tr e)^2, whatever way the tetrahedron has turned.
+TEST(ElasticTetrahedron, energy_of_the_least_strains_keeps_its_digits) {
+  const ElasticTetrahedron law = law_of();
+  const double s = 1e-9;
+  const Sym3 e{3.0 * s, -1.0 * s, 0.5 * s, 2.0 * s, -0.7 * s, 1.2 * s};
+  const double sum = trace(e);
+  const double expected = law.shear * contract(e, e) + 0.5 * law.lambda * sum * sum;
+  for (int turn = 0; turn < 12; ++turn) {
+    const double angle = turn * pi / 6.0, c = std::cos(angle), n = std::sin(angle);
+    const auto turned = [&](const Vec3& v) {  // about z, then about x
+      const Vec3 u{c * v.x - n * v.y, n * v.x + c * v.y, v.z};
+      return Vec3{u.x, c * u.y - n * u.z, n * u.y + c * u.z};
+    };
+    Deformation d;
+    d.gradient = {turned({1.0 + e.xx, e.xy, e.xz}), turned({e.xy, 1.0 + e.yy, e.yz}),
+                  turned({e.xz, e.yz, 1.0 + e.zz})};
+    d.cofactor = cofactors(d.gradient);
+    d.jacobian = dot(d.gradient.a, d.cofactor.a);
+    EXPECT_NEAR(law.energy(d), expected, 1e-6 * expected) << turn;
   }
 }
 
