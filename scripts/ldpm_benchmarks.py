@@ -12,6 +12,8 @@ import pathlib
 import subprocess
 import sys
 
+import ldpm_beam
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NEWEST = "d1f5a2f"
 B = dict(density=2338, normal=60.273e9, tension=3.44e6, ratio=2.6, length=0.5, exponent=0.4, collapse=150e6, hardening=0.4, compaction=4, friction=0.4)
@@ -23,6 +25,7 @@ BODIES = {  # commit, path, smallest and largest grain [mm], parameters
     "cylinder": (NEWEST, "benchmarks/uniaxial_strain/input/freecad/LDPMgeo000", 6, 12, B),
     "cube": ("b13cca9", "applications/compression/input/freecad/100x100x100/LDPMgeo000", 4, 8, II_3),
     "plate": ("4dbc763", "applications/biaxial/input/freecad/200x50x200/LDPMgeo000", 4, 15, II_4),
+    **{f"beam_{least}-{most}": (NEWEST, f"benchmarks/three_point_bending/input/freecad/LDPM_mesh_{least}-{most}/LDPMgeo000", least, most, B) for least, most in ((5, 16), (6, 12), (8, 16))},
 }
 SIZES = {"prism": (100, 100, 200), "cantilever": (100, 100, 200), "cylinder": (100, 100, 200), "cube": (100, 100, 100), "plate": (200, 50, 200)}
 
@@ -31,32 +34,64 @@ def stored(repository, commit, path):
     return subprocess.run(["git", "-C", repository, "show", f"{commit}:{path}"], capture_output=True, text=True, check=True).stdout
 
 
-def write_body(repository, name, folder):
-    """<name>-data-particles.dat and -data-tets.dat, those of the collection or of its mesh."""
-    commit, path, smallest, largest, _ = BODIES[name]
-    if commit != NEWEST:
-        for end in ("particles", "tets"):
-            (folder / f"body-data-{end}.dat").write_text(stored(repository, commit, f"{path}-data-{end}.dat"))
-        return
-    words = stored(repository, commit, f"{path}-para-mesh.000.vtk").split()
+def read_mesh(text):
+    """Points and cells of a legacy VTK file, points as words."""
+    words = text.split()
     at = words.index("POINTS")
     count, numbers = int(words[at + 1]), words[at + 3:]
     points = [numbers[3 * k:3 * k + 3] for k in range(count)]
     at = words.index("CELLS")
-    cells = [list(map(int, words[at + 4 + 5 * k:at + 8 + 5 * k])) for k in range(int(words[at + 1]))]
+    return points, [list(map(int, words[at + 4 + 5 * k:at + 8 + 5 * k])) for k in range(int(words[at + 1]))]
+
+
+def diameters(count, cells, smallest, largest):
+    """Those of Fuller's curve, the largest first; 0 on the surface."""
     faces = collections.Counter(tuple(sorted(cell[:k] + cell[k + 1:])) for cell in cells for k in range(4))
     surface = {corner for face, times in faces.items() if times == 1 for corner in face}
     grains, q = count - len(surface), 2.5
-    rank, lines = 0, []
-    for k, point in enumerate(points):
-        diameter = 0.0
+    rank, found = 0, []
+    for k in range(count):
+        found.append(0.0)
         if k not in surface:
             share = 1 - (rank + 0.5) / grains
-            diameter = smallest * (1 - share * (1 - (smallest / largest) ** q)) ** (-1 / q)
+            found[-1] = smallest * (1 - share * (1 - (smallest / largest) ** q)) ** (-1 / q)
             rank += 1
-        lines.append(" ".join([str(k), *point, f"{diameter:.9g}"]))
-    (folder / "body-data-particles.dat").write_text("\n".join(lines) + "\n")
-    (folder / "body-data-tets.dat").write_text("\n".join(" ".join(map(str, cell)) for cell in cells) + "\n")
+    return found
+
+
+def write_rows(path, rows):
+    path.write_text("\n".join(" ".join(f"{x:.12g}" if isinstance(x, float) else str(x) for x in row) for row in rows) + "\n")
+
+
+def write_beam(repository, name, folder):
+    """The block with its own facets where their corners are stored (8 to 16 mm), else by diameters, and the outer blocks."""
+    commit, path, smallest, largest, _ = BODIES[name]
+    points, cells = read_mesh(stored(repository, commit, f"{path}-para-mesh.000.vtk"))
+    radius = [0.5 * (d or 1.1 * smallest) for d in diameters(len(points), cells, smallest, largest)]
+    try:
+        words = list(map(float, stored(repository, commit, f"{path}-data-facetsVertices.dat").split()))
+        corners = list(zip(words[0::3], words[1::3], words[2::3]))
+    except subprocess.CalledProcessError:  # not at hand
+        corners = None
+    files = ldpm_beam.beam([tuple(map(float, p)) for p in points], cells, radius, corners)
+    for end, rows in zip(("nodes", "tets", "facetsVertices"), files):
+        write_rows(folder / f"body-data-{end}.dat", rows)
+
+
+def write_body(repository, name, folder):
+    """The files of a body, those of the collection or of its mesh. @returns the end of the one to read"""
+    if name.startswith("beam"):
+        write_beam(repository, name, folder)
+        return "facetsVertices"
+    commit, path, smallest, largest, _ = BODIES[name]
+    if commit != NEWEST:
+        for end in ("particles", "tets"):
+            (folder / f"body-data-{end}.dat").write_text(stored(repository, commit, f"{path}-data-{end}.dat"))
+        return "tets"
+    points, cells = read_mesh(stored(repository, commit, f"{path}-para-mesh.000.vtk"))
+    write_rows(folder / "body-data-particles.dat", ((k, *p, f"{d:.9g}") for k, (p, d) in enumerate(zip(points, diameters(len(points), cells, smallest, largest)))))
+    write_rows(folder / "body-data-tets.dat", cells)
+    return "tets"
 
 
 def material(of, smallest, largest):
@@ -96,7 +131,7 @@ def ends(height, speed, ramp, fix):
             + probe("force", "head", "force_z", "sum") + probe("path", "head", "displacement_z"))
 
 
-READ = ("time", "force", "path", "side_force", "side_path", "front_path", "back_path")
+READ = ("time", "force", "path", "side_force", "side_path", "front_path", "back_path", "left_path", "right_path")
 SMOOTH, HELD = ["z", "spin_x", "spin_y"], ["all"]
 
 
@@ -125,6 +160,16 @@ def cantilever():
     return 0.1, text + probe("force", "corner", "force_x", "sum") + probe("path", "head", "displacement_x") + probe("front_path", "front", "displacement_x") + probe("back_path", "back", "displacement_x")
 
 
+def bending(speed, way, notch):
+    """The middle of the top goes down and does not turn, outer lower edges bear; way [m], width of the notch [mm]."""
+    text = support("load", ["all"], (0.0375 - 1e-6, -1, 0.2 - 1e-6), (0.0625 + 1e-6, 1, 1), f"velocity = [0.0, 0.0, {-speed}]\nramp = 2e-3")
+    for name, side in (("left", -1), ("right", 1)):
+        end, mouth = 0.05 + side * (0.05 + 1e-3 * ldpm_beam.LENGTH), 0.05 + side * 0.5e-3 * notch
+        text += support(f"foot_{name}", ["z"], (end - 1e-5, -1, -1), (end + 1e-5, 1, 1e-6))
+        text += support(name, [], (mouth - 1e-6, -1, -1), (mouth + 1e-6, 1e-6, 1e-6)) + probe(f"{name}_path", name, "displacement_x")
+    return way / speed + 1e-3, text + probe("force", "load", "force_z", "sum") + probe("path", "load", "displacement_z")
+
+
 def wall_of_cylinder():
     return 'center = [0.0, 0.0, 0.0]\nradius = 0.0499\naround = "z"\noutside = true\n'
 
@@ -140,6 +185,10 @@ CASES = {
     "plate_alike": ("plate", lambda: plate("alike", 4e-3, 0.2)),
     "plate_7": ("plate", lambda: plate(7e6, 4.5e-3, 0.2)),
     "plate_18": ("plate", lambda: plate(18e6, 5e-3, 0.2)),
+    "beam_5-16": ("beam_5-16", lambda: bending(0.015, 0.75e-3, 4)),
+    "beam_6-12": ("beam_6-12", lambda: bending(0.015, 0.75e-3, 5)),
+    "beam_8-16": ("beam_8-16", lambda: bending(0.015, 1.5e-3, 4)),
+    "beam_8-16_slow": ("beam_8-16", lambda: bending(0.005, 0.75e-3, 4)),
 }
 
 
@@ -147,7 +196,7 @@ def make(repository, name, out):
     body, loading = CASES[name]
     folder = out / name
     folder.mkdir(parents=True, exist_ok=True)
-    write_body(repository, body, folder)
+    end_of_file = write_body(repository, body, folder)
     _, _, smallest, largest, parameters = BODIES[body]
     if body == "cantilever":  # elastic
         parameters = {**parameters, "tension": 1e12, "collapse": 1e12, "length": 100.0}
@@ -171,7 +220,7 @@ history = {rows}
 name = "body"
 shape = "file"
 material = "concrete"
-file = "body-data-tets.dat"
+file = "body-data-{end_of_file}.dat"
 {text}""")
 
 
@@ -225,8 +274,26 @@ def compressed(h, area, height, strains):
     return found
 
 
+def bent(h):
+    opening = [1e3 * (right - left) for left, right in zip(h["left_path"], h["right_path"])]
+    load, path = [abs(f) for f in h["force"]], [1e3 * abs(u) for u in h["path"]]
+    top = max(range(len(load)), key=load.__getitem__)
+    found = {("peak", "N"): load[top], ("displacement", "mm"): path[top], ("opening", "mm"): opening[top]}
+    for where in (0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75):
+        if (value := at(opening, load, where)) is not None:
+            found[f"load_{where:g}", "N"] = value
+    work = [0.0]
+    for k in range(1, len(load)):
+        work.append(work[-1] + 0.5 * (load[k] + load[k - 1]) * (path[k] - path[k - 1]))
+    if (value := at(opening, work, 0.3)) is not None:
+        found["work_0.3", "mJ"] = value
+    return found
+
+
 def numbers_of(name, folder):
     h, body = history(folder), CASES[name][0]
+    if body.startswith("beam"):
+        return bent(h)
     if body == "cantilever":
         return swings(h)
     x, y, z = (1e-3 * edge for edge in SIZES[body])

@@ -145,6 +145,20 @@ def bending(lines):
     return "\n".join(out)
 
 
+def public_beams(lines):
+    """The public notched beams at the published speed."""
+    found = {}
+    for row in lines:
+        if row["test"] == "public" and row["set"].startswith("beam_"):
+            found.setdefault(row["set"], {})[row["quantity"]] = float(row["value"])
+    openings = ("0.01", "0.02", "0.05", "0.1", "0.2", "0.3", "0.5")
+    out = ["| run | peak [N] | displacement there [mm] | opening there [mm] | " + " | ".join(f"load at {w} mm [N]" for w in openings) + " |", "|---" * (len(openings) + 4) + "|"]
+    for run, of in found.items():
+        loads = [f"{of[f'load_{w}']:,.0f}" if f"load_{w}" in of else "" for w in openings]
+        out.append(f"| `{run}` | {of['peak']:,.0f} | {of['displacement']:.3f} | {of['opening']:.3f} | " + " | ".join(loads) + " |")
+    return "\n".join(out)
+
+
 def public(lines, name):
     """Runs of public bodies (ldpm_benchmarks.py) whose names begin alike: largest stress, and stress at strains."""
     found = {}
@@ -287,7 +301,7 @@ def confined(lines):
 
 def markdown(lines, what):
     kind, _, name = what.partition(" ")
-    return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "size": lambda: size_effect(lines), "beams": lambda: beams(lines), "platens": lambda: platens(lines),
+    return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "public beams": lambda: public_beams(lines), "size": lambda: size_effect(lines), "beams": lambda: beams(lines), "platens": lambda: platens(lines),
             "ends": lambda: ends(lines), "bands": lambda: bands(lines), "layers": lambda: layers(lines), "cycles": lambda: cycles(lines), "curves": lambda: curves(lines), "confined": lambda: confined(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
 
 
