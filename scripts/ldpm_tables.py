@@ -301,7 +301,7 @@ def confined(lines):
 
 def markdown(lines, what):
     kind, _, name = what.partition(" ")
-    return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "public beams": lambda: public_beams(lines), "size": lambda: size_effect(lines), "beams": lambda: beams(lines), "platens": lambda: platens(lines),
+    return {"calibration": lambda: calibration(lines), "bending": lambda: bending(lines), "notched": lambda: public_beams(lines), "size": lambda: size_effect(lines), "beams": lambda: beams(lines), "platens": lambda: platens(lines),
             "ends": lambda: ends(lines), "bands": lambda: bands(lines), "layers": lambda: layers(lines), "cycles": lambda: cycles(lines), "curves": lambda: curves(lines), "confined": lambda: confined(lines), "public": lambda: public(lines, name), "experiments": lambda: experiments(lines, name)}[kind]()
 
 
