@@ -2,8 +2,6 @@
 // knee: threads, packs, the shadow space, ranks, precision, across a checkpoint.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "domain/simulated_ranks.hpp"
@@ -11,6 +9,7 @@
 #include "prepare/build.hpp"
 #include "run/case_keys.hpp"
 #include "run/method/dem_method.hpp"
+#include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
 namespace rate_test {
@@ -93,8 +92,7 @@ TEST(RateBits, are_the_same_on_ranks) {
 }
 
 TEST(RateBits, are_the_same_across_a_checkpoint) {
-  const std::string folder = std::filesystem::temp_directory_path() / "breccia_rate_bits";
-  std::filesystem::create_directories(folder);
+  const ScratchFolder folder;
   for (const char* precision : {"double", "mixed"}) {
     const dem::Config in = config({std::string("precision=") + precision});
     const Exec exec = in_precision({}, in.precision);
@@ -102,14 +100,13 @@ TEST(RateBits, are_the_same_across_a_checkpoint) {
     for (int i = 0; i < 300; ++i) whole->advance({}), before->advance({});
     CheckpointWriter writer;
     before->save(writer);
-    writer.write(folder + "/state.br");
+    writer.write(folder / "state.br");
     const auto after = make_method(in, model(), exec);
-    const CheckpointReader state(folder + "/state.br");
+    const CheckpointReader state(folder / "state.br");
     after->load(&state);
     for (int i = 0; i < 200; ++i) whole->advance({}), after->advance({});
     EXPECT_EQ(after->state_hash(), whole->state_hash()) << precision;
   }
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace rate_test

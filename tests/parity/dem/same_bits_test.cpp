@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "confined_concrete.hpp"
 #include "dem/observe.hpp"
 #include "exec/error.hpp"
@@ -11,6 +9,7 @@
 #include "prepare/build.hpp"
 #include "run/case_keys.hpp"
 #include "run/method/dem_method.hpp"
+#include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
 namespace dem_same_bits_test {
@@ -100,8 +99,7 @@ TEST(SameBits, in_the_shadow_space_that_refuses_host_reads) {
 }
 
 TEST(SameBits, across_a_checkpoint_on_other_threads) {
-  const std::string folder = std::filesystem::temp_directory_path() / "breccia_same_bits";
-  std::filesystem::create_directories(folder);
+  const ScratchFolder folder;
   const dem::Config config = small_config();
   Exec one, three;
   three.threads = 3;
@@ -109,18 +107,17 @@ TEST(SameBits, across_a_checkpoint_on_other_threads) {
   for (int i = 0; i < 500; ++i) before->advance({});
   CheckpointWriter writer;
   before->save(writer);
-  writer.write(folder + "/state.br");
+  writer.write(folder / "state.br");
   for (int i = 0; i < 400; ++i) before->advance({});
 
   const auto after = make_method(config, small_model(), three);
-  const CheckpointReader state(folder + "/state.br");
+  const CheckpointReader state(folder / "state.br");
   after->load(&state);
   EXPECT_EQ(after->steps(), 500);
   for (int i = 0; i < 400; ++i) after->advance({});
   EXPECT_EQ(after->state_hash(), before->state_hash());
   EXPECT_EQ(after->energy().friction, before->energy().friction);
   EXPECT_EQ(after->energy().error_relative, before->energy().error_relative);
-  std::filesystem::remove_all(folder);
 }
 
 /// The whole impact in mixed precision.
@@ -145,22 +142,20 @@ TEST(SameBits, in_mixed_precision_for_any_threads_width_of_vector_and_space) {
 }
 
 TEST(SameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
-  const std::string folder = std::filesystem::temp_directory_path() / "breccia_same_bits_mixed";
-  std::filesystem::create_directories(folder);
+  const ScratchFolder folder;
   const dem::Config config = small_config({"precision=mixed"});
   const auto before = make_method(config, small_model(), {});
   for (int i = 0; i < 500; ++i) before->advance({});
   CheckpointWriter writer;
   before->save(writer);
-  writer.write(folder + "/state.br");
+  writer.write(folder / "state.br");
   for (int i = 0; i < 200; ++i) before->advance({});
-  const CheckpointReader state(folder + "/state.br");
+  const CheckpointReader state(folder / "state.br");
   const auto after = make_method(config, small_model(), {});
   after->load(&state);
   for (int i = 0; i < 200; ++i) after->advance({});
   EXPECT_EQ(after->state_hash(), before->state_hash());
   EXPECT_THROW(make_method(small_config(), small_model(), {})->load(&state), CheckpointError);
-  std::filesystem::remove_all(folder);
 }
 
 /// Concrete that is bounded under pressure writes the free length of its links, too.

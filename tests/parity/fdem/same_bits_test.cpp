@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "physics/fdem/scene.hpp"
 #include "run/method/fdem_method.hpp"
+#include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
 namespace fdem_same_bits_test {
@@ -229,8 +228,7 @@ TEST(FdemSameBits, of_bedded_rock_for_any_threads_width_of_vector_and_space) {
 }
 
 TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
-  const std::string folder = std::filesystem::temp_directory_path() / "breccia_fdem_same_bits";
-  std::filesystem::create_directories(folder);
+  const ScratchFolder folder;
   const Scene scene = impact();
   Exec one, three;
   three.threads = 3;
@@ -240,10 +238,10 @@ TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
     for (int i = 0; i < moment; ++i) before->advance({});
     CheckpointWriter writer;
     before->save(writer);
-    writer.write(folder + "/state.br");
+    writer.write(folder / "state.br");
     for (int i = moment; i < 250; ++i) before->advance({});
     const auto after = make_method(scene.config, scene.model, three);
-    const CheckpointReader state(folder + "/state.br");
+    const CheckpointReader state(folder / "state.br");
     after->load(&state);
     EXPECT_EQ(after->steps(), moment);
     for (int i = moment; i < 250; ++i) after->advance({});
@@ -253,7 +251,6 @@ TEST(FdemSameBits, across_a_checkpoint_amid_fracture_on_other_threads) {
     EXPECT_EQ(after->energy().error_relative, before->energy().error_relative);
     EXPECT_EQ(before->state_hash(), reference());
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(FdemSameBits, in_mixed_precision_for_any_threads_width_of_vector_and_space) {
@@ -276,16 +273,15 @@ TEST(FdemSameBits, in_mixed_precision_for_any_threads_width_of_vector_and_space)
 }
 
 TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
-  const std::string folder = std::filesystem::temp_directory_path() / "breccia_fdem_mixed";
-  std::filesystem::create_directories(folder);
+  const ScratchFolder folder;
   Scene scene = impact();
   scene.config.precision = "mixed";
   const auto before = make_method(scene.config, scene.model, {});
   for (int i = 0; i < 163; ++i) before->advance({});
   CheckpointWriter writer;
   before->save(writer);
-  writer.write(folder + "/state.br");
-  const CheckpointReader state(folder + "/state.br");
+  writer.write(folder / "state.br");
+  const CheckpointReader state(folder / "state.br");
   const auto after = make_method(scene.config, scene.model, {});
   after->load(&state);
   for (int i = 163; i < 250; ++i) {
@@ -296,7 +292,6 @@ TEST(FdemSameBits, in_mixed_precision_across_a_checkpoint_that_double_refuses) {
   EXPECT_EQ(after->energy().friction, before->energy().friction);
   scene.config.precision = "double";
   EXPECT_THROW(make_method(scene.config, scene.model, {})->load(&state), CheckpointError);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(FdemSameBits, one_changed_bit_changes_the_hash) {

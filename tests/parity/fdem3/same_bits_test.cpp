@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "domain/simulated_ranks.hpp"
 #include "fdem3/ranks.hpp"
 #include "physics/fdem3/scene.hpp"
 #include "run/method/fdem3_method.hpp"
+#include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
 namespace fdem3_same_bits_test {
@@ -194,20 +194,19 @@ TEST(Fdem3SameBits, of_joints_that_wake_at_their_strength) {
 
 /// @returns the hash at its end
 std::uint64_t saved_and_resumed(const Scene& scene, int steps) {
-  const auto path = std::filesystem::temp_directory_path() / "breccia_fdem3_test.br";
+  const ScratchFolder folder;
   const std::unique_ptr<Method> first = make_method(scene.config, scene.model, Exec{});
   while (first->steps() < steps / 2) first->advance({1e300, steps / 2});
   CheckpointWriter writer;
   first->save(writer);
-  writer.write(path.string());
+  writer.write(folder / "state.br");
   const std::unique_ptr<Method> second = make_method(scene.config, scene.model, Exec{});
-  const CheckpointReader reader(path.string());
+  const CheckpointReader reader(folder / "state.br");
   second->load(&reader);
   while (first->steps() < steps) first->advance({1e300, steps});
   while (second->steps() < steps) second->advance({1e300, steps});
   EXPECT_EQ(second->state_hash(), first->state_hash());
   EXPECT_EQ(second->energy().friction, first->energy().friction);
-  std::filesystem::remove(path);
   return first->state_hash();
 }
 

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <numeric>
 
 #include "unit/prepare/fdem_scenes.hpp"
+#include "unit/run/scratch_folder.hpp"
 
 namespace breccia::fdem {
 namespace heterogeneity_test {
@@ -139,7 +139,7 @@ TEST(Heterogeneity, GrainsAreAsLargeAsAsked) {
 }
 
 TEST(Heterogeneity, PictureGivesItsColoursToTheSamePlaces) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path();
+  const ScratchFolder folder;
   const std::string file = "breccia_minerals.png";
   // Left half red; right half green above, blue below.
   Image image{20, 10, {}};
@@ -149,14 +149,13 @@ TEST(Heterogeneity, PictureGivesItsColoursToTheSamePlaces) {
       for (const int c : {left ? 250 : 3, !left && above ? 240 : 10, !left && !above ? 255 : 0})
         image.rgb.push_back(static_cast<std::uint8_t>(c));
     }
-  write_png((folder / file).string(), image);
+  write_png(folder / file, image);
   BodyConfig body = granite("picture");
   body.grains.file = file;
   body.grains.minerals[0].color = "ff0000";
   body.grains.minerals[1].color = "00ff00";
   body.grains.minerals[2].color = "0000FF";
-  const Model m = built({body}, {}, 1, folder.string());
-  std::filesystem::remove(folder / file);
+  const Model m = built({body}, {}, 1, folder.path());
   EXPECT_NEAR(share_of(m, 2), 0.5, 0.01);
   EXPECT_NEAR(share_of(m, 3), 0.25, 0.01);
   for (std::size_t t = 0; t < m.triangle.size(); ++t) {

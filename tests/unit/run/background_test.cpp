@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 
 #include "physics/fdem/scene.hpp"
 #include "run/method/fdem_method.hpp"
+#include "unit/run/scratch_folder.hpp"
 
 namespace breccia {
 namespace background_test {
@@ -67,13 +67,13 @@ std::unique_ptr<Method> flying(Space space) {
   return make_method(scene.config, scene.model, exec, nullptr);
 }
 std::string saved(Method& method) {
-  const std::string path = std::filesystem::temp_directory_path() / "breccia_snapshot.br";
+  const ScratchFolder folder;
+  const std::string path = folder / "snapshot.br";
   CheckpointWriter writer;
   method.save(writer);
   writer.write(path);
   std::ifstream file(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  std::filesystem::remove(path);
   return bytes;
 }
 
