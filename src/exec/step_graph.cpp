@@ -41,6 +41,12 @@ void StepGraph::end() {
   stale_ = false;
 }
 
+void StepGraph::give_up() noexcept {
+  cudaGraph_t graph = nullptr;
+  if (cudaStreamEndCapture(device_stream(), &graph) == cudaSuccess) cudaGraphDestroy(graph);
+  cudaGetLastError();  // the failure is told by what was thrown
+}
+
 void StepGraph::replay() const {
   if (replayed_in_shadow()) return;
   check_device(cudaGraphLaunch(recorded_->executable, device_stream()), "launching steps");
@@ -55,6 +61,7 @@ struct StepGraph::Recorded {
 };
 void StepGraph::begin() {}
 void StepGraph::end() {}
+void StepGraph::give_up() noexcept {}
 void StepGraph::replay() const {
   replayed_in_shadow();
 }

@@ -33,7 +33,12 @@ class StepGraph {
       return;
     }
     begin();
-    launch();
+    try {
+      launch();
+    } catch (...) {
+      give_up();  // else the stream would go on recording, for the next run of this process, too
+      throw;
+    }
     end();
   }
   bool empty() const;
@@ -46,6 +51,7 @@ class StepGraph {
   struct Recorded;
   void begin();
   void end();
+  void give_up() noexcept;
   Recorded& recorded();
   bool replayed_in_shadow() const;
   /// Where the launches of a new recording go in Space::shadow.

@@ -142,7 +142,8 @@ def served(server, attack, case, k, stays, good, alive, folder):
     if kept:
         told, *_ = server.call(log, ["resume", folder, "--threads", "1", "--no-progress", *common.DEVICE, "--steps", str(STEPS)])
         if told != 0 or state_hash(folder) != good:
-            return code, f"resume ends with {told}"
+            with open(log) as file:
+                return code, f"resume ends with {told}: {file.read()[-300:]}"
     return code, ""
 
 
