@@ -1,6 +1,7 @@
 // Readings of probes: stresses of tetrahedra, cracks of joints, and what fdem_shared/readings.hpp
 // reads of corners.
 
+#include "fdem3/joints/joints_to_read.hpp"
 #include "fdem3/observe.hpp"
 #include "fdem_shared/readings.hpp"
 
@@ -31,41 +32,6 @@ StressToRead stress_to_read(const World& w) {
           w.given->laws.view(), t.hold.view(),  w.given->holds.view()};
 }
 
-/// Joints: their mean opening and slip.
-struct JointsToRead {
-  View<const TetrahedronNodes> nodes;
-  View<const Index> side_a, side_b;
-  View<const std::uint8_t> turn;
-
-  BR_HD Vec3 middle(Index i) const {
-    Vec3 a[3], b[3], middle{};
-    corners(i, a, b);
-    for (int k = 0; k < 3; ++k) middle += (1.0 / 6.0) * (a[k] + b[k]);
-    return middle;
-  }
-  BR_HD double opening(Index i) const {
-    const JointOpening o = open(i);
-    return (o.open[0] + o.open[1] + o.open[2]) / 3.0;
-  }
-  BR_HD double slip(Index i) const {
-    const JointOpening o = open(i);
-    return norm((1.0 / 3.0) * (o.slide[0] + o.slide[1] + o.slide[2]));
-  }
-
- private:
-  BR_HD void corners(Index i, Vec3 (&a)[3], Vec3 (&b)[3]) const {
-    const JointEnds e = JointEnds::of(side_a[i], side_b[i], turn[i]);
-    for (int k = 0; k < 3; ++k) {
-      a[k] = nodes[e.a[k] / 4].at[e.a[k] % 4].position;
-      b[k] = nodes[e.b[k] / 4].at[e.b[k] % 4].position;
-    }
-  }
-  BR_HD JointOpening open(Index i) const {
-    Vec3 a[3], b[3];
-    corners(i, a, b);
-    return opening_of(a, b);
-  }
-};
 JointsToRead joints_to_read(const World& w) {
   const Joints& j = w.joints;
   return {w.tetrahedra.nodes.view(), j.face_a.view(), j.face_b.view(), j.turn.view()};

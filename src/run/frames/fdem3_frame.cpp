@@ -7,6 +7,7 @@
 #include "core/on_host.hpp"
 #include "domain/drift.hpp"
 #include "exec/tasks.hpp"
+#include "fdem3/joints/joints_to_read.hpp"
 #include "fdem3/observe.hpp"
 #include "fdem3/ranks.hpp"
 #include "fdem3/setup/removal.hpp"
@@ -119,7 +120,8 @@ class FrameOfTetrahedra {
       f_.position[point] = t_.nodes.data()[node / 4].at[node % 4].position;
       put_vector(f_.point_fields[0], point++, velocity_[at(node / 4)].at[node % 4]);
     });
-    add_crack_fields(j_, own_, f_.triangle_fields);
+    const JointsToRead now{t_.nodes.view(), j_.face_a.view(), j_.face_b.view(), j_.turn.view()};
+    add_crack_fields(j_, now, own_, f_.triangle_fields);
   }
 
   /// Of corners; of crack faces the mean of both sides.

@@ -7,6 +7,7 @@
 #include "core/on_host.hpp"
 #include "domain/drift.hpp"
 #include "exec/tasks.hpp"
+#include "fdem/joints/joints_to_read.hpp"
 #include "fdem/observe.hpp"
 #include "fdem/ranks.hpp"
 #include "fdem/setup/removal.hpp"
@@ -161,7 +162,8 @@ void add_lines(const World& w, const Triangles& t, const Joints& j,
   each_open_corner(w, own, [&](Index node) {
     put_point(f, point++, nodes[node].position, velocity[at(node / 3)].at[node % 3]);
   });
-  add_crack_fields(j, own, f.line_fields);
+  const JointsToRead now{t.nodes.view(), j.edge_a.view(), j.edge_b.view()};
+  add_crack_fields(j, now, own, f.line_fields);
 }
 
 }  // namespace

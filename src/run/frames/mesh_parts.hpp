@@ -169,24 +169,30 @@ PlacedParts placed_parts(const World& w, const Elements& t, const Joints& joints
   return placed;
 }
 
-/// Mode, damage and time of break of each own crack; of those open from the start -1, 1 and 0.
-template <class Joints>
-void add_crack_fields(const Joints& j, const OwnParts& own, std::vector<FrameField>& fields) {
+/// Mode, damage, time of break, opening and slip of each own crack; of those open from the start
+/// -1, 1, 0, 0 and 0.
+/// @param now  a method's: opening(i) and slip(i) of joint i  [m]
+template <class Joints, class Now>
+void add_crack_fields(const Joints& j, const Now& now, const OwnParts& own,
+                      std::vector<FrameField>& fields) {
   using Stage = std::remove_cvref_t<decltype(j.stage.data()[0])>;
   using Kind = Quantity::Kind;
-  FrameField mode = field_of({Kind::mode}), damage = field_of({Kind::damage}),
-             time = field_of({Kind::time});
-  for (const Index i : own.cracks) {
-    mode.values.push_back(static_cast<float>(mode_of(j, i)));
+  const std::size_t cracks = own.cracks.size(), all = cracks + own.open.size();
+  const auto add = [&](Kind kind, float of_open, const auto& value) {
+    FrameField& made = fields.emplace_back(field_of({kind}));
+    made.values.assign(all, of_open);
+    for (std::size_t l = 0; l < cracks; ++l)
+      made.values[l] = static_cast<float>(value(own.cracks[l]));
+  };
+  add(Kind::mode, -1.0F, [&](Index i) { return mode_of(j, i); });
+  add(Kind::damage, 1.0F, [&](Index i) {
     double worst = j.stage.data()[i] == Stage::broken ? 1.0 : 0.0;
     for (const auto& p : j.points.data()[i].point) worst = std::max(worst, p.damage);
-    damage.values.push_back(static_cast<float>(worst));
-    time.values.push_back(static_cast<float>(j.broke_at.data()[i]));
-  }
-  mode.values.resize(mode.values.size() + own.open.size(), -1.0F);
-  damage.values.resize(mode.values.size(), 1.0F);
-  time.values.resize(mode.values.size(), 0.0F);
-  for (FrameField* field : {&mode, &damage, &time}) fields.push_back(std::move(*field));
+    return worst;
+  });
+  add(Kind::time, 0.0F, [&](Index i) { return j.broke_at.data()[i]; });
+  add(Kind::opening, 0.0F, [&](Index i) { return now.opening(i); });
+  add(Kind::slip, 0.0F, [&](Index i) { return now.slip(i); });
 }
 
 /// Couples that press on each other, by the forces of the last step: between centroids.

@@ -22,7 +22,7 @@ struct Fdem3Part {
 Fdem3Part fdem3_part(const fdem3::Config& config, const fdem3::Model& model, const Exec& exec);
 
 /// Tetrahedra with stress, damage, body, material and fragment; softened and broken joints as
-/// triangles with mode, damage and time of break.
+/// triangles with mode, damage, time of break, opening and slip.
 /// Of a rank's part of a world, that part of the frame: all ranks make it at once.
 /// @param mesh  on rank 0 of several: a whole world, for what does not change
 FramePart fdem3_frame(fdem3::World& w, const fdem3::World* mesh = nullptr);

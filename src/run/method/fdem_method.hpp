@@ -15,7 +15,7 @@ std::unique_ptr<Method> make_method(const fdem::Config& config, const fdem::Mode
                                     const Exec& exec, Communicator* ranks = nullptr);
 
 /// Triangles with stress, damage, body, material and fragment; softened and broken joints as lines
-/// with mode, damage and time of break.
+/// with mode, damage, time of break, opening and slip.
 /// Of a rank's part of a world, that part of the frame: all ranks make it at once.
 /// @param mesh  on rank 0 of several: a whole world, for what does not change
 FramePart fdem_frame(fdem::World& w, const fdem::World* mesh = nullptr);

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "physics/fdem/scene.hpp"
+#include "run/method/fdem_method.hpp"
 
 namespace breccia::fdem {
 namespace fdem_measures_test {
@@ -122,6 +125,16 @@ TEST(Measures, cracks_show_how_far_they_have_opened_and_slipped) {
   EXPECT_NEAR(value(w, "plate", "opening"), 3e-6, 1e-12);
   EXPECT_NEAR(value(w, "plate", "slip", "max"), 2e-6, 1e-12);
   EXPECT_EQ(probe(w, {"", "", "broken", "sum", {0.0, -1.0}, {1.0, 1.0}}), 2.0);
+  const Frame frame = fdem_frame(w).frame;
+  const auto expect_all = [&](const char* name, double wanted) {
+    const auto field = std::find_if(frame.line_fields.begin(), frame.line_fields.end(),
+                                    [&](const FrameField& f) { return f.name == name; });
+    ASSERT_NE(field, frame.line_fields.end()) << name;
+    EXPECT_EQ(static_cast<double>(field->values.size()), crossing);
+    for (const float one : field->values) EXPECT_NEAR(one, wanted, 1e-12) << name;
+  };
+  expect_all("opening", 3e-6);
+  expect_all("slip", 2e-6);
 }
 
 }  // namespace fdem_measures_test
