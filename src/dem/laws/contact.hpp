@@ -124,7 +124,7 @@ struct ContactLaw {
     return 0.5 * material.normal * pair.smaller * pair.smaller / pair.sum * overlap * overlap;
   }
 
-  /// What the step must be multiplied by so that the dashpot leaves it stable:
+  /// The factor by which the dashpot shortens the stable step:
   /// dt <= 2/omega (sqrt(1 + xi^2) - xi).  [-]
   BR_HD double shrink() const { return sqrt(1.0 + damping * damping) - damping; }
 
