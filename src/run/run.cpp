@@ -365,7 +365,8 @@ void Run::failed(int exit_code, const std::string& message) {
     }
     return true;
   };
-  const bool of_all = thrown_by_all(plan_.ranks);
+  // Without memory or a device arrays may be half made: kernels would read beyond their ends.
+  const bool of_all = thrown_by_all(plan_.ranks) && exit_code != DeviceError("").exit_code();
   at_once(plan_.ranks, [&] {
     progress_.end_line();
     write([&] {

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <new>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,6 +23,7 @@ struct Trouble {
   std::int64_t flip_force_at = -1;  ///< likewise, of what acts from the next step on
   std::int64_t flip_constant_at = -1;  ///< a number that no step changes is another from then on
   std::int64_t lose_at = -1;    ///< this step fails and knows no more than an element's place
+  std::int64_t no_memory_at = -1;  ///< the arrays of this step are not all made
   std::int64_t signal_at = -1;  ///< the process gets `signal` during this step
   int signal = SIGTERM;
   double pause = 0.0;               ///< wall time a step takes  [s]
@@ -57,6 +59,7 @@ class FakeMethod : public Method {
       trouble_.flip_at = -1;
     }
     if (steps_ == trouble_.lose_at) throw NumericsError("the element at place 3 is lost");
+    if (steps_ == trouble_.no_memory_at) throw std::bad_alloc();
     if (steps_ == trouble_.signal_at) ::raise(trouble_.signal);
     return {1, last_step_, last_step_};
   }

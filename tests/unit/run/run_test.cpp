@@ -253,6 +253,18 @@ TEST(Run, StopsAtWrongNumbersAndSavesTheState) {
   EXPECT_TRUE(CheckpointReader(scratch / "out/crash.br").has("fake.position"));
 }
 
+TEST(Run, AsksNothingOfAStateThatMemoryWasMissingFor) {
+  const ScratchFolder scratch;
+  Trouble trouble;
+  trouble.no_memory_at = 60;
+  EXPECT_THROW(run_fake(fake_plan(), scratch / "out", trouble), DeviceError);
+  const nlohmann::json summary = summary_of(scratch / "out");
+  EXPECT_EQ(summary["status"], "failed");
+  EXPECT_EQ(summary["exit_code"], 5);
+  EXPECT_FALSE(summary.contains("state_hash"));
+  EXPECT_FALSE(summary.contains("energy"));
+}
+
 TEST(Run, NamesStepAndElementOfAFailureThatKnowsNeither) {
   const ScratchFolder scratch;
   Trouble trouble;
