@@ -117,6 +117,7 @@ struct Again {
     if (!recipe.moment.frame) return method->frame();
     Frame frame = read_frame(out, *recipe.moment.frame);
     if (needs_displacement(recipe.options)) add_displacement(frame, read_frame(out, 0));
+    if (shows_contacts(frame, recipe.options)) add_contacts_of(out, *recipe.moment.frame, frame);
     return frame;
   }
   /// A sentence if its state at that moment is not what the picture names.

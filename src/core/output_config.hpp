@@ -32,7 +32,7 @@ struct OutputConfig {
   std::string fit = "run";
   std::string clip;
   std::vector<std::string> hide;  ///< bodies
-  bool links = false, xray = false, crosses = false;
+  bool links = false, xray = false, crosses = false, forces = false;
   std::string arrows;  ///< a field of vectors
   double scale = 1.0;  ///< of displacements  [-]
   bool walls = true;   ///< with supports
@@ -80,6 +80,7 @@ struct OutputConfig {
     key("hide", hide, "bodies that are not drawn");
     key("links", links, "draw the links as well");
     key("xray", xray, "what bars, cracks and broken links lie in is translucent");
+    key("forces", forces, "forces of contacts without links as lines, as wide as they are large");
     key("crosses", crosses,
         "principal stresses in the plane of the picture: tension red, compression blue");
     key("arrows", arrows, "field of vectors drawn as arrows: velocity, displacement, force");

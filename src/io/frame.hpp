@@ -75,6 +75,7 @@ struct Frame {
   std::vector<FrameField> tetrahedron_fields;
   std::vector<std::string> groups;  ///< names for the point field "group"; may be empty
   std::vector<FrameWall> walls;
+  std::vector<FrameContact> contacts;  ///< of a part: those of its rank
 };
 
 /// Where the items of a part of a frame stand in the whole. Such a part has the items of one rank;
@@ -131,7 +132,6 @@ FramePlaces places_in(const Frame& whole);
 struct FramePart {
   Frame frame;
   FramePlaces places;
-  std::vector<FrameContact> contacts;  ///< of this rank
 };
 
 }  // namespace breccia

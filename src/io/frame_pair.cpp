@@ -64,6 +64,21 @@ std::vector<FrameField> point_fields(const Frame& a, const Frame& b) {
 
 }  // namespace
 
+void join_contacts(Frame& all, const Frame& solids) {
+  const std::int32_t first = first_solid(all);
+  for (FrameContact contact : solids.contacts) {
+    contact.a += first;
+    if (contact.b >= 0) contact.b += first;
+    all.contacts.push_back(contact);
+  }
+}
+
+std::int32_t first_solid(const Frame& frame) {
+  return frame.tetrahedra.empty()
+             ? 0
+             : *std::min_element(frame.tetrahedra.begin(), frame.tetrahedra.end());
+}
+
 Frame paired(const Frame& spheres, const Frame& of_solids) {
   Frame all = spheres, solids = of_solids;
   const auto groups = static_cast<std::int32_t>(spheres.groups.size());
@@ -87,6 +102,7 @@ Frame paired(const Frame& spheres, const Frame& of_solids) {
   all.tetrahedron_fields = solids.tetrahedron_fields;
   all.groups.insert(all.groups.end(), solids.groups.begin(), solids.groups.end());
   all.walls.insert(all.walls.end(), solids.walls.begin(), solids.walls.end());
+  join_contacts(all, solids);
   return all;
 }
 

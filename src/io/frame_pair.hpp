@@ -15,6 +15,12 @@ inline constexpr const char* contacts_of_solids = "joint_contacts";
 /// spheres what their tetrahedron has. Groups of tetrahedra are numbered on from those of spheres.
 Frame paired(const Frame& spheres, const Frame& solids);
 
+/// Number of the first point of tetrahedra.
+std::int32_t first_solid(const Frame& frame);
+
+/// Adds contacts of tetrahedra to those of spheres; their ids count on behind these.
+void join_contacts(Frame& all, const Frame& solids);
+
 /// Whether a frame has both.
 inline bool is_paired(const Frame& frame) {
   return !frame.radius.empty() && !frame.tetrahedra.empty();

@@ -152,12 +152,17 @@ class Cutter {
       Planes planes;
       add_elements(planes, shot);
       add_lines(planes, shot, frame);
+      add_contacts(planes, shot, frame);
       film.blobs.push_back(base64(deflated(planes.bytes())));
       frames.push_back(std::move(frame));
       first_ = false;
     }
     film.json = described(std::move(frames)).dump(-1, ' ', false, Json::error_handler_t::replace);
     film.notes = selection_.notes(survey_);
+    if (survey_.contacts > most_contacts())
+      film.notes.push_back(
+          fmt::format("Of {} contacts of a frame the {} strongest at most are here.",
+                      survey_.contacts, most_contacts()));
     return film;
   }
 
@@ -212,6 +217,29 @@ class Cutter {
         add_field(planes, field, shot.line_fields, kept);
   }
 
+  /// Contacts are seldom looked at: all frames together have room for so many.
+  std::size_t most_contacts() const {
+    return std::max<std::size_t>(100000 / selection_.frames.size(), 500);
+  }
+  Scale contact_scale() const {
+    return {0.0F, static_cast<float>(survey_.contact_force), 63, true};
+  }
+  /// The strongest: both ends, and the force.
+  void add_contacts(Planes& planes, const Shot& shot, Json& frame) const {
+    const std::size_t count = std::min(shot.contacts.size(), most_contacts());
+    if (!(survey_.contact_force > 0.0)) return;
+    frame["contacts"] = count;
+    std::vector<Vec3> ends;
+    Numbers force;
+    for (std::size_t i = 0; i < count; ++i) {
+      ends.push_back(shot.contacts[i].at_a);
+      ends.push_back(shot.contacts[i].at_b);
+      force.push_back(contact_scale().step_of(static_cast<float>(norm(shot.contacts[i].force))));
+    }
+    for (int axis = 0; axis < grid_.axes; ++axis) planes.add(grid_.of(ends, axis), grid_.width);
+    planes.add(force, 1);
+  }
+
   static void add_field(Planes& planes, const StoredField& field,
                         const std::vector<FrameField>& values, const Numbers& items) {
     const FrameField* const found = field_named(values, field.field->name);
@@ -251,6 +279,7 @@ class Cutter {
     film["size"] = survey_.size;
     if (survey_.spheres()) film["largest_radius"] = radius_scale().high;
     film["groups"] = survey_.groups;
+    if (survey_.contact_force > 0.0) film["contact_force"] = survey_.contact_force;
     film["fields"] = Json::array();
     for (const StoredField& f : fields_)
       film["fields"].push_back({{"name", f.field->name},

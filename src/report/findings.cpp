@@ -10,6 +10,7 @@
 
 #include "io/round_numbers.hpp"
 #include "math/constants.hpp"
+#include "math/principal.hpp"
 #include "report/shot.hpp"
 
 namespace breccia::report {
@@ -73,20 +74,6 @@ struct Use {
   std::string material;
 };
 
-/// The largest eigenvalue of a symmetric matrix xx, yy, zz, xy, yz, xz: that of its deviator is
-/// 2 p cos(phi), with the invariants of which p is the size and phi the angle.
-double largest_principal(const std::array<double, 6>& s) {
-  const double mean = (s[0] + s[1] + s[2]) / 3.0;
-  const double x = s[0] - mean, y = s[1] - mean, z = s[2] - mean;
-  const double square = x * x + y * y + z * z + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
-  const double p = std::sqrt(square / 6.0);
-  if (!(p > 0.0)) return mean;
-  const double det =
-      x * (y * z - s[4] * s[4]) - s[3] * (s[3] * z - s[4] * s[5]) + s[5] * (s[3] * s[4] - y * s[5]);
-  const double phi = std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0;
-  return mean + 2.0 * p * std::cos(phi);
-}
-
 /// Stresses of triangles or tetrahedra.
 class Stresses {
  public:
@@ -104,7 +91,8 @@ class Stresses {
     const auto part = [&](std::size_t k) {
       return static_cast<double>(parts_[k]->values[element]);
     };
-    if (solid_) return largest_principal({part(0), part(1), part(3), part(2), part(4), part(5)});
+    if (solid_)
+      return principal_values({part(0), part(1), part(3), part(4), part(5), part(2)}).front();
     return 0.5 * (part(0) + part(1)) + std::hypot(0.5 * (part(0) - part(1)), part(2));
   }
 

@@ -111,6 +111,12 @@ const FrameField* field_named(const std::vector<FrameField>& fields, const std::
 
 Shot read_shot(const std::string& folder, int number) {
   Frame frame = read_frame(folder, number);
+  add_contacts_of(folder, number, frame);
+  std::vector<FrameContact> contacts = std::move(frame.contacts);
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const FrameContact& a, const FrameContact& b) {
+                     return dot(a.force, a.force) > dot(b.force, b.force);
+                   });
   const std::int64_t step = frame.step;
   const double time = frame.time;
   std::vector<std::string> groups = std::move(frame.groups);
@@ -122,6 +128,7 @@ Shot read_shot(const std::string& folder, int number) {
   shot.step = step;
   shot.time = time;
   shot.groups = std::move(groups);
+  shot.contacts = std::move(contacts);
   shot.line_fields = std::move(line_fields);
   sort_by_id(shot);
   return shot;

@@ -25,7 +25,8 @@ struct Shot {
   /// too. They may lie anywhere.  [m]
   std::vector<Vec3> end;
   std::vector<FrameField> line_fields;
-  std::vector<std::string> groups;  ///< names for the field "group"
+  std::vector<FrameContact> contacts;  ///< that press without a link, the strongest first
+  std::vector<std::string> groups;     ///< names for the field "group"
 
   bool spheres() const { return !plane && !solid; }
   std::size_t corners_of_element() const { return solid ? 4 : plane ? 3 : 1; }

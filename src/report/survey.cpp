@@ -95,6 +95,9 @@ Survey survey_of(const std::string& folder, std::size_t count) {
     widen(survey, shot);
     note_fields(survey, shot.element_fields, false, survey.first.element_fields);
     note_fields(survey, shot.line_fields, true, survey.first.line_fields);
+    survey.contacts = std::max(survey.contacts, shot.contacts.size());
+    if (!shot.contacts.empty())
+      survey.contact_force = std::max(survey.contact_force, norm(shot.contacts.front().force));
     if (!shot.spheres() || shot.ends != survey.first.ends) survey.lines_constant = false;
     survey.frames.push_back(
         {static_cast<int>(k), shot.step, shot.time, shot.lines(), broken_by_kind(shot)});

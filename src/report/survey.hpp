@@ -35,6 +35,8 @@ struct Survey {
   double size = 0.0;           ///< mean radius, or mean edge of a triangle or tetrahedron  [m]
   std::vector<FieldSurvey> fields;
   std::vector<std::string> groups;
+  std::size_t contacts = 0;    ///< of the frame that has most
+  double contact_force = 0.0;  ///< the largest  [N; N/m of triangles]
   std::vector<FrameFacts> frames;
   Shot first, last;
 

@@ -6,12 +6,16 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "core/quantity.hpp"
 #include "exec/error.hpp"
 #include "io/frame_pair.hpp"
+#include "io/picture/color_bar.hpp"
+#include "io/picture/contact_colors.hpp"
 #include "io/picture/line_colors.hpp"
+#include "io/picture/stress_measures.hpp"
 
 namespace breccia {
 namespace {
@@ -23,7 +27,8 @@ constexpr std::size_t most_swatches = 9;
 struct Selected {
   Carrier carrier;
   const FrameField* field;
-  int component;  ///< -1: the length of a vector
+  int component;                                ///< -1: the length of a vector
+  std::shared_ptr<const FrameField> made = {};  ///< holds a field that the frame lacks
 };
 
 const std::vector<FrameField>& fields_of(const Frame& frame, Carrier carrier) {
@@ -65,6 +70,10 @@ std::optional<Selected> find(const Frame& frame, const std::string& name,
               field_named(fields_of(frame, carrier), name.substr(0, name.size() - 3));
           field != nullptr && field->components == 6)
         return Selected{carrier, field, static_cast<int>(part)};
+  }
+  if (const auto made = stress_measure(frame, name)) {
+    const auto held = std::make_shared<const FrameField>(*made);
+    return Selected{Stresses(frame).carrier(), held.get(), 0, held};
   }
   if (name.size() < 3 || name[name.size() - 2] != '_') return std::nullopt;
   const int component = name.back() - 'x';
@@ -157,106 +166,6 @@ GroupTints group_tints(const Frame& frame, const std::vector<std::size_t>& group
     }
   }
   return tints;
-}
-
-/// The range to show: all values, or where a few lie far out, the bulk of them.
-struct Spread {
-  ValueRange shown, whole;
-};
-Spread spread_of(const std::vector<float>& values) {
-  std::vector<float> sorted;
-  for (const float value : values)
-    if (std::isfinite(value)) sorted.push_back(value);
-  if (sorted.empty()) return {{0.0, 0.0}, {0.0, 0.0}};
-  std::sort(sorted.begin(), sorted.end());
-  const ValueRange whole{sorted.front(), sorted.back()};
-  if (sorted.size() < 1000) return {whole, whole};
-  const std::size_t cut = sorted.size() / 500;  // two in a thousand at either end
-  const ValueRange bulk{sorted[cut], sorted[sorted.size() - 1 - cut]};
-  const double margin = 0.5 * (bulk.high - bulk.low);
-  if (!(margin > 0.0)) return {whole, whole};
-  return {{whole.low < bulk.low - margin ? bulk.low : whole.low,
-           whole.high > bulk.high + margin ? bulk.high : whole.high},
-          whole};
-}
-
-Legend::Bar bar_of(const std::string& name, const std::string& unit, const Spread& spread,
-                   const std::optional<ValueRange>& wanted) {
-  const bool ends_on_damage = name.size() >= 6 && name.substr(name.size() - 6) == "damage";
-  if (ends_on_damage && spread.whole.low >= 0.0 && spread.whole.high <= 1.0) {
-    return {ColorMap::damage, wanted.value_or(ValueRange{0.0, 1.0}), {}, ""};
-  }
-  if (wanted) {
-    const bool centred = wanted->low < 0.0 && std::fabs(wanted->low + wanted->high) <
-                                                  1e-6 * (wanted->high - wanted->low);
-    return {centred ? ColorMap::diverging : ColorMap::viridis, *wanted, {}, ""};
-  }
-  Legend::Bar bar{ColorMap::viridis, spread.shown, {}, ""};
-  const double smaller = std::min(-bar.range.low, bar.range.high);
-  const double largest = std::max(std::fabs(bar.range.low), std::fabs(bar.range.high));
-  if (smaller > 0.02 * largest) {
-    bar.map = ColorMap::diverging;
-    bar.range = {-largest, largest};
-  } else if (bar.range.low > 0.0 && bar.range.low < 0.5 * bar.range.high) {
-    bar.range.low = 0.0;
-  }
-  bar.range = rounded_outwards(beyond_rounding(bar.range, unit));
-  return bar;
-}
-
-void finish_legend(Legend& legend, const std::string& name, const std::string& unit,
-                   const ValueRange& whole) {
-  Legend::Bar& bar = *legend.bar;
-  const double largest = std::max(std::fabs(bar.range.low), std::fabs(bar.range.high));
-  const ScaledUnit scaled = scaled_unit(unit, largest);
-  legend.title = scaled.unit.empty() ? name : fmt::format("{} [{}]", name, scaled.unit);
-  bar.ticks = ticks_of(bar.range, scaled.factor);
-  const double rounding = 1e-6 * (bar.range.high - bar.range.low);
-  if (whole.high > bar.range.high + rounding)
-    bar.note = fmt::format("max {:.3g}", scaled.factor * whole.high);
-  if (whole.low < bar.range.low - rounding)
-    bar.note +=
-        fmt::format("{}min {:.3g}", bar.note.empty() ? "" : ", ", scaled.factor * whole.low);
-}
-
-std::vector<Color> mapped_colors(const Legend::Bar& bar, const std::vector<float>& values) {
-  const double width = bar.range.high - bar.range.low;
-  const auto low = static_cast<float>(bar.range.low);
-  const auto factor = static_cast<float>(width > 0.0 ? 1.0 / width : 1.0);
-  std::vector<Color> colors(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    colors[i] = map_color(bar.map, factor * (values[i] - low));
-  }
-  return colors;
-}
-
-/// By the logarithm of sizes: values, the bar's range and its ticks are logarithms then.
-std::vector<Color> log_colors(Legend& legend, const std::string& name, const std::string& unit,
-                              std::vector<float>& values, const std::optional<ValueRange>& wanted,
-                              const std::string& map) {
-  constexpr double decades = 1e-4;
-  double largest = 0.0;
-  for (float& value : values) {
-    value = std::fabs(value);
-    if (std::isfinite(value)) largest = std::max<double>(largest, value);
-  }
-  if (wanted) largest = std::max(std::fabs(wanted->low), std::fabs(wanted->high));
-  if (!(largest > 0.0)) largest = 1.0;
-  const double least = wanted && wanted->low > 0.0 ? wanted->low : decades * largest;
-  const ScaledUnit scaled = scaled_unit(unit, largest);
-  Legend::Bar bar{map.empty() ? ColorMap::viridis : map_named(map),
-                  {std::log10(least), std::log10(largest)},
-                  {},
-                  ""};
-  for (int power = static_cast<int>(std::ceil(bar.range.low + std::log10(scaled.factor) - 1e-9));
-       power <= bar.range.high + std::log10(scaled.factor) + 1e-9; ++power)
-    bar.ticks.push_back(
-        {power - std::log10(scaled.factor), fmt::format("{:g}", std::pow(10.0, power))});
-  legend.title = scaled.unit.empty() ? name : fmt::format("{} [{}]", name, scaled.unit);
-  legend.bar = bar;
-  for (float& value : values)
-    value = static_cast<float>(std::log10(std::max<double>(value, least)));
-  return mapped_colors(bar, values);
 }
 
 /// The name of a category in a legend: groups have names, and so have kinds and states of links.
@@ -428,7 +337,22 @@ const FrameField* field_of(const Frame& frame, Carrier carrier, const std::strin
 }
 
 bool has_field(const Frame& frame, const std::string& field) {
-  return field.empty() || find(frame, field).has_value();
+  return field.empty() || is_of_contacts(frame, field) || find(frame, field).has_value();
+}
+
+bool is_of_contacts(const Frame& frame, const std::string& field) {
+  if (field == contact_field) return true;
+  if (field != "force") return false;
+  const std::optional<Selected> selected = find(frame, field);
+  return !selected || (selected->carrier == Carrier::lines && frame.lines.empty());
+}
+
+bool may_show_contacts(const RenderOptions& options) {
+  return options.forces || options.field == contact_field || options.field == "force";
+}
+
+bool shows_contacts(const Frame& frame, const RenderOptions& options) {
+  return options.forces || is_of_contacts(frame, options.field);
 }
 
 bool has_cracks(const Frame& frame) {
@@ -450,10 +374,15 @@ Coloring color_frame(const Frame& frame, const std::string& field,
     show_cracks(frame, coloring);
     return coloring;
   }
+  if (is_of_contacts(frame, field)) {
+    color_by_contacts(frame, range, map, log, coloring);
+    return coloring;
+  }
   const std::optional<Selected> selected = find(frame, field, lines_first);
   if (!selected) {
-    throw InputError(fmt::format("field = \"{}\" is not in this frame; it has {}", field,
-                                 names_of_fields(frame)));
+    throw InputError(fmt::format(
+        "field = \"{}\" is not in this frame; it has {}{}", field, names_of_fields(frame),
+        is_stress_measure(field) ? "; output.more = [\"stress\"] in the case adds stresses" : ""));
   }
   coloring.legend = {};
   coloring.of_lines = selected->carrier == joints_of(frame);

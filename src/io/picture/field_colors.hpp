@@ -29,17 +29,25 @@ struct Legend {
   std::vector<std::string> notes;  ///< below them
 };
 
+/// How the force of a contact is drawn.
+struct ContactLook {
+  std::size_t contact;  ///< of those of the frame
+  Color color;
+  double width;  ///< 0 to 1 for the largest force
+};
+
 /// A colour an item. Of a frame with tetrahedra, "lines" are the triangles of its joints.
 struct Coloring {
   std::vector<Color> points, lines;
   std::vector<Color> triangles, tetrahedra;  ///< that are bodies
   bool of_lines = false;                     ///< the field is one of the lines
-  bool cracks = false;             ///< lines are cracks in the bodies, drawn with any field
-  std::vector<bool> hidden_lines;  ///< not to be drawn; empty: all are
-  std::vector<float> line_widths;  ///< factors; empty: all 1
-  std::vector<bool> inside;        ///< points that an x-ray shows; empty: it shows cracks alone
-  std::vector<bool> bars;          ///< points that show through others; empty: none
-  std::vector<float> veil;         ///< by point, how much of a bar behind it shows: 0 to 1
+  bool cracks = false;                ///< lines are cracks in the bodies, drawn with any field
+  std::vector<bool> hidden_lines;     ///< not to be drawn; empty: all are
+  std::vector<float> line_widths;     ///< factors; empty: all 1
+  std::vector<bool> inside;           ///< points that an x-ray shows; empty: it shows cracks alone
+  std::vector<bool> bars;             ///< points that show through others; empty: none
+  std::vector<float> veil;            ///< by point, how much of a bar behind it shows: 0 to 1
+  std::vector<ContactLook> contacts;  ///< that are drawn, the weakest first
   Legend legend;
 };
 

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "exec/error.hpp"
+#include "io/frame_pair.hpp"
 
 namespace breccia {
 namespace {
@@ -50,6 +52,31 @@ void keep_ends(std::vector<std::int32_t>& ends, std::size_t per_item, std::vecto
   keep(fields, kept);
 }
 
+/// Leaves out contacts of elements whose group is hidden, by ids.
+void keep_contacts(Frame& part, const Frame& whole, const std::vector<bool>& hidden_group) {
+  std::unordered_set<std::int32_t> gone;
+  const auto add = [&](const std::vector<FrameField>& fields, std::size_t count,
+                       std::int32_t behind) {
+    const std::vector<bool> shown = shown_items(fields, count, hidden_group);
+    for (const FrameField& field : fields) {
+      if (field.name != "id" || field.values.size() != count) continue;
+      for (std::size_t i = 0; i < count; ++i)
+        if (!shown[i])
+          gone.insert(behind + (field.integers ? (*field.integers)[i]
+                                               : static_cast<std::int32_t>(field.values[i])));
+    }
+  };
+  if (!whole.tetrahedra.empty())
+    add(whole.tetrahedron_fields, whole.tetrahedra.size() / 4,
+        is_paired(whole) ? first_solid(whole) : 0);
+  if (!whole.radius.empty()) add(whole.point_fields, whole.position.size(), 0);
+  if (whole.tetrahedra.empty() && !whole.triangles.empty())
+    add(whole.triangle_fields, whole.triangles.size() / 3, 0);
+  std::erase_if(part.contacts, [&](const FrameContact& contact) {
+    return gone.contains(contact.a) || gone.contains(contact.b);
+  });
+}
+
 }  // namespace
 
 Frame without_groups(const Frame& frame, const std::set<std::string>& hidden) {
@@ -81,6 +108,7 @@ Frame without_groups(const Frame& frame, const std::set<std::string>& hidden) {
   keep_ends(part.tetrahedra, 4,
             shown_items(frame.tetrahedron_fields, frame.tetrahedra.size() / 4, hidden_group),
             part.tetrahedron_fields, place);
+  keep_contacts(part, frame, hidden_group);
   if (part.tetrahedra.size() != frame.tetrahedra.size())  // its neighbours are seen from within
     std::erase_if(part.tetrahedron_fields,
                   [](const FrameField& field) { return field.name == "exposed"; });

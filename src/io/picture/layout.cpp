@@ -40,7 +40,7 @@ Layout::Layout(const Frame& frame, const RenderOptions& options)
       extent(options.extent ? *options.extent : bulk_extent(frame)),
       axes(options.camera ? camera_at(*options.camera, {0, 0, 1, 1}).axes
                           : axes_for(extent, options)),
-      overlay(frame, options, coloring.legend) {
+      overlay(frame, options, coloring) {
   if (const std::optional<Clip> clip = clip_of(options.clip, axes))
     extent = nearer(extent, cut_extent(extent, *clip), axes, options);
 }

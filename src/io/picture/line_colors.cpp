@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "io/picture/contact_colors.hpp"
 #include "io/picture/field_colors.hpp"
 
 namespace breccia {
@@ -147,6 +148,7 @@ Coloring color_frame(const Frame& frame, const RenderOptions& options) {
   const bool of_spheres = !frame.radius.empty();
   Coloring coloring = color_frame(frame, options.field, options.range, options.map,
                                   options.show_links && of_spheres, options.log);
+  if (options.forces && coloring.contacts.empty()) add_contacts(frame, coloring);
   if (coloring.cracks && (options.show_links || options.xray)) show_softened(frame, coloring);
   if (!options.xray) return coloring;
   for (Color& color : coloring.triangles) color = blend(color, ground_color, 0.8F);

@@ -69,18 +69,15 @@ const FrameField* vectors(const Frame& frame, const std::string& name) {
   return good ? field : nullptr;
 }
 
-/// Of the fields that hold one number of a tensor each.
-std::vector<const char*> names_of_stress(Carrier carrier) {
-  std::vector<const char*> names{"stress_xx", "stress_yy", "stress_xy"};
-  if (carrier == Carrier::tetrahedra)
-    names.insert(names.end(), {"stress_zz", "stress_yz", "stress_xz"});
-  return names;
-}
-
 }  // namespace
 
-Overlay::Overlay(const Frame& frame, const RenderOptions& options, Legend& legend)
-    : frame_(frame), edges_(options.edges) {
+Overlay::Overlay(const Frame& frame, const RenderOptions& options, Coloring& coloring)
+    : frame_(frame),
+      edges_(options.edges),
+      crosses_(options.crosses),
+      stress_(frame),
+      contacts_(coloring.contacts) {
+  Legend& legend = coloring.legend;
   if (!options.arrows.empty()) {
     arrows_ = vectors(frame, options.arrows);
     if (arrows_ == nullptr) {
@@ -99,27 +96,18 @@ Overlay::Overlay(const Frame& frame, const RenderOptions& options, Legend& legen
     legend.notes.push_back("longest " + with_unit(longest_, arrows_->unit));
   }
   if (options.crosses) {
-    const Carrier carrier = !frame.tetrahedra.empty() ? Carrier::tetrahedra
-                            : frame.triangles.empty() ? Carrier::points
-                                                      : Carrier::triangles;
-    if (const FrameField* tensor = field_of(frame, carrier, "stress");
-        tensor != nullptr && tensor->components == 6)
-      stress_ = {tensor};
-    else
-      for (const char* name : names_of_stress(carrier))
-        if (const FrameField* part = field_of(frame, carrier, name)) stress_.push_back(part);
-    if (stress_.size() != 1 && stress_.size() != names_of_stress(carrier).size())
+    if (!stress_.known())
       throw InputError(
           "this frame has no stresses; output.more = [\"stress\"], or output.crosses = true, in "
           "the case adds them");
-    const std::size_t count = stress_[0]->values.size() / (stress_.size() == 1 ? 6 : 1);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Tensor s = stress_of(i);
-      largest_ = std::max({largest_, std::fabs(s.xx), std::fabs(s.yy), std::fabs(s.zz)});
+    for (std::size_t i = 0; i < stress_.count(); ++i) {
+      const Sym3 s = stress_.at(i);
+      const double zz = stress_.carrier() == Carrier::triangles ? 0.0 : std::fabs(s.zz);
+      largest_ = std::max({largest_, std::fabs(s.xx), std::fabs(s.yy), zz});
     }
     legend.swatches.push_back({pulls, "tension"});
     legend.swatches.push_back({presses, "compression"});
-    legend.notes.push_back("up to " + with_unit(largest_, stress_[0]->unit));
+    legend.notes.push_back("up to " + with_unit(largest_, stress_.unit()));
   }
   if (!options.walls) return;
   held_ = field_of(frame, Carrier::points, "held");
@@ -127,16 +115,6 @@ Overlay::Overlay(const Frame& frame, const RenderOptions& options, Legend& legen
       std::none_of(held_->values.begin(), held_->values.end(), [](float h) { return h > 0.0F; }))
     held_ = nullptr;
   if (held_ != nullptr) legend.swatches.push_back({support, "held"});
-}
-
-Overlay::Tensor Overlay::stress_of(std::size_t item) const {
-  const auto one = [&](std::size_t k) {
-    return static_cast<double>(stress_[0]->values[6 * item + k]);
-  };
-  if (stress_.size() == 1) return {one(0), one(1), one(2), one(3), one(4), one(5)};
-  const auto of = [&](std::size_t k) { return static_cast<double>(stress_[k]->values[item]); };
-  if (stress_.size() == 6) return {of(0), of(1), of(3), of(2), of(4), of(5)};
-  return {of(0), of(1), 0.0, of(2), 0.0, 0.0};
 }
 
 std::vector<Vec3> Overlay::places_of_stress() const {
@@ -195,6 +173,17 @@ bool Overlay::shows_item(const OnPaper& on, std::size_t item) const {
                                            : static_cast<std::size_t>(frame_.triangles[3 * item]));
 }
 
+void Overlay::draw_contacts(Paper& paper, const OnPaper& on, int scale) const {
+  constexpr double thin = 0.3, wide = 3.2;
+  for (const ContactLook& look : contacts_) {
+    const FrameContact& contact = frame_.contacts[look.contact];
+    if (on.keeps && !on.keeps(0.5 * (contact.at_a + contact.at_b))) continue;
+    const ScreenPoint a = on.camera.project(contact.at_a), b = on.camera.project(contact.at_b);
+    if (is_on(paper, a) || is_on(paper, b))
+      paper.stroke(a.u, a.v, b.u, b.v, (thin + wide * look.width) * scale, look.color);
+  }
+}
+
 void Overlay::draw_crosses(Paper& paper, const OnPaper& on, int scale) const {
   struct Mean {
     double rr = 0.0, uu = 0.0, ru = 0.0;
@@ -202,15 +191,11 @@ void Overlay::draw_crosses(Paper& paper, const OnPaper& on, int scale) const {
   Sums<Mean> sums{1.3 * cell * scale, {}};
   const Axes& axes = on.camera.axes;
   const std::vector<Vec3> places = places_of_stress();
-  const auto on_axes = [](const Tensor& s, const Vec3& a, const Vec3& b) {
-    return a.x * (s.xx * b.x + s.xy * b.y + s.xz * b.z) +
-           a.y * (s.xy * b.x + s.yy * b.y + s.yz * b.z) +
-           a.z * (s.xz * b.x + s.yz * b.y + s.zz * b.z);
-  };
+  const auto on_axes = [](const Sym3& s, const Vec3& a, const Vec3& b) { return dot(a, s * b); };
   for (std::size_t i = 0; i < places.size(); ++i) {
     const ScreenPoint p = on.camera.project(places[i]);
     if (!is_on(paper, p)) continue;
-    const Tensor s = stress_of(i);
+    const Sym3 s = stress_.at(i);
     if (!shows_item(on, i) || !std::isfinite(s.xx + s.yy + s.zz + s.xy + s.yz + s.xz)) continue;
     auto& sum = sums.at(p);
     sum.u += p.u, sum.v += p.v, sum.count += 1.0;
@@ -287,8 +272,9 @@ void Overlay::draw_edges(Paper& paper, const OnPaper& on, int scale) const {
 
 void Overlay::draw(Paper& paper, const OnPaper& on, int scale) const {
   if (edges_) draw_edges(paper, on, scale);
+  draw_contacts(paper, on, scale);
   if (held_ != nullptr) draw_held(paper, on, scale);
-  if (!stress_.empty()) draw_crosses(paper, on, scale);
+  if (crosses_) draw_crosses(paper, on, scale);
   if (arrows_ != nullptr) draw_arrows(paper, on, scale);
 }
 

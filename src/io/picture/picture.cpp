@@ -249,7 +249,11 @@ Image render_on(const Frame& frame, const RenderOptions& options, int threads,
   }
   layout.overlay.draw(paper,
                       {camera, [&](std::size_t i) { return is_seen(canvas, frame, scene, i); },
-                       [&](std::size_t i) { return scene.solids_seen[i]; }},
+                       [&](std::size_t i) { return scene.solids_seen[i]; },
+                       [&](const Vec3& place) {
+                         const ScreenPoint p = scene.camera.project(place);
+                         return !scene.clip || scene.clip->beyond(p.u, p.v, p.depth) <= 0.0;
+                       }},
                       scale);
   if (options.bare) return image;
   draw_title(paper, options.title, frame, scale);
@@ -281,6 +285,8 @@ void check_frame(const Frame& frame, const RenderOptions& options) {
 
 Image render(const Frame& frame, const RenderOptions& options, int threads) {
   check_frame(frame, options);
+  if (options.scale != 1.0 && shows_contacts(frame, options))
+    throw InputError("forces of contacts are drawn where they act: scale must be 1 with them");
   if (options.scale != 1.0 || !options.hidden.empty() || options.height == 0) {
     const AsDrawn drawn(frame, options);
     return render(drawn.frame, drawn.options, threads);

@@ -51,7 +51,8 @@ struct Viewpoint {
 /// "x<0.1" and "x>0.1" say which side stays. A height of 0 is as much as the model needs.
 struct RenderOptions {
   std::string field = "damage";  ///< of points, lines or triangles; "velocity": its length,
-                                 ///< "velocity_z": a component; "": one colour a group
+                                 ///< "velocity_z": a component; "": one colour a group;
+                                 ///< "contact_force": that of contacts, as "force" without links
   std::string view = "iso";
   std::string clip = {};
   int width = 1280, height = 960;  ///<  [pixels]
@@ -64,6 +65,7 @@ struct RenderOptions {
   std::string title = {};                ///< stands before the time in the first line
   std::optional<Viewpoint> camera = {};  ///< instead of `view` and `extent`
   std::string arrows = {};               ///< a field of vectors of points
+  bool forces = false;                   ///< of contacts, as lines
   bool crosses = false;                  ///< principal stresses in the plane of the picture
   bool xray = false;                     ///< what bars, cracks and broken links lie in is faded
   bool walls = true;                     ///< draw walls, and marks on what supports hold
@@ -100,6 +102,12 @@ bool has_field(const Frame& frame, const std::string& field);
 
 /// Whether a picture by this field shows the lines for their colours.
 bool colors_lines(const Frame& frame, const std::string& field);
+
+/// Whether it shows forces of contacts, which frames of a folder are read with if they are wanted.
+bool shows_contacts(const Frame& frame, const RenderOptions& options);
+
+/// Whether some frame could show them with these options: alike for all parts of one.
+bool may_show_contacts(const RenderOptions& options);
 
 /// Whether the lines have what tells cracks apart: pictures of triangles show them with any field.
 bool has_cracks(const Frame& frame);

@@ -405,12 +405,53 @@ Frame read_kinds(const std::string& folder, int index, const char* bodies, const
   return frame;
 }
 
+bool lists(const std::string& folder, const std::string& kind) {
+  const char* const list = format_of_frames(folder) == FrameFormat::vtu ? ".pvd" : ".hdf.series";
+  return std::filesystem::exists(folder + "/" + kind + list);
+}
+
+std::vector<FrameContact> read_contacts(const std::string& folder, int index, const char* kind) {
+  const std::vector<Entry> entries = entries_of(folder, kind);
+  const auto number = static_cast<std::size_t>(index);
+  if (number >= entries.size()) return {};
+  const std::unique_ptr<FrameFile> file = opened(folder + "/" + entries[number].file);
+  const std::size_t count = file->cells();
+  std::vector<FrameContact> contacts(count);
+  if (count == 0) return contacts;
+  const std::vector<std::int32_t> ends = connectivity(*file, 2);
+  const std::vector<double> place = file->numbers("Points", "Points", file->points()),
+                            force = file->numbers("CellData", "force_on_b", count);
+  const std::vector<std::int32_t> a = file->integers("CellData", "a", count),
+                                  b = file->integers("CellData", "b", count),
+                                  wall = file->integers("CellData", "wall", count);
+  if (place.size() != 3 * file->points() || force.size() != 3 * count)
+    file->fail("its points or forces are not vectors");
+  const auto vector_at = [](const std::vector<double>& of, std::size_t i) {
+    return Vec3{of[3 * i], of[3 * i + 1], of[3 * i + 2]};
+  };
+  for (std::size_t i = 0; i < count; ++i)
+    contacts[i] = {a[i], wall[i] < 0 ? b[i] : -1 - wall[i],
+                   vector_at(place, static_cast<std::size_t>(ends[2 * i])),
+                   vector_at(place, static_cast<std::size_t>(ends[2 * i + 1])),
+                   vector_at(force, i)};
+  return contacts;
+}
+
 }  // namespace
+
+bool add_contacts_of(const std::string& folder, int index, Frame& frame) {
+  if (!lists(folder, "contacts")) return false;
+  frame.contacts = read_contacts(folder, index, "contacts");
+  if (!lists(folder, contacts_of_solids)) return true;
+  Frame solids;
+  solids.contacts = read_contacts(folder, index, contacts_of_solids);
+  join_contacts(frame, solids);
+  return true;
+}
 
 Frame read_frame(const std::string& folder, int index) {
   const Frame frame = read_kinds(folder, index, "elements", "links");
-  const char* const list = format_of_frames(folder) == FrameFormat::vtu ? ".pvd" : ".hdf.series";
-  if (!std::filesystem::exists(folder + "/" + frame_of_solids + list)) return frame;
+  if (!lists(folder, frame_of_solids)) return frame;
   return paired(frame, read_kinds(folder, index, frame_of_solids, joints_of_solids));
 }
 

@@ -20,4 +20,8 @@ std::vector<double> frame_times(const std::string& folder);
 /// @throws InputError if there is no such frame, IoError if a file is missing or damaged
 Frame read_frame(const std::string& folder, int index);
 
+/// Adds the contacts of a frame that was read, from the files that hold them.
+/// @returns false if the folder has no such files
+bool add_contacts_of(const std::string& folder, int index, Frame& frame);
+
 }  // namespace breccia

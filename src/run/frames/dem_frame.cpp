@@ -221,8 +221,8 @@ class DemFrame {
       const Index from = a->data()[i], to = b->data()[i];
       const Vec3 force = actions->data()[i].force_on_b();
       if (!w_.domain.owns(from) || dot(force, force) == 0.0) continue;
-      part_.contacts.push_back({id.data()[from], id.data()[to], state.data()[from].position,
-                                state.data()[to].position, force});
+      part_.frame.contacts.push_back({id.data()[from], id.data()[to], state.data()[from].position,
+                                      state.data()[to].position, force});
     }
     const OnHost of(w_.wall_contacts.pairs.a, w_.exec.space);
     const OnHost wall(w_.wall_contacts.pairs.b, w_.exec.space);
@@ -234,7 +234,7 @@ class DemFrame {
       if (!w_.domain.owns(from) || dot(force, force) == 0.0) continue;
       const Vec3& x = state.data()[from].position;
       const Vec3 foot = dem::foot_on(w_.walls[static_cast<std::size_t>(k)], x, place->data()[i]);
-      part_.contacts.push_back({id.data()[from], -1 - k, x, foot, force});
+      part_.frame.contacts.push_back({id.data()[from], -1 - k, x, foot, force});
     }
   }
 

@@ -189,7 +189,7 @@ FramePart fdem3_frame(World& w, const World* mesh) {
   f.groups = w.given->groups;
   FrameOfTetrahedra(w, *elements, *joints, own, known, f).fill();
   const OnHost forces(w.couples.history.force, w.exec.space);
-  add_pressing_couples(w, *elements, *forces, part.contacts);
+  add_pressing_couples(w, *elements, *forces, part.frame.contacts);
   if (!w.domain.single_rank())
     add_places(w, *elements, own, known, part.places, part.places.tetrahedron,
                part.places.triangle);

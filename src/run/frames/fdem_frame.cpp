@@ -191,7 +191,7 @@ FramePart fdem_frame(World& w, const World* mesh) {
   add_more(w, *triangles, *joints, own, f);
   with_number(w.couples.history.precision, [&](auto number) {
     const OnHost forces(w.couples.history.force.as<decltype(number)>(), w.exec.space);
-    add_pressing_couples(w, *triangles, *forces, part.contacts);
+    add_pressing_couples(w, *triangles, *forces, part.frame.contacts);
   });
   if (!w.domain.single_rank())
     add_places(w, *triangles, own, known, part.places, part.places.triangle, part.places.line);

@@ -48,7 +48,7 @@ FrameOutput frame_output(const Frame& whole, const FrameWish& wish, int threads)
 FrameOutput frame_output(const FramePart& whole, const FrameWish& wish, int threads) {
   FrameOutput output = frame_output(whole.frame, wish, threads);
   if (!wish.files) return output;
-  Touching touching{whole.contacts, {}, places_in(whole.frame).plane()};
+  Touching touching{whole.frame.contacts, {}, places_in(whole.frame).plane()};
   touching.around.add(whole.frame.position);
   add_touching(output.files, whole.frame, std::move(touching), wish.format, threads);
   return output;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exec/tasks.hpp"
+#include "io/picture/stress_measures.hpp"
 #include "io/vtu/touching.hpp"
 
 namespace breccia {
@@ -53,8 +54,9 @@ class Sight {
  public:
   /// @param whole  gets as many items as there are in all; null on ranks other than 0
   Sight(const FramePart& part, const RenderOptions& options, Frame* whole)
-      : places_(part.places), options_(options) {
+      : places_(part.places), options_(options), whole_(whole) {
     const Frame& f = part.frame;
+    if (may_show_contacts(options)) contacts_ = &f.contacts;
     column(Carrier::points, f.position, whole ? &whole->position : nullptr, 1);
     if (places_.has_spheres) column(Carrier::points, f.radius, whole ? &whole->radius : nullptr, 1);
     if (places_.triangles > 0)
@@ -78,6 +80,7 @@ class Sight {
     put_array(message, places_.triangle);
     put_array(message, places_.tetrahedron);
     put_array(message, places_.line);
+    if (contacts_ != nullptr) put_array(message, *contacts_);
     for (const Column& c : columns_) put_bytes(message, c.own.data(), c.own.size());
     return message;
   }
@@ -89,6 +92,10 @@ class Sight {
     places.triangle = from.array<std::int32_t>();
     places.tetrahedron = from.array<std::int32_t>();
     places.line = from.array<std::int32_t>();
+    if (contacts_ != nullptr) {
+      const std::vector<FrameContact> own = from.array<FrameContact>();
+      whole_->contacts.insert(whole_->contacts.end(), own.begin(), own.end());
+    }
     for (const Column& c : columns_) {
       const std::vector<std::int32_t>& to = places.of(c.carrier);
       const std::span<const std::byte> values = from.bytes(to.size() * c.width);
@@ -121,7 +128,7 @@ class Sight {
     const std::string& shown = options_.field;
     const auto is_shown = [&](const std::string& name) {
       return name == shown || shown.starts_with(name + "_") || name == options_.arrows ||
-             (options_.crosses && name.starts_with("stress")) ||
+             ((options_.crosses || is_stress_measure(shown)) && name.starts_with("stress")) ||
              (options_.scale != 1.0 && name == "displacement");
     };
     for (const FrameField& field : own) {
@@ -138,6 +145,8 @@ class Sight {
 
   const FramePlaces& places_;
   const RenderOptions& options_;
+  Frame* whole_;
+  const std::vector<FrameContact>* contacts_ = nullptr;  ///< of this part, if they may be shown
   std::vector<Column> columns_;
 };
 
@@ -258,7 +267,7 @@ Message FrameOfParts::share() {
     Around around;
     around.add(part_.frame.position);
     put_value(share, around);
-    put_array(share, part_.contacts);
+    put_array(share, part_.frame.contacts);
   }
   return share;
 }

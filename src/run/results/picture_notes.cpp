@@ -34,6 +34,7 @@ Json json_of(const RenderOptions& o) {
   json["scale"] = o.scale;
   json["transparent"] = o.transparent;
   json["log"] = o.log;
+  if (o.forces) json["forces"] = true;
   json["edges"] = o.edges;
   json["bare"] = o.bare;
   if (o.camera)
@@ -71,6 +72,7 @@ RenderOptions options_of(const Json& json) {
   json.at("scale").get_to(o.scale);
   json.at("transparent").get_to(o.transparent);
   json.at("log").get_to(o.log);
+  o.forces = json.value("forces", false);
   json.at("edges").get_to(o.edges);
   json.at("bare").get_to(o.bare);
   if (json.contains("camera")) {

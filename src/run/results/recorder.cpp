@@ -292,6 +292,7 @@ RenderOptions Recorder::picture_options() const {
   options.hidden = {wanted.hide.begin(), wanted.hide.end()};
   options.show_links = wanted.links;
   options.xray = wanted.xray;
+  options.forces = wanted.forces;
   options.crosses = wanted.crosses;
   options.walls = wanted.walls;
   options.transparent = wanted.transparent;

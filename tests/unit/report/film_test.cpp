@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "exec/error.hpp"
+#include "io/vtu/paraview.hpp"
+#include "io/vtu/touching.hpp"
 #include "report/thinning.hpp"
 #include "texts.hpp"
 #include "unit/io/slab_scene.hpp"
@@ -83,6 +85,38 @@ TEST(Film, EveryByteOfAFrameHasItsPlace) {
   EXPECT_EQ(last.numbers(7, 1)[3], 2U);   // state: the link in the middle
   last.numbers(7, 1);                     // force
   EXPECT_TRUE(last.at_end());
+}
+
+TEST(Film, TheStrongestContactsComeFirstWithBothEnds) {
+  const ScratchFolder folder;
+  Frame frame = test::chain_frame(0, 8, 2);
+  ParaviewSeries series(folder.path(), FrameFormat::vtu);
+  FrameContents files = contents_of(frame, 1, FrameFormat::vtu);
+  const Vec3 low = frame.position.front(), high = frame.position.back();
+  add_touching(files, frame, {{{0, 7, low, high, {3, 0, 4}}, {1, -1, high, low, {0, 0, -20}}}, {}},
+               FrameFormat::vtu, 1);
+  series.write(files);
+  series.finish();
+  const Survey survey = survey_of(folder.path(), 1);
+  EXPECT_EQ(survey.contacts, 2U);
+  EXPECT_EQ(survey.contact_force, 20.0);
+  const Film film = film_of(folder.path(), survey, 0, 10'000'000);
+  const Json json = parsed_json(film.json);
+  EXPECT_EQ(json["contact_force"], 20.0);
+  ASSERT_EQ(json["frames"][0]["contacts"], 2);
+  const std::string bytes = test::inflated(test::from_base64(film.blobs.at(0)));
+  // The last of a frame: three axes of four ends in two bytes each, and a byte of force.
+  test::PlaneReader reader(bytes.substr(bytes.size() - 3 * 4 * 2 - 2));
+  const auto x = reader.numbers(4, 2);
+  const double step = json["step"], from = json["low"][0];
+  EXPECT_NEAR(from + step * x[0], high.x, step);
+  EXPECT_NEAR(from + step * x[1], low.x, step);
+  EXPECT_NEAR(from + step * x[2], low.x, step);
+  reader.numbers(4, 2);
+  reader.numbers(4, 2);
+  const auto force = reader.numbers(2, 1);
+  EXPECT_EQ(force[0], 63U);
+  EXPECT_NEAR(std::pow(force[1] / 63.0, 2.0), 0.25, 0.01);
 }
 
 TEST(Film, CornersThatPartComeBackFromTheirLeader) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "io/file.hpp"
 #include "io/picture/picture.hpp"
 #include "io/whole_file.hpp"
@@ -74,6 +76,22 @@ TEST(PicturesProgram, the_camera_follows_what_falls_and_says_when_it_does_not) {
   EXPECT_EQ(fixed.shown("pictures/0003.png"), 0.0);
   const std::string told = read_whole_file(fixed.out() + "/log.jsonl");
   EXPECT_NE(told.find("nothing of the model is in the picture 0003.png"), std::string::npos);
+}
+
+TEST(PicturesProgram, grains_show_the_forces_of_their_contacts) {
+  Ran ran(
+      "forces = true\ncolor = \"velocity\"\n[[wall]]\nname = \"ground\"\n"
+      "point = [0.0, 0.0, -0.102]\nnormal = [0.0, 0.0, 1.0]\n");
+  ASSERT_EQ(ran.code, 0) << ran.text;
+  EXPECT_EQ(ran.run("verify " + ran.out() + "/pictures/0003.png"), 0) << ran.text;
+  EXPECT_EQ(ran.run("render " + ran.out() + " --color force"), 0) << ran.text;
+  EXPECT_EQ(ran.text.find("warning"), std::string::npos) << ran.text;
+  EXPECT_EQ(ran.run("verify " + ran.out() + "/render.png"), 0) << ran.text;
+  std::filesystem::remove(ran.out() + "/contacts.pvd");
+  EXPECT_EQ(ran.run("render " + ran.out() + " --color force"), 0) << ran.text;
+  EXPECT_NE(ran.text.find("warning: " + ran.out() + ": no forces of contacts"), std::string::npos)
+      << ran.text;
+  EXPECT_NE(ran.text.find("[output] fields = true"), std::string::npos) << ran.text;
 }
 
 TEST(PicturesProgram, a_run_that_is_resumed_draws_the_pictures_of_one_without_a_break) {

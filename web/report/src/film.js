@@ -97,7 +97,8 @@ export class Film {
       lines.fields[field.name] =
         info.ends || !field.constant ? this.field(planes, field, info.lines) : first.lines.fields[field.name];
     }
-    return {time: info.time, step: info.step, number: info.number, position, fields, lines, size: 8 * bytes.length + position.byteLength};
+    const contacts = meta.contact_force ? this.contacts(planes, info.contacts) : null;
+    return {time: info.time, step: info.step, number: info.number, position, fields, lines, contacts, size: 8 * bytes.length + position.byteLength};
   }
 
   positions(planes) {
@@ -148,6 +149,18 @@ export class Film {
     return values;
   }
 
+  /** Both ends of each contact, four numbers each: x, y, z, and the force over the largest. */
+  contacts(planes, count) {
+    const {meta, axes} = this, ends = new Float32Array(8 * count);
+    for (let axis = 0; axis < axes; ++axis) {
+      const steps = planes.numbers(2 * count, meta.width);
+      for (let e = 0; e < 2 * count; ++e) ends[4 * e + axis] = meta.low[axis] + steps[e] * meta.step;
+    }
+    const force = planes.numbers(count, 1);
+    for (let i = 0; i < count; ++i) ends[8 * i + 3] = ends[8 * i + 7] = (force[i] / 63) ** 2;
+    return ends;
+  }
+
   ends(planes, count) {
     const {meta, axes} = this;
     if (!this.spheres) {
@@ -178,6 +191,11 @@ export function colorings(film) {
   for (const field of film.meta.fields) {
     if (field.lines || field.name === "group" || field.name === "exposed") continue;
     const {name, unit, category} = field;
+    if (field.components === 6) {
+      TENSOR.forEach((part, c) =>
+        list.push({name: `${name}_${part}`, label: `${name} ${part}`, unit, category: false, read: (f) => f.fields[name][c]}));
+      continue;
+    }
     if (field.components === 1) {
       list.push({name, label: name.replace(/_/g, " ") + (field.length ? " (length)" : ""), unit, category, read: (f) => f.fields[name]});
       continue;
@@ -186,11 +204,51 @@ export function colorings(film) {
     "xyz".slice(0, film.meta.plane ? 2 : 3).split("").forEach((axis, c) =>
       list.push({name: `${name}_${axis}`, label: `${name} ${axis}`, unit, category: false, read: (f) => f.fields[name][c]}));
   }
+  list.push(...stressMeasures(film));
   const moved = (pick) => (f) => displacement(film, f, pick);
   list.push({name: "displacement", label: "displacement", unit: "m", read: moved((d) => Math.hypot(d[0], d[1], d[2]))});
   "xyz".slice(0, film.meta.plane ? 2 : 3).split("").forEach((axis, c) =>
     list.push({name: `displacement_${axis}`, label: `displacement ${axis}`, unit: "m", read: moved((d) => d[c])}));
   return list;
+}
+
+const TENSOR = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+/** Single numbers of the stress, wherever it is: those of `breccia render --color stress_mises` and others. */
+function stressMeasures(film) {
+  const named = (name) => film.meta.fields.find((field) => !field.lines && field.name === name);
+  const whole = named("stress")?.components === 6, unit = (named("stress") ?? named("stress_xx"))?.unit;
+  if (!whole && !["xx", "yy", "xy"].every((part) => named(`stress_${part}`))) return [];
+  const parts = (f) => TENSOR.map((part, c) => (whole ? f.fields.stress[c] : f.fields[`stress_${part}`]));
+  const read = (measure) => (f) => {
+    const of = parts(f), values = new Float32Array(of[0].length);
+    for (let i = 0; i < values.length; ++i) values[i] = measure(...of.map((p) => (p ? p[i] : 0)));
+    return values;
+  };
+  const ends = (xx, yy, zz, xy, yz, xz) => (film.meta.plane ? inPlane(xx, yy, xy) : inSpace(xx, yy, zz, xy, yz, xz));
+  return [
+    ["largest", "largest principal", (...s) => ends(...s)[0]],
+    ["smallest", "smallest principal", (...s) => ends(...s)[1]],
+    ["mean", "mean", (xx, yy, zz) => (xx + yy + zz) / 3],
+    ["mises", "von Mises", (xx, yy, zz, xy, yz, xz) =>
+      Math.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy * xy + yz * yz + xz * xz))],
+    ["shear", "greatest shear", (...s) => (ends(...s)[0] - ends(...s)[1]) / 2],
+  ].map(([name, label, measure]) => ({name: `stress_${name}`, label: `stress, ${label}`, unit, category: false, read: read(measure)}));
+}
+
+function inPlane(xx, yy, xy) {
+  const mean = (xx + yy) / 2, radius = Math.hypot((xx - yy) / 2, xy);
+  return [mean + radius, mean - radius];
+}
+
+/** The outer eigenvalues, from the invariants of the deviator. */
+function inSpace(xx, yy, zz, xy, yz, xz) {
+  const mean = (xx + yy + zz) / 3, x = xx - mean, y = yy - mean, z = zz - mean;
+  const p = Math.sqrt((x * x + y * y + z * z + 2 * (xy * xy + yz * yz + xz * xz)) / 6);
+  if (!(p > 0)) return [mean, mean];
+  const det = x * (y * z - yz * yz) - xy * (xy * z - yz * xz) + xz * (xy * yz - y * xz);
+  const phi = Math.acos(Math.min(1, Math.max(-1, (0.5 * det) / p ** 3))) / 3;
+  return [mean + 2 * p * Math.cos(phi), mean + 2 * p * Math.cos(phi + (2 * Math.PI) / 3)];
 }
 
 function lengths(components) {

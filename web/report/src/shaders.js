@@ -267,6 +267,43 @@ void main() {
 }`,
 };
 
+// Forces of contacts as ribbons that face the camera, over what they are in. Two cells of uEnds a contact: its ends, with
+// the share of the largest force.
+export const contacts = {
+  vertex: `
+precision highp float;
+precision highp int;
+uniform highp sampler2D uEnds;
+uniform int uLinesAcross;
+uniform float uPixel, uWidth;
+flat out float vShare;
+out vec3 vPoint;
+void main() {
+  int item = gl_VertexID / 6, k = gl_VertexID % 6;
+  float side = k == 1 || k == 2 || k == 4 ? 1.0 : -1.0, end = k >= 2 && k != 3 ? 1.0 : 0.0;
+  int cell = 2 * item;
+  vec4 from = texelFetch(uEnds, ivec2(cell % uLinesAcross, cell / uLinesAcross), 0);
+  vec4 to = texelFetch(uEnds, ivec2((cell + 1) % uLinesAcross, (cell + 1) / uLinesAcross), 0);
+  vShare = from.w;
+  vec3 a = (modelViewMatrix * vec4(from.xyz, 1.0)).xyz, b = (modelViewMatrix * vec4(to.xyz, 1.0)).xyz;
+  vec2 along = b.xy - a.xy;
+  vec2 across = length(along) > 1e-12 ? normalize(vec2(-along.y, along.x)) : vec2(1.0, 0.0);
+  vPoint = mix(a, b, end);
+  vec3 p = vPoint;
+  p.xy += side * across * max(0.5 * uPixel, uWidth * vShare);
+  gl_Position = projectionMatrix * vec4(p, 1.0);
+}`,
+  fragment: `precision highp float;
+uniform vec4 uClip;
+flat in float vShare;
+in vec3 vPoint;
+out vec4 color;
+void main() {
+  if (dot(uClip.xyz, vPoint) > uClip.w) discard;
+  color = vec4(mix(vec3(0.30, 0.48, 0.72), vec3(0.72, 0.09, 0.10), smoothstep(0.05, 0.7, vShare)), 0.35 + 0.65 * sqrt(vShare));
+}`,
+};
+
 // Tetrahedra: of each pair in uValue the second number is body + 65536 * faces that can be seen.
 const SOLID = READ + BODY + `
 int corners(int face, int k) {

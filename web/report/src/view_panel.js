@@ -132,6 +132,10 @@ export class ViewPanel {
         }));
       }
     }
+    if (this.film.meta.contact_force)
+      toggles.push(this.contactsButton = toggle("contact forces", false, (on) => this.each((v) => {
+        if (v.contacts) v.contacts.visible = on && v.uniforms.uScale.value === 1;
+      })));
     if (!this.plane) {
       if (this.runs.some((r) => r.walls?.length)) toggles.push(toggle("walls", true, (on) => this.each((v) => (v.surroundings.visible = on))));
     }
@@ -198,6 +202,8 @@ export class ViewPanel {
       text.textContent = `${factor}×`;
       this.each((v) => {
         v.uniforms.uScale.value = factor;
+        if (v.contacts) v.contacts.visible = factor === 1 && this.contactsButton?.getAttribute("aria-pressed") === "true";
+        v.fillContacts();
         if (this.plane || this.bodies) v.cracks.visible = factor === 1 && this.cracksButton.getAttribute("aria-pressed") === "true";
         v.redraw();
       });

@@ -100,6 +100,7 @@ export class Viewer {
     if (this.plane) this.buildPlane();
     else if (this.bodies) this.buildBodies();
     else this.buildSpace();
+    if (film.meta.contact_force) this.buildContacts();
     this.buildSurroundings();
     this.look(this.plane ? "z" : /^(iso|x|y|z)$/.test(this.run.view) ? this.run.view : "iso");
     this.resize();
@@ -154,6 +155,26 @@ export class Viewer {
     this.through = this.add(faces(), this.material(shaders.faces, {uWanted: 2, uThrough: 1}, veil), 5);
     this.sections = this.add(sections(), this.material(shaders.sections, {uWanted: 1, uThrough: 0}, two));
     this.cracks = this.add(vertices(0), this.material(shaders.faceJoints, {uLines: null, uEnds: null}, {...two, transparent: true}), 2);
+  }
+
+  /** What presses without a link, over all else. */
+  buildContacts() {
+    const width = (this.film.spheres ? 0.35 : 0.12) * this.film.meta.size;
+    this.contacts = this.add(vertices(0), this.material(shaders.contacts, {uEnds: null, uWidth: width},
+      {side: THREE.DoubleSide, transparent: true, depthTest: false, depthWrite: false}), 7);
+    this.contacts.visible = false;
+  }
+
+  fillContacts() {
+    const ends = this.pressing;
+    if (!this.contacts?.visible || !ends) return;
+    const {uEnds} = this.contacts.material.uniforms;
+    uEnds.value?.dispose();
+    // The strongest come first in the film, and are to lie on top.
+    const count = ends.length / 8, upwards = new Float32Array(ends.length);
+    for (let i = 0; i < count; ++i) upwards.set(ends.subarray(8 * i, 8 * i + 8), 8 * (count - 1 - i));
+    uEnds.value = floatTexture(upwards, 4, 2 * count);
+    this.contacts.geometry.setDrawRange(0, OF_SQUARE * count);
   }
 
   /** Walls, and regions that are held or loaded. */
@@ -258,6 +279,7 @@ export class Viewer {
     }
     uniforms.uValue.value = floatTexture(pairs, 2, film.meta.elements);
     this.lines = frame.lines;
+    this.pressing = frame.contacts;
     this.fillLines();
     for (const {patch, at, velocity} of this.walls) patch.position.copy(at).addScaledVector(velocity, frame.time);
     for (const texture of old) texture?.dispose();
@@ -267,6 +289,7 @@ export class Viewer {
   /** Gives each list of lines that is shown the lines that belong to it. */
   fillLines() {
     if (!this.lines) return;
+    this.fillContacts();
     if (this.plane || this.bodies) return this.fillJoints();
     const {kind = [], state = [], force = []} = this.lines.fields;
     const largest = this.film.meta.fields.find((f) => f.lines && f.name === "force")?.high || 1;
