@@ -126,8 +126,10 @@ struct SingleRows {
     to[8] = last[action];
   }
 };
-inline void write_actions(const View<PairForce>& actions, Index at, const Pack8 (&numbers)[9],
-                          const Pack8 (&stiffness)[9]) {
+/// Writes the action of item k of a pack to place(k).
+template <class Place>
+inline void write_actions_to(const Place& place, const Pack8 (&numbers)[9],
+                             const Pack8 (&stiffness)[9]) {
   Pack8 rows[8];
   for (int k = 0; k < 8; ++k) rows[k] = numbers[k];
   transpose(rows);
@@ -135,7 +137,7 @@ inline void write_actions(const View<PairForce>& actions, Index at, const Pack8 
   alignas(64) double last[8];
   _mm512_store_pd(last, numbers[8]);
   for (int k = 0; k < 8; ++k) {
-    PairForce& action = actions.data[at + k];
+    PairForce& action = place(k);
     _mm512_storeu_pd(action.numbers, rows[k]);
     action.numbers[8] = last[k];
     stiff.write(k, action.stiffness);
@@ -168,8 +170,10 @@ struct SingleRows {
     to[8] = last[action];
   }
 };
-inline void write_actions(const View<PairForce>& actions, Index at, const Pack4 (&numbers)[9],
-                          const Pack4 (&stiffness)[9]) {
+/// Writes the action of item k of a pack to place(k).
+template <class Place>
+inline void write_actions_to(const Place& place, const Pack4 (&numbers)[9],
+                             const Pack4 (&stiffness)[9]) {
   Pack4 rows[2][4];
   for (int part = 0; part < 2; ++part) {
     for (int k = 0; k < 4; ++k) rows[part][k] = numbers[4 * part + k];
@@ -179,7 +183,7 @@ inline void write_actions(const View<PairForce>& actions, Index at, const Pack4 
   alignas(32) double last[4];
   _mm256_store_pd(last, numbers[8]);
   for (int k = 0; k < 4; ++k) {
-    PairForce& action = actions.data[at + k];
+    PairForce& action = place(k);
     _mm256_storeu_pd(action.numbers, rows[0][k]);
     _mm256_storeu_pd(action.numbers + 4, rows[1][k]);
     action.numbers[8] = last[k];
@@ -193,6 +197,14 @@ inline void write_actions(const View<PairForceOf<float>>& actions, Index at,
     rows.write(k, actions.data[at + k].numbers);
     stiff.write(k, actions.data[at + k].stiffness);
   }
+}
+#endif
+#if !defined(__CUDACC__) && (defined(__AVX512F__) || defined(__AVX2__))
+template <class R>
+requires(width_of<R> > 1) inline void write_actions(const View<PairForce>& actions, Index at,
+                                                    const R (&numbers)[9],
+                                                    const R (&stiffness)[9]) {
+  write_actions_to([&](Index k) -> PairForce& { return actions.data[at + k]; }, numbers, stiffness);
 }
 #endif
 

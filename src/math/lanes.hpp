@@ -308,19 +308,28 @@ BR_HD inline R pack_of(const double (&numbers)[width_of<R>]) {
   __builtin_memcpy(&pack, numbers, sizeof pack);
   return pack;
 }
-/// Indices given one by one.
+/// Indices given one by one, and copied so: a load of several waits until the store of each has
+/// reached the cache, and all that follows with it.
 template <class R>
 BR_HD inline Indices<R> indices(const Index (&at)[width_of<R>]) {
   Indices<R> i;
-  __builtin_memcpy(&i, at, sizeof i);
+  if constexpr (width_of<R> == 1) {
+    i.at = at[0];
+  } else {
+    for (Index k = 0; k < width_of<R>; ++k) i.at[k] = at[k];
+  }
   return i;
 }
 /// first, first + 1, ...
 template <class R>
 BR_HD inline Indices<R> consecutive(Index first) {
-  Index at[width_of<R>];
-  for (Index k = 0; k < width_of<R>; ++k) at[k] = first + k;
-  return indices<R>(at);
+  Indices<R> i;
+  if constexpr (width_of<R> == 1) {
+    i.at = first;
+  } else {
+    for (Index k = 0; k < width_of<R>; ++k) i.at[k] = first + k;
+  }
+  return i;
 }
 
 /// gather_records where records are of four doubles or floats.

@@ -97,13 +97,31 @@ BR_HD inline void write_records(const View<Record>& records, Index first,
     static_assert(sizeof(Record) == count * sizeof(double));
     BR_ASSERT(first >= 0 && first + 8 <= records.size);
     auto* to = reinterpret_cast<double*>(records.data + first);
-    if constexpr (count % 8 == 0) {
-      for (int eight = 0; eight < count; eight += 8) {
+    if constexpr (count >= 8 && count % 4 == 0) {
+      constexpr int eights = count / 8 * 8;
+      for (int eight = 0; eight < eights; eight += 8) {
         Pack8 rows[8];
         for (int k = 0; k < 8; ++k) rows[k] = columns[eight + k];
         transpose(rows);
         for (int k = 0; k < 8; ++k)
           __builtin_memcpy(to + count * k + eight, &rows[k], sizeof rows[k]);
+      }
+      if constexpr (eights < count) {  // halves of rows k and k + 2 side by side
+        const Pack8* const c = columns + eights;
+        const __m512d even_low = _mm512_unpacklo_pd(c[0], c[1]);
+        const __m512d even_high = _mm512_unpacklo_pd(c[2], c[3]);
+        const __m512d odd_low = _mm512_unpackhi_pd(c[0], c[1]);
+        const __m512d odd_high = _mm512_unpackhi_pd(c[2], c[3]);
+        const __m512i front = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+        const __m512i back = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+        const auto write = [&](int row, __m512d two_rows) {
+          _mm256_storeu_pd(to + count * row + eights, _mm512_castpd512_pd256(two_rows));
+          _mm256_storeu_pd(to + count * (row + 2) + eights, _mm512_extractf64x4_pd(two_rows, 1));
+        };
+        write(0, _mm512_permutex2var_pd(even_low, front, even_high));
+        write(1, _mm512_permutex2var_pd(odd_low, front, odd_high));
+        write(4, _mm512_permutex2var_pd(even_low, back, even_high));
+        write(5, _mm512_permutex2var_pd(odd_low, back, odd_high));
       }
       return;
     } else if constexpr (count == 4) {

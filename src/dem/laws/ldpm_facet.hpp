@@ -165,6 +165,17 @@ struct LdpmFacet {
     return stored_normal(stress.x) + stored_tangential(stress);
   }
 
+  /// The parts of the strains that are not elastic, over an edge: across the facet, 0 where pores
+  /// have collapsed, and along it.  [m]
+  BR_HD double opening(double length, const LdpmFacetState& s) const {
+    return length * max(0.0, s.strain.x - s.stress.x / young);
+  }
+  BR_HD double slip(double length, const LdpmFacetState& s) const {
+    const double over = 1.0 / (shear_ratio * young);
+    const double m = s.strain.y - over * s.stress.y, l = s.strain.z - over * s.stress.z;
+    return length * sqrt(m * m + l * l);
+  }
+
   /// Whether the largest strains, less s_t / E_0, have opened an edge by `times` s_t l_t / E_0.
   template <class R>
   BR_HD auto has_opened_by(double times, const R& length, const LdpmFacetStateOf<R>& s) const {
@@ -202,7 +213,8 @@ struct LdpmFacet {
                    Step<R>& step) const {
     const R one = constant<R>(1.0), none = constant<R>(0.0);
     const auto open = step.strain.x > 0.0;
-    const R normal = max(step.strain.x, constant<R>(1e-300));
+    // Its square is a number still; in closed lanes too, or else the processor stops at it.
+    const R normal = max(step.strain.x, constant<R>(1e-150));
     const R along = normal * normal, across = shear_ratio * square;
     const R e = select(open, sqrt(along + across), one), over_e = 1.0 / e;
     const double softer = 4.0 * shear_ratio / (strength_ratio * strength_ratio);

@@ -286,7 +286,7 @@ struct LdpmFacetForces {
       const auto bytes = static_cast<Index>(sizeof *array.data) * count;
       for (Index byte = 0; byte < bytes; byte += 64) __builtin_prefetch(items + byte);
     };
-    ask(place), ask(frame), ask(state), ask(opened);
+    ask(place), ask(frame), ask(state), ask(opened), ask(compacted), ask(slid);
   }
   template <class R>
   BR_HD void load_facet(Index i, Facet<R>& facet) const {
@@ -377,7 +377,8 @@ struct LdpmFacetForces {
   }
   template <class R>
   BR_HD static void add(const View<double>& energy, Index i, const R& spent) {
-    if (any(spent != 0.0)) store(energy, i, load<R>(energy, i) + spent);
+    // Whether a pack has something to add could not be foreseen.
+    if (width_of<R> != 1 || any(spent != 0.0)) store(energy, i, load<R>(energy, i) + spent);
   }
   /// A facet whose ends have parted for good.
   BR_HD void release(const LdpmFacet& by, Index i, const Facet<double>& facet) const {

@@ -80,20 +80,52 @@ struct LdpmEdgeForces {
   template <class R>
   BR_HD void load_late(Index, Loaded<R>& loaded) const {
     Index from[width_of<R>], to[width_of<R>];
-    double sums[6][width_of<R>];
     for (Index j = 0; j < width_of<R>; ++j) {
       const Index lead = loaded.lead[j];
       from[j] = a[lead], to[j] = b[lead];
-      SixSums sum;
-      for (Index i = lead; i < loaded.end[j]; ++i) sum.add(shares[first_share + i].numbers);
-      for (int c = 0; c < 6; ++c) sums[c][j] = sum[c];
     }
-    for (int c = 0; c < 6; ++c) loaded.sum[c] = pack_of<R>(sums[c]);
+    add_shares(loaded);
     gather_records(elements, indices<R>(from), loaded.at_a);
     gather_records(elements, indices<R>(to), loaded.at_b);
     gather_records(frame, indices<R>(loaded.lead), loaded.frame);
   }
   BR_WHOLE BR_HD void operator()(Index k) const { run_at<double>(*this, k); }
+  /// The sums of edges side by side: to those that have fewer facets nothing is added at the end,
+  /// for where each ends could not be foreseen.
+  template <class R>
+  BR_HD void add_shares(Loaded<R>& loaded) const {
+    if constexpr (width_of<R> == 1) {
+      SixSums sum;
+      for (Index i = loaded.lead[0]; i < loaded.end[0]; ++i)
+        sum.add(shares[first_share + i].numbers);
+      for (int c = 0; c < 6; ++c) loaded.sum[c] = sum[c];
+    } else {
+      constexpr Index width = width_of<R>, parts = 8 / width;
+      static constexpr LdpmShare nothing{};
+      const LdpmShare* at[width];
+      Index count[width], most = 0;
+      R sums[parts][width] = {};
+      for (Index j = 0; j < width; ++j) {
+        at[j] = &shares[first_share + loaded.lead[j]];
+        count[j] = loaded.end[j] - loaded.lead[j];
+        most = count[j] > most ? count[j] : most;
+      }
+      for (Index i = 0; i < most; ++i)
+        for (Index j = 0; j < width; ++j) {
+          const double* const numbers = (i < count[j] ? at[j] + i : &nothing)->numbers;
+          for (Index part = 0; part < parts; ++part) {
+            R some;
+            __builtin_memcpy(&some, numbers + width * part, sizeof some);
+            sums[part][j] += some;
+          }
+        }
+      for (Index part = 0; part < parts; ++part) {
+        transpose(sums[part]);
+        for (Index c = 0; c < width && width * part + c < 6; ++c)
+          loaded.sum[width * part + c] = sums[part][c];
+      }
+    }
+  }
 
   /// Force and torques, and a stiffness: with k of each facet and r from a particle to it, K = k
   /// (alpha I + (1 - alpha) n n^T), and K^theta is at most k (alpha r.r + (1 - alpha) |r x n|^2) I.
@@ -128,12 +160,8 @@ struct LdpmEdgeForces {
     if constexpr (width_of<R> == 1) {
       write_action(actions[first_action + of.lead[0]], numbers, matrices);
     } else {
-      PairForce own[width_of<R>];
-      View<PairForce> all;
-      all.data = own;
-      all.size = width_of<R>;
-      write_actions(all, 0, numbers, matrices);
-      for (Index j = 0; j < width_of<R>; ++j) actions[first_action + of.lead[j]] = own[j];
+      write_actions_to([&](Index j) -> PairForce& { return actions[first_action + of.lead[j]]; },
+                       numbers, matrices);
     }
   }
 };

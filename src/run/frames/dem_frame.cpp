@@ -183,6 +183,7 @@ class DemFrame {
     const OnHost actions(w_.bar_actions, w_.exec.space);
     std::int64_t before = 0;
     Index first_action = 0;
+    const bool has_facets = all.items[static_cast<std::size_t>(LinkKind::ldpm)] > 0;
     w_.each_set([&](const auto& set) {
       const OnHost arrays(set.arrays(), w_.exec.space);
       kind_ = static_cast<std::int32_t>(set.kind);
@@ -196,6 +197,7 @@ class DemFrame {
             pull = norm(actions->data()[first_action + i].force_on_b());
           add_line(*arrays, i, static_cast<std::int32_t>(stage_of(g.law, *arrays, *elements_, i)),
                    pull);
+          if (has_facets) add_crack(g.law, *arrays, i);
           if (!w_.domain.single_rank())
             part_.places.line.push_back(static_cast<std::int32_t>(before + set.numbers.data()[i]));
         }
@@ -208,6 +210,13 @@ class DemFrame {
     force.components = 1;
     force.values = std::move(pull_);
     part_.frame.line_fields.push_back(std::move(force));
+    if (!has_facets) return;
+    for (const auto& [kind, values] :
+         {std::pair{Kind::opening, &openings_}, {Kind::slip, &slips_}}) {
+      FrameField field = field_of({kind});
+      field.values = std::move(*values);
+      part_.frame.line_fields.push_back(std::move(field));
+    }
   }
 
   /// Contacts that press, by the forces of the last step.
@@ -246,12 +255,25 @@ class DemFrame {
     kinds_.push_back(kind_);
     states_.push_back(state);
   }
+  /// How far a facet has opened and slid; other links have none.
+  template <class Law, class Links>
+  void add_crack(const Law& law, const Links& links, Index i) {
+    double opening = 0.0, slip = 0.0;
+    if constexpr (Links::kind == LinkKind::ldpm) {
+      const double length = links.place.data()[i].length;
+      const LdpmFacetState& s = links.state.data()[i];
+      opening = law.opening(length, s), slip = law.slip(length, s);
+    }
+    openings_.push_back(static_cast<float>(opening));
+    slips_.push_back(static_cast<float>(slip));
+  }
   const dem::World& w_;
   OnHost<Elements> elements_;
   std::vector<Index> own_;
   std::int32_t kind_ = 0;  ///< of the lines that are added now
   std::vector<std::int32_t> kinds_, states_;
-  std::vector<float> pull_;  ///< |force on b|  [N]
+  std::vector<float> pull_;              ///< |force on b|  [N]
+  std::vector<float> openings_, slips_;  ///< of cracks, if there are facets  [m]
   FramePart part_;
 };
 

@@ -72,6 +72,18 @@ TEST(LdpmFacet, tension_softens_exponentially) {
   EXPECT_NEAR(f.fracture, 3.703529e-3, 1e-8);
 }
 
+/// A wave front that has gone through many edges within few steps leaves such strains.
+TEST(LdpmFacet, bears_strains_whose_squares_vanish) {
+  for (const double strain : {1e-140, 1e-160, 1e-170, 1e-200, 1e-290})
+    for (const double share : {0.0, 1e-60, 0.5}) {
+      const LdpmFacet law = benchmark();
+      LdpmFacetState state{};
+      law.update(10.0, Vec3{strain, share * strain, 0.0}, 0.0, state);
+      EXPECT_NEAR(state.stress.x / (law.young * strain), 1.0, 1e-9) << strain;
+      EXPECT_NEAR(state.stress.y, law.shear_ratio * share * state.stress.x, 1e-9 * state.stress.x);
+    }
+}
+
 /// F = 1 + 0.05 asinh(1e5) = 1.610304 at 1/s; slow, or unasked, it is 1.
 TEST(LdpmFacet, strengths_grow_with_the_strain_rate_if_asked) {
   const double faster = 1.0 + 0.05 * std::asinh(1e5), dt = 1e-9;

@@ -11,6 +11,7 @@
 #include "dem/setup/materials.hpp"
 #include "prepare/build.hpp"
 #include "prepare/ldpm/body.hpp"
+#include "run/method/dem_method.hpp"
 #include "scene.hpp"
 
 namespace breccia::dem {
@@ -167,6 +168,14 @@ World public_tetrahedron(double stiffer = 1.0) {
   return s.world();
 }
 
+/// A field of the first link in a frame.
+double shown(const World& w, const std::string& name) {
+  for (const FrameField& field : dem_frame(w).frame.line_fields)
+    if (field.name == name) return field.values[0];
+  ADD_FAILURE() << name;
+  return 0.0;
+}
+
 /// Corner 1 out by 0.02, in by 0.2, out again, 1e-4 a step: what an independent program gives.
 TEST(Ldpm, a_tetrahedron_opened_and_crushed_follows_the_published_stresses) {
   World w = public_tetrahedron();
@@ -186,11 +195,14 @@ TEST(Ldpm, a_tetrahedron_opened_and_crushed_follows_the_published_stresses) {
   EXPECT_NEAR(of_12.stress.x, 2.054748, 0.02);
   EXPECT_NEAR(std::hypot(of_12.stress.y, of_12.stress.z), 0.711785, 0.02);
   EXPECT_NEAR(reach(0.02), 0.606663, 1e-6);
+  EXPECT_NEAR(shown(w, "opening"), 0.02 - 0.606663 / 30000.0, 1e-8);
+  EXPECT_NEAR(shown(w, "slip"), 0.0, 1e-8);
   const double closed = reach(0.0);  // -3, an increment beyond, if no rounding keeps it open
   EXPECT_GT(closed, -3.0 - 1e-6);
   EXPECT_LT(closed, 1e-6);
   EXPECT_NEAR(reach(-0.09), -237.871033, 1e-5);
   EXPECT_NEAR(reach(-0.2), -602.149170, 1e-5);
+  EXPECT_EQ(shown(w, "opening"), 0.0);
   EXPECT_NEAR(reach(-0.09), 0.0, 1e-6);
   EXPECT_NEAR(reach(0.02), 0.606663, 1e-6);
 }
