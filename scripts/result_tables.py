@@ -13,10 +13,10 @@ import pathlib
 import re
 import statistics
 import sys
-import tomllib
 
 import impact_tables
 import ldpm_tables
+import library_tables
 import localisation
 import published_tests
 import reinforced_tests
@@ -25,7 +25,6 @@ import speed_tables
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs/results"
-MATERIALS = ROOT / "src/io/case/materials.toml"
 PLACE = re.compile(r"(<!-- results: (\w+) (.+?) -->\n)(.*?)(<!-- end of results -->)", re.DOTALL)
 
 
@@ -103,40 +102,7 @@ def impact(kind):
     return impact_tables.TABLES[kind](lines_of("impact"))
 
 
-def library(which):
-    """What materials of the library show on packings that they were not calibrated on, with the misfit to their targets."""
-    targets = {name: block["target"] for name, block in tomllib.loads(MATERIALS.read_text()).items() if "dem3d" in block and name[0] == "C"}
-    number = lambda text: float(str(text).split()[0])  # noqa: E731
-    quantities = [("young", "compression_prism", "young", 1, 3), ("poisson", "compression_prism", "poisson", 3, 10),
-                  ("compression", "compression_prism", "strength", 1, 5), ("tension", "tension", "strength", 2, 5),
-                  ("fracture_energy", "tension_notched", "fracture_energy", 0, 10), (None, "bending", "fracture_energy", 0, None)]
-    rows = {}
-    for one in lines_of("library"):
-        if (one["material"] == which) == (which in targets):
-            rows.setdefault((one["material"], int(one["elements"])), {}).setdefault((one["test"], one["quantity"]), []).append(float(one["value"]))
-    head = "elements in the prism" if which in targets else "1,200 elements"
-    lines = [f"| {head} | E (3 %), GPa | nu (10 %) | f_c (5 %), MPa | f_t (5 %), MPa | G_F (10 %), J/m2 | notched beam, J/m2 | n |", "|---" * 8 + "|"]
-    for (material, elements), found in sorted(rows.items(), key=lambda row: (int(row[0][0][1:]), row[0][1])):
-        if which not in targets and elements != 1200:
-            continue
-        cells, usual = [], len(found["compression_prism", "strength"])
-        for name, test, quantity, digits, allowed in quantities:
-            values = found.get((test, quantity), [])
-            if not values:
-                cells.append("")
-                continue
-            count = len(values)
-            text = f"{statistics.mean(values):.{digits}f}" + (f" +- {statistics.stdev(values):.{digits}f}" if count > 1 else "")
-            if name:
-                misfit = 100 * (statistics.mean(values) / number(targets[material][name]) - 1)
-                mark = "**" if abs(misfit) > allowed else ""
-                text += f", {mark}{misfit:+.1f} %{mark}"
-            cells.append(text + (f" (n = {count})" if count != usual else ""))
-        lines.append(f"| {f'{elements:,}' if which in targets else material} | " + " | ".join(cells) + f" | {usual} |")
-    return "\n".join(lines)
-
-
-MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": library,
+MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambda which: library_tables.markdown(lines_of("library"), which),
           "reinforced": lambda _: reinforced_tests.markdown(lines_of("reinforced")),
           "speed": lambda table: speed_tables.TABLES[table](),
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),

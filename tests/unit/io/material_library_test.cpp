@@ -77,7 +77,7 @@ TEST(NamedMaterials, KeysOfTheCaseAndOfTheCommandLineTakeTheirPlace) {
       read<dem::Config>("use = \"C30\"\ndensity = 2450.0\n", {"material.m.cohesion=9 MPa"});
   EXPECT_EQ(c.materials[0].density, 2450.0);
   EXPECT_EQ(c.materials[0].cohesion, 9e6);
-  EXPECT_EQ(c.materials[0].fabric, "even");
+  EXPECT_EQ(c.materials[0].fabric, "faces");
   const fdem::Config f = read<fdem::Config>("use = \"C30\"\njoint = { tension = \"2 MPa\" }\n");
   EXPECT_EQ(f.materials[0].joint.tension, 2e6);
   EXPECT_NEAR(f.materials[0].joint.cohesion, 11e6, 1e5);  // of C30, beside the own tension
