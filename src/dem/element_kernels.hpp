@@ -214,6 +214,19 @@ struct Kick {
             select(holds<R>(e, fixed_y | fixed_driven), held.y, none),
             select(holds<R>(e, fixed_z | fixed_driven), held.z, none)};
   }
+  /// Of the first half step, from the velocity at the start: held elements gain
+  /// m (v_+^2 - v_0^2) / 2 there, and reaction() times the way of a half step is
+  /// m (v_+ - v_0)^2 / 2 more.  [J]
+  template <class R>
+  BR_HD R of_start(Index e, const Vec3Of<R>& before, const ResultOf<R>& r,
+                   const GivenOf<R>& of) const {
+    const Vec3Of<R> gained = r.velocity - before;
+    const R none = constant<R>(0.0);
+    const Vec3Of<R> held{select(holds<R>(e, fixed_x | fixed_driven), gained.x, none),
+                         select(holds<R>(e, fixed_y | fixed_driven), gained.y, none),
+                         select(holds<R>(e, fixed_z | fixed_driven), gained.z, none)};
+    return 0.5 * of.mass * dot(held, held);
+  }
   /// Where one of the bits `which` of Fixed is set, of element e and its neighbours in a pack.
   template <class R>
   BR_HD auto holds(Index e, int which) const {
@@ -366,10 +379,11 @@ struct MoveElements {
       store(damping_work, e,
             load<R>(damping_work, e) + (0.5 * dot(r.damped_force, before + after) +
                                         0.5 * dot(r.damped_torque, last * now.spin + turned_by)));
-    if (of.fixed != 0)
-      store(
-          load_work, e,
-          load<R>(load_work, e) + 0.5 * dot(kick.reaction(e, now.velocity, r, of), before + after));
+    if (of.fixed != 0) {
+      R booked = 0.5 * dot(kick.reaction(e, now.velocity, r, of), before + after);
+      if (!(kick.last_dt > 0.0)) booked = booked - kick.of_start(e, now.velocity, r, of);
+      store(load_work, e, load<R>(load_work, e) + booked);
+    }
     const Vec3Of<R> position = place_after(now, r);
     const R s[10] = {position.x,   position.y, position.z, r.velocity.x, r.velocity.y,
                      r.velocity.z, r.spin.x,   r.spin.y,   r.spin.z,     now.radius};

@@ -102,6 +102,14 @@ struct KickOf {
     const Vector given = of.force.at[k] + of.mass * gravity - r.damped[k];
     return held_parts(holds[of.hold].fixed_at(k), gained - given, Vector{});
   }
+  /// Of the first half step, from the velocity at the start: what is held gains
+  /// m (v_+^2 - v_0^2) / 2 there, and reaction() times the way of a half step is
+  /// m (v_+ - v_0)^2 / 2 more.  [J; in 2D J/m]
+  BR_HD double of_start(const Given& of, int k, const Result& r) const {
+    const Vector gained =
+        held_parts(holds[of.hold].fixed_at(k), r.velocity[k] - of.nodes.at[k].velocity, Vector{});
+    return 0.5 * of.mass * dot(gained, gained);
+  }
 };
 
 /// Where the elements that can touch stood at the last search, and how far each may go from there,
@@ -278,6 +286,7 @@ struct MoveOf {
       if (kick.damping > 0.0) damped += 0.5 * dot(r.damped[k], both);
       if (external.size > 0) booked += 0.5 * dot(external[t].at[k], both);
       if (held) booked += 0.5 * dot(kick.reaction(of, k, r), both);
+      if (held && !(kick.last_dt > 0.0)) booked -= kick.of_start(of, k, r);
       n.velocity = r.velocity[k];
       n.position += after;
     }

@@ -16,6 +16,7 @@ QUICK = {  # some 5 to 15 s each
     "faults.py": ["--every", "199", "--seconds", "12"],
     "power_cut.py": ["--runs", "8", "--seconds", "6"],
     "cases.py": ["--runs", "15", "--seconds", "16"],
+    "commands.py": [],
 }
 WHOLE = {  # and the share of the night
     "files.py": (["--runs", "50000"], 0.1),
@@ -24,6 +25,7 @@ WHOLE = {  # and the share of the night
     "faults.py": ([], 0.25),
     "power_cut.py": (["--runs", "1000"], 0.05),
     "cases.py": (["--runs", "5000"], 0.1),
+    "commands.py": ([], 0.0),
 }
 
 

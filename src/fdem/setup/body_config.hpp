@@ -143,7 +143,8 @@ struct BodyConfig {
     key("shape", shape,
         OneOf{"disc", "plate", "ring", "beam", "hexagons", "outline", "geo", "mesh", "part"},
         "plate, beam: a rectangle; hexagons: many free elements of six triangles; outline: a "
-        "polygon from a CSV file; geo: a file for gmsh; mesh: triangles from a file; part: what of "
+        "polygon from a CSV file; geo: a file for gmsh (--allow-scripts); mesh: triangles from a "
+        "file; part: what of "
         "another body lies in a circle, rectangle or polygon, joined to it as before");
     key("material", material, "name of a material; with grains: of what is no mineral");
     key.required("material");

@@ -76,6 +76,24 @@ TEST(Support, that_moves_at_once_does_the_work_that_its_chain_gets) {
   EXPECT_GT(balance(w).work, 0.0);
 }
 
+TEST(Support, that_reaches_its_speed_within_two_steps_does_the_work_of_that_motion) {
+  for (const double ramp :
+       {4e-6, 12e-6, 35e-6}) {  // after the first, third and some more half steps
+    Scene s;
+    s.material("g", "grain", 30e9, 0.2, 2400.0);
+    s.sphere({0.0, 0.0, 0.0}, 0.01);
+    s.config.supports = {{"moved", "", {}, {}, {"all"}, {2.0, 0.0, 0.0}, ramp}};
+    s.config.time.max_step = 1e-5;
+    World w = s.world();
+    for (int i = 0; i < 12; ++i) {
+      step(w);
+      const EnergyBalance e = balance(w);
+      EXPECT_NEAR(e.work, e.kinetic, 1e-12 * e.kinetic) << ramp << ", step " << i;
+    }
+    EXPECT_DOUBLE_EQ(balance(w).kinetic, 0.5 * w.elements.mass.data()[0] * 4.0);
+  }
+}
+
 /// What make_world says against a case; empty: nothing.
 std::string refusal(const Scene& s) {
   try {

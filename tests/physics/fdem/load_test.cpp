@@ -211,6 +211,22 @@ TEST(FdemLoads, what_a_support_moves_at_once_moves_from_the_start) {
   EXPECT_NEAR(b.work, 0.0, 1e-9 * b.kinetic);
 }
 
+TEST(FdemLoads, a_support_that_is_fast_within_two_steps_does_the_work_of_that_motion) {
+  for (const double ramp :
+       {4e-7, 12e-7, 35e-7}) {  // after the first, third and some more half steps
+    Scene scene;
+    scene.material(1e8);
+    scene.config.time.max_step = 1e-6;
+    scene.triangle("t", {0.0, 0.0}, {0.1, 0.0}, {0.0, 0.1});
+    scene.support("all", {-far, -far}, {far, far}, {"x", "y"}, {0.5, -1.0}).history.ramp = ramp;
+    World w = scene.world();
+    run_to(w, 6e-6);
+    const EnergyBalance b = energies(w).balance;
+    EXPECT_NEAR(b.kinetic, 0.5 * 2650.0 * 0.005 * 1.25, 1e-12 * b.kinetic);
+    EXPECT_NEAR(b.work, b.kinetic, 1e-12 * b.kinetic) << ramp;
+  }
+}
+
 /// A pulse in a bar between rollers: share of its velocity that the right end throws back.
 /// @param absorbed  impedance of that end over the bar's
 double reflected(double absorbed) {
