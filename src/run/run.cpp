@@ -353,8 +353,7 @@ void Run::conclude(Summary& now) {
     say(whole_case ? table : "checks  not made: the run ends before the end of its case\n");
 }
 
-/// Rank 0 writes what it can of a failure. Where that fails, too (a full disk), the first failure is
-/// the one to tell.
+/// Rank 0 writes what it can of a failure. Where that fails, too, the first one is the one to tell.
 void Run::failed(int exit_code, const std::string& message) {
   const auto write = [this](const auto& work) {
     if (folder_ == nullptr) return true;
