@@ -10,6 +10,7 @@
 #include "io/fold.hpp"
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
+#include "report/curves.hpp"
 #include "report/findings.hpp"
 #include "report/page.hpp"
 
@@ -45,6 +46,9 @@ void tell_findings(const std::string& folder) {
 
 void tell_and_report(const std::string& folder, const CaseConfig& config, bool quiet) {
   if (!quiet) tell_findings(folder);
+  if (!config.probes.empty())
+    if (const std::string curves = report::curves_of(report::read_record(folder)); !curves.empty())
+      replace_file(folder + "/curves.svg", curves);
   if (!config.output.report) return;
   const std::string path = folder + "/report.html";
   replace_file(path, report::page_of({report::read_record(folder)}, std::nullopt).html);

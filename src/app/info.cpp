@@ -133,6 +133,23 @@ void describe_folder(const std::string& path) {
   tell("all", summary);
 }
 
+/// What presses without a link.
+void describe_contacts(const Frame& frame) {
+  const auto on_walls = std::count_if(frame.contacts.begin(), frame.contacts.end(),
+                                      [](const FrameContact& contact) { return contact.b < 0; });
+  print_harmless("  {} contacts without links, {} of them with walls\n",
+                 count_text(static_cast<double>(frame.contacts.size())),
+                 count_text(static_cast<double>(on_walls)));
+  if (frame.contacts.empty()) return;
+  double low = norm(frame.contacts.front().force), high = low;
+  for (const FrameContact& contact : frame.contacts) {
+    low = std::min(low, norm(contact.force));
+    high = std::max(high, norm(contact.force));
+  }
+  print_harmless("    {:<24} {:<8} {:.4g} to {:.4g}\n", "force",
+                 frame.tetrahedra.empty() && !frame.triangles.empty() ? "N/m" : "N", low, high);
+}
+
 /// A file of a frame: what the whole frame holds.
 void describe_frame(const std::string& path) {
   const fs::path file(path);
@@ -143,10 +160,14 @@ void describe_frame(const std::string& path) {
   if (!fs::exists(file)) throw IoError(path + ": cannot be read: there is no such file");
   if (digits == std::string::npos || digits + 1 == stem.size() || !holds_frames(folder))
     throw InputError(path + ": this is no file of a frame in the folder of a run");
-  const Frame frame =
-      read_frame(folder, static_cast<int>(std::strtol(stem.c_str() + digits + 1, nullptr, 10)));
+  const int number = static_cast<int>(std::strtol(stem.c_str() + digits + 1, nullptr, 10));
+  Frame frame = read_frame(folder, number);
   print_harmless("{}: of the frame at {}, step {}\n", path, time_text(frame.time),
                  count_text(static_cast<double>(frame.step)));
+  if (stem.starts_with("contacts_") || stem.starts_with("joint_contacts_")) {
+    add_contacts_of(folder, number, frame);
+    return describe_contacts(frame);
+  }
   const auto tell_items = [](const char* kind, std::size_t count,
                              const std::vector<FrameField>& fields) {
     if (count == 0) return;

@@ -43,18 +43,17 @@ std::vector<std::string> probe_problems(const ProbeConfig& p, Bearer of) {
   length("min", p.min);
   length("max", p.max);
   length("about", p.about);
-  if (p.min.empty() != p.max.empty()) add(": a box has both min and max");
   for (std::size_t k = 0; k < p.min.size() && k < p.max.size(); ++k)
     if (!(p.min[k] < p.max[k])) {
       add(": min must be below max");
       break;
     }
-  if (of == of_wall && !p.min.empty())
+  if (of == of_wall && !(p.min.empty() && p.max.empty()))
     add(".min: a wall is read as a whole; leave min and max out");
   if (!p.about.empty() && kind != Kind::torque && kind != Kind::angular_momentum)
     add(".about is a point for torque and angular_momentum; " + p.quantity + " has none");
   const bool stress_of_spheres = of == in_space && kind == Kind::stress;
-  if (stress_of_spheres && p.min.empty())
+  if (stress_of_spheres && (p.min.empty() || p.max.empty()))
     add(": the stress of spheres is that of a box; give min and max");
   if (stress_of_spheres && !p.on.empty())
     add(".on: the stress of spheres is of all that is in the box; leave on out");

@@ -337,6 +337,8 @@ class Findings {
     if (const auto b = record_.number("emission.b_value"))
       text += fmt::format(", b = {:.2f} ± {:.2f}", *b,
                           record_.number("emission.b_deviation").value_or(0.0));
+    else
+      text += "; no b value, as fewer than 20 are at or above the magnitude that most have";
     return text + ".";
   }
 

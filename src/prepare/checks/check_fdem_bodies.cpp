@@ -6,6 +6,7 @@
 
 #include "core/most_names.hpp"
 #include "prepare/checks/check_bodies.hpp"
+#include "prepare/meshing/holes.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -124,6 +125,7 @@ class BodyChecks {
       require(hole.corners.empty() || hole.corners.size() >= 3,
               "a hole with straight sides has three corners or more");
     }
+    for (const std::string& problem : prepare::missing_holes(b, {})) require(false, "{}", problem);
     check_notches(b, cut);
     if (!b.grains.kind.empty()) check_grains(b);
   }

@@ -8,6 +8,7 @@
 #include "prepare/checks/refusal.hpp"
 #include "prepare/ldpm/mesh_file.hpp"
 #include "prepare/meshing/body_mesh.hpp"
+#include "prepare/meshing/holes.hpp"
 #include "prepare/meshing/joint_sets.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/meshing/mesh_file.hpp"
@@ -55,7 +56,12 @@ class FileChecks {
 };
 
 void read_body(const fdem::BodyConfig& body, const std::string& path) {
-  if (body.shape == "outline") read_outline(path);
+  if (body.shape == "outline") {
+    std::vector<Vec2> outline = read_outline(path);
+    for (Vec2& corner : outline) corner += body.center;
+    if (const auto problems = missing_holes(body, outline); !problems.empty())
+      throw InputError(path + ": " + problems.front());
+  }
   if (body.shape == "geo") read_whole_file(path);
   if (body.shape != "mesh") return;
   const Mesh mesh = read_mesh(path, body.seams == "open");

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/gauge.hpp"
 #include "dem/setup/walls.hpp"
 #include "dem/wall_mesh.hpp"
 #include "exec/error.hpp"
@@ -290,12 +291,11 @@ template <class Config>
 std::vector<std::string> empty_boxes(const Config& config, const std::vector<Outline>& outlines) {
   std::vector<std::string> doubts;
   for (const ProbeConfig& p : config.probes) {
-    if (p.min.size() < 2 || p.max.size() != p.min.size()) continue;
+    if (p.min.empty() && p.max.empty()) continue;
+    const ReadBox read(p.min, p.max);
     Bounds box{};
-    for (std::size_t k = 0; k < p.min.size(); ++k) {
-      box.low[k] = p.min[k];
-      box.high[k] = p.max[k];
-    }
+    box.low = {read.min.x, read.min.y, read.min.z};
+    box.high = {read.max.x, read.max.y, read.max.z};
     const bool of_body = item_named(config.bodies, p.on) != nullptr;
     const std::string doubt = problem_of("probe." + p.name, box, of_body ? p.on : "", outlines);
     if (!doubt.empty()) doubts.push_back(doubt + ", at the start");

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "math/constants.hpp"
 #include "physics/fdem3/scene.hpp"
 
 namespace breccia::fdem3 {
@@ -37,6 +38,42 @@ TEST(Tetrahedra, bear_a_linear_displacement_with_one_stress_and_no_force_inside)
       if (std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}) > 0.45) continue;
       EXPECT_LT(norm(w.tetrahedra.force.data()[t].at[k]), 1e-11 * 60e9);
     }
+}
+
+/// A bell of velocity in a bar on rollers: share of its energy that comes back from the right face.
+/// @param impedance  of that face over the bar's
+double energy_back(double impedance) {
+  Scene scene;
+  scene.material(60e9, 0.25, 2650.0);
+  constexpr double edge = 0.01, length = 0.4, width = 0.04, middle = 0.14;
+  scene.body("bar", prepare::kuhn_box({0.5 * length, 0.0, 0.0}, {length, edge, edge}, edge));
+  scene.support("rollers", {-far, -far, -far}, {far, far, far}, {"y", "z"});
+  HistoryConfig& h =
+      scene.load("end", "absorbing", {length - 1e-6, -far, -far}, {far, far, far}).history;
+  h.times = {0.0};
+  h.factors = {impedance};
+  World w = scene.world();
+  const double c = std::sqrt(1.2 * 60e9 / 2650.0);  // (1 - nu) / ((1 + nu) (1 - 2 nu)) = 1.2
+  for (Index t = 0; t < w.tetrahedra.size(); ++t)
+    for (NodeState& n : w.tetrahedra.nodes.data()[t].at) {
+      const double s = (n.position.x - middle) / width;
+      n.velocity.x = std::exp(-s * s);
+      n.position.x -= width * 0.5 * std::sqrt(pi) * (std::erf(s) + 1.0) / c;
+    }
+  evaluate_forces(w);
+  const double before = energies(w).balance.kinetic + energies(w).balance.elastic;
+  while (w.time < (2.0 * length - 2.0 * middle) / c) step(w);
+  const EnergyBalance after = energies(w).balance;
+  return (after.kinetic + after.elastic) / before;
+}
+
+/// A face of a times the bar's impedance sends ((1 - a) / (1 + a))^2 of the energy back.
+TEST(Tetrahedra, absorbing_face_takes_all_but_a_thousandth_of_a_wave) {
+  const double back = energy_back(1.0);
+  std::printf("energy that comes back: %.5f\n", back);
+  EXPECT_LT(back, 1e-3);
+  for (const double a : {0.5, 3.0})
+    EXPECT_NEAR(energy_back(a), (1.0 - a) * (1.0 - a) / ((1.0 + a) * (1.0 + a)), 0.005) << a;
 }
 
 /// Time in which a step of pressure runs from one place to another in a bar on rollers.

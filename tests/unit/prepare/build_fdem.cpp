@@ -130,6 +130,20 @@ TEST(BuildFdem, HolesAndSlotsAreCutOut) {
   EXPECT_NEAR(area_of(m, 0), 0.005 - pi * 1e-4 - 0.004 * 0.02 - 1e-4, 4e-6);
 }
 
+TEST(BuildFdem, HolesThatMissTheirBodyAreRefused) {
+  BodyConfig plate = regular_plate({0.1, 0.05}, 0.002), disc = disc_of(0.04, 0.002);
+  plate.structured = disc.structured = false;
+  plate.holes.push_back({{0.045, 0.0}, 0.01});  // over the edge: it takes something
+  plate.holes.push_back({{0.07, 0.0}, 0.01});
+  disc.holes.push_back({{0.0, 0.1}, 0.0, {{-0.01, -0.005}, {0.01, -0.005}, {0.0, 0.005}}});
+  const std::string text = refusal({plate, disc}, {});
+  EXPECT_TRUE(
+      mentions(text, "body.plate: hole[1] lies wholly outside of the body: it is at x 0.06"));
+  EXPECT_TRUE(mentions(text, "a hole must take something of it"));
+  EXPECT_TRUE(mentions(text, "body.disc: hole[0] lies wholly outside"));
+  EXPECT_TRUE(mentions(text, "2 problems"));
+}
+
 TEST(BuildFdem, RingHasItsArea) {
   BodyConfig ring = disc_of(0.04, 0.002);
   ring.shape = "ring";

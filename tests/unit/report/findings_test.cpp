@@ -52,8 +52,8 @@ TEST(Findings, OneEventHasOneMagnitude) {
   const ScratchFolder folder;
   test::write_chain(folder.path());
   const std::string path = folder.path() + "/summary.json", plain = read_whole_file(path);
-  for (const auto& [count, told] :
-       {std::pair{1, "1 event, of magnitude -3.5."}, {2, "2 events, of magnitudes up to -3.5."}}) {
+  for (const auto& [count, told] : {std::pair{1, "1 event, of magnitude -3.5; no b value"},
+                                    {2, "2 events, of magnitudes up to -3.5; no b value"}}) {
     test::write_text(
         path, fmt::format(R"({{"emission": {{"events": {}, "largest_magnitude": -3.5}},{})", count,
                           plain.substr(1)));
