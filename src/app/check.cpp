@@ -176,6 +176,8 @@ struct CheckCommand {
       for (const std::string& doubt : prepare::doubtful_probes(config, read.folder)) tell(doubt);
     if constexpr (requires { prepare::doubtful_loads(config, read.folder); })
       for (const std::string& doubt : prepare::doubtful_loads(config, read.folder)) tell(doubt);
+    if constexpr (requires { prepare::merged_lines(config, read.folder); })
+      for (const std::string& note : prepare::merged_lines(config, read.folder)) tell(note);
   }
 
   template <class Config>

@@ -17,6 +17,8 @@
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/outlines.hpp"
 #include "prepare/checks/refusal.hpp"
+#include "prepare/meshing/body_mesh.hpp"
+#include "prepare/meshing/joint_sets.hpp"
 #include "prepare/shapes/wall_files.hpp"
 
 namespace breccia::prepare {
@@ -365,6 +367,28 @@ std::vector<std::string> doubtful_loads(const fdem::Config& config, const std::s
 }
 std::vector<std::string> doubtful_loads(const fdem3::Config& config, const std::string& folder) {
   return narrow_regions(config, folder, 3, "faces");
+}
+
+std::vector<std::string> merged_lines(const fdem::Config& config, const std::string& case_folder) {
+  MeshingContext context{.seed = config.seed, .number = 0, .folder = case_folder, .lines = {}};
+  const auto add = [&](const std::vector<fdem::DiscontinuityConfig>& all) {
+    for (const fdem::DiscontinuityConfig& d : all)
+      for (std::size_t k = 1; d.embedded && k < d.points.size(); ++k)
+        context.lines.push_back({d.points[k - 1], d.points[k]});
+  };
+  add(config.discontinuities);
+  for (std::size_t k = 0; k < config.joint_sets.size(); ++k)
+    add(lines_of_set(config.joint_sets[k], config.seed, k, case_folder));
+  for (const fdem::BodyConfig& part : config.bodies)
+    if (part.shape == "part") {
+      const fdem::BodyConfig* const host = item_named(config.bodies, part.of);
+      add_outline(part, host != nullptr ? host->mesh_size : 0.0, context.lines);
+    }
+  std::vector<std::string> notes;
+  for (const fdem::BodyConfig& body : config.bodies)
+    if (const std::string note = merged_lines(body, context); !note.empty())
+      notes.push_back("body." + body.name + ".merge: " + note.substr(6));
+  return notes;
 }
 
 }  // namespace breccia::prepare

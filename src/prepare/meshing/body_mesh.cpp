@@ -11,6 +11,7 @@
 #include "math/constants.hpp"
 #include "prepare/csv_numbers.hpp"
 #include "prepare/meshing/clean_lines.hpp"
+#include "prepare/meshing/holes.hpp"
 #include "prepare/meshing/mesh_check.hpp"
 #include "prepare/meshing/mesh_file.hpp"
 #include "prepare/meshing/meshing.hpp"
@@ -63,7 +64,8 @@ std::vector<Line> straight_rim(const Region& region) {
   return rim;
 }
 
-Mesh meshed_by_gmsh(const BodyConfig& body, const MeshingContext& context) {
+/// What gmsh is to mesh, its lines as they are given.
+Region region_of(const BodyConfig& body, const MeshingContext& context) {
   Region region{.center = body.center, .size = body.size, .edge = body.mesh_size};
   if (body.shape == "disc" || body.shape == "ring") {
     region.shape = Region::Shape::disc;
@@ -74,6 +76,8 @@ Mesh meshed_by_gmsh(const BodyConfig& body, const MeshingContext& context) {
     region.shape = Region::Shape::polygon;
     region.polygon = read_outline((std::filesystem::path(context.folder) / body.file).string());
     for (Vec2& corner : region.polygon) corner += body.center;
+    if (const auto problems = missing_holes(body, region.polygon); !problems.empty())
+      throw InputError(problems.front());
   }
   for (const fdem::HoleConfig& hole : body.holes) {
     if (hole.corners.empty()) {
@@ -86,6 +90,11 @@ Mesh meshed_by_gmsh(const BodyConfig& body, const MeshingContext& context) {
   for (const fdem::NotchConfig& notch : body.notches)
     if (notch.width > 0.0) region.slots.push_back(slot_corners(notch));
   region.lines = lines_of(body, context);
+  return region;
+}
+
+Mesh meshed_by_gmsh(const BodyConfig& body, const MeshingContext& context) {
+  Region region = region_of(body, context);
   if (body.merge > 0.0)
     region.lines = cleaned(region.lines, straight_rim(region), body.merge * body.mesh_size);
   return mesh_region(region, context.seed);
@@ -138,6 +147,31 @@ double distance(const Vec2& point, const Line& line) {
   const Vec2 along = line[1] - line[0];
   const double share = std::clamp(dot(point - line[0], along) / dot(along, along), 0.0, 1.0);
   return norm(point - (line[0] + share * along));
+}
+
+std::string merged_lines(const BodyConfig& body, const MeshingContext& context) {
+  if (!(body.merge > 0.0) || !needs_gmsh(body)) return "";
+  const double tolerance = body.merge * body.mesh_size;
+  const Region region = region_of(body, context);
+  const std::vector<Line> made = cleaned(region.lines, straight_rim(region), tolerance);
+  std::size_t moved = 0;
+  double farthest = 0.0;
+  for (const Line& line : region.lines)
+    for (const Vec2& end : line) {
+      double nearest = 1e300;
+      for (const Line& other : made)
+        nearest = std::min({nearest, norm(end - other[0]), norm(end - other[1])});
+      if (!(nearest > 1e-6 * tolerance)) continue;
+      ++moved;
+      farthest = std::max(farthest, nearest);
+    }
+  return moved == 0 ? ""
+                    : fmt::format(
+                          "merge moves {} of {} ends of the {} lines that its mesh follows, by "
+                          "{:.3g} m at most, since they lie nearer than {:.3g} m to others or to "
+                          "its outline; {} parts are left",
+                          moved, 2 * region.lines.size(), region.lines.size(), farthest, tolerance,
+                          made.size());
 }
 
 bool needs_gmsh(const BodyConfig& body) {

@@ -23,6 +23,9 @@ struct MeshingContext {
 /// @throws InputError that does not name the body
 Mesh mesh_of(const fdem::BodyConfig& body, const MeshingContext& context);
 
+/// How many ends of the lines that its mesh is to follow `merge` moves, and how far; empty: none.
+std::string merged_lines(const fdem::BodyConfig& body, const MeshingContext& context);
+
 /// Whether the body's mesh is made by gmsh.
 bool needs_gmsh(const fdem::BodyConfig& body);
 

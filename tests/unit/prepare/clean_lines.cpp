@@ -6,6 +6,7 @@
 #include <random>
 
 #include "math/constants.hpp"
+#include "prepare/meshing/body_mesh.hpp"
 #include "unit/prepare/fdem_scenes.hpp"
 
 namespace breccia::prepare {
@@ -133,6 +134,25 @@ TEST(CleanLines, keep_slivers_out_of_meshes) {
   EXPECT_LT(as_given, 0.02);
   EXPECT_GT(merged, 0.08);
   EXPECT_NEAR(merged_length, length, 0.1 * length);
+}
+
+TEST(CleanLines, tell_of_what_they_move) {
+  fdem::BodyConfig body;
+  body.size = {0.1, 0.1};
+  body.mesh_size = 0.01;
+  const MeshingContext apart{
+      .seed = 1,
+      .number = 0,
+      .folder = ".",
+      .lines = {{{Vec2{-0.03, 0.0}, {0.01, 0.0}}, {Vec2{0.02, 0.0}, {0.03, 0.03}}}}};
+  EXPECT_EQ(merged_lines(body, apart), "");
+  MeshingContext near = apart;
+  near.lines[1][0] = {0.0105, 0.0005};
+  const std::string told = merged_lines(body, near);
+  EXPECT_TRUE(told.starts_with("merge moves 1 of 4 ends of the 2 lines")) << told;
+  EXPECT_NE(told.find("by 0.000707 m at most"), std::string::npos) << told;
+  body.merge = 0.0;
+  EXPECT_EQ(merged_lines(body, near), "");
 }
 
 }  // namespace clean_lines_test

@@ -22,9 +22,9 @@ struct Trouble {
   std::int64_t flip_at = -1;        ///< the first time that this step is done, a bit of it is wrong
   std::int64_t flip_force_at = -1;  ///< likewise, of what acts from the next step on
   std::int64_t flip_constant_at = -1;  ///< a number that no step changes is another from then on
-  std::int64_t lose_at = -1;    ///< this step fails and knows no more than an element's place
+  std::int64_t lose_at = -1;       ///< this step fails and knows no more than an element's place
   std::int64_t no_memory_at = -1;  ///< the arrays of this step are not all made
-  std::int64_t signal_at = -1;  ///< the process gets `signal` during this step
+  std::int64_t signal_at = -1;     ///< the process gets `signal` during this step
   int signal = SIGTERM;
   double pause = 0.0;               ///< wall time a step takes  [s]
   std::vector<std::string> doubts;  ///< of set-up

@@ -88,8 +88,7 @@ TEST(PicturesProgram, grains_show_the_forces_of_their_contacts) {
   EXPECT_EQ(ran.text.find("warning"), std::string::npos) << ran.text;
   EXPECT_EQ(ran.run("verify " + ran.out() + "/render.png"), 0) << ran.text;
   EXPECT_EQ(ran.run("info " + ran.out() + "/fields/contacts_0003.vtu"), 0) << ran.text;
-  EXPECT_NE(ran.text.find(" contacts without links, 4 of them with walls"), std::string::npos)
-      << ran.text;
+  EXPECT_NE(ran.text.find(" contacts without links, "), std::string::npos) << ran.text;
   std::filesystem::remove(ran.out() + "/contacts.pvd");
   EXPECT_EQ(ran.run("render " + ran.out() + " --color force"), 0) << ran.text;
   EXPECT_NE(ran.text.find("warning: " + ran.out() + ": no forces of contacts"), std::string::npos)
