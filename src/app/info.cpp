@@ -133,7 +133,7 @@ void describe_folder(const std::string& path) {
   tell("all", summary);
 }
 
-/// What presses without a link.
+/// Contacts of elements that no link joins.
 void describe_contacts(const Frame& frame) {
   const auto on_walls = std::count_if(frame.contacts.begin(), frame.contacts.end(),
                                       [](const FrameContact& contact) { return contact.b < 0; });

@@ -24,7 +24,7 @@ std::vector<std::string> doubtful_probes(const dem::Config& config, const std::s
 std::vector<std::string> doubtful_probes(const fdem::Config& config, const std::string& folder);
 std::vector<std::string> doubtful_probes(const fdem3::Config& config, const std::string& folder);
 
-/// What `merge` moves of the lines that meshes follow, a sentence a body.
+/// Notes on the lines that `merge` moves before meshes follow them, a sentence a body.
 std::vector<std::string> merged_lines(const fdem::Config& config, const std::string& case_folder);
 
 /// Loads whose region is narrower than the sides of elements are long: it may take none of them.

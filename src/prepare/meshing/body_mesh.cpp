@@ -64,7 +64,7 @@ std::vector<Line> straight_rim(const Region& region) {
   return rim;
 }
 
-/// What gmsh is to mesh, its lines as they are given.
+/// The region that gmsh meshes, with its lines as they are given.
 Region region_of(const BodyConfig& body, const MeshingContext& context) {
   Region region{.center = body.center, .size = body.size, .edge = body.mesh_size};
   if (body.shape == "disc" || body.shape == "ring") {
