@@ -15,6 +15,15 @@ double largest_of(const EnergyBalance& energy) {
   return energy.error_relative > 0.0 ? std::fabs(energy.missing()) / energy.error_relative : 0.0;
 }
 
+/// Sums of energies are rounded by 5e-20 J a term (ExactSum): what is missing of less than this
+/// much is that.  [J]
+constexpr double judged_from = 1e-14;
+
+/// What a row says is missing, over the largest energy or work so far.
+double judged(const EnergyBalance& energy) {
+  return largest_of(energy) < judged_from ? 0.0 : energy.error_relative;
+}
+
 std::string moment(std::int64_t step, double time) {
   return fmt::format("step {}, t = {:.6e} s: ", step, time);
 }
@@ -47,7 +56,7 @@ void require_numbers(const EnergyBalance& energy) {
 bool EnergyWatch::look(const EnergyBalance& energy, std::int64_t step, double time) {
   require_numbers(energy);
   const auto count = [&](double limit, std::int64_t& rows) {
-    rows = limit > 0.0 && energy.error_relative > limit ? rows + 1 : 0;
+    rows = limit > 0.0 && judged(energy) > limit ? rows + 1 : 0;
     return rows;
   };
   if (count(limits_.stop, rows_.above_stop) >= patience) refuse(energy, limits_.stop, step, time);
@@ -65,9 +74,8 @@ void KineticShare::look(const EnergyBalance& energy) {
 }
 
 bool EnergyWatch::judge_end(const EnergyBalance& energy, std::int64_t step, double time) const {
-  if (limits_.stop > 0.0 && energy.error_relative > limits_.stop)
-    refuse(energy, limits_.stop, step, time);
-  return limits_.warn > 0.0 && energy.error_relative > limits_.warn && rows_.above_warn < patience;
+  if (limits_.stop > 0.0 && judged(energy) > limits_.stop) refuse(energy, limits_.stop, step, time);
+  return limits_.warn > 0.0 && judged(energy) > limits_.warn && rows_.above_warn < patience;
 }
 
 }  // namespace breccia

@@ -15,7 +15,8 @@ namespace breccia {
 /// error fades. One that stays for `patience` rows, a fortieth of the usual 1000, or to the end of
 /// the case, does not. Rows that call for a warning are counted anew when the largest energy has
 /// doubled: what is missing of the energies at the start of a load is little of those that follow.
-/// The limit that ends a run counts all rows.
+/// The limit that ends a run counts all rows. Energies below 1e-14 J, a body at rest, are not
+/// judged.
 class EnergyWatch {
  public:
   static constexpr std::int64_t patience = 25;  ///< rows

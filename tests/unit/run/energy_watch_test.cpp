@@ -38,6 +38,15 @@ TEST(EnergyWatch, an_error_that_stays_is_a_warning_and_then_an_end) {
   }
 }
 
+TEST(EnergyWatch, what_is_as_small_as_the_rounding_of_sums_is_not_judged) {
+  EnergyWatch watch(EnergyConfig{});
+  EnergyBalance rest = with_error(0.7);
+  rest.work *= 9e-19;
+  rest.kinetic *= 9e-19;
+  for (int row = 0; row < 100; ++row) EXPECT_FALSE(watch.look(rest, row, 0.0));
+  EXPECT_FALSE(watch.judge_end(rest, 100, 1.0));
+}
+
 EnergyBalance growing(double work, double error) {
   EnergyBalance energy = with_error(error);
   energy.work *= work;
