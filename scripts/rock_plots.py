@@ -4,11 +4,13 @@
     scripts/rock_plots.py KIND RESULT_DIR [RESULT_DIR...] -o plot.png
 
 KIND: tension, crack (fracture energy over growth), bending (force over the way of the press, of three_point_bending_3d), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), branching (crack front), branching_3d (crack path), spall (velocity of the free end),
-triaxial (strengths over pressure, from several runs), dominoes (speed along the row, several runs),
+triaxial (strengths over pressure, of docs/results/rock.csv), wings (stress over time), arch (crowns over time), dominoes (speed along the row, several runs),
 checks (any case: probes over time, and what its checks expect of them).
 """
 
 import argparse
+import csv
+import json
 import math
 import pathlib
 import textwrap
@@ -19,6 +21,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+import arch_thrust
 import beam_reference
 import domino_wave
 import rock_tables
@@ -140,12 +143,40 @@ def spall(axes, results):
 
 
 def triaxial(axes, results):
+    """Of docs/results/rock.csv: every run of its table triaxial."""
+    found = {}
+    for row in results:
+        if row["table"] == "triaxial" and row["quantity"] == "sigma_1, MPa":
+            setting = json.loads(row["setting"])
+            found.setdefault(setting["edge"], []).append((setting["pressure"], float(row["value"])))
+    for k, (edge, points) in enumerate(sorted(found.items(), reverse=True)):
+        axes.plot([p + 0.4 * (k - 1) for p, _ in points], [s for _, s in points], "o", mfc="none", ms=5, label=f"edges of {1e3 * edge:g} mm, {len(points) // 3} meshes")
+    axes.plot([-1, 22], [34.64 - 3, 34.64 + 66], color="0.5", lw=1, ls="--", label="Mohr and Coulomb")
+    axes.set(xlabel="confining pressure, MPa (sizes beside each other)", ylabel="strength, MPa", xlim=(-1.5, 22.5), ylim=(20, 110))
+
+
+def wings(axes, results):
     for r in results:
-        case = tomllib.loads((r.folder / "case.toml").read_text())
-        p = next(l["pressure"] for l in case["load"] if l["name"] == "cell_left") / 1e6
-        axes.plot(p, r.strongest("force_top") / 0.03 / 1e6, "k.", ms=6)
-    axes.plot([0, 25], [34.64, 34.64 + 75], color="C0", lw=1, label="Mohr and Coulomb")
-    axes.set(xlabel="confining pressure, MPa", ylabel="strength, MPa", xlim=(0, 25))
+        rows = r.rows("history.csv")
+        line, = axes.plot([1e3 * row["time"] for row in rows], [row["force_top"] / 50e3 for row in rows], lw=1, label=f"{r.value('model.triangles'):.0f} triangles")
+        first = r.value("fracture.first_break")
+        axes.plot(1e3 * first, max(row["force_top"] for row in rows if row["time"] <= first) / 50e3, "o", color=line.get_color(), label="first broken joint")
+    axes.axhspan(5.1, 14.6, color="C2", alpha=0.15, lw=0, label="first crack by linear elastic fracture mechanics")
+    axes.axhspan(32, 33, color="C3", alpha=0.3, lw=0, label="published strength")
+    axes.axhline(7.0, color="C3", lw=1, ls="--", label="published first crack")
+    axes.set(xlabel="time, ms", ylabel="mean stress, MPa", xlim=(0, None), ylim=(0, 34))
+    axes.legend(fontsize=8, loc="upper left")
+
+
+def arch(axes, results):
+    for r in results:
+        rows = r.rows("history.csv")
+        for probe, share in (("crown_thick", 0.118), ("crown_thin", 0.098)):
+            axes.plot([row["time"] for row in rows], [row[probe] for row in rows], label=f"t/R = {share}")
+    stones, limit = 13, arch_thrust.least_thickness(13)
+    built = [(1 + share / 2) * math.cos(math.pi / 2 / stones) for share in (0.098, 0.118)]
+    axes.axhline(sum(built) / 2, color="0.5", lw=1, ls="--", label=f"as built: rigid stones stay from t/R = {limit:.4f} on")
+    axes.set(xlabel="time, s", ylabel="height of the crown, m", xlim=(0, None), ylim=(0, 1.2))
 
 
 def dominoes(axes, results):
@@ -183,15 +214,16 @@ def checks(axes, results):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    kinds = {f.__name__: f for f in (tension, crack, bending, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, branching_3d, spall, triaxial, dominoes, checks)}
+    kinds = {f.__name__: f for f in (tension, crack, bending, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, branching_3d, spall, triaxial, wings, arch, dominoes, checks)}
     parser.add_argument("kind", choices=kinds)
     parser.add_argument("results", nargs="+", type=pathlib.Path)
     parser.add_argument("-o", "--out", required=True)
     options = parser.parse_args()
     figure, axes = plt.subplots(figsize=(6.4, 4.0))
-    kinds[options.kind](axes, [rock_tables.Result(folder) for folder in options.results])
+    read = lambda path: [rock_tables.Result(path)] if path.is_dir() else csv.DictReader(path.open(newline=""))
+    kinds[options.kind](axes, [one for path in options.results for one in read(path)])
     axes.grid(alpha=0.3)
-    if axes.get_legend_handles_labels()[0]:
+    if axes.get_legend_handles_labels()[0] and not axes.get_legend():
         axes.legend(fontsize=8)
     figure.tight_layout()
     figure.savefig(options.out, dpi=100)
