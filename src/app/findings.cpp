@@ -13,6 +13,8 @@
 #include "report/curves.hpp"
 #include "report/findings.hpp"
 #include "report/page.hpp"
+#include "run/results/result_folder.hpp"
+#include "run/run.hpp"
 
 namespace breccia::app {
 namespace {
@@ -44,15 +46,46 @@ void tell_findings(const std::string& folder) {
   }
 }
 
+namespace {
+
+void write_curves(const std::string& folder, const CaseConfig& config) {
+  if (config.probes.empty()) return;
+  const std::string curves = report::curves_of(report::read_record(folder));
+  if (!curves.empty()) replace_file(folder + "/curves.svg", curves);
+}
+
 void tell_and_report(const std::string& folder, const CaseConfig& config, bool quiet) {
   if (!quiet) tell_findings(folder);
-  if (!config.probes.empty())
-    if (const std::string curves = report::curves_of(report::read_record(folder)); !curves.empty())
-      replace_file(folder + "/curves.svg", curves);
+  write_curves(folder, config);
   if (!config.output.report) return;
   const std::string path = folder + "/report.html";
   replace_file(path, report::page_of({report::read_record(folder)}, std::nullopt).html);
   if (!quiet) std::fputs(fmt::format("report  {}\n", harmless(path)).c_str(), stdout);
+}
+
+}  // namespace
+
+int execute_and_tell(Run& run, const ResultFolder* folder, const CaseConfig& config, bool quiet) {
+  // Of a run that ends early the reason is the one thing to tell, whatever becomes of its curves.
+  const auto leave_curves = [&] {
+    try {
+      if (folder != nullptr) write_curves(folder->path(), config);
+    } catch (const std::exception&) {
+      return;
+    }
+  };
+  int exit_code = 0;
+  try {
+    exit_code = run.execute();
+  } catch (...) {
+    leave_curves();
+    throw;
+  }
+  if (exit_code != 0)
+    leave_curves();
+  else if (folder != nullptr)
+    tell_and_report(folder->path(), config, quiet);
+  return exit_code;
 }
 
 }  // namespace breccia::app

@@ -96,9 +96,8 @@ struct ResumeCommand {
     signals.answer_between_steps();
     timers.clear();
     method->load(checkpoint ? &*checkpoint : nullptr);
-    const int exit_code = Run(*method, plan, folder ? &*folder : nullptr, &*former).execute();
-    if (exit_code == 0 && folder) tell_and_report(folder->path(), plan.config, options.quiet);
-    return exit_code;
+    Run run(*method, plan, folder ? &*folder : nullptr, &*former);
+    return execute_and_tell(run, folder ? &*folder : nullptr, plan.config, options.quiet);
   }
 };
 

@@ -46,9 +46,8 @@ struct RunCommand {
     timers.clear();
     std::optional<ResultFolder> result;  // of rank 0
     on_first(ranks, [&] { result.emplace(ResultFolder::create(out, existing)); });
-    const int exit_code = Run(*method, plan, result ? &*result : nullptr).execute();
-    if (exit_code == 0 && result) tell_and_report(result->path(), plan.config, options.quiet);
-    return exit_code;
+    Run run(*method, plan, result ? &*result : nullptr);
+    return execute_and_tell(run, result ? &*result : nullptr, plan.config, options.quiet);
   }
 
   void load(Method& method, const RunPlan& plan) const {

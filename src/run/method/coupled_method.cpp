@@ -7,6 +7,7 @@
 #include "core/on_host.hpp"
 #include "exec/error.hpp"
 #include "io/frame_pair.hpp"
+#include "run/frames/coupled_frame.hpp"
 #include "run/method/dem_method.hpp"
 #include "run/method/fdem3_method.hpp"
 
@@ -96,11 +97,11 @@ class CoupledMethod final : public Method {
     return spheres_.method->fastest() + "; " + tetrahedra_.method->fastest();
   }
 
-  Frame frame() override { return paired(spheres_.method->frame(), tetrahedra_.method->frame()); }
+  Frame frame() override { return paired(frame_of_spheres().frame, tetrahedra_.method->frame()); }
   FrameOutput frame_output(const FrameWish& wish) override {
     FrameWish files = wish;
     files.picture.reset();
-    FrameOutput output = spheres_.method->frame_output(files);
+    FrameOutput output = breccia::frame_output(frame_of_spheres(), files, threads_);
     const FrameOutput solids = tetrahedra_.method->frame_output(files);
     if (wish.files)
       output.files.more = {{frame_of_solids, solids.files.points},
@@ -200,6 +201,12 @@ class CoupledMethod final : public Method {
     state("coupling.bonds", w_.bonds);
     state("coupling.touches", w_.touches);
     state("coupling.faces", w_.faces);
+  }
+  /// With what presses on tetrahedra.
+  FramePart frame_of_spheres() const {
+    FramePart part = dem_frame(*spheres_.world);
+    add_presses(w_, part.frame.contacts);
+    return part;
   }
   /// Places that a file leads to must be there.
   void refuse_misfits() const {

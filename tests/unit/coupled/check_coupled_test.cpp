@@ -7,6 +7,7 @@
 
 #include "exec/error.hpp"
 #include "io/case/case_file.hpp"
+#include "io/vtu/touching.hpp"
 #include "math/constants.hpp"
 #include "prepare/build_coupled.hpp"
 #include "run/case.hpp"
@@ -352,6 +353,39 @@ TEST(CoupledCase, has_both_in_a_frame) {
   ASSERT_EQ(output.files.more.size(), 3U);
   EXPECT_FALSE(output.files.points.empty());
   EXPECT_FALSE(output.files.more[0].second.empty());
+}
+
+/// The block is free: what contacts of frames say that the pile does to it gives it its momentum.
+TEST(CoupledCase, has_what_presses_on_tetrahedra_in_its_contacts) {
+  const Case read = case_of_text(good, "both.toml", ".", {});
+  const auto method = method_of(read);
+  double given = 0.0;
+  std::size_t most = 0;
+  Frame frame;
+  for (std::int64_t step = 1; step <= 300; ++step) {
+    const double before = method->time();
+    method->advance({1.0, step});
+    frame = method->frame();
+    std::size_t presses = 0;
+    for (const FrameContact& c : frame.contacts) {
+      if (c.a >= 30 || c.b < 30) continue;
+      ++presses;
+      given += c.force.z * (method->time() - before);
+      EXPECT_GT(c.at_a.z, c.at_b.z);
+      EXPECT_LT(c.b, 30 + 96);
+    }
+    most = std::max(most, presses);
+  }
+  EXPECT_GT(most, 3U);
+  EXPECT_NEAR(method->probes()[1], given, 0.01 * std::fabs(given));
+  // Files hold what the frame does.
+  std::vector<FrameContact> of_spheres;
+  for (const FrameContact& c : frame.contacts)
+    if (c.a < 30) of_spheres.push_back(c);
+  Touching touching{of_spheres, {}, false};
+  touching.sort();
+  EXPECT_EQ(method->frame_output({}).files.contacts,
+            contents_of(contacts_frame(frame, touching)).lines);
 }
 
 }  // namespace check_coupled_test

@@ -112,6 +112,18 @@ TEST_F(StagedProgram, GoesOnFromAnyStageToTheSameEnd) {
   EXPECT_EQ(summary("cut")["state_hash"], whole["state_hash"]);
 }
 
+TEST_F(StagedProgram, LeavesCurvesHoweverItEnds) {
+  ASSERT_EQ(run("run " + path("case.toml") + " --stage lower -o " + path("stage")), 0) << output();
+  replace_file(path("wrong.toml"), with_end("until = \"1 ms\"\n") +
+                                       "[[check]]\nname = \"never\"\nvalue = \"probe.place.max\"\n"
+                                       "expected = 1.0\ntolerance = 0.1\n");
+  ASSERT_NE(run("run " + path("wrong.toml") + " -o " + path("failed")), 0) << output();
+  EXPECT_EQ(summary("failed")["message"], "a check of the case failed");
+  for (const char* out : {"stage", "failed"})
+    EXPECT_NE(read_whole_file(path(std::string(out) + "/curves.svg")).find("<svg"),
+              std::string::npos);
+}
+
 TEST_F(StagedProgram, RefusesStagesThatCannotBe) {
   EXPECT_EQ(run("run " + path("case.toml") + " --stage fall -o " + path("out")), 2) << output();
   EXPECT_NE(output().find("there are: lower, free"), std::string::npos) << output();
