@@ -5,7 +5,7 @@
     scripts/published_tests.py --plots docs         from finished runs; needs python3-matplotlib
     NAME: spall punching perforation
 
-Concretes are those of `breccia materials`, those of missiles of earlier versions, calibrated on slow tests of prisms alone. Cases and results are in out/published/; called
+Concretes are those of `breccia materials`, calibrated on slow tests of prisms alone. Cases and results are in out/published/; called
 again, only what is missing is run.
 
 spall        a cylinder of 40 x 120 mm at the end of a Hopkinson bar (Klepaczko and Brara 2001): a triangular pulse of 24 us
@@ -145,11 +145,6 @@ def spall_table(records):
 
 # ---------------------------------------------------------------- hard missiles
 
-# C60 and C40 as earlier versions had them, with a corner: docs/validation-concrete.md. Missiles were recorded with them.
-CORNER = 'criterion = "corner"\nknee_strength = 0.0\nfriction_angle = "10 deg"\nslip_wear = 0.3\nfabric = "even"\n'
-C60_CORNER = CORNER + 'young = "40.76 GPa"\npoisson = 0.1321\ntensile_strength = "1.044 MPa"\ncohesion = "17.56 MPa"\nfracture_energy = 155.6\n'
-C40_CORNER = CORNER + 'young = "36.3 GPa"\npoisson = 0.144\ntensile_strength = "0.8775 MPa"\ncohesion = "11.95 MPa"\n'
-
 def missile(mass, radius, top, nose, length, speed, friction=None):
     nose += "" if friction is None else f"friction = {friction}\n"
     return (f'\n[[wall]]\nname = "missile"\nshape = "cylinder"\npoint = [0.0, 0.0, {top}]\nnormal = [0.0, 0.0, -1.0]\nradius = {radius}\n'
@@ -170,13 +165,13 @@ def rim(size, width, fix):
 
 
 def punching(seed, setting):
-    text = HEAD.format(title="A hard missile through a slab (VTT P1 to P3)", seed=seed, end="14 ms", safety=0.7, history="50 us", concrete="C60", keys=C60_CORNER)
+    text = HEAD.format(title="A hard missile through a slab (VTT P1 to P3)", seed=seed, end="14 ms", safety=0.7, history="50 us", concrete="C60", keys="")
     return (text + BARS.format(mats='diameter = "10 mm", cover = "25 mm", layers = 2, bars = 23, elements = 56') + slab(2.1, 0.25, setting["elements"])
             + rim(2.1, 0.05, '["z"]') + missile(47.4, 0.084, 0.1255, "", 0.64, 135.0))
 
 
 def perforation(seed, setting):
-    text = HEAD.format(title="An ogive through a slab (Hanchak et al. 1992)", seed=seed, end=f"{0.9 / setting['v'] * 1e3:.3f} ms", safety=0.7, history="5 us", concrete="C40", keys=C40_CORNER)
+    text = HEAD.format(title="An ogive through a slab (Hanchak et al. 1992)", seed=seed, end=f"{0.9 / setting['v'] * 1e3:.3f} ms", safety=0.7, history="5 us", concrete="C40", keys="")
     nose = f'nose = "ogive"\nnose_length = {0.0127 * math.sqrt(11):.6g}\n'  # caliber radius head 3
     return (text + slab(0.61, 0.178, setting["elements"]) + rim(0.61, 0.02, '["all"]')
             + missile(0.5, 0.0127, 0.0895, nose, 0.1437, setting["v"], setting.get("friction")))
