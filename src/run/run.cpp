@@ -327,12 +327,11 @@ int Run::done() {
 /// Tells what came out. @throws CheckFailed
 void Run::conclude(Summary& now) {
   now.status = "done";
-  if (const std::string doubt = inertia_text(plan_.config.time.mass_scaling, now.kinetic_share);
-      !doubt.empty()) {
-    log_->warn("end", method_.steps(), doubt);
-    now.warnings.push_back(doubt);
-  }
   const bool whole_case = is_whole_case();
+  for (const std::string& doubt :
+       {inertia_text(plan_.config.time.mass_scaling, now.kinetic_share),
+        whole_case ? unbegun_text(method_.stages(), method_.stage().index) : std::string()})
+    if (!doubt.empty()) log_->warn("end", method_.steps(), doubt), now.warnings.push_back(doubt);
   if (whole_case) now.checks = evaluate_checks(plan_.config.checks, now);
   const std::string table = now.checks.empty() ? "" : check_table(now.checks);
   if (!all_pass(now.checks)) {

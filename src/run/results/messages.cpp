@@ -118,6 +118,15 @@ std::string inertia_text(double mass_scaling, double kinetic_share) {
       mass_scaling, 100.0 * kinetic_share);
 }
 
+std::string unbegun_text(const std::vector<StageEnd>& stages, int present) {
+  const auto next = static_cast<std::size_t>(present + 1);
+  if (next >= stages.size()) return "";
+  return fmt::format(
+      "the case ended by time.end in stage {0}: stage {1} has not begun. A later time.end, or a "
+      "rule that ends {0} sooner, helps",
+      stages[next - 1].name, stages[next].name);
+}
+
 std::string closing_text(const Summary& s, std::int64_t frames, const std::string& folder) {
   std::string text =
       fmt::format("{:<7} {} in {}   {} steps   {} frames", s.status, time_text(s.time),

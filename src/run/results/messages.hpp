@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/stages.hpp"
 #include "run/results/summary.hpp"
 
 namespace breccia {
@@ -21,6 +22,10 @@ std::string broken_text(const std::vector<Fact>& facts);
 /// A warning if inertia had a part in a run in which it was scaled; else empty.
 /// @param kinetic_share  see Summary
 std::string inertia_text(double mass_scaling, double kinetic_share);
+
+/// A warning if a case has come to its end before all its stages have begun; else empty.
+/// @param present  place of the stage that it ended in
+std::string unbegun_text(const std::vector<StageEnd>& stages, int present);
 
 /// Text at the end: what came out, and where it lies.
 std::string closing_text(const Summary& summary, std::int64_t frames, const std::string& folder);

@@ -83,6 +83,7 @@ TEST_F(StagedProgram, TellsItsStagesAndEndsWithTheLast) {
   EXPECT_EQ(s["stage"][0]["ended_by"], "probe");
   EXPECT_NEAR(s["stage"][0]["end"], 3e-3, 2e-3);
   EXPECT_EQ(s["stage"][1]["ended_by"], "time");
+  EXPECT_EQ(output().find("has not begun"), std::string::npos);
   EXPECT_NEAR(s["time"], s["stage"][1]["begin"].get<double>() + 4e-3, 1e-4);
   const std::string history = read_whole_file(path("out/history.csv"));
   EXPECT_NE(history.find(",place,stage\n"), std::string::npos);
@@ -122,6 +123,13 @@ TEST_F(StagedProgram, LeavesCurvesHoweverItEnds) {
   for (const char* out : {"stage", "failed"})
     EXPECT_NE(read_whole_file(path(std::string(out) + "/curves.svg")).find("<svg"),
               std::string::npos);
+}
+
+TEST_F(StagedProgram, WarnsOfStagesThatNeverBegan) {
+  replace_file(path("long.toml"), with_end("until = \"1 s\"\n"));
+  ASSERT_EQ(run("run " + path("long.toml") + " -o " + path("out")), 0) << output();
+  EXPECT_NE(output().find("stage free has not begun"), std::string::npos) << output();
+  EXPECT_NE(summary("out")["warnings"].dump().find("has not begun"), std::string::npos);
 }
 
 TEST_F(StagedProgram, RefusesStagesThatCannotBe) {
