@@ -75,10 +75,10 @@ void take_step(World& w) {
 }  // namespace
 
 void step(World& w) {
-  if (w.spheres->exec.space == Space::host)
-    take_step<dem::HostRun, fdem3::HostRun>(w);
-  else
-    take_step<dem::DeviceRun, fdem3::DeviceRun>(w);
+#if !defined(BR_NO_LAUNCHES)
+  if (w.spheres->exec.space != Space::host) return take_step<dem::DeviceRun, fdem3::DeviceRun>(w);
+#endif
+  take_step<dem::HostRun, fdem3::HostRun>(w);
 }
 
 void press(World& w) {
