@@ -29,7 +29,8 @@ for (flags, parent), sources in groups.items():
         path = folder / f"{parent.name}_{len(jobs)}.cu"
         path.write_text("".join(f'#include "{source}"\n' for source in mine))
         # g++ reads the host's half and writes no object: a third less time, and nothing here links them.
-        jobs.append([*flags, "-Xcompiler=-fsyntax-only", "-x", "cu", "-c", str(path), "-o", str(path.with_suffix(".o"))])
+        jobs.append([sum(source.stat().st_size for source in mine), *flags, "-Xcompiler=-fsyntax-only", "-x", "cu", "-c", str(path), "-o", str(path.with_suffix(".o"))])
+jobs = [job for _, *job in sorted(jobs, key=lambda job: -job[0])]  # the largest first, so that no core waits at the end
 
 
 def compiled(job):

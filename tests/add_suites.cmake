@@ -14,8 +14,12 @@ foreach(suite IN LISTS suites)
   if(LEVEL MATCHES "mpi|parity" AND NOT suite MATCHES "ProgramOnRanks|FateOfRank")
     set(affinity " PROCESSOR_AFFINITY ON")
   endif()
+  set(cost ${COST})
+  if(suite MATCHES "^(Program|FreeMesh|Extrinsic|FractureEnergy|CrackLine|Bedding|SphereOnFaces)$") # half a minute each
+    set(cost 4)
+  endif()
   string(APPEND text "add_test([==[${suite}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${suite}.*]==] --gtest_brief=1)\n"
-    "set_tests_properties([==[${suite}]==] PROPERTIES LABELS ${LEVEL} COST ${COST} TIMEOUT 900 ENVIRONMENT GOMP_SPINCOUNT=2000${affinity})\n")
+    "set_tests_properties([==[${suite}]==] PROPERTIES LABELS ${LEVEL} COST ${cost} TIMEOUT 900 ENVIRONMENT GOMP_SPINCOUNT=2000${affinity})\n")
 endforeach()
 if(text STREQUAL "")
   message(FATAL_ERROR "${PROGRAM} lists no tests")

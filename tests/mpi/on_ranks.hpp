@@ -25,8 +25,9 @@ template <class AScene>
 Shared on_ranks(int count, const AScene& scene, int steps, const DomainConfig& config = {},
                 int threads = 1, Space space = Space::host) {
   Shared shared;
+  const auto world = scene.world(threads);  // built once: a copy takes each rank far less time
   simulate_ranks(count, static_cast<std::uint64_t>(count), [&](Communicator& ranks) {
-    auto whole = scene.world(threads);
+    auto whole = world;
     auto part = share_out(whole, ranks, config, space);
     for (int i = 0; i < steps; ++i) step(part);
     collect(part, whole);
