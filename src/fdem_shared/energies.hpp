@@ -76,7 +76,7 @@ struct JointShares {
       s.work.add(inherited.slide - spent.slide);
       return;
     }
-    // Of a whole joint it is what pressure has spent on its slip (tetrahedra), or nothing.
+    // Of a whole joint it is what pressure has spent on its slip.
     s.fracture.add(spent.open);
     s.sliding.add(spent.slide);
     if (stage[i] == Stage::broken) {

@@ -46,6 +46,11 @@ struct JointForces {
     R corner[4][4];    ///< position and velocity
     R start[3];        ///< stress at the start, if it has a slope  [Pa]
   };
+  /// Of joints in a pack, a bit for each.
+  struct Left {
+    unsigned others;  ///< those of which nothing is written: for slow()
+    unsigned drags;   ///< those that must book_slips()
+  };
   BR_HD void set(const StepTime& now) {
     time = now.time;
     dt = now.last_dt;
@@ -75,28 +80,28 @@ struct JointForces {
     if (left<R>(loaded)) return;
     for (int k = 0; k < 4; ++k) gather_records_now(nodes, loaded.end[k], loaded.corner[k]);
   }
-  /// One joint: false, with nothing written, unless it is whole and stays so, or is dormant. Of i
-  /// and its neighbours in a pack: those of which nothing is written, a bit for each.
+  /// One joint: false, with nothing written, unless it is whole, stays so and slips little under
+  /// pressure, or is dormant. Of i and its neighbours in a pack: what is left to do.
   template <class R>
   BR_HD auto update(Index i, const Loaded<R>& loaded) const {
-    R numbers[4];
     if constexpr (width_of<R> == 1) {
-      if (loaded.stage == JointStage::dormant) return true;
-      if (loaded.stage != JointStage::whole || forces_of_whole(i, loaded, numbers)) return false;
-      store_four<Number>(force, i, numbers);
-      return true;
+      return loaded.stage == JointStage::dormant || stays_whole(i, loaded, false);
     } else {
       constexpr unsigned all = (1U << width_of<R>)-1U;
-      if (left<R>(loaded)) return all;
-      const auto beyond = forces_of_whole(i, loaded, numbers);
-      unsigned others = 0;
-      for (Index k = 0; k < width_of<R>; ++k)
-        if (stage[i + k] != JointStage::whole || beyond[k] != 0) others |= 1U << k;
-      if (others == 0)
-        store_four<Number>(force, i, numbers);
-      else if (others != all)
-        store_but(others, i, numbers);
-      return others;
+      if (left<R>(loaded)) return Left{all, 0};
+      const Whole<R> now = whole(i, loaded);
+      Left still{0, 0};
+      for (Index k = 0; k < width_of<R>; ++k) {
+        if (stage[i + k] != JointStage::whole || now.beyond[k] != 0)
+          still.others |= 1U << k;
+        else if (now.drags[k] != 0)
+          still.drags |= 1U << k;
+      }
+      if (still.others == 0)
+        store_four<Number>(force, i, now.force);
+      else if (still.others != all)
+        store_but(still.others, i, now.force);
+      return still;
     }
   }
 
@@ -104,10 +109,16 @@ struct JointForces {
     if (!run_at<double>(*this, i)) slow(i);
   }
 
-  /// A joint that is softened or broken, or becomes so.
+  /// A joint that is softened or broken, or becomes so, or slips under pressure.
   BR_HD void slow(Index i) const {
     const JointStage before = stage[i];
     if (before == JointStage::dormant) return;
+    if (before == JointStage::whole) {
+      Loaded<double> loaded;
+      load_early(i, loaded);
+      load_late(i, loaded);
+      if (stays_whole(i, loaded, true)) return;
+    }
     const JointForce last = converted<double>(force[i]);
     const bool acted = dot(last.first, last.first) + dot(last.second, last.second) > 0.0;
     if (is_parted(before) && !acted) return;
@@ -150,8 +161,13 @@ struct JointForces {
     // Work is booked of the forces that act: as they are stored.
     JointForceOf<Number> now = converted<Number>(JointForce{
         weight * (traction[0] + 2.0 * traction[1]), weight * (traction[2] + 2.0 * traction[1])});
+    if (before == JointStage::whole) {
+      if (damaged)
+        begin_work(i, bond, offset, a0, a1, b0, b1);
+      else
+        book_slips<double>(i, 1);
+    }
     if (damaged) {
-      if (before == JointStage::whole) begin_work(i, bond, offset, a0, a1, b0, b1);
       book_work(i, o, first, second, converted<double>(as_in_memory(now)));
       points[i] = state;
       if (before == JointStage::whole) {
@@ -164,6 +180,34 @@ struct JointForces {
       pressing[i] = max(0.0, pressure);
       shear_at_break[i] = drag;
       finish(i);
+    }
+  }
+
+  /// Books what pressure that changes takes on the slip of joints that stay whole
+  /// (docs/theory-fdem.md, 2).
+  /// @param drags  of i and its neighbours, a bit for each
+  template <class R>
+  BR_HD void book_slips(Index i, unsigned drags) const {
+    Loaded<R> loaded;
+    load_early(i, loaded);
+    load_late(i, loaded);
+    R bond[12], offset[2];
+    gather_records(bonds, loaded.law, bond);
+    offset_of(i, offset);
+    const JointOpening<R> now = opening<R>(loaded, 0.0), before = opening<R>(loaded, dt);
+    const R slope = bond[0] / loaded.length, cohesion = bond[2] * loaded.strength;
+    R sum = constant<R>(0.0);
+    for (int q = 0; q < 3; ++q)
+      sum = sum + weight_of(q) *
+                      spent_by_pressure<R>(slope, cohesion, bond[3],
+                                           {before.open[q] + offset[0], now.open[q] + offset[0]},
+                                           {before.slide[q] + offset[1], now.slide[q] + offset[1]});
+    sum = loaded.length * sum;
+    if constexpr (width_of<R> == 1) {
+      work[i].slide += sum;
+    } else {
+      for (Index k = 0; k < width_of<R>; ++k)
+        if ((drags >> k & 1U) != 0) work[i + k].slide += sum[k];
     }
   }
 
@@ -181,27 +225,60 @@ struct JointForces {
       store_four<Number>(force, i + k, own);
     }
   }
-  /// Forces of joints that are whole. @returns which do not stay so: of those and of all others the
-  /// numbers mean nothing
   template <class R>
-  BR_HD auto forces_of_whole(Index i, const Loaded<R>& loaded, R (&numbers)[4]) const {
+  BR_HD void offset_of(Index i, R (&offset)[2]) const {
+    offset[0] = offset[1] = constant<R>(0.0);
+    if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
+  }
+  /// @param ago  how long before the positions  [s]
+  template <class R>
+  BR_HD static JointOpening<R> opening(const Loaded<R>& loaded, double ago) {
+    const auto at = [&](int k) {
+      const R(&c)[4] = loaded.corner[k];
+      return ago > 0.0 ? Vec2Of<R>{c[0] - ago * c[2], c[1] - ago * c[3]} : Vec2Of<R>{c[0], c[1]};
+    };
+    return opening_of(at(0), at(1), at(2), at(3));
+  }
+  /// Joints as long as they are whole.
+  template <class R>
+  struct Whole {
+    using Mask = decltype(R{} < R{});
+    R force[4];   ///< on both corners of side a  [N/m]
+    Mask beyond;  ///< it does not stay so: its forces mean nothing
+    Mask drags;   ///< it is, or may have been, pressed and slips enough for book_slips()
+  };
+  /// A joint that is whole, nearly every one. @returns false, with nothing written, if it does not
+  /// stay so, or slips under pressure and this is not booked
+  /// @param books  for which the length of the step must be known
+  BR_HD bool stays_whole(Index i, const Loaded<double>& loaded, bool books) const {
+    if (loaded.stage != JointStage::whole) return false;
+    const Whole<double> now = whole(i, loaded);
+    if (now.beyond || (now.drags && !books)) return false;
+    store_four<Number>(force, i, now.force);
+    if (now.drags) book_slips<double>(i, 1);
+    return true;
+  }
+  template <class R>
+  BR_HD Whole<R> whole(Index i, const Loaded<R>& loaded) const {
     const R &share = loaded.strength, &h = loaded.length;
-    const auto& corner = loaded.corner;
-    const auto position = [&](int k) { return Vec2Of<R>{corner[k][0], corner[k][1]}; };
-    const JointOpening<R> o = opening_of(position(0), position(1), position(2), position(3));
-    R bond[12];
+    const JointOpening<R> o = opening(loaded, 0.0);
+    R bond[12], offset[2];
     gather_records(bonds, loaded.law, bond);
+    offset_of(i, offset);
     const R slope = bond[0] / h, tension = bond[1] * share, cohesion = bond[2] * share;
     const R quarter = 0.25 / tension;
-    R offset[2] = {};
-    if (preset.size > 0) gather_records(preset, consecutive<R>(i), offset);
-    auto beyond = !(o.size > 1e-12 * h);
+    Whole<R> w;
+    w.beyond = !(o.size > 1e-12 * h);
+    w.drags = w.beyond;
     Vec2Of<R> traction[3];
     R normal = constant<R>(0.0), shear = normal;  // means
     for (int q = 0; q < 3; ++q) {
       const BondTraction<R> t =
           elastic_response(slope, tension, quarter, cohesion, bond[3], o.open[q] + offset[0],
-                           o.slide[q] + offset[1], beyond);
+                           o.slide[q] + offset[1], w.beyond);
+      // While it is pressed its normal traction is straight; it may have been a step ago.
+      const R resists = cohesion - bond[3] * min(t.normal, constant<R>(0.0));
+      w.drags = w.drags || (t.normal < 0.05 * tension && abs(t.shear) > least_drag * resists);
       traction[q] = t.shear * o.along + t.normal * o.normal;
       normal = normal + weight_of(q) * t.normal;
       shear = shear + weight_of(q) * t.shear;
@@ -214,15 +291,15 @@ struct JointForces {
                         ? along_from(Sym2Of<R>{loaded.start[0], loaded.start[1], loaded.start[2]})
                         : along_from(in_situ);
     const auto failing = may_fail(tension, cohesion, bond[3], normal, shear, along);
-    beyond = beyond || (bond[8] > 0.0 && failing);
+    w.beyond = w.beyond || (bond[8] > 0.0 && failing);
     const R weight = (-1.0 / 6.0) * h, two = constant<R>(2.0);
     const Vec2Of<R> first = weight * (traction[0] + two * traction[1]);
     const Vec2Of<R> second = weight * (traction[2] + two * traction[1]);
-    numbers[0] = first.x;
-    numbers[1] = first.y;
-    numbers[2] = second.x;
-    numbers[3] = second.y;
-    return beyond;
+    w.force[0] = first.x;
+    w.force[1] = first.y;
+    w.force[2] = second.x;
+    w.force[3] = second.y;
+    return w;
   }
   /// Stress at the start of the rock at a joint: the mean of its two triangles'.  [Pa]
   BR_HD Sym2 start_of(Index i) const {
@@ -278,7 +355,8 @@ struct JointForces {
         opening_of(a0.position - dt * a0.velocity, a1.position - dt * a1.velocity,
                    b0.position - dt * b0.velocity, b1.position - dt * b1.velocity);
     const StoredEnergy e = stored_in(bond, strength[i], length[i], offset, o, JointPoints{});
-    work[i] = {e.open, e.slide};
+    work[i].open += e.open;
+    work[i].slide += e.slide;
   }
   /// Work of this step by the trapezoidal rule: with leapfrog velocities it sums to exactly what
   /// the nodes lose.

@@ -12,11 +12,15 @@ namespace {
 
 constexpr Index width = width_of<WidestPack>;
 
-template <class Kernel>
-LeftJoints run_whole(const Kernel& joints, Index begin, Index end) {
+template <class Number>
+LeftJoints run_whole(const JointForces<Number>& joints, Index begin, Index end, bool books) {
   Index i = begin;
-  for (; i + width <= end; i += width)
-    if (const unsigned others = run_at<WidestPack>(joints, i); others != 0) return {i, others};
+  for (; i + width <= end; i += width) {
+    const auto [others, drags] = run_at<WidestPack>(joints, i);
+    if (drags != 0 && !books) return {i, others | drags};
+    if (drags != 0) joints.template book_slips<WidestPack>(i, drags);
+    if (others != 0) return {i, others};
+  }
   return {i, 0};
 }
 template <class Kernel>
@@ -28,11 +32,11 @@ Index run_all(const Kernel& triangles, Index begin, Index end) {
 
 }  // namespace
 
-LeftJoints BR_PACKS::run(const JointForces<double>& kernel, Index begin, Index end) {
-  return run_whole(kernel, begin, end);
+LeftJoints BR_PACKS::run(const JointForces<double>& kernel, Index begin, Index end, bool books) {
+  return run_whole(kernel, begin, end, books);
 }
-LeftJoints BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index end) {
-  return run_whole(kernel, begin, end);
+LeftJoints BR_PACKS::run(const JointForces<float>& kernel, Index begin, Index end, bool books) {
+  return run_whole(kernel, begin, end, books);
 }
 
 Index BR_PACKS::run(const TriangleForces<double>& kernel, Index begin, Index end) {

@@ -110,6 +110,29 @@ BR_HD BondTraction<R> elastic_response(const R& slope, const R& tension, const R
           sideways * (1.0 - size * (0.25 / strength))};
 }
 
+/// From this |tau|/f_s on a joint that stays whole books what pressure takes on its slip: below it,
+/// that is at most |tau|/(6 f_s) of what its slip stores.  [-]
+inline constexpr double least_drag = 0.2;
+/// Work beyond what a point of a whole joint stores in a step: at the strength f in shear a slip of
+/// the elastic traction T = p_f s/h stores W = h/p_f (T^2/2 - T^3/(12 f)), and f follows the
+/// pressure, which does no work of its own on the slip. It is -dW/df df, whatever its sign.  [J/m2]
+/// @param opening, slip  at the beginning of the step and at its end  [m]
+template <class R>
+BR_HD R spent_by_pressure(const R& slope, const R& cohesion, const R& friction,
+                          const R (&opening)[2], const R (&slip)[2]) {
+  const R zero = constant<R>(0.0), one = constant<R>(1.0);
+  R less[2], cube = zero;
+  auto bears = one > zero;  // any slip
+  for (int n = 0; n < 2; ++n) {
+    const R strength = cohesion - friction * slope * min(opening[n], zero);
+    bears = bears && strength > 0.0;
+    less[n] = 1.0 / select(strength > 0.0, strength, one);
+    const R size = slope * abs(slip[n]);
+    cube = cube + 0.5 * (size * size * size);
+  }
+  return select(bears, cube / (12.0 * slope) * (less[1] - less[0]), zero);
+}
+
 /// The law in full while the rock has not failed. @param strength  of this joint over its law's:
 /// scales f_t, c and, so that lengths stay, both energies  [-]. @param h  initial length  [m]
 BR_HD inline BondTraction<double> edge_response(const JointBond& law, double strength, double h,

@@ -3,9 +3,42 @@
 #include <cmath>
 
 #include "fdem/setup/materials.hpp"
+#include "math/constants.hpp"
 
 namespace breccia::fdem {
 namespace {
+
+/// Most that an edge counts of sigma_1 by its joint's criterion, where sigma_2 is `other` of it.
+/// @param cos2  of the angle between its normal and sigma_1
+double share_of_tension(bool by_rock, double cos2, double other) {
+  const double across = cos2 + other * (1.0 - cos2);
+  if (!by_rock || !(across > 0.0) || cos2 < torn_at_all) return across;
+  return std::max(across, std::min(1.0, cos2 / torn_in_full));
+}
+
+/// Over f_t: a triangle tears at that of its edges which counts most of sigma_1.
+double least_tension(const std::vector<std::vector<std::pair<Vec2, bool>>>& edges,
+                     const std::vector<double>& area, const std::vector<Index>& material, Index of,
+                     double other) {
+  constexpr int directions = 18;
+  const std::size_t step = 1 + edges.size() / 20000;  // that many tell the mean
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t t = 0; t < edges.size(); t += step) {
+    if (material[t] != of || edges[t].size() < 3) continue;  // of others an edge is the border
+    weight += area[t];
+    for (int k = 0; k < directions; ++k) {
+      const double angle = pi * (k + 0.5) / directions;
+      const Vec2 first{std::cos(angle), std::sin(angle)};
+      double most = 0.0;
+      for (const auto& [along, by_rock] : edges[t]) {
+        const double sine = cross(first, along);  // along: unit
+        most = std::max(most, share_of_tension(by_rock, sine * sine, other));
+      }
+      sum += area[t] * most / directions;
+    }
+  }
+  return weight > 0.0 ? weight / sum : 0.0;
+}
 
 /// Bedded rock: joints add the same compliance in all directions.
 void soften(EffectiveRock& rock, const MaterialConfig& material, bool stress) {
@@ -43,6 +76,11 @@ std::vector<EffectiveRock> effective_rocks(const Config& config, const JointedMe
     for (const Index edge : {mesh.edge_a[i], mesh.edge_b[i]})
       given[at(mesh.material[at(edge / 3)])] += 0.5 * each;
   }
+  std::vector<std::vector<std::pair<Vec2, bool>>> edges(mesh.material.size());
+  for (std::size_t i = 0; i < mesh.law.size(); ++i)
+    for (const Index edge : {mesh.edge_a[i], mesh.edge_b[i]})
+      edges[at(edge / 3)].emplace_back((1.0 / mesh.length[i]) * mesh.along[i],
+                                       mesh.bonds[at(mesh.law[i])].by_rock());
   const std::vector<ElasticTriangle> laws = elastic_table(config);
   const bool stress = config.plane == "stress";
   std::vector<EffectiveRock> rocks;
@@ -51,6 +89,11 @@ std::vector<EffectiveRock> effective_rocks(const Config& config, const JointedMe
     EffectiveRock rock{material.name, area[m] > 0.0 ? given[m] / area[m] : 0.0, material.young,
                        material.poisson};
     rock.density = material.density;
+    const auto least = [&](double other) {
+      return least_tension(edges, mesh.area, mesh.material, static_cast<Index>(m), other);
+    };
+    rock.tension = least(0.0);
+    rock.splitting = least(-3.0);
     if (material.bedding.has_stiffness()) {
       soften(rock, material, stress);
       rocks.push_back(std::move(rock));

@@ -23,6 +23,9 @@ struct EffectiveRock {
   PlaneModuli stiffness{};  ///< of bedded rock  [Pa]
   double angle = 0.0;       ///< of its planes  [rad]
   OutOfPlane out_of_plane{};
+  /// Stress sigma_1 at which this mesh begins to tear over f_t, mean over all directions: pulled
+  /// one way, and with three times as much pressure across, as in a disc; 0 without joints  [-]
+  double tension = 0.0, splitting = 0.0;
 
   /// Impedances of an edge that waves press and shear: rho c_p and rho c_s along its normal.
   struct Impedances {
@@ -37,6 +40,7 @@ struct JointedMesh {
   const std::vector<double>& area;     ///< of each triangle  [m2]
   const std::vector<Index>&edge_a, &edge_b, &law;
   const std::vector<double>& length;  ///<  [m]
+  const std::vector<Vec2>& along;     ///< edge of side a  [m]
   const std::vector<JointStage>& stage;
   const std::vector<JointBond>& bonds;
 };

@@ -52,6 +52,7 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   std::vector<Index> edge_a, edge_b;
   std::vector<Index> law;
   std::vector<double> length, strength;
+  std::vector<Vec2> lines;  // edges of sides a
   std::vector<Vec2> preset;
   Case& given = set_up(w);
   given.open_vertex.assign(model.point.size(), 0);
@@ -107,6 +108,7 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     const Vec2 along =
         model.point[at(w.vertex[at(next(e.a))])] - model.point[at(w.vertex[at(e.a)])];
     length.push_back(norm(along));
+    lines.push_back(along);
     const auto material = [&](std::size_t t) -> const MaterialConfig& {
       return config.materials[static_cast<std::size_t>(model.material[t])];
     };
@@ -158,8 +160,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
                    cross(model.point[at(corners[1])] - from, model.point[at(corners[2])] - from));
   }
   const std::vector<Index> material(model.material.begin(), model.material.end());
-  given.rocks =
-      effective_rocks(config, {material, area, edge_a, edge_b, law, length, stage, table.bonds});
+  given.rocks = effective_rocks(
+      config, {material, area, edge_a, edge_b, law, length, lines, stage, table.bonds});
   if (given.extrinsic) {
     w.stress.resize(w.triangles.size());
     w.overshoot.resize(count);

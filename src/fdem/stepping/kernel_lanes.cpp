@@ -10,8 +10,8 @@ template <class Number>
 Index while_whole([[maybe_unused]] Lanes lanes, const JointForces<Number>& joints, Index begin,
                   Index end) {
 #if defined(BR_WIDE_LANES)
-  if (lanes == Lanes::eight) begin = PacksAvx512::run(joints, begin, end).first;
-  if (lanes == Lanes::four) begin = PacksAvx2::run(joints, begin, end).first;
+  if (lanes == Lanes::eight) begin = PacksAvx512::run(joints, begin, end, false).first;
+  if (lanes == Lanes::four) begin = PacksAvx2::run(joints, begin, end, false).first;
 #endif
   // A dormant one may wake yet.
   while (begin < end && joints.stage[begin] == JointStage::whole && run_at<double>(joints, begin))
@@ -24,8 +24,8 @@ void run_joints([[maybe_unused]] Lanes lanes, const JointForces<Number>& joints,
                 Index end) {
 #if defined(BR_WIDE_LANES)
   for (const auto width = static_cast<Index>(lanes); width > 1 && end - begin >= width;) {
-    const LeftJoints left = lanes == Lanes::eight ? PacksAvx512::run(joints, begin, end)
-                                                  : PacksAvx2::run(joints, begin, end);
+    const LeftJoints left = lanes == Lanes::eight ? PacksAvx512::run(joints, begin, end, true)
+                                                  : PacksAvx2::run(joints, begin, end, true);
     begin = left.first;
     if (left.others == 0) break;
     for (Index k = 0; k < width; ++k)

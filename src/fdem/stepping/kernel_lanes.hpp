@@ -29,17 +29,18 @@ struct LeftJoints {
   unsigned others;
 };
 
-/// Joints from `begin` on as long as they are whole and stay so. @returns where that ends; from
-/// there on nothing is written, but forces of joints that are whole and stay so
+/// Joints from `begin` on as long as they are whole, stay so and book no slip. @returns where that
+/// ends; from there on nothing is written, but forces of joints that are whole and stay so
 Index run_whole(Lanes lanes, const JointForces<double>& kernel, Index begin, Index end);
 Index run_whole(Lanes lanes, const JointForces<float>& kernel, Index begin, Index end);
 
 /// Builds of lanes/kernel_lanes.cpp for one width each. Return where they stop: at what does not
 /// fill a pack, or at a pack that is not as most are. Both are left to the caller, whose build runs
-/// on every processor; of a pack of joints only the others.
+/// on every processor; of a pack of joints only the others. Without `books` they stop at joints
+/// that slip under pressure, too: the length of the step is not known yet.
 struct PacksAvx2 {
-  static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end);
-  static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end);
+  static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end, bool books);
+  static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end, bool books);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);
@@ -47,8 +48,8 @@ struct PacksAvx2 {
   static MovedTo run(const MoveTriangles& kernel, Index begin, Index end);
 };
 struct PacksAvx512 {
-  static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end);
-  static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end);
+  static LeftJoints run(const JointForces<double>& kernel, Index begin, Index end, bool books);
+  static LeftJoints run(const JointForces<float>& kernel, Index begin, Index end, bool books);
   static Index run(const TriangleForces<double>& kernel, Index begin, Index end);
   static Index run(const TriangleForces<float>& kernel, Index begin, Index end);
   static Index run(const CoupleForces<double>& kernel, Index begin, Index end);

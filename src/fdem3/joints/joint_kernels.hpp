@@ -207,7 +207,7 @@ struct JointForces {
       const R straight = slope * (o.open[q] + loaded.offset.x), size = slope * norm(slide);
       const R resists = cohesion - friction * min(straight, zero);
       w.beyond = w.beyond || straight > 2.0 * tension || size > 2.0 * resists;
-      w.drags = w.drags || size > least_drag * resists;
+      w.drags = w.drags || size > fdem::least_drag * resists;
       const R normal = select(straight < 0.0, straight, straight * (1.0 - straight * quarter));
       traction[q] = normal * o.normal + (slope * (1.0 - size * (0.25 / resists))) * slide;
       mean += traction[q];
@@ -374,9 +374,7 @@ struct JointForces {
     work[i].slide += held.slide;
   }
   /// A joint that stays whole books what pressure that changes takes on its slip
-  /// (docs/theory-fdem3.md, 2), from this T/f_s on: below it, that is at most T/(6 f_s) of what its
-  /// slip stores.
-  static constexpr double least_drag = 0.2;
+  /// (docs/theory-fdem.md, 2).
   BR_HD void book_drag(Index i, const JointBond& bond, const Vec3& offset, const JointEnds& e,
                        const JointOpening& o) const {
     const JointOpening before = last_opening(e);
@@ -384,9 +382,9 @@ struct JointForces {
     const double slope = bond.stiffness / length[i], cohesion = bond.cohesion * strength[i];
     double sum = 0.0;
     for (int q = 0; q < 3; ++q)
-      sum += spent_by_pressure(slope, cohesion, bond.friction,
-                               {before.open[q] + offset.x, o.open[q] + offset.x},
-                               {norm(before.slide[q] + slip_before), norm(o.slide[q] + slip)});
+      sum += fdem::spent_by_pressure<double>(
+          slope, cohesion, bond.friction, {before.open[q] + offset.x, o.open[q] + offset.x},
+          {norm(before.slide[q] + slip_before), norm(o.slide[q] + slip)});
     work[i].slide += shape[i].area() / 3.0 * sum;
   }
   /// Work of this step by the trapezoidal rule: with leapfrog velocities it sums to exactly what

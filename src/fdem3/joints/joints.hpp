@@ -129,23 +129,6 @@ BR_HD Vec3Of<R> slip_in_space(const JointOpeningOf<R>& o, const Vec3Of<R>& prese
   return preset.y * o.along + preset.z * cross(o.normal, o.along);
 }
 
-/// Work beyond what a point of a whole joint stores in a step: at the strength f in shear a slip of
-/// the elastic traction T = p_f s/h stores W = h/p_f (T^2/2 - T^3/(12 f)), and f follows the
-/// pressure, which does no work of its own on the slip. It is -dW/df df, whatever its sign.  [J/m2]
-/// @param opening, slip  at the beginning of the step and at its end  [m]
-BR_HD inline double spent_by_pressure(double slope, double cohesion, double friction,
-                                      const double (&opening)[2], const double (&slip)[2]) {
-  double less[2], cube = 0.0;
-  for (int n = 0; n < 2; ++n) {
-    const double strength = cohesion - friction * slope * min(opening[n], 0.0);
-    if (!(strength > 0.0)) return 0.0;  // it bears no slip
-    less[n] = 1.0 / strength;
-    const double size = slope * slip[n];
-    cube += 0.5 * size * size * size;
-  }
-  return cube / (12.0 * slope) * (less[1] - less[0]);
-}
-
 /// Opening and slip at which a joint carries a traction, its strength permitting. False if not.
 /// @param traction  normal, tension positive; along the first edge and across it  [Pa]
 /// @param opening  likewise  [m]

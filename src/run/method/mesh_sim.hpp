@@ -55,6 +55,11 @@ struct MeshSim {
       add(path + "poisson", rock.poisson);
       add(path + "wave_speed", rock.fast);
       add(path + "shear_wave_speed", rock.slow);
+      if constexpr (axes == 2) {
+        if (!(rock.tension > 0.0)) continue;
+        add(path + "tension_over_given", rock.tension);
+        add(path + "splitting_over_given", rock.splitting);
+      }
     }
     add("model.nodes", corners * count);
     add("searches", static_cast<double>(w.searches));

@@ -143,6 +143,52 @@ TEST(Joint, pulled_apart_books_its_fracture_energy_and_breaks) {
   }
 }
 
+/// Pressed, slipped, let go, slipped back: the way round takes T^3/(12 p_f/h) times
+/// (1/c - 1/(c + sigma tan phi)), T = p_f s/h, an area, which a joint that stays whole does not
+/// store.
+TEST(Joint, books_what_pressure_takes_on_its_slip) {
+  const double slope = 150e9 / 1e-3, slid = 20e6, pressed = 40e6;
+  const double taken = 1e-3 * slid * slid * slid / (12.0 * slope) * (1.0 / 15e6 - 1.0 / 43e6);
+  for (const Lanes lanes : {Lanes::one, widest_lanes()}) {
+    World w = two_triangles().world();
+    w.lanes = lanes;
+    ASSERT_EQ(w.joints.size(), 1);
+    const TriangleNodes start = nodes(w, 0);
+    const auto& force = w.joints.force.in_double;
+    const auto booked = [&] { return w.joints.work.data()[0].slide; };
+    double given = 0.0;
+    Vec2 from{};
+    const auto go = [&](const Vec2& to) {
+      const int steps = 1000;
+      w.last_dt = 1e-8;
+      const Vec2 way = (1.0 / steps) * (to - from);
+      for (int i = 1; i <= steps; ++i) {
+        for (int k = 0; k < 3; ++k) {
+          NodeState& n = nodes(w, 0).at[k];
+          n.velocity = (1.0 / w.last_dt) * way;
+          n.position = start.at[k].position + from + static_cast<double>(i) * way;
+        }
+        const Vec2 before = force.data()[0].first + force.data()[0].second;
+        HostRun{}.joint_forces(w);
+        given -= 0.5 * dot(before + force.data()[0].first + force.data()[0].second, way);
+      }
+      from = to;
+    };
+    const double p = -pressed / slope, s = slid / slope;
+    go({0.0, p});
+    EXPECT_EQ(booked(), 0.0);
+    go({s, p});
+    EXPECT_NEAR(booked(), 0.0, 1e-9 * taken);
+    go({s, 0.0});
+    EXPECT_NEAR(booked(), taken, 1e-4 * taken);
+    go({});
+    EXPECT_NEAR(booked(), taken, 1e-4 * taken);
+    EXPECT_NEAR(given, taken, 2e-3 * taken);
+    EXPECT_EQ(w.joints.work.data()[0].open, 0.0);
+    EXPECT_EQ(w.joints.stage.data()[0], JointStage::whole);
+  }
+}
+
 TEST(Joint, two_of_three_failed_points_break_it) {
   World w = two_triangles().world();
   // 1e-5 m of softening, 4e-8 of elastic opening: one end beyond, then the middle as well

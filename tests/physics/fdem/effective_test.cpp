@@ -126,5 +126,19 @@ TEST(FdemEffective, modulus_is_that_of_a_pressed_plate) {
   }
 }
 
+/// The best edge of equilateral triangles lies 0 to 30 degrees off the plane of sigma_1: by edges a
+/// mesh bears 1/(0.9135 + 0.0865 sigma_2/sigma_1) of f_t, by the rock's stress what is given.
+TEST(FdemEffective, tells_the_strength_of_the_mesh) {
+  for (const bool by_rock : {false, true}) {
+    Scene scene;
+    scene.material(30e9, 0.2, 2500.0).joints = "intrinsic";
+    scene.config.joints.criterion = by_rock ? "rock" : "edge";
+    scene.body("plate", prepare::equilateral_rectangle({{0.0, 0.0}, {0.05, 0.05}}, 2.5e-3));
+    const EffectiveRock rock = scene.world().given->rocks.at(0);
+    EXPECT_NEAR(rock.tension, by_rock ? 1.0 : 1.0 / 0.9135, by_rock ? 1e-9 : 3e-3);
+    EXPECT_NEAR(rock.splitting, by_rock ? 1.0 : 1.0 / (0.9135 - 3.0 * 0.0865), 0.02);
+  }
+}
+
 }  // namespace effective_test
 }  // namespace breccia::fdem
