@@ -34,11 +34,12 @@ struct SweepCommand {
     if (!options.allow_scripts) refuse_scripts(base);
     std::vector<lab::SweepAxis> axes;
     for (const std::string& text : over) axes.push_back(lab::sweep_axis(text));
+    const std::vector<std::int64_t> all_seeds = lab::sweep_seeds(axes, base.common().seed, seeds);
     const std::string out = folder.empty() ? "out/" + base.name + "_sweep" : folder;
     std::vector<lab::SweepRow> rows;
     std::vector<lab::PlannedRun> runs;
     double bytes = 0.0;
-    for (const lab::SweepPoint& point : lab::sweep_points(axes, base.common().seed, seeds)) {
+    for (const lab::SweepPoint& point : lab::sweep_points(axes, all_seeds)) {
       lab::PlannedRun run;
       run.name = point.name(axes);
       run.case_path = path;

@@ -184,11 +184,31 @@ std::string SweepPoint::name(const std::vector<SweepAxis>& axes) const {
   return text + fmt::format("seed={}", seed);
 }
 
-std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis>& axes, std::int64_t first_seed,
-                                     int seeds) {
-  std::vector<SweepPoint> points{{{}, first_seed}};
+std::vector<std::int64_t> sweep_seeds(std::vector<SweepAxis>& axes, std::int64_t first, int count) {
+  std::vector<std::int64_t> seeds;
+  const auto axis = std::find_if(axes.begin(), axes.end(),
+                                 [](const SweepAxis& one) { return one.key == "seed"; });
+  if (axis == axes.end()) {
+    for (int k = 0; k < count; ++k) seeds.push_back(first + k);
+    return seeds;
+  }
+  if (count > 1) refuse("seed", "--seeds gives seeds, too; one of both is enough");
+  for (const std::string& value : axis->values) {
+    const char* const end = value.data() + value.size();
+    std::int64_t seed = 0;
+    if (std::from_chars(value.data(), end, seed) != std::from_chars_result{end, std::errc{}})
+      refuse("seed=" + value, "a seed is a whole number");
+    seeds.push_back(seed);
+  }
+  axes.erase(axis);
+  return seeds;
+}
+
+std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis>& axes,
+                                     const std::vector<std::int64_t>& seeds) {
+  std::vector<SweepPoint> points{{}};
   for (const SweepAxis& axis : axes) {
-    if (points.size() * axis.values.size() * static_cast<std::size_t>(seeds) > most_runs)
+    if (points.size() * axis.values.size() * seeds.size() > most_runs)
       throw InputError(fmt::format("these are more than {} runs; nothing was run", most_runs));
     std::vector<SweepPoint> longer;
     for (const SweepPoint& point : points)
@@ -200,7 +220,7 @@ std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis>& axes, std::in
   }
   std::vector<SweepPoint> seeded;
   for (const SweepPoint& point : points)
-    for (int k = 0; k < seeds; ++k) seeded.push_back({point.values, first_seed + k});
+    for (const std::int64_t seed : seeds) seeded.push_back({point.values, seed});
   return seeded;
 }
 

@@ -35,10 +35,16 @@ struct SweepPoint {
   std::string name(const std::vector<SweepAxis>& axes) const;
 };
 
+/// The seeds of a sweep: the values of the axis `seed`, which is taken out of `axes`, or, without
+/// one, `count` of them from `first` on.
+/// @throws InputError if the axis has a value that is no whole number, or `count` is above 1 beside
+/// it
+std::vector<std::int64_t> sweep_seeds(std::vector<SweepAxis>& axes, std::int64_t first, int count);
+
 /// Every combination of the axes' values, the last axis and then the seeds changing fastest.
 /// @throws InputError if they are more than 10,000
-std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis>& axes, std::int64_t first_seed,
-                                     int seeds);
+std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis>& axes,
+                                     const std::vector<std::int64_t>& seeds);
 
 /// The name of a folder for a run: its name, and the first digits of its digest.
 std::string run_folder_name(const std::string& name, const std::string& digest);

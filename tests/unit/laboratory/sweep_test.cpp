@@ -32,11 +32,26 @@ TEST(SweepAxis, RefusesWhatIsNoListOfValues) {
 
 TEST(SweepPoints, AreEveryCombinationWithEverySeed) {
   const std::vector<SweepAxis> axes{{"a.b", {"1", "2"}}, {"c", {"x", "y"}}};
-  const std::vector<SweepPoint> points = sweep_points(axes, 7, 3);
+  const std::vector<SweepPoint> points = sweep_points(axes, {7, 8, 9});
   ASSERT_EQ(points.size(), 12U);
   EXPECT_EQ(points[4].overrides(axes), (Texts{"a.b=1", "c=y", "seed=8"}));
   EXPECT_EQ(points[4].name(axes), "b=1 c=y seed=8");
-  EXPECT_THROW(sweep_points({{"a", Texts(5000, "1")}}, 1, 3), InputError);
+  EXPECT_THROW(sweep_points({{"a", Texts(5000, "1")}}, {1, 2, 3}), InputError);
+}
+
+TEST(SweepPoints, HaveTheSeedsOfTheAxisSeed) {
+  using Seeds = std::vector<std::int64_t>;
+  std::vector<SweepAxis> axes{{"a", {"1", "2"}}, {"seed", {"4", "9"}}};
+  const Seeds seeds = sweep_seeds(axes, 1, 1);
+  EXPECT_EQ(seeds, (Seeds{4, 9}));
+  ASSERT_EQ(axes.size(), 1U);
+  const std::vector<SweepPoint> points = sweep_points(axes, seeds);
+  ASSERT_EQ(points.size(), 4U);
+  EXPECT_EQ(points[3].overrides(axes), (Texts{"a=2", "seed=9"}));
+  EXPECT_EQ(sweep_seeds(axes, 5, 2), (Seeds{5, 6}));
+  std::vector<SweepAxis> wrong{{"seed", {"1", "1.5"}}};
+  EXPECT_THROW(sweep_seeds(wrong, 1, 1), InputError);
+  EXPECT_THROW(sweep_seeds(wrong, 1, 2), InputError);
 }
 
 TEST(RunFolder, IsAPlainNameThatDiffersWithTheCase) {
@@ -53,7 +68,7 @@ RunResult shown(double value) {
 TEST(SweepTable, GivesMeanDeviationAndCountAndKeepsFailures) {
   const std::vector<SweepAxis> axes{{"k", {"1", "2"}}};
   std::vector<SweepRow> rows;
-  for (const SweepPoint& point : sweep_points(axes, 1, 2)) rows.push_back({point, "f", {}, {}});
+  for (const SweepPoint& point : sweep_points(axes, {1, 2})) rows.push_back({point, "f", {}, {}});
   rows[0].result = shown(1.0);
   rows[1].result = shown(3.0);
   rows[2].result = shown(5.0);
