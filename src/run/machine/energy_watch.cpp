@@ -19,7 +19,7 @@ double largest_of(const EnergyBalance& energy) {
 /// much is that.  [J]
 constexpr double judged_from = 1e-14;
 
-/// What a row says is missing, over the largest energy or work so far.
+/// The missing energy of a row over the largest energy or work so far; 0 of a body at rest.
 double judged(const EnergyBalance& energy) {
   return largest_of(energy) < judged_from ? 0.0 : energy.error_relative;
 }
