@@ -31,6 +31,7 @@ struct CalibrateCommand {
 
   int execute() const {
     const Case read = load_case(path, overrides);
+    tell_notes(read.notes);
     if (const auto* const concrete = std::get_if<dem::Config>(&read.config)) {
       const lab::Sample sample = lab::sample_of(*concrete, material);
       if (sample.material.law == "ldpm")

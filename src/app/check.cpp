@@ -111,6 +111,7 @@ struct CheckCommand {
             fmt::print(", needs --allow-scripts for {}",
                        harmless(fmt::format("{}", fmt::join(files, ", "))));
           fmt::print("\n");
+          for (const std::string& note : read.notes) tell_note(note);
           if constexpr (requires { config.walls; })
             for (const std::string& doubt : prepare::doubtful_walls(config, read.folder))
               tell_note(read.file.empty() ? doubt : with_lines(doubt, read.file));

@@ -5,12 +5,16 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 #include "app/option_kinds.hpp"
+#include "domain/mpi_ranks.hpp"
 #include "exec/device.hpp"
 #include "exec/error.hpp"
+#include "io/emphasis.hpp"
 #include "io/harmless.hpp"
+#include "prepare/meshing/run_gmsh.hpp"
 #include "run/machine/memory_plan.hpp"
 
 namespace breccia::app {
@@ -26,18 +30,24 @@ std::string count_problem(const std::string& text) {
 }
 
 laboratory::Workers SideBySideOptions::workers(std::size_t runs, double bytes) const {
-  laboratory::Workers workers = laboratory::workers_for(jobs, runs, bytes);
+  laboratory::Workers workers = laboratory::workers_for(jobs, runs, bytes, ranks);
+  if (ranks > 1 && !built_with_mpi())
+    throw InputError("--ranks: this program has no MPI ('breccia doctor'); nothing was run");
+  if (ranks > 1 && prepare::on_path("mpirun").empty() && std::getenv("BRECCIA_MPIRUN") == nullptr)
+    throw InputError("--ranks: there is no mpirun (apt install openmpi-bin); nothing was run");
+  if (const char* const mpirun = std::getenv("BRECCIA_MPIRUN")) workers.mpirun = mpirun;
   if (threads > 0) workers.threads = threads;
   workers.force = force;
   workers.allow_scripts = allow_scripts;
   if (device == "cpu") return workers;
   if (device == "cuda") {
     const int there = device_count();
-    for (int k = 0; k < there; ++k) workers.devices.push_back(fmt::format("cuda:{}", k));
     if (there == 0)
       throw DeviceError("--device cuda: there is no GPU, or this program has no CUDA");
+    const char* const visible = std::getenv("CUDA_VISIBLE_DEVICES");
+    workers.devices = laboratory::gpus_for(there, ranks, visible != nullptr ? visible : "");
   } else {
-    workers.devices = {device};
+    workers.devices = {{device, ""}};
   }
   if (jobs == 0) workers.jobs = std::min(workers.jobs, static_cast<int>(workers.devices.size()));
   return workers;
@@ -45,8 +55,10 @@ laboratory::Workers SideBySideOptions::workers(std::size_t runs, double bytes) c
 
 void add_side_by_side_options(CLI::App& command, SideBySideOptions& options) {
   add_count(&command, "--jobs", options.jobs, "runs at a time; default: as many as fit");
-  add_count(&command, "--threads", options.threads, "of each run; default: its share");
-  command.add_option("--device", options.device, "cpu, cuda (all GPUs in turn) or cuda:N")
+  add_count(&command, "--ranks", options.ranks, "of each run, by mpirun; default: 1");
+  add_count(&command, "--threads", options.threads, "of each rank; default: its share");
+  command
+      .add_option("--device", options.device, "cpu, cuda (all GPUs dealt to the runs) or cuda:N")
       ->type_name("NAME");
   command.add_flag("--force", options.force, "compute finished runs anew");
   command.add_flag("--allow-scripts", options.allow_scripts,
@@ -55,6 +67,14 @@ void add_side_by_side_options(CLI::App& command, SideBySideOptions& options) {
 
 double run_bytes(const Case& read) {
   return std::visit([](const auto& config) { return memory_plan(config).run_bytes; }, read.config);
+}
+
+void tell_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes)
+    std::fputs(
+        fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr), harmless(note))
+            .c_str(),
+        stderr);
 }
 
 std::function<void(std::size_t, const laboratory::FinishedRun&)> tell_of(

@@ -16,7 +16,8 @@ namespace breccia::app {
 
 struct SideBySideOptions {
   int jobs = 0;     ///< 0: as many as there are cores and memory for
-  int threads = 0;  ///< of each run; 0: its share of the cores
+  int ranks = 1;    ///< of each run
+  int threads = 0;  ///< of each rank; 0: its share of the cores
   std::string device = "cpu";
   bool force = false, allow_scripts = false;
 
@@ -31,6 +32,9 @@ std::string count_problem(const std::string& text);
 
 /// Memory that a run of the case takes at least.  [bytes]
 double run_bytes(const Case& read);
+
+/// What a command has to tell of a case before its runs begin: Case::notes.
+void tell_notes(const std::vector<std::string>& notes);
 
 /// Tells of each run as it ends: how many have ended, how, in which time, and its name.
 std::function<void(std::size_t, const laboratory::FinishedRun&)> tell_of(

@@ -38,6 +38,7 @@ struct SweepCommand {
     const std::string out = folder.empty() ? "out/" + base.name + "_sweep" : folder;
     std::vector<lab::SweepRow> rows;
     std::vector<lab::PlannedRun> runs;
+    std::vector<std::string> notes;
     double bytes = 0.0;
     for (const lab::SweepPoint& point : lab::sweep_points(axes, all_seeds)) {
       lab::PlannedRun run;
@@ -47,6 +48,8 @@ struct SweepCommand {
       for (const std::string& text : point.overrides(axes)) run.overrides.push_back(text);
       const Case read = load_case(path, run.overrides);
       run.digest = read.digest;
+      for (const std::string& note : read.notes)
+        if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
       run.folder = out + "/runs/" + lab::run_folder_name(run.name, run.digest);
       bytes = std::max(bytes, run_bytes(read));
       rows.push_back({point, run.folder, {}, {}});
@@ -54,6 +57,7 @@ struct SweepCommand {
     }
     const lab::Workers workers = options.workers(runs.size(), bytes);
     make_folder(out);
+    tell_notes(notes);
     fmt::print("{}: {} runs, {} at a time\n", harmless(base.name), runs.size(), workers.jobs);
     const auto results = lab::run_side_by_side(runs, workers, tell_of(runs));
     int exit_code = 0;

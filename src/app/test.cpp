@@ -51,6 +51,7 @@ struct TestCommand {
 
   int execute() const {
     const Case read = load_case(path, overrides);
+    tell_notes(read.notes);
     if (const auto* const concrete = std::get_if<dem::Config>(&read.config))
       return of_concrete(read, lab::sample_of(*concrete, material));
     return make(read, lab::rock_sample_of(rock_case(read), material), lab::rock_tests());

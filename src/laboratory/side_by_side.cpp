@@ -30,43 +30,62 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// The environment without what mpirun leaves in it: a run that a rank starts is no rank.
-std::vector<char*> own_environment() {
-  std::vector<char*> kept;
+const std::string visible_gpus_key = "CUDA_VISIBLE_DEVICES=";
+const std::string this_program = "/proc/self/exe";
+
+/// The environment of a run.
+std::vector<std::string> environment_of(int ranks, const std::string& visible) {
+  std::vector<std::string> kept;
   for (char** entry = environ; *entry != nullptr; ++entry) {
+    // Without what an mpirun leaves in it: a run that a rank starts is no rank of that.
     constexpr std::array foreign{"OMPI_", "PMIX_", "PMI_", "PRTE_"};
-    if (std::none_of(foreign.begin(), foreign.end(), [&](const char* start) {
-          return std::strncmp(*entry, start, std::strlen(start)) == 0;
-        }))
-      kept.push_back(*entry);
+    const std::string text = *entry;
+    if (text.starts_with("OMPI_ALLOW_") ||
+        std::none_of(foreign.begin(), foreign.end(),
+                     [&](const char* start) { return text.starts_with(start); }))
+      kept.push_back(text);
   }
-  kept.push_back(nullptr);
+  if (ranks > 1)  // beside others on one machine: Open MPI would bind all to the first cores
+    for (const char* setting :
+         {"OMPI_MCA_hwloc_base_binding_policy=none", "OMPI_MCA_rmaps_base_oversubscribe=1",
+          "PRTE_MCA_hwloc_default_binding_policy=none"})
+      kept.emplace_back(setting);
+  if (!visible.empty()) {
+    std::erase_if(kept, [](const auto& entry) { return entry.starts_with(visible_gpus_key); });
+    kept.push_back(visible_gpus_key + visible);
+  }
   return kept;
 }
 
-/// Starts the program; both streams go to the file `log`. It ends when this process dies, and a
-/// signal of the terminal reaches it only through this process.
-pid_t start(const std::string& program, const std::vector<std::string>& arguments,
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+/// Starts the words' first one; both streams go to the file `log`. It ends when this process dies,
+/// and a signal of the terminal reaches it only through this process.
+pid_t start(std::vector<std::string> words, std::vector<std::string> environment,
             const std::string& log) {
-  std::vector<char*> words;
-  std::string name = "breccia";
-  words.push_back(name.data());
-  std::vector<std::string> own = arguments;
-  for (std::string& word : own) words.push_back(word.data());
-  words.push_back(nullptr);
-  const std::vector<char*> environment = own_environment();
+  const std::string program = words.front();
+  if (program == this_program) words.front() = "breccia";
+  const std::vector<char*> arguments = pointers_to(words), entries = pointers_to(environment);
   const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (output < 0) throw IoError(log + ": cannot be written: " + std::strerror(errno));
+  const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);  // mpirun reads, and would stop
   const pid_t child = ::fork();
   if (child == 0) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    ::dup2(nothing, STDIN_FILENO);
     ::dup2(output, STDOUT_FILENO);
     ::dup2(output, STDERR_FILENO);
-    ::execve(program.c_str(), words.data(), environment.data());
+    ::execvpe(program.c_str(), arguments.data(), entries.data());
     ::_exit(127);
   }
   const int reason = errno;
+  ::close(nothing);
   ::close(output);
   if (child < 0) throw IoError(std::string("cannot start a process: ") + std::strerror(reason));
   return child;
@@ -106,7 +125,9 @@ class Pool {
     while (next < runs_.size() || !active_.empty()) {
       const int signal = StopSignals::received();
       if (signal != 0 && !told) {
-        for (const Active& run : active_) ::kill(run.process, signal);
+        // mpirun hands SIGUSR1 on; of others it ends the ranks before they have saved.
+        for (const Active& run : active_)
+          ::kill(run.process, workers_.ranks > 1 ? SIGUSR1 : signal);
         told = true;
       }
       while (signal == 0 && next < runs_.size() &&
@@ -147,10 +168,12 @@ class Pool {
   void launch(std::size_t run, bool resume) {
     const PlannedRun& plan = runs_[run];
     std::vector<std::string> words;
+    if (workers_.ranks > 1) words = {workers_.mpirun, "-n", std::to_string(workers_.ranks)};
+    words.push_back(workers_.program.empty() ? program_for(workers_.ranks) : workers_.program);
     if (resume) {
-      words = {"resume", plan.folder};
+      words.insert(words.end(), {"resume", plan.folder});
     } else {
-      words = {"run", plan.case_path, "-o", plan.folder, "--force"};
+      words.insert(words.end(), {"run", plan.case_path, "-o", plan.folder, "--force"});
       for (const std::string& text : plan.overrides) {
         words.emplace_back("--set");
         words.push_back(text);
@@ -158,13 +181,19 @@ class Pool {
     }
     words.insert(words.end(), {"--quiet", "--threads", std::to_string(workers_.threads)});
     const int device = free_device();
+    std::string visible;
     if (!workers_.devices.empty()) {
-      words.emplace_back("--device");
-      words.push_back(workers_.devices[static_cast<std::size_t>(device)]);
+      const Device& chosen = workers_.devices[static_cast<std::size_t>(device)];
+      words.insert(words.end(), {"--device", chosen.name});
+      visible = chosen.visible;
     }
     if (workers_.allow_scripts) words.emplace_back("--allow-scripts");
-    active_.push_back(
-        {run, start(workers_.program, words, log_of(run)), device, Clock::now(), resume});
+    const pid_t process = start(words, environment_of(workers_.ranks, visible), log_of(run));
+    active_.push_back({run, process, device, Clock::now(), resume});
+  }
+
+  static std::string program_for(int ranks) {
+    return ranks > 1 ? fs::read_symlink(this_program).string() : this_program;
   }
 
   /// The device with the fewest runs.
@@ -214,15 +243,37 @@ class Pool {
 
 }  // namespace
 
-Workers workers_for(int asked, std::size_t runs, double bytes) {
+Workers workers_for(int asked, std::size_t runs, double bytes, int ranks) {
   const int cores = std::max(1, omp_get_num_procs());
   const double room = bytes > 0.0 ? available_memory() / bytes : 1e6;
   const int fit = static_cast<int>(std::clamp(room, 1.0, 1e6));
   Workers workers;
-  workers.jobs = std::min(asked > 0 ? asked : cores, fit);
+  workers.ranks = ranks;
+  workers.jobs = std::min(asked > 0 ? asked : std::max(1, cores / ranks), fit);
   workers.jobs = std::clamp(workers.jobs, 1, std::max(1, static_cast<int>(runs)));
-  workers.threads = asked > 0 ? 1 : std::max(1, cores / workers.jobs);
+  workers.threads = asked > 0 ? 1 : std::max(1, cores / (workers.jobs * ranks));
   return workers;
+}
+
+std::vector<Device> gpus_for(int there, int ranks, const std::string& visible) {
+  std::vector<Device> devices;
+  if (ranks == 1) {
+    for (int k = 0; k < there; ++k) devices.push_back({fmt::format("cuda:{}", k), ""});
+    return devices;
+  }
+  std::vector<std::string> names;
+  for (std::size_t at = 0; at < visible.size();) {
+    const std::size_t end = std::min(visible.find(',', at), visible.size());
+    names.push_back(visible.substr(at, end - at));
+    at = end + 1;
+  }
+  for (int k = static_cast<int>(names.size()); k < there; ++k) names.push_back(std::to_string(k));
+  const int each = std::clamp(ranks, 1, std::max(1, there));
+  for (int first = 0; first + each <= there; first += each) {
+    const auto begin = names.begin() + first;
+    devices.push_back({"cuda", fmt::format("{}", fmt::join(begin, begin + each, ","))});
+  }
+  return devices;
 }
 
 std::vector<FinishedRun> run_side_by_side(

@@ -27,21 +27,35 @@ struct FinishedRun {
   bool complete() const { return exit_code == 0 || exit_code == 9; }
 };
 
-/// Resources that the runs share.
-struct Workers {
-  int jobs = 1;                      ///< runs at a time
-  int threads = 1;                   ///< of each run
-  std::vector<std::string> devices;  ///< run k computes on device k modulo their number
-  bool force = false;                ///< compute finished runs anew
-  bool allow_scripts = false;        ///< as the option of `breccia run`
-  std::string program = "/proc/self/exe";
+/// Where a run computes.
+struct Device {
+  std::string name;     ///< as the option of `breccia run`
+  std::string visible;  ///< the GPUs that its ranks share, CUDA_VISIBLE_DEVICES; empty: all
 };
 
-/// How many runs fit beside each other: at most one a core and as many as the memory holds. Each
-/// has one thread, or its share of the cores if not every core has a run.
+/// Resources that the runs share.
+struct Workers {
+  int jobs = 1;                   ///< runs at a time
+  int ranks = 1;                  ///< of each run, by mpirun if there are several
+  int threads = 1;                ///< of each rank
+  std::vector<Device> devices;    ///< a run takes the one with the fewest runs; none: processors
+  bool force = false;             ///< compute finished runs anew
+  bool allow_scripts = false;     ///< as the option of `breccia run`
+  std::string program;            ///< empty: this one
+  std::string mpirun = "mpirun";  ///< of the MPI that the program is built with
+};
+
+/// How many runs fit beside each other: at most one rank a core and as many as the memory holds.
+/// Each rank has one thread, or its share of the cores if not every core has a rank.
 /// @param asked  runs at a time, of one thread each; 0: as many as fit
 /// @param bytes  of memory that the largest run takes
-Workers workers_for(int asked, std::size_t runs, double bytes);
+/// @param ranks  of each run
+Workers workers_for(int asked, std::size_t runs, double bytes, int ranks = 1);
+
+/// The GPUs dealt to runs: one each, or as many as a run has ranks, or all where there are fewer.
+/// @param there    GPUs
+/// @param visible  their names by CUDA_VISIBLE_DEVICES; empty: by number
+std::vector<Device> gpus_for(int there, int ranks, const std::string& visible);
 
 /// Makes the runs, in their order, as many at a time as there are workers. A folder that holds the
 /// finished run of the same completed case is kept; one whose run was interrupted goes on from its

@@ -265,6 +265,7 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
   refuse_unreadable(path);
   Case read;
   read.config = read_config(path, overrides);
+  read.notes = CaseReader(path, overrides).notes();
   read.file = path;
   read.name = case_name(path);
   read.folder = std::filesystem::absolute(case_folder(path)).lexically_normal().string();
@@ -363,6 +364,7 @@ RunPlan plan_of(const Case& read) {
   plan.case_text = read.text;
   plan.case_digest = read.digest;
   plan.case_folder = read.folder;
+  plan.warnings = read.notes;
   plan.prepared = read.prepared;
   plan.model_digest = read.model_digest;
   return plan;

@@ -32,10 +32,11 @@ using AnyModel = std::variant<dem::Model, fdem::Model, fdem3::Model, coupled::Mo
 struct Case {
   AnyConfig config;
   std::string name;
-  std::string text;    ///< completed: every key with the value used
-  std::string digest;  ///< of text
-  std::string folder;  ///< where files that the case names are
-  std::string file;    ///< that it was read from; empty: a prepared model
+  std::string text;                ///< completed: every key with the value used
+  std::string digest;              ///< of text
+  std::string folder;              ///< where files that the case names are
+  std::string file;                ///< that it was read from; empty: a prepared model
+  std::vector<std::string> notes;  ///< which numbers of named materials do not count
   /// Of what decides the states of a run: the case without its end, output, checkpoints and checks.
   std::string model_digest;
   std::optional<AnyModel> model;  ///< if it was prepared

@@ -143,7 +143,7 @@ int Run::execute_together() {
 
 void Run::start() {
   setup_ = seconds_since(plan_.begin);
-  warnings_ = method_.warnings();
+  for (const std::string& warning : method_.warnings()) warnings_.push_back(warning);
   const Summary now = summary();
   on_first(plan_.ranks, [&] {
     write_summary(now);

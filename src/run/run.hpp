@@ -35,11 +35,12 @@ struct Limits {
 /// Plan of a run, besides its method.
 struct RunPlan {
   CaseConfig config;
-  std::string case_name;    ///< for people
-  std::string case_text;    ///< the completed case file
-  std::string case_digest;  ///< of case_text
-  std::string case_folder;  ///< where files that the case names are
-  std::string prepared;     ///< file of the prepared model; empty: built from the case
+  std::string case_name;              ///< for people
+  std::string case_text;              ///< the completed case file
+  std::string case_digest;            ///< of case_text
+  std::string case_folder;            ///< where files that the case names are
+  std::string prepared;               ///< file of the prepared model; empty: built from the case
+  std::vector<std::string> warnings;  ///< about the case
   /// Of what decides the states of the run; a checkpoint of another one is refused.
   std::string model_digest;
   Limits limits;
@@ -140,9 +141,9 @@ class Run {
   StageControl stages_;
   Progress progress_;
   std::int64_t steps_at_once_ = 1;
-  double setup_ = 0.0, loop_ = 0.0, output_ = 0.0;  ///< wall time  [s]
-  double save_time_ = 0.0;                          ///< of the longest checkpoint so far  [s]
-  std::vector<std::string> warnings_;               ///< of set-up
+  double setup_ = 0.0, loop_ = 0.0, output_ = 0.0;      ///< wall time  [s]
+  double save_time_ = 0.0;                              ///< of the longest checkpoint so far  [s]
+  std::vector<std::string> warnings_ = plan_.warnings;  ///< of set-up
   std::string broken_;
   Clock::time_point next_facts_{};
   Background background_;  ///< last: it uses the others

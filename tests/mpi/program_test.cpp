@@ -111,6 +111,28 @@ TEST_F(ProgramOnRanks, box_leaves_the_same_files) {
   compare("moving_box", 120, "2e-3");
 }
 
+TEST_F(ProgramOnRanks, sweep_makes_runs_of_two_ranks_each) {
+  const std::string shared = std::string(source_dir) +
+                             "/cases/rc_slab/small.toml --threads 1 --set time.end=1e-5 "
+                             "--set output.frames=0 ";
+  const std::string sweep = "sweep " + shared + "--seeds 2 -o " + out("sweep") + " ";
+  const std::string start = "BRECCIA_MPIRUN=" + std::string(mpirun_program) +
+                            " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " + program;
+  ASSERT_EQ(std::system((start + " " + sweep + "--ranks 2 --jobs 2 > " + out("told")).c_str()), 0)
+      << bytes_of(out("told"));
+  ASSERT_EQ(run(1, "run " + shared + "--set seed=2 --no-progress -o " + out("one")), 0);
+  int found = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(out("sweep") + "/runs"))
+    if (entry.path().filename().string().starts_with("seed=2")) {
+      ++found;
+      EXPECT_EQ(hash_in(entry.path()), hash_in(out("one")));
+      EXPECT_NE(bytes_of(entry.path() / "summary.json").find("\"ranks\": 2"), std::string::npos);
+    }
+  EXPECT_EQ(found, 1);
+  ASSERT_EQ(run(1, sweep, out("told")), 0);  // the same runs, whatever their number of ranks
+  EXPECT_NE(bytes_of(out("told")).find("2 of 2  kept"), std::string::npos) << bytes_of(out("told"));
+}
+
 TEST_F(ProgramOnRanks, strong_benchmark_ends_in_the_state_of_one_process) {
   const auto hash_of = [&](int ranks, const std::string& name) {
     const std::string file = out(name + std::to_string(ranks) + ".json");

@@ -77,6 +77,7 @@ struct CaseReader::State {
   toml::table root;
   std::vector<Level> levels;
   std::vector<Problem> problems;
+  std::vector<std::string> notes;
   inline static const toml::table nothing{};
 
   Level& top() { return levels.back(); }
@@ -246,10 +247,13 @@ CaseReader::CaseReader(const CaseText& text, const std::vector<std::string>& ove
   state_->content = text.text;
   state_->root = parse(text.text, text.origin);
   for (const std::string& override : overrides) apply_override(state_->root, override);
-  use_named_materials(state_->root, state_->problems);
+  use_named_materials(state_->root, state_->problems, state_->notes);
   state_->levels.push_back({&state_->root, "", {}, false});
 }
 CaseReader::~CaseReader() = default;
+const std::vector<std::string>& CaseReader::notes() const {
+  return state_->notes;
+}
 
 void CaseReader::read(const char* name, double& value, const char* unit, const Range& range,
                       const char* meaning) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -139,9 +140,64 @@ const NamedMaterial* named_material(const std::string& name) {
 
 namespace {
 
+bool of_file(const toml::node& node) {
+  return node.source().path != nullptr;
+}
+
+/// Takes out of a table what stands in the file, and adds the names of that and their lines.
+void drop_what_the_file_says(toml::table& table, const std::string& before,
+                             std::vector<std::string>& names, std::set<std::uint32_t>& lines) {
+  std::vector<std::string> dropped;
+  for (auto&& [name, node] : table) {
+    const std::string key(name.str());
+    if (key == "use") continue;
+    if (toml::table* const below = node.as_table()) {
+      drop_what_the_file_says(*below, before + key + ".", names, lines);
+      if (below->empty()) dropped.push_back(key);
+    } else if (of_file(node)) {
+      names.push_back(before + key);
+      lines.insert(node.source().begin.line);
+      dropped.push_back(key);
+    }
+  }
+  for (const std::string& key : dropped) table.erase(key);
+}
+
+/// A quantity in SI, whatever its unit; a number as it is.
+std::optional<double> si_value(const toml::node& node) {
+  if (const auto number = node.value<double>()) return number;
+  const auto text = node.value_exact<std::string>();
+  for (const char* unit : {"Pa", "rad", "m", "J/m2", "kg/m3", "-"}) {
+    std::string problem;
+    if (!text) break;
+    const double value = parse_quantity(*text, unit, problem);
+    if (problem.empty()) return value;
+  }
+  return {};
+}
+
+/// The keys of `own` that say something else than `given`, with their places.
+void list_other_values(const toml::table& own, const toml::table& given, const std::string& before,
+                       const std::string& material, std::vector<std::string>& list) {
+  each_in_order(own, [&](const std::string& key, const toml::node& node) {
+    const toml::node* const there = given.get(key);
+    if (there == nullptr || key == "use") return;
+    if (node.is_table() && there->is_table())
+      return list_other_values(*node.as_table(), *there->as_table(), before + key + ".", material,
+                               list);
+    const auto value = si_value(node), usual = si_value(*there);
+    const std::string here = toml_text(node), of_material = toml_text(*there);
+    if (value && usual ? *value == *usual : here == of_material) return;
+    const std::string place =
+        of_file(node) ? fmt::format("line {}", node.source().begin.line) : "--set";
+    list.push_back(
+        fmt::format("{}{} = {} ({}; {}: {})", before, key, here, place, material, of_material));
+  });
+}
+
 /// @param where  before the key in messages
 void use_in(toml::table& root, const std::string& of_case, const std::string& where,
-            std::vector<Problem>& problems) {
+            std::vector<Problem>& problems, std::vector<std::string>& notes) {
   toml::table* const materials = root["material"].as_table();
   if (materials == nullptr) return;
   // Rock has the same numbers for triangles and for tetrahedra.
@@ -149,16 +205,34 @@ void use_in(toml::table& root, const std::string& of_case, const std::string& wh
   for (auto&& [key, node] : *materials) {
     toml::table* const own = node.as_table();
     if (own == nullptr) continue;
-    const toml::node* const use = own->get("use");
-    const auto name = use != nullptr ? use->value_exact<std::string>() : std::nullopt;
+    const auto use = own->find("use");
+    const auto name =
+        use != own->end() ? use->second.value_exact<std::string>() : std::optional<std::string>();
     if (!name || name->empty()) continue;
+    const std::string path = fmt::format("{}material.{}", where, std::string(key.str()));
     const toml::table* const given = library()[*name].as_table();
     if (given != nullptr && (*given)[method].is_table()) {
-      complete(*own, *(*given)[method].as_table());
+      const toml::table& numbers = *(*given)[method].as_table();
+      if (use->first.source().path ==
+          nullptr) {  // the file's numbers are those of another material
+        std::vector<std::string> names;
+        std::set<std::uint32_t> lines;
+        drop_what_the_file_says(*own, "", names, lines);
+        if (!names.empty())
+          notes.push_back(fmt::format(
+              "{}.use = \"{}\" by --set takes the place of what the file says of this material, "
+              "lines {} to {}: {}",
+              path, *name, *lines.begin(), *lines.rbegin(), fmt::join(names, ", ")));
+      }
+      std::vector<std::string> others;
+      list_other_values(*own, numbers, "", *name, others);
+      if (!others.empty())
+        notes.push_back(fmt::format("{} uses {} but for its own keys: {}", path, *name,
+                                    fmt::join(others, ", ")));
+      complete(*own, numbers);
       continue;
     }
-    std::string text =
-        fmt::format("{}material.{}.use = \"{}\"", where, std::string(key.str()), *name);
+    std::string text = fmt::format("{}.use = \"{}\"", path, *name);
     if (given == nullptr) {
       std::set<std::string> names;
       for (const NamedMaterial& material : named_materials()) names.insert(material.name);
@@ -167,21 +241,22 @@ void use_in(toml::table& root, const std::string& of_case, const std::string& wh
     } else {
       text += " has no numbers for method " + of_case;
     }
-    const bool from_file = use->source().path != nullptr;
+    const bool from_file = of_file(use->second);
     problems.push_back(
-        {from_file ? use->source().begin.line : 0, (from_file ? "" : "--set ") + text});
+        {from_file ? use->second.source().begin.line : 0, (from_file ? "" : "--set ") + text});
   }
 }
 
 }  // namespace
 
-void use_named_materials(toml::table& root, std::vector<Problem>& problems) {
+void use_named_materials(toml::table& root, std::vector<Problem>& problems,
+                         std::vector<std::string>& notes) {
   if (!root["method"].is_array())
-    return use_in(root, root["method"].value_or(std::string("dem3d")), "", problems);
+    return use_in(root, root["method"].value_or(std::string("dem3d")), "", problems, notes);
   if (toml::table* const part = root["spheres"].as_table())
-    use_in(*part, "dem3d", "spheres.", problems);
+    use_in(*part, "dem3d", "spheres.", problems, notes);
   if (toml::table* const part = root["tetrahedra"].as_table())
-    use_in(*part, "fdem3d", "tetrahedra.", problems);
+    use_in(*part, "fdem3d", "tetrahedra.", problems, notes);
 }
 
 }  // namespace breccia

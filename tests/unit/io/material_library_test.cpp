@@ -116,5 +116,54 @@ TEST(NamedMaterials, NamesTheLineOfAMaterialThatThereIsNot) {
   EXPECT_NE(problem("dem3d", "use = 3").find("use wants a text"), std::string::npos);
 }
 
+std::vector<std::string> notes(const std::string& keys, const std::vector<std::string>& overrides,
+                               const std::string& method = "dem3d") {
+  return CaseReader(CaseText{case_with(method, keys), "case.toml"}, overrides).notes();
+}
+
+TEST(NamedMaterials, TellWhichOwnKeysStandInTheirPlaceAndWhere) {
+  EXPECT_EQ(
+      notes("use = \"C30\"\ndensity = 2450.0\nyoung = \"33500 MPa\"\n", {}),
+      (std::vector<std::string>{
+          "material.m uses C30 but for its own keys: density = 2450.0 (line 7; C30: 2400.0)"}));
+  EXPECT_EQ(notes("use = \"C30\"\n", {"material.m.cohesion=9 MPa"}),
+            (std::vector<std::string>{"material.m uses C30 but for its own keys: cohesion = \"9 "
+                                      "MPa\" (--set; C30: \"37.86 MPa\")"}));
+  EXPECT_EQ(notes("use = \"C30\"\njoint = { tension = \"2 MPa\" }\n", {}, "fdem2d"),
+            (std::vector<std::string>{"material.m uses C30 but for its own keys: joint.tension = "
+                                      "\"2 MPa\" (line 7; C30: \"2.90 MPa\")"}));
+  const std::string whole = completed_case(read<dem::Config>("use = \"C30\"\n"));
+  EXPECT_TRUE(CaseReader(CaseText{whole, "case.toml"}, {}).notes().empty());
+}
+
+TEST(NamedMaterials, ByTheCommandLineTakeThePlaceOfTheWholeMaterialOfTheFile) {
+  const std::string own = "law = \"concrete\"\nyoung = \"30 GPa\"\nsoftening = 10.0\n";
+  const std::vector<std::string> overrides{"material.m.use=C60", "material.m.density=2450"};
+  const dem::Config c = read<dem::Config>(own, overrides);
+  dem::Config same = read<dem::Config>("use = \"C60\"\ndensity = 2450.0\n");
+  EXPECT_EQ(completed_case(c), completed_case(same));
+  const std::vector<std::string> told = notes(own, overrides);
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0],
+            "material.m.use = \"C60\" by --set takes the place of what the file says of this "
+            "material, lines 6 to 8: law, softening, young");
+  EXPECT_EQ(told[1],
+            "material.m uses C60 but for its own keys: density = 2450 (--set; C60: "
+            "2400.0)");
+  // A file that has `use` means the keys beside it.
+  EXPECT_EQ(read<dem::Config>("use = \"C30\"\ndensity = 2450.0\n", {"material.m.use=C60"})
+                .materials[0]
+                .density,
+            2450.0);
+}
+
+TEST(NamedMaterials, ByTheCommandLineTakeThePlaceOfTablesOfTheFile) {
+  const fdem::Config f =
+      read<fdem::Config>("joint = { tension = \"2 MPa\", cohesion = \"9 MPa\" }\n",
+                         {"material.m.use=C30", "material.m.joint.cohesion=8 MPa"});
+  EXPECT_EQ(f.materials[0].joint.tension, 2.9e6);
+  EXPECT_EQ(f.materials[0].joint.cohesion, 8e6);
+}
+
 }  // namespace material_library_test
 }  // namespace breccia

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "io/whole_file.hpp"
+#include "laboratory/side_by_side.hpp"
 #include "unit/run/program.hpp"
 #include "unit/run/scratch_folder.hpp"
 
@@ -153,6 +154,44 @@ TEST_F(SweepCommand, RefusesWrongValuesBeforeAnythingRuns) {
   EXPECT_EQ(sweep("--over seed"), 2);
   EXPECT_EQ(sweep("--seeds 0"), 2);
   EXPECT_FALSE(fs::exists(scratch / "out"));
+}
+
+TEST(GpusForRuns, AreDealtOneEachOrAsManyAsARunHasRanks) {
+  const auto dealt = [](int there, int ranks, const std::string& visible = "") {
+    std::string text;
+    for (const laboratory::Device& device : laboratory::gpus_for(there, ranks, visible))
+      text += device.name + " " + device.visible + "; ";
+    return text;
+  };
+  EXPECT_EQ(dealt(2, 1), "cuda:0 ; cuda:1 ; ");
+  EXPECT_EQ(dealt(4, 2), "cuda 0,1; cuda 2,3; ");
+  EXPECT_EQ(dealt(4, 3), "cuda 0,1,2; ");
+  EXPECT_EQ(dealt(1, 2), "cuda 0; ");  // the ranks share it
+  EXPECT_EQ(dealt(4, 2, "7,5,3,1"), "cuda 7,5; cuda 3,1; ");
+}
+
+TEST(GpusForRuns, EachRunTakesTheOneWithTheFewestRuns) {
+  const ScratchFolder scratch;
+  replace_file(scratch / "program.sh",
+               "#!/bin/sh\necho \"$CUDA_VISIBLE_DEVICES $@\" > $4.said\nsleep 0.1\n");
+  fs::permissions(scratch / "program.sh", fs::perms::owner_all);
+  std::vector<laboratory::PlannedRun> runs;
+  for (const char* name : {"a", "b", "c", "d"})
+    runs.push_back({name, "case", {}, scratch / ("runs/" + std::string(name)), name});
+  laboratory::Workers workers;
+  workers.jobs = 2;
+  workers.program = scratch / "program.sh";
+  workers.devices = {{"cuda:0", ""}, {"cuda", "2,3"}};
+  laboratory::run_side_by_side(runs, workers, [](std::size_t, const auto&) {});
+  const auto said = [&](const char* run) {
+    return read_whole_file(scratch / ("runs/" + std::string(run) + ".said"));
+  };
+  EXPECT_NE(said("a").find("--device cuda:0"), std::string::npos) << said("a");
+  EXPECT_TRUE(said("b").starts_with("2,3 run") && said("b").find("--device cuda\n") < 1000)
+      << said("b");
+  const std::string both = said("c") + said("d");
+  EXPECT_NE(both.find("--device cuda:0"), std::string::npos) << both;
+  EXPECT_NE(both.find("2,3 run"), std::string::npos) << both;
 }
 
 TEST_F(SweepCommand, ExplainsItselfWithinEightyColumns) {
