@@ -89,7 +89,7 @@ struct TestCommand {
     std::string names;
     for (const lab::SpecimenTest& test : all) {
       names += " " + test.name;
-      if (only.empty() || std::find(only.begin(), only.end(), test.name) != only.end())
+      if (only.empty() ? !test.asked : std::find(only.begin(), only.end(), test.name) != only.end())
         tests.push_back(test);
     }
     if (!only.empty() && tests.size() != only.size())
@@ -152,7 +152,8 @@ void add_test(CLI::App& program, int& exit_code) {
       "Tests of concrete (DEM): compression_prism, compression_cube (smooth ends), platens_prism,\n"
       "platens_cube (rough platens), tension, tension_notched (a prism), brazilian, bending\n"
       "(a notched beam), bending_plain, bending_thirds (plain ones), triaxial_5, _20, _50, _100,\n"
-      "_200 (pressure in MPa), oedometer. Of law ldpm: compression_prism, compression_cube,\n"
+      "_200 (pressure in MPa; _500 and _650 if --only names them), oedometer.\n"
+      "Of law ldpm: compression_prism, compression_cube,\n"
       "platens_prism, platens_cube (rough ends), held_prism, held_cube (held ends), tension,\n"
       "tension_notched, triaxial_5 to _200, biaxial, oedometer, hydrostatic; grains are the "
       "mix's,\n"

@@ -97,14 +97,15 @@ double triaxial_strain(double pressure) {
 
 /// Six smooth walls; the sides go on pressing when the ends move.
 void load_triaxially(dem::Config& c, const Vec3& size, double pressure) {
-  constexpr double confined = 4e-3;  // s; the pressure is whole after 3 ms
+  const double slower = std::max(1.0, pressure / 200e6);  // the walls have farther to go
+  const double confined = 4e-3 * slower;                  // s; the pressure is whole after 3 ms
   const auto add = [&](const char* name, const Vec3& outwards, double half, double area) {
     dem::WallConfig wall;
     wall.name = name;
     wall.point = half * outwards;
     wall.normal = -outwards;
     wall.friction = 0.0;
-    wall.servo.pressure.times = {0.0, 2e-3, 3e-3};
+    wall.servo.pressure.times = {0.0, 2e-3 * slower, 3e-3 * slower};
     wall.servo.pressure.values = {0.0, 0.9 * pressure, pressure};
     wall.servo.speed = 1.0;
     wall.servo.area = area;
@@ -326,6 +327,10 @@ const std::vector<SpecimenTest>& specimen_tests() {
       {"triaxial_50", "triaxial compression at 50 MPa", Loading::triaxial, prism, 50e6},
       {"triaxial_100", "triaxial compression at 100 MPa", Loading::triaxial, prism, 100e6},
       {"triaxial_200", "triaxial compression at 200 MPa", Loading::triaxial, prism, 200e6},
+      {"triaxial_500", "triaxial compression at 500 MPa", Loading::triaxial, prism, 500e6, 0.0, 0.0,
+       true},
+      {"triaxial_650", "triaxial compression at 650 MPa", Loading::triaxial, prism, 650e6, 0.0, 0.0,
+       true},
       {"oedometer", "oedometer, cube", Loading::oedometer, cube}};
   return tests;
 }

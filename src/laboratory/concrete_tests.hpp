@@ -49,11 +49,12 @@ struct SpecimenTest {
   double pressure = 0.0;  ///< on the sides of a triaxial test  [Pa]
   double notch = 0.0;     ///< depth of a beam's, or of each of a prism's two  [m]
   double apart = 0.0;     ///< of the two lines that press a beam, 0: one in the middle  [m]
+  bool asked = false;     ///< run only where it is asked for by name
 };
 
 /// compression between smooth ends of prism and cube, and between rough platens of both; direct
 /// tension of a plain and of a notched prism; Brazilian; three-point bending of a notched and of a
-/// plain beam, and a plain one that two lines press; triaxial compression at five pressures;
+/// plain beam, and a plain one that two lines press; triaxial compression at seven pressures;
 /// compression between sides that stand still (oedometer).
 const std::vector<SpecimenTest>& specimen_tests();
 

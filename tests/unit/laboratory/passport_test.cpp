@@ -45,6 +45,18 @@ TEST(Specimens, AreCasesWithoutAProblemAndReadBackAlike) {
   EXPECT_GT(read_whole_file(scratch / "beam-300-2.csv").size(), 10000U);
 }
 
+/// Servos move at 1 m/s at most: pressures beyond 200 MPa are given time to be reached.
+TEST(Specimens, UnderMorePressureAreConfinedForLonger) {
+  const auto confined = [](const char* name) {
+    return case_of(test_named(name), concrete(), 1, ".").stages[0].until;
+  };
+  EXPECT_EQ(confined("triaxial_5"), 4e-3);
+  EXPECT_EQ(confined("triaxial_200"), 4e-3);
+  EXPECT_DOUBLE_EQ(confined("triaxial_650"), 13e-3);
+  for (const SpecimenTest& test : specimen_tests())
+    EXPECT_EQ(test.asked, test.pressure > 200e6) << test.name;
+}
+
 /// All elements of a support keep one height: a wide one clamps the end of the beam.
 TEST(Specimens, BeamsLieOnLinesThatHoldAFewElements) {
   for (const int elements : {600, 2400}) {
