@@ -24,7 +24,7 @@ cmake -G Ninja -B "$folder" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_
   setarch -R cmake --build "$folder" -j "${JOBS:-2}" >> "$folder.log" 2>&1 || { tail "$folder.log"; exit 1; }
 findings=$PWD/$folder/findings
 rm -rf "$findings"; mkdir -p "$findings"
-export ASAN_OPTIONS="log_path=$findings/asan:detect_stack_use_after_return=1:allocator_may_return_null=1:verify_asan_link_order=0"
+export ASAN_OPTIONS="log_path=$findings/asan:detect_stack_use_after_return=1:allocator_may_return_null=1:verify_asan_link_order=0:handle_sigill=1"
 export LSAN_OPTIONS="suppressions=$PWD/scripts/lsan.supp:print_suppressions=0"
 export UBSAN_OPTIONS="log_path=$findings/ubsan:print_stacktrace=1"
 export TSAN_OPTIONS="log_path=$findings/tsan:die_after_fork=0"

@@ -107,21 +107,28 @@ struct Ledger {
 
 /// Where the energy of a model is at one moment, and what went in and out since the start  [J].
 struct EnergyBalance {
-  double kinetic = 0.0;         ///< of translation and rotation
-  double elastic = 0.0;         ///< stored in links and contacts
-  double fracture = 0.0;        ///< spent on softening and breaking
-  double plastic = 0.0;         ///< spent on yielding of steel and on plastic moments
-  double friction = 0.0;        ///< spent on sliding
-  double damping = 0.0;         ///< taken by local damping
-  double contact = 0.0;         ///< taken by the dashpots of contacts
-  double work = 0.0;            ///< put in by gravity, walls and prescribed motion
-  double start = 0.0;           ///< kinetic and elastic at the start
-  double error_relative = 0.0;  ///< |what is missing| / the largest energy there was  [-]
+  double kinetic = 0.0;           ///< of translation and rotation
+  double elastic = 0.0;           ///< stored in links and contacts
+  double fracture = 0.0;          ///< spent on softening and breaking
+  double plastic = 0.0;           ///< spent on yielding of steel and on plastic moments
+  double friction = 0.0;          ///< spent on sliding
+  double damping = 0.0;           ///< taken by local damping
+  double contact = 0.0;           ///< taken by the dashpots of contacts
+  double work = 0.0;              ///< put in by gravity, walls and prescribed motion
+  double start = 0.0;             ///< kinetic and elastic at the start
+  double error_relative = 0.0;    ///< |what is missing| / the largest energy there was  [-]
+  double contact_relative = 0.0;  ///< |contact| / the largest energy there was  [-]
 
   double total() const {
     return kinetic + elastic + fracture + plastic + friction + damping + contact;
   }
   double missing() const { return total() - start - work; }
+  /// Sets the two shares. @param largest  energy that there was  [J; in 2D J/m]
+  void relate_to(double largest) {
+    if (!(largest > 0.0)) return;
+    error_relative = std::fabs(missing()) / largest;
+    contact_relative = std::fabs(contact) / largest;
+  }
 };
 
 }  // namespace breccia

@@ -32,8 +32,7 @@ inline EnergySplit split_of(const Ledger& ledger, const Energies& s) {
   b.contact = s.contact.value() + ledger.contact.value();
   b.work = s.work.value() + s.potential.value() - ledger.start_potential.value();
   b.start = ledger.start + ledger.came_in.value();
-  const double largest = largest_with(ledger, b);
-  b.error_relative = largest > 0.0 ? std::abs(b.missing()) / largest : 0.0;
+  b.relate_to(largest_with(ledger, b));
   return split;
 }
 /// Likewise, and keeps the largest energy seen, for the relative error.

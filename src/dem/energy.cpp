@@ -179,8 +179,7 @@ EnergyBalance balance(Ledger& ledger, const Energies& all, std::int64_t step) {
   r.work += all.potential.value() - ledger.start_potential.value();
   r.start = ledger.start;
   ledger.largest = std::max({ledger.largest, r.kinetic + r.elastic, std::fabs(r.work), r.total()});
-  r.error_relative =
-      step == 0 || ledger.largest <= 0.0 ? 0.0 : std::fabs(r.missing()) / ledger.largest;
+  if (step != 0) r.relate_to(ledger.largest);
   return r;
 }
 EnergyBalance balance(World& w) {

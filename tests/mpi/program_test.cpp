@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <map>
 #include <thread>
 
@@ -37,12 +38,20 @@ std::string mpirun(int ranks) {
          std::string(mpirun_program) + " -n " + std::to_string(ranks) + " ";
 }
 
-/// Runs `breccia ARGUMENTS` on `ranks` ranks (1: without mpirun); returns its exit code.
-int run(int ranks, const std::string& arguments, const std::string& to = "/dev/null") {
+/// Runs `breccia ARGUMENTS` on `ranks` ranks (1: without mpirun); returns its exit code. Its words
+/// go to the file `to`, or without one to the test's own output when the code is not 0.
+int run(int ranks, const std::string& arguments, const std::string& to = "") {
+  const std::string kept = !to.empty()
+                               ? to
+                               : (fs::temp_directory_path() /
+                                  ("breccia_mpi_" + std::to_string(::getpid())) / "told_last")
+                                     .string();
   const std::string command =
-      (ranks > 1 ? mpirun(ranks) : "") + program + " " + arguments + " > " + to + " 2>&1";
+      (ranks > 1 ? mpirun(ranks) : "") + program + " " + arguments + " > " + kept + " 2>&1";
   const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (code != 0 && to.empty()) std::cout << command << "\n" << bytes_of(kept) << std::endl;
+  return code;
 }
 
 class ProgramOnRanks : public ::testing::Test {

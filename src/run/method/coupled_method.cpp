@@ -72,8 +72,7 @@ class CoupledMethod final : public Method {
     all.start = a.start + b.start;
     double& largest = w_.ledger.largest;
     largest = std::max({largest, all.kinetic + all.elastic, std::fabs(all.work), all.total()});
-    all.error_relative =
-        steps() == 0 || !(largest > 0.0) ? 0.0 : std::fabs(all.missing()) / largest;
+    if (steps() != 0) all.relate_to(largest);
     return all;
   }
   std::vector<double> probes() override {

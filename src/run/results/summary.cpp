@@ -45,6 +45,7 @@ Json energy_json(const EnergyBalance& energy, double kinetic_share) {
           {"contact", energy.contact},
           {"work", energy.work},
           {"error_relative", energy.error_relative},
+          {"contact_relative", energy.contact_relative},
           {"kinetic_share", kinetic_share}};
 }
 
