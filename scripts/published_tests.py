@@ -3,12 +3,13 @@
 
     scripts/published_tests.py [--seeds 3] [--binary build/release/breccia] [--jobs 1] [--record docs/results/published.csv] [NAME...]
     scripts/published_tests.py --plots docs         from finished runs; needs python3-matplotlib
-    NAME: spall punching perforation
+    NAME: spall hopkinson punching perforation
 
 Concretes are those of `breccia materials`, calibrated on slow tests of prisms alone. Cases and results are in out/published/; called
 again, only what is missing is run.
 
 spall        a cylinder of 40 x 120 mm at the end of a Hopkinson bar (Klepaczko and Brara 2001): a triangular pulse of 24 us
+hopkinson    a cylinder of 40 x 40 mm between the bars of Hopkinson's test in compression, ends free across
 punching     a slab of 2.1 x 2.1 x 0.25 m under a hard missile of 47.4 kg, 168 mm, at 135 m/s (VTT, IRIS 2010, tests P1 to P3)
 perforation  a slab of 0.61 x 0.61 x 0.178 m under an ogive of 0.5 kg, 25.4 mm, at 301 to 1,058 m/s (Hanchak et al. 1992)
 """
@@ -143,6 +144,48 @@ def spall_table(records):
     return lines
 
 
+# ---------------------------------------------------------------- compression
+
+SHORT, RISE_OF_BARS = 0.04, 15e-6  # length of the specimen [m], until the ends have their speed [s]
+
+
+def hopkinson(seed, setting):
+    speed, layer = setting["rate"] * SHORT / 2, 0.0026
+    end = RISE_OF_BARS + 0.012 / setting["rate"]
+    text = HEAD.format(title="Compression between Hopkinson bars", seed=seed, end=f"{1e6 * end:g} us", safety=0.4, history=f"{1e6 * min(0.25e-6, end / 400):g} us" if setting["rate"] > 100 else f"{1e6 * end / 1000:g} us",
+                       concrete="C40", keys="")
+    text += (f'\n[[body]]\nname = "specimen"\nshape = "cylinder"\nmaterial = "concrete"\ncenter = [0.0, 0.0, 0.0]\nradius = {RADIUS}\n'
+             f'length = {SHORT}\npack = {{ count = {setting["elements"]}, size_ratio = 2.0, compactness = 0.56 }}\n')
+    for name, low, high, v in (("top", SHORT / 2 - layer, 1.0, -speed), ("bottom", -1.0, layer - SHORT / 2, speed)):
+        text += (f'\n[[support]]\nname = "{name}"\non = "specimen"\nmin = [-1.0, -1.0, {low}]\nmax = [1.0, 1.0, {high}]\nfix = ["z"]\n'
+                 f'velocity = [0.0, 0.0, {v}]\nramp = {RISE_OF_BARS}\n') + probe(f"force_{name}", name, "force_z", "sum")
+    return text
+
+
+def pressed(rows):
+    """The largest mean of both ends' forces over the section, the rate of strain then, and the force that is out of balance."""
+    area = math.pi * RADIUS**2
+    both = smooth([0.5 * (abs(r["force_top"]) + abs(r["force_bottom"])) / area for r in rows], 2)
+    k = max(range(len(both)), key=both.__getitem__)
+    return {"strength": both[k], "time": rows[k]["time"], "balance": abs(abs(rows[k]["force_top"]) - abs(rows[k]["force_bottom"])) / area / both[k]}
+
+
+def model_code_90(rate, strength=48e6):
+    alpha = 1 / (5 + 0.9 * strength / 1e6)
+    return (rate / 30e-6) ** (1.026 * alpha) if rate <= 30 else 10 ** (6.156 * alpha - 2) * (rate / 30e-6) ** (1 / 3)
+
+
+def hopkinson_table(records):
+    lines = ["| strain rate asked, 1/s | n | strength, MPa | over that at 5/s | CEB-FIP 1990 | misfit | at, us | ends out of balance |", "|---" * 8 + "|"]
+    rows = grouped(records)
+    slow = next((statistics.mean(found["strength"]) for setting, found in rows if setting["rate"] == 5), math.nan)
+    for setting, found in rows:
+        over, code = statistics.mean(found["strength"]) / slow, model_code_90(setting["rate"])
+        lines.append(f"| {setting['rate']} | {len(found['strength'])} | {spread(found['strength'], 1, 1e-6)} | {over:.2f} | {code:.2f} | {100 * (over / code - 1):+.0f} % | "
+                     f"{spread(found['time'], 0, 1e6)} | {spread(found['balance'], 0, 100)} % |")
+    return lines
+
+
 # ---------------------------------------------------------------- hard missiles
 
 def missile(mass, radius, top, nose, length, speed, friction=None):
@@ -212,6 +255,7 @@ def perforation_table(records):
 
 TESTS = {  # name: settings, case, what a history shows, table
     "spall": ([{"rate": rate, "v": v, "elements": 2500} for rate in ("none", "mc2010", "malvar_ross") for v in (1.5, 3.0, 5.0)], spall, spalled, spall_table),
+    "hopkinson": ([{"rate": rate, "elements": 833} for rate in (5, 50, 150, 500)], hopkinson, pressed, hopkinson_table),
     "punching": ([{"elements": n} for n in (18000, 36000)], punching, flown, punching_table),
     "perforation": ([{"elements": 60000, "v": v, **more} for more in ({"friction": 0.1}, {}) for v in HANCHAK if v not in (381, 746)], perforation, flown, perforation_table),
 }
@@ -276,10 +320,41 @@ def collected():
 
 
 def plots(folder):
+    """Of tests that have finished runs here."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     records = list(collected())
+    there = {one["test"] for one in records}
+    if "hopkinson" in there:
+        plot_hopkinson(plt, records, folder)
+    if "spall" in there:
+        plot_spall(plt, records, folder)
+    if {"punching", "perforation"} <= there:
+        plot_missiles(plt, records, folder)
+
+
+def plot_hopkinson(plt, records, folder):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6))
+    found = grouped([one for one in records if one["test"] == "hopkinson"])
+    slow = statistics.mean(found[0][1]["strength"])
+    for (setting, values), color in zip(found, ("0.4", "tab:blue", "tab:orange", "tab:red")):
+        for k, folder_of in enumerate(runs_of("hopkinson", setting)):
+            rows = rows_of(folder_of)
+            strain = [100 * setting["rate"] * (r["time"] ** 2 / 2 / RISE_OF_BARS if r["time"] < RISE_OF_BARS else r["time"] - RISE_OF_BARS / 2) for r in rows]
+            left.plot(strain, smooth([0.5e-6 * (abs(r["force_top"]) + abs(r["force_bottom"])) / (math.pi * RADIUS**2) for r in rows], 2), color=color, lw=0.8,
+                      label=f"{setting['rate']}/s" if not k else None)
+        left.axhline(1e-6 * slow * model_code_90(setting["rate"]), color=color, lw=1, ls="--")
+        right.plot([setting["rate"]] * len(values["strength"]), [s / slow for s in values["strength"]], "o", ms=4, color=color, label="here, a packing each" if setting["rate"] == 5 else None)
+    left.plot([], [], "k--", lw=1, label="38 MPa times the code's curve")
+    rates = [1, 3, 10, 30, 100, 300, 600]
+    right.plot(rates, [model_code_90(r) for r in rates], "k--", lw=1, label="CEB-FIP 1990, 48 MPa")
+    right.set(xscale="log", xlabel="strain rate, 1/s", ylabel="strength over that at rest (here: at 5/s)")
+    left.set(xlabel="strain, %", ylabel="stress, MPa", xlim=(0, 1.2), ylim=(0, None))
+    figure.tight_layout(), [a.legend(fontsize=8) for a in (left, right)], figure.savefig(folder / "published_hopkinson.png", dpi=110)
+
+
+def plot_spall(plt, records, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6))
     for rate, color in (("none", "0.4"), ("mc2010", "tab:blue"), ("malvar_ross", "tab:red")):
         setting = {"rate": rate, "v": 3.0, "elements": 2500}
@@ -294,6 +369,8 @@ def plots(folder):
     left.set(xlabel="time, us", ylabel="velocity of the free end, m/s")
     figure.tight_layout(), [a.legend(fontsize=8) for a in (left, right)], figure.savefig(folder / "published_spall.png", dpi=110)
 
+
+def plot_missiles(plt, records, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6))
     for elements, color in ((18000, "0.5"), (36000, "tab:blue")):
         for k, folder_of in enumerate(runs_of("punching", {"elements": elements})):
