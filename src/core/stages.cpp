@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "core/named.hpp"
 
@@ -74,6 +75,8 @@ std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
       if (!rule)
         problems.push_back(where + ".when = \"" + s.when +
                            "\" is not of the form \"probe > number\" (or <, in SI units)");
+      else if (!std::isfinite(rule->limit))
+        problems.push_back(where + ".when = \"" + s.when + "\": no probe reads more or less");
       else if (!is_probe(rule->probe))
         problems.push_back(where + ".when: \"" + rule->probe +
                            "\" is not a probe; there are: " + list_of(probes));
@@ -88,6 +91,11 @@ std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
         problems.push_back(where + ".remove: \"" + body + "\" has been taken out before");
       gone.push_back(body);
     }
+    const auto is_gone = [&](const std::string& body) {
+      return std::find(gone.begin(), gone.end(), body) != gone.end();
+    };
+    if (!s.remove.empty() && !bodies.empty() && std::all_of(bodies.begin(), bodies.end(), is_gone))
+      problems.push_back(where + ".remove takes out all that is left; a body must stay");
     if (s.drop > 0.0 && !is_probe(s.drop_of))
       problems.push_back(where + ".drop_of = \"" + s.drop_of +
                          "\" is not a probe, which drop needs; " + "there are: " + list_of(probes));

@@ -144,6 +144,7 @@ void judge_links(const Record& record, const Shot& first, const Shot& shot, Use&
       continue;
     if (norm(shot.corner[b] - shot.corner[a]) <= norm(first.corner[b] - first.corner[a])) continue;
     const double r = std::min(shot.radius[a], shot.radius[b]);
+    if (!(r > 0.0)) continue;  // a stage has taken its body out
     const double share = force->values[l] / (of_group[g]->tension * pi * r * r);
     if (share > use.share) use = {share, shot.time, shot.middle(l), of_group[g]->material};
   }
@@ -353,9 +354,10 @@ class Findings {
     const double fracture = record_.number("energy.fracture").value_or(0.0);
     const double plastic = record_.number("energy.plastic").value_or(0.0);
     if (fracture <= 0.0) return "";
-    return fmt::format(
-        "and took {} in cracks{}", value_text(fracture, energy_unit()),
-        plastic > 0.0 ? " besides " + value_text(plastic, energy_unit()) + " of plastic slip" : "");
+    return fmt::format("and took {} in cracks{}", value_text(fracture, energy_unit()),
+                       plastic > 1e-9 * fracture
+                           ? " besides " + value_text(plastic, energy_unit()) + " of plastic slip"
+                           : "");
   }
 
   /// The largest force that a probe read, and what of it is left.

@@ -18,6 +18,7 @@
 #include "prepare/build_fdem3.hpp"
 #include "prepare/checks/check_case.hpp"
 #include "prepare/checks/check_regions.hpp"
+#include "prepare/checks/check_stages.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/model_file.hpp"
 #include "run/case_keys.hpp"
@@ -66,6 +67,8 @@ Case completed(Case read) {
               "in the case", [&] { check_case(config); }, [&] { prepare::check_regions(config); });
           check_shown(config);
         });
+        for (const std::string& doubt : prepare::doubtful_times(config))
+          read.notes.push_back(read.file.empty() ? doubt : with_lines(doubt, read.file));
         read.text = completed_case(config);
         read.model_digest = model_digest(config);
       },

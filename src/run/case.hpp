@@ -36,7 +36,7 @@ struct Case {
   std::string digest;              ///< of text
   std::string folder;              ///< where files that the case names are
   std::string file;                ///< that it was read from; empty: a prepared model
-  std::vector<std::string> notes;  ///< which numbers of named materials do not count
+  std::vector<std::string> notes;  ///< what a case may not mean: for check and run
   /// Of what decides the states of a run: the case without its end, output, checkpoints and checks.
   std::string model_digest;
   std::optional<AnyModel> model;  ///< if it was prepared

@@ -65,6 +65,88 @@ pressure = [[0, 0], [2, 1], [1, 0]]
         self.assertIn('line 16, stage.wait for v1.5.when: "forces" is not a probe', words)
         self.assertIn("line 19, stage.wait for v1.5.load.side no. 3.pressure[2]: its time", words)
 
+    STRIP = """breccia = 1
+method = "fdem2d"
+time.end = "2 ms"
+[material.rock]
+[[body]]
+name = "strip"
+material = "rock"
+size = [0.2, 0.1]
+mesh_size = 0.05
+[[support]]
+name = "left"
+max = [-0.099, 1.0]
+[[load]]
+name = "side"
+min = [0.099, -1.0]
+"""
+
+    # Each of these was called good.
+    def test_stages_that_never_begin_and_tables_that_begin_too_late(self):
+        stages = """[[stage]]
+name = "wait"
+until = "1 ms"
+[[stage.load]]
+name = "side"
+pressure = [["1.5 ms", 0], ["2 ms", 1e6]]
+[[stage]]
+name = "press"
+until = "2 ms"
+"""
+        code, words = self.told(self.STRIP + stages)  # the load stays as it is in the next stage
+        self.assertEqual(code, 0, words)
+        self.assertNotIn("first row", words)
+        changed = stages + '[[stage.load]]\nname = "side"\npressure = 1e6\n'
+        code, words = self.told(self.STRIP + changed)
+        self.assertEqual(code, 0, words)
+        words = " ".join(words.split())
+        self.assertIn("line 21, stage.wait.load.side.pressure: the table begins at 1.5 ms, and counts for 1 ms", words)
+        last = changed.replace('until = "1 ms"', 'until = "3 ms"') + '[[stage]]\nname = "never"\n'
+        code, words = self.told(self.STRIP + last)
+        self.assertEqual(code, 0, words)
+        words = " ".join(words.split())
+        self.assertIn("line 22, stage.press: never begins: the stages before it last 3 ms at least, and time.end is 2 ms", words)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "case.toml"
+            path.write_text(self.STRIP + last)
+            done = subprocess.run([PROGRAM, "run", path, "--steps", "1", "-o", f"{folder}/out"], capture_output=True, text=True)
+            self.assertIn("line 22, stage.press: never begins", done.stdout + done.stderr)
+
+    def test_stages_that_leave_nothing_or_never_end(self):
+        stage = '[[stage]]\nname = "wait"\nuntil = 1e-4\n[[stage]]\nname = "dig"\n'
+        code, words = self.told(self.STRIP + stage + 'remove = ["strip"]\n')
+        self.assertEqual(code, 2)
+        self.assertIn("line 21, stage.dig.remove takes out all that is left", words)
+        probe = '[[probe]]\nname = "push"\non = "left"\nquantity = "force_x"\n'
+        code, words = self.told(self.STRIP + probe + '[[stage]]\nname = "wait"\nwhen = "push > inf"\n')
+        self.assertEqual(code, 2)
+        self.assertIn('line 22, stage.wait.when = "push > inf": no probe reads more', words)
+
+    def test_joints_and_cuts_that_lie_in_no_body(self):
+        beds = '[[joint_set]]\nname = "beds"\nmin = [1.0, 0.0]\nmax = [2.0, 1.0]\nspacing = 0.1\n'
+        code, words = self.told(self.STRIP + beds)
+        self.assertEqual(code, 2)
+        self.assertIn("line 18, joint_set.beds.min = 1 m: the region takes nothing; strip is nearest", words)
+        code, words = self.told("""breccia = 1
+method = "dem3d"
+time.end = "1 ms"
+[material.rock]
+law = "concrete"
+[[body]]
+name = "slab"
+material = "rock"
+size = [0.1, 0.1, 0.1]
+pack = { count = 60 }
+[[body.cut]]
+size = [0.02, 0.02, 0.2]
+[[body.cut]]
+center = [0.08, 0.0, 0.0]
+size = [0.02, 0.02, 0.2]
+""")
+        self.assertEqual(code, 2)
+        self.assertIn("line 14, body.slab.cut[2].center: it takes nothing out of slab, 20 mm away", words)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -19,6 +19,7 @@
 #include "prepare/checks/refusal.hpp"
 #include "prepare/meshing/body_mesh.hpp"
 #include "prepare/meshing/joint_sets.hpp"
+#include "prepare/shapes/solid.hpp"
 #include "prepare/shapes/wall_files.hpp"
 
 namespace breccia::prepare {
@@ -36,32 +37,43 @@ std::string place(double x) {
   return x < 0.0 ? "-" + length_text(-x) : x > 0.0 ? length_text(x) : "0 m";
 }
 
-/// The problem of a region; empty: it may take something, or no outline is known.
-std::string problem_of(const std::string& key, const Bounds& region, const std::string& on,
-                       const std::vector<Outline>& outlines) {
+/// The body nearest to a region, how far it is away, and along which axis.
+struct Nearest {
+  const Outline* body = nullptr;  ///< none: the region may take something, or no outline is known
+  double away = 0.0;              ///<  [m]
+  std::size_t axis = 0;
+};
+Nearest nearest_to(const Bounds& region, const std::string& on,
+                   const std::vector<Outline>& outlines) {
   for (std::size_t k = 0; k < 3; ++k)
-    if (region.low[k] > region.high[k]) return "";  // check_case tells
+    if (region.low[k] > region.high[k]) return {};  // check_case tells
   const Outline* nearest = nullptr;
   std::pair<double, std::size_t> least{0.0, 0};
   for (const Outline& outline : outlines) {
     if (!on.empty() && outline.name != on) continue;
     if (outline.in_another && on.empty()) continue;
-    if (!outline.bounds) return "";
+    if (!outline.bounds) return {};
     const auto apart = gap(region, *outline.bounds);
-    if (apart.first <= 1e-9) return "";
+    if (apart.first <= 1e-9) return {};
     if (nearest == nullptr || apart < least) {
       least = apart;
       nearest = &outline;
     }
   }
+  return {nearest, least.first, least.second};
+}
+
+/// The problem of a region; empty: it may take something, or no outline is known.
+std::string problem_of(const std::string& key, const Bounds& region, const std::string& on,
+                       const std::vector<Outline>& outlines) {
+  const auto [nearest, away, axis] = nearest_to(region, on, outlines);
   if (nearest == nullptr) return "";
   constexpr std::array<char, 3> axes{'x', 'y', 'z'};
-  const std::size_t axis = least.second;
   const bool below = region.high[axis] < nearest->bounds->low[axis];
   return fmt::format(
       "{}.{} = {}: the region takes nothing; {} is nearest, {} away, with {} from {} to {}", key,
       below ? "max" : "min", place(below ? region.high[axis] : region.low[axis]), nearest->name,
-      length_text(least.first), axes[axis], place(nearest->bounds->low[axis]),
+      length_text(away), axes[axis], place(nearest->bounds->low[axis]),
       place(nearest->bounds->high[axis]));
 }
 
@@ -131,16 +143,19 @@ double height_above(const dem::Wall& wall, const Bounds& b) {
   return height;
 }
 
+void add_to(Bounds& b, const std::array<double, 3>& at) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    b.low[k] = std::min(b.low[k], at[k]);
+    b.high[k] = std::max(b.high[k], at[k]);
+  }
+}
+
 /// The box around a wall of triangles.
 Bounds bounds_of(const dem::Wall& wall, const std::vector<Vec3>& corners) {
   Bounds b{{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}};
   for (const Vec3& corner : corners) {
     const Vec3 x = wall.point + dem::out_of_mesh(wall, corner);
-    const std::array<double, 3> at{x.x, x.y, x.z};
-    for (std::size_t k = 0; k < 3; ++k) {
-      b.low[k] = std::min(b.low[k], at[k]);
-      b.high[k] = std::max(b.high[k], at[k]);
-    }
+    add_to(b, {x.x, x.y, x.z});
   }
   return b;
 }
@@ -195,7 +210,47 @@ std::string problem_of_point(const std::string& key, const Vec2& point,
                      place(point.y), nearest->name, length_text(least));
 }
 
-/// Supports and loads of meshes, bolts of plane ones.
+/// The problem of a set of joints that meets no body; empty: it may meet one, or its file is bad.
+std::string problem_of_set(const fdem::JointSetConfig& set, const std::string* folder,
+                           const std::vector<Outline>& outlines) {
+  const std::string key = "joint_set." + set.name;
+  if (set.file.empty())
+    return problem_of(key, {{set.min.x, set.min.y, 0.0}, {set.max.x, set.max.y, 0.0}}, "",
+                      outlines);
+  if (folder == nullptr) return "";
+  Bounds all{{no_limit, no_limit, 0.0}, {-no_limit, -no_limit, 0.0}};
+  try {
+    for (const fdem::DiscontinuityConfig& line : lines_of_set(set, 0, 0, *folder))
+      for (const Vec2& x : line.points) add_to(all, {x.x, x.y, 0.0});
+  } catch (const Error&) {
+    return "";  // check_files tells
+  }
+  const Nearest nearest = nearest_to(all, "", outlines);
+  if (nearest.body == nullptr) return "";
+  return fmt::format("{}.file: its lines lie in no body; {} is nearest, {} away", key,
+                     nearest.body->name, length_text(nearest.away));
+}
+
+/// Cuts that lie beside the body that they are of.
+void add_idle_cuts(const dem::BodyConfig& body, std::vector<std::string>& problems) {
+  if (body.cuts.empty() || body.shape == "stl" || !(norm(body.axis) > 0.0)) return;
+  const Union whole(body);
+  const std::vector<Outline> outline{
+      {body.name, Bounds{{whole.low().x, whole.low().y, whole.low().z},
+                         {whole.high().x, whole.high().y, whole.high().z}}}};
+  for (std::size_t k = 0; k < body.cuts.size(); ++k) {
+    const dem::CutConfig& cut = body.cuts[k];
+    if (cut.shape == "stl" || !(norm(cut.axis) > 0.0)) continue;
+    const Vec3 half = solid_of(cut).half(), low = cut.center - half, high = cut.center + half;
+    const Nearest nearest =
+        nearest_to({{low.x, low.y, low.z}, {high.x, high.y, high.z}}, "", outline);
+    if (nearest.body != nullptr)
+      problems.push_back(fmt::format("body.{}.cut[{}].center: it takes nothing out of {}, {} away",
+                                     body.name, k + 1, body.name, length_text(nearest.away)));
+  }
+}
+
+/// Supports and loads of meshes, bolts and sets of joints of plane ones.
 template <class Config>
 void check_faces_and_corners(const Config& config, const std::string* folder) {
   const std::vector<Outline> outlines = outlines_of(config, folder);
@@ -209,6 +264,9 @@ void check_faces_and_corners(const Config& config, const std::string* folder) {
     for (const auto& bolt : config.bolts)
       for (const Vec2& point : fdem::corners_of(bolt))
         problems.push_back(problem_of_point("bolt." + bolt.name + ".points", point, outlines));
+  if constexpr (requires { config.joint_sets; })
+    for (const auto& set : config.joint_sets)
+      problems.push_back(problem_of_set(set, folder, outlines));
   std::erase(problems, "");
   refuse(problems, "in the case");
 }
@@ -276,6 +334,7 @@ void check_regions(const dem::Config& config, const std::string* folder) {
   std::vector<std::string> problems;
   for (const dem::SupportConfig& s : config.supports)
     problems.push_back(problem_of("support." + s.name, bounds_of(s), s.on, outlines));
+  for (const dem::BodyConfig& body : config.bodies) add_idle_cuts(body, problems);
   std::erase(problems, "");
   refuse(problems, "in the case");
 }

@@ -22,27 +22,14 @@ using fdem::JointSetConfig;
 
 constexpr std::uint32_t set_stream = 0x40000;  ///< of random numbers; one more for each set
 
-/// Reads "((x y, x y), (x y, ...))" behind the word of a geometry.
+/// Reads lines of WKT; of points with z and m these are dropped.
 class Wkt {
  public:
   Wkt(std::string text, std::string path) : text_(std::move(text)), path_(std::move(path)) {}
 
   std::vector<std::vector<Vec2>> lines() {
-    std::vector<std::vector<Vec2>> all;
-    for (skip(); at_ < text_.size(); skip()) {
-      const std::string word = next_word();
-      if (word == "LINESTRING") {
-        all.push_back(points());
-      } else if (word == "MULTILINESTRING") {
-        expect('(');
-        do all.push_back(points());
-        while (take(','));
-        expect(')');
-      } else {
-        refuse(word.empty() ? "a character that begins no geometry" : "\"" + word + "\"");
-      }
-    }
-    return all;
+    for (skip(); at_ < text_.size(); skip()) geometry(0);
+    return std::move(lines_);
   }
 
  private:
@@ -60,6 +47,43 @@ class Wkt {
       word += static_cast<char>(std::toupper(static_cast<unsigned char>(text_[at_])));
     return word;
   }
+  /// A geometry, or those in it.
+  void geometry(int depth) {
+    skip();
+    std::string word = next_word();
+    const std::size_t name = word.find_last_not_of("ZM") + 1;
+    const std::string more = word.substr(name);
+    if (more == "Z" || more == "M" || more == "ZM") word.resize(name);
+    const std::size_t behind = at_;
+    skip();
+    if (const std::string next = next_word(); next != "Z" && next != "M" && next != "ZM")
+      at_ = behind;
+    if (word == "LINESTRING") {
+      if (!is_empty()) lines_.push_back(points());
+    } else if (word == "MULTILINESTRING") {
+      each([&] {
+        if (!is_empty()) lines_.push_back(points());
+      });
+    } else if (word == "GEOMETRYCOLLECTION" && depth < deepest) {
+      each([&] { geometry(depth + 1); });
+    } else {
+      refuse(word.empty() ? "a character that begins no geometry" : "\"" + word + "\"");
+    }
+  }
+  bool is_empty() {
+    skip();
+    if (text_.compare(at_, 5, "EMPTY") != 0) return false;
+    at_ += 5;
+    return true;
+  }
+  template <class Read>
+  void each(const Read& read) {
+    if (is_empty()) return;
+    expect('(');
+    do read();
+    while (take(','));
+    expect(')');
+  }
   bool take(char c) {
     skip();
     if (at_ >= text_.size() || text_[at_] != c) return false;
@@ -68,6 +92,10 @@ class Wkt {
   }
   void expect(char c) {
     if (!take(c)) refuse(fmt::format("no '{}'", c));
+  }
+  bool ends_or_is(const char* one_of) {
+    skip();
+    return at_ >= text_.size() || std::string_view(one_of).find(text_[at_]) != std::string::npos;
   }
   double number() {
     skip();
@@ -84,6 +112,7 @@ class Wkt {
     do {
       const double x = number(), y = number();
       line.push_back({x, y});
+      for (int more = 0; more < 2 && !ends_or_is(",)"); ++more) number();
     } while (take(','));
     expect(')');
     return line;
@@ -91,13 +120,16 @@ class Wkt {
   [[noreturn]] void refuse(const std::string& found) const {
     const auto here = text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size()));
     throw InputError(
-        fmt::format("{}, line {}: there is {} where WKT has LINESTRING (x y, x y, ...) or "
-                    "MULTILINESTRING ((x y, ...), ...)",
+        fmt::format("{}, line {}: there is {} where WKT has LINESTRING (x y, x y, ...), "
+                    "MULTILINESTRING ((x y, ...), ...) or a GEOMETRYCOLLECTION of them",
                     path_, 1 + std::count(text_.begin(), here, '\n'), found));
   }
 
+  static constexpr int deepest = 20;  // of collections in each other
+
   std::string text_, path_;
   std::size_t at_ = 0;
+  std::vector<std::vector<Vec2>> lines_;
 };
 
 std::vector<std::vector<Vec2>> lines_of_file(const std::string& path) {

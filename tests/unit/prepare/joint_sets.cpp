@@ -142,6 +142,21 @@ TEST_F(JointSetFiles, of_csv_and_wkt_are_read) {
   EXPECT_EQ(wkt[0].points[2].y, -2.0);
   EXPECT_EQ(wkt[2].points[1].x, 3.0);
 }
+TEST_F(JointSetFiles, of_wkt_in_space_lose_z_and_collections_are_gone_into) {
+  const auto wkt = read("z.wkt",
+                        "LINESTRING Z (0 0 7, 1 2 8)\nLineStringZM(0 0 1 2, 4 5 6 7)\n"
+                        "GEOMETRYCOLLECTION (MULTILINESTRING M ((0 0 9, 3 1 9), (2 2 9, 6 3 9)), "
+                        "LINESTRING EMPTY, GEOMETRYCOLLECTION Z (LINESTRING Z (1 1 0, 8 9 0)))");
+  ASSERT_EQ(wkt.size(), 5U);
+  EXPECT_EQ(wkt[0].points[1].y, 2.0);
+  EXPECT_EQ(wkt[1].points[1].x, 4.0);
+  EXPECT_EQ(wkt[3].points[1].x, 6.0);
+  EXPECT_EQ(wkt[4].points[1].y, 9.0);
+  EXPECT_NE(
+      refusal("b.wkt", "GEOMETRYCOLLECTION (LINESTRING (0 0, 1 1),\nPOINT (1 1))").find("line 2"),
+      std::string::npos);
+  EXPECT_NE(refusal("b.wkt", "LINESTRING (0 0 1 2 3, 1 1)").find("no ')'"), std::string::npos);
+}
 TEST_F(JointSetFiles, that_are_wrong_are_refused_by_line) {
   EXPECT_NE(refusal("b.wkt", "LINESTRING (0 0, 1 1)\nPOINT (1 1)").find("line 2"),
             std::string::npos);

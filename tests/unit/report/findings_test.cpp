@@ -74,6 +74,21 @@ TEST(Findings, AnUnbrokenChainTellsHowNearItCame) {
   EXPECT_NE(text.find("2 times the load begins to break it"), std::string::npos) << text;
 }
 
+/// Frames give spheres of bodies that a stage has taken out the radius 0: the tension was "inf".
+TEST(Findings, LinksOfBodiesThatAreGoneBearNothing) {
+  const ScratchFolder folder;
+  test::write_chain(folder.path(), 8, 99);
+  ParaviewSeries series(folder.path());
+  for (int k = 0; k < 3; ++k) {
+    Frame frame = test::chain_frame(k, 8, 99);
+    if (k == 2) frame.radius[3] = 0.0;
+    series.write(frame);
+  }
+  series.finish();
+  const std::string text = joined(findings_of(read_record(folder.path())));
+  EXPECT_NE(text.find("is 0.5 of the strength of c30"), std::string::npos) << text;
+}
+
 TEST(Findings, WhatCutsPartedBeforeTheStartDidNotBreak) {
   const ScratchFolder folder;
   test::write_chain(folder.path(), 8, 0);

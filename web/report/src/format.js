@@ -19,6 +19,9 @@ export function scaledUnit(unit, largest) {
 
 const superscript = (n) => String(n).replace(/[-\d]/g, (c) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻");
 
+/** 0 where a value is rounding beside the largest one: sums and differences of that leave so much. */
+export const aboveNoise = (value, largest) => Math.abs(value) < 1e-9 * largest ? 0 : value;
+
 /** `digits` significant digits, without trailing zeros or an exponent where none is needed. */
 export function round(value, digits = 4) {
   if (!Number.isFinite(value)) return "–";

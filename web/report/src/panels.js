@@ -2,7 +2,7 @@
 
 import {Chart, legend, nearest} from "./chart.js";
 import {LINES} from "./colors.js";
-import {besides, bytes, count, draw, duration, make, round, save, timeText, withUnit, words} from "./format.js";
+import {aboveNoise, besides, bytes, count, draw, duration, make, round, save, timeText, withUnit, words} from "./format.js";
 import {blobText} from "./packed.js";
 
 export function panel(title, about, ...children) {
@@ -17,7 +17,10 @@ const ENERGIES = {
 export function energyPanel(run, history, store, several) {
   const time = history.column?.("time");
   if (!time) return null;
-  const parts = Object.keys(ENERGIES).map((name) => history.column(name)).filter((c) => c && c.values.some((v) => v > 0));
+  let parts = Object.keys(ENERGIES).map((name) => history.column(name)).filter(Boolean);
+  const work = history.column("work");
+  const largest = [...parts, work].reduce((most, c) => c ? c.values.reduce((m, v) => Math.max(m, Math.abs(v)), most) : most, 0);
+  parts = parts.filter((c) => c.values.some((v) => aboveNoise(v, largest) > 0));
   if (parts.length === 0) return null;
   const unit = parts[0].unit;
   let base = new Float32Array(history.rows);
@@ -27,9 +30,8 @@ export function energyPanel(run, history, store, several) {
     base = top;
     return line;
   });
-  const at = (column) => (t) => withUnit(column.values[nearest(time.values, t)], column.unit, 3);
+  const at = (column) => (t) => withUnit(aboveNoise(column.values[nearest(time.values, t)], largest), column.unit, 3);
   const entries = parts.map((part) => ({label: part.name, color: ENERGIES[part.name], value: at(part)}));
-  const work = history.column("work");
   if (work && work.values.some((v) => v !== 0)) entries.push({label: "work put in", color: "transparent", value: at(work)});
   const key = legend(entries);
   const error = history.column("error_relative");

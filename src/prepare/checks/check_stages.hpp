@@ -1,0 +1,21 @@
+#pragma once
+// Stages that cannot begin and tables that begin too late: possible, and rarely meant.
+
+#include <string>
+#include <vector>
+
+#include "coupled/setup/config.hpp"
+#include "dem/setup/config.hpp"
+#include "fdem/setup/config.hpp"
+#include "fdem3/setup/config.hpp"
+
+namespace breccia::prepare {
+
+/// Stages that begin after time.end, by the times that the ones before them take at least, and
+/// tables over time whose first row comes when nothing follows them any more; a sentence each.
+std::vector<std::string> doubtful_times(const dem::Config& config);
+std::vector<std::string> doubtful_times(const fdem::Config& config);
+std::vector<std::string> doubtful_times(const fdem3::Config& config);
+std::vector<std::string> doubtful_times(const coupled::Config& config);
+
+}  // namespace breccia::prepare
