@@ -20,6 +20,7 @@ import library_tables
 import localisation
 import published_tests
 import reinforced_tests
+import rock_experiments
 import rock_tables
 import speed_tables
 
@@ -107,6 +108,7 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambd
           "speed": lambda table: speed_tables.TABLES[table](),
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),
           "published": lambda test: published_tests.markdown(lines_of("published"), test),
+          "experiments": lambda test: rock_experiments.markdown(lines_of("rock_experiments"), test),
           "localisation": lambda _: localisation.markdown(lines_of("localisation"))}
 
 
