@@ -94,7 +94,8 @@ std::vector<std::string> stage_problems(const std::vector<StageEnd>& stages,
     const auto is_gone = [&](const std::string& body) {
       return std::find(gone.begin(), gone.end(), body) != gone.end();
     };
-    if (!s.remove.empty() && !bodies.empty() && std::all_of(bodies.begin(), bodies.end(), is_gone))
+    if (!s.remove.empty() && !s.of_part && !bodies.empty() &&
+        std::all_of(bodies.begin(), bodies.end(), is_gone))
       problems.push_back(where + ".remove takes out all that is left; a body must stay");
     if (s.drop > 0.0 && !is_probe(s.drop_of))
       problems.push_back(where + ".drop_of = \"" + s.drop_of +

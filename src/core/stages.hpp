@@ -25,6 +25,7 @@ struct StageEnd {
   double local_damping = -1.0;      ///< from now on; below 0: as before  [-]
   double friction = -1.0;           ///< likewise  [-]
   std::vector<std::string> remove;  ///< bodies
+  bool of_part = false;             ///< of one of two methods: bodies of the other may stay
 
   template <class Visit>
   void each_key(Visit&& key) {

@@ -12,6 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -36,11 +37,13 @@ const std::string this_program = "/proc/self/exe";
 /// The environment of a run.
 std::vector<std::string> environment_of(int ranks, const std::string& visible) {
   std::vector<std::string> kept;
+  const auto is_set = [](const char* name) { return std::getenv(name) != nullptr; };
+  const bool in_rank = is_set("OMPI_COMM_WORLD_RANK") || is_set("PMIX_RANK") || is_set("PMI_RANK");
   for (char** entry = environ; *entry != nullptr; ++entry) {
     // Without what an mpirun leaves in it: a run that a rank starts is no rank of that.
     constexpr std::array foreign{"OMPI_", "PMIX_", "PMI_", "PRTE_"};
     const std::string text = *entry;
-    if (text.starts_with("OMPI_ALLOW_") ||
+    if (!in_rank || text.starts_with("OMPI_ALLOW_") ||
         std::none_of(foreign.begin(), foreign.end(),
                      [&](const char* start) { return text.starts_with(start); }))
       kept.push_back(text);

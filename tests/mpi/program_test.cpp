@@ -126,7 +126,9 @@ TEST_F(ProgramOnRanks, sweep_makes_runs_of_two_ranks_each) {
                              "--set output.frames=0 ";
   const std::string sweep = "sweep " + shared + "--seeds 2 -o " + out("sweep") + " ";
   const std::string start = "BRECCIA_MPIRUN=" + std::string(mpirun_program) +
-                            " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " + program;
+                            " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                            "ASAN_OPTIONS=\"$ASAN_OPTIONS:detect_leaks=0\" " +
+                            program;
   ASSERT_EQ(std::system((start + " " + sweep + "--ranks 2 --jobs 2 > " + out("told")).c_str()), 0)
       << bytes_of(out("told"));
   ASSERT_EQ(run(1, "run " + shared + "--set seed=2 --no-progress -o " + out("one")), 0);

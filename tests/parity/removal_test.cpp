@@ -186,6 +186,7 @@ TEST(Removal, lets_what_stood_on_a_prop_fall) {
 TEST(Removal, of_bodies_that_are_not_there_or_are_gone_is_a_problem) {
   fdem::Config config;
   config.bodies.emplace_back().name = "core";
+  config.bodies.emplace_back().name = "rest";
   fdem::StageConfig zero, first, second;
   zero.name = "zero";
   zero.until = 1.0;
@@ -197,7 +198,7 @@ TEST(Removal, of_bodies_that_are_not_there_or_are_gone_is_a_problem) {
   config.stages = {zero, first, second};
   const std::vector<std::string> said = fdem::stage_problems(config);
   ASSERT_EQ(said.size(), 2U);
-  EXPECT_EQ(said[0], "stage.a.remove = \"cor\" is no body; there are: core");
+  EXPECT_EQ(said[0], "stage.a.remove = \"cor\" is no body; there are: core, rest");
   EXPECT_EQ(said[1], "stage.b.remove: \"core\" has been taken out before");
   config.stages = {zero, second};
   config.stages = {first};

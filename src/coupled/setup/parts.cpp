@@ -128,6 +128,7 @@ Parts parts_of(const Config& config) {
     for (const std::string& body : whole.remove)
       if (names(bodies, body)) part.remove.push_back(body);
     part.until = std::numeric_limits<double>::max();  // the run tells its end
+    part.of_part = true;
     stages.push_back(std::move(part));
   };
   for (const StageConfig& stage : config.stages) {
