@@ -109,7 +109,7 @@ def beyond(found, elements):
             ("s1 at 5 MPa, MPa; over Newman", lambda m: confined(m, 5)), ("at 20 MPa; over Newman", lambda m: confined(m, 20)),
             ("at 50 MPa (R30A7: 180 to 200)", lambda m: confined(m, 50)), ("at 100 MPa (R30A7: about 300)", lambda m: confined(m, 100)),
             ("at 200 MPa (R30A7: 500 to 550)", lambda m: confined(m, 200)),
-            ("at 500 MPa (R30A7, from memory: about 1,100)", lambda m: confined(m, 500)), ("at 650 MPa (R30A7, from memory: about 1,350)", lambda m: confined(m, 650)),
+            ("at 500 MPa", lambda m: confined(m, 500)), ("at 650 MPa", lambda m: confined(m, 650)),
             ("oedometer: strain at 0.1 GPa, %", lambda m: cell(m, "oedometer", "strain_100", 2)),
             ("at 1 GPa, % (R30A7: 8 to 10)", lambda m: cell(m, "oedometer", "strain_1000", 1)),
             ("its tangent at 0.3 GPa, GPa", lambda m: cell(m, "oedometer", "tangent_300", 1)),
