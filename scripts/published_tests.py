@@ -14,7 +14,6 @@ punching     a slab of 2.1 x 2.1 x 0.25 m under a hard missile of 47.4 kg, 168 m
 perforation  a slab of 0.61 x 0.61 x 0.178 m under an ogive of 0.5 kg, 25.4 mm, at 301 to 1,058 m/s (Hanchak et al. 1992)
 """
 import argparse
-import concurrent.futures
 import csv
 import json
 import math
@@ -23,6 +22,7 @@ import statistics
 import subprocess
 
 import impact_formulas
+import published_runs
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "out" / "published"
@@ -401,17 +401,12 @@ def main():
     if given.plots:
         plots(given.plots)
         return
-    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        for one in [pool.submit(run, n, s, seed, given.binary) for seed in range(1, given.seeds + 1) for n in given.names for s in TESTS[n][0]]:
-            one.result()
+    published_runs.run_all(given.jobs, run, [(n, s, seed, given.binary) for seed in range(1, given.seeds + 1) for n in given.names for s in TESTS[n][0]])
     records = list(collected())
     for test in TESTS:
         print(markdown(records, test) + "\n")
     if given.record:
-        with open(given.record, "w", newline="") as file:
-            writer = csv.DictWriter(file, RECORD, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(records)
+        published_runs.write_record(given.record, RECORD, records)
 
 
 if __name__ == "__main__":

@@ -18,13 +18,14 @@ stirrups  the same with 11 stirrups of 6 mm, whose elements touch the bars that 
 plate     the same, pressed by three bars side by side, 76 mm in all
 """
 import argparse
-import concurrent.futures
 import csv
 import json
 import math
 import pathlib
 import statistics
 import subprocess
+
+import published_runs
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "out" / "reinforced"
@@ -349,16 +350,11 @@ def main():
     p.add_argument("--record", type=pathlib.Path, help="a file for the numbers of all finished runs, as docs/results/reinforced.csv")
     given = p.parse_args()
     OUT.mkdir(parents=True, exist_ok=True)
-    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        for one in [pool.submit(run, n, s, given) for n in given.names for s in range(1, given.seeds + 1)]:
-            one.result()
+    published_runs.run_all(given.jobs, run, [(n, s, given) for n in given.names for s in range(1, given.seeds + 1)])
     records = list(collected())
     print(markdown(records))
     if given.record:
-        with open(given.record, "w", newline="") as file:
-            writer = csv.DictWriter(file, RECORD, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(records)
+        published_runs.write_record(given.record, RECORD, records)
 
 
 if __name__ == "__main__":

@@ -11,13 +11,14 @@ hwangdeung  plate and disc of `breccia test` with the joints that HOSS has for H
 Cases and results are in out/rock_experiments/; called again, only what is missing is run.
 """
 import argparse
-import concurrent.futures
 import csv
 import json
 import math
 import pathlib
 import statistics
 import subprocess
+
+import published_runs
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "out" / "rock_experiments"
@@ -238,17 +239,12 @@ def main():
     OUT.mkdir(parents=True, exist_ok=True)
     if given.plot:
         return plot(given.plot)
-    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        for one in [pool.submit(run, n, s, TESTS[n][1] + k, given.binary) for k in range(given.seeds) for n in given.names for s in TESTS[n][0]]:
-            one.result()
+    published_runs.run_all(given.jobs, run, [(n, s, TESTS[n][1] + k, given.binary) for k in range(given.seeds) for n in given.names for s in TESTS[n][0]])
     records = list(collected())
     for test in TESTS:
         print(markdown(records, test) + "\n")
     if given.record:
-        with open(given.record, "w", newline="") as file:
-            writer = csv.DictWriter(file, RECORD, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(records)
+        published_runs.write_record(given.record, RECORD, records)
 
 
 if __name__ == "__main__":

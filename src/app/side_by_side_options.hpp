@@ -33,7 +33,7 @@ std::string count_problem(const std::string& text);
 /// Memory that a run of the case takes at least.  [bytes]
 double run_bytes(const Case& read);
 
-/// What a command has to tell of a case before its runs begin: Case::notes.
+/// Notes on a case (Case::notes), told by a command before its runs begin.
 void tell_notes(const std::vector<std::string>& notes);
 
 /// Tells of each run as it ends: how many have ended, how, in which time, and its name.

@@ -69,7 +69,7 @@ class CaseReader {
   /// Back out; keys of the table that nobody has asked for are problems.
   void leave();
 
-  /// What is no problem and yet worth telling: which numbers of named materials do not count.
+  /// Numbers of named materials that do not count, as keys of the case stand in their place.
   const std::vector<std::string>& notes() const;
   /// @throws InputError with all problems, if there are any
   void finish();

@@ -1,0 +1,18 @@
+"""Runs of scripts that compare with published tests: several at a time, and their numbers as a table."""
+import concurrent.futures
+import csv
+
+
+def run_all(jobs, run, each):
+    """Calls run(*arguments) for each tuple of arguments, so many at a time; the first error ends all."""
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        for one in [pool.submit(run, *arguments) for arguments in each]:
+            one.result()
+
+
+def write_record(path, fields, records):
+    """Writes the records, dictionaries of the fields, as CSV."""
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, fields, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(records)
