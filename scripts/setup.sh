@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build git
   libfmt-dev zlib1g-dev libdeflate-dev libpng-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libxxhash-dev libqhull-dev libstb-dev
-  libcpp-httplib-dev libhdf5-dev pkg-config libopenmpi-dev openmpi-bin libgtest-dev libbenchmark-dev
+  libcpp-httplib-dev libhdf5-dev libnlopt-dev pkg-config libopenmpi-dev openmpi-bin libgtest-dev libbenchmark-dev
   python3-dev python3-numpy pybind11-dev python3-vtk9 python3-meshio python3-pandas python3-h5py gmsh "$@")
 
 missing=()

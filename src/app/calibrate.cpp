@@ -14,6 +14,7 @@
 #include "io/harmless.hpp"
 #include "io/whole_file.hpp"
 #include "laboratory/calibration.hpp"
+#include "laboratory/optimiser.hpp"
 #include "laboratory/specimen_runs.hpp"
 #include "run/case.hpp"
 #include "run/machine/machine.hpp"
@@ -24,9 +25,9 @@ namespace {
 namespace lab = laboratory;
 
 struct CalibrateCommand {
-  std::string path, material, folder;
+  std::string path, material, folder, method = "secant";
   std::vector<std::string> overrides, targets;
-  int seeds = 2, elements = 1200, steps = 8;
+  int seeds = 2, elements = 1200, steps = 0;
   SideBySideOptions options;
 
   int execute() const {
@@ -61,17 +62,30 @@ struct CalibrateCommand {
         out, 1, seeds,
         [this](std::size_t runs, double bytes) { return options.workers(runs, bytes); }, tell_of};
     int exit_code = 0;
-    for (int step = 1; step <= steps && !calibration.converged() && exit_code == 0; ++step) {
+    const std::size_t most = static_cast<std::size_t>(steps > 0 ? steps : by_secants() ? 8 : 60);
+    const auto goes_on = [&] {
+      return exit_code == 0 && !calibration.converged() && calibration.steps().size() < most;
+    };
+    const auto step = [&] {
       sample.material = calibration.material();
       const auto results = lab::run_specimens(calibration.tests(), sample, bench, exit_code);
-      if (exit_code > 128) return exit_code;  // ended by a signal: what was computed is kept
+      if (exit_code > 128) return;  // ended by a signal: what was computed is kept
       calibration.take(results);
-      fmt::print("step {}: {}\n", step, calibration.progress());
+      fmt::print("step {}: {}\n", calibration.steps().size(), calibration.progress());
       std::fflush(stdout);
       replace_file(out + "/calibration.md", calibration.page(material, circumstances));
       replace_file(out + "/calibration.svg", svg_of({calibration.plot()}));
       replace_file(out + "/material.toml", calibration.block(circumstances));
-    }
+    };
+    if (by_secants())
+      while (goes_on()) step();
+    else
+      lab::make_small(method, calibration.keys(), [&](const std::vector<double>& keys) {
+        calibration.set_keys(keys);
+        step();
+        return goes_on() ? calibration.misfits() : std::vector<double>{};
+      });
+    if (exit_code > 128) return exit_code;
     const std::string missed = calibration.obstacles();
     fmt::print("{}  material {}/material.toml  steps {}/calibration.md\n",
                missed.empty() ? "every target is met" : "not every target is met, " + missed,
@@ -79,6 +93,8 @@ struct CalibrateCommand {
     constexpr int check_failed = 9;
     return exit_code != 0 ? exit_code : calibration.converged() ? 0 : check_failed;
   }
+
+  bool by_secants() const { return method == "secant"; }
 };
 
 }  // namespace
@@ -96,7 +112,12 @@ void add_calibrate(CLI::App& program, int& exit_code) {
   add_count(command, "--seeds", calibrate->seeds, "packings of each specimen; default: 2");
   add_count(command, "--elements", calibrate->elements,
             "elements of the prism, triangles of the plate; default: 1200");
-  add_count(command, "--steps", calibrate->steps, "steps at most; default: 8");
+  add_count(command, "--steps", calibrate->steps, "steps at most; default: 8, by NLopt 60");
+  command
+      ->add_option("--method", calibrate->method,
+                   "secant, or by NLopt cobyla (then sbplx), sbplx, bobyqa")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"secant", "cobyla", "sbplx", "bobyqa"}));
   add_repeated(command, "--set", calibrate->overrides, "override a key of the case", "KEY=VALUE");
   command->add_option("-o,--out", calibrate->folder, "default: out/<case>_<material>_calibration")
       ->type_name("DIR");
@@ -105,7 +126,7 @@ void add_calibrate(CLI::App& program, int& exit_code) {
       "Each target is mostly the work of one key. Concrete (DEM): young, poisson, tension\n"
       "by tensile_strength, compression by cohesion, fracture_energy; law ldpm likewise, the\n"
       "energy by ldpm.tensile_length. Rock (FDEM): young,\n"
-      "poisson, brazilian (or tension) by joint.tension, compression by joint.cohesion,\n"
+      "poisson, brazilian or else tension by joint.tension, compression by joint.cohesion,\n"
       "friction_angle; fracture_energy and slide_energy are set as joint.energy_open and\n"
       "joint.energy_slide, and no specimen shows them. Other keys stay. A material with\n"
       "the key use has the targets of its name; --target takes their place.\n"

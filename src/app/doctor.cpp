@@ -18,6 +18,7 @@
 #include "exec/error.hpp"
 #include "io/file.hpp"
 #include "io/vtu/vtkhdf.hpp"
+#include "laboratory/optimiser.hpp"
 #include "prepare/meshing/meshing.hpp"
 #include "run/machine/machine.hpp"
 #include "run/machine/memory_plan.hpp"
@@ -102,6 +103,9 @@ void examine() {
   line(has_hdf5(), "HDF5",
        has_hdf5() ? "output.format = \"vtkhdf\""
                   : "not in this program: a build with libhdf5-dev writes VTKHDF");
+  line(laboratory::has_nlopt(), "NLopt",
+       laboratory::has_nlopt() ? "calibrate --method cobyla, sbplx, bobyqa"
+                               : "not in this program: a build with libnlopt-dev has it");
   tell_program("gmsh", "free meshes of 2D bodies", "gmsh");
   tell_program("ffmpeg", "films from pictures", "ffmpeg");
   tell_program("paraview", "looks at fields (result.pvd)", "paraview");

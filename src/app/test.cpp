@@ -158,7 +158,7 @@ void add_test(CLI::App& program, int& exit_code) {
       "tension_notched, triaxial_5 to _200, biaxial, oedometer, hydrostatic; grains are the "
       "mix's,\n"
       "the prism is five of the largest wide, --elements has no use.\n"
-      "Tests of rock (FDEM): plate, plate_10 (10 MPa on its sides), disc.\n"
+      "Tests of rock (FDEM): plate, plate_10 (10 MPa on its sides), disc, tension (a plate).\n"
       "\n"
       "Targets: young, poisson, compression, tension, brazilian, fracture_energy,\n"
       "friction_angle, as in\n"

@@ -102,16 +102,16 @@ std::vector<Knob<Rock>> knobs_for(const Rock&, bool) {
   constexpr double softened = 1.085;  // by joints of p_f = 20 E, E and nu alike (theory-fdem.md, 2)
   const auto f_t = [](const Rock& r) { return r.joint.tension; };
   const auto set_f_t = [](Rock& r, double x) { r.joint.tension = x; };
-  const auto disc = [&](const char* target) {
-    return Knob<Rock>{
-        "joint.tension", target, "disc", "strength", f_t, set_f_t, 1.0, 0.05, 0.9, 0.0, all};
+  const auto tension = [&](const char* target, const char* test, double share) {
+    return Knob<Rock>{"joint.tension", target, test, "strength", f_t, set_f_t, 1.0, 0.05,
+                      share,           0.0,    all};
   };
   return {{"young", "young", "plate", "young", [](const Rock& r) { return r.young; },
            [](Rock& r, double x) { r.young = x; }, 1.0, 0.03, softened, 0.0, all},
           {"poisson", "poisson", "plate", "poisson", [](const Rock& r) { return r.poisson; },
            [](Rock& r, double x) { r.poisson = x; }, 1.0, 0.10, softened, 0.01, 0.49},
-          disc("brazilian"),
-          disc("tension"),
+          tension("brazilian", "disc", 0.9),
+          tension("tension", "tension", 1.0),
           {"joint.friction_angle as (1 + sin(phi)) / (1 - sin(phi))", "friction_angle", "plate_10",
            "friction_angle", [](const Rock& r) { return gain_of(r.joint.friction_angle); },
            [](Rock& r, double x) { r.joint.friction_angle = angle_of(x); }, 1.0, 0.05, 1.0, 1.0,
@@ -287,6 +287,30 @@ typename Calibration<Material>::Row Calibration<Material>::logs_of_shown(
     row.push_back(
         std::log(measured(aim, step.shown.at(aim.knob.target).mean) / measured(aim, aim.target)));
   return row;
+}
+
+template <class Material>
+std::vector<double> Calibration<Material>::keys() const {
+  std::vector<double> logs;
+  for (const Aim& aim : aims_)
+    if (aim.knob.test[0] != '\0') logs.push_back(std::log(aim.knob.get(material_)));
+  return logs;
+}
+
+template <class Material>
+void Calibration<Material>::set_keys(const std::vector<double>& logs) {
+  std::size_t next = 0;
+  for (const Aim& aim : aims_)
+    if (aim.knob.test[0] != '\0')
+      aim.knob.set(material_, std::clamp(std::exp(logs.at(next++)), aim.knob.low, aim.knob.high));
+}
+
+template <class Material>
+std::vector<double> Calibration<Material>::misfits() const {
+  std::vector<double> all;
+  for (const Aim& aim : aims_)
+    if (aim.knob.test[0] != '\0') all.push_back(misfit(steps_.back(), aim) / aim.knob.tolerance);
+  return all;
 }
 
 /// J += (dy - J dx) dx^T / (dx . dx); a target keeps to its own key, within bounds.

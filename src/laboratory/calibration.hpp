@@ -56,6 +56,12 @@ class Calibration {
   /// shown, since no specimen has come to its end
   void take(const std::vector<TestResults>& results);
 
+  /// For searches that choose the keys themselves: logarithms of the keys that specimens show, of
+  /// material() as in logs_of_keys, and the misfits of the last step over their tolerances.
+  std::vector<double> keys() const;
+  void set_keys(const std::vector<double>& logs);
+  std::vector<double> misfits() const;
+
   /// Whether all means of the last step are within the tolerances.
   bool converged() const;
   /// The step whose largest misfit over its tolerance is least.

@@ -397,6 +397,7 @@ dem::Config case_of(const SpecimenTest& test, const Sample& sample, std::int64_t
     case Loading::biaxial:
     case Loading::plate:
     case Loading::plane_disc:
+    case Loading::pulled_plate:
       throw InputError(test.title + " is no test of spheres");
   }
   return c;

@@ -24,8 +24,8 @@ struct Sample {
 /// @throws InputError if there is no such material, or it is no concrete or rock
 Sample sample_of(const dem::Config& config, const std::string& material);
 
-/// The tests that there are; hydrostatic and biaxial are LDPM's alone, plate and plane_disc are the
-/// FDEM's.
+/// The tests that there are; hydrostatic and biaxial are LDPM's alone, those of plates and
+/// plane_disc are the FDEM's.
 enum class Loading {
   compression,
   platens,
@@ -38,7 +38,8 @@ enum class Loading {
   hydrostatic,
   biaxial,
   plate,
-  plane_disc
+  plane_disc,
+  pulled_plate
 };
 
 struct SpecimenTest {

@@ -155,11 +155,18 @@ SpecimenResult of_disc(const SpecimenTest& test, const report::NumberTable& tabl
   return result;
 }
 
+/// The peak; not a number where the load still grows as the test ends.
+double peak_within(const Values& stress) {
+  const std::size_t peak = peak_of(stress);
+  return peak + 1 + stress.size() / 100 >= stress.size() ? std::nan("") : stress[peak];
+}
+
 /// A plate in plane stress, of unit thickness.
 SpecimenResult of_plate(const SpecimenTest& test, const report::NumberTable& table,
                         const std::string& folder) {
   const Values top = column(table, "top", folder), bottom = column(table, "bottom", folder);
-  const Values strain = scaled(growth(top, bottom), -1.0 / (top[0] - bottom[0]));
+  const double sense = test.loading == Loading::pulled_plate ? 1.0 : -1.0;
+  const Values strain = scaled(growth(top, bottom), sense / (top[0] - bottom[0]));
   const Values stress = scaled(load_of(table, folder), 1.0 / test.size.x);
   const std::size_t peak = peak_of(stress);
   SpecimenResult result{{"strain [-]", "stress [Pa]", strain, stress}, {}};
@@ -168,7 +175,7 @@ SpecimenResult of_plate(const SpecimenTest& test, const report::NumberTable& tab
   if (test.pressure > 0.0) return result;  // the sides have been pressed meanwhile
   result.numbers["young"] = slope_between(strain, stress, stress, elastic_from, elastic_to);
   const Values right = column(table, "right", folder), left = column(table, "left", folder);
-  const Values across = scaled(growth(right, left), 1.0 / test.size.x);
+  const Values across = scaled(growth(right, left), -sense / test.size.x);
   result.numbers["poisson"] = slope_between(strain, across, stress, elastic_from, elastic_to);
   return result;
 }
@@ -179,7 +186,7 @@ SpecimenResult of_plane_disc(const SpecimenTest& test, const report::NumberTable
   const Values closing = scaled(growth(top, bottom), -1.0 / test.size.x);
   const Values stress = scaled(load_of(table, folder), 2.0 / (pi * test.size.x));
   SpecimenResult result{{"closing over diameter [-]", "2 P / (pi d t) [Pa]", closing, stress}, {}};
-  result.numbers["strength"] = stress[peak_of(stress)];
+  result.numbers["strength"] = peak_within(stress);
   return result;
 }
 
@@ -231,7 +238,8 @@ std::string target_name(const SpecimenTest& test, const std::string& number,
     if (number == "young" || number == "poisson") return number;
   }
   if (test.name == "tension" && number == "strength") return "tension";
-  if ((test.name == "brazilian" || test.name == "disc") && number == "strength")
+  if (test.name == "disc" && number == "strength") return "brazilian";
+  if (test.name == "brazilian" && number == "strength")
     return target_of(targets, "brazilian") ? "brazilian" : "tension";
   if (test.name == "tension_notched" && number == "fracture_energy") return number;
   return "";
@@ -276,6 +284,7 @@ SpecimenResult specimen_result(const SpecimenTest& test, const std::string& fold
     case Loading::bending:
       return of_beam(test, table, folder);
     case Loading::plate:
+    case Loading::pulled_plate:
       return of_plate(test, table, folder);
     case Loading::plane_disc:
       return of_plane_disc(test, table, folder);

@@ -55,8 +55,8 @@ struct PassportLine {
 
 /// @param targets  macroscopic numbers of the material; none: the line has no verdict. Means may
 ///                 miss them by 3 % (E), 5 % (strengths), 10 % (nu, fracture energy). The splitting
-///                 strength is held against the tensile one (fib Model Code 2010, 5.1.5.1)
-///                 unless there is a target of its own.
+///                 strength of spheres is held against the tensile one (fib Model Code 2010,
+///                 5.1.5.1) unless there is a target of its own.
 std::vector<PassportLine> passport_lines(const std::vector<TestResults>& results,
                                          const std::vector<MaterialTarget>& targets);
 

@@ -23,7 +23,7 @@ struct RockSample {
 RockSample rock_sample_of(const fdem::Config& config, const std::string& material);
 
 /// Compression of a plate between smooth ends, free and under pressure on its sides; a disc between
-/// strips.
+/// strips; a plate whose ends part.
 const std::vector<SpecimenTest>& rock_tests();
 
 /// The case of a test, with a free mesh that differs with the seed. Ends of plates move along y and

@@ -226,13 +226,15 @@ class Pool {
       return;
     }
     FinishedRun& result = results_[ended.run];
-    result.exit_code = exit_code;
+    const int signal = StopSignals::received();
+    const bool passed_on = signal != 0 && exit_code == 128 + SIGUSR1;  // in the place of `signal`
+    result.exit_code = passed_on ? 128 + signal : exit_code;
     result.wall = std::chrono::duration<double>(Clock::now() - ended.begin).count();
     if (result.complete()) {
       std::error_code ignored;
       fs::remove(log_of(ended.run), ignored);
     } else {
-      result.message = told_error(log_of(ended.run), exit_code);
+      result.message = told_error(log_of(ended.run), result.exit_code);
     }
     tell_(ended.run, result);
   }

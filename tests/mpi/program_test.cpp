@@ -1,6 +1,8 @@
 // The program itself on ranks that mpirun starts: same bytes in the result folder, exit codes,
 // ends.
 
+#include "unit/run/program.hpp"
+
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -142,6 +144,42 @@ TEST_F(ProgramOnRanks, sweep_makes_runs_of_two_ranks_each) {
   EXPECT_EQ(found, 1);
   ASSERT_EQ(run(1, sweep, out("told")), 0);  // the same runs, whatever their number of ranks
   EXPECT_NE(bytes_of(out("told")).find("2 of 2  kept"), std::string::npos) << bytes_of(out("told"));
+}
+
+/// SIGINT reaches the ranks by way of mpirun, which ends them before they have saved if it is told
+/// to stop itself. What they saved is gone on with, by one process, to the state of one run.
+TEST_F(ProgramOnRanks, sweep_that_is_interrupted_goes_on_with_the_runs_of_its_ranks) {
+  const std::string shared = std::string(source_dir) +
+                             "/cases/rc_slab/small.toml --threads 1 --set time.end=3e-4 "
+                             "--set output.frames=0 --set checkpoint.steps=20 ";
+  const std::string sweep = "sweep " + shared + "-o " + out("sweep") + " ";
+  const pid_t process =
+      start_program(sweep + "--ranks 2", out("told"),
+                    "export BRECCIA_MPIRUN=" + std::string(mpirun_program) +
+                        " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                        "ASAN_OPTIONS=\"$ASAN_OPTIONS:detect_leaks=0\";");
+  const auto saved = [&] {
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(out("sweep") + "/runs", none))
+      if (fs::exists(entry.path() / "checkpoints", none) &&
+          !fs::is_empty(entry.path() / "checkpoints", none))
+        return true;
+    return false;
+  };
+  for (int k = 0; k < 100 * soon && !saved(); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ::kill(process, SIGINT);
+  EXPECT_EQ(wait_for(process), 128 + SIGINT) << bytes_of(out("told"));
+  EXPECT_NE(bytes_of(out("sweep") + "/sweep.csv").find("interrupted"), std::string::npos);
+  EXPECT_TRUE(saved());
+
+  ASSERT_EQ(run(1, sweep, out("told")), 0) << bytes_of(out("told"));
+  ASSERT_EQ(run(1, "run " + shared + "--no-progress -o " + out("one")), 0);
+  for (const fs::directory_entry& entry : fs::directory_iterator(out("sweep") + "/runs")) {
+    const std::string log = bytes_of(entry.path() / "log.jsonl");
+    EXPECT_NE(log.find("\"setup\"", log.find("\"setup\"") + 1), std::string::npos) << log;
+    EXPECT_EQ(hash_in(entry.path()), hash_in(out("one")));
+  }
 }
 
 TEST_F(ProgramOnRanks, strong_benchmark_ends_in_the_state_of_one_process) {

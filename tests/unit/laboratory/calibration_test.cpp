@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "exec/error.hpp"
+#include "laboratory/optimiser.hpp"
 
 namespace breccia::laboratory {
 namespace calibration_test {
@@ -129,6 +130,14 @@ TEST(Calibration, FindsTheKeysOfARock) {
       << calibration.block("as a test");
 }
 
+/// Without a splitting strength the direct one is shown by a plate that is pulled, not by a disc.
+TEST(Calibration, FindsTheDirectStrengthOfARockByAPlate) {
+  Calibration calibration(fdem::MaterialConfig{}, {{"tension", 2.9e6, "Pa"}});
+  ASSERT_EQ(calibration.tests().size(), 1U);
+  EXPECT_EQ(calibration.tests()[0].loading, Loading::pulled_plate);
+  EXPECT_DOUBLE_EQ(calibration.material().joint.tension, 2.9e6);
+}
+
 /// A disc that bears less the steeper its joints rub: both targets cannot be met. The tool says
 /// which step is nearest, what it misses, and what either target costs the other.
 TEST(Calibration, SaysWhatStandsInTheWayOfTargetsThatExcludeEachOther) {
@@ -153,6 +162,30 @@ TEST(Calibration, SaysWhatStandsInTheWayOfTargetsThatExcludeEachOther) {
   EXPECT_EQ(said.find("nearest is step "), 0U) << said;
   EXPECT_NE(said.find("brazilian -"), std::string::npos) << said;
   EXPECT_NE(said.find("was met best in step "), std::string::npos) << said;
+}
+
+/// By NLopt, too, in more evaluations; what a search may not do is told.
+TEST(Calibration, FindsFiveKeysByNLopt) {
+  if (!has_nlopt()) GTEST_SKIP() << "built without NLopt";
+  const auto evaluations = [](const char* method) {
+    Calibration calibration(dem::MaterialConfig{}, c30);
+    make_small(method, calibration.keys(), [&](const std::vector<double>& keys) {
+      calibration.set_keys(keys);
+      calibration.take(shown_by(calibration.material(), calibration));
+      const bool ends = calibration.converged() || calibration.steps().size() == 200;
+      return ends ? std::vector<double>{} : calibration.misfits();
+    });
+    EXPECT_TRUE(calibration.converged()) << method << " " << calibration.progress();
+    return calibration.steps().size();
+  };
+  EXPECT_LE(evaluations("cobyla"), 40U);
+  evaluations("sbplx");
+  EXPECT_THROW(make_small("newton", {0.0}, nullptr), InputError);
+  EXPECT_THROW(make_small("cobyla", {0.0},
+                          [](const std::vector<double>&) -> std::vector<double> {
+                            throw InputError("no specimen");
+                          }),
+               InputError);
 }
 
 TEST(Calibration, RefusesToGoOnWithoutTargetsOrResults) {

@@ -210,6 +210,23 @@ TEST(SpecimenResult, OfAPrismHoldsWhatIsLeftAfterThePeak) {
   EXPECT_NEAR(numbers.at("residual"), 0.1, 1e-9);
 }
 
+/// A disc that still takes more load as its test ends has not shown its strength.
+TEST(SpecimenResult, OfADiscHasNoStrengthWhereTheLoadStillGrows) {
+  const ScratchFolder scratch;
+  const auto strength = [&](int peak) {
+    std::string text = "time,force_top,force_bottom,top,bottom\ns,N,N,m,m\n";
+    for (int k = 0; k <= 400; ++k) {
+      const double force = 1e3 * std::min(k, 2 * peak - k);
+      text +=
+          fmt::format("{},{},{},{},{}\n", k, force, -force, 0.025 - 1e-7 * k, -0.025 + 1e-7 * k);
+    }
+    replace_file(scratch / "history.csv", text);
+    return specimen_result(rock_tests()[2], scratch.path()).numbers.at("strength");
+  };
+  EXPECT_NEAR(strength(300), 2.0 * 300e3 / (pi * 0.05), 1e-3);
+  EXPECT_TRUE(std::isnan(strength(400)));
+}
+
 /// N = 5: phi = asin(4/6).
 TEST(FrictionAngle, IsThatOfPlatesFreeAndPressed) {
   const std::vector<SpecimenTest>& tests = rock_tests();
