@@ -17,6 +17,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+import published_runs
 import reinforced_tests
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -79,7 +80,7 @@ def main():
     right.plot(x, [bond(s) for s in x], "k--", lw=1, label="Model Code 1990, confined, good bond")
     right.axhline(14.5, color="k", lw=1, ls=":", label="Model Code 2010, 2.5 sqrt(f_cm)")
     right.set(xlabel="slip of the pulled end, mm", ylabel="bond stress, MPa", xlim=(0, 4), ylim=(0, None))
-    [a.legend(fontsize=8) for a in (left, middle, right)], figure.tight_layout(), figure.savefig(sys.argv[1], dpi=100)
+    published_runs.save_plot(figure, (left, middle, right), sys.argv[1], dpi=100, columns=1)
     print(f"f_c {f_c:.1f}; " + "; ".join(f"{p} MPa: {statistics.mean(max(s) for _, s in curves(test)):.1f}, Mander {mander_strength(p, f_c):.1f}, "
                                          f"at {statistics.mean(e[s.index(max(s))] for e, s in curves(test)):.2f} %, Mander {100 * STRAIN * (1 + 5 * (mander_strength(p, f_c) / f_c - 1)):.2f} %"
                                          for p, (test, _) in PRESSURES.items()))

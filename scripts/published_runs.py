@@ -10,6 +10,14 @@ def run_all(jobs, run, each):
             one.result()
 
 
+def save_plot(figure, axes, path, dpi=110, columns=2):
+    """Legends lie below the plots, where they hide no curve."""
+    figure.tight_layout()
+    for a in axes:
+        a.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.18), ncol=columns, frameon=False)
+    figure.savefig(path, dpi=dpi, bbox_inches="tight")
+
+
 def write_record(path, fields, records):
     """Writes the records, dictionaries of the fields, as CSV."""
     with open(path, "w", newline="") as file:

@@ -351,7 +351,7 @@ def plot_hopkinson(plt, records, folder):
     right.plot(rates, [model_code_90(r) for r in rates], "k--", lw=1, label="CEB-FIP 1990, 48 MPa")
     right.set(xscale="log", xlabel="strain rate, 1/s", ylabel="strength over that at rest (here: at 5/s)")
     left.set(xlabel="strain, %", ylabel="stress, MPa", xlim=(0, 1.2), ylim=(0, None))
-    figure.tight_layout(), [a.legend(fontsize=8) for a in (left, right)], figure.savefig(folder / "published_hopkinson.png", dpi=110)
+    published_runs.save_plot(figure, (left, right), folder / "published_hopkinson.png")
 
 
 def plot_spall(plt, records, folder):
@@ -367,7 +367,7 @@ def plot_spall(plt, records, folder):
     right.plot(rates, [malvar_ross(x) for x in rates], "k--", lw=1, label="Malvar and Ross, f_c 42 MPa")
     right.set(xscale="log", xlabel="strain rate, 1/s", ylabel="strength / f_t")
     left.set(xlabel="time, us", ylabel="velocity of the free end, m/s")
-    figure.tight_layout(), [a.legend(fontsize=8) for a in (left, right)], figure.savefig(folder / "published_spall.png", dpi=110)
+    published_runs.save_plot(figure, (left, right), folder / "published_spall.png")
 
 
 def plot_missiles(plt, records, folder):
@@ -385,7 +385,7 @@ def plot_missiles(plt, records, folder):
         right.plot([setting["v"]] * len(found["residual"]), found["residual"], "o" if mu < 0.5 else "s", ms=4, color="tab:blue" if mu < 0.5 else "0.6",
                    label=f"here, friction {mu}" if setting["v"] == 301 else None)
     right.set(xlabel="struck at, m/s", ylabel="left, m/s", title="Hanchak")
-    figure.tight_layout(), [a.legend(fontsize=8) for a in (left, right)], figure.savefig(folder / "published_missiles.png", dpi=110)
+    published_runs.save_plot(figure, (left, right), folder / "published_missiles.png")
 
 
 def main():
