@@ -10,6 +10,8 @@ namespace fdem_ranks_test {
 
 using namespace mpi_testing;
 
+constexpr int many = 200;  ///< steps of the impact: over a hundred joints are broken then
+
 TEST(FdemRanks, leave_the_same_state_ledger_and_couples_amid_fracture) {
   const Scene scene = impact("intrinsic");
   const Outcome expected = alone(scene, 300);
@@ -20,28 +22,28 @@ TEST(FdemRanks, leave_the_same_state_ledger_and_couples_amid_fracture) {
 
 TEST(FdemRanks, leave_the_same_state_where_joints_wake_at_their_strength) {
   const Scene scene = impact("extrinsic");
-  const Outcome expected = alone(scene, 300);
+  const Outcome expected = alone(scene, many);
   EXPECT_GT(expected.cracks, 10U);
   for (const int count : {2, 5, 13})
-    EXPECT_EQ(on_ranks(count, scene, 300).outcome, expected) << count << " ranks";
+    EXPECT_EQ(on_ranks(count, scene, many).outcome, expected) << count << " ranks";
 }
 
 TEST(FdemRanks, leave_the_same_state_of_bedded_rock) {
   Scene scene = impact("intrinsic");
   scene.config.materials[0].bedding = {0.5, 0.6, 15e9, 0.15, 6e9};
-  const Outcome expected = alone(scene, 300);
+  const Outcome expected = alone(scene, many);
   for (const int count : {2, 3, 8})
-    EXPECT_EQ(on_ranks(count, scene, 300).outcome, expected) << count << " ranks";
+    EXPECT_EQ(on_ranks(count, scene, many).outcome, expected) << count << " ranks";
 }
 
 TEST(FdemRanks, leave_the_same_state_where_all_flies_through_the_borders) {
   const Scene scene = box();
-  const Outcome expected = alone(scene, 700);
+  const Outcome expected = alone(scene, 600);
   EXPECT_GT(expected.energies[1], 0.0);  // blocks press on walls
   DomainConfig config;
   config.buffer = 0.05;  // they are shared out often
   for (const int count : {2, 3, 5, 7, 12, 32}) {
-    const Shared shared = on_ranks(count, scene, 700, config);
+    const Shared shared = on_ranks(count, scene, 600, config);
     EXPECT_EQ(shared.outcome, expected) << count << " ranks";
     EXPECT_GT(shared.counts.migrations, 8);
     EXPECT_GT(shared.counts.cuts, 2);
@@ -51,12 +53,12 @@ TEST(FdemRanks, leave_the_same_state_where_all_flies_through_the_borders) {
 // Nothing but the disc itself, far from where it was shared out, asks for it to be done anew.
 TEST(FdemRanks, leave_the_same_state_where_one_strays_far_and_hits) {
   const Scene scene = shot();
-  const Outcome expected = alone(scene, 7000);
+  const Outcome expected = alone(scene, 5500);
   EXPECT_LT(expected.energies[0], 0.9 * alone(scene, 100).energies[0]);  // it has hit
   DomainConfig config;
   config.balance = false;
   for (const int count : {3, 5, 7}) {
-    const Shared shared = on_ranks(count, scene, 7000, config);
+    const Shared shared = on_ranks(count, scene, 5500, config);
     EXPECT_EQ(shared.outcome, expected) << count << " ranks";
     EXPECT_GT(shared.counts.migrations, 1) << count << " ranks";
   }
@@ -79,13 +81,13 @@ TEST(FdemRanks, leave_the_same_state_where_steps_fall_and_grow) {
 TEST(FdemRanks, leave_the_same_state_in_mixed_precision) {
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     Scene scene = impact(joints);
-    const std::uint64_t in_double = alone(scene, 300).hash;
+    const std::uint64_t in_double = alone(scene, many).hash;
     scene.config.precision = "mixed";
-    const Outcome expected = alone(scene, 300);
+    const Outcome expected = alone(scene, many);
     EXPECT_GT(expected.cracks, 10U);
     EXPECT_NE(expected.hash, in_double);
     for (const auto& [count, threads] : {std::pair{1, 2}, {2, 1}, {3, 2}, {8, 1}, {32, 1}})
-      EXPECT_EQ(on_ranks(count, scene, 300, {}, threads).outcome, expected)
+      EXPECT_EQ(on_ranks(count, scene, many, {}, threads).outcome, expected)
           << count << " ranks of " << threads << " threads";
   }
 }
@@ -93,9 +95,9 @@ TEST(FdemRanks, leave_the_same_state_in_mixed_precision) {
 TEST(FdemRanks, leave_the_same_state_on_any_number_of_threads_each) {
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     const Scene scene = impact(joints);
-    const Outcome expected = alone(scene, 300);
+    const Outcome expected = alone(scene, many);
     for (const auto& [count, threads] : {std::pair{1, 3}, {2, 2}, {3, 7}, {7, 2}, {32, 3}})
-      EXPECT_EQ(on_ranks(count, scene, 300, {}, threads).outcome, expected)
+      EXPECT_EQ(on_ranks(count, scene, many, {}, threads).outcome, expected)
           << joints << ", " << count << " ranks of " << threads << " threads";
   }
 }
@@ -104,37 +106,37 @@ TEST(FdemRanks, leave_the_same_state_on_any_number_of_threads_each) {
 TEST(FdemRanks, leave_the_same_state_where_arrays_lie_in_another_space) {
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     const Scene scene = impact(joints);
-    EXPECT_EQ(on_ranks(3, scene, 300, {}, 1, Space::shadow).outcome, alone(scene, 300)) << joints;
+    EXPECT_EQ(on_ranks(3, scene, many, {}, 1, Space::shadow).outcome, alone(scene, many)) << joints;
   }
-  const Shared flying = on_ranks(3, box(), 700, {}, 1, Space::shadow);
-  EXPECT_EQ(flying.outcome, alone(box(), 700));
+  const Shared flying = on_ranks(3, box(), 400, {}, 1, Space::shadow);
+  EXPECT_EQ(flying.outcome, alone(box(), 400));
   EXPECT_GT(flying.counts.migrations, 4);
 }
 
 TEST(FdemRanks, leave_the_same_state_however_borders_and_copies_are_kept) {
   const Scene scene = impact("intrinsic");
-  const Outcome expected = alone(scene, 300);
+  const Outcome expected = alone(scene, many);
   DomainConfig config;
   config.balance = false;
-  EXPECT_EQ(on_ranks(4, scene, 300, config).outcome, expected);
+  EXPECT_EQ(on_ranks(4, scene, many, config).outcome, expected);
   config = {};
   config.imbalance = 0.0;
   config.refinement = 10;
   config.buffer = 0.02;
-  const Shared eager = on_ranks(5, scene, 300, config);
+  const Shared eager = on_ranks(5, scene, many, config);
   EXPECT_EQ(eager.outcome, expected);
   EXPECT_GT(eager.counts.cuts, 5);
   config.refinement = 2;
   config.buffer = 2.0;
-  EXPECT_EQ(on_ranks(3, scene, 300, config).outcome, expected);
+  EXPECT_EQ(on_ranks(3, scene, many, config).outcome, expected);
 }
 
 TEST(FdemRanks, leave_the_same_state_for_any_margin_of_search) {
   Scene scene = impact("intrinsic");
-  const std::uint64_t expected = alone(scene, 300).hash;
+  const std::uint64_t expected = alone(scene, many).hash;
   for (const double margin : {0.02, 0.8}) {
     scene.config.search.margin = margin;
-    EXPECT_EQ(on_ranks(4, scene, 300).outcome.hash, expected) << margin;
+    EXPECT_EQ(on_ranks(4, scene, many).outcome.hash, expected) << margin;
   }
 }
 
@@ -143,10 +145,10 @@ TEST(FdemRanks, write_the_same_bytes_and_go_on_from_those_of_any_other_number_of
   const std::string state = folder.file("state.br");
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     const Scene scene = impact(joints);
-    const Journal expected = journal(1, scene, 170, 300, state, "");
-    EXPECT_EQ(journal(3, scene, 170, 300, state, ""), expected);
+    const Journal expected = journal(1, scene, 110, many, state, "");
+    EXPECT_EQ(journal(3, scene, 110, many, state, ""), expected);
     for (const int count : {5, 2, 1})
-      EXPECT_EQ(journal(count, scene, 170, 300, state, state), expected);
+      EXPECT_EQ(journal(count, scene, 110, many, state, state), expected);
   }
 }
 

@@ -95,7 +95,7 @@ void compare(const AScene& scene, int steps, int every, const std::vector<std::s
 
 TEST(Frames, of_a_slab_that_breaks_are_the_same_by_parts) {
   Slab piece = slab_piece();
-  compare(piece, 300, 60, {"damage", "force", "contact_force", "velocity_z", "id", "state", ""},
+  compare(piece, 200, 40, {"damage", "force", "contact_force", "velocity_z", "id", "state", ""},
           true);
   piece.config.domain.show = true;  // partitions differ
   EXPECT_NE(frames(2, 1, piece, 0, 1, {"rank"})[0].png, frames(3, 1, piece, 0, 1, {"rank"})[0].png);
@@ -105,7 +105,7 @@ TEST(Frames, of_triangles_that_break_are_the_same_by_parts) {
   const std::vector<std::string> fields{"damage",   "fragment", "velocity",      "mode",
                                         "pressure", "time",     "contact_force", "stress_mises"};
   for (const char* joints : {"intrinsic", "extrinsic"})
-    compare(impact(joints), 300, 60, fields, true);
+    compare(impact(joints), 200, 40, fields, true);
 }
 
 /// A disc that strikes a plate with a crack across, which was open before.

@@ -80,17 +80,17 @@ Slab damped_piece() {
 
 TEST(Looks, at_a_slab_that_breaks_find_the_same) {
   const Slab piece = damped_piece();
-  const Seen expected = seen(1, piece, 300, 30);
+  const Seen expected = seen(1, piece, 200, 20);
   for (const int count : {2, 3, 5, 8, 32})
-    EXPECT_EQ(seen(count, piece, 300, 30), expected) << count << " ranks";
+    EXPECT_EQ(seen(count, piece, 200, 20), expected) << count << " ranks";
 }
 
 TEST(Looks, at_triangles_that_break_find_the_same) {
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     const Scene scene = probed(impact(joints), "plate");
-    const Seen expected = seen(1, scene, 300, 30);
+    const Seen expected = seen(1, scene, 200, 20);
     for (const int count : {2, 3, 5, 8, 32})
-      EXPECT_EQ(seen(count, scene, 300, 30), expected) << joints << ", " << count << " ranks";
+      EXPECT_EQ(seen(count, scene, 200, 20), expected) << joints << ", " << count << " ranks";
   }
 }
 
@@ -113,10 +113,10 @@ TEST(Looks, find_the_same_where_most_ranks_own_nothing) {
 
 // Stands for ranks that compute on GPUs: their arrays are out of the host's reach.
 TEST(Looks, find_the_same_where_arrays_lie_in_another_space) {
-  EXPECT_EQ(seen(3, damped_piece(), 300, 30, Space::shadow), seen(1, damped_piece(), 300, 30));
+  EXPECT_EQ(seen(3, damped_piece(), 200, 20, Space::shadow), seen(1, damped_piece(), 200, 20));
   for (const char* joints : {"intrinsic", "extrinsic"}) {
     const Scene scene = probed(impact(joints), "plate");
-    EXPECT_EQ(seen(3, scene, 300, 30, Space::shadow), seen(1, scene, 300, 30)) << joints;
+    EXPECT_EQ(seen(3, scene, 200, 20, Space::shadow), seen(1, scene, 200, 20)) << joints;
   }
 }
 

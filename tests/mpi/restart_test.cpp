@@ -65,13 +65,13 @@ TEST(RestartOnRanks, steps_that_are_done_twice_change_no_bit) {
   });
 }
 TEST(RestartOnRanks, spheres_end_alike_for_forty_pairs) {
-  expect_equal_ends(slab_piece(), 40, 150, 1);
+  expect_equal_ends(slab_piece(), 40, 120, 1);
 }
 TEST(RestartOnRanks, triangles_that_crack_end_alike_for_forty_pairs) {
-  expect_equal_ends(impact("intrinsic"), 40, 200, 2);
+  expect_equal_ends(impact("intrinsic"), 40, 160, 2);
 }
 TEST(RestartOnRanks, triangles_that_move_as_one_end_alike_for_twenty_pairs) {
-  expect_equal_ends(impact("extrinsic"), 20, 200, 3);
+  expect_equal_ends(impact("extrinsic"), 20, 160, 3);
 }
 
 }  // namespace restart_test

@@ -30,7 +30,7 @@ dem::World small_world(int threads, const std::vector<std::string>& overrides = 
   return dem::make_world(small_config(overrides), small_model(), exec);
 }
 /// Hash after the impact has begun to break the slab.
-std::uint64_t hash_after(dem::World w, int steps = 600) {
+std::uint64_t hash_after(dem::World w, int steps = 400) {
   while (w.step < steps) dem::advance(w, {1e300, steps});
   EXPECT_GT(dem::count(w).broken_of(dem::LinkKind::concrete), 100);
   return dem::state_hash(w);
@@ -176,7 +176,7 @@ TEST(SameBits, of_links_that_wear_and_crush) {
       dem::World w = dem::make_world(config, small_model(), exec);
       const Buffer<double> before = w.concrete.length;
       w.lanes = std::min(lanes, widest_lanes());
-      for (int i = 0; i < 600; ++i) dem::step(w);
+      for (int i = 0; i < 300; ++i) dem::step(w);
       const EnergyBalance now = dem::balance(w);
       if (hash == 0) {
         hash = dem::state_hash(w);
