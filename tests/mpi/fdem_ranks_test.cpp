@@ -108,8 +108,8 @@ TEST(FdemRanks, leave_the_same_state_where_arrays_lie_in_another_space) {
     const Scene scene = impact(joints);
     EXPECT_EQ(on_ranks(3, scene, many, {}, 1, Space::shadow).outcome, alone(scene, many)) << joints;
   }
-  const Shared flying = on_ranks(3, box(), 400, {}, 1, Space::shadow);
-  EXPECT_EQ(flying.outcome, alone(box(), 400));
+  const Shared flying = on_ranks(3, box(), 700, {}, 1, Space::shadow);
+  EXPECT_EQ(flying.outcome, alone(box(), 700));
   EXPECT_GT(flying.counts.migrations, 4);
 }
 
