@@ -7,5 +7,5 @@ cd "$(dirname "$0")/.."
 
 scripts/setup.sh yade
 breccia=build/release/breccia
-[ -x "$breccia" ] || { cmake --preset release && cmake --build --preset release --target breccia; }
+[ -x "$breccia" ] || { cmake --preset test && cmake --build --preset test --target breccia; }
 python3 bench/compare_with_yade.py "$breccia" "$@"

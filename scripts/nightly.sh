@@ -10,7 +10,7 @@ export JOBS=${JOBS:-$(nproc)} WITHOUT
 hours=${HOURS:-8}
 mkdir -p build/nightly
 [ -z "$WITHOUT" ] || echo "without $WITHOUT"
-cmake --preset release > build/nightly/build.log 2>&1 && cmake --build build/release -j "$JOBS" >> build/nightly/build.log 2>&1 ||
+cmake --preset release -DBR_TESTS=ON -DBR_BENCH=ON > build/nightly/build.log 2>&1 && cmake --build build/release -j "$JOBS" >> build/nightly/build.log 2>&1 ||
   { echo "build/release does not build: build/nightly/build.log"; exit 1; }
 rm -f build/nightly/wrong
 part() {  # NAME SHARE COMMAND...
