@@ -21,6 +21,7 @@ import localisation
 import published_tests
 import reinforced_tests
 import rock_experiments
+import rock_library
 import rock_tables
 import speed_tables
 
@@ -109,6 +110,8 @@ MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambd
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),
           "published": lambda test: published_tests.markdown(lines_of("published"), test),
           "experiments": lambda test: rock_experiments.markdown(lines_of("rock_experiments"), test),
+          "calibrations": lambda which: rock_library.calibration_table(lines_of("calibrations"), which),
+          "rocks": lambda which: rock_library.recovery_table(lines_of("rocks"), which),
           "localisation": lambda _: localisation.markdown(lines_of("localisation"))}
 
 

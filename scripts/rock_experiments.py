@@ -7,6 +7,7 @@
 granite     plate of 50 x 100 mm of granite-lac-du-bonnet of `breccia materials` under pressure on its sides; it was calibrated without pressure and with 10 MPa,
             on meshes 1 and 2: meshes from 3 on here
 hwangdeung  plate and disc of `breccia test` with the joints that HOSS has for Hwangdeung granite
+wings       cases/wing_crack on meshes of five edges: first broken joint and strength
 
 Cases and results are in out/rock_experiments/; called again, only what is missing is run.
 """
@@ -26,6 +27,7 @@ WIDTH, HEIGHT, DISC = 50e-3, 100e-3, 25e-3
 RATE, RAMP = 4.0, 1e-4  # of strain [1/s]; until pressure and speed are full [s]
 SIGMA_CI, M_I, M_RANGE = 200.0, 32.0, (29.0, 35.0)  # Lac du Bonnet granite; granites in Hoek's table, 32 +- 3
 GRANITE = [{"pressure": p} for p in (0, 20, 40)]
+WINGS = [{"edge": edge} for edge in ("0.68", "0.70", "0.72", "0.85", "1.0")]  # mm
 HWANGDEUNG = {"plate": 209.0, "disc": 9.2}  # measured, MPa
 HOSS = {"plate": 212.1, "disc": 9.9}
 
@@ -106,13 +108,16 @@ def disc(seed, rock, tension, young):
 
 
 def case(test, setting, seed):
+    if test == "wings":
+        text = (ROOT / "cases/wing_crack/case.toml").read_text()
+        return text.replace('mesh_size = "0.7 mm"', f'mesh_size = "{setting["edge"]} mm"', 1).replace("frames = 34", "frames = 0")
     if test == "granite":
         p = setting["pressure"]
         return plate(seed, LDB, p, hoek_brown(p, M_RANGE[1]), 69e3)
     return plate(seed, HD, 0, 225.0, 52e3) if setting["specimen"] == "plate" else disc(seed, HD, 9.2, 55e3)
 
 
-TESTS = {"granite": (GRANITE, 3), "hwangdeung": ([{"specimen": s} for s in HWANGDEUNG], 1)}  # settings, first seed
+TESTS = {"granite": (GRANITE, 3), "hwangdeung": ([{"specimen": s} for s in HWANGDEUNG], 1), "wings": (WINGS, 1)}  # settings, first seed
 RECORD = ["test", "setting", "seed", "commit", "device", "hash", "seconds", "quantity", "value"]
 
 
@@ -132,6 +137,10 @@ def measured(test, setting, folder):
     if setting.get("specimen") == "disc":
         force = max(0.5 * abs(r["force_top"] - r["force_bottom"]) for r in rows_of(folder))
         return {"strength": 1e-6 * force / (math.pi * DISC)}
+    if test == "wings":
+        first = json.loads((folder / "summary.json").read_text())["fracture"]["first_break"]
+        stress = [(r["time"], 0.5e-6 * (abs(r["force_top"]) + abs(r["force_bottom"])) / WIDTH) for r in rows_of(folder)]
+        return {"first": min(stress, key=lambda s: abs(s[0] - first))[1], "strength": max(s for _, s in stress)}
     strain, stress = curve(folder)
     # the slope past the confinement, where strains are of the axial load alone
     low, high = ((1 - s) * setting.get("pressure", 0) + s * max(stress) for s in (0.15, 0.4))
@@ -188,6 +197,12 @@ def markdown(records, test):
             p, mean = json.loads(setting)["pressure"], statistics.mean(values["strength"])
             lines.append(f"| {p} | {len(values['strength'])} | {spread(values['strength'], 0)} | {hoek_brown(p):.0f} ({hoek_brown(p, M_RANGE[0]):.0f} to {hoek_brown(p, M_RANGE[1]):.0f}) | "
                          f"{100 * mean / hoek_brown(p) - 100:+.0f} % | {spread(values['young'], 1)} | {spread(values['strain'], 3)} |")
+    elif test == "wings":
+        lines = ["| edges, mm | first broken joint, MPa (7.0; linear elastic fracture mechanics 5.1 to 14.6) | strength, MPa (32 to 33) |", "|---" * 3 + "|"]
+        lines += [f"| {json.loads(setting)['edge']} | {values['first'][0]:.2f} | {values['strength'][0]:.1f} |" for setting, values in found.items()]
+        first, strength = ([values[name][0] for values in found.values()] for name in ("first", "strength"))
+        lines.append(f"| mean of {len(found)} | {spread(first, 1)}, **{100 * statistics.mean(first) / 7.0 - 100:+.0f} %** | "
+                     f"{spread(strength, 1)}, **{100 * statistics.mean(strength) / 32.5 - 100:+.0f} %** |")
     else:
         lines = ["| specimen | n | here, MPa | measured, MPa | misfit | HOSS |", "|---" * 6 + "|"]
         for setting, values in found.items():
@@ -239,7 +254,8 @@ def main():
     OUT.mkdir(parents=True, exist_ok=True)
     if given.plot:
         return plot(given.plot)
-    published_runs.run_all(given.jobs, run, [(n, s, TESTS[n][1] + k, given.binary) for k in range(given.seeds) for n in given.names for s in TESTS[n][0]])
+    published_runs.run_all(given.jobs, run, [(n, s, TESTS[n][1] + k, given.binary) for k in range(given.seeds) for n in given.names
+                                          if k == 0 or n != "wings" for s in TESTS[n][0]])
     records = list(collected())
     for test in TESTS:
         print(markdown(records, test) + "\n")
