@@ -138,7 +138,8 @@ def recovery(lines, materials):
                     continue
                 mean = statistics.mean(values)
                 spread = f" +- {statistics.stdev(values):.{digits}f}" if len(values) > 1 else ""
-                cells.append(f"{mean:.{digits}f}{spread}, {marked(100 * (mean / target[name] - 1), name)}")
+                cells.append(f"{mean:.{digits}f}{spread}, {marked(100 * (mean / target[name] - 1), name)}"
+                             + ("" if len(values) == len(free) else f" (n = {len(values)})"))
             out.append(f"| {NAMES.get(material, material)} | {size:,} | " + " | ".join(cells) + f" | {len(free)} |")
     return "\n".join(out)
 
