@@ -117,7 +117,7 @@ inline constexpr NamedQuantity quantities[] = {
     {"strain_xz", "-", {Quantity::Kind::strain, 0, 2}, in_3d},
     {"damage", "-", {Quantity::Kind::damage}, in_3d | in_plane | in_frames},
     {"broken", "-", {Quantity::Kind::broken}, in_3d | in_plane},
-    {"opening", "m", {Quantity::Kind::opening}, in_mesh | in_frames},
+    {"opening", "m", {Quantity::Kind::opening}, in_3d | in_plane | in_frames},
     {"slip", "m", {Quantity::Kind::slip}, in_mesh | in_frames},
     {"axial_force", "N", {Quantity::Kind::axial_force}, of_bolt},
     {"shear_force", "N", {Quantity::Kind::shear_force}, of_bolt},

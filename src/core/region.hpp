@@ -38,4 +38,10 @@ inline bool in_round(const Vec3& center, double radius, const std::string& aroun
   return dot(away, away) <= radius * radius * (1.0 + 1e-9);
 }
 
+/// A point as seen along an axis, in the plane of the two that follow it: (y, z), (z, x) or (x, y).
+/// @param axis  x, y, or else z
+inline Vec2 seen_along(const std::string& axis, const Vec3& x) {
+  return axis == "x" ? Vec2{x.y, x.z} : axis == "y" ? Vec2{x.z, x.x} : Vec2{x.x, x.y};
+}
+
 }  // namespace breccia

@@ -22,7 +22,7 @@ struct ServoConfig {
   double speed = 0.0;         ///< 0: there is no servo  [m/s]
   double slow = 0.0;          ///< kinetic over elastic energy; 0: never  [-]
   double gain = 1.0;          ///<  [-]
-  double mass = no_limit;     ///< of its plate; no limit: it has none  [kg]
+  double mass = 0.0;          ///< of its plate; no limit: it has none  [kg]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -39,12 +39,12 @@ struct ServoConfig {
         "while kinetic over elastic energy is above this, its greatest speed is less in the same "
         "ratio; 0: never");
     key("gain", gain, "-", Range{0.0, 2.0, Open::low},
-        "how fast it answers: 1 takes half of what is missing in the time between two corrections, "
-        "if nothing gives way but what it touches");
+        "mass = inf: how fast it answers: 1 takes half of what is missing in the time between two "
+        "corrections, if nothing gives way but what it touches");
     key("mass", mass, "kg", not_negative,
         "of a plate with the force on its back, with all that a support holds (in a plane case per "
-        "metre of thickness): Newton's law moves it in every step; 0: no inertia, or as little as "
-        "the step can bear; left out (inf): no plate, its velocity is corrected every 10 steps");
+        "metre of thickness): Newton's law moves it in every step; left out (0): no inertia, or as "
+        "little as the step can bear; inf: no plate, its velocity is corrected every 10 steps");
   }
   bool is_on() const { return speed > 0.0; }
   bool is_plate() const { return is_on() && mass < no_limit; }

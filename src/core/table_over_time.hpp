@@ -27,6 +27,16 @@ struct OverTime {
       : value{static_cast<double>(parts)...} {}
 
   bool is_table() const { return !times.empty(); }
+  /// The value where there is no table, else that at a time since its begin.
+  Value at(double time) const {
+    if (!is_table()) return value;
+    std::size_t next = 0;  // the first row later than that
+    while (next < times.size() && times[next] <= time) ++next;
+    if (next == 0) return values.front();
+    if (next == times.size()) return values.back();
+    const double share = (time - times[next - 1]) / (times[next] - times[next - 1]);
+    return values[next - 1] + share * (values[next] - values[next - 1]);
+  }
 };
 
 /// The number along axis k of a value.

@@ -55,6 +55,16 @@ struct FreeWall {
   }
 };
 
+/// How a wall turns that a table tells.
+struct WallSpin {
+  std::array<ScaledAmplitude, 3> about;  ///< x, y, z  [rad/s]
+
+  Vec3 at(double time) const {
+    const auto part = [&](const ScaledAmplitude& of) { return of.scale * of.amplitude.at(time); };
+    return {part(about[0]), part(about[1]), part(about[2])};
+  }
+};
+
 /// Surfaces of walls of triangles, side by side.
 struct WallMeshes {
   /// Nodes of a wall's tree; none: it is no mesh.
@@ -93,7 +103,8 @@ struct Case {
   std::vector<std::uint8_t> removed;  ///< stage; 1: taken out by now  (bodies)
   std::vector<std::string> wall_names;
   std::vector<Vec3> wall_starts;      ///< points of walls at the start  [m]  (walls)
-  std::vector<double> wall_friction;  ///< below 0: that of all contacts  [-]  (walls)
+  std::vector<double> wall_friction;  ///< stage; below 0: that of all contacts  [-]  (walls)
+  std::vector<WallSpin> wall_spins;   ///< stage; empty: none changes between stages  (walls)
   std::vector<FreeWall> free_walls;   ///< empty: none has mass  (walls)
   std::vector<Vec3> dashpots;  ///< of absorbing supports over the square of an element's radius, of
                                ///< others 0  [kg/(s m2)]  (supports)

@@ -213,41 +213,100 @@ struct Mark {
   View<std::uint8_t> marked;
   BR_HD void operator()(Index i) const { marked[members[i]] = 1; }
 };
-/// 1 for each broken link of a set of elements, 0 for each other one.
-template <class Broken>
-struct ReadBroken {
+/// Links of a set of elements, by their middles. @tparam Value  value(i, id) of one: its Readings
+template <class Value>
+struct ReadLinks {
   OwnedView owned;
   ReadBox box;
   View<const std::uint8_t> marked;  ///< empty: all elements
   View<const ElementState> state;
   View<const GlobalId> id;
   View<const Index> a, b;
-  Broken is_broken;
+  Index first;
+  Value value;
 
-  BR_HD Readings operator()(Index i) const {
-    const Index p = a[i], q = b[i];
+  BR_HD Readings operator()(Index k) const {
+    const Index i = first + k, p = a[i], q = b[i];
     if (!owned(p) || (marked.size > 0 && marked[p] == 0 && marked[q] == 0)) return Readings();
     if (!box.holds(0.5 * (state[p].position + state[q].position))) return Readings();
-    return Readings(is_broken(i) ? 1.0 : 0.0, id[p]);
+    return value(i, id[p]);
+  }
+};
+/// 1 for each broken link, 0 for each other one.
+template <class Broken>
+struct WhetherBroken {
+  Broken is_broken;
+  BR_HD Readings operator()(Index i, GlobalId at) const {
+    return Readings(is_broken(i) ? 1.0 : 0.0, at);
+  }
+};
+/// How far concrete links that soften or are broken are open beyond what the force that they still
+/// bear asks for.
+template <class Number>
+struct OpeningOfConcrete {
+  ConcreteLink law;
+  View<const ElementState> state;
+  View<const Index> a, b;
+  View<const double> length, stiffness, area, rate;
+  View<const Number> largest;
+
+  BR_HD Readings operator()(Index i, GlobalId at) const {
+    const ElementState &s = state[a[i]], &t = state[b[i]];
+    const double touching = s.radius + t.radius, most = largest[i];
+    LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
+    if (law.rated()) link.factor = law.factor_of(link, most, rate[i]);
+    if (most >= 0.0 && !(law.damage(link, most) > 0.0)) return Readings();
+    const double stretch = norm(t.position - s.position) - length[i];
+    return Readings(max(0.0, stretch - law.normal_force(link, stretch, most) / link.stiffness), at);
+  }
+};
+/// Of facets of LDPM, what is not elastic of their strain across; 0: none.
+struct OpeningOfFacet {
+  LdpmFacet law;
+  View<const LdpmPlace> place;
+  View<const LdpmFacetState> facet;
+
+  BR_HD Readings operator()(Index i, GlobalId at) const {
+    const double open = law.opening(place[i].length, facet[i]);
+    return open > 0.0 ? Readings(open, at) : Readings();
   }
 };
 
-Readings read_broken(const World& w, const ProbeConfig& p, View<const Index> members) {
+Readings read_links(const World& w, const ProbeConfig& p, View<const Index> members,
+                    Quantity::Kind kind) {
   Buffer<std::uint8_t> marked(w.exec.space);
   if (!p.on.empty()) {
     copy_to(marked, std::vector<std::uint8_t>(static_cast<std::size_t>(w.elements.size()), 0));
     for_each(w.exec, members.size, Mark{members, marked.view()});
   }
   Readings all;
+  const auto state = w.elements.state.view();
+  const auto add = [&](const auto& set, Index first, Index end, const auto& value) {
+    using Value = std::remove_cv_t<std::remove_reference_t<decltype(value)>>;
+    all = all + fold(w.exec, end - first, Readings{},
+                     ReadLinks<Value>{w.domain.owned_view(), ReadBox(p.min, p.max),
+                                      std::as_const(marked).view(), state, w.elements.id.view(),
+                                      set.a.view(), set.b.view(), first, value},
+                     Sum{});
+  };
+  const auto add_openings = [&](const auto& set, auto number) {
+    using Number = decltype(number);
+    constexpr LinkKind of = std::remove_reference_t<decltype(set)>::kind;
+    for (const auto& g : set.groups) {
+      if constexpr (of == LinkKind::concrete)
+        add(set, g.begin, g.end,
+            OpeningOfConcrete<Number>{g.law, state, set.a.view(), set.b.view(), set.length.view(),
+                                      set.stiffness.view(), set.area.view(), set.rate.view(),
+                                      set.kept.template as<Number>().opening.view()});
+      else if constexpr (of == LinkKind::ldpm)
+        add(set, g.begin, g.end, OpeningOfFacet{g.law, set.place.view(), set.state.view()});
+    }
+  };
   w.each_set([&](const auto& set) {
     with_number(w.exec.precision, [&](auto number) {
+      if (kind == Quantity::Kind::opening) return add_openings(set, number);
       const auto is_broken = set.template broken<decltype(number)>();
-      all = all + fold(w.exec, set.size(), Readings{},
-                       ReadBroken<std::remove_const_t<decltype(is_broken)>>{
-                           w.domain.owned_view(), ReadBox(p.min, p.max),
-                           std::as_const(marked).view(), w.elements.state.view(),
-                           w.elements.id.view(), set.a.view(), set.b.view(), is_broken},
-                       Sum{});
+      add(set, 0, set.size(), WhetherBroken<std::remove_const_t<decltype(is_broken)>>{is_broken});
     });
   });
   return all;
@@ -263,7 +322,8 @@ Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
   const Elements& e = w.elements;
   const Quantity quantity = quantity_named(p.quantity).quantity;
   if (quantity.kind == Quantity::Kind::stress) return read_stress(w, p);
-  if (quantity.kind == Quantity::Kind::broken) return read_broken(w, p, members);
+  if (quantity.kind == Quantity::Kind::broken || quantity.kind == Quantity::Kind::opening)
+    return read_links(w, p, members, quantity.kind);
   Buffer<double> lost(w.exec.space);
   if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
   return fold(w.exec, p.on.empty() ? e.size() : members.size, Readings{},

@@ -92,7 +92,8 @@ struct Case {
                                        ///< triangles of the whole mesh)
   std::vector<Index> materials_of;     ///< likewise, else empty  (triangles of the whole mesh)
   std::vector<Vec2> middles;           ///< likewise, at the start  [m]
-  Buffer<JointBond> bonds;             ///< indexed by Joints::law  (laws of joints)
+  Buffer<JointBond> bonds;             ///< stage; indexed by Joints::law  (laws of joints)
+  std::vector<Index> base_bond;        ///< the one of the case that each is made of  (bonds)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
   Buffer<Hold> holds;                 ///< stage; indexed by Triangles::hold  (held triangles)
   /// Each vertex of the mesh: bit 0: at the border or an edge that nothing joins, bit 1 such

@@ -63,7 +63,7 @@ struct Case {
   std::vector<Index> materials_of;            ///< likewise, else empty  (tetrahedra of the whole
                                               ///< mesh)
   std::vector<Vec3> middles;                  ///< likewise, at the start  [m]
-  Buffer<JointBond> bonds;                    ///< indexed by Joints::law  (laws of joints)
+  Buffer<JointBond> bonds;                    ///< stage; indexed by Joints::law  (laws of joints)
   Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
   Buffer<Hold> holds;                 ///< stage; indexed by Tetrahedra::hold
   /// Each vertex of the mesh: bit 0: at the border or a face that nothing joins, bit 1 such a face

@@ -102,10 +102,11 @@ struct Shape {
   static auto& sides_of_set(const Model::FaceSet& set) { return set.faces; }
   /// Whether a point lies in the forms of a region besides its box.
   static bool is_within(const RegionConfig& region, const Vec3& x) {
-    return !(region.radius > 0.0) || in_round(region.center, region.radius, region.around, x);
+    return (!(region.radius > 0.0) || in_round(region.center, region.radius, region.around, x)) &&
+           (region.polygon.empty() || in_polygon(region.polygon, seen_along(region.around, x)));
   }
   static bool is_plain(const RegionConfig& region) {
-    return region.around.empty() || !(region.radius > 0.0);
+    return region.polygon.empty() && (region.around.empty() || !(region.radius > 0.0));
   }
 
   // Ranks (fdem3/ranks.cpp).

@@ -108,6 +108,7 @@ void load_triaxially(dem::Config& c, const Vec3& size, double pressure) {
     wall.servo.pressure.times = {0.0, 2e-3 * slower, 3e-3 * slower};
     wall.servo.pressure.values = {0.0, 0.9 * pressure, pressure};
     wall.servo.speed = 1.0;
+    wall.servo.mass = no_limit;
     wall.servo.area = area;
     c.walls.push_back(wall);
   };

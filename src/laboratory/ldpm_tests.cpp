@@ -137,6 +137,7 @@ void squeeze_and_shear(dem::Config& c, const SpecimenTest& test) {
     servo.area = areas[axis];
     servo.speed = 1.0;
     servo.gain = 2.0;
+    servo.mass = no_limit;
   }
   dem::StageConfig confine, shear;
   confine.name = "confine";

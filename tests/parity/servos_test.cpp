@@ -20,12 +20,16 @@
 namespace breccia {
 namespace servos_test {
 
-ServoConfig pushing(const OverTime<double>& force, double speed) {
+/// @param mass  of its plate; no limit: none, corrections alone  [kg]
+ServoConfig pushing(const OverTime<double>& force, double speed, double mass = no_limit) {
   ServoConfig servo;
   servo.force = force;
   servo.speed = speed;
+  servo.mass = mass;
   return servo;
 }
+/// What a case has that says nothing of a mass, and servos that correct every ten steps.
+const double masses[] = {ServoConfig{}.mass, no_limit};
 
 constexpr int spheres = 6;
 constexpr double push = 2e3;  ///<  [N]
@@ -68,18 +72,22 @@ void run_to(Method& method, double end) {
 }
 
 TEST(Servo, wall_presses_a_column_as_far_as_its_springs_say) {
-  const dem::testing::Scene s = column();
-  const auto method = make_method(s.config, s.model, {}, nullptr);
-  run_to(*method, 0.02);
-  const std::vector<double> probes = method->probes();
-  EXPECT_NEAR(probes[0], push, 1e-3 * push);
-  // Two contacts with walls and five between spheres, of whose stiffness World knows the constants.
-  const dem::World w = s.world();
-  const double between = w.given->contact_pairs.data()[0].normal * 0.01 / 2.0;
-  const double at_wall = w.given->wall_pairs.data()[0].normal * 0.01 / 2.0;
-  const double shorter = push * (2.0 / at_wall + (spheres - 1) / between);
-  EXPECT_NEAR(0.02 * spheres - probes[1], shorter, 2e-3 * shorter);
-  EXPECT_LT(method->energy().error_relative, 1e-2);
+  for (const double mass : masses) {
+    dem::testing::Scene s = column();
+    s.config.walls.back().servo = pushing(push, 0.5, mass);
+    const auto method = make_method(s.config, s.model, {}, nullptr);
+    run_to(*method, 0.02);
+    const std::vector<double> probes = method->probes();
+    EXPECT_NEAR(probes[0], push, 1e-3 * push) << mass;
+    // Two contacts with walls and five between spheres, of whose stiffness World knows the
+    // constants.
+    const dem::World w = s.world();
+    const double between = w.given->contact_pairs.data()[0].normal * 0.01 / 2.0;
+    const double at_wall = w.given->wall_pairs.data()[0].normal * 0.01 / 2.0;
+    const double shorter = push * (2.0 / at_wall + (spheres - 1) / between);
+    EXPECT_NEAR(0.02 * spheres - probes[1], shorter, 2e-3 * shorter) << mass;
+    EXPECT_LT(method->energy().error_relative, 1e-2) << mass;
+  }
 }
 
 TEST(Servo, wall_follows_a_table_of_its_force) {
@@ -87,31 +95,36 @@ TEST(Servo, wall_follows_a_table_of_its_force) {
   OverTime<double> up;
   up.times = {0.0, 5e-3, 45e-3};
   up.values = {0.5 * push, 0.5 * push, 1.5 * push};
-  s.config.walls.back().servo = pushing(up, 0.5);
-  const auto method = make_method(s.config, s.model, {}, nullptr);
-  for (double t = 20e-3; t < 45e-3; t += 5e-3) {
-    run_to(*method, t);
-    const double asked = push * (0.5 + (method->time() - 5e-3) / 40e-3);
-    EXPECT_NEAR(method->probes()[0], asked, 0.01 * asked) << t;
+  for (const double mass : masses) {
+    s.config.walls.back().servo = pushing(up, 0.5, mass);
+    const auto method = make_method(s.config, s.model, {}, nullptr);
+    for (double t = 20e-3; t < 45e-3; t += 5e-3) {
+      run_to(*method, t);
+      const double asked = push * (0.5 + (method->time() - 5e-3) / 40e-3);
+      EXPECT_NEAR(method->probes()[0], asked, 0.01 * asked) << t << ", " << mass;
+    }
   }
 }
 
 TEST(Servo, support_presses_a_plate_as_far_as_hooke_says) {
-  const fdem::testing::Scene s = plate();
-  const auto method = make_method(s.config, s.model, {}, nullptr);
-  run_to(*method, 3e-3);
-  const std::vector<double> probes = method->probes();
-  EXPECT_NEAR(probes[0], 2e5, 1e-3 * 2e5);  // what the plate does to it
-  const double shorter = 5e6 * 0.1 / 30e9;
-  EXPECT_NEAR(0.05 - probes[1], shorter, 0.01 * shorter);
-  EXPECT_LT(method->energy().error_relative, 1e-2);
+  for (const double mass : masses) {
+    fdem::testing::Scene s = plate();
+    s.config.supports.back().servo.mass = mass;
+    const auto method = make_method(s.config, s.model, {}, nullptr);
+    run_to(*method, 3e-3);
+    const std::vector<double> probes = method->probes();
+    EXPECT_NEAR(probes[0], 2e5, 1e-3 * 2e5) << mass;  // what the plate does to it
+    const double shorter = 5e6 * 0.1 / 30e9;
+    EXPECT_NEAR(0.05 - probes[1], shorter, 0.01 * shorter) << mass;
+    EXPECT_LT(method->energy().error_relative, 1e-2) << mass;
+  }
 }
 
 /// Joints and small triangles make steps so short that a plate answers a servo by the waves that it
 /// takes up.
 TEST(Servo, follows_a_table_where_joints_rule_the_step) {
   using fdem::testing::far;
-  for (const double edge : {0.01, 0.005}) {
+  for (const auto& [edge, mass] : {std::pair{0.01, masses[1]}, {0.005, masses[1]}, {0.01, 0.0}}) {
     fdem::testing::Scene s;
     fdem::MaterialConfig& rock = s.material(30e9, 0.2, 2600.0);
     rock.damping = 0.5;
@@ -126,6 +139,7 @@ TEST(Servo, follows_a_table_where_joints_rule_the_step) {
       support.servo.pressure.values = {0.0, -4.5e6 * side, -5e6 * side};
       support.servo.area = 0.05;
       support.servo.speed = 1.0;
+      support.servo.mass = mass;
     }
     s.config.time.end = 1.0;
     s.config.probes = {{"force", "right", "force_x", "sum"}};
@@ -136,7 +150,8 @@ TEST(Servo, follows_a_table_where_joints_rule_the_step) {
       const double asked = now < 2e-4   ? 4.5e6 * now / 2e-4
                            : now < 3e-4 ? 4.5e6 + 0.5e6 * (now - 2e-4) / 1e-4
                                         : 5e6;
-      EXPECT_NEAR(method->probes()[0], 0.05 * asked, 0.01 * 0.05 * 5e6) << edge << " m, " << t;
+      EXPECT_NEAR(method->probes()[0], 0.05 * asked, 0.01 * 0.05 * 5e6)
+          << edge << " m, " << t << ", " << mass;
     }
     EXPECT_LT(method->energy().error_relative, 1e-3);
   }
@@ -272,8 +287,28 @@ TEST(Servo, of_supports_of_spheres_has_the_same_bits_everywhere) {
 TEST(Servo, of_supports_of_triangles_has_the_same_bits_everywhere) {
   fdem::testing::Scene s = plate();
   expect_alike(s, 2e-5);
+  s.config.supports.back().servo.mass = no_limit;
+  expect_alike(s, 2e-5);
   s.config.supports.back().servo.mass = 2.0;
   expect_alike(s, 2e-5);
+}
+
+/// Gravity that sways by a table, and a floor that a table turns.
+TEST(Tables, of_gravity_and_spin_have_the_same_bits_everywhere) {
+  dem::testing::Scene grains = column();
+  grains.config.walls.pop_back();
+  grains.config.probes.clear();
+  grains.config.gravity.times = {0.0, 1e-3};
+  grains.config.gravity.values = {{}, {3.0, 0.0, -9.81}};
+  grains.config.walls.back().spin.times = {0.0, 2e-3};
+  grains.config.walls.back().spin.values = {{}, {0.0, 0.0, 500.0}};
+  expect_alike(grains, 2e-3);
+  fdem::testing::Scene flat = plate();
+  flat.config.supports.pop_back();
+  flat.config.probes.clear();
+  flat.config.gravity.times = {0.0, 1e-5};
+  flat.config.gravity.values = {{}, {1e4, 0.0}};
+  expect_alike(flat, 2e-5);
 }
 
 /// Platens without inertia know what comes by their contacts, whose other sides another rank may
@@ -386,9 +421,12 @@ TEST(Servo, that_cannot_act_is_a_problem) {
   head.fix = {"x"};
   static_cast<ServoConfig&>(head.servo) = pushing(1.0, 1.0);
   head.servo.axis = "z";
+  head.servo.mass = 1.0;
+  head.servo.gain = 0.5;
   s.config.supports = {head};
   std::string said;
   for (const std::string& problem : dem::stage_problems(s.config)) said += problem + "\n";
+  EXPECT_NE(said.find("support.head.servo.gain: a plate has none"), std::string::npos) << said;
   EXPECT_NE(said.find("wall.top: it has a velocity and a servo"), std::string::npos) << said;
   EXPECT_NE(said.find("wall.top.servo.area: the pressure needs an area"), std::string::npos);
   EXPECT_NE(said.find("support.head.servo.axis = \"z\": it does not fix that direction"),

@@ -71,7 +71,7 @@ using StagePart = PartOf<Stage, shared_stage_keys>;
 
 /// [[stage]]
 struct StageConfig : StageEnd {
-  Vec3 gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
+  OverTime<Vec3> gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
   StagePart<dem::StageConfig> spheres;
   StagePart<fdem3::StageConfig> tetrahedra;
 
@@ -81,7 +81,9 @@ struct StageConfig : StageEnd {
     Without<std::remove_reference_t<Visit>, decltype(of_parts)> shared{key, of_parts};
     StageEnd::each_key(shared);
     key("gravity", gravity, "m/s2", any_number,
-        "acceleration of gravity from its beginning on; left out (inf): as before");
+        "acceleration of gravity from its beginning on, or a table of it over time since then; "
+        "left "
+        "out (inf): as before");
     key.table("spheres", spheres, "what changes of spheres and walls as it begins");
     key.table("tetrahedra", tetrahedra, "what changes of tetrahedra as it begins");
   }
@@ -150,7 +152,7 @@ struct Config : CaseConfig {
   }
 
   std::vector<std::string> methods{"dem3d", "fdem3d"};
-  Vec3 gravity{};  ///< [m/s2]
+  OverTime<Vec3> gravity{};  ///< [m/s2]
   Part<dem::Config> spheres;
   Part<fdem3::Config> tetrahedra;
   CouplingConfig coupling;
@@ -163,7 +165,8 @@ struct Config : CaseConfig {
     key("method", methods, "[\"dem3d\", \"fdem3d\"]: spheres and tetrahedra in one run");
     Without<std::remove_reference_t<Visit>, decltype(of_one)> others{key, of_one};
     CaseConfig::each_key(others);
-    key("gravity", gravity, "m/s2", Range{-1e6, 1e6}, "acceleration of gravity");
+    key("gravity", gravity, "m/s2", Range{-1e6, 1e6},
+        "acceleration of gravity, or a table [[t, x, y, z], ...] of it over time");
     key.table("spheres", spheres, "keys of dem3d: what consists of spheres, and walls");
     key.table("tetrahedra", tetrahedra, "keys of fdem3d: what consists of tetrahedra");
     key.table("coupling", coupling, "how spheres press on faces of tetrahedra");

@@ -264,7 +264,8 @@ struct SearchConfig {
 
 /// A whole DEM case.
 struct Config : CaseConfig {
-  Vec3 gravity{};              ///<  [m/s2]
+  OverTime<Vec3> gravity{};    ///<  [m/s2]
+  double gravity_begin = 0.0;  ///< no key: where the time of its table begins  [s]
   double local_damping = 0.0;  ///< lambda_d, quasi-static runs only  [-]
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;
@@ -281,7 +282,9 @@ struct Config : CaseConfig {
   template <class Visit>
   void each_key(Visit&& key) {
     CaseConfig::each_key(key);
-    key("gravity", gravity, "m/s2", Range{-1e6, 1e6}, "acceleration of gravity");
+    key("gravity", gravity, "m/s2", Range{-1e6, 1e6},
+        "acceleration of gravity, or a table [[t, x, y, z], ...] of it over time, as it is in the "
+        "middle of each ten steps");
     key("local_damping", local_damping, "-", Range{0.0, 1.0, Open::high},
         "share of each force that opposes motion (Cundall), for quasi-static runs only");
     key.named("material", materials, "the materials");

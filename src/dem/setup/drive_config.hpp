@@ -29,7 +29,7 @@ struct WallConfig {
   double length = 0.0;     ///< of cylinder or box, behind the face  [m]
   Vec2 size{};             ///< of a box's face  [m]
   Vec3 along{};            ///< of a box; zero: some direction across the normal  [-]
-  Vec3 spin{};             ///<  [rad/s]
+  OverTime<Vec3> spin{};   ///<  [rad/s]
   std::string nose = "flat";
   double nose_length = 0.0;         ///<  [m]
   double mass = no_limit;           ///< infinite: it moves as it is told  [kg]
@@ -71,8 +71,8 @@ struct WallConfig {
         "direction of the first side of a box's face, or near it; [0, 0, 0]: some direction across "
         "the normal; stl: of the file's x; [0, 0, 0]: the file is turned the shortest way");
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
-        "how fast it turns about an axis through point; a plane only about its normal; with mass: "
-        "about its centre of mass as it begins");
+        "how fast it turns about an axis through point, or a table [[t, x, y, z], ...] of it over "
+        "time; a plane only about its normal; with mass: about its centre of mass as it begins");
     key("velocity", velocity, "m/s", Range{-1e6, 1e6},
         "velocity of the wall, or a table [[t, x, y, z], ...] of it over time; with mass: the one "
         "with which it begins, of its centre of mass if it turns");
@@ -98,19 +98,20 @@ struct SupportConfig {
   std::string on;  ///< group; empty: all
   Vec3 min{-no_limit, -no_limit, -no_limit}, max{no_limit, no_limit, no_limit};  ///<  [m]
   std::vector<std::string> fix{"x", "y", "z"};
-  OverTime<Vec3> velocity;     ///< of the fixed directions  [m/s]
-  double ramp = 0.0;           ///< time from rest to that velocity  [s]
-  SupportServoConfig servo{};  ///< instead of the velocity along its axis
-  double begin = 0.0;          ///< no key: where its time begins  [s]
-  Vec3 center{};               ///<  [m]
-  double radius = 0.0;         ///< of a cylinder or sphere; 0: none  [m]
-  std::string around{};        ///< axis of the cylinder; empty: a sphere
-  bool outside = false;        ///< of box, cylinder or sphere
-  std::string absorb{};        ///< axis along which waves come; empty: it holds its elements
-  std::string wave = "body";   ///< that is absorbed
-  double area = 0.0;           ///< of the face that absorbs  [m2]
-  OverTime<Vec3> force{};      ///< on its elements, which are free: a dead load  [N]
-  double friction = 0.0;       ///< across the direction that it holds  [-]
+  OverTime<Vec3> velocity;      ///< of the fixed directions  [m/s]
+  double ramp = 0.0;            ///< time from rest to that velocity  [s]
+  SupportServoConfig servo{};   ///< instead of the velocity along its axis
+  double begin = 0.0;           ///< no key: where its time begins  [s]
+  Vec3 center{};                ///<  [m]
+  double radius = 0.0;          ///< of a cylinder or sphere; 0: none  [m]
+  std::string around{};         ///< axis of the cylinder; empty: a sphere
+  std::vector<Vec2> polygon{};  ///< seen along `around`, or z; empty: none  [m]
+  bool outside = false;         ///< of box, cylinder, sphere or polygon
+  std::string absorb{};         ///< axis along which waves come; empty: it holds its elements
+  std::string wave = "body";    ///< that is absorbed
+  double area = 0.0;            ///< of the face that absorbs  [m2]
+  OverTime<Vec3> force{};       ///< on its elements, which are free: a dead load  [N]
+  double friction = 0.0;        ///< across the direction that it holds  [-]
 
   bool absorbs() const { return !absorb.empty(); }
   bool pushes() const { return force.is_table() || norm(force.value) > 0.0; }
@@ -125,8 +126,12 @@ struct SupportConfig {
     key("radius", radius, "m", not_negative,
         "the region takes only what lies in this cylinder or sphere, too; 0: none");
     key("around", around, OneOf{"", "x", "y", "z"},
-        "direction of the axis of that cylinder; empty: it is a sphere");
-    key("outside", outside, "the region takes what box, cylinder or sphere leave out");
+        "direction of the axis of that cylinder, and in which a polygon is seen; empty: it is a "
+        "sphere, and the polygon is seen along z");
+    key("polygon", polygon, "m", any_number,
+        "the region takes only what lies in this prism, too, given by the corners of its section: "
+        "(x, y), of `around` = \"x\" (y, z), of \"y\" (z, x); empty: none");
+    key("outside", outside, "the region takes what box, cylinder, sphere and polygon leave out");
     key("fix", fix,
         "degrees of freedom that are prescribed: x, y, z, spin_x, spin_y, spin_z, or all; supports "
         "that share elements prescribe other directions, or the same motion");
@@ -187,8 +192,9 @@ struct WallChange {
   std::string name;
   OverTime<Vec3> velocity;  ///<  [m/s]
   ServoConfig servo;
-  Vec3 spin{};             ///<  [rad/s]
-  OverTime<Vec3> force{};  ///<  [N]
+  OverTime<Vec3> spin{};       ///<  [rad/s]
+  OverTime<Vec3> force{};      ///<  [N]
+  double friction = no_limit;  ///< infinite: as before  [-]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -201,7 +207,12 @@ struct WallChange {
         "its velocity from now on, or a table of it over time since the stage began; left out: it "
         "stands still");
     key("spin", spin, "rad/s", Range{-1e6, 1e6},
-        "how fast it turns from now on; left out: no more");
+        "how fast it turns from now on, or a table of it over time since the stage began; left "
+        "out: "
+        "no more");
+    key("friction", friction, "-", Range{-1.0, no_limit},
+        "friction of its contacts from now on; below 0: that of all contacts; left "
+        "out (inf): as before");
     key.table("servo", servo, "from now on it pushes with a given force; left out: no longer");
   }
 };
@@ -228,7 +239,8 @@ struct MaterialChange {
 
 /// [[stage]]
 struct StageConfig : StageEnd {
-  Vec3 gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
+  OverTime<Vec3> gravity{no_limit, no_limit, no_limit};  ///<  [m/s2]
+  double restitution = 0.0;                              ///< 0: as before  [-]
   std::vector<SupportChange> supports;
   std::vector<WallChange> walls;
   std::vector<MaterialChange> materials;
@@ -237,7 +249,11 @@ struct StageConfig : StageEnd {
   void each_key(Visit&& key) {
     StageEnd::each_key(key);
     key("gravity", gravity, "m/s2", Range{-1e6, no_limit},
-        "acceleration of gravity from its beginning on; left out (inf): as before");
+        "acceleration of gravity from its beginning on, or a table of it over time since then; "
+        "left "
+        "out (inf): as before");
+    key("restitution", restitution, "-", Range{0.0, 1.0},
+        "coefficient of restitution of contacts from its beginning on; 0: as before");
     key.list("support", supports, "supports that prescribe something else from its beginning on");
     key.list("wall", walls, "walls that move otherwise from its beginning on");
     key.list("material", materials, "materials that are weaker or stronger from its beginning on");

@@ -338,7 +338,7 @@ void set_free_walls(World& w, const Config& config, const Model& m) {
     const std::vector<Vec3> mesh = wall.shape == "stl" ? *corners++ : std::vector<Vec3>{};
     if (free.turns) {
       free.spread = mass_spread(wall, free.mass, mesh);
-      start_turning(w, k, wall.velocity.value, wall.spin);
+      start_turning(w, k, wall.velocity.value, wall.spin.value);
     }
     if (!wall.has_mass() || given.contact.hertz) continue;
     double stiffest = 0.0;
@@ -378,6 +378,7 @@ void set_contacts(World& w, const Config& config, const Model& m) {
         wall_of(wall, wall.has_mass() ? wall.velocity.value : w.prescribed.velocity(motion, 0.0)));
     if (wall.shape == "stl") w.walls.back().half[0] = farthest_corner(*corners++);
   }
+  given.wall_spins = wall_spins(config.walls);
   set_free_walls(w, config, m);
   place_motions(w);
   // A step that resolves the contact of two like elements, for those that nothing else slows down.
@@ -452,7 +453,7 @@ World made(const Config& config, const Model& model, const Exec& exec) {
   Case& given = set_up(w);
   given.time = config.time;
   given.search = config.search;
-  given.gravity = config.gravity;
+  given.gravity = config.gravity.value;
   given.local_damping = config.local_damping;
   for (const MaterialConfig& m : config.materials) {
     given.bars.push_back(m.law == "steel" ? 1 : 0);
@@ -489,7 +490,7 @@ World make_world(const Config& config, const Model& model, const Exec& exec) {
   const double scale = config.time.mass_scaling;
   if (scale == 1.0) return made(config, model, exec);
   Config slower = config;  // more inertia under the weight that bodies have
-  slower.gravity = (1.0 / scale) * config.gravity;
+  slower.gravity.value = (1.0 / scale) * config.gravity.value;
   Model heavier = model;
   for (double& mass : heavier.mass) mass *= scale;
   for (double& inertia : heavier.inertia) inertia *= scale;

@@ -5,6 +5,7 @@
 
 #include "core/named.hpp"
 #include "core/set_up.hpp"
+#include "dem/setup/materials.hpp"
 #include "dem/setup/walls.hpp"
 #include "dem/world.hpp"
 
@@ -18,7 +19,11 @@ Config config_at(Config config, const StageProgress& progress) {
     config.removed.insert(config.removed.end(), stage.remove.begin(), stage.remove.end());
     if (stage.local_damping >= 0.0) config.local_damping = stage.local_damping;
     if (stage.friction >= 0.0) config.stage_friction = stage.friction;
-    if (stage.gravity.x < no_limit) config.gravity = stage.gravity;
+    if (stage.restitution > 0.0) config.contact.restitution = stage.restitution;
+    if (stage.gravity.is_table() || stage.gravity.value.x < no_limit) {
+      config.gravity = stage.gravity;
+      config.gravity_begin = begin;
+    }
     for (const SupportChange& change : stage.supports)
       if (SupportConfig* const s = find_named(config.supports, change.name)) {
         if (change.fix != std::vector<std::string>{"same"}) s->fix = change.fix;
@@ -37,6 +42,7 @@ Config config_at(Config config, const StageProgress& progress) {
     for (const WallChange& change : stage.walls)
       if (WallConfig* const wall = find_named(config.walls, change.name)) {
         wall->force = change.force;
+        if (change.friction < no_limit) wall->friction = change.friction;
         wall->begin = begin;
         if (wall->has_mass()) continue;  // its velocity is the one that it began with
         wall->velocity = change.velocity;
@@ -68,8 +74,7 @@ void add_change_problems(const std::string& where, const WallConfig& wall, const
   };
   if (!wall.has_mass() && given(change.force))
     add(".force acts on a wall with mass; this one moves as it is told");
-  if (wall.has_mass() &&
-      (given(change.velocity) || change.servo.is_on() || norm(change.spin) > 0.0))
+  if (wall.has_mass() && (given(change.velocity) || change.servo.is_on() || given(change.spin)))
     add(": a wall with mass moves by the forces on it; a stage may change its force only");
 }
 
@@ -124,6 +129,8 @@ std::vector<std::string> stage_problems(const Config& config) {
       problems.push_back(where + ": it has a velocity and a servo, which decides that");
     if ((s.pressure.is_table() || s.pressure.value != 0.0) && !(s.area > 0.0))
       problems.push_back(where + ".servo.area: the pressure needs an area to act on");
+    if (s.is_plate() && s.gain != ServoConfig{}.gain)
+      problems.push_back(where + ".servo.gain: a plate has none; with mass = inf it counts");
   };
   StageProgress progress;
   for (std::size_t k = 0; k < std::max<std::size_t>(config.stages.size(), 1); ++k) {
@@ -183,14 +190,17 @@ void set_strengths(World& w, const Config& config) {
 
 void set_gravity(World& w, const Vec3& gravity) {
   w.given.change(SetUp{}).gravity = gravity;
+  w.graph.clear();
 }
 
 void configure(World& w, const Config& config) {
   Case& given = w.given.change(SetUp{});
-  given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+  if (!config.gravity.is_table())
+    given.gravity = (1.0 / config.time.mass_scaling) * config.gravity.value;
   given.local_damping = config.local_damping;
   given.contact.friction =
       config.stage_friction < 0.0 ? config.contact.friction : config.stage_friction;
+  given.contact.damping = contact_law(config.contact).damping;
   set_strengths(w, config);
   const std::size_t bodies = w.given->sets.size() - config.supports.size();
   std::size_t elements = 0;
@@ -224,11 +234,14 @@ void configure(World& w, const Config& config) {
   w.prescribed = std::move(held.motions);
   for (std::size_t k = 0; k < config.walls.size(); ++k) add_motion(w, config.walls[k], k);
   place_motions(w);
+  given.wall_spins = wall_spins(config.walls);
   // A wall that stood still has no contacts listed around it: the next step searches.
   for (std::size_t k = 0; k < config.walls.size(); ++k) {
     if (!w.free_walls.empty())
       given.free_walls[k].load = free_wall_of(config.walls[k], config.time.mass_scaling).load;
-    if (!config.walls[k].has_mass()) w.walls[k].spin = config.walls[k].spin;
+    given.wall_friction[k] = config.walls[k].friction;
+    if (!config.walls[k].has_mass())
+      w.walls[k].spin = config.walls[k].spin.at(w.time - config.walls[k].begin);
     w.walls[k].travelled = 2.0 * w.given->largest_margin;
   }
   w.graph.clear();

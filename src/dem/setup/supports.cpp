@@ -41,6 +41,7 @@ std::vector<Index> members_of(const SupportConfig& s, const Model& m) {
     bool inside = x.x >= s.min.x && x.y >= s.min.y && x.z >= s.min.z && x.x <= s.max.x &&
                   x.y <= s.max.y && x.z <= s.max.z;
     if (s.radius > 0.0) inside = inside && in_round(s.center, s.radius, s.around, x);
+    if (!s.polygon.empty()) inside = inside && in_polygon(s.polygon, seen_along(s.around, x));
     if (inside != s.outside) members.push_back(static_cast<Index>(e));
   }
   return members;

@@ -53,7 +53,10 @@ void add_mass_problems(const WallConfig& w, std::vector<std::string>& problems) 
         "may be given, no table");
   if (w.servo.is_on())
     add(".servo: a wall with mass moves by the forces on it; give force instead");
-  if (norm(w.spin) > 0.0 && !w.is_turning())
+  if (w.spin.is_table())
+    add(".spin: a wall with mass turns by the torques on it; one value, with which it begins, may "
+        "be given, no table");
+  if (norm(w.spin.value) > 0.0 && !w.is_turning())
     add(".spin: a wall with mass turns only where free names turn");
   if (w.is_turning() && w.shape == "plane")
     add(".free: a plane has no end and no inertia; a box, cylinder, sphere or stl may turn");
@@ -91,7 +94,12 @@ std::vector<std::string> wall_problems(const WallConfig& w) {
   if (!box && !mesh) needs("along", norm(w.along) > 0.0, false);
   if ((box || mesh) && norm(w.along) > 0.0 && is_along(w.along, w.normal))
     problems.push_back(where + ".along must not lead along the normal");
-  if (w.shape == "plane" && norm(w.spin) > 0.0 && !is_along(w.spin, w.normal))
+  std::vector<Vec3> spins = w.spin.values;
+  spins.push_back(w.spin.value);
+  const auto is_aside = [&](const Vec3& spin) {
+    return norm(spin) > 0.0 && !is_along(spin, w.normal);
+  };
+  if (w.shape == "plane" && std::any_of(spins.begin(), spins.end(), is_aside))
     problems.push_back(where +
                        ".spin: a plane without end turns about its normal only; a cylinder "
                        "or box may turn about any axis");
@@ -100,10 +108,23 @@ std::vector<std::string> wall_problems(const WallConfig& w) {
   return problems;
 }
 
+std::vector<WallSpin> wall_spins(const std::vector<WallConfig>& walls) {
+  const auto is_table = [](const WallConfig& wall) { return wall.spin.is_table(); };
+  if (std::none_of(walls.begin(), walls.end(), is_table)) return {};
+  std::vector<WallSpin> all;
+  for (const WallConfig& wall : walls) {
+    WallSpin& own = all.emplace_back();
+    for (int axis = 0; axis < 3; ++axis)
+      own.about[static_cast<std::size_t>(axis)] =
+          scaled_amplitude(wall.spin, axis, 0.0, wall.begin);
+  }
+  return all;
+}
+
 Wall wall_of(const WallConfig& config, const Vec3& velocity) {
   Wall wall{config.point, (1.0 / norm(config.normal)) * config.normal, velocity, config.stiffness,
             0.0};
-  wall.spin = config.spin;
+  wall.spin = config.spin.at(-config.begin);
   wall.radius = config.radius;
   wall.length = config.length;
   if (config.shape == "cylinder") wall.shape = WallShape::cylinder;

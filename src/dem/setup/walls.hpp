@@ -20,4 +20,7 @@ Wall wall_of(const WallConfig& config, const Vec3& velocity);
 /// @param mass_scaling  of the case  [-]
 FreeWall free_wall_of(const WallConfig& config, double mass_scaling);
 
+/// Of all walls, as they turn over time; empty: no table tells how one does.
+std::vector<WallSpin> wall_spins(const std::vector<WallConfig>& walls);
+
 }  // namespace breccia::dem

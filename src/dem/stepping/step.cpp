@@ -93,6 +93,8 @@ void move_walls(World& w) {
       continue;
     }
     w.walls[k].velocity = w.prescribed.velocity(first + k, w.time + 0.5 * w.next_dt);
+    if (!w.given->wall_spins.empty())
+      w.walls[k].spin = w.given->wall_spins[k].at(w.time + 0.5 * w.next_dt);
     w.walls[k].move(w.next_dt, w.travel.drift.velocity);
   }
   advance_time(w);
@@ -145,8 +147,8 @@ double step_allowed_now(const World& w) {
 }
 
 Advanced advance(World& w, const StopAt& stop) {
-  if (w.free_walls.empty()) return advance_by_steps(w, stop);
-  step(w);  // what acts on a wall with mass comes to the host in every step, on a device, too
+  if (w.free_walls.empty() && w.given->wall_spins.empty()) return advance_by_steps(w, stop);
+  step(w);  // what acts on a wall with mass, and how one turns, is of the host in every step
   return {1, w.last_dt, w.last_dt};
 }
 

@@ -329,7 +329,17 @@ struct LoadChange : fdem_shared::LoadChangeOf<Vec2> {
   }
 };
 
-using StageConfig = fdem_shared::MeshStageConfig<Vec2, LoadChange>;
+/// [[stage]]
+struct StageConfig : fdem_shared::MeshStageConfig<Vec2, LoadChange> {
+  double restitution = 0.0;  ///< 0: as before  [-]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    MeshStageConfig::each_key(key);
+    key("restitution", restitution, "-", Range{0.0, 1.0},
+        "coefficient of restitution of contacts from its beginning on; 0: as before");
+  }
+};
 using fdem_shared::MaterialChange;
 
 /// [in_situ]
@@ -412,7 +422,8 @@ struct Config : CaseConfig {
   Config() { time.evaluate_every = 20; }
 
   std::string plane = "stress";
-  Vec2 gravity{};              ///<  [m/s2]
+  OverTime<Vec2> gravity{};    ///<  [m/s2]
+  double gravity_begin = 0.0;  ///< no key: where the time of its table begins  [s]
   double local_damping = 0.0;  ///<  [-]
   std::vector<MaterialConfig> materials;
   std::vector<JointConfig> joint_laws;
@@ -436,7 +447,9 @@ struct Config : CaseConfig {
   void each_key(Visit&& key) {
     CaseConfig::each_key(key);
     key("plane", plane, OneOf{"stress", "strain"}, "plane stress or plane strain");
-    key("gravity", gravity, "m/s2", any_number, "acceleration of gravity");
+    key("gravity", gravity, "m/s2", any_number,
+        "acceleration of gravity, or a table [[t, x, y], ...] of it over time, as it is in the "
+        "middle of each ten steps");
     key("local_damping", local_damping, "-", Range{0.0, 1.0, Open::high},
         "share of each force that opposes motion (Cundall), for quasi-static runs only");
     key.named("material", materials, "the materials");

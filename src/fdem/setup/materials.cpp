@@ -101,6 +101,20 @@ BondTable bond_table(const Config& config) {
   return table;
 }
 
+std::vector<JointBond> with_strengths(std::vector<JointBond> bonds, const BondTable& table,
+                                      const std::vector<Index>& base) {
+  for (std::size_t k = 0; k < bonds.size(); ++k) {
+    const JointBond& now = table.bonds[base.empty() ? k : static_cast<std::size_t>(base[k])];
+    bonds[k].tension = now.tension;
+    bonds[k].cohesion = now.cohesion;
+    bonds[k].friction = now.friction;
+    bonds[k].residual = now.residual;
+    bonds[k].softening_open = now.softening_open;
+    bonds[k].softening_slide = now.softening_slide;
+  }
+  return bonds;
+}
+
 bool depends_on_line(const Config& config, const MaterialConfig& a, const MaterialConfig& b) {
   return config.joints.criterion == "rock" &&
          (a.bedding.has_stiffness() || b.bedding.has_stiffness());

@@ -25,6 +25,11 @@ struct BondTable {
 /// a [joint.<name>] says so. @throws InputError for names that do not exist
 BondTable bond_table(const Config& config);
 
+/// Bonds with the strengths of a table instead of their own.
+/// @param base  of each bond: the one of the table that it was made of; empty: itself
+std::vector<JointBond> with_strengths(std::vector<JointBond> bonds, const BondTable& table,
+                                      const std::vector<Index>& base);
+
 /// Whether joints between two materials that fail with the rock have bonds of their own by their
 /// directions: of bedded rock the stress along an edge depends on it.
 bool depends_on_line(const Config& config, const MaterialConfig& a, const MaterialConfig& b);

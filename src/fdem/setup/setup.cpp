@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "core/world_space.hpp"
 #include "exec/error.hpp"
@@ -16,6 +17,7 @@
 #include "fdem/shape.hpp"
 #include "fdem_shared/setup/elements.hpp"
 #include "fdem_shared/setup/removal.hpp"
+#include "fdem_shared/setup/stages.hpp"
 #include "fdem_shared/setup/supports.hpp"
 
 namespace breccia::fdem {
@@ -55,6 +57,8 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
   std::vector<Vec2> lines;  // edges of sides a
   std::vector<Vec2> preset;
   Case& given = set_up(w);
+  given.base_bond.resize(table.bonds.size());
+  std::iota(given.base_bond.begin(), given.base_bond.end(), 0);
   given.open_vertex.assign(model.point.size(), 0);
   w.across.assign(3 * model.triangle.size(), -1);
   std::vector<std::uint8_t> tied(model.point.size(), 0);  // 1: corners here move as one
@@ -120,6 +124,7 @@ void set_up_joints(World& w, const Config& config, const Model& model) {
     if (shared.by_rock() && depends_on_line(config, material(a), material(b))) {
       law.back() = static_cast<Index>(table.bonds.size());
       table.bonds.push_back(bond_along(config, material(a), material(b), shared, along));
+      given.base_bond.push_back(found);
     }
     strength.push_back(bedded * std::min(static_cast<double>(model.strength[a]),
                                          static_cast<double>(model.strength[b])));
@@ -205,7 +210,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   World w(exec);
   Case& given = set_up(w);
   given.time = config.time;
-  given.gravity = config.gravity;
+  given.gravity = config.gravity.value;
   given.in_situ = config.in_situ;
   given.plane_strain = config.plane == "strain";
   given.local_damping = config.local_damping;
@@ -240,13 +245,21 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
 
 void set_gravity(World& w, const Vec2& gravity) {
   set_up(w).gravity = gravity;
+  w.graph.clear();
 }
 
 void configure(World& w, const Config& config) {
   Case& given = set_up(w);
-  given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+  if (!config.gravity.is_table())
+    given.gravity = (1.0 / config.time.mass_scaling) * config.gravity.value;
   given.local_damping = config.local_damping;
+  given.rebound = Rebound::of(config.contact.restitution);
   copy_to(given.laws, elastic_laws(config, given));
+  if (fdem_shared::changes_strengths(config)) {
+    std::vector<JointBond> bonds;
+    copy_to(bonds, given.bonds);
+    copy_to(given.bonds, with_strengths(std::move(bonds), bond_table(config), given.base_bond));
+  }
   std::vector<ContactPair> pairs = contact_table(config);
   const double friction = config.stage_friction;
   if (friction >= 0.0)

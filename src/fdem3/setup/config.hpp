@@ -25,6 +25,7 @@ struct RegionConfig {
   Vec3 center{};                                                                 ///<  [m]
   double radius = 0.0;  ///< of a sphere or cylinder; 0: none  [m]
   std::string around;
+  std::vector<Vec2> polygon;  ///< seen along `around`, or z; empty: none  [m]
   bool outside = false;
 
   template <class Visit>
@@ -36,8 +37,13 @@ struct RegionConfig {
     key("center", center, "m", any_number, "centre of the sphere or cylinder that radius asks for");
     key("radius", radius, "m", not_negative,
         "the region takes only what lies in this sphere or cylinder, too; 0: none");
-    key("around", around, OneOf{"", "x", "y", "z"}, "axis of the cylinder; empty: it is a sphere");
-    key("outside", outside, "the region takes what box and sphere or cylinder leave out");
+    key("around", around, OneOf{"", "x", "y", "z"},
+        "axis of the cylinder, and along which a polygon is seen; empty: it is a sphere, and the "
+        "polygon is seen along z");
+    key("polygon", polygon, "m", any_number,
+        "the region takes only what lies in this prism, too, given by the corners of its section: "
+        "(x, y), of `around` = \"x\" (y, z), of \"y\" (z, x); empty: none");
+    key("outside", outside, "the region takes what box, sphere, cylinder and polygon leave out");
   }
 };
 
@@ -118,7 +124,8 @@ struct Config : CaseConfig {
     time.evaluate_every = 20;
   }
 
-  Vec3 gravity{};              ///<  [m/s2]
+  OverTime<Vec3> gravity{};    ///<  [m/s2]
+  double gravity_begin = 0.0;  ///< no key: where the time of its table begins  [s]
   double local_damping = 0.0;  ///<  [-]
   std::vector<MaterialConfig> materials;
   std::vector<JointConfig> joint_laws;
@@ -138,7 +145,9 @@ struct Config : CaseConfig {
   template <class Visit>
   void each_key(Visit&& key) {
     CaseConfig::each_key(key);
-    key("gravity", gravity, "m/s2", any_number, "acceleration of gravity");
+    key("gravity", gravity, "m/s2", any_number,
+        "acceleration of gravity, or a table [[t, x, y, z], ...] of it over time, as it is in the "
+        "middle of each ten steps");
     key("local_damping", local_damping, "-", Range{0.0, 1.0, Open::high},
         "share of each force that opposes motion (Cundall), for quasi-static runs only");
     key.named("material", materials, "the materials");

@@ -15,6 +15,7 @@
 #include "fdem3/shape.hpp"
 #include "fdem_shared/setup/elements.hpp"
 #include "fdem_shared/setup/removal.hpp"
+#include "fdem_shared/setup/stages.hpp"
 #include "fdem_shared/setup/supports.hpp"
 #include "fdem_shared/setup/weight.hpp"
 
@@ -272,7 +273,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   World w(exec);
   Case& given = set_up(w);
   given.time = config.time;
-  given.gravity = config.gravity;
+  given.gravity = config.gravity.value;
   given.in_situ = config.in_situ;
   given.local_damping = config.local_damping;
   given.shown = config.output.more_fields();
@@ -309,13 +310,21 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
 
 void set_gravity(World& w, const Vec3& gravity) {
   set_up(w).gravity = gravity;
+  w.graph.clear();
 }
 
 void configure(World& w, const Config& config) {
   Case& given = set_up(w);
-  given.gravity = (1.0 / config.time.mass_scaling) * config.gravity;
+  if (!config.gravity.is_table())
+    given.gravity = (1.0 / config.time.mass_scaling) * config.gravity.value;
   given.local_damping = config.local_damping;
   copy_to(given.laws, elastic_laws(config, given));
+  if (fdem_shared::changes_strengths(config)) {
+    std::vector<JointBond> bonds;
+    copy_to(bonds, given.bonds);
+    copy_to(given.bonds,
+            fdem::with_strengths(std::move(bonds), fdem::bond_table(shared_keys(config)), {}));
+  }
   copy_to(given.contact_pairs, contact_table(config, given.contact_lengths));
   hold_anew(w, config);
   prescribe_loads(w, config);

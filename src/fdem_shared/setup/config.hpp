@@ -1,6 +1,7 @@
 #pragma once
 // Keys that both finite-discrete methods share: friction, supports, changes of stages, the search.
 
+#include <algorithm>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -159,12 +160,63 @@ struct LoadChangeOf {
   }
 };
 
+/// Strength of joints from a stage on.
+struct StrengthChange {
+  double tension = -1.0;         ///< below 0: as before  [Pa]
+  double cohesion = -1.0;        ///< likewise  [Pa]
+  double friction_angle = -1.0;  ///< likewise  [rad]
+  double energy_open = -1.0;     ///< likewise  [J/m2]
+  double energy_slide = -1.0;    ///< likewise  [J/m2]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    const Range strength{-1.0, 1e15};
+    key("tension", tension, "Pa", strength, "tensile strength from now on; below 0: as before");
+    key("cohesion", cohesion, "Pa", strength, "cohesion from now on; below 0: as before");
+    key("friction_angle", friction_angle, "rad", Range{-1.0, 1.5707, Open::high},
+        "internal friction angle of whole joints from now on; below 0: as before");
+    key("energy_open", energy_open, "J/m2", strength,
+        "fracture energy of opening from now on; below 0: as before");
+    key("energy_slide", energy_slide, "J/m2", strength,
+        "fracture energy of sliding from now on; below 0: as before");
+  }
+  bool any() const {
+    return std::max({tension, cohesion, friction_angle, energy_open, energy_slide}) >= 0.0;
+  }
+  template <class Strength>
+  void apply_to(Strength& of) const {
+    const auto take = [](double now, double& value) {
+      if (now >= 0.0) value = now;
+    };
+    take(tension, of.tension);
+    take(cohesion, of.cohesion);
+    take(friction_angle, of.friction_angle);
+    take(energy_open, of.energy_open);
+    take(energy_slide, of.energy_slide);
+  }
+};
+
+/// [[stage.joint]]: how strong joints of a law are from a stage on
+struct JointChange {
+  std::string name;
+  StrengthChange strength;
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name of the [joint.<name>]");
+    key.required("name");
+    key.table("strength", strength,
+              "its strength; what has softened keeps its damage, and its stiffness stays");
+  }
+};
+
 /// [[stage.material]]: what a material is from a stage on
 struct MaterialChange {
   std::string name;
   double young = 0.0;      ///< 0: as before  [Pa]
   double in_situ = -1.0;   ///< below 0: as before  [-]
   double friction = -1.0;  ///< below 0: as before  [-]
+  StrengthChange joint;
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -179,25 +231,36 @@ struct MaterialChange {
     key("friction", friction, "-", Range{-1.0, 1e3},
         "coefficient of friction of its contacts from now on; between two materials the lower one "
         "counts; below 0: as before");
+    key.table("joint", joint,
+              "strength of the joints within it; what has softened keeps its damage");
   }
 };
 
 /// [[stage]]: keys of both methods
 template <class Vector, class LoadChange = LoadChangeOf<Vector>>
 struct MeshStageConfig : StageEnd {
-  Vector gravity = from_space<Vector>({no_limit, no_limit, no_limit});  ///<  [m/s2]
+  OverTime<Vector> gravity = from_space<Vector>({no_limit, no_limit, no_limit});  ///<  [m/s2]
   std::vector<SupportChangeOf<Vector>> supports;
   std::vector<LoadChange> loads;
   std::vector<MaterialChange> materials;
+  std::vector<JointChange> joints;
 
+  /// Whether it makes joints stronger or weaker.
+  bool changes_strengths() const {
+    return !joints.empty() || std::any_of(materials.begin(), materials.end(),
+                                          [](const auto& m) { return m.joint.any(); });
+  }
   template <class Visit>
   void each_key(Visit&& key) {
     StageEnd::each_key(key);
     key("gravity", gravity, "m/s2", any_number,
-        "acceleration of gravity from its beginning on; left out (inf): as before");
+        "acceleration of gravity from its beginning on, or a table of it over time since then; "
+        "left "
+        "out (inf): as before");
     key.list("support", supports, "supports that prescribe something else from its beginning on");
     key.list("load", loads, "loads that are another from its beginning on");
     key.list("material", materials, "materials that are softer or stiffer from its beginning on");
+    key.list("joint", joints, "laws of joints that are weaker or stronger from its beginning on");
   }
 };
 

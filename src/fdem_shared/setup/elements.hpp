@@ -22,7 +22,7 @@ template <class Config>
 Config with_inertia(Config config) {
   const double scale = config.time.mass_scaling;
   for (auto& material : config.materials) material.density *= scale;
-  config.gravity = (1.0 / scale) * config.gravity;
+  config.gravity.value = (1.0 / scale) * config.gravity.value;
   return config;
 }
 

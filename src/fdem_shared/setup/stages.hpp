@@ -18,7 +18,10 @@ void begin_stage(Config& config, const Stage& stage, double begin) {
   config.removed.insert(config.removed.end(), stage.remove.begin(), stage.remove.end());
   if (stage.local_damping >= 0.0) config.local_damping = stage.local_damping;
   if (stage.friction >= 0.0) config.stage_friction = stage.friction;
-  if (stage.gravity.x < no_limit) config.gravity = stage.gravity;
+  if (stage.gravity.is_table() || stage.gravity.value.x < no_limit) {
+    config.gravity = stage.gravity;
+    config.gravity_begin = begin;
+  }
   for (const auto& change : stage.supports)
     if (auto* const s = find_named(config.supports, change.name)) {
       if (change.fix != std::vector<std::string>{"same"}) s->fix = change.fix;
@@ -38,7 +41,18 @@ void begin_stage(Config& config, const Stage& stage, double begin) {
       if (change.young > 0.0) m->young_now = change.young;
       if (change.in_situ >= 0.0) m->in_situ_share = change.in_situ;
       if (change.friction >= 0.0) m->friction = change.friction;
+      change.joint.apply_to(m->joint);
     }
+  for (const JointChange& change : stage.joints)
+    if (auto* const joint = find_named(config.joint_laws, change.name))
+      change.strength.apply_to(joint->strength);
+}
+
+/// Whether some stage makes joints stronger or weaker.
+template <class Config>
+bool changes_strengths(const Config& config) {
+  return std::any_of(config.stages.begin(), config.stages.end(),
+                     [](const auto& stage) { return stage.changes_strengths(); });
 }
 
 /// Problems of the servos of a case as it is in a stage.
@@ -54,6 +68,8 @@ void add_servo_problems(const Config& now, const std::string& stage, const char*
       problems.push_back(where + ": it has a velocity and a servo, which decides that");
     if ((s.servo.pressure.is_table() || s.servo.pressure.value != 0.0) && !(s.servo.area > 0.0))
       problems.push_back(where + ".servo.area: the pressure needs " + area + " to act on");
+    if (s.servo.is_plate() && s.servo.gain != ServoConfig{}.gain)
+      problems.push_back(where + ".servo.gain: a plate has none; with mass = inf it counts");
     if (std::find(s.fix.begin(), s.fix.end(), s.servo.axis) == s.fix.end())
       problems.push_back(where + ".servo.axis = \"" + s.servo.axis +
                          "\": it does not fix that direction");
@@ -80,6 +96,12 @@ void add_stage_problems(const Config& config, const Stage& stage,
   for (const MaterialChange& change : stage.materials)
     add_unknown(where + ".material.name", change.name, "material", names_of(config.materials),
                 problems);
+  for (const JointChange& change : stage.joints)
+    add_unknown(where + ".joint.name", change.name, "joint", names_of(config.joint_laws), problems);
+  for (const auto& m : config.materials)
+    for (const MaterialChange& change : stage.materials)
+      if (change.name == m.name && change.joint.any() && m.joints == "none")
+        problems.push_back(where + ".material." + m.name + ".joint: it has no joints");
   for (const auto& change : stage.loads) {
     add_unknown(where + ".load.name", change.name, "load", names_of(config.loads), problems);
     for (const auto& load : config.loads)

@@ -31,7 +31,7 @@ void look_for_unbalanced_weight(const Config& config, const char* sums,
   if (!config.in_situ.any()) return;
   const auto push = config.in_situ.push();
   for (const auto& m : config.materials) {
-    const auto weight = m.density * config.gravity, rest = push + weight;
+    const auto weight = m.density * config.gravity.at(0.0), rest = push + weight;
     if (norm(rest) <= 0.01 * std::max(norm(push), norm(weight))) continue;
     found.push_back("in_situ is not in equilibrium with gravity: its slopes push " + m.name +
                     " with (" + numbers_of(push) + ") N/m3, its weight is (" + numbers_of(weight) +

@@ -134,7 +134,8 @@ struct CaseReader::State {
   }
   bool in_range(const toml::node& node, const std::string& key, double value, double usual,
                 const Range& range, const char* meaning, const std::string& unit = "") {
-    if (std::isnan(value) || (std::isinf(value) && !std::isinf(usual))) {
+    if (std::isnan(value) || (std::isinf(value) && !std::isinf(usual) &&
+                              std::string_view(meaning).find("; inf: ") == std::string::npos)) {
       add(&node, key + " is not a finite number", meaning);
       return false;
     }

@@ -35,7 +35,7 @@ void check_mass_scaling(const Config& config, std::vector<std::string>& problems
     if (dot(body.velocity, body.velocity) > 0.0) add("body." + body.name);
   if constexpr (requires { config.walls; })
     for (const auto& wall : config.walls)
-      if (wall.has_mass() && norm(wall.velocity.value) + norm(wall.spin) > 0.0)
+      if (wall.has_mass() && norm(wall.velocity.value) + norm(wall.spin.value) > 0.0)
         add("wall." + wall.name);
 }
 

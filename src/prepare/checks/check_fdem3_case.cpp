@@ -42,7 +42,7 @@ class TetCaseChecks {
   void add(const std::string& text) { problems_.push_back(text); }
 
   void check_region(const std::string& where, const fdem3::RegionConfig& r) {
-    if (!r.around.empty() && !(r.radius > 0.0))
+    if (!r.around.empty() && !(r.radius > 0.0) && r.polygon.empty())
       add(where + ".around: a cylinder needs a radius above 0");
   }
 

@@ -320,7 +320,8 @@ std::vector<std::string> doubtful_walls(const dem::Config& config, const std::st
       least = height;
       nearest = &outline;
     }
-    const bool falls = dot(config.gravity, asked.normal) < 0.0;  // what is not there will come
+    const bool falls =
+        dot(config.gravity.at(0.0), asked.normal) < 0.0;  // what is not there will come
     if (nearest != nullptr && least > 1e-9 && !falls)
       doubts.push_back(fmt::format(
           "wall.{}.point: no body touches the wall at the start; {} is nearest, {} away",

@@ -48,8 +48,13 @@ struct FdemSim : MeshSim<fdem::World, fdem::Config> {
       const std::string path = "fluid." + w.given->load_names[load] + ".";
       add(path + "length", filled.length);
       add(path + "volume", filled.volume);
-      if (!fluid.holes.empty()) add(path + "pressure", w.fluid.gas.data()[k]);
-      if (!w.given->flow.on || w.given->flow.load != fluid.load) continue;
+      const bool flows = w.given->flow.on && w.given->flow.load == fluid.load;
+      if (!fluid.holes.empty())
+        add(path + "pressure", w.fluid.gas.data()[k]);
+      else if (!flows)
+        add(path + "pressure",
+            w.given->load_amplitudes[load].at(w.time).x * w.given->loads[load].pressure);
+      if (!flows) continue;
       add(path + "injected", w.fluid.injected);
       if (!w.given->flow.outlet.empty()) add(path + "released", w.fluid.released);
       add(path + "pressure", w.fluid.pressure);

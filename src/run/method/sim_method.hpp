@@ -66,13 +66,16 @@ class SimMethod final : public Method {
         probes_(config.probes),
         lagging_(config.probes),
         case_(config),
-        now_(config_at(config, {})) {}
+        now_(config_at(config, {})) {
+    change_gravity();
+  }
 
   /// What it steps, for one that couples it to another method.
   World& world() { return world_.part(); }
 
   Advanced advance(const StopAt& stop) override {
-    if (world_.part().servos.empty() && !has_fluid(world_.part()) && lagging_.empty())
+    if (world_.part().servos.empty() && !has_fluid(world_.part()) && lagging_.empty() &&
+        !now_.gravity.is_table())
       return world_.advance_to(stop);
     const std::int64_t every = has_plates() ? 1 : servo_every;
     const std::int64_t next = (steps() / every + 1) * every;
@@ -86,6 +89,7 @@ class SimMethod final : public Method {
     if constexpr (requires(World & w) { Sim::spread(w); })
       if (all && has_fluid(world_.part()))
         at_once(world_.ranks(), [&] { Sim::spread(world_.part()); });
+    if (all && now_.gravity.is_table()) change_gravity();
     if (all && !lagging_.empty()) lagging_.look(read_now(lagging_.configs()), time());
   }
   std::int64_t steps() const override { return world_.part().step; }
@@ -111,11 +115,12 @@ class SimMethod final : public Method {
     world_.in_both([&](World& w) { w.stage = now; });
     if (!begins) return;
     now_ = config_at(case_, now);
-    change_gravity(now_);
+    change_gravity();
     const auto& stage = case_.stages[static_cast<std::size_t>(now.index)];
     const bool removes = !stage.remove.empty();
     bool books = removes;
     if constexpr (requires { stage.materials; }) books |= !stage.materials.empty();
+    if constexpr (requires { stage.joints; }) books |= !stage.joints.empty();
     const auto change = [&](World& w) {
       configure(w, now_);
       if (removes) {
@@ -256,6 +261,11 @@ class SimMethod final : public Method {
       derive(w);
     });
     if (!world_.part().servos.empty()) world_.in_both([](World& w) { place_servos(w); });
+    if (has_gravity_table()) {
+      if (!single_rank())
+        at_once(world_.ranks(), [&] { take_from_first(*world_.ranks(), gravity_); });
+      world_.in_both([&](World& w) { set_gravity(w, gravity_); });
+    }
     if constexpr (requires(World & w) { Sim::restore(w); })
       if (has_fluid(world_.part())) at_once(world_.ranks(), [&] { Sim::restore(world_.part()); });
   }
@@ -274,7 +284,8 @@ class SimMethod final : public Method {
         probes_(other.probes_),
         lagging_(other.lagging_),
         case_(other.case_),
-        now_(other.now_) {
+        now_(other.now_),
+        gravity_(other.gravity_) {
     world_.forget_timers();
   }
 
@@ -403,11 +414,15 @@ class SimMethod final : public Method {
     });
   }
   /// Work of gravity is the way along it: where gravity changes, the ledger counts it from here on.
-  void change_gravity(const Config& config) {
-    const auto gravity = (1.0 / config.time.mass_scaling) * config.gravity;
-    const auto change = gravity - world_.part().given->gravity;
+  /// That of a table holds until the next of each servo_every steps, as it is in the middle of
+  /// their kicks, each of which counts from half a step before it to half a step after it.
+  void change_gravity() {
+    const std::int64_t lasts = servo_every - steps() % servo_every;  // first to last kick
+    const double middle = time() + 0.5 * static_cast<double>(lasts - 1) * world_.part().next_dt;
+    gravity_ = (1.0 / now_.time.mass_scaling) * now_.gravity.at(middle - now_.gravity_begin);
+    const auto change = gravity_ - world_.part().given->gravity;
     if (dot(change, change) > 0.0)
-      booked([&] { world_.in_both([&](World& w) { set_gravity(w, gravity); }); });
+      booked([&] { world_.in_both([&](World& w) { set_gravity(w, gravity_); }); });
   }
   /// Counts the energy that a change of the model between two steps puts in as work.
   template <class Change>
@@ -451,7 +466,14 @@ class SimMethod final : public Method {
     visit("searches", w.searches);
     visit("ledger", w.ledger);
     lagging_.each_stored(visit);
+    if (has_gravity_table()) visit("gravity", gravity_);
     Sim::each_stored(w, visit);
+  }
+
+  bool has_gravity_table() const {
+    return case_.gravity.is_table() ||
+           std::any_of(case_.stages.begin(), case_.stages.end(),
+                       [](const auto& stage) { return stage.gravity.is_table(); });
   }
 
   /// Parts of ranks lead to copies, too: only the whole is looked at.
@@ -465,7 +487,8 @@ class SimMethod final : public Method {
   std::vector<ProbeConfig> probes_;
   LaggingProbes lagging_;
   Config case_;
-  Config now_;  ///< as it is in the present stage
+  Config now_;                                  ///< as it is in the present stage
+  decltype(Config{}.gravity.value) gravity_{};  ///< as it acts now  [m/s2]
 };
 
 }  // namespace breccia

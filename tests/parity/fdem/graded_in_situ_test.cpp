@@ -36,7 +36,7 @@ fdem::testing::Scene loaded(const char* joints) {
   fall.name = "fall";
   fall.until = 1e-3;
   soften.name = "soften";
-  soften.materials = {{"m1", 20e9, 0.25}};
+  soften.materials = {{"m1", 20e9, 0.25, -1.0, {}}};
   soften.until = 1e-3;
   s.config.stages = {fall, soften};
   return s;

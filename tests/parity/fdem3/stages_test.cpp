@@ -96,7 +96,7 @@ TEST(Fdem3Stages, soften_a_material) {
   s.config.probes[1].min = {-0.009, -far, -far};
   s.config.probes[1].max = {0.009, far, far};
   s.config.time.max_step = 2e-7;
-  s.config.stages[1].materials = {{"m1", 15e9, 0.25}};
+  s.config.stages[1].materials = {{"m1", 15e9, 0.25, -1.0, {}}};
   s.config.stages[1].until = 4e-4;
   const auto method = make_method(s.config, s.model, {}, nullptr);
   run_to(*method, s.config, nullptr);
@@ -131,7 +131,7 @@ fdem3::testing::Scene ground(const char* joints) {
   stand.until = 1e-3;
   end.name = "end";
   end.until = 1e-3;
-  end.materials = {{"m0", 20e9}};
+  end.materials = {{"m0", 20e9, -1.0, -1.0, {}}};
   return s;
 }
 TEST(Fdem3Stages, stand_under_stress_that_grows_with_depth) {
@@ -152,7 +152,7 @@ TEST(Fdem3Stages, stand_under_stress_that_grows_with_depth) {
 TEST(Fdem3Stages, under_stress_that_grows_with_depth_are_alike_and_resumed) {
   fdem3::testing::Scene s = ground("intrinsic");
   s.body("block", prepare::kuhn_box({0.3, 0.2, 0.501}, {1.0, 1.0, 1.0}, 1.0), {1.0, 0.0, -8.0});
-  s.config.stages[1].materials = {{"m0", 20e9, 0.5}};
+  s.config.stages[1].materials = {{"m0", 20e9, 0.5, -1.0, {}}};
   for (fdem3::StageConfig& stage : s.config.stages) stage.until = 4e-4;
   expect_alike(s);
   expect_resumed(s);

@@ -233,6 +233,50 @@ TEST(Measures, broken_links_are_counted_where_they_are) {
   EXPECT_LE(value(w, "broken", "head", "sum"), broken);
 }
 
+/// A link that is pulled apart and let close: open by what its force does not explain.
+TEST(Measures, opening_of_a_link_is_its_stretch_beyond_its_force) {
+  Scene s;
+  MaterialConfig& m = s.material("c", "concrete", 30e9, 0.2, 2400.0);
+  m.tensile_strength = 3e6;
+  m.cohesion = 30e6;
+  m.softening = 20.0;
+  s.sphere({}, 0.01);
+  s.sphere({0.0, 0.0, 0.02}, 0.01);
+  s.link(0, 1);
+  for (const bool high : {false, true}) {
+    SupportConfig held;
+    held.name = high ? "high" : "low";
+    (high ? held.min : held.max).z = 0.01;
+    held.fix = {"all"};
+    s.config.supports.push_back(held);
+  }
+  OverTime<Vec3>& pull = s.config.supports[1].velocity;
+  pull.times = {0.0, 2e-4, 2.001e-4, 3e-4, 3.001e-4};
+  pull.values = {
+      {0.0, 0.0, 0.1}, {0.0, 0.0, 0.1}, {0.0, 0.0, -0.05}, {0.0, 0.0, -0.05}, {0.0, 0.0, 0.4}};
+  s.config.time.safety = 0.1;
+  World w = s.world();
+  const double stiffness = w.concrete.stiffness.data()[0];
+  double widest = 0.0, softened = 0.0, misread = 0.0;
+  while (w.time < 2e-3) {
+    step(w);
+    const double stretch = testing::state(w, 1).position.z - testing::state(w, 0).position.z - 0.02;
+    const double pulls = -w.elements.force.data()[1].z;
+    const double open = value(w, "opening");
+    const bool broken = value(w, "broken") > 0.0;
+    EXPECT_NEAR(open, std::max(0.0, stretch - pulls / stiffness), 1e-9 * 0.02) << w.time;
+    if (broken)
+      misread = std::max(misread, std::abs(open - stretch));
+    else
+      softened = std::max(softened, open);
+    widest = std::max(widest, open);
+  }
+  EXPECT_GT(softened, 1e-6);
+  EXPECT_LT(misread, 1e-15);
+  EXPECT_GT(widest, 1e-4);
+  EXPECT_EQ(value(w, "opening", "", "max", {-1.0, -1.0, 0.5}, {1.0, 1.0, 1.0}), 0.0);
+}
+
 TEST(Measures, what_an_object_does_not_have_is_refused) {
   const auto told = [](const ProbeConfig& p, Bearer of) {
     const std::vector<std::string> problems = probe_problems(p, of);
@@ -241,7 +285,7 @@ TEST(Measures, what_an_object_does_not_have_is_refused) {
   EXPECT_EQ(told({"p", "", "stress_zz", "mean", {0, 0, 0}, {1, 1, 1}, {}}, in_space), "");
   EXPECT_NE(told({"p", "", "stress_zz", "mean"}, in_space).find("give min and max"),
             std::string::npos);
-  EXPECT_NE(told({"p", "", "opening", "mean"}, in_space).find("none of spheres; allowed: position"),
+  EXPECT_NE(told({"p", "", "slip", "mean"}, in_space).find("none of spheres; allowed: position"),
             std::string::npos);
   EXPECT_EQ(told({"p", "w", "kinetic", "sum"}, of_wall), "");
   EXPECT_NE(told({"p", "w", "broken", "mean"}, of_wall).find("none of a wall"), std::string::npos);

@@ -155,7 +155,7 @@ TEST(TurningWalls, TumbleAsEulersEquationsSay) {
   const auto plus = [](const Body& b, double by, const Body& d) {
     return Body{b.spin + by * d.spin, b.x + by * d.x, b.z + by * d.z};
   };
-  Body body{box.spin, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+  Body body{box.spin.value, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
   const Vec3 l = read3(w, "angular_momentum");
   const double energy = read(w, "kinetic");
   double flipped = 1.0;

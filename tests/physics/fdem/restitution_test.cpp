@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fdem/setup/stages.hpp"
 #include "physics/fdem/scene.hpp"
 
 namespace breccia::fdem {
@@ -51,6 +52,29 @@ TEST(FdemRestitution, is_that_of_the_case) {
         EXPECT_NEAR(b.contact, (1.0 - e * e) * start, 0.02 * start) << on_a_corner << " " << e;
         EXPECT_LT(b.error_relative, 1e-6);
       }
+}
+
+/// From a stage on another one counts, also for what touches as it begins: what that has taken up
+/// it gives back in part, and the ledger tells.
+TEST(FdemRestitution, is_another_one_from_a_stage_on) {
+  for (const bool touching : {false, true}) {
+    Scene s = thrown(1.0, false, 1.0);
+    s.config.stages.resize(2);
+    s.config.stages[1].restitution = 0.5;
+    World w = s.world();
+    const double start = energies(w).balance.kinetic;
+    while (touching && energies(w).balance.kinetic > 0.9 * start) step(w);
+    StageProgress later;
+    later.index = 1;
+    configure(w, config_at(s.config, later));
+    bool met = false;
+    while (!met || testing::value(w, "ball", "position_y") < 0.05 + 2e-5) {
+      step(w);
+      met = met || energies(w).balance.kinetic < 0.5 * start;
+    }
+    EXPECT_NEAR(testing::value(w, "ball", "velocity_y"), 0.5, 0.01) << touching;
+    EXPECT_LT(energies(w).balance.error_relative, 1e-6);
+  }
 }
 
 /// After a fall of 10 um under gravity it keeps e^2 of what the fall, down to the deepest overlap,

@@ -166,6 +166,11 @@ struct AnyValues {
     value.resize(1 + random() % 4);
     for (Vec3& point : value) point = {number(range), number(range), number(range)};
   }
+  void operator()(const char*, std::vector<Vec2>& value, const char*, const Range& range,
+                  const char*) {
+    value.resize(1 + random() % 4);
+    for (Vec2& point : value) point = {number(range), number(range)};
+  }
   void operator()(const char*, bool& value, const char*) { value = random() % 2 == 0; }
   void operator()(const char* name, std::string& value, const char*) {
     value = name == std::string("use") ? "" : word();  // a name of no material is a problem
