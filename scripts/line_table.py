@@ -21,7 +21,7 @@ PURPOSES = [  # words, lines at 20a0ddb, patterns
     ("ranks", 4805, "domain/* dem/ranks* fdem*/ranks* fdem_shared/migration.hpp fdem_shared/rings.hpp */relations.hpp core/relation.hpp run/method/shared_world.hpp run/frames/frame_parts*"),
     ("search, pair lists, travel", 2055,
      "core/broad_phase* core/cell_grid* core/pair_list* core/incidence* core/travel* core/select* core/rows* core/drift* "
-     "dem/search* fdem*/contact/search* fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem/contact/nearness*"),
+     "dem/search* dem/near.hpp fdem*/contact/search* fdem_shared/search.hpp fdem_shared/separated.hpp fdem_shared/shared_marks.hpp fdem/contact/nearness*"),
     ("ledger, probes, hash, fragments, stress", 1575,
      "*/emission* */energy* */energies.hpp */observe* */observations.hpp */readings.hpp */probes* core/probe* core/quantity* core/state_hash* core/pieces* core/unsound* core/gauge* dem/stress*"),
     ("stages, servos, tables over time, fluid, walls with mass", 0,
@@ -39,14 +39,35 @@ PURPOSES = [  # words, lines at 20a0ddb, patterns
     ("command line", 1059, "app/*"),
     ("report, laboratory, library", 0, "report/* laboratory/* api/*"),
 ]
+LATER = [  # what has come since 20a0ddb in files of its own; the rest is that commit's tree, grown
+    ("tetrahedra with joints and contact, meshes of solids", "fdem3/* prepare/tetrahedra/* prepare/*fdem3* run/*fdem3* */*solid*"),
+    ("spheres and tetrahedra in one run", "coupled/* *coupled*"),
+    ("LDPM: particles, facets, law", "*ldpm*"),
+    ("steps in a multiprocessor's memory (tiles)", "dem/tiles/*"),
+    ("stages, servos, tables over time, bodies taken out, walls with mass", "*stage* *servo* */over_time* */table_over_time* */removal* dem/free_walls*"),
+    ("walls of any mesh, noses; acoustic emission; drift", "dem/wall_mesh* dem/wall_nose* dem/setup/wall* *emission* *drift*"),
+    ("fluid in cracks, cavities, bolts", "*fluid* *bolt* *cavity*"),
+    ("parallel bonds, effective moduli, joint sets, bedded rock, failure of rock beside a joint", "*parallel_bond* *effective* *joint_set* *bedd* */rock_failure*"),
+    ("shapes of any surface; stiffness and fracture energy of packings", "prepare/shapes/* prepare/packing/stiffness* prepare/packing/elastic_network* prepare/packing/*energy*"),
+    ("laboratory: sweeps, tests of a material, calibration", "laboratory/* app/calibrate* app/sweep* app/test.cpp app/targets* app/side_by_side*"),
+    ("report in a browser, sentences of what a run shows", "report/* app/report* app/findings*"),
+    ("library for C++ and Python", "api/*"),
+    ("films, vector pictures, VTKHDF, live views", "*film* */vector_* */vtkhdf* */hdf_* app/camera_path* app/serve* app/watch* app/board* app/curve*"),
+    ("library of materials, manual of keys, templates; commands doctor, explain, info, verify",
+     "*material_library* app/explain* app/doctor* app/new* app/templates* app/materials* app/keys* app/geometry* app/info* app/verify* app/shell* *case_keys*"),
+    ("forecasts, plan of memory, audit", "*forecast* *memory_plan* *audit*"),
+    ("ranks that die or stop, GPUs that read each other, simulated ranks", "domain/watchdog* domain/together* domain/peer_link* exec/peer_memory* *simulated*"),
+    ("a device's schedule on the processor", "exec/lockstep* exec/shadow_launches*"),
+]
+THEN = {"exec math": 2941, "core": 2343, "domain": 2930, "dem": 5646, "fdem fdem_shared": 6554, "prepare": 4994, "io": 5485, "run": 4061, "app": 1059}
 SHARED_METHOD = "{m}/world.hpp {m}/case.hpp {m}/stepping/step.* {m}/stepping/host_run.cpp {m}/stepping/launches.hpp "
 READER = {
     "dem": [
         ("**the method**: world, kernels, the laws of concrete links and contacts or of triangles, joints and couples, search, the step on the host",
          SHARED_METHOD.format(m="dem") + "dem/elements.hpp dem/element_kernels.hpp dem/pair_forces.hpp dem/link_sums.hpp dem/contacts.hpp dem/wall.hpp "
          "dem/laws/concrete_link.hpp dem/laws/contact.hpp dem/laws/pair_motion.hpp dem/laws/tension_softening.hpp dem/links/concrete.hpp "
-         "dem/links/link_set.hpp dem/links/all.hpp dem/stepping/add_links.hpp dem/search.cpp"),
-        ("other laws: steel, interface, parallel bond, LDPM; joints that wake; fluid; walls with mass or a nose",
+         "dem/links/link_set.hpp dem/links/all.hpp dem/stepping/add_links.hpp dem/search.cpp dem/near.hpp"),
+        ("other laws: steel, interface, parallel bond, LDPM; joints that wake; what tetrahedra alone need of the search; fluid; bolts; walls with mass or a nose",
          "dem/laws/* dem/links/* dem/free_walls* dem/wall_*"),
         ("set-up, keys, stages, servos", "dem/setup/* dem/servos*"),
         ("energies, probes, hash, counts, stress", "dem/emission* dem/energy* dem/probes* dem/observe* dem/stress*"),
@@ -57,9 +78,9 @@ READER = {
     "fdem": [
         ("", SHARED_METHOD.format(m="fdem") + "fdem/shape.hpp fdem/triangles/* fdem/joints/joint* fdem/laws/elastic_triangle.hpp fdem/laws/joint_bond.hpp "
          "fdem/laws/potential_contact.hpp fdem/contact/couples.hpp fdem/contact/search* "
-         "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/insertion* fdem_shared/step* fdem_shared/host_run.hpp "
+         "fdem_shared/shape.hpp fdem_shared/search.hpp fdem_shared/shared_marks.hpp fdem_shared/exposed.hpp fdem_shared/bundles.hpp fdem_shared/step* fdem_shared/host_run.hpp "
          "fdem_shared/motion.hpp fdem_shared/columns.hpp fdem_shared/stable_parts.hpp"),
-        ("", "fdem/joints/* fdem/laws/* fdem/fluid/* fdem/bolts/* fdem/edges_now.* fdem/contact/nearness.hpp"),
+        ("", "fdem/joints/* fdem/laws/* fdem_shared/insertion* fdem_shared/separated.hpp fdem/fluid/* fdem/bolts/* fdem/edges_now.* fdem/contact/nearness.hpp"),
         ("", "fdem/setup/* fdem/servos* fdem_shared/setup/* fdem_shared/servo* fdem_shared/over_time.hpp fdem_shared/loaded_sides.hpp"),
         ("", "fdem/emission* fdem3/emission* fdem_shared/emission.hpp fdem/energy* fdem/probes* fdem/observe* fdem_shared/energies.hpp fdem_shared/obs* fdem_shared/readings.hpp"),
         ("", "fdem/stepping/* fdem_shared/device_run.hpp fdem_shared/busy_couples.hpp fdem_shared/noting_move.hpp fdem/lanes/* fdem/contact/couple_lanes.hpp"),
@@ -105,6 +126,17 @@ def main():
     for (words, then, _), group in zip(PURPOSES, groups):
         print(f"| {words} | {then:,} | {counted(group)[0]:,} | {len(group)} |".replace("| 0 | ", "| - | "))
     print()
+    later, grown = sorted_into([patterns for _, patterns in LATER], files, source)
+    print("| came since, in files of its own | lines | code | files |\n|---|---|---|---|")
+    for (words, _), group in zip(LATER, later):
+        print(f"| {words} | {counted(group)[0]:,} | {counted(group)[1]:,} | {len(group)} |")
+    whole = [path for group in later for path in group]
+    print(f"| all of these | {counted(whole)[0]:,} | {counted(whole)[1]:,} | {len(whole)} |\n")
+    print("| the tree of then | then | now |\n|---|---|---|")
+    for names, then in THEN.items():
+        own = [path for path in grown if path.relative_to(source).parts[0] in names.split()]
+        print(f"| `{'`, `'.join(names.split())}` | {then:,} | {counted(own)[0]:,} |")
+    print(f"| all | {sum(THEN.values()):,} | {counted(grown)[0]:,} |\n")
     print("| | DEM | FDEM |\n|---|---|---|")
     both = {m: sorted_into([patterns for _, patterns in READER[m]], [p for p in files if p.relative_to(source).parts[0] in FOLDERS_OF[m]], source) for m in READER}
     for k, (words, _) in enumerate(READER["dem"]):
