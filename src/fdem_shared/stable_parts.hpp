@@ -1,7 +1,10 @@
 #pragma once
-// From the largest sum of a row's stiffness to a stable step (Gershgorin's bound).
+// The stable step of an element by Gershgorin's bound: every eigenfrequency is at most the largest
+// sum of a row's |stiffness| over its mass. One text for triangles and tetrahedra, whose joints and
+// contacts each adds by itself.
 
 #include "math/vec.hpp"
+#include "math/vec2.hpp"
 
 namespace breccia::fdem_shared {
 
@@ -27,5 +30,66 @@ struct StepParts {
     step = stable_step_of(square, viscous + absorbed, mass);
   }
 };
+
+BR_HD inline void list(const Vec2& v, double (&component)[2]) {
+  component[0] = v.x;
+  component[1] = v.y;
+}
+BR_HD inline void list(const Vec3& v, double (&component)[3]) {
+  component[0] = v.x;
+  component[1] = v.y;
+  component[2] = v.z;
+}
+
+/// Area of a triangle or volume of a tetrahedron: a factor of each term, or of their sum.
+struct SizeOfElement {
+  double each, all;
+};
+
+/// Sum of the absolute stiffnesses in the row of component c of corner i.
+/// @param slope  of the corners' shape functions  [1/m]
+template <int dim, class Vector>
+BR_HD double row_sum(const Vector (&slope)[dim + 1], int i, int c, const SizeOfElement& size,
+                     double lambda, double shear) {
+  double sum = 0.0;
+  double gi[dim], gj[dim];
+  list(slope[i], gi);
+  for (int j = 0; j <= dim; ++j) {
+    const double dots = dot(slope[i], slope[j]);
+    list(slope[j], gj);
+    for (int d = 0; d < dim; ++d) {
+      const double k =
+          lambda * (gi[c] * gj[d]) + shear * (gi[d] * gj[c]) + (c == d ? shear * dots : 0.0);
+      sum += size.each * abs(k);
+    }
+  }
+  return size.all * sum;
+}
+
+/// The shares of an element's own stiffness and viscosity in the rows of corner i.
+template <int dim, class Vector>
+BR_HD void add_element(StepParts& p, const Vector (&slope)[dim + 1], int i,
+                       const SizeOfElement& size, double lambda, double shear, double viscosity) {
+  for (int c = 0; c < dim; ++c) {
+    p.element = max(p.element, row_sum<dim>(slope, i, c, size, lambda, shear));
+    p.viscous = max(p.viscous, row_sum<dim>(slope, i, c, size, 0.0, 0.5 * viscosity));
+  }
+}
+
+/// Contact counts at sides that another element is near to; at all that can touch of an element so
+/// fast that it might pass the reach of that before the next evaluation.
+/// @param rows  parts of the element with contact at the sides of these bits
+/// @param reach  called if needed  [m]
+template <int corners, class Rows, class Vector, class Reach>
+BR_HD StepParts parts_until_next(const Rows& rows, int near, int exposed,
+                                 const Vector (&velocity)[corners], int evaluate_every,
+                                 const Reach& reach) {
+  const StepParts least = rows(near);
+  if (near == exposed) return least;
+  double fastest = 0.0;
+  for (int k = 0; k < corners; ++k) fastest = max(fastest, dot(velocity[k], velocity[k]));
+  const double way = evaluate_every * least.step * sqrt(fastest);
+  return way > reach() ? rows(exposed) : least;
+}
 
 }  // namespace breccia::fdem_shared

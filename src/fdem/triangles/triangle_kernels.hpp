@@ -176,10 +176,8 @@ struct EdgeDashpots {
   double at[3] = {0.0, 0.0, 0.0};  ///<  [Pa s/m]
 };
 
-/// The stable step of a triangle by Gershgorin's bound: every eigenfrequency is at most the largest
-/// sum of a row's |stiffness| over its mass (docs/theory-fdem.md, 5). Contact counts at edges that
-/// another triangle is near to, and at all that can touch of a triangle so fast that it might pass
-/// what is near between two evaluations.
+/// The stable step of a triangle (docs/theory-fdem.md, 5): fdem_shared/stable_parts.hpp with its
+/// joints, contacts and dashpots.
 struct StableStep {
   View<const TriangleNodes> nodes;
   View<const Index> material, law_of;  ///< the latter: place among the laws
@@ -213,13 +211,9 @@ struct StableStep {
     split(nodes[t], x, v);
     const int exposed = exposed_edges(t);
     const int near = exposed == 0 ? 0 : near_edges(t, x, exposed);
-    Parts least = parts(t, x, near);
-    if (near == exposed) return least;
-    double fastest = 0.0;
-    for (int k = 0; k < 3; ++k) fastest = max(fastest, dot(v[k], v[k]));
-    const double way = evaluate_every * least.step * sqrt(fastest);
-    if (way > nearness.reach(t)) least = parts(t, x, exposed);
-    return least;
+    return fdem_shared::parts_until_next([&](int pressed) { return parts(t, x, pressed); }, near,
+                                         exposed, v, evaluate_every,
+                                         [&] { return nearness.reach(t); });
   }
 
  private:
@@ -239,10 +233,7 @@ struct StableStep {
       if (hold[t] >= 0 && holds[hold[t]].fixed_at(i) == 3)
         continue;  // goes where it is told, whatever its mass
       Parts p;
-      for (int c = 0; c < 2; ++c) {
-        p.element = max(p.element, row(slope, i, c, area, law.lambda, law.shear));
-        p.viscous = max(p.viscous, row(slope, i, c, area, 0.0, 0.5 * viscosity[t]));
-      }
+      fdem_shared::add_element<2>(p, slope, i, {area, 1.0}, law.lambda, law.shear, viscosity[t]);
       if (law.is_bedded()) p.element += row_of_planes(slope, i, area, law);
       const int before = i == 0 ? 2 : i - 1;
       if (dashpots.size > 0) p.absorbed = dashpot(t, i, x) + dashpot(t, before, x);
@@ -253,22 +244,7 @@ struct StableStep {
     }
     return largest;
   }
-  /// Sum of the absolute stiffnesses in the row of component c of corner i.
-  BR_HD static double row(const Vec2 (&slope)[3], int i, int c, double area, double lambda,
-                          double shear) {
-    double sum = 0.0;
-    for (int j = 0; j < 3; ++j) {
-      const double dots = dot(slope[i], slope[j]);
-      const double gi[2] = {slope[i].x, slope[i].y}, gj[2] = {slope[j].x, slope[j].y};
-      for (int d = 0; d < 2; ++d) {
-        const double k =
-            lambda * (gi[c] * gj[d]) + shear * (gi[d] * gj[c]) + (c == d ? shear * dots : 0.0);
-        sum += area * abs(k);
-      }
-    }
-    return sum;
-  }
-  /// What the planes of bedded rock add to that, at most, however it has turned: of g_i and D g_i,
+  /// Share of the planes of bedded rock in a row, at most, however it has turned: of g_i and D g_i,
   /// which are equally long, sum |a_c b_d| over d <= sqrt 2 |a| |b|.
   BR_HD static double row_of_planes(const Vec2 (&slope)[3], int i, double area,
                                     const ElasticTriangle& law) {

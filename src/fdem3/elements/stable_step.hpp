@@ -47,12 +47,9 @@ struct StableStep {
     Vec3 x[4], v[4];
     split(nodes[t], x, v);
     const int open = exposed[t];
-    if (open == 0 || is_near(t, x)) return parts(t, x, open);
-    const Parts free = parts(t, x, 0);
-    double fastest = 0.0;
-    for (const Vec3& velocity : v) fastest = max(fastest, dot(velocity, velocity));
-    const double way = evaluate_every * free.step * sqrt(fastest);
-    return way > near_reach(shape[t]) ? parts(t, x, open) : free;
+    return fdem_shared::parts_until_next([&](int pressed) { return parts(t, x, pressed); },
+                                         open == 0 || is_near(t, x) ? open : 0, open, v,
+                                         evaluate_every, [&] { return near_reach(shape[t]); });
   }
 
  private:
@@ -90,30 +87,12 @@ struct StableStep {
       if (hold[t] >= 0 && holds[hold[t]].fixed_at(i) == 7)
         continue;  // goes where it is told, whatever its mass
       Parts p = at_corner[i];
-      for (int c = 0; c < 3; ++c) {
-        p.element = max(p.element, row(form.slope, i, c, volume, law.lambda, law.shear));
-        p.viscous = max(p.viscous, row(form.slope, i, c, volume, 0.0, 0.5 * viscosity[t]));
-      }
+      fdem_shared::add_element<3>(p, form.slope, i, {1.0, volume}, law.lambda, law.shear,
+                                  viscosity[t]);
       p.finish(mass[t]);
       if (p.step < largest.step) largest = p;
     }
     return largest;
-  }
-  /// Sum of the absolute stiffnesses in the row of component c of corner i.
-  BR_HD static double row(const Vec3 (&slope)[4], int i, int c, double volume, double lambda,
-                          double shear) {
-    const double gi[3] = {slope[i].x, slope[i].y, slope[i].z};
-    double sum = 0.0;
-    for (int j = 0; j < 4; ++j) {
-      const double dots = dot(slope[i], slope[j]);
-      const double gj[3] = {slope[j].x, slope[j].y, slope[j].z};
-      for (int d = 0; d < 3; ++d) {
-        const double k =
-            lambda * (gi[c] * gj[d]) + shear * (gi[d] * gj[c]) + (c == d ? shear * dots : 0.0);
-        sum += abs(k);
-      }
-    }
-    return volume * sum;
   }
   /// A live joint adds 2 p_f A/(3 h) to each row of its nodes; an exposed face 4 k_n A/3 times at
   /// most 1.366; an absorbing one a third of its area times its impedance.
