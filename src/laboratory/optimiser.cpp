@@ -19,7 +19,7 @@ namespace {
 constexpr double first_step = 0.1, least_step = 2e-3, farthest = 1.0;  // of logarithms of keys
 constexpr double unit = 0.05;  // bound over misfits: it then moves about as far as the keys do
 
-/// What NLopt calls; no exception may pass through it.
+/// Function that NLopt calls; no exception may pass through it.
 class Objective {
  public:
   using Row = std::vector<double>;
