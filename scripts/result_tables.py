@@ -14,6 +14,7 @@ import re
 import statistics
 import sys
 
+import concrete_tables
 import impact_tables
 import ldpm_tables
 import library_tables
@@ -36,7 +37,9 @@ def rock(campaign):
 
 
 def concrete(name):
-    """Strengths over sizes of elements; where single specimens are recorded, mean and deviation are made from them."""
+    """Slow tests beside published numbers; or strengths over sizes of elements: where single specimens are recorded, mean and deviation are made from them."""
+    if name == "slow":
+        return concrete_tables.slow(lines_of("concrete"))
     found = {}
     with open(RESULTS / "concrete.csv", newline="") as file:
         for row in csv.DictReader(file):
@@ -105,6 +108,7 @@ def impact(kind):
 
 
 MAKERS = {"rock": rock, "concrete": concrete, "impact": impact, "library": lambda which: library_tables.markdown(lines_of("library"), which),
+          "criterion": lambda _: concrete_tables.criterion(lines_of("criterion")), "choice": lambda _: concrete_tables.choice(lines_of("choice")),
           "reinforced": lambda _: reinforced_tests.markdown(lines_of("reinforced")),
           "speed": lambda table: speed_tables.TABLES[table](),
           "ldpm": lambda what: ldpm_tables.markdown(lines_of("ldpm"), what),
