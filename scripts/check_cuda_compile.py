@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
-"""Compiles the CUDA sources of a configured build folder by nvcc: check_cuda_compile.py BUILD. Sources of a folder go together, as
-CMake does it for host code (for CUDA not before version 3.31): a third of the time goes into headers."""
+"""Compiles the CUDA sources of a configured build folder by nvcc down to PTX: check_cuda_compile.py BUILD. Sources of a library go together, much
+as CMake does it for host code (for CUDA not before version 3.31): half of the time would go into headers.
+
+The device's half alone takes half the time. nvcc's front end reads all of a file for it, host functions and their instances, too, as
+these say which kernels there are; what stands in `#if !defined(__CUDA_ARCH__)` is what a build without CUDA compiles."""
 import concurrent.futures
 import json
 import os
@@ -9,6 +12,7 @@ import shlex
 import subprocess
 import sys
 
+root = pathlib.Path(__file__).resolve().parents[1] / "src"
 build = pathlib.Path(sys.argv[1]).resolve()
 groups = {}
 for entry in json.loads((build / "compile_commands.json").read_text()):
@@ -17,19 +21,18 @@ for entry in json.loads((build / "compile_commands.json").read_text()):
         continue
     flags = [word for k, word in enumerate(words[:-4]) if word not in ("-MD", "-MT", "-MF", "-x", "cu", "-c") and words[k - 1] not in ("-MT", "-MF")]
     source = pathlib.Path(entry["file"])
-    groups.setdefault((tuple(flags), source.parent), []).append(source)
+    groups.setdefault((tuple(flags), source.relative_to(root).parts[0]), []).append(source)
 
 folder = build / "together"
 folder.mkdir(exist_ok=True)
 jobs = []
-for (flags, parent), sources in groups.items():
-    parts = (len(sources) + 7) // 8
+for (flags, library), sources in groups.items():
+    parts = (len(sources) + 23) // 24
     for part in range(parts):
         mine = sources[part * len(sources) // parts:(part + 1) * len(sources) // parts]
-        path = folder / f"{parent.name}_{len(jobs)}.cu"
+        path = folder / f"{library}_{len(jobs)}.cu"
         path.write_text("".join(f'#include "{source}"\n' for source in mine))
-        # g++ reads the host's half and writes no object: a third less time, and nothing here links them.
-        jobs.append([sum(source.stat().st_size for source in mine), *flags, "-Xcompiler=-fsyntax-only", "-x", "cu", "-c", str(path), "-o", str(path.with_suffix(".o"))])
+        jobs.append([sum(source.stat().st_size for source in mine), *flags, "-x", "cu", "-ptx", str(path), "-o", str(path.with_suffix(".ptx"))])
 jobs = [job for _, *job in sorted(jobs, key=lambda job: -job[0])]  # the largest first, so that no core waits at the end
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Compiles every file with kernels by nvcc, where it is installed: the kernels must stay device code.
-# For one architecture and down to PTX, which ptxas would take most of the time to assemble; host code is checked and not made into an object. The preset `cuda` compiles for all.
+# For one architecture and down to PTX, which ptxas would take most of the time to assemble; no object is made. The preset `cuda` compiles for all.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
