@@ -8,7 +8,9 @@ FOLDER    gets gallery.md and checks.md, with picture, film (needs ffmpeg) and r
           the picture in its folder. Exit code 1 if a run or a check fails.
 """
 import argparse
+import concurrent.futures
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -52,21 +54,25 @@ def main():
     checks = ["# Checks of the cases", "", "Written from the results of the small cases when these pages were built: each check is a key of the case file, so that any run repeats it.", "",
               "| case | check | value | expected | tolerance | unit | |", "|---|---|---|---|---|---|---|"]
     checked = 0
-    for case in sorted((ROOT / "cases").iterdir()):
-        name = case.name
-        if not (case / "small.toml").exists() or (arguments.only and name not in arguments.only):
-            continue
-        title = tomllib.loads((case / "small.toml").read_text()).get("title") or tomllib.loads((case / "case.toml").read_text()).get("title", name)
-        result = arguments.results / name
+    cases = [case for case in sorted((ROOT / "cases").iterdir()) if (case / "small.toml").exists() and (not arguments.only or case.name in arguments.only)]
+    for case in cases:
+        name, result = case.name, arguments.results / case.name
         if arguments.run and not (result / "summary.json").exists():
             done = subprocess.run([program, "run", case / "small.toml", "-o", result, "--threads", "1", "--no-progress", "--force"], capture_output=True, text=True)
             if done.returncode:
                 problems.append(f"{name}: the run ended with {done.returncode}\n{done.stderr[-500:]}")
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        drawn = {case.name: pool.submit(made, program, arguments.results / case.name, folder, case.name)
+                 for case in cases if (arguments.results / case.name / "summary.json").exists()}
+    for case in cases:
+        name = case.name
+        title = tomllib.loads((case / "small.toml").read_text()).get("title") or tomllib.loads((case / "case.toml").read_text()).get("title", name)
+        result = arguments.results / name
         gallery += [f"## {title}", ""]
         links = [f"[the case](../../cases/{name}/README.md)", f"[file](../../cases/{name}/small.toml)"]
-        if (result / "summary.json").exists():
+        if name in drawn:
             summary = json.loads((result / "summary.json").read_text())
-            lines, more = made(program, result, folder, name)
+            lines, more = drawn[name].result()
             gallery += [*lines, ""]
             links += more
             gallery += [f"{summary['steps']:,} steps, state hash `{summary['state_hash']}`.", "", "```sh",
