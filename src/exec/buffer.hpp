@@ -12,6 +12,15 @@
 
 namespace breccia {
 
+/// Asserts what reading item i of an array asks for. Out of line, as nearly every line of a kernel
+/// reads: it is called only where a first look at an index and a space does not suffice.
+#if defined(BR_CHECKED) && !defined(__CUDA_ARCH__)
+[[gnu::noinline]] inline void assert_readable(Index i, Index size, Space space) {
+  BR_ASSERT(i >= 0 && i < size);
+  BR_ASSERT(space == Space::host || inside_kernel());
+}
+#endif
+
 /// An array as a kernel sees it: pointer, length and space. Reading is checked in checked builds.
 template <class T>
 struct View {
@@ -20,9 +29,10 @@ struct View {
   Space space = Space::host;
 
   BR_HD T& operator[](Index i) const {
-    BR_ASSERT(i >= 0 && i < size);
 #if defined(BR_CHECKED) && !defined(__CUDA_ARCH__)
-    BR_ASSERT(space == Space::host || inside_kernel());
+    if (static_cast<std::uint32_t>(i) >= static_cast<std::uint32_t>(size) || space != Space::host)
+        [[unlikely]]
+      assert_readable(i, size, space);
 #endif
     return data[i];
   }

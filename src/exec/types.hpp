@@ -55,7 +55,8 @@ BR_HD constexpr GlobalId high_id(PairKey key) {
   return static_cast<GlobalId>(key & 0xffffffffULL);
 }
 
-[[noreturn]] inline void assertion_failed(const char* condition, const char* file, int line) {
+[[noreturn, gnu::cold]] inline void assertion_failed(const char* condition, const char* file,
+                                                     int line) {
   std::fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);
   std::abort();
 }
