@@ -23,11 +23,11 @@ import library_tables
 NAMES = {"granite-lac-du-bonnet": "Lac du Bonnet granite", "granite-pikes-peak": "Pikes Peak granite", "limestone-bedford": "limestone", "marble-cherokee": "marble",
          "sandstone-berea": "sandstone", "shale-micaceous": "shale"}
 CONCRETES = ["C20", "C30", "C40", "C60", "C100"]
+FITTED_CONCRETE, FITTED_ROCK = 2, 8  # meshes from 1 on that they were calibrated on
 ALLOWED = {"young": 3, "poisson": 10, "brazilian": 5, "tension": 5, "compression": 5, "friction_angle": 5, "fracture_energy": 10}
 # of targets: over the unit in calibrations.csv, digits
 SHOWN = {"young": (1e9, 2), "poisson": (1, 4), "brazilian": (1e6, 2), "tension": (1e6, 3), "friction_angle": (math.pi / 180, 1), "compression": (1e6, 1)}
-CASES = [("C30", "1200", "C30 of links, 1,200 elements, 2 packings"), ("C30", "600", "the same, 600 elements"), ("marble-cherokee", "300", "marble, 300 triangles, 2 meshes"),
-         ("granite-lac-du-bonnet", "300", "Lac du Bonnet granite, 300 triangles, 2 meshes")]
+CASES = [("C30", "600", "C30 of links, 600 elements, 2 packings"), ("marble-cherokee", "300", "marble, 300 triangles, 2 meshes")]
 CALIBRATION = ["material", "method", "elements", "step", "target", "key", "shown", "deviation", "misfit"]
 SPECIMEN = ["material", "elements", "test", "specimen", "quantity", "unit", "value", "hash", "seconds"]
 
@@ -58,9 +58,31 @@ def specimens(root):
             yield {"material": material, "elements": elements, **line, "hash": run["state_hash"], "seconds": f"{sum(run['stages_s'].values()):.4g}"}
 
 
-def marked(misfit, target):
-    bold = "**" if abs(misfit) > ALLOWED[target] else ""
+def marked(misfit, target, allowed=None):
+    bold = "**" if abs(misfit) > (allowed or ALLOWED[target]) else ""
     return f"{bold}{misfit:+.1f} %{bold}"
+
+
+class Pressed:
+    """A rock under the pressure that its angle is told by: half its strength, but no more than its source has; in MPa and degrees."""
+
+    def __init__(self, target):
+        self.free, self.angle = target["compression"], target["friction_angle"]
+        self.pressure = min(self.free / 2, target.get("confinement", math.inf))
+        self.gain = (1 + math.sin(math.radians(self.angle))) / (1 - math.sin(math.radians(self.angle)))
+        self.strength = self.free + self.pressure * self.gain
+
+    def of_gain(self, change):
+        """What a change of the gain is of the angle, per cent."""
+        return 100 * math.degrees(0.5 * math.cos(math.radians(self.angle)) * change / self.gain) / self.angle
+
+    def allowed(self):
+        """By `breccia calibrate`: 5 % of the angle, and no more than changes the strength under pressure by 5 %."""
+        return min(ALLOWED["friction_angle"], self.of_gain(0.05 * self.strength / self.pressure))
+
+    def left(self):
+        """What 5 % of both strengths leave of the angle."""
+        return self.of_gain(0.05 * (self.free + self.strength) / self.pressure)
 
 
 def steps(lines, materials):
@@ -70,7 +92,9 @@ def steps(lines, materials):
         of = [one for one in lines if one["material"] == material and one["method"] == "" and one["elements"] == "1200"]
         for step in sorted({int(one["step"]) for one in of}):
             at = {one["target"]: float(one["misfit"]) for one in of if int(one["step"]) == step}
-            cells = [next((marked(at[name], name) for name in names if name in at), "") for names in (["young"], ["poisson"], ["brazilian", "tension"], ["friction_angle"], ["compression"])]
+            asked = library_tables.targets_of(material)
+            allowed = {"friction_angle": Pressed(asked).allowed()} if "friction_angle" in asked else {}
+            cells = [next((marked(at[name], name, allowed.get(name)) for name in names if name in at), "") for names in (["young"], ["poisson"], ["brazilian", "tension"], ["friction_angle"], ["compression"])]
             out.append(f"| {NAMES.get(material, material) if step == 1 else ''} | {step} | " + " | ".join(cells) + " |")
     return "\n".join(out)
 
@@ -86,7 +110,8 @@ def last_steps(lines, materials):
         for target in ("young", "poisson", "brazilian", "friction_angle", "compression"):
             unit, digits = SHOWN[target]
             one = last[target]
-            cells.append(f"{float(one['shown']) / unit:.{digits}f} +- {float(one['deviation'] or 0) / unit:.{digits}f}, {marked(float(one['misfit']), target)}")
+            allowed = Pressed(library_tables.targets_of(material)).allowed() if target == "friction_angle" else None
+            cells.append(f"{float(one['shown']) / unit:.{digits}f} +- {float(one['deviation'] or 0) / unit:.{digits}f}, {marked(float(one['misfit']), target, allowed)}")
         block = library[material]["fdem2d"]
         joint = block["joint"]
         cells.append(f"{block['young']}; {block['poisson']}; {joint['tension']}, {joint['friction_angle']}, {joint['cohesion']}")
@@ -111,35 +136,40 @@ def methods(lines):
 
 
 def recovery(lines, materials):
-    """What is asked beside what is shown on meshes from 3 on."""
+    """What is asked beside what is shown on meshes that were not fitted."""
     found = {}
     for one in lines:
-        if int(one["specimen"]) >= 3 and math.isfinite(float(one["value"])):
+        fitted = FITTED_CONCRETE if one["material"] in CONCRETES else FITTED_ROCK
+        if int(one["specimen"]) > fitted and math.isfinite(float(one["value"])):
             found.setdefault((one["material"], int(one["elements"])), {}).setdefault((one["test"], one["quantity"]), {})[one["specimen"]] = float(one["value"])
-    out = ["| | triangles | E (3 %), GPa | nu (10 %) | Brazilian, of concretes direct tension (5 %), MPa | compression (5 %), MPa | friction angle (5 %), degrees | n |", "|---" * 8 + "|"]
+    rocks = any("friction_angle" in library_tables.targets_of(material) for material in materials)
+    head = ["", "triangles", "E (3 %), GPa", "nu (10 %)", "Brazilian (5 %), MPa" if rocks else "direct tension (5 %), MPa", "compression (5 %), MPa"]
+    head += ["under pressure (5 %), MPa", "friction angle (what 5 % of both strengths leave), degrees", "n"] if rocks else ["n"]
+    out = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     for material in materials:
         target = library_tables.targets_of(material)
         for size in sorted(size for name, size in found if name == material):
             of = found[material, size]
-            free, pressed = of.get(("plate", "strength"), {}), of.get(("plate_10", "strength"), {})
+            free, pressed = of.get(("plate", "strength"), {}), of.get(("plate_pressed", "strength"), {})
             if not free:
                 continue
-            angles = []
-            for mesh in sorted(free.keys() & pressed.keys()):
-                gain = (pressed[mesh] - free[mesh]) / 10
-                angles.append(math.degrees(math.asin((gain - 1) / (gain + 1))))
-            cells = []
-            for values, name, digits in ((of.get(("plate", "young"), {}).values(), "young", 2), (of.get(("plate", "poisson"), {}).values(), "poisson", 4),
-                                         ((of.get(("disc", "strength")) or of.get(("tension", "strength"), {})).values(), "brazilian" if "brazilian" in target else "tension", 3),
-                                         (free.values(), "compression", 1), (angles, "friction_angle", 1)):
+
+            def cell(values, target, digits, allowed, before="", after=""):
                 values = list(values)
-                if not values or name not in target:
-                    cells.append("")
-                    continue
+                if not values:
+                    return ""
                 mean = statistics.mean(values)
                 spread = f" +- {statistics.stdev(values):.{digits}f}" if len(values) > 1 else ""
-                cells.append(f"{mean:.{digits}f}{spread}, {marked(100 * (mean / target[name] - 1), name)}"
-                             + ("" if len(values) == len(free) else f" (n = {len(values)})"))
+                return f"{before}{mean:.{digits}f}{spread}, {marked(100 * (mean / target - 1), '', allowed)}{after}" + ("" if len(values) == len(free) else f" (n = {len(values)})")
+
+            pull = of.get(("disc", "strength")) or of.get(("tension", "strength"), {})
+            cells = [cell(of.get(("plate", "young"), {}).values(), target["young"], 2, 3), cell(of.get(("plate", "poisson"), {}).values(), target["poisson"], 4, 10),
+                     cell(pull.values(), target["brazilian" if rocks else "tension"], 3, 5), cell(free.values(), target["compression"], 1, 5)]
+            if rocks:
+                rule = Pressed(target)
+                gains = [(pressed[mesh] - free[mesh]) / rule.pressure for mesh in sorted(free.keys() & pressed.keys())]
+                cells += [cell(pressed.values(), rule.strength, 1, 5, f"{rule.pressure:.3g}: "),
+                          cell([math.degrees(math.asin((gain - 1) / (gain + 1))) for gain in gains], rule.angle, 1, rule.left(), after=f" ({rule.left():.0f} %)")]
             out.append(f"| {NAMES.get(material, material)} | {size:,} | " + " | ".join(cells) + f" | {len(free)} |")
     return "\n".join(out)
 

@@ -17,7 +17,7 @@ MaterialTarget target_from(const std::string& text) {
   if (target.unit.empty() || equals == text.size())
     throw InputError(fmt::format(
         "--target {}: it is not NAME=VALUE with young, poisson, compression, tension, brazilian, "
-        "fracture_energy, slide_energy or friction_angle; nothing was run",
+        "fracture_energy, slide_energy, friction_angle or confinement; nothing was run",
         text));
   const char* const value = text.c_str() + equals + 1;
   char* end = nullptr;

@@ -54,7 +54,9 @@ struct TestCommand {
     tell_notes(read.notes);
     if (const auto* const concrete = std::get_if<dem::Config>(&read.config))
       return of_concrete(read, lab::sample_of(*concrete, material));
-    return make(read, lab::rock_sample_of(rock_case(read), material), lab::rock_tests());
+    const lab::RockSample rock = lab::rock_sample_of(rock_case(read), material);
+    const auto wanted = all_targets(targets, rock.material.use);
+    return make(read, rock, lab::rock_tests(lab::side_pressure(wanted, rock.material.joint)));
   }
 
   int of_concrete(const Case& read, const lab::Sample& sample) const {
@@ -158,10 +160,11 @@ void add_test(CLI::App& program, int& exit_code) {
       "tension_notched, triaxial_5 to _200, biaxial, oedometer, hydrostatic; grains are the "
       "mix's,\n"
       "the prism is five of the largest wide, --elements has no use.\n"
-      "Tests of rock (FDEM): plate, plate_10 (10 MPa on its sides), disc, tension (a plate).\n"
+      "Tests of rock (FDEM): plate, plate_pressed (its sides by half the target compression, at\n"
+      "most the target confinement), disc, tension (a plate).\n"
       "\n"
       "Targets: young, poisson, compression, tension, brazilian, fracture_energy,\n"
-      "friction_angle, as in\n"
+      "friction_angle (by the strength of plate_pressed), confinement, as in\n"
       "--target 'tension=2.9 MPa'; a material with the key use has those of its name.\n"
       "The exit code is 9 if a mean misses its target.\n"
       "\n"

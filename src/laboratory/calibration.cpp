@@ -85,11 +85,8 @@ double strength_over_cohesion(const Rock& m) {
   return 2.0 * std::cos(phi) / (1.0 - std::sin(phi));
 }
 
-/// Strength that a pressure adds, over it: what a friction angle is shown by. Near 60 degrees it
-/// grows by a tenth with each degree, so that the angles themselves are no straight line.
-double gain_of(double angle) {
-  return (1.0 + std::sin(angle)) / (1.0 - std::sin(angle));
-}
+/// A friction angle is shown by the gain: near 60 degrees it grows by a tenth with each degree, so
+/// that the angles themselves are no straight line.
 double angle_of(double gain) {
   return std::asin((gain - 1.0) / (gain + 1.0));
 }
@@ -106,26 +103,27 @@ std::vector<Knob<Rock>> knobs_for(const Rock&, bool) {
     return Knob<Rock>{"joint.tension", target, test, "strength", f_t, set_f_t, 1.0, 0.05,
                       share,           0.0,    all};
   };
-  return {{"young", "young", "plate", "young", [](const Rock& r) { return r.young; },
-           [](Rock& r, double x) { r.young = x; }, 1.0, 0.03, softened, 0.0, all},
-          {"poisson", "poisson", "plate", "poisson", [](const Rock& r) { return r.poisson; },
-           [](Rock& r, double x) { r.poisson = x; }, 1.0, 0.10, softened, 0.01, 0.49},
-          tension("brazilian", "disc", 0.9),
-          tension("tension", "tension", 1.0),
-          {"joint.friction_angle as (1 + sin(phi)) / (1 - sin(phi))", "friction_angle", "plate_10",
-           "friction_angle", [](const Rock& r) { return gain_of(r.joint.friction_angle); },
-           [](Rock& r, double x) { r.joint.friction_angle = angle_of(x); }, 1.0, 0.05, 1.0, 1.0,
-           gain_of(steepest), "plate", gain_of},
-          {"joint.cohesion times 2 cos(phi) / (1 - sin(phi))", "compression", "plate", "strength",
-           [](const Rock& r) { return r.joint.cohesion * strength_over_cohesion(r); },
-           [](Rock& r, double x) { r.joint.cohesion = x / strength_over_cohesion(r); }, 1.0, 0.05,
-           1.0, 0.0, all},
-          {"joint.energy_open", "fracture_energy", "", "",
-           [](const Rock& r) { return r.joint.energy_open; },
-           [](Rock& r, double x) { r.joint.energy_open = x; }, 1.0, 0.10, 1.0, 0.0, all},
-          {"joint.energy_slide", "slide_energy", "", "",
-           [](const Rock& r) { return r.joint.energy_slide; },
-           [](Rock& r, double x) { r.joint.energy_slide = x; }, 1.0, 0.10, 1.0, 0.0, all}};
+  return {
+      {"young", "young", "plate", "young", [](const Rock& r) { return r.young; },
+       [](Rock& r, double x) { r.young = x; }, 1.0, 0.03, softened, 0.0, all},
+      {"poisson", "poisson", "plate", "poisson", [](const Rock& r) { return r.poisson; },
+       [](Rock& r, double x) { r.poisson = x; }, 1.0, 0.10, softened, 0.01, 0.49},
+      tension("brazilian", "disc", 0.9),
+      tension("tension", "tension", 1.0),
+      {"joint.friction_angle as (1 + sin(phi)) / (1 - sin(phi))", "friction_angle", "plate_pressed",
+       "friction_angle", [](const Rock& r) { return gain_of(r.joint.friction_angle); },
+       [](Rock& r, double x) { r.joint.friction_angle = angle_of(x); }, 1.0, 0.05, 1.0, 1.0,
+       gain_of(steepest), "plate", gain_of},
+      {"joint.cohesion times 2 cos(phi) / (1 - sin(phi))", "compression", "plate", "strength",
+       [](const Rock& r) { return r.joint.cohesion * strength_over_cohesion(r); },
+       [](Rock& r, double x) { r.joint.cohesion = x / strength_over_cohesion(r); }, 1.0, 0.05, 1.0,
+       0.0, all},
+      {"joint.energy_open", "fracture_energy", "", "",
+       [](const Rock& r) { return r.joint.energy_open; },
+       [](Rock& r, double x) { r.joint.energy_open = x; }, 1.0, 0.10, 1.0, 0.0, all},
+      {"joint.energy_slide", "slide_energy", "", "",
+       [](const Rock& r) { return r.joint.energy_slide; },
+       [](Rock& r, double x) { r.joint.energy_slide = x; }, 1.0, 0.10, 1.0, 0.0, all}};
 }
 
 /// Whether numbers of a material stand in tables below it.
@@ -136,11 +134,26 @@ bool has_tables(const Rock&) {
   return true;
 }
 
-std::vector<SpecimenTest> tests_for(const Concrete& m) {
+std::vector<SpecimenTest> tests_for(const Concrete& m, const std::vector<MaterialTarget>&) {
   return tests_of(m);
 }
-std::vector<SpecimenTest> tests_for(const Rock&) {
-  return rock_tests();
+std::vector<SpecimenTest> tests_for(const Rock& m, const std::vector<MaterialTarget>& targets) {
+  return rock_tests(side_pressure(targets, m.joint));
+}
+
+/// An angle may miss its target by 5 %, and by no more than changes the strength under pressure by
+/// 5 %.
+template <class Material>
+double tolerance_of(const Knob<Material>& knob, double target,
+                    const std::vector<SpecimenTest>& tests,
+                    const std::vector<MaterialTarget>& targets) {
+  double tolerance = knob.tolerance;
+  if (std::string_view(knob.number) != "friction_angle") return tolerance;
+  for (const SpecimenTest& test : tests)
+    if (const auto strength = pressed_strength(targets, test.pressure);
+        test.name == knob.test && strength)
+      tolerance = std::min(tolerance, angle_for(target, 0.05 * *strength / test.pressure) / target);
+  return tolerance;
 }
 
 /// A key changes by at most this factor from step to step.
@@ -176,6 +189,7 @@ std::vector<double> solved(std::vector<std::vector<double>> a, std::vector<doubl
 template <class Material>
 Calibration<Material>::Calibration(Material start, std::vector<MaterialTarget> targets)
     : material_(std::move(start)) {
+  const std::vector<SpecimenTest> possible = tests_for(material_, targets);
   const auto asked = [&](const char* name) {
     return std::find_if(targets.begin(), targets.end(),  // the first one counts
                         [&](const MaterialTarget& t) { return t.name == name; });
@@ -191,27 +205,22 @@ Calibration<Material>::Calibration(Material start, std::vector<MaterialTarget> t
     if (!(target->value > 0.0))
       throw InputError(fmt::format("target {} must be above 0; nothing was run", target->name));
     aims_.push_back({knob, target->value});
+    aims_.back().knob.tolerance = tolerance_of(knob, target->value, possible, targets);
   }
   if (std::none_of(aims_.begin(), aims_.end(), [](const Aim& a) { return a.knob.test[0] != '\0'; }))
     throw InputError("there is no target that a specimen shows: --target takes " + names +
                      "; nothing was run");
+  for (const SpecimenTest& test : possible)
+    if (std::any_of(aims_.begin(), aims_.end(), [&](const Aim& a) {
+          return test.name == a.knob.test || test.name == a.knob.also;
+        }))
+      tests_.push_back(test);
   for (const Aim& aim : aims_)
     if (aim.knob.share > 0.0)
       aim.knob.set(material_, std::clamp(aim.knob.share * measured(aim, aim.target), aim.knob.low,
                                          aim.knob.high));
   slopes_.assign(aims_.size(), Row(aims_.size(), 0.0));
   for (std::size_t i = 0; i < aims_.size(); ++i) slopes_[i][i] = aims_[i].knob.sensitivity;
-}
-
-template <class Material>
-std::vector<SpecimenTest> Calibration<Material>::tests() const {
-  std::vector<SpecimenTest> tests;
-  for (const SpecimenTest& test : tests_for(material_))
-    if (std::any_of(aims_.begin(), aims_.end(), [&](const Aim& a) {
-          return test.name == a.knob.test || test.name == a.knob.also;
-        }))
-      tests.push_back(test);
-  return tests;
 }
 
 template <class Material>

@@ -49,7 +49,7 @@ class Calibration {
   Calibration(Material start, std::vector<MaterialTarget> targets);
 
   /// The tests that show the targets.
-  std::vector<SpecimenTest> tests() const;
+  const std::vector<SpecimenTest>& tests() const { return tests_; }
   /// The keys to try next: at first the closed-form start.
   const Material& material() const { return material_; }
   /// Takes what they have shown, and chooses the next ones. @throws InputError if a target was not
@@ -95,6 +95,7 @@ class Calibration {
 
   Material material_;
   std::vector<Aim> aims_;
+  std::vector<SpecimenTest> tests_;
   std::vector<Row> slopes_;  ///< [target][key]
   std::vector<CalibrationStep<Material>> steps_;
 };

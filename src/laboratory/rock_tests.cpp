@@ -23,7 +23,13 @@ double edge_for(double area, int triangles) {
 /// Axial stress by Mohr and Coulomb.  [Pa]
 double strength_of(const fdem::StrengthConfig& joint, double pressure) {
   const double sine = std::sin(joint.friction_angle), cosine = std::cos(joint.friction_angle);
-  return (2.0 * joint.cohesion * cosine + pressure * (1.0 + sine)) / (1.0 - sine);
+  return 2.0 * joint.cohesion * cosine / (1.0 - sine) + pressure * gain_of(joint.friction_angle);
+}
+
+const MaterialTarget* target_of(const std::vector<MaterialTarget>& targets, const char* name) {
+  const auto found = std::find_if(targets.begin(), targets.end(),
+                                  [&](const MaterialTarget& t) { return t.name == name; });
+  return found == targets.end() ? nullptr : &*found;
 }
 
 fdem::SupportConfig support(const char* name, const Vec2& min, const Vec2& max, double speed,
@@ -83,7 +89,8 @@ void press_plate(fdem::Config& c, const RockSample& sample, double pressure) {
     load.history.ramp = ramp;
     c.loads.push_back(load);
   }
-  c.time.end = ramp + (1.35 * expected + 2e-4) / strain_rate;
+  // peaks under pressure come at 0.8 to 1.02 of that strain
+  c.time.end = ramp + ((pressure > 0.0 ? 1.2 : 1.35) * expected + 2e-4) / strain_rate;
   add_end_probes(c);
   for (const double side : {-1.0, 1.0}) {
     ProbeConfig across = probe(side < 0.0 ? "left" : "right", "specimen", "displacement_x", "mean");
@@ -146,17 +153,42 @@ RockSample rock_sample_of(const fdem::Config& config, const std::string& materia
   return sample;
 }
 
-const std::vector<SpecimenTest>& rock_tests() {
+double gain_of(double friction_angle) {
+  const double sine = std::sin(friction_angle);
+  return (1.0 + sine) / (1.0 - sine);
+}
+
+double angle_for(double friction_angle, double gain_change) {
+  return 0.5 * std::cos(friction_angle) * gain_change / gain_of(friction_angle);
+}
+
+double side_pressure(const std::vector<MaterialTarget>& targets,
+                     const fdem::StrengthConfig& joint) {
+  const MaterialTarget* const strength = target_of(targets, "compression");
+  const MaterialTarget* const most = target_of(targets, "confinement");
+  const double half = 0.5 * (strength ? strength->value : strength_of(joint, 0.0));
+  return most ? std::min(half, most->value) : half;
+}
+
+std::optional<double> pressed_strength(const std::vector<MaterialTarget>& targets,
+                                       double pressure) {
+  const MaterialTarget* const strength = target_of(targets, "compression");
+  const MaterialTarget* const angle = target_of(targets, "friction_angle");
+  if (strength == nullptr || angle == nullptr) return std::nullopt;
+  return strength->value + pressure * gain_of(angle->value);
+}
+
+std::vector<SpecimenTest> rock_tests(double pressure) {
   const Vec3 plate{plate_width, plate_height, 1.0};
-  static const std::vector<SpecimenTest> tests{
+  return {
       {"plate", "compression, plate, smooth ends", Loading::plate, plate},
-      {"plate_10", "compression, plate, 10 MPa on its sides", Loading::plate, plate, 10e6},
+      {"plate_pressed", fmt::format("compression, plate, {:.3g} MPa on its sides", 1e-6 * pressure),
+       Loading::plate, plate, pressure},
       {"disc",
        "Brazilian, disc",
        Loading::plane_disc,
        {plane_disc_diameter, plane_disc_diameter, 1.0}},
       {"tension", "direct tension, plate", Loading::pulled_plate, plate}};
-  return tests;
 }
 
 fdem::Config case_of(const SpecimenTest& test, const RockSample& sample, std::int64_t seed,

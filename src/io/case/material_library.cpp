@@ -107,7 +107,8 @@ std::string target_unit(const std::string& target) {
   if (target == "poisson") return "-";
   if (target == "fracture_energy" || target == "slide_energy") return "J/m2";
   if (target == "friction_angle") return "rad";
-  for (const char* stress : {"young", "compression", "tension", "brazilian", "yield"})
+  for (const char* stress :
+       {"young", "compression", "tension", "brazilian", "confinement", "yield"})
     if (target == stress) return "Pa";
   return "";
 }

@@ -221,15 +221,32 @@ TEST(SpecimenResult, OfADiscHasNoStrengthWhereTheLoadStillGrows) {
           fmt::format("{},{},{},{},{}\n", k, force, -force, 0.025 - 1e-7 * k, -0.025 + 1e-7 * k);
     }
     replace_file(scratch / "history.csv", text);
-    return specimen_result(rock_tests()[2], scratch.path()).numbers.at("strength");
+    return specimen_result(rock_tests(10e6)[2], scratch.path()).numbers.at("strength");
   };
   EXPECT_NEAR(strength(300), 2.0 * 300e3 / (pi * 0.05), 1e-3);
   EXPECT_TRUE(std::isnan(strength(400)));
 }
 
+/// Under pressure the pieces of a rock wedge, and it bears more again: its strength is the first
+/// peak that it falls from by a twentieth; without such a fall it has none where the test ends.
+TEST(SpecimenResult, OfAPressedPlateIsItsFirstPeak) {
+  const ScratchFolder scratch;
+  const auto strength = [&](double fall) {
+    std::string text = "time,force_top,force_bottom,top,bottom\ns,N,N,m,m\n";
+    for (int k = 0; k <= 400; ++k) {
+      const double force = 1e3 * (k <= 200 ? k : 200.0 * (1.0 - fall) + 0.5 * (k - 200));
+      text += fmt::format("{},{},{},{},{}\n", k, -force, force, 0.05 - 1e-7 * k, -0.05 + 1e-7 * k);
+    }
+    replace_file(scratch / "history.csv", text);
+    return specimen_result(rock_tests(10e6)[1], scratch.path()).numbers.at("strength");
+  };
+  EXPECT_NEAR(strength(0.06), 200e3 / 0.05, 1.0);
+  EXPECT_TRUE(std::isnan(strength(0.04)));
+}
+
 /// N = 5: phi = asin(4/6).
 TEST(FrictionAngle, IsThatOfPlatesFreeAndPressed) {
-  const std::vector<SpecimenTest>& tests = rock_tests();
+  const std::vector<SpecimenTest> tests = rock_tests(10e6);
   const auto plate = [](const SpecimenTest& test, double strength) {
     return TestResults{test, {{{}, {{"strength", strength}}}}, {}};
   };
@@ -239,10 +256,42 @@ TEST(FrictionAngle, IsThatOfPlatesFreeAndPressed) {
   EXPECT_TRUE(friction_angles({plate(tests[0], 60e6)}).empty());
 }
 
+/// Half of the strength, but within the pressures that the angle was measured under.
+TEST(FrictionAngle, IsToldUnderHalfTheStrengthOrWhatTheSourceHas) {
+  fdem::StrengthConfig joint;
+  joint.cohesion = 30e6;
+  joint.friction_angle = std::asin(0.6);  // strength of 4 c
+  EXPECT_NEAR(side_pressure({}, joint), 60e6, 1.0);
+  EXPECT_EQ(side_pressure({{"compression", 80e6, "Pa"}}, joint), 40e6);
+  EXPECT_EQ(side_pressure({{"compression", 80e6, "Pa"}, {"confinement", 9e6, "Pa"}}, joint), 9e6);
+  EXPECT_EQ(rock_tests(40e6)[1].pressure, 40e6);
+}
+
+/// f_c = 80 MPa and N = 4 give 240 MPa under 40 MPa. 5 % of both strengths are 16 MPa, 0.4 of N,
+/// 0.04 rad of the angle of 0.6435 rad: 6.2 %.
+TEST(Passport, HoldsAPressedPlateAgainstTheAngleByItsStrength) {
+  const std::vector<MaterialTarget> targets{{"compression", 80e6, "Pa"},
+                                            {"friction_angle", std::asin(0.6), "rad"}};
+  const std::vector<SpecimenTest> tests = rock_tests(40e6);
+  const auto lines = [&](double free, double pressed) {
+    return passport_lines({{tests[0], {{{}, {{"strength", free}}}}, {}},
+                           {tests[1], {{{}, {{"strength", pressed}}}}, {}}},
+                          targets);
+  };
+  const auto met = lines(80e6, 251e6), missed = lines(83.9e6, 227e6);
+  ASSERT_EQ(met.size(), 3U);
+  EXPECT_NEAR(*met[1].target, 240e6, 1.0);
+  EXPECT_TRUE(met[1].pass() && met[2].pass());
+  EXPECT_NEAR(met[2].tolerance, 0.04 / std::asin(0.6), 1e-4);
+  EXPECT_TRUE(missed[0].pass());
+  EXPECT_FALSE(missed[1].pass());
+  EXPECT_FALSE(missed[2].pass());  // N = 3.58
+}
+
 TEST(RockSpecimens, AreCasesWithoutAProblem) {
   RockSample sample;
   sample.material.name = "granite";
-  for (const SpecimenTest& test : rock_tests()) {
+  for (const SpecimenTest& test : rock_tests(40e6)) {
     const fdem::Config config = case_of(test, sample, 2, "");
     EXPECT_NO_THROW(fdem::check_case(config)) << test.name;
     EXPECT_EQ(config.loads.size(), test.pressure > 0.0 ? 2U : 0U);
