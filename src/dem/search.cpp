@@ -240,15 +240,16 @@ LinkRows rows_of(Space space, const std::vector<Index>& end, Index elements,
   return rows;
 }
 
-/// The order in which the host's link_plan adds links up, as lists for a device: tile by tile of
-/// elements a, group by group.
+/// The order in which the host adds links up, as lists for a device: by tiles of link_plan, which
+/// global ids bound, each group by group.
 void list_rows(World& w, const std::vector<Index>& a, const std::vector<Index>& b) {
   const Index count = w.elements.size();
+  const std::vector<Index>& tiles = w.link_plan.tiles;
   std::vector<Index> order;
   order.reserve(a.size());
-  for (Index from = 0; from < count; from += sweep_tile) {
-    const auto begin = static_cast<std::size_t>(from);
-    const auto end = static_cast<std::size_t>(std::min(from + sweep_tile, count));
+  for (std::size_t t = 0; t + 1 < tiles.size(); ++t) {
+    const auto begin = static_cast<std::size_t>(tiles[t]);
+    const auto end = static_cast<std::size_t>(tiles[t + 1]);
     for (const auto& group : w.concrete.groups)
       for (Index i = group.starts[begin]; i < group.starts[end]; ++i) order.push_back(i);
   }

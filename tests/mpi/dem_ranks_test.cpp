@@ -55,6 +55,20 @@ TEST(DemRanks, leave_the_same_state_where_arrays_lie_in_another_space) {
   EXPECT_GT(shared.counts.migrations, 1);
 }
 
+// Links of several groups meet at an element: their sums go by tiles of global ids.
+TEST(DemRanks, leave_the_same_state_of_a_fabric_of_several_laws) {
+  Slab cylinder;
+  cylinder.config =
+      read_case<dem::Config>(std::string(source_dir) + "/cases/split_cylinder/small.toml",
+                             {"body.cylinder.pack.count=300", "body.cylinder.velocity=[0, 0, -2]"});
+  cylinder.model = std::make_shared<const dem::Model>(build_model(cylinder.config, ""));
+  const dem::World world = cylinder.world();
+  EXPECT_GT(world.concrete.groups.size(), 1U);
+  const Outcome expected = alone(cylinder, 80);
+  for (const Space space : {Space::host, Space::shadow})
+    EXPECT_EQ(on_ranks(3, cylinder, 80, {}, 1, space).outcome, expected);
+}
+
 TEST(DemRanks, leave_the_same_state_however_borders_and_copies_are_kept) {
   DomainConfig config;
   config.balance = false;

@@ -92,15 +92,19 @@ TEST(FreeWalls, have_the_same_bits_everywhere) {
     exec.space = Space::shadow;
     const auto launched = make_method(s.config, s.model, exec, nullptr);
     EXPECT_TRUE(end_of(*launched, end) == expected) << "by launches";
-    simulate_ranks(3, 5, [&](Communicator& ranks) {
-      const auto part = make_method(s.config, s.model, {}, &ranks);
-      end_of(*part, 0.2 * end);
-      part->load(ranks.rank() == 0 ? &reader : nullptr);
-      const End on_ranks = end_of(*part, end);
-      if (ranks.rank() == 0) {
-        EXPECT_TRUE(on_ranks == expected) << "resumed on ranks";
-      }
-    });
+    for (const Space space : {Space::host, Space::shadow})
+      simulate_ranks(3, 5, [&](Communicator& ranks) {
+        Exec own;
+        own.space = space;
+        const auto part = make_method(s.config, s.model, own, &ranks);
+        end_of(*part, 0.2 * end);
+        part->load(ranks.rank() == 0 ? &reader : nullptr);
+        const End on_ranks = end_of(*part, end);
+        if (ranks.rank() == 0) {
+          EXPECT_TRUE(on_ranks == expected)
+              << "resumed on ranks" << (space == Space::shadow ? " by launches" : "");
+        }
+      });
     std::filesystem::remove(path);
   }
 }
