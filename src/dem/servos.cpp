@@ -1,14 +1,15 @@
 #include "dem/servos.hpp"
 
+#include <algorithm>
+#include <type_traits>
+
+#include "dem/push_of_links.hpp"
+#include "dem/stepping/launches.hpp"
 #include "domain/set_here.hpp"
 #include "exec/fold_sum.hpp"
 
 namespace breccia::dem {
 namespace {
-
-BR_HD double part_along(int axis, const Vec3& v) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
 
 /// The velocity of an element in the step to come, as a plate reads it.  [m/s]
 struct Comes {
@@ -69,7 +70,8 @@ struct SupportPush {
   }
 };
 
-/// The element on the other side of a link of a held element is as stiff as its own modulus says.
+/// The element on the other side of a link of a held element is as stiff as its own modulus says;
+/// it goes with it.
 struct TiedPush {
   OwnedView owned;
   Comes comes;
@@ -98,29 +100,26 @@ struct ContactPush {
   OwnedView owned;
   Comes comes;
   Vec3 ahead;
-  std::int16_t servo;
-  int axis;
+  LedElements led;
   bool hertz;
   View<const double> mass;
-  View<const std::int16_t> material, motion;
-  View<const LedBy> led;
+  View<const std::int16_t> material;
   View<const ElementState> state;
   View<const ContactPair> pairs;  ///< of materials p, q at p * materials + q
   Index materials;
   View<const Index> a, b;
   View<const ContactState> contact;
 
-  BR_HD bool is_led(Index e) const { return motion[e] >= 0 && led[motion[e]].servo[axis] == servo; }
   BR_HD ServoReading operator()(Index i) const {
     const Index p = a[i], q = b[i];
     ServoReading r;
     const double overlap = contact[i].overlap;
     if (!owned(p) || !(overlap > 0.0)) return r;
-    const bool by_p = is_led(p);
-    if (by_p == is_led(q)) return r;
+    const bool by_p = led(p);
+    if (by_p == led(q)) return r;
     const double radius_p = state[p].radius, radius_q = state[q].radius, sum = radius_p + radius_q;
     const Vec3 way = state[q].position - state[p].position;
-    const double along = part_along(axis, way), smaller = min(radius_p, radius_q);
+    const double along = part_along(led.axis, way), smaller = min(radius_p, radius_q);
     const double constant = pairs[material[p] * materials + material[q]].normal;
     const double stiffness = hertz ? 2.0 * constant * sqrt(radius_p * radius_q / sum * overlap)
                                    : constant * smaller * smaller / sum;
@@ -156,6 +155,35 @@ View<const Index> places_of(const World& part, const ElementSet& set, SetHere& h
   return std::as_const(here.places).view();
 }
 
+/// Adds what links will push with that a plate knows by their law.
+template <class Law>
+void add_links(World& part, LinkSet<Law>& set, const LedElements& led, double velocity,
+               FoldSum<ServoReading>& all) {
+  for (const LinkGroup<Law>& group : set.groups) {
+    const auto add = [&](const auto& forces) {
+      all.add(group.end - group.begin, LinkPush<std::decay_t<decltype(forces)>>{
+                                           forces, group.begin, part.domain.owned_view(),
+                                           part.next_dt, velocity, led, kick(part)});
+    };
+    if constexpr (LinkSet<Law>::swept)
+      with_number(set.precision, [&](auto number) {
+        add(link_kernel<decltype(number)>(part, set, group.law, 0));
+      });
+    else
+      add(link_kernel<double>(part, set, group.law, 0));
+  }
+}
+
+/// What acts on elements that another rank leads, as it was summed there.
+void refresh_forces(World& w) {
+  const auto refresh = [&w](Buffer<Vec3>& items) {
+    w.domain.start_refresh(w.exec, items);
+    w.domain.finish_refresh(w.exec, items);
+  };
+  refresh(w.elements.force);
+  refresh(w.elements.torque);
+}
+
 /// @param support  its number  @param servo  likewise, walls first
 ServoReading read_support(World& part, std::size_t support, std::size_t servo, int axis,
                           bool plate) {
@@ -171,12 +199,19 @@ ServoReading read_support(World& part, std::size_t support, std::size_t servo, i
                                     e.force.view(), e.mass.view()});
   const Comes comes{plate, kick(part)};
   const Vec3 along = along_axis(axis);
-  all.add(tied.size, TiedPush{owned, comes, along, tied, e.mass.view(), e.material.view(),
-                              e.state.view(), given.wall_pairs.view()});
+  const LedElements led{static_cast<std::int16_t>(servo), axis, e.motion.view(),
+                        std::as_const(part.led).view()};
+  if (plate) {
+    add_links(part, part.concrete, led, part.servos[servo].velocity, all);
+    add_links(part, part.parallel, led, part.servos[servo].velocity, all);
+  }
+  const Index others = part.links() - part.concrete.size() - part.parallel.size();
+  if (!plate || others > 0)
+    all.add(tied.size, TiedPush{owned, comes, along, tied, e.mass.view(), e.material.view(),
+                                e.state.view(), given.wall_pairs.view()});
   all.add(c.size(),
-          ContactPush{owned, comes, along, static_cast<std::int16_t>(servo), axis,
-                      given.contact.hertz, e.mass.view(), e.material.view(), e.motion.view(),
-                      std::as_const(part.led).view(), e.state.view(), given.contact_pairs.view(),
+          ContactPush{owned, comes, along, led, given.contact.hertz, e.mass.view(),
+                      e.material.view(), e.state.view(), given.contact_pairs.view(),
                       given.materials, c.pairs.a.view(), c.pairs.b.view(), c.history.state.view()});
   return all.sum();
 }
@@ -185,6 +220,8 @@ ServoReading read_support(World& part, std::size_t support, std::size_t servo, i
 
 std::vector<ServoReading> read_servos(World& part, const Config& now) {
   std::vector<ServoReading> readings;
+  const auto is_plate = [](const auto& led) { return led.servo.is_plate(); };
+  if (std::any_of(now.supports.begin(), now.supports.end(), is_plate)) refresh_forces(part);
   for (std::size_t k = 0; k < now.walls.size(); ++k)
     readings.push_back(now.walls[k].servo.is_due(part.step)
                            ? read_wall(part, k, now.walls[k].servo.is_plate())

@@ -6,6 +6,28 @@
 
 namespace breccia::fdem3 {
 
+/// Of a tetrahedron whose corners are at x with the velocities v: the force on one of them.
+struct ElasticForces {
+  View<const Index> material;
+  View<const ElasticTetrahedron> laws;
+  View<const ShapeGradients> shape;
+  View<const double> viscosity;
+
+  BR_HD Vec3 on_corner(Index t, int corner, const Vec3 (&x)[4], const Vec3 (&v)[4]) const {
+    const ShapeGradients g = shape[t];
+    const Deformation d = deformation(g, x);
+    const double eta = viscosity[t];
+    const Sym3 rate = eta > 0.0 ? deformation_rate(g, d, v) : Sym3{};
+    Vec3 on[4];
+    corner_forces(g, g.volume(), laws[material[t]].piola(d, eta, rate), on);
+    return on[corner];
+  }
+};
+inline ElasticForces elastic_forces(World& w) {
+  return {laws_of(w), w.given->laws.view(), std::as_const(w.tetrahedra.shape).view(),
+          std::as_const(w.tetrahedra.viscosity).view()};
+}
+
 inline CoupleForces pressing_couples(World& w) {
   return couple_kernel(w);
 }

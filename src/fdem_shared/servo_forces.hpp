@@ -27,8 +27,8 @@ struct LedWhole {
 };
 
 /// A held corner takes what all else does to it. How stiff that is, it knows by its own modulus. A
-/// plate knows what a platen's contacts will do (PlatenPush); of what else may act on it the mass
-/// of its corners tells, or the most that contact can do.
+/// plate knows what a platen's contacts (PlatenPush) and the elements of a face (FacePush) will do;
+/// of what else may act on it the mass of its corners tells, or the most that contact can do.
 template <class Shape>
 struct SupportPush {
   OwnedView owned;
@@ -59,7 +59,7 @@ struct SupportPush {
       r.stiffness.add(Shape::corner_stiffness(laws[law_of[t]], reference[t]));
       r.mass.add(mass[t]);
     } else if (!led(t)) {
-      r.inertia.add(mass[t]);
+      if (!known) r.inertia.add(mass[t]);
     } else if (!known || is_tied(t)) {
       const double penalty = contacts[material[t] * materials + material[t]].penalty;
       r.inertia.add(0.5 * dt * dt * Shape::pressed_corner(penalty, reference[t]));
@@ -76,6 +76,64 @@ struct SupportPush {
       if (!led(other)) return true;
     }
     return false;
+  }
+};
+
+/// The push to come of an element that has corners in a face that a support holds. With the face at
+/// the velocity v_0 that it has, and all else moved by the forces of the moment, a corner will push
+/// with P_1 in the step to come instead of P_0 now, and with K dt more for each m/s more:
+/// R' = R + (P_1 - P_0) + K (v - v_0) dt. Joints between corners of the face do nothing to their
+/// sum.
+template <class Shape, class Elastic, class Kick>
+struct FacePush {
+  using Vector = typename Shape::Vector;
+  static constexpr int corners = static_cast<int>(Shape::corners);
+  OwnedView owned;
+  double dt;        ///< of the next step  [s]
+  double velocity;  ///< v_0  [m/s]
+  LedWhole<Shape> led;
+  View<const Index> members;  ///< held corners
+  Elastic elastic;
+  Kick kick;
+  View<const typename Shape::Reference> reference;
+
+  BR_HD ServoReading operator()(Index i) const {
+    constexpr double share = 1e-6;  // of an element: how far it goes to feel the stiffness
+    const Index t = members[i] / Shape::corners;
+    const int corner = static_cast<int>(members[i] % Shape::corners), axis = led.axis;
+    ServoReading r;
+    if (!owned(t) || led.hold[t] < 0 || led(t)) return r;
+    const typename Shape::Hold& h = led.holds[led.hold[t]];
+    const auto of = kick.given(t);
+    const auto then = kick(of);
+    Vector x[corners], v[corners];
+    for (int k = 0; k < corners; ++k) {
+      x[k] = of.nodes.at[k].position;
+      v[k] = of.nodes.at[k].velocity;
+    }
+    const double now = -part_of(elastic.on_corner(t, corner, x, v), axis);
+    for (int k = 0; k < corners; ++k) {
+      v[k] = held_parts(h.fixed_at(k), v[k], then.velocity[k]);
+      if (leads(h, k)) part_of(v[k], axis) = velocity;
+      x[k] += dt * v[k];
+    }
+    const double next = -part_of(elastic.on_corner(t, corner, x, v), axis);
+    const double way = share * 100.0 * Shape::near(reference[t]);
+    for (int k = 0; k < corners; ++k) {
+      if (!leads(h, k)) continue;
+      part_of(x[k], axis) += way;
+      part_of(v[k], axis) += way / dt;
+    }
+    const double farther = -part_of(elastic.on_corner(t, corner, x, v), axis);
+    const double stiffness = (farther - next) / way;
+    r.stiffness.add(stiffness);
+    r.flow.add(stiffness * velocity - (next - now) / dt);
+    return r;
+  }
+
+ private:
+  BR_HD bool leads(const typename Shape::Hold& h, int k) const {
+    return h.motion[k] == led.motion && (h.fixed_at(k) >> led.axis & 1) != 0;
   }
 };
 
@@ -207,6 +265,12 @@ ServoReading read_support(World& part, std::size_t support, std::size_t number,
   if (servo.is_plate()) {
     const auto couples = pressing_couples(part);
     const auto moves = kick(part);
+    if (Shape::contact_alone_presses(part)) {
+      const auto elastic = elastic_forces(part);
+      sum.add(corners.size,
+              FacePush<Shape, decltype(elastic), decltype(moves)>{
+                  owned, part.next_dt, state.velocity, led, corners, elastic, moves, reference});
+    }
     sum.add(part.couples.size(),
             PlatenPush<Shape, decltype(couples), decltype(moves)>{
                 owned, axis, part.next_dt, state.velocity, state.share * servo.speed,

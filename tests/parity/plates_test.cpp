@@ -151,6 +151,69 @@ TEST(Plate, of_triangles_keeps_its_force_through_a_blow) {
   EXPECT_LT(deviation(0.0), 1e-4);
 }
 
+/// Likewise a face that a support holds, of triangles that a wave comes to.
+TEST(Plate, of_a_face_keeps_its_force_through_a_blow) {
+  using fdem::testing::far;
+  constexpr double force = 2e5, strikes = 1e-3, strike = 0.05;
+  const auto deviation = [&](double mass) {
+    fdem::testing::Scene s;
+    s.material(30e9, 0.2, 2500.0).damping = 0.1;
+    s.config.local_damping = 0.5;
+    s.body("block", prepare::crossed_rectangle({{0.0, 0.0}, {0.1, 0.04}}, 0.01));
+    fdem::SupportConfig& left = s.support("left", {-far, -far}, {-0.0499, far}, {"x"});
+    left.velocity.times = {strikes, strikes + 1e-9};
+    left.velocity.values = {{}, {strike, 0.0}};
+    fdem::SupportConfig& right = s.support("right", {0.0499, -far}, {far, far}, {"x"});
+    static_cast<ServoConfig&>(right.servo) = pushing(0.0, 2.0, mass);
+    right.servo.force.times = {0.0, 8e-4, 9e-4};
+    right.servo.force.values = {0.0, -0.9 * force, -force};
+    s.config.time.end = 1.0;
+    s.config.probes = {{"force", "right", "force_x", "sum"}};
+    const auto method = make_method(s.config, s.model, {}, nullptr);
+    run_to(*method, strikes);
+    const double largest = largest_deviation(*method, strikes + 6e-5, 1, force);
+    EXPECT_LT(method->energy().error_relative, 1e-2);
+    return largest;
+  };
+  EXPECT_GT(deviation(20.0), 0.05);
+  EXPECT_LT(deviation(0.0), 1e-5);
+}
+
+/// Brittle bonds of elements that supports hold let go, each of which bears some hundredths of a
+/// side's force.
+TEST(Plate, of_a_layer_keeps_its_force_while_its_bonds_break) {
+  constexpr double force = 5e3, confined = 1e-3, edge = 0.018, end = 0.04;
+  dem::testing::Specimen s(100, {0.05, 0.05, 0.1});
+  s.material().law = "parallel";
+  s.material().tensile_strength = 1e6;
+  s.material().cohesion = 2e6;
+  for (const double side : {-1.0, 1.0}) {
+    dem::SupportConfig pressed, crushed;
+    pressed.name = side < 0.0 ? "south" : "north";
+    (side < 0.0 ? pressed.max.y : pressed.min.y) = side * edge;
+    pressed.fix = {"y"};
+    static_cast<ServoConfig&>(pressed.servo) = pushing(0.0, 5.0, 0.0);
+    pressed.servo.axis = "y";
+    pressed.servo.force.times = {0.0, 0.5 * confined};
+    pressed.servo.force.values = {0.0, -side * force};
+    crushed.name = side < 0.0 ? "foot" : "head";
+    (side < 0.0 ? crushed.max.z : crushed.min.z) = side * end;
+    crushed.fix = {"z"};
+    crushed.velocity.times = {confined, confined + 1e-4};
+    crushed.velocity.values = {{}, {0.0, 0.0, -0.2 * side}};
+    s.config.supports.insert(s.config.supports.end(), {pressed, crushed});
+  }
+  s.config.time.end = 1.0;
+  s.config.probes = {{"south", "south", "force_y", "sum"},
+                     {"north", "north", "force_y", "sum"},
+                     {"broken", "north", "broken", "sum"}};
+  const auto method = make_method(s.config, s.model(), {}, nullptr);
+  run_to(*method, confined);
+  EXPECT_LT(largest_deviation(*method, 2e-3, 2, force), 0.01);
+  EXPECT_GT(method->probes()[2], 5.0);
+  EXPECT_LT(method->energy().error_relative, 5e-3);
+}
+
 /// A wall that goes at a constant speed presses grains by K v t: what is told lags by K v lag.
 TEST(LaggingProbe, follows_a_ramp_by_its_lag_and_has_the_same_bits_everywhere) {
   constexpr double lag = 50e-6;

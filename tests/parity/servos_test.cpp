@@ -10,6 +10,7 @@
 #include "dem/setup/stages.hpp"
 #include "domain/simulated_ranks.hpp"
 #include "physics/dem/scene.hpp"
+#include "physics/dem/specimen.hpp"
 #include "physics/fdem/scene.hpp"
 #include "physics/fdem3/scene.hpp"
 #include "run/method/dem_method.hpp"
@@ -341,6 +342,37 @@ TEST(Servo, of_platens_without_inertia_has_the_same_bits_everywhere) {
   press(solid.support("right", {0.0200005, -far, -far}, {far, far, far}, {"x", "y", "z"}));
   solid.config.time.end = 1.0;
   expect_alike(solid, 2e-5);
+  press(solid.support("face", {-far, -far, 0.0099}, {0.0199, far, far}, {"z"}));
+  solid.config.supports.back().servo.axis = "z";
+  expect_alike(solid, 2e-5);
+}
+
+/// Layers of concrete, whose links another rank may have the other ends of, while some of them
+/// break.
+TEST(Servo, of_layers_without_inertia_has_the_same_bits_everywhere) {
+  for (const char* law : {"concrete", "parallel"}) {
+    dem::testing::Specimen s(60, {0.05, 0.05, 0.1});
+    s.material().law = law;
+    s.material().tensile_strength = 0.5e6;
+    s.material().cohesion = 1e6;
+    dem::SupportConfig foot, head;
+    foot.name = "foot";
+    foot.max.z = -0.03;
+    foot.fix = {"z"};
+    head.name = "head";
+    head.min.z = 0.03;
+    head.fix = {"z"};
+    static_cast<ServoConfig&>(head.servo) = pushing(-15e3, 5.0, 0.0);
+    head.servo.axis = "z";
+    s.config.supports = {foot, head};
+    s.config.time.end = 1.0;
+    struct {
+      dem::Config config;
+      dem::Model model;
+    } const layers{s.config, s.model()};
+    SCOPED_TRACE(law);
+    expect_alike(layers, 1e-4);
+  }
 }
 
 /// The column under a dead load on its highest grain.
