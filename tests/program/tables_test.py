@@ -53,6 +53,39 @@ on = "plate"
 quantity = "velocity_y"
 {more}
 """
+BOTH = """breccia = 1
+method = ["dem3d", "fdem3d"]
+time = {{ end = "2 ms", max_step = "2 us" }}
+output = {{ frames = 1, pictures = false, history = "0.1 ms" }}
+energy = {{ stop = 0 }}
+{gravity}
+[spheres.material.steel]
+law = "grain"
+density = 7800.0
+young = "2 GPa"
+[[spheres.body]]
+name = "ball"
+shape = "element"
+material = "steel"
+radius = 0.01
+center = [0.0, 0.0, 0.2]
+[tetrahedra.material.rock]
+joints = "none"
+[[tetrahedra.body]]
+name = "cube"
+material = "rock"
+size = [0.1, 0.1, 0.1]
+mesh_size = 0.1
+[[probe]]
+name = "v"
+on = "ball"
+quantity = "velocity_z"
+[[probe]]
+name = "cube"
+on = "cube"
+quantity = "velocity_z"
+{more}
+"""
 
 
 class Tables(unittest.TestCase):
@@ -90,6 +123,24 @@ class Tables(unittest.TestCase):
         self.ran(self.ball(self.RISES), "--steps", "1234")
         self.breccia("resume", out, "-q")
         self.assertEqual(self.result(out)[1]["state_hash"], summary["state_hash"])
+        self.assertEqual(self.result(out)[0], row)
+
+    def test_spheres_and_tetrahedra_of_one_run_fall_alike(self):
+        for step in (1, 7):  # what is left of ten steps when the run is ended
+            row, summary = self.ran(BOTH.format(gravity=self.RISES, more=""))
+            for probe in ("v", "cube"):
+                self.assertAlmostEqual(row[probe], -0.01, delta=1e-6, msg=probe)
+            self.assertLess(abs(row["error_relative"]), 1e-4)
+            out = pathlib.Path(self.folder.name) / "out"
+            rows = (out / "history.csv").read_text()
+            self.ran(BOTH.format(gravity=self.RISES, more=""), "--steps", str(400 + step))
+            self.breccia("resume", out, "-q")
+            self.assertEqual(self.result(out)[1]["state_hash"], summary["state_hash"])
+            self.assertEqual((out / "history.csv").read_text(), rows)
+        stages = '[[stage]]\nname = "wait"\nuntil = "1 ms"\n[[stage]]\nname = "fall"\n'
+        row, summary = self.ran(BOTH.format(gravity="", more=stages + 'gravity = [[0, 0, 0, 0], ["1 ms", 0, 0, -10.0]]'))
+        for probe in ("v", "cube"):
+            self.assertAlmostEqual(row[probe], -5e3 * (row["time"] - summary["stage"][1]["begin"]) ** 2, delta=1e-6, msg=probe)
 
     def test_a_table_of_one_value_is_that_value(self):
         hashes = [self.ran(self.ball(f"gravity = {g}"))[1]["state_hash"] for g in ("[0, 0, -9.81]", "[[0, 0, 0, -9.81], [1, 0, 0, -9.81]]")]
@@ -107,6 +158,10 @@ class Tables(unittest.TestCase):
             ("fdem3d", "[0.2, 0.1, 0.1]", '[[0, 0, 0, 0], ["1 ms", 0, -10.0, 0], ["2 ms", 0, 0, 0]]'),
         ):
             row, _ = self.ran(PLATE.format(method=method, size=size, gravity=table, more=""))
+            rows = (pathlib.Path(self.folder.name) / "out" / "history.csv").read_text()
+            self.ran(PLATE.format(method=method, size=size, gravity=table, more=""), "--steps", "47")
+            self.breccia("resume", pathlib.Path(self.folder.name) / "out", "-q")
+            self.assertEqual((pathlib.Path(self.folder.name) / "out" / "history.csv").read_text(), rows, method)
             self.assertAlmostEqual(row["v"], -0.01, delta=1e-6, msg=method)
             self.assertLess(abs(row["error_relative"]), 1e-4, method)
 
