@@ -4,7 +4,7 @@
     scripts/build_gallery.py FOLDER [--results DIR] [--run] [--only NAME ...] [--program build/release/breccia]
 
 --run     makes what DIR lacks: DIR/<case>, of cases/<case>/small.toml, one thread each
-FOLDER    gets gallery.md and checks.md, with picture, film (needs ffmpeg) and report of each result; without a result a case shows
+FOLDER    gets gallery.md and checks.md, with picture, film (640 pixels wide; needs ffmpeg) and report of each result; without a result a case shows
           the picture in its folder. Exit code 1 if a run or a check fails.
 """
 import argparse
@@ -34,7 +34,7 @@ def made(program, result, folder, name):
     subprocess.run([program, "report", result, "-o", report], check=True, stdout=subprocess.DEVNULL)
     links = [f"[report]({name}.html), {report.stat().st_size / 1e6:.1f} MB"]
     if shutil.which("ffmpeg"):
-        subprocess.run([program, "render", result, "-o", folder / f"{name}.mp4"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([program, "render", result, "-o", folder / f"{name}.mp4", "--width", "640"], check=True, stdout=subprocess.DEVNULL)
         links.append(f"[film]({name}.mp4)")
     return lines, links
 
