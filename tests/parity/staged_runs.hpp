@@ -38,12 +38,15 @@ void expect_alike(const Scene& s) {
   shadow.space = Space::shadow;
   EXPECT_EQ(end_of(s, threads), host);
   EXPECT_EQ(end_of(s, shadow), host);
-  simulate_ranks(3, 5, [&](Communicator& ranks) {
-    const std::uint64_t hash = end_of(s, {}, &ranks);
-    if (ranks.rank() == 0) {
-      EXPECT_EQ(hash, host) << "3 ranks";
-    }
-  });
+  for (const Space space : {Space::host, Space::shadow})
+    simulate_ranks(3, 5, [&](Communicator& ranks) {
+      Exec own;
+      own.space = space;
+      const std::uint64_t hash = end_of(s, own, &ranks);
+      if (ranks.rank() == 0) {
+        EXPECT_EQ(hash, host) << "3 ranks" << (space == Space::shadow ? " by launches" : "");
+      }
+    });
 }
 
 /// Saved at three times; continued alone and on ranks.
