@@ -314,7 +314,7 @@ struct OnBlock {
 TEST(Servo, of_both_methods_presses_through_spheres_on_tetrahedra) {
   for (const double mass : {no_limit, 0.0})
     for (const int led : {0, 1, 3}) {
-      SCOPED_TRACE(testing::Message() << led << " grains led, mass " << mass);
+      SCOPED_TRACE(::testing::Message() << led << " grains led, mass " << mass);
       const OnBlock s(led == 0, led, mass);
       const auto method = s.run(3e-3);
       const std::vector<double> read = method->probes();
@@ -327,7 +327,7 @@ TEST(Servo, of_both_methods_presses_through_spheres_on_tetrahedra) {
 TEST(Servo, of_both_methods_has_the_same_bits_everywhere) {
   constexpr double end = 2e-4;
   for (const int led : {0, 1, 3}) {
-    SCOPED_TRACE(testing::Message() << led << " grains led");
+    SCOPED_TRACE(::testing::Message() << led << " grains led");
     const OnBlock s(led == 0, led, led == 1 ? 0.0 : no_limit);
     const std::uint64_t host = s.run(end)->state_hash();
     Exec threads, shadow;
