@@ -1,5 +1,5 @@
 #pragma once
-// What the links of elements that a servo leads will push with in the step to come.
+// The push in the step to come of links whose elements a servo leads.
 
 #include "core/servo.hpp"
 #include "dem/element_kernels.hpp"

@@ -174,7 +174,7 @@ void add_links(World& part, LinkSet<Law>& set, const LedElements& led, double ve
   }
 }
 
-/// What acts on elements that another rank leads, as it was summed there.
+/// Forces on elements that another rank leads, as they were summed there.
 void refresh_forces(World& w) {
   const auto refresh = [&w](Buffer<Vec3>& items) {
     w.domain.start_refresh(w.exec, items);

@@ -263,7 +263,7 @@ double tolerance_of(const std::string& target) {
   return target == "poisson" || target == "fracture_energy" ? 0.10 : 0.05;
 }
 
-/// What 5 % of both strengths, free and under pressure, leave of their angle.
+/// The share of an angle that 5 % of both strengths, free and under pressure, leave open.
 double angle_tolerance(const std::vector<TestResults>& results,
                        const std::vector<MaterialTarget>& targets) {
   double tolerance = 0.05;
