@@ -207,7 +207,7 @@ void print_wrapped(const std::string& text) {
   for (const std::string& line : wrapped(text, 76)) fmt::print("  {}\n", line);
 }
 
-/// Keys of that very name, or else those that the words find.
+/// Keys of exactly this name; without one, keys that keys_about() finds.
 std::vector<KeyInfo> named(const std::vector<KeyInfo>& keys, const std::string& word) {
   std::vector<KeyInfo> found;
   for (const KeyInfo& key : keys)

@@ -1,4 +1,4 @@
-// breccia run CASE: from the start of a case, or from a checkpoint of it.
+// breccia run CASE: from the start of a case, or from one of its checkpoints.
 
 #include "run/run.hpp"
 

@@ -92,10 +92,10 @@ World make_world(const Config& config, dem::World& spheres, fdem3::World& tetrah
 /// Fills what follows from the state, after set-up, loading and a search.
 void derive(World& w);
 
-/// One step of both.
+/// One step of the spheres and the tetrahedra.
 void step(World& w);
 
-/// Forces between spheres and tetrahedra, added to those that both have.
+/// Adds the forces between spheres and tetrahedra to the forces of each.
 void press(World& w);
 /// The stable step of the tetrahedra by themselves, where it is evaluated,
 void note_stable_step(World& w);

@@ -184,7 +184,7 @@ void refresh_forces(World& w) {
   refresh(w.elements.torque);
 }
 
-/// @param support  its number  @param servo  likewise, walls first
+/// @param support  its number among supports  @param servo  its number among servos, walls first
 ServoReading read_support(World& part, std::size_t support, std::size_t servo, int axis,
                           bool plate) {
   const Case& given = *part.given;

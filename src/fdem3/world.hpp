@@ -57,7 +57,7 @@ struct World {
          motions, last_motions, load_laws, stress, overshoot, reached, domain.owned_there,
          domain.migration_reference);
   }
-  /// Those that derive() and a search fill.
+  /// Arrays that derive() and a search fill.
   template <class Visit>
   void each_derived(Visit&& visit) {
     const auto each = [&](auto&... arrays) { (visit(arrays), ...); };

@@ -23,7 +23,7 @@ void each_run(const World& w, const std::vector<ElementRun>& runs, const Visit& 
 }
 
 /// Moves elements by the method's move_range(w, kernel, begin, end), which tells whether one of
-/// them has used its margin up. @returns likewise
+/// them has used its margin up. @returns whether one has
 template <class World>
 bool move_here(World& w, const std::vector<ElementRun>& runs) {
   const auto kernel = world_move(w);

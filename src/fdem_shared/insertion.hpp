@@ -97,7 +97,7 @@ Woken wake(World& w, const Buffer<Index>& joints) {
   return {std::move(elements), std::move(vertices)};
 }
 
-/// Who moves with whom around all vertices, or those that have changed.
+/// Ties the corners that move together, around all vertices or around changed ones.
 template <class World>
 void tie_corners(World& w, bool all, const std::vector<Index>& changed) {
   if (w.bundles.starts.size() < 2) return;

@@ -19,7 +19,7 @@ struct ShapeOfWorld;
 template <class World>
 using ShapeOf = typename ShapeOfWorld<World>::Shape;
 
-/// What elements cost a rank, relative to each other.
+/// Work that one item gives to its rank; only ratios matter.  [-]
 struct Costs {
   std::int64_t element, end_of_joint, end_of_couple, tied_corner;
 };
@@ -34,7 +34,7 @@ BR_HD inline Vec3 to_space(const Vec2Of<float>& v) {
 BR_HD inline Vec3 to_space(const Vec3& v) {
   return v;
 }
-/// And back: of a vector in space what the method has of it.
+/// Vector of the method (plane or space) from one in space.
 template <class Vector>
 BR_HD Vector from_space(const Vec3& v);
 template <>

@@ -350,7 +350,7 @@ BR_HD inline void gather_four(const View<const Record>& records, const Indices<R
     for (int c = 0; c < 4; ++c) columns[c] = pack_of<R>(numbers[c]);
   }
 }
-/// store_records likewise; floats are rounded to the nearest.
+/// Stores four columns as records of four; floats are rounded to the nearest.
 template <class Number, class Record, class R>
 BR_HD inline void store_four(const View<Record>& records, Index first, const R (&columns)[4]) {
   static_assert(sizeof(Record) == 4 * sizeof(Number));

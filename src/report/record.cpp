@@ -82,7 +82,7 @@ namespace {
 /// Tables of more than this are left alone: reading would take longer than a person waits.
 constexpr std::uintmax_t largest_table = 100'000'000;
 
-/// What cuts parted before the start has the time 0.
+/// Bonds that have parted, by time. A cut before the start has the time 0 and is left out.
 std::vector<Break> breaks_in(const NumberTable& broken) {
   const Column *const time = broken.column("time"), *const kind = broken.column("kind");
   std::vector<Break> breaks;

@@ -9,7 +9,7 @@
 namespace breccia::report {
 namespace {
 
-/// Values of a field of points as those of elements: means of their corners.
+/// A field of elements from one of points: means over the corners.
 FrameField of_elements(const FrameField& field, const std::vector<std::int32_t>& corners,
                        std::size_t each) {
   FrameField made{field.name, field.unit, field.components, {}};

@@ -254,7 +254,7 @@ struct ConcreteLink {
     r.yielded = roll.spent;
     r.broke = zero;
 
-    // 4. What is kept.
+    // 4. New state.
     state.opening = select(s.intact, s.opening, state.opening);
     if (wears()) {
       const R wear = slip_wear * slide.plastic + turn_wear * link.radius * roll.plastic;

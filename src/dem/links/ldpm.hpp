@@ -340,7 +340,7 @@ struct LdpmFacetForces {
     const R f[4] = {edge.m.x, edge.m.y, edge.m.z, bond};
     write_records(frame, i, f);
   }
-  /// The rest of it: stresses and energies, force and torque.
+  /// Ends the move of a facet: stresses and energies, force and torque.
   template <class R>
   BR_HD void end_move(const LdpmFacet& by, Index i, const Moving<R>& moving, const R& decay) const {
     LdpmFacetStateOf<R> now;

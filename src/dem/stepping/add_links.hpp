@@ -54,7 +54,7 @@ struct AddLinks {
       sums[a].stiffness_a = stiffness_a;
     }
   }
-  /// Edges of facets [from, to), likewise; action 0 is of facet 0.
+  /// Adds the forces of the edges of facets [from, to); action 0 is of facet 0.
   void operator()(const LdpmEdgeForces& edges, Index from, Index to,
                   const PairForce* actions) const {
     for (Index k = from; k < to;) {

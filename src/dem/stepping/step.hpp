@@ -84,7 +84,7 @@ class DeviceRun : public StepwiseRun {
 
 /// One step by launches at once: on the GPUs of ranks. The host's text, the device's kernels.
 void take_step_on_device(World& w);
-/// Forces and the step that follows, likewise.
+/// Evaluates the forces and chooses the step that follows, by launches at once.
 void take_forces_on_device(World& w);
 /// As many steps as a few hundredths of a second hold, launched ahead and led by the device's
 /// clock.

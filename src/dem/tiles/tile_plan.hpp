@@ -182,7 +182,7 @@ BR_HD inline std::size_t TileMemory::lay_out(const Tile& tile, const TileGroups&
   return pieces.used > also.used ? pieces.used : also.used;
 }
 
-/// What a search changes of tiles.
+/// The lists of tiles, which a search replaces.
 struct TileLists {
   View<const Tile> tiles;
   View<const Index> touched;  ///< places of elements

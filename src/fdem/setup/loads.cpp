@@ -19,7 +19,7 @@ void prescribe_flow(FlowCase& flow, const LoadConfig& load) {
                 fdem_shared::amplitudes<Vec2>(input, load.history).x};
 }
 
-/// What does not change of a fluid that flows.
+/// Sets the constants of a flowing fluid: viscosity, apertures, where it enters and leaves.
 void set_up_flow(World& w, const Config& config, const LoadConfig& load, const Model& model) {
   FlowCase& flow = set_up(w).flow;
   flow.on = true;

@@ -16,11 +16,11 @@ std::vector<Index> corners_in(const Model& model, const RegionConfig& region,
 
 /// Edges 3 t + k on the border of the mesh with both ends in a region.
 /// @param needed  whether there must be some
-/// @throws InputError likewise
+/// @throws InputError as corners_in(); for no edges only if some are needed
 std::vector<Index> edges_in(const Model& model, const RegionConfig& region,
                             const std::string& where, bool needed = true);
 
-/// Vertices in a region. @throws InputError likewise
+/// Vertices in a region. @throws InputError as corners_in()
 std::vector<Index> vertices_in(const Model& model, const RegionConfig& region,
                                const std::string& where);
 

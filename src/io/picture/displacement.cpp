@@ -34,7 +34,7 @@ std::vector<Vec3> starts_of_spheres(const Frame& frame, const Frame& first) {
   return starts;
 }
 
-/// What bodies consist of: tetrahedra, or triangles in the plane.
+/// The elements of bodies: tetrahedra, or triangles in the plane.
 struct Elements {
   const std::vector<std::int32_t>& corners;
   std::size_t each;                                  ///< corners

@@ -25,7 +25,7 @@ SolidPiece section_of(const std::array<ScreenPoint, 4>& corners, const ScreenCli
 /// missing.
 std::vector<SolidPiece> pieces_of(const Frame& frame, const Scene& scene);
 
-/// What is drawn besides bodies: edges of joints that coloring shows, edges of all pieces.
+/// Lines drawn on bodies: edges of joints that coloring shows, edges of all pieces.
 struct SolidMarks {
   bool joints, edges;
 };

@@ -31,7 +31,7 @@ class Stresses {
 /// (half of the largest less the smallest).
 bool is_stress_measure(const std::string& name);
 
-/// Such a field; none for another name, or without stresses.
+/// The field of a stress measure; none for another name, or for a frame without stresses.
 std::optional<FrameField> stress_measure(const Frame& frame, const std::string& name);
 
 }  // namespace breccia

@@ -25,7 +25,7 @@ void check_case(const Config& config);
 }  // namespace fdem
 namespace fdem3 {
 
-/// Likewise for tetrahedra. @throws InputError with all problems at once
+/// Checks a case of tetrahedra. @throws InputError with all problems at once
 void check_case(const Config& config);
 
 }  // namespace fdem3

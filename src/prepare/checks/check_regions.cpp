@@ -271,7 +271,7 @@ void check_faces_and_corners(const Config& config, const std::string* folder) {
   refuse(problems, "in the case");
 }
 
-/// What of a body a wall will throw out; empty: none of it.
+/// The warning that a wall will throw out a body, or a part of it; empty: it will not.
 std::string behind(const dem::Wall& wall, const dem::WallConfig& asked, const dem::BodyConfig& body,
                    const Outline& outline) {
   const Bounds& b = *outline.bounds;

@@ -21,7 +21,7 @@ double elements_in(const dem::PackConfig& pack, double volume);
 PackingTask packing_task(const dem::BodyConfig& body, const std::vector<Capsule>& bars,
                          double bars_volume, const Random& random);
 
-/// What is wrong with the keys of a body's packing, each beginning with a key of it.
+/// Errors in the keys of a body's packing; each message begins with the key.
 std::vector<std::string> pack_problems(const dem::BodyConfig& body);
 
 /// Elements of a body about its centre.

@@ -17,7 +17,7 @@ struct Grading {
   std::vector<double> passing{};  ///< share of the mass, from 0 to 1, never falling  [-]
 
   bool empty() const { return sieves.empty(); }
-  /// What is wrong with it, after the name of its table; empty: nothing.
+  /// The first error of the curve, to stand after the name of its table; empty: none.
   std::string problem() const;
   /// Share of the mass in diameters below one. It has no problem, as for all below.  [-]
   double passes(double diameter) const;

@@ -41,7 +41,7 @@ struct Solid {
 /// Of a cut or a join; not of a file.
 Solid solid_of(const dem::CutConfig& config);
 
-/// What solids enclose together.
+/// The union of solids.
 class Union {
  public:
   explicit Union(std::vector<Solid> solids);

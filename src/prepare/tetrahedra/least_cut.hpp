@@ -12,10 +12,10 @@ class LeastCut {
  public:
   explicit LeastCut(Index nodes);
 
-  /// What it costs to leave a node on the other side than the source, or the sink.
+  /// Adds the cost of a cut between a node and the source, or the sink.
   void tie_to_source(Index node, std::int64_t cost) { connect(source(), node, cost, 0); }
   void tie_to_sink(Index node, std::int64_t cost) { connect(node, sink(), cost, 0); }
-  /// What it costs to part two nodes.
+  /// Adds the cost of a cut between two nodes.
   void join(Index a, Index b, std::int64_t cost) { connect(a, b, cost, cost); }
 
   /// Whether each node stays with the source: of all cheapest cuts the one with the fewest such

@@ -120,7 +120,7 @@ class AuditedMethod final : public Method {
             steps() + 1, name));
   }
 
-  /// What a repeated step has left is untouched until the next one begins. Rank 0 looks.
+  /// Throws if the state has changed since the last repeated step. Rank 0 looks.
   void require_untouched(const CheckpointWriter& now) const {
     if (!left_ || left_at_ != steps()) return;
     if (const std::string difference = left_->first_difference(now); !difference.empty())

@@ -70,7 +70,7 @@ class SimMethod final : public Method {
     change_gravity();
   }
 
-  /// What it steps, for one that couples it to another method.
+  /// The world that it steps, for a method that couples two worlds.
   World& world() { return world_.part(); }
 
   Advanced advance(const StopAt& stop) override {
