@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dem/free_walls.hpp"
+#include "domain/owned.hpp"
 #include "exec/fold_sum.hpp"
 
 namespace breccia::dem {
@@ -14,7 +15,6 @@ namespace {
 /// for equal steps m/2 v_-.v_+, with which the scheme's own balance closes to rounding
 /// (docs/theory.md, ledger).
 struct KineticEnergy {
-  OwnedView owned;
   Kick kick;
   BR_HD double square(const Vec3& before, const Vec3& after) const {
     const double span = 0.5 * (kick.last_dt + kick.next_dt);
@@ -23,7 +23,6 @@ struct KineticEnergy {
     return dot(now, now) - 0.25 * kick.last_dt * kick.next_dt * dot(a, a);
   }
   BR_HD void add_to(Energies& sum, Index e) const {
-    if (!owned(e)) return;
     const Kick::Result next = kick(e);
     const ElementState& s = kick.state[e];
     sum.kinetic.add(0.5 * kick.mass[e] * square(s.velocity, next.velocity) +
@@ -32,20 +31,20 @@ struct KineticEnergy {
 };
 
 struct GravityPotential {
-  OwnedView owned;
   Vec3 gravity;
   View<const ElementState> state_of;
   View<const double> mass;
   BR_HD void add_to(Energies& sum, Index e) const {
-    if (owned(e)) sum.potential.add(mass[e] * dot(gravity, state_of[e].position));
+    sum.potential.add(mass[e] * dot(gravity, state_of[e].position));
   }
 };
 
 template <class Number, class Law>
 auto energies_of(const World& w, const LinkSet<Law>& set, const LinkGroup<Law>& g) {
   const auto shares = shares_of<Number>(set, w.elements.state.view());
-  return GroupEnergies<Law, std::remove_const_t<decltype(shares)>>{
-      w.domain.owned_view(), g.law, g.begin, shares, w.elements.fixed.view()};
+  using Group = GroupEnergies<Law, std::remove_const_t<decltype(shares)>>;
+  return of_owned(w.domain, Energies{}, Group{g.law, g.begin, shares, w.elements.fixed.view()},
+                  ListedElement<>{set.a.view(), g.begin});
 }
 /// Links of the first group of a kind, which most models have alone.
 template <class Number, class Law, class... Rest>
@@ -62,7 +61,6 @@ void add_further_groups(FoldSum<Energies>& all, const World& w, const LinkSet<La
 
 /// Energy stored by contacts; `stored_normal` comes from the overlap of the last step.
 struct ContactShares {
-  OwnedView owned;
   ContactLaw law;
   View<const std::int16_t> material;
   View<const ElementState> state_of;
@@ -75,7 +73,6 @@ struct ContactShares {
   View<const double> driven;  ///< likewise
 
   BR_HD void add_to(Energies& s, Index i) const {
-    if (!owned(a[i])) return;
     const double overlap = state[i].overlap;
     if (overlap > 0.0) {
       const double ra = state_of[a[i]].radius;
@@ -100,12 +97,10 @@ struct ContactShares {
 };
 
 struct ElementShares {
-  OwnedView owned;
   Kick kick;
   View<const double> damping_work, load_work;
 
   BR_HD void add_to(Energies& s, Index e) const {
-    if (!owned(e)) return;
     s.damping.add(damping_work[e]);
     s.work.add(load_work[e]);
     // Moving books the work of these forces in the last and the next step; half is done.
@@ -125,10 +120,12 @@ auto contacts_part(const World& w, const List& c, const Buffer<ContactPair>& pai
                    const Buffer<Wall>& walls, const Parts<Rest...>& rest) {
   return part(
       c.size(),
-      ContactShares{w.domain.owned_view(), w.given->contact, w.elements.material.view(),
-                    w.elements.state.view(), pairs.view(), materials, walls.view(),
-                    c.pairs.a.view(), c.pairs.b.view(), c.history.state.view(),
-                    c.history.slid.view(), c.history.damped.view(), c.history.work_of_walls()},
+      of_owned(w.domain, Energies{},
+               ContactShares{w.given->contact, w.elements.material.view(), w.elements.state.view(),
+                             pairs.view(), materials, walls.view(), c.pairs.a.view(),
+                             c.pairs.b.view(), c.history.state.view(), c.history.slid.view(),
+                             c.history.damped.view(), c.history.work_of_walls()},
+               ListedElement<>{c.pairs.a.view()}),
       rest);
 }
 
@@ -136,17 +133,17 @@ auto contacts_part(const World& w, const List& c, const Buffer<ContactPair>& pai
 
 Energies held(const World& w) {
   const StageTime timed(w.exec, "ledger");
-  const OwnedView owned = w.domain.owned_view();
   const Elements& e = w.elements;
   FoldSum<Energies> all(w.exec);
   Buffer<Wall> walls(w.exec.space);
   copy_to(walls, w.walls);
   const bool falls = dot(w.given->gravity, w.given->gravity) > 0.0;
+  const auto own = [&w](const auto& kernel) { return of_owned(w.domain, Energies{}, kernel); };
   const auto others = part(
-      e.size(), KineticEnergy{owned, kick(w)},
-      part(e.size(), ElementShares{owned, kick(w), e.damping_work.view(), e.load_work.view()},
+      e.size(), own(KineticEnergy{kick(w)}),
+      part(e.size(), own(ElementShares{kick(w), e.damping_work.view(), e.load_work.view()}),
            part(falls ? e.size() : 0,
-                GravityPotential{owned, w.given->gravity, e.state.view(), e.mass.view()},
+                own(GravityPotential{w.given->gravity, e.state.view(), e.mass.view()}),
                 contacts_part(
                     w, w.contacts, w.given->contact_pairs, w.given->materials, walls,
                     contacts_part(w, w.wall_contacts, w.given->wall_pairs, 0, walls, Parts<>{})))));

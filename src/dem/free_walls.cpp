@@ -1,7 +1,7 @@
 #include "dem/free_walls.hpp"
 
+#include "domain/owned.hpp"
 #include "domain/together.hpp"
-#include "exec/for_each.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -26,7 +26,6 @@ BR_HD inline OnWall operator+(OnWall a, const OnWall& b) {
 }
 
 struct SumOnWall {
-  OwnedView owned;
   Index first;  ///< contact of the wall
   int slots;    ///< contacts of each element, of which the first stands for those to come
   Wall wall;
@@ -46,7 +45,6 @@ struct SumOnWall {
     const Index i = first + k, e = a[i];
     OnWall r;
     const double overlap = contact[i].overlap, radius = state[e].radius;
-    if (!owned(e)) return r;
     if (overlap > 0.0) {
       r.x.add(on_wall[i].x);
       r.y.add(on_wall[i].y);
@@ -112,14 +110,14 @@ OnWall read(const World& w, std::size_t wall) {
     const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
     const WallContacts& c = w.wall_contacts;
     const int slots = mesh_of(w, static_cast<Index>(wall)).empty() ? 1 : mesh_slots;
-    sum = fold(
-        w.exec, end - begin, OnWall{},
-        SumOnWall{w.domain.owned_view(), begin, slots, w.walls[wall],
-                  w.given->free_walls[wall].mass, w.given->free_walls[wall].turns,
-                  centre_of(w, wall), w.given->contact, c.pairs.a.view(), c.history.on_wall.view(),
-                  c.history.place.view(), c.history.state.view(), w.elements.material.view(),
-                  w.elements.state.view(), w.elements.mass.view(), w.given->wall_pairs.view()},
-        Sum{});
+    sum = fold_owned(
+        w.exec, w.domain, end - begin, OnWall{},
+        SumOnWall{begin, slots, w.walls[wall], w.given->free_walls[wall].mass,
+                  w.given->free_walls[wall].turns, centre_of(w, wall), w.given->contact,
+                  c.pairs.a.view(), c.history.on_wall.view(), c.history.place.view(),
+                  c.history.state.view(), w.elements.material.view(), w.elements.state.view(),
+                  w.elements.mass.view(), w.given->wall_pairs.view()},
+        Sum{}, ListedElement<>{c.pairs.a.view(), begin});
   }
   if (w.domain.single_rank()) return sum;
   OnWall all;

@@ -8,6 +8,7 @@
 #include "core/pieces.hpp"
 #include "core/rows.hpp"
 #include "core/state_hash.hpp"
+#include "domain/owned.hpp"
 #include "exec/error.hpp"
 #include "exec/for_each.hpp"
 #include "math/constants.hpp"
@@ -16,12 +17,10 @@ namespace breccia::dem {
 namespace {
 
 struct HashElement {
-  OwnedView owned;
   View<const GlobalId> id;
   View<const ElementState> state;
   View<const Quaternion> orientation;
   BR_HD std::uint64_t operator()(Index e) const {
-    if (!owned(e)) return 0;
     ItemHash hash(id[e]);
     hash.add(state[e].position);
     hash.add(state[e].velocity);
@@ -35,13 +34,11 @@ struct HashElement {
 
 /// The lowest global id whose numbers are unsound, or none.
 struct FindUnsound {
-  OwnedView owned;
   double dt;
   Vec3 drift;  ///< velocity that all share  [m/s]
   View<const GlobalId> id;
   View<const ElementState> state;
   BR_HD GlobalId operator()(Index e) const {
-    if (!owned(e)) return Unsound::none;
     const Vec3 x = state[e].position, v = state[e].velocity - drift, spin = state[e].spin;
     const double radius = state[e].radius;
     const double travelled = dt * dt * dot(v, v);
@@ -53,11 +50,9 @@ struct FindUnsound {
 };
 
 struct SpeedOf {
-  OwnedView owned;
   View<const GlobalId> id;
   View<const ElementState> state;
   BR_HD Speed operator()(Index e) const {
-    if (!owned(e)) return {};
     return {dot(state[e].velocity, state[e].velocity), id[e]};
   }
 };
@@ -148,15 +143,14 @@ void each_link(const World& w, const Visit& visit) {
 
 std::uint64_t state_hash(const World& w) {
   const Elements& e = w.elements;
-  return fold(w.exec, e.size(), std::uint64_t{0},
-              HashElement{w.domain.owned_view(), e.id.view(), e.state.view(), e.orientation.view()},
-              Sum{});
+  return fold_owned(w.exec, w.domain, e.size(), std::uint64_t{0},
+                    HashElement{e.id.view(), e.state.view(), e.orientation.view()}, Sum{});
 }
 
 Fastest fastest(const World& w) {
   const Elements& e = w.elements;
-  const Speed speed = fold(w.exec, e.size(), Speed{},
-                           SpeedOf{w.domain.owned_view(), e.id.view(), e.state.view()}, Faster{});
+  const Speed speed = fold_owned(w.exec, w.domain, e.size(), Speed{},
+                                 SpeedOf{e.id.view(), e.state.view()}, Faster{});
   std::vector<GlobalId> ids;
   std::vector<std::int16_t> groups;
   copy_to(ids, e.id);
@@ -172,10 +166,9 @@ Fastest fastest(const World& w) {
 
 Unsound find_unsound(const World& w) {
   const Elements& e = w.elements;
-  const GlobalId bad = fold(w.exec, e.size(), Unsound::none,
-                            FindUnsound{w.domain.owned_view(), w.last_dt, w.travel.drift.velocity,
-                                        e.id.view(), e.state.view()},
-                            Least{});
+  const GlobalId bad = fold_owned(
+      w.exec, w.domain, e.size(), Unsound::none,
+      FindUnsound{w.last_dt, w.travel.drift.velocity, e.id.view(), e.state.view()}, Least{});
   if (bad == Unsound::none) return {};
   const Elements host = host_copy(e);
   const auto ids = host.id.host();

@@ -9,15 +9,14 @@
 #include "core/probe.hpp"
 #include "dem/free_walls.hpp"
 #include "dem/observe.hpp"
+#include "domain/owned.hpp"
 #include "exec/error.hpp"
-#include "exec/for_each.hpp"
 
 namespace breccia::dem {
 namespace {
 
 /// Quantities of elements.
 struct ReadProbe {
-  OwnedView owned;
   Quantity quantity;
   View<const Index> members;  ///< empty: all elements
   View<const GlobalId> id;
@@ -72,7 +71,6 @@ struct ReadProbe {
   }
   BR_HD Readings operator()(Index i) const {
     const Index e = members.size > 0 ? members[i] : i;
-    if (!owned(e)) return Readings();
     if (!box.holds(from_start() ? starts[id[e]] : kick.state[e].position)) return Readings();
     return Readings(value(e), id[e]);
   }
@@ -95,7 +93,6 @@ struct BranchStress {
 /// Of concrete links, by what they keep.
 template <class Number>
 struct ConcreteStress {
-  OwnedView owned;
   BranchStress branch;
   ConcreteLink law;
   Index first;
@@ -107,7 +104,6 @@ struct ConcreteStress {
 
   BR_HD ExactSum operator()(Index k) const {
     const Index i = first + k;
-    if (!owned(a[i])) return ExactSum();
     const ElementState &s = state[a[i]], &t = state[b[i]];
     const double touching = s.radius + t.radius;
     LinkConstants<double> link{length[i], stiffness[i], area[i], 0.5 * touching, touching};
@@ -122,7 +118,6 @@ struct ConcreteStress {
 
 /// Of interactions that write their actions.
 struct ActionStress {
-  OwnedView owned;
   BranchStress branch;
   View<const ElementState> state;
   View<const Index> a, b;
@@ -130,14 +125,12 @@ struct ActionStress {
   Index first;  ///< action of interaction 0
 
   BR_HD ExactSum operator()(Index i) const {
-    if (!owned(a[i])) return ExactSum();
     return ExactSum(
         branch(state[a[i]].position, state[b[i]].position, actions[first + i].force_on_b()));
   }
 };
 
 struct WallStress {
-  OwnedView owned;
   BranchStress branch;
   View<const ElementState> state;
   View<const Wall> walls;
@@ -145,7 +138,6 @@ struct WallStress {
   View<const Vec3> on_wall, place;
 
   BR_HD ExactSum operator()(Index i) const {
-    if (!owned(a[i])) return ExactSum();
     const Vec3& x = state[a[i]].position;
     return ExactSum(branch(x, foot_on(walls[b[i]], x, place[i]), on_wall[i]));
   }
@@ -154,7 +146,6 @@ struct WallStress {
 template <class Law>
 ExactSum link_stress(const World& w, const LinkSet<Law>& set, const BranchStress& branch,
                      Index& first_action) {
-  const OwnedView owned = w.domain.owned_view();
   const auto state = w.elements.state.view();
   ExactSum sum;
   if constexpr (LinkSet<Law>::kind == LinkKind::concrete) {
@@ -162,18 +153,18 @@ ExactSum link_stress(const World& w, const LinkSet<Law>& set, const BranchStress
       using Number = decltype(number);
       const LinkHistory<Number>& kept = set.kept.template as<Number>();
       for (const auto& g : set.groups)
-        sum.add(fold(
-            w.exec, g.end - g.begin, ExactSum(),
-            ConcreteStress<Number>{owned, branch, g.law, g.begin, state, set.a.view(), set.b.view(),
+        sum.add(fold_owned(
+            w.exec, w.domain, g.end - g.begin, ExactSum(),
+            ConcreteStress<Number>{branch, g.law, g.begin, state, set.a.view(), set.b.view(),
                                    set.length.view(), set.stiffness.view(), set.area.view(),
                                    set.rate.view(), kept.opening.view(), kept.shear.view()},
-            Sum{}));
+            Sum{}, ListedElement<>{set.a.view(), g.begin}));
     });
   } else {
-    sum = fold(w.exec, set.size(), ExactSum(),
-               ActionStress{owned, branch, state, set.a.view(), set.b.view(), w.bar_actions.view(),
-                            first_action},
-               Sum{});
+    sum = fold_owned(
+        w.exec, w.domain, set.size(), ExactSum(),
+        ActionStress{branch, state, set.a.view(), set.b.view(), w.bar_actions.view(), first_action},
+        Sum{}, ListedElement<>{set.a.view()});
     first_action += set.size();
   }
   return sum;
@@ -187,22 +178,21 @@ bool is_first(const World& w) {
 Readings read_stress(const World& w, const ProbeConfig& p) {
   const Quantity quantity = quantity_named(p.quantity).quantity;
   const BranchStress branch{ReadBox(p.min, p.max), quantity.axis, quantity.other};
-  const OwnedView owned = w.domain.owned_view();
   const auto state = w.elements.state.view();
   Readings r;
   Index first_action = 0;
   w.each_set([&](const auto& set) { r.sum.add(link_stress(w, set, branch, first_action)); });
   const auto& pairs = w.contacts.pairs;
-  r.sum.add(fold(w.exec, w.contacts.size(), ExactSum(),
-                 ActionStress{owned, branch, state, pairs.a.view(), pairs.b.view(),
-                              w.contact_actions.view(), 0},
-                 Sum{}));
+  r.sum.add(fold_owned(
+      w.exec, w.domain, w.contacts.size(), ExactSum(),
+      ActionStress{branch, state, pairs.a.view(), pairs.b.view(), w.contact_actions.view(), 0},
+      Sum{}, ListedElement<>{pairs.a.view()}));
   const auto& at_walls = w.wall_contacts.pairs;
-  r.sum.add(
-      fold(w.exec, w.wall_contacts.size(), ExactSum(),
-           WallStress{owned, branch, state, walls_view(w), at_walls.a.view(), at_walls.b.view(),
-                      w.wall_contacts.history.on_wall.view(), w.wall_contacts.history.place.view()},
-           Sum{}));
+  r.sum.add(fold_owned(
+      w.exec, w.domain, w.wall_contacts.size(), ExactSum(),
+      WallStress{branch, state, walls_view(w), at_walls.a.view(), at_walls.b.view(),
+                 w.wall_contacts.history.on_wall.view(), w.wall_contacts.history.place.view()},
+      Sum{}, ListedElement<>{at_walls.a.view()}));
   if (is_first(w)) r.weight = ExactSum(branch.box.volume());
   return r;
 }
@@ -216,7 +206,6 @@ struct Mark {
 /// Links of a set of elements, by their middles. @tparam Value  value(i, id) of one: its Readings
 template <class Value>
 struct ReadLinks {
-  OwnedView owned;
   ReadBox box;
   View<const std::uint8_t> marked;  ///< empty: all elements
   View<const ElementState> state;
@@ -227,7 +216,7 @@ struct ReadLinks {
 
   BR_HD Readings operator()(Index k) const {
     const Index i = first + k, p = a[i], q = b[i];
-    if (!owned(p) || (marked.size > 0 && marked[p] == 0 && marked[q] == 0)) return Readings();
+    if (marked.size > 0 && marked[p] == 0 && marked[q] == 0) return Readings();
     if (!box.holds(0.5 * (state[p].position + state[q].position))) return Readings();
     return value(i, id[p]);
   }
@@ -283,11 +272,11 @@ Readings read_links(const World& w, const ProbeConfig& p, View<const Index> memb
   const auto state = w.elements.state.view();
   const auto add = [&](const auto& set, Index first, Index end, const auto& value) {
     using Value = std::remove_cv_t<std::remove_reference_t<decltype(value)>>;
-    all = all + fold(w.exec, end - first, Readings{},
-                     ReadLinks<Value>{w.domain.owned_view(), ReadBox(p.min, p.max),
-                                      std::as_const(marked).view(), state, w.elements.id.view(),
-                                      set.a.view(), set.b.view(), first, value},
-                     Sum{});
+    all = all + fold_owned(w.exec, w.domain, end - first, Readings{},
+                           ReadLinks<Value>{ReadBox(p.min, p.max), std::as_const(marked).view(),
+                                            state, w.elements.id.view(), set.a.view(), set.b.view(),
+                                            first, value},
+                           Sum{}, ListedElement<>{set.a.view(), first});
   };
   const auto add_openings = [&](const auto& set, auto number) {
     using Number = decltype(number);
@@ -326,16 +315,15 @@ Readings read(const World& w, const ProbeConfig& p, View<const Index> members) {
     return read_links(w, p, members, quantity.kind);
   Buffer<double> lost(w.exec.space);
   if (quantity.kind == Quantity::Kind::damage) lost = damage_of(w);
-  return fold(w.exec, p.on.empty() ? e.size() : members.size, Readings{},
-              ReadProbe{w.domain.owned_view(), quantity, members, e.id.view(), kick(w),
-                        std::as_const(lost).view(), w.given->starts.view(), ReadBox(p.min, p.max),
-                        point_of(p.about), fit_of(w, p)},
-              Sum{});
+  return fold_owned(
+      w.exec, w.domain, p.on.empty() ? e.size() : members.size, Readings{},
+      ReadProbe{quantity, members, e.id.view(), kick(w), std::as_const(lost).view(),
+                w.given->starts.view(), ReadBox(p.min, p.max), point_of(p.about), fit_of(w, p)},
+      Sum{}, MemberElement<>{members});
 }
 
 /// A component of the force on a wall, or of its torque about a point.
 struct PushOnWall {
-  OwnedView owned;
   Index first;  ///< contact of the wall
   int axis;
   bool turns;
@@ -346,7 +334,6 @@ struct PushOnWall {
   View<const Vec3> on_wall, place;
   BR_HD ExactSum operator()(Index k) const {
     const Index i = first + k;
-    if (!owned(a[i])) return ExactSum();
     const Vec3& f = on_wall[i];
     if (!turns) return ExactSum(on_axis(f, axis));
     const Vec3 foot = foot_on(wall, state[a[i]].position, place[i]);
@@ -399,12 +386,12 @@ Readings read_wall(const World& w, const ProbeConfig& p, std::size_t wall) {
   if (first) read = Readings(0.0, 0);
   if (wall + 1 >= w.wall_begin.size()) return read;  // no search yet
   const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
-  read.sum.add(
-      fold(w.exec, end - begin, ExactSum(),
-           PushOnWall{w.domain.owned_view(), begin, quantity.axis, turns, own, point_of(p.about),
-                      w.elements.state.view(), w.wall_contacts.pairs.a.view(),
-                      w.wall_contacts.history.on_wall.view(), w.wall_contacts.history.place.view()},
-           Sum{}));
+  read.sum.add(fold_owned(
+      w.exec, w.domain, end - begin, ExactSum(),
+      PushOnWall{begin, quantity.axis, turns, own, point_of(p.about), w.elements.state.view(),
+                 w.wall_contacts.pairs.a.view(), w.wall_contacts.history.on_wall.view(),
+                 w.wall_contacts.history.place.view()},
+      Sum{}, ListedElement<>{w.wall_contacts.pairs.a.view(), begin}));
   return read;
 }
 

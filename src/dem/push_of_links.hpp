@@ -74,8 +74,7 @@ BR_HD inline Vec3 force_next(const ParallelBondForces& of, Index i, const LinkEn
 template <class Forces>
 struct LinkPush {
   Forces links;
-  Index first;  ///< of a law's links
-  OwnedView owned;
+  Index first;      ///< of a law's links
   double dt;        ///< of the next step  [s]
   double velocity;  ///< v_0  [m/s]
   LedElements led;
@@ -86,7 +85,7 @@ struct LinkPush {
     const Index i = first + k, a = links.a[i], b = links.b[i];
     ServoReading r;
     const bool by_a = led(a);
-    if (by_a == led(b) || !owned(a)) return r;
+    if (by_a == led(b)) return r;
     LinkEnd<double> end_a = load_end<double>(kick.state, {a}),
                     end_b = load_end<double>(kick.state, {b});
     const double sign = by_a ? 1.0 : -1.0;

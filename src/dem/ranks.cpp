@@ -6,7 +6,7 @@
 #include "dem/relations.hpp"
 #include "domain/drift.hpp"
 #include "domain/ghosts.hpp"
-#include "exec/for_each.hpp"
+#include "domain/owned.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -100,23 +100,19 @@ void divide(LinkSet<Law>& set) {
 struct MarginNow {
   MarginRule rule;
   Vec3 drift;  ///<  [m/s]
-  OwnedView owned;
   View<const ElementState> state;
-  BR_HD double operator()(Index e) const {
-    return owned(e) ? rule.margin(state[e].velocity - drift) : 0.0;
-  }
+  BR_HD double operator()(Index e) const { return rule.margin(state[e].velocity - drift); }
 };
 
 /// 1 where an element has left the buffer.
 struct HasLeft {
   double allowed;  ///< square of the way that it may go  [m2]
-  OwnedView owned;
-  Vec3 drifted;  ///< common to all since they were shared out  [m]
+  Vec3 drifted;    ///< common to all since they were shared out  [m]
   View<const ElementState> state;
   View<const Vec3> reference;
   BR_HD double operator()(Index e) const {
     const Vec3 moved = (state[e].position - reference[e]) - drifted;
-    return owned(e) && !(dot(moved, moved) <= allowed) ? 1.0 : 0.0;
+    return dot(moved, moved) <= allowed ? 0.0 : 1.0;
   }
 };
 
@@ -157,13 +153,16 @@ class Spheres final : public Shareable {
     return weight;
   }
   double margin() const override {
-    return fold(w_.exec, w_.elements.size(), 0.0,
-                MarginNow{margin_rule(w_), w_.travel.drift.velocity, w_.domain.owned_view(),
-                          std::as_const(w_.elements.state).view()},
-                Largest{});
+    return fold_owned(w_.exec, w_.domain, w_.elements.size(), 0.0,
+                      MarginNow{margin_rule(w_), w_.travel.drift.velocity,
+                                std::as_const(w_.elements.state).view()},
+                      Largest{});
   }
   bool has_left() const override {
-    return fold(w_.exec, w_.elements.size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
+    const HasLeft left{w_.domain.buffer * w_.domain.buffer, w_.domain.drifted,
+                       std::as_const(w_.elements.state).view(),
+                       std::as_const(w_.domain.migration_reference).view()};
+    return fold_owned(w_.exec, w_.domain, w_.elements.size(), 0.0, left, Largest{}) > 0.0;
   }
   double largest_margin() const override { return w_.given->largest_margin; }
   void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
@@ -183,11 +182,6 @@ class Spheres final : public Shareable {
  private:
   const Buffer<ElementState>& states() const {
     return w_.elements.state.space() == Space::host ? w_.elements.state : seen_;
-  }
-  HasLeft has_left_kernel() const {
-    return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(), w_.domain.drifted,
-            std::as_const(w_.elements.state).view(),
-            std::as_const(w_.domain.migration_reference).view()};
   }
 
   World& w_;

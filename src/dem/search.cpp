@@ -13,6 +13,7 @@
 #include "dem/ranks.hpp"
 #include "dem/wall_key.hpp"
 #include "domain/drift.hpp"
+#include "domain/owned.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -61,10 +62,9 @@ KnownPairs held_pairs(World& w) {
   return {w.linked_starts.view(), w.held_partners.view()};
 }
 
-/// Whether a pair may touch: the grown spheres overlap, not only their boxes. And it is not of
-/// others.
+/// Whether a pair may touch: the grown spheres overlap, not only their boxes, and neither element
+/// has been taken out.
 struct MayTouch {
-  OwnedView owned;
   View<const Index> a, b;
   View<const ElementState> state;
   View<const double> margin;
@@ -74,7 +74,6 @@ struct MayTouch {
   BR_HD NearSphere sphere(Index e) const { return {state[e].position, state[e].radius, margin[e]}; }
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
-    if (!owned(p) && !owned(q)) return false;
     if (is_gone(fixed[p]) || is_gone(fixed[q])) return false;
     return may_touch(sphere(p), sphere(q), rounding);
   }
@@ -82,14 +81,12 @@ struct MayTouch {
 
 /// Energy spent by contacts that leave the list.
 struct SpentBy {
-  OwnedView owned;  ///< the owner of a books
-  View<const Index> contact, a;
+  View<const Index> contact;
   View<const double> slid, damped;
   View<const double> driven;  ///< empty between elements
   BR_HD Energies operator()(Index k) const {
     const Index i = contact[k];
     Energies spent;
-    if (!owned(a[i])) return spent;
     spent.friction.add(slid[i]);
     spent.contact.add(damped[i]);
     if (driven.size > 0) spent.work.add(driven[i]);
@@ -105,25 +102,23 @@ void book_dropped(World& w, const List& contacts, const Pairs& found) {
   find_dropped(w.exec, contacts.pairs.key, found.key, dropped);
   if (dropped.empty()) return;
   const auto& h = contacts.history;
-  w.ledger.book(
-      fold(w.exec, dropped.size(), Energies{},
-           SpentBy{w.domain.owned_view(), std::as_const(dropped).view(), contacts.pairs.a.view(),
-                   h.slid.view(), h.damped.view(), h.work_of_walls()},
-           Sum{}));
+  const View<const Index> gone = std::as_const(dropped).view();
+  w.ledger.book(fold_owned(w.exec, w.domain, dropped.size(), Energies{},
+                           SpentBy{gone, h.slid.view(), h.damped.view(), h.work_of_walls()}, Sum{},
+                           SelectedElement{gone, contacts.pairs.a.view()}));
 }
 
 /// Whether the grown sphere of an element reaches a wall.
 struct WallNear {
   Wall wall;
   double reach;  ///< of the wall's own travel  [m]
-  OwnedView owned;
   View<const ElementState> state;
   View<const double> margin;
   View<const std::uint8_t> fixed;
   BR_HD bool operator()(Index e) const {
     if (is_gone(fixed[e])) return false;
     const double height = touch(wall, state[e].position).height;
-    return owned(e) && height <= state[e].radius + margin[e] + reach;
+    return height <= state[e].radius + margin[e] + reach;
   }
 };
 
@@ -132,12 +127,11 @@ struct MeshNear {
   Wall wall;
   WallMesh mesh;
   double reach;  ///< of the wall's own travel  [m]
-  OwnedView owned;
   View<const ElementState> state;
   View<const double> margin;
   View<const std::uint8_t> fixed;
   BR_HD bool operator()(Index e) const {
-    if (is_gone(fixed[e]) || !owned(e)) return false;
+    if (is_gone(fixed[e])) return false;
     return is_near(mesh, into_mesh(wall, state[e].position - wall.point),
                    state[e].radius + margin[e] + reach);
   }
@@ -164,6 +158,9 @@ struct ListWallPairs {
 Pairs near_walls(const World& w) {
   Pairs pairs(w.exec.space);
   Index wall_number = 0;
+  const auto own = [&w](const auto& near) {
+    return items_where(w.exec, w.elements.size(), of_owned(w.domain, false, near));
+  };
   for (const Wall& wall : w.walls) {
     // A wall that moves against the drift uses margins up, too: it may cover one largest margin
     // until it asks for a search.
@@ -174,15 +171,12 @@ Pairs near_walls(const World& w) {
                                           static_cast<std::size_t>(wall_number));
     const double reach = (moves ? w.given->largest_margin : 0.0) + 1e-14 * w.travel.drift.farthest;
     const WallMesh mesh = mesh_of(w, wall_number);
-    const OwnedView owned = w.domain.owned_view();
     const View<const ElementState> state = w.elements.state.view();
     const View<const double> margin = w.travel.margin.view();
     const View<const std::uint8_t> fixed = w.elements.fixed.view();
-    const Buffer<Index> near =
-        mesh.empty() ? items_where(w.exec, w.elements.size(),
-                                   WallNear{wall, reach, owned, state, margin, fixed})
-                     : items_where(w.exec, w.elements.size(),
-                                   MeshNear{wall, mesh, reach, owned, state, margin, fixed});
+    const Buffer<Index> near = mesh.empty()
+                                   ? own(WallNear{wall, reach, state, margin, fixed})
+                                   : own(MeshNear{wall, mesh, reach, state, margin, fixed});
     const int slots = mesh.empty() ? 1 : mesh_slots;
     const Index first = pairs.size(), count = near.size() * slots;
     resize_fields(pairs, first + count);
@@ -327,17 +321,16 @@ void plan_sweep(World& w) {
 
 struct MotionOf {
   View<const ElementState> state;
-  OwnedView owned;
   BR_HD CommonMotion operator()(Index e) const {
     CommonMotion motion;
-    if (owned(e)) motion.add(state[e].velocity);
+    motion.add(state[e].velocity);
     return motion;
   }
 };
 /// The drift from now on.
 Drift choose_drift(const World& w) {
-  const CommonMotion own = fold(w.exec, w.elements.size(), CommonMotion{},
-                                MotionOf{w.elements.state.view(), w.domain.owned_view()}, Sum{});
+  const CommonMotion own = fold_owned(w.exec, w.domain, w.elements.size(), CommonMotion{},
+                                      MotionOf{w.elements.state.view()}, Sum{});
   return of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.given->mean_radius);
 }
 
@@ -354,11 +347,13 @@ void search(World& w) {
   sphere_boxes(w.exec, position, radius, w.travel.margin, boxes, w.travel.drift.farthest);
   Pairs found(w.exec.space);
   w.broad_phase.search(w.exec, boxes, w.elements.id, found, held_pairs(w));
+  const View<const Index> a = std::as_const(found.a).view(), b = std::as_const(found.b).view();
   const Buffer<Index> near = items_where(
       w.exec, found.size(),
-      MayTouch{w.domain.owned_view(), std::as_const(found.a).view(), std::as_const(found.b).view(),
-               w.elements.state.view(), std::as_const(w.travel.margin).view(),
-               std::as_const(w.elements.fixed).view(), 1e-14 * w.travel.drift.farthest});
+      of_either_owned(
+          w.domain, a, b,
+          MayTouch{a, b, w.elements.state.view(), std::as_const(w.travel.margin).view(),
+                   std::as_const(w.elements.fixed).view(), 1e-14 * w.travel.drift.farthest}));
   gather_fields(w.exec, near, found);
   book_dropped(w, w.contacts, found);
   w.contacts.replace(w.exec, std::move(found));

@@ -5,6 +5,7 @@
 
 #include "dem/push_of_links.hpp"
 #include "dem/stepping/launches.hpp"
+#include "domain/owned.hpp"
 #include "domain/set_here.hpp"
 #include "exec/fold_sum.hpp"
 
@@ -22,7 +23,6 @@ struct Comes {
 };
 
 struct WallPush {
-  OwnedView owned;
   Comes comes;
   Index first;  ///< contact of the wall
   Vec3 normal;
@@ -40,7 +40,7 @@ struct WallPush {
     const Index i = first + k, e = a[i];
     ServoReading r;
     const double overlap = contact[i].overlap, radius = state[e].radius;
-    if (!owned(e) || overlap <= 0.0) return r;
+    if (overlap <= 0.0) return r;
     r.force.add(-dot(on_wall[i], normal));
     const double normal_constant = pairs[material[e]].normal;
     const double stiffness = hertz ? 2.0 * normal_constant * sqrt(radius * overlap)
@@ -54,7 +54,6 @@ struct WallPush {
 
 /// A held element takes what all else does to it.
 struct SupportPush {
-  OwnedView owned;
   int axis;
   double gravity;  ///< along the axis  [m/s2]
   View<const Index> members;
@@ -64,7 +63,6 @@ struct SupportPush {
   BR_HD ServoReading operator()(Index k) const {
     const Index e = members[k];
     ServoReading r;
-    if (!owned(e)) return r;
     r.force.add(-(part_along(axis, force[e]) + mass[e] * gravity));
     return r;
   }
@@ -73,7 +71,6 @@ struct SupportPush {
 /// The element on the other side of a link of a held element is as stiff as its own modulus says;
 /// it goes with it.
 struct TiedPush {
-  OwnedView owned;
   Comes comes;
   Vec3 along;
   View<const Index> members;
@@ -85,7 +82,6 @@ struct TiedPush {
   BR_HD ServoReading operator()(Index k) const {
     const Index e = members[k];
     ServoReading r;
-    if (!owned(e)) return r;
     const double stiffness = pairs[material[e]].normal * state[e].radius;
     r.stiffness.add(stiffness);
     comes.add(r, stiffness, e, along);
@@ -97,7 +93,6 @@ struct TiedPush {
 /// A contact of an element that the servo leads with one that it does not: of platens, that are led
 /// as a whole, their faces alone.
 struct ContactPush {
-  OwnedView owned;
   Comes comes;
   Vec3 ahead;
   LedElements led;
@@ -114,7 +109,7 @@ struct ContactPush {
     const Index p = a[i], q = b[i];
     ServoReading r;
     const double overlap = contact[i].overlap;
-    if (!owned(p) || !(overlap > 0.0)) return r;
+    if (!(overlap > 0.0)) return r;
     const bool by_p = led(p);
     if (by_p == led(q)) return r;
     const double radius_p = state[p].radius, radius_q = state[q].radius, sum = radius_p + radius_q;
@@ -139,13 +134,13 @@ ServoReading read_wall(const World& w, std::size_t wall, bool plate) {
   if (wall + 1 >= w.wall_begin.size()) return {};
   const Index begin = w.wall_begin[wall], end = w.wall_begin[wall + 1];
   const WallContacts& c = w.wall_contacts;
-  return fold(
-      w.exec, end - begin, ServoReading{},
-      WallPush{w.domain.owned_view(), Comes{plate, kick(w)}, begin, w.walls[wall].normal,
-               w.walls[wall].stiffness, w.given->contact.hertz, w.elements.mass.view(),
-               c.pairs.a.view(), c.history.on_wall.view(), c.history.state.view(),
-               w.elements.material.view(), w.elements.state.view(), w.given->wall_pairs.view()},
-      Sum{});
+  return fold_owned(
+      w.exec, w.domain, end - begin, ServoReading{},
+      WallPush{Comes{plate, kick(w)}, begin, w.walls[wall].normal, w.walls[wall].stiffness,
+               w.given->contact.hertz, w.elements.mass.view(), c.pairs.a.view(),
+               c.history.on_wall.view(), c.history.state.view(), w.elements.material.view(),
+               w.elements.state.view(), w.given->wall_pairs.view()},
+      Sum{}, ListedElement<>{c.pairs.a.view(), begin});
 }
 
 /// Where elements of a set lie on this rank.
@@ -161,9 +156,10 @@ void add_links(World& part, LinkSet<Law>& set, const LedElements& led, double ve
                FoldSum<ServoReading>& all) {
   for (const LinkGroup<Law>& group : set.groups) {
     const auto add = [&](const auto& forces) {
-      all.add(group.end - group.begin, LinkPush<std::decay_t<decltype(forces)>>{
-                                           forces, group.begin, part.domain.owned_view(),
-                                           part.next_dt, velocity, led, kick(part)});
+      const LinkPush<std::decay_t<decltype(forces)>> push{forces,   group.begin, part.next_dt,
+                                                          velocity, led,         kick(part)};
+      all.add(group.end - group.begin, of_owned(part.domain, ServoReading{}, push,
+                                                ListedElement<>{set.a.view(), group.begin}));
     };
     if constexpr (LinkSet<Law>::swept)
       with_number(set.precision, [&](auto number) {
@@ -191,12 +187,15 @@ ServoReading read_support(World& part, std::size_t support, std::size_t servo, i
   const std::size_t set = given.sets.size() - given.tied.size() + support;
   const Elements& e = part.elements;
   const Contacts& c = part.contacts;
-  const OwnedView owned = part.domain.owned_view();
   const View<const Index> members = places_of(part, given.sets[set], part.sets_here[set]);
   const View<const Index> tied = places_of(part, given.tied[support], part.tied_here[support]);
   FoldSum<ServoReading> all(part.exec);
-  all.add(members.size, SupportPush{owned, axis, part_along(axis, given.gravity), members,
-                                    e.force.view(), e.mass.view()});
+  const auto own = [&part](const auto& kernel, View<const Index> element) {
+    return of_owned(part.domain, ServoReading{}, kernel, ListedElement<>{element});
+  };
+  all.add(members.size, own(SupportPush{axis, part_along(axis, given.gravity), members,
+                                        e.force.view(), e.mass.view()},
+                            members));
   const Comes comes{plate, kick(part)};
   const Vec3 along = along_axis(axis);
   const LedElements led{static_cast<std::int16_t>(servo), axis, e.motion.view(),
@@ -207,12 +206,14 @@ ServoReading read_support(World& part, std::size_t support, std::size_t servo, i
   }
   const Index others = part.links() - part.concrete.size() - part.parallel.size();
   if (!plate || others > 0)
-    all.add(tied.size, TiedPush{owned, comes, along, tied, e.mass.view(), e.material.view(),
-                                e.state.view(), given.wall_pairs.view()});
+    all.add(tied.size, own(TiedPush{comes, along, tied, e.mass.view(), e.material.view(),
+                                    e.state.view(), given.wall_pairs.view()},
+                           tied));
   all.add(c.size(),
-          ContactPush{owned, comes, along, led, given.contact.hertz, e.mass.view(),
-                      e.material.view(), e.state.view(), given.contact_pairs.view(),
-                      given.materials, c.pairs.a.view(), c.pairs.b.view(), c.history.state.view()});
+          own(ContactPush{comes, along, led, given.contact.hertz, e.mass.view(), e.material.view(),
+                          e.state.view(), given.contact_pairs.view(), given.materials,
+                          c.pairs.a.view(), c.pairs.b.view(), c.history.state.view()},
+              c.pairs.a.view()));
   return all.sum();
 }
 

@@ -10,13 +10,6 @@
 namespace breccia::fdem {
 namespace {
 
-struct NoteOwned {
-  static constexpr const char* name = "fdem.note_owned";
-  OwnedView owned;
-  View<std::uint8_t> own;
-  BR_HD void operator()(Index t) const { own[t] = owned(t) ? 1 : 0; }
-};
-
 struct TellEdge {
   static constexpr const char* name = "fdem.tell_edges";
   View<const Index> edge, number;  ///< here, and in the whole mesh
@@ -33,16 +26,11 @@ void find_own(World& part, const std::vector<Index>& wanted, std::vector<Index>&
               std::vector<Index>& number) {
   std::vector<GlobalId> ids;
   copy_to(ids, part.triangles.id);
-  std::vector<std::uint8_t> is_own;
-  const OwnedView owned = part.domain.owned_view();
-  Buffer<std::uint8_t> owns(part.exec.space, part.triangles.size());
-  for_each(part.exec, owns.size(), NoteOwned{owned, owns.view()});
-  copy_to(is_own, owns);
   for (const Index edge : wanted) {
     const auto found = std::lower_bound(ids.begin(), ids.end(), edge / 3);
     if (found == ids.end() || *found != edge / 3) continue;
     const auto t = static_cast<Index>(found - ids.begin());
-    if (is_own[at(t)] == 0) continue;
+    if (!part.domain.owns(t)) continue;
     here.push_back(3 * t + edge % 3);
     number.push_back(edge);
   }

@@ -4,7 +4,7 @@
 // and joints store.
 
 #include "core/energy_split.hpp"
-#include "domain/domain.hpp"
+#include "domain/owned.hpp"
 #include "exec/fold_sum.hpp"
 #include "fdem_shared/shape.hpp"
 
@@ -14,13 +14,11 @@ namespace breccia::fdem_shared {
 template <class Shape, class Stored>
 struct ElementShares {
   using Vector = typename Shape::Vector;
-  OwnedView owned;
   Stored stored;
   View<const typename Shape::CornersOfElement> external;
   View<const double> viscous_work, damping_work, load_work;
 
   BR_HD void add_to(Energies& s, Index t) const {
-    if (!owned(t)) return;
     const auto& kick = stored.kick;
     s.damping.add(viscous_work[t]);
     s.damping.add(damping_work[t]);
@@ -47,27 +45,23 @@ struct ElementShares {
 
 template <class Shape>
 struct GravityPotential {
-  OwnedView owned;
   typename Shape::Vector gravity;  ///<  [m/s2]
   View<const typename Shape::Nodes> nodes;
   View<const double> mass;
   BR_HD void add_to(Energies& sum, Index t) const {
-    if (!owned(t)) return;
     for (const auto& n : nodes[t].at) sum.potential.add(mass[t] * dot(gravity, n.position));
   }
 };
 
 /// @tparam Stored  a method's: stored(i), what joint i would give back if it were unloaded now
-template <Index corners, class Stage, class Work, class Stored>
+template <class Stage, class Work, class Stored>
 struct JointShares {
-  OwnedView owned;  ///< the owner of side a books it
-  View<const Index> side_a;
   View<const Stage> stage;
   View<const Work> work, inherited_work;
   Stored stored;
 
   BR_HD void add_to(Energies& s, Index i) const {
-    if (stage[i] == Stage::dormant || !owned(side_a[i] / corners)) return;
+    if (stage[i] == Stage::dormant) return;
     const Work &spent = work[i], &inherited = inherited_work[i];
     if (stage[i] == Stage::cut) {  // after that it took work out of the model
       s.fracture.add(inherited.open);
@@ -95,11 +89,8 @@ struct JointShares {
 
 template <class State>
 struct CoupleShares {
-  OwnedView owned;  ///< the owner of a books it
-  View<const Index> a;
   View<const State> state;
   BR_HD void add_to(Energies& s, Index i) const {
-    if (!owned(a[i])) return;
     s.elastic.add(state[i].work - state[i].slid);
     s.friction.add(state[i].slid);
     s.friction.add(state[i].rubbed);
@@ -112,7 +103,6 @@ struct CoupleShares {
 template <class World>
 Energies held_by_part(const World& w) {
   using Shape = ShapeOf<World>;
-  const OwnedView owned = w.domain.owned_view();
   const auto& t = Shape::elements(w);
   const auto of_elements = stored_by_elements(w);
   const auto& j = w.joints;
@@ -123,21 +113,28 @@ Energies held_by_part(const World& w) {
   const typename Shape::Vector gravity = w.given->gravity;
   const Index falling = dot(gravity, gravity) > 0.0 ? t.size() : 0;
   FoldSum<Energies> all(w.exec);
-  all.add_parts(part(
-      t.size(),
-      ElementShares<Shape, std::remove_cv_t<decltype(of_elements)>>{
-          owned, of_elements, t.external.view(), t.viscous_work.view(), t.damping_work.view(),
-          t.load_work.view()},
-      part(
-          j.size(),
-          JointShares<Shape::corners, Stage, Work, std::remove_cv_t<decltype(of_joints)>>{
-              owned, Shape::side_a(j).view(), j.stage.view(), j.work.view(),
-              j.inherited_work.view(), of_joints},
-          part(w.couples.size(),
-               CoupleShares<std::remove_cvref_t<decltype(state[0])>>{
-                   owned, w.couples.pairs.a.view(), state},
-               part(falling, GravityPotential<Shape>{owned, gravity, t.nodes.view(), t.mass.view()},
-                    Parts<>{})))));
+  const auto own = [&w](const auto& kernel, const auto& element_of) {
+    return of_owned(w.domain, Energies{}, kernel, element_of);
+  };
+  all.add_parts(
+      part(t.size(),
+           own(
+               ElementShares<Shape, std::remove_cv_t<decltype(of_elements)>>{
+                   of_elements, t.external.view(), t.viscous_work.view(), t.damping_work.view(),
+                   t.load_work.view()},
+               ItemItself{}),
+           part(j.size(),
+                own(
+                    JointShares<Stage, Work, std::remove_cv_t<decltype(of_joints)>>{
+                        j.stage.view(), j.work.view(), j.inherited_work.view(), of_joints},
+                    ListedElement<Shape::corners>{Shape::side_a(j).view()}),
+                part(w.couples.size(),
+                     own(CoupleShares<std::remove_cvref_t<decltype(state[0])>>{state},
+                         ListedElement<>{w.couples.pairs.a.view()}),
+                     part(falling,
+                          own(GravityPotential<Shape>{gravity, t.nodes.view(), t.mass.view()},
+                              ItemItself{}),
+                          Parts<>{})))));
   return all.sum();
 }
 

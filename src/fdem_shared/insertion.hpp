@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/select.hpp"
+#include "domain/owned.hpp"
 #include "domain/together.hpp"
 #include "exec/timers.hpp"
 #include "fdem_shared/insertion_kernels.hpp"
@@ -28,8 +29,10 @@ std::vector<Candidate<ShapeOf<World>>> candidates(World& w) {
   using Shape = ShapeOf<World>;
   const auto overshoot = std::as_const(w.overshoot).view();
   const VerticesOfJoints<Shape> vertices = vertices_of_joints(w);
-  const Buffer<Index> reached = items_where(
-      w.exec, w.joints.size(), IsReached<Shape>{overshoot, vertices.side_a, w.domain.owned_view()});
+  const Buffer<Index> reached =
+      items_where(w.exec, w.joints.size(),
+                  of_owned(w.domain, false, IsReached{overshoot},
+                           ListedElement<Shape::corners>{vertices.side_a}));
   Buffer<Candidate<Shape>> listed(w.exec.space, reached.size());
   for_each(w.exec, reached.size(),
            ListCandidates<Shape>{reached.view(), overshoot, vertices, listed.view()});

@@ -42,15 +42,10 @@ struct WatchReached {
   }
 };
 
-/// Joints whose strength is reached and whose side a this rank owns.
-template <class Shape>
+/// Joints whose strength is reached.
 struct IsReached {
   View<const double> overshoot;
-  View<const Index> side_a;
-  OwnedView owned;
-  BR_HD bool operator()(Index i) const {
-    return overshoot[i] >= 1.0 && owned(side_a[i] / Shape::corners);
-  }
+  BR_HD bool operator()(Index i) const { return overshoot[i] >= 1.0; }
 };
 
 /// The vertices of joints.

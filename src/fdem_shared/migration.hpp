@@ -9,8 +9,8 @@
 #include "core/relation.hpp"
 #include "domain/drift.hpp"
 #include "domain/ghosts.hpp"
+#include "domain/owned.hpp"
 #include "domain/together.hpp"
-#include "exec/for_each.hpp"
 #include "fdem_shared/ranks.hpp"
 #include "fdem_shared/rings.hpp"
 
@@ -197,15 +197,13 @@ void settle_in(World& w, Space space) {
 template <class Shape>
 struct LargestSpeed {
   typename Shape::Vector drift;  ///<  [m/s]
-  OwnedView owned;
   View<const typename Shape::Nodes> nodes;
   BR_HD double operator()(Index t) const {
     double fastest = 0.0;
-    if (owned(t))
-      for (const auto& n : nodes[t].at) {
-        const typename Shape::Vector velocity = n.velocity - drift;
-        fastest = max(fastest, dot(velocity, velocity));
-      }
+    for (const auto& n : nodes[t].at) {
+      const typename Shape::Vector velocity = n.velocity - drift;
+      fastest = max(fastest, dot(velocity, velocity));
+    }
     return fastest;
   }
 };
@@ -214,8 +212,7 @@ struct LargestSpeed {
 template <class Shape>
 struct HasLeftBuffer {
   double allowed;  ///< square of the way that it may go  [m2]
-  OwnedView owned;
-  Vec3 drifted;  ///< common to all since they were placed  [m]
+  Vec3 drifted;    ///< common to all since they were placed  [m]
   View<const typename Shape::Nodes> nodes;
   View<const Vec3> reference;
   BR_HD double operator()(Index t) const {
@@ -225,7 +222,7 @@ struct HasLeftBuffer {
           (to_space(nodes[t].at[k].position) - reference[Shape::corners * t + k]) - drifted;
       if (!(dot(moved, moved) <= allowed)) left = true;
     }
-    return owned(t) && left ? 1.0 : 0.0;
+    return left ? 1.0 : 0.0;
   }
 };
 
@@ -278,14 +275,17 @@ class SharedMesh final : public Shareable {
     return weight;
   }
   double margin() const override {
-    const double fastest = fold(w_.exec, elements().size(), 0.0,
-                                LargestSpeed<Shape>{w_.reach.drift.velocity, w_.domain.owned_view(),
-                                                    std::as_const(elements()).nodes.view()},
-                                Largest{});
+    const double fastest = fold_owned(
+        w_.exec, w_.domain, elements().size(), 0.0,
+        LargestSpeed<Shape>{w_.reach.drift.velocity, std::as_const(elements()).nodes.view()},
+        Largest{});
     return margin_rule(w_).margin({std::sqrt(fastest), 0.0, 0.0});
   }
   bool has_left() const override {
-    return fold(w_.exec, elements().size(), 0.0, has_left_kernel(), Largest{}) > 0.0;
+    const HasLeftBuffer<Shape> left{w_.domain.buffer * w_.domain.buffer, w_.domain.drifted,
+                                    std::as_const(elements()).nodes.view(),
+                                    std::as_const(w_.domain.migration_reference).view()};
+    return fold_owned(w_.exec, w_.domain, elements().size(), 0.0, left, Largest{}) > 0.0;
   }
   double largest_margin() const override { return margin_rule(w_).largest; }
   void send(const std::vector<int>& owner, const std::vector<Sphere>& around) override {
@@ -305,11 +305,6 @@ class SharedMesh final : public Shareable {
   const auto& nodes() const { return on_host() ? elements().nodes : seen_; }
   const auto& references() const {
     return on_host() ? Shape::reference(elements()) : seen_references_;
-  }
-  HasLeftBuffer<Shape> has_left_kernel() const {
-    return {w_.domain.buffer * w_.domain.buffer, w_.domain.owned_view(), w_.domain.drifted,
-            std::as_const(elements()).nodes.view(),
-            std::as_const(w_.domain.migration_reference).view()};
   }
 
   World& w_;

@@ -9,7 +9,7 @@
 #include "core/on_host.hpp"
 #include "core/pieces.hpp"
 #include "core/state_hash.hpp"
-#include "exec/for_each.hpp"
+#include "domain/owned.hpp"
 #include "fdem_shared/observe.hpp"
 #include "fdem_shared/shape.hpp"
 
@@ -17,11 +17,9 @@ namespace breccia::fdem_shared {
 
 template <class Shape>
 struct HashElement {
-  OwnedView owned;
   View<const GlobalId> id;
   View<const typename Shape::Nodes> nodes;
   BR_HD std::uint64_t operator()(Index t) const {
-    if (!owned(t)) return 0;
     ItemHash hash(id[t]);
     for (const auto& n : nodes[t].at) {
       for (int axis = 0; axis < Shape::dimension; ++axis) hash.add(part_of(n.position, axis));
@@ -34,12 +32,10 @@ struct HashElement {
 /// Of the fastest corner.
 template <class Shape>
 struct SpeedOf {
-  OwnedView owned;
   View<const GlobalId> id;
   View<const typename Shape::Nodes> nodes;
   BR_HD Speed operator()(Index t) const {
     Speed speed;
-    if (!owned(t)) return speed;
     for (const auto& n : nodes[t].at) speed = Faster{}(speed, {dot(n.velocity, n.velocity), id[t]});
     return speed;
   }
@@ -48,13 +44,11 @@ struct SpeedOf {
 /// The lowest global id whose numbers are unsound, or none.
 template <class Shape>
 struct FindUnsound {
-  OwnedView owned;
   double dt;
   View<const GlobalId> id;
   View<const typename Shape::Nodes> nodes;
   View<const typename Shape::Reference> reference;
   BR_HD GlobalId operator()(Index t) const {
-    if (!owned(t)) return Unsound::none;
     double fastest = 0.0, sum = 0.0;
     for (const auto& n : nodes[t].at) {
       fastest = max(fastest, dot(n.velocity, n.velocity));
@@ -107,17 +101,16 @@ template <class World>
 std::uint64_t state_hash(const World& w) {
   using Shape = ShapeOf<World>;
   const auto& t = Shape::elements(w);
-  return fold(w.exec, t.size(), std::uint64_t{0},
-              HashElement<Shape>{w.domain.owned_view(), t.id.view(), t.nodes.view()}, Sum{});
+  return fold_owned(w.exec, w.domain, t.size(), std::uint64_t{0},
+                    HashElement<Shape>{t.id.view(), t.nodes.view()}, Sum{});
 }
 
 template <class World>
 Fastest fastest(const World& w) {
   using Shape = ShapeOf<World>;
   const auto& t = Shape::elements(w);
-  const Speed speed =
-      fold(w.exec, t.size(), Speed{},
-           SpeedOf<Shape>{w.domain.owned_view(), t.id.view(), t.nodes.view()}, Faster{});
+  const Speed speed = fold_owned(w.exec, w.domain, t.size(), Speed{},
+                                 SpeedOf<Shape>{t.id.view(), t.nodes.view()}, Faster{});
   std::vector<GlobalId> ids;
   std::vector<std::int16_t> groups;
   copy_to(ids, t.id);
@@ -135,10 +128,10 @@ template <class World>
 Unsound find_unsound(const World& w) {
   using Shape = ShapeOf<World>;
   const auto& t = Shape::elements(w);
-  const GlobalId bad = fold(w.exec, t.size(), Unsound::none,
-                            FindUnsound<Shape>{w.domain.owned_view(), w.last_dt, t.id.view(),
-                                               t.nodes.view(), Shape::reference(t).view()},
-                            Least{});
+  const GlobalId bad = fold_owned(
+      w.exec, w.domain, t.size(), Unsound::none,
+      FindUnsound<Shape>{w.last_dt, t.id.view(), t.nodes.view(), Shape::reference(t).view()},
+      Least{});
   if (bad == Unsound::none) return {};
   const typename Shape::Elements host = host_copy(t);
   const auto ids = host.id.host();

@@ -7,9 +7,9 @@
 
 #include "core/case_config.hpp"
 #include "core/gauge.hpp"
+#include "domain/owned.hpp"
 #include "domain/set_here.hpp"
 #include "exec/error.hpp"
-#include "exec/for_each.hpp"
 #include "fdem_shared/observe.hpp"
 #include "fdem_shared/shape.hpp"
 
@@ -21,7 +21,6 @@ struct ReadCorner {
   using Vector = typename Shape::Vector;
   static constexpr Index corners = Shape::corners;
 
-  OwnedView owned;
   Quantity quantity;
   View<const Index> members;  ///< corners; empty: all
   View<const GlobalId> id;
@@ -72,7 +71,7 @@ struct ReadCorner {
   BR_HD Readings operator()(Index i) const {
     const Index n = members.size > 0 ? members[i] : i;
     const Index t = n / corners, k = n % corners;
-    if (!owned(t) || is_gone<Shape>(kick.holds, kick.hold[t])) return Readings();
+    if (is_gone<Shape>(kick.holds, kick.hold[t])) return Readings();
     const Vector place = from_start() ? starts[corners * id[t] + k] : kick.nodes[t].at[k].position;
     if (!box.holds(to_space(place))) return Readings();
     return Readings(value(t, k), corners * id[t] + k);
@@ -92,7 +91,6 @@ struct MarkMembers {
 /// @tparam Stress  a method's: middle(t), in space; weighted(t, i, j, id): component ij by its size
 template <class Stress>
 struct ReadStress {
-  OwnedView owned;
   Quantity quantity;
   ReadBox box;
   View<const std::uint8_t> marked;  ///< empty: all
@@ -100,7 +98,7 @@ struct ReadStress {
   Stress stress;
 
   BR_HD Readings operator()(Index t) const {
-    if (!owned(t) || stress.is_gone(t) || (marked.size > 0 && marked[t] == 0)) return Readings();
+    if (stress.is_gone(t) || (marked.size > 0 && marked[t] == 0)) return Readings();
     if (!box.holds(stress.middle(t))) return Readings();
     return stress.weighted(t, quantity.axis, quantity.other, id[t]);
   }
@@ -111,7 +109,6 @@ struct ReadStress {
 /// @tparam Ends   a method's: sides a and b, middle(i), in space, opening(i), slip(i)
 template <class Ends, class Stage, Index corners>
 struct ReadJoints {
-  OwnedView owned;  ///< the owner of side a reads it
   Quantity::Kind kind;
   ReadBox box;
   View<const std::uint8_t> marked;  ///< of elements; empty: all
@@ -121,7 +118,7 @@ struct ReadJoints {
 
   BR_HD Readings operator()(Index i) const {
     const Index side = ends.side_a[i], a = side / corners, b = ends.side_b[i] / corners;
-    if (!owned(a) || (marked.size > 0 && marked[a] == 0 && marked[b] == 0)) return Readings();
+    if (marked.size > 0 && marked[a] == 0 && marked[b] == 0) return Readings();
     if (!box.holds(ends.middle(i))) return Readings();
     const Index number = corners * id[a] + side % corners;
     if (kind == Quantity::Kind::broken)
@@ -142,12 +139,13 @@ Readings read_corners(const World& w, const ProbeConfig& p, const Quantity& quan
     if (of_probe.probe == p.name) fit = of_probe.fit;
   const auto& t = Shape::elements(w);
   const auto of_world = kick(w);
-  return fold(w.exec, p.on.empty() ? Shape::corners * t.size() : members.size(), Readings{},
-              ReadCorner<Shape, std::remove_cv_t<decltype(of_world)>>{
-                  w.domain.owned_view(), quantity, members.view(), t.id.view(), of_world,
-                  std::as_const(lost).view(), w.given->starts.view(), ReadBox(p.min, p.max),
-                  from_space<typename Shape::Vector>(point_of(p.about)), fit},
-              Sum{});
+  return fold_owned(w.exec, w.domain, p.on.empty() ? Shape::corners * t.size() : members.size(),
+                    Readings{},
+                    ReadCorner<Shape, std::remove_cv_t<decltype(of_world)>>{
+                        quantity, members.view(), t.id.view(), of_world, std::as_const(lost).view(),
+                        w.given->starts.view(), ReadBox(p.min, p.max),
+                        from_space<typename Shape::Vector>(point_of(p.about)), fit},
+                    Sum{}, MemberElement<Shape::corners>{members.view()});
 }
 
 /// @param members  of the set that the probe names, by their places in memory
@@ -166,22 +164,21 @@ Readings read(const World& w, const ProbeConfig& p, const Buffer<Index>& members
     for_each(w.exec, members.size(), MarkMembers<Shape::corners>{members.view(), marks.view()});
   }
   const View<const std::uint8_t> marked = std::as_const(marks).view();
-  const OwnedView owned = w.domain.owned_view();
   const ReadBox box(p.min, p.max);
   if (kind == Kind::stress) {
     const auto stress = stress_to_read(w);
-    return fold(w.exec, t.size(), Readings{},
-                ReadStress<std::remove_cv_t<decltype(stress)>>{owned, quantity, box, marked,
-                                                               t.id.view(), stress},
-                Sum{});
+    return fold_owned(
+        w.exec, w.domain, t.size(), Readings{},
+        ReadStress<std::remove_cv_t<decltype(stress)>>{quantity, box, marked, t.id.view(), stress},
+        Sum{});
   }
   const auto ends = joints_to_read(w);
   const auto stage = w.joints.stage.view();
   using Stage = std::remove_cvref_t<decltype(stage[0])>;
-  return fold(w.exec, w.joints.size(), Readings{},
-              ReadJoints<std::remove_cv_t<decltype(ends)>, Stage, Shape::corners>{
-                  owned, kind, box, marked, t.id.view(), stage, ends},
-              Sum{});
+  return fold_owned(w.exec, w.domain, w.joints.size(), Readings{},
+                    ReadJoints<std::remove_cv_t<decltype(ends)>, Stage, Shape::corners>{
+                        kind, box, marked, t.id.view(), stage, ends},
+                    Sum{}, ListedElement<Shape::corners>{ends.side_a});
 }
 
 template <class World>

@@ -12,6 +12,7 @@
 #include "core/select.hpp"
 #include "core/travel.hpp"
 #include "domain/drift.hpp"
+#include "domain/owned.hpp"
 #include "exec/timers.hpp"
 #include "fdem_shared/ranks.hpp"
 #include "fdem_shared/separated.hpp"
@@ -113,7 +114,7 @@ struct NameElements {
   }
 };
 
-/// Whether a couple can touch, and is of this rank. Neighbours across a side do once nothing joins
+/// Whether a couple can touch. Neighbours across a side do once nothing joins
 /// them; neighbours at an edge or a vertex do once a joint around it is damaged.
 template <class Shape, class Stage>
 struct MayTouch {
@@ -121,12 +122,10 @@ struct MayTouch {
   View<const typename Shape::Sides> sides;
   View<const Stage> stage;
   View<const std::uint8_t> exposed;  ///< bits of sides that press; empty: all do
-  OwnedView owned;
   View<const Index> a, b;
 
   BR_HD bool operator()(Index i) const {
     const Index p = a[i], q = b[i];
-    if (!owned(p) && !owned(q)) return false;
     // A joint that breaks exposes its sides and calls for a search.
     if (exposed.size > 0 && (exposed[p] | exposed[q]) == 0) return false;
     int shared = 0, open = 0, apart = 0;  // apart: the corner of p that q lacks
@@ -154,10 +153,8 @@ struct MayTouch {
 template <class Shape>
 struct MotionOf {
   View<const typename Shape::Nodes> nodes;
-  OwnedView owned;
   BR_HD CommonMotion operator()(Index t) const {
     CommonMotion motion;
-    if (!owned(t)) return motion;
     for (const auto& n : nodes[t].at) motion.add(to_space(n.velocity));
     return motion;
   }
@@ -166,12 +163,10 @@ struct MotionOf {
 /// Energy spent by couples that leave the list.
 template <class State>
 struct SpentBy {
-  View<const Index> couple, a;
+  View<const Index> couple;
   View<const State> state;
-  OwnedView owned;  ///< the owner of a books it
   BR_HD Energies operator()(Index k) const {
     Energies spent;
-    if (!owned(a[couple[k]])) return spent;
     const State& s = state[couple[k]];
     spent.friction.add(s.rubbed + (s.slid + s.sprung));
     spent.contact.add(s.lost + s.work - (s.slid + s.sprung));
@@ -208,11 +203,8 @@ struct NoPlace {
 };
 struct PlaceReach {
   View<const Index> touchable;
-  OwnedView owned;
   View<Index> place;
-  BR_HD void operator()(Index i) const {
-    if (owned(touchable[i])) place[touchable[i]] = i;
-  }
+  BR_HD void operator()(Index i) const { place[touchable[i]] = i; }
 };
 
 /// The mesh where kernels can read it.
@@ -254,11 +246,10 @@ void book_dropped(World& w, const Pairs& found) {
   find_dropped(w.exec, w.couples.pairs.key, found.key, dropped);
   if (dropped.empty()) return;
   const auto state = std::as_const(w.couples.history.state).view();
-  w.ledger.book(fold(w.exec, dropped.size(), Energies{},
-                     SpentBy<std::remove_cvref_t<decltype(state[0])>>{
-                         std::as_const(dropped).view(), std::as_const(w.couples.pairs.a).view(),
-                         state, w.domain.owned_view()},
-                     Sum{}));
+  const View<const Index> gone = std::as_const(dropped).view();
+  w.ledger.book(fold_owned(w.exec, w.domain, dropped.size(), Energies{},
+                           SpentBy<std::remove_cvref_t<decltype(state[0])>>{gone, state}, Sum{},
+                           SelectedElement{gone, std::as_const(w.couples.pairs.a).view()}));
 }
 
 /// The drift from now on.
@@ -266,21 +257,25 @@ template <class World>
 auto choose_drift(const World& w) {
   using Shape = ShapeOf<World>;
   const auto& e = Shape::elements(w);
-  const CommonMotion own = fold(w.exec, e.size(), CommonMotion{},
-                                MotionOf<Shape>{e.nodes.view(), w.domain.owned_view()}, Sum{});
+  const CommonMotion own = fold_owned(w.exec, w.domain, e.size(), CommonMotion{},
+                                      MotionOf<Shape>{e.nodes.view()}, Sum{});
   const Drift all = of_all_ranks(w.domain, own).drift(w.time, 1000.0 * w.given->mean_edge);
   using Vector = typename Shape::Vector;
   return DriftOf<Vector>{from_space<Vector>(all.velocity), all.since, all.farthest};
 }
 
 /// The place in `reach` of each element; -1: it has none.
+/// @param ghosts  whether ghosts have places, too
 template <class World>
-void place_in_reach(World& w, const OwnedView& owned, Buffer<Index>& place) {
-  const auto& touchable = w.reach.element;
+void place_in_reach(World& w, bool ghosts, Buffer<Index>& place) {
+  const auto touchable = std::as_const(w.reach.element).view();
   place.resize(ShapeOf<World>::elements(w).size());
   for_each(w.exec, place.size(), NoPlace{place.view()});
-  for_each(w.exec, touchable.size(),
-           PlaceReach{std::as_const(touchable).view(), owned, place.view()});
+  const PlaceReach put{touchable, place.view()};
+  if (ghosts)
+    for_each(w.exec, touchable.size, put);
+  else
+    for_each_owned(w.exec, w.domain, touchable.size, put, ListedElement<>{touchable});
 }
 
 /// Boxes of the elements that can touch, and pairs of them whose boxes overlap.
@@ -317,7 +312,7 @@ template <class World>
 void drop_separated(World& w, Pairs& found) {
   using Shape = ShapeOf<World>;
   Buffer<Index> place(w.exec.space);
-  place_in_reach(w, OwnedView{}, place);
+  place_in_reach(w, true, place);
   const auto& last = w.couples;
   const auto state = last.history.state.view();
   const Buffer<Index> near =
@@ -338,11 +333,13 @@ void search(World& w) {
   const OpenVertices vertices = open_vertices(w);
   Pairs found = boxes_that_overlap(w, vertices);
   const auto stage = std::as_const(w.joints.stage).view();
-  const Buffer<Index> kept = items_where(
-      w.exec, found.size(),
-      MayTouch<Shape, std::remove_cvref_t<decltype(stage[0])>>{
-          vertices, std::as_const(Shape::sides(w)).view(), stage, Shape::exposed_sides(w),
-          w.domain.owned_view(), std::as_const(found.a).view(), std::as_const(found.b).view()});
+  const View<const Index> a = std::as_const(found.a).view(), b = std::as_const(found.b).view();
+  const Buffer<Index> kept =
+      items_where(w.exec, found.size(),
+                  of_either_owned(w.domain, a, b,
+                                  MayTouch<Shape, std::remove_cvref_t<decltype(stage[0])>>{
+                                      vertices, std::as_const(Shape::sides(w)).view(), stage,
+                                      Shape::exposed_sides(w), a, b}));
   gather_fields(w.exec, kept, found);
   if constexpr (Shape::drops_separated) drop_separated(w, found);
   book_dropped(w, found);
@@ -442,7 +439,7 @@ void derive_mesh_couples(World& w) {
                               std::as_const(Shape::sides(w)).view(), Shape::side_a(j).view(),
                               Shape::side_b(j).view(), j.broke_at.view(), w.parent_joint.view()});
   // Ghosts have none in it: their owners tell of them.
-  place_in_reach(w, w.domain.owned_view(), w.reach_place);
+  place_in_reach(w, false, w.reach_place);
 }
 
 }  // namespace breccia::fdem_shared

@@ -6,7 +6,7 @@
 
 #include "core/step_clock.hpp"
 #include "core/stepping.hpp"
-#include "exec/for_each.hpp"
+#include "domain/owned.hpp"
 #include "exec/timers.hpp"
 #include "fdem_shared/ranks.hpp"
 #include "fdem_shared/shape.hpp"
@@ -14,17 +14,10 @@
 
 namespace breccia::fdem_shared {
 
-template <class StableStep>
-struct OwnedStableStep {
-  StableStep stable;
-  OwnedView owned;
-  BR_HD double operator()(Index t) const { return owned(t) ? stable(t) : largest_least; }
-};
-
 /// The stable step of those of a list: where a joint may just have broken.
 template <class StableStep>
 struct ListedStableStep {
-  OwnedStableStep<StableStep> stable;
+  StableStep stable;
   View<const Index> listed;
   BR_HD double operator()(Index i) const { return stable(listed[i]); }
 };
@@ -83,9 +76,9 @@ AllowedStep world_allowed_step(const World& w) {
 template <class World>
 double world_time_step(const World& w) {
   const StageTime timed(w.exec, "time_step");
-  const OwnedStableStep<decltype(stable_step(w))> stable{stable_step(w), w.domain.owned_view()};
   const Index count = ShapeOf<World>::elements(w).size();
-  const double least = w.domain.least(fold(w.exec, count, largest_least, stable, Least{}));
+  const double least =
+      w.domain.least(fold_owned(w.exec, w.domain, count, largest_least, stable_step(w), Least{}));
   return world_allowed_step(w)(least, w.last_dt);
 }
 
@@ -94,8 +87,9 @@ template <class World>
 double world_shortened_step(const World& w, const Buffer<Index>& listed) {
   const StageTime timed(w.exec, "time_step");
   using Stable = ListedStableStep<decltype(stable_step(w))>;
-  const Stable stable{{stable_step(w), w.domain.owned_view()}, listed.view()};
-  const double least = w.domain.least(fold(w.exec, listed.size(), largest_least, stable, Least{}));
+  const Stable stable{stable_step(w), listed.view()};
+  const double least = w.domain.least(fold_owned(w.exec, w.domain, listed.size(), largest_least,
+                                                 stable, Least{}, ListedElement<>{listed.view()}));
   return std::min(w.next_dt, world_allowed_step(w)(least, w.last_dt));
 }
 

@@ -132,14 +132,12 @@ struct LinkSpace {
 /// @tparam Shares  a kernel with add_to(energies, law, link)
 template <class Law, class Shares>
 struct GroupEnergies {
-  OwnedView owned;
   Law law;
   Index first;
   Shares shares;
   View<const std::uint8_t> fixed;
   BR_HD void add_to(Energies& sum, Index k) const {
     const Index i = first + k;
-    if (!owned(shares.a[i])) return;
     if (!is_gone(fixed[shares.a[i]])) return shares.add_to(sum, law, i);
     Energies spent;
     shares.add_to(spent, law, i);

@@ -6,15 +6,14 @@
 #include "dem/free_walls.hpp"
 #include "dem/ranks.hpp"
 #include "dem/stepping/launches.hpp"
-#include "exec/for_each.hpp"
+#include "domain/owned.hpp"
 
 namespace breccia::dem {
 namespace {
 
 struct LeastCritical {
   View<const double> critical;
-  OwnedView owned;
-  BR_HD double operator()(Index e) const { return owned(e) ? critical[e] : largest_least; }
+  BR_HD double operator()(Index e) const { return critical[e]; }
 };
 /// Of the elements of this rank, on a device.
 double least_there(const World& w) {
@@ -23,8 +22,8 @@ double least_there(const World& w) {
     peek_marked_bytes(&bits, &w.clock.data()->least, w.exec.space, sizeof bits);
     return number_of(bits);
   }
-  return fold(w.exec, w.elements.size(), largest_least,
-              LeastCritical{w.critical.view(), w.domain.owned_view()}, Least{});
+  return fold_owned(w.exec, w.domain, w.elements.size(), largest_least,
+                    LeastCritical{w.critical.view()}, Least{});
 }
 /// The least critical number of this rank's elements, on the host.
 double least_here(const World& w) {

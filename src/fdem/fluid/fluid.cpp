@@ -4,9 +4,9 @@
 
 #include "core/on_host.hpp"
 #include "core/select.hpp"
+#include "domain/owned.hpp"
 #include "domain/redistribute.hpp"
 #include "domain/together.hpp"
-#include "exec/for_each.hpp"
 #include "fdem/edges_now.hpp"
 #include "fdem/fluid/cavity.hpp"
 #include "fdem/fluid/flow.hpp"
@@ -16,18 +16,15 @@
 namespace breccia::fdem {
 namespace {
 
-/// Broken joints up to a time, with those that soften if asked for; the owner of side a tells of
-/// them.
+/// Broken joints up to a time, with those that soften if asked for.
 struct IsOpenCrack {
   double until;  ///<  [s]
   bool softened;
-  OwnedView owned;
   View<const JointStage> stage;
   View<const double> broke_at;
-  View<const Index> edge_a;
   BR_HD bool operator()(Index i) const {
     const bool open = stage[i] == JointStage::broken && broke_at[i] <= until;
-    return (open || (softened && stage[i] == JointStage::softened)) && owned(edge_a[i] / 3);
+    return open || (softened && stage[i] == JointStage::softened);
   }
 };
 
@@ -50,10 +47,10 @@ struct TellCrack {
 
 std::vector<CrackSide> cracks_until(World& part, double until, bool softened = false) {
   const Joints& j = part.joints;
-  const Buffer<Index> broken =
-      items_where(part.exec, j.size(),
-                  IsOpenCrack{until, softened, part.domain.owned_view(), j.stage.view(),
-                              j.broke_at.view(), j.edge_a.view()});
+  const Buffer<Index> broken = items_where(
+      part.exec, j.size(),
+      of_owned(part.domain, false, IsOpenCrack{until, softened, j.stage.view(), j.broke_at.view()},
+               ListedElement<3>{j.edge_a.view()}));
   Buffer<CrackSide> told(part.exec.space, broken.size());
   for_each(part.exec, broken.size(),
            TellCrack{broken.view(), j.edge_a.view(), j.edge_b.view(),

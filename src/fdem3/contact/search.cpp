@@ -7,15 +7,14 @@
 namespace breccia::fdem3 {
 namespace {
 
-/// Notes the faces of own tetrahedra that nothing joins.
+/// Notes the faces of tetrahedra that nothing joins.
 struct NoteExposed {
   static constexpr const char* name = "fdem3.note_exposed";
   View<const FaceJoints> faces;
   View<const JointStage> stage;
-  OwnedView owned;
   View<std::uint8_t> exposed;
   BR_HD void operator()(Index t) const {
-    if (owned(t)) exposed[t] = static_cast<std::uint8_t>(exposed_faces(faces[t], stage));
+    exposed[t] = static_cast<std::uint8_t>(exposed_faces(faces[t], stage));
   }
 };
 
@@ -24,9 +23,9 @@ struct NoteExposed {
 /// Ghosts hear from their owners which of their faces are exposed: not all their joints are here.
 void Shape::note_exposed(World& w) {
   Tetrahedra& t = w.tetrahedra;
-  for_each(w.exec, t.size(),
-           NoteExposed{std::as_const(w.faces).view(), std::as_const(w.joints.stage).view(),
-                       w.domain.owned_view(), t.exposed.view()});
+  for_each_owned(w.exec, w.domain, t.size(),
+                 NoteExposed{std::as_const(w.faces).view(), std::as_const(w.joints.stage).view(),
+                             t.exposed.view()});
   if (!w.domain.single_rank()) w.domain.halo.refresh(w.exec, *w.domain.ranks, t.exposed);
 }
 
