@@ -207,22 +207,6 @@ void drop_state(World& w) {
   w.bar_actions.resize(0);
 }
 
-void start_ghosts(World& w) {
-  breccia::start_ghosts(w, w.elements.state);
-}
-void finish_ghosts(World& w) {
-  breccia::finish_ghosts(w, w.elements.state);
-}
-void refresh_ghosts(World& w) {
-  breccia::refresh_ghosts(w, w.elements.state);
-}
-
-void select_active_ghosts(World& w) {
-  // On a device the list costs more than it saves.
-  if (w.domain.single_rank() || w.exec.space != Space::host) return;
-  w.domain.select_active_ghosts(w.elements.id, w.contacts.pairs.a, w.contacts.pairs.b);
-}
-
 World share_out(const World& whole, Communicator& ranks, const DomainConfig& config, Space space) {
   World w = whole;
   w.each_set([](auto& set) {

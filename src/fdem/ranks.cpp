@@ -65,10 +65,6 @@ template fdem::World share_parts(fdem::World, const std::vector<std::uint8_t>&, 
                                  const DomainConfig&, Space);
 template void migrate(fdem::World&);
 template void rebalance(fdem::World&);
-template void start_ghosts(fdem::World&);
-template void finish_ghosts(fdem::World&);
-template void refresh_ghosts(fdem::World&);
-template void select_active_ghosts(fdem::World&);
 template void collect(fdem::World&, fdem::World&);
 template void drop_state(fdem::World&);
 

@@ -22,10 +22,6 @@ template fdem3::World share_parts(fdem3::World, const std::vector<std::uint8_t>&
                                   const DomainConfig&, Space);
 template void migrate(fdem3::World&);
 template void rebalance(fdem3::World&);
-template void start_ghosts(fdem3::World&);
-template void finish_ghosts(fdem3::World&);
-template void refresh_ghosts(fdem3::World&);
-template void select_active_ghosts(fdem3::World&);
 template void collect(fdem3::World&, fdem3::World&);
 template void drop_state(fdem3::World&);
 

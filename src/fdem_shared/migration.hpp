@@ -366,28 +366,6 @@ void drop_state(World& w) {
 }
 
 template <class World>
-void start_ghosts(World& w) {
-  breccia::start_ghosts(w, ShapeOf<World>::elements(w).nodes);
-}
-template <class World>
-void finish_ghosts(World& w) {
-  breccia::finish_ghosts(w, ShapeOf<World>::elements(w).nodes);
-}
-template <class World>
-void refresh_ghosts(World& w) {
-  breccia::refresh_ghosts(w, ShapeOf<World>::elements(w).nodes);
-}
-
-template <class World>
-void select_active_ghosts(World& w) {
-  // On a device the list costs more than it saves.
-  if (w.domain.single_rank() || w.exec.space != Space::host || ShapeOf<World>::needs_all_ghosts(w))
-    return;
-  w.domain.select_active_ghosts(ShapeOf<World>::elements(w).id, w.couples.pairs.a,
-                                w.couples.pairs.b);
-}
-
-template <class World>
 World share_out(World& whole, Communicator& ranks, const DomainConfig& config, Space space) {
   note_mesh(whole);
   World w = whole;

@@ -6,7 +6,7 @@
 // every sum keeps its order. Joints and couples with an owned element are evaluated on each rank
 // that owns one of theirs, with equal history. Vertices keep their numbers in the whole mesh.
 //
-// Written in fdem_shared/migration.hpp; made for each method in its ranks.cpp.
+// Written in migration.hpp and ghosts.hpp; made for each method in ranks.cpp, stepping/ghosts.cpp.
 
 #include "domain/domain.hpp"
 

@@ -8,8 +8,8 @@
 namespace breccia::dem {
 namespace {
 
-/// Moments of a solid of density one about the origin of its frame.
-struct Moments {
+/// MassMoments of a solid of density one about the origin of its frame.
+struct MassMoments {
   double volume = 0.0;  ///<  [m3]
   Vec3 first{};         ///< volume times centre  [m4]
   Sym3 second{};        ///< integral of x x^T  [m5]
@@ -18,9 +18,9 @@ struct Moments {
 /// A body of revolution about z, which lies from the tip at the origin to -length, of this radius
 /// behind the tip; by Simpson's rule.
 template <class RadiusOf>
-Moments revolved(double length, const RadiusOf& radius_of) {
+MassMoments revolved(double length, const RadiusOf& radius_of) {
   constexpr int intervals = 2000;
-  Moments m;
+  MassMoments m;
   for (int k = 0; k <= intervals; ++k) {
     const double behind = length * k / intervals, r2 = radius_of(behind) * radius_of(behind);
     const double share = k == 0 || k == intervals ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
@@ -34,16 +34,16 @@ Moments revolved(double length, const RadiusOf& radius_of) {
   return m;
 }
 
-Moments of_cylinder(const WallConfig& w) {
+MassMoments of_cylinder(const WallConfig& w) {
   const bool cone = w.nose == "cone";
   const double r = w.radius, nose = w.nose == "hemisphere" ? r : w.nose_length;
   if (!w.has_nose()) return revolved(w.length, [&](double) { return r; });
   const double arc = (r * r + nose * nose) / (2.0 * r);
-  const Moments front = revolved(nose, [&](double behind) {
+  const MassMoments front = revolved(nose, [&](double behind) {
     const double back = nose - behind;
     return cone ? r * behind / nose : std::sqrt(std::max(0.0, arc * arc - back * back)) - (arc - r);
   });
-  Moments all = front;
+  MassMoments all = front;
   const double length = w.length - nose, volume = pi * r * r * length;
   const double middle = nose + 0.5 * length;
   all.volume += volume;
@@ -54,21 +54,21 @@ Moments of_cylinder(const WallConfig& w) {
   return all;
 }
 
-Moments of_box(const WallConfig& w) {
+MassMoments of_box(const WallConfig& w) {
   const double a = w.size.x, b = w.size.y, c = w.length, volume = a * b * c;
   return {volume,
           {0.0, 0.0, -0.5 * c * volume},
           {volume * a * a / 12.0, volume * b * b / 12.0, volume * c * c / 3.0, 0.0, 0.0, 0.0}};
 }
 
-Moments of_sphere(double r) {
+MassMoments of_sphere(double r) {
   const double volume = 4.0 / 3.0 * pi * r * r * r, square = 0.2 * volume * r * r;
   return {volume, {}, {square, square, square, 0.0, 0.0, 0.0}};
 }
 
 /// Tetrahedra from the origin to each triangle.
-Moments of_surface(const std::vector<Vec3>& corners) {
-  Moments m;
+MassMoments of_surface(const std::vector<Vec3>& corners) {
+  MassMoments m;
   for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
     const Vec3 &a = corners[t], &b = corners[t + 1], &c = corners[t + 2], sum = a + b + c;
     const double volume = dot(a, cross(b, c)) / 6.0;
@@ -124,10 +124,10 @@ double enclosed_volume(const std::vector<Vec3>& corners) {
 }
 
 MassSpread mass_spread(const WallConfig& wall, double mass, const std::vector<Vec3>& corners) {
-  const Moments m = wall.shape == "stl"        ? of_surface(corners)
-                    : wall.shape == "box"      ? of_box(wall)
-                    : wall.shape == "cylinder" ? of_cylinder(wall)
-                                               : of_sphere(wall.radius);
+  const MassMoments m = wall.shape == "stl"        ? of_surface(corners)
+                        : wall.shape == "box"      ? of_box(wall)
+                        : wall.shape == "cylinder" ? of_cylinder(wall)
+                                                   : of_sphere(wall.radius);
   const double density = mass / m.volume;
   const Vec3 centre = (1.0 / m.volume) * m.first;
   const auto about = [&](double second, double p, double q) {
