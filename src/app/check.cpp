@@ -300,13 +300,16 @@ struct CheckCommand {
     const std::unique_ptr<Method> method = method_to_look_at(read);
     const std::string rule = method->step_rule();
     fmt::print("  step {:.3g} s{}\n", method->time_step(), rule.empty() ? "" : " ruled by " + rule);
-    for (const Fact& fact : method->facts())
+    for (const Fact& fact : method->facts()) {
+      if (fact.path.starts_with("model.added_mass."))
+        fmt::print("  {} {:.4g}\n", fact.path.substr(6), fact.value);
       if (fact.path.starts_with("model.rock.")) {
         const char* const unit = fact.path.ends_with(".young")   ? " Pa"
                                  : fact.path.ends_with("_speed") ? " m/s"
                                                                  : "";
         fmt::print("  {} {:.6g}{}\n", harmless(fact.path.substr(6)), fact.value, unit);
       }
+    }
     std::fflush(stdout);
     for (const std::string& warning : method->warnings())
       std::fputs(fmt::format("{} {}\n", emphasized(Emphasis::warning, "warning:", stderr),

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/added_mass.hpp"
 #include "core/emission_config.hpp"
 #include "core/gauge.hpp"
 #include "core/output_config.hpp"
@@ -61,6 +62,7 @@ struct FlowCase {
 
 struct Case {
   TimeConfig time;
+  AddedMass added_mass;        ///< to the triangles that rule the step
   Vec2 gravity{};              ///< stage  [m/s2]
   InSituConfig in_situ;        ///< stress at the start
   bool plane_strain = false;   ///< nothing moves out of the plane; else there is no stress

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/added_mass.hpp"
 #include "core/emission_config.hpp"
 #include "core/gauge.hpp"
 #include "core/output_config.hpp"
@@ -36,6 +37,7 @@ struct OpenFaces {
 
 struct Case {
   TimeConfig time;
+  AddedMass added_mass;        ///< to the tetrahedra that rule the step
   Vec3 gravity{};              ///< stage  [m/s2]
   InSituConfig in_situ;        ///< stress at the start
   double local_damping = 0.0;  ///< stage  [-]

@@ -16,6 +16,7 @@
 #include "fdem/setup/warnings.hpp"
 #include "fdem/shape.hpp"
 #include "fdem_shared/setup/elements.hpp"
+#include "fdem_shared/setup/heavier.hpp"
 #include "fdem_shared/setup/removal.hpp"
 #include "fdem_shared/setup/stages.hpp"
 #include "fdem_shared/setup/supports.hpp"
@@ -236,6 +237,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   const std::vector<PressedFace> faces = press_faces(w);
   find_couples(w);
   load_faces(w, faces);
+  fdem_shared::add_mass_to_ruling(w);
   evaluate_forces(w);
   refuse_endless(w);
   for (std::string& doubt : doubts(w, config)) given.warnings.push_back(std::move(doubt));

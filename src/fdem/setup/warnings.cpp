@@ -6,19 +6,12 @@
 #include <map>
 
 #include "core/on_host.hpp"
-#include "exec/for_each.hpp"
 #include "fdem/observe.hpp"
+#include "fdem_shared/setup/heavier.hpp"
 #include "fdem_shared/setup/weight.hpp"
 
 namespace breccia::fdem {
 namespace {
-
-struct ListSteps {
-  static constexpr const char* name = "fdem.list_steps";
-  StableStep stable;
-  View<double> step;
-  BR_HD void operator()(Index t) const { step[t] = stable(t); }
-};
 
 Vec2 middle(const TriangleNodes& nodes) {
   return (1.0 / 3.0) * (nodes.at[0].position + nodes.at[1].position + nodes.at[2].position);
@@ -27,10 +20,7 @@ Vec2 middle(const TriangleNodes& nodes) {
 /// A triangle that makes the steps of all others short.
 void look_for_slivers(const World& w, std::vector<std::string>& found) {
   constexpr double factor = 10.0;
-  Buffer<double> listed(w.exec.space, w.triangles.size());
-  for_each(w.exec, listed.size(), ListSteps{stable_step(w), listed.view()});
-  std::vector<double> steps;
-  copy_to(steps, listed);
+  std::vector<double> steps = fdem_shared::stable_steps(w);
   const auto ruling =
       static_cast<Index>(std::min_element(steps.begin(), steps.end()) - steps.begin());
   const double least = steps[at(ruling)];
@@ -48,13 +38,15 @@ void look_for_slivers(const World& w, std::vector<std::string>& found) {
     longest = std::max(longest, edge);
   }
   char text[500];
-  std::snprintf(text, sizeof text,
-                "triangle %d (%s) at (%.6g, %.6g) m, with edges of %.3g to %.3g m, needs a time "
-                "step %.3g times shorter than the median triangle (%.3g s, ruled by %s); %lld "
-                "triangles are within a factor of 2 of it. Slivers of the mesh? See docs/meshes.md",
-                ruling, w.given->groups[at(triangles->group.data()[ruling])].c_str(),
-                middle(nodes).x, middle(nodes).y, shortest, longest, *half / least, least,
-                ruling_term(w), static_cast<long long>(many));
+  std::snprintf(
+      text, sizeof text,
+      "triangle %d (%s) at (%.6g, %.6g) m, with edges of %.3g to %.3g m, needs a time "
+      "step %.3g times shorter than the median triangle (%.3g s, ruled by %s); %lld "
+      "triangles are within a factor of 2 of it. Slivers of the mesh? See docs/meshes.md, "
+      "and time.added_mass, which makes such triangles heavier",
+      ruling, w.given->groups[at(triangles->group.data()[ruling])].c_str(), middle(nodes).x,
+      middle(nodes).y, shortest, longest, *half / least, least, ruling_term(w),
+      static_cast<long long>(many));
   found.emplace_back(text);
 }
 

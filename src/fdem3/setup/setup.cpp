@@ -14,6 +14,7 @@
 #include "fdem3/setup/regions.hpp"
 #include "fdem3/shape.hpp"
 #include "fdem_shared/setup/elements.hpp"
+#include "fdem_shared/setup/heavier.hpp"
 #include "fdem_shared/setup/removal.hpp"
 #include "fdem_shared/setup/stages.hpp"
 #include "fdem_shared/setup/supports.hpp"
@@ -296,6 +297,7 @@ World make_world(const Config& asked, const Model& model, const Exec& exec) {
   w.exposed.changed.resize(2);
   w.exposed.vertex.resize(static_cast<Index>(model.point.size()));
   find_couples(w);
+  fdem_shared::add_mass_to_ruling(w);
   evaluate_forces(w);
   refuse_endless(w);
   fdem_shared::look_for_unbalanced_weight(

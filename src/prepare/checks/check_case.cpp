@@ -21,6 +21,16 @@
 namespace breccia {
 namespace {
 
+/// Spheres have no few that rule the step.
+template <class Config>
+void check_added_mass(const Config& config, std::vector<std::string>& problems) {
+  if constexpr (requires { config.walls; })
+    if (config.time.added_mass > 0.0)
+      problems.push_back(
+          "time.added_mass is for triangles and tetrahedra, whose steps a few slivers may rule; "
+          "time.mass_scaling makes all spheres heavier");
+}
+
 /// A body that flies would have time.mass_scaling times its kinetic energy.
 template <class Config>
 void check_mass_scaling(const Config& config, std::vector<std::string>& problems) {
@@ -61,6 +71,7 @@ class Check {
     for (const SupportConfig& s : config_.supports) check(s);
     for (const ProbeConfig& p : config_.probes) check(p);
     check_mass_scaling(config_, problems_);
+    check_added_mass(config_, problems_);
     for (const std::string& problem : stage_problems(config)) add(problem);
     for (const StageConfig& stage : config_.stages)
       for (const SupportChange& change : stage.supports)
@@ -238,6 +249,7 @@ void check_case(const Config& config) {
     for (const std::string& problem : prepare::joint_set_problems(set, names_of(config).joints))
       problems.push_back(problem);
   check_mass_scaling(config, problems);
+  check_added_mass(config, problems);
   prepare::refuse(problems, "in the case");
 }
 
@@ -248,6 +260,7 @@ namespace fdem3 {
 void check_case(const Config& config) {
   std::vector<std::string> problems = prepare::case_problems(config);
   check_mass_scaling(config, problems);
+  check_added_mass(config, problems);
   prepare::refuse(problems, "in the case");
 }
 

@@ -49,6 +49,11 @@ struct MeshSim {
       add(elements + "_by_group." + w.given->groups[g],
           static_cast<double>(w.given->sets[g].nodes.size() / at(corners)));
     add("model.joints", w.joints.size());
+    if (const AddedMass& added = w.given->added_mass; added.elements > 0) {
+      add("model.added_mass.elements", added.elements);
+      add("model.added_mass.share", added.share);
+      add("model.added_mass.longer", added.longer);
+    }
     for (const auto& rock : w.given->rocks) {
       const std::string path = "model.rock." + rock.material + ".";
       add(path + "young", rock.young);

@@ -124,6 +124,16 @@ TEST(CheckDem, refuses_softening_that_is_not_steep_before_its_knee) {
             std::string::npos);
 }
 
+TEST(CheckDem, refuses_mass_for_elements_that_rule_the_step) {
+  dem::Config config = dem::case_with_materials();
+  EXPECT_EQ(refused([&] { dem::check_case(config); }).find("added_mass"), std::string::npos);
+  config.time.added_mass = 0.001;
+  EXPECT_NE(refused([&] {
+              dem::check_case(config);
+            }).find("time.added_mass is for triangles and tetrahedra"),
+            std::string::npos);
+}
+
 TEST(CheckDem, refuses_friction_that_nears_no_bound) {
   dem::Config config = dem::case_with_materials();
   config.materials[0].friction_bound = "smooth";
