@@ -27,6 +27,11 @@ inline ElasticForces elastic_forces(World& w) {
 inline CoupleForces<double> pressing_couples(World& w) {
   return couple_kernel<double>(w);
 }
+/// Of numbers as the run stores forces.
+template <class Visit>
+void with_couples(World& w, const Visit& visit) {
+  with_number(w.exec.precision, [&](auto number) { visit(couple_kernel<decltype(number)>(w)); });
+}
 
 }  // namespace breccia::fdem
 

@@ -31,6 +31,10 @@ inline ElasticForces elastic_forces(World& w) {
 inline CoupleForces pressing_couples(World& w) {
   return couple_kernel(w);
 }
+template <class Visit>
+void with_couples(World& w, const Visit& visit) {
+  visit(couple_kernel(w));
+}
 
 }  // namespace breccia::fdem3
 

@@ -2,6 +2,7 @@
 // The text of fdem_shared/servos.hpp.
 
 #include "core/incidence.hpp"
+#include "domain/ghosts.hpp"
 #include "domain/set_here.hpp"
 #include "exec/fold_sum.hpp"
 #include "fdem_shared/servos.hpp"
@@ -79,61 +80,160 @@ struct SupportPush {
   }
 };
 
-/// The push to come of an element that has corners in a face that a support holds. With the face at
-/// the velocity v_0 that it has, and all else moved by the forces of the moment, a corner will push
-/// with P_1 in the step to come instead of P_0 now, and with K dt more for each m/s more:
-/// R' = R + (P_1 - P_0) + K (v - v_0) dt. Joints between corners of the face do nothing to their
-/// sum.
-template <class Shape, class Elastic, class Kick>
-struct FacePush {
-  using Vector = typename Shape::Vector;
+/// Elements with corners in a face that a support holds: where they will be after the step to come,
+/// with the face at the velocity v_0 that it has, and all else moved by the forces of the moment.
+template <class Shape, class Kick>
+struct FaceAfter {
   static constexpr int corners = static_cast<int>(Shape::corners);
-  OwnedView owned;
   double dt;        ///< of the next step  [s]
   double velocity;  ///< v_0  [m/s]
   LedWhole<Shape> led;
-  View<const Index> members;  ///< held corners
-  Elastic elastic;
   Kick kick;
+
+  /// Whether a corner lies in the face.
+  BR_HD bool leads(Index t, int corner) const {
+    if (led.hold[t] < 0) return false;
+    const typename Shape::Hold& h = led.holds[led.hold[t]];
+    return h.motion[corner] == led.motion && (h.fixed_at(corner) >> led.axis & 1) != 0;
+  }
+  BR_HD bool leads_one(Index t) const {
+    for (int k = 0; k < corners; ++k)
+      if (leads(t, k)) return true;
+    return false;
+  }
+  /// @param way  that the face goes farther  [m]
+  BR_HD typename Shape::Nodes operator()(Index t, double way) const {
+    const auto of = kick.given(t);
+    const auto then = kick(of);
+    const int none = 0;
+    typename Shape::Nodes after = of.nodes;
+    for (int k = 0; k < corners; ++k) {
+      auto &x = after.at[k].position, &v = after.at[k].velocity;
+      v = held_parts(of.hold >= 0 ? led.holds[of.hold].fixed_at(k) : none, v, then.velocity[k]);
+      if (leads(t, k)) part_of(v, led.axis) = velocity;
+      x += dt * v;
+      if (!leads(t, k)) continue;
+      part_of(x, led.axis) += way;
+      part_of(v, led.axis) += way / dt;
+    }
+    return after;
+  }
+};
+
+/// How far a face goes to feel its stiffness.  [m]
+template <class Shape>
+BR_HD double little_way(const typename Shape::Reference& reference) {
+  constexpr double share = 1e-6;  // of an element
+  return share * 100.0 * Shape::near(reference);
+}
+
+/// The push to come of an element that has corners in a face that a support holds. With the face at
+/// v_0 a corner will push with P_1 in the step to come instead of P_0 now, and with K dt more for
+/// each m/s more: R' = R + (P_1 - P_0) + K (v - v_0) dt. Joints between corners of the face do
+/// nothing to their sum.
+template <class Shape, class Elastic, class Kick>
+struct FacePush {
+  static constexpr int corners = static_cast<int>(Shape::corners);
+  OwnedView owned;
+  View<const Index> members;  ///< held corners
+  FaceAfter<Shape, Kick> after;
+  Elastic elastic;
   View<const typename Shape::Reference> reference;
 
   BR_HD ServoReading operator()(Index i) const {
-    constexpr double share = 1e-6;  // of an element: how far it goes to feel the stiffness
     const Index t = members[i] / Shape::corners;
-    const int corner = static_cast<int>(members[i] % Shape::corners), axis = led.axis;
+    const int corner = static_cast<int>(members[i] % Shape::corners);
     ServoReading r;
-    if (!owned(t) || led.hold[t] < 0 || led(t)) return r;
-    const typename Shape::Hold& h = led.holds[led.hold[t]];
-    const auto of = kick.given(t);
-    const auto then = kick(of);
-    Vector x[corners], v[corners];
-    for (int k = 0; k < corners; ++k) {
-      x[k] = of.nodes.at[k].position;
-      v[k] = of.nodes.at[k].velocity;
-    }
-    const double now = -part_of(elastic.on_corner(t, corner, x, v), axis);
-    for (int k = 0; k < corners; ++k) {
-      v[k] = held_parts(h.fixed_at(k), v[k], then.velocity[k]);
-      if (leads(h, k)) part_of(v[k], axis) = velocity;
-      x[k] += dt * v[k];
-    }
-    const double next = -part_of(elastic.on_corner(t, corner, x, v), axis);
-    const double way = share * 100.0 * Shape::near(reference[t]);
-    for (int k = 0; k < corners; ++k) {
-      if (!leads(h, k)) continue;
-      part_of(x[k], axis) += way;
-      part_of(v[k], axis) += way / dt;
-    }
-    const double farther = -part_of(elastic.on_corner(t, corner, x, v), axis);
-    const double stiffness = (farther - next) / way;
+    if (!owned(t) || after.led.hold[t] < 0 || after.led(t)) return r;
+    const double way = little_way<Shape>(reference[t]);
+    const double now = push_of(t, corner, after.kick.given(t).nodes);
+    const double next = push_of(t, corner, after(t, 0.0));
+    const double stiffness = (push_of(t, corner, after(t, way)) - next) / way;
     r.stiffness.add(stiffness);
-    r.flow.add(stiffness * velocity - (next - now) / dt);
+    r.flow.add(stiffness * after.velocity - (next - now) / after.dt);
     return r;
   }
 
  private:
-  BR_HD bool leads(const typename Shape::Hold& h, int k) const {
-    return h.motion[k] == led.motion && (h.fixed_at(k) >> led.axis & 1) != 0;
+  BR_HD double push_of(Index t, int corner, const typename Shape::Nodes& nodes) const {
+    typename Shape::Vector x[corners], v[corners];
+    for (int k = 0; k < corners; ++k) {
+      x[k] = nodes.at[k].position;
+      v[k] = nodes.at[k].velocity;
+    }
+    return -part_of(elastic.on_corner(t, corner, x, v), after.led.axis);
+  }
+};
+
+/// A couple's forces by its law, friction included, where its two elements will be after a step,
+/// without a change of its state.
+/// @param dt  of that step  [s]
+template <class Couples, class Nodes>
+BR_HD auto force_after(const Couples& couples, Index i, double dt, const Nodes (&nodes)[2]) {
+  const Index a = 0, b = 1, no_joint = -1,
+              materials[2] = {couples.material[couples.a[i]], couples.material[couples.b[i]]};
+  auto state = couples.state[i];
+  auto force = couples.force[i];
+  Couples alone = couples;
+  const auto see = [](auto& view, auto* items, Index count) {
+    view.data = items;
+    view.size = count;
+    view.space = Space::host;
+  };
+  std::uint8_t exposed[2] = {};
+  if constexpr (requires { couples.exposed; }) {
+    exposed[0] = couples.exposed[couples.a[i]];
+    exposed[1] = couples.exposed[couples.b[i]];
+    see(alone.exposed, exposed, 2);
+  }
+  alone.dt = dt;
+  see(alone.nodes, nodes, 2);
+  see(alone.material, materials, 2);
+  see(alone.a, &a, 1);
+  see(alone.b, &b, 1);
+  see(alone.parent_joint, &no_joint, 1);
+  see(alone.state, &state, 1);
+  see(alone.force, &force, 1);
+  alone.slow(0);
+  return force;
+}
+
+/// The push to come of contacts of elements that have corners in a face that a support holds, by
+/// their law, as FacePush.
+template <class Shape, class Couples, class Kick>
+struct FaceContactPush {
+  OwnedView owned;
+  FaceAfter<Shape, Kick> after;
+  Couples couples;
+  View<const typename Shape::Reference> reference;
+
+  BR_HD ServoReading operator()(Index i) const {
+    const Index pair[2] = {couples.a[i], couples.b[i]};
+    ServoReading r;
+    if (!owned(pair[0]) || after.led(pair[0]) || after.led(pair[1])) return r;
+    const bool by_a = after.leads_one(pair[0]);
+    if (!by_a && !after.leads_one(pair[1])) return r;
+    const double way = little_way<Shape>(reference[pair[by_a ? 0 : 1]]);
+    const double now = push_of(pair, couples.force[i]), next = push_after(i, pair, 0.0);
+    const double stiffness = (push_after(i, pair, way) - next) / way;
+    r.stiffness.add(stiffness);
+    r.flow.add(stiffness * after.velocity - (next - now) / after.dt);
+    return r;
+  }
+
+ private:
+  BR_HD double push_after(Index i, const Index (&pair)[2], double way) const {
+    const typename Shape::Nodes nodes[2] = {after(pair[0], way), after(pair[1], way)};
+    return push_of(pair, force_after(couples, i, after.dt, nodes));
+  }
+  template <class Force>
+  BR_HD double push_of(const Index (&pair)[2], const Force& force) const {
+    double push = 0.0;
+    for (int k = 0; k < static_cast<int>(Shape::corners); ++k) {
+      if (after.leads(pair[0], k)) push -= part_of(to_space(force.on_a.at[k]), after.led.axis);
+      if (after.leads(pair[1], k)) push -= part_of(to_space(force.on_b.at[k]), after.led.axis);
+    }
+    return push;
   }
 };
 
@@ -267,9 +367,16 @@ ServoReading read_support(World& part, std::size_t support, std::size_t number,
     const auto moves = kick(part);
     if (Shape::contact_alone_presses(part)) {
       const auto elastic = elastic_forces(part);
+      const FaceAfter<Shape, std::remove_cv_t<decltype(moves)>> after{part.next_dt, state.velocity,
+                                                                      led, moves};
       sum.add(corners.size,
-              FacePush<Shape, decltype(elastic), decltype(moves)>{
-                  owned, part.next_dt, state.velocity, led, corners, elastic, moves, reference});
+              FacePush<Shape, std::remove_cv_t<decltype(elastic)>, decltype(after.kick)>{
+                  owned, corners, after, elastic, reference});
+      with_couples(part, [&](const auto& in_touch) {
+        using InTouch = std::remove_cvref_t<decltype(in_touch)>;
+        sum.add(part.couples.size(), FaceContactPush<Shape, InTouch, decltype(after.kick)>{
+                                         owned, after, in_touch, reference});
+      });
     }
     sum.add(part.couples.size(),
             PlatenPush<Shape, decltype(couples), decltype(moves)>{
@@ -279,8 +386,21 @@ ServoReading read_support(World& part, std::size_t support, std::size_t number,
   return sum.sum();
 }
 
+/// Whether a plate must know what acts on elements that other ranks own.
+template <class World, class Config>
+bool asks_for_ghost_forces(const World& part, const Config& now) {
+  if (part.domain.single_rank() || !ShapeOf<World>::contact_alone_presses(part)) return false;
+  for (const auto& support : now.supports)
+    if (support.servo.is_plate()) return true;
+  return false;
+}
+
 template <class World, class Config>
 std::vector<ServoReading> read_servos(World& part, const Config& now) {
+  if (asks_for_ghost_forces(part, now)) {
+    start_ghosts(part, ShapeOf<World>::elements(part).force);
+    finish_ghosts(part, ShapeOf<World>::elements(part).force);
+  }
   std::vector<ServoReading> readings;
   const std::size_t bodies = part.given->sets.size() - now.supports.size();
   for (std::size_t s = 0; s < now.supports.size(); ++s) {

@@ -12,8 +12,10 @@
 #include "physics/coupled/scene.hpp"
 #include "physics/dem/specimen.hpp"
 #include "physics/fdem/scene.hpp"
+#include "physics/fdem3/scene.hpp"
 #include "run/method/coupled_method.hpp"
 #include "run/method/dem_method.hpp"
+#include "run/method/fdem3_method.hpp"
 #include "run/method/fdem_method.hpp"
 
 namespace breccia {
@@ -158,6 +160,34 @@ TEST(Plate, of_triangles_keeps_its_force_through_a_blow) {
 TEST(Plate, of_a_face_keeps_its_force_through_a_blow) {
   EXPECT_GT(deviation_in_a_blow(false, 20.0), 0.05);
   EXPECT_LT(deviation_in_a_blow(false, 0.0), 1e-5);
+}
+
+/// Two blocks of tetrahedra side by side, of both of which a servo presses the same face, are
+/// driven into each other: contacts of elements of the face act on it.
+TEST(Plate, of_a_face_knows_what_contacts_do_to_it) {
+  using fdem3::testing::far;
+  constexpr double force = 4e4, pressed = 1.5e-4;
+  fdem3::testing::Scene s;
+  s.material(30e9, 0.2, 2500.0).damping = 0.5;
+  s.config.local_damping = 0.7;
+  s.body("left", fdem3::testing::box({0.0, 0.0, 0.0}, {0.04, 0.04, 0.04}, 0.02));
+  s.body("right", fdem3::testing::box({0.0, 0.0400001, 0.0}, {0.04, 0.04, 0.04}, 0.013));
+  s.support("foot", {-far, -far, -far}, {-0.0199, far, far}, {"x"});
+  s.support("wall", {-0.0198, -far, -far}, {0.0198, -0.0199, far}, {"y"});
+  fdem3::SupportConfig& drive =
+      s.support("drive", {-0.0198, 0.0599, -far}, {0.0198, far, far}, {"y"});
+  drive.velocity.times = {0.0, pressed, pressed + 1e-5};
+  drive.velocity.values = {{}, {}, {0.0, -0.5, 0.0}};
+  fdem3::SupportConfig& face = s.support("face", {0.0199, -far, -far}, {far, far, far}, {"x"});
+  static_cast<ServoConfig&>(face.servo) = pushing(-force, 5.0, 0.0);
+  face.servo.force.times = {0.0, 0.6 * pressed};
+  face.servo.force.values = {0.0, -force};
+  s.config.time.end = 1.0;
+  s.config.probes = {{"force", "face", "force_x", "sum"}, {"drive", "drive", "force_y", "sum"}};
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, pressed);
+  EXPECT_LT(largest_deviation(*method, pressed + 1e-4, 1, force), 1e-5);
+  EXPECT_GT(std::abs(method->probes()[1]), 0.5 * force);
 }
 
 /// Brittle bonds of elements that supports hold let go, each of which bears some hundredths of a

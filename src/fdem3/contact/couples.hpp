@@ -111,7 +111,6 @@ BR_HD inline void face_in_other(const Partner& one, int face, double (&lambda)[3
   for (int k = 0; k < 3; ++k)
     for (int m = 0; m < 4; ++m) lambda[k][m] = one.in_other.lambda[corner_of_face(face, k)][m];
 }
-
 /// Whether an exposed face of one tetrahedron reaches into the other: no other face pushes.
 BR_HD inline bool exposed_reaches_into(const Partner& one, const Target& target) {
   for (int f = 0; f < 4; ++f) {
@@ -122,6 +121,8 @@ BR_HD inline bool exposed_reaches_into(const Partner& one, const Target& target)
   }
   return false;
 }
+
+inline constexpr double least_moment = 1e-300;  ///< of an overlap, over twice the area  [m]
 
 /// Adds the exposed faces of one tetrahedron that are in the other; and what all of its faces tell
 /// of the overlap.
@@ -135,6 +136,7 @@ BR_HD inline void add_faces(const Partner& one, const Target& target, double pen
     FaceOverlap o;
     for (int k = 0; k < 3; ++k) face[k] = one.x[corner_of_face(f, k)];
     face_in_other(one, f, o.lambda);
+    settle_plane(of_a, o.lambda);
     if (!overlap_of_face(target, o)) continue;
     const double area = o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
     inside.add_other(o, face);
@@ -146,6 +148,7 @@ BR_HD inline void add_faces(const Partner& one, const Target& target, double pen
     for (int k = 0; k < 4; ++k) on_other.at[k] += on_target[k];
     const Vec3 whole = on_face[0] + on_face[1] + on_face[2];
     const double size = norm(whole), all = o.moment[0] + o.moment[1] + o.moment[2];
+    if (!(abs(all) > least_moment)) continue;  // a sum of rounding: it has no middle
     const Vec3 middle =
         (1.0 / all) * (o.moment[0] * face[0] + o.moment[1] * face[1] + o.moment[2] * face[2]);
     sum.on_a += of_a ? whole : -whole;

@@ -244,6 +244,53 @@ TEST(DistanceContact, is_the_slope_of_its_energy_for_deformable_pairs) {
       }
 }
 
+/// What a couple of two of which all faces press adds up, with a penalty of 1.
+Pressing pressing_of(const Body& first, const Body& second) {
+  Partner one{}, other{};
+  for (int k = 0; k < 4; ++k) {
+    one.x[k] = first.x[k];
+    other.x[k] = second.x[k];
+  }
+  one.exposed = other.exposed = 15;
+  one.target = target_of(first);
+  other.target = target_of(second);
+  one.in_other = CornersInside::of(first.x, other.target);
+  other.in_other = CornersInside::of(second.x, one.target);
+  Pressing sum;
+  Inside in_a(one.target), in_b(other.target);
+  add_faces(one, other.target, 1.0, true, sum, in_b, in_a);
+  add_faces(other, one.target, 1.0, false, sum, in_a, in_b);
+  in_a.add_shape_forces(one.target, 1.0, sum.force.on_a.at);
+  in_b.add_shape_forces(other.target, 1.0, sum.force.on_b.at);
+  sum.energy = in_a.energy(1.0) + in_b.energy(1.0);
+  return sum;
+}
+
+/// Two that stand on one plane, as on a flat side of a body, overlap by a wedge: their faces in
+/// that plane bound it together. Rounding lifts one of them, or none, and must not change what they
+/// feel.
+TEST(DistanceContact, counts_faces_in_one_plane_once) {
+  const Body standing{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.2, 0.3, 1.0}}};
+  const Body beside{{{0.6, -0.1, 0.0}, {1.7, 0.2, 0.0}, {0.7, 1.1, 0.0}, {0.9, 0.3, 1.1}}};
+  const auto lifted = [&](double by) {
+    Body moved = beside;
+    for (Vec3& x : moved.x) x.z += by;
+    return pressing_of(standing, moved);
+  };
+  const Pressing above = lifted(1e-7), below = lifted(-1e-7);
+  ASSERT_GT(above.energy, 0.0);
+  EXPECT_NEAR(above.energy, below.energy, 1e-5 * above.energy);
+  for (const double by : {0.0, 1e-17, -1e-17, 1e-16, -1e-16, 1e-14, -1e-14}) {
+    const Pressing now = lifted(by);
+    EXPECT_NEAR(now.energy, above.energy, 1e-5 * above.energy) << by;
+    for (int k = 0; k < 4; ++k) {
+      const double size = 1e-5 * norm(above.on_a);
+      EXPECT_LT(norm(now.force.on_a.at[k] - above.force.on_a.at[k]), size) << by << ", " << k;
+      EXPECT_LT(norm(now.force.on_b.at[k] - above.force.on_b.at[k]), size) << by << ", " << k;
+    }
+  }
+}
+
 /// The six tetrahedra of a cube and of the one on top: faces, edges and planes coincide. Moved by
 /// rounding errors they must not feel more than depths of rounding errors.
 TEST(DistanceContact, feels_nothing_where_faces_coincide) {
