@@ -111,6 +111,9 @@ class TetBodyChecks {
     require(b.mesh_size == 0.0 && b.file.empty() && b.parts.empty() && !b.structured,
             "a part has the mesh of the body that it is of");
     if (!b.grains.kind.empty()) check_grains(b);
+    if (host == config_.bodies.end() || box == (b.radius > 0.0)) return;
+    const std::string problem = missing_part(b, *host);
+    require(problem.empty(), "{}", problem);
   }
 
   void check(const TetBodyConfig& b) {
@@ -211,7 +214,29 @@ class TetBodyChecks {
   std::string path_;
 };
 
+std::string reach_of(const TetBodyConfig& b) {
+  const Vec3 low = b.center - half_of(b), high = b.center + half_of(b);
+  return fmt::format("x {:.4g} to {:.4g} m, y {:.4g} to {:.4g} m, z {:.4g} to {:.4g} m", low.x,
+                     high.x, low.y, high.y, low.z, high.z);
+}
+
 }  // namespace
+
+std::string missing_part(const fdem3::BodyConfig& part, const fdem3::BodyConfig& body) {
+  const Vec3 half = half_of(body);
+  if (!has_bounds(body) || !(half.x > 0.0 && half.y > 0.0 && half.z > 0.0)) return "";
+  TetBodyConfig taken = part;
+  taken.shape = !(part.radius > 0.0) ? "box" : part.height > 0.0 ? "cylinder" : "sphere";
+  const double space = space_between(taken, body);
+  const bool crossed =
+      taken.shape == "cylinder" && body.shape == "cylinder" && taken.axis != body.axis;
+  const double tolerance = crossed ? 0.0 : 1e-9 * (norm(half) + norm(body.center));
+  if (space < -tolerance || (crossed && space == 0.0)) return "";
+  return fmt::format(
+      "lies wholly outside of body.{}: it is at {}, that body at {}; a part must take something of "
+      "it",
+      body.name, reach_of(taken), reach_of(body));
+}
 
 std::vector<std::string> body_problems(const fdem3::Config& config) {
   return TetBodyChecks(config).problems_;

@@ -125,7 +125,7 @@ class BodyChecks {
       require(hole.corners.empty() || hole.corners.size() >= 3,
               "a hole with straight sides has three corners or more");
     }
-    for (const std::string& problem : prepare::missing_holes(b, {})) require(false, "{}", problem);
+    for (const std::string& problem : prepare::missing_cuts(b, {})) require(false, "{}", problem);
     check_notches(b, cut);
     if (!b.grains.kind.empty()) check_grains(b);
   }
@@ -140,6 +140,9 @@ class BodyChecks {
     require(ways == 1, "a part needs radius, size or corners, one of them");
     require(b.corners.empty() || b.corners.size() >= 3, "a polygon has three corners or more");
     require(norm(b.velocity) == 0.0, "a part moves as the body that it is of");
+    if (host == bodies.end() || ways != 1 || (!b.corners.empty() && b.corners.size() < 3)) return;
+    const std::string problem = prepare::missing_part(b, *host, {});
+    require(problem.empty(), "{}", problem);
   }
 
   void check_file(const BodyConfig& b) {

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 
 #include "io/picture/picture.hpp"
 #include "io/whole_file.hpp"
 #include "prepare/checks/by_name.hpp"
+#include "prepare/checks/check_bodies.hpp"
 #include "prepare/checks/check_case.hpp"
 #include "prepare/checks/refusal.hpp"
 #include "prepare/ldpm/mesh_file.hpp"
@@ -55,18 +57,64 @@ class FileChecks {
   bool wrong_ = false;  ///< in a file that can be read
 };
 
-void read_body(const fdem::BodyConfig& body, const std::string& path) {
+void refuse_missing_part(const std::string& part, const std::string& problem) {
+  if (!problem.empty()) throw InputError("body." + part + " " + problem);
+}
+
+/// @param parts  of the body
+void read_body(const fdem::BodyConfig& body, const std::string& path,
+               const std::vector<fdem::BodyConfig>& parts) {
   if (body.shape == "outline") {
     std::vector<Vec2> outline = read_outline(path);
     for (Vec2& corner : outline) corner += body.center;
-    if (const auto problems = missing_holes(body, outline); !problems.empty())
+    if (const auto problems = missing_cuts(body, outline); !problems.empty())
       throw InputError(path + ": " + problems.front());
+    for (const fdem::BodyConfig& part : parts)
+      refuse_missing_part(part.name, missing_part(part, body, outline));
   }
   if (body.shape == "geo") read_whole_file(path);
   if (body.shape != "mesh") return;
   const Mesh mesh = read_mesh(path, body.seams == "open");
   check_mesh(mesh);
-  triangles_of(body, mesh);
+  const std::vector<Index> own = triangles_of(body, mesh);
+  for (const fdem::BodyConfig& part : parts)
+    if (std::none_of(own.begin(), own.end(), [&](Index t) {
+          const Triangle& corners = mesh.triangle[static_cast<std::size_t>(t)];
+          return in_part(part, body.center + centroid(mesh.point, corners));
+        }))
+      refuse_missing_part(part.name, none_in_part("triangle", body.name));
+}
+
+void read_body(const fdem3::BodyConfig& body, const std::string& path,
+               const std::vector<fdem3::BodyConfig>& parts) {
+  const TetMesh mesh = read_tet_mesh(path);
+  const std::vector<Index> own = tetrahedra_of(body, mesh);
+  for (const fdem3::BodyConfig& part : parts)
+    if (std::none_of(own.begin(), own.end(), [&](Index t) {
+          const Tetrahedron& corners = mesh.tetrahedron[static_cast<std::size_t>(t)];
+          return in_part(part, body.center + centroid(mesh.point, corners));
+        }))
+      refuse_missing_part(part.name, none_in_part("tetrahedron", body.name));
+}
+
+/// A part of a body that a surface encloses.
+void check_part(const fdem3::BodyConfig& part, const fdem3::BodyConfig& body,
+                const Surface& surface) {
+  fdem3::BodyConfig around;
+  around.name = body.name;
+  around.shape = "box";
+  around.size = surface.high() - surface.low();
+  around.center = body.center + 0.5 * (surface.high() + surface.low());
+  refuse_missing_part(part.name, missing_part(part, around));
+}
+
+/// The parts of a body.
+template <class Body>
+std::vector<Body> parts_of(const Body& body, const std::vector<Body>& bodies) {
+  std::vector<Body> parts;
+  for (const Body& each : bodies)
+    if (each.shape == "part" && each.of == body.name) parts.push_back(each);
+  return parts;
 }
 
 }  // namespace
@@ -103,8 +151,9 @@ void check_files(const fdem::Config& config, const std::string& case_folder) {
   for (const fdem::BodyConfig& body : config.bodies) {
     if (!meshes && needs_gmsh(body)) files.add("body." + body.name + ": " + no_mesher("its shape"));
     if (!body.file.empty())
-      files.check("body." + body.name + ".file", body.file,
-                  [&](const std::string& path) { read_body(body, path); });
+      files.check("body." + body.name + ".file", body.file, [&](const std::string& path) {
+        read_body(body, path, parts_of(body, config.bodies));
+      });
     if (body.grains.kind == "picture")
       files.check("body." + body.name + ".grains.file", body.grains.file,
                   [](const std::string& path) { read_png(path); });
@@ -121,12 +170,15 @@ void check_files(const fdem3::Config& config, const std::string& case_folder) {
   const bool meshes = !on_path("gmsh").empty();
   for (const fdem3::BodyConfig& body : config.bodies) {
     if (!meshes && needs_gmsh(body)) files.add("body." + body.name + ": " + no_mesher("its shape"));
+    const std::vector<fdem3::BodyConfig> parts = parts_of(body, config.bodies);
     if (body.shape == "stl")
-      files.check("body." + body.name + ".file", body.file,
-                  [](const std::string& path) { read_surface(path, 1.0); });
+      files.check("body." + body.name + ".file", body.file, [&](const std::string& path) {
+        const Surface surface = read_surface(path, 1.0);
+        for (const fdem3::BodyConfig& part : parts) check_part(part, body, surface);
+      });
     if (body.shape == "mesh")
       files.check("body." + body.name + ".file", body.file,
-                  [&](const std::string& path) { tetrahedra_of(body, read_tet_mesh(path)); });
+                  [&](const std::string& path) { read_body(body, path, parts); });
   }
   files.refuse_all();
 }

@@ -36,12 +36,6 @@ bool cross_each_other(const Line& s, const Line& t) {
 }
 
 /// The corners of a slot, and how far it reaches.
-std::vector<Vec2> slot_corners(const fdem::NotchConfig& notch) {
-  const Vec2 along = notch.to - notch.from;
-  const Vec2 across = (0.5 * notch.width / norm(along)) * Vec2{-along.y, along.x};
-  return {notch.from - across, notch.to - across, notch.to + across, notch.from + across};
-}
-
 std::vector<Line> lines_of(const BodyConfig& body, const MeshingContext& context) {
   std::vector<Line> lines = context.lines;
   for (const fdem::NotchConfig& notch : body.notches)
@@ -76,7 +70,7 @@ Region region_of(const BodyConfig& body, const MeshingContext& context) {
     region.shape = Region::Shape::polygon;
     region.polygon = read_outline((std::filesystem::path(context.folder) / body.file).string());
     for (Vec2& corner : region.polygon) corner += body.center;
-    if (const auto problems = missing_holes(body, region.polygon); !problems.empty())
+    if (const auto problems = missing_cuts(body, region.polygon); !problems.empty())
       throw InputError(problems.front());
   }
   for (const fdem::HoleConfig& hole : body.holes) {

@@ -144,6 +144,40 @@ TEST(BuildFdem, HolesThatMissTheirBodyAreRefused) {
   EXPECT_TRUE(mentions(text, "2 problems"));
 }
 
+TEST(BuildFdem, NotchesAndPartsThatMissTheirBodyAreRefused) {
+  BodyConfig plate = regular_plate({0.1, 0.05}, 0.002), ring = disc_of(0.04, 0.002);
+  plate.structured = false;
+  plate.notches.push_back({.from = {-0.05, 0.0}, .to = {0.05, 0.0}});  // from rim to rim
+  plate.notches.push_back({.from = {0.06, 0.0}, .to = {0.08, 0.0}});
+  plate.notches.push_back({.from = {-0.02, -0.06}, .to = {-0.02, -0.03}, .width = 0.004});
+  ring.name = ring.shape = "ring";
+  ring.inner_radius = 0.02;
+  ring.center = {0.0, 0.2};
+  ring.holes.push_back({{0.0, 0.2}, 0.01});
+  BodyConfig part;
+  part.name = "core";
+  part.shape = "part";
+  part.material = "rock";
+  part.of = "plate";
+  part.center = {0.0, 0.1};
+  part.size = {0.02, 0.02};
+  BodyConfig middle = part;
+  middle.name = "middle";
+  middle.of = "ring";
+  middle.center = {0.0, 0.2};
+  middle.size = {};
+  middle.radius = 0.015;
+  const std::string text = refusal({plate, ring, part, middle}, {});
+  EXPECT_FALSE(mentions(text, "notch[0]"));
+  EXPECT_TRUE(
+      mentions(text, "body.plate: notch[1] lies wholly outside of the body: it is at x 0.06"));
+  EXPECT_TRUE(mentions(text, "body.plate: notch[2] lies wholly outside of the body"));
+  EXPECT_TRUE(mentions(text, "body.ring: hole[0] lies wholly in the empty middle of the body"));
+  EXPECT_TRUE(mentions(text, "body.core: lies wholly outside of body.plate"));
+  EXPECT_TRUE(mentions(text, "body.middle: lies wholly in the empty middle of body.ring"));
+  EXPECT_TRUE(mentions(text, "5 problems"));
+}
+
 TEST(BuildFdem, RingHasItsArea) {
   BodyConfig ring = disc_of(0.04, 0.002);
   ring.shape = "ring";

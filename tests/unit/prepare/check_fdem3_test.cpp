@@ -106,6 +106,34 @@ TEST(CheckFdem3, RefusesWhatDoesNotFit) {
   }
 }
 
+TEST(CheckFdem3, RefusesPartsThatTakeNothing) {
+  const auto part_at = [](const Vec3& center, double radius, double height) {
+    return problems_with([&](Config& c) {
+      BodyConfig part;
+      part.name = "core";
+      part.shape = "part";
+      part.material = "rock";
+      part.of = "block";
+      part.center = center;
+      if (radius > 0.0)
+        part.radius = radius;
+      else
+        part.size = {0.02, 0.02, 0.02};
+      part.height = height;
+      c.bodies.push_back(part);
+    });
+  };
+  EXPECT_EQ(part_at({0.0, 0.0, 0.0}, 0.0, 0.0), "");
+  EXPECT_EQ(part_at({0.055, 0.0, 0.0}, 0.0, 0.0), "");
+  for (const double radius : {0.0, 0.01})
+    for (const double height : {0.0, 0.02}) {
+      if (radius == 0.0 && height > 0.0) continue;
+      EXPECT_TRUE(mentions(part_at({0.061, 0.0, 0.0}, radius, height),
+                           "body.core: lies wholly outside of body.block: it is at x 0.051"));
+    }
+  EXPECT_TRUE(mentions(part_at({0.06, 0.0, 0.0}, 0.0, 0.0), "lies wholly outside"));  // it touches
+}
+
 TEST(CheckFdem3, TellsOfDiscontinuitiesThatAreNone) {
   const std::pair<std::function<void(DiscontinuityConfig&)>, const char*> changes[] = {
       {[](DiscontinuityConfig&) {}, "a disc needs a radius above 0, and a polygon points"},
