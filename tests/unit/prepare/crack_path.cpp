@@ -93,13 +93,20 @@ TEST(CrackPath, LineThroughAHoleIsInTwoPieces) {
 
 TEST(CrackPath, MissingTheBodyIsRefused) {
   BodyConfig plate = regular_plate({0.1, 0.1}, 0.01);
-  plate.notches.push_back({.from = {1.0, 0.0}, .to = {2.0, 0.0}, .width = 0.0});
   DiscontinuityConfig far;
   far.name = "far";
   far.points = {{0.0, 3.0}, {1.0, 3.0}};
-  const std::string text = refusal({plate}, {far});
-  EXPECT_TRUE(mentions(text, "body.plate: notch[0] meets no edge between two triangles"));
-  EXPECT_TRUE(mentions(text, "discontinuity.far: meets no edge between two triangles"));
+  const std::string beside = refusal({plate}, {far});
+  EXPECT_TRUE(mentions(beside, "discontinuity.far: meets no edge between two triangles")) << beside;
+  BodyConfig scratched = plate;  // shorter than an edge, inside of a triangle
+  scratched.notches.push_back({.from = {0.002, 0.001}, .to = {0.003, 0.001}, .width = 0.0});
+  const std::string within = refusal({scratched}, {far});
+  EXPECT_TRUE(mentions(within, "body.plate: notch[0] meets no edge between two triangles"))
+      << within;
+  EXPECT_TRUE(mentions(within, "discontinuity.far: meets no edge between two triangles")) << within;
+  plate.notches.push_back({.from = {1.0, 0.0}, .to = {2.0, 0.0}, .width = 0.0});
+  const std::string outside = refusal({plate}, {far});
+  EXPECT_TRUE(mentions(outside, "notch[0] lies wholly outside of the body")) << outside;
 }
 
 TEST(MeshOverlap, SharedAreaOfTriangles) {
