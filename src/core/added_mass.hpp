@@ -10,7 +10,7 @@
 
 namespace breccia {
 
-/// What was added, and what it brings.
+/// Mass that was added, and the longer steps that it brings.
 struct AddedMass {
   Index elements = 0;   ///< that became heavier
   double share = 0.0;   ///< of the mass that there was  [-]

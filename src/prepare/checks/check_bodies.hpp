@@ -32,7 +32,7 @@ std::vector<std::string> overlap_problems(const std::vector<fdem::BodyConfig>& b
 /// Cylinders with different axes are not looked at.
 std::vector<std::string> overlap_problems(const std::vector<fdem3::BodyConfig>& bodies);
 
-/// What to say of a part that takes nothing of its body; empty: it may take some. Of bodies from a
+/// The problem of a part that takes nothing of its body; empty: it may take some. Of bodies from a
 /// file, and of cylinders with different axes that the boxes around them do not tell apart,
 /// nothing.
 std::string missing_part(const fdem3::BodyConfig& part, const fdem3::BodyConfig& body);

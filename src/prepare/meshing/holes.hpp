@@ -16,7 +16,7 @@ std::vector<Vec2> slot_corners(const fdem::NotchConfig& notch);
 std::vector<std::string> missing_cuts(const fdem::BodyConfig& body,
                                       const std::vector<Vec2>& outline);
 
-/// What to say of a part that takes nothing of its body; empty: it may take some.
+/// The problem of a part that takes nothing of its body; empty: it may take some.
 /// @param outline  of the body, as above
 std::string missing_part(const fdem::BodyConfig& part, const fdem::BodyConfig& body,
                          const std::vector<Vec2>& outline);
