@@ -76,8 +76,13 @@ def struck(rows):
     return found
 
 
+def load_of(rows):
+    """The mean of what the disc gives and the lines bear, over 5 ms, about as long as the whole slab swings."""
+    return smooth([0.5 * (abs(r["force"]) + on_lines(r)) for r in rows], 25)
+
+
 def pushed(rows):
-    load = smooth([0.5 * (abs(r["force"]) + on_lines(r)) for r in rows], 25)  # 5 ms, about as long as the whole slab swings
+    load = load_of(rows)
     k = max(range(len(load)), key=load.__getitem__)
     return {"load": load[k], "way": -rows[k]["middle"], "after": load[-26], "end": -rows[-1]["middle"], "step": step_of(rows[-1])}
 
@@ -108,15 +113,16 @@ def sides_of(setting):
 
 
 def fall_table(records):
-    lines = ["| held along | n | blow, m/s | largest force, kN | largest reaction, kN | weight goes down, mm | lower cover after it, mm | weight leaves with, m/s | half lost |", "|---" * 9 + "|"]
+    lines = ["| elements | held along | n | blow, m/s | largest force, kN | largest reaction, kN | weight goes down, mm | lower cover after it, mm | weight leaves with, m/s | half lost |", "|---" * 10 + "|"]
     for setting, found in grouped(records):
         failed = failed_at(found)
         for k, v in enumerate(BLOWS):
             cells = ["not computed"] + [""] * 5
             if f"force{k}" in found:
-                lost = f"{sum(at <= v for at in failed)} of {len(failed)}" if setting["sides"] > 1 else "corners break off"
+                whole = len(found[f"force{k}"]) == len(failed)  # no packing was cut before
+                lost = (f"{sum(at <= v for at in failed)} of {len(failed)}" if whole else "") if setting["sides"] > 1 else "corners break off"
                 cells = [spread(found[f"force{k}"], 0, 1e-3), spread(found[f"reaction{k}"], 0, 1e-3), spread(found[f"way{k}"], 1, 1e3), spread(found[f"left{k}"], 0, 1e3), spread(found[f"rebound{k}"], 1), lost]
-            lines.append("| " + " | ".join([sides_of(setting), str(len(found.get(f"force{k}", ()))), f"{v:g}", *cells]) + " |")
+            lines.append("| " + " | ".join([f"{setting['elements']:,}", sides_of(setting), str(len(found.get(f"force{k}", ()))), f"{v:g}", *cells]) + " |")
     return lines
 
 
@@ -129,17 +135,27 @@ def push_table(records):
 
 
 FALLS = [{"elements": 18000, "line": 0.0175, "sides": n} for n in (4, 2, 1)]  # line: width of a support, a radius  [m]
+FINE = {"elements": 60000, "line": 0.0117, "sides": 4}
+COLORS = ("tab:blue", "tab:orange", "tab:green")
+
 
 def plot_falls(plt, runs_of, rows_of, folder):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6))
-    for setting, color in zip(FALLS, ("tab:blue", "tab:orange", "tab:green")):
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14, 3.8))
+    for setting, color in zip(FALLS, COLORS):
         for k, folder_of in enumerate(runs_of("fall", setting)):
             rows = rows_of(folder_of)
             found, name = struck(rows), sides_of(setting) if not k else None
             if not k and setting["sides"] > 1:
                 left.plot([1e3 * r["time"] for r in rows], [1e-3 * f for f in smooth([on_lines(r) for r in rows], 5)], color=color, lw=0.8, label=name)
             at = [i for i in range(len(BLOWS)) if f"reaction{i}" in found]
-            right.plot([BLOWS[i] for i in at], [1e-3 * found[f"reaction{i}"] for i in at], "o-", ms=3, color=color, lw=0.8, label=name)
-    left.set(xlabel="time, ms", ylabel="reaction, kN", title="packing 1")
-    right.set(xlabel="blow, m/s", ylabel="largest reaction, kN", ylim=(0, None), title="all packings")
-    published_runs.save_plot(figure, (left, right), folder / "published_fall.png")
+            middle.plot([BLOWS[i] for i in at], [1e-3 * found[f"reaction{i}"] for i in at], "o-", ms=3, color=color, lw=0.8, label=name)
+    for setting, color in zip((*FALLS[:2], FINE), (*COLORS[:2], "k")):
+        for k, folder_of in enumerate(runs_of("push", setting)):
+            rows = rows_of(folder_of)
+            name = sides_of(setting) + (f", {setting['elements']:,} elements" if setting == FINE else "")
+            right.plot([-1e3 * r["middle"] for r in rows], [1e-3 * f for f in load_of(rows)], color=color, lw=0.8, label=name if not k else None)
+    right.axhline(1e-3 * CODE_OF_THE_PAPER, color="0.4", lw=1, ls="--", label="the code's strength")
+    left.set(xlabel="time, ms", ylabel="reaction, kN", title="blows, packing 1")
+    middle.set(xlabel="blow, m/s", ylabel="largest reaction, kN", ylim=(0, None), title="blows, all packings")
+    right.set(xlabel="middle of the lower face goes down, mm", ylabel="load, kN", ylim=(0, None), title="pressed slowly, all packings")
+    published_runs.save_plot(figure, (left, middle, right), folder / "published_fall.png")
