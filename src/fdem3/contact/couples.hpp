@@ -136,7 +136,7 @@ BR_HD inline void add_faces(const Partner& one, const Target& target, double pen
     FaceOverlap o;
     for (int k = 0; k < 3; ++k) face[k] = one.x[corner_of_face(f, k)];
     face_in_other(one, f, o.lambda);
-    settle_plane(of_a, o.lambda);
+    settle_plane(of_a, one.in_other.lambda[f], o.lambda);
     if (!overlap_of_face(target, o)) continue;
     const double area = o.area * norm(cross(face[1] - face[0], face[2] - face[0]));
     inside.add_other(o, face);

@@ -176,13 +176,15 @@ BR_HD inline bool face_reaches_into(const Target& target, const double (&lambda)
 
 /// A face that lies in the plane of one of the target, as those of a flat side of a body do, bounds
 /// the overlap together with it: but for rounding both are in each other or none is. So that it
-/// counts once, that of a is taken as inside, that of b as outside.
-BR_HD inline void settle_plane(bool of_a, double (&lambda)[3][4]) {
+/// counts once, that of a is taken as inside, that of b as outside; both as outside where the
+/// tetrahedra lie on two sides of the plane, as beside a crack, and have no volume together.
+/// @param apex  coordinates of the corner that is not of the face
+BR_HD inline void settle_plane(bool of_a, const double (&apex)[4], double (&lambda)[3][4]) {
   constexpr double rounding = 1e-12;
   for (int m = 0; m < 4; ++m) {
     const double most = max(abs(lambda[0][m]), max(abs(lambda[1][m]), abs(lambda[2][m])));
     if (most > rounding) continue;
-    for (int k = 0; k < 3; ++k) lambda[k][m] = of_a ? rounding : 0.0;
+    for (int k = 0; k < 3; ++k) lambda[k][m] = of_a && apex[m] > 0.0 ? rounding : 0.0;
   }
 }
 
