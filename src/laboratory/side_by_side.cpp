@@ -153,7 +153,7 @@ class Pool {
     bool resumed;
   };
 
-  std::string log_of(std::size_t run) const { return runs_[run].folder + ".log"; }
+  std::string log_of(std::size_t run) const { return log_beside(runs_[run].folder); }
 
   void begin(std::size_t run) {
     const PlannedRun& plan = runs_[run];
@@ -247,6 +247,10 @@ class Pool {
 };
 
 }  // namespace
+
+std::string log_beside(const std::string& folder) {
+  return folder + ".log";
+}
 
 Workers workers_for(int asked, std::size_t runs, double bytes, int ranks) {
   const int cores = std::max(1, omp_get_num_procs());

@@ -27,6 +27,9 @@ struct FinishedRun {
   bool complete() const { return exit_code == 0 || exit_code == 9; }
 };
 
+/// Where a run of that folder leaves what it says.
+std::string log_beside(const std::string& folder);
+
 /// Where a run computes.
 struct Device {
   std::string name;     ///< as the option of `breccia run`

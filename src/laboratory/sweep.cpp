@@ -152,6 +152,16 @@ std::string state_of(const FinishedRun& run) {
   return run.exit_code > 128 ? "interrupted" : "failed";
 }
 
+/// Why a run has no result, and where all it said is.
+std::string failure_of(const SweepRow& row) {
+  const std::string& message = row.run.message;
+  if (message.empty()) return "was not run";
+  const std::string code = fmt::format("exit code {}", row.run.exit_code);
+  const bool told = row.run.exit_code < 0 || message == code;
+  return fmt::format("{}{}; all it said: {}", told ? "" : code + ": ", cell(message),
+                     cell(log_beside(row.folder)));
+}
+
 }  // namespace
 
 SweepAxis sweep_axis(const std::string& text) {
@@ -286,15 +296,19 @@ std::string SweepTable::markdown(const std::string& title) const {
     measured += " " + cell(measure) + " |";
     measured_rule += "---|";
   }
-  std::string text =
-      "# " + title + "\n\nMean, +- the deviation of the sample, and how many runs.\n\n";
-  text += (axes_.empty() ? "|" : head) + measured + "\n" + (axes_.empty() ? "|" : rule) +
-          measured_rule + "\n";
-  for (const Group& group : groups()) {
-    text += "|";
-    for (const std::string& v : group.values) text += " " + cell(v) + " |";
-    for (const Spread& spread : group.spreads) text += " " + spread_text(spread) + " |";
-    text += "\n";
+  std::string text = "# " + title + "\n\n";
+  if (std::none_of(rows_.begin(), rows_.end(), [](const auto& row) { return row.result; })) {
+    text += "No run has a result.\n";
+  } else {
+    text += "Mean, +- the deviation of the sample, and how many runs.\n\n";
+    text += (axes_.empty() ? "|" : head) + measured + "\n" + (axes_.empty() ? "|" : rule) +
+            measured_rule + "\n";
+    for (const Group& group : groups()) {
+      text += "|";
+      for (const std::string& v : group.values) text += " " + cell(v) + " |";
+      for (const Spread& spread : group.spreads) text += " " + spread_text(spread) + " |";
+      text += "\n";
+    }
   }
   text += "\n## Every run\n\n" + head + " seed | status |" + measured + "\n" + rule + "---|---|" +
           measured_rule + "\n";
@@ -309,8 +323,7 @@ std::string SweepTable::markdown(const std::string& title) const {
     }
     text += "\n";
     if (!row.run.complete())
-      failures += fmt::format("- {}: {}\n", cell(row.point.name(axes_)),
-                              row.run.message.empty() ? "was not run" : cell(row.run.message));
+      failures += fmt::format("- {}: {}\n", cell(row.point.name(axes_)), failure_of(row));
   }
   if (!failures.empty()) text += "\n## Runs without a result\n\n" + failures;
   return text;

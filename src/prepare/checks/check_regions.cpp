@@ -316,7 +316,8 @@ std::vector<std::string> doubtful_walls(const dem::Config& config, const std::st
           mesh ? gap(*mesh, *outline.bounds).first : height_above(wall, *outline.bounds);
       const std::string doubt = mesh ? "" : behind(wall, asked, config.bodies[b], outline);
       if (!doubt.empty()) doubts.push_back(doubt);
-      if (height >= least) continue;
+      if (height >= least || config.bodies[b].shape == "rebar")
+        continue;  // bars lie in another body
       least = height;
       nearest = &outline;
     }

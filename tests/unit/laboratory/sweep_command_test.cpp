@@ -105,6 +105,18 @@ TEST_F(SweepCommand, ReportsARunThatFailsAndKeepsTheOthers) {
   EXPECT_NE(output().find("energy"), std::string::npos) << output();
 }
 
+TEST_F(SweepCommand, NamesTheLogOfEachRunWhereAllFail) {
+  EXPECT_EQ(sweep("--over energy.stop=1e-12,1e-13"), 4);
+  const std::string table = file("sweep.md");
+  EXPECT_NE(table.find("No run has a result."), std::string::npos) << table;
+  for (std::size_t at = table.find("all it said: "); at != std::string::npos;
+       at = table.find("all it said: ", at + 1)) {
+    const std::string log = table.substr(at + 13, table.find('\n', at) - at - 13);
+    EXPECT_NE(read_whole_file(log).find("error: "), std::string::npos) << log;
+  }
+  EXPECT_EQ(count(table, ": exit code 4: "), 2U) << table;
+}
+
 TEST_F(SweepCommand, GoesOnWithInterruptedRuns) {
   const std::string arguments = "--over time.end=0.001,300 --jobs 2 --set checkpoint.wall=0.02";
   const pid_t program =

@@ -87,8 +87,26 @@ TEST(SweepTable, GivesMeanDeviationAndCountAndKeepsFailures) {
       << table.csv();
   const std::string text = table.markdown("t");
   EXPECT_NE(text.find("| 1 | 2 +- 1.4 (2) | -2 +- 1.4 (2) |"), std::string::npos) << text;
-  EXPECT_NE(text.find("- k=2 seed=2: step 12"), std::string::npos) << text;
+  EXPECT_NE(
+      text.find("- k=2 seed=2: exit code 4: step 12, t = 1 s: it flew away; all it said: f.log"),
+      std::string::npos)
+      << text;
   EXPECT_EQ(table.plots().size(), 2U);
+}
+
+TEST(SweepTable, TellsWhichRunsFailedWhereNoneHasAResult) {
+  std::vector<SweepRow> rows(3);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    rows[k].point.seed = static_cast<std::int64_t>(k) + 1;
+  rows[0] = {rows[0].point, "runs/a", {4, false, 1.0, "it flew away"}, {}};
+  rows[1] = {rows[1].point, "runs/b", {-9, false, 1.0, "killed by signal 9"}, {}};
+  rows[2] = {rows[2].point, "runs/c", {130, false, 0.0, ""}, {}};
+  const std::string text = SweepTable({}, rows, {}).markdown("t");
+  EXPECT_EQ(text,
+            "# t\n\nNo run has a result.\n\n## Every run\n\n| seed | status |\n|---|---|\n"
+            "| 1 | failed |\n| 2 | failed |\n| 3 | interrupted |\n\n## Runs without a result\n\n"
+            "- seed=1: exit code 4: it flew away; all it said: runs/a.log\n"
+            "- seed=2: killed by signal 9; all it said: runs/b.log\n- seed=3: was not run\n");
 }
 
 TEST(LinePlot, SaysWhenThereIsNothingToDraw) {

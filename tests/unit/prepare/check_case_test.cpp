@@ -73,6 +73,24 @@ TEST(CheckDem, tells_of_walls_that_nothing_touches_at_the_start) {
   EXPECT_EQ(prepare::doubtful_walls(config, "").size(), 2U);
 }
 
+/// Bars lie within the body that they reinforce and are never the nearest, whatever their order.
+TEST(CheckDem, tells_of_no_bars_where_a_wall_is_above_their_body) {
+  dem::Config config = dem::case_with_materials();
+  dem::BodyConfig bars;
+  bars.name = "bars";
+  bars.shape = "rebar";
+  bars.rebar.in = "slab";
+  config.bodies = {bars, dem::box_body("slab", {0.2, 0.2, 0.1}, 100, 0.56)};
+  dem::WallConfig high;
+  high.name = "high";
+  high.point = {0.0, 0.0, 0.053};
+  high.normal = {0.0, 0.0, -1.0};
+  config.walls = {high};
+  EXPECT_EQ(prepare::doubtful_walls(config, ""),
+            std::vector<std::string>{"wall.high.point: no body touches the wall at the start; slab "
+                                     "is nearest, 3 mm away"});
+}
+
 /// A ramp of 45 degrees through the lower right edge of a box, and a punch that has sunk into it.
 TEST(CheckDem, tells_of_bodies_that_reach_behind_a_wall) {
   using dem::WallConfig;
