@@ -84,7 +84,7 @@ Curve pulled(const char* criterion, double mesh_size) {
   Scene scene = rock(criterion, bar);
   scene.config.materials[0].joint.energy_open = energy;
   scene.config.materials[0].joint.energy_slide = 5.0 * energy;
-  drive(scene, 0.5 * height - 1e-6, 0.02, {"y"});
+  drive(scene, 0.5 * height - 1e-6, 0.04, {"y"});
   World w = scene.world();
   return load_to_failure(w, 1.0, 0.05, 1.5e-3);
 }
