@@ -3,6 +3,7 @@
 
 The benchmarks in bench, beside src, may include every layer and no layer includes them.
 The key to writing the constants of a run, core/set_up.hpp, is for the folders `setup` and the benchmarks.
+Folders `setup` run no loops: nvcc compiles few of their files.
 
 Usage: check_includes.py [SOURCE_FOLDER]   (default: src beside this script's folder)
 Exit status 0 if all is well, 1 with a line for each violation.
@@ -32,6 +33,7 @@ ALLOWED = {
 ALLOWED["bench"] = set(ALLOWED)
 LONGEST = 500
 KEY = "core/set_up.hpp"
+LOOPS = {"exec/for_each.hpp", "exec/fold_sum.hpp", "exec/launch.hpp", "domain/owned.hpp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
 
@@ -53,6 +55,8 @@ def violations(source):
                 continue
             if found.group(1) == KEY and "setup" not in inside.parts and layer != "bench":
                 yield f"{path}:{number}: constants of a run are written in setup alone; read World::given"
+            if found.group(1) in LOOPS and "setup" in inside.parts:
+                yield f"{path}:{number}: a host's compiler makes set-up where arrays lie on a GPU: loops stand beside the steps"
             target = found.group(1).split("/")[0]
             if target in ALLOWED and target != layer and target not in ALLOWED[layer]:
                 yield f"{path}:{number}: {layer} must not see {target}"

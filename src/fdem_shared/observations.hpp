@@ -278,4 +278,23 @@ RuledStep ruled_step(const World& w, bool pressed) {
   return {least.step, term};
 }
 
+template <class StableStep>
+struct ListSteps {
+  static constexpr const char* name = "fdem.list_steps";
+  StableStep stable;
+  View<double> step;
+  BR_HD void operator()(Index t) const { step[t] = stable(t); }
+};
+
+template <class World>
+std::vector<double> stable_steps(const World& w) {
+  Buffer<double> listed(w.exec.space, ShapeOf<World>::elements(w).size());
+  const auto stable = stable_step(w);
+  for_each(w.exec, listed.size(),
+           ListSteps<std::remove_cv_t<decltype(stable)>>{stable, listed.view()});
+  std::vector<double> steps;
+  copy_to(steps, listed);
+  return steps;
+}
+
 }  // namespace breccia::fdem_shared

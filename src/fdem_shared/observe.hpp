@@ -50,6 +50,9 @@ struct RuledStep {
 /// @param pressed  as if something touched wherever it can
 template <class World>
 RuledStep ruled_step(const World& w, bool pressed);
+/// Stable step of each element, with the joints and contacts that it has now.  [s]
+template <class World>
+std::vector<double> stable_steps(const World& w);
 /// Which term rules the time step now: elements, joints, contact or viscosity.
 template <class World>
 const char* ruling_term(const World& w) {

@@ -7,7 +7,7 @@
 
 #include "core/on_host.hpp"
 #include "fdem/observe.hpp"
-#include "fdem_shared/setup/heavier.hpp"
+#include "fdem_shared/observe.hpp"
 #include "fdem_shared/setup/weight.hpp"
 
 namespace breccia::fdem {

@@ -1,35 +1,15 @@
 #pragma once
-// Stable steps of single elements, and mass for those that are the shortest: time.added_mass.
+// Mass for the elements whose stable steps are the shortest: time.added_mass.
 
 #include <algorithm>
 #include <vector>
 
 #include "core/added_mass.hpp"
-#include "exec/for_each.hpp"
+#include "fdem_shared/observe.hpp"
 #include "fdem_shared/setup/writable.hpp"
 #include "fdem_shared/shape.hpp"
 
 namespace breccia::fdem_shared {
-
-template <class StableStep>
-struct ListSteps {
-  static constexpr const char* name = "fdem.list_steps";
-  StableStep stable;
-  View<double> step;
-  BR_HD void operator()(Index t) const { step[t] = stable(t); }
-};
-
-/// Of each element, with the joints and contacts that it has now.  [s]
-template <class World>
-std::vector<double> stable_steps(const World& w) {
-  Buffer<double> listed(w.exec.space, ShapeOf<World>::elements(w).size());
-  const auto stable = stable_step(w);
-  for_each(w.exec, listed.size(),
-           ListSteps<std::remove_cv_t<decltype(stable)>>{stable, listed.view()});
-  std::vector<double> steps;
-  copy_to(steps, listed);
-  return steps;
-}
 
 /// Makes the elements heavier that rule the step, as far as time.added_mass allows.
 template <class World>
