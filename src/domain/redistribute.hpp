@@ -42,7 +42,7 @@ struct Together {
 
   template <class Visit>
   void each_field(Visit&& field) {
-    std::apply([&](auto&... state) { (state.each_field(field), ...); }, states);
+    std::apply([&, this](auto&... state) { (state.each_field(field), ...); }, states);
   }
 };
 template <class... States>

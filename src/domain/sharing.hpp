@@ -71,7 +71,7 @@ class SharedItems {
   /// The members of an item go wherever one of them is owned.
   template <class Members>
   void keep_together(const Members& members) {
-    const auto goes_along = [&](Index e) { return owner_of(e) == owner_of(members[0]); };
+    const auto goes_along = [&, this](Index e) { return owner_of(e) == owner_of(members[0]); };
     if (std::all_of(std::begin(members), std::end(members), goes_along)) return;
     for (const Index e : members) {
       if (!domain_.owns(e)) continue;

@@ -52,7 +52,7 @@ class SharingSets {
     partition.each_near(e.centre, e.radius + common_ + reach() + migration_buffer_.buffer + way,
                         visit);
     const double near = e.radius + reach() + way;
-    each_row(e.centre.x, near + widest_, [&](auto l, auto end) {
+    each_row(e.centre.x, near + widest_, [&, this](auto l, auto end) {
       const double low = e.centre.y - near - widest_, high = e.centre.y + near + widest_;
       l = std::partition_point(l, end, [low](const Large& f) { return f.centre.y < low; });
       for (; l != end && l->centre.y <= high; ++l)

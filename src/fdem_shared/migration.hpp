@@ -65,7 +65,7 @@ class Migration {
     Buffer<Index>& number = w_.mesh.joint_number;
     auto numbers = one_field(number);
     auto preset = one_field(j.preset);
-    Shape::with_joint_forces(w_, [&](auto& forces) {
+    Shape::with_joint_forces(w_, [&, this](auto& forces) {
       auto force = one_field(forces);
       if (w_.mesh.preset)
         redistribute(all, together(j, numbers, force, preset), joints, number);

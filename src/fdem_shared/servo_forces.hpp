@@ -273,7 +273,7 @@ struct PlatenPush {
     place(b, dt, 0.0, x[1]);
     const double next = push_of(i, by_a, x);
     const double way = share * 100.0 * Shape::near(reference[by_a ? a : b]);
-    const auto stiffness_over = [&](double farther) {
+    const auto stiffness_over = [&, this](double farther) {
       place(by_a ? a : b, dt, along * farther, x[by_a ? 0 : 1]);
       return max(0.0, along * (push_of(i, by_a, x) - next) / farther);
     };

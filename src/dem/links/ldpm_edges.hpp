@@ -160,8 +160,9 @@ struct LdpmEdgeForces {
     if constexpr (width_of<R> == 1) {
       write_action(actions[first_action + of.lead[0]], numbers, matrices);
     } else {
-      write_actions_to([&](Index j) -> PairForce& { return actions[first_action + of.lead[j]]; },
-                       numbers, matrices);
+      write_actions_to(
+          [&, this](Index j) -> PairForce& { return actions[first_action + of.lead[j]]; }, numbers,
+          matrices);
     }
   }
 };

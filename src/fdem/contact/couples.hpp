@@ -84,7 +84,7 @@ struct CoupleHistory {
   void each_field(Visit&& field) {
     field("state", "-", state);
     with_number(precision,
-                [&](auto number) { field("force", "N/m", force.as<decltype(number)>()); });
+                [&, this](auto number) { field("force", "N/m", force.as<decltype(number)>()); });
   }
 };
 using Couples = PairList<CoupleHistory>;

@@ -211,9 +211,9 @@ struct StableStep {
     split(nodes[t], x, v);
     const int exposed = exposed_edges(t);
     const int near = exposed == 0 ? 0 : near_edges(t, x, exposed);
-    return fdem_shared::parts_until_next([&](int pressed) { return parts(t, x, pressed); }, near,
-                                         exposed, v, evaluate_every,
-                                         [&] { return nearness.reach(t); });
+    return fdem_shared::parts_until_next([&, this](int pressed) { return parts(t, x, pressed); },
+                                         near, exposed, v, evaluate_every,
+                                         [&, this] { return nearness.reach(t); });
   }
 
  private:

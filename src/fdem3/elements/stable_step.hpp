@@ -47,9 +47,10 @@ struct StableStep {
     Vec3 x[4], v[4];
     split(nodes[t], x, v);
     const int open = exposed[t];
-    return fdem_shared::parts_until_next([&](int pressed) { return parts(t, x, pressed); },
+    return fdem_shared::parts_until_next([&, this](int pressed) { return parts(t, x, pressed); },
                                          open == 0 || is_near(t, x) ? open : 0, open, v,
-                                         evaluate_every, [&] { return near_reach(shape[t]); });
+                                         evaluate_every,
+                                         [&, this] { return near_reach(shape[t]); });
   }
 
  private:
@@ -57,7 +58,7 @@ struct StableStep {
   /// of both reaches before the next search.
   BR_HD bool is_near(Index t, const Vec3 (&x)[4]) const {
     const double reach = near_reach(shape[t]);
-    const auto near = [&](Index other) {
+    const auto near = [&, this](Index other) {
       Vec3 y[4];
       places(nodes[other], y);
       return !boxes_apart(x, y, reach + near_reach(shape[other]));

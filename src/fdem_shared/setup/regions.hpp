@@ -62,7 +62,7 @@ class Region {
   bool takes_side(std::size_t element, const SideCorners& corners) const {
     if (named_ && sides_.count(corners) == 0) return false;
     return std::all_of(corners.begin(), corners.end(),
-                       [&](Index vertex) { return takes(element, vertex); });
+                       [&, this](Index vertex) { return takes(element, vertex); });
   }
 
   /// "; the nearest, at (x, y) m, is 0.001 m away", of boxes, circles and spheres alone.
