@@ -65,7 +65,7 @@ READER = {
     "dem": [
         ("**the method**: world, kernels, the laws of concrete links and contacts or of triangles, joints and couples, search, the step on the host",
          SHARED_METHOD.format(m="dem") + "dem/elements.hpp dem/element_kernels.hpp dem/pair_forces.hpp dem/link_sums.hpp dem/contacts.hpp dem/wall.hpp "
-         "dem/laws/concrete_link.hpp dem/laws/contact.hpp dem/laws/pair_motion.hpp dem/laws/tension_softening.hpp dem/links/concrete.hpp "
+         "dem/laws/concrete_link.hpp dem/laws/concrete_parts.hpp dem/laws/contact.hpp dem/laws/pair_motion.hpp dem/laws/tension_softening.hpp dem/links/concrete.hpp "
          "dem/links/link_set.hpp dem/links/all.hpp dem/stepping/add_links.hpp dem/search.cpp dem/near.hpp"),
         ("other laws: steel, interface, parallel bond, LDPM; joints that wake; what tetrahedra alone need of the search; fluid; bolts; walls with mass or a nose",
          "dem/laws/* dem/links/* dem/free_walls* dem/wall_*"),

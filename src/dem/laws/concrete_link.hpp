@@ -1,6 +1,7 @@
 #pragma once
 // The cohesive link of concrete: modified Mohr-Coulomb with softening and moment transfer.
 
+#include "dem/laws/concrete_parts.hpp"
 #include "dem/laws/pair_motion.hpp"
 #include "dem/laws/tension_softening.hpp"
 #include "math/elementary.hpp"
@@ -115,24 +116,39 @@ struct ConcreteLink {
   SofteningKnee knee;           ///< of the falling branch in tension
 
   /// One step of a link (R = double) or of a pack of links.
-  template <class R>
+  /// @tparam parts  those that this law may have: parts() and any more
+  template <ConcreteParts parts = concrete_all, class R>
   BR_HD LinkResponse<R> response(const LinkConstants<R>& link, const PairMotion<R>& motion,
                                  LinkState<R>& state) const {
-    if (!rated()) return response_at<false>(link, motion, state);
+    if (!rated<parts>()) return response_at<parts & ~concrete_rated>(link, motion, state);
     LinkConstants<R> dynamic = link;
     quicken(dynamic, motion, state);
-    return response_at<true>(dynamic, motion, state);
+    return response_at<parts>(dynamic, motion, state);
   }
 
   /// Whether sliding and rolling use links up.
-  BR_HD bool wears() const { return slip_wear > 0.0 || turn_wear > 0.0; }
-
+  template <ConcreteParts parts = concrete_all>
+  BR_HD bool wears() const {
+    return (parts & concrete_wears) != 0 && (is_given(slip_wear) || is_given(turn_wear));
+  }
   /// Whether T depends on the strain rate.
-  BR_HD bool rated() const { return rate.exponent > 0.0; }
+  template <ConcreteParts parts = concrete_all>
+  BR_HD bool rated() const {
+    return (parts & concrete_rated) != 0 && is_given(rate.exponent);
+  }
+  /// Parts that this law has.
+  ConcreteParts parts() const {
+    return (compacts<concrete_all>() ? concrete_compacts : 0) | (wears() ? concrete_wears : 0) |
+           (is_given(friction_cap) ? concrete_caps_friction : 0) |
+           (is_given(rolling_cap) ? concrete_caps_rolling : 0) |
+           (is_given(hyperbolic) ? concrete_is_hyperbolic : 0) |
+           (knee.bends() ? concrete_knee : 0) | (rated() ? concrete_rated : 0);
+  }
 
   template <class R>
   BR_HD TensionSoftening<R> tension(const LinkConstants<R>& link) const {
-    return rated() ? tension_of<true>(link) : tension_of<false>(link);
+    constexpr ConcreteParts slow = concrete_all & ~concrete_rated;
+    return rated() ? tension_of<concrete_all>(link) : tension_of<slow>(link);
   }
   /// DIF of a link as it stands. Until its peak it is undamaged: its strength is at least what it
   /// has borne.  [-]
@@ -203,12 +219,18 @@ struct ConcreteLink {
     R plastic;  ///< slip, or turn, beyond the elastic one  [m or rad]
   };
 
-  template <bool dynamic, class R>
+  template <ConcreteParts parts>
+  BR_HD bool compacts() const {
+    return (parts & concrete_compacts) != 0 &&
+           (is_given(compaction_strength) || is_given(crushing_strength));
+  }
+  template <ConcreteParts parts, class R>
   BR_HD TensionSoftening<R> tension_of(const LinkConstants<R>& link) const {
     const R slow = tensile_strength * link.area;  // S T
-    TensionSoftening<R> t{
-        link.stiffness, slow, softening, rupture_opening > 0.0, constant<R>(rupture_opening), knee};
-    if constexpr (dynamic) {
+    TensionSoftening<R> t{link.stiffness, slow, softening, is_given(rupture_opening),
+                          constant<R>(rupture_opening)};
+    if constexpr ((parts & concrete_knee) != 0) t.knee = knee;
+    if constexpr ((parts & concrete_rated) != 0) {
       if (!t.ends_given) t.last = slow * (1.0 + softening) / link.stiffness;
       t.ends_given = true;
       t.strength = link.factor * slow;
@@ -218,8 +240,8 @@ struct ConcreteLink {
   }
 
   /// One step at the strength that `link` has now.
-  /// @tparam dynamic  whether that is another than the static one
-  template <bool dynamic, class R>
+  /// @tparam parts  rated: that strength is another than the static one
+  template <ConcreteParts parts, class R>
   BR_HD LinkResponse<R> response_at(const LinkConstants<R>& link, const PairMotion<R>& motion,
                                     LinkState<R>& state) const {
     const R zero = constant<R>(0.0);
@@ -227,8 +249,8 @@ struct ConcreteLink {
     const R kr = rolling_ratio * kt * link.radius * link.radius;
 
     // 1. Normal force.
-    Stand<R> s = stretched<dynamic>(link, motion, state.opening);
-    if (compaction_strength > 0.0 || crushing_strength > 0.0) compact(s, link, motion);
+    Stand<R> s = stretched<parts>(link, motion, state.opening);
+    if (compacts<parts>()) compact(s, link, motion);
 
     // 2. Shear force and moment: carried with the pair, then this step's increment.
     const Vec3Of<R> shear_before = motion.tangential(motion.rotated_with_pair(state.shear));
@@ -237,10 +259,10 @@ struct ConcreteLink {
     const Vec3Of<R> moment_trial = moment_before - kr * motion.turn;
 
     // 3. Their limits.
-    const R shear_limit = limit_shear<dynamic>(s, link, dot(shear_trial, shear_trial));
+    const R shear_limit = limit_shear<parts>(s, link, dot(shear_trial, shear_trial));
     const auto survives = s.holds && !s.sheared;
     const auto acts = survives || (s.pressed && !s.parted);
-    const R moment_limit = limit_moment(s, link, survives);
+    const R moment_limit = limit_moment<parts>(s, link, survives);
     const Cut<R> slide = cut(shear_before, shear_trial, shear_limit, acts, kt);
     const Cut<R> roll = cut(moment_before, moment_trial, moment_limit, acts, kr);
 
@@ -256,11 +278,11 @@ struct ConcreteLink {
 
     // 4. New state.
     state.opening = select(s.intact, s.opening, state.opening);
-    if (wears()) {
+    if (wears<parts>()) {
       const R wear = slip_wear * slide.plastic + turn_wear * link.radius * roll.plastic;
-      wear_out<dynamic>(s, link, motion, select(survives, wear, zero), state, r);
+      wear_out<parts>(s, link, motion, select(survives, wear, zero), state, r);
     }
-    if (any(s.torn || s.sheared)) rupture<dynamic>(s, link, state, r);
+    if (any(s.torn || s.sheared)) rupture<parts>(s, link, state, r);
     r.yielded = r.yielded + s.crushed;
     state.opening = select(s.parted, constant<R>(link_released), state.opening);
     state.shear = r.shear;
@@ -296,11 +318,11 @@ struct ConcreteLink {
   }
 
   /// Tension with softening, compression without limit.
-  template <bool dynamic, class R>
+  template <ConcreteParts parts, class R>
   BR_HD Stand<R> stretched(const LinkConstants<R>& link, const PairMotion<R>& motion,
                            const R& opening_before) const {
     const R zero = constant<R>(0.0), one = constant<R>(1.0), kn = link.stiffness;
-    const TensionSoftening<R> t = tension_of<dynamic>(link);
+    const TensionSoftening<R> t = tension_of<parts>(link);
     Stand<R> s;
     s.stretch = motion.distance - link.length;
     s.intact = opening_before >= 0.0;
@@ -339,7 +361,8 @@ struct ConcreteLink {
     const auto yields = s.pressed && !s.parted && excess > 0.0 && onset > 0.0;
     if (!any(yields)) return;
     R by = excess * (1.0 - slope) / kn;
-    if (closing_strain > 0.0) by = min(by, max(zero, link.length - (1.0 - closing_strain) * first));
+    if (is_given(closing_strain))
+      by = min(by, max(zero, link.length - (1.0 - closing_strain) * first));
     s.shortened = select(yields, by, zero);
     const R before = min(zero, s.normal - kn * motion.extension);
     s.normal = s.normal + kn * s.shortened;
@@ -347,35 +370,37 @@ struct ConcreteLink {
   }
 
   /// Modified Mohr-Coulomb limit of the shear force; finds links that break at it.
-  template <bool dynamic, class R>
+  template <ConcreteParts parts, class R>
   BR_HD R limit_shear(Stand<R>& s, const LinkConstants<R>& link, const R& trial_squared) const {
     const R zero = constant<R>(0.0);
     const R cohesive = select(s.holds, s.health, zero);
     const R slope = select(s.holds, constant<R>(friction), constant<R>(broken_friction));
-    R limit = max(zero, cohesion * link.area * cohesive + friction_limit(link, s.normal, slope));
-    if (hyperbolic > 0.0) limit = select(s.holds, hyperbola<dynamic>(s, link, limit), limit);
+    R limit =
+        max(zero, cohesion * link.area * cohesive + friction_limit<parts>(link, s.normal, slope));
+    if ((parts & concrete_is_hyperbolic) != 0 && is_given(hyperbolic))
+      limit = select(s.holds, hyperbola<parts>(s, link, limit), limit);
     const auto beyond = trial_squared > zero && trial_squared > limit * limit;
     s.sheared = s.holds && beyond && constant<R>(brittle_shear) > 0.5;
     if (any(s.sheared))
-      limit =
-          select(s.sheared, max(zero, friction_limit(link, s.normal, constant<R>(broken_friction))),
-                 limit);
+      limit = select(s.sheared,
+                     max(zero, friction_limit<parts>(link, s.normal, constant<R>(broken_friction))),
+                     limit);
     return limit;
   }
   /// The limit of an intact link by the hyperbola; `line`: its asymptote, cohesion and friction.
-  template <bool dynamic, class R>
+  template <ConcreteParts parts, class R>
   BR_HD R hyperbola(const Stand<R>& s, const LinkConstants<R>& link, const R& line) const {
     const R zero = constant<R>(0.0);
     R strength = tensile_strength * link.area;
-    if constexpr (dynamic) strength = link.factor * strength;
+    if constexpr ((parts & concrete_rated) != 0) strength = link.factor * strength;
     const R vertex = max(zero, s.health * (cohesion * link.area - friction * strength));
     return sqrt(max(zero, line - vertex) * (line + vertex));
   }
   /// Shear force that friction bears, below zero in tension.  [N]
-  template <class R>
+  template <ConcreteParts parts, class R>
   BR_HD R friction_limit(const LinkConstants<R>& link, const R& normal, const R& slope) const {
     const R force = -1.0 * (normal * slope);
-    if (friction_cap == 0.0) return force;
+    if ((parts & concrete_caps_friction) == 0 || !is_given(friction_cap)) return force;
     const R cap = friction_cap * link.area;
     if (friction_fades < 0.5) return min(force, cap);
     // f S s_F / (f + S s_F), in a form that divides no zero
@@ -383,14 +408,15 @@ struct ConcreteLink {
     return min(force, cap * (1.0 - cap / (pressed + cap)));
   }
 
-  template <class R>
+  template <ConcreteParts parts, class R>
   BR_HD R limit_moment(const Stand<R>& s, const LinkConstants<R>& link,
                        const typename Stand<R>::Truth& survives) const {
     const R zero = constant<R>(0.0);
     const auto counts = s.pressed || !survives;
     R force = select(counts, abs(s.normal), zero) +
               select(survives, tensile_strength * link.area * s.health, zero);
-    if (rolling_cap > 0.0) force = min(force, rolling_cap * link.area);
+    if ((parts & concrete_caps_rolling) != 0 && is_given(rolling_cap))
+      force = min(force, rolling_cap * link.area);
     const R eta = select(survives, constant<R>(rolling_limit), constant<R>(broken_rolling_limit));
     return eta * link.radius * force;
   }
@@ -422,13 +448,14 @@ struct ConcreteLink {
   /// Wear opens a link, until it is torn in the next step. It spends nothing of its own: sliding
   /// and rolling have been booked, so that `broke` takes back what the ledger reads off the opening
   /// (TensionSoftening::spent), but for what a stretched link stored.
-  template <bool dynamic, class R>
+  template <ConcreteParts parts, class R>
   BR_HD void wear_out(const Stand<R>& s, LinkConstants<R> link, const PairMotion<R>& motion,
                       const R& wear, LinkState<R>& state, LinkResponse<R>& r) const {
     const auto worn = wear > 0.0;
     if (!any(worn)) return;
-    if constexpr (dynamic) hold_factor(link, worn && state.rate >= 0.0, s.opening + wear, state);
-    const TensionSoftening<R> t = tension_of<dynamic>(link);
+    if constexpr ((parts & concrete_rated) != 0)
+      hold_factor(link, worn && state.rate >= 0.0, s.opening + wear, state);
+    const TensionSoftening<R> t = tension_of<parts>(link);
     // a little beyond u_2, so that rounding cannot keep the link whole
     const R last = (1.0 + 1e-6) * t.rupture();
     const R after = max(s.opening, min(s.opening + wear, last));
@@ -440,11 +467,11 @@ struct ConcreteLink {
     state.opening = select(worn, after, state.opening);
   }
 
-  template <bool dynamic, class R>
+  template <ConcreteParts parts, class R>
   BR_HD void rupture(const Stand<R>& s, const LinkConstants<R>& link, LinkState<R>& state,
                      LinkResponse<R>& r) const {
     const R zero = constant<R>(0.0);
-    const TensionSoftening<R> t = tension_of<dynamic>(link);
+    const TensionSoftening<R> t = tension_of<parts>(link);
     const auto ends = s.torn || s.sheared;
     const R stored = constant<R>(0.5) * s.health * link.stiffness * s.stretch * s.stretch;
     const R spent =

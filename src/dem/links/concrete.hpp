@@ -41,7 +41,7 @@ struct LinkArrays<ConcreteLink> : LinkEnds {
     field("length", "m", length);
     field("stiffness", "N/m", stiffness);
     field("area", "m2", area);
-    with_number(precision, [&](auto number) {
+    with_number(precision, [&, this](auto number) {
       auto& history = kept.as<decltype(number)>();
       field("opening", "m", history.opening);
       field("shear", "N", history.shear);
@@ -124,7 +124,8 @@ struct ConcreteLinkForces {
   BR_HD void update(Index i, const Loaded<R>& loaded) const {
     update(law, i, loaded);
   }
-  template <class R>
+  /// @tparam parts  those that `by` may have
+  template <ConcreteParts parts = concrete_all, class R>
   BR_HD void update(const ConcreteLink& by, Index i, const Loaded<R>& loaded) const {
     const R &radius_a = loaded.end_a.radius, &radius_b = loaded.end_b.radius;
     const PairMotion<R> motion =
@@ -133,19 +134,19 @@ struct ConcreteLinkForces {
     const LinkConstants<R> link{loaded.length, loaded.stiffness, loaded.area, 0.5 * touching,
                                 touching};
     LinkState<R> state = loaded.state;
-    if (by.rated()) state.rate = load<R>(rate, i);
-    const LinkResponse<R> r = by.response(link, motion, state);
+    if (by.template rated<parts>()) state.rate = load<R>(rate, i);
+    const LinkResponse<R> r = by.template response<parts>(link, motion, state);
 
     if constexpr (std::is_same_v<Number, float>) {
       const BitsOf<R> chance = chance_of(motion.distance, step);
       state.shear = rounded_by(chance, 0, state.shear);
       state.moment = rounded_by(chance, 18, state.moment);
-      if (by.wears()) state.opening = rounded_by<R>(chance >> 35, state.opening);
+      if (by.template wears<parts>()) state.opening = rounded_by<R>(chance >> 35, state.opening);
     }
     store(opening, i, state.opening);
     store(shear, i, state.shear);
     store(moment, i, state.moment);
-    if (by.rated()) store(rate, i, state.rate);
+    if (by.template rated<parts>()) store(rate, i, state.rate);
     if (any(r.shortened != 0.0)) store(length, i, link.length - r.shortened);
     if (any(r.slid != 0.0)) book(actions, slid, i, r.slid);
     if (any(r.yielded != 0.0)) book(actions, yielded, i, r.yielded);

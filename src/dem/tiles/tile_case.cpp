@@ -170,6 +170,8 @@ TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
                       twins = contacts_of(w, room, plan.twin_state, plan.twin_slid,
                                           plan.twin_damped, plan.twin_actions);
   auto interface = link_kernel<double>(w, w.interface, {}, w.steel.size());
+  ConcreteParts parts = 0;
+  for (const auto& group : w.concrete.groups) parts |= group.law.parts();
   StepClock start;
   const EndOfStep<StepRule> end{step_rule(w), w.given->time.evaluate_every};
   start.to_evaluation = end.to_evaluation(w.step);
@@ -178,6 +180,7 @@ TileCase case_of(World& w, TilePlan& plan, const StopAt& stop) {
   start.least = ordered_bits(largest_least);
   plan.searches.news.resize(1);
   return {link_kernel<double>(w, w.concrete, {}, 0),
+          parts,
           link_kernel<double>(w, w.steel, {}, 0),
           interface,
           contacts,

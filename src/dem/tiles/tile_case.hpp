@@ -72,6 +72,7 @@ struct TileSearchCase {
 /// A world as its tiles see it.
 struct TileCase {
   ConcreteLinkForces<double> concrete;
+  ConcreteParts concrete_parts;  ///< that laws of any of these links have
   SteelLinkForces steel;
   InterfaceLinkForces interface;
   ContactForces contacts, twins;  ///< of elements that are a; as those that are b follow them

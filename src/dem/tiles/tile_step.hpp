@@ -220,9 +220,7 @@ struct TileStep : TileContent {
   BR_HD void concrete_link(double dt, Index l) const {
     const TileLink link = memory.concrete[l];
     const Index n = tile.concrete;
-    ConcreteLink law = memory.concrete_laws[link.group];
-    law.rate.exponent = 0.0;  // models with rates have no tiles
-    const ConcreteLinkForces<double, TileActions> kernel{law,
+    const ConcreteLinkForces<double, TileActions> kernel{{},
                                                          dt,
                                                          {},
                                                          {},
@@ -247,7 +245,11 @@ struct TileStep : TileContent {
     loaded.state = {memory.opening[l], shear()[l], moment()[l]};
     loaded.end_a = end(link.a);
     loaded.end_b = end(link.b);
-    kernel.update(law, l, loaded);
+    const ConcreteLink& law = memory.concrete_laws[link.group];
+    if ((all.concrete_parts & ~concrete_bounded) == 0)
+      return kernel.template update<concrete_bounded>(law, l, loaded);
+    // Models with rates have no tiles.
+    kernel.template update<concrete_all & ~concrete_rated>(law, l, loaded);
   }
   BR_HD void steel_link(double dt, Index l) const {
     const TileLink link = memory.steel[l];

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "dem/laws/concrete_link.hpp"
 #include "dem/setup/materials.hpp"
@@ -40,6 +41,25 @@ ConcreteLink confined_law() {
   law.crushing_strength = crushing;
   law.crushing_slope = slope;
   return law;
+}
+
+struct ConcretePart {
+  ConcreteParts bit;
+  void (*give)(ConcreteLink&);
+};
+std::vector<ConcretePart> concrete_part_list() {
+  return {{concrete_compacts, [](ConcreteLink& l) { l.compaction_strength = 1.0; }},
+          {concrete_compacts, [](ConcreteLink& l) { l.crushing_strength = 1.0; }},
+          {concrete_wears, [](ConcreteLink& l) { l.slip_wear = 0.1; }},
+          {concrete_wears, [](ConcreteLink& l) { l.turn_wear = 0.1; }},
+          {concrete_caps_friction, [](ConcreteLink& l) { l.friction_cap = 1.0; }},
+          {concrete_caps_rolling, [](ConcreteLink& l) { l.rolling_cap = 1.0; }},
+          {concrete_is_hyperbolic, [](ConcreteLink& l) { l.hyperbolic = 1.0; }},
+          {concrete_knee,
+           [](ConcreteLink& l) {
+             l.knee = {1.0, 1.0, 0.5};
+           }},
+          {concrete_rated, [](ConcreteLink& l) { l.rate.exponent = 0.02; }}};
 }
 
 /// A link whose ends are moved, with the work done on it and the energy it has spent.
@@ -317,6 +337,50 @@ TEST(ConfinedLink, a_random_path_puts_in_what_is_stored_or_spent) {
     EXPECT_LT(rig.link.length, first_length);
     EXPECT_FALSE(rig.intact());
   }
+}
+
+TEST(ConfinedLink, of_a_kernel_for_its_parts_alone_has_the_bits_of_the_whole_law) {
+  ConcreteLink law = confined_law();
+  law.slip_wear = 0.3;
+  law.turn_wear = 0.1;
+  ASSERT_EQ(law.parts(), concrete_bounded);
+  ConcreteLink plain = law;
+  plain.compaction_strength = plain.crushing_strength = plain.rolling_cap = 0.0;
+  plain.slip_wear = plain.turn_wear = 0.0;
+  ASSERT_EQ(plain.parts(), ConcreteParts{0});
+  for (const ConcretePart& part : concrete_part_list()) {
+    ConcreteLink one = plain;
+    part.give(one);
+    EXPECT_EQ(one.parts(), part.bit);
+  }
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  int broken = 0, worn = 0;
+  for (int link = 0; link < 200; ++link) {
+    Rig whole, lean;
+    whole.law = lean.law = law;
+    LinkConstants<double> lean_link = lean.link;
+    LinkState<double> lean_state{};
+    for (int step = 0; step < 60; ++step) {
+      const PairMotion<double> motion =
+          whole.pair.move_b({20.0 * any(random), 5.0 * any(random), 5.0 * any(random)},
+                            {500.0 * any(random), 500.0 * any(random), 500.0 * any(random)});
+      const double length = whole.link.length;
+      whole.take(motion);
+      const LinkResponse<double> r = law.response<concrete_bounded>(lean_link, motion, lean_state);
+      lean_link.length -= r.shortened;
+      ASSERT_EQ(r.normal, whole.last.normal);
+      ASSERT_EQ(r.shear.y, whole.last.shear.y);
+      ASSERT_EQ(r.moment.x, whole.last.moment.x);
+      ASSERT_EQ(r.broke, whole.last.broke);
+      ASSERT_EQ(r.yielded, whole.last.yielded);
+      ASSERT_EQ(lean_state.opening, whole.state.opening);
+      worn += whole.link.length < length ? 1 : 0;
+    }
+    broken += whole.state.opening < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(broken, 20);
+  EXPECT_GT(worn, 20);
 }
 
 TEST(ConfinedLink, of_a_material_without_these_keys_has_none_of_these_bounds) {
