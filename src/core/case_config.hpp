@@ -154,7 +154,8 @@ struct ProbeConfig {
 /// [[check]]: a number that the case must show at the end of its run
 struct CheckConfig {
   std::string name;
-  std::string value;  ///< path into summary.json, or probe.<name>.<last|min|max>
+  std::string value;  ///< path into summary.json, or probe.<name>.<last|min|max|at>
+  double at = -1.0;   ///< of a probe: when; below 0: not given  [s]
   double expected = 0.0;
   double tolerance = 0.0;  ///< largest allowed |value - expected|
   std::string unit = "-";
@@ -165,8 +166,10 @@ struct CheckConfig {
     key.required("name");
     key("value", value,
         "what is checked: a path into summary.json such as energy.error_relative, or "
-        "probe.<name>.last, .min or .max");
+        "probe.<name>.last, .min or .max; or .at, what it reads at the time `at`");
     key.required("value");
+    key("at", at, "s", Range{-1.0, 1e30},
+        "of probe.<name>.at: the time, between two rows of history.csv linearly; below 0: none");
     key("expected", expected, "-", any_number, "the number it must be, in SI units");
     key("tolerance", tolerance, "-", not_negative, "largest allowed distance from it");
     key("unit", unit, "unit of the three numbers, for the reader");

@@ -14,6 +14,7 @@
 #include "prepare/checks/refusal.hpp"
 #include "prepare/meshing/heterogeneity.hpp"
 #include "prepare/tetrahedra/crack_faces.hpp"
+#include "prepare/tetrahedra/joint_discs.hpp"
 #include "prepare/tetrahedra/tet_body.hpp"
 #include "prepare/tetrahedra/tet_check.hpp"
 #include "prepare/tetrahedra/tet_order.hpp"
@@ -219,10 +220,13 @@ class TetBodyInModel {
 };
 
 /// Cracks at the start; on a face of several, the last counts.
-void crack(Model& model, const Config& config, const std::vector<prepare::MeshFace>& faces,
-           std::vector<std::string>& problems) {
+/// @param single  how many of them are no parts of sets; each must meet a face, and of a set one
+void crack(Model& model, const Config& config, std::size_t single,
+           const std::vector<prepare::MeshFace>& faces, std::vector<std::string>& problems) {
   std::map<prepare::Face, std::int16_t> material;
-  for (const DiscontinuityConfig& d : config.discontinuities) {
+  std::map<std::string, bool> sets;  // whether one of theirs met a face
+  for (std::size_t k = 0; k < config.discontinuities.size(); ++k) {
+    const DiscontinuityConfig& d = config.discontinuities[k];
     const auto follows = [&](Index t) {
       auto body = static_cast<std::size_t>(model.group[static_cast<std::size_t>(t)]);
       if (config.bodies[body].shape == "part")
@@ -230,12 +234,16 @@ void crack(Model& model, const Config& config, const std::vector<prepare::MeshFa
       return d.embedded && prepare::follows_cracks(config.bodies[body]);
     };
     const auto found = prepare::faces_along(d, model.point, model.tetrahedron, faces, follows);
-    if (found.empty())
+    if (k >= single)
+      sets[d.name] = sets[d.name] || !found.empty();
+    else if (found.empty())
       problems.push_back("discontinuity." + d.name + ": meets no face between two tetrahedra");
     for (const prepare::Face& face : found)
       material[face] =
           d.kind == "open" ? std::int16_t{-1} : index_in(config.joint_laws, d.material);
   }
+  for (const auto& [name, met] : sets)
+    if (!met) problems.push_back("joint_set." + name + ": meets no face between two tetrahedra");
   for (const auto& [face, given] : material) model.discontinuities.push_back({face, given});
 }
 
@@ -289,8 +297,10 @@ void look_for_seams(const Model& model, std::vector<std::string>& problems) {
 
 namespace breccia {
 
-fdem3::Model build_model(const fdem3::Config& config, const std::string& case_folder) {
-  prepare::refuse(prepare::body_problems(config), "with the model");
+fdem3::Model build_model(const fdem3::Config& given, const std::string& case_folder) {
+  prepare::refuse(prepare::body_problems(given), "with the model");
+  fdem3::Config config = given;
+  config.discontinuities = prepare::cracks_with_sets(given, case_folder);
   fdem3::TetAssembly assembly(config, case_folder);
   fdem3::Model& model = assembly.model();
   prepare::order_along_curve(model);
@@ -301,7 +311,7 @@ fdem3::Model build_model(const fdem3::Config& config, const std::string& case_fo
   }
   std::vector<std::string> problems;
   const std::vector<prepare::MeshFace> faces = prepare::faces_of(model.tetrahedron);
-  fdem3::crack(model, config, faces, problems);
+  fdem3::crack(model, config, given.discontinuities.size(), faces, problems);
   fdem3::look_for_overlaps(model, faces, problems);
   fdem3::look_for_seams(model, problems);
   prepare::refuse(problems, "with the model");

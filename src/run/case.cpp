@@ -109,6 +109,7 @@ std::string model_keys(const fdem3::Config& config) {
   part.joint_laws = config.joint_laws;
   part.bodies = config.bodies;
   part.discontinuities = config.discontinuities;
+  part.joint_sets = config.joint_sets;
   return completed_case(part);
 }
 

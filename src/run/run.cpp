@@ -332,7 +332,8 @@ void Run::conclude(Summary& now) {
        {inertia_text(plan_.config.time.mass_scaling, now.kinetic_share),
         whole_case ? unbegun_text(method_.stages(), method_.stage().index) : std::string()})
     if (!doubt.empty()) log_->warn("end", method_.steps(), doubt), now.warnings.push_back(doubt);
-  if (whole_case) now.checks = evaluate_checks(plan_.config.checks, now);
+  if (whole_case)
+    now.checks = evaluate_checks(plan_.config.checks, now, folder_->file("history.csv"));
   const std::string table = now.checks.empty() ? "" : check_table(now.checks);
   if (!all_pass(now.checks)) {
     now.status = "failed";

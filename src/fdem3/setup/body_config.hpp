@@ -93,4 +93,67 @@ struct DiscontinuityConfig {
   }
 };
 
+/// [[joint_set]]: many flat discontinuities of one kind, from a file or at random
+struct JointSetConfig {
+  std::string name;
+  std::string kind = "open";
+  std::string material;
+  bool embedded = true;
+  std::string file;
+  Vec3 min{}, max{};                ///< box that it fills  [m]
+  double intensity = 0.0;           ///< P32: area of discs over volume  [1/m]
+  double number = 0.0;              ///< of discs with their middle in the box; 0: by intensity  [-]
+  Vec3 normal{0.0, 0.0, 1.0};       ///< mean direction across them  [-]
+  double concentration = no_limit;  ///< kappa of Fisher's distribution  [-]
+  std::string radius_law = "constant";
+  double radius = 0.0;             ///< mean  [m]
+  double radius_deviation = 0.0;   ///<  [m]
+  double radius_exponent = 3.5;    ///<  [-]
+  double least = 0.0, most = 0.0;  ///< radii; 0: no limit  [m]
+  int sides = 8;
+  double clear = -1.0;  ///< below 0: a quarter of the least mesh_size  [m]
+
+  template <class Visit>
+  void each_key(Visit&& key) {
+    key("name", name, "name, for messages");
+    key.required("name");
+    key("kind", kind, OneOf{"open", "cohesive"},
+        "open: broken at the start, with contact only; cohesive: joints with a law of their own");
+    key("material", material, "cohesive: name of a joint law");
+    key("embedded", embedded,
+        "meshes that gmsh makes follow them; false: faces of the mesh near them are taken");
+    key("file", file,
+        "file beside the case file: .csv with a disc x,y,z,nx,ny,nz,radius in each line (centre, "
+        "direction across it, radius), or .wkt with POLYGON Z and MULTIPOLYGON Z, in metres; "
+        "empty: "
+        "at random, by the keys below");
+    key("min", min, "m", any_number, "lower corner of the box that random discs fill");
+    key("max", max, "m", any_number, "upper corner of that box");
+    key("intensity", intensity, "1/m", not_negative,
+        "P32 of random discs: their area in the box over its volume, met exactly; of discs with "
+        "one direction it is also P10, their number per length across them");
+    key("number", number, "-", Range{0.0, 1e5},
+        "how many random discs have their middle in the box, in place of intensity");
+    key("normal", normal, "-", any_number, "mean direction across them");
+    key("concentration", concentration, "-", not_negative,
+        "kappa of Fisher's distribution around it: 0: every direction alike, inf: all have normal");
+    key("radius_law", radius_law, OneOf{"constant", "exponential", "lognormal", "power"},
+        "how large they are: all as radius; exponential or lognormal with that mean; power: "
+        "density "
+        "r^-radius_exponent from least to most");
+    key("radius", radius, "m", not_negative, "mean radius before least and most");
+    key("radius_deviation", radius_deviation, "m", not_negative,
+        "standard deviation of lognormal radii");
+    key("radius_exponent", radius_exponent, "-", positive, "exponent of the power law");
+    key("least", least, "m", not_negative, "smaller radii are drawn again; 0: no limit");
+    key("most", most, "m", not_negative, "larger radii are drawn again; 0: no limit");
+    key("sides", sides, "-", Range{3, 64},
+        "corners of the regular polygon that stands for a disc of its area");
+    key("clear", clear, "m", Range{-1.0, 1e30},
+        "a random disc is drawn again where it would pass another crack nearer than that, meet one "
+        "along a shorter line, or at less than 20 degrees: otherwise slivers make the steps short; "
+        "below 0: a quarter of the least mesh_size");
+  }
+};
+
 }  // namespace breccia::fdem3

@@ -132,6 +132,7 @@ struct Config : CaseConfig {
   std::vector<FrictionConfig> frictions;
   std::vector<BodyConfig> bodies;
   std::vector<DiscontinuityConfig> discontinuities;
+  std::vector<JointSetConfig> joint_sets;
   JointsConfig joints;
   InSituConfig in_situ;
   std::vector<SupportConfig> supports;
@@ -155,6 +156,7 @@ struct Config : CaseConfig {
     key.list("friction", frictions, "coefficients of friction by pairs of materials");
     key.list("body", bodies, "what there is");
     key.list("discontinuity", discontinuities, "cracks and weak planes at the start");
+    key.list("joint_set", joint_sets, "many cracks or weak planes, from a file or at random");
     key.table("joints", joints, "what all joints share");
     key.table("in_situ", in_situ, "stress at the start");
     key.list("support", supports, "prescribed motion");

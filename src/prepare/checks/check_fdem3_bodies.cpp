@@ -7,6 +7,7 @@
 #include "core/most_names.hpp"
 #include "prepare/checks/by_name.hpp"
 #include "prepare/checks/check_bodies.hpp"
+#include "prepare/tetrahedra/joint_discs.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -84,6 +85,14 @@ class TetBodyChecks {
       path_ = "discontinuity." + d.name;
       require(seen.insert(d.name).second, "another discontinuity has this name");
       check(d);
+    }
+    std::vector<std::string> laws;
+    for (const auto& law : config.joint_laws) laws.push_back(law.name);
+    seen.clear();
+    for (const fdem3::JointSetConfig& set : config.joint_sets) {
+      path_ = "joint_set." + set.name;
+      require(seen.insert(set.name).second, "another joint_set has this name");
+      for (const std::string& problem : joint_set_problems(set, laws)) problems_.push_back(problem);
     }
   }
   std::vector<std::string> problems_;

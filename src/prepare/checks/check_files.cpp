@@ -18,6 +18,7 @@
 #include "prepare/packing/spheres_file.hpp"
 #include "prepare/shapes/surface.hpp"
 #include "prepare/shapes/wall_files.hpp"
+#include "prepare/tetrahedra/joint_discs.hpp"
 #include "prepare/tetrahedra/tet_body.hpp"
 #include "prepare/tetrahedra/tet_file.hpp"
 
@@ -180,6 +181,12 @@ void check_files(const fdem3::Config& config, const std::string& case_folder) {
       files.check("body." + body.name + ".file", body.file,
                   [&](const std::string& path) { read_body(body, path, parts); });
   }
+  for (const fdem3::JointSetConfig& set : config.joint_sets)
+    if (!set.file.empty())
+      files.check("joint_set." + set.name + ".file", set.file, [&](const std::string&) {
+        CrackNetwork any(0.0);
+        polygons_of_set(set, config.seed, 0, case_folder, any);
+      });
   files.refuse_all();
 }
 

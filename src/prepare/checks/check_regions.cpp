@@ -21,6 +21,7 @@
 #include "prepare/meshing/joint_sets.hpp"
 #include "prepare/shapes/solid.hpp"
 #include "prepare/shapes/wall_files.hpp"
+#include "prepare/tetrahedra/joint_discs.hpp"
 
 namespace breccia::prepare {
 namespace {
@@ -228,6 +229,27 @@ std::string problem_of_set(const fdem::JointSetConfig& set, const std::string* f
   const Nearest nearest = nearest_to(all, "", outlines);
   if (nearest.body == nullptr) return "";
   return fmt::format("{}.file: its lines lie in no body; {} is nearest, {} away", key,
+                     nearest.body->name, length_text(nearest.away));
+}
+
+std::string problem_of_set(const fdem3::JointSetConfig& set, const std::string* folder,
+                           const std::vector<Outline>& outlines) {
+  const std::string key = "joint_set." + set.name;
+  if (set.file.empty())
+    return problem_of(key, {{set.min.x, set.min.y, set.min.z}, {set.max.x, set.max.y, set.max.z}},
+                      "", outlines);
+  if (folder == nullptr) return "";
+  Bounds all{{no_limit, no_limit, no_limit}, {-no_limit, -no_limit, -no_limit}};
+  try {
+    CrackNetwork any(0.0);
+    for (const fdem3::DiscontinuityConfig& polygon : polygons_of_set(set, 0, 0, *folder, any))
+      for (const Vec3& x : polygon.points) add_to(all, {x.x, x.y, x.z});
+  } catch (const Error&) {
+    return "";  // check_files tells
+  }
+  const Nearest nearest = nearest_to(all, "", outlines);
+  if (nearest.body == nullptr) return "";
+  return fmt::format("{}.file: its polygons lie in no body; {} is nearest, {} away", key,
                      nearest.body->name, length_text(nearest.away));
 }
 

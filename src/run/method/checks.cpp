@@ -6,14 +6,29 @@
 #include <cmath>
 
 #include "io/emphasis.hpp"
+#include "run/results/history.hpp"
 
 namespace breccia {
 
+namespace {
+
+/// What a check is held against; of `.at` it is in the rows.
+std::optional<double> value_of(const CheckConfig& check, const Summary& summary,
+                               const std::string& history) {
+  if (check.at < 0.0) return number_at(summary, check.value);
+  for (std::size_t k = 0; k < summary.probes.size(); ++k)
+    if (check.value == "probe." + summary.probes[k].name + ".at")
+      return History::probe_at(history, k, check.at);
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::vector<CheckResult> evaluate_checks(const std::vector<CheckConfig>& checks,
-                                         const Summary& summary) {
+                                         const Summary& summary, const std::string& history) {
   std::vector<CheckResult> results;
   for (const CheckConfig& check : checks) {
-    CheckResult result{check.name,     number_at(summary, check.value),
+    CheckResult result{check.name,     value_of(check, summary, history),
                        check.expected, check.tolerance,
                        check.unit,     false};
     // Not a number compares false, so it never passes.

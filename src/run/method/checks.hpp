@@ -9,9 +9,10 @@
 
 namespace breccia {
 
-/// Every check of the case against the summary. A number that the run does not have fails.
+/// Every check of the case against the summary, and of a probe at a time against history.csv. A
+/// number that the run does not have fails.
 std::vector<CheckResult> evaluate_checks(const std::vector<CheckConfig>& checks,
-                                         const Summary& summary);
+                                         const Summary& summary, const std::string& history);
 
 bool all_pass(const std::vector<CheckResult>& results);
 

@@ -62,8 +62,15 @@ std::set<std::string> field_names(const Frame& frame) {
 
 /// The problem of a check that no run can evaluate; empty: none.
 std::string problem_of(const CheckConfig& c, const std::vector<ProbeConfig>& probes,
-                       const Shown& shown) {
+                       const Shown& shown, double end) {
   const std::string where = fmt::format("check.{}.value = {:?}", c.name, c.value);
+  const bool at_time = c.value.starts_with("probe.") && c.value.ends_with(".at");
+  if (at_time != (c.at >= 0.0))
+    return at_time ? where + " needs `at`, the time when it is read"
+                   : fmt::format("check.{}.at is of a value probe.<name>.at; it is {:?}", c.name,
+                                 c.value);
+  if (c.at > end)
+    return fmt::format("check.{}.at = {:.6g} s: the case ends at {:.6g} s", c.name, c.at, end);
   if (c.value.starts_with("stages_s.")) return "";  // as many as the run comes to
   if (!c.value.starts_with("probe."))
     return shown.numbers.contains(c.value)
@@ -75,9 +82,9 @@ std::string problem_of(const CheckConfig& c, const std::vector<ProbeConfig>& pro
   std::string known;
   for (const ProbeConfig& probe : probes) {
     if (probe.name == name)
-      return which == "last" || which == "min" || which == "max"
+      return which == "last" || which == "min" || which == "max" || which == "at"
                  ? ""
-                 : where + " must end in .last, .min or .max";
+                 : where + " must end in .last, .min, .max or .at";
     known += (known.empty() ? "" : ", ") + probe.name;
   }
   return where + " is not of a probe; there are: " + (known.empty() ? "none" : known);
@@ -125,7 +132,7 @@ void refuse_what_is_not_shown(const CaseConfig& config, Method& specimen) {
   const Shown shown = shown_by(specimen);
   std::vector<std::string> problems;
   for (const CheckConfig& check : config.checks)
-    problems.push_back(problem_of(check, config.probes, shown));
+    problems.push_back(problem_of(check, config.probes, shown, config.time.end));
   if (!has_field(shown.frame, config.output.color))
     problems.push_back(fmt::format(
         "output.color = {:?} is no field of the frames{}; allowed are {}, and \"\" for "

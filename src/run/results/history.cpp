@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <limits>
 
 #include "core/quantity.hpp"
+#include "io/whole_file.hpp"
 
 namespace breccia {
 namespace {
@@ -28,6 +31,17 @@ bool is_empty(const std::string& path) {
   return std::filesystem::file_size(path, error) == 0;
 }
 
+constexpr int energies = 8;
+constexpr std::size_t time_column = 1, first_probe = 3 + energies + 1;
+
+/// Field k of a row of numbers, which no comma is in.
+double number_in(std::string_view row, std::size_t k) {
+  for (; k > 0; --k) row.remove_prefix(std::min(row.find(',') + 1, row.size()));
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::from_chars(row.data(), row.data() + row.size(), value);
+  return value;
+}
+
 }  // namespace
 
 History::History(const std::string& path, const std::vector<ProbeConfig>& probes, bool in_plane,
@@ -40,7 +54,6 @@ History::History(const std::string& path, const std::vector<ProbeConfig>& probes
   const auto add_unit = [&](const std::string& unit) {
     units.append(",").append(in_plane ? per_metre(unit) : unit);
   };
-  constexpr int energies = 8;
   for (int k = 0; k < energies; ++k) add_unit("J");
   add_unit("-");
   for (const ProbeConfig& probe : probes) {
@@ -65,6 +78,27 @@ void History::write(const Sample& sample) {
   for (const double number : sample.probes) row += fmt::format(",{:.17g}", number);
   if (!sample.stage.empty()) row.append(",").append(quoted(sample.stage));
   file_.append(row);
+}
+
+std::optional<double> History::probe_at(const std::string& path, std::size_t probe, double time) {
+  const std::string text = read_whole_file(path);
+  std::optional<double> before_time, before;
+  std::size_t line = 0;
+  for (std::size_t at = 0; at < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view row(text.data() + at, end - at);
+    at = end + 1;
+    if (line < 2 || row.empty()) continue;
+    const double now = number_in(row, time_column), value = number_in(row, first_probe + probe);
+    if (now == time) return value;
+    if (now > time) {
+      if (!before) return std::nullopt;
+      return *before + (time - *before_time) / (now - *before_time) * (value - *before);
+    }
+    before_time = now;
+    before = value;
+  }
+  return std::nullopt;
 }
 
 void History::cut_to(const std::string& path, std::int64_t step) {

@@ -2,6 +2,7 @@
 // history.csv: the energies and probes of a run over its time.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ class History {
   /// Rows of later steps than `step` go, of this file or another one that begins so: a run that
   /// goes on from there writes them anew.
   static void cut_to(const std::string& path, std::int64_t step);
+
+  /// What the probe of that number reads at a time, linearly between the rows before and after it;
+  /// nothing: no rows are so early or so late.
+  static std::optional<double> probe_at(const std::string& path, std::size_t probe, double time);
 
   void write(const Sample& sample);
   void sync() { file_.sync(); }

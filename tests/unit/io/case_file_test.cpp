@@ -321,7 +321,15 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"probe.rok.last\"\n",
               "check.c.value = \"probe.rok.last\" is not of a probe; there are: none"},
         Wrong{"", "[[probe]]\nname = \"p\"\n[[check]]\nname = \"c\"\nvalue = \"probe.p.mean\"\n",
-              "check.c.value = \"probe.p.mean\" must end in .last, .min or .max"},
+              "check.c.value = \"probe.p.mean\" must end in .last, .min, .max or .at"},
+        Wrong{"", "[[probe]]\nname = \"p\"\n[[check]]\nname = \"c\"\nvalue = \"probe.p.at\"\n",
+              "check.c.value = \"probe.p.at\" needs `at`, the time when it is read"},
+        Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"energy.work\"\nat = 0.1\n",
+              "check.c.at is of a value probe.<name>.at; it is \"energy.work\""},
+        Wrong{"",
+              "[[probe]]\nname = \"p\"\n[[check]]\nname = \"c\"\nvalue = \"probe.p.at\"\nat = "
+              "1e9\n",
+              "check.c.at = 1e+09 s: the case ends at"},
         Wrong{"", "[[check]]\nname = \"c\"\nvalue = \"energy.eror_relative\"\n",
               "check.c.value = \"energy.eror_relative\" is no number of summary.json; did you mean "
               "energy.error_relative?"},

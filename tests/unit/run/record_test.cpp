@@ -174,11 +174,39 @@ TEST(Checks, FailForANumberTheRunDoesNotHaveOrThatIsNone) {
   Summary summary;
   summary.energy = EnergyBalance{};
   summary.energy->kinetic = std::numeric_limits<double>::quiet_NaN();
-  const auto results = evaluate_checks({CheckConfig{"missing", "no.such", 0.0, 1e9, "-"},
-                                        CheckConfig{"nan", "energy.kinetic", 0.0, 1e9, "J"}},
-                                       summary);
+  const auto results = evaluate_checks({CheckConfig{"missing", "no.such", -1.0, 0.0, 1e9, "-"},
+                                        CheckConfig{"nan", "energy.kinetic", -1.0, 0.0, 1e9, "J"}},
+                                       summary, "");
   EXPECT_FALSE(results[0].pass);
   EXPECT_FALSE(results[1].pass);
+}
+
+TEST(Checks, OfAProbeAtATimeAreMadeBetweenTheRowsAroundIt) {
+  const ScratchFolder scratch;
+  const std::string path = scratch / "history.csv";
+  History history(
+      path, {ProbeConfig{"a,b", "", "damage", "max"}, ProbeConfig{"wall", "", "damage", "max"}},
+      false, true);
+  for (const double t : {0.0, 1.0, 3.0}) {
+    Sample row;
+    row.time = t;
+    row.probes = {-1.0, 10.0 * t * t};
+    row.stage = "one, two";
+    history.write(row);
+  }
+  history.sync();
+  Summary summary;
+  summary.probes = {{"a,b", 0.0, 0.0, 0.0}, {"wall", 0.0, 0.0, 0.0}};
+  const auto value_at = [&](double time) {
+    return evaluate_checks({CheckConfig{"c", "probe.wall.at", time, 0.0, 0.0, "-"}}, summary, path)
+        .front()
+        .value;
+  };
+  EXPECT_EQ(value_at(0.0), 0.0);
+  EXPECT_EQ(value_at(1.0), 10.0);
+  EXPECT_EQ(value_at(2.0), 50.0);
+  EXPECT_EQ(value_at(3.0), 90.0);
+  EXPECT_EQ(value_at(3.1), std::nullopt);
 }
 
 }  // namespace record_test

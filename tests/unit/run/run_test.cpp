@@ -296,8 +296,8 @@ TEST(Run, NeverSavesWrongNumbersAsACheckpoint) {
 TEST(Run, FailsIfACheckOfTheCaseFails) {
   const ScratchFolder scratch;
   RunPlan plan = fake_plan();
-  plan.config.checks = {CheckConfig{"elements", "model.elements", 4.0, 0.0, "-"},
-                        CheckConfig{"peak", "probe.first.max", 1.0, 1e-12, "m"}};
+  plan.config.checks = {CheckConfig{"elements", "model.elements", -1.0, 4.0, 0.0, "-"},
+                        CheckConfig{"peak", "probe.first.max", -1.0, 1.0, 1e-12, "m"}};
   EXPECT_EQ(run_fake(plan, scratch / "good"), 0);
   EXPECT_EQ(summary_of(scratch / "good")["checks"].size(), 2U);
   plan.config.checks[1].expected = 1.1;
