@@ -15,7 +15,7 @@ using Corners3 = std::vector<Vec3>;
 
 /// Half of the sum of the cross products of its sides: area times normal.  [m2]
 Vec3 area_vector(const Corners3& polygon);
-/// What of a convex polygon lies in a box; fewer than three corners: nothing.
+/// The part of a convex polygon inside a box; fewer than three corners: none of it is inside.
 Corners3 clipped(Corners3 polygon, const Vec3& low, const Vec3& high);
 
 /// Cracks and faces of bodies. Another crack fits in if with each of them it

@@ -176,7 +176,7 @@ std::vector<Corners3> faces_of_box(const Vec3& low, const Vec3& high) {
   return faces;
 }
 
-/// What is there before the first set.
+/// Cracks and faces of bodies that are there before the first set.
 CrackNetwork network_of(const fdem3::Config& config, double clear) {
   CrackNetwork network(clear);
   for (const fdem3::BodyConfig& body : config.bodies)

@@ -12,7 +12,7 @@ namespace breccia {
 
 namespace {
 
-/// What a check is held against; of `.at` it is in the rows.
+/// The number that a check compares: from the summary, or with `.at` from rows of history.csv.
 std::optional<double> value_of(const CheckConfig& check, const Summary& summary,
                                const std::string& history) {
   if (check.at < 0.0) return number_at(summary, check.value);

@@ -36,7 +36,7 @@ class History {
   /// goes on from there writes them anew.
   static void cut_to(const std::string& path, std::int64_t step);
 
-  /// What the probe of that number reads at a time, linearly between the rows before and after it;
+  /// Value of probe number `probe` at a time, linear between the rows before and after it;
   /// nothing: no rows are so early or so late.
   static std::optional<double> probe_at(const std::string& path, std::size_t probe, double time);
 
