@@ -15,7 +15,6 @@
 #include "exec/memory.hpp"
 #include "prepare/build.hpp"
 #include "prepare/packing/packing.hpp"
-#include "run/machine/machine.hpp"
 
 namespace breccia {
 namespace {
@@ -77,6 +76,7 @@ struct Windows {
 };
 
 std::vector<Measurement> measure_scene(const Exec& exec, double scale) {
+  forget_peak_of_arrays(exec.space);  // of scenes before
   StageTimers timers;
   Exec timed = exec;
   timed.timers = &timers;
@@ -92,11 +92,7 @@ std::vector<Measurement> measure_scene(const Exec& exec, double scale) {
                                   once("scene", "links_interface", w.interface.size(), "-"),
                                   once("scene", "build_model", build, "s"),
                                   once("scene", "make_world", setup, "s")};
-  const double elements = w.elements.size();
-  result.push_back(once("memory", "peak_arrays_per_element",
-                        static_cast<double>(peak_array_bytes(exec.space)) / elements, "B"));
-  result.push_back(once("memory", "peak_resident_per_element",
-                        static_cast<double>(peak_memory()) / elements, "B"));
+  result.push_back(arrays_at_most("memory", exec.space, "element", w.elements.size()));
   Windows before("before impact"), during("during impact");
   for (int window = 0; window < window_count; ++window) {
     if (window > 0) w = dem::make_world(config, model, timed);
@@ -113,7 +109,8 @@ std::vector<Measurement> measure_scene(const Exec& exec, double scale) {
 void report_slabs(const Exec& exec, int copies, int steps, std::vector<Measurement>& result) {
   dem::Config config = slab_scene(1.0);
   config.supports.clear();
-  if (exec.space == Space::cuda) return_free_memory();  // of scenes before
+  forget_peak_of_arrays(exec.space);                    // of scenes before
+  if (exec.space == Space::cuda) return_free_memory();  // likewise
   dem::World w(exec);
   const double setup = seconds_of(
       [&] { w = dem::make_world(config, side_by_side(build_model(config, ""), copies), exec); });
@@ -128,12 +125,7 @@ void report_slabs(const Exec& exec, int copies, int steps, std::vector<Measureme
   result.push_back(once(part, "setup", setup, "s"));
   result.push_back(over_windows(part, "step", "us", wall, 1e6));
   result.push_back(over_windows(part, "ns_per_link_step", "ns", wall, 1e9 / w.links()));
-  if (exec.space != Space::cuda) return;
-  const DeviceInfo device = device_info();
-  result.push_back(once(part, "device_memory_per_element",
-                        static_cast<double>(device.memory - device.free_memory) / elements, "B"));
-  result.push_back(
-      once(part, "peak_resident_per_element", static_cast<double>(peak_memory()) / elements, "B"));
+  result.push_back(arrays_at_most(part, exec.space, "element", elements));
 }
 
 /// Spheres of radii 0.8 to 1.2 m filling 60 % of a cube.

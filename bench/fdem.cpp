@@ -12,7 +12,6 @@
 #include "exec/memory.hpp"
 #include "fdem/world.hpp"
 #include "prepare/build_fdem.hpp"
-#include "run/machine/machine.hpp"
 
 namespace breccia {
 namespace {
@@ -172,6 +171,7 @@ void report_steps(fdem::World& w, StageTimers& timers, const std::string& part, 
 }
 
 void report_plate(const Exec& exec, int count, int steps, std::vector<Measurement>& result) {
+  forget_peak_of_arrays(exec.space);  // of plates before
   StageTimers timers;
   Exec timed = exec;
   timed.timers = &timers;
@@ -180,8 +180,7 @@ void report_plate(const Exec& exec, int count, int steps, std::vector<Measuremen
   const std::string part = "plate of " + std::to_string(count);
   report_steps(w, timers, part, steps, result);
   result.push_back(once(part, "setup", setup, "s"));
-  result.push_back(once(part, "resident_per_triangle",
-                        static_cast<double>(peak_memory()) / w.triangles.size(), "B"));
+  result.push_back(arrays_at_most(part, exec.space, "triangle", w.triangles.size()));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/benchmark.hpp"
+#include "exec/space.hpp"
 
 namespace breccia {
 
@@ -19,5 +20,10 @@ Measurement once(const std::string& part, const std::string& name, double value,
 /// Median, least and most of the windows' values, times `factor`.
 Measurement over_windows(const std::string& part, const std::string& name, const char* unit,
                          std::vector<double> values, double factor);
+
+/// The most that arrays of a space have taken since their peak was last forgotten, over `count`
+/// items of a model.
+Measurement arrays_at_most(const std::string& part, Space space, const std::string& item,
+                           double count);
 
 }  // namespace breccia

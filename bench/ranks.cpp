@@ -62,6 +62,12 @@ void take_steps(World& w, int steps) {
   if (w.exec.space == Space::cuda) wait_for_device();
 }
 
+/// Of scenes before.
+void forget_peaks(Space space) {
+  forget_peak_of_arrays(Space::host);
+  if (space == Space::cuda) forget_peak_of_arrays(space);
+}
+
 /// Memory that a rank has at most held, with building its part of the model.  [B]
 void report_memory(const All& all, Space space, std::vector<Measurement>& result) {
   const char* const part = "memory of a rank";
@@ -73,9 +79,8 @@ void report_memory(const All& all, Space space, std::vector<Measurement>& result
   };
   of_ranks("peak_resident", static_cast<double>(peak_memory()));
   of_ranks("peak_arrays", static_cast<double>(peak_array_bytes(Space::host)));
-  if (space != Space::cuda) return;
-  const DeviceInfo device = device_info();
-  of_ranks("device", static_cast<double>(device.memory - device.free_memory));
+  if (space == Space::cuda)
+    of_ranks("peak_arrays_of_device", static_cast<double>(peak_array_bytes(space)));
 }
 
 /// How ranks fared in the windows.
@@ -163,6 +168,7 @@ std::int64_t asked(const RankScale& scale, const Exec& exec, int parts, std::int
 std::vector<Measurement> measure_slabs(const Exec& exec, Communicator* ranks,
                                        const RankScale& scale, int parts) {
   const All all{ranks};
+  forget_peaks(exec.space);
   const std::int64_t elements = asked(scale, exec, parts, 100'000, 10'000'000);
   const std::int64_t slabs = std::max<std::int64_t>(1, (elements + slab_size / 2) / slab_size);
   dem::World w(exec);
@@ -177,6 +183,7 @@ std::vector<Measurement> measure_slabs(const Exec& exec, Communicator* ranks,
 std::vector<Measurement> measure_plate(const Exec& exec, Communicator* ranks,
                                        const RankScale& scale, int parts) {
   const All all{ranks};
+  forget_peaks(exec.space);
   const std::int64_t elements = asked(scale, exec, parts, 50'000, 10'000'000);
   fdem::World w(exec);
   const double setup =

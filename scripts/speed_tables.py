@@ -52,7 +52,7 @@ def of_gpu(files, item, bond, rate):
             if scene not in title:
                 continue
             count = told[item]["value"], told[bond]["value"]
-            memory = told.get("device_memory_per_element")
+            memory = told.get("peak_arrays_per_element") or told.get("device_memory_per_element")  # with the context, until November 2026
             rows.append([title, f"{count[0]:,.0f}", f"{count[1]:,.0f}", spread(told["step"]),
                          f"{(count[0] if rate == item else count[1]) / told['step']['value'] / 1e3:.2g}",
                          f"{memory['value'] / 1e3:.1f}" if memory and count[0] > 5e5 else "", of["breccia"].get("commit", "")])

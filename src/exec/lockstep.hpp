@@ -50,16 +50,6 @@ class LaneGroup {
     return x;
 #endif
   }
-  /// x of the lane `by` places further on; of the last ones their own.
-  template <class T>
-  BR_HD T from_next(int by, T x) const {
-#if defined(__CUDA_ARCH__)
-    return __shfl_down_sync(mask_, x, static_cast<unsigned>(by), width);
-#else
-    const int at = lockstep::lane() + by;
-    return from(at < width ? at : lockstep::lane(), x);
-#endif
-  }
   /// Bit k: `flag` of lane k.
   BR_HD unsigned ballot(bool flag) const {
 #if defined(__CUDA_ARCH__)

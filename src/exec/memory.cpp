@@ -139,20 +139,42 @@ void clear_bytes(void* memory, [[maybe_unused]] Space space, std::size_t bytes) 
   std::memset(memory, 0, bytes);
 }
 
+#if defined(BR_CUDA)
+namespace {
+
+cudaMemPool_t pool_in_use() {
+  int number = 0;
+  cudaMemPool_t pool = nullptr;
+  check_device(cudaGetDevice(&number), "asking for its number");
+  check_device(cudaDeviceGetDefaultMemPool(&pool, number), "finding its memory pool");
+  return pool;
+}
+
+}  // namespace
+#endif
+
 std::size_t peak_array_bytes([[maybe_unused]] Space space) {
 #if defined(BR_CUDA)
   if (space == Space::cuda) {
-    int number = 0;
-    cudaMemPool_t pool = nullptr;
     std::uint64_t bytes = 0;
-    check_device(cudaGetDevice(&number), "asking for its number");
-    check_device(cudaDeviceGetDefaultMemPool(&pool, number), "finding its memory pool");
-    check_device(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemHigh, &bytes),
+    check_device(cudaMemPoolGetAttribute(pool_in_use(), cudaMemPoolAttrUsedMemHigh, &bytes),
                  "asking for its memory");
     return bytes;
   }
 #endif
   return peak_bytes.load();
+}
+
+void forget_peak_of_arrays([[maybe_unused]] Space space) {
+#if defined(BR_CUDA)
+  if (space == Space::cuda) {
+    std::uint64_t none = 0;  // the driver goes on from what is alive
+    check_device(cudaMemPoolSetAttribute(pool_in_use(), cudaMemPoolAttrUsedMemHigh, &none),
+                 "forgetting the most of its memory");
+    return;
+  }
+#endif
+  peak_bytes = alive_bytes.load();
 }
 
 }  // namespace breccia

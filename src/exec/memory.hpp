@@ -20,7 +20,9 @@ void mark_launches(Space space);
 void peek_marked_bytes(void* to, const void* from, Space from_space, std::size_t bytes);
 /// Sets every byte to zero.
 void clear_bytes(void* memory, Space space, std::size_t bytes);
-/// The largest sum of array memory of a space that was alive at one time in this process.
+/// The largest sum of array memory of a space that was alive at one time in this process, or since
+/// that was last forgotten.
 std::size_t peak_array_bytes(Space space = Space::host);
+void forget_peak_of_arrays(Space space = Space::host);
 
 }  // namespace breccia

@@ -1,0 +1,25 @@
+#include "exec/memory.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exec/buffer.hpp"
+
+namespace breccia {
+namespace memory_test {
+
+TEST(ArrayMemory, PeakCountsFromWhereItWasForgotten) {
+  constexpr Index large = 1 << 20, small = 1 << 17;
+  const Buffer<double> kept(Space::host, small);
+  { const Buffer<double> gone(Space::host, large); }
+  EXPECT_GE(peak_array_bytes(), sizeof(double) * (large + small));
+  forget_peak_of_arrays();
+  const std::size_t alive = peak_array_bytes();
+  EXPECT_GE(alive, sizeof(double) * small);
+  EXPECT_LT(alive, sizeof(double) * large);
+  { const Buffer<double> more(Space::host, small); }
+  EXPECT_GE(peak_array_bytes(), alive + sizeof(double) * small);
+  EXPECT_LT(peak_array_bytes(), alive + sizeof(double) * large);
+}
+
+}  // namespace memory_test
+}  // namespace breccia
