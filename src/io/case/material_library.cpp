@@ -10,24 +10,10 @@
 
 #include "exec/error.hpp"
 #include "io/case/case_file.hpp"
+#include "io/case/materials_text.hpp"
 #include "io/case/suggestion.hpp"
 #include "io/case/units.hpp"
 #include "io/case/use_materials.hpp"
-
-// The assembler copies the file (as in report/bundle.cpp).
-__asm__(
-    ".pushsection .rodata\n"
-    ".global breccia_materials\n"
-    ".hidden breccia_materials\n"
-    "breccia_materials:\n"
-    ".incbin \"" BR_MATERIALS_FILE
-    "\"\n"
-    ".global breccia_materials_end\n"
-    ".hidden breccia_materials_end\n"
-    "breccia_materials_end:\n"
-    ".byte 0\n"
-    ".popsection\n");
-extern "C" const char breccia_materials[], breccia_materials_end[];
 
 namespace breccia {
 namespace {
@@ -35,8 +21,7 @@ namespace {
 constexpr std::array methods{"dem3d", "fdem2d"};
 
 const toml::table& library() {
-  static const toml::table tables =
-      toml::parse(std::string_view(breccia_materials, breccia_materials_end));
+  static const toml::table tables = toml::parse(materials_text());
   return tables;
 }
 

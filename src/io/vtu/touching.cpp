@@ -19,8 +19,8 @@ void push(std::vector<float>& values, const Vec3& v) {
   for (const double c : {v.x, v.y, v.z}) values.push_back(static_cast<float>(c));
 }
 
-/// Two triangles of a plane that are wider than what is around.
-std::vector<Vec3> rectangle(const FrameWall& plane, const Around& around) {
+/// Two triangles of a plane wider than that space.
+std::vector<Vec3> rectangle(const FrameWall& plane, const Around& space) {
   const Vec3& n = plane.normal;
   const Vec3 along = std::fabs(n.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 first = along - dot(along, n) * n;
@@ -28,16 +28,16 @@ std::vector<Vec3> rectangle(const FrameWall& plane, const Around& around) {
                                  cross(n, (1.0 / norm(first)) * first)};
   std::array<double, 2> low{1e300, 1e300}, high{-1e300, -1e300};
   for (int k = 0; k < 8; ++k) {
-    const Vec3 corner{(k & 1) != 0 ? around.high.x : around.low.x,
-                      (k & 2) != 0 ? around.high.y : around.low.y,
-                      (k & 4) != 0 ? around.high.z : around.low.z};
+    const Vec3 corner{(k & 1) != 0 ? space.high.x : space.low.x,
+                      (k & 2) != 0 ? space.high.y : space.low.y,
+                      (k & 4) != 0 ? space.high.z : space.low.z};
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const double at = dot(corner - plane.point, axes[axis]);
       low[axis] = std::min(low[axis], at);
       high[axis] = std::max(high[axis], at);
     }
   }
-  const double margin = 0.03 * norm(around.high - around.low);
+  const double margin = 0.03 * norm(space.high - space.low);
   const auto corner = [&](double a, double b) { return plane.point + a * axes[0] + b * axes[1]; };
   const Vec3 p = corner(low[0] - margin, low[1] - margin),
              q = corner(high[0] + margin, low[1] - margin),

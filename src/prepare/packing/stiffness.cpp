@@ -167,7 +167,7 @@ constexpr std::size_t always_measured = 20'000;
 constexpr double moments = 1.05;
 
 /// Bounds of what a packing can be asked for.
-constexpr double densest = 0.62, widest = 10.0;
+constexpr double densest = 0.62, most_apart = 10.0;
 
 /// visit(link, its length at the start) for the concrete links of a body.
 template <class Visit>
@@ -195,7 +195,7 @@ double opening_for_energy(const Model& model, const Config& config, int number) 
   const double compactness = std::min(solid / bulk_of(config, body), densest);
   return rupture_opening(
       material_of(config, body), config.contact,
-      {mean, std::min(largest / least, widest), compactness, model.interaction_range}, longest,
+      {mean, std::min(largest / least, most_apart), compactness, model.interaction_range}, longest,
       body.name);
 }
 

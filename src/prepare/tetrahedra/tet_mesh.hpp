@@ -37,6 +37,7 @@ struct TetMesh {
 inline constexpr std::array<std::array<std::size_t, 3>, 4> face_corners{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
+using breccia::at;  // of an index alone
 inline const Vec3& at(const std::vector<Vec3>& point, Index i) {
   return point[static_cast<std::size_t>(i)];
 }

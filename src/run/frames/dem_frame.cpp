@@ -14,9 +14,9 @@
 #include "run/method/dem_method.hpp"
 
 namespace breccia {
+namespace dem {
 namespace {
 
-using namespace dem;
 using Kind = Quantity::Kind;
 
 /// How many elements and links there are in all, and bodies.
@@ -277,10 +277,15 @@ class DemFrame {
   FramePart part_;
 };
 
+FramePart frame_of(const World& w) {
+  return DemFrame(w).made();
+}
+
 }  // namespace
+}  // namespace dem
 
 FramePart dem_frame(const dem::World& w) {
-  return DemFrame(w).made();
+  return dem::frame_of(w);
 }
 
 }  // namespace breccia

@@ -15,9 +15,9 @@
 #include "run/method/fdem3_method.hpp"
 
 namespace breccia {
+namespace fdem3 {
 namespace {
 
-using namespace fdem3;
 using Kind = Quantity::Kind;
 
 void put_vector(FrameField& field, std::size_t place, const Vec3& v) {
@@ -171,9 +171,7 @@ class FrameOfTetrahedra {
   std::vector<Corners> velocity_;
 };
 
-}  // namespace
-
-FramePart fdem3_frame(World& w, const World* mesh) {
+FramePart frame_of(World& w, const World* mesh) {
   const OnHost<Tetrahedra> elements(w.tetrahedra, w.exec.space);
   const OnHost<Joints> joints(w.joints, w.exec.space);
   OwnParts own;
@@ -198,6 +196,13 @@ FramePart fdem3_frame(World& w, const World* mesh) {
   part.places.triangles = known.cracks + own.all_open;
   part.places.points = 4 * own.shown + 3 * part.places.triangles;
   return part;
+}
+
+}  // namespace
+}  // namespace fdem3
+
+FramePart fdem3_frame(fdem3::World& w, const fdem3::World* mesh) {
+  return fdem3::frame_of(w, mesh);
 }
 
 }  // namespace breccia

@@ -15,9 +15,9 @@
 #include "run/method/fdem_method.hpp"
 
 namespace breccia {
+namespace fdem {
 namespace {
 
-using namespace fdem;
 using Kind = Quantity::Kind;
 
 /// Fields of points besides velocity, in the order in which frames hold them.
@@ -166,9 +166,7 @@ void add_lines(const World& w, const Triangles& t, const Joints& j,
   add_crack_fields(j, now, own, f.line_fields);
 }
 
-}  // namespace
-
-FramePart fdem_frame(World& w, const World* mesh) {
+FramePart frame_of(World& w, const World* mesh) {
   const OnHost<Triangles> triangles(w.triangles, w.exec.space);
   const OnHost<Joints> joints(w.joints, w.exec.space);
   OwnParts own;
@@ -200,6 +198,13 @@ FramePart fdem_frame(World& w, const World* mesh) {
   part.places.lines = known.cracks + own.all_open;
   part.places.points = 3 * own.shown + 2 * part.places.lines;
   return part;
+}
+
+}  // namespace
+}  // namespace fdem
+
+FramePart fdem_frame(fdem::World& w, const fdem::World* mesh) {
+  return fdem::frame_of(w, mesh);
 }
 
 }  // namespace breccia
