@@ -1,7 +1,7 @@
-// What g++ calls for `#pragma omp`, on threads that ThreadSanitizer sees: GCC's libgomp waits by
-// futexes of its own, which would make each loop a race. Linked before libgomp where BR_SANITIZE
-// has "thread". Of OpenMP it knows what the program uses: parallel, for (static; dynamic once in a
-// region), barrier.
+// Functions that g++ calls for `#pragma omp`, on threads that ThreadSanitizer sees: GCC's libgomp
+// waits by futexes of its own, which would make each loop a race. Linked before libgomp where
+// BR_SANITIZE has "thread". Of OpenMP it knows what the program uses: parallel, for (static;
+// dynamic once in a region), barrier.
 
 #include <atomic>
 #include <condition_variable>

@@ -59,7 +59,7 @@ struct SpecimenTest {
 /// compression between sides that stand still (oedometer).
 const std::vector<SpecimenTest>& specimen_tests();
 
-/// Those, or of law ldpm its own.
+/// The tests above, or of law ldpm its own.
 std::vector<SpecimenTest> tests_of(const dem::MaterialConfig& material);
 
 /// Distance of the beam's supports.  [m]

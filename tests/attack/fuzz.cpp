@@ -198,7 +198,7 @@ void change_words(std::string& text, const std::string& other, Random& random) {
   }
 }
 
-// What the handler of a signal writes: the input in work, or the number of those done.
+// Words that the handler of a signal writes: the input in work, or the number of those done.
 std::string last;
 const char* input = nullptr;
 std::size_t input_size = 0;

@@ -1,4 +1,4 @@
-// The same bits for any number of ranks: the slab on simulated ones.
+// Equal bits for any number of ranks: the slab on simulated ones.
 
 #include <gtest/gtest.h>
 

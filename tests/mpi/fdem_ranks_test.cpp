@@ -1,4 +1,4 @@
-// The same bits for any number of ranks: triangles that break, fly, push and move as one.
+// Equal bits for any number of ranks: triangles that break, fly, push and move as one.
 
 #include <gtest/gtest.h>
 

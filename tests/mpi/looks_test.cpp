@@ -1,4 +1,4 @@
-// What ranks see of a run by their parts has the bits of what one process sees of the whole.
+// Ranks see of a run, by their parts, the bits that one process sees of the whole.
 
 #include <gtest/gtest.h>
 
@@ -120,7 +120,7 @@ TEST(Looks, find_the_same_where_arrays_lie_in_another_space) {
   }
 }
 
-/// What verify() says after each of some steps.
+/// Words of verify() after each of some steps.
 template <class AScene>
 std::vector<std::string> told(int count, const AScene& scene, int steps) {
   return on_all_ranks(count, 1, scene, [&](Method& method, bool) {

@@ -27,7 +27,7 @@ void scatter(dem::World& w, std::int64_t round) {
                                            0.05 * drawn(id, round, 3)};
   }
 }
-/// The same with hexagons, in a space as large as their room.
+/// That scene with hexagons, in a space as large as their room.
 void scatter(fdem::World& w, std::int64_t round) {
   for (Index t = 0; t < w.triangles.size(); ++t) {
     const GlobalId block = w.triangles.id.data()[t] / 6;

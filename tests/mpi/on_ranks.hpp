@@ -1,5 +1,5 @@
 #pragma once
-// The same scene alone and on simulated ranks; the same run saved on some and continued on others.
+// A scene alone and on simulated ranks; a run saved on some and continued on others.
 
 #include <filesystem>
 #include <fstream>
@@ -74,7 +74,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// What a run leaves that is saved on the way, or continued from there.
+/// State that a run leaves which is saved on the way, or continued from there.
 struct Journal {
   std::string checkpoint, frame;
   std::uint64_t hash = 0;

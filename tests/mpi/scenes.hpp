@@ -1,5 +1,5 @@
 #pragma once
-// What ranks are tried on: a slab of spheres, triangles that break, triangles that fly.
+// Scenes for ranks: a slab of spheres, triangles that break, triangles that fly.
 
 #include <memory>
 #include <string>
@@ -127,7 +127,7 @@ inline std::unique_ptr<Method> method_of(const Scene& scene, const Exec& exec,
   return make_method(scene.config, scene.model, exec, ranks);
 }
 
-/// What a run leaves behind.
+/// State and energies after a run.
 struct Outcome {
   std::uint64_t hash = 0;
   std::int64_t searches = 0;

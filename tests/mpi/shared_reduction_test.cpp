@@ -10,7 +10,7 @@
 namespace breccia {
 namespace shared_reduction_test {
 
-/// What a rank votes for in a round.
+/// Vote of a rank in a round.
 std::uint64_t vote_of(std::size_t rank, std::uint64_t round) {
   return 1000 * round + rank;
 }

@@ -137,7 +137,7 @@ TEST(PlacesOnDevice, that_lead_nowhere_are_told) {
   EXPECT_NE(message(bar).find("elements.material leads to 16384"), std::string::npos)
       << message(bar);
 }
-/// What is worked out on the host for those who look at a run.
+/// Numbers worked out on the host for those who look at a run.
 TEST(PlacesOnDevice, that_lead_nowhere_are_told_before_pieces_are_found) {
   const fdem::testing::Scene s = pulled_plate("intrinsic");
   Exec shadow;

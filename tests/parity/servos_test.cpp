@@ -29,7 +29,7 @@ ServoConfig pushing(const OverTime<double>& force, double speed, double mass = n
   servo.mass = mass;
   return servo;
 }
-/// What a case has that says nothing of a mass, and servos that correct every ten steps.
+/// Servos of a case that says nothing of a mass, and servos that correct every ten steps.
 const double masses[] = {ServoConfig{}.mass, no_limit};
 
 constexpr int spheres = 6;
@@ -197,7 +197,7 @@ TEST(Servo, with_a_plate_is_off_by_the_plates_inertia_alone) {
   EXPECT_LT(method->energy().error_relative, 1e-3);
 }
 
-/// What touches nothing goes by the inertia of its plate, what a support holds with it.
+/// A face that touches nothing goes by the inertia of its plate, elements of a support with it.
 TEST(Servo, with_a_plate_that_touches_nothing_falls_freely) {
   dem::testing::Scene s = column();
   s.config.walls.back().point.z += 0.1;

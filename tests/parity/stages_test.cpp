@@ -197,7 +197,7 @@ TEST(Stages, of_triangles_go_on_from_a_checkpoint_in_any_of_them) {
   expect_resumed(strip());
 }
 
-/// What the ledger misses as a stage begins is what it missed before, to rounding.
+/// The ledger misses as a stage begins what it missed before, to rounding.
 template <class Scene>
 void expect_booked(const Scene& s) {
   const auto method = make_method(s.config, s.model, {}, nullptr);

@@ -26,7 +26,7 @@ struct ExplosiveGas {
     return a * exponential(-r1 * volume) + b * exponential(-r2 * volume) +
            c * power(volume, -(1.0 + omega));
   }
-  /// That expansion without limit would still set free.  [J/m3]
+  /// Energy that expansion without limit would still set free.  [J/m3]
   double energy(double volume) const {
     return a / r1 * exponential(-r1 * volume) + b / r2 * exponential(-r2 * volume) +
            c / omega * power(volume, -omega);

@@ -39,7 +39,7 @@ std::string run_gmsh(const GmshTask& task, const TemporaryFolder& folder);
 /// Where a program is that the shell would start; empty: nowhere.
 std::string on_path(const std::string& program);
 
-/// That a program is not installed which makes a mesh. @param what  whose mesh
+/// Error that says which program makes a mesh and is not installed. @param what  whose mesh
 std::string no_mesher(const std::string& what, const std::string& program = "gmsh");
 
 }  // namespace breccia::prepare

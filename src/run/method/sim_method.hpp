@@ -414,8 +414,8 @@ class SimMethod final : public Method {
     });
   }
   /// Work of gravity is the way along it: where gravity changes, the ledger counts it from here on.
-  /// That of a table holds until the next of each servo_every steps, as it is in the middle of
-  /// their kicks, each of which counts from half a step before it to half a step after it.
+  /// The velocity of a table holds until the next of each servo_every steps, as it is in the middle
+  /// of their kicks, each of which counts from half a step before it to half a step after it.
   void change_gravity() {
     const std::int64_t lasts = servo_every - steps() % servo_every;  // first to last kick
     const double middle = time() + 0.5 * static_cast<double>(lasts - 1) * world_.part().next_dt;

@@ -1,4 +1,4 @@
-// What bounds a cohesive link under pressure: compaction, crushing after rupture, bounded moments,
+// Bounds of a cohesive link under pressure: compaction, crushing after rupture, bounded moments,
 // wear by slip and turn.
 
 #include <gtest/gtest.h>

@@ -269,7 +269,7 @@ TEST(LdpmFacet, of_the_single_tetrahedra_opens_and_closes_with_the_error_of_one_
   EXPECT_NEAR(f.to(0.0).x, -0.015, 1e-6);
 }
 
-/// What is called only where pores collapse gives what the number does.
+/// The function called only where pores collapse gives what the number does.
 TEST(LdpmFacet, asks_for_the_volumetric_strain_where_pores_collapse) {
   const LdpmFacet law = benchmark();
   LdpmFacetState given{}, asked{};

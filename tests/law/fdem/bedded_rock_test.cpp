@@ -144,7 +144,7 @@ TEST(BeddedRock, feels_no_turn_and_has_an_energy) {
   }
 }
 
-/// What it holds under a stress at the start is that of the strain which would have led there.
+/// Energy under a stress at the start is that of the strain which would have led there.
 TEST(BeddedRock, holds_the_energy_of_its_stress_at_the_start) {
   for (const double angle : {0.0, 0.9}) {
     ElasticTriangle law = bedded_law(shale(angle), true);

@@ -129,7 +129,7 @@ TEST(Bolt, is_as_stiff_across_as_a_beam_in_grout) {
   EXPECT_NEAR(0.5 / pushed_end(bending, bedding, 8.0 / beta, 800), exact, 5e-3 * exact);
 }
 
-/// What turns and strains evenly, carries a bar along; what slips, does not.
+/// Rock that turns and strains evenly carries a bar along; rock that slips does not.
 TEST(Bolt, lies_out_of_line_by_slip_alone) {
   const Vec2 way{0.3, 0.4};
   const auto mapped = [](const Vec2& v) { return Vec2{0.6 * v.x - 0.9 * v.y, 0.7 * v.x + v.y}; };

@@ -74,7 +74,7 @@ TEST(JointBond, pressed_keeps_its_residual_friction_while_it_softens) {
   // Pulled apart there is nothing left to rub, and on the way back it unloads along the secant.
   EXPECT_EQ(at(b, 1e-9, s_p + s_t, s).shear, 0.0);
   EXPECT_NEAR(at(b, opening, 0.5 * (s_p + s_t), s).shear, 0.25 * pressure, 1e-6 * peak);
-  // What it took over friction is the share of its fracture energy that friction leaves.
+  // Work beyond that of friction is the share of its fracture energy that friction leaves.
   BondState<double> fresh{};
   const double whole = work(b, {opening, s_p}, {opening, s_p + s_t}, fresh);
   EXPECT_NEAR(whole - 0.5 * pressure * s_t, (peak - 0.5 * pressure) / peak * 50.0, 1e-4);

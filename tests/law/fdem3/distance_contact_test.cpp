@@ -245,7 +245,7 @@ TEST(DistanceContact, is_the_slope_of_its_energy_for_deformable_pairs) {
       }
 }
 
-/// What a couple of two of which all faces press adds up, with a penalty of 1.
+/// Sums of a couple of two of which all faces press, with a penalty of 1.
 Pressing pressing_of(const Body& first, const Body& second) {
   Partner one{}, other{};
   for (int k = 0; k < 4; ++k) {

@@ -63,7 +63,7 @@ const World& reference() {
   return w;
 }
 
-/// What is missing in the ledger when a column has been pulled until a time.  [-]
+/// Energy missing in the ledger when a column has been pulled until a time.  [-]
 double missing(double safety, double until) {
   Config config = pulled_column();
   config.time.safety = safety;

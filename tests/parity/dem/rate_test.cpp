@@ -1,4 +1,4 @@
-// The same bits for links whose strength depends on their strain rate and whose softening has a
+// Equal bits for links whose strength depends on their strain rate and whose softening has a
 // knee: threads, packs, the shadow space, ranks, precision, across a checkpoint.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The same bits for any thread count, width of vector, search margin, and across a checkpoint.
+// Equal bits for any thread count, width of vector, search margin, and across a checkpoint.
 
 #include <gtest/gtest.h>
 

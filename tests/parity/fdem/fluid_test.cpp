@@ -114,7 +114,8 @@ TEST(Fluid, that_flows_is_alike_on_threads_schedule_and_ranks) {
 TEST(Fluid, that_flows_is_resumed) {
   expect_resumed(flowing("intrinsic"));
 }
-/// What came in is in the cracks, besides what they held at the start: 4 closed edges of 1 cm.
+/// Fluid that came in is in the cracks, besides what they held at the start: 4 closed edges of 1
+/// cm.
 TEST(Fluid, that_flows_is_neither_lost_nor_made) {
   const fdem::testing::Scene s = flowing("intrinsic");
   const auto method = make_method(s.config, s.model, {}, nullptr);

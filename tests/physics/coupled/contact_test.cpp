@@ -97,7 +97,7 @@ TEST(SphereOnFaces, slides_and_begins_to_roll) {
   s.max_step = 2e-5;
   const auto w = s.world();
   // It rolls on the plane, r = R - o below its centre: when v - mu g t = w r, w = mu g r t m/I.
-  // That is at k/(1 + k) v/(mu g), k = I/(m r^2), with 1/(1 + k) of its speed.
+  // Rolling begins at k/(1 + k) v/(mu g), k = I/(m r^2), with 1/(1 + k) of its speed.
   const double k = 0.4 * radius * radius / ((radius - overlap) * (radius - overlap));
   const double lost = k / (1.0 + k), rolls_at = lost * speed / (friction * 10.0);
   while (w->spheres.time < 0.5 * rolls_at) step(w->between);

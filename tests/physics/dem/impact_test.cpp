@@ -53,7 +53,7 @@ TEST(Impact, the_rock_s_loss_of_momentum_is_the_impulse_on_slab_bars_and_support
   const double tolerance = 1e-10 * std::fabs(before);
   EXPECT_NEAR(lost, -given.rock, tolerance);
   EXPECT_NEAR(given.rock, -(given.slab + given.steel), tolerance);
-  // What the supports hold does not move: the rest of the impulse is momentum of slab and bars.
+  // Elements of supports do not move: the rest of the impulse is momentum of slab and bars.
   const double gained =
       sum(w, "slab", "momentum_z") - slab_before + sum(w, "steel", "momentum_z") - steel_before;
   EXPECT_NEAR(gained, given.slab + given.steel - given.supports, tolerance);

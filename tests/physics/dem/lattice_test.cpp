@@ -18,7 +18,7 @@ struct Plane {
   double xx, yy, xy;
 };
 
-/// What the lattice has become after one step of an affine motion.
+/// The lattice after one step of an affine motion.
 struct Affine {
   World world;
   Plane strain;

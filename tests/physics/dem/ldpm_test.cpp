@@ -155,7 +155,7 @@ TEST(Ldpm, the_step_is_stable_and_over_half_as_long_as_may_be) {
   EXPECT_GT(taken, 0.5 * stable);
 }
 
-/// That tetrahedron with the parameters of the public ones.
+/// The tetrahedron above with the parameters of the public ones.
 World public_tetrahedron(double stiffer = 1.0) {
   Scene s = tetrahedron(stiffer);
   LdpmConfig& c = s.config.materials[0].ldpm;

@@ -1,4 +1,4 @@
-// What is lost when links keep and do things in single precision. One rounding is a relative error
+// Losses of links that keep and do things in single precision. One rounding is a relative error
 // of at most 2^-24 = 6e-8 to the nearest, 2^-23 by chance; n roundings of a history by chance are a
 // walk of sqrt(n) such steps.
 

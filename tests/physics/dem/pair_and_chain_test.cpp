@@ -23,7 +23,7 @@ Scene elastic_scene(double poisson) {
   return s;
 }
 
-/// What a quantity that starts at 0 with the rate `rate` is after n steps of the leapfrog.
+/// A quantity that starts at 0 with the rate `rate`, after n steps of the leapfrog.
 double swing(double omega, double dt, double rate, int n) {
   const double theta = 2.0 * std::asin(0.5 * omega * dt);
   return rate * dt / std::sin(theta) * std::sin(n * theta);

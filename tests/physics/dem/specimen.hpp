@@ -37,7 +37,7 @@ struct Specimen {
   Model model() const { return build_model(config, "."); }
 };
 
-/// What a test with prescribed velocities of the ends shows; stress and strain in the sense of the
+/// Result of a test with prescribed velocities of the ends; stress and strain in the sense of the
 /// loading.
 struct Curve {
   double modulus = 0.0;   ///< secant at a strain of 1e-4  [Pa]

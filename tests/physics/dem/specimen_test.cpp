@@ -1,5 +1,5 @@
 // Packed specimens: elasticity, wave speed, strengths in tension and compression, their scatter.
-// What a disordered packing answers has no closed form. The moduli follow from the macro-micro
+// The answer of a disordered packing has no closed form. The moduli follow from the macro-micro
 // relation (to 4 %); strengths are held against the reference values of an independent program for
 // the same law and base case (2,000 elements), which other packings meet within 10 %; and against
 // scaling laws, which are exact.

@@ -94,7 +94,7 @@ TEST(Support, that_reaches_its_speed_within_two_steps_does_the_work_of_that_moti
   }
 }
 
-/// What make_world says against a case; empty: nothing.
+/// Complaint of make_world about a case; empty: nothing.
 std::string refusal(const Scene& s) {
   try {
     s.world();

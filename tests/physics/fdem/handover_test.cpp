@@ -139,8 +139,8 @@ TEST(Handover, shear_goes_on_in_the_friction_of_the_faces) {
         }
 }
 
-/// What slides back unloads the springs of both faces, p_t each times the part of the edge that is
-/// inside: the force changes from the joint's by no more than that.
+/// An edge that slides back unloads the springs of both faces, p_t each times the part of the edge
+/// that is inside: the force changes from the joint's by no more than that.
 TEST(Handover, shear_unloads_with_the_stiffness_of_the_contact) {
   constexpr double mu = 0.6, slip = 5e-9;
   Pair pair(rock(mu, mu));
@@ -170,7 +170,7 @@ TEST(Handover, shear_is_cut_at_the_friction_of_the_faces) {
   }
 }
 
-/// What the contact holds when it begins is the part of the joint's work that is not spent: it
+/// Energy of the contact when it begins is the part of the joint's work that is not spent: it
 /// gives just that back when the faces part, and every joule that moving took is fracture or
 /// friction.
 TEST(Handover, energy_goes_on_too) {

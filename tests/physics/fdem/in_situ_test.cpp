@@ -79,7 +79,7 @@ TEST(InSitu, that_grows_with_depth_stays_as_it_is) {
   }
 }
 
-/// The same mean stress everywhere: the ground sinks at once.
+/// One mean stress everywhere: the ground sinks at once.
 TEST(InSitu, without_slope_moves_under_gravity_and_is_told_of) {
   World w = ground("none", false).world();
   testing::run_to(w, 0.005);

@@ -179,7 +179,7 @@ TEST(FdemLoads, support_follows_its_table_and_books_its_work) {
   EXPECT_LT(b.error_relative, 1e-4);
 }
 
-/// What a support moves is not damped: its work is what the triangle stores.
+/// Motion by a support is not damped: its work is what the triangle stores.
 TEST(FdemLoads, local_damping_takes_nothing_from_what_is_held) {
   Scene scene;
   scene.material(1e8);
@@ -196,7 +196,8 @@ TEST(FdemLoads, local_damping_takes_nothing_from_what_is_held) {
   EXPECT_NEAR(b.work, b.elastic + b.kinetic, 1e-3 * b.work);
 }
 
-/// What a support moves at once moves from the start: no jump of its velocity is booked as work.
+/// A triangle that a support moves at once moves from the start: no jump of its velocity is booked
+/// as work.
 TEST(FdemLoads, what_a_support_moves_at_once_moves_from_the_start) {
   Scene scene;
   scene.material(1e8);

@@ -1,4 +1,4 @@
-// What is lost when joints and couples store their forces in single precision. Forces follow from
+// Losses of joints and couples that store their forces in single precision. Forces follow from
 // positions, so no error adds up: each is off by 2^-24 = 6e-8 of itself at most.
 
 #include <gtest/gtest.h>

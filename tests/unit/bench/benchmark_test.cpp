@@ -1,4 +1,4 @@
-// What benchmarks run and say; their speed is not tested.
+// Scenes and words of benchmarks; their speed is not tested.
 
 #include "bench/benchmark.hpp"
 
@@ -17,7 +17,7 @@
 namespace breccia {
 namespace benchmark_test {
 
-/// What decides places, counts and links: the case without laws, speeds and output.
+/// Keys that decide places, counts and links: the case without laws, speeds and output.
 std::string geometry_of(const dem::Config& config) {
   dem::Config geometry;
   geometry.seed = config.seed;

@@ -93,7 +93,7 @@ inline std::vector<Expected> listed(const Pairs& pairs) {
   return list;
 }
 
-/// What the search finds; `tested` gets its cost.
+/// Pairs that the search finds; `tested` gets its cost.
 inline std::vector<Expected> search(const Scene& scene, const Exec& exec = {},
                                     std::int64_t* tested = nullptr) {
   BroadPhase broad_phase(exec.space);

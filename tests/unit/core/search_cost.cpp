@@ -1,4 +1,4 @@
-// What a search costs on one core: printed, and bounded by its comparisons, which no machine
+// Cost of a search on one core: printed, and bounded by its comparisons, which no machine
 // changes.
 
 #include <gtest/gtest.h>

@@ -235,8 +235,8 @@ TEST(CoupledCase, goes_through_stages_and_is_resumed_in_each) {
   }
 }
 
-/// What is left when the pile, or the block, is taken out, with and without bonds between them,
-/// goes on by itself; what was between them leaves with its energy.
+/// Model that is left when the pile, or the block, is taken out, with and without bonds between
+/// them, goes on by itself; what was between them leaves with its energy.
 TEST(CoupledCase, takes_bodies_out_of_either_method) {
   for (const std::string body : {"pile", "block"}) {
     const bool bonded = body == "pile";

@@ -48,7 +48,7 @@ class LinkedRank final : public Communicator {
   PeerLink link_;
 };
 
-/// What an element is in a round of exchanges.
+/// Number of an element in a round of exchanges.
 struct Small {
   GlobalId id;
   Index round;

@@ -80,7 +80,7 @@ TEST(SimulatedRanks, a_rank_that_is_lost_does_not_leave_the_others_waiting) {
                std::runtime_error);
 }
 
-/// What wanders about in the test below.
+/// Particle that wanders about in the test below.
 struct Wanderers {
   Buffer<GlobalId> id;
   Buffer<Vec3> place;

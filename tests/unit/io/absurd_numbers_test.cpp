@@ -12,7 +12,7 @@
 namespace breccia {
 namespace absurd_numbers_test {
 
-/// What reading a case with this key of its material says; empty: it is taken.
+/// Error of reading a case with this key of its material; empty: it is taken.
 std::string said(const std::string& method, const std::string& key, const std::string& value) {
   const std::string box = method == "dem3d"
                               ? "shape = \"sphere\"\nradius = 0.1\npack = { count = 30 }\n"

@@ -18,7 +18,7 @@ namespace checkpoint_damage_test {
 using namespace checkpoint_test;
 using Content = std::vector<char>;
 
-/// What the reader says to a content: why it refuses, nothing if it loads it.
+/// Reason why the reader refuses a content, empty if it loads it.
 std::string refusal(const std::string& path, const Content& content) {
   write_content(path, content);
   try {

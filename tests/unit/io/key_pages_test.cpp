@@ -108,7 +108,7 @@ TEST(Keys, json_and_markdown_hold_every_key) {
   EXPECT_EQ(rows, total);
 }
 
-/// What TOML's inf, a number, becomes in JSON, which has none.
+/// JSON of TOML's inf, a number that JSON has not.
 const Json endless = "Infinity";
 
 /// The first fault of a value under the part of JSON Schema that ours uses; empty: none.

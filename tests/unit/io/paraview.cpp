@@ -115,7 +115,7 @@ nlohmann::json fields_json(const std::vector<FrameField>& fields) {
   return result;
 }
 
-/// What VTK must find in a series of these frames.
+/// Numbers that VTK must find in a series of these frames.
 std::string expectation(const std::vector<Frame>& frames) {
   nlohmann::json list = nlohmann::json::array();
   for (const Frame& frame : frames) {

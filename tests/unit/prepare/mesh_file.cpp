@@ -59,7 +59,7 @@ $Elements
 $EndElements
 )";
 
-/// The same as an Abaqus file.
+/// This mesh as an Abaqus file.
 const std::string abaqus_square = R"(*HEADING
  a square
 ** comment

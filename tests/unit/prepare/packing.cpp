@@ -220,7 +220,7 @@ TEST(Packing, NoDirectionIsPreferredInsideALargeBox) {
     EXPECT_LT(found.of_directions, 3.0) << "range " << range;
     EXPECT_LT(found.of_distances, 3.0) << "range " << range;
   }
-  // The same measure does see a packing pressed flat by a twentieth.
+  // This measure does see a packing pressed flat by a twentieth.
   for (Vec3& x : packing.position) x.z *= 0.95;
   EXPECT_GT(preference(packing, 1.02).of_distances, 10.0);
 }

@@ -16,7 +16,7 @@
 
 namespace breccia {
 
-/// What is to go wrong in a run of the fake method.
+/// Faults to come in a run of the fake method.
 struct Trouble {
   std::int64_t spoil_at = -1;       ///< verify() fails from this step on
   std::int64_t flip_at = -1;        ///< the first time that this step is done, a bit of it is wrong

@@ -20,7 +20,7 @@ namespace memory_plan_test {
 
 namespace fs = std::filesystem;
 
-/// What the kernel tells of a machine with 8 GB to spare.
+/// Text of the kernel about a machine with 8 GB to spare.
 class Machine {
  public:
   Machine() { write("proc/meminfo", "MemTotal: 16000000 kB\nMemAvailable: 8000000 kB\n"); }
@@ -88,7 +88,7 @@ double spent_by_children() {
   return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
          1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
-/// That of a child which runs, or has ended and is not awaited yet.  [s]
+/// Time of a child which runs, or has ended and is not awaited yet.  [s]
 double spent_by(pid_t child) {
   clockid_t clock = 0;
   timespec spent{};
