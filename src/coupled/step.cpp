@@ -81,6 +81,15 @@ void step(World& w) {
   take_step<dem::HostRun, fdem3::HostRun>(w);
 }
 
+void press_spheres_again(World& w) {
+  dem::Elements& e = w.spheres->elements;
+  for_each(w.spheres->exec, w.rows.size(),
+           AddToSpheres{w.rows.view(), std::as_const(w.bonds.state).view(),
+                        std::as_const(w.touches.history.force).view(), std::as_const(e.mass).view(),
+                        std::as_const(e.inertia).view(), e.force.view(), e.torque.view(),
+                        w.spheres->critical.view()});
+}
+
 void press(World& w) {
   const dem::World& s = *w.spheres;
   const StageTime timed(s.exec, "coupling");
@@ -98,10 +107,7 @@ void press(World& w) {
                  w.rows.view(), w.row_of_touch.view(), w.bonded.view(), w.touches.pairs.b.view(),
                  w.faces.pairs.b.view(), w.touches.history.state.view(),
                  w.touches.history.force.view(), w.faces.history.force.view(), w.pressed.view()});
-  for_each(s.exec, w.rows.size(),
-           AddToSpheres{w.rows.view(), w.bonds.state.view(), w.touches.history.force.view(),
-                        e.mass.view(), e.inertia.view(), w.spheres->elements.force.view(),
-                        w.spheres->elements.torque.view(), w.spheres->critical.view()});
+  press_spheres_again(w);
   for_each(
       s.exec, w.around.tetrahedron.size(),
       AddToTetrahedra{w.around.tetrahedron.view(), w.around.face_starts.view(),

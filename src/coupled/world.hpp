@@ -97,6 +97,8 @@ void step(World& w);
 
 /// Adds the forces between spheres and tetrahedra to the forces of each.
 void press(World& w);
+/// Adds those of the last step to the forces of spheres, which have evaluated their own anew.
+void press_spheres_again(World& w);
 /// The stable step of the tetrahedra by themselves, where it is evaluated,
 void note_stable_step(World& w);
 /// and the step to come, of all.

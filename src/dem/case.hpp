@@ -89,12 +89,14 @@ struct Case {
   double mean_radius = 0.0;        ///< of all elements  [m]
   double largest_margin = 0.0;     ///< half the smallest radius of linked concrete  [m]
   ContactLaw contact{};            ///< stage: its friction
-  double contact_step = no_limit;  ///< that resolves a contact of two like elements  [s]
-  Index materials = 0;             ///< how many there are  [-]
-  std::vector<std::uint8_t> bars;  ///< 1: its elements are bars  [-]  (materials)
-  std::vector<double> densities;   ///< of bodies  [kg/m3]  (materials)
-  MoreFields shown;                ///< in frames
-  EmissionConfig emission;         ///< which breaks are one event
+  double contact_step = no_limit;  ///< stage; that resolves a contact of two like elements  [s]
+  double first_contact_step = no_limit;  ///< likewise, as the case begins  [s]
+  std::vector<double> first_young;       ///< as the case begins  [Pa]  (materials)
+  Index materials = 0;                   ///< how many there are  [-]
+  std::vector<std::uint8_t> bars;        ///< 1: its elements are bars  [-]  (materials)
+  std::vector<double> densities;         ///< of bodies  [kg/m3]  (materials)
+  MoreFields shown;                      ///< in frames
+  EmissionConfig emission;               ///< which breaks are one event
 
   std::vector<std::string> warnings;  ///< what set-up found doubtful, for people
   std::vector<ElementSet> sets;       ///< bodies, then supports
@@ -110,8 +112,8 @@ struct Case {
                                ///< others 0  [kg/(s m2)]  (supports)
   std::vector<double> masses;  ///< of supports' elements together  [kg]  (supports)
   WallMeshes meshes;           ///< of walls of triangles
-  Buffer<ContactPair> contact_pairs;  ///< of materials p, q at p materials + q  (materials^2)
-  Buffer<ContactPair> wall_pairs;     ///< of a material with a wall  (materials)
+  Buffer<ContactPair> contact_pairs;  ///< stage; of materials p, q at p materials + q (materials^2)
+  Buffer<ContactPair> wall_pairs;     ///< stage; of a material with a wall  (materials)
 
   Buffer<Vec3> starts;  ///< places at the start, by global id; empty: nothing needs them
                         ///< [m]  (elements of the whole model)

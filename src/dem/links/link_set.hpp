@@ -63,6 +63,8 @@ struct LinkGroup {
   std::int16_t material = 0;  ///< (constant)
   std::vector<Index> starts;  ///< first link of each element a, and the end; swept on the host only
   Index first_number = 0, end_number = 0;  ///< of its links in the whole model; ranks only
+  double bulk = 1.0;                       ///< Model::Bulk::factor of its bodies  [-]  (constant)
+  double strength = 1.0;                   ///< Model::Link::strength of its links  [-]  (constant)
 };
 
 /// The laws of all groups where a device's kernels can read them, in the order of the groups;

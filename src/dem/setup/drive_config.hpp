@@ -223,6 +223,7 @@ struct MaterialChange {
   double tensile_strength = -1.0;  ///< below 0: as before  [Pa]
   double cohesion = -1.0;          ///< likewise  [Pa]
   double broken_friction = -1.0;   ///< likewise  [-]
+  double young = -1.0;             ///< likewise  [Pa]
 
   template <class Visit>
   void each_key(Visit&& key) {
@@ -234,6 +235,9 @@ struct MaterialChange {
         "cohesion of its links from now on; below 0: as before");
     key("broken_friction", broken_friction, "-", Range{-1.0, 1e6},
         "friction of its broken links from now on; below 0: as before");
+    key("young", young, "Pa", Range{-1.0, 1e13},
+        "modulus from now on: its links and contacts bear so much more or less at once, with the "
+        "same strain; below 0: as before");
   }
 };
 

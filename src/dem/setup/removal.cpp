@@ -1,20 +1,11 @@
 #include "dem/setup/removal.hpp"
 
-#include <type_traits>
-
 #include "core/on_host.hpp"
+#include "dem/setup/change_array.hpp"
 #include "exec/error.hpp"
 
 namespace breccia::dem {
 namespace {
-
-template <class Array, class Change>
-void change_array(Array& array, const Change& change) {
-  std::vector<std::remove_reference_t<decltype(*array.data())>> values;
-  copy_to(values, array);
-  change(values);
-  copy_to(array, values);
-}
 
 // A link lets go for good. What it has spent by softening stays booked as that of its rupture.
 void let_go(LinkSet<ConcreteLink>& set, const ConcreteLink& law, const std::vector<Index>& links) {

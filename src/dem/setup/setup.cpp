@@ -78,12 +78,10 @@ std::vector<Model::Link> grouped(const Model& m, const Config& config, LinkSet<L
   });
   for (std::size_t i = 0; i < links.size(); ++i) {
     const std::int16_t material = links[i].material;
+    const auto first = static_cast<Index>(i);
     if (i == 0 || law_of(links[i - 1]) != law_of(links[i]))
-      groups.push_back({make_law(config.materials.at(static_cast<std::size_t>(material)), links[i]),
-                        static_cast<Index>(i),
-                        static_cast<Index>(i),
-                        material,
-                        {}});
+      groups.push_back(
+          {make_law(config.materials.at(at(material)), links[i]), first, first, material, {}});
     groups.back().end = static_cast<Index>(i + 1);
   }
   resize_fields(set, static_cast<Index>(links.size()));
@@ -126,11 +124,15 @@ void set_links(LinkSet<ConcreteLink>& set, const Config& config, const Model& m)
     if (link.strength != 1.0) weaken(law, link.strength);
     return law;
   });
+  for (LinkGroup<ConcreteLink>& group : set.groups) {
+    group.bulk = m.bulk_of(links[at(group.begin)].a).factor;
+    group.strength = links[at(group.begin)].strength;
+  }
   set_ends(set.a, set.b, links);
   std::vector<double> length, stiffness, area;
   for (const Model::Link& link : links) {
     length.push_back(distance(m, link.a, link.b));
-    const MaterialConfig& material = config.materials[static_cast<std::size_t>(link.material)];
+    const MaterialConfig& material = config.materials[at(link.material)];
     area.push_back(bedding_share(m, link, material).strength * link_section(m, link));
     stiffness.push_back(link_stiffness(m, link, material));
   }
@@ -153,7 +155,7 @@ void set_links(LinkSet<ParallelBond>& set, const Config& config, const Model& m)
   std::vector<double> length, stiffness, strength;
   for (const Model::Link& link : links) {
     const double d = distance(m, link.a, link.b);
-    const MaterialConfig& material = config.materials[static_cast<std::size_t>(link.material)];
+    const MaterialConfig& material = config.materials[at(link.material)];
     const double radius =
         material.bond_radius * std::min(radius_of(m, link.a), radius_of(m, link.b));
     length.push_back(d);
@@ -356,14 +358,9 @@ void set_contacts(World& w, const Config& config, const Model& m) {
   Case& given = set_up(w);
   given.contact = contact_law(config.contact);
   given.materials = static_cast<Index>(config.materials.size());
-  std::vector<ContactPair> pairs, walls;
-  for (const MaterialConfig& a : config.materials) {
-    for (const MaterialConfig& b : config.materials)
-      pairs.push_back(contact_pair(config.contact, a, b));
-    walls.push_back(wall_pair(config.contact, a));
-  }
-  given.contact_pairs = filled(w, pairs);
-  given.wall_pairs = filled(w, walls);
+  for (Buffer<ContactPair>* pairs : {&given.contact_pairs, &given.wall_pairs})
+    *pairs = Buffer<ContactPair>(w.exec.space);
+  set_contact_pairs(w, config);
   given.meshes = wall_meshes(config, m, w.exec.space);
   auto corners = m.wall_meshes.begin();
   for (std::size_t k = 0; k < config.walls.size(); ++k) {
@@ -392,12 +389,14 @@ void set_contacts(World& w, const Config& config, const Model& m) {
       step = 0.2 * pi * r * std::sqrt(density * 2.0 * (1.0 + c.poisson) / c.young) /
              (0.1631 * c.poisson + 0.8766);
     } else {
-      const ContactPair& pair = pairs[material * config.materials.size() + material];
+      const ContactPair pair = contact_pair(config.contact, c, c);
       step = std::sqrt(2.0 * m.mass[e] / (pair.normal * 0.5 * r));
       if (given.contact.damping > 0.0) step *= 0.5 * given.contact.shrink();  // theory.md, 8
     }
     given.contact_step = std::min(given.contact_step, config.time.safety * step);
   }
+  given.first_contact_step = given.contact_step;
+  for (const MaterialConfig& each : config.materials) given.first_young.push_back(each.young);
 }
 
 }  // namespace

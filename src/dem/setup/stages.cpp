@@ -1,13 +1,17 @@
 #include "dem/setup/stages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/named.hpp"
 #include "core/set_up.hpp"
 #include "dem/setup/materials.hpp"
 #include "dem/setup/walls.hpp"
 #include "dem/world.hpp"
+#include "exec/error.hpp"
 
 namespace breccia::dem {
 
@@ -38,6 +42,7 @@ Config config_at(Config config, const StageProgress& progress) {
         if (change.tensile_strength >= 0.0) m->tensile_strength = change.tensile_strength;
         if (change.cohesion >= 0.0) m->cohesion = change.cohesion;
         if (change.broken_friction >= 0.0) m->broken_friction = change.broken_friction;
+        if (change.young >= 0.0) m->young = change.young;
       }
     for (const WallChange& change : stage.walls)
       if (WallConfig* const wall = find_named(config.walls, change.name)) {
@@ -108,13 +113,12 @@ std::vector<std::string> stage_problems(const Config& config) {
                   problems);
       for (const MaterialConfig& m : config.materials) {
         if (m.name != change.name) continue;
-        if (m.law != "concrete" && m.law != "parallel")
+        const bool strength = change.tensile_strength >= 0.0 || change.cohesion >= 0.0;
+        const bool linked = m.law == "concrete" || m.law == "parallel";
+        if (!linked && (m.law != "grain" || strength || change.broken_friction >= 0.0))
           problems.push_back(where + ".material." + m.name + ": its law is " + m.law +
-                             "; a stage changes those of law concrete and parallel");
-        else if (m.fabric == "faces")
-          problems.push_back(where + ".material." + m.name +
-                             ": fabric = \"faces\" gives its links different strengths, which a "
-                             "stage cannot change; use fabric = \"even\"");
+                             "; a stage changes those of law concrete and parallel, and young of "
+                             "law grain");
       }
     }
     for (const WallChange& change : stage.walls) {
@@ -165,28 +169,91 @@ std::vector<std::string> stage_problems(const Config& config) {
 
 namespace {
 
-/// Strengths of links as they are in a stage.
+void set_modulus(LinkGroup<ConcreteLink>& group, const MaterialConfig& m) {
+  group.law.modulus = local_elasticity(m).modulus * group.bulk;
+  group.law.rate = rate_curve(m);
+}
+void set_modulus(LinkGroup<ParallelBond>&, const MaterialConfig&) {}
+
+/// Whether some stage changes a material.
+bool changes(const Config& config, const MaterialConfig& m) {
+  return std::any_of(config.stages.begin(), config.stages.end(), [&](const StageConfig& stage) {
+    return std::any_of(stage.materials.begin(), stage.materials.end(),
+                       [&](const MaterialChange& change) { return change.name == m.name; });
+  });
+}
+
+/// Strengths and moduli of links as they are in a stage.
 template <class Law>
-void set_strengths(LinkSet<Law>& set, const Config& config) {
+void set_laws(LinkSet<Law>& set, const Config& config) {
   for (LinkGroup<Law>& group : set.groups) {
     const MaterialConfig& m = config.materials[static_cast<std::size_t>(group.material)];
-    group.law.tensile_strength = m.tensile_strength;
-    group.law.cohesion = m.cohesion;
+    if (!changes(config, m)) continue;
+    group.law.tensile_strength = group.strength * m.tensile_strength;
+    group.law.cohesion = group.strength * m.cohesion;
     group.law.broken_friction =
         m.broken_friction < 0.0 ? config.contact.friction : m.broken_friction;
+    set_modulus(group, m);
   }
 }
 
-void set_strengths(World& w, const Config& config) {
-  const auto changes = [](const StageConfig& stage) { return !stage.materials.empty(); };
-  if (std::none_of(config.stages.begin(), config.stages.end(), changes)) return;
-  set_strengths(w.concrete, config);
-  set_strengths(w.parallel, config);
+/// Refuses moduli with which a link would reach its strength beyond the opening at which it parts.
+/// Its links must be as set up.
+void refuse_soft_links(const World& w, const Config& config) {
+  std::vector<double> stiffness, area;
+  copy_to(stiffness, w.concrete.stiffness);
+  copy_to(area, w.concrete.area);
+  for (const LinkGroup<ConcreteLink>& group : w.concrete.groups) {
+    const auto material = static_cast<std::size_t>(group.material);
+    const MaterialConfig& m = config.materials[material];
+    const double by = m.young / w.given->first_young[material], last = group.law.rupture_opening;
+    if (!(last > 0.0) || by == 1.0 || group.end > w.concrete.size()) continue;
+    for (Index i = group.begin; i < group.end; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (by * stiffness[k] * last > group.strength * m.tensile_strength * area[k]) continue;
+      throw InputError(fmt::format(
+          "stage.material.{}.young = {:.6g} Pa: a link would reach its strength beyond the opening "
+          "{:.3g} m at which it parts by fracture_energy; give a larger one",
+          m.name, m.young, last));
+    }
+  }
+}
+
+/// The step that resolves contacts falls with the root of the modulus that grew most.
+double contact_step(const Case& given, const Config& config) {
+  double most = 1.0;
+  for (std::size_t k = 0; k < config.materials.size(); ++k)
+    most = std::max(most, config.materials[k].young / given.first_young[k]);
+  return given.first_contact_step / std::sqrt(most);
+}
+
+void set_materials(World& w, const Config& config) {
+  if (std::none_of(config.materials.begin(), config.materials.end(),
+                   [&](const MaterialConfig& m) { return changes(config, m); }))
+    return;
+  if (w.step == 0) refuse_soft_links(w, config);
+  set_laws(w.concrete, config);
+  set_laws(w.parallel, config);
+  set_contact_pairs(w, config);
+  Case& given = w.given.change(SetUp{});
+  given.contact_step = contact_step(given, config);
   list_laws(w);
   w.tiles.forget();
 }
 
 }  // namespace
+
+void set_contact_pairs(World& w, const Config& config) {
+  std::vector<ContactPair> pairs, walls;
+  for (const MaterialConfig& a : config.materials) {
+    for (const MaterialConfig& b : config.materials)
+      pairs.push_back(contact_pair(config.contact, a, b));
+    walls.push_back(wall_pair(config.contact, a));
+  }
+  Case& given = w.given.change(SetUp{});
+  copy_to(given.contact_pairs, pairs);
+  copy_to(given.wall_pairs, walls);
+}
 
 void set_gravity(World& w, const Vec3& gravity) {
   w.given.change(SetUp{}).gravity = gravity;
@@ -201,7 +268,7 @@ void configure(World& w, const Config& config) {
   given.contact.friction =
       config.stage_friction < 0.0 ? config.contact.friction : config.stage_friction;
   given.contact.damping = contact_law(config.contact).damping;
-  set_strengths(w, config);
+  set_materials(w, config);
   const std::size_t bodies = w.given->sets.size() - config.supports.size();
   std::size_t elements = 0;
   for (std::size_t b = 0; b < bodies; ++b)

@@ -1,6 +1,7 @@
 #include "dem/stepping/step.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/stepping.hpp"
 #include "dem/free_walls.hpp"
@@ -143,6 +144,16 @@ double step_allowed_now(const World& w) {
   trial.step = 0;       // a step that evaluates
   evaluate_forces(trial);
   return trial.next_dt;
+}
+
+void evaluate_anew(World& w) {
+  w.contact_actions.clear();
+  w.contact_actions.resize(w.contacts.size());        // those that touch write theirs
+  const double last = std::exchange(w.last_dt, 0.0);  // nothing has moved since
+  const double next = w.next_dt;
+  evaluate_forces(w);
+  w.last_dt = last;
+  w.next_dt = std::min(next, w.next_dt);
 }
 
 Advanced advance(World& w, const StopAt& stop) {

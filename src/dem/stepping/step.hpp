@@ -51,6 +51,10 @@ void take_step(Run&& run, World& w) {
 /// it; the world stays as it is.  [s]
 double step_allowed_now(const World& w);
 
+/// Forces of the state as it is, after what links and contacts bear has changed between two steps.
+/// All ranks call it.
+void evaluate_anew(World& w);
+
 /// Parts that all runs of one step at a time share: ghosts, the search, the time step.
 struct StepwiseRun {
   void send_ghosts(World& w) const;

@@ -10,6 +10,7 @@
 #include "exec/error.hpp"
 #include "prepare/csv_numbers.hpp"
 #include "prepare/meshing/length_law.hpp"
+#include "prepare/meshing/set_problems.hpp"
 #include "prepare/meshing/wkt.hpp"
 
 namespace breccia::prepare {
@@ -167,16 +168,7 @@ std::vector<std::string> joint_set_problems(const JointSetConfig& set,
     require(lines <= most_lines, fmt::format("{}: about {:.3g} lines; at most {:.0f} are possible",
                                              key, lines, most_lines));
   };
-  require(set.kind != "cohesive" ||
-              std::find(joints.begin(), joints.end(), set.material) != joints.end(),
-          fmt::format(".material = \"{}\" is not a joint law; there are: {}", set.material,
-                      joints.empty() ? "none" : fmt::format("{}", fmt::join(joints, ", "))));
-  if (!set.file.empty()) {
-    require(set.file.ends_with(".csv") || set.file.ends_with(".wkt"),
-            fmt::format(".file = \"{}\" is neither a .csv nor a .wkt file", set.file));
-    require(set.intensity == 0.0, ".intensity is of random lines, and these come from a file");
-    return problems;
-  }
+  if (check_shared_keys(set, joints, "lines", require)) return problems;
   require(set.max.x > set.min.x && set.max.y > set.min.y,
           ": random lines need the rectangle that they fill, min and max");
   if (set.spacing > 0.0) {

@@ -13,6 +13,7 @@
 #include "math/constants.hpp"
 #include "prepare/csv_numbers.hpp"
 #include "prepare/meshing/length_law.hpp"
+#include "prepare/meshing/set_problems.hpp"
 #include "prepare/meshing/wkt.hpp"
 
 namespace breccia::prepare {
@@ -251,14 +252,7 @@ std::vector<std::string> joint_set_problems(const JointSetConfig& set,
   const auto require = [&](bool holds, const std::string& text) {
     if (!holds) problems.push_back("joint_set." + set.name + text);
   };
-  require(set.kind != "cohesive" ||
-              std::find(joints.begin(), joints.end(), set.material) != joints.end(),
-          fmt::format(".material = \"{}\" is not a joint law; there are: {}", set.material,
-                      joints.empty() ? "none" : fmt::format("{}", fmt::join(joints, ", "))));
-  if (!set.file.empty()) {
-    require(set.file.ends_with(".csv") || set.file.ends_with(".wkt"),
-            fmt::format(".file = \"{}\" is neither a .csv nor a .wkt file", set.file));
-    require(set.intensity == 0.0, ".intensity is of random discs, and these come from a file");
+  if (check_shared_keys(set, joints, "discs", require)) {
     require(set.number == 0.0, ".number is of random discs, and these come from a file");
     return problems;
   }

@@ -57,6 +57,7 @@ template <class Config>
 Config without_bodies(Config config) {
   config.bodies.clear();
   config.discontinuities.clear();
+  config.joint_sets.clear();
   config.supports.clear();
   config.loads.clear();
   config.probes.clear();

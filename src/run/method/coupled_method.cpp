@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/on_host.hpp"
+#include "dem/setup/moduli.hpp"
 #include "exec/error.hpp"
 #include "io/frame_pair.hpp"
 #include "run/frames/coupled_frame.hpp"
@@ -25,7 +26,10 @@ class CoupledMethod final : public Method {
         probes_(parts.probes),
         spheres_(dem_part(parts.spheres, model.spheres, exec)),
         tetrahedra_(fdem3_part(parts.tetrahedra, model.tetrahedra, exec)),
-        w_(coupled::make_world(config, *spheres_.world, *tetrahedra_.world)) {}
+        w_(coupled::make_world(config, *spheres_.world, *tetrahedra_.world)) {
+    for (const dem::StageConfig& stage : parts.spheres.stages)
+      evaluates_anew_.push_back(dem::changes_moduli(stage));
+  }
 
   Advanced advance(const StopAt&) override {
     coupled::step(w_);
@@ -53,6 +57,11 @@ class CoupledMethod final : public Method {
     const bool begins = now.index != stage().index;
     each_part([&](const std::string&, Method& method) { method.set_stage(now); });
     if (!begins) return;
+    if (evaluates_anew_[static_cast<std::size_t>(now.index)]) {
+      const double alone = spheres_.method->energy().missing();
+      coupled::press_spheres_again(w_);
+      w_.ledger.came_in.add(spheres_.method->energy().missing() - alone);
+    }
     if (!stages_[static_cast<std::size_t>(now.index)].remove.empty()) coupled::cut_off_removed(w_);
     coupled::shorten_common_step(w_);
   }
@@ -234,6 +243,7 @@ class CoupledMethod final : public Method {
 
   int threads_;
   std::vector<StageEnd> stages_;
+  std::vector<bool> evaluates_anew_;  ///< whether a stage does so with the forces of spheres
   std::vector<coupled::PlacedProbe> probes_;
   DemPart spheres_;
   Fdem3Part tetrahedra_;

@@ -8,6 +8,7 @@
 #include "dem/observe.hpp"
 #include "dem/ranks.hpp"
 #include "dem/servos.hpp"
+#include "dem/setup/moduli.hpp"
 #include "dem/setup/removal.hpp"
 #include "dem/setup/stages.hpp"
 #include "dem/stepping/step.hpp"

@@ -114,7 +114,7 @@ class SimMethod final : public Method {
     const bool begins = now.index != world_.part().stage.index;
     world_.in_both([&](World& w) { w.stage = now; });
     if (!begins) return;
-    now_ = config_at(case_, now);
+    const Config before = std::exchange(now_, config_at(case_, now));
     change_gravity();
     const auto& stage = case_.stages[static_cast<std::size_t>(now.index)];
     const bool removes = !stage.remove.empty();
@@ -122,6 +122,7 @@ class SimMethod final : public Method {
     if constexpr (requires { stage.materials; }) books |= !stage.materials.empty();
     if constexpr (requires { stage.joints; }) books |= !stage.joints.empty();
     const auto change = [&](World& w) {
+      if constexpr (requires { change_moduli(w, before, now_); }) change_moduli(w, before, now_);
       configure(w, now_);
       if (removes) {
         open_around_removed(w);
@@ -129,7 +130,12 @@ class SimMethod final : public Method {
       }
     };
     if (books)
-      booked([&] { world_.in_both(change); });
+      booked([&] {
+        world_.in_both(change);
+        if constexpr (requires { changes_moduli(stage); })
+          if (changes_moduli(stage))
+            at_once(world_.ranks(), [&] { world_.in_part([](World& w) { evaluate_anew(w); }); });
+      });
     else
       world_.in_both(change);
     world_.in_both([&](World& w) {

@@ -1,6 +1,10 @@
 // Links that a stage weakens, and faces that absorb: what follows, a ledger that books it, and the
 // same bits on threads, a device's schedule, ranks and resumed.
 
+#include <cmath>
+#include <utility>
+
+#include "dem/setup/moduli.hpp"
 #include "dem/setup/stages.hpp"
 #include "parity/staged_runs.hpp"
 #include "physics/dem/scene.hpp"
@@ -83,6 +87,149 @@ TEST(StageLinks, are_alike_on_threads_schedule_and_ranks_and_resumed) {
     expect_alike(s);
     expect_resumed(s);
   }
+}
+
+/// Two elements, joined by a link or pressed together, that supports hold apart from where they
+/// began, along and across; a second stage changes their modulus.
+dem::testing::Scene held_pair(const char* law, double along, double young) {
+  dem::testing::Scene s;
+  dem::MaterialConfig& m = s.material("m", law, 30e9, 0.2, 2400.0);
+  m.tensile_strength = 400e6;
+  m.cohesion = 1200e6;
+  s.sphere({0.0, 0.0, 0.0}, 0.01);
+  s.sphere({0.0, 0.0, 0.02}, 0.01);
+  if (along > 0.0)
+    s.link(0, 1,
+           std::string(law) == "parallel" ? dem::LinkKind::parallel : dem::LinkKind::concrete);
+  s.config.contact.restitution = 1.0;
+  s.config.contact.friction = 0.9;
+  dem::SupportConfig foot, head;
+  foot.name = "foot";
+  foot.max.z = 0.01;
+  head.name = "head";
+  head.min.z = 0.01;
+  head.velocity.times = {0.0, 2e-5, 2.0001e-5};
+  head.velocity.values = {{0.1 * along, 0.0, along}, {0.1 * along, 0.0, along}, {}};
+  foot.fix = head.fix = {"all"};
+  s.config.supports = {foot, head};
+  s.config.probes = {{"along", "head", "force_z", "sum"},
+                     {"across", "head", "force_x", "sum"},
+                     {"way", "head", "displacement_z", "mean"},
+                     {"aside", "head", "displacement_x", "mean"}};
+  s.config.time.end = 1.0;
+  s.config.energy.stop = 0.0;
+  dem::StageConfig hold, other;
+  hold.name = "hold";
+  hold.until = 4e-5;
+  other.name = "other";
+  other.until = 2e-5;
+  other.materials.resize(1);
+  other.materials[0].name = "m";
+  other.materials[0].young = young;
+  s.config.stages = {hold, other};
+  return s;
+}
+
+/// F = K d, so with another K the force and what is stored, F d/2, change by the same share.
+TEST(StageModuli,
+     change_what_is_stored_and_the_work_by_half_of_the_stiffness_times_the_way_squared) {
+  for (const double by : {2.0, 0.25})
+    for (const auto& [law, along] : {std::pair{"concrete", 0.05}, std::pair{"parallel", 0.05},
+                                     std::pair{"concrete", -0.05}, std::pair{"grain", -0.05}})
+      for (const char* contact : {"linear", "hertz"}) {
+        SCOPED_TRACE(::testing::Message() << law << " " << along << " " << contact << " " << by);
+        dem::testing::Scene s = held_pair(law, along, by * 30e9);
+        s.config.contact.law = contact;
+        const auto method = make_method(s.config, s.model, {}, nullptr);
+        StageControl stages(*method, s.config.probes, "", nullptr);
+        while (method->time() < 4e-5) method->advance(stages.limited({1.0, method->steps() + 37}));
+        const EnergyBalance before = method->energy();
+        const std::vector<double> was = method->probes();
+        stages.look();
+        ASSERT_EQ(method->stage().index, 1);
+        const EnergyBalance after = method->energy();
+        const double stored = -0.5 * (was[0] * was[2] + was[1] * was[3]);  // K d^2/2
+        if (along > 0.0 || std::string(contact) == "linear") {
+          EXPECT_NEAR(before.elastic, stored, 1e-6 * stored);
+        }
+        EXPECT_NEAR(after.elastic, by * before.elastic, 1e-9 * before.elastic);
+        EXPECT_NEAR(after.work - before.work, (by - 1.0) * before.elastic, 1e-9 * before.elastic);
+        EXPECT_NEAR(after.missing(), before.missing(), 1e-9 * before.elastic);
+        while (!stages.finished()) {
+          method->advance(stages.limited({1.0, method->steps() + 37}));
+          stages.look();
+        }
+        const std::vector<double> is = method->probes();
+        EXPECT_NEAR(is[0], by * was[0], 1e-9 * std::abs(was[0]));
+        EXPECT_NEAR(is[1], by * was[1], 1e-9 * std::abs(was[0]));
+        EXPECT_GT(std::abs(is[1]), 0.01 * std::abs(is[0]));
+        EXPECT_NEAR(method->energy().missing(), before.missing(), 1e-9 * before.elastic);
+      }
+}
+
+/// Half of a step's kick comes before the stage and half after it, each with its own forces.
+TEST(StageModuli, change_the_energy_of_what_moves_and_it_is_all_booked) {
+  for (const char* law : {"parallel", "concrete"})
+    for (const double by : {2.0, 0.4}) {
+      dem::testing::Scene s = weakened(law);
+      s.config.local_damping = 0.0;
+      s.config.materials[0].tensile_strength = 40e6;
+      s.config.materials[0].cohesion = 120e6;
+      s.config.stages[1].materials = {{"m"}};
+      s.config.stages[1].materials[0].young = by * 30e9;
+      const auto method = make_method(s.config, s.model, {}, nullptr);
+      run_to(*method, s.config, nullptr);
+      EXPECT_EQ(method->probes()[0], 0.0);
+      EXPECT_LT(method->energy().error_relative, 1e-5) << law << " " << by;
+    }
+}
+
+/// Links that soften keep their damage; some break later.
+TEST(StageModuli, are_alike_on_threads_schedule_and_ranks_and_resumed) {
+  dem::testing::Scene s = weakened("concrete");
+  s.config.materials[0].softening = 1.5;
+  s.config.materials[0].tensile_strength = 1e6;
+  s.config.stages[1].materials = {{"m"}};
+  s.config.stages[1].materials[0].young = 60e9;
+  const auto method = make_method(s.config, s.model, {}, nullptr);
+  run_to(*method, s.config, nullptr);
+  EXPECT_GT(method->probes()[0], 0.0);
+  expect_alike(s);
+  expect_resumed(s);
+}
+
+/// Links of other strengths than the material's (fabric "faces") keep their shares, and those of
+/// a material that the stage does not name stay as they are.
+TEST(StageLinks, are_as_if_built_with_the_materials_of_the_stage) {
+  dem::testing::Scene s = weakened("concrete");
+  s.config.materials.push_back(s.config.materials[0]);
+  s.config.materials[0].fabric = s.config.materials[1].fabric = "faces";
+  s.config.materials[1].name = "other";
+  for (std::size_t k = 0; k < s.model.links.size(); ++k) {
+    s.model.links[k].strength = 0.25 * (1.0 + static_cast<double>(k % 5));
+    s.model.links[k].material = static_cast<std::int16_t>(k % 2);
+  }
+  s.config.stages[1].materials = {{"m", 1e6, 3e6, 0.3}};
+  s.config.stages[1].materials[0].young = 15e9;
+  ASSERT_TRUE(dem::stage_problems(s.config).empty());
+  StageProgress second;
+  second.index = 1;
+  const dem::Config then = dem::config_at(s.config, second);
+  dem::World w = dem::make_world(s.config, s.model, {});
+  dem::change_moduli(w, s.config, then);
+  dem::configure(w, then);
+  const dem::World built = dem::make_world(then, s.model, {});
+  ASSERT_EQ(w.concrete.groups.size(), 10U);
+  for (std::size_t g = 0; g < w.concrete.groups.size(); ++g) {
+    const dem::ConcreteLink &is = w.concrete.groups[g].law, &should = built.concrete.groups[g].law;
+    EXPECT_DOUBLE_EQ(is.tensile_strength, should.tensile_strength) << g;
+    EXPECT_DOUBLE_EQ(is.cohesion, should.cohesion) << g;
+    EXPECT_DOUBLE_EQ(is.broken_friction, should.broken_friction) << g;
+    EXPECT_DOUBLE_EQ(is.modulus, should.modulus) << g;
+  }
+  for (Index i = 0; i < w.concrete.size(); ++i)
+    EXPECT_DOUBLE_EQ(w.concrete.stiffness.data()[i], built.concrete.stiffness.data()[i]) << i;
+  EXPECT_LE(w.given->contact_step, built.given->contact_step);
 }
 
 TEST(StageLinks, of_no_such_material_or_law_are_a_problem) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dem/stepping/step.hpp"
 #include "physics/coupled/scene.hpp"
 
 namespace breccia::coupled {
@@ -44,6 +45,26 @@ TEST(SphereOnFaces, returns_from_a_held_block_with_its_energy) {
   EXPECT_NEAR(dem::testing::state(w->spheres, 0).velocity.z, speed, 1e-4 * speed);
   const EnergyBalance e = energies(*w);
   EXPECT_NEAR(e.missing(), 0.0, 1e-9 * e.start);
+}
+
+// Forces of spheres that are evaluated anew between two steps get those of the faces back.
+TEST(SphereOnFaces, press_again_with_what_they_pressed) {
+  const double radius = 0.02;
+  Scene s;
+  held_block(s, {0.1, 0.1, 0.05}, 0.025);
+  s.balls.material("ball", "grain", 30e9, 0.2, 2650.0);
+  s.balls.sphere({0.0013, 0.0021, radius - 1e-6}, radius, {0.0, 0.0, -0.1});
+  s.max_step = 1e-7;
+  const auto w = s.world();
+  step(w->between);
+  const Vec3 pressed = w->spheres.elements.force.data()[0];
+  const double critical = w->spheres.critical.data()[0];
+  EXPECT_GT(pressed.z, 0.0);
+  dem::evaluate_anew(w->spheres);
+  EXPECT_EQ(w->spheres.elements.force.data()[0].z, 0.0);
+  press_spheres_again(w->between);
+  EXPECT_EQ(w->spheres.elements.force.data()[0].z, pressed.z);
+  EXPECT_EQ(w->spheres.critical.data()[0], critical);
 }
 
 // Edges between faces are not felt: a ball that rolls goes on at its speed and its height.
