@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "dem/world.hpp"
+#include "exec/tasks.hpp"
 
 namespace breccia::dem {
 namespace {
@@ -16,75 +17,87 @@ namespace {
 /// once along each axis; each part keeps its three orders.
 class Bisection {
  public:
-  explicit Bisection(const std::vector<ElementState>& state) {
+  Bisection(const std::vector<ElementState>& state, int threads) : threads_(threads) {
     left_.resize(state.size());
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::vector<double>& along = along_[axis];
-      along.reserve(state.size());
-      for (const ElementState& s : state)
-        along.push_back(axis == 0 ? s.position.x : axis == 1 ? s.position.y : s.position.z);
-      std::vector<Index>& order = sorted_[axis];
-      order.resize(state.size());
-      std::iota(order.begin(), order.end(), 0);
-      std::sort(order.begin(), order.end(), [&](Index p, Index q) {
-        return along[at(p)] != along[at(q)] ? along[at(p)] < along[at(q)] : p < q;
-      });
-    }
+    right_.resize(state.size());
+    for_each_task(threads_, 3, [&](int axis) { sort_along(at(axis), state); });
   }
   /// @param tile_of  of each element: gets its tile, so that all weigh about as much
   void divide(Index tiles, const std::vector<double>& weight, std::vector<Index>& tile_of) {
     for (std::size_t axis = 0; axis < 3; ++axis) order_[axis] = sorted_[axis];
-    divide({0, left_.size()}, 0, tiles, weight, tile_of);
+    std::vector<Part> parts{{0, left_.size(), 0, tiles}}, halves;
+    for (Index most = tiles; most > 1; most -= most / 2) {
+      halves.resize(2 * parts.size());
+      for_each_task(threads_, static_cast<int>(parts.size()), [&](int i) {
+        halve(parts[at(i)], weight, halves[2 * at(i)], halves[2 * at(i) + 1]);
+      });
+      parts.swap(halves);
+    }
+    for (const Part& part : parts)
+      for (std::size_t k = part.begin; k < part.end; ++k) tile_of[at(order_[0][k])] = part.first;
   }
 
  private:
-  struct Run {
+  /// Elements [begin, end) of each order, for tiles [first, first + tiles).
+  struct Part {
     std::size_t begin, end;
+    Index first, tiles;
   };
-  std::size_t longest_side(const Run& run) const {
+  void sort_along(std::size_t axis, const std::vector<ElementState>& state) {
+    std::vector<double>& along = along_[axis];
+    along.reserve(state.size());
+    for (const ElementState& s : state)
+      along.push_back(axis == 0 ? s.position.x : axis == 1 ? s.position.y : s.position.z);
+    std::vector<Index>& order = sorted_[axis];
+    order.resize(state.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](Index p, Index q) {
+      return along[at(p)] != along[at(q)] ? along[at(p)] < along[at(q)] : p < q;
+    });
+  }
+  std::size_t longest_side(const Part& part) const {
     double length[3] = {0.0, 0.0, 0.0};
-    if (run.end > run.begin)
+    if (part.end > part.begin)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        length[axis] =
-            along_[axis][at(order_[axis][run.end - 1])] - along_[axis][at(order_[axis][run.begin])];
+        length[axis] = along_[axis][at(order_[axis][part.end - 1])] -
+                       along_[axis][at(order_[axis][part.begin])];
     return static_cast<std::size_t>(std::max_element(length, length + 3) - length);
   }
-  void divide(const Run& run, Index first, Index tiles, const std::vector<double>& weight,
-              std::vector<Index>& tile_of) {
-    const std::size_t axis = longest_side(run);
+  /// @param low, high  get its halves; of a part of one tile `high` has none
+  void halve(const Part& part, const std::vector<double>& weight, Part& low, Part& high) {
+    low = part;
+    high = {part.end, part.end, part.first, 0};
+    if (part.tiles < 2) return;
+    const std::size_t axis = longest_side(part);
     const std::vector<Index>& order = order_[axis];
-    if (tiles == 1) {
-      for (std::size_t k = run.begin; k < run.end; ++k) tile_of[at(order[k])] = first;
-      return;
-    }
     double whole = 0.0, before = 0.0;
-    for (std::size_t k = run.begin; k < run.end; ++k) whole += weight[at(order[k])];
-    const Index left = tiles / 2;
-    const double wanted = whole * left / tiles;
-    std::size_t middle = run.begin;
-    while (middle < run.end && before + 0.5 * weight[at(order[middle])] < wanted)
+    for (std::size_t k = part.begin; k < part.end; ++k) whole += weight[at(order[k])];
+    const Index left = part.tiles / 2;
+    const double wanted = whole * left / part.tiles;
+    std::size_t middle = part.begin;
+    while (middle < part.end && before + 0.5 * weight[at(order[middle])] < wanted)
       before += weight[at(order[middle++])];
-    for (std::size_t k = run.begin; k < run.end; ++k) left_[at(order[k])] = k < middle ? 1 : 0;
+    for (std::size_t k = part.begin; k < part.end; ++k) left_[at(order[k])] = k < middle ? 1 : 0;
     for (std::size_t other = 0; other < 3; ++other)
-      if (other != axis) part(order_[other], run);
-    divide({run.begin, middle}, first, left, weight, tile_of);
-    divide({middle, run.end}, first + left, tiles - left, weight, tile_of);
+      if (other != axis) sort_sides(order_[other], part);
+    low = {part.begin, middle, part.first, left};
+    high = {middle, part.end, part.first + left, part.tiles - left};
   }
   /// Brings those on the left to the front, each side in its order.
-  void part(std::vector<Index>& order, const Run& run) {
-    right_.clear();
-    std::size_t to = run.begin;
-    for (std::size_t k = run.begin; k < run.end; ++k)
-      if (left_[at(order[k])] != 0)
-        order[to++] = order[k];
-      else
-        right_.push_back(order[k]);
-    std::copy(right_.begin(), right_.end(), order.begin() + static_cast<std::ptrdiff_t>(to));
+  void sort_sides(std::vector<Index>& order, const Part& part) {
+    std::size_t to = part.begin, rest = part.begin;
+    for (std::size_t k = part.begin; k < part.end; ++k)
+      (left_[at(order[k])] != 0 ? order[to++] : right_[rest++]) = order[k];
+    std::copy(right_.begin() + static_cast<std::ptrdiff_t>(part.begin),
+              right_.begin() + static_cast<std::ptrdiff_t>(rest),
+              order.begin() + static_cast<std::ptrdiff_t>(to));
   }
 
+  int threads_;
   std::vector<double> along_[3];
-  std::vector<Index> sorted_[3], order_[3], right_;
+  std::vector<Index> sorted_[3], order_[3];
   std::vector<std::uint8_t> left_;  ///< of each element
+  std::vector<Index> right_;        ///< each part has its own range
 };
 
 /// The links of a kind on the host, with the group of each.
@@ -118,82 +131,94 @@ void each_tile_of(const LinksHere& links, Index i, const std::vector<Index>& til
   if (of_b != of_a) visit(of_b);
 }
 
-class Sharing {
+/// The lists of a world that its tiles take parts of, on the host.
+struct Sources {
+  LinksHere kinds[3];  ///< concrete, steel, interface
+  std::vector<Index> bar_starts;
+  std::vector<Entry> bar_entries;
+  std::vector<Index> tile_of;                     ///< of each element
+  std::vector<std::vector<Index>> own, links[3];  ///< of each tile, ascending
+};
+
+/// A tile and its part of the lists of all, the places of the tile in them left out.
+struct FilledTile {
+  Tile tile{};
+  std::vector<Index> linked;
+  std::vector<TileLink> links;
+  std::vector<TileAxis> axes;
+  std::vector<TilePlace> rows;
+};
+
+/// Fills one tile after the other.
+class Filler {
  public:
-  Sharing(const World& w, Index count)
-      : w_(w),
-        plan_(std::make_unique<TilePlan>(w.exec.space)),
-        count_(count),
-        kinds_{links_here(w.concrete), links_here(w.steel), links_here(w.interface)} {
-    copy_to(state_, w.elements.state);
-    place_.resize(state_.size());
-    noted_by_.assign(state_.size(), -1);
-    copy_to(bar_starts_, w.bar_incidence.starts);
-    copy_to(bar_entries_, w.bar_incidence.entries);
-    plan_->groups = {static_cast<Index>(w.concrete.groups.size()),
-                     static_cast<Index>(w.steel.groups.size()),
-                     static_cast<Index>(w.interface.groups.size())};
+  explicit Filler(const Sources& from) : from_(from) {
+    place_.resize(from.tile_of.size());
+    noted_by_.assign(from.tile_of.size(), -1);
   }
 
-  std::unique_ptr<TilePlan> plan() {
-    divide();
-    for (Index t = 0; t < count_; ++t)
-      if (!fill(t)) return nullptr;
-    TilePlan& p = *plan_;
-    copy_to(p.own_there, p.own);
-    copy_to(p.linked_there, p.linked);
-    copy_to(p.links, links_);
-    copy_to(p.axes, axes_);
-    copy_to(p.rows, rows_);
-    p.forces.resize(2 * 6 * static_cast<Index>(state_.size()));
-    p.least.resize(2 * count_ * count_);
-    return std::move(plan_);
+  /// @returns whether tiles can number what this one has
+  bool fill(Index t, FilledTile& filled) {
+    constexpr std::size_t most = std::numeric_limits<TilePlace>::max() / 2;
+    const std::vector<Index>& own = from_.own[at(t)];
+    if (own.empty()) return false;
+    std::vector<Index>& linked = filled.linked;
+    list_linked(t, linked);
+    if (own.size() + linked.size() >= most) return false;
+    std::size_t places = 0;
+    for (const Index e : own) place_[at(e)] = static_cast<TilePlace>(places++);
+    for (const Index e : linked) place_[at(e)] = static_cast<TilePlace>(places++);
+    const auto place = [&](Index e) { return place_[at(e)]; };
+
+    Tile& tile = filled.tile;
+    tile.own = static_cast<Index>(own.size());
+    tile.linked = static_cast<Index>(linked.size());
+    const std::vector<Index> order[3] = {in_order_of_sums(from_.links[0][at(t)]),
+                                         from_.links[1][at(t)], from_.links[2][at(t)]};
+    tile.concrete = static_cast<Index>(order[0].size());
+    tile.steel = static_cast<Index>(order[1].size());
+    tile.interface = static_cast<Index>(order[2].size());
+    if (at(tile.links()) >= most) return false;  // two entries of rows each
+    filled.links.reserve(at(tile.links()));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LinksHere& all = from_.kinds[k];
+      for (const Index i : order[k])
+        filled.links.push_back({place(all.a[at(i)]), place(all.b[at(i)]),
+                                static_cast<std::uint32_t>(i) & 0xfffffffU,
+                                static_cast<std::uint32_t>(all.group[at(i)]) & 0xfU});
+    }
+    const LinksHere& bonds = from_.kinds[2];
+    for (const Index i : order[2])
+      filled.axes.push_back({place(bonds.before[at(i)]), place(bonds.after[at(i)])});
+    list_rows(own, order, filled);
+    return true;
   }
 
  private:
-  /// Weights are corrected until tiles have about as many links, those across their borders
-  /// included.
-  void divide() {
-    Bisection bisection(state_);
-    std::vector<double> weight(state_.size(), 1.0);
-    for (const LinksHere& links : kinds_)
-      for (Index i = 0; i < links.size(); ++i) {
-        weight[at(links.a[at(i)])] += 0.5;
-        weight[at(links.b[at(i)])] += 0.5;
+  /// Elements of other tiles that the links of tile t lead to.
+  void list_linked(Index t, std::vector<Index>& linked) {
+    const auto note = [&](Index e) {
+      if (from_.tile_of[at(e)] == t || noted_by_[at(e)] == t) return;
+      noted_by_[at(e)] = t;
+      linked.push_back(e);
+    };
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const Index i : from_.links[k][at(t)]) {
+        const LinksHere& all = from_.kinds[k];
+        note(all.a[at(i)]);
+        note(all.b[at(i)]);
+        if (k == 2) {
+          note(all.before[at(i)]);
+          note(all.after[at(i)]);
+        }
       }
-    double best = 1e300;
-    std::vector<Index> tile_of(state_.size());
-    for (int turn = 0; turn < 6; ++turn) {
-      bisection.divide(count_, weight, tile_of);
-      std::vector<double> links(static_cast<std::size_t>(count_), 1.0);
-      for (const LinksHere& kind : kinds_)
-        for (Index i = 0; i < kind.size(); ++i)
-          each_tile_of(kind, i, tile_of, [&](Index t) { links[at(t)] += 1.0; });
-      const double most = *std::max_element(links.begin(), links.end());
-      if (most < best) {
-        best = most;
-        plan_->tile_of = tile_of;
-      }
-      const double mean = std::accumulate(links.begin(), links.end(), 0.0) / count_;
-      if (most < 1.02 * mean) break;
-      for (double& excess : links) excess = std::pow(excess / mean, 0.85);
-      for (std::size_t e = 0; e < weight.size(); ++e) weight[e] *= links[at(tile_of[e])];
-    }
-    own_.resize(static_cast<std::size_t>(count_));
-    for (Index e = 0; e < static_cast<Index>(state_.size()); ++e)
-      own_[at(plan_->tile_of[at(e)])].push_back(e);
-    for (std::size_t k = 0; k < 3; ++k) {
-      links_of_[k].resize(static_cast<std::size_t>(count_));
-      for (Index i = 0; i < kinds_[k].size(); ++i)
-        each_tile_of(kinds_[k], i, plan_->tile_of,
-                     [&](Index t) { links_of_[k][at(t)].push_back(i); });
-    }
+    std::sort(linked.begin(), linked.end());
   }
 
   /// The order in which concrete links are summed (list_rows in dem/search.cpp): tile by tile of
   /// the sweep, group by group.
   std::vector<Index> in_order_of_sums(std::vector<Index> links) const {
-    const LinksHere& all = kinds_[0];
+    const LinksHere& all = from_.kinds[0];
     const auto before = [&](Index i, Index j) {
       const Index p = all.a[at(i)] / sweep_tile, q = all.a[at(j)] / sweep_tile;
       if (p != q) return p < q;
@@ -205,77 +230,23 @@ class Sharing {
     return links;
   }
 
-  bool fill(Index t) {
-    constexpr std::size_t most = std::numeric_limits<TilePlace>::max() / 2;
-    TilePlan& p = *plan_;
-    Tile tile{};
-    std::vector<Index> known = own_[at(t)];
-    if (known.empty()) return false;
-    std::vector<Index> linked;
-    const auto note = [&](Index e) {
-      if (p.tile_of[at(e)] == t || noted_by_[at(e)] == t) return;
-      noted_by_[at(e)] = t;
-      linked.push_back(e);
-    };
-    for (std::size_t k = 0; k < 3; ++k)
-      for (const Index i : links_of_[k][at(t)]) {
-        note(kinds_[k].a[at(i)]);
-        note(kinds_[k].b[at(i)]);
-        if (k == 2) {
-          note(kinds_[k].before[at(i)]);
-          note(kinds_[k].after[at(i)]);
-        }
-      }
-    std::sort(linked.begin(), linked.end());
-    known.insert(known.end(), linked.begin(), linked.end());
-    if (known.size() >= most) return false;
-
-    for (std::size_t k = 0; k < known.size(); ++k) place_[at(known[k])] = static_cast<TilePlace>(k);
-    const auto place = [&](Index e) { return place_[at(e)]; };
-
-    tile.own = static_cast<Index>(own_[at(t)].size());
-    tile.linked = static_cast<Index>(linked.size());
-    tile.first_own = static_cast<Index>(p.own.size());
-    tile.first_linked = static_cast<Index>(p.linked.size());
-    tile.first_link = static_cast<Index>(links_.size());
-    tile.first_axis = static_cast<Index>(axes_.size());
-    tile.first_row = static_cast<Index>(rows_.size());
-    tile.first_start = tile.first_own + t;
-    p.own.insert(p.own.end(), own_[at(t)].begin(), own_[at(t)].end());
-    p.linked.insert(p.linked.end(), linked.begin(), linked.end());
-
-    const std::vector<Index> order[3] = {in_order_of_sums(links_of_[0][at(t)]), links_of_[1][at(t)],
-                                         links_of_[2][at(t)]};
-    for (std::size_t k = 0; k < 3; ++k)
-      for (const Index i : order[k])
-        links_.push_back({place(kinds_[k].a[at(i)]), place(kinds_[k].b[at(i)]),
-                          static_cast<std::uint32_t>(i) & 0xfffffffU,
-                          static_cast<std::uint32_t>(kinds_[k].group[at(i)]) & 0xfU});
-    for (const Index i : order[2])
-      axes_.push_back({place(kinds_[2].before[at(i)]), place(kinds_[2].after[at(i)])});
-    tile.concrete = static_cast<Index>(order[0].size());
-    tile.steel = static_cast<Index>(order[1].size());
-    tile.interface = static_cast<Index>(order[2].size());
-    if (at(tile.links()) >= most) return false;  // two entries of rows each
-    list_rows(tile, order);
-    p.tiles.push_back(tile);
-    return true;
-  }
-
   /// Rows of the own elements of a tile: what each gets as a, and as b.
-  void list_rows(Tile& tile, const std::vector<Index> (&order)[3]) {
+  void list_rows(const std::vector<Index>& elements, const std::vector<Index> (&order)[3],
+                 FilledTile& filled) {
+    Tile& tile = filled.tile;
     const Index own = tile.own, bars = tile.bars();
-    const TileLink* links = links_.data() + tile.first_link;
+    const std::vector<TileLink>& links = filled.links;
     std::vector<std::vector<TilePlace>>& row = row_of_;
     row.resize(std::max(row.size(), 2 * at(own)));
     for (auto& one : row) one.clear();
     for (Index l = 0; l < tile.concrete; ++l) {
       const auto action = static_cast<TilePlace>(bars + l);
-      if (links[l].a < own) row[2U * links[l].a].push_back(action);
-      if (links[l].b < own) row[2U * links[l].b + 1].push_back(action);
+      const TileLink& link = links[at(l)];
+      if (link.a < own) row[2U * link.a].push_back(action);
+      if (link.b < own) row[2U * link.b + 1].push_back(action);
     }
     // Bars by the lists of the world, whose pairs are all steel links, then all bonds.
-    const Index steel = w_.steel.size();
+    const Index steel = from_.kinds[1].size();
     const auto place_of_bar = [&](Index pair) {
       const int kind = pair < steel ? 1 : 2;
       const std::vector<Index>& here = order[kind];
@@ -284,9 +255,9 @@ class Sharing {
       return static_cast<Index>(found) + (kind == 1 ? 0 : tile.steel);
     };
     for (Index e = 0; e < own; ++e) {
-      const Index element = plan_->own[at(tile.first_own + e)];
-      for (Index k = bar_starts_[at(element)]; k < bar_starts_[at(element) + 1]; ++k) {
-        const Entry entry = bar_entries_[at(k)];
+      const Index element = elements[at(e)];
+      for (Index k = from_.bar_starts[at(element)]; k < from_.bar_starts[at(element) + 1]; ++k) {
+        const Entry entry = from_.bar_entries[at(k)];
         row[at(2 * e + side_of(entry))].push_back(
             static_cast<TilePlace>(place_of_bar(pair_of(entry))));
       }
@@ -299,30 +270,133 @@ class Sharing {
     };
     std::stable_sort(by_length.begin(), by_length.end(),
                      [&](TilePlace p, TilePlace q) { return length(p) > length(q); });
-    rows_.insert(rows_.end(), by_length.begin(), by_length.end());
+    std::vector<TilePlace>& rows = filled.rows;
+    rows = by_length;
     for (Index k = 0; k < 2 * own; ++k) {
-      rows_.push_back(static_cast<TilePlace>(entries.size()));
+      rows.push_back(static_cast<TilePlace>(entries.size()));
       entries.insert(entries.end(), row[at(k)].begin(), row[at(k)].end());
     }
-    rows_.push_back(static_cast<TilePlace>(entries.size()));
-    rows_.insert(rows_.end(), entries.begin(), entries.end());
+    rows.push_back(static_cast<TilePlace>(entries.size()));
+    rows.insert(rows.end(), entries.begin(), entries.end());
     tile.row_entries = static_cast<Index>(entries.size());
   }
 
-  const World& w_;
-  std::unique_ptr<TilePlan> plan_;
-  Index count_;
-  LinksHere kinds_[3];
-  std::vector<ElementState> state_;
+  const Sources& from_;
   std::vector<std::vector<TilePlace>> row_of_;  ///< of the own elements of the tile that is filled
   std::vector<TilePlace> place_;                ///< of elements in the tile that is filled
   std::vector<Index> noted_by_;                 ///< the last tile that knows each element by a link
-  std::vector<Index> bar_starts_;
-  std::vector<Entry> bar_entries_;
-  std::vector<std::vector<Index>> own_, links_of_[3];
-  std::vector<TileLink> links_;
-  std::vector<TileAxis> axes_;
-  std::vector<TilePlace> rows_;
+};
+
+class Sharing {
+ public:
+  Sharing(const World& w, Index count)
+      : plan_(std::make_unique<TilePlan>(w.exec.space)), count_(count), threads_(w.exec.threads) {
+    from_.kinds[0] = links_here(w.concrete);
+    from_.kinds[1] = links_here(w.steel);
+    from_.kinds[2] = links_here(w.interface);
+    copy_to(state_, w.elements.state);
+    copy_to(from_.bar_starts, w.bar_incidence.starts);
+    copy_to(from_.bar_entries, w.bar_incidence.entries);
+    plan_->groups = {static_cast<Index>(w.concrete.groups.size()),
+                     static_cast<Index>(w.steel.groups.size()),
+                     static_cast<Index>(w.interface.groups.size())};
+  }
+
+  std::unique_ptr<TilePlan> plan() {
+    divide();
+    list_by_tiles();
+    std::vector<FilledTile> filled(at(count_));
+    std::vector<std::uint8_t> fits(at(count_), 0);
+    const int fillers = std::min(threads_, static_cast<int>(count_));
+    for_each_task(threads_, fillers, [&](int number) {
+      Filler filler(from_);
+      for (Index t = number; t < count_; t += fillers) fits[at(t)] = filler.fill(t, filled[at(t)]);
+    });
+    if (std::find(fits.begin(), fits.end(), 0) != fits.end()) return nullptr;
+    join(filled);
+    plan_->tile_of = std::move(from_.tile_of);
+    plan_->forces.resize(2 * 6 * static_cast<Index>(state_.size()));
+    plan_->least.resize(2 * count_ * count_);
+    return std::move(plan_);
+  }
+
+ private:
+  /// Weights are corrected until tiles have about as many links, those across their borders
+  /// included.
+  void divide() {
+    Bisection bisection(state_, threads_);
+    std::vector<double> weight(state_.size(), 1.0);
+    for (const LinksHere& links : from_.kinds)
+      for (Index i = 0; i < links.size(); ++i) {
+        weight[at(links.a[at(i)])] += 0.5;
+        weight[at(links.b[at(i)])] += 0.5;
+      }
+    double best = 1e300;
+    std::vector<Index> tile_of(state_.size());
+    for (int turn = 0; turn < 6; ++turn) {
+      bisection.divide(count_, weight, tile_of);
+      std::vector<double> links(static_cast<std::size_t>(count_), 1.0);
+      for (const LinksHere& kind : from_.kinds)
+        for (Index i = 0; i < kind.size(); ++i)
+          each_tile_of(kind, i, tile_of, [&](Index t) { links[at(t)] += 1.0; });
+      const double most = *std::max_element(links.begin(), links.end());
+      if (most < best) {
+        best = most;
+        from_.tile_of = tile_of;
+      }
+      const double mean = std::accumulate(links.begin(), links.end(), 0.0) / count_;
+      if (most < 1.02 * mean) break;
+      for (double& excess : links) excess = std::pow(excess / mean, 0.85);
+      for (std::size_t e = 0; e < weight.size(); ++e) weight[e] *= links[at(tile_of[e])];
+    }
+  }
+
+  void list_by_tiles() {
+    from_.own.resize(at(count_));
+    for (Index e = 0; e < static_cast<Index>(state_.size()); ++e)
+      from_.own[at(from_.tile_of[at(e)])].push_back(e);
+    for_each_task(threads_, 3, [this](int k) {
+      const LinksHere& kind = from_.kinds[k];
+      from_.links[k].resize(at(count_));
+      for (Index i = 0; i < kind.size(); ++i)
+        each_tile_of(kind, i, from_.tile_of, [&](Index t) { from_.links[k][at(t)].push_back(i); });
+    });
+  }
+
+  /// The lists of all tiles, one tile after the other.
+  void join(std::vector<FilledTile>& filled) {
+    TilePlan& p = *plan_;
+    std::vector<TileLink> links;
+    std::vector<TileAxis> axes;
+    std::vector<TilePlace> rows;
+    const auto append = [](auto& all, const auto& more) {
+      const auto first = static_cast<Index>(all.size());
+      all.insert(all.end(), more.begin(), more.end());
+      return first;
+    };
+    for (Index t = 0; t < count_; ++t) {
+      const FilledTile& one = filled[at(t)];
+      Tile tile = one.tile;
+      tile.first_own = append(p.own, from_.own[at(t)]);
+      tile.first_linked = append(p.linked, one.linked);
+      tile.first_link = append(links, one.links);
+      tile.first_axis = append(axes, one.axes);
+      tile.first_row = append(rows, one.rows);
+      tile.first_start = tile.first_own + t;
+      p.tiles.push_back(tile);
+    }
+    copy_to(p.own_there, p.own);
+    copy_to(p.linked_there, p.linked);
+    copy_to(p.links, links);
+    copy_to(p.axes, axes);
+    copy_to(p.rows, rows);
+  }
+
+  Sources from_;
+  std::unique_ptr<TilePlan> plan_;
+  Index count_;
+  int threads_;
+  std::vector<ElementState> state_;
 };
 
 }  // namespace

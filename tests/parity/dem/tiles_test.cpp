@@ -9,6 +9,7 @@
 
 #include "dem/energy.hpp"
 #include "dem/observe.hpp"
+#include "dem/tiles/tile_plan.hpp"
 #include "dem/tiles/tile_run.hpp"
 #include "exec/error.hpp"
 #include "paths.hpp"
@@ -24,10 +25,11 @@ namespace tiles_test {
 const std::string small_case = std::string(source_dir) + "/cases/rc_slab/small.toml";
 
 /// Concrete, bars, bonds, and an impactor that comes to touch what it breaks.
-World small_slab(Index tiles) {
+World small_slab(Index tiles, int threads = 1) {
   const auto config = read_case<Config>(small_case, {});
   static const Model model = build_model(config, std::string(source_dir) + "/cases/rc_slab");
   Exec exec;
+  exec.threads = threads;
   if (tiles != 0) exec.space = Space::shadow;
   exec.tiles = tiles;
   return make_world(config, model, exec);
@@ -55,6 +57,29 @@ void same_contacts(const World& w, const World& host) {
   same(w.contact_incidence.starts, host.contact_incidence.starts, "first entries");
   same(w.contact_incidence.entries, host.contact_incidence.entries, "entries");
   same(w.travel.margin, host.travel.margin, "margins");
+}
+
+TEST(Tiles, are_shared_out_alike_by_any_number_of_threads) {
+  constexpr Index count = 37;
+  const World w = small_slab(count);
+  const auto one = share_out_to_tiles(w, count);
+  ASSERT_NE(one, nullptr);
+  std::vector<Index> number(one->own);  // each element is some tile's own, once
+  std::sort(number.begin(), number.end());
+  for (Index e = 0; e < w.elements.size(); ++e) ASSERT_EQ(number[at(e)], e);
+  const auto bytes = [](const auto& items) {
+    std::vector<std::decay_t<decltype(*items.data())>> here;
+    copy_to(here, items);
+    return std::string(reinterpret_cast<const char*>(here.data()), here.size() * sizeof here[0]);
+  };
+  for (const int threads : {2, 7, 64}) {
+    const auto several = share_out_to_tiles(small_slab(count, threads), count);
+    ASSERT_NE(several, nullptr);
+    EXPECT_EQ(several->tile_of, one->tile_of) << threads;
+    EXPECT_EQ(several->linked, one->linked) << threads;
+    EXPECT_EQ(bytes(several->links), bytes(one->links)) << threads;
+    EXPECT_EQ(bytes(several->rows), bytes(one->rows)) << threads;
+  }
 }
 
 TEST(Tiles, end_with_the_bits_of_the_host) {
