@@ -31,8 +31,8 @@ std::string bytes_of(const fs::path& path) {
 /// Longer than any rank needs where others take the processors, far shorter than for ever.  [s]
 constexpr int soon = 60;
 
-/// What starts `ranks` ranks, as Open MPI and MPICH understand it. Modules of Open MPI leak and are
-/// gone when a sanitizer asks for their names.
+/// Words that start `ranks` ranks, as Open MPI and MPICH understand it. Modules of Open MPI leak
+/// and are gone when a sanitizer asks for their names.
 std::string mpirun(int ranks) {
   return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
          "OMPI_MCA_rmaps_base_oversubscribe=1 ASAN_OPTIONS=\"$ASAN_OPTIONS:detect_leaks=0\" "
@@ -83,11 +83,19 @@ class ProgramOnRanks : public ::testing::Test {
     return all;
   }
 
-  /// The same files from one process and from several, and from one that was continued on others.
+  /// The model of a shipped small case, built once: ranks that wait for it keep processors busy.
+  std::string prepared(const std::string& name) const {
+    const std::string model = out("model.br");
+    EXPECT_EQ(
+        run(1, "prepare " + std::string(source_dir) + "/cases/" + name + "/small.toml -o " + model),
+        0);
+    return model;
+  }
+
+  /// Equal files from one process and from several, and from one that was continued on others.
   void compare(const std::string& name, int steps, const std::string& history) {
-    const std::string shared = std::string(source_dir) + "/cases/" + name +
-                               "/small.toml --threads 1 --no-progress "
-                               "--set output.frames=1 --set "
+    const std::string shared = prepared(name) +
+                               " --threads 1 --no-progress --set output.frames=1 --set "
                                "checkpoint.keep=1 --set output.history=" +
                                history + " ";
     const std::string end = "--steps " + std::to_string(steps) + " ";
@@ -290,9 +298,9 @@ struct Ending {
 /// knows its process as $pid, once there is a state to go on from.
 class FateOfRank : public ProgramOnRanks {
  protected:
-  static inline const std::string slab =
-      std::string(source_dir) +
-      "/cases/rc_slab/small.toml --threads 1 --no-progress --set output.frames=0 "
+  const std::string slab =
+      prepared("rc_slab") +
+      " --threads 1 --no-progress --set output.frames=0 "
       "--set checkpoint.steps=100 --set output.history=1 --set domain.patience=3 ";
 
   Ending suffer(int rank, const std::string& fate, const std::string& more = "",
@@ -334,7 +342,7 @@ TEST_F(FateOfRank, killed_ends_the_job_within_seconds_and_resume_goes_on) {
   const std::string end = "--steps 800 ";
   ASSERT_EQ(run(2, "resume " + out("run") + " --threads 1 --no-progress " + end, out("told")), 0)
       << bytes_of(out("told"));
-  ASSERT_EQ(run(1, std::string("run ") + slab + end + "-o " + out("whole")), 0);
+  ASSERT_EQ(run(1, "run " + slab + end + "-o " + out("whole")), 0);
   EXPECT_EQ(hash_in(out("run")), hash_in(out("whole")));
 }
 
@@ -355,7 +363,7 @@ TEST_F(FateOfRank, stopped_ends_all_with_exit_code_8_soon_after_the_others_lose_
 TEST_F(FateOfRank, stopped_for_less_than_the_others_patience_changes_nothing) {
   const Ending ending = suffer(1, "kill -STOP $pid; sleep 0.7; kill -CONT $pid", "--steps 400 ");
   EXPECT_EQ(ending.exit_code, 0) << ending.told;
-  ASSERT_EQ(run(1, std::string("run ") + slab + "--steps 400 -o " + out("whole")), 0);
+  ASSERT_EQ(run(1, "run " + slab + "--steps 400 -o " + out("whole")), 0);
   EXPECT_EQ(hash_in(out("run")), hash_in(out("whole")));
 }
 
