@@ -3,7 +3,7 @@
 
     scripts/rock_plots.py KIND RESULT_DIR [RESULT_DIR...] -o plot.png
 
-KIND: tension, crack (fracture energy over growth), bending (force over the way of the press, of three_point_bending_3d), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), branching (crack front), branching_3d (crack path), spall (velocity of the free end),
+KIND: tension, crack (fracture energy over growth), bending (force over the way of the press, of three_point_bending_3d), disc (force over travel), kalthoff and kalthoff_3d (crack path), ball (embedded_slab), cylinder (stress over time), dips (strength over the dip of joints), branching (crack front), branching_3d (crack path), spall (velocity of the free end),
 triaxial (strengths over pressure, of docs/results/rock.csv), wings (stress over time), arch (crowns over time), dominoes (speed along the row, several runs),
 checks (any case: probes over time, and what its checks expect of them).
 """
@@ -114,6 +114,19 @@ def cylinder(axes, results):
     axes.set(xlabel="time, us", ylabel="force / section, MPa")
 
 
+def dips(axes, results):
+    """Strength over the dip of the joints, and a plane of weakness (Jaeger 1960)."""
+    slope = math.tan(math.radians(30))
+    curve = [30.5 + 0.1 * k for k in range(440)]
+    borne = [4.0 / ((1 - slope / math.tan(math.radians(b))) * math.sin(2 * math.radians(b))) for b in curve]
+    axes.plot(curve, borne, color="0.5", lw=1, ls="--", label="2 c/((1 - tan(phi)/tan(dip)) sin(2 dip))")
+    for r in results:
+        case = tomllib.loads((r.folder / "case.toml").read_text())
+        x, _, z = case["joint_set"][0]["normal"]
+        axes.plot(math.degrees(math.atan2(x, z)), 1e-6 * r.value("probe.force.max") / 0.05**2, "C0+", label=None if axes.get_lines()[1:] else f"{len(results)} runs, edges of 16 mm")
+    axes.set(xlabel="dip of the joints, degrees", ylabel="strength, MPa", xlim=(35, 70), ylim=(0, 20))
+
+
 def branching(axes, results):
     for r in results:
         cracks = r.cracks()
@@ -214,7 +227,7 @@ def checks(axes, results):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    kinds = {f.__name__: f for f in (tension, crack, bending, disc, kalthoff, kalthoff_3d, ball, cylinder, branching, branching_3d, spall, triaxial, wings, arch, dominoes, checks)}
+    kinds = {f.__name__: f for f in (tension, crack, bending, disc, kalthoff, kalthoff_3d, ball, cylinder, dips, branching, branching_3d, spall, triaxial, wings, arch, dominoes, checks)}
     parser.add_argument("kind", choices=kinds)
     parser.add_argument("results", nargs="+", type=pathlib.Path)
     parser.add_argument("-o", "--out", required=True)

@@ -187,6 +187,15 @@ TEST(Forecast, ends_with_the_last_of_stages_that_end_by_time_and_says_when_other
   EXPECT_TRUE(forecast(config, folder).may_end_early);
 }
 
+/// Whatever its joints meet: the specimen that is timed has none of them.
+TEST(Forecast, of_a_set_of_joints_in_space_does_not_depend_on_where_they_lie) {
+  const std::string folder = std::string(source_dir) + "/cases/jointed_prism";
+  auto config = read_case<fdem3::Config>(folder + "/small.toml", {});
+  const double step = forecast(config, folder).step;
+  config.seed = 2;
+  EXPECT_EQ(forecast(config, folder).step, step);
+}
+
 TEST(Forecast, memory_follows_the_pixels_of_the_pictures) {
   fdem::Config config = read_case<fdem::Config>(CaseText{beam, "beam.toml"}, {});
   config.output.frames = 4;
